@@ -1,0 +1,229 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <memory>
+#include <string>
+
+#include "commands.h"
+#include "input.h"
+#include "orientation.h"
+#include "output.h"
+#include "pellucid/base/version.h"
+
+namespace pellucid::cli {
+
+namespace {
+
+struct InfoArguments {
+  std::string input;
+  VolumeOptions volume;
+  bool json = false;
+};
+
+/// What is said of a volume, gathered once for the text and for the JSON.
+struct Facts {
+  std::size_t bytes = 0;
+  double mean = 0;  ///< of the finite values
+  Vec3<double> world_lower, world_upper;
+  bool anatomical = false;
+  Orientation orientation;
+};
+
+/// The formats that are placed in LPS by what they say themselves.
+bool is_medical(const std::filesystem::path& file) {
+  const std::string name = lower_case(file.filename().string());
+  for (const char* end : {".nii", ".nii.gz", ".hdr", ".img", ".hdr.gz", ".img.gz", ".nrrd", ".nhdr",
+                          ".mha", ".mhd"}) {
+    if (name.ends_with(end)) return true;
+  }
+  return false;
+}
+
+Facts facts_of(const Volume& volume, const FieldSource& source) {
+  Facts facts;
+  std::visit(
+      [&](const auto& values) {
+        facts.bytes = values.size() * sizeof(values[0]);
+        // Scaled before it is summed, so that finite values have a finite mean.
+        const double count = static_cast<double>(volume.statistics().finite);
+        double sum = 0;
+        for (const auto value : values) {
+          const double x = static_cast<double>(value);
+          if (std::isfinite(x)) sum += x / count;
+        }
+        facts.mean = sum;
+      },
+      volume.data());
+  const auto corners = volume.world_corners();
+  facts.world_lower = facts.world_upper = corners[0];
+  for (const Vec3<double>& corner : corners) {
+    for (int axis = 0; axis < 3; ++axis) {
+      facts.world_lower[axis] = std::min(facts.world_lower[axis], corner[axis]);
+      facts.world_upper[axis] = std::max(facts.world_upper[axis], corner[axis]);
+    }
+  }
+  facts.anatomical = source.builtin.empty() && is_medical(source.file);
+  if (facts.anatomical) {
+    facts.orientation = anatomical_orientation(volume.description().placement.direction);
+  }
+  return facts;
+}
+
+bool is_rectilinear(const Volume& volume) {
+  const auto& coordinates = volume.description().coordinates;
+  return std::any_of(coordinates.begin(), coordinates.end(),
+                     [](const auto& axis) { return !axis.empty(); });
+}
+
+// The sum turns -0 into 0.
+std::string number(double x) {
+  return fmt::format("{:.6g}", x + 0.0);
+}
+
+std::string triple(const Vec3<double>& v) {
+  return fmt::format("{} {} {}", number(v.x), number(v.y), number(v.z));
+}
+
+std::string readable_bytes(std::size_t bytes) {
+  constexpr const char* units[] = {"B", "KiB", "MiB", "GiB", "TiB"};
+  double amount = static_cast<double>(bytes);
+  std::size_t unit = 0;
+  while (amount >= 1024 && unit + 1 < std::size(units)) {
+    amount /= 1024;
+    ++unit;
+  }
+  return unit == 0 ? fmt::format("{} B", bytes) : fmt::format("{:.1f} {}", amount, units[unit]);
+}
+
+/// Bars as long as log(1 + count): a rare material shows beside a thousand times as much air.
+std::string bar_chart(const Histogram& histogram) {
+  constexpr double longest_bar = 48;
+  std::uint64_t most = 1;
+  for (const std::uint64_t count : histogram.count) most = std::max(most, count);
+  const double bins = static_cast<double>(histogram.count.size());
+  const double bin_width = (histogram.upper - histogram.lower) / bins;
+  std::string chart;
+  for (std::size_t bin = 0; bin < histogram.count.size(); ++bin) {
+    const std::uint64_t count = histogram.count[bin];
+    const double share =
+        std::log1p(static_cast<double>(count)) / std::log1p(static_cast<double>(most));
+    const auto bar = static_cast<std::size_t>(std::ceil(share * longest_bar));
+    const double begin = histogram.lower + static_cast<double>(bin) * bin_width;
+    chart += count == 0
+                 ? fmt::format("  {:>12} {:>12}\n", number(begin), count)
+                 : fmt::format("  {:>12} {:>12} {}\n", number(begin), count, std::string(bar, '#'));
+  }
+  return chart;
+}
+
+std::string text_report(const Volume& volume, const Facts& facts) {
+  const auto& d = volume.description();
+  const auto& statistics = volume.statistics();
+  const auto& placement = d.placement;
+  std::string text;
+  const auto line = [&](std::string_view label, const std::string& value) {
+    text += fmt::format("{:<12} {}\n", label, value);
+  };
+  line("name", d.name);
+  line("dimensions",
+       fmt::format("{} x {} x {}", d.dimensions[0], d.dimensions[1], d.dimensions[2]));
+  line("type", fmt::format("{}, {}", type_name(volume.data()), readable_bytes(facts.bytes)));
+  line("centering", d.centering == Centering::point ? "point" : "cell");
+  line("grid", is_rectilinear(volume) ? "rectilinear" : "uniform");
+  line("spacing", triple(placement.spacing));
+  line("origin", triple(placement.origin));
+  line("x axis", triple(placement.direction.column[0]));
+  line("y axis", triple(placement.direction.column[1]));
+  line("z axis", triple(placement.direction.column[2]));
+  if (facts.anatomical) {
+    line("orientation",
+         facts.orientation.code +
+             (facts.orientation.oblique_by > 0.01
+                  ? fmt::format(", oblique by {:.2f} degrees", facts.orientation.oblique_by)
+                  : "") +
+             " (where the indices grow to; the world is LPS)");
+  }
+  line("world box", fmt::format("{} to {}", triple(facts.world_lower), triple(facts.world_upper)));
+  if (statistics.finite > 0) {
+    line("range", fmt::format("{} to {}", number(statistics.minimum), number(statistics.maximum)));
+    line("mean", number(facts.mean));
+  } else {
+    line("range", "no finite value");
+  }
+  line("NaN",
+       fmt::format("{}{}", statistics.nan, statistics.nan > 0 ? " (rendered as vacuum)" : ""));
+  if (statistics.finite > 0) {
+    text += "histogram    lower end of the bin, values, bar on a logarithmic scale\n";
+    text += bar_chart(volume.histogram(24));
+  }
+  return text;
+}
+
+Json json_report(const Volume& volume, const Facts& facts, const std::string& input) {
+  const auto& d = volume.description();
+  const auto& statistics = volume.statistics();
+  Json json;
+  json["pellucid"] = PELLUCID_VERSION_STRING;
+  json["input"] = input;
+  json["name"] = d.name;
+  json["dimensions"] = dimensions_json(volume);
+  json["type"] = type_name(volume.data());
+  json["bytes"] = facts.bytes;
+  json["centering"] = d.centering == Centering::point ? "point" : "cell";
+  json["grid"] = is_rectilinear(volume) ? "rectilinear" : "uniform";
+  json["spacing"] = to_json(d.placement.spacing);
+  json["origin"] = to_json(d.placement.origin);
+  json["direction"] = {to_json(d.placement.direction.column[0]),
+                       to_json(d.placement.direction.column[1]),
+                       to_json(d.placement.direction.column[2])};
+  json["orientation"] = facts.anatomical ? Json(facts.orientation.code) : Json();
+  json["oblique_degrees"] = facts.anatomical ? Json(facts.orientation.oblique_by) : Json();
+  json["world_box"] = {to_json(facts.world_lower), to_json(facts.world_upper)};
+  const bool any = statistics.finite > 0;
+  json["range"] = any ? Json{statistics.minimum, statistics.maximum} : Json();
+  json["mean"] = any ? Json(facts.mean) : Json();
+  json["nan"] = statistics.nan;
+  if (any) {
+    const Histogram histogram = volume.histogram(256);
+    json["histogram"] = {
+        {"lower", histogram.lower}, {"upper", histogram.upper}, {"count", histogram.count}};
+  } else {
+    json["histogram"] = Json();
+  }
+  return json;
+}
+
+int run_info(const InfoArguments& arguments) {
+  const FieldSource source = field_source(arguments.input, arguments.volume);
+  const Volume volume = load_field(source);
+  const Facts facts = facts_of(volume, source);
+  if (arguments.json) {
+    print_json(json_report(volume, facts, arguments.input));
+  } else {
+    print_text(text_report(volume, facts));
+  }
+  return 0;
+}
+
+}  // namespace
+
+Command add_info(CLI::App& app) {
+  CLI::App& command = *app.add_subcommand("info", "Say what is in a volume file");
+  const auto arguments = std::make_shared<InfoArguments>();
+  command
+      .add_option("INPUT", arguments->input, std::string(input_help) + " or builtin:NAME[:POINTS]")
+      ->required();
+  command.add_flag("--json", arguments->json, "Print JSON, with a histogram of 256 bins");
+  arguments->volume.add_to(command);
+  command.footer(
+      "Examples:\n"
+      "  pellucid info brain.nii.gz\n"
+      "  pellucid info male.raw --dimensions 128,256,256 --type u8 --spacing 1.57,0.99,0.99\n"
+      "  pellucid info builtin:hydrogen:64 --json");
+  return {&command, [arguments] { return run_info(*arguments); }};
+}
+
+}  // namespace pellucid::cli

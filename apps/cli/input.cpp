@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "input.h"
+
+#include <fmt/format.h>
+
+#include "parse.h"
+
+namespace pellucid::cli {
+
+namespace {
+
+constexpr const char* group = "Options of volume files";
+
+}  // namespace
+
+void VolumeOptions::add_to(CLI::App& command) {
+  const auto add = [&](CLI::Option* option) { given.push_back(option->group(group)); };
+  add(command.add_option("--dimensions", dimensions, "Values along x, y, z of a .raw file")
+          ->option_text("X,Y,Z"));
+  add(command.add_option("--type", type, "Number type of a .raw file")
+          ->option_text("TYPE")
+          ->check(CLI::IsMember({"u8", "i8", "u16", "i16", "u32", "i32", "f32", "f64"})));
+  add(command.add_flag("--big-endian", big_endian, "Byte order of a .raw file (default little)"));
+  add(command.add_option("--skip-bytes", skip_bytes, "Length of a header to skip in a .raw file")
+          ->option_text("N"));
+  add(command
+          .add_option("--spacing", spacing, "Distance of values along x, y, z; replaces the file's")
+          ->option_text("X,Y,Z"));
+  add(command
+          .add_option("--origin", origin, "World position of the first value; replaces the file's")
+          ->option_text("X,Y,Z"));
+  add(command
+          .add_option("--centering", centering,
+                      "Whether values stand at grid points or fill cells; replaces the file's")
+          ->option_text("point|cell")
+          ->check(CLI::IsMember({"point", "cell"})));
+}
+
+void VolumeOptions::refuse(const std::string& what) const {
+  for (const CLI::Option* option : given) {
+    if (option->count() > 0) {
+      throw UsageError(
+          fmt::format("{} applies to volume files, not to {}", option->get_name(), what));
+    }
+  }
+}
+
+ReadOptions VolumeOptions::read_options() const {
+  ReadOptions read;
+  if (!dimensions.empty()) read.dimensions = parse_dimensions("--dimensions", dimensions);
+  if (!type.empty()) read.type = type;
+  if (big_endian) read.big_endian = true;
+  read.skip_bytes = skip_bytes;
+  if (!spacing.empty()) {
+    const auto [x, y, z] = parse_triple("--spacing", spacing);
+    read.spacing = Vec3<double>{x, y, z};
+  }
+  if (!origin.empty()) {
+    const auto [x, y, z] = parse_triple("--origin", origin);
+    read.origin = Vec3<double>{x, y, z};
+  }
+  if (!centering.empty()) read.centering = centering == "cell" ? Centering::cell : Centering::point;
+  return read;
+}
+
+FieldSource field_source(const std::string& input, const VolumeOptions& options) {
+  FieldSource source = parse_field_source(input);
+  if (source.builtin.empty()) {
+    source.options = options.read_options();
+  } else {
+    options.refuse("a built-in field");
+  }
+  return source;
+}
+
+}  // namespace pellucid::cli

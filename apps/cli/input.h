@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <string>
+#include <vector>
+
+#include "pellucid/io/scene_json.h"
+
+namespace pellucid::cli {
+
+/// What INPUT may be, for help texts.
+inline constexpr const char* input_help =
+    "Volume file (.nii, .nii.gz, .hdr, .img, .nrrd, .nhdr, .mha, .mhd, .npy, .raw)";
+
+/// The options that say, or replace, what a volume file says about itself.
+struct VolumeOptions {
+  std::string dimensions, type, spacing, origin, centering;
+  bool big_endian = false;
+  std::size_t skip_bytes = 0;
+  std::vector<CLI::Option*> given;  ///< all of them, to ask which were used
+
+  void add_to(CLI::App& command);
+  /// Throws UsageError where an option is used, saying that it does not apply to `what`.
+  void refuse(const std::string& what) const;
+  ReadOptions read_options() const;
+};
+
+/// Where the input comes from: "builtin:NAME[:POINTS]" or a volume file. Throws Error.
+FieldSource field_source(const std::string& input, const VolumeOptions& options);
+
+}  // namespace pellucid::cli

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "pellucid/scene/volume.h"
+
+namespace pellucid::cli {
+
+using Json = nlohmann::ordered_json;
+
+/// Writes to stdout. Throws Error where that fails (a full disk, a closed pipe).
+void print_text(const std::string& text);
+/// As indented JSON, one line feed at the end. Numbers that are not finite become null.
+void print_json(const Json& json);
+/// "pellucid: …" on stderr; one line.
+void print_note(const std::string& text);
+
+Json to_json(const Vec3<double>& v);
+Json dimensions_json(const Volume& volume);
+/// ASCII letters only.
+std::string lower_case(std::string text);
+/// Lower-case extension with its dot: ".png".
+std::string extension_of(const std::filesystem::path& path);
+
+}  // namespace pellucid::cli

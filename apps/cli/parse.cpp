@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "parse.h"
+
+#include <fmt/format.h>
+
+#include <charconv>
+#include <cmath>
+#include <optional>
+#include <string_view>
+#include <vector>
+
+namespace pellucid::cli {
+
+namespace {
+
+template <class Number>
+std::optional<Number> parse_number(std::string_view text) {
+  if (text.starts_with('+') && !text.starts_with("+-")) text.remove_prefix(1);
+  Number number{};
+  const char* const end = text.data() + text.size();
+  const auto [stop, error] = std::from_chars(text.data(), end, number);
+  if (error != std::errc() || stop != end || text.empty()) return std::nullopt;
+  return number;
+}
+
+template <class Number>
+std::vector<Number> parse_list(const std::string& option, const std::string& text, char separator,
+                               std::string_view expected) {
+  std::vector<Number> numbers;
+  std::string_view rest = text;
+  while (true) {
+    const std::size_t cut = rest.find(separator);
+    const std::optional<Number> number = parse_number<Number>(rest.substr(0, cut));
+    if (!number) throw UsageError(fmt::format("{} '{}': expected {}", option, text, expected));
+    numbers.push_back(*number);
+    if (cut == std::string_view::npos) return numbers;
+    rest.remove_prefix(cut + 1);
+  }
+}
+
+template <class Number>
+std::array<Number, 3> parse_three(const std::string& option, const std::string& text,
+                                  std::string_view expected) {
+  const std::vector<Number> n = parse_list<Number>(option, text, ',', expected);
+  if (n.size() != 3) throw UsageError(fmt::format("{} '{}': expected {}", option, text, expected));
+  return {n[0], n[1], n[2]};
+}
+
+}  // namespace
+
+std::string one_line(std::string text) {
+  std::string line;
+  for (const char c : text) {
+    const bool control = (c >= '\0' && c < ' ') || c == '\x7f';
+    if (control && (line.empty() || line.back() == ' ')) continue;
+    line += control ? ' ' : c;
+  }
+  while (!line.empty() && line.back() == ' ') line.pop_back();
+  return line;
+}
+
+std::array<double, 3> parse_triple(const std::string& option, const std::string& text) {
+  constexpr std::string_view expected = "three finite numbers X,Y,Z";
+  const auto triple = parse_three<double>(option, text, expected);
+  for (const double x : triple) {
+    if (!std::isfinite(x)) {
+      throw UsageError(fmt::format("{} '{}': expected {}", option, text, expected));
+    }
+  }
+  return triple;
+}
+
+std::array<int, 3> parse_dimensions(const std::string& option, const std::string& text) {
+  constexpr std::string_view expected = "three counts X,Y,Z of at least 1";
+  const auto dimensions = parse_three<int>(option, text, expected);
+  for (const int n : dimensions) {
+    if (n < 1) throw UsageError(fmt::format("{} '{}': expected {}", option, text, expected));
+  }
+  return dimensions;
+}
+
+ImageSize parse_size(const std::string& option, const std::string& text) {
+  constexpr std::string_view expected = "WIDTHxHEIGHT in pixels, each 1 to 65536, as in 640x480";
+  const std::vector<int> n = parse_list<int>(option, text, 'x', expected);
+  const int width = n.front(), height = n.back();
+  if (n.size() > 2 || width < 1 || height < 1 || width > 65536 || height > 65536) {
+    throw UsageError(fmt::format("{} '{}': expected {}", option, text, expected));
+  }
+  return {width, height};
+}
+
+Rgb<double> parse_color(const std::string& option, const std::string& text) {
+  if (text == "white") return {1, 1, 1};
+  if (text == "black") return {0, 0, 0};
+  constexpr std::string_view expected =
+      "white, black or three linear numbers R,G,B of at least 0, as in 0.2,0.2,0.2";
+  const auto [r, g, b] = parse_three<double>(option, text, expected);
+  for (const double x : {r, g, b}) {
+    if (!std::isfinite(x) || x < 0) {
+      throw UsageError(fmt::format("{} '{}': expected {}", option, text, expected));
+    }
+  }
+  return {r, g, b};
+}
+
+}  // namespace pellucid::cli

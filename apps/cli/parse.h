@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <string>
+
+#include "pellucid/math/rgb.h"
+#include "pellucid/scene/error.h"
+#include "pellucid/scene/scene.h"
+
+namespace pellucid::cli {
+
+/// The command line itself is wrong: exit code 2 instead of 1.
+class UsageError : public Error {
+ public:
+  using Error::Error;
+};
+
+/// The text as one line that a terminal can show: line breaks and control characters become spaces.
+std::string one_line(std::string text);
+
+/// Each throws UsageError that names the option and shows what it expects.
+std::array<double, 3> parse_triple(const std::string& option, const std::string& text);
+std::array<int, 3> parse_dimensions(const std::string& option, const std::string& text);
+/// "640x480", or "512" for a square.
+ImageSize parse_size(const std::string& option, const std::string& text);
+/// "white", "black" or linear "R,G,B", each >= 0.
+Rgb<double> parse_color(const std::string& option, const std::string& text);
+
+}  // namespace pellucid::cli

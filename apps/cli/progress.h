@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+namespace pellucid::cli {
+
+/// Ctrl-C or a request to end.
+struct Interrupted {
+  int signal;
+};
+
+/// While it lives, SIGINT and SIGTERM are remembered instead of ending the program, so that
+/// temporary files are removed on the way out. A second signal ends the program at once.
+class InterruptGuard {
+ public:
+  InterruptGuard();
+  ~InterruptGuard();
+  InterruptGuard(const InterruptGuard&) = delete;
+  InterruptGuard& operator=(const InterruptGuard&) = delete;
+
+  static bool interrupted() noexcept;
+  /// Throws Interrupted where a signal has come.
+  static void check();
+};
+
+/// "rendering 42 %" on stderr, on one line that is updated and in the end removed; silent where
+/// stderr is not a terminal.
+class ProgressLine {
+ public:
+  explicit ProgressLine(bool wanted);
+  ~ProgressLine();
+  ProgressLine(const ProgressLine&) = delete;
+  ProgressLine& operator=(const ProgressLine&) = delete;
+
+  void show(double share_done);
+  void clear();
+
+ private:
+  bool wanted_;
+  int percent_ = -1;
+};
+
+}  // namespace pellucid::cli

@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "view.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "pellucid/scene/defaults.h"
+
+namespace pellucid::cli {
+
+namespace {
+
+struct View {
+  std::string_view name;
+  Vec3<double> forward, up;
+};
+
+// x grows towards left, y towards posterior, z towards superior.
+constexpr View views[] = {
+    {"front", {0, 1, 0}, {0, 0, 1}}, {"back", {0, -1, 0}, {0, 0, 1}},
+    {"left", {-1, 0, 0}, {0, 0, 1}}, {"right", {1, 0, 0}, {0, 0, 1}},
+    {"top", {0, 0, -1}, {0, -1, 0}}, {"bottom", {0, 0, 1}, {0, -1, 0}},
+};
+
+}  // namespace
+
+const std::vector<std::string>& view_names() {
+  static const std::vector<std::string> names = {"front", "back",   "left",   "right",
+                                                 "top",   "bottom", "oblique"};
+  return names;
+}
+
+Camera view_camera(const Volume& volume, std::string_view name, ImageSize size) {
+  const auto view = std::find_if(std::begin(views), std::end(views),
+                                 [&](const View& v) { return v.name == name; });
+  if (view == std::end(views)) return default_camera(volume, size);
+
+  const auto corners = volume.world_corners();
+  Vec3<double> center{0, 0, 0};
+  for (const Vec3<double>& corner : corners) center = center + corner * 0.125;
+
+  Camera camera;
+  camera.focal_point = center;
+  camera.up = view->up;
+  const double tangent = std::tan(camera.vertical_angle * std::numbers::pi / 360);
+  const double aspect = static_cast<double>(size.width) / static_cast<double>(size.height);
+  const Vec3<double> right = cross(view->forward, view->up);
+  // The nearest distance at which every corner of the box is inside of the image.
+  double distance = 0;
+  for (const Vec3<double>& corner : corners) {
+    const Vec3<double> offset = corner - center;
+    const double half_height =
+        std::max(std::abs(dot(offset, view->up)), std::abs(dot(offset, right)) / aspect);
+    distance = std::max(distance, half_height / tangent - dot(offset, view->forward));
+  }
+  constexpr double margin = 1.03;
+  camera.position = center - view->forward * (distance * margin);
+  return camera;
+}
+
+}  // namespace pellucid::cli

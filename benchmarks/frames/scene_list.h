@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "tests/scenes/peers.h"
+
+namespace pellucid::bench {
+
+using scenes::NamedScene;
+
+struct SceneSelection {
+  ImageSize size;
+  bool all_views = false;  ///< every scene of tests/scenes instead of one view of each
+  bool tiny = false;       ///< small data, for trying the program out
+  std::string filter;      ///< part of the names wanted; empty: all
+};
+
+/// Calls visit(scene) for the chosen scenes, one after another, so that scans need not be in memory
+/// together. Scans whose file is missing are passed over; their names are returned.
+template <class Visit>
+std::vector<std::string> for_each_scene(const SceneSelection& selection, Visit&& visit);
+
+std::vector<std::vector<NamedScene> (*)(const SceneSelection&)> scene_groups();
+std::vector<std::string> missing_scans();
+
+template <class Visit>
+std::vector<std::string> for_each_scene(const SceneSelection& selection, Visit&& visit) {
+  for (const auto group : scene_groups()) {
+    for (const NamedScene& named : group(selection)) {
+      if (named.name.find(selection.filter) != std::string::npos) visit(named);
+    }
+  }
+  return missing_scans();
+}
+
+}  // namespace pellucid::bench

@@ -1,0 +1,53 @@
+# SPDX-License-Identifier: Apache-2.0
+
+# Compiler settings of our own code. Not exported: consumers keep theirs.
+add_library(pellucid_build_flags INTERFACE)
+target_compile_options(pellucid_build_flags INTERFACE
+  # Contraction would make a picture depend on the machine's instruction set and break the exactness
+  # arguments of kernels written for separately rounded operations; fma() is called where it is meant.
+  -ffp-contract=off
+  # Nothing here reads errno or the floating-point exception flags; values do not change.
+  -fno-math-errno -fno-trapping-math
+  -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wdouble-promotion -Wold-style-cast
+  -Wnon-virtual-dtor -Woverloaded-virtual -Wcast-align -Wunused -Wformat=2
+  $<$<CXX_COMPILER_ID:GNU>:-Wduplicated-cond -Wlogical-op -Wuseless-cast>
+  # GCC 12 sees overlaps in "text" + std::string that are not there (GCC bug 105651).
+  $<$<AND:$<CXX_COMPILER_ID:GNU>,$<VERSION_LESS:$<CXX_COMPILER_VERSION>,13>>:-Wno-restrict>
+  $<$<BOOL:${PELLUCID_WERROR}>:-Werror>)
+
+# What the two functions below declare is kept in global properties, from which the package
+# (PellucidInstall) and the test of the include order (tests/architecture) are made:
+#   PELLUCID_MODULES            names, in the order of declaration
+#   PELLUCID_DEPENDS_<name>     the modules that its files include
+
+# pellucid_header_module(NAME [DEPENDS NAME...]): the folder include/pellucid/NAME as pellucid::NAME.
+function(pellucid_header_module name)
+  cmake_parse_arguments(arg "" "" "DEPENDS" ${ARGN})
+  add_library(pellucid_${name} INTERFACE)
+  _pellucid_declare(${name} INTERFACE "${arg_DEPENDS}")
+endfunction()
+
+# pellucid_library(NAME SOURCES file... [DEPENDS NAME...] [PRIVATE target...]): the folders src/NAME and
+# include/pellucid/NAME as the compiled library pellucid::NAME. It is static, so whoever links it links
+# its PRIVATE targets too (PellucidInstall); those that are headers alone stand in $<BUILD_INTERFACE:...>.
+function(pellucid_library name)
+  cmake_parse_arguments(arg "" "" "SOURCES;DEPENDS;PRIVATE" ${ARGN})
+  add_library(pellucid_${name} STATIC ${arg_SOURCES})
+  set_target_properties(pellucid_${name} PROPERTIES POSITION_INDEPENDENT_CODE ON CXX_EXTENSIONS OFF)
+  _pellucid_declare(${name} PUBLIC "${arg_DEPENDS}")
+  target_link_libraries(pellucid_${name}
+    PRIVATE ${arg_PRIVATE} $<BUILD_INTERFACE:pellucid_build_flags>)
+endfunction()
+
+function(_pellucid_declare name scope depends)
+  add_library(pellucid::${name} ALIAS pellucid_${name})
+  set_target_properties(pellucid_${name} PROPERTIES EXPORT_NAME ${name})
+  target_compile_features(pellucid_${name} ${scope} cxx_std_20)
+  target_include_directories(pellucid_${name} ${scope}
+    $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/include>
+    $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
+  set_property(GLOBAL APPEND PROPERTY PELLUCID_MODULES ${name})
+  set_property(GLOBAL PROPERTY PELLUCID_DEPENDS_${name} "${depends}")
+  list(TRANSFORM depends PREPEND pellucid::)
+  target_link_libraries(pellucid_${name} ${scope} ${depends})
+endfunction()

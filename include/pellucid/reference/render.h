@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <limits>
+
+#include "pellucid/cpu/render.h"
+
+namespace pellucid {
+
+/// The same scene by adaptive Gauß-Kronrod quadrature in double to 1e-12 (Boost.Math), cell by
+/// cell. Slow. Shares no kernel with the fast path: it has its own ray-plane sorting,
+/// interpolation, transfer-function lookup, crossings and quadrature. The method and precision of
+/// the scene are not looked at. Only RenderOptions and the report are shared with cpu/.
+/// Throws what pellucid::render throws.
+Image render_reference(const Scene& scene, const RenderOptions& options = {},
+                       RenderReport* report = nullptr);
+
+/// What one ray gathers, in double. Where the transparency falls below 1e-16 the ray ends: the
+/// optical depth is that of the part gone through.
+struct ReferencePixel {
+  Rgb<double> radiance{};  ///< premultiplied
+  double opacity = 0;
+  double optical_depth = 0;
+  /// World arc length at which half of the opacity is reached; infinite where the ray stays clear.
+  double half_opacity_depth = std::numeric_limits<double>::infinity();
+};
+
+/// One ray of render_reference, from `origin` (the ray begins there) along `direction` (world
+/// space, any length but 0). Throws Error for a direction of length 0.
+ReferencePixel reference_ray(const Volume& volume, const TransferFunction& transfer_function,
+                             const Vec3<double>& origin, const Vec3<double>& direction);
+
+}  // namespace pellucid

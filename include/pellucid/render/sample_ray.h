@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "pellucid/field/trilinear.h"
+#include "pellucid/render/ray_result.h"
+#include "pellucid/segment/classical.h"
+#include "pellucid/segment/fold.h"
+#include "pellucid/segment/linear.h"
+#include "pellucid/traverse/structured_walk.h"
+
+namespace pellucid {
+
+/// The rules that march along a ray at a fixed step, for comparison with the exact method. Each
+/// sees the data at points only: Max 1995 and Weiß 2020 (rectangle, taylor, midpoint, trapezoid,
+/// simpson); linear is Moreland 2004's exact segment between two samples.
+enum class SamplingRule { rectangle, taylor, midpoint, trapezoid, simpson, linear };
+
+/// The material at a point of the grid (grid coordinates, clamped into the box). A cell with a NaN
+/// corner is vacuum.
+template <class T, class Value>
+PELLUCID_HD Material<T> sample_material(const StructuredGrid<Value, double>& grid,
+                                        const PiecewiseLinear<T>& transfer,
+                                        Vec3<double> position_grid) noexcept {
+  int cell[3];
+  Vec3<T> local;
+  for (int a = 0; a < 3; ++a) {
+    cell[a] = find_cell(grid.axis[a], position_grid[a]);
+    const double lower = grid.axis[a].plane(cell[a]);
+    const double width = grid.axis[a].plane(cell[a] + 1) - lower;
+    local[a] = static_cast<T>(clamp((position_grid[a] - lower) / width, 0.0, 1.0));
+  }
+  const T value = trilinear_value(grid.template corners<T>(cell[0], cell[1], cell[2]), local);
+  if (is_nan(value)) return {};
+  return transfer.evaluate(value);
+}
+
+/// One step of a rule: extinction and color at the front, the middle and the back.
+template <class T>
+PELLUCID_HD SegmentResult<T> sampled_segment(SamplingRule rule, const Material<T>& front,
+                                             const Material<T>& middle, const Material<T>& back,
+                                             T length) noexcept {
+  switch (rule) {
+    case SamplingRule::rectangle:
+      return rectangle_segment(front, length);
+    case SamplingRule::taylor:
+      return taylor_segment(front, length);
+    case SamplingRule::midpoint:
+      return midpoint_segment(middle, length);
+    case SamplingRule::trapezoid:
+      return trapezoid_segment(front, back, length);
+    case SamplingRule::simpson:
+      return simpson_segment(front, middle, back, length);
+    case SamplingRule::linear:
+      break;
+  }
+  return linear_segment(front.extinction, back.extinction, front.color, back.color, length);
+}
+
+/// Marches a ray (in grid coordinates, its parameter the world arc length) through the grid's box
+/// at the given step (world length, > 0). The last step ends at the box. Samples lie at multiples
+/// of the step from the entry, computed from their index, so that positions do not drift.
+template <class T, class Value>
+PELLUCID_HD RayResult sample_ray(const StructuredGrid<Value, double>& grid,
+                                 const Ray<double>& ray_grid, const PiecewiseLinear<T>& transfer,
+                                 SamplingRule rule, double step, double largest_color,
+                                 double stop_tolerance, bool with_depth) noexcept {
+  RayResult result;
+  const Interval<double> box = grid_interval(grid.axis, ray_grid);
+  if (box.empty()) return result;
+
+  const bool needs_ends = rule != SamplingRule::midpoint;
+  const bool needs_middle = rule == SamplingRule::midpoint || rule == SamplingRule::simpson;
+  const auto at = [&](double t) { return sample_material<T>(grid, transfer, ray_grid.at(t)); };
+  const auto march = [&](auto&& visit) {
+    double t_begin = box.begin;
+    Material<T> front = needs_ends ? at(t_begin) : Material<T>{};
+    for (long i = 1; t_begin < box.end; ++i) {
+      const double t_end = min(box.begin + static_cast<double>(i) * step, box.end);
+      const Material<T> middle = needs_middle ? at(0.5 * (t_begin + t_end)) : Material<T>{};
+      const Material<T> back = needs_ends ? at(t_end) : Material<T>{};
+      if (!visit(sampled_segment(rule, front, middle, back, static_cast<T>(t_end - t_begin)),
+                 t_begin, t_end)) {
+        break;
+      }
+      front = back;
+      t_begin = t_end;
+    }
+  };
+
+  FrontToBack<double> fold(stop_tolerance / max(largest_color, 1.0));
+  march([&](const SegmentResult<T>& segment, double, double) {
+    ++result.cells;
+    fold.add(segment);
+    return !fold.done();
+  });
+  result.radiance = fold.radiance();
+  result.optical_depth = fold.optical_depth();
+  result.opacity = fold.opacity();
+  if (with_depth && result.opacity > 0) {
+    // Within the step that passes the half, the rules know no more than a constant extinction.
+    const double target = -log1p(-0.5 * result.opacity);
+    double before = 0;
+    march([&](const SegmentResult<T>& segment, double t_begin, double t_end) {
+      const double inside = static_cast<double>(segment.optical_depth);
+      if (before + inside < target) {
+        before += inside;
+        return true;
+      }
+      result.half_opacity_depth = t_begin + (target - before) / inside * (t_end - t_begin);
+      return false;
+    });
+  }
+  return result;
+}
+
+}  // namespace pellucid

@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "pellucid/render/camera.h"
+#include "pellucid/scene/transfer_function.h"
+#include "pellucid/scene/volume.h"
+
+namespace pellucid {
+
+enum class Projection { perspective, orthographic };
+
+struct Camera {
+  Projection projection = Projection::perspective;
+  Vec3<double> position{0, 0, 1};
+  Vec3<double> focal_point{0, 0, 0};
+  Vec3<double> up{0, 1, 0};    ///< not parallel to the view direction
+  double vertical_angle = 30;  ///< degrees, in (0, 180); perspective
+  double parallel_scale = 1;   ///< half of the image's height in world units; orthographic
+};
+
+struct ImageSize {
+  int width = 512, height = 512;
+};
+
+/// Checks the camera and builds the frame that makes rays. Throws Error (position equal to the
+/// focal point, up parallel to the view, angle or scale out of range, sizes not in [1, 65536]).
+CameraFrame<double> make_camera_frame(const Camera& camera, ImageSize size);
+
+/// exact: the integral of the trilinear data. The others march at a fixed step and are here for
+/// comparison; docs/theory.md says which text gives each its name.
+enum class Method { exact, rectangle, taylor, midpoint, trapezoid, simpson, linear };
+std::string_view method_name(Method method) noexcept;
+std::optional<Method> method_from_name(std::string_view name) noexcept;
+
+enum class Precision { float32, float64 };
+
+struct Integration {
+  Method method = Method::exact;
+  Precision precision = Precision::float32;
+  double step = 0.5;  ///< of the sampling methods, in voxels (Volume::voxel_size)
+};
+
+/// One volume with its transfer function, seen by a camera.
+struct Scene {
+  std::shared_ptr<const Volume> volume;
+  std::shared_ptr<const TransferFunction> transfer_function;
+  Camera camera;
+  ImageSize size;
+  Integration integration;
+  std::optional<Rgb<double>> background;  ///< linear; none: the image stays transparent
+};
+
+}  // namespace pellucid

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "pellucid/math/exponential.h"
+#include "pellucid/segment/result.h"
+
+namespace pellucid {
+
+/// Opacity and transparency of an optical depth x >= 0, accurate in both ends.
+template <class T>
+struct Attenuation {
+  T opacity{};
+  T transparency = T(1);
+};
+
+/// opacity = 1 - exp(-x) and transparency = exp(-x) from one exponential.
+///
+/// Specification, 3.1: for x <= 2 with h = x/2, opacity = 2 h e^{-h} sinh(h)/h, whose series has
+/// positive terms only; beyond, 1 - exp(-x), where e^{-2} is subtracted at most. Nothing cancels.
+/// Largest error for x in [0, ∞]: opacity 4 u relative, transparency 4 u absolute; asserted in
+/// tests/segment. opacity(0) = 0 exactly.
+template <class T>
+PELLUCID_HD Attenuation<T> attenuation(T x) noexcept {
+  const T h = T(0.5) * x;
+  const auto thin = x <= T(2);
+  Attenuation<T> result;
+  if (any(thin)) {
+    const T e = exp(-h);
+    result = {x * (e * sinh_over_x<T>(h * h)), e * e};
+    if (all(thin)) return result;
+  }
+  const T transparency = exp(-x);
+  return {select(thin, result.opacity, T(1) - transparency),
+          select(thin, result.transparency, transparency)};
+}
+
+/// A stretch of known optical depth and one color: radiance = color · opacity, however the
+/// extinction varies in it.
+template <class T>
+PELLUCID_HD SegmentResult<T> segment_of_depth(T optical_depth, Rgb<T> color) noexcept {
+  const Attenuation<T> a = attenuation(optical_depth);
+  return {optical_depth, a.opacity, a.transparency, a.opacity * color};
+}
+
+/// Constant extinction and color (specification, 3.1). Error as attenuation(): 8 u relative in
+/// opacity and radiance.
+template <class T>
+PELLUCID_HD SegmentResult<T> constant_segment(T extinction, Rgb<T> color, T length) noexcept {
+  return segment_of_depth(extinction * length, color);
+}
+
+}  // namespace pellucid

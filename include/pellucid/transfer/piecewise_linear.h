@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "pellucid/math/rgb.h"
+
+namespace pellucid {
+
+/// What a transfer function says at one data value.
+template <class T>
+struct Material {
+  T extinction{};  ///< 1/length, >= 0
+  Rgb<T> color{};  ///< of the particles, straight, linear; the source is color · extinction
+};
+
+/// A one-dimensional transfer function, linear between control points and constant outside of them.
+/// A view: it owns nothing, so that a device can hold it too. The owner has checked that count >=
+/// 1, that the values ascend, that at most two are equal (a jump; the right one holds at the value
+/// itself), and that everything is finite and no extinction negative.
+/// Interval i, 0 <= i <= count, lies between point i-1 and point i; 0 and count are the outsides.
+template <class T>
+struct PiecewiseLinear {
+  const T* value = nullptr;               ///< count data values, ascending
+  const Material<T>* material = nullptr;  ///< count materials
+  int count = 0;
+
+  /// The interval that holds v: the number of control points with value <= v.
+  PELLUCID_HD int interval(scalar_t<T> v) const noexcept {
+    int lo = 0, hi = count;
+    while (lo < hi) {
+      const int mid = (lo + hi) / 2;
+      if (value[mid] <= v) {
+        lo = mid + 1;
+      } else {
+        hi = mid;
+      }
+    }
+    return lo;
+  }
+
+  /// The material at v, which lies in the given interval (or on its closure: the limit from
+  /// inside). Interpolated from the nearer control point: what vanishes there keeps its relative
+  /// precision close to it, and control points give their material exactly.
+  PELLUCID_HD Material<T> evaluate_in(int i, T v) const noexcept {
+    if (i == 0) return material[0];
+    if (i == count) return material[count - 1];
+    const T below = v - value[i - 1], above = value[i] - v, width = value[i] - value[i - 1];
+    const auto lower = below <= above;
+    const T s = clamp(select(lower, below, above) / width, T(0), T(1));
+    const Material<T>&a = lower ? material[i - 1] : material[i],
+          &b = lower ? material[i] : material[i - 1];
+    return {a.extinction + s * (b.extinction - a.extinction), a.color + s * (b.color - a.color)};
+  }
+
+  PELLUCID_HD Material<T> evaluate(T v) const noexcept { return evaluate_in(interval(v), v); }
+
+  /// What interval i begins and ends with, coming from inside; the same twice outside of the table.
+  PELLUCID_HD const Material<T>& lower_material(int i) const noexcept {
+    return material[max(i - 1, 0)];
+  }
+  PELLUCID_HD const Material<T>& upper_material(int i) const noexcept {
+    return material[min(i, count - 1)];
+  }
+
+  /// Whether anything absorbs in the intervals first … last (0 <= first <= last <= count).
+  PELLUCID_HD bool has_extinction(int first, int last) const noexcept {
+    const int end = min(last, count - 1);
+    for (int j = max(first - 1, 0); j <= end; ++j) {
+      if (material[j].extinction > 0) return true;
+    }
+    return false;
+  }
+};
+
+}  // namespace pellucid

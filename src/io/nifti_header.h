@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+
+#include "pellucid/scene/volume.h"
+#include "volume_source.h"
+
+namespace pellucid {
+
+/// What a NIfTI-1 header says of the values. Source: nifti1.h, https://nifti.nimh.nih.gov.
+struct NiftiHeader {
+  bool single_file = true;  ///< header and values in one file
+  std::array<std::int64_t, 3> dimensions{};
+  ValueLayout layout;
+  double slope = 1, intercept = 0;  ///< value = slope · stored + intercept; slope 1: as stored
+  std::array<double, 3> spacing{};  ///< as written, maybe not positive
+  double unit = 1;                  ///< of lengths, in millimetres
+  /// The affine map of the sform, where there is one, its world turned from RAS to LPS, in the
+  /// file's unit.
+  std::optional<GridPlacement> sform;
+};
+
+/// Reads and checks the header of a .nii or .hdr file, compressed or not. Throws Error.
+NiftiHeader read_nifti_header(const std::filesystem::path& path);
+
+/// The two files of a .hdr/.img pair, whichever of them is given; twice the path for one file.
+struct NiftiFiles {
+  std::filesystem::path header, values;
+};
+NiftiFiles find_nifti_files(const std::filesystem::path& path);
+
+}  // namespace pellucid

@@ -1,0 +1,128 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <png.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <csetjmp>
+#include <cstdint>
+#include <cstdio>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "image_checks.h"
+#include "pellucid/io/atomic_file.h"
+#include "pellucid/io/image_files.h"
+#include "pellucid/scene/error.h"
+
+namespace pellucid {
+
+namespace {
+
+// IEC 61966-2-1: linear light to the sRGB signal, 8 bits, rounded to nearest.
+std::uint8_t to_srgb8(double linear) {
+  const double x = std::clamp(linear, 0.0, 1.0);
+  const double signal = x <= 0.0031308 ? 12.92 * x : 1.055 * std::pow(x, 1 / 2.4) - 0.055;
+  return static_cast<std::uint8_t>(std::lround(255 * signal));
+}
+
+// Straight alpha: the signal is of color, not of premultiplied radiance. Without opacity there is
+// no color to speak of.
+void encode_transparent(const std::array<float, 4>& pixel, std::uint8_t* out) {
+  const double alpha = std::clamp(static_cast<double>(pixel[3]), 0.0, 1.0);
+  for (std::size_t c = 0; c < 3; ++c) {
+    out[c] = alpha > 0 ? to_srgb8(static_cast<double>(pixel[c]) / alpha) : std::uint8_t{0};
+  }
+  out[3] = static_cast<std::uint8_t>(std::lround(255 * alpha));
+}
+
+void encode_over(const std::array<float, 4>& pixel, const Rgb<double>& background,
+                 std::uint8_t* out) {
+  const double transparency = 1 - std::clamp(static_cast<double>(pixel[3]), 0.0, 1.0);
+  out[0] = to_srgb8(static_cast<double>(pixel[0]) + transparency * background.r);
+  out[1] = to_srgb8(static_cast<double>(pixel[1]) + transparency * background.g);
+  out[2] = to_srgb8(static_cast<double>(pixel[2]) + transparency * background.b);
+}
+
+// What libpng is given, with nothing in it that it could not be torn away from.
+struct PngContent {
+  png_uint_32 width, height;
+  int color_type;
+  png_bytepp rows;
+  png_textp text;
+  int texts;
+};
+
+// libpng's own handler prints; and a handler may not return.
+[[noreturn]] void leave(png_structp png, png_const_charp) {
+  png_longjmp(png, 1);
+}
+void ignore(png_structp, png_const_charp) {}
+
+// libpng leaves by longjmp where it fails, so nothing in here may need a destructor.
+bool write_with_libpng(std::FILE* file, const PngContent& content) {
+  png_structp png = png_create_write_struct(PNG_LIBPNG_VER_STRING, nullptr, leave, ignore);
+  if (png == nullptr) return false;
+  png_infop info = png_create_info_struct(png);
+  if (info == nullptr || setjmp(png_jmpbuf(png)) != 0) {
+    png_destroy_write_struct(&png, &info);
+    return false;
+  }
+  png_init_io(png, file);
+  png_set_IHDR(png, info, content.width, content.height, 8, content.color_type, PNG_INTERLACE_NONE,
+               PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
+  png_set_sRGB(png, info, PNG_sRGB_INTENT_RELATIVE);
+  if (content.texts > 0) png_set_text(png, info, content.text, content.texts);
+  png_write_info(png, info);
+  png_write_image(png, content.rows);
+  png_write_end(png, nullptr);
+  png_destroy_write_struct(&png, &info);
+  return true;
+}
+
+}  // namespace
+
+void write_png(const Image& image, const std::filesystem::path& path,
+               const std::optional<Rgb<double>>& background) {
+  check_image(image, path);
+  check_finite(image, path);
+  AtomicFile file(path);
+  const std::size_t width = static_cast<std::size_t>(image.width);
+  const std::size_t height = static_cast<std::size_t>(image.height);
+  const std::size_t channels = background ? 3 : 4;
+  std::vector<std::uint8_t> bytes(width * height * channels);
+  for (std::size_t i = 0; i < width * height; ++i) {
+    if (background) {
+      encode_over(image.pixels[i], *background, &bytes[i * channels]);
+    } else {
+      encode_transparent(image.pixels[i], &bytes[i * channels]);
+    }
+  }
+  std::vector<png_bytep> rows(height);
+  for (std::size_t y = 0; y < height; ++y) rows[y] = &bytes[y * width * channels];
+
+  std::map<std::string, std::string> metadata = image.metadata;
+  std::vector<png_text> text;
+  for (auto& [key, value] : metadata) {
+    png_text entry{};
+    entry.compression = PNG_ITXT_COMPRESSION_zTXt;
+    entry.key = const_cast<char*>(key.c_str());  // read only, by a C signature that cannot say so
+    entry.text = value.data();
+    entry.itxt_length = value.size();
+    text.push_back(entry);
+  }
+
+  std::FILE* stream = std::fopen(file.temporary_path().c_str(), "wb");
+  const bool written =
+      stream != nullptr &&
+      write_with_libpng(
+          stream, {static_cast<png_uint_32>(image.width), static_cast<png_uint_32>(image.height),
+                   background ? PNG_COLOR_TYPE_RGB : PNG_COLOR_TYPE_RGB_ALPHA, rows.data(),
+                   text.data(), static_cast<int>(text.size())});
+  const bool closed = stream != nullptr && std::fclose(stream) == 0;
+  if (!written || !closed) throw Error(path.string() + ": cannot write: is the disk full?");
+  file.commit();
+}
+
+}  // namespace pellucid

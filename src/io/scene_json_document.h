@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+namespace pellucid::scene_json {
+
+/// Numbers of a scene lie in ±largest_number: float holds them, and their products with lengths up
+/// to 1e8.
+constexpr double largest_number = 1e30;
+
+/// Parses strict JSON. Beyond what the grammar asks: no key twice in one object, no more than 16
+/// levels of nesting, no number beyond double's range. Throws Error with line and column.
+nlohmann::json parse_document(std::string_view text, const std::string& name);
+
+/// Text from a file as it may stand in a one-line message: control characters and bytes that are
+/// not ASCII escaped, long text cut.
+std::string printable(std::string_view text);
+
+/// " (did you mean "x"?)" where a known word differs by a slip or two, else nothing.
+std::string did_you_mean(std::string_view word, const std::vector<std::string_view>& known);
+
+/// A value in the document together with its place, so that every message names both.
+class Node {
+ public:
+  Node(const nlohmann::json& value, std::string name) : value_(&value), name_(std::move(name)) {}
+
+  /// Throws Error: "name: pointer: what".
+  [[noreturn]] void fail(const std::string& what) const;
+  /// The same about a key of this object, whether it is there or not.
+  [[noreturn]] void fail_at(std::string_view key, const std::string& what) const;
+
+  /// Fails unless this is an object that has no keys but these.
+  void expect_object(const std::vector<std::string_view>& known_keys) const;
+  bool is_object() const noexcept { return value_->is_object(); }
+  bool has(std::string_view key) const;
+  /// The value of a key of this object; none where it is absent.
+  std::optional<Node> find(std::string_view key) const;
+  /// The same, but fails with the hint where it is absent.
+  Node at(std::string_view key, const std::string& hint) const;
+
+  /// Fails unless this is an array; its length, and its elements.
+  std::size_t array_size() const;
+  Node element(std::size_t index) const;
+
+  /// Fails unless this is a number in [lower, upper].
+  double number(double lower = -largest_number, double upper = largest_number) const;
+  /// Fails unless this is a number in (0, upper].
+  double positive_number(double upper = largest_number) const;
+  /// Fails unless this is a number without a fraction (2 or 2.0) in [lower, upper].
+  long long integer(long long lower, long long upper) const;
+  const std::string& string() const;
+  /// The index of the string among the words; fails for another.
+  std::size_t one_of(const std::vector<std::string_view>& words) const;
+
+  const std::string& pointer() const noexcept { return pointer_; }
+
+ private:
+  Node child(const nlohmann::json& value, std::string_view token) const;
+  std::string found() const;
+
+  const nlohmann::json* value_;
+  std::string name_, pointer_;
+};
+
+}  // namespace pellucid::scene_json

@@ -1,0 +1,154 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <charconv>
+#include <cmath>
+#include <initializer_list>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <string_view>
+
+#include "pellucid/io/scene_json.h"
+#include "pellucid/scene/error.h"
+
+namespace pellucid {
+namespace {
+
+std::string joined(std::initializer_list<std::string_view> parts) {
+  std::string text;
+  for (const std::string_view part : parts) text += part;
+  return text;
+}
+
+/// The shortest decimal that reads back to the same double (at most 17 digits).
+std::string number(double value, std::string_view what) {
+  if (!std::isfinite(value)) {
+    throw Error(joined({"scene: ", what, " is not a finite number; JSON cannot hold it"}));
+  }
+  char text[32];
+  const auto end = std::to_chars(text, text + sizeof text, value).ptr;
+  std::string number(text, end);
+  // Readers take "-0" for an integer, which has no sign of zero.
+  return number == "-0" ? "-0.0" : number;
+}
+
+std::string quoted(const std::string& text) {
+  try {
+    return nlohmann::json(text).dump();
+  } catch (const nlohmann::json::exception&) {
+    throw Error("scene: the path of the field is not UTF-8; JSON cannot hold it");
+  }
+}
+
+std::string array(const Vec3<double>& v, std::string_view what) {
+  return joined({"[", number(v.x, what), ", ", number(v.y, what), ", ", number(v.z, what), "]"});
+}
+
+std::string array(const Rgb<double>& c, std::string_view what) {
+  return array(Vec3<double>{c.r, c.g, c.b}, what);
+}
+
+/// The members of an object, one per line.
+class Members {
+ public:
+  explicit Members(std::string_view indent) : indent_(indent) {}
+
+  void add(std::string_view key, std::string_view value) {
+    text_ += joined({text_.empty() ? "{\n" : ",\n", indent_, "  \"", key, "\": ", value});
+  }
+  std::string object() const { return joined({text_, "\n", indent_, "}"}); }
+
+ private:
+  std::string indent_, text_;
+};
+
+std::string points_text(const std::vector<TransferFunction::Point>& points,
+                        const std::string& indent) {
+  std::string list = "[";
+  for (const TransferFunction::Point& p : points) {
+    list += joined({&p == points.data() ? "\n" : ",\n", indent,
+                    "    {\"value\": ", number(p.value, "a value"),
+                    ", \"extinction\": ", number(p.extinction, "an extinction"),
+                    ", \"color\": ", array(p.color, "a color"), "}"});
+  }
+  Members members(indent);
+  members.add("type", "\"piecewise_linear\"");
+  members.add("points", joined({list, "\n", indent, "  ]"}));
+  return members.object();
+}
+
+std::string camera_text(const Camera& camera, const std::string& indent) {
+  const bool perspective = camera.projection == Projection::perspective;
+  Members members(indent);
+  members.add("projection", perspective ? "\"perspective\"" : "\"orthographic\"");
+  members.add("position", array(camera.position, "the camera's position"));
+  members.add("focal_point", array(camera.focal_point, "the camera's focal point"));
+  members.add("up", array(camera.up, "the camera's up"));
+  if (perspective) {
+    members.add("vertical_angle", number(camera.vertical_angle, "the vertical angle"));
+  } else {
+    members.add("parallel_scale", number(camera.parallel_scale, "the parallel scale"));
+  }
+  return members.object();
+}
+
+std::string field_text(const FieldSource& field, const std::string& indent) {
+  Members members(indent);
+  if (!field.builtin.empty()) {
+    members.add("builtin", quoted(field.builtin));
+    members.add("points", std::to_string(field.points));
+    return members.object();
+  }
+  const std::u8string path = field.file.u8string();
+  members.add("file", quoted(std::string(path.begin(), path.end())));
+  const ReadOptions& options = field.options;
+  if (options.dimensions) {
+    const auto& d = *options.dimensions;
+    members.add("dimensions", joined({"[", std::to_string(d[0]), ", ", std::to_string(d[1]), ", ",
+                                      std::to_string(d[2]), "]"}));
+  }
+  if (options.type) members.add("type", quoted(*options.type));
+  if (options.big_endian) members.add("byte_order", *options.big_endian ? "\"big\"" : "\"little\"");
+  if (options.skip_bytes != 0) members.add("skip_bytes", std::to_string(options.skip_bytes));
+  if (options.spacing) members.add("spacing", array(*options.spacing, "the spacing"));
+  if (options.origin) members.add("origin", array(*options.origin, "the origin"));
+  if (options.centering) {
+    members.add("centering", *options.centering == Centering::point ? "\"point\"" : "\"cell\"");
+  }
+  return members.object();
+}
+
+}  // namespace
+
+std::string scene_to_json(const SceneDescription& scene) {
+  Members volume("    ");
+  volume.add("field", field_text(scene.field, "      "));
+  if (scene.transfer_function) {
+    volume.add("transfer_function", points_text(*scene.transfer_function, "      "));
+  }
+  Members image("  ");
+  image.add("width", std::to_string(scene.size.width));
+  image.add("height", std::to_string(scene.size.height));
+  if (scene.background) image.add("background", array(*scene.background, "the background"));
+  Members integration("  ");
+  integration.add("method", joined({"\"", method_name(scene.integration.method), "\""}));
+  integration.add("precision",
+                  scene.integration.precision == Precision::float32 ? "\"float\"" : "\"double\"");
+  integration.add("step", number(scene.integration.step, "the step"));
+
+  Members document("");
+  document.add("pellucid", "1");
+  document.add("volumes", joined({"[\n    ", volume.object(), "\n  ]"}));
+  if (scene.camera) document.add("camera", camera_text(*scene.camera, "  "));
+  document.add("image", image.object());
+  document.add("integration", integration.object());
+  return document.object() + "\n";
+}
+
+std::string transfer_function_to_json(const TransferFunction& transfer_function) {
+  return points_text(transfer_function.points(), "");
+}
+
+std::string camera_to_json(const Camera& camera) {
+  return camera_text(camera, "");
+}
+
+}  // namespace pellucid

@@ -1,0 +1,136 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "volume_source.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstring>
+#include <fstream>
+#include <limits>
+#include <memory>
+#include <utility>
+
+#include "input_file.h"
+#include "pellucid/scene/error.h"
+
+namespace pellucid {
+
+ByteSource file_source(const std::filesystem::path& path) {
+  ByteSource source{path.string(), check_input_file(path), {}};
+  auto stream = std::make_shared<std::ifstream>(path, std::ios::binary);
+  source.read = [stream, name = source.name](std::uintmax_t from, std::span<std::byte> to) {
+    stream->seekg(static_cast<std::streamoff>(from));
+    stream->read(reinterpret_cast<char*>(to.data()), static_cast<std::streamsize>(to.size()));
+    if (!*stream) throw Error(name + ": cannot read the file to its end; is it being written?");
+  };
+  return source;
+}
+
+ByteSource memory_source(std::span<const std::byte> bytes, std::string name) {
+  return {std::move(name), bytes.size(), [bytes](std::uintmax_t from, std::span<std::byte> to) {
+            std::ranges::copy(bytes.subspan(from, to.size()), to.begin());
+          }};
+}
+
+std::size_t value_count(const std::array<std::int64_t, 3>& dimensions, const std::string& name) {
+  const std::string text = std::to_string(dimensions[0]) + " x " + std::to_string(dimensions[1]) +
+                           " x " + std::to_string(dimensions[2]);
+  // 2^60 values of 8 bytes are still a number of bytes.
+  constexpr std::int64_t largest = std::int64_t{1} << 60;
+  std::int64_t count = 1;
+  for (const std::int64_t side : dimensions) {
+    if (side < 1 || side > std::numeric_limits<int>::max()) {
+      throw Error(name + ": a volume of " + text + " values cannot be; sides are from 1 to " +
+                  std::to_string(std::numeric_limits<int>::max()));
+    }
+    if (count > largest / side)
+      throw Error(name + ": a volume of " + text + " values is too large");
+    count *= side;
+  }
+  return static_cast<std::size_t>(count);
+}
+
+std::size_t value_size(const std::string& type, const std::string& name) {
+  static constexpr std::pair<const char*, std::size_t> sizes[] = {
+      {"u8", 1}, {"i8", 1}, {"u16", 2}, {"i16", 2}, {"u32", 4}, {"i32", 4}, {"f32", 4}, {"f64", 8}};
+  for (const auto& [known, size] : sizes) {
+    if (type == known) return size;
+  }
+  throw Error(name + ": there is no type \"" + type +
+              "\"; the types are u8, i8, u16, i16, u32, i32, f32 and f64");
+}
+
+void check_size(const ByteSource& source, const ValueLayout& layout, std::size_t count) {
+  const std::uintmax_t bytes = std::uintmax_t{count} * value_size(layout.type, source.name);
+  if (layout.offset <= source.size && source.size - layout.offset >= bytes) return;
+  throw Error(source.name + ": the file has " + std::to_string(source.size) +
+              " bytes, but its header says that " + std::to_string(bytes) +
+              " bytes of values begin at byte " + std::to_string(layout.offset) +
+              "; it is cut off or its header is wrong");
+}
+
+VolumeData read_values(const ByteSource& source, const ValueLayout& layout, std::size_t count) {
+  check_memory(std::uintmax_t{count} * value_size(layout.type, source.name), source.name);
+  VolumeData data = make_volume_data(layout.type, count);
+  std::visit(
+      [&](auto& values) { source.read(layout.offset, std::as_writable_bytes(std::span(values))); },
+      data);
+  to_native_order(data, layout.big_endian);
+  return data;
+}
+
+VolumeData read_values(DataStream& stream, const ValueLayout& layout, std::size_t count) {
+  VolumeData data = make_volume_data(layout.type, count);
+  std::visit([&](auto& values) { stream.read(std::as_writable_bytes(std::span(values))); }, data);
+  to_native_order(data, layout.big_endian);
+  return data;
+}
+
+void to_native_order(VolumeData& data, bool big_endian) {
+  if (big_endian == (std::endian::native == std::endian::big)) return;
+  std::visit(
+      [](auto& values) {
+        using Value = typename std::decay_t<decltype(values)>::value_type;
+        for (Value& value : values) {
+          std::array<std::byte, sizeof(Value)> bytes = std::bit_cast<decltype(bytes)>(value);
+          std::ranges::reverse(bytes);
+          value = std::bit_cast<Value>(bytes);
+        }
+      },
+      data);
+}
+
+void apply_overrides(const ReadOptions& options, Volume::Description& description) {
+  if (options.spacing) {
+    for (int a = 0; a < 3; ++a) {
+      if (!(std::isfinite((*options.spacing)[a]) && (*options.spacing)[a] > 0)) {
+        throw Error(description.name + ": the spacing given is not a positive number on axis " +
+                    std::string(1, "xyz"[a]));
+      }
+    }
+    description.placement.spacing = *options.spacing;
+  }
+  if (options.origin) {
+    for (int a = 0; a < 3; ++a) {
+      if (!std::isfinite((*options.origin)[a])) {
+        throw Error(description.name + ": the origin given is not a finite number on axis " +
+                    std::string(1, "xyz"[a]));
+      }
+    }
+    description.placement.origin = *options.origin;
+  }
+  if (options.centering) description.centering = *options.centering;
+}
+
+void refuse_raw_options(const ReadOptions& options, const std::string& name) {
+  const char* option = options.dimensions   ? "dimensions"
+                       : options.type       ? "a type"
+                       : options.big_endian ? "a byte order"
+                       : options.skip_bytes ? "bytes to skip"
+                                            : nullptr;
+  if (option == nullptr) return;
+  throw Error(name + ": " + option +
+              " may only be given for headerless data; leave it out, the file has a header");
+}
+
+}  // namespace pellucid

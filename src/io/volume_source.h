@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <span>
+#include <string>
+
+#include "data_stream.h"
+#include "pellucid/io/read_volume.h"
+
+namespace pellucid {
+
+/// Where the bytes of a volume come from: a file, or memory in tests and fuzzing. `read` fills the
+/// whole span from the given place, which the caller has checked to lie inside.
+struct ByteSource {
+  std::string name;         ///< for messages
+  std::uintmax_t size = 0;  ///< bytes
+  std::function<void(std::uintmax_t from, std::span<std::byte> to)> read;
+};
+
+/// A regular file. Throws Error where it cannot be read.
+ByteSource file_source(const std::filesystem::path& path);
+/// `bytes` must outlive the source.
+ByteSource memory_source(std::span<const std::byte> bytes, std::string name);
+
+/// How values lie in a file.
+struct ValueLayout {
+  std::string type;  ///< "u8" … "f64"
+  bool big_endian = false;
+  std::uintmax_t offset = 0;  ///< of the first value, in bytes
+};
+
+/// The number of values of a grid. Throws Error where a side is not positive or the product is too
+/// large for any machine.
+std::size_t value_count(const std::array<std::int64_t, 3>& dimensions, const std::string& name);
+/// 1, 2, 4 or 8 bytes. Throws Error for a name that is no type.
+std::size_t value_size(const std::string& type, const std::string& name);
+
+/// Throws Error where the source ends before the last value. There may be more behind it.
+void check_size(const ByteSource& source, const ValueLayout& layout, std::size_t count);
+
+/// Reads the values into their own type. The source must hold them all; the stream stands at the
+/// first of them.
+VolumeData read_values(const ByteSource& source, const ValueLayout& layout, std::size_t count);
+VolumeData read_values(DataStream& stream, const ValueLayout& layout, std::size_t count);
+/// Turns the bytes of each value where `big_endian` is not this machine's order.
+void to_native_order(VolumeData& data, bool big_endian);
+
+/// Puts what the options say in the place of what the file says. Throws Error for a spacing that
+/// is not positive and for an origin that is not finite.
+void apply_overrides(const ReadOptions& options, Volume::Description& description);
+/// Throws Error where an option that only headerless data needs is given for a file with a header.
+void refuse_raw_options(const ReadOptions& options, const std::string& name);
+
+Volume read_npy(const ByteSource& source, const ReadOptions& options);
+Volume read_raw(const ByteSource& source, const ReadOptions& options);
+
+}  // namespace pellucid

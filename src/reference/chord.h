@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <vector>
+
+#include "real.h"
+
+namespace pellucid::reference {
+
+/// Trilinear data along a straight chord of a cell, u in [0, 1] from entry to exit.
+class Chord {
+ public:
+  /// Corners x fastest; entry and exit in the cell's coordinates, [0, 1]³.
+  Chord(const std::array<Real, 8>& corner, const Real3& entry, const Real3& exit);
+
+  /// The sum of the eight corners, each times the product of its three weights.
+  Real operator()(Real u) const;
+
+  /// The same as a polynomial in u, lowest power first: the product of the weights multiplied out.
+  const std::array<Real, 4>& monomial() const { return monomial_; }
+
+  /// Range of the corners that have a weight anywhere on the chord; encloses the data on it.
+  Real lower() const { return lower_; }
+  Real upper() const { return upper_; }
+
+  /// Where the derivative vanishes inside (0, 1), ascending; at most two.
+  std::vector<Real> stationary_points() const;
+
+  /// The parameters in (0, 1) at which the data passes through one of the values (ascending, no
+  /// two equal), together with its stationary points, ascending. Between neighbours the data stays
+  /// on one side of every value.
+  std::vector<Real> cuts(const std::vector<Real>& values) const;
+
+ private:
+  std::array<Real, 8> corner_;
+  Real3 entry_, exit_;
+  std::array<Real, 4> monomial_{};
+  Real lower_, upper_;
+};
+
+}  // namespace pellucid::reference

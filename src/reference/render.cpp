@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pellucid/reference/render.h"
+
+#include <tbb/blocked_range.h>
+#include <tbb/info.h>
+#include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
+#include <tbb/task_group.h>
+
+#include <atomic>
+#include <chrono>
+#include <mutex>
+
+#include "camera.h"
+#include "pellucid/scene/error.h"
+#include "ray.h"
+
+namespace pellucid {
+namespace {
+
+void render_row(const reference::CameraRays& camera, const reference::Grid& grid,
+                const reference::Table& table, int row, Image& image, std::uint64_t& cells) {
+  const bool with_depth = !image.depth.empty();
+  for (int column = 0; column < image.width; ++column) {
+    const ReferencePixel pixel =
+        reference::integrate(grid, table, camera.ray(column, row), with_depth, cells);
+    image.at(column, row) = {
+        static_cast<float>(pixel.radiance.r), static_cast<float>(pixel.radiance.g),
+        static_cast<float>(pixel.radiance.b), static_cast<float>(pixel.opacity)};
+    if (with_depth) {
+      image.depth[static_cast<std::size_t>(row) * static_cast<std::size_t>(image.width) +
+                  static_cast<std::size_t>(column)] = static_cast<float>(pixel.half_opacity_depth);
+    }
+  }
+}
+
+}  // namespace
+
+Image render_reference(const Scene& scene, const RenderOptions& options, RenderReport* report) {
+  if (!scene.volume || !scene.transfer_function) {
+    throw Error("scene: a volume and a transfer function are needed; set both before rendering");
+  }
+  if (options.threads < 0) throw Error("threads: must not be negative; 0 takes one per core");
+  make_camera_frame(scene.camera, scene.size);  // For its checks; the rays are made here.
+
+  const reference::CameraRays camera(scene.camera, scene.size);
+  const reference::Grid grid(*scene.volume);
+  const reference::Table table(scene.transfer_function->points());
+
+  Image image;
+  image.width = scene.size.width;
+  image.height = scene.size.height;
+  const auto pixels =
+      static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height);
+  image.pixels.resize(pixels);
+  if (options.depth) image.depth.resize(pixels);
+
+  RenderReport local;
+  local.threads = options.threads > 0 ? options.threads : tbb::info::default_concurrency();
+  local.rays = pixels;
+  const auto start = std::chrono::steady_clock::now();
+
+  std::atomic<std::uint64_t> cells{0};
+  std::mutex progress_mutex;
+  int rows_done = 0;
+  bool cancelled = false;
+  tbb::task_group_context context;
+  tbb::task_arena(local.threads).execute([&] {
+    tbb::parallel_for(
+        tbb::blocked_range<int>(0, image.height, 1),
+        [&](const tbb::blocked_range<int>& rows) {
+          for (int row = rows.begin(); row != rows.end(); ++row) {
+            std::uint64_t row_cells = 0;
+            render_row(camera, grid, table, row, image, row_cells);
+            cells += row_cells;
+            const std::lock_guard lock(progress_mutex);
+            ++rows_done;
+            if (cancelled || !options.progress) continue;
+            if (!options.progress(static_cast<double>(rows_done) / image.height)) {
+              cancelled = true;
+              context.cancel_group_execution();
+            }
+          }
+        },
+        context);
+  });
+  if (cancelled) throw Cancelled();
+
+  local.cells = cells;
+  local.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  if (report != nullptr) *report = local;
+  return image;
+}
+
+}  // namespace pellucid

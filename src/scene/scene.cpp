@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pellucid/scene/scene.h"
+
+#include <array>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <utility>
+
+#include "message.h"
+#include "pellucid/scene/error.h"
+
+namespace pellucid {
+namespace {
+
+constexpr int largest_size = 65536;
+
+constexpr std::array<std::pair<Method, std::string_view>, 7> methods{{
+    {Method::exact, "exact"},
+    {Method::rectangle, "rectangle"},
+    {Method::taylor, "taylor"},
+    {Method::midpoint, "midpoint"},
+    {Method::trapezoid, "trapezoid"},
+    {Method::simpson, "simpson"},
+    {Method::linear, "linear"},
+}};
+
+void require_finite(const Vec3<double>& v, const std::string& what) {
+  for (int a = 0; a < 3; ++a) {
+    if (!std::isfinite(v[a])) {
+      throw Error("camera: " + what + " is " + tuple(v) + ", but all three must be finite numbers");
+    }
+  }
+}
+
+/// v / |v| without overflow or underflow on the way; the zero vector stays zero.
+Vec3<double> unit(Vec3<double> v) {
+  const double largest = max(std::abs(v.x), max(std::abs(v.y), std::abs(v.z)));
+  if (largest == 0) return v;
+  const Vec3<double> scaled{v.x / largest, v.y / largest, v.z / largest};
+  const double norm = length(scaled);
+  return {scaled.x / norm, scaled.y / norm, scaled.z / norm};
+}
+
+}  // namespace
+
+CameraFrame<double> make_camera_frame(const Camera& camera, ImageSize size) {
+  if (size.width < 1 || size.width > largest_size || size.height < 1 ||
+      size.height > largest_size) {
+    throw Error("image: size is " + std::to_string(size.width) + " x " +
+                std::to_string(size.height) + ", but width and height must be from 1 to " +
+                std::to_string(largest_size));
+  }
+  require_finite(camera.position, "position");
+  require_finite(camera.focal_point, "focal_point");
+  require_finite(camera.up, "up");
+  const Vec3<double> view = camera.focal_point - camera.position;
+  require_finite(view, "focal_point - position");
+  if (view == Vec3<double>{}) {
+    throw Error("camera: position and focal_point are both " + tuple(camera.position) +
+                "; move one of them to give a view direction");
+  }
+  if (camera.up == Vec3<double>{}) {
+    throw Error("camera: up is (0, 0, 0); give the direction that is upwards in the image");
+  }
+  const Vec3<double> forward = unit(view);
+  const Vec3<double> side = cross(forward, unit(camera.up));
+  // Below this sine the image's orientation would keep fewer than half of a double's digits.
+  if (length(side) <= std::sqrt(std::numeric_limits<double>::epsilon())) {
+    throw Error("camera: up " + tuple(camera.up) + " is parallel to the view direction " +
+                tuple(view) + "; choose another up");
+  }
+  const Vec3<double> right = unit(side);
+  const Vec3<double> up = cross(right, forward);
+
+  CameraFrame<double> frame;
+  frame.position = camera.position;
+  frame.forward = forward;
+  frame.perspective = camera.projection == Projection::perspective;
+  frame.width = size.width;
+  frame.height = size.height;
+  double half_height;
+  if (frame.perspective) {
+    if (!(camera.vertical_angle > 0 && camera.vertical_angle < 180)) {
+      throw Error("camera: vertical_angle is " + number(camera.vertical_angle) +
+                  " degrees, but must be between 0 and 180");
+    }
+    half_height = std::tan(camera.vertical_angle * (std::numbers::pi / 360));
+  } else {
+    if (!(camera.parallel_scale > 0 && std::isfinite(camera.parallel_scale))) {
+      throw Error("camera: parallel_scale is " + number(camera.parallel_scale) +
+                  ", but must be a positive number: half of the image's height in world units");
+    }
+    half_height = camera.parallel_scale;
+  }
+  frame.up = up * half_height;
+  frame.right = right * (half_height * size.width / size.height);
+  return frame;
+}
+
+std::string_view method_name(Method method) noexcept {
+  for (const auto& [value, name] : methods) {
+    if (value == method) return name;
+  }
+  return "unknown";
+}
+
+std::optional<Method> method_from_name(std::string_view name) noexcept {
+  for (const auto& [value, known] : methods) {
+    if (known == name) return value;
+  }
+  return std::nullopt;
+}
+
+}  // namespace pellucid

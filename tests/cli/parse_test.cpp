@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "parse.h"
+
+#include <gtest/gtest.h>
+
+namespace {
+
+using pellucid::Rgb;
+using namespace pellucid::cli;
+
+TEST(Parse, Size) {
+  EXPECT_EQ(parse_size("--size", "640x480").width, 640);
+  EXPECT_EQ(parse_size("--size", "640x480").height, 480);
+  EXPECT_EQ(parse_size("--size", "64").height, 64);
+  EXPECT_EQ(parse_size("--size", "65536x1").width, 65536);
+  for (const char* bad : {"", "x", "0x5", "5x0", "-3", "640x", "x480", "1x2x3", "64.5", "65537",
+                          "640 x480", "99999999999999999999"}) {
+    EXPECT_THROW(parse_size("--size", bad), UsageError) << bad;
+  }
+}
+
+TEST(Parse, Triple) {
+  EXPECT_EQ(parse_triple("--origin", "-1,2.5,+3e2"), (std::array<double, 3>{-1, 2.5, 300}));
+  for (const char* bad :
+       {"", "1,2", "1,2,3,4", "1,,3", "a,b,c", "1,2,nan", "1,2,inf", "1,2,3 ", "+-1,2,3"}) {
+    EXPECT_THROW(parse_triple("--origin", bad), UsageError) << bad;
+  }
+}
+
+TEST(Parse, Dimensions) {
+  EXPECT_EQ(parse_dimensions("--dimensions", "1,2,3"), (std::array<int, 3>{1, 2, 3}));
+  for (const char* bad : {"0,1,1", "-4,4,4", "1.5,2,3", "4,4", "4,4,99999999999"}) {
+    EXPECT_THROW(parse_dimensions("--dimensions", bad), UsageError) << bad;
+  }
+}
+
+TEST(Parse, Color) {
+  EXPECT_EQ(parse_color("--background", "white"), (Rgb<double>{1, 1, 1}));
+  EXPECT_EQ(parse_color("--background", "black"), (Rgb<double>{0, 0, 0}));
+  EXPECT_EQ(parse_color("--background", "0.25,0,2"), (Rgb<double>{0.25, 0, 2}));
+  for (const char* bad : {"grey", "1,1", "-0.1,0,0", "0,0,inf", "#fff"}) {
+    EXPECT_THROW(parse_color("--background", bad), UsageError) << bad;
+  }
+}
+
+TEST(Parse, MessagesAreOneLine) {
+  EXPECT_EQ(one_line("two\nlines\r\n\there\n"), "two lines here");
+  EXPECT_EQ(one_line("\x1b[31mred"), "[31mred");
+  EXPECT_EQ(one_line("volumen größe"), "volumen größe");
+}
+
+}  // namespace

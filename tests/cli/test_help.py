@@ -1,0 +1,78 @@
+# SPDX-License-Identifier: Apache-2.0
+import os
+import re
+import unittest
+
+from program import SOURCE_DIR, ProgramTest, options_of
+
+COMMANDS = ("render", "info", "evaluate", "compare")
+
+
+class Help(ProgramTest):
+    def manual(self):
+        with open(os.path.join(SOURCE_DIR, "docs", "command-line.md"), encoding="utf-8") as file:
+            return file.read()
+
+    def introduction(self):
+        return self.manual().split("\n## ")[0]
+
+    def section(self, command):
+        match = re.search(rf"(?ms)^## pellucid {command}$(.*?)(?=^## |\Z)", self.manual())
+        self.assertIsNotNone(match, f"docs/command-line.md has no section on {command}")
+        return match.group(1)
+
+    def test_every_help_has_examples(self):
+        for arguments in ((), *((command,) for command in COMMANDS)):
+            text = self.succeed(*arguments, "--help")
+            self.assertIn("Examples:\n  pellucid ", text)
+            for line in text.splitlines():
+                self.assertLessEqual(len(line), 100, line)
+
+    def test_every_command_is_in_the_overview(self):
+        text = self.succeed("--help")
+        listed = re.findall(r"(?m)^  ([a-z]+)  ", text[text.index("Subcommands:"):])
+        self.assertEqual(sorted(listed), sorted(COMMANDS))
+
+    def test_manual_and_help_name_the_same_options(self):
+        for command in COMMANDS:
+            of_help = options_of(self.succeed(command, "--help"))
+            self.assertIn("--help", of_help)
+            of_manual = set(re.findall(r"(?m)^\| `(?:-\w, )?(--[a-z][a-z-]*)", self.section(command)))
+            if command in ("render", "info"):
+                of_manual |= set(re.findall(r"(?m)^\| `(--[a-z][a-z-]*)", self.introduction()))
+            self.assertEqual(set(of_help) - {"--help"} - of_manual, set(),
+                             f"{command}: not in docs/command-line.md")
+            self.assertEqual(of_manual - set(of_help), set(),
+                             f"{command}: in docs/command-line.md but not in --help")
+
+    def test_examples_of_the_help_are_understood(self):
+        # They stop at the missing file, not at their arguments.
+        for command in COMMANDS:
+            text = self.succeed(command, "--help").split("Examples:\n")[1]
+            for example in re.sub(r"\n {4,}", " ", text).strip().splitlines():
+                words = example.split(">")[0].split()
+                self.assertEqual(words[0], "pellucid")
+                if words[2].startswith("builtin:"):
+                    continue
+                with self.subTest(example=example):
+                    self.fail_with("error", *words[1:])
+
+    def test_version(self):
+        with open(os.path.join(SOURCE_DIR, "include", "pellucid", "base", "version.h"),
+                  encoding="utf-8") as file:
+            version = re.search(r'PELLUCID_VERSION_STRING "([^"]+)"', file.read()).group(1)
+        self.assertEqual(self.succeed("--version"), f"pellucid {version}\n")
+
+    def test_wrong_arguments(self):
+        self.fail_with(r"--help", code=2)
+        self.fail_with(r"paint.*'pellucid --help'", "paint", code=2)
+        for command in COMMANDS:
+            self.fail_with(rf"'pellucid {command} --help'", command, code=2)
+            positional = ("linear_segment", "a.csv", "-o", "b.csv") if command == "evaluate" else ("a",)
+            positional += ("b",) if command == "compare" else ()
+            self.fail_with(rf"--frobnicate.*'pellucid {command} --help'", command, *positional,
+                           "--frobnicate", code=2)
+
+
+if __name__ == "__main__":
+    unittest.main()

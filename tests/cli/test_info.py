@@ -1,0 +1,100 @@
+# SPDX-License-Identifier: Apache-2.0
+import struct
+import unittest
+
+from program import ProgramTest, npy, ramp
+
+
+def metaimage(matrix="1 0 0 0 1 0 0 0 1"):
+    header = ("ObjectType = Image\nNDims = 3\nBinaryData = True\nBinaryDataByteOrderMSB = False\n"
+              f"CompressedData = False\nTransformMatrix = {matrix}\nOffset = 10 20 30\n"
+              "ElementSpacing = 1 2 3\nDimSize = 2 3 4\nElementType = MET_SHORT\n"
+              "ElementDataFile = LOCAL\n")
+    return header.encode() + struct.pack("<24h", *range(-5, 19))
+
+
+class Info(ProgramTest):
+    def test_json_of_a_numpy_file(self):
+        values = [0.0, 1.0, 2.0, float("nan"), 4.0, 5.0, 6.0, 8.0]
+        self.write("a.npy", npy(values, (2, 2, 2)))
+        report = self.report("info", "a.npy", "--spacing", "1,2,3", "--origin", "-1,0,1")
+        self.assertEqual(report["dimensions"], [2, 2, 2])
+        self.assertEqual(report["type"], "f32")
+        self.assertEqual(report["bytes"], 32)
+        self.assertEqual(report["centering"], "point")
+        self.assertEqual(report["spacing"], [1, 2, 3])
+        self.assertEqual(report["origin"], [-1, 0, 1])
+        self.assertEqual(report["world_box"], [[-1, 0, 1], [0, 2, 4]])
+        self.assertEqual(report["range"], [0, 8])
+        self.assertAlmostEqual(report["mean"], 26 / 7, places=12)
+        self.assertEqual(report["nan"], 1)
+        self.assertIsNone(report["orientation"])
+        histogram = report["histogram"]
+        self.assertEqual(len(histogram["count"]), 256)
+        self.assertEqual(sum(histogram["count"]), 7)
+        self.assertEqual(histogram["count"][0], 1)
+        self.assertEqual(histogram["count"][255], 1)
+
+    def test_text(self):
+        self.write("a.npy", npy(ramp(3), (3, 3, 3)))
+        text = self.succeed("info", "a.npy")
+        self.assertRegex(text, r"(?m)^dimensions +3 x 3 x 3$")
+        self.assertRegex(text, r"(?m)^type +f32, 108 B$")
+        self.assertRegex(text, r"(?m)^range +0 to 1$")
+        self.assertRegex(text, r"(?m)^NaN +0$")
+        bars = text[text.index("histogram"):].splitlines()[1:]
+        self.assertEqual(len(bars), 24)
+        self.assertRegex(bars[0], r"^ +0 +9 #{48}$")
+        self.assertRegex(bars[1], r"^ +[0-9.]+ +0$")
+
+    def test_builtin_field(self):
+        report = self.report("info", "builtin:marschner_lobb:16")
+        self.assertEqual(report["dimensions"], [16, 16, 16])
+        for bound in range(2):
+            for x in report["world_box"][bound]:
+                self.assertAlmostEqual(x, [-1, 1][bound], places=12)
+
+    def test_raw_file(self):
+        self.write("a.raw", b"HEAD" + struct.pack(">8H", *range(100, 108)))
+        report = self.report("info", "a.raw", "--dimensions", "2,2,2", "--type", "u16",
+                             "--big-endian", "--skip-bytes", "4", "--centering", "cell")
+        self.assertEqual(report["range"], [100, 107])
+        self.assertEqual(report["centering"], "cell")
+        self.assertEqual(report["world_box"], [[-0.5, -0.5, -0.5], [1.5, 1.5, 1.5]])
+
+    def test_all_nan(self):
+        self.write("a.npy", npy([float("nan")] * 8, (2, 2, 2)))
+        report = self.report("info", "a.npy")
+        self.assertEqual(report["nan"], 8)
+        self.assertIsNone(report["range"])
+        self.assertIsNone(report["mean"])
+        self.assertIsNone(report["histogram"])
+        self.assertIn("no finite value", self.succeed("info", "a.npy"))
+
+    def test_orientation_of_a_medical_file(self):
+        self.write("a.mha", metaimage())
+        result = self.run_program("info", "a.mha")
+        if result.returncode != 0 and b"ITK" in result.stderr:
+            self.skipTest("built without ITK")
+        report = self.report("info", "a.mha")
+        self.assertEqual(report["orientation"], "LPS")
+        self.assertEqual(report["spacing"], [1, 2, 3])
+        self.assertEqual(report["origin"], [10, 20, 30])
+        self.assertEqual(report["type"], "i16")
+        self.write("b.mha", metaimage("-1 0 0 0 0.8 0.6 0 -0.6 0.8"))
+        text = self.succeed("info", "b.mha")
+        self.assertRegex(text, r"(?m)^orientation +RPS, oblique by 36\.87 degrees")
+
+    def test_stdout_that_cannot_be_written(self):
+        self.write("a.npy", npy(ramp(2), (2, 2, 2)))
+        with open("/dev/full", "wb") as full:
+            import subprocess
+            from program import PROGRAM
+            result = subprocess.run([PROGRAM, "info", self.path("a.npy")], stdout=full,
+                                    stderr=subprocess.PIPE, check=False)
+        self.assertEqual(result.returncode, 1)
+        self.assertRegex(result.stderr.decode(), r"\Apellucid: error: stdout: [^\n]+\n\Z")
+
+
+if __name__ == "__main__":
+    unittest.main()

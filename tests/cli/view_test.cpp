@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "view.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <vector>
+
+#include "pellucid/scene/volume.h"
+
+namespace {
+
+using namespace pellucid;
+using pellucid::cli::view_camera;
+using pellucid::cli::view_names;
+
+Volume box_volume() {
+  Volume::Description description;
+  description.dimensions = {4, 6, 9};
+  description.placement.origin = {-10, 20, 5};
+  description.placement.spacing = {1, 2, 0.5};
+  description.name = "box";
+  return Volume(description, std::vector<float>(4 * 6 * 9, 1.0F));
+}
+
+// Every corner of the box is inside of the image, and the view is not wastefully far.
+TEST(View, HoldsTheVolume) {
+  const Volume volume = box_volume();
+  for (const std::string& name : view_names()) {
+    for (const ImageSize size : {ImageSize{64, 64}, ImageSize{200, 50}, ImageSize{30, 90}}) {
+      const Camera camera = view_camera(volume, name, size);
+      const CameraFrame<double> frame = make_camera_frame(camera, size);
+      double widest = 0;
+      for (const Vec3<double>& corner : volume.world_corners()) {
+        const Vec3<double> offset = corner - frame.position;
+        const double depth = dot(offset, frame.forward);
+        ASSERT_GT(depth, 0) << name;
+        const double x = dot(offset, frame.right) / dot(frame.right, frame.right) / depth;
+        const double y = dot(offset, frame.up) / dot(frame.up, frame.up) / depth;
+        widest = std::max({widest, std::abs(x), std::abs(y)});
+      }
+      EXPECT_LE(widest, 1) << name;
+      if (name != "oblique") {
+        EXPECT_GE(widest, 0.9) << name;
+      }
+    }
+  }
+}
+
+// World of LPS: x grows to the patient's left, y to the back, z upwards.
+TEST(View, StandsOnTheSideNamed) {
+  const Volume volume = box_volume();
+  const auto position = [&](const char* name) {
+    const Camera camera = view_camera(volume, name, {64, 64});
+    return camera.position - camera.focal_point;
+  };
+  EXPECT_LT(position("front").y, 0);
+  EXPECT_GT(position("back").y, 0);
+  EXPECT_GT(position("left").x, 0);
+  EXPECT_LT(position("right").x, 0);
+  EXPECT_GT(position("top").z, 0);
+  EXPECT_LT(position("bottom").z, 0);
+  // Seen from the front, the patient's left is on the right of the image.
+  const CameraFrame<double> front =
+      make_camera_frame(view_camera(volume, "front", {64, 64}), {64, 64});
+  EXPECT_GT(front.right.x, 0);
+  EXPECT_GT(front.up.z, 0);
+}
+
+}  // namespace

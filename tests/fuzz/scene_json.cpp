@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: Apache-2.0
+
+// The parser of scenes, transfer functions and cameras: any bytes give a value or an Error of one
+// line, and what was read is written and read again to the same text. Opens no file.
+
+#include <cstddef>
+#include <cstdint>
+#include <cstdlib>
+#include <string>
+#include <string_view>
+
+#include "pellucid/io/scene_json.h"
+#include "pellucid/scene/error.h"
+
+namespace {
+
+void require(bool condition) {
+  if (!condition) std::abort();
+}
+
+/// Calls parse; where it refuses, the message must be one readable line.
+template <class Parse>
+void attempt(Parse&& parse) {
+  try {
+    parse();
+  } catch (const pellucid::Error& error) {
+    const std::string_view message = error.what();
+    require(message.starts_with("fuzz: ") && message.size() < 2000);
+    for (const char c : message) require(static_cast<unsigned char>(c) >= 0x20);
+  }
+}
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  const std::string text(data, data + size);
+  attempt([&] {
+    const pellucid::SceneDescription scene = pellucid::parse_scene(text, "fuzz", "folder");
+    const std::string written = pellucid::scene_to_json(scene);
+    require(pellucid::scene_to_json(pellucid::parse_scene(written, "again")) == written);
+  });
+  attempt([&] {
+    const pellucid::TransferFunction function(pellucid::parse_transfer_function(text, "fuzz"));
+    const std::string written = pellucid::transfer_function_to_json(function);
+    const auto again = pellucid::parse_transfer_function(written, "again");
+    require(pellucid::transfer_function_to_json(pellucid::TransferFunction(again)) == written);
+  });
+  attempt([&] {
+    const std::string written = pellucid::camera_to_json(pellucid::parse_camera(text, "fuzz"));
+    require(pellucid::camera_to_json(pellucid::parse_camera(written, "again")) == written);
+  });
+  return 0;
+}

@@ -1,0 +1,227 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <array>
+#include <cmath>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "pellucid/io/read_volume.h"
+#include "volume_files.h"
+
+// Files of other programs, against the facts that stand in their manifest.
+namespace pellucid {
+namespace {
+
+namespace fs = std::filesystem;
+
+const fs::path data = fs::path(PELLUCID_SOURCE_DIR) / ".." / "shared" / "data";
+
+struct Facts {
+  const char* file;
+  const char* type;
+  std::array<int, 3> dimensions;
+  std::array<double, 3> spacing;
+  double minimum, maximum;
+};
+
+void expect_facts(const Facts& facts, const ReadOptions& options = {}) {
+  SCOPED_TRACE(facts.file);
+  if (!fs::exists(data / facts.file)) {
+    GTEST_SKIP() << (data / facts.file).string() << " not found";
+  }
+  const Volume volume = read_volume(data / facts.file, options);
+  EXPECT_EQ(type_name(volume.data()), facts.type);
+  EXPECT_EQ(volume.description().dimensions, facts.dimensions);
+  for (int a = 0; a < 3; ++a) {
+    EXPECT_NEAR(volume.description().placement.spacing[a],
+                facts.spacing[static_cast<std::size_t>(a)], 1e-4);
+  }
+  EXPECT_NEAR(volume.statistics().minimum, facts.minimum, 0.05);
+  EXPECT_NEAR(volume.statistics().maximum, facts.maximum, 0.05);
+  EXPECT_EQ(volume.statistics().nan, 0u);
+}
+
+class RealFile : public ::testing::TestWithParam<Facts> {};
+TEST_P(RealFile, IsAsTheManifestSays) {
+  expect_facts(GetParam());
+}
+
+INSTANTIATE_TEST_SUITE_P(Own, RealFile,
+                         ::testing::Values(Facts{
+                             "structured/hdz2000.npy", "u8", {128, 128, 128}, {1, 1, 1}, 0, 255}));
+
+#ifdef PELLUCID_HAVE_ITK
+INSTANTIATE_TEST_SUITE_P(
+    Medical, RealFile,
+    ::testing::Values(
+        Facts{"structured/fuel.nii.gz", "u8", {64, 33, 32}, {1, 1, 1}, 0, 255},
+        Facts{"structured/engine.nii.gz", "u8", {256, 256, 128}, {1, 1, 1}, 0, 255},
+        Facts{"structured/stent.nrrd", "f32", {128, 128, 256}, {1, 1, 1}, 0, 1},
+        Facts{"structured/nucleon/nucleon.nrrd", "u8", {41, 41, 41}, {1, 1, 1}, 0, 249},
+        Facts{"structured/headsq/quarter.nhdr", "i16", {64, 64, 93}, {3.2, 3.2, 1.5}, 0, 3926},
+        Facts{"structured/HeadMRVolume/HeadMRVolume.mhd", "u8", {48, 62, 42}, {4, 4, 4}, 0, 255},
+        Facts{"structured/mha.mha", "i16", {64, 64, 37}, {3.4375, 3.4375, 3.8}, 0, 6690},
+        Facts{"structured/avg152T1_RL_nifti.nii.gz", "u8", {91, 109, 91}, {2, 2, 2}, 0, 255},
+        Facts{"multivariate/dti/FA.nii.gz", "f32", {84, 92, 56}, {2.2, 2.2, 2.2}, 0, 1.2247},
+        Facts{"multivariate/ms_patient07/GOLD.nii.gz", "u8", {182, 218, 182}, {1, 1, 1}, 0, 1}));
+#endif
+
+TEST(RealVolumes, HeaderlessFiles) {
+  ReadOptions options;
+  options.dimensions = {128, 128, 128};
+  options.type = "u8";
+  expect_facts(
+      {"structured/hydrogenatom/hydrogenatom.raw", "u8", {128, 128, 128}, {1, 1, 1}, 0, 250},
+      options);
+  options.dimensions = {256, 256, 108};
+  options.type = "i16";
+  options.spacing = Vec3<double>{0.957031, 0.957031, 1.5};
+  expect_facts({"structured/cranium_ct/matrix.dat",
+                "i16",
+                {256, 256, 108},
+                {0.957031, 0.957031, 1.5},
+                -1024,
+                2986},
+               options);
+}
+
+// One small volume in every type and both byte orders.
+TEST(RealVolumes, OneVolumeInAllTypes) {
+  const fs::path folder = data / "conformance/inviwo_types";
+  if (!fs::exists(folder)) GTEST_SKIP() << folder.string() << " not found";
+  const std::array<std::pair<const char*, const char*>, 8> types{{{"UINT8", "u8"},
+                                                                  {"INT8", "i8"},
+                                                                  {"UINT16", "u16"},
+                                                                  {"INT16", "i16"},
+                                                                  {"UINT32", "u32"},
+                                                                  {"INT32", "i32"},
+                                                                  {"FLOAT32", "f32"},
+                                                                  {"FLOAT64", "f64"}}};
+  for (const auto& [file, type] : types) {
+    std::vector<double> first;
+    for (const std::string order : {".LittleEndian", ".BigEndian"}) {
+      const std::string bytes = std::string(type).ends_with('8') ? "" : order;
+      SCOPED_TRACE(file + bytes);
+      ReadOptions options;
+      options.dimensions = {13, 7, 3};
+      options.type = type;
+      options.big_endian = order == ".BigEndian";
+      const Volume volume =
+          read_volume(folder / ("testdata." + std::string(file) + bytes + ".raw"), options);
+      std::vector<double> values;
+      for (int i = 0; i < 273; ++i) {
+        values.push_back(test::value_at(volume, i % 13, i / 13 % 7, i / 91));
+      }
+      if (first.empty()) first = values;
+      EXPECT_EQ(values, first);
+    }
+    EXPECT_LT(first.front(), first.back());
+  }
+}
+
+#ifdef PELLUCID_HAVE_ITK
+
+// The index whose value stands nearest to a world position; fails where the position is off the
+// grid's points.
+std::array<int, 3> index_at(const Volume& volume, const Vec3<double>& world) {
+  const GridPlacement& p = volume.description().placement;
+  const Vec3<double> offset = inverse(p.direction) * (world - p.origin);
+  std::array<int, 3> index{};
+  for (int a = 0; a < 3; ++a) {
+    const double position = offset[a] / p.spacing[a];
+    index[static_cast<std::size_t>(a)] = static_cast<int>(std::lround(position));
+    EXPECT_NEAR(position, std::round(position), 1e-3);
+  }
+  return index;
+}
+
+double value_at_world(const Volume& volume, const Vec3<double>& world) {
+  const auto [i, j, k] = index_at(volume, world);
+  return test::value_at(volume, i, j, k);
+}
+
+void expect_same_in_the_world(const Volume& a, const Volume& b) {
+  const auto [nx, ny, nz] = a.description().dimensions;
+  for (int k = 0; k < nz; k += 5) {
+    for (int j = 0; j < ny; j += 3) {
+      for (int i = 0; i < nx; i += 7) {
+        ASSERT_EQ(test::value_at(a, i, j, k), value_at_world(b, test::world_of(a, i, j, k)))
+            << i << ' ' << j << ' ' << k;
+      }
+    }
+  }
+}
+
+TEST(RealVolumes, EightOrientationsAreOneImage) {
+  const fs::path folder = data / "conformance/nifti_space";
+  if (!fs::exists(folder)) GTEST_SKIP() << folder.string() << " not found";
+  const Volume reference = read_volume(folder / "RAS.nii.gz");
+  EXPECT_NEAR(reference.statistics().maximum, 255 * 0.36296, 0.01);
+  for (const char* name : {"LAS", "LPS", "LPI", "PSR", "AIL", "SAR", "IRP"}) {
+    SCOPED_TRACE(name);
+    expect_same_in_the_world(reference, read_volume(folder / (std::string(name) + ".nii.gz")));
+  }
+}
+
+TEST(RealVolumes, LeftAndRightReferenceImagesAreOneImage) {
+  if (!fs::exists(data / "structured"))
+    GTEST_SKIP() << (data / "structured").string() << " not found";
+  const Volume rl = read_volume(data / "structured/avg152T1_RL_nifti.nii.gz");
+  expect_same_in_the_world(rl, read_volume(data / "structured/avg152T1_LR_nifti.nii.gz"));
+  for (const char* half : {"hdr", "img"}) {
+    expect_same_in_the_world(rl,
+                             read_volume(data / ("structured/avg152T1_RL_pair/avg152T1_RL_nifti." +
+                                                 std::string(half) + ".gz")));
+  }
+}
+
+TEST(RealVolumes, TheSameBallInAllKindsOfNrrd) {
+  const fs::path folder = data / "conformance/pynrrd";
+  if (!fs::exists(folder)) GTEST_SKIP() << folder.string() << " not found";
+  ReadOptions raw;
+  raw.dimensions = {30, 30, 30};
+  raw.type = "i16";
+  const Volume ball = read_volume(folder / "BallBinary30x30x30.raw", raw);
+  EXPECT_EQ(ball.statistics().maximum, 257);
+  for (const char* name : {".nrrd", ".nhdr", "_gz.nrrd", ".nii.gz"}) {
+    SCOPED_TRACE(name);
+    EXPECT_EQ(read_volume(folder / (std::string("BallBinary30x30x30") + name)).data(), ball.data());
+  }
+  for (const char* name : {"BallBinary30x30x30_bz2.nrrd", "test1d_ascii.nrrd", "test2d_ascii.nrrd",
+                           "test_simple4d_raw.nrrd"}) {
+    SCOPED_TRACE(name);
+    test::error_of([&] { read_volume(folder / name); });
+  }
+}
+
+TEST(RealVolumes, WhatIsNotOneNumberAtEachPointIsRefused) {
+  if (!fs::exists(data / "multivariate")) {
+    GTEST_SKIP() << (data / "multivariate").string() << " not found";
+  }
+  EXPECT_TRUE(test::contains(
+      test::error_of([] { read_volume(data / "multivariate/ct_perfusion_rgb24.nii.gz"); }), "RGB"));
+  EXPECT_TRUE(test::contains(
+      test::error_of([] { read_volume(data / "multivariate/dti/V1.nii.gz"); }), "3 time steps"));
+}
+
+// 166 MB behind 0.8 MB whose size the header has wrong.
+TEST(RealVolumes, AMaskWithAStaleSize) {
+  expect_facts(
+      {"structured/k3d_mask/mask.mhd", "i16", {512, 512, 317}, {0.361328, 0.361328, 0.5}, 0, 1});
+}
+
+TEST(RealVolumes, TheBrainOfTheDemo) {
+  const fs::path file = "/usr/share/mricron/templates/ch2.nii.gz";
+  if (!fs::exists(file)) GTEST_SKIP() << file.string() << " not found (Debian: mricron-data)";
+  const Volume brain = read_volume(file);
+  EXPECT_EQ(type_name(brain.data()), "u8");
+  EXPECT_EQ(brain.description().dimensions, (std::array<int, 3>{181, 217, 181}));
+  test::expect_near(test::world_of(brain, 0, 0, 0), {90, 125, -71});
+  test::expect_near(test::world_of(brain, 180, 216, 180), {-90, -91, 109});
+  EXPECT_EQ(brain.statistics().maximum, 254);
+}
+
+#endif
+
+}  // namespace
+}  // namespace pellucid

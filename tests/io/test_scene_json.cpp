@@ -1,0 +1,317 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <limits>
+#include <nlohmann/json.hpp>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "pellucid/io/scene_json.h"
+#include "pellucid/scene/builtin_fields.h"
+#include "pellucid/scene/error.h"
+
+namespace pellucid {
+namespace {
+
+const std::filesystem::path scenes =
+    std::filesystem::path(PELLUCID_SOURCE_DIR) / "tests" / "io" / "scenes";
+
+std::string read(const std::filesystem::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  EXPECT_TRUE(file) << path;
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+std::vector<std::filesystem::path> files(const char* folder) {
+  std::vector<std::filesystem::path> list;
+  for (const auto& entry : std::filesystem::directory_iterator(scenes / folder)) {
+    if (entry.path().extension() == ".json") list.push_back(entry.path());
+  }
+  std::sort(list.begin(), list.end());
+  EXPECT_FALSE(list.empty()) << folder;
+  return list;
+}
+
+/// The message of the Error that the call throws; empty where it throws none.
+template <class Call>
+std::string error_of(Call&& call) {
+  try {
+    call();
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return {};
+}
+
+std::string scene_error(std::string_view text) {
+  return error_of([&] { parse_scene(text, "s.json"); });
+}
+
+bool same(double a, double b) {
+  return std::memcmp(&a, &b, sizeof a) == 0;
+}
+bool same(const Vec3<double>& a, const Vec3<double>& b) {
+  return same(a.x, b.x) && same(a.y, b.y) && same(a.z, b.z);
+}
+bool same(const Rgb<double>& a, const Rgb<double>& b) {
+  return same(a.r, b.r) && same(a.g, b.g) && same(a.b, b.b);
+}
+bool same(const std::vector<TransferFunction::Point>& a,
+          const std::vector<TransferFunction::Point>& b) {
+  return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](const auto& p, const auto& q) {
+    return same(p.value, q.value) && same(p.extinction, q.extinction) && same(p.color, q.color);
+  });
+}
+bool same(const Camera& a, const Camera& b) {
+  return a.projection == b.projection && same(a.position, b.position) &&
+         same(a.focal_point, b.focal_point) && same(a.up, b.up) &&
+         same(a.vertical_angle, b.vertical_angle) && same(a.parallel_scale, b.parallel_scale);
+}
+template <class T>
+bool same(const std::optional<T>& a, const std::optional<T>& b) {
+  return a.has_value() == b.has_value() && (!a || same(*a, *b));
+}
+bool same(const FieldSource& a, const FieldSource& b) {
+  const ReadOptions &p = a.options, &q = b.options;
+  return a.file == b.file && a.builtin == b.builtin && a.points == b.points &&
+         p.dimensions == q.dimensions && p.type == q.type &&
+         p.big_endian.value_or(false) == q.big_endian.value_or(false) &&
+         p.skip_bytes == q.skip_bytes && same(p.spacing, q.spacing) && same(p.origin, q.origin) &&
+         p.centering == q.centering;
+}
+bool same(const SceneDescription& a, const SceneDescription& b) {
+  return same(a.field, b.field) && same(a.transfer_function, b.transfer_function) &&
+         same(a.camera, b.camera) && a.size.width == b.size.width &&
+         a.size.height == b.size.height && a.integration.method == b.integration.method &&
+         a.integration.precision == b.integration.precision &&
+         same(a.integration.step, b.integration.step) && same(a.background, b.background);
+}
+
+TEST(SceneJson, EveryValidFileIsReadAndRoundTripsBitForBit) {
+  for (const auto& path : files("valid")) {
+    SCOPED_TRACE(path.filename());
+    SceneDescription first;
+    ASSERT_NO_THROW(first = parse_scene(read(path), path.filename().string(), scenes));
+    const std::string text = scene_to_json(first);
+    SceneDescription second;
+    ASSERT_NO_THROW(second = parse_scene(text, "written")) << text;
+    EXPECT_TRUE(same(first, second)) << text;
+    EXPECT_EQ(scene_to_json(second), text);
+  }
+}
+
+TEST(SceneJson, EveryInvalidFileGetsItsOneLine) {
+  const auto expected = nlohmann::json::parse(read(scenes / "expected_errors.json"));
+  std::set<std::string> seen;
+  for (const auto& path : files("invalid")) {
+    const std::string name = path.filename().string();
+    seen.insert(name);
+    ASSERT_TRUE(expected.contains(name)) << name << " is missing in expected_errors.json";
+    const std::string error = error_of([&] { parse_scene(read(path), name); });
+    EXPECT_NE(error.find(expected[name]["message"].get<std::string>()), std::string::npos)
+        << name << ": " << (error.empty() ? "was accepted" : error);
+    EXPECT_EQ(error.rfind(name + ": ", 0), 0U) << "does not begin with the file's name: " << error;
+    EXPECT_EQ(error.find('\n'), std::string::npos) << error;
+    EXPECT_LT(error.size(), 400U) << error;
+  }
+  EXPECT_EQ(seen.size(), expected.size()) << "expected_errors.json names a file that is not there";
+}
+
+TEST(SceneJson, ReadsWhatIsWritten) {
+  const SceneDescription scene = parse_scene(read(scenes / "valid" / "perspective.json"), "s");
+  EXPECT_EQ(scene.field.builtin, "hydrogen");
+  EXPECT_EQ(scene.field.points, 64);
+  ASSERT_TRUE(scene.transfer_function);
+  ASSERT_EQ(scene.transfer_function->size(), 3U);
+  EXPECT_EQ((*scene.transfer_function)[1].value, 0.1);
+  EXPECT_EQ((*scene.transfer_function)[1].extinction, 3.7);
+  EXPECT_EQ((*scene.transfer_function)[2].extinction, 1000);
+  EXPECT_EQ((*scene.transfer_function)[2].color, (Rgb<double>{2, 1.7, 0}));
+  ASSERT_TRUE(scene.camera);
+  EXPECT_EQ(scene.camera->projection, Projection::perspective);
+  EXPECT_EQ(scene.camera->position, (Vec3<double>{2, -3.5, 1e-3}));
+  EXPECT_EQ(scene.camera->focal_point, (Vec3<double>{0, 0, 0.1}));
+  EXPECT_EQ(scene.camera->up, (Vec3<double>{0, 0, 1}));
+  EXPECT_EQ(scene.camera->vertical_angle, 40);
+  EXPECT_EQ(scene.size.width, 321);
+  EXPECT_EQ(scene.size.height, 123);
+  ASSERT_TRUE(scene.background);
+  EXPECT_EQ(*scene.background, (Rgb<double>{0, 0.01, 1}));
+  EXPECT_EQ(scene.integration.method, Method::midpoint);
+  EXPECT_EQ(scene.integration.precision, Precision::float64);
+  EXPECT_EQ(scene.integration.step, 0.25);
+
+  const SceneDescription raw = parse_scene(read(scenes / "valid" / "raw.json"), "s", "/scans");
+  EXPECT_EQ(raw.field.file, "/scans/data/male.RAW");
+  EXPECT_EQ(raw.field.options.dimensions, (std::array<int, 3>{128, 256, 256}));
+  EXPECT_EQ(raw.field.options.type, "u8");
+  EXPECT_EQ(raw.field.options.big_endian, true);
+  EXPECT_EQ(raw.field.options.skip_bytes, 12U);
+  EXPECT_EQ(raw.field.options.spacing, (Vec3<double>{1.5, 1, 1}));
+  EXPECT_EQ(raw.field.options.origin, (Vec3<double>{-96, 0, 1e-300}));
+  EXPECT_EQ(raw.field.options.centering, Centering::cell);
+  EXPECT_FALSE(raw.transfer_function);
+  EXPECT_FALSE(raw.camera);
+  EXPECT_FALSE(raw.background);
+  EXPECT_EQ(raw.size.width, 512);
+  EXPECT_EQ(raw.integration.method, Method::exact);
+  EXPECT_EQ(raw.integration.precision, Precision::float32);
+}
+
+TEST(SceneJson, AbsoluteFilesStayAndRelativeOnesStartAtTheFolder) {
+  const auto file = [](const char* path, const char* folder) {
+    return parse_scene("{\"volumes\": [{\"field\": {\"file\": \"" + std::string(path) + "\"}}]}",
+                       "s", folder)
+        .field.file;
+  };
+  EXPECT_EQ(file("a.nii", ""), "a.nii");
+  EXPECT_EQ(file("a.nii", "there"), "there/a.nii");
+  EXPECT_EQ(file("../a.nii", "there/x"), "there/x/../a.nii");
+  EXPECT_EQ(file("/data/a.nii", "there"), "/data/a.nii");
+}
+
+TEST(SceneJson, SyntaxErrorsNameLineAndColumn) {
+  EXPECT_EQ(
+      scene_error("{\n\"volumes\" 3}").rfind("s.json: line 2, column 11: not valid JSON: ", 0), 0U)
+      << scene_error("{\n\"volumes\" 3}");
+  EXPECT_NE(scene_error("{\r\n\r\n  x").find("line 3, column 3"), std::string::npos);
+  EXPECT_NE(scene_error(std::string_view("\0", 1)).find("line 1, column 1"), std::string::npos);
+}
+
+TEST(SceneJson, LongAndStrangeTextStaysOneShortLine) {
+  const std::vector<std::string> texts{"{\"" + std::string(100000, 'k') + "\": 1}",
+                                       "{\"a\": \"" + std::string(100000, 'v'),
+                                       "{\"volumes\": \"" + std::string(100000, 's') + "\"}",
+                                       "{\"\\u0007\\n\\u001b[31m\\u0000\": 1}",
+                                       "{\"volumes\": \n\n\n",
+                                       "{\"" + std::string(159, 'a') + "\xc3\xa4\xc3\xa4\": 1}"};
+  for (const std::string& text : texts) {
+    const std::string error = scene_error(text);
+    EXPECT_FALSE(error.empty());
+    EXPECT_LT(error.size(), 500U) << error;
+    for (const char c : error) EXPECT_GE(static_cast<unsigned char>(c), 0x20) << error;
+    // A cut in the middle of a character would not be UTF-8.
+    EXPECT_NO_THROW(nlohmann::json(error).dump()) << error;
+  }
+}
+
+TEST(SceneJson, WritingRefusesWhatJsonCannotHold) {
+  SceneDescription scene;
+  scene.field.builtin = "ramp";
+  scene.camera = Camera{};
+  scene.camera->position.x = std::numeric_limits<double>::infinity();
+  EXPECT_NE(error_of([&] { scene_to_json(scene); }).find("the camera's position is not a finite"),
+            std::string::npos);
+  scene.camera.reset();
+  scene.field.builtin.clear();
+  scene.field.file = "\xff.nii";
+  EXPECT_NE(error_of([&] { scene_to_json(scene); }).find("not UTF-8"), std::string::npos);
+}
+
+TEST(TransferFunctionJson, StandsAloneBareOrUnderItsName) {
+  const TransferFunction function({{0, 0, {0.1, 0.2, 0.3}}, {1.0 / 3, 4e-5, {1, 1, 1}}});
+  const std::string bare = transfer_function_to_json(function);
+  EXPECT_TRUE(same(parse_transfer_function(bare, "t"), function.points())) << bare;
+  EXPECT_TRUE(same(parse_transfer_function("{\"transfer_function\": " + bare + "}", "t"),
+                   function.points()));
+  EXPECT_TRUE(
+      same(parse_transfer_function("{\"pellucid\": 1, \"transfer_function\": " + bare + "}", "t"),
+           function.points()));
+  const auto error = [](const char* text) {
+    return error_of([&] { parse_transfer_function(text, "t.json"); });
+  };
+  EXPECT_EQ(error("{\"points\": []}"),
+            "t.json: /points: is empty; give at least one point {value, extinction, color}");
+  EXPECT_NE(error("{\"transfer_function\": {\"points\": []}}").find("/transfer_function/points: "),
+            std::string::npos);
+  EXPECT_NE(error("{\"pellucid\": 2, \"transfer_function\": {}}").find("/pellucid: is version 2"),
+            std::string::npos);
+  EXPECT_NE(error("[]").find("must be an object"), std::string::npos);
+}
+
+TEST(CameraJson, StandsAloneBareOrUnderItsName) {
+  Camera camera;
+  camera.position = {0.1, 0.2, 0.3};
+  camera.up = {0, 0, 1};
+  camera.vertical_angle = 33.3;
+  const std::string bare = camera_to_json(camera);
+  EXPECT_TRUE(same(parse_camera(bare, "c"), camera)) << bare;
+  EXPECT_TRUE(same(parse_camera("{\"camera\": " + bare + "}", "c"), camera));
+
+  camera.vertical_angle = 30;
+  camera.projection = Projection::orthographic;
+  camera.parallel_scale = 0.7;
+  EXPECT_TRUE(same(parse_camera(camera_to_json(camera), "c"), camera));
+  EXPECT_EQ(error_of([] { parse_camera("{}", "c.json"); }),
+            "c.json: /position: is missing; give the camera's place [x, y, z]");
+}
+
+TEST(FieldSource, NamesBuiltinFieldsAndFiles) {
+  EXPECT_EQ(parse_field_source("brain.nii.gz").file, "brain.nii.gz");
+  EXPECT_EQ(parse_field_source("brain.nii.gz").builtin, "");
+  EXPECT_EQ(parse_field_source("dir/builtin:x").file, "dir/builtin:x");
+  EXPECT_EQ(parse_field_source("builtin:shells").builtin, "shells");
+  EXPECT_EQ(parse_field_source("builtin:shells").points, 128);
+  EXPECT_TRUE(parse_field_source("builtin:shells").file.empty());
+  EXPECT_EQ(parse_field_source("builtin:ramp:2").points, 2);
+  EXPECT_EQ(parse_field_source("builtin:ramp:2048").points, 2048);
+  for (const char* wrong :
+       {"builtin:ramp:1", "builtin:ramp:2049", "builtin:ramp:", "builtin:ramp:x",
+        "builtin:ramp:64 ", "builtin:ramp:6.4", "builtin:ramp:99999999999", "builtin:ramp:64:64"}) {
+    const std::string error = error_of([&] { parse_field_source(wrong); });
+    EXPECT_NE(error.find("but must be an integer from 2 to 2048"), std::string::npos)
+        << wrong << ": " << error;
+  }
+  EXPECT_NE(error_of([] { parse_field_source("builtin:shels"); }).find("did you mean \"shells\"?"),
+            std::string::npos);
+  EXPECT_NE(error_of([] { parse_field_source("builtin:"); }).find("no built-in field"),
+            std::string::npos);
+  EXPECT_NE(error_of([] { parse_field_source(""); }).find("is empty"), std::string::npos);
+}
+
+TEST(MakeScene, FillsDefaults) {
+  SceneDescription description;
+  description.field = parse_field_source("builtin:sphere:17");
+  description.size = {64, 48};
+  const Scene scene = make_scene(description);
+  ASSERT_TRUE(scene.volume);
+  EXPECT_EQ(scene.volume->description().dimensions, (std::array<int, 3>{17, 17, 17}));
+  ASSERT_TRUE(scene.transfer_function);
+  EXPECT_GE(scene.transfer_function->points().size(), 2U);
+  EXPECT_EQ(scene.size.width, 64);
+  EXPECT_NO_THROW(make_camera_frame(scene.camera, scene.size));
+  EXPECT_FALSE(scene.background);
+}
+
+TEST(MakeScene, KeepsWhatIsGiven) {
+  SceneDescription description;
+  description.field = parse_field_source("builtin:ramp:3");
+  description.transfer_function = {{0.5, 2, {1, 0, 0}}};
+  description.camera = Camera{};
+  description.camera->vertical_angle = 12;
+  description.integration.method = Method::simpson;
+  description.background = Rgb<double>{1, 1, 1};
+  const Scene scene = make_scene(description);
+  EXPECT_TRUE(same(scene.transfer_function->points(), *description.transfer_function));
+  EXPECT_TRUE(same(scene.camera, *description.camera));
+  EXPECT_EQ(scene.integration.method, Method::simpson);
+  EXPECT_TRUE(same(scene.background, description.background));
+}
+
+TEST(MakeScene, SaysWhichFileIsMissing) {
+  SceneDescription description;
+  description.field = parse_field_source("/nowhere/at-all.nii.gz");
+  EXPECT_NE(error_of([&] { make_scene(description); }).find("/nowhere/at-all.nii.gz"),
+            std::string::npos);
+}
+
+}  // namespace
+}  // namespace pellucid

@@ -1,0 +1,134 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "pellucid/reference/render.h"
+#include "pellucid/scene/error.h"
+#include "tests/scenes/peers.h"
+
+namespace pellucid {
+namespace {
+
+Scene small_scene() {
+  return scenes::ray_splitting_scene(17, {13, 9}).scene;
+}
+
+/// A field with no symmetry: bright where x, y and z are near 1, red to the right, green upwards.
+Scene corner_scene(Projection projection) {
+  Volume::Description d;
+  d.dimensions = {3, 3, 3};
+  d.placement.origin = {-1, -1, -1};
+  std::vector<float> values;
+  for (int i = 0; i < 27; ++i) values.push_back(static_cast<float>((i % 3) + (i / 3) % 3) / 4);
+  Scene scene;
+  scene.volume = std::make_shared<const Volume>(d, VolumeData(values));
+  scene.transfer_function = std::make_shared<const TransferFunction>(
+      std::vector<TransferFunction::Point>{{0, 0, {1, 1, 1}}, {1, 4, {1, 1, 1}}});
+  scene.camera.projection = projection;
+  scene.camera.position = {0, 0, 6};
+  scene.camera.vertical_angle = 40;
+  scene.camera.parallel_scale = 1.5;
+  scene.size = {24, 16};
+  return scene;
+}
+
+/// The image against single rays of the camera that the fast path uses: two cameras, one picture.
+TEST(ReferenceRender, PixelsAreTheRaysOfTheCamera) {
+  for (const Projection projection : {Projection::perspective, Projection::orthographic}) {
+    Scene scene = corner_scene(projection);
+    scene.camera.position = {2.5, -3, 4};
+    scene.camera.up = {0.3, 1, 0.2};
+    RenderOptions options;
+    options.depth = true;
+    const Image image = render_reference(scene, options);
+    const CameraFrame<double> frame = make_camera_frame(scene.camera, scene.size);
+    int lit = 0;
+    for (int row = 0; row < image.height; ++row) {
+      for (int column = 0; column < image.width; ++column) {
+        const Ray<double> ray = frame.ray(column, row);
+        const ReferencePixel pixel =
+            reference_ray(*scene.volume, *scene.transfer_function, ray.origin, ray.direction);
+        EXPECT_NEAR(static_cast<double>(image.at(column, row)[0]), pixel.radiance.r, 1e-7);
+        EXPECT_NEAR(static_cast<double>(image.at(column, row)[3]), pixel.opacity, 1e-7);
+        const float depth = image.depth[static_cast<std::size_t>(row * image.width + column)];
+        if (pixel.opacity > 0) {
+          ++lit;
+          EXPECT_NEAR(static_cast<double>(depth), pixel.half_opacity_depth, 1e-6);
+        } else {
+          EXPECT_TRUE(std::isinf(depth));
+        }
+      }
+    }
+    EXPECT_GT(lit, 50);
+  }
+}
+
+TEST(ReferenceRender, TopLeftIsUpAndLeft) {
+  for (const Projection projection : {Projection::perspective, Projection::orthographic}) {
+    const Scene scene = corner_scene(projection);
+    const Image image = render_reference(scene);
+    // The field grows with x (to the right, seen from +z) and with y (up).
+    EXPECT_GT(image.at(15, 4)[3], image.at(8, 4)[3]);
+    EXPECT_GT(image.at(15, 4)[3], image.at(15, 11)[3]);
+    EXPECT_GT(image.at(8, 4)[3], image.at(8, 11)[3]);
+    // As wide as high: the box ends at the same distance to the sides as to top and bottom.
+    EXPECT_EQ(image.at(2, 4)[3], 0);
+    EXPECT_EQ(image.at(21, 4)[3], 0);
+  }
+}
+
+TEST(ReferenceRender, IsBitwiseTheSameForAnyNumberOfThreads) {
+  RenderOptions options;
+  options.depth = true;
+  options.threads = 1;
+  RenderReport report;
+  const Image one = render_reference(small_scene(), options, &report);
+  EXPECT_EQ(report.rays, 13u * 9u);
+  EXPECT_GT(report.cells, report.rays);
+  EXPECT_EQ(report.threads, 1);
+  for (const int threads : {2, 3}) {
+    options.threads = threads;
+    const Image many = render_reference(small_scene(), options);
+    EXPECT_EQ(one.pixels, many.pixels);
+    EXPECT_EQ(one.depth, many.depth);
+  }
+}
+
+TEST(ReferenceRender, ReportsProgressAndStopsWhenAsked) {
+  RenderOptions options;
+  double last = 0;
+  options.progress = [&](double done) {
+    EXPECT_GT(done, last);
+    last = done;
+    return true;
+  };
+  render_reference(small_scene(), options);
+  EXPECT_EQ(last, 1);
+  options.progress = [](double) { return false; };
+  EXPECT_THROW(render_reference(small_scene(), options), Cancelled);
+}
+
+TEST(ReferenceRender, RefusesWhatRenderRefuses) {
+  EXPECT_THROW(render_reference(Scene{}), Error);
+  Scene scene = small_scene();
+  scene.camera.focal_point = scene.camera.position;
+  EXPECT_THROW(render_reference(scene), Error);
+  scene = small_scene();
+  scene.size.width = 0;
+  EXPECT_THROW(render_reference(scene), Error);
+  RenderOptions options;
+  options.threads = -1;
+  EXPECT_THROW(render_reference(small_scene(), options), Error);
+}
+
+/// Method, precision and step are for the fast path only.
+TEST(ReferenceRender, LooksAtTheFieldAndTheCameraOnly) {
+  const Image image = render_reference(small_scene());
+  Scene other = small_scene();
+  other.integration = {Method::rectangle, Precision::float64, 7};
+  EXPECT_EQ(image.pixels, render_reference(other).pixels);
+}
+
+}  // namespace
+}  // namespace pellucid

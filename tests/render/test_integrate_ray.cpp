@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pellucid/render/integrate_ray.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "tests/render/test_grid.h"
+
+namespace pellucid {
+namespace {
+
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+
+TEST(Spans, JoinInPlaceAndValue) {
+  const TestGrid<float> grid(9);
+  double t = -1, value = 0;
+  const long cells = for_each_span<double>(grid.view(), oblique_ray(9), [&](const auto& span) {
+    if (t >= 0) {
+      EXPECT_EQ(span.t_begin, t);
+      EXPECT_NEAR(span.data.b[0], value, 1e-13);
+    }
+    EXPECT_GT(span.length(), 0);
+    t = span.t_end;
+    value = span.data.b[3];
+    return true;
+  });
+  EXPECT_GT(cells, 8);
+}
+
+TEST(Spans, EndWhereTheVisitorSaysSo) {
+  const TestGrid<float> grid(9);
+  int visits = 0;
+  EXPECT_EQ(
+      for_each_span<float>(grid.view(), oblique_ray(9), [&](const auto&) { return ++visits < 3; }),
+      3);
+}
+
+TEST(Spans, PassOverCellsWithANanCorner) {
+  TestGrid<double> grid(5);
+  grid.at(2, 2, 2) = nan;
+  // Along x through the middle of the cells j = k = 1: cells 1 and 2 touch the NaN.
+  const Ray<double> ray{{-1, 1.5, 1.5}, {1, 0, 0}};
+  std::vector<double> begins;
+  EXPECT_EQ(for_each_span<double>(grid.view(), ray,
+                                  [&](const auto& span) {
+                                    begins.push_back(span.t_begin);
+                                    return true;
+                                  }),
+            4);
+  EXPECT_EQ(begins, (std::vector<double>{1, 4}));
+}
+
+TEST(IntegrateRay, FloatAndDoubleAgreeWithinTheirTolerances) {
+  const TestGrid<float> grid(33);
+  const TestTable<float> single;
+  const TestTable<double> full;
+  const RayResult a = integrate_ray<float>(grid.view(), oblique_ray(33), single.view(), 1, false);
+  const RayResult b = integrate_ray<double>(grid.view(), oblique_ray(33), full.view(), 1, false);
+  EXPECT_GT(b.opacity, 0.5);
+  EXPECT_NEAR(a.opacity, b.opacity, 2e-5);
+  EXPECT_NEAR(a.radiance.r, b.radiance.r, 2e-5);
+  EXPECT_NEAR(a.radiance.g, b.radiance.g, 2e-5);
+  EXPECT_NEAR(a.radiance.b, b.radiance.b, 2e-5);
+}
+
+TEST(IntegrateRay, HalfOpacityDepthHalvesTheOpacity) {
+  const TestGrid<float> grid(17);
+  const TestTable<double> table;
+  Ray<double> ray = oblique_ray(17);
+  const RayResult whole = integrate_ray<double>(grid.view(), ray, table.view(), 1, true);
+  ASSERT_GT(whole.opacity, 0.2);
+  // The opacity up to a place, by a fine midpoint rule from outside in the same data.
+  double depth = 0;
+  constexpr int n = 400000;
+  const double begin = 0, step = (whole.half_opacity_depth - begin) / n;
+  for (int i = 0; i < n; ++i) {
+    const Vec3<double> p = ray.at(begin + (i + 0.5) * step);
+    if (p.x < 0 || p.y < 0 || p.z < 0 || p.x > 16 || p.y > 16 || p.z > 16) continue;
+    const int c[3] = {static_cast<int>(p.x), static_cast<int>(p.y), static_cast<int>(p.z)};
+    double v = 0;
+    for (int k = 0; k < 8; ++k) {
+      const int d[3] = {k & 1, (k >> 1) & 1, k >> 2};
+      double w = 1;
+      for (int a = 0; a < 3; ++a) w *= d[a] != 0 ? p[a] - c[a] : 1 - (p[a] - c[a]);
+      v += w * static_cast<double>(grid.data[static_cast<std::size_t>(
+                   c[0] + d[0] + 17 * (c[1] + d[1] + 17 * (c[2] + d[2])))]);
+    }
+    depth += table.view().evaluate(v).extinction * step;
+  }
+  EXPECT_NEAR(1 - std::exp(-depth), 0.5 * whole.opacity, 1e-4);
+}
+
+TEST(IntegrateRay, ARayThatMissesIsClear) {
+  const TestGrid<float> grid(5);
+  const TestTable<float> table;
+  const RayResult r =
+      integrate_ray<float>(grid.view(), {{100, 0, 0}, {0, 0, 1}}, table.view(), 1, true);
+  EXPECT_EQ(r.opacity, 0);
+  EXPECT_EQ(r.cells, 0);
+  EXPECT_TRUE(std::isinf(r.half_opacity_depth));
+}
+
+TEST(IntegrateRay, WorldLengthIsTheParameterNotTheGridLength) {
+  // The same ray with half the direction in the grid: cells twice as long in the world.
+  TestGrid<float> grid(3);
+  for (float& v : grid.data) v = 0.45f;
+  const TestTable<double> table;
+  const double extinction = table.view().evaluate(static_cast<double>(0.45f)).extinction;
+  const RayResult r =
+      integrate_ray<double>(grid.view(), {{-1, 1, 1}, {0.5, 0, 0}}, table.view(), 1, false);
+  EXPECT_NEAR(r.optical_depth, 4 * extinction, 1e-14);
+}
+
+}  // namespace
+}  // namespace pellucid

@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tests/scenes/compare.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <tuple>
+
+#include "pellucid/cpu/render.h"
+#include "pellucid/reference/render.h"
+#include "pellucid/render/integrate_ray.h"
+#include "tests/scenes/difference.h"
+#include "tests/support/accuracy.h"
+
+namespace pellucid::scenes {
+namespace {
+
+/// Every seventh pixel's ray in double from end to end.
+void expect_exact_rays(const NamedScene& named) {
+  const Scene& scene = named.scene;
+  const CameraFrame<double> camera = make_camera_frame(scene.camera, scene.size);
+  test::ErrorRecord light(named.name + ", rays", ""), depth("  half-opacity depth", "");
+  for (int pixel = 3; pixel < scene.size.width * scene.size.height; pixel += 7) {
+    const Ray<double> ray = camera.ray(pixel % scene.size.width, pixel / scene.size.width);
+    const ReferencePixel truth =
+        reference_ray(*scene.volume, *scene.transfer_function, ray.origin, ray.direction);
+    const RayResult result = scene.volume->visit([&](const auto& grid) {
+      return integrate_ray<double>(grid, scene.volume->grid_from_world().ray(ray),
+                                   scene.transfer_function->view<double>(),
+                                   scene.transfer_function->largest_color(), true);
+    });
+    const std::string where = "pixel " + std::to_string(pixel);
+    const Rgb<double> off = result.radiance - truth.radiance;
+    for (const double error : {off.r, off.g, off.b, result.opacity - truth.opacity}) {
+      light.add(std::fabs(error), where);
+    }
+    if (truth.opacity > 0.01) {
+      depth.add(std::fabs(result.half_opacity_depth - truth.half_opacity_depth), where);
+    }
+  }
+  light.print();
+  depth.print();
+  EXPECT_LE(light.largest(), ray_bound) << named.name;
+  // Bisection inside of a cell, 24 times (pellucid/render/integrate_ray.h); all grids here are
+  // uniform.
+  const double cell_diagonal = length(scene.volume->description().placement.spacing);
+  EXPECT_LE(depth.largest(), cell_diagonal * 0x1p-23L) << named.name;
+}
+
+}  // namespace
+
+void expect_exact(const NamedScene& named) {
+  RenderOptions options;
+  options.depth = true;
+  Scene scene = named.scene;
+  RenderReport reference_report;
+  const Image reference = render_reference(scene, options, &reference_report);
+  float most = 0;
+  for (const auto& pixel : reference.pixels) most = std::max(most, pixel[3]);
+  EXPECT_GT(most, 0.01f) << named.name << ": there is nothing to see, so nothing is tested";
+
+  for (const auto& [precision, label, bound] :
+       {std::tuple{Precision::float64, "double", double_bound},
+        std::tuple{Precision::float32, "float", float_bound}}) {
+    scene.integration = {Method::exact, precision, 1};
+    RenderReport report;
+    const Image image = render(scene, options, &report);
+    const Difference error = difference(image, reference);
+    std::printf("[ accuracy ] %-48s %-6s %s; %.2f s, reference %.2f s\n", named.name.c_str(), label,
+                error.text().c_str(), report.seconds, reference_report.seconds);
+    EXPECT_LE(error.largest, bound) << named.name << ", " << label << ": " << error.text();
+  }
+  expect_exact_rays(named);
+}
+
+}  // namespace pellucid::scenes

@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+
+#include "tests/scenes/peers.h"
+
+namespace pellucid::scenes {
+
+/// A scan with a transfer function that has broad ramps and a feature of a few data values' width.
+struct RealData {
+  std::string name;
+  std::filesystem::path file;
+  std::vector<TransferFunction::Point> points;
+};
+
+/// brain (Debian's mricron-data), engine, bonsai, stent (the data folder beside the sources).
+std::vector<RealData> real_data();
+
+/// Reads the file and shows it from outside (perspective), along an axis (parallel) and from
+/// within. Throws Error where the file cannot be read.
+std::vector<NamedScene> real_scenes(const RealData& data, ImageSize size);
+
+}  // namespace pellucid::scenes
