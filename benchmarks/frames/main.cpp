@@ -14,7 +14,7 @@
 namespace {
 
 struct Arguments {
-  int size = 120;
+  int size = 144;
   pellucid::bench::SceneSelection selection;
   pellucid::bench::MeasureOptions measure;
   std::string markdown, section = "frames", json, commit;

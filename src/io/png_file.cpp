@@ -54,15 +54,22 @@ struct PngContent {
   int texts;
 };
 
+// What libpng says where it fails.
+struct Failure {
+  char text[128] = "not enough memory";
+};
+
 // libpng's own handler prints; and a handler may not return.
-[[noreturn]] void leave(png_structp png, png_const_charp) {
+[[noreturn]] void leave(png_structp png, png_const_charp message) {
+  Failure& failure = *static_cast<Failure*>(png_get_error_ptr(png));
+  std::snprintf(failure.text, sizeof(failure.text), "%s", message);
   png_longjmp(png, 1);
 }
 void ignore(png_structp, png_const_charp) {}
 
 // libpng leaves by longjmp where it fails, so nothing in here may need a destructor.
-bool write_with_libpng(std::FILE* file, const PngContent& content) {
-  png_structp png = png_create_write_struct(PNG_LIBPNG_VER_STRING, nullptr, leave, ignore);
+bool write_with_libpng(std::FILE* file, const PngContent& content, Failure& failure) {
+  png_structp png = png_create_write_struct(PNG_LIBPNG_VER_STRING, &failure, leave, ignore);
   if (png == nullptr) return false;
   png_infop info = png_create_info_struct(png);
   if (info == nullptr || setjmp(png_jmpbuf(png)) != 0) {
@@ -87,6 +94,10 @@ void write_png(const Image& image, const std::filesystem::path& path,
                const std::optional<Rgb<double>>& background) {
   check_image(image, path);
   check_finite(image, path);
+  if (background && !(std::isfinite(background->r) && std::isfinite(background->g) &&
+                      std::isfinite(background->b))) {
+    throw Error(path.string() + ": cannot write: the background is not a finite color");
+  }
   AtomicFile file(path);
   const std::size_t width = static_cast<std::size_t>(image.width);
   const std::size_t height = static_cast<std::size_t>(image.height);
@@ -113,15 +124,18 @@ void write_png(const Image& image, const std::filesystem::path& path,
     text.push_back(entry);
   }
 
+  Failure failure;
   std::FILE* stream = std::fopen(file.temporary_path().c_str(), "wb");
-  const bool written =
-      stream != nullptr &&
-      write_with_libpng(
-          stream, {static_cast<png_uint_32>(image.width), static_cast<png_uint_32>(image.height),
-                   background ? PNG_COLOR_TYPE_RGB : PNG_COLOR_TYPE_RGB_ALPHA, rows.data(),
-                   text.data(), static_cast<int>(text.size())});
-  const bool closed = stream != nullptr && std::fclose(stream) == 0;
-  if (!written || !closed) throw Error(path.string() + ": cannot write: is the disk full?");
+  if (stream == nullptr) throw Error(path.string() + ": cannot write the file");
+  const bool written = write_with_libpng(
+      stream,
+      {static_cast<png_uint_32>(image.width), static_cast<png_uint_32>(image.height),
+       background ? PNG_COLOR_TYPE_RGB : PNG_COLOR_TYPE_RGB_ALPHA, rows.data(), text.data(),
+       static_cast<int>(text.size())},
+      failure);
+  const bool closed = std::fclose(stream) == 0;
+  if (!written) throw Error(path.string() + ": cannot write: " + failure.text);
+  if (!closed) throw Error(path.string() + ": cannot write: is the disk full?");
   file.commit();
 }
 

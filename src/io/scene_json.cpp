@@ -181,8 +181,7 @@ Camera camera_from(const Node& node, ImageSize size) {
                             : "makes no sense in an orthographic camera; give \"parallel_scale\"");
   }
   if (const auto angle = node.find("vertical_angle")) {
-    camera.vertical_angle = angle->positive_number(180);
-    if (camera.vertical_angle == 180) angle->fail("is 180, but must be below 180 degrees");
+    camera.vertical_angle = angle->number_between(0, 180);
   }
   if (!perspective) {
     camera.parallel_scale =

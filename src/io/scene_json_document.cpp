@@ -279,6 +279,15 @@ double Node::positive_number(double upper) const {
   return value;
 }
 
+double Node::number_between(double lower, double upper) const {
+  const double value = number(-largest_number, largest_number);
+  if (!(value > lower && value < upper)) {
+    fail("is " + found() + ", but must be above " + number_text(lower) + " and below " +
+         number_text(upper));
+  }
+  return value;
+}
+
 long long Node::integer(long long lower, long long upper) const {
   if (!value_->is_number() || value_->get<double>() != std::floor(value_->get<double>())) {
     fail("must be an integer, but is " + found());

@@ -19,8 +19,8 @@ constexpr double largest_number = 1e30;
 /// levels of nesting, no number beyond double's range. Throws Error with line and column.
 nlohmann::json parse_document(std::string_view text, const std::string& name);
 
-/// Text from a file as it may stand in a one-line message: control characters and bytes that are
-/// not ASCII escaped, long text cut.
+/// Text from a file as it may stand in a one-line message: control characters escaped, long text
+/// cut.
 std::string printable(std::string_view text);
 
 /// " (did you mean "x"?)" where a known word differs by a slip or two, else nothing.
@@ -53,6 +53,8 @@ class Node {
   double number(double lower = -largest_number, double upper = largest_number) const;
   /// Fails unless this is a number in (0, upper].
   double positive_number(double upper = largest_number) const;
+  /// Fails unless this is a number in (lower, upper).
+  double number_between(double lower, double upper) const;
   /// Fails unless this is a number without a fraction (2 or 2.0) in [lower, upper].
   long long integer(long long lower, long long upper) const;
   const std::string& string() const;

@@ -2,6 +2,7 @@
 #include "pellucid/reference/render.h"
 
 #include <tbb/blocked_range.h>
+#include <tbb/global_control.h>
 #include <tbb/info.h>
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
@@ -10,6 +11,7 @@
 #include <atomic>
 #include <chrono>
 #include <mutex>
+#include <optional>
 
 #include "camera.h"
 #include "pellucid/scene/error.h"
@@ -65,6 +67,12 @@ Image render_reference(const Scene& scene, const RenderOptions& options, RenderR
   int rows_done = 0;
   bool cancelled = false;
   tbb::task_group_context context;
+  // More threads than cores have to be allowed, or TBB prints a warning and makes do with fewer.
+  std::optional<tbb::global_control> more_threads_than_cores;
+  if (local.threads > tbb::info::default_concurrency()) {
+    more_threads_than_cores.emplace(tbb::global_control::max_allowed_parallelism,
+                                    static_cast<std::size_t>(local.threads));
+  }
   tbb::task_arena(local.threads).execute([&] {
     tbb::parallel_for(
         tbb::blocked_range<int>(0, image.height, 1),

@@ -47,8 +47,8 @@ double shells(double x, double y, double z) {
     double radius, value;
     Vec3<double> opening;  ///< towards the middle of the opening, length 1
   };
-  // The openings turn by a quarter from shell to shell around the body diagonal's neighbours, so
-  // that from most directions one looks through two of them at once.
+  // All are open in front, turned against each other, so that the default camera looks into the
+  // nest past their rims.
   static constexpr Shell shell[] = {{0.9, 0.25, {0.48, -0.80, 0.36}},
                                     {0.7, 0.50, {0.80, -0.36, 0.48}},
                                     {0.5, 0.75, {0.36, -0.80, 0.48}},

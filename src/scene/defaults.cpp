@@ -5,14 +5,18 @@
 #include <array>
 #include <charconv>
 #include <cmath>
-#include <cstdint>
+#include <cstddef>
 #include <numbers>
+#include <utility>
 #include <vector>
 
 namespace pellucid {
 namespace {
 
 using Point = TransferFunction::Point;
+
+/// Transfer functions and scene files hold numbers up to this.
+constexpr double largest_number = 1e30;
 
 /// Up to 2^18 finite values, ascending: a quarter of a million puts a quantile within 0.1 %, and
 /// sorts in milliseconds. Taken at the fractional parts of n/golden ratio, which are even at every
@@ -24,7 +28,8 @@ std::vector<double> sorted_sample(const Volume& volume) {
       [&](const auto& data) {
         const auto take = [&](std::size_t index) {
           const auto value = static_cast<double>(data[index]);
-          if (std::isfinite(value)) sample.push_back(value);
+          if (!std::isnan(value))
+            sample.push_back(std::clamp(value, -largest_number, largest_number));
         };
         if (data.size() <= largest) {
           for (std::size_t i = 0; i < data.size(); ++i) take(i);
@@ -38,29 +43,66 @@ std::vector<double> sorted_sample(const Volume& volume) {
       },
       volume.data());
   std::sort(sample.begin(), sample.end());
+  if (sample.empty()) return sample;
+  // A few wild values (spikes, fill values) would take all of the range for themselves. What is
+  // left of rarer data than that is kept: a thin vessel in a large box.
+  const std::size_t tail = sample.size() / 1000;
+  const double lower = sample[tail], upper = sample[sample.size() - 1 - tail];
+  if (lower < upper) {
+    for (double& value : sample) value = std::clamp(value, lower, upper);
+  }
   return sample;
 }
 
-/// Otsu 1979 on the sorted values [first, last) themselves, without bins: the index at which the
-/// second of two classes begins, so that the variance between their means is largest. A class
-/// begins at a new value; last where all values are equal.
-std::size_t otsu_split(const std::vector<double>& v, std::size_t first, std::size_t last) {
-  double total = 0;
-  for (std::size_t i = first; i < last; ++i) total += v[i] - v[first];
-  double below = 0, best = 0;
-  std::size_t split = last;
-  for (std::size_t i = first + 1; i < last; ++i) {
-    below += v[i - 1] - v[first];
-    if (v[i] == v[i - 1]) continue;
-    const auto n = static_cast<double>(i - first), m = static_cast<double>(last - i);
-    const double difference = (total - below) / m - below / n;
-    const double between = n * m * difference * difference;
-    if (between > best) {
-      best = between;
-      split = i;
+/// Three classes of the sorted values: [0, foreground), [foreground, bright), [bright, n).
+struct Classes {
+  std::size_t foreground = 0, bright = 0;
+};
+
+/// Otsu 1979 with three classes: the sum of squared distances to the classes' means is smallest.
+/// (Two splits into two, one after the other, would first tell bone from the rest and never find
+/// air.) A class begins at a new value. The thresholds tried are spread evenly over the range and
+/// over the ranks, 256 in all. With two values only, the bright class is empty.
+Classes otsu_classes(const std::vector<double>& v) {
+  const std::size_t n = v.size();
+  const double range = v.back() - v.front();
+  std::vector<double> sum(n + 1, 0);
+  for (std::size_t i = 0; i < n; ++i) sum[i + 1] = sum[i] + (v[i] - v.front()) / range;
+
+  std::vector<std::size_t> starts;
+  const auto add = [&](double threshold) {
+    const auto start = std::lower_bound(v.begin(), v.end(), threshold) - v.begin();
+    if (start > 0 && v[static_cast<std::size_t>(start)] > v.front()) {
+      starts.push_back(static_cast<std::size_t>(start));
+    }
+  };
+  constexpr std::size_t count = 128;
+  for (std::size_t i = 1; i < count; ++i) {
+    add(v.front() + range * (static_cast<double>(i) / count));
+    add(v[n * i / count]);
+  }
+  add(v.back());
+  std::sort(starts.begin(), starts.end());
+  starts.erase(std::unique(starts.begin(), starts.end()), starts.end());
+
+  // Within-class squares are all squares less this, summed over the classes.
+  const auto between = [&](std::size_t first, std::size_t last) {
+    const double s = sum[last] - sum[first];
+    return s * s / static_cast<double>(last - first);
+  };
+  Classes best{starts[0], n};
+  double largest = 0;
+  for (std::size_t i = 0; i < starts.size(); ++i) {
+    for (std::size_t j = i + 1; j < starts.size(); ++j) {
+      const double score =
+          between(0, starts[i]) + between(starts[i], starts[j]) + between(starts[j], n);
+      if (score > largest) {
+        largest = score;
+        best = {starts[i], starts[j]};
+      }
     }
   }
-  return split;
+  return best;
 }
 
 double mean(const std::vector<double>& v, std::size_t first, std::size_t last) {
@@ -99,44 +141,64 @@ double mean_chord(const Volume& volume) {
   return 4 * std::abs(dot(a, cross(b, c))) / surface;
 }
 
+/// Points in ascending order at readable values, which may not fall together.
+class PointList {
+ public:
+  explicit PointList(double range) : range_(range) {}
+
+  /// Where the rounded value falls on the point before, it keeps more digits.
+  void add(double value, double extinction, Rgb<double> color) {
+    for (double range = range_; range > range_ * 1e-18; range /= 10) {
+      const double near = readable(value, range);
+      if (points_.empty() || near > points_.back().value) {
+        points_.push_back({near, extinction, color});
+        return;
+      }
+    }
+  }
+  std::vector<Point> take() { return std::move(points_); }
+
+ private:
+  double range_;
+  std::vector<Point> points_;
+};
+
 }  // namespace
 
 TransferFunction default_transfer_function(const Volume& volume) {
   const double chord = mean_chord(volume);
   const std::vector<double> v = sorted_sample(volume);
-  if (v.empty() || v.front() == v.back()) {
-    // Nothing to tell apart: a haze in which the box itself is seen.
-    return TransferFunction({{v.empty() ? 0 : v.front(), two_digits(1 / chord), {0.8, 0.5, 0.25}}});
-  }
   const std::size_t n = v.size();
-  const std::size_t foreground = otsu_split(v, 0, n);
-  const std::size_t bright = otsu_split(v, foreground, n);
-  const auto share = [&](std::size_t first) {
-    return static_cast<double>(n - first) / static_cast<double>(n);
-  };
+
+  // The extinction that gives a typical path through all values from index `first` on the optical
+  // depth: what fills a share s of the box is taken for a body of the box's shape, ∛s times as
+  // wide.
   const auto extinction = [&](double depth, std::size_t first) {
-    return two_digits(depth / (std::cbrt(share(first)) * chord));
+    const double share = static_cast<double>(n - first) / static_cast<double>(n);
+    const double e = depth / (std::cbrt(share) * chord);
+    return std::isfinite(e) ? two_digits(std::clamp(e, 1 / largest_number, largest_number)) : 1;
   };
-  const double top = v[n - 1 - n / 1000];
-  const double range = std::max(top - v[n / 1000], 1e-30);
-  std::vector<Point> points;
-  const auto add = [&](double value, double e, Rgb<double> color) {
-    const double rounded = readable(value, range);
-    if (!points.empty() && rounded <= points.back().value) return;
-    points.push_back({rounded, e, color});
-  };
-  const double background_mean = mean(v, 0, foreground);
-  const double threshold = (v[foreground - 1] + v[foreground]) / 2;
-  add((background_mean + threshold) / 2, 0, {0.25, 0.04, 0.01});
-  add(threshold, extinction(0.8, foreground), {0.35, 0.08, 0.02});
+  // Dark low values draw an outline where a ray grazes a surface; bright high values shine through.
+  constexpr Rgb<double> faint{0.1, 0.012, 0.008}, dark{0.16, 0.02, 0.012}, red{0.45, 0.1, 0.04},
+      orange{0.95, 0.5, 0.2}, white{1, 0.95, 0.82};
+
+  if (n == 0) return TransferFunction({{0, 0, orange}});
+  if (v.front() == v.back()) return TransferFunction({{v.front(), extinction(1, 0), orange}});
+
+  const Classes classes = otsu_classes(v);
+  const std::size_t foreground = classes.foreground, bright = classes.bright;
+  const double threshold = v[foreground - 1] / 2 + v[foreground] / 2;
+  PointList points(v.back() - v.front());
+  points.add(mean(v, 0, foreground) / 2 + threshold / 2, 0, faint);
+  points.add(threshold, extinction(0.5, foreground), dark);
   if (bright < n) {
-    add(mean(v, foreground, bright), extinction(1.6, foreground), {0.85, 0.36, 0.12});
-    add(v[bright], extinction(4, bright), {1.0, 0.7, 0.35});
-    add(top, extinction(10, bright), {1.0, 0.96, 0.88});
+    points.add(mean(v, foreground, bright), extinction(0.8, foreground), red);
+    points.add(v[bright], extinction(1.6, bright), orange);
+    points.add(v.back(), extinction(5, bright), white);
   } else {
-    add(v[foreground], extinction(6, foreground), {1.0, 0.7, 0.35});
+    points.add(v[foreground], extinction(1.6, foreground), orange);
   }
-  return TransferFunction(std::move(points));
+  return TransferFunction(points.take());
 }
 
 Camera default_camera(const Volume& volume, ImageSize size) {

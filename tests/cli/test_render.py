@@ -300,7 +300,7 @@ class Terminal(ProgramTest):
         process, master = self.start("render", "builtin:shells:8", "-o", "a.png", "--size", "64")
         seen = self.read_until(master, b"\n").decode()
         self.assertEqual(process.wait(60), 0)
-        self.assertIn("rendering 100 %", seen)
+        self.assertRegex(seen, r"\rrendering [ 0-9]{3} %")
         self.assertIn("\r\x1b[K", seen)
         self.assertNotIn("\n", seen[:seen.rindex("\r\x1b[K")])
 

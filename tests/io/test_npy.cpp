@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <cstdint>
 #include <limits>
+#include <span>
 #include <string>
 #include <type_traits>
 #include <vector>
@@ -33,8 +34,8 @@ std::string npy(const std::string& header, const std::string& values, char versi
 }
 
 Volume parse(const std::string& file, const ReadOptions& options = {}) {
-  std::vector<std::byte> bytes(file.size());
-  std::memcpy(bytes.data(), file.data(), file.size());
+  const std::span<const std::byte> view = std::as_bytes(std::span(file));
+  const std::vector<std::byte> bytes(view.begin(), view.end());
   return parse_npy(bytes, "a.npy", options);
 }
 

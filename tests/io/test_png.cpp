@@ -141,6 +141,21 @@ TEST_F(PngTest, RefusesNanAndInfinityAndSaysWhere) {
   EXPECT_TRUE(files().empty());
 }
 
+TEST_F(PngTest, RefusesABackgroundThatIsNoColor) {
+  const Rgb<double> background{0, std::numeric_limits<double>::quiet_NaN(), 0};
+  const Image image = image_of(1, 1, {{}});
+  EXPECT_TRUE(
+      contains(error_of([&] { write_png(image, path("a.png"), background); }), "background"));
+  EXPECT_TRUE(files().empty());
+}
+
+TEST_F(PngTest, RefusesAKeyThatPngCannotHold) {
+  Image image = image_of(1, 1, {{}});
+  image.metadata[""] = "value";
+  EXPECT_TRUE(contains(error_of([&] { write_png(image, path("a.png")); }), "keyword"));
+  EXPECT_TRUE(files().empty());
+}
+
 TEST_F(PngTest, RefusesImagesThatDoNotAgreeWithTheirSize) {
   const Image missing = image_of(2, 2, {{}, {}, {}});
   EXPECT_TRUE(contains(error_of([&] { write_png(missing, path("a.png")); }), "3 pixels"));

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <cstdint>
 #include <limits>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -23,8 +24,8 @@ ReadOptions raw(const std::string& type, std::array<int, 3> dimensions = {5, 4, 
 }
 
 Volume parse(const std::string& file, const ReadOptions& options) {
-  std::vector<std::byte> bytes(file.size());
-  std::memcpy(bytes.data(), file.data(), file.size());
+  const std::span<const std::byte> view = std::as_bytes(std::span(file));
+  const std::vector<std::byte> bytes(view.begin(), view.end());
   return parse_raw(bytes, "a.raw", options);
 }
 

@@ -166,6 +166,21 @@ TEST(SceneJson, ReadsWhatIsWritten) {
   EXPECT_EQ(raw.integration.precision, Precision::float32);
 }
 
+TEST(SceneJson, ExamplesAndTheDocumentedSceneAreValid) {
+  const std::filesystem::path source = PELLUCID_SOURCE_DIR;
+  int examples = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(source / "examples")) {
+    if (entry.path().extension() != ".json") continue;
+    ++examples;
+    EXPECT_EQ(error_of([&] { parse_scene(read(entry.path()), entry.path().string()); }), "");
+  }
+  EXPECT_GE(examples, 4);
+  const std::string page = read(source / "docs" / "scene.md");
+  const std::size_t begin = page.find("```json\n") + 8, end = page.find("```", begin);
+  ASSERT_NE(end, std::string::npos);
+  EXPECT_EQ(error_of([&] { parse_scene(page.substr(begin, end - begin), "docs/scene.md"); }), "");
+}
+
 TEST(SceneJson, AbsoluteFilesStayAndRelativeOnesStartAtTheFolder) {
   const auto file = [](const char* path, const char* folder) {
     return parse_scene("{\"volumes\": [{\"field\": {\"file\": \"" + std::string(path) + "\"}}]}",

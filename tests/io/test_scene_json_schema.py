@@ -51,7 +51,7 @@ def main():
     failures = [f"no description: {path}" for path in described_everywhere(schema)]
 
     scenes = source / "tests" / "io" / "scenes"
-    for path in sorted((scenes / "valid").glob("*.json")):
+    for path in sorted([*(scenes / "valid").glob("*.json"), *(source / "examples").glob("*.json")]):
         for error in validator.iter_errors(load(path.read_text(encoding="utf-8"))):
             failures.append(f"{path.name}: valid, but the schema says: {error.message}")
 

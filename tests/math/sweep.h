@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <cstdlib>
 #include <limits>
 #include <random>
 #include <string>
@@ -12,6 +14,13 @@
 #include "tests/support/wide_functions.h"
 
 namespace pellucid::test {
+
+/// How many times as many arguments as usual: the environment variable PELLUCID_SWEEP, 1 without.
+/// The bounds hold for any; docs/accuracy.md quotes 10.
+inline int sweep_density() {
+  const char* text = std::getenv("PELLUCID_SWEEP");
+  return text == nullptr ? 1 : std::max(1, std::atoi(text));
+}
 
 /// Arguments over [lo, hi]: evenly spread, and spread over all binades down to the smallest normal
 /// number on the sides that lo and hi allow; the ends; and the neighbourhood of every seam, where a
@@ -24,7 +33,7 @@ std::vector<T> arguments(T lo, T hi, const std::vector<T>& seams, int count) {
   const double largest =
       std::max(std::fabs(static_cast<double>(lo)), std::fabs(static_cast<double>(hi)));
   const double smallest = static_cast<double>(std::numeric_limits<T>::min());
-  for (int i = 0; i < count; ++i) {
+  for (int i = 0; i < count * sweep_density(); ++i) {
     all.push_back(
         static_cast<T>(static_cast<double>(lo) +
                        (static_cast<double>(hi) - static_cast<double>(lo)) * unit(random)));
@@ -51,7 +60,7 @@ std::vector<T> arguments(T lo, T hi, const std::vector<T>& seams, int count) {
 template <class T>
 std::string at(T x) {
   char text[64];
-  std::snprintf(text, sizeof text, "x = %.17g", static_cast<double>(x));
+  std::snprintf(text, sizeof text, "%.17g", static_cast<double>(x));
   return text;
 }
 

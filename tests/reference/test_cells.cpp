@@ -24,7 +24,7 @@ ReferencePixel integrate_cell(const Chord& chord, const Points& points, Real len
 }
 
 Real3 triple(const std::vector<double>& v) {
-  return {v.at(0), v.at(1), v.at(2)};
+  return {Real(v.at(0)), Real(v.at(1)), Real(v.at(2))};
 }
 
 /// Against 40-digit values made by other means (tests/reference_tables).

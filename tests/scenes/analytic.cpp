@@ -68,7 +68,7 @@ void expect_rising(AnalyticRay& ray, double k, double length, double t_front) {
 void expect_falling(AnalyticRay& ray, double k, double length) {
   const double m = k * length * length / 2, x = std::sqrt(m);
   ray.opacity = -std::expm1(-m);
-  long double sum = 0, power = x;
+  long double sum = 0, power = static_cast<long double>(x);
   for (int n = 0; n < 400; ++n) {
     sum += power / (2 * n + 1);
     power *= static_cast<long double>(m) / (n + 1);
@@ -354,6 +354,53 @@ void add_curved(std::vector<AnalyticRay>& rays) {
   rays.push_back(ray);
 }
 
+/// A ball of constant extinction: x² + y² + z² < 9 behind a jump. Trilinear interpolation of a sum
+/// of functions of one coordinate each is the sum of their interpolations, so that along an edge of
+/// the grid the ray meets the true sphere where a grid point lies on it: 9 = 3² = 2² + 2² + 1².
+void add_sphere(std::vector<AnalyticRay>& rays) {
+  const Rgb<double> color{0.25, 1, 0.5};
+  AnalyticRay ray{"",
+                  make<std::int32_t>(grid({11, 11, 11}, {-5, -5, -5}),
+                                     [](int i, int j, int k) {
+                                       const int x = i - 5, y = j - 5, z = k - 5;
+                                       return x * x + y * y + z * z;
+                                     }),
+                  transfer({{9, 0.4, color}, {9, 0, color}}),
+                  {},
+                  {},
+                  {},
+                  0,
+                  0};
+  ray.name = "a sphere through its centre";
+  ray.origin = {-7, 0, 0};
+  ray.direction = {1, 0, 0};
+  expect_slab(ray, 0.4, 6, color, 4);
+  rays.push_back(ray);
+
+  ray.name = "a sphere off its centre";
+  ray.origin = {2, 8, -1};
+  ray.direction = {0, -1, 0};
+  expect_slab(ray, 0.4, 4, color, 6);
+  rays.push_back(ray);
+
+  ray.name = "a sphere near its rim";
+  ray.origin = {-2, 2, -6};
+  ray.direction = {0, 0, 1};
+  expect_slab(ray, 0.4, 2, color, 5);
+  rays.push_back(ray);
+
+  ray.name = "a sphere from within";
+  ray.origin = {0.5, 2, 1};
+  ray.direction = {1, 0, 0};
+  expect_slab(ray, 0.4, 1.5, color, 0);
+  rays.push_back(ray);
+
+  ray.name = "past a sphere";
+  ray.origin = {-7, 3, 1};
+  expect_slab(ray, 0.4, 0, color, 0);
+  rays.push_back(ray);
+}
+
 void add_vacuum(std::vector<AnalyticRay>& rays) {
   const Rgb<double> color{0.25, 0.5, 1};
   AnalyticRay ray{"a NaN makes the cells around it vacuum",
@@ -401,6 +448,7 @@ std::vector<AnalyticRay> analytic_rays() {
   add_ramps(rays);
   add_cell_centred(rays);
   add_curved(rays);
+  add_sphere(rays);
   add_vacuum(rays);
   add_type<std::uint8_t>(rays, "u8");
   add_type<std::int8_t>(rays, "i8");

@@ -34,10 +34,11 @@ void expect_exact_rays(const NamedScene& named) {
     const std::string where = "pixel " + std::to_string(pixel);
     const Rgb<double> off = result.radiance - truth.radiance;
     for (const double error : {off.r, off.g, off.b, result.opacity - truth.opacity}) {
-      light.add(std::fabs(error), where);
+      light.add(std::fabs(static_cast<long double>(error)), where);
     }
     if (truth.opacity > 0.01) {
-      depth.add(std::fabs(result.half_opacity_depth - truth.half_opacity_depth), where);
+      const double off_depth = result.half_opacity_depth - truth.half_opacity_depth;
+      depth.add(std::fabs(static_cast<long double>(off_depth)), where);
     }
   }
   light.print();
@@ -45,7 +46,8 @@ void expect_exact_rays(const NamedScene& named) {
   EXPECT_LE(light.largest(), ray_bound) << named.name;
   // Bisection inside of a cell, 24 times (pellucid/render/integrate_ray.h); all grids here are
   // uniform.
-  const double cell_diagonal = length(scene.volume->description().placement.spacing);
+  const long double cell_diagonal =
+      static_cast<long double>(length(scene.volume->description().placement.spacing));
   EXPECT_LE(depth.largest(), cell_diagonal * 0x1p-23L) << named.name;
 }
 

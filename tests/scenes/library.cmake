@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # The scenes that tests and benchmarks share; included where they are needed.
 include_guard(GLOBAL)
 find_package(Boost REQUIRED)

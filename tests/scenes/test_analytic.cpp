@@ -28,7 +28,8 @@ void expect_known_pixels(Precision precision, const Bounds& bounds) {
     const auto& pixel = image.at(0, 0);
     const double truth[4] = {ray.radiance.r, ray.radiance.g, ray.radiance.b, ray.opacity};
     for (std::size_t c = 0; c < 4; ++c) {
-      light.add(std::fabs(static_cast<double>(pixel[c]) - truth[c]), ray.name + ", " + "RGBA"[c]);
+      light.add(std::fabs(static_cast<long double>(pixel[c]) - static_cast<long double>(truth[c])),
+                ray.name + ", " + "RGBA"[c]);
       // What is clear is exactly clear.
       if (truth[c] == 0) {
         EXPECT_EQ(pixel[c], 0.0f) << ray.name;
@@ -37,7 +38,8 @@ void expect_known_pixels(Precision precision, const Bounds& bounds) {
     if (std::isnan(ray.half_opacity_depth)) continue;
     const auto found = static_cast<double>(image.depth[0]);
     const bool same = found == ray.half_opacity_depth;  // Both infinite, too.
-    depth.add(same ? 0 : std::fabs(found - ray.half_opacity_depth), ray.name);
+    depth.add(same ? 0 : std::fabs(static_cast<long double>(found - ray.half_opacity_depth)),
+              ray.name);
   }
   light.print();
   depth.print();

@@ -110,6 +110,13 @@ OwnedTable<T> random_transfer(std::mt19937_64& random, bool jumps) {
   OwnedTable<T> table;
   const int points = std::uniform_int_distribution<int>(1, 9)(random);
   const double scale = std::pow(10.0, -4 + 7 * unit(random));
+  if (unit(random) < 0.4) {  // one interval over all of the data: pieces are far from linear
+    const bool rising = unit(random) < 0.5;
+    const double least = unit(random) < 0.5 ? 0 : scale * std::pow(10.0, -3 * unit(random));
+    table.add(0, rising ? least : scale, 0, 1, 1);
+    table.add(1, rising ? scale : least, 1, 0, 1);
+    return table;
+  }
   double x = unit(random) * 0.3;
   for (int i = 0; i < points; ++i) {
     if (i > 0) {
@@ -129,7 +136,10 @@ CubicBernstein<T> random_data(std::mt19937_64& random, int kind) {
   std::uniform_real_distribution<double> unit(0, 1);
   double b[4];
   for (double& x : b) x = unit(random);
-  if (kind % 5 == 1) {  // small variation: one interval, mostly
+  if (kind % 6 == 5) {  // Chebyshev's T3: twice from one end of [0,1] to the other and back
+    b[0] = 0, b[1] = 3, b[2] = -2, b[3] = 1;
+    for (double& y : b) y = 0.001 + 0.998 * y;
+  } else if (kind % 5 == 1) {  // small variation: one interval, mostly
     for (double& x : b) x = b[0] + 0.01 * (x - 0.5);
   } else if (kind % 5 == 2) {  // a line
     b[1] = (2 * b[0] + b[3]) / 3;

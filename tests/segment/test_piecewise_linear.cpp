@@ -73,7 +73,8 @@ TYPED_TEST(PiecewiseLinearSegment, RandomTablesBothWays) {
     double x = 0;
     for (int i = 0; i < 16; ++i) {
       if (i > 0 && unit(random) > 0.2) x += std::pow(10.0, -3 * unit(random));  // else a jump
-      if (i > 1 && transfer.value[i - 2] == static_cast<T>(x)) x += 0.25;       // no triple point
+      if (i > 1 && transfer.value[static_cast<std::size_t>(i - 2)] == static_cast<T>(x))
+        x += 0.25;  // no triple point
       transfer.add(x, unit(random) < 0.2 ? 0 : scale * unit(random), unit(random), 1, 0);
     }
     const T last = transfer.value.back();

@@ -14,9 +14,8 @@ namespace pellucid {
 ///     Σ_k B_jk p(u_k) = ∫ p over [0, u_j] for polynomials p of degree < N.
 ///
 /// With rates r_k at the nodes, Σ_k B_jk r_k is the optical depth from the front of a panel to node
-/// j (specification, 3.7). Nodes and weights are within 1 u
-/// of their values, relative, collocation entries within 1 u, absolute; asserted in
-/// tests/math/gauss_legendre.cpp.
+/// j (specification, 3.7). Nodes and weights are within 1 u of their values, relative, collocation
+/// entries within 1 u, absolute; asserted in tests/math/gauss_legendre.cpp.
 ///
 /// Inside a kernel:  static constexpr auto rule = gauss_legendre<S, N>();
 /// which is evaluated by the compiler and lies in constant memory on the host and on the device.

@@ -20,10 +20,10 @@
 /// Largest absolute error in units of u = 2^-24 (float) or 2^-53 (double) for every t in [0, 1], t
 /// itself taken as exact; asserted in tests/math/scaled_tail.cpp:
 ///
-///     function   values         float   double
-///     w0_plus    [0.5, 1.78]    2.4     2.2
-///     w0_minus   [0, 1.63]      2.2     2.0
-///     w1_plus    [0.25, 2]      2.8     2.2
-///     w1_minus   [-2.24, 1.83] 3.8     4.0
+///     function   values          float   double
+///     w0_plus    [0.5, 1.78]     2.6     2.2
+///     w0_minus   [0, 1.63]       2.2     2.0
+///     w1_plus    [0.25, 2]       2.8     2.2
+///     w1_minus   [-2.24, 1.83]  4.0     4.4
 ///
 /// NaN gives NaN; t outside of [0, 1] is not meant and gives a finite number.

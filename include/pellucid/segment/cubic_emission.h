@@ -32,14 +32,9 @@ PELLUCID_HD T deviation_from_line(const CubicBernstein<T>& s) noexcept {
   return max(abs(e1), abs(e2));
 }
 
-/// The mean share of a panel with the rule that suffices for an error of `tolerance` relative to
-/// the range of the share; false where none does, so that the panel has to be halved.
-///
-/// The thresholds are an estimate, not a bound: twice the largest error found by random search and
-/// hill climbing over cubics and depths up to 4 (docs/accuracy.md; the search is repeated by
-/// tests/segment, which asserts half of each). The powers are those of theory: the N-node rule is
-/// exact up to degree 2N-1, and the first term of the exponential's series in the depth that it
-/// misses is j = ⌊(2N-7)/4⌋ + 1, of degree 6 + 4j.
+/// The mean share of a panel with the cheapest rule whose estimated error, relative to the range of
+/// the share, is at most `tolerance`; false where none is good enough, so that the panel has to be
+/// halved.
 template <class T>
 PELLUCID_HD bool choose_panel(const CubicBernstein<T>& s, T rate_near, T rate_change, T depth,
                               T tolerance, T& share) noexcept {
@@ -47,19 +42,18 @@ PELLUCID_HD bool choose_panel(const CubicBernstein<T>& s, T rate_near, T rate_ch
     share = s.b[0];  // any share of the range will do
     return true;
   }
-  if (depth > T(4)) return false;
-  const T depth_2 = depth * depth, depth_4 = depth_2 * depth_2;
-  if (T(2.8e-2) * depth <= tolerance) {
+  if (depth > T(largest_panel_depth<T>)) return false;
+  if (panel_error_estimate<5>(depth) <= tolerance) {
     share = cubic_panel_mean<5>(s, rate_near, rate_change);
-  } else if (T(2.8e-3) * depth_2 <= tolerance) {
+  } else if (panel_error_estimate<6>(depth) <= tolerance) {
     share = cubic_panel_mean<6>(s, rate_near, rate_change);
-  } else if (T(9.4e-4) * depth_2 <= tolerance) {
+  } else if (panel_error_estimate<7>(depth) <= tolerance) {
     share = cubic_panel_mean<7>(s, rate_near, rate_change);
-  } else if (T(7.2e-5) * depth_2 * depth <= tolerance) {
+  } else if (panel_error_estimate<8>(depth) <= tolerance) {
     share = cubic_panel_mean<8>(s, rate_near, rate_change);
-  } else if (T(1.3e-6) * depth_4 <= tolerance) {
+  } else if (panel_error_estimate<10>(depth) <= tolerance) {
     share = cubic_panel_mean<10>(s, rate_near, rate_change);
-  } else if (T(1.8e-8) * depth_4 * depth <= tolerance) {
+  } else if (panel_error_estimate<12>(depth) <= tolerance) {
     share = cubic_panel_mean<12>(s, rate_near, rate_change);
   } else {
     return false;

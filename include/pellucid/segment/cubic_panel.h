@@ -57,4 +57,26 @@ PELLUCID_HD T cubic_panel_mean(const CubicBernstein<T>& s, T rate_near, T rate_c
   return select(sum > T(0), sum_s / sum, T(0));
 }
 
+/// Up to this optical depth panel_error_estimate() was measured.
+template <class T>
+inline constexpr scalar_t<T> largest_panel_depth = scalar_t<T>(4);
+
+/// The error of cubic_panel_mean<N>, N = 5, 6, 7, 8, 10 or 12, on a panel of the given optical
+/// depth, relative to the range of the share. An estimate, not a bound: twice the largest error
+/// that random search and hill climbing found (docs/accuracy-segments.md); tests/segment repeats
+/// the search and asserts that it stays below 1/1.7 of this. The powers are those of theory: the
+/// rule is exact to degree 2N-1, and the first term of the exponential's series in the depth that
+/// it misses is j = ⌊(2N-7)/4⌋ + 1, of degree 6 + 4j.
+template <int N, class T>
+PELLUCID_HD T panel_error_estimate(T depth) noexcept {
+  static_assert((N >= 5 && N <= 8) || N == 10 || N == 12);
+  const T square = depth * depth;
+  if constexpr (N == 5) return T(2.8e-2) * depth;
+  if constexpr (N == 6) return T(2.8e-3) * square;
+  if constexpr (N == 7) return T(9.4e-4) * square;
+  if constexpr (N == 8) return T(7.2e-5) * square * depth;
+  if constexpr (N == 10) return T(1.3e-6) * square * square;
+  if constexpr (N == 12) return T(1.8e-8) * square * square * depth;
+}
+
 }  // namespace pellucid

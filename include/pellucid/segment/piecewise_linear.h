@@ -28,9 +28,6 @@ PELLUCID_HD SegmentResult<T> piecewise_linear_segment(const PiecewiseLinear<T>& 
     return constant_segment(m.extinction, m.color, length);
   }
   const bool rising = v_b > v_f;
-  // From inside: data that fall away from a control value leave into the interval below it.
-  while (!rising && interval > 0 && table.value[interval - 1] >= v_f) --interval;
-
   SegmentResult<T> result;
   const T per_value = v_b - v_f;
   T value = v_f;
@@ -40,7 +37,7 @@ PELLUCID_HD SegmentResult<T> piecewise_linear_segment(const PiecewiseLinear<T>& 
                                 : interval > 0 && table.value[interval - 1] > v_b;
     const T next = crosses ? table.value[rising ? interval : interval - 1] : v_b;
     const Material<T> back = table.evaluate_in(interval, next);
-    // A jump has no length.
+    // A jump has no length, nor has the way from a control value into the interval below it.
     const T share = (next - value) / per_value;
     if (share > T(0) && (front.extinction > T(0) || back.extinction > T(0))) {
       result = compose(result, linear_segment(front.extinction, back.extinction, front.color,
