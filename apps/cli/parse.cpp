@@ -48,7 +48,7 @@ std::array<Number, 3> parse_three(const std::string& option, const std::string& 
 
 }  // namespace
 
-std::string one_line(std::string text) {
+std::string one_line(std::string_view text) {
   std::string line;
   for (const char c : text) {
     const bool control = (c >= '\0' && c < ' ') || c == '\x7f';

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <string>
+#include <string_view>
 
 #include "pellucid/math/rgb.h"
 #include "pellucid/scene/error.h"
@@ -17,7 +18,7 @@ class UsageError : public Error {
 };
 
 /// The text as one line that a terminal can show: line breaks and control characters become spaces.
-std::string one_line(std::string text);
+std::string one_line(std::string_view text);
 
 /// Each throws UsageError that names the option and shows what it expects.
 std::array<double, 3> parse_triple(const std::string& option, const std::string& text);

@@ -37,6 +37,10 @@ class Progress {
       context_.cancel_group_execution();
     }
   }
+  /// The last word, in case another thread was asking when the last pixel was done.
+  void finish() {
+    if (callback_ && !cancelled_) callback_(1.0);
+  }
   bool cancelled() const { return cancelled_; }
 
  private:
@@ -128,6 +132,7 @@ void render_pixels(const Frame& frame, const StructuredGrid<Value, double>& grid
         context);
   });
   if (progress.cancelled()) throw Cancelled();
+  progress.finish();
   report.cells = cells;
 }
 

@@ -213,6 +213,11 @@ TEST(ReferenceCell, DeepPiecesStayVisible) {
   EXPECT_NEAR(pixel.radiance.g, std::sqrt(std::acos(-1.0) / 2e7), 1e-15);
   EXPECT_NEAR(pixel.radiance.r, 1 - std::sqrt(std::acos(-1.0) / 2e7), 1e-14);
   EXPECT_NEAR(pixel.opacity, 1, 1e-15);
+
+  // All of the light within 1e-6 of the entry, before the first node of any rule over the cell:
+  // ∫ x exp(−xu) u du = 1/x.
+  const Points dense{{0, 1e6, {1, 0, 0}}, {1, 1e6, {0, 1, 0}}};
+  EXPECT_NEAR(integrate_cell(chord, dense, 1).radiance.g, 1e-6, 1e-18);
 }
 
 /// The depth and the share integral of one piece against tanh-sinh in extended precision.

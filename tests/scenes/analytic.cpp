@@ -346,9 +346,10 @@ void add_curved(std::vector<AnalyticRay>& rays) {
   ray.half_opacity_depth = not_a_number;
   rays.push_back(ray);
 
-  // No sampler at any usual step sees it.
-  ray.name = "a needle that is 1e-4 of a cell wide";
-  ray.transfer_function = transfer({{-5e-3, 0, color}, {0, 2e4, color}, {5e-3, 0, color}});
+  // No sampler at any usual step sees it, nor does the data value at any corner.
+  ray.name = "a needle that is 1/800 of a cell wide";
+  ray.transfer_function =
+      transfer({{50 - 0x1p-4, 0, color}, {50, 1600, color}, {50 + 0x1p-4, 0, color}});
   ray.opacity = -std::expm1(-1.0);
   ray.radiance = color * ray.opacity;
   rays.push_back(ray);

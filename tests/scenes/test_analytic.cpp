@@ -52,9 +52,9 @@ TEST(AnalyticScenes, ExactInDouble) {
   expect_known_pixels(Precision::float64, {1e-7L, 1e-6L});
 }
 
-/// The needle, 1e-4 of a cell wide, is the worst: float resolves its width to 6e-8 of the cell.
+/// The needle, 1/800 of a cell wide, is the worst: float resolves places to 6e-8 of the cell.
 TEST(AnalyticScenes, ExactInFloat) {
-  expect_known_pixels(Precision::float32, {3e-5L, 1e-6L});
+  expect_known_pixels(Precision::float32, {1e-5L, 1e-6L});
 }
 
 }  // namespace

@@ -7,7 +7,7 @@ digits; the data's ends enter exactly.
 """
 import sys
 
-from mpmath import mp, mpf
+from mpmath import mp
 
 import common
 

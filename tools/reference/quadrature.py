@@ -42,9 +42,11 @@ def integrate(rates, breaks, depth, tolerance):
     where the rates are not smooth, and enough points that no peak hides between nodes. `depth` is
     (nearly) the total: errors are small beside it and beside its opacity. What lies behind a
     transparency of 1e-60 is given depth but no radiance."""
+    stack = [(a, b, panel(rates, a, b), 0) for a, b in zip(breaks, breaks[1:]) if a < b][::-1]
+    # An estimate that is far too small would ask for more digits than there are.
+    depth = max(depth, mp.fsum(whole[0] for _, _, whole, _ in stack))
     opacity = -mp.expm1(-depth)
     total = None
-    stack = [(a, b, panel(rates, a, b), 0) for a, b in zip(breaks, breaks[1:]) if a < b][::-1]
     while stack:
         a, b, whole, level = stack.pop()
         hidden = total is not None and total[0] > 140

@@ -137,8 +137,7 @@ def gaussians(row, c, length):
     ladder = {x + s * w / k for x, k in zip(centers, sharpness) if k != 0
               for w in (0, mpf("0.5"), 1, 2, 3, 5, 8, 13) for s in (-1, 1)}
     cuts = crossings(c, ladder)
-    estimate = length * sum((b - a) * rates((a + b) / 2)[0] for a, b in zip(cuts, cuts[1:])) / (
-        length if length else 1)
+    estimate = sum((b - a) * rates((a + b) / 2)[0] for a, b in zip(cuts, cuts[1:]))
     return integrate(rates, cuts, estimate, mpf("1e-28"))
 
 

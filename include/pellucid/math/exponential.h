@@ -5,7 +5,7 @@
 #include "pellucid/math/polynomial.h"
 
 /// What the volume rendering integral needs of e^x where e^x alone would cancel or lose digits. The
-/// stated errors are for a library's exp that is within 1.1 u (glibc's is; CUDA's expf is not).
+/// stated errors are for a library's exp that is within 1.1 u (glibc's is; CUDA's is not).
 namespace pellucid {
 
 /// sinh(h) / h as a function of y = h² in [0, 1]: b_0 of the specification (9). Its Taylor series,

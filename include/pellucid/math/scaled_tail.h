@@ -24,6 +24,6 @@
 ///     w0_plus    [0.5, 1.78]     2.6     2.2
 ///     w0_minus   [0, 1.63]       2.2     2.0
 ///     w1_plus    [0.25, 2]       2.8     2.2
-///     w1_minus   [-2.24, 1.83]  4.0     4.4
+///     w1_minus   [-2.24, 1.83]   4.0     4.4
 ///
 /// NaN gives NaN; t outside of [0, 1] is not meant and gives a finite number.
