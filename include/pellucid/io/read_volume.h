@@ -23,7 +23,8 @@ struct ReadOptions {
 };
 
 /// Reads a volume by its extension: .nii .nii.gz .hdr/.img(.gz) .nrrd .nhdr .mha .mhd (through ITK,
-/// where the build has it), .npy, .raw. Throws Error: what, where, what to do.
+/// where the build has it), .npy, .raw; and any file as raw where dimensions and type are both
+/// given. Throws Error: what, where, what to do.
 Volume read_volume(const std::filesystem::path& path, const ReadOptions& options = {});
 
 /// The parsers of our own, from memory, so that they can be fuzzed. `name` is for messages.
