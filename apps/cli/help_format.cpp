@@ -4,7 +4,7 @@
 namespace pellucid::cli {
 
 std::string HelpFormat::make_option_opts(const CLI::Option* option) const {
-  const std::string text = option->get_option_text();
+  const std::string& text = option->get_option_text();
   return text.empty() || option->get_positional() ? "" : " " + text;
 }
 

@@ -12,6 +12,7 @@
 #include <chrono>
 #include <mutex>
 #include <optional>
+#include <sstream>
 
 #include "pellucid/render/integrate_ray.h"
 #include "pellucid/render/sample_ray.h"
@@ -28,27 +29,31 @@ class Progress {
       : callback_(callback), total_(total), context_(context) {}
 
   void advance(std::uint64_t count) {
-    const std::uint64_t done = done_.fetch_add(count) + count;
-    if (!callback_) return;
+    done_ += count;
     const std::unique_lock lock(mutex_, std::try_to_lock);
-    if (!lock.owns_lock() || cancelled_) return;
+    if (lock.owns_lock()) report();
+  }
+  /// The last word, in case another thread was asking when the last pixel was done.
+  void finish() { report(); }
+  bool cancelled() const { return cancelled_; }
+
+ private:
+  void report() {
+    const std::uint64_t done = done_;
+    if (!callback_ || cancelled_ || done <= reported_) return;
+    reported_ = done;
     if (!callback_(static_cast<double>(done) / static_cast<double>(total_))) {
       cancelled_ = true;
       context_.cancel_group_execution();
     }
   }
-  /// The last word, in case another thread was asking when the last pixel was done.
-  void finish() {
-    if (callback_ && !cancelled_) callback_(1.0);
-  }
-  bool cancelled() const { return cancelled_; }
 
- private:
   const std::function<bool(double)>& callback_;
   const std::uint64_t total_;
   tbb::task_group_context& context_;
   std::atomic<std::uint64_t> done_{0};
   std::mutex mutex_;
+  std::uint64_t reported_ = 0;  ///< under the mutex, or when all threads are done
   std::atomic<bool> cancelled_{false};
 };
 
@@ -131,8 +136,8 @@ void render_pixels(const Frame& frame, const StructuredGrid<Value, double>& grid
         },
         context);
   });
-  if (progress.cancelled()) throw Cancelled();
   progress.finish();
+  if (progress.cancelled()) throw Cancelled();
   report.cells = cells;
 }
 
@@ -142,10 +147,13 @@ Image render(const Scene& scene, const RenderOptions& options, RenderReport* rep
   if (!scene.volume || !scene.transfer_function) {
     throw Error("scene: a volume and a transfer function are needed; set both before rendering");
   }
+  const double step = scene.integration.step;
   if (scene.integration.method != Method::exact &&
-      !(scene.integration.step > 0 && scene.integration.step <= 1e6)) {
-    throw Error("integration: step is " + std::to_string(scene.integration.step) +
-                ", but must be above 0 voxels (and at most 1e6)");
+      !(step >= smallest_step && step <= largest_step)) {
+    std::ostringstream message;
+    message << "integration: step is " << step << " voxels, but must be from " << smallest_step
+            << " to " << largest_step;
+    throw Error(message.str());
   }
   if (options.threads < 0) throw Error("threads: must not be negative; 0 takes one per core");
   const Frame frame{scene, make_camera_frame(scene.camera, scene.size), options.depth};

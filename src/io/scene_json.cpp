@@ -255,7 +255,7 @@ SceneDescription parse_scene(std::string_view json, const std::string& name,
           precision->one_of({"float", "double"}) == 0 ? Precision::float32 : Precision::float64;
     }
     if (const auto step = integration->find("step")) {
-      scene.integration.step = step->positive_number(1e6);
+      scene.integration.step = step->positive_number(largest_step);
     }
   }
   return scene;

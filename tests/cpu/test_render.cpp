@@ -55,16 +55,18 @@ TEST(Render, ReportCountsAndThreads) {
   EXPECT_GT(report.seconds, 0);
 }
 
-TEST(Render, ProgressEndsAtOneAndCancels) {
+TEST(Render, ProgressRisesToOneAndCancels) {
   const Scene scene = small_scene();
   RenderOptions options;
   double last = 0;
   options.progress = [&](double share) {
+    EXPECT_GT(share, last);
     EXPECT_LE(share, 1);
     last = share;
     return true;
   };
   for (const int threads : {1, 2, 5}) {
+    last = 0;
     options.threads = threads;
     render(scene, options);
     EXPECT_EQ(last, 1) << threads << " threads";
@@ -76,7 +78,7 @@ TEST(Render, ProgressEndsAtOneAndCancels) {
 TEST(Render, RefusesWhatItCannotRender) {
   Scene scene = small_scene();
   scene.integration.method = Method::midpoint;
-  for (const double step : {0.0, -1.0, std::numeric_limits<double>::quiet_NaN(),
+  for (const double step : {0.0, -1.0, 9e-5, 2e6, std::numeric_limits<double>::quiet_NaN(),
                             std::numeric_limits<double>::infinity()}) {
     scene.integration.step = step;
     EXPECT_THROW(render(scene), Error) << step;
@@ -136,6 +138,17 @@ TEST(Render, SlabHasItsClosedFormInEveryMethodAndItsHalfOpacityDepth) {
         }
       }
     }
+  }
+}
+
+TEST(Render, TaylorOnTheSlabIsTheProductOfItsSteps) {
+  Scene scene = slab(Centering::point);
+  // In voxels of 0.25: eight steps of 0.25 over the length of 2, each of opacity min(1, 2 · 0.25).
+  scene.integration = {Method::taylor, Precision::float64, 1.0};
+  const double alpha = 1 - std::pow(0.5, 8);
+  for (const auto& pixel : render(scene).pixels) {
+    EXPECT_NEAR(pixel[0], 0.5 * alpha, 1e-7);
+    EXPECT_NEAR(pixel[3], alpha, 1e-7);
   }
 }
 

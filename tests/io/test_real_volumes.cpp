@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "pellucid/io/read_volume.h"
+#include "tests/support/test_data.h"
 #include "volume_files.h"
 
 // Files of other programs, against the facts that stand in their manifest.
@@ -14,7 +15,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-const fs::path data = fs::path(PELLUCID_SOURCE_DIR) / ".." / "shared" / "data";
+const fs::path data = test_data_folder();
 
 struct Facts {
   const char* file;

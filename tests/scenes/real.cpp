@@ -4,11 +4,12 @@
 #include <utility>
 
 #include "pellucid/io/read_volume.h"
+#include "tests/support/test_data.h"
 
 namespace pellucid::scenes {
 
 std::vector<RealData> real_data() {
-  const std::filesystem::path data = PELLUCID_SOURCE_DIR "/../shared/data/structured";
+  const std::filesystem::path data = test_data_folder() / "structured";
   // Extinction in 1/mm, or per voxel where a file has no unit.
   return {{"brain",
            "/usr/share/mricron/templates/ch2.nii.gz",

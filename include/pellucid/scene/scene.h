@@ -39,6 +39,11 @@ std::optional<Method> method_from_name(std::string_view name) noexcept;
 
 enum class Precision { float32, float64 };
 
+/// Limits of Integration::step. Below the smaller one a frame would take days, and in a large
+/// volume the samples of a ray could no longer be told apart.
+inline constexpr double smallest_step = 1e-4;
+inline constexpr double largest_step = 1e6;
+
 struct Integration {
   Method method = Method::exact;
   Precision precision = Precision::float32;
