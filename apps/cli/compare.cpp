@@ -8,6 +8,7 @@
 #include "commands.h"
 #include "difference.h"
 #include "output.h"
+#include "overwriting.h"
 #include "parse.h"
 #include "pellucid/base/version.h"
 #include "pellucid/io/image_files.h"
@@ -29,12 +30,16 @@ struct DifferenceFile {
   std::string path, scaling;
 };
 
-void check_difference_path(const std::string& path) {
+void check_difference_path(const CompareArguments& arguments) {
+  const std::string& path = arguments.difference;
   const std::string extension = extension_of(path);
   if (extension != ".png" && extension != ".exr") {
     throw UsageError(
         fmt::format("--difference {}: expected a name that ends in .png or .exr", path));
   }
+  const NamedFile outputs[] = {{"--difference", path}};
+  const NamedFile inputs[] = {{"A", arguments.a}, {"B", arguments.b}};
+  refuse_overwriting(outputs, inputs);
   check_writable(path);
 }
 
@@ -100,7 +105,7 @@ int run_compare(const CompareArguments& arguments) {
     throw UsageError(
         fmt::format("--largest {}: expected a number of at least 0", *arguments.largest));
   }
-  if (!arguments.difference.empty()) check_difference_path(arguments.difference);
+  if (!arguments.difference.empty()) check_difference_path(arguments);
   const Image a = read_exr(arguments.a), b = read_exr(arguments.b);
   if (a.width != b.width || a.height != b.height) {
     throw Error(fmt::format("{} has {} x {} pixels and {} has {} x {}; compare images of one size",

@@ -12,6 +12,7 @@
 
 #include "commands.h"
 #include "output.h"
+#include "overwriting.h"
 #include "parse.h"
 #include "pellucid/io/atomic_file.h"
 #include "pellucid/io/image_files.h"
@@ -65,6 +66,9 @@ int run_evaluate(const EvaluateArguments& arguments) {
                     kind.name));
   }
   const double tolerance = tolerance_of(arguments, kind);
+  const NamedFile files_out[] = {{"-o", arguments.output}};
+  const NamedFile files_in[] = {{"TABLE", arguments.table}};
+  refuse_overwriting(files_out, files_in);
   check_writable(arguments.output);
   constexpr std::size_t largest_table = std::size_t(1) << 30;
   const CsvTable table(read_text_file(arguments.table, largest_table), arguments.table);

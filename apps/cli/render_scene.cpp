@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
-#include <cmath>
 #include <filesystem>
-#include <set>
 #include <string>
+#include <vector>
 
+#include "overwriting.h"
 #include "parse.h"
 #include "pellucid/io/atomic_file.h"
 #include "pellucid/io/image_files.h"
@@ -13,6 +13,22 @@
 #include "view.h"
 
 namespace pellucid::cli {
+
+namespace {
+
+std::vector<NamedFile> output_files(const RenderArguments& arguments) {
+  std::vector<NamedFile> files;
+  for (const std::string& path : arguments.outputs) files.push_back({"-o", path});
+  const NamedFile others[] = {{"--depth", arguments.depth_picture},
+                              {"--save-tf", arguments.save_tf},
+                              {"--save-scene", arguments.save_scene}};
+  for (const NamedFile& file : others) {
+    if (!file.path.empty()) files.push_back(file);
+  }
+  return files;
+}
+
+}  // namespace
 
 void check_arguments(const RenderArguments& arguments) {
   if (!arguments.renders() && !arguments.print_tf && arguments.save_tf.empty() &&
@@ -23,31 +39,24 @@ void check_arguments(const RenderArguments& arguments) {
   if (arguments.json && !arguments.renders()) {
     throw UsageError("--json reports on a rendering; give -o FILE.png or FILE.exr");
   }
-  std::set<std::string> paths;
-  const auto check = [&](const std::string& option, const std::string& path) {
-    if (!paths.insert(path).second) {
-      throw UsageError(fmt::format("{} {}: the same file is written twice", option, path));
-    }
-  };
   for (const std::string& path : arguments.outputs) {
     const std::string extension = extension_of(path);
     if (extension != ".png" && extension != ".exr") {
       throw UsageError(fmt::format("-o {}: expected a name that ends in .png or .exr", path));
     }
-    check("-o", path);
   }
-  if (!arguments.depth_picture.empty()) {
-    if (extension_of(arguments.depth_picture) != ".png") {
-      throw UsageError(
-          fmt::format("--depth {}: expected a name that ends in .png (an .exr of -o has "
-                      "the depth in its channel Z)",
-                      arguments.depth_picture));
-    }
-    check("--depth", arguments.depth_picture);
+  if (!arguments.depth_picture.empty() && extension_of(arguments.depth_picture) != ".png") {
+    throw UsageError(
+        fmt::format("--depth {}: expected a name that ends in .png (an .exr of -o has "
+                    "the depth in its channel Z)",
+                    arguments.depth_picture));
   }
-  if (!arguments.save_tf.empty()) check("--save-tf", arguments.save_tf);
-  if (!arguments.save_scene.empty()) check("--save-scene", arguments.save_scene);
-  for (const std::string& path : paths) check_writable(path);
+  const std::vector<NamedFile> outputs = output_files(arguments);
+  const NamedFile inputs[] = {{"INPUT", arguments.input},
+                              {"--tf", arguments.transfer_function},
+                              {"--camera", arguments.camera}};
+  refuse_overwriting(outputs, inputs);
+  for (const NamedFile& output : outputs) check_writable(output.path);
 }
 
 namespace {
@@ -63,9 +72,10 @@ void set_integration(const RenderArguments& arguments, Integration& integration)
     throw UsageError(
         "--step: the exact method has no step; drop it or choose a sampling --method, as midpoint");
   }
-  if (!(*arguments.step > 0) || !std::isfinite(*arguments.step)) {
-    throw UsageError(
-        fmt::format("--step {}: expected a length in voxels, greater than 0", *arguments.step));
+  // The rendering refuses it as well, but a scene may be saved without one.
+  if (!(*arguments.step >= smallest_step && *arguments.step <= largest_step)) {
+    throw UsageError(fmt::format("--step {}: expected a length in voxels, from {} to {}",
+                                 *arguments.step, smallest_step, largest_step));
   }
   integration.step = *arguments.step;
 }
@@ -100,6 +110,9 @@ PreparedScene prepare(const RenderArguments& arguments) {
   PreparedScene prepared;
   prepared.description = describe(arguments);
   SceneDescription& description = prepared.description;
+  // The volume of a scene is known only now.
+  const NamedFile inputs[] = {{"volume", description.field.file.string()}};
+  refuse_overwriting(output_files(arguments), inputs);
   prepared.transfer_function_from = !arguments.transfer_function.empty()
                                         ? arguments.transfer_function
                                     : description.transfer_function ? arguments.input

@@ -1,12 +1,33 @@
 # SPDX-License-Identifier: Apache-2.0
 """Bad input: one line on stderr, a non-zero exit code, and no file."""
 
+import gzip
 import json
 import os
+import random
 import struct
 import unittest
 
-from program import HAZE, ProgramTest, npy, ramp
+from program import HAZE, ProgramTest, exr, npy, png, ramp
+
+
+def nifti(values, n):
+    """A .nii file of n³ values in binary32, x fastest, at a spacing of 1."""
+    header = bytearray(352)
+    struct.pack_into("<i", header, 0, 348)
+    struct.pack_into("<8h", header, 40, 3, n, n, n, 1, 1, 1, 1)
+    struct.pack_into("<2h", header, 70, 16, 32)
+    struct.pack_into("<8f", header, 76, 1, 1, 1, 1, 1, 1, 1, 1)
+    struct.pack_into("<2f", header, 108, 352, 1)
+    struct.pack_into("<2h", header, 252, 1, 0)
+    header[344:348] = b"n+1\0"
+    return bytes(header) + struct.pack(f"<{n ** 3}f", *values)
+
+
+def noise(n):
+    """n³ values that compress badly, so that half of a compressed file ends amid them."""
+    generator = random.Random(7)
+    return [generator.random() for _ in range(n ** 3)]
 
 
 class BadInput(ProgramTest):
@@ -53,6 +74,15 @@ class BadInput(ProgramTest):
         self.write("cut.nrrd", b"NRRD0004\ntype: float\ndimension: 3\nsizes: 4 4 4\nendian: little\n"
                                b"encoding: raw\n\n1234")
         self.refuse("cut.nrrd", "cut.nrrd", also_info=True)
+
+    def test_truncated_compressed_file(self):
+        content = gzip.compress(nifti(noise(16), 16))
+        self.write("cut.nii.gz", content)
+        self.assertEqual(self.report("info", "cut.nii.gz")["dimensions"], [16, 16, 16])
+        self.succeed("render", "cut.nii.gz", "-o", "whole.png", "--size", "4")
+        for size in (len(content) // 2, len(content) * 9 // 10):
+            self.write("cut.nii.gz", content[:size])
+            self.refuse("cut.nii.gz", "cut.nii.gz", also_info=True)
 
     def test_wrong_sizes(self):
         self.write("a.raw", bytes(64))
@@ -139,6 +169,91 @@ class BadInput(ProgramTest):
         self.refuse("error", os.fsdecode(b"\xff\xfe.npy"))
         self.write("tf.json", '{"a\\nb": 1}')
         self.refuse("error", "good.npy", "--tf", "tf.json")
+
+
+class NaN(ProgramTest):
+    """Not bad input: vacuum, counted and told of."""
+
+    def test_is_noted(self):
+        values = noise(4)
+        values[21] = values[42] = float("nan")
+        self.write("a.npy", npy(values, (4, 4, 4)))
+        self.write("a.raw", struct.pack("<64d", *values))
+        self.write("a.nii.gz", gzip.compress(nifti(values, 4)))
+        self.write("tf.json", json.dumps(HAZE))
+        for arguments in (("a.npy",), ("a.nii.gz",),
+                          ("a.raw", "--type", "f64", "--dimensions", "4,4,4")):
+            with self.subTest(arguments=arguments):
+                result = self.run_program("render", *arguments, "--tf", "tf.json", "-o", "o.png",
+                                          "--size", "8")
+                self.assertEqual(result.stderr.decode(),
+                                 "pellucid: 2 values are NaN: rendered as vacuum\n")
+                self.assertEqual(result.returncode, 0)
+                self.assertEqual(png(self.read("o.png"))[0], 8)
+                self.assertEqual(self.report("info", *arguments)["nan"], 2)
+
+
+class Overwriting(ProgramTest):
+    """No output replaces what the same run reads, nor another output of it."""
+
+    def setUp(self):
+        super().setUp()
+        self.write("good.npy", npy(ramp(4), (4, 4, 4)))
+        self.write("tf.json", json.dumps(HAZE))
+        self.write("scene.json", json.dumps({"volumes": [{"field": {"file": "good.npy"}}]}))
+        os.mkdir(self.path("folder"))
+        os.symlink("folder", self.path("also"))
+        os.symlink("good.npy", self.path("link.png"))
+
+    def refuse(self, pattern, *arguments):
+        self.fail_with(pattern, *arguments, code=2)
+
+    def test_render_keeps_its_inputs(self):
+        def refuse(argument, *arguments):
+            self.refuse(f"would overwrite the input {argument}", "render", *arguments)
+        refuse("--tf tf.json", "good.npy", "--tf", "tf.json", "--save-tf", "tf.json")
+        refuse("--tf tf.json", "good.npy", "--tf", "tf.json", "--save-tf", self.path("tf.json"))
+        refuse("--tf ", "good.npy", "--tf", "folder/../tf.json", "--save-scene", "./tf.json")
+        refuse("--camera c.json", "good.npy", "--camera", "c.json", "--save-tf", "c.json")
+        refuse("INPUT scene.json", "scene.json", "--save-scene", "scene.json")
+        refuse("INPUT scene.json", "scene.json", "--save-tf", "also/../scene.json")
+        refuse("INPUT good.npy", "good.npy", "--save-tf", "good.npy")
+        refuse("INPUT good.npy", "good.npy", "-o", "link.png")
+        refuse("volume good.npy", "scene.json", "-o", "fine.png", "--save-tf", "good.npy")
+        refuse("volume ", "folder/../scene.json", "-o", "link.png")
+
+    def test_render_keeps_its_outputs(self):
+        os.symlink("new.png", self.path("dangling.png"))
+        for first, second in (("x.png", "x.png"), ("x.png", "./x.png"), ("x.png", self.path("x.png")),
+                              ("folder/x.png", "also/x.png"), ("new.png", "dangling.png"),
+                              ("dangling.png", "new.png")):
+            for option in ("-o", "--depth", "--save-tf", "--save-scene"):
+                with self.subTest(first=first, second=second, option=option):
+                    self.refuse("twice", "render", "good.npy", "-o", first, option, second)
+        self.refuse("twice", "render", "good.npy", "--save-tf", "x.json", "--save-scene", "./x.json")
+
+    def test_evaluate_keeps_its_table(self):
+        self.write("t.csv", "id,x\n1,2\n")
+        for path in ("t.csv", "./t.csv", self.path("t.csv")):
+            self.refuse("would overwrite the input TABLE t.csv", "evaluate", "special_functions",
+                        "t.csv", "-o", path)
+
+    def test_compare_keeps_its_images(self):
+        self.write("a.exr", exr([[(0.0, 0.0, 0.0, 0.0)]]))
+        self.write("b.exr", exr([[(0.0, 0.0, 0.0, 1.0)]]))
+        for path in ("a.exr", "./b.exr", self.path("a.exr"), "also/../b.exr"):
+            self.refuse("would overwrite the input [AB] ", "compare", "a.exr", "b.exr",
+                        "--difference", path)
+
+    def test_other_names_are_free(self):
+        self.succeed("render", "good.npy", "-o", "folder/x.png", "-o", "x.png", "--size", "4",
+                     "--tf", "tf.json", "--save-tf", "folder/tf.json")
+        # A hard link is another name: the input keeps its own.
+        os.link(self.path("good.npy"), self.path("hard.png"))
+        before = self.read("good.npy")
+        self.succeed("render", "good.npy", "-o", "hard.png", "--size", "4")
+        self.assertEqual(self.read("good.npy"), before)
+        self.assertEqual(png(self.read("hard.png"))[0], 4)
 
 
 class Unwritable(ProgramTest):

@@ -136,8 +136,13 @@ class Render(ProgramTest):
         run = ("render", "ramp.npy", "-o", "a.png")
         self.fail_with("exact method has no step", *run, "--step", "1", code=2)
         self.fail_with("exact method has no step", *run, "--step", "1", "--method", "exact", code=2)
-        for step in ("0", "-1", "nan", "inf"):
-            self.fail_with("--step", *run, "--step", step, "--method", "midpoint", code=2)
+        for step in ("0", "-1", "nan", "inf", "0.9999e-4", "1.0001e6"):
+            self.fail_with("from 0.0001 to 1000000", *run, "--step", step, "--method", "midpoint",
+                           code=2)
+            self.fail_with("--step", "render", "ramp.npy", "--save-scene", "s.json", "--step", step,
+                           "--method", "midpoint", code=2)
+        for step in ("1e-4", "1e6"):
+            self.succeed(*run, "--step", step, "--method", "midpoint", "--size", "2")
         for option in (("--method", "exact"), ("--step", "1"), ("--precision", "float")):
             self.fail_with("--reference", *run, "--reference", *option, code=2)
 
