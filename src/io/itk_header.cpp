@@ -23,7 +23,7 @@ Volume::Description read_nifti_description(const std::filesystem::path& path, bo
 MetaImageHeader read_meta_image_header(const std::filesystem::path& path) {
   refuse(path.string());
 }
-Volume read_nrrd_file(const std::filesystem::path&, const std::string& name, bool,
+Volume read_nrrd_file(const std::filesystem::path&, const std::string& name, std::uint64_t, bool,
                       const ReadOptions&) {
   refuse(name);
 }
@@ -223,14 +223,22 @@ MetaImageHeader read_meta_image_header(const std::filesystem::path& path) {
 }
 
 Volume read_nrrd_file(const std::filesystem::path& path, const std::string& name,
-                      bool left_anterior_superior, const ReadOptions& options) {
+                      std::uint64_t header_count, bool left_anterior_superior,
+                      const ReadOptions& options) {
   return quietly(name, [&] {
     const auto io = open_header<itk::NrrdImageIO>(path, name);
     Volume::Description description = describe(*io, name);
     const std::string type = type_of(*io, name);
     std::size_t count = 1;
     for (const int side : description.dimensions) count *= static_cast<std::size_t>(side);
-    check_memory(std::uintmax_t{count} * value_size(type, name), name);
+    const std::uintmax_t bytes = std::uintmax_t{count} * value_size(type, name);
+    const auto itk_bytes = static_cast<std::uintmax_t>(io->GetImageSizeInBytes());
+    if (header_count != count || itk_bytes != bytes) {
+      throw Error(name + ": the NRRD header's sizes make " + std::to_string(header_count) +
+                  " values, but ITK finds " + std::to_string(count) + " in " +
+                  std::to_string(itk_bytes) + " bytes; mend the header");
+    }
+    check_memory(bytes, name);
 
     int cell_centred = 0;
     for (int a = 0; a < 3; ++a) {

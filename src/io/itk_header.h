@@ -35,8 +35,9 @@ struct MetaImageHeader : ItkHeader {
 MetaImageHeader read_meta_image_header(const std::filesystem::path& path);
 
 /// All of a NRRD file, as `name` in messages. ITK 5.2 turns the space left-anterior-superior to LPS
-/// by the wrong axis, so it must be told apart.
+/// by the wrong axis, so it must be told apart. `count` is how many values the header's text says
+/// there are: ITK writes as many into a buffer for the sizes that it cut down to 32 bits.
 Volume read_nrrd_file(const std::filesystem::path& path, const std::string& name,
-                      bool left_anterior_superior, const ReadOptions& options);
+                      std::uint64_t count, bool left_anterior_superior, const ReadOptions& options);
 
 }  // namespace pellucid

@@ -56,7 +56,8 @@ std::vector<std::string> files_of_pattern(const std::string& text, int slices,
   long first = 1, last = slices, step = 1;
   words >> pattern >> first >> last >> step;
   const std::size_t percent = pattern.find('%');
-  const std::size_t letter = pattern.find_first_not_of("0123456789", percent + 1);
+  const std::size_t letter =
+      percent == std::string::npos ? percent : pattern.find_first_not_of("0123456789", percent + 1);
   if (letter == std::string::npos || pattern[letter] != 'd' || letter - percent > 3 ||
       pattern.find('%', letter) != std::string::npos || step < 1 || first < 0 || last < first ||
       (last - first) / step >= slices) {

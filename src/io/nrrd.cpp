@@ -1,8 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <charconv>
+#include <cstdint>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <initializer_list>
+#include <limits>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <system_error>
@@ -20,10 +25,41 @@ namespace fs = std::filesystem;
 
 namespace {
 
-struct Header {
-  std::vector<std::string> lines;  // up to the empty line, which is not among them
-  bool attached = false;           // there was an empty line: data may follow
+struct Line {
+  std::string text;
+  std::string field;  // in small letters and without blanks; empty where the line holds no field
+  std::string value;
 };
+
+struct Header {
+  std::vector<Line> lines;  // up to the empty line, which is not among them
+};
+
+constexpr const char* blanks = " \t";
+
+std::string in_small_letters(std::string text) {
+  std::ranges::transform(text, text.begin(), [](char c) {
+    return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+  });
+  return text;
+}
+
+// NrrdIO takes a field's name in letters of either case, and "axis mins" for "axismins".
+Line parse_line(std::string text) {
+  Line line{std::move(text), {}, {}};
+  const std::size_t colon = line.text.find(':');
+  // "key:=value" is no field.
+  if (colon == std::string::npos || line.text.starts_with('#') ||
+      line.text.compare(colon, 2, ":=") == 0) {
+    return line;
+  }
+  line.field = in_small_letters(line.text.substr(0, colon));
+  std::erase(line.field, ' ');
+  const std::size_t begin = line.text.find_first_not_of(blanks, colon + 1);
+  if (begin == std::string::npos) return line;
+  line.value = line.text.substr(begin, line.text.find_last_not_of(blanks) - begin + 1);
+  return line;
+}
 
 Header read_header(const fs::path& path) {
   std::ifstream file(path, std::ios::binary);
@@ -36,59 +72,73 @@ Header read_header(const fs::path& path) {
     read += line.size() + 1;
     if (read > largest) throw Error(path.string() + ": the NRRD header does not end");
     if (!line.empty() && line.back() == '\r') line.pop_back();
-    if (line.empty()) {
-      header.attached = true;
+    if (line.empty()) break;
+    header.lines.push_back(parse_line(std::move(line)));
+    // Names of files follow.
+    if (header.lines.back().field == "datafile" && header.lines.back().value.starts_with("LIST")) {
       break;
     }
-    header.lines.push_back(std::move(line));
   }
   return header;
 }
 
-// The value of "field: value", empty where the line is another.
-std::string value_of(const std::string& line, std::string_view field) {
-  if (!line.starts_with(field) || line.compare(field.size(), 2, ": ") != 0) return {};
-  return line.substr(field.size() + 2);
-}
-
-const std::string* find_field(const Header& header, std::string_view field) {
-  for (const std::string& line : header.lines) {
-    if (!value_of(line, field).empty()) return &line;
+// `field` as in Line.
+const Line* find_field(const Header& header, std::string_view field) {
+  for (const Line& line : header.lines) {
+    if (line.field == field && !line.value.empty()) return &line;
   }
   return nullptr;
+}
+
+// The values of a field axis by axis: words, or vectors in parentheses.
+std::vector<std::string> axes_of(const std::string& value) {
+  std::vector<std::string> axes;
+  std::size_t at = value.find_first_not_of(blanks);
+  while (at < value.size()) {
+    std::size_t end = value[at] == '(' ? value.find(')', at) : value.find_first_of(" \t(", at);
+    if (end != std::string::npos && value[end] == ')') ++end;
+    axes.push_back(in_small_letters(value.substr(at, end - at)));
+    at = end == std::string::npos ? end : value.find_first_not_of(blanks, end);
+  }
+  return axes;
+}
+
+std::optional<std::uint64_t> number_in(const std::string& text) {
+  std::uint64_t number = 0;
+  const char* end = text.data() + text.size();
+  const auto [stop, error] = std::from_chars(text.data(), end, number);
+  if (error != std::errc{} || stop != end) return std::nullopt;
+  return number;
 }
 
 // Two kinds of file break the letter of the format and are common all the same: "space directions"
 // without a space or before it, and "spacings" beside a space. NrrdIO refuses both. This is the
 // header as it was meant, detached, or nothing where there is nothing to mend.
 std::vector<std::string> mended_header(const Header& header, const fs::path& path) {
-  const bool directions = find_field(header, "space directions") != nullptr;
+  const bool directions = find_field(header, "spacedirections") != nullptr;
   const bool space =
-      find_field(header, "space") != nullptr || find_field(header, "space dimension") != nullptr;
+      find_field(header, "space") != nullptr || find_field(header, "spacedimension") != nullptr;
   const bool spacings = find_field(header, "spacings") != nullptr;
   if (!(directions && !space) && !(spacings && space && !directions)) return {};
 
-  const fs::path folder = fs::absolute(path).parent_path();
+  const Line* file = find_field(header, "datafile");
+  if (file != nullptr && file->value.starts_with("LIST")) return {};
+  const Line* skip = find_field(header, "lineskip");
+  const std::optional<std::uint64_t> skipped = skip == nullptr ? 0 : number_in(skip->value);
+  if (!skipped) return {};
   std::vector<std::string> mended;
-  bool detached = false;
-  for (const std::string& line : header.lines) {
-    std::string file = value_of(line, "data file");
-    if (file.empty()) file = value_of(line, "datafile");
-    if (file.starts_with("LIST")) return {};
-    if (!file.empty()) {
-      detached = true;
-      mended.push_back("data file: " + (folder / file).string());
-    } else if (directions || value_of(line, "space").empty()) {
-      if (directions && !value_of(line, "space directions").empty()) {
-        mended.emplace_back("space dimension: 3");
-      }
-      mended.push_back(line);
-    }
+  for (const Line& line : header.lines) {
+    if (line.field == "datafile" || line.field == "lineskip") continue;
+    if (!directions && line.field == "space") continue;
+    if (line.field == "spacedirections") mended.emplace_back("space dimension: 3");
+    mended.push_back(line.text);
   }
-  if (!detached) {
-    mended.push_back("line skip: " + std::to_string(header.lines.size() + 1));
-    mended.push_back("data file: " + fs::absolute(path).string());
-  }
+  // What was attached stands behind the header, and the empty line at its end.
+  const std::uint64_t above = file == nullptr ? header.lines.size() + 1 : 0;
+  mended.push_back("line skip: " + std::to_string(*skipped + above));
+  const fs::path whole = fs::absolute(path);
+  mended.push_back("data file: " +
+                   (file == nullptr ? whole : whole.parent_path() / file->value).string());
   return mended;
 }
 
@@ -115,38 +165,82 @@ class TemporaryFolder {
   fs::path path_;
 };
 
-void check_sides(const Header& header, const std::string& name) {
-  const std::string* line = find_field(header, "sizes");
-  if (line == nullptr) return;
-  // ITK 5.2 cuts sizes down to 32 bits.
-  std::size_t digits = 0;
-  for (const char c : *line) {
-    digits = c >= '0' && c <= '9' ? digits + 1 : 0;
-    if (digits > 9)
-      throw Error(name + ": the NRRD header says \"" + *line + "\", too large to read");
+// How many values the header says there are; 0 where it does not say.
+std::uint64_t header_count(const Header& header, const std::string& name) {
+  const Line* line = find_field(header, "sizes");
+  if (line == nullptr) return 0;
+  const std::string says = name + ": the NRRD header says \"" + line->text + "\", ";
+  std::uint64_t count = 1;
+  for (const std::string& word : axes_of(line->value)) {
+    const std::optional<std::uint64_t> side = number_in(word);
+    if (!side || *side == 0) throw Error(says + "where whole numbers from 1 are meant");
+    // ITK 5.2 cuts sizes down to 32 bits.
+    constexpr std::uint64_t largest = std::numeric_limits<std::int32_t>::max();
+    if (*side > largest || count > std::numeric_limits<std::uint64_t>::max() / 8 / *side) {
+      throw Error(says + "too large to read");
+    }
+    count *= *side;
   }
+  return count;
 }
 
-// A range of each axis instead of a spacing; ITK would take 1 for it.
-void check_spacing(const Header& header, const ReadOptions& options, const std::string& name) {
-  if (options.spacing || find_field(header, "axis maxs") == nullptr ||
-      find_field(header, "spacings") != nullptr ||
-      find_field(header, "space directions") != nullptr) {
-    return;
+// The first axis of which `field` says one of `words`, from 1; 0 where there is none.
+std::size_t axis_that_says(const Header& header, std::string_view field,
+                           std::initializer_list<std::string_view> words) {
+  const Line* line = find_field(header, field);
+  if (line == nullptr) return 0;
+  const std::vector<std::string> axes = axes_of(line->value);
+  for (std::size_t a = 0; a < axes.size(); ++a) {
+    for (const std::string_view word : words) {
+      if (axes[a].find(word) != std::string::npos) return a + 1;
+    }
   }
-  throw Error(name +
-              ": the NRRD header gives the range of the axes instead of a spacing; give the "
-              "spacing and the origin");
+  return 0;
+}
+
+// Behind three axes, one that holds one value only, as one point of time, needs no spacing.
+bool needs_spacing(const Header& header, std::size_t axis) {
+  const Line* sizes = find_field(header, "sizes");
+  if (axis <= 3 || sizes == nullptr) return true;
+  const std::vector<std::string> sides = axes_of(sizes->value);
+  return axis > sides.size() || number_in(sides[axis - 1]) != 1u;
+}
+
+// ITK takes a spacing of 1 where NRRD says that it is unknown, or gives a range of each axis.
+void check_spacing(const Header& header, const ReadOptions& options, const std::string& name) {
+  const bool directions = find_field(header, "spacedirections") != nullptr;
+  if (const std::size_t axis = axis_that_says(header, "spacedirections", {"none", "nan"})) {
+    throw Error(name + ": axis " + std::to_string(axis) +
+                " is no axis of space, \"space directions\" has none for it; save a volume of "
+                "three axes of space as a file of its own");
+  }
+  if (options.spacing) return;
+  if (const std::size_t axis = axis_that_says(header, "spacings", {"nan"});
+      axis != 0 && needs_spacing(header, axis)) {
+    throw Error(name + ": the NRRD header does not know the spacing of axis " +
+                std::to_string(axis) + "; give the spacing");
+  }
+  if (find_field(header, "axismaxs") != nullptr && find_field(header, "spacings") == nullptr &&
+      !directions) {
+    throw Error(name +
+                ": the NRRD header gives the range of the axes instead of a spacing; give the "
+                "spacing and the origin");
+  }
 }
 
 bool is_left_anterior_superior(const Header& header) {
-  const std::string* line = find_field(header, "space");
+  const Line* line = find_field(header, "space");
   if (line == nullptr) return false;
-  std::string space = value_of(*line, "space");
-  std::ranges::transform(space, space.begin(), [](char c) {
-    return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
-  });
-  return space == "las" || space == "left-anterior-superior";
+  std::string space = in_small_letters(line->value);
+  std::erase_if(space, [](char c) { return c == '-' || c == ' '; });
+  return space == "las" || space == "leftanteriorsuperior";
+}
+
+std::string replaced(std::string text, const std::string& what, const std::string& with) {
+  for (std::size_t at = 0; (at = text.find(what, at)) != std::string::npos; at += with.size()) {
+    text.replace(at, what.size(), with);
+  }
+  return text;
 }
 
 }  // namespace
@@ -156,11 +250,11 @@ Volume read_nrrd(const fs::path& path, const ReadOptions& options) {
   refuse_raw_options(options, name);
   check_input_file(path);
   const Header header = read_header(path);
-  check_sides(header, name);
+  const std::uint64_t count = header_count(header, name);
   check_spacing(header, options, name);
   const bool las = is_left_anterior_superior(header);
   const std::vector<std::string> mended = mended_header(header, path);
-  if (mended.empty()) return read_nrrd_file(path, name, las, options);
+  if (mended.empty()) return read_nrrd_file(path, name, count, las, options);
 
   const TemporaryFolder folder(name);
   const fs::path mended_path = folder.path() / "mended.nhdr";
@@ -168,7 +262,12 @@ Volume read_nrrd(const fs::path& path, const ReadOptions& options) {
   for (const std::string& line : mended) stream << line << '\n';
   stream.close();
   if (!stream) throw Error(name + ": cannot write a temporary header for it");
-  return read_nrrd_file(mended_path, name, las, options);
+  try {
+    // No mended header names a space, so ITK has turned nothing.
+    return read_nrrd_file(mended_path, name, count, false, options);
+  } catch (const Error& e) {
+    throw Error(replaced(e.what(), mended_path.string(), name));
+  }
 }
 
 }  // namespace pellucid

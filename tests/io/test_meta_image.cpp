@@ -125,9 +125,9 @@ TEST_F(MetaImageTest, AFileForEachSlice) {
   EXPECT_TRUE(contains(error_of([&] { read_volume(path("m.mhd")); }), "none.raw: no such file"));
   write("n.mhd", file.header() + "slice01.raw\nslice03.raw\n");
   EXPECT_TRUE(contains(error_of([&] { read_volume(path("n.mhd")); }), "2 files"));
-  for (const char* pattern :
-       {"slice%02d.raw 1 5 1", "slice%02d.raw 1 9 2", "slice%s.raw 1 3 1", "slice%d%d.raw 1 3 1",
-        "slice%999999d.raw 1 3 1", "slice%02d.raw 1 5 0", "slice%02d.raw 5 1 2", "%"}) {
+  for (const char* pattern : {"slice%02d.raw 1 5 1", "slice%02d.raw 1 9 2", "slice%s.raw 1 3 1",
+                              "slice%d%d.raw 1 3 1", "slice%999999d.raw 1 3 1",
+                              "slice%02d.raw 1 5 0", "slice%02d.raw 5 1 2", "%", "slice.raw %d"}) {
     file.data_file = pattern;
     write("b.mhd", file.header());
     error_of([&] { read_volume(path("b.mhd")); });

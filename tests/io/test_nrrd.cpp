@@ -138,6 +138,56 @@ TEST_F(NrrdTest, SpacingsAndAxisMinima) {
   expect_near(world_of(parse(range, bytes_of(counting()), options), 4, 3, 2), {14, 26, 36});
 }
 
+TEST_F(NrrdTest, NamesOfFieldsAreReadAsNrrdIoReadsThem) {
+  const std::string place = "SPACE Directions: (1,0,0) (0,2,0) (0,0,3)\nspace origin: (10,20,30)\n";
+  expect_near(world_of(parse(header("Space: LAS\n" + place)), 4, 3, 2), {14, -26, 36});
+  expect_near(world_of(parse(header("Space: left anterior superior\n" + place)), 4, 3, 2),
+              {14, -26, 36});
+  expect_near(
+      world_of(parse(header("Space: LPS\nSpaceDirections:  (1,0,0) (0,2,0) (0,0,3)\n")), 4, 3, 2),
+      {4, 6, 6});
+  expect_near(world_of(parse(header(place)), 4, 3, 2), {14, 26, 36});
+  EXPECT_TRUE(contains(error(header("axismins: 10 20 30\naxismaxs: 14 26 36\n")), "range"));
+  EXPECT_TRUE(contains(error(header("Axis Mins: 10 20 30\nAXIS MAXS: 14 26 36\n")), "range"));
+  // A comment and a key are no fields.
+  expect_near(world_of(parse(header("# axis maxs: 1 2 3\naxis maxs:=1 2 3\n")), 4, 3, 2),
+              {4, 3, 2});
+  // ITK would write 2^34 bytes and more into room for 32.
+  for (const char* field : {"sizes", "Sizes", "SIZES"}) {
+    std::string sizes = header("", "float", "raw", "4294967298 2 2");
+    sizes.replace(sizes.find("sizes"), 5, field);
+    EXPECT_TRUE(contains(error(sizes), "too large to read")) << field;
+  }
+}
+
+TEST_F(NrrdTest, SpacingThatIsNotKnownIsRefused) {
+  for (const char* nan : {"nan", "NaN", "-nan"}) {
+    const std::string fields = header("Spacings: 1 " + std::string(nan) + " 1\n");
+    EXPECT_TRUE(contains(error(fields), "spacing of axis 2; give the spacing")) << nan;
+    ReadOptions options;
+    options.spacing = Vec3<double>{1, 2, 3};
+    expect_near(world_of(parse(fields, bytes_of(counting()), options), 4, 3, 2), {4, 6, 6});
+  }
+  error(header("spacings: 1 inf 1\n"));
+  // Behind the three, an axis of one value changes nothing.
+  std::string four = header("spacings: 1 2 3 nan\n");
+  four.replace(four.find("dimension: 3"), 12, "dimension: 4");
+  four.replace(four.find("5 4 3"), 5, "5 4 3 1");
+  expect_near(world_of(parse(four), 4, 3, 2), {4, 6, 6});
+  expect_near(world_of(parse(header("")), 4, 3, 2), {4, 3, 2});
+}
+
+TEST_F(NrrdTest, AnAxisThatIsNoneOfSpaceIsRefused) {
+  for (const char* axis : {"none", "(nan,nan,nan)"}) {
+    for (const char* space : {"space: LPS\n", ""}) {
+      const std::string place = "space directions: (1,0,0) (0,2,0) " + std::string(axis) + "\n";
+      EXPECT_TRUE(contains(error(header(space + place)), "axis 3 is no axis of space")) << axis;
+    }
+  }
+  EXPECT_TRUE(contains(error(header("space: LPS\nspace directions: none (1,0,0) (0,2,0)\n")),
+                       "axis 1 is no axis of space"));
+}
+
 TEST_F(NrrdTest, CenteringIsThatOfTheFile) {
   EXPECT_EQ(parse(header("")).description().centering, Centering::point);
   EXPECT_EQ(parse(header("centerings: node node node\n")).description().centering,
@@ -180,7 +230,27 @@ TEST_F(NrrdTest, HeadersThatMissTheirSpaceAreMended) {
   expect_near(world_of(read_volume(path("a.nhdr")), 4, 3, 2), {14, 26, 36});
   write("b.nhdr", header("space: 3D-left-handed\nspacings: 1 2 3\ndata file: v.raw\n"));
   expect_near(world_of(read_volume(path("b.nhdr")), 4, 3, 2), {4, 6, 6});
+  expect_near(world_of(parse(header("space: LAS\nspacings: 1 2 3\n")), 4, 3, 2), {4, 6, 6});
   EXPECT_EQ(attached.description().name, path("a.nrrd").string());
+}
+
+TEST_F(NrrdTest, MendedHeadersKeepTheirLineSkip) {
+  const std::string place = "space directions: (1,0,0) (0,2,0) (0,0,3)\nLine Skip: 2\n";
+  const std::string values = "two\nlines\n" + bytes_of(counting());
+  expect_counting(parse(header(place), values), "f32");
+  write("v.raw", values);
+  write("a.nhdr", header(place + "DataFile: v.raw\n"));
+  expect_counting(read_volume(path("a.nhdr")), "f32");
+}
+
+TEST_F(NrrdTest, ErrorsOfMendedHeadersNameTheFile) {
+  const std::string place = "space directions: (1,0,0) (0,2,0) (0,0,3)\n";
+  for (const std::string& message :
+       {error(header(place), "short"), error(header(place, "nonsense")),
+        error(header(place + "data file: none.raw\n"))}) {
+    EXPECT_TRUE(contains(message, path("a.nrrd").string())) << message;
+    EXPECT_FALSE(contains(message, "mended")) << message;
+  }
 }
 
 TEST_F(NrrdTest, EveryTruncationIsAnError) {
