@@ -20,6 +20,7 @@ namespace {
 struct CompareArguments {
   std::string a, b, difference;
   std::optional<double> largest;
+  std::optional<std::string> tolerance;
   bool json = false;
 };
 
@@ -28,6 +29,19 @@ constexpr const char* channel_names[] = {"red", "green", "blue", "alpha"};
 /// What the difference file shows, in words.
 struct DifferenceFile {
   std::string path, scaling;
+};
+
+/// How many pixels differ by more than a tolerance.
+struct ToleranceCheck {
+  double tolerance;
+  std::size_t pixels_over;
+};
+
+struct Comparison {
+  ImageDifference difference;
+  std::optional<ErrorCheck> errors;
+  std::optional<ToleranceCheck> tolerance;
+  std::optional<DifferenceFile> file;
 };
 
 void check_difference_path(const CompareArguments& arguments) {
@@ -66,8 +80,22 @@ std::string statistics_line(std::string_view name, const DifferenceStatistics& s
                      s.root_mean_square, s.percentile_999, fmt::format("{:.2f} dB", s.psnr));
 }
 
-std::string text_report(const Image& a, const ImageDifference& d,
-                        const std::optional<DifferenceFile>& file) {
+std::string error_lines(const ErrorCheck& check) {
+  const std::size_t known = check.pixels - check.unknown;
+  std::string text = fmt::format(
+      "the error that A carries{}: {} of {} pixels differ by more; error / difference: median "
+      "{:.3g}, smallest {:.3g}\n",
+      check.unknown > 0 ? fmt::format(" (unknown in {} pixels)", check.unknown) : "", check.over,
+      known, check.tightness_median, check.tightness_smallest);
+  if (check.over > 0) {
+    text += fmt::format("worst at column {}, row {}: difference {:.6g}, error {:.6g}\n",
+                        check.column, check.row, check.difference, check.error);
+  }
+  return text;
+}
+
+std::string text_report(const Image& a, const Comparison& comparison) {
+  const ImageDifference& d = comparison.difference;
   std::string text =
       fmt::format("{} x {} pixels, |a - b| of linear premultiplied values\n", a.width, a.height);
   text += fmt::format("{:<6} {:>13} {:>13} {:>13} {:>9}\n", "", "largest", "RMS", "99.9 %", "PSNR");
@@ -79,12 +107,34 @@ std::string text_report(const Image& a, const ImageDifference& d,
     text +=
         fmt::format("{} values are not finite in one image and left out above\n", d.all.not_finite);
   }
-  if (file) text += fmt::format("{}: {}\n", file->path, file->scaling);
+  if (comparison.errors) text += error_lines(*comparison.errors);
+  if (const auto& check = comparison.tolerance) {
+    text += fmt::format("pixels that differ by more than {:.6g}: {}\n", check->tolerance,
+                        check->pixels_over);
+  }
+  if (const auto& file = comparison.file) {
+    text += fmt::format("{}: {}\n", file->path, file->scaling);
+  }
   return text;
 }
 
-Json json_report(const CompareArguments& arguments, const Image& a, const ImageDifference& d,
-                 const std::optional<DifferenceFile>& file) {
+Json errors_json(const ErrorCheck& check) {
+  const std::size_t known = check.pixels - check.unknown;
+  return {{"pixels", check.pixels},
+          {"unknown", check.unknown},
+          {"proved", check.proved},
+          {"over", check.over},
+          {"share_over",
+           known > 0 ? static_cast<double>(check.over) / static_cast<double>(known) : 0.0},
+          {"worst_at", {check.column, check.row}},
+          {"worst_difference", check.difference},
+          {"worst_error", check.error},
+          {"tightness_median", check.tightness_median},
+          {"tightness_smallest", check.tightness_smallest}};
+}
+
+Json json_report(const CompareArguments& arguments, const Image& a, const Comparison& comparison) {
+  const ImageDifference& d = comparison.difference;
   Json json;
   json["pellucid"] = PELLUCID_VERSION_STRING;
   json["a"] = arguments.a;
@@ -96,7 +146,14 @@ Json json_report(const CompareArguments& arguments, const Image& a, const ImageD
   for (std::size_t c = 0; c < 4; ++c) {
     json["channels"][channel_names[c]] = statistics_json(d.channel[c]);
   }
-  if (file) json["difference"] = {{"path", file->path}, {"shows", file->scaling}};
+  if (comparison.errors) json["error"] = errors_json(*comparison.errors);
+  if (const auto& check = comparison.tolerance) {
+    json["tolerance"] = check->tolerance;
+    json["pixels_over"] = check->pixels_over;
+  }
+  if (const auto& file = comparison.file) {
+    json["difference"] = {{"path", file->path}, {"shows", file->scaling}};
+  }
   return json;
 }
 
@@ -105,19 +162,31 @@ int run_compare(const CompareArguments& arguments) {
     throw UsageError(
         fmt::format("--largest {}: expected a number of at least 0", *arguments.largest));
   }
+  std::optional<double> tolerance;
+  if (arguments.tolerance) tolerance = parse_tolerance("--tolerance", *arguments.tolerance);
   if (!arguments.difference.empty()) check_difference_path(arguments);
   const Image a = read_exr(arguments.a), b = read_exr(arguments.b);
   if (a.width != b.width || a.height != b.height) {
     throw Error(fmt::format("{} has {} x {} pixels and {} has {} x {}; compare images of one size",
                             arguments.a, a.width, a.height, arguments.b, b.width, b.height));
   }
-  const ImageDifference difference = compare_images(a, b);
-  std::optional<DifferenceFile> file;
-  if (!arguments.difference.empty()) file = write_difference(arguments, a, b, difference);
+  Comparison comparison{compare_images(a, b), check_errors(a, b), {}, {}};
+  const ImageDifference& difference = comparison.difference;
+  if (tolerance) comparison.tolerance = {*tolerance, pixels_over(a, b, *tolerance)};
+  if (!arguments.difference.empty()) {
+    comparison.file = write_difference(arguments, a, b, difference);
+  }
   if (arguments.json) {
-    print_json(json_report(arguments, a, difference, file));
+    print_json(json_report(arguments, a, comparison));
   } else {
-    print_text(text_report(a, difference, file));
+    print_text(text_report(a, comparison));
+  }
+  if (comparison.tolerance && comparison.tolerance->pixels_over > 0) {
+    throw OverTolerance(fmt::format(
+        "{} of {} pixels differ by more than {:.6g}, the largest difference is at column {}, row "
+        "{}",
+        comparison.tolerance->pixels_over, a.pixels.size(), *tolerance, difference.column,
+        difference.row));
   }
   if (!arguments.largest) return 0;
   if (difference.all.not_finite > 0) {
@@ -147,13 +216,22 @@ Command add_compare(CLI::App& app) {
       .add_option("--largest", arguments->largest,
                   "Exit with 1 where the largest difference exceeds E")
       ->option_text("E");
+  command
+      .add_option("--tolerance", arguments->tolerance,
+                  "Exit with 3 where a pixel differs by more than E, and say how many; a fraction "
+                  "as 1/512 is fine")
+      ->option_text("E");
   command.add_flag("--json", arguments->json, "Print JSON");
   command.footer(
-      "Differences are taken of linear, premultiplied R, G, B and A; PSNR is for a peak of 1.\n"
+      "Differences are taken of linear, premultiplied R, G, B and A; PSNR is for a peak of 1. "
+      "Where\n"
+      "A carries an error, as an .exr of 'pellucid render' does, it is held against the "
+      "difference.\n"
       "\n"
       "Examples:\n"
       "  pellucid compare exact.exr midpoint.exr\n"
       "  pellucid compare exact.exr reference.exr --largest 1e-6\n"
+      "  pellucid compare exact.exr reference.exr --tolerance 1/512\n"
       "  pellucid compare a.exr b.exr --difference difference.png --json");
   return {&command, [arguments] { return run_compare(*arguments); }};
 }

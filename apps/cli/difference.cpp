@@ -92,6 +92,69 @@ ImageDifference compare_images(const Image& a, const Image& b) {
   return result;
 }
 
+std::optional<ErrorCheck> check_errors(const Image& a, const Image& b) {
+  check_sizes(a, b);
+  if (a.error.empty()) return std::nullopt;
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  ErrorCheck check;
+  check.pixels = a.pixels.size();
+  std::vector<double> tightness;
+  double worst = -infinity;
+  for (std::size_t p = 0; p < a.pixels.size(); ++p) {
+    double largest = 0;
+    double error = static_cast<double>(a.error[p]);
+    if (!b.error.empty()) error += static_cast<double>(b.error[p]);
+    double excess = -infinity;
+    for (std::size_t c = 0; c < 4; ++c) {
+      const double difference = absolute_difference(a.pixels[p][c], b.pixels[p][c]);
+      if (std::isnan(difference)) {
+        largest = excess = infinity;
+        break;
+      }
+      const double rounding =
+          b.error.empty() ? std::abs(static_cast<double>(b.pixels[p][c])) * 0x1p-24 : 0;
+      largest = std::max(largest, difference);
+      excess = std::max(excess, difference - rounding - error);
+    }
+    check.proved += a.proved[p] != 0 && (b.proved.empty() || b.proved[p] != 0) ? 1U : 0U;
+    if (!std::isfinite(error)) {
+      ++check.unknown;
+      continue;
+    }
+    if (!(excess <= 0)) ++check.over;
+    if (largest > 0) tightness.push_back(error / largest);
+    if (!(excess <= worst)) {
+      worst = excess;
+      const auto width = static_cast<std::size_t>(a.width);
+      check.column = static_cast<int>(p % width);
+      check.row = static_cast<int>(p / width);
+      check.difference = largest;
+      check.error = error;
+    }
+  }
+  check.tightness_median = check.tightness_smallest = infinity;
+  if (!tightness.empty()) {
+    const auto middle = tightness.begin() + static_cast<std::ptrdiff_t>(tightness.size() / 2);
+    std::nth_element(tightness.begin(), middle, tightness.end());
+    check.tightness_median = *middle;
+    check.tightness_smallest = *std::min_element(tightness.begin(), middle + 1);
+  }
+  return check;
+}
+
+std::size_t pixels_over(const Image& a, const Image& b, double tolerance) {
+  check_sizes(a, b);
+  std::size_t over = 0;
+  for (std::size_t p = 0; p < a.pixels.size(); ++p) {
+    bool within = true;
+    for (std::size_t c = 0; c < 4; ++c) {
+      within = within && absolute_difference(a.pixels[p][c], b.pixels[p][c]) <= tolerance;
+    }
+    over += within ? 0 : 1;
+  }
+  return over;
+}
+
 Image difference_image(const Image& a, const Image& b) {
   check_sizes(a, b);
   Image image;

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstddef>
+#include <optional>
 
 #include "pellucid/scene/image.h"
 
@@ -27,6 +28,28 @@ struct ImageDifference {
 
 /// Of premultiplied linear RGBA. Throws Error where the sizes differ.
 ImageDifference compare_images(const Image& a, const Image& b);
+
+/// How a difference stands to the errors that the images carry.
+struct ErrorCheck {
+  std::size_t pixels = 0;
+  std::size_t over = 0;     ///< differ by more than the errors allow, or are not finite
+  std::size_t unknown = 0;  ///< with an error that is infinite or not a number: never over
+  std::size_t proved = 0;   ///< whose error is a proved bound
+  int column = 0, row = 0;  ///< where the difference exceeds its error by most, or comes closest
+  double difference = 0, error = 0;  ///< there
+
+  /// error / difference over the pixels that differ and whose error is known; infinite where there
+  /// is none.
+  double tightness_median = 0, tightness_smallest = 0;
+};
+
+/// Largest difference of a pixel's channels against a's error plus b's; where b carries none it
+/// counts as exact but for its rounding to binary32 (2⁻²⁴ of each value). Nothing where a carries
+/// none. Throws Error where the sizes differ.
+std::optional<ErrorCheck> check_errors(const Image& a, const Image& b);
+
+/// Pixels with a channel that differs by more than the tolerance or is not finite in one image.
+std::size_t pixels_over(const Image& a, const Image& b, double tolerance);
 
 /// |a − b| per channel, of the same size; NaN where it is not finite.
 Image difference_image(const Image& a, const Image& b);

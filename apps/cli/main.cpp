@@ -44,8 +44,8 @@ int run(int argc, char** argv) {
       "  pellucid compare exact.exr midpoint.exr\n"
       "\n"
       "'pellucid COMMAND --help' shows the options and examples of a command.\n"
-      "Exit codes: 0 done, 1 failed, 2 wrong arguments, 130 interrupted. A failure is one line on\n"
-      "stderr and leaves no partial file.");
+      "Exit codes: 0 done, 1 failed, 2 wrong arguments, 3 over the tolerance, 130 interrupted. A\n"
+      "failure is one line on stderr and leaves no partial file.");
   app.set_version_flag("--version", "pellucid " PELLUCID_VERSION_STRING,
                        "Print the version and exit");
   app.set_help_flag("-h,--help", "Print this help and exit");
@@ -90,6 +90,8 @@ int main(int argc, char** argv) {
     return run(argc, argv);
   } catch (const UsageError& error) {
     return fail(2, error.what());
+  } catch (const OverTolerance& error) {
+    return fail(3, error.what());
   } catch (const Interrupted& interrupted) {
     return fail(128 + interrupted.signal, "interrupted; nothing more was written");
   } catch (const pellucid::Error& error) {

@@ -89,6 +89,16 @@ ImageSize parse_size(const std::string& option, const std::string& text) {
   return {width, height};
 }
 
+double parse_tolerance(const std::string& option, const std::string& text) {
+  constexpr std::string_view expected = "a positive number or fraction, as in 0.001, 1e-4 or 1/512";
+  const std::vector<double> n = parse_list<double>(option, text, '/', expected);
+  const double tolerance = n.size() == 2 ? n[0] / n[1] : n[0];
+  bool good = n.size() <= 2 && tolerance > 0 && std::isfinite(tolerance);
+  for (const double x : n) good = good && x > 0 && std::isfinite(x);
+  if (!good) throw UsageError(fmt::format("{} '{}': expected {}", option, text, expected));
+  return tolerance;
+}
+
 Rgb<double> parse_color(const std::string& option, const std::string& text) {
   if (text == "white") return {1, 1, 1};
   if (text == "black") return {0, 0, 0};

@@ -17,6 +17,12 @@ class UsageError : public Error {
   using Error::Error;
 };
 
+/// A picture is, or two differ by, more than the tolerance: exit code 3.
+class OverTolerance : public Error {
+ public:
+  using Error::Error;
+};
+
 /// The text as one line that a terminal can show: line breaks and control characters become spaces.
 std::string one_line(std::string_view text);
 
@@ -25,6 +31,8 @@ std::array<double, 3> parse_triple(const std::string& option, const std::string&
 std::array<int, 3> parse_dimensions(const std::string& option, const std::string& text);
 /// "640x480", or "512" for a square.
 ImageSize parse_size(const std::string& option, const std::string& text);
+/// A finite positive number, or the quotient of two: "0.001", "1e-4", "1/512".
+double parse_tolerance(const std::string& option, const std::string& text);
 /// "white", "black" or linear "R,G,B", each >= 0.
 Rgb<double> parse_color(const std::string& option, const std::string& text);
 

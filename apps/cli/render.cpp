@@ -4,16 +4,19 @@
 #include <fmt/format.h>
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "commands.h"
+#include "error_map.h"
+#include "parse.h"
 #include "pellucid/io/atomic_file.h"
 #include "pellucid/io/image_files.h"
 #include "pellucid/reference/render.h"
 #include "pellucid/scene/builtin_fields.h"
 #include "progress.h"
-#include "view.h"
+#include "tolerance.h"
 
 namespace pellucid::cli {
 
@@ -24,6 +27,10 @@ void print_notes(const RenderArguments& arguments, const PreparedScene& prepared
   if (const std::size_t nan = prepared.scene.volume->statistics().nan; nan > 0) {
     print_note(fmt::format("{} values are NaN: rendered as vacuum", nan));
   }
+  if (const double used = prepared.scene.integration.tolerance; used != prepared.tolerance_asked) {
+    print_note(fmt::format("a tolerance of {} is beyond the limits: {} is used",
+                           prepared.tolerance_asked, used));
+  }
   if (prepared.transfer_function_from == "default" && !arguments.print_tf &&
       arguments.save_tf.empty()) {
     print_note(
@@ -32,11 +39,18 @@ void print_notes(const RenderArguments& arguments, const PreparedScene& prepared
   }
 }
 
-Image render_image(const RenderArguments& arguments, const Scene& scene, RenderReport& report) {
+Image render_image(const RenderArguments& arguments, const PreparedScene& prepared,
+                   RenderReport& report) {
+  const Scene& scene = prepared.scene;
   RenderOptions options;
   options.threads = arguments.threads;
   options.depth = !arguments.depth_picture.empty();
-  for (const std::string& path : arguments.outputs) options.depth |= extension_of(path) == ".exr";
+  options.error = !arguments.error_map.empty();
+  for (const std::string& path : arguments.outputs) {
+    if (extension_of(path) != ".exr") continue;
+    options.depth = true;
+    options.error = prepared.knows_its_error(arguments);
+  }
   ProgressLine progress(!arguments.quiet);
   options.progress = [&](double share_done) {
     progress.show(share_done);
@@ -52,20 +66,38 @@ Image render_image(const RenderArguments& arguments, const Scene& scene, RenderR
   }
 }
 
+/// What the header says of the scale is in the image only while the map is written.
+void write_error_map(Image& image, double tolerance, const std::string& path) {
+  std::string& scale = image.metadata["pellucid.error_map"];
+  if (extension_of(path) == ".exr") {
+    scale = fmt::format("error: how far a pixel may be off; Y: error / {}", tolerance);
+    write_error_exr(image, tolerance, path);
+  } else {
+    scale = error_scale(tolerance);
+    Image picture = error_picture(image, tolerance);
+    picture.metadata = image.metadata;
+    write_png(picture, path, Rgb<double>{});
+  }
+  image.metadata.erase("pellucid.error_map");
+}
+
 int run_render(const RenderArguments& arguments) {
   check_arguments(arguments);
   const PreparedScene prepared = prepare(arguments);
   const std::string transfer_function =
-      transfer_function_to_json(*prepared.scene.transfer_function);
-  if (arguments.print_tf) print_text(transfer_function);
+      transfer_function_to_json(*prepared.description.transfer_function);
 
   const InterruptGuard guard;
   RenderReport report;
   Image image;
+  std::optional<std::string> over;
   if (arguments.renders()) {
-    image = render_image(arguments, prepared.scene, report);
-    add_metadata(arguments, prepared, image);
+    image = render_image(arguments, prepared, report);
+    add_metadata(arguments, prepared, report, image);
+    over = over_tolerance(report, prepared.scene.integration);
   }
+  if (over && arguments.strict) throw OverTolerance(*over + " (--strict: nothing is written)");
+  if (arguments.print_tf) print_text(transfer_function);
   std::vector<std::string> written;
   const auto write = [&](const std::string& path, auto&& write_file) {
     if (path.empty()) return;
@@ -83,99 +115,19 @@ int run_render(const RenderArguments& arguments) {
     });
   }
   write(arguments.depth_picture, [&] { write_png(depth_picture(image), arguments.depth_picture); });
+  write(arguments.error_map,
+        [&] { write_error_map(image, prepared.scene.integration.tolerance, arguments.error_map); });
   write(arguments.save_tf, [&] { write_text_file(arguments.save_tf, transfer_function); });
   write(arguments.save_scene,
         [&] { write_text_file(arguments.save_scene, scene_text(prepared, arguments.save_scene)); });
   if (arguments.json) print_json(report_json(arguments, prepared, report, written));
-  print_notes(arguments, prepared);  // last, so that a failure is one line
+  // Last, so that a failure is one line.
+  print_notes(arguments, prepared);
+  if (arguments.renders() && !arguments.json && !arguments.quiet) {
+    for (const std::string& line : report_lines(arguments, prepared, report)) print_note(line);
+  }
+  if (over) throw OverTolerance(*over);
   return 0;
-}
-
-void add_output_options(CLI::App& command, RenderArguments& arguments) {
-  command
-      .add_option("-o,--output", arguments.outputs,
-                  "Image to write, .png or .exr; may be given several times")
-      ->option_text("FILE")
-      ->allow_extra_args(false);
-  command
-      .add_option(
-          "--depth", arguments.depth_picture,
-          "Also write a picture of the depth, near white, far black (an .exr of -o always has "
-          "the depth in its channel Z)")
-      ->option_text("FILE.png");
-  command
-      .add_option("--save-tf", arguments.save_tf, "Write the transfer function used, for editing")
-      ->option_text("FILE.json");
-  auto* print_tf =
-      command.add_flag("--print-tf", arguments.print_tf,
-                       "Print the transfer function used; without -o nothing is rendered");
-  command
-      .add_option("--save-scene", arguments.save_scene,
-                  "Write the complete scene, which renders to the same picture")
-      ->option_text("FILE.json");
-  command.add_flag("--json", arguments.json, "Print a report as JSON")->excludes(print_tf);
-  command.add_flag("-q,--quiet", arguments.quiet, "No progress and no notes, only errors");
-}
-
-void add_scene_options(CLI::App& command, RenderArguments& arguments) {
-  command
-      .add_option("--tf", arguments.transfer_function,
-                  "Transfer function; default: the scene's, else made from the histogram")
-      ->option_text("FILE.json");
-  auto* camera = command
-                     .add_option("--camera", arguments.camera,
-                                 "Camera; default: the scene's, else obliquely from the front")
-                     ->option_text("FILE.json");
-  command
-      .add_option(
-          "--view", arguments.view,
-          "Camera on this side of the volume: front, back, left, right, top, bottom, oblique")
-      ->option_text("NAME")
-      ->check(CLI::IsMember(view_names()))
-      ->excludes(camera);
-  command
-      .add_option("--size", arguments.size,
-                  "Pixels of the image, or N for a square; default: the scene's, else 512x512")
-      ->option_text("WxH");
-  command
-      .add_option(
-          "--background", arguments.background,
-          "Behind a .png: white, black or linear R,G,B; default: the scene's, else transparent "
-          "(an .exr always stays transparent)")
-      ->option_text("R,G,B");
-}
-
-void add_integration_options(CLI::App& command, RenderArguments& arguments) {
-  constexpr Method methods[] = {Method::exact,    Method::rectangle, Method::taylor,
-                                Method::midpoint, Method::trapezoid, Method::simpson,
-                                Method::linear};
-  std::vector<std::string> names;
-  for (const Method method : methods) names.emplace_back(method_name(method));
-  auto* method =
-      command
-          .add_option("--method", arguments.method,
-                      fmt::format("{}; default: the scene's, else exact", fmt::join(names, ", ")))
-          ->option_text("NAME")
-          ->check(CLI::IsMember(names));
-  auto* step = command
-                   .add_option("--step", arguments.step,
-                               "Step of the sampling methods in voxels (the shortest cell edge)")
-                   ->option_text("VOXELS");
-  auto* precision = command
-                        .add_option("--precision", arguments.precision,
-                                    "float or double; default: the scene's, else float")
-                        ->option_text("TYPE")
-                        ->check(CLI::IsMember({"float", "double"}));
-  command
-      .add_flag(
-          "--reference", arguments.reference,
-          "Render by adaptive quadrature to 1e-12 instead: slow, and independent of the methods")
-      ->excludes(method)
-      ->excludes(step)
-      ->excludes(precision);
-  command.add_option("--threads", arguments.threads, "Threads; 0, the default: one per core")
-      ->option_text("N")
-      ->check(CLI::Range(0, 4096));
 }
 
 }  // namespace
@@ -187,10 +139,7 @@ Command add_render(CLI::App& app) {
       .add_option("INPUT", arguments->input,
                   std::string(input_help) + ", SCENE.json or builtin:NAME[:POINTS]")
       ->required();
-  add_output_options(command, *arguments);
-  add_scene_options(command, *arguments);
-  add_integration_options(command, *arguments);
-  arguments->volume.add_to(command);
+  add_render_options(command, *arguments);
   command.footer(
       fmt::format("Built-in fields, of POINTS values along each axis (128):\n  {}\n",
                   fmt::join(builtin_field_names(), ", ")) +
@@ -200,7 +149,9 @@ Command add_render(CLI::App& app) {
       "  pellucid render brain.nii.gz -o brain.png\n"
       "  pellucid render brain.nii.gz --print-tf > tf.json\n"
       "  pellucid render brain.nii.gz --tf tf.json --view left -o brain.exr -o brain.png\n"
-      "  pellucid render scene.json -o scene.exr --size 1920x1080 --precision double --json\n"
+      "  pellucid render scene.json -o scene.exr --size 1920x1080 --samples 2 --json\n"
+      "  pellucid render scene.json -o scene.exr --tolerance 1/4096 --grade proved --error-map "
+      "e.png\n"
       "  pellucid render builtin:marschner_lobb:256 -o ml.exr --method midpoint --step 0.5\n"
       "  pellucid render head.raw --dimensions 256,256,113 --type u16 --big-endian --spacing "
       "1,1,2\n"

@@ -15,14 +15,17 @@ namespace pellucid::cli {
 struct RenderArguments {
   std::string input;
   std::vector<std::string> outputs;
-  std::string depth_picture, save_tf, save_scene;
-  std::string transfer_function, camera, view, size, method, precision, background;
+  std::string depth_picture, error_map, save_tf, save_scene;
+  std::string transfer_function, camera, view, size, background;
+  std::string method, precision, grade;
+  std::optional<std::string> tolerance;
   std::optional<double> step;
+  std::optional<int> samples;
   int threads = 0;
-  bool print_tf = false, reference = false, json = false, quiet = false;
+  bool print_tf = false, reference = false, strict = false, json = false, quiet = false;
   VolumeOptions volume;
 
-  bool renders() const { return !outputs.empty() || !depth_picture.empty(); }
+  bool renders() const { return !outputs.empty() || !depth_picture.empty() || !error_map.empty(); }
 };
 
 /// The scene, and what is told of how it came about.
@@ -30,7 +33,15 @@ struct PreparedScene {
   Scene scene;
   SceneDescription description;  ///< complete: with nothing left to defaults
   std::string transfer_function_from;
+  double tolerance_asked = 0;  ///< Integration::tolerance is the one used
+
+  /// Of whether an error comes with the picture.
+  bool knows_its_error(const RenderArguments& arguments) const {
+    return !arguments.reference && scene.integration.method == Method::exact;
+  }
 };
+
+void add_render_options(CLI::App& command, RenderArguments& arguments);
 
 /// Throws UsageError for what cannot be done, and Error where a file could not be written later.
 void check_arguments(const RenderArguments& arguments);
@@ -39,11 +50,15 @@ PreparedScene prepare(const RenderArguments& arguments);
 /// The scene as JSON, with the path of its volume as seen from the folder of `target`.
 std::string scene_text(const PreparedScene& prepared, const std::filesystem::path& target);
 
-/// What makes the picture and nothing else: no time, no thread count, so that the same scene gives
-/// the same file.
-void add_metadata(const RenderArguments& arguments, const PreparedScene& prepared, Image& image);
+/// What makes the picture, and its error, and nothing else: no time, no thread count, so that the
+/// same scene gives the same file.
+void add_metadata(const RenderArguments& arguments, const PreparedScene& prepared,
+                  const RenderReport& report, Image& image);
 /// Nearest white, farthest black, transparent where the pixel is empty.
 Image depth_picture(const Image& image);
+/// What it took and how exact it is, a few lines for people.
+std::vector<std::string> report_lines(const RenderArguments& arguments,
+                                      const PreparedScene& prepared, const RenderReport& report);
 Json report_json(const RenderArguments& arguments, const PreparedScene& prepared,
                  const RenderReport& report, const std::vector<std::string>& written);
 

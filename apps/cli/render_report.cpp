@@ -3,12 +3,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <string>
 #include <vector>
 
 #include "pellucid/base/version.h"
 #include "render.h"
+#include "tolerance.h"
 
 namespace pellucid::cli {
 
@@ -18,8 +20,35 @@ std::string method_text(const RenderArguments& arguments, const Integration& int
   return arguments.reference ? "reference" : std::string(method_name(integration.method));
 }
 
+/// The sampling methods know no tolerance: automatic is float for them.
 std::string precision_text(const RenderArguments& arguments, const Integration& integration) {
-  return arguments.reference || integration.precision == Precision::float64 ? "double" : "float";
+  if (arguments.reference || integration.precision == Precision::float64) return "double";
+  if (integration.precision == Precision::float32) return "float";
+  return integration.method == Method::exact ? "automatic" : "float";
+}
+
+std::string grade_text(Grade grade) {
+  return grade == Grade::proved ? "proved" : "estimated";
+}
+
+double per_ray(std::uint64_t count, const RenderReport& report) {
+  return report.rays > 0 ? static_cast<double>(count) / static_cast<double>(report.rays) : 0;
+}
+
+struct NamedCount {
+  const char* name;
+  std::uint64_t count;
+};
+
+/// What a pixel can be off by where points stand for an opacity table; 0 for points as given.
+double transfer_function_error(const Scene& scene) {
+  const Rgb<double> behind = scene.background.value_or(Rgb<double>{});
+  return scene.transfer_function->approximation_error(std::max({behind.r, behind.g, behind.b}));
+}
+
+std::vector<NamedCount> by_rule(const RuleCounts& spans) {
+  return {{"skipped", spans.skipped}, {"constant", spans.constant}, {"strides", spans.strides},
+          {"lines", spans.lines},     {"closed", spans.closed},     {"panels", spans.panels}};
 }
 
 bool has_step(const RenderArguments& arguments, const Integration& integration) {
@@ -28,17 +57,30 @@ bool has_step(const RenderArguments& arguments, const Integration& integration) 
 
 }  // namespace
 
-void add_metadata(const RenderArguments& arguments, const PreparedScene& prepared, Image& image) {
+void add_metadata(const RenderArguments& arguments, const PreparedScene& prepared,
+                  const RenderReport& report, Image& image) {
   const Integration& integration = prepared.scene.integration;
   auto& metadata = image.metadata;
   metadata["pellucid.version"] = PELLUCID_VERSION_STRING;
   metadata["pellucid.source"] = arguments.input;
   metadata["pellucid.method"] = method_text(arguments, integration);
   metadata["pellucid.precision"] = precision_text(arguments, integration);
-  if (has_step(arguments, integration))
+  if (const double error = transfer_function_error(prepared.scene); error > 0) {
+    metadata["pellucid.transfer_function_error"] = fmt::format("{}", error);
+  }
+  metadata["pellucid.samples"] = fmt::format("{}", prepared.scene.samples);
+  if (has_step(arguments, integration)) {
     metadata["pellucid.step"] = fmt::format("{}", integration.step);
+  }
+  if (prepared.knows_its_error(arguments)) {
+    metadata["pellucid.tolerance"] = fmt::format("{}", integration.tolerance);
+    metadata["pellucid.grade"] = grade_text(integration.grade);
+    metadata["pellucid.largest_error"] = fmt::format("{}", report.largest_error);
+    metadata["pellucid.pixels_proved"] = fmt::format("{}", report.pixels_proved);
+    metadata["pellucid.pixels_over"] = fmt::format("{}", report.pixels_over);
+  }
   metadata["pellucid.transfer_function"] =
-      transfer_function_to_json(*prepared.scene.transfer_function);
+      transfer_function_to_json(*prepared.description.transfer_function);
   metadata["pellucid.camera"] = camera_to_json(prepared.scene.camera);
 }
 
@@ -62,6 +104,46 @@ Image depth_picture(const Image& image) {
   return picture;
 }
 
+std::vector<std::string> report_lines(const RenderArguments& arguments,
+                                      const PreparedScene& prepared, const RenderReport& report) {
+  const Scene& scene = prepared.scene;
+  const std::string time = fmt::format("{:.3g} s", report.seconds);
+  const double table = transfer_function_error(scene);
+  const std::string table_text =
+      table > 0 ? fmt::format(" (opacity table: within {:.2g})", table) : "";
+  if (arguments.reference) {
+    return {fmt::format("adaptive quadrature to 1e-12{}, {:.1f} cells per ray, {}", table_text,
+                        per_ray(report.cells, report), time)};
+  }
+  if (!prepared.knows_its_error(arguments)) {
+    return {fmt::format(
+        "method {}, {:.1f} samples per ray, {}; its error is not known ('pellucid compare' "
+        "measures it)",
+        method_name(scene.integration.method), per_ray(report.cells, report), time)};
+  }
+  std::vector<std::string> lines;
+  lines.push_back(fmt::format(
+      "largest error of a pixel {}{}, tolerance {:.3g} (grade {}); proved for {} of the pixels",
+      std::isfinite(report.largest_error) ? fmt::format("{:.3g}", report.largest_error) : "unknown",
+      table_text, scene.integration.tolerance, grade_text(scene.integration.grade),
+      share_text(report.pixels_proved, report.pixels)));
+  std::uint64_t spans = 0;
+  for (const NamedCount& rule : by_rule(report.spans)) spans += rule.count;
+  std::string line = fmt::format("{:.1f} field evaluations per ray, {}",
+                                 per_ray(report.evaluations, report), time);
+  const char* separator = "; spans: ";
+  for (const NamedCount& rule : by_rule(report.spans)) {
+    if (rule.count == 0) continue;
+    line += fmt::format("{}{} {}", separator, share_text(rule.count, spans), rule.name);
+    separator = ", ";
+  }
+  if (report.spans.in_double > 0) {
+    line += fmt::format(" ({} in double)", share_text(report.spans.in_double, spans));
+  }
+  lines.push_back(line);
+  return lines;
+}
+
 Json report_json(const RenderArguments& arguments, const PreparedScene& prepared,
                  const RenderReport& report, const std::vector<std::string>& written) {
   const Scene& scene = prepared.scene;
@@ -75,12 +157,30 @@ Json report_json(const RenderArguments& arguments, const PreparedScene& prepared
   json["method"] = method_text(arguments, scene.integration);
   json["step"] = has_step(arguments, scene.integration) ? Json(scene.integration.step) : Json();
   json["precision"] = precision_text(arguments, scene.integration);
+  json["samples"] = scene.samples;
+  const bool exact = prepared.knows_its_error(arguments);
+  const auto of_exact = [&](const Json& value) { return exact ? value : Json(); };
+  json["tolerance_asked"] = of_exact(prepared.tolerance_asked);
+  json["tolerance"] = of_exact(scene.integration.tolerance);
+  json["grade"] = of_exact(grade_text(scene.integration.grade));
+  json["largest_error"] = of_exact(report.largest_error);
+  json["pixels"] = scene.size.width * static_cast<std::int64_t>(scene.size.height);
+  json["pixels_proved"] = of_exact(report.pixels_proved);
+  json["pixels_over"] = of_exact(report.pixels_over);
   json["threads"] = report.threads;
   json["seconds"] = report.seconds;
   json["rays"] = report.rays;
   json["cells"] = report.cells;
+  json["evaluations"] = of_exact(report.evaluations);
+  json["evaluations_per_ray"] = of_exact(per_ray(report.evaluations, report));
+  Json spans;
+  for (const NamedCount& rule : by_rule(report.spans)) spans[rule.name] = rule.count;
+  spans["in_double"] = report.spans.in_double;
+  json["spans"] = of_exact(spans);
   json["transfer_function_from"] = prepared.transfer_function_from;
-  json["transfer_function"] = Json::parse(transfer_function_to_json(*scene.transfer_function));
+  json["transfer_function_error"] = transfer_function_error(scene);
+  json["transfer_function"] =
+      Json::parse(transfer_function_to_json(*prepared.description.transfer_function));
   json["camera"] = Json::parse(camera_to_json(scene.camera));
   json["outputs"] = written;
   return json;

@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "overwriting.h"
@@ -16,10 +17,22 @@ namespace pellucid::cli {
 
 namespace {
 
+/// Throws UsageError where an argument is given that speaks of an error, as no error is known.
+void refuse_error_arguments(const RenderArguments& arguments, const std::string& why) {
+  const std::pair<const char*, bool> given[] = {{"--tolerance", arguments.tolerance.has_value()},
+                                                {"--grade", !arguments.grade.empty()},
+                                                {"--error-map", !arguments.error_map.empty()},
+                                                {"--strict", arguments.strict}};
+  for (const auto& [argument, is_given] : given) {
+    if (is_given) throw UsageError(fmt::format("{}: {}", argument, why));
+  }
+}
+
 std::vector<NamedFile> output_files(const RenderArguments& arguments) {
   std::vector<NamedFile> files;
   for (const std::string& path : arguments.outputs) files.push_back({"-o", path});
   const NamedFile others[] = {{"--depth", arguments.depth_picture},
+                              {"--error-map", arguments.error_map},
                               {"--save-tf", arguments.save_tf},
                               {"--save-scene", arguments.save_scene}};
   for (const NamedFile& file : others) {
@@ -39,10 +52,22 @@ void check_arguments(const RenderArguments& arguments) {
   if (arguments.json && !arguments.renders()) {
     throw UsageError("--json reports on a rendering; give -o FILE.png or FILE.exr");
   }
-  for (const std::string& path : arguments.outputs) {
-    const std::string extension = extension_of(path);
+  if (arguments.reference) {
+    refuse_error_arguments(arguments,
+                           "--reference goes to 1e-12 whatever is asked, and gives no error; drop "
+                           "one of the two ('pellucid compare' measures how far pictures differ)");
+  }
+  if (arguments.strict && !arguments.renders()) {
+    throw UsageError("--strict judges a rendering; give -o FILE.png or FILE.exr");
+  }
+  std::vector<NamedFile> pictures;
+  for (const std::string& path : arguments.outputs) pictures.push_back({"-o", path});
+  if (!arguments.error_map.empty()) pictures.push_back({"--error-map", arguments.error_map});
+  for (const NamedFile& picture : pictures) {
+    const std::string extension = extension_of(picture.path);
     if (extension != ".png" && extension != ".exr") {
-      throw UsageError(fmt::format("-o {}: expected a name that ends in .png or .exr", path));
+      throw UsageError(fmt::format("{} {}: expected a name that ends in .png or .exr",
+                                   picture.argument, picture.path));
     }
   }
   if (!arguments.depth_picture.empty() && extension_of(arguments.depth_picture) != ".png") {
@@ -64,8 +89,18 @@ namespace {
 void set_integration(const RenderArguments& arguments, Integration& integration) {
   if (!arguments.method.empty()) integration.method = *method_from_name(arguments.method);
   if (!arguments.precision.empty()) {
-    integration.precision =
-        arguments.precision == "double" ? Precision::float64 : Precision::float32;
+    integration.precision = arguments.precision == "double"  ? Precision::float64
+                            : arguments.precision == "float" ? Precision::float32
+                                                             : Precision::automatic;
+  }
+  if (integration.method != Method::exact) {
+    refuse_error_arguments(
+        arguments, fmt::format("the error of method {} is not known; use --method exact, or drop "
+                               "it and measure with 'pellucid compare'",
+                               method_name(integration.method)));
+  }
+  if (!arguments.grade.empty()) {
+    integration.grade = arguments.grade == "proved" ? Grade::proved : Grade::estimated;
   }
   if (!arguments.step) return;
   if (integration.method == Method::exact) {
@@ -100,6 +135,7 @@ SceneDescription describe(const RenderArguments& arguments) {
   if (!arguments.background.empty()) {
     description.background = parse_color("--background", arguments.background);
   }
+  if (arguments.samples) description.samples = *arguments.samples;
   set_integration(arguments, description.integration);
   return description;
 }
@@ -110,6 +146,11 @@ PreparedScene prepare(const RenderArguments& arguments) {
   PreparedScene prepared;
   prepared.description = describe(arguments);
   SceneDescription& description = prepared.description;
+  Integration& integration = description.integration;
+  prepared.tolerance_asked = arguments.tolerance
+                                 ? parse_tolerance("--tolerance", *arguments.tolerance)
+                                 : integration.tolerance;
+  integration.set_tolerance(prepared.tolerance_asked);
   // The volume of a scene is known only now.
   const NamedFile inputs[] = {{"volume", description.field.file.string()}};
   refuse_overwriting(output_files(arguments), inputs);
@@ -117,12 +158,22 @@ PreparedScene prepare(const RenderArguments& arguments) {
                                         ? arguments.transfer_function
                                     : description.transfer_function ? arguments.input
                                                                     : "default";
-  prepared.scene = make_scene(description);
+  SceneDescription rendered = description;
+  // The points that stand for an opacity table have an error; the reference should have none worth
+  // speaking of. Each further digit makes it three times slower.
+  constexpr double table_tolerance = 1e-5;
+  if (arguments.reference && integration.tolerance > table_tolerance) {
+    rendered.integration.tolerance = table_tolerance;
+  }
+  prepared.scene = make_scene(rendered);
   Scene& scene = prepared.scene;
+  scene.integration = integration;
   if (!arguments.view.empty()) {
     scene.camera = view_camera(*scene.volume, arguments.view, scene.size);
   }
-  description.transfer_function = scene.transfer_function->points();
+  if (!description.transfer_function) {
+    description.transfer_function = scene.transfer_function->points();
+  }
   description.camera = scene.camera;
   make_camera_frame(scene.camera, scene.size);  // throws before anything is written
   return prepared;

@@ -14,7 +14,7 @@ namespace {
 std::vector<Measurement> ways(const MeasureOptions& options) {
   std::vector<Measurement> list;
   for (const Precision precision : {Precision::float64, Precision::float32}) {
-    list.push_back({{Method::exact, precision, 1}, {}, {}, 0});
+    list.push_back({{Method::exact, precision, 1, smallest_tolerance}, {}, {}, 0});
   }
   if (options.exact_only) return list;
   for (const Method method : {Method::rectangle, Method::taylor, Method::midpoint,

@@ -5,7 +5,9 @@
 
 #include "benchmarks/kernels/inputs.h"
 #include "pellucid/field/trilinear.h"
+#include "pellucid/scene/antiderivative_storage.h"
 #include "pellucid/segment/cubic.h"
+#include "pellucid/segment/line_rule.h"
 
 // A trilinear cell: from its corners to a cubic, and the cubic through a transfer function. One
 // item is one cell.
@@ -77,6 +79,26 @@ void cubic(benchmark::State& state, T middle, T spread, T length) {
   state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(input_count));
 }
 
+/// The line rules, on the same cells.
+template <class T>
+void line(benchmark::State& state, T middle, T spread, T length, bool emission) {
+  const Table<T> table;
+  const PiecewiseLinear<T> view = table.view();
+  const AntiderivativeStorage<T> storage(view);
+  const PiecewiseLinearAntiderivative<T> antiderivative = storage.view();
+  const auto cells = make_cells(middle, spread);
+  for (auto _ : state) {
+    for (const CubicBernstein<T>& cell : cells) {
+      if (emission) {
+        benchmark::DoNotOptimize(line_emission_rule(cell, length, view, antiderivative));
+      } else {
+        benchmark::DoNotOptimize(line_rule(cell, length, view, antiderivative));
+      }
+    }
+  }
+  state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(input_count));
+}
+
 template <class T>
 void register_for(const char* type) {
   benchmark::RegisterBenchmark((std::string("trilinear_cubic, ") + type).c_str(), trilinear<T>);
@@ -90,6 +112,16 @@ void register_for(const char* type) {
   add("integrate_cubic, thin, about one crossing", 0.5, 0.01, 0.01);
   add("integrate_cubic, depth 1, about one crossing", 0.5, 0.01, 1);
   add("integrate_cubic, thin, about ten crossings", 0.5, 0.15, 0.01);
+  const auto add_line = [&](const std::string& name, double spread, double length, bool emission) {
+    benchmark::RegisterBenchmark((name + ", " + type).c_str(), [=](benchmark::State& state) {
+      line<T>(state, T(0.5), static_cast<T>(spread), static_cast<T>(length), emission);
+    });
+  };
+  add_line("line_rule, mostly in one interval", 1e-3, 0.01, false);
+  add_line("line_rule, about one crossing", 0.01, 1, false);
+  add_line("line_rule, about ten crossings", 0.15, 0.01, false);
+  add_line("line_emission_rule, depth 1, about one crossing", 0.01, 1, true);
+  add_line("line_emission_rule, thin, about ten crossings", 0.15, 0.01, true);
 }
 
 [[maybe_unused]] const bool registered = [] {

@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -22,7 +23,9 @@ namespace pellucid {
 
 namespace {
 
-const char* const channel_name[4] = {"R", "G", "B", "A"};
+// Those of a pixel, and what else is read of a file.
+const char* const color_channels[4] = {"R", "G", "B", "A"};
+const char* const read_channels[7] = {"R", "G", "B", "A", "Z", "error", "error.proved"};
 
 // The first line of what the library says.
 std::string first_line(const std::exception& e) {
@@ -30,36 +33,64 @@ std::string first_line(const std::exception& e) {
   return text.substr(0, text.find('\n'));
 }
 
-Imf::Header make_header(const Image& image) {
-  Imf::Header header(image.width, image.height);
-  header.compression() = Imf::ZIP_COMPRESSION;
-  for (const char* name : channel_name) {
-    header.channels().insert(name, Imf::Channel(Imf::FLOAT));
+// A file in the making: its header, and where its pixels lie.
+class Channels {
+ public:
+  explicit Channels(const Image& image)
+      : image_(image),
+        header_(image.width, image.height),
+        width_(static_cast<std::size_t>(image.width)) {
+    header_.compression() = Imf::ZIP_COMPRESSION;
   }
-  if (!image.depth.empty()) header.channels().insert("Z", Imf::Channel(Imf::FLOAT));
-  for (const auto& [key, value] : image.metadata) {
-    header.insert(key, Imf::StringAttribute(value));
+
+  /// The numbers must live until the file is written; from one to the next it is `stride` bytes.
+  template <class Number>
+  void add(const char* name, Imf::PixelType type, const Number* first,
+           std::size_t stride = sizeof(Number)) {
+    header_.channels().insert(name, Imf::Channel(type));
+    // The library's buffers are not const, though it only reads from them here.
+    char* bytes = reinterpret_cast<char*>(const_cast<Number*>(first));
+    buffer_.insert(name, Imf::Slice(type, bytes, stride, stride * width_));
   }
-  return header;
+
+  void write(const std::filesystem::path& path) {
+    AtomicFile file(path);
+    try {
+      for (const auto& [key, value] : image_.metadata) {
+        header_.insert(key, Imf::StringAttribute(value));
+      }
+      Imf::OutputFile output(file.temporary_path().c_str(), header_);
+      output.setFrameBuffer(buffer_);
+      output.writePixels(image_.height);
+    } catch (const std::exception& e) {
+      throw Error(path.string() + ": cannot write: " + first_line(e));
+    }
+    file.commit();
+  }
+
+ private:
+  const Image& image_;
+  Imf::Header header_;
+  Imf::FrameBuffer buffer_;
+  std::size_t width_;
+};
+
+void check_error(const Image& image, const std::filesystem::path& path) {
+  if (image.error.size() == image.pixels.size() && image.proved.size() == image.error.size()) {
+    return;
+  }
+  throw Error(path.string() + ": cannot write: the image has " +
+              std::to_string(image.error.size()) + " errors, " +
+              std::to_string(image.proved.size()) + " marks of proof and " +
+              std::to_string(image.pixels.size()) + " pixels");
 }
 
-void write_pixels(const Image& image, const std::filesystem::path& path) {
-  Imf::OutputFile file(path.c_str(), make_header(image));
-  Imf::FrameBuffer buffer;
-  // The library's buffers are not const, though it only reads from them here.
-  char* pixels = reinterpret_cast<char*>(const_cast<std::array<float, 4>*>(image.pixels.data()));
-  const std::size_t stride = sizeof(image.pixels[0]);
-  const std::size_t row = stride * static_cast<std::size_t>(image.width);
-  for (std::size_t c = 0; c < 4; ++c) {
-    buffer.insert(channel_name[c], Imf::Slice(Imf::FLOAT, pixels + c * sizeof(float), stride, row));
-  }
-  if (!image.depth.empty()) {
-    char* depth = reinterpret_cast<char*>(const_cast<float*>(image.depth.data()));
-    buffer.insert("Z", Imf::Slice(Imf::FLOAT, depth, sizeof(float),
-                                  sizeof(float) * static_cast<std::size_t>(image.width)));
-  }
-  file.setFrameBuffer(buffer);
-  file.writePixels(image.height);
+// Half and not an integer: viewers that show any channel show this one, and 0 and 1 are exact.
+std::vector<Imath::half> proved_as_half(const Image& image) {
+  std::vector<Imath::half> marks;
+  marks.reserve(image.proved.size());
+  for (const std::uint8_t proved : image.proved) marks.emplace_back(proved != 0 ? 1.F : 0.F);
+  return marks;
 }
 
 // Columns or rows of a box, in 64 bits: a hostile header may say anything.
@@ -85,7 +116,7 @@ void check_header(const Imf::Header& header, const std::string& name) {
                   "; an image has the channels R, G, B and maybe A and Z");
     }
   }
-  for (const char* channel : {"R", "G", "B", "A", "Z"}) {
+  for (const char* channel : read_channels) {
     const Imf::Channel* c = header.channels().findChannel(channel);
     if (c != nullptr && (c->xSampling != 1 || c->ySampling != 1)) {
       throw Error(name + ": channel " + channel + " is subsampled; save it at full resolution");
@@ -99,29 +130,34 @@ Image read_pixels(Imf::InputFile& file, const std::string& name) {
   const Imath::Box2i data = file.header().dataWindow();
   const Imath::Box2i display = file.header().displayWindow();
   const bool has_depth = file.header().channels().findChannel("Z") != nullptr;
+  const bool has_error = file.header().channels().findChannel("error") != nullptr;
 
   Image image;
   image.width = static_cast<int>(extent(display.min.x, display.max.x));
   image.height = static_cast<int>(extent(display.min.y, display.max.y));
   const std::size_t count =
       static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height);
-  check_memory(count * (sizeof(image.pixels[0]) + (has_depth ? sizeof(float) : 0)), name);
+  check_memory(count * (sizeof(image.pixels[0]) + (has_depth ? sizeof(float) : 0) +
+                        (has_error ? sizeof(float) + 1 : 0)),
+               name);
   image.pixels.resize(count);
-  if (has_depth) image.depth.assign(count, std::numeric_limits<float>::infinity());
+  constexpr float infinity = std::numeric_limits<float>::infinity();
+  if (has_depth) image.depth.assign(count, infinity);
+  if (has_error) image.error.assign(count, infinity);
+  if (has_error) image.proved.assign(count, 0);
 
   // One row of the data window at a time: rows share the buffer by a row stride of 0.
   struct Pixel {
-    float channel[5];
+    float channel[7];
   };
   std::vector<Pixel> row(static_cast<std::size_t>(extent(data.min.x, data.max.x)));
   Imf::FrameBuffer buffer;
-  const char* const names[5] = {"R", "G", "B", "A", "Z"};
-  for (std::size_t c = 0; c < 5; ++c) {
+  for (std::size_t c = 0; c < 7; ++c) {
     const std::uintptr_t first = reinterpret_cast<std::uintptr_t>(&row[0].channel[c]);
     const std::uintptr_t shift =
         static_cast<std::uintptr_t>(std::int64_t{data.min.x}) * sizeof(Pixel);
-    buffer.insert(names[c], Imf::Slice(Imf::FLOAT, reinterpret_cast<char*>(first - shift),
-                                       sizeof(Pixel), 0, 1, 1, c == 3 ? 1.0 : 0.0));
+    buffer.insert(read_channels[c], Imf::Slice(Imf::FLOAT, reinterpret_cast<char*>(first - shift),
+                                               sizeof(Pixel), 0, 1, 1, c == 3 ? 1.0 : 0.0));
   }
   file.setFrameBuffer(buffer);
   const int first_row = std::max(data.min.y, display.min.y);
@@ -136,10 +172,12 @@ Image read_pixels(Imf::InputFile& file, const std::string& name) {
       const int image_row = static_cast<int>(extent(display.min.y, y) - 1);
       image.at(column, image_row) = {pixel.channel[0], pixel.channel[1], pixel.channel[2],
                                      pixel.channel[3]};
-      if (has_depth) {
-        image.depth[static_cast<std::size_t>(image_row) * static_cast<std::size_t>(image.width) +
-                    static_cast<std::size_t>(column)] = pixel.channel[4];
-      }
+      const std::size_t index =
+          static_cast<std::size_t>(image_row) * static_cast<std::size_t>(image.width) +
+          static_cast<std::size_t>(column);
+      if (has_depth) image.depth[index] = pixel.channel[4];
+      if (has_error) image.error[index] = pixel.channel[5];
+      if (has_error) image.proved[index] = pixel.channel[6] > 0.5F ? 1 : 0;
     }
   }
   for (auto i = file.header().begin(); i != file.header().end(); ++i) {
@@ -154,13 +192,38 @@ Image read_pixels(Imf::InputFile& file, const std::string& name) {
 
 void write_exr(const Image& image, const std::filesystem::path& path) {
   check_image(image, path);
-  AtomicFile file(path);
-  try {
-    write_pixels(image, file.temporary_path());
-  } catch (const std::exception& e) {
-    throw Error(path.string() + ": cannot write: " + first_line(e));
+  Channels channels(image);
+  for (std::size_t c = 0; c < 4; ++c) {
+    channels.add(color_channels[c], Imf::FLOAT, &image.pixels[0][c], sizeof(image.pixels[0]));
   }
-  file.commit();
+  if (!image.depth.empty()) channels.add("Z", Imf::FLOAT, image.depth.data());
+  std::vector<Imath::half> proved;
+  if (!image.error.empty() || !image.proved.empty()) {
+    check_error(image, path);
+    proved = proved_as_half(image);
+    channels.add("error", Imf::FLOAT, image.error.data());
+    channels.add("error.proved", Imf::HALF, proved.data());
+  }
+  channels.write(path);
+}
+
+void write_error_exr(const Image& image, double tolerance, const std::filesystem::path& path) {
+  check_image(image, path);
+  check_error(image, path);
+  if (!(tolerance > 0)) {
+    throw Error(path.string() + ": cannot write: the tolerance is not a positive number");
+  }
+  const std::vector<Imath::half> proved = proved_as_half(image);
+  std::vector<float> scaled;
+  scaled.reserve(image.error.size());
+  for (const float error : image.error) {
+    scaled.push_back(static_cast<float>(static_cast<double>(error) / tolerance));
+  }
+  Channels channels(image);
+  channels.add("Y", Imf::FLOAT, scaled.data());
+  channels.add("error", Imf::FLOAT, image.error.data());
+  channels.add("error.proved", Imf::HALF, proved.data());
+  channels.write(path);
 }
 
 Image read_exr(const std::filesystem::path& path) {

@@ -15,7 +15,6 @@ namespace pellucid {
 namespace {
 
 using scene_json::Node;
-using Points = std::vector<TransferFunction::Point>;
 
 constexpr int newest_version = 1;
 constexpr int largest_grid = 1 << 20;
@@ -130,28 +129,34 @@ FieldSource field_source(const Node& field, const std::filesystem::path& folder)
   return field.has("file") ? file_source(field, folder) : builtin_source(field);
 }
 
-Points transfer_function_points(const Node& function) {
-  function.expect_object({"type", "points"});
-  if (const auto type = function.find("type")) type->one_of({"piecewise_linear"});
-  const Node list = function.at("points", "give an array of {value, extinction, color}");
-  const std::size_t count = list.array_size();
-  if (count == 0) list.fail("is empty; give at least one point {value, extinction, color}");
-  Points points;
-  points.reserve(count);
-  for (std::size_t i = 0; i < count; ++i) {
+/// The members of a point that both kinds have, and the order of the values.
+template <class Point>
+void read_place(const Node& node, std::vector<Point>& points) {
+  const Node value = node.at("value", "give the data value of this point");
+  const Rgb<double> color = linear_rgb(node.at("color", "give linear [r, g, b]"));
+  const std::size_t i = points.size();
+  points.push_back({value.number(), 0, color});
+  if (i >= 1 && points[i].value < points[i - 1].value) {
+    value.fail("is below the value of the point before it; points must ascend");
+  }
+  if (i >= 2 && points[i].value == points[i - 2].value) {
+    value.fail("is the third equal value; two make a jump, remove the middle one");
+  }
+}
+
+TransferFunctionDescription extinction_points(const Node& list) {
+  std::vector<TransferFunction::Point> points;
+  for (std::size_t i = 0; i < list.array_size(); ++i) {
     const Node point = list.element(i);
+    if (point.has("opacity")) {
+      point.fail_at("opacity",
+                    "needs a \"unit_distance\" beside \"points\"; or give the extinction");
+    }
     point.expect_object({"value", "extinction", "color"});
-    const Node value = point.at("value", "give the data value of this point");
-    points.push_back({value.number(),
-                      point.at("extinction", "give the extinction per world length here")
-                          .number(0, scene_json::largest_number),
-                      linear_rgb(point.at("color", "give linear [r, g, b]"))});
-    if (i >= 1 && points[i].value < points[i - 1].value) {
-      value.fail("is below the value of the point before it; points must ascend");
-    }
-    if (i >= 2 && points[i].value == points[i - 2].value) {
-      value.fail("is the third equal value; two make a jump, remove the middle one");
-    }
+    const double extinction = point.at("extinction", "give the extinction per world length here")
+                                  .number(0, scene_json::largest_number);
+    read_place(point, points);
+    points.back().extinction = extinction;
   }
   // What floats hold may be narrower than what is checked here (values that coincide in float).
   try {
@@ -160,6 +165,38 @@ Points transfer_function_points(const Node& function) {
     list.fail(error.what());
   }
   return points;
+}
+
+TransferFunctionDescription opacity_table(const Node& list, double unit_distance) {
+  OpacityTable table;
+  table.unit_distance = unit_distance;
+  for (std::size_t i = 0; i < list.array_size(); ++i) {
+    const Node point = list.element(i);
+    if (point.has("extinction")) {
+      point.fail_at("extinction",
+                    "stands in a function with a \"unit_distance\"; give the opacity instead, in "
+                    "all points, or remove the unit_distance");
+    }
+    point.expect_object({"value", "opacity", "color"});
+    const double opacity =
+        point.at("opacity", "give the opacity of a layer as thick as unit_distance").number(0, 1);
+    read_place(point, table.points);
+    table.points.back().opacity = opacity;
+  }
+  return table;
+}
+
+TransferFunctionDescription transfer_function(const Node& function) {
+  function.expect_object({"type", "unit_distance", "points"});
+  if (const auto type = function.find("type")) type->one_of({"piecewise_linear"});
+  const auto unit_distance = function.find("unit_distance");
+  const Node list = function.at("points", "give an array of {value, extinction, color}");
+  if (list.array_size() == 0) {
+    list.fail(std::string("is empty; give at least one point {value, ") +
+              (unit_distance ? "opacity" : "extinction") + ", color}");
+  }
+  if (!unit_distance) return extinction_points(list);
+  return opacity_table(list, unit_distance->number(smallest_unit_distance, largest_unit_distance));
 }
 
 Camera camera_from(const Node& node, ImageSize size) {
@@ -196,6 +233,27 @@ Camera camera_from(const Node& node, ImageSize size) {
   return camera;
 }
 
+void read_integration(const Node& node, Integration& integration) {
+  node.expect_object({"method", "tolerance", "grade", "precision", "step"});
+  if (const auto method = node.find("method")) {
+    method->one_of({"exact", "rectangle", "taylor", "midpoint", "trapezoid", "simpson", "linear"});
+    integration.method = *method_from_name(method->string());
+  }
+  if (const auto tolerance = node.find("tolerance")) {
+    integration.tolerance = tolerance->number(smallest_tolerance, largest_tolerance);
+  }
+  if (const auto grade = node.find("grade")) {
+    integration.grade =
+        std::array{Grade::estimated, Grade::proved}[grade->one_of({"estimated", "proved"})];
+  }
+  if (const auto precision = node.find("precision")) {
+    integration.precision =
+        std::array{Precision::automatic, Precision::float32,
+                   Precision::float64}[precision->one_of({"automatic", "float", "double"})];
+  }
+  if (const auto step = node.find("step")) integration.step = step->positive_number(largest_step);
+}
+
 /// The object that stands alone, or under its name in a document of its own.
 Node unwrap(const Node& document, std::string_view key) {
   if (!document.is_object() || !document.has(key)) return document;
@@ -225,16 +283,19 @@ SceneDescription parse_scene(std::string_view json, const std::string& name,
   scene.field =
       field_source(volume.at("field", "give {\"file\": ...} or {\"builtin\": ...}"), folder);
   if (const auto function = volume.find("transfer_function")) {
-    scene.transfer_function = transfer_function_points(*function);
+    scene.transfer_function = transfer_function(*function);
   }
   if (const auto image = document.find("image")) {
-    image->expect_object({"width", "height", "background"});
+    image->expect_object({"width", "height", "samples", "background"});
     constexpr int largest_size = 65536;
     if (const auto width = image->find("width")) {
       scene.size.width = static_cast<int>(width->integer(1, largest_size));
     }
     if (const auto height = image->find("height")) {
       scene.size.height = static_cast<int>(height->integer(1, largest_size));
+    }
+    if (const auto samples = image->find("samples")) {
+      scene.samples = static_cast<int>(samples->integer(1, largest_samples));
     }
     if (const auto background = image->find("background")) {
       scene.background = linear_rgb(*background);
@@ -244,27 +305,15 @@ SceneDescription parse_scene(std::string_view json, const std::string& name,
     scene.camera = camera_from(*camera, scene.size);
   }
   if (const auto integration = document.find("integration")) {
-    integration->expect_object({"method", "precision", "step"});
-    if (const auto method = integration->find("method")) {
-      method->one_of(
-          {"exact", "rectangle", "taylor", "midpoint", "trapezoid", "simpson", "linear"});
-      scene.integration.method = *method_from_name(method->string());
-    }
-    if (const auto precision = integration->find("precision")) {
-      scene.integration.precision =
-          precision->one_of({"float", "double"}) == 0 ? Precision::float32 : Precision::float64;
-    }
-    if (const auto step = integration->find("step")) {
-      scene.integration.step = step->positive_number(largest_step);
-    }
+    read_integration(*integration, scene.integration);
   }
   return scene;
 }
 
-std::vector<TransferFunction::Point> parse_transfer_function(std::string_view json,
-                                                             const std::string& name) {
+TransferFunctionDescription parse_transfer_function(std::string_view json,
+                                                    const std::string& name) {
   const nlohmann::json parsed = scene_json::parse_document(json, name);
-  return transfer_function_points(unwrap(Node(parsed, name), "transfer_function"));
+  return transfer_function(unwrap(Node(parsed, name), "transfer_function"));
 }
 
 Camera parse_camera(std::string_view json, const std::string& name) {

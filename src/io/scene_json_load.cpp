@@ -47,13 +47,33 @@ Volume load_field(const FieldSource& source) {
                                 : make_builtin_field(source.builtin, source.points);
 }
 
+TransferFunction make_transfer_function(const TransferFunctionDescription& description,
+                                        double tolerance,
+                                        const std::optional<Rgb<double>>& background) {
+  if (const auto* points = std::get_if<std::vector<TransferFunction::Point>>(&description)) {
+    return TransferFunction(*points);
+  }
+  const OpacityTable& table = std::get<OpacityTable>(description);
+  double largest_color = 0;
+  const auto count = [&](const Rgb<double>& c) {
+    largest_color = std::max({largest_color, c.r, c.g, c.b});
+  };
+  for (const OpacityPoint& p : table.points) count(p.color);
+  if (background) count(*background);
+  return from_opacity_table(table.points, table.unit_distance,
+                            relative_error_for(opacity_table_share(tolerance), largest_color));
+}
+
 Scene make_scene(const SceneDescription& description) {
   Scene scene;
   scene.volume = std::make_shared<const Volume>(load_field(description.field));
   scene.transfer_function = std::make_shared<const TransferFunction>(
-      description.transfer_function ? TransferFunction(*description.transfer_function)
-                                    : default_transfer_function(*scene.volume));
+      description.transfer_function
+          ? make_transfer_function(*description.transfer_function,
+                                   description.integration.tolerance, description.background)
+          : default_transfer_function(*scene.volume));
   scene.size = description.size;
+  scene.samples = description.samples;
   scene.camera =
       description.camera ? *description.camera : default_camera(*scene.volume, description.size);
   scene.integration = description.integration;

@@ -60,19 +60,52 @@ class Members {
   std::string indent_, text_;
 };
 
-std::string points_text(const std::vector<TransferFunction::Point>& points,
-                        const std::string& indent) {
+/// One point of a transfer function per line. `strength` is "extinction" or "opacity".
+template <class Point>
+std::string points_text(const std::vector<Point>& points, double Point::*strength,
+                        std::string_view name, const std::string& indent) {
   std::string list = "[";
-  for (const TransferFunction::Point& p : points) {
-    list += joined({&p == points.data() ? "\n" : ",\n", indent,
-                    "    {\"value\": ", number(p.value, "a value"),
-                    ", \"extinction\": ", number(p.extinction, "an extinction"),
+  for (const Point& p : points) {
+    list += joined({&p == points.data() ? "\n" : ",\n", indent, "    {\"value\": ",
+                    number(p.value, "a value"), ", \"", name, "\": ", number(p.*strength, name),
                     ", \"color\": ", array(p.color, "a color"), "}"});
   }
+  return joined({list, "\n", indent, "  ]"});
+}
+
+std::string transfer_function_text(const std::vector<TransferFunction::Point>& points,
+                                   const std::string& indent) {
   Members members(indent);
   members.add("type", "\"piecewise_linear\"");
-  members.add("points", joined({list, "\n", indent, "  ]"}));
+  members.add("points",
+              points_text(points, &TransferFunction::Point::extinction, "extinction", indent));
   return members.object();
+}
+
+std::string transfer_function_text(const OpacityTable& table, const std::string& indent) {
+  Members members(indent);
+  members.add("type", "\"piecewise_linear\"");
+  members.add("unit_distance", number(table.unit_distance, "the unit distance"));
+  members.add("points", points_text(table.points, &OpacityPoint::opacity, "opacity", indent));
+  return members.object();
+}
+
+std::string transfer_function_text(const TransferFunctionDescription& description,
+                                   const std::string& indent) {
+  return std::visit([&](const auto& kind) { return transfer_function_text(kind, indent); },
+                    description);
+}
+
+std::string_view precision_name(Precision precision) {
+  switch (precision) {
+    case Precision::float32:
+      return "\"float\"";
+    case Precision::float64:
+      return "\"double\"";
+    case Precision::automatic:
+      break;
+  }
+  return "\"automatic\"";
 }
 
 std::string camera_text(const Camera& camera, const std::string& indent) {
@@ -122,16 +155,19 @@ std::string scene_to_json(const SceneDescription& scene) {
   Members volume("    ");
   volume.add("field", field_text(scene.field, "      "));
   if (scene.transfer_function) {
-    volume.add("transfer_function", points_text(*scene.transfer_function, "      "));
+    volume.add("transfer_function", transfer_function_text(*scene.transfer_function, "      "));
   }
   Members image("  ");
   image.add("width", std::to_string(scene.size.width));
   image.add("height", std::to_string(scene.size.height));
+  image.add("samples", std::to_string(scene.samples));
   if (scene.background) image.add("background", array(*scene.background, "the background"));
   Members integration("  ");
   integration.add("method", joined({"\"", method_name(scene.integration.method), "\""}));
-  integration.add("precision",
-                  scene.integration.precision == Precision::float32 ? "\"float\"" : "\"double\"");
+  integration.add("tolerance", number(scene.integration.tolerance, "the tolerance"));
+  integration.add("grade",
+                  scene.integration.grade == Grade::proved ? "\"proved\"" : "\"estimated\"");
+  integration.add("precision", precision_name(scene.integration.precision));
   integration.add("step", number(scene.integration.step, "the step"));
 
   Members document("");
@@ -143,8 +179,12 @@ std::string scene_to_json(const SceneDescription& scene) {
   return document.object() + "\n";
 }
 
+std::string transfer_function_to_json(const TransferFunctionDescription& description) {
+  return transfer_function_text(description, "");
+}
+
 std::string transfer_function_to_json(const TransferFunction& transfer_function) {
-  return points_text(transfer_function.points(), "");
+  return transfer_function_text(transfer_function.points(), "");
 }
 
 std::string camera_to_json(const Camera& camera) {

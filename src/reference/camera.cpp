@@ -32,9 +32,12 @@ CameraRays::CameraRays(const Camera& camera, ImageSize size)
   half_width_ = half_height_ * width_ / height_;
 }
 
-RealRay CameraRays::ray(int column, int row) const {
-  const Real x = half_width_ * ((2 * Real(column) + 1) / width_ - 1);
-  const Real y = half_height_ * (1 - (2 * Real(row) + 1) / height_);
+RealRay CameraRays::ray(int column, int row, int n, int samples) const {
+  // The centre of a pixel of an image that is finer by the factor `samples`.
+  const int fine_column = column * samples + n % samples;
+  const int fine_row = row * samples + n / samples;
+  const Real x = half_width_ * ((2 * Real(fine_column) + 1) / (width_ * samples) - 1);
+  const Real y = half_height_ * (1 - (2 * Real(fine_row) + 1) / (height_ * samples));
   Real3 in_plane;
   for (std::size_t a = 0; a < 3; ++a) in_plane[a] = x * right_[a] + y * up_[a];
   if (perspective_) {

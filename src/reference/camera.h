@@ -11,8 +11,9 @@ class CameraRays {
  public:
   CameraRays(const Camera& camera, ImageSize size);
 
-  /// Through the centre of the pixel (origin of the image at the top left); direction of length 1.
-  RealRay ray(int column, int row) const;
+  /// Sample n of samples × samples, row by row: through the centre of one of the equal parts of the
+  /// pixel (origin of the image at the top left); direction of length 1.
+  RealRay ray(int column, int row, int n, int samples) const;
 
  private:
   Real3 position_, forward_, right_, up_;

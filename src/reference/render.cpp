@@ -8,10 +8,12 @@
 #include <tbb/task_arena.h>
 #include <tbb/task_group.h>
 
+#include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <mutex>
 #include <optional>
+#include <vector>
 
 #include "camera.h"
 #include "pellucid/scene/error.h"
@@ -20,12 +22,29 @@
 namespace pellucid {
 namespace {
 
-void render_row(const reference::CameraRays& camera, const reference::Grid& grid,
+/// The mean of a pixel's rays; its depth is that of the nearest.
+ReferencePixel mean_of(const std::vector<ReferencePixel>& rays) {
+  if (rays.size() == 1) return rays.front();
+  const double weight = 1 / static_cast<double>(rays.size());
+  ReferencePixel mean;
+  for (const ReferencePixel& ray : rays) {
+    mean.radiance += ray.radiance * weight;
+    mean.opacity += ray.opacity * weight;
+    mean.half_opacity_depth = std::min(mean.half_opacity_depth, ray.half_opacity_depth);
+  }
+  return mean;
+}
+
+void render_row(const reference::CameraRays& camera, int samples, const reference::Grid& grid,
                 const reference::Table& table, int row, Image& image, std::uint64_t& cells) {
   const bool with_depth = !image.depth.empty();
+  std::vector<ReferencePixel> rays(static_cast<std::size_t>(samples * samples));
   for (int column = 0; column < image.width; ++column) {
-    const ReferencePixel pixel =
-        reference::integrate(grid, table, camera.ray(column, row), with_depth, cells);
+    for (int n = 0; n < samples * samples; ++n) {
+      rays[static_cast<std::size_t>(n)] =
+          reference::integrate(grid, table, camera.ray(column, row, n, samples), with_depth, cells);
+    }
+    const ReferencePixel pixel = mean_of(rays);
     image.at(column, row) = {
         static_cast<float>(pixel.radiance.r), static_cast<float>(pixel.radiance.g),
         static_cast<float>(pixel.radiance.b), static_cast<float>(pixel.opacity)};
@@ -43,6 +62,7 @@ Image render_reference(const Scene& scene, const RenderOptions& options, RenderR
     throw Error("scene: a volume and a transfer function are needed; set both before rendering");
   }
   if (options.threads < 0) throw Error("threads: must not be negative; 0 takes one per core");
+  check_integration(scene);
   make_camera_frame(scene.camera, scene.size);  // For its checks; the rays are made here.
 
   const reference::CameraRays camera(scene.camera, scene.size);
@@ -59,7 +79,7 @@ Image render_reference(const Scene& scene, const RenderOptions& options, RenderR
 
   RenderReport local;
   local.threads = options.threads > 0 ? options.threads : tbb::info::default_concurrency();
-  local.rays = pixels;
+  local.rays = pixels * static_cast<std::uint64_t>(scene.samples * scene.samples);
   const auto start = std::chrono::steady_clock::now();
 
   std::atomic<std::uint64_t> cells{0};
@@ -79,7 +99,7 @@ Image render_reference(const Scene& scene, const RenderOptions& options, RenderR
         [&](const tbb::blocked_range<int>& rows) {
           for (int row = rows.begin(); row != rows.end(); ++row) {
             std::uint64_t row_cells = 0;
-            render_row(camera, grid, table, row, image, row_cells);
+            render_row(camera, scene.samples, grid, table, row, image, row_cells);
             cells += row_cells;
             const std::lock_guard lock(progress_mutex);
             ++rows_done;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "pellucid/scene/scene.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
@@ -110,6 +111,34 @@ std::optional<Method> method_from_name(std::string_view name) noexcept {
     if (known == name) return value;
   }
   return std::nullopt;
+}
+
+double Integration::set_tolerance(double wanted) {
+  if (!(wanted > 0)) {
+    throw Error("integration: tolerance is " + number(wanted) +
+                ", but must be a positive number; " + number(default_tolerance) +
+                " is half a step of 8 bits");
+  }
+  return tolerance = std::clamp(wanted, smallest_tolerance, largest_tolerance);
+}
+
+void check_integration(const Scene& scene) {
+  if (scene.samples < 1 || scene.samples > largest_samples) {
+    throw Error("scene: samples is " + std::to_string(scene.samples) + ", but must be from 1 to " +
+                std::to_string(largest_samples) + "; a pixel takes samples x samples rays");
+  }
+  const Integration& integration = scene.integration;
+  const auto require = [](const char* what, double value, const char* unit, double smallest,
+                          double largest) {
+    if (value >= smallest && value <= largest) return;
+    throw Error(std::string("integration: ") + what + " is " + number(value) + unit +
+                ", but must be from " + number(smallest) + " to " + number(largest));
+  };
+  if (integration.method == Method::exact) {
+    require("tolerance", integration.tolerance, "", smallest_tolerance, largest_tolerance);
+  } else {
+    require("step", integration.step, " voxels", smallest_step, largest_step);
+  }
 }
 
 }  // namespace pellucid

@@ -11,6 +11,7 @@
 
 #include "message.h"
 #include "pellucid/scene/error.h"
+#include "volume_blocks.h"
 #include "volume_check.h"
 
 namespace pellucid {
@@ -126,7 +127,9 @@ VolumeData make_volume_data(std::string_view type_name, std::size_t count) {
 }
 
 Volume::Volume(Description description, VolumeData data)
-    : description_(std::move(description)), data_(std::move(data)) {
+    : description_(std::move(description)),
+      data_(std::move(data)),
+      blocks_(std::make_shared<VolumeBlocks>()) {
   const VolumeCheck check(description_);
   check.dimensions(data_size(data_));
   check.placement();

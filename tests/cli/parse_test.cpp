@@ -43,6 +43,45 @@ TEST(Parse, Color) {
   }
 }
 
+TEST(Parse, Tolerance) {
+  EXPECT_EQ(parse_tolerance("--tolerance", "0.001"), 0.001);
+  EXPECT_EQ(parse_tolerance("--tolerance", "1e-4"), 1e-4);
+  EXPECT_EQ(parse_tolerance("--tolerance", "1/512"), 1.0 / 512);
+  EXPECT_EQ(parse_tolerance("--tolerance", "0.5/255"), 0.5 / 255);
+  EXPECT_EQ(parse_tolerance("--tolerance", "+1e-300"), 1e-300);
+  EXPECT_EQ(parse_tolerance("--tolerance", "1e300"), 1e300);
+  for (const char* bad : {"",
+                          "nan",
+                          "inf",
+                          "-inf",
+                          "0",
+                          "-0",
+                          "-1",
+                          "1/0",
+                          "0/1",
+                          "-1/-2",
+                          "1/-2",
+                          "1/",
+                          "/2",
+                          "1/2/3",
+                          "1//2",
+                          "1/nan",
+                          "1/inf",
+                          "inf/inf",
+                          "1e400",
+                          "1e-400",
+                          "1 ",
+                          "1 /2",
+                          "0.001mm",
+                          "1,5e-3",
+                          "1e-200/1e200",
+                          "1e300/1e-300",
+                          "0x1p-9",
+                          "1/512/"}) {
+    EXPECT_THROW(parse_tolerance("--tolerance", bad), UsageError) << bad;
+  }
+}
+
 TEST(Parse, MessagesAreOneLine) {
   EXPECT_EQ(one_line("two\nlines\r\n\there\n"), "two lines here");
   EXPECT_EQ(one_line("\x1b[31mred"), "[31mred");

@@ -94,14 +94,24 @@ def ramp(n):
     return [i / (n - 1) for _ in range(n) for _ in range(n) for i in range(n)]
 
 
-def exr(pixels):
-    """An uncompressed OpenEXR file of float RGBA; `pixels` is a list of rows of (r, g, b, a)."""
+def exr(pixels, error=None, proved=None):
+    """An uncompressed OpenEXR file of float RGBA; `pixels` is a list of rows of (r, g, b, a).
+
+    `error` and `proved` are rows of numbers for the channels error (float) and error.proved (half).
+    """
     height, width = len(pixels), len(pixels[0])
+    planes = {name: (2, [[pixel[c] for pixel in row] for row in pixels])
+              for name, c in ((b"A", 3), (b"B", 2), (b"G", 1), (b"R", 0))}
+    if error is not None:
+        planes[b"error"] = (2, error)
+    if proved is not None:
+        planes[b"error.proved"] = (1, proved)
 
     def attribute(name, kind, value):
         return name + b"\0" + kind + b"\0" + struct.pack("<i", len(value)) + value
 
-    channels = b"".join(c + b"\0" + struct.pack("<iB3xii", 2, 0, 1, 1) for c in (b"A", b"B", b"G", b"R"))
+    channels = b"".join(name + b"\0" + struct.pack("<iB3xii", kind, 0, 1, 1)
+                        for name, (kind, _) in planes.items())
     window = struct.pack("<4i", 0, 0, width - 1, height - 1)
     head = struct.pack("<ii", 20000630, 2)
     head += attribute(b"channels", b"chlist", channels + b"\0")
@@ -112,13 +122,14 @@ def exr(pixels):
     head += attribute(b"pixelAspectRatio", b"float", struct.pack("<f", 1))
     head += attribute(b"screenWindowCenter", b"v2f", struct.pack("<ff", 0, 0))
     head += attribute(b"screenWindowWidth", b"float", struct.pack("<f", 1)) + b"\0"
-    block = 8 + 16 * width
-    offsets = b"".join(struct.pack("<Q", len(head) + 8 * height + y * block) for y in range(height))
+    size = sum(2 * kind for kind, _ in planes.values()) * width
+    offsets = b"".join(struct.pack("<Q", len(head) + 8 * height + y * (8 + size))
+                       for y in range(height))
     body = b""
-    for y, row in enumerate(pixels):
-        body += struct.pack("<ii", y, 16 * width)
-        for channel in (3, 2, 1, 0):
-            body += struct.pack(f"<{width}f", *(pixel[channel] for pixel in row))
+    for y in range(height):
+        body += struct.pack("<ii", y, size)
+        for kind, rows in planes.values():
+            body += struct.pack(f"<{width}{'_ef'[kind]}", *rows[y])
     return head + offsets + body
 
 
@@ -133,6 +144,35 @@ def exr_attributes(data):
         attributes[name] = (kind, data[at + 4:at + 4 + size])
         at += 4 + size
     return attributes
+
+
+def exr_channels(data):
+    """The channels of an OpenEXR file: name to type (1 half, 2 float)."""
+    found, text = {}, exr_attributes(data)["channels"][1]
+    while text[0] != 0:
+        name, text = text.split(b"\0", 1)
+        found[name.decode()] = struct.unpack_from("<i", text)[0]
+        text = text[16:]
+    return found
+
+
+def exr_texts(data):
+    """Its string attributes."""
+    return {name: value.decode() for name, (kind, value) in exr_attributes(data).items()
+            if kind == "string"}
+
+
+def png_texts(data):
+    """The texts of a PNG: its chunks iTXt, compressed or not."""
+    texts, at = {}, 8
+    while at < len(data):
+        size, kind = struct.unpack_from(">I4s", data, at)
+        if kind == b"iTXt":
+            key, _, rest = data[at + 8:at + 8 + size].partition(b"\0")
+            value = rest[2:].split(b"\0", 2)[2]
+            texts[key.decode()] = (zlib.decompress(value) if rest[0] else value).decode()
+        at += 12 + size
+    return texts
 
 
 def png(data):

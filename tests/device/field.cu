@@ -5,6 +5,9 @@
 #include "pellucid/field/trilinear.h"
 #include "pellucid/geometry/affine.h"
 #include "pellucid/geometry/box.h"
+#include "pellucid/traverse/block_walk.h"
+#include "pellucid/traverse/build_block_bends.h"
+#include "pellucid/traverse/build_block_ranges.h"
 #include "pellucid/traverse/spans.h"
 #include "pellucid/traverse/structured_walk.h"
 #include "tests/device/kernel.h"
@@ -69,5 +72,30 @@ PELLUCID_HD void trilinear(const T* in, T* out) noexcept {
   trilinear_of<double>(in, out);
 }
 PELLUCID_DEVICE_KERNEL(trilinear)
+
+template <class T>
+PELLUCID_HD void blocks_of(const T* in, T* out) noexcept {
+  const double planes[3] = {0, 1, 2};
+  double block_planes[2];
+  const GridAxis<double> axis = some_axis(planes, 2, 0);
+  const StructuredGrid<T, double> grid{in, {axis, axis, axis}};
+  find_block_planes(axis, block_planes);
+  const GridAxis<double> blocks_axis{block_planes, block_count(axis) + 1, 0};
+  BlockRange range;
+  BlockRanges blocks;
+  blocks.range = &range;
+  for (GridAxis<double>& a : blocks.axis) a = blocks_axis;
+  build_block_ranges(grid, blocks.axis, 0, blocks.count(), &range);
+  BlockBends bends;
+  blocks.bends = &bends;
+  build_block_bends(grid, blocks.axis, 0, blocks.count(), &bends);
+  const Ray<double> ray{{0, 0, 0}, {1, static_cast<double>(in[0]), 0}};
+  for_each_block(blocks, ray, {0, 1}, [&](const BlockStep& step) {
+    const Interval<double> slope = derivative_range(blocks[step.block], ray.direction);
+    out[0] += static_cast<T>(chord_deviation(slope, step.t_end - step.t_begin));
+    return !blocks[step.block].constant();
+  });
+}
+PELLUCID_DEVICE_KERNEL(blocks_of)
 
 }  // namespace pellucid

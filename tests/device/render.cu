@@ -9,7 +9,8 @@ namespace pellucid {
 
 /// One pixel per thread: the whole of the core, as a back end will call it.
 template <class T, class Value>
-__global__ void render_pixels(StructuredGrid<Value, double> grid, PiecewiseLinear<T> transfer,
+__global__ void render_pixels(StructuredGrid<Value, double> grid, BlockRanges blocks,
+                              TransferTables transfer, RayTolerance wanted,
                               CameraFrame<double> camera, bool exact, SamplingRule rule,
                               double step, RayResult* pixels) {
   const int column = static_cast<int>(blockIdx.x * blockDim.x + threadIdx.x);
@@ -17,14 +18,15 @@ __global__ void render_pixels(StructuredGrid<Value, double> grid, PiecewiseLinea
   if (column >= camera.width || row >= camera.height) return;
   const Ray<double> ray = camera.ray(column, row);
   pixels[row * camera.width + column] =
-      exact ? integrate_ray<T>(grid, ray, transfer, 1.0, true)
-            : sample_ray<T>(grid, ray, transfer, rule, step, 1.0, stop_tolerance<T>(), true);
+      exact ? integrate_ray(grid, &blocks, ray, transfer, wanted, true)
+            : sample_ray<T>(grid, ray, transfer.table<T>(), rule, step, 1.0, stop_tolerance<T>(),
+                            true);
 }
 
-#define PELLUCID_RENDER(T, Value)                                                                 \
-  template __global__ void render_pixels<T, Value>(StructuredGrid<Value, double>,                 \
-                                                   PiecewiseLinear<T>, CameraFrame<double>, bool, \
-                                                   SamplingRule, double, RayResult*);
+#define PELLUCID_RENDER(T, Value)                                               \
+  template __global__ void render_pixels<T, Value>(                             \
+      StructuredGrid<Value, double>, BlockRanges, TransferTables, RayTolerance, \
+      CameraFrame<double>, bool, SamplingRule, double, RayResult*);
 PELLUCID_RENDER(float, std::int16_t)
 PELLUCID_RENDER(double, double)
 

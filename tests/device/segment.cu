@@ -4,6 +4,7 @@
 #include "pellucid/segment/cubic.h"
 #include "pellucid/segment/fold.h"
 #include "pellucid/segment/gauss_panel.h"
+#include "pellucid/segment/line_rule.h"
 #include "pellucid/segment/linear.h"
 #include "pellucid/segment/piecewise_linear.h"
 #include "pellucid/transfer/piecewise_linear.h"
@@ -79,5 +80,17 @@ PELLUCID_HD void cubic(const T* in, T* out) noexcept {
   out[3] = table.evaluate(in[6]).extinction + table.evaluate_in(1, in[6]).extinction;
 }
 PELLUCID_DEVICE_KERNEL(cubic)
+
+template <class T>
+PELLUCID_HD void lines(const T* in, T* out) noexcept {
+  const Material<T> material[2] = {some_material(in), some_material(in + 4)};
+  const PiecewiseLinear<T> table{in + 8, material, 2};
+  const RangeSummary<T> node[2]{};
+  const PiecewiseLinearAntiderivative<T> antiderivative{node, 1, T(0)};
+  const CubicBernstein<T> data{{in[10], in[11], in[12], in[13]}};
+  put(line_rule(data, in[14], table, antiderivative).segment, out);
+  put(line_emission_rule(data, in[14], table, antiderivative).segment, out);
+}
+PELLUCID_DEVICE_KERNEL(lines)
 
 }  // namespace pellucid

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 
-// The parser of scenes, transfer functions and cameras: any bytes give a value or an Error of one
-// line, and what was read is written and read again to the same text. Opens no file.
+// The parser of scenes, transfer functions and cameras: any bytes give a value
+// or an Error of one line, and what was read is written and read again to the
+// same text. Opens no file.
 
 #include <cstddef>
 #include <cstdint>
@@ -40,10 +41,16 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     require(pellucid::scene_to_json(pellucid::parse_scene(written, "again")) == written);
   });
   attempt([&] {
-    const pellucid::TransferFunction function(pellucid::parse_transfer_function(text, "fuzz"));
+    const pellucid::TransferFunctionDescription function =
+        pellucid::parse_transfer_function(text, "fuzz");
     const std::string written = pellucid::transfer_function_to_json(function);
     const auto again = pellucid::parse_transfer_function(written, "again");
-    require(pellucid::transfer_function_to_json(pellucid::TransferFunction(again)) == written);
+    require(pellucid::transfer_function_to_json(again) == written);
+    // What is parsed can be made.
+    if (const auto* table = std::get_if<pellucid::OpacityTable>(&function)) {
+      pellucid::from_opacity_table(table->points, table->unit_distance,
+                                   pellucid::largest_relative_error);
+    }
   });
   attempt([&] {
     const std::string written = pellucid::camera_to_json(pellucid::parse_camera(text, "fuzz"));

@@ -10,6 +10,7 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <map>
 #include <random>
 #include <string>
 #include <vector>
@@ -72,12 +73,120 @@ TEST_F(ExrTest, IsWhatOtherProgramsExpect) {
   for (std::size_t i = 0; i < 15; ++i) EXPECT_EQ(green[i], image.pixels[i][1]);
 }
 
+Image image_with_error() {
+  Image image = test_image();
+  for (int i = 0; i < 15; ++i) {
+    image.error.push_back(i == 3 ? inf : 1e-7F * static_cast<float>(i));
+    image.proved.push_back(i % 3 == 0 ? 1 : 0);
+  }
+  return image;
+}
+
+TEST_F(ExrTest, ErrorAndItsProofComeBack) {
+  const Image image = image_with_error();
+  write_exr(image, path("a.exr"));
+  const Image back = read_exr(path("a.exr"));
+  EXPECT_EQ(back.pixels, image.pixels);
+  EXPECT_EQ(back.depth, image.depth);
+  EXPECT_EQ(back.error, image.error);
+  EXPECT_EQ(back.proved, image.proved);
+}
+
+TEST_F(ExrTest, ErrorIsWhatOtherProgramsExpect) {
+  write_exr(image_with_error(), path("a.exr"));
+  write_error_exr(image_with_error(), 1e-6, path("e.exr"));
+  Imf::InputFile image(path("a.exr").c_str()), map(path("e.exr").c_str());
+  const auto types = [](const Imf::InputFile& file) {
+    std::map<std::string, Imf::PixelType> result;
+    const Imf::ChannelList& channels = file.header().channels();
+    for (auto i = channels.begin(); i != channels.end(); ++i) result[i.name()] = i.channel().type;
+    return result;
+  };
+  EXPECT_EQ(types(image), (std::map<std::string, Imf::PixelType>{{"A", Imf::FLOAT},
+                                                                 {"B", Imf::FLOAT},
+                                                                 {"G", Imf::FLOAT},
+                                                                 {"R", Imf::FLOAT},
+                                                                 {"Z", Imf::FLOAT},
+                                                                 {"error", Imf::FLOAT},
+                                                                 {"error.proved", Imf::HALF}}));
+  EXPECT_EQ(types(map),
+            (std::map<std::string, Imf::PixelType>{
+                {"Y", Imf::FLOAT}, {"error", Imf::FLOAT}, {"error.proved", Imf::HALF}}));
+}
+
+TEST_F(ExrTest, ErrorMapHoldsTheErrorAndItsShareOfTheTolerance) {
+  const Image image = image_with_error();
+  write_error_exr(image, 4e-6, path("e.exr"));
+  Imf::InputFile file(path("e.exr").c_str());
+  std::vector<float> share(15), error(15), proved(15);
+  Imf::FrameBuffer buffer;
+  const auto insert = [&](const char* name, std::vector<float>& values) {
+    buffer.insert(name, Imf::Slice(Imf::FLOAT, reinterpret_cast<char*>(values.data()), 4, 20));
+  };
+  insert("Y", share);
+  insert("error", error);
+  insert("error.proved", proved);
+  file.setFrameBuffer(buffer);
+  file.readPixels(0, 2);
+  EXPECT_EQ(error, image.error);
+  for (std::size_t i = 0; i < 15; ++i) {
+    EXPECT_EQ(proved[i], static_cast<float>(image.proved[i])) << i;
+    EXPECT_FLOAT_EQ(share[i], image.error[i] / 4e-6F) << i;
+  }
+  const auto* method = file.header().findTypedAttribute<Imf::StringAttribute>("pellucid:method");
+  ASSERT_NE(method, nullptr);
+  EXPECT_EQ(method->value(), "exact\nτ");
+}
+
+TEST_F(ExrTest, ErrorWithoutAMarkIsAnEstimate) {
+  Imf::Header header(2, 1);
+  for (const char* name : {"R", "G", "B", "error"}) {
+    header.channels().insert(name, Imf::Channel(Imf::FLOAT));
+  }
+  std::vector<float> values = {0.25F, 0.5F};
+  {
+    Imf::OutputFile file(path("e.exr").c_str(), header);
+    Imf::FrameBuffer buffer;
+    for (const char* name : {"R", "G", "B", "error"}) {
+      buffer.insert(name, Imf::Slice(Imf::FLOAT, reinterpret_cast<char*>(values.data()), 4, 8));
+    }
+    file.setFrameBuffer(buffer);
+    file.writePixels(1);
+  }
+  const Image image = read_exr(path("e.exr"));
+  EXPECT_EQ(image.error, values);
+  EXPECT_EQ(image.proved, (std::vector<std::uint8_t>{0, 0}));
+}
+
+TEST_F(ExrTest, RefusesErrorsThatDoNotAgreeWithTheImage) {
+  Image image = image_with_error();
+  image.error.pop_back();
+  EXPECT_TRUE(contains(error_of([&] { write_exr(image, path("a.exr")); }), "14 errors"));
+  EXPECT_TRUE(contains(error_of([&] { write_error_exr(image, 1, path("a.exr")); }), "14 errors"));
+  image = image_with_error();
+  image.proved.clear();
+  EXPECT_TRUE(contains(error_of([&] { write_exr(image, path("a.exr")); }), "0 marks of proof"));
+  image = image_with_error();
+  image.error.clear();
+  EXPECT_TRUE(contains(error_of([&] { write_exr(image, path("a.exr")); }), "0 errors"));
+  EXPECT_TRUE(
+      contains(error_of([&] { write_error_exr(test_image(), 1, path("a.exr")); }), "0 errors"));
+  for (const double tolerance : {0.0, -1.0, std::numeric_limits<double>::quiet_NaN()}) {
+    EXPECT_TRUE(
+        contains(error_of([&] { write_error_exr(image_with_error(), tolerance, path("a.exr")); }),
+                 "tolerance"));
+  }
+  EXPECT_TRUE(files().empty());
+}
+
 TEST_F(ExrTest, HasNoDepthWhereNoneIsGiven) {
   Image image = test_image();
   image.depth.clear();
   write_exr(image, path("a.exr"));
   EXPECT_EQ(Imf::InputFile(path("a.exr").c_str()).header().channels().findChannel("Z"), nullptr);
   EXPECT_TRUE(read_exr(path("a.exr")).depth.empty());
+  EXPECT_TRUE(read_exr(path("a.exr")).error.empty());
+  EXPECT_TRUE(read_exr(path("a.exr")).proved.empty());
 }
 
 // A half RGB image whose data window [3,5]×[-1,2] overhangs the display window [2,6]×[0,3] above.
@@ -176,7 +285,7 @@ TEST_F(ExrTest, RefusesEnormousSidesBeforeAllocating) {
 // Whatever a damaged file does, it is an image or an Error, and no memory is touched that is not
 // the reader's (the sanitizer build watches).
 TEST_F(ExrTest, DamagedFilesAreAnImageOrAnError) {
-  write_exr(test_image(), path("a.exr"));
+  write_exr(image_with_error(), path("a.exr"));
   const std::string whole = read(path("a.exr"));
   std::mt19937 random(1);
   int errors = 0;

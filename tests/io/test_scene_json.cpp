@@ -70,6 +70,19 @@ bool same(const std::vector<TransferFunction::Point>& a,
     return same(p.value, q.value) && same(p.extinction, q.extinction) && same(p.color, q.color);
   });
 }
+bool same(const OpacityTable& a, const OpacityTable& b) {
+  return same(a.unit_distance, b.unit_distance) &&
+         std::equal(a.points.begin(), a.points.end(), b.points.begin(), b.points.end(),
+                    [](const auto& p, const auto& q) {
+                      return same(p.value, q.value) && same(p.opacity, q.opacity) &&
+                             same(p.color, q.color);
+                    });
+}
+bool same(const TransferFunctionDescription& a, const TransferFunctionDescription& b) {
+  if (a.index() != b.index()) return false;
+  if (a.index() == 0) return same(std::get<0>(a), std::get<0>(b));
+  return same(std::get<1>(a), std::get<1>(b));
+}
 bool same(const Camera& a, const Camera& b) {
   return a.projection == b.projection && same(a.position, b.position) &&
          same(a.focal_point, b.focal_point) && same(a.up, b.up) &&
@@ -90,7 +103,10 @@ bool same(const FieldSource& a, const FieldSource& b) {
 bool same(const SceneDescription& a, const SceneDescription& b) {
   return same(a.field, b.field) && same(a.transfer_function, b.transfer_function) &&
          same(a.camera, b.camera) && a.size.width == b.size.width &&
-         a.size.height == b.size.height && a.integration.method == b.integration.method &&
+         a.size.height == b.size.height && a.samples == b.samples &&
+         a.integration.method == b.integration.method &&
+         same(a.integration.tolerance, b.integration.tolerance) &&
+         a.integration.grade == b.integration.grade &&
          a.integration.precision == b.integration.precision &&
          same(a.integration.step, b.integration.step) && same(a.background, b.background);
 }
@@ -130,11 +146,12 @@ TEST(SceneJson, ReadsWhatIsWritten) {
   EXPECT_EQ(scene.field.builtin, "hydrogen");
   EXPECT_EQ(scene.field.points, 64);
   ASSERT_TRUE(scene.transfer_function);
-  ASSERT_EQ(scene.transfer_function->size(), 3U);
-  EXPECT_EQ((*scene.transfer_function)[1].value, 0.1);
-  EXPECT_EQ((*scene.transfer_function)[1].extinction, 3.7);
-  EXPECT_EQ((*scene.transfer_function)[2].extinction, 1000);
-  EXPECT_EQ((*scene.transfer_function)[2].color, (Rgb<double>{2, 1.7, 0}));
+  const auto& points = std::get<std::vector<TransferFunction::Point>>(*scene.transfer_function);
+  ASSERT_EQ(points.size(), 3U);
+  EXPECT_EQ(points[1].value, 0.1);
+  EXPECT_EQ(points[1].extinction, 3.7);
+  EXPECT_EQ(points[2].extinction, 1000);
+  EXPECT_EQ(points[2].color, (Rgb<double>{2, 1.7, 0}));
   ASSERT_TRUE(scene.camera);
   EXPECT_EQ(scene.camera->projection, Projection::perspective);
   EXPECT_EQ(scene.camera->position, (Vec3<double>{2, -3.5, 1e-3}));
@@ -163,7 +180,24 @@ TEST(SceneJson, ReadsWhatIsWritten) {
   EXPECT_FALSE(raw.background);
   EXPECT_EQ(raw.size.width, 512);
   EXPECT_EQ(raw.integration.method, Method::exact);
-  EXPECT_EQ(raw.integration.precision, Precision::float32);
+  EXPECT_EQ(raw.samples, 1);
+  EXPECT_EQ(raw.integration.tolerance, 1.0 / 512);
+  EXPECT_EQ(raw.integration.grade, Grade::estimated);
+  EXPECT_EQ(raw.integration.precision, Precision::automatic);
+
+  const SceneDescription opacity = parse_scene(read(scenes / "valid" / "opacity.json"), "s");
+  ASSERT_TRUE(opacity.transfer_function);
+  const auto& table = std::get<OpacityTable>(*opacity.transfer_function);
+  EXPECT_EQ(table.unit_distance, 0.1);
+  ASSERT_EQ(table.points.size(), 4U);
+  EXPECT_EQ(table.points[1].value, 0.3);
+  EXPECT_EQ(table.points[1].opacity, 0.1);
+  EXPECT_EQ(table.points[3].opacity, 1);
+  EXPECT_EQ(table.points[3].color, (Rgb<double>{0.5, 1, 1}));
+  EXPECT_EQ(opacity.samples, 3);
+  EXPECT_EQ(opacity.integration.tolerance, 1e-4);
+  EXPECT_EQ(opacity.integration.grade, Grade::proved);
+  EXPECT_EQ(opacity.integration.precision, Precision::float32);
 }
 
 TEST(SceneJson, ExamplesAndTheDocumentedSceneAreValid) {
@@ -179,6 +213,15 @@ TEST(SceneJson, ExamplesAndTheDocumentedSceneAreValid) {
   const std::size_t begin = page.find("```json\n") + 8, end = page.find("```", begin);
   ASSERT_NE(end, std::string::npos);
   EXPECT_EQ(error_of([&] { parse_scene(page.substr(begin, end - begin), "docs/scene.md"); }), "");
+  const std::size_t table = page.find("```json\n", end + 3) + 8, close = page.find("```", table);
+  ASSERT_NE(close, std::string::npos);
+  TransferFunctionDescription function;
+  EXPECT_EQ(error_of([&] {
+              function =
+                  parse_transfer_function(page.substr(table, close - table), "docs/scene.md");
+            }),
+            "");
+  EXPECT_TRUE(std::holds_alternative<OpacityTable>(function));
 }
 
 TEST(SceneJson, AbsoluteFilesStayAndRelativeOnesStartAtTheFolder) {
@@ -234,12 +277,19 @@ TEST(SceneJson, WritingRefusesWhatJsonCannotHold) {
 TEST(TransferFunctionJson, StandsAloneBareOrUnderItsName) {
   const TransferFunction function({{0, 0, {0.1, 0.2, 0.3}}, {1.0 / 3, 4e-5, {1, 1, 1}}});
   const std::string bare = transfer_function_to_json(function);
-  EXPECT_TRUE(same(parse_transfer_function(bare, "t"), function.points())) << bare;
-  EXPECT_TRUE(same(parse_transfer_function("{\"transfer_function\": " + bare + "}", "t"),
-                   function.points()));
-  EXPECT_TRUE(
-      same(parse_transfer_function("{\"pellucid\": 1, \"transfer_function\": " + bare + "}", "t"),
-           function.points()));
+  EXPECT_EQ(bare, transfer_function_to_json(TransferFunctionDescription(function.points())));
+  const OpacityTable table{{{0, 0.3, {0.1, 0.2, 0.3}}, {1.0 / 3, 1, {1, 1, 1}}}, 0.7};
+  const auto expect_read = [](const TransferFunctionDescription& description) {
+    const std::string text = transfer_function_to_json(description);
+    EXPECT_TRUE(same(parse_transfer_function(text, "t"), description)) << text;
+    EXPECT_TRUE(
+        same(parse_transfer_function("{\"transfer_function\": " + text + "}", "t"), description));
+    EXPECT_TRUE(
+        same(parse_transfer_function("{\"pellucid\": 1, \"transfer_function\": " + text + "}", "t"),
+             description));
+  };
+  expect_read(function.points());
+  expect_read(table);
   const auto error = [](const char* text) {
     return error_of([&] { parse_transfer_function(text, "t.json"); });
   };
@@ -250,6 +300,24 @@ TEST(TransferFunctionJson, StandsAloneBareOrUnderItsName) {
   EXPECT_NE(error("{\"pellucid\": 2, \"transfer_function\": {}}").find("/pellucid: is version 2"),
             std::string::npos);
   EXPECT_NE(error("[]").find("must be an object"), std::string::npos);
+}
+
+TEST(TransferFunctionJson, MakesOpacityTablesAsExactAsTheToleranceAsks) {
+  for (const double tolerance : {1e-2, 1.0 / 512, 1e-4, 1e-6}) {
+    for (const double brightest : {0.0, 0.5, 1.0, 30.0}) {
+      const OpacityTable table{{{0, 0, {0, brightest, 0}}, {1, 0.9, {}}}, 0.1};
+      const TransferFunction function = make_transfer_function(table, tolerance);
+      EXPECT_LE(function.approximation_error(), tolerance / 8);
+      EXPECT_GE(function.approximation_error(), tolerance / 32);
+      const TransferFunction before_light =
+          make_transfer_function(table, tolerance, Rgb<double>{0, 0, 10});
+      EXPECT_LE(before_light.approximation_error(10), tolerance / 8);
+    }
+  }
+  const std::vector<TransferFunction::Point> points{{0, 1, {}}, {1, 2, {1, 1, 1}}};
+  const TransferFunction exact = make_transfer_function(points, 1e-2);
+  EXPECT_TRUE(same(exact.points(), points));
+  EXPECT_EQ(exact.approximation_error(), 0);
 }
 
 TEST(CameraJson, StandsAloneBareOrUnderItsName) {
@@ -309,13 +377,16 @@ TEST(MakeScene, FillsDefaults) {
 TEST(MakeScene, KeepsWhatIsGiven) {
   SceneDescription description;
   description.field = parse_field_source("builtin:ramp:3");
-  description.transfer_function = {{0.5, 2, {1, 0, 0}}};
+  const std::vector<TransferFunction::Point> points{{0.5, 2, {1, 0, 0}}};
+  description.transfer_function = points;
+  description.samples = 4;
   description.camera = Camera{};
   description.camera->vertical_angle = 12;
   description.integration.method = Method::simpson;
   description.background = Rgb<double>{1, 1, 1};
   const Scene scene = make_scene(description);
-  EXPECT_TRUE(same(scene.transfer_function->points(), *description.transfer_function));
+  EXPECT_TRUE(same(scene.transfer_function->points(), points));
+  EXPECT_EQ(scene.samples, 4);
   EXPECT_TRUE(same(scene.camera, *description.camera));
   EXPECT_EQ(scene.integration.method, Method::simpson);
   EXPECT_TRUE(same(scene.background, description.background));
@@ -326,6 +397,18 @@ TEST(MakeScene, SaysWhichFileIsMissing) {
   description.field = parse_field_source("/nowhere/at-all.nii.gz");
   EXPECT_NE(error_of([&] { make_scene(description); }).find("/nowhere/at-all.nii.gz"),
             std::string::npos);
+}
+
+TEST(MakeScene, TakesTheToleranceForOpacityTables) {
+  SceneDescription description;
+  description.field = parse_field_source("builtin:ramp:3");
+  description.transfer_function = OpacityTable{{{0, 0, {1, 1, 1}}, {1, 0.99, {1, 1, 1}}}, 0.5};
+  description.background = Rgb<double>{4, 0, 0};
+  description.integration.tolerance = 1e-5;
+  const Scene scene = make_scene(description);
+  EXPECT_LE(scene.transfer_function->approximation_error(4), 1e-5 / 8);
+  EXPECT_GE(scene.transfer_function->approximation_error(4), 1e-5 / 16);
+  EXPECT_EQ(scene.integration.tolerance, 1e-5);
 }
 
 }  // namespace

@@ -50,6 +50,7 @@ std::vector<json> mutants(const json& whole) {
                                        2,
                                        3,
                                        2.5,
+                                       0.5,
                                        1e-300,
                                        180,
                                        200,
@@ -85,7 +86,8 @@ std::vector<json> mutants(const json& whole) {
       list.back()[place] = replacement;
     }
     if (whole[place].is_object()) {
-      for (const char* key : {"unknown", "points", "type", "value", "parallel_scale", "builtin"}) {
+      for (const char* key : {"unknown", "points", "type", "value", "parallel_scale", "builtin",
+                              "unit_distance", "opacity", "extinction", "samples", "tolerance"}) {
         if (whole[place].contains(key)) continue;
         list.push_back(whole);
         list.back()[place][key] = 1;
@@ -116,7 +118,7 @@ TEST(SceneJsonSchema, AgreesWithTheParser) {
   std::size_t accepted_count = 0, refused_count = 0;
   {
     std::ofstream out(verdicts);
-    for (const char* name : {"perspective", "orthographic", "raw", "header_replaced"}) {
+    for (const char* name : {"perspective", "orthographic", "raw", "header_replaced", "opacity"}) {
       std::ifstream file(source / "tests" / "io" / "scenes" / "valid" /
                          (std::string(name) + ".json"));
       ASSERT_TRUE(file) << name;

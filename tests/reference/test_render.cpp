@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "pellucid/reference/render.h"
 #include "pellucid/scene/error.h"
+#include "src/reference/camera.h"
 #include "tests/scenes/peers.h"
 
 namespace pellucid {
@@ -117,17 +120,107 @@ TEST(ReferenceRender, RefusesWhatRenderRefuses) {
   scene = small_scene();
   scene.size.width = 0;
   EXPECT_THROW(render_reference(scene), Error);
+  for (const int samples : {-1, 0, 65}) {
+    scene = small_scene();
+    scene.samples = samples;
+    EXPECT_THROW(render_reference(scene), Error);
+  }
   RenderOptions options;
   options.threads = -1;
   EXPECT_THROW(render_reference(small_scene(), options), Error);
 }
 
-/// Method, precision and step are for the fast path only.
+/// Method, precision, step, tolerance and grade are for the fast path only.
 TEST(ReferenceRender, LooksAtTheFieldAndTheCameraOnly) {
   const Image image = render_reference(small_scene());
   Scene other = small_scene();
   other.integration = {Method::rectangle, Precision::float64, 7};
   EXPECT_EQ(image.pixels, render_reference(other).pixels);
+  other.integration = {Method::exact, Precision::automatic, 7, 0.1, Grade::proved};
+  EXPECT_EQ(image.pixels, render_reference(other).pixels);
+}
+
+/// A pixel of n × n samples is the mean of the n × n pixels of an image that much finer.
+TEST(ReferenceRender, SamplesAreThePixelsOfAFinerImage) {
+  for (const Projection projection : {Projection::perspective, Projection::orthographic}) {
+    Scene scene = corner_scene(projection);
+    scene.camera.position = {2.5, -3, 4};
+    scene.size = {8, 5};
+    for (const int n : {2, 3}) {
+      Scene fine = scene;
+      fine.size = {8 * n, 5 * n};
+      fine.samples = 1;
+      const Image expected = render_reference(fine);
+      scene.samples = n;
+      RenderReport report;
+      const Image image = render_reference(scene, {}, &report);
+      EXPECT_EQ(report.rays, static_cast<std::uint64_t>(8 * 5 * n * n));
+      double largest = 0;
+      for (int row = 0; row < 5; ++row) {
+        for (int column = 0; column < 8; ++column) {
+          for (std::size_t c = 0; c < 4; ++c) {
+            double mean = 0;
+            for (int i = 0; i < n * n; ++i) {
+              mean += static_cast<double>(expected.at(n * column + i % n, n * row + i / n)[c]);
+            }
+            mean /= n * n;
+            const double pixel = static_cast<double>(image.at(column, row)[c]);
+            largest = std::max(largest, std::abs(mean - pixel));
+          }
+        }
+      }
+      EXPECT_LT(largest, 1e-7);
+    }
+  }
+}
+
+/// The two cameras place their samples alike and count them in one order.
+TEST(ReferenceRender, SamplesAreTheRaysOfTheCamera) {
+  for (const Projection projection : {Projection::perspective, Projection::orthographic}) {
+    Scene scene = corner_scene(projection);
+    scene.camera.position = {2.5, -3, 4};
+    const CameraFrame<double> frame = make_camera_frame(scene.camera, scene.size);
+    const reference::CameraRays camera(scene.camera, scene.size);
+    for (int n = 0; n < 16; ++n) {
+      const Ray<double> fast = frame.ray(5, 11, n, 4);
+      const reference::RealRay ray = camera.ray(5, 11, n, 4);
+      for (int a = 0; a < 3; ++a) {
+        const auto axis = static_cast<std::size_t>(a);
+        EXPECT_NEAR(fast.origin[a], static_cast<double>(ray.origin[axis]), 1e-14);
+        EXPECT_NEAR(fast.direction[a], static_cast<double>(ray.direction[axis]), 1e-15);
+      }
+    }
+  }
+}
+
+TEST(ReferenceRender, DepthOfSamplesIsThatOfTheNearest) {
+  Scene scene = corner_scene(Projection::perspective);
+  scene.camera.position = {2.5, -3, 4};
+  scene.size = {6, 4};
+  scene.samples = 3;
+  RenderOptions options;
+  options.depth = true;
+  const Image image = render_reference(scene, options);
+  Scene fine = scene;
+  fine.size = {18, 12};
+  fine.samples = 1;
+  const Image samples = render_reference(fine, options);
+  int partly_empty = 0;
+  for (std::size_t p = 0; p < image.depth.size(); ++p) {
+    float nearest = std::numeric_limits<float>::infinity(), farthest = 0;
+    for (std::size_t i = 0; i < 9; ++i) {
+      const std::size_t s = (p / 6 * 3 + i / 3) * 18 + p % 6 * 3 + i % 3;
+      nearest = std::min(nearest, samples.depth[s]);
+      farthest = std::max(farthest, samples.depth[s]);
+    }
+    partly_empty += std::isinf(farthest) && !std::isinf(nearest) ? 1 : 0;
+    if (std::isinf(nearest)) {
+      EXPECT_TRUE(std::isinf(image.depth[p])) << p;
+    } else {
+      EXPECT_FLOAT_EQ(image.depth[p], nearest) << p;
+    }
+  }
+  EXPECT_GT(partly_empty, 2);
 }
 
 }  // namespace

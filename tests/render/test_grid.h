@@ -6,7 +6,8 @@
 
 #include "pellucid/field/structured_grid.h"
 #include "pellucid/geometry/ray.h"
-#include "pellucid/transfer/piecewise_linear.h"
+#include "pellucid/render/integrate_ray.h"
+#include "pellucid/scene/antiderivative_storage.h"
 
 namespace pellucid {
 
@@ -45,6 +46,21 @@ inline Ray<double> oblique_ray(int n) {
   const double c = 0.5 * (n - 1);
   const Vec3<double> direction = normalized(Vec3<double>{0.6, -0.35, 0.71});
   return {Vec3<double>{c, c, c} - direction * (2.0 * n), direction};
+}
+
+/// integrate_ray() through the table in one number type, within a tolerance far below what is
+/// tested.
+template <class Value>
+RayResult exact_ray(const TestGrid<Value>& grid, const Ray<double>& ray, Precision precision,
+                    bool with_depth, double tolerance = 1e-9) {
+  const TestTable<float> single;
+  const TestTable<double> wide;
+  const AntiderivativeStorage<float> single_antiderivative(single.view());
+  const AntiderivativeStorage<double> wide_antiderivative(wide.view());
+  const TransferTables tables{single.view(), wide.view(), single_antiderivative.view(),
+                              wide_antiderivative.view(), 4};
+  const RayTolerance wanted{tolerance, Grade::estimated, precision, 1};
+  return integrate_ray(grid.view(), nullptr, ray, tables, wanted, with_depth);
 }
 
 }  // namespace pellucid

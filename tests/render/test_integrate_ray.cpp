@@ -52,24 +52,51 @@ TEST(Spans, PassOverCellsWithANanCorner) {
   EXPECT_EQ(begins, (std::vector<double>{1, 4}));
 }
 
-TEST(IntegrateRay, FloatAndDoubleAgreeWithinTheirTolerances) {
+TEST(IntegrateRay, FloatAndDoubleAgreeWithinWhatTheySay) {
   const TestGrid<float> grid(33);
-  const TestTable<float> single;
-  const TestTable<double> full;
-  const RayResult a = integrate_ray<float>(grid.view(), oblique_ray(33), single.view(), 1, false);
-  const RayResult b = integrate_ray<double>(grid.view(), oblique_ray(33), full.view(), 1, false);
+  const Ray<double> ray = oblique_ray(33);
+  const RayResult b = exact_ray(grid, ray, Precision::float64, false);
   EXPECT_GT(b.opacity, 0.5);
-  EXPECT_NEAR(a.opacity, b.opacity, 2e-5);
-  EXPECT_NEAR(a.radiance.r, b.radiance.r, 2e-5);
-  EXPECT_NEAR(a.radiance.g, b.radiance.g, 2e-5);
-  EXPECT_NEAR(a.radiance.b, b.radiance.b, 2e-5);
+  EXPECT_LE(b.error, 1e-9);
+  for (const double tolerance : {1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7}) {
+    for (const Precision precision : {Precision::automatic, Precision::float32}) {
+      const RayResult a = exact_ray(grid, ray, precision, false, tolerance);
+      const double error = a.error + b.error;
+      EXPECT_LE(std::abs(a.opacity - b.opacity), error);
+      EXPECT_LE(std::abs(a.radiance.r - b.radiance.r), error);
+      EXPECT_LE(std::abs(a.radiance.g - b.radiance.g), error);
+      EXPECT_LE(std::abs(a.radiance.b - b.radiance.b), error);
+      if (precision == Precision::automatic) {
+        EXPECT_LE(a.error, tolerance);
+      }
+    }
+  }
+}
+
+TEST(IntegrateRay, BinarySixtyFourStepsInWhereBinaryThirtyTwoDoesNotDo) {
+  const TestGrid<float> grid(33);
+  const Ray<double> ray = oblique_ray(33);
+  EXPECT_EQ(exact_ray(grid, ray, Precision::float32, false, 1e-7).spans.in_double, 0u);
+  EXPECT_GT(exact_ray(grid, ray, Precision::float32, false, 1e-7).error, 1e-7);
+  EXPECT_GT(exact_ray(grid, ray, Precision::automatic, false, 1e-7).spans.in_double, 10u);
+}
+
+TEST(IntegrateRay, ALooserToleranceTakesNoMoreCells) {
+  const TestGrid<float> grid(33);
+  long cells = 0;
+  for (const double tolerance : {0.5, 1e-1, 1e-2, 1e-4, 1e-6}) {
+    const RayResult r = exact_ray(grid, oblique_ray(33), Precision::automatic, false, tolerance);
+    EXPECT_GE(r.cells, cells);
+    cells = r.cells;
+  }
+  EXPECT_GT(cells, exact_ray(grid, oblique_ray(33), Precision::automatic, false, 0.5).cells);
 }
 
 TEST(IntegrateRay, HalfOpacityDepthHalvesTheOpacity) {
   const TestGrid<float> grid(17);
   const TestTable<double> table;
   Ray<double> ray = oblique_ray(17);
-  const RayResult whole = integrate_ray<double>(grid.view(), ray, table.view(), 1, true);
+  const RayResult whole = exact_ray(grid, ray, Precision::float64, true);
   ASSERT_GT(whole.opacity, 0.2);
   // The opacity up to a place, by a fine midpoint rule from outside in the same data.
   double depth = 0;
@@ -94,9 +121,9 @@ TEST(IntegrateRay, HalfOpacityDepthHalvesTheOpacity) {
 
 TEST(IntegrateRay, ARayThatMissesIsClear) {
   const TestGrid<float> grid(5);
-  const TestTable<float> table;
-  const RayResult r =
-      integrate_ray<float>(grid.view(), {{100, 0, 0}, {0, 0, 1}}, table.view(), 1, true);
+  const RayResult r = exact_ray(grid, {{100, 0, 0}, {0, 0, 1}}, Precision::automatic, true);
+  EXPECT_EQ(r.error, 0);
+  EXPECT_TRUE(r.proved);
   EXPECT_EQ(r.opacity, 0);
   EXPECT_EQ(r.cells, 0);
   EXPECT_TRUE(std::isinf(r.half_opacity_depth));
@@ -108,8 +135,7 @@ TEST(IntegrateRay, WorldLengthIsTheParameterNotTheGridLength) {
   for (float& v : grid.data) v = 0.45f;
   const TestTable<double> table;
   const double extinction = table.view().evaluate(static_cast<double>(0.45f)).extinction;
-  const RayResult r =
-      integrate_ray<double>(grid.view(), {{-1, 1, 1}, {0.5, 0, 0}}, table.view(), 1, false);
+  const RayResult r = exact_ray(grid, {{-1, 1, 1}, {0.5, 0, 0}}, Precision::float64, false);
   EXPECT_NEAR(r.optical_depth, 4 * extinction, 1e-14);
 }
 

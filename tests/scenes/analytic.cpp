@@ -6,41 +6,15 @@
 #include <numbers>
 #include <utility>
 
+#include "tests/scenes/makers.h"
+
 namespace pellucid::scenes {
 namespace {
 
-using Points = std::vector<TransferFunction::Point>;
 using Description = Volume::Description;
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
-
-/// A volume of Value with f(i, j, k) at its points.
-template <class Value, class Field>
-std::shared_ptr<const Volume> make(Description description, Field&& f) {
-  const auto [nx, ny, nz] = description.dimensions;
-  std::vector<Value> values;
-  for (int k = 0; k < nz; ++k) {
-    for (int j = 0; j < ny; ++j) {
-      for (int i = 0; i < nx; ++i) values.push_back(static_cast<Value>(f(i, j, k)));
-    }
-  }
-  return std::make_shared<const Volume>(std::move(description), VolumeData(std::move(values)));
-}
-
-Description grid(std::array<int, 3> dimensions, Vec3<double> origin = {0, 0, 0},
-                 Vec3<double> spacing = {1, 1, 1}) {
-  Description d;
-  d.dimensions = dimensions;
-  d.placement.origin = origin;
-  d.placement.spacing = spacing;
-  d.name = "analytic";
-  return d;
-}
-
-std::shared_ptr<const TransferFunction> transfer(Points points) {
-  return std::make_shared<const TransferFunction>(std::move(points));
-}
 
 /// What a slab of constant extinction and color does.
 void expect_slab(AnalyticRay& ray, double extinction, double thickness, Rgb<double> color,
@@ -101,7 +75,8 @@ void add_constant_fields(std::vector<AnalyticRay>& rays) {
 
   // A sampler that drops the stretch behind its last sample loses most on the coarsest grid.
   AnalyticRay ray{"constant field on 8 x 8 x 8, along an axis",
-                  make<float>(grid({8, 8, 8}, {-1, -1, -1}, {2.0 / 7, 2.0 / 7, 2.0 / 7}), one),
+                  make_volume<float>(
+                      grid_description({8, 8, 8}, {-1, -1, -1}, {2.0 / 7, 2.0 / 7, 2.0 / 7}), one),
                   transfer(constant(0.75, color)),
                   {0.1, 0.2, 5},
                   {0, 0, -1},
@@ -175,7 +150,7 @@ void add_ramps(std::vector<AnalyticRay>& rays) {
   // x from 0 to 4 shows f from 0 to 1: the extinction is 3 x/4.
   const auto rising = [](int i, int, int) { return 0.25 * i; };
   AnalyticRay ray{"linear ramp, rising",
-                  make<double>(grid({5, 3, 4}), rising),
+                  make_volume<double>(grid_description({5, 3, 4}), rising),
                   transfer(ramp(k)),
                   {-2, 0.7, 1.3},
                   {1, 0, 0},
@@ -206,7 +181,8 @@ void add_ramps(std::vector<AnalyticRay>& rays) {
   rays.push_back(ray);
 
   ray.name = "linear ramp, anisotropic spacing, obliquely";
-  ray.volume = make<double>(grid({5, 9, 9}, {10, -20, 30}, {0.5, 2, 0.25}), rising);
+  ray.volume =
+      make_volume<double>(grid_description({5, 9, 9}, {10, -20, 30}, {0.5, 2, 0.25}), rising);
   ray.transfer_function = transfer(ramp(k));
   // From x = 10 to 12 with y = -18 + dy, z = 31 + dz: inside throughout.
   ray.direction = {2.0 / 3, 2.0 / 3, -1.0 / 3};
@@ -216,20 +192,20 @@ void add_ramps(std::vector<AnalyticRay>& rays) {
 
   // The same ray in data and world turned together by an oblique rotation.
   ray.name = "linear ramp, oblique direction cosines";
-  Description turned = grid({5, 9, 9}, {0, 0, 0}, {0.5, 2, 0.25});
+  Description turned = grid_description({5, 9, 9}, {0, 0, 0}, {0.5, 2, 0.25});
   turned.placement.direction = {
       {{2.0 / 3, 2.0 / 3, -1.0 / 3}, {-1.0 / 3, 2.0 / 3, 2.0 / 3}, {2.0 / 3, -1.0 / 3, 2.0 / 3}}};
   const Mat3<double> rotation = turned.placement.direction;
   turned.placement.origin = rotation * Vec3<double>{10, -20, 30};
-  ray.volume = make<double>(turned, rising);
+  ray.volume = make_volume<double>(turned, rising);
   ray.origin = rotation * ray.origin;
   ray.direction = rotation * ray.direction;
   rays.push_back(ray);
 
   ray.name = "linear ramp in a left-handed, sheared grid";
-  Description sheared = grid({5, 3, 3}, {1, 2, 3}, {0.5, 1, 1});
+  Description sheared = grid_description({5, 3, 3}, {1, 2, 3}, {0.5, 1, 1});
   sheared.placement.direction = {{{-1, 0, 0}, {1, 1, 0}, {0, 0.5, 1}}};
-  ray.volume = make<double>(sheared, rising);
+  ray.volume = make_volume<double>(sheared, rising);
   // At index (i, 1, 1): x from 2 to 0, y = 3.5, z = 4.
   ray.origin = {5, 3.5, 4};
   ray.direction = {-1, 0, 0};
@@ -237,9 +213,9 @@ void add_ramps(std::vector<AnalyticRay>& rays) {
   rays.push_back(ray);
 
   ray.name = "linear ramp on a rectilinear axis";
-  Description rectilinear = grid({5, 3, 4});
+  Description rectilinear = grid_description({5, 3, 4});
   rectilinear.coordinates[0] = {0, 0.125, 1.5, 3.75, 4};
-  ray.volume = make<float>(rectilinear, [&](int i, int, int) {
+  ray.volume = make_volume<float>(rectilinear, [&](int i, int, int) {
     return rectilinear.coordinates[0][static_cast<std::size_t>(i)] / 4;
   });
   ray.origin = {-2, 0.7, 1.3};
@@ -250,7 +226,7 @@ void add_ramps(std::vector<AnalyticRay>& rays) {
   ray.name = "linear ramp, f(x) seen obliquely in a rectilinear grid of three axes";
   rectilinear.coordinates[1] = {-3, -1, 4};
   rectilinear.coordinates[2] = {0, 1, 1.5, 7};
-  ray.volume = make<float>(rectilinear, [&](int i, int, int) {
+  ray.volume = make_volume<float>(rectilinear, [&](int i, int, int) {
     return rectilinear.coordinates[0][static_cast<std::size_t>(i)] / 4;
   });
   ray.direction = {2.0 / 3, 1.0 / 3, 2.0 / 3};
@@ -272,10 +248,10 @@ void add_cell_centred(std::vector<AnalyticRay>& rays) {
     ray.opacity += transparency * slab.opacity;
     ray.half_opacity_depth = not_a_number;
   };
-  Description d = grid({2, 3, 1}, {5, 0, 0}, {2, 1, 1});
+  Description d = grid_description({2, 3, 1}, {5, 0, 0}, {2, 1, 1});
   d.centering = Centering::cell;
   AnalyticRay ray{"cell-centred ramp",
-                  make<std::uint8_t>(d, [](int i, int, int) { return i; }),
+                  make_volume<std::uint8_t>(d, [](int i, int, int) { return i; }),
                   transfer(ramp(k)),
                   {0, 1.2, 0.3},
                   {1, 0, 0},
@@ -291,7 +267,7 @@ void add_cell_centred(std::vector<AnalyticRay>& rays) {
 
   ray.name = "cell-centred ramp on a rectilinear axis (faces given)";
   d.coordinates[0] = {5, 6, 9};  // Values at 5.5 and 7.5.
-  ray.volume = make<std::uint8_t>(d, [](int i, int, int) { return i; });
+  ray.volume = make_volume<std::uint8_t>(d, [](int i, int, int) { return i; });
   ray.origin = {0, 1.2, 0.3};
   half(ray, 2, 1.5);
   rays.push_back(ray);
@@ -300,7 +276,8 @@ void add_cell_centred(std::vector<AnalyticRay>& rays) {
 void add_curved(std::vector<AnalyticRay>& rays) {
   const double diagonal = std::sqrt(3.0);
   AnalyticRay ray{"f = xyz along the diagonal of a cell",
-                  make<float>(grid({2, 2, 2}), [](int i, int j, int k) { return i * j * k; }),
+                  make_volume<float>(grid_description({2, 2, 2}),
+                                     [](int i, int j, int k) { return i * j * k; }),
                   transfer({{0, 0, {1, 0, 0}}, {1, 6, {1, 1, 0}}}),
                   {-1, -1, -1},
                   {1, 1, 1},
@@ -319,7 +296,8 @@ void add_curved(std::vector<AnalyticRay>& rays) {
 
   // f = x (1 − y) is a saddle; along x = y = u it is u − u², above 3/16 between u = 1/4 and 3/4.
   ray.name = "a bilinear saddle that rises over a jump and falls below it again";
-  ray.volume = make<float>(grid({2, 2, 2}), [](int i, int j, int) { return i * (1 - j); });
+  ray.volume = make_volume<float>(grid_description({2, 2, 2}),
+                                  [](int i, int j, int) { return i * (1 - j); });
   ray.transfer_function = transfer({{0.1875, 0, color}, {0.1875, 2, color}});
   ray.origin = {-1, -1, 0.5};
   ray.direction = {1, 1, 0};
@@ -337,7 +315,8 @@ void add_curved(std::vector<AnalyticRay>& rays) {
 
   // A triangle of height 4 over one cell: its depth is its area, whatever the ray.
   ray.name = "a peak between two planes, depth by area";
-  ray.volume = make<std::int16_t>(grid({9, 4, 4}), [](int i, int, int) { return 100 * i - 400; });
+  ray.volume = make_volume<std::int16_t>(grid_description({9, 4, 4}),
+                                         [](int i, int, int) { return 100 * i - 400; });
   ray.transfer_function = transfer({{-50, 0, color}, {0, 4, color}, {50, 0, color}});
   ray.origin = {-3, 1.5, 1.25};
   ray.direction = {1, 0, 0};
@@ -361,11 +340,11 @@ void add_curved(std::vector<AnalyticRay>& rays) {
 void add_sphere(std::vector<AnalyticRay>& rays) {
   const Rgb<double> color{0.25, 1, 0.5};
   AnalyticRay ray{"",
-                  make<std::int32_t>(grid({11, 11, 11}, {-5, -5, -5}),
-                                     [](int i, int j, int k) {
-                                       const int x = i - 5, y = j - 5, z = k - 5;
-                                       return x * x + y * y + z * z;
-                                     }),
+                  make_volume<std::int32_t>(grid_description({11, 11, 11}, {-5, -5, -5}),
+                                            [](int i, int j, int k) {
+                                              const int x = i - 5, y = j - 5, z = k - 5;
+                                              return x * x + y * y + z * z;
+                                            }),
                   transfer({{9, 0.4, color}, {9, 0, color}}),
                   {},
                   {},
@@ -405,10 +384,10 @@ void add_sphere(std::vector<AnalyticRay>& rays) {
 void add_vacuum(std::vector<AnalyticRay>& rays) {
   const Rgb<double> color{0.25, 0.5, 1};
   AnalyticRay ray{"a NaN makes the cells around it vacuum",
-                  make<float>(grid({9, 5, 5}),
-                              [](int i, int j, int k) {
-                                return i == 3 && j == 2 && k == 2 ? not_a_number : 1.0;
-                              }),
+                  make_volume<float>(grid_description({9, 5, 5}),
+                                     [](int i, int j, int k) {
+                                       return i == 3 && j == 2 && k == 2 ? not_a_number : 1.0;
+                                     }),
                   transfer(constant(0.5, color)),
                   {-1, 1.5, 2.5},
                   {1, 0, 0},
@@ -422,21 +401,23 @@ void add_vacuum(std::vector<AnalyticRay>& rays) {
   rays.push_back(ray);
 
   ray.name = "all NaN";
-  ray.volume = make<double>(grid({3, 3, 3}), [](int, int, int) { return not_a_number; });
+  ray.volume =
+      make_volume<double>(grid_description({3, 3, 3}), [](int, int, int) { return not_a_number; });
   expect_slab(ray, 0.5, 0, color, 0);
   rays.push_back(ray);
 }
 
 template <class Value>
 void add_type(std::vector<AnalyticRay>& rays, const char* name) {
-  AnalyticRay ray{std::string("linear ramp in ") + name,
-                  make<Value>(grid({5, 3, 4}), [](int i, int, int) { return 30 * i; }),
-                  transfer({{0, 0, {1, 0, 1}}, {120, 3, {1, 1, 0}}}),
-                  {-2, 0.7, 1.3},
-                  {1, 0, 0},
-                  {},
-                  0,
-                  0};
+  AnalyticRay ray{
+      std::string("linear ramp in ") + name,
+      make_volume<Value>(grid_description({5, 3, 4}), [](int i, int, int) { return 30 * i; }),
+      transfer({{0, 0, {1, 0, 1}}, {120, 3, {1, 1, 0}}}),
+      {-2, 0.7, 1.3},
+      {1, 0, 0},
+      {},
+      0,
+      0};
   expect_rising(ray, 0.75, 4, 2);
   rays.push_back(ray);
 }

@@ -5,10 +5,11 @@
 
 namespace pellucid::scenes {
 
-/// Largest difference over all pixels and channels that the exact method promises, linear.
+/// Largest difference over all pixels and channels that the exact method promises at the smallest
+/// tolerance, linear.
 inline constexpr double double_bound = 1e-6;
 inline constexpr double float_bound = 1e-4;
-/// What it reaches in double before the image rounds it to float: the spans' tolerance.
+/// What its rays keep in double where they are asked to, before the image rounds them to float.
 inline constexpr double ray_bound = 1e-9;
 
 /// Renders the scene by the reference and by the exact method in both precisions, prints the

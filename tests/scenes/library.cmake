@@ -2,12 +2,26 @@
 # The scenes that tests and benchmarks share; included where they are needed.
 include_guard(GLOBAL)
 find_package(Boost REQUIRED)
+find_package(Threads REQUIRED)
 set(scenes_folder "${CMAKE_CURRENT_LIST_DIR}")
-add_library(pellucid_test_scenes STATIC
-  "${scenes_folder}/analytic.cpp" "${scenes_folder}/difference.cpp" "${scenes_folder}/peers.cpp"
-  "${scenes_folder}/real.cpp")
+set(scenes_sources
+  analytic.cpp cameras.cpp difference.cpp gallery.cpp gallery_cells.cpp gallery_grids.cpp
+  gallery_marschner_lobb.cpp gallery_scans.cpp gallery_strides.cpp gallery_tables.cpp makers.cpp
+  peers.cpp real.cpp scene_hash.cpp)
+set(matrix_sources reference_frame.cpp tolerance_matrix.cpp verdict.cpp)
+add_library(pellucid_test_scenes STATIC)
+list(TRANSFORM scenes_sources PREPEND "${scenes_folder}/")
+target_sources(pellucid_test_scenes PRIVATE ${scenes_sources})
 target_include_directories(pellucid_test_scenes PUBLIC "${PROJECT_SOURCE_DIR}")
 target_compile_definitions(pellucid_test_scenes PRIVATE PELLUCID_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
 target_link_libraries(pellucid_test_scenes
   PUBLIC pellucid::scene
   PRIVATE pellucid::io Boost::headers pellucid_build_flags)
+
+# What renders them to a tolerance and holds them against the reference.
+add_library(pellucid_test_matrix STATIC)
+list(TRANSFORM matrix_sources PREPEND "${scenes_folder}/")
+target_sources(pellucid_test_matrix PRIVATE ${matrix_sources})
+target_link_libraries(pellucid_test_matrix
+  PUBLIC pellucid_test_scenes pellucid::cpu
+  PRIVATE pellucid::reference Threads::Threads pellucid_build_flags)

@@ -11,75 +11,6 @@
 namespace pellucid::scenes {
 namespace {
 
-using Points = std::vector<TransferFunction::Point>;
-
-VolumePointer builtin(const char* name, int points) {
-  return std::make_shared<const Volume>(make_builtin_field(name, points));
-}
-
-TransferPointer transfer(Points points) {
-  return std::make_shared<const TransferFunction>(std::move(points));
-}
-
-Scene make_scene(VolumePointer volume, TransferPointer transfer_function, const Camera& camera,
-                 ImageSize size) {
-  Scene scene;
-  scene.volume = std::move(volume);
-  scene.transfer_function = std::move(transfer_function);
-  scene.camera = camera;
-  scene.size = size;
-  return scene;
-}
-
-/// Colors between the values of a table with 256 entries, as the peers had them.
-Rgb<double> tabulated_color(double v) {
-  const auto entry = [](double i) {
-    const double x = i / 255;
-    return Rgb<double>{x, 0.5 + 0.5 * std::cos(7 * x), 1 - x};
-  };
-  const double position = std::clamp(v, 0.0, 1.0) * 255;
-  const double i = std::min(std::floor(position), 254.0);
-  return entry(i) * (i + 1 - position) + entry(i + 1) * (position - i);
-}
-
-/// An extinction on the 256 points of the color table and on points of its own.
-template <class Extinction>
-TransferPointer with_tabulated_color(Extinction&& extinction, const std::vector<double>& corners) {
-  std::vector<double> values = corners;
-  for (int i = 0; i < 256; ++i) values.push_back(i / 255.0);
-  std::sort(values.begin(), values.end());
-  values.erase(std::unique(values.begin(), values.end()), values.end());
-  Points points;
-  for (const double v : values) points.push_back({v, extinction(v), tabulated_color(v)});
-  return transfer(std::move(points));
-}
-
-/// A float field on [-1,1]³, or on part of it, from f(x, y, z).
-template <class Field>
-VolumePointer sampled(std::array<int, 3> dimensions, Field&& f, const char* name,
-                      Centering centering = Centering::point) {
-  Volume::Description d;
-  d.dimensions = dimensions;
-  d.centering = centering;
-  d.name = name;
-  for (int a = 0; a < 3; ++a) {
-    const int n = dimensions[static_cast<std::size_t>(a)];
-    const bool cell = centering == Centering::cell;
-    d.placement.spacing[a] = cell ? 2.0 / n : 2.0 / (n - 1);
-    d.placement.origin[a] = cell ? -1 + 1.0 / n : -1;
-  }
-  const auto at = [&](int a, int i) { return d.placement.origin[a] + i * d.placement.spacing[a]; };
-  std::vector<float> values;
-  for (int k = 0; k < dimensions[2]; ++k) {
-    for (int j = 0; j < dimensions[1]; ++j) {
-      for (int i = 0; i < dimensions[0]; ++i) {
-        values.push_back(static_cast<float>(f(at(0, i), at(1, j), at(2, k))));
-      }
-    }
-  }
-  return std::make_shared<const Volume>(std::move(d), VolumeData(std::move(values)));
-}
-
 Camera camera_inside() {
   Camera camera;
   camera.position = {0.1, -0.05, 0.2};
@@ -127,6 +58,16 @@ TransferPointer band_transfer() {
 }
 TransferPointer spike_transfer() {
   return peak_transfer(100, 0.012);
+}
+
+TransferPointer comb_transfer() {
+  Points points;
+  for (int i = 0; i < 256; ++i) {
+    const double v = i / 255.0;
+    const double extinction = (i % 2 == 0 ? 0.2 : 3) * (1 + std::sin(20 * v));
+    points.push_back({v, extinction, {i % 3 == 0 ? 1.0 : 0.1, i % 5 / 4.0, 1 - v}});
+  }
+  return transfer(std::move(points));
 }
 
 std::vector<NamedScene> marschner_lobb_scenes(int points, ImageSize size) {

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "pellucid/scene/scene.h"
+#include "tests/scenes/makers.h"
 
 /// Scenes on which other renderers were measured, and scenes made to break one. Volumes live on
 /// [-1,1]³ unless said; `points` is the number of data values per axis.
@@ -14,9 +14,6 @@ struct NamedScene {
   std::string name;
   Scene scene;
 };
-
-using VolumePointer = std::shared_ptr<const Volume>;
-using TransferPointer = std::shared_ptr<const TransferFunction>;
 
 /// Parallel views of [-1,1]²: oblique looks along (-0.5, -0.7, -1), axis along -z, diagonal along
 /// (-1, -1, -1).
@@ -30,6 +27,7 @@ TransferPointer haze_transfer();
 TransferPointer peak_transfer(double peak, double half_width);
 TransferPointer band_transfer();   ///< peak 20, half width 0.05
 TransferPointer spike_transfer();  ///< peak 100, half width 0.012
+TransferPointer comb_transfer();   ///< 256 control points, each of which is a corner
 
 /// Haze, band and spike in the Marschner-Lobb field, each from the three views.
 std::vector<NamedScene> marschner_lobb_scenes(int points, ImageSize size);

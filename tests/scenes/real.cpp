@@ -44,12 +44,30 @@ std::vector<RealData> real_data() {
             {0.245, 0.02, {0.9, 0.7, 0.6}},
             {0.25, 1.5, {0.2, 0.9, 1}},
             {0.255, 0.02, {0.9, 0.8, 0.7}},
-            {0.6, 0.5, {1, 1, 0.9}}}}};
+            {0.6, 0.5, {1, 1, 0.9}}}},
+          {"hydrogen",
+           data / "hydrogenatom" / "hydrogenatom.raw",
+           {{8, 0, {0.1, 0.2, 0.8}},
+            {40, 0.02, {0.2, 0.6, 1}},
+            {79.5, 0.03, {0.3, 0.8, 0.9}},
+            {80, 1, {1, 0.9, 0.2}},
+            {80.5, 0.03, {0.5, 0.8, 0.4}},
+            {250, 0.3, {1, 0.3, 0.1}}},
+           {128, 128, 128}}};
+}
+
+VolumePointer read(const RealData& data) {
+  ReadOptions options;
+  if (data.raw_dimensions[0] > 0) {
+    options.dimensions = data.raw_dimensions;
+    options.type = "u8";
+  }
+  return std::make_shared<const Volume>(read_volume(data.file, options));
 }
 
 std::vector<NamedScene> real_scenes(const RealData& data, ImageSize size) {
   Scene scene;
-  scene.volume = std::make_shared<const Volume>(read_volume(data.file));
+  scene.volume = read(data);
   scene.transfer_function = std::make_shared<const TransferFunction>(data.points);
   scene.size = size;
 

@@ -12,10 +12,16 @@ struct RealData {
   std::string name;
   std::filesystem::path file;
   std::vector<TransferFunction::Point> points;
+  /// Of a file without a header, whose values are bytes; 0: the file says it.
+  std::array<int, 3> raw_dimensions{};
 };
 
-/// brain (Debian's mricron-data), engine, bonsai, stent (the data folder beside the sources).
+/// brain (Debian's mricron-data), engine, bonsai, stent, hydrogen (the data folder beside the
+/// sources).
 std::vector<RealData> real_data();
+
+/// Throws Error where the file cannot be read.
+VolumePointer read(const RealData& data);
 
 /// Reads the file and shows it from outside (perspective), along an axis (parallel) and from
 /// within. Throws Error where the file cannot be read.

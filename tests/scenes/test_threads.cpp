@@ -12,20 +12,37 @@ TEST(Threads, AnyNumberGivesBitwiseTheSameImage) {
   Scene scene = scenes::ray_splitting_scene(65, {83, 61}).scene;
   RenderOptions options;
   options.depth = true;
-  for (const Method method : {Method::exact, Method::simpson}) {
-    for (const Precision precision : {Precision::float32, Precision::float64}) {
-      scene.integration = {method, precision, 0.7};
-      options.threads = 1;
-      RenderReport one_report;
-      const Image one = render(scene, options, &one_report);
-      for (const int threads : {2, 3}) {
-        options.threads = threads;
-        RenderReport report;
-        const Image many = render(scene, options, &report);
-        EXPECT_EQ(one.pixels, many.pixels) << threads << " threads";
-        EXPECT_EQ(one.depth, many.depth) << threads << " threads";
-        EXPECT_EQ(one_report.cells, report.cells) << threads << " threads";
-      }
+  options.error = true;
+  const auto with = [](Method method, Precision precision, double tolerance, Grade grade) {
+    Integration integration;
+    integration.method = method;
+    integration.precision = precision;
+    integration.step = 0.7;
+    integration.tolerance = tolerance;
+    integration.grade = grade;
+    return integration;
+  };
+  for (const Integration& integration :
+       {with(Method::exact, Precision::automatic, 1e-2, Grade::estimated),
+        with(Method::exact, Precision::automatic, 1e-6, Grade::proved),
+        with(Method::exact, Precision::float32, 1e-4, Grade::estimated),
+        with(Method::simpson, Precision::float32, 1e-4, Grade::estimated),
+        with(Method::simpson, Precision::float64, 1e-4, Grade::estimated)}) {
+    scene.integration = integration;
+    options.threads = 1;
+    RenderReport one_report;
+    const Image one = render(scene, options, &one_report);
+    for (const int threads : {2, 3}) {
+      options.threads = threads;
+      RenderReport report;
+      const Image many = render(scene, options, &report);
+      EXPECT_EQ(one.pixels, many.pixels) << threads << " threads";
+      EXPECT_EQ(one.depth, many.depth) << threads << " threads";
+      EXPECT_EQ(one.error, many.error) << threads << " threads";
+      EXPECT_EQ(one.proved, many.proved) << threads << " threads";
+      EXPECT_EQ(one_report.cells, report.cells) << threads << " threads";
+      EXPECT_EQ(one_report.evaluations, report.evaluations) << threads << " threads";
+      EXPECT_EQ(one_report.largest_error, report.largest_error) << threads << " threads";
     }
   }
 }

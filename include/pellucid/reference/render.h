@@ -9,9 +9,10 @@ namespace pellucid {
 
 /// The same scene by adaptive Gauß-Kronrod quadrature in double to 1e-12 (Boost.Math), cell by
 /// cell. Slow. Shares no kernel with the fast path: it has its own ray-plane sorting,
-/// interpolation, transfer-function lookup, crossings and quadrature. The method and precision of
-/// the scene are not looked at. Only RenderOptions and the report are shared with cpu/.
-/// Throws what pellucid::render throws.
+/// interpolation, transfer-function lookup, crossings and quadrature. Method,
+/// precision, step, tolerance and grade of the scene are not looked at, but refused where render()
+/// refuses them; a pixel is the mean of its samples. Only RenderOptions and the report are shared
+/// with cpu/. Throws what pellucid::render throws.
 Image render_reference(const Scene& scene, const RenderOptions& options = {},
                        RenderReport* report = nullptr);
 

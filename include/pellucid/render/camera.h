@@ -19,8 +19,21 @@ struct CameraFrame {
   int width = 0, height = 0;
 
   PELLUCID_HD Ray<T> ray(int column, int row) const noexcept {
-    const T x = (2 * T(column) + 1) / T(width) - T(1);
-    const T y = T(1) - (2 * T(row) + 1) / T(height);
+    return ray_through(T(column) + T(0.5), T(row) + T(0.5));
+  }
+
+  /// Sample n of samples × samples: the ray through the centre of one of the equal parts of a
+  /// pixel.
+  PELLUCID_HD Ray<T> ray(int column, int row, int n, int samples) const noexcept {
+    return ray_through(T(column) + (T(n % samples) + T(0.5)) / T(samples),
+                       T(row) + (T(n / samples) + T(0.5)) / T(samples));
+  }
+
+  /// The ray through a point of the image: (0, 0) is its upper left corner, (width, height) its
+  /// lower right one.
+  PELLUCID_HD Ray<T> ray_through(T column, T row) const noexcept {
+    const T x = 2 * column / T(width) - T(1);
+    const T y = T(1) - 2 * row / T(height);
     const Vec3<T> offset = right * x + up * y;
     if (perspective) return {position, normalized(forward + offset)};
     return {position + offset, forward};

@@ -1,27 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "pellucid/render/ray_result.h"
-#include "pellucid/segment/cubic.h"
-#include "pellucid/segment/fold.h"
-#include "pellucid/traverse/spans.h"
+#include "pellucid/render/stride_march.h"
 
 namespace pellucid {
-
-/// The relative tolerance that each span is integrated to: its error is at most this times its
-/// opacity (per unit of color), so that the sum over a ray is at most this, however many cells it
-/// crosses (specification, 2.3, corollary). Above the kernels' own rounding in that number type.
-template <class T>
-PELLUCID_HD constexpr T span_tolerance() noexcept {
-  return is_single<T> ? T(1e-5) : T(1e-9);
-}
-
-/// Where the walk may end: what lies behind can change a channel by at most the transparency times
-/// the largest color (specification, 2.2), and that is kept under a tenth of the spans' tolerance.
-template <class T>
-PELLUCID_HD constexpr double stop_tolerance() noexcept {
-  return 0.1 * static_cast<double>(span_tolerance<T>());
-}
 
 /// The world arc length where the optical depth along the ray reaches `target`; infinite where it
 /// never does. The depth inside a span is monotone, so that bisection between its ends finds the
@@ -53,26 +35,78 @@ PELLUCID_HD double find_optical_depth(const StructuredGrid<Value, double>& grid,
   return found;
 }
 
-/// The volume rendering integral along a ray (in grid coordinates, its parameter the world arc
-/// length) through trilinear data: cell by cell exact in optical depth, and in radiance within
-/// span_tolerance.
-template <class T, class Value>
-PELLUCID_HD RayResult integrate_ray(const StructuredGrid<Value, double>& grid,
-                                    const Ray<double>& ray_grid, const PiecewiseLinear<T>& transfer,
-                                    double largest_color, bool with_depth) noexcept {
-  RayResult result;
-  FrontToBack<double> fold(stop_tolerance<T>() / max(largest_color, 1.0));
-  result.cells = for_each_span<T>(grid, ray_grid, [&](const CubicSpan<T>& span) {
-    fold.add(integrate_cubic(span.data, span.length(), transfer, span_tolerance<T>()));
-    return !fold.done();
+/// Goes through the blocks of a ray: those that are done at once, those that are smooth together
+/// with their neighbours, the rest cell by cell.
+template <class Value, class EachCell>
+PELLUCID_HD void each_block(const BlockRanges& blocks, const Ray<double>& ray_grid,
+                            Interval<double> inside, RayIntegrator<Value>& integrator,
+                            EachCell&& each_cell) noexcept {
+  StrideMarch march(ray_grid.direction, blocks.least_width, blocks.mean_width);
+  Interval<double> smooth{inside.begin, inside.begin};
+  BlockBends bends{};
+  const auto finish = [&] {
+    if (smooth.begin < smooth.end) march.run(integrator, smooth, bends, each_cell);
+  };
+  for_each_block(blocks, ray_grid, inside, [&](const BlockStep& step) {
+    const BlockRange& range = blocks[step.block];
+    const BlockBends& own = blocks.bends[step.block];
+    const double length = step.t_end - step.t_begin;
+    if (integrator.is_smooth(range, own, march.variation(own), march.shortest())) {
+      bends = smooth.begin < smooth.end ? join(bends, own) : own;
+      smooth.end = step.t_end;
+      if (smooth.end - smooth.begin > march.longest()) {
+        finish();
+        smooth.begin = smooth.end;
+      }
+      return !integrator.done();
+    }
+    finish();
+    smooth = {step.t_end, step.t_end};
+    if (integrator.done()) return false;
+    if (!integrator.block(range, length)) each_cell({step.t_begin, step.t_end});
+    return !integrator.done();
   });
-  result.radiance = fold.radiance();
-  result.optical_depth = fold.optical_depth();
-  result.opacity = fold.opacity();
+  finish();
+}
+
+/// The volume rendering integral along a ray (in grid coordinates, its parameter the world arc
+/// length) through trilinear data, within a tolerance: RayResult::error is at most what is wanted,
+/// unless binary32 was forced where it cannot keep it. `blocks`: of the same grid; null: none.
+template <class Value>
+PELLUCID_HD RayResult integrate_ray(const StructuredGrid<Value, double>& grid,
+                                    const BlockRanges* blocks, const Ray<double>& ray_grid,
+                                    const TransferTables& transfer, const RayTolerance& wanted,
+                                    bool with_depth) noexcept {
+  const Interval<double> inside = grid_interval(grid.axis, ray_grid);
+  RayResult nothing;
+  nothing.error = 0;
+  nothing.proved = true;
+  if (inside.empty()) return nothing;
+
+  RayIntegrator<Value> integrator(grid, ray_grid, transfer, wanted, inside.end - inside.begin);
+  long cells = 0;
+  const auto each_cell = [&](Interval<double> range) {
+    StructuredWalk<double> walk(grid.axis, ray_grid, range);
+    StructuredWalk<double>::Step step;
+    while (!integrator.done() && walk.next(step)) {
+      ++cells;
+      integrator.cell(step);
+    }
+  };
+  if (blocks == nullptr) {
+    each_cell(inside);
+  } else {
+    each_block(*blocks, ray_grid, inside, integrator, each_cell);
+  }
+  RayResult result = integrator.result();
+  result.cells = cells;
   if (with_depth && result.opacity > 0) {
     // There exp(-a) = 1 - opacity/2.
+    const double target = -log1p(-0.5 * result.opacity);
     result.half_opacity_depth =
-        find_optical_depth<T>(grid, ray_grid, transfer, -log1p(-0.5 * result.opacity));
+        wanted.precision == Precision::float32
+            ? find_optical_depth<float>(grid, ray_grid, transfer.single, target)
+            : find_optical_depth<double>(grid, ray_grid, transfer.wide, target);
   }
   return result;
 }

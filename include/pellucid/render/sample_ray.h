@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "pellucid/field/trilinear.h"
+#include "pellucid/field/sample.h"
 #include "pellucid/render/ray_result.h"
 #include "pellucid/segment/classical.h"
 #include "pellucid/segment/fold.h"
@@ -9,6 +9,13 @@
 #include "pellucid/traverse/structured_walk.h"
 
 namespace pellucid {
+
+/// The transparency at which the marching rules end a ray, per unit of color: far below what any of
+/// them can promise.
+template <class T>
+PELLUCID_HD constexpr double stop_tolerance() noexcept {
+  return is_single<T> ? 1e-6 : 1e-10;
+}
 
 /// The rules that march along a ray at a fixed step, for comparison with the exact method. Each
 /// sees the data at points only: Max 1995 and Weiß 2020 (rectangle, taylor, midpoint, trapezoid,
@@ -21,15 +28,7 @@ template <class T, class Value>
 PELLUCID_HD Material<T> sample_material(const StructuredGrid<Value, double>& grid,
                                         const PiecewiseLinear<T>& transfer,
                                         Vec3<double> position_grid) noexcept {
-  int cell[3];
-  Vec3<T> local;
-  for (int a = 0; a < 3; ++a) {
-    cell[a] = find_cell(grid.axis[a], position_grid[a]);
-    const double lower = grid.axis[a].plane(cell[a]);
-    const double width = grid.axis[a].plane(cell[a] + 1) - lower;
-    local[a] = static_cast<T>(clamp((position_grid[a] - lower) / width, 0.0, 1.0));
-  }
-  const T value = trilinear_value(grid.template corners<T>(cell[0], cell[1], cell[2]), local);
+  const T value = sample_value<T>(grid, position_grid);
   if (is_nan(value)) return {};
   return transfer.evaluate(value);
 }

@@ -6,6 +6,8 @@
 #include <string>
 #include <string_view>
 
+#include "pellucid/error/grade.h"
+#include "pellucid/error/precision.h"
 #include "pellucid/render/camera.h"
 #include "pellucid/scene/transfer_function.h"
 #include "pellucid/scene/volume.h"
@@ -37,17 +39,31 @@ enum class Method { exact, rectangle, taylor, midpoint, trapezoid, simpson, line
 std::string_view method_name(Method method) noexcept;
 std::optional<Method> method_from_name(std::string_view name) noexcept;
 
-enum class Precision { float32, float64 };
-
 /// Limits of Integration::step. Below the smaller one a frame would take days, and in a large
 /// volume the samples of a ray could no longer be told apart.
 inline constexpr double smallest_step = 1e-4;
 inline constexpr double largest_step = 1e6;
+/// Limit of Scene::samples.
+inline constexpr int largest_samples = 64;
+
+/// Limits of Integration::tolerance. Images hold binary32, whose rounding next to 1 is 6e-8.
+inline constexpr double smallest_tolerance = 1e-7;
+inline constexpr double largest_tolerance = 1;
+/// Half a step of 8 bits and better.
+inline constexpr double default_tolerance = 1.0 / 512;
 
 struct Integration {
   Method method = Method::exact;
-  Precision precision = Precision::float32;
+  Precision precision = Precision::automatic;
   double step = 0.5;  ///< of the sampling methods, in voxels (Volume::voxel_size)
+  /// How far a pixel of the exact method may be from the integral, in each channel of premultiplied
+  /// linear RGBA. render() throws Error where it is beyond the limits above.
+  double tolerance = default_tolerance;
+  Grade grade = Grade::estimated;
+
+  /// Takes the tolerance nearest to `wanted` that is within the limits, and returns it. Throws
+  /// Error where `wanted` is not a positive number.
+  double set_tolerance(double wanted);
 };
 
 /// One volume with its transfer function, seen by a camera.
@@ -56,8 +72,14 @@ struct Scene {
   std::shared_ptr<const TransferFunction> transfer_function;
   Camera camera;
   ImageSize size;
+  /// A pixel is the mean of samples × samples rays through the centres of its equal parts.
+  int samples = 1;
   Integration integration;
   std::optional<Rgb<double>> background;  ///< linear; none: the image stays transparent
 };
+
+/// Throws Error where the samples of a pixel are beyond their limits, or what the method goes by
+/// is: the tolerance of the exact one, the step of the others.
+void check_integration(const Scene& scene);
 
 }  // namespace pellucid

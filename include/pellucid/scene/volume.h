@@ -4,6 +4,8 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
+#include <memory>
 #include <string>
 #include <string_view>
 #include <variant>
@@ -11,10 +13,17 @@
 
 #include "pellucid/field/structured_grid.h"
 #include "pellucid/geometry/affine.h"
+#include "pellucid/traverse/block_ranges.h"
 
 namespace pellucid {
 
 enum class Centering { point, cell };
+
+/// Calls body(first, last) on parts of 0 <= i < count that together are all of it, on as many
+/// threads as it likes, and returns when all are done.
+using ParallelFor = std::function<void(int count, const std::function<void(int, int)>& body)>;
+
+class VolumeBlocks;
 
 /// The data in its own type; one std::vector per supported number type.
 using VolumeData =
@@ -84,6 +93,12 @@ class Volume {
   /// Length of the shortest edge of a (not half) cell in the world: the "voxel" of --step.
   double voxel_size() const noexcept { return voxel_size_; }
 
+  /// What the data can be in each block of cells. Built by the first call, in parallel where it is
+  /// told how (a thread that waits in there must not take up work that calls this again), and kept;
+  /// copies share it. Safe to call from any thread. Throws Error where the blocks cannot be counted
+  /// by an int.
+  const BlockRanges& block_ranges(const ParallelFor& parallel = {}) const;
+
   /// Calls visitor(StructuredGrid<Value, double>) with the data's own type.
   template <class Visitor>
   decltype(auto) visit(Visitor&& visitor) const {
@@ -105,6 +120,7 @@ class Volume {
   std::array<std::vector<double>, 3> plane_position_;
   Affine<double> grid_from_world_, world_from_grid_;
   double voxel_size_ = 1;
+  std::shared_ptr<VolumeBlocks> blocks_;
 };
 
 }  // namespace pellucid

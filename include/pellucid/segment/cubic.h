@@ -14,12 +14,16 @@ struct IntervalRange {
   int first, last;
 };
 template <class T>
-PELLUCID_HD IntervalRange interval_range(const CubicBernstein<T>& data,
-                                         const PiecewiseLinear<T>& table) noexcept {
-  const T upper = data.hull_max();
-  const int first = table.interval(data.hull_min());
+PELLUCID_HD IntervalRange interval_range(const PiecewiseLinear<T>& table, T lower,
+                                         T upper) noexcept {
+  const int first = table.interval(lower);
   const bool one = first == table.count || upper < table.value[first];
   return {first, one ? first : table.interval(upper)};
+}
+template <class T>
+PELLUCID_HD IntervalRange interval_range(const CubicBernstein<T>& data,
+                                         const PiecewiseLinear<T>& table) noexcept {
+  return interval_range(table, data.hull_min(), data.hull_max());
 }
 
 }  // namespace detail
@@ -39,29 +43,37 @@ PELLUCID_HD IntervalRange interval_range(const CubicBernstein<T>& data,
 /// in tests/segment. What rounding adds where data values are large against the table's intervals
 /// is that of their difference: u · max|data| / interval.
 template <class T>
-PELLUCID_HD SegmentResult<T> integrate_cubic(const CubicBernstein<T>& data, T length,
-                                             const PiecewiseLinear<T>& table,
-                                             T tolerance) noexcept {
+PELLUCID_HD BoundedSegment<T> integrate_cubic(const CubicBernstein<T>& data, T length,
+                                              const PiecewiseLinear<T>& table, T tolerance,
+                                              Grade grade) noexcept {
   const detail::IntervalRange reach = detail::interval_range(data, table);
   if (!table.has_extinction(reach.first, reach.last)) return {};
   if (reach.first == reach.last) {
     const CubicPiece<T> piece =
         make_cubic_piece(data, table, reach.first, T(0), T(1), data.b[0], data.b[3]);
-    return cubic_piece_segment(piece, length, tolerance);
+    return cubic_piece_segment(piece, length, tolerance, grade);
   }
-  SegmentResult<T> result;
+  BoundedSegment<T> result;
   for_each_interval(
       data, table, [&](int interval, T t_begin, T t_end, T value_begin, T value_end) noexcept {
         if (!table.has_extinction(interval, interval)) return;
         const CubicPiece<T> piece =
             make_cubic_piece(data, table, interval, t_begin, t_end, value_begin, value_end);
         // Behind an opaque front the depth-weighted color will do.
-        const bool matters = result.transparency > T(1.0 / 64) * tolerance;
+        const bool matters = result.segment.transparency > T(1.0 / 64) * tolerance;
         result = compose(result, cubic_piece_segment(piece, length * (t_end - t_begin),
-                                                     matters ? tolerance : T(largest<T>)));
+                                                     matters ? tolerance : T(largest<T>), grade));
       });
-  result.opacity = min(result.opacity, T(1));
+  result.segment.opacity = min(result.segment.opacity, T(1));
   return result;
+}
+
+/// The segment alone, its radiance within `tolerance` by estimate.
+template <class T>
+PELLUCID_HD SegmentResult<T> integrate_cubic(const CubicBernstein<T>& data, T length,
+                                             const PiecewiseLinear<T>& table,
+                                             T tolerance) noexcept {
+  return integrate_cubic(data, length, table, tolerance, Grade::estimated).segment;
 }
 
 /// The optical depth of integrate_cubic() alone: exact up to rounding, no exponential.

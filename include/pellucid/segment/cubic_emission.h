@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "pellucid/error/bounds.h"
+#include "pellucid/error/grade.h"
+#include "pellucid/segment/bounded.h"
 #include "pellucid/segment/cubic_panel.h"
 #include "pellucid/segment/cubic_piece.h"
 #include "pellucid/segment/linear.h"
@@ -32,122 +35,161 @@ PELLUCID_HD T deviation_from_line(const CubicBernstein<T>& s) noexcept {
   return max(abs(e1), abs(e2));
 }
 
-/// The mean share of a panel with the cheapest rule whose estimated error, relative to the range of
-/// the share, is at most `tolerance`; false where none is good enough, so that the panel has to be
-/// halved.
+/// A mean share and how far it may be from the one weighted by extinction · transparency.
 template <class T>
-PELLUCID_HD bool choose_panel(const CubicBernstein<T>& s, T rate_near, T rate_change, T depth,
-                              T tolerance, T& share) noexcept {
-  if (tolerance >= T(1)) {
-    share = s.b[0];  // any share of the range will do
+struct ShareEstimate {
+  T share{};
+  T error{};  ///< in units of the share
+  bool proved = true, panels = false;
+};
+
+/// The mean share of one panel with the cheapest rule whose error, relative to the range of the
+/// share, is at most `tolerance`; false where none is good enough, so that the panel has to be
+/// halved. `error` is relative to the range as well.
+template <class T>
+PELLUCID_HD bool choose_panel(const CubicPiece<T>& part, T length, T depth, T tolerance,
+                              Grade grade, ShareEstimate<T>& result) noexcept {
+  const CubicBernstein<T>& s = part.share;
+  const T mean_bound = mean_color_bound(depth);
+  if (mean_bound <= tolerance || tolerance >= T(1)) {
+    const T mean_extinction = part.mean_extinction();
+    result.share = mean_extinction > T(0) ? clamp(depth_weighted_share(part, mean_extinction),
+                                                  s.hull_min(), s.hull_max())
+                                          : s.b[0];
+    result.error = mean_bound;
     return true;
   }
   if (depth > T(largest_panel_depth<T>)) return false;
-  if (panel_error_estimate<5>(depth) <= tolerance) {
-    share = cubic_panel_mean<5>(s, rate_near, rate_change);
-  } else if (panel_error_estimate<6>(depth) <= tolerance) {
-    share = cubic_panel_mean<6>(s, rate_near, rate_change);
-  } else if (panel_error_estimate<7>(depth) <= tolerance) {
-    share = cubic_panel_mean<7>(s, rate_near, rate_change);
-  } else if (panel_error_estimate<8>(depth) <= tolerance) {
-    share = cubic_panel_mean<8>(s, rate_near, rate_change);
-  } else if (panel_error_estimate<10>(depth) <= tolerance) {
-    share = cubic_panel_mean<10>(s, rate_near, rate_change);
-  } else if (panel_error_estimate<12>(depth) <= tolerance) {
-    share = cubic_panel_mean<12>(s, rate_near, rate_change);
-  } else {
-    return false;
+  const T rate_near = length * part.extinction_near, rate_change = length * part.extinction_change;
+  const auto proved = [&]<int N>() {
+    result.error = panel_error_bound<N>(depth);
+    if (result.error > tolerance) return false;
+    result.share =
+        cubic_panel_proved_mean<N>(s, rate_near, rate_change, attenuation(depth).opacity);
+    return true;
+  };
+  const auto estimated = [&]<int N>() {
+    result.error = panel_error_estimate<N>(depth);
+    if (result.error > tolerance) return false;
+    result.share = cubic_panel_mean<N>(s, rate_near, rate_change);
+    return true;
+  };
+  if (grade == Grade::proved) {
+    return proved.template operator()<6>() || proved.template operator()<8>() ||
+           proved.template operator()<10>() || proved.template operator()<12>();
   }
-  return true;
+  result.proved = false;
+  return estimated.template operator()<5>() || estimated.template operator()<6>() ||
+         estimated.template operator()<7>() || estimated.template operator()<8>() ||
+         estimated.template operator()<10>() || estimated.template operator()<12>();
 }
 
 /// The mean share by panels from front to back, each halved until a rule suffices. What is left
 /// behind an opaque front takes the color of the last panel. An opaque piece of depth m costs
 /// about log2(m) halvings and, for tolerance ε, ln(1/ε)/4 panels or a few times as many.
 template <class T>
-PELLUCID_HD T panels_share(const CubicPiece<T>& piece, T length, T depth, T tolerance) noexcept {
+PELLUCID_HD ShareEstimate<T> panels_share(const CubicPiece<T>& piece, T length, T depth,
+                                          T tolerance, Grade grade) noexcept {
   const CubicBernstein<T>& s = piece.share;
   // No rule gives more than that; and a transparency below it would never reach zero, because
   // products of denormal numbers stay where they are.
   tolerance = max(tolerance, T(4 * rounding_unit<T>));
-  T weighted = T(0), opacity = T(0), transparency = T(1);
+  // Three quarters for the panels, a fifth for what is left behind.
+  const T panel_tolerance = T(0.75) * tolerance;
+  T weighted = T(0), error = T(0), opacity = T(0), transparency = T(1);
   T t = T(0), width = T(1);
-  CubicBernstein<T> part = s;
+  CubicPiece<T> part = piece;
   T part_depth = depth;
+  ShareEstimate<T> result;
   for (;;) {
     const T part_length = length * width;
-    const T range = part.hull_max() - part.hull_min();
-    T share;
+    const T range = part.share.hull_max() - part.share.hull_min();
     // A range of zero has nothing to weight, and below the resolution of t there is nothing to be
     // found (nor in an infinite or NaN depth).
     const bool resolved = t + T(0.5) * width > t;
-    const T wanted = range > T(0) && resolved ? tolerance / range : T(1);
-    const bool good =
-        choose_panel(part, part_length * piece.extinction_near,
-                     part_length * piece.extinction_change, part_depth, wanted, share);
+    const T wanted = range > T(0) && resolved ? panel_tolerance / range : T(1);
     T next_t = t;
-    if (good) {
+    if (choose_panel(part, part_length, part_depth, wanted, grade, result)) {
       const Attenuation<T> a = attenuation(part_depth);
-      weighted += transparency * a.opacity * share;
+      weighted += transparency * a.opacity * result.share;
+      error += transparency * a.opacity * range * result.error;
       opacity += transparency * a.opacity;
       transparency *= a.transparency;
       next_t = t + width;
-      if (next_t >= T(1) || transparency * T(4) <= tolerance) break;
+      if (next_t >= T(1)) break;
+      if (transparency * T(5) <= tolerance) {
+        // The rest is within [0,1], as everything is.
+        error += transparency;
+        break;
+      }
       width = min(T(2) * width, T(1) - next_t);
     } else {
       width *= T(0.5);
     }
     t = next_t;
-    part = restrict_to(s, t, t + width);
-    part_depth =
-        (length * width) * max(piece.extinction_near + piece.extinction_change * part.mean(), T(0));
+    part.share = restrict_to(s, t, t + width);
+    part_depth = (length * width) * part.mean_extinction();
   }
-  return opacity > T(0) ? weighted / opacity : s.b[0];
+  result.panels = true;
+  result.share = opacity > T(0) ? weighted / opacity : s.b[0];
+  result.error = opacity > T(0) ? error / opacity : T(0);
+  return result;
 }
 
 /// The mean of the share weighted by extinction · transparency, to within `tolerance`: the cheapest
-/// of four forms that is good enough.
+/// of the forms that are good enough. The line is not among those proved.
 template <class T>
-PELLUCID_HD T emission_share(const CubicPiece<T>& piece, T length, T mean_extinction, T depth,
-                             T tolerance) noexcept {
+PELLUCID_HD ShareEstimate<T> emission_share(const CubicPiece<T>& piece, T length, T mean_extinction,
+                                            T depth, T tolerance, Grade grade) noexcept {
   const CubicBernstein<T>& s = piece.share;
   const T lower = clamp(s.hull_min(), T(0), T(1)), upper = clamp(s.hull_max(), T(0), T(1));
-  // Proved bound (5): weighting by extinction alone costs at most range · min(1, depth/8).
-  if ((upper - lower) * min(T(0.125) * depth, T(1)) <= tolerance) {
-    return clamp(depth_weighted_share(piece, mean_extinction), lower, upper);
+  ShareEstimate<T> result;
+  result.error = (upper - lower) * mean_color_bound(depth);
+  if (result.error <= tolerance) {
+    result.share = clamp(depth_weighted_share(piece, mean_extinction), lower, upper);
+    return result;
   }
   // A line in place of the cubic, at most 3 t (1-t) e away, changes color and depth in front by
   // less than 3/4 e and 1/2 e |rate_b - rate_f| anywhere, which together move the mean by less than
   // (3 + 2 depth) e to first order; twice that is asked for.
-  if (detail::deviation_from_line(s) * (T(6) + T(4) * depth) <= tolerance) {
+  result.error = detail::deviation_from_line(s) * (T(6) + T(4) * depth);
+  if (grade == Grade::estimated && result.error <= tolerance) {
     const T extinction_f = max(piece.extinction_near + piece.extinction_change * s.b[0], T(0));
     const T extinction_b = max(piece.extinction_near + piece.extinction_change * s.b[3], T(0));
     const LinearWeights<T> w = linear_weights(extinction_f, extinction_b, length);
     if (w.opacity > T(0)) {
-      return clamp((s.b[0] * w.weight_f + s.b[3] * w.weight_b) / w.opacity, lower, upper);
+      result.share = clamp((s.b[0] * w.weight_f + s.b[3] * w.weight_b) / w.opacity, lower, upper);
+      result.proved = false;
+      return result;
     }
   }
-  return clamp(detail::panels_share(piece, length, depth, tolerance), lower, upper);
+  result = panels_share(piece, length, depth, tolerance, grade);
+  result.share = clamp(result.share, lower, upper);
+  return result;
 }
 
 }  // namespace detail
 
-/// The segment of one piece: depth, opacity and transparency exact; radiance = opacity times a
-/// color between those of the two control points, exact where these are equal, else within
-/// tolerance · opacity in each channel.
+/// The segment of one piece: depth, opacity and transparency exact up to rounding; radiance =
+/// opacity times a color between those of the two control points, exact where these are equal, else
+/// with an error of at most color_error in each channel, which is within tolerance · opacity.
 template <class T>
-PELLUCID_HD SegmentResult<T> cubic_piece_segment(const CubicPiece<T>& piece, T length,
-                                                 T tolerance) noexcept {
+PELLUCID_HD BoundedSegment<T> cubic_piece_segment(const CubicPiece<T>& piece, T length, T tolerance,
+                                                  Grade grade = Grade::estimated) noexcept {
   const T mean_extinction = piece.mean_extinction();
   const T depth = length * mean_extinction;
   if (!(depth > T(0))) return {};
   const Rgb<T> color = *piece.color_near;
   const Rgb<T> change = *piece.color_far - color;
   const T largest_change = max(abs(change.r), max(abs(change.g), abs(change.b)));
-  if (largest_change == T(0)) return segment_of_depth(depth, color);
-  const T share =
-      detail::emission_share(piece, length, mean_extinction, depth, tolerance / largest_change);
-  return segment_of_depth(depth, color + share * change);
+  if (largest_change == T(0)) return {segment_of_depth(depth, color)};
+  const detail::ShareEstimate<T> found = detail::emission_share(
+      piece, length, mean_extinction, depth, tolerance / largest_change, grade);
+  BoundedSegment<T> result{segment_of_depth(depth, color + found.share * change)};
+  result.color_error = result.segment.opacity * found.error * largest_change;
+  result.proved = found.proved;
+  result.panels = found.panels;
+  return result;
 }
 
 }  // namespace pellucid

@@ -33,15 +33,21 @@ struct CubicNodes {
   }
 };
 
-/// The mean of a cubic share s(t), weighted by extinction · transparency, where the rate
-/// (extinction · length) is rate_near + rate_change · s: the N-node Gauss rule with the exact
-/// optical depth at each node, normalised (specification, 3.7, 3.8). Within the hull of s at the
-/// nodes. 0 where nothing absorbs at the nodes.
+/// Sums over the nodes of a Gauss panel.
+template <class T>
+struct PanelSums {
+  T weight{};  ///< of extinction · transparency: nearly the opacity
+  T share{};   ///< of (share - middle), weighted alike
+};
+
+/// The N-node Gauss rule with the exact optical depth at each node (specification, 3.7, 3.8), for a
+/// cubic share s(t) and the rate (extinction · length) rate_near + rate_change · s.
 template <int N, class T>
-PELLUCID_HD T cubic_panel_mean(const CubicBernstein<T>& s, T rate_near, T rate_change) noexcept {
+PELLUCID_HD PanelSums<T> cubic_panel_sums(const CubicBernstein<T>& s, T rate_near, T rate_change,
+                                          T middle) noexcept {
   using S = scalar_t<T>;
   static constexpr CubicNodes<S, N> nodes;
-  T sum = T(0), sum_s = T(0);
+  PanelSums<T> sums;
   for (int j = 0; j < N; ++j) {
     const auto& b = nodes.basis[j];
     const auto& a = nodes.integral[j];
@@ -51,10 +57,28 @@ PELLUCID_HD T cubic_panel_mean(const CubicBernstein<T>& s, T rate_near, T rate_c
     const T rate = max(rate_near + rate_change * share, T(0));
     const T depth = rate_near * T(nodes.position[j]) + rate_change * integral;
     const T weight = T(nodes.weight[j]) * rate * exp(-depth);
-    sum += weight;
-    sum_s += weight * share;
+    sums.weight += weight;
+    sums.share += weight * (share - middle);
   }
-  return select(sum > T(0), sum_s / sum, T(0));
+  return sums;
+}
+
+/// The mean of the share weighted by extinction · transparency, normalised: within the hull of s at
+/// the nodes. 0 where nothing absorbs at the nodes. Its error: panel_error_estimate().
+template <int N, class T>
+PELLUCID_HD T cubic_panel_mean(const CubicBernstein<T>& s, T rate_near, T rate_change) noexcept {
+  const PanelSums<T> sums = cubic_panel_sums<N>(s, rate_near, rate_change, T(0));
+  return select(sums.weight > T(0), sums.share / sums.weight, T(0));
+}
+
+/// The same, not normalised, from the middle of the share's range and the exact opacity: the form
+/// that panel_error_bound() is proved for. May leave the hull.
+template <int N, class T>
+PELLUCID_HD T cubic_panel_proved_mean(const CubicBernstein<T>& s, T rate_near, T rate_change,
+                                      T opacity) noexcept {
+  const T middle = T(0.5) * s.hull_min() + T(0.5) * s.hull_max();
+  const PanelSums<T> sums = cubic_panel_sums<N>(s, rate_near, rate_change, middle);
+  return select(opacity > T(0), middle + sums.share / opacity, middle);
 }
 
 /// Up to this optical depth panel_error_estimate() was measured.

@@ -61,6 +61,21 @@ struct PiecewiseLinear {
     return material[min(i, count - 1)];
   }
 
+  /// Whether extinction and color are the same everywhere in the intervals first … last (0 <= first
+  /// <= last <= count).
+  PELLUCID_HD bool is_constant(int first, int last) const noexcept {
+    const int end = min(last, count - 1);
+    const Material<T>& m = material[max(first - 1, 0)];
+    for (int j = max(first, 1); j <= end; ++j) {
+      const Material<T>& other = material[j];
+      if (other.extinction != m.extinction || other.color.r != m.color.r ||
+          other.color.g != m.color.g || other.color.b != m.color.b) {
+        return false;
+      }
+    }
+    return true;
+  }
+
   /// Whether anything absorbs in the intervals first … last (0 <= first <= last <= count).
   PELLUCID_HD bool has_extinction(int first, int last) const noexcept {
     const int end = min(last, count - 1);

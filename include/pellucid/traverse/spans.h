@@ -17,6 +17,24 @@ struct CubicSpan {
   PELLUCID_HD T length() const noexcept { return static_cast<T>(t_end - t_begin); }
 };
 
+/// The span of one step of a walk; false where the cell has a NaN corner: vacuum.
+template <class T, class Value>
+PELLUCID_HD bool make_span(const StructuredGrid<Value, double>& grid,
+                           const StructuredWalk<double>::Step& step, CubicSpan<T>& span) noexcept {
+  const CellCorners<T> corners = grid.template corners<T>(step.cell[0], step.cell[1], step.cell[2]);
+  if constexpr (!std::is_integral_v<Value>) {
+    T sum = corners.value[0];
+    for (int n = 1; n < 8; ++n) sum += corners.value[n];
+    if (is_nan(sum)) return false;
+  }
+  const Vec3<T> entry{static_cast<T>(step.entry.x), static_cast<T>(step.entry.y),
+                      static_cast<T>(step.entry.z)};
+  const Vec3<T> exit{static_cast<T>(step.exit.x), static_cast<T>(step.exit.y),
+                     static_cast<T>(step.exit.z)};
+  span = {trilinear_cubic(corners, entry, exit), step.t_begin, step.t_end};
+  return true;
+}
+
 /// Calls visit(CubicSpan<T>) for each cell that the ray (in grid coordinates) crosses at t >= 0,
 /// front to back, until it returns false. Cells with a NaN corner are vacuum and are passed over.
 /// Returns the number of cells walked through. The walk is in double, whatever T: its positions are
@@ -29,19 +47,8 @@ PELLUCID_HD long for_each_span(const StructuredGrid<Value, double>& grid,
   long cells = 0;
   while (walk.next(step)) {
     ++cells;
-    const CellCorners<T> corners =
-        grid.template corners<T>(step.cell[0], step.cell[1], step.cell[2]);
-    if constexpr (!std::is_integral_v<Value>) {
-      T sum = corners.value[0];
-      for (int n = 1; n < 8; ++n) sum += corners.value[n];
-      if (is_nan(sum)) continue;
-    }
-    const Vec3<T> entry{static_cast<T>(step.entry.x), static_cast<T>(step.entry.y),
-                        static_cast<T>(step.entry.z)};
-    const Vec3<T> exit{static_cast<T>(step.exit.x), static_cast<T>(step.exit.y),
-                       static_cast<T>(step.exit.z)};
-    if (!visit(CubicSpan<T>{trilinear_cubic(corners, entry, exit), step.t_begin, step.t_end}))
-      break;
+    CubicSpan<T> span;
+    if (make_span(grid, step, span) && !visit(span)) break;
   }
   return cells;
 }

@@ -105,19 +105,28 @@ class StructuredWalk {
     return next_[2] < next_[a] ? 2 : a;
   }
 
-  /// The number of planes behind t_, less one, by bisection; of planes not above the origin where
-  /// the ray does not move. Counted along the ray; t_ lies between the first plane and the last.
+  /// The number of planes behind t_, less one; of planes not above the origin where the ray does
+  /// not move. Counted along the ray; t_ lies between the first plane and the last. By bisection,
+  /// which on a uniform axis has nothing left to do where the rounded position is right.
   PELLUCID_HD int first_cell(int a) const noexcept {
     const int cells = axis_[a].cells();
+    const bool reversed = direction_[a] < T(0);
+    const auto behind = [&](int plane) noexcept {
+      return direction_[a] == T(0) ? axis_[a].plane(plane) <= origin_[a]
+                                   : plane_t(a, reversed ? cells - plane : plane) <= t_;
+    };
     int lo = 0, hi = cells;
+    if (axis_[a].plane_position == nullptr) {
+      const int guess = find_cell(axis_[a], origin_[a] + t_ * direction_[a]);
+      const int n = reversed ? cells - 1 - guess : guess;
+      if (n > 0) (behind(n) ? lo : hi) = n;
+      if (n + 1 < hi) (behind(n + 1) ? lo : hi) = n + 1;
+    }
     while (hi - lo > 1) {
       const int mid = lo + (hi - lo) / 2;
-      const bool behind = direction_[a] == T(0)  ? axis_[a].plane(mid) <= origin_[a]
-                          : direction_[a] > T(0) ? plane_t(a, mid) <= t_
-                                                 : plane_t(a, cells - mid) <= t_;
-      (behind ? lo : hi) = mid;
+      (behind(mid) ? lo : hi) = mid;
     }
-    return direction_[a] < T(0) ? cells - 1 - lo : lo;
+    return reversed ? cells - 1 - lo : lo;
   }
 
   /// Takes in the planes of the cell that an axis stands in.

@@ -137,4 +137,11 @@ void parallel_for(const Range& range, const Body& body) {
   parallel_for(range, body, context);
 }
 
+namespace this_task_arena {
+template <class Body>
+void isolate(const Body& body) {
+  body();
+}
+}  // namespace this_task_arena
+
 }  // namespace tbb

@@ -1,0 +1,256 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "pellucid/error/budget.h"
+#include "pellucid/error/precision.h"
+#include "pellucid/field/sample.h"
+#include "pellucid/render/ray_result.h"
+#include "pellucid/render/transfer_tables.h"
+#include "pellucid/segment/cubic.h"
+#include "pellucid/segment/fold.h"
+#include "pellucid/segment/line_rule.h"
+#include "pellucid/segment/rounding.h"
+#include "pellucid/segment/stride.h"
+#include "pellucid/traverse/block_bends.h"
+#include "pellucid/traverse/block_walk.h"
+#include "pellucid/traverse/spans.h"
+
+namespace pellucid {
+
+/// What is asked of every ray.
+struct RayTolerance {
+  /// How far the ray's result may be from the integral, in each channel of premultiplied RGBA.
+  double tolerance = 1.0 / 512;
+  Grade grade = Grade::estimated;
+  Precision precision = Precision::automatic;
+  /// C_max of theorem (3): a bound on the colors of the transfer function and on the background.
+  double largest_color = 1;
+};
+
+/// Integrates one ray within a tolerance: hands each span to the cheapest rule whose error the
+/// budget can pay for, and keeps account of it.
+template <class Value>
+class RayIntegrator {
+ public:
+  /// All that is given is referred to and must outlive the integrator. `length`: of the ray inside
+  /// of the grid, in world units.
+  PELLUCID_HD RayIntegrator(const StructuredGrid<Value, double>& grid, const Ray<double>& ray_grid,
+                            const TransferTables& transfer, const RayTolerance& wanted,
+                            double length) noexcept
+      : grid_(grid),
+        ray_(ray_grid),
+        transfer_(transfer),
+        wanted_(wanted),
+        largest_color_(max(wanted.largest_color, 1.0)),
+        budget_(wanted.tolerance, length) {}
+
+  /// Whether what is left of the ray can no longer matter.
+  PELLUCID_HD bool done() const noexcept { return rest() <= budget_.left(); }
+
+  /// A stretch in which nothing absorbs.
+  PELLUCID_HD void skip(double length) noexcept {
+    ++counts_.skipped;
+    budget_.spend(length, 0, fold_.transparency(), 0);
+  }
+
+  /// A block of cells, at once: false where its cells have to be gone through.
+  PELLUCID_HD bool block(const BlockRange& range, double length) noexcept {
+    if (range.vacuum == BlockVacuum::all) {
+      skip(length);
+      return true;
+    }
+    const PiecewiseLinear<double>& table = transfer_.wide;
+    const int first = table.interval(static_cast<double>(range.min));
+    const int last = table.interval(static_cast<double>(range.max));
+    if (!table.has_extinction(first, last)) {
+      skip(length);
+      return true;
+    }
+    if (range.vacuum != BlockVacuum::none || !table.is_constant(first, last)) return false;
+    ++counts_.constant;
+    const Material<double>& material = table.lower_material(first);
+    BoundedSegment<double> segment{constant_segment(material.extinction, material.color, length)};
+    add(segment, length, segment.segment.opacity,
+        32 * rounding_unit<double> * segment.segment.opacity * largest_color_);
+    return true;
+  }
+
+  /// One cell of a walk over the grid.
+  PELLUCID_HD void cell(const StructuredWalk<double>::Step& step) noexcept {
+    ++evaluations_;
+    if (wanted_.precision == Precision::float64 || wanted_.grade == Grade::proved) {
+      if (wanted_.precision != Precision::float32) {
+        cell_in<double>(step, true);
+        return;
+      }
+    }
+    if (cell_in<float>(step, wanted_.precision == Precision::float32)) return;
+    ++counts_.in_double;
+    cell_in<double>(step, true);
+  }
+
+  /// Whether strides are worth a try in a block where the data's derivative varies by at most
+  /// `variation` on half of a stride of this length: whether the tolerance could allow one even
+  /// where the transfer function is as steep as anywhere in the block's range. An estimate is for
+  /// data that no cell bends by more than half of what the block does: for waves of seven cells
+  /// and longer, but not for noise, whose bends three points do not show.
+  PELLUCID_HD bool is_smooth(const BlockRange& range, const BlockBends& bends, double variation,
+                             double length) noexcept {
+    if (range.vacuum != BlockVacuum::none) return false;
+    const double lower = static_cast<double>(range.min), upper = static_cast<double>(range.max);
+    if (!(lower < upper)) return false;
+    const RangeSummary<double> all =
+        range_summary(transfer_.wide, transfer_.wide_antiderivative,
+                      ValueRange<double>(transfer_.wide, lower, upper));
+    if (!all.absorbs()) return false;
+    const double slope = max(abs(all.slope_min), abs(all.slope_max));
+    const double deviation = 0.5 * bend_deviation(variation, 0.5 * length);
+    const double bound =
+        length * deviation * (largest_color_ * slope + all.color_range() * slope + all.color_slope);
+    double guard = 1;
+    if (wanted_.grade == Grade::estimated) {
+      double jump = 0, all_of_it = 0;
+      for (int a = 0; a < 3; ++a) {
+        const double d = abs(ray_.direction[a]);
+        jump += d * static_cast<double>(bends.bend[a]);
+        all_of_it += d * static_cast<double>(range.derivative_max[a] - range.derivative_min[a]);
+      }
+      if (2 * jump <= all_of_it) guard = stride_guard<double>;
+    }
+    return bound <= guard * budget_.allowance(length, 0, fold_.transparency());
+  }
+
+  /// A stride from t_begin, where the data are `front`, in blocks whose derivative varies by at
+  /// most `variation` on either half: false where the tolerance does not allow it. `back`: the data
+  /// at its end.
+  PELLUCID_HD bool stride(double t_begin, double length, double variation, double front,
+                          double& back) noexcept {
+    const double middle = sample(t_begin + 0.5 * length);
+    back = sample(t_begin + length);
+    BoundedSegment<double> found;
+    const bool good = integrate_stride(
+        Stride<double>{front, middle, back, length, bend_deviation(variation, 0.5 * length)},
+        transfer_.wide, transfer_.wide_antiderivative, largest_color_, wanted_.grade,
+        [&](double opacity) { return budget_.allowance(length, opacity, fold_.transparency()); },
+        found);
+    if (!good) return false;
+    ++counts_.strides;
+    add(found, length, found.segment.opacity,
+        64 * rounding_unit<double> * found.segment.opacity * largest_color_);
+    return true;
+  }
+
+  /// The data at a place of the ray.
+  PELLUCID_HD double sample(double t) noexcept {
+    ++evaluations_;
+    return sample_value<double>(grid_, ray_.at(t));
+  }
+
+  PELLUCID_HD RayResult result() const noexcept {
+    RayResult result;
+    result.radiance = fold_.radiance();
+    result.optical_depth = fold_.optical_depth();
+    result.opacity = fold_.opacity();
+    // Folding in double costs 4 u a span (segment/fold.h).
+    const double folding =
+        4 * rounding_unit<double> * largest_color_ * static_cast<double>(evaluations_);
+    result.error = budget_.spent() + rest() + folding;
+    result.proved = proved_;
+    result.evaluations = evaluations_;
+    result.spans = counts_;
+    return result;
+  }
+
+ private:
+  /// A bound on what lies behind: as little as light can come from there.
+  PELLUCID_HD double rest() const noexcept {
+    const double opacity = min(transfer_.largest_extinction * budget_.length_left(), 1.0);
+    return fold_.transparency() * opacity * largest_color_;
+  }
+
+  /// `opacity`: what the allowance was asked for.
+  template <class T>
+  PELLUCID_HD void add(const BoundedSegment<T>& span, double length, double opacity,
+                       double rounding) noexcept {
+    const double error = static_cast<double>(span.color_error) +
+                         largest_color_ * static_cast<double>(span.opacity_error) + rounding;
+    budget_.spend(length, opacity, fold_.transparency(), error);
+    fold_.add(span.segment);
+    proved_ = proved_ && span.proved;
+  }
+
+  /// Integrates the cell in T. Without `forced`, returns false where T's rounding would take more
+  /// than a quarter of what the span may cost.
+  template <class T>
+  PELLUCID_HD bool cell_in(const StructuredWalk<double>::Step& step, bool forced) noexcept {
+    const double world_length = step.t_end - step.t_begin;
+    CubicSpan<T> span;
+    if (!make_span(grid_, step, span)) {  // vacuum
+      skip(world_length);
+      return true;
+    }
+    const PiecewiseLinear<T>& table = transfer_.table<T>();
+    const T data_error = data_rounding(span.data);
+    const T lower = span.data.hull_min(), upper = span.data.hull_max();
+    // Squares of the data's differences must not underflow in binary32.
+    if (!forced && !(max(abs(lower), abs(upper)) > T(1e-15)) && upper > lower) return false;
+    const detail::IntervalRange reach =
+        detail::interval_range(table, lower - data_error, upper + data_error);
+    if (!table.has_extinction(reach.first, reach.last)) {
+      skip(world_length);
+      return true;
+    }
+    const T length = span.length();
+    const Sensitivity<T> slopes = sensitivity(table, reach.first, reach.last, data_error);
+    const T opacity = min(slopes.largest_extinction * length, T(1));
+    const double allowance =
+        budget_.allowance(world_length, static_cast<double>(opacity), fold_.transparency());
+    RoundingError<T> rounding = rounding_error(span.data, length, T(largest_color_), table,
+                                               reach.first, reach.last, data_error, slopes);
+    // Where the ray meets the planes is known to a few units of its arc length.
+    rounding.depth +=
+        static_cast<T>(8 * rounding_unit<double> * step.t_end) * slopes.largest_extinction;
+    const auto rounding_cost = [&](const T alpha, const T transparency) noexcept {
+      return static_cast<double>(rounding.color_error(alpha)) +
+             largest_color_ * static_cast<double>(rounding.opacity_error(alpha, transparency));
+    };
+    // The most it can be, as if nothing absorbed in front.
+    const double at_most = rounding_cost(opacity, T(1));
+    if (!forced && !(at_most <= 0.25 * allowance)) return false;
+    const double left = max(allowance - at_most, 0.25 * allowance);
+    const auto take = [&](const BoundedSegment<T>& found) noexcept {
+      add(found, world_length, static_cast<double>(opacity),
+          rounding_cost(found.segment.opacity, found.segment.transparency));
+    };
+
+    if (reach.first != reach.last) {
+      const LineResult<T> line = line_rule(span.data, length, table, transfer_.antiderivative<T>());
+      const double cost = static_cast<double>(line.color_error) +
+                          largest_color_ * static_cast<double>(line.opacity_error);
+      if (cost <= left) {
+        ++counts_.lines;
+        take(BoundedSegment<T>{line.segment, line.color_error, line.opacity_error});
+        return true;
+      }
+    }
+    const BoundedSegment<T> found =
+        integrate_cubic(span.data, length, table,
+                        static_cast<T>(left / static_cast<double>(opacity)), wanted_.grade);
+    ++(found.panels ? counts_.panels : counts_.closed);
+    take(found);
+    return true;
+  }
+
+  const StructuredGrid<Value, double>& grid_;
+  const Ray<double>& ray_;
+  const TransferTables& transfer_;
+  const RayTolerance& wanted_;
+  double largest_color_;
+  RayBudget budget_;
+  FrontToBack<double> fold_{0.0};
+  RuleCounts counts_;
+  long evaluations_ = 0;
+  bool proved_ = true;
+};
+
+}  // namespace pellucid

@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "pellucid/render/ray_integrator.h"
+#include "pellucid/traverse/block_bends.h"
+
+namespace pellucid {
+
+/// Goes through smooth blocks one behind the other in strides as long as the tolerance allows, and
+/// cell by cell where it does not.
+class StrideMarch {
+ public:
+  /// direction: of the ray by world length, in grid coordinates. least_width, mean_width: of the
+  /// cells along each axis.
+  PELLUCID_HD StrideMarch(Vec3<double> direction, Vec3<double> least_width,
+                          Vec3<double> mean_width) noexcept
+      : direction_(direction), least_width_(least_width) {
+    double square = 0;  // cells per world length
+    for (int a = 0; a < 3; ++a) {
+      square += (direction[a] / mean_width[a]) * (direction[a] / mean_width[a]);
+    }
+    // Not a whole number of cells: along an axis or a diagonal all places would be alike, and an
+    // error that they share would not show in the difference of two rules.
+    shortest_ = 2.2 / sqrt(square);
+    length_ = shortest_;
+  }
+
+  /// The shortest stride: half of it is about a cell.
+  PELLUCID_HD double shortest() const noexcept { return shortest_; }
+
+  /// As much as is worth gathering before it is gone through.
+  PELLUCID_HD double longest() const noexcept { return 16 * shortest_; }
+  /// That of the data's derivative on half of the shortest stride.
+  PELLUCID_HD double variation(const BlockBends& bends) const noexcept {
+    return derivative_variation(bends, direction_, least_width_, 0.5 * shortest_);
+  }
+
+  /// From t.begin to t.end; each_cell(Interval) goes cell by cell.
+  template <class Value, class EachCell>
+  PELLUCID_HD void run(RayIntegrator<Value>& integrator, Interval<double> t,
+                       const BlockBends& bends, EachCell&& each_cell) noexcept {
+    double here = t.begin, value = 0;
+    bool known = false;
+    while (here < t.end && !integrator.done()) {
+      const double left = t.end - here;
+      // Nothing is left over that would be short.
+      const double length = left < 1.5 * length_ ? left : length_;
+      if (left < 0.5 * shortest_) {
+        each_cell({here, t.end});
+        return;
+      }
+      if (!known) value = integrator.sample(here);
+      known = true;
+      const double variation = derivative_variation(bends, direction_, least_width_, 0.5 * length);
+      double back;
+      if (integrator.stride(here, length, variation, value, back)) {
+        here = length == left ? t.end : here + length;
+        value = back;
+        pause_ = 2;
+        if (length >= length_) length_ = min(2 * length_, 64 * shortest_);
+        continue;
+      }
+      if (length_ > shortest_) {
+        length_ = max(0.5 * length_, shortest_);
+        continue;
+      }
+      // What failed once fails again: the next try is farther away each time.
+      const double pause = pause_ * shortest_;
+      const double end = left < pause + shortest_ ? t.end : here + pause;
+      each_cell({here, end});
+      here = end;
+      known = false;
+      pause_ = min(2 * pause_, 32.0);
+    }
+  }
+
+ private:
+  Vec3<double> direction_, least_width_;
+  double shortest_, length_;
+  double pause_ = 2;  ///< in shortest strides
+};
+
+}  // namespace pellucid

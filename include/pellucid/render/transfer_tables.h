@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <type_traits>
+
+#include "pellucid/transfer/antiderivative.h"
+
+namespace pellucid {
+
+/// A transfer function as rays see it: in both number types. Views; own nothing.
+struct TransferTables {
+  PiecewiseLinear<float> single;
+  PiecewiseLinear<double> wide;
+  PiecewiseLinearAntiderivative<float> single_antiderivative;
+  PiecewiseLinearAntiderivative<double> wide_antiderivative;
+  double largest_extinction = 0;
+
+  template <class T>
+  PELLUCID_HD const PiecewiseLinear<T>& table() const noexcept {
+    if constexpr (std::is_same_v<T, float>) {
+      return single;
+    } else {
+      return wide;
+    }
+  }
+  template <class T>
+  PELLUCID_HD const PiecewiseLinearAntiderivative<T>& antiderivative() const noexcept {
+    if constexpr (std::is_same_v<T, float>) {
+      return single_antiderivative;
+    } else {
+      return wide_antiderivative;
+    }
+  }
+};
+
+}  // namespace pellucid

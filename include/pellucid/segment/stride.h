@@ -1,0 +1,156 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "pellucid/error/bounds.h"
+#include "pellucid/error/grade.h"
+#include "pellucid/segment/bounded.h"
+#include "pellucid/segment/constant.h"
+#include "pellucid/transfer/antiderivative.h"
+
+namespace pellucid {
+
+/// A stretch of a ray that is known at its ends and its middle only, and by how far the data leave
+/// the chords between these: it may cross any number of cells.
+template <class T>
+struct Stride {
+  T front, middle, back;  ///< data values
+  T length;
+  T deviation;  ///< |data - chord| <= this on either half; its mean over a half is at most half of
+                ///< it
+};
+
+/// How far below the proved bound an estimate may be: what keeps data that look smooth at three
+/// points and are not from being trusted.
+template <class T>
+inline constexpr scalar_t<T> stride_guard = scalar_t<T>(6);
+
+namespace detail {
+
+/// Means of extinction and of extinction · color over data that run linearly from a to b.
+template <class T>
+PELLUCID_HD RangeIntegrals<T> line_means(const PiecewiseLinear<T>& table,
+                                         const PiecewiseLinearAntiderivative<T>& antiderivative,
+                                         T a, T b) noexcept {
+  const ValueRange<T> range(table, min(a, b), max(a, b));
+  RangeIntegrals<T> mean;
+  if (!(range.last > range.first)) {
+    add_stretch(mean, T(1), table.evaluate_in(range.first, a), table.evaluate_in(range.first, b));
+    return mean;
+  }
+  mean = range_integrals(table, antiderivative, range);
+  const T width = range.upper - range.lower;
+  return {mean.mass / width, (T(1) / width) * mean.emission};
+}
+
+template <class T>
+PELLUCID_HD T largest_channel(const Rgb<T>& c) noexcept {
+  return max(abs(c.r), max(abs(c.g), abs(c.b)));
+}
+
+/// A half of a stride: its segment with the depth-weighted mean color, whose error by (5) counts.
+/// `depth_error`, `color_error`: of the depth, and of that mean.
+template <class T>
+PELLUCID_HD BoundedSegment<T> stride_half(T depth, const Rgb<T>& color, T depth_error,
+                                          T color_error, T color_range) noexcept {
+  if (!(depth > T(0))) {
+    BoundedSegment<T> nothing;
+    nothing.opacity_error = min(depth_error, T(1));
+    return nothing;
+  }
+  BoundedSegment<T> half{segment_of_depth(depth, color)};
+  // |e^-a - e^-b| <= e^-min(a,b) |a - b|.
+  half.opacity_error = min(depth_error * exp(min(depth_error - depth, T(0))), T(1));
+  half.color_error =
+      half.segment.opacity *
+      min(color_range * mean_color_bound(depth + depth_error) + color_error, color_range);
+  return half;
+}
+
+}  // namespace detail
+
+/// Integrates a stride by the antiderivatives of the transfer function along its two chords; false
+/// where that is not good enough: where color_error + largest_color · opacity_error would be above
+/// allowance(opacity).
+///
+/// Proved: with S the largest |slope| of the extinction over the values that the data can have, δ
+/// the deviation, a half of length l is off in depth by at most l min(S δ/2, V δ/k), V the
+/// variation of the extinction and k the change of value along the chord ((a), (b) in
+/// segment/line_rule.h); the mean color by (ω S + S_c) δ/2 over the mean extinction, ω the range of
+/// colors, S_c the largest extinction · |color'|; and (5).
+///
+/// Estimated, but no lower than that bound over stride_guard: the chord of the
+/// whole against those of the halves. A third of their difference is taken off (Richardson), and as
+/// much counts as the error: what it is for one bend of the data at a random place, half of what it
+/// is at the worst.
+template <class T, class Allowance>
+PELLUCID_HD bool integrate_stride(const Stride<T>& stride, const PiecewiseLinear<T>& table,
+                                  const PiecewiseLinearAntiderivative<T>& antiderivative,
+                                  T largest_color, Grade grade, Allowance&& allowance,
+                                  BoundedSegment<T>& result) noexcept {
+  const T f = stride.front, m = stride.middle, b = stride.back;
+  const ValueRange<T> reach(table, min(f, min(m, b)) - stride.deviation,
+                            max(f, max(m, b)) + stride.deviation);
+  const RangeSummary<T> all = range_summary(table, antiderivative, reach);
+  result = {};
+  if (!all.absorbs()) return true;
+  const T half = T(0.5) * stride.length;
+  const T slope = max(abs(all.slope_min), abs(all.slope_max));
+  const T color_range = all.color_range();
+  const T mean_deviation = T(0.5) * stride.deviation;
+  const auto depth_bound = [&](T from, T to) noexcept {
+    const T change = abs(to - from);
+    const T crossing = stride.deviation < change ? stride.deviation / change : T(1);
+    return half * min(slope * mean_deviation, all.variation * crossing);
+  };
+  const RangeIntegrals<T> first = detail::line_means(table, antiderivative, f, m),
+                          second = detail::line_means(table, antiderivative, m, b);
+  const T depth_1 = half * first.mass, depth_2 = half * second.mass;
+  const T error_1 = depth_bound(f, m), error_2 = depth_bound(m, b);
+  const T emission_error = (color_range * slope + all.color_slope) * mean_deviation;
+  const auto color_of = [&](const RangeIntegrals<T>& mean) noexcept {
+    return mean.mass > T(0) ? (T(1) / mean.mass) * mean.emission : all.color_min;
+  };
+  const Rgb<T> color_1 = color_of(first), color_2 = color_of(second);
+  const auto color_error = [&](const RangeIntegrals<T>& mean) noexcept {
+    return mean.mass > T(0) ? emission_error / mean.mass : color_range;
+  };
+  const auto cost = [&](const BoundedSegment<T>& s) noexcept {
+    return s.color_error + largest_color * s.opacity_error;
+  };
+  result =
+      compose(detail::stride_half(depth_1, color_1, error_1, color_error(first), color_range),
+              detail::stride_half(depth_2, color_2, error_2, color_error(second), color_range));
+  const T bound = cost(result), allowed = allowance(result.segment.opacity);
+  if (bound <= allowed) return true;
+  if (grade == Grade::proved || !(bound <= T(stride_guard<T>) * allowed)) return false;
+
+  const RangeIntegrals<T> whole = detail::line_means(table, antiderivative, f, b);
+  const T fine = depth_1 + depth_2;
+  const T depth_step = T(1.0 / 3) * (fine - stride.length * whole.mass);
+  const T depth = fine + depth_step;
+  if (!(fine > T(0)) || !(depth > T(0))) return false;
+  const Rgb<T> fine_emission = half * (first.emission + second.emission);
+  const Rgb<T> emission_step = T(1.0 / 3) * (fine_emission - stride.length * whole.emission);
+  const Rgb<T> shift =
+      (T(1) / depth) * (fine_emission + emission_step) - (T(1) / fine) * fine_emission;
+  const Rgb<T> color = (T(1) / depth) * (fine_emission + emission_step);
+  const T estimated_depth = T(0.5) * abs(depth_step), scale = depth / fine;
+  const T estimated_color = detail::largest_channel(emission_step - depth_step * color) / depth;
+  const auto hull = [&](const Rgb<T>& c) noexcept {
+    return Rgb<T>{clamp(c.r, all.color_min.r, all.color_max.r),
+                  clamp(c.g, all.color_min.g, all.color_max.g),
+                  clamp(c.b, all.color_min.b, all.color_max.b)};
+  };
+  // Both halves carry their share of twice |depth_step|, in all.
+  result = compose(detail::stride_half(depth_1 * scale, hull(color_1 + shift), estimated_depth,
+                                       estimated_color, color_range),
+                   detail::stride_half(depth_2 * scale, hull(color_2 + shift), estimated_depth,
+                                       estimated_color, color_range));
+  // A difference that happens to vanish says little.
+  result.color_error =
+      max(result.color_error, bound / T(stride_guard<T>) - largest_color * result.opacity_error);
+  result.proved = false;
+  return cost(result) <= min(allowed, allowance(result.segment.opacity));
+}
+
+}  // namespace pellucid

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "pellucid/geometry/vec3.h"
+
+namespace pellucid {
+
+/// How much the data of one block can bend: bounds, rounded upward, on how fast its derivative
+/// changes. Infinite where the block has vacuum.
+struct BlockBends {
+  /// Along each axis, the largest jump of the derivative by that axis's grid coordinate across a
+  /// plane of cells: those inside of the block and its upper face (the lower is its neighbour's).
+  float bend[3];
+  /// The largest mixed derivative inside of a cell: by y and z, z and x, x and y.
+  float twist[3];
+};
+
+/// At most how much the data's derivative by t varies, in all, along a stretch of a ray: inside of
+/// one block, or of several one behind the other whose bends are joined by their maximum.
+///
+/// Inside of a cell the trilinear data have no second derivative along an axis, so that along the
+/// direction d it is 2 Σ d_a d_b twist_ab. Across a plane of axis a the derivative jumps by d_a
+/// times that by a, which is bilinear on the face: at most its largest corner. A stretch of this
+/// length meets at most |d_a| length / (least width) + 1 planes of the axis.
+PELLUCID_HD inline double derivative_variation(const BlockBends& bends, Vec3<double> direction,
+                                               Vec3<double> least_width, double length) noexcept {
+  double sum = 0;
+  for (int a = 0; a < 3; ++a) {
+    const double d = abs(direction[a]);
+    const int b = (a + 1) % 3, c = (a + 2) % 3;
+    const double twist = abs(direction[b] * direction[c]) * static_cast<double>(bends.twist[a]);
+    if (twist > 0) sum += 2 * length * twist;
+    if (d > 0 && bends.bend[a] > 0) {
+      sum += d * (d * length / least_width[a] + 1) * static_cast<double>(bends.bend[a]);
+    }
+  }
+  return sum * (1 + 32 * rounding_unit<double>);
+}
+
+/// How far data whose derivative varies by `variation` in all can leave the chord of a stretch; the
+/// mean of that distance is at most half of it (chord_deviation() in block_ranges.h: the
+/// oscillation of the derivative is at most its variation).
+PELLUCID_HD inline double bend_deviation(double variation, double length) noexcept {
+  return 0.25 * length * variation;
+}
+
+PELLUCID_HD inline BlockBends join(const BlockBends& p, const BlockBends& q) noexcept {
+  BlockBends result;
+  for (int a = 0; a < 3; ++a) {
+    result.bend[a] = max(p.bend[a], q.bend[a]);
+    result.twist[a] = max(p.twist[a], q.twist[a]);
+  }
+  return result;
+}
+
+}  // namespace pellucid

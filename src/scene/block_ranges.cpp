@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <cstddef>
+#include <limits>
+#include <string>
+
+#include "pellucid/scene/error.h"
+#include "pellucid/scene/volume.h"
+#include "pellucid/traverse/build_block_bends.h"
+#include "pellucid/traverse/build_block_ranges.h"
+#include "volume_blocks.h"
+
+namespace pellucid {
+namespace {
+
+template <class Value>
+void build(const StructuredGrid<Value, double>& grid, const std::string& name,
+           const ParallelFor& parallel, VolumeBlocks& blocks) {
+  constexpr auto largest_count = static_cast<std::size_t>(std::numeric_limits<int>::max());
+  std::size_t count = 1;
+  for (std::size_t a = 0; a < 3; ++a) {
+    const int along = block_count(grid.axis[a]);
+    count *= static_cast<std::size_t>(along);
+    if (count > largest_count) {
+      throw Error((name.empty() ? "volume" : name) + ": has more than " +
+                  std::to_string(largest_count) + " blocks of " + std::to_string(block_width) +
+                  " cells along each axis; crop it, or render it in parts");
+    }
+    blocks.plane[a].resize(static_cast<std::size_t>(along) + 1);
+    find_block_planes(grid.axis[a], blocks.plane[a].data());
+    blocks.view.axis[a] = {blocks.plane[a].data(), along + 1, 0};
+    const GridAxis<double>& axis = grid.axis[a];
+    const int cells = axis.cells(), index = static_cast<int>(a);
+    double least = std::numeric_limits<double>::infinity();
+    for (int i = 0; i < cells; ++i) least = std::min(least, axis.plane(i + 1) - axis.plane(i));
+    blocks.view.least_width[index] = least;
+    blocks.view.mean_width[index] = (axis.plane(cells) - axis.plane(0)) / cells;
+  }
+  blocks.range.resize(count);
+  blocks.view.range = blocks.range.data();
+  blocks.bends.resize(count);
+  blocks.view.bends = blocks.bends.data();
+  const auto body = [&](int first, int last) {
+    build_block_ranges(grid, blocks.view.axis, first, last, blocks.range.data());
+    build_block_bends(grid, blocks.view.axis, first, last, blocks.bends.data());
+  };
+  const int all = static_cast<int>(count);
+  if (parallel) {
+    parallel(all, body);
+  } else {
+    body(0, all);
+  }
+}
+
+}  // namespace
+
+const BlockRanges& Volume::block_ranges(const ParallelFor& parallel) const {
+  if (!blocks_->built) {
+    const std::lock_guard lock(blocks_->building);
+    if (!blocks_->built) {
+      visit([&](const auto& grid) { build(grid, description_.name, parallel, *blocks_); });
+      blocks_->built = true;
+    }
+  }
+  return blocks_->view;
+}
+
+}  // namespace pellucid

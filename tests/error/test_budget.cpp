@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pellucid/error/budget.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+#include <vector>
+
+namespace pellucid {
+namespace {
+
+struct Span {
+  double length, opacity;
+};
+
+/// Spends all that each span may, times `greed`; returns what the pixel is off by.
+double spend_all(const std::vector<Span>& spans, double tolerance, double greed = 1) {
+  double length = 0;
+  for (const Span& span : spans) length += span.length;
+  RayBudget budget(tolerance, length);
+  double transparency = 1, error = 0;
+  for (const Span& span : spans) {
+    if (!(transparency > 0)) break;
+    const double x = greed * budget.allowance(span.length, span.opacity, transparency);
+    EXPECT_GE(x, 0);
+    error += transparency * x;
+    budget.spend(span.length, span.opacity, transparency, x);
+    transparency *= 1 - span.opacity;
+  }
+  EXPECT_NEAR(budget.spent(), error, 1e-12 * tolerance);
+  return error;
+}
+
+TEST(RayBudget, NoSequenceOfSpansSpendsMoreThanTheTolerance) {
+  std::mt19937_64 random(5);
+  std::uniform_real_distribution<double> unit(0, 1);
+  double most = 0;
+  for (int round = 0; round < 20000; ++round) {
+    const double thin = std::pow(10.0, -8 * unit(random));
+    std::vector<Span> spans(std::uniform_int_distribution<std::size_t>(1, 60)(random));
+    for (Span& span : spans) {
+      span.length = unit(random) < 0.1 ? 0 : std::pow(10.0, -6 * unit(random));
+      span.opacity = unit(random) < 0.05 ? 1 : unit(random) * thin;
+    }
+    const double tolerance = std::pow(10.0, -9 * unit(random));
+    most = std::max(most, spend_all(spans, tolerance) / tolerance);
+  }
+  EXPECT_LE(most, 1 + 1e-12);
+  EXPECT_GT(most, 0.95);  // and it is there to be spent
+}
+
+TEST(RayBudget, ThousandsOfThinSpansEachGetAFairShare) {
+  const std::vector<Span> spans(4000, Span{0.01, 1e-7});
+  const double tolerance = 1e-3;
+  EXPECT_NEAR(spend_all(spans, tolerance), 0.5 * tolerance, 1e-3 * tolerance);
+  RayBudget budget(tolerance, 40);
+  EXPECT_NEAR(budget.allowance(0.01, 0, 1), 0.5 * tolerance / 4000, 1e-15);
+}
+
+TEST(RayBudget, WhatIsLeftUnspentIsThereForTheNext) {
+  const double tolerance = 1e-2;
+  RayBudget budget(tolerance, 2);
+  EXPECT_EQ(budget.left(), tolerance);
+  EXPECT_DOUBLE_EQ(budget.allowance(1, 0, 1), 0.25 * tolerance);
+  budget.spend(1, 0.25, 1, 0);
+  EXPECT_EQ(budget.left(), tolerance);
+  EXPECT_DOUBLE_EQ(budget.length_left(), 1);
+  // An opaque last span may take all, and more the less of it is seen.
+  EXPECT_DOUBLE_EQ(budget.allowance(1, 1, 0.75), tolerance / 0.75);
+}
+
+TEST(RayBudget, OverspendingIsCountedAndLeavesNothing) {
+  RayBudget budget(1e-3, 1);
+  budget.spend(0.5, 0.5, 1, 1);
+  EXPECT_EQ(budget.spent(), 1);
+  EXPECT_EQ(budget.left(), 0);
+  EXPECT_EQ(budget.allowance(0.5, 0.5, 0.5), 0);
+  EXPECT_GT(spend_all({{1, 0.5}, {1, 0.5}}, 1e-3, 4), 1.5e-3);
+}
+
+TEST(RayBudget, WhatOnePotLacksComesFromTheOther) {
+  RayBudget budget(1, 1);
+  // More than a span so thin may take, but less than there is.
+  budget.spend(0.5, 0, 1, 0.75);
+  EXPECT_DOUBLE_EQ(budget.left(), 0.25);
+  budget.spend(0.25, 1, 1, 0.25);
+  EXPECT_DOUBLE_EQ(budget.left(), 0);
+  EXPECT_DOUBLE_EQ(budget.spent(), 1);
+}
+
+TEST(RayBudget, EdgesAreFinite) {
+  RayBudget nothing(0, 0);
+  EXPECT_EQ(nothing.allowance(0, 0, 1), 0);
+  nothing.spend(0, 0, 1, 0);
+  EXPECT_EQ(nothing.left(), 0);
+  // The last span is as long as what is left, up to rounding.
+  RayBudget budget(1, 0.3);
+  budget.spend(0.1, 0, 1, 0);
+  budget.spend(0.1, 0, 1, 0);
+  EXPECT_NEAR(budget.allowance(0.1, 0, 1), 0.5, 1e-15);
+  budget.spend(0.1, 0, 1, 0);
+  EXPECT_LE(budget.length_left(), 1e-16);
+  EXPECT_LE(budget.allowance(0.1, 1, 1), 1);
+}
+
+}  // namespace
+}  // namespace pellucid

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <functional>
+
+#include "tests/scenes/cameras.h"
+#include "tests/scenes/makers.h"
+
+/// The scenes on which the tolerance is put to the test.
+namespace pellucid::scenes {
+
+/// A volume behind a transfer function, and the cameras that look at it.
+struct Exhibit {
+  VolumePointer volume;
+  TransferPointer transfer_function;
+  std::vector<NamedCamera> cameras;
+  int samples = 1;  ///< Scene::samples
+};
+
+/// Makes an exhibit for images of size × size pixels. Only cameras depend on the size: those that
+/// send their rays through chosen places.
+using MakeExhibit = std::function<Exhibit(int size)>;
+
+struct GalleryEntry {
+  std::string name;
+  MakeExhibit make;
+  std::filesystem::path file{};  ///< that `make` reads; empty: none
+  /// Below this tolerance pixels may say that they are over it: the data, the table or the image
+  /// does not have the digits.
+  double least_tolerance = 0;
+};
+
+using Gallery = std::vector<GalleryEntry>;
+
+/// All of the following.
+Gallery gallery();
+
+Gallery marschner_lobb_gallery();  ///< one field, from a ramp to a peak of half width 2e-6
+Gallery scan_gallery();            ///< files
+Gallery cell_gallery();            ///< fields that are special inside of a cell
+Gallery table_gallery();           ///< transfer functions that are special
+Gallery grid_gallery();            ///< placements, types and values of the data
+Gallery stride_gallery();          ///< what estimates over several cells can miss
+
+/// One of the exhibit's cameras, with the integration that a scene has by default.
+Scene scene_of(const Exhibit& exhibit, std::size_t camera, int size);
+
+}  // namespace pellucid::scenes

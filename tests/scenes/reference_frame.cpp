@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tests/scenes/reference_frame.h"
+
+#include <atomic>
+#include <cstdio>
+#include <fstream>
+#include <thread>
+
+#include "pellucid/reference/render.h"
+#include "tests/scenes/scene_hash.h"
+
+namespace pellucid::scenes {
+namespace {
+
+/// Counts up where the reference or the frame's format changes, so that older files are not used.
+constexpr unsigned version = 1;
+
+std::array<double, 4> reference_pixel(const Scene& scene, const CameraFrame<double>& camera,
+                                      int column, int row) {
+  std::array<double, 4> sum{};
+  const int count = scene.samples * scene.samples;
+  for (int n = 0; n < count; ++n) {
+    const Ray<double> ray = camera.ray(column, row, n, scene.samples);
+    const ReferencePixel pixel =
+        reference_ray(*scene.volume, *scene.transfer_function, ray.origin, ray.direction);
+    const double channel[4] = {pixel.radiance.r, pixel.radiance.g, pixel.radiance.b, pixel.opacity};
+    for (std::size_t c = 0; c < 4; ++c) sum[c] += channel[c] / count;
+  }
+  return sum;
+}
+
+}  // namespace
+
+ReferenceFrame reference_frame(const Scene& scene, int threads) {
+  const CameraFrame<double> camera = make_camera_frame(scene.camera, scene.size);
+  ReferenceFrame frame{scene.size.width, scene.size.height, {}};
+  const auto width = static_cast<std::size_t>(frame.width);
+  frame.pixels.resize(width * static_cast<std::size_t>(frame.height));
+  std::atomic<int> next_row{0};
+  const auto work = [&] {
+    for (int row = next_row++; row < frame.height; row = next_row++) {
+      for (int column = 0; column < frame.width; ++column) {
+        frame.pixels[static_cast<std::size_t>(row) * width + static_cast<std::size_t>(column)] =
+            reference_pixel(scene, camera, column, row);
+      }
+    }
+  };
+  std::vector<std::jthread> others;
+  for (int i = 1; i < threads; ++i) others.emplace_back(work);
+  work();
+  others.clear();  // Joins them.
+  return frame;
+}
+
+ReferenceFrame cached_reference_frame(const Scene& scene, int threads,
+                                      const std::filesystem::path& folder) {
+  if (folder.empty()) return reference_frame(scene, threads);
+  std::filesystem::create_directories(folder);
+  char name[64];
+  std::snprintf(name, sizeof name, "%016llx-%u.rgba64f",
+                static_cast<unsigned long long>(scene_hash(scene)), version);
+  const std::filesystem::path file = folder / name;
+  ReferenceFrame frame{scene.size.width, scene.size.height, {}};
+  frame.pixels.resize(static_cast<std::size_t>(frame.width) *
+                      static_cast<std::size_t>(frame.height));
+  const std::size_t size = frame.pixels.size() * sizeof(frame.pixels[0]);
+  if (std::filesystem::exists(file) && std::filesystem::file_size(file) == size) {
+    std::ifstream stream(file, std::ios::binary);
+    stream.read(reinterpret_cast<char*>(frame.pixels.data()), static_cast<std::streamsize>(size));
+    if (stream) return frame;
+  }
+  frame = reference_frame(scene, threads);
+  // Under another name first: what is cut off by an interruption is never read.
+  std::filesystem::path part = file;
+  part += ".part";
+  std::ofstream stream(part, std::ios::binary);
+  stream.write(reinterpret_cast<const char*>(frame.pixels.data()),
+               static_cast<std::streamsize>(size));
+  stream.close();
+  if (stream) std::filesystem::rename(part, file);
+  return frame;
+}
+
+}  // namespace pellucid::scenes

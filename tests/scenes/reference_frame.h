@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <filesystem>
+#include <vector>
+
+#include "pellucid/scene/scene.h"
+
+namespace pellucid::scenes {
+
+/// What reference_ray gives may be off by, next to 1 and relatively above it: its quadrature goes
+/// to 1e-12 in each piece. What is smaller says nothing about the judged.
+inline constexpr double reference_accuracy = 1e-11;
+
+/// A picture that is not rounded: premultiplied linear RGBA in double, row 0 at the top.
+struct ReferenceFrame {
+  int width = 0, height = 0;
+  std::vector<std::array<double, 4>> pixels;
+};
+
+/// Every ray of the scene's camera, all samples of a pixel, by reference_ray. `threads` >= 1.
+ReferenceFrame reference_frame(const Scene& scene, int threads);
+
+/// The same from the folder if it was made before: the file's name is the scene's hash. An empty
+/// folder: always made.
+ReferenceFrame cached_reference_frame(const Scene& scene, int threads,
+                                      const std::filesystem::path& folder);
+
+}  // namespace pellucid::scenes

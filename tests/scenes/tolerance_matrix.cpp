@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tests/scenes/tolerance_matrix.h"
+
+namespace pellucid::scenes {
+namespace {
+
+/// Evaluations per ray and error of what a sampler does by default.
+void measure_sampling(Scene scene, const ReferenceFrame& reference, const MatrixOptions& options,
+                      MatrixRow& row) {
+  scene.integration = {};
+  scene.integration.method = Method::midpoint;
+  scene.integration.precision = Precision::float32;
+  scene.integration.step = 1;
+  RenderOptions render_options;
+  render_options.threads = options.threads;
+  RenderReport report;
+  Image image = render(scene, render_options, &report);
+  image.error.assign(image.pixels.size(), 0);
+  image.proved.assign(image.pixels.size(), 0);
+  row.sampling_per_ray = static_cast<double>(report.cells) / static_cast<double>(report.rays);
+  row.sampling_error = judge(image, reference, 1).found;
+}
+
+}  // namespace
+
+double MatrixCell::evaluations_per_ray() const {
+  return static_cast<double>(report.evaluations) / static_cast<double>(report.rays);
+}
+
+const char* grade_name(Grade grade) noexcept {
+  return grade == Grade::proved ? "proved" : "estimated";
+}
+
+MatrixRow measure_row(const std::string& name, const Exhibit& exhibit, std::size_t camera,
+                      const MatrixOptions& options) {
+  Scene scene = scene_of(exhibit, camera, options.size);
+  const ReferenceFrame reference = cached_reference_frame(scene, options.threads, options.cache);
+  MatrixRow row{name, exhibit.cameras[camera].name, reference.pixels.size(), 0, 0, 0, {}};
+  if (options.sampling) measure_sampling(scene, reference, options, row);
+  RenderOptions render_options;
+  render_options.threads = options.threads;
+  render_options.error = true;
+  for (const double tolerance : options.tolerances) {
+    for (const Grade grade : {Grade::estimated, Grade::proved}) {
+      scene.integration = {};
+      scene.integration.tolerance = tolerance;
+      scene.integration.grade = grade;
+      MatrixCell cell{tolerance, grade, {}, {}};
+      const Image image = render(scene, render_options, &cell.report);
+      cell.verdict = judge(image, reference, tolerance);
+      row.brightest = cell.verdict.brightest;
+      row.cells.push_back(std::move(cell));
+    }
+  }
+  return row;
+}
+
+}  // namespace pellucid::scenes
