@@ -107,6 +107,8 @@ struct FrameTransfer {
     for (const TransferFunction::Point& point : function.points()) {
       tables.largest_extinction = std::max(tables.largest_extinction, point.extinction);
     }
+    tables.merged = function.merged_in_float().data();
+    tables.merged_count = static_cast<int>(function.merged_in_float().size());
   }
 };
 
@@ -222,7 +224,9 @@ void store(const Frame& frame, const RayResult& result, std::size_t pixel, Image
 
   // A clear pixel is clear whatever the transfer function is off by where it is not zero.
   const double approximation = result.opacity > 0 ? frame.reserved : 0;
-  const double error = result.error + approximation + brightest * 0x1p-24;
+  // Both the pixel and the exact one lie between zero and the largest color.
+  const double most = std::max(frame.scene.transfer_function->largest_color(), 1.0);
+  const double error = std::min(result.error + approximation, most) + brightest * 0x1p-24;
   if (!image.error.empty()) {
     image.error[pixel] = float_above(error);
     image.proved[pixel] = result.proved ? 1 : 0;

@@ -93,6 +93,45 @@ Exhibit holes(int) {
   return exhibit(make_volume<float>(grid_description({17, 17, 17}), value), ramp_and_peak(17));
 }
 
+/// Smooth data with an empty plane behind whole blocks, and another in front of some: what ends on
+/// the border must not be taken for vacuum, nor vacuum for data. The table begins clear.
+Exhibit vacuum_behind_smooth_blocks(int) {
+  const auto value = [](int i, int j, int k) {
+    const bool hole = i == 17 || i == 23;
+    return hole ? std::numeric_limits<double>::quiet_NaN()
+                : 0.5 + 0.01 * i + 0.002 * j * std::sin(0.1 * k);
+  };
+  const VolumePointer volume = make_volume<float>(grid_description({41, 17, 17}), value);
+  return {volume,
+          transfer({{-1, 0, {1, 1, 1}}, {0, 0, {1, 0.5, 0}}, {2, 0.2, {0, 0.5, 1}}}),
+          {{"along x", parallel_camera({-10, 8, 8}, {1, 0, 0}, 9)},
+           {"against x", parallel_camera({60, 8, 8}, {-1, 1e-3, 0}, 9)},
+           {"perspective", perspective_camera({-40, 30, 25}, {20, 8, 8}, 30)}}};
+}
+
+/// A peak between two integers that binary32 has, none of whose control points it tells apart.
+Exhibit peak_that_float_lacks(int) {
+  const auto value = [](int i, int j, int k) { return 1e6 + i + 0.5 * j + 0.25 * k; };
+  const double at = 1000005;
+  const VolumePointer volume = make_volume<std::int32_t>(grid_description({17, 17, 17}), value);
+  return exhibit(volume, transfer({{at, 0, {1, 0.5, 0}},
+                                   {at + 0.005, 400, {1, 0.8, 0}},
+                                   {at + 0.01, 0, {0, 0.5, 1}}}));
+}
+
+/// Constant blocks, seen from so far that the arc length loses digits.
+Exhibit constant_far_away(int) {
+  const VolumePointer volume =
+      make_volume<std::uint8_t>(grid_description({17, 17, 17}), [](int, int, int) { return 100; });
+  const Vec3<double> direction{-0.5, -0.7, -1};
+  const auto at = [&](double distance) { return Vec3<double>{8, 8, 8} - direction * distance; };
+  return {volume,
+          transfer({{100, 0.1, {1, 0.5, 0.2}}}),
+          {{"1e3 away", parallel_camera(at(1e3), direction, 6)},
+           {"1e6 away", parallel_camera(at(1e6), direction, 6)},
+           {"1e7 away", parallel_camera(at(1e7), direction, 6)}}};
+}
+
 /// Thousands of cells on a ray: what rounding adds up to.
 Exhibit long_rays(int) {
   const VolumePointer volume =
@@ -136,6 +175,9 @@ Gallery grid_gallery() {
       {"lengths of 1e-6", [](int) { return unit_of_length(1e-6); }},
       {"lengths of 1e6", [](int) { return unit_of_length(1e6); }},
       {"holes", holes},
+      {"vacuum behind smooth blocks", vacuum_behind_smooth_blocks},
+      {"a peak that binary32 lacks", peak_that_float_lacks, {}, 1e-3},
+      {"constant, far away", constant_far_away, {}, 1e-5},
       {"2048 cells long", long_rays},
       {"far away", far_away},
       {"9 samples per pixel", many_samples},

@@ -51,7 +51,8 @@ void expect_within_bounds(Grade grade, const char* name) {
     const T tolerance =
         static_cast<T>(test::log_uniform(random, sizeof(T) == 4 ? 1e-5 : 1e-9, 0.5));
     const BoundedSegment<T> s = integrate_cubic(data, length, table, tolerance, grade);
-    const test::WideCubicSegment truth = test::wide_cubic_segment(data, length, table);
+    test::WideCubicSegment truth = test::wide_cubic_segment(data, length, table);
+    truth.opacity = -std::expm1(-truth.depth);
     const FoundError found = found_error(s.segment, truth);
     const T data_error = data_rounding(data);
     const int first = table.interval(data.hull_min() - data_error),

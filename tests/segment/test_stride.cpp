@@ -34,11 +34,14 @@ struct BentData {
     for (const std::size_t from : {std::size_t{0}, middle()}) {
       const double a = static_cast<double>(knot[from]),
                    b = static_cast<double>(knot[from + middle()]);
+      double sum = 0;  // of |data - chord|, which vanishes at both ends: the trapezoidal rule
       for (std::size_t i = 0; i <= middle(); ++i) {
         const double t = static_cast<double>(i) / static_cast<double>(middle());
-        largest =
-            std::max(largest, std::fabs(static_cast<double>(knot[from + i]) - (a + t * (b - a))));
+        const double off = std::fabs(static_cast<double>(knot[from + i]) - (a + t * (b - a)));
+        largest = std::max(largest, off);
+        sum += off;
       }
+      largest = std::max(largest, 2 * sum / static_cast<double>(middle()));
     }
     return largest;
   }
@@ -122,7 +125,7 @@ TEST(Stride, EstimatesAreSeldomExceededAndNeverByMoreThanTheGuard) {
   const Counts counts = check(Grade::estimated, test::span_count(4000), false);
   EXPECT_GT(counts.taken, proved.taken);
   EXPECT_LE(counts.over, counts.taken / 20);
-  EXPECT_LE(counts.largest, 1.5L * stride_guard<double>);
+  EXPECT_LE(counts.largest, 2.5L);
 }
 
 TEST(Stride, WhatCannotBeSeenIsNothing) {
@@ -137,6 +140,14 @@ TEST(Stride, WhatCannotBeSeenIsNothing) {
   EXPECT_TRUE(integrate_stride(Stride<double>{0.1, 0.2, 0.15, 3, 0.1}, table, storage.view(), 1.0,
                                Grade::proved, nothing, s));
   EXPECT_EQ(s.segment.opacity, 0);
+  // Vacuum at an end is not clear air.
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  for (const Stride<double>& stride :
+       {Stride<double>{nan, 0.1, 0.1, 3, 0.1}, Stride<double>{0.1, nan, 0.1, 3, 0.1},
+        Stride<double>{0.1, 0.1, nan, 3, 0.1}}) {
+    EXPECT_FALSE(integrate_stride(
+        stride, table, storage.view(), 1.0, Grade::estimated, [](double) { return 1.0; }, s));
+  }
   // A peak between three points that do not see it.
   EXPECT_FALSE(integrate_stride(
       Stride<double>{0.45, 0.45, 0.45, 3, 0.2}, table, storage.view(), 1.0, Grade::estimated,

@@ -9,7 +9,7 @@ namespace pellucid {
 /// optical depth m by its depth-weighted mean changes the radiance by at most (oscillation of the
 /// color) · opacity · κ(m). κ <= this <= min(1, m/8), and this <= 1.25 κ.
 ///
-/// Proof. Let λ be where ln of (1 - e^(-λm))/(1 - e^(-m)) - λ is largest, μ = λm and ν = m - μ.
+/// Proof. Let λ be where (1 - e^(-λm))/(1 - e^(-m)) - λ is largest, μ = λm and ν = m - μ.
 /// Integrating the derivative e^(μ - λm) - 1 from either end, m κ = e^μ - 1 - μ = ν - 1 + e^(-ν).
 /// Hence dm/d(mκ) = 1/(e^μ - 1) + 1/(1 - e^(-ν)) = (coth(μ/2) + coth(ν/2))/2 >= coth(m/4), for
 /// coth is convex. With coth² x >= 1/x² + 2/3, d(mκ)/dm <= tanh(x) <= x/√(1 + 2x²/3), x = m/4;

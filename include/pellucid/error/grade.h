@@ -4,8 +4,8 @@
 namespace pellucid {
 
 /// What the error of a pixel may rest on. `proved`: on theorems alone (docs/accuracy.md says
-/// which). `estimated`: also on estimates with a safety factor, where a proof would cost several
-/// times the work.
+/// which), but for rounding, which is charged with constants that tests assert. `estimated`: also
+/// on estimates with a safety factor, where a proof would cost several times the work.
 enum class Grade { estimated, proved };
 
 }  // namespace pellucid

@@ -27,4 +27,10 @@ struct Rgb {
   }
 };
 
+/// The largest magnitude of the three.
+template <class T>
+PELLUCID_HD T largest_component(const Rgb<T>& c) noexcept {
+  return max(abs(c.r), max(abs(c.g), abs(c.b)));
+}
+
 }  // namespace pellucid

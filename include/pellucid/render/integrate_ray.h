@@ -50,8 +50,8 @@ PELLUCID_HD void each_block(const BlockRanges& blocks, const Ray<double>& ray_gr
   for_each_block(blocks, ray_grid, inside, [&](const BlockStep& step) {
     const BlockRange& range = blocks[step.block];
     const BlockBends& own = blocks.bends[step.block];
-    const double length = step.t_end - step.t_begin;
-    if (integrator.is_smooth(range, own, march.variation(own), march.shortest())) {
+    if (march.knows_places(step.t_end) &&
+        integrator.is_smooth(range, own, march.variation(own), march.shortest())) {
       bends = smooth.begin < smooth.end ? join(bends, own) : own;
       smooth.end = step.t_end;
       if (smooth.end - smooth.begin > march.longest()) {
@@ -63,7 +63,7 @@ PELLUCID_HD void each_block(const BlockRanges& blocks, const Ray<double>& ray_gr
     finish();
     smooth = {step.t_end, step.t_end};
     if (integrator.done()) return false;
-    if (!integrator.block(range, length)) each_cell({step.t_begin, step.t_end});
+    if (!integrator.block(range, step)) each_cell({step.t_begin, step.t_end});
     return !integrator.done();
   });
   finish();
@@ -71,7 +71,8 @@ PELLUCID_HD void each_block(const BlockRanges& blocks, const Ray<double>& ray_gr
 
 /// The volume rendering integral along a ray (in grid coordinates, its parameter the world arc
 /// length) through trilinear data, within a tolerance: RayResult::error is at most what is wanted,
-/// unless binary32 was forced where it cannot keep it. `blocks`: of the same grid; null: none.
+/// unless binary32 was forced where it cannot keep it, or where not even binary64 tells on which
+/// side of a jump of the transfer function the data lie. `blocks`: of the same grid; null: none.
 template <class Value>
 PELLUCID_HD RayResult integrate_ray(const StructuredGrid<Value, double>& grid,
                                     const BlockRanges* blocks, const Ray<double>& ray_grid,

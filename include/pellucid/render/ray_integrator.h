@@ -54,7 +54,8 @@ class RayIntegrator {
   }
 
   /// A block of cells, at once: false where its cells have to be gone through.
-  PELLUCID_HD bool block(const BlockRange& range, double length) noexcept {
+  PELLUCID_HD bool block(const BlockRange& range, const BlockStep& step) noexcept {
+    const double length = step.t_end - step.t_begin;
     if (range.vacuum == BlockVacuum::all) {
       skip(length);
       return true;
@@ -70,8 +71,10 @@ class RayIntegrator {
     ++counts_.constant;
     const Material<double>& material = table.lower_material(first);
     BoundedSegment<double> segment{constant_segment(material.extinction, material.color, length)};
+    // The length is known to a few units of the arc length.
+    const double place = 8 * rounding_unit<double> * step.t_end * material.extinction;
     add(segment, length, segment.segment.opacity,
-        32 * rounding_unit<double> * segment.segment.opacity * largest_color_);
+        largest_color_ * (32 * rounding_unit<double> * segment.segment.opacity + min(place, 1.0)));
     return true;
   }
 
@@ -126,10 +129,14 @@ class RayIntegrator {
   PELLUCID_HD bool stride(double t_begin, double length, double variation, double front,
                           double& back) noexcept {
     const double middle = sample(t_begin + 0.5 * length);
-    back = sample(t_begin + length);
+    back = sample(t_begin + length);  // NaN on a plane that vacuum begins at: no stride
+    // The samples themselves are rounded.
+    const double rounding =
+        64 * rounding_unit<double> * max(abs(front), max(abs(middle), abs(back)));
     BoundedSegment<double> found;
     const bool good = integrate_stride(
-        Stride<double>{front, middle, back, length, bend_deviation(variation, 0.5 * length)},
+        Stride<double>{front, middle, back, length,
+                       bend_deviation(variation, 0.5 * length) + rounding},
         transfer_.wide, transfer_.wide_antiderivative, largest_color_, wanted_.grade,
         [&](double opacity) { return budget_.allowance(length, opacity, fold_.transparency()); },
         found);
@@ -194,9 +201,13 @@ class RayIntegrator {
     const T lower = span.data.hull_min(), upper = span.data.hull_max();
     // Squares of the data's differences must not underflow in binary32.
     if (!forced && !(max(abs(lower), abs(upper)) > T(1e-15)) && upper > lower) return false;
+    const bool lacks =
+        is_single<T> && transfer_.single_lacks(static_cast<double>(lower - data_error),
+                                               static_cast<double>(upper + data_error));
+    if (lacks && !forced) return false;
     const detail::IntervalRange reach =
         detail::interval_range(table, lower - data_error, upper + data_error);
-    if (!table.has_extinction(reach.first, reach.last)) {
+    if (!table.has_extinction(reach.first, reach.last) && !lacks) {
       skip(world_length);
       return true;
     }
@@ -211,6 +222,7 @@ class RayIntegrator {
     rounding.depth +=
         static_cast<T>(8 * rounding_unit<double> * step.t_end) * slopes.largest_extinction;
     const auto rounding_cost = [&](const T alpha, const T transparency) noexcept {
+      if (lacks) return largest_color_;  // anything may be there
       return static_cast<double>(rounding.color_error(alpha)) +
              largest_color_ * static_cast<double>(rounding.opacity_error(alpha, transparency));
     };

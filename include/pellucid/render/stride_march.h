@@ -28,6 +28,10 @@ class StrideMarch {
   /// The shortest stride: half of it is about a cell.
   PELLUCID_HD double shortest() const noexcept { return shortest_; }
 
+  /// Whether places on the ray this far from the eye are known to a billionth of a stride.
+  PELLUCID_HD bool knows_places(double t) const noexcept {
+    return 8 * rounding_unit<double> * t <= 1e-9 * shortest_;
+  }
   /// As much as is worth gathering before it is gone through.
   PELLUCID_HD double longest() const noexcept { return 16 * shortest_; }
   /// That of the data's derivative on half of the shortest stride.
@@ -70,7 +74,7 @@ class StrideMarch {
       each_cell({here, end});
       here = end;
       known = false;
-      pause_ = min(2 * pause_, 32.0);
+      pause_ = min(4 * pause_, 256.0);
     }
   }
 

@@ -14,6 +14,23 @@ struct TransferTables {
   PiecewiseLinearAntiderivative<float> single_antiderivative;
   PiecewiseLinearAntiderivative<double> wide_antiderivative;
   double largest_extinction = 0;
+  /// Values, ascending, where control points of `wide` fell together in `single`.
+  const double* merged = nullptr;
+  int merged_count = 0;
+
+  /// Whether `single` does not follow the function somewhere in [lower, upper].
+  PELLUCID_HD bool single_lacks(double lower, double upper) const noexcept {
+    int lo = 0, hi = merged_count;
+    while (lo < hi) {
+      const int mid = (lo + hi) / 2;
+      if (merged[mid] < lower) {
+        lo = mid + 1;
+      } else {
+        hi = mid;
+      }
+    }
+    return lo < merged_count && merged[lo] <= upper;
+  }
 
   template <class T>
   PELLUCID_HD const PiecewiseLinear<T>& table() const noexcept {

@@ -35,8 +35,8 @@ PELLUCID_HD IntervalRange interval_range(const CubicBernstein<T>& data,
 /// the extinction is a cubic with known coefficients. Radiance: closed where the color is constant
 /// or the data are linear, else within tolerance · opacity per channel and unit of color, so that
 /// the errors of the segments along a ray sum to at most the tolerance (2.3). The scheme for it is
-/// chosen in cubic_emission(); where that is a Gauss panel, the tolerance rests on measurement, not
-/// on proof.
+/// chosen in cubic_emission(); in grade proved by bounds that are, else where it is a Gauss
+/// panel by measurement.
 ///
 /// Wanted: length >= 0, tolerance > 0, finite data whose differences are finite. Tolerances down to
 /// 1e-6 (float) and 1e-12 (double) are met on tests/reference_tables/trilinear_cell.csv, asserted

@@ -15,11 +15,6 @@ using LineResult = BoundedSegment<T>;
 
 namespace detail {
 
-template <class T>
-PELLUCID_HD T largest_of(const Rgb<T>& c) noexcept {
-  return max(abs(c.r), max(abs(c.g), abs(c.b)));
-}
-
 /// A segment of one color: that of `color_error` and what (5) says of the weighting.
 template <class T>
 PELLUCID_HD LineResult<T> mean_result(T length, T extinction, Rgb<T> color, T extinction_error,
@@ -32,8 +27,8 @@ PELLUCID_HD LineResult<T> mean_result(T length, T extinction, Rgb<T> color, T ex
   result.opacity_error = opacity_error_bound(result.segment, depth_error);
   const T weighting = color_range * mean_color_bound(depth + depth_error);
   result.color_error =
-      result.segment.opacity *
-      (T(1 + 16 * u) * min(weighting + color_error, color_range) + T(4 * u) * largest_of(color));
+      result.segment.opacity * (T(1 + 16 * u) * min(weighting + color_error, color_range) +
+                                T(4 * u) * largest_component(color));
   return result;
 }
 
@@ -61,11 +56,11 @@ PELLUCID_HD LineResult<T> mean_in_interval(const LegendreCubic<T>& f, T data_ran
   const T share_error =
       (T(1) + abs(relative_slope) * (share_range * width + spread)) / width * f.rounding +
       T(16 * u) * share_range;
-  const T color_error = share_error * largest_of(change) +
-                        T(4 * u) * max(largest_of(from.color), largest_of(to.color));
+  const T color_error = share_error * largest_component(change) +
+                        T(4 * u) * max(largest_component(from.color), largest_component(to.color));
   return mean_result(length, m.extinction, m.color + shift * change,
                      abs(slope) * f.rounding + T(8 * u) * m.extinction, color_error,
-                     share_range * largest_of(change));
+                     share_range * largest_component(change));
 }
 
 /// What both line rules have in common.
@@ -88,7 +83,7 @@ template <class T>
 PELLUCID_HD LineResult<T> line_mean_result(const LineStretch<T>& line, T rounding) noexcept {
   const RangeSummary<T>& all = line.window.table;
   const T range = all.color_range(),
-          size = max(largest_of(all.color_min), largest_of(all.color_max));
+          size = max(largest_component(all.color_min), largest_component(all.color_max));
   const T color_error = line.mean.extinction > T(0)
                             ? line.error.color / line.mean.extinction + rounding * size
                             : range;
@@ -130,7 +125,7 @@ PELLUCID_HD LineResult<T> line_emission_result(const LineStretch<T>& line,
                    (error.spread + more * exp_minus_1(r * s.optical_depth + ends));
     by_values = range * (min(thin, thick) + ends * more);
   }
-  const T size = max(largest_of(all.color_min), largest_of(all.color_max));
+  const T size = max(largest_component(all.color_min), largest_component(all.color_max));
   result.color_error = (T(1) + rounding) * min(min(by_parts, by_values), range * s.opacity) +
                        T(2) * rounding * size * s.opacity;
   return result;

@@ -22,7 +22,7 @@ struct Stride {
 /// How far below the proved bound an estimate may be: what keeps data that look smooth at three
 /// points and are not from being trusted.
 template <class T>
-inline constexpr scalar_t<T> stride_guard = scalar_t<T>(6);
+inline constexpr scalar_t<T> stride_guard = scalar_t<T>(4);
 
 namespace detail {
 
@@ -40,11 +40,6 @@ PELLUCID_HD RangeIntegrals<T> line_means(const PiecewiseLinear<T>& table,
   mean = range_integrals(table, antiderivative, range);
   const T width = range.upper - range.lower;
   return {mean.mass / width, (T(1) / width) * mean.emission};
-}
-
-template <class T>
-PELLUCID_HD T largest_channel(const Rgb<T>& c) noexcept {
-  return max(abs(c.r), max(abs(c.g), abs(c.b)));
 }
 
 /// A half of a stride: its segment with the depth-weighted mean color, whose error by (5) counts.
@@ -88,6 +83,7 @@ PELLUCID_HD bool integrate_stride(const Stride<T>& stride, const PiecewiseLinear
                                   T largest_color, Grade grade, Allowance&& allowance,
                                   BoundedSegment<T>& result) noexcept {
   const T f = stride.front, m = stride.middle, b = stride.back;
+  if (is_nan(f) || is_nan(m) || is_nan(b)) return false;
   const ValueRange<T> reach(table, min(f, min(m, b)) - stride.deviation,
                             max(f, max(m, b)) + stride.deviation);
   const RangeSummary<T> all = range_summary(table, antiderivative, reach);
@@ -135,7 +131,7 @@ PELLUCID_HD bool integrate_stride(const Stride<T>& stride, const PiecewiseLinear
       (T(1) / depth) * (fine_emission + emission_step) - (T(1) / fine) * fine_emission;
   const Rgb<T> color = (T(1) / depth) * (fine_emission + emission_step);
   const T estimated_depth = T(0.5) * abs(depth_step), scale = depth / fine;
-  const T estimated_color = detail::largest_channel(emission_step - depth_step * color) / depth;
+  const T estimated_color = largest_component(emission_step - depth_step * color) / depth;
   const auto hull = [&](const Rgb<T>& c) noexcept {
     return Rgb<T>{clamp(c.r, all.color_min.r, all.color_max.r),
                   clamp(c.g, all.color_min.g, all.color_max.g),
