@@ -125,7 +125,9 @@ TEST(Stride, EstimatesAreSeldomExceededAndNeverByMoreThanTheGuard) {
   const Counts counts = check(Grade::estimated, test::span_count(4000), false);
   EXPECT_GT(counts.taken, proved.taken);
   EXPECT_LE(counts.over, counts.taken / 20);
-  EXPECT_LE(counts.largest, 2.5L);
+  // The proved bound is at most stride_guard times the estimate, and what Richardson takes off is
+  // at most the estimate.
+  EXPECT_LE(counts.largest, stride_guard<double> + 1);
 }
 
 TEST(Stride, WhatCannotBeSeenIsNothing) {

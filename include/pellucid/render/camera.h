@@ -25,8 +25,9 @@ struct CameraFrame {
   /// Sample n of samples × samples: the ray through the centre of one of the equal parts of a
   /// pixel.
   PELLUCID_HD Ray<T> ray(int column, int row, int n, int samples) const noexcept {
-    return ray_through(T(column) + (T(n % samples) + T(0.5)) / T(samples),
-                       T(row) + (T(n / samples) + T(0.5)) / T(samples));
+    const int across = n % samples, down = n / samples;
+    return ray_through(T(column) + (T(across) + T(0.5)) / T(samples),
+                       T(row) + (T(down) + T(0.5)) / T(samples));
   }
 
   /// The ray through a point of the image: (0, 0) is its upper left corner, (width, height) its
