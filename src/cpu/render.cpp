@@ -18,8 +18,8 @@
 
 #include "pellucid/render/integrate_ray.h"
 #include "pellucid/render/sample_ray.h"
-#include "pellucid/scene/antiderivative_storage.h"
 #include "pellucid/scene/error.h"
+#include "pellucid/scene/transfer_tables_storage.h"
 #include "pellucid/traverse/build_block_ranges.h"
 
 namespace pellucid {
@@ -94,24 +94,6 @@ SamplingRule sampling_rule(Method method) {
   return SamplingRule::linear;
 }
 
-/// The transfer function's tables and what is computed from them once a frame.
-struct FrameTransfer {
-  AntiderivativeStorage<float> single;
-  AntiderivativeStorage<double> wide;
-  TransferTables tables;
-
-  explicit FrameTransfer(const TransferFunction& function)
-      : single(function.view<float>()),
-        wide(function.view<double>()),
-        tables{function.view<float>(), function.view<double>(), single.view(), wide.view()} {
-    for (const TransferFunction::Point& point : function.points()) {
-      tables.largest_extinction = std::max(tables.largest_extinction, point.extinction);
-    }
-    tables.merged = function.merged_in_float().data();
-    tables.merged_count = static_cast<int>(function.merged_in_float().size());
-  }
-};
-
 /// The largest component of what lies behind the data.
 double brightest(const std::optional<Rgb<double>>& background) {
   return background ? std::max({background->r, background->g, background->b}) : 0;
@@ -122,7 +104,7 @@ struct Frame {
   const Scene& scene;
   CameraFrame<double> camera;
   bool depth;
-  FrameTransfer transfer;
+  TransferTablesStorage transfer;
   RayTolerance wanted;
   const BlockRanges* blocks = nullptr;
   double reserved;  ///< of the tolerance: what the transfer function is off by
@@ -155,16 +137,17 @@ RayResult render_ray(const Frame& frame, const StructuredGrid<Value, double>& gr
   const Ray<double> ray = scene.volume->grid_from_world().ray(ray_world);
   const Integration& integration = scene.integration;
   if (integration.method == Method::exact) {
-    return integrate_ray(grid, frame.blocks, ray, frame.transfer.tables, frame.wanted, frame.depth);
+    return integrate_ray(grid, frame.blocks, ray, frame.transfer.tables(), frame.wanted,
+                         frame.depth);
   }
   const double largest_color = scene.transfer_function->largest_color();
   const double step = integration.step * scene.volume->voxel_size();
   const SamplingRule rule = sampling_rule(integration.method);
   if (integration.precision == Precision::float64) {
-    return sample_ray<double>(grid, ray, frame.transfer.tables.wide, rule, step, largest_color,
+    return sample_ray<double>(grid, ray, frame.transfer.tables().wide, rule, step, largest_color,
                               stop_tolerance<double>(), frame.depth);
   }
-  return sample_ray<float>(grid, ray, frame.transfer.tables.single, rule, step, largest_color,
+  return sample_ray<float>(grid, ray, frame.transfer.tables().single, rule, step, largest_color,
                            stop_tolerance<float>(), frame.depth);
 }
 

@@ -11,34 +11,18 @@
 #include "pellucid/cpu/render.h"
 #include "pellucid/reference/render.h"
 #include "pellucid/render/integrate_ray.h"
-#include "pellucid/scene/antiderivative_storage.h"
+#include "pellucid/scene/transfer_tables_storage.h"
 #include "tests/scenes/difference.h"
 #include "tests/support/accuracy.h"
 
 namespace pellucid::scenes {
 namespace {
 
-/// A transfer function as rays see it.
-struct Tables {
-  AntiderivativeStorage<float> single;
-  AntiderivativeStorage<double> wide;
-  TransferTables tables;
-
-  explicit Tables(const TransferFunction& function)
-      : single(function.view<float>()),
-        wide(function.view<double>()),
-        tables{function.view<float>(), function.view<double>(), single.view(), wide.view()} {
-    for (const TransferFunction::Point& point : function.points()) {
-      tables.largest_extinction = std::max(tables.largest_extinction, point.extinction);
-    }
-  }
-};
-
 /// Every seventh pixel's ray in double from end to end, to a tolerance of `ray_bound`.
 void expect_exact_rays(const NamedScene& named) {
   const Scene& scene = named.scene;
   const CameraFrame<double> camera = make_camera_frame(scene.camera, scene.size);
-  const Tables transfer(*scene.transfer_function);
+  const TransferTablesStorage transfer(*scene.transfer_function);
   const RayTolerance wanted{ray_bound, Grade::estimated, Precision::float64,
                             std::max(1.0, scene.transfer_function->largest_color())};
   test::ErrorRecord light(named.name + ", rays", ""), depth("  half-opacity depth", "");
@@ -47,8 +31,8 @@ void expect_exact_rays(const NamedScene& named) {
     const ReferencePixel truth =
         reference_ray(*scene.volume, *scene.transfer_function, ray.origin, ray.direction);
     const RayResult result = scene.volume->visit([&](const auto& grid) {
-      return integrate_ray(grid, nullptr, scene.volume->grid_from_world().ray(ray), transfer.tables,
-                           wanted, true);
+      return integrate_ray(grid, nullptr, scene.volume->grid_from_world().ray(ray),
+                           transfer.tables(), wanted, true);
     });
     const std::string where = "pixel " + std::to_string(pixel);
     const Rgb<double> off = result.radiance - truth.radiance;

@@ -81,11 +81,10 @@ class RayIntegrator {
   /// One cell of a walk over the grid.
   PELLUCID_HD void cell(const StructuredWalk<double>::Step& step) noexcept {
     ++evaluations_;
-    if (wanted_.precision == Precision::float64 || wanted_.grade == Grade::proved) {
-      if (wanted_.precision != Precision::float32) {
-        cell_in<double>(step, true);
-        return;
-      }
+    if (wanted_.precision == Precision::float64 ||
+        (wanted_.grade == Grade::proved && wanted_.precision == Precision::automatic)) {
+      cell_in<double>(step, true);
+      return;
     }
     if (cell_in<float>(step, wanted_.precision == Precision::float32)) return;
     ++counts_.in_double;

@@ -32,8 +32,7 @@ PELLUCID_HD Sensitivity<T> sensitivity(const PiecewiseLinear<T>& table, int firs
       result.jump = true;
       continue;
     }
-    const T color = max(abs(b.color.r - a.color.r),
-                        max(abs(b.color.g - a.color.g), abs(b.color.b - a.color.b)));
+    const T color = largest_component(b.color - a.color);
     result.extinction_slope = max(result.extinction_slope, extinction / width);
     if (max(a.extinction, b.extinction) > T(0)) {
       result.color_slope = max(result.color_slope, color / width);

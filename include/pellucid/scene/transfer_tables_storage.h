@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <algorithm>
+
+#include "pellucid/render/transfer_tables.h"
+#include "pellucid/scene/antiderivative_storage.h"
+#include "pellucid/scene/transfer_function.h"
+
+namespace pellucid {
+
+/// Owns what is computed from a transfer function once a frame. The function is referred to and
+/// must outlive this; not copied, for the tables refer to it.
+class TransferTablesStorage {
+ public:
+  explicit TransferTablesStorage(const TransferFunction& function)
+      : single_(function.view<float>()),
+        wide_(function.view<double>()),
+        tables_{function.view<float>(), function.view<double>(), single_.view(), wide_.view()} {
+    for (const TransferFunction::Point& point : function.points()) {
+      tables_.largest_extinction = std::max(tables_.largest_extinction, point.extinction);
+    }
+    tables_.merged = function.merged_in_float().data();
+    tables_.merged_count = static_cast<int>(function.merged_in_float().size());
+  }
+  TransferTablesStorage(const TransferTablesStorage&) = delete;
+  TransferTablesStorage& operator=(const TransferTablesStorage&) = delete;
+
+  const TransferTables& tables() const noexcept { return tables_; }
+
+ private:
+  AntiderivativeStorage<float> single_;
+  AntiderivativeStorage<double> wide_;
+  TransferTables tables_;
+};
+
+}  // namespace pellucid
