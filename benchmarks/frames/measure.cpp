@@ -2,73 +2,97 @@
 #include "benchmarks/frames/measure.h"
 
 #include <algorithm>
-#include <stdexcept>
+#include <chrono>
 
-#include "benchmarks/frames/reference_cache.h"
 #include "benchmarks/support/document.h"
-#include "pellucid/cpu/render.h"
+#include "benchmarks/vtk/vtk_contenders.h"
 
 namespace pellucid::bench {
 namespace {
-
-std::vector<Measurement> ways(const MeasureOptions& options) {
-  std::vector<Measurement> list;
-  for (const Precision precision : {Precision::float64, Precision::float32}) {
-    list.push_back({{Method::exact, precision, 1, smallest_tolerance}, {}, {}, 0});
-  }
-  if (options.exact_only) return list;
-  for (const Method method : {Method::rectangle, Method::taylor, Method::midpoint,
-                              Method::trapezoid, Method::simpson, Method::linear}) {
-    for (const double step : options.steps) {
-      list.push_back({{method, Precision::float32, step}, {}, {}, 0});
-    }
-  }
-  return list;
-}
 
 std::string data_of(const Volume& volume) {
   const auto& n = volume.description().dimensions;
   return format("%d×%d×%d ", n[0], n[1], n[2]) + std::string(type_name(volume.data()));
 }
 
+/// What the next setting is expected to take: samples grow as steps shrink; what a tolerance costs
+/// is not known before.
+double expected_seconds(const CurvePoint& last, Knob knob, double next_setting) {
+  const double seconds = last.seconds.front();
+  return knob == Knob::step ? seconds * last.setting / next_setting : seconds;
+}
+
+/// Settings that are measured however long they take: exact goes at least to its default tolerance.
+std::size_t least_points(Knob knob) {
+  return knob == Knob::tolerance ? 3 : 1;
+}
+
+/// The first round, with errors: it finds how far each curve goes.
+Curve first_round(const Contender& contender, const ReferencePixels& reference,
+                  double longest_seconds) {
+  Curve curve{contender.name, contender.knob, {}, false};
+  for (const double setting : contender.settings) {
+    if (curve.points.size() >= least_points(curve.knob) &&
+        expected_seconds(curve.points.back(), curve.knob, setting) > longest_seconds) {
+      curve.cut_short = true;
+      break;
+    }
+    const TimedFrame frame = contender.render(setting);
+    curve.points.push_back(
+        {setting, {frame.seconds}, error_of(frame.image, reference), frame.work});
+  }
+  return curve;
+}
+
+/// Of all curves in turn, so that neighbours are different contenders.
+std::vector<std::pair<std::size_t, std::size_t>> in_turn(const std::vector<Curve>& curves) {
+  std::vector<std::pair<std::size_t, std::size_t>> list;
+  std::size_t most = 0;
+  for (const Curve& curve : curves) most = std::max(most, curve.points.size());
+  for (std::size_t p = 0; p < most; ++p) {
+    for (std::size_t c = 0; c < curves.size(); ++c) {
+      if (p < curves[c].points.size()) list.emplace_back(c, p);
+    }
+  }
+  return list;
+}
+
 }  // namespace
 
-double Measurement::median_seconds() const {
-  std::vector<double> sorted = seconds;
-  std::sort(sorted.begin(), sorted.end());
-  const std::size_t n = sorted.size();
-  return n % 2 == 1 ? sorted[n / 2] : 0.5 * (sorted[n / 2 - 1] + sorted[n / 2]);
-}
-
-const Measurement& SceneResult::find(Method method, Precision precision) const {
-  for (const Measurement& m : measurements) {
-    if (m.integration.method == method && m.integration.precision == precision) return m;
-  }
-  throw std::out_of_range("no such measurement");
-}
-
 SceneResult measure(const scenes::NamedScene& named, const MeasureOptions& options) {
+  const Scene& scene = named.scene;
   options.say(named.name + ": reference");
-  const Image reference = cached_reference(named.scene, options.cache);
-  SceneResult result{named.name, named.scene.size, data_of(*named.scene.volume), ways(options)};
+  const ReferencePixels reference =
+      reference_pixels(scene, options.pixels, std::max(1, options.pellucid.threads), options.cache);
+  SceneResult result{named.name, scene.size, data_of(*scene.volume), reference.index.size(),
+                     {},         {}};
 
-  RenderOptions render_options;
-  render_options.threads = options.threads;
-  Scene scene = named.scene;
-  render(scene, render_options);  // Memory and caches are warm for the first way as for the last.
-  for (int round = 0; round < options.repeats; ++round) {
-    options.say(named.name + ": round " + std::to_string(round + 1));
-    for (Measurement& m : result.measurements) {
-      const bool exact = m.integration.method == Method::exact;
-      if (round > 0 && !exact && m.seconds.front() > options.longest_repeated_seconds) continue;
-      scene.integration = m.integration;
-      RenderReport report;
-      const Image image = render(scene, render_options, &report);
-      m.seconds.push_back(report.seconds);
-      if (round == 0) {
-        m.error = scenes::difference(image, reference);
-        m.cells = report.cells;
-      }
+  std::vector<Contender> contenders = pellucid_contenders(scene, options.pellucid);
+  if (options.vtk) {
+    VtkContenders vtk = vtk_contenders(scene, options.vtk_steps, options.pellucid.threads);
+    std::move(vtk.list.begin(), vtk.list.end(), std::back_inserter(contenders));
+    if (!vtk.left_out.empty()) result.left_out.push_back(vtk.left_out);
+  }
+  const auto start = std::chrono::steady_clock::now();
+  // Memory and caches are warm, and what depends on the data alone is made, for the first as for
+  // the last.
+  contenders.front().render(contenders.front().settings.front());
+  for (const Contender& contender : contenders) {
+    options.say(named.name + ": " + contender.name);
+    result.curves.push_back(first_round(contender, reference, options.longest_seconds));
+  }
+  const auto ways = in_turn(result.curves);
+  for (int round = 1; round < options.repeats; ++round) {
+    const std::chrono::duration<double> spent = std::chrono::steady_clock::now() - start;
+    if (round > 1 && spent.count() > options.scene_seconds) break;
+    options.say(named.name + format(": round %d of %d", round + 1, options.repeats));
+    const std::size_t begin =
+        ways.size() * static_cast<std::size_t>(round) / static_cast<std::size_t>(options.repeats);
+    for (std::size_t i = 0; i < ways.size(); ++i) {
+      const auto [c, p] = ways[(begin + i) % ways.size()];
+      CurvePoint& point = result.curves[c].points[p];
+      if (point.seconds.front() > options.longest_repeated_seconds) continue;
+      point.seconds.push_back(contenders[c].render(point.setting).seconds);
     }
   }
   return result;

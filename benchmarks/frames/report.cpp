@@ -1,16 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "benchmarks/frames/report.h"
 
+#include <algorithm>
+#include <cmath>
+
+#include "benchmarks/frames/pellucid_contenders.h"
 #include "benchmarks/support/document.h"
 
 namespace pellucid::bench {
 namespace {
 
-constexpr Method rules[] = {Method::rectangle, Method::taylor,  Method::midpoint,
-                            Method::trapezoid, Method::simpson, Method::linear};
-
 std::string milliseconds(double seconds) {
-  return seconds < 0.1 ? format("%.2g ms", 1e3 * seconds) : format("%.0f ms", 1e3 * seconds);
+  const double ms = 1e3 * seconds;
+  return ms < 10 ? format("%.1f ms", ms) : format("%.0f ms", ms);
 }
 
 std::string ratio(double seconds, double base) {
@@ -18,128 +20,225 @@ std::string ratio(double seconds, double base) {
   return r < 10 ? format("%.2g×", r) : format("%.0f×", r);
 }
 
-/// "largest (RMS)"; 0 where all floats are the same.
-std::string errors(const Measurement& m) {
-  if (m.error.largest == 0) return "0";
-  return format("%.1e (%.1e)", m.error.largest, m.error.rms);
+/// "41 ms (1.1e-03)": time and largest error.
+std::string time_and_error(const CurvePoint* point) {
+  if (point == nullptr) return "—";
+  return milliseconds(point->median_seconds()) + format(" (%.1e)", point->error.largest);
 }
 
-bool has_rules(const SceneResult& result) {
-  return result.measurements.size() > 2;
+const CurvePoint* at_setting(const Curve* curve, double setting) {
+  if (curve == nullptr) return nullptr;
+  for (const CurvePoint& point : curve->points) {
+    if (point.setting == setting) return &point;
+  }
+  return nullptr;
 }
 
-/// The fastest step of a rule whose largest error is within the bound; null where there is none.
-const Measurement* fastest_within(const SceneResult& result, Method rule, double bound) {
-  const Measurement* best = nullptr;
-  for (const Measurement& m : result.measurements) {
-    if (m.integration.method != rule || !(m.error.largest <= bound)) continue;
-    if (best == nullptr || m.median_seconds() < best->median_seconds()) best = &m;
+/// The sampling method that reaches the error first; where none does, the one that comes closest.
+struct BestSampler {
+  const Curve* curve = nullptr;
+  Reach reach;
+};
+BestSampler best_sampler(const SceneResult& result, double error) {
+  BestSampler best;
+  for (const Curve& curve : result.curves) {
+    if (!is_our_sampler(curve.name)) continue;
+    const Reach one = reach(curve, error, ErrorKind::largest);
+    const bool better =
+        best.curve == nullptr || (one.reached && !best.reach.reached) ||
+        (one.reached == best.reach.reached &&
+         (one.reached ? one.seconds < best.reach.seconds : one.error < best.reach.error));
+    if (better) best = {&curve, one};
   }
   return best;
 }
 
-const Measurement& most_accurate(const SceneResult& result, Method rule) {
-  const Measurement* best = nullptr;
-  for (const Measurement& m : result.measurements) {
-    if (m.integration.method != rule) continue;
-    if (best == nullptr || m.error.largest < best->error.largest) best = &m;
+/// "12× midpoint 0.07"; "> 80×: 3.1e-3 midpoint 0.02" where it is not reached.
+std::string sampler_cell(const SceneResult& result, double error, const Reach& exact) {
+  const BestSampler best = best_sampler(result, error);
+  if (best.curve == nullptr) return "—";
+  const Reach& r = best.reach;
+  const std::string who = best.curve->name + format(" %.2g", r.setting);
+  const double base = exact.seconds;
+  if (r.reached) {
+    return exact.reached ? "**" + ratio(r.seconds, base) + "** " + who
+                         : milliseconds(r.seconds) + " " + who;
   }
-  return *best;
+  const std::string after = exact.reached ? ratio(r.seconds, base) : milliseconds(r.seconds);
+  if (r.may_go_on) return "**> " + after + format("**: %.1e ", r.error) + who;
+  return format("never: %.1e after ", r.error) + after + ", " + who;
 }
 
-std::string equal_error_cell(const SceneResult& result, Method rule, double bound, double base) {
-  if (const Measurement* m = fastest_within(result, rule, bound)) {
-    return ratio(m->median_seconds(), base) + format(" at %g", m->integration.step);
-  }
-  const Measurement& m = most_accurate(result, rule);
-  return "never: " + format("%.1e", m.error.largest) + " after " + ratio(m.median_seconds(), base);
+std::string vtk_cell(const CurvePoint* point, double base) {
+  if (point == nullptr) return "—";
+  return ratio(point->median_seconds(), base) + ", " + milliseconds(point->median_seconds()) +
+         format(" (%.1e / %.1e)", point->error.rms, point->error.largest);
 }
 
-std::string exact_table(const std::vector<SceneResult>& results) {
-  std::string text =
-      "| scene | data | image | exact, double | largest error (RMS) | exact, float | largest error "
-      "(RMS) |\n|---|---|---|---|---|---|---|\n";
-  for (const SceneResult& r : results) {
-    const Measurement& d = r.find(Method::exact, Precision::float64);
-    const Measurement& f = r.find(Method::exact, Precision::float32);
-    text += "| " + r.name + " | " + r.data + format(" | %d×%d | ", r.size.width, r.size.height) +
-            milliseconds(d.median_seconds()) + " | " + errors(d) + " | " +
-            ratio(f.median_seconds(), d.median_seconds()) + ", " +
-            milliseconds(f.median_seconds()) + " | " + errors(f) + " |\n";
-  }
-  return text;
+/// What peers measured of Open VKL 1.3: ISPC, AVX-512, one thread, 512 x 512, on a Xeon with 2.3
+/// GHz.
+struct OpenVklFrame {
+  const char* scene;
+  double milliseconds, error;            // one sample per voxel
+  double fine_milliseconds, fine_error;  // ten
+};
+constexpr OpenVklFrame open_vkl[] = {{"haze, oblique", 483, 9.7e-5, 4056, 4.0e-6},
+                                     {"band, oblique", 355, 9.4e-3, 2431, 7.0e-5},
+                                     {"spike, oblique", 355, 0.32, 2430, 1.7e-3}};
+
+std::string setting_name(double setting, Knob knob) {
+  return knob == Knob::tolerance ? error_name(setting) : format("%g", setting);
 }
 
-/// `bound_of` gives the error that the rules have to reach in a scene.
-template <class Bound>
-std::string equal_error_table(const std::vector<SceneResult>& results, Bound&& bound_of) {
-  std::string text = "| scene | error | exact, float |";
-  std::string line = "|---|---|---|";
-  for (const Method rule : rules) {
-    text += " " + std::string(method_name(rule)) + " |";
-    line += "---|";
+}  // namespace
+
+std::string error_name(double error) {
+  if (error == 1.0 / 512) return "1/512";
+  std::string text = format("%.0e", error);
+  const std::size_t zero = text.find("e-0");
+  return zero == std::string::npos ? text : text.erase(zero + 2, 1);
+}
+
+std::string equal_error_table(const std::vector<SceneResult>& results) {
+  std::string text = "| scene |", line = "|---|";
+  for (const double error : compared_errors) {
+    text += " exact to " + error_name(error) + " | best sampler |";
+    line += "---|---|";
   }
   text += "\n" + line + "\n";
   for (const SceneResult& r : results) {
-    if (!has_rules(r)) continue;
-    const double base = r.find(Method::exact, Precision::float64).median_seconds();
-    const double bound = bound_of(r);
-    text += "| " + r.name + format(" | %.1e | ", bound) +
-            ratio(r.find(Method::exact, Precision::float32).median_seconds(), base) + " |";
-    for (const Method rule : rules) text += " " + equal_error_cell(r, rule, bound, base) + " |";
-    text += "\n";
-  }
-  return text;
-}
-
-std::string step_table(const SceneResult& result) {
-  std::string text = "\n#### " + result.name + "\n\n| step |", line = "|---|";
-  std::vector<double> steps;
-  for (const Measurement& m : result.measurements) {
-    if (m.integration.method == rules[0]) steps.push_back(m.integration.step);
-  }
-  for (const double step : steps) {
-    text += format(" %g |", step);
-    line += "---|";
-  }
-  text += "\n" + line + "\n";
-  const double base = result.find(Method::exact, Precision::float64).median_seconds();
-  for (const Method rule : rules) {
-    text += "| " + std::string(method_name(rule)) + " |";
-    for (const Measurement& m : result.measurements) {
-      if (m.integration.method != rule) continue;
-      text += " " + errors(m) + "<br>" + ratio(m.median_seconds(), base) + ", " +
-              milliseconds(m.median_seconds()) + " |";
+    const Curve* exact = r.find(exact_name);
+    if (exact == nullptr) continue;
+    text += "| " + r.name + " |";
+    for (const double error : compared_errors) {
+      const Reach own = reach(*exact, error, ErrorKind::largest);
+      text += own.reached
+                  ? " " + milliseconds(own.seconds) + " at " + error_name(own.setting) + " |"
+                  : format(" not reached: %.1e |", own.error);
+      text += " " + sampler_cell(r, error, own) + " |";
     }
     text += "\n";
   }
   return text;
 }
 
-}  // namespace
-
-std::string frames_markdown(const std::vector<SceneResult>& results) {
-  std::string text =
-      "### Exact\n\nAn error of 0: the image holds the same floats as the reference. The second "
-      "time is also given as a ratio to the first.\n\n" +
-      exact_table(results);
-  bool any_rules = false;
-  for (const SceneResult& r : results) any_rules = any_rules || has_rules(r);
-  if (!any_rules) return text;
-  text +=
-      "\n### Time to an equal error\n\nTime of the coarsest of the steps that suffices, as a ratio "
-      "to the exact frame in double, and that step in voxels; or the least error that the rule "
-      "reaches at any of them. First at the error of exact in float:\n\n" +
-      equal_error_table(results,
-                        [](const SceneResult& r) {
-                          return r.find(Method::exact, Precision::float32).error.largest;
-                        }) +
-      "\nand at half a grey level of 8 bit:\n\n" +
-      equal_error_table(results, [](const SceneResult&) { return eight_bit_error; }) +
-      "\n### Each step\n\nLargest error (RMS), then the time as a ratio to exact in double and "
-      "absolute. Steps in voxels.\n";
+std::string exact_table(const std::vector<SceneResult>& results) {
+  constexpr double shown[] = {1e-2, 1.0 / 512, 1e-4, 1e-6}, shown_proved[] = {1.0 / 512, 1e-4};
+  std::string text = "| scene | data |", line = "|---|---|";
+  for (const double tolerance : shown) {
+    text += " " + error_name(tolerance) + " |";
+    line += "---|";
+  }
+  for (const double tolerance : shown_proved) {
+    text += " proved " + error_name(tolerance) + " |";
+    line += "---|";
+  }
+  text += "\n" + line + "\n";
   for (const SceneResult& r : results) {
-    if (has_rules(r)) text += step_table(r);
+    text += "| " + r.name + " | " + r.data + " |";
+    for (const double tolerance : shown) {
+      text += " " + time_and_error(at_setting(r.find(exact_name), tolerance)) + " |";
+    }
+    for (const double tolerance : shown_proved) {
+      text += " " + time_and_error(at_setting(r.find(proved_name), tolerance)) + " |";
+    }
+    text += "\n";
+  }
+  return text;
+}
+
+std::string vtk_table(const std::vector<SceneResult>& results) {
+  std::string text;
+  for (const SceneResult& r : results) {
+    const Curve* exact = r.find(exact_name);
+    const CurvePoint* own = at_setting(exact, 1.0 / 512);
+    const Curve* fixed = r.find("VTK fixed point");
+    if (own == nullptr || fixed == nullptr) continue;
+    const double base = own->median_seconds();
+    const Reach fine = reach(*exact, 1e-4, ErrorKind::rms);
+    const Curve* smart = r.find("VTK smart");
+    text += "| " + r.name + " | " + milliseconds(base) +
+            format(" (%.1e / %.1e) | ", own->error.rms, own->error.largest) +
+            vtk_cell(at_setting(fixed, 1), base) + " | " +
+            vtk_cell(at_setting(r.find("VTK GPU mapper"), 1), base) + " | " +
+            (fine.reached ? milliseconds(fine.seconds) : format("not reached: %.1e", fine.error)) +
+            " | " +
+            (smart == nullptr || smart->points.empty()
+                 ? std::string("—")
+                 : vtk_cell(&smart->points.front(), fine.seconds));
+    double least = INFINITY;
+    for (const Curve& curve : r.curves) {
+      if (!curve.name.starts_with("VTK")) continue;
+      least = std::min(least, reach(curve, 0, ErrorKind::rms).error);
+    }
+    text += format(" | %.1e |\n", least);
+  }
+  if (text.empty()) return {};
+  return "| scene | exact at 1/512 | fixed point, 1 voxel | GPU mapper, 1 voxel | exact to RMS "
+         "1e-4 | smart, default | least RMS of VTK |\n|---|---|---|---|---|---|---|\n" +
+         text;
+}
+
+std::string open_vkl_table(const std::vector<SceneResult>& results) {
+  std::string text;
+  for (const OpenVklFrame& peer : open_vkl) {
+    for (const SceneResult& r : results) {
+      const Curve* exact = r.find(exact_name);
+      if (r.name != peer.scene || exact == nullptr) continue;
+      const CurvePoint* own = at_setting(exact, 1.0 / 512);
+      if (own == nullptr) continue;
+      const double base = own->median_seconds();
+      text += "| " + r.name + " | " + milliseconds(base) + format(" (%.1e) | ", own->error.largest);
+      text += ratio(1e-3 * peer.milliseconds, base) +
+              format(", %.0f ms (%.1e) | ", peer.milliseconds, peer.error);
+      text += ratio(1e-3 * peer.fine_milliseconds, base) +
+              format(", %.0f ms (%.1e) |\n", peer.fine_milliseconds, peer.fine_error);
+    }
+  }
+  if (text.empty()) return {};
+  return "| scene | exact at 1/512, here | Open VKL at 1 voxel, published | at 0.1 voxel, "
+         "published "
+         "|\n|---|---|---|---|\n" +
+         text;
+}
+
+std::string frames_markdown(const std::vector<SceneResult>& results, int threads,
+                            const std::string& plot_folder) {
+  std::string text = format("Frames on %d thread%s. ", threads, threads == 1 ? "" : "s");
+  if (!results.empty()) {
+    const SceneResult& r = results.front();
+    text += format("Images of %d×%d, of which %zu pixels are held against the reference.\n",
+                   r.size.width, r.size.height, r.pixels);
+  }
+  text += "\n### At an equal largest error\n\n" + equal_error_table(results) +
+          "\n### Exact at its tolerances\n\nTime (largest error).\n\n" + exact_table(results);
+  if (const std::string table = vtk_table(results); !table.empty()) {
+    text +=
+        "\n### Beside VTK\n\nTime (RMS / largest error); times of VTK also as ratios to the "
+        "column of exact to their left.\n\n" +
+        table;
+  }
+  if (threads == 1) {
+    if (const std::string table = open_vkl_table(results); !table.empty()) {
+      text +=
+          "\n### Beside Open VKL\n\nIts figures are published ones, of one thread of a Xeon with "
+          "AVX-512 at 2.3 GHz, not measured here: ratios hold across machines only roughly. Time "
+          "(largest error).\n\n" +
+          table;
+    }
+  }
+  std::vector<std::string> missing;
+  for (const SceneResult& r : results) {
+    for (const std::string& one : r.left_out) {
+      if (std::find(missing.begin(), missing.end(), one) == missing.end()) missing.push_back(one);
+    }
+  }
+  for (const std::string& one : missing) text += "\nLeft out: " + one + ".\n";
+  if (plot_folder.empty()) return text;
+  text += "\n### Curves\n\n";
+  for (const SceneResult& r : results) {
+    text +=
+        "![Time and error: " + r.name + "](" + plot_folder + "/" + plot_file(r, threads) + ")\n";
   }
   return text;
 }
@@ -147,23 +246,63 @@ std::string frames_markdown(const std::vector<SceneResult>& results) {
 nlohmann::ordered_json frames_json(const std::vector<SceneResult>& results) {
   nlohmann::ordered_json list = nlohmann::ordered_json::array();
   for (const SceneResult& r : results) {
-    nlohmann::ordered_json scene{
-        {"name", r.name}, {"data", r.data}, {"image", {r.size.width, r.size.height}}};
-    for (const Measurement& m : r.measurements) {
-      nlohmann::ordered_json entry{
-          {"method", method_name(m.integration.method)},
-          {"precision", m.integration.precision == Precision::float64 ? "double" : "float"}};
-      if (m.integration.method != Method::exact) entry["step"] = m.integration.step;
-      entry["seconds"] = m.median_seconds();
-      entry["runs"] = m.seconds;
-      entry["largest_error"] = m.error.largest;
-      entry["rms_error"] = m.error.rms;
-      entry["cells_or_samples"] = m.cells;
-      scene["measurements"].push_back(std::move(entry));
+    nlohmann::ordered_json scene{{"name", r.name},
+                                 {"data", r.data},
+                                 {"image", {r.size.width, r.size.height}},
+                                 {"pixels_compared", r.pixels},
+                                 {"curves", nlohmann::ordered_json::array()}};
+    if (!r.left_out.empty()) scene["left_out"] = r.left_out;
+    for (const Curve& curve : r.curves) {
+      nlohmann::ordered_json entry{{"name", curve.name}, {"cut_short", curve.cut_short}};
+      const char* knob = curve.knob == Knob::tolerance ? "tolerance" : "step";
+      for (const CurvePoint& p : curve.points) {
+        entry["points"].push_back({{knob, p.setting},
+                                   {"seconds", p.median_seconds()},
+                                   {"runs", p.seconds},
+                                   {"largest_error", p.error.largest},
+                                   {"rms_error", p.error.rms},
+                                   {"cells_or_samples", p.work}});
+      }
+      scene["curves"].push_back(std::move(entry));
     }
     list.push_back(std::move(scene));
   }
   return list;
+}
+
+std::string plot_file(const SceneResult& result, int threads) {
+  std::string name;
+  for (const char c : result.name) {
+    const bool plain = (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '.';
+    if (plain) {
+      name += c;
+    } else if (!name.empty() && name.back() != '-') {
+      name += '-';
+    }
+  }
+  return name + format("-%d.svg", threads);
+}
+
+Plot time_error_plot(const SceneResult& result, int threads) {
+  Plot plot;
+  plot.title = result.name + format(" — %d×%d, %d thread%s", result.size.width, result.size.height,
+                                    threads, threads == 1 ? "" : "s");
+  plot.x_label = "time of a frame in ms";
+  plot.y_label = "largest error";
+  for (const double error : compared_errors) plot.marks.push_back({error, error_name(error)});
+  for (const Curve& curve : result.curves) {
+    PlotLine line;
+    line.name = curve.name;
+    line.thick = curve.name == exact_name;
+    line.dashed = curve.name.starts_with("VTK");
+    for (const CurvePoint& p : curve.points) {
+      line.points.push_back(
+          {1e3 * p.median_seconds(), p.error.largest,
+           curve.points.size() == 1 ? std::string() : setting_name(p.setting, curve.knob)});
+    }
+    plot.lines.push_back(std::move(line));
+  }
+  return plot;
 }
 
 }  // namespace pellucid::bench

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "benchmarks/frames/scene_list.h"
 
+#include <algorithm>
+
 #include "tests/scenes/real.h"
 
 namespace pellucid::bench {
@@ -17,6 +19,26 @@ List chosen(List list, const SceneSelection& selection, const char* view) {
 
 List marschner_lobb(const SceneSelection& s) {
   return chosen(scenes::marschner_lobb_scenes(s.tiny ? 32 : 256, s.size), s, "oblique");
+}
+
+/// Transfer functions as users of VTK write them: a ramp, and three thin peaks.
+List ramp_and_peaks(const SceneSelection& s) {
+  const auto volume = scenes::builtin("marschner_lobb", s.tiny ? 32 : 256);
+  const auto ramp = scenes::transfer({{0.1, 0, {0.1, 0.2, 0.9}}, {1, 2, {1, 0.8, 0.2}}});
+  constexpr double width = 0.006, tip = 100;
+  scenes::Points points;
+  const auto add_peak = [&](double value, const Rgb<double>& color) {
+    points.push_back({value - width, 0, color});
+    points.push_back({value, tip, color});
+    points.push_back({value + width, 0, color});
+  };
+  add_peak(0.3, {0.2, 0.4, 1});
+  add_peak(0.5, {0.3, 0.9, 0.3});
+  add_peak(0.7, {1, 0.5, 0.1});
+  const Camera oblique = scenes::view_camera(scenes::View::oblique);
+  return {{"ramp, oblique", scenes::make_scene(volume, ramp, oblique, s.size)},
+          {"peaks, oblique",
+           scenes::make_scene(volume, scenes::transfer(std::move(points)), oblique, s.size)}};
 }
 
 List ray_splitting(const SceneSelection& s) {
@@ -40,17 +62,27 @@ template <std::size_t Index>
 List scan(const SceneSelection& s) {
   const scenes::RealData data = scenes::real_data().at(Index);
   // Scans are large: not read where the filter cannot want them ("brain", "brain, inside").
-  const std::string& name = data.name;
-  const bool wanted = s.filter.empty() || name.find(s.filter) != std::string::npos ||
-                      s.filter.find(name) != std::string::npos;
+  const auto named_by = [&](const std::string& filter) {
+    return data.name.find(filter) != std::string::npos ||
+           filter.find(data.name) != std::string::npos;
+  };
+  const bool wanted =
+      s.filters.empty() || std::any_of(s.filters.begin(), s.filters.end(), named_by);
   if (!wanted || !std::filesystem::exists(data.file)) return {};
   return chosen(scenes::real_scenes(data, s.size), s, "outside");
 }
 
 }  // namespace
 
+bool SceneSelection::wants(const std::string& name) const {
+  return filters.empty() || std::any_of(filters.begin(), filters.end(), [&](const std::string& f) {
+           return name.find(f) != std::string::npos;
+         });
+}
+
 std::vector<std::vector<NamedScene> (*)(const SceneSelection&)> scene_groups() {
-  return {marschner_lobb, ray_splitting, sphere, torture, scan<0>, scan<1>, scan<2>, scan<3>};
+  return {marschner_lobb, ramp_and_peaks, ray_splitting, sphere, torture,
+          scan<0>,        scan<1>,        scan<2>,       scan<3>};
 }
 
 std::vector<std::string> missing_scans() {

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <string>
+#include <vector>
+
 #include "tests/scenes/peers.h"
 
 namespace pellucid::bench {
@@ -9,9 +12,11 @@ using scenes::NamedScene;
 
 struct SceneSelection {
   ImageSize size;
-  bool all_views = false;  ///< every scene of tests/scenes instead of one view of each
-  bool tiny = false;       ///< small data, for trying the program out
-  std::string filter;      ///< part of the names wanted; empty: all
+  bool all_views = false;            ///< every scene of tests/scenes instead of one view of each
+  bool tiny = false;                 ///< small data, for trying the program out
+  std::vector<std::string> filters;  ///< parts of the names wanted; none: all
+
+  bool wants(const std::string& name) const;
 };
 
 /// Calls visit(scene) for the chosen scenes, one after another, so that scans need not be in memory
@@ -26,7 +31,7 @@ template <class Visit>
 std::vector<std::string> for_each_scene(const SceneSelection& selection, Visit&& visit) {
   for (const auto group : scene_groups()) {
     for (const NamedScene& named : group(selection)) {
-      if (named.name.find(selection.filter) != std::string::npos) visit(named);
+      if (selection.wants(named.name)) visit(named);
     }
   }
   return missing_scans();

@@ -9,6 +9,7 @@
 #include <map>
 #include <string_view>
 
+#include "benchmarks/kernels/packet_table.h"
 #include "benchmarks/support/document.h"
 #include "benchmarks/support/environment.h"
 #include "pellucid/io/atomic_file.h"
@@ -60,7 +61,10 @@ void write(const Collector& collector, const std::string& markdown_file,
   const Environment where = environment(commit);
   if (!markdown_file.empty()) {
     replace_section(markdown_file, "kernels",
-                    "\n" + to_markdown(where) + "\n" + markdown(collector) + "\n");
+                    "\n" + to_markdown(where) +
+                        "\nNanoseconds per lane, and in brackets per call.\n\n" +
+                        packet_markdown(collector.order, collector.nanoseconds) +
+                        "\nOne number at a time:\n\n" + markdown(collector) + "\n");
   }
   if (!json_file.empty()) {
     nlohmann::ordered_json kernels;

@@ -27,6 +27,7 @@ class DataStream {
   DataStream(const DataStream&) = delete;
   DataStream& operator=(const DataStream&) = delete;
 
+  const std::string& name() const noexcept { return name_; }
   /// Fills the whole span.
   void read(std::span<std::byte> to);
   void skip(std::uintmax_t bytes);

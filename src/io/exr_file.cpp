@@ -15,6 +15,7 @@
 
 #include "image_checks.h"
 #include "input_file.h"
+#include "memory_limit.h"
 #include "pellucid/io/atomic_file.h"
 #include "pellucid/io/image_files.h"
 #include "pellucid/scene/error.h"
@@ -139,7 +140,7 @@ Image read_pixels(Imf::InputFile& file, const std::string& name) {
       static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height);
   check_memory(count * (sizeof(image.pixels[0]) + (has_depth ? sizeof(float) : 0) +
                         (has_error ? sizeof(float) + 1 : 0)),
-               name);
+               name + ": the image");
   image.pixels.resize(count);
   constexpr float infinity = std::numeric_limits<float>::infinity();
   if (has_depth) image.depth.assign(count, infinity);

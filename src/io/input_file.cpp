@@ -36,15 +36,4 @@ std::uintmax_t check_input_file(const fs::path& path) {
   return size;
 }
 
-void check_memory(std::uintmax_t bytes, const std::string& name) {
-  const long pages = sysconf(_SC_PHYS_PAGES), page = sysconf(_SC_PAGE_SIZE);
-  if (pages <= 0 || page <= 0) return;
-  const std::uintmax_t memory =
-      static_cast<std::uintmax_t>(pages) * static_cast<std::uintmax_t>(page);
-  if (bytes <= memory) return;
-  throw Error(name + ": the data would take " + std::to_string(bytes >> 20) +
-              " MiB, more than this machine's memory of " + std::to_string(memory >> 20) +
-              " MiB; crop or reduce the volume");
-}
-
 }  // namespace pellucid

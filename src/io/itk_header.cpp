@@ -24,7 +24,7 @@ MetaImageHeader read_meta_image_header(const std::filesystem::path& path) {
   refuse(path.string());
 }
 Volume read_nrrd_file(const std::filesystem::path&, const std::string& name, std::uint64_t, bool,
-                      const ReadOptions&) {
+                      const std::optional<NrrdValues>&, const ReadOptions&) {
   refuse(name);
 }
 
@@ -189,6 +189,30 @@ typename ImageIO::Pointer open_header(const std::filesystem::path& path, const s
   return io;
 }
 
+VolumeData read_raw_values(const NrrdValues& values, const std::string& type, std::size_t count) {
+  const ByteSource source = file_source(values.file);
+  ValueLayout layout{type, values.big_endian.value_or(false), values.offset};
+  const std::uintmax_t bytes = std::uintmax_t{count} * value_size(type, source.name);
+  if (values.offset == NrrdValues::last_bytes) {
+    layout.offset = source.size > bytes ? source.size - bytes : 0;
+  }
+  check_size(source, layout, count);
+  return read_values(source, layout, count);
+}
+
+VolumeData read_by_itk(itk::ImageIOBase& io, const std::string& type, std::size_t count,
+                       const std::string& name) {
+  itk::ImageIORegion region(io.GetNumberOfDimensions());
+  for (unsigned a = 0; a < io.GetNumberOfDimensions(); ++a) {
+    region.SetIndex(a, 0);
+    region.SetSize(a, io.GetDimensions(a));
+  }
+  io.SetIORegion(region);
+  VolumeData data = make_values(type, count, name);
+  std::visit([&](auto& list) { io.Read(list.writable().data()); }, data);
+  return data;
+}
+
 }  // namespace
 
 Volume::Description read_nifti_description(const std::filesystem::path& path, bool& sheared) {
@@ -224,7 +248,7 @@ MetaImageHeader read_meta_image_header(const std::filesystem::path& path) {
 
 Volume read_nrrd_file(const std::filesystem::path& path, const std::string& name,
                       std::uint64_t header_count, bool left_anterior_superior,
-                      const ReadOptions& options) {
+                      const std::optional<NrrdValues>& values, const ReadOptions& options) {
   return quietly(name, [&] {
     const auto io = open_header<itk::NrrdImageIO>(path, name);
     Volume::Description description = describe(*io, name);
@@ -238,8 +262,6 @@ Volume read_nrrd_file(const std::filesystem::path& path, const std::string& name
                   " values, but ITK finds " + std::to_string(count) + " in " +
                   std::to_string(itk_bytes) + " bytes; mend the header");
     }
-    check_memory(bytes, name);
-
     int cell_centred = 0;
     for (int a = 0; a < 3; ++a) {
       std::string centering;
@@ -260,14 +282,9 @@ Volume read_nrrd_file(const std::filesystem::path& path, const std::string& name
       for (Vec3<double>& axis : placement.direction.column) axis = mend(axis);
     }
 
-    itk::ImageIORegion region(io->GetNumberOfDimensions());
-    for (unsigned a = 0; a < io->GetNumberOfDimensions(); ++a) {
-      region.SetIndex(a, 0);
-      region.SetSize(a, io->GetDimensions(a));
-    }
-    io->SetIORegion(region);
-    VolumeData data = make_volume_data(type, count);
-    std::visit([&](auto& values) { io->Read(values.data()); }, data);
+    VolumeData data = values && (values->big_endian || value_size(type, name) == 1)
+                          ? read_raw_values(*values, type, count)
+                          : read_by_itk(*io, type, count, name);
     apply_overrides(options, description);
     return Volume(std::move(description), std::move(data));
   });

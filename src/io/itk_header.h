@@ -3,6 +3,8 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <limits>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -34,10 +36,21 @@ struct MetaImageHeader : ItkHeader {
 };
 MetaImageHeader read_meta_image_header(const std::filesystem::path& path);
 
-/// All of a NRRD file, as `name` in messages. ITK 5.2 turns the space left-anterior-superior to LPS
-/// by the wrong axis, so it must be told apart. `count` is how many values the header's text says
-/// there are: ITK writes as many into a buffer for the sizes that it cut down to 32 bits.
+/// Where the values of a NRRD file are that are neither compressed nor text.
+struct NrrdValues {
+  static constexpr std::uintmax_t last_bytes = std::numeric_limits<std::uintmax_t>::max();
+
+  std::filesystem::path file;
+  std::uintmax_t offset = 0;  ///< last_bytes: they are the file's last
+  std::optional<bool> big_endian;
+};
+
+/// All of a NRRD file, as `name` in messages; the values from `values` where those are given.
+/// ITK 5.2 turns the space left-anterior-superior to LPS by the wrong axis, so it must be told
+/// apart. `count` is how many values the header's text says there are: ITK writes as many into a
+/// buffer for the sizes that it cut down to 32 bits.
 Volume read_nrrd_file(const std::filesystem::path& path, const std::string& name,
-                      std::uint64_t count, bool left_anterior_superior, const ReadOptions& options);
+                      std::uint64_t count, bool left_anterior_superior,
+                      const std::optional<NrrdValues>& values, const ReadOptions& options);
 
 }  // namespace pellucid

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cstdio>
 #include <fstream>
+#include <span>
 #include <sstream>
 #include <string>
 #include <vector>
@@ -117,6 +118,39 @@ std::vector<DataFile> find_files(const fs::path& path, const MetaImageHeader& he
   return files;
 }
 
+VolumeData read_compressed(const DataFile& file, const MetaImageHeader& header, std::size_t count) {
+  // CompressedDataSize is often out of date; the compressed data knows where it ends.
+  DataStream stream(file.path, file.offset, DataStream::Compression::deflate);
+  VolumeData data = read_values(stream, {header.type, header.big_endian, file.offset}, count);
+  stream.finish();
+  return data;
+}
+
+// One file in place where that can be, several one behind the other.
+VolumeData read_parts(const std::vector<DataFile>& files, const MetaImageHeader& header,
+                      std::size_t count, const std::string& name) {
+  const auto layout = [&](const DataFile& file) {
+    return ValueLayout{header.type, header.big_endian, file.offset};
+  };
+  for (const DataFile& file : files) {
+    check_size(file_source(file.path), layout(file), count / files.size());
+  }
+  if (files.size() == 1) return read_values(file_source(files[0].path), layout(files[0]), count);
+  VolumeData data = make_values(header.type, count, name);
+  std::visit(
+      [&](auto& values) {
+        std::span<std::byte> rest = std::as_writable_bytes(values.writable());
+        const std::size_t share = rest.size() / files.size();
+        for (const DataFile& file : files) {
+          file_source(file.path).read(file.offset, rest.first(share));
+          rest = rest.subspan(share);
+        }
+      },
+      data);
+  to_native_order(data, header.big_endian);
+  return data;
+}
+
 }  // namespace
 
 Volume read_meta_image(const fs::path& path, const ReadOptions& options) {
@@ -129,31 +163,9 @@ Volume read_meta_image(const fs::path& path, const ReadOptions& options) {
   std::size_t count = 1;
   for (const int side : header.description.dimensions) count *= static_cast<std::size_t>(side);
   const std::uintmax_t bytes = std::uintmax_t{count} * value_size(header.type, name);
-  check_memory(bytes, name);
-
   const std::vector<DataFile> files = find_files(path, header, bytes);
-  if (!header.compressed) {
-    for (const DataFile& file : files) {
-      check_size(file_source(file.path), {header.type, header.big_endian, file.offset},
-                 count / files.size());
-    }
-  }
-  VolumeData data = make_volume_data(header.type, count);
-  std::visit(
-      [&](auto& values) {
-        const std::span<std::byte> all = std::as_writable_bytes(std::span(values));
-        const std::size_t share = all.size() / files.size();
-        for (std::size_t i = 0; i < files.size(); ++i) {
-          // CompressedDataSize is often out of date; the compressed data knows where it ends.
-          DataStream stream(
-              files[i].path, files[i].offset,
-              header.compressed ? DataStream::Compression::deflate : DataStream::Compression::none);
-          stream.read(all.subspan(i * share, share));
-          stream.finish();
-        }
-      },
-      data);
-  to_native_order(data, header.big_endian);
+  VolumeData data = header.compressed ? read_compressed(files[0], header, count)
+                                      : read_parts(files, header, count, name);
   apply_overrides(options, header.description);
   return Volume(std::move(header.description), std::move(data));
 }

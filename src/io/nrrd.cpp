@@ -33,6 +33,7 @@ struct Line {
 
 struct Header {
   std::vector<Line> lines;  // up to the empty line, which is not among them
+  std::size_t bytes = 0;    // with the empty line
 };
 
 constexpr const char* blanks = " \t";
@@ -65,12 +66,11 @@ Header read_header(const fs::path& path) {
   std::ifstream file(path, std::ios::binary);
   Header header;
   std::string line;
-  std::size_t read = 0;
   // A header of more is not NRRD, whatever it begins with.
   constexpr std::size_t largest = std::size_t{1} << 20;
   while (std::getline(file, line)) {
-    read += line.size() + 1;
-    if (read > largest) throw Error(path.string() + ": the NRRD header does not end");
+    header.bytes += line.size() + 1;
+    if (header.bytes > largest) throw Error(path.string() + ": the NRRD header does not end");
     if (!line.empty() && line.back() == '\r') line.pop_back();
     if (line.empty()) break;
     header.lines.push_back(parse_line(std::move(line)));
@@ -236,6 +236,35 @@ bool is_left_anterior_superior(const Header& header) {
   return space == "las" || space == "leftanteriorsuperior";
 }
 
+// Where the values are if they lie in one file as they are in memory, or nothing: ITK then finds
+// and decodes them.
+std::optional<NrrdValues> raw_values(const Header& header, const fs::path& path) {
+  const auto says = [&](std::string_view field) {
+    const Line* line = find_field(header, field);
+    return line == nullptr ? std::string() : in_small_letters(line->value);
+  };
+  NrrdValues values{path, header.bytes, {}};
+  if (says("encoding") != "raw" || (says("lineskip") != "" && says("lineskip") != "0")) return {};
+  if (says("endian") == "little" || says("endian") == "big") {
+    values.big_endian = says("endian") == "big";
+  }
+  if (const Line* file = find_field(header, "datafile")) {
+    if (file->value.starts_with("LIST") || file->value.find('%') != std::string::npos) return {};
+    values.file = path.parent_path() / file->value;
+    values.offset = 0;
+    std::error_code error;
+    if (!fs::is_regular_file(values.file, error)) return {};
+  }
+  if (says("byteskip") == "-1") {
+    values.offset = NrrdValues::last_bytes;
+  } else if (says("byteskip") != "") {
+    const std::optional<std::uint64_t> skipped = number_in(says("byteskip"));
+    if (!skipped || *skipped > fs::file_size(values.file)) return {};
+    values.offset += *skipped;
+  }
+  return values;
+}
+
 std::string replaced(std::string text, const std::string& what, const std::string& with) {
   for (std::size_t at = 0; (at = text.find(what, at)) != std::string::npos; at += with.size()) {
     text.replace(at, what.size(), with);
@@ -253,8 +282,9 @@ Volume read_nrrd(const fs::path& path, const ReadOptions& options) {
   const std::uint64_t count = header_count(header, name);
   check_spacing(header, options, name);
   const bool las = is_left_anterior_superior(header);
+  const std::optional<NrrdValues> values = raw_values(header, path);
   const std::vector<std::string> mended = mended_header(header, path);
-  if (mended.empty()) return read_nrrd_file(path, name, count, las, options);
+  if (mended.empty()) return read_nrrd_file(path, name, count, las, values, options);
 
   const TemporaryFolder folder(name);
   const fs::path mended_path = folder.path() / "mended.nhdr";
@@ -264,7 +294,7 @@ Volume read_nrrd(const fs::path& path, const ReadOptions& options) {
   if (!stream) throw Error(name + ": cannot write a temporary header for it");
   try {
     // No mended header names a space, so ITK has turned nothing.
-    return read_nrrd_file(mended_path, name, count, false, options);
+    return read_nrrd_file(mended_path, name, count, false, values, options);
   } catch (const Error& e) {
     throw Error(replaced(e.what(), mended_path.string(), name));
   }

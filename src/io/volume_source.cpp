@@ -8,28 +8,65 @@
 #include <fstream>
 #include <limits>
 #include <memory>
+#include <new>
+#include <optional>
 #include <utility>
 
 #include "input_file.h"
+#include "mapped_file.h"
+#include "memory_limit.h"
 #include "pellucid/scene/error.h"
 
 namespace pellucid {
 
+namespace {
+
+bool is_native(const ValueLayout& layout, std::size_t size) {
+  return size == 1 || layout.big_endian == (std::endian::native == std::endian::big);
+}
+
+/// The values in place; nothing where their bytes or their place are not those of memory.
+std::optional<VolumeData> mapped_values(const ByteSource& source, const ValueLayout& layout,
+                                        std::size_t count) {
+  const std::size_t size = value_size(layout.type, source.name);
+  if (!source.map || !is_native(layout, size) || layout.offset % size != 0) return std::nullopt;
+  // The file need not fit, but what is built over it must.
+  constexpr std::uintmax_t values_per_index = 20;
+  check_memory(count * size / values_per_index, source.name + ": the index of its values");
+  const std::shared_ptr<const std::byte> bytes = source.map(layout.offset + count * size);
+  if (!bytes) return std::nullopt;
+  VolumeData data = make_volume_data(layout.type, 0);
+  std::visit(
+      [&](auto& values) {
+        using Value = typename std::decay_t<decltype(values)>::value_type;
+        const auto* first = reinterpret_cast<const Value*>(bytes.get() + layout.offset);
+        values = DataArray<Value>(std::shared_ptr<const Value>(bytes, first), count);
+      },
+      data);
+  return data;
+}
+
+}  // namespace
+
 ByteSource file_source(const std::filesystem::path& path) {
-  ByteSource source{path.string(), check_input_file(path), {}};
+  ByteSource source{path.string(), check_input_file(path), {}, {}};
   auto stream = std::make_shared<std::ifstream>(path, std::ios::binary);
   source.read = [stream, name = source.name](std::uintmax_t from, std::span<std::byte> to) {
     stream->seekg(static_cast<std::streamoff>(from));
     stream->read(reinterpret_cast<char*>(to.data()), static_cast<std::streamsize>(to.size()));
     if (!*stream) throw Error(name + ": cannot read the file to its end; is it being written?");
   };
+  source.map = [path](std::size_t bytes) { return map_file(path, bytes); };
   return source;
 }
 
 ByteSource memory_source(std::span<const std::byte> bytes, std::string name) {
-  return {std::move(name), bytes.size(), [bytes](std::uintmax_t from, std::span<std::byte> to) {
+  return {std::move(name),
+          bytes.size(),
+          [bytes](std::uintmax_t from, std::span<std::byte> to) {
             std::ranges::copy(bytes.subspan(from, to.size()), to.begin());
-          }};
+          },
+          {}};
 }
 
 std::size_t value_count(const std::array<std::int64_t, 3>& dimensions, const std::string& name) {
@@ -69,19 +106,31 @@ void check_size(const ByteSource& source, const ValueLayout& layout, std::size_t
               "; it is cut off or its header is wrong");
 }
 
+VolumeData make_values(const std::string& type, std::size_t count, const std::string& name) {
+  const std::uintmax_t bytes = std::uintmax_t{count} * value_size(type, name);
+  check_memory(bytes, name + ": its values");
+  try {
+    return make_volume_data(type, count);
+  } catch (const std::bad_alloc&) {
+    refuse_memory(bytes, name + ": its values", memory_limit());
+  }
+}
+
 VolumeData read_values(const ByteSource& source, const ValueLayout& layout, std::size_t count) {
-  check_memory(std::uintmax_t{count} * value_size(layout.type, source.name), source.name);
-  VolumeData data = make_volume_data(layout.type, count);
+  if (std::optional<VolumeData> data = mapped_values(source, layout, count)) {
+    return *std::move(data);
+  }
+  VolumeData data = make_values(layout.type, count, source.name);
   std::visit(
-      [&](auto& values) { source.read(layout.offset, std::as_writable_bytes(std::span(values))); },
+      [&](auto& values) { source.read(layout.offset, std::as_writable_bytes(values.writable())); },
       data);
   to_native_order(data, layout.big_endian);
   return data;
 }
 
 VolumeData read_values(DataStream& stream, const ValueLayout& layout, std::size_t count) {
-  VolumeData data = make_volume_data(layout.type, count);
-  std::visit([&](auto& values) { stream.read(std::as_writable_bytes(std::span(values))); }, data);
+  VolumeData data = make_values(layout.type, count, stream.name());
+  std::visit([&](auto& values) { stream.read(std::as_writable_bytes(values.writable())); }, data);
   to_native_order(data, layout.big_endian);
   return data;
 }
@@ -91,7 +140,7 @@ void to_native_order(VolumeData& data, bool big_endian) {
   std::visit(
       [](auto& values) {
         using Value = typename std::decay_t<decltype(values)>::value_type;
-        for (Value& value : values) {
+        for (Value& value : values.writable()) {
           std::array<std::byte, sizeof(Value)> bytes = std::bit_cast<decltype(bytes)>(value);
           std::ranges::reverse(bytes);
           value = std::bit_cast<Value>(bytes);

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <memory>
 #include <span>
 #include <string>
 
@@ -14,11 +15,13 @@
 namespace pellucid {
 
 /// Where the bytes of a volume come from: a file, or memory in tests and fuzzing. `read` fills the
-/// whole span from the given place, which the caller has checked to lie inside.
+/// whole span from the given place, which the caller has checked to lie inside; `map` gives the
+/// first so many in place, or null where it cannot, and may itself be missing.
 struct ByteSource {
   std::string name;         ///< for messages
   std::uintmax_t size = 0;  ///< bytes
   std::function<void(std::uintmax_t from, std::span<std::byte> to)> read;
+  std::function<std::shared_ptr<const std::byte>(std::size_t bytes)> map;
 };
 
 /// A regular file. Throws Error where it cannot be read.
@@ -42,9 +45,12 @@ std::size_t value_size(const std::string& type, const std::string& name);
 /// Throws Error where the source ends before the last value. There may be more behind it.
 void check_size(const ByteSource& source, const ValueLayout& layout, std::size_t count);
 
-/// Reads the values into their own type. The source must hold them all; the stream stands at the
-/// first of them.
+/// Memory for so many values. Throws Error where there is not enough.
+VolumeData make_values(const std::string& type, std::size_t count, const std::string& name);
+/// The values in their own type: in place where they lie there as in memory, else read. The source
+/// must hold them all.
 VolumeData read_values(const ByteSource& source, const ValueLayout& layout, std::size_t count);
+/// The same from a stream that stands at the first of them.
 VolumeData read_values(DataStream& stream, const ValueLayout& layout, std::size_t count);
 /// Turns the bytes of each value where `big_endian` is not this machine's order.
 void to_native_order(VolumeData& data, bool big_endian);

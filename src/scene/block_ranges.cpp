@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <algorithm>
 #include <cstddef>
 #include <limits>
 #include <string>
+#include <type_traits>
 
 #include "pellucid/scene/error.h"
 #include "pellucid/scene/volume.h"
-#include "pellucid/traverse/build_block_bends.h"
-#include "pellucid/traverse/build_block_ranges.h"
+#include "pellucid/traverse/build_block_records.h"
 #include "volume_blocks.h"
 
 namespace pellucid {
@@ -15,7 +14,7 @@ namespace {
 
 template <class Value>
 void build(const StructuredGrid<Value, double>& grid, const std::string& name,
-           const ParallelFor& parallel, VolumeBlocks& blocks) {
+           const VolumeStatistics& statistics, const ParallelFor& parallel, VolumeBlocks& blocks) {
   constexpr auto largest_count = static_cast<std::size_t>(std::numeric_limits<int>::max());
   std::size_t count = 1;
   for (std::size_t a = 0; a < 3; ++a) {
@@ -31,18 +30,16 @@ void build(const StructuredGrid<Value, double>& grid, const std::string& name,
     blocks.view.axis[a] = {blocks.plane[a].data(), along + 1, 0};
     const GridAxis<double>& axis = grid.axis[a];
     const int cells = axis.cells(), index = static_cast<int>(a);
-    double least = std::numeric_limits<double>::infinity();
-    for (int i = 0; i < cells; ++i) least = std::min(least, axis.plane(i + 1) - axis.plane(i));
-    blocks.view.least_width[index] = least;
+    blocks.view.least_width[index] = least_plane_distance(axis);
     blocks.view.mean_width[index] = (axis.plane(cells) - axis.plane(0)) / cells;
   }
-  blocks.range.resize(count);
-  blocks.view.range = blocks.range.data();
-  blocks.bends.resize(count);
-  blocks.view.bends = blocks.bends.data();
+  blocks.view.code =
+      make_block_code(statistics.minimum, statistics.maximum, std::is_integral_v<Value>);
+  blocks.record.resize(count);
+  blocks.view.record = blocks.record.data();
   const auto body = [&](int first, int last) {
-    build_block_ranges(grid, blocks.view.axis, first, last, blocks.range.data());
-    build_block_bends(grid, blocks.view.axis, first, last, blocks.bends.data());
+    build_block_records(grid, blocks.view.axis, blocks.view.code, first, last,
+                        blocks.record.data());
   };
   const int all = static_cast<int>(count);
   if (parallel) {
@@ -54,11 +51,13 @@ void build(const StructuredGrid<Value, double>& grid, const std::string& name,
 
 }  // namespace
 
-const BlockRanges& Volume::block_ranges(const ParallelFor& parallel) const {
+const BlockRecords& Volume::block_ranges(const ParallelFor& parallel) const {
   if (!blocks_->built) {
     const std::lock_guard lock(blocks_->building);
     if (!blocks_->built) {
-      visit([&](const auto& grid) { build(grid, description_.name, parallel, *blocks_); });
+      visit([&](const auto& grid) {
+        build(grid, description_.name, statistics_, parallel, *blocks_);
+      });
       blocks_->built = true;
     }
   }

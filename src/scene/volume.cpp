@@ -7,21 +7,20 @@
 #include <limits>
 #include <numeric>
 #include <optional>
+#include <span>
 #include <utility>
 
 #include "message.h"
 #include "pellucid/scene/error.h"
 #include "volume_blocks.h"
 #include "volume_check.h"
+#include "volume_scan.h"
 
 namespace pellucid {
 namespace {
 
 constexpr std::array<std::string_view, std::variant_size_v<VolumeData>> type_names{
     "u8", "i8", "u16", "i16", "u32", "i32", "f32", "f64"};
-
-// Kernels run in float too; sums of the eight corners of a cell must not overflow there.
-constexpr double largest_value = static_cast<double>(std::numeric_limits<float>::max()) / 16;
 
 template <std::size_t... I>
 VolumeData make_data(std::size_t index, std::size_t count, std::index_sequence<I...>) {
@@ -66,48 +65,6 @@ std::optional<Mat3<double>> checked_inverse(const Mat3<double>& m) {
     column = {column.x / norm[0], column.y / norm[1], column.z / norm[2]};
   }
   return inv;
-}
-
-struct Scan {
-  VolumeStatistics statistics;
-  std::size_t first_infinite = 0, first_large = 0;
-  bool large = false;
-};
-
-template <class Value>
-Scan scan(const std::vector<Value>& values) {
-  Scan s;
-  Value lowest = std::numeric_limits<Value>::max();
-  Value highest = std::numeric_limits<Value>::lowest();
-  if constexpr (std::is_integral_v<Value>) {
-    for (const Value v : values) {
-      lowest = std::min(lowest, v);
-      highest = std::max(highest, v);
-    }
-    s.statistics.finite = values.size();
-  } else {
-    for (std::size_t i = 0; i < values.size(); ++i) {
-      const Value v = values[i];
-      if (std::isfinite(v)) {
-        lowest = std::min(lowest, v);
-        highest = std::max(highest, v);
-        ++s.statistics.finite;
-        if (!s.large && std::abs(static_cast<double>(v)) > largest_value) {
-          s.large = true;
-          s.first_large = i;
-        }
-      } else if (v != v) {
-        ++s.statistics.nan;
-      } else if (s.statistics.infinite++ == 0) {
-        s.first_infinite = i;
-      }
-    }
-  }
-  if (s.statistics.finite > 0) {
-    s.statistics.minimum = static_cast<double>(lowest);
-    s.statistics.maximum = static_cast<double>(highest);
-  }
-  return s;
 }
 
 }  // namespace
@@ -178,7 +135,8 @@ Volume::Volume(Description description, VolumeData data)
                std::string("use another unit of length"));
   }
 
-  const Scan s = std::visit([](const auto& values) { return scan(values); }, data_);
+  const VolumeScan s =
+      std::visit([](const auto& values) { return scan(std::span(values)); }, data_);
   statistics_ = s.statistics;
   if (statistics_.infinite > 0) {
     check.fail(std::to_string(statistics_.infinite) + " infinite value" +
@@ -199,19 +157,7 @@ Histogram Volume::histogram(int bins) const {
   }
   Histogram h{statistics_.minimum, statistics_.maximum,
               std::vector<std::uint64_t>(static_cast<std::size_t>(bins))};
-  const double width = h.upper - h.lower;
-  std::visit(
-      [&](const auto& values) {
-        for (const auto v : values) {
-          const auto x = static_cast<double>(v);
-          if (x != x) continue;
-          // Also for a constant volume: its one value is the upper end.
-          const double position = x < h.upper ? (x - h.lower) / width * bins : bins;
-          const auto bin = std::min(static_cast<std::size_t>(position), h.count.size() - 1);
-          ++h.count[bin];
-        }
-      },
-      data_);
+  std::visit([&](const auto& values) { fill_histogram(std::span(values), h); }, data_);
   return h;
 }
 

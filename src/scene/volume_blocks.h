@@ -6,20 +6,19 @@
 #include <mutex>
 #include <vector>
 
-#include "pellucid/traverse/block_ranges.h"
+#include "pellucid/traverse/block_records.h"
 
 namespace pellucid {
 
-/// The ranges of a volume's blocks and the planes between them, once they are built.
+/// The records of a volume's blocks and the planes between them, once they are built.
 class VolumeBlocks {
  public:
   // A once_flag would do, but under the thread sanitizer it never is free again after an exception.
   std::mutex building;
   std::atomic<bool> built{false};
-  std::vector<BlockRange> range;
-  std::vector<BlockBends> bends;
+  std::vector<BlockRecord> record;
   std::array<std::vector<double>, 3> plane;
-  BlockRanges view;
+  BlockRecords view;
 };
 
 }  // namespace pellucid

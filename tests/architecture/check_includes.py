@@ -15,9 +15,10 @@ import sys
 # each other.
 RANK = {
     "base": 0, "simd": 1, "math": 2, "geometry": 3, "field": 4, "transfer": 4, "error": 4,
-    "segment": 5, "traverse": 6, "render": 7, "scene": 8, "cpu": 9, "io": 9, "reference": 10, "apps": 11,
+    "segment": 5, "traverse": 6, "render": 7, "packet": 8, "scene": 9, "cpu": 10, "io": 10, "reference": 11,
+    "apps": 12,
 }
-CORE = {name for name, rank in RANK.items() if rank <= RANK["render"]}
+CORE = {name for name, rank in RANK.items() if rank <= RANK["packet"]}
 # Further pairs that the ranks would allow: the closed forms of segment/ are tested without any grid, and
 # the judge in reference/ shares no kernel with what it judges.
 FORBIDDEN = {("segment", "field")} | {("reference", name) for name in CORE - {"base", "geometry"}}

@@ -6,8 +6,7 @@
 #include "pellucid/geometry/affine.h"
 #include "pellucid/geometry/box.h"
 #include "pellucid/traverse/block_walk.h"
-#include "pellucid/traverse/build_block_bends.h"
-#include "pellucid/traverse/build_block_ranges.h"
+#include "pellucid/traverse/build_block_records.h"
 #include "pellucid/traverse/spans.h"
 #include "pellucid/traverse/structured_walk.h"
 #include "tests/device/kernel.h"
@@ -81,19 +80,22 @@ PELLUCID_HD void blocks_of(const T* in, T* out) noexcept {
   const StructuredGrid<T, double> grid{in, {axis, axis, axis}};
   find_block_planes(axis, block_planes);
   const GridAxis<double> blocks_axis{block_planes, block_count(axis) + 1, 0};
-  BlockRange range;
-  BlockRanges blocks;
-  blocks.range = &range;
+  BlockRecord record;
+  BlockRecords blocks;
+  blocks.record = &record;
+  blocks.code = make_block_code(0, static_cast<double>(in[8]), false);
   for (GridAxis<double>& a : blocks.axis) a = blocks_axis;
-  build_block_ranges(grid, blocks.axis, 0, blocks.count(), &range);
-  BlockBends bends;
-  blocks.bends = &bends;
-  build_block_bends(grid, blocks.axis, 0, blocks.count(), &bends);
+  blocks.least_width.x = least_plane_distance(axis);
+  build_block_records(grid, blocks.axis, blocks.code, 0, blocks.count(), &record);
+  const BlockClass block_class{0, BlockKind::skip, 1};
   const Ray<double> ray{{0, 0, 0}, {1, static_cast<double>(in[0]), 0}};
-  for_each_block(blocks, ray, {0, 1}, [&](const BlockStep& step) {
-    const Interval<double> slope = derivative_range(blocks[step.block], ray.direction);
-    out[0] += static_cast<T>(chord_deviation(slope, step.t_end - step.t_begin));
-    return !blocks[step.block].constant();
+  for_each_block(ClassifiedBlocks{blocks, {&block_class}}, ray, {0, 1}, [&](const BlockStep& step) {
+    const BlockRange range = blocks.range(step.block);
+    const double length = step.t_end - step.t_begin;
+    out[0] += static_cast<T>(bend_deviation(derivative_oscillation(range, ray.direction), length));
+    out[1] += static_cast<T>(derivative_variation(blocks.bends(step.block), ray.direction,
+                                                  blocks.least_width, length));
+    return !range.constant;
   });
 }
 PELLUCID_DEVICE_KERNEL(blocks_of)

@@ -9,7 +9,7 @@ namespace pellucid {
 
 /// One pixel per thread: the whole of the core, as a back end will call it.
 template <class T, class Value>
-__global__ void render_pixels(StructuredGrid<Value, double> grid, BlockRanges blocks,
+__global__ void render_pixels(StructuredGrid<Value, double> grid, ClassifiedBlocks blocks,
                               TransferTables transfer, RayTolerance wanted,
                               CameraFrame<double> camera, bool exact, SamplingRule rule,
                               double step, RayResult* pixels) {
@@ -25,7 +25,7 @@ __global__ void render_pixels(StructuredGrid<Value, double> grid, BlockRanges bl
 
 #define PELLUCID_RENDER(T, Value)                                               \
   template __global__ void render_pixels<T, Value>(                             \
-      StructuredGrid<Value, double>, BlockRanges, TransferTables, RayTolerance, \
+      StructuredGrid<Value, double>, ClassifiedBlocks, TransferTables, RayTolerance, \
       CameraFrame<double>, bool, SamplingRule, double, RayResult*);
 PELLUCID_RENDER(float, std::int16_t)
 PELLUCID_RENDER(double, double)

@@ -19,7 +19,7 @@ struct Span {
 double spend_all(const std::vector<Span>& spans, double tolerance, double greed = 1) {
   double length = 0;
   for (const Span& span : spans) length += span.length;
-  RayBudget budget(tolerance, length);
+  RayBudget<double> budget(tolerance, length);
   double transparency = 1, error = 0;
   for (const Span& span : spans) {
     if (!(transparency > 0)) break;
@@ -55,13 +55,13 @@ TEST(RayBudget, ThousandsOfThinSpansEachGetAFairShare) {
   const std::vector<Span> spans(4000, Span{0.01, 1e-7});
   const double tolerance = 1e-3;
   EXPECT_NEAR(spend_all(spans, tolerance), 0.5 * tolerance, 1e-3 * tolerance);
-  RayBudget budget(tolerance, 40);
+  RayBudget<double> budget(tolerance, 40);
   EXPECT_NEAR(budget.allowance(0.01, 0, 1), 0.5 * tolerance / 4000, 1e-15);
 }
 
 TEST(RayBudget, WhatIsLeftUnspentIsThereForTheNext) {
   const double tolerance = 1e-2;
-  RayBudget budget(tolerance, 2);
+  RayBudget<double> budget(tolerance, 2);
   EXPECT_EQ(budget.left(), tolerance);
   EXPECT_DOUBLE_EQ(budget.allowance(1, 0, 1), 0.25 * tolerance);
   budget.spend(1, 0.25, 1, 0);
@@ -72,7 +72,7 @@ TEST(RayBudget, WhatIsLeftUnspentIsThereForTheNext) {
 }
 
 TEST(RayBudget, OverspendingIsCountedAndLeavesNothing) {
-  RayBudget budget(1e-3, 1);
+  RayBudget<double> budget(1e-3, 1);
   budget.spend(0.5, 0.5, 1, 1);
   EXPECT_EQ(budget.spent(), 1);
   EXPECT_EQ(budget.left(), 0);
@@ -81,7 +81,7 @@ TEST(RayBudget, OverspendingIsCountedAndLeavesNothing) {
 }
 
 TEST(RayBudget, WhatOnePotLacksComesFromTheOther) {
-  RayBudget budget(1, 1);
+  RayBudget<double> budget(1, 1);
   // More than a span so thin may take, but less than there is.
   budget.spend(0.5, 0, 1, 0.75);
   EXPECT_DOUBLE_EQ(budget.left(), 0.25);
@@ -96,7 +96,7 @@ TEST(RayBudget, EdgesAreFinite) {
   nothing.spend(0, 0, 1, 0);
   EXPECT_EQ(nothing.left(), 0);
   // The last span is as long as what is left, up to rounding.
-  RayBudget budget(1, 0.3);
+  RayBudget<double> budget(1, 0.3);
   budget.spend(0.1, 0, 1, 0);
   budget.spend(0.1, 0, 1, 0);
   EXPECT_NEAR(budget.allowance(0.1, 0, 1), 0.5, 1e-15);

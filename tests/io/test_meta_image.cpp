@@ -177,7 +177,12 @@ TEST_F(MetaImageTest, BadHeadersAreRefused) {
   error(with([](auto& f) { f.dimensions = "5 4"; }));
   error(with([](auto& f) { f.dimensions = "4294967301 4 3"; }));
   EXPECT_TRUE(
-      contains(error(with([](auto& f) { f.dimensions = "100000 100000 100000"; })), "memory"));
+      contains(error(with([](auto& f) { f.dimensions = "100000 100000 100000"; })), "cut off"));
+  EXPECT_TRUE(contains(error(with([](auto& f) {
+                         f = f.compressed(9);
+                         f.dimensions = "100000 100000 100000";
+                       })),
+                       "memory"));
   error(with([](auto& f) { f.axes = "2"; }));
   error(with([](auto& f) { f.axes = "0"; }));
   error(with([](auto& f) { f.axes = "11"; }));

@@ -73,7 +73,7 @@ TEST(Npy, ExtremesOfEachTypeKeepTheirValue) {
     values[7] = floating ? Value(1e37) : std::numeric_limits<Value>::max();
     const Volume volume =
         parse(npy(dictionary(descr, "False", "(2, 2, 2)"), test::bytes_of(values)));
-    EXPECT_EQ(std::get<std::vector<Value>>(volume.data()), values);
+    EXPECT_EQ(std::get<DataArray<Value>>(volume.data()), values);
   };
   extremes(std::uint8_t{}, "|u1");
   extremes(std::int8_t{}, "|i1");

@@ -223,7 +223,7 @@ TEST_F(NrrdTest, HeadersThatMissTheirSpaceAreMended) {
   }
   std::vector<std::uint8_t> values(60, '\n');
   const Volume lines = read_volume(write("w.nrrd", windows + "\r\n" + bytes_of(values)));
-  EXPECT_EQ(std::get<std::vector<std::uint8_t>>(lines.data()), values);
+  EXPECT_EQ(std::get<DataArray<std::uint8_t>>(lines.data()), values);
 
   write("v.raw", bytes_of(counting()));
   write("a.nhdr", header(place + "data file: v.raw\n"));

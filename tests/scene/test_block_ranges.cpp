@@ -2,15 +2,17 @@
 #include <gtest/gtest.h>
 
 #include <cstdint>
+#include <cstring>
 #include <functional>
 #include <memory>
 #include <stdexcept>
 #include <thread>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
 #include "pellucid/scene/volume.h"
-#include "pellucid/traverse/build_block_ranges.h"
+#include "pellucid/traverse/build_block_records.h"
 
 namespace pellucid {
 namespace {
@@ -26,13 +28,8 @@ Volume make(int nx, int ny, int nz, Centering centering) {
   return {d, VolumeData(data)};
 }
 
-bool same(const BlockRange& p, const BlockRange& q) {
-  bool equal = p.min == q.min && p.max == q.max && p.vacuum == q.vacuum;
-  for (int a = 0; a < 3; ++a) {
-    equal = equal && p.derivative_min[a] == q.derivative_min[a] &&
-            p.derivative_max[a] == q.derivative_max[a];
-  }
-  return equal;
+bool same(const BlockRecord& p, const BlockRecord& q) {
+  return std::memcmp(&p, &q, sizeof(BlockRecord)) == 0;
 }
 
 /// work(0) … work(count - 1), each on a thread of its own.
@@ -45,16 +42,19 @@ void run_threads(int count, const Work& work) {
 }
 
 /// Built here, one block after the other, from the volume's own grid.
-void expect_built(const Volume& volume, const BlockRanges& blocks) {
+void expect_built(const Volume& volume, const BlockRecords& blocks) {
   volume.visit([&](const auto& grid) {
     using Value = std::decay_t<decltype(*grid.data)>;
-    BlockBuilder<Value> builder(grid);
+    const VolumeStatistics& s = volume.statistics();
+    const BlockCode code = make_block_code(s.minimum, s.maximum, std::is_integral_v<Value>);
+    EXPECT_EQ(blocks.code.step, code.step);
+    BlockRecorder<Value> recorder(grid, code);
     int block = 0;
     for (int k = 0; k < block_count(grid.axis[2]); ++k) {
       for (int j = 0; j < block_count(grid.axis[1]); ++j) {
         for (int i = 0; i < block_count(grid.axis[0]); ++i) {
           ASSERT_EQ(blocks.index(i, j, k), block);
-          EXPECT_TRUE(same(blocks[block], builder.build(i, j, k))) << block;
+          EXPECT_TRUE(same(blocks[block], recorder.record(i, j, k))) << block;
           ++block;
         }
       }
@@ -101,27 +101,35 @@ TEST(VolumeBlockRanges, OfRectilinearAxes) {
   }
 }
 
+TEST(VolumeBlockRanges, PlanesAtWhichTheDataCanBendLieApart) {
+  // Half cells at the border make no two such planes closer.
+  EXPECT_EQ(make<float>(9, 9, 9, Centering::cell).block_ranges().least_width.x, 1);
+  EXPECT_EQ(make<float>(9, 9, 9, Centering::point).block_ranges().least_width.x, 1);
+  EXPECT_EQ(make<float>(1, 2, 9, Centering::cell).block_ranges().least_width.x, 0.5);
+  EXPECT_EQ(make<float>(1, 2, 9, Centering::cell).block_ranges().least_width.y, 1);
+}
+
 TEST(VolumeBlockRanges, AreBuiltOnceAndSharedByCopies) {
   auto volume = std::make_unique<Volume>(make<float>(30, 20, 10, Centering::point));
   const Volume before = *volume;
-  const BlockRange* const range = volume->block_ranges().range;
-  EXPECT_EQ(volume->block_ranges().range, range);
-  EXPECT_EQ(before.block_ranges().range, range);
+  const BlockRecord* const record = volume->block_ranges().record;
+  EXPECT_EQ(volume->block_ranges().record, record);
+  EXPECT_EQ(before.block_ranges().record, record);
   const Volume after = *volume;
   const Volume moved = std::move(*volume);
   volume.reset();
-  EXPECT_EQ(after.block_ranges().range, range);
-  EXPECT_EQ(moved.block_ranges().range, range);
+  EXPECT_EQ(after.block_ranges().record, record);
+  EXPECT_EQ(moved.block_ranges().record, record);
   expect_built(moved, moved.block_ranges());
 }
 
 TEST(VolumeBlockRanges, FromManyThreadsAtOnce) {
   for (int n = 0; n < 20; ++n) {
     const Volume volume = make<std::uint16_t>(40, 30, 20, Centering::cell);
-    std::vector<const BlockRange*> range(8);
-    run_threads(static_cast<int>(range.size()),
-                [&](int t) { range[static_cast<std::size_t>(t)] = volume.block_ranges().range; });
-    for (const BlockRange* r : range) EXPECT_EQ(r, range[0]);
+    std::vector<const BlockRecord*> record(8);
+    run_threads(static_cast<int>(record.size()),
+                [&](int t) { record[static_cast<std::size_t>(t)] = volume.block_ranges().record; });
+    for (const BlockRecord* r : record) EXPECT_EQ(r, record[0]);
     expect_built(volume, volume.block_ranges());
   }
 }

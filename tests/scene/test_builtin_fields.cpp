@@ -17,7 +17,7 @@ float at(const Volume& volume, int i, int j, int k) {
   const auto n = static_cast<std::size_t>(volume.description().dimensions[0]);
   const auto index = static_cast<std::size_t>(i) +
                      n * (static_cast<std::size_t>(j) + n * static_cast<std::size_t>(k));
-  return std::get<std::vector<float>>(volume.data())[index];
+  return std::get<DataArray<float>>(volume.data())[index];
 }
 
 TEST(BuiltinField, FillsTheBoxFromMinusOneToOne) {

@@ -44,7 +44,7 @@ TEST(VolumeData, TypesByName) {
     EXPECT_EQ(type_name(data), name);
     std::visit([](const auto& values) { EXPECT_EQ(values.size(), 5u); }, data);
   }
-  EXPECT_TRUE(std::holds_alternative<std::vector<std::int16_t>>(make_volume_data("i16", 1)));
+  EXPECT_TRUE(std::holds_alternative<DataArray<std::int16_t>>(make_volume_data("i16", 1)));
   expect_error([] { make_volume_data("u64", 1); }, {"\"u64\"", "unknown", "f32"});
 }
 

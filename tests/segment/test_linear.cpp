@@ -6,86 +6,20 @@
 #include <cmath>
 #include <random>
 
+#include "tests/segment/linear_errors.h"
 #include "tests/segment/table_rows.h"
-#include "tests/segment/wide_linear.h"
 
 namespace pellucid {
 namespace {
 
 using test::ErrorRecord;
+using test::judged_error;
 using test::Table;
-using test::Wide;
 
 template <class T>
 class Linear : public testing::Test {};
 using NumberTypes = testing::Types<float, double>;
 TYPED_TEST_SUITE(Linear, NumberTypes);
-
-/// Below this only "finite and not negative" is asked for (specification, 3.3).
-template <class T>
-constexpr long double smallest_judged = is_single<T> ? 1e-30L : 1e-290L;
-
-/// Relative error in u; infinite where a result too small to judge is negative or not finite.
-template <class T>
-long double judged_error(T computed, long double truth) {
-  if (std::fabs(truth) >= smallest_judged<T>) return test::relative_error_in_u(computed, truth);
-  return computed >= T(0) && static_cast<long double>(computed) <= 2 * smallest_judged<T>
-             ? 0.0L
-             : std::numeric_limits<long double>::infinity();
-}
-
-template <class T>
-struct Errors {
-  ErrorRecord depth, opacity, transparency, psi, weight_f, weight_b, emission_f, emission_b;
-  explicit Errors(const std::string& where)
-      : depth(where + " depth"),
-        opacity(where + " opacity"),
-        transparency(where + " transparency, absolute"),
-        psi(where + " psi"),
-        weight_f(where + " weight_f"),
-        weight_b(where + " weight_b"),
-        emission_f(where + " emission weight_f"),
-        emission_b(where + " emission weight_b") {}
-
-  void add(T extinction_f, T extinction_b, T length) {
-    const test::WideLinear truth =
-        test::wide_linear(static_cast<double>(extinction_f), static_cast<double>(extinction_b),
-                          static_cast<double>(length));
-    const LinearWeights<T> w = linear_weights(extinction_f, extinction_b, length);
-    const EmissionWeights<T> e = emission_weights(extinction_f, extinction_b, length);
-    const auto where = [&] {
-      char text[120];
-      std::snprintf(text, sizeof text, "%.9g -> %.9g over %.9g", double(extinction_f),
-                    double(extinction_b), double(length));
-      return std::string(text);
-    };
-    const auto wide = [](const Wide& x) { return static_cast<long double>(x); };
-    depth.add(judged_error(w.optical_depth, wide(truth.depth)), where);
-    opacity.add(judged_error(w.opacity, wide(truth.opacity)), where);
-    transparency.add(test::absolute_error_in_u(w.transparency, wide(truth.transparency)), where);
-    psi.add(judged_error(w.psi, wide(truth.psi)), where);
-    weight_f.add(judged_error(w.weight_f, wide(truth.weight_f)), where);
-    weight_b.add(judged_error(w.weight_b, wide(truth.weight_b)), where);
-    emission_f.add(judged_error(e.weight_f, wide(truth.emission_f)), where);
-    emission_b.add(judged_error(e.weight_b, wide(truth.emission_b)), where);
-  }
-
-  /// The figures that the comments of segment/linear.h state.
-  void expect_stated() {
-    for (const ErrorRecord* r :
-         {&depth, &opacity, &transparency, &psi, &weight_f, &weight_b, &emission_f, &emission_b}) {
-      r->print();
-    }
-    EXPECT_LE(depth.largest(), 16);
-    EXPECT_LE(opacity.largest(), 16);
-    EXPECT_LE(psi.largest(), 16);
-    EXPECT_LE(weight_f.largest(), 16);
-    EXPECT_LE(weight_b.largest(), 16);
-    EXPECT_LE(transparency.largest(), 4);
-    EXPECT_LE(emission_f.largest(), 32);
-    EXPECT_LE(emission_b.largest(), 32);
-  }
-};
 
 TYPED_TEST(Linear, TruthTable) {
   using T = TypeParam;
@@ -140,7 +74,7 @@ TYPED_TEST(Linear, RandomSweepOfDepthAndContrast) {
   using T = TypeParam;
   std::mt19937_64 random(1);
   std::uniform_real_distribution<double> unit(0, 1);
-  Errors<T> errors(std::string(test::number_name<T>()) + " sweep");
+  test::LinearErrors<T> errors(std::string(test::number_name<T>()) + " sweep");
   for (int i = 0; i < 600; ++i) {
     const double depth =
         i % 3 == 0   ? 2 * (1 + std::pow(10.0, -8 * unit(random)) * (unit(random) < 0.5 ? -1 : 1))
@@ -173,7 +107,7 @@ TYPED_TEST(Linear, RandomSweepOfTheWholeRange) {
     if (pick < 0.1) return T(1e6);
     return static_cast<T>(std::pow(10.0, -14 + 20 * unit(random)));
   };
-  Errors<T> errors(std::string(test::number_name<T>()) + " range");
+  test::LinearErrors<T> errors(std::string(test::number_name<T>()) + " range");
   for (int i = 0; i < 400; ++i) {
     const T f = any(), b = any();
     errors.add(f, b, any());

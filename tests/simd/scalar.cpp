@@ -27,6 +27,33 @@ static_assert(select(true, 1, 2) == 1 && select(false, 1, 2) == 2);
 static_assert(any(true) && all(true) && !any(false) && !all(false));
 static_assert(min(1.0, 2.0) == 1.0 && max(1.0, 2.0) == 2.0 && clamp(3.0f, 0.0f, 1.0f) == 1.0f);
 
+static_assert(lanes<float> == 1 && std::is_same_v<mask_t<double>, bool>);
+static_assert(std::is_same_v<index_t<double>, int>);
+static_assert(none(false) && !none(true) && count(true) == 1 && count(false) == 0);
+static_assert(bits(true) == 1u && bits(false) == 0u);
+
+/// Of one lane they are what the language has; batches are held against the same statements.
+TYPED_TEST(Scalar, MasksConversionsAndTablesOfOneLane) {
+  using T = TypeParam;
+  T target = 1;
+  assign(false, target, T(2));
+  EXPECT_EQ(target, T(1));
+  assign(true, target, T(3));
+  EXPECT_EQ(target, T(3));
+  EXPECT_EQ(convert<int>(T(-2.75)), -2);
+  EXPECT_EQ(convert<float>(T(0.1)), 0.1f);
+  constexpr T table[] = {10, 11, 12, 13};
+  EXPECT_EQ(gather(table, 2), T(12));
+  EXPECT_EQ(lookup(table, 3), T(13));
+  constexpr float records[] = {0, 1, 2, 3, 4, 5, 6, 7};
+  float fields[4] = {};
+  load_records<4>(records, 1, fields);
+  for (int k = 0; k < 4; ++k) EXPECT_EQ(fields[k], static_cast<float>(4 + k));
+  // Rounded twice.
+  const T x = 1 + std::numeric_limits<T>::epsilon();
+  EXPECT_EQ(multiply_add(x, x, -(x * x)), T(0));
+}
+
 TYPED_TEST(Scalar, RoundingUnitIsHalfAStepAboveOne) {
   using T = TypeParam;
   const T one = 1;

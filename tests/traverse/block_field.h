@@ -1,11 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <cstddef>
+#include <limits>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
-#include "pellucid/traverse/build_block_ranges.h"
+#include "pellucid/traverse/build_block_records.h"
 
 namespace pellucid {
 
@@ -15,8 +19,8 @@ struct BlockField {
   std::vector<Value> data;
   std::vector<double> planes[3], block_planes[3];
   StructuredGrid<Value, double> grid;
-  std::vector<BlockRange> range;
-  BlockRanges blocks;
+  std::vector<BlockRecord> record;
+  BlockRecords blocks;
 
   /// An axis of `values` data values; the planes of a rectilinear one may be given.
   void set_axis(int a, int values, int padding, std::vector<double> positions = {}) {
@@ -42,10 +46,20 @@ struct BlockField {
       block_planes[a].resize(static_cast<std::size_t>(block_count(grid.axis[a])) + 1);
       find_block_planes(grid.axis[a], block_planes[a].data());
       blocks.axis[a] = {block_planes[a].data(), static_cast<int>(block_planes[a].size()), 0};
+      blocks.least_width[a] = least_plane_distance(grid.axis[a]);
     }
-    range.assign(static_cast<std::size_t>(blocks.count()), BlockRange{});
-    build_block_ranges(grid, blocks.axis, 0, blocks.count(), range.data());
-    blocks.range = range.data();
+    double least = std::numeric_limits<double>::infinity(), most = -least;
+    for (const Value v : data) {
+      const auto x = static_cast<double>(v);
+      if (std::isnan(x)) continue;
+      least = std::min(least, x);
+      most = std::max(most, x);
+    }
+    if (!(least <= most)) least = most = 0;
+    blocks.code = make_block_code(least, most, std::is_integral_v<Value>);
+    record.assign(static_cast<std::size_t>(blocks.count()), BlockRecord{});
+    build_block_records(grid, blocks.axis, blocks.code, 0, blocks.count(), record.data());
+    blocks.record = record.data();
   }
 };
 

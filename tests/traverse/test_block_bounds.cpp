@@ -5,11 +5,12 @@
 #include <cmath>
 #include <cstdint>
 #include <iostream>
+#include <limits>
 #include <random>
 #include <vector>
 
 #include "block_field.h"
-#include "pellucid/traverse/block_ranges.h"
+#include "pellucid/traverse/block_records.h"
 #include "tests/support/wide_functions.h"
 
 // What follows for the data along a ray from the ranges of a block.
@@ -65,7 +66,7 @@ TEST(BlockBounds, HoldTheDataItsSlopesAndItsDeviationFromChords) {
     });
     f.build();
     ASSERT_EQ(f.blocks.count(), 1);
-    const BlockRange& range = f.blocks[0];
+    const BlockRange range = f.blocks.range(0);
     const long double scale = 1e-15L;  // of the truth's own rounding
     for (int n = 0; n < 100; ++n) {
       // From one place of the block to another, at times along an axis or in a plane.
@@ -78,8 +79,7 @@ TEST(BlockBounds, HoldTheDataItsSlopesAndItsDeviationFromChords) {
       const double length = 0.1 + uniform(random);  // of the ray's parameter
       const Vec3<double> direction{(to[0] - from[0]) / length, (to[1] - from[1]) / length,
                                    (to[2] - from[2]) / length};
-      const Interval<double> slope = derivative_range(range, direction);
-      ASSERT_LE(slope.begin, slope.end);
+      const double oscillation = derivative_oscillation(range, direction);
       constexpr int count = 64;
       long double value[count + 1];
       for (int i = 0; i <= count; ++i) {
@@ -92,7 +92,8 @@ TEST(BlockBounds, HoldTheDataItsSlopesAndItsDeviationFromChords) {
         ASSERT_GE(value[i], static_cast<long double>(range.min) - scale);
         ASSERT_LE(value[i], static_cast<long double>(range.max) + scale);
       }
-      const double bound = chord_deviation(slope, length);
+      const double bound = bend_deviation(oscillation, length);
+      long double least = 1e300L, most = -1e300L;
       for (int i = 0; i <= count; ++i) {
         const long double chord = value[0] + (value[count] - value[0]) * i / count;
         ASSERT_LE(std::abs(value[i] - chord), static_cast<long double>(bound) + scale);
@@ -104,13 +105,14 @@ TEST(BlockBounds, HoldTheDataItsSlopesAndItsDeviationFromChords) {
         // The mean slope between two places is one that the data has (or a mean of such).
         const long double mean =
             (value[i] - value[i - 1]) * count / static_cast<long double>(length);
-        ASSERT_GE(mean, static_cast<long double>(slope.begin) - 1e3L * scale);
-        ASSERT_LE(mean, static_cast<long double>(slope.end) + 1e3L * scale);
-        if (slope.end > 0) {
-          closest_slope = std::max(closest_slope, static_cast<double>(mean) / slope.end);
-        }
+        least = std::min(least, mean);
+        most = std::max(most, mean);
         closest_value =
             std::max(closest_value, static_cast<double>(value[i]) / static_cast<double>(range.max));
+      }
+      ASSERT_LE(most - least, static_cast<long double>(oscillation) + 1e3L * scale);
+      if (oscillation > 0) {
+        closest_slope = std::max(closest_slope, static_cast<double>(most - least) / oscillation);
       }
       ++stretches;
     }
@@ -130,47 +132,35 @@ TEST(BlockBounds, AHatReachesTheBoundOfChords) {
   f.set_axis(2, 3, 0);
   f.fill([](int i, int, int) { return std::abs(i - 4); });
   f.build();
-  const Interval<double> slope = derivative_range(f.blocks[0], {1, 0.3, -0.7});
-  EXPECT_NEAR(slope.begin, -1, 1e-15);
-  EXPECT_NEAR(slope.end, 1, 1e-15);
-  EXPECT_NEAR(chord_deviation(slope, 8), 4, 1e-14);
-  EXPECT_GE(chord_deviation(slope, 8), 4);
+  const double oscillation = derivative_oscillation(f.blocks.range(0), {1, 0.3, -0.7});
+  EXPECT_NEAR(oscillation, 2, 1e-14);
+  EXPECT_NEAR(bend_deviation(oscillation, 8), 4, 1e-13);
+  EXPECT_GE(bend_deviation(oscillation, 8), 4);
 }
 
-TEST(BlockBounds, DerivativeRangeOfKnownRanges) {
-  const BlockRange r{0, 1, {-1, 2, 0}, {3, 5, 0}, BlockVacuum::none};
-  const Interval<double> d = derivative_range(r, {2, -1, 7});
-  EXPECT_LE(d.begin, -2 - 5);
-  EXPECT_NEAR(d.begin, -7, 1e-14);
-  EXPECT_GE(d.end, 6 - 2);
-  EXPECT_NEAR(d.end, 4, 1e-14);
-  const Interval<double> none = derivative_range(r, {0, -0.0, 7});
-  EXPECT_EQ(none.begin, 0);
-  EXPECT_EQ(none.end, 0);
+TEST(BlockBounds, OscillationOfKnownRanges) {
+  const BlockRange r{
+      0, 1, {4, 3, std::numeric_limits<float>::infinity()}, BlockVacuum::none, false};
+  EXPECT_NEAR(derivative_oscillation(r, {2, -1, 0}), 11, 1e-13);
+  EXPECT_GE(derivative_oscillation(r, {2, -1, -0.0}), 11);
+  EXPECT_TRUE(std::isinf(derivative_oscillation(r, {0, 0, 1e-3})));
 }
 
-TEST(BlockBounds, DerivativeRangeIsRoundedOutward) {
+TEST(BlockBounds, OscillationIsRoundedUpward) {
   std::mt19937 random(10);
-  std::uniform_real_distribution<float> uniform(-1, 1);
+  std::uniform_real_distribution<float> uniform(0, 1);
   for (int n = 0; n < 50000; ++n) {
     BlockRange r{};
     Vec3<double> d;
-    Wide lower = 0, upper = 0;
+    Wide sum = 0;
     for (int a = 0; a < 3; ++a) {
-      const float p = uniform(random), q = uniform(random);
-      r.derivative_min[a] = std::min(p, q);
-      r.derivative_max[a] = std::max(p, q);
-      d[a] = static_cast<double>(uniform(random)) / 3;
-      const Wide x = Wide(d[a]) * Wide(p);
-      const Wide y = Wide(d[a]) * Wide(q);
-      lower += std::min(x, y);
-      upper += std::max(x, y);
+      r.oscillation[a] = uniform(random);
+      d[a] = static_cast<double>(0.5f - uniform(random)) / 3;
+      sum += abs(Wide(d[a])) * Wide(r.oscillation[a]);
     }
-    const Interval<double> range = derivative_range(r, d);
-    ASSERT_LE(Wide(range.begin), lower);
-    ASSERT_GE(Wide(range.end), upper);
-    ASSERT_NEAR(range.begin, static_cast<double>(lower), 1e-14);
-    ASSERT_NEAR(range.end, static_cast<double>(upper), 1e-14);
+    const double bound = derivative_oscillation(r, d);
+    ASSERT_GE(Wide(bound), sum);
+    ASSERT_NEAR(bound, static_cast<double>(sum), 1e-14);
   }
 }
 

@@ -3,12 +3,13 @@
 
 #include <gtest/gtest.h>
 
+#include <cstdint>
 #include <iostream>
 #include <limits>
 #include <string>
 #include <vector>
 
-#include "pellucid/traverse/build_block_ranges.h"
+#include "pellucid/traverse/build_block_records.h"
 #include "walk_generator.h"
 
 namespace pellucid {
@@ -21,7 +22,7 @@ using Step = StructuredWalk<double>::Step;
 /// The blocks of a grid without data: the walk looks at the planes alone.
 struct TestBlocks {
   std::vector<double> planes[3];
-  BlockRanges view;
+  BlockRecords view;
 
   explicit TestBlocks(const TestGrid<double>& grid) {
     for (int a = 0; a < 3; ++a) {
@@ -32,7 +33,7 @@ struct TestBlocks {
   }
 };
 
-std::vector<BlockStep> block_steps(const BlockRanges& blocks, const Ray<double>& ray,
+std::vector<BlockStep> block_steps(const BlockRecords& blocks, const Ray<double>& ray,
                                    Interval<double> range = {0, infinity}) {
   std::vector<BlockStep> steps;
   for_each_block(blocks, ray, range, [&](const BlockStep& step) {
@@ -49,7 +50,7 @@ bool same(const Step& p, const Step& q) {
 
 /// The walks over the cells of one block after the other against the walk over the whole ray, to
 /// the bit. Empty: they agree.
-const char* check_blocks(const TestGrid<double>& grid, const BlockRanges& blocks,
+const char* check_blocks(const TestGrid<double>& grid, const BlockRecords& blocks,
                          const Ray<double>& ray, Interval<double> range, long& cells,
                          long& crossed) {
   const char* failure = "";
@@ -112,6 +113,69 @@ TEST(BlockWalk, MillionsOfRaysVisitTheCellsOfTheWholeWalkToTheBit) {
   // The generator must keep making what it is for.
   EXPECT_GT(hits, rays / 2);
   EXPECT_GT(crossed, hits + hits / 4);
+}
+
+/// The walk over cubes of blocks to skip against that over the blocks: each step is one block's, or
+/// all that the ray crosses of one cube. Empty: it is as it must be.
+const char* check_cubes(const BlockRecords& blocks, const std::vector<BlockClass>& classes,
+                        const Ray<double>& ray, Interval<double> range, long& cubes) {
+  const std::vector<BlockStep> steps = block_steps(blocks, ray, range);
+  const char* failure = "";
+  std::size_t n = 0;
+  const auto place = [&](int block, int a) {
+    const int nx = blocks.axis[0].cells(), ny = blocks.axis[1].cells();
+    return a == 0 ? block % nx : a == 1 ? block / nx % ny : block / nx / ny;
+  };
+  for_each_block(ClassifiedBlocks{blocks, {classes.data()}}, ray, range, [&](const BlockStep& s) {
+    if (n == steps.size()) failure = "a step too many";
+    if (failure[0] != '\0') return false;
+    if (s.block != steps[n].block || s.t_begin != steps[n].t_begin) failure = "another begin";
+    const int level = classes[static_cast<std::size_t>(s.block)].level;
+    const auto in_cube = [&](int block) {
+      bool in = true;
+      for (int a = 0; a < 3; ++a) in = in && place(block, a) >> level == place(s.block, a) >> level;
+      return in;
+    };
+    std::size_t last = n;
+    while (last + 1 < steps.size() && level > 0 && in_cube(steps[last + 1].block)) ++last;
+    cubes += last > n;
+    if (s.t_end != steps[last].t_end) failure = "another end";
+    n = last + 1;
+    return true;
+  });
+  if (failure[0] == '\0' && n != steps.size()) failure = "a step too few";
+  return failure;
+}
+
+TEST(BlockWalk, MillionsOfRaysCrossCubesOfBlocksWhereTheBlocksBeginAndEnd) {
+  long rays = 0, cubes = 0;
+  for (const int most_values : {30, 80}) {
+    WalkGenerator<double> generate(most_values);
+    for (int g = 0; g < 3000; ++g) {
+      const TestGrid<double> grid = generate.grid();
+      const TestBlocks blocks(grid);
+      // A walk need not care whether a level is right.
+      std::vector<BlockClass> classes(static_cast<std::size_t>(blocks.view.count()));
+      const int cells = generate.pick(3);
+      for (BlockClass& c : classes) {
+        const bool skip = generate.pick(4) >= cells;
+        const int level = skip ? generate.pick(BlockClasses::highest_level + 1) : 0;
+        c = {0, skip ? BlockKind::skip : BlockKind::cells, static_cast<std::uint8_t>(level)};
+      }
+      for (int n = 0; n < 100; ++n) {
+        const Ray<double> ray = generate.ray(grid);
+        Interval<double> range{0, infinity};
+        if (generate.pick(8) == 0) range = {-1e9, 1e9};
+        if (generate.pick(8) == 0) range = {10 * generate.uniform(), 30 * generate.uniform()};
+        const std::string failure = check_cubes(blocks.view, classes, ray, range, cubes);
+        ASSERT_EQ(failure, "") << text(ray) << ", range " << range.begin << " " << range.end
+                               << ", grid " << g << " of " << most_values;
+        ++rays;
+      }
+    }
+  }
+  std::cout << rays << " rays, " << cubes << " steps over several blocks\n";
+  EXPECT_GT(cubes, rays / 4);
 }
 
 TEST(BlockWalk, RaysBetweenPlanesOfBlocks) {

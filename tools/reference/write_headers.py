@@ -86,6 +86,14 @@ def array(precision, intervals):
     return lines + ["    };"]
 
 
+def evaluation(argument, intervals):
+    """The call; more intervals than one are also laid out by coefficient, for batches."""
+    if len(intervals) == 1:
+        return [f"    return interval_polynomial<T>(c, {argument});"]
+    return ["    static constexpr auto by_coefficient = transposed(c);",
+            f"    return interval_polynomial<T>(c, by_coefficient, {argument});"]
+
+
 def fit_header(function, fit):
     name, argument, comment = FITS[function]
     lines = ["// SPDX-License-Identifier: Apache-2.0",
@@ -95,11 +103,9 @@ def fit_header(function, fit):
     lines += ["/// " + line for line in comment.strip().split("\n")]
     lines += ["template <class T>", f"PELLUCID_HD inline T {name}(T {argument}) noexcept {{",
               "  if constexpr (is_single<T>) {"]
-    lines += array("float", fit["float"])
-    lines += [f"    return interval_polynomial<T>(c, {argument});", "  } else {"]
-    lines += array("double", fit["double"])
-    lines += [f"    return interval_polynomial<T>(c, {argument});", "  }", "}",
-              "// clang-format on", "", "}  // namespace pellucid", ""]
+    lines += array("float", fit["float"]) + evaluation(argument, fit["float"]) + ["  } else {"]
+    lines += array("double", fit["double"]) + evaluation(argument, fit["double"])
+    lines += ["  }", "}", "// clang-format on", "", "}  // namespace pellucid", ""]
     return f"{name}.h", "\n".join(lines)
 
 

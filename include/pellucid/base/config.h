@@ -16,3 +16,10 @@
 #else
 #define PELLUCID_ON_DEVICE 0
 #endif
+
+/// 1 where the compiler has vectors of numbers as types of its own.
+#if defined(__GNUC__) && !defined(__CUDACC__)
+#define PELLUCID_HAS_VECTOR_TYPES 1
+#else
+#define PELLUCID_HAS_VECTOR_TYPES 0
+#endif

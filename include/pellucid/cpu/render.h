@@ -3,20 +3,52 @@
 
 #include <cstdint>
 #include <functional>
+#include <optional>
 
 #include "pellucid/render/ray_result.h"
 #include "pellucid/scene/image.h"
 #include "pellucid/scene/scene.h"
+#include "pellucid/simd/instruction_set.h"
 
 namespace pellucid {
+
+/// Some pixels of a frame that are rendered together: (column + i·stride, row + j·stride) for
+/// 0 <= i < columns, 0 <= j < rows.
+struct Tile {
+  int column = 0, row = 0;
+  int columns = 0, rows = 0;
+  int stride = 1;
+  int level = 0;  ///< of the preview; 0 is the finest
+};
+
+/// A tile whose pixels are final, in the image that is being made. Until finer ones are there, a
+/// pixel of level n stands for the square of 2ⁿ × 2ⁿ pixels of which it is the upper left.
+struct TileResult {
+  const Tile& tile;
+  const Image& image;
+};
+
+/// Limit of RenderOptions::preview.
+inline constexpr int largest_preview = 8;
 
 struct RenderOptions {
   int threads = 0;     ///< 0: one per core
   bool depth = false;  ///< fill Image::depth
   bool error = false;  ///< fill Image::error and Image::proved
+  /// For rays in packets; none: the fastest that the machine has. Error where it has not this one.
+  std::optional<InstructionSet> instruction_set;
   /// Called now and then, from any one thread at a time, with the share done in [0, 1]; false
   /// cancels the frame, which then throws Cancelled.
   std::function<bool(double)> progress;
+
+  // Of render() alone:
+  /// Levels of a preview: every 2ⁿ-th pixel along each axis is rendered first, then those in the
+  /// middle between them, and so on. No pixel is rendered twice; the image is bitwise the same.
+  int preview = 0;
+  /// Called once for each tile, from any one thread at a time and not while `progress` is; the
+  /// tiles of a level after all of the coarser one. No thread waits for it. False cancels as above:
+  /// the other threads finish the tiles that they are at.
+  std::function<bool(const TileResult&)> tile;
 };
 
 struct RenderReport {

@@ -16,48 +16,54 @@ namespace pellucid {
 /// there for those behind it. Dense spans live on the first pot, thin ones on the second.
 ///
 /// The ray may end as soon as what is left in both pots pays for all that is behind.
+///
+/// T: double, or a double of several rays at once.
+template <class T>
 class RayBudget {
  public:
+  RayBudget() = default;
   /// tolerance >= 0, of the pixel; length >= 0, of the ray inside the data.
-  PELLUCID_HD RayBudget(double tolerance, double length) noexcept
-      : opacity_pot_(0.5 * tolerance), length_pot_(0.5 * tolerance), length_(length) {}
+  PELLUCID_HD RayBudget(T tolerance, T length) noexcept
+      : opacity_pot_(T(0.5) * tolerance), length_pot_(T(0.5) * tolerance), length_(length) {}
 
   /// How large the error x of the next span may be: of a span of this length and at most this
   /// opacity, behind this transparency (> 0).
-  PELLUCID_HD double allowance(double length, double opacity, double transparency) const noexcept {
+  PELLUCID_HD T allowance(T length, T opacity, T transparency) const noexcept {
     return (opacity_pot_ * opacity + length_pot_ * share(length)) / transparency;
   }
 
   /// Goes past a span that cost `error` (x of above; 0 where nothing was there).
-  PELLUCID_HD void spend(double length, double opacity, double transparency,
-                         double error) noexcept {
-    if (error > 0) {
-      const double cost = transparency * error;
-      const double from_opacity = opacity_pot_ * opacity, from_length = length_pot_ * share(length);
-      const double sum = from_opacity + from_length;
+  PELLUCID_HD void spend(T length, T opacity, T transparency, T error) noexcept {
+    const T cost = transparency * error;
+    if (any(cost > T(0))) {
+      const T from_opacity = opacity_pot_ * opacity, from_length = length_pot_ * share(length);
+      const T sum = from_opacity + from_length;
       // What one pot does not have is taken from the other: together they lose all that is spent.
-      double part = sum > 0 ? cost * (from_opacity / sum) : 0;
+      T part = select(sum > T(0), cost * (from_opacity / sum), T(0));
       part = clamp(part, min(cost - length_pot_, opacity_pot_), opacity_pot_);
-      opacity_pot_ = max(opacity_pot_ - part, 0.0);
-      length_pot_ = max(length_pot_ - (cost - part), 0.0);
+      opacity_pot_ = max(opacity_pot_ - part, T(0));
+      length_pot_ = max(length_pot_ - (cost - part), T(0));
       spent_ += cost;
     }
-    length_ = max(length_ - length, 0.0);
+    length_ = max(length_ - length, T(0));
   }
 
-  PELLUCID_HD double spent() const noexcept { return spent_; }
-  PELLUCID_HD double left() const noexcept { return opacity_pot_ + length_pot_; }
+  /// Goes past stretches in which nothing was, up to where so much is left of the ray.
+  PELLUCID_HD void pass_to(T length_left) noexcept { length_ = length_left; }
+
+  PELLUCID_HD T spent() const noexcept { return spent_; }
+  PELLUCID_HD T left() const noexcept { return opacity_pot_ + length_pot_; }
   /// Of the ray, behind the spans gone past.
-  PELLUCID_HD double length_left() const noexcept { return length_; }
+  PELLUCID_HD T length_left() const noexcept { return length_; }
 
  private:
-  PELLUCID_HD double share(double length) const noexcept {
-    return length < length_ ? length / length_ : 1.0;
+  PELLUCID_HD T share(T length) const noexcept {
+    return select(length < length_, length / length_, T(1));
   }
 
-  double opacity_pot_, length_pot_;
-  double length_;
-  double spent_ = 0;
+  T opacity_pot_{}, length_pot_{};
+  T length_{};
+  T spent_{};
 };
 
 }  // namespace pellucid

@@ -72,7 +72,7 @@ PELLUCID_HD constexpr CubicBernstein<T> trilinear_cubic(const CellCorners<T>& co
                      ((x0y0[0] + exit.z * d00) - first);
   const T far_sum = ((x0y1[0] + exit.z * d01) - last) + ((x1y0[0] + exit.z * d10) - last) +
                     ((x1y1[0] + entry.z * d11) - last);
-  constexpr T third = T(1) / T(3);
+  const T third = T(scalar_t<T>(1) / scalar_t<T>(3));
   return {{first, first + third * near_sum, last + third * far_sum, last}};
 }
 

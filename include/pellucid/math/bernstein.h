@@ -11,7 +11,13 @@ namespace pellucid {
 template <class T>
 PELLUCID_HD constexpr T interpolate(T a, T b, T t) noexcept {
   const T d = b - a;
-  return select(t < T(0.5), a + t * d, b - (T(1) - t) * d);
+  if constexpr (lanes<T> == 1) {
+    return select(t < T(0.5), a + t * d, b - (T(1) - t) * d);
+  } else {
+    // The same but for fused products, as 1 - t is exact there; one product less.
+    const auto near = t < T(0.5);
+    return multiply_add(select(near, t, t - T(1)), d, select(near, a, b));
+  }
 }
 
 /// A cubic on [0,1] by its Bernstein coefficients:
@@ -28,10 +34,10 @@ struct CubicBernstein {
     return T(0.25) * ((b[0] + b[3]) + (b[1] + b[2]));
   }
   PELLUCID_HD constexpr T hull_min() const noexcept {
-    return pellucid::min(pellucid::min(b[0], b[3]), pellucid::min(b[1], b[2]));
+    return min(min(b[0], b[3]), min(b[1], b[2]));
   }
   PELLUCID_HD constexpr T hull_max() const noexcept {
-    return pellucid::max(pellucid::max(b[0], b[3]), pellucid::max(b[1], b[2]));
+    return max(max(b[0], b[3]), max(b[1], b[2]));
   }
 };
 

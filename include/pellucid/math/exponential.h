@@ -5,7 +5,8 @@
 #include "pellucid/math/polynomial.h"
 
 /// What the volume rendering integral needs of e^x where e^x alone would cancel or lose digits. The
-/// stated errors are for a library's exp that is within 1.1 u (glibc's is; CUDA's is not).
+/// stated errors are for an exp that is within 1.1 u (glibc's is, and that of batches; CUDA's is
+/// not).
 namespace pellucid {
 
 /// sinh(h) / h as a function of y = h² in [0, 1]: b_0 of the specification (9). Its Taylor series,
@@ -61,13 +62,14 @@ PELLUCID_HD inline T cosh_minus_sinh_over_x(T y) noexcept {
 template <class T>
 PELLUCID_HD inline T expm1_quotient(T x) noexcept {
   const T half = T(0.5) * x;
-  const T series = exp(-half) * sinh_over_x<T>(half * half);
   const auto far = abs(x) > T(2);
+  const T e = exp(-select(far, x, half));
+  const T series = e * sinh_over_x<T>(half * half);
   if (!any(far)) {
     return series;
   }
   // The bound keeps -∞ from being divided by itself; a NaN goes through.
-  return select(far, (T(1) - exp(-x)) / max(T(-largest<T>), x), series);
+  return select(far, (T(1) - e) / max(T(-largest<T>), x), series);
 }
 
 /// φ₁'(x) = -∫ u e^(-u x) du over [0, 1], -1/2 at 0 (specification, 4.1): -½ e^(-h) (b_0 - h b_1),
@@ -78,15 +80,16 @@ PELLUCID_HD inline T expm1_quotient(T x) noexcept {
 template <class T>
 PELLUCID_HD inline T expm1_quotient_derivative(T x) noexcept {
   const T half = T(0.5) * x;
-  const T y = half * half;
-  const T series = T(-0.5) * exp(-half) * (sinh_over_x<T>(y) - half * cosh_minus_sinh_over_x<T>(y));
   const auto far = abs(x) > T(2);
+  // e^(-1000) is 0 and e^1000 infinite in both precisions: the bounds keep 0 · ∞ and ∞ / ∞ away.
+  const T bounded = max(T(-1000), min(T(1000), x));
+  const T e = exp(-select(far, bounded, half));
+  const T y = half * half;
+  const T series = T(-0.5) * e * (sinh_over_x<T>(y) - half * cosh_minus_sinh_over_x<T>(y));
   if (!any(far)) {
     return series;
   }
-  // e^(-1000) is 0 and e^1000 infinite in both precisions: the bounds keep 0 · ∞ and ∞ / ∞ away.
-  const T bounded = max(T(-1000), min(T(1000), x));
-  const T numerator = (T(1) + bounded) * exp(-bounded) - T(1);
+  const T numerator = (T(1) + bounded) * e - T(1);
   const T divisor = max(T(-largest<T>), x);
   return select(far, numerator / divisor / divisor, series);
 }
@@ -100,18 +103,20 @@ PELLUCID_HD inline T expm1_quotient_derivative(T x) noexcept {
 template <class T>
 PELLUCID_HD inline T one_minus_exp_neg(T x) noexcept {
   const T half = T(0.5) * x;
-  const T series = x * (exp(-half) * sinh_over_x<T>(half * half));
   const auto far = abs(x) > T(2);
+  const T e = exp(-select(far, x, half));
+  const T series = x * (e * sinh_over_x<T>(half * half));
   if (!any(far)) {
     return series;
   }
-  return select(far, T(1) - exp(-x), series);
+  return select(far, T(1) - e, series);
 }
 
 /// x² as a rounded product and what its rounding left out: square + residual = x² exactly, as long
 /// as x² neither overflows nor is so small that the residual is not representable (|x| in
 /// [1e-12, 1e15] float, [1e-130, 1e145] double). By Dekker's splitting, because the fused
-/// multiply-add is a function call on the x86-64 baseline (3 ns against 1 ns for the whole).
+/// multiply-add is a function call on the x86-64 baseline (3 ns against 1 ns for the whole); fused
+/// where it is one instruction.
 template <class T>
 struct ExactSquare {
   T square, residual;
@@ -119,15 +124,15 @@ struct ExactSquare {
 template <class T>
 PELLUCID_HD inline ExactSquare<T> exact_square(T x) noexcept {
   const T square = x * x;
-#if PELLUCID_ON_DEVICE
-  return {square, fma(x, x, -square)};
-#else
-  constexpr scalar_t<T> splitter = is_single<T> ? 4097 : 134217729;  // 2^12 + 1, 2^27 + 1
-  const T scaled = T(splitter) * x;
-  const T high = scaled - (scaled - x);
-  const T low = x - high;
-  return {square, ((high * high - square) + T(2) * (high * low)) + low * low};
-#endif
+  if constexpr (PELLUCID_ON_DEVICE || fuses<T>) {
+    return {square, fma(x, x, -square)};
+  } else {
+    constexpr scalar_t<T> splitter = is_single<T> ? 4097 : 134217729;  // 2^12 + 1, 2^27 + 1
+    const T scaled = T(splitter) * x;
+    const T high = scaled - (scaled - x);
+    const T low = x - high;
+    return {square, ((high * high - square) + T(2) * (high * low)) + low * low};
+  }
 }
 
 /// e^(-x²) (specification, 4.1). The rounding of x² would be amplified to x² u in the result (81 u

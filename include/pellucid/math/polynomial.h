@@ -7,17 +7,48 @@
 
 namespace pellucid {
 
-/// c[0] + c[1] s + … by Horner's rule. Rounded separately: on x86-64 without FMA instructions a
-/// fused product is a library call that costs more than the whole polynomial, and the errors stated
-/// by the callers hold for either.
+/// c[0] + c[1] s + … by Horner's rule; the errors stated by the callers hold for fused and for
+/// separately rounded products (multiply_add).
 template <class T, std::size_t Count>
 PELLUCID_HD inline T horner(const scalar_t<T> (&c)[Count], T s) noexcept {
   T sum = T(c[Count - 1]);
   for (std::size_t k = Count - 1; k-- > 0;) {
-    sum = sum * s + T(c[k]);
+    sum = multiply_add(sum, s, T(c[k]));
   }
   return sum;
 }
+
+/// A table of polynomials with the coefficients of one power side by side, as batches look them up.
+template <class S, std::size_t Intervals, std::size_t Count>
+struct ByCoefficient {
+  alignas(64) S c[Count][Intervals];
+};
+template <class S, std::size_t Intervals, std::size_t Count>
+consteval ByCoefficient<S, Intervals, Count> transposed(const S (&c)[Intervals][Count]) noexcept {
+  ByCoefficient<S, Intervals, Count> result{};
+  for (std::size_t i = 0; i < Intervals; ++i) {
+    for (std::size_t k = 0; k < Count; ++k) result.c[k][i] = c[i][k];
+  }
+  return result;
+}
+
+namespace detail {
+
+/// Which of the equal parts of [0, 1], and where in it.
+template <class T>
+struct IntervalPlace {
+  index_t<T> interval;
+  T s;
+};
+template <class T, std::size_t Intervals>
+PELLUCID_HD inline IntervalPlace<T> interval_place(T t) noexcept {
+  constexpr scalar_t<T> last = static_cast<scalar_t<T>>(Intervals - 1);
+  // The bounds come before the conversion, which is undefined for NaN and large numbers.
+  const auto i = convert<std::int32_t>(clamp(T(Intervals) * t, T(0), T(last)));
+  return {i, T(2 * Intervals) * t - convert<scalar_t<T>>(i + i + index_t<T>(1))};
+}
+
+}  // namespace detail
 
 /// A function of t in [0, 1] by one polynomial per interval of `Intervals` equal ones, each in
 /// s = 2 Intervals t - (2 i + 1), which runs over [-1, 1] on interval i. The product is exact where
@@ -27,10 +58,27 @@ PELLUCID_HD inline T interval_polynomial(const scalar_t<T> (&c)[Intervals][Count
   if constexpr (Intervals == 1) {
     return horner(c[0], T(2) * t - T(1));
   } else {
-    constexpr scalar_t<T> last = static_cast<scalar_t<T>>(Intervals - 1);
-    // The bounds come before the conversion, which is undefined for NaN and large numbers.
-    const auto i = static_cast<int>(clamp(T(Intervals) * t, T(0), T(last)));
-    return horner(c[i], T(2 * Intervals) * t - T(2 * i + 1));
+    static_assert(lanes<T> == 1, "batches also want the table transposed");
+    const auto place = detail::interval_place<T, Intervals>(t);
+    return horner(c[place.interval], place.s);
+  }
+}
+
+/// The same, also for batches, which may differ in the interval: c itself, and c transposed.
+template <class T, std::size_t Intervals, std::size_t Count>
+PELLUCID_HD inline T interval_polynomial(
+    [[maybe_unused]] const scalar_t<T> (&c)[Intervals][Count],
+    [[maybe_unused]] const ByCoefficient<scalar_t<T>, Intervals, Count>& by_coefficient,
+    T t) noexcept {
+  if constexpr (lanes<T> == 1) {
+    return interval_polynomial<T>(c, t);
+  } else {
+    const auto place = detail::interval_place<T, Intervals>(t);
+    T sum = lookup(by_coefficient.c[Count - 1], place.interval);
+    for (std::size_t k = Count - 1; k-- > 0;) {
+      sum = multiply_add(sum, place.s, lookup(by_coefficient.c[k], place.interval));
+    }
+    return sum;
   }
 }
 

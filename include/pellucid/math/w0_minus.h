@@ -48,7 +48,8 @@ PELLUCID_HD inline T w0_minus(T t) noexcept {
         {0.132825598f, -0.140634492f, 0.00776002835f, 8.33898957e-05f, -3.70062626e-05f,
          2.54968495e-06f, -7.46879678e-08f, -2.29679631e-09f, 4.08814649e-10f},
     };
-    return interval_polynomial<T>(c, t);
+    static constexpr auto by_coefficient = transposed(c);
+    return interval_polynomial<T>(c, by_coefficient, t);
   } else {
     static constexpr double c[16][16] = {
         {0.5161961928416325, 0.01679019835440494, 0.0006177969993835874, 2.4814923714265176e-05,
@@ -132,7 +133,8 @@ PELLUCID_HD inline T w0_minus(T t) noexcept {
          9.367322658109892e-13, -3.965837611798172e-15, -2.1833189482292734e-15,
          1.8614163629913896e-16, -9.421723310571117e-18, 2.90321539820927e-19},
     };
-    return interval_polynomial<T>(c, t);
+    static constexpr auto by_coefficient = transposed(c);
+    return interval_polynomial<T>(c, by_coefficient, t);
   }
 }
 // clang-format on

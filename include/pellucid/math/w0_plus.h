@@ -69,7 +69,8 @@ PELLUCID_HD inline T w0_plus(T t) noexcept {
          -1.9220145524449762e-07, 4.944449710352382e-09, -8.540937071908632e-13,
          -1.7412962815106341e-12, 3.3133064065023896e-14, -1.2361421904763439e-17},
     };
-    return interval_polynomial<T>(c, t);
+    static constexpr auto by_coefficient = transposed(c);
+    return interval_polynomial<T>(c, by_coefficient, t);
   }
 }
 // clang-format on

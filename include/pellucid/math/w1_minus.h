@@ -48,7 +48,8 @@ PELLUCID_HD inline T w1_minus(T t) noexcept {
         {-2.11342168f, 0.0999263898f, 0.0155176735f, -0.00212760852f, 0.000105081534f,
          7.0310773e-07f, -5.04265415e-07f, 4.14833323e-08f, -1.78595594e-09f},
     };
-    return interval_polynomial<T>(c, t);
+    static constexpr auto by_coefficient = transposed(c);
+    return interval_polynomial<T>(c, by_coefficient, t);
   } else {
     static constexpr double c[16][16] = {
         {0.26649319559801876, 0.017407995353788525, 0.0009639178846467788, 5.1770254022948666e-05,
@@ -132,7 +133,8 @@ PELLUCID_HD inline T w1_minus(T t) noexcept {
          4.475851960129376e-12, -4.2989263096301503e-13, 2.331611547522217e-14,
          -7.413208170109667e-16, -3.2089897242882733e-18, 2.2649473788614514e-18},
     };
-    return interval_polynomial<T>(c, t);
+    static constexpr auto by_coefficient = transposed(c);
+    return interval_polynomial<T>(c, by_coefficient, t);
   }
 }
 // clang-format on

@@ -86,7 +86,8 @@ PELLUCID_HD inline T w1_plus(T t) noexcept {
          -2.852573240936896e-12, 1.4739676393001671e-13, -2.1177776308624158e-15,
          -1.6587561886654514e-17},
     };
-    return interval_polynomial<T>(c, t);
+    static constexpr auto by_coefficient = transposed(c);
+    return interval_polynomial<T>(c, by_coefficient, t);
   }
 }
 // clang-format on

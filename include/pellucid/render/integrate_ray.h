@@ -35,23 +35,38 @@ PELLUCID_HD double find_optical_depth(const StructuredGrid<Value, double>& grid,
   return found;
 }
 
+/// RayResult::half_opacity_depth of a ray of this opacity.
+template <class Value>
+PELLUCID_HD double find_half_opacity(const StructuredGrid<Value, double>& grid,
+                                     const Ray<double>& ray_grid, const TransferTables& transfer,
+                                     Precision precision, double opacity) noexcept {
+  if (!(opacity > 0)) return std::numeric_limits<double>::infinity();
+  // There exp(-a) = 1 - opacity/2.
+  const double target = -log1p(-0.5 * opacity);
+  return precision == Precision::float32
+             ? find_optical_depth<float>(grid, ray_grid, transfer.single, target)
+             : find_optical_depth<double>(grid, ray_grid, transfer.wide, target);
+}
+
 /// Goes through the blocks of a ray: those that are done at once, those that are smooth together
 /// with their neighbours, the rest cell by cell.
 template <class Value, class EachCell>
-PELLUCID_HD void each_block(const BlockRanges& blocks, const Ray<double>& ray_grid,
+PELLUCID_HD void each_block(const ClassifiedBlocks& blocks, const Ray<double>& ray_grid,
                             Interval<double> inside, RayIntegrator<Value>& integrator,
                             EachCell&& each_cell) noexcept {
-  StrideMarch march(ray_grid.direction, blocks.least_width, blocks.mean_width);
+  const BlockRecords& records = blocks.records;
+  StrideMarch march(ray_grid.direction, records.least_width, records.mean_width);
   Interval<double> smooth{inside.begin, inside.begin};
   BlockBends bends{};
   const auto finish = [&] {
     if (smooth.begin < smooth.end) march.run(integrator, smooth, bends, each_cell);
   };
   for_each_block(blocks, ray_grid, inside, [&](const BlockStep& step) {
-    const BlockRange& range = blocks[step.block];
-    const BlockBends& own = blocks.bends[step.block];
+    const BlockClass& block = blocks.classes[step.block];
+    const BlockRange range = records.range(step.block);
+    const BlockBends own = records.bends(step.block);
     if (march.knows_places(step.t_end) &&
-        integrator.is_smooth(range, own, march.variation(own), march.shortest())) {
+        integrator.is_smooth(block, range, own, march.variation(own), march.shortest())) {
       bends = smooth.begin < smooth.end ? join(bends, own) : own;
       smooth.end = step.t_end;
       if (smooth.end - smooth.begin > march.longest()) {
@@ -63,7 +78,7 @@ PELLUCID_HD void each_block(const BlockRanges& blocks, const Ray<double>& ray_gr
     finish();
     smooth = {step.t_end, step.t_end};
     if (integrator.done()) return false;
-    if (!integrator.block(range, step)) each_cell({step.t_begin, step.t_end});
+    if (!integrator.block(block.kind, range.min, step)) each_cell({step.t_begin, step.t_end});
     return !integrator.done();
   });
   finish();
@@ -75,7 +90,7 @@ PELLUCID_HD void each_block(const BlockRanges& blocks, const Ray<double>& ray_gr
 /// side of a jump of the transfer function the data lie. `blocks`: of the same grid; null: none.
 template <class Value>
 PELLUCID_HD RayResult integrate_ray(const StructuredGrid<Value, double>& grid,
-                                    const BlockRanges* blocks, const Ray<double>& ray_grid,
+                                    const ClassifiedBlocks* blocks, const Ray<double>& ray_grid,
                                     const TransferTables& transfer, const RayTolerance& wanted,
                                     bool with_depth) noexcept {
   const Interval<double> inside = grid_interval(grid.axis, ray_grid);
@@ -101,13 +116,9 @@ PELLUCID_HD RayResult integrate_ray(const StructuredGrid<Value, double>& grid,
   }
   RayResult result = integrator.result();
   result.cells = cells;
-  if (with_depth && result.opacity > 0) {
-    // There exp(-a) = 1 - opacity/2.
-    const double target = -log1p(-0.5 * result.opacity);
+  if (with_depth) {
     result.half_opacity_depth =
-        wanted.precision == Precision::float32
-            ? find_optical_depth<float>(grid, ray_grid, transfer.single, target)
-            : find_optical_depth<double>(grid, ray_grid, transfer.wide, target);
+        find_half_opacity(grid, ray_grid, transfer, wanted.precision, result.opacity);
   }
   return result;
 }

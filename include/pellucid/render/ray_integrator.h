@@ -2,30 +2,15 @@
 #pragma once
 
 #include "pellucid/error/budget.h"
-#include "pellucid/error/precision.h"
 #include "pellucid/field/sample.h"
-#include "pellucid/render/ray_result.h"
-#include "pellucid/render/transfer_tables.h"
-#include "pellucid/segment/cubic.h"
+#include "pellucid/render/integrate_cell.h"
 #include "pellucid/segment/fold.h"
-#include "pellucid/segment/line_rule.h"
-#include "pellucid/segment/rounding.h"
 #include "pellucid/segment/stride.h"
 #include "pellucid/traverse/block_bends.h"
 #include "pellucid/traverse/block_walk.h"
 #include "pellucid/traverse/spans.h"
 
 namespace pellucid {
-
-/// What is asked of every ray.
-struct RayTolerance {
-  /// How far the ray's result may be from the integral, in each channel of premultiplied RGBA.
-  double tolerance = 1.0 / 512;
-  Grade grade = Grade::estimated;
-  Precision precision = Precision::automatic;
-  /// C_max of theorem (3): a bound on the colors of the transfer function and on the background.
-  double largest_color = 1;
-};
 
 /// Integrates one ray within a tolerance: hands each span to the cheapest rule whose error the
 /// budget can pay for, and keeps account of it.
@@ -53,23 +38,17 @@ class RayIntegrator {
     budget_.spend(length, 0, fold_.transparency(), 0);
   }
 
-  /// A block of cells, at once: false where its cells have to be gone through.
-  PELLUCID_HD bool block(const BlockRange& range, const BlockStep& step) noexcept {
+  /// A block of this kind, or a cube of such, at once: false where its cells have to be gone
+  /// through. `lower`: the lower end of the block's range.
+  PELLUCID_HD bool block(BlockKind kind, double lower, const BlockStep& step) noexcept {
     const double length = step.t_end - step.t_begin;
-    if (range.vacuum == BlockVacuum::all) {
+    if (kind == BlockKind::skip) {
       skip(length);
       return true;
     }
-    const PiecewiseLinear<double>& table = transfer_.wide;
-    const int first = table.interval(static_cast<double>(range.min));
-    const int last = table.interval(static_cast<double>(range.max));
-    if (!table.has_extinction(first, last)) {
-      skip(length);
-      return true;
-    }
-    if (range.vacuum != BlockVacuum::none || !table.is_constant(first, last)) return false;
+    if (kind != BlockKind::constant) return false;
     ++counts_.constant;
-    const Material<double>& material = table.lower_material(first);
+    const Material<double> material = transfer_.wide.evaluate(lower);
     BoundedSegment<double> segment{constant_segment(material.extinction, material.color, length)};
     // The length is known to a few units of the arc length.
     const double place = 8 * rounding_unit<double> * step.t_end * material.extinction;
@@ -96,28 +75,18 @@ class RayIntegrator {
   /// where the transfer function is as steep as anywhere in the block's range. An estimate is for
   /// data that no cell bends by more than half of what the block does: for waves of seven cells
   /// and longer, but not for noise, whose bends three points do not show.
-  PELLUCID_HD bool is_smooth(const BlockRange& range, const BlockBends& bends, double variation,
-                             double length) noexcept {
-    if (range.vacuum != BlockVacuum::none) return false;
-    const double lower = static_cast<double>(range.min), upper = static_cast<double>(range.max);
-    if (!(lower < upper)) return false;
-    const RangeSummary<double> all =
-        range_summary(transfer_.wide, transfer_.wide_antiderivative,
-                      ValueRange<double>(transfer_.wide, lower, upper));
-    if (!all.absorbs()) return false;
-    const double slope = max(abs(all.slope_min), abs(all.slope_max));
+  PELLUCID_HD bool is_smooth(const BlockClass& block, const BlockRange& range,
+                             const BlockBends& bends, double variation, double length) noexcept {
+    if (block.kind != BlockKind::cells) return false;
     const double deviation = 0.5 * bend_deviation(variation, 0.5 * length);
-    const double bound =
-        length * deviation * (largest_color_ * slope + all.color_range() * slope + all.color_slope);
+    const double bound = length * deviation * static_cast<double>(from_upper_half(block.roughness));
     double guard = 1;
     if (wanted_.grade == Grade::estimated) {
-      double jump = 0, all_of_it = 0;
+      double jump = 0;
       for (int a = 0; a < 3; ++a) {
-        const double d = abs(ray_.direction[a]);
-        jump += d * static_cast<double>(bends.bend[a]);
-        all_of_it += d * static_cast<double>(range.derivative_max[a] - range.derivative_min[a]);
+        jump += abs(ray_.direction[a]) * static_cast<double>(bends.bend[a]);
       }
-      if (2 * jump <= all_of_it) guard = stride_guard<double>;
+      if (2 * jump <= derivative_oscillation(range, ray_.direction)) guard = stride_guard<double>;
     }
     return bound <= guard * budget_.allowance(length, 0, fold_.transparency());
   }
@@ -195,60 +164,23 @@ class RayIntegrator {
       skip(world_length);
       return true;
     }
-    const PiecewiseLinear<T>& table = transfer_.table<T>();
-    const T data_error = data_rounding(span.data);
-    const T lower = span.data.hull_min(), upper = span.data.hull_max();
-    // Squares of the data's differences must not underflow in binary32.
-    if (!forced && !(max(abs(lower), abs(upper)) > T(1e-15)) && upper > lower) return false;
-    const bool lacks =
-        is_single<T> && transfer_.single_lacks(static_cast<double>(lower - data_error),
-                                               static_cast<double>(upper + data_error));
-    if (lacks && !forced) return false;
-    const detail::IntervalRange reach =
-        detail::interval_range(table, lower - data_error, upper + data_error);
-    if (!table.has_extinction(reach.first, reach.last) && !lacks) {
+    // Where the ray meets the planes is known to a few units of its arc length.
+    const double place_error = 8 * rounding_unit<double> * step.t_end;
+    CellSegment<T> found;
+    if (!integrate_cell(
+            span.data, span.length(), place_error, transfer_, wanted_, forced,
+            [&](double opacity) {
+              return budget_.allowance(world_length, opacity, fold_.transparency());
+            },
+            found)) {
+      return false;
+    }
+    if (found.clear) {
       skip(world_length);
       return true;
     }
-    const T length = span.length();
-    const Sensitivity<T> slopes = sensitivity(table, reach.first, reach.last, data_error);
-    const T opacity = min(slopes.largest_extinction * length, T(1));
-    const double allowance =
-        budget_.allowance(world_length, static_cast<double>(opacity), fold_.transparency());
-    RoundingError<T> rounding = rounding_error(span.data, length, T(largest_color_), table,
-                                               reach.first, reach.last, data_error, slopes);
-    // Where the ray meets the planes is known to a few units of its arc length.
-    rounding.depth +=
-        static_cast<T>(8 * rounding_unit<double> * step.t_end) * slopes.largest_extinction;
-    const auto rounding_cost = [&](const T alpha, const T transparency) noexcept {
-      if (lacks) return largest_color_;  // anything may be there
-      return static_cast<double>(rounding.color_error(alpha)) +
-             largest_color_ * static_cast<double>(rounding.opacity_error(alpha, transparency));
-    };
-    // The most it can be, as if nothing absorbed in front.
-    const double at_most = rounding_cost(opacity, T(1));
-    if (!forced && !(at_most <= 0.25 * allowance)) return false;
-    const double left = max(allowance - at_most, 0.25 * allowance);
-    const auto take = [&](const BoundedSegment<T>& found) noexcept {
-      add(found, world_length, static_cast<double>(opacity),
-          rounding_cost(found.segment.opacity, found.segment.transparency));
-    };
-
-    if (reach.first != reach.last) {
-      const LineResult<T> line = line_rule(span.data, length, table, transfer_.antiderivative<T>());
-      const double cost = static_cast<double>(line.color_error) +
-                          largest_color_ * static_cast<double>(line.opacity_error);
-      if (cost <= left) {
-        ++counts_.lines;
-        take(BoundedSegment<T>{line.segment, line.color_error, line.opacity_error});
-        return true;
-      }
-    }
-    const BoundedSegment<T> found =
-        integrate_cubic(span.data, length, table,
-                        static_cast<T>(left / static_cast<double>(opacity)), wanted_.grade);
-    ++(found.panels ? counts_.panels : counts_.closed);
-    take(found);
+    ++(found.line ? counts_.lines : found.found.panels ? counts_.panels : counts_.closed);
+    add(found.found, world_length, found.opacity, found.rounding);
     return true;
   }
 
@@ -257,7 +189,7 @@ class RayIntegrator {
   const TransferTables& transfer_;
   const RayTolerance& wanted_;
   double largest_color_;
-  RayBudget budget_;
+  RayBudget<double> budget_;
   FrontToBack<double> fold_{0.0};
   RuleCounts counts_;
   long evaluations_ = 0;

@@ -13,7 +13,8 @@
 
 #include "pellucid/field/structured_grid.h"
 #include "pellucid/geometry/affine.h"
-#include "pellucid/traverse/block_ranges.h"
+#include "pellucid/scene/data_array.h"
+#include "pellucid/traverse/block_records.h"
 
 namespace pellucid {
 
@@ -25,11 +26,11 @@ using ParallelFor = std::function<void(int count, const std::function<void(int, 
 
 class VolumeBlocks;
 
-/// The data in its own type; one std::vector per supported number type.
+/// The data in its own type. A std::vector of such a type becomes one without a copy.
 using VolumeData =
-    std::variant<std::vector<std::uint8_t>, std::vector<std::int8_t>, std::vector<std::uint16_t>,
-                 std::vector<std::int16_t>, std::vector<std::uint32_t>, std::vector<std::int32_t>,
-                 std::vector<float>, std::vector<double>>;
+    std::variant<DataArray<std::uint8_t>, DataArray<std::int8_t>, DataArray<std::uint16_t>,
+                 DataArray<std::int16_t>, DataArray<std::uint32_t>, DataArray<std::int32_t>,
+                 DataArray<float>, DataArray<double>>;
 
 /// "u8", "i8", "u16", "i16", "u32", "i32", "f32", "f64".
 std::string_view type_name(const VolumeData& data) noexcept;
@@ -57,7 +58,7 @@ struct Histogram {
   std::vector<std::uint64_t> count;
 };
 
-/// A scalar field on a structured grid, owning its data. Immutable once made.
+/// A scalar field on a structured grid, with its data; copies share it. Immutable once made.
 /// NaN is vacuum: every cell with a NaN corner is empty. Infinite values are refused.
 class Volume {
  public:
@@ -93,11 +94,11 @@ class Volume {
   /// Length of the shortest edge of a (not half) cell in the world: the "voxel" of --step.
   double voxel_size() const noexcept { return voxel_size_; }
 
-  /// What the data can be in each block of cells. Built by the first call, in parallel where it is
-  /// told how (a thread that waits in there must not take up work that calls this again), and kept;
-  /// copies share it. Safe to call from any thread. Throws Error where the blocks cannot be counted
-  /// by an int.
-  const BlockRanges& block_ranges(const ParallelFor& parallel = {}) const;
+  /// What the data can be in each block of cells, and how much it bends. Built by the first call,
+  /// in parallel where it is told how (a thread that waits in there must not take up work that
+  /// calls this again), and kept; copies share it. Safe to call from any thread. Throws Error where
+  /// the blocks cannot be counted by an int.
+  const BlockRecords& block_ranges(const ParallelFor& parallel = {}) const;
 
   /// Calls visitor(StructuredGrid<Value, double>) with the data's own type.
   template <class Visitor>

@@ -23,15 +23,13 @@ template <class T>
 PELLUCID_HD Attenuation<T> attenuation(T x) noexcept {
   const T h = T(0.5) * x;
   const auto thin = x <= T(2);
-  Attenuation<T> result;
-  if (any(thin)) {
-    const T e = exp(-h);
-    result = {x * (e * sinh_over_x<T>(h * h)), e * e};
-    if (all(thin)) return result;
-  }
-  const T transparency = exp(-x);
-  return {select(thin, result.opacity, T(1) - transparency),
-          select(thin, result.transparency, transparency)};
+  const T e = exp(-select(thin, h, x));
+  const Attenuation<T> thick{T(1) - e, e};
+  if (!any(thin)) return thick;
+  const Attenuation<T> result{x * (e * sinh_over_x<T>(h * h)), e * e};
+  if (all(thin)) return result;
+  return {select(thin, result.opacity, thick.opacity),
+          select(thin, result.transparency, thick.transparency)};
 }
 
 /// A stretch of known optical depth and one color: radiance = color · opacity, however the

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <limits>
 #include <type_traits>
@@ -30,6 +31,27 @@ template <class T>
 inline constexpr scalar_t<T> rounding_unit = std::numeric_limits<scalar_t<T>>::epsilon() / 2;
 
 template <class T>
+struct MaskOf {
+  using type = bool;
+};
+template <class T>
+struct IndexOf {
+  using type = int;
+};
+
+/// What a comparison of two T gives.
+template <class T>
+using mask_t = typename MaskOf<T>::type;
+
+/// One int per lane of T: what gather() and load_records() take.
+template <class T>
+using index_t = typename IndexOf<T>::type;
+
+/// How many numbers a T holds.
+template <class T>
+inline constexpr int lanes = 1;
+
+template <class T>
 PELLUCID_HD constexpr T select(bool mask, T if_true, T if_false) noexcept {
   return mask ? if_true : if_false;
 }
@@ -38,6 +60,42 @@ PELLUCID_HD constexpr bool any(bool mask) noexcept {
 }
 PELLUCID_HD constexpr bool all(bool mask) noexcept {
   return mask;
+}
+PELLUCID_HD constexpr bool none(bool mask) noexcept {
+  return !mask;
+}
+PELLUCID_HD constexpr int count(bool mask) noexcept {
+  return mask ? 1 : 0;
+}
+/// One bit per lane, lane 0 the lowest.
+PELLUCID_HD constexpr unsigned bits(bool mask) noexcept {
+  return mask ? 1u : 0u;
+}
+/// Only in lanes of the mask.
+template <class T>
+PELLUCID_HD constexpr void assign(bool mask, T& target, T value) noexcept {
+  if (mask) target = value;
+}
+
+/// As static_cast: to int towards zero, from double to float to the nearest.
+template <class To, class From>
+requires std::is_arithmetic_v<From> PELLUCID_HD constexpr To convert(From x) noexcept {
+  return static_cast<To>(x);
+}
+
+template <class T>
+PELLUCID_HD constexpr T gather(const T* base, int index) noexcept {
+  return base[index];
+}
+/// gather() of a table that is small enough to be held in registers.
+template <class T, std::size_t Entries>
+PELLUCID_HD constexpr T lookup(const T (&table)[Entries], int index) noexcept {
+  return table[index];
+}
+/// out[k] = base[K index + k], k < K.
+template <int K>
+PELLUCID_HD constexpr void load_records(const float* base, int index, float* out) noexcept {
+  for (int k = 0; k < K; ++k) out[k] = base[K * static_cast<std::ptrdiff_t>(index) + k];
 }
 
 #define PELLUCID_FORWARD_UNARY(name)                  \
@@ -62,6 +120,19 @@ PELLUCID_HD inline float fma(float a, float b, float c) noexcept {
 PELLUCID_HD inline double fma(double a, double b, double c) noexcept {
   return std::fma(a, b, c);
 }
+
+/// a b + c, rounded once or twice, whichever is faster: for sums whose stated error holds for
+/// either. At width 1 twice: on x86-64 without FMA instructions a fused product is a library call.
+PELLUCID_HD constexpr float multiply_add(float a, float b, float c) noexcept {
+  return a * b + c;
+}
+PELLUCID_HD constexpr double multiply_add(double a, double b, double c) noexcept {
+  return a * b + c;
+}
+
+/// Whether multiply_add(a, b, c) is fused: one rounding.
+template <class T>
+inline constexpr bool fuses = false;
 
 /// A NaN in either argument gives b, like the machine instruction.
 template <class T>

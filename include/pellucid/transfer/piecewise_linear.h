@@ -63,7 +63,7 @@ struct PiecewiseLinear {
 
   /// Whether extinction and color are the same everywhere in the intervals first … last (0 <= first
   /// <= last <= count).
-  PELLUCID_HD bool is_constant(int first, int last) const noexcept {
+  bool is_constant(int first, int last) const noexcept {
     const int end = min(last, count - 1);
     const Material<T>& m = material[max(first - 1, 0)];
     for (int j = max(first, 1); j <= end; ++j) {

@@ -37,9 +37,16 @@ PELLUCID_HD inline double derivative_variation(const BlockBends& bends, Vec3<dou
   return sum * (1 + 32 * rounding_unit<double>);
 }
 
-/// How far data whose derivative varies by `variation` in all can leave the chord of a stretch; the
-/// mean of that distance is at most half of it (chord_deviation() in block_ranges.h: the
-/// oscillation of the derivative is at most its variation).
+/// How far data whose derivative varies by `variation` in all can leave the chord of a stretch:
+///
+///   |f(t) - chord(t)| <= length · (B - m)(m - A) / (B - A) <= length · (B - A) / 4,
+///
+/// A and B being the ends of the derivative's range and m the chord's slope; B - A is at most the
+/// variation. For the difference g vanishes at both ends and its derivative f' - m lies in [A - m,
+/// B - m]: from the front g(t) <= (B - m) t, from the back g(t) <= (m - A)(length - t); the smaller
+/// of the two is largest where they meet, at (B - m)(m - A) / (B - A) · length. The same of -g. No
+/// m in [A, B] makes this larger than its value at (A + B) / 2. The mean of the distance is at most
+/// half of it.
 PELLUCID_HD inline double bend_deviation(double variation, double length) noexcept {
   return 0.25 * length * variation;
 }

@@ -137,6 +137,14 @@ void parallel_for(const Range& range, const Body& body) {
   parallel_for(range, body, context);
 }
 
+/// The ranges here are always cut to their grain.
+struct simple_partitioner {};
+template <class Range, class Body>
+void parallel_for(const Range& range, const Body& body, const simple_partitioner&,
+                  task_group_context& context) {
+  parallel_for(range, body, context);
+}
+
 namespace this_task_arena {
 template <class Body>
 void isolate(const Body& body) {

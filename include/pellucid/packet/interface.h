@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+/// What goes between the renderer and the packets of rays, which are compiled once for each
+/// instruction set, each time with namespace pellucid under another name: plain numbers and
+/// pointers, outside of it, that mean the same on both sides.
+extern "C" {
+
+/// A ray in grid coordinates, its parameter the world arc length; begin < end are where it enters
+/// the grid's box and leaves it. Whoever misses it makes no packet ray.
+struct PellucidRay {
+  double origin[3], direction[3];
+  double begin, end;
+};
+
+/// What one ray gathers: RayResult, as far as packets know it.
+struct PellucidRayResult {
+  double radiance[3], opacity, optical_depth;
+  double error;
+  std::int32_t cells, evaluations;
+  std::int32_t skipped, constant, closed, panels, in_double;
+  std::uint8_t proved;
+};
+
+/// A part of a cell that binary32, or the packets' rule, is not good enough for: [from, 1] of the
+/// way through it.
+struct PellucidCell {
+  std::int32_t cell[3];
+  double from;
+  double place_error;  ///< world length
+  /// The most that its error may be: per_opacity · (a bound on its opacity) + flat.
+  double allowance_per_opacity, allowance_flat;
+};
+
+struct PellucidCellResult {
+  double optical_depth, opacity, transparency, radiance[3];
+  double error;          ///< as of RayBudget::spend()
+  double opacity_bound;  ///< what the allowance was asked for
+  std::uint8_t proved, panels;
+};
+
+enum PellucidValue : std::int32_t {
+  pellucid_u8,
+  pellucid_i8,
+  pellucid_u16,
+  pellucid_i16,
+  pellucid_u32,
+  pellucid_i32,
+  pellucid_f32,
+  pellucid_f64
+};
+
+struct PellucidPacketJob {
+  // The grid: uniform, at least two values along each axis.
+  const void* data;
+  PellucidValue type;
+  std::int32_t values[3], padding[3];
+  // Its blocks.
+  const void* classes;  ///< BlockClass per block, x fastest
+  // The transfer function and what is wanted.
+  const void* transfer;  ///< BinnedTransfer
+  double tolerance, largest_color, largest_extinction;
+  // Rays and results.
+  const PellucidRay* rays;
+  PellucidRayResult* results;
+  std::int32_t count;
+  /// Integrates what the packets hand back.
+  void (*integrate_cell)(const void* context, std::int32_t ray, const PellucidCell* cell,
+                         PellucidCellResult* result);
+  const void* context;
+};
+
+void pellucid_integrate_packets_sse4(const PellucidPacketJob* job);
+void pellucid_integrate_packets_avx2(const PellucidPacketJob* job);
+void pellucid_integrate_packets_avx512(const PellucidPacketJob* job);
+}

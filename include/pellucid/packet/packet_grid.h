@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+
+#include "pellucid/packet/interface.h"
+#include "pellucid/traverse/block_classes.h"
+
+namespace pellucid {
+
+/// A uniform grid and its blocks as packets see them. Plane coordinates: those in which plane p of
+/// an axis stands at p (grid coordinates plus the padding); half cells at the border of
+/// cell-centred data are taken for whole ones, through which rays go half-way.
+template <class Value>
+struct PacketGrid {
+  const Value* data;
+  std::int32_t values[3], padding[3], cells[3], blocks[3];
+  const std::int32_t* classes;  ///< BlockClass, as one number
+  std::ptrdiff_t row, slice;    ///< values between neighbours along y, z
+
+  explicit PacketGrid(const PellucidPacketJob& job) noexcept
+      : data(static_cast<const Value*>(job.data)),
+        classes(static_cast<const std::int32_t*>(job.classes)),
+        row(job.values[0]),
+        slice(row * job.values[1]) {
+    for (int a = 0; a < 3; ++a) {
+      values[a] = job.values[a];
+      padding[a] = job.padding[a];
+      cells[a] = values[a] - 1 + 2 * padding[a];
+      blocks[a] = (cells[a] + block_width - 1) / block_width;
+    }
+  }
+};
+
+}  // namespace pellucid

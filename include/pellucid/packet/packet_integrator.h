@@ -1,0 +1,359 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "pellucid/error/budget.h"
+#include "pellucid/packet/cell_march.h"
+#include "pellucid/segment/extinction_piece.h"
+#include "pellucid/segment/fold.h"
+
+#if PELLUCID_HAS_BATCH_4  // in sources compiled per instruction set
+namespace pellucid {
+
+/// Integrates N rays at once, each in a lane of its own and within its own tolerance. What a ray
+/// becomes depends on no other lane; on N within its tolerance only, for 4 lanes do not fuse.
+///
+/// A lane walks from block to block and from cell to cell until it meets data that absorb: its
+/// span. Spans are worked on together, when half of the lanes have one, piece by piece: each is cut
+/// where the extinction has a corner (segment/extinction_piece.h), and halved where the budget
+/// cannot pay for its color. What binary32 is not good enough for is handed back, cell by cell.
+template <class Value, int N>
+class PacketIntegrator {
+ public:
+  using F = Batch<float, N>;
+  using D = Batch<double, N>;
+  using I = Batch<std::int32_t, N>;
+  using M = BatchMask<N>;
+
+  /// Of rays first … first + count - 1 of the job, count <= N.
+  PacketIntegrator(const PellucidPacketJob& job, const PacketGrid<Value>& grid, int first,
+                   int count) noexcept
+      : job_(job),
+        transfer_(*static_cast<const BinnedTransfer*>(job.transfer)),
+        first_(first),
+        count_(count),
+        blocks_(grid, job.rays + first, count),
+        cells_(grid, blocks_),
+        budget_(D(job.tolerance), blocks_.end),
+        largest_color_(static_cast<float>(job.largest_color)) {
+    float far[N];
+    for (int l = 0; l < N; ++l) {
+      // Where the ray meets the planes is known to a few units of its arc length.
+      const PellucidRay& ray = job.rays[first + (l < count ? l : 0)];
+      far[l] = static_cast<float>(8 * rounding_unit<double> * ray.end);
+    }
+    place_error_ = F::load(far);
+  }
+
+  void run() noexcept {
+    for (;;) {
+      const M idle = blocks_.alive & !cells_.walking & !pending_;
+      if (any(idle)) enter_blocks(idle);
+      if (none(blocks_.alive)) return;
+      const M ready = cells_.walking & !pending_;
+      if (any(pending_) && (none(ready) || 2 * count(pending_) >= count(blocks_.alive))) {
+        integrate_pieces();
+      } else if (any(ready)) {
+        step_cells(ready);
+      }
+    }
+  }
+
+  void store(PellucidRayResult* results) const noexcept {
+    const D rest = rest_behind();
+    const SegmentResult<D> all = fold_.result();
+    // Folding in double costs 4 u a piece.
+    const D error = budget_.spent() + rest +
+                    D(8 * rounding_unit<double> * job_.largest_color) * convert<double>(pieces_);
+    for (int l = 0; l < count_; ++l) {
+      PellucidRayResult& r = results[first_ + l];
+      r = {{all.radiance.r[l], all.radiance.g[l], all.radiance.b[l]},
+           all.opacity[l],
+           all.optical_depth[l],
+           error[l],
+           cells_seen_[l],
+           cells_seen_[l],
+           skipped_[l],
+           constant_[l],
+           pieces_[l] - panels_[l],
+           panels_[l],
+           in_double_[l],
+           static_cast<std::uint8_t>(bits(proved_) >> l & 1)};
+    }
+  }
+
+ private:
+  /// How narrow a part of a cell may get before it is handed back.
+  static constexpr float narrowest = 1.0f / 16;
+  /// After so many pieces and halvings what is left of a cell is handed back if it is not taken.
+  static constexpr int most_pieces = 64;
+
+  [[gnu::flatten]] void enter_blocks(M idle) noexcept {
+    blocks_.to_next(idle, skipped_);
+    const M here = idle & blocks_.alive;
+    const M constant = here & (blocks_.kind == I(static_cast<int>(BlockKind::constant)));
+    cells_.enter(here, blocks_);
+    if (any(constant)) {
+      // The material is that of any value in the block: of the one at its first corner.
+      typename CellMarch<Value, N>::Step step;
+      const M walking = cells_.walking & !constant;
+      cells_.step(constant, step);
+      begin_span(constant & (cells_.block_length > F(0)), step, F(0), cells_.block_length);
+      const F value = step.corners.value[0];
+      for (F& b : data_.b) b = select(constant, value, b);
+      cells_.walking = walking;
+      constant_ += select(constant, I(1), I(0));
+    }
+  }
+
+  [[gnu::flatten]] void step_cells(M ready) noexcept {
+    typename CellMarch<Value, N>::Step step;
+    cells_.step(ready, step);
+    cells_seen_ += select(ready, I(1), I(0));
+    const F* v = step.corners.value;
+    F lower = v[0], upper = v[0];
+    for (int n = 1; n < 8; ++n) {
+      lower = min(lower, v[n]);
+      upper = max(upper, v[n]);
+    }
+    M found = ready & (upper >= F(transfer_.support_min)) & (lower <= F(transfer_.support_max)) &
+              (step.end > step.begin);
+    if constexpr (!std::is_integral_v<Value>) {
+      F sum = v[0];
+      for (int n = 1; n < 8; ++n) sum += v[n];
+      found = found & !is_nan(sum);  // vacuum
+    }
+    if (none(found)) return;
+    // Of the values' differences from one of them: what is rounded is their range, and the value
+    // itself only at the end and in cuts. A place is off by 16 u of a cell along each axis.
+    CellCorners<F> differences;
+    for (int n = 0; n < 8; ++n) differences.value[n] = v[n] - v[0];
+    CubicBernstein<F> data = trilinear_cubic(differences, step.entry, step.exit);
+    for (F& b : data.b) b += v[0];
+    constexpr float u = rounding_unit<float>;
+    const F rounding = F(8 * u) * max(abs(lower), abs(upper)) + F(80 * u) * (upper - lower);
+    const F least = data.hull_min() - rounding, most = data.hull_max() + rounding;
+    const I marks = gather(transfer_.marks, bin_of(transfer_, most) + I(1)) -
+                    gather(transfer_.marks, bin_of(transfer_, least));
+    found = found & (marks > I(0));
+    if (none(found)) return;
+    begin_span(found, step, step.begin, step.end - step.begin);
+    for (int k = 0; k < 4; ++k) data_.b[k] = select(found, data.b[k], data_.b[k]);
+    rounding_ = select(found, rounding, rounding_);
+    handed_back_ = handed_back_ | (found & (marks >= I(BinnedTransfer::one_jump)));
+  }
+
+  void begin_span(M lanes, const typename CellMarch<Value, N>::Step& step, F begin,
+                  F length) noexcept {
+    pending_ = pending_ | lanes;
+    located_ = located_ & !lanes;
+    length_ = select(lanes, length, length_);
+    begin_ = select(lanes, begin, begin_);
+    span_length_ = select(lanes, length, span_length_);
+    last_of_block_ = select(lanes, step.end >= cells_.block_length, last_of_block_);
+    from_ = select(lanes, F(0), from_);
+    cap_ = select(lanes, F(1), cap_);
+    pieces_of_span_ = select(lanes, I(0), pieces_of_span_);
+    rounding_ = select(lanes, F(0), rounding_);
+    for (int a = 0; a < 3; ++a) cell_[a] = select(lanes, step.cell[a], cell_[a]);
+  }
+
+  [[gnu::flatten]] void integrate_pieces() noexcept {
+    if (any(handed_back_)) {
+      hand_back(handed_back_);
+      handed_back_ = M(false);
+      if (none(pending_)) return;
+    }
+    const M on = pending_;
+    const ExtinctionInterval<F> interval =
+        find_extinction(transfer_, data_.b[0], on & !located_, interval_);
+    located_ = located_ | on;
+    pieces_of_span_ += select(on, I(1), I(0));
+    const F close = F(0.25f) * rounding_;
+    const PieceEnd<F> end = piece_end(data_, interval.lower, interval.upper, close, on);
+    const M capped = cap_ < end.place;
+    const F place = min(end.place, cap_);
+    const M crosses = end.crosses & !capped;
+    CutCubic<F> parts{data_, data_};
+    if (any(on & (place < F(1)))) {
+      parts = cut(data_, place);
+      const F limit = select(end.rising, interval.upper, interval.lower);
+      parts.front.b[3] = select(crosses, limit, parts.front.b[3]);
+      parts.back.b[0] = select(crosses, limit, parts.back.b[0]);
+    }
+    const F length = length_ * place;
+    const BoundedSegment<F> piece = extinction_piece(parts.front, interval, length, transfer_);
+    const SegmentResult<F>& s = piece.segment;
+
+    // What rounding can do, as in segment/rounding.h.
+    constexpr float u = rounding_unit<float>;
+    const F value_error = rounding_ + close;
+    // The slope of the next interval counts for as much of the piece as is near to it: where the
+    // data rise throughout, no more than 2 value_error over their least slope.
+    const CubicBernstein<F>& f = parts.front;
+    const M touches = (f.hull_min() - value_error < interval.lower) |
+                      (f.hull_max() + value_error > interval.upper) | crosses;
+    const F d0 = f.b[1] - f.b[0], d1 = f.b[2] - f.b[1], d2 = f.b[3] - f.b[2];
+    const F least_slope = F(3) * max(min(d0, min(d1, d2)), -max(d0, max(d1, d2)));
+    const F near = select(least_slope > F(2) * value_error, F(2) * value_error / least_slope, F(1));
+    const F slope = abs(interval.slope);
+    const F steep = select(touches, slope + near * (interval.steepest - slope), slope);
+    const F depth_error = length * (value_error * steep + F(8 * u) * interval.largest) +
+                          place_error() * (length / span_length_) * interval.largest;
+    const F color_rounding =
+        F(32 * u) * largest_color_ + min(value_error * interval.color_slope, largest_color_);
+    const F opacity_rounding =
+        F(32 * u) * s.opacity +
+        min(select(depth_error <= F(1), F(2) * depth_error * s.transparency, F(1)), F(1));
+    const F rounding = s.opacity * color_rounding + largest_color_ * opacity_rounding;
+    const F error = piece.color_error + rounding;
+
+    const D length_left = blocks_.end - blocks_.begin - convert<double>(begin_) -
+                          convert<double>(from_ * span_length_);
+    budget_.pass_to(select(on, length_left, budget_.length_left()));
+    const D transparency = fold_.transparency();
+    const F allowance = convert<float>(
+        budget_.allowance(convert<double>(length), convert<double>(s.opacity), transparency));
+    const M take = on & end.found & (error <= allowance);
+    const M rest = on & !take;
+    if (any(rest)) {
+      const F half = F(0.5f) * place;
+      const F part = (F(1) - from_) * half;  // of the cell
+      // Halving makes it at most four times better, and the half of a half sixteen times.
+      const M halve = rest & end.found & (pieces_of_span_ < I(most_pieces)) &
+                      (part >= F(narrowest)) & (piece.color_error <= F(64) * allowance) &
+                      (rounding <= F(0.25f) * allowance);
+      cap_ = select(halve, half, cap_);
+      const M give_up = rest & !halve;
+      if (any(give_up)) hand_back(give_up);
+    }
+    if (none(take)) return;
+    const D opacity = masked(take, s.opacity);
+    fold_.add(SegmentResult<D>{
+        masked(take, s.optical_depth),
+        opacity,
+        select(take, convert<double>(s.transparency), D(1)),
+        {masked(take, s.radiance.r), masked(take, s.radiance.g), masked(take, s.radiance.b)}});
+    budget_.spend(masked(take, length), opacity, transparency, masked(take, error));
+    pieces_ += select(take, I(1), I(0));
+
+    const F left = F(1) - place;
+    for (int k = 0; k < 4; ++k) data_.b[k] = select(take, parts.back.b[k], data_.b[k]);
+    length_ = select(take, length_ * left, length_);
+    from_ = select(take, from_ + (F(1) - from_) * place, from_);
+    cap_ = select(take, select(capped & (place < left), place / left, F(1)), cap_);
+    interval_ += select(take & crosses, select(end.rising, I(1), I(-1)), I(0));
+    const M clear = (parts.back.hull_max() + rounding_ < F(transfer_.support_min)) |
+                    (parts.back.hull_min() - rounding_ > F(transfer_.support_max));
+    pending_ = pending_ & !(take & ((place >= F(1)) | clear));
+    retire();
+  }
+
+  /// Ends the rays that no longer matter.
+  void retire() noexcept {
+    const M done = blocks_.alive & (rest_behind() <= budget_.left());
+    blocks_.alive = blocks_.alive & !done;
+    cells_.walking = cells_.walking & !done;
+    pending_ = pending_ & !done;
+    cut_off_ = cut_off_ | done;
+  }
+
+  /// A bound on what lies behind the last piece, as little as light can come from there; nothing
+  /// behind rays that went to their end.
+  D rest_behind() const noexcept {
+    const D opacity = min(D(job_.largest_extinction) * budget_.length_left(), D(1));
+    const D rest = fold_.transparency() * opacity * D(job_.largest_color);
+    return select(blocks_.alive | cut_off_, rest, D(0));
+  }
+
+  /// How far a span's ends may be from where they are thought to be, world length. Where cells meet
+  /// is known to binary32 only, but what one has too much the other has too little, of data that
+  /// are the same there; the end of a block is rounded for good.
+  F place_error() const noexcept {
+    return place_error_ +
+           select(last_of_block_, F(2 * rounding_unit<float>) * cells_.block_length, F(0));
+  }
+
+  D masked(M mask, F value) const noexcept { return select(mask, convert<double>(value), D(0)); }
+
+  /// Has what is left of the lanes' spans integrated by other means.
+  void hand_back(M lanes) noexcept {
+    lanes = lanes & pending_;
+    const D length = convert<double>(length_), zero(0);
+    const D transparency = fold_.transparency();
+    budget_.pass_to(select(lanes,
+                           blocks_.end - blocks_.begin - convert<double>(begin_) -
+                               convert<double>(from_ * span_length_),
+                           budget_.length_left()));
+    const D flat = budget_.allowance(length, zero, transparency),
+            all = budget_.allowance(length, D(1), transparency);
+    double depth[N] = {}, opacity[N] = {}, through[N], red[N] = {}, green[N] = {}, blue[N] = {},
+           error[N] = {}, bound[N] = {};
+    unsigned not_proved = 0, with_panels = 0;
+    for (int l = 0; l < N; ++l) {
+      through[l] = 1;
+      if ((bits(lanes) >> l & 1) == 0) continue;
+      PellucidCell cell;
+      for (int a = 0; a < 3; ++a) {
+        cell.cell[a] = blocks_.block[a][l] * block_width + cell_[a][l];
+      }
+      cell.from = static_cast<double>(from_[l]);
+      cell.place_error = static_cast<double>(place_error_[l]);
+      cell.allowance_flat = flat[l];
+      cell.allowance_per_opacity = all[l] - flat[l];
+      PellucidCellResult result;
+      job_.integrate_cell(job_.context, first_ + l, &cell, &result);
+      depth[l] = result.optical_depth;
+      opacity[l] = result.opacity;
+      through[l] = result.transparency;
+      red[l] = result.radiance[0];
+      green[l] = result.radiance[1];
+      blue[l] = result.radiance[2];
+      error[l] = result.error;
+      bound[l] = result.opacity_bound;
+      if (result.proved == 0) not_proved |= 1u << l;
+      if (result.panels != 0) with_panels |= 1u << l;
+    }
+    fold_.add(SegmentResult<D>{D::load(depth),
+                               D::load(opacity),
+                               D::load(through),
+                               {D::load(red), D::load(green), D::load(blue)}});
+    budget_.spend(select(lanes, length, zero), D::load(bound), transparency, D::load(error));
+    proved_ = proved_ & !M::from_bits(not_proved);
+    pieces_ += select(lanes, I(1), I(0));
+    in_double_ += select(lanes, I(1), I(0));
+    panels_ += select(M::from_bits(with_panels), I(1), I(0));
+    pending_ = pending_ & !lanes;
+    retire();
+  }
+
+  const PellucidPacketJob& job_;
+  const BinnedTransfer& transfer_;
+  int first_, count_;
+  BlockMarch<Value, N> blocks_;
+  CellMarch<Value, N> cells_;
+
+  // The span that a lane has met.
+  M pending_{false};
+  M handed_back_{false};  ///< those of them that are not for the rule here
+  M last_of_block_{false};
+  M located_{false};  ///< whether `interval_` is known
+  CubicBernstein<F> data_;
+  F length_;               ///< world length of what is left of it
+  F begin_, span_length_;  ///< of all of it, from the block's entry
+  F from_;                 ///< the share that is done
+  F cap_;                  ///< the most that the next piece may be of what is left
+  F rounding_;             ///< of the data
+  F place_error_;          ///< world length
+  I interval_, pieces_of_span_, cell_[3];
+
+  RayBudget<D> budget_;
+  FrontToBack<D> fold_;
+  F largest_color_;
+  M proved_{true}, cut_off_{false};
+  I cells_seen_, skipped_, constant_;
+  I pieces_;  ///< all of them
+  I in_double_, panels_;
+};
+
+}  // namespace pellucid
+#endif

@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "pellucid/packet/interface.h"
+
+/// What goes between the renderer and the packets of rays that sample; as packet/interface.h.
+extern "C" {
+
+struct PellucidSamplerJob {
+  PellucidPacketJob grid_and_rays;  ///< of this the grid, its blocks, rays and results
+  const void* transfer;             ///< SamplerTransfer
+  const void* preintegrated;        ///< PreintegratedTable; null: the midpoint rule
+  double step;                      ///< world length
+  double stop;                      ///< the transparency at which a ray ends
+};
+
+void pellucid_sample_packets_sse4(const PellucidSamplerJob* job);
+void pellucid_sample_packets_avx2(const PellucidSamplerJob* job);
+void pellucid_sample_packets_avx512(const PellucidSamplerJob* job);
+}

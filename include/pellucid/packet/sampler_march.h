@@ -1,0 +1,191 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <limits>
+
+#include "pellucid/field/trilinear.h"
+#include "pellucid/packet/packet_grid.h"
+#include "pellucid/simd/batch.h"
+
+#if PELLUCID_HAS_BATCH_4  // in sources compiled per instruction set
+namespace pellucid {
+
+/// Rays in lanes that take steps of one length: which step each stands at, and the data around it.
+/// Places are found in double at the beginning of every few steps, and in float from there: a
+/// sample is off by no more than 1e-6 of a cell where a step is no longer than two.
+template <class Value, int N>
+class SamplerMarch {
+ public:
+  using F = Batch<float, N>;
+  using D = Batch<double, N>;
+  using I = Batch<std::int32_t, N>;
+  using M = BatchMask<N>;
+
+  M alive;  ///< whether a lane's ray is not yet through
+  I index;  ///< of the step that each lane stands at
+  D end;    ///< world length inside of the grid
+  int steps_at_once;
+
+  /// Rays of lanes beyond `count` are not alive.
+  SamplerMarch(const PacketGrid<Value>& grid, const PellucidRay* rays, int count,
+               double step) noexcept
+      : grid_(grid), step_(step) {
+    double o[3][N], d[3][N], e[N], largest = 0;
+    for (int l = 0; l < N; ++l) {
+      const PellucidRay& ray = rays[l < count ? l : 0];
+      for (int a = 0; a < 3; ++a) {
+        d[a][l] = ray.direction[a];
+        o[a][l] = ray.origin[a] + ray.begin * ray.direction[a] + grid.padding[a];
+        largest = max(largest, max(d[a][l], -d[a][l]) * step);
+      }
+      e[l] = l < count ? ray.end - ray.begin : 0;
+    }
+    steps_at_once = largest <= 2 ? 4 : 1;
+    end = D::load(e);
+    index = I(0);
+    for (int a = 0; a < 3; ++a) {
+      origin_[a] = D::load(o[a]);
+      direction_[a] = D::load(d[a]);
+      single_direction_[a] = convert<float>(direction_[a]);
+      inverse_[a] = D(1) / direction_[a];
+      forward_[a] = direction_[a] > D(0);
+      still_[a] = direction_[a] == D(0);
+    }
+    alive = end > D(0);
+  }
+
+  D begin_of(I i) const noexcept { return convert<double>(i) * step_; }
+
+  /// Takes lanes whose sample stands in a block to skip to the first step whose middle does not; or
+  /// they are no longer alive.
+  void skip_to_middle() noexcept {
+    M lanes = alive;
+    while (any(lanes)) {
+      const D begin = begin_of(index);
+      lanes = keep_inside(lanes, begin);
+      D leave;
+      const M skip = find_skipped(lanes, middle_of(begin), leave);
+      if (none(skip)) return;
+      const D middle_beyond = D(0) - floor(D(0.5) - leave / step_);
+      advance(skip, middle_beyond, I(1));
+      lanes = skip;
+    }
+  }
+
+  /// Likewise for steps that lie in blocks to skip from end to end: data are continuous, so that
+  /// one after the other such blocks cover a single range in which nothing absorbs, and so does
+  /// whatever lies between the values at the step's ends.
+  void skip_steps() noexcept {
+    M lanes = alive;
+    D look = begin_of(index);
+    M skipped(false);
+    while (any(lanes)) {
+      lanes = keep_inside(lanes, look);
+      D leave;
+      const M skip = find_skipped(lanes, look, leave);
+      if (none(skip)) break;
+      skipped = skipped | skip;
+      // A little further, so that the next block is found there; it touches the last one.
+      look = select(skip, max(leave, look) + D(1e-6) * step_, look);
+      lanes = skip;
+    }
+    advance(skipped, floor(look / step_), I(0));
+  }
+
+  /// Makes sample() of the steps from `index` on ready.
+  void anchor(D at) noexcept {
+    double from[3][N];
+    for (int a = 0; a < 3; ++a) {
+      const double last = grid_.values[a] - 1;
+      const D place = origin_[a] + at * direction_[a] - D(grid_.padding[a]);
+      const D cell = min(floor(clamp(place, D(0), D(last))), D(last - 1));
+      place_[a] = convert<float>(place - cell);
+      least_[a] = convert<float>(D(0) - cell);
+      most_[a] = convert<float>(D(last) - cell);
+      cell.store(from[a]);
+    }
+    const auto row = static_cast<double>(grid_.row), slice = static_cast<double>(grid_.slice);
+    for (int l = 0; l < N; ++l) {
+      const Value* base = grid_.data + static_cast<std::ptrdiff_t>(from[0][l] + row * from[1][l] +
+                                                                   slice * from[2][l]);
+      base_[0][l] = base;
+      base_[1][l] = base + grid_.row;
+      base_[2][l] = base + grid_.slice;
+      base_[3][l] = base + grid_.slice + grid_.row;
+    }
+  }
+
+  /// The data at a world length from the anchor; NaN in vacuum.
+  PELLUCID_ALWAYS_INLINE F sample(F offset) const noexcept {
+    Vec3<F> local;
+    I cell[3];
+    for (int a = 0; a < 3; ++a) {
+      const F place =
+          clamp(multiply_add(offset, single_direction_[a], place_[a]), least_[a], most_[a]);
+      const F lower = min(floor(place), most_[a] - F(1));
+      local[a] = place - lower;
+      cell[a] = convert<std::int32_t>(lower);
+    }
+    std::int32_t o[N];
+    (cell[0] + I(static_cast<std::int32_t>(grid_.row)) * cell[1] +
+     I(static_cast<std::int32_t>(grid_.slice)) * cell[2])
+        .store(o);
+    CellCorners<F> corners;
+    for (int k = 0; k < 4; ++k) {
+      gather_pairs(base_[k], o, corners.value[2 * k], corners.value[2 * k + 1]);
+    }
+    return trilinear_value(corners, local);
+  }
+
+  /// The middle of a step that begins there; the last one ends with the ray.
+  D middle_of(D begin) const noexcept { return D(0.5) * (begin + min(begin + step_, end)); }
+
+ private:
+  M keep_inside(M lanes, D at) noexcept {
+    const M inside = at < end;
+    alive = alive & (inside | !lanes);
+    return lanes & inside;
+  }
+
+  /// Those of the lanes that are in a block to skip at the given world length, and where they leave
+  /// the cube of such blocks.
+  M find_skipped(M lanes, D at, D& leave) const noexcept {
+    I block[3];
+    for (int a = 0; a < 3; ++a) {
+      const D place = clamp(origin_[a] + at * direction_[a], D(0), D(grid_.cells[a] - 1));
+      block[a] = convert<std::int32_t>(place) >> 3;
+    }
+    const I block_index =
+        block[0] + I(grid_.blocks[0]) * (block[1] + I(grid_.blocks[1]) * block[2]);
+    const I found = gather(grid_.classes, select(lanes, block_index, I(0)));
+    const M skip = lanes & (((found >> 16) & I(255)) == I(static_cast<int>(BlockKind::skip)));
+    if (none(skip)) return skip;
+    static constexpr std::int32_t sides[8] = {1, 2, 4, 8, 16, 32, 64, 128};
+    const I side = gather(sides, select(skip, (found >> 24) & I(7), I(0)));
+    leave = end;
+    for (int a = 0; a < 3; ++a) {
+      const I lower = block[a] & (I(0) - side);
+      const D plane = convert<double>(I(block_width) * select(forward_[a], lower + side, lower));
+      leave = select(still_[a], leave, min(leave, (plane - origin_[a]) * inverse_[a]));
+    }
+    return skip;
+  }
+
+  /// To that step where it is not before the present one plus `least`.
+  void advance(M lanes, D to, I least) noexcept {
+    const I bounded = convert<std::int32_t>(min(to, D(1 << 30)));
+    index = select(lanes, max(bounded, index + least), index);
+  }
+
+  static_assert(block_width == 8);
+  const PacketGrid<Value>& grid_;
+  D step_;
+  D origin_[3], direction_[3], inverse_[3];  ///< plane coordinates, by world length
+  M forward_[3], still_[3];
+  F single_direction_[3];
+  F place_[3], least_[3], most_[3];  ///< of the anchor and of the data's ends, in its cell
+  const Value* base_[4][N];          ///< the anchor's cell: its rows along x
+};
+
+}  // namespace pellucid
+#endif

@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "pellucid/error/precision.h"
+#include "pellucid/render/ray_result.h"
+#include "pellucid/render/transfer_tables.h"
+#include "pellucid/segment/cubic.h"
+#include "pellucid/segment/line_rule.h"
+#include "pellucid/segment/rounding.h"
+
+namespace pellucid {
+
+/// What is asked of every ray.
+struct RayTolerance {
+  /// How far the ray's result may be from the integral, in each channel of premultiplied RGBA.
+  double tolerance = 1.0 / 512;
+  Grade grade = Grade::estimated;
+  Precision precision = Precision::automatic;
+  /// C_max of theorem (3): a bound on the colors of the transfer function and on the background.
+  double largest_color = 1;
+};
+
+/// A cell's segment by the cheapest rule that is good enough.
+template <class T>
+struct CellSegment {
+  BoundedSegment<T> found;  ///< with the errors of the method
+  double rounding = 0;      ///< what rounding adds, as of RayBudget::spend()
+  double opacity = 0;       ///< a bound on it, which the allowance was asked for
+  bool clear = false;       ///< nothing absorbs
+  bool line = false;        ///< by line_rule()
+
+  /// What it costs, as of RayBudget::spend().
+  PELLUCID_HD double error(double largest_color) const noexcept {
+    return static_cast<double>(found.color_error) +
+           largest_color * static_cast<double>(found.opacity_error) + rounding;
+  }
+};
+
+/// Integrates a cell, or a part of one, in T. `place_error`: how far its ends may be from where
+/// they are thought to be, world length. allowance(opacity): how large its error may be. Without
+/// `forced`, returns false where T's rounding would take more than a quarter of that.
+template <class T, class Allowance>
+PELLUCID_HD bool integrate_cell(const CubicBernstein<T>& data, T length, double place_error,
+                                const TransferTables& transfer, const RayTolerance& wanted,
+                                bool forced, Allowance&& allowance,
+                                CellSegment<T>& result) noexcept {
+  const PiecewiseLinear<T>& table = transfer.table<T>();
+  const double largest_color = max(wanted.largest_color, 1.0);
+  const T data_error = data_rounding(data);
+  const T lower = data.hull_min(), upper = data.hull_max();
+  // Squares of the data's differences must not underflow in binary32.
+  if (!forced && !(max(abs(lower), abs(upper)) > T(1e-15)) && upper > lower) return false;
+  const bool lacks = is_single<T> && transfer.single_lacks(static_cast<double>(lower - data_error),
+                                                           static_cast<double>(upper + data_error));
+  if (lacks && !forced) return false;
+  const detail::IntervalRange reach =
+      detail::interval_range(table, lower - data_error, upper + data_error);
+  result = {};
+  if (!table.has_extinction(reach.first, reach.last) && !lacks) {
+    result.clear = true;
+    return true;
+  }
+  const Sensitivity<T> slopes = sensitivity(table, reach.first, reach.last, data_error);
+  const T opacity = min(slopes.largest_extinction * length, T(1));
+  result.opacity = static_cast<double>(opacity);
+  const double allowed = allowance(result.opacity);
+  RoundingError<T> rounding = rounding_error(data, length, T(largest_color), table, reach.first,
+                                             reach.last, data_error, slopes);
+  rounding.depth += static_cast<T>(place_error) * slopes.largest_extinction;
+  const auto rounding_cost = [&](const T alpha, const T transparency) noexcept {
+    if (lacks) return largest_color;  // anything may be there
+    return static_cast<double>(rounding.color_error(alpha)) +
+           largest_color * static_cast<double>(rounding.opacity_error(alpha, transparency));
+  };
+  // The most it can be, as if nothing absorbed in front.
+  const double at_most = rounding_cost(opacity, T(1));
+  if (!forced && !(at_most <= 0.25 * allowed)) return false;
+  const double left = max(allowed - at_most, 0.25 * allowed);
+
+  if (reach.first != reach.last) {
+    result.found = line_rule(data, length, table, transfer.antiderivative<T>());
+    result.line = result.error(largest_color) <= left;  // `rounding` is still 0
+  }
+  if (!result.line) {
+    result.found = integrate_cubic(
+        data, length, table, static_cast<T>(left / static_cast<double>(opacity)), wanted.grade);
+  }
+  result.rounding = rounding_cost(result.found.segment.opacity, result.found.segment.transparency);
+  return true;
+}
+
+}  // namespace pellucid

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "pellucid/transfer/binned.h"
+#include "pellucid/transfer/piecewise_linear.h"
+
+namespace pellucid {
+
+/// Builds and owns the bins of a transfer function.
+class BinnedTransferStorage {
+ public:
+  /// `merged`: values where control points of the function fall together in binary32.
+  BinnedTransferStorage(const PiecewiseLinear<double>& table, const double* merged,
+                        int merged_count);
+  BinnedTransferStorage(const BinnedTransferStorage&) = delete;
+  BinnedTransferStorage& operator=(const BinnedTransferStorage&) = delete;
+
+  const BinnedTransfer& view() const noexcept { return view_; }
+
+ private:
+  std::vector<float> extinction_, color_, color_bend_;
+  std::vector<std::int32_t> first_extinction_, first_color_, marks_;
+  BinnedTransfer view_;
+};
+
+}  // namespace pellucid

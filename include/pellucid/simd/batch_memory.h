@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "pellucid/simd/batch_number.h"
+
+#if PELLUCID_HAS_BATCH_4
+namespace pellucid {
+
+/// base[index] of every lane. Reads nothing else.
+template <class T, int N>
+PELLUCID_ALWAYS_INLINE Batch<T, N> gather(const T* base, Batch<std::int32_t, N> index) noexcept {
+  using Native = detail::Native<N>;
+  if constexpr (Batch<T, N>::one_register) {
+    return Batch<T, N>(typename Batch<T, N>::Register(Native::gather(base, index.part[0])));
+  } else {
+    typename Native::Double low, high;
+    Native::gather(base, index.part[0], low, high);
+    return Batch<T, N>(low, high);
+  }
+}
+
+/// gather() of a small table; without a load per lane where 16 numbers fit into registers.
+template <class T, std::size_t Entries, int N>
+PELLUCID_ALWAYS_INLINE Batch<T, N> lookup(const T (&table)[Entries],
+                                          Batch<std::int32_t, N> index) noexcept {
+  if constexpr (Entries == 16 && detail::Native<N>::template has_lookup<T>) {
+    using Native = detail::Native<N>;
+    if constexpr (Batch<T, N>::one_register) {
+      return Batch<T, N>(typename Batch<T, N>::Register(Native::lookup(table, index.part[0])));
+    } else {
+      typename Native::Double low, high;
+      Native::lookup(table, index.part[0], low, high);
+      return Batch<T, N>(low, high);
+    }
+  } else {
+    return gather(table, index);
+  }
+}
+
+/// Lane l gets base[l][offset[l]] and base[l][offset[l] + 1] as floats, each rounded once; reads
+/// exactly those two values. Value: an integer of 8, 16 or 32 bits, float or double. One load per
+/// lane for both is half the price of two gathers.
+template <class Value, int N>
+PELLUCID_ALWAYS_INLINE void gather_pairs(const Value* const* base, const std::int32_t* offset,
+                                         Batch<float, N>& first, Batch<float, N>& second) noexcept {
+  using Native = detail::Native<N>;
+  using Float = Batch<float, N>;
+  using Int = Batch<std::int32_t, N>;
+  const auto number = [](Int x) __attribute__((always_inline)) {
+    return convert<float>(x);
+  };
+  if constexpr (sizeof(Value) == 1) {
+    const Int both{typename Int::Register(Native::bytes(base, offset))};
+    if constexpr (std::is_signed_v<Value>) {
+      first = number((both << 24) >> 24);
+      second = number((both << 16) >> 24);
+    } else {
+      first = number(both & Int(0xff));
+      second = number(both >> 8);
+    }
+  } else if constexpr (sizeof(Value) == 2) {
+    const Int both{typename Int::Register(Native::words(base, offset))};
+    if constexpr (std::is_signed_v<Value>) {
+      first = number((both << 16) >> 16);
+      second = number(both >> 16);
+    } else {
+      first = number(both & Int(0xffff));
+      second = number((both >> 16) & Int(0xffff));
+    }
+  } else {
+    typename Native::Float a, b;
+    Native::pairs(base, offset, a, b);
+    if constexpr (std::is_floating_point_v<Value>) {
+      first = Float(typename Float::Register(a));
+      second = Float(typename Float::Register(b));
+    } else {
+      const auto as_int = [](typename Native::Float x) __attribute__((always_inline)) {
+        return reinterpret_cast<typename Native::Int>(x);
+      };
+      const auto as_number = [](typename Native::Int x) __attribute__((always_inline)) {
+        return std::is_signed_v<Value> ? Native::to_float(x) : Native::unsigned_to_float(x);
+      };
+      first = Float(typename Float::Register(as_number(as_int(a))));
+      second = Float(typename Float::Register(as_number(as_int(b))));
+    }
+  }
+}
+
+/// out[k] = base[K index + k] of every lane, k < K, K a multiple of 4: rows are loaded and
+/// transposed, which takes far less than K gathers. Reads nothing else.
+template <int K, int N>
+PELLUCID_ALWAYS_INLINE void load_records(const float* base, Batch<std::int32_t, N> index,
+                                         Batch<float, N>* out) noexcept {
+  static_assert(K > 0 && K % 4 == 0);
+  using Native = detail::Native<N>;
+  using Float = Batch<float, N>;
+  std::int32_t row[N];
+  index.store(row);
+  for (int k = 0; k < K; k += 4) {
+    typename Native::Float fields[4];
+    Native::four_fields(base + k, K, row, fields);
+    for (int j = 0; j < 4; ++j) out[k + j] = Float(typename Float::Register(fields[j]));
+  }
+}
+
+}  // namespace pellucid
+#endif

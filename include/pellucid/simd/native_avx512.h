@@ -1,0 +1,208 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "pellucid/simd/native_sse4.h"
+
+#if PELLUCID_HAS_BATCH_16
+namespace pellucid::detail {
+
+/// Members as in Native<4>; a mask is one bit per lane.
+template <>
+struct Native<16> {
+  using Arch = xsimd::avx512bw;
+  using Float = __m512;
+  using Int = __m512i;
+  using Double = __m512d;
+
+  using Mask = __mmask16;
+  struct WideMask {
+    __mmask8 low, high;
+  };
+  PELLUCID_ALWAYS_INLINE static Mask mask(xsimd::batch_bool<float, Arch> m) noexcept { return m; }
+  PELLUCID_ALWAYS_INLINE static Mask mask(xsimd::batch_bool<std::int32_t, Arch> m) noexcept {
+    return m;
+  }
+  PELLUCID_ALWAYS_INLINE static Mask mask(xsimd::batch_bool<double, Arch> low,
+                                          xsimd::batch_bool<double, Arch> high) noexcept {
+    return _mm512_kunpackb(__mmask8(high), __mmask8(low));
+  }
+  PELLUCID_ALWAYS_INLINE static WideMask widen(Mask m) noexcept {
+    return {static_cast<__mmask8>(m), static_cast<__mmask8>(m >> 8)};
+  }
+  PELLUCID_ALWAYS_INLINE static Mask none() noexcept { return 0; }
+  PELLUCID_ALWAYS_INLINE static Mask every() noexcept { return 0xffff; }
+  PELLUCID_ALWAYS_INLINE static Mask mask_of_bits(unsigned bits) noexcept {
+    return static_cast<Mask>(bits);
+  }
+  PELLUCID_ALWAYS_INLINE static unsigned bits(Mask m) noexcept { return m; }
+  PELLUCID_ALWAYS_INLINE static Mask both(Mask a, Mask b) noexcept { return _kand_mask16(a, b); }
+  PELLUCID_ALWAYS_INLINE static Mask either(Mask a, Mask b) noexcept { return _kor_mask16(a, b); }
+  PELLUCID_ALWAYS_INLINE static Mask differ(Mask a, Mask b) noexcept { return _kxor_mask16(a, b); }
+  PELLUCID_ALWAYS_INLINE static Mask both_not(Mask a, Mask b) noexcept {
+    return _kandn_mask16(b, a);
+  }
+
+  PELLUCID_ALWAYS_INLINE static Float choose(Mask m, Float a, Float b) noexcept {
+    return _mm512_mask_blend_ps(m, b, a);
+  }
+  PELLUCID_ALWAYS_INLINE static Int choose(Mask m, Int a, Int b) noexcept {
+    return _mm512_mask_blend_epi32(m, b, a);
+  }
+  PELLUCID_ALWAYS_INLINE static Double choose(__mmask8 m, Double a, Double b) noexcept {
+    return _mm512_mask_blend_pd(m, b, a);
+  }
+
+  PELLUCID_ALWAYS_INLINE static Float flip(Float a, Float b) noexcept {
+    return _mm512_xor_ps(a, b);
+  }
+  PELLUCID_ALWAYS_INLINE static Double flip(Double a, Double b) noexcept {
+    return _mm512_xor_pd(a, b);
+  }
+  // 0xca: the second where the first has a bit, else the third.
+  PELLUCID_ALWAYS_INLINE static Float merge(Float sign_bit, Float s, Float x) noexcept {
+    return _mm512_castsi512_ps(_mm512_ternarylogic_epi32(
+        _mm512_castps_si512(sign_bit), _mm512_castps_si512(s), _mm512_castps_si512(x), 0xca));
+  }
+  PELLUCID_ALWAYS_INLINE static Double merge(Double sign_bit, Double s, Double x) noexcept {
+    return _mm512_castsi512_pd(_mm512_ternarylogic_epi64(
+        _mm512_castpd_si512(sign_bit), _mm512_castpd_si512(s), _mm512_castpd_si512(x), 0xca));
+  }
+
+  static constexpr bool has_fma = true;
+  PELLUCID_ALWAYS_INLINE static Float fused(Float a, Float b, Float c) noexcept {
+    return _mm512_fmadd_ps(a, b, c);
+  }
+  PELLUCID_ALWAYS_INLINE static Double fused(Double a, Double b, Double c) noexcept {
+    return _mm512_fmadd_pd(a, b, c);
+  }
+
+  PELLUCID_ALWAYS_INLINE static Float round_down(Float x) noexcept {
+    return _mm512_roundscale_ps(x, _MM_FROUND_TO_NEG_INF | _MM_FROUND_NO_EXC);
+  }
+  PELLUCID_ALWAYS_INLINE static Double round_down(Double x) noexcept {
+    return _mm512_roundscale_pd(x, _MM_FROUND_TO_NEG_INF | _MM_FROUND_NO_EXC);
+  }
+  PELLUCID_ALWAYS_INLINE static Float round_to_nearest(Float x) noexcept {
+    return _mm512_roundscale_ps(x, _MM_FROUND_TO_NEAREST_INT | _MM_FROUND_NO_EXC);
+  }
+  PELLUCID_ALWAYS_INLINE static Double round_to_nearest(Double x) noexcept {
+    return _mm512_roundscale_pd(x, _MM_FROUND_TO_NEAREST_INT | _MM_FROUND_NO_EXC);
+  }
+
+  PELLUCID_ALWAYS_INLINE static Float scale(Float x, Float n) noexcept {
+    return _mm512_scalef_ps(x, n);
+  }
+  PELLUCID_ALWAYS_INLINE static Double scale(Double x, Double n) noexcept {
+    return _mm512_scalef_pd(x, n);
+  }
+
+  PELLUCID_ALWAYS_INLINE static Int to_int(Float x) noexcept { return _mm512_cvttps_epi32(x); }
+  PELLUCID_ALWAYS_INLINE static Int to_int(Double low, Double high) noexcept {
+    return _mm512_inserti64x4(_mm512_castsi256_si512(_mm512_cvttpd_epi32(low)),
+                              _mm512_cvttpd_epi32(high), 1);
+  }
+  PELLUCID_ALWAYS_INLINE static Float to_float(Int x) noexcept { return _mm512_cvtepi32_ps(x); }
+  PELLUCID_ALWAYS_INLINE static Float to_float(Double low, Double high) noexcept {
+    return _mm512_insertf32x8(_mm512_castps256_ps512(_mm512_cvtpd_ps(low)), _mm512_cvtpd_ps(high),
+                              1);
+  }
+  PELLUCID_ALWAYS_INLINE static Float unsigned_to_float(Int x) noexcept {
+    return _mm512_cvtepu32_ps(x);
+  }
+  PELLUCID_ALWAYS_INLINE static void to_double(Float x, Double& low, Double& high) noexcept {
+    low = _mm512_cvtps_pd(_mm512_castps512_ps256(x));
+    high = _mm512_cvtps_pd(_mm512_extractf32x8_ps(x, 1));
+  }
+  PELLUCID_ALWAYS_INLINE static void to_double(Int x, Double& low, Double& high) noexcept {
+    low = _mm512_cvtepi32_pd(_mm512_castsi512_si256(x));
+    high = _mm512_cvtepi32_pd(_mm512_extracti64x4_epi64(x, 1));
+  }
+
+  PELLUCID_ALWAYS_INLINE static Float gather(const float* base, Int index) noexcept {
+    return _mm512_i32gather_ps(index, base, 4);
+  }
+  PELLUCID_ALWAYS_INLINE static Int gather(const std::int32_t* base, Int index) noexcept {
+    return _mm512_i32gather_epi32(index, base, 4);
+  }
+  PELLUCID_ALWAYS_INLINE static void gather(const double* base, Int index, Double& low,
+                                            Double& high) noexcept {
+    low = _mm512_i32gather_pd(_mm512_castsi512_si256(index), base, 8);
+    high = _mm512_i32gather_pd(_mm512_extracti64x4_epi64(index, 1), base, 8);
+  }
+
+  template <class T>
+  static constexpr bool has_lookup = sizeof(T) == 4 || sizeof(T) == 8;
+  PELLUCID_ALWAYS_INLINE static Float lookup(const float* table, Int index) noexcept {
+    return _mm512_permutexvar_ps(index, _mm512_loadu_ps(table));
+  }
+  PELLUCID_ALWAYS_INLINE static Int lookup(const std::int32_t* table, Int index) noexcept {
+    return _mm512_permutexvar_epi32(index, _mm512_loadu_si512(table));
+  }
+  PELLUCID_ALWAYS_INLINE static void lookup(const double* table, Int index, Double& low,
+                                            Double& high) noexcept {
+    const __m512d first = _mm512_loadu_pd(table), second = _mm512_loadu_pd(table + 8);
+    const __m512i i_low = _mm512_cvtepi32_epi64(_mm512_castsi512_si256(index));
+    const __m512i i_high = _mm512_cvtepi32_epi64(_mm512_extracti64x4_epi64(index, 1));
+    low = _mm512_permutex2var_pd(first, i_low, second);
+    high = _mm512_permutex2var_pd(first, i_high, second);
+  }
+
+  /// Four blocks of four lanes.
+  PELLUCID_ALWAYS_INLINE static __m512 blocks(__m128 a, __m128 b, __m128 c, __m128 d) noexcept {
+    const __m256 low = _mm256_insertf128_ps(_mm256_castps128_ps256(a), b, 1);
+    const __m256 high = _mm256_insertf128_ps(_mm256_castps128_ps256(c), d, 1);
+    return _mm512_insertf32x8(_mm512_castps256_ps512(low), high, 1);
+  }
+  PELLUCID_ALWAYS_INLINE static __m512i blocks(__m128i a, __m128i b, __m128i c,
+                                               __m128i d) noexcept {
+    const __m256i low = _mm256_inserti128_si256(_mm256_castsi128_si256(a), b, 1);
+    const __m256i high = _mm256_inserti128_si256(_mm256_castsi128_si256(c), d, 1);
+    return _mm512_inserti64x4(_mm512_castsi256_si512(low), high, 1);
+  }
+
+  template <class Value>
+  PELLUCID_ALWAYS_INLINE static void pairs(const Value* const* base, const std::int32_t* offset,
+                                           Float& first, Float& second) noexcept {
+    // Shuffles act within blocks of four lanes: the lower two lanes of each block in one register,
+    // the upper two in the other.
+    const auto two = [&](int lane) __attribute__((always_inline)) {
+      return PairBlock<Value>::two_lanes(base[lane] + offset[lane],
+                                         base[lane + 1] + offset[lane + 1]);
+    };
+    const __m512 a = blocks(two(0), two(4), two(8), two(12));
+    const __m512 b = blocks(two(2), two(6), two(10), two(14));
+    first = _mm512_shuffle_ps(a, b, 0x88);
+    second = _mm512_shuffle_ps(a, b, 0xdd);
+  }
+  template <class Value>
+  PELLUCID_ALWAYS_INLINE static Int words(const Value* const* base,
+                                          const std::int32_t* offset) noexcept {
+    return blocks(four_words(base, offset), four_words(base + 4, offset + 4),
+                  four_words(base + 8, offset + 8), four_words(base + 12, offset + 12));
+  }
+  template <class Value>
+  PELLUCID_ALWAYS_INLINE static Int bytes(const Value* const* base,
+                                          const std::int32_t* offset) noexcept {
+    return _mm512_cvtepu16_epi32(
+        _mm256_set_m128i(short_words<8>(base + 8, offset + 8), short_words<8>(base, offset)));
+  }
+
+  PELLUCID_ALWAYS_INLINE static void four_fields(const float* base, std::ptrdiff_t stride,
+                                                 const std::int32_t* index, Float* out) noexcept {
+    __m512 r[4];
+    for (int j = 0; j < 4; ++j) {
+      r[j] = blocks(
+          _mm_loadu_ps(base + stride * index[j]), _mm_loadu_ps(base + stride * index[4 + j]),
+          _mm_loadu_ps(base + stride * index[8 + j]), _mm_loadu_ps(base + stride * index[12 + j]));
+    }
+    const __m512 a = _mm512_unpacklo_ps(r[0], r[1]), b = _mm512_unpackhi_ps(r[0], r[1]);
+    const __m512 c = _mm512_unpacklo_ps(r[2], r[3]), d = _mm512_unpackhi_ps(r[2], r[3]);
+    out[0] = _mm512_shuffle_ps(a, c, 0x44);
+    out[1] = _mm512_shuffle_ps(a, c, 0xee);
+    out[2] = _mm512_shuffle_ps(b, d, 0x44);
+    out[3] = _mm512_shuffle_ps(b, d, 0xee);
+  }
+};
+
+}  // namespace pellucid::detail
+#endif

@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+
+#include "pellucid/math/rgb.h"
+
+namespace pellucid {
+
+/// A piecewise-linear transfer function for many rays at once: extinction and color in tables of
+/// their own, so that a segment is cut only where the extinction has a corner, and uniform bins
+/// over the data values that lead to them. A view of plain arrays, the same in every instruction
+/// set; owns nothing. Made by scene/binned_transfer_storage.h.
+///
+/// Bin 0 holds everything below the table, the last one everything above. Which bin a value falls
+/// into is rounded, but rises with the value; what is said of a bin holds for all values that can
+/// fall into it.
+struct BinnedTransfer {
+  /// Per interval of the extinction: lower, upper, extinction at the lower end, slope, then bounds
+  /// over the interval: the largest extinction, the steepest |slope| of it and of its neighbours,
+  /// the range of the absorbing colors, the largest |slope| of the color. The outsides, whose slope
+  /// is 0, reach to ∓far.
+  const float* extinction = nullptr;
+  /// Per interval of the color: lower, upper, color at the lower end, its slope.
+  const float* color = nullptr;
+  const std::int32_t* first_extinction = nullptr;  ///< per bin: the interval of its lower edge
+  const std::int32_t* first_color = nullptr;       ///< likewise
+  /// Sums over the bins in front of each, bins + 1 of them: how many absorb, plus 2^16 times how
+  /// many hold a jump or what binary32 cannot tell apart.
+  const std::int32_t* marks = nullptr;
+  /// Sums over the bins in front of each of how much the slope of the color changes, in all,
+  /// largest channel.
+  const float* color_bend = nullptr;
+  float origin = 0, bins_per_value = 0;
+  std::int32_t bins = 0;
+  float bend_rounding = 0;                 ///< of a difference of two of color_bend
+  float support_min = 0, support_max = 0;  ///< nothing absorbs outside; crossed over: nowhere
+  float largest_extinction = 0;
+  float largest_color = 0;
+
+  static constexpr int extinction_fields = 8, color_fields = 8;
+  static constexpr std::int32_t one_jump = 1 << 16;
+  /// Beyond every value, and its differences to them are finite.
+  static constexpr float far = 1.7e38f;
+};
+
+/// The bins of values in lanes F; no NaN.
+template <class F>
+auto bin_of(const BinnedTransfer& t, F value) noexcept {
+  // Bounded as a float: a conversion that overflows has no value.
+  const F place = (value - F(t.origin)) * F(t.bins_per_value) + F(1);
+  return convert<std::int32_t>(clamp(place, F(0), F(static_cast<float>(t.bins - 1))));
+}
+
+/// One interval of the extinction, in lanes.
+template <class F>
+struct ExtinctionInterval {
+  F lower, upper, at_lower, slope, largest, steepest, color_range, color_slope;
+};
+
+template <class F, class Index>
+ExtinctionInterval<F> load_extinction(const BinnedTransfer& t, Index interval) noexcept {
+  F r[BinnedTransfer::extinction_fields];
+  load_records<BinnedTransfer::extinction_fields>(t.extinction, interval, r);
+  return {r[0], r[1], r[2], r[3], r[4], r[5], r[6], r[7]};
+}
+
+/// The interval of the extinction that holds `value` where `mask`, and its index; elsewhere
+/// `index` is kept.
+template <class F, class Index, class Mask>
+ExtinctionInterval<F> find_extinction(const BinnedTransfer& t, F value, const Mask& mask,
+                                      Index& index) noexcept {
+  index = select(mask, gather(t.first_extinction, bin_of(t, value)), index);
+  ExtinctionInterval<F> found = load_extinction<F>(t, index);
+  for (auto further = mask & (value >= found.upper); any(further);
+       further = mask & (value >= found.upper)) {
+    index = select(further, index + Index(1), index);
+    found = load_extinction<F>(t, index);
+  }
+  return found;
+}
+
+/// The color at a value. Largest error: 4 u of the largest color beside that of the value's own.
+template <class F>
+Rgb<F> color_at(const BinnedTransfer& t, F value) noexcept {
+  value = clamp(value, F(-BinnedTransfer::far / 2), F(BinnedTransfer::far / 2));
+  auto index = gather(t.first_color, bin_of(t, value));
+  F r[BinnedTransfer::color_fields];
+  load_records<BinnedTransfer::color_fields>(t.color, index, r);
+  for (auto further = value >= r[1]; any(further); further = value >= r[1]) {
+    index = select(further, index + decltype(index)(1), index);
+    load_records<BinnedTransfer::color_fields>(t.color, index, r);
+  }
+  const F offset = value - r[0];
+  return {r[2] + offset * r[5], r[3] + offset * r[6], r[4] + offset * r[7]};
+}
+
+}  // namespace pellucid

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+
+#include "pellucid/traverse/block_records.h"
+
+namespace pellucid {
+
+/// What has to be done in a block, under one transfer function.
+enum class BlockKind : std::uint8_t {
+  cells,     ///< gone through
+  constant,  ///< the transfer function is constant over the range of the data, and no cell is
+             ///<   vacuum; or the data is one number: in either case the material is that at the
+             ///<   lower end of the range
+  skip       ///< nothing absorbs, whatever the data in the range; or all cells are vacuum
+};
+
+/// A block under one transfer function, in 4 bytes: in a load of 32 bits roughness is the lower
+/// half, then kind, then level. It is found from the block's record alone.
+struct alignas(4) BlockClass {
+  /// The upper half of a float (from_upper_half()), rounded upward: what a distance of the data
+  /// from their chord, times a length, can make of the ray's error:
+  ///
+  ///   largest color · slope + color range · slope + color slope
+  ///
+  /// over the block's range (transfer/antiderivative.h), slope = max |extinction'|. Infinite where
+  /// there is a jump, and where some cells are vacuum; 0 where the kind is not cells.
+  std::uint16_t roughness;
+  BlockKind kind;
+  /// Of a block to skip: the largest k <= 7 such that all blocks are to be skipped in the cube of
+  /// (2^k)³ blocks, aligned at multiples of its side, which holds this one. What of the cube is
+  /// outside of the grid counts as to be skipped. 0 elsewhere.
+  std::uint8_t level;
+};
+static_assert(sizeof(BlockClass) == 4);
+
+/// The classes of a grid's blocks, in the order of BlockRecords. A view; owns nothing. Built by
+/// scene/block_classes_storage.h.
+struct BlockClasses {
+  const BlockClass* block = nullptr;
+
+  static constexpr int highest_level = 7;
+
+  PELLUCID_HD const BlockClass& operator[](int index) const noexcept { return block[index]; }
+};
+
+/// What a ray needs to know of the blocks. Views; own nothing.
+struct ClassifiedBlocks {
+  BlockRecords records;
+  BlockClasses classes;
+};
+
+}  // namespace pellucid

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// Compiled once per instruction set, with namespace pellucid under a name of its own
+// (cmake/PellucidInstructionSets.cmake).
+#include "pellucid/packet/packet_integrator.h"
+#include "pellucid/simd/instruction_set.h"
+
+namespace {
+
+template <class Value>
+void run(const PellucidPacketJob& job) {
+  constexpr int lanes = PELLUCID_LANES;
+  const pellucid::PacketGrid<Value> grid(job);
+  for (int first = 0; first < job.count; first += lanes) {
+    pellucid::PacketIntegrator<Value, lanes> packet(job, grid, first,
+                                                    pellucid::min(lanes, job.count - first));
+    packet.run();
+    packet.store(job.results);
+  }
+}
+
+}  // namespace
+
+extern "C" void PELLUCID_ENTRY(pellucid_integrate_packets)(const PellucidPacketJob* job) {
+  switch (job->type) {
+    case pellucid_u8:
+      return run<std::uint8_t>(*job);
+    case pellucid_i8:
+      return run<std::int8_t>(*job);
+    case pellucid_u16:
+      return run<std::uint16_t>(*job);
+    case pellucid_i16:
+      return run<std::int16_t>(*job);
+    case pellucid_u32:
+      return run<std::uint32_t>(*job);
+    case pellucid_i32:
+      return run<std::int32_t>(*job);
+    case pellucid_f32:
+      return run<float>(*job);
+    case pellucid_f64:
+      return run<double>(*job);
+  }
+}

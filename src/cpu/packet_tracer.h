@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <memory>
+#include <optional>
+
+#include "pellucid/packet/interface.h"
+#include "pellucid/render/integrate_cell.h"
+#include "pellucid/scene/binned_transfer_storage.h"
+#include "pellucid/scene/volume.h"
+#include "pellucid/simd/instruction_set.h"
+#include "pellucid/traverse/block_classes.h"
+
+namespace pellucid {
+
+/// The least tolerance for which rays go in packets: below it, most cells would be handed back.
+inline constexpr double least_packet_tolerance = 1e-5;
+
+/// Integrates rays in packets, in the machine's best instruction set; what packets hand back, here.
+class PacketTracer {
+ public:
+  /// Null where rays have to go one by one: no such instructions, a rectilinear grid, a single
+  /// layer of values, one precision wanted, a very small tolerance, or numbers
+  /// whose squares binary32 has not. All that is given is referred to.
+  /// Throws Error where the machine has not the instruction set that is asked for.
+  static std::unique_ptr<const PacketTracer> make(const Volume& volume,
+                                                  const ClassifiedBlocks& blocks,
+                                                  const TransferTables& transfer,
+                                                  const RayTolerance& wanted,
+                                                  std::optional<InstructionSet> instruction_set);
+
+  /// Rays in grid coordinates, their parameter the world arc length; neighbours are packed
+  /// together, and what becomes of a ray does not depend on them. Without half_opacity_depth.
+  void trace(const Ray<double>* rays, int count, RayResult* results) const;
+
+ private:
+  using Kernel = void (*)(const PellucidPacketJob*);
+
+  PacketTracer(const Volume& volume, const ClassifiedBlocks& blocks, const TransferTables& transfer,
+               const RayTolerance& wanted, Kernel kernel);
+  static void integrate_cell(const void* context, std::int32_t ray, const PellucidCell* cell,
+                             PellucidCellResult* result);
+
+  const Volume& volume_;
+  const TransferTables& transfer_;
+  const RayTolerance& wanted_;
+  BinnedTransferStorage binned_;
+  PellucidPacketJob job_{};
+  Kernel kernel_;
+};
+
+}  // namespace pellucid

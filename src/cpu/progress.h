@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <atomic>
+#include <cstddef>
+#include <cstdint>
+#include <mutex>
+#include <vector>
+
+#include "pellucid/cpu/render.h"
+
+namespace pellucid {
+
+/// Tells the caller of finished tiles and of the share done, and asks whether to go on. One thread
+/// at a time calls; the others leave their tiles to it and never wait.
+class Progress {
+ public:
+  /// All must outlive this. `tiles` are those of the frame.
+  Progress(const RenderOptions& options, const Image& image, const std::vector<Tile>& tiles);
+
+  /// The pixels of the tile are final. Any thread.
+  void finish_tile(const Tile& tile);
+  /// The last word, when all threads are done, in case one was calling when the last tile was.
+  void finish();
+  bool cancelled() const noexcept { return cancelled_; }
+
+ private:
+  /// The tiles of a level, told of only after all of the coarser one.
+  struct Level {
+    std::size_t tiles = 0;  ///< of the frame
+    std::size_t told = 0;
+    std::vector<Tile> finished;
+  };
+
+  void tell();
+  void tell_tiles();
+  bool next_tile(Tile& tile);
+
+  const RenderOptions& options_;
+  const Image& image_;
+  std::uint64_t total_ = 0;  ///< pixels
+  std::atomic<std::uint64_t> done_{0};
+  std::atomic<bool> cancelled_{false};
+  std::mutex calling_;
+  std::atomic<std::uint64_t> told_{0};  ///< of done_; written under calling_
+  std::mutex finishing_;                ///< of the levels
+  std::vector<Level> levels_;
+};
+
+}  // namespace pellucid

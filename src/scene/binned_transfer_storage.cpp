@@ -1,0 +1,263 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pellucid/scene/binned_transfer_storage.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+namespace pellucid {
+namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+constexpr double unit = 0x1p-24;
+/// Corners that move a value by less than this share of it are rounding.
+constexpr double flat = 0x1p-46;
+
+float above(double x) {
+  return std::nextafter(static_cast<float>(x), std::numeric_limits<float>::infinity());
+}
+
+/// The indices of the points that are left of a curve through (value, curves[c]) when those go that
+/// lie on the line between their neighbours that stay; both points of a jump stay.
+std::vector<int> corners(const PiecewiseLinear<double>& table, const auto& curves_at) {
+  std::vector<int> kept{0};
+  constexpr std::size_t channels = std::tuple_size_v<decltype(curves_at(0))>;
+  std::array<double, channels> least{}, most{};
+  const auto start = [&] {
+    least.fill(-infinity);
+    most.fill(infinity);
+  };
+  start();
+  for (int i = 1; i < table.count; ++i) {
+    const int anchor = kept.back();
+    const double width = table.value[i] - table.value[anchor];
+    bool straight = width > 0 && table.value[i] > table.value[i - 1];
+    const auto from = curves_at(anchor), here = curves_at(i);
+    for (std::size_t c = 0; straight && c < channels; ++c) {
+      const double slope = (here[c] - from[c]) / width;
+      straight = slope >= least[c] && slope <= most[c];
+    }
+    if (!straight && i - 1 != anchor) {
+      kept.push_back(i - 1);
+      start();
+      --i;
+      continue;
+    }
+    if (!straight) {  // a jump, or its other side
+      kept.push_back(i);
+      start();
+      continue;
+    }
+    for (std::size_t c = 0; c < channels; ++c) {
+      const double slack = flat * std::fabs(here[c]);
+      least[c] = std::max(least[c], (here[c] - slack - from[c]) / width);
+      most[c] = std::min(most[c], (here[c] + slack - from[c]) / width);
+    }
+  }
+  if (kept.back() != table.count - 1) kept.push_back(table.count - 1);
+  return kept;
+}
+
+std::array<double, 3> components(const Rgb<double>& c) {
+  return {c.r, c.g, c.b};
+}
+
+/// Whether anything absorbs in the table's own interval between points i - 1 and i.
+bool absorbs(const PiecewiseLinear<double>& table, int i) {
+  return table.material[i - 1].extinction > 0 || table.material[i].extinction > 0;
+}
+
+}  // namespace
+
+BinnedTransferStorage::BinnedTransferStorage(const PiecewiseLinear<double>& table,
+                                             const double* merged, int merged_count) {
+  const int last = table.count - 1;
+  double largest_extinction = 0, largest_color = 0;
+  for (int i = 0; i <= last; ++i) {
+    const Material<double>& m = table.material[i];
+    largest_extinction = std::max(largest_extinction, m.extinction);
+    largest_color = std::max({largest_color, m.color.r, m.color.g, m.color.b});
+  }
+  const std::vector<int> at_extinction =
+      corners(table, [&](int i) { return std::array<double, 1>{table.material[i].extinction}; });
+  const std::vector<int> at_color =
+      corners(table, [&](int i) { return components(table.material[i].color); });
+
+  // Intervals of the extinction.
+  const auto slope_of = [&](std::size_t i) {  // between corners i - 1 and i
+    if (i == 0 || i == at_extinction.size()) return 0.0;
+    const int a = at_extinction[i - 1], b = at_extinction[i];
+    const double width = table.value[b] - table.value[a];
+    return width > 0 ? (table.material[b].extinction - table.material[a].extinction) / width : 0.0;
+  };
+  for (std::size_t i = 0; i <= at_extinction.size(); ++i) {
+    const bool below = i == 0, beyond = i == at_extinction.size();
+    const int a = below ? 0 : at_extinction[i - 1], b = beyond ? last : at_extinction[i];
+    const double at_lower = table.material[a].extinction, at_upper = table.material[b].extinction;
+    double steepest = std::fabs(slope_of(i));
+    if (!below) steepest = std::max(steepest, std::fabs(slope_of(i - 1)));
+    if (!beyond) steepest = std::max(steepest, std::fabs(slope_of(i + 1)));
+    std::array<double, 3> least{infinity, infinity, infinity},
+        most{-infinity, -infinity, -infinity};
+    double color_slope = 0;
+    if (!below && !beyond) {
+      for (int k = a + 1; k <= b; ++k) {
+        if (!absorbs(table, k)) continue;
+        const double width = table.value[k] - table.value[k - 1];
+        const std::array<double, 3> c0 = components(table.material[k - 1].color),
+                                    c1 = components(table.material[k].color);
+        for (std::size_t c = 0; c < 3; ++c) {
+          least[c] = std::min({least[c], c0[c], c1[c]});
+          most[c] = std::max({most[c], c0[c], c1[c]});
+          if (width > 0) color_slope = std::max(color_slope, std::fabs(c1[c] - c0[c]) / width);
+        }
+      }
+    }
+    double range = 0;
+    for (std::size_t c = 0; c < 3; ++c) range = std::max(range, most[c] - least[c]);
+    const double far = static_cast<double>(BinnedTransfer::far);
+    for (const double field :
+         {below ? -far : table.value[a], beyond ? far : table.value[b], at_lower, slope_of(i)}) {
+      extinction_.push_back(static_cast<float>(field));
+    }
+    for (const double field : {std::max(at_lower, at_upper), steepest, range, color_slope}) {
+      extinction_.push_back(field > 0 ? above(field) : 0.0f);
+    }
+  }
+
+  // Intervals of the color.
+  for (std::size_t i = 0; i <= at_color.size(); ++i) {
+    const bool below = i == 0, beyond = i == at_color.size();
+    const int a = below ? 0 : at_color[i - 1], b = beyond ? last : at_color[i];
+    const double width = below || beyond ? 0 : table.value[b] - table.value[a];
+    const std::array<double, 3> from = components(table.material[a].color),
+                                to = components(table.material[b].color);
+    color_.push_back(static_cast<float>(table.value[a]));
+    color_.push_back(beyond ? std::numeric_limits<float>::infinity()
+                            : static_cast<float>(table.value[b]));
+    for (const double c : from) color_.push_back(static_cast<float>(c));
+    for (std::size_t c = 0; c < 3; ++c) {
+      color_.push_back(width > 0 ? static_cast<float>((to[c] - from[c]) / width) : 0.0f);
+    }
+  }
+
+  // Bins.
+  const double first_value = table.value[0], span = table.value[last] - first_value;
+  const double size = std::max(std::fabs(first_value), std::fabs(table.value[last]));
+  const int inside = span > 0 ? std::clamp(4 * table.count, 254, 4094) : 0;
+  view_.bins = span > 0 ? inside + 2 : 1;
+  view_.origin = static_cast<float>(first_value);
+  view_.bins_per_value = span > 0 ? static_cast<float>(inside / span) : 0.0f;
+  const double width = span > 0 ? span / inside : 0, margin = width / 16 + 16 * unit * size;
+  const auto lower_edge = [&](int bin) {
+    return bin == 0 ? -infinity : first_value + (bin - 1) * width - margin;
+  };
+  const auto upper_edge = [&](int bin) {
+    return bin == view_.bins - 1 ? infinity : first_value + bin * width + margin;
+  };
+  const auto bins_of = [&](double value, auto&& visit) {
+    const double place = span > 0 ? (value - first_value) / width : 0;
+    const int reach =
+        static_cast<int>(std::ceil(width > 0 ? std::min(margin / width, 4096.0) : 0)) + 1;
+    const int near = static_cast<int>(std::clamp(place, -1.0, static_cast<double>(view_.bins))) + 1;
+    for (int bin = std::max(near - reach, 0); bin <= std::min(near + reach, view_.bins - 1);
+         ++bin) {
+      if (value >= lower_edge(bin) && value <= upper_edge(bin))
+        visit(static_cast<std::size_t>(bin));
+    }
+  };
+  const auto bins = static_cast<std::size_t>(view_.bins);
+  std::vector<int> mark(bins, 0);
+  std::vector<double> bend(bins, 0.0);
+  const auto interval_in = [&](const std::vector<float>& records, std::size_t fields, double value,
+                               std::int32_t from) {
+    // The last interval whose lower end is not above the value, by the floats that are compared
+    // with.
+    const auto count = static_cast<std::int32_t>(records.size() / fields);
+    while (from + 1 < count &&
+           static_cast<double>(records[static_cast<std::size_t>(from) * fields + 1]) <= value) {
+      ++from;
+    }
+    return from;
+  };
+  std::int32_t extinction_interval = 0, color_interval = 0;
+  for (int bin = 0; bin < view_.bins; ++bin) {
+    const auto b = static_cast<std::size_t>(bin);
+    const double lower = lower_edge(bin), upper = upper_edge(bin);
+    if (table.has_extinction(table.interval(lower), table.interval(upper))) mark[b] = 1;
+    extinction_interval =
+        interval_in(extinction_, BinnedTransfer::extinction_fields, lower, extinction_interval);
+    color_interval = interval_in(color_, BinnedTransfer::color_fields, lower, color_interval);
+    first_extinction_.push_back(extinction_interval);
+    first_color_.push_back(color_interval);
+  }
+  const auto mark_jump = [&](double value) {
+    bins_of(value, [&](std::size_t b) { mark[b] |= BinnedTransfer::one_jump; });
+  };
+  const auto color_slope = [&](int i, std::size_t c) {  // between points i - 1 and i
+    if (i == 0 || i > last) return 0.0;
+    const double distance = table.value[i] - table.value[i - 1];
+    return distance > 0 ? (components(table.material[i].color)[c] -
+                           components(table.material[i - 1].color)[c]) /
+                              distance
+                        : 0.0;
+  };
+  for (int i = 0; i <= last; ++i) {
+    const bool in_front = i > 0 && absorbs(table, i), behind = i < last && absorbs(table, i + 1);
+    if (i > 0 && absorbs(table, i) && !(table.value[i] - table.value[i - 1] > 256 * unit * size) &&
+        !(table.material[i].extinction == table.material[i - 1].extinction &&
+          table.material[i].color == table.material[i - 1].color)) {
+      mark_jump(table.value[i - 1]);
+      mark_jump(table.value[i]);
+    }
+    if (!in_front || !behind) continue;
+    double change = 0;
+    for (std::size_t c = 0; c < 3; ++c) {
+      change = std::max(change, std::fabs(color_slope(i + 1, c) - color_slope(i, c)));
+    }
+    bins_of(table.value[i], [&](std::size_t b) { bend[b] += change; });
+  }
+  for (int m = 0; m < merged_count; ++m) mark_jump(merged[m]);
+
+  std::int32_t marks = 0;
+  double bends = 0;
+  for (std::size_t b = 0; b < bins; ++b) {
+    marks_.push_back(marks);
+    color_bend_.push_back(static_cast<float>(bends));
+    marks += mark[b];
+    bends += bend[b];
+  }
+  marks_.push_back(marks);
+  color_bend_.push_back(static_cast<float>(bends));
+  // Of either sum, of their difference, and what colors of less than `flat` leave out.
+  view_.bend_rounding = above(4 * unit * bends);
+
+  double support_min = infinity, support_max = -infinity;
+  if (table.material[0].extinction > 0) support_min = -infinity;
+  if (table.material[last].extinction > 0) support_max = infinity;
+  for (int i = 1; i <= last; ++i) {
+    if (!absorbs(table, i)) continue;
+    support_min = std::min(support_min, table.value[i - 1]);
+    support_max = std::max(support_max, table.value[i]);
+  }
+  if (support_min == -infinity) support_max = std::max(support_max, first_value);
+  if (support_max == infinity) support_min = std::min(support_min, table.value[last]);
+  const double far = static_cast<double>(BinnedTransfer::far);
+  view_.support_min = static_cast<float>(std::clamp(support_min - 16 * unit * size, -far, far));
+  view_.support_max = static_cast<float>(std::clamp(support_max + 16 * unit * size, -far, far));
+  if (support_min > support_max) {
+    view_.support_min = BinnedTransfer::far;
+    view_.support_max = -BinnedTransfer::far;
+  }
+  view_.largest_extinction = above(largest_extinction);
+  view_.largest_color = above(largest_color);
+  view_.extinction = extinction_.data();
+  view_.color = color_.data();
+  view_.first_extinction = first_extinction_.data();
+  view_.first_color = first_color_.data();
+  view_.marks = marks_.data();
+  view_.color_bend = color_bend_.data();
+}
+
+}  // namespace pellucid

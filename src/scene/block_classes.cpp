@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <vector>
+
+#include "block_levels.h"
+#include "block_roughness.h"
+#include "pellucid/scene/block_classes_storage.h"
+
+namespace pellucid {
+namespace {
+
+/// What a transfer function does between any two codes, each in two look-ups. Exact: where it is
+/// said to be zero or constant it is so at every value of the closed range, and the other way
+/// round.
+class CodeTable {
+ public:
+  CodeTable(const BlockCode& code, const TransferTables& transfer)
+      : code_(code), last_(transfer.wide.count - 1), at_(static_cast<std::size_t>(code.last) + 1) {
+    const PiecewiseLinear<double>& table = transfer.wide;
+    const PiecewiseLinearAntiderivative<double>& antiderivative = transfer.wide_antiderivative;
+    int below = 0, up_to = 0;
+    for (int c = 0; c <= code.last; ++c) {
+      const double value = code.value(c);
+      while (below < table.count && table.value[below] < value) ++below;
+      while (up_to < table.count && table.value[up_to] <= value) ++up_to;
+      at_[static_cast<std::size_t>(c)] = {below, up_to};
+    }
+    int absorbing = 0, changes = 0, jumps = 0;
+    for (int i = 0; i < table.count; ++i) {
+      const Material<double>& m = table.material[i];
+      if (i > 0) {
+        if (!table.is_constant(i, i)) ++changes;
+        const RangeSummary<double>& s = antiderivative.node[antiderivative.leaves + i - 1];
+        if (!(s.slope_max < s.infinity && s.color_slope < s.infinity)) ++jumps;
+      }
+      if (m.extinction > 0) ++absorbing;
+      sums_.push_back({absorbing, changes, jumps});
+    }
+  }
+
+  /// Whether nothing absorbs at any value from that of code `lower` to that of `upper`.
+  bool is_clear(int lower, int upper) const noexcept {
+    const Span s = span(lower, upper);
+    return sums_[s.last].absorbing == (s.first == 0 ? 0 : sums_[s.first - 1].absorbing);
+  }
+  bool is_constant(int lower, int upper) const noexcept {
+    if (code_.value(lower) == code_.value(upper)) return true;  // two codes may be one number
+    const Span s = span(lower, upper);
+    return sums_[s.last].changes == sums_[s.first].changes;
+  }
+  /// Whether the extinction, or a color that is seen, jumps at any of these values.
+  bool has_jump(int lower, int upper) const noexcept {
+    const Span s = span(lower, upper);
+    return sums_[s.last].jumps != sums_[s.first].jumps;
+  }
+
+ private:
+  /// How many control points lie below the value of a code, and how many do not lie above it.
+  struct Place {
+    int below, up_to;
+  };
+  /// The control points that the function in a range depends on.
+  struct Span {
+    std::size_t first, last;
+  };
+  /// Over the points up to one: those that absorb, those unlike their left neighbour, and those
+  /// that are reached by a jump.
+  struct Sums {
+    int absorbing, changes, jumps;
+  };
+
+  Span span(int lower, int upper) const noexcept {
+    const Place p = at_[static_cast<std::size_t>(lower)], q = at_[static_cast<std::size_t>(upper)];
+    // At a control point, and at the right one of two, its material alone holds. Below the first
+    // and above the last theirs does.
+    const int first = p.up_to > 0 ? p.up_to - 1 : 0;
+    const int last = q.up_to > q.below ? q.up_to - 1 : q.below;
+    return {static_cast<std::size_t>(first), static_cast<std::size_t>(last < last_ ? last : last_)};
+  }
+
+  BlockCode code_;
+  int last_;
+  std::vector<Place> at_;
+  std::vector<Sums> sums_;
+};
+
+BlockClass classify(const BlockRecord& record, const CodeTable& codes,
+                    const BlockRoughness& roughness) noexcept {
+  const BlockVacuum vacuum = record.vacuum();
+  if (vacuum == BlockVacuum::all || codes.is_clear(record.lower, record.upper)) {
+    return {0, BlockKind::skip, 0};
+  }
+  constexpr std::uint16_t infinite = 0x7f80;
+  if (vacuum != BlockVacuum::none) return {infinite, BlockKind::cells, 0};
+  if (codes.is_constant(record.lower, record.upper)) {
+    return {0, BlockKind::constant, 0};
+  }
+  if (codes.has_jump(record.lower, record.upper)) return {infinite, BlockKind::cells, 0};
+  return {roughness(record.lower, record.upper), BlockKind::cells, 0};
+}
+
+}  // namespace
+
+BlockClassesStorage::BlockClassesStorage(const BlockRecords& records,
+                                         const TransferTables& transfer, double largest_color,
+                                         const ParallelFor& parallel)
+    : classes_(static_cast<std::size_t>(records.count())) {
+  const auto run = [&](int count, const std::function<void(int, int)>& body) {
+    if (parallel) {
+      parallel(count, body);
+    } else {
+      body(0, count);
+    }
+  };
+  const CodeTable codes(records.code, transfer);
+  const BlockRoughness roughness(records.code, transfer, largest_color, run);
+  run(records.count(), [&](int first, int last) {
+    for (int b = first; b < last; ++b) {
+      classes_[static_cast<std::size_t>(b)] = classify(records[b], codes, roughness);
+    }
+  });
+  const std::array<int, 3> count{records.axis[0].cells(), records.axis[1].cells(),
+                                 records.axis[2].cells()};
+  find_block_levels(count, run, classes_.data());
+}
+
+}  // namespace pellucid

@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+
+#include "pellucid/scene/volume.h"
+#include "pellucid/traverse/block_classes.h"
+
+namespace pellucid {
+
+/// Writes BlockClass::level of so many blocks along each axis, whose kinds are known: from blocks
+/// up to the cubes that hold nothing else than what is to be skipped, and down again.
+void find_block_levels(const std::array<int, 3>& blocks, const ParallelFor& parallel,
+                       BlockClass* classes);
+
+}  // namespace pellucid

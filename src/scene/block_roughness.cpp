@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "block_roughness.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <utility>
+
+#include "pellucid/traverse/block_code.h"
+
+namespace pellucid {
+
+BlockRoughness::BlockRoughness(const BlockCode& code, const TransferTables& transfer,
+                               double largest_color, const ParallelFor& parallel)
+    : code_(code), largest_color_(std::max(largest_color, 1.0)) {
+  while ((std::max(code.last - 1, 0) >> shift_) >= most_bins) ++shift_;
+  bins_ = static_cast<std::size_t>(std::max(code.last - 1, 0) >> shift_) + 1;
+  runs_.emplace_back(bins_);
+  parallel(static_cast<int>(bins_), [&](int first, int last) {
+    for (int b = first; b < last; ++b) {
+      runs_[0][static_cast<std::size_t>(b)] = make_bin(b, transfer);
+    }
+  });
+  for (std::size_t length = 2; length <= bins_; length *= 2) {
+    std::vector<Bin> run(bins_ - length + 1);
+    const std::vector<Bin>& half = runs_.back();
+    for (std::size_t b = 0; b < run.size(); ++b) {
+      run[b] = half[b];
+      run[b].merge(half[b + length / 2]);
+    }
+    runs_.push_back(std::move(run));
+  }
+}
+
+void BlockRoughness::Bin::merge(const Bin& other) noexcept {
+  slope = std::max(slope, other.slope);
+  color_slope = std::max(color_slope, other.color_slope);
+  for (int c = 0; c < 3; ++c) {
+    color_min[c] = std::min(color_min[c], other.color_min[c]);
+    color_max[c] = std::max(color_max[c], other.color_max[c]);
+  }
+}
+
+BlockRoughness::Bin BlockRoughness::make_bin(int bin, const TransferTables& transfer) const {
+  const double lower = code_.value(bin << shift_);
+  const double upper = code_.value(std::min((bin + 1) << shift_, code_.last));
+  RangeSummary<double> all;
+  if (lower < upper) {
+    all = range_summary(transfer.wide, transfer.wide_antiderivative,
+                        ValueRange<double>(transfer.wide, lower, upper));
+  }
+  Bin result;
+  if (lower < upper) {
+    result.slope = float_above(std::max(std::abs(all.slope_min), std::abs(all.slope_max)));
+    result.color_slope = float_above(all.color_slope);
+  }
+  const double least[3] = {all.color_min.r, all.color_min.g, all.color_min.b};
+  const double most[3] = {all.color_max.r, all.color_max.g, all.color_max.b};
+  for (int c = 0; c < 3; ++c) {
+    result.color_min[c] = float_below(least[c]);
+    result.color_max[c] = float_above(most[c]);
+  }
+  return result;
+}
+
+std::uint16_t BlockRoughness::operator()(int lower, int upper) const noexcept {
+  const auto first = static_cast<std::size_t>(lower >> shift_);
+  const auto count = static_cast<std::size_t>((upper - 1) >> shift_) - first + 1;
+  // The largest n with 2^n <= count.
+  const auto n = static_cast<std::size_t>(63 - std::countl_zero(std::uint64_t{count}));
+  Bin all = runs_[n][first];
+  all.merge(runs_[n][first + count - (std::size_t{1} << n)]);
+  float color_range = 0;
+  for (int c = 0; c < 3; ++c) {
+    color_range = std::max(color_range, all.color_max[c] - all.color_min[c]);
+  }
+  const double slope = static_cast<double>(all.slope);
+  // The color range is a difference that was rounded.
+  return upper_half_above((largest_color_ * slope + static_cast<double>(color_range) * slope +
+                           static_cast<double>(all.color_slope)) *
+                          (1 + 0x1p-23));
+}
+
+}  // namespace pellucid

@@ -1,0 +1,229 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <sys/mman.h>
+#include <unistd.h>
+
+#include <cstring>
+#include <random>
+#include <type_traits>
+#include <vector>
+
+#include "tests/simd/batch_fixture.h"
+
+/// Loads from many places at once: what they give, and that they read nothing else.
+namespace pellucid::test {
+namespace {
+
+/// Memory that may be read, between two pages that may not: what ends at end() or begins at begin()
+/// faults when it is read beyond.
+class Guarded {
+ public:
+  Guarded() : page_(static_cast<std::size_t>(sysconf(_SC_PAGESIZE))) {
+    void* all =
+        mmap(nullptr, 4 * page_, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+    EXPECT_NE(all, MAP_FAILED);
+    all_ = static_cast<unsigned char*>(all);
+    EXPECT_EQ(mprotect(all_, page_, PROT_NONE), 0);
+    EXPECT_EQ(mprotect(all_ + 3 * page_, page_, PROT_NONE), 0);
+  }
+  ~Guarded() { munmap(all_, 4 * page_); }
+  Guarded(const Guarded&) = delete;
+  Guarded& operator=(const Guarded&) = delete;
+
+  template <class T>
+  T* begin() const {
+    return reinterpret_cast<T*>(all_ + page_);
+  }
+  template <class T>
+  T* end() const {
+    return reinterpret_cast<T*>(all_ + 3 * page_);
+  }
+  template <class T>
+  std::int32_t count() const {
+    return static_cast<std::int32_t>(2 * page_ / sizeof(T));
+  }
+  /// Every bit pattern that may be, but of floats only numbers.
+  template <class T>
+  void fill() const {
+    std::mt19937_64 random(3);
+    for (T* p = begin<T>(); p != end<T>(); ++p) {
+      if constexpr (std::is_floating_point_v<T>) {
+        *p = static_cast<T>(static_cast<double>(random()) * 0x1p-60 - 8.0);
+      } else {
+        *p = static_cast<T>(random());
+      }
+    }
+  }
+
+ private:
+  std::size_t page_;
+  unsigned char* all_ = nullptr;
+};
+
+/// Places for every lane, 0 … last: the ends in each lane in turn, else anything.
+std::vector<std::vector<std::int32_t>> places(int lanes, std::int32_t last) {
+  std::vector<std::vector<std::int32_t>> all;
+  all.push_back(std::vector<std::int32_t>(static_cast<std::size_t>(lanes), last));
+  all.push_back(std::vector<std::int32_t>(static_cast<std::size_t>(lanes), 0));
+  std::mt19937 random(5);
+  std::uniform_int_distribution<std::int32_t> anywhere(0, last);
+  for (int round = 0; round < 200; ++round) {
+    std::vector<std::int32_t> one;
+    for (int lane = 0; lane < lanes; ++lane) {
+      one.push_back(lane == round % lanes ? (round % 3 == 0 ? 0 : last) : anywhere(random));
+    }
+    all.push_back(one);
+  }
+  return all;
+}
+
+class BatchMemory : public BatchTest {};
+PELLUCID_EVERY_INSTRUCTION_SET(BatchMemory);
+
+template <class T>
+void expect_gather(void (*gather)(const T*, const std::int32_t*, T*), int lanes) {
+  const Guarded memory;
+  memory.fill<T>();
+  for (const auto& index : places(lanes, memory.count<T>() - 1)) {
+    T out[16];
+    gather(memory.begin<T>(), index.data(), out);
+    for (std::size_t lane = 0; lane < index.size(); ++lane) {
+      ASSERT_EQ(out[lane], memory.begin<T>()[index[lane]]) << lane;
+    }
+    // Backwards from the end.
+    std::vector<std::int32_t> negative = index;
+    for (std::int32_t& i : negative) i -= memory.count<T>();
+    gather(memory.end<T>(), negative.data(), out);
+    for (std::size_t lane = 0; lane < index.size(); ++lane) {
+      ASSERT_EQ(out[lane], memory.end<T>()[negative[lane]]) << lane;
+    }
+  }
+}
+TEST_P(BatchMemory, GatherReadsEveryLaneAndNothingElse) {
+  expect_gather(table().gather_floats, lanes());
+  expect_gather(table().gather_doubles, lanes());
+  expect_gather(table().gather_ints, lanes());
+}
+
+template <class T>
+void expect_lookup(void (*lookup)(const T*, const std::int32_t*, T*), std::int32_t entries,
+                   int lanes) {
+  std::vector<T> table;
+  for (std::int32_t i = 0; i < entries; ++i) table.push_back(T(1000 + 7 * i));
+  for (const auto& index : places(lanes, entries - 1)) {
+    T out[16];
+    lookup(table.data(), index.data(), out);
+    for (std::size_t lane = 0; lane < index.size(); ++lane) {
+      ASSERT_EQ(out[lane], table[static_cast<std::size_t>(index[lane])]) << lane;
+    }
+  }
+}
+TEST_P(BatchMemory, SmallTablesAreLookedUp) {
+  expect_lookup(table().lookup_floats, 16, lanes());
+  expect_lookup(table().lookup_doubles, 16, lanes());
+  expect_lookup(table().lookup_ints, 16, lanes());
+  expect_lookup(table().lookup_of_five, 5, lanes());
+}
+
+template <class Value>
+void expect_pairs(batch_operations::PairLoad<Value> load, int lanes) {
+  const Guarded memory;
+  memory.fill<Value>();
+  for (const auto& place : places(lanes, memory.count<Value>() - 2)) {
+    // A base of its own in every lane, in the middle of which the offset starts.
+    const Value* base[16];
+    std::int32_t offset[16];
+    for (int lane = 0; lane < lanes; ++lane) {
+      const std::int32_t start = (lane * 37) % memory.count<Value>();
+      base[lane] = memory.begin<Value>() + start;
+      offset[lane] = place[static_cast<std::size_t>(lane)] - start;
+    }
+    float first[16], second[16];
+    load(base, offset, first, second);
+    for (int lane = 0; lane < lanes; ++lane) {
+      const Value* pair = memory.begin<Value>() + place[static_cast<std::size_t>(lane)];
+      ASSERT_EQ(first[lane], static_cast<float>(pair[0])) << "lane " << lane;
+      ASSERT_EQ(second[lane], static_cast<float>(pair[1])) << "lane " << lane;
+    }
+  }
+}
+TEST_P(BatchMemory, PairsAreReadInEveryTypeAndNothingElse) {
+  expect_pairs(table().pairs_u8, lanes());
+  expect_pairs(table().pairs_i8, lanes());
+  expect_pairs(table().pairs_u16, lanes());
+  expect_pairs(table().pairs_i16, lanes());
+  expect_pairs(table().pairs_u32, lanes());
+  expect_pairs(table().pairs_i32, lanes());
+  expect_pairs(table().pairs_float, lanes());
+  expect_pairs(table().pairs_double, lanes());
+}
+
+/// Integers of 32 bits are rounded to float once: halfway cases and their neighbours.
+TEST_P(BatchMemory, LargeIntegersAreRoundedOnce) {
+  std::vector<std::uint32_t> values = {0u, 1u, 0x7fffffffu, 0x80000000u, 0xffffffffu};
+  for (int shift = 0; shift < 8; ++shift) {
+    for (std::uint32_t near = 0; near < 64; ++near) {
+      values.push_back(((0x01000000u + near) << shift) - 3u);
+      values.push_back(((0x00ffffe0u + near) << shift) + 129u);
+    }
+  }
+  while (values.size() % 32 != 0) values.push_back(0u);
+  const std::size_t step = 2 * static_cast<std::size_t>(lanes());
+  for (std::size_t i = 0; i < values.size(); i += step) {
+    const std::uint32_t* base[16];
+    const std::int32_t* signed_base[16];
+    std::vector<std::int32_t> as_signed(step);
+    std::memcpy(as_signed.data(), &values[i], step * sizeof(std::int32_t));
+    std::int32_t offset[16];
+    for (int lane = 0; lane < lanes(); ++lane) {
+      base[lane] = &values[i];
+      signed_base[lane] = as_signed.data();
+      offset[lane] = 2 * lane;
+    }
+    float first[16], second[16];
+    table().pairs_u32(base, offset, first, second);
+    for (int lane = 0; lane < lanes(); ++lane) {
+      ASSERT_EQ(first[lane], static_cast<float>(base[0][offset[lane]])) << base[0][offset[lane]];
+      ASSERT_EQ(second[lane], static_cast<float>(base[0][offset[lane] + 1]));
+    }
+    table().pairs_i32(signed_base, offset, first, second);
+    for (int lane = 0; lane < lanes(); ++lane) {
+      ASSERT_EQ(first[lane], static_cast<float>(as_signed[static_cast<std::size_t>(2 * lane)]));
+    }
+  }
+}
+
+void expect_records(void (*load)(const float*, const std::int32_t*, float*), int fields,
+                    int lanes) {
+  const Guarded memory;
+  memory.fill<float>();
+  for (const auto& index : places(lanes, memory.count<float>() / fields - 1)) {
+    float out[16 * 16];
+    load(memory.begin<float>(), index.data(), out);
+    for (int k = 0; k < fields; ++k) {
+      for (int lane = 0; lane < lanes; ++lane) {
+        ASSERT_EQ(out[k * lanes + lane],
+                  memory.begin<float>()[fields * index[static_cast<std::size_t>(lane)] + k])
+            << "field " << k << ", lane " << lane;
+      }
+    }
+  }
+}
+TEST_P(BatchMemory, RecordsAreReadAndNothingElse) {
+  expect_records(table().records_4, 4, lanes());
+  expect_records(table().records_8, 8, lanes());
+  expect_records(table().records_16, 16, lanes());
+}
+
+/// That the guard guards.
+TEST(BatchMemoryDeathTest, ReadingBeyondTheEndFaults) {
+  const Guarded memory;
+  EXPECT_DEATH(
+      {
+        volatile float value = *static_cast<volatile float*>(memory.end<float>());
+        (void)value;
+      },
+      "");
+}
+
+}  // namespace
+}  // namespace pellucid::test
