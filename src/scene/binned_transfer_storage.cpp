@@ -191,6 +191,14 @@ BinnedTransferStorage::BinnedTransferStorage(const PiecewiseLinear<double>& tabl
     color_interval = interval_in(color_, BinnedTransfer::color_fields, lower, color_interval);
     first_extinction_.push_back(extinction_interval);
     first_color_.push_back(color_interval);
+    const auto upper_of = [&](std::int32_t interval) {
+      return color_[static_cast<std::size_t>(interval) * BinnedTransfer::color_fields + 1];
+    };
+    color_split_.push_back(upper_of(color_interval));
+    const bool is_last = static_cast<std::size_t>(color_interval) == at_color.size();
+    if (!is_last && static_cast<double>(upper_of(color_interval + 1)) <= upper) {
+      view_.has_full_bins = true;
+    }
   }
   const auto mark_jump = [&](double value) {
     bins_of(value, [&](std::size_t b) { mark[b] |= BinnedTransfer::one_jump; });
@@ -233,6 +241,15 @@ BinnedTransferStorage::BinnedTransferStorage(const PiecewiseLinear<double>& tabl
   // Of either sum, of their difference, and what colors of less than `flat` leave out.
   view_.bend_rounding = above(4 * unit * bends);
 
+  // Bins that absorb are one run, and none of them holds a jump.
+  int runs = 0;
+  bool jumps = false;
+  for (std::size_t b = 0; b < bins; ++b) {
+    jumps = jumps || mark[b] >= BinnedTransfer::one_jump;
+    if (mark[b] != 0 && (b == 0 || mark[b - 1] == 0)) ++runs;
+  }
+  view_.has_marks = jumps || runs > 1;
+
   double support_min = infinity, support_max = -infinity;
   if (table.material[0].extinction > 0) support_min = -infinity;
   if (table.material[last].extinction > 0) support_max = infinity;
@@ -256,6 +273,7 @@ BinnedTransferStorage::BinnedTransferStorage(const PiecewiseLinear<double>& tabl
   view_.color = color_.data();
   view_.first_extinction = first_extinction_.data();
   view_.first_color = first_color_.data();
+  view_.color_split = color_split_.data();
   view_.marks = marks_.data();
   view_.color_bend = color_bend_.data();
 }

@@ -21,9 +21,9 @@ class CellMarch {
   /// The cells of one step.
   struct Step {
     CellCorners<F> corners;
-    Vec3<F> entry, exit;  ///< in the cell, [0,1]³
-    F begin, end;         ///< world length from the block's entry
-    I cell[3];            ///< in the block
+    F begin, end;  ///< world length from the block's entry
+    F from[3];     ///< the lower corner's place in the block
+    I cell[3];     ///< in the block
   };
 
   CellMarch(const PacketGrid<Value>& grid, const BlockMarch<Value, N>& blocks) noexcept
@@ -72,6 +72,15 @@ class CellMarch {
     walking = walking | (lanes & (block_length > F(0)));
   }
 
+  /// The place in a step's cell, [0,1]³, so far from the block's entry.
+  Vec3<F> place(const Step& s, F distance) const noexcept {
+    Vec3<F> local;
+    for (int a = 0; a < 3; ++a) {
+      local[a] = clamp(multiply_add(distance, direction_[a], place_[a] - s.from[a]), F(0), F(1));
+    }
+    return local;
+  }
+
   /// One cell of each of the lanes, which walk; of the others something that can be read.
   void step(M lanes, Step& s) noexcept {
     const F infinity(std::numeric_limits<float>::infinity());
@@ -83,15 +92,11 @@ class CellMarch {
     }
     s.begin = begin_;
     s.end = max(min(min(next[0], next[1]), min(next[2], block_length)), begin_);
-    F from[3];
     for (int a = 0; a < 3; ++a) {
-      from[a] = clamp(cell_[a], least_[a], most_[a]);
-      const F start = place_[a] - from[a];
-      s.entry[a] = clamp(multiply_add(s.begin, direction_[a], start), F(0), F(1));
-      s.exit[a] = clamp(multiply_add(s.end, direction_[a], start), F(0), F(1));
+      s.from[a] = clamp(cell_[a], least_[a], most_[a]);
       s.cell[a] = convert<std::int32_t>(cell_[a]);
     }
-    gather_corners(from, s.corners);
+    gather_corners(s.from, s.corners);
 
     for (int a = 0; a < 3; ++a) {
       const F step = select(forward_[a], F(1), F(-1));
@@ -109,11 +114,11 @@ class CellMarch {
         I(static_cast<std::int32_t>(grid_.slice)) * convert<std::int32_t>(from[2] - least_[2]);
     std::int32_t o[N];
     offset.store(o);
+    const Value* at[N];
+    for (int l = 0; l < N; ++l) at[l] = base_[l] + o[l];
     const std::ptrdiff_t rows[4] = {0, grid_.row, grid_.slice, grid_.slice + grid_.row};
     for (int k = 0; k < 4; ++k) {
-      const Value* at[N];
-      for (int l = 0; l < N; ++l) at[l] = base_[l] + rows[k];
-      gather_pairs(at, o, corners.value[2 * k], corners.value[2 * k + 1]);
+      gather_pairs(at, SameOffset{rows[k]}, corners.value[2 * k], corners.value[2 * k + 1]);
     }
   }
 

@@ -33,7 +33,8 @@ class PacketIntegrator {
         count_(count),
         blocks_(grid, job.rays + first, count),
         cells_(grid, blocks_),
-        budget_(D(job.tolerance), blocks_.end),
+        budget_(F(static_cast<float>(job.tolerance * (1 - kept_back))),
+                convert<float>(blocks_.end)),
         largest_color_(static_cast<float>(job.largest_color)) {
     float far[N];
     for (int l = 0; l < N; ++l) {
@@ -45,11 +46,14 @@ class PacketIntegrator {
   }
 
   void run() noexcept {
-    for (;;) {
+    while (any(blocks_.alive)) {
       const M idle = blocks_.alive & !cells_.walking & !pending_;
-      if (any(idle)) enter_blocks(idle);
-      if (none(blocks_.alive)) return;
       const M ready = cells_.walking & !pending_;
+      const int wait = count(blocks_.alive) / 4;
+      if (any(idle) && (count(idle) > wait || none(ready | pending_))) {
+        enter_blocks(idle);
+        continue;
+      }
       if (any(pending_) && (none(ready) || 2 * count(pending_) >= count(blocks_.alive))) {
         integrate_pieces();
       } else if (any(ready)) {
@@ -59,11 +63,14 @@ class PacketIntegrator {
   }
 
   void store(PellucidRayResult* results) const noexcept {
-    const D rest = rest_behind();
     const SegmentResult<D> all = fold_.result();
-    // Folding in double costs 4 u a piece.
-    const D error = budget_.spent() + rest +
-                    D(8 * rounding_unit<double> * job_.largest_color) * convert<double>(pieces_);
+    // Folding in double costs 4 u a piece, and adding up costs in float 2 u of them.
+    constexpr double folding = 8 * rounding_unit<double>;
+    constexpr double account = 2 * static_cast<double>(rounding_unit<float>);
+    const D pieces = convert<double>(pieces_) + D(1);
+    const D error =
+        convert<double>(budget_.spent() + rest_behind()) * (D(1) + D(account) * pieces) +
+        D(folding * job_.largest_color) * pieces;
     for (int l = 0; l < count_; ++l) {
       PellucidRayResult& r = results[first_ + l];
       r = {{all.radiance.r[l], all.radiance.g[l], all.radiance.b[l]},
@@ -82,6 +89,8 @@ class PacketIntegrator {
   }
 
  private:
+  /// The share of the tolerance that pays for adding up costs in float: of 16000 pieces.
+  static constexpr double kept_back = 0x1p-9;
   /// How narrow a part of a cell may get before it is handed back.
   static constexpr float narrowest = 1.0f / 16;
   /// After so many pieces and halvings what is left of a cell is handed back if it is not taken.
@@ -92,9 +101,11 @@ class PacketIntegrator {
     const M here = idle & blocks_.alive;
     const M constant = here & (blocks_.kind == I(static_cast<int>(BlockKind::constant)));
     cells_.enter(here, blocks_);
+    left_behind_block_begin_ =
+        select(here, convert<float>(blocks_.end - blocks_.begin), left_behind_block_begin_);
     if (any(constant)) {
       // The material is that of any value in the block: of the one at its first corner.
-      typename CellMarch<Value, N>::Step step;
+      typename CellMarch<Value, N>::Step& step = step_;
       const M walking = cells_.walking & !constant;
       cells_.step(constant, step);
       begin_span(constant & (cells_.block_length > F(0)), step, F(0), cells_.block_length);
@@ -106,7 +117,7 @@ class PacketIntegrator {
   }
 
   [[gnu::flatten]] void step_cells(M ready) noexcept {
-    typename CellMarch<Value, N>::Step step;
+    typename CellMarch<Value, N>::Step& step = step_;
     cells_.step(ready, step);
     cells_seen_ += select(ready, I(1), I(0));
     const F* v = step.corners.value;
@@ -127,19 +138,26 @@ class PacketIntegrator {
     // itself only at the end and in cuts. A place is off by 16 u of a cell along each axis.
     CellCorners<F> differences;
     for (int n = 0; n < 8; ++n) differences.value[n] = v[n] - v[0];
-    CubicBernstein<F> data = trilinear_cubic(differences, step.entry, step.exit);
+    CubicBernstein<F> data =
+        trilinear_cubic(differences, cells_.place(step, step.begin), cells_.place(step, step.end));
     for (F& b : data.b) b += v[0];
     constexpr float u = rounding_unit<float>;
     const F rounding = F(8 * u) * max(abs(lower), abs(upper)) + F(80 * u) * (upper - lower);
     const F least = data.hull_min() - rounding, most = data.hull_max() + rounding;
-    const I marks = gather(transfer_.marks, bin_of(transfer_, most) + I(1)) -
-                    gather(transfer_.marks, bin_of(transfer_, least));
-    found = found & (marks > I(0));
+    M hand_back_at_once(false);
+    if (transfer_.has_marks) {
+      const I marks = gather(transfer_.marks, bin_of(transfer_, most) + I(1)) -
+                      gather(transfer_.marks, bin_of(transfer_, least));
+      found = found & (marks > I(0));
+      hand_back_at_once = found & (marks >= I(BinnedTransfer::one_jump));
+    } else {
+      found = found & (most >= F(transfer_.support_min)) & (least <= F(transfer_.support_max));
+    }
     if (none(found)) return;
     begin_span(found, step, step.begin, step.end - step.begin);
     for (int k = 0; k < 4; ++k) data_.b[k] = select(found, data.b[k], data_.b[k]);
     rounding_ = select(found, rounding, rounding_);
-    handed_back_ = handed_back_ | (found & (marks >= I(BinnedTransfer::one_jump)));
+    handed_back_ = handed_back_ | hand_back_at_once;
   }
 
   void begin_span(M lanes, const typename CellMarch<Value, N>::Step& step, F begin,
@@ -164,8 +182,10 @@ class PacketIntegrator {
       if (none(pending_)) return;
     }
     const M on = pending_;
-    const ExtinctionInterval<F> interval =
-        find_extinction(transfer_, data_.b[0], on & !located_, interval_);
+    const M lost =
+        on & !located_ & ((data_.b[0] < extinction_.lower) | (data_.b[0] >= extinction_.upper));
+    if (any(lost)) extinction_ = find_extinction(transfer_, data_.b[0], lost, interval_);
+    const ExtinctionInterval<F>& interval = extinction_;
     located_ = located_ | on;
     pieces_of_span_ += select(on, I(1), I(0));
     const F close = F(0.25f) * rounding_;
@@ -207,12 +227,10 @@ class PacketIntegrator {
     const F rounding = s.opacity * color_rounding + largest_color_ * opacity_rounding;
     const F error = piece.color_error + rounding;
 
-    const D length_left = blocks_.end - blocks_.begin - convert<double>(begin_) -
-                          convert<double>(from_ * span_length_);
-    budget_.pass_to(select(on, length_left, budget_.length_left()));
-    const D transparency = fold_.transparency();
-    const F allowance = convert<float>(
-        budget_.allowance(convert<double>(length), convert<double>(s.opacity), transparency));
+    budget_.pass_to(select(on, left_behind_block_begin_ - begin_ - from_ * span_length_,
+                           budget_.length_left()));
+    const F transparency = convert<float>(fold_.transparency());
+    const F allowance = budget_.allowance(length, s.opacity, transparency);
     const M take = on & end.found & (error <= allowance);
     const M rest = on & !take;
     if (any(rest)) {
@@ -233,7 +251,7 @@ class PacketIntegrator {
         opacity,
         select(take, convert<double>(s.transparency), D(1)),
         {masked(take, s.radiance.r), masked(take, s.radiance.g), masked(take, s.radiance.b)}});
-    budget_.spend(masked(take, length), opacity, transparency, masked(take, error));
+    budget_.spend(select(take, length, F(0)), s.opacity, transparency, select(take, error, F(0)));
     pieces_ += select(take, I(1), I(0));
 
     const F left = F(1) - place;
@@ -241,7 +259,11 @@ class PacketIntegrator {
     length_ = select(take, length_ * left, length_);
     from_ = select(take, from_ + (F(1) - from_) * place, from_);
     cap_ = select(take, select(capped & (place < left), place / left, F(1)), cap_);
-    interval_ += select(take & crosses, select(end.rising, I(1), I(-1)), I(0));
+    const M crossed = take & crosses;
+    if (any(crossed)) {
+      interval_ += select(crossed, select(end.rising, I(1), I(-1)), I(0));
+      extinction_ = load_extinction<F>(transfer_, interval_);
+    }
     const M clear = (parts.back.hull_max() + rounding_ < F(transfer_.support_min)) |
                     (parts.back.hull_min() - rounding_ > F(transfer_.support_max));
     pending_ = pending_ & !(take & ((place >= F(1)) | clear));
@@ -259,10 +281,10 @@ class PacketIntegrator {
 
   /// A bound on what lies behind the last piece, as little as light can come from there; nothing
   /// behind rays that went to their end.
-  D rest_behind() const noexcept {
-    const D opacity = min(D(job_.largest_extinction) * budget_.length_left(), D(1));
-    const D rest = fold_.transparency() * opacity * D(job_.largest_color);
-    return select(blocks_.alive | cut_off_, rest, D(0));
+  F rest_behind() const noexcept {
+    const F opacity = min(F(transfer_.largest_extinction) * budget_.length_left(), F(1));
+    const F rest = convert<float>(fold_.transparency()) * opacity * largest_color_;
+    return select(blocks_.alive | cut_off_, rest, F(0));
   }
 
   /// How far a span's ends may be from where they are thought to be, world length. Where cells meet
@@ -278,14 +300,11 @@ class PacketIntegrator {
   /// Has what is left of the lanes' spans integrated by other means.
   void hand_back(M lanes) noexcept {
     lanes = lanes & pending_;
-    const D length = convert<double>(length_), zero(0);
-    const D transparency = fold_.transparency();
-    budget_.pass_to(select(lanes,
-                           blocks_.end - blocks_.begin - convert<double>(begin_) -
-                               convert<double>(from_ * span_length_),
+    const F transparency = convert<float>(fold_.transparency());
+    budget_.pass_to(select(lanes, left_behind_block_begin_ - begin_ - from_ * span_length_,
                            budget_.length_left()));
-    const D flat = budget_.allowance(length, zero, transparency),
-            all = budget_.allowance(length, D(1), transparency);
+    const F flat = budget_.allowance(length_, F(0), transparency),
+            all = budget_.allowance(length_, F(1), transparency);
     double depth[N] = {}, opacity[N] = {}, through[N], red[N] = {}, green[N] = {}, blue[N] = {},
            error[N] = {}, bound[N] = {};
     unsigned not_proved = 0, with_panels = 0;
@@ -298,8 +317,8 @@ class PacketIntegrator {
       }
       cell.from = static_cast<double>(from_[l]);
       cell.place_error = static_cast<double>(place_error_[l]);
-      cell.allowance_flat = flat[l];
-      cell.allowance_per_opacity = all[l] - flat[l];
+      cell.allowance_flat = static_cast<double>(flat[l]);
+      cell.allowance_per_opacity = static_cast<double>(all[l] - flat[l]);
       PellucidCellResult result;
       job_.integrate_cell(job_.context, first_ + l, &cell, &result);
       depth[l] = result.optical_depth;
@@ -317,7 +336,8 @@ class PacketIntegrator {
                                D::load(opacity),
                                D::load(through),
                                {D::load(red), D::load(green), D::load(blue)}});
-    budget_.spend(select(lanes, length, zero), D::load(bound), transparency, D::load(error));
+    budget_.spend(select(lanes, length_, F(0)), convert<float>(D::load(bound)), transparency,
+                  convert<float>(D::load(error)) * F(1 + 4 * rounding_unit<float>));
     proved_ = proved_ & !M::from_bits(not_proved);
     pieces_ += select(lanes, I(1), I(0));
     in_double_ += select(lanes, I(1), I(0));
@@ -332,21 +352,25 @@ class PacketIntegrator {
   BlockMarch<Value, N> blocks_;
   CellMarch<Value, N> cells_;
 
+  typename CellMarch<Value, N>::Step step_;
+
   // The span that a lane has met.
   M pending_{false};
   M handed_back_{false};  ///< those of them that are not for the rule here
   M last_of_block_{false};
   M located_{false};  ///< whether `interval_` is known
   CubicBernstein<F> data_;
-  F length_;               ///< world length of what is left of it
-  F begin_, span_length_;  ///< of all of it, from the block's entry
-  F from_;                 ///< the share that is done
-  F cap_;                  ///< the most that the next piece may be of what is left
-  F rounding_;             ///< of the data
-  F place_error_;          ///< world length
+  F left_behind_block_begin_;         ///< of the ray, world length
+  F length_;                          ///< world length of what is left of it
+  F begin_, span_length_;             ///< of all of it, from the block's entry
+  F from_;                            ///< the share that is done
+  F cap_;                             ///< the most that the next piece may be of what is left
+  F rounding_;                        ///< of the data
+  F place_error_;                     ///< world length
+  ExtinctionInterval<F> extinction_;  ///< that of `interval_`
   I interval_, pieces_of_span_, cell_[3];
 
-  RayBudget<D> budget_;
+  RayBudget<F> budget_;
   FrontToBack<D> fold_;
   F largest_color_;
   M proved_{true}, cut_off_{false};

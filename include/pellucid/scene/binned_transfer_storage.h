@@ -21,7 +21,7 @@ class BinnedTransferStorage {
   const BinnedTransfer& view() const noexcept { return view_; }
 
  private:
-  std::vector<float> extinction_, color_, color_bend_;
+  std::vector<float> extinction_, color_, color_split_, color_bend_;
   std::vector<std::int32_t> first_extinction_, first_color_, marks_;
   BinnedTransfer view_;
 };

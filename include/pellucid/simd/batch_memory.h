@@ -37,11 +37,18 @@ PELLUCID_ALWAYS_INLINE Batch<T, N> lookup(const T (&table)[Entries],
   }
 }
 
+/// For gather_pairs(): one offset for all lanes.
+struct SameOffset {
+  std::ptrdiff_t offset;
+  PELLUCID_ALWAYS_INLINE std::ptrdiff_t operator[](int) const noexcept { return offset; }
+  PELLUCID_ALWAYS_INLINE SameOffset operator+(int) const noexcept { return *this; }
+};
+
 /// Lane l gets base[l][offset[l]] and base[l][offset[l] + 1] as floats, each rounded once; reads
 /// exactly those two values. Value: an integer of 8, 16 or 32 bits, float or double. One load per
-/// lane for both is half the price of two gathers.
-template <class Value, int N>
-PELLUCID_ALWAYS_INLINE void gather_pairs(const Value* const* base, const std::int32_t* offset,
+/// lane for both is half the price of two gathers. Offset: const std::int32_t*, or SameOffset.
+template <class Value, int N, class Offset>
+PELLUCID_ALWAYS_INLINE void gather_pairs(const Value* const* base, Offset offset,
                                          Batch<float, N>& first, Batch<float, N>& second) noexcept {
   using Native = detail::Native<N>;
   using Float = Batch<float, N>;

@@ -149,9 +149,9 @@ struct Native<8> {
     return _mm256_blendv_ps(low, high, _mm256_castsi256_ps(_mm256_slli_epi32(index, 28)));
   }
 
-  template <class Value>
-  PELLUCID_ALWAYS_INLINE static void pairs(const Value* const* base, const std::int32_t* offset,
-                                           Float& first, Float& second) noexcept {
+  template <class Value, class Offset>
+  PELLUCID_ALWAYS_INLINE static void pairs(const Value* const* base, Offset offset, Float& first,
+                                           Float& second) noexcept {
     // Shuffles act within blocks of four lanes: lanes 0 1 and 4 5 in one register, 2 3 and 6 7 in
     // the other.
     using Block = PairBlock<Value>;
@@ -162,14 +162,12 @@ struct Native<8> {
     first = _mm256_shuffle_ps(a, b, 0x88);
     second = _mm256_shuffle_ps(a, b, 0xdd);
   }
-  template <class Value>
-  PELLUCID_ALWAYS_INLINE static Int words(const Value* const* base,
-                                          const std::int32_t* offset) noexcept {
+  template <class Value, class Offset>
+  PELLUCID_ALWAYS_INLINE static Int words(const Value* const* base, Offset offset) noexcept {
     return _mm256_set_m128i(four_words(base + 4, offset + 4), four_words(base, offset));
   }
-  template <class Value>
-  PELLUCID_ALWAYS_INLINE static Int bytes(const Value* const* base,
-                                          const std::int32_t* offset) noexcept {
+  template <class Value, class Offset>
+  PELLUCID_ALWAYS_INLINE static Int bytes(const Value* const* base, Offset offset) noexcept {
     return _mm256_cvtepu16_epi32(short_words<8>(base, offset));
   }
 

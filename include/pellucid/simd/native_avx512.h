@@ -160,9 +160,9 @@ struct Native<16> {
     return _mm512_inserti64x4(_mm512_castsi256_si512(low), high, 1);
   }
 
-  template <class Value>
-  PELLUCID_ALWAYS_INLINE static void pairs(const Value* const* base, const std::int32_t* offset,
-                                           Float& first, Float& second) noexcept {
+  template <class Value, class Offset>
+  PELLUCID_ALWAYS_INLINE static void pairs(const Value* const* base, Offset offset, Float& first,
+                                           Float& second) noexcept {
     // Shuffles act within blocks of four lanes: the lower two lanes of each block in one register,
     // the upper two in the other.
     const auto two = [&](int lane) __attribute__((always_inline)) {
@@ -174,15 +174,13 @@ struct Native<16> {
     first = _mm512_shuffle_ps(a, b, 0x88);
     second = _mm512_shuffle_ps(a, b, 0xdd);
   }
-  template <class Value>
-  PELLUCID_ALWAYS_INLINE static Int words(const Value* const* base,
-                                          const std::int32_t* offset) noexcept {
+  template <class Value, class Offset>
+  PELLUCID_ALWAYS_INLINE static Int words(const Value* const* base, Offset offset) noexcept {
     return blocks(four_words(base, offset), four_words(base + 4, offset + 4),
                   four_words(base + 8, offset + 8), four_words(base + 12, offset + 12));
   }
-  template <class Value>
-  PELLUCID_ALWAYS_INLINE static Int bytes(const Value* const* base,
-                                          const std::int32_t* offset) noexcept {
+  template <class Value, class Offset>
+  PELLUCID_ALWAYS_INLINE static Int bytes(const Value* const* base, Offset offset) noexcept {
     return _mm512_cvtepu16_epi32(
         _mm256_set_m128i(short_words<8>(base + 8, offset + 8), short_words<8>(base, offset)));
   }

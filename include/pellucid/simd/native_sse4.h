@@ -27,9 +27,8 @@ struct PairBlock<double> {
 };
 
 /// Both values of four lanes: values of 2 bytes, one 32-bit word per lane.
-template <class Value>
-PELLUCID_ALWAYS_INLINE __m128i four_words(const Value* const* base,
-                                          const std::int32_t* offset) noexcept {
+template <class Value, class Offset>
+PELLUCID_ALWAYS_INLINE __m128i four_words(const Value* const* base, Offset offset) noexcept {
   static_assert(sizeof(Value) == 2);
   const __m128i a = _mm_loadu_si32(base[0] + offset[0]), b = _mm_loadu_si32(base[1] + offset[1]),
                 c = _mm_loadu_si32(base[2] + offset[2]), d = _mm_loadu_si32(base[3] + offset[3]);
@@ -37,9 +36,8 @@ PELLUCID_ALWAYS_INLINE __m128i four_words(const Value* const* base,
 }
 
 /// Both values of Lanes <= 8 lanes: values of 1 byte, one 16-bit word per lane.
-template <int Lanes, class Value>
-PELLUCID_ALWAYS_INLINE __m128i short_words(const Value* const* base,
-                                           const std::int32_t* offset) noexcept {
+template <int Lanes, class Value, class Offset>
+PELLUCID_ALWAYS_INLINE __m128i short_words(const Value* const* base, Offset offset) noexcept {
   static_assert(sizeof(Value) == 1);
   const auto word = [&](int lane) __attribute__((always_inline)) {
     short both;
@@ -236,9 +234,9 @@ struct Native<4> {
 
   /// Pairs of values of 4 or 8 bytes: 32-bit words of the first and of the second ones, doubles
   /// already rounded to float.
-  template <class Value>
-  PELLUCID_ALWAYS_INLINE static void pairs(const Value* const* base, const std::int32_t* offset,
-                                           Float& first, Float& second) noexcept {
+  template <class Value, class Offset>
+  PELLUCID_ALWAYS_INLINE static void pairs(const Value* const* base, Offset offset, Float& first,
+                                           Float& second) noexcept {
     using Block = PairBlock<Value>;
     const __m128 a = Block::two_lanes(base[0] + offset[0], base[1] + offset[1]);
     const __m128 b = Block::two_lanes(base[2] + offset[2], base[3] + offset[3]);
@@ -246,15 +244,13 @@ struct Native<4> {
     second = _mm_shuffle_ps(a, b, 0xdd);
   }
   /// Pairs of values of 2 bytes: one word per lane, the first value in its lower half.
-  template <class Value>
-  PELLUCID_ALWAYS_INLINE static Int words(const Value* const* base,
-                                          const std::int32_t* offset) noexcept {
+  template <class Value, class Offset>
+  PELLUCID_ALWAYS_INLINE static Int words(const Value* const* base, Offset offset) noexcept {
     return four_words(base, offset);
   }
   /// Pairs of bytes: the first in the lowest byte of the lane, the second above, the rest 0.
-  template <class Value>
-  PELLUCID_ALWAYS_INLINE static Int bytes(const Value* const* base,
-                                          const std::int32_t* offset) noexcept {
+  template <class Value, class Offset>
+  PELLUCID_ALWAYS_INLINE static Int bytes(const Value* const* base, Offset offset) noexcept {
     return _mm_cvtepu16_epi32(short_words<4>(base, offset));
   }
 

@@ -25,6 +25,8 @@ struct BinnedTransfer {
   const float* color = nullptr;
   const std::int32_t* first_extinction = nullptr;  ///< per bin: the interval of its lower edge
   const std::int32_t* first_color = nullptr;       ///< likewise
+  const float* color_split = nullptr;              ///< per bin: the upper end of that interval
+  bool has_full_bins = false;  ///< whether any bin holds two corners of the color
   /// Sums over the bins in front of each, bins + 1 of them: how many absorb, plus 2^16 times how
   /// many hold a jump or what binary32 cannot tell apart.
   const std::int32_t* marks = nullptr;
@@ -33,7 +35,9 @@ struct BinnedTransfer {
   const float* color_bend = nullptr;
   float origin = 0, bins_per_value = 0;
   std::int32_t bins = 0;
-  float bend_rounding = 0;                 ///< of a difference of two of color_bend
+  float bend_rounding = 0;  ///< of a difference of two of color_bend
+  /// Whether marks say more than support_min and support_max do: there are jumps, or gaps.
+  bool has_marks = false;
   float support_min = 0, support_max = 0;  ///< nothing absorbs outside; crossed over: nowhere
   float largest_extinction = 0;
   float largest_color = 0;
@@ -84,12 +88,17 @@ ExtinctionInterval<F> find_extinction(const BinnedTransfer& t, F value, const Ma
 template <class F>
 Rgb<F> color_at(const BinnedTransfer& t, F value) noexcept {
   value = clamp(value, F(-BinnedTransfer::far / 2), F(BinnedTransfer::far / 2));
-  auto index = gather(t.first_color, bin_of(t, value));
+  const auto bin = bin_of(t, value);
+  auto index = gather(t.first_color, bin);
+  using Index = decltype(index);
+  index = index + select(value >= gather(t.color_split, bin), Index(1), Index(0));
   F r[BinnedTransfer::color_fields];
   load_records<BinnedTransfer::color_fields>(t.color, index, r);
-  for (auto further = value >= r[1]; any(further); further = value >= r[1]) {
-    index = select(further, index + decltype(index)(1), index);
-    load_records<BinnedTransfer::color_fields>(t.color, index, r);
+  if (t.has_full_bins) {
+    for (auto further = value >= r[1]; any(further); further = value >= r[1]) {
+      index = select(further, index + Index(1), index);
+      load_records<BinnedTransfer::color_fields>(t.color, index, r);
+    }
   }
   const F offset = value - r[0];
   return {r[2] + offset * r[5], r[3] + offset * r[6], r[4] + offset * r[7]};
