@@ -22,7 +22,8 @@ double storage_error(double value) {
 
 /// Whether the method has a sampler in packets.
 bool goes_in_packets(const Integration& integration) {
-  return integration.method == Method::midpoint && integration.precision != Precision::float64;
+  return (integration.method == Method::midpoint || integration.method == Method::preintegrated) &&
+         integration.precision != Precision::float64;
 }
 
 }  // namespace
@@ -41,16 +42,22 @@ Frame::Frame(const Scene& described, const RenderOptions& options, int threads)
   wanted.precision = integration.precision;
   wanted.largest_color =
       std::max(scene.transfer_function->largest_color(), brightest(scene.background));
+  step = integration.step * scene.volume->voxel_size();
+  const ParallelFor parallel = parallel_for(threads);
+  if (integration.method == Method::preintegrated) {
+    const VolumeStatistics& data = scene.volume->statistics();
+    preintegrated = std::make_unique<PreintegratedStorage>(transfer.tables().wide, data.minimum,
+                                                           data.maximum, step, parallel);
+  }
   const bool samples = goes_in_packets(integration) && !depth;
   if (integration.method != Method::exact && !samples) return;
-  const ParallelFor parallel = parallel_for(threads);
   const BlockRecords& records = scene.volume->block_ranges(parallel);
   block_classes = BlockClassesStorage(records, transfer.tables(), wanted.largest_color, parallel);
   blocks = ClassifiedBlocks{records, block_classes.view()};
   if (samples) {
     sampler = PacketSamplerTracer::make(
         *scene.volume, blocks->classes, transfer.tables().single,
-        integration.step * scene.volume->voxel_size(),
+        preintegrated ? &preintegrated->view() : nullptr, step,
         stop_tolerance<float>() / std::max(scene.transfer_function->largest_color(), 1.0),
         options.instruction_set);
   } else {

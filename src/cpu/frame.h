@@ -11,6 +11,7 @@
 #include "pellucid/scene/block_classes_storage.h"
 #include "pellucid/scene/scene.h"
 #include "pellucid/scene/transfer_tables_storage.h"
+#include "preintegrated_storage.h"
 
 namespace pellucid {
 
@@ -26,9 +27,11 @@ struct Frame {
   TransferTablesStorage transfer;
   RayTolerance wanted;
   BlockClassesStorage block_classes;
-  std::optional<ClassifiedBlocks> blocks;              ///< none: the method has no use for them
-  std::unique_ptr<const PacketTracer> packets;         ///< null: rays go one by one, or are sampled
-  std::unique_ptr<const PacketSamplerTracer> sampler;  ///< null: rays go one by one
+  std::optional<ClassifiedBlocks> blocks;       ///< none: the method has no use for them
+  std::unique_ptr<const PacketTracer> packets;  ///< null: rays go one by one, or are sampled
+  double step;                                  ///< of the sampling methods, world length
+  std::unique_ptr<const PreintegratedStorage> preintegrated;  ///< null: another method
+  std::unique_ptr<const PacketSamplerTracer> sampler;         ///< null: rays go one by one
   double reserved;  ///< of the tolerance: what the transfer function is off by
 };
 

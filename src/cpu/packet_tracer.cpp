@@ -67,6 +67,10 @@ bool is_moderate(double x) {
   return x >= 1e-12 && x <= 1e12;
 }
 
+double largest_value(const Volume& volume) {
+  return std::max(std::fabs(volume.statistics().minimum), std::fabs(volume.statistics().maximum));
+}
+
 /// What integrate_cell() is given back.
 struct CellContext {
   const void* tracer;
@@ -84,9 +88,7 @@ std::unique_ptr<const PacketTracer> PacketTracer::make(
   }
   const Kernel kernel = kernel_of(instruction_set.value_or(best_instruction_set()));
   if (kernel == nullptr || wanted.precision != Precision::automatic ||
-      wanted.tolerance < least_packet_tolerance ||
-      !is_moderate(std::max(std::fabs(volume.statistics().minimum),
-                            std::fabs(volume.statistics().maximum))) ||
+      wanted.tolerance < least_packet_tolerance || !is_moderate(largest_value(volume)) ||
       !is_moderate(volume.voxel_size()) || !(transfer.largest_extinction <= 1e12) ||
       !volume.visit([](const auto& grid) { return suits_packets(grid); })) {
     return nullptr;
@@ -101,7 +103,7 @@ PacketTracer::PacketTracer(const Volume& volume, const ClassifiedBlocks& blocks,
     : volume_(volume),
       transfer_(transfer),
       wanted_(wanted),
-      binned_(transfer.wide, transfer.merged, transfer.merged_count),
+      binned_(transfer.wide, transfer.merged, transfer.merged_count, largest_value(volume)),
       kernel_(kernel) {
   volume.visit([&](const auto& grid) {
     job_.data = grid.data;

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "pellucid/render/integrate_ray.h"
+#include "pellucid/render/sample_preintegrated.h"
 #include "pellucid/render/sample_ray.h"
 #include "tiles.h"
 
@@ -24,6 +25,7 @@ SamplingRule sampling_rule(Method method) {
     case Method::simpson:
       return SamplingRule::simpson;
     case Method::linear:
+    case Method::preintegrated:
     case Method::exact:
       break;
   }
@@ -41,14 +43,17 @@ RayResult render_ray(const Frame& frame, const StructuredGrid<Value, double>& gr
                          frame.transfer.tables(), frame.wanted, frame.depth);
   }
   const double largest_color = scene.transfer_function->largest_color();
-  const double step = integration.step * scene.volume->voxel_size();
   const SamplingRule rule = sampling_rule(integration.method);
-  if (integration.precision == Precision::float64) {
-    return sample_ray<double>(grid, ray, frame.transfer.tables().wide, rule, step, largest_color,
-                              stop_tolerance<double>(), frame.depth);
-  }
-  return sample_ray<float>(grid, ray, frame.transfer.tables().single, rule, step, largest_color,
-                           stop_tolerance<float>(), frame.depth);
+  const auto sample = [&]<class T>(const PiecewiseLinear<T>& transfer) {
+    if (frame.preintegrated) {
+      return sample_preintegrated<T>(grid, ray, frame.preintegrated->view(), frame.step,
+                                     largest_color, stop_tolerance<T>(), frame.depth);
+    }
+    return sample_ray<T>(grid, ray, transfer, rule, frame.step, largest_color, stop_tolerance<T>(),
+                         frame.depth);
+  };
+  return integration.precision == Precision::float64 ? sample(frame.transfer.tables().wide)
+                                                     : sample(frame.transfer.tables().single);
 }
 
 /// The mean of a pixel's rays. Its depth is that of the nearest.

@@ -9,12 +9,27 @@
 namespace pellucid {
 namespace {
 
-constexpr int fewest_bins = 1024, most_bins = 16384, bins_per_point = 8;
+constexpr int fewest_bins = 1024, most_bins = 8192;
 
-using Record = std::array<float, SamplerTransfer::fields>;
+/// So many bins, that control points at equal distances, as most of a tabulated function are, lie
+/// between them.
+int count_bins(const PiecewiseLinear<float>& table, double range) {
+  std::vector<double> gap;
+  for (int i = 1; i < table.count; ++i) {
+    const double width = double{table.value[i]} - double{table.value[i - 1]};
+    if (width > 0) gap.push_back(width);
+  }
+  if (gap.empty()) return 1;
+  std::nth_element(gap.begin(), gap.begin() + static_cast<std::ptrdiff_t>(gap.size() / 2),
+                   gap.end());
+  const double gaps = std::max(1.0, std::round(range / gap[gap.size() / 2]));
+  if (gaps > most_bins / 2) return most_bins;
+  return static_cast<int>(gaps * std::ceil(fewest_bins / gaps));
+}
 
-/// Interval i of the table; `next` is the record of interval i + 1.
-Record record_of(const PiecewiseLinear<float>& table, int i, int next) {
+/// Interval i of the table.
+std::array<float, SamplerTransfer::line_fields> line_of(const PiecewiseLinear<float>& table,
+                                                        int i) {
   const Material<float>&a = table.lower_material(i), &b = table.upper_material(i);
   const float lower = table.value[std::max(i - 1, 0)];
   const float upper = i < table.count ? table.value[i] : std::numeric_limits<float>::infinity();
@@ -22,7 +37,7 @@ Record record_of(const PiecewiseLinear<float>& table, int i, int next) {
   const auto slope = [&](float from, float to) { return line ? (to - from) / (upper - lower) : 0; };
   return {lower,
           upper,
-          static_cast<float>(next),
+          0,
           0,
           a.extinction,
           a.color.r,
@@ -37,32 +52,50 @@ Record record_of(const PiecewiseLinear<float>& table, int i, int next) {
 }  // namespace
 
 SamplerRecords::SamplerRecords(const PiecewiseLinear<float>& table) {
-  const int last = table.count - 1;
-  int bins = fewest_bins;
-  while (bins < most_bins && bins < bins_per_point * table.count) bins *= 2;
-  const double range = double(table.value[last]) - table.value[0];
-  const double per_value = range > 0 ? bins / range : 0;
+  const double origin = double{table.value[0]};
+  const double range = double{table.value[table.count - 1]} - origin;
+  int bins = count_bins(table, range);
+  const auto per_value = static_cast<float>(range > 0 ? bins / range : 0);
+  const bool usable = std::isfinite(per_value) && per_value > 0;
   view_.origin = table.value[0];
-  view_.bins_per_value = std::isfinite(static_cast<float>(per_value)) ? float(per_value) : 0;
-  view_.last_bin = static_cast<float>(bins - 1);
-  const auto add = [&](int interval) {
-    const Record r = record_of(table, interval, bins + interval + 1);
-    records_.insert(records_.end(), r.begin(), r.end());
+  view_.bins_per_value = usable ? per_value : 0;
+  if (!usable) bins = 1;
+  view_.bins_end = std::nextafter(static_cast<float>(bins), 0.0f);
+  const double width = usable ? 1 / double{per_value} : 0;
+  // Which bin a value falls into is rounded, by no more than this of the range.
+  const double rounding = 0x1p-22 * range;
+  const auto put = [](std::vector<float>& out, const Material<float>& m) {
+    out.insert(out.end(), {m.extinction, m.color.r, m.color.g, m.color.b});
   };
   for (int b = 0; b < bins; ++b) {
-    // Which bin a value falls into is rounded: the record begins with what may lie just below.
-    const double edge = view_.bins_per_value > 0 ? (b - 0.01) / view_.bins_per_value : -1;
-    add(b == 0 || edge < 0 ? 0 : table.interval(static_cast<float>(view_.origin + edge)));
+    const double from = origin + b * width, to = from + width;
+    const int first = table.interval(static_cast<float>(from + rounding));
+    const int last = table.interval(static_cast<float>(to - rounding));
+    // Below and above the table values fall into the bins at its ends.
+    const bool whole = usable && first == last && b > 0 && b < bins - 1;
+    if (whole) {
+      const Material<float> lower = table.evaluate_in(first, static_cast<float>(from));
+      const Material<float> upper = table.evaluate_in(first, static_cast<float>(to));
+      put(bins_, lower);
+      put(bins_, {upper.extinction - lower.extinction, upper.color - lower.color});
+    } else {
+      const float nan = std::numeric_limits<float>::quiet_NaN();
+      put(bins_, {nan, {nan, nan, nan}});
+      put(bins_, {nan, {nan, nan, nan}});
+    }
+    first_line_.push_back(
+        b == 0 ? 0.0f : static_cast<float>(table.interval(static_cast<float>(from - rounding))));
   }
-  for (int i = 0; i <= table.count; ++i) add(i);
-  view_.records = records_.data();
-
-  int first = 0, end = table.count;
-  while (first < end && !(table.material[first].extinction > 0)) ++first;
-  while (end > first && !(table.material[end - 1].extinction > 0)) --end;
-  const float far = std::numeric_limits<float>::max();
-  view_.support_min = first == table.count ? 1 : first == 0 ? -far : table.value[first - 1];
-  view_.support_max = first == table.count ? 0 : end == table.count ? far : table.value[end];
+  for (int i = 0; i <= table.count; ++i) {
+    const auto line = line_of(table, i);
+    lines_.insert(lines_.end(), line.begin(), line.end());
+  }
+  view_.bins = bins_.data();
+  view_.first_line = first_line_.data();
+  view_.lines = lines_.data();
+  const Support support = support_of(table);
+  view_.support_min = support.min;
+  view_.support_max = support.max;
 }
 
 }  // namespace pellucid

@@ -1,13 +1,30 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <limits>
 #include <vector>
 
 #include "pellucid/packet/sampler_transfer.h"
 
 namespace pellucid {
 
-/// Owns the records of a SamplerTransfer. Not copied, for the view refers to them.
+/// Nothing absorbs outside of it; crossed over: nowhere.
+struct Support {
+  float min = 1, max = 0;
+};
+
+template <class T>
+Support support_of(const PiecewiseLinear<T>& table) {
+  int first = 0, end = table.count;
+  while (first < end && !(table.material[first].extinction > 0)) ++first;
+  while (end > first && !(table.material[end - 1].extinction > 0)) --end;
+  if (first == end) return {};
+  const float far = std::numeric_limits<float>::max();
+  return {first == 0 ? -far : static_cast<float>(table.value[first - 1]),
+          end == table.count ? far : static_cast<float>(table.value[end])};
+}
+
+/// Owns the tables of a SamplerTransfer. Not copied, for the view refers to it.
 class SamplerRecords {
  public:
   explicit SamplerRecords(const PiecewiseLinear<float>& table);
@@ -17,7 +34,7 @@ class SamplerRecords {
   const SamplerTransfer& view() const noexcept { return view_; }
 
  private:
-  std::vector<float> records_;
+  std::vector<float> bins_, first_line_, lines_;
   SamplerTransfer view_;
 };
 

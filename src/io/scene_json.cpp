@@ -236,7 +236,8 @@ Camera camera_from(const Node& node, ImageSize size) {
 void read_integration(const Node& node, Integration& integration) {
   node.expect_object({"method", "tolerance", "grade", "precision", "step"});
   if (const auto method = node.find("method")) {
-    method->one_of({"exact", "rectangle", "taylor", "midpoint", "trapezoid", "simpson", "linear"});
+    method->one_of({"exact", "rectangle", "taylor", "midpoint", "trapezoid", "simpson", "linear",
+                    "preintegrated"});
     integration.method = *method_from_name(method->string());
   }
   if (const auto tolerance = node.find("tolerance")) {

@@ -71,7 +71,8 @@ bool absorbs(const PiecewiseLinear<double>& table, int i) {
 }  // namespace
 
 BinnedTransferStorage::BinnedTransferStorage(const PiecewiseLinear<double>& table,
-                                             const double* merged, int merged_count) {
+                                             const double* merged, int merged_count,
+                                             double largest_value) {
   const int last = table.count - 1;
   double largest_extinction = 0, largest_color = 0;
   for (int i = 0; i <= last; ++i) {
@@ -126,6 +127,18 @@ BinnedTransferStorage::BinnedTransferStorage(const PiecewiseLinear<double>& tabl
     }
   }
 
+  // Beside a corner rounding may take a color from the next interval.
+  constexpr std::size_t width_of_record = BinnedTransfer::extinction_fields;
+  const std::vector<float> own = extinction_;
+  for (std::size_t at = width_of_record - 1; at < own.size(); at += width_of_record) {
+    if (at >= width_of_record) {
+      extinction_[at] = std::max(extinction_[at], own[at - width_of_record]);
+    }
+    if (at + width_of_record < own.size()) {
+      extinction_[at] = std::max(extinction_[at], own[at + width_of_record]);
+    }
+  }
+
   // Intervals of the color.
   for (std::size_t i = 0; i <= at_color.size(); ++i) {
     const bool below = i == 0, beyond = i == at_color.size();
@@ -144,7 +157,8 @@ BinnedTransferStorage::BinnedTransferStorage(const PiecewiseLinear<double>& tabl
 
   // Bins.
   const double first_value = table.value[0], span = table.value[last] - first_value;
-  const double size = std::max(std::fabs(first_value), std::fabs(table.value[last]));
+  const double size =
+      std::max({std::fabs(first_value), std::fabs(table.value[last]), largest_value});
   const int inside = span > 0 ? std::clamp(4 * table.count, 254, 4094) : 0;
   view_.bins = span > 0 ? inside + 2 : 1;
   view_.origin = static_cast<float>(first_value);
@@ -219,7 +233,9 @@ BinnedTransferStorage::BinnedTransferStorage(const PiecewiseLinear<double>& tabl
       mark_jump(table.value[i - 1]);
       mark_jump(table.value[i]);
     }
-    if (!in_front || !behind) continue;
+    // No piece goes across a corner of the extinction.
+    const bool is_cut = std::binary_search(at_extinction.begin(), at_extinction.end(), i);
+    if (!in_front || !behind || is_cut) continue;
     double change = 0;
     for (std::size_t c = 0; c < 3; ++c) {
       change = std::max(change, std::fabs(color_slope(i + 1, c) - color_slope(i, c)));

@@ -16,7 +16,7 @@ namespace {
 
 constexpr int largest_size = 65536;
 
-constexpr std::array<std::pair<Method, std::string_view>, 7> methods{{
+constexpr std::array<std::pair<Method, std::string_view>, 8> methods{{
     {Method::exact, "exact"},
     {Method::rectangle, "rectangle"},
     {Method::taylor, "taylor"},
@@ -24,6 +24,7 @@ constexpr std::array<std::pair<Method, std::string_view>, 7> methods{{
     {Method::trapezoid, "trapezoid"},
     {Method::simpson, "simpson"},
     {Method::linear, "linear"},
+    {Method::preintegrated, "preintegrated"},
 }};
 
 void require_finite(const Vec3<double>& v, const std::string& what) {

@@ -121,8 +121,9 @@ TEST(Render, SlabHasItsClosedFormInEveryMethodAndItsHalfOpacityDepth) {
     const double front = 10 - (centering == Centering::cell ? 2 - 0.125 : 2);
     const double alpha = -std::expm1(-4.0);
     const double half = front - std::log1p(-alpha / 2) / 2;
-    for (const Method method : {Method::exact, Method::rectangle, Method::midpoint,
-                                Method::trapezoid, Method::simpson, Method::linear}) {
+    for (const Method method :
+         {Method::exact, Method::rectangle, Method::midpoint, Method::trapezoid, Method::simpson,
+          Method::linear, Method::preintegrated}) {
       for (const Precision precision : {Precision::float32, Precision::float64}) {
         scene.integration = {method, precision, 0.37};
         RenderOptions options;

@@ -3,6 +3,7 @@
 
 #include "pellucid/render/camera.h"
 #include "pellucid/render/integrate_ray.h"
+#include "pellucid/render/sample_preintegrated.h"
 #include "pellucid/render/sample_ray.h"
 
 namespace pellucid {
@@ -23,8 +24,21 @@ __global__ void render_pixels(StructuredGrid<Value, double> grid, ClassifiedBloc
                             true);
 }
 
-#define PELLUCID_RENDER(T, Value)                                               \
-  template __global__ void render_pixels<T, Value>(                             \
+template <class T, class Value>
+__global__ void render_preintegrated(StructuredGrid<Value, double> grid, PreintegratedTable table,
+                                     CameraFrame<double> camera, double step, RayResult* pixels) {
+  const int pixel = static_cast<int>(blockIdx.x * blockDim.x + threadIdx.x);
+  if (pixel >= camera.width * camera.height) return;
+  pixels[pixel] =
+      sample_preintegrated<T>(grid, camera.ray(pixel % camera.width, pixel / camera.width), table,
+                              step, 1.0, stop_tolerance<T>(), true);
+}
+template __global__ void render_preintegrated<float, std::int16_t>(
+    StructuredGrid<std::int16_t, double>, PreintegratedTable, CameraFrame<double>, double,
+    RayResult*);
+
+#define PELLUCID_RENDER(T, Value)                                                    \
+  template __global__ void render_pixels<T, Value>(                                  \
       StructuredGrid<Value, double>, ClassifiedBlocks, TransferTables, RayTolerance, \
       CameraFrame<double>, bool, SamplingRule, double, RayResult*);
 PELLUCID_RENDER(float, std::int16_t)

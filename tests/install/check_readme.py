@@ -23,7 +23,8 @@ def check(root):
             yield f"README.md: this block stands in none of {', '.join(COMPILED)}:\n{block}"
     pages = [root / "README.md", root / "CONTRIBUTING.md", *sorted((root / "docs").glob("*.md"))]
     for page in pages:
-        for link in re.findall(r"\]\(([^)#]+)(?:#[^)]*)?\)", page.read_text()):
+        prose = re.sub(r"```.*?```", "", page.read_text(), flags=re.S)
+        for link in re.findall(r"\]\(([^)#]+)(?:#[^)]*)?\)", prose):
             if not re.match(r"[a-z]+:", link) and not (page.parent / link).exists():
                 yield f"{page.relative_to(root)}: links to {link}, which does not exist"
 

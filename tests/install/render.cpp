@@ -19,7 +19,13 @@ int main(int argc, char** argv) {
     scene.size = {96, 72};
     scene.camera = pellucid::default_camera(*scene.volume, scene.size);
 
-    const pellucid::Image image = pellucid::render(scene);
+    pellucid::RenderOptions options;
+    options.preview = 3;  // every eighth pixel along each axis first
+    options.tile = [](const pellucid::TileResult& done) {
+      std::printf("level %d: %d x %d pixels\n", done.tile.level, done.tile.columns, done.tile.rows);
+      return true;  // false cancels
+    };
+    const pellucid::Image image = pellucid::render(scene, options);
     pellucid::write_png(image, "picture.png");
     const auto [red, green, blue, opacity] = image.at(48, 36);
     std::printf("the middle pixel: %g %g %g, opacity %g\n", red, green, blue, opacity);

@@ -154,7 +154,7 @@ TEST(Camera, TinyAndHugeDistancesKeepTheirDirection) {
 
 TEST(Method, NamesGoBothWays) {
   const char* names[] = {"exact",     "rectangle", "taylor", "midpoint",
-                         "trapezoid", "simpson",   "linear"};
+                         "trapezoid", "simpson",   "linear", "preintegrated"};
   for (const char* name : names) {
     const std::optional<Method> method = method_from_name(name);
     ASSERT_TRUE(method.has_value()) << name;

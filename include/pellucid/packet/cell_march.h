@@ -27,13 +27,14 @@ class CellMarch {
   };
 
   CellMarch(const PacketGrid<Value>& grid, const BlockMarch<Value, N>& blocks) noexcept
-      : grid_(grid) {
+      : grid_(grid), padded_(grid.padding[0] + grid.padding[1] + grid.padding[2] > 0) {
     for (int l = 0; l < N; ++l) base_[l] = grid.data;
     for (int a = 0; a < 3; ++a) {
       direction_[a] = convert<float>(blocks.direction[a]);
       inverse_[a] = F(1) / direction_[a];
       forward_[a] = direction_[a] > F(0);
-      still_[a] = direction_[a] == F(0);
+      // Of a direction so small that its inverse is infinite nothing is met in a block.
+      still_[a] = !(abs(inverse_[a]) <= F(std::numeric_limits<float>::max()));
     }
   }
 
@@ -97,6 +98,7 @@ class CellMarch {
       s.cell[a] = convert<std::int32_t>(cell_[a]);
     }
     gather_corners(s.from, s.corners);
+    if (padded_) repeat_border(s);
 
     for (int a = 0; a < 3; ++a) {
       const F step = select(forward_[a], F(1), F(-1));
@@ -107,6 +109,20 @@ class CellMarch {
   }
 
  private:
+  /// Cells outside of the outermost values have the border's twice.
+  void repeat_border(Step& s) const noexcept {
+    for (int a = 0; a < 3; ++a) {
+      const M below = cell_[a]<s.from[a], beyond = cell_[a]> s.from[a];
+      if (none(below | beyond)) continue;
+      for (int n = 0; n < 8; ++n) {
+        if ((n >> a & 1) != 0) continue;
+        F &lower = s.corners.value[n], &upper = s.corners.value[n | 1 << a];
+        upper = select(below, lower, upper);
+        lower = select(beyond, upper, lower);
+      }
+    }
+  }
+
   void gather_corners(const F* from, CellCorners<F>& corners) const noexcept {
     const I offset =
         convert<std::int32_t>(from[0] - least_[0]) +
@@ -123,6 +139,7 @@ class CellMarch {
   }
 
   const PacketGrid<Value>& grid_;
+  const bool padded_;  ///< whether there are cells outside of the outermost values
   F direction_[3], inverse_[3];
   M forward_[3], still_[3];
   F place_[3];            ///< of the entry into the block, from the block's lower corner

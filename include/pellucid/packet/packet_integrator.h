@@ -103,18 +103,36 @@ class PacketIntegrator {
     cells_.enter(here, blocks_);
     left_behind_block_begin_ =
         select(here, convert<float>(blocks_.end - blocks_.begin), left_behind_block_begin_);
-    if (any(constant)) {
-      // The material is that of any value in the block: of the one at its first corner.
-      typename CellMarch<Value, N>::Step& step = step_;
-      const M walking = cells_.walking & !constant;
-      cells_.step(constant, step);
-      begin_span(constant & (cells_.block_length > F(0)), step, F(0), cells_.block_length);
-      const F value = step.corners.value[0];
-      for (F& b : data_.b) b = select(constant, value, b);
-      cells_.walking = walking;
-      constant_ += select(constant, I(1), I(0));
-    }
+    // Not of types that binary32 rounds: the function may be steep there.
+    constexpr bool exact = std::is_same_v<Value, float> || sizeof(Value) < sizeof(float);
+    if (exact && any(constant)) begin_constant(constant & cells_.walking);
   }
+
+  /// Takes blocks of one material as one span: that of any value in the block, so of the one at its
+  /// first corner, as binary32 has it. Beside a jump, which may lie between a value and its
+  /// rounding, they are gone through; and where the tolerance does not allow for rounding.
+  void begin_constant(M lanes) noexcept {
+    cells_.step(M(false), step_);  // looks, and does not go on
+    const F value = step_.corners.value[0];
+    if (transfer_.has_marks) {
+      const F rounding = F(2 * rounding_unit<float>) * abs(value);
+      lanes = lanes & (marks_in(value - rounding, value + rounding) < jump());
+    }
+    step_.end = cells_.block_length;
+    begin_span(lanes, step_, F(0), cells_.block_length);
+    for (F& b : data_.b) b = select(lanes, value, b);
+    rounding_ = select(lanes, F(4 * rounding_unit<float>) * abs(value), rounding_);
+    whole_block_ = whole_block_ | lanes;
+    cells_.walking = cells_.walking & !lanes;
+    constant_ += select(lanes, I(1), I(0));
+  }
+
+  /// The marks of the transfer function over a range of values.
+  I marks_in(F least, F most) const noexcept {
+    return gather(transfer_.marks, bin_of(transfer_, most) + I(1)) -
+           gather(transfer_.marks, bin_of(transfer_, least));
+  }
+  static I jump() noexcept { return I(BinnedTransfer::one_jump); }
 
   [[gnu::flatten]] void step_cells(M ready) noexcept {
     typename CellMarch<Value, N>::Step& step = step_;
@@ -146,10 +164,9 @@ class PacketIntegrator {
     const F least = data.hull_min() - rounding, most = data.hull_max() + rounding;
     M hand_back_at_once(false);
     if (transfer_.has_marks) {
-      const I marks = gather(transfer_.marks, bin_of(transfer_, most) + I(1)) -
-                      gather(transfer_.marks, bin_of(transfer_, least));
+      const I marks = marks_in(least, most);
       found = found & (marks > I(0));
-      hand_back_at_once = found & (marks >= I(BinnedTransfer::one_jump));
+      hand_back_at_once = found & (marks >= jump());
     } else {
       found = found & (most >= F(transfer_.support_min)) & (least <= F(transfer_.support_max));
     }
@@ -164,6 +181,7 @@ class PacketIntegrator {
                   F length) noexcept {
     pending_ = pending_ | lanes;
     located_ = located_ & !lanes;
+    whole_block_ = whole_block_ & !lanes;
     length_ = select(lanes, length, length_);
     begin_ = select(lanes, begin, begin_);
     span_length_ = select(lanes, length, span_length_);
@@ -232,7 +250,10 @@ class PacketIntegrator {
     const F transparency = convert<float>(fold_.transparency());
     const F allowance = budget_.allowance(length, s.opacity, transparency);
     const M take = on & end.found & (error <= allowance);
-    const M rest = on & !take;
+    const M restart = on & !take & whole_block_;
+    pending_ = pending_ & !restart;
+    cells_.walking = cells_.walking | restart;
+    const M rest = on & !take & !restart;
     if (any(rest)) {
       const F half = F(0.5f) * place;
       const F part = (F(1) - from_) * half;  // of the cell
@@ -357,6 +378,7 @@ class PacketIntegrator {
   // The span that a lane has met.
   M pending_{false};
   M handed_back_{false};  ///< those of them that are not for the rule here
+  M whole_block_{false};  ///< of one material
   M last_of_block_{false};
   M located_{false};  ///< whether `interval_` is known
   CubicBernstein<F> data_;

@@ -6,12 +6,15 @@
 /// What goes between the renderer and the packets of rays that sample; as packet/interface.h.
 extern "C" {
 
+enum PellucidSamplingRule : std::int32_t { pellucid_midpoint, pellucid_preintegrated };
+
 struct PellucidSamplerJob {
   PellucidPacketJob grid_and_rays;  ///< of this the grid, its blocks, rays and results
-  const void* transfer;             ///< SamplerTransfer
-  const void* preintegrated;        ///< PreintegratedTable; null: the midpoint rule
-  double step;                      ///< world length
-  double stop;                      ///< the transparency at which a ray ends
+  PellucidSamplingRule rule;
+  const void* transfer;       ///< SamplerTransfer
+  const void* preintegrated;  ///< PreintegratedTable; empty where the rule is another
+  double step;                ///< world length
+  double stop;                ///< the transparency at which a ray ends
 };
 
 void pellucid_sample_packets_sse4(const PellucidSamplerJob* job);

@@ -6,39 +6,69 @@
 
 namespace pellucid {
 
-/// A piecewise-linear transfer function for samples in lanes: a record of one line, by uniform bins
-/// over the control points' range. A record that ends within its bin names the one that goes on, so
-/// that the function is met exactly and not at the bins' resolution. A view; owns nothing.
+/// A piecewise-linear transfer function for samples in lanes: uniform bins over the control points'
+/// range, each of a single line where that line holds all over it, and otherwise the lines one by
+/// one, so that the function is met exactly and not at the bins' resolution. A view; owns nothing.
 struct SamplerTransfer {
-  /// lower, upper, next, unused; extinction and color at lower; their slopes. A value >= upper is
-  /// looked up in record `next`.
-  const float* records = nullptr;
+  /// Per bin: extinction and color at its lower edge, and how much they rise over the bin. NaN: it
+  /// holds control points.
+  const float* bins = nullptr;
+  const float* first_line = nullptr;  ///< per bin: the line at its lower edge
+  /// Per line: lower, upper, two unused; extinction and color at lower; their slopes.
+  const float* lines = nullptr;
   float origin = 0, bins_per_value = 0;
-  float last_bin = 0;
+  float bins_end = 0;                      ///< just below their number
   float support_min = 0, support_max = 0;  ///< nothing absorbs outside; crossed over: nowhere
 
-  static constexpr int fields = 12;
+  static constexpr int bin_fields = 8, line_fields = 12;
 };
 
 #if PELLUCID_HAS_BATCH_4
+namespace detail {
+
+template <int N>
+Material<Batch<float, N>> material_on_lines(const SamplerTransfer& t, Batch<std::int32_t, N> bin,
+                                            Batch<float, N> value) noexcept {
+  using F = Batch<float, N>;
+  auto line = convert<std::int32_t>(gather(t.first_line, bin));
+  F r[SamplerTransfer::line_fields];
+  load_records<SamplerTransfer::line_fields>(t.lines, line, r);
+  for (auto further = value >= r[1]; any(further); further = value >= r[1]) {
+    line = select(further, line + Batch<std::int32_t, N>(1), line);
+    load_records<SamplerTransfer::line_fields>(t.lines, line, r);
+  }
+  const F offset = value - r[0];
+  return {multiply_add(offset, r[8], r[4]),
+          {multiply_add(offset, r[9], r[5]), multiply_add(offset, r[10], r[6]),
+           multiply_add(offset, r[11], r[7])}};
+}
+
+}  // namespace detail
+
 /// The material at values that are no NaN. Error: 4 u of the largest extinction and color of the
-/// line, beside that of the value's own.
+/// line, beside that of the value's own and what 4 u of the control points' range make.
 template <int N>
 PELLUCID_ALWAYS_INLINE Material<Batch<float, N>> material_at(const SamplerTransfer& t,
                                                              Batch<float, N> value) noexcept {
   using F = Batch<float, N>;
-  const F place = clamp((value - F(t.origin)) * F(t.bins_per_value), F(0), F(t.last_bin));
-  Batch<std::int32_t, N> index = convert<std::int32_t>(place);
-  F r[SamplerTransfer::fields];
-  load_records<SamplerTransfer::fields>(t.records, index, r);
-  for (auto further = value >= r[1]; any(further); further = value >= r[1]) {
-    index = select(further, convert<std::int32_t>(r[2]), index);
-    load_records<SamplerTransfer::fields>(t.records, index, r);
+  const F place = clamp((value - F(t.origin)) * F(t.bins_per_value), F(0), F(t.bins_end));
+  const Batch<std::int32_t, N> bin = convert<std::int32_t>(place);
+  const F s = place - convert<float>(bin);
+  F r[SamplerTransfer::bin_fields];
+  load_records<SamplerTransfer::bin_fields>(t.bins, bin, r);
+  Material<F> found{
+      multiply_add(s, r[4], r[0]),
+      {multiply_add(s, r[5], r[1]), multiply_add(s, r[6], r[2]), multiply_add(s, r[7], r[3])}};
+  const auto several = is_nan(r[0]);
+  if (any(several)) {
+    const Material<F> exact = detail::material_on_lines(t, bin, value);
+    found.extinction = select(several, exact.extinction, found.extinction);
+    found.color.r = select(several, exact.color.r, found.color.r);
+    found.color.g = select(several, exact.color.g, found.color.g);
+    found.color.b = select(several, exact.color.b, found.color.b);
   }
-  const F offset = value - r[0];
-  return {max(multiply_add(offset, r[8], r[4]), F(0)),
-          {multiply_add(offset, r[9], r[5]), multiply_add(offset, r[10], r[6]),
-           multiply_add(offset, r[11], r[7])}};
+  found.extinction = max(found.extinction, F(0));
+  return found;
 }
 #endif
 

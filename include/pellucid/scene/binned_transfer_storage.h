@@ -13,8 +13,9 @@ namespace pellucid {
 class BinnedTransferStorage {
  public:
   /// `merged`: values where control points of the function fall together in binary32.
+  /// `largest_value`: of the data, in magnitude: what is narrower than its rounding is a jump.
   BinnedTransferStorage(const PiecewiseLinear<double>& table, const double* merged,
-                        int merged_count);
+                        int merged_count, double largest_value = 0);
   BinnedTransferStorage(const BinnedTransferStorage&) = delete;
   BinnedTransferStorage& operator=(const BinnedTransferStorage&) = delete;
 

@@ -18,8 +18,8 @@ namespace pellucid {
 struct BinnedTransfer {
   /// Per interval of the extinction: lower, upper, extinction at the lower end, slope, then bounds
   /// over the interval: the largest extinction, the steepest |slope| of it and of its neighbours,
-  /// the range of the absorbing colors, the largest |slope| of the color. The outsides, whose slope
-  /// is 0, reach to ∓far.
+  /// the range of the absorbing colors, the largest |slope| of these, and of its neighbours'. The
+  /// outsides, whose slope is 0, reach to ∓far.
   const float* extinction = nullptr;
   /// Per interval of the color: lower, upper, color at the lower end, its slope.
   const float* color = nullptr;
@@ -31,7 +31,7 @@ struct BinnedTransfer {
   /// many hold a jump or what binary32 cannot tell apart.
   const std::int32_t* marks = nullptr;
   /// Sums over the bins in front of each of how much the slope of the color changes, in all,
-  /// largest channel.
+  /// largest channel, where the extinction has no corner.
   const float* color_bend = nullptr;
   float origin = 0, bins_per_value = 0;
   std::int32_t bins = 0;

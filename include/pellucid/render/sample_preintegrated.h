@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "pellucid/field/sample.h"
+#include "pellucid/render/ray_result.h"
+#include "pellucid/segment/constant.h"
+#include "pellucid/segment/fold.h"
+#include "pellucid/transfer/preintegrated.h"
+#include "pellucid/traverse/structured_walk.h"
+
+namespace pellucid {
+
+/// A part of a step: the opacity of a constant extinction, and the radiance in proportion to it.
+template <class T>
+PELLUCID_HD PreintegratedStep<T> part_of_step(const PreintegratedStep<T>& whole, T part) noexcept {
+  if (!(whole.opacity > T(0))) return {};
+  const T opacity = attenuation(-part * log1p(-whole.opacity)).opacity;
+  return {opacity, (opacity / whole.opacity) * whole.radiance};
+}
+
+/// Marches a ray as sample_ray() does, by a table made for this step: it sees the data at the ends
+/// of each step. A step with an end in a cell with a NaN corner is vacuum.
+template <class T, class Value>
+PELLUCID_HD RayResult sample_preintegrated(const StructuredGrid<Value, double>& grid,
+                                           const Ray<double>& ray_grid,
+                                           const PreintegratedTable& table, double step,
+                                           double largest_color, double stop_tolerance,
+                                           bool with_depth) noexcept {
+  RayResult result;
+  const Interval<double> box = grid_interval(grid.axis, ray_grid);
+  if (box.empty()) return result;
+
+  const auto march = [&](auto&& visit) {
+    double t_begin = box.begin;
+    T front = sample_value<T>(grid, ray_grid.at(t_begin));
+    for (long i = 1; t_begin < box.end; ++i) {
+      const double t_end = min(box.begin + static_cast<double>(i) * step, box.end);
+      const T back = sample_value<T>(grid, ray_grid.at(t_end));
+      PreintegratedStep<T> found = preintegrated_step(table, front, back);
+      const double part = (t_end - t_begin) / step;
+      if (part < 1 - 1e-6) found = part_of_step(found, static_cast<T>(part));
+      const SegmentResult<T> segment{-log1p(-found.opacity), found.opacity, T(1) - found.opacity,
+                                     found.radiance};
+      if (!visit(segment, t_begin, t_end)) break;
+      front = back;
+      t_begin = t_end;
+    }
+  };
+
+  FrontToBack<double> fold(stop_tolerance / max(largest_color, 1.0));
+  march([&](const SegmentResult<T>& segment, double, double) {
+    ++result.cells;
+    fold.add(segment);
+    return !fold.done();
+  });
+  result.radiance = fold.radiance();
+  result.optical_depth = fold.optical_depth();
+  result.opacity = fold.opacity();
+  if (with_depth && result.opacity > 0) {
+    // Within the step that passes the half the extinction is taken for constant.
+    const double target = -log1p(-0.5 * result.opacity);
+    double before = 0;
+    march([&](const SegmentResult<T>& segment, double t_begin, double t_end) {
+      const double inside = static_cast<double>(segment.optical_depth);
+      if (before + inside < target) {
+        before += inside;
+        return true;
+      }
+      result.half_opacity_depth = t_begin + (target - before) / inside * (t_end - t_begin);
+      return false;
+    });
+  }
+  return result;
+}
+
+}  // namespace pellucid

@@ -1,0 +1,377 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pellucid/segment/extinction_piece.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+#include <type_traits>
+#include <vector>
+
+#include "pellucid/scene/binned_transfer_storage.h"
+#include "pellucid/scene/transfer_function.h"
+
+namespace pellucid {
+namespace {
+
+using Wide = long double;
+
+/// The cubic's value, from its Bernstein form in long double.
+template <class F>
+Wide value_at(const CubicBernstein<F>& f, Wide t) {
+  const Wide s = 1 - t, b0 = static_cast<Wide>(f.b[0]), b1 = static_cast<Wide>(f.b[1]),
+             b2 = static_cast<Wide>(f.b[2]), b3 = static_cast<Wide>(f.b[3]);
+  return s * s * s * b0 + 3 * t * s * s * b1 + 3 * t * t * s * b2 + t * t * t * b3;
+}
+
+/// Cubics of all kinds: monotone and not, flat, with a double root, with values on the ends of the
+/// interval, far from zero.
+class Cubics {
+ public:
+  explicit Cubics(unsigned seed) : random_(seed) {}
+  double uniform() { return std::uniform_real_distribution<double>()(random_); }
+
+  template <class F>
+  CubicBernstein<F> make(double lower, double upper) {
+    const double width = upper - lower, start = lower + width * uniform();
+    const int kind = static_cast<int>(uniform() * 8);
+    const double reach = width * std::pow(10.0, uniform() * 5 - 3);
+    double b[4] = {start, 0, 0, 0};
+    for (int k = 1; k < 4; ++k) b[k] = start + reach * (2 * uniform() - 1);
+    switch (kind) {
+      case 0:
+        std::sort(b + 1, b + 4);
+        break;
+      case 1:
+        std::sort(b + 1, b + 4, std::greater<>());
+        break;
+      case 2:  // leaves along a plateau
+        b[2] = b[1];
+        break;
+      case 3:  // straight
+        for (int k = 1; k < 3; ++k) b[k] = b[0] + k * (b[3] - b[0]) / 3;
+        break;
+      case 4:  // begins at an end of the interval
+        b[0] = uniform() < 0.5 ? lower : upper;
+        break;
+      case 5: {  // touches an end of the interval
+        const double at = uniform(), end = uniform() < 0.5 ? lower : upper, c = b[3] - end;
+        // end + c (t - at)² times a line.
+        const double line0 = 1 - 0.5 * uniform(), line1 = 1 - 0.5 * uniform();
+        const double q[3] = {at * at, -at * (1 - at), (1 - at) * (1 - at)};
+        b[0] = end + c * q[0] * line0;
+        b[1] = end + c * (2 * q[1] * line0 + q[0] * line1) / 3;
+        b[2] = end + c * (q[2] * line0 + 2 * q[1] * line1) / 3;
+        b[3] = end + c * q[2] * line1;
+        break;
+      }
+      default:
+        break;
+    }
+    CubicBernstein<F> f;
+    for (int k = 0; k < 4; ++k) f.b[k] = static_cast<F>(b[k]);
+    f.b[0] = clamp(f.b[0], static_cast<F>(lower), static_cast<F>(upper));
+    return f;
+  }
+
+ private:
+  std::mt19937 random_;
+};
+
+/// The rounding that packets state for data, of which a quarter is `close`.
+template <class F>
+F rounding_of(const CubicBernstein<F>& f) {
+  constexpr F unit = rounding_unit<F>;
+  return F(8) * unit * max(abs(f.hull_min()), abs(f.hull_max())) +
+         F(80) * unit * (f.hull_max() - f.hull_min());
+}
+
+/// How far f, on [0, t], goes back from where it went: 0 where it is monotone.
+template <class F>
+Wide goes_back(const CubicBernstein<F>& f, Wide t) {
+  Wide least = value_at(f, 0), most = least, up = 0, down = 0;
+  for (int i = 1; i <= 64; ++i) {
+    const Wide v = value_at(f, t * i / 64);
+    up = std::max(up, v - least);
+    down = std::max(down, most - v);
+    least = std::min(least, v);
+    most = std::max(most, v);
+  }
+  return std::min(up, down);
+}
+
+/// Where f turns, or would but for a touch, in (0, 1).
+template <class F>
+std::vector<Wide> turns_of(const CubicBernstein<F>& f) {
+  const Wide d0 = static_cast<Wide>(f.b[1]) - static_cast<Wide>(f.b[0]),
+             d1 = static_cast<Wide>(f.b[2]) - static_cast<Wide>(f.b[1]),
+             d2 = static_cast<Wide>(f.b[3]) - static_cast<Wide>(f.b[2]);
+  // d0 + 2 t (d1 - d0) + t² (d2 - 2 d1 + d0).
+  const Wide half = d1 - d0, square = d2 - 2 * d1 + d0, radicand = half * half - d0 * square;
+  std::vector<Wide> turns;
+  if (radicand < 0) return turns;
+  const Wide w = -(half + std::copysign(std::sqrt(radicand), half));
+  for (const Wide t : {w / square, d0 / w}) {
+    if (t > 0 && t < 1) turns.push_back(t);
+  }
+  return turns;
+}
+
+/// Where f first leaves [lower, upper] by more than `by`, within 2^-60 of it, or 1: the first of
+/// many steps, then bisection.
+template <class F>
+Wide leaves_at(const CubicBernstein<F>& f, Wide lower, Wide upper, Wide by) {
+  const auto outside = [&](Wide t) {
+    const Wide v = value_at(f, t);
+    return v < lower - by || v > upper + by;
+  };
+  constexpr int steps = 256;
+  for (int i = 1; i <= steps; ++i) {
+    if (!outside(static_cast<Wide>(i) / steps)) continue;
+    Wide in = static_cast<Wide>(i - 1) / steps, out = static_cast<Wide>(i) / steps;
+    for (int n = 0; n < 60; ++n) {
+      const Wide middle = (in + out) / 2;
+      (outside(middle) ? out : in) = middle;
+    }
+    return out;
+  }
+  return 1;
+}
+
+template <class F>
+class PieceEnds : public testing::Test {};
+using Numbers = testing::Types<float, double>;
+TYPED_TEST_SUITE(PieceEnds, Numbers);
+
+TYPED_TEST(PieceEnds, AreWhereTheDataLeaveOrTurn) {
+  using F = TypeParam;
+  Cubics cubics(7);
+  int crossing = 0, turning = 0, needless = 0, whole = 0, lost = 0;
+  Wide largest_miss = 0, largest_outside = 0, largest_back = 0;
+  for (int n = 0; n < 100000; ++n) {
+    const double far = n % 3 == 0 ? 1000 * cubics.uniform() : 0;
+    const auto lower = static_cast<F>(far + cubics.uniform());
+    const auto upper =
+        static_cast<F>(static_cast<double>(lower) + std::pow(10.0, cubics.uniform() * 4 - 2));
+    const CubicBernstein<F> f =
+        cubics.make<F>(static_cast<double>(lower), static_cast<double>(upper));
+    const F rounding = rounding_of(f), close = F(0.25) * rounding;
+    const PieceEnd<F> end = piece_end(f, lower, upper, close, true);
+    ASSERT_TRUE(end.place >= 0 && end.place <= 1) << n;
+    if (!end.found) {
+      ++lost;
+      continue;
+    }
+    const Wide place = static_cast<Wide>(end.place), allowed = static_cast<Wide>(rounding),
+               lo = static_cast<Wide>(lower), hi = static_cast<Wide>(upper);
+    const auto share = [&](Wide x) { return x / static_cast<Wide>(close); };
+    // Nothing before the end is outside, and the end is not before anything is.
+    Wide outside = 0;
+    for (int i = 0; i <= 64; ++i) {
+      const Wide v = value_at(f, place * i / 64);
+      outside = std::max({outside, lo - v, v - hi});
+    }
+    largest_outside = std::max(largest_outside, share(outside));
+    ASSERT_LE(outside, 2 * static_cast<Wide>(close)) << n;
+    if (end.crosses) {
+      ++crossing;
+      const Wide miss = std::fabs(value_at(f, place) - (end.rising ? hi : lo));
+      largest_miss = std::max(largest_miss, share(miss));
+      ASSERT_LE(miss, 2 * static_cast<Wide>(close)) << n;
+      ASSERT_LE(place, leaves_at(f, lo, hi, 2 * static_cast<Wide>(close)) + 1e-18L) << n;
+    } else if (end.place < 1) {
+      ++turning;
+      // At the value of a turn; or there is none at all, and it costs a cut and no more.
+      const std::vector<Wide> all = turns_of(f);
+      const Wide here = value_at(f, place);
+      const bool turns = std::any_of(all.begin(), all.end(), [&](Wide t) {
+        return std::fabs(value_at(f, t) - here) <= allowed;
+      });
+      if (!turns) ++needless;
+      ASSERT_TRUE(turns || all.empty()) << n;
+    } else {
+      ++whole;
+    }
+    // Either it never leaves the hull, or it is monotone up to rounding.
+    if (f.hull_min() < lower - close || f.hull_max() > upper + close) {
+      const Wide back = goes_back(f, place);
+      largest_back = std::max(largest_back, share(back));
+      ASSERT_LE(back, allowed) << n;
+    }
+  }
+  EXPECT_GT(crossing, 20000);
+  EXPECT_GT(turning, 5000);
+  EXPECT_GT(whole, 20000);
+  EXPECT_LE(lost, 0);
+  this->RecordProperty("needless_of_turning",
+                       std::to_string(needless) + "/" + std::to_string(turning));
+  this->RecordProperty("largest_miss_of_close", std::to_string(largest_miss));
+  this->RecordProperty("largest_outside_of_close", std::to_string(largest_outside));
+  this->RecordProperty("largest_way_back_of_close", std::to_string(largest_back));
+}
+
+TYPED_TEST(PieceEnds, CutsAreTheSameCubic) {
+  using F = TypeParam;
+  Cubics cubics(8);
+  for (int n = 0; n < 20000; ++n) {
+    const CubicBernstein<F> f = cubics.make<F>(-1, 3);
+    const auto t = static_cast<F>(cubics.uniform());
+    const CutCubic<F> parts = cut(f, t);
+    const Wide slack = 16 * static_cast<Wide>(rounding_unit<F>) *
+                       static_cast<Wide>(max(abs(f.hull_min()), abs(f.hull_max())));
+    for (const double s : {0.0, 0.3, 0.5, 0.9, 1.0}) {
+      const Wide x = static_cast<Wide>(s), at = static_cast<Wide>(t);
+      ASSERT_NEAR(static_cast<double>(value_at(parts.front, x)),
+                  static_cast<double>(value_at(f, x * at)), static_cast<double>(slack));
+      ASSERT_NEAR(static_cast<double>(value_at(parts.back, x)),
+                  static_cast<double>(value_at(f, at + x * (1 - at))), static_cast<double>(slack));
+    }
+  }
+}
+
+/// A piece by quadrature in double: 4 Gauss points in each of many panels.
+struct Truth {
+  double depth = 0, opacity = 0;
+  Rgb<double> radiance{};
+};
+Truth quadrature(const CubicBernstein<float>& data, double length,
+                 const PiecewiseLinear<double>& table, int panels) {
+  constexpr double node[2] = {0.3399810435848563, 0.8611363115940526},
+                   weight[2] = {0.6521451548625461, 0.3478548451374538};
+  Truth truth;
+  for (int p = 0; p < panels; ++p) {
+    // Within a panel the depth in front of a point is that of its parts, linearly interpolated to
+    // second order: what is left is far below what is checked.
+    double extinction[4], share[4];
+    Rgb<double> color[4];
+    double all = 0;
+    for (int k = 0; k < 4; ++k) {
+      const double x = k < 2 ? -node[1 - k] : node[k - 2];
+      share[k] = weight[k < 2 ? 1 - k : k - 2] / 2 * length / panels;
+      const double t = (p + 0.5 * (1 + x)) / panels;
+      const Material<double> m =
+          table.evaluate(static_cast<double>(value_at(data, static_cast<Wide>(t))));
+      extinction[k] = m.extinction;
+      color[k] = m.color;
+      all += share[k] * m.extinction;
+    }
+    double in_front = truth.depth;
+    for (int k = 0; k < 4; ++k) {
+      const double part = share[k] * extinction[k];
+      truth.radiance += std::exp(-in_front) * -std::expm1(-part) * color[k];
+      in_front += part;
+    }
+    truth.depth += all;
+  }
+  truth.opacity = -std::expm1(-truth.depth);
+  return truth;
+}
+
+std::vector<TransferFunction::Point> random_points(Cubics& cubics) {
+  // Corners of the extinction at every third point: the colors bend in between.
+  const int count = 4 + static_cast<int>(cubics.uniform() * 20);
+  std::vector<TransferFunction::Point> points;
+  double value = 0;
+  for (int i = 0; i < count; ++i) {
+    points.push_back({value, 0, {cubics.uniform(), 2 * cubics.uniform(), cubics.uniform()}});
+    value += 0.02 + cubics.uniform();
+  }
+  const double most = std::pow(10.0, cubics.uniform() * 3 - 1);
+  for (int i = 0, next = 0; i < count; i = next) {
+    next = std::min(i + 3, count);
+    const double from =
+        i == 0 ? most * cubics.uniform() : points[static_cast<std::size_t>(i)].extinction;
+    const double to = cubics.uniform() < 0.2 ? 0 : most * cubics.uniform();
+    const int end = std::min(i + 3, count - 1);
+    for (int k = i; k <= end; ++k) {
+      const double s =
+          (points[static_cast<std::size_t>(k)].value - points[static_cast<std::size_t>(i)].value) /
+          std::max(points[static_cast<std::size_t>(end)].value -
+                       points[static_cast<std::size_t>(i)].value,
+                   1e-9);
+      points[static_cast<std::size_t>(k)].extinction = std::max(from + s * (to - from), 0.0);
+    }
+  }
+  return points;
+}
+
+TEST(ExtinctionPiece, DepthAndColorAreWithinWhatIsSaid) {
+  Cubics cubics(9);
+  int pieces = 0, bent = 0, thick = 0;
+  double largest_depth = 0, largest_color = 0;
+  for (int t = 0; t < 300; ++t) {
+    const TransferFunction function(random_points(cubics));
+    const PiecewiseLinear<double> table = function.view<double>();
+    const BinnedTransferStorage storage(table, nullptr, 0);
+    const BinnedTransfer& bins = storage.view();
+    const double first = table.value[0], last = table.value[table.count - 1];
+    for (int n = 0; n < 200; ++n) {
+      const auto start = static_cast<float>(first + (last - first) * cubics.uniform());
+      int index = 0;
+      const ExtinctionInterval<float> interval = find_extinction(bins, start, true, index);
+      const CubicBernstein<float> data =
+          cubics.make<float>(std::max(static_cast<double>(interval.lower), first - 1),
+                             std::min(static_cast<double>(interval.upper), last + 1));
+      if (!(data.b[0] >= interval.lower && data.b[0] < interval.upper)) continue;
+      const float rounding = rounding_of(data), close = 0.25f * rounding;
+      const PieceEnd<float> end = piece_end(data, interval.lower, interval.upper, close, true);
+      if (!end.found || !(end.place > 0)) continue;
+      CubicBernstein<float> piece = data;
+      if (end.place < 1) {
+        piece = cut(data, end.place).front;
+        if (end.crosses) piece.b[3] = end.rising ? interval.upper : interval.lower;
+      }
+      const auto length = static_cast<float>(std::pow(10.0, cubics.uniform() * 4 - 3)) * end.place;
+      const BoundedSegment<float> found = extinction_piece(piece, interval, length, bins);
+      const Truth truth = quadrature(piece, static_cast<double>(length), table, 64);
+
+      ++pieces;
+      constexpr double u = 0x1p-24;
+      const double value_error = static_cast<double>(rounding + close),
+                   depth_slack = static_cast<double>(length) *
+                                 (value_error * static_cast<double>(interval.steepest) +
+                                  8 * u * static_cast<double>(interval.largest));
+      const double depth_error =
+          std::fabs(static_cast<double>(found.segment.optical_depth) - truth.depth);
+      ASSERT_LE(depth_error, depth_slack + 1e-9 * truth.depth) << t << ", " << n;
+      largest_depth = std::max(largest_depth, depth_error / depth_slack);
+      ASSERT_NEAR(static_cast<double>(found.segment.opacity), truth.opacity,
+                  depth_slack + 8 * u + 1e-9);
+
+      // Colors as if the opacity were right: what color_error says.
+      const double opacity = static_cast<double>(found.segment.opacity);
+      if (!(truth.opacity > 0)) continue;
+      const Rgb<double> off{static_cast<double>(found.segment.radiance.r) -
+                                truth.radiance.r * opacity / truth.opacity,
+                            static_cast<double>(found.segment.radiance.g) -
+                                truth.radiance.g * opacity / truth.opacity,
+                            static_cast<double>(found.segment.radiance.b) -
+                                truth.radiance.b * opacity / truth.opacity};
+      const double color_off = std::max({std::fabs(off.r), std::fabs(off.g), std::fabs(off.b)});
+      const double brightest = static_cast<double>(bins.largest_color);
+      // Rounding, and 2^-11 of the range of the colors for the quadrature.
+      const double slack =
+          opacity * (32 * u * brightest +
+                     std::min(value_error * static_cast<double>(interval.color_slope), brightest)) +
+          2 * depth_slack * brightest + 1e-7 * opacity;
+      const double said = static_cast<double>(found.color_error);
+      ASSERT_LE(color_off, said * (1 + 0x1p-11) + slack) << t << ", " << n;
+      if (said > 100 * slack) {
+        largest_color = std::max(largest_color, color_off / said);
+        ++bent;
+      }
+      if (truth.depth > 3) ++thick;
+    }
+  }
+  EXPECT_GT(bent, 3000);
+  EXPECT_GT(thick, 3000);
+  RecordProperty("pieces", pieces);
+  RecordProperty("bent", bent);
+  RecordProperty("thick", thick);
+  RecordProperty("largest_depth_error_of_bound", std::to_string(largest_depth));
+  RecordProperty("largest_color_error_of_bound", std::to_string(largest_color));
+}
+
+}  // namespace
+}  // namespace pellucid
