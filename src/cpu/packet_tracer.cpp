@@ -7,68 +7,21 @@
 #include <type_traits>
 #include <vector>
 
+#include "packet_setup.h"
 #include "pellucid/field/trilinear.h"
-#include "pellucid/scene/error.h"
-#include "pellucid/traverse/structured_walk.h"
 
 namespace pellucid {
 namespace {
 
-template <class Value>
-constexpr PellucidValue value_type() {
-  if constexpr (std::is_same_v<Value, std::uint8_t>) return pellucid_u8;
-  if constexpr (std::is_same_v<Value, std::int8_t>) return pellucid_i8;
-  if constexpr (std::is_same_v<Value, std::uint16_t>) return pellucid_u16;
-  if constexpr (std::is_same_v<Value, std::int16_t>) return pellucid_i16;
-  if constexpr (std::is_same_v<Value, std::uint32_t>) return pellucid_u32;
-  if constexpr (std::is_same_v<Value, std::int32_t>) return pellucid_i32;
-  if constexpr (std::is_same_v<Value, float>) return pellucid_f32;
-  if constexpr (std::is_same_v<Value, double>) return pellucid_f64;
-}
-
-InstructionSet best_instruction_set() {
-  for (const InstructionSet set :
-       {InstructionSet::avx512, InstructionSet::avx2, InstructionSet::sse4}) {
-    if (is_supported(set)) return set;
-  }
-  return InstructionSet::scalar;
-}
-
 using Kernel = void (*)(const PellucidPacketJob*);
 
-Kernel kernel_of([[maybe_unused]] InstructionSet set) {
+Kernel integrator_of([[maybe_unused]] InstructionSet set) {
 #if PELLUCID_HAS_PACKETS
-  switch (set) {
-    case InstructionSet::avx512:
-      return pellucid_integrate_packets_avx512;
-    case InstructionSet::avx2:
-      return pellucid_integrate_packets_avx2;
-    case InstructionSet::sse4:
-      return pellucid_integrate_packets_sse4;
-    case InstructionSet::scalar:
-      break;
-  }
-#endif
+  return kernel_of<Kernel>(set, pellucid_integrate_packets_sse4, pellucid_integrate_packets_avx2,
+                           pellucid_integrate_packets_avx512);
+#else
   return nullptr;
-}
-
-/// Whether packets can go through the grid: uniform, two values along each axis at least, and
-/// places in a block that an int can count.
-template <class Value>
-bool suits_packets(const StructuredGrid<Value, double>& grid) {
-  for (const GridAxis<double>& axis : grid.axis) {
-    if (axis.plane_position != nullptr || axis.values < 2) return false;
-  }
-  return 10.0 * grid.axis[0].values * grid.axis[1].values < 2e9;
-}
-
-/// Whether squares of the number and of its thousandths stay far from where binary32 ends.
-bool is_moderate(double x) {
-  return x >= 1e-12 && x <= 1e12;
-}
-
-double largest_value(const Volume& volume) {
-  return std::max(std::fabs(volume.statistics().minimum), std::fabs(volume.statistics().maximum));
+#endif
 }
 
 /// What integrate_cell() is given back.
@@ -82,15 +35,10 @@ struct CellContext {
 std::unique_ptr<const PacketTracer> PacketTracer::make(
     const Volume& volume, const ClassifiedBlocks& blocks, const TransferTables& transfer,
     const RayTolerance& wanted, std::optional<InstructionSet> instruction_set) {
-  if (instruction_set && !is_supported(*instruction_set)) {
-    throw Error(std::string("instruction set: this machine has no ") + name_of(*instruction_set) +
-                "; leave it out, and the best one is taken");
-  }
-  const Kernel kernel = kernel_of(instruction_set.value_or(best_instruction_set()));
+  const Kernel kernel = integrator_of(packet_instruction_set(instruction_set));
   if (kernel == nullptr || wanted.precision != Precision::automatic ||
-      wanted.tolerance < least_packet_tolerance || !is_moderate(largest_value(volume)) ||
-      !is_moderate(volume.voxel_size()) || !(transfer.largest_extinction <= 1e12) ||
-      !volume.visit([](const auto& grid) { return suits_packets(grid); })) {
+      wanted.tolerance < least_packet_tolerance ||
+      !suits_packets(volume, transfer.largest_extinction)) {
     return nullptr;
   }
   return std::unique_ptr<const PacketTracer>(
@@ -105,14 +53,7 @@ PacketTracer::PacketTracer(const Volume& volume, const ClassifiedBlocks& blocks,
       wanted_(wanted),
       binned_(transfer.wide, transfer.merged, transfer.merged_count, largest_value(volume)),
       kernel_(kernel) {
-  volume.visit([&](const auto& grid) {
-    job_.data = grid.data;
-    job_.type = value_type<std::remove_cvref_t<decltype(*grid.data)>>();
-    for (int a = 0; a < 3; ++a) {
-      job_.values[a] = grid.axis[a].values;
-      job_.padding[a] = grid.axis[a].padding;
-    }
-  });
+  set_grid(volume, job_);
   job_.classes = blocks.classes.block;
   job_.transfer = &binned_.view();
   job_.tolerance = wanted.tolerance;
@@ -122,31 +63,22 @@ PacketTracer::PacketTracer(const Volume& volume, const ClassifiedBlocks& blocks,
 }
 
 void PacketTracer::trace(const Ray<double>* rays, int count, RayResult* results) const {
-  std::vector<PellucidRay> inside;
-  std::vector<int> of;
-  volume_.visit([&](const auto& grid) {
-    for (int i = 0; i < count; ++i) {
-      results[i] = {};
-      results[i].error = 0;
-      results[i].proved = true;
-      const Interval<double> t = grid_interval(grid.axis, rays[i]);
-      if (t.empty()) continue;
-      const Vec3<double>&o = rays[i].origin, &d = rays[i].direction;
-      inside.push_back({{o.x, o.y, o.z}, {d.x, d.y, d.z}, t.begin, t.end});
-      of.push_back(i);
-    }
-  });
-  std::vector<PellucidRayResult> found(inside.size());
+  RayResult clear;
+  clear.error = 0;
+  clear.proved = true;
+  std::fill(results, results + count, clear);
+  const PacketRays inside(volume_, rays, count);
+  std::vector<PellucidRayResult> found(inside.ray.size());
   PellucidPacketJob job = job_;
-  const CellContext context{this, inside.data()};
-  job.rays = inside.data();
+  const CellContext context{this, inside.ray.data()};
+  job.rays = inside.ray.data();
   job.results = found.data();
-  job.count = static_cast<std::int32_t>(inside.size());
+  job.count = static_cast<std::int32_t>(inside.ray.size());
   job.context = &context;
   kernel_(&job);
   for (std::size_t i = 0; i < found.size(); ++i) {
     const PellucidRayResult& from = found[i];
-    RayResult& to = results[of[i]];
+    RayResult& to = results[inside.of[i]];
     to.radiance = {from.radiance[0], from.radiance[1], from.radiance[2]};
     to.opacity = from.opacity;
     to.optical_depth = from.optical_depth;

@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "packet_setup.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <type_traits>
+
+#include "pellucid/scene/error.h"
+#include "pellucid/traverse/structured_walk.h"
+
+namespace pellucid {
+namespace {
+
+template <class Value>
+constexpr PellucidValue value_type() {
+  if constexpr (std::is_same_v<Value, std::uint8_t>) return pellucid_u8;
+  if constexpr (std::is_same_v<Value, std::int8_t>) return pellucid_i8;
+  if constexpr (std::is_same_v<Value, std::uint16_t>) return pellucid_u16;
+  if constexpr (std::is_same_v<Value, std::int16_t>) return pellucid_i16;
+  if constexpr (std::is_same_v<Value, std::uint32_t>) return pellucid_u32;
+  if constexpr (std::is_same_v<Value, std::int32_t>) return pellucid_i32;
+  if constexpr (std::is_same_v<Value, float>) return pellucid_f32;
+  if constexpr (std::is_same_v<Value, double>) return pellucid_f64;
+}
+
+}  // namespace
+
+InstructionSet packet_instruction_set(std::optional<InstructionSet> wanted) {
+  if (wanted) {
+    if (is_supported(*wanted)) return *wanted;
+    throw Error(std::string("instruction set: this machine has no ") + name_of(*wanted) +
+                "; leave it out, and the best one is taken");
+  }
+  for (const InstructionSet set :
+       {InstructionSet::avx512, InstructionSet::avx2, InstructionSet::sse4}) {
+    if (is_supported(set)) return set;
+  }
+  return InstructionSet::scalar;
+}
+
+double largest_value(const Volume& volume) {
+  return std::max(std::fabs(volume.statistics().minimum), std::fabs(volume.statistics().maximum));
+}
+
+bool suits_packets(const Volume& volume, double largest_extinction) {
+  return is_moderate(largest_value(volume)) && is_moderate(volume.voxel_size()) &&
+         largest_extinction <= 1e12 && volume.visit([](const auto& grid) {
+           for (const GridAxis<double>& axis : grid.axis) {
+             if (axis.plane_position != nullptr || axis.values < 2) return false;
+           }
+           return 20.0 * grid.axis[0].values * grid.axis[1].values < 2e9;
+         });
+}
+
+void set_grid(const Volume& volume, PellucidPacketJob& job) {
+  volume.visit([&](const auto& grid) {
+    job.data = grid.data;
+    job.type = value_type<std::remove_cvref_t<decltype(*grid.data)>>();
+    for (int a = 0; a < 3; ++a) {
+      job.values[a] = grid.axis[a].values;
+      job.padding[a] = grid.axis[a].padding;
+    }
+  });
+}
+
+PacketRays::PacketRays(const Volume& volume, const Ray<double>* rays, int count) {
+  volume.visit([&](const auto& grid) {
+    for (int i = 0; i < count; ++i) {
+      const Interval<double> t = grid_interval(grid.axis, rays[i]);
+      if (t.empty()) continue;
+      const Vec3<double>&o = rays[i].origin, &d = rays[i].direction;
+      ray.push_back({{o.x, o.y, o.z}, {d.x, d.y, d.z}, t.begin, t.end});
+      of.push_back(i);
+    }
+  });
+}
+
+}  // namespace pellucid

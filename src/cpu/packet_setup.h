@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "pellucid/packet/interface.h"
+#include "pellucid/scene/volume.h"
+#include "pellucid/simd/instruction_set.h"
+
+namespace pellucid {
+
+/// The set that is asked for, else the best one that the machine has. Throws Error where it has not
+/// that one.
+InstructionSet packet_instruction_set(std::optional<InstructionSet> wanted);
+
+/// Of kernels compiled once per instruction set, that of this one; null: rays go one by one.
+template <class Kernel>
+Kernel kernel_of(InstructionSet set, Kernel sse4, Kernel avx2, Kernel avx512) {
+  switch (set) {
+    case InstructionSet::avx512:
+      return avx512;
+    case InstructionSet::avx2:
+      return avx2;
+    case InstructionSet::sse4:
+      return sse4;
+    case InstructionSet::scalar:
+      break;
+  }
+  return nullptr;
+}
+
+/// The largest magnitude of the data.
+double largest_value(const Volume& volume);
+
+/// Whether squares of the number and of its thousandths stay far from where binary32 ends.
+inline bool is_moderate(double x) {
+  return x >= 1e-12 && x <= 1e12;
+}
+
+/// Whether packets can go through the volume: uniform, two values along each axis at least, places
+/// near a block that an int can count, and numbers, extinctions among them, whose squares binary32
+/// has.
+bool suits_packets(const Volume& volume, double largest_extinction);
+
+/// The grid's part of a job.
+void set_grid(const Volume& volume, PellucidPacketJob& job);
+
+/// Those of the rays that meet the grid's box, and which of them they are.
+struct PacketRays {
+  std::vector<PellucidRay> ray;
+  std::vector<int> of;
+
+  PacketRays(const Volume& volume, const Ray<double>* rays, int count);
+};
+
+}  // namespace pellucid
