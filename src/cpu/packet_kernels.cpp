@@ -22,22 +22,5 @@ void run(const PellucidPacketJob& job) {
 }  // namespace
 
 extern "C" void PELLUCID_ENTRY(pellucid_integrate_packets)(const PellucidPacketJob* job) {
-  switch (job->type) {
-    case pellucid_u8:
-      return run<std::uint8_t>(*job);
-    case pellucid_i8:
-      return run<std::int8_t>(*job);
-    case pellucid_u16:
-      return run<std::uint16_t>(*job);
-    case pellucid_i16:
-      return run<std::int16_t>(*job);
-    case pellucid_u32:
-      return run<std::uint32_t>(*job);
-    case pellucid_i32:
-      return run<std::int32_t>(*job);
-    case pellucid_f32:
-      return run<float>(*job);
-    case pellucid_f64:
-      return run<double>(*job);
-  }
+  pellucid::with_value_type(job->type, [job](auto value) { run<decltype(value)>(*job); });
 }

@@ -3,8 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <string>
-#include <type_traits>
 #include <vector>
 
 #include "packet_setup.h"

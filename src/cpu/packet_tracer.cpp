@@ -2,9 +2,6 @@
 #include "packet_tracer.h"
 
 #include <algorithm>
-#include <cmath>
-#include <string>
-#include <type_traits>
 #include <vector>
 
 #include "packet_setup.h"

@@ -32,4 +32,27 @@ struct PacketGrid {
   }
 };
 
+/// Calls run(Value{}) with the type of a job's data.
+template <class Run>
+void with_value_type(PellucidValue type, Run&& run) {
+  switch (type) {
+    case pellucid_u8:
+      return run(std::uint8_t{});
+    case pellucid_i8:
+      return run(std::int8_t{});
+    case pellucid_u16:
+      return run(std::uint16_t{});
+    case pellucid_i16:
+      return run(std::int16_t{});
+    case pellucid_u32:
+      return run(std::uint32_t{});
+    case pellucid_i32:
+      return run(std::int32_t{});
+    case pellucid_f32:
+      return run(float{});
+    case pellucid_f64:
+      return run(double{});
+  }
+}
+
 }  // namespace pellucid

@@ -3,8 +3,8 @@
 
 #include "pellucid/field/sample.h"
 #include "pellucid/render/ray_result.h"
+#include "pellucid/render/sample_ray.h"
 #include "pellucid/segment/constant.h"
-#include "pellucid/segment/fold.h"
 #include "pellucid/transfer/preintegrated.h"
 #include "pellucid/traverse/structured_walk.h"
 
@@ -47,29 +47,7 @@ PELLUCID_HD RayResult sample_preintegrated(const StructuredGrid<Value, double>& 
     }
   };
 
-  FrontToBack<double> fold(stop_tolerance / max(largest_color, 1.0));
-  march([&](const SegmentResult<T>& segment, double, double) {
-    ++result.cells;
-    fold.add(segment);
-    return !fold.done();
-  });
-  result.radiance = fold.radiance();
-  result.optical_depth = fold.optical_depth();
-  result.opacity = fold.opacity();
-  if (with_depth && result.opacity > 0) {
-    // Within the step that passes the half the extinction is taken for constant.
-    const double target = -log1p(-0.5 * result.opacity);
-    double before = 0;
-    march([&](const SegmentResult<T>& segment, double t_begin, double t_end) {
-      const double inside = static_cast<double>(segment.optical_depth);
-      if (before + inside < target) {
-        before += inside;
-        return true;
-      }
-      result.half_opacity_depth = t_begin + (target - before) / inside * (t_end - t_begin);
-      return false;
-    });
-  }
+  fold_march<T>(march, stop_tolerance / max(largest_color, 1.0), with_depth, result);
   return result;
 }
 

@@ -55,6 +55,36 @@ PELLUCID_HD SegmentResult<T> sampled_segment(SamplingRule rule, const Material<T
   return linear_segment(front.extinction, back.extinction, front.color, back.color, length);
 }
 
+/// Folds the steps of a march, which calls visit(segment, t_begin, t_end) front to back until that
+/// returns false, into the ray's result: to the transparency `stop`, and once more for the depth.
+template <class T, class March>
+PELLUCID_HD void fold_march(March&& march, double stop, bool with_depth,
+                            RayResult& result) noexcept {
+  FrontToBack<double> fold(stop);
+  march([&](const SegmentResult<T>& segment, double, double) {
+    ++result.cells;
+    fold.add(segment);
+    return !fold.done();
+  });
+  result.radiance = fold.radiance();
+  result.optical_depth = fold.optical_depth();
+  result.opacity = fold.opacity();
+  if (with_depth && result.opacity > 0) {
+    // Within the step that passes the half, the rules know no more than a constant extinction.
+    const double target = -log1p(-0.5 * result.opacity);
+    double before = 0;
+    march([&](const SegmentResult<T>& segment, double t_begin, double t_end) {
+      const double inside = static_cast<double>(segment.optical_depth);
+      if (before + inside < target) {
+        before += inside;
+        return true;
+      }
+      result.half_opacity_depth = t_begin + (target - before) / inside * (t_end - t_begin);
+      return false;
+    });
+  }
+}
+
 /// Marches a ray (in grid coordinates, its parameter the world arc length) through the grid's box
 /// at the given step (world length, > 0). The last step ends at the box. Samples lie at multiples
 /// of the step from the entry, computed from their index, so that positions do not drift.
@@ -86,29 +116,7 @@ PELLUCID_HD RayResult sample_ray(const StructuredGrid<Value, double>& grid,
     }
   };
 
-  FrontToBack<double> fold(stop_tolerance / max(largest_color, 1.0));
-  march([&](const SegmentResult<T>& segment, double, double) {
-    ++result.cells;
-    fold.add(segment);
-    return !fold.done();
-  });
-  result.radiance = fold.radiance();
-  result.optical_depth = fold.optical_depth();
-  result.opacity = fold.opacity();
-  if (with_depth && result.opacity > 0) {
-    // Within the step that passes the half, the rules know no more than a constant extinction.
-    const double target = -log1p(-0.5 * result.opacity);
-    double before = 0;
-    march([&](const SegmentResult<T>& segment, double t_begin, double t_end) {
-      const double inside = static_cast<double>(segment.optical_depth);
-      if (before + inside < target) {
-        before += inside;
-        return true;
-      }
-      result.half_opacity_depth = t_begin + (target - before) / inside * (t_end - t_begin);
-      return false;
-    });
-  }
+  fold_march<T>(march, stop_tolerance / max(largest_color, 1.0), with_depth, result);
   return result;
 }
 
