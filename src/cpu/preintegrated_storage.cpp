@@ -53,7 +53,8 @@ std::array<float, PreintegratedTable::fields> entry_of(const std::vector<Integra
                                                        int back, double step_per_value) {
   const int distance = std::abs(back - front);
   const auto at = [&](int n, int parts) -> const Integrals& {
-    return to[static_cast<std::size_t>(front + (back - front) * n / parts)];
+    const int node = front + (back - front) * n / parts;
+    return to[static_cast<std::size_t>(node)];
   };
   const double depth = std::fabs(at(1, 1).extinction - at(0, 1).extinction) * step_per_value;
   const int parts =

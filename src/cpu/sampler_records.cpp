@@ -23,7 +23,7 @@ int count_bins(const PiecewiseLinear<float>& table, double range) {
   std::nth_element(gap.begin(), gap.begin() + static_cast<std::ptrdiff_t>(gap.size() / 2),
                    gap.end());
   const double gaps = std::max(1.0, std::round(range / gap[gap.size() / 2]));
-  if (gaps > most_bins / 2) return most_bins;
+  if (gaps > 0.5 * most_bins) return most_bins;
   return static_cast<int>(gaps * std::ceil(fewest_bins / gaps));
 }
 

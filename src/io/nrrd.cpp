@@ -244,7 +244,8 @@ std::optional<NrrdValues> raw_values(const Header& header, const fs::path& path)
     return line == nullptr ? std::string() : in_small_letters(line->value);
   };
   NrrdValues values{path, header.bytes, {}};
-  if (says("encoding") != "raw" || (says("lineskip") != "" && says("lineskip") != "0")) return {};
+  if (says("encoding") != "raw" || (!says("lineskip").empty() && says("lineskip") != "0"))
+    return {};
   if (says("endian") == "little" || says("endian") == "big") {
     values.big_endian = says("endian") == "big";
   }
@@ -257,7 +258,7 @@ std::optional<NrrdValues> raw_values(const Header& header, const fs::path& path)
   }
   if (says("byteskip") == "-1") {
     values.offset = NrrdValues::last_bytes;
-  } else if (says("byteskip") != "") {
+  } else if (!says("byteskip").empty()) {
     const std::optional<std::uint64_t> skipped = number_in(says("byteskip"));
     if (!skipped || *skipped > fs::file_size(values.file)) return {};
     values.offset += *skipped;

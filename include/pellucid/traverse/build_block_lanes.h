@@ -15,7 +15,7 @@ template <class Number>
 struct RowLanes {
   static constexpr int count = 16 / sizeof(Number);
 #if PELLUCID_HAS_VECTOR_TYPES
-  typedef Number Lanes __attribute__((vector_size(16)));
+  using Lanes __attribute__((vector_size(16))) = Number;
   Lanes lane;
 
   static RowLanes load(const Number* from) noexcept {
