@@ -13,6 +13,8 @@ target_compile_options(pellucid_build_flags INTERFACE
   $<$<CXX_COMPILER_ID:GNU>:-Wduplicated-cond -Wlogical-op -Wuseless-cast>
   # To clang it is also double to long double, which the reference renderer is written in.
   $<$<CXX_COMPILER_ID:Clang>:-Wno-double-promotion>
+  # Kernels take masks of lanes and bools alike: | and & throughout.
+  $<$<CXX_COMPILER_ID:Clang>:-Wno-bitwise-instead-of-logical>
   # GCC 12 sees overlaps in "text" + std::string that are not there (GCC bug 105651).
   $<$<AND:$<CXX_COMPILER_ID:GNU>,$<VERSION_LESS:$<CXX_COMPILER_VERSION>,13>>:-Wno-restrict>
   $<$<BOOL:${PELLUCID_WERROR}>:-Werror>)
