@@ -52,7 +52,9 @@ Frame::Frame(const Scene& described, const RenderOptions& options, int threads)
   const bool samples = goes_in_packets(integration) && !depth;
   if (integration.method != Method::exact && !samples) return;
   const BlockRecords& records = scene.volume->block_ranges(parallel);
-  block_classes = BlockClassesStorage(records, transfer.tables(), wanted.largest_color, parallel);
+  block_classes =
+      BlockClassesStorage(records, transfer.tables(), wanted.largest_color, parallel,
+                          samples ? 0 : PacketTracer::most_bending(*scene.volume, wanted));
   blocks = ClassifiedBlocks{records, block_classes.view()};
   if (samples) {
     sampler = PacketSamplerTracer::make(
@@ -61,8 +63,8 @@ Frame::Frame(const Scene& described, const RenderOptions& options, int threads)
         stop_tolerance<float>() / std::max(scene.transfer_function->largest_color(), 1.0),
         options.instruction_set);
   } else {
-    packets = PacketTracer::make(*scene.volume, *blocks, transfer.tables(), wanted,
-                                 options.instruction_set);
+    packets = PacketTracer::make(*scene.volume, *blocks, block_classes.smooth(), transfer.tables(),
+                                 wanted, options.instruction_set);
   }
 }
 

@@ -2,9 +2,11 @@
 #include "packet_tracer.h"
 
 #include <algorithm>
+#include <cmath>
 #include <vector>
 
 #include "packet_setup.h"
+#include "pellucid/error/random_errors.h"
 #include "pellucid/field/trilinear.h"
 
 namespace pellucid {
@@ -27,11 +29,33 @@ struct CellContext {
   const PellucidRay* rays;
 };
 
+/// From corner to corner, world length.
+double diagonal(const Volume& volume) {
+  double square = 0;
+  for (const Vec3<double>& p : volume.world_corners()) {
+    for (const Vec3<double>& q : volume.world_corners()) {
+      square = std::max(square, dot(p - q, p - q));
+    }
+  }
+  return std::sqrt(square);
+}
+
 }  // namespace
 
+double PacketTracer::most_bending(const Volume& volume, const RayTolerance& wanted) {
+  if (wanted.grade == Grade::proved) return 0;
+  // What SmoothMarch takes for the least error in steps of a quarter of a cell, from corner to
+  // corner.
+  const double cell = volume.voxel_size(), step = 0.25 * cell;
+  const double one = step * 0.125 * SmoothError::deviation_of_bend;
+  const double steps = diagonal(volume) / step;
+  return wanted.tolerance / (RandomErrors<double>::deviations * one * std::sqrt(steps));
+}
+
 std::unique_ptr<const PacketTracer> PacketTracer::make(
-    const Volume& volume, const ClassifiedBlocks& blocks, const TransferTables& transfer,
-    const RayTolerance& wanted, std::optional<InstructionSet> instruction_set) {
+    const Volume& volume, const ClassifiedBlocks& blocks, const SmoothBlocks& smooth,
+    const TransferTables& transfer, const RayTolerance& wanted,
+    std::optional<InstructionSet> instruction_set) {
   const Kernel kernel = integrator_of(packet_instruction_set(instruction_set));
   if (kernel == nullptr || wanted.precision != Precision::automatic ||
       wanted.tolerance < least_packet_tolerance ||
@@ -39,16 +63,17 @@ std::unique_ptr<const PacketTracer> PacketTracer::make(
     return nullptr;
   }
   return std::unique_ptr<const PacketTracer>(
-      new PacketTracer(volume, blocks, transfer, wanted, kernel));
+      new PacketTracer(volume, blocks, smooth, transfer, wanted, kernel));
 }
 
 PacketTracer::PacketTracer(const Volume& volume, const ClassifiedBlocks& blocks,
-                           const TransferTables& transfer, const RayTolerance& wanted,
-                           Kernel kernel)
+                           const SmoothBlocks& smooth, const TransferTables& transfer,
+                           const RayTolerance& wanted, Kernel kernel)
     : volume_(volume),
       transfer_(transfer),
       wanted_(wanted),
       binned_(transfer.wide, transfer.merged, transfer.merged_count, largest_value(volume)),
+      samples_(transfer.single),
       kernel_(kernel) {
   set_grid(volume, job_);
   job_.classes = blocks.classes.block;
@@ -56,6 +81,12 @@ PacketTracer::PacketTracer(const Volume& volume, const ClassifiedBlocks& blocks,
   job_.tolerance = wanted.tolerance;
   job_.largest_color = max(wanted.largest_color, 1.0);
   job_.largest_extinction = transfer.largest_extinction;
+  // A sample is rounded, and its place, by 32 u of the largest value, all told.
+  job_.sample_rounding =
+      32 * static_cast<double>(rounding_unit<float>) * largest_value(volume) * smooth.roughness;
+  if (job_.sample_rounding * diagonal(volume) <= 0.125 * wanted.tolerance) smooth_ = smooth;
+  job_.samples = &samples_.view();
+  job_.smooth = &smooth_;
   job_.integrate_cell = &PacketTracer::integrate_cell;
 }
 
@@ -87,6 +118,7 @@ void PacketTracer::trace(const Ray<double>* rays, int count, RayResult* results)
     to.spans.constant = static_cast<std::uint64_t>(from.constant);
     to.spans.closed = static_cast<std::uint64_t>(from.closed);
     to.spans.panels = static_cast<std::uint64_t>(from.panels);
+    to.spans.strides = static_cast<std::uint64_t>(from.strides);
     to.spans.in_double = static_cast<std::uint64_t>(from.in_double);
   }
 }

@@ -10,6 +10,7 @@
 #include "pellucid/scene/volume.h"
 #include "pellucid/simd/instruction_set.h"
 #include "pellucid/traverse/block_classes.h"
+#include "sampler_records.h"
 
 namespace pellucid {
 
@@ -19,12 +20,17 @@ inline constexpr double least_packet_tolerance = 1e-5;
 /// Integrates rays in packets, in the machine's best instruction set; what packets hand back, here.
 class PacketTracer {
  public:
+  /// For BlockClassesStorage: how much smooth blocks may bend to be worth a try. 0 where only what
+  /// is proved counts.
+  static double most_bending(const Volume& volume, const RayTolerance& wanted);
+
   /// Null where rays have to go one by one: no such instructions, a rectilinear grid, a single
   /// layer of values, one precision wanted, a very small tolerance, or numbers
   /// whose squares binary32 has not. All that is given is referred to.
   /// Throws Error where the machine has not the instruction set that is asked for.
   static std::unique_ptr<const PacketTracer> make(const Volume& volume,
                                                   const ClassifiedBlocks& blocks,
+                                                  const SmoothBlocks& smooth,
                                                   const TransferTables& transfer,
                                                   const RayTolerance& wanted,
                                                   std::optional<InstructionSet> instruction_set);
@@ -36,8 +42,8 @@ class PacketTracer {
  private:
   using Kernel = void (*)(const PellucidPacketJob*);
 
-  PacketTracer(const Volume& volume, const ClassifiedBlocks& blocks, const TransferTables& transfer,
-               const RayTolerance& wanted, Kernel kernel);
+  PacketTracer(const Volume& volume, const ClassifiedBlocks& blocks, const SmoothBlocks& smooth,
+               const TransferTables& transfer, const RayTolerance& wanted, Kernel kernel);
   static void integrate_cell(const void* context, std::int32_t ray, const PellucidCell* cell,
                              PellucidCellResult* result);
 
@@ -45,6 +51,8 @@ class PacketTracer {
   const TransferTables& transfer_;
   const RayTolerance& wanted_;
   BinnedTransferStorage binned_;
+  SamplerRecords samples_;
+  SmoothBlocks smooth_;
   PellucidPacketJob job_{};
   Kernel kernel_;
 };

@@ -7,7 +7,9 @@
 
 #include "block_levels.h"
 #include "block_roughness.h"
+#include "block_smoothness.h"
 #include "pellucid/scene/block_classes_storage.h"
+#include "pellucid/traverse/block_code.h"
 
 namespace pellucid {
 namespace {
@@ -87,8 +89,10 @@ class CodeTable {
   std::vector<Sums> sums_;
 };
 
+/// `of_sample`: as find_smooth_blocks() wants it.
 BlockClass classify(const BlockRecord& record, const CodeTable& codes,
-                    const BlockRoughness& roughness) noexcept {
+                    const BlockRoughness& roughness, float& of_sample) noexcept {
+  of_sample = -1;
   const BlockVacuum vacuum = record.vacuum();
   if (vacuum == BlockVacuum::all || codes.is_clear(record.lower, record.upper)) {
     return {0, BlockKind::skip, 0};
@@ -99,32 +103,37 @@ BlockClass classify(const BlockRecord& record, const CodeTable& codes,
     return {0, BlockKind::constant, 0};
   }
   if (codes.has_jump(record.lower, record.upper)) return {infinite, BlockKind::cells, 0};
-  return {roughness(record.lower, record.upper), BlockKind::cells, 0};
+  const BlockRoughness::Range range = roughness(record.lower, record.upper);
+  if (range.steady) of_sample = float_above(range.of_sample);
+  return {range.roughness, BlockKind::cells, 0};
 }
 
 }  // namespace
 
 BlockClassesStorage::BlockClassesStorage(const BlockRecords& records,
                                          const TransferTables& transfer, double largest_color,
-                                         const ParallelFor& parallel)
+                                         const ParallelFor& parallel, double most_bending)
     : classes_(static_cast<std::size_t>(records.count())) {
-  const auto run = [&](int count, const std::function<void(int, int)>& body) {
-    if (parallel) {
-      parallel(count, body);
-    } else {
-      body(0, count);
-    }
-  };
+  const ParallelFor run =
+      parallel ? parallel
+               : [](int count, const std::function<void(int, int)>& body) { body(0, count); };
   const CodeTable codes(records.code, transfer);
   const BlockRoughness roughness(records.code, transfer, largest_color, run);
+  std::vector<float> of_sample(most_bending > 0 ? classes_.size() : 0);
   run(records.count(), [&](int first, int last) {
-    for (int b = first; b < last; ++b) {
-      classes_[static_cast<std::size_t>(b)] = classify(records[b], codes, roughness);
+    float unused = 0;
+    for (int i = first; i < last; ++i) {
+      const auto b = static_cast<std::size_t>(i);
+      classes_[b] =
+          classify(records[i], codes, roughness, of_sample.empty() ? unused : of_sample[b]);
     }
   });
   const std::array<int, 3> count{records.axis[0].cells(), records.axis[1].cells(),
                                  records.axis[2].cells()};
-  find_block_levels(count, run, classes_.data());
+  find_block_levels(count, BlockKind::skip, run, classes_.data());
+  if (!(most_bending > 0)) return;
+  smooth_ = find_smooth_blocks(records, of_sample, most_bending, run, classes_.data());
+  if (smooth_.longest_step > 0) find_block_levels(count, BlockKind::smooth, run, classes_.data());
 }
 
 }  // namespace pellucid

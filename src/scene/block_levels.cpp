@@ -9,8 +9,8 @@
 namespace pellucid {
 namespace {
 
-/// Cubes of one size: of each, first whether it is to be skipped, then the level of what it is part
-/// of, or 0.
+/// Cubes of one size: of each, first whether it is all of one kind, then the level of what it is
+/// part of, or 0.
 struct Cubes {
   std::array<int, 3> count{};
   std::vector<std::uint8_t> at;
@@ -36,10 +36,10 @@ void each_row(const std::array<int, 3>& count, const ParallelFor& parallel, cons
   });
 }
 
-/// A cube is to be skipped where its parts are: skips(row, i) says so of part i of a row.
-template <class Skips>
+/// A cube is all of the kind where its parts are: is_all(part) says so of one of them.
+template <class IsAll>
 void gather(Cubes& cubes, const std::array<int, 3>& parts, const ParallelFor& parallel,
-            const Skips& skips) {
+            const IsAll& is_all) {
   each_row(cubes.count, parallel, [&](int j, int k) {
     std::uint8_t* const out = cubes.at.data() + cubes.row(j, k);
     std::fill(out, out + cubes.count[0], std::uint8_t{1});
@@ -51,7 +51,7 @@ void gather(Cubes& cubes, const std::array<int, 3>& parts, const ParallelFor& pa
                                static_cast<std::size_t>(parts[1]) * static_cast<std::size_t>(z));
       for (int i = 0; i < parts[0]; ++i) {
         out[i / 2] =
-            static_cast<std::uint8_t>(out[i / 2] & skips(row + static_cast<std::size_t>(i)));
+            static_cast<std::uint8_t>(out[i / 2] & is_all(row + static_cast<std::size_t>(i)));
       }
     }
   });
@@ -59,15 +59,15 @@ void gather(Cubes& cubes, const std::array<int, 3>& parts, const ParallelFor& pa
 
 }  // namespace
 
-void find_block_levels(const std::array<int, 3>& blocks, const ParallelFor& parallel,
-                       BlockClass* classes) {
+void find_block_levels(const std::array<int, 3>& blocks, BlockKind kind,
+                       const ParallelFor& parallel, BlockClass* classes) {
   std::vector<Cubes> level;  // [k - 1] those of (2^k)³ blocks
   for (int k = 1; k <= BlockClasses::highest_level; ++k) {
     const std::array<int, 3> parts = level.empty() ? blocks : level.back().count;
     Cubes cubes({(parts[0] + 1) / 2, (parts[1] + 1) / 2, (parts[2] + 1) / 2});
     if (level.empty()) {
       gather(cubes, parts, parallel,
-             [&](std::size_t b) { return classes[b].kind == BlockKind::skip ? 1 : 0; });
+             [&](std::size_t b) { return classes[b].kind == kind ? 1 : 0; });
     } else {
       gather(cubes, parts, parallel, [&](std::size_t c) { return level.back().at[c]; });
     }
@@ -92,7 +92,9 @@ void find_block_levels(const std::array<int, 3>& blocks, const ParallelFor& para
                       (static_cast<std::size_t>(j) +
                        static_cast<std::size_t>(blocks[1]) * static_cast<std::size_t>(k));
     const std::uint8_t* const above = pairs.at.data() + pairs.row(j / 2, k / 2);
-    for (int i = 0; i < blocks[0]; ++i) out[i].level = above[i / 2];
+    for (int i = 0; i < blocks[0]; ++i) {
+      if (out[i].kind == kind) out[i].level = above[i / 2];
+    }
   });
 }
 

@@ -8,9 +8,9 @@
 
 namespace pellucid {
 
-/// Writes BlockClass::level of so many blocks along each axis, whose kinds are known: from blocks
-/// up to the cubes that hold nothing else than what is to be skipped, and down again.
-void find_block_levels(const std::array<int, 3>& blocks, const ParallelFor& parallel,
-                       BlockClass* classes);
+/// Writes BlockClass::level of those blocks of this kind, of so many along each axis, whose kinds
+/// are known: from blocks up to the cubes that hold nothing else, and down again.
+void find_block_levels(const std::array<int, 3>& blocks, BlockKind kind,
+                       const ParallelFor& parallel, BlockClass* classes);
 
 }  // namespace pellucid

@@ -35,6 +35,8 @@ BlockRoughness::BlockRoughness(const BlockCode& code, const TransferTables& tran
 void BlockRoughness::Bin::merge(const Bin& other) noexcept {
   slope = std::max(slope, other.slope);
   color_slope = std::max(color_slope, other.color_slope);
+  least = std::min(least, other.least);
+  most = std::max(most, other.most);
   for (int c = 0; c < 3; ++c) {
     color_min[c] = std::min(color_min[c], other.color_min[c]);
     color_max[c] = std::max(color_max[c], other.color_max[c]);
@@ -54,6 +56,19 @@ BlockRoughness::Bin BlockRoughness::make_bin(int bin, const TransferTables& tran
     result.slope = float_above(std::max(std::abs(all.slope_min), std::abs(all.slope_max)));
     result.color_slope = float_above(all.color_slope);
   }
+  const PiecewiseLinear<double>& table = transfer.wide;
+  const double at_lower = table.evaluate(lower).extinction,
+               at_upper = table.evaluate(upper).extinction;
+  double least_extinction = std::min(at_lower, at_upper),
+         most_extinction = std::max(at_lower, at_upper);
+  const double* const end = table.value + table.count;
+  for (const double* v = std::upper_bound(table.value, end, lower); v != end && *v < upper; ++v) {
+    const double extinction = table.material[v - table.value].extinction;
+    least_extinction = std::min(least_extinction, extinction);
+    most_extinction = std::max(most_extinction, extinction);
+  }
+  result.least = static_cast<float>(least_extinction);
+  result.most = static_cast<float>(most_extinction);
   const double least[3] = {all.color_min.r, all.color_min.g, all.color_min.b};
   const double most[3] = {all.color_max.r, all.color_max.g, all.color_max.b};
   for (int c = 0; c < 3; ++c) {
@@ -63,7 +78,7 @@ BlockRoughness::Bin BlockRoughness::make_bin(int bin, const TransferTables& tran
   return result;
 }
 
-std::uint16_t BlockRoughness::operator()(int lower, int upper) const noexcept {
+BlockRoughness::Range BlockRoughness::operator()(int lower, int upper) const noexcept {
   const auto first = static_cast<std::size_t>(lower >> shift_);
   const auto count = static_cast<std::size_t>((upper - 1) >> shift_) - first + 1;
   // The largest n with 2^n <= count.
@@ -74,11 +89,22 @@ std::uint16_t BlockRoughness::operator()(int lower, int upper) const noexcept {
   for (int c = 0; c < 3; ++c) {
     color_range = std::max(color_range, all.color_max[c] - all.color_min[c]);
   }
-  const double slope = static_cast<double>(all.slope);
+  const auto slope = static_cast<double>(all.slope),
+             color_slope = static_cast<double>(all.color_slope),
+             colors = static_cast<double>(color_range);
   // The color range is a difference that was rounded.
-  return upper_half_above((largest_color_ * slope + static_cast<double>(color_range) * slope +
-                           static_cast<double>(all.color_slope)) *
-                          (1 + 0x1p-23));
+  constexpr double rounded = 1 + 0x1p-23;
+  Range range;
+  range.roughness =
+      upper_half_above((largest_color_ * slope + colors * slope + color_slope) * rounded);
+  range.of_sample = (largest_color_ * slope + color_slope) * rounded;
+  constexpr double steepest = 4 * (1 + 0x1p-10);
+  const int end = std::min(static_cast<int>((first + count) << shift_), code_.last);
+  const double width = code_.value(end) - code_.value(static_cast<int>(first << shift_));
+  const double most = static_cast<double>(all.most), least = static_cast<double>(all.least);
+  range.steady = slope * width <= steepest * (most - least) + 0x1p-20 * most &&
+                 color_slope * width <= steepest * most * colors + 0x1p-20 * most;
+  return range;
 }
 
 }  // namespace pellucid

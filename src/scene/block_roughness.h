@@ -18,8 +18,16 @@ class BlockRoughness {
   BlockRoughness(const BlockCode& code, const TransferTables& transfer, double largest_color,
                  const ParallelFor& parallel);
 
+  struct Range {
+    std::uint16_t roughness;
+    double of_sample;  ///< SmoothBlocks::roughness
+    /// Whether neither extinction nor color is ever more than four times as steep as it has to be
+    /// to get from its least value in the range to its largest: no peak is narrower than that.
+    bool steady;
+  };
+
   /// lower < upper, with no jump between or at them.
-  std::uint16_t operator()(int lower, int upper) const noexcept;
+  Range operator()(int lower, int upper) const noexcept;
 
  private:
   static constexpr int most_bins = 4096;
@@ -27,6 +35,7 @@ class BlockRoughness {
   /// What bounds need of a transfer function over a range (RangeSummary), rounded outward.
   struct Bin {
     float slope = 0, color_slope = 0;
+    float least = 0, most = 0;  ///< extinction
     float color_min[3], color_max[3];
     void merge(const Bin& other) noexcept;
   };

@@ -21,10 +21,11 @@ class BlockMarch {
   I block[3];                 ///< the block that each lane stands in
   D begin, next;              ///< of the block's stretch
   I kind;                     ///< BlockKind
+  D in_cells_until;           ///< smooth blocks that begin before are taken as cells
 
   /// Rays of lanes beyond `count` are not alive.
   BlockMarch(const PacketGrid<Value>& grid, const PellucidRay* rays, int count) noexcept
-      : grid_(grid) {
+      : in_cells_until(0), grid_(grid) {
     double o[3][N], d[3][N], e[N];
     for (int l = 0; l < N; ++l) {
       const PellucidRay& ray = rays[l < count ? l : 0];
@@ -66,13 +67,27 @@ class BlockMarch {
       if (!any(lanes)) return;
       const I index = select(lanes, index_of_block(), I(0));
       const I found = gather(grid_.classes, index);
-      const I its_kind = (found >> 16) & I(255), level = (found >> 24) & I(255);
+      I its_kind = (found >> 16) & I(255), level = (found >> 24) & I(255);
+      const M refused =
+          (its_kind == I(static_cast<int>(BlockKind::smooth))) & (begin < in_cells_until);
+      its_kind = select(refused, I(static_cast<int>(BlockKind::cells)), its_kind);
+      level = select(refused, I(0), level);
       kind = select(lanes, its_kind, kind);
       static constexpr std::int32_t sides[8] = {1, 2, 4, 8, 16, 32, 64, 128};
       cross(lanes, gather(sides, level));
       const M skip = lanes & ((its_kind == I(static_cast<int>(BlockKind::skip))) | !(next > begin));
       skipped += select(skip, I(1), I(0));
       lanes = skip;
+    }
+  }
+
+  /// Has the lanes go on from here, on the way to `until`, by cells.
+  void go_back(M lanes, D here, D until) noexcept {
+    next = select(lanes, here, next);
+    in_cells_until = select(lanes, until, in_cells_until);
+    for (int a = 0; a < 3; ++a) {
+      next_block_[a] =
+          select(lanes, clamp_block(a, origin[a] + here * direction[a]), next_block_[a]);
     }
   }
 

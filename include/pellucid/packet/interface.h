@@ -21,7 +21,7 @@ struct PellucidRayResult {
   double radiance[3], opacity, optical_depth;
   double error;
   std::int32_t cells, evaluations;
-  std::int32_t skipped, constant, closed, panels, in_double;
+  std::int32_t skipped, constant, closed, panels, in_double, strides;
   std::uint8_t proved;
 };
 
@@ -63,6 +63,10 @@ struct PellucidPacketJob {
   // The transfer function and what is wanted.
   const void* transfer;  ///< BinnedTransfer
   double tolerance, largest_color, largest_extinction;
+  // Smooth blocks, which are sampled.
+  const void* samples;     ///< SamplerTransfer
+  const void* smooth;      ///< SmoothBlocks; none where cells are wanted
+  double sample_rounding;  ///< what rounding makes of the error of a ray there, per world length
   // Rays and results.
   const PellucidRay* rays;
   PellucidRayResult* results;

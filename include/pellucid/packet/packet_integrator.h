@@ -2,7 +2,9 @@
 #pragma once
 
 #include "pellucid/error/budget.h"
+#include "pellucid/error/random_errors.h"
 #include "pellucid/packet/cell_march.h"
+#include "pellucid/packet/smooth_march.h"
 #include "pellucid/segment/extinction_piece.h"
 #include "pellucid/segment/fold.h"
 
@@ -33,6 +35,7 @@ class PacketIntegrator {
         count_(count),
         blocks_(grid, job.rays + first, count),
         cells_(grid, blocks_),
+        smooth_(job, grid, blocks_.origin, blocks_.direction),
         budget_(F(static_cast<float>(job.tolerance * (1 - kept_back))),
                 convert<float>(blocks_.end)),
         largest_color_(static_cast<float>(job.largest_color)) {
@@ -43,15 +46,23 @@ class PacketIntegrator {
       far[l] = static_cast<float>(8 * rounding_unit<double> * ray.end);
     }
     place_error_ = F::load(far);
+    if (!(static_cast<const SmoothBlocks*>(job.smooth)->longest_step > 0)) {
+      blocks_.in_cells_until = D(std::numeric_limits<double>::infinity());
+    }
   }
 
   void run() noexcept {
     while (any(blocks_.alive)) {
-      const M idle = blocks_.alive & !cells_.walking & !pending_;
+      const M idle = blocks_.alive & !cells_.walking & !pending_ & !smooth_.walking;
       const M ready = cells_.walking & !pending_;
       const int wait = count(blocks_.alive) / 4;
-      if (any(idle) && (count(idle) > wait || none(ready | pending_))) {
+      if (any(idle) && (count(idle) > wait || none(ready | pending_ | smooth_.walking))) {
         enter_blocks(idle);
+        continue;
+      }
+      if (any(smooth_.walking) &&
+          (none(ready | pending_) || 2 * count(smooth_.walking) >= count(blocks_.alive))) {
+        step_smooth();
         continue;
       }
       if (any(pending_) && (none(ready) || 2 * count(pending_) >= count(blocks_.alive))) {
@@ -67,7 +78,7 @@ class PacketIntegrator {
     // Folding in double costs 4 u a piece, and adding up costs in float 2 u of them.
     constexpr double folding = 8 * rounding_unit<double>;
     constexpr double account = 2 * static_cast<double>(rounding_unit<float>);
-    const D pieces = convert<double>(pieces_) + D(1);
+    const D pieces = convert<double>(pieces_ + strides_) + D(1);
     const D error =
         convert<double>(budget_.spent() + rest_behind()) * (D(1) + D(account) * pieces) +
         D(folding * job_.largest_color) * pieces;
@@ -78,12 +89,13 @@ class PacketIntegrator {
            all.optical_depth[l],
            error[l],
            cells_seen_[l],
-           cells_seen_[l],
+           cells_seen_[l] + samples_taken_[l],
            skipped_[l],
            constant_[l],
            pieces_[l] - panels_[l],
            panels_[l],
            in_double_[l],
+           strides_[l],
            static_cast<std::uint8_t>(bits(proved_) >> l & 1)};
     }
   }
@@ -93,12 +105,19 @@ class PacketIntegrator {
   static constexpr double kept_back = 0x1p-9;
   /// How narrow a part of a cell may get before it is handed back.
   static constexpr float narrowest = 1.0f / 16;
+  /// Of the difference of two rules what counts as the standard deviation of the better one.
+  static constexpr float share_of_difference = 1.0f / 3;
   /// After so many pieces and halvings what is left of a cell is handed back if it is not taken.
   static constexpr int most_pieces = 64;
 
   [[gnu::flatten]] void enter_blocks(M idle) noexcept {
     blocks_.to_next(idle, skipped_);
-    const M here = idle & blocks_.alive;
+    M here = idle & blocks_.alive;
+    const M smooth = here & (blocks_.kind == I(static_cast<int>(BlockKind::smooth)));
+    if (any(smooth)) {
+      smooth_.enter(smooth, blocks_.begin, blocks_.next);
+      here = here & !smooth;
+    }
     const M constant = here & (blocks_.kind == I(static_cast<int>(BlockKind::constant)));
     cells_.enter(here, blocks_);
     left_behind_block_begin_ =
@@ -106,6 +125,45 @@ class PacketIntegrator {
     // Not of types that binary32 rounds: the function may be steep there.
     constexpr bool exact = std::is_same_v<Value, float> || sizeof(Value) < sizeof(float);
     if (exact && any(constant)) begin_constant(constant & cells_.walking);
+  }
+
+  /// Four steps through smooth blocks, where the budget can pay for their error.
+  [[gnu::flatten]] void step_smooth() noexcept {
+    const M on = smooth_.walking;
+    const D from = smooth_.at;
+    const typename SmoothMarch<Value, N>::Steps steps = smooth_.look();
+    samples_taken_ += select(on, I(4), I(0));
+    const SegmentResult<F>& s = steps.found.segment;
+    const F left = convert<float>(blocks_.end - from);
+    const F transparency = convert<float>(fold_.transparency());
+    const F deviation = F(share_of_difference) * steps.found.difference;
+    const F variance = transparency * transparency * (deviation * deviation + steps.least_variance);
+    const F share = F(0.5f) * (s.opacity + min(steps.length / left, F(1)));
+    const F rounding = transparency * (F(32 * rounding_unit<float>) * s.opacity * largest_color_ +
+                                       F(static_cast<float>(job_.sample_rounding)) * steps.length);
+    const F largest = random_.largest(budget_.left() - rounding, share);
+    const M take = on & steps.valid & (variance <= largest);
+    const M refused = smooth_.finer(on & !take);
+    if (any(refused)) {
+      blocks_.go_back(refused, from, smooth_.end);
+      smooth_.walking = smooth_.walking & !refused;
+    }
+    if (none(take)) return;
+    const D opacity = masked(take, s.opacity);
+    fold_.add(SegmentResult<D>{
+        masked(take, s.optical_depth),
+        opacity,
+        select(take, convert<double>(s.transparency), D(1)),
+        {masked(take, s.radiance.r), masked(take, s.radiance.g), masked(take, s.radiance.b)}});
+    const F cost = random_.charge(variance) + rounding;
+    random_.add(select(take, variance, F(0)));
+    budget_.pass_to(select(take, left, budget_.length_left()));
+    budget_.spend(select(take, steps.length, F(0)), s.opacity, transparency,
+                  select(take, cost / transparency, F(0)));
+    smooth_.take(take, steps, variance <= F(0.05f) * largest);
+    strides_ += select(take, I(1), I(0));
+    proved_ = proved_ & !take;
+    retire();
   }
 
   /// Takes blocks of one material as one span: that of any value in the block, so of the one at its
@@ -297,6 +355,7 @@ class PacketIntegrator {
     blocks_.alive = blocks_.alive & !done;
     cells_.walking = cells_.walking & !done;
     pending_ = pending_ & !done;
+    smooth_.walking = smooth_.walking & !done;
     cut_off_ = cut_off_ | done;
   }
 
@@ -372,6 +431,7 @@ class PacketIntegrator {
   int first_, count_;
   BlockMarch<Value, N> blocks_;
   CellMarch<Value, N> cells_;
+  SmoothMarch<Value, N> smooth_;
 
   typename CellMarch<Value, N>::Step step_;
 
@@ -393,12 +453,14 @@ class PacketIntegrator {
   I interval_, pieces_of_span_, cell_[3];
 
   RayBudget<F> budget_;
+  RandomErrors<F> random_;
   FrontToBack<D> fold_;
   F largest_color_;
   M proved_{true}, cut_off_{false};
   I cells_seen_, skipped_, constant_;
   I pieces_;  ///< all of them
   I in_double_, panels_;
+  I strides_, samples_taken_;
 };
 
 }  // namespace pellucid

@@ -3,16 +3,14 @@
 
 #include <limits>
 
-#include "pellucid/field/trilinear.h"
-#include "pellucid/packet/packet_grid.h"
-#include "pellucid/simd/batch.h"
+#include "pellucid/packet/packet_samples.h"
 
 #if PELLUCID_HAS_BATCH_4  // in sources compiled per instruction set
 namespace pellucid {
 
 /// Rays in lanes that take steps of one length: which step each stands at, and the data around it.
-/// Places are found in double at the beginning of every few steps, and in float from there: a
-/// sample is off by no more than 3e-6 of a cell where a step is no longer than two.
+/// Places are found in double at the beginning of every few steps, and in float from there
+/// (packet_samples.h).
 template <class Value, int N>
 class SamplerMarch {
  public:
@@ -30,7 +28,7 @@ class SamplerMarch {
   /// Rays of lanes beyond `count` are not alive.
   SamplerMarch(const PacketGrid<Value>& grid, const PellucidRay* rays, int count,
                double step) noexcept
-      : grid_(grid), step_(step) {
+      : grid_(grid), step_(step), samples_(grid) {
     double o[3][N], d[3][N], e[N], largest = 0;
     for (int l = 0; l < N; ++l) {
       const PellucidRay& ray = rays[l < count ? l : 0];
@@ -41,24 +39,18 @@ class SamplerMarch {
       }
       e[l] = l < count ? ray.end - ray.begin : 0;
     }
-    steps_at_once = largest <= 2 ? most_at_once : 1;
+    steps_at_once = largest <= 4 ? most_at_once : 1;
     end = D::load(e);
     index = I(0);
     for (int a = 0; a < 3; ++a) {
       origin_[a] = D::load(o[a]);
       direction_[a] = D::load(d[a]);
-      single_direction_[a] = convert<float>(direction_[a]);
       inverse_[a] = D(1) / direction_[a];
       forward_[a] = direction_[a] > D(0);
       still_[a] = direction_[a] == D(0);
     }
+    samples_.set_direction(direction_);
     alive = end > D(0);
-    const auto row = static_cast<std::int32_t>(grid.row);
-    const auto slice = static_cast<std::int32_t>(grid.slice);
-    row_[0] = 0;
-    row_[1] = row;
-    row_[2] = slice;
-    row_[3] = slice + row;
   }
 
   D begin_of(I i) const noexcept { return convert<double>(i) * step_; }
@@ -101,51 +93,13 @@ class SamplerMarch {
 
   /// Makes sample() of the steps from `index` on ready.
   void anchor(D at) noexcept {
-    double from[3][N];
-    for (int a = 0; a < 3; ++a) {
-      const double last = grid_.values[a] - 1;
-      const D place = origin_[a] + at * direction_[a] - D(grid_.padding[a]);
-      const D cell = min(floor(clamp(place, D(0), D(last))), D(last - 1));
-      place_[a] = convert<float>(place - cell);
-      least_[a] = convert<float>(D(0) - cell);
-      most_[a] = convert<float>(D(last) - cell);
-      cell.store(from[a]);
-    }
-    const auto row = static_cast<double>(grid_.row), slice = static_cast<double>(grid_.slice);
-    for (int l = 0; l < N; ++l) {
-      base_[l] = grid_.data +
-                 static_cast<std::ptrdiff_t>(from[0][l] + row * from[1][l] + slice * from[2][l]);
-    }
+    D place[3];
+    for (int a = 0; a < 3; ++a) place[a] = origin_[a] + at * direction_[a];
+    samples_.anchor(place);
   }
 
   /// The data at a world length from the anchor; NaN in vacuum.
-  PELLUCID_ALWAYS_INLINE F sample(F offset) const noexcept {
-    Vec3<F> local;
-    I cell[3];
-    for (int a = 0; a < 3; ++a) {
-      const F place =
-          clamp(multiply_add(offset, single_direction_[a], place_[a]), least_[a], most_[a]);
-      const F lower = min(floor(place), most_[a] - F(1));
-      local[a] = place - lower;
-      cell[a] = convert<std::int32_t>(lower);
-    }
-    std::int32_t o[N];
-    (cell[0] + I(static_cast<std::int32_t>(grid_.row)) * cell[1] +
-     I(static_cast<std::int32_t>(grid_.slice)) * cell[2])
-        .store(o);
-    // Addresses are loaded from there: taking lanes out of registers costs more.
-    asm("" : "+m"(o));
-    const Value* at[N];
-    for (int l = 0; l < N; ++l) at[l] = base_[l] + o[l];
-    asm("" : "+m"(at));
-    CellCorners<F> corners;
-    for (int k = 0; k < 4; ++k) {
-      std::int32_t row[N];
-      for (std::int32_t& to : row) to = row_[k];
-      gather_pairs(at, row, corners.value[2 * k], corners.value[2 * k + 1]);
-    }
-    return trilinear_value(corners, local);
-  }
+  PELLUCID_ALWAYS_INLINE F sample(F offset) const noexcept { return samples_.sample(offset); }
 
   /// The middle of a step that begins there; the last one ends with the ray.
   D middle_of(D begin) const noexcept { return D(0.5) * (begin + min(begin + step_, end)); }
@@ -192,10 +146,7 @@ class SamplerMarch {
   D step_;
   D origin_[3], direction_[3], inverse_[3];  ///< plane coordinates, by world length
   M forward_[3], still_[3];
-  F single_direction_[3];
-  F place_[3], least_[3], most_[3];  ///< of the anchor and of the data's ends, in its cell
-  const Value* base_[N];             ///< the anchor's cell
-  std::int32_t row_[4];              ///< of a cell: its rows along x
+  PacketSamples<Value, N> samples_;
 };
 
 }  // namespace pellucid

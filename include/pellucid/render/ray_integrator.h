@@ -77,7 +77,7 @@ class RayIntegrator {
   /// and longer, but not for noise, whose bends three points do not show.
   PELLUCID_HD bool is_smooth(const BlockClass& block, const BlockRange& range,
                              const BlockBends& bends, double variation, double length) noexcept {
-    if (block.kind != BlockKind::cells) return false;
+    if (!block.absorbs_in_cells()) return false;
     const double deviation = 0.5 * bend_deviation(variation, 0.5 * length);
     const double bound = length * deviation * static_cast<double>(from_upper_half(block.roughness));
     double guard = 1;

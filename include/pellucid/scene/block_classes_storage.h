@@ -16,13 +16,18 @@ class BlockClassesStorage {
  public:
   BlockClassesStorage() = default;
   /// `largest_color`: that of RayTolerance. In parallel where it is told how.
+  /// `most_bending`: blocks are smooth only where SmoothBlocks::roughness times what the data bend
+  /// over a cell is no more than that; 0: none is.
   BlockClassesStorage(const BlockRecords& records, const TransferTables& transfer,
-                      double largest_color, const ParallelFor& parallel = {});
+                      double largest_color, const ParallelFor& parallel = {},
+                      double most_bending = 0);
 
   BlockClasses view() const noexcept { return {classes_.data()}; }
+  const SmoothBlocks& smooth() const noexcept { return smooth_; }
 
  private:
   std::vector<BlockClass> classes_;
+  SmoothBlocks smooth_;
 };
 
 }  // namespace pellucid

@@ -13,7 +13,8 @@ enum class BlockKind : std::uint8_t {
   constant,  ///< the transfer function is constant over the range of the data, and no cell is
              ///<   vacuum; or the data is one number: in either case the material is that at the
              ///<   lower end of the range
-  skip       ///< nothing absorbs, whatever the data in the range; or all cells are vacuum
+  skip,      ///< nothing absorbs, whatever the data in the range; or all cells are vacuum
+  smooth     ///< as cells; and with its neighbours so smooth that it may be sampled (SmoothBlocks)
 };
 
 /// A block under one transfer function, in 4 bytes: in a load of 32 bits roughness is the lower
@@ -25,15 +26,33 @@ struct alignas(4) BlockClass {
   ///   largest color · slope + color range · slope + color slope
   ///
   /// over the block's range (transfer/antiderivative.h), slope = max |extinction'|. Infinite where
-  /// there is a jump, and where some cells are vacuum; 0 where the kind is not cells.
+  /// there is a jump, and where some cells are vacuum; 0 where the block is skipped or constant.
   std::uint16_t roughness;
   BlockKind kind;
   /// Of a block to skip: the largest k <= 7 such that all blocks are to be skipped in the cube of
   /// (2^k)³ blocks, aligned at multiples of its side, which holds this one. What of the cube is
-  /// outside of the grid counts as to be skipped. 0 elsewhere.
+  /// outside of the grid counts as to be skipped. Of a smooth block likewise. 0 elsewhere.
   std::uint8_t level;
+
+  PELLUCID_HD constexpr bool absorbs_in_cells() const noexcept {
+    return kind == BlockKind::cells || kind == BlockKind::smooth;
+  }
 };
 static_assert(sizeof(BlockClass) == 4);
+
+/// What all smooth blocks of a grid have in common: bounds on how much their data bend, and on what
+/// that does. Between two samples of such a block lies no feature that neither shows, but for what
+/// one bend can be: over four blocks each way, and over the range of each, neither the data nor the
+/// transfer function bend much more in one place than they do all over.
+struct SmoothBlocks {
+  float bend[3] = {}, twist[3] = {};  ///< as in BlockBends
+  /// largest color · slope + color slope (see BlockClass), the largest of the blocks.
+  double roughness = 0;
+  /// Cells: waves of the data are longer than three times that. 0: no block is smooth.
+  double longest_step = 0;
+};
+/// Cells; half the width of a block.
+inline constexpr double longest_sampled_step = 4;
 
 /// The classes of a grid's blocks, in the order of BlockRecords. A view; owns nothing. Built by
 /// scene/block_classes_storage.h.

@@ -53,7 +53,9 @@ class BlockWalk {
 
     step.block = blocks_.index(block(0), block(1), block(2));
     step.t_begin = t_;
-    const int level = classes == nullptr ? 0 : classes[step.block].level;
+    const int level = classes != nullptr && classes[step.block].kind == BlockKind::skip
+                          ? classes[step.block].level
+                          : 0;
     t_ = step.t_end = level == 0 ? min(next_[a], end_) : cube_end(level);
     if (!(t_ < end_)) return true;
     if (level == 0) {
