@@ -23,6 +23,8 @@ class BlockRoughness {
     double of_sample;  ///< SmoothBlocks::roughness
     /// Whether neither extinction nor color is ever more than four times as steep as it has to be
     /// to get from its least value in the range to its largest: no peak is narrower than that.
+    /// Where the extinction only rises, or only falls, there is none: then 32 times, for a ramp may
+    /// begin near an end of the range; and colors count where anything absorbs.
     bool steady;
   };
 
@@ -35,10 +37,14 @@ class BlockRoughness {
   /// What bounds need of a transfer function over a range (RangeSummary), rounded outward.
   struct Bin {
     float slope = 0, color_slope = 0;
-    float least = 0, most = 0;  ///< extinction
+    bool rises = false, falls = false;           ///< anywhere in it
+    float absorbing_from = 0, absorbing_to = 0;  ///< the values; alike: none
+    float color_rate = 0;                        ///< largest |color'| where anything absorbs
+    float least = 0, most = 0;                   ///< extinction
     float color_min[3], color_max[3];
     void merge(const Bin& other) noexcept;
   };
+  static void add_lines(const PiecewiseLinear<double>& table, double lower, double upper, Bin& bin);
   Bin make_bin(int bin, const TransferTables& transfer) const;
 
   BlockCode code_;

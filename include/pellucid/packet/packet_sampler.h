@@ -85,17 +85,20 @@ class PacketSampler {
       const F left = convert<float>(march_.end - begin);
       const F first_half = F(0.5f) * min(step, left);
       // Each in a loop of its own: what one step waits for is done beside another's.
-      F length[most], value[most];
+      F length[most], value[most], place[most];
       M found[most];
       const int steps = march_.steps_at_once;
       for (int i = 0; i < steps; ++i) {
         const F from = step * F(static_cast<float>(i));
-        const M here = march_.alive & (from < left);
-        samples_ += select(here, I(1), I(0));
+        found[i] = march_.alive & (from < left);
+        samples_ += select(found[i], I(1), I(0));
         length[i] = min(step, left - from);
-        value[i] = march_.sample(from + F(0.5f) * length[i] - first_half);
-        found[i] =
-            here & (value[i] >= F(transfer_.support_min)) & (value[i] <= F(transfer_.support_max));
+        place[i] = from + F(0.5f) * length[i] - first_half;
+      }
+      march_.sample(place, value);
+      for (int i = 0; i < steps; ++i) {
+        found[i] = found[i] & (value[i] >= F(transfer_.support_min)) &
+                   (value[i] <= F(transfer_.support_max));
       }
       F depth[most];
       Rgb<F> color[most];
@@ -129,15 +132,16 @@ class PacketSampler {
       march_.anchor(begin);
       const F left = convert<float>(march_.end - begin);
       const M jumped = march_.alive & (march_.index != front_of);
-      if (any(jumped)) front = select(jumped, march_.sample(F(0)), front);
+      if (any(jumped)) front = select(jumped, march_.sample_anchor(), front);
       const int steps = march_.steps_at_once;
-      F value[most + 1], length[most];
+      F value[most + 1], length[most], place[most];
       value[0] = front;
       for (int i = 0; i < steps; ++i) {
         length[i] = min(step, left - step * F(static_cast<float>(i)));
         samples_ += select(march_.alive & (length[i] > F(0)), I(1), I(0));
-        value[i + 1] = march_.sample(min(step * F(static_cast<float>(i + 1)), left));
+        place[i] = min(step * F(static_cast<float>(i + 1)), left);
       }
+      march_.sample(place, value + 1);
       for (int i = 0; i < steps; ++i) {
         const F &from = value[i], &to = value[i + 1];
         const M found = march_.alive & (length[i] > F(0)) &

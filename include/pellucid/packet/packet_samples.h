@@ -50,32 +50,39 @@ class PacketSamples {
     }
   }
 
-  /// The data at a world length from the anchor; NaN in vacuum.
-  PELLUCID_ALWAYS_INLINE F sample(F offset) const noexcept {
-    Vec3<F> local;
-    I cell[3];
-    for (int a = 0; a < 3; ++a) {
-      const F place = clamp(multiply_add(offset, direction_[a], place_[a]), least_[a], most_[a]);
-      const F lower = min(floor(place), most_[a] - F(1));
-      local[a] = place - lower;
-      cell[a] = convert<std::int32_t>(lower);
+  /// The data at K world lengths from the anchor; NaN in vacuum. All addresses first: what one
+  /// sample waits for is done beside the others'.
+  template <int K>
+  PELLUCID_ALWAYS_INLINE void sample(const F* offset, F* value) const noexcept {
+    Vec3<F> local[K];
+    std::int32_t o[K][N];
+    const I row(static_cast<std::int32_t>(grid_.row)),
+        slice(static_cast<std::int32_t>(grid_.slice));
+    for (int k = 0; k < K; ++k) {
+      I cell[3];
+      for (int a = 0; a < 3; ++a) {
+        const F place =
+            clamp(multiply_add(offset[k], direction_[a], place_[a]), least_[a], most_[a]);
+        const F lower = min(floor(place), most_[a] - F(1));
+        local[k][a] = place - lower;
+        cell[a] = convert<std::int32_t>(lower);
+      }
+      (cell[0] + row * cell[1] + slice * cell[2]).store(o[k]);
     }
-    std::int32_t o[N];
-    (cell[0] + I(static_cast<std::int32_t>(grid_.row)) * cell[1] +
-     I(static_cast<std::int32_t>(grid_.slice)) * cell[2])
-        .store(o);
     // Addresses are loaded from there: taking lanes out of registers costs more.
     asm("" : "+m"(o));
-    const Value* at[N];
-    for (int l = 0; l < N; ++l) at[l] = base_[l] + o[l];
-    asm("" : "+m"(at));
-    CellCorners<F> corners;
-    for (int k = 0; k < 4; ++k) {
-      std::int32_t row[N];
-      for (std::int32_t& to : row) to = row_[k];
-      gather_pairs(at, row, corners.value[2 * k], corners.value[2 * k + 1]);
+    for (int k = 0; k < K; ++k) {
+      const Value* at[N];
+      for (int l = 0; l < N; ++l) at[l] = base_[l] + o[k][l];
+      asm("" : "+m"(at));
+      CellCorners<F> corners;
+      for (int n = 0; n < 4; ++n) {
+        std::int32_t to_row[N];
+        for (std::int32_t& to : to_row) to = row_[n];
+        gather_pairs(at, to_row, corners.value[2 * n], corners.value[2 * n + 1]);
+      }
+      value[k] = trilinear_value(corners, local[k]);
     }
-    return trilinear_value(corners, local);
   }
 
  private:

@@ -98,8 +98,20 @@ class SamplerMarch {
     samples_.anchor(place);
   }
 
-  /// The data at a world length from the anchor; NaN in vacuum.
-  PELLUCID_ALWAYS_INLINE F sample(F offset) const noexcept { return samples_.sample(offset); }
+  /// The data at as many world lengths from the anchor as steps are gone at once; NaN in vacuum.
+  PELLUCID_ALWAYS_INLINE void sample(const F* offset, F* value) const noexcept {
+    if (steps_at_once == most_at_once) {
+      samples_.template sample<most_at_once>(offset, value);
+    } else {
+      samples_.template sample<1>(offset, value);
+    }
+  }
+  PELLUCID_ALWAYS_INLINE F sample_anchor() const noexcept {
+    const F here(0);
+    F value;
+    samples_.template sample<1>(&here, &value);
+    return value;
+  }
 
   /// The middle of a step that begins there; the last one ends with the ray.
   D middle_of(D begin) const noexcept { return D(0.5) * (begin + min(begin + step_, end)); }

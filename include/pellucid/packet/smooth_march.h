@@ -97,26 +97,25 @@ class SmoothMarch {
     step = select(s.last, F(0.25f) * left, step);
     s.length = select(s.last, left, F(4) * step);
     s.least_variance = least;
-    F value[5];
-    value[0] = value_;
-    if (any(walking & !known_)) value[0] = select(known_, value_, samples_.sample(F(0)));
-    for (int i = 1; i < 5; ++i) value[i] = samples_.sample(step * F(static_cast<float>(i)));
-    s.valid = !is_nan(((value[0] + value[1]) + (value[2] + value[3])) + value[4]);
+    if (any(walking & !known_)) find_front();
+    F offset[4], value[4];
+    for (int i = 0; i < 4; ++i) offset[i] = step * F(static_cast<float>(i + 1));
+    samples_.template sample<4>(offset, value);
+    s.valid = !is_nan(((value[0] + value[1]) + (value[2] + value[3])) + front_.extinction);
     Material<F> material[5];
-    for (int i = 0; i < 5; ++i) {
-      material[i] = material_at(transfer_, select(s.valid, value[i], F(transfer_.support_min)));
+    material[0] = front_;
+    for (int i = 0; i < 4; ++i) {
+      material[i + 1] = material_at(transfer_, select(s.valid, value[i], F(transfer_.support_min)));
     }
     s.found = sampled_segment(material, step);
-    value_ = select(walking, value[0], value_);
-    known_ = known_ | walking;
-    next_value_ = value[4];
+    back_ = material[4];
     return s;
   }
 
   /// Goes behind the steps of these lanes. `easy`: those which could do with longer ones.
   void take(M lanes, const Steps& s, M easy) noexcept {
     at = select(lanes, select(s.last, end, at + convert<double>(s.length)), at);
-    value_ = select(lanes, next_value_, value_);
+    set_front(lanes, back_);
     walking = walking & !(lanes & s.last);
     level_ = select(lanes & easy & (level_ > I(0)), level_ - I(1), level_);
   }
@@ -130,6 +129,25 @@ class SmoothMarch {
 
  private:
   static constexpr int levels = 5, choices = 8;
+  /// The material where the lanes stand; that of NaN, which is none, in vacuum.
+  void find_front() noexcept {
+    const F here(0);
+    F value;
+    samples_.template sample<1>(&here, &value);
+    const M vacuum = is_nan(value);
+    Material<F> found = material_at(transfer_, select(vacuum, F(transfer_.support_min), value));
+    found.extinction = select(vacuum, value, found.extinction);
+    set_front(!known_, found);
+    known_ = known_ | walking;
+  }
+
+  void set_front(M lanes, const Material<F>& m) noexcept {
+    front_.extinction = select(lanes, m.extinction, front_.extinction);
+    front_.color.r = select(lanes, m.color.r, front_.color.r);
+    front_.color.g = select(lanes, m.color.g, front_.color.g);
+    front_.color.b = select(lanes, m.color.b, front_.color.b);
+  }
+
   /// A length a little below `step` of which no small multiple is close to whole cells along an
   /// axis that matters.
   static F unlike(const F* d, F cells_per_length, F step) noexcept {
@@ -162,8 +180,8 @@ class SmoothMarch {
   D origin_[3], direction_[3];
   F step_[levels], least_variance_[levels];
   I level_;
-  M known_{false};  ///< whether `value_` is that at `at`
-  F value_, next_value_;
+  M known_{false};            ///< whether `front_` is that at `at`
+  Material<F> front_, back_;  ///< of the steps that were looked at
 };
 
 }  // namespace pellucid

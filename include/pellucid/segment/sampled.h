@@ -15,33 +15,38 @@ struct SampledSegment {
 
 namespace detail {
 
+/// An end of a step: its extinction, and its emission, which is extinction · color.
+template <class T>
+struct StepEnd {
+  T extinction;
+  Rgb<T> emission;
+};
+
 /// The trapezoidal rule: a mean of the ends' extinctions, and of their colors weighted by these.
 template <class T>
-SegmentResult<T> trapezoid(const Material<T>& front, const Material<T>& back, T length) noexcept {
-  const T mass = front.extinction + back.extinction;
-  const Attenuation<T> a = attenuation(T(0.5) * length * mass);
-  const T share = select(mass > T(0), a.opacity / mass, T(0));
-  return {T(0.5) * length * mass, a.opacity, a.transparency,
-          (share * front.extinction) * front.color + (share * back.extinction) * back.color};
+SegmentResult<T> trapezoid(const StepEnd<T>& front, const StepEnd<T>& back, T length) noexcept {
+  const T half = T(0.5) * length, depth = half * (front.extinction + back.extinction);
+  const AttenuationRate<T> a = attenuation_rate(depth);
+  return {depth, depth * a.opacity_over_depth, a.transparency,
+          (half * a.opacity_over_depth) * (front.emission + back.emission)};
 }
 
-/// Two steps: by Richardson from these two and from both as one, which takes off what the
-/// trapezoidal rule errs in h².
+/// Two steps, and the same as one: by Richardson, which takes off what the trapezoidal rule errs in
+/// h².
 template <class T>
-SegmentResult<T> two_steps(const Material<T>& front, const Material<T>& middle,
-                           const Material<T>& back, T length) noexcept {
-  const SegmentResult<T> p = trapezoid(front, middle, length), q = trapezoid(middle, back, length),
-                         whole = trapezoid(front, back, T(2) * length);
+SegmentResult<T> improve(const SegmentResult<T>& first, const SegmentResult<T>& second,
+                         const SegmentResult<T>& as_one) noexcept {
   const auto improved = [](T fine, T coarse) noexcept {
     return max(fine + T(scalar_t<T>(1.0 / 3)) * (fine - coarse), T(0));
   };
+  const T t = first.transparency;
   SegmentResult<T> r;
-  r.optical_depth = improved(p.optical_depth + q.optical_depth, whole.optical_depth);
-  r.opacity = min(improved(p.opacity + p.transparency * q.opacity, whole.opacity), T(1));
+  r.optical_depth = improved(first.optical_depth + second.optical_depth, as_one.optical_depth);
+  r.opacity = min(improved(first.opacity + t * second.opacity, as_one.opacity), T(1));
   r.transparency = T(1) - r.opacity;
-  r.radiance = {improved(p.radiance.r + p.transparency * q.radiance.r, whole.radiance.r),
-                improved(p.radiance.g + p.transparency * q.radiance.g, whole.radiance.g),
-                improved(p.radiance.b + p.transparency * q.radiance.b, whole.radiance.b)};
+  r.radiance = {improved(first.radiance.r + t * second.radiance.r, as_one.radiance.r),
+                improved(first.radiance.g + t * second.radiance.g, as_one.radiance.g),
+                improved(first.radiance.b + t * second.radiance.b, as_one.radiance.b)};
   return r;
 }
 
@@ -56,9 +61,17 @@ SegmentResult<T> two_steps(const Material<T>& front, const Material<T>& middle,
 /// Not accurate to the last digits where opacity is small: of a stretch among others of a ray.
 template <class T>
 SampledSegment<T> sampled_segment(const Material<T>* at, T length) noexcept {
-  const SegmentResult<T> p = detail::two_steps(at[0], at[1], at[2], length),
-                         q = detail::two_steps(at[2], at[3], at[4], length),
-                         coarse = detail::two_steps(at[0], at[2], at[4], T(2) * length);
+  detail::StepEnd<T> end[5];
+  for (int i = 0; i < 5; ++i) end[i] = {at[i].extinction, at[i].extinction * at[i].color};
+  const T two = T(2) * length;
+  const SegmentResult<T> first = detail::trapezoid(end[0], end[2], two),
+                         second = detail::trapezoid(end[2], end[4], two);
+  const SegmentResult<T> p = detail::improve(detail::trapezoid(end[0], end[1], length),
+                                             detail::trapezoid(end[1], end[2], length), first),
+                         q = detail::improve(detail::trapezoid(end[2], end[3], length),
+                                             detail::trapezoid(end[3], end[4], length), second);
+  const SegmentResult<T> coarse =
+      detail::improve(first, second, detail::trapezoid(end[0], end[4], T(4) * length));
   SampledSegment<T> r;
   SegmentResult<T>& s = r.segment;
   s.optical_depth = p.optical_depth + q.optical_depth;

@@ -46,7 +46,7 @@ static_assert(sizeof(BlockClass) == 4);
 /// transfer function bend much more in one place than they do all over.
 struct SmoothBlocks {
   float bend[3] = {}, twist[3] = {};  ///< as in BlockBends
-  /// largest color · slope + color slope (see BlockClass), the largest of the blocks.
+  /// largest color · slope + largest extinction · |color'|, the largest of the blocks.
   double roughness = 0;
   /// Cells: waves of the data are longer than three times that. 0: no block is smooth.
   double longest_step = 0;
