@@ -27,15 +27,33 @@ std::size_t least_points(Knob knob) {
   return knob == Knob::tolerance ? 3 : 1;
 }
 
+/// How long frames may take: `always`, and `inaccurate` where the last one has not come within the
+/// default tolerance.
+struct Longest {
+  double always, inaccurate;
+};
+
+/// Until a sampler has taken a dozen times as long as exact at the default tolerance it is not
+/// known that it is ten times slower.
+Longest longest_of(const MeasureOptions& options, const Curve& exact) {
+  const Reach there = reach(exact, default_tolerance, ErrorKind::largest);
+  return {options.longest_seconds,
+          std::max(options.longest_seconds, std::min(12 * there.seconds, 20.0))};
+}
+
 /// The first round, with errors: it finds how far each curve goes.
 Curve first_round(const Contender& contender, const ReferencePixels& reference,
-                  double longest_seconds) {
+                  const Longest& longest) {
   Curve curve{contender.name, contender.knob, {}, false};
   for (const double setting : contender.settings) {
-    if (curve.points.size() >= least_points(curve.knob) &&
-        expected_seconds(curve.points.back(), curve.knob, setting) > longest_seconds) {
-      curve.cut_short = true;
-      break;
+    if (curve.points.size() >= least_points(curve.knob)) {
+      const CurvePoint& last = curve.points.back();
+      const bool goes_on = curve.knob == Knob::step && last.error.largest > default_tolerance;
+      if (expected_seconds(last, curve.knob, setting) >
+          (goes_on ? longest.inaccurate : longest.always)) {
+        curve.cut_short = true;
+        break;
+      }
     }
     const TimedFrame frame = contender.render(setting);
     curve.points.push_back(
@@ -79,7 +97,10 @@ SceneResult measure(const scenes::NamedScene& named, const MeasureOptions& optio
   contenders.front().render(contenders.front().settings.front());
   for (const Contender& contender : contenders) {
     options.say(named.name + ": " + contender.name);
-    result.curves.push_back(first_round(contender, reference, options.longest_seconds));
+    const Longest longest = result.curves.empty()
+                                ? Longest{options.longest_seconds, options.longest_seconds}
+                                : longest_of(options, result.curves.front());
+    result.curves.push_back(first_round(contender, reference, longest));
   }
   const auto ways = in_turn(result.curves);
   for (int round = 1; round < options.repeats; ++round) {

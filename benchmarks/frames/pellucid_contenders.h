@@ -14,11 +14,12 @@ inline constexpr const char* exact_name = "exact";
 inline constexpr const char* proved_name = "exact, proved";
 
 struct PellucidSettings {
-  std::vector<double> tolerances{1e-1, 1e-2, 1.0 / 512, 1e-3, 1e-4, 1e-5, 1e-6};
+  std::vector<double> tolerances{1e-1, 3e-2, 1e-2, 1.0 / 512, 1e-3, 1e-4, 1e-5, 1e-6};
   std::vector<double> proved_tolerances{1e-2, 1.0 / 512, 1e-4, 1e-6};
   /// Sampling methods by name; those that this version does not have are passed over.
   std::vector<std::string> methods{"midpoint", "preintegrated", "simpson", "linear"};
-  std::vector<double> steps{4, 2, 1, 0.5, 0.25, 0.1, 0.05, 0.02, 0.01};  ///< voxels
+  std::vector<double> steps{8,   4,    2,    1,    0.5,   0.25,
+                            0.1, 0.05, 0.02, 0.01, 0.005, 0.002};  ///< voxels
   int threads = 0;
 };
 
