@@ -28,7 +28,7 @@ class RandomErrors {
   /// How large the variance of the next span may be, which stands for this share of what is still
   /// to come, if `left` is left to pay for all of it.
   T largest(T left, T share) const noexcept {
-    const T most = root_ + left * T(1.0f / deviations);
+    const T most = root_ + max(left, T(0)) * T(1.0f / deviations);
     return max((most * most - sum_) * share, T(0));
   }
 

@@ -142,7 +142,7 @@ class PacketIntegrator {
     const F rounding = transparency * (F(32 * rounding_unit<float>) * s.opacity * largest_color_ +
                                        F(static_cast<float>(job_.sample_rounding)) * steps.length);
     const F largest = random_.largest(budget_.left() - rounding, share);
-    const M take = on & steps.valid & (variance <= largest);
+    const M take = on & steps.valid & (variance <= largest) & (rounding <= budget_.left());
     const M refused = smooth_.finer(on & !take);
     if (any(refused)) {
       blocks_.go_back(refused, from, smooth_.end);
