@@ -133,7 +133,9 @@ BlockClassesStorage::BlockClassesStorage(const BlockRecords& records,
   find_block_levels(count, BlockKind::skip, run, classes_.data());
   if (!(most_bending > 0)) return;
   smooth_ = find_smooth_blocks(records, of_sample, most_bending, run, classes_.data());
-  if (smooth_.longest_step > 0) find_block_levels(count, BlockKind::smooth, run, classes_.data());
+  if (!smooth_.any) return;
+  find_block_levels(count, BlockKind::smooth, run, classes_.data());
+  find_block_levels(count, BlockKind::wavy, run, classes_.data());
 }
 
 }  // namespace pellucid

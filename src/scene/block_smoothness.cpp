@@ -10,9 +10,9 @@ namespace pellucid {
 namespace {
 
 constexpr int group_width = 4;
-/// A derivative has to swing by that many times of what it changes in one cell: so it does in waves
-/// of nine cells, for which it takes π of them along a third of the wave.
-constexpr double least_steps = 3;
+/// A derivative has to swing by that many times of what it changes in one cell, at least: so it
+/// does in waves of π as many cells.
+constexpr double least_steps_smooth = 4, least_steps_wavy = 2;
 /// An axis along which the data hardly bend, compared with others, is not looked at: what is there
 /// may be rounding.
 constexpr float negligible = 0x1p-10f;
@@ -84,13 +84,13 @@ SmoothBlocks find_smooth_blocks(const BlockRecords& records, const std::vector<f
           Group group;
           each_block(x, y, z, [&](int b, float of) { group.add(records[b], of); });
           const double its_roughness = static_cast<double>(group.roughness), steps = group.steps();
-          if (its_roughness < 0 || !(steps >= least_steps) ||
+          if (its_roughness < 0 || !(steps >= least_steps_wavy) ||
               !(its_roughness * group.most_bending() <= most_bending)) {
             continue;
           }
-          each_block(x, y, z, [&](int b, float) { classes[b].kind = BlockKind::smooth; });
-          const double longest = std::min(steps, longest_sampled_step);
-          all.longest_step = all.longest_step > 0 ? std::min(all.longest_step, longest) : longest;
+          const BlockKind kind = steps >= least_steps_smooth ? BlockKind::smooth : BlockKind::wavy;
+          each_block(x, y, z, [&](int b, float) { classes[b].kind = kind; });
+          all.any = true;
           all.roughness = std::max(all.roughness, its_roughness);
           for (std::size_t a = 0; a < 3; ++a) {
             all.bend[a] = std::max(all.bend[a], group.bend[a]);
@@ -102,9 +102,7 @@ SmoothBlocks find_smooth_blocks(const BlockRecords& records, const std::vector<f
   });
   SmoothBlocks all;
   for (const SmoothBlocks& slab : of_slab) {
-    if (!(slab.longest_step > 0)) continue;
-    all.longest_step =
-        all.longest_step > 0 ? std::min(all.longest_step, slab.longest_step) : slab.longest_step;
+    all.any = all.any || slab.any;
     all.roughness = std::max(all.roughness, slab.roughness);
     for (std::size_t a = 0; a < 3; ++a) {
       all.bend[a] = std::max(all.bend[a], slab.bend[a]);

@@ -7,7 +7,7 @@
 
 namespace pellucid {
 
-/// Makes those blocks smooth (BlockKind, SmoothBlocks) that are: of the candidates, whose transfer
+/// Makes those blocks smooth or wavy (BlockKind, SmoothBlocks) that are: of the candidates, whose transfer
 /// function is steady, those that are so together with the others of their group of 4³ blocks.
 ///
 /// roughness: of each block SmoothBlocks::roughness, negative where it is no candidate.

@@ -21,7 +21,7 @@ class BlockMarch {
   I block[3];                 ///< the block that each lane stands in
   D begin, next;              ///< of the block's stretch
   I kind;                     ///< BlockKind
-  D in_cells_until;           ///< smooth blocks that begin before are taken as cells
+  D in_cells_until;           ///< smooth and wavy blocks that begin before are taken as cells
 
   /// Rays of lanes beyond `count` are not alive.
   BlockMarch(const PacketGrid<Value>& grid, const PellucidRay* rays, int count) noexcept
@@ -69,7 +69,7 @@ class BlockMarch {
       const I found = gather(grid_.classes, index);
       I its_kind = (found >> 16) & I(255), level = (found >> 24) & I(255);
       const M refused =
-          (its_kind == I(static_cast<int>(BlockKind::smooth))) & (begin < in_cells_until);
+          (its_kind >= I(static_cast<int>(BlockKind::smooth))) & (begin < in_cells_until);
       its_kind = select(refused, I(static_cast<int>(BlockKind::cells)), its_kind);
       level = select(refused, I(0), level);
       kind = select(lanes, its_kind, kind);

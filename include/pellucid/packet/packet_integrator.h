@@ -46,7 +46,7 @@ class PacketIntegrator {
       far[l] = static_cast<float>(8 * rounding_unit<double> * ray.end);
     }
     place_error_ = F::load(far);
-    if (!(static_cast<const SmoothBlocks*>(job.smooth)->longest_step > 0)) {
+    if (!static_cast<const SmoothBlocks*>(job.smooth)->any) {
       blocks_.in_cells_until = D(std::numeric_limits<double>::infinity());
     }
   }
@@ -113,9 +113,10 @@ class PacketIntegrator {
   [[gnu::flatten]] void enter_blocks(M idle) noexcept {
     blocks_.to_next(idle, skipped_);
     M here = idle & blocks_.alive;
-    const M smooth = here & (blocks_.kind == I(static_cast<int>(BlockKind::smooth)));
+    const M wavy = blocks_.kind == I(static_cast<int>(BlockKind::wavy));
+    const M smooth = here & (wavy | (blocks_.kind == I(static_cast<int>(BlockKind::smooth))));
     if (any(smooth)) {
-      smooth_.enter(smooth, blocks_.begin, blocks_.next);
+      smooth_.enter(smooth, wavy, blocks_.begin, blocks_.next);
       here = here & !smooth;
     }
     const M constant = here & (blocks_.kind == I(static_cast<int>(BlockKind::constant)));

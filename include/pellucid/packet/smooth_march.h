@@ -43,7 +43,7 @@ class SmoothMarch {
     }
     samples_.set_direction(direction);
     cells_per_length = sqrt(cells_per_length);
-    if (!(smooth_.longest_step > 0)) return;
+    if (!smooth_.any) return;
     // Along the ray the data's derivative by its length changes by so much over the length of a
     // cell, at most.
     F bend(0);
@@ -53,7 +53,7 @@ class SmoothMarch {
     }
     for (int level = 0; level < levels; ++level) {
       const float longest =
-          static_cast<float>(smooth_.longest_step) / static_cast<float>(1 << level);
+          static_cast<float>(SmoothBlocks::longest_step) / static_cast<float>(1 << level);
       step_[level] = unlike(d, cells_per_length, F(longest) / cells_per_length);
       const F cells = step_[level] * cells_per_length;
       // Of a step shorter than a cell most have no bend, and it errs by that much less.
@@ -65,8 +65,10 @@ class SmoothMarch {
     }
   }
 
-  /// Begins, or goes on with, the stretches of the lanes.
-  void enter(M lanes, D begin, D to) noexcept {
+  /// Begins, or goes on with, the stretches of the lanes; `wavy`: those of them which are that.
+  void enter(M lanes, M wavy, D begin, D to) noexcept {
+    coarsest_ = select(lanes, select(wavy, I(1), I(0)), coarsest_);
+    level_ = max(level_, coarsest_);
     known_ = known_ & !(lanes & (begin != at));
     at = select(lanes, begin, at);
     end = select(lanes, to, end);
@@ -117,7 +119,7 @@ class SmoothMarch {
     at = select(lanes, select(s.last, end, at + convert<double>(s.length)), at);
     set_front(lanes, back_);
     walking = walking & !(lanes & s.last);
-    level_ = select(lanes & easy & (level_ > I(0)), level_ - I(1), level_);
+    level_ = select(lanes & easy & (level_ > coarsest_), level_ - I(1), level_);
   }
 
   /// Halves the steps of these lanes; of those whose are the shortest returns which they are.
@@ -179,7 +181,7 @@ class SmoothMarch {
   PacketSamples<Value, N> samples_;
   D origin_[3], direction_[3];
   F step_[levels], least_variance_[levels];
-  I level_;
+  I level_, coarsest_;        ///< how often the longest step is halved, and at least has to be
   M known_{false};            ///< whether `front_` is that at `at`
   Material<F> front_, back_;  ///< of the steps that were looked at
 };
