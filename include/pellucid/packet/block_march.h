@@ -68,7 +68,7 @@ class BlockMarch {
       I block[3];
       for (int a = 0; a < 3; ++a) block[a] = next_block_[a];
       const D begin = next_;
-      const I index = select(lanes, index_of(block), I(0));
+      const I index = select(lanes, grid_.index_of_block(block), I(0));
       const I its_class = gather(grid_.classes, index);
       const I kind = (its_class >> 16) & I(255), level = (its_class >> 24) & I(255);
       cross(lanes, block, level);
@@ -97,15 +97,11 @@ class BlockMarch {
     for (int a = 0; a < 3; ++a) block[a] = I(stretches.block[a][stretch]);
     for (int a = 0; a < 3; ++a) next_block_[a] = select(only, block[a], next_block_[a]);
     next_ = select(only, D(stretches.begin[stretch]), next_);
-    refused_ = select(only, index_of(block), refused_);
+    refused_ = select(only, grid_.index_of_block(block), refused_);
     alive = alive | only;
   }
 
  private:
-  I index_of(const I* block) const noexcept {
-    return block[0] + I(grid_.blocks[0]) * (block[1] + I(grid_.blocks[1]) * block[2]);
-  }
-
   I clamp_block(int a, D place) const noexcept {
     const D block_place = floor(place * D(1.0 / block_width));
     return convert<std::int32_t>(clamp(block_place, D(0), D(grid_.blocks[a] - 1)));

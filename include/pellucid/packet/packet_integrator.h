@@ -28,6 +28,7 @@ class PacketIntegrator {
   /// What many packets have one after the other.
   struct Room {
     Stretches<Value, N> stretches;
+    Walks<Value, N> walks;
     SpanRows<Value, N> rows;
   };
 
@@ -109,7 +110,7 @@ class PacketIntegrator {
 
   void find_spans() noexcept {
     blocks_.find(room_.stretches, skipped_);
-    finder_.find(room_.stretches, room_.rows, cells_seen_);
+    finder_(room_.stretches, room_.walks, room_.rows, cells_seen_);
   }
 
   void begin_spans() noexcept {

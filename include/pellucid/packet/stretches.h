@@ -22,17 +22,27 @@ struct Stretches {
   std::int32_t constant[capacity];        ///< 1: of one material
   double begin[capacity], end[capacity];  ///< world length from the ray's entry into the grid
 
-  // Made from these by CellMarch.
-  float place[3][capacity];                        ///< of `begin`, from the block's lower corner
-  float last[3][capacity];                         ///< the last cell of the block
-  float least[3][capacity], highest[3][capacity];  ///< the cells of it whose values are there
-  float length[capacity];                          ///< world length
-  float left[capacity];                            ///< of the ray at `begin`, world length
-  const Value* base[capacity];  ///< the value at the lower corner of cell `least`
-
   // What was found in them.
   std::int32_t cells[capacity];  ///< looked at
   std::int32_t spans[capacity];  ///< that absorb
+};
+
+/// Stretches that are to be gone through cell by cell, packed, in order.
+template <class Value, int N>
+struct Walks {
+  static constexpr int capacity = Stretches<Value, N>::capacity;
+
+  int count;
+  std::int32_t stretch[capacity], ray[capacity];
+  float place[3][capacity];  ///< of its entry into the block, from the block's lower corner
+  float last[3][capacity];   ///< the last cell of the block
+  float least[3][capacity], highest[3][capacity];  ///< the cells of it whose values are there
+  float length[capacity];                          ///< world length
+  float left[capacity];                            ///< of the ray at the entry, world length
+  /// By how much the data's derivative by world length varies along the ray: at most by
+  /// jump + 2 bend · (length of a part), and by `variation` in all. Infinite where it is not known.
+  float jump[capacity], bend[capacity], variation[capacity];
+  const Value* base[capacity];  ///< the value at the lower corner of cell `least`
 };
 
 }  // namespace pellucid
