@@ -53,7 +53,7 @@ class CellMarch {
 
   /// Whether enough lanes are free for walks that wait.
   bool wants(const All& walks) const noexcept {
-    return next_ < walks.count && N - count(walking) >= (N + 3) / 4;
+    return next_ < walks.count && N - count(walking) >= (N + 7) / 8;
   }
 
   /// Gives the lanes that are free the next walks; the lanes that got one.
