@@ -10,10 +10,11 @@ namespace {
 template <class Value>
 void run(const PellucidPacketJob& job) {
   constexpr int lanes = PELLUCID_LANES;
+  using Integrator = pellucid::PacketIntegrator<Value, lanes>;
   const pellucid::PacketGrid<Value> grid(job);
+  typename Integrator::Room room;
   for (int first = 0; first < job.count; first += lanes) {
-    pellucid::PacketIntegrator<Value, lanes> packet(job, grid, first,
-                                                    pellucid::min(lanes, job.count - first));
+    Integrator packet(job, grid, room, first, pellucid::min(lanes, job.count - first));
     packet.run();
     packet.store(job.results);
   }

@@ -77,6 +77,7 @@ PacketTracer::PacketTracer(const Volume& volume, const ClassifiedBlocks& blocks,
       kernel_(kernel) {
   set_grid(volume, job_);
   job_.classes = blocks.classes.block;
+  job_.records = blocks.records.record;
   job_.transfer = &binned_.view();
   job_.tolerance = wanted.tolerance;
   job_.largest_color = max(wanted.largest_color, 1.0);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "pellucid/packet/packet_grid.h"
+#include "pellucid/packet/stretches.h"
 #include "pellucid/simd/batch.h"
 
 #if PELLUCID_HAS_BATCH_4  // in sources compiled per instruction set
@@ -16,121 +17,161 @@ class BlockMarch {
   using I = Batch<std::int32_t, N>;
   using M = BatchMask<N>;
 
-  D origin[3], direction[3];  ///< plane coordinates, at the entry into the grid; by world length
-  D end;                      ///< world length inside of the grid
-  I block[3];                 ///< the block that each lane stands in
-  D begin, next;              ///< of the block's stretch
-  I kind;                     ///< BlockKind
-  D in_cells_until;           ///< smooth and wavy blocks that begin before are taken as cells
+  double origin[3][N], direction[3][N];  ///< plane coordinates, at the entry into the grid; by
+                                         ///< world length
+  double end[N];                         ///< world length inside of the grid
 
   /// Rays of lanes beyond `count` are not alive.
   BlockMarch(const PacketGrid<Value>& grid, const PellucidRay* rays, int count) noexcept
-      : in_cells_until(0), grid_(grid) {
-    double o[3][N], d[3][N], e[N];
+      : grid_(grid) {
     for (int l = 0; l < N; ++l) {
       const PellucidRay& ray = rays[l < count ? l : 0];
       for (int a = 0; a < 3; ++a) {
-        d[a][l] = ray.direction[a];
-        o[a][l] = ray.origin[a] + ray.begin * ray.direction[a] + grid.padding[a];
+        direction[a][l] = ray.direction[a];
+        origin[a][l] = ray.origin[a] + ray.begin * ray.direction[a] + grid.padding[a];
       }
-      e[l] = l < count ? ray.end - ray.begin : 0;
+      end[l] = l < count ? ray.end - ray.begin : 0;
     }
-    end = D::load(e);
-    begin = next = D(0);
+    end_ = D::load(end);
+    in_cells_until = smooth_begin = smooth_end = D(0);
+    smooth = wavy = M(false);
+    next_ = D(0);
+    refused_ = I(-1);
     for (int a = 0; a < 3; ++a) {
-      origin[a] = D::load(o[a]);
-      direction[a] = D::load(d[a]);
-      forward_[a] = direction[a] > D(0);
-      still_[a] = direction[a] == D(0);
-      inverse_[a] = D(1) / direction[a];
-      next_block_[a] = clamp_block(a, origin[a]);
-      block[a] = next_block_[a];
+      origin_[a] = D::load(origin[a]);
+      direction_[a] = D::load(direction[a]);
+      forward_[a] = direction_[a] > D(0);
+      still_[a] = direction_[a] == D(0);
+      inverse_[a] = D(1) / direction_[a];
+      next_block_[a] = clamp_block(a, origin_[a]);
     }
-    alive = end > D(0);
+    alive = end_ > D(0);
   }
 
-  M alive;  ///< whether a lane's ray is not yet through
+  M alive;                     ///< whether a lane's ray is not yet through
+  D in_cells_until;            ///< smooth and wavy blocks that begin before are taken as cells
+  M smooth, wavy;              ///< whether a smooth stretch is behind those found, a wavy one
+  D smooth_begin, smooth_end;  ///< of it
 
-  /// Takes the lanes to their next block that is not to be skipped; or they are no longer alive.
-  /// Adds 1 to `skipped` for each step over what is.
-  void to_next(M lanes, I& skipped) noexcept {
-    lanes = lanes & alive;
+  /// Finds the next stretches of the rays, until they are through, or come to a smooth one, or each
+  /// has as many as may be. Adds 1 to `skipped` for each step over what is to be skipped.
+  [[gnu::flatten]] void find(Stretches<Value, N>& stretches, I& skipped) noexcept {
+    stretches.count = 0;
+    smooth = M(false);
+    I found(0);
+    std::int32_t lane[N];
+    for (int l = 0; l < N; ++l) lane[l] = l;
+    const I rays = I::load(lane);
+    M lanes = alive;
     while (any(lanes)) {
-      begin = select(lanes, next, begin);
-      M inside = begin < end;
+      M inside = next_ < end_;
       for (int a = 0; a < 3; ++a) {
-        block[a] = select(lanes, next_block_[a], block[a]);
-        inside = inside & (block[a] >= I(0)) & (block[a] < I(grid_.blocks[a]));
+        inside = inside & (next_block_[a] >= I(0)) & (next_block_[a] < I(grid_.blocks[a]));
       }
       alive = alive & (inside | !lanes);
       lanes = lanes & inside;
-      if (!any(lanes)) return;
-      const I index = select(lanes, index_of_block(), I(0));
-      const I found = gather(grid_.classes, index);
-      I its_kind = (found >> 16) & I(255), level = (found >> 24) & I(255);
-      const M refused =
-          (its_kind >= I(static_cast<int>(BlockKind::smooth))) & (begin < in_cells_until);
-      its_kind = select(refused, I(static_cast<int>(BlockKind::cells)), its_kind);
-      level = select(refused, I(0), level);
-      kind = select(lanes, its_kind, kind);
-      static constexpr std::int32_t sides[8] = {1, 2, 4, 8, 16, 32, 64, 128};
-      cross(lanes, gather(sides, level));
-      const M skip = lanes & ((its_kind == I(static_cast<int>(BlockKind::skip))) | !(next > begin));
+      if (none(lanes)) return;
+      I block[3];
+      for (int a = 0; a < 3; ++a) block[a] = next_block_[a];
+      const D begin = next_;
+      const I index = select(lanes, grid_.index_of_block(block), I(0));
+      const I its_class = gather(grid_.classes, index);
+      I kind = (its_class >> 16) & I(255), level = (its_class >> 24) & I(255);
+      M sampled = lanes & (kind >= I(static_cast<int>(BlockKind::smooth)));
+      if (any(sampled)) {
+        const M refused = sampled & (begin < in_cells_until);
+        level = select(refused, I(0), level);
+        sampled = sampled & !refused;
+      }
+      cross(lanes, block, level);
+      const M skip = lanes & ((kind == I(static_cast<int>(BlockKind::skip))) | !(next_ > begin));
       skipped += select(skip, I(1), I(0));
-      lanes = skip;
+      sampled = sampled & !skip;
+      if (any(sampled)) {
+        smooth = smooth | sampled;
+        wavy = (wavy & !sampled) | (sampled & (kind == I(static_cast<int>(BlockKind::wavy))));
+        smooth_begin = select(sampled, begin, smooth_begin);
+        smooth_end = select(sampled, next_, smooth_end);
+        lanes = lanes & !sampled;
+      }
+      const M stretch = lanes & !skip;
+      if (none(stretch)) continue;
+      const M constant = (kind == I(static_cast<int>(BlockKind::constant))) & (index != refused_);
+      const int at = stretches.count;
+      store_packed(stretch, rays, stretches.ray + at);
+      for (int a = 0; a < 3; ++a) store_packed(stretch, block[a], stretches.block[a] + at);
+      store_packed(stretch, select(constant, I(1), I(0)), stretches.constant + at);
+      store_packed(stretch, begin, stretches.begin + at);
+      store_packed(stretch, next_, stretches.end + at);
+      stretches.count += count(stretch);
+      found += select(stretch, I(1), I(0));
+      lanes = lanes & (found < I(Stretches<Value, N>::of_a_ray));
     }
   }
 
+  /// Takes a lane back to a stretch that was taken for one of a single material, to be gone through
+  /// cell by cell.
+  void go_back(int lane, const Stretches<Value, N>& stretches, int stretch) noexcept {
+    const M only = M::from_bits(1u << lane);
+    I block[3];
+    for (int a = 0; a < 3; ++a) block[a] = I(stretches.block[a][stretch]);
+    for (int a = 0; a < 3; ++a) next_block_[a] = select(only, block[a], next_block_[a]);
+    next_ = select(only, D(stretches.begin[stretch]), next_);
+    refused_ = select(only, grid_.index_of_block(block), refused_);
+    alive = alive | only;
+    smooth = smooth & !only;
+  }
+
   /// Has the lanes go on from here, on the way to `until`, by cells.
-  void go_back(M lanes, D here, D until) noexcept {
-    next = select(lanes, here, next);
+  void go_in_cells(M lanes, D here, D until) noexcept {
+    next_ = select(lanes, here, next_);
     in_cells_until = select(lanes, until, in_cells_until);
     for (int a = 0; a < 3; ++a) {
       next_block_[a] =
-          select(lanes, clamp_block(a, origin[a] + here * direction[a]), next_block_[a]);
+          select(lanes, clamp_block(a, origin_[a] + here * direction_[a]), next_block_[a]);
     }
   }
 
  private:
-  I index_of_block() const noexcept {
-    return block[0] + I(grid_.blocks[0]) * (block[1] + I(grid_.blocks[1]) * block[2]);
-  }
-
   I clamp_block(int a, D place) const noexcept {
     const D block_place = floor(place * D(1.0 / block_width));
     return convert<std::int32_t>(clamp(block_place, D(0), D(grid_.blocks[a] - 1)));
   }
 
-  /// Where the lanes leave the cubes of so many blocks that they are in, and for which block.
-  void cross(M lanes, I side) noexcept {
+  /// Where the lanes leave the cubes of 2^level blocks that they are in, and for which block.
+  void cross(M lanes, const I* block, I level) noexcept {
+    static constexpr std::int32_t sides[8] = {1, 2, 4, 8, 16, 32, 64, 128};
+    const bool large = any(lanes & (level > I(0)));
+    const I side = large ? gather(sides, level) : I(1);
     I lower[3];
     D exit[3];
     const D infinity(std::numeric_limits<double>::infinity());
     for (int a = 0; a < 3; ++a) {
       lower[a] = block[a] & (I(0) - side);
       const I plane = I(block_width) * select(forward_[a], lower[a] + side, lower[a]);
-      exit[a] = select(still_[a], infinity, (convert<double>(plane) - origin[a]) * inverse_[a]);
+      exit[a] = select(still_[a], infinity, (convert<double>(plane) - origin_[a]) * inverse_[a]);
     }
     const D first = min(exit[0], min(exit[1], exit[2]));
-    const D leave = max(min(first, end), begin);
-    next = select(lanes, leave, next);
-    const bool large = any(side > I(1));
+    const D leave = max(min(first, end_), next_);
     for (int a = 0; a < 3; ++a) {
       I to = block[a];
       if (large) {
-        const I here =
-            convert<std::int32_t>(floor((origin[a] + leave * direction[a]) * D(1.0 / block_width)));
+        const I here = convert<std::int32_t>(
+            floor((origin_[a] + leave * direction_[a]) * D(1.0 / block_width)));
         to = min(max(here, lower[a]), lower[a] + side - I(1));
       }
       to = select(exit[a] <= leave, select(forward_[a], lower[a] + side, lower[a] - I(1)), to);
       next_block_[a] = select(lanes, to, next_block_[a]);
     }
+    next_ = select(lanes, leave, next_);
   }
 
   const PacketGrid<Value>& grid_;
-  D inverse_[3];
+  D origin_[3], direction_[3], inverse_[3], end_;
   M forward_[3], still_[3];
-  I next_block_[3];
+  D next_;           ///< where the block begins that each lane comes to next
+  I next_block_[3];  ///< and which it is
+  I refused_;        ///< the block that each lane was taken back to, or -1
 };
 
 }  // namespace pellucid

@@ -75,6 +75,7 @@ struct PellucidPacketJob {
   void (*integrate_cell)(const void* context, std::int32_t ray, const PellucidCell* cell,
                          PellucidCellResult* result);
   const void* context;
+  const void* records;  ///< BlockRecord per block, in the order of the classes
 };
 
 void pellucid_integrate_packets_sse4(const PellucidPacketJob* job);

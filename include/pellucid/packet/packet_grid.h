@@ -16,11 +16,21 @@ struct PacketGrid {
   const Value* data;
   std::int32_t values[3], padding[3], cells[3], blocks[3];
   const std::int32_t* classes;  ///< BlockClass, as one number
+  const std::int32_t* records;  ///< BlockRecord, as six of them
   std::ptrdiff_t row, slice;    ///< values between neighbours along y, z
+
+  /// Whether there are cells outside of the outermost values.
+  bool padded() const noexcept { return padding[0] + padding[1] + padding[2] > 0; }
+
+  template <class Index>
+  Index index_of_block(const Index* block) const noexcept {
+    return block[0] + Index(blocks[0]) * (block[1] + Index(blocks[1]) * block[2]);
+  }
 
   explicit PacketGrid(const PellucidPacketJob& job) noexcept
       : data(static_cast<const Value*>(job.data)),
         classes(static_cast<const std::int32_t*>(job.classes)),
+        records(static_cast<const std::int32_t*>(job.records)),
         row(job.values[0]),
         slice(row * job.values[1]) {
     for (int a = 0; a < 3; ++a) {

@@ -3,8 +3,8 @@
 
 #include "pellucid/error/budget.h"
 #include "pellucid/error/random_errors.h"
-#include "pellucid/packet/cell_march.h"
 #include "pellucid/packet/smooth_march.h"
+#include "pellucid/packet/span_finder.h"
 #include "pellucid/segment/extinction_piece.h"
 #include "pellucid/segment/fold.h"
 
@@ -14,10 +14,11 @@ namespace pellucid {
 /// Integrates N rays at once, each in a lane of its own and within its own tolerance. What a ray
 /// becomes depends on no other lane; on N within its tolerance only, for 4 lanes do not fuse.
 ///
-/// A lane walks from block to block and from cell to cell until it meets data that absorb: its
-/// span. Spans are worked on together, when half of the lanes have one, piece by piece: each is cut
-/// where the extinction has a corner (segment/extinction_piece.h), and halved where the budget
-/// cannot pay for its color. What binary32 is not good enough for is handed back, cell by cell.
+/// What lies ahead of all of them is found first: their stretches in blocks (BlockMarch), and the
+/// spans that absorb in these (SpanFinder), whose lanes are any stretches. Then each lane takes the
+/// spans of its ray, piece by piece: each is cut where the extinction has a corner
+/// (segment/extinction_piece.h), and halved where the budget cannot pay for its color. What
+/// binary32 is not good enough for is handed back, cell by cell.
 template <class Value, int N>
 class PacketIntegrator {
  public:
@@ -26,26 +27,40 @@ class PacketIntegrator {
   using I = Batch<std::int32_t, N>;
   using M = BatchMask<N>;
 
+  /// What many packets have one after the other.
+  struct Room {
+    Stretches<Value, N> stretches;
+    Walks<Value, N> walks;
+    SpanRows<Value, N> rows;
+  };
+
   /// Of rays first … first + count - 1 of the job, count <= N.
-  PacketIntegrator(const PellucidPacketJob& job, const PacketGrid<Value>& grid, int first,
-                   int count) noexcept
+  PacketIntegrator(const PellucidPacketJob& job, const PacketGrid<Value>& grid, Room& room,
+                   int first, int count) noexcept
       : job_(job),
         transfer_(*static_cast<const BinnedTransfer*>(job.transfer)),
+        room_(room),
         first_(first),
         count_(count),
         blocks_(grid, job.rays + first, count),
-        cells_(grid, blocks_),
+        finder_(grid, blocks_, transfer_),
         smooth_(job, grid, blocks_.origin, blocks_.direction),
-        budget_(F(static_cast<float>(job.tolerance * (1 - kept_back))),
-                convert<float>(blocks_.end)),
         largest_color_(static_cast<float>(job.largest_color)) {
-    float far[N];
+    const F lengths = convert<float>(D::load(blocks_.end));
+    budget_ = RayBudget<F>(F(static_cast<float>(job.tolerance * (1 - kept_back))), lengths);
+    float far[N], block[N];
     for (int l = 0; l < N; ++l) {
       // Where the ray meets the planes is known to a few units of its arc length.
       const PellucidRay& ray = job.rays[first + (l < count ? l : 0)];
       far[l] = static_cast<float>(8 * rounding_unit<double> * ray.end);
+      double longest = ray.end - ray.begin;
+      for (const double d : ray.direction) {
+        if (abs(d) * longest > block_width) longest = block_width / abs(d);
+      }
+      block[l] = 2 * rounding_unit<float> * static_cast<float>(longest);
     }
     place_error_ = F::load(far);
+    end_error_ = F::load(block);
     if (!static_cast<const SmoothBlocks*>(job.smooth)->any) {
       blocks_.in_cells_until = D(std::numeric_limits<double>::infinity());
     }
@@ -53,23 +68,10 @@ class PacketIntegrator {
 
   void run() noexcept {
     while (any(blocks_.alive)) {
-      const M idle = blocks_.alive & !cells_.walking & !pending_ & !smooth_.walking;
-      const M ready = cells_.walking & !pending_;
-      const int wait = count(blocks_.alive) / 4;
-      if (any(idle) && (count(idle) > wait || none(ready | pending_ | smooth_.walking))) {
-        enter_blocks(idle);
-        continue;
-      }
-      if (any(smooth_.walking) &&
-          (none(ready | pending_) || 2 * count(smooth_.walking) >= count(blocks_.alive))) {
-        step_smooth();
-        continue;
-      }
-      if (any(pending_) && (none(ready) || 2 * count(pending_) >= count(blocks_.alive))) {
-        integrate_pieces();
-      } else if (any(ready)) {
-        step_cells(ready);
-      }
+      find_spans();
+      begin_spans();
+      for (take_spans(); any(pending_); take_spans()) integrate_pieces();
+      sample_smooth();
     }
   }
 
@@ -79,9 +81,9 @@ class PacketIntegrator {
     constexpr double folding = 8 * rounding_unit<double>;
     constexpr double account = 2 * static_cast<double>(rounding_unit<float>);
     const D pieces = convert<double>(pieces_ + strides_) + D(1);
-    const D error =
-        convert<double>(budget_.spent() + rest_behind()) * (D(1) + D(account) * pieces) +
-        D(folding * job_.largest_color) * pieces;
+    const D error = convert<double>(budget_.spent() + select(cut_off_, rest_behind(), F(0))) *
+                        (D(1) + D(account) * pieces) +
+                    D(folding * job_.largest_color) * pieces;
     for (int l = 0; l < count_; ++l) {
       PellucidRayResult& r = results[first_ + l];
       r = {{all.radiance.r[l], all.radiance.g[l], all.radiance.b[l]},
@@ -101,6 +103,12 @@ class PacketIntegrator {
   }
 
  private:
+  static I lane_numbers() noexcept {
+    std::int32_t lane[N];
+    for (int l = 0; l < N; ++l) lane[l] = l;
+    return I::load(lane);
+  }
+
   /// The share of the tolerance that pays for adding up costs in float: of 16000 pieces.
   static constexpr double kept_back = 0x1p-9;
   /// How narrow a part of a cell may get before it is handed back.
@@ -110,22 +118,73 @@ class PacketIntegrator {
   /// After so many pieces and halvings what is left of a cell is handed back if it is not taken.
   static constexpr int most_pieces = 64;
 
-  [[gnu::flatten]] void enter_blocks(M idle) noexcept {
-    blocks_.to_next(idle, skipped_);
-    M here = idle & blocks_.alive;
-    const M wavy = blocks_.kind == I(static_cast<int>(BlockKind::wavy));
-    const M smooth = here & (wavy | (blocks_.kind == I(static_cast<int>(BlockKind::smooth))));
-    if (any(smooth)) {
-      smooth_.enter(smooth, wavy, blocks_.begin, blocks_.next);
-      here = here & !smooth;
+  void find_spans() noexcept {
+    blocks_.find(room_.stretches, skipped_);
+    finder_(room_.stretches, room_.walks, room_.rows, cells_seen_);
+  }
+
+  void begin_spans() noexcept {
+    stretches_ = I::load(room_.rows.stretches);
+    stretch_of_ray_ = row_ = end_row_ = I(0);
+  }
+
+  /// Gives the lanes without a span the next one of their ray, if there is any.
+  [[gnu::flatten]] void take_spans() noexcept {
+    using Rows = SpanRows<Value, N>;
+    const M wanted = !pending_;
+    const M over = wanted & (row_ >= end_row_) & (stretch_of_ray_ < stretches_);
+    if (any(over)) {
+      const I at = select(over, lane_ * I(Stretches<Value, N>::of_a_ray) + stretch_of_ray_, I(0));
+      row_ = select(over, gather(room_.rows.first[0], at), row_);
+      end_row_ = select(over, gather(room_.rows.end[0], at), end_row_);
+      stretch_of_ray_ += select(over, I(1), I(0));
     }
-    const M constant = here & (blocks_.kind == I(static_cast<int>(BlockKind::constant)));
-    cells_.enter(here, blocks_);
-    left_behind_block_begin_ =
-        select(here, convert<float>(blocks_.end - blocks_.begin), left_behind_block_begin_);
-    // Not of types that binary32 rounds: the function may be steep there.
-    constexpr bool exact = std::is_same_v<Value, float> || sizeof(Value) < sizeof(float);
-    if (exact && any(constant)) begin_constant(constant & cells_.walking);
+    const M lanes = wanted & (row_ < end_row_);
+    if (none(lanes)) return;
+    F row[Rows::fields];
+    load_records<Rows::fields>(room_.rows.row, select(lanes, row_, I(0)), row);
+    row_ += select(lanes, I(1), I(0));
+    const I code = convert<std::int32_t>(row[7]);
+    const auto has = [&](int flag) noexcept { return (code & I(flag)) > I(0); };
+    pending_ = pending_ | lanes;
+    located_ = located_ & !lanes;
+    for (int k = 0; k < 4; ++k) data_.b[k] = select(lanes, row[k], data_.b[k]);
+    rounding_ = select(lanes, row[4], rounding_);
+    length_ = select(lanes, row[5], length_);
+    span_length_ = select(lanes, row[5], span_length_);
+    left_ = select(lanes, row[6], left_);
+    code_ = select(lanes, code, code_);
+    whole_block_ = select(lanes, has(SpanCode::whole_block), whole_block_);
+    last_of_block_ = select(lanes, has(SpanCode::last), last_of_block_);
+    handed_back_ = handed_back_ | (lanes & has(SpanCode::handed_back));
+    constant_ += select(lanes & whole_block_, I(1), I(0));
+    from_ = select(lanes, F(0), from_);
+    cap_ = select(lanes, F(1), cap_);
+    pieces_of_span_ = select(lanes, I(0), pieces_of_span_);
+  }
+
+  /// Gives up what was found of the lanes' rays.
+  void drop_spans(M lanes) noexcept {
+    pending_ = pending_ & !lanes;
+    row_ = select(lanes, end_row_, row_);
+    stretches_ = select(lanes, I(0), stretches_);
+  }
+
+  /// Goes through blocks that were taken for one span after all.
+  void go_back(M lanes) noexcept {
+    drop_spans(lanes);
+    for (unsigned left = bits(lanes); left != 0; left &= left - 1) {
+      const int l = __builtin_ctz(left);
+      blocks_.go_back(l, room_.stretches, code_[l] / SpanCode::stretch);
+    }
+  }
+
+  /// Goes through the smooth stretches that come behind the spans that were found.
+  void sample_smooth() noexcept {
+    const M lanes = blocks_.smooth & blocks_.alive;
+    if (none(lanes)) return;
+    smooth_.enter(lanes, blocks_.wavy, blocks_.smooth_begin, blocks_.smooth_end);
+    while (any(smooth_.walking)) step_smooth();
   }
 
   /// Four steps through smooth blocks, where the budget can pay for their error.
@@ -135,7 +194,7 @@ class PacketIntegrator {
     const typename SmoothMarch<Value, N>::Steps steps = smooth_.look();
     samples_taken_ += select(on, I(4), I(0));
     const SegmentResult<F>& s = steps.found.segment;
-    const F left = convert<float>(blocks_.end - from);
+    const F left = convert<float>(D::load(blocks_.end) - from);
     const F transparency = convert<float>(fold_.transparency());
     const F deviation = F(share_of_difference) * steps.found.difference;
     const F variance = transparency * transparency * (deviation * deviation + steps.least_variance);
@@ -146,7 +205,7 @@ class PacketIntegrator {
     const M take = on & steps.valid & (variance <= largest) & (rounding <= budget_.left());
     const M refused = smooth_.finer(on & !take);
     if (any(refused)) {
-      blocks_.go_back(refused, from, smooth_.end);
+      blocks_.go_in_cells(refused, from, smooth_.end);
       smooth_.walking = smooth_.walking & !refused;
     }
     if (none(take)) return;
@@ -165,91 +224,6 @@ class PacketIntegrator {
     strides_ += select(take, I(1), I(0));
     proved_ = proved_ & !take;
     retire();
-  }
-
-  /// Takes blocks of one material as one span: that of any value in the block, so of the one at its
-  /// first corner, as binary32 has it. Beside a jump, which may lie between a value and its
-  /// rounding, they are gone through; and where the tolerance does not allow for rounding.
-  void begin_constant(M lanes) noexcept {
-    cells_.step(M(false), step_);  // looks, and does not go on
-    const F value = step_.corners.value[0];
-    if (transfer_.has_marks) {
-      const F rounding = F(2 * rounding_unit<float>) * abs(value);
-      lanes = lanes & (marks_in(value - rounding, value + rounding) < jump());
-    }
-    step_.end = cells_.block_length;
-    begin_span(lanes, step_, F(0), cells_.block_length);
-    for (F& b : data_.b) b = select(lanes, value, b);
-    rounding_ = select(lanes, F(4 * rounding_unit<float>) * abs(value), rounding_);
-    whole_block_ = whole_block_ | lanes;
-    cells_.walking = cells_.walking & !lanes;
-    constant_ += select(lanes, I(1), I(0));
-  }
-
-  /// The marks of the transfer function over a range of values.
-  I marks_in(F least, F most) const noexcept {
-    return gather(transfer_.marks, bin_of(transfer_, most) + I(1)) -
-           gather(transfer_.marks, bin_of(transfer_, least));
-  }
-  static I jump() noexcept { return I(BinnedTransfer::one_jump); }
-
-  [[gnu::flatten]] void step_cells(M ready) noexcept {
-    typename CellMarch<Value, N>::Step& step = step_;
-    cells_.step(ready, step);
-    cells_seen_ += select(ready, I(1), I(0));
-    const F* v = step.corners.value;
-    F lower = v[0], upper = v[0];
-    for (int n = 1; n < 8; ++n) {
-      lower = min(lower, v[n]);
-      upper = max(upper, v[n]);
-    }
-    M found = ready & (upper >= F(transfer_.support_min)) & (lower <= F(transfer_.support_max)) &
-              (step.end > step.begin);
-    if constexpr (!std::is_integral_v<Value>) {
-      F sum = v[0];
-      for (int n = 1; n < 8; ++n) sum += v[n];
-      found = found & !is_nan(sum);  // vacuum
-    }
-    if (none(found)) return;
-    // Of the values' differences from one of them: what is rounded is their range, and the value
-    // itself only at the end and in cuts. A place is off by 16 u of a cell along each axis.
-    CellCorners<F> differences;
-    for (int n = 0; n < 8; ++n) differences.value[n] = v[n] - v[0];
-    CubicBernstein<F> data =
-        trilinear_cubic(differences, cells_.place(step, step.begin), cells_.place(step, step.end));
-    for (F& b : data.b) b += v[0];
-    constexpr float u = rounding_unit<float>;
-    const F rounding = F(8 * u) * max(abs(lower), abs(upper)) + F(80 * u) * (upper - lower);
-    const F least = data.hull_min() - rounding, most = data.hull_max() + rounding;
-    M hand_back_at_once(false);
-    if (transfer_.has_marks) {
-      const I marks = marks_in(least, most);
-      found = found & (marks > I(0));
-      hand_back_at_once = found & (marks >= jump());
-    } else {
-      found = found & (most >= F(transfer_.support_min)) & (least <= F(transfer_.support_max));
-    }
-    if (none(found)) return;
-    begin_span(found, step, step.begin, step.end - step.begin);
-    for (int k = 0; k < 4; ++k) data_.b[k] = select(found, data.b[k], data_.b[k]);
-    rounding_ = select(found, rounding, rounding_);
-    handed_back_ = handed_back_ | hand_back_at_once;
-  }
-
-  void begin_span(M lanes, const typename CellMarch<Value, N>::Step& step, F begin,
-                  F length) noexcept {
-    pending_ = pending_ | lanes;
-    located_ = located_ & !lanes;
-    whole_block_ = whole_block_ & !lanes;
-    length_ = select(lanes, length, length_);
-    begin_ = select(lanes, begin, begin_);
-    span_length_ = select(lanes, length, span_length_);
-    last_of_block_ = select(lanes, step.end >= cells_.block_length, last_of_block_);
-    from_ = select(lanes, F(0), from_);
-    cap_ = select(lanes, F(1), cap_);
-    pieces_of_span_ = select(lanes, I(0), pieces_of_span_);
-    rounding_ = select(lanes, F(0), rounding_);
-    for (int a = 0; a < 3; ++a) cell_[a] = select(lanes, step.cell[a], cell_[a]);
   }
 
   [[gnu::flatten]] void integrate_pieces() noexcept {
@@ -304,14 +278,12 @@ class PacketIntegrator {
     const F rounding = s.opacity * color_rounding + largest_color_ * opacity_rounding;
     const F error = piece.color_error + rounding;
 
-    budget_.pass_to(select(on, left_behind_block_begin_ - begin_ - from_ * span_length_,
-                           budget_.length_left()));
+    budget_.pass_to(select(on, left_ - from_ * span_length_, budget_.length_left()));
     const F transparency = convert<float>(fold_.transparency());
     const F allowance = budget_.allowance(length, s.opacity, transparency);
     const M take = on & end.found & (error <= allowance);
     const M restart = on & !take & whole_block_;
-    pending_ = pending_ & !restart;
-    cells_.walking = cells_.walking | restart;
+    if (any(restart)) go_back(restart);
     const M rest = on & !take & !restart;
     if (any(rest)) {
       const F half = F(0.5f) * place;
@@ -352,29 +324,23 @@ class PacketIntegrator {
 
   /// Ends the rays that no longer matter.
   void retire() noexcept {
-    const M done = blocks_.alive & (rest_behind() <= budget_.left());
+    const M done = (!cut_off_) & (rest_behind() <= budget_.left());
     blocks_.alive = blocks_.alive & !done;
-    cells_.walking = cells_.walking & !done;
-    pending_ = pending_ & !done;
+    drop_spans(done);
     smooth_.walking = smooth_.walking & !done;
     cut_off_ = cut_off_ | done;
   }
 
-  /// A bound on what lies behind the last piece, as little as light can come from there; nothing
-  /// behind rays that went to their end.
+  /// A bound on what lies behind the last piece, as little as light can come from there.
   F rest_behind() const noexcept {
     const F opacity = min(F(transfer_.largest_extinction) * budget_.length_left(), F(1));
-    const F rest = convert<float>(fold_.transparency()) * opacity * largest_color_;
-    return select(blocks_.alive | cut_off_, rest, F(0));
+    return convert<float>(fold_.transparency()) * opacity * largest_color_;
   }
 
   /// How far a span's ends may be from where they are thought to be, world length. Where cells meet
   /// is known to binary32 only, but what one has too much the other has too little, of data that
   /// are the same there; the end of a block is rounded for good.
-  F place_error() const noexcept {
-    return place_error_ +
-           select(last_of_block_, F(2 * rounding_unit<float>) * cells_.block_length, F(0));
-  }
+  F place_error() const noexcept { return place_error_ + select(last_of_block_, end_error_, F(0)); }
 
   D masked(M mask, F value) const noexcept { return select(mask, convert<double>(value), D(0)); }
 
@@ -382,8 +348,7 @@ class PacketIntegrator {
   void hand_back(M lanes) noexcept {
     lanes = lanes & pending_;
     const F transparency = convert<float>(fold_.transparency());
-    budget_.pass_to(select(lanes, left_behind_block_begin_ - begin_ - from_ * span_length_,
-                           budget_.length_left()));
+    budget_.pass_to(select(lanes, left_ - from_ * span_length_, budget_.length_left()));
     const F flat = budget_.allowance(length_, F(0), transparency),
             all = budget_.allowance(length_, F(1), transparency);
     double depth[N] = {}, opacity[N] = {}, through[N], red[N] = {}, green[N] = {}, blue[N] = {},
@@ -393,8 +358,10 @@ class PacketIntegrator {
       through[l] = 1;
       if ((bits(lanes) >> l & 1) == 0) continue;
       PellucidCell cell;
+      const int code = code_[l];
       for (int a = 0; a < 3; ++a) {
-        cell.cell[a] = blocks_.block[a][l] * block_width + cell_[a][l];
+        cell.cell[a] = room_.stretches.block[a][code / SpanCode::stretch] * block_width +
+                       code / SpanCode::cell[a] % block_width;
       }
       cell.from = static_cast<double>(from_[l]);
       cell.place_error = static_cast<double>(place_error_[l]);
@@ -429,36 +396,42 @@ class PacketIntegrator {
 
   const PellucidPacketJob& job_;
   const BinnedTransfer& transfer_;
+  Room& room_;
   int first_, count_;
   BlockMarch<Value, N> blocks_;
-  CellMarch<Value, N> cells_;
+  SpanFinder<Value, N> finder_;
   SmoothMarch<Value, N> smooth_;
 
-  typename CellMarch<Value, N>::Step step_;
+  const I lane_ = lane_numbers();
 
-  // The span that a lane has met.
+  // What was found of the lanes' rays and is not taken yet.
+  I stretch_of_ray_, stretches_;  ///< with spans: the next one, and how many there are
+  I row_, end_row_;               ///< of the stretch in front of it
+
+  // The span that a lane works on.
   M pending_{false};
   M handed_back_{false};  ///< those of them that are not for the rule here
   M whole_block_{false};  ///< of one material
   M last_of_block_{false};
   M located_{false};  ///< whether `interval_` is known
   CubicBernstein<F> data_;
-  F left_behind_block_begin_;         ///< of the ray, world length
+  F left_;                            ///< of the ray, from the span's begin on, world length
   F length_;                          ///< world length of what is left of it
-  F begin_, span_length_;             ///< of all of it, from the block's entry
+  F span_length_;                     ///< of all of it
   F from_;                            ///< the share that is done
   F cap_;                             ///< the most that the next piece may be of what is left
   F rounding_;                        ///< of the data
-  F place_error_;                     ///< world length
+  F place_error_, end_error_;         ///< world length: of any place, of the end of a block
   ExtinctionInterval<F> extinction_;  ///< that of `interval_`
-  I interval_, pieces_of_span_, cell_[3];
+  I interval_, pieces_of_span_, code_;
 
-  RayBudget<F> budget_;
   RandomErrors<F> random_;
+  RayBudget<F> budget_;
   FrontToBack<D> fold_;
   F largest_color_;
   M proved_{true}, cut_off_{false};
-  I cells_seen_, skipped_, constant_;
+  std::int32_t cells_seen_[N] = {};
+  I skipped_, constant_;
   I pieces_;  ///< all of them
   I in_double_, panels_;
   I strides_, samples_taken_;

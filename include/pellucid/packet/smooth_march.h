@@ -27,8 +27,8 @@ class SmoothMarch {
   M walking{false};  ///< whether a lane has anything left of its smooth stretch
   D at, end;         ///< of it: world length from the entry into the grid
 
-  SmoothMarch(const PellucidPacketJob& job, const PacketGrid<Value>& grid, const D* origin,
-              const D* direction) noexcept
+  SmoothMarch(const PellucidPacketJob& job, const PacketGrid<Value>& grid,
+              const double (&origin)[3][N], const double (&direction)[3][N]) noexcept
       : transfer_(*static_cast<const SamplerTransfer*>(job.samples)),
         smooth_(*static_cast<const SmoothBlocks*>(job.smooth)),
         samples_(grid) {
@@ -36,12 +36,12 @@ class SmoothMarch {
     F cells_per_length(0);
     F d[3];
     for (int a = 0; a < 3; ++a) {
-      origin_[a] = origin[a];
-      direction_[a] = direction[a];
-      d[a] = convert<float>(direction[a]);
+      origin_[a] = D::load(origin[a]);
+      direction_[a] = D::load(direction[a]);
+      d[a] = convert<float>(direction_[a]);
       cells_per_length += d[a] * d[a];
     }
-    samples_.set_direction(direction);
+    samples_.set_direction(direction_);
     cells_per_length = sqrt(cells_per_length);
     if (!smooth_.any) return;
     // Along the ray the data's derivative by its length changes by so much over the length of a

@@ -110,5 +110,55 @@ PELLUCID_ALWAYS_INLINE void load_records(const float* base, Batch<std::int32_t, 
   }
 }
 
+/// The other way round: base[K index + k] = in[k] of every lane, each of another index. Writes
+/// nothing else.
+template <int K, int N>
+PELLUCID_ALWAYS_INLINE void store_records(const Batch<float, N>* in, float* base,
+                                          Batch<std::int32_t, N> index) noexcept {
+  static_assert(K > 0 && K % 4 == 0);
+  std::int32_t row[N];
+  index.store(row);
+  for (int k = 0; k < K; k += 4) {
+    typename detail::Native<N>::Float fields[4];
+    for (int j = 0; j < 4; ++j) fields[j] = in[k + j].part[0];
+    detail::Native<N>::store_four_fields(fields, base + k, K, row);
+  }
+}
+
+/// Writes the numbers of the lanes in `mask` one behind the other. Up to N - 1 numbers behind them
+/// are overwritten with anything.
+template <class T, int N>
+PELLUCID_ALWAYS_INLINE void store_packed(BatchMask<N> mask, Batch<T, N> x, T* to) noexcept {
+  using Native = detail::Native<N>;
+  if constexpr (Native::has_packing && Batch<T, N>::one_register) {
+    Native::store_packed(mask.native, x.part[0], to);
+  } else if constexpr (Native::has_packing) {
+    Native::store_packed(mask.native, x.part[0], x.part[1], to);
+  } else {
+    T all[N];
+    x.store(all);
+    for (unsigned left = bits(mask); left != 0; left &= left - 1) *to++ = all[__builtin_ctz(left)];
+  }
+}
+
+/// `rest`, but in the lanes of `mask` the numbers from[0], from[1], … one after the other. Reads N
+/// of them. Of float or std::int32_t.
+template <class T, int N>
+PELLUCID_ALWAYS_INLINE Batch<T, N> load_spread(BatchMask<N> mask, const T* from,
+                                               Batch<T, N> rest) noexcept {
+  using Native = detail::Native<N>;
+  if constexpr (Native::has_packing) {
+    return Batch<T, N>(
+        typename Batch<T, N>::Register(Native::load_spread(mask.native, from, rest.part[0])));
+  } else {
+    T all[N];
+    rest.store(all);
+    for (unsigned left = bits(mask); left != 0; left &= left - 1) {
+      all[__builtin_ctz(left)] = *from++;
+    }
+    return Batch<T, N>::load(all);
+  }
+}
+
 }  // namespace pellucid
 #endif

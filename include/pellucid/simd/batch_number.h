@@ -289,5 +289,14 @@ PELLUCID_ALWAYS_INLINE Batch<To, N> convert(Batch<From, N> x) noexcept {
   }
 }
 
+/// The floats whose bits these are.
+template <int N>
+PELLUCID_ALWAYS_INLINE Batch<float, N> float_of_bits(Batch<std::int32_t, N> x) noexcept {
+  using Native = detail::Native<N>;
+  const typename Native::Int bits = x.part[0];
+  return Batch<float, N>(
+      typename Batch<float, N>::Register(reinterpret_cast<typename Native::Float>(bits)));
+}
+
 }  // namespace pellucid
 #endif

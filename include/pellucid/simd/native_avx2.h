@@ -185,6 +185,20 @@ struct Native<8> {
     out[2] = _mm256_shuffle_ps(b, d, 0x44);
     out[3] = _mm256_shuffle_ps(b, d, 0xee);
   }
+  PELLUCID_ALWAYS_INLINE static void store_four_fields(const Float* in, float* base,
+                                                       std::ptrdiff_t stride,
+                                                       const std::int32_t* index) noexcept {
+    const __m256 a = _mm256_unpacklo_ps(in[0], in[1]), b = _mm256_unpackhi_ps(in[0], in[1]);
+    const __m256 c = _mm256_unpacklo_ps(in[2], in[3]), d = _mm256_unpackhi_ps(in[2], in[3]);
+    const __m256 r[4] = {_mm256_shuffle_ps(a, c, 0x44), _mm256_shuffle_ps(a, c, 0xee),
+                         _mm256_shuffle_ps(b, d, 0x44), _mm256_shuffle_ps(b, d, 0xee)};
+    for (int j = 0; j < 4; ++j) {
+      _mm_storeu_ps(base + stride * index[j], _mm256_castps256_ps128(r[j]));
+      _mm_storeu_ps(base + stride * index[4 + j], _mm256_extractf128_ps(r[j], 1));
+    }
+  }
+
+  static constexpr bool has_packing = false;
 };
 
 }  // namespace pellucid::detail

@@ -200,6 +200,41 @@ struct Native<16> {
     out[2] = _mm512_shuffle_ps(b, d, 0x44);
     out[3] = _mm512_shuffle_ps(b, d, 0xee);
   }
+  PELLUCID_ALWAYS_INLINE static void store_four_fields(const Float* in, float* base,
+                                                       std::ptrdiff_t stride,
+                                                       const std::int32_t* index) noexcept {
+    const __m512 a = _mm512_unpacklo_ps(in[0], in[1]), b = _mm512_unpackhi_ps(in[0], in[1]);
+    const __m512 c = _mm512_unpacklo_ps(in[2], in[3]), d = _mm512_unpackhi_ps(in[2], in[3]);
+    const __m512 r[4] = {_mm512_shuffle_ps(a, c, 0x44), _mm512_shuffle_ps(a, c, 0xee),
+                         _mm512_shuffle_ps(b, d, 0x44), _mm512_shuffle_ps(b, d, 0xee)};
+    for (int j = 0; j < 4; ++j) {
+      _mm_storeu_ps(base + stride * index[j], _mm512_castps512_ps128(r[j]));
+      _mm_storeu_ps(base + stride * index[4 + j], _mm512_extractf32x4_ps(r[j], 1));
+      _mm_storeu_ps(base + stride * index[8 + j], _mm512_extractf32x4_ps(r[j], 2));
+      _mm_storeu_ps(base + stride * index[12 + j], _mm512_extractf32x4_ps(r[j], 3));
+    }
+  }
+
+  static constexpr bool has_packing = true;
+  PELLUCID_ALWAYS_INLINE static void store_packed(Mask m, Float x, float* to) noexcept {
+    _mm512_storeu_ps(to, _mm512_maskz_compress_ps(m, x));
+  }
+  PELLUCID_ALWAYS_INLINE static void store_packed(Mask m, Int x, std::int32_t* to) noexcept {
+    _mm512_storeu_si512(to, _mm512_maskz_compress_epi32(m, x));
+  }
+  PELLUCID_ALWAYS_INLINE static void store_packed(Mask m, Double low, Double high,
+                                                  double* to) noexcept {
+    const WideMask wide = widen(m);
+    _mm512_storeu_pd(to, _mm512_maskz_compress_pd(wide.low, low));
+    _mm512_storeu_pd(to + __builtin_popcount(wide.low), _mm512_maskz_compress_pd(wide.high, high));
+  }
+  PELLUCID_ALWAYS_INLINE static Float load_spread(Mask m, const float* from, Float rest) noexcept {
+    return _mm512_mask_expand_ps(rest, m, _mm512_loadu_ps(from));
+  }
+  PELLUCID_ALWAYS_INLINE static Int load_spread(Mask m, const std::int32_t* from,
+                                                Int rest) noexcept {
+    return _mm512_mask_expand_epi32(rest, m, _mm512_loadu_si512(from));
+  }
 };
 
 }  // namespace pellucid::detail

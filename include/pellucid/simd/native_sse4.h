@@ -266,6 +266,20 @@ struct Native<4> {
     out[2] = _mm_movelh_ps(b, d);
     out[3] = _mm_movehl_ps(d, b);
   }
+  /// The other way round: four floats of each lane, in[0] to in[3], to base + stride · index[lane].
+  PELLUCID_ALWAYS_INLINE static void store_four_fields(const Float* in, float* base,
+                                                       std::ptrdiff_t stride,
+                                                       const std::int32_t* index) noexcept {
+    const __m128 a = _mm_unpacklo_ps(in[0], in[1]), b = _mm_unpackhi_ps(in[0], in[1]);
+    const __m128 c = _mm_unpacklo_ps(in[2], in[3]), d = _mm_unpackhi_ps(in[2], in[3]);
+    _mm_storeu_ps(base + stride * index[0], _mm_movelh_ps(a, c));
+    _mm_storeu_ps(base + stride * index[1], _mm_movehl_ps(c, a));
+    _mm_storeu_ps(base + stride * index[2], _mm_movelh_ps(b, d));
+    _mm_storeu_ps(base + stride * index[3], _mm_movehl_ps(d, b));
+  }
+
+  /// Whether there are store_packed() and load_spread().
+  static constexpr bool has_packing = false;
 };
 
 }  // namespace pellucid::detail
