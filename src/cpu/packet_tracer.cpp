@@ -2,6 +2,7 @@
 #include "packet_tracer.h"
 
 #include <algorithm>
+#include <limits>
 #include <vector>
 
 #include "packet_setup.h"
@@ -21,6 +22,9 @@ Kernel integrator_of([[maybe_unused]] InstructionSet set) {
 #endif
 }
 
+/// Packets count the records' words in 32 bits.
+constexpr int words_of_a_record = sizeof(BlockRecord) / sizeof(std::int32_t);
+
 /// What integrate_cell() is given back.
 struct CellContext {
   const void* tracer;
@@ -35,6 +39,7 @@ std::unique_ptr<const PacketTracer> PacketTracer::make(
   const Kernel kernel = integrator_of(packet_instruction_set(instruction_set));
   if (kernel == nullptr || wanted.precision != Precision::automatic ||
       wanted.tolerance < least_packet_tolerance ||
+      blocks.records.count() > std::numeric_limits<std::int32_t>::max() / words_of_a_record ||
       !suits_packets(volume, transfer.largest_extinction)) {
     return nullptr;
   }
