@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <vector>
 
 #include "packet_setup.h"
@@ -22,6 +23,9 @@ Kernel integrator_of([[maybe_unused]] InstructionSet set) {
   return nullptr;
 #endif
 }
+
+/// Packets count the records' words in 32 bits.
+constexpr int words_of_a_record = sizeof(BlockRecord) / sizeof(std::int32_t);
 
 /// What integrate_cell() is given back.
 struct CellContext {
@@ -59,6 +63,7 @@ std::unique_ptr<const PacketTracer> PacketTracer::make(
   const Kernel kernel = integrator_of(packet_instruction_set(instruction_set));
   if (kernel == nullptr || wanted.precision != Precision::automatic ||
       wanted.tolerance < least_packet_tolerance ||
+      blocks.records.count() > std::numeric_limits<std::int32_t>::max() / words_of_a_record ||
       !suits_packets(volume, transfer.largest_extinction)) {
     return nullptr;
   }

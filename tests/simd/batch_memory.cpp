@@ -2,7 +2,10 @@
 #include <sys/mman.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <cmath>
 #include <cstring>
+#include <numeric>
 #include <random>
 #include <type_traits>
 #include <vector>
@@ -212,6 +215,87 @@ TEST_P(BatchMemory, RecordsAreReadAndNothingElse) {
   expect_records(table().records_4, 4, lanes());
   expect_records(table().records_8, 8, lanes());
   expect_records(table().records_16, 16, lanes());
+}
+
+TEST_P(BatchMemory, RecordsAreWrittenAndNothingElse) {
+  constexpr int fields = 8;
+  const auto n = static_cast<std::size_t>(lanes());
+  std::vector<float> in(fields * n);
+  for (std::size_t i = 0; i < in.size(); ++i) in[i] = static_cast<float>(i + 1);
+  std::mt19937 random(9);
+  for (int round = 0; round < 100; ++round) {
+    std::vector<std::int32_t> index(3 * n);
+    std::iota(index.begin(), index.end(), 0);
+    std::shuffle(index.begin(), index.end(), random);
+    const Guarded memory;
+    // The last record ends where the memory does.
+    float* base = memory.end<float>() - fields * index.size();
+    std::vector<float> expected(fields * index.size(), -1.0f);
+    std::copy(expected.begin(), expected.end(), base);
+    table().store_records_8(in.data(), base, index.data());
+    for (std::size_t lane = 0; lane < n; ++lane) {
+      for (std::size_t k = 0; k < fields; ++k) {
+        expected[fields * static_cast<std::size_t>(index[lane]) + k] = in[k * n + lane];
+      }
+    }
+    ASSERT_TRUE(std::equal(expected.begin(), expected.end(), base));
+  }
+}
+
+template <class T>
+void expect_packed(void (*store)(unsigned, const T*, T*), int lanes) {
+  std::vector<T> in;
+  for (int l = 0; l < lanes; ++l) in.push_back(T(100 + l));
+  for (unsigned mask = 0; mask < 1u << lanes; ++mask) {
+    // N numbers may be written, however few are asked for.
+    const Guarded memory;
+    T* to = memory.end<T>() - 2 * lanes + 1;
+    to[-1] = T(7);
+    store(mask, in.data(), to);
+    for (int l = 0; l < lanes; ++l) {
+      if ((mask >> l & 1) == 0) continue;
+      ASSERT_EQ(*to++, in[static_cast<std::size_t>(l)]) << mask;
+    }
+    ASSERT_EQ((memory.end<T>() - 2 * lanes)[0], T(7));
+    if (lanes == 16) mask += 30;
+  }
+}
+TEST_P(BatchMemory, LanesArePackedInOrder) {
+  expect_packed(table().store_packed_floats, lanes());
+  expect_packed(table().store_packed_doubles, lanes());
+  expect_packed(table().store_packed_ints, lanes());
+}
+
+template <class T>
+void expect_spread(void (*load)(unsigned, const T*, T*), int lanes) {
+  const Guarded memory;
+  memory.fill<T>();
+  const T* from = memory.end<T>() - lanes;
+  for (unsigned mask = 0; mask < 1u << lanes; ++mask) {
+    T lane[16];
+    for (int l = 0; l < lanes; ++l) lane[l] = T(100 + l);
+    load(mask, from, lane);
+    const T* next = from;
+    for (int l = 0; l < lanes; ++l) {
+      ASSERT_EQ(lane[l], (mask >> l & 1) != 0 ? *next++ : T(100 + l)) << mask << ", " << l;
+    }
+    if (lanes == 16) mask += 30;
+  }
+}
+TEST_P(BatchMemory, ConsecutiveNumbersAreSpreadOverLanes) {
+  expect_spread(table().load_spread_floats, lanes());
+  expect_spread(table().load_spread_ints, lanes());
+}
+
+TEST_P(BatchMemory, BitsAreTakenForFloats) {
+  std::int32_t bits[16];
+  float expected[16], found[16];
+  for (int l = 0; l < 16; ++l) {
+    expected[l] = (l % 2 == 0 ? 1.0f : -1.0f) * std::ldexp(1.25f, 17 * l - 140);
+    std::memcpy(&bits[l], &expected[l], sizeof(float));
+  }
+  table().float_of_bits(bits, found);
+  for (int l = 0; l < lanes(); ++l) ASSERT_EQ(found[l], expected[l]);
 }
 
 /// That the guard guards.

@@ -196,6 +196,25 @@ void records(const float* base, const std::int32_t* index, float* out) {
   for (int k = 0; k < K; ++k) fields[k].store(out + k * width);
 }
 
+template <int K>
+void put_records(const float* in, float* base, const std::int32_t* index) {
+  Float fields[K];
+  for (int k = 0; k < K; ++k) fields[k] = Float::load(in + k * width);
+  store_records<K>(fields, base, Int::load(index));
+}
+template <class T>
+void pack(unsigned lanes, const T* in, T* to) {
+  store_packed(BatchMask<width>::from_bits(lanes), Batch<T, width>::load(in), to);
+}
+template <class T>
+void spread(unsigned lanes, const T* from, T* in_out) {
+  load_spread(BatchMask<width>::from_bits(lanes), from, Batch<T, width>::load(in_out))
+      .store(in_out);
+}
+void as_floats(const std::int32_t* in, float* out) {
+  float_of_bits(Int::load(in)).store(out);
+}
+
 constexpr batch_operations::Table table = {
     width,
     list(float_operations.items),
@@ -229,6 +248,13 @@ constexpr batch_operations::Table table = {
     records<4>,
     records<8>,
     records<16>,
+    put_records<8>,
+    pack<float>,
+    pack<double>,
+    pack<std::int32_t>,
+    spread<float>,
+    spread<std::int32_t>,
+    as_floats,
 };
 
 }  // namespace

@@ -71,6 +71,15 @@ struct Table {
   void (*records_4)(const float* base, const std::int32_t* index, float* out);
   void (*records_8)(const float* base, const std::int32_t* index, float* out);
   void (*records_16)(const float* base, const std::int32_t* index, float* out);
+  /// in[k * lanes + lane]
+  void (*store_records_8)(const float* in, float* base, const std::int32_t* index);
+  /// Of the lanes whose bit is set.
+  void (*store_packed_floats)(unsigned lanes, const float* in, float* to);
+  void (*store_packed_doubles)(unsigned lanes, const double* in, double* to);
+  void (*store_packed_ints)(unsigned lanes, const std::int32_t* in, std::int32_t* to);
+  void (*load_spread_floats)(unsigned lanes, const float* from, float* in_out);
+  void (*load_spread_ints)(unsigned lanes, const std::int32_t* from, std::int32_t* in_out);
+  void (*float_of_bits)(const std::int32_t* in, float* out);
 };
 
 }  // namespace batch_operations

@@ -13,7 +13,7 @@ template <class Value, int N>
 struct SpanRows {
   static constexpr int fields = 8;
   /// A ray crosses at most 22 cells of a block; the row behind the last one is written to.
-  static constexpr int of_a_stretch = 24;
+  static constexpr int of_a_stretch = 23;
 
   /// Data b0 … b3; their rounding; world length; of the ray from its begin on; SpanCode.
   float row[(Stretches<Value, N>::most + 1) * of_a_stretch * fields];
@@ -120,25 +120,23 @@ class SpanFinder {
     }
     M found = ready & (upper >= F(transfer_.support_min)) & (lower <= F(transfer_.support_max)) &
               (step.end > step.begin);
-    if constexpr (!std::is_integral_v<Value>) {
-      F sum = v[0];
-      for (int n = 1; n < 8; ++n) sum += v[n];
-      found = found & !is_nan(sum);  // vacuum
-    }
     // Of the values' differences from one of them: what is rounded is their range, and the value
     // itself only at the end and in cuts. A place is off by 16 u of a cell along each axis.
     CellCorners<F> differences;
     for (int n = 0; n < 8; ++n) differences.value[n] = v[n] - v[0];
     CubicBernstein<F> data =
         trilinear_cubic(differences, cells_.place(step, step.begin), cells_.place(step, step.end));
+    // Vacuum: one corner that is NaN makes all of it so.
+    if constexpr (!std::is_integral_v<Value>) found = found & !is_nan(data.b[0]);
     const F last_rise = data.b[3] - data.b[2];
     for (F& b : data.b) b += v[0];
     constexpr float u = rounding_unit<float>;
     const F range = upper - lower;
     const F rounding = F(8 * u) * max(abs(lower), abs(upper)) + F(80 * u) * range;
     if (any(found)) put_down(found, data, rounding, rows);
-    const F length = step.end - step.begin;
-    skip(ready, data.b[3], rounding, F(3) * last_rise / length, F(512 * u) * range / length);
+    const F per_length = F(1) / (step.end - step.begin);
+    skip(ready, data.b[3], rounding, F(3) * last_rise * per_length,
+         F(512 * u) * range * per_length);
   }
 
   /// Puts down what of the lanes' cells is a span.
@@ -187,12 +185,15 @@ class SpanFinder {
       return (towards + bound) + (slope_rounding + F(8 * u) * (size + bound));
     };
     const F by_jumps = growth(cells_.jump), by_variation = growth(cells_.variation);
+    // Of a cell without a length the slope is not known.
+    lanes = lanes & !is_nan(by_jumps + by_variation);
     // Squares may underflow.
     const F root = sqrt(by_jumps * by_jumps + F(4) * cells_.bend * distance + F(1e-36f));
-    const F far =
-        select(by_variation > F(0), distance / by_variation, F(std::numeric_limits<float>::max()));
+    const M away = by_jumps < F(0);
+    const F smallest = select(away, root - by_jumps, F(2) * distance) /
+                       select(away, F(2) * cells_.bend, by_jumps + root);
     constexpr float less = 1 - 32 * u;
-    cells_.skip(lanes, F(less) * max(F(2) * distance / (by_jumps + root), far));
+    cells_.skip(lanes, F(less) * max(smallest, distance / max(by_variation, F(0))));
   }
 
   /// Notes what was found in stretches that are gone through.

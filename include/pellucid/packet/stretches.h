@@ -11,7 +11,7 @@ namespace pellucid {
 template <class Value, int N>
 struct Stretches {
   /// As many as that are found ahead of a ray at a time.
-  static constexpr int of_a_ray = 8;
+  static constexpr int of_a_ray = 12;
   static constexpr int most = N * of_a_ray;
   /// Arrays are written and read by the vector, and so a little beyond their end.
   static constexpr int capacity = most + N;

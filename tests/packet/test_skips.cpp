@@ -1,0 +1,158 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <memory>
+#include <random>
+#include <utility>
+#include <vector>
+
+#include "pellucid/cpu/render.h"
+#include "pellucid/scene/defaults.h"
+
+namespace pellucid {
+namespace {
+
+constexpr InstructionSet sets[] = {InstructionSet::sse4, InstructionSet::avx2,
+                                   InstructionSet::avx512};
+
+/// Random smooth fields and narrow peaks on their values: what packets pass over because the data
+/// cannot get that far would be missing from the pixel, and is in the double-precision frame, which
+/// goes from cell to cell.
+class PacketSkips : public testing::TestWithParam<unsigned> {
+ protected:
+  double uniform(double a, double b) {
+    return std::uniform_real_distribution<double>(a, b)(random_);
+  }
+  bool one_in(int n) { return std::uniform_int_distribution<int>(1, n)(random_) == 1; }
+
+  double wave(double x, double y, double z) const {
+    double sum = 0;
+    for (const auto& w : waves_) sum += std::sin(w[0] * x + w[1] * y + w[2] * z + 6 * w[3]);
+    return sum / 6;
+  }
+
+  Scene make_scene() {
+    for (auto& w : waves_) {
+      for (double& x : w) x = uniform(-1, 1) * std::pow(10, uniform(-2, 0));
+    }
+    const bool folded = one_in(4), spikes = one_in(4), vacuum = one_in(5);
+    const double offset = one_in(4) ? uniform(-100, 100) : 0;
+    const double scale = one_in(4) ? std::pow(10, uniform(-4, 4)) : 1;
+    Volume::Description description;
+    description.centering = one_in(3) ? Centering::cell : Centering::point;
+    for (int a = 0; a < 3; ++a) {
+      description.dimensions[static_cast<std::size_t>(a)] = static_cast<int>(uniform(9, 40));
+      description.placement.spacing[a] = one_in(2) ? 1 : uniform(0.3, 2);
+    }
+    std::vector<float> data;
+    for (int z = 0; z < description.dimensions[2]; ++z) {
+      for (int y = 0; y < description.dimensions[1]; ++y) {
+        for (int x = 0; x < description.dimensions[0]; ++x) {
+          double v = wave(x, y, z);
+          if (folded) v = std::fabs(v);
+          if (spikes && one_in(3000)) v += 0.3;
+          data.push_back(static_cast<float>(scale * (offset + 0.5 + v)));
+        }
+      }
+    }
+    const double middle = static_cast<double>(data[data.size() / 3]);
+    if (vacuum) {
+      for (const std::size_t i : {data.size() / 2, data.size() / 5}) {
+        data[i] = std::numeric_limits<float>::quiet_NaN();
+      }
+    }
+    const double half_width = scale * std::pow(10, uniform(-3, -0.7));
+    const double extinction = std::pow(10, uniform(-1, 2));
+    std::vector<TransferFunction::Point> points;
+    for (int k = 0; k < (one_in(3) ? 3 : 1); ++k) {
+      const double at = middle + 4 * k * half_width;
+      points.push_back({at - half_width, 0, {1, 0, 0}});
+      points.push_back({at, extinction, {0, 1, 0.5}});
+      points.push_back({at + half_width, 0, {0, 0, 1}});
+    }
+    Scene scene;
+    description.name = "waves";
+    scene.volume = std::make_shared<Volume>(description, DataArray<float>(std::move(data)));
+    scene.transfer_function = std::make_shared<TransferFunction>(std::move(points));
+    scene.size = {20, 20};
+    scene.camera = default_camera(*scene.volume, scene.size);
+    if (one_in(2)) {
+      scene.camera.projection = Projection::orthographic;
+      scene.camera.parallel_scale =
+          length(scene.camera.position - scene.camera.focal_point) / uniform(2, 6);
+    }
+    scene.integration.tolerance = one_in(2) ? 1.0 / 512 : 1e-3;
+    return scene;
+  }
+
+ private:
+  std::mt19937 random_{GetParam()};
+  double waves_[3][4] = {};
+};
+
+TEST_P(PacketSkips, LoseNothing) {
+  for (int round = 0; round < 12; ++round) {
+    const Scene scene = make_scene();
+    RenderOptions options;
+    options.threads = 1;
+    options.error = true;
+    Scene precise = scene;
+    precise.integration.tolerance = 1e-6;
+    precise.integration.precision = Precision::float64;
+    const Image expected = render(precise, options);
+    for (const InstructionSet set : sets) {
+      if (!is_supported(set)) continue;
+      options.instruction_set = set;
+      const Image found = render(scene, options);
+      for (std::size_t i = 0; i < found.pixels.size(); ++i) {
+        for (std::size_t c = 0; c < 4; ++c) {
+          const double off = std::fabs(static_cast<double>(found.pixels[i][c]) -
+                                       static_cast<double>(expected.pixels[i][c]));
+          ASSERT_LE(off, static_cast<double>(found.error[i]) +
+                             static_cast<double>(expected.error[i]) + 3e-7)
+              << "round " << round << ", pixel " << i << ", " << name_of(set);
+        }
+      }
+    }
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Seeds, PacketSkips, testing::Range(1u, 9u));
+
+/// Where the data keep away from what absorbs, most cells are not looked at.
+TEST(PacketSkipsCost, SmoothDataAreCrossedInFewSteps) {
+  Volume::Description description;
+  description.dimensions = {64, 64, 64};
+  description.name = "ramp";
+  std::vector<float> data;
+  for (int z = 0; z < 64; ++z) {
+    for (int y = 0; y < 64; ++y) {
+      for (int x = 0; x < 64; ++x) data.push_back(static_cast<float>(0.01 * x + 0.002 * y * y));
+    }
+  }
+  Scene scene;
+  scene.volume = std::make_shared<Volume>(description, DataArray<float>(std::move(data)));
+  // One narrow peak in the range of every block of one layer.
+  scene.transfer_function = std::make_shared<TransferFunction>(std::vector<TransferFunction::Point>{
+      {2.0, 0, {1, 1, 1}}, {2.01, 5, {1, 1, 1}}, {2.02, 0, {1, 1, 1}}});
+  scene.size = {32, 32};
+  scene.camera = default_camera(*scene.volume, scene.size);
+  RenderOptions options;
+  options.threads = 1;
+  RenderReport one_by_one, packets;
+  options.instruction_set = InstructionSet::scalar;
+  render(scene, options, &one_by_one);
+  for (const InstructionSet set : sets) {
+    if (!is_supported(set)) continue;
+    options.instruction_set = set;
+    render(scene, options, &packets);
+    EXPECT_GT(packets.cells, 0u);
+    EXPECT_LT(packets.cells, one_by_one.cells / 2) << name_of(set);
+  }
+}
+
+}  // namespace
+}  // namespace pellucid
