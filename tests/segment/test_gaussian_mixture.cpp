@@ -234,7 +234,7 @@ TEST(MixtureRandom, RadianceIsWithinTheReportedError) {
   for (const double tolerance : {1e-3, 1e-6, 1e-9}) {
     for (const Grade grade : {Grade::estimated, Grade::proved}) {
       if (grade == Grade::proved && tolerance < 1e-5) continue;
-      ErrorRecord share("random mixtures, share of tolerance", "");
+      ErrorRecord share("random mixtures, share of error", "");
       for (int i = 0; i < 150; ++i) {
         MixtureCase<T> c;
         const int count = 2 + static_cast<int>(6 * unit(random));
