@@ -133,14 +133,15 @@ struct GaussianPanels {
     return mean;
   }
 
-  /// What the primitives with more depth than `negligible` do on a panel.
+  /// What the primitives with more depth than `negligible` do on a panel. The others are from here
+  /// on as if they were not there.
   struct Matter {
     T range{};      ///< of their colors
     T exponents{};  ///< the largest bound on the change of an exponent
     T ratio{};      ///< a bound on the change of the logarithm of any ratio of two densities
     T rest{};       ///< the depth of all others
   };
-  PELLUCID_HD Matter matter(T negligible) const noexcept {
+  PELLUCID_HD Matter matter(T negligible) noexcept {
     Matter result;
     ColorRange<T> colors;
     int heaviest = 0;
@@ -151,9 +152,10 @@ struct GaussianPanels {
     const T length_k = k.x1 - k.x0;
     T first = T(0), second = T(0);
     for (int i = 0; i < count; ++i) {
-      const SeenGaussian<T>& g = seen[i];
+      SeenGaussian<T>& g = seen[i];
       if (!(g.mass > negligible)) {
         result.rest += g.mass;
+        g.mass = T(0);
         continue;
       }
       colors.add(true, g.color);
@@ -202,14 +204,16 @@ struct GaussianPanels {
     return found;
   }
 
-  /// The next closest approach behind t, or 1.
-  PELLUCID_HD T next_cut(T t) const noexcept {
-    T cut = T(1);
+  /// How wide a panel from t may be, `width` at most: to the next closest approach of a primitive
+  /// that is narrow against it.
+  PELLUCID_HD T width_to_cut(T t, T width) const noexcept {
     for (int i = 0; i < count; ++i) {
-      const T u = seen[i].line.closest();
-      if (u > t && u < cut) cut = u;
+      const SeenGaussian<T>& g = seen[i];
+      const T u = g.line.closest();
+      const bool narrow = g.line.length * width > T(2) && g.line.perpendicular < g.cutoff;
+      if (narrow && u > t && u - t < width) width = u - t;
     }
-    return cut;
+    return width;
   }
 
   /// From front to back, halving where no rule is good enough.
@@ -218,7 +222,7 @@ struct GaussianPanels {
     T shine = T(0);
     // What the cutoffs leave out, seen through nothing.
     T error = tolerance * opacity * T(1.0 / 32);
-    T t = T(0), width = next_cut(T(0));
+    T t = T(0), width = width_to_cut(T(0), T(1));
     for (;;) {
       const bool resolved = t + T(0.5) * width > t && width > T(rounding_unit<T>);
       Panel panel;
@@ -240,12 +244,51 @@ struct GaussianPanels {
         error += sum.transparency * oscillation;
         break;
       }
-      width = min(T(2) * width, next_cut(t) - t);
+      width = width_to_cut(t, min(T(2) * width, T(1) - t));
     }
     sum.error = error / opacity;
     return sum;
   }
 };
+
+/// Puts the color by panels in place of the mean color in `result`, if it is the better one. The
+/// mean has the better bound where nothing can be resolved. Apart, because of the room that it
+/// takes.
+template <class S, class T>
+PELLUCID_HD void refine_by_panels(const GaussianMixture<S>& mixture, const T* v1, const T* v2,
+                                  T length, T tolerance, Grade grade,
+                                  BoundedSegment<T>& result) noexcept {
+  GaussianPanels<T> panels;
+  ColorRange<T> range;
+  for (int i = 0; i < mixture.count; ++i) {
+    const Gaussian<S>& g = mixture.primitive[i];
+    T p1[most_channels], p2[most_channels], d[most_channels];
+    g.place(v1, p1);
+    g.place(v2, p2);
+    g.displacement(v1, v2, d);
+    const GaussianLine<T> line(p1, p2, d, g.rows);
+    const T peak = T(g.peak) * length;
+    if (!(peak * exp(-line.least_exponent(line.a, line.b)) > T(0))) continue;
+    if (panels.count == most_primitives) return;
+    SeenGaussian<T>& seen = panels.seen[panels.count++];
+    seen.line = line;
+    seen.peak = peak;
+    seen.color = {T(g.color.r), T(g.color.g), T(g.color.b)};
+    range.add(true, seen.color);
+  }
+  panels.tolerance = tolerance;
+  panels.opacity = result.segment.opacity;
+  panels.oscillation = range.oscillation();
+  panels.grade = grade;
+  panels.set_cutoffs();
+  const auto found = panels.fold();
+  if (panels.opacity * found.error < result.color_error) {
+    result.segment.radiance = panels.opacity * range.clamped(found.color);
+    result.color_error = panels.opacity * found.error;
+    result.proved = found.proved;
+    result.panels = true;
+  }
+}
 
 }  // namespace detail
 
@@ -270,46 +313,11 @@ template <class S, class T>
 PELLUCID_HD BoundedSegment<T> integrate_gaussians(const GaussianMixture<S>& mixture, const T* v1,
                                                   const T* v2, T length, T tolerance,
                                                   Grade grade) noexcept {
-  DepthWeightedColor<T> sum;
-  detail::GaussianPanels<T> panels;
-  bool too_many = false;
-  for (int i = 0; i < mixture.count; ++i) {
-    const Gaussian<S>& g = mixture.primitive[i];
-    T p1[most_channels], p2[most_channels], d[most_channels];
-    g.place(v1, p1);
-    g.place(v2, p2);
-    g.displacement(v1, v2, d);
-    const T peak = T(g.peak) * length;
-    const T mass = peak * gaussian_mean_density(p1, p2, d, g.rows);
-    if (!(mass > T(0))) continue;
-    const Rgb<T> color{T(g.color.r), T(g.color.g), T(g.color.b)};
-    sum.add(mass, color);
-    if (panels.count == most_primitives) {
-      too_many = true;
-      continue;
-    }
-    panels.seen[panels.count++] = {GaussianLine<T>(p1, p2, d, g.rows), peak, color};
-  }
-  BoundedSegment<T> result{segment_of_depth(sum.depth, sum.color)};
-  const T opacity = result.segment.opacity;
-  const T oscillation = sum.range.oscillation();
-  result.color_error = opacity * (oscillation * mean_color_bound(sum.depth));
+  BoundedSegment<T> result = gaussian_mixture_mean(mixture, v1, v2, length);
   // No rule gives more than the number type does.
-  tolerance = max(tolerance, T(4 * rounding_unit<T>));
-  if (too_many || result.color_error <= tolerance * opacity) return result;
-  panels.tolerance = tolerance;
-  panels.opacity = opacity;
-  panels.oscillation = oscillation;
-  panels.grade = grade;
-  panels.set_cutoffs();
-  const auto found = panels.fold();
-  // The mean color of the whole may have the better bound, where nothing could be resolved.
-  if (opacity * found.error < result.color_error) {
-    result.segment.radiance = opacity * sum.range.clamped(found.color);
-    result.color_error = opacity * found.error;
-    result.proved = found.proved;
-    result.panels = true;
-  }
+  const T allowed = max(tolerance, T(4 * rounding_unit<T>));
+  if (result.color_error <= allowed * result.segment.opacity) return result;
+  detail::refine_by_panels(mixture, v1, v2, length, allowed, grade, result);
   return result;
 }
 
