@@ -94,7 +94,7 @@ struct DensityErrors {
     absolute.print();
     relative.print();
     EXPECT_LE(absolute.largest(), 8);
-    EXPECT_LE(relative.largest(), 1);
+    EXPECT_LE(relative.largest(), 0.25);
     EXPECT_GT(absolute.largest(), 0.1L) << "nothing was measured";
   }
 };

@@ -104,8 +104,10 @@ void expect_table(double tolerance, Grade grade) {
       share.add(off / (error + rounding + test::smallest_density<T>), where);
       ASSERT_GE(value, T(0)) << where;
     }
-    reported.add(error / (tolerance * static_cast<long double>(s.segment.opacity) + 1e-300L),
-                 where);
+    reported.add(
+        error / (static_cast<long double>(tolerance) * static_cast<long double>(s.segment.opacity) +
+                 1e-300L),
+        where);
     panels += s.panels;
     EXPECT_TRUE(s.proved || grade == Grade::estimated) << where;
   }
@@ -203,15 +205,16 @@ TYPED_TEST(Mixture, PartsOfALine) {
 long double truth_in_one_channel(const MixtureCase<double>& c) {
   using Number = long double;
   static const boost::math::quadrature::gauss<Number, 20> rule;
-  const Number v1 = c.v1[0], step = Number(c.v2[0]) - v1, length = c.length;
+  const auto wide = [](double x) { return static_cast<Number>(x); };
+  const Number v1 = wide(c.v1[0]), step = wide(c.v2[0]) - v1, length = wide(c.length);
   const auto light = [&](Number u) {
     Number depth = 0, emission = 0;
     for (const Gaussian<double>& g : c.primitive) {
-      const Number k = g.matrix[0][0], peak = g.peak;
-      const Number z0 = k * (v1 - Number(g.center[0])), z = z0 + k * step * u;
-      depth += peak * length * std::sqrt(std::acos(Number(-1))) / (2 * k * step) *
+      const Number k = wide(g.matrix[0][0]), peak = wide(g.peak);
+      const Number z0 = k * (v1 - wide(g.center[0])), z = z0 + k * step * u;
+      depth += peak * length * std::sqrt(std::acos(-1.0L)) / (2 * k * step) *
                (std::erf(z) - std::erf(z0));
-      emission += peak * std::exp(-z * z) * Number(g.color.g);
+      emission += peak * std::exp(-z * z) * wide(g.color.g);
     }
     return length * emission * std::exp(-depth);
   };
@@ -318,7 +321,8 @@ TEST(GaussianPanelEstimate, HoldsUnderHillClimbing) {
   std::mt19937_64 random(8);
   std::uniform_real_distribution<double> unit(0, 1);
   std::normal_distribution<double> normal;
-  for (const auto& [r, m] : limits) {
+  for (const double* limit : {limits[0], limits[1], limits[2], limits[3]}) {
+    const double r = limit[0], m = limit[1];
     for (const int nodes : {4, 6, 8, 10}) {
       const double estimate = nodes == 4   ? gaussian_panel_estimate<4>(r, m)
                               : nodes == 6 ? gaussian_panel_estimate<6>(r, m)

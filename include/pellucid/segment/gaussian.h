@@ -95,8 +95,8 @@ struct Direction {
 /// tails whose difference is safe. Neither d = 0, nor ends far in one tail, nor the order of the
 /// ends is a special case; lanes in different regimes take the same steps.
 ///
-/// Largest error: 8 u absolute, and 16 u (1 + 2 l + 2 √(1+l) η) relative, l = |ln| of the result
-/// and η = max |K| |v - c| what the p_i are computed from (for results >= 1e-30 in float, 1e-290 in
+/// Largest error: 8 u absolute, and 4 u (1 + 2 l + 2 √(1+l) η) relative, l = |ln| of the result and
+/// η = max |K| |v - c| what the p_i are computed from (for results >= 1e-30 in float, 1e-290 in
 /// double); always in [0, 1]. Asserted in tests/segment and tests/simd.
 template <class T>
 PELLUCID_HD T gaussian_mean_density(const T* p1, const T* p2, const T* d, int rows) noexcept {
@@ -146,8 +146,8 @@ PELLUCID_HD SegmentResult<T> gaussian_segment(const Gaussian<S>& primitive, cons
                           Rgb<T>{T(c.r), T(c.g), T(c.b)});
 }
 
-/// A bound on the relative error of gaussian_mean_density(): the R of the specification (3.4), 16 u
-/// (1 + 2 l + 2 √(1+l) η). Infinite for a mean of 0.
+/// What the relative error of gaussian_mean_density() is charged with: the R of the specification
+/// (3.4), 16 u (1 + 2 l + 2 √(1+l) η), four times what is asserted. Infinite for a mean of 0.
 template <class S, class T>
 PELLUCID_HD T gaussian_rounding(const Gaussian<S>& primitive, const T* v1, const T* v2,
                                 T mean_density) noexcept {
