@@ -4,6 +4,8 @@
 #include "pellucid/segment/cubic.h"
 #include "pellucid/segment/fold.h"
 #include "pellucid/segment/gauss_panel.h"
+#include "pellucid/segment/gaussian_kniss.h"
+#include "pellucid/segment/gaussian_panels.h"
 #include "pellucid/segment/line_rule.h"
 #include "pellucid/segment/linear.h"
 #include "pellucid/segment/piecewise_linear.h"
@@ -92,5 +94,26 @@ PELLUCID_HD void lines(const T* in, T* out) noexcept {
   put(line_emission_rule(data, in[14], table, antiderivative).segment, out);
 }
 PELLUCID_DEVICE_KERNEL(lines)
+
+template <class T>
+PELLUCID_HD void gaussians(const T* in, T* out) noexcept {
+  Gaussian<T> two[2]{};
+  for (int i = 0; i < 2; ++i) {
+    two[i].channels = two[i].rows = 2;
+    two[i].matrix[0][0] = two[i].matrix[1][1] = in[i];
+    two[i].peak = in[2];
+    two[i].color = {in[3], in[4], T(i)};
+  }
+  const GaussianMixture<T> mixture{two, 2};
+  const T *v1 = in + 5, *v2 = in + 7;
+  const T length = in[9], tolerance = in[10];
+  put(gaussian_segment(two[0], v1, v2, length), out);
+  put(gaussian_mixture_mean(mixture, v1, v2, length).segment, out);
+  put(integrate_gaussians(mixture, v1, v2, length, tolerance, Grade::proved).segment, out);
+  put(integrate_gaussians(mixture, v1, v2, length, tolerance, Grade::estimated).segment, out);
+  out[2] = kniss_mean_density(two[1], v1, v2) + gaussian_mixture_depth(mixture, v1, v2, length);
+  out[3] = gaussian_rounding(two[0], v1, v2, in[11]) + mixture.evaluate(v1).extinction;
+}
+PELLUCID_DEVICE_KERNEL(gaussians)
 
 }  // namespace pellucid

@@ -4,8 +4,12 @@
 #include <random>
 #include <vector>
 
+#include "pellucid/segment/gaussian_kniss.h"
+#include "pellucid/segment/gaussian_line.h"
+#include "pellucid/segment/gaussian_mixture.h"
 #include "tests/math/sweep.h"
 #include "tests/math_bernstein/wide_cubic.h"
+#include "tests/segment/gaussian_rows.h"
 #include "tests/segment/linear_errors.h"
 #include "tests/segment/table_rows.h"
 #include "tests/simd/every_instruction_set.h"
@@ -415,6 +419,130 @@ TEST_P(SegmentKernels, LinearWeightsStayInBoundsAtTheEdges) {
 TEST_P(SegmentKernels, ClassicalRulesAreTheirDefinitions) {
   expect_classical_rules<float>();
   expect_classical_rules<double>();
+}
+
+class GaussianKernels : public Kernels {
+ protected:
+  /// Every row of the table, forwards and backwards, whatever its channels: absent rows of K are
+  /// zero. Neighbours are points, short segments, crossing ones and tails.
+  template <class T>
+  static void expect_table() {
+    const pellucid::test::Table rows = pellucid::test::Table::reference("gaussian_segment.csv");
+    std::vector<std::vector<T>> in(24, std::vector<T>(2 * rows.rows()));
+    std::vector<GaussianCase<T>> cases;
+    for (std::size_t i = 0; i < 2 * rows.rows(); ++i) {
+      GaussianCase<T> g = gaussian_row<T>(rows, i / 2);
+      if (i % 2 == 1) std::swap_ranges(g.v1, g.v1 + most_channels, g.v2);
+      T p1[most_channels]{}, p2[most_channels]{}, d[most_channels]{};
+      g.primitive.place(g.v1, p1);
+      g.primitive.place(g.v2, p2);
+      g.primitive.displacement(g.v1, g.v2, d);
+      for (std::size_t k = 0; k < 8; ++k) {
+        in[k][i] = p1[k];
+        in[k + 8][i] = p2[k];
+        in[k + 16][i] = d[k];
+      }
+      cases.push_back(g);
+    }
+    const auto y = independent_columns<T>(in, 3, [](const T* const* from, T* const* to) {
+      table<T>().gaussian(from, from + 8, from + 16, to);
+    });
+    DensityErrors<T> errors(std::string(number_name<T>()) + ", " + std::to_string(lanes()) +
+                            " lanes");
+    long double kniss = 0;
+    for (std::size_t i = 0; i < cases.size(); ++i) {
+      const long double truth = rows.wide(i / 2, "mean_density");
+      errors.add(y[0][i], truth, cases[i], row_name(rows, i / 2));
+      const GaussianCase<T>& g = cases[i];
+      const T one = kniss_mean_density(g.primitive, g.v1, g.v2);
+      kniss = std::max(kniss, std::fabs(static_cast<long double>(y[1][i]) - truth));
+      ASSERT_TRUE(y[1][i] >= T(0) && y[1][i] <= T(1) && one >= T(0) && one <= T(1)) << i;
+      T p1[most_channels]{}, p2[most_channels]{}, d[most_channels]{};
+      g.primitive.place(g.v1, p1);
+      g.primitive.place(g.v2, p2);
+      g.primitive.displacement(g.v1, g.v2, d);
+      // A lane rounds otherwise than a scalar does, where products are fused.
+      const T scalar = GaussianLine<T>(p1, p2, d, 8).mean_density(T(0.25), T(0.75));
+      const auto quarter = static_cast<long double>(scalar);
+      const long double allowed = quarter > smallest_density<T>
+                                      ? quarter * g.allowed_relative(quarter) * unit_of<T>
+                                      : smallest_density<T>;
+      ASSERT_LE(std::fabs(static_cast<long double>(y[2][i]) - quarter), 2 * allowed) << i;
+    }
+    errors.expect_stated();
+    std::printf("[ accuracy ] %s, %zu lanes, Kniss: largest absolute error %.3Lg\n",
+                number_name<T>(), lanes(), kniss);
+  }
+
+  /// Sums of primitives, lane by lane as the scalar kernels give them.
+  template <class T>
+  static void expect_mixture() {
+    std::mt19937_64 random(12);
+    std::uniform_real_distribution<double> unit(0, 1);
+    constexpr std::size_t count = 5;
+    std::vector<T> numbers;
+    Gaussian<T> all[count];
+    for (Gaussian<T>& g : all) {
+      g.channels = g.rows = 2;
+      const double steep = std::pow(10.0, 2 * unit(random));
+      for (int k = 0; k < 2; ++k) {
+        g.center[k] = static_cast<T>(unit(random));
+        for (int r = 0; r < 2; ++r) {
+          g.matrix[r][k] = static_cast<T>(steep * (2 * unit(random) - 1));
+        }
+      }
+      g.peak = static_cast<T>(10 * unit(random));
+      g.color = {static_cast<T>(unit(random)), T(0.5), T(0)};
+      for (const T x : {g.center[0], g.center[1], g.matrix[0][0], g.matrix[0][1], g.matrix[1][0],
+                        g.matrix[1][1], g.peak, g.color.r, g.color.g, g.color.b}) {
+        numbers.push_back(x);
+      }
+    }
+    std::vector<std::vector<T>> in(5);
+    for (int i = 0; i < 3000; ++i) {
+      for (std::size_t k = 0; k < 4; ++k) in[k].push_back(static_cast<T>(unit(random)));
+      if (i % 5 == 0) {
+        in[2].back() = in[0].back();
+        in[3].back() = in[1].back();
+      }
+      in[4].push_back(static_cast<T>(std::pow(10.0, -6 + 8 * unit(random))));
+    }
+    const auto y = independent_columns<T>(in, 7, [&](const T* const* from, T* const* to) {
+      table<T>().mixture(numbers.data(), count, from, to);
+    });
+    const GaussianMixture<T> sum{all, count};
+    ErrorRecord depth("depth against one ray"), radiance("radiance against one ray");
+    for (std::size_t i = 0; i < in[0].size(); ++i) {
+      const T v1[2] = {in[0][i], in[1][i]}, v2[2] = {in[2][i], in[3][i]};
+      const BoundedSegment<T> s = gaussian_mixture_mean(sum, v1, v2, in[4][i]);
+      // Off by what rounding may do, far from the centers by much: judged where something is seen.
+      if (s.segment.optical_depth < T(1e-12)) continue;
+      const auto where = std::to_string(i);
+      const long double l = 100 + std::fabs(std::log(s.segment.optical_depth / in[4][i]));
+      const auto wide = [](T x) { return static_cast<long double>(x); };
+      depth.add(relative_error_in_u(y[0][i], wide(s.segment.optical_depth)) / l, where);
+      radiance.add(relative_error_in_u(y[2][i], wide(s.segment.radiance.r)) / l, where);
+      ASSERT_EQ(y[4][i], y[0][i]) << i;
+      ASSERT_LE(y[6][i], y[0][i]) << i;
+      ASSERT_LE(std::fabs(y[3][i] - s.color_error), T(1e-4) * (T(1e-6) + s.color_error)) << i;
+      ASSERT_LE(std::fabs(y[5][i] - sum.evaluate(v1).extinction), T(1e-4) * (T(1e-3) + y[5][i]))
+          << i;
+    }
+    depth.print();
+    radiance.print();
+    EXPECT_GT(depth.count(), 500u);
+    EXPECT_LE(depth.largest(), 0.5);
+    EXPECT_LE(radiance.largest(), 0.5);
+  }
+};
+PELLUCID_EVERY_INSTRUCTION_SET(GaussianKernels);
+TEST_P(GaussianKernels, MeanDensitiesAgreeWithTheTable) {
+  expect_table<float>();
+  expect_table<double>();
+}
+TEST_P(GaussianKernels, MixturesAreThoseOfOneRay) {
+  expect_mixture<float>();
+  expect_mixture<double>();
 }
 
 class CubicKernels : public Kernels {

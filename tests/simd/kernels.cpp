@@ -8,6 +8,9 @@
 #include "pellucid/math/error_function.h"
 #include "pellucid/math/scaled_tail.h"
 #include "pellucid/segment/classical.h"
+#include "pellucid/segment/gaussian_kniss.h"
+#include "pellucid/segment/gaussian_line.h"
+#include "pellucid/segment/gaussian_mixture.h"
 #include "pellucid/segment/linear.h"
 #include "pellucid/simd/batch.h"
 #include "pellucid/simd/instruction_set.h"
@@ -97,9 +100,53 @@ struct On {
     s.radiance.g.store(out[3]);
   }
 
+  static void gaussian(const T* const p1[8], const T* const p2[8], const T* const d[8],
+                       T* const out[3]) {
+    B front[8], back[8], step[8];
+    for (int k = 0; k < 8; ++k) {
+      front[k] = B::load(p1[k]);
+      back[k] = B::load(p2[k]);
+      step[k] = B::load(d[k]);
+    }
+    gaussian_mean_density(front, back, step, 8).store(out[0]);
+    kniss_mean_density(front, back, step, 8).store(out[1]);
+    GaussianLine<B>(front, back, step, 8).mean_density(B(T(0.25)), B(T(0.75))).store(out[2]);
+  }
+
+  static void mixture(const T* primitives, int count, const T* const data[5], T* const out[7]) {
+    Gaussian<T> all[8];
+    for (int i = 0; i < count; ++i) {
+      const T* number = primitives + 10 * i;
+      Gaussian<T>& g = all[i];
+      g.channels = g.rows = 2;
+      for (int k = 0; k < 2; ++k) {
+        g.center[k] = number[k];
+        g.matrix[0][k] = number[2 + k];
+        g.matrix[1][k] = number[4 + k];
+      }
+      g.peak = number[6];
+      g.color = {number[7], number[8], number[9]};
+    }
+    const GaussianMixture<T> sum{all, count};
+    const B v1[2] = {B::load(data[0]), B::load(data[1])};
+    const B v2[2] = {B::load(data[2]), B::load(data[3])};
+    const B length = B::load(data[4]);
+    const BoundedSegment<B> s = gaussian_mixture_mean(sum, v1, v2, length);
+    s.segment.optical_depth.store(out[0]);
+    s.segment.opacity.store(out[1]);
+    s.segment.radiance.r.store(out[2]);
+    s.color_error.store(out[3]);
+    gaussian_mixture_depth(sum, v1, v2, length).store(out[4]);
+    sum.evaluate(v1).extinction.store(out[5]);
+    gaussian_segment(all[0], v1, v2, length).optical_depth.store(out[6]);
+  }
+
   static constexpr simd_kernels::Table<T> table = {
-      unary<T>, sizeof unary<T> / sizeof unary<T>[0], attenuation, linear, bernstein, trilinear,
-      classical};
+      unary<T>,    sizeof unary<T> / sizeof unary<T>[0],
+      attenuation, linear,
+      bernstein,   trilinear,
+      classical,   gaussian,
+      mixture};
 };
 
 constexpr simd_kernels::Kernels kernels = {PELLUCID_LANES, On<float>::table, On<double>::table};

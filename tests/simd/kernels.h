@@ -29,6 +29,14 @@ struct Table {
   /// transparency, radiance
   void (*classical)(int rule, const T* const extinction[3], const T* const color[3],
                     const T* length, T* const out[4]);
+  /// The places of both ends and their difference, 8 numbers each; mean density, Kniss's, the mean
+  /// density over [1/4, 3/4] of the line
+  void (*gaussian)(const T* const p1[8], const T* const p2[8], const T* const d[8],
+                   T* const out[3]);
+  /// `count` primitives over two channels, each center, K by rows, peak, color: 10 numbers; data
+  /// (v1 in 0 and 1, v2 in 2 and 3) and the length; depth, opacity, radiance (red), color_error,
+  /// the depth by gaussian_mixture_depth(), the extinction at the front, the first one's depth
+  void (*mixture)(const T* primitives, int count, const T* const data[5], T* const out[7]);
 };
 struct Kernels {
   int lanes;

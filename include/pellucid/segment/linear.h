@@ -52,7 +52,9 @@ struct LinearRates {
 template <class T>
 struct ThinSums {
   T b0, h1, f1;
-  PELLUCID_HD ThinSums(T h, T g) noexcept {
+  PELLUCID_HD ThinSums(T h, T g) noexcept : ThinSums(h, g, h) {}
+  /// `reach` >= max(h, |g|), for where |g| may be above h; h >= 0.
+  PELLUCID_HD ThinSums(T h, T g, T reach) noexcept {
     using S = scalar_t<T>;
     // 1/n, c_n and 2 n c_n for n = 1 … 15.
     static constexpr S inverse[15] = {S(1.0),        S(1.0 / 2.0),  S(1.0 / 3.0),  S(1.0 / 4.0),
@@ -74,12 +76,12 @@ struct ThinSums {
                                 S(1.0 / 213458046676875.0),
                                 S(1.0 / 6190283353629375.0),
                                 S(1.0 / 191898783962510625.0)};
-    // Where |g| <= h the tail of F1 after N terms is below h^N e^{h/2}/(2N+3)!! (proof in 3.3):
-    // N = 8 and 15 leave less than u/10 of the weights up to h = 1, N = 4 and 8 up to h = 0.05.
+    // With r = reach the tail of F1 after N terms is below r^N e^{r/2}/(2N+3)!! (proof in 3.3):
+    // N = 8 and 15 leave less than u/10 of the weights up to r = 1, N = 4 and 8 up to r = 0.05.
     // There each term left out is below half a unit in the last place of its sum, so that adding
     // them changes nothing: what a lane becomes does not depend on its neighbours.
     const T y = T(0.5) * (h * h);
-    const bool tiny = all(h <= T(0.05));
+    const bool tiny = all(reach <= T(0.05));
     const int terms = is_single<T> ? (tiny ? 4 : 8) : (tiny ? 8 : 15);
     // b0 and H1 are even in h and end sooner.
     const int even_terms = is_single<T> ? (tiny ? 2 : 5) : (tiny ? 4 : 9);

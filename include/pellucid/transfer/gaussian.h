@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "pellucid/transfer/piecewise_linear.h"
+
+namespace pellucid {
+
+/// The most channels that a Gaussian primitive looks at.
+inline constexpr int most_channels = 8;
+
+/// A Gaussian primitive over the n channels of the data, 1 <= n <= 8:
+///
+///   extinction(v) = peak · e^(-|K (v - c)|²),   K of r rows and n columns, 1 <= r <= n,
+///
+/// and one color. There is no factor 1/2: a covariance Σ is K^T K = Σ^-1 / 2. K may have any rank:
+/// what K maps to zero the primitive does not look at. Plain numbers of the scalar type S, the same
+/// for every lane of a packet; the owner has checked that they are finite and no extinction
+/// negative.
+template <class S>
+struct Gaussian {
+  S center[most_channels]{};
+  S matrix[most_channels][most_channels]{};  ///< K, by rows: rows × channels are used
+  int channels = 1, rows = 1;
+  S peak{};  ///< the largest extinction, 1/length
+  Rgb<S> color{};
+
+  /// p = K (v - c), `rows` numbers; v has `channels`. The differences are taken first.
+  template <class T>
+  PELLUCID_HD void place(const T* v, T* p) const noexcept {
+    for (int i = 0; i < rows; ++i) {
+      p[i] = T(0);
+      for (int k = 0; k < channels; ++k) {
+        p[i] = multiply_add(T(matrix[i][k]), v[k] - T(center[k]), p[i]);
+      }
+    }
+  }
+
+  /// d = K (v2 - v1): from the data, because places far from the center have lost it.
+  template <class T>
+  PELLUCID_HD void displacement(const T* v1, const T* v2, T* d) const noexcept {
+    for (int i = 0; i < rows; ++i) {
+      d[i] = T(0);
+      for (int k = 0; k < channels; ++k) {
+        d[i] = multiply_add(T(matrix[i][k]), v2[k] - v1[k], d[i]);
+      }
+    }
+  }
+
+  /// e^(-|K (v - c)|²), in [0, 1].
+  template <class T>
+  PELLUCID_HD T density(const T* v) const noexcept {
+    T p[most_channels];
+    place(v, p);
+    T square = T(0);
+    for (int i = 0; i < rows; ++i) square = multiply_add(p[i], p[i], square);
+    return exp(-square);
+  }
+};
+
+/// A sum of Gaussian primitives: a view, it owns nothing. All look at the same channels.
+template <class S>
+struct GaussianMixture {
+  const Gaussian<S>* primitive = nullptr;
+  int count = 0;
+
+  /// Σ extinction_i, and the color that makes color · extinction the sum of theirs; no color where
+  /// nothing absorbs.
+  template <class T>
+  PELLUCID_HD Material<T> evaluate(const T* v) const noexcept {
+    T extinction = T(0);
+    Rgb<T> emission{};
+    for (int i = 0; i < count; ++i) {
+      const T here = T(primitive[i].peak) * primitive[i].density(v);
+      const Rgb<S>& c = primitive[i].color;
+      extinction += here;
+      emission += here * Rgb<T>{T(c.r), T(c.g), T(c.b)};
+    }
+    const auto absorbs = extinction > T(0);
+    return {extinction,
+            (select(absorbs, T(1), T(0)) / select(absorbs, extinction, T(1))) * emission};
+  }
+};
+
+}  // namespace pellucid
