@@ -4,12 +4,13 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <limits>
 #include <utility>
 
+#include "pellucid/transfer/antiderivative.h"
 #include "pellucid/traverse/block_code.h"
 
 namespace pellucid {
-
 BlockRoughness::BlockRoughness(const BlockCode& code, const TransferTables& transfer,
                                double largest_color, const ParallelFor& parallel)
     : code_(code), largest_color_(std::max(largest_color, 1.0)) {
@@ -35,8 +36,11 @@ BlockRoughness::BlockRoughness(const BlockCode& code, const TransferTables& tran
 void BlockRoughness::Bin::merge(const Bin& other) noexcept {
   slope = std::max(slope, other.slope);
   color_slope = std::max(color_slope, other.color_slope);
-  least = std::min(least, other.least);
   most = std::max(most, other.most);
+  for (std::size_t c = 0; c < curves; ++c) {
+    slope_min[c] = std::min(slope_min[c], other.slope_min[c]);
+    slope_max[c] = std::max(slope_max[c], other.slope_max[c]);
+  }
   for (int c = 0; c < 3; ++c) {
     color_min[c] = std::min(color_min[c], other.color_min[c]);
     color_max[c] = std::max(color_max[c], other.color_max[c]);
@@ -56,19 +60,7 @@ BlockRoughness::Bin BlockRoughness::make_bin(int bin, const TransferTables& tran
     result.slope = float_above(std::max(std::abs(all.slope_min), std::abs(all.slope_max)));
     result.color_slope = float_above(all.color_slope);
   }
-  const PiecewiseLinear<double>& table = transfer.wide;
-  const double at_lower = table.evaluate(lower).extinction,
-               at_upper = table.evaluate(upper).extinction;
-  double least_extinction = std::min(at_lower, at_upper),
-         most_extinction = std::max(at_lower, at_upper);
-  const double* const end = table.value + table.count;
-  for (const double* v = std::upper_bound(table.value, end, lower); v != end && *v < upper; ++v) {
-    const double extinction = table.material[v - table.value].extinction;
-    least_extinction = std::min(least_extinction, extinction);
-    most_extinction = std::max(most_extinction, extinction);
-  }
-  result.least = static_cast<float>(least_extinction);
-  result.most = static_cast<float>(most_extinction);
+  find_slopes(transfer.wide, lower, upper, result);
   const double least[3] = {all.color_min.r, all.color_min.g, all.color_min.b};
   const double most[3] = {all.color_max.r, all.color_max.g, all.color_max.b};
   for (int c = 0; c < 3; ++c) {
@@ -78,13 +70,47 @@ BlockRoughness::Bin BlockRoughness::make_bin(int bin, const TransferTables& tran
   return result;
 }
 
-BlockRoughness::Range BlockRoughness::operator()(int lower, int upper) const noexcept {
-  const auto first = static_cast<std::size_t>(lower >> shift_);
-  const auto count = static_cast<std::size_t>((upper - 1) >> shift_) - first + 1;
+void BlockRoughness::find_slopes(const PiecewiseLinear<double>& table, double lower, double upper,
+                                 Bin& bin) const {
+  bin.most =
+      float_above(std::max(table.evaluate(lower).extinction, table.evaluate(upper).extinction));
+  std::fill(bin.slope_min, bin.slope_min + curves, std::numeric_limits<float>::infinity());
+  std::fill(bin.slope_max, bin.slope_max + curves, -std::numeric_limits<float>::infinity());
+  const int last = interval_below(table, upper, table.interval(lower));
+  for (int i = table.interval(lower); i <= last; ++i) {
+    const Material<double>&a = table.lower_material(i), &b = table.upper_material(i);
+    if (i < last) bin.most = std::max(bin.most, float_above(b.extinction));
+    const bool inside = i > 0 && i < table.count;
+    const double width = inside ? table.value[i] - table.value[i - 1] : 1;
+    if (!(width > 0)) continue;
+    const double rise[curves] = {b.extinction - a.extinction, b.color.r - a.color.r,
+                                 b.color.g - a.color.g, b.color.b - a.color.b};
+    for (std::size_t c = 0; c < curves; ++c) {
+      const double slope = inside ? rise[c] / width : 0;
+      bin.slope_min[c] = std::min(bin.slope_min[c], float_below(slope));
+      bin.slope_max[c] = std::max(bin.slope_max[c], float_above(slope));
+    }
+  }
+}
+
+double BlockRoughness::Bin::change(std::size_t curve, double largest_color) const noexcept {
+  const double range =
+      static_cast<double>(slope_max[curve]) - static_cast<double>(slope_min[curve]);
+  return range > 0 ? range * (curve == 0 ? largest_color : static_cast<double>(most)) : 0;
+}
+
+BlockRoughness::Bin BlockRoughness::over(std::size_t first, std::size_t count) const noexcept {
   // The largest n with 2^n <= count.
   const auto n = static_cast<std::size_t>(63 - std::countl_zero(std::uint64_t{count}));
   Bin all = runs_[n][first];
   all.merge(runs_[n][first + count - (std::size_t{1} << n)]);
+  return all;
+}
+
+BlockRoughness::Range BlockRoughness::operator()(int lower, int upper) const noexcept {
+  const auto first = static_cast<std::size_t>(lower >> shift_);
+  const auto count = static_cast<std::size_t>((upper - 1) >> shift_) - first + 1;
+  const Bin all = over(first, count);
   float color_range = 0;
   for (int c = 0; c < 3; ++c) {
     color_range = std::max(color_range, all.color_max[c] - all.color_min[c]);
@@ -98,12 +124,28 @@ BlockRoughness::Range BlockRoughness::operator()(int lower, int upper) const noe
   range.roughness =
       upper_half_above((largest_color_ * slope + colors * slope + color_slope) * rounded);
   range.of_sample = (largest_color_ * slope + color_slope) * rounded;
-  constexpr double steepest = 4 * (1 + 0x1p-10);
+  // Windows as wide as an eighth, each half-way over the one before.
+  constexpr std::size_t parts = 8, windows = 2 * parts - 1;
+  double largest[curves] = {};
+  const std::size_t width = (count + parts - 1) / parts + 1;
+  for (std::size_t w = 0; w < windows; ++w) {
+    const std::size_t skipped = w * count / (2 * parts);
+    const Bin some = over(first + skipped, std::min(width, count - skipped));
+    for (std::size_t c = 0; c < curves; ++c) {
+      largest[c] = std::max(largest[c], some.change(c, largest_color_));
+    }
+  }
   const int end = std::min(static_cast<int>((first + count) << shift_), code_.last);
-  const double width = code_.value(end) - code_.value(static_cast<int>(first << shift_));
-  const double most = static_cast<double>(all.most), least = static_cast<double>(all.least);
-  range.steady = slope * width <= steepest * (most - least) + 0x1p-20 * most &&
-                 color_slope * width <= steepest * most * colors + 0x1p-20 * most;
+  const double eighth = (code_.value(end) - code_.value(static_cast<int>(first << shift_))) / parts;
+  range.unevenness = *std::max_element(largest, largest + curves) * eighth;
+  // What changes less may be rounding, and is little beside what bends of the data make.
+  const double negligible = 0x1p-4 * range.of_sample;
+  range.steps = parts;
+  for (std::size_t c = 0; c < curves; ++c) {
+    if (largest[c] > negligible) {
+      range.steps = std::min(range.steps, all.change(c, largest_color_) / largest[c]);
+    }
+  }
   return range;
 }
 

@@ -45,11 +45,17 @@ static_assert(sizeof(BlockClass) == 4);
 /// one bend can be: over four blocks each way, and over the range of each, neither the data nor the
 /// transfer function bend much more in one place than they do all over.
 struct SmoothBlocks {
-  float bend[3] = {}, twist[3] = {};  ///< as in BlockBends
+  float bend[3] = {};  ///< as in BlockBends
   /// largest color · slope + color slope (see BlockClass), the largest of the blocks.
   double roughness = 0;
-  /// Cells: waves of the data are longer than three times that. 0: no block is smooth.
+  /// Cells; the longest of any block. 0: none is smooth.
   double longest_step = 0;
+  /// Of each block, smooth or not, `fields` numbers: roughness times bend along x, y and z, and
+  /// with it what corners of the transfer function do; and 1 / the longest step, in cells: waves of
+  /// the data are longer than three times that. The largest of all smooth blocks among it and those
+  /// that touch it.
+  const float* local = nullptr;
+  static constexpr int fields = 4;
 };
 /// Cells; half the width of a block.
 inline constexpr double longest_sampled_step = 4;
