@@ -48,12 +48,11 @@ double diagonal(const Volume& volume) {
 
 double PacketTracer::most_bending(const Volume& volume, const RayTolerance& wanted) {
   if (wanted.grade == Grade::proved) return 0;
-  // What SmoothMarch takes for the least error in steps of a quarter of a cell, from corner to
-  // corner.
-  const double cell = volume.voxel_size(), step = 0.25 * cell;
-  const double one = step * 0.125 * SmoothError::deviation_of_bend;
-  const double steps = diagonal(volume) / step;
-  return wanted.tolerance / (RandomErrors<double>::deviations * one * std::sqrt(steps));
+  // What SmoothMarch takes for the least error of its shortest steps, from corner to corner.
+  const double step = 0.5 * volume.voxel_size();
+  const double one = step * std::sqrt(mean_square_of_bends(0.5));
+  const double times = diagonal(volume) / (4 * step);
+  return wanted.tolerance / (RandomErrors<double>::deviations * one * std::sqrt(times));
 }
 
 std::unique_ptr<const PacketTracer> PacketTracer::make(
@@ -87,9 +86,12 @@ PacketTracer::PacketTracer(const Volume& volume, const ClassifiedBlocks& blocks,
   job_.tolerance = wanted.tolerance;
   job_.largest_color = max(wanted.largest_color, 1.0);
   job_.largest_extinction = transfer.largest_extinction;
-  // A sample is rounded, and its place, by 32 u of the largest value, all told.
-  job_.sample_rounding =
-      32 * static_cast<double>(rounding_unit<float>) * largest_value(volume) * smooth.roughness;
+  // A sample is rounded, and its place, by 32 u of the largest value, all told; and where it is
+  // looked up by 8 u of the control points' range.
+  const PiecewiseLinear<double>& table = transfer.wide;
+  const double range = table.value[table.count - 1] - table.value[0];
+  job_.sample_rounding = static_cast<double>(rounding_unit<float>) *
+                         (32 * largest_value(volume) + 8 * range) * smooth.roughness;
   if (job_.sample_rounding * diagonal(volume) <= 0.125 * wanted.tolerance) smooth_ = smooth;
   job_.samples = &samples_.view();
   job_.smooth = &smooth_;

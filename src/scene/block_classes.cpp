@@ -89,10 +89,10 @@ class CodeTable {
   std::vector<Sums> sums_;
 };
 
-/// `of_sample`: as find_smooth_blocks() wants it.
+/// `sampled`: as find_smooth_blocks() wants it.
 BlockClass classify(const BlockRecord& record, const CodeTable& codes,
-                    const BlockRoughness& roughness, float& of_sample) noexcept {
-  of_sample = -1;
+                    const BlockRoughness& roughness, SampledBlock& sampled) noexcept {
+  sampled = {};
   const BlockVacuum vacuum = record.vacuum();
   if (vacuum == BlockVacuum::all || codes.is_clear(record.lower, record.upper)) {
     return {0, BlockKind::skip, 0};
@@ -104,7 +104,8 @@ BlockClass classify(const BlockRecord& record, const CodeTable& codes,
   }
   if (codes.has_jump(record.lower, record.upper)) return {infinite, BlockKind::cells, 0};
   const BlockRoughness::Range range = roughness(record.lower, record.upper);
-  if (range.steady) of_sample = float_above(range.of_sample);
+  sampled = {float_above(range.of_sample), float_above(range.unevenness),
+             static_cast<float>(range.steps)};
   return {range.roughness, BlockKind::cells, 0};
 }
 
@@ -119,23 +120,21 @@ BlockClassesStorage::BlockClassesStorage(const BlockRecords& records,
                : [](int count, const std::function<void(int, int)>& body) { body(0, count); };
   const CodeTable codes(records.code, transfer);
   const BlockRoughness roughness(records.code, transfer, largest_color, run);
-  std::vector<float> of_sample(most_bending > 0 ? classes_.size() : 0);
+  std::vector<SampledBlock> sampled(most_bending > 0 ? classes_.size() : 0);
   run(records.count(), [&](int first, int last) {
-    float unused = 0;
+    SampledBlock unused;
     for (int i = first; i < last; ++i) {
       const auto b = static_cast<std::size_t>(i);
-      classes_[b] =
-          classify(records[i], codes, roughness, of_sample.empty() ? unused : of_sample[b]);
+      classes_[b] = classify(records[i], codes, roughness, sampled.empty() ? unused : sampled[b]);
     }
   });
   const std::array<int, 3> count{records.axis[0].cells(), records.axis[1].cells(),
                                  records.axis[2].cells()};
   find_block_levels(count, BlockKind::skip, run, classes_.data());
   if (!(most_bending > 0)) return;
-  smooth_ = find_smooth_blocks(records, of_sample, most_bending, run, classes_.data());
-  if (!smooth_.any) return;
+  smooth_ = find_smooth_blocks(records, sampled, most_bending, run, classes_.data(), local_);
+  if (!(smooth_.longest_step > 0)) return;
   find_block_levels(count, BlockKind::smooth, run, classes_.data());
-  find_block_levels(count, BlockKind::wavy, run, classes_.data());
 }
 
 }  // namespace pellucid

@@ -4,12 +4,13 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <limits>
 #include <utility>
 
+#include "pellucid/transfer/antiderivative.h"
 #include "pellucid/traverse/block_code.h"
 
 namespace pellucid {
-
 BlockRoughness::BlockRoughness(const BlockCode& code, const TransferTables& transfer,
                                double largest_color, const ParallelFor& parallel)
     : code_(code), largest_color_(std::max(largest_color, 1.0)) {
@@ -35,51 +36,15 @@ BlockRoughness::BlockRoughness(const BlockCode& code, const TransferTables& tran
 void BlockRoughness::Bin::merge(const Bin& other) noexcept {
   slope = std::max(slope, other.slope);
   color_slope = std::max(color_slope, other.color_slope);
-  color_rate = std::max(color_rate, other.color_rate);
-  rises = rises || other.rises;
-  falls = falls || other.falls;
-  if (absorbing_from < absorbing_to && other.absorbing_from < other.absorbing_to) {
-    absorbing_from = std::min(absorbing_from, other.absorbing_from);
-    absorbing_to = std::max(absorbing_to, other.absorbing_to);
-  } else if (other.absorbing_from < other.absorbing_to) {
-    absorbing_from = other.absorbing_from;
-    absorbing_to = other.absorbing_to;
-  }
-  least = std::min(least, other.least);
   most = std::max(most, other.most);
+  for (std::size_t c = 0; c < curves; ++c) {
+    slope_min[c] = std::min(slope_min[c], other.slope_min[c]);
+    slope_max[c] = std::max(slope_max[c], other.slope_max[c]);
+  }
   for (int c = 0; c < 3; ++c) {
     color_min[c] = std::min(color_min[c], other.color_min[c]);
     color_max[c] = std::max(color_max[c], other.color_max[c]);
   }
-}
-
-/// What the lines of the table between two values make of a bin.
-void BlockRoughness::add_lines(const PiecewiseLinear<double>& table, double lower, double upper,
-                               Bin& bin) {
-  double least = table.evaluate(lower).extinction, most = least, rate = 0;
-  double from = lower, extinction = least;
-  const double* const end = table.value + table.count;
-  for (const double* v = std::upper_bound(table.value, end, lower); from < upper; ++v) {
-    const double to = v != end && *v < upper ? *v : upper;
-    // At a jump the left one of the two, and the right one next.
-    const double there = v != end && *v < upper ? table.material[v - table.value].extinction
-                                                : table.evaluate(upper).extinction;
-    least = std::min(least, there);
-    most = std::max(most, there);
-    const auto i = static_cast<int>(v - table.value);
-    if (std::max(extinction, there) > 0 && i > 0 && i < table.count) {
-      const Rgb<double> change = table.material[i].color - table.material[i - 1].color;
-      const double width = table.value[i] - table.value[i - 1];
-      const double largest = std::max({std::abs(change.r), std::abs(change.g), std::abs(change.b)});
-      if (width > 0) rate = std::max(rate, largest / width);
-    }
-    from = to;
-    extinction = there;
-    if (v == end) break;
-  }
-  bin.least = float_below(least);
-  bin.most = float_above(most);
-  bin.color_rate = float_above(rate);
 }
 
 BlockRoughness::Bin BlockRoughness::make_bin(int bin, const TransferTables& transfer) const {
@@ -94,14 +59,8 @@ BlockRoughness::Bin BlockRoughness::make_bin(int bin, const TransferTables& tran
   if (lower < upper) {
     result.slope = float_above(std::max(std::abs(all.slope_min), std::abs(all.slope_max)));
     result.color_slope = float_above(all.color_slope);
-    result.rises = all.slope_max > 0;
-    result.falls = all.slope_min < 0;
-    if (all.absorbs()) {
-      result.absorbing_from = float_below(std::max(all.support_min, lower));
-      result.absorbing_to = float_above(std::min(all.support_max, upper));
-    }
   }
-  add_lines(transfer.wide, lower, upper, result);
+  find_slopes(transfer.wide, lower, upper, result);
   const double least[3] = {all.color_min.r, all.color_min.g, all.color_min.b};
   const double most[3] = {all.color_max.r, all.color_max.g, all.color_max.b};
   for (int c = 0; c < 3; ++c) {
@@ -111,38 +70,82 @@ BlockRoughness::Bin BlockRoughness::make_bin(int bin, const TransferTables& tran
   return result;
 }
 
-BlockRoughness::Range BlockRoughness::operator()(int lower, int upper) const noexcept {
-  const auto first = static_cast<std::size_t>(lower >> shift_);
-  const auto count = static_cast<std::size_t>((upper - 1) >> shift_) - first + 1;
+void BlockRoughness::find_slopes(const PiecewiseLinear<double>& table, double lower, double upper,
+                                 Bin& bin) const {
+  bin.most =
+      float_above(std::max(table.evaluate(lower).extinction, table.evaluate(upper).extinction));
+  std::fill(bin.slope_min, bin.slope_min + curves, std::numeric_limits<float>::infinity());
+  std::fill(bin.slope_max, bin.slope_max + curves, -std::numeric_limits<float>::infinity());
+  const int last = interval_below(table, upper, table.interval(lower));
+  for (int i = table.interval(lower); i <= last; ++i) {
+    const Material<double>&a = table.lower_material(i), &b = table.upper_material(i);
+    if (i < last) bin.most = std::max(bin.most, float_above(b.extinction));
+    const bool inside = i > 0 && i < table.count;
+    const double width = inside ? table.value[i] - table.value[i - 1] : 1;
+    if (!(width > 0)) continue;
+    const double rise[curves] = {b.extinction - a.extinction, b.color.r - a.color.r,
+                                 b.color.g - a.color.g, b.color.b - a.color.b};
+    for (std::size_t c = 0; c < curves; ++c) {
+      const double slope = inside ? rise[c] / width : 0;
+      bin.slope_min[c] = std::min(bin.slope_min[c], float_below(slope));
+      bin.slope_max[c] = std::max(bin.slope_max[c], float_above(slope));
+    }
+  }
+}
+
+double BlockRoughness::Bin::change(std::size_t curve, double largest_color) const noexcept {
+  const double range =
+      static_cast<double>(slope_max[curve]) - static_cast<double>(slope_min[curve]);
+  return range > 0 ? range * (curve == 0 ? largest_color : static_cast<double>(most)) : 0;
+}
+
+BlockRoughness::Bin BlockRoughness::over(std::size_t first, std::size_t count) const noexcept {
   // The largest n with 2^n <= count.
   const auto n = static_cast<std::size_t>(63 - std::countl_zero(std::uint64_t{count}));
   Bin all = runs_[n][first];
   all.merge(runs_[n][first + count - (std::size_t{1} << n)]);
+  return all;
+}
+
+BlockRoughness::Range BlockRoughness::operator()(int lower, int upper) const noexcept {
+  const auto first = static_cast<std::size_t>(lower >> shift_);
+  const auto count = static_cast<std::size_t>((upper - 1) >> shift_) - first + 1;
+  const Bin all = over(first, count);
   float color_range = 0;
   for (int c = 0; c < 3; ++c) {
     color_range = std::max(color_range, all.color_max[c] - all.color_min[c]);
   }
   const auto slope = static_cast<double>(all.slope),
              color_slope = static_cast<double>(all.color_slope),
-             colors = static_cast<double>(color_range),
-             color_rate = static_cast<double>(all.color_rate);
+             colors = static_cast<double>(color_range);
   // The color range is a difference that was rounded.
   constexpr double rounded = 1 + 0x1p-23;
   Range range;
   range.roughness =
       upper_half_above((largest_color_ * slope + colors * slope + color_slope) * rounded);
-  constexpr double rounding = 1 + 0x1p-10;
-  const bool monotone = !(all.rises && all.falls);
-  const double steepest = (monotone ? 32 : 4) * rounding;
+  range.of_sample = (largest_color_ * slope + color_slope) * rounded;
+  // Windows as wide as an eighth, each half-way over the one before.
+  constexpr std::size_t parts = 8, windows = 2 * parts - 1;
+  double largest[curves] = {};
+  const std::size_t width = (count + parts - 1) / parts + 1;
+  for (std::size_t w = 0; w < windows; ++w) {
+    const std::size_t skipped = w * count / (2 * parts);
+    const Bin some = over(first + skipped, std::min(width, count - skipped));
+    for (std::size_t c = 0; c < curves; ++c) {
+      largest[c] = std::max(largest[c], some.change(c, largest_color_));
+    }
+  }
   const int end = std::min(static_cast<int>((first + count) << shift_), code_.last);
-  const double width = code_.value(end) - code_.value(static_cast<int>(first << shift_));
-  const double absorbing =
-      static_cast<double>(all.absorbing_to) - static_cast<double>(all.absorbing_from);
-  const double color_width = monotone ? std::min(width, absorbing) : width;
-  const double most = static_cast<double>(all.most), least = static_cast<double>(all.least);
-  range.steady = slope * width <= steepest * (most - least) + 0x1p-20 * most &&
-                 color_rate * color_width <= 4 * rounding * colors + 0x1p-20;
-  range.of_sample = (largest_color_ * slope + most * color_rate) * rounded;
+  const double eighth = (code_.value(end) - code_.value(static_cast<int>(first << shift_))) / parts;
+  range.unevenness = *std::max_element(largest, largest + curves) * eighth;
+  // What changes less may be rounding, and is little beside what bends of the data make.
+  const double negligible = 0x1p-4 * range.of_sample;
+  range.steps = parts;
+  for (std::size_t c = 0; c < curves; ++c) {
+    if (largest[c] > negligible) {
+      range.steps = std::min(range.steps, all.change(c, largest_color_) / largest[c]);
+    }
+  }
   return range;
 }
 

@@ -21,11 +21,11 @@ class BlockRoughness {
   struct Range {
     std::uint16_t roughness;
     double of_sample;  ///< SmoothBlocks::roughness
-    /// Whether neither extinction nor color is ever more than four times as steep as it has to be
-    /// to get from its least value in the range to its largest: no peak is narrower than that.
-    /// Where the extinction only rises, or only falls, there is none: then 32 times, for a ramp may
-    /// begin near an end of the range; and colors count where anything absorbs.
-    bool steady;
+    /// How much the function's slope changes over an eighth of the range, times that eighth:
+    /// 1/length. What the data change in a cell is no more than that as a rule.
+    double unevenness;
+    /// How many eighths its slopes take to go from the least to the largest, at least.
+    double steps;
   };
 
   /// lower < upper, with no jump between or at them.
@@ -34,18 +34,23 @@ class BlockRoughness {
  private:
   static constexpr int most_bins = 4096;
 
+  /// Extinction and the channels of the color.
+  static constexpr std::size_t curves = 4;
+
   /// What bounds need of a transfer function over a range (RangeSummary), rounded outward.
   struct Bin {
     float slope = 0, color_slope = 0;
-    bool rises = false, falls = false;           ///< anywhere in it
-    float absorbing_from = 0, absorbing_to = 0;  ///< the values; alike: none
-    float color_rate = 0;                        ///< largest |color'| where anything absorbs
-    float least = 0, most = 0;                   ///< extinction
     float color_min[3], color_max[3];
+    float most = 0;                              ///< extinction
+    float slope_min[curves], slope_max[curves];  ///< of each curve
     void merge(const Bin& other) noexcept;
+    /// At most how much of a sample's error the slopes' changes account for.
+    double change(std::size_t curve, double largest_color) const noexcept;
   };
-  static void add_lines(const PiecewiseLinear<double>& table, double lower, double upper, Bin& bin);
   Bin make_bin(int bin, const TransferTables& transfer) const;
+  void find_slopes(const PiecewiseLinear<double>& table, double lower, double upper,
+                   Bin& bin) const;
+  Bin over(std::size_t first, std::size_t count) const noexcept;
 
   BlockCode code_;
   double largest_color_;

@@ -3,16 +3,21 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <limits>
 
 namespace pellucid {
 namespace {
 
+constexpr std::size_t fields = SmoothBlocks::fields;
 constexpr int group_width = 4;
-/// A derivative has to swing by that many times of what it changes in one cell, at least: so it
-/// does in waves of π as many cells.
-constexpr double least_steps_smooth = 4, least_steps_wavy = 2;
+/// A derivative has to swing by that many times of what it changes in one cell: so it does in waves
+/// of nine cells, for which it takes π of them along a third of the wave.
+constexpr double least_steps = 3;
+/// The slopes of the transfer function likewise, in eighths of the range of a block: one is what
+/// the data change in a cell at most, and mostly they change less, by this factor.
+constexpr double cells_by_eighth = 1.5, least_of_function = 2;
 /// An axis along which the data hardly bend, compared with others, is not looked at: what is there
 /// may be rounding.
 constexpr float negligible = 0x1p-10f;
@@ -20,19 +25,21 @@ constexpr float negligible = 0x1p-10f;
 /// The candidates of a group, together.
 struct Group {
   float oscillation[3] = {}, bend[3] = {}, twist[3] = {};
-  float roughness = -1;  ///< negative: there is none
+  SampledBlock sampled;
 
-  void add(const BlockRecord& record, float its_roughness) noexcept {
+  void add(const BlockRecord& record, const SampledBlock& its) noexcept {
     for (int a = 0; a < 3; ++a) {
       oscillation[a] = std::max(oscillation[a], from_upper_half(record.oscillation[a]));
       bend[a] = std::max(bend[a], from_upper_half(record.bend[a]));
       twist[a] = std::max(twist[a], from_upper_half(record.twist[a]));
     }
-    roughness = std::max(roughness, its_roughness);
+    sampled.roughness = std::max(sampled.roughness, its.roughness);
+    sampled.unevenness = std::max(sampled.unevenness, its.unevenness);
+    sampled.steps = std::min(sampled.steps, its.steps);
   }
 
   /// How many cells the derivative takes to swing from one end of its range to the other, the least
-  /// of the axes.
+  /// of the axes; and that of the transfer function.
   double steps() const noexcept {
     std::array<float, 3> change{};
     for (std::size_t a = 0; a < 3; ++a) {
@@ -47,18 +54,48 @@ struct Group {
     return least;
   }
 
-  /// A bound on how much the data can bend over a cell, whatever the direction.
+  /// Of roughness times how much the data bend over a cell.
   double most_bending() const noexcept {
-    return static_cast<double>(std::max({bend[0], bend[1], bend[2]})) +
-           2 * static_cast<double>(std::max({twist[0], twist[1], twist[2]}));
+    return std::hypot(static_cast<double>(sampled.roughness) *
+                          static_cast<double>(std::max({bend[0], bend[1], bend[2]})),
+                      static_cast<double>(sampled.unevenness));
   }
 };
 
+/// Gives each block the largest of its numbers and those of the blocks that touch it.
+void spread_to_neighbours(const BlockRecords& records, const ParallelFor& parallel,
+                          std::vector<float>& local) {
+  std::vector<float>& from = local;
+  std::vector<float> to(local.size());
+  const std::array<int, 3> blocks{records.axis[0].cells(), records.axis[1].cells(),
+                                  records.axis[2].cells()};
+  // The largest of three, along one axis after the other.
+  int stride = 1;
+  for (const int along : blocks) {
+    parallel(records.count(), [&](int first, int last) {
+      for (int b = first; b < last; ++b) {
+        const int place = b / stride % along;
+        const int least = place > 0 ? b - stride : b, most = place + 1 < along ? b + stride : b;
+        for (std::size_t n = 0; n < fields; ++n) {
+          const auto at = [&](int block) {
+            return from[fields * static_cast<std::size_t>(block) + n];
+          };
+          to[fields * static_cast<std::size_t>(b) + n] = std::max({at(least), at(b), at(most)});
+        }
+      }
+    });
+    from.swap(to);
+    stride *= along;
+  }
+}
+
 }  // namespace
 
-SmoothBlocks find_smooth_blocks(const BlockRecords& records, const std::vector<float>& roughness,
-                                double most_bending, const ParallelFor& parallel,
-                                BlockClass* classes) {
+SmoothBlocks find_smooth_blocks(const BlockRecords& records,
+                                const std::vector<SampledBlock>& sampled, double most_bending,
+                                const ParallelFor& parallel, BlockClass* classes,
+                                std::vector<float>& local) {
+  local.assign(fields * sampled.size(), 0);
   const std::array<int, 3> blocks{records.axis[0].cells(), records.axis[1].cells(),
                                   records.axis[2].cells()};
   std::array<int, 3> groups{};
@@ -69,8 +106,8 @@ SmoothBlocks find_smooth_blocks(const BlockRecords& records, const std::vector<f
       for (int j = y; j < std::min(y + group_width, blocks[1]); ++j) {
         for (int i = x; i < std::min(x + group_width, blocks[0]); ++i) {
           const int b = records.index(i, j, k);
-          const float its_roughness = roughness[static_cast<std::size_t>(b)];
-          if (its_roughness >= 0) visit(b, its_roughness);
+          const SampledBlock& its = sampled[static_cast<std::size_t>(b)];
+          if (its.roughness >= 0) visit(b, its);
         }
       }
     }
@@ -82,19 +119,28 @@ SmoothBlocks find_smooth_blocks(const BlockRecords& records, const std::vector<f
         for (int i = 0; i < groups[0]; ++i) {
           const int x = i * group_width, y = j * group_width, z = k * group_width;
           Group group;
-          each_block(x, y, z, [&](int b, float of) { group.add(records[b], of); });
-          const double its_roughness = static_cast<double>(group.roughness), steps = group.steps();
-          if (its_roughness < 0 || !(steps >= least_steps_wavy) ||
-              !(its_roughness * group.most_bending() <= most_bending)) {
+          each_block(x, y, z, [&](int b, const SampledBlock& its) { group.add(records[b], its); });
+          const auto its_roughness = static_cast<double>(group.sampled.roughness);
+          const double steps = group.steps(),
+                       of_function = cells_by_eighth * static_cast<double>(group.sampled.steps);
+          if (its_roughness < 0 || !(steps >= least_steps) || !(of_function >= least_of_function) ||
+              !(group.most_bending() <= most_bending)) {
             continue;
           }
-          const BlockKind kind = steps >= least_steps_smooth ? BlockKind::smooth : BlockKind::wavy;
-          each_block(x, y, z, [&](int b, float) { classes[b].kind = kind; });
-          all.any = true;
+          const double longest = std::min({steps, of_function, longest_sampled_step});
+          each_block(x, y, z, [&](int b, const SampledBlock& its) {
+            classes[b].kind = BlockKind::smooth;
+            float* const out = local.data() + fields * static_cast<std::size_t>(b);
+            for (std::size_t a = 0; a < 3; ++a) {
+              out[a] =
+                  std::hypot(its.roughness * from_upper_half(records[b].bend[a]), its.unevenness);
+            }
+            out[3] = static_cast<float>(1 / longest);
+          });
+          all.longest_step = std::max(all.longest_step, longest);
           all.roughness = std::max(all.roughness, its_roughness);
           for (std::size_t a = 0; a < 3; ++a) {
             all.bend[a] = std::max(all.bend[a], group.bend[a]);
-            all.twist[a] = std::max(all.twist[a], group.twist[a]);
           }
         }
       }
@@ -102,13 +148,14 @@ SmoothBlocks find_smooth_blocks(const BlockRecords& records, const std::vector<f
   });
   SmoothBlocks all;
   for (const SmoothBlocks& slab : of_slab) {
-    all.any = all.any || slab.any;
+    if (!(slab.longest_step > 0)) continue;
+    all.longest_step = std::max(all.longest_step, slab.longest_step);
     all.roughness = std::max(all.roughness, slab.roughness);
     for (std::size_t a = 0; a < 3; ++a) {
       all.bend[a] = std::max(all.bend[a], slab.bend[a]);
-      all.twist[a] = std::max(all.twist[a], slab.twist[a]);
     }
   }
+  if (all.longest_step > 0) spread_to_neighbours(records, parallel, local);
   return all;
 }
 

@@ -1,18 +1,25 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <limits>
 #include <vector>
 
 #include "pellucid/scene/block_classes_storage.h"
 
 namespace pellucid {
 
-/// Makes those blocks smooth or wavy (BlockKind, SmoothBlocks) that are: of the candidates, whose transfer
-/// function is steady, those that are so together with the others of their group of 4³ blocks.
-///
-/// roughness: of each block SmoothBlocks::roughness, negative where it is no candidate.
-SmoothBlocks find_smooth_blocks(const BlockRecords& records, const std::vector<float>& roughness,
-                                double most_bending, const ParallelFor& parallel,
-                                BlockClass* classes);
+/// What there is to know of the transfer function over the range of a block, if it may be sampled.
+struct SampledBlock {
+  float roughness = -1;  ///< SmoothBlocks::roughness; negative: it may not
+  float unevenness = 0, steps = std::numeric_limits<float>::infinity();  ///< BlockRoughness::Range
+};
+
+/// Makes those blocks smooth (BlockKind, SmoothBlocks) that are: of those that may be sampled,
+/// those that are so together with the others of their group of 4³ blocks. `local` is made what
+/// SmoothBlocks::local is to refer to.
+SmoothBlocks find_smooth_blocks(const BlockRecords& records,
+                                const std::vector<SampledBlock>& sampled, double most_bending,
+                                const ParallelFor& parallel, BlockClass* classes,
+                                std::vector<float>& local);
 
 }  // namespace pellucid

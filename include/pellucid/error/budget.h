@@ -58,7 +58,8 @@ class RayBudget {
 
  private:
   PELLUCID_HD T share(T length) const noexcept {
-    return select(length < length_, length / length_, T(1));
+    const auto part = length < length_;
+    return select(part, length / select(part, length_, T(1)), T(1));
   }
 
   T opacity_pot_{}, length_pot_{};

@@ -34,7 +34,7 @@ class BlockMarch {
     }
     end_ = D::load(end);
     in_cells_until = smooth_begin = smooth_end = D(0);
-    smooth = wavy = M(false);
+    smooth = M(false);
     next_ = D(0);
     refused_ = I(-1);
     for (int a = 0; a < 3; ++a) {
@@ -49,8 +49,8 @@ class BlockMarch {
   }
 
   M alive;                     ///< whether a lane's ray is not yet through
-  D in_cells_until;            ///< smooth and wavy blocks that begin before are taken as cells
-  M smooth, wavy;              ///< whether a smooth stretch is behind those found, a wavy one
+  D in_cells_until;            ///< smooth blocks that begin before are taken as cells
+  M smooth;                    ///< whether a smooth stretch is behind those found
   D smooth_begin, smooth_end;  ///< of it
 
   /// Finds the next stretches of the rays, until they are through, or come to a smooth one, or each
@@ -89,7 +89,6 @@ class BlockMarch {
       sampled = sampled & !skip;
       if (any(sampled)) {
         smooth = smooth | sampled;
-        wavy = (wavy & !sampled) | (sampled & (kind == I(static_cast<int>(BlockKind::wavy))));
         smooth_begin = select(sampled, begin, smooth_begin);
         smooth_end = select(sampled, next_, smooth_end);
         lanes = lanes & !sampled;

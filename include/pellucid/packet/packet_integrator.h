@@ -61,7 +61,7 @@ class PacketIntegrator {
     }
     place_error_ = F::load(far);
     end_error_ = F::load(block);
-    if (!static_cast<const SmoothBlocks*>(job.smooth)->any) {
+    if (!(static_cast<const SmoothBlocks*>(job.smooth)->longest_step > 0)) {
       blocks_.in_cells_until = D(std::numeric_limits<double>::infinity());
     }
   }
@@ -183,7 +183,7 @@ class PacketIntegrator {
   void sample_smooth() noexcept {
     const M lanes = blocks_.smooth & blocks_.alive;
     if (none(lanes)) return;
-    smooth_.enter(lanes, blocks_.wavy, blocks_.smooth_begin, blocks_.smooth_end);
+    smooth_.enter(lanes, blocks_.smooth_begin, blocks_.smooth_end);
     while (any(smooth_.walking)) step_smooth();
   }
 

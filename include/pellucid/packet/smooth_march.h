@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "pellucid/error/random_errors.h"
 #include "pellucid/packet/packet_samples.h"
 #include "pellucid/packet/sampler_transfer.h"
 #include "pellucid/segment/sampled.h"
@@ -14,8 +15,8 @@ namespace pellucid {
 ///
 /// Steps that keep in step with the cells are avoided: what trilinear data lie below the curve
 /// through their points between two of these would be missed by all samples alike, and by the
-/// difference of two rules as well. So of a few lengths that is taken which meets the planes of
-/// each axis at places as unlike each other as can be.
+/// difference of two rules as well. So of a few lengths that is taken for which
+/// mean_square_of_bend() is least, and where a stretch ends it is done in two parts if need be.
 template <class Value, int N>
 class SmoothMarch {
  public:
@@ -42,33 +43,17 @@ class SmoothMarch {
       cells_per_length += d[a] * d[a];
     }
     samples_.set_direction(direction_);
-    cells_per_length = sqrt(cells_per_length);
-    if (!smooth_.any) return;
-    // Along the ray the data's derivative by its length changes by so much over the length of a
-    // cell, at most.
-    F bend(0);
+    cells_per_length_ = sqrt(cells_per_length);
+    if (!(smooth_.longest_step > 0)) return;
     for (int a = 0; a < 3; ++a) {
-      bend += d[a] * d[a] * F(smooth_.bend[a]) +
-              F(2) * abs(d[(a + 1) % 3] * d[(a + 2) % 3]) * F(smooth_.twist[a]);
+      direction_in_float_[a] = d[a];
+      blocks_[a] = grid.blocks[a];
     }
-    for (int level = 0; level < levels; ++level) {
-      const float longest =
-          static_cast<float>(SmoothBlocks::longest_step) / static_cast<float>(1 << level);
-      step_[level] = unlike(d, cells_per_length, F(longest) / cells_per_length);
-      const F cells = step_[level] * cells_per_length;
-      // Of a step shorter than a cell most have no bend, and it errs by that much less.
-      const F part = select(cells < F(1), cells * sqrt(cells), F(1));
-      const F amplitude = bend / (cells_per_length * cells_per_length) *
-                          F(static_cast<float>(smooth_.roughness * SmoothError::deviation_of_bend));
-      const F one = step_[level] * part * amplitude;
-      least_variance_[level] = F(4) * one * one;
-    }
+    find_step(0);
   }
 
-  /// Begins, or goes on with, the stretches of the lanes; `wavy`: those of them which are that.
-  void enter(M lanes, M wavy, D begin, D to) noexcept {
-    coarsest_ = select(lanes, select(wavy, I(1), I(0)), coarsest_);
-    level_ = max(level_, coarsest_);
+  /// Begins, or goes on with, the stretches of the lanes.
+  void enter(M lanes, D begin, D to) noexcept {
     known_ = known_ & !(lanes & (begin != at));
     at = select(lanes, begin, at);
     end = select(lanes, to, end);
@@ -80,7 +65,8 @@ class SmoothMarch {
     M last;    ///< whether they end the stretch
     SampledSegment<F> found;
     F least_variance;  ///< of the error beside what `found` says
-    M valid;           ///< false: there is vacuum
+    M valid;           ///< false: there is vacuum, or a step is too dense, or too long
+    M may_be_longer;
   };
 
   /// Four steps of each lane. Those that are taken are to be told to take().
@@ -90,25 +76,45 @@ class SmoothMarch {
     for (int a = 0; a < 3; ++a) place[a] = origin_[a] + at * direction_[a];
     samples_.anchor(place);
     const F left = convert<float>(end - at);
-    F step = step_[0], least = least_variance_[0];
-    for (int l = 1; l < levels; ++l) {
-      step = select(level_ == I(l), step_[l], step);
-      least = select(level_ == I(l), least_variance_[l], least);
+    while (any(walking & (level_ >= I(levels_known_)))) find_step(levels_known_);
+    F step = step_[0];
+    F weight[3] = {weight_[0][0], weight_[0][1], weight_[0][2]};
+    for (int l = 1; l < levels_known_; ++l) {
+      const M here = level_ == I(l);
+      step = select(here, step_[l], step);
+      for (int a = 0; a < 3; ++a) weight[a] = select(here, weight_[l][a], weight[a]);
     }
-    s.last = F(4.0001f) * step >= left;
-    step = select(s.last, F(0.25f) * left, step);
+    const M near_end = F(4.0001f) * step >= left;
+    s.last = near_end;
+    if (any(near_end & walking)) {
+      // A quarter of what is left, unless that is in step with the cells.
+      F quarter = F(0.25f) * left, its_weight[3];
+      weigh(quarter, its_weight);
+      const M alike = (worst(its_weight) > F(resonant)) & near_end;
+      if (any(alike)) {
+        quarter = select(alike, F(first_part) * quarter, quarter);
+        weigh(quarter, its_weight);
+      }
+      s.last = near_end & !alike;
+      step = select(near_end, quarter, step);
+      for (int a = 0; a < 3; ++a) weight[a] = select(near_end, its_weight[a], weight[a]);
+    }
     s.length = select(s.last, left, F(4) * step);
-    s.least_variance = least;
+    look_at_blocks(weight, step, s);
     if (any(walking & !known_)) find_front();
     F offset[4], value[4];
     for (int i = 0; i < 4; ++i) offset[i] = step * F(static_cast<float>(i + 1));
     samples_.template sample<4>(offset, value);
-    s.valid = !is_nan(((value[0] + value[1]) + (value[2] + value[3])) + front_.extinction);
+    s.valid = s.valid & walking &
+              !is_nan(((value[0] + value[1]) + (value[2] + value[3])) + front_.extinction);
     Material<F> material[5];
     material[0] = front_;
     for (int i = 0; i < 4; ++i) {
       material[i + 1] = material_at(transfer_, select(s.valid, value[i], F(transfer_.support_min)));
     }
+    F densest = material[0].extinction;
+    for (int i = 1; i < 5; ++i) densest = max(densest, material[i].extinction);
+    s.valid = s.valid & (step * densest <= F(deepest));
     s.found = sampled_segment(material, step);
     back_ = material[4];
     return s;
@@ -119,7 +125,7 @@ class SmoothMarch {
     at = select(lanes, select(s.last, end, at + convert<double>(s.length)), at);
     set_front(lanes, back_);
     walking = walking & !(lanes & s.last);
-    level_ = select(lanes & easy & (level_ > coarsest_), level_ - I(1), level_);
+    level_ = select(lanes & easy & s.may_be_longer & (level_ > I(0)), level_ - I(1), level_);
   }
 
   /// Halves the steps of these lanes; of those whose are the shortest returns which they are.
@@ -130,7 +136,13 @@ class SmoothMarch {
   }
 
  private:
-  static constexpr int levels = 5, choices = 8;
+  static constexpr int levels = 4, choices = 8;
+  /// The optical depth of a step at most: the rule goes by what is small against 1.
+  static constexpr float deepest = 1;
+  /// mean_square_of_bend() above which steps are in step with the cells, and by how much shorter
+  /// ones are taken then.
+  static constexpr float resonant = 0.004f, first_part = 0.62f;
+
   /// The material where the lanes stand; that of NaN, which is none, in vacuum.
   void find_front() noexcept {
     const F here(0);
@@ -150,38 +162,77 @@ class SmoothMarch {
     front_.color.b = select(lanes, m.color.b, front_.color.b);
   }
 
-  /// A length a little below `step` of which no small multiple is close to whole cells along an
-  /// axis that matters.
-  static F unlike(const F* d, F cells_per_length, F step) noexcept {
-    F best = step, least(std::numeric_limits<float>::infinity());
+  /// The mean squares of what steps of this length err because of bends along each axis, in units
+  /// of the step squared.
+  void weigh(F step, F* weight) const noexcept {
+    for (int a = 0; a < 3; ++a) {
+      const F cells = abs(step * direction_in_float_[a]);
+      weight[a] = mean_square_of_bend(cells) + F(0.15f) * mean_square_of_bends(cells);
+    }
+  }
+  F worst(const F* weight) const noexcept { return max(weight[0], max(weight[1], weight[2])); }
+
+  /// The length of steps of a level: a little below the longest, and of those the one whose
+  /// variance by length is the least.
+  void find_step(int level) noexcept {
+    const F longest = F(static_cast<float>(smooth_.longest_step) / static_cast<float>(1 << level)) /
+                      cells_per_length_;
+    F least(std::numeric_limits<float>::infinity());
     for (int c = 0; c < choices; ++c) {
       // 2^(-c/10)
       static constexpr float share[choices] = {1,          0.9330330f, 0.8705506f, 0.8122524f,
                                                0.7578583f, 0.7071068f, 0.6597540f, 0.6155722f};
-      const F candidate = F(share[c]) * step;
-      F cost(0);
+      const F candidate = F(share[c]) * longest;
+      F weight[3], cost(0);
+      weigh(candidate, weight);
       for (int a = 0; a < 3; ++a) {
-        const F cells = abs(candidate * d[a]);
-        // The distance from whole numbers, and of the double: as 1/|sin| but for a factor.
-        const F once = abs(cells - floor(cells + F(0.5f)));
-        const F twice = abs(F(2) * cells - floor(F(2) * cells + F(0.5f)));
-        const F weight = (d[a] * d[a]) / (cells_per_length * cells_per_length);
-        cost +=
-            weight * (F(1) / max(F(3) * once, F(1e-3f)) + F(0.25f) / max(F(3) * twice, F(1e-3f)));
+        cost += weight[a] * F(smooth_.bend[a] * smooth_.bend[a] / largest_square_of_bend());
       }
-      cost = cost * F(1 + 0.03f * static_cast<float>(c));
-      best = select(cost < least, candidate, best);
+      cost = (cost + F(1e-4f)) * F(share[c]);
+      const M better = cost < least;
+      step_[level] = select(better, candidate, step_[level]);
+      for (int a = 0; a < 3; ++a) {
+        weight_[level][a] = select(better, weight[a], weight_[level][a]);
+      }
       least = min(cost, least);
     }
-    return best;
+    levels_known_ = level + 1;
+  }
+  float largest_square_of_bend() const noexcept {
+    const float largest = max(smooth_.bend[0], max(smooth_.bend[1], smooth_.bend[2]));
+    return largest > 0 ? largest * largest : 1;
+  }
+
+  /// Of the blocks that the steps are in: least_variance; and whether the steps are short enough,
+  /// with twice as long ones being so, too.
+  void look_at_blocks(const F* weight, F step, Steps& s) const noexcept {
+    // The block in the middle of the steps, whose neighbours hold the others.
+    const D middle = at + D(0.5) * convert<double>(s.length);
+    I block[3];
+    for (int a = 0; a < 3; ++a) {
+      const D place = floor((origin_[a] + middle * direction_[a]) * D(1.0 / block_width));
+      block[a] = convert<std::int32_t>(clamp(place, D(0), D(blocks_[a] - 1)));
+    }
+    const I index = block[0] + I(blocks_[0]) * (block[1] + I(blocks_[1]) * block[2]);
+    F local[SmoothBlocks::fields];
+    load_records<SmoothBlocks::fields>(smooth_.local, select(walking, index, I(0)), local);
+    F sum(0);
+    for (int a = 0; a < 3; ++a) sum += weight[a] * (local[a] * local[a]);
+    s.least_variance = step * step * sum;
+    const F part = step * cells_per_length_ * local[3];
+    s.valid = part <= F(1.0001f);
+    s.may_be_longer = part <= F(0.5f);
   }
 
   const SamplerTransfer& transfer_;
   const SmoothBlocks& smooth_;
   PacketSamples<Value, N> samples_;
   D origin_[3], direction_[3];
-  F step_[levels], least_variance_[levels];
-  I level_, coarsest_;        ///< how often the longest step is halved, and at least has to be
+  F direction_in_float_[3], cells_per_length_;
+  int blocks_[3];
+  int levels_known_ = 0;
+  F step_[levels], weight_[levels][3];  ///< of each level; those known
+  I level_;
   M known_{false};            ///< whether `front_` is that at `at`
   Material<F> front_, back_;  ///< of the steps that were looked at
 };

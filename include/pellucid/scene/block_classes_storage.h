@@ -17,17 +17,22 @@ class BlockClassesStorage {
   BlockClassesStorage() = default;
   /// `largest_color`: that of RayTolerance. In parallel where it is told how.
   /// `most_bending`: blocks are smooth only where SmoothBlocks::roughness times what the data bend
-  /// over a cell is no more than that; 0: none is.
+  /// over a cell, and the transfer function's unevenness, are no more than that; 0: none is.
   BlockClassesStorage(const BlockRecords& records, const TransferTables& transfer,
                       double largest_color, const ParallelFor& parallel = {},
                       double most_bending = 0);
 
   BlockClasses view() const noexcept { return {classes_.data()}; }
-  const SmoothBlocks& smooth() const noexcept { return smooth_; }
+  SmoothBlocks smooth() const noexcept {
+    SmoothBlocks smooth = smooth_;
+    smooth.local = local_.data();
+    return smooth;
+  }
 
  private:
   std::vector<BlockClass> classes_;
   SmoothBlocks smooth_;
+  std::vector<float> local_;
 };
 
 }  // namespace pellucid

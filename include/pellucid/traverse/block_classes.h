@@ -14,8 +14,7 @@ enum class BlockKind : std::uint8_t {
              ///<   vacuum; or the data is one number: in either case the material is that at the
              ///<   lower end of the range
   skip,      ///< nothing absorbs, whatever the data in the range; or all cells are vacuum
-  smooth,    ///< as cells; and with its neighbours so smooth that it may be sampled (SmoothBlocks)
-  wavy       ///< as smooth, but for steps half as long
+  smooth     ///< as cells; and with its neighbours so smooth that it may be sampled (SmoothBlocks)
 };
 
 /// A block under one transfer function, in 4 bytes: in a load of 32 bits roughness is the lower
@@ -36,25 +35,30 @@ struct alignas(4) BlockClass {
   std::uint8_t level;
 
   PELLUCID_HD constexpr bool absorbs_in_cells() const noexcept {
-    return kind != BlockKind::constant && kind != BlockKind::skip;
+    return kind == BlockKind::cells || kind == BlockKind::smooth;
   }
 };
 static_assert(sizeof(BlockClass) == 4);
 
-/// What all smooth and wavy blocks of a grid have in common: bounds on how much their data bend,
-/// and on what that does. Between two samples of such a block lies no feature that neither shows,
-/// but for what one bend can be: over four blocks each way, and over the range of each, neither the
-/// data nor the transfer function bend much more in one place than they do all over.
+/// What all smooth blocks of a grid have in common: bounds on how much their data bend, and on what
+/// that does. Between two samples of such a block lies no feature that neither shows, but for what
+/// one bend can be: over four blocks each way, and over the range of each, neither the data nor the
+/// transfer function bend much more in one place than they do all over.
 struct SmoothBlocks {
-  bool any = false;
-  float bend[3] = {}, twist[3] = {};  ///< as in BlockBends
-  /// largest color · slope + largest extinction · |color'|, the largest of the blocks.
+  float bend[3] = {};  ///< as in BlockBends
+  /// largest color · slope + color slope (see BlockClass), the largest of the blocks.
   double roughness = 0;
-
-  /// Cells; half the width of a block. Waves of the data in smooth blocks are three times as long,
-  /// in wavy ones one and a half times.
-  static constexpr int longest_step = 4;
+  /// Cells; the longest of any block. 0: none is smooth.
+  double longest_step = 0;
+  /// Of each block, smooth or not, `fields` numbers: roughness times bend along x, y and z, and
+  /// with it what corners of the transfer function do; and 1 / the longest step, in cells: waves of
+  /// the data are longer than three times that. The largest of all smooth blocks among it and those
+  /// that touch it.
+  const float* local = nullptr;
+  static constexpr int fields = 4;
 };
+/// Cells; half the width of a block.
+inline constexpr double longest_sampled_step = 4;
 
 /// The classes of a grid's blocks, in the order of BlockRecords. A view; owns nothing. Built by
 /// scene/block_classes_storage.h.

@@ -1,0 +1,284 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <functional>
+#include <limits>
+#include <memory>
+#include <numbers>
+#include <random>
+#include <vector>
+
+#include "pellucid/cpu/render.h"
+#include "pellucid/scene/defaults.h"
+
+namespace pellucid {
+namespace {
+
+constexpr InstructionSet sets[] = {InstructionSet::sse4, InstructionSet::avx2,
+                                   InstructionSet::avx512};
+
+using Field = std::function<double(double, double, double)>;
+using Points = std::vector<TransferFunction::Point>;
+
+bool no_packets() {
+  return std::none_of(std::begin(sets), std::end(sets), is_supported);
+}
+
+std::shared_ptr<const Volume> make_volume(const std::array<int, 3>& values, const Field& field,
+                                          Vec3<double> spacing = {1, 1, 1}) {
+  std::vector<float> data;
+  for (int z = 0; z < values[2]; ++z) {
+    for (int y = 0; y < values[1]; ++y) {
+      for (int x = 0; x < values[0]; ++x) data.push_back(static_cast<float>(field(x, y, z)));
+    }
+  }
+  Volume::Description description;
+  description.dimensions = values;
+  description.placement.spacing = spacing;
+  description.name = "smooth";
+  return std::make_shared<Volume>(description, DataArray<float>(std::move(data)));
+}
+
+/// What was seen over many frames.
+struct Seen {
+  int frames = 0, with_strides = 0;
+  double largest_of_error = 0;
+};
+
+/// The scene in packets against rays one by one in binary64, proved.
+void compare(Scene scene, const std::vector<double>& tolerances, Seen& seen) {
+  constexpr double judge_tolerance = 1e-6;
+  RenderOptions options;
+  options.threads = 1;
+  options.error = true;
+  options.instruction_set = InstructionSet::scalar;
+  scene.integration.tolerance = judge_tolerance;
+  scene.integration.precision = Precision::float64;
+  scene.integration.grade = Grade::proved;
+  const Image truth = render(scene, options);
+  scene.integration.precision = Precision::automatic;
+  for (const InstructionSet set : sets) {
+    if (!is_supported(set)) continue;
+    options.instruction_set = set;
+    for (const double tolerance : tolerances) {
+      SCOPED_TRACE(testing::Message() << name_of(set) << " at " << tolerance);
+      scene.integration.tolerance = tolerance;
+      scene.integration.grade = Grade::estimated;
+      RenderReport report;
+      const Image image = render(scene, options, &report);
+      ++seen.frames;
+      if (report.spans.strides > 0) ++seen.with_strides;
+      for (std::size_t i = 0; i < image.pixels.size(); ++i) {
+        const auto said = static_cast<double>(image.error[i]);
+        ASSERT_LE(said, tolerance * (1 + 1e-6)) << "pixel " << i;
+        for (std::size_t c = 0; c < 4; ++c) {
+          const double off = std::fabs(static_cast<double>(image.pixels[i][c]) -
+                                       static_cast<double>(truth.pixels[i][c]));
+          ASSERT_LE(off, said + 1.3 * judge_tolerance) << "pixel " << i << ", channel " << c;
+          if (said > 30 * judge_tolerance) {
+            seen.largest_of_error = std::max(seen.largest_of_error, off / said);
+          }
+        }
+      }
+    }
+  }
+}
+
+class SmoothFrames : public testing::Test {
+ protected:
+  void SetUp() override {
+    if (no_packets()) GTEST_SKIP() << "this machine has no instruction set for packets";
+  }
+  double uniform(double a, double b) {
+    return std::uniform_real_distribution<double>(a, b)(random_);
+  }
+
+  /// Waves of so many cells and more, between 0 and 1.
+  Field waves(int count, double shortest) {
+    struct Wave {
+      Vec3<double> k;
+      double phase;
+    };
+    std::vector<Wave> all;
+    for (int n = 0; n < count; ++n) {
+      Vec3<double> k{uniform(-1, 1), uniform(-1, 1), uniform(-1, 1)};
+      k = k * (2 * std::numbers::pi / (shortest * uniform(1, 3) * length(k)));
+      all.push_back({k, uniform(0, 6.3)});
+    }
+    return [all](double x, double y, double z) {
+      double sum = 0;
+      for (const Wave& w : all) sum += std::sin(dot(w.k, Vec3<double>{x, y, z}) + w.phase);
+      return 0.5 + 0.5 * sum / static_cast<double>(all.size());
+    };
+  }
+
+  /// Extinction and colors linear over the data.
+  static Points line(double depth, double size) {
+    const double e = depth / size;
+    return {{-0.1, 0.4 * e, {1, 0.2, 0.1}}, {1.1, 1.6 * e, {0.1, 0.7, 0.9}}};
+  }
+  /// Smooth curves in a table.
+  static Points table(double depth, double size) {
+    Points points;
+    for (int i = 0; i < 256; ++i) {
+      const double v = i / 255.0;
+      points.push_back({v, (0.5 + v) * depth / size, {v, 0.5 + 0.5 * std::cos(6 * v), 1 - v}});
+    }
+    return points;
+  }
+
+  static Scene make_scene(std::shared_ptr<const Volume> volume, Points points,
+                          Vec3<double> direction, bool orthographic) {
+    Scene scene;
+    scene.volume = std::move(volume);
+    scene.transfer_function = std::make_shared<TransferFunction>(std::move(points));
+    scene.size = {20, 20};
+    scene.camera = default_camera(*scene.volume, scene.size);
+    const double far = length(scene.camera.position - scene.camera.focal_point);
+    scene.camera.position = scene.camera.focal_point + direction * (far / length(direction));
+    scene.camera.up = std::fabs(direction.z) > 0.9 * length(direction) ? Vec3<double>{0, 1, 0}
+                                                                       : Vec3<double>{0, 0, 1};
+    if (orthographic) {
+      scene.camera.projection = Projection::orthographic;
+      scene.camera.parallel_scale = 0.3 * far;
+    }
+    return scene;
+  }
+
+  std::mt19937 random_{17};
+};
+
+const Vec3<double> directions[] = {{1, 0, 0}, {0, 1, 1},        {1, 1, 1},   {2, 1, 0},
+                                   {3, 1, 2}, {0.3, -0.8, 0.5}, {1, 0.01, 0}};
+
+TEST_F(SmoothFrames, OfWaves) {
+  Seen seen;
+  int n = 0;
+  for (const Vec3<double>& direction : directions) {
+    const auto volume = make_volume({41, 37, 44}, waves(1 + n % 3, 12));
+    compare(make_scene(volume, n % 2 == 0 ? line(1.5, 40) : table(1.5, 40), direction, n % 3 != 2),
+            {1e-2, 1.0 / 512}, seen);
+    if (HasFatalFailure()) return;
+    ++n;
+  }
+  EXPECT_GT(seen.with_strides, seen.frames / 2);
+  RecordProperty("largest_error_of_said", std::to_string(seen.largest_of_error));
+}
+
+TEST_F(SmoothFrames, OfWhatBendsTheSameEverywhere) {
+  // r² and x²: no error cancels another.
+  Seen seen;
+  for (const Vec3<double>& direction : directions) {
+    for (const bool round : {true, false}) {
+      const Field field = [&](double x, double y, double z) {
+        x = (x - 16) / 32;
+        y = (y - 16) / 32;
+        z = (z - 16) / 32;
+        return round ? x * x + y * y + z * z : 4 * x * x;
+      };
+      const auto volume = make_volume({33, 33, 33}, field);
+      compare(make_scene(volume, line(2, 33), direction, true), {1e-2, 1e-3}, seen);
+      if (HasFatalFailure()) return;
+    }
+  }
+  EXPECT_GT(seen.with_strides, seen.frames / 2);
+}
+
+TEST_F(SmoothFrames, OfSingleBlocksBetweenHoles) {
+  // A stretch of eight cells could be done in steps of two, all on planes of cells.
+  Seen seen;
+  const Field field = [](double x, double y, double z) {
+    const bool hole = static_cast<int>(x) % 16 == 12 && y < 1 && z < 1;
+    return hole ? std::numeric_limits<double>::quiet_NaN() : 4e-4 * (x - 40) * (x - 40) + 0.001 * y;
+  };
+  const auto volume = make_volume({97, 9, 9}, field);
+  for (const Vec3<double> direction : {Vec3<double>{1, 0, 0}, Vec3<double>{1, 0.02, 0.03}}) {
+    Scene scene = make_scene(volume, line(1, 97), direction, true);
+    scene.camera.parallel_scale = 4;
+    compare(scene, {3e-2, 1e-2, 1e-3}, seen);
+    if (HasFatalFailure()) return;
+  }
+  EXPECT_GT(seen.with_strides, 0);
+}
+
+TEST_F(SmoothFrames, WithWhatSamplesCouldMiss) {
+  Seen seen;
+  const auto volume = make_volume({40, 36, 40}, waves(2, 20));
+  Points narrow = table(1, 40), teeth, dense = table(4000, 40), far = line(1, 40);
+  for (int i = 120; i < 126; ++i) narrow[static_cast<std::size_t>(i)].color = {1, 1, 1};
+  for (int i = 0; i <= 64; ++i) {
+    teeth.push_back({i / 64.0, (i % 2 == 0 ? 0.5 : 0.55) / 40 * (1 + i / 64.0), {1, 0.5, 0.2}});
+  }
+  far.front().value = -3e4;
+  far.insert(far.begin() + 1, {0, 0.01, {1, 1, 0.2}});
+  far.insert(far.begin() + 2, {1, 0.04, {0.1, 1, 0.2}});
+  far.back().value = 3e4;
+  Points peak;  // a smooth one, in a table, a fiftieth of the range wide
+  for (int i = 0; i < 256; ++i) {
+    const double v = i / 255.0, s = (v - 0.6) / 0.02;
+    peak.push_back({v, 0.1 * std::exp(-0.5 * s * s), {v, 1 - v, 0.5}});
+  }
+  for (const Points& points : {narrow, teeth, dense, far, peak}) {
+    for (const Vec3<double> direction : {Vec3<double>{1, 1, 1}, Vec3<double>{0.7, 0.2, -0.4}}) {
+      compare(make_scene(volume, points, direction, true), {3e-2, 1.0 / 512}, seen);
+      if (HasFatalFailure()) return;
+    }
+  }
+}
+
+TEST_F(SmoothFrames, WithNoiseAndOddVoxels) {
+  Seen seen;
+  for (const double noise : {1e-4, 1e-3, 3e-3}) {
+    const Field field = waves(2, 16);
+    const auto volume = make_volume({40, 36, 40}, [&](double x, double y, double z) {
+      return field(x, y, z) + (random_() % 2 == 0 ? noise : -noise);
+    });
+    compare(make_scene(volume, line(1, 40), {0.6, 0.5, -0.4}, false), {3e-2, 1.0 / 512}, seen);
+    const auto odd = make_volume({40, 36, 40}, [&](double x, double y, double z) {
+      return field(x, y, z) + (x == 20 ? 5 * noise : 0);
+    });
+    compare(make_scene(odd, line(1, 40), {1, 0.2, 0.1}, true), {3e-2, 1.0 / 512}, seen);
+    if (HasFatalFailure()) return;
+  }
+  EXPECT_GT(seen.with_strides, 0);
+}
+
+TEST_F(SmoothFrames, AreTheSameWhateverElseIsInAPacket) {
+  const auto volume = make_volume({40, 36, 40}, waves(2, 20), {1, 0.8, 1.3});
+  Scene scene = make_scene(volume, table(2, 40), {0.6, 0.5, -0.4}, false);
+  scene.size = {36, 36};
+  scene.integration.tolerance = 1e-2;
+  RenderOptions options;
+  options.error = true;
+  options.threads = 1;
+  RenderReport report;
+  const Image whole = render(scene, options, &report);
+  EXPECT_GT(report.spans.strides, 0u);
+  options.threads = 3;
+  options.preview = 3;  // other pixels beside each other
+  const Image other = render(scene, options);
+  EXPECT_EQ(whole.pixels, other.pixels);
+  EXPECT_EQ(whole.error, other.error);
+}
+
+TEST_F(SmoothFrames, ProvedOnesHaveNone) {
+  const auto volume = make_volume({40, 36, 40}, waves(1, 20));
+  Scene scene = make_scene(volume, line(1, 40), {0.6, 0.5, -0.4}, false);
+  RenderOptions options;
+  options.error = true;
+  RenderReport report;
+  render(scene, options, &report);
+  EXPECT_GT(report.spans.strides, 0u);
+  EXPECT_LT(report.pixels_proved, report.pixels);
+  scene.integration.grade = Grade::proved;
+  render(scene, options, &report);
+  EXPECT_EQ(report.spans.strides, 0u);
+  EXPECT_EQ(report.pixels_proved, report.pixels);
+}
+
+}  // namespace
+}  // namespace pellucid
