@@ -53,7 +53,9 @@ class CellMarch {
 
   /// Whether enough lanes are free for walks that wait.
   bool wants(const All& walks) const noexcept {
-    return next_ < walks.count && N - count(walking) >= (N + 7) / 8;
+    // Numbers are spread over lanes one by one where there is no instruction for it.
+    constexpr int enough = N == 16 ? 2 : (N + 3) / 4;
+    return next_ < walks.count && N - count(walking) >= enough;
   }
 
   /// Gives the lanes that are free the next walks; the lanes that got one.

@@ -114,7 +114,7 @@ class PacketIntegrator {
   /// How narrow a part of a cell may get before it is handed back.
   static constexpr float narrowest = 1.0f / 16;
   /// Of the difference of two rules what counts as the standard deviation of the better one.
-  static constexpr float share_of_difference = 1.0f / 3;
+  static constexpr float share_of_difference = 0.4f;
   /// After so many pieces and halvings what is left of a cell is handed back if it is not taken.
   static constexpr int most_pieces = 64;
 

@@ -167,7 +167,7 @@ class SmoothMarch {
   void weigh(F step, F* weight) const noexcept {
     for (int a = 0; a < 3; ++a) {
       const F cells = abs(step * direction_in_float_[a]);
-      weight[a] = mean_square_of_bend(cells) + F(0.15f) * mean_square_of_bends(cells);
+      weight[a] = mean_square_of_bend(cells) + F(0.25f) * mean_square_of_bends(cells);
     }
   }
   F worst(const F* weight) const noexcept { return max(weight[0], max(weight[1], weight[2])); }
