@@ -39,8 +39,8 @@ T mean_square_of_bends(T cells) noexcept {
 template <class T>
 class RandomErrors {
  public:
-  /// How many standard deviations are charged. Over all pixels of tests/packet's scenes the true
-  /// error is no more than two.
+  /// How many standard deviations are charged. Over random scenes made for that the true error was
+  /// never more than these.
   static constexpr int deviations = 4;
 
   /// How large the variance of the next span may be, which stands for this share of what is still
