@@ -2,7 +2,6 @@
 #include "packet_sampler.h"
 
 #include <algorithm>
-#include <cmath>
 #include <vector>
 
 #include "packet_setup.h"
@@ -23,12 +22,7 @@ Kernel sampler_of([[maybe_unused]] InstructionSet set) {
 
 /// Whether no ray takes so many steps that an int cannot count them.
 bool has_few_steps(const Volume& volume, double step) {
-  const auto corners = volume.world_corners();
-  double longest = 0;
-  for (const Vec3<double>& p : corners) {
-    for (const Vec3<double>& q : corners) longest = std::max(longest, dot(p - q, p - q));
-  }
-  return std::sqrt(longest) < 1e9 * step;
+  return diagonal(volume) < 1e9 * step;
 }
 
 }  // namespace

@@ -43,6 +43,15 @@ double largest_value(const Volume& volume) {
   return std::max(std::fabs(volume.statistics().minimum), std::fabs(volume.statistics().maximum));
 }
 
+double diagonal(const Volume& volume) {
+  const auto corners = volume.world_corners();
+  double square = 0;
+  for (const Vec3<double>& p : corners) {
+    for (const Vec3<double>& q : corners) square = std::max(square, dot(p - q, p - q));
+  }
+  return std::sqrt(square);
+}
+
 bool suits_packets(const Volume& volume, double largest_extinction) {
   return is_moderate(largest_value(volume)) && is_moderate(volume.voxel_size()) &&
          largest_extinction <= 1e12 && volume.visit([](const auto& grid) {

@@ -33,6 +33,9 @@ Kernel kernel_of(InstructionSet set, Kernel sse4, Kernel avx2, Kernel avx512) {
 /// The largest magnitude of the data.
 double largest_value(const Volume& volume);
 
+/// The longest way through the volume, from corner to corner, world length.
+double diagonal(const Volume& volume);
+
 /// Whether squares of the number and of its thousandths stay far from where binary32 ends.
 inline bool is_moderate(double x) {
   return x >= 1e-12 && x <= 1e12;

@@ -33,17 +33,6 @@ struct CellContext {
   const PellucidRay* rays;
 };
 
-/// From corner to corner, world length.
-double diagonal(const Volume& volume) {
-  double square = 0;
-  for (const Vec3<double>& p : volume.world_corners()) {
-    for (const Vec3<double>& q : volume.world_corners()) {
-      square = std::max(square, dot(p - q, p - q));
-    }
-  }
-  return std::sqrt(square);
-}
-
 }  // namespace
 
 double PacketTracer::most_bending(const Volume& volume, const RayTolerance& wanted) {

@@ -209,12 +209,7 @@ class PacketIntegrator {
       smooth_.walking = smooth_.walking & !refused;
     }
     if (none(take)) return;
-    const D opacity = masked(take, s.opacity);
-    fold_.add(SegmentResult<D>{
-        masked(take, s.optical_depth),
-        opacity,
-        select(take, convert<double>(s.transparency), D(1)),
-        {masked(take, s.radiance.r), masked(take, s.radiance.g), masked(take, s.radiance.b)}});
+    fold(take, s);
     const F cost = random_.charge(variance) + rounding;
     random_.add(select(take, variance, F(0)));
     budget_.pass_to(select(take, left, budget_.length_left()));
@@ -297,12 +292,7 @@ class PacketIntegrator {
       if (any(give_up)) hand_back(give_up);
     }
     if (none(take)) return;
-    const D opacity = masked(take, s.opacity);
-    fold_.add(SegmentResult<D>{
-        masked(take, s.optical_depth),
-        opacity,
-        select(take, convert<double>(s.transparency), D(1)),
-        {masked(take, s.radiance.r), masked(take, s.radiance.g), masked(take, s.radiance.b)}});
+    fold(take, s);
     budget_.spend(select(take, length, F(0)), s.opacity, transparency, select(take, error, F(0)));
     pieces_ += select(take, I(1), I(0));
 
@@ -320,6 +310,17 @@ class PacketIntegrator {
                     (parts.back.hull_min() - rounding_ > F(transfer_.support_max));
     pending_ = pending_ & !(take & ((place >= F(1)) | clear));
     retire();
+  }
+
+  /// Adds the lanes' segments to their rays.
+  void fold(M lanes, const SegmentResult<F>& s) noexcept {
+    const auto masked = [&](F value) noexcept {
+      return select(lanes, convert<double>(value), D(0));
+    };
+    fold_.add(SegmentResult<D>{masked(s.optical_depth),
+                               masked(s.opacity),
+                               select(lanes, convert<double>(s.transparency), D(1)),
+                               {masked(s.radiance.r), masked(s.radiance.g), masked(s.radiance.b)}});
   }
 
   /// Ends the rays that no longer matter.
@@ -341,8 +342,6 @@ class PacketIntegrator {
   /// is known to binary32 only, but what one has too much the other has too little, of data that
   /// are the same there; the end of a block is rounded for good.
   F place_error() const noexcept { return place_error_ + select(last_of_block_, end_error_, F(0)); }
-
-  D masked(M mask, F value) const noexcept { return select(mask, convert<double>(value), D(0)); }
 
   /// Has what is left of the lanes' spans integrated by other means.
   void hand_back(M lanes) noexcept {

@@ -131,9 +131,7 @@ class SamplerMarch {
       const D place = clamp(origin_[a] + at * direction_[a], D(0), D(grid_.cells[a] - 1));
       block[a] = convert<std::int32_t>(place) >> 3;
     }
-    const I block_index =
-        block[0] + I(grid_.blocks[0]) * (block[1] + I(grid_.blocks[1]) * block[2]);
-    const I found = gather(grid_.classes, select(lanes, block_index, I(0)));
+    const I found = gather(grid_.classes, select(lanes, grid_.index_of_block(block), I(0)));
     const M skip = lanes & (((found >> 16) & I(255)) == I(static_cast<int>(BlockKind::skip)));
     if (none(skip)) return skip;
     static constexpr std::int32_t sides[8] = {1, 2, 4, 8, 16, 32, 64, 128};

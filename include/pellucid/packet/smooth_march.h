@@ -32,24 +32,19 @@ class SmoothMarch {
               const double (&origin)[3][N], const double (&direction)[3][N]) noexcept
       : transfer_(*static_cast<const SamplerTransfer*>(job.samples)),
         smooth_(*static_cast<const SmoothBlocks*>(job.smooth)),
+        grid_(grid),
         samples_(grid) {
     at = end = D(0);
-    F cells_per_length(0);
-    F d[3];
+    F square(0);
     for (int a = 0; a < 3; ++a) {
       origin_[a] = D::load(origin[a]);
       direction_[a] = D::load(direction[a]);
-      d[a] = convert<float>(direction_[a]);
-      cells_per_length += d[a] * d[a];
+      direction_in_float_[a] = convert<float>(direction_[a]);
+      square += direction_in_float_[a] * direction_in_float_[a];
     }
     samples_.set_direction(direction_);
-    cells_per_length_ = sqrt(cells_per_length);
-    if (!(smooth_.longest_step > 0)) return;
-    for (int a = 0; a < 3; ++a) {
-      direction_in_float_[a] = d[a];
-      blocks_[a] = grid.blocks[a];
-    }
-    find_step(0);
+    cells_per_length_ = sqrt(square);
+    if (smooth_.longest_step > 0) find_step(0);
   }
 
   /// Begins, or goes on with, the stretches of the lanes.
@@ -211,9 +206,9 @@ class SmoothMarch {
     I block[3];
     for (int a = 0; a < 3; ++a) {
       const D place = floor((origin_[a] + middle * direction_[a]) * D(1.0 / block_width));
-      block[a] = convert<std::int32_t>(clamp(place, D(0), D(blocks_[a] - 1)));
+      block[a] = convert<std::int32_t>(clamp(place, D(0), D(grid_.blocks[a] - 1)));
     }
-    const I index = block[0] + I(blocks_[0]) * (block[1] + I(blocks_[1]) * block[2]);
+    const I index = grid_.index_of_block(block);
     F local[SmoothBlocks::fields];
     load_records<SmoothBlocks::fields>(smooth_.local, select(walking, index, I(0)), local);
     F sum(0);
@@ -226,10 +221,10 @@ class SmoothMarch {
 
   const SamplerTransfer& transfer_;
   const SmoothBlocks& smooth_;
+  const PacketGrid<Value>& grid_;
   PacketSamples<Value, N> samples_;
   D origin_[3], direction_[3];
   F direction_in_float_[3], cells_per_length_;
-  int blocks_[3];
   int levels_known_ = 0;
   F step_[levels], weight_[levels][3];  ///< of each level; those known
   I level_;

@@ -32,24 +32,6 @@ PELLUCID_HD Attenuation<T> attenuation(T x) noexcept {
           select(thin, result.transparency, thick.transparency)};
 }
 
-/// The same, with opacity / x instead of the opacity: (1 - exp(-x)) / x, 1 at 0. Largest error 4 u
-/// relative.
-template <class T>
-struct AttenuationRate {
-  T opacity_over_depth = T(1);
-  T transparency = T(1);
-};
-template <class T>
-PELLUCID_HD AttenuationRate<T> attenuation_rate(T x) noexcept {
-  const T h = T(0.5) * x;
-  const auto thin = x <= T(2);
-  const T e = exp(-select(thin, h, x));
-  const AttenuationRate<T> result{e * sinh_over_x<T>(h * h), e * e};
-  if (all(thin)) return result;
-  return {select(thin, result.opacity_over_depth, (T(1) - e) / x),
-          select(thin, result.transparency, e)};
-}
-
 /// A stretch of known optical depth and one color: radiance = color · opacity, however the
 /// extinction varies in it.
 template <class T>

@@ -26,9 +26,9 @@ struct StepEnd {
 template <class T>
 SegmentResult<T> trapezoid(const StepEnd<T>& front, const StepEnd<T>& back, T length) noexcept {
   const T half = T(0.5) * length, depth = half * (front.extinction + back.extinction);
-  const AttenuationRate<T> a = attenuation_rate(depth);
-  return {depth, depth * a.opacity_over_depth, a.transparency,
-          (half * a.opacity_over_depth) * (front.emission + back.emission)};
+  const T mean_transparency = expm1_quotient(depth), opacity = depth * mean_transparency;
+  return {depth, opacity, T(1) - opacity,
+          (half * mean_transparency) * (front.emission + back.emission)};
 }
 
 /// Two steps, and the same as one: by Richardson, which takes off what the trapezoidal rule errs in
