@@ -16,9 +16,7 @@ namespace pellucid {
 namespace {
 
 void check(const Scene& scene, const RenderOptions& options) {
-  if (!scene.volume || !scene.transfer_function) {
-    throw Error("scene: a volume and a transfer function are needed; set both before rendering");
-  }
+  check_data(scene);
   check_integration(scene);
   if (options.threads < 0) throw Error("threads: must not be negative; 0 takes one per core");
   if (options.preview < 0 || options.preview > largest_preview) {

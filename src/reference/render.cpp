@@ -58,9 +58,7 @@ void render_row(const reference::CameraRays& camera, int samples, const referenc
 }  // namespace
 
 Image render_reference(const Scene& scene, const RenderOptions& options, RenderReport* report) {
-  if (!scene.volume || !scene.transfer_function) {
-    throw Error("scene: a volume and a transfer function are needed; set both before rendering");
-  }
+  check_data(scene);
   if (options.threads < 0) throw Error("threads: must not be negative; 0 takes one per core");
   check_integration(scene);
   make_camera_frame(scene.camera, scene.size);  // For its checks; the rays are made here.

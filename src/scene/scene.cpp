@@ -123,6 +123,33 @@ double Integration::set_tolerance(double wanted) {
   return tolerance = std::clamp(wanted, smallest_tolerance, largest_tolerance);
 }
 
+void check_data(const Scene& scene) {
+  const bool univariate = scene.volume || scene.transfer_function;
+  if (!scene.channels && !scene.multivariate) {
+    if (scene.volume && scene.transfer_function) return;
+    throw Error("scene: a volume and a transfer function are needed; set both before rendering");
+  }
+  if (univariate || !scene.channels || !scene.multivariate) {
+    throw Error(
+        "scene: either a volume with a transfer function or channels with a multivariate one are "
+        "needed; set one pair of them");
+  }
+  if (scene.channels->count() != scene.multivariate->channels()) {
+    throw Error("scene: the transfer function sees " +
+                std::to_string(scene.multivariate->channels()) + " channels, but there are " +
+                std::to_string(scene.channels->count()) + "; make it for as many");
+  }
+}
+
+const Volume& grid_volume(const Scene& scene) noexcept {
+  return scene.channels ? scene.channels->grid() : *scene.volume;
+}
+
+double largest_color(const Scene& scene) noexcept {
+  return scene.multivariate ? scene.multivariate->largest_color()
+                            : scene.transfer_function->largest_color();
+}
+
 void check_integration(const Scene& scene) {
   if (scene.samples < 1 || scene.samples > largest_samples) {
     throw Error("scene: samples is " + std::to_string(scene.samples) + ", but must be from 1 to " +

@@ -9,6 +9,8 @@
 #include "pellucid/error/grade.h"
 #include "pellucid/error/precision.h"
 #include "pellucid/render/camera.h"
+#include "pellucid/scene/channels.h"
+#include "pellucid/scene/multivariate_transfer_function.h"
 #include "pellucid/scene/transfer_function.h"
 #include "pellucid/scene/volume.h"
 
@@ -66,10 +68,14 @@ struct Integration {
   double set_tolerance(double wanted);
 };
 
-/// One volume with its transfer function, seen by a camera.
+/// One volume with its transfer function, or several variables with a function of them all, seen by
+/// a camera.
 struct Scene {
   std::shared_ptr<const Volume> volume;
   std::shared_ptr<const TransferFunction> transfer_function;
+  /// In place of the two above.
+  std::shared_ptr<const Channels> channels;
+  std::shared_ptr<const MultivariateTransferFunction> multivariate;
   Camera camera;
   ImageSize size;
   /// A pixel is the mean of samples × samples rays through the centres of its equal parts.
@@ -77,6 +83,14 @@ struct Scene {
   Integration integration;
   std::optional<Rgb<double>> background;  ///< linear; none: the image stays transparent
 };
+
+/// Throws Error where neither a volume with a transfer function nor channels with a multivariate
+/// one are there, or more than these, or the function sees another number of channels.
+void check_data(const Scene& scene);
+/// The volume whose grid the rays cross. Of a scene that check_data() accepts, as all below.
+const Volume& grid_volume(const Scene& scene) noexcept;
+/// Largest color component of the transfer function.
+double largest_color(const Scene& scene) noexcept;
 
 /// Throws Error where the samples of a pixel are beyond their limits, or what the method goes by
 /// is: the tolerance of the exact one, the step of the others.

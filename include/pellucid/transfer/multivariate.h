@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "pellucid/transfer/gaussian.h"
+
+namespace pellucid {
+
+/// A piecewise-linear function of one channel alone.
+template <class S>
+struct ChannelTable {
+  int channel = 0;
+  PiecewiseLinear<S> table;
+};
+
+/// A transfer function of several variables: Gaussian primitives and piecewise-linear functions of
+/// single channels, summed. Each is a kind of particles of its own: extinctions add, and so do
+/// color · extinction. A view, it owns nothing; all terms see the same channels.
+template <class S>
+struct Multivariate {
+  GaussianMixture<S> gaussians;
+  const ChannelTable<S>* table = nullptr;
+  int tables = 0;
+  int channels = 1;  ///< 1 … most_channels
+
+  /// The extinction, and the color that makes color · extinction the sum of all; no color where
+  /// nothing absorbs. v has `channels` numbers.
+  PELLUCID_HD Material<S> evaluate(const S* v) const noexcept {
+    S extinction = S(0);
+    Rgb<S> emission{};
+    for (int i = 0; i < gaussians.count; ++i) {
+      const Gaussian<S>& g = gaussians.primitive[i];
+      const S here = g.peak * g.density(v);
+      extinction += here;
+      emission += here * g.color;
+    }
+    for (int i = 0; i < tables; ++i) {
+      const Material<S> here = table[i].table.evaluate(v[table[i].channel]);
+      extinction += here.extinction;
+      emission += here.extinction * here.color;
+    }
+    if (!(extinction > S(0))) return {};
+    return {extinction, (S(1) / extinction) * emission};
+  }
+};
+
+}  // namespace pellucid
