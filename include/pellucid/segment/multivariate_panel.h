@@ -195,7 +195,7 @@ class PanelIntegrator {
       extinction += here;
       emission += here * g.color;
     }
-    if (!(extinction > T(0))) return {};
+    if (!(extinction >= T(smallest_normal<T>))) return {};
     return {extinction, (T(1) / extinction) * emission};
   }
 
