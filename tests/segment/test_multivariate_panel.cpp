@@ -74,11 +74,8 @@ void expect_within_error(Grade grade, double tolerance, int tables, long count, 
     if (cuts < 50) {
       ASSERT_LE(panel.error(at.largest_color), tolerance) << where;
     }
-    if (panel.clear) {
-      EXPECT_EQ(panel.found.segment.opacity, 0);
-    }
     ASSERT_TRUE(panel.found.proved || grade == Grade::estimated) << where;
-    clear += panel.clear;
+    clear += panel.found.segment.opacity == 0;
     nodes += panel.found.panels;
     all_cuts += cuts;
   }
@@ -360,7 +357,7 @@ TEST(MultivariatePanel, OnePrimitiveOnALineIsExact) {
 TEST(MultivariatePanel, NothingToSee) {
   Plain plain;
   plain.g.peak = 0;
-  EXPECT_TRUE(plain.panel().clear);
+  EXPECT_EQ(plain.panel().found.segment.opacity, 0);
   EXPECT_TRUE(plain.panel().done);
   EXPECT_EQ(plain.panel().error(1), 0);
   plain = Plain();
@@ -370,7 +367,7 @@ TEST(MultivariatePanel, NothingToSee) {
   EXPECT_LE(plain.panel().error(1), 1e-15);
   plain = Plain();
   plain.demand.primitives.bits = ~1ULL;
-  EXPECT_TRUE(plain.panel().clear);
+  EXPECT_EQ(plain.panel().found.segment.opacity, 0);
 }
 
 TEST(MultivariatePanel, PrimitivesBeyond64GoByTheirRemainder) {
@@ -386,7 +383,7 @@ TEST(MultivariatePanel, PrimitivesBeyond64GoByTheirRemainder) {
                                         [](double) { return 1e-6; });
   };
   EXPECT_GT(of(2).found.segment.opacity, 0.4);
-  EXPECT_TRUE(of(~2ULL).clear);
+  EXPECT_EQ(of(~2ULL).found.segment.opacity, 0);
 }
 
 /// A primitive wider than anything is a constant.
