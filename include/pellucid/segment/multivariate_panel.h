@@ -379,7 +379,7 @@ class PanelIntegrator {
     BoundedSegment<T>& found = result.found;
     found.segment = segment_of_depth(sum_.depth, sum_.color);
     const T alpha = found.segment.opacity;
-    found.opacity_error = min(loss_ + result.opacity * absolute_loss_ + aside_, T(1));
+    found.opacity_error = min(loss_ + max(result.opacity, alpha) * absolute_loss_ + aside_, T(1));
     const T all_colors = max(sum_.range.oscillation(), T(1e-6) * largest_color_);
     const Matter m = matter(allowed / (T(16 * max(count_, 1)) * all_colors));
     // Weights e^s whose s differ by at most Δ move a mean of colors by at most ω tanh(Δ/4); the
@@ -457,10 +457,10 @@ class PanelIntegrator {
 /// Let δ_i be the change of extinction of term i where its line is put in its place. Along the way
 /// from one to the other the pixel's X changes by Y, |Y| = |∫ Σ w_i δ_i| in front, w_i = T (c_i -
 /// X_behind): |w_i| <= C_max, and w_i' = -τ T (c_i - c) for the mean color c, so that w_i varies by
-/// at most C_max α on the panel, α its opacity. Hence |Y| <= C_max Σ (|∫ δ_i| + α ∫ |δ_i|), which
-/// is charged as an error of the opacity. The mean color then costs ω κ(m) per opacity
-/// (segment/gaussian_panels.h), ω the range of the mean of the colors on the panel: at most
-/// (range of all) · Δ/4 + (range of a table's own color), Δ as there.
+/// at most C_max α on the panel, α its opacity, of the cubics or the lines. Hence |Y| <= C_max Σ
+/// (|∫ δ_i| + α ∫ |δ_i|), which is charged as an error of the opacity. The mean color then costs ω
+/// κ(m) per opacity (segment/gaussian_panels.h), ω the range of the mean of the colors on the
+/// panel: at most (range of all) · Δ/4 + (range of a table's own color), Δ as there.
 ///
 /// T: double, or a batch of it, panels in lanes. `room` is for the function alone.
 template <class T, class Allowance>
