@@ -16,11 +16,12 @@
 namespace pellucid {
 namespace {
 
-/// Which extinction may be left out all along a ray: what it costs there is a share of the
-/// tolerance.
+/// How much of the tolerance goes for primitives that are left out of blocks.
+constexpr double left_out_share = 1.0 / 32;
+
+/// Which extinction may be left out all along a ray for that.
 double negligible_extinction(const TracerTask& task) {
-  constexpr double share = 1.0 / 32;
-  return share * task.wanted.tolerance /
+  return left_out_share * task.wanted.tolerance /
          (diagonal(grid_volume(task.scene)) * std::max(task.wanted.largest_color, 1.0));
 }
 
@@ -56,6 +57,7 @@ class MultivariateTracer : public RayTracer {
     storage_ = MultivariateBlocksStorage(channels_, transfer_function_, negligible_extinction(task),
                                          parallel_for(task.threads));
     blocks_ = storage_.view();
+    wanted_.tolerance *= 1 - left_out_share;
     kernel_ = kernel_for(packet_instruction_set(task.options.instruction_set));
   }
 

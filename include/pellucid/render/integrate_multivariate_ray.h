@@ -74,7 +74,6 @@ class MultivariateRayIntegrator {
       return;
     }
     demand_.primitives = primitives;
-    demand_.place_error = 8 * rounding_unit<double> * step.t_end;
     // The parts still to do, by their ends, the nearest last.
     double ends[most_cuts + 1];
     int open = 1;
@@ -82,6 +81,8 @@ class MultivariateRayIntegrator {
     double begin = 0;
     while (open > 0) {
       const double end = ends[open - 1];
+      // Cuts inside of a cell are where they are thought to be.
+      demand_.place_error = begin > 0 ? 0 : 8 * rounding_unit<double> * step.t_end;
       demand_.last_resort = open > most_cuts || !(end - begin > 1e-9);
       const PanelSegment<double> panel = integrate(span, begin, end, left_out);
       if (!panel.done) {
