@@ -40,11 +40,13 @@ std::vector<VolumeData> read_interleaved(const ReadOn& read, const ValueLayout& 
   check_memory(std::uintmax_t{points} * number * value_size(layout.type, name),
                name + ": its values");
   std::vector<VolumeData> list;
+  list.reserve(number);
   for (std::size_t c = 0; c < number; ++c) list.push_back(make_values(layout.type, points, name));
   std::visit(
       [&](const auto& of_type) {
         using Value = typename std::decay_t<decltype(of_type)>::value_type;
         std::vector<std::span<Value>> to;
+        to.reserve(number);
         for (VolumeData& data : list) to.push_back(std::get<DataArray<Value>>(data).writable());
         const auto stride = static_cast<std::size_t>(layout.components);
         const auto begin = static_cast<std::size_t>(range.first);
@@ -130,6 +132,7 @@ std::vector<VolumeData> read_components(DataStream& stream, const ValueLayout& l
   }
   const std::uintmax_t bytes = std::uintmax_t{points} * value_size(layout.type, stream.name());
   std::vector<VolumeData> list;
+  list.reserve(static_cast<std::size_t>(range.number));
   stream.skip(bytes * static_cast<std::uintmax_t>(range.first));
   for (int c = 0; c < range.number; ++c) list.push_back(read_values(stream, layout, points));
   const int rest = layout.components - range.first - range.number;

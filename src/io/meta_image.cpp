@@ -123,6 +123,7 @@ std::vector<DataFile> find_files(const fs::path& path, const MetaImageHeader& he
 ByteSource joined_source(const std::vector<DataFile>& files, std::uintmax_t share,
                          const std::string& name) {
   std::vector<ByteSource> parts;
+  parts.reserve(files.size());
   for (const DataFile& file : files) parts.push_back(file_source(file.path));
   ByteSource joined{name, share * files.size(), {}, {}};
   joined.read = [parts, files, share](std::uintmax_t from, std::span<std::byte> to) {

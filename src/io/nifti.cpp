@@ -54,6 +54,7 @@ std::vector<VolumeData> read_scaled(const ReadOn& read, const NiftiHeader& heade
                                     std::size_t count, ComponentRange range,
                                     const std::string& name) {
   std::vector<VolumeData> list;
+  list.reserve(static_cast<std::size_t>(range.number));
   for (int c = 0; c < range.number; ++c) list.push_back(read_scaled(read, header, count, name));
   return list;
 }
