@@ -114,6 +114,19 @@ TEST(ReferenceMultivariateRay, HugePeaksStayExact) {
   }
 }
 
+/// Extinction k, the color running from red to green with x: ∫ k x e^(-kx) dx = 1/k where e^(-k) is
+/// nothing, from before the first node that a rule would have in the cell.
+TEST(ReferenceMultivariateRay, DeepTablesStayVisible) {
+  const Channels channels = coordinates({2, 2, 2});
+  for (const double k : {45.0, 1e3, 1e6}) {
+    const TransferFunction table({{0, k, {1, 0, 0}}, {1, k, {0, 1, 0}}});
+    const ReferencePixel pixel = reference_ray(
+        channels, MultivariateTransferFunction(3, {}, {{0, table}}), {0, 0.4, 0.3}, {1, 0, 0});
+    EXPECT_NEAR(pixel.radiance.g, 1 / k, 1e-15) << k;
+    EXPECT_NEAR(pixel.radiance.r, 1 - 1 / k, 1e-14) << k;
+  }
+}
+
 /// Three channels, K rotated, of less rank than there are channels, or with more rows; alone and
 /// one behind the other: L = C1 α1 + T1 C2 α2 where they do not meet.
 TEST(ReferenceMultivariateRay, RotatedAndRankDeficientGaussiansFollowTheClosedForm) {
