@@ -31,6 +31,14 @@ class RayBudget {
   PELLUCID_HD T allowance(T length, T opacity, T transparency) const noexcept {
     return (opacity_pot_ * opacity + length_pot_ * share(length)) / transparency;
   }
+  /// The same of several spans that lie one behind the other, as if those in front took all that
+  /// they may: then none of them has less than this. B: as many numbers of type T, or T.
+  template <class B>
+  PELLUCID_HD B allowance_ahead(B length, B opacity, T transparency) const noexcept {
+    const T per_length = length_ > T(0) ? T(1) / length_ : T(1);
+    return (B(opacity_pot_) * opacity + B(length_pot_) * min(length * B(per_length), B(T(1)))) *
+           B(T(1) / transparency);
+  }
 
   /// Goes past a span that cost `error` (x of above; 0 where nothing was there).
   PELLUCID_HD void spend(T length, T opacity, T transparency, T error) noexcept {

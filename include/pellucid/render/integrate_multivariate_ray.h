@@ -140,7 +140,7 @@ class MultivariateRayIntegrator {
                          demand_.largest_color * min(left_out * span.length, 1.0);
     budget_.spend(span.length, panel.opacity, fold_.transparency(), error);
     before_ = fold_.optical_depth();
-    if (panel.clear) {
+    if (!(panel.found.segment.optical_depth > 0)) {
       ++counts_.skipped;
       return panel;
     }
