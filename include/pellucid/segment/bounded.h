@@ -25,7 +25,7 @@ PELLUCID_HD constexpr BoundedSegment<T> compose(const BoundedSegment<T>& front,
   return {compose(front.segment, back.segment),
           front.color_error + front.segment.transparency * back.color_error,
           front.opacity_error + front.segment.transparency * back.opacity_error,
-          front.proved & back.proved, front.panels | back.panels};
+          mask_t<T>(front.proved & back.proved), mask_t<T>(front.panels | back.panels)};
 }
 
 }  // namespace pellucid
