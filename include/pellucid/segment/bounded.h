@@ -22,10 +22,12 @@ struct BoundedSegment {
 template <class T>
 PELLUCID_HD constexpr BoundedSegment<T> compose(const BoundedSegment<T>& front,
                                                 const BoundedSegment<T>& back) noexcept {
-  return {compose(front.segment, back.segment),
-          front.color_error + front.segment.transparency * back.color_error,
-          front.opacity_error + front.segment.transparency * back.opacity_error,
-          mask_t<T>(front.proved & back.proved), mask_t<T>(front.panels | back.panels)};
+  BoundedSegment<T> both{compose(front.segment, back.segment),
+                         front.color_error + front.segment.transparency * back.color_error,
+                         front.opacity_error + front.segment.transparency * back.opacity_error};
+  both.proved = front.proved & back.proved;
+  both.panels = front.panels | back.panels;
+  return both;
 }
 
 }  // namespace pellucid

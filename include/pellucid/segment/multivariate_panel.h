@@ -157,8 +157,7 @@ class PanelIntegrator {
     const T most = most_ + tables_.most + rest_;
     result.opacity = min(most, T(1));
     const T length = max(span_.length, T(smallest_normal<T>));
-    aside_ =
-        rest_ + rounding_ + tables_.rounding + min(demand_.place_error * (most / length), T(1));
+    fixed_ = rounding_ + tables_.rounding + min(demand_.place_error * (most / length), T(1));
     finish(result);
     return result;
   }
@@ -379,7 +378,8 @@ class PanelIntegrator {
     BoundedSegment<T>& found = result.found;
     found.segment = segment_of_depth(sum_.depth, sum_.color);
     const T alpha = found.segment.opacity;
-    found.opacity_error = min(loss_ + max(result.opacity, alpha) * absolute_loss_ + aside_, T(1));
+    const T loss = loss_ + max(result.opacity, alpha) * absolute_loss_ + rest_;
+    found.opacity_error = min(loss + fixed_, T(1));
     const T all_colors = max(sum_.range.oscillation(), T(1e-6) * largest_color_);
     const Matter m = matter(allowed / (T(16 * max(count_, 1)) * all_colors));
     // Weights e^s whose s differ by at most Δ move a mean of colors by at most ω tanh(Δ/4); the
@@ -388,10 +388,12 @@ class PanelIntegrator {
     found.color_error = min(range, range * (T(0.25) * m.change) + tables_.colors) *
                             (alpha * mean_color_bound(sum_.depth)) +
                         min(T(2) * m.left_out, alpha) * all_colors;
-    const T left = allowed - largest_color_ * found.opacity_error;
+    // What cutting does not lower must not make it go on forever.
+    const T payable = max(allowed - largest_color_ * fixed_, T(0.5) * allowed);
+    const T left = payable - largest_color_ * loss;
     const auto wanted = (found.color_error > left) & (left > T(0));
     if (any(wanted)) try_nodes(left, all_colors, wanted, found);
-    result.done = (result.error(largest_color_) <= allowed) | demand_.last_resort;
+    result.done = (found.color_error + largest_color_ * loss <= payable) | demand_.last_resort;
     if (!all(result.done)) {
       result.cut = best_cut(largest_color_ * loss_ > found.color_error, allowed);
     }
@@ -438,7 +440,7 @@ class PanelIntegrator {
   T rest_{}, rounding_{};
   PanelTables<T> tables_;
   DepthWeightedColor<T> sum_;
-  T aside_{};  ///< of the depth: what is left out, and what rounding does, whatever the rule
+  T fixed_{};  ///< of the depth: what rounding does, however the panel is cut
 };
 
 }  // namespace detail
