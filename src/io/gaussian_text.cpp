@@ -34,11 +34,11 @@ std::vector<std::string_view> split(std::string_view text, char separator) {
   }
 }
 
-/// Digits and points would be the rest of a number that is not one, as in 1.2.3, and so would a
-/// lone e.
+/// Digits and a leading point would be the rest of a number that is not one, as in 1.2.3, and so
+/// would a lone e.
 bool is_unit(std::string_view text) {
-  return text.find_first_of("0123456789.,+-") == std::string_view::npos && text != "e" &&
-         text != "E";
+  return text.find_first_of("0123456789,+-") == std::string_view::npos && !text.starts_with('.') &&
+         text != "e" && text != "E";
 }
 
 // IEC 61966-2-1: the sRGB signal, 8 bits, to linear light.
