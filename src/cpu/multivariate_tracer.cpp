@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <optional>
+#include <utility>
 
+#include "packet_setup.h"
+#include "pellucid/packet/multivariate_interface.h"
 #include "pellucid/render/integrate_multivariate_ray.h"
 #include "pellucid/render/sample_ray.h"
 #include "pellucid/scene/error.h"
@@ -13,16 +16,25 @@
 namespace pellucid {
 namespace {
 
-/// Which extinction may be left out all along a ray: what it costs there is a share of the
-/// tolerance.
+/// How much of the tolerance goes for primitives that are left out of blocks.
+constexpr double left_out_share = 1.0 / 32;
+
+/// Which extinction may be left out all along a ray for that.
 double negligible_extinction(const TracerTask& task) {
-  constexpr double share = 1.0 / 32;
-  const auto corners = grid_volume(task.scene).world_corners();
-  double diagonal = 0;
-  for (const Vec3<double>& corner : corners) {
-    diagonal = std::max(diagonal, length(corner - corners.front()));
-  }
-  return share * task.wanted.tolerance / (diagonal * std::max(task.wanted.largest_color, 1.0));
+  return left_out_share * task.wanted.tolerance /
+         (diagonal(grid_volume(task.scene)) * std::max(task.wanted.largest_color, 1.0));
+}
+
+using Kernel = void (*)(const PellucidMultivariateJob*);
+
+/// Null: rays go one by one.
+Kernel kernel_for([[maybe_unused]] InstructionSet set) {
+#if PELLUCID_HAS_PACKETS
+  return kernel_of(set, pellucid_integrate_multivariate_sse4, pellucid_integrate_multivariate_avx2,
+                   pellucid_integrate_multivariate_avx512);
+#else
+  return nullptr;
+#endif
 }
 
 class MultivariateTracer : public RayTracer {
@@ -45,18 +57,56 @@ class MultivariateTracer : public RayTracer {
     storage_ = MultivariateBlocksStorage(channels_, transfer_function_, negligible_extinction(task),
                                          parallel_for(task.threads));
     blocks_ = storage_.view();
+    wanted_.tolerance *= 1 - left_out_share;
+    kernel_ = kernel_for(packet_instruction_set(task.options.instruction_set));
   }
 
   std::vector<RayResult> trace(const std::vector<Ray<double>>& world) const override {
-    std::vector<RayResult> results;
-    results.reserve(world.size());
+    std::vector<Ray<double>> rays;
+    rays.reserve(world.size());
     for (const Ray<double>& ray : world) {
-      results.push_back(trace_one(channels_.grid().grid_from_world().ray(ray)));
+      rays.push_back(channels_.grid().grid_from_world().ray(ray));
     }
+    if (kernel_ != nullptr) return trace_in_lanes(rays);
+    std::vector<RayResult> results;
+    results.reserve(rays.size());
+    for (const Ray<double>& ray : rays) results.push_back(trace_one(ray));
     return results;
   }
 
  private:
+  std::vector<RayResult> trace_in_lanes(const std::vector<Ray<double>>& rays) const {
+    RayResult clear;
+    clear.error = 0;
+    clear.proved = true;
+    std::vector<RayResult> results(rays.size(), clear);
+    const PacketRays inside(channels_.grid(), rays.data(), static_cast<int>(rays.size()));
+    std::vector<PellucidRayResult> found(inside.ray.size());
+    PellucidMultivariateJob job{};
+    job.grid = &grid_;
+    job.blocks = &*blocks_;
+    job.transfer = &transfer_;
+    job.largest_extinction = transfer_function_.largest_extinction();
+    job.tolerance = wanted_.tolerance;
+    job.largest_color = wanted_.largest_color;
+    job.proved = wanted_.grade == Grade::proved ? 1 : 0;
+    job.rays = inside.ray.data();
+    job.count = static_cast<std::int32_t>(inside.ray.size());
+    job.results = found.data();
+    kernel_(&job);
+    for (std::size_t i = 0; i < found.size(); ++i) {
+      const auto n = static_cast<std::size_t>(inside.of[i]);
+      read_result(found[i], results[n]);
+      std::swap(results[n].spans.closed, results[n].spans.lines);
+      if (depth_) {
+        results[n].half_opacity_depth = find_multivariate_half_opacity(
+            grid_, &*blocks_, rays[n], transfer_, transfer_function_.largest_extinction(), wanted_,
+            results[n].opacity);
+      }
+    }
+    return results;
+  }
+
   RayResult trace_one(const Ray<double>& ray) const {
     if (integration_.method == Method::exact) {
       return integrate_multivariate_ray(grid_, &*blocks_, ray, transfer_,
@@ -77,6 +127,7 @@ class MultivariateTracer : public RayTracer {
   double step_;  ///< of the sampling methods, world length
   MultivariateBlocksStorage storage_;
   std::optional<MultivariateBlocks> blocks_;  ///< of the exact method
+  Kernel kernel_ = nullptr;                   ///< null: rays go one by one
 };
 
 }  // namespace

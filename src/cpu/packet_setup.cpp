@@ -73,6 +73,22 @@ void set_grid(const Volume& volume, PellucidPacketJob& job) {
   });
 }
 
+void read_result(const PellucidRayResult& from, RayResult& to) {
+  to.radiance = {from.radiance[0], from.radiance[1], from.radiance[2]};
+  to.opacity = from.opacity;
+  to.optical_depth = from.optical_depth;
+  to.error = from.error;
+  to.proved = from.proved != 0;
+  to.cells = from.cells;
+  to.evaluations = from.evaluations;
+  to.spans.skipped = static_cast<std::uint64_t>(from.skipped);
+  to.spans.constant = static_cast<std::uint64_t>(from.constant);
+  to.spans.closed = static_cast<std::uint64_t>(from.closed);
+  to.spans.panels = static_cast<std::uint64_t>(from.panels);
+  to.spans.strides = static_cast<std::uint64_t>(from.strides);
+  to.spans.in_double = static_cast<std::uint64_t>(from.in_double);
+}
+
 PacketRays::PacketRays(const Volume& volume, const Ray<double>* rays, int count) {
   volume.visit([&](const auto& grid) {
     for (int i = 0; i < count; ++i) {

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "pellucid/packet/interface.h"
+#include "pellucid/render/ray_result.h"
 #include "pellucid/scene/volume.h"
 #include "pellucid/simd/instruction_set.h"
 
@@ -48,6 +49,9 @@ bool suits_packets(const Volume& volume, double largest_extinction);
 
 /// The grid's part of a job.
 void set_grid(const Volume& volume, PellucidPacketJob& job);
+
+/// What a packet found of a ray.
+void read_result(const PellucidRayResult& from, RayResult& to);
 
 /// Those of the rays that meet the grid's box, and which of them they are.
 struct PacketRays {

@@ -101,23 +101,7 @@ void PacketTracer::trace(const Ray<double>* rays, int count, RayResult* results)
   job.count = static_cast<std::int32_t>(inside.ray.size());
   job.context = &context;
   kernel_(&job);
-  for (std::size_t i = 0; i < found.size(); ++i) {
-    const PellucidRayResult& from = found[i];
-    RayResult& to = results[inside.of[i]];
-    to.radiance = {from.radiance[0], from.radiance[1], from.radiance[2]};
-    to.opacity = from.opacity;
-    to.optical_depth = from.optical_depth;
-    to.error = from.error;
-    to.proved = from.proved != 0;
-    to.cells = from.cells;
-    to.evaluations = from.evaluations;
-    to.spans.skipped = static_cast<std::uint64_t>(from.skipped);
-    to.spans.constant = static_cast<std::uint64_t>(from.constant);
-    to.spans.closed = static_cast<std::uint64_t>(from.closed);
-    to.spans.panels = static_cast<std::uint64_t>(from.panels);
-    to.spans.strides = static_cast<std::uint64_t>(from.strides);
-    to.spans.in_double = static_cast<std::uint64_t>(from.in_double);
-  }
+  for (std::size_t i = 0; i < found.size(); ++i) read_result(found[i], results[inside.of[i]]);
 }
 
 void PacketTracer::integrate_cell(const void* context, std::int32_t ray, const PellucidCell* cell,

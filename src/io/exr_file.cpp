@@ -35,9 +35,9 @@ std::string first_line(const std::exception& e) {
 }
 
 // A file in the making: its header, and where its pixels lie.
-class ExrChannels {
+class ChannelList {
  public:
-  explicit ExrChannels(const Image& image)
+  explicit ChannelList(const Image& image)
       : image_(image),
         header_(image.width, image.height),
         width_(static_cast<std::size_t>(image.width)) {
@@ -193,7 +193,7 @@ Image read_pixels(Imf::InputFile& file, const std::string& name) {
 
 void write_exr(const Image& image, const std::filesystem::path& path) {
   check_image(image, path);
-  ExrChannels channels(image);
+  ChannelList channels(image);
   for (std::size_t c = 0; c < 4; ++c) {
     channels.add(color_channels[c], Imf::FLOAT, &image.pixels[0][c], sizeof(image.pixels[0]));
   }
@@ -220,7 +220,7 @@ void write_error_exr(const Image& image, double tolerance, const std::filesystem
   for (const float error : image.error) {
     scaled.push_back(static_cast<float>(static_cast<double>(error) / tolerance));
   }
-  ExrChannels channels(image);
+  ChannelList channels(image);
   channels.add("Y", Imf::FLOAT, scaled.data());
   channels.add("error", Imf::FLOAT, image.error.data());
   channels.add("error.proved", Imf::HALF, proved.data());

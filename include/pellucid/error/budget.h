@@ -31,7 +31,6 @@ class RayBudget {
   PELLUCID_HD T allowance(T length, T opacity, T transparency) const noexcept {
     return (opacity_pot_ * opacity + length_pot_ * share(length)) / transparency;
   }
-
   /// Goes past a span that cost `error` (x of above; 0 where nothing was there).
   PELLUCID_HD void spend(T length, T opacity, T transparency, T error) noexcept {
     const T cost = transparency * error;
@@ -45,6 +44,30 @@ class RayBudget {
       length_pot_ = max(length_pot_ - (cost - part), T(0));
       spent_ += cost;
     }
+    length_ = max(length_ - length, T(0));
+  }
+
+  // For spans that are tried together before those in front of them are folded:
+
+  /// What one of them may take of the second pot for each unit of its length, and what there is in
+  /// the first one for all of them. Shares of the first are taken one after the other, from front
+  /// to back; those of spans that are good enough are reserved until they are spent.
+  PELLUCID_HD T for_length() const noexcept {
+    return length_ > T(0) ? length_pot_ / length_ : length_pot_;
+  }
+  PELLUCID_HD T for_opacity() const noexcept { return max(opacity_pot_ - reserved_, T(0)); }
+  PELLUCID_HD void reserve(T from_opacity) noexcept { reserved_ += from_opacity; }
+  /// Goes past a span whose shares were these: none of the pots loses more than that if `error` is
+  /// at most their sum by the transparency that they were given for, or a lower one. No share of
+  /// another span is touched.
+  PELLUCID_HD void spend_reserved(T length, T from_opacity, T from_length, T transparency,
+                                  T error) noexcept {
+    reserved_ = max(reserved_ - from_opacity, T(0));
+    const T cost = transparency * error, sum = from_opacity + from_length;
+    const T part = sum > T(0) ? cost * (from_opacity / sum) : T(0);
+    opacity_pot_ = max(opacity_pot_ - part, T(0));
+    length_pot_ = max(length_pot_ - (cost - part), T(0));
+    spent_ += cost;
     length_ = max(length_ - length, T(0));
   }
 
@@ -65,6 +88,7 @@ class RayBudget {
   T opacity_pot_{}, length_pot_{};
   T length_{};
   T spent_{};
+  T reserved_{};  ///< of the first pot
 };
 
 }  // namespace pellucid

@@ -74,7 +74,6 @@ class MultivariateRayIntegrator {
       return;
     }
     demand_.primitives = primitives;
-    demand_.place_error = 8 * rounding_unit<double> * step.t_end;
     // The parts still to do, by their ends, the nearest last.
     double ends[most_cuts + 1];
     int open = 1;
@@ -82,6 +81,8 @@ class MultivariateRayIntegrator {
     double begin = 0;
     while (open > 0) {
       const double end = ends[open - 1];
+      // Cuts inside of a cell are where they are thought to be.
+      demand_.place_error = begin > 0 ? 0 : 8 * rounding_unit<double> * step.t_end;
       demand_.last_resort = open > most_cuts || !(end - begin > 1e-9);
       const PanelSegment<double> panel = integrate(span, begin, end, left_out);
       if (!panel.done) {
@@ -140,7 +141,7 @@ class MultivariateRayIntegrator {
                          demand_.largest_color * min(left_out * span.length, 1.0);
     budget_.spend(span.length, panel.opacity, fold_.transparency(), error);
     before_ = fold_.optical_depth();
-    if (panel.clear) {
+    if (!(panel.found.segment.optical_depth > 0)) {
       ++counts_.skipped;
       return panel;
     }
@@ -216,6 +217,21 @@ PELLUCID_HD inline long follow_ray(const MultichannelGrid& grid, const Multivari
 
 }  // namespace detail
 
+/// RayResult::half_opacity_depth of a ray of this opacity.
+PELLUCID_HD inline double find_multivariate_half_opacity(
+    const MultichannelGrid& grid, const MultivariateBlocks* blocks, const Ray<double>& ray_grid,
+    const Multivariate<double>& transfer, double largest_extinction, const RayTolerance& wanted,
+    double opacity) noexcept {
+  const Interval<double> inside = grid_interval(grid.axis, ray_grid);
+  if (!(opacity > 0) || inside.empty()) return std::numeric_limits<double>::infinity();
+  MultivariateRayIntegrator integrator(grid, transfer, largest_extinction, wanted,
+                                       inside.end - inside.begin);
+  // There exp(-a) = 1 - opacity/2.
+  integrator.look_for(-log1p(-0.5 * opacity));
+  detail::follow_ray(grid, blocks, ray_grid, inside, integrator);
+  return integrator.found();
+}
+
 /// The volume rendering integral along a ray (in grid coordinates, its parameter the world arc
 /// length) through several trilinear fields, within a tolerance: RayResult::error is at most what
 /// is wanted, unless not even binary64 tells on which side of a jump of a table the data lie, or
@@ -231,17 +247,14 @@ PELLUCID_HD inline RayResult integrate_multivariate_ray(
   nothing.proved = true;
   if (inside.empty()) return nothing;
 
-  const double length = inside.end - inside.begin;
-  MultivariateRayIntegrator integrator(grid, transfer, largest_extinction, wanted, length);
+  MultivariateRayIntegrator integrator(grid, transfer, largest_extinction, wanted,
+                                       inside.end - inside.begin);
   const long cells = detail::follow_ray(grid, blocks, ray_grid, inside, integrator);
   RayResult result = integrator.result();
   result.cells = cells;
-  if (with_depth && result.opacity > 0) {
-    MultivariateRayIntegrator again(grid, transfer, largest_extinction, wanted, length);
-    // There exp(-a) = 1 - opacity/2.
-    again.look_for(-log1p(-0.5 * result.opacity));
-    detail::follow_ray(grid, blocks, ray_grid, inside, again);
-    result.half_opacity_depth = again.found();
+  if (with_depth) {
+    result.half_opacity_depth = find_multivariate_half_opacity(
+        grid, blocks, ray_grid, transfer, largest_extinction, wanted, result.opacity);
   }
   return result;
 }

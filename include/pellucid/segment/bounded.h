@@ -12,20 +12,22 @@ namespace pellucid {
 template <class T>
 struct BoundedSegment {
   SegmentResult<T> segment;
-  T color_error{};      ///< |ĉ - c| α̂, the largest of the channels: at the opacity that is used
-  T opacity_error{};    ///< |α̂ - α|
-  bool proved = true;   ///< whether both rest on proofs
-  bool panels = false;  ///< whether Gauss panels were used
+  T color_error{};    ///< |ĉ - c| α̂, the largest of the channels: at the opacity that is used
+  T opacity_error{};  ///< |α̂ - α|
+  mask_t<T> proved = mask_t<T>(true);   ///< whether both rest on proofs
+  mask_t<T> panels = mask_t<T>(false);  ///< whether Gauss panels were used
 };
 
 /// compose(), with the errors of both: those of the back are seen through the front.
 template <class T>
 PELLUCID_HD constexpr BoundedSegment<T> compose(const BoundedSegment<T>& front,
                                                 const BoundedSegment<T>& back) noexcept {
-  return {compose(front.segment, back.segment),
-          front.color_error + front.segment.transparency * back.color_error,
-          front.opacity_error + front.segment.transparency * back.opacity_error,
-          front.proved && back.proved, front.panels || back.panels};
+  BoundedSegment<T> both{compose(front.segment, back.segment),
+                         front.color_error + front.segment.transparency * back.color_error,
+                         front.opacity_error + front.segment.transparency * back.opacity_error};
+  both.proved = front.proved & back.proved;
+  both.panels = front.panels | back.panels;
+  return both;
 }
 
 }  // namespace pellucid

@@ -45,7 +45,7 @@ class GaussianCubic {
     }
     upper_ = T(0);
     for (int k = 0; k < 4; ++k) upper_ = max(upper_, dot(p_[k], p_[k]));
-    lower_ = squared_distance();
+    lower_ = rows_ == 1 ? squared_gap() : squared_distance();
   }
 
   /// Bounds on the exponent |p|² all over [0, 1].
@@ -84,12 +84,14 @@ class GaussianCubic {
   }
   PELLUCID_HD LineLoss<T> line_loss(const Line& l) const noexcept {
     T m1 = T(0.857764), m2 = T(2), m3 = T(3.905);
-    const T s = sqrt(lower_) - l.farthest;
-    if (s >= T(1)) {
-      const T far = exp(-(s * s));
-      m1 = min(m1, T(2) * s * far);
-      m2 = min(m2, (T(4) * (s * s) + T(2)) * far);
-      m3 = min(m3, (T(8) * (s * s) + T(12)) * s * far);
+    const T s = max(sqrt(lower_) - l.farthest, T(0));
+    const auto away = s >= T(1);
+    if (any(away)) {
+      const T far = select(away, exp(-(s * s)), T(largest<T>));
+      const T s2 = max(s * s, T(1));
+      m1 = min(m1, T(2) * max(s, T(1)) * min(far, T(1e9)));
+      m2 = min(m2, (T(4) * s2 + T(2)) * min(far, T(1e9)));
+      m3 = min(m3, (T(8) * s2 + T(12)) * max(s, T(1)) * min(far, T(1e9)));
     }
     const T norm = sqrt(l.squared_norm);
     const T absolute = min(m1 * norm, T(1));
@@ -108,6 +110,14 @@ class GaussianCubic {
     return sum;
   }
 
+  /// The square of the distance of 0 from the range of the coefficients, of one row.
+  PELLUCID_HD T squared_gap() const noexcept {
+    const T lower = min(min(p_[0][0], p_[3][0]), min(p_[1][0], p_[2][0]));
+    const T upper = max(max(p_[0][0], p_[3][0]), max(p_[1][0], p_[2][0]));
+    const T gap = max(T(0), max(lower, -upper));
+    return gap * gap;
+  }
+
   /// A lower bound on the squared distance of the coefficients' hull from 0: the hull lies beyond
   /// the plane at right angles to any x at min p_k·x / |x|. x goes from the mean of the
   /// coefficients towards the nearest point of the hull (Gilbert 1966).
@@ -120,27 +130,30 @@ class GaussianCubic {
     constexpr int steps = 4;
     for (int step = 0; step < steps; ++step) {
       const T xx = dot(x, x);
-      if (!(xx > T(smallest_normal<T>))) break;
-      int nearest = 0;
       T least = dot(p_[0], x);
+      T nearest[most_channels];
+      for (int i = 0; i < rows_; ++i) nearest[i] = p_[0][i];
       for (int k = 1; k < 4; ++k) {
         const T along = dot(p_[k], x);
-        if (along < least) {
-          least = along;
-          nearest = k;
-        }
+        const auto nearer = along < least;
+        least = min(least, along);
+        for (int i = 0; i < rows_; ++i) nearest[i] = select(nearer, p_[k][i], nearest[i]);
       }
       // Rounding of the products must not raise the bound.
-      if (least > T(0)) best = max(best, least * (least / xx) * (T(1) - T(64 * rounding_unit<T>)));
-      if (!(least < T(0.95) * xx)) break;
+      const T ahead = max(least, T(0));
+      best = max(best,
+                 ahead * (ahead / max(xx, T(smallest_normal<T>))) * T(1 - 64 * rounding_unit<T>));
+      const auto go_on = (least < T(0.95) * xx) & (xx > T(smallest_normal<T>));
+      if (none(go_on)) break;
       // The point of the stretch from x to p that is nearest to 0.
       T difference = T(0);
       for (int i = 0; i < rows_; ++i) {
-        const T away = x[i] - p_[nearest][i];
-        difference += away * away;
+        const T between = x[i] - nearest[i];
+        difference += between * between;
       }
-      const T share = clamp((xx - least) / difference, T(0), T(1));
-      for (int i = 0; i < rows_; ++i) x[i] += share * (p_[nearest][i] - x[i]);
+      const T share = select(
+          go_on, clamp((xx - least) / max(difference, T(smallest_normal<T>)), T(0), T(1)), T(0));
+      for (int i = 0; i < rows_; ++i) x[i] += share * (nearest[i] - x[i]);
     }
     return min(best, upper_);
   }

@@ -49,14 +49,9 @@ struct SeenGaussian {
 template <class T>
 PELLUCID_HD T parabola_range(T bend, T slope) noexcept {
   const T end = bend + slope;
-  T lower = min(T(0), end), upper = max(T(0), end);
-  const T turn = T(-0.5) * slope / bend;
-  if (turn > T(0) && turn < T(1)) {
-    const T there = T(0.5) * slope * turn;
-    lower = min(lower, there);
-    upper = max(upper, there);
-  }
-  return upper - lower;
+  const T turn = T(-0.5) * slope / select(bend == T(0), T(1), bend);
+  const T there = select((turn > T(0)) & (turn < T(1)), T(0.5) * slope * turn, T(0));
+  return max(max(T(0), end), there) - min(min(T(0), end), there);
 }
 
 /// The color of a sum of Gaussians along a segment, by panels.

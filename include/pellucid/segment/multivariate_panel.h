@@ -25,23 +25,23 @@ struct MultivariateSpan {
   }
 };
 
-/// How good a panel has to be, and what is known without looking.
+/// How good a panel has to be, and what is known without looking. T may be a batch: panels in
+/// lanes, of which one without length is none.
 template <class T>
 struct PanelDemand {
   PrimitiveSet primitives;
   Grade grade = Grade::estimated;
-  T largest_color = T(1);    ///< C_max >= 1: a bound on every color on the ray
-  T place_error{};           ///< how far the ends may be from where they are thought to be, world
-  bool last_resort = false;  ///< whatever comes out has to do
+  scalar_t<T> largest_color = 1;  ///< C_max >= 1: a bound on every color on the ray
+  T place_error{};  ///< how far the ends may be from where they are thought to be, world
+  mask_t<T> last_resort = mask_t<T>(false);  ///< whatever comes out has to do
 };
 
 /// A panel done, or why it is not.
 template <class T>
 struct PanelSegment {
   BoundedSegment<T> found;
-  T opacity{};         ///< a bound on it, which the allowance was asked for
-  bool done = false;   ///< else: cut it at `cut` and try the parts
-  bool clear = false;  ///< nothing that is seen
+  T opacity{};                        ///< a bound on it, which the allowance was asked for
+  mask_t<T> done = mask_t<T>(false);  ///< else: cut it at `cut` and try the parts
   T cut = T(0.5);
 
   PELLUCID_HD T error(T largest_color) const noexcept {
@@ -63,9 +63,24 @@ PELLUCID_HD constexpr T cubic_panel_estimate(T exponents) noexcept {
                              {S(1.8e-2), S(2.7e-3), S(3.5e-4), S(4.4e-6), S(2.0e-8)},
                              {S(5.9e-2), S(1.2e-2), S(2.5e-3), S(6.9e-5), S(1.3e-6)}};
   constexpr int column = N <= 4 ? N - 2 : N / 2;
-  const int row = exponents <= T(0.25) ? 0 : exponents <= T(0.5) ? 1 : exponents <= T(1) ? 2 : 3;
-  return exponents <= T(2) ? T(2) * T(worst[row][column]) : T(1);
+  const T low = select(exponents <= T(0.25), T(worst[0][column]), T(worst[1][column]));
+  const T high = select(exponents <= T(1), T(worst[2][column]), T(worst[3][column]));
+  return select(exponents <= T(2), T(2) * select(exponents <= T(0.5), low, high), T(1));
 }
+
+/// What a PanelIntegrator keeps of a panel's Gaussians: too much for a small stack where T is a
+/// batch.
+template <class T>
+struct PanelRoom {
+  /// Along the line its exponent is bend u² + slope u and a constant.
+  struct Term {
+    int primitive;
+    T mass;  ///< its depth; 0 where it does not matter
+    T loss;  ///< how far that may be off, because of the line
+    T bend, slope;
+  };
+  Term term[most_gaussians];
+};
 
 namespace detail {
 
@@ -80,108 +95,197 @@ struct TopTwo {
   PELLUCID_HD T sum() const noexcept { return first + second; }
 };
 
+/// What the tables of a transfer function do on a panel.
+template <class T>
+struct PanelTables {
+  DepthWeightedColor<T> sum;
+  T most{};           ///< a bound on their depth
+  T rounding{};       ///< of the depth
+  T colors{};         ///< how much the color of any one of them changes
+  TopTwo<T> changes;  ///< of the logarithms of their extinctions
+};
+
+/// Lane by lane where T is a batch: tables are looked up one number at a time.
+template <class S>
+PELLUCID_HD PanelTables<S> measure_tables(const Multivariate<S>& transfer,
+                                          const MultivariateSpan<S>& span,
+                                          S largest_color) noexcept {
+  PanelTables<S> result;
+  for (int i = 0; i < transfer.tables; ++i) {
+    const PiecewiseLinear<S>& table = transfer.table[i].table;
+    const CubicBernstein<S>& data = span.data[transfer.table[i].channel];
+    const S error = data_rounding(data);
+    const int first = table.interval(data.hull_min() - error);
+    const int last = table.interval(data.hull_max() + error);
+    if (!table.has_extinction(first, last)) continue;
+    result.rounding += rounding_error(data, span.length, largest_color, table, first, last, error,
+                                      sensitivity(table, first, last, error))
+                           .depth;
+    const TableMass<S> mass = table_mass(data, table, span.length);
+    if (!(mass.depth > S(0))) continue;
+    result.most += mass.upper * span.length;
+    result.sum.add(mass.depth, mass.color);
+    result.sum.range.add(true, mass.range.lower);
+    result.sum.range.add(true, mass.range.upper);
+    result.colors = max(result.colors, mass.range.oscillation());
+    result.changes.add(mass.lower > S(0) ? log(mass.upper / mass.lower) : S(1e6));
+  }
+  result.rounding = min(result.rounding, S(1));
+  return result;
+}
+
 /// One panel: all terms measured, then the cheapest rule that is good enough.
 template <class T, class Allowance>
 class PanelIntegrator {
+  using S = scalar_t<T>;
+
  public:
-  PELLUCID_HD PanelIntegrator(const Multivariate<T>& transfer, const MultivariateSpan<T>& span,
-                              const PanelDemand<T>& demand, const Allowance& allowance) noexcept
-      : transfer_(transfer), span_(span), demand_(demand), allowance_(allowance) {}
+  PELLUCID_HD PanelIntegrator(const Multivariate<S>& transfer, const MultivariateSpan<T>& span,
+                              const PanelDemand<T>& demand, const Allowance& allowance,
+                              PanelRoom<T>& room) noexcept
+      : transfer_(transfer),
+        span_(span),
+        demand_(demand),
+        allowance_(allowance),
+        largest_color_(T(demand.largest_color)),
+        term_(room.term) {}
 
   PELLUCID_HD PanelSegment<T> run() noexcept {
     PanelSegment<T> result;
-    find_gaussians();
-    measure_tables();
-    const T most = most_ + tables_most_ + rest_;
+    measure_gaussians();
+    if (transfer_.tables > 0) add_tables();
+    const T most = most_ + tables_.most + rest_;
     result.opacity = min(most, T(1));
-    if (count_ == 0 && !(tables_most_ > T(0))) {
-      result.clear = result.done = true;
-      result.found.opacity_error = min(rest_ + tables_rounding_, T(1));
-      return result;
-    }
-    const T allowed = allowance_(result.opacity);
-    const T moved = demand_.place_error * (most / span_.length);
-    aside_ = rest_ + rounding_ + tables_rounding_ + min(moved, T(1));
-    measure_lines();
-    finish(allowed, attenuation(most).opacity, result);
+    const T length = max(span_.length, T(smallest_normal<T>));
+    fixed_ = rounding_ + tables_.rounding + min(demand_.place_error * (most / length), T(1));
+    finish(result);
     return result;
   }
 
  private:
-  /// A Gaussian that matters. Along the line its exponent is bend u² + slope u and a constant.
-  struct Term {
-    int primitive;
-    T mass;  ///< its depth
-    T loss;  ///< how far that may be off, because of the line
-    T bend, slope;
-  };
+  using Term = typename PanelRoom<T>::Term;
 
-  PELLUCID_HD const Gaussian<T>& gaussian(const Term& term) const noexcept {
+  PELLUCID_HD const Gaussian<S>& gaussian(const Term& term) const noexcept {
     return transfer_.gaussians.primitive[term.primitive];
   }
+  PELLUCID_HD static Rgb<T> color_of(const Gaussian<S>& g) noexcept {
+    return {T(g.color.r), T(g.color.g), T(g.color.b)};
+  }
 
-  /// The Gaussians that matter. The others, together at most an eighth of what every panel of the
-  /// length is allowed, are left out.
-  PELLUCID_HD void find_gaussians() noexcept {
-    const GaussianMixture<T>& all = transfer_.gaussians;
-    const T negligible = allowance_(T(0)) / (T(8) * T(max(all.count, 1)) * demand_.largest_color);
+  /// The Gaussians that matter: their depths along the lines, and what the lines leave out. The
+  /// others, together at most an eighth of what every panel of the length is allowed, are left out.
+  PELLUCID_HD void measure_gaussians() noexcept {
+    const GaussianMixture<S>& all = transfer_.gaussians;
+    const T negligible = allowance_(T(0)) / (T(8 * max(all.count, 1)) * largest_color_);
     for (int i = 0; i < all.count; ++i) {
       if (!demand_.primitives.holds(i)) continue;
-      const Gaussian<T>& g = all.primitive[i];
+      const Gaussian<S>& g = all.primitive[i];
       const GaussianCubic<T> cubic(g, span_.data);
-      const T bound = g.peak * span_.length * exp(-cubic.lower());
-      if (!(bound > negligible)) {
-        rest_ += bound;
-        continue;
-      }
-      term_[count_++].primitive = i;
-      most_ += bound;
-      exponents_ = max(exponents_, cubic.upper() - cubic.lower());
-      colors_.add(true, g.color);
-      // The closed form's own, with its logarithm; and K (v - c), which is off by some units of its
-      // largest terms, seen through the density's slope: (2.4 max(1, s)) e^(-s²) at most, |p| >= s.
-      const T away = sqrt(max(cubic.lower(), T(1)));
-      rounding_ +=
-          bound * T(rounding_unit<T>) * (T(48) + T(32) * cubic.lower() + T(160) * away * reach(g));
+      const T peak = T(g.peak) * span_.length;
+      const T bound = peak * exp(-cubic.lower());
+      const auto matters = bound > negligible;
+      rest_ += select(matters, T(0), bound);
+      if (any(matters)) measure(i, g, cubic, peak, bound, matters);
     }
+  }
+
+  template <class Mask>
+  PELLUCID_HD void measure(int primitive, const Gaussian<S>& g, const GaussianCubic<T>& cubic,
+                           T peak, T bound, Mask matters) noexcept {
+    const auto line = cubic.line();
+    const LineLoss<T> loss = cubic.line_loss(line);
+    const auto part = [&](T x) noexcept { return select(matters, x, T(0)); };
+    Term& term = term_[count_++];
+    term.primitive = primitive;
+    term.mass = part(peak * cubic.mean_density(line));
+    term.loss = part(peak * loss.mean);
+    term.bend = line.squared_length;
+    term.slope = cubic.slope(line);
+    most_ += part(bound);
+    loss_ += term.loss;
+    absolute_loss_ += part(peak * loss.absolute);
+    exponents_ = max(exponents_, part(cubic.upper() - cubic.lower()));
+    bend_ = max(bend_, part((T(2) * sqrt(cubic.upper()) + line.farthest) * line.farthest));
+    sum_.add(term.mass, color_of(g));
+    // The closed form's own, with its logarithm; and K (v - c), which is off by some units of its
+    // largest terms, seen through the density's slope: (2.4 max(1, s)) e^(-s²) at most, |p| >= s.
+    const T away = sqrt(max(cubic.lower(), T(1)));
+    rounding_ += part(
+        bound * (T(rounding_unit<T>) * (T(48) + T(32) * cubic.lower() + T(160) * away * reach(g))));
   }
 
   /// max |K| |v - c| over the span, moduli entry by entry.
-  PELLUCID_HD T reach(const Gaussian<T>& g) const noexcept {
-    T largest = T(0);
+  PELLUCID_HD T reach(const Gaussian<S>& g) const noexcept {
+    T largest_row = T(0);
     for (int i = 0; i < g.rows; ++i) {
       T sum = T(0);
       for (int c = 0; c < g.channels; ++c) {
+        if (g.matrix[i][c] == S(0)) continue;
         const CubicBernstein<T>& f = span_.data[c];
-        const T away = max(abs(f.hull_min()), abs(f.hull_max())) + abs(g.center[c]);
-        sum += abs(g.matrix[i][c]) * away;
+        const T away = max(abs(f.hull_min()), abs(f.hull_max())) + T(abs(g.center[c]));
+        sum += T(abs(g.matrix[i][c])) * away;
       }
-      largest = max(largest, sum);
+      largest_row = max(largest_row, sum);
     }
-    return largest * sqrt(T(g.rows));
+    return largest_row * T(sqrt(S(g.rows)));
   }
 
-  PELLUCID_HD void measure_tables() noexcept {
-    for (int i = 0; i < transfer_.tables; ++i) {
-      const PiecewiseLinear<T>& table = transfer_.table[i].table;
-      const CubicBernstein<T>& data = span_.data[transfer_.table[i].channel];
-      const T error = data_rounding(data);
-      const int first = table.interval(data.hull_min() - error);
-      const int last = table.interval(data.hull_max() + error);
-      if (!table.has_extinction(first, last)) continue;
-      tables_rounding_ += rounding_error(data, span_.length, demand_.largest_color, table, first,
-                                         last, error, sensitivity(table, first, last, error))
-                              .depth;
-      const TableMass<T> mass = table_mass(data, table, span_.length);
-      if (!(mass.depth > T(0))) continue;
-      tables_most_ += mass.upper * span_.length;
-      tables_.add(mass.depth, mass.color);
-      tables_.range.add(true, mass.range.lower);
-      tables_.range.add(true, mass.range.upper);
-      table_colors_ = max(table_colors_, mass.range.oscillation());
-      table_changes_.add(mass.lower > T(0) ? log(mass.upper / mass.lower) : T(1e6));
+  PELLUCID_HD void add_tables() noexcept {
+    if constexpr (lanes<T> == 1) {
+      tables_ = measure_tables(transfer_, span_, largest_color_);
+    } else {
+      tables_in_lanes();
     }
-    tables_rounding_ = min(tables_rounding_, T(1));
+    // The sum of the Gaussians, then that of the tables: both are running means.
+    const T depth = sum_.depth + tables_.sum.depth;
+    const T share = tables_.sum.depth / max(depth, T(smallest_normal<T>));
+    const auto there = tables_.sum.depth > T(0);
+    sum_.color += select(there, share, T(0)) * (tables_.sum.color - sum_.color);
+    sum_.depth = depth;
+    sum_.range.add(there, tables_.sum.range.lower);
+    sum_.range.add(there, tables_.sum.range.upper);
+  }
+
+  PELLUCID_HD void tables_in_lanes() noexcept {
+    constexpr int n = lanes<T>, fields = 15;
+    S in[4][most_channels][n], lengths[n], out[fields][n];
+    for (int c = 0; c < transfer_.channels; ++c) {
+      for (int k = 0; k < 4; ++k) span_.data[c].b[k].store(in[k][c]);
+    }
+    span_.length.store(lengths);
+    for (int l = 0; l < n; ++l) {
+      MultivariateSpan<S> one;
+      for (int c = 0; c < transfer_.channels; ++c) {
+        for (int k = 0; k < 4; ++k) one.data[c].b[k] = in[k][c][l];
+      }
+      one.length = lengths[l];
+      const PanelTables<S> t = measure_tables(transfer_, one, S(demand_.largest_color));
+      const S all[fields] = {t.sum.depth,
+                             t.sum.color.r,
+                             t.sum.color.g,
+                             t.sum.color.b,
+                             t.sum.range.lower.r,
+                             t.sum.range.lower.g,
+                             t.sum.range.lower.b,
+                             t.sum.range.upper.r,
+                             t.sum.range.upper.g,
+                             t.sum.range.upper.b,
+                             t.most,
+                             t.rounding,
+                             t.colors,
+                             t.changes.first,
+                             t.changes.second};
+      for (int f = 0; f < fields; ++f) out[f][l] = all[f];
+    }
+    T field[fields];
+    for (int f = 0; f < fields; ++f) field[f] = T::load(out[f]);
+    tables_.sum.depth = field[0];
+    tables_.sum.color = {field[1], field[2], field[3]};
+    tables_.sum.range = {{field[4], field[5], field[6]}, {field[7], field[8], field[9]}};
+    tables_.most = field[10];
+    tables_.rounding = field[11];
+    tables_.colors = field[12];
+    tables_.changes = {field[13], field[14]};
   }
 
   PELLUCID_HD Material<T> material(T u) const noexcept {
@@ -190,58 +294,45 @@ class PanelIntegrator {
     T extinction = T(0);
     Rgb<T> emission{};
     for (int n = 0; n < count_; ++n) {
-      const Gaussian<T>& g = gaussian(term_[n]);
-      const T here = g.peak * g.density(v);
+      const Gaussian<S>& g = gaussian(term_[n]);
+      const T here = T(g.peak) * g.density(v);
       extinction += here;
-      emission += here * g.color;
+      emission += here * color_of(g);
     }
-    if (!(extinction > T(0))) return {};
-    return {extinction, (T(1) / extinction) * emission};
+    const auto absorbs = extinction >= T(smallest_normal<T>);
+    const T inverse = select(absorbs, T(1), T(0)) / select(absorbs, extinction, T(1));
+    return {select(absorbs, extinction, T(0)), inverse * emission};
   }
 
-  /// The color by N Gauss nodes, if they are estimated to do.
-  template <int N>
-  PELLUCID_HD bool try_nodes_of(T allowed, T oscillation, BoundedSegment<T>& found) const noexcept {
+  /// The color by N Gauss nodes where it is wanted and they are estimated to do.
+  template <int N, class Mask>
+  PELLUCID_HD void try_nodes_of(T allowed, T oscillation, Mask& wanted,
+                                BoundedSegment<T>& found) const noexcept {
     const T alpha = found.segment.opacity;
-    const T error = cubic_panel_estimate<N>(exponents_) * oscillation * alpha;
-    if (!(error <= allowed)) return false;
-    found.segment.radiance = alpha * sum_.range.clamped(panel_color(PanelNodes<N, T>(
-                                         span_.length, [&](T u) noexcept { return material(u); })));
-    found.color_error = error;
-    found.proved = false;
-    found.panels = true;
-    return true;
+    const T error = cubic_panel_estimate<N>(exponents_) * (oscillation * alpha);
+    const auto good = wanted & (error <= allowed);
+    if (none(good)) return;
+    const Rgb<T> color = alpha * sum_.range.clamped(panel_color(PanelNodes<N, T>(
+                                     span_.length, [&](T u) noexcept { return material(u); })));
+    Rgb<T>& radiance = found.segment.radiance;
+    radiance = {select(good, color.r, radiance.r), select(good, color.g, radiance.g),
+                select(good, color.b, radiance.b)};
+    found.color_error = select(good, error, found.color_error);
+    found.proved = found.proved & !good;
+    found.panels = found.panels | good;
+    wanted = wanted & !good;
   }
 
-  PELLUCID_HD bool try_nodes(T allowed, T oscillation, BoundedSegment<T>& found) const noexcept {
-    if (demand_.grade == Grade::proved || tables_most_ > T(0)) return false;
-    if (!(most_ <= T(1) && T(8) * bend_ <= exponents_)) return false;
-    return try_nodes_of<2>(allowed, oscillation, found) ||
-           try_nodes_of<3>(allowed, oscillation, found) ||
-           try_nodes_of<4>(allowed, oscillation, found) ||
-           try_nodes_of<6>(allowed, oscillation, found) ||
-           try_nodes_of<8>(allowed, oscillation, found);
-  }
-
-  /// Depths along the lines, and what the lines leave out.
-  PELLUCID_HD void measure_lines() noexcept {
-    sum_ = tables_;
-    for (int n = 0; n < count_; ++n) {
-      Term& term = term_[n];
-      const Gaussian<T>& g = gaussian(term);
-      const GaussianCubic<T> cubic(g, span_.data);
-      const auto line = cubic.line();
-      const T peak = g.peak * span_.length;
-      const LineLoss<T> loss = cubic.line_loss(line);
-      term.mass = peak * cubic.mean_density(line);
-      term.loss = peak * loss.mean;
-      term.bend = line.squared_length;
-      term.slope = cubic.slope(line);
-      bend_ = max(bend_, (T(2) * sqrt(cubic.upper()) + line.farthest) * line.farthest);
-      loss_ += term.loss;
-      absolute_loss_ += peak * loss.absolute;
-      sum_.add(term.mass, g.color);
-    }
+  template <class Mask>
+  PELLUCID_HD void try_nodes(T allowed, T oscillation, Mask wanted,
+                             BoundedSegment<T>& found) const noexcept {
+    if (demand_.grade == Grade::proved) return;
+    wanted = wanted & (most_ <= T(1)) & (T(8) * bend_ <= exponents_) & !(tables_.most > T(0));
+    if (any(wanted)) try_nodes_of<2>(allowed, oscillation, wanted, found);
+    if (any(wanted)) try_nodes_of<3>(allowed, oscillation, wanted, found);
+    if (any(wanted)) try_nodes_of<4>(allowed, oscillation, wanted, found);
+    if (any(wanted)) try_nodes_of<6>(allowed, oscillation, wanted, found);
+    if (any(wanted)) try_nodes_of<8>(allowed, oscillation, wanted, found);
   }
 
   /// What the terms with more depth than `negligible` do.
@@ -252,98 +343,112 @@ class PanelIntegrator {
   };
   PELLUCID_HD Matter matter(T negligible) const noexcept {
     Matter result;
-    result.colors = tables_.range;
-    int heaviest = 0;
-    for (int n = 1; n < count_; ++n) {
-      if (term_[n].mass > term_[heaviest].mass) heaviest = n;
-    }
-    // Beside a table, whose extinction is no exponential, each is seen on its own.
-    const bool alone = tables_most_ > T(0);
-    TopTwo<T> changes = table_changes_;
+    result.colors = tables_.sum.range;
+    // Beside a table, whose extinction is no exponential, each is seen on its own; else as its
+    // ratio to the heaviest.
+    T heaviest = T(0), bend_of = T(0), slope_of = T(0);
+    const auto alone = tables_.most > T(0);
     for (int n = 0; n < count_; ++n) {
       const Term& term = term_[n];
-      if (!(term.mass > negligible)) {
-        result.left_out += term.mass;
-        continue;
-      }
-      result.colors.add(true, gaussian(term).color);
-      const T bend = alone ? term.bend : term.bend - term_[heaviest].bend;
-      const T slope = alone ? term.slope : term.slope - term_[heaviest].slope;
-      const T rounding =
-          T(16 * rounding_unit<T>) * (abs(term.bend) + abs(term.slope) + abs(bend) + abs(slope));
-      if (alone || n != heaviest) changes.add(parabola_range(bend, slope) + rounding);
+      const auto heavier = term.mass > heaviest;
+      heaviest = max(heaviest, term.mass);
+      bend_of = select(heavier & !alone, term.bend, bend_of);
+      slope_of = select(heavier & !alone, term.slope, slope_of);
+    }
+    TopTwo<T> changes = tables_.changes;
+    for (int n = 0; n < count_; ++n) {
+      const Term& term = term_[n];
+      const auto counts = term.mass > negligible;
+      result.left_out += select(counts, T(0), term.mass);
+      if (none(counts)) continue;
+      result.colors.add(counts, color_of(gaussian(term)));
+      const T bend = term.bend - bend_of, slope = term.slope - slope_of;
+      const T sizes = abs(term.bend) + abs(term.slope) + abs(bend_of) + abs(slope_of);
+      const T change = parabola_range(bend, slope) + T(16 * rounding_unit<T>) * sizes;
+      // The heaviest against itself changes nothing.
+      const auto same = (term.mass == heaviest) & (bend == T(0)) & (slope == T(0));
+      changes.add(select(counts & (alone | !same), change, T(0)));
     }
     result.change = changes.sum();
     return result;
   }
 
-  PELLUCID_HD void finish(T allowed, T most_opacity, PanelSegment<T>& result) const noexcept {
-    const T largest = demand_.largest_color;
+  PELLUCID_HD void finish(PanelSegment<T>& result) const noexcept {
+    const T allowed = allowance_(result.opacity);
     BoundedSegment<T>& found = result.found;
-    found = {segment_of_depth(sum_.depth, sum_.color)};
+    found.segment = segment_of_depth(sum_.depth, sum_.color);
     const T alpha = found.segment.opacity;
-    found.opacity_error = min(loss_ + most_opacity * absolute_loss_ + aside_, T(1));
-    const T all_colors = max(sum_.range.oscillation(), T(1e-6) * largest);
-    const Matter m = matter(allowed / (T(16) * T(max(count_, 1)) * all_colors));
+    const T loss = loss_ + max(result.opacity, alpha) * absolute_loss_ + rest_;
+    found.opacity_error = min(loss + fixed_, T(1));
+    const T all_colors = max(sum_.range.oscillation(), T(1e-6) * largest_color_);
+    const Matter m = matter(allowed / (T(16 * max(count_, 1)) * all_colors));
     // Weights e^s whose s differ by at most Δ move a mean of colors by at most ω tanh(Δ/4); the
     // colors of a table change by themselves.
     const T range = m.colors.oscillation();
-    const T left_out = min(T(2) * m.left_out, alpha) * all_colors;
-    found.color_error = min(range, range * (T(0.25) * m.change) + table_colors_) *
+    found.color_error = min(range, range * (T(0.25) * m.change) + tables_.colors) *
                             (alpha * mean_color_bound(sum_.depth)) +
-                        left_out;
-    const T left = allowed - largest * found.opacity_error;
-    if (found.color_error > left && left > T(0)) try_nodes(left, all_colors, found);
-    result.done = result.error(largest) <= allowed || demand_.last_resort;
-    if (!result.done) {
-      result.cut = best_cut(largest * loss_ > found.color_error, allowed);
+                        min(T(2) * m.left_out, alpha) * all_colors;
+    // What cutting does not lower must not make it go on forever.
+    const T payable = max(allowed - largest_color_ * fixed_, T(0.5) * allowed);
+    const T left = payable - largest_color_ * loss;
+    const auto wanted = (found.color_error > left) & (left > T(0));
+    if (any(wanted)) try_nodes(left, all_colors, wanted, found);
+    result.done = (found.color_error + largest_color_ * loss <= payable) | demand_.last_resort;
+    if (!all(result.done)) {
+      result.cut = best_cut(largest_color_ * loss_ > found.color_error, allowed);
     }
   }
 
   /// Where to cut: beside the Gaussian that asks for it most, so that it is left alone between two
   /// cuts; in the middle where that is not inside, or where it is wide.
-  PELLUCID_HD T best_cut(bool by_loss, T allowed) const noexcept {
-    int worst = 0;
-    for (int n = 1; n < count_; ++n) {
-      const bool more =
-          by_loss ? term_[n].loss > term_[worst].loss : term_[n].mass > term_[worst].mass;
-      if (more) worst = n;
+  template <class Mask>
+  PELLUCID_HD T best_cut(Mask by_loss, T allowed) const noexcept {
+    T most = T(0), bend = T(0), slope = T(0), peak = T(0);
+    for (int n = 0; n < count_; ++n) {
+      const Term& term = term_[n];
+      const T size = select(by_loss, term.loss, term.mass);
+      const auto more = size > most;
+      most = max(most, size);
+      bend = select(more, term.bend, bend);
+      slope = select(more, term.slope, slope);
+      peak = select(more, T(gaussian(term).peak), peak);
     }
-    if (count_ == 0 || !(term_[worst].bend > T(16))) return T(0.5);
-    const Term& term = term_[worst];
-    const T length = sqrt(term.bend), middle = T(-0.5) * term.slope / term.bend;
-    const T seen = gaussian(term).peak * span_.length * demand_.largest_color / allowed;
-    const T reach = sqrt(clamp(log(T(64) * seen), T(2), T(60))) / length;
-    const auto inside = [](T u) noexcept { return u > T(0.02) && u < T(0.98); };
-    if (inside(middle - reach)) return middle - reach;
-    if (inside(middle + reach)) return middle + reach;
-    return inside(middle) ? middle : T(0.5);
+    const auto narrow = bend > T(16);
+    if (none(narrow)) return T(0.5);
+    bend = max(bend, T(16));
+    const T middle = T(-0.5) * slope / bend;
+    const T seen = peak * span_.length * (largest_color_ / max(allowed, T(smallest_normal<T>)));
+    const T reach = sqrt(clamp(log(max(T(64) * seen, T(1))), T(2), T(60)) / bend);
+    const auto inside = [&](T u) noexcept { return narrow & (u > T(0.02)) & (u < T(0.98)); };
+    const T in_it = select(inside(middle), middle, T(0.5));
+    const T behind = select(inside(middle + reach), middle + reach, in_it);
+    return select(inside(middle - reach), middle - reach, behind);
   }
 
-  const Multivariate<T>& transfer_;
+  const Multivariate<S>& transfer_;
   const MultivariateSpan<T>& span_;
   const PanelDemand<T>& demand_;
   const Allowance& allowance_;
+  T largest_color_;
 
-  Term term_[most_gaussians];
+  Term* term_;
   int count_ = 0;
   T most_{};       ///< a bound on their depth, together
   T exponents_{};  ///< how much an exponent changes at most
-  T rest_{}, rounding_{};
-  ColorRange<T> colors_;
-  DepthWeightedColor<T> tables_, sum_;
-  T tables_most_{}, tables_rounding_{}, table_colors_{};
-  TopTwo<T> table_changes_;
-  T aside_{};  ///< of the depth: what is left out, and what rounding does, whatever the rule
+  T bend_{};       ///< how much it differs from that of its line at most
   T loss_{}, absolute_loss_{};
-  T bend_{};  ///< how much an exponent differs from that of its line at most
+  T rest_{}, rounding_{};
+  PanelTables<T> tables_;
+  DepthWeightedColor<T> sum_;
+  T fixed_{};  ///< of the depth: what rounding does, however the panel is cut
 };
 
 }  // namespace detail
 
 /// The volume rendering integral (particle model) of a sum of Gaussians and piecewise-linear
 /// functions along data that are cubics, or why the panel has to be cut. allowance(opacity): how
-/// large PanelSegment::error() may be, >= its value at 0 > 0.
+/// large PanelSegment::error() may be, >= its value at 0 > 0. Where nothing is seen the segment is
+/// clear, and its errors say what was left out.
 ///
 /// Lines stand for the cubics (gaussian_cubic.h), each depth in closed form; tables have their
 /// exact depth. The color is the mean of theirs; or, where that is not enough and the grade is
@@ -354,16 +459,27 @@ class PanelIntegrator {
 /// Let δ_i be the change of extinction of term i where its line is put in its place. Along the way
 /// from one to the other the pixel's X changes by Y, |Y| = |∫ Σ w_i δ_i| in front, w_i = T (c_i -
 /// X_behind): |w_i| <= C_max, and w_i' = -τ T (c_i - c) for the mean color c, so that w_i varies by
-/// at most C_max α on the panel, α its opacity. Hence |Y| <= C_max Σ (|∫ δ_i| + α ∫ |δ_i|), which
-/// is charged as an error of the opacity. The mean color then costs ω κ(m) per opacity
-/// (segment/gaussian_panels.h), ω the range of the mean of the colors on the panel: at most
-/// (range of all) · Δ/4 + (range of a table's own color), Δ as there.
+/// at most C_max α on the panel, α its opacity, of the cubics or the lines. Hence |Y| <= C_max Σ
+/// (|∫ δ_i| + α ∫ |δ_i|), which is charged as an error of the opacity. The mean color then costs ω
+/// κ(m) per opacity (segment/gaussian_panels.h), ω the range of the mean of the colors on the
+/// panel: at most (range of all) · Δ/4 + (range of a table's own color), Δ as there.
+///
+/// T: double, or a batch of it, panels in lanes. `room` is for the function alone.
+template <class T, class Allowance>
+PELLUCID_HD PanelSegment<T> integrate_multivariate_panel(const Multivariate<scalar_t<T>>& transfer,
+                                                         const MultivariateSpan<T>& span,
+                                                         const PanelDemand<T>& demand,
+                                                         const Allowance& allowance,
+                                                         PanelRoom<T>& room) noexcept {
+  return detail::PanelIntegrator<T, Allowance>(transfer, span, demand, allowance, room).run();
+}
 template <class T, class Allowance>
 PELLUCID_HD PanelSegment<T> integrate_multivariate_panel(const Multivariate<T>& transfer,
                                                          const MultivariateSpan<T>& span,
                                                          const PanelDemand<T>& demand,
                                                          const Allowance& allowance) noexcept {
-  return detail::PanelIntegrator<T, Allowance>(transfer, span, demand, allowance).run();
+  PanelRoom<T> room;
+  return integrate_multivariate_panel(transfer, span, demand, allowance, room);
 }
 
 }  // namespace pellucid

@@ -16,7 +16,6 @@ struct TableMass {
   ColorRange<T> range;  ///< of the colors that are seen, at least
   /// The least and the largest extinction, at least as far apart as they are.
   T lower = T(largest<T>), upper{};
-  bool smooth = true;  ///< whether the stretch lies in one interval of the table
 };
 
 namespace detail {
@@ -39,7 +38,6 @@ PELLUCID_HD TableMass<T> table_mass(const CubicBernstein<T>& data, const Piecewi
   TableMass<T> result;
   DepthWeightedColor<T> sum;
   for_each_interval(data, table, [&](int interval, T begin, T end, T front, T back) noexcept {
-    if (begin > T(0) || end < T(1)) result.smooth = false;
     const CubicPiece<T> piece = make_cubic_piece(data, table, interval, begin, end, front, back);
     const T t0 = piece.extinction_near, dt = piece.extinction_change;
     const T lo = clamp(piece.share.hull_min(), T(0), T(1));

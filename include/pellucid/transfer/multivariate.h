@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "pellucid/math/constants.h"
 #include "pellucid/transfer/gaussian.h"
 
 namespace pellucid {
@@ -22,8 +23,8 @@ struct Multivariate {
   int tables = 0;
   int channels = 1;  ///< 1 … most_channels
 
-  /// The extinction, and the color that makes color · extinction the sum of all; no color where
-  /// nothing absorbs. v has `channels` numbers.
+  /// The extinction, and the color that makes color · extinction the sum of all. Nothing where the
+  /// extinction is no normal number: its quotients could overflow. v has `channels` numbers.
   PELLUCID_HD Material<S> evaluate(const S* v) const noexcept {
     S extinction = S(0);
     Rgb<S> emission{};
@@ -38,7 +39,7 @@ struct Multivariate {
       extinction += here.extinction;
       emission += here.extinction * here.color;
     }
-    if (!(extinction > S(0))) return {};
+    if (!(extinction >= S(smallest_normal<S>))) return {};
     return {extinction, (S(1) / extinction) * emission};
   }
 };

@@ -1,0 +1,343 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "pellucid/error/budget.h"
+#include "pellucid/packet/cell_chunk.h"
+#include "pellucid/packet/multivariate_interface.h"
+#include "pellucid/packet/panel_list.h"
+#include "pellucid/segment/fold.h"
+#include "pellucid/traverse/block_walk.h"
+#include "pellucid/traverse/multivariate_blocks.h"
+
+#if PELLUCID_HAS_BATCH_4
+namespace pellucid {
+
+/// One ray through several fields within a tolerance, as MultivariateRayIntegrator, with N panels
+/// in lanes: the lanes lie one behind the other on the ray. Each may cost what it could if all in
+/// front of it took their shares (RayBudget::allowance_ahead), so that they can be done together.
+///
+/// Cells are gathered N at a time. Those in which nothing matters are passed over at once; the
+/// others become panels, of which the first N that are not done are tried together, and cut where
+/// they have to be. What is done is folded as soon as all in front of it is.
+template <int N>
+class MultivariateRay {
+  using B = Batch<double, N>;
+
+ public:
+  /// What a ray needs to work; too large for the stack of a small thread.
+  struct Room {
+    static constexpr int chunks = 8;
+    CellChunk<N> chunk[chunks];
+    PanelList panels;
+    PanelRoom<B> terms;
+  };
+
+  MultivariateRay(const PellucidMultivariateJob& job, const PellucidRay& ray, Room& room) noexcept
+      : job_(job),
+        grid_(*static_cast<const MultichannelGrid*>(job.grid)),
+        blocks_(*static_cast<const MultivariateBlocks*>(job.blocks)),
+        transfer_(*static_cast<const Multivariate<double>*>(job.transfer)),
+        ray_{{ray.origin[0], ray.origin[1], ray.origin[2]},
+             {ray.direction[0], ray.direction[1], ray.direction[2]}},
+        largest_color_(max(job.largest_color, 1.0)),
+        room_(room),
+        block_walk_(blocks_.records, ray_, {ray.begin, ray.end}),
+        cell_walk_(grid_.axis, ray_, {ray.begin, ray.begin}),
+        budget_(job.tolerance, ray.end - ray.begin) {
+    room_.panels.clear();
+    demand_.grade = job.proved != 0 ? Grade::proved : Grade::estimated;
+    demand_.largest_color = largest_color_;
+  }
+
+  void run() noexcept {
+    bool more = true;
+    while (!done()) {
+      while (more && pending_ < N && live_chunks() < Room::chunks && room_.panels.room() >= 4 * N) {
+        more = gather();
+      }
+      if (room_.panels.front() < 0) {
+        if (!more) break;
+        continue;
+      }
+      integrate();
+      fold();
+    }
+  }
+
+  void store(PellucidRayResult& result) const noexcept {
+    // Folding in double costs 4 u a panel (segment/fold.h).
+    const double folding = 4 * rounding_unit<double> * largest_color_ * folded_;
+    const Rgb<double> radiance = fold_.radiance();
+    result = {};
+    result.radiance[0] = radiance.r;
+    result.radiance[1] = radiance.g;
+    result.radiance[2] = radiance.b;
+    result.opacity = fold_.opacity();
+    result.optical_depth = fold_.optical_depth();
+    result.error = budget_.spent() + rest() + folding;
+    result.cells = result.evaluations = cells_;
+    result.skipped = skipped_;
+    result.closed = folded_ - nodes_;
+    result.panels = nodes_;
+    result.proved = proved_ ? 1 : 0;
+  }
+
+ private:
+  static constexpr int most_cuts = 60;
+
+  bool done() const noexcept { return rest() <= budget_.left(); }
+
+  /// A bound on what lies behind: as little as light can come from there.
+  double rest() const noexcept {
+    const double opacity = min(job_.largest_extinction * budget_.length_left(), 1.0);
+    return fold_.transparency() * opacity * largest_color_;
+  }
+
+  /// A stretch in which so much depth, at most, is left out.
+  void skip(double length, double depth) noexcept {
+    ++skipped_;
+    budget_.spend(length, 0, fold_.transparency(), largest_color_ * min(depth, 1.0));
+  }
+
+  /// The next cell that is not in a block to skip; false behind the last one.
+  bool next_cell(StructuredWalk<double>::Step& step) noexcept {
+    while (!cell_walk_.next(step)) {
+      BlockStep block;
+      if (!block_walk_.next(blocks_.classes.block, block)) return false;
+      if (blocks_.classes[block.block].kind == BlockKind::skip) {
+        const double length = block.t_end - block.t_begin;
+        skip(length, blocks_.left_out * length);
+        continue;
+      }
+      primitives_ = blocks_.primitives[block.block];
+      cell_walk_ = StructuredWalk<double>(grid_.axis, ray_, {block.t_begin, block.t_end});
+    }
+    return true;
+  }
+
+  int live_chunks() const noexcept { return newest_ - oldest_; }
+  CellChunk<N>& chunk(int number) noexcept { return room_.chunk[number % Room::chunks]; }
+
+  /// Another chunk of cells; false behind the last one.
+  bool gather() noexcept {
+    CellChunk<N>& cells = chunk(newest_);
+    cells.clear();
+    StructuredWalk<double>::Step step;
+    bool more = true;
+    while (!cells.full() && (more = next_cell(step))) {
+      ++cells_;
+      cells.add(grid_, step, primitives_);
+    }
+    if (cells.count() == 0) return more;
+    cells.finish(grid_.channels);
+    cull(cells);
+    return more;
+  }
+
+  /// Makes panels of the cells in which something matters.
+  void cull(CellChunk<N>& cells) noexcept {
+    CubicBernstein<B> data[most_channels];
+    for (int c = 0; c < grid_.channels; ++c) data[c] = cells.cubic(c);
+    const B length = cells.lengths();
+    const GaussianMixture<double>& all = transfer_.gaussians;
+    const B negligible =
+        length *
+        B(budget_.for_length() / (fold_.transparency() * 8 * max(all.count, 1) * largest_color_));
+    unsigned seen = 0;
+    B rest(0.0);
+    PrimitiveSet wanted[N];
+    for (PrimitiveSet& set : wanted) set.bits = 0;
+    PrimitiveSet any_cell{0};
+    for (int l = 0; l < cells.count(); ++l) any_cell.bits |= cells.primitives(l).bits;
+    for (int i = 0; i < all.count; ++i) {
+      if (!any_cell.holds(i)) continue;
+      const Gaussian<double>& g = all.primitive[i];
+      const B bound = B(g.peak) * length * exp(-GaussianCubic<B>(g, data).lower());
+      const auto matters = bound > negligible;
+      rest += select(matters, B(0.0), bound);
+      const unsigned here = bits(matters);
+      seen |= here;
+      for (unsigned left = here; left != 0; left &= left - 1) {
+        wanted[__builtin_ctz(left)].bits |= 1ULL << (i & 63);
+      }
+    }
+    double left_out[N];
+    rest.store(left_out);
+    for (int l = 0; l < cells.count(); ++l) {
+      if (!cells.filled(l)) {
+        skip(cells.length(l), 0);
+      } else if ((seen >> l & 1) != 0 || table_absorbs(cells, l)) {
+        cells.primitives(l) = wanted[l];
+        room_.panels.append(newest_, l);
+        ++pending_;
+      } else {
+        skip(cells.length(l), left_out[l] + blocks_.left_out * cells.length(l));
+      }
+    }
+    if (room_.panels.front() >= 0) ++newest_;
+  }
+
+  bool table_absorbs(const CellChunk<N>& cells, int lane) const noexcept {
+    for (int i = 0; i < transfer_.tables; ++i) {
+      const ChannelTable<double>& t = transfer_.table[i];
+      CubicBernstein<double> data;
+      for (int k = 0; k < 4; ++k) data.b[k] = cells.coefficient(t.channel, k, lane);
+      const double error = data_rounding(data);
+      if (t.table.has_extinction(t.table.interval(data.hull_min() - error),
+                                 t.table.interval(data.hull_max() + error))) {
+        return true;
+      }
+    }
+    return false;
+  }
+
+  /// Tries the first N panels that are not done.
+  void integrate() noexcept {
+    int index[N], count = 0;
+    const int most = min(N, max(room_.panels.room(), 1));
+    for (int i = room_.panels.front(); i >= 0 && count < most; i = room_.panels.next(i)) {
+      if (!room_.panels[i].done) index[count++] = i;
+    }
+    if (count == 0) return;
+    const MultivariateSpan<B> span = load(index, count);
+    const double transparency = fold_.transparency();
+    Shares shares;
+    const B from_length = span.length * B(budget_.for_length());
+    from_length.store(shares.from_length);
+    const auto allowance = [&](B opacity) noexcept {
+      return (share_out(opacity, shares) + from_length) * B(1 / transparency);
+    };
+    const PanelSegment<B> panel =
+        integrate_multivariate_panel(transfer_, span, demand_, allowance, room_.terms);
+    take(panel, span.length, shares, index, count);
+  }
+
+  /// What the lanes may take of the budget.
+  struct Shares {
+    double from_opacity[N], from_length[N];
+  };
+  /// Shares of the pot that is there for opacity, from front to back.
+  B share_out(B opacity, Shares& shares) const noexcept {
+    double of_lane[N], left = budget_.for_opacity();
+    opacity.store(of_lane);
+    for (int l = 0; l < N; ++l) {
+      shares.from_opacity[l] = left * of_lane[l];
+      left -= shares.from_opacity[l];
+    }
+    return B::load(shares.from_opacity);
+  }
+
+  MultivariateSpan<B> load(const int* index, int count) noexcept {
+    double data[most_channels][4][N], begin[N], end[N], length[N], place[N];
+    demand_.primitives.bits = 0;
+    unsigned last_resort = 0;
+    bool whole = true;
+    for (int l = 0; l < N; ++l) {
+      const PanelList::Panel& panel = room_.panels[index[l < count ? l : 0]];
+      CellChunk<N>& cells = chunk(panel.chunk);
+      for (int c = 0; c < grid_.channels; ++c) {
+        for (int k = 0; k < 4; ++k) data[c][k][l] = cells.coefficient(c, k, panel.lane);
+      }
+      begin[l] = panel.begin;
+      end[l] = panel.end;
+      length[l] = l < count ? cells.length(panel.lane) : 0;
+      // Cuts inside of a cell are where they are thought to be.
+      place[l] = panel.begin > 0 ? 0 : cells.place_error(panel.lane);
+      demand_.primitives.bits |= cells.primitives(panel.lane).bits;
+      whole = whole && panel.begin == 0 && panel.end == 1;
+      const bool small = !(panel.end - panel.begin > 1e-9) || panel.cuts >= most_cuts;
+      if (small || room_.panels.room() < 2) last_resort |= 1u << l;
+    }
+    demand_.last_resort = BatchMask<N>::from_bits(last_resort);
+    demand_.place_error = B::load(place);
+    MultivariateSpan<B> span;
+    for (int c = 0; c < grid_.channels; ++c) {
+      for (int k = 0; k < 4; ++k) span.data[c].b[k] = B::load(data[c][k]);
+    }
+    span.length = B::load(length);
+    return whole ? span : span.part(grid_.channels, B::load(begin), B::load(end));
+  }
+
+  void take(const PanelSegment<B>& panel, B length, const Shares& shares, const int* index,
+            int count) noexcept {
+    const B error = panel.error(B(largest_color_)) +
+                    B(largest_color_) * min(B(blocks_.left_out) * length, B(1.0));
+    const SegmentResult<B>& s = panel.found.segment;
+    double cut[N], lengths[N], errors[N], segment[6][N];
+    panel.cut.store(cut);
+    length.store(lengths);
+    error.store(errors);
+    s.optical_depth.store(segment[0]);
+    s.opacity.store(segment[1]);
+    s.transparency.store(segment[2]);
+    s.radiance.r.store(segment[3]);
+    s.radiance.g.store(segment[4]);
+    s.radiance.b.store(segment[5]);
+    const unsigned done = bits(panel.done), proved = bits(panel.found.proved),
+                   nodes = bits(panel.found.panels);
+    for (int l = 0; l < count; ++l) {
+      PanelList::Panel& of = room_.panels[index[l]];
+      if ((done >> l & 1) == 0) {
+        const double at = of.begin + cut[l] * (of.end - of.begin);
+        room_.panels.cut(index[l], at > of.begin && at < of.end ? at : 0.5 * (of.begin + of.end));
+        ++pending_;
+        continue;
+      }
+      of.done = true;
+      of.segment = {segment[0][l],
+                    segment[1][l],
+                    segment[2][l],
+                    {segment[3][l], segment[4][l], segment[5][l]}};
+      of.length = lengths[l];
+      of.error = errors[l];
+      of.from_opacity = shares.from_opacity[l];
+      of.from_length = shares.from_length[l];
+      budget_.reserve(of.from_opacity);
+      of.proved = (proved >> l & 1) != 0;
+      of.nodes = (nodes >> l & 1) != 0;
+      --pending_;
+    }
+  }
+
+  /// Folds what is done at the front.
+  void fold() noexcept {
+    PanelList& panels = room_.panels;
+    while (panels.front() >= 0 && panels[panels.front()].done) {
+      const PanelList::Panel& panel = panels[panels.front()];
+      budget_.spend_reserved(panel.length, panel.from_opacity, panel.from_length,
+                             fold_.transparency(), panel.error);
+      fold_.add(panel.segment);
+      if (panel.segment.optical_depth > 0) {
+        ++folded_;
+        nodes_ += panel.nodes ? 1 : 0;
+        proved_ = proved_ && panel.proved;
+      } else {
+        ++skipped_;
+      }
+      panels.remove_front();
+      if (done()) return;
+    }
+    oldest_ = panels.front() >= 0 ? panels[panels.front()].chunk : newest_;
+  }
+
+  const PellucidMultivariateJob& job_;
+  const MultichannelGrid& grid_;
+  const MultivariateBlocks& blocks_;
+  const Multivariate<double>& transfer_;
+  Ray<double> ray_;
+  double largest_color_;
+  Room& room_;
+  BlockWalk block_walk_;
+  StructuredWalk<double> cell_walk_;  ///< of the block that the ray stands in
+  PrimitiveSet primitives_;           ///< of that block
+  RayBudget<double> budget_;
+  FrontToBack<double> fold_{0.0};
+  PanelDemand<B> demand_;
+  int oldest_ = 0, newest_ = 0;  ///< chunks that panels refer to: oldest_ <= number < newest_
+  int pending_ = 0;              ///< panels that are not done
+  std::int32_t cells_ = 0, skipped_ = 0, folded_ = 0, nodes_ = 0;
+  bool proved_ = true;
+};
+
+}  // namespace pellucid
+#endif
