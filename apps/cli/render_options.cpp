@@ -46,7 +46,7 @@ void add_output_options(CLI::App& command, RenderArguments& arguments) {
 void add_scene_options(CLI::App& command, RenderArguments& arguments) {
   command
       .add_option("--channel", arguments.channels,
-                  "A variable of the data, may be given several times; SOURCE is a file, "
+                  "A variable of the data, may be given several times; SOURCE is a file, FILE[C], "
                   "builtin:NAME, gradient_magnitude:CHANNEL, second_derivative:CHANNEL or "
                   "smoothed:CHANNEL:SIGMA; beside INPUT, which is the channel 'value', or without")
       ->option_text("NAME=SOURCE")

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <utility>
 #include <variant>
@@ -153,7 +154,9 @@ void add_channels(const RenderArguments& arguments, bool is_scene, SceneDescript
       ChannelSource channel = parse_channel_source(text);
       auto* field = std::get_if<FieldSource>(&channel.source);
       if (field != nullptr && field->builtin.empty() && !is_scene) {
+        const std::optional<int> component = field->options.component;
         field->options = arguments.volume.read_options();
+        if (component) field->options.component = component;
       }
       description.channels.push_back(std::move(channel));
     }

@@ -6,6 +6,7 @@
 #include <charconv>
 #include <cmath>
 #include <memory>
+#include <optional>
 #include <utility>
 
 #include "pellucid/scene/derived_channels.h"
@@ -36,6 +37,18 @@ std::string_view cut(std::string_view& rest, char separator) {
   const std::string_view part = rest.substr(0, at);
   rest.remove_prefix(at == std::string_view::npos ? rest.size() : at + 1);
   return part;
+}
+
+/// The C of "FILE[C]", which is taken off.
+std::optional<int> take_component(std::string_view& text) {
+  const std::size_t open = text.rfind('[');
+  if (!text.ends_with(']') || open == std::string_view::npos) return std::nullopt;
+  int component = 0;
+  const char* const end = text.data() + text.size() - 1;
+  const auto result = std::from_chars(text.data() + open + 1, end, component);
+  if (result.ec != std::errc() || result.ptr != end || component < 0) return std::nullopt;
+  text = text.substr(0, open);
+  return component;
 }
 
 double sigma_of(std::string_view text, std::string_view number) {
@@ -112,7 +125,13 @@ ChannelSource parse_channel_source(std::string_view text) {
     cut(rest, ':');
     return {std::string(name), "", derived_source(text, kind, rest)};
   }
-  return {std::string(name), "", parse_field_source(rest)};
+  const std::optional<int> component = take_component(rest);
+  FieldSource field = parse_field_source(rest);
+  if (component && !field.builtin.empty()) {
+    fail(text, "a built-in field has no components; remove the brackets");
+  }
+  field.options.component = component;
+  return {std::string(name), "", std::move(field)};
 }
 
 std::vector<std::string> channel_names(const std::vector<ChannelSource>& sources) {

@@ -22,8 +22,9 @@ bool ends_with_extension(std::string file, std::initializer_list<std::string_vie
                      [&](std::string_view e) { return std::string_view(file).ends_with(e); });
 }
 
-const std::vector<std::string_view> file_keys{"file",       "dimensions", "type",   "byte_order",
-                                              "skip_bytes", "spacing",    "origin", "centering"};
+const std::vector<std::string_view> file_keys{"file",       "component",  "dimensions", "type",
+                                              "components", "byte_order", "skip_bytes", "spacing",
+                                              "origin",     "centering"};
 const std::vector<std::string_view> builtin_keys{"builtin", "points"};
 const std::vector<std::string_view> channel_keys{"name", "unit"};
 
@@ -53,7 +54,7 @@ FieldSource file_source(const Node& field, const std::filesystem::path& folder) 
   // Files with a header say these themselves; two sources of one truth would have to be compared.
   if (ends_with_extension(path, {".nii", ".nii.gz", ".hdr", ".hdr.gz", ".img", ".img.gz", ".nrrd",
                                  ".nhdr", ".mha", ".mhd", ".npy"})) {
-    for (const char* key : {"dimensions", "type", "byte_order", "skip_bytes"}) {
+    for (const char* key : {"dimensions", "type", "components", "byte_order", "skip_bytes"}) {
       if (field.has(key)) {
         field.fail_at(key, "makes no sense for " + scene_json::printable(path) +
                                ", which has a header; remove it (it is for headerless .raw)");
@@ -74,6 +75,12 @@ FieldSource file_source(const Node& field, const std::filesystem::path& folder) 
   if (const auto type = field.find("type")) {
     type->one_of({"u8", "i8", "u16", "i16", "u32", "i32", "f32", "f64"});
     source.options.type = type->string();
+  }
+  if (const auto components = field.find("components")) {
+    source.options.components = static_cast<int>(components->integer(1, largest_grid));
+  }
+  if (const auto component = field.find("component")) {
+    source.options.component = static_cast<int>(component->integer(0, largest_grid));
   }
   if (const auto order = field.find("byte_order")) {
     source.options.big_endian = order->one_of({"little", "big"}) == 1;

@@ -2,6 +2,7 @@
 """Several variables: --channel, --gaussian, and scenes that have them."""
 
 import json
+import struct
 import unittest
 
 from program import ProgramTest, npy, ramp
@@ -88,6 +89,15 @@ class Channels(ProgramTest):
                             "1~1, 1~1; extinction 1")
         for channel in volume["channels"]:
             self.assertEqual((channel["type"], channel["spacing"]), ("u8", [1, 2, 3]))
+
+    def test_components_of_a_file(self):
+        both = [value for pair in zip(ramp(2), turned(2)) for value in pair]
+        self.write("c.raw", struct.pack("<16f", *both))
+        options = ("--dimensions", "2,2,2", "--type", "f32", "--components", "2")
+        volume = self.saved("--channel", "x=c.raw[0]", "--channel", "z=c.raw[1]", *options,
+                            "--gaussian", "1~1, 1~1; extinction 1")
+        self.assertEqual([c["component"] for c in volume["channels"]], [0, 1])
+        self.refuse("c.raw", "--channel", "x=c.raw[2]", *options, "--gaussian", "1~1; extinction 1")
 
     def test_wrong_arguments(self):
         def refuse(pattern, *arguments):

@@ -38,6 +38,15 @@ TEST(ChannelSource, ReadsFieldsAndWhatIsMadeOfThem) {
   const ChannelSource field = parse_channel_source("b=builtin:ramp:7");
   EXPECT_EQ(std::get<FieldSource>(field.source).builtin, "ramp");
   EXPECT_EQ(std::get<FieldSource>(field.source).points, 7);
+  const auto component = [](const char* text) {
+    return std::get<FieldSource>(parse_channel_source(text).source);
+  };
+  EXPECT_EQ(component("u=V1.nii.gz[2]").file, "V1.nii.gz");
+  EXPECT_EQ(component("u=V1.nii.gz[2]").options.component, 2);
+  EXPECT_EQ(component("u=V1.nii.gz").options.component, std::nullopt);
+  EXPECT_EQ(component("u=V[-1]").file, "V[-1]");
+  EXPECT_EQ(component("u=V[x]").file, "V[x]");
+  EXPECT_EQ(component("u=[0].npy").file, "[0].npy");
   const auto made = [](const char* text) {
     return std::get<DerivedSource>(parse_channel_source(text).source);
   };
@@ -56,6 +65,7 @@ TEST(ChannelSource, SaysWhatIsWrong) {
   expect_refused("a b=T1.nii.gz", {"\"a b\" is no name of a channel", "without spaces"});
   expect_refused("t1=", {"name of the field is empty"});
   expect_refused("t1=builtin:shels", {"did you mean \"shells\"?"});
+  expect_refused("t1=builtin:shells[1]", {"a built-in field has no components"});
   expect_refused("e=gradient_magnitude", {"does not say of which channel"});
   expect_refused("e=gradient_magnitude:", {"does not say of which channel"});
   expect_refused("e=gradient_magnitude:t1:3", {"\"3\" stands behind the channel; remove it"});

@@ -130,7 +130,8 @@ bool same(const FieldSource& a, const FieldSource& b) {
   return a.file == b.file && a.builtin == b.builtin && a.points == b.points &&
          p.dimensions == q.dimensions && p.type == q.type &&
          p.big_endian.value_or(false) == q.big_endian.value_or(false) &&
-         p.skip_bytes == q.skip_bytes && same(p.spacing, q.spacing) && same(p.origin, q.origin) &&
+         p.skip_bytes == q.skip_bytes && p.components == q.components &&
+         p.component == q.component && same(p.spacing, q.spacing) && same(p.origin, q.origin) &&
          p.centering == q.centering;
 }
 bool same(const ChannelSource& a, const ChannelSource& b) {

@@ -31,8 +31,9 @@ inline constexpr std::string_view field_channel = "value";
 /// "gradient_magnitude", "second_derivative", "smoothed".
 std::string_view derived_name(DerivedSource::Kind kind) noexcept;
 
-/// "NAME=SOURCE": a field (parse_field_source), or "gradient_magnitude:CHANNEL",
-/// "second_derivative:CHANNEL" or "smoothed:CHANNEL:SIGMA". Throws Error.
+/// "NAME=SOURCE": a field (parse_field_source), "FILE[C]" (component C of a file that has several),
+/// "gradient_magnitude:CHANNEL", "second_derivative:CHANNEL" or "smoothed:CHANNEL:SIGMA". Throws
+/// Error.
 ChannelSource parse_channel_source(std::string_view text);
 
 /// A name is 1 to 64 bytes without spaces, control characters and , : ; = ~ which stand around
