@@ -24,7 +24,7 @@ namespace {
 
 void print_notes(const RenderArguments& arguments, const PreparedScene& prepared) {
   if (arguments.quiet) return;
-  if (const std::size_t nan = prepared.scene.volume->statistics().nan; nan > 0) {
+  if (const std::size_t nan = nan_values(prepared.scene); nan > 0) {
     print_note(fmt::format("{} values are NaN: rendered as vacuum", nan));
   }
   if (const double used = prepared.scene.integration.tolerance; used != prepared.tolerance_asked) {
@@ -135,10 +135,11 @@ int run_render(const RenderArguments& arguments) {
 Command add_render(CLI::App& app) {
   CLI::App& command = *app.add_subcommand("render", "Render a volume or a scene to an image");
   const auto arguments = std::make_shared<RenderArguments>();
-  command
-      .add_option("INPUT", arguments->input,
-                  std::string(input_help) + ", SCENE.json or builtin:NAME[:POINTS]")
-      ->required();
+  command.add_option(
+      "INPUT", arguments->input,
+      std::string(input_help) +
+          ", SCENE.json or builtin:NAME[:POINTS]; may be left out where --channel is "
+          "given");
   add_render_options(command, *arguments);
   command.footer(
       fmt::format("Built-in fields, of POINTS values along each axis (128):\n  {}\n",
@@ -152,6 +153,9 @@ Command add_render(CLI::App& app) {
       "  pellucid render scene.json -o scene.exr --size 1920x1080 --samples 2 --json\n"
       "  pellucid render scene.json -o scene.exr --tolerance 1/4096 --grade proved --error-map "
       "e.png\n"
+      "  pellucid render brain.nii.gz -o edges.png\n"
+      "      --gaussian 'value=80~15, gradient_magnitude=20~5; extinction 0.2; color #ffcc99'\n"
+      "  pellucid render --channel t1=T1.nii.gz --channel t2=T2.nii.gz --tf tf.json -o o.png\n"
       "  pellucid render builtin:marschner_lobb:256 -o ml.exr --method midpoint --step 0.5\n"
       "  pellucid render head.raw --dimensions 256,256,113 --type u16 --big-endian --spacing "
       "1,1,2\n"

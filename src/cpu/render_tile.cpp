@@ -4,57 +4,10 @@
 #include <algorithm>
 #include <vector>
 
-#include "pellucid/render/integrate_ray.h"
-#include "pellucid/render/sample_preintegrated.h"
-#include "pellucid/render/sample_ray.h"
 #include "tiles.h"
 
 namespace pellucid {
 namespace {
-
-SamplingRule sampling_rule(Method method) {
-  switch (method) {
-    case Method::rectangle:
-      return SamplingRule::rectangle;
-    case Method::taylor:
-      return SamplingRule::taylor;
-    case Method::midpoint:
-      return SamplingRule::midpoint;
-    case Method::trapezoid:
-      return SamplingRule::trapezoid;
-    case Method::simpson:
-      return SamplingRule::simpson;
-    case Method::linear:
-    case Method::preintegrated:
-    case Method::exact:
-      break;
-  }
-  return SamplingRule::linear;
-}
-
-template <class Value>
-RayResult render_ray(const Frame& frame, const StructuredGrid<Value, double>& grid,
-                     const Ray<double>& ray_world) {
-  const Scene& scene = frame.scene;
-  const Ray<double> ray = scene.volume->grid_from_world().ray(ray_world);
-  const Integration& integration = scene.integration;
-  if (integration.method == Method::exact) {
-    return integrate_ray(grid, frame.blocks ? &*frame.blocks : nullptr, ray,
-                         frame.transfer.tables(), frame.wanted, frame.depth);
-  }
-  const double largest_color = scene.transfer_function->largest_color();
-  const SamplingRule rule = sampling_rule(integration.method);
-  const auto sample = [&]<class T>(const PiecewiseLinear<T>& transfer) {
-    if (frame.preintegrated) {
-      return sample_preintegrated<T>(grid, ray, frame.preintegrated->view(), frame.step,
-                                     largest_color, stop_tolerance<T>(), frame.depth);
-    }
-    return sample_ray<T>(grid, ray, transfer, rule, frame.step, largest_color, stop_tolerance<T>(),
-                         frame.depth);
-  };
-  return integration.precision == Precision::float64 ? sample(frame.transfer.tables().wide)
-                                                     : sample(frame.transfer.tables().single);
-}
 
 /// The mean of a pixel's rays. Its depth is that of the nearest.
 RayResult mean_of(const RayResult* rays, int count) {
@@ -103,37 +56,6 @@ std::vector<Place> places_of(const Tile& tile) {
   return places;
 }
 
-std::vector<RayResult> trace_in_packets(const Frame& frame, const std::vector<Ray<double>>& world) {
-  const Volume& volume = *frame.scene.volume;
-  std::vector<Ray<double>> rays;
-  rays.reserve(world.size());
-  for (const Ray<double>& ray : world) rays.push_back(volume.grid_from_world().ray(ray));
-  std::vector<RayResult> results(rays.size());
-  const int count = static_cast<int>(rays.size());
-  if (frame.sampler) {
-    frame.sampler->trace(rays.data(), count, results.data());
-    return results;
-  }
-  frame.packets->trace(rays.data(), count, results.data());
-  if (!frame.depth) return results;
-  volume.visit([&](const auto& grid) {
-    for (std::size_t i = 0; i < rays.size(); ++i) {
-      results[i].half_opacity_depth = find_half_opacity(grid, rays[i], frame.transfer.tables(),
-                                                        frame.wanted.precision, results[i].opacity);
-    }
-  });
-  return results;
-}
-
-std::vector<RayResult> trace_one_by_one(const Frame& frame, const std::vector<Ray<double>>& world) {
-  std::vector<RayResult> results;
-  results.reserve(world.size());
-  frame.scene.volume->visit([&](const auto& grid) {
-    for (const Ray<double>& ray : world) results.push_back(render_ray(frame, grid, ray));
-  });
-  return results;
-}
-
 }  // namespace
 
 void render_tile(const Frame& frame, const Tile& tile, const ImageView& image,
@@ -151,9 +73,7 @@ void render_tile(const Frame& frame, const Tile& tile, const ImageView& image,
       }
     }
   }
-  const std::vector<RayResult> results = frame.packets || frame.sampler
-                                             ? trace_in_packets(frame, rays)
-                                             : trace_one_by_one(frame, rays);
+  const std::vector<RayResult> results = frame.tracer->trace(rays);
   const RayResult* of_pixel = results.data();
   for (const Place& place : places) {
     store_pixel(frame, mean_of(of_pixel, rays_of_pixel), image.index(place.column, place.row),

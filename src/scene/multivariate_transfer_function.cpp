@@ -195,6 +195,10 @@ MultivariateTransferFunction::MultivariateTransferFunction(
   if (primitives_.empty() && tables_.empty()) {
     fail("it has no terms; give a Gaussian or a piecewise-linear function");
   }
+  if (primitives_.size() > static_cast<std::size_t>(most_gaussians)) {
+    fail("it has " + std::to_string(primitives_.size()) + " Gaussians, but at most " +
+         std::to_string(most_gaussians) + " can be; leave some out");
+  }
   for (std::size_t i = 0; i < primitives_.size(); ++i) {
     const GaussianPrimitive& p = primitives_[i];
     GaussianCheck(p, i, channels).run();

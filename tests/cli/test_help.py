@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 import os
 import re
+import shlex
 import unittest
 
 from program import SOURCE_DIR, ProgramTest, options_of
@@ -50,7 +51,7 @@ class Help(ProgramTest):
         for command in COMMANDS:
             text = self.succeed(command, "--help").split("Examples:\n")[1]
             for example in re.sub(r"\n {4,}", " ", text).strip().splitlines():
-                words = example.split(">")[0].split()
+                words = shlex.split(example.split(" > ")[0])
                 self.assertEqual(words[0], "pellucid")
                 if words[2].startswith("builtin:"):
                     continue

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "pellucid/field/sample.h"
+#include "pellucid/field/multichannel_grid.h"
 #include "pellucid/render/ray_result.h"
 #include "pellucid/segment/classical.h"
 #include "pellucid/segment/fold.h"
 #include "pellucid/segment/linear.h"
+#include "pellucid/transfer/multivariate.h"
 #include "pellucid/traverse/structured_walk.h"
 
 namespace pellucid {
@@ -85,28 +86,26 @@ PELLUCID_HD void fold_march(March&& march, double stop, bool with_depth,
   }
 }
 
-/// Marches a ray (in grid coordinates, its parameter the world arc length) through the grid's box
-/// at the given step (world length, > 0). The last step ends at the box. Samples lie at multiples
-/// of the step from the entry, computed from their index, so that positions do not drift.
-template <class T, class Value>
-PELLUCID_HD RayResult sample_ray(const StructuredGrid<Value, double>& grid,
-                                 const Ray<double>& ray_grid, const PiecewiseLinear<T>& transfer,
-                                 SamplingRule rule, double step, double largest_color,
-                                 double stop_tolerance, bool with_depth) noexcept {
+/// Marches a ray through `box` at the given step (world length, > 0); material_at(t) is what lies
+/// at a place of it. The last step ends at the box. Samples lie at multiples of the step from the
+/// entry, computed from their index, so that positions do not drift.
+template <class T, class MaterialAt>
+PELLUCID_HD RayResult sample_materials(Interval<double> box, const MaterialAt& material_at,
+                                       SamplingRule rule, double step, double largest_color,
+                                       double stop_tolerance, bool with_depth) noexcept {
   RayResult result;
-  const Interval<double> box = grid_interval(grid.axis, ray_grid);
   if (box.empty()) return result;
 
   const bool needs_ends = rule != SamplingRule::midpoint;
   const bool needs_middle = rule == SamplingRule::midpoint || rule == SamplingRule::simpson;
-  const auto at = [&](double t) { return sample_material<T>(grid, transfer, ray_grid.at(t)); };
   const auto march = [&](auto&& visit) {
     double t_begin = box.begin;
-    Material<T> front = needs_ends ? at(t_begin) : Material<T>{};
+    Material<T> front = needs_ends ? material_at(t_begin) : Material<T>{};
     for (long i = 1; t_begin < box.end; ++i) {
       const double t_end = min(box.begin + static_cast<double>(i) * step, box.end);
-      const Material<T> middle = needs_middle ? at(0.5 * (t_begin + t_end)) : Material<T>{};
-      const Material<T> back = needs_ends ? at(t_end) : Material<T>{};
+      const Material<T> middle =
+          needs_middle ? material_at(0.5 * (t_begin + t_end)) : Material<T>{};
+      const Material<T> back = needs_ends ? material_at(t_end) : Material<T>{};
       if (!visit(sampled_segment(rule, front, middle, back, static_cast<T>(t_end - t_begin)),
                  t_begin, t_end)) {
         break;
@@ -118,6 +117,35 @@ PELLUCID_HD RayResult sample_ray(const StructuredGrid<Value, double>& grid,
 
   fold_march<T>(march, stop_tolerance / max(largest_color, 1.0), with_depth, result);
   return result;
+}
+
+/// A ray (in grid coordinates, its parameter the world arc length) through the grid's box.
+template <class T, class Value>
+PELLUCID_HD RayResult sample_ray(const StructuredGrid<Value, double>& grid,
+                                 const Ray<double>& ray_grid, const PiecewiseLinear<T>& transfer,
+                                 SamplingRule rule, double step, double largest_color,
+                                 double stop_tolerance, bool with_depth) noexcept {
+  return sample_materials<T>(
+      grid_interval(grid.axis, ray_grid),
+      [&](double t) noexcept { return sample_material<T>(grid, transfer, ray_grid.at(t)); }, rule,
+      step, largest_color, stop_tolerance, with_depth);
+}
+
+/// The same through several fields.
+template <class T>
+PELLUCID_HD RayResult sample_multivariate_ray(const MultichannelGrid& grid,
+                                              const Ray<double>& ray_grid,
+                                              const Multivariate<T>& transfer, SamplingRule rule,
+                                              double step, double largest_color,
+                                              double stop_tolerance, bool with_depth) noexcept {
+  return sample_materials<T>(
+      grid_interval(grid.axis, ray_grid),
+      [&](double t) noexcept -> Material<T> {
+        T values[most_channels];
+        if (!grid.sample(ray_grid.at(t), values)) return {};
+        return transfer.evaluate(values);
+      },
+      rule, step, largest_color, stop_tolerance, with_depth);
 }
 
 }  // namespace pellucid

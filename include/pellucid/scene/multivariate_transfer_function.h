@@ -42,7 +42,8 @@ struct ChannelTransferFunction {
 /// piecewise-linear functions of single channels, summed (transfer/multivariate.h).
 class MultivariateTransferFunction {
  public:
-  /// Throws Error where there is no term at all, the number of channels is not from 1 to 8, a term
+  /// Throws Error where there is no term at all, there are more than 256 primitives, the
+  /// number of channels is not from 1 to 8, a term
   /// looks at a channel that is not there or twice at one, sizes do not agree, a number is not
   /// finite or beyond ±2.1e37, an extinction or color is negative, or a piecewise-linear term is
   /// an approximation (relative_error() > 0).

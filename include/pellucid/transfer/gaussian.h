@@ -1,12 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "pellucid/base/limits.h"
 #include "pellucid/transfer/piecewise_linear.h"
 
 namespace pellucid {
-
-/// The most channels that a Gaussian primitive looks at.
-inline constexpr int most_channels = 8;
 
 /// A Gaussian primitive over the n channels of the data, 1 <= n <= 8:
 ///
@@ -54,6 +52,15 @@ struct Gaussian {
     T square = T(0);
     for (int i = 0; i < rows; ++i) square = multiply_add(p[i], p[i], square);
     return exp(-square);
+  }
+};
+
+/// Which of a sum's primitives may matter somewhere: bit i mod 64 stands for primitive i.
+struct PrimitiveSet {
+  unsigned long long bits = ~0ULL;
+
+  PELLUCID_HD constexpr bool holds(int primitive) const noexcept {
+    return ((bits >> (primitive & 63)) & 1) != 0;
   }
 };
 

@@ -1,0 +1,249 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "pellucid/error/budget.h"
+#include "pellucid/field/multichannel_grid.h"
+#include "pellucid/render/integrate_cell.h"
+#include "pellucid/segment/fold.h"
+#include "pellucid/segment/multivariate_panel.h"
+#include "pellucid/traverse/block_walk.h"
+#include "pellucid/traverse/multivariate_blocks.h"
+#include "pellucid/traverse/spans.h"
+
+namespace pellucid {
+
+/// What a ray sees of several fields inside one cell; false where it is vacuum.
+template <class T>
+PELLUCID_HD bool make_multivariate_span(const MultichannelGrid& grid,
+                                        const StructuredWalk<double>::Step& step,
+                                        MultivariateSpan<T>& span) noexcept {
+  span.length = static_cast<T>(step.t_end - step.t_begin);
+  for (int c = 0; c < grid.channels; ++c) {
+    const bool filled = grid.with_channel(c, [&](const auto& field) noexcept {
+      CubicSpan<T> one;
+      if (!make_span(field, step, one)) return false;
+      span.data[c] = one.data;
+      return true;
+    });
+    if (!filled) return false;
+  }
+  return true;
+}
+
+/// Integrates one ray through several fields within a tolerance: cuts each cell until every panel
+/// costs no more than the budget pays for, and keeps account of it. In double throughout.
+class MultivariateRayIntegrator {
+ public:
+  /// All that is given is referred to and must outlive the integrator. `length`: of the ray inside
+  /// of the grid, in world units.
+  PELLUCID_HD MultivariateRayIntegrator(const MultichannelGrid& grid,
+                                        const Multivariate<double>& transfer,
+                                        double largest_extinction, const RayTolerance& wanted,
+                                        double length) noexcept
+      : grid_(grid),
+        transfer_(transfer),
+        largest_extinction_(largest_extinction),
+        budget_(wanted.tolerance, length) {
+    demand_.grade = wanted.grade;
+    demand_.largest_color = max(wanted.largest_color, 1.0);
+  }
+
+  /// Asks for the place where the optical depth reaches `depth`; the ray ends there.
+  PELLUCID_HD void look_for(double depth) noexcept { target_ = depth; }
+  /// Its world arc length; infinite where it was not met.
+  PELLUCID_HD double found() const noexcept { return found_; }
+
+  /// Whether what is left of the ray can no longer matter.
+  PELLUCID_HD bool done() const noexcept { return found_ < infinity || rest() <= budget_.left(); }
+
+  /// A stretch whose extinction is at most this and is left out.
+  PELLUCID_HD void skip(double length, double extinction) noexcept {
+    ++counts_.skipped;
+    budget_.spend(length, 0, fold_.transparency(),
+                  demand_.largest_color * min(extinction * length, 1.0));
+  }
+
+  /// One cell of a walk over the grid. `left_out`: a bound on the extinction of the primitives that
+  /// are not in the set.
+  PELLUCID_HD void cell(const StructuredWalk<double>::Step& step, PrimitiveSet primitives,
+                        double left_out) noexcept {
+    ++evaluations_;
+    MultivariateSpan<double> span;
+    if (!make_multivariate_span(grid_, step, span)) {
+      skip(span.length, 0);
+      return;
+    }
+    demand_.primitives = primitives;
+    demand_.place_error = 8 * rounding_unit<double> * step.t_end;
+    // The parts still to do, by their ends, the nearest last.
+    double ends[most_cuts + 1];
+    int open = 1;
+    ends[0] = 1;
+    double begin = 0;
+    while (open > 0) {
+      const double end = ends[open - 1];
+      demand_.last_resort = open > most_cuts || !(end - begin > 1e-9);
+      const PanelSegment<double> panel = integrate(span, begin, end, left_out);
+      if (!panel.done) {
+        const double cut = begin + panel.cut * (end - begin);
+        if (cut > begin && cut < end) {
+          ends[open++] = cut;
+        } else {
+          ends[open++] = 0.5 * (begin + end);
+        }
+        continue;
+      }
+      if (fold_.optical_depth() >= target_) find(span, begin, end, step);
+      begin = end;
+      --open;
+      if (done()) return;
+    }
+  }
+
+  PELLUCID_HD RayResult result() const noexcept {
+    RayResult result;
+    result.radiance = fold_.radiance();
+    result.optical_depth = fold_.optical_depth();
+    result.opacity = fold_.opacity();
+    // Folding in double costs 4 u a span (segment/fold.h).
+    const double folding =
+        4 * rounding_unit<double> * demand_.largest_color * static_cast<double>(panels_);
+    result.error = budget_.spent() + rest() + folding;
+    result.proved = proved_;
+    result.evaluations = evaluations_;
+    result.spans = counts_;
+    return result;
+  }
+
+ private:
+  static constexpr int most_cuts = 60;
+  static constexpr double infinity = std::numeric_limits<double>::infinity();
+
+  /// A bound on what lies behind: as little as light can come from there.
+  PELLUCID_HD double rest() const noexcept {
+    const double opacity = min(largest_extinction_ * budget_.length_left(), 1.0);
+    return fold_.transparency() * opacity * demand_.largest_color;
+  }
+
+  PELLUCID_HD PanelSegment<double> integrate(const MultivariateSpan<double>& whole, double begin,
+                                             double end, double left_out) noexcept {
+    const MultivariateSpan<double> span =
+        begin == 0 && end == 1 ? whole : whole.part(grid_.channels, begin, end);
+    const auto allowance = [&](double opacity) noexcept {
+      return budget_.allowance(span.length, opacity, fold_.transparency());
+    };
+    const PanelSegment<double> panel =
+        integrate_multivariate_panel(transfer_, span, demand_, allowance);
+    if (!panel.done) return panel;
+    ++panels_;
+    const double error = panel.error(demand_.largest_color) +
+                         demand_.largest_color * min(left_out * span.length, 1.0);
+    budget_.spend(span.length, panel.opacity, fold_.transparency(), error);
+    before_ = fold_.optical_depth();
+    if (panel.clear) {
+      ++counts_.skipped;
+      return panel;
+    }
+    ++(panel.found.panels ? counts_.panels : counts_.lines);
+    fold_.add(panel.found.segment);
+    proved_ = proved_ && panel.found.proved;
+    return panel;
+  }
+
+  /// The place in the part [begin, end] of a cell where the depth reaches the target: by bisection,
+  /// with the depths of lines, which is what the tolerance allows there.
+  PELLUCID_HD void find(const MultivariateSpan<double>& span, double begin, double end,
+                        const StructuredWalk<double>::Step& step) noexcept {
+    PanelDemand<double> demand = demand_;
+    demand.last_resort = true;
+    demand.grade = Grade::proved;
+    const auto nothing = [](double) noexcept { return 0.0; };
+    double lo = begin, hi = end;
+    for (int i = 0; i < 24; ++i) {
+      const double middle = 0.5 * (lo + hi);
+      const double inside =
+          integrate_multivariate_panel(transfer_, span.part(grid_.channels, begin, middle), demand,
+                                       nothing)
+              .found.segment.optical_depth;
+      (before_ + inside < target_ ? lo : hi) = middle;
+    }
+    found_ = step.t_begin + hi * (step.t_end - step.t_begin);
+  }
+
+  const MultichannelGrid& grid_;
+  const Multivariate<double>& transfer_;
+  double largest_extinction_;
+  PanelDemand<double> demand_;
+  RayBudget<double> budget_;
+  FrontToBack<double> fold_{0.0};
+  RuleCounts counts_;
+  long evaluations_ = 0, panels_ = 0;
+  bool proved_ = true;
+  double before_ = 0;  ///< the optical depth in front of the last panel
+  double target_ = infinity, found_ = infinity;
+};
+
+namespace detail {
+
+/// Takes the integrator along the ray; returns the number of cells.
+PELLUCID_HD inline long follow_ray(const MultichannelGrid& grid, const MultivariateBlocks* blocks,
+                                   const Ray<double>& ray_grid, Interval<double> inside,
+                                   MultivariateRayIntegrator& integrator) noexcept {
+  long cells = 0;
+  const auto each_cell = [&](Interval<double> range, PrimitiveSet primitives, double left_out) {
+    StructuredWalk<double> walk(grid.axis, ray_grid, range);
+    StructuredWalk<double>::Step step;
+    while (!integrator.done() && walk.next(step)) {
+      ++cells;
+      integrator.cell(step, primitives, left_out);
+    }
+  };
+  if (blocks == nullptr) {
+    each_cell(inside, PrimitiveSet{}, 0);
+    return cells;
+  }
+  BlockWalk walk(blocks->records, ray_grid, inside);
+  BlockStep step;
+  while (!integrator.done() && walk.next(blocks->classes.block, step)) {
+    if (blocks->classes[step.block].kind == BlockKind::skip) {
+      integrator.skip(step.t_end - step.t_begin, blocks->left_out);
+    } else {
+      each_cell({step.t_begin, step.t_end}, blocks->primitives[step.block], blocks->left_out);
+    }
+  }
+  return cells;
+}
+
+}  // namespace detail
+
+/// The volume rendering integral along a ray (in grid coordinates, its parameter the world arc
+/// length) through several trilinear fields, within a tolerance: RayResult::error is at most what
+/// is wanted, unless not even binary64 tells on which side of a jump of a table the data lie, or
+/// keeps so narrow a Gaussian. `blocks`: of the same grid; null: none. `largest_extinction`: a
+/// bound on that of the transfer function.
+PELLUCID_HD inline RayResult integrate_multivariate_ray(
+    const MultichannelGrid& grid, const MultivariateBlocks* blocks, const Ray<double>& ray_grid,
+    const Multivariate<double>& transfer, double largest_extinction, const RayTolerance& wanted,
+    bool with_depth) noexcept {
+  const Interval<double> inside = grid_interval(grid.axis, ray_grid);
+  RayResult nothing;
+  nothing.error = 0;
+  nothing.proved = true;
+  if (inside.empty()) return nothing;
+
+  const double length = inside.end - inside.begin;
+  MultivariateRayIntegrator integrator(grid, transfer, largest_extinction, wanted, length);
+  const long cells = detail::follow_ray(grid, blocks, ray_grid, inside, integrator);
+  RayResult result = integrator.result();
+  result.cells = cells;
+  if (with_depth && result.opacity > 0) {
+    MultivariateRayIntegrator again(grid, transfer, largest_extinction, wanted, length);
+    // There exp(-a) = 1 - opacity/2.
+    again.look_for(-log1p(-0.5 * result.opacity));
+    detail::follow_ray(grid, blocks, ray_grid, inside, again);
+    result.half_opacity_depth = again.found();
+  }
+  return result;
+}
+
+}  // namespace pellucid

@@ -1,0 +1,153 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "pellucid/math/bernstein.h"
+#include "pellucid/segment/gaussian.h"
+
+namespace pellucid {
+
+/// What is lost where a line stands for a cubic in a Gaussian's density, in means over [0, 1].
+template <class T>
+struct LineLoss {
+  T mean{};      ///< |∫ (density of the cubic - density of the line)|, at most
+  T absolute{};  ///< ∫ |density of the cubic - density of the line|, at most
+};
+
+/// A Gaussian primitive along data whose channels are cubics of u in [0, 1]: density(u) =
+/// e^(-|p(u)|²), p(u) = K (v(u) - c) again a cubic, by its Bernstein coefficients.
+///
+/// The least-squares line stands for p (specification, 3.8): end values p̄ ∓ (3/20) (3 (p3 - p0) +
+/// (p2 - p1)). What it leaves out is e(u) = q P2(u) + r P3(u), P the Legendre polynomials on [0,1],
+/// with the second differences D1, D2 of the coefficients q = (D1 + D2)/4, r = (D2 - D1)/20; so
+/// ∫|e|² = |q|²/5 + |r|²/7 =: N², |e| <= |q| + |r|.
+///
+/// Proof of line_loss(). Let φ(x) = e^(-|x|²), M_k the largest |D^k φ| on the way from the line to
+/// the cubic: derivatives of a symmetric form are largest where all directions agree (Banach), and
+/// along a line φ is a Gaussian of its own, so that M_1 = √(2/e), M_2 = 2, M_3 < 3.905; where |x|
+/// >= s >= 1, also (2 s, 4 s² + 2, 8 s³ + 12 s) e^(-s²), which descend from there on.
+///   (A) ∫|φ(p) - φ(l)| <= M_1 ∫|e| <= M_1 N.
+///   (B) φ(p) - φ(l) = ∇φ(l)·e + R, |R| <= M_2 |e|²/2. e is orthogonal to linear functions, so of
+///   ∇φ(l(u)) counts only what a line leaves out, whose second derivative is at most M_3 |d|²: its
+///   L2 norm is at most M_3 |d|²/(12 √5), as for a parabola, because the kernel of that residual,
+///   the Green's function of a clamped beam, is positive. Hence |∫(φ(p) - φ(l))| <= M_3 |d|² N /(12
+///   √5) + M_2 N²/2: fourth order in the width of the panel.
+template <class T>
+class GaussianCubic {
+ public:
+  /// data: one cubic for each channel of the primitive.
+  template <class S>
+  PELLUCID_HD GaussianCubic(const Gaussian<S>& primitive, const CubicBernstein<T>* data) noexcept
+      : rows_(primitive.rows) {
+    for (int k = 0; k < 4; ++k) {
+      T v[most_channels];
+      for (int c = 0; c < primitive.channels; ++c) v[c] = data[c].b[k];
+      primitive.place(v, p_[k]);
+    }
+    upper_ = T(0);
+    for (int k = 0; k < 4; ++k) upper_ = max(upper_, dot(p_[k], p_[k]));
+    lower_ = squared_distance();
+  }
+
+  /// Bounds on the exponent |p|² all over [0, 1].
+  PELLUCID_HD T lower() const noexcept { return lower_; }
+  PELLUCID_HD T upper() const noexcept { return upper_; }
+
+  /// The line, and what it leaves out.
+  struct Line {
+    T front[most_channels], back[most_channels], d[most_channels];
+    T squared_length{};  ///< |d|²
+    T squared_norm{};    ///< N²
+    T farthest{};        ///< |q| + |r|
+  };
+  PELLUCID_HD Line line() const noexcept {
+    Line l;
+    T qq = T(0), rr = T(0);
+    for (int i = 0; i < rows_; ++i) {
+      const T d0 = p_[1][i] - p_[0][i], d1 = p_[2][i] - p_[1][i], d2 = p_[3][i] - p_[2][i];
+      const T mean = T(0.25) * ((p_[0][i] + p_[3][i]) + (p_[1][i] + p_[2][i]));
+      const T half = T(0.15) * (T(3) * (d0 + d1 + d2) + d1);
+      l.front[i] = mean - half;
+      l.back[i] = mean + half;
+      l.d[i] = T(2) * half;
+      l.squared_length += l.d[i] * l.d[i];
+      const T first = d1 - d0, second = d2 - d1;
+      const T q = T(0.25) * (first + second), r = T(0.05) * (second - first);
+      qq += q * q;
+      rr += r * r;
+    }
+    l.squared_norm = T(0.2) * qq + T(1.0 / 7) * rr;
+    l.farthest = sqrt(qq) + sqrt(rr);
+    return l;
+  }
+  PELLUCID_HD T mean_density(const Line& l) const noexcept {
+    return gaussian_mean_density(l.front, l.back, l.d, rows_);
+  }
+  PELLUCID_HD LineLoss<T> line_loss(const Line& l) const noexcept {
+    T m1 = T(0.857764), m2 = T(2), m3 = T(3.905);
+    const T s = sqrt(lower_) - l.farthest;
+    if (s >= T(1)) {
+      const T far = exp(-(s * s));
+      m1 = min(m1, T(2) * s * far);
+      m2 = min(m2, (T(4) * (s * s) + T(2)) * far);
+      m3 = min(m3, (T(8) * (s * s) + T(12)) * s * far);
+    }
+    const T norm = sqrt(l.squared_norm);
+    const T absolute = min(m1 * norm, T(1));
+    // 1/(12 √5) = 0.0372678
+    const T second_order = T(0.03727) * m3 * l.squared_length * norm + T(0.5) * m2 * l.squared_norm;
+    return {min(absolute, second_order), absolute};
+  }
+
+  /// Along the line the exponent is |front|² + slope u + |d|² u².
+  PELLUCID_HD T slope(const Line& l) const noexcept { return T(2) * dot(l.front, l.d); }
+
+ private:
+  PELLUCID_HD T dot(const T* a, const T* b) const noexcept {
+    T sum = T(0);
+    for (int i = 0; i < rows_; ++i) sum = multiply_add(a[i], b[i], sum);
+    return sum;
+  }
+
+  /// A lower bound on the squared distance of the coefficients' hull from 0: the hull lies beyond
+  /// the plane at right angles to any x at min p_k·x / |x|. x goes from the mean of the
+  /// coefficients towards the nearest point of the hull (Gilbert 1966).
+  PELLUCID_HD T squared_distance() const noexcept {
+    T x[most_channels];
+    for (int i = 0; i < rows_; ++i) {
+      x[i] = T(0.25) * ((p_[0][i] + p_[3][i]) + (p_[1][i] + p_[2][i]));
+    }
+    T best = T(0);
+    constexpr int steps = 4;
+    for (int step = 0; step < steps; ++step) {
+      const T xx = dot(x, x);
+      if (!(xx > T(smallest_normal<T>))) break;
+      int nearest = 0;
+      T least = dot(p_[0], x);
+      for (int k = 1; k < 4; ++k) {
+        const T along = dot(p_[k], x);
+        if (along < least) {
+          least = along;
+          nearest = k;
+        }
+      }
+      // Rounding of the products must not raise the bound.
+      if (least > T(0)) best = max(best, least * (least / xx) * (T(1) - T(64 * rounding_unit<T>)));
+      if (!(least < T(0.95) * xx)) break;
+      // The point of the stretch from x to p that is nearest to 0.
+      T difference = T(0);
+      for (int i = 0; i < rows_; ++i) {
+        const T away = x[i] - p_[nearest][i];
+        difference += away * away;
+      }
+      const T share = clamp((xx - least) / difference, T(0), T(1));
+      for (int i = 0; i < rows_; ++i) x[i] += share * (p_[nearest][i] - x[i]);
+    }
+    return min(best, upper_);
+  }
+
+  int rows_;
+  T p_[4][most_channels];
+  T lower_, upper_;
+};
+
+}  // namespace pellucid

@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "pellucid/transfer/gaussian.h"
+
+namespace pellucid {
+
+/// A lower bound on the exponent |K (v - c)|² of a primitive over the box lower <= v <= upper, both
+/// of `channels` numbers: how large the primitive can be anywhere in the box is peak · e^(-bound).
+///
+/// f(v) = |K (v - c)|² is convex, so that from any v of the box, with g = ∇f(v),
+///
+///   f >= f(v) + Σ_k min(g_k (lower_k - v_k), g_k (upper_k - v_k))   all over the box:
+///
+/// a proof wherever v stands, and tight where it is the minimum. v is found by descent along one
+/// axis after the other, which for a K of orthogonal columns ends after one round. It stops when
+/// the bound is within a hundredth of f(v), or above `enough`, or after 32 rounds. Never more than
+/// f at any corner, up to 64 u of the largest terms, which is taken off.
+template <class T>
+PELLUCID_HD T least_exponent(const Gaussian<T>& g, const T* lower, const T* upper,
+                             T enough) noexcept {
+  T gram[most_channels][most_channels];  // K^T K
+  T v[most_channels];                    // measured from the center
+  T scale = T(0);
+  for (int k = 0; k < g.channels; ++k) {
+    for (int l = 0; l <= k; ++l) {
+      T sum = T(0);
+      for (int i = 0; i < g.rows; ++i) sum = multiply_add(g.matrix[i][k], g.matrix[i][l], sum);
+      gram[k][l] = gram[l][k] = sum;
+    }
+    v[k] = clamp(T(0), lower[k] - g.center[k], upper[k] - g.center[k]);
+    const T away = max(abs(lower[k] - g.center[k]), abs(upper[k] - g.center[k])) +
+                   T(4) * abs(g.center[k]) * T(rounding_unit<T>);
+    scale += gram[k][k] * (away * away);
+  }
+  // |K x|² <= channels · Σ gram_kk x_k².
+  const T rounding = T(64 * rounding_unit<T>) * T(g.channels) * scale;
+  T best = T(0);
+  for (int round = 0; round < 32; ++round) {
+    T value = T(0), bound = T(0);
+    for (int k = 0; k < g.channels; ++k) {
+      T half = T(0);  // of the gradient
+      for (int l = 0; l < g.channels; ++l) half = multiply_add(gram[k][l], v[l], half);
+      value += half * v[k];
+      const T to_lower = lower[k] - g.center[k] - v[k], to_upper = upper[k] - g.center[k] - v[k];
+      bound += T(2) * min(half * to_lower, half * to_upper);
+    }
+    bound += value;
+    best = max(best, bound - rounding);
+    if (best >= enough || best >= T(0.99) * value) break;
+    for (int k = 0; k < g.channels; ++k) {
+      if (!(gram[k][k] > T(0))) continue;
+      T rest = T(0);
+      for (int l = 0; l < g.channels; ++l) {
+        if (l != k) rest = multiply_add(gram[k][l], v[l], rest);
+      }
+      v[k] = clamp(-rest / gram[k][k], lower[k] - g.center[k], upper[k] - g.center[k]);
+    }
+  }
+  return best;
+}
+
+}  // namespace pellucid

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "pellucid/cpu/render.h"
+#include "pellucid/geometry/ray.h"
+#include "pellucid/render/integrate_cell.h"
+#include "pellucid/render/ray_result.h"
+
+namespace pellucid {
+
+/// What follows the rays of a frame, made for its data, transfer function and method.
+class RayTracer {
+ public:
+  RayTracer() = default;
+  RayTracer(const RayTracer&) = delete;
+  RayTracer& operator=(const RayTracer&) = delete;
+  virtual ~RayTracer() = default;
+
+  /// What the rays (in the world, directions of length 1) gather. Safe to call from any thread.
+  virtual std::vector<RayResult> trace(const std::vector<Ray<double>>& world) const = 0;
+};
+
+/// What is to be followed. The scene must outlive the tracer; what it needs of the data's blocks is
+/// made on so many threads.
+struct TracerTask {
+  const Scene& scene;
+  const RenderOptions& options;
+  RayTolerance wanted;
+  int threads = 1;
+};
+
+/// Of a volume with a transfer function.
+std::unique_ptr<const RayTracer> make_univariate_tracer(const TracerTask& task);
+/// Of channels with a multivariate transfer function. Throws Error for a method that it has not.
+std::unique_ptr<const RayTracer> make_multivariate_tracer(const TracerTask& task);
+
+}  // namespace pellucid

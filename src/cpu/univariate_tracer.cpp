@@ -1,0 +1,144 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <optional>
+
+#include "packet_sampler.h"
+#include "packet_tracer.h"
+#include "pellucid/render/integrate_ray.h"
+#include "pellucid/render/sample_preintegrated.h"
+#include "pellucid/scene/block_classes_storage.h"
+#include "pellucid/scene/transfer_tables_storage.h"
+#include "preintegrated_storage.h"
+#include "ray_tracer.h"
+#include "sampling_rule.h"
+#include "threads.h"
+
+namespace pellucid {
+namespace {
+
+/// Whether the method has a sampler in packets.
+bool goes_in_packets(const Integration& integration) {
+  return (integration.method == Method::midpoint || integration.method == Method::preintegrated) &&
+         integration.precision != Precision::float64;
+}
+
+class UnivariateTracer : public RayTracer {
+ public:
+  explicit UnivariateTracer(const TracerTask& task);
+
+  std::vector<RayResult> trace(const std::vector<Ray<double>>& world) const override {
+    std::vector<Ray<double>> rays;
+    rays.reserve(world.size());
+    for (const Ray<double>& ray : world) rays.push_back(volume_.grid_from_world().ray(ray));
+    return packets_ || sampler_ ? trace_in_packets(rays) : trace_one_by_one(rays);
+  }
+
+ private:
+  std::vector<RayResult> trace_in_packets(const std::vector<Ray<double>>& rays) const;
+  std::vector<RayResult> trace_one_by_one(const std::vector<Ray<double>>& rays) const;
+  template <class Value>
+  RayResult trace_one(const StructuredGrid<Value, double>& grid, const Ray<double>& ray) const;
+
+  const Integration& integration_;
+  const Volume& volume_;
+  const TransferFunction& transfer_function_;
+  RayTolerance wanted_;
+  bool depth_;   ///< whether the depth of half opacity is asked for
+  double step_;  ///< of the sampling methods, world length
+  TransferTablesStorage transfer_;
+  BlockClassesStorage block_classes_;
+  std::optional<ClassifiedBlocks> blocks_;       ///< none: the method has no use for them
+  std::unique_ptr<const PacketTracer> packets_;  ///< null: rays go one by one, or are sampled
+  std::unique_ptr<const PreintegratedStorage> preintegrated_;  ///< null: another method
+  std::unique_ptr<const PacketSamplerTracer> sampler_;         ///< null: rays go one by one
+};
+
+UnivariateTracer::UnivariateTracer(const TracerTask& task)
+    : integration_(task.scene.integration),
+      volume_(*task.scene.volume),
+      transfer_function_(*task.scene.transfer_function),
+      wanted_(task.wanted),
+      depth_(task.options.depth),
+      step_(integration_.step * volume_.voxel_size()),
+      transfer_(transfer_function_) {
+  const ParallelFor parallel = parallel_for(task.threads);
+  if (integration_.method == Method::preintegrated) {
+    const VolumeStatistics& data = volume_.statistics();
+    preintegrated_ = std::make_unique<PreintegratedStorage>(transfer_.tables().wide, data.minimum,
+                                                            data.maximum, step_, parallel);
+  }
+  const bool samples = goes_in_packets(integration_) && !depth_;
+  if (integration_.method != Method::exact && !samples) return;
+  const BlockRecords& records = volume_.block_ranges(parallel);
+  block_classes_ = BlockClassesStorage(records, transfer_.tables(), wanted_.largest_color, parallel,
+                                       samples ? 0 : PacketTracer::most_bending(volume_, wanted_));
+  blocks_ = ClassifiedBlocks{records, block_classes_.view()};
+  if (samples) {
+    sampler_ = PacketSamplerTracer::make(
+        volume_, blocks_->classes, transfer_.tables().single,
+        preintegrated_ ? &preintegrated_->view() : nullptr, step_,
+        stop_tolerance<float>() / std::max(transfer_function_.largest_color(), 1.0),
+        task.options.instruction_set);
+  } else {
+    packets_ = PacketTracer::make(volume_, *blocks_, block_classes_.smooth(), transfer_.tables(),
+                                  wanted_, task.options.instruction_set);
+  }
+}
+
+std::vector<RayResult> UnivariateTracer::trace_in_packets(
+    const std::vector<Ray<double>>& rays) const {
+  std::vector<RayResult> results(rays.size());
+  const int count = static_cast<int>(rays.size());
+  if (sampler_) {
+    sampler_->trace(rays.data(), count, results.data());
+    return results;
+  }
+  packets_->trace(rays.data(), count, results.data());
+  if (!depth_) return results;
+  volume_.visit([&](const auto& grid) {
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+      results[i].half_opacity_depth = find_half_opacity(grid, rays[i], transfer_.tables(),
+                                                        wanted_.precision, results[i].opacity);
+    }
+  });
+  return results;
+}
+
+std::vector<RayResult> UnivariateTracer::trace_one_by_one(
+    const std::vector<Ray<double>>& rays) const {
+  std::vector<RayResult> results;
+  results.reserve(rays.size());
+  volume_.visit([&](const auto& grid) {
+    for (const Ray<double>& ray : rays) results.push_back(trace_one(grid, ray));
+  });
+  return results;
+}
+
+template <class Value>
+RayResult UnivariateTracer::trace_one(const StructuredGrid<Value, double>& grid,
+                                      const Ray<double>& ray) const {
+  if (integration_.method == Method::exact) {
+    return integrate_ray(grid, blocks_ ? &*blocks_ : nullptr, ray, transfer_.tables(), wanted_,
+                         depth_);
+  }
+  const double largest_color = transfer_function_.largest_color();
+  const SamplingRule rule = sampling_rule(integration_.method);
+  const auto sample = [&]<class T>(const PiecewiseLinear<T>& transfer) {
+    if (preintegrated_) {
+      return sample_preintegrated<T>(grid, ray, preintegrated_->view(), step_, largest_color,
+                                     stop_tolerance<T>(), depth_);
+    }
+    return sample_ray<T>(grid, ray, transfer, rule, step_, largest_color, stop_tolerance<T>(),
+                         depth_);
+  };
+  return integration_.precision == Precision::float64 ? sample(transfer_.tables().wide)
+                                                      : sample(transfer_.tables().single);
+}
+
+}  // namespace
+
+std::unique_ptr<const RayTracer> make_univariate_tracer(const TracerTask& task) {
+  return std::make_unique<UnivariateTracer>(task);
+}
+
+}  // namespace pellucid
