@@ -45,6 +45,18 @@ JointHistogram core_histogram(const Channels& channels, const std::vector<int>& 
   return h;
 }
 
+/// K of coordinates in bins as that of values. Bins may be too narrow for a number to hold.
+std::vector<std::vector<double>> of_values(std::vector<std::vector<double>> matrix,
+                                           const std::vector<HistogramAxis>& axes) {
+  constexpr double largest = 1e30;
+  for (auto& row : matrix) {
+    for (std::size_t i = 0; i < axes.size(); ++i) {
+      if (row[i] != 0) row[i] = std::clamp(row[i] / axes[i].bin_width(), -largest, largest);
+    }
+  }
+  return matrix;
+}
+
 /// Of the materials and boundaries of a channel and its gradient magnitude, in bins.
 class Boundaries {
  public:
@@ -89,7 +101,7 @@ class Boundaries {
     const HistogramAxis &v = h_.axes[0], &g = h_.axes[1];
     return {which,
             {value_at(v, center[0]), value_at(g, center[1])},
-            matrix_of_widths({widths[0] * v.bin_width(), widths[1] * g.bin_width()}),
+            of_values(matrix_of_widths({widths[0], widths[1]}), h_.axes),
             0,
             {}};
   }
@@ -116,11 +128,9 @@ GaussianPrimitive primitive_of(const NormalComponent& component, const std::vect
   std::vector<std::vector<double>> covariance = component.covariance;
   for (std::size_t i = 0; i < axes.size(); ++i) {
     primitive.center.push_back(value_at(axes[i], component.mean[i]));
-    for (std::size_t j = 0; j < axes.size(); ++j) {
-      covariance[i][j] *= kept * axes[i].bin_width() * axes[j].bin_width();
-    }
+    for (double& x : covariance[i]) x *= kept;
   }
-  primitive.matrix = matrix_of_covariance(covariance);
+  primitive.matrix = of_values(matrix_of_covariance(covariance), axes);
   return primitive;
 }
 
@@ -206,7 +216,9 @@ std::vector<GaussianPrimitive> suggest_mixture(const Channels& channels,
   for (std::size_t b = 0; b < h.count.size(); ++b) {
     if (h.count[b] == 0) continue;
     const std::vector<double> x = bin_coordinates(h, b);
-    if (background.holds(x)) continue;
+    // A few values further out than three deviations would make a component of their own.
+    constexpr double far_out = 4.5;
+    if (background.holds(x, far_out)) continue;
     points.coordinates.insert(points.coordinates.end(), x.begin(), x.end());
     points.weights.push_back(std::sqrt(static_cast<double>(h.count[b])));
   }

@@ -72,12 +72,12 @@ Background::Background(const JointHistogram& histogram) {
   }
 }
 
-bool Background::holds(const std::vector<double>& coordinates) const {
+bool Background::holds(const std::vector<double>& coordinates, double deviations) const {
   double square = 0;
   for (std::size_t k = 0; k < mean_.size(); ++k) {
     square += (coordinates[k] - mean_[k]) * (coordinates[k] - mean_[k]) / variance_[k];
   }
-  return square <= 9;
+  return square <= deviations * deviations;
 }
 
 }  // namespace pellucid

@@ -30,8 +30,8 @@ class Background {
  public:
   explicit Background(const JointHistogram& histogram);
 
-  /// Whether coordinates in bins are within three standard deviations.
-  bool holds(const std::vector<double>& coordinates) const;
+  /// Whether coordinates in bins are within so many standard deviations.
+  bool holds(const std::vector<double>& coordinates, double deviations = 3) const;
   /// In bins.
   const std::vector<double>& mean() const noexcept { return mean_; }
 

@@ -16,6 +16,8 @@ namespace {
 
 /// Optical depths of what few lines meet, and of the background through the whole box.
 constexpr double deepest = 5, faintest = 0.002;
+/// What extinctions and shapes are kept within, as transfer functions want them.
+constexpr double largest_number = 1e30;
 
 class Stage {
  public:
@@ -95,7 +97,7 @@ class Stage {
 
   double extinction(std::size_t i) const {
     const double wanted = std::min(shapes_[i].depth * largest_share_ / depth_[i].share, deepest);
-    return std::clamp(wanted / depth_[i].length, 1e-30, 1e30);
+    return std::clamp(wanted / depth_[i].length, 1 / largest_number, largest_number);
   }
 
   /// Scales the shapes that dim the background; whether there are any.
@@ -144,8 +146,16 @@ class Stage {
       const HistogramAxis& axis = histogram_.axes[i];
       p.center[i] = readable(p.center[i], axis.upper - axis.lower);
     }
+    // Widths are what people write where the axes are those of the channels.
+    const bool is_diagonal = std::all_of(p.matrix.begin(), p.matrix.end(), [](const auto& row) {
+      return std::count(row.begin(), row.end(), 0.0) + 1 >= static_cast<std::ptrdiff_t>(row.size());
+    });
     for (auto& row : p.matrix) {
-      for (double& x : row) x = x == 0 ? 0 : rounded(x, 3);
+      for (double& x : row) {
+        if (x == 0) continue;
+        x = is_diagonal ? 1 / rounded(1 / x, 2) : rounded(x, 3);
+        x = std::clamp(x, -largest_number, largest_number);
+      }
     }
     return p;
   }
