@@ -16,6 +16,7 @@
 #include "pellucid/reference/render.h"
 #include "pellucid/scene/builtin_fields.h"
 #include "progress.h"
+#include "scene_text.h"
 #include "tolerance.h"
 
 namespace pellucid::cli {
@@ -118,8 +119,9 @@ int run_render(const RenderArguments& arguments) {
   write(arguments.error_map,
         [&] { write_error_map(image, prepared.scene.integration.tolerance, arguments.error_map); });
   write(arguments.save_tf, [&] { write_text_file(arguments.save_tf, transfer_function); });
-  write(arguments.save_scene,
-        [&] { write_text_file(arguments.save_scene, scene_text(prepared, arguments.save_scene)); });
+  write(arguments.save_scene, [&] {
+    write_text_file(arguments.save_scene, scene_text(prepared.description, arguments.save_scene));
+  });
   if (arguments.json) print_json(report_json(arguments, prepared, report, written));
   // Last, so that a failure is one line.
   print_notes(arguments, prepared);

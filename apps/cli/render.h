@@ -51,8 +51,6 @@ void add_render_options(CLI::App& command, RenderArguments& arguments);
 void check_arguments(const RenderArguments& arguments);
 /// Reads the input and puts the arguments over what it says. Throws Error.
 PreparedScene prepare(const RenderArguments& arguments);
-/// The scene as JSON, with the path of its volume as seen from the folder of `target`.
-std::string scene_text(const PreparedScene& prepared, const std::filesystem::path& target);
 
 /// In all channels together.
 std::size_t nan_values(const Scene& scene);

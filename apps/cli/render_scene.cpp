@@ -252,20 +252,4 @@ PreparedScene prepare(const RenderArguments& arguments) {
   return prepared;
 }
 
-std::string scene_text(const PreparedScene& prepared, const std::filesystem::path& target) {
-  SceneDescription description = prepared.description;
-  const auto folder = std::filesystem::absolute(target).parent_path();
-  const auto relocate = [&](std::filesystem::path& file) {
-    if (file.empty() || !file.is_relative()) return;
-    file = std::filesystem::absolute(file).lexically_normal();
-    const auto relative = file.lexically_relative(folder.lexically_normal());
-    if (!relative.empty()) file = relative;
-  };
-  relocate(description.field.file);
-  for (ChannelSource& channel : description.channels) {
-    if (auto* field = std::get_if<FieldSource>(&channel.source)) relocate(field->file);
-  }
-  return scene_to_json(description);
-}
-
 }  // namespace pellucid::cli

@@ -6,7 +6,8 @@ import unittest
 
 from program import SOURCE_DIR, ProgramTest, options_of
 
-COMMANDS = ("render", "info", "evaluate", "compare")
+COMMANDS = ("render", "info", "histogram", "suggest", "evaluate", "compare")
+READ_VOLUMES = ("render", "info", "histogram", "suggest")
 
 
 class Help(ProgramTest):
@@ -39,7 +40,7 @@ class Help(ProgramTest):
             of_help = options_of(self.succeed(command, "--help"))
             self.assertIn("--help", of_help)
             of_manual = set(re.findall(r"(?m)^\| `(?:-\w, )?(--[a-z][a-z-]*)", self.section(command)))
-            if command in ("render", "info"):
+            if command in READ_VOLUMES:
                 of_manual |= set(re.findall(r"(?m)^\| `(--[a-z][a-z-]*)", self.introduction()))
             self.assertEqual(set(of_help) - {"--help"} - of_manual, set(),
                              f"{command}: not in docs/command-line.md")
