@@ -43,7 +43,8 @@ class MultivariateRay {
         room_(room),
         block_walk_(blocks_.records, ray_, {ray.begin, ray.end}),
         cell_walk_(grid_.axis, ray_, {ray.begin, ray.begin}),
-        budget_(job.tolerance, ray.end - ray.begin) {
+        length_(ray.end - ray.begin),
+        budget_(job.tolerance, length_) {
     room_.panels.clear();
     demand_.grade = job.proved != 0 ? Grade::proved : Grade::estimated;
     demand_.largest_color = largest_color_;
@@ -227,8 +228,10 @@ class MultivariateRay {
     Shares shares;
     const B from_length = span.length * B((1 - left_out_share) * budget_.for_length());
     from_length.store(shares.from_length);
+    const B least =
+        B(RayBudget<double>::least_allowance(job_.tolerance, 1 / length_)) * span.length;
     const auto allowance = [&](B opacity) noexcept {
-      return (share_out(opacity, shares) + from_length) * B(1 / transparency);
+      return max((share_out(opacity, shares) + from_length) * B(1 / transparency), least);
     };
     const PanelSegment<B> panel =
         integrate_multivariate_panel(transfer_, span, demand_, allowance, room_.terms);
@@ -353,6 +356,7 @@ class MultivariateRay {
   BlockWalk block_walk_;
   StructuredWalk<double> cell_walk_;  ///< of the block that the ray stands in
   PrimitiveSet primitives_;           ///< of that block
+  double length_;                     ///< of the ray
   RayBudget<double> budget_;
   FrontToBack<double> fold_{0.0};
   PanelDemand<B> demand_;
