@@ -125,10 +125,10 @@ Canvas::Canvas(int width, int height, Color8 color) {
 }
 
 void Canvas::fill(const PixelBox& box, Color8 color) {
-  fill(box, std::array<double, 3>{linear_of(color[0]), linear_of(color[1]), linear_of(color[2])});
+  fill_linear(box, {linear_of(color[0]), linear_of(color[1]), linear_of(color[2])});
 }
 
-void Canvas::fill(const PixelBox& box, const std::array<double, 3>& linear) {
+void Canvas::fill_linear(const PixelBox& box, const std::array<double, 3>& linear) {
   const std::array<float, 4> pixel = {static_cast<float>(linear[0]), static_cast<float>(linear[1]),
                                       static_cast<float>(linear[2]), 1};
   for (int y = std::max(box.y, 0); y < std::min(box.y + box.height, image_.height); ++y) {

@@ -31,7 +31,7 @@ class Canvas {
   Canvas(int width, int height, Color8 color);
 
   void fill(const PixelBox& box, Color8 color);
-  void fill(const PixelBox& box, const std::array<double, 3>& linear);
+  void fill_linear(const PixelBox& box, const std::array<double, 3>& linear);
   /// A line of one pixel around the box.
   void frame(const PixelBox& box, Color8 color);
   /// In a font of 5 × 7 squares; (x, y) is the upper left pixel. What is not ASCII is a '?'.

@@ -98,7 +98,7 @@ class Chart {
     const PixelBox box{plot_.x + plot_.width + 3 * gap, plot_.y, scale_width, plot_.height};
     for (int row = 0; row < box.height; ++row) {
       const double share = (box.height - 0.5 - row) / box.height;
-      canvas_.fill({box.x, box.y + row, box.width, 1}, count_color(share));
+      canvas_.fill_linear({box.x, box.y + row, box.width, 1}, count_color(share));
     }
     canvas_.frame(box, black);
     const int right = box.x + box.width + 1;
@@ -147,8 +147,8 @@ Image map(const JointHistogram& histogram, const std::vector<std::string>& names
                           static_cast<std::size_t>(i)];
       if (count == 0) continue;
       const int top = plot.y + plot.height - (j + 1) * height;
-      chart.canvas().fill({plot.x + i * width, top, width, height},
-                          count_color(count_share(static_cast<double>(count), largest)));
+      chart.canvas().fill_linear({plot.x + i * width, top, width, height},
+                                 count_color(count_share(static_cast<double>(count), largest)));
     }
   }
   chart.label_axes(names[0], names[1]);
