@@ -210,6 +210,29 @@ TEST(GaussianCubic, LowerIsCloseToTheHull) {
   EXPECT_LE(lax, counted / 10);
 }
 
+/// Outside of the part that within() gives, the exponent is above the square of the reach.
+TEST(GaussianCubic, WithinHoldsAllThatIsNear) {
+  Maker maker(37);
+  long narrowed = 0, none = 0;
+  for (long i = 0; i < test::span_count(60000); ++i) {
+    const Case at(maker);
+    const GaussianCubic<double> cubic(at.primitive, at.data);
+    const test::WideExponent exponent(at.primitive, at.data);
+    const double reach = maker.powers(0.1, 10);
+    const auto part = cubic.within(reach);
+    narrowed += part.from > 0 || part.to < 1;
+    none += part.to < part.from;
+    for (int k = 0; k <= 128; ++k) {
+      const double u = k / 128.0;
+      if (u >= part.from && u <= part.to) continue;
+      const long double there = std::sqrt(exponent(static_cast<long double>(u)));
+      ASSERT_GE(there, static_cast<long double>(reach) * (1 - 1e-15L)) << i << ", " << u;
+    }
+  }
+  EXPECT_GT(narrowed, 20000);
+  EXPECT_GT(none, 5000);
+}
+
 /// The largest shares of the two bounds that are reached.
 struct Shares {
   ErrorRecord mean{"|∫ cubic - line| / bound", ""}, absolute{"∫ |cubic - line| / bound", ""};

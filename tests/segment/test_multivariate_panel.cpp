@@ -145,6 +145,33 @@ TEST(MultivariatePanel, ProvedErrorsHoldForWhatHasToDo) {
   EXPECT_LE(share.largest(), 1);
 }
 
+/// A light primitive whose density goes up and down about its mean, seen through a heavy black one:
+/// its depth stays, what is seen of it does not.
+TEST(MultivariatePanel, WhatIsMovedWithinAPanelIsCharged) {
+  Maker maker(83);
+  ErrorRecord share("moved within, pixel error / error()", "");
+  for (int i = 0; i < 4000; ++i) {
+    MultivariateCase at(maker, 0, 0);
+    at.channels = 1;
+    at.largest_color = 1;
+    at.span.length = 1;
+    Gaussian<double> heavy, light;
+    heavy.peak = maker.powers(0.5, 20);
+    light.peak = maker.powers(1e-4, 1e-2);
+    light.matrix[0][0] = 1;
+    light.color = {1, 1, 1};
+    at.gaussians = {heavy, light};
+    // a + q (1 - 6 u + 6 u²) + r (-1 + 12 u - 30 u² + 20 u³)
+    const double a = maker.uniform(0.3, 1.2), size = maker.powers(1e-5, 1e-2);
+    const double q = size * maker.normal(), r = size * maker.normal();
+    at.span.data[0] = {{a + q - r, a - q + 3 * r, a - q - 3 * r, a + q + r}};
+    share.add(forced_share(at), std::to_string(i));
+  }
+  share.print();
+  EXPECT_LE(share.largest(), 1);
+  EXPECT_GT(share.largest(), 0.05L);
+}
+
 TEST(MultivariatePanel, ProvedErrorsHoldUnderHillClimbing) {
   for (const int tables : {0, 2}) {
     Maker maker(static_cast<unsigned>(82 + tables));
