@@ -47,6 +47,12 @@ class RayBudget {
     length_ = max(length_ - length, T(0));
   }
 
+  /// Whether `rest`, a bound on what lies behind, may be left out: what is left pays for it, or the
+  /// ray is beyond its tolerance already and it is next to nothing.
+  PELLUCID_HD bool pays_for(T rest, T tolerance) const noexcept {
+    return rest <= left() || (spent_ > tolerance && rest <= T(1.0 / 64) * tolerance);
+  }
+
   /// The least that a span is worth trying for, however little is left: a ray that is beyond its
   /// tolerance, because rounding takes more than that, must come to its end. T error as of
   /// allowance().

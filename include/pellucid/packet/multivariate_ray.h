@@ -87,7 +87,7 @@ class MultivariateRay {
   static constexpr int most_cuts = 60;
   static constexpr double left_out_share = 1.0 / 8;
 
-  bool done() const noexcept { return rest() <= budget_.left(); }
+  bool done() const noexcept { return budget_.pays_for(rest(), job_.tolerance); }
 
   /// A bound on what lies behind: as little as light can come from there.
   double rest() const noexcept {

@@ -56,7 +56,9 @@ class MultivariateRayIntegrator {
   PELLUCID_HD double found() const noexcept { return found_; }
 
   /// Whether what is left of the ray can no longer matter.
-  PELLUCID_HD bool done() const noexcept { return found_ < infinity || rest() <= budget_.left(); }
+  PELLUCID_HD bool done() const noexcept {
+    return found_ < infinity || budget_.pays_for(rest(), tolerance_);
+  }
 
   /// A stretch whose extinction is at most this and is left out.
   PELLUCID_HD void skip(double length, double extinction) noexcept {
