@@ -43,11 +43,11 @@ class AxisWeights {
   int last(int i) const noexcept { return std::min(i + reach_, last_); }
   /// How much of value j, one of these, is in the sum for value i.
   double operator()(int i, int j) const noexcept {
-    const auto at = static_cast<std::size_t>(j - i + reach_);
-    double w = weight_[at];
-    if (j == 0) w += sum_before_[at];
+    const int at = j - i + reach_, mirrored = i - j + reach_;
+    double w = weight_[static_cast<std::size_t>(at)];
+    if (j == 0) w += sum_before_[static_cast<std::size_t>(at)];
     // The weights are symmetric.
-    if (j == last_) w += sum_before_[static_cast<std::size_t>(i - j + reach_)];
+    if (j == last_) w += sum_before_[static_cast<std::size_t>(mirrored)];
     return w;
   }
 

@@ -351,6 +351,39 @@ TEST(LineLoss, AParabolaIsWhatALineFitsWorst) {
   }
 }
 
+/// Outside of the part the primitive is farther away than `reach`; along a line both ends are met.
+TEST(GaussianCubic, PartWithinReach) {
+  Maker maker(7);
+  int left_out = 0;
+  for (int n = 0; n < 20000; ++n) {
+    const Case at(maker);
+    const GaussianCubic<double> cubic(at.primitive, at.data);
+    const double reach = std::sqrt(cubic.upper()) * maker.powers(1e-3, 1);
+    const auto part = cubic.within(reach);
+    const test::WideExponent exponent(at.primitive, at.data);
+    for (int i = 0; i <= 64; ++i) {
+      const double t = i / 64.0;
+      if (t >= part.from && t <= part.to) continue;
+      ++left_out;
+      EXPECT_GT(std::sqrt(exponent(t)), reach) << n << ": " << t;
+    }
+  }
+  EXPECT_GT(left_out, 200000);
+
+  Gaussian<double> g;
+  g.channels = g.rows = 2;
+  g.matrix[0][0] = g.matrix[1][1] = 10;
+  g.center[0] = 0.4;
+  g.center[1] = 0.5;
+  const CubicBernstein<double> line[2] = {{{0, 1.0 / 3, 2.0 / 3, 1}}, {{0.5, 0.5, 0.5, 0.5}}};
+  const auto part = GaussianCubic<double>(g, line).within(3);
+  EXPECT_NEAR(part.from, 0.1, 1e-7);
+  EXPECT_NEAR(part.to, 0.7, 1e-7);
+  const CubicBernstein<double> beside[2] = {{{1, 1.1, 1.2, 1.3}}, line[1]};
+  const auto nothing = GaussianCubic<double>(g, beside).within(3);
+  EXPECT_LT(nothing.to, nothing.from);
+}
+
 TEST(GaussianCubic, DegenerateData) {
   Gaussian<double> g;
   g.channels = g.rows = 1;

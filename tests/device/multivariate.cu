@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pellucid/render/camera.h"
+#include "pellucid/render/integrate_multivariate_ray.h"
+#include "pellucid/render/sample_ray.h"
+#include "pellucid/transfer/gaussian_bound.h"
+#include "tests/device/kernel.h"
+
+namespace pellucid {
+
+/// A panel of two primitives and a table, and what it is made of.
+template <class T>
+PELLUCID_HD void panel(const T* in, T* out) noexcept {
+  Gaussian<T> two[2]{};
+  for (int i = 0; i < 2; ++i) {
+    two[i].matrix[0][0] = in[i];
+    two[i].peak = in[2];
+    two[i].color = {in[3], in[4], T(i)};
+  }
+  const Material<T> materials[2] = {{in[5], {in[6], in[7], in[8]}}, {in[9], {in[6], in[8], in[7]}}};
+  const ChannelTable<T> table{0, {in + 10, materials, 2}};
+  Multivariate<T> transfer;
+  transfer.gaussians = {two, 2};
+  transfer.table = &table;
+  transfer.tables = 1;
+  MultivariateSpan<T> span;
+  span.data[0] = {{in[12], in[13], in[14], in[15]}};
+  span.length = in[16];
+  PanelDemand<T> demand;
+  demand.last_resort = in[17] > T(0);
+  const auto found =
+      integrate_multivariate_panel(transfer, span.part(1, in[18], in[19]), demand,
+                                   [&](T opacity) noexcept { return in[20] * opacity + in[21]; });
+  out[0] = found.found.segment.radiance.r + found.error(in[22]) + found.cut;
+  out[1] = table_mass(span.data[0], table.table, span.length).depth;
+  out[2] = least_exponent(two[0], in, in + 1, in[23]) + transfer.evaluate(in).extinction;
+}
+PELLUCID_DEVICE_KERNEL(panel)
+
+/// One pixel per thread.
+__global__ void render_multivariate(MultichannelGrid grid, MultivariateBlocks blocks,
+                                    Multivariate<double> transfer, RayTolerance wanted,
+                                    CameraFrame<double> camera, bool exact, double step,
+                                    RayResult* pixels) {
+  const int pixel = static_cast<int>(blockIdx.x * blockDim.x + threadIdx.x);
+  if (pixel >= camera.width * camera.height) return;
+  const Ray<double> ray = camera.ray(pixel % camera.width, pixel / camera.width);
+  pixels[pixel] = exact
+                      ? integrate_multivariate_ray(grid, &blocks, ray, transfer, 1.0, wanted, true)
+                      : sample_multivariate_ray(grid, ray, transfer, SamplingRule::simpson, step,
+                                                1.0, stop_tolerance<double>(), true);
+}
+
+}  // namespace pellucid
