@@ -58,7 +58,9 @@ VolumePointer waves(std::array<int, 3> dimensions, int number) {
 
 VolumePointer noise(std::array<int, 3> dimensions, unsigned seed) {
   std::mt19937 random(seed);
-  const auto draw = [&](double, double, double) { return random() / 4294967296.0; };
+  const auto draw = [&](double, double, double) {
+    return static_cast<double>(random()) / 4294967296.0;
+  };
   return sampled(dimensions, draw, "noise");
 }
 
