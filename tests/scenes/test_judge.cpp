@@ -169,5 +169,39 @@ TEST(SceneHash, SeesWhatThePictureDependsOnAndNothingElse) {
   EXPECT_NE(scene_hash(other), hash);
 }
 
+TEST(SceneHash, SeesEveryChannelAndEveryTerm) {
+  GaussianPrimitive gaussian;
+  gaussian.channels = {1};
+  gaussian.center = {0.5};
+  gaussian.matrix = {{10}};
+  gaussian.extinction = 1;
+  const TransferFunction table({{0, 1, {1, 1, 1}}});
+  const auto scene = [&](int points, const GaussianPrimitive& primitive, int channel) {
+    Scene result;
+    result.channels = std::make_shared<const Channels>(std::vector<Channel>{
+        {"a", "", builtin("marschner_lobb", points)}, {"b", "", builtin("sphere", points)}});
+    result.multivariate = std::make_shared<const MultivariateTransferFunction>(
+        2, std::vector<GaussianPrimitive>{primitive},
+        std::vector<ChannelTransferFunction>{{channel, table}});
+    return scene_hash(result);
+  };
+  const auto hash = scene(9, gaussian, 0);
+  EXPECT_EQ(scene(9, gaussian, 0), hash);
+  EXPECT_NE(scene(10, gaussian, 0), hash);
+  EXPECT_NE(scene(9, gaussian, 1), hash);
+  GaussianPrimitive other = gaussian;
+  other.channels = {0};
+  EXPECT_NE(scene(9, other, 0), hash);
+  other = gaussian;
+  other.matrix = {{10}, {1}};
+  EXPECT_NE(scene(9, other, 0), hash);
+  other = gaussian;
+  other.center = {0.25};
+  EXPECT_NE(scene(9, other, 0), hash);
+  other = gaussian;
+  other.color = {0, 0, 1};
+  EXPECT_NE(scene(9, other, 0), hash);
+}
+
 }  // namespace
 }  // namespace pellucid::scenes
