@@ -132,8 +132,31 @@ class MultivariateRay {
     }
     if (cells.count() == 0) return more;
     cells.finish(grid_.channels);
-    cull(cells);
+    if (unculled_ > 0) {
+      --unculled_;
+      take_whole(cells);
+    } else {
+      cull(cells);
+    }
     return more;
+  }
+
+  /// Makes panels of all cells. Where Gaussians are wide against what the data do, culling finds
+  /// nothing, and takes as long as a panel.
+  void take_whole(CellChunk<N>& cells) noexcept {
+    int clear = 0;
+    double passed = 0;
+    for (int l = 0; l < cells.count(); ++l) {
+      if (cells.filled(l)) {
+        room_.panels.append(newest_, l, 0, 1);
+        ++pending_;
+      } else {
+        passed += cells.length(l);
+        ++clear;
+      }
+    }
+    if (clear > 0) skip(clear, passed, 0);
+    if (clear < cells.count()) ++newest_;
   }
 
   /// Makes panels of the parts of the cells in which something matters. What is left out of a cell
@@ -172,7 +195,7 @@ class MultivariateRay {
     max(from, B(0.0)).store(begin);
     min(to, B(1.0)).store(end);
     int clear = 0;
-    bool used = false;
+    bool used = false, whole = true;
     double passed = 0, depth = 0;  // over at once
     for (int l = 0; l < cells.count(); ++l) {
       const double length = cells.length(l);
@@ -188,6 +211,7 @@ class MultivariateRay {
       const double kept = end[l] > begin[l] ? end[l] - begin[l] : 0;
       passed += (1 - kept) * length;
       depth += left_out * length;
+      whole = whole && kept == 1;
       if (!(kept > 0)) {
         ++clear;
         continue;
@@ -199,6 +223,7 @@ class MultivariateRay {
     }
     skip(clear, passed, depth);
     if (used) ++newest_;
+    if (whole) unculled_ = 3;
   }
 
   bool table_absorbs(const CellChunk<N>& cells, int lane) const noexcept {
@@ -362,6 +387,7 @@ class MultivariateRay {
   PanelDemand<B> demand_;
   int oldest_ = 0, newest_ = 0;  ///< chunks that panels refer to: oldest_ <= number < newest_
   int pending_ = 0;              ///< panels that are not done
+  int unculled_ = 0;             ///< chunks that need not be culled
   std::int32_t cells_ = 0, skipped_ = 0, folded_ = 0, nodes_ = 0;
   bool proved_ = true;
 };
