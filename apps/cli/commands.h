@@ -16,5 +16,7 @@ Command add_render(CLI::App& app);
 Command add_info(CLI::App& app);
 Command add_evaluate(CLI::App& app);
 Command add_compare(CLI::App& app);
+Command add_histogram(CLI::App& app);
+Command add_suggest(CLI::App& app);
 
 }  // namespace pellucid::cli

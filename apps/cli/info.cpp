@@ -6,6 +6,7 @@
 #include <iterator>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "commands.h"
 #include "input.h"
@@ -23,10 +24,10 @@ struct InfoArguments {
   bool json = false;
 };
 
-/// What is said of a volume, gathered once for the text and for the JSON.
+/// What is said of a file, gathered once for the text and for the JSON.
 struct Facts {
-  std::size_t bytes = 0;
-  double mean = 0;  ///< of the finite values
+  std::size_t bytes = 0;     ///< of all components
+  std::vector<double> mean;  ///< of the finite values of each
   Vec3<double> world_lower, world_upper;
   bool anatomical = false;
   Orientation orientation;
@@ -42,21 +43,29 @@ bool is_medical(const std::filesystem::path& file) {
   return false;
 }
 
-Facts facts_of(const Volume& volume, const FieldSource& source) {
-  Facts facts;
+double mean_of(const Volume& volume) {
+  // Scaled before it is summed, so that finite values have a finite mean.
+  const double count = static_cast<double>(volume.statistics().finite);
+  double sum = 0;
   std::visit(
       [&](const auto& values) {
-        facts.bytes = values.size() * sizeof(values[0]);
-        // Scaled before it is summed, so that finite values have a finite mean.
-        const double count = static_cast<double>(volume.statistics().finite);
-        double sum = 0;
         for (const auto value : values) {
           const double x = static_cast<double>(value);
           if (std::isfinite(x)) sum += x / count;
         }
-        facts.mean = sum;
       },
       volume.data());
+  return sum;
+}
+
+Facts facts_of(const std::vector<Volume>& components, const FieldSource& source) {
+  Facts facts;
+  for (const Volume& component : components) {
+    facts.bytes += std::visit([](const auto& values) { return values.size() * sizeof(values[0]); },
+                              component.data());
+    facts.mean.push_back(mean_of(component));
+  }
+  const Volume& volume = components.front();
   const auto corners = volume.world_corners();
   facts.world_lower = facts.world_upper = corners[0];
   for (const Vec3<double>& corner : corners) {
@@ -119,15 +128,26 @@ std::string bar_chart(const Histogram& histogram) {
   return chart;
 }
 
-std::string text_report(const Volume& volume, const Facts& facts) {
+std::string range_text(const VolumeStatistics& statistics) {
+  return statistics.finite == 0
+             ? "no finite value"
+             : fmt::format("{} to {}", number(statistics.minimum), number(statistics.maximum));
+}
+
+std::string nan_text(const VolumeStatistics& statistics) {
+  return fmt::format("{}{}", statistics.nan, statistics.nan > 0 ? " (rendered as vacuum)" : "");
+}
+
+std::string text_report(const std::vector<Volume>& components, const Facts& facts,
+                        const std::string& name) {
+  const Volume& volume = components.front();
   const auto& d = volume.description();
-  const auto& statistics = volume.statistics();
   const auto& placement = d.placement;
   std::string text;
   const auto line = [&](std::string_view label, const std::string& value) {
     text += fmt::format("{:<12} {}\n", label, value);
   };
-  line("name", d.name);
+  line("name", name);
   line("dimensions",
        fmt::format("{} x {} x {}", d.dimensions[0], d.dimensions[1], d.dimensions[2]));
   line("type", fmt::format("{}, {}", type_name(volume.data()), readable_bytes(facts.bytes)));
@@ -147,14 +167,21 @@ std::string text_report(const Volume& volume, const Facts& facts) {
              " (where the indices grow to; the world is LPS)");
   }
   line("world box", fmt::format("{} to {}", triple(facts.world_lower), triple(facts.world_upper)));
-  if (statistics.finite > 0) {
-    line("range", fmt::format("{} to {}", number(statistics.minimum), number(statistics.maximum)));
-    line("mean", number(facts.mean));
-  } else {
-    line("range", "no finite value");
+  if (components.size() > 1) {
+    line("components", std::to_string(components.size()));
+    for (std::size_t c = 0; c < components.size(); ++c) {
+      const VolumeStatistics& statistics = components[c].statistics();
+      std::string about = range_text(statistics);
+      if (statistics.finite > 0) about += ", mean " + number(facts.mean[c]);
+      if (statistics.nan > 0) about += ", NaN " + nan_text(statistics);
+      line(fmt::format("component {}", c), about);
+    }
+    return text;
   }
-  line("NaN",
-       fmt::format("{}{}", statistics.nan, statistics.nan > 0 ? " (rendered as vacuum)" : ""));
+  const VolumeStatistics& statistics = volume.statistics();
+  line("range", range_text(statistics));
+  if (statistics.finite > 0) line("mean", number(facts.mean.front()));
+  line("NaN", nan_text(statistics));
   if (statistics.finite > 0) {
     text += "histogram    lower end of the bin, values, bar on a logarithmic scale\n";
     text += bar_chart(volume.histogram(24));
@@ -162,13 +189,32 @@ std::string text_report(const Volume& volume, const Facts& facts) {
   return text;
 }
 
-Json json_report(const Volume& volume, const Facts& facts, const std::string& input) {
-  const auto& d = volume.description();
+/// What is told of each component.
+Json values_json(const Volume& volume, double mean) {
   const auto& statistics = volume.statistics();
+  const bool any = statistics.finite > 0;
+  Json json;
+  json["range"] = any ? Json{statistics.minimum, statistics.maximum} : Json();
+  json["mean"] = any ? Json(mean) : Json();
+  json["nan"] = statistics.nan;
+  if (any) {
+    const Histogram histogram = volume.histogram(256);
+    json["histogram"] = {
+        {"lower", histogram.lower}, {"upper", histogram.upper}, {"count", histogram.count}};
+  } else {
+    json["histogram"] = Json();
+  }
+  return json;
+}
+
+Json json_report(const std::vector<Volume>& components, const Facts& facts, const std::string& name,
+                 const std::string& input) {
+  const Volume& volume = components.front();
+  const auto& d = volume.description();
   Json json;
   json["pellucid"] = PELLUCID_VERSION_STRING;
   json["input"] = input;
-  json["name"] = d.name;
+  json["name"] = name;
   json["dimensions"] = dimensions_json(volume);
   json["type"] = type_name(volume.data());
   json["bytes"] = facts.bytes;
@@ -182,28 +228,33 @@ Json json_report(const Volume& volume, const Facts& facts, const std::string& in
   json["orientation"] = facts.anatomical ? Json(facts.orientation.code) : Json();
   json["oblique_degrees"] = facts.anatomical ? Json(facts.orientation.oblique_by) : Json();
   json["world_box"] = {to_json(facts.world_lower), to_json(facts.world_upper)};
-  const bool any = statistics.finite > 0;
-  json["range"] = any ? Json{statistics.minimum, statistics.maximum} : Json();
-  json["mean"] = any ? Json(facts.mean) : Json();
-  json["nan"] = statistics.nan;
-  if (any) {
-    const Histogram histogram = volume.histogram(256);
-    json["histogram"] = {
-        {"lower", histogram.lower}, {"upper", histogram.upper}, {"count", histogram.count}};
-  } else {
-    json["histogram"] = Json();
+  if (components.size() == 1) {
+    json.update(values_json(volume, facts.mean.front()));
+    return json;
+  }
+  json["components"] = Json::array();
+  for (std::size_t c = 0; c < components.size(); ++c) {
+    json["components"].push_back(values_json(components[c], facts.mean[c]));
   }
   return json;
 }
 
 int run_info(const InfoArguments& arguments) {
   const FieldSource source = field_source(arguments.input, arguments.volume);
-  const Volume volume = load_field(source);
-  const Facts facts = facts_of(volume, source);
-  if (arguments.json) {
-    print_json(json_report(volume, facts, arguments.input));
+  std::vector<Volume> components;
+  if (source.builtin.empty()) {
+    components = read_components(source.file, source.options);
   } else {
-    print_text(text_report(volume, facts));
+    components.push_back(load_field(source));
+  }
+  const Facts facts = facts_of(components, source);
+  // Several share the file's name.
+  const std::string name =
+      components.size() > 1 ? source.file.string() : components.front().description().name;
+  if (arguments.json) {
+    print_json(json_report(components, facts, name, arguments.input));
+  } else {
+    print_text(text_report(components, facts, name));
   }
   return 0;
 }

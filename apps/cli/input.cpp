@@ -23,6 +23,10 @@ void VolumeOptions::add_to(CLI::App& command) {
   add(command.add_flag("--big-endian", big_endian, "Byte order of a .raw file (default little)"));
   add(command.add_option("--skip-bytes", skip_bytes, "Length of a header to skip in a .raw file")
           ->option_text("N"));
+  add(command.add_option("--components", components, "Numbers at each point of a .raw file")
+          ->option_text("N"));
+  add(command.add_option("--component", component, "Which one, from 0, of a file with several")
+          ->option_text("C"));
   add(command
           .add_option("--spacing", spacing, "Distance of values along x, y, z; replaces the file's")
           ->option_text("X,Y,Z"));
@@ -51,6 +55,8 @@ ReadOptions VolumeOptions::read_options() const {
   if (!type.empty()) read.type = type;
   if (big_endian) read.big_endian = true;
   read.skip_bytes = skip_bytes;
+  read.components = components;
+  read.component = component;
   if (!spacing.empty()) {
     const auto [x, y, z] = parse_triple("--spacing", spacing);
     read.spacing = Vec3<double>{x, y, z};

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -18,6 +19,7 @@ struct VolumeOptions {
   std::string dimensions, type, spacing, origin, centering;
   bool big_endian = false;
   std::size_t skip_bytes = 0;
+  std::optional<int> components, component;
   std::vector<CLI::Option*> given;  ///< all of them, to ask which were used
 
   void add_to(CLI::App& command);

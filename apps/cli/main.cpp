@@ -41,6 +41,7 @@ int run(int argc, char** argv) {
       "  pellucid render brain.nii.gz -o brain.png\n"
       "  pellucid render builtin:marschner_lobb -o ml.exr --size 1024x768\n"
       "  pellucid info brain.nii.gz\n"
+      "  pellucid suggest brain.nii.gz -o brain.json\n"
       "  pellucid compare exact.exr midpoint.exr\n"
       "\n"
       "'pellucid COMMAND --help' shows the options and examples of a command.\n"
@@ -51,7 +52,8 @@ int run(int argc, char** argv) {
   app.set_help_flag("-h,--help", "Print this help and exit");
   app.formatter(std::make_shared<HelpFormat>());
   app.require_subcommand(1);
-  const Command commands[] = {add_render(app), add_info(app), add_evaluate(app), add_compare(app)};
+  const Command commands[] = {add_render(app),  add_info(app),     add_histogram(app),
+                              add_suggest(app), add_evaluate(app), add_compare(app)};
 
   try {
     app.parse(argc, argv);

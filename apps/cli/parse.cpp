@@ -89,6 +89,27 @@ ImageSize parse_size(const std::string& option, const std::string& text) {
   return {width, height};
 }
 
+std::vector<int> parse_bins(const std::string& option, const std::string& text, std::size_t axes) {
+  constexpr int most = 4096;
+  const std::string expected =
+      fmt::format("a number of bins from 1 to {}{}", most, axes == 2 ? ", or two as NxM" : "");
+  std::vector<int> bins = parse_list<int>(option, text, 'x', expected);
+  if (bins.size() == 1) bins.resize(axes, bins[0]);
+  bool good = bins.size() == axes;
+  for (const int n : bins) good = good && n >= 1 && n <= most;
+  if (!good) throw UsageError(fmt::format("{} '{}': expected {}", option, text, expected));
+  return bins;
+}
+
+std::array<double, 2> parse_range(const std::string& option, const std::string& text) {
+  constexpr std::string_view expected = "two finite numbers LOWER,UPPER, the smaller one first";
+  const std::vector<double> ends = parse_list<double>(option, text, ',', expected);
+  if (ends.size() != 2 || !(ends[0] < ends[1]) || !std::isfinite(ends[1] - ends[0])) {
+    throw UsageError(fmt::format("{} '{}': expected {}", option, text, expected));
+  }
+  return {ends[0], ends[1]};
+}
+
 double parse_tolerance(const std::string& option, const std::string& text) {
   constexpr std::string_view expected = "a positive number or fraction, as in 0.001, 1e-4 or 1/512";
   const std::vector<double> n = parse_list<double>(option, text, '/', expected);

@@ -4,6 +4,7 @@
 #include <array>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "pellucid/math/rgb.h"
 #include "pellucid/scene/error.h"
@@ -31,6 +32,10 @@ std::array<double, 3> parse_triple(const std::string& option, const std::string&
 std::array<int, 3> parse_dimensions(const std::string& option, const std::string& text);
 /// "640x480", or "512" for a square.
 ImageSize parse_size(const std::string& option, const std::string& text);
+/// "256" for each of so many axes, or "256x128" for two; each from 1 to 4096.
+std::vector<int> parse_bins(const std::string& option, const std::string& text, std::size_t axes);
+/// "LOWER,UPPER": two finite numbers of which the first is the smaller.
+std::array<double, 2> parse_range(const std::string& option, const std::string& text);
 /// A finite positive number, or the quotient of two: "0.001", "1e-4", "1/512".
 double parse_tolerance(const std::string& option, const std::string& text);
 /// "white", "black" or linear "R,G,B", each >= 0.

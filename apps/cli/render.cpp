@@ -16,6 +16,7 @@
 #include "pellucid/reference/render.h"
 #include "pellucid/scene/builtin_fields.h"
 #include "progress.h"
+#include "scene_text.h"
 #include "tolerance.h"
 
 namespace pellucid::cli {
@@ -24,7 +25,7 @@ namespace {
 
 void print_notes(const RenderArguments& arguments, const PreparedScene& prepared) {
   if (arguments.quiet) return;
-  if (const std::size_t nan = prepared.scene.volume->statistics().nan; nan > 0) {
+  if (const std::size_t nan = nan_values(prepared.scene); nan > 0) {
     print_note(fmt::format("{} values are NaN: rendered as vacuum", nan));
   }
   if (const double used = prepared.scene.integration.tolerance; used != prepared.tolerance_asked) {
@@ -118,8 +119,9 @@ int run_render(const RenderArguments& arguments) {
   write(arguments.error_map,
         [&] { write_error_map(image, prepared.scene.integration.tolerance, arguments.error_map); });
   write(arguments.save_tf, [&] { write_text_file(arguments.save_tf, transfer_function); });
-  write(arguments.save_scene,
-        [&] { write_text_file(arguments.save_scene, scene_text(prepared, arguments.save_scene)); });
+  write(arguments.save_scene, [&] {
+    write_text_file(arguments.save_scene, scene_text(prepared.description, arguments.save_scene));
+  });
   if (arguments.json) print_json(report_json(arguments, prepared, report, written));
   // Last, so that a failure is one line.
   print_notes(arguments, prepared);
@@ -135,10 +137,11 @@ int run_render(const RenderArguments& arguments) {
 Command add_render(CLI::App& app) {
   CLI::App& command = *app.add_subcommand("render", "Render a volume or a scene to an image");
   const auto arguments = std::make_shared<RenderArguments>();
-  command
-      .add_option("INPUT", arguments->input,
-                  std::string(input_help) + ", SCENE.json or builtin:NAME[:POINTS]")
-      ->required();
+  command.add_option(
+      "INPUT", arguments->input,
+      std::string(input_help) +
+          ", SCENE.json or builtin:NAME[:POINTS]; may be left out where --channel is "
+          "given");
   add_render_options(command, *arguments);
   command.footer(
       fmt::format("Built-in fields, of POINTS values along each axis (128):\n  {}\n",
@@ -152,6 +155,9 @@ Command add_render(CLI::App& app) {
       "  pellucid render scene.json -o scene.exr --size 1920x1080 --samples 2 --json\n"
       "  pellucid render scene.json -o scene.exr --tolerance 1/4096 --grade proved --error-map "
       "e.png\n"
+      "  pellucid render brain.nii.gz -o edges.png\n"
+      "      --gaussian 'value=80~15, gradient_magnitude=20~5; extinction 0.2; color #ffcc99'\n"
+      "  pellucid render --channel t1=T1.nii.gz --channel t2=T2.nii.gz --tf tf.json -o o.png\n"
       "  pellucid render builtin:marschner_lobb:256 -o ml.exr --method midpoint --step 0.5\n"
       "  pellucid render head.raw --dimensions 256,256,113 --type u16 --big-endian --spacing "
       "1,1,2\n"

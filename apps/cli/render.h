@@ -16,6 +16,7 @@ struct RenderArguments {
   std::string input;
   std::vector<std::string> outputs;
   std::string depth_picture, error_map, save_tf, save_scene;
+  std::vector<std::string> channels, gaussians;
   std::string transfer_function, camera, view, size, background;
   std::string method, precision, grade;
   std::optional<std::string> tolerance;
@@ -41,15 +42,18 @@ struct PreparedScene {
   }
 };
 
+/// All that is read as data, as it was given.
+std::string source_text(const RenderArguments& arguments);
+
 void add_render_options(CLI::App& command, RenderArguments& arguments);
 
 /// Throws UsageError for what cannot be done, and Error where a file could not be written later.
 void check_arguments(const RenderArguments& arguments);
 /// Reads the input and puts the arguments over what it says. Throws Error.
 PreparedScene prepare(const RenderArguments& arguments);
-/// The scene as JSON, with the path of its volume as seen from the folder of `target`.
-std::string scene_text(const PreparedScene& prepared, const std::filesystem::path& target);
 
+/// In all channels together.
+std::size_t nan_values(const Scene& scene);
 /// What makes the picture, and its error, and nothing else: no time, no thread count, so that the
 /// same scene gives the same file.
 void add_metadata(const RenderArguments& arguments, const PreparedScene& prepared,

@@ -45,9 +45,25 @@ void add_output_options(CLI::App& command, RenderArguments& arguments) {
 
 void add_scene_options(CLI::App& command, RenderArguments& arguments) {
   command
-      .add_option("--tf", arguments.transfer_function,
-                  "Transfer function; default: the scene's, else made from the histogram")
-      ->option_text("FILE.json");
+      .add_option("--channel", arguments.channels,
+                  "A variable of the data, may be given several times; SOURCE is a file, FILE[C], "
+                  "builtin:NAME, gradient_magnitude:CHANNEL, second_derivative:CHANNEL or "
+                  "smoothed:CHANNEL:SIGMA; beside INPUT, which is the channel 'value', or without")
+      ->option_text("NAME=SOURCE")
+      ->allow_extra_args(false);
+  auto* transfer_function =
+      command
+          .add_option("--tf", arguments.transfer_function,
+                      "Transfer function; default: the scene's, else made from the histogram")
+          ->option_text("FILE.json");
+  command
+      .add_option("--gaussian", arguments.gaussians,
+                  "A Gaussian of the transfer function, may be given several times: "
+                  "'CHANNEL=CENTER~WIDTH, ...; extinction E; color #RRGGBB'; of one volume the "
+                  "channels are value, gradient_magnitude and second_derivative")
+      ->option_text("TEXT")
+      ->allow_extra_args(false)
+      ->excludes(transfer_function);
   auto* camera = command
                      .add_option("--camera", arguments.camera,
                                  "Camera; default: the scene's, else obliquely from the front")

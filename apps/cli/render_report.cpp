@@ -42,6 +42,7 @@ struct NamedCount {
 
 /// What a pixel can be off by where points stand for an opacity table; 0 for points as given.
 double transfer_function_error(const Scene& scene) {
+  if (!scene.transfer_function) return 0;
   const Rgb<double> behind = scene.background.value_or(Rgb<double>{});
   return scene.transfer_function->approximation_error(std::max({behind.r, behind.g, behind.b}));
 }
@@ -55,14 +56,35 @@ bool has_step(const RenderArguments& arguments, const Integration& integration) 
   return !arguments.reference && integration.method != Method::exact;
 }
 
+Json channels_json(const Channels& channels) {
+  Json list = Json::array();
+  for (const Channel& channel : channels) {
+    const VolumeStatistics& data = channel.volume->statistics();
+    list.push_back({{"name", channel.name},
+                    {"unit", channel.unit},
+                    {"type", type_name(channel.volume->data())},
+                    {"minimum", data.minimum},
+                    {"maximum", data.maximum},
+                    {"nan", data.nan}});
+  }
+  return list;
+}
+
 }  // namespace
+
+std::size_t nan_values(const Scene& scene) {
+  if (!scene.channels) return scene.volume->statistics().nan;
+  std::size_t count = 0;
+  for (const Channel& channel : *scene.channels) count += channel.volume->statistics().nan;
+  return count;
+}
 
 void add_metadata(const RenderArguments& arguments, const PreparedScene& prepared,
                   const RenderReport& report, Image& image) {
   const Integration& integration = prepared.scene.integration;
   auto& metadata = image.metadata;
   metadata["pellucid.version"] = PELLUCID_VERSION_STRING;
-  metadata["pellucid.source"] = arguments.input;
+  metadata["pellucid.source"] = source_text(arguments);
   metadata["pellucid.method"] = method_text(arguments, integration);
   metadata["pellucid.precision"] = precision_text(arguments, integration);
   if (const double error = transfer_function_error(prepared.scene); error > 0) {
@@ -149,10 +171,11 @@ Json report_json(const RenderArguments& arguments, const PreparedScene& prepared
   const Scene& scene = prepared.scene;
   Json json;
   json["pellucid"] = PELLUCID_VERSION_STRING;
-  json["input"] = arguments.input;
-  json["dimensions"] = dimensions_json(*scene.volume);
-  json["type"] = type_name(scene.volume->data());
-  json["nan"] = scene.volume->statistics().nan;
+  json["input"] = source_text(arguments);
+  json["dimensions"] = dimensions_json(grid_volume(scene));
+  json["type"] = type_name(grid_volume(scene).data());
+  json["nan"] = nan_values(scene);
+  json["channels"] = scene.channels ? channels_json(*scene.channels) : Json();
   json["size"] = {scene.size.width, scene.size.height};
   json["method"] = method_text(arguments, scene.integration);
   json["step"] = has_step(arguments, scene.integration) ? Json(scene.integration.step) : Json();

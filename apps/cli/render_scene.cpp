@@ -2,12 +2,15 @@
 #include <fmt/format.h>
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <utility>
+#include <variant>
 #include <vector>
 
 #include "overwriting.h"
 #include "parse.h"
+#include "pellucid/cpu/threads.h"
 #include "pellucid/io/atomic_file.h"
 #include "pellucid/io/image_files.h"
 #include "render.h"
@@ -43,7 +46,19 @@ std::vector<NamedFile> output_files(const RenderArguments& arguments) {
 
 }  // namespace
 
+std::string source_text(const RenderArguments& arguments) {
+  std::string text = arguments.input;
+  for (const std::string& channel : arguments.channels) {
+    text += (text.empty() ? "" : ", ") + channel;
+  }
+  return text;
+}
+
 void check_arguments(const RenderArguments& arguments) {
+  if (arguments.input.empty() && arguments.channels.empty()) {
+    throw UsageError(
+        "there is nothing to render; give INPUT or --channel (see 'pellucid render --help')");
+  }
   if (!arguments.renders() && !arguments.print_tf && arguments.save_tf.empty() &&
       arguments.save_scene.empty()) {
     throw UsageError(
@@ -115,19 +130,66 @@ void set_integration(const RenderArguments& arguments, Integration& integration)
   integration.step = *arguments.step;
 }
 
+/// A text of the command line that does not read is a wrong argument.
+template <class Parse>
+auto parse_argument(const char* argument, Parse&& parse) {
+  try {
+    return parse();
+  } catch (const UsageError&) {
+    throw;
+  } catch (const Error& error) {
+    throw UsageError(fmt::format("{}: {}", argument, error.what()));
+  }
+}
+
+/// Behind the channels of the input, or alone.
+void add_channels(const RenderArguments& arguments, bool is_scene, SceneDescription& description) {
+  if (arguments.channels.empty()) return;
+  if (!arguments.input.empty()) description.channels = scene_channels(description);
+  if (description.channels.empty() && !arguments.input.empty()) {
+    description.channels = {{std::string(field_channel), "", description.field}};
+  }
+  parse_argument("--channel", [&] {
+    for (const std::string& text : arguments.channels) {
+      ChannelSource channel = parse_channel_source(text);
+      auto* field = std::get_if<FieldSource>(&channel.source);
+      if (field != nullptr && field->builtin.empty() && !is_scene) {
+        const std::optional<int> component = field->options.component;
+        field->options = arguments.volume.read_options();
+        if (component) field->options.component = component;
+      }
+      description.channels.push_back(std::move(channel));
+    }
+    check_channel_sources(description.channels);
+    return 0;
+  });
+}
+
+MultivariateDescription gaussians(const RenderArguments& arguments) {
+  MultivariateDescription function;
+  for (const std::string& text : arguments.gaussians) {
+    function.gaussians.push_back(
+        parse_argument("--gaussian", [&] { return parse_gaussian(text); }));
+  }
+  return function;
+}
+
 SceneDescription describe(const RenderArguments& arguments) {
   SceneDescription description;
   const std::filesystem::path input = arguments.input;
-  if (extension_of(input) == ".json") {
+  const bool is_scene = extension_of(input) == ".json";
+  if (is_scene) {
     arguments.volume.refuse("a scene; write it into the scene's field");
     description = parse_scene(read_text_file(input), arguments.input, input.parent_path());
-  } else {
+  } else if (!arguments.input.empty()) {
     description.field = field_source(arguments.input, arguments.volume);
   }
+  if (!arguments.gaussians.empty()) description.transfer_function = gaussians(arguments);
   if (!arguments.transfer_function.empty()) {
     description.transfer_function = parse_transfer_function(
         read_text_file(arguments.transfer_function), arguments.transfer_function);
   }
+  add_channels(arguments, is_scene, description);
   if (!arguments.camera.empty()) {
     description.camera = parse_camera(read_text_file(arguments.camera), arguments.camera);
   }
@@ -138,6 +200,16 @@ SceneDescription describe(const RenderArguments& arguments) {
   if (arguments.samples) description.samples = *arguments.samples;
   set_integration(arguments, description.integration);
   return description;
+}
+
+std::vector<NamedFile> data_files(const SceneDescription& description) {
+  std::vector<NamedFile> files{{"volume", description.field.file.string()}};
+  for (const ChannelSource& channel : description.channels) {
+    if (const auto* field = std::get_if<FieldSource>(&channel.source)) {
+      files.push_back({"channel " + channel.name, field->file.string()});
+    }
+  }
+  return files;
 }
 
 }  // namespace
@@ -151,11 +223,11 @@ PreparedScene prepare(const RenderArguments& arguments) {
                                  ? parse_tolerance("--tolerance", *arguments.tolerance)
                                  : integration.tolerance;
   integration.set_tolerance(prepared.tolerance_asked);
-  // The volume of a scene is known only now.
-  const NamedFile inputs[] = {{"volume", description.field.file.string()}};
-  refuse_overwriting(output_files(arguments), inputs);
+  // The files of a scene are known only now.
+  refuse_overwriting(output_files(arguments), data_files(description));
   prepared.transfer_function_from = !arguments.transfer_function.empty()
                                         ? arguments.transfer_function
+                                    : !arguments.gaussians.empty()  ? "--gaussian"
                                     : description.transfer_function ? arguments.input
                                                                     : "default";
   SceneDescription rendered = description;
@@ -165,11 +237,12 @@ PreparedScene prepare(const RenderArguments& arguments) {
   if (arguments.reference && integration.tolerance > table_tolerance) {
     rendered.integration.tolerance = table_tolerance;
   }
-  prepared.scene = make_scene(rendered);
+  const int threads = arguments.threads > 0 ? arguments.threads : default_threads();
+  prepared.scene = make_scene(rendered, parallel_for(threads));
   Scene& scene = prepared.scene;
   scene.integration = integration;
   if (!arguments.view.empty()) {
-    scene.camera = view_camera(*scene.volume, arguments.view, scene.size);
+    scene.camera = view_camera(grid_volume(scene), arguments.view, scene.size);
   }
   if (!description.transfer_function) {
     description.transfer_function = scene.transfer_function->points();
@@ -177,18 +250,6 @@ PreparedScene prepare(const RenderArguments& arguments) {
   description.camera = scene.camera;
   make_camera_frame(scene.camera, scene.size);  // throws before anything is written
   return prepared;
-}
-
-std::string scene_text(const PreparedScene& prepared, const std::filesystem::path& target) {
-  SceneDescription description = prepared.description;
-  std::filesystem::path& file = description.field.file;
-  if (!file.empty() && file.is_relative()) {
-    const auto folder = std::filesystem::absolute(target).parent_path();
-    file = std::filesystem::absolute(file).lexically_normal();
-    const auto relative = file.lexically_relative(folder.lexically_normal());
-    if (!relative.empty()) file = relative;
-  }
-  return scene_to_json(description);
 }
 
 }  // namespace pellucid::cli

@@ -4,16 +4,9 @@
 #include <cstddef>
 #include <functional>
 
-#include "pellucid/scene/volume.h"
+#include "pellucid/cpu/threads.h"
 
 namespace pellucid {
-
-/// One per core that this process may use.
-int default_threads();
-
-/// Splits work among this many threads. A thread that waits for the others does not take up work
-/// from elsewhere, which might wait for it.
-ParallelFor parallel_for(int threads);
 
 /// Calls body(i) for 0 <= i < count, in this order, on that many threads: each takes the next i
 /// when it is done with its last, so that none is idle before all are taken. Where body gives false

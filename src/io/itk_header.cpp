@@ -23,8 +23,8 @@ Volume::Description read_nifti_description(const std::filesystem::path& path, bo
 MetaImageHeader read_meta_image_header(const std::filesystem::path& path) {
   refuse(path.string());
 }
-Volume read_nrrd_file(const std::filesystem::path&, const std::string& name, std::uint64_t, bool,
-                      const std::optional<NrrdValues>&, const ReadOptions&) {
+VolumeFile open_nrrd_file(const std::filesystem::path&, const std::string& name, const NrrdText&,
+                          const ReadOptions&) {
   refuse(name);
 }
 
@@ -38,9 +38,14 @@ Volume read_nrrd_file(const std::filesystem::path&, const std::string& name, std
 #include <itkNrrdImageIO.h>
 
 #include <array>
+#include <bit>
 #include <iostream>
+#include <limits>
 #include <mutex>
+#include <span>
 #include <sstream>
+#include <utility>
+#include <vector>
 
 #include "input_file.h"
 
@@ -129,23 +134,41 @@ std::string type_of(const itk::ImageIOBase& io, const std::string& name) {
   }
 }
 
+// What is more than one number at each point, or on more than three axes.
+void find_components(const itk::ImageIOBase& io, const std::string& name, ItkHeader& header) {
+  const unsigned components = io.GetNumberOfComponents();
+  if (components > static_cast<unsigned>(std::numeric_limits<int>::max())) {
+    throw Error(name + ": has " + std::to_string(components) + " components at each point");
+  }
+  if (components == 1 && io.GetPixelType() != itk::IOPixelEnum::SCALAR) {
+    throw Error(name + ": its values are no plain numbers; convert the file to float");
+  }
+  if (components != 1) {
+    header.components = static_cast<int>(components);
+    header.interleaved = true;
+    header.holds = std::to_string(components) + " components at each point";
+  }
+  for (unsigned a = 3; a < io.GetNumberOfDimensions(); ++a) {
+    const auto n = io.GetDimensions(a);
+    if (n == 1) continue;
+    const std::string holds = std::to_string(n) + " volumes (axis " + std::to_string(a + 1) + ")";
+    if (header.components != 1 || n < 1 || n > std::numeric_limits<std::int32_t>::max()) {
+      throw Error(name + ": holds " + (header.holds.empty() ? "" : header.holds + " and ") + holds +
+                  "; save one of them as a file of its own");
+    }
+    header.components = static_cast<int>(n);
+    header.holds = holds;
+  }
+  if (header.components < 1) {
+    throw Error(name + ": holds no components at all; its header is damaged");
+  }
+}
+
 Volume::Description describe(const itk::ImageIOBase& io, const std::string& name) {
   const unsigned axes = io.GetNumberOfDimensions();
   if (axes < 3) {
     throw Error(name + ": an image of " + std::to_string(axes) +
                 " axes is not read; a volume has three");
-  }
-  for (unsigned a = 3; a < axes; ++a) {
-    if (io.GetDimensions(a) == 1) continue;
-    throw Error(name + ": holds " + std::to_string(io.GetDimensions(a)) + " volumes (axis " +
-                std::to_string(a + 1) + "); save one of them as a file of its own");
-  }
-  if (io.GetNumberOfComponents() != 1) {
-    throw Error(name + ": has " + std::to_string(io.GetNumberOfComponents()) +
-                " components at each point; save one of them as a file of its own");
-  }
-  if (io.GetPixelType() != itk::IOPixelEnum::SCALAR) {
-    throw Error(name + ": its values are no plain numbers; convert the file to float");
   }
   Volume::Description description;
   description.name = name;
@@ -189,28 +212,39 @@ typename ImageIO::Pointer open_header(const std::filesystem::path& path, const s
   return io;
 }
 
-VolumeData read_raw_values(const NrrdValues& values, const std::string& type, std::size_t count) {
+std::vector<VolumeData> read_raw_values(const NrrdValues& values, ValueLayout layout,
+                                        std::size_t points, ComponentRange range) {
   const ByteSource source = file_source(values.file);
-  ValueLayout layout{type, values.big_endian.value_or(false), values.offset};
-  const std::uintmax_t bytes = std::uintmax_t{count} * value_size(type, source.name);
+  layout.big_endian = values.big_endian.value_or(false);
+  layout.offset = values.offset;
+  const std::size_t count = value_count(points, layout.components, source.name);
+  const std::uintmax_t bytes = std::uintmax_t{count} * value_size(layout.type, source.name);
   if (values.offset == NrrdValues::last_bytes) {
     layout.offset = source.size > bytes ? source.size - bytes : 0;
   }
   check_size(source, layout, count);
-  return read_values(source, layout, count);
+  return read_components(source, layout, points, range);
 }
 
-VolumeData read_by_itk(itk::ImageIOBase& io, const std::string& type, std::size_t count,
-                       const std::string& name) {
+std::vector<VolumeData> read_by_itk(itk::ImageIOBase& io, ValueLayout layout, std::size_t points,
+                                    ComponentRange range, const std::string& name) {
   itk::ImageIORegion region(io.GetNumberOfDimensions());
   for (unsigned a = 0; a < io.GetNumberOfDimensions(); ++a) {
     region.SetIndex(a, 0);
     region.SetSize(a, io.GetDimensions(a));
   }
   io.SetIORegion(region);
-  VolumeData data = make_values(type, count, name);
-  std::visit([&](auto& list) { io.Read(list.writable().data()); }, data);
-  return data;
+  std::vector<VolumeData> list;
+  list.push_back(make_values(layout.type, value_count(points, layout.components, name), name));
+  std::visit([&](auto& values) { io.Read(values.writable().data()); }, list.front());
+  if (layout.components == 1) return list;
+  layout.big_endian = std::endian::native == std::endian::big;
+  return std::visit(
+      [&](const auto& values) {
+        const auto bytes = std::as_bytes(std::span(values.data(), values.size()));
+        return read_components(memory_source(bytes, name), layout, points, range);
+      },
+      list.front());
 }
 
 }  // namespace
@@ -237,6 +271,7 @@ MetaImageHeader read_meta_image_header(const std::filesystem::path& path) {
     MetaImageHeader header;
     header.description = describe(*io, name);
     header.type = type_of(*io, name);
+    find_components(*io, name, header);
     header.big_endian = image.BinaryDataByteOrderMSB();
     header.text = !image.BinaryData();
     header.compressed = image.CompressedData();
@@ -246,19 +281,22 @@ MetaImageHeader read_meta_image_header(const std::filesystem::path& path) {
   });
 }
 
-Volume read_nrrd_file(const std::filesystem::path& path, const std::string& name,
-                      std::uint64_t header_count, bool left_anterior_superior,
-                      const std::optional<NrrdValues>& values, const ReadOptions& options) {
+VolumeFile open_nrrd_file(const std::filesystem::path& path, const std::string& name,
+                          const NrrdText& text, const ReadOptions& options) {
   return quietly(name, [&] {
     const auto io = open_header<itk::NrrdImageIO>(path, name);
     Volume::Description description = describe(*io, name);
+    ItkHeader header;
+    find_components(*io, name, header);
     const std::string type = type_of(*io, name);
-    std::size_t count = 1;
-    for (const int side : description.dimensions) count *= static_cast<std::size_t>(side);
+    std::size_t points = 1;
+    for (const int side : description.dimensions) points *= static_cast<std::size_t>(side);
+    const std::size_t count = value_count(points, header.components, name);
     const std::uintmax_t bytes = std::uintmax_t{count} * value_size(type, name);
     const auto itk_bytes = static_cast<std::uintmax_t>(io->GetImageSizeInBytes());
-    if (header_count != count || itk_bytes != bytes) {
-      throw Error(name + ": the NRRD header's sizes make " + std::to_string(header_count) +
+    if (text.count != count || itk_bytes != bytes ||
+        (header.interleaved && text.components_axis == 0)) {
+      throw Error(name + ": the NRRD header's sizes make " + std::to_string(text.count) +
                   " values, but ITK finds " + std::to_string(count) + " in " +
                   std::to_string(itk_bytes) + " bytes; mend the header");
     }
@@ -274,7 +312,7 @@ Volume read_nrrd_file(const std::filesystem::path& path, const std::string& name
     }
     if (cell_centred == 3) description.centering = Centering::cell;
 
-    if (left_anterior_superior) {
+    if (text.left_anterior_superior) {
       // ITK has turned x; from anterior to posterior is y.
       GridPlacement& placement = description.placement;
       const auto mend = [](Vec3<double> v) { return Vec3<double>{-v.x, -v.y, v.z}; };
@@ -282,11 +320,20 @@ Volume read_nrrd_file(const std::filesystem::path& path, const std::string& name
       for (Vec3<double>& axis : placement.direction.column) axis = mend(axis);
     }
 
-    VolumeData data = values && (values->big_endian || value_size(type, name) == 1)
-                          ? read_raw_values(*values, type, count)
-                          : read_by_itk(*io, type, count, name);
-    apply_overrides(options, description);
-    return Volume(std::move(description), std::move(data));
+    VolumeFile file;
+    file.description = std::move(description);
+    apply_overrides(options, file.description);
+    file.components = header.components;
+    file.holds = header.holds;
+    file.read = [io, type, header, text, points, name](ComponentRange range) {
+      ValueLayout layout{type, false, 0, header.components, header.interleaved};
+      if (text.values && (text.values->big_endian || value_size(type, name) == 1)) {
+        if (text.components_axis > 1) layout.interleaved = false;
+        return read_raw_values(*text.values, layout, points, range);
+      }
+      return quietly(name, [&] { return read_by_itk(*io, layout, points, range, name); });
+    };
+    return file;
   });
 }
 

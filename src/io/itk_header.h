@@ -8,8 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "pellucid/io/read_volume.h"
-#include "volume_source.h"
+#include "components.h"
 
 namespace pellucid {
 
@@ -21,6 +20,9 @@ namespace pellucid {
 struct ItkHeader {
   Volume::Description description;
   std::string type;  ///< "u8" … "f64"
+  int components = 1;
+  bool interleaved = false;  ///< as in ValueLayout, where ITK gives the values
+  std::string holds;         ///< what several components are
 };
 
 /// Geometry alone. Of a sheared sform, which ITK refuses, `sheared` is set instead of throwing.
@@ -45,12 +47,20 @@ struct NrrdValues {
   std::optional<bool> big_endian;
 };
 
-/// All of a NRRD file, as `name` in messages; the values from `values` where those are given.
-/// ITK 5.2 turns the space left-anterior-superior to LPS by the wrong axis, so it must be told
-/// apart. `count` is how many values the header's text says there are: ITK writes as many into a
-/// buffer for the sizes that it cut down to 32 bits.
-Volume read_nrrd_file(const std::filesystem::path& path, const std::string& name,
-                      std::uint64_t count, bool left_anterior_superior,
-                      const std::optional<NrrdValues>& values, const ReadOptions& options);
+/// What the text of a NRRD header says that ITK does not tell.
+struct NrrdText {
+  /// How many values there are: ITK writes as many into a buffer for the sizes that it cut down to
+  /// 32 bits.
+  std::uint64_t count = 0;
+  /// ITK 5.2 turns this space to LPS by the wrong axis.
+  bool left_anterior_superior = false;
+  /// The axis that is none of space, from 1; 0 where there is none. ITK moves it to the front.
+  std::size_t components_axis = 0;
+  std::optional<NrrdValues> values;  ///< read from there where they are given
+};
+
+/// A NRRD file, as `name` in messages. `path` must stay while values are read.
+VolumeFile open_nrrd_file(const std::filesystem::path& path, const std::string& name,
+                          const NrrdText& text, const ReadOptions& options);
 
 }  // namespace pellucid

@@ -3,20 +3,23 @@
 
 #include <filesystem>
 
-#include "pellucid/io/read_volume.h"
+#include "components.h"
 
 namespace pellucid {
 
 /// NIfTI-1: .nii, or .hdr with .img, each also .gz. The world is LPS. Where ITK finds no orthogonal
-/// axes, the sform is taken as it is written. Several time steps, colors, complex numbers and
-/// 64-bit integers are refused.
-Volume read_nifti(const std::filesystem::path& path, const ReadOptions& options);
+/// axes, the sform is taken as it is written. Colors, and an axis behind the third, are components;
+/// several such axes, complex numbers and 64-bit integers are refused.
+VolumeFile open_nifti(const std::filesystem::path& path, const ReadOptions& options);
 
 /// NRRD, attached (.nrrd) or detached (.nhdr), raw, gzip, ascii or hex. Turned from RAS or LAS to
-/// LPS; other spaces are taken as they are. Cell-centred where all three axes say so.
-Volume read_nrrd(const std::filesystem::path& path, const ReadOptions& options);
+/// LPS; other spaces are taken as they are. Cell-centred where all three axes say so. A first or
+/// last axis that is none of space, by its kind or for want of a direction, holds components, and
+/// so does a fourth axis.
+VolumeFile open_nrrd(const std::filesystem::path& path, const ReadOptions& options);
 
-/// MetaImage, .mha or .mhd, raw or zlib; values in one file or in one per slice.
-Volume read_meta_image(const std::filesystem::path& path, const ReadOptions& options);
+/// MetaImage, .mha or .mhd, raw or zlib; values in one file or in one per slice. Channels and a
+/// fourth axis are components.
+VolumeFile open_meta_image(const std::filesystem::path& path, const ReadOptions& options);
 
 }  // namespace pellucid

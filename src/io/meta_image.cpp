@@ -4,13 +4,13 @@
 // (behind that line), a file, a pattern ("slice%03d.raw 1 93 1") or LIST (a name per line).
 
 #include <algorithm>
-#include <cstdio>
 #include <fstream>
 #include <span>
 #include <sstream>
 #include <string>
 #include <vector>
 
+#include "components.h"
 #include "data_stream.h"
 #include "input_file.h"
 #include "itk_header.h"
@@ -98,7 +98,8 @@ std::vector<DataFile> find_files(const fs::path& path, const MetaImageHeader& he
   } else if (where.find('%') != std::string::npos) {
     names = files_of_pattern(where, header.description.dimensions[2], name);
   }
-  const std::size_t slices = static_cast<std::size_t>(header.description.dimensions[2]);
+  const std::size_t slices = static_cast<std::size_t>(header.description.dimensions[2]) *
+                             static_cast<std::size_t>(header.interleaved ? 1 : header.components);
   if (names.empty() || slices % names.size() != 0) {
     throw Error(name + ": " + std::to_string(names.size()) + " files do not make " +
                 std::to_string(slices) + " slices");
@@ -118,56 +119,69 @@ std::vector<DataFile> find_files(const fs::path& path, const MetaImageHeader& he
   return files;
 }
 
-VolumeData read_compressed(const DataFile& file, const MetaImageHeader& header, std::size_t count) {
-  // CompressedDataSize is often out of date; the compressed data knows where it ends.
-  DataStream stream(file.path, file.offset, DataStream::Compression::deflate);
-  VolumeData data = read_values(stream, {header.type, header.big_endian, file.offset}, count);
-  stream.finish();
-  return data;
+/// Several files of the same share one behind the other; one of them in place where that can be.
+ByteSource joined_source(const std::vector<DataFile>& files, std::uintmax_t share,
+                         const std::string& name) {
+  std::vector<ByteSource> parts;
+  parts.reserve(files.size());
+  for (const DataFile& file : files) parts.push_back(file_source(file.path));
+  ByteSource joined{name, share * files.size(), {}, {}};
+  joined.read = [parts, files, share](std::uintmax_t from, std::span<std::byte> to) {
+    while (!to.empty()) {
+      const std::size_t part = from / share;
+      const std::uintmax_t within = from % share;
+      const std::size_t bytes = std::min<std::uintmax_t>(share - within, to.size());
+      parts[part].read(files[part].offset + within, to.first(bytes));
+      to = to.subspan(bytes);
+      from += bytes;
+    }
+  };
+  return joined;
 }
 
-// One file in place where that can be, several one behind the other.
-VolumeData read_parts(const std::vector<DataFile>& files, const MetaImageHeader& header,
-                      std::size_t count, const std::string& name) {
-  const auto layout = [&](const DataFile& file) {
-    return ValueLayout{header.type, header.big_endian, file.offset};
-  };
-  for (const DataFile& file : files) {
-    check_size(file_source(file.path), layout(file), count / files.size());
+std::vector<VolumeData> read_files(const std::vector<DataFile>& files,
+                                   const MetaImageHeader& header, std::size_t points,
+                                   ComponentRange range, const std::string& name) {
+  ValueLayout layout{header.type, header.big_endian, files[0].offset, header.components,
+                     header.interleaved};
+  if (header.compressed) {
+    // CompressedDataSize is often out of date; the compressed data knows where it ends.
+    DataStream stream(files[0].path, layout.offset, DataStream::Compression::deflate);
+    std::vector<VolumeData> list = read_components(stream, layout, points, range);
+    stream.finish();
+    return list;
   }
-  if (files.size() == 1) return read_values(file_source(files[0].path), layout(files[0]), count);
-  VolumeData data = make_values(header.type, count, name);
-  std::visit(
-      [&](auto& values) {
-        std::span<std::byte> rest = std::as_writable_bytes(values.writable());
-        const std::size_t share = rest.size() / files.size();
-        for (const DataFile& file : files) {
-          file_source(file.path).read(file.offset, rest.first(share));
-          rest = rest.subspan(share);
-        }
-      },
-      data);
-  to_native_order(data, header.big_endian);
-  return data;
+  const std::size_t share = value_count(points, layout.components, name) / files.size();
+  for (const DataFile& file : files) {
+    check_size(file_source(file.path), {layout.type, layout.big_endian, file.offset}, share);
+  }
+  if (files.size() == 1) return read_components(file_source(files[0].path), layout, points, range);
+  layout.offset = 0;
+  return read_components(joined_source(files, share * value_size(layout.type, name), name), layout,
+                         points, range);
 }
 
 }  // namespace
 
-Volume read_meta_image(const fs::path& path, const ReadOptions& options) {
+VolumeFile open_meta_image(const fs::path& path, const ReadOptions& options) {
   const std::string name = path.string();
   refuse_raw_options(options, name);
-  MetaImageHeader header = read_meta_image_header(path);
+  const MetaImageHeader header = read_meta_image_header(path);
   if (header.text) {
     throw Error(name + ": values written as text are not read; save the MetaImage as binary");
   }
-  std::size_t count = 1;
-  for (const int side : header.description.dimensions) count *= static_cast<std::size_t>(side);
-  const std::uintmax_t bytes = std::uintmax_t{count} * value_size(header.type, name);
-  const std::vector<DataFile> files = find_files(path, header, bytes);
-  VolumeData data = header.compressed ? read_compressed(files[0], header, count)
-                                      : read_parts(files, header, count, name);
-  apply_overrides(options, header.description);
-  return Volume(std::move(header.description), std::move(data));
+  std::size_t points = 1;
+  for (const int side : header.description.dimensions) points *= static_cast<std::size_t>(side);
+  const std::uintmax_t bytes =
+      std::uintmax_t{value_count(points, header.components, name)} * value_size(header.type, name);
+  VolumeFile file;
+  file.description = header.description;
+  apply_overrides(options, file.description);
+  file.components = header.components;
+  file.holds = header.holds;
+  file.read = [header, points, name, files = find_files(path, header, bytes)](
+                  ComponentRange range) { return read_files(files, header, points, range, name); };
+  return file;
 }
 
 }  // namespace pellucid

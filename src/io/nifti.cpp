@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
-#include <functional>
 #include <span>
 #include <type_traits>
 #include <utility>
+#include <vector>
 
+#include "components.h"
 #include "data_stream.h"
 #include "itk_header.h"
 #include "medical_volumes.h"
@@ -19,9 +20,6 @@ namespace {
 template <class Value>
 using Scaled =
     std::conditional_t<sizeof(Value) <= 2 || std::is_same_v<Value, float>, float, double>;
-
-/// Fills a span with the bytes that come next.
-using ReadOn = std::function<void(std::span<std::byte>)>;
 
 /// slope · stored + intercept, a few stored values at a time.
 VolumeData read_scaled(const ReadOn& read, const NiftiHeader& header, std::size_t count,
@@ -51,28 +49,43 @@ VolumeData read_scaled(const ReadOn& read, const NiftiHeader& header, std::size_
       make_volume_data(header.layout.type, 0));
 }
 
-VolumeData read_file_values(const std::filesystem::path& file, const NiftiHeader& header,
-                            std::size_t count, const std::string& name) {
+/// Components that are scaled lie one behind the other.
+std::vector<VolumeData> read_scaled(const ReadOn& read, const NiftiHeader& header,
+                                    std::size_t count, ComponentRange range,
+                                    const std::string& name) {
+  std::vector<VolumeData> list;
+  list.reserve(static_cast<std::size_t>(range.number));
+  for (int c = 0; c < range.number; ++c) list.push_back(read_scaled(read, header, count, name));
+  return list;
+}
+
+std::vector<VolumeData> read_file_values(const std::filesystem::path& file,
+                                         const NiftiHeader& header, std::size_t count,
+                                         ComponentRange range, const std::string& name) {
+  const ValueLayout& layout = header.layout;
   const bool as_stored = header.slope == 1 && header.intercept == 0;
+  const std::uintmax_t bytes = std::uintmax_t{count} * value_size(layout.type, name);
+  const std::uintmax_t before = bytes * static_cast<std::uintmax_t>(range.first);
   if (is_gzip(file)) {
     DataStream stream(file, 0, DataStream::Compression::deflate);
-    stream.skip(header.layout.offset);
-    VolumeData data = as_stored ? read_values(stream, header.layout, count)
-                                : read_scaled([&](std::span<std::byte> to) { stream.read(to); },
-                                              header, count, name);
+    stream.skip(layout.offset);
+    std::vector<VolumeData> list;
+    if (as_stored) {
+      list = read_components(stream, layout, count, range);
+    } else {
+      stream.skip(before);
+      list = read_scaled([&](std::span<std::byte> to) { stream.read(to); }, header, count, range,
+                         name);
+      const int rest = layout.components - range.first - range.number;
+      stream.skip(bytes * static_cast<std::uintmax_t>(rest));
+    }
     stream.finish();
-    return data;
+    return list;
   }
   const ByteSource source = file_source(file);
-  check_size(source, header.layout, count);
-  if (as_stored) return read_values(source, header.layout, count);
-  std::uintmax_t from = header.layout.offset;
-  return read_scaled(
-      [&](std::span<std::byte> to) {
-        source.read(from, to);
-        from += to.size();
-      },
-      header, count, name);
+  check_size(source, layout, value_count(count, layout.components, name));
+  if (as_stored) return read_components(source, layout, count, range);
+  return read_scaled(read_on(source, layout.offset + before), header, count, range, name);
 }
 
 Volume::Description describe(const NiftiFiles& files, const NiftiHeader& header,
@@ -103,7 +116,7 @@ Volume::Description describe(const NiftiFiles& files, const NiftiHeader& header,
 
 }  // namespace
 
-Volume read_nifti(const std::filesystem::path& path, const ReadOptions& options) {
+VolumeFile open_nifti(const std::filesystem::path& path, const ReadOptions& options) {
   const std::string name = path.string();
   refuse_raw_options(options, name);
   const NiftiFiles files = find_nifti_files(path);
@@ -115,12 +128,17 @@ Volume read_nifti(const std::filesystem::path& path, const ReadOptions& options)
     throw Error(name + ": the spacing along " + std::string(1, "xyz"[a]) + " is " +
                 std::to_string(header.spacing[a]) + "; give a positive one");
   }
-  Volume::Description description = describe(files, header, name);
-
-  const std::filesystem::path& file = header.single_file ? files.header : files.values;
-  VolumeData data = read_file_values(file, header, count, name);
-  apply_overrides(options, description);
-  return Volume(std::move(description), std::move(data));
+  value_count(count, header.layout.components, name);
+  VolumeFile file;
+  file.description = describe(files, header, name);
+  apply_overrides(options, file.description);
+  file.components = header.layout.components;
+  file.holds = header.holds;
+  file.read = [header, count, name,
+               values = header.single_file ? files.header : files.values](ComponentRange range) {
+    return read_file_values(values, header, count, range, name);
+  };
+  return file;
 }
 
 }  // namespace pellucid

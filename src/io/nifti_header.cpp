@@ -26,9 +26,14 @@ T number_at(const HeaderBytes& bytes, std::size_t offset, bool big_endian) {
   return std::bit_cast<T>(part);
 }
 
+// Colors of three and four bytes.
+constexpr int rgb_code = 128, rgba_code = 2304;
+
 std::string type_of(int code, const std::string& name) {
   switch (code) {
     case 2:
+    case rgb_code:
+    case rgba_code:
       return "u8";
     case 4:
       return "i16";
@@ -47,9 +52,6 @@ std::string type_of(int code, const std::string& name) {
     case 1024:
     case 1280:
       throw Error(name + ": 64-bit integers are not read; convert the file to 32 bits or double");
-    case 128:
-    case 2304:
-      throw Error(name + ": holds colors (RGB), not one number at each point; save one channel");
     case 32:
     case 1792:
     case 2048:
@@ -73,13 +75,36 @@ std::array<std::int64_t, 3> dimensions_of(const HeaderBytes& bytes, bool big_end
     throw Error(name + ": an image of " + std::to_string(dim(0)) +
                 " axes is not read; a volume has three");
   }
-  for (std::int64_t a = 4; a <= dim(0); ++a) {
-    const std::int64_t n = dim(static_cast<std::size_t>(a));
-    if (n == 1) continue;
-    throw Error(name + ": holds " + std::to_string(n) + (a == 4 ? " time steps" : " components") +
-                " (axis " + std::to_string(a) + "); save one of them as a file of its own");
-  }
   return {dim(1), dim(2), dim(3)};
+}
+
+// Colors, or one of the axes behind the third.
+void find_components(const HeaderBytes& bytes, bool big_endian, const std::string& name,
+                     NiftiHeader& header) {
+  const int code = number_at<std::int16_t>(bytes, 70, big_endian);
+  if (code == rgb_code || code == rgba_code) {
+    header.layout.components = code == rgb_code ? 3 : 4;
+    header.layout.interleaved = true;
+    header.holds = code == rgb_code ? "colors (RGB)" : "colors (RGBA)";
+  }
+  const int axes = number_at<std::int16_t>(bytes, 40, big_endian);
+  // nifti1.h: matrices, vectors and the like, but for the series among them.
+  const int intent = number_at<std::int16_t>(bytes, 68, big_endian);
+  const bool vectors = intent > 1003 && intent != 2001;
+  for (int a = 4; a <= axes; ++a) {
+    const int n = number_at<std::int16_t>(bytes, 40 + 2 * static_cast<std::size_t>(a), big_endian);
+    if (n == 1) continue;
+    const std::string holds = std::to_string(n) +
+                              (a == 4 && !vectors ? " time steps" : " components") + " (axis " +
+                              std::to_string(a) + ")";
+    if (n < 1) throw Error(name + ": the NIfTI header says " + holds + "; it is damaged");
+    if (header.layout.components > 1) {
+      throw Error(name + ": holds " + header.holds + " and " + holds +
+                  "; save one of these as a file of its own");
+    }
+    header.layout.components = n;
+    header.holds = holds;
+  }
 }
 
 std::uintmax_t offset_of(float offset, bool single_file, const std::string& name) {
@@ -154,10 +179,13 @@ NiftiHeader read_nifti_header(const std::filesystem::path& path) {
   header.dimensions = dimensions_of(bytes, big_endian, name);
   header.layout = {type_of(number_at<std::int16_t>(bytes, 70, big_endian), name), big_endian,
                    offset_of(number_at<float>(bytes, 108, big_endian), header.single_file, name)};
+  find_components(bytes, big_endian, name, header);
   const double slope = static_cast<double>(number_at<float>(bytes, 112, big_endian));
   const double intercept = static_cast<double>(number_at<float>(bytes, 116, big_endian));
-  // nifti1.h: a slope of 0 means none; writers leave NaN where they mean none, too.
-  if (std::isfinite(slope) && slope != 0 && std::isfinite(intercept)) {
+  // nifti1.h: a slope of 0 means none, and colors have none; writers leave NaN where they mean
+  // none, too.
+  if (!header.layout.interleaved && std::isfinite(slope) && slope != 0 &&
+      std::isfinite(intercept)) {
     header.slope = slope;
     header.intercept = intercept;
   }

@@ -17,7 +17,8 @@ struct NiftiHeader {
   bool single_file = true;  ///< header and values in one file
   std::array<std::int64_t, 3> dimensions{};
   ValueLayout layout;
-  double slope = 1, intercept = 0;  ///< value = slope · stored + intercept; slope 1: as stored
+  std::string holds;                ///< what its several components are
+  double slope = 1, intercept = 0;  ///< value = slope · stored + intercept; 1, 0: as stored
   std::array<double, 3> spacing{};  ///< as written, maybe not positive
   double unit = 1;                  ///< of lengths, in millimetres
   /// The affine map of the sform, where there is one, its world turned from RAS to LPS, in the

@@ -6,13 +6,14 @@
 
 #include <algorithm>
 #include <array>
+#include <limits>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "components.h"
 #include "pellucid/scene/error.h"
-#include "volume_source.h"
 
 namespace pellucid {
 
@@ -179,15 +180,29 @@ ValueLayout layout_of(const std::string& descr, std::uintmax_t offset, const std
   throw Error(name + ": type '" + HeaderParser::printable(descr) + "' is not read: " + advice);
 }
 
+std::string shape_text(const NpyHeader& header) {
+  std::string text;
+  for (const std::int64_t n : header.shape) text += (text.empty() ? "" : ", ") + std::to_string(n);
+  return text;
+}
+
+// In either order, a[..., c] is component c.
+int components_of(const NpyHeader& header, const std::string& name) {
+  if (header.shape.size() != 4) return 1;
+  const std::int64_t n = header.shape[3];
+  if (n < 1 || n > std::numeric_limits<int>::max()) {
+    throw Error(name + ": an array of shape (" + shape_text(header) +
+                ") has no usable number of components, its last axis");
+  }
+  return static_cast<int>(n);
+}
+
 // Dimensions x, y, z: the fastest axis is x.
 std::array<std::int64_t, 3> dimensions_of(const NpyHeader& header, const std::string& name) {
-  if (header.shape.size() != 3) {
-    std::string text;
-    for (const std::int64_t n : header.shape)
-      text += (text.empty() ? "" : ", ") + std::to_string(n);
-    throw Error(name + ": an array of shape (" + text +
-                ") is no volume; it must have 3 axes, not " + std::to_string(header.shape.size()) +
-                ": select or reshape with numpy");
+  if (header.shape.size() != 3 && header.shape.size() != 4) {
+    throw Error(name + ": an array of shape (" + shape_text(header) +
+                ") is no volume; it must have 3 axes, and may have a fourth for components, not " +
+                std::to_string(header.shape.size()) + ": select or reshape with numpy");
   }
   std::array<std::int64_t, 3> dimensions{header.shape[0], header.shape[1], header.shape[2]};
   if (!header.fortran_order) std::ranges::reverse(dimensions);
@@ -196,7 +211,7 @@ std::array<std::int64_t, 3> dimensions_of(const NpyHeader& header, const std::st
 
 }  // namespace
 
-Volume read_npy(const ByteSource& source, const ReadOptions& options) {
+VolumeFile open_npy(const ByteSource& source, const ReadOptions& options) {
   refuse_raw_options(options, source.name);
   const auto truncated = [&] { return Error(source.name + ": the .npy header is cut off"); };
   std::array<std::byte, 12> start{};
@@ -233,29 +248,38 @@ Volume read_npy(const ByteSource& source, const ReadOptions& options) {
   source.read(begin, std::as_writable_bytes(std::span(text)));
 
   const NpyHeader header = HeaderParser(text, source.name).parse();
-  const ValueLayout layout = layout_of(header.descr, begin + length, source.name);
+  ValueLayout layout = layout_of(header.descr, begin + length, source.name);
   const std::array<std::int64_t, 3> sides = dimensions_of(header, source.name);
   const std::size_t count = value_count(sides, source.name);
-  const std::uintmax_t expected = std::uintmax_t{count} * value_size(layout.type, source.name);
+  layout.components = components_of(header, source.name);
+  layout.interleaved = !header.fortran_order;
+  const std::uintmax_t expected =
+      std::uintmax_t{value_count(count, layout.components, source.name)} *
+      value_size(layout.type, source.name);
   const std::uintmax_t present = source.size - layout.offset;
   if (present != expected) {
     throw Error(source.name + ": holds " + std::to_string(present) + " bytes of values, but " +
                 std::to_string(sides[0]) + " x " + std::to_string(sides[1]) + " x " +
-                std::to_string(sides[2]) + " of " + layout.type + " are " +
-                std::to_string(expected) +
+                std::to_string(sides[2]) + " of " +
+                (layout.components > 1 ? std::to_string(layout.components) + " x " : "") +
+                layout.type + " are " + std::to_string(expected) +
                 (present < expected ? "; the file is cut off" : "; it holds more than one array"));
   }
-  VolumeData data = read_values(source, layout, count);
-  Volume::Description description;
-  for (std::size_t a = 0; a < 3; ++a) description.dimensions[a] = static_cast<int>(sides[a]);
-  description.name = source.name;
-  apply_overrides(options, description);
-  return Volume(std::move(description), std::move(data));
+  VolumeFile file;
+  for (std::size_t a = 0; a < 3; ++a) file.description.dimensions[a] = static_cast<int>(sides[a]);
+  file.description.name = source.name;
+  apply_overrides(options, file.description);
+  file.components = layout.components;
+  file.holds = std::to_string(layout.components) + " components (the last axis)";
+  file.read = [source, layout, count](ComponentRange range) {
+    return read_components(source, layout, count, range);
+  };
+  return file;
 }
 
 Volume parse_npy(const std::vector<std::byte>& bytes, const std::string& name,
                  const ReadOptions& options) {
-  return read_npy(memory_source(bytes, name), options);
+  return read_chosen(open_npy(memory_source(bytes, name), options), options);
 }
 
 }  // namespace pellucid

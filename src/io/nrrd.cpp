@@ -7,6 +7,7 @@
 #include <fstream>
 #include <initializer_list>
 #include <limits>
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -103,6 +104,29 @@ std::vector<std::string> axes_of(const std::string& value) {
   return axes;
 }
 
+bool is_unknown(const std::string& kind) {
+  return kind == "???" || kind == "none" || kind == "unknown";
+}
+
+// The kind of an axis, from 1; empty where it is not known.
+std::string kind_of(const Header& header, std::size_t axis) {
+  const Line* line = find_field(header, "kinds");
+  if (line == nullptr) return {};
+  const std::vector<std::string> kinds = axes_of(line->value);
+  return axis > kinds.size() || is_unknown(kinds[axis - 1]) ? std::string() : kinds[axis - 1];
+}
+
+// NrrdIO panics about some kinds, and ITK takes the mask out of others.
+bool is_kind_of_itk(const std::string& kind) {
+  return !kind.empty() && kind != "3-gradient" && kind != "3-normal" &&
+         kind.find("masked") == std::string::npos;
+}
+
+std::size_t axis_count(const Header& header) {
+  const Line* sizes = find_field(header, "sizes");
+  return sizes == nullptr ? 0 : axes_of(sizes->value).size();
+}
+
 std::optional<std::uint64_t> number_in(const std::string& text) {
   std::uint64_t number = 0;
   const char* end = text.data() + text.size();
@@ -112,14 +136,17 @@ std::optional<std::uint64_t> number_in(const std::string& text) {
 }
 
 // Two kinds of file break the letter of the format and are common all the same: "space directions"
-// without a space or before it, and "spacings" beside a space. NrrdIO refuses both. This is the
-// header as it was meant, detached, or nothing where there is nothing to mend.
-std::vector<std::string> mended_header(const Header& header, const fs::path& path) {
+// without a space or before it, and "spacings" beside a space. NrrdIO refuses both; and it needs to
+// be told the kind of an axis of components, one that it knows. This is the header as it was meant,
+// detached, or nothing where there is nothing to mend.
+std::vector<std::string> mended_header(const Header& header, std::size_t components_axis,
+                                       const fs::path& path) {
   const bool directions = find_field(header, "spacedirections") != nullptr;
   const bool space =
       find_field(header, "space") != nullptr || find_field(header, "spacedimension") != nullptr;
   const bool spacings = find_field(header, "spacings") != nullptr;
-  if (!(directions && !space) && !(spacings && space && !directions)) return {};
+  const bool kinds = components_axis == 0 || is_kind_of_itk(kind_of(header, components_axis));
+  if (kinds && !(directions && !space) && !(spacings && space && !directions)) return {};
 
   const Line* file = find_field(header, "datafile");
   if (file != nullptr && file->value.starts_with("LIST")) return {};
@@ -129,9 +156,17 @@ std::vector<std::string> mended_header(const Header& header, const fs::path& pat
   std::vector<std::string> mended;
   for (const Line& line : header.lines) {
     if (line.field == "datafile" || line.field == "lineskip") continue;
-    if (!directions && line.field == "space") continue;
-    if (line.field == "spacedirections") mended.emplace_back("space dimension: 3");
+    if (spacings && !directions && line.field == "space") continue;
+    if (!kinds && line.field == "kinds") continue;
+    if (!space && line.field == "spacedirections") mended.emplace_back("space dimension: 3");
     mended.push_back(line.text);
+  }
+  if (!kinds) {
+    std::string line = "kinds:";
+    for (std::size_t axis = 1; axis <= axis_count(header); ++axis) {
+      line += axis == components_axis ? " list" : " domain";
+    }
+    mended.push_back(line);
   }
   // What was attached stands behind the header, and the empty line at its end.
   const std::uint64_t above = file == nullptr ? header.lines.size() + 1 : 0;
@@ -184,13 +219,14 @@ std::uint64_t header_count(const Header& header, const std::string& name) {
   return count;
 }
 
-// The first axis of which `field` says one of `words`, from 1; 0 where there is none.
+// The first axis, but for one, of which `field` says one of `words`, from 1; 0 where there is none.
 std::size_t axis_that_says(const Header& header, std::string_view field,
-                           std::initializer_list<std::string_view> words) {
+                           std::initializer_list<std::string_view> words, std::size_t but_for = 0) {
   const Line* line = find_field(header, field);
   if (line == nullptr) return 0;
   const std::vector<std::string> axes = axes_of(line->value);
   for (std::size_t a = 0; a < axes.size(); ++a) {
+    if (a + 1 == but_for) continue;
     for (const std::string_view word : words) {
       if (axes[a].find(word) != std::string::npos) return a + 1;
     }
@@ -206,16 +242,37 @@ bool needs_spacing(const Header& header, std::size_t axis) {
   return axis > sides.size() || number_in(sides[axis - 1]) != 1u;
 }
 
+// The axis whose values are components, from 1; 0 where all are of space or time. The kind says it,
+// or that the axis has no direction in space.
+std::size_t find_components_axis(const Header& header, const std::string& name) {
+  const std::size_t axes = axis_count(header);
+  if (axes < 4) return 0;
+  std::size_t found = 0;
+  for (std::size_t axis = 1; axis <= axes && found == 0; ++axis) {
+    const std::string kind = kind_of(header, axis);
+    if (!kind.empty() && kind != "domain" && kind != "space" && kind != "time") found = axis;
+  }
+  if (found == 0) found = axis_that_says(header, "spacedirections", {"none", "nan"});
+  if (found > 1 && found < axes) {
+    throw Error(name + ": axis " + std::to_string(found) + " of " + std::to_string(axes) +
+                " holds components, which are read of the first and of the last axis only; "
+                "permute the axes");
+  }
+  return found;
+}
+
 // ITK takes a spacing of 1 where NRRD says that it is unknown, or gives a range of each axis.
-void check_spacing(const Header& header, const ReadOptions& options, const std::string& name) {
+void check_spacing(const Header& header, std::size_t components_axis, const ReadOptions& options,
+                   const std::string& name) {
   const bool directions = find_field(header, "spacedirections") != nullptr;
-  if (const std::size_t axis = axis_that_says(header, "spacedirections", {"none", "nan"})) {
+  if (const std::size_t axis =
+          axis_that_says(header, "spacedirections", {"none", "nan"}, components_axis)) {
     throw Error(name + ": axis " + std::to_string(axis) +
                 " is no axis of space, \"space directions\" has none for it; save a volume of "
                 "three axes of space as a file of its own");
   }
   if (options.spacing) return;
-  if (const std::size_t axis = axis_that_says(header, "spacings", {"nan"});
+  if (const std::size_t axis = axis_that_says(header, "spacings", {"nan"}, components_axis);
       axis != 0 && needs_spacing(header, axis)) {
     throw Error(name + ": the NRRD header does not know the spacing of axis " +
                 std::to_string(axis) + "; give the spacing");
@@ -275,30 +332,40 @@ std::string replaced(std::string text, const std::string& what, const std::strin
 
 }  // namespace
 
-Volume read_nrrd(const fs::path& path, const ReadOptions& options) {
+VolumeFile open_nrrd(const fs::path& path, const ReadOptions& options) {
   const std::string name = path.string();
   refuse_raw_options(options, name);
   check_input_file(path);
   const Header header = read_header(path);
-  const std::uint64_t count = header_count(header, name);
-  check_spacing(header, options, name);
-  const bool las = is_left_anterior_superior(header);
-  const std::optional<NrrdValues> values = raw_values(header, path);
-  const std::vector<std::string> mended = mended_header(header, path);
-  if (mended.empty()) return read_nrrd_file(path, name, count, las, values, options);
+  NrrdText text;
+  text.count = header_count(header, name);
+  text.components_axis = find_components_axis(header, name);
+  check_spacing(header, text.components_axis, options, name);
+  text.left_anterior_superior = is_left_anterior_superior(header);
+  text.values = raw_values(header, path);
+  const std::vector<std::string> mended = mended_header(header, text.components_axis, path);
+  if (mended.empty()) return open_nrrd_file(path, name, text, options);
+  // A space is kept beside directions alone.
+  if (find_field(header, "spacedirections") == nullptr) text.left_anterior_superior = false;
 
-  const TemporaryFolder folder(name);
-  const fs::path mended_path = folder.path() / "mended.nhdr";
+  const auto folder = std::make_shared<const TemporaryFolder>(name);
+  const fs::path mended_path = folder->path() / "mended.nhdr";
   std::ofstream stream(mended_path, std::ios::binary);
   for (const std::string& line : mended) stream << line << '\n';
   stream.close();
   if (!stream) throw Error(name + ": cannot write a temporary header for it");
-  try {
-    // No mended header names a space, so ITK has turned nothing.
-    return read_nrrd_file(mended_path, name, count, false, values, options);
-  } catch (const Error& e) {
-    throw Error(replaced(e.what(), mended_path.string(), name));
-  }
+  const auto with_own_name = [folder, mended_path, name](const auto& call) {
+    try {
+      return call();
+    } catch (const Error& e) {
+      throw Error(replaced(e.what(), mended_path.string(), name));
+    }
+  };
+  VolumeFile file = with_own_name([&] { return open_nrrd_file(mended_path, name, text, options); });
+  file.read = [with_own_name, read = std::move(file.read)](ComponentRange range) {
+    return with_own_name([&] { return read(range); });
+  };
+  return file;
 }
 
 }  // namespace pellucid

@@ -4,58 +4,57 @@
 #include <algorithm>
 #include <array>
 #include <new>
+#include <stdexcept>
 #include <string>
 #include <string_view>
 
+#include "components.h"
 #include "input_file.h"
 #include "medical_volumes.h"
 #include "pellucid/scene/error.h"
-#include "volume_source.h"
 
 namespace pellucid {
 
 namespace {
 
-using Reader = Volume (*)(const std::filesystem::path&, const ReadOptions&);
+using Opener = VolumeFile (*)(const std::filesystem::path&, const ReadOptions&);
 
-Volume read_npy_file(const std::filesystem::path& path, const ReadOptions& options) {
-  return read_npy(file_source(path), options);
+VolumeFile open_npy_file(const std::filesystem::path& path, const ReadOptions& options) {
+  return open_npy(file_source(path), options);
 }
 
-Volume read_raw_file(const std::filesystem::path& path, const ReadOptions& options) {
-  return read_raw(file_source(path), options);
+VolumeFile open_raw_file(const std::filesystem::path& path, const ReadOptions& options) {
+  return open_raw(file_source(path), options);
 }
 
 struct Format {
   std::string_view extension;
-  Reader read;
+  Opener open;
 };
 
 constexpr std::array formats{
-    Format{".nii", read_nifti},      Format{".nii.gz", read_nifti}, Format{".hdr", read_nifti},
-    Format{".hdr.gz", read_nifti},   Format{".img", read_nifti},    Format{".img.gz", read_nifti},
-    Format{".nrrd", read_nrrd},      Format{".nhdr", read_nrrd},    Format{".mha", read_meta_image},
-    Format{".mhd", read_meta_image}, Format{".npy", read_npy_file}, Format{".raw", read_raw_file}};
+    Format{".nii", open_nifti},      Format{".nii.gz", open_nifti}, Format{".hdr", open_nifti},
+    Format{".hdr.gz", open_nifti},   Format{".img", open_nifti},    Format{".img.gz", open_nifti},
+    Format{".nrrd", open_nrrd},      Format{".nhdr", open_nrrd},    Format{".mha", open_meta_image},
+    Format{".mhd", open_meta_image}, Format{".npy", open_npy_file}, Format{".raw", open_raw_file}};
 
-Reader reader_of(const std::filesystem::path& path) {
+Opener opener_of(const std::filesystem::path& path) {
   std::string name = path.filename().string();
   std::ranges::transform(name, name.begin(), [](char c) {
     return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
   });
   for (const Format& format : formats) {
-    if (name.ends_with(format.extension)) return format.read;
+    if (name.ends_with(format.extension)) return format.open;
   }
   return nullptr;
 }
 
-}  // namespace
-
-Volume read_volume(const std::filesystem::path& path, const ReadOptions& options) {
+VolumeFile open_file(const std::filesystem::path& path, const ReadOptions& options) {
   check_input_file(path);
-  Reader read = reader_of(path);
+  Opener open = opener_of(path);
   // Whoever says how large the data is and of what type has said that it has no header.
-  if (read == nullptr && options.dimensions && options.type) read = read_raw_file;
-  if (read == nullptr) {
+  if (open == nullptr && options.dimensions && options.type) open = open_raw_file;
+  if (open == nullptr) {
     std::string known;
     for (const Format& format : formats) {
       known += (known.empty() ? "" : " ") + std::string(format.extension);
@@ -63,13 +62,34 @@ Volume read_volume(const std::filesystem::path& path, const ReadOptions& options
     throw Error(path.string() + ": the file's extension is not known; read are " + known +
                 ", and headerless data of any name with its dimensions and type given");
   }
+  return open(path, options);
+}
+
+/// What `read` makes of the opened file, with one line for all that memory does not hold.
+template <class Read>
+auto open_and(const std::filesystem::path& path, const ReadOptions& options, const Read& read) {
   try {
-    return read(path, options);
+    return read(open_file(path, options));
   } catch (const std::bad_alloc&) {
     throw Error(path.string() + ": not enough memory for the data; crop or reduce the volume");
   } catch (const std::length_error&) {
     throw Error(path.string() + ": not enough memory for the data; crop or reduce the volume");
   }
+}
+
+}  // namespace
+
+Volume read_volume(const std::filesystem::path& path, const ReadOptions& options) {
+  return open_and(path, options,
+                  [&](const VolumeFile& file) { return read_chosen(file, options); });
+}
+
+int component_count(const std::filesystem::path& path, const ReadOptions& options) {
+  return open_and(path, options, [](const VolumeFile& file) { return file.components; });
+}
+
+std::vector<Volume> read_components(const std::filesystem::path& path, const ReadOptions& options) {
+  return open_and(path, options, [&](const VolumeFile& file) { return read_all(file, options); });
 }
 
 }  // namespace pellucid

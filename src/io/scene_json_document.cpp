@@ -103,7 +103,7 @@ class Builder : public nlohmann::json_sax<json> {
   bool open(json&& value) {
     if (open_.size() == deepest_nesting) {
       throw Error(name_ + ": " + pointer() + ": nested deeper than " +
-                  std::to_string(deepest_nesting) + " levels; a scene needs 7");
+                  std::to_string(deepest_nesting) + " levels; a scene needs 8");
     }
     const bool in_array = !open_.empty() && open_.back()->is_array();
     const std::string token = in_array ? std::to_string(open_.back()->size()) : pointer_token(key_);

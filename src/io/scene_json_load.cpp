@@ -1,81 +1,80 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
-#include <charconv>
+#include <array>
 #include <memory>
+#include <string>
+#include <vector>
 
 #include "pellucid/io/scene_json.h"
-#include "pellucid/scene/builtin_fields.h"
 #include "pellucid/scene/defaults.h"
 #include "pellucid/scene/error.h"
-#include "scene_json_document.h"
 
 namespace pellucid {
+namespace {
 
-FieldSource parse_field_source(std::string_view text) {
-  constexpr std::string_view prefix = "builtin:";
-  FieldSource source;
-  if (!text.starts_with(prefix)) {
-    if (text.empty()) throw Error("the name of the field is empty; give a file or builtin:NAME");
-    source.file = text;
-    return source;
-  }
-  std::string_view name = text.substr(prefix.size());
-  if (const std::size_t colon = name.find(':'); colon != std::string_view::npos) {
-    const std::string_view number = name.substr(colon + 1);
-    name = name.substr(0, colon);
-    const char* const end = number.data() + number.size();
-    const auto result = std::from_chars(number.data(), end, source.points);
-    if (result.ec != std::errc() || result.ptr != end || source.points < 2 ||
-        source.points > 2048) {
-      throw Error("field " + scene_json::printable(text) + ": \"" + scene_json::printable(number) +
-                  "\" points per axis, but must be an integer from 2 to 2048");
-    }
-  }
-  const auto& names = builtin_field_names();
-  if (std::find(names.begin(), names.end(), name) == names.end()) {
-    std::string known;
-    for (const std::string_view n : names) known += (known.empty() ? "" : ", ") + std::string(n);
-    throw Error("field " + scene_json::printable(text) + ": no built-in field of that name" +
-                scene_json::did_you_mean(name, names) + "; known: " + known);
-  }
-  source.builtin = name;
-  return source;
-}
-
-Volume load_field(const FieldSource& source) {
-  return source.builtin.empty() ? read_volume(source.file, source.options)
-                                : make_builtin_field(source.builtin, source.points);
-}
-
-TransferFunction make_transfer_function(const TransferFunctionDescription& description,
-                                        double tolerance,
-                                        const std::optional<Rgb<double>>& background) {
-  if (const auto* points = std::get_if<std::vector<TransferFunction::Point>>(&description)) {
-    return TransferFunction(*points);
-  }
-  const OpacityTable& table = std::get<OpacityTable>(description);
-  double largest_color = 0;
-  const auto count = [&](const Rgb<double>& c) {
-    largest_color = std::max({largest_color, c.r, c.g, c.b});
+bool names(const MultivariateDescription& function, std::string_view channel) {
+  const auto in = [&](const std::vector<std::string>& list) {
+    return std::find(list.begin(), list.end(), channel) != list.end();
   };
-  for (const OpacityPoint& p : table.points) count(p.color);
-  if (background) count(*background);
-  return from_opacity_table(table.points, table.unit_distance,
-                            relative_error_for(opacity_table_share(tolerance), largest_color));
+  return in(function.channels) ||
+         std::any_of(function.gaussians.begin(), function.gaussians.end(),
+                     [&](const auto& gaussian) { return in(gaussian.channels); }) ||
+         std::any_of(function.tables.begin(), function.tables.end(),
+                     [&](const auto& table) { return table.channel == channel; });
 }
 
-Scene make_scene(const SceneDescription& description) {
+const MultivariateDescription* multivariate(const SceneDescription& description) {
+  return description.transfer_function
+             ? std::get_if<MultivariateDescription>(&*description.transfer_function)
+             : nullptr;
+}
+
+void fill_channels(const SceneDescription& description, const std::vector<ChannelSource>& sources,
+                   const ParallelFor& parallel, Scene& scene) {
+  const MultivariateDescription* const function = multivariate(description);
+  if (function == nullptr) {
+    throw Error(description.transfer_function
+                    ? "scene: points in one variable are the function of a field, but here are "
+                      "channels; give them as one of the \"tables\" with its \"channel\""
+                    : "scene: channels need a transfer function; give "
+                      "\"gaussians\" or \"tables\" ('pellucid suggest' makes a first one)");
+  }
+  scene.multivariate = make_multivariate(*function, channel_names(sources));
+  scene.channels = std::make_shared<const Channels>(load_channels(sources, parallel));
+}
+
+}  // namespace
+
+std::vector<ChannelSource> scene_channels(const SceneDescription& description) {
+  if (!description.channels.empty()) return description.channels;
+  const MultivariateDescription* const function = multivariate(description);
+  if (function == nullptr) return {};
+  std::vector<ChannelSource> channels{{std::string(field_channel), "", description.field}};
+  for (const auto kind :
+       {DerivedSource::Kind::gradient_magnitude, DerivedSource::Kind::second_derivative}) {
+    const std::string name(derived_name(kind));
+    if (!names(*function, name)) continue;
+    channels.push_back({name, "", DerivedSource{kind, std::string(field_channel), 0}});
+  }
+  return channels;
+}
+
+Scene make_scene(const SceneDescription& description, const ParallelFor& parallel) {
   Scene scene;
-  scene.volume = std::make_shared<const Volume>(load_field(description.field));
-  scene.transfer_function = std::make_shared<const TransferFunction>(
-      description.transfer_function
-          ? make_transfer_function(*description.transfer_function,
-                                   description.integration.tolerance, description.background)
-          : default_transfer_function(*scene.volume));
+  if (const auto sources = scene_channels(description); !sources.empty()) {
+    fill_channels(description, sources, parallel, scene);
+  } else {
+    scene.volume = std::make_shared<const Volume>(load_field(description.field));
+    scene.transfer_function = std::make_shared<const TransferFunction>(
+        description.transfer_function
+            ? make_transfer_function(*description.transfer_function,
+                                     description.integration.tolerance, description.background)
+            : default_transfer_function(*scene.volume));
+  }
   scene.size = description.size;
   scene.samples = description.samples;
-  scene.camera =
-      description.camera ? *description.camera : default_camera(*scene.volume, description.size);
+  scene.camera = description.camera ? *description.camera
+                                    : default_camera(grid_volume(scene), description.size);
   scene.integration = description.integration;
   scene.background = description.background;
   return scene;

@@ -30,11 +30,11 @@ std::string number(double value, std::string_view what) {
   return number == "-0" ? "-0.0" : number;
 }
 
-std::string quoted(const std::string& text) {
+std::string quoted(const std::string& text, std::string_view what) {
   try {
     return nlohmann::json(text).dump();
   } catch (const nlohmann::json::exception&) {
-    throw Error("scene: the path of the field is not UTF-8; JSON cannot hold it");
+    throw Error(joined({"scene: ", what, " is not UTF-8; JSON cannot hold it"}));
   }
 }
 
@@ -90,6 +90,77 @@ std::string transfer_function_text(const OpacityTable& table, const std::string&
   return members.object();
 }
 
+std::string list(const std::vector<double>& numbers, std::string_view what) {
+  std::string text;
+  for (const double x : numbers) text += joined({text.empty() ? "[" : ", ", number(x, what)});
+  return text + "]";
+}
+
+std::string list(const std::vector<std::vector<double>>& rows, std::string_view what) {
+  std::string text;
+  for (const auto& row : rows) text += joined({text.empty() ? "[" : ", ", list(row, what)});
+  return text + "]";
+}
+
+std::string list(const std::vector<std::string>& names) {
+  std::string text;
+  for (const std::string& name : names) {
+    text += joined({text.empty() ? "[" : ", ", quoted(name, "the name of a channel")});
+  }
+  return text + "]";
+}
+
+std::string shape_text(const GaussianShape& shape) {
+  if (const auto* widths = std::get_if<GaussianWidths>(&shape)) {
+    std::string text = joined({"\"width\": ", list(widths->widths, "a width")});
+    if (!widths->axes.empty()) text += joined({", \"axes\": ", list(widths->axes, "an axis")});
+    return text;
+  }
+  if (const auto* covariance = std::get_if<GaussianCovariance>(&shape)) {
+    return joined({"\"covariance\": ", list(covariance->covariance, "a covariance")});
+  }
+  return joined({"\"matrix\": ", list(std::get<GaussianMatrix>(shape).matrix, "a matrix")});
+}
+
+std::string gaussian_text(const GaussianDescription& g) {
+  return joined({"{", g.channels.empty() ? "" : joined({"\"channels\": ", list(g.channels), ", "}),
+                 "\"center\": ", list(g.center, "a center"), ", ", shape_text(g.shape),
+                 ", \"extinction\": ", number(g.extinction, "an extinction"),
+                 ", \"color\": ", array(g.color, "a color"), "}"});
+}
+
+std::string table_text(const ChannelTableDescription& table, const std::string& indent) {
+  Members members(indent);
+  if (!table.channel.empty()) {
+    members.add("channel", quoted(table.channel, "the name of a channel"));
+  }
+  members.add("points", points_text(table.points, &TransferFunction::Point::extinction,
+                                    "extinction", indent));
+  return members.object();
+}
+
+/// One Gaussian per line.
+std::string transfer_function_text(const MultivariateDescription& function,
+                                   const std::string& indent) {
+  Members members(indent);
+  if (!function.channels.empty()) members.add("channels", list(function.channels));
+  if (!function.gaussians.empty()) {
+    std::string text;
+    for (const GaussianDescription& g : function.gaussians) {
+      text += joined({text.empty() ? "[" : ",", "\n", indent, "    ", gaussian_text(g)});
+    }
+    members.add("gaussians", joined({text, "\n", indent, "  ]"}));
+  }
+  if (!function.tables.empty()) {
+    std::string text;
+    for (const ChannelTableDescription& table : function.tables) {
+      text += joined({text.empty() ? "[" : ", ", table_text(table, indent + "  ")});
+    }
+    members.add("tables", text + "]");
+  }
+  return members.object();
+}
+
 std::string transfer_function_text(const TransferFunctionDescription& description,
                                    const std::string& indent) {
   return std::visit([&](const auto& kind) { return transfer_function_text(kind, indent); },
@@ -123,22 +194,23 @@ std::string camera_text(const Camera& camera, const std::string& indent) {
   return members.object();
 }
 
-std::string field_text(const FieldSource& field, const std::string& indent) {
-  Members members(indent);
+void add_field(const FieldSource& field, Members& members) {
   if (!field.builtin.empty()) {
-    members.add("builtin", quoted(field.builtin));
+    members.add("builtin", quoted(field.builtin, "a name"));
     members.add("points", std::to_string(field.points));
-    return members.object();
+    return;
   }
   const std::u8string path = field.file.u8string();
-  members.add("file", quoted(std::string(path.begin(), path.end())));
+  members.add("file", quoted(std::string(path.begin(), path.end()), "the path of the field"));
   const ReadOptions& options = field.options;
   if (options.dimensions) {
     const auto& d = *options.dimensions;
     members.add("dimensions", joined({"[", std::to_string(d[0]), ", ", std::to_string(d[1]), ", ",
                                       std::to_string(d[2]), "]"}));
   }
-  if (options.type) members.add("type", quoted(*options.type));
+  if (options.type) members.add("type", quoted(*options.type, "a type"));
+  if (options.components) members.add("components", std::to_string(*options.components));
+  if (options.component) members.add("component", std::to_string(*options.component));
   if (options.big_endian) members.add("byte_order", *options.big_endian ? "\"big\"" : "\"little\"");
   if (options.skip_bytes != 0) members.add("skip_bytes", std::to_string(options.skip_bytes));
   if (options.spacing) members.add("spacing", array(*options.spacing, "the spacing"));
@@ -146,14 +218,47 @@ std::string field_text(const FieldSource& field, const std::string& indent) {
   if (options.centering) {
     members.add("centering", *options.centering == Centering::point ? "\"point\"" : "\"cell\"");
   }
+}
+
+std::string field_text(const FieldSource& field, const std::string& indent) {
+  Members members(indent);
+  add_field(field, members);
   return members.object();
+}
+
+std::string channel_text(const ChannelSource& channel, const std::string& indent) {
+  Members members(indent);
+  members.add("name", quoted(channel.name, "the name of a channel"));
+  if (!channel.unit.empty()) members.add("unit", quoted(channel.unit, "the unit of a channel"));
+  if (const auto* field = std::get_if<FieldSource>(&channel.source)) {
+    add_field(*field, members);
+    return members.object();
+  }
+  const auto& derived = std::get<DerivedSource>(channel.source);
+  members.add(derived_name(derived.kind), quoted(derived.of, "the name of a channel"));
+  if (derived.kind == DerivedSource::Kind::smoothed) {
+    members.add("sigma", number(derived.sigma, "sigma"));
+  }
+  return members.object();
+}
+
+std::string channels_text(const std::vector<ChannelSource>& channels, const std::string& indent) {
+  std::string list;
+  for (const ChannelSource& channel : channels) {
+    list += joined({list.empty() ? "[" : ", ", channel_text(channel, indent)});
+  }
+  return list + "]";
 }
 
 }  // namespace
 
 std::string scene_to_json(const SceneDescription& scene) {
   Members volume("    ");
-  volume.add("field", field_text(scene.field, "      "));
+  if (scene.channels.empty()) {
+    volume.add("field", field_text(scene.field, "      "));
+  } else {
+    volume.add("channels", channels_text(scene.channels, "      "));
+  }
   if (scene.transfer_function) {
     volume.add("transfer_function", transfer_function_text(*scene.transfer_function, "      "));
   }

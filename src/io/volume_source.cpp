@@ -176,6 +176,7 @@ void refuse_raw_options(const ReadOptions& options, const std::string& name) {
                        : options.type       ? "a type"
                        : options.big_endian ? "a byte order"
                        : options.skip_bytes ? "bytes to skip"
+                       : options.components ? "a number of components"
                                             : nullptr;
   if (option == nullptr) return;
   throw Error(name + ": " + option +

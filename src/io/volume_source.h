@@ -34,6 +34,8 @@ struct ValueLayout {
   std::string type;  ///< "u8" … "f64"
   bool big_endian = false;
   std::uintmax_t offset = 0;  ///< of the first value, in bytes
+  int components = 1;         ///< of each point
+  bool interleaved = false;   ///< those of a point side by side; else one behind the other
 };
 
 /// The number of values of a grid. Throws Error where a side is not positive or the product is too
@@ -42,13 +44,14 @@ std::size_t value_count(const std::array<std::int64_t, 3>& dimensions, const std
 /// 1, 2, 4 or 8 bytes. Throws Error for a name that is no type.
 std::size_t value_size(const std::string& type, const std::string& name);
 
-/// Throws Error where the source ends before the last value. There may be more behind it.
+/// Throws Error where the source ends before the last of `count` values, those of all components.
+/// There may be more behind it.
 void check_size(const ByteSource& source, const ValueLayout& layout, std::size_t count);
 
 /// Memory for so many values. Throws Error where there is not enough.
 VolumeData make_values(const std::string& type, std::size_t count, const std::string& name);
-/// The values in their own type: in place where they lie there as in memory, else read. The source
-/// must hold them all.
+/// The values, of one component, in their own type: in place where they lie there as in memory,
+/// else read. The source must hold them all.
 VolumeData read_values(const ByteSource& source, const ValueLayout& layout, std::size_t count);
 /// The same from a stream that stands at the first of them.
 VolumeData read_values(DataStream& stream, const ValueLayout& layout, std::size_t count);
@@ -60,8 +63,5 @@ void to_native_order(VolumeData& data, bool big_endian);
 void apply_overrides(const ReadOptions& options, Volume::Description& description);
 /// Throws Error where an option that only headerless data needs is given for a file with a header.
 void refuse_raw_options(const ReadOptions& options, const std::string& name);
-
-Volume read_npy(const ByteSource& source, const ReadOptions& options);
-Volume read_raw(const ByteSource& source, const ReadOptions& options);
 
 }  // namespace pellucid

@@ -57,6 +57,15 @@ Real Chord::operator()(Real u) const {
   return std::clamp(sum, lower_, upper_);
 }
 
+/// Taylor's expansion about u_begin, scaled to the part; in extended precision, so that a narrow
+/// stretch of data far from 0 keeps its digits.
+std::array<Real, 4> Chord::monomial(Real u_begin, Real u_end) const {
+  const std::array<Real, 4>& c = monomial_;
+  const Real h = u_end - u_begin, u = u_begin;
+  return {((c[3] * u + c[2]) * u + c[1]) * u + c[0], h * ((3 * c[3] * u + 2 * c[2]) * u + c[1]),
+          h * h * (3 * c[3] * u + c[2]), h * h * h * c[3]};
+}
+
 std::vector<Real> Chord::stationary_points() const {
   const Real a = 3 * monomial_[3], b = 2 * monomial_[2], c = monomial_[1];
   std::vector<Real> found;

@@ -18,13 +18,7 @@ Piece::Piece(const Chord& chord, Real u_begin, Real u_end, const TableInterval& 
              Real t_begin, Real t_end)
     : interval_(interval), t_begin_(t_begin), length_(t_end - t_begin) {
   if (interval.constant()) return;
-  // Taylor's expansion about u_begin, scaled to the piece, then to the interval of the table; in
-  // extended precision, so that a narrow interval far from 0 keeps its digits.
-  const std::array<Real, 4>& c = chord.monomial();
-  const Real h = u_end - u_begin, u = u_begin;
-  const std::array<Real, 4> local{((c[3] * u + c[2]) * u + c[1]) * u + c[0],
-                                  h * ((3 * c[3] * u + 2 * c[2]) * u + c[1]),
-                                  h * h * (3 * c[3] * u + c[2]), h * h * h * c[3]};
+  const std::array<Real, 4> local = chord.monomial(u_begin, u_end);
   const Real left = interval.left->value, width = Real(interval.right->value) - left;
   for (std::size_t p = 0; p < 4; ++p) {
     share_[p] = static_cast<double>((p == 0 ? local[p] - left : local[p]) / width);
@@ -44,6 +38,12 @@ double Piece::rate(double w) const {
   if (interval_.constant()) return interval_.left->extinction * length;
   const double s = share(w);
   return ((1 - s) * interval_.left->extinction + s * interval_.right->extinction) * length;
+}
+
+Rgb<double> Piece::color(double w) const {
+  const Rgb<double>& left = interval_.left->color;
+  if (interval_.constant()) return left;
+  return left + (interval_.right->color - left) * share(w);
 }
 
 double Piece::depth(double w_begin, double w_end) const {
@@ -81,12 +81,16 @@ void Gatherer::add(const Piece& piece, double w_begin, double w_end) {
   }
   // The color is linear in the share s: τ C e^{-a} integrates to C_left α + (C_right − C_left) S.
   const Real opacity = -std::expm1(-Real(depth));
-  const Real transparency = std::exp(-depth_);
   const Rgb<double>&left = piece.interval().left->color, &right = piece.interval().right->color;
   const Real share = left == right ? Real(0) : Real(piece.weight_of_right(w_begin, w_end));
-  radiance_[0] += transparency * (left.r * opacity + (Real(right.r) - left.r) * share);
-  radiance_[1] += transparency * (left.g * opacity + (Real(right.g) - left.g) * share);
-  radiance_[2] += transparency * (left.b * opacity + (Real(right.b) - left.b) * share);
+  add(depth, {left.r * opacity + (Real(right.r) - left.r) * share,
+              left.g * opacity + (Real(right.g) - left.g) * share,
+              left.b * opacity + (Real(right.b) - left.b) * share});
+}
+
+void Gatherer::add(double depth, const std::array<Real, 3>& light) {
+  const Real transparency = std::exp(-depth_);
+  for (std::size_t c = 0; c < 3; ++c) radiance_[c] += transparency * light[c];
   depth_ += depth;
 }
 

@@ -25,11 +25,13 @@ class Piece {
   /// (15 points) to a relative 1e-12.
   double weight_of_right(double w_begin, double w_end) const;
 
+  double rate(double w) const;  ///< extinction · length of the piece
+  Rgb<double> color(double w) const;
+
   const TableInterval& interval() const { return interval_; }
 
  private:
   double share(double w) const;  ///< s of weight_of_right
-  double rate(double w) const;   ///< extinction · length of the piece
 
   TableInterval interval_;
   std::array<double, 4> share_{};  ///< polynomial in w, lowest power first
@@ -42,6 +44,8 @@ class Gatherer {
   /// Adds the part [w_begin, w_end] of a piece. Parts deeper than 2 are halved, so that the
   /// quadrature never meets an exponential that it cannot see.
   void add(const Piece& piece, double w_begin = 0, double w_end = 1);
+  /// Adds a part by its optical depth and what it would radiate with nothing in front.
+  void add(double depth, const std::array<Real, 3>& light);
 
   /// No more than 1e-16 of the light comes from behind.
   bool done() const;

@@ -3,7 +3,9 @@
 
 #include <boost/math/tools/toms748_solve.hpp>
 #include <cmath>
+#include <string>
 
+#include "multivariate_ray.h"
 #include "pellucid/scene/error.h"
 
 namespace pellucid::reference {
@@ -18,6 +20,14 @@ double position_of_depth(const Piece& piece, double before, double target) {
   const auto [left, right] = boost::math::tools::toms748_solve(
       excess, 0.0, 1.0, boost::math::tools::eps_tolerance<double>(50), iterations);
   return piece.t(0.5 * (left + right));
+}
+
+/// Throws Error for a direction of length 0.
+RealRay unit_ray(const Vec3<double>& origin, const Vec3<double>& direction) {
+  const Real length = std::hypot(Real(direction.x), Real(direction.y), Real(direction.z));
+  if (!(length > 0)) throw Error("reference ray: the direction has length 0; give another");
+  return {{origin.x, origin.y, origin.z},
+          {direction.x / length, direction.y / length, direction.z / length}};
 }
 
 }  // namespace
@@ -60,14 +70,31 @@ namespace pellucid {
 
 ReferencePixel reference_ray(const Volume& volume, const TransferFunction& transfer_function,
                              const Vec3<double>& origin, const Vec3<double>& direction) {
-  using reference::Real;
-  const Real length = std::hypot(Real(direction.x), Real(direction.y), Real(direction.z));
-  if (!(length > 0)) throw Error("reference ray: the direction has length 0; give another");
-  const reference::RealRay ray{{origin.x, origin.y, origin.z},
-                               {direction.x / length, direction.y / length, direction.z / length}};
+  const reference::RealRay ray = reference::unit_ray(origin, direction);
   std::uint64_t cells = 0;
   return reference::integrate(reference::Grid(volume), reference::Table(transfer_function.points()),
                               ray, true, cells);
+}
+
+ReferencePixel reference_ray(const Channels& channels,
+                             const MultivariateTransferFunction& transfer_function,
+                             const Vec3<double>& origin, const Vec3<double>& direction) {
+  if (channels.count() != transfer_function.channels()) {
+    throw Error("reference ray: the transfer function sees " +
+                std::to_string(transfer_function.channels()) + " channels, but there are " +
+                std::to_string(channels.count()) + "; make it for as many");
+  }
+  const reference::RealRay ray = reference::unit_ray(origin, direction);
+  std::uint64_t cells = 0;
+  return reference::MultivariateIntegral(channels, transfer_function)(ray, true, cells);
+}
+
+ReferencePixel reference_ray(const Scene& scene, const Vec3<double>& origin,
+                             const Vec3<double>& direction) {
+  check_data(scene);
+  return scene.multivariate
+             ? reference_ray(*scene.channels, *scene.multivariate, origin, direction)
+             : reference_ray(*scene.volume, *scene.transfer_function, origin, direction);
 }
 
 }  // namespace pellucid

@@ -11,11 +11,13 @@
 #include <algorithm>
 #include <atomic>
 #include <chrono>
+#include <functional>
 #include <mutex>
 #include <optional>
 #include <vector>
 
 #include "camera.h"
+#include "multivariate_ray.h"
 #include "pellucid/scene/error.h"
 #include "ray.h"
 
@@ -35,14 +37,29 @@ ReferencePixel mean_of(const std::vector<ReferencePixel>& rays) {
   return mean;
 }
 
-void render_row(const reference::CameraRays& camera, int samples, const reference::Grid& grid,
-                const reference::Table& table, int row, Image& image, std::uint64_t& cells) {
+/// What integrate() of ray.h does with all but the ray.
+using RayIntegral = std::function<ReferencePixel(const reference::RealRay& ray, bool with_depth,
+                                                 std::uint64_t& cells)>;
+
+RayIntegral make_integral(const Scene& scene) {
+  if (scene.multivariate) {
+    return reference::MultivariateIntegral(*scene.channels, *scene.multivariate);
+  }
+  return [grid = reference::Grid(*scene.volume),
+          table = reference::Table(scene.transfer_function->points())](
+             const reference::RealRay& ray, bool with_depth, std::uint64_t& cells) {
+    return reference::integrate(grid, table, ray, with_depth, cells);
+  };
+}
+
+void render_row(const reference::CameraRays& camera, int samples, const RayIntegral& integral,
+                int row, Image& image, std::uint64_t& cells) {
   const bool with_depth = !image.depth.empty();
   std::vector<ReferencePixel> rays(static_cast<std::size_t>(samples * samples));
   for (int column = 0; column < image.width; ++column) {
     for (int n = 0; n < samples * samples; ++n) {
       rays[static_cast<std::size_t>(n)] =
-          reference::integrate(grid, table, camera.ray(column, row, n, samples), with_depth, cells);
+          integral(camera.ray(column, row, n, samples), with_depth, cells);
     }
     const ReferencePixel pixel = mean_of(rays);
     image.at(column, row) = {
@@ -64,8 +81,7 @@ Image render_reference(const Scene& scene, const RenderOptions& options, RenderR
   make_camera_frame(scene.camera, scene.size);  // For its checks; the rays are made here.
 
   const reference::CameraRays camera(scene.camera, scene.size);
-  const reference::Grid grid(*scene.volume);
-  const reference::Table table(scene.transfer_function->points());
+  const RayIntegral integral = make_integral(scene);
 
   Image image;
   image.width = scene.size.width;
@@ -97,7 +113,7 @@ Image render_reference(const Scene& scene, const RenderOptions& options, RenderR
         [&](const tbb::blocked_range<int>& rows) {
           for (int row = rows.begin(); row != rows.end(); ++row) {
             std::uint64_t row_cells = 0;
-            render_row(camera, scene.samples, grid, table, row, image, row_cells);
+            render_row(camera, scene.samples, integral, row, image, row_cells);
             cells += row_cells;
             const std::lock_guard lock(progress_mutex);
             ++rows_done;

@@ -3,12 +3,14 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <cstddef>
 #include <numbers>
 #include <utility>
 #include <vector>
+
+#include "mean_chord.h"
+#include "readable_numbers.h"
 
 namespace pellucid {
 namespace {
@@ -109,36 +111,6 @@ double mean(const std::vector<double>& v, std::size_t first, std::size_t last) {
   double sum = 0;
   for (std::size_t i = first; i < last; ++i) sum += v[i] - v[first];
   return v[first] + sum / static_cast<double>(last - first);
-}
-
-/// The decimal with this many digits behind the point of scientific notation that is nearest.
-double rounded(double value, int digits) {
-  char text[64];
-  const auto end =
-      std::to_chars(text, text + sizeof text, value, std::chars_format::scientific, digits).ptr;
-  std::from_chars(text, end, value);
-  return value;
-}
-
-/// The nearest multiple of a power of ten that divides the range into 100 to 1000 parts.
-double readable(double value, double range) {
-  if (value == 0) return 0;
-  const double digits = std::floor(std::log10(std::abs(value))) - std::floor(std::log10(range)) + 2;
-  return digits < 0 ? 0 : rounded(value, static_cast<int>(std::min(digits, 16.0)));
-}
-
-double two_digits(double value) {
-  return rounded(value, 1);
-}
-
-/// Mean length of the chords of the volume's box: 4 · volume / surface (Cauchy).
-double mean_chord(const Volume& volume) {
-  const Vec3<double> size = volume.grid_upper() - volume.grid_lower();
-  const Mat3<double>& axes = volume.world_from_grid().matrix;
-  const Vec3<double> a = axes.column[0] * size.x, b = axes.column[1] * size.y,
-                     c = axes.column[2] * size.z;
-  const double surface = 2 * (length(cross(a, b)) + length(cross(b, c)) + length(cross(c, a)));
-  return 4 * std::abs(dot(a, cross(b, c))) / surface;
 }
 
 /// Points in ascending order at readable values, which may not fall together.

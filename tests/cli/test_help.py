@@ -1,11 +1,13 @@
 # SPDX-License-Identifier: Apache-2.0
 import os
 import re
+import shlex
 import unittest
 
 from program import SOURCE_DIR, ProgramTest, options_of
 
-COMMANDS = ("render", "info", "evaluate", "compare")
+COMMANDS = ("render", "info", "histogram", "suggest", "evaluate", "compare")
+READ_VOLUMES = ("render", "info", "histogram", "suggest")
 
 
 class Help(ProgramTest):
@@ -38,7 +40,7 @@ class Help(ProgramTest):
             of_help = options_of(self.succeed(command, "--help"))
             self.assertIn("--help", of_help)
             of_manual = set(re.findall(r"(?m)^\| `(?:-\w, )?(--[a-z][a-z-]*)", self.section(command)))
-            if command in ("render", "info"):
+            if command in READ_VOLUMES:
                 of_manual |= set(re.findall(r"(?m)^\| `(--[a-z][a-z-]*)", self.introduction()))
             self.assertEqual(set(of_help) - {"--help"} - of_manual, set(),
                              f"{command}: not in docs/command-line.md")
@@ -50,7 +52,7 @@ class Help(ProgramTest):
         for command in COMMANDS:
             text = self.succeed(command, "--help").split("Examples:\n")[1]
             for example in re.sub(r"\n {4,}", " ", text).strip().splitlines():
-                words = example.split(">")[0].split()
+                words = shlex.split(example.split(" > ")[0])
                 self.assertEqual(words[0], "pellucid")
                 if words[2].startswith("builtin:"):
                     continue

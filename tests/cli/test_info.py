@@ -62,6 +62,41 @@ class Info(ProgramTest):
         self.assertEqual(report["centering"], "cell")
         self.assertEqual(report["world_box"], [[-0.5, -0.5, -0.5], [1.5, 1.5, 1.5]])
 
+    def test_components(self):
+        values = [float(i % 3 * 10 + i // 3) for i in range(24)]
+        values[1] = float("nan")
+        self.write("a.npy", npy(values, (3, 2, 2, 2)))
+        report = self.report("info", "a.npy")
+        self.assertEqual(report["name"], "a.npy")
+        self.assertEqual(report["dimensions"], [2, 2, 2])
+        self.assertEqual(report["bytes"], 96)
+        components = report["components"]
+        self.assertEqual([c["range"] for c in components], [[0, 7], [11, 17], [20, 27]])
+        for component, mean in zip(components, [3.5, 14, 23.5]):
+            self.assertAlmostEqual(component["mean"], mean, places=12)
+        self.assertEqual([c["nan"] for c in components], [0, 1, 0])
+        self.assertEqual([sum(c["histogram"]["count"]) for c in components], [8, 7, 8])
+        self.assertNotIn("range", report)
+        text = self.succeed("info", "a.npy")
+        self.assertRegex(text, r"(?m)^type +f32, 96 B$")
+        self.assertRegex(text, r"(?m)^components +3$")
+        self.assertRegex(text, r"(?m)^component 0 +0 to 7, mean 3\.5$")
+        self.assertRegex(text, r"(?m)^component 1 +11 to 17, mean 14, NaN 1 \(rendered as vacuum\)$")
+        self.assertNotIn("histogram", text)
+
+    def test_one_component(self):
+        self.write("a.raw", struct.pack("<16B", *range(100, 116)))
+        raw = ("info", "a.raw", "--dimensions", "2,2,2", "--type", "u8", "--components", "2")
+        self.assertEqual(len(self.report(*raw)["components"]), 2)
+        report = self.report(*raw, "--component", "1")
+        self.assertEqual(report["range"], [101, 115])
+        self.assertNotIn("components", report)
+        self.assertIn("component 1", report["name"])
+        result = self.run_program(*raw, "--component", "2")
+        self.assertEqual(result.returncode, 1)
+        self.assertIn(b"there is no component 2", result.stderr)
+        self.assertEqual(self.run_program(*raw, "--component", "x").returncode, 2)
+
     def test_all_nan(self):
         self.write("a.npy", npy([float("nan")] * 8, (2, 2, 2)))
         report = self.report("info", "a.npy")

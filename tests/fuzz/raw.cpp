@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 
 // Headerless data with any options. The first bytes of the input are the options: three 32-bit
-// dimensions, the type, flags, the bytes to skip, a spacing and an origin; the rest is the data.
+// dimensions, the type, flags, the bytes to skip, the components and which of them, a spacing and
+// an origin; the rest is the data.
 
 #include <cstddef>
 #include <cstdint>
@@ -23,7 +24,7 @@ void require(bool condition) {
 
 struct Options {
   std::int32_t dimensions[3];
-  std::uint8_t type, flags, skip, unused;
+  std::uint8_t type, flags, skip, components;  ///< components: how many, and 16 times which
   double spacing[3], origin[3];
 };
 
@@ -37,6 +38,10 @@ pellucid::ReadOptions read_options(const Options& given) {
   if ((given.flags & 2) == 0) options.type = types[given.type % std::size(types)];
   if ((given.flags & 4) != 0) options.big_endian = (given.flags & 8) != 0;
   options.skip_bytes = given.skip;
+  if (given.components % 16 != 0) {
+    options.components = given.components % 16;
+    options.component = given.components / 16;
+  }
   if ((given.flags & 16) != 0) {
     options.spacing = {given.spacing[0], given.spacing[1], given.spacing[2]};
   }
@@ -62,7 +67,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     const pellucid::Volume volume = pellucid::parse_raw(bytes, "fuzz", read_options(given));
     const std::size_t held = std::visit(
         [](const auto& values) { return values.size() * sizeof(values[0]); }, volume.data());
-    require(held + given.skip == bytes.size());
+    const std::size_t components = given.components % 16 == 0 ? 1 : given.components % 16;
+    require(held * components + given.skip == bytes.size());
     require(volume.statistics().infinite == 0 && volume.voxel_size() > 0);
   } catch (const pellucid::Error& error) {
     const std::string_view message = error.what();

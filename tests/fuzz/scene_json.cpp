@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 
-// The parser of scenes, transfer functions and cameras: any bytes give a value
-// or an Error of one line, and what was read is written and read again to the
-// same text. Opens no file.
+// The parsers of scenes, transfer functions and cameras, and of Gaussians and channels on command
+// lines: any bytes give a value or an Error of one line, and what was read is written and read
+// again to the same text. Opens no file.
 
 #include <cstddef>
 #include <cstdint>
@@ -31,6 +31,18 @@ void attempt(Parse&& parse) {
   }
 }
 
+/// The same of a parser whose messages do not begin with the name of a file.
+template <class Parse>
+void attempt_text(Parse&& parse) {
+  attempt([&] {
+    try {
+      parse();
+    } catch (const pellucid::Error& error) {
+      throw pellucid::Error(std::string("fuzz: ") + error.what());
+    }
+  });
+}
+
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
@@ -39,7 +51,16 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     const pellucid::SceneDescription scene = pellucid::parse_scene(text, "fuzz", "folder");
     const std::string written = pellucid::scene_to_json(scene);
     require(pellucid::scene_to_json(pellucid::parse_scene(written, "again")) == written);
+    // What is parsed can be made: every term finds its channels.
+    if (!scene.transfer_function) return;
+    const auto* function =
+        std::get_if<pellucid::MultivariateDescription>(&*scene.transfer_function);
+    if (function == nullptr) return;
+    pellucid::make_multivariate(*function,
+                                pellucid::channel_names(pellucid::scene_channels(scene)));
   });
+  attempt_text([&] { pellucid::parse_gaussian(text); });
+  attempt_text([&] { pellucid::parse_channel_source(text); });
   attempt([&] {
     const pellucid::TransferFunctionDescription function =
         pellucid::parse_transfer_function(text, "fuzz");

@@ -78,10 +78,43 @@ bool same(const OpacityTable& a, const OpacityTable& b) {
                              same(p.color, q.color);
                     });
 }
+bool same(const std::vector<double>& a, const std::vector<double>& b);
+bool same(const GaussianDescription& a, const GaussianDescription& b);
+bool same(const ChannelTableDescription& a, const ChannelTableDescription& b);
+bool same(const ChannelSource& a, const ChannelSource& b);
+template <class T>
+bool same_lists(const std::vector<T>& a, const std::vector<T>& b) {
+  return std::equal(a.begin(), a.end(), b.begin(), b.end(),
+                    [](const T& p, const T& q) { return same(p, q); });
+}
+bool same(const std::vector<double>& a, const std::vector<double>& b) {
+  return same_lists(a, b);
+}
+bool same(const GaussianShape& a, const GaussianShape& b) {
+  if (a.index() != b.index()) return false;
+  if (a.index() == 0) {
+    const auto &p = std::get<0>(a), &q = std::get<0>(b);
+    return same(p.widths, q.widths) && same_lists(p.axes, q.axes);
+  }
+  if (a.index() == 1) return same_lists(std::get<1>(a).covariance, std::get<1>(b).covariance);
+  return same_lists(std::get<2>(a).matrix, std::get<2>(b).matrix);
+}
+bool same(const GaussianDescription& a, const GaussianDescription& b) {
+  return a.channels == b.channels && same(a.center, b.center) && same(a.shape, b.shape) &&
+         same(a.extinction, b.extinction) && same(a.color, b.color);
+}
+bool same(const ChannelTableDescription& a, const ChannelTableDescription& b) {
+  return a.channel == b.channel && same(a.points, b.points);
+}
+bool same(const MultivariateDescription& a, const MultivariateDescription& b) {
+  return a.channels == b.channels && same_lists(a.gaussians, b.gaussians) &&
+         same_lists(a.tables, b.tables);
+}
 bool same(const TransferFunctionDescription& a, const TransferFunctionDescription& b) {
   if (a.index() != b.index()) return false;
   if (a.index() == 0) return same(std::get<0>(a), std::get<0>(b));
-  return same(std::get<1>(a), std::get<1>(b));
+  if (a.index() == 1) return same(std::get<1>(a), std::get<1>(b));
+  return same(std::get<2>(a), std::get<2>(b));
 }
 bool same(const Camera& a, const Camera& b) {
   return a.projection == b.projection && same(a.position, b.position) &&
@@ -97,13 +130,20 @@ bool same(const FieldSource& a, const FieldSource& b) {
   return a.file == b.file && a.builtin == b.builtin && a.points == b.points &&
          p.dimensions == q.dimensions && p.type == q.type &&
          p.big_endian.value_or(false) == q.big_endian.value_or(false) &&
-         p.skip_bytes == q.skip_bytes && same(p.spacing, q.spacing) && same(p.origin, q.origin) &&
+         p.skip_bytes == q.skip_bytes && p.components == q.components &&
+         p.component == q.component && same(p.spacing, q.spacing) && same(p.origin, q.origin) &&
          p.centering == q.centering;
 }
+bool same(const ChannelSource& a, const ChannelSource& b) {
+  if (a.name != b.name || a.unit != b.unit || a.source.index() != b.source.index()) return false;
+  if (a.source.index() == 0) return same(std::get<0>(a.source), std::get<0>(b.source));
+  const auto &p = std::get<1>(a.source), &q = std::get<1>(b.source);
+  return p.kind == q.kind && p.of == q.of && same(p.sigma, q.sigma);
+}
 bool same(const SceneDescription& a, const SceneDescription& b) {
-  return same(a.field, b.field) && same(a.transfer_function, b.transfer_function) &&
-         same(a.camera, b.camera) && a.size.width == b.size.width &&
-         a.size.height == b.size.height && a.samples == b.samples &&
+  return same(a.field, b.field) && same_lists(a.channels, b.channels) &&
+         same(a.transfer_function, b.transfer_function) && same(a.camera, b.camera) &&
+         a.size.width == b.size.width && a.size.height == b.size.height && a.samples == b.samples &&
          a.integration.method == b.integration.method &&
          same(a.integration.tolerance, b.integration.tolerance) &&
          a.integration.grade == b.integration.grade &&
@@ -213,15 +253,24 @@ TEST(SceneJson, ExamplesAndTheDocumentedSceneAreValid) {
   const std::size_t begin = page.find("```json\n") + 8, end = page.find("```", begin);
   ASSERT_NE(end, std::string::npos);
   EXPECT_EQ(error_of([&] { parse_scene(page.substr(begin, end - begin), "docs/scene.md"); }), "");
-  const std::size_t table = page.find("```json\n", end + 3) + 8, close = page.find("```", table);
-  ASSERT_NE(close, std::string::npos);
-  TransferFunctionDescription function;
-  EXPECT_EQ(error_of([&] {
-              function =
-                  parse_transfer_function(page.substr(table, close - table), "docs/scene.md");
-            }),
-            "");
-  EXPECT_TRUE(std::holds_alternative<OpacityTable>(function));
+  // Behind it stand a volume with channels and two transfer functions.
+  std::vector<std::string> blocks;
+  for (std::size_t at = end + 3; (at = page.find("```json\n", at)) != std::string::npos;) {
+    const std::size_t from = at + 8;
+    at = page.find("```", from);
+    ASSERT_NE(at, std::string::npos);
+    blocks.push_back(page.substr(from, at - from));
+    at += 3;
+  }
+  ASSERT_EQ(blocks.size(), 3U);
+  EXPECT_EQ(error_of([&] { parse_scene("{\"volumes\": [" + blocks[0] + "]}", "scene.md"); }), "");
+  const auto function = [&](const std::string& text) {
+    TransferFunctionDescription description;
+    EXPECT_EQ(error_of([&] { description = parse_transfer_function(text, "scene.md"); }), "");
+    return description;
+  };
+  EXPECT_TRUE(std::holds_alternative<OpacityTable>(function(blocks[1])));
+  EXPECT_TRUE(std::holds_alternative<MultivariateDescription>(function(blocks[2])));
 }
 
 TEST(SceneJson, AbsoluteFilesStayAndRelativeOnesStartAtTheFolder) {

@@ -28,7 +28,12 @@ const std::filesystem::path source = PELLUCID_SOURCE_DIR;
 
 /// Reasons for which the parser refuses what JSON Schema cannot tell.
 constexpr const char* beyond_schema[] = {"is below the value of the point before it",
-                                         "is the third equal value", "/camera: camera: "};
+                                         "is the third equal value",
+                                         "/camera: camera: ",
+                                         "transfer function: ",
+                                         "channels: ",
+                                         "one for each channel",
+                                         "but here are channels"};
 
 /// Every document that differs from the whole one in one place: a value replaced, a key left out,
 /// or a key too many.
@@ -71,7 +76,15 @@ std::vector<json> mutants(const json& whole) {
                                        json::array({0, 0, 0}),
                                        json::array({1, 2, 3, 4}),
                                        json::array({"1", 2, 3}),
-                                       json::array({json::object()})};
+                                       json::array({json::object()}),
+                                       "t1",
+                                       "a=b",
+                                       "two words",
+                                       json::array({"t1"}),
+                                       json::array({"t1", "t1"}),
+                                       json::array({1, 2, 3, 4, 5, 6, 7, 8, 9}),
+                                       json::array({json::array({1, 0}), json::array({0, 1})}),
+                                       json::array({json::array({1, 2, 3, 4, 5, 6, 7, 8, 9})})};
   std::vector<json> list;
   const json flat = whole.flatten();
   std::vector<json::json_pointer> places{json::json_pointer()};
@@ -86,8 +99,18 @@ std::vector<json> mutants(const json& whole) {
       list.back()[place] = replacement;
     }
     if (whole[place].is_object()) {
-      for (const char* key : {"unknown", "points", "type", "value", "parallel_scale", "builtin",
-                              "unit_distance", "opacity", "extinction", "samples", "tolerance"}) {
+      for (const char* key : {"unknown",        "points",
+                              "type",           "value",
+                              "parallel_scale", "builtin",
+                              "unit_distance",  "opacity",
+                              "extinction",     "samples",
+                              "tolerance",      "channel",
+                              "channels",       "gaussians",
+                              "tables",         "width",
+                              "axes",           "covariance",
+                              "matrix",         "sigma",
+                              "smoothed",       "gradient_magnitude",
+                              "name",           "unit"}) {
         if (whole[place].contains(key)) continue;
         list.push_back(whole);
         list.back()[place][key] = 1;
@@ -118,7 +141,8 @@ TEST(SceneJsonSchema, AgreesWithTheParser) {
   std::size_t accepted_count = 0, refused_count = 0;
   {
     std::ofstream out(verdicts);
-    for (const char* name : {"perspective", "orthographic", "raw", "header_replaced", "opacity"}) {
+    for (const char* name : {"perspective", "orthographic", "raw", "header_replaced", "opacity",
+                             "channels", "gaussians", "one_channel"}) {
       std::ifstream file(source / "tests" / "io" / "scenes" / "valid" /
                          (std::string(name) + ".json"));
       ASSERT_TRUE(file) << name;

@@ -16,6 +16,9 @@ struct Exhibit {
   TransferPointer transfer_function;
   std::vector<NamedCamera> cameras;
   int samples = 1;  ///< Scene::samples
+  /// In place of the first two.
+  std::shared_ptr<const Channels> channels{};
+  std::shared_ptr<const MultivariateTransferFunction> multivariate{};
 };
 
 /// Makes an exhibit for images of size × size pixels. Only cameras depend on the size: those that
@@ -42,6 +45,7 @@ Gallery cell_gallery();            ///< fields that are special inside of a cell
 Gallery table_gallery();           ///< transfer functions that are special
 Gallery grid_gallery();            ///< placements, types and values of the data
 Gallery stride_gallery();          ///< what estimates over several cells can miss
+Gallery gaussian_gallery();        ///< Gaussians over several channels
 
 /// One of the exhibit's cameras, with the integration that a scene has by default.
 Scene scene_of(const Exhibit& exhibit, std::size_t camera, int size);

@@ -21,8 +21,7 @@ std::array<double, 4> reference_pixel(const Scene& scene, const CameraFrame<doub
   const int count = scene.samples * scene.samples;
   for (int n = 0; n < count; ++n) {
     const Ray<double> ray = camera.ray(column, row, n, scene.samples);
-    const ReferencePixel pixel =
-        reference_ray(*scene.volume, *scene.transfer_function, ray.origin, ray.direction);
+    const ReferencePixel pixel = reference_ray(scene, ray.origin, ray.direction);
     const double channel[4] = {pixel.radiance.r, pixel.radiance.g, pixel.radiance.b, pixel.opacity};
     for (std::size_t c = 0; c < 4; ++c) sum[c] += channel[c] / count;
   }

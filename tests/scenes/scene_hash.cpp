@@ -22,22 +22,49 @@ class Hash {
   std::uint64_t state_ = 0xcbf29ce484222325u;
 };
 
-}  // namespace
-
-std::uint64_t scene_hash(const Scene& scene) {
-  Hash hash;
-  const Volume::Description& d = scene.volume->description();
+void add_volume(Hash& hash, const Volume& volume) {
+  const Volume::Description& d = volume.description();
   std::visit(
       [&](const auto& values) { hash.add(values.data(), values.size() * sizeof(values[0])); },
-      scene.volume->data());
-  hash.add_numbers(scene.volume->data().index(), d.dimensions[0], d.dimensions[1], d.dimensions[2],
+      volume.data());
+  hash.add_numbers(volume.data().index(), d.dimensions[0], d.dimensions[1], d.dimensions[2],
                    d.centering);
   hash.add_vector(d.placement.origin);
   hash.add_vector(d.placement.spacing);
   for (const auto& column : d.placement.direction.column) hash.add_vector(column);
   for (const auto& axis : d.coordinates) hash.add(axis.data(), axis.size() * sizeof(double));
-  for (const auto& p : scene.transfer_function->points()) {
+}
+
+void add_points(Hash& hash, const TransferFunction& function) {
+  for (const auto& p : function.points()) {
     hash.add_numbers(p.value, p.extinction, p.color.r, p.color.g, p.color.b);
+  }
+}
+
+void add_terms(Hash& hash, const MultivariateTransferFunction& function) {
+  for (const GaussianPrimitive& g : function.primitives()) {
+    for (std::size_t k = 0; k < g.channels.size(); ++k) {
+      hash.add_numbers(g.channels[k], g.center[k]);
+      for (const auto& row : g.matrix) hash.add_numbers(row[k]);
+    }
+    hash.add_numbers(g.extinction, g.color.r, g.color.g, g.color.b);
+  }
+  for (const ChannelTransferFunction& term : function.tables()) {
+    hash.add_numbers(term.channel);
+    add_points(hash, term.function);
+  }
+}
+
+}  // namespace
+
+std::uint64_t scene_hash(const Scene& scene) {
+  Hash hash;
+  if (scene.multivariate) {
+    for (const Channel& channel : *scene.channels) add_volume(hash, *channel.volume);
+    add_terms(hash, *scene.multivariate);
+  } else {
+    add_volume(hash, *scene.volume);
+    add_points(hash, *scene.transfer_function);
   }
   const Camera& c = scene.camera;
   hash.add_vector(c.position);

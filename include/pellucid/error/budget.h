@@ -47,6 +47,13 @@ class RayBudget {
     length_ = max(length_ - length, T(0));
   }
 
+  /// The least that a span is worth trying for, however little is left: a ray that is beyond its
+  /// tolerance, because rounding takes more than that, must come to its end. T error as of
+  /// allowance().
+  PELLUCID_HD static T least_allowance(T tolerance, T share_of_length) noexcept {
+    return T(1.0 / 64) * tolerance * share_of_length;
+  }
+
   // For spans that are tried together before those in front of them are folded:
 
   /// What one of them may take of the second pot for each unit of its length, and what there is in

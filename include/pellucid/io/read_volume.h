@@ -20,12 +20,24 @@ struct ReadOptions {
   std::optional<Vec3<double>> spacing;           ///< replaces the file's
   std::optional<Vec3<double>> origin;            ///< replaces the file's
   std::optional<Centering> centering;            ///< replaces the file's
+  std::optional<int> components;                 ///< raw: numbers at each point, side by side
+  std::optional<int> component;                  ///< which of a file's, from 0
 };
 
 /// Reads a volume by its extension: .nii .nii.gz .hdr/.img(.gz) .nrrd .nhdr .mha .mhd (through ITK,
 /// where the build has it), .npy, .raw; and any file as raw where dimensions and type are both
-/// given. Throws Error: what, where, what to do.
+/// given. Throws Error: what, where, what to do; also for a file of several components of which
+/// the options choose none.
 Volume read_volume(const std::filesystem::path& path, const ReadOptions& options = {});
+
+/// A file may have several numbers at each point, its components: colors and vectors, the steps of
+/// a fourth axis, and of .npy the last of four axes. This is how many, by its header. Throws Error
+/// like read_volume.
+int component_count(const std::filesystem::path& path, const ReadOptions& options = {});
+/// Each component as a volume of its own, in the file's type and on its one grid; the chosen one
+/// alone where the options choose. Throws Error like read_volume.
+std::vector<Volume> read_components(const std::filesystem::path& path,
+                                    const ReadOptions& options = {});
 
 /// The parsers of our own, from memory, so that they can be fuzzed. `name` is for messages.
 Volume parse_npy(const std::vector<std::byte>& bytes, const std::string& name,

@@ -5,41 +5,20 @@
 #include <optional>
 #include <string>
 #include <string_view>
-#include <variant>
 #include <vector>
 
-#include "pellucid/io/read_volume.h"
-#include "pellucid/scene/opacity_table.h"
+#include "pellucid/io/channel_source.h"
+#include "pellucid/io/field_source.h"
+#include "pellucid/io/transfer_function_description.h"
 #include "pellucid/scene/scene.h"
 
 namespace pellucid {
-
-/// A field as a scene names it: a file, or a built-in field with its size.
-struct FieldSource {
-  std::filesystem::path file;  ///< empty: built-in
-  ReadOptions options;
-  std::string builtin;  ///< one of builtin_field_names()
-  int points = 128;     ///< per axis; built-in
-};
-
-/// "builtin:NAME" and "builtin:NAME:POINTS" are built-in fields; anything else is a file's path.
-/// Throws Error for an unknown name or a wrong number of points.
-FieldSource parse_field_source(std::string_view text);
-
-/// An opacity table as other programs have it: opacities of a layer as thick as unit_distance.
-struct OpacityTable {
-  std::vector<OpacityPoint> points;
-  double unit_distance = 1;  ///< in world units
-};
-
-/// A transfer function as written: points with extinctions, or an opacity table.
-using TransferFunctionDescription =
-    std::variant<std::vector<TransferFunction::Point>, OpacityTable>;
 
 /// A scene as written: nothing is read or rendered yet. What is absent takes the default.
 /// docs/scene.md tells of every key, docs/scene.schema.json is the JSON Schema (draft 2020-12).
 struct SceneDescription {
   FieldSource field;
+  std::vector<ChannelSource> channels;  ///< in place of the field, where there are any
   std::optional<TransferFunctionDescription> transfer_function;
   std::optional<Camera> camera;
   ImageSize size;
@@ -73,20 +52,13 @@ Camera parse_camera(std::string_view json, const std::string& name);
 /// The bare object. Throws Error where a number is not finite.
 std::string camera_to_json(const Camera& camera);
 
-/// What an opacity table may add to the error of any channel: an eighth of the tolerance.
-constexpr double opacity_table_share(double tolerance) noexcept {
-  return tolerance / 8;
-}
-/// The transfer function itself. An opacity table is approximated to within
-/// opacity_table_share(tolerance), seen over that background; points are taken as they are. Throws
-/// Error.
-TransferFunction make_transfer_function(const TransferFunctionDescription& description,
-                                        double tolerance,
-                                        const std::optional<Rgb<double>>& background = {});
+/// The channels that the scene's function sees: its own, or its field, named "value", and behind it
+/// "gradient_magnitude" and "second_derivative" of it where a Gaussian or a table names them. None
+/// where a field has a function of one variable.
+std::vector<ChannelSource> scene_channels(const SceneDescription& description);
 
-/// Reads the file or makes the built-in field. Throws Error.
-Volume load_field(const FieldSource& source);
-/// Reads the field, and fills defaults for the transfer function and the camera. Throws Error.
-Scene make_scene(const SceneDescription& description);
+/// Reads the data, and fills defaults for the transfer function of a field and for the camera.
+/// Throws Error, also for channels without a function of them.
+Scene make_scene(const SceneDescription& description, const ParallelFor& parallel = {});
 
 }  // namespace pellucid

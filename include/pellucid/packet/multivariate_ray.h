@@ -43,7 +43,8 @@ class MultivariateRay {
         room_(room),
         block_walk_(blocks_.records, ray_, {ray.begin, ray.end}),
         cell_walk_(grid_.axis, ray_, {ray.begin, ray.begin}),
-        budget_(job.tolerance, ray.end - ray.begin) {
+        length_(ray.end - ray.begin),
+        budget_(job.tolerance, length_) {
     room_.panels.clear();
     demand_.grade = job.proved != 0 ? Grade::proved : Grade::estimated;
     demand_.largest_color = largest_color_;
@@ -84,6 +85,7 @@ class MultivariateRay {
 
  private:
   static constexpr int most_cuts = 60;
+  static constexpr double left_out_share = 1.0 / 8;
 
   bool done() const noexcept { return rest() <= budget_.left(); }
 
@@ -93,9 +95,9 @@ class MultivariateRay {
     return fold_.transparency() * opacity * largest_color_;
   }
 
-  /// A stretch in which so much depth, at most, is left out.
-  void skip(double length, double depth) noexcept {
-    ++skipped_;
+  /// Stretches in which so much depth, at most, is left out.
+  void skip(int stretches, double length, double depth) noexcept {
+    skipped_ += stretches;
     budget_.spend(length, 0, fold_.transparency(), largest_color_ * min(depth, 1.0));
   }
 
@@ -106,7 +108,7 @@ class MultivariateRay {
       if (!block_walk_.next(blocks_.classes.block, block)) return false;
       if (blocks_.classes[block.block].kind == BlockKind::skip) {
         const double length = block.t_end - block.t_begin;
-        skip(length, blocks_.left_out * length);
+        skip(1, length, blocks_.left_out * length);
         continue;
       }
       primitives_ = blocks_.primitives[block.block];
@@ -134,47 +136,69 @@ class MultivariateRay {
     return more;
   }
 
-  /// Makes panels of the cells in which something matters.
+  /// Makes panels of the parts of the cells in which something matters. What is left out of a cell
+  /// is at most the share `left_out_share` of what its length may cost.
   void cull(CellChunk<N>& cells) noexcept {
     CubicBernstein<B> data[most_channels];
     for (int c = 0; c < grid_.channels; ++c) data[c] = cells.cubic(c);
-    const B length = cells.lengths();
     const GaussianMixture<double>& all = transfer_.gaussians;
-    const B negligible =
-        length *
-        B(budget_.for_length() / (fold_.transparency() * 8 * max(all.count, 1) * largest_color_));
-    unsigned seen = 0;
-    B rest(0.0);
+    // The extinction that a primitive may have and be left out.
+    const double negligible = left_out_share * budget_.for_length() /
+                              (fold_.transparency() * max(all.count, 1) * largest_color_);
+    B from(2.0), to(-1.0);
     PrimitiveSet wanted[N];
     for (PrimitiveSet& set : wanted) set.bits = 0;
     PrimitiveSet any_cell{0};
     for (int l = 0; l < cells.count(); ++l) any_cell.bits |= cells.primitives(l).bits;
+    double left_out = blocks_.left_out;
     for (int i = 0; i < all.count; ++i) {
       if (!any_cell.holds(i)) continue;
       const Gaussian<double>& g = all.primitive[i];
-      const B bound = B(g.peak) * length * exp(-GaussianCubic<B>(g, data).lower());
-      const auto matters = bound > negligible;
-      rest += select(matters, B(0.0), bound);
-      const unsigned here = bits(matters);
-      seen |= here;
-      for (unsigned left = here; left != 0; left &= left - 1) {
+      left_out += min(g.peak, negligible);
+      if (!(g.peak > negligible)) continue;
+      const double exponent = log(g.peak / negligible);
+      const GaussianCubic<B> cubic(g, data);
+      const auto near = cubic.lower() < B(exponent);
+      if (none(near)) continue;
+      const auto part = cubic.within(B(sqrt(exponent)));
+      const auto matters = near & (part.from < part.to);
+      from = select(matters, min(from, part.from), from);
+      to = select(matters, max(to, part.to), to);
+      for (unsigned left = bits(matters); left != 0; left &= left - 1) {
         wanted[__builtin_ctz(left)].bits |= 1ULL << (i & 63);
       }
     }
-    double left_out[N];
-    rest.store(left_out);
+    double begin[N], end[N];
+    max(from, B(0.0)).store(begin);
+    min(to, B(1.0)).store(end);
+    int clear = 0;
+    bool used = false;
+    double passed = 0, depth = 0;  // over at once
     for (int l = 0; l < cells.count(); ++l) {
+      const double length = cells.length(l);
       if (!cells.filled(l)) {
-        skip(cells.length(l), 0);
-      } else if ((seen >> l & 1) != 0 || table_absorbs(cells, l)) {
-        cells.primitives(l) = wanted[l];
-        room_.panels.append(newest_, l);
-        ++pending_;
-      } else {
-        skip(cells.length(l), left_out[l] + blocks_.left_out * cells.length(l));
+        passed += length;
+        ++clear;
+        continue;
       }
+      if (transfer_.tables > 0 && table_absorbs(cells, l)) {
+        begin[l] = 0;
+        end[l] = 1;
+      }
+      const double kept = end[l] > begin[l] ? end[l] - begin[l] : 0;
+      passed += (1 - kept) * length;
+      depth += left_out * length;
+      if (!(kept > 0)) {
+        ++clear;
+        continue;
+      }
+      cells.primitives(l) = wanted[l];
+      room_.panels.append(newest_, l, begin[l], end[l]);
+      ++pending_;
+      used = true;
     }
-    if (room_.panels.front() >= 0) ++newest_;
+    skip(clear, passed, depth);
+    if (used) ++newest_;
   }
 
   bool table_absorbs(const CellChunk<N>& cells, int lane) const noexcept {
@@ -202,10 +226,12 @@ class MultivariateRay {
     const MultivariateSpan<B> span = load(index, count);
     const double transparency = fold_.transparency();
     Shares shares;
-    const B from_length = span.length * B(budget_.for_length());
+    const B from_length = span.length * B((1 - left_out_share) * budget_.for_length());
     from_length.store(shares.from_length);
+    const B least =
+        B(RayBudget<double>::least_allowance(job_.tolerance, 1 / length_)) * span.length;
     const auto allowance = [&](B opacity) noexcept {
-      return (share_out(opacity, shares) + from_length) * B(1 / transparency);
+      return max((share_out(opacity, shares) + from_length) * B(1 / transparency), least);
     };
     const PanelSegment<B> panel =
         integrate_multivariate_panel(transfer_, span, demand_, allowance, room_.terms);
@@ -330,6 +356,7 @@ class MultivariateRay {
   BlockWalk block_walk_;
   StructuredWalk<double> cell_walk_;  ///< of the block that the ray stands in
   PrimitiveSet primitives_;           ///< of that block
+  double length_;                     ///< of the ray
   RayBudget<double> budget_;
   FrontToBack<double> fold_{0.0};
   PanelDemand<B> demand_;

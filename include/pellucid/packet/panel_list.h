@@ -37,9 +37,9 @@ class PanelList {
   Panel& operator[](int index) noexcept { return panel_[index]; }
 
   /// At the end; there must be room.
-  void append(int chunk, int lane) noexcept {
+  void append(int chunk, int lane, double begin, double end) noexcept {
     const int index = take();
-    start(panel_[index], chunk, lane, 0, 1, 0);
+    start(panel_[index], chunk, lane, begin, end, 0);
     panel_[index].next = -1;
     (back_ < 0 ? front_ : panel_[back_].next) = index;
     back_ = index;

@@ -7,12 +7,14 @@
 
 namespace pellucid {
 
-/// The same scene by adaptive Gauß-Kronrod quadrature in double to 1e-12 (Boost.Math), cell by
-/// cell. Slow. Shares no kernel with the fast path: it has its own ray-plane sorting,
-/// interpolation, transfer-function lookup, crossings and quadrature. Method,
-/// precision, step, tolerance and grade of the scene are not looked at, but refused where render()
-/// refuses them; a pixel is the mean of its samples. Only RenderOptions and the report are shared
-/// with cpu/. Throws what pellucid::render throws.
+/// The same scene by quadrature in double to 1e-12, cell by cell: adaptive Gauß-Kronrod
+/// (Boost.Math); with a multivariate transfer function 20 nodes of Gauß and Legendre to parts that
+/// are halved until no Gaussian can stand between them (src/reference/multivariate_ray.cpp). Slow.
+/// Shares no kernel with the fast path: it has its own ray-plane sorting, interpolation,
+/// transfer-function lookup, crossings and quadrature. Method, precision, step, tolerance and grade
+/// of the scene are not looked at, but refused where render() refuses them; a pixel is the mean of
+/// its samples. Only RenderOptions and the report are shared with cpu/. Throws what
+/// pellucid::render throws.
 Image render_reference(const Scene& scene, const RenderOptions& options = {},
                        RenderReport* report = nullptr);
 
@@ -30,5 +32,14 @@ struct ReferencePixel {
 /// space, any length but 0). Throws Error for a direction of length 0.
 ReferencePixel reference_ray(const Volume& volume, const TransferFunction& transfer_function,
                              const Vec3<double>& origin, const Vec3<double>& direction);
+/// The same through several channels. Throws Error, too, where the function sees another number of
+/// them.
+ReferencePixel reference_ray(const Channels& channels,
+                             const MultivariateTransferFunction& transfer_function,
+                             const Vec3<double>& origin, const Vec3<double>& direction);
+/// The same through what the scene shows, without its camera. Throws Error, too, where
+/// check_data() does.
+ReferencePixel reference_ray(const Scene& scene, const Vec3<double>& origin,
+                             const Vec3<double>& direction);
 
 }  // namespace pellucid

@@ -43,6 +43,8 @@ class MultivariateRayIntegrator {
       : grid_(grid),
         transfer_(transfer),
         largest_extinction_(largest_extinction),
+        tolerance_(wanted.tolerance),
+        length_(length),
         budget_(wanted.tolerance, length) {
     demand_.grade = wanted.grade;
     demand_.largest_color = max(wanted.largest_color, 1.0);
@@ -131,7 +133,8 @@ class MultivariateRayIntegrator {
     const MultivariateSpan<double> span =
         begin == 0 && end == 1 ? whole : whole.part(grid_.channels, begin, end);
     const auto allowance = [&](double opacity) noexcept {
-      return budget_.allowance(span.length, opacity, fold_.transparency());
+      return max(budget_.allowance(span.length, opacity, fold_.transparency()),
+                 RayBudget<double>::least_allowance(tolerance_, span.length / length_));
     };
     const PanelSegment<double> panel =
         integrate_multivariate_panel(transfer_, span, demand_, allowance);
@@ -174,6 +177,7 @@ class MultivariateRayIntegrator {
   const MultichannelGrid& grid_;
   const Multivariate<double>& transfer_;
   double largest_extinction_;
+  double tolerance_, length_;
   PanelDemand<double> demand_;
   RayBudget<double> budget_;
   FrontToBack<double> fold_{0.0};

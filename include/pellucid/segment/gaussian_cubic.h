@@ -52,6 +52,26 @@ class GaussianCubic {
   PELLUCID_HD T lower() const noexcept { return lower_; }
   PELLUCID_HD T upper() const noexcept { return upper_; }
 
+  /// A part of [0, 1] outside of which |p| > reach: nothing where `to` < `from`. Along a direction
+  /// n, |p| >= |n·p|; from either end n·p comes towards 0 no faster than at three times the largest
+  /// difference of its coefficients. n is that from end to end.
+  struct Part {
+    T from, to;
+  };
+  PELLUCID_HD Part within(T reach) const noexcept {
+    T n[most_channels], x[4];
+    T square = T(0);
+    for (int i = 0; i < rows_; ++i) {
+      n[i] = rows_ == 1 ? T(1) : p_[3][i] - p_[0][i];
+      square = multiply_add(n[i], n[i], square);
+    }
+    const T scale = rows_ == 1 ? T(1) : T(1) / sqrt(max(square, T(smallest_normal<T>)));
+    for (int k = 0; k < 4; ++k) x[k] = scale * dot(n, p_[k]);
+    // Rounding must not make the band narrower.
+    const T band = reach * T(1 + 1e-9) + T(16 * rounding_unit<T>) * sqrt(upper_);
+    return {enters(x[0], x[1], x[2], x[3], band), T(1) - enters(x[3], x[2], x[1], x[0], band)};
+  }
+
   /// The line, and what it leaves out.
   struct Line {
     T front[most_channels], back[most_channels], d[most_channels];
@@ -108,6 +128,14 @@ class GaussianCubic {
     T sum = T(0);
     for (int i = 0; i < rows_; ++i) sum = multiply_add(a[i], b[i], sum);
     return sum;
+  }
+
+  /// Where a cubic with these coefficients can be within the band, at the earliest.
+  PELLUCID_HD static T enters(T a, T b, T c, T d, T band) noexcept {
+    const T sign = select(a < T(0), T(-1), T(1));
+    const T above = sign * a - band;
+    const T rate = T(3) * max(sign * (a - b), max(sign * (b - c), sign * (c - d)));
+    return select(above > T(0), above / max(rate, T(smallest_normal<T>)) * T(1 - 1e-12), T(0));
   }
 
   /// The square of the distance of 0 from the range of the coefficients, of one row.

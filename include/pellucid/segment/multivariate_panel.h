@@ -58,10 +58,10 @@ template <int N, class T>
 PELLUCID_HD constexpr T cubic_panel_estimate(T exponents) noexcept {
   static_assert(N == 2 || N == 3 || N == 4 || N == 6 || N == 8);
   using S = scalar_t<T>;
-  constexpr S worst[4][5] = {{S(2.3e-3), S(2.0e-4), S(8.1e-6), S(5.7e-8), S(1.6e-10)},
-                             {S(6.6e-3), S(4.8e-4), S(5.4e-5), S(1.8e-7), S(1.1e-9)},
-                             {S(1.8e-2), S(2.7e-3), S(3.5e-4), S(4.4e-6), S(2.0e-8)},
-                             {S(5.9e-2), S(1.2e-2), S(2.5e-3), S(6.9e-5), S(1.3e-6)}};
+  constexpr S worst[4][5] = {{S(2.8e-3), S(2.1e-4), S(9.4e-6), S(6.0e-8), S(1.7e-10)},
+                             {S(6.6e-3), S(6.2e-4), S(5.6e-5), S(3.3e-7), S(1.3e-9)},
+                             {S(1.9e-2), S(2.8e-3), S(3.8e-4), S(4.7e-6), S(4.0e-8)},
+                             {S(6.0e-2), S(1.3e-2), S(2.6e-3), S(7.4e-5), S(1.5e-6)}};
   constexpr int column = N <= 4 ? N - 2 : N / 2;
   const T low = select(exponents <= T(0.25), T(worst[0][column]), T(worst[1][column]));
   const T high = select(exponents <= T(1), T(worst[2][column]), T(worst[3][column]));

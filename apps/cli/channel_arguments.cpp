@@ -1,0 +1,192 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "channel_arguments.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <variant>
+
+#include "parse.h"
+#include "pellucid/cpu/threads.h"
+
+namespace pellucid::cli {
+
+namespace {
+
+constexpr const char* gradient_channel = "gradient_magnitude";
+
+/// What a name may hold of a text.
+std::string as_name(const std::string& text) {
+  constexpr std::size_t longest = 56;  // leaves room for a number behind it
+  std::string name;
+  for (const char c : text.substr(0, longest)) {
+    name += is_channel_name(std::string_view(&c, 1)) ? c : '_';
+  }
+  return name.empty() ? "channel" : name;
+}
+
+std::vector<std::string> split(const std::string& text) {
+  std::vector<std::string> parts{""};
+  for (const char c : text) {
+    if (c == ',') {
+      parts.emplace_back();
+    } else {
+      parts.back() += c;
+    }
+  }
+  return parts;
+}
+
+std::vector<ChannelSource> all_sources(const ChannelArguments& arguments) {
+  std::vector<ChannelSource> sources;
+  const std::vector<std::string> names = file_channel_names(arguments.inputs);
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    sources.push_back({names[i], "", field_source(arguments.inputs[i], arguments.volume)});
+  }
+  if (arguments.is_one_volume()) {
+    for (const auto kind :
+         {DerivedSource::Kind::gradient_magnitude, DerivedSource::Kind::second_derivative}) {
+      sources.push_back({std::string(derived_name(kind)), "",
+                         DerivedSource{kind, std::string(field_channel), 0}});
+    }
+  }
+  for (const std::string& text : arguments.channels) {
+    try {
+      ChannelSource source = parse_channel_source(text);
+      auto* field = std::get_if<FieldSource>(&source.source);
+      if (field != nullptr && field->builtin.empty()) {
+        field->options = arguments.volume.read_options();
+      }
+      sources.push_back(std::move(source));
+    } catch (const UsageError&) {
+      throw;
+    } catch (const Error& error) {
+      throw UsageError(fmt::format("--channel: {}", error.what()));
+    }
+  }
+  if (sources.empty()) {
+    throw UsageError(
+        fmt::format("there is nothing to look at; give FILE or --channel NAME=SOURCE (see "
+                    "'pellucid {} --help')",
+                    arguments.command));
+  }
+  try {
+    check_channel_sources(sources);
+  } catch (const Error& error) {
+    throw UsageError(error.what());
+  }
+  return sources;
+}
+
+/// Those of these names, and what they are made of, in the order that they had.
+std::vector<ChannelSource> needed(const std::vector<ChannelSource>& sources,
+                                  std::vector<std::string> names) {
+  std::vector<ChannelSource> kept;
+  for (auto source = sources.rbegin(); source != sources.rend(); ++source) {
+    if (std::find(names.begin(), names.end(), source->name) == names.end()) continue;
+    if (const auto* derived = std::get_if<DerivedSource>(&source->source)) {
+      names.push_back(derived->of);
+    }
+    kept.insert(kept.begin(), *source);
+  }
+  return kept;
+}
+
+}  // namespace
+
+void ChannelArguments::add_to(CLI::App& app) {
+  command = app.get_name();
+  app.add_option(
+         "FILE", inputs,
+         std::string(input_help) + " or builtin:NAME[:POINTS]; several are channels on one grid")
+      ->option_text("...");
+  app.add_option("--channel", channels,
+                 "A further channel, may be given several times; SOURCE is a file, builtin:NAME, "
+                 "gradient_magnitude:CHANNEL, second_derivative:CHANNEL or "
+                 "smoothed:CHANNEL:SIGMA")
+      ->option_text("NAME=SOURCE")
+      ->allow_extra_args(false);
+  app.add_option("--axes", axes,
+                 "The channels to look at; default: value,gradient_magnitude of one file, else "
+                 "all. Files are named by what stands before the first dot of their names")
+      ->option_text("NAME,NAME");
+  app.add_option("--threads", threads, "Threads; 0, the default: one per core")
+      ->option_text("N")
+      ->check(CLI::Range(0, 4096));
+  volume.add_to(app);
+}
+
+std::string ChannelArguments::source_text() const {
+  std::string text;
+  for (const auto* list : {&inputs, &channels}) {
+    for (const std::string& source : *list) text += (text.empty() ? "" : ", ") + source;
+  }
+  return text;
+}
+
+std::vector<std::string> file_channel_names(const std::vector<std::string>& inputs) {
+  if (inputs.size() == 1) return {std::string(field_channel)};
+  std::vector<std::string> names;
+  for (const std::string& input : inputs) {
+    const bool builtin = input.starts_with("builtin:");
+    const std::string file =
+        builtin ? input.substr(8) : std::filesystem::path(input).filename().string();
+    const std::string name = as_name(file.substr(0, file.find(builtin ? ':' : '.')));
+    std::string numbered = name;
+    for (int n = 2; std::find(names.begin(), names.end(), numbered) != names.end(); ++n) {
+      numbered = fmt::format("{}_{}", name, n);
+    }
+    names.push_back(numbered);
+  }
+  return names;
+}
+
+ChannelSelection select_channels(const ChannelArguments& arguments, int most) {
+  const std::vector<ChannelSource> sources = all_sources(arguments);
+  const std::vector<std::string> names = channel_names(sources);
+  ChannelSelection selection;
+  if (!arguments.axes.empty()) {
+    selection.axes = split(arguments.axes);
+  } else if (arguments.is_one_volume()) {
+    selection.axes = {std::string(field_channel), gradient_channel};
+  } else {
+    selection.axes = names;
+  }
+  for (auto axis = selection.axes.begin(); axis != selection.axes.end(); ++axis) {
+    if (std::find(names.begin(), names.end(), *axis) == names.end()) {
+      throw UsageError(fmt::format("--axes: '{}' is no channel; the channels are {}", *axis,
+                                   fmt::join(names, ", ")));
+    }
+    if (std::find(selection.axes.begin(), axis, *axis) != axis) {
+      throw UsageError(fmt::format("--axes: '{}' stands twice; name each once", *axis));
+    }
+  }
+  if (selection.axes.size() > static_cast<std::size_t>(most)) {
+    throw UsageError(
+        fmt::format("there are {} channels to look at, but at most {} can be; choose by --axes, of "
+                    "{}",
+                    selection.axes.size(), most, fmt::join(names, ", ")));
+  }
+  selection.sources = needed(sources, selection.axes);
+  return selection;
+}
+
+LoadedChannels load_channels(const ChannelSelection& selection, int threads) {
+  Channels channels = pellucid::load_channels(selection.sources, parallel_for(threads));
+  std::vector<int> which;
+  for (const std::string& axis : selection.axes) which.push_back(*channels.find(axis));
+  return {std::move(channels), std::move(which)};
+}
+
+std::vector<NamedFile> data_files(const std::vector<ChannelSource>& sources) {
+  std::vector<NamedFile> files;
+  for (const ChannelSource& source : sources) {
+    if (const auto* field = std::get_if<FieldSource>(&source.source)) {
+      files.push_back({"channel " + source.name, field->file.string()});
+    }
+  }
+  return files;
+}
+
+}  // namespace pellucid::cli

@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "scene_text.h"
+
+#include <variant>
+
+namespace pellucid::cli {
+
+std::string scene_text(SceneDescription description, const std::filesystem::path& target) {
+  const auto folder = std::filesystem::absolute(target).parent_path();
+  const auto relocate = [&](std::filesystem::path& file) {
+    if (file.empty() || !file.is_relative()) return;
+    file = std::filesystem::absolute(file).lexically_normal();
+    const auto relative = file.lexically_relative(folder.lexically_normal());
+    if (!relative.empty()) file = relative;
+  };
+  relocate(description.field.file);
+  for (ChannelSource& channel : description.channels) {
+    if (auto* field = std::get_if<FieldSource>(&channel.source)) relocate(field->file);
+  }
+  return scene_to_json(description);
+}
+
+}  // namespace pellucid::cli

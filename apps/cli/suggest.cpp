@@ -1,0 +1,155 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pellucid/scene/suggest.h"
+
+#include <fmt/format.h>
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "channel_arguments.h"
+#include "commands.h"
+#include "output.h"
+#include "parse.h"
+#include "pellucid/cpu/threads.h"
+#include "pellucid/io/atomic_file.h"
+#include "pellucid/io/image_files.h"
+#include "scene_text.h"
+
+namespace pellucid::cli {
+
+namespace {
+
+struct SuggestArguments {
+  ChannelArguments channels;
+  std::string output, save_tf;
+  int primitives = 0;
+  bool quiet = false;
+};
+
+void check_arguments(const SuggestArguments& arguments, const ChannelSelection& selection) {
+  std::vector<NamedFile> outputs;
+  for (const NamedFile& file :
+       {NamedFile{"-o", arguments.output}, NamedFile{"--save-tf", arguments.save_tf}}) {
+    if (file.path.empty()) continue;
+    if (extension_of(file.path) != ".json") {
+      throw UsageError(
+          fmt::format("{} {}: expected a name that ends in .json", file.argument, file.path));
+    }
+    outputs.push_back(file);
+  }
+  refuse_overwriting(outputs, data_files(selection.sources));
+  for (const NamedFile& file : outputs) check_writable(file.path);
+}
+
+/// Where the axes are a channel and its gradient magnitude, in this order: boundaries.
+bool are_value_and_gradient(const ChannelSelection& selection) {
+  if (selection.axes.size() != 2) return false;
+  for (const ChannelSource& source : selection.sources) {
+    const auto* derived = std::get_if<DerivedSource>(&source.source);
+    if (derived != nullptr && source.name == selection.axes[1]) {
+      return derived->kind == DerivedSource::Kind::gradient_magnitude &&
+             derived->of == selection.axes[0];
+    }
+  }
+  return false;
+}
+
+/// With widths where the primitive has those of the channels.
+GaussianShape shape_of(const GaussianPrimitive& primitive) {
+  GaussianWidths widths;
+  for (std::size_t i = 0; i < primitive.matrix.size(); ++i) {
+    for (std::size_t j = 0; j < primitive.matrix[i].size(); ++j) {
+      if (i != j && primitive.matrix[i][j] != 0) return GaussianMatrix{primitive.matrix};
+    }
+    // As it was rounded before it became a matrix.
+    widths.widths.push_back(std::stod(fmt::format("{:.9g}", 1 / primitive.matrix[i][i])));
+  }
+  return widths;
+}
+
+MultivariateDescription described(const std::vector<GaussianPrimitive>& primitives,
+                                  const std::vector<std::string>& axes) {
+  MultivariateDescription function;
+  for (const GaussianPrimitive& p : primitives) {
+    function.gaussians.push_back({axes, p.center, shape_of(p), p.extinction, p.color});
+  }
+  return function;
+}
+
+int run_suggest(const SuggestArguments& arguments) {
+  const ChannelSelection selection = select_channels(arguments.channels, most_suggested_channels);
+  check_arguments(arguments, selection);
+  const int threads =
+      arguments.channels.threads > 0 ? arguments.channels.threads : default_threads();
+  const LoadedChannels loaded = load_channels(selection, threads);
+  const bool boundaries = are_value_and_gradient(selection) && arguments.primitives == 0;
+  const std::vector<GaussianPrimitive> primitives =
+      boundaries ? suggest_boundaries(loaded.channels, loaded.which[0], loaded.which[1],
+                                      parallel_for(threads))
+                 : suggest_mixture(loaded.channels, loaded.which, arguments.primitives,
+                                   parallel_for(threads));
+
+  SceneDescription scene;
+  if (arguments.channels.is_one_volume()) {
+    scene.field = field_source(arguments.channels.inputs[0], arguments.channels.volume);
+  } else {
+    scene.channels = selection.sources;
+  }
+  scene.transfer_function = described(primitives, selection.axes);
+  if (!arguments.output.empty()) {
+    write_text_file(arguments.output, scene_text(scene, arguments.output));
+  }
+  if (!arguments.save_tf.empty()) {
+    write_text_file(arguments.save_tf, transfer_function_to_json(*scene.transfer_function));
+  }
+  if (arguments.output.empty() && arguments.save_tf.empty()) {
+    print_text(scene_text(scene, "scene.json"));
+  } else if (!arguments.quiet) {
+    print_note(fmt::format(
+        "{} Gaussians of {}{}", primitives.size(), fmt::join(selection.axes, ", "),
+        arguments.output.empty()
+            ? ""
+            : fmt::format("; 'pellucid render {} -o picture.png' shows them", arguments.output)));
+  }
+  return 0;
+}
+
+}  // namespace
+
+Command add_suggest(CLI::App& app) {
+  CLI::App& command = *app.add_subcommand(
+      "suggest", "Write a first scene with Gaussians, made from the joint histogram");
+  const auto arguments = std::make_shared<SuggestArguments>();
+  command
+      .add_option("-o,--output", arguments->output,
+                  "Scene to write, for 'pellucid render'; on stdout where nothing is written")
+      ->option_text("SCENE.json");
+  command
+      .add_option("--save-tf", arguments->save_tf,
+                  "Write the transfer function alone, for 'pellucid render --tf'")
+      ->option_text("FILE.json");
+  command
+      .add_option("--primitives", arguments->primitives,
+                  fmt::format("A mixture of so many, from 1 to {}; default: boundaries and "
+                              "materials of a value and its gradient magnitude, else as many as "
+                              "are found",
+                              most_suggested_primitives))
+      ->option_text("N")
+      ->check(CLI::Range(1, most_suggested_primitives));
+  command.add_flag("-q,--quiet", arguments->quiet, "No notes, only errors");
+  arguments->channels.add_to(command);
+  command.footer(
+      "What fills the most of the volume is taken for background, and is transparent.\n"
+      "\n"
+      "Examples:\n"
+      "  pellucid suggest brain.nii.gz -o brain.json\n"
+      "  pellucid suggest T1.nii.gz FLAIR.nii.gz -o patient.json --primitives 4\n"
+      "  pellucid suggest T1.nii.gz --channel soft=smoothed:value:2 --channel "
+      "edge=gradient_magnitude:soft\n"
+      "      --axes soft,edge -o soft.json\n"
+      "  pellucid suggest brain.nii.gz --save-tf tf.json");
+  return {&command, [arguments] { return run_suggest(*arguments); }};
+}
+
+}  // namespace pellucid::cli

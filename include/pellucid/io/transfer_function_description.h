@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+#include "pellucid/scene/multivariate_transfer_function.h"
+#include "pellucid/scene/opacity_table.h"
+
+namespace pellucid {
+
+/// An opacity table as other programs have it: opacities of a layer as thick as unit_distance.
+struct OpacityTable {
+  std::vector<OpacityPoint> points;
+  double unit_distance = 1;  ///< in world units
+};
+
+/// The shape of a Gaussian as written, by one of the three functions of
+/// scene/multivariate_transfer_function.h, or as its matrix itself.
+struct GaussianWidths {
+  std::vector<double> widths;
+  std::vector<std::vector<double>> axes;  ///< none: those of the channels
+};
+struct GaussianCovariance {
+  std::vector<std::vector<double>> covariance;
+};
+struct GaussianMatrix {
+  std::vector<std::vector<double>> matrix;
+};
+using GaussianShape = std::variant<GaussianWidths, GaussianCovariance, GaussianMatrix>;
+
+/// A Gaussian primitive whose channels have names.
+struct GaussianDescription {
+  std::vector<std::string> channels;  ///< none: those of the function
+  std::vector<double> center;         ///< a number for each channel
+  GaussianShape shape;
+  double extinction = 0;  ///< the peak, 1/length in world units
+  Rgb<double> color{};    ///< linear RGB of the particles, straight
+};
+
+/// A piecewise-linear function of one channel.
+struct ChannelTableDescription {
+  std::string channel;  ///< empty: the one channel that there is
+  std::vector<TransferFunction::Point> points;
+};
+
+/// A function of several channels as written: the sum of its terms.
+struct MultivariateDescription {
+  std::vector<std::string> channels;  ///< of the Gaussians that name none; none: all, in order
+  std::vector<GaussianDescription> gaussians;
+  std::vector<ChannelTableDescription> tables;
+};
+
+/// A transfer function as written: points with extinctions, an opacity table, or a function of
+/// several channels.
+using TransferFunctionDescription =
+    std::variant<std::vector<TransferFunction::Point>, OpacityTable, MultivariateDescription>;
+
+/// A Gaussian in short, as on a command line:
+///
+///   CHANNEL=CENTER~WIDTH, CHANNEL=CENTER~WIDTH, …; extinction NUMBER; color COLOR
+///
+/// e.g. "t1=80~10, edge=20~5; extinction 0.5; color #ffcc99". ± may stand for ~, spaces anywhere
+/// between the parts. Without "CHANNEL=", in all places, it looks at the channels of the function.
+/// A word behind a number, as in "80 HU", is for people and passed over. COLOR is #RRGGBB in sRGB,
+/// or linear R,G,B; white where it is left out. Throws Error.
+GaussianDescription parse_gaussian(std::string_view text);
+
+/// Widths as written lie between this and 1e30.
+inline constexpr double smallest_width = 1e-37;
+
+/// K. Throws Error.
+std::vector<std::vector<double>> gaussian_matrix(const GaussianShape& shape);
+
+/// What an opacity table may add to the error of any channel: an eighth of the tolerance.
+constexpr double opacity_table_share(double tolerance) noexcept {
+  return tolerance / 8;
+}
+/// The transfer function itself. An opacity table is approximated to within
+/// opacity_table_share(tolerance), seen over that background; points are taken as they are. Throws
+/// Error, also for a function of several channels.
+TransferFunction make_transfer_function(const TransferFunctionDescription& description,
+                                        double tolerance,
+                                        const std::optional<Rgb<double>>& background = {});
+/// The function of the channels of these names. Throws Error.
+std::shared_ptr<const MultivariateTransferFunction> make_multivariate(
+    const MultivariateDescription& description, const std::vector<std::string>& channels);
+
+}  // namespace pellucid

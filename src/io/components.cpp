@@ -1,0 +1,143 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "components.h"
+
+#include <algorithm>
+#include <cstdint>
+#include <utility>
+
+#include "memory_limit.h"
+#include "pellucid/scene/error.h"
+
+namespace pellucid {
+
+namespace {
+
+Volume make_volume(const VolumeFile& file, int component, VolumeData data) {
+  Volume::Description description = file.description;
+  if (file.components > 1) description.name += ", component " + std::to_string(component);
+  return Volume(std::move(description), std::move(data));
+}
+
+std::string choices(const VolumeFile& file) {
+  return "0 to " + std::to_string(file.components - 1);
+}
+
+/// The component that the options name, checked. Throws Error.
+int chosen_component(const VolumeFile& file, const ReadOptions& options) {
+  const int component = *options.component;
+  if (component >= 0 && component < file.components) return component;
+  throw Error(file.description.name + ": there is no component " + std::to_string(component) +
+              (file.components == 1
+                   ? "; the file has one number at each point, component 0"
+                   : "; the file holds " + file.holds + ", components " + choices(file)));
+}
+
+/// Components that lie side by side, some points at a time.
+std::vector<VolumeData> read_interleaved(const ReadOn& read, const ValueLayout& layout,
+                                         std::size_t points, ComponentRange range,
+                                         const std::string& name) {
+  const auto number = static_cast<std::size_t>(range.number);
+  check_memory(std::uintmax_t{points} * number * value_size(layout.type, name),
+               name + ": its values");
+  std::vector<VolumeData> list;
+  list.reserve(number);
+  for (std::size_t c = 0; c < number; ++c) list.push_back(make_values(layout.type, points, name));
+  std::visit(
+      [&](const auto& of_type) {
+        using Value = typename std::decay_t<decltype(of_type)>::value_type;
+        std::vector<std::span<Value>> to;
+        to.reserve(number);
+        for (VolumeData& data : list) to.push_back(std::get<DataArray<Value>>(data).writable());
+        const auto stride = static_cast<std::size_t>(layout.components);
+        const auto begin = static_cast<std::size_t>(range.first);
+        constexpr std::size_t values_at_once = std::size_t{1} << 16;
+        const std::size_t largest_part = std::max<std::size_t>(values_at_once / stride, 1);
+        for (std::size_t done = 0; done < points; done += largest_part) {
+          const std::size_t part = std::min(largest_part, points - done);
+          VolumeData side_by_side = DataArray<Value>(part * stride);
+          const std::span<Value> values = std::get<DataArray<Value>>(side_by_side).writable();
+          read(std::as_writable_bytes(values));
+          to_native_order(side_by_side, layout.big_endian);
+          for (std::size_t c = 0; c < number; ++c) {
+            for (std::size_t i = 0; i < part; ++i) to[c][done + i] = values[i * stride + begin + c];
+          }
+        }
+      },
+      make_volume_data(layout.type, 0));
+  return list;
+}
+
+}  // namespace
+
+Volume read_chosen(const VolumeFile& file, const ReadOptions& options) {
+  int component = 0;
+  if (options.component) {
+    component = chosen_component(file, options);
+  } else if (file.components > 1) {
+    throw Error(file.description.name + ": holds " + file.holds +
+                ", but one number at each point is needed; choose a component, " + choices(file) +
+                ", or save one of them as a file of its own");
+  }
+  std::vector<VolumeData> data = file.read({component, 1});
+  return make_volume(file, component, std::move(data.front()));
+}
+
+std::vector<Volume> read_all(const VolumeFile& file, const ReadOptions& options) {
+  ComponentRange range{0, file.components};
+  if (options.component) range = {chosen_component(file, options), 1};
+  std::vector<Volume> volumes;
+  int component = range.first;
+  for (VolumeData& data : file.read(range)) {
+    volumes.push_back(make_volume(file, component++, std::move(data)));
+  }
+  return volumes;
+}
+
+ReadOn read_on(const ByteSource& source, std::uintmax_t from) {
+  return [&source, from](std::span<std::byte> to) mutable {
+    source.read(from, to);
+    from += to.size();
+  };
+}
+
+std::size_t value_count(std::size_t points, int components, const std::string& name) {
+  // 2^60 values of 8 bytes are still a number of bytes.
+  constexpr std::size_t largest = std::size_t{1} << 60;
+  if (points > largest / static_cast<std::size_t>(components)) {
+    throw Error(name + ": a volume of " + std::to_string(points) + " points with " +
+                std::to_string(components) + " components each is too large");
+  }
+  return points * static_cast<std::size_t>(components);
+}
+
+std::vector<VolumeData> read_components(const ByteSource& source, const ValueLayout& layout,
+                                        std::size_t points, ComponentRange range) {
+  if (layout.interleaved && layout.components > 1) {
+    return read_interleaved(read_on(source, layout.offset), layout, points, range, source.name);
+  }
+  const std::uintmax_t bytes = std::uintmax_t{points} * value_size(layout.type, source.name);
+  std::vector<VolumeData> list;
+  for (int c = range.first; c < range.first + range.number; ++c) {
+    const std::uintmax_t offset = layout.offset + bytes * static_cast<std::uintmax_t>(c);
+    list.push_back(read_values(source, {layout.type, layout.big_endian, offset}, points));
+  }
+  return list;
+}
+
+std::vector<VolumeData> read_components(DataStream& stream, const ValueLayout& layout,
+                                        std::size_t points, ComponentRange range) {
+  if (layout.interleaved && layout.components > 1) {
+    return read_interleaved([&](std::span<std::byte> to) { stream.read(to); }, layout, points,
+                            range, stream.name());
+  }
+  const std::uintmax_t bytes = std::uintmax_t{points} * value_size(layout.type, stream.name());
+  std::vector<VolumeData> list;
+  list.reserve(static_cast<std::size_t>(range.number));
+  stream.skip(bytes * static_cast<std::uintmax_t>(range.first));
+  for (int c = 0; c < range.number; ++c) list.push_back(read_values(stream, layout, points));
+  const int rest = layout.components - range.first - range.number;
+  stream.skip(bytes * static_cast<std::uintmax_t>(rest));
+  return list;
+}
+
+}  // namespace pellucid

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "data_stream.h"
+#include "volume_source.h"
+
+namespace pellucid {
+
+/// Components first … first + number - 1 of a file.
+struct ComponentRange {
+  int first = 0, number = 1;
+};
+
+/// A file whose header has been read: its grid, and its values when they are asked for.
+struct VolumeFile {
+  Volume::Description description;
+  int components = 1;
+  std::string holds;  ///< what several components are: "3 time steps (axis 4)"
+  /// The values of each component by itself. Throws Error.
+  std::function<std::vector<VolumeData>(ComponentRange)> read;
+};
+
+/// The one volume that the options choose, or that there is. Throws Error where the file has
+/// several and none is chosen, or the chosen one is not there.
+Volume read_chosen(const VolumeFile& file, const ReadOptions& options);
+/// All of them, or the chosen one alone.
+std::vector<Volume> read_all(const VolumeFile& file, const ReadOptions& options);
+
+/// Fills a span with the bytes that come next.
+using ReadOn = std::function<void(std::span<std::byte>)>;
+/// From this byte of the source on, which must hold what is asked for and outlive the function.
+ReadOn read_on(const ByteSource& source, std::uintmax_t from);
+
+/// The number of values of all components. Throws Error where no machine holds so many.
+std::size_t value_count(std::size_t points, int components, const std::string& name);
+
+/// Each component of `points` values, as ValueLayout says how they lie; those that lie as in memory
+/// in place. The source must hold all components.
+std::vector<VolumeData> read_components(const ByteSource& source, const ValueLayout& layout,
+                                        std::size_t points, ComponentRange range);
+/// The same from a stream that stands at the first value of the first component. Reads on to the
+/// end of the last, so that a stream that is cut off is found out.
+std::vector<VolumeData> read_components(DataStream& stream, const ValueLayout& layout,
+                                        std::size_t points, ComponentRange range);
+
+/// The formats whose headers are read without ITK.
+VolumeFile open_npy(const ByteSource& source, const ReadOptions& options);
+VolumeFile open_raw(const ByteSource& source, const ReadOptions& options);
+
+}  // namespace pellucid

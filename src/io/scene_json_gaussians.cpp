@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <string>
+#include <utility>
+
+#include "pellucid/scene/error.h"
+#include "scene_json_parts.h"
+
+namespace pellucid::scene_json {
+namespace {
+
+std::vector<std::string> channel_names(const Node& list) {
+  if (list.array_size() < 1 || list.array_size() > static_cast<std::size_t>(most_channels)) {
+    list.fail("names " + std::to_string(list.array_size()) +
+              " channels, but must name from 1 to 8");
+  }
+  std::vector<std::string> names;
+  for (std::size_t i = 0; i < list.array_size(); ++i) {
+    std::string name = channel_name(list.element(i));
+    if (std::find(names.begin(), names.end(), name) != names.end()) {
+      list.fail("names \"" + printable(name) + "\" twice; name each channel once");
+    }
+    names.push_back(std::move(name));
+  }
+  return names;
+}
+
+GaussianShape shape(const Node& node, std::size_t channels) {
+  const auto width = node.find("width"), covariance = node.find("covariance"),
+             matrix_node = node.find("matrix");
+  if (width.has_value() + covariance.has_value() + matrix_node.has_value() != 1) {
+    node.fail("needs one of \"width\", \"covariance\" and \"matrix\", and no two of them");
+  }
+  const auto axes = node.find("axes");
+  if (axes && !width) axes->fail("turns a \"width\", which is not there; remove it");
+  if (matrix_node) return GaussianMatrix{matrix(*matrix_node, channels)};
+  if (covariance) return GaussianCovariance{matrix(*covariance, channels)};
+  GaussianWidths widths{numbers(*width, smallest_width), {}};
+  if (widths.widths.size() != channels) {
+    width->fail("must have " + std::to_string(channels) +
+                " numbers, one for each channel, but has " + std::to_string(widths.widths.size()));
+  }
+  if (axes) widths.axes = matrix(*axes, channels);
+  return widths;
+}
+
+GaussianDescription gaussian(const Node& node) {
+  node.expect_object(
+      {"channels", "center", "width", "axes", "covariance", "matrix", "extinction", "color"});
+  GaussianDescription g;
+  if (const auto channels = node.find("channels")) g.channels = channel_names(*channels);
+  const Node center = node.at("center", "give its place, a data value for each channel");
+  g.center = numbers(center);
+  const std::size_t n = g.center.size();
+  if (!g.channels.empty() && g.channels.size() != n) {
+    center.fail("must have " + std::to_string(g.channels.size()) +
+                " numbers, one for each channel, but has " + std::to_string(n));
+  }
+  g.shape = shape(node, n);
+  g.extinction = node.at("extinction", "give the peak, per world length").number(0, largest_number);
+  g.color = linear_rgb(node.at("color", "give linear [r, g, b]"));
+  return g;
+}
+
+ChannelTableDescription table(const Node& node) {
+  if (node.has("unit_distance")) {
+    node.fail_at("unit_distance",
+                 "makes an opacity table, which a sum cannot hold; remove it and give extinctions");
+  }
+  node.expect_object({"channel", "points"});
+  ChannelTableDescription t;
+  if (const auto channel = node.find("channel")) t.channel = channel_name(*channel);
+  t.points = extinction_points(node.at("points", "give an array of {value, extinction, color}"));
+  return t;
+}
+
+/// What the numbers cannot be, seen from the Gaussian alone.
+void check(const Node& node, const GaussianDescription& description) {
+  GaussianDescription alone = description;
+  alone.channels.clear();
+  std::vector<std::string> channels;
+  for (std::size_t i = 0; i < alone.center.size(); ++i) channels.push_back(std::to_string(i));
+  try {
+    make_multivariate({{}, {std::move(alone)}, {}}, channels);
+  } catch (const Error& error) {
+    node.fail(error.what());
+  }
+}
+
+}  // namespace
+
+MultivariateDescription multivariate(const Node& function) {
+  function.expect_object({"channels", "gaussians", "tables"});
+  MultivariateDescription description;
+  if (const auto channels = function.find("channels")) {
+    description.channels = channel_names(*channels);
+  }
+  const auto elements = [&](const char* key, auto&& read) {
+    const auto list = function.find(key);
+    if (!list) return;
+    if (list->array_size() == 0) list->fail("is empty; give one at least, or leave it out");
+    for (std::size_t i = 0; i < list->array_size(); ++i) read(list->element(i));
+  };
+  elements("gaussians", [&](const Node& node) {
+    description.gaussians.push_back(gaussian(node));
+    check(node, description.gaussians.back());
+  });
+  elements("tables", [&](const Node& node) { description.tables.push_back(table(node)); });
+  return description;
+}
+
+}  // namespace pellucid::scene_json

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "pellucid/io/scene_json.h"
+#include "scene_json_document.h"
+
+namespace pellucid::scene_json {
+
+/// The elements of an array of three.
+std::array<Node, 3> three(const Node& node);
+/// [x, y, z].
+Vec3<double> vector(const Node& node);
+/// [r, g, b], each 0 or more.
+Rgb<double> linear_rgb(const Node& node);
+/// From 1 to 8 numbers.
+std::vector<double> numbers(const Node& list, double lower = -largest_number);
+/// From 1 to 8 rows of `columns` numbers.
+std::vector<std::vector<double>> matrix(const Node& rows, std::size_t columns);
+/// A string that is_channel_name().
+std::string channel_name(const Node& node);
+
+FieldSource field_source(const Node& field, const std::filesystem::path& folder);
+std::vector<ChannelSource> channel_sources(const Node& list, const std::filesystem::path& folder);
+
+/// The points of a piecewise-linear function; at least one.
+std::vector<TransferFunction::Point> extinction_points(const Node& list);
+TransferFunctionDescription transfer_function(const Node& function);
+/// The names of channels that it uses are not looked up.
+MultivariateDescription multivariate(const Node& function);
+
+}  // namespace pellucid::scene_json

@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pellucid/io/transfer_function_description.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "pellucid/scene/error.h"
+#include "scene_json_document.h"
+
+namespace pellucid {
+namespace {
+
+/// Places of channels by their names. Messages say which term asks.
+class ChannelIndex {
+ public:
+  explicit ChannelIndex(const std::vector<std::string>& channels) : channels_(channels) {}
+
+  int of(const std::string& name, const std::string& term) const {
+    const auto found = std::find(channels_.begin(), channels_.end(), name);
+    if (found != channels_.end()) return static_cast<int>(found - channels_.begin());
+    std::string known;
+    for (const std::string& channel : channels_) {
+      known += (known.empty() ? "" : ", ") + scene_json::printable(channel);
+    }
+    throw Error("transfer function: " + term + " looks at a channel \"" +
+                scene_json::printable(name) + "\", which is not there" +
+                scene_json::did_you_mean(name, {channels_.begin(), channels_.end()}) +
+                "; there are: " + known);
+  }
+  std::vector<int> of(const std::vector<std::string>& names, const std::string& term) const {
+    std::vector<int> list;
+    for (const std::string& name : names) list.push_back(of(name, term));
+    return list;
+  }
+
+ private:
+  const std::vector<std::string>& channels_;
+};
+
+}  // namespace
+
+std::vector<std::vector<double>> gaussian_matrix(const GaussianShape& shape) {
+  if (const auto* widths = std::get_if<GaussianWidths>(&shape)) {
+    return widths->axes.empty() ? matrix_of_widths(widths->widths)
+                                : matrix_of_widths(widths->widths, widths->axes);
+  }
+  if (const auto* covariance = std::get_if<GaussianCovariance>(&shape)) {
+    return matrix_of_covariance(covariance->covariance);
+  }
+  return std::get<GaussianMatrix>(shape).matrix;
+}
+
+TransferFunction make_transfer_function(const TransferFunctionDescription& description,
+                                        double tolerance,
+                                        const std::optional<Rgb<double>>& background) {
+  if (const auto* points = std::get_if<std::vector<TransferFunction::Point>>(&description)) {
+    return TransferFunction(*points);
+  }
+  if (std::holds_alternative<MultivariateDescription>(description)) {
+    throw Error(
+        "transfer function: it has Gaussians or tables of channels, but points in one "
+        "variable are needed here");
+  }
+  const OpacityTable& table = std::get<OpacityTable>(description);
+  double largest_color = 0;
+  const auto count = [&](const Rgb<double>& c) {
+    largest_color = std::max({largest_color, c.r, c.g, c.b});
+  };
+  for (const OpacityPoint& p : table.points) count(p.color);
+  if (background) count(*background);
+  return from_opacity_table(table.points, table.unit_distance,
+                            relative_error_for(opacity_table_share(tolerance), largest_color));
+}
+
+std::shared_ptr<const MultivariateTransferFunction> make_multivariate(
+    const MultivariateDescription& description, const std::vector<std::string>& channels) {
+  const ChannelIndex index(channels);
+  const std::vector<std::string>& common =
+      description.channels.empty() ? channels : description.channels;
+  std::vector<GaussianPrimitive> primitives;
+  for (const GaussianDescription& g : description.gaussians) {
+    const std::string term = "Gaussian " + std::to_string(primitives.size());
+    primitives.push_back({index.of(g.channels.empty() ? common : g.channels, term), g.center,
+                          gaussian_matrix(g.shape), g.extinction, g.color});
+  }
+  std::vector<ChannelTransferFunction> tables;
+  for (const ChannelTableDescription& table : description.tables) {
+    const std::string term = "table " + std::to_string(tables.size());
+    if (table.channel.empty() && channels.size() != 1) {
+      throw Error("transfer function: " + term + " does not say at which channel it looks, but " +
+                  "there are " + std::to_string(channels.size()) + "; give its \"channel\"");
+    }
+    const int channel = table.channel.empty() ? 0 : index.of(table.channel, term);
+    tables.push_back({channel, TransferFunction(table.points)});
+  }
+  return std::make_shared<const MultivariateTransferFunction>(
+      static_cast<int>(channels.size()), std::move(primitives), std::move(tables));
+}
+
+}  // namespace pellucid

@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cmath>
+
+#include "pellucid/scene/volume.h"
+
+namespace pellucid {
+
+/// Mean length of the chords of the volume's box: 4 · volume / surface (Cauchy).
+inline double mean_chord(const Volume& volume) {
+  const Vec3<double> size = volume.grid_upper() - volume.grid_lower();
+  const Mat3<double>& axes = volume.world_from_grid().matrix;
+  const Vec3<double> a = axes.column[0] * size.x, b = axes.column[1] * size.y,
+                     c = axes.column[2] * size.z;
+  const double surface = 2 * (length(cross(a, b)) + length(cross(b, c)) + length(cross(c, a)));
+  return 4 * std::abs(dot(a, cross(b, c))) / surface;
+}
+
+}  // namespace pellucid

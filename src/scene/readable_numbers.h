@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+
+namespace pellucid {
+
+/// The decimal with this many digits behind the point of scientific notation that is nearest.
+inline double rounded(double value, int digits) {
+  char text[64];
+  const auto end =
+      std::to_chars(text, text + sizeof text, value, std::chars_format::scientific, digits).ptr;
+  std::from_chars(text, end, value);
+  return value;
+}
+
+/// The nearest multiple of a power of ten that divides the range into 100 to 1000 parts.
+inline double readable(double value, double range) {
+  if (value == 0) return 0;
+  const double digits = std::floor(std::log10(std::abs(value))) - std::floor(std::log10(range)) + 2;
+  return digits < 0 ? 0 : rounded(value, static_cast<int>(std::min(digits, 16.0)));
+}
+
+inline double two_digits(double value) {
+  return rounded(value, 1);
+}
+
+}  // namespace pellucid
