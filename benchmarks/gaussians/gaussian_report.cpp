@@ -65,7 +65,8 @@ std::string crossings(const Series& widths) {
     if (found) continue;
     text += to + (before == nullptr
                       ? std::string("not known.\n")
-                      : format("sampling is the faster one down to a width of %g.\n", before->at));
+                      : format("sampling is the faster one at least down to a width of %g.\n",
+                               before->at));
   }
   return text;
 }

@@ -58,7 +58,9 @@ VolumePointer waves(std::array<int, 3> dimensions, int number) {
 
 VolumePointer noise(std::array<int, 3> dimensions, unsigned seed) {
   std::mt19937 random(seed);
-  const auto draw = [&](double, double, double) { return random() / 4294967296.0; };
+  const auto draw = [&](double, double, double) {
+    return static_cast<double>(random()) / 4294967296.0;
+  };
   return sampled(dimensions, draw, "noise");
 }
 
@@ -160,10 +162,10 @@ Exhibit differences_of_channels(int) {
 Exhibit eight_channels(int) {
   std::vector<VolumePointer> volumes;
   for (int c = 0; c < 8; ++c) {
-    const VolumePointer smooth = waves({11, 11, 11}, c);
+    const VolumePointer smooth = waves({7, 7, 7}, c);
     const auto at = [&](int i, int j, int k) {
       return static_cast<double>(std::get<DataArray<float>>(
-          smooth->data())[static_cast<std::size_t>(i + 11 * (j + 11 * k))]);
+          smooth->data())[static_cast<std::size_t>(i + 7 * (j + 7 * k))]);
     };
     const Volume::Description d = smooth->description();
     if (c % 3 == 0) {
@@ -207,15 +209,15 @@ Exhibit many(int n, double width, double extinction) {
                                     extinction, hue(n * i + j)));
     }
   }
-  return exhibit({waves({13, 13, 13}, 1), waves({13, 13, 13}, 4)}, std::move(primitives));
+  return exhibit({waves({7, 7, 7}, 1), waves({7, 7, 7}, 4)}, std::move(primitives));
 }
 
 Exhibit hundred_apart(int) {
-  return many(10, 0.2, 12);
+  return many(10, 0.2, 5);
 }
 
 Exhibit sixty_four_overlapping(int) {
-  return many(8, 1.5, 0.15);
+  return many(8, 1.5, 0.08);
 }
 
 Exhibit twenty_in_noise(int) {
@@ -224,7 +226,7 @@ Exhibit twenty_in_noise(int) {
     primitives.push_back(gaussian({(i + 0.5) / 20, (7 * i % 20) / 20.0},
                                   {i % 2 == 0 ? 0.03 : 0.3, i % 2 == 0 ? 0.2 : 0.02}, 6, hue(i)));
   }
-  return exhibit({noise({8, 8, 8}, 3), noise({8, 8, 8}, 5)}, std::move(primitives));
+  return exhibit({noise({5, 5, 5}, 3), noise({5, 5, 5}, 5)}, std::move(primitives));
 }
 
 /// Gaussians beside and under the ramps, peaks and jumps of tables.
