@@ -10,9 +10,16 @@
 namespace pellucid::bench {
 namespace {
 
-std::string data_of(const Volume& volume) {
-  const auto& n = volume.description().dimensions;
-  return format("%d×%d×%d ", n[0], n[1], n[2]) + std::string(type_name(volume.data()));
+std::string data_of(const Scene& scene) {
+  const auto& n =
+      (scene.channels ? scene.channels->grid() : *scene.volume).description().dimensions;
+  std::string text = format("%d×%d×%d", n[0], n[1], n[2]);
+  if (!scene.channels) return text + " " + std::string(type_name(scene.volume->data()));
+  for (const Channel& channel : *scene.channels) {
+    text += (&channel == &*scene.channels->begin() ? " " : ", ") +
+            std::string(type_name(channel.volume->data()));
+  }
+  return text;
 }
 
 /// What the next setting is expected to take: samples grow as steps shrink; what a tolerance costs
@@ -82,8 +89,7 @@ SceneResult measure(const scenes::NamedScene& named, const MeasureOptions& optio
   options.say(named.name + ": reference");
   const ReferencePixels reference =
       reference_pixels(scene, options.pixels, std::max(1, options.pellucid.threads), options.cache);
-  SceneResult result{named.name, scene.size, data_of(*scene.volume), reference.index.size(),
-                     {},         {}};
+  SceneResult result{named.name, scene.size, data_of(scene), reference.index.size(), {}, {}};
 
   std::vector<Contender> contenders = pellucid_contenders(scene, options.pellucid);
   if (options.vtk) {

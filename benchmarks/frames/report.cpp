@@ -34,25 +34,6 @@ const CurvePoint* at_setting(const Curve* curve, double setting) {
   return nullptr;
 }
 
-/// The sampling method that reaches the error first; where none does, the one that comes closest.
-struct BestSampler {
-  const Curve* curve = nullptr;
-  Reach reach;
-};
-BestSampler best_sampler(const SceneResult& result, double error) {
-  BestSampler best;
-  for (const Curve& curve : result.curves) {
-    if (!is_our_sampler(curve.name)) continue;
-    const Reach one = reach(curve, error, ErrorKind::largest);
-    const bool better =
-        best.curve == nullptr || (one.reached && !best.reach.reached) ||
-        (one.reached == best.reach.reached &&
-         (one.reached ? one.seconds < best.reach.seconds : one.error < best.reach.error));
-    if (better) best = {&curve, one};
-  }
-  return best;
-}
-
 /// "12× midpoint 0.07"; "> 80×: 3.1e-3 midpoint 0.02" where it is not reached.
 std::string sampler_cell(const SceneResult& result, double error, const Reach& exact) {
   const BestSampler best = best_sampler(result, error);
@@ -91,6 +72,20 @@ std::string setting_name(double setting, Knob knob) {
 }
 
 }  // namespace
+
+BestSampler best_sampler(const SceneResult& result, double error) {
+  BestSampler best;
+  for (const Curve& curve : result.curves) {
+    if (!is_our_sampler(curve.name)) continue;
+    const Reach one = reach(curve, error, ErrorKind::largest);
+    const bool better =
+        best.curve == nullptr || (one.reached && !best.reach.reached) ||
+        (one.reached == best.reach.reached &&
+         (one.reached ? one.seconds < best.reach.seconds : one.error < best.reach.error));
+    if (better) best = {&curve, one};
+  }
+  return best;
+}
 
 std::string error_name(double error) {
   if (error == 1.0 / 512) return "1/512";

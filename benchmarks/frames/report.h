@@ -15,6 +15,13 @@ inline constexpr double compared_errors[] = {1e-2, 1.0 / 512, 1e-4};
 /// "1/512" and "1e-04".
 std::string error_name(double error);
 
+/// The sampling method that reaches the error first; where none does, the one that comes closest.
+struct BestSampler {
+  const Curve* curve = nullptr;  ///< null: there is none
+  Reach reach;
+};
+BestSampler best_sampler(const SceneResult& result, double error);
+
 /// Time of exact and of the best sampling method at an equal error.
 std::string equal_error_table(const std::vector<SceneResult>& results);
 /// Time and error of exact at its tolerances, by grade.

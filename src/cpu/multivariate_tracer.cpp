@@ -3,6 +3,7 @@
 #include <optional>
 #include <utility>
 
+#include "multivariate_sampler.h"
 #include "packet_setup.h"
 #include "pellucid/packet/multivariate_interface.h"
 #include "pellucid/render/integrate_multivariate_ray.h"
@@ -53,6 +54,13 @@ class MultivariateTracer : public RayTracer {
           "integration: the method preintegrated looks up a table of one variable, but the scene "
           "has channels; take another method");
     }
+    if (integration_.method == Method::midpoint && !depth_ &&
+        integration_.precision != Precision::float64) {
+      sampler_ = MultivariatePacketSampler::make(
+          channels_, transfer_function_, step_,
+          stop_tolerance<float>() / std::max(transfer_function_.largest_color(), 1.0),
+          task.options.instruction_set, parallel_for(task.threads));
+    }
     if (integration_.method != Method::exact) return;
     storage_ = MultivariateBlocksStorage(channels_, transfer_function_, negligible_extinction(task),
                                          parallel_for(task.threads));
@@ -69,6 +77,11 @@ class MultivariateTracer : public RayTracer {
     }
     if (kernel_ != nullptr) return trace_in_lanes(rays);
     std::vector<RayResult> results;
+    if (sampler_) {
+      results.resize(rays.size());
+      sampler_->trace(rays.data(), static_cast<int>(rays.size()), results.data());
+      return results;
+    }
     results.reserve(rays.size());
     for (const Ray<double>& ray : rays) results.push_back(trace_one(ray));
     return results;
@@ -126,8 +139,9 @@ class MultivariateTracer : public RayTracer {
   Multivariate<double> transfer_;
   double step_;  ///< of the sampling methods, world length
   MultivariateBlocksStorage storage_;
-  std::optional<MultivariateBlocks> blocks_;  ///< of the exact method
-  Kernel kernel_ = nullptr;                   ///< null: rays go one by one
+  std::optional<MultivariateBlocks> blocks_;                  ///< of the exact method
+  Kernel kernel_ = nullptr;                                   ///< null: rays go one by one
+  std::unique_ptr<const MultivariatePacketSampler> sampler_;  ///< null: another method, or that
 };
 
 }  // namespace

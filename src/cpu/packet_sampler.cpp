@@ -20,11 +20,6 @@ Kernel sampler_of([[maybe_unused]] InstructionSet set) {
 #endif
 }
 
-/// Whether no ray takes so many steps that an int cannot count them.
-bool has_few_steps(const Volume& volume, double step) {
-  return diagonal(volume) < 1e9 * step;
-}
-
 }  // namespace
 
 std::unique_ptr<const PacketSamplerTracer> PacketSamplerTracer::make(
@@ -71,14 +66,7 @@ void PacketSamplerTracer::trace(const Ray<double>* rays, int count, RayResult* r
   job.grid_and_rays.results = found.data();
   job.grid_and_rays.count = static_cast<std::int32_t>(inside.ray.size());
   kernel_(&job);
-  for (std::size_t i = 0; i < found.size(); ++i) {
-    const PellucidRayResult& from = found[i];
-    RayResult& to = results[inside.of[i]];
-    to.radiance = {from.radiance[0], from.radiance[1], from.radiance[2]};
-    to.opacity = from.opacity;
-    to.optical_depth = from.optical_depth;
-    to.cells = from.cells;
-  }
+  read_sampled(found, inside, results);
 }
 
 }  // namespace pellucid

@@ -62,6 +62,10 @@ bool suits_packets(const Volume& volume, double largest_extinction) {
          });
 }
 
+bool has_few_steps(const Volume& volume, double step) {
+  return diagonal(volume) < 1e9 * step;
+}
+
 void set_grid(const Volume& volume, PellucidPacketJob& job) {
   volume.visit([&](const auto& grid) {
     job.data = grid.data;
@@ -99,6 +103,18 @@ PacketRays::PacketRays(const Volume& volume, const Ray<double>* rays, int count)
       of.push_back(i);
     }
   });
+}
+
+void read_sampled(const std::vector<PellucidRayResult>& found, const PacketRays& rays,
+                  RayResult* results) {
+  for (std::size_t i = 0; i < found.size(); ++i) {
+    const PellucidRayResult& from = found[i];
+    RayResult& to = results[rays.of[i]];
+    to.radiance = {from.radiance[0], from.radiance[1], from.radiance[2]};
+    to.opacity = from.opacity;
+    to.optical_depth = from.optical_depth;
+    to.cells = from.cells;
+  }
 }
 
 }  // namespace pellucid

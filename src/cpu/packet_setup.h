@@ -47,6 +47,9 @@ inline bool is_moderate(double x) {
 /// has.
 bool suits_packets(const Volume& volume, double largest_extinction);
 
+/// Whether no ray takes so many steps of this world length that an int cannot count them.
+bool has_few_steps(const Volume& volume, double step);
+
 /// The grid's part of a job.
 void set_grid(const Volume& volume, PellucidPacketJob& job);
 
@@ -60,5 +63,9 @@ struct PacketRays {
 
   PacketRays(const Volume& volume, const Ray<double>* rays, int count);
 };
+
+/// What packets of rays that sample found.
+void read_sampled(const std::vector<PellucidRayResult>& found, const PacketRays& rays,
+                  RayResult* results);
 
 }  // namespace pellucid

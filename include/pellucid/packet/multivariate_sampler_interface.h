@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "pellucid/packet/interface.h"
+
+/// What goes between the renderer and rays that sample several fields, as packet/interface.h.
+extern "C" {
+
+struct PellucidMultivariateSamplerJob {
+  PellucidPacketJob grid_and_rays;  ///< of this the grid without data, its blocks, rays and results
+  const void* grid;                 ///< MultichannelGrid
+  const void* primitives;           ///< PrimitiveSet per block: those that matter there
+  const void* transfer;             ///< SampledMultivariate
+  double step;                      ///< world length
+  double stop;                      ///< the transparency at which a ray ends
+};
+
+void pellucid_sample_multivariate_sse4(const PellucidMultivariateSamplerJob* job);
+void pellucid_sample_multivariate_avx2(const PellucidMultivariateSamplerJob* job);
+void pellucid_sample_multivariate_avx512(const PellucidMultivariateSamplerJob* job);
+}
