@@ -88,6 +88,10 @@ std::size_t CsvTable::column(std::string_view name) const {
   return static_cast<std::size_t>(std::distance(columns_.begin(), found));
 }
 
+bool CsvTable::has_column(std::string_view name) const noexcept {
+  return std::find(columns_.begin(), columns_.end(), name) != columns_.end();
+}
+
 std::string CsvTable::where(std::size_t row) const {
   return fmt::format("{}: line {}", name_, lines_[row]);
 }
@@ -118,20 +122,40 @@ T CsvTable::number(std::size_t row, std::size_t column) const {
 }
 
 template <class T>
-std::vector<T> CsvTable::list(std::size_t row, std::size_t column) const {
+std::vector<T> CsvTable::parse_list(std::string_view text, std::size_t row,
+                                    std::size_t column) const {
   std::vector<T> numbers;
-  if (text(row, column).empty()) return numbers;
+  if (text.empty()) return numbers;
   std::vector<std::string_view> pieces;
-  split(text(row, column), ';', pieces);
+  split(text, ';', pieces);
   numbers.reserve(pieces.size());
   for (const std::string_view piece : pieces) numbers.push_back(parse<T>(piece, row, column));
   return numbers;
+}
+
+template <class T>
+std::vector<T> CsvTable::list(std::size_t row, std::size_t column) const {
+  return parse_list<T>(text(row, column), row, column);
+}
+
+template <class T>
+std::vector<std::vector<T>> CsvTable::lists(std::size_t row, std::size_t column) const {
+  std::vector<std::vector<T>> result;
+  if (text(row, column).empty()) return result;
+  std::vector<std::string_view> groups;
+  split(text(row, column), '|', groups);
+  for (const std::string_view group : groups) {
+    result.push_back(parse_list<T>(group, row, column));
+  }
+  return result;
 }
 
 template float CsvTable::number<float>(std::size_t, std::size_t) const;
 template double CsvTable::number<double>(std::size_t, std::size_t) const;
 template std::vector<float> CsvTable::list<float>(std::size_t, std::size_t) const;
 template std::vector<double> CsvTable::list<double>(std::size_t, std::size_t) const;
+template std::vector<std::vector<float>> CsvTable::lists<float>(std::size_t, std::size_t) const;
+template std::vector<std::vector<double>> CsvTable::lists<double>(std::size_t, std::size_t) const;
 
 CsvWriter::CsvWriter(const std::vector<std::string_view>& columns)
     : text_(fmt::format("{}\n", fmt::join(columns, ","))) {}

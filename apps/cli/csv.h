@@ -9,8 +9,8 @@
 namespace pellucid::cli {
 
 /// A table of text cells as in the truth tables: one header line, cells separated by commas, none
-/// quoted, lists inside a cell separated by ';'. Lines end in \n or \r\n; a byte-order mark
-/// and empty lines at the end are passed over.
+/// quoted, numbers of a list inside a cell separated by ';', lists by '|'. Lines end in \n or \r\n;
+/// a byte-order mark and empty lines at the end are passed over.
 class CsvTable {
  public:
   /// `name` is for messages. Throws Error: nothing in it, an empty or repeated column name, a row
@@ -23,6 +23,7 @@ class CsvTable {
   const std::vector<std::string_view>& columns() const noexcept { return columns_; }
   /// Throws Error where there is no such column.
   std::size_t column(std::string_view name) const;
+  bool has_column(std::string_view name) const noexcept;
 
   std::string_view text(std::size_t row, std::size_t column) const noexcept {
     return cells_[row * columns_.size() + column];
@@ -33,6 +34,9 @@ class CsvTable {
   /// Numbers separated by ';'. An empty cell is an empty list.
   template <class T>
   std::vector<T> list(std::size_t row, std::size_t column) const;
+  /// Such lists separated by '|'. An empty cell is no list.
+  template <class T>
+  std::vector<std::vector<T>> lists(std::size_t row, std::size_t column) const;
 
   /// "name: line 3", for messages about a whole row.
   std::string where(std::size_t row) const;
@@ -40,6 +44,8 @@ class CsvTable {
  private:
   template <class T>
   T parse(std::string_view text, std::size_t row, std::size_t column) const;
+  template <class T>
+  std::vector<T> parse_list(std::string_view text, std::size_t row, std::size_t column) const;
 
   std::string text_, name_;
   std::vector<std::string_view> columns_;

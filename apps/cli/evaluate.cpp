@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
@@ -28,12 +27,10 @@ struct EvaluateArguments {
 };
 
 std::vector<EvaluateKind> kinds() {
-  return {linear_segment_kind(),
-          piecewise_linear_segment_kind(),
-          trilinear_cell_kind(),
-          special_functions_kind(),
-          EvaluateKind{"gaussian_segment", {}, {}},
-          EvaluateKind{"gaussian_mixture_segment", {}, {}}};
+  return {linear_segment_kind(),           piecewise_linear_segment_kind(),
+          trilinear_cell_kind(),           special_functions_kind(),
+          gaussian_segment_kind(),         gaussian_segment_kniss_kind(),
+          gaussian_mixture_segment_kind(), gaussian_mixture_segment_kniss_kind()};
 }
 
 std::vector<std::string> kind_names() {
@@ -59,12 +56,6 @@ int run_evaluate(const EvaluateArguments& arguments) {
   const auto all = kinds();
   const EvaluateKind& kind = *std::find_if(
       all.begin(), all.end(), [&](const EvaluateKind& k) { return k.name == arguments.kind; });
-  if (kind.in_double == nullptr) {
-    throw Error(
-        fmt::format("{}: not in this version of pellucid; 'pellucid evaluate --help' lists "
-                    "what is",
-                    kind.name));
-  }
   const double tolerance = tolerance_of(arguments, kind);
   const NamedFile files_out[] = {{"-o", arguments.output}};
   const NamedFile files_in[] = {{"TABLE", arguments.table}};
@@ -81,24 +72,15 @@ int run_evaluate(const EvaluateArguments& arguments) {
   CsvWriter writer(written);
   const EvaluateKind::Row evaluate =
       arguments.precision == "float" ? kind.in_float : kind.in_double;
-  std::size_t left_out = 0;
   std::vector<double> outputs;
   for (std::size_t row = 0; row < table.rows(); ++row) {
     outputs.clear();
-    if (!evaluate(table, columns, row, tolerance, outputs)) {
-      ++left_out;
-      outputs.assign(kind.outputs.size(), std::numeric_limits<double>::quiet_NaN());
-    }
+    evaluate(table, columns, row, tolerance, outputs);
     writer.cell(table.text(row, id));
     for (const double output : outputs) writer.cell(output);
     writer.end_row();
   }
   write_text_file(arguments.output, writer.text());
-  if (left_out > 0) {
-    print_note(
-        fmt::format("{} of {} rows need kernels that are not in this version: written as nan",
-                    left_out, table.rows()));
-  }
   return 0;
 }
 
@@ -174,17 +156,16 @@ Command add_evaluate(CLI::App& app) {
       ->check(CLI::IsMember({"float", "double"}));
   command
       .add_option("--tolerance", arguments->tolerance,
-                  "Of trilinear_cell; default 1e-6 in float, 1e-10 in double")
+                  "Of trilinear_cell and gaussian_mixture_segment; default 1e-6 in float, 1e-10 in "
+                  "double")
       ->option_text("E");
 
   std::string footer =
-      "Columns are found by name, in any order; others are passed over. Lists in a cell are\n"
-      "separated by ';'. Rows keep their order.\n";
+      "Columns are found by name, in any order; others are passed over. Numbers of a list are\n"
+      "separated by ';', lists in a cell by '|'. Rows keep their order.\n";
   for (const EvaluateKind& kind : kinds()) {
-    footer += kind.in_double == nullptr
-                  ? fmt::format("\n{}: not in this version\n", kind.name)
-                  : fmt::format("\n{}\n  reads  {}\n  writes {}\n", kind.name,
-                                fmt::join(kind.inputs, ","), fmt::join(kind.outputs, ","));
+    footer += fmt::format("\n{}\n  reads  {}\n  writes {}\n", kind.name,
+                          fmt::join(kind.inputs, ","), fmt::join(kind.outputs, ","));
   }
   footer +=
       "\nExamples:\n"

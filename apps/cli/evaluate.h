@@ -14,13 +14,13 @@ namespace pellucid::cli {
 /// One kernel held against a table: the columns it reads, those it writes besides `id`, and the
 /// function that computes one row in the number type asked for.
 struct EvaluateKind {
-  /// Appends the output cells of one row. Returns false where this version has no kernel for the
-  /// row, which then gets NaN. Throws Error that names the line for inputs a kernel does not admit.
-  using Row = bool (*)(const CsvTable& table, const std::vector<std::size_t>& columns,
+  /// Appends the output cells of one row; `columns` are those of `inputs`. Throws Error that names
+  /// the line for inputs a kernel does not admit.
+  using Row = void (*)(const CsvTable& table, const std::vector<std::size_t>& columns,
                        std::size_t row, double tolerance, std::vector<double>& outputs);
   std::string_view name;
   std::vector<std::string_view> inputs, outputs;
-  Row in_float = nullptr, in_double = nullptr;  ///< null: not in this version
+  Row in_float = nullptr, in_double = nullptr;
   bool has_tolerance = false;
 };
 
@@ -28,6 +28,10 @@ EvaluateKind special_functions_kind();
 EvaluateKind linear_segment_kind();
 EvaluateKind piecewise_linear_segment_kind();
 EvaluateKind trilinear_cell_kind();
+EvaluateKind gaussian_segment_kind();
+EvaluateKind gaussian_segment_kniss_kind();
+EvaluateKind gaussian_mixture_segment_kind();
+EvaluateKind gaussian_mixture_segment_kniss_kind();
 
 /// A number that must not be negative: an extinction, a length.
 template <class T>

@@ -13,7 +13,7 @@ double wide(T x) {
 }
 
 template <class T>
-bool linear_row(const CsvTable& table, const std::vector<std::size_t>& columns, std::size_t row,
+void linear_row(const CsvTable& table, const std::vector<std::size_t>& columns, std::size_t row,
                 double /*tolerance*/, std::vector<double>& outputs) {
   const T extinction_f = non_negative<T>(table, row, columns[0]);
   const T extinction_b = non_negative<T>(table, row, columns[1]);
@@ -29,11 +29,10 @@ bool linear_row(const CsvTable& table, const std::vector<std::size_t>& columns, 
              wide(w.transparency),       wide(w.psi),
              wide(w.weight_f),           wide(w.weight_b),
              wide(particles.radiance.r), wide(independent.radiance.r)};
-  return true;
 }
 
 template <class T>
-bool piecewise_linear_row(const CsvTable& table, const std::vector<std::size_t>& columns,
+void piecewise_linear_row(const CsvTable& table, const std::vector<std::size_t>& columns,
                           std::size_t row, double /*tolerance*/, std::vector<double>& outputs) {
   const TransferFunction transfer_function = transfer_function_of<T>(
       table, row, {columns[0], columns[1], columns[2], columns[3], columns[4]});
@@ -43,7 +42,6 @@ bool piecewise_linear_row(const CsvTable& table, const std::vector<std::size_t>&
       piecewise_linear_segment(transfer_function.view<T>(), value_f, value_b, length);
   outputs = {wide(s.optical_depth), wide(s.opacity), wide(s.radiance.r), wide(s.radiance.g),
              wide(s.radiance.b)};
-  return true;
 }
 
 }  // namespace

@@ -88,9 +88,10 @@ void add_scene_options(CLI::App& command, RenderArguments& arguments) {
 }
 
 void add_integration_options(CLI::App& command, RenderArguments& arguments) {
-  constexpr Method methods[] = {Method::exact,    Method::rectangle,    Method::taylor,
-                                Method::midpoint, Method::trapezoid,    Method::simpson,
-                                Method::linear,   Method::preintegrated};
+  constexpr Method methods[] = {Method::exact,    Method::rectangle,     Method::taylor,
+                                Method::midpoint, Method::trapezoid,     Method::simpson,
+                                Method::linear,   Method::preintegrated, Method::kniss,
+                                Method::gaussian};
   std::vector<std::string> names;
   for (const Method method : methods) names.emplace_back(method_name(method));
   auto* method =

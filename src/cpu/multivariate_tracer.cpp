@@ -125,9 +125,15 @@ class MultivariateTracer : public RayTracer {
       return integrate_multivariate_ray(grid_, &*blocks_, ray, transfer_,
                                         transfer_function_.largest_extinction(), wanted_, depth_);
     }
+    const double largest_color = transfer_function_.largest_color();
+    constexpr double stop = stop_tolerance<double>();
+    if (integration_.method == Method::kniss || integration_.method == Method::gaussian) {
+      const auto rule =
+          integration_.method == Method::kniss ? GaussianRule::kniss : GaussianRule::closed_form;
+      return sample_linear_steps(grid_, ray, transfer_, rule, step_, largest_color, stop, depth_);
+    }
     return sample_multivariate_ray(grid_, ray, transfer_, sampling_rule(integration_.method), step_,
-                                   transfer_function_.largest_color(), stop_tolerance<double>(),
-                                   depth_);
+                                   largest_color, stop, depth_);
   }
 
   const Integration& integration_;

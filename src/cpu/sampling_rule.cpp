@@ -17,6 +17,8 @@ SamplingRule sampling_rule(Method method) noexcept {
       return SamplingRule::simpson;
     case Method::linear:
     case Method::preintegrated:
+    case Method::kniss:
+    case Method::gaussian:
     case Method::exact:
       break;
   }

@@ -16,7 +16,7 @@ namespace {
 
 constexpr int largest_size = 65536;
 
-constexpr std::array<std::pair<Method, std::string_view>, 8> methods{{
+constexpr std::array<std::pair<Method, std::string_view>, 10> methods{{
     {Method::exact, "exact"},
     {Method::rectangle, "rectangle"},
     {Method::taylor, "taylor"},
@@ -25,6 +25,8 @@ constexpr std::array<std::pair<Method, std::string_view>, 8> methods{{
     {Method::simpson, "simpson"},
     {Method::linear, "linear"},
     {Method::preintegrated, "preintegrated"},
+    {Method::kniss, "kniss"},
+    {Method::gaussian, "gaussian"},
 }};
 
 void require_finite(const Vec3<double>& v, const std::string& what) {

@@ -153,8 +153,8 @@ TEST(Camera, TinyAndHugeDistancesKeepTheirDirection) {
 }
 
 TEST(Method, NamesGoBothWays) {
-  const char* names[] = {"exact",     "rectangle", "taylor", "midpoint",
-                         "trapezoid", "simpson",   "linear", "preintegrated"};
+  const char* names[] = {"exact",   "rectangle", "taylor",        "midpoint", "trapezoid",
+                         "simpson", "linear",    "preintegrated", "kniss",    "gaussian"};
   for (const char* name : names) {
     const std::optional<Method> method = method_from_name(name);
     ASSERT_TRUE(method.has_value()) << name;

@@ -77,6 +77,13 @@ class MultivariateRayIntegrator {
       skip(span.length, 0);
       return;
     }
+    stretch(span, {step.t_begin, step.t_end}, primitives, left_out);
+  }
+
+  /// A stretch of the ray on which all channels are cubics, cut until it is good enough.
+  /// `range`: where it is on the ray, world arc length.
+  PELLUCID_HD void stretch(const MultivariateSpan<double>& span, Interval<double> range,
+                           PrimitiveSet primitives, double left_out) noexcept {
     demand_.primitives = primitives;
     // The parts still to do, by their ends, the nearest last.
     double ends[most_cuts + 1];
@@ -86,7 +93,7 @@ class MultivariateRayIntegrator {
     while (open > 0) {
       const double end = ends[open - 1];
       // Cuts inside of a cell are where they are thought to be.
-      demand_.place_error = begin > 0 ? 0 : 8 * rounding_unit<double> * step.t_end;
+      demand_.place_error = begin > 0 ? 0 : 8 * rounding_unit<double> * range.end;
       demand_.last_resort = open > most_cuts || !(end - begin > 1e-9);
       const PanelSegment<double> panel = integrate(span, begin, end, left_out);
       if (!panel.done) {
@@ -98,7 +105,7 @@ class MultivariateRayIntegrator {
         }
         continue;
       }
-      if (fold_.optical_depth() >= target_) find(span, begin, end, step);
+      if (fold_.optical_depth() >= target_) find(span, begin, end, range);
       begin = end;
       --open;
       if (done()) return;
@@ -133,7 +140,7 @@ class MultivariateRayIntegrator {
   PELLUCID_HD PanelSegment<double> integrate(const MultivariateSpan<double>& whole, double begin,
                                              double end, double left_out) noexcept {
     const MultivariateSpan<double> span =
-        begin == 0 && end == 1 ? whole : whole.part(grid_.channels, begin, end);
+        begin == 0 && end == 1 ? whole : whole.part(transfer_.channels, begin, end);
     const auto allowance = [&](double opacity) noexcept {
       return max(budget_.allowance(span.length, opacity, fold_.transparency()),
                  RayBudget<double>::least_allowance(tolerance_, span.length / length_));
@@ -159,7 +166,7 @@ class MultivariateRayIntegrator {
   /// The place in the part [begin, end] of a cell where the depth reaches the target: by bisection,
   /// with the depths of lines, which is what the tolerance allows there.
   PELLUCID_HD void find(const MultivariateSpan<double>& span, double begin, double end,
-                        const StructuredWalk<double>::Step& step) noexcept {
+                        Interval<double> range) noexcept {
     PanelDemand<double> demand = demand_;
     demand.last_resort = true;
     demand.grade = Grade::proved;
@@ -168,12 +175,12 @@ class MultivariateRayIntegrator {
     for (int i = 0; i < 24; ++i) {
       const double middle = 0.5 * (lo + hi);
       const double inside =
-          integrate_multivariate_panel(transfer_, span.part(grid_.channels, begin, middle), demand,
-                                       nothing)
+          integrate_multivariate_panel(transfer_, span.part(transfer_.channels, begin, middle),
+                                       demand, nothing)
               .found.segment.optical_depth;
       (before_ + inside < target_ ? lo : hi) = middle;
     }
-    found_ = step.t_begin + hi * (step.t_end - step.t_begin);
+    found_ = range.begin + hi * (range.end - range.begin);
   }
 
   const MultichannelGrid& grid_;

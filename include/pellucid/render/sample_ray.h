@@ -5,6 +5,7 @@
 #include "pellucid/render/ray_result.h"
 #include "pellucid/segment/classical.h"
 #include "pellucid/segment/fold.h"
+#include "pellucid/segment/gaussian_step.h"
 #include "pellucid/segment/linear.h"
 #include "pellucid/transfer/multivariate.h"
 #include "pellucid/traverse/structured_walk.h"
@@ -86,28 +87,31 @@ PELLUCID_HD void fold_march(March&& march, double stop, bool with_depth,
   }
 }
 
-/// Marches a ray through `box` at the given step (world length, > 0); material_at(t) is what lies
-/// at a place of it. The last step ends at the box. Samples lie at multiples of the step from the
-/// entry, computed from their index, so that positions do not drift.
-template <class T, class MaterialAt>
-PELLUCID_HD RayResult sample_materials(Interval<double> box, const MaterialAt& material_at,
-                                       SamplingRule rule, double step, double largest_color,
-                                       double stop_tolerance, bool with_depth) noexcept {
+/// What of a step a rule wants to see.
+struct StepPlaces {
+  bool ends = true, middle = false;
+};
+
+/// Marches a ray through `box` at the given step (world length, > 0). sample_at(t) is what is seen
+/// at a place, a Sample; segment_of(front, middle, back, length) makes a segment of what is seen of
+/// a step, {} standing for what is not asked for. The last step ends at the box. Samples lie at
+/// multiples of the step from the entry, computed from their index, so that positions do not drift.
+template <class T, class Sample, class SampleAt, class SegmentOf>
+PELLUCID_HD RayResult march_steps(Interval<double> box, StepPlaces seen, const SampleAt& sample_at,
+                                  const SegmentOf& segment_of, double step, double largest_color,
+                                  double stop_tolerance, bool with_depth) noexcept {
   RayResult result;
   if (box.empty()) return result;
 
-  const bool needs_ends = rule != SamplingRule::midpoint;
-  const bool needs_middle = rule == SamplingRule::midpoint || rule == SamplingRule::simpson;
   const auto march = [&](auto&& visit) {
     double t_begin = box.begin;
-    Material<T> front = needs_ends ? material_at(t_begin) : Material<T>{};
+    Sample front = seen.ends ? sample_at(t_begin) : Sample{};
     for (long i = 1; t_begin < box.end; ++i) {
       const double t_end = min(box.begin + static_cast<double>(i) * step, box.end);
-      const Material<T> middle =
-          needs_middle ? material_at(0.5 * (t_begin + t_end)) : Material<T>{};
-      const Material<T> back = needs_ends ? material_at(t_end) : Material<T>{};
-      if (!visit(sampled_segment(rule, front, middle, back, static_cast<T>(t_end - t_begin)),
-                 t_begin, t_end)) {
+      const Sample middle = seen.middle ? sample_at(0.5 * (t_begin + t_end)) : Sample{};
+      const Sample back = seen.ends ? sample_at(t_end) : Sample{};
+      if (!visit(segment_of(front, middle, back, static_cast<T>(t_end - t_begin)), t_begin,
+                 t_end)) {
         break;
       }
       front = back;
@@ -117,6 +121,20 @@ PELLUCID_HD RayResult sample_materials(Interval<double> box, const MaterialAt& m
 
   fold_march<T>(march, stop_tolerance / max(largest_color, 1.0), with_depth, result);
   return result;
+}
+
+/// Marches with a rule that sees materials; material_at(t) is what lies at a place.
+template <class T, class MaterialAt>
+PELLUCID_HD RayResult sample_materials(Interval<double> box, const MaterialAt& material_at,
+                                       SamplingRule rule, double step, double largest_color,
+                                       double stop_tolerance, bool with_depth) noexcept {
+  const StepPlaces seen{rule != SamplingRule::midpoint,
+                        rule == SamplingRule::midpoint || rule == SamplingRule::simpson};
+  return march_steps<T, Material<T>>(
+      box, seen, material_at,
+      [&](const Material<T>& front, const Material<T>& middle, const Material<T>& back,
+          T length) noexcept { return sampled_segment(rule, front, middle, back, length); },
+      step, largest_color, stop_tolerance, with_depth);
 }
 
 /// A ray (in grid coordinates, its parameter the world arc length) through the grid's box.
@@ -146,6 +164,37 @@ PELLUCID_HD RayResult sample_multivariate_ray(const MultichannelGrid& grid,
         return transfer.evaluate(values);
       },
       rule, step, largest_color, stop_tolerance, with_depth);
+}
+
+/// The values of all channels at a place; `filled` is false where it is vacuum.
+template <class T>
+struct ChannelSample {
+  T value[most_channels]{};
+  bool filled = false;
+};
+
+/// The same as Kniss et al. 2003 march: the data of a step are linear between its ends, whatever
+/// they do on the way, and its terms have their depth along them (segment/gaussian_step.h). A step
+/// with an end in a cell with a NaN corner is vacuum.
+template <class T>
+PELLUCID_HD RayResult sample_linear_steps(const MultichannelGrid& grid, const Ray<double>& ray_grid,
+                                          const Multivariate<T>& transfer, GaussianRule rule,
+                                          double step, double largest_color, double stop_tolerance,
+                                          bool with_depth) noexcept {
+  using Sample = ChannelSample<T>;
+  return march_steps<T, Sample>(
+      grid_interval(grid.axis, ray_grid), StepPlaces{},
+      [&](double t) noexcept {
+        Sample here;
+        here.filled = grid.sample(ray_grid.at(t), here.value);
+        return here;
+      },
+      [&](const Sample& front, const Sample&, const Sample& back,
+          T length) noexcept -> SegmentResult<T> {
+        if (!front.filled || !back.filled) return {};
+        return mean_color_segment(rule, transfer, front.value, back.value, length);
+      },
+      step, largest_color, stop_tolerance, with_depth);
 }
 
 }  // namespace pellucid

@@ -37,7 +37,19 @@ CameraFrame<double> make_camera_frame(const Camera& camera, ImageSize size);
 
 /// exact: the integral of the trilinear data. The others march at a fixed step and are here for
 /// comparison; docs/theory.md says which text gives each its name.
-enum class Method { exact, rectangle, taylor, midpoint, trapezoid, simpson, linear, preintegrated };
+/// preintegrated is for one volume, kniss and gaussian are for channels.
+enum class Method {
+  exact,
+  rectangle,
+  taylor,
+  midpoint,
+  trapezoid,
+  simpson,
+  linear,
+  preintegrated,
+  kniss,
+  gaussian
+};
 std::string_view method_name(Method method) noexcept;
 std::optional<Method> method_from_name(std::string_view name) noexcept;
 
