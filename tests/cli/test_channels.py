@@ -121,6 +121,17 @@ class Channels(ProgramTest):
             "points.json", '{"points": [{"value": 0, "extinction": 1, "color": [1, 1, 1]}]}'))
         self.refuse("missing.npy", "--channel", "a=missing.npy", "--gaussian", "1~1; extinction 1")
 
+    def test_methods_of_linear_steps(self):
+        arguments = ("a.npy", "--gaussian", TEXT, "--size", "8", "-q")
+        self.succeed("render", *arguments, "-o", "exact.exr", "--tolerance", "1e-6")
+        for method, largest in (("kniss", 2e-3), ("gaussian", 1e-3)):
+            self.succeed("render", *arguments, "-o", "steps.exr", "--method", method, "--step", "0.1")
+            self.succeed("compare", "exact.exr", "steps.exr", "--largest", str(largest))
+            self.fail_with("for Gaussians of channels", "render", "a.npy", "-o", "o.exr", "--size",
+                           "8", "--method", method)
+        self.fail_with("preintegrated", "render", *arguments, "-o", "o.exr", "--method",
+                       "preintegrated")
+
     def test_no_output_replaces_a_channel(self):
         self.fail_with("would overwrite the input channel z b.npy", "render", "a.npy", "--channel",
                        "z=b.npy", "--gaussian", "1~1, 1~1; extinction 1", "--save-tf", "b.npy", code=2)
