@@ -55,9 +55,8 @@ __global__ void render_linear_steps(MultichannelGrid grid, Multivariate<double> 
                                     RayResult* pixels) {
   const int pixel = static_cast<int>(blockIdx.x * blockDim.x + threadIdx.x);
   if (pixel >= camera.width * camera.height) return;
-  pixels[pixel] =
-      sample_linear_steps(grid, camera.ray(pixel % camera.width, pixel / camera.width), transfer,
-                          rule, step, 1.0, stop_tolerance<double>(), true);
+  pixels[pixel] = sample_linear_steps(grid, camera.ray(pixel % camera.width, pixel / camera.width),
+                                      transfer, rule, step, 1.0, stop_tolerance<double>(), true);
 }
 
 }  // namespace pellucid
