@@ -32,8 +32,7 @@ DataBox data_box(const std::vector<const BlockRecords*>& records, int block) {
 
 class BlockClassifier {
  public:
-  BlockClassifier(const Multivariate<double>& transfer, double negligible)
-      : transfer_(transfer), negligible_(negligible) {
+  BlockClassifier(const Multivariate<double>& transfer, double negligible) : transfer_(transfer) {
     const int count = transfer.gaussians.count;
     for (int i = 0; i < count; ++i) {
       const double peak = transfer.gaussians.primitive[i].peak;
@@ -64,7 +63,6 @@ class BlockClassifier {
 
  private:
   const Multivariate<double>& transfer_;
-  double negligible_;
   std::vector<double> enough_;  ///< the exponent from which on a primitive is left out
 };
 

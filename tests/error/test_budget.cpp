@@ -51,6 +51,70 @@ TEST(RayBudget, NoSequenceOfSpansSpendsMoreThanTheTolerance) {
   EXPECT_GT(most, 0.95);  // and it is there to be spent
 }
 
+/// Spans tried sixteen at a time, some of them in vain, before those in front of them are folded.
+TEST(RayBudget, NoSpansTriedTogetherSpendMoreThanTheTolerance) {
+  struct Try {
+    Span span;
+    bool done = false;
+    double from_opacity = 0, from_length = 0, error = 0;
+  };
+  std::mt19937_64 random(6);
+  std::uniform_real_distribution<double> unit(0, 1);
+  double most = 0;
+  for (int round = 0; round < 5000; ++round) {
+    const double thin = std::pow(10.0, -8 * unit(random));
+    std::vector<Try> tries(std::uniform_int_distribution<std::size_t>(1, 60)(random));
+    double length = 0;
+    for (Try& one : tries) {
+      one.span = {std::pow(10.0, -6 * unit(random)), unit(random) < 0.05 ? 1 : unit(random) * thin};
+      length += one.span.length;
+    }
+    const double tolerance = std::pow(10.0, -9 * unit(random));
+    RayBudget<double> budget(tolerance, length);
+    double transparency = 1, error = 0;
+    std::size_t front = 0;
+    while (front < tries.size() && transparency > 0) {
+      double left = budget.for_opacity();
+      int tried = 0;
+      for (std::size_t i = front; i < tries.size() && tried < 16; ++i) {
+        Try& one = tries[i];
+        if (one.done) continue;
+        ++tried;
+        const double from_opacity = left * one.span.opacity;
+        left -= from_opacity;
+        if (unit(random) < 0.3) continue;
+        one.done = true;
+        one.from_opacity = from_opacity;
+        one.from_length = one.span.length * budget.for_length();
+        one.error = (one.from_opacity + one.from_length) / transparency;
+        budget.reserve(from_opacity);
+      }
+      for (; front < tries.size() && tries[front].done; ++front) {
+        const Try& one = tries[front];
+        error += transparency * one.error;
+        budget.spend_reserved(one.span.length, one.from_opacity, one.from_length, transparency,
+                              one.error);
+        // At most as opaque as it was said to be.
+        transparency *= 1 - one.span.opacity * unit(random);
+      }
+    }
+    EXPECT_NEAR(budget.spent(), error, 1e-12 * tolerance);
+    most = std::max(most, error / tolerance);
+  }
+  EXPECT_LE(most, 1 + 1e-12);
+  EXPECT_GT(most, 0.9);
+}
+
+TEST(RayBudget, WhatLiesBehindARayThatIsOver) {
+  RayBudget<double> budget(1e-3, 1);
+  EXPECT_TRUE(budget.pays_for(1e-3, 1e-3));
+  EXPECT_FALSE(budget.pays_for(2e-3, 1e-3));
+  budget.spend(0.1, 0.5, 1, 2e-3);
+  EXPECT_EQ(budget.left(), 0);
+  EXPECT_TRUE(budget.pays_for(1e-3 / 64, 1e-3));
+  EXPECT_FALSE(budget.pays_for(1e-3 / 63, 1e-3));
+}
+
 TEST(RayBudget, ThousandsOfThinSpansEachGetAFairShare) {
   const std::vector<Span> spans(4000, Span{0.01, 1e-7});
   const double tolerance = 1e-3;

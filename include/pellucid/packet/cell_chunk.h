@@ -74,7 +74,6 @@ class CellChunk {
     for (int k = 0; k < 4; ++k) result.b[k] = B::load(coefficient_[channel][k]);
     return result;
   }
-  B lengths() const noexcept { return B::load(length_); }
 
   /// Of one cell.
   bool filled(int lane) const noexcept { return filled_[lane]; }  ///< whether it is no vacuum

@@ -210,7 +210,8 @@ class MultivariateRay {
       }
       const double kept = end[l] > begin[l] ? end[l] - begin[l] : 0;
       passed += (1 - kept) * length;
-      depth += left_out * length;
+      // What blocks leave out is charged with the panels where there are some.
+      depth += (left_out - blocks_.left_out * kept) * length;
       whole = whole && kept == 1;
       if (!(kept > 0)) {
         ++clear;

@@ -168,7 +168,7 @@ class GaussianCubic {
         for (int i = 0; i < rows_; ++i) nearest[i] = select(nearer, p_[k][i], nearest[i]);
       }
       // Rounding of the products must not raise the bound.
-      const T ahead = max(least, T(0));
+      const T ahead = max(least - T(16 * rounding_unit<T>) * sqrt(upper_ * xx), T(0));
       best = max(best,
                  ahead * (ahead / max(xx, T(smallest_normal<T>))) * T(1 - 64 * rounding_unit<T>));
       const auto go_on = (least < T(0.95) * xx) & (xx > T(smallest_normal<T>));

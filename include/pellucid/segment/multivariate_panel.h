@@ -100,7 +100,7 @@ template <class T>
 struct PanelTables {
   DepthWeightedColor<T> sum;
   T most{};           ///< a bound on their depth
-  T rounding{};       ///< of the depth
+  T rounding{};       ///< of the depth, and of the color as if it were of the depth
   T colors{};         ///< how much the color of any one of them changes
   TopTwo<T> changes;  ///< of the logarithms of their extinctions
 };
@@ -118,11 +118,15 @@ PELLUCID_HD PanelTables<S> measure_tables(const Multivariate<S>& transfer,
     const int first = table.interval(data.hull_min() - error);
     const int last = table.interval(data.hull_max() + error);
     if (!table.has_extinction(first, last)) continue;
-    result.rounding += rounding_error(data, span.length, largest_color, table, first, last, error,
-                                      sensitivity(table, first, last, error))
-                           .depth;
+    const RoundingError<S> off =
+        rounding_error(data, span.length, largest_color, table, first, last, error,
+                       sensitivity(table, first, last, error));
+    result.rounding += off.depth;
     const TableMass<S> mass = table_mass(data, table, span.length);
     if (!(mass.depth > S(0))) continue;
+    // Its color, seen by no more than its own opacity; and the closed form's 32 u.
+    result.rounding += min(mass.upper * span.length, S(1)) *
+                       (off.color / largest_color + S(32 * rounding_unit<S>));
     result.most += mass.upper * span.length;
     result.sum.add(mass.depth, mass.color);
     result.sum.range.add(true, mass.range.lower);

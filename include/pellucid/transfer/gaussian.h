@@ -8,7 +8,7 @@ namespace pellucid {
 
 /// A Gaussian primitive over the n channels of the data, 1 <= n <= 8:
 ///
-///   extinction(v) = peak · e^(-|K (v - c)|²),   K of r rows and n columns, 1 <= r <= n,
+///   extinction(v) = peak · e^(-|K (v - c)|²),   K of r rows and n columns, 1 <= r <= 8,
 ///
 /// and one color. There is no factor 1/2: a covariance Σ is K^T K = Σ^-1 / 2. K may have any rank:
 /// what K maps to zero the primitive does not look at. Plain numbers of the scalar type S, the same

@@ -1,0 +1,133 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <memory>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "pellucid/cpu/render.h"
+#include "pellucid/scene/defaults.h"
+
+namespace pellucid {
+namespace {
+
+/// Waves and some noise, on n³ values.
+std::shared_ptr<const Volume> waves(int n, double frequency, double noise, bool vacuum,
+                                    unsigned seed) {
+  std::mt19937 random(seed);
+  std::uniform_real_distribution<double> unit(-1, 1);
+  Volume::Description description;
+  description.dimensions = {n, n, n};
+  std::vector<float> values;
+  for (int k = 0; k < n; ++k) {
+    for (int j = 0; j < n; ++j) {
+      for (int i = 0; i < n; ++i) {
+        const double wave = std::sin(frequency * (i + 0.7 * j - 0.4 * k));
+        values.push_back(static_cast<float>(0.5 + 0.4 * wave + noise * unit(random)));
+      }
+    }
+  }
+  if (vacuum) {
+    for (int i = 0; i < n; ++i) {
+      values[random() % values.size()] = std::numeric_limits<float>::quiet_NaN();
+    }
+  }
+  return std::make_shared<Volume>(description, VolumeData(DataArray<float>(values)));
+}
+
+struct Kind {
+  std::string name;
+  int points = 12, channels = 1, primitives = 3;
+  double width = 0.05, extinction = 1, noise = 0;
+  bool vacuum = false, table = false;
+};
+
+Scene make_scene(const Kind& kind) {
+  Scene scene;
+  std::vector<Channel> channels;
+  for (int c = 0; c < kind.channels; ++c) {
+    channels.push_back(
+        {std::to_string(c), "",
+         waves(kind.points, 0.3 + 0.2 * c, kind.noise, kind.vacuum, static_cast<unsigned>(c))});
+  }
+  std::vector<GaussianPrimitive> primitives;
+  for (int p = 0; p < kind.primitives; ++p) {
+    GaussianPrimitive g;
+    for (int c = 0; c < kind.channels; ++c) {
+      g.channels.push_back(c);
+      g.center.push_back((p + 0.5) / kind.primitives);
+    }
+    g.matrix = matrix_of_widths(std::vector<double>(g.channels.size(), kind.width));
+    g.extinction = kind.extinction;
+    g.color = {p % 3 == 0 ? 1.0 : 0.1, p % 3 == 1 ? 1.0 : 0.1, p % 3 == 2 ? 1.0 : 0.1};
+    primitives.push_back(g);
+  }
+  std::vector<ChannelTransferFunction> tables;
+  if (kind.table) {
+    tables.push_back(
+        {0, TransferFunction({{0.2, 0, {1, 1, 1}}, {0.3, 0.2, {1, 0, 1}}, {0.4, 0, {}}})});
+  }
+  scene.channels = std::make_shared<Channels>(channels);
+  scene.multivariate =
+      std::make_shared<MultivariateTransferFunction>(kind.channels, primitives, tables);
+  scene.size = {20, 20};
+  scene.camera = default_camera(scene.channels->grid(), scene.size);
+  return scene;
+}
+
+class MultivariateFrames : public testing::TestWithParam<Kind> {};
+
+/// Every instruction set gives every pixel within the tolerance, and within what the two say that
+/// they are off by of the rays that go one by one.
+TEST_P(MultivariateFrames, AreTheSameInEveryInstructionSet) {
+  Scene scene = make_scene(GetParam());
+  for (const Grade grade : {Grade::estimated, Grade::proved}) {
+    for (const double tolerance : {1e-2, 1e-4}) {
+      scene.integration.grade = grade;
+      scene.integration.tolerance = tolerance;
+      RenderOptions options;
+      options.error = true;
+      options.instruction_set = InstructionSet::scalar;
+      const Image alone = render(scene, options);
+      for (const InstructionSet set :
+           {InstructionSet::sse4, InstructionSet::avx2, InstructionSet::avx512}) {
+        if (!is_supported(set)) continue;
+        options.instruction_set = set;
+        RenderReport report;
+        const Image lanes = render(scene, options, &report);
+        EXPECT_EQ(report.pixels_over, 0u);
+        double opaque = 0;
+        for (std::size_t i = 0; i < lanes.pixels.size(); ++i) {
+          const double allowed = double{lanes.error[i]} + double{alone.error[i]};
+          for (std::size_t c = 0; c < 4; ++c) {
+            ASSERT_LE(std::fabs(double{lanes.pixels[i][c]} - double{alone.pixels[i][c]}), allowed)
+                << name_of(set) << ", pixel " << i << ", tolerance " << tolerance;
+          }
+          opaque = std::max(opaque, double{lanes.pixels[i][3]});
+        }
+        EXPECT_GT(opaque, 0.01);
+        EXPECT_GT(report.spans.lines + report.spans.panels, 0u);
+      }
+    }
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Scenes, MultivariateFrames,
+    testing::Values(Kind{.name = "wide", .width = 0.5, .extinction = 0.1},
+                    Kind{.name = "narrow", .width = 0.003, .extinction = 20},
+                    Kind{.name = "noise", .points = 9, .width = 0.02, .noise = 0.3},
+                    Kind{.name = "one_cell", .points = 2, .width = 0.2, .noise = 0.3},
+                    Kind{.name = "vacuum", .channels = 2, .width = 0.1, .vacuum = true},
+                    Kind{.name = "opaque", .width = 0.05, .extinction = 1e4},
+                    Kind{.name = "many", .primitives = 130, .width = 0.01, .extinction = 0.3},
+                    Kind{.name = "table", .width = 0.02, .table = true},
+                    Kind{.name = "channels", .channels = 5, .width = 0.3}),
+    [](const auto& info) { return info.param.name; });
+
+}  // namespace
+}  // namespace pellucid
