@@ -101,7 +101,8 @@ TEST(RayBudget, NoSpansTriedTogetherSpendMoreThanTheTolerance) {
     EXPECT_NEAR(budget.spent(), error, 1e-12 * tolerance);
     most = std::max(most, error / tolerance);
   }
-  EXPECT_LE(most, 1 + 1e-12);
+  // What is left of the length is a rounded difference.
+  EXPECT_LE(most - 1, 1e-9);
   EXPECT_GT(most, 0.9);
 }
 

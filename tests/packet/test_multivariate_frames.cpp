@@ -127,7 +127,7 @@ INSTANTIATE_TEST_SUITE_P(
                     Kind{.name = "many", .primitives = 130, .width = 0.01, .extinction = 0.3},
                     Kind{.name = "table", .width = 0.02, .table = true},
                     Kind{.name = "channels", .channels = 5, .width = 0.3}),
-    [](const auto& info) { return info.param.name; });
+    [](const auto& scene) { return scene.param.name; });
 
 }  // namespace
 }  // namespace pellucid
