@@ -114,6 +114,9 @@ class Channels(ProgramTest):
     def test_what_does_not_fit(self):
         self.refuse('Gaussian 0 looks at a channel "valeu".*did you mean "value"', "a.npy",
                     "--gaussian", "valeu=1~1; extinction 1")
+        self.refuse('"gradient_magntude", which is not there .did you mean "gradient_magnitude".*'
+                    'there are: value, gradient_magnitude, second_derivative', "a.npy",
+                    "--gaussian", "value=1~1, gradient_magntude=1~1; extinction 1")
         self.refuse('channel "b" .*not on one grid: 4 x 4 x 4 and 5 x 5 x 5', "--channel", "a=a.npy",
                     "--channel", "b=small.npy", "--gaussian", "1~1, 1~1; extinction 1")
         self.refuse("channels need a transfer function.*pellucid suggest", "--channel", "a=a.npy")
