@@ -3,6 +3,8 @@
 
 #include <fmt/format.h>
 
+#include <variant>
+
 #include "parse.h"
 
 namespace pellucid::cli {
@@ -77,6 +79,17 @@ FieldSource field_source(const std::string& input, const VolumeOptions& options)
     options.refuse("a built-in field");
   }
   return source;
+}
+
+ChannelSource channel_source(const std::string& text, const VolumeOptions& options) {
+  ChannelSource channel = parse_channel_source(text);
+  auto* field = std::get_if<FieldSource>(&channel.source);
+  if (field != nullptr && field->builtin.empty()) {
+    const std::optional<int> component = field->options.component;
+    field->options = options.read_options();
+    if (component) field->options.component = component;
+  }
+  return channel;
 }
 
 }  // namespace pellucid::cli

@@ -98,6 +98,10 @@ class Channels(ProgramTest):
                             "--gaussian", "1~1, 1~1; extinction 1")
         self.assertEqual([c["component"] for c in volume["channels"]], [0, 1])
         self.refuse("c.raw", "--channel", "x=c.raw[2]", *options, "--gaussian", "1~1; extinction 1")
+        # Brackets go before the option.
+        volume = self.saved("--channel", "x=c.raw[0]", "--channel", "z=c.raw", *options,
+                            "--component", "1", "--gaussian", "1~1, 1~1; extinction 1")
+        self.assertEqual([c["component"] for c in volume["channels"]], [0, 1])
 
     def test_wrong_arguments(self):
         def refuse(pattern, *arguments):
