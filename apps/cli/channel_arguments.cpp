@@ -66,6 +66,7 @@ std::vector<ChannelSource> all_sources(const ChannelArguments& arguments) {
                     "'pellucid {} --help')",
                     arguments.command));
   }
+  refuse_options_without_files(sources, arguments.volume);
   try {
     check_channel_sources(sources);
   } catch (const Error& error) {

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <variant>
 
 #include "parse.h"
@@ -90,6 +91,15 @@ ChannelSource channel_source(const std::string& text, const VolumeOptions& optio
     if (component) field->options.component = component;
   }
   return channel;
+}
+
+void refuse_options_without_files(const std::vector<ChannelSource>& channels,
+                                  const VolumeOptions& options) {
+  const auto is_file = [](const ChannelSource& channel) {
+    const auto* field = std::get_if<FieldSource>(&channel.source);
+    return field != nullptr && field->builtin.empty();
+  };
+  if (std::none_of(channels.begin(), channels.end(), is_file)) options.refuse("built-in fields");
 }
 
 }  // namespace pellucid::cli

@@ -152,6 +152,7 @@ void add_channels(const RenderArguments& arguments, SceneDescription& descriptio
     for (const std::string& text : arguments.channels) {
       description.channels.push_back(channel_source(text, arguments.volume));
     }
+    refuse_options_without_files(description.channels, arguments.volume);
     check_channel_sources(description.channels);
     return 0;
   });

@@ -111,6 +111,9 @@ class Channels(ProgramTest):
         refuse('--channel.*"value" stands twice', "a.npy", "--channel", "value=b.npy")
         refuse("--channel.*not before it", "--channel", "e=gradient_magnitude:x", "--channel", "x=a.npy")
         refuse("--channel.*from 1 to 8", *(f"--channel=c{i}=a.npy" for i in range(9)))
+        refuse("--type applies to volume files, not to built-in fields", "--channel",
+               "a=builtin:ramp:4", "--channel", "e=gradient_magnitude:a", "--type", "u8", "--spacing",
+               "1,2,3", "--gaussian", "1~1, 1~1; extinction 1")
         refuse("--gaussian.*has no width", "a.npy", "--gaussian", "value=3; extinction 1")
         refuse("--gaussian.*no extinction", "a.npy", "--gaussian", "value=3~1")
         refuse("--gaussian.*--tf|--tf.*--gaussian", "a.npy", "--gaussian", TEXT, "--tf", "tf.json")

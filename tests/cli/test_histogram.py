@@ -127,6 +127,8 @@ class Histogram(ProgramTest):
                        "--axes", "value", "--range-y", "0,1", code=2)
         self.fail_with("--channel: .*expected NAME=SOURCE", "histogram", "a.npy", "--json",
                        "--channel", "b", code=2)
+        self.fail_with("--type applies to volume files, not to built-in fields", "histogram",
+                       "--json", "--channel", "f=builtin:ramp:8", "--type", "u8", code=2)
         self.fail_with("not on one grid", "histogram", "a.npy", "c.npy", "--json")
         self.fail_with("missing", "histogram", "missing.npy", "--json")
         self.fail_with("no/h.png", "histogram", "a.npy", "-o", "no/h.png")
