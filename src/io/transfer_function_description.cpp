@@ -30,6 +30,7 @@ class ChannelIndex {
   }
   std::vector<int> of(const std::vector<std::string>& names, const std::string& term) const {
     std::vector<int> list;
+    list.reserve(names.size());
     for (const std::string& name : names) list.push_back(of(name, term));
     return list;
   }
