@@ -53,12 +53,7 @@ std::vector<ChannelSource> all_sources(const ChannelArguments& arguments) {
   }
   for (const std::string& text : arguments.channels) {
     try {
-      ChannelSource source = parse_channel_source(text);
-      auto* field = std::get_if<FieldSource>(&source.source);
-      if (field != nullptr && field->builtin.empty()) {
-        field->options = arguments.volume.read_options();
-      }
-      sources.push_back(std::move(source));
+      sources.push_back(channel_source(text, arguments.volume));
     } catch (const UsageError&) {
       throw;
     } catch (const Error& error) {
@@ -71,6 +66,7 @@ std::vector<ChannelSource> all_sources(const ChannelArguments& arguments) {
                     "'pellucid {} --help')",
                     arguments.command));
   }
+  refuse_options_without_files(sources, arguments.volume);
   try {
     check_channel_sources(sources);
   } catch (const Error& error) {
@@ -102,8 +98,8 @@ void ChannelArguments::add_to(CLI::App& app) {
          std::string(input_help) + " or builtin:NAME[:POINTS]; several are channels on one grid")
       ->option_text("...");
   app.add_option("--channel", channels,
-                 "A further channel, may be given several times; SOURCE is a file, builtin:NAME, "
-                 "gradient_magnitude:CHANNEL, second_derivative:CHANNEL or "
+                 "A further channel, may be given several times; SOURCE is a file, FILE[C], "
+                 "builtin:NAME, gradient_magnitude:CHANNEL, second_derivative:CHANNEL or "
                  "smoothed:CHANNEL:SIGMA")
       ->option_text("NAME=SOURCE")
       ->allow_extra_args(false);

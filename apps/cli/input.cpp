@@ -3,6 +3,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <variant>
+
 #include "parse.h"
 
 namespace pellucid::cli {
@@ -77,6 +80,26 @@ FieldSource field_source(const std::string& input, const VolumeOptions& options)
     options.refuse("a built-in field");
   }
   return source;
+}
+
+ChannelSource channel_source(const std::string& text, const VolumeOptions& options) {
+  ChannelSource channel = parse_channel_source(text);
+  auto* field = std::get_if<FieldSource>(&channel.source);
+  if (field != nullptr && field->builtin.empty()) {
+    const std::optional<int> component = field->options.component;
+    field->options = options.read_options();
+    if (component) field->options.component = component;
+  }
+  return channel;
+}
+
+void refuse_options_without_files(const std::vector<ChannelSource>& channels,
+                                  const VolumeOptions& options) {
+  const auto is_file = [](const ChannelSource& channel) {
+    const auto* field = std::get_if<FieldSource>(&channel.source);
+    return field != nullptr && field->builtin.empty();
+  };
+  if (std::none_of(channels.begin(), channels.end(), is_file)) options.refuse("built-in fields");
 }
 
 }  // namespace pellucid::cli

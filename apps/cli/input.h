@@ -6,7 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "pellucid/io/scene_json.h"
+#include "pellucid/io/channel_source.h"
+#include "pellucid/io/field_source.h"
 
 namespace pellucid::cli {
 
@@ -30,5 +31,11 @@ struct VolumeOptions {
 
 /// Where the input comes from: "builtin:NAME[:POINTS]" or a volume file. Throws Error.
 FieldSource field_source(const std::string& input, const VolumeOptions& options);
+/// A channel of "NAME=SOURCE". Of a file the options say the rest; a component in brackets goes
+/// before theirs. Throws Error.
+ChannelSource channel_source(const std::string& text, const VolumeOptions& options);
+/// Throws UsageError where an option is used, but none of the channels is a file.
+void refuse_options_without_files(const std::vector<ChannelSource>& channels,
+                                  const VolumeOptions& options);
 
 }  // namespace pellucid::cli

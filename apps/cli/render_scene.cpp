@@ -2,7 +2,6 @@
 #include <fmt/format.h>
 
 #include <filesystem>
-#include <optional>
 #include <string>
 #include <utility>
 #include <variant>
@@ -143,7 +142,7 @@ auto parse_argument(const char* argument, Parse&& parse) {
 }
 
 /// Behind the channels of the input, or alone.
-void add_channels(const RenderArguments& arguments, bool is_scene, SceneDescription& description) {
+void add_channels(const RenderArguments& arguments, SceneDescription& description) {
   if (arguments.channels.empty()) return;
   if (!arguments.input.empty()) description.channels = scene_channels(description);
   if (description.channels.empty() && !arguments.input.empty()) {
@@ -151,15 +150,9 @@ void add_channels(const RenderArguments& arguments, bool is_scene, SceneDescript
   }
   parse_argument("--channel", [&] {
     for (const std::string& text : arguments.channels) {
-      ChannelSource channel = parse_channel_source(text);
-      auto* field = std::get_if<FieldSource>(&channel.source);
-      if (field != nullptr && field->builtin.empty() && !is_scene) {
-        const std::optional<int> component = field->options.component;
-        field->options = arguments.volume.read_options();
-        if (component) field->options.component = component;
-      }
-      description.channels.push_back(std::move(channel));
+      description.channels.push_back(channel_source(text, arguments.volume));
     }
+    refuse_options_without_files(description.channels, arguments.volume);
     check_channel_sources(description.channels);
     return 0;
   });
@@ -189,7 +182,7 @@ SceneDescription describe(const RenderArguments& arguments) {
     description.transfer_function = parse_transfer_function(
         read_text_file(arguments.transfer_function), arguments.transfer_function);
   }
-  add_channels(arguments, is_scene, description);
+  add_channels(arguments, description);
   if (!arguments.camera.empty()) {
     description.camera = parse_camera(read_text_file(arguments.camera), arguments.camera);
   }

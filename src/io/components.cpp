@@ -37,8 +37,15 @@ std::vector<VolumeData> read_interleaved(const ReadOn& read, const ValueLayout& 
                                          std::size_t points, ComponentRange range,
                                          const std::string& name) {
   const auto number = static_cast<std::size_t>(range.number);
-  check_memory(std::uintmax_t{points} * number * value_size(layout.type, name),
-               name + ": its values");
+  const auto stride = static_cast<std::size_t>(layout.components);
+  constexpr std::size_t values_at_once = std::size_t{1} << 16;
+  const std::size_t largest_part =
+      std::min(std::max<std::size_t>(values_at_once / stride, 1), points);
+  // A header may name any number of components, and a compressed file need not hold them.
+  check_memory(
+      (std::uintmax_t{points} * number + largest_part * stride) * value_size(layout.type, name) +
+          number * sizeof(VolumeData),
+      name + ": its values");
   std::vector<VolumeData> list;
   list.reserve(number);
   for (std::size_t c = 0; c < number; ++c) list.push_back(make_values(layout.type, points, name));
@@ -48,10 +55,7 @@ std::vector<VolumeData> read_interleaved(const ReadOn& read, const ValueLayout& 
         std::vector<std::span<Value>> to;
         to.reserve(number);
         for (VolumeData& data : list) to.push_back(std::get<DataArray<Value>>(data).writable());
-        const auto stride = static_cast<std::size_t>(layout.components);
         const auto begin = static_cast<std::size_t>(range.first);
-        constexpr std::size_t values_at_once = std::size_t{1} << 16;
-        const std::size_t largest_part = std::max<std::size_t>(values_at_once / stride, 1);
         for (std::size_t done = 0; done < points; done += largest_part) {
           const std::size_t part = std::min(largest_part, points - done);
           VolumeData side_by_side = DataArray<Value>(part * stride);

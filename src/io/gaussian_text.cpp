@@ -35,9 +35,9 @@ std::vector<std::string_view> split(std::string_view text, char separator) {
 }
 
 /// Digits and a leading point would be the rest of a number that is not one, as in 1.2.3, and so
-/// would a lone e.
+/// would a lone e. A percent sign would be a hundredth of the number.
 bool is_unit(std::string_view text) {
-  return text.find_first_of("0123456789,+-") == std::string_view::npos && !text.starts_with('.') &&
+  return text.find_first_of("0123456789,+-%") == std::string_view::npos && !text.starts_with('.') &&
          text != "e" && text != "E";
 }
 
@@ -85,7 +85,7 @@ class GaussianReader {
   }
 
   double number(std::string_view text, const std::string& what) const {
-    if (text.starts_with('+')) text.remove_prefix(1);
+    if (text.starts_with('+') && !text.starts_with("+-")) text.remove_prefix(1);
     double value = 0;
     const auto result = std::from_chars(text.data(), text.data() + text.size(), value);
     const auto used = static_cast<std::size_t>(result.ptr - text.data());

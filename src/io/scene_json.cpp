@@ -101,7 +101,7 @@ void read_data(const Node& volume, const std::filesystem::path& folder, SceneDes
         "into \"tables\": [{\"channel\": ..., \"points\": ...}]");
   }
   try {
-    make_multivariate(*multivariate, channel_names(scene_channels(scene)));
+    make_multivariate(*multivariate, channel_names(scene_channels(scene)), known_channels(scene));
   } catch (const Error& error) {
     function->fail(error.what());
   }

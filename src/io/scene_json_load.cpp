@@ -12,6 +12,10 @@
 namespace pellucid {
 namespace {
 
+/// What is made of a scene's one field where a term names it.
+constexpr std::array made_of_field{DerivedSource::Kind::gradient_magnitude,
+                                   DerivedSource::Kind::second_derivative};
+
 bool names(const MultivariateDescription& function, std::string_view channel) {
   const auto in = [&](const std::vector<std::string>& list) {
     return std::find(list.begin(), list.end(), channel) != list.end();
@@ -39,7 +43,8 @@ void fill_channels(const SceneDescription& description, const std::vector<Channe
                     : "scene: channels need a transfer function; give "
                       "\"gaussians\" or \"tables\" ('pellucid suggest' makes a first one)");
   }
-  scene.multivariate = make_multivariate(*function, channel_names(sources));
+  scene.multivariate =
+      make_multivariate(*function, channel_names(sources), known_channels(description));
   scene.channels = std::make_shared<const Channels>(load_channels(sources, parallel));
 }
 
@@ -50,13 +55,19 @@ std::vector<ChannelSource> scene_channels(const SceneDescription& description) {
   const MultivariateDescription* const function = multivariate(description);
   if (function == nullptr) return {};
   std::vector<ChannelSource> channels{{std::string(field_channel), "", description.field}};
-  for (const auto kind :
-       {DerivedSource::Kind::gradient_magnitude, DerivedSource::Kind::second_derivative}) {
+  for (const auto kind : made_of_field) {
     const std::string name(derived_name(kind));
     if (!names(*function, name)) continue;
     channels.push_back({name, "", DerivedSource{kind, std::string(field_channel), 0}});
   }
   return channels;
+}
+
+std::vector<std::string> known_channels(const SceneDescription& description) {
+  if (!description.channels.empty()) return channel_names(description.channels);
+  std::vector<std::string> names{std::string(field_channel)};
+  for (const auto kind : made_of_field) names.emplace_back(derived_name(kind));
+  return names;
 }
 
 Scene make_scene(const SceneDescription& description, const ParallelFor& parallel) {

@@ -10,31 +10,34 @@
 namespace pellucid {
 namespace {
 
-/// Places of channels by their names. Messages say which term asks.
+/// Places of channels by their names. Messages say which term asks, and offer the known ones.
 class ChannelIndex {
  public:
-  explicit ChannelIndex(const std::vector<std::string>& channels) : channels_(channels) {}
+  ChannelIndex(const std::vector<std::string>& channels, const std::vector<std::string>& known)
+      : channels_(channels), known_(known) {}
 
   int of(const std::string& name, const std::string& term) const {
     const auto found = std::find(channels_.begin(), channels_.end(), name);
     if (found != channels_.end()) return static_cast<int>(found - channels_.begin());
-    std::string known;
-    for (const std::string& channel : channels_) {
-      known += (known.empty() ? "" : ", ") + scene_json::printable(channel);
+    std::string list;
+    for (const std::string& channel : known_) {
+      list += (list.empty() ? "" : ", ") + scene_json::printable(channel);
     }
     throw Error("transfer function: " + term + " looks at a channel \"" +
                 scene_json::printable(name) + "\", which is not there" +
-                scene_json::did_you_mean(name, {channels_.begin(), channels_.end()}) +
-                "; there are: " + known);
+                scene_json::did_you_mean(name, {known_.begin(), known_.end()}) +
+                "; there are: " + list);
   }
   std::vector<int> of(const std::vector<std::string>& names, const std::string& term) const {
     std::vector<int> list;
+    list.reserve(names.size());
     for (const std::string& name : names) list.push_back(of(name, term));
     return list;
   }
 
  private:
   const std::vector<std::string>& channels_;
+  const std::vector<std::string>& known_;
 };
 
 }  // namespace
@@ -73,8 +76,9 @@ TransferFunction make_transfer_function(const TransferFunctionDescription& descr
 }
 
 std::shared_ptr<const MultivariateTransferFunction> make_multivariate(
-    const MultivariateDescription& description, const std::vector<std::string>& channels) {
-  const ChannelIndex index(channels);
+    const MultivariateDescription& description, const std::vector<std::string>& channels,
+    const std::vector<std::string>& known) {
+  const ChannelIndex index(channels, known.empty() ? channels : known);
   const std::vector<std::string>& common =
       description.channels.empty() ? channels : description.channels;
   std::vector<GaussianPrimitive> primitives;

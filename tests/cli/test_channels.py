@@ -98,6 +98,10 @@ class Channels(ProgramTest):
                             "--gaussian", "1~1, 1~1; extinction 1")
         self.assertEqual([c["component"] for c in volume["channels"]], [0, 1])
         self.refuse("c.raw", "--channel", "x=c.raw[2]", *options, "--gaussian", "1~1; extinction 1")
+        # Brackets go before the option.
+        volume = self.saved("--channel", "x=c.raw[0]", "--channel", "z=c.raw", *options,
+                            "--component", "1", "--gaussian", "1~1, 1~1; extinction 1")
+        self.assertEqual([c["component"] for c in volume["channels"]], [0, 1])
 
     def test_wrong_arguments(self):
         def refuse(pattern, *arguments):
@@ -107,6 +111,9 @@ class Channels(ProgramTest):
         refuse('--channel.*"value" stands twice', "a.npy", "--channel", "value=b.npy")
         refuse("--channel.*not before it", "--channel", "e=gradient_magnitude:x", "--channel", "x=a.npy")
         refuse("--channel.*from 1 to 8", *(f"--channel=c{i}=a.npy" for i in range(9)))
+        refuse("--type applies to volume files, not to built-in fields", "--channel",
+               "a=builtin:ramp:4", "--channel", "e=gradient_magnitude:a", "--type", "u8", "--spacing",
+               "1,2,3", "--gaussian", "1~1, 1~1; extinction 1")
         refuse("--gaussian.*has no width", "a.npy", "--gaussian", "value=3; extinction 1")
         refuse("--gaussian.*no extinction", "a.npy", "--gaussian", "value=3~1")
         refuse("--gaussian.*--tf|--tf.*--gaussian", "a.npy", "--gaussian", TEXT, "--tf", "tf.json")
@@ -114,6 +121,9 @@ class Channels(ProgramTest):
     def test_what_does_not_fit(self):
         self.refuse('Gaussian 0 looks at a channel "valeu".*did you mean "value"', "a.npy",
                     "--gaussian", "valeu=1~1; extinction 1")
+        self.refuse('"gradient_magntude", which is not there .did you mean "gradient_magnitude".*'
+                    'there are: value, gradient_magnitude, second_derivative', "a.npy",
+                    "--gaussian", "value=1~1, gradient_magntude=1~1; extinction 1")
         self.refuse('channel "b" .*not on one grid: 4 x 4 x 4 and 5 x 5 x 5', "--channel", "a=a.npy",
                     "--channel", "b=small.npy", "--gaussian", "1~1, 1~1; extinction 1")
         self.refuse("channels need a transfer function.*pellucid suggest", "--channel", "a=a.npy")

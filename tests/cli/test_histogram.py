@@ -60,6 +60,17 @@ class Histogram(ProgramTest):
         report = self.report("histogram", "--channel", "f=builtin:ramp:8", "--axes", "f")
         self.assertEqual(report["axes"][0]["range"], [-1, 1])
 
+    def test_components_of_a_file(self):
+        self.write("c.raw", bytes([0, 10, 1, 11, 2, 12, 3, 13, 4, 14, 5, 15, 6, 16, 7, 17]))
+        options = ("--dimensions", "2,2,2", "--type", "u8", "--components", "2")
+        report = self.report("histogram", "--channel", "x=c.raw[0]", "--channel", "z=c.raw[1]",
+                             *options)
+        self.assertEqual([axis["range"] for axis in report["axes"]], [[0, 7], [10, 17]])
+        # Brackets go before the option.
+        report = self.report("histogram", "--channel", "x=c.raw[0]", "--channel", "z=c.raw",
+                             *options, "--component", "1")
+        self.assertEqual([axis["range"] for axis in report["axes"]], [[0, 7], [10, 17]])
+
     def test_picture(self):
         self.write("a.npy", npy(ramp(4), (4, 4, 4)))
         self.succeed("histogram", "a.npy", "-o", "h.png", "--bins", "16")
@@ -116,6 +127,8 @@ class Histogram(ProgramTest):
                        "--axes", "value", "--range-y", "0,1", code=2)
         self.fail_with("--channel: .*expected NAME=SOURCE", "histogram", "a.npy", "--json",
                        "--channel", "b", code=2)
+        self.fail_with("--type applies to volume files, not to built-in fields", "histogram",
+                       "--json", "--channel", "f=builtin:ramp:8", "--type", "u8", code=2)
         self.fail_with("not on one grid", "histogram", "a.npy", "c.npy", "--json")
         self.fail_with("missing", "histogram", "missing.npy", "--json")
         self.fail_with("no/h.png", "histogram", "a.npy", "-o", "no/h.png")

@@ -79,8 +79,9 @@ TEST(GaussianText, SaysWhatIsWrong) {
     expect_refused(("80~" + std::string(width) + "; extinction 1").c_str(),
                    {"a width is not positive"});
   }
-  for (const char* number : {"x", "", "nan", "inf", "1e31", "-1e31", "1e999", "1.2.3", "1..",
-                             "0x10", "1e", "1 2", "1-2", "--1", "mm2"}) {
+  for (const char* number :
+       {"x",  "",    "nan", "inf", "1e31", "-1e31", "1e999", "1.2.3", "1..", "0x10",
+        "1e", "1 2", "1-2", "--1", "+-1",  "++1",   "-+1",   "1%",    "1 %", "mm2"}) {
     expect_refused((std::string(number) + "~1; extinction 1").c_str(),
                    {"a centre is \"", "must be a number up to 1e30"});
     expect_refused(("1~" + std::string(number) + "; extinction 1").c_str(), {"a width is \""});

@@ -11,6 +11,7 @@
 
 #include "sanitized.h"
 #include "scratch_folder.h"
+#include "src/io/components.h"
 
 namespace pellucid {
 namespace {
@@ -127,6 +128,17 @@ TEST_F(MemoryLimitTest, OfThisProcessIsWhatItHasNotTaken) {
   EXPECT_TRUE(holds_under(RLIMIT_DATA, 1 << 30, [&] {
     const MemoryLimit limit = memory_limit(folder_);
     return limit.bytes == (1 << 30) - 512 * page && limit.of.find("ulimit -d") != limit.of.npos;
+  }));
+}
+
+// One point of 2e9 components takes 16e9 bytes on the way, also where one of them is asked for.
+TEST_F(MemoryLimitTest, CountsComponentsThatAreReadOnlyToBePassedOver) {
+  EXPECT_TRUE(holds_under(RLIMIT_AS, 1 << 30, [] {
+    const ByteSource source = memory_source({}, "a.mha");
+    const std::string text = test::error_of([&] {
+      read_components(source, {"f64", false, 0, 2'000'000'000, true}, 1, {1, 1});
+    });
+    return test::contains(text, "a.mha: its values would take 15258 MiB");
   }));
 }
 

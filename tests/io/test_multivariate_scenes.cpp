@@ -160,7 +160,10 @@ TEST(MultivariateScene, UnknownChannelsAreFoundBeforeAnythingIsRead) {
   scene.field = parse_field_source("/nowhere/a.nii.gz");
   expect_error(
       [&] { make_scene(scene); },
-      {"Gaussian 1 looks at a channel \"gradient_magnitud\", which is not there", "value"});
+      {"Gaussian 1 looks at a channel \"gradient_magnitud\", which is not there (did you mean "
+       "\"gradient_magnitude\"?); there are: value, gradient_magnitude, second_derivative"});
+  scene.channels = {{"a", "", scene.field}};
+  expect_error([&] { make_scene(scene); }, {"\"value\", which is not there; there are: a"});
 }
 
 }  // namespace

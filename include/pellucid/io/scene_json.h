@@ -56,6 +56,8 @@ std::string camera_to_json(const Camera& camera);
 /// "gradient_magnitude" and "second_derivative" of it where a Gaussian or a table names them. None
 /// where a field has a function of one variable.
 std::vector<ChannelSource> scene_channels(const SceneDescription& description);
+/// The names that a term of the scene's function may look at: of a field all three.
+std::vector<std::string> known_channels(const SceneDescription& description);
 
 /// Reads the data, and fills defaults for the transfer function of a field and for the camera.
 /// Throws Error, also for channels without a function of them.

@@ -86,8 +86,10 @@ constexpr double opacity_table_share(double tolerance) noexcept {
 TransferFunction make_transfer_function(const TransferFunctionDescription& description,
                                         double tolerance,
                                         const std::optional<Rgb<double>>& background = {});
-/// The function of the channels of these names. Throws Error.
+/// The function of the channels of these names. Throws Error; where a term names another channel,
+/// the message offers the `known` ones, or where there are none of them, these.
 std::shared_ptr<const MultivariateTransferFunction> make_multivariate(
-    const MultivariateDescription& description, const std::vector<std::string>& channels);
+    const MultivariateDescription& description, const std::vector<std::string>& channels,
+    const std::vector<std::string>& known = {});
 
 }  // namespace pellucid
