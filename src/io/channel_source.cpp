@@ -136,6 +136,7 @@ ChannelSource parse_channel_source(std::string_view text) {
 
 std::vector<std::string> channel_names(const std::vector<ChannelSource>& sources) {
   std::vector<std::string> names;
+  names.reserve(sources.size());
   for (const ChannelSource& source : sources) names.push_back(source.name);
   return names;
 }

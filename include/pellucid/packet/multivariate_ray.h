@@ -53,7 +53,8 @@ class MultivariateRay {
   void run() noexcept {
     bool more = true;
     while (!done()) {
-      while (more && pending_ < N && live_chunks() < Room::chunks && room_.panels.room() >= 4 * N) {
+      while (more && pending_ < N && live_chunks() < Room::chunks &&
+             room_.panels.room() >= kept_room + 2 * N) {
         more = gather();
       }
       if (room_.panels.front() < 0) {
@@ -85,6 +86,8 @@ class MultivariateRay {
 
  private:
   static constexpr int most_cuts = 60;
+  /// Places in the list for the cuts of the front panel.
+  static constexpr int kept_room = most_cuts + 4;
   static constexpr double left_out_share = 1.0 / 8;
 
   bool done() const noexcept { return budget_.pays_for(rest(), job_.tolerance); }
@@ -244,7 +247,9 @@ class MultivariateRay {
   /// Tries the first N panels that are not done.
   void integrate() noexcept {
     int index[N], count = 0;
-    const int most = min(N, max(room_.panels.room(), 1));
+    // Panels behind an opaque one have little of the budget and are cut in vain: where the list
+    // fills up, the front one is done alone.
+    const int most = room_.panels.room() >= kept_room + N ? N : 1;
     for (int i = room_.panels.front(); i >= 0 && count < most; i = room_.panels.next(i)) {
       if (!room_.panels[i].done) index[count++] = i;
     }
