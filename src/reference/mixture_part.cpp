@@ -54,6 +54,7 @@ MixturePart::MixturePart(const Mixture& mixture, const std::vector<Chord>& chord
         {Piece(chord, u_begin, u_end, interval, t_begin, t_begin + length), 0.0, 1.0});
   }
   std::vector<Cubic> data;
+  data.reserve(chords.size());
   for (const Chord& chord : chords) data.push_back(chord.monomial(u_begin, u_end));
   for (const GaussianPrimitive& primitive : mixture.primitives()) {
     add(GaussianTerm(primitive, data));

@@ -37,6 +37,7 @@ std::uint64_t counted(const JointHistogram& h) {
 JointHistogram core_histogram(const Channels& channels, const std::vector<int>& which, int bins,
                               const ParallelFor& parallel) {
   std::vector<HistogramAxis> axes;
+  axes.reserve(which.size());
   for (const int c : which) axes.push_back(core_axis(channels, c, bins, parallel));
   JointHistogram h = joint_histogram(channels, which, axes, parallel);
   if (counted(h) == 0) {
