@@ -7,9 +7,11 @@
 #include <memory>
 #include <random>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "pellucid/cpu/render.h"
+#include "pellucid/reference/render.h"
 #include "pellucid/scene/defaults.h"
 
 namespace pellucid {
@@ -111,6 +113,44 @@ TEST_P(MultivariateFrames, AreTheSameInEveryInstructionSet) {
         }
         EXPECT_GT(opaque, 0.01);
         EXPECT_GT(report.spans.lines + report.spans.panels, 0u);
+      }
+    }
+  }
+}
+
+/// Data of 1e6 in double, and a color that changes from end to end within 2e-8 of it: rounding of
+/// the data is all that there is to be off by, and it is said.
+TEST(MultivariateFrame, ColorOfATableIsChargedWithTheRoundingOfTheData) {
+  Volume::Description description;
+  description.dimensions = {5, 5, 5};
+  std::mt19937 random(4);
+  std::uniform_real_distribution<double> unit(-1, 1);
+  std::vector<double> values;
+  for (int i = 0; i < 125; ++i) values.push_back(1e6 + 2e-8 * unit(random));
+  const auto volume = std::make_shared<Volume>(description, VolumeData(DataArray<double>(values)));
+  Scene scene;
+  scene.channels = std::make_shared<Channels>(std::vector<Channel>{{"value", "", volume}});
+  std::vector<ChannelTransferFunction> tables{
+      {0, TransferFunction({{1e6 - 1e-8, 0.4, {0, 0, 0}}, {1e6 + 1e-8, 0.4, {1, 1, 1}}})}};
+  scene.multivariate = std::make_shared<MultivariateTransferFunction>(
+      1, std::vector<GaussianPrimitive>{}, std::move(tables));
+  scene.size = {12, 12};
+  scene.camera = default_camera(*volume, scene.size);
+  scene.integration.tolerance = 1e-4;
+  scene.integration.grade = Grade::proved;
+  RenderOptions options;
+  options.error = true;
+  const Image reference = render_reference(scene);
+  for (const InstructionSet set : {InstructionSet::scalar, InstructionSet::sse4,
+                                   InstructionSet::avx2, InstructionSet::avx512}) {
+    if (!is_supported(set)) continue;
+    options.instruction_set = set;
+    const Image image = render(scene, options);
+    for (std::size_t i = 0; i < image.pixels.size(); ++i) {
+      for (std::size_t c = 0; c < 4; ++c) {
+        EXPECT_LE(std::fabs(double{image.pixels[i][c]} - double{reference.pixels[i][c]}),
+                  double{image.error[i]})
+            << name_of(set) << ", pixel " << i;
       }
     }
   }
