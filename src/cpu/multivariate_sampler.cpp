@@ -81,15 +81,7 @@ MultivariatePacketSampler::MultivariatePacketSampler(
 
 void MultivariatePacketSampler::trace(const Ray<double>* rays, int count,
                                       RayResult* results) const {
-  std::fill(results, results + count, RayResult{});
-  const PacketRays inside(volume_, rays, count);
-  std::vector<PellucidRayResult> found(inside.ray.size());
-  PellucidMultivariateSamplerJob job = job_;
-  job.grid_and_rays.rays = inside.ray.data();
-  job.grid_and_rays.results = found.data();
-  job.grid_and_rays.count = static_cast<std::int32_t>(inside.ray.size());
-  kernel_(&job);
-  read_sampled(found, inside, results);
+  trace_samples(volume_, job_, kernel_, rays, count, results);
 }
 
 }  // namespace pellucid

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
+#include <cstdint>
 #include <optional>
 #include <vector>
 
@@ -67,5 +69,20 @@ struct PacketRays {
 /// What packets of rays that sample found.
 void read_sampled(const std::vector<PellucidRayResult>& found, const PacketRays& rays,
                   RayResult* results);
+
+/// Samples along the rays (grid coordinates). Of the job, all but the rays is set; those of them
+/// that miss the volume gather nothing.
+template <class Job>
+void trace_samples(const Volume& volume, Job job, void (*kernel)(const Job*),
+                   const Ray<double>* rays, int count, RayResult* results) {
+  std::fill(results, results + count, RayResult{});
+  const PacketRays inside(volume, rays, count);
+  std::vector<PellucidRayResult> found(inside.ray.size());
+  job.grid_and_rays.rays = inside.ray.data();
+  job.grid_and_rays.results = found.data();
+  job.grid_and_rays.count = static_cast<std::int32_t>(inside.ray.size());
+  kernel(&job);
+  read_sampled(found, inside, results);
+}
 
 }  // namespace pellucid
