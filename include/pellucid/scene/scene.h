@@ -10,6 +10,7 @@
 #include "pellucid/error/precision.h"
 #include "pellucid/render/camera.h"
 #include "pellucid/scene/channels.h"
+#include "pellucid/scene/mesh_channels.h"
 #include "pellucid/scene/multivariate_transfer_function.h"
 #include "pellucid/scene/transfer_function.h"
 #include "pellucid/scene/volume.h"
@@ -81,13 +82,15 @@ struct Integration {
 };
 
 /// One volume with its transfer function, or several variables with a function of them all, seen by
-/// a camera.
+/// a camera. Of a mesh: its channels with either function.
 struct Scene {
   std::shared_ptr<const Volume> volume;
   std::shared_ptr<const TransferFunction> transfer_function;
   /// In place of the two above.
   std::shared_ptr<const Channels> channels;
   std::shared_ptr<const MultivariateTransferFunction> multivariate;
+  /// In place of `volume` or `channels`.
+  std::shared_ptr<const MeshChannels> mesh;
   Camera camera;
   ImageSize size;
   /// A pixel is the mean of samples × samples rays through the centres of its equal parts.

@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "pellucid/field/tetrahedra.h"
+#include "pellucid/geometry/box.h"
+#include "pellucid/scene/volume.h"
+
+namespace pellucid {
+
+/// What is known of a mesh before it is rendered.
+struct MeshStatistics {
+  std::size_t points = 0;   ///< that tetrahedra use
+  std::size_t orphans = 0;  ///< that none uses
+  std::size_t tetrahedra = 0;
+  std::size_t boundary_faces = 0;
+  std::size_t flat = 0;  ///< tetrahedra without volume
+  /// Pairs of tetrahedra on the same side of the face that they share, and faces of more than two.
+  std::size_t folded_faces = 0;
+  double volume = 0;     ///< of all tetrahedra, world units cubed
+  double mean_edge = 0;  ///< length of an edge, the mean over the tetrahedra's
+};
+
+/// Tetrahedra that share points, and who lies beside whom: what rays walk through. Immutable once
+/// made; copies are not, share it.
+///
+/// Where points fall on a ray or faces along it, a ray is in exactly one of the cells that touch
+/// there: it is thought of as moved aside by less than any number (traverse/mesh_walk.h). Meshes
+/// need not be convex nor connected. Tetrahedra may be given in either orientation.
+class TetrahedralMesh {
+ public:
+  struct Description {
+    std::vector<Vec3<double>> points;                     ///< world
+    std::vector<std::array<std::int32_t, 4>> tetrahedra;  ///< indices of points
+    std::string name;                                     ///< for messages
+  };
+
+  /// Throws Error where there is no tetrahedron, an index is out of range or twice in one
+  /// tetrahedron, a point that is used is not finite or beyond ±2.1e37, there are more than 2^29
+  /// tetrahedra, or a face belongs to more than two of them. Tetrahedra that overlap are counted
+  /// where they share a face (MeshStatistics::folded_faces); rays that find themselves in two of
+  /// them say that they do not know.
+  explicit TetrahedralMesh(Description description, const ParallelFor& parallel = {});
+  TetrahedralMesh(const TetrahedralMesh&) = delete;
+  TetrahedralMesh& operator=(const TetrahedralMesh&) = delete;
+
+  const std::string& name() const noexcept { return name_; }
+  const std::vector<Vec3<double>>& points() const noexcept { return points_; }
+  /// The points of the tetrahedra, in ascending order, in the order in which they were given.
+  const std::vector<std::array<std::int32_t, 4>>& tetrahedra() const noexcept { return corners_; }
+  const MeshStatistics& statistics() const noexcept { return statistics_; }
+  const Box<double>& bounds() const noexcept { return bounds_; }
+  /// What rays need, in memory: bytes.
+  std::size_t memory() const noexcept;
+
+  /// The view that rays walk through. Valid while this object lives.
+  Tetrahedra view() const noexcept;
+
+ private:
+  std::string name_;
+  std::vector<Vec3<double>> points_;
+  std::vector<std::array<std::int32_t, 4>> corners_, neighbors_;
+  std::vector<BoundaryNode> tree_;
+  std::vector<std::int32_t> boundary_;
+  MeshStatistics statistics_;
+  Box<double> bounds_;
+};
+
+}  // namespace pellucid
