@@ -1,38 +1,62 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <cstddef>
 #include <cstdint>
 
+#include "pellucid/base/limits.h"
 #include "pellucid/geometry/vec3.h"
 
 namespace pellucid {
 
+/// A tetrahedron: its points in ascending order of their indices, and who lies behind its faces.
+/// Face i is the one opposite to point i.
+struct Tetrahedron {
+  static constexpr std::int32_t outside = -1;
+
+  std::int32_t corner[4];
+  /// 4 · (the tetrahedron there) + (the number that the face has in it), or `outside`.
+  std::int32_t behind[4]{outside, outside, outside, outside};
+
+  PELLUCID_HD constexpr std::int32_t operator[](int i) const noexcept { return corner[i]; }
+};
+
 /// A node of the tree over a mesh's boundary: a box and what is in it.
 struct BoundaryNode {
-  float lower[3], upper[3];  ///< rounded outwards
+  float lower[3], upper[3];  ///< farther out than rounding can move anything
   /// Inner nodes (count 0): the first of two children, which stand together. Leaves: the first of
   /// `count` entries of the list of boundary faces.
   std::int32_t first = 0, count = 0;
 };
 
-/// Tetrahedra as rays walk through them. A view: it owns nothing, so that a device can hold it too.
-///
-/// The points of a tetrahedron stand in ascending order of their indices; face i is the one that
-/// lies opposite to its i-th point. What lies behind face i is 4 · (the tetrahedron there) + (the
-/// number that the face has in it), or outside.
+/// A mesh as rays walk through it: a view that owns nothing, so that a device can hold it too.
 struct Tetrahedra {
-  static constexpr std::int32_t outside = -1;
-
-  const Vec3<double>* point = nullptr;  ///< world
-  const std::int32_t (*corner)[4] = nullptr;
-  const std::int32_t (*behind)[4] = nullptr;
-  std::int32_t count = 0;
-
+  const Vec3<double>* point = nullptr;
+  const Tetrahedron* tetrahedron = nullptr;
   // The boundary: faces as 4 · tetrahedron + face, in the order of the tree; node 0 is the root.
   const BoundaryNode* tree = nullptr;
   const std::int32_t* boundary = nullptr;
-  std::int32_t boundary_faces = 0;
+  /// A box around all points; `reach` is a bound on the size of their coordinates.
+  Vec3<double> lower, upper;
+  double reach = 0;
+  std::int32_t count = 0;  ///< of tetrahedra
+};
+
+/// A point of the mesh, or those of the lanes.
+PELLUCID_HD inline Vec3<double> gather_point(const Vec3<double>* point, int index) noexcept {
+  return point[index];
+}
+
+/// A variable of a mesh, in double: a value per point, linear in each tetrahedron, or one per
+/// tetrahedron. NaN: vacuum.
+struct MeshField {
+  const double* value = nullptr;
+  bool per_cell = false;
+};
+
+/// Several of them.
+struct MeshFields {
+  MeshField channel[most_channels];
+  int channels = 0;
 };
 
 }  // namespace pellucid

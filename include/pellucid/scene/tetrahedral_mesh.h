@@ -40,7 +40,7 @@ class TetrahedralMesh {
   };
 
   /// Throws Error where there is no tetrahedron, an index is out of range or twice in one
-  /// tetrahedron, a point that is used is not finite or beyond ±2.1e37, there are more than 2^29
+  /// tetrahedron, a point that is used is not finite or beyond ±2.1e37, there are more than 2^28
   /// tetrahedra, or a face belongs to more than two of them. Tetrahedra that overlap are counted
   /// where they share a face (MeshStatistics::folded_faces); rays that find themselves in two of
   /// them say that they do not know.
@@ -50,8 +50,8 @@ class TetrahedralMesh {
 
   const std::string& name() const noexcept { return name_; }
   const std::vector<Vec3<double>>& points() const noexcept { return points_; }
-  /// The points of the tetrahedra, in ascending order, in the order in which they were given.
-  const std::vector<std::array<std::int32_t, 4>>& tetrahedra() const noexcept { return corners_; }
+  /// In the order in which they were given, the points of each in ascending order.
+  const std::vector<Tetrahedron>& tetrahedra() const noexcept { return tetrahedra_; }
   const MeshStatistics& statistics() const noexcept { return statistics_; }
   const Box<double>& bounds() const noexcept { return bounds_; }
   /// What rays need, in memory: bytes.
@@ -61,9 +61,11 @@ class TetrahedralMesh {
   Tetrahedra view() const noexcept;
 
  private:
+  void measure(const ParallelFor& parallel);
+
   std::string name_;
   std::vector<Vec3<double>> points_;
-  std::vector<std::array<std::int32_t, 4>> corners_, neighbors_;
+  std::vector<Tetrahedron> tetrahedra_;
   std::vector<BoundaryNode> tree_;
   std::vector<std::int32_t> boundary_;
   MeshStatistics statistics_;

@@ -1,0 +1,173 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "pellucid/error/budget.h"
+#include "pellucid/render/integrate_linear_span.h"
+#include "pellucid/segment/fold.h"
+#include "pellucid/traverse/mesh_spans.h"
+
+namespace pellucid {
+
+/// A ray that is to go through a mesh, and where it meets the boundary.
+struct MeshRay {
+  RayView<double> view;
+  MeshHit* hits = nullptr;  ///< in ascending order; used up
+  int count = 0;
+
+  /// Where the ray may have anything to do with the mesh, world arc length.
+  PELLUCID_HD Interval<double> inside() const noexcept {
+    if (count == 0) return {1, 0};
+    return {max(hits[0].t, 0.0), hits[count - 1].t};
+  }
+};
+
+/// Integrates one ray through a variable of a mesh and keeps account of its error. The integral is
+/// exact in every span, so the budget is spent on rounding and on what lies behind the last span
+/// alone.
+class MeshRayIntegrator {
+ public:
+  /// All that is given is referred to. `inside`: where the ray may be in the mesh.
+  PELLUCID_HD MeshRayIntegrator(const TransferTables& transfer, const RayTolerance& wanted,
+                                Interval<double> inside) noexcept
+      : transfer_(transfer),
+        wanted_(wanted),
+        largest_color_(max(wanted.largest_color, 1.0)),
+        end_(inside.end),
+        budget_(wanted.tolerance, inside.end - inside.begin) {}
+
+  /// Asks for the place where the optical depth reaches `depth`; the ray ends there.
+  PELLUCID_HD void look_for(double depth) noexcept { target_ = depth; }
+  /// Its world arc length; infinite where it was not met.
+  PELLUCID_HD double found() const noexcept { return found_; }
+
+  /// Whether what is left of the ray can no longer matter.
+  PELLUCID_HD bool done() const noexcept {
+    return found_ < infinity || (target_ == infinity && budget_.pays_for(rest(), wanted_.tolerance));
+  }
+
+  PELLUCID_HD void span(const MeshSpan& span) noexcept {
+    ++cells_;
+    budget_.pass_to(max(end_ - span.begin, 0.0));
+    const double length = span.end - span.begin;
+    if (span.overlaps) {
+      // Anything may be there, and in all that it hides.
+      budget_.spend(length, 0, fold_.transparency(), largest_color_);
+      return;
+    }
+    if (span.vacuum) {
+      ++counts_.skipped;
+      return;
+    }
+    const LinearData data{span.front[0], span.back[0], span.value_error[0], length,
+                          span.place_error};
+    const bool in_float = wanted_.precision == Precision::float32;
+    if (in_float) {
+      add<float>(data, span.begin);
+    } else {
+      add<double>(data, span.begin);
+    }
+  }
+
+  PELLUCID_HD RayResult result() const noexcept {
+    RayResult result;
+    result.radiance = fold_.radiance();
+    result.optical_depth = fold_.optical_depth();
+    result.opacity = fold_.opacity();
+    // Folding in double costs 4 u a span (segment/fold.h).
+    const double folding =
+        4 * rounding_unit<double> * largest_color_ * static_cast<double>(cells_);
+    result.error = budget_.spent() + (done() ? rest() : 0) + folding;
+    result.proved = true;
+    result.cells = cells_;
+    result.evaluations = cells_;
+    result.spans = counts_;
+    return result;
+  }
+
+ private:
+  static constexpr double infinity = std::numeric_limits<double>::infinity();
+
+  /// A bound on what lies behind.
+  PELLUCID_HD double rest() const noexcept {
+    const double opacity = min(transfer_.largest_extinction * budget_.length_left(), 1.0);
+    return fold_.transparency() * opacity * largest_color_;
+  }
+
+  template <class T>
+  PELLUCID_HD void add(const LinearData& data, double begin) noexcept {
+    CellSegment<T> found;
+    integrate_linear_span(
+        data, transfer_, largest_color_, true, [](double) noexcept { return 0.0; }, found);
+    if (found.clear) {
+      ++counts_.skipped;
+      return;
+    }
+    ++counts_.closed;
+    if (std::is_same_v<T, double>) ++counts_.in_double;
+    const double before = fold_.optical_depth();
+    budget_.spend(data.length, static_cast<double>(found.found.segment.opacity),
+                  fold_.transparency(), found.error(largest_color_));
+    fold_.add(found.found.segment);
+    if (fold_.optical_depth() >= target_) find(data, begin, target_ - before);
+  }
+
+  /// The place in a span where its optical depth reaches `depth`, by bisection.
+  PELLUCID_HD void find(const LinearData& data, double begin, double depth) noexcept {
+    double lo = 0, hi = 1;
+    for (int i = 0; i < 48; ++i) {
+      const double middle = 0.5 * (lo + hi);
+      const SegmentResult<double> part = piecewise_linear_segment(
+          transfer_.wide, data.front, data.front + middle * (data.back - data.front),
+          middle * data.length);
+      (part.optical_depth < depth ? lo : hi) = middle;
+    }
+    found_ = begin + hi * data.length;
+  }
+
+  const TransferTables& transfer_;
+  const RayTolerance& wanted_;
+  double largest_color_, end_;
+  RayBudget<double> budget_;
+  FrontToBack<double> fold_{0.0};
+  RuleCounts counts_;
+  long cells_ = 0;
+  double target_ = infinity, found_ = infinity;
+};
+
+/// The volume rendering integral along a ray through a variable of a mesh: RayResult::error is a
+/// bound, what is wanted or what rounding leaves. A ray that finds cells overlapping says that it
+/// does not know.
+PELLUCID_HD inline RayResult integrate_mesh_ray(const Tetrahedra& mesh, const MeshFields& fields,
+                                                const TransferTables& transfer, const MeshRay& ray,
+                                                const RayTolerance& wanted) noexcept {
+  RayResult nothing;
+  nothing.error = 0;
+  nothing.proved = true;
+  const Interval<double> inside = ray.inside();
+  if (inside.empty()) return nothing;
+  MeshRayIntegrator integrator(transfer, wanted, inside);
+  for_each_mesh_span(mesh, fields, ray.view, ray.hits, ray.count, [&](const MeshSpan& span) {
+    integrator.span(span);
+    return !integrator.done();
+  });
+  return integrator.result();
+}
+
+/// RayResult::half_opacity_depth of a ray of this opacity.
+PELLUCID_HD inline double find_mesh_half_opacity(const Tetrahedra& mesh, const MeshFields& fields,
+                                                 const TransferTables& transfer, const MeshRay& ray,
+                                                 const RayTolerance& wanted,
+                                                 double opacity) noexcept {
+  const Interval<double> inside = ray.inside();
+  if (!(opacity > 0) || inside.empty()) return std::numeric_limits<double>::infinity();
+  MeshRayIntegrator integrator(transfer, wanted, inside);
+  // There exp(-a) = 1 - opacity/2.
+  integrator.look_for(-log1p(-0.5 * opacity));
+  for_each_mesh_span(mesh, fields, ray.view, ray.hits, ray.count, [&](const MeshSpan& span) {
+    integrator.span(span);
+    return !integrator.done();
+  });
+  return integrator.found();
+}
+
+}  // namespace pellucid

@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "pellucid/traverse/boundary_hits.h"
+#include "pellucid/traverse/mesh_walk.h"
+
+namespace pellucid {
+
+/// What a ray knows where it goes through a face.
+struct MeshPlace {
+  double t = 0;
+  double t_error = 0;  ///< how far t may be off
+  double value[most_channels];
+  double value_error[most_channels];  ///< beside the rounding of the values themselves
+};
+
+/// A stretch of a ray in one tetrahedron: every channel is linear, or constant, along it.
+struct MeshSpan {
+  double begin = 0, end = 0;  ///< world arc length
+  double front[most_channels], back[most_channels];
+  double value_error[most_channels];
+  double place_error = 0;  ///< how far begin and end may be off, together
+  bool vacuum = false;     ///< some channel has no value
+  /// The mesh overlaps itself here: what is in it is not known.
+  bool overlaps = false;
+};
+
+namespace detail {
+
+PELLUCID_HD inline MeshPlace place_on(const SeenFace<double>& face, const MeshFields& fields,
+                                      double blur) noexcept {
+  double weight[3];
+  face.weights(weight);
+  const double off = face.weight_error(blur);
+  // From the first point's, so that equal values stay what they are.
+  const auto interpolate = [&](double a, double b, double c) noexcept {
+    return a + (weight[1] * (b - a) + weight[2] * (c - a));
+  };
+  const auto range = [](double a, double b, double c) noexcept {
+    return max(a, max(b, c)) - min(a, min(b, c));
+  };
+  MeshPlace place;
+  const SeenPoint<double>* p = face.seen;
+  place.t = interpolate(p[0].t, p[1].t, p[2].t);
+  place.t_error = off * range(p[0].t, p[1].t, p[2].t) + blur;
+  for (int c = 0; c < fields.channels; ++c) {
+    if (fields.channel[c].per_cell) continue;
+    const double* value = fields.channel[c].value;
+    const double v[3] = {value[face.point[0]], value[face.point[1]], value[face.point[2]]};
+    place.value[c] = interpolate(v[0], v[1], v[2]);
+    place.value_error[c] = off * range(v[0], v[1], v[2]);
+  }
+  return place;
+}
+
+/// What lies between two places on the faces of a tetrahedron; `front`: how far along the ray one
+/// is already.
+PELLUCID_HD inline MeshSpan span_between(const MeshPlace& from, const MeshPlace& to,
+                                         const MeshFields& fields, std::int32_t tetrahedron,
+                                         double front) noexcept {
+  MeshSpan span;
+  span.begin = max(from.t, front);
+  span.end = to.t;
+  span.place_error = from.t_error + to.t_error;
+  const double length = to.t - from.t;
+  const double share = from.t < front && front < to.t ? (front - from.t) / length : 0;
+  for (int c = 0; c < fields.channels; ++c) {
+    if (fields.channel[c].per_cell) {
+      span.front[c] = span.back[c] = fields.channel[c].value[tetrahedron];
+      span.value_error[c] = 0;
+    } else {
+      span.front[c] = from.value[c] + share * (to.value[c] - from.value[c]);
+      span.back[c] = to.value[c];
+      span.value_error[c] = max(from.value_error[c], to.value_error[c]);
+    }
+    span.vacuum = span.vacuum | is_nan(span.front[c] + span.back[c]);
+  }
+  return span;
+}
+
+}  // namespace detail
+
+/// visit(MeshSpan), front to back and while it returns true, for the tetrahedra that a ray goes
+/// through at t >= 0. `hits`: where its line goes through the boundary, in ascending order; they are
+/// used up. A mesh that is not convex is left and entered again; each way through it begins at one
+/// of the hits and ends at another.
+///
+/// Where rounding lets places be out of order, what is behind the farthest one counts. Where more
+/// than rounding does, tetrahedra overlap: the span says so.
+template <class Visit>
+PELLUCID_HD void for_each_mesh_span(const Tetrahedra& mesh, const MeshFields& fields,
+                                    const RayView<double>& view, MeshHit* hits, int count,
+                                    Visit&& visit) noexcept {
+  double front = 0, front_error = 0;
+  for (int i = 0; i < count; ++i) {
+    if (hits[i].code == Tetrahedron::outside) continue;
+    SeenFace<double> face;
+    see_face(mesh, view, hits[i].code, face);
+    MeshWalk<double> walk(mesh, view);
+    walk.enter(face, hits[i].code);
+    MeshPlace from = detail::place_on(face, fields, view.blur);
+    for (std::int32_t steps = 0; walk.ahead() != Tetrahedron::outside; ++steps) {
+      const std::int32_t tetrahedron = walk.ahead() >> 2;
+      walk.step(true);
+      const MeshPlace to = detail::place_on(walk.face(), fields, view.blur);
+      MeshSpan span = detail::span_between(from, to, fields, tetrahedron, front);
+      const double most = front_error + from.t_error + to.t_error;
+      span.overlaps = (front > 0 && min(from.t, to.t) < front - most) || steps > mesh.count;
+      if (span.begin < span.end || span.overlaps) {
+        span.end = max(span.begin, span.end);
+        if (!visit(span)) return;
+        front = span.end;
+        front_error = to.t_error;
+      }
+      if (steps > mesh.count) return;
+      from = to;
+    }
+    for (int k = i + 1; k < count; ++k) {
+      if (hits[k].code == walk.left_by()) hits[k].code = Tetrahedron::outside;
+    }
+  }
+}
+
+}  // namespace pellucid

@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "pellucid/traverse/mesh_face.h"
+
+namespace pellucid {
+
+/// Walks along a ray from tetrahedron to neighbouring tetrahedron, one or one in each lane.
+///
+/// Seen along the ray a tetrahedron is four triangles, of which the ray is in none or in two. Given
+/// the one by which it comes, three signs tell the other: those of the areas between the ray and
+/// the lines from the fourth point to the three others. Signs are exact, and the same for all who
+/// share an edge (side_of()), so the ray always leaves, and by one face only; whichever boundary
+/// face it comes in by, it comes out of the mesh by another, after each tetrahedron in between
+/// once, whatever rounding says of places along the ray. No orientation is wanted of the mesh.
+template <class T>
+class MeshWalk {
+ public:
+  using Index = index_t<T>;
+  using Mask = mask_t<T>;
+
+  /// All that is given is referred to.
+  PELLUCID_HD MeshWalk(const Tetrahedra& mesh, const RayView<T>& view) noexcept
+      : mesh_(mesh), view_(view) {}
+
+  /// Begins behind `face`, which the ray goes through: code = 4 · tetrahedron + face.
+  PELLUCID_HD void enter(const SeenFace<T>& face, Index code) noexcept {
+    face_ = face;
+    code_ = code;
+  }
+
+  /// The face that was reached last.
+  PELLUCID_HD const SeenFace<T>& face() const noexcept { return face_; }
+  /// The tetrahedron that lies ahead of it, as its face there; `outside`: none does.
+  PELLUCID_HD Index ahead() const noexcept { return code_; }
+  /// The face as the tetrahedron gone through last has it.
+  PELLUCID_HD Index left_by() const noexcept { return left_by_; }
+
+  /// Goes through the tetrahedron ahead in the lanes of `on`, where there is one.
+  PELLUCID_HD void step(Mask on) noexcept {
+    const Index tetrahedron = select(on, code_ >> 2, Index(0)), entry = code_ & Index(3);
+    // In words of the tetrahedron.
+    const Index record = tetrahedron << 3;
+    const std::int32_t* words = mesh_.tetrahedron->corner;
+    const Index point = gather(words, record + select(on, entry, Index(0)));
+    const SeenPoint<T> seen = view_.see(gather_point(mesh_.point, point));
+    Side<T> side[3];
+    Mask forward[3];
+    for (int i = 0; i < 3; ++i) {
+      side[i] = side_of(seen, face_.seen[i]);
+      forward[i] = side[i].left == face_.left;
+    }
+    // With points a, b, c of the face and the new one d: through (b, c, d) if d sees b ahead of the
+    // ray and not c; a is left behind then. And so on around.
+    Mask drop[3];
+    for (int i = 0; i < 3; ++i) drop[i] = on & forward[(i + 1) % 3] & !forward[(i + 2) % 3];
+
+    Index before = select(drop[0], face_.point[0], select(drop[1], face_.point[1], face_.point[2]));
+    Index place = select(point < before, Index(1), Index(0));
+    for (int i = 0; i < 3; ++i) {
+      place += select(face_.point[i] < before, Index(1), Index(0));
+    }
+    for (int i = 0; i < 3; ++i) {
+      // The areas between the new point and those that stay.
+      const int next = (i + 1) % 3, last = (i + 2) % 3;
+      assign(drop[i], face_.point[i], point);
+      assign(drop[i], face_.seen[i].x, seen.x);
+      assign(drop[i], face_.seen[i].y, seen.y);
+      assign(drop[i], face_.seen[i].t, seen.t);
+      assign(drop[i], face_.area[next], abs(side[last].area));
+      assign(drop[i], face_.area[last], abs(side[next].area));
+    }
+    left_by_ = select(on, (tetrahedron << 2) + place, left_by_);
+    code_ = select(on, gather(words, record + Index(4) + place), code_);
+  }
+
+ private:
+  const Tetrahedra& mesh_;
+  const RayView<T>& view_;
+  SeenFace<T> face_;
+  Index code_{}, left_by_{};
+};
+
+}  // namespace pellucid
