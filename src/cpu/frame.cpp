@@ -33,7 +33,9 @@ Frame::Frame(const Scene& described, const RenderOptions& options, int threads)
   task.wanted.grade = integration.grade;
   task.wanted.precision = integration.precision;
   task.wanted.largest_color = std::max(largest_color(scene), brightest(scene.background));
-  tracer = scene.multivariate ? make_multivariate_tracer(task) : make_univariate_tracer(task);
+  tracer = scene.mesh           ? make_mesh_tracer(task)
+           : scene.multivariate ? make_multivariate_tracer(task)
+                                : make_univariate_tracer(task);
 }
 
 }  // namespace pellucid

@@ -36,5 +36,7 @@ struct TracerTask {
 std::unique_ptr<const RayTracer> make_univariate_tracer(const TracerTask& task);
 /// Of channels with a multivariate transfer function. Throws Error for a method that it has not.
 std::unique_ptr<const RayTracer> make_multivariate_tracer(const TracerTask& task);
+/// Of a mesh with either function. Throws as above.
+std::unique_ptr<const RayTracer> make_mesh_tracer(const TracerTask& task);
 
 }  // namespace pellucid

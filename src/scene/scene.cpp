@@ -126,20 +126,29 @@ double Integration::set_tolerance(double wanted) {
 }
 
 void check_data(const Scene& scene) {
-  const bool univariate = scene.volume || scene.transfer_function;
-  if (!scene.channels && !scene.multivariate) {
-    if (scene.volume && scene.transfer_function) return;
+  const int data = (scene.volume ? 1 : 0) + (scene.channels ? 1 : 0) + (scene.mesh ? 1 : 0);
+  const int functions = (scene.transfer_function ? 1 : 0) + (scene.multivariate ? 1 : 0);
+  if (data == 0 || functions == 0) {
     throw Error("scene: a volume and a transfer function are needed; set both before rendering");
   }
-  if (univariate || !scene.channels || !scene.multivariate) {
+  if (data > 1 || functions > 1 || (scene.volume && scene.multivariate) ||
+      (scene.channels && scene.transfer_function)) {
     throw Error(
         "scene: either a volume with a transfer function or channels with a multivariate one are "
-        "needed; set one pair of them");
+        "needed, or a mesh with either; set one pair of them");
   }
-  if (scene.channels->count() != scene.multivariate->channels()) {
+  if (!scene.multivariate) {
+    if (scene.mesh && scene.mesh->count() != 1) {
+      throw Error("scene: the transfer function sees one variable, but the mesh has " +
+                  std::to_string(scene.mesh->count()) + " channels; leave one of them");
+    }
+    return;
+  }
+  const int channels = scene.mesh ? scene.mesh->count() : scene.channels->count();
+  if (channels != scene.multivariate->channels()) {
     throw Error("scene: the transfer function sees " +
                 std::to_string(scene.multivariate->channels()) + " channels, but there are " +
-                std::to_string(scene.channels->count()) + "; make it for as many");
+                std::to_string(channels) + "; make it for as many");
   }
 }
 

@@ -51,9 +51,8 @@ struct CellRow {
     Multivariate<double> transfer;
     transfer.gaussians = {primitive.data(), static_cast<int>(primitive.size())};
     const RayTolerance wanted{tolerance, grade, Precision::float64, 1};
-    const MultichannelGrid none;
-    MultivariateRayIntegrator integrator(none, transfer, largest_extinction, wanted, span.length);
-    integrator.stretch(span, {0, span.length}, {}, 0);
+    MultivariateRayIntegrator integrator(transfer, largest_extinction, wanted, span.length);
+    integrator.stretch(span, {0, span.length}, {}, 0, 8 * rounding_unit<double> * span.length);
     return integrator.result();
   }
 };

@@ -31,8 +31,8 @@ struct RayView {
   }
 };
 
-/// `near`: what is to be seen, of which the ray's closest point becomes the origin; `reach`: a bound
-/// on the coordinates of all that will be. The ray's direction has length 1.
+/// `near`: what is to be seen, of which the ray's closest point becomes the origin; `reach`: a
+/// bound on the coordinates of all that will be. The ray's direction has length 1.
 PELLUCID_HD inline RayView<double> make_ray_view(const Ray<double>& ray, const Vec3<double>& near,
                                                  double reach) noexcept {
   const Vec3<double>& d = ray.direction;

@@ -3,6 +3,7 @@
 
 #include "pellucid/error/budget.h"
 #include "pellucid/render/integrate_linear_span.h"
+#include "pellucid/render/multivariate_integrator.h"
 #include "pellucid/segment/fold.h"
 #include "pellucid/traverse/mesh_spans.h"
 
@@ -42,7 +43,8 @@ class MeshRayIntegrator {
 
   /// Whether what is left of the ray can no longer matter.
   PELLUCID_HD bool done() const noexcept {
-    return found_ < infinity || (target_ == infinity && budget_.pays_for(rest(), wanted_.tolerance));
+    return found_ < infinity ||
+           (target_ == infinity && budget_.pays_for(rest(), wanted_.tolerance));
   }
 
   PELLUCID_HD void span(const MeshSpan& span) noexcept {
@@ -74,8 +76,7 @@ class MeshRayIntegrator {
     result.optical_depth = fold_.optical_depth();
     result.opacity = fold_.opacity();
     // Folding in double costs 4 u a span (segment/fold.h).
-    const double folding =
-        4 * rounding_unit<double> * largest_color_ * static_cast<double>(cells_);
+    const double folding = 4 * rounding_unit<double> * largest_color_ * static_cast<double>(cells_);
     result.error = budget_.spent() + (done() ? rest() : 0) + folding;
     result.proved = true;
     result.cells = cells_;
@@ -133,6 +134,95 @@ class MeshRayIntegrator {
   long cells_ = 0;
   double target_ = infinity, found_ = infinity;
 };
+
+namespace detail {
+
+/// What a span's data may be off by, beyond what the panels charge for rounding themselves, as a
+/// bound on the change of the extinction: no Gaussian is steeper than √(2/e) times its peak and
+/// |K|, Frobenius' norm.
+PELLUCID_HD inline double extinction_error(const Multivariate<double>& transfer,
+                                           const MeshSpan& span) noexcept {
+  double moved = 0;
+  for (int c = 0; c < transfer.channels; ++c) {
+    const double charged = 8 * rounding_unit<double> * max(abs(span.front[c]), abs(span.back[c]));
+    if (span.value_error[c] > charged) moved = max(moved, span.value_error[c]);
+  }
+  if (!(moved > 0)) return 0;
+  double sum = 0;
+  for (int i = 0; i < transfer.gaussians.count; ++i) {
+    const Gaussian<double>& g = transfer.gaussians.primitive[i];
+    double square = 0;
+    for (int r = 0; r < g.rows; ++r) {
+      for (int k = 0; k < g.channels; ++k) {
+        const double off = g.matrix[r][k] * span.value_error[k];
+        square += off * off;
+      }
+    }
+    sum += g.peak * min(0.86 * sqrt(square * static_cast<double>(g.channels)), 1.0);
+  }
+  for (int i = 0; i < transfer.tables; ++i) {
+    const int c = transfer.table[i].channel;
+    const PiecewiseLinear<double>& table = transfer.table[i].table;
+    const double lower = min(span.front[c], span.back[c]) - span.value_error[c],
+                 upper = max(span.front[c], span.back[c]) + span.value_error[c];
+    const Sensitivity<double> slopes =
+        sensitivity(table, table.interval(lower), table.interval(upper), span.value_error[c]);
+    // Colors count like the extinction that shows them.
+    const double change = slopes.extinction_slope + slopes.largest_extinction * slopes.color_slope;
+    sum += slopes.jump ? slopes.largest_extinction
+                       : min(span.value_error[c] * change, slopes.largest_extinction);
+  }
+  return sum;
+}
+
+PELLUCID_HD inline void add_span(const Multivariate<double>& transfer, const MeshSpan& span,
+                                 double largest_extinction,
+                                 MultivariateRayIntegrator& integrator) noexcept {
+  const double length = span.end - span.begin;
+  if (span.vacuum || span.overlaps) {
+    // Anything may be where cells overlap.
+    integrator.skip(length, span.overlaps ? std::numeric_limits<double>::infinity() : 0);
+    return;
+  }
+  MultivariateSpan<double> data;
+  data.length = length;
+  for (int c = 0; c < transfer.channels; ++c) {
+    const double front = span.front[c], back = span.back[c], third = (back - front) / 3;
+    data.data[c] = {{front, front + third, back - third, back}};
+  }
+  integrator.stretch(data, {span.begin, span.end}, {},
+                     min(extinction_error(transfer, span), largest_extinction), span.place_error);
+}
+
+}  // namespace detail
+
+/// The same through several variables of a mesh and a function of them all. `largest_extinction`: a
+/// bound on that of the function. `depth`: asks for the place where the optical depth reaches that,
+/// RayResult::half_opacity_depth; the ray ends there.
+PELLUCID_HD inline RayResult integrate_multivariate_mesh_ray(
+    const Tetrahedra& mesh, const MeshFields& fields, const Multivariate<double>& transfer,
+    double largest_extinction, const MeshRay& ray, const RayTolerance& wanted,
+    double depth = std::numeric_limits<double>::infinity()) noexcept {
+  RayResult nothing;
+  nothing.error = 0;
+  nothing.proved = true;
+  const Interval<double> inside = ray.inside();
+  if (inside.empty()) return nothing;
+  MultivariateRayIntegrator integrator(transfer, largest_extinction, wanted,
+                                       inside.end - inside.begin);
+  if (depth < std::numeric_limits<double>::infinity()) integrator.look_for(depth);
+  long cells = 0;
+  for_each_mesh_span(mesh, fields, ray.view, ray.hits, ray.count, [&](const MeshSpan& span) {
+    ++cells;
+    integrator.pass_to(max(inside.end - span.begin, 0.0));
+    detail::add_span(transfer, span, largest_extinction, integrator);
+    return !integrator.done();
+  });
+  RayResult result = integrator.result();
+  result.cells = cells;
+  result.half_opacity_depth = integrator.found();
+  return result;
+}
 
 /// The volume rendering integral along a ray through a variable of a mesh: RayResult::error is a
 /// bound, what is wanted or what rounding leaves. A ray that finds cells overlapping says that it

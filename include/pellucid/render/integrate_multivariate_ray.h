@@ -1,11 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "pellucid/error/budget.h"
 #include "pellucid/field/multichannel_grid.h"
-#include "pellucid/render/integrate_cell.h"
-#include "pellucid/segment/fold.h"
-#include "pellucid/segment/multivariate_panel.h"
+#include "pellucid/render/multivariate_integrator.h"
 #include "pellucid/traverse/block_walk.h"
 #include "pellucid/traverse/multivariate_blocks.h"
 #include "pellucid/traverse/spans.h"
@@ -30,173 +27,6 @@ PELLUCID_HD bool make_multivariate_span(const MultichannelGrid& grid,
   return true;
 }
 
-/// Integrates one ray through several fields within a tolerance: cuts each cell until every panel
-/// costs no more than the budget pays for, and keeps account of it. In double throughout.
-class MultivariateRayIntegrator {
- public:
-  /// All that is given is referred to and must outlive the integrator. `length`: of the ray inside
-  /// of the grid, in world units.
-  PELLUCID_HD MultivariateRayIntegrator(const MultichannelGrid& grid,
-                                        const Multivariate<double>& transfer,
-                                        double largest_extinction, const RayTolerance& wanted,
-                                        double length) noexcept
-      : grid_(grid),
-        transfer_(transfer),
-        largest_extinction_(largest_extinction),
-        tolerance_(wanted.tolerance),
-        length_(length),
-        budget_(wanted.tolerance, length) {
-    demand_.grade = wanted.grade;
-    demand_.largest_color = max(wanted.largest_color, 1.0);
-  }
-
-  /// Asks for the place where the optical depth reaches `depth`; the ray ends there.
-  PELLUCID_HD void look_for(double depth) noexcept { target_ = depth; }
-  /// Its world arc length; infinite where it was not met.
-  PELLUCID_HD double found() const noexcept { return found_; }
-
-  /// Whether what is left of the ray can no longer matter.
-  PELLUCID_HD bool done() const noexcept {
-    return found_ < infinity || budget_.pays_for(rest(), tolerance_);
-  }
-
-  /// A stretch whose extinction is at most this and is left out.
-  PELLUCID_HD void skip(double length, double extinction) noexcept {
-    ++counts_.skipped;
-    budget_.spend(length, 0, fold_.transparency(),
-                  demand_.largest_color * min(extinction * length, 1.0));
-  }
-
-  /// One cell of a walk over the grid. `left_out`: a bound on the extinction of the primitives that
-  /// are not in the set.
-  PELLUCID_HD void cell(const StructuredWalk<double>::Step& step, PrimitiveSet primitives,
-                        double left_out) noexcept {
-    ++evaluations_;
-    MultivariateSpan<double> span;
-    if (!make_multivariate_span(grid_, step, span)) {
-      skip(span.length, 0);
-      return;
-    }
-    stretch(span, {step.t_begin, step.t_end}, primitives, left_out);
-  }
-
-  /// A stretch of the ray on which all channels are cubics, cut until it is good enough.
-  /// `range`: where it is on the ray, world arc length.
-  PELLUCID_HD void stretch(const MultivariateSpan<double>& span, Interval<double> range,
-                           PrimitiveSet primitives, double left_out) noexcept {
-    demand_.primitives = primitives;
-    // The parts still to do, by their ends, the nearest last.
-    double ends[most_cuts + 1];
-    int open = 1;
-    ends[0] = 1;
-    double begin = 0;
-    while (open > 0) {
-      const double end = ends[open - 1];
-      // Cuts inside of a cell are where they are thought to be.
-      demand_.place_error = begin > 0 ? 0 : 8 * rounding_unit<double> * range.end;
-      demand_.last_resort = open > most_cuts || !(end - begin > 1e-9);
-      const PanelSegment<double> panel = integrate(span, begin, end, left_out);
-      if (!panel.done) {
-        const double cut = begin + panel.cut * (end - begin);
-        if (cut > begin && cut < end) {
-          ends[open++] = cut;
-        } else {
-          ends[open++] = 0.5 * (begin + end);
-        }
-        continue;
-      }
-      if (fold_.optical_depth() >= target_) find(span, begin, end, range);
-      begin = end;
-      --open;
-      if (done()) return;
-    }
-  }
-
-  PELLUCID_HD RayResult result() const noexcept {
-    RayResult result;
-    result.radiance = fold_.radiance();
-    result.optical_depth = fold_.optical_depth();
-    result.opacity = fold_.opacity();
-    // Folding in double costs 4 u a span (segment/fold.h).
-    const double folding =
-        4 * rounding_unit<double> * demand_.largest_color * static_cast<double>(panels_);
-    result.error = budget_.spent() + rest() + folding;
-    result.proved = proved_;
-    result.evaluations = evaluations_;
-    result.spans = counts_;
-    return result;
-  }
-
- private:
-  static constexpr int most_cuts = 60;
-  static constexpr double infinity = std::numeric_limits<double>::infinity();
-
-  /// A bound on what lies behind: as little as light can come from there.
-  PELLUCID_HD double rest() const noexcept {
-    const double opacity = min(largest_extinction_ * budget_.length_left(), 1.0);
-    return fold_.transparency() * opacity * demand_.largest_color;
-  }
-
-  PELLUCID_HD PanelSegment<double> integrate(const MultivariateSpan<double>& whole, double begin,
-                                             double end, double left_out) noexcept {
-    const MultivariateSpan<double> span =
-        begin == 0 && end == 1 ? whole : whole.part(transfer_.channels, begin, end);
-    const auto allowance = [&](double opacity) noexcept {
-      return max(budget_.allowance(span.length, opacity, fold_.transparency()),
-                 RayBudget<double>::least_allowance(tolerance_, span.length / length_));
-    };
-    const PanelSegment<double> panel =
-        integrate_multivariate_panel(transfer_, span, demand_, allowance);
-    if (!panel.done) return panel;
-    ++panels_;
-    const double error = panel.error(demand_.largest_color) +
-                         demand_.largest_color * min(left_out * span.length, 1.0);
-    budget_.spend(span.length, panel.opacity, fold_.transparency(), error);
-    before_ = fold_.optical_depth();
-    if (!(panel.found.segment.optical_depth > 0)) {
-      ++counts_.skipped;
-      return panel;
-    }
-    ++(panel.found.panels ? counts_.panels : counts_.lines);
-    fold_.add(panel.found.segment);
-    proved_ = proved_ && panel.found.proved;
-    return panel;
-  }
-
-  /// The place in the part [begin, end] of a cell where the depth reaches the target: by bisection,
-  /// with the depths of lines, which is what the tolerance allows there.
-  PELLUCID_HD void find(const MultivariateSpan<double>& span, double begin, double end,
-                        Interval<double> range) noexcept {
-    PanelDemand<double> demand = demand_;
-    demand.last_resort = true;
-    demand.grade = Grade::proved;
-    const auto nothing = [](double) noexcept { return 0.0; };
-    double lo = begin, hi = end;
-    for (int i = 0; i < 24; ++i) {
-      const double middle = 0.5 * (lo + hi);
-      const double inside =
-          integrate_multivariate_panel(transfer_, span.part(transfer_.channels, begin, middle),
-                                       demand, nothing)
-              .found.segment.optical_depth;
-      (before_ + inside < target_ ? lo : hi) = middle;
-    }
-    found_ = range.begin + hi * (range.end - range.begin);
-  }
-
-  const MultichannelGrid& grid_;
-  const Multivariate<double>& transfer_;
-  double largest_extinction_;
-  double tolerance_, length_;
-  PanelDemand<double> demand_;
-  RayBudget<double> budget_;
-  FrontToBack<double> fold_{0.0};
-  RuleCounts counts_;
-  long evaluations_ = 0, panels_ = 0;
-  bool proved_ = true;
-  double before_ = 0;  ///< the optical depth in front of the last panel
-  double target_ = infinity, found_ = infinity;
-};
-
 namespace detail {
 
 /// Takes the integrator along the ray; returns the number of cells.
@@ -209,7 +39,13 @@ PELLUCID_HD inline long follow_ray(const MultichannelGrid& grid, const Multivari
     StructuredWalk<double>::Step step;
     while (!integrator.done() && walk.next(step)) {
       ++cells;
-      integrator.cell(step, primitives, left_out);
+      MultivariateSpan<double> span;
+      if (make_multivariate_span(grid, step, span)) {
+        integrator.stretch(span, {step.t_begin, step.t_end}, primitives, left_out,
+                           8 * rounding_unit<double> * step.t_end);
+      } else {
+        integrator.skip(span.length, 0);
+      }
     }
   };
   if (blocks == nullptr) {
@@ -237,7 +73,7 @@ PELLUCID_HD inline double find_multivariate_half_opacity(
     double opacity) noexcept {
   const Interval<double> inside = grid_interval(grid.axis, ray_grid);
   if (!(opacity > 0) || inside.empty()) return std::numeric_limits<double>::infinity();
-  MultivariateRayIntegrator integrator(grid, transfer, largest_extinction, wanted,
+  MultivariateRayIntegrator integrator(transfer, largest_extinction, wanted,
                                        inside.end - inside.begin);
   // There exp(-a) = 1 - opacity/2.
   integrator.look_for(-log1p(-0.5 * opacity));
@@ -260,11 +96,12 @@ PELLUCID_HD inline RayResult integrate_multivariate_ray(
   nothing.proved = true;
   if (inside.empty()) return nothing;
 
-  MultivariateRayIntegrator integrator(grid, transfer, largest_extinction, wanted,
+  MultivariateRayIntegrator integrator(transfer, largest_extinction, wanted,
                                        inside.end - inside.begin);
   const long cells = detail::follow_ray(grid, blocks, ray_grid, inside, integrator);
   RayResult result = integrator.result();
   result.cells = cells;
+  result.evaluations = cells;
   if (with_depth) {
     result.half_opacity_depth = find_multivariate_half_opacity(
         grid, blocks, ray_grid, transfer, largest_extinction, wanted, result.opacity);

@@ -100,9 +100,11 @@ struct Scene {
 };
 
 /// Throws Error where neither a volume with a transfer function nor channels with a multivariate
-/// one are there, or more than these, or the function sees another number of channels.
+/// one nor a mesh with either are there, or more than these, or the function sees another number of
+/// channels.
 void check_data(const Scene& scene);
-/// The volume whose grid the rays cross. Of a scene that check_data() accepts, as all below.
+/// The volume whose grid the rays cross. Of a scene that check_data() accepts, as all below, and
+/// that has no mesh.
 const Volume& grid_volume(const Scene& scene) noexcept;
 /// Largest color component of the transfer function.
 double largest_color(const Scene& scene) noexcept;

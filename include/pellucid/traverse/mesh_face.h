@@ -14,8 +14,8 @@ struct SeenFace {
   T area[3];  ///< |twice the area| between the ray and the edge opposite to the point
   mask_t<T> left = mask_t<T>(false);  ///< how the points turn around the ray, in their order
 
-  /// A bound on how far a weight may be off where the places of the points across the ray are off by
-  /// `blur`.
+  /// A bound on how far a weight may be off where the places of the points across the ray are off
+  /// by `blur`.
   PELLUCID_HD T weight_error(T blur) const noexcept {
     T across = T(0);
     for (const SeenPoint<T>& p : seen) across += abs(p.x) + abs(p.y);

@@ -81,9 +81,9 @@ PELLUCID_HD inline MeshSpan span_between(const MeshPlace& from, const MeshPlace&
 }  // namespace detail
 
 /// visit(MeshSpan), front to back and while it returns true, for the tetrahedra that a ray goes
-/// through at t >= 0. `hits`: where its line goes through the boundary, in ascending order; they are
-/// used up. A mesh that is not convex is left and entered again; each way through it begins at one
-/// of the hits and ends at another.
+/// through at t >= 0. `hits`: where its line goes through the boundary, in ascending order; they
+/// are used up. A mesh that is not convex is left and entered again; each way through it begins at
+/// one of the hits and ends at another.
 ///
 /// Where rounding lets places be out of order, what is behind the farthest one counts. Where more
 /// than rounding does, tetrahedra overlap: the span says so.
