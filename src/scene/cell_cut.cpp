@@ -140,7 +140,7 @@ CellCut cut_cells(const UnstructuredGrid& grid, bool with_cells, const ParallelF
   std::vector<Part> parts = make_parts(grid);
   count_tetrahedra(grid, cut, parts, parallel);
 
-  constexpr std::size_t most = std::size_t{1} << 29;  // as TetrahedralMesh
+  constexpr std::size_t most = std::size_t{1} << 28;  // as TetrahedralMesh
   const std::size_t count = parts.back().tetrahedron;
   if (count > most) {
     fail(grid, "its cells are " + std::to_string(count) + " tetrahedra, but at most " +
