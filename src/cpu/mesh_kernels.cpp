@@ -5,13 +5,22 @@
 #include "pellucid/packet/mesh_packet.h"
 #include "pellucid/simd/instruction_set.h"
 
-extern "C" void PELLUCID_ENTRY(pellucid_integrate_mesh)(const PellucidMeshJob* job) {
+namespace {
+
+template <class S>
+void run(const PellucidMeshJob& job) {
   constexpr int lanes = PELLUCID_LANES;
-  using Packet = pellucid::MeshPacket<lanes>;
-  Packet::Room room;
-  for (int first = 0; first < job->count; first += lanes) {
-    Packet packet(*job, room, first, pellucid::min(lanes, job->count - first));
+  using Packet = pellucid::MeshPacket<S, lanes>;
+  typename Packet::Room room;
+  for (int first = 0; first < job.count; first += lanes) {
+    Packet packet(job, room, first, pellucid::min(lanes, job.count - first));
     packet.run();
-    packet.store(job->results);
+    packet.store(job.results);
   }
+}
+
+}  // namespace
+
+extern "C" void PELLUCID_ENTRY(pellucid_integrate_mesh)(const PellucidMeshJob* job) {
+  job->in_double != 0 ? run<double>(*job) : run<float>(*job);
 }

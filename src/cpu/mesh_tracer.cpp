@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <numeric>
 #include <optional>
 #include <string>
 #include <vector>
@@ -32,6 +34,16 @@ class FieldStorage {
   }
   const MeshFields& view() const noexcept { return fields_; }
 
+  /// The mesh's points with the values of the first channel.
+  std::vector<MeshPoint> points(const std::vector<Vec3<double>>& positions) const {
+    std::vector<MeshPoint> points(positions.size());
+    const MeshField& first = fields_.channel[0];
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      points[i] = {positions[i], first.per_cell ? 0 : first.value[i]};
+    }
+    return points;
+  }
+
  private:
   std::vector<std::vector<double>> values_;
   MeshFields fields_;
@@ -56,38 +68,24 @@ Kernel kernel_for([[maybe_unused]] InstructionSet set) {
 #endif
 }
 
-/// Rays and where they meet the boundary of the mesh, all of them one behind the other.
-class MeshRays {
+/// Where a ray meets the boundary of a mesh.
+class RayHits {
  public:
-  MeshRays(const Tetrahedra& mesh, const std::vector<Ray<double>>& world) {
-    const Vec3<double> middle = 0.5 * (mesh.lower + mesh.upper);
-    rays_.reserve(world.size());
-    for (const Ray<double>& ray : world) {
-      MeshRay in_mesh;
-      in_mesh.view = make_ray_view(ray, middle, mesh.reach);
-      const std::size_t first = hits_.size();
-      for_each_boundary_hit(mesh, ray, in_mesh.view,
-                            [&](const MeshHit& hit) { hits_.push_back(hit); });
-      std::sort(hits_.begin() + static_cast<std::ptrdiff_t>(first), hits_.end());
-      in_mesh.count = static_cast<int>(hits_.size() - first);
-      rays_.push_back(in_mesh);
-    }
-    MeshHit* hit = hits_.data();
-    for (MeshRay& ray : rays_) {
-      ray.hits = hit;
-      hit += ray.count;
-    }
+  /// Valid until the next call.
+  MeshRay find(const Tetrahedra& mesh, const Ray<double>& ray) {
+    MeshRay result;
+    result.view = make_ray_view(ray, mesh.middle(), mesh.reach);
+    hits_.clear();
+    for_each_boundary_hit(mesh, ray, result.view,
+                          [&](const MeshHit& hit) { hits_.push_back(hit); });
+    std::sort(hits_.begin(), hits_.end());
+    result.hits = hits_.data();
+    result.count = static_cast<int>(hits_.size());
+    return result;
   }
-  MeshRays(const MeshRays&) = delete;
-  MeshRays& operator=(const MeshRays&) = delete;
-
-  std::size_t size() const noexcept { return rays_.size(); }
-  /// Its hits are used up by whoever follows it.
-  const MeshRay& operator[](std::size_t i) const noexcept { return rays_[i]; }
 
  private:
   std::vector<MeshHit> hits_;
-  std::vector<MeshRay> rays_;
 };
 
 class MeshTracer : public RayTracer {
@@ -101,19 +99,22 @@ class MeshTracer : public RayTracer {
   }
 
   std::vector<RayResult> trace(const std::vector<Ray<double>>& world) const override {
-    std::vector<RayResult> results;
-    results.reserve(world.size());
-    integrate(MeshRays(mesh_, world), results);
+    std::vector<RayResult> results(world.size());
+    integrate(world, results);
     if (!depth_) return results;
-    const MeshRays again(mesh_, world);
+    RayHits hits;
     for (std::size_t i = 0; i < world.size(); ++i) {
-      results[i].half_opacity_depth = find_half_opacity(again[i], results[i].opacity);
+      if (!(results[i].opacity > 0)) continue;
+      results[i].half_opacity_depth =
+          find_half_opacity(hits.find(mesh_, world[i]), results[i].opacity);
     }
     return results;
   }
 
  protected:
-  virtual void integrate(const MeshRays& rays, std::vector<RayResult>& results) const = 0;
+  virtual void integrate(const std::vector<Ray<double>>& rays,
+                         std::vector<RayResult>& results) const = 0;
+  /// Of a ray of this opacity > 0.
   virtual double find_half_opacity(const MeshRay& ray, double opacity) const = 0;
 
   const Tetrahedra mesh_;
@@ -138,26 +139,37 @@ class UnivariateMeshTracer : public MeshTracer {
       return;
     }
     kernel_ = kernel_for(set);
+    if (kernel_ == nullptr) return;
     binned_.emplace(tables.wide, tables.merged, tables.merged_count, largest);
     job_.mesh = &mesh_;
-    job_.fields = &fields_.view();
+    job_.field = &fields_.view().channel[0];
     job_.transfer = &binned_->view();
     job_.tolerance = wanted_.tolerance;
     job_.largest_color = std::max(wanted_.largest_color, 1.0);
     job_.largest_extinction = tables.largest_extinction;
     job_.integrate_span = &UnivariateMeshTracer::integrate_span;
     job_.context = this;
+    points_ = fields_.points(task.scene.mesh->mesh().points());
+    job_.points = points_.data();
   }
 
  protected:
-  void integrate(const MeshRays& rays, std::vector<RayResult>& results) const override {
+  void integrate(const std::vector<Ray<double>>& rays,
+                 std::vector<RayResult>& results) const override {
+    std::vector<std::size_t> left(rays.size());
+    std::iota(left.begin(), left.end(), std::size_t{0});
     if (kernel_ != nullptr) {
-      integrate_in_packets(rays, results);
-      return;
+      if (wanted_.tolerance >= least_tolerance_in_float) {
+        follow(rays, false, left, results);
+      }
+      if (!left.empty()) follow(rays, true, left, results);
+      // Those with more hits than a lane has room for.
+      std::erase_if(left, [&](std::size_t i) { return results[i].error < infinity; });
     }
-    for (std::size_t i = 0; i < rays.size(); ++i) {
-      results.push_back(
-          integrate_mesh_ray(mesh_, fields_.view(), transfer_.tables(), rays[i], wanted_));
+    RayHits hits;
+    for (const std::size_t i : left) {
+      results[i] = integrate_mesh_ray(mesh_, fields_.view(), transfer_.tables(),
+                                      hits.find(mesh_, rays[i]), wanted_);
     }
   }
   double find_half_opacity(const MeshRay& ray, double opacity) const override {
@@ -165,28 +177,33 @@ class UnivariateMeshTracer : public MeshTracer {
   }
 
  private:
-  void integrate_in_packets(const MeshRays& rays, std::vector<RayResult>& results) const {
-    RayResult clear;
-    clear.error = 0;
-    clear.proved = true;
-    results.assign(rays.size(), clear);
-    std::vector<PellucidMeshRay> meeting;
-    std::vector<std::size_t> of;
-    meeting.reserve(rays.size());
-    of.reserve(rays.size());
-    for (std::size_t i = 0; i < rays.size(); ++i) {
-      const Interval<double> inside = rays[i].inside();
-      if (inside.empty()) continue;
-      meeting.push_back({&rays[i], inside.begin, inside.end});
-      of.push_back(i);
+  static constexpr double infinity = std::numeric_limits<double>::infinity();
+  /// Below it most rays would be followed twice.
+  static constexpr double least_tolerance_in_float = 2e-4;
+
+  /// Follows the rays of `left` in packets, and leaves those there that are beyond the tolerance.
+  void follow(const std::vector<Ray<double>>& rays, bool in_double, std::vector<std::size_t>& left,
+              std::vector<RayResult>& results) const {
+    std::vector<PellucidMeshRay> of_job;
+    of_job.reserve(left.size());
+    for (const std::size_t i : left) {
+      const Vec3<double>&o = rays[i].origin, &d = rays[i].direction;
+      of_job.push_back({{o.x, o.y, o.z}, {d.x, d.y, d.z}});
     }
-    std::vector<PellucidRayResult> found(meeting.size());
+    std::vector<PellucidRayResult> found(left.size());
     PellucidMeshJob job = job_;
-    job.rays = meeting.data();
+    job.in_double = in_double ? 1 : 0;
+    job.rays = of_job.data();
     job.results = found.data();
-    job.count = static_cast<std::int32_t>(meeting.size());
+    job.count = static_cast<std::int32_t>(left.size());
     kernel_(&job);
-    for (std::size_t i = 0; i < found.size(); ++i) read_result(found[i], results[of[i]]);
+    std::vector<std::size_t> beyond;
+    beyond.reserve(left.size());
+    for (std::size_t n = 0; n < left.size(); ++n) {
+      read_result(found[n], results[left[n]]);
+      if (!(results[left[n]].error <= wanted_.tolerance)) beyond.push_back(left[n]);
+    }
+    left = std::move(beyond);
   }
 
   static void integrate_span(const void* context, const PellucidLinearSpan* span,
@@ -210,6 +227,7 @@ class UnivariateMeshTracer : public MeshTracer {
 
   TransferTablesStorage transfer_;
   std::optional<BinnedTransferStorage> binned_;
+  std::vector<MeshPoint> points_;
   PellucidMeshJob job_{};
   Kernel kernel_ = nullptr;  ///< null: rays go one by one
 };
@@ -222,15 +240,16 @@ class MultivariateMeshTracer : public MeshTracer {
         transfer_(transfer_function_.view()) {}
 
  protected:
-  void integrate(const MeshRays& rays, std::vector<RayResult>& results) const override {
+  void integrate(const std::vector<Ray<double>>& rays,
+                 std::vector<RayResult>& results) const override {
+    RayHits hits;
     for (std::size_t i = 0; i < rays.size(); ++i) {
-      results.push_back(integrate_multivariate_mesh_ray(mesh_, fields_.view(), transfer_,
-                                                        transfer_function_.largest_extinction(),
-                                                        rays[i], wanted_));
+      results[i] = integrate_multivariate_mesh_ray(mesh_, fields_.view(), transfer_,
+                                                   transfer_function_.largest_extinction(),
+                                                   hits.find(mesh_, rays[i]), wanted_);
     }
   }
   double find_half_opacity(const MeshRay& ray, double opacity) const override {
-    if (!(opacity > 0)) return std::numeric_limits<double>::infinity();
     // There exp(-a) = 1 - opacity/2.
     return integrate_multivariate_mesh_ray(mesh_, fields_.view(), transfer_,
                                            transfer_function_.largest_extinction(), ray, wanted_,

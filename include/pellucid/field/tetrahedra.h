@@ -41,12 +41,15 @@ struct Tetrahedra {
   Vec3<double> lower, upper;
   double reach = 0;
   std::int32_t count = 0;  ///< of tetrahedra
+
+  PELLUCID_HD Vec3<double> middle() const noexcept { return 0.5 * (lower + upper); }
 };
 
-/// A point of the mesh, or those of the lanes.
-PELLUCID_HD inline Vec3<double> gather_point(const Vec3<double>* point, int index) noexcept {
-  return point[index];
-}
+/// A point and the value of a variable there: four numbers, loaded at once.
+struct MeshPoint {
+  Vec3<double> position;  ///< world
+  double value = 0;       ///< 0 where the variable has one per tetrahedron
+};
 
 /// A variable of a mesh, in double: a value per point, linear in each tetrahedron, or one per
 /// tetrahedron. NaN: vacuum.

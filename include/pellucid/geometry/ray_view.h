@@ -23,7 +23,7 @@ struct RayView {
   T t_origin{};    ///< its parameter
   Vec3<T> x, y;    ///< rows: a point p is at (x·(p - origin), y·(p - origin))
   Vec3<T> t;       ///< and its parameter is t_origin + t·(p - origin)
-  T blur{};        ///< how far what is seen may be from its true place, in each coordinate
+  T blur{};        ///< how far what is seen may be from its true place, in x and in y; t likewise
 
   PELLUCID_HD SeenPoint<T> see(const Vec3<T>& point) const noexcept {
     const Vec3<T> p = point - origin;

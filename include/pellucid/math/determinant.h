@@ -23,24 +23,36 @@ PELLUCID_HD T product_error(T a, T b, T product) noexcept {
 
 }  // namespace detail
 
+/// a_x b_y - a_y b_x as rounded, and whether its sign is certain: the products are off by u each.
+template <class T>
+struct RoundedDeterminant {
+  T value{};
+  mask_t<T> certain = mask_t<T>(false);
+};
+template <class T>
+PELLUCID_HD RoundedDeterminant<T> rounded_determinant(T a_x, T a_y, T b_x, T b_y) noexcept {
+  const T p = a_x * b_y, q = a_y * b_x;
+  const T difference = p - q;
+  return {difference, abs(difference) > T(4 * rounding_unit<T>) * (abs(p) + abs(q))};
+}
+
 /// a_x b_y - a_y b_x, twice the signed area of the triangle (0, a, b). Its sign is the exact one,
-/// and exchanging a and b changes the sign alone; largest error 5 u relative. Asserted in
-/// tests/math. Wanted: |a|, |b| < 2^500, and no product that is not 0 below 2^-900 (in double;
-/// below, the sign may be 0).
+/// and exchanging a and b changes the sign alone; largest error 2 u (|a_x b_y| + |a_y b_x|).
+/// Asserted in tests/math. Wanted: |a|, |b| < 2^500, and no product that is not 0 below 2^-900 (in
+/// double; below, the sign may be 0).
 ///
-/// Where the two products are close, what rounding took from each is added again: the difference of
-/// the rounded products is exact there (Sterbenz), and that of what they lost is two numbers
+/// Where the sign of the rounded one is not certain, what rounding took from each product is added
+/// again: their difference is exact there (Sterbenz), and that of what they lost is two numbers
 /// (Knuth's sum).
 template <class T>
 PELLUCID_HD T determinant(T a_x, T a_y, T b_x, T b_y) noexcept {
+  const RoundedDeterminant<T> rounded = rounded_determinant(a_x, a_y, b_x, b_y);
+  if (all(rounded.certain)) return rounded.value;
   const T p = a_x * b_y, q = a_y * b_x;
-  const T difference = p - q;
-  const auto close = abs(difference) < T(0.25) * (abs(p) + abs(q));
-  if (!any(close)) return difference;
   const T lost_p = detail::product_error(a_x, b_y, p), lost_q = detail::product_error(a_y, b_x, q);
   const T lost = lost_p - lost_q, back = lost - lost_p;
   const T rest = (lost_p - (lost - back)) - (lost_q + back);
-  return select(close, (difference + lost) + rest, difference);
+  return select(rounded.certain, rounded.value, (rounded.value + lost) + rest);
 }
 
 }  // namespace pellucid

@@ -8,21 +8,23 @@
 /// As packet/interface.h, for rays through a variable of a mesh.
 extern "C" {
 
-/// A ray through a mesh, with room for what it meets of the boundary.
+/// A ray in the world, its direction of length 1.
 struct PellucidMeshRay {
-  const void* ray;    ///< MeshRay
-  double begin, end;  ///< where it may be in the mesh, world arc length
+  double origin[3], direction[3];
 };
 
-/// A part of a span that binary32 is not good enough for, or whose colors bend too much.
+/// A part of a span that the packets' rule is not good enough for.
 struct PellucidLinearSpan {
   double front, back;
-  double error, place_error, length;
+  double error, length, place_error, end_error;
 };
 
 struct PellucidMeshJob {
   const void* mesh;    ///< Tetrahedra
-  const void* fields;  ///< MeshFields, of one channel
+  const void* points;  ///< MeshPoint per point
+  const void* field;   ///< MeshField
+  /// Whether rays see the mesh in double, and not in binary32.
+  std::int32_t in_double;
   // The transfer function and what is wanted.
   const void* transfer;  ///< BinnedTransfer
   double tolerance, largest_color, largest_extinction;

@@ -18,7 +18,10 @@ namespace pellucid {
 /// of linear extinction and color. Where the color has corners of its own, its line between the
 /// ends stands for it as far as the budget pays for that. What binary32 is not good enough for is
 /// handed back.
-template <int N>
+///
+/// S: the numbers that the rays see the mesh in. With float a ray that is beyond its tolerance is
+/// to be followed again in double.
+template <class S, int N>
 class MeshPacket {
  public:
   using F = Batch<float, N>;
@@ -26,7 +29,7 @@ class MeshPacket {
   using I = Batch<std::int32_t, N>;
   using M = BatchMask<N>;
   /// What many packets have one after the other.
-  using Room = MeshSpanRows<N>;
+  using Room = MeshSpanRows<S, N>;
 
   MeshPacket(const PellucidMeshJob& job, Room& rows, int first, int count) noexcept
       : job_(job),
@@ -34,19 +37,14 @@ class MeshPacket {
         rows_(rows),
         first_(first),
         count_(count),
-        march_(job, job.rays + first, count),
+        march_(job, first, count),
         largest_color_(static_cast<float>(job.largest_color)),
         color_bends_(transfer_.color_bend[transfer_.bins] > 0) {
-    double length[N];
     std::int32_t lane[N];
-    for (int l = 0; l < N; ++l) {
-      const PellucidMeshRay& ray = job.rays[first + (l < count ? l : 0)];
-      length[l] = ray.end - ray.begin;
-      lane[l] = l;
-    }
+    for (int l = 0; l < N; ++l) lane[l] = l;
     lane_ = I::load(lane);
     budget_ = RayBudget<F>(F(static_cast<float>(job.tolerance * (1 - kept_back))),
-                           convert<float>(D::load(length)));
+                           max(convert<float>(march_.rays.end - march_.rays.begin), F(0)));
   }
 
   void run() noexcept {
@@ -77,6 +75,8 @@ class MeshPacket {
       r.optical_depth = all.optical_depth[l];
       r.error = error[l];
       r.cells = r.evaluations = cells_[l];
+      // Nothing is known of those that were not followed.
+      if (march_.rays.crowded[l]) r.error = std::numeric_limits<double>::infinity();
       r.closed = pieces_[l];
       r.in_double = in_double_[l];
       r.proved = 1;
@@ -123,6 +123,7 @@ class MeshPacket {
     take(rows_.length, length_);
     take(rows_.left, left_);
     take(rows_.place_error, place_error_);
+    take(rows_.end_error, end_error_);
     const I note = gather(rows_.code, at);
     handed_back_ = handed_back_ | (lanes & (note > I(0)));
     span_length_ = select(lanes, length_, span_length_);
@@ -180,9 +181,12 @@ class MeshPacket {
         (least - value_error < interval.lower) | (most + value_error > interval.upper) | crosses;
     const F near = select(range > F(2) * value_error, F(2) * value_error / range, F(1));
     const F slope = abs(interval.slope);
+    const F recolored =
+        min(interval.color_slope * range * (F(1) / largest_color_), F(1)) * interval.largest;
     const F steep = select(touches, slope + near * (interval.steepest - slope), slope);
     const F depth_error = length * (value_error * steep + F(8 * u) * interval.largest) +
-                          place_error_ * (length / span_length_) * interval.largest;
+                          place_error_ * (slope * range + recolored) +
+                          end_error_ * (length / span_length_) * interval.largest;
     const F color_rounding =
         F(32 * u) * largest_color_ + min(value_error * interval.color_slope, largest_color_);
     const F opacity_rounding =
@@ -274,14 +278,16 @@ class MeshPacket {
         error[l] = job_.largest_color;  // anything may be there
         continue;
       }
-      const double from = static_cast<double>(from_[l]), front = rows_.exact_front[row],
-                   back = rows_.exact_back[row];
+      const double from = static_cast<double>(from_[l]),
+                   front = static_cast<double>(rows_.exact_front[row]),
+                   back = static_cast<double>(rows_.exact_back[row]),
+                   length = static_cast<double>(rows_.exact_length[row]);
       // Where pieces have ended is known in binary32.
       const double off = from > 0 ? 4 * static_cast<double>(rounding_unit<float>) : 0;
       const PellucidLinearSpan span{
-          front + from * (back - front), back, rows_.error[row],
-          static_cast<double>(place_error_[l]) + off * rows_.exact_length[row],
-          (1 - from) * rows_.exact_length[row]};
+          front + from * (back - front),         back,
+          static_cast<double>(rows_.error[row]), (1 - from) * length,
+          static_cast<double>(place_error_[l]),  static_cast<double>(end_error_[l]) + off * length};
       PellucidCellResult result;
       job_.integrate_span(job_.context, &span, &result);
       depth[l] = result.optical_depth;
@@ -309,7 +315,7 @@ class MeshPacket {
   const BinnedTransfer& transfer_;
   Room& rows_;
   int first_, count_;
-  MeshMarch<N> march_;
+  MeshMarch<S, N> march_;
   I lane_;
 
   I waiting_{0};  ///< per lane, the rows whose spans are not taken yet
@@ -325,7 +331,7 @@ class MeshPacket {
   F span_length_{1};      ///< of all of it
   F from_{0};             ///< the share that is done
   F cap_{1};              ///< the most that the next piece may be of what is left
-  F rounding_{0}, place_error_{0};
+  F rounding_{0}, place_error_{0}, end_error_{0};
   Rgb<F> front_color_{F(0), F(0), F(0)};
   ExtinctionInterval<F> extinction_{F(0), F(0), F(0), F(0), F(0), F(0), F(0), F(0)};
 
@@ -334,8 +340,7 @@ class MeshPacket {
   F largest_color_;
   bool color_bends_;
   M cut_off_{false};
-  std::int32_t cells_[N] = {};
-  I pieces_{0}, in_double_{0};
+  I cells_{0}, pieces_{0}, in_double_{0};
 };
 
 }  // namespace pellucid

@@ -11,7 +11,8 @@ struct LinearData {
   double front = 0, back = 0;
   double error = 0;        ///< how far they may be off, beside their rounding
   double length = 0;       ///< world
-  double place_error = 0;  ///< how far the ends may be off, together, world length
+  double place_error = 0;  ///< how far the ends may be off where the data go on, world length
+  double end_error = 0;    ///< and where they do not
 };
 
 /// Integrates a stretch on which the data are linear, in T: Moreland's integral between control
@@ -43,7 +44,14 @@ PELLUCID_HD bool integrate_linear_span(const LinearData& data, const TransferTab
   result.opacity = static_cast<double>(opacity);
   RoundingError<T> rounding = rounding_error(cubic, length, T(largest_color), table, reach.first,
                                              reach.last, data_error, slopes);
-  rounding.depth += static_cast<T>(data.place_error) * slopes.largest_extinction;
+  // What lies between the two places of an end is between the data there and those of the span.
+  const T range = upper - lower + T(2) * data_error;
+  const T change = slopes.jump ? slopes.largest_extinction
+                               : min(slopes.extinction_slope * range, slopes.largest_extinction);
+  const T recolored = min(slopes.color_slope * range, T(largest_color)) *
+                      slopes.largest_extinction / T(largest_color);
+  rounding.depth += static_cast<T>(data.place_error) * (change + recolored) +
+                    static_cast<T>(data.end_error) * slopes.largest_extinction;
   // Control points beyond the sixteenth cost 3 u each.
   const T more = T(3 * rounding_unit<T>) * T(max(reach.last - reach.first - 16, 0));
   const auto cost = [&](const T alpha, const T transparency) noexcept {

@@ -60,8 +60,8 @@ class MeshRayIntegrator {
       ++counts_.skipped;
       return;
     }
-    const LinearData data{span.front[0], span.back[0], span.value_error[0], length,
-                          span.place_error};
+    const LinearData data{span.front[0], span.back[0],     span.value_error[0],
+                          length,        span.place_error, span.end_error};
     const bool in_float = wanted_.precision == Precision::float32;
     if (in_float) {
       add<float>(data, span.begin);
@@ -191,7 +191,8 @@ PELLUCID_HD inline void add_span(const Multivariate<double>& transfer, const Mes
     data.data[c] = {{front, front + third, back - third, back}};
   }
   integrator.stretch(data, {span.begin, span.end}, {},
-                     min(extinction_error(transfer, span), largest_extinction), span.place_error);
+                     min(extinction_error(transfer, span), largest_extinction),
+                     span.place_error + span.end_error);
 }
 
 }  // namespace detail

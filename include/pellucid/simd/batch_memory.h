@@ -110,6 +110,38 @@ PELLUCID_ALWAYS_INLINE void load_records(const float* base, Batch<std::int32_t, 
   }
 }
 
+/// The same of whole numbers.
+template <int K, int N>
+PELLUCID_ALWAYS_INLINE void load_records(const std::int32_t* base, Batch<std::int32_t, N> index,
+                                         Batch<std::int32_t, N>* out) noexcept {
+  static_assert(K > 0 && K % 4 == 0);
+  using Native = detail::Native<N>;
+  using Int = Batch<std::int32_t, N>;
+  std::int32_t row[N];
+  index.store(row);
+  for (int k = 0; k < K; k += 4) {
+    typename Native::Float fields[4];
+    Native::four_fields(reinterpret_cast<const float*>(base + k), K, row, fields);
+    for (int j = 0; j < 4; ++j) {
+      out[k + j] = Int(typename Int::Register(reinterpret_cast<typename Native::Int>(fields[j])));
+    }
+  }
+}
+
+/// The same of doubles.
+template <int K, int N>
+PELLUCID_ALWAYS_INLINE void load_records(const double* base, Batch<std::int32_t, N> index,
+                                         Batch<double, N>* out) noexcept {
+  static_assert(K == 4);
+  using Native = detail::Native<N>;
+  using Number = Batch<double, N>;
+  std::int32_t row[N];
+  index.store(row);
+  typename Native::Double low[4], high[4];
+  Native::four_doubles(base, row, low, high);
+  for (int j = 0; j < 4; ++j) out[j] = Number(low[j], high[j]);
+}
+
 /// The other way round: base[K index + k] = in[k] of every lane, each of another index. Writes
 /// nothing else.
 template <int K, int N>

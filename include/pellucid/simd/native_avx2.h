@@ -198,6 +198,23 @@ struct Native<8> {
     }
   }
 
+  PELLUCID_ALWAYS_INLINE static void four_doubles(const double* base, const std::int32_t* index,
+                                                  Double* low, Double* high) noexcept {
+    Double* const half[2] = {low, high};
+    for (int h = 0; h < 2; ++h) {
+      __m256d r[4];
+      for (int j = 0; j < 4; ++j) {
+        r[j] = _mm256_loadu_pd(base + 4 * static_cast<std::ptrdiff_t>(index[4 * h + j]));
+      }
+      const __m256d a = _mm256_unpacklo_pd(r[0], r[1]), b = _mm256_unpackhi_pd(r[0], r[1]);
+      const __m256d c = _mm256_unpacklo_pd(r[2], r[3]), d = _mm256_unpackhi_pd(r[2], r[3]);
+      half[h][0] = _mm256_permute2f128_pd(a, c, 0x20);
+      half[h][1] = _mm256_permute2f128_pd(b, d, 0x20);
+      half[h][2] = _mm256_permute2f128_pd(a, c, 0x31);
+      half[h][3] = _mm256_permute2f128_pd(b, d, 0x31);
+    }
+  }
+
   static constexpr bool has_packing = false;
 };
 

@@ -215,6 +215,28 @@ struct Native<16> {
     }
   }
 
+  PELLUCID_ALWAYS_INLINE static void four_doubles(const double* base, const std::int32_t* index,
+                                                  Double* low, Double* high) noexcept {
+    const __m512i first = _mm512_setr_epi64(0, 1, 8, 9, 4, 5, 12, 13),
+                  second = _mm512_setr_epi64(2, 3, 10, 11, 6, 7, 14, 15);
+    Double* const half[2] = {low, high};
+    for (int h = 0; h < 2; ++h) {
+      const auto row = [&](int lane) __attribute__((always_inline)) {
+        return _mm256_loadu_pd(base + 4 * static_cast<std::ptrdiff_t>(index[8 * h + lane]));
+      };
+      __m512d r[4];
+      for (int j = 0; j < 4; ++j) {
+        r[j] = _mm512_insertf64x4(_mm512_castpd256_pd512(row(j)), row(4 + j), 1);
+      }
+      const __m512d a = _mm512_unpacklo_pd(r[0], r[1]), b = _mm512_unpackhi_pd(r[0], r[1]);
+      const __m512d c = _mm512_unpacklo_pd(r[2], r[3]), d = _mm512_unpackhi_pd(r[2], r[3]);
+      half[h][0] = _mm512_permutex2var_pd(a, first, c);
+      half[h][1] = _mm512_permutex2var_pd(b, first, d);
+      half[h][2] = _mm512_permutex2var_pd(a, second, c);
+      half[h][3] = _mm512_permutex2var_pd(b, second, d);
+    }
+  }
+
   static constexpr bool has_packing = true;
   PELLUCID_ALWAYS_INLINE static void store_packed(Mask m, Float x, float* to) noexcept {
     _mm512_storeu_ps(to, _mm512_maskz_compress_ps(m, x));

@@ -278,6 +278,21 @@ struct Native<4> {
     _mm_storeu_ps(base + stride * index[3], _mm_movehl_ps(d, b));
   }
 
+  /// The four doubles at base + 4 · index[lane] of every lane.
+  PELLUCID_ALWAYS_INLINE static void four_doubles(const double* base, const std::int32_t* index,
+                                                  Double* low, Double* high) noexcept {
+    Double* const half[2] = {low, high};
+    for (int h = 0; h < 2; ++h) {
+      const double* const p = base + 4 * static_cast<std::ptrdiff_t>(index[2 * h]);
+      const double* const q = base + 4 * static_cast<std::ptrdiff_t>(index[2 * h + 1]);
+      for (int j = 0; j < 4; j += 2) {
+        const __m128d a = _mm_loadu_pd(p + j), b = _mm_loadu_pd(q + j);
+        half[h][j] = _mm_unpacklo_pd(a, b);
+        half[h][j + 1] = _mm_unpackhi_pd(a, b);
+      }
+    }
+  }
+
   /// Whether there are store_packed() and load_spread().
   static constexpr bool has_packing = false;
 };

@@ -98,6 +98,11 @@ PELLUCID_HD constexpr void load_records(const float* base, int index, float* out
   for (int k = 0; k < K; ++k) out[k] = base[K * static_cast<std::ptrdiff_t>(index) + k];
 }
 
+template <int K>
+PELLUCID_HD constexpr void load_records(const std::int32_t* base, int index, int* out) noexcept {
+  for (int k = 0; k < K; ++k) out[k] = base[K * static_cast<std::ptrdiff_t>(index) + k];
+}
+
 #define PELLUCID_FORWARD_UNARY(name)                  \
   PELLUCID_HD inline float name(float x) noexcept {   \
     return std::name(x);                              \

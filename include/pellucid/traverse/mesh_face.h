@@ -16,12 +16,14 @@ struct SeenFace {
   mask_t<T> left = mask_t<T>(false);  ///< how the points turn around the ray, in their order
 
   /// A bound on how far a weight may be off where the places of the points across the ray are off
-  /// by `blur`.
+  /// by `blur`, and rounded to T.
   PELLUCID_HD T weight_error(T blur) const noexcept {
     T across = T(0);
     for (const SeenPoint<T>& p : seen) across += abs(p.x) + abs(p.y);
-    const T moved = T(4) * blur * across, sum = area[0] + area[1] + area[2];
-    // An area is off by blur times the sizes of its two points.
+    // An area is off by what its points are off, times their sizes; a weight by that and by its
+    // share of what all three are off.
+    const T moved = T(3) * (blur + T(rounding_unit<T>) * across) * across;
+    const T sum = area[0] + area[1] + area[2];
     return select(moved < sum, moved / select(moved < sum, sum, T(1)), T(1));
   }
 
@@ -35,27 +37,42 @@ struct SeenFace {
   }
 };
 
-/// The three points of face `code` (4 · tetrahedron + face), seen from `view`: false where the ray
-/// does not go through.
-PELLUCID_HD inline bool see_face(const Tetrahedra& mesh, const RayView<double>& view,
-                                 std::int32_t code, SeenFace<double>& face) noexcept {
-  const Tetrahedron& t = mesh.tetrahedron[code >> 2];
-  int n = 0;
-  for (int k = 0; k < 4; ++k) {
-    if (k == (code & 3)) continue;
-    face.point[n] = t.corner[k];
-    face.seen[n] = view.see(mesh.point[t.corner[k]]);
-    face.carried[n] = 0;
-    ++n;
-  }
-  bool left[3];
+/// The points of a face, in their order in the tetrahedron.
+PELLUCID_HD constexpr int corner_of_face(int face, int i) noexcept {
+  return i < face ? i : i + 1;
+}
+
+/// Fills in how three seen points turn around the ray; whether it goes through between them.
+template <class T>
+PELLUCID_HD mask_t<T> turn_around_ray(SeenFace<T>& face) noexcept {
+  mask_t<T> left[3];
   for (int i = 0; i < 3; ++i) {
-    const Side<double> side = side_of(face.seen[(i + 1) % 3], face.seen[(i + 2) % 3]);
+    const Side<T> side = side_of(face.seen[(i + 1) % 3], face.seen[(i + 2) % 3]);
     face.area[i] = abs(side.area);
     left[i] = side.left;
   }
   face.left = left[0];
-  return left[0] == left[1] && left[1] == left[2];
+  return (left[0] == left[1]) & (left[1] == left[2]);
+}
+
+/// The face `code` (4 · tetrahedron + face): false where the ray does not go through. see(point):
+/// where the ray sees it.
+template <class T, class See>
+PELLUCID_HD bool see_face(const Tetrahedra& mesh, std::int32_t code, See&& see,
+                          SeenFace<T>& face) noexcept {
+  const Tetrahedron& t = mesh.tetrahedron[code >> 2];
+  for (int i = 0; i < 3; ++i) {
+    const std::int32_t point = t.corner[corner_of_face(code & 3, i)];
+    face.point[i] = point;
+    face.seen[i] = see(point);
+    face.carried[i] = T(0);
+  }
+  return turn_around_ray(face);
+}
+PELLUCID_HD inline bool see_face(const Tetrahedra& mesh, const RayView<double>& view,
+                                 std::int32_t code, SeenFace<double>& face) noexcept {
+  return see_face(
+      mesh, code, [&](std::int32_t point) noexcept { return view.see(mesh.point[point]); }, face);
 }
 
 }  // namespace pellucid

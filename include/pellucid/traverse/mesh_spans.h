@@ -19,8 +19,11 @@ struct MeshSpan {
   double begin = 0, end = 0;  ///< world arc length
   double front[most_channels], back[most_channels];
   double value_error[most_channels];
-  double place_error = 0;  ///< how far begin and end may be off, together
-  bool vacuum = false;     ///< some channel has no value
+  /// How far begin and end may be off, together, where the data go on behind them as they are at
+  /// the ends: what one span has too much, its neighbour has too little.
+  double place_error = 0;
+  double end_error = 0;  ///< and where they do not
+  bool vacuum = false;   ///< some channel has no value
   /// The mesh overlaps itself here: what is in it is not known.
   bool overlaps = false;
 };
@@ -61,10 +64,11 @@ PELLUCID_HD inline MeshSpan span_between(const MeshPlace& from, const MeshPlace&
   MeshSpan span;
   span.begin = max(from.t, front);
   span.end = to.t;
-  span.place_error = from.t_error + to.t_error;
   const double length = to.t - from.t;
   const double share = from.t < front && front < to.t ? (front - from.t) / length : 0;
+  bool steps = false;
   for (int c = 0; c < fields.channels; ++c) {
+    steps = steps | fields.channel[c].per_cell;
     if (fields.channel[c].per_cell) {
       span.front[c] = span.back[c] = fields.channel[c].value[tetrahedron];
       span.value_error[c] = 0;
@@ -75,6 +79,7 @@ PELLUCID_HD inline MeshSpan span_between(const MeshPlace& from, const MeshPlace&
     }
     span.vacuum = span.vacuum | is_nan(span.front[c] + span.back[c]);
   }
+  (steps ? span.end_error : span.place_error) = from.t_error + to.t_error;
   return span;
 }
 
@@ -96,14 +101,22 @@ PELLUCID_HD void for_each_mesh_span(const Tetrahedra& mesh, const MeshFields& fi
     if (hits[i].code == Tetrahedron::outside) continue;
     SeenFace<double> face;
     see_face(mesh, view, hits[i].code, face);
-    MeshWalk<double> walk(mesh, view);
-    walk.enter(true, face, hits[i].code);
+    MeshWalk<double> walk(mesh);
+    const auto load = [&](int point, SeenPoint<double>& seen, double&) noexcept {
+      seen = view.see(mesh.point[point]);
+    };
+    walk.enter(true, face, hits[i].code, load);
     MeshPlace from = detail::place_on(face, fields, view.blur);
+    bool was_vacuum = false;
     for (std::int32_t steps = 0; walk.ahead() != Tetrahedron::outside; ++steps) {
       const std::int32_t tetrahedron = walk.ahead() >> 2;
-      walk.step(true, [](int) noexcept { return 0.0; });
+      walk.step(true, load);
       const MeshPlace to = detail::place_on(walk.face(), fields, view.blur);
       MeshSpan span = detail::span_between(from, to, fields, tetrahedron, front);
+      // Where the ray comes in and goes out, and beside vacuum, nothing makes good for it.
+      if (steps == 0 || was_vacuum) span.end_error += from.t_error;
+      if (walk.ahead() == Tetrahedron::outside || span.vacuum) span.end_error += to.t_error;
+      was_vacuum = span.vacuum;
       const double most = front_error + from.t_error + to.t_error;
       span.overlaps = (front > 0 && min(from.t, to.t) < front - most) || steps > mesh.count;
       if (span.begin < span.end || span.overlaps) {

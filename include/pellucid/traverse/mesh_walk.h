@@ -19,13 +19,13 @@ class MeshWalk {
   using Index = index_t<T>;
   using Mask = mask_t<T>;
 
-  /// All that is given is referred to.
-  PELLUCID_HD MeshWalk(const Tetrahedra& mesh, const RayView<T>& view) noexcept
-      : mesh_(mesh), view_(view) {}
+  /// The mesh is referred to.
+  PELLUCID_HD explicit MeshWalk(const Tetrahedra& mesh) noexcept : mesh_(mesh) {}
 
   /// Begins behind `face`, which the ray goes through, in the lanes of `begun`: code = 4 ·
-  /// tetrahedron + face.
-  PELLUCID_HD void enter(Mask begun, const SeenFace<T>& face, Index code) noexcept {
+  /// tetrahedron + face. `load` as of step().
+  template <class Load>
+  PELLUCID_HD void enter(Mask begun, const SeenFace<T>& face, Index code, Load&& load) noexcept {
     for (int i = 0; i < 3; ++i) {
       assign(begun, face_.point[i], face.point[i]);
       assign(begun, face_.seen[i].x, face.seen[i].x);
@@ -36,6 +36,7 @@ class MeshWalk {
     }
     assign(begun, face_.left, face.left);
     assign(begun, code_, code);
+    look_ahead(load);
   }
 
   /// The face that was reached last.
@@ -45,23 +46,27 @@ class MeshWalk {
   /// The face as the tetrahedron gone through last has it.
   PELLUCID_HD Index left_by() const noexcept { return left_by_; }
 
-  /// Goes through the tetrahedron ahead in the lanes of `on`, where there is one. load(point): what
-  /// is to be carried of it.
+  /// Goes through the tetrahedron ahead in the lanes of `on`, where there is one. load(point, seen,
+  /// carried) tells where the ray sees a point, and what is to be carried of it.
   template <class Load>
   PELLUCID_HD void step(Mask on, Load&& load) noexcept {
-    const Index tetrahedron = select(on, code_ >> 2, Index(0)), entry = code_ & Index(3);
-    // In words of the tetrahedron.
-    const Index record = tetrahedron << 3;
-    const std::int32_t* words = mesh_.tetrahedron->corner;
-    const Index point = gather(words, record + select(on, entry, Index(0)));
-    const SeenPoint<T> seen = view_.see(gather_point(mesh_.point, point));
-    const T carried = load(point);
+    const Index point = point_;
+    const SeenPoint<T> seen = seen_;
+    const T carried = carried_;
+    const SeenPoint<T>* corner = face_.seen;
     Side<T> side[3];
-    Mask forward[3];
+    Mask certain = Mask(true);
     for (int i = 0; i < 3; ++i) {
-      side[i] = side_of(seen, face_.seen[i]);
-      forward[i] = side[i].left == face_.left;
+      const RoundedDeterminant<T> area =
+          rounded_determinant(seen.x, seen.y, corner[i].x, corner[i].y);
+      side[i] = {area.value, area.value > T(0)};
+      certain = certain & area.certain;
     }
+    if (any(on & !certain)) {
+      for (int i = 0; i < 3; ++i) side[i] = side_of(seen, corner[i]);
+    }
+    Mask forward[3];
+    for (int i = 0; i < 3; ++i) forward[i] = side[i].left == face_.left;
     // With points a, b, c of the face and the new one d: through (b, c, d) if d sees b ahead of the
     // ray and not c; a is left behind then. And so on around.
     Mask drop[3];
@@ -83,15 +88,36 @@ class MeshWalk {
       assign(drop[i], face_.area[next], abs(side[last].area));
       assign(drop[i], face_.area[last], abs(side[next].area));
     }
-    left_by_ = select(on, (tetrahedron << 2) + place, left_by_);
-    code_ = select(on, gather(words, record + Index(4) + place), code_);
+    const Index here = (code_ >> 2) << 2;
+    left_by_ = select(on, here + place, left_by_);
+    code_ = select(on, of_four(words_ + 4, place), code_);
+    look_ahead(load);
   }
 
  private:
+  PELLUCID_HD static Index of_four(const Index* word, Index which) noexcept {
+    const Index low = select(which < Index(1), word[0], word[1]),
+                high = select(which < Index(3), word[2], word[3]);
+    return select(which < Index(2), low, high);
+  }
+
+  /// Loads the tetrahedron ahead and its point on the other side, before they are wanted: whoever
+  /// asked has something to do until they are there.
+  template <class Load>
+  PELLUCID_HD void look_ahead(Load&& load) noexcept {
+    const Index code = select(code_ < Index(0), Index(0), code_);
+    load_records<8>(mesh_.tetrahedron->corner, code >> 2, words_);
+    point_ = of_four(words_, code & Index(3));
+    load(point_, seen_, carried_);
+  }
+
   const Tetrahedra& mesh_;
-  const RayView<T>& view_;
   SeenFace<T> face_;
   Index code_{}, left_by_{};
+  Index words_[8];  ///< the tetrahedron ahead
+  Index point_{};   ///< that is not on the face
+  SeenPoint<T> seen_;
+  T carried_{};
 };
 
 }  // namespace pellucid
