@@ -59,7 +59,7 @@ class MeshRays {
     const Vec3<double> size = mesh_.upper - mesh_.lower;
     blur = convert<S>(load([](const View& v) { return v.blur; }));
     // A parameter is no farther from the middle than the diagonal.
-    t_blur = blur + T(static_cast<S>(rounding_unit<S> * length(size)));
+    t_blur = blur + T(static_cast<S>(static_cast<double>(rounding_unit<S>) * length(size)));
     eye = convert<S>(D::load(eye_at));
     find_hits(M::from_bits(count == N ? (1u << N) - 1u : (1u << count) - 1u));
   }
