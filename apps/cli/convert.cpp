@@ -144,9 +144,9 @@ Command add_convert(CLI::App& app) {
       ->check(CLI::Range(0, 4096));
   arguments->volume.add_to(command);
   command.footer(
-      "Cells are cut as 'pellucid render' cuts them, so that both show the same: quadrilaterals "
-      "by\n"
-      "the diagonal at their point of the smallest index, quadratic cells at their nodes.\n"
+      "Meshes are cut as 'pellucid render' cuts them: quadrilaterals by the diagonal at their "
+      "point\n"
+      "of the smallest index, quadratic cells at their nodes.\n"
       "\n"
       "Examples:\n"
       "  pellucid convert brain.nii.gz -o brain.vtu\n"
