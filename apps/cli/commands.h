@@ -18,5 +18,6 @@ Command add_evaluate(CLI::App& app);
 Command add_compare(CLI::App& app);
 Command add_histogram(CLI::App& app);
 Command add_suggest(CLI::App& app);
+Command add_convert(CLI::App& app);
 
 }  // namespace pellucid::cli

@@ -52,8 +52,9 @@ int run(int argc, char** argv) {
   app.set_help_flag("-h,--help", "Print this help and exit");
   app.formatter(std::make_shared<HelpFormat>());
   app.require_subcommand(1);
-  const Command commands[] = {add_render(app),  add_info(app),     add_histogram(app),
-                              add_suggest(app), add_evaluate(app), add_compare(app)};
+  const Command commands[] = {add_render(app),  add_info(app),    add_histogram(app),
+                              add_suggest(app), add_convert(app), add_evaluate(app),
+                              add_compare(app)};
 
   try {
     app.parse(argc, argv);

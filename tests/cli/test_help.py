@@ -6,8 +6,8 @@ import unittest
 
 from program import SOURCE_DIR, ProgramTest, options_of
 
-COMMANDS = ("render", "info", "histogram", "suggest", "evaluate", "compare")
-READ_VOLUMES = ("render", "info", "histogram", "suggest")
+COMMANDS = ("render", "info", "histogram", "suggest", "convert", "evaluate", "compare")
+READ_VOLUMES = ("render", "info", "histogram", "suggest", "convert")
 
 
 class Help(ProgramTest):

@@ -1,0 +1,158 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
+#include <cstddef>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include "commands.h"
+#include "input.h"
+#include "output.h"
+#include "overwriting.h"
+#include "parse.h"
+#include "pellucid/base/version.h"
+#include "pellucid/cpu/threads.h"
+#include "pellucid/io/atomic_file.h"
+#include "pellucid/io/image_files.h"
+#include "pellucid/io/read_mesh.h"
+#include "pellucid/io/write_mesh.h"
+#include "pellucid/scene/cut_cells.h"
+#include "progress.h"
+
+namespace pellucid::cli {
+
+namespace {
+
+struct ConvertArguments {
+  std::string input, output, q;
+  std::optional<double> time;
+  VolumeOptions volume;
+  int threads = 0;
+  bool json = false, quiet = false;
+
+  bool is_mesh() const {
+    return !q.empty() || (!input.starts_with("builtin:") && is_mesh_file(input));
+  }
+};
+
+void check_arguments(const ConvertArguments& arguments) {
+  if (extension_of(arguments.output) != ".vtu") {
+    throw UsageError(
+        fmt::format("-o {}: tetrahedra are written as .vtu; give such a name", arguments.output));
+  }
+  const NamedFile outputs[] = {{"--output", arguments.output}};
+  const NamedFile inputs[] = {{"INPUT", arguments.input}, {"--q", arguments.q}};
+  refuse_overwriting(outputs, inputs);
+  if (arguments.is_mesh()) {
+    arguments.volume.refuse("meshes");
+  } else if (arguments.time) {
+    throw UsageError("--time applies to mesh files, not to volumes");
+  }
+  check_writable(arguments.output);
+}
+
+/// The tetrahedra, and how many cells they were cut from.
+struct Converted {
+  UnstructuredGrid tetrahedra;
+  std::size_t cells = 0;
+};
+
+std::size_t count_cells(const Volume& volume) {
+  const Volume::Description& d = volume.description();
+  std::size_t cells = 1;
+  for (const int n : d.dimensions) {
+    cells *= static_cast<std::size_t>(d.centering == Centering::cell ? n : n - 1);
+  }
+  return cells;
+}
+
+Converted convert(const ConvertArguments& arguments, const ParallelFor& parallel) {
+  if (arguments.is_mesh()) {
+    const MeshFile file = read_mesh(arguments.input, {arguments.time, arguments.q});
+    InterruptGuard::check();
+    return {tetrahedra_of(file.grid, parallel), file.grid.shapes.size()};
+  }
+  const Volume volume = load_field(field_source(arguments.input, arguments.volume));
+  InterruptGuard::check();
+  return {volume_tetrahedra(volume, parallel), count_cells(volume)};
+}
+
+Json array_json(const MeshArray& array) {
+  return {{"name", array.name},
+          {"centering", array.centering == Centering::point ? "point" : "cell"},
+          {"components", array.components},
+          {"type", type_name(array.values)}};
+}
+
+Json json_report(const ConvertArguments& arguments, const Converted& converted) {
+  Json json;
+  json["pellucid"] = PELLUCID_VERSION_STRING;
+  json["input"] = arguments.input;
+  json["cells"] = converted.cells;
+  json["tetrahedra"] = converted.tetrahedra.shapes.size();
+  json["points"] = converted.tetrahedra.points.size();
+  json["arrays"] = Json::array();
+  for (const MeshArray& array : converted.tetrahedra.arrays) {
+    json["arrays"].push_back(array_json(array));
+  }
+  json["output"] = arguments.output;
+  return json;
+}
+
+int run_convert(const ConvertArguments& arguments) {
+  check_arguments(arguments);
+  const InterruptGuard guard;
+  const Converted converted = convert(
+      arguments, parallel_for(arguments.threads > 0 ? arguments.threads : default_threads()));
+  InterruptGuard::check();
+  write_vtu(converted.tetrahedra, arguments.output);
+  if (arguments.json) {
+    print_json(json_report(arguments, converted));
+  } else if (!arguments.quiet) {
+    print_note(fmt::format("{} cells became {} tetrahedra of {} points", converted.cells,
+                           converted.tetrahedra.shapes.size(), converted.tetrahedra.points.size()));
+  }
+  return 0;
+}
+
+}  // namespace
+
+Command add_convert(CLI::App& app) {
+  CLI::App& command = *app.add_subcommand("convert", "Write a volume or mesh as tetrahedra");
+  const auto arguments = std::make_shared<ConvertArguments>();
+  command
+      .add_option("input", arguments->input,
+                  fmt::format("{}, builtin:NAME[:POINTS], or mesh file ({})", input_help,
+                              mesh_extensions()))
+      ->option_text("INPUT")
+      ->required();
+  command.add_option("-o,--output", arguments->output, "Tetrahedra to write, with all arrays")
+      ->option_text("FILE.vtu")
+      ->required();
+  command
+      .add_option("--time", arguments->time,
+                  "Of a mesh file with several steps, the nearest to this time; default: the first")
+      ->option_text("T");
+  command.add_option("--q", arguments->q, "The solution that belongs to a PLOT3D grid")
+      ->option_text("FILE");
+  command.add_flag("--json", arguments->json, "Print what was written as JSON");
+  command.add_flag("-q,--quiet", arguments->quiet, "No notes, only errors");
+  command.add_option("--threads", arguments->threads, "Threads; 0, the default: one per core")
+      ->option_text("N")
+      ->check(CLI::Range(0, 4096));
+  arguments->volume.add_to(command);
+  command.footer(
+      "Meshes are cut as 'pellucid render' cuts them: quadrilaterals by the diagonal at their "
+      "point\n"
+      "of the smallest index, quadratic cells at their nodes.\n"
+      "\n"
+      "Examples:\n"
+      "  pellucid convert brain.nii.gz -o brain.vtu\n"
+      "  pellucid convert can.ex2 -o can.vtu --time 0.002\n"
+      "  pellucid convert bluntfin.xyz --q bluntfin.q -o bluntfin.vtu");
+  return {&command, [arguments] { return run_convert(*arguments); }};
+}
+
+}  // namespace pellucid::cli
