@@ -17,6 +17,7 @@ Scene scene_of(const Exhibit& exhibit, std::size_t camera, int size) {
                            exhibit.cameras.at(camera).camera, {size, size});
   scene.channels = exhibit.channels;
   scene.multivariate = exhibit.multivariate;
+  scene.mesh = exhibit.mesh;
   scene.samples = exhibit.samples;
   return scene;
 }

@@ -10,7 +10,7 @@
 /// The scenes on which the tolerance is put to the test.
 namespace pellucid::scenes {
 
-/// A volume behind a transfer function, and the cameras that look at it.
+/// Data behind a transfer function, and the cameras that look at it.
 struct Exhibit {
   VolumePointer volume;
   TransferPointer transfer_function;
@@ -19,6 +19,8 @@ struct Exhibit {
   /// In place of the first two.
   std::shared_ptr<const Channels> channels{};
   std::shared_ptr<const MultivariateTransferFunction> multivariate{};
+  /// In place of `volume` or `channels`.
+  std::shared_ptr<const MeshChannels> mesh{};
 };
 
 /// Makes an exhibit for images of size × size pixels. Only cameras depend on the size: those that
