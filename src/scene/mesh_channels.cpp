@@ -25,8 +25,8 @@ namespace {
 std::vector<std::uint8_t> used_points(const TetrahedralMesh& mesh) {
   if (mesh.statistics().orphans == 0) return {};
   std::vector<std::uint8_t> used(mesh.points().size(), 0);
-  for (const auto& corners : mesh.tetrahedra()) {
-    for (const std::int32_t point : corners) used[static_cast<std::size_t>(point)] = 1;
+  for (const Tetrahedron& tetrahedron : mesh.tetrahedra()) {
+    for (const std::int32_t point : tetrahedron.corner) used[static_cast<std::size_t>(point)] = 1;
   }
   return used;
 }
@@ -146,7 +146,7 @@ MeshChannels::MeshChannels(std::shared_ptr<const TetrahedralMesh> mesh,
   for (std::size_t t = 0; t < tetrahedra.size(); ++t) {
     const bool own = !tetrahedron_nan.empty() && tetrahedron_nan[t] != 0;
     const bool corner =
-        !point_nan.empty() && std::ranges::any_of(tetrahedra[t], [&](std::int32_t point) {
+        !point_nan.empty() && std::ranges::any_of(tetrahedra[t].corner, [&](std::int32_t point) {
           return point_nan[static_cast<std::size_t>(point)] != 0;
         });
     if (own || corner) ++vacuum_;

@@ -44,11 +44,12 @@ OTHER_PROJECTS = [
     (re.compile(r"^fmt/"), "fmt::fmt"),
     (re.compile(r"^CLI/"), "CLI11::CLI11"),
     (re.compile(r"^itk.*\.h$"), "ITKCommon"),
+    (re.compile(r"^vtk.*\.h$"), "VTK::CommonCore"),
 ]
 
 INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]')
 # A header of the standard library, of C or of POSIX: no folder and no suffix, or one of these.
-PLAIN = re.compile(r"^([a-z_0-9]+|(fcntl|unistd|errno|sys/[a-z]+)\.h)$")
+PLAIN = re.compile(r"^([a-z_0-9]+|(fcntl|unistd|errno|dlfcn|sys/[a-z]+)\.h)$")
 
 
 def read_modules(path):

@@ -14,7 +14,7 @@ namespace pellucid {
 
 /// An array of a grid, or one component of it, or the length of its vectors, as a channel.
 struct MeshArrayChoice {
-  std::string array;
+  std::string array;  ///< of points, where points and cells have one of this name
   /// From 0; none: the only one, or of several the length of the vector.
   std::optional<int> component;
   std::string name;  ///< of the channel; empty: the array's
@@ -27,7 +27,8 @@ struct MeshArrayChoice {
 /// M.-G. Vallet, R. Camarero: How to Subdivide Pyramids, Prisms and Hexahedra into Tetrahedra,
 /// 1999). Quadratic cells are first cut into linear ones at their nodes; nodes that they lack, in
 /// the middle of quadrilaterals and of hexahedra, get place and value of the cell's own shape
-/// functions.
+/// functions. Linear cells with collapsed edges are what is left of them. (Quadratic ones too, but
+/// their collapsed quadrilaterals do not meet the triangles of other quadratic cells alike.)
 ///
 /// That the data are linear in each of these tetrahedra is the reconstruction that the tolerance
 /// speaks of.
@@ -39,9 +40,12 @@ std::shared_ptr<const MeshChannels> cut_into_tetrahedra(const UnstructuredGrid& 
                                                         std::span<const MeshArrayChoice> choices,
                                                         const ParallelFor& parallel = {});
 
-/// The cells of a volume's grid as hexahedra (voxels where it is uniform, else their corners as
-/// they stand in the world) with its values: a grid of points of its own, for cell-centred data one
-/// value per cell.
+/// The same tetrahedra as a grid, with all its arrays and all their components.
+UnstructuredGrid tetrahedra_of(const UnstructuredGrid& grid, const ParallelFor& parallel = {});
+
+/// The cells of a volume's grid as hexahedra, their corners as they stand in the world, with its
+/// values in the array "value": of points, or of cells where the volume is centred there. Throws
+/// Error where the points are more than an index can count.
 UnstructuredGrid to_unstructured(const Volume& volume);
 
 }  // namespace pellucid

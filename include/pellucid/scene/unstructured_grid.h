@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -46,5 +47,10 @@ struct UnstructuredGrid {
   std::vector<MeshArray> arrays;
   std::string name;  ///< for messages
 };
+
+/// The corners of the hexahedra of a curvilinear grid with so many points along each axis, which
+/// are numbered x fastest; cells are too. Throws Error where an axis has fewer than two points, or
+/// they are more than an index can count.
+std::vector<std::int32_t> hexahedra_of_grid(const std::array<int, 3>& points);
 
 }  // namespace pellucid

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "pellucid/io/read_mesh.h"
+
+namespace pellucid {
+
+/// A mesh as a format's reader leaves it: each block a grid of its own, whose points' indices are
+/// checked; all else in the file's place.
+struct MeshBlocks {
+  MeshFile file;
+  std::vector<UnstructuredGrid> blocks;
+};
+
+/// Joins the blocks to the file's one grid, and makes points of different blocks one where they
+/// stand at the same place with the same values. Arrays of the same name are one: of the blocks'
+/// type where they agree, else double; NaN where a block lacks it. One of cells that is named like
+/// one of points gets "_cell" behind its name. Throws Error where the numbers of components differ,
+/// or there is no cell.
+MeshFile join_blocks(MeshBlocks&& mesh, const std::string& name);
+
+/// The index of the step nearest to `wanted`, the earlier of two; the first where nothing is
+/// wanted. `times` is not empty.
+std::size_t nearest_step(const std::vector<double>& times, std::optional<double> wanted) noexcept;
+
+}  // namespace pellucid

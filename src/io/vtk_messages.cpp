@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "vtk_messages.h"
+
+#include <vtkObjectFactory.h>
+
+#include <algorithm>
+
+#include "pellucid/scene/error.h"
+
+namespace pellucid {
+
+namespace {
+
+std::mutex& one_at_a_time() {
+  static std::mutex mutex;
+  return mutex;
+}
+
+/// "ERROR: In FILE, line 9\nvtkReader (0x5): what is wrong\n\n": what is wrong.
+std::string what_is_wrong(std::string text) {
+  if (const std::size_t object = text.find("): "); object != std::string::npos) {
+    text.erase(0, object + 3);
+  }
+  std::string line;
+  for (const char c : text) {
+    const bool space = static_cast<unsigned char>(c) <= ' ' || c == '\x7f';
+    if (!space) {
+      line += c;
+    } else if (!line.empty() && line.back() != ' ') {
+      line += ' ';
+    }
+  }
+  constexpr std::size_t longest = 240;
+  if (line.size() > longest) line = line.substr(0, longest) + "...";
+  while (!line.empty() && (line.back() == ' ' || line.back() == '.')) line.pop_back();
+  return line;
+}
+
+}  // namespace
+
+class VtkMessages::Window : public vtkOutputWindow {
+ public:
+  static Window* New();
+
+  void DisplayText(const char*) override {}
+  void DisplayWarningText(const char*) override {}
+  void DisplayGenericWarningText(const char*) override {}
+  void DisplayDebugText(const char*) override {}
+  void DisplayErrorText(const char* text) override {
+    const std::lock_guard lock(mutex_);
+    if (error_.empty() && text != nullptr) error_ = text;
+  }
+
+  std::string error() {
+    const std::lock_guard lock(mutex_);
+    return error_;
+  }
+
+ private:
+  std::mutex mutex_;
+  std::string error_;
+};
+
+vtkStandardNewMacro(VtkMessages::Window)
+
+    VtkMessages::VtkMessages()
+    : lock_(one_at_a_time()),
+      before_(vtkOutputWindow::GetInstance()),
+      window_(vtkSmartPointer<Window>::New()) {
+  vtkOutputWindow::SetInstance(window_);
+}
+
+VtkMessages::~VtkMessages() {
+  vtkOutputWindow::SetInstance(before_);
+}
+
+std::string VtkMessages::error() const {
+  return what_is_wrong(window_->error());
+}
+
+void VtkMessages::check() const {
+  if (const std::string what = error(); !what.empty()) {
+    throw Error("the file is cut off or damaged (VTK says: " + what + ")");
+  }
+}
+
+}  // namespace pellucid

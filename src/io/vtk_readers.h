@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <vtkDataObject.h>
+#include <vtkSmartPointer.h>
+
+#include <filesystem>
+
+#include "mesh_blocks.h"
+#include "vtk_messages.h"
+
+class vtkAlgorithm;
+
+namespace pellucid {
+
+/// .vtu, .vts, .vtm and what they are parts of; .pvd.
+void read_xml(const std::filesystem::path& path, const MeshReadOptions& options,
+              const VtkMessages& messages, MeshBlocks& mesh);
+void read_legacy(const std::filesystem::path& path, const MeshReadOptions& options,
+                 const VtkMessages& messages, MeshBlocks& mesh);
+/// Displacements are applied to the points, where a file has them.
+void read_exodus(const std::filesystem::path& path, const MeshReadOptions& options,
+                 const VtkMessages& messages, MeshBlocks& mesh);
+
+/// Runs the reader at the step that the options ask for, and puts the file's times into `file`.
+/// Throws Error where VTK says one, or a time is asked for where there is none.
+void update(vtkAlgorithm& reader, const MeshReadOptions& options, const VtkMessages& messages,
+            MeshFile& file);
+/// Throws Error where a time is asked for.
+void refuse_time(const MeshReadOptions& options);
+
+}  // namespace pellucid

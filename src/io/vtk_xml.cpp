@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <vtkDataObject.h>
+#include <vtkXMLDataElement.h>
+#include <vtkXMLFileReadTester.h>
+#include <vtkXMLGenericDataObjectReader.h>
+#include <vtkXMLUtilities.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "pellucid/scene/error.h"
+#include "vtk_gather.h"
+#include "vtk_readers.h"
+
+namespace pellucid {
+
+namespace {
+
+/// What the root element says that the file holds.
+std::string kind_of(const std::filesystem::path& path, const VtkMessages& messages) {
+  const auto tester = vtkSmartPointer<vtkXMLFileReadTester>::New();
+  tester->SetFileName(path.c_str());
+  const bool readable = tester->TestReadFile() != 0;
+  messages.check();
+  const char* const kind = tester->GetFileDataType();
+  if (!readable || kind == nullptr) throw Error("is no XML file of VTK's, or damaged");
+  return kind;
+}
+
+void read_data(const std::filesystem::path& path, const std::string& kind,
+               const MeshReadOptions& options, const VtkMessages& messages, MeshBlocks& mesh) {
+  if (kind.ends_with("ImageData") || kind.ends_with("RectilinearGrid")) {
+    throw Error(
+        "holds " + kind +
+        ", a volume on a regular grid and no mesh; convert it to a volume file (.nrrd, .npy)");
+  }
+  if (kind.ends_with("PolyData")) {
+    throw Error("holds " + kind + ", a surface; give the volume that it belongs to");
+  }
+  if (kind != "UnstructuredGrid" && kind != "PUnstructuredGrid" && kind != "StructuredGrid" &&
+      kind != "PStructuredGrid" && kind != "vtkMultiBlockDataSet") {
+    throw Error("holds " + kind.substr(0, 40) +
+                "; read are unstructured and structured grids and multiblock files of them");
+  }
+  const auto reader = vtkSmartPointer<vtkXMLGenericDataObjectReader>::New();
+  reader->SetFileName(path.c_str());
+  update(*reader, options, messages, mesh.file);
+  vtkDataObject* const data = reader->GetOutput();
+  if (data == nullptr) throw Error("the file is cut off or damaged");
+  gather(*data, mesh);
+}
+
+struct Step {
+  double time;
+  std::filesystem::path file;
+};
+
+/// The files of a .pvd, ascending by time.
+std::vector<Step> steps_of(const std::filesystem::path& path, const VtkMessages& messages) {
+  const auto root =
+      vtkSmartPointer<vtkXMLDataElement>::Take(vtkXMLUtilities::ReadElementFromFile(path.c_str()));
+  messages.check();
+  vtkXMLDataElement* const collection =
+      root == nullptr ? nullptr : root->FindNestedElementWithName("Collection");
+  if (collection == nullptr) throw Error("has no Collection of files; it is damaged");
+  std::vector<Step> steps;
+  const int count = collection->GetNumberOfNestedElements();
+  steps.reserve(static_cast<std::size_t>(count));
+  for (int i = 0; i < count; ++i) {
+    vtkXMLDataElement* const entry = collection->GetNestedElement(i);
+    const char* const file = entry->GetAttribute("file");
+    if (file == nullptr || *file == '\0') continue;
+    double time = 0;
+    if (entry->GetAttribute("timestep") != nullptr &&
+        (entry->GetScalarAttribute("timestep", time) == 0 || !std::isfinite(time))) {
+      throw Error("the timestep of " + std::string(file) + " is no number; correct the file");
+    }
+    steps.push_back({time, path.parent_path() / file});
+  }
+  if (steps.empty()) throw Error("its Collection names no file; it is damaged");
+  std::stable_sort(steps.begin(), steps.end(),
+                   [](const Step& a, const Step& b) { return a.time < b.time; });
+  return steps;
+}
+
+void read_collection(const std::filesystem::path& path, const MeshReadOptions& options,
+                     const VtkMessages& messages, MeshBlocks& mesh) {
+  const std::vector<Step> steps = steps_of(path, messages);
+  std::vector<double> times;
+  times.reserve(steps.size());
+  for (const Step& step : steps) {
+    if (times.empty() || times.back() != step.time) times.push_back(step.time);
+  }
+  const double time = times[nearest_step(times, options.time)];
+  for (const Step& step : steps) {
+    if (step.time != time) continue;
+    const std::string name = step.file.filename().string();
+    std::error_code error;
+    if (!std::filesystem::is_regular_file(step.file, error)) {
+      throw Error("names " + name + ", which is not there; put it beside it");
+    }
+    try {
+      read_data(step.file, kind_of(step.file, messages), {}, messages, mesh);
+    } catch (const Error& part) {
+      throw Error(name + " " + part.what());
+    }
+  }
+  mesh.file.times = times;
+  mesh.file.time = time;
+}
+
+}  // namespace
+
+void read_xml(const std::filesystem::path& path, const MeshReadOptions& options,
+              const VtkMessages& messages, MeshBlocks& mesh) {
+  const std::string kind = kind_of(path, messages);
+  mesh.file.format = "VTK XML";
+  if (kind == "Collection") {
+    read_collection(path, options, messages, mesh);
+  } else {
+    read_data(path, kind, options, messages, mesh);
+  }
+}
+
+}  // namespace pellucid

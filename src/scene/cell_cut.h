@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "middle_points.h"
+#include "pellucid/scene/unstructured_grid.h"
+
+namespace pellucid {
+
+/// The tetrahedra of a grid's cells, and where each comes from.
+struct CellCut {
+  std::vector<Vec3<double>> points;  ///< the grid's, then the new ones
+  std::vector<std::array<std::int32_t, 4>> tetrahedra;
+  std::vector<std::int32_t> cell;  ///< of each tetrahedron; empty unless asked for
+  MiddlePoints middle;             ///< the new points; looks into the grid
+};
+
+/// `with_cells`: CellCut::cell is wanted. Throws Error where the grid does not agree with itself,
+/// or the tetrahedra are more than a mesh can have.
+CellCut cut_cells(const UnstructuredGrid& grid, bool with_cells, const ParallelFor& parallel);
+
+}  // namespace pellucid

@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "cell_cut.h"
+#include "pellucid/scene/cut_cells.h"
+#include "pellucid/scene/mesh_channels.h"
+
+namespace pellucid {
+
+/// An array of the grid, all its components, at the points or the tetrahedra of the cut (whose
+/// CellCut::cell is there where the array is centred on cells).
+VolumeData carried(const UnstructuredGrid& grid, const MeshArray& array, const CellCut& cut);
+
+/// The array that a choice names: of points, where points and cells have one. Throws Error where
+/// there is none, or it has no such component.
+const MeshArray& chosen_array(const UnstructuredGrid& grid, const MeshArrayChoice& choice);
+
+/// What was chosen of the array, at the points or the tetrahedra of the cut.
+MeshChannel chosen_channel(const UnstructuredGrid& grid, const MeshArrayChoice& choice,
+                           const CellCut& cut);
+
+}  // namespace pellucid

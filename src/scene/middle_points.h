@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "pellucid/scene/unstructured_grid.h"
+
+namespace pellucid {
+
+/// A node in the middle of a quadrilateral (the first 4 nodes are its corners, 4 more those of its
+/// edges) or of a hexahedron (8 and 12), and what it is numbered after in its cell.
+struct MiddleNode {
+  int corners = 0;
+  std::array<std::int8_t, 20> nodes{};
+
+  int count() const noexcept { return corners == 4 ? 8 : 20; }
+  /// The serendipity shape functions there.
+  double weight(int i) const noexcept { return i < corners ? -0.25 : corners == 4 ? 0.5 : 0.25; }
+};
+
+/// The nodes in the middle that a cell of this shape lacks, to be appended to its own; none of most
+/// shapes.
+std::span<const MiddleNode> lacking_nodes(CellShape shape) noexcept;
+
+/// A new point: a middle node of a cell.
+struct MiddlePoint {
+  const MiddleNode* node = nullptr;
+  const std::int32_t* cell = nullptr;  ///< the points of its cell, in the grid
+
+  /// What the shape functions make of the numbers that value(point) gives.
+  template <class Value>
+  double interpolated(const Value& value) const {
+    double sum = 0;
+    for (int i = 0; i < node->count(); ++i) {
+      sum += node->weight(i) * value(cell[node->nodes[static_cast<std::size_t>(i)]]);
+    }
+    return sum;
+  }
+};
+
+/// The nodes that the quadratic cells of a grid lack. Two cells that share a quadrilateral share
+/// the node in its middle, which is found by the corners.
+struct MiddlePoints {
+  /// In the order of their indices, which follow those of the grid's points.
+  std::vector<MiddlePoint> points;
+  /// What the cells lack, one cell after the other (lacking_nodes): indices of points.
+  std::vector<std::int32_t> indices;
+};
+
+/// Of a grid whose indices are in range. Throws Error where the points are more than an index can
+/// count.
+MiddlePoints find_middle_points(const UnstructuredGrid& grid);
+
+}  // namespace pellucid

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pellucid/scene/unstructured_grid.h"
+
+#include <array>
+#include <limits>
+#include <string>
+
+#include "pellucid/scene/error.h"
+
+namespace pellucid {
+
+int points_of(CellShape shape) noexcept {
+  constexpr std::array<std::int8_t, 11> points{4, 5, 6, 8, 8, 10, 13, 15, 20, 18, 27};
+  return points[static_cast<std::size_t>(shape)];
+}
+
+std::vector<std::int32_t> hexahedra_of_grid(const std::array<int, 3>& points) {
+  constexpr std::int64_t most = std::numeric_limits<std::int32_t>::max();
+  std::int64_t count = 1;
+  bool counted = true;
+  for (const int n : points) {
+    if (n < 2) {
+      throw Error("grid: " + std::to_string(points[0]) + " x " + std::to_string(points[1]) + " x " +
+                  std::to_string(points[2]) +
+                  " points span no cells; give at least two along each axis");
+    }
+    counted = counted && count <= most / n;
+    count = counted ? count * n : count;
+  }
+  if (!counted) {
+    throw Error("grid: " + std::to_string(points[0]) + " x " + std::to_string(points[1]) + " x " +
+                std::to_string(points[2]) + " points are more than " + std::to_string(most) +
+                ", which a mesh can have; take a part of it");
+  }
+
+  const int nx = points[0], layer = points[0] * points[1];
+  const auto cells = [&](std::size_t axis) { return static_cast<std::size_t>(points[axis] - 1); };
+  std::vector<std::int32_t> corners(8 * cells(0) * cells(1) * cells(2));
+  auto next = corners.begin();
+  for (int k = 0; k + 1 < points[2]; ++k) {
+    for (int j = 0; j + 1 < points[1]; ++j) {
+      for (int i = 0; i + 1 < points[0]; ++i) {
+        const std::int32_t first = i + nx * j + layer * k;
+        for (const std::int32_t below : {first, first + layer}) {
+          for (const std::int32_t corner : {below, below + 1, below + 1 + nx, below + nx}) {
+            *next++ = corner;
+          }
+        }
+      }
+    }
+  }
+  return corners;
+}
+
+}  // namespace pellucid
