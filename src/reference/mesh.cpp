@@ -2,25 +2,27 @@
 #include "mesh.h"
 
 #include <algorithm>
+#include <optional>
 
 #include "edge_side.h"
 
 namespace pellucid::reference {
 namespace {
 
-Real3 to_real(const Vec3<double>& p) {
-  return {p.x, p.y, p.z};
+using Points = std::array<Vec3<double>, 4>;
+
+Points points_of(const TetrahedralMesh& mesh, const Tetrahedron& t) {
+  const auto point = [&](int i) { return mesh.points()[static_cast<std::size_t>(t[i])]; };
+  return {point(0), point(1), point(2), point(3)};
 }
 
-std::vector<MeshTree::Bounds> bounds_of(const std::vector<Vec3<double>>& points,
-                                        const std::vector<Mesh::Tetrahedron>& tetrahedra) {
+std::vector<MeshTree::Bounds> bounds_of(const TetrahedralMesh& mesh) {
   std::vector<MeshTree::Bounds> result;
-  result.reserve(tetrahedra.size());
-  for (const Mesh::Tetrahedron& corners : tetrahedra) {
-    MeshTree::Bounds bounds{points[static_cast<std::size_t>(corners[0])],
-                            points[static_cast<std::size_t>(corners[0])]};
-    for (const std::int32_t corner : corners) {
-      const Vec3<double>& p = points[static_cast<std::size_t>(corner)];
+  result.reserve(mesh.tetrahedra().size());
+  for (const Tetrahedron& t : mesh.tetrahedra()) {
+    const Points points = points_of(mesh, t);
+    MeshTree::Bounds bounds{points[0], points[0]};
+    for (const Vec3<double>& p : points) {
       for (int a = 0; a < 3; ++a) {
         bounds.lower[a] = std::min(bounds.lower[a], p[a]);
         bounds.upper[a] = std::max(bounds.upper[a], p[a]);
@@ -35,14 +37,14 @@ std::vector<MeshTree::Bounds> bounds_of(const std::vector<Vec3<double>>& points,
 /// where the ray meets it come out alike in all tetrahedra that share them, bit by bit.
 class Encounter {
  public:
-  Encounter(const RealRay& ray, const EdgeSides& sides, const std::array<Real3, 4>& points)
-      : sides_(sides), points_(points) {
+  Encounter(const RealRay& ray, const EdgeSides& sides, const Points& points) : sides_(sides) {
+    for (std::size_t i = 0; i < 4; ++i) points_[i] = {points[i].x, points[i].y, points[i].z};
     for (std::size_t i = 0; i < 4; ++i) {
       t_[i] = 0;
       for (std::size_t a = 0; a < 3; ++a) {
-        t_[i] += ray.direction[a] * (points[i][a] - ray.origin[a]);
+        t_[i] += ray.direction[a] * (points_[i][a] - ray.origin[a]);
       }
-      for (std::size_t j = i + 1; j < 4; ++j) side_[i][j] = sides.quick(points[i], points[j]);
+      for (std::size_t j = i + 1; j < 4; ++j) side_[i][j] = sides.quick(points_[i], points_[j]);
     }
   }
 
@@ -90,29 +92,21 @@ class Encounter {
   EdgeSides::Side& side(const std::array<std::size_t, 2>& edge) { return side_[edge[0]][edge[1]]; }
 
   const EdgeSides& sides_;
-  const std::array<Real3, 4>& points_;
+  std::array<Real3, 4> points_;
   std::array<Real, 4> t_{};  ///< of the points, along the ray
   std::array<std::array<EdgeSides::Side, 4>, 4> side_{};
 };
 
 }  // namespace
 
-Mesh::Mesh(const std::vector<Vec3<double>>& points, const std::vector<Tetrahedron>& tetrahedra)
-    : points_(points), tetrahedra_(tetrahedra), tree_(bounds_of(points, tetrahedra)) {}
+Mesh::Mesh(const TetrahedralMesh& mesh) : mesh_(mesh), tree_(bounds_of(mesh)) {}
 
 std::vector<TetrahedronCrossing> Mesh::crossings(const RealRay& ray) const {
   const EdgeSides sides(ray);
   std::vector<TetrahedronCrossing> result;
   for (const std::int32_t number : tree_.near(ray)) {
-    const Tetrahedron& corners = tetrahedra_[static_cast<std::size_t>(number)];
-    std::array<std::size_t, 4> order{0, 1, 2, 3};
-    std::sort(order.begin(), order.end(),
-              [&](std::size_t i, std::size_t j) { return corners[i] < corners[j]; });
-    std::array<Real3, 4> points;
-    for (std::size_t i = 0; i < 4; ++i) {
-      points[i] = to_real(points_[static_cast<std::size_t>(corners[order[i]])]);
-    }
-    Encounter encounter(ray, sides, points);
+    const auto index = static_cast<std::size_t>(number);
+    Encounter encounter(ray, sides, points_of(mesh_, mesh_.tetrahedra()[index]));
     std::vector<Encounter::Meeting> met;
     for (std::size_t face = 0; face < 4; ++face) {
       if (auto meeting = encounter.with_face(face)) met.push_back(*meeting);
@@ -120,12 +114,12 @@ std::vector<TetrahedronCrossing> Mesh::crossings(const RealRay& ray) const {
     if (met.size() != 2) continue;
     if (met[1].t < met[0].t) std::swap(met[0], met[1]);
     if (!(met[0].t < met[1].t) || met[1].t <= 0) continue;
-    TetrahedronCrossing crossing{met[0].t, met[1].t, static_cast<std::size_t>(number), {}, {}};
+    TetrahedronCrossing crossing{met[0].t, met[1].t, index, {}, {}};
     const Real before = std::max(Real(0), -met[0].t / (met[1].t - met[0].t));
     for (std::size_t i = 0; i < 4; ++i) {
       const Real entry = met[0].weight[i], exit = met[1].weight[i];
-      crossing.entry[order[i]] = before > 0 ? entry + before * (exit - entry) : entry;
-      crossing.exit[order[i]] = exit;
+      crossing.entry[i] = before > 0 ? entry + before * (exit - entry) : entry;
+      crossing.exit[i] = exit;
     }
     crossing.t_begin = std::max(Real(0), crossing.t_begin);
     result.push_back(crossing);

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <optional>
 #include <vector>
 
 #include "mesh_tree.h"
+#include "pellucid/scene/tetrahedral_mesh.h"
 
 namespace pellucid::reference {
 
@@ -15,13 +15,11 @@ struct TetrahedronCrossing {
   std::array<Real, 4> entry, exit;  ///< weights of the tetrahedron's points
 };
 
-/// Tetrahedra on their own, and what a ray meets of them. A view of points and tetrahedra, which
-/// may be given in either orientation and may overlap.
+/// Tetrahedra, each on its own, and what a ray meets of them: who lies beside whom is not looked
+/// at. A view of a mesh.
 class Mesh {
  public:
-  using Tetrahedron = std::array<std::int32_t, 4>;
-
-  Mesh(const std::vector<Vec3<double>>& points, const std::vector<Tetrahedron>& tetrahedra);
+  explicit Mesh(const TetrahedralMesh& mesh);
 
   /// Every tetrahedron that the ray (direction of length 1) crosses at t >= 0, by where it begins.
   /// A ray that meets points or edges, or runs within faces, is moved aside by less than any
@@ -29,8 +27,7 @@ class Mesh {
   std::vector<TetrahedronCrossing> crossings(const RealRay& ray) const;
 
  private:
-  const std::vector<Vec3<double>>& points_;
-  const std::vector<Tetrahedron>& tetrahedra_;
+  const TetrahedralMesh& mesh_;
   MeshTree tree_;
 };
 

@@ -17,8 +17,7 @@ Real mean(const std::array<Real, 4>& values, const std::array<Real, 4>& weights)
 
 }  // namespace
 
-MeshField::MeshField(const MeshChannels& channels)
-    : channels_(channels), mesh_(channels.mesh().points(), channels.mesh().tetrahedra()) {}
+MeshField::MeshField(const MeshChannels& channels) : channels_(channels), mesh_(channels.mesh()) {}
 
 Real MeshField::visit(const RealRay& ray, const Visit& visit) const {
   const std::vector<TetrahedronCrossing> crossings = mesh_.crossings(ray);
@@ -29,7 +28,7 @@ Real MeshField::visit(const RealRay& ray, const Visit& visit) const {
 }
 
 std::vector<Chord> MeshField::chords(const TetrahedronCrossing& crossing) const {
-  const std::array<std::int32_t, 4>& corners = channels_.mesh().tetrahedra()[crossing.tetrahedron];
+  const Tetrahedron& t = channels_.mesh().tetrahedra()[crossing.tetrahedron];
   std::vector<Chord> result;
   result.reserve(static_cast<std::size_t>(channels_.count()));
   for (int c = 0; c < channels_.count(); ++c) {
@@ -37,7 +36,7 @@ std::vector<Chord> MeshField::chords(const TetrahedronCrossing& crossing) const 
     for (std::size_t i = 0; i < 4; ++i) {
       values[i] = channels_.value(c, channels_[c].centering == Centering::cell
                                          ? crossing.tetrahedron
-                                         : static_cast<std::size_t>(corners[i]));
+                                         : static_cast<std::size_t>(t.corner[i]));
       if (std::isnan(values[i])) return {};
     }
     result.push_back(Chord::linear(mean(values, crossing.entry), mean(values, crossing.exit)));

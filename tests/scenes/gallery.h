@@ -48,6 +48,7 @@ Gallery table_gallery();           ///< transfer functions that are special
 Gallery grid_gallery();            ///< placements, types and values of the data
 Gallery stride_gallery();          ///< what estimates over several cells can miss
 Gallery gaussian_gallery();        ///< Gaussians over several channels
+Gallery mesh_gallery();            ///< tetrahedra
 
 /// One of the exhibit's cameras, with the integration that a scene has by default.
 Scene scene_of(const Exhibit& exhibit, std::size_t camera, int size);

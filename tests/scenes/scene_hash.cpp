@@ -38,7 +38,7 @@ void add_volume(Hash& hash, const Volume& volume) {
 void add_mesh(Hash& hash, const MeshChannels& channels) {
   const TetrahedralMesh& mesh = channels.mesh();
   for (const Vec3<double>& point : mesh.points()) hash.add_vector(point);
-  for (const auto& corners : mesh.tetrahedra()) hash.add(corners.data(), sizeof corners);
+  for (const Tetrahedron& t : mesh.tetrahedra()) hash.add(t.corner, sizeof t.corner);
   for (const MeshChannel& channel : channels) {
     hash.add_numbers(channel.values.index(), channel.centering);
     std::visit(
