@@ -16,16 +16,6 @@ namespace {
 
 constexpr const char* gradient_channel = "gradient_magnitude";
 
-/// What a name may hold of a text.
-std::string as_name(const std::string& text) {
-  constexpr std::size_t longest = 56;  // leaves room for a number behind it
-  std::string name;
-  for (const char c : text.substr(0, longest)) {
-    name += is_channel_name(std::string_view(&c, 1)) ? c : '_';
-  }
-  return name.empty() ? "channel" : name;
-}
-
 std::vector<std::string> split(const std::string& text) {
   std::vector<std::string> parts{""};
   for (const char c : text) {
@@ -128,7 +118,7 @@ std::vector<std::string> file_channel_names(const std::vector<std::string>& inpu
     const bool builtin = input.starts_with("builtin:");
     const std::string file =
         builtin ? input.substr(8) : std::filesystem::path(input).filename().string();
-    const std::string name = as_name(file.substr(0, file.find(builtin ? ':' : '.')));
+    const std::string name = as_channel_name(file.substr(0, file.find(builtin ? ':' : '.')));
     std::string numbered = name;
     for (int n = 2; std::find(names.begin(), names.end(), numbered) != names.end(); ++n) {
       numbered = fmt::format("{}_{}", name, n);

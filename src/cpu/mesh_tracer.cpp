@@ -1,10 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "packet_setup.h"
+#include "packet_tracer.h"
+#include "pellucid/packet/mesh_interface.h"
 #include "pellucid/render/integrate_mesh_ray.h"
+#include "pellucid/scene/binned_transfer_storage.h"
 #include "pellucid/scene/error.h"
 #include "pellucid/scene/transfer_tables_storage.h"
 #include "ray_tracer.h"
@@ -39,6 +44,52 @@ void check_method(Method method) {
               " goes in steps through a grid, but the scene has a mesh; take the exact one");
 }
 
+using Kernel = void (*)(const PellucidMeshJob*);
+
+/// Null: rays go one by one.
+Kernel kernel_for([[maybe_unused]] InstructionSet set) {
+#if PELLUCID_HAS_PACKETS
+  return kernel_of(set, pellucid_integrate_mesh_sse4, pellucid_integrate_mesh_avx2,
+                   pellucid_integrate_mesh_avx512);
+#else
+  return nullptr;
+#endif
+}
+
+/// Rays and where they meet the boundary of the mesh, all of them one behind the other.
+class MeshRays {
+ public:
+  MeshRays(const Tetrahedra& mesh, const std::vector<Ray<double>>& world) {
+    const Vec3<double> middle = 0.5 * (mesh.lower + mesh.upper);
+    rays_.reserve(world.size());
+    for (const Ray<double>& ray : world) {
+      MeshRay in_mesh;
+      in_mesh.view = make_ray_view(ray, middle, mesh.reach);
+      const std::size_t first = hits_.size();
+      for_each_boundary_hit(mesh, ray, in_mesh.view,
+                            [&](const MeshHit& hit) { hits_.push_back(hit); });
+      std::sort(hits_.begin() + static_cast<std::ptrdiff_t>(first), hits_.end());
+      in_mesh.count = static_cast<int>(hits_.size() - first);
+      rays_.push_back(in_mesh);
+    }
+    MeshHit* hit = hits_.data();
+    for (MeshRay& ray : rays_) {
+      ray.hits = hit;
+      hit += ray.count;
+    }
+  }
+  MeshRays(const MeshRays&) = delete;
+  MeshRays& operator=(const MeshRays&) = delete;
+
+  std::size_t size() const noexcept { return rays_.size(); }
+  /// Its hits are used up by whoever follows it.
+  const MeshRay& operator[](std::size_t i) const noexcept { return rays_[i]; }
+
+ private:
+  std::vector<MeshHit> hits_;
+  std::vector<MeshRay> rays_;
+};
+
 class MeshTracer : public RayTracer {
  public:
   explicit MeshTracer(const TracerTask& task)
@@ -52,20 +103,17 @@ class MeshTracer : public RayTracer {
   std::vector<RayResult> trace(const std::vector<Ray<double>>& world) const override {
     std::vector<RayResult> results;
     results.reserve(world.size());
-    std::vector<MeshHit> hits, kept;
-    for (const Ray<double>& ray : world) {
-      MeshRay in_mesh = find_hits(ray, hits);
-      if (depth_) kept = hits;
-      results.push_back(integrate(in_mesh));
-      if (!depth_) continue;
-      in_mesh.hits = kept.data();
-      results.back().half_opacity_depth = find_half_opacity(in_mesh, results.back().opacity);
+    integrate(MeshRays(mesh_, world), results);
+    if (!depth_) return results;
+    const MeshRays again(mesh_, world);
+    for (std::size_t i = 0; i < world.size(); ++i) {
+      results[i].half_opacity_depth = find_half_opacity(again[i], results[i].opacity);
     }
     return results;
   }
 
  protected:
-  virtual RayResult integrate(const MeshRay& ray) const = 0;
+  virtual void integrate(const MeshRays& rays, std::vector<RayResult>& results) const = 0;
   virtual double find_half_opacity(const MeshRay& ray, double opacity) const = 0;
 
   const Tetrahedra mesh_;
@@ -73,36 +121,97 @@ class MeshTracer : public RayTracer {
   const RayTolerance wanted_;
 
  private:
-  MeshRay find_hits(const Ray<double>& ray, std::vector<MeshHit>& hits) const {
-    MeshRay result;
-    result.view = make_ray_view(ray, 0.5 * (mesh_.lower + mesh_.upper), mesh_.reach);
-    hits.clear();
-    for_each_boundary_hit(mesh_, ray, result.view,
-                          [&](const MeshHit& hit) { hits.push_back(hit); });
-    std::sort(hits.begin(), hits.end());
-    result.hits = hits.data();
-    result.count = static_cast<int>(hits.size());
-    return result;
-  }
-
   const bool depth_;
 };
 
 class UnivariateMeshTracer : public MeshTracer {
  public:
   explicit UnivariateMeshTracer(const TracerTask& task)
-      : MeshTracer(task), transfer_(*task.scene.transfer_function) {}
+      : MeshTracer(task), transfer_(*task.scene.transfer_function) {
+    const VolumeStatistics& data = task.scene.mesh->statistics(0);
+    const double largest = std::max(std::fabs(data.minimum), std::fabs(data.maximum));
+    const TransferTables& tables = transfer_.tables();
+    const InstructionSet set = packet_instruction_set(task.options.instruction_set);
+    if (wanted_.precision != Precision::automatic || wanted_.tolerance < least_packet_tolerance ||
+        !is_moderate(largest) || !is_moderate(task.scene.mesh->mesh().statistics().mean_edge) ||
+        tables.largest_extinction > 1e12) {
+      return;
+    }
+    kernel_ = kernel_for(set);
+    binned_.emplace(tables.wide, tables.merged, tables.merged_count, largest);
+    job_.mesh = &mesh_;
+    job_.fields = &fields_.view();
+    job_.transfer = &binned_->view();
+    job_.tolerance = wanted_.tolerance;
+    job_.largest_color = std::max(wanted_.largest_color, 1.0);
+    job_.largest_extinction = tables.largest_extinction;
+    job_.integrate_span = &UnivariateMeshTracer::integrate_span;
+    job_.context = this;
+  }
 
  protected:
-  RayResult integrate(const MeshRay& ray) const override {
-    return integrate_mesh_ray(mesh_, fields_.view(), transfer_.tables(), ray, wanted_);
+  void integrate(const MeshRays& rays, std::vector<RayResult>& results) const override {
+    if (kernel_ != nullptr) {
+      integrate_in_packets(rays, results);
+      return;
+    }
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+      results.push_back(
+          integrate_mesh_ray(mesh_, fields_.view(), transfer_.tables(), rays[i], wanted_));
+    }
   }
   double find_half_opacity(const MeshRay& ray, double opacity) const override {
     return find_mesh_half_opacity(mesh_, fields_.view(), transfer_.tables(), ray, wanted_, opacity);
   }
 
  private:
+  void integrate_in_packets(const MeshRays& rays, std::vector<RayResult>& results) const {
+    RayResult clear;
+    clear.error = 0;
+    clear.proved = true;
+    results.assign(rays.size(), clear);
+    std::vector<PellucidMeshRay> meeting;
+    std::vector<std::size_t> of;
+    meeting.reserve(rays.size());
+    of.reserve(rays.size());
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+      const Interval<double> inside = rays[i].inside();
+      if (inside.empty()) continue;
+      meeting.push_back({&rays[i], inside.begin, inside.end});
+      of.push_back(i);
+    }
+    std::vector<PellucidRayResult> found(meeting.size());
+    PellucidMeshJob job = job_;
+    job.rays = meeting.data();
+    job.results = found.data();
+    job.count = static_cast<std::int32_t>(meeting.size());
+    kernel_(&job);
+    for (std::size_t i = 0; i < found.size(); ++i) read_result(found[i], results[of[i]]);
+  }
+
+  static void integrate_span(const void* context, const PellucidLinearSpan* span,
+                             PellucidCellResult* result) {
+    const auto& tracer = *static_cast<const UnivariateMeshTracer*>(context);
+    CellSegment<double> found;
+    integrate_linear_span(
+        {span->front, span->back, span->error, span->length, span->place_error},
+        tracer.transfer_.tables(), tracer.job_.largest_color, true,
+        [](double) noexcept { return 0.0; }, found);
+    const SegmentResult<double>& s = found.found.segment;
+    *result = {s.optical_depth,
+               s.opacity,
+               s.transparency,
+               {s.radiance.r, s.radiance.g, s.radiance.b},
+               found.clear ? 0 : found.error(tracer.job_.largest_color),
+               found.opacity,
+               1,
+               0};
+  }
+
   TransferTablesStorage transfer_;
+  std::optional<BinnedTransferStorage> binned_;
+  PellucidMeshJob job_{};
+  Kernel kernel_ = nullptr;  ///< null: rays go one by one
 };
 
 class MultivariateMeshTracer : public MeshTracer {
@@ -113,9 +222,12 @@ class MultivariateMeshTracer : public MeshTracer {
         transfer_(transfer_function_.view()) {}
 
  protected:
-  RayResult integrate(const MeshRay& ray) const override {
-    return integrate_multivariate_mesh_ray(mesh_, fields_.view(), transfer_,
-                                           transfer_function_.largest_extinction(), ray, wanted_);
+  void integrate(const MeshRays& rays, std::vector<RayResult>& results) const override {
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+      results.push_back(integrate_multivariate_mesh_ray(mesh_, fields_.view(), transfer_,
+                                                        transfer_function_.largest_extinction(),
+                                                        rays[i], wanted_));
+    }
   }
   double find_half_opacity(const MeshRay& ray, double opacity) const override {
     if (!(opacity > 0)) return std::numeric_limits<double>::infinity();

@@ -110,6 +110,15 @@ bool is_channel_name(std::string_view name) noexcept {
          });
 }
 
+std::string as_channel_name(std::string_view text) {
+  constexpr std::size_t longest = 56;  // leaves room for a number behind it
+  std::string name;
+  for (const char c : text.substr(0, longest)) {
+    name += is_channel_name(std::string_view(&c, 1)) ? c : '_';
+  }
+  return name.empty() ? "channel" : name;
+}
+
 ChannelSource parse_channel_source(std::string_view text) {
   std::string_view rest = text;
   const std::string_view name = cut(rest, '=');

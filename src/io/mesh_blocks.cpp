@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <array>
 #include <bit>
-#include <cmath>
 #include <cstdint>
 #include <cstring>
 #include <limits>
@@ -253,14 +252,6 @@ MeshFile join_blocks(MeshBlocks&& mesh, const std::string& name) {
   file.grid = concatenate(std::move(mesh.blocks), name);
   if (file.blocks > 1) merge_points(first, file);
   return file;
-}
-
-std::size_t nearest_step(const std::vector<double>& times, std::optional<double> wanted) noexcept {
-  if (!wanted) return 0;
-  const auto nearest = std::min_element(times.begin(), times.end(), [&](double a, double b) {
-    return std::abs(a - *wanted) < std::abs(b - *wanted);
-  });
-  return static_cast<std::size_t>(nearest - times.begin());
 }
 
 }  // namespace pellucid

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
 #include <optional>
 #include <string>
 #include <vector>
@@ -25,6 +28,13 @@ MeshFile join_blocks(MeshBlocks&& mesh, const std::string& name);
 
 /// The index of the step nearest to `wanted`, the earlier of two; the first where nothing is
 /// wanted. `times` is not empty.
-std::size_t nearest_step(const std::vector<double>& times, std::optional<double> wanted) noexcept;
+inline std::size_t nearest_step(const std::vector<double>& times,
+                                std::optional<double> wanted) noexcept {
+  if (!wanted) return 0;
+  const auto nearest = std::min_element(times.begin(), times.end(), [&](double a, double b) {
+    return std::abs(a - *wanted) < std::abs(b - *wanted);
+  });
+  return static_cast<std::size_t>(nearest - times.begin());
+}
 
 }  // namespace pellucid

@@ -83,25 +83,31 @@ void read_integration(const Node& node, Integration& integration) {
 
 /// Channels are looked up here, where all names are known.
 void read_data(const Node& volume, const std::filesystem::path& folder, SceneDescription& scene) {
-  if (const auto channels = volume.find("channels")) {
-    if (volume.has("field")) volume.fail("has both \"field\" and \"channels\"; keep one of them");
+  for (const auto& [one, other] :
+       {std::pair{"field", "channels"}, {"field", "mesh"}, {"channels", "mesh"}}) {
+    if (!volume.has(one) || !volume.has(other)) continue;
+    volume.fail(std::string("has both \"") + one + "\" and \"" + other + "\"; keep one of them");
+  }
+  if (const auto mesh = volume.find("mesh")) {
+    scene.mesh = scene_json::mesh_source(*mesh, folder);
+  } else if (const auto channels = volume.find("channels")) {
     scene.channels = scene_json::channel_sources(*channels, folder);
   } else {
     scene.field = scene_json::field_source(
-        volume.at("field", "give {\"file\": ...} or {\"builtin\": ...}"), folder);
+        volume.at("field", "give {\"file\": ...} or {\"builtin\": ...}, or a \"mesh\""), folder);
   }
   const auto function = volume.find("transfer_function");
   if (!function) return;
   scene.transfer_function = scene_json::transfer_function(*function);
   const auto* multivariate = std::get_if<MultivariateDescription>(&*scene.transfer_function);
   if (multivariate == nullptr) {
-    if (scene.channels.empty()) return;
+    if (scene.channels.empty() && !(scene.mesh && scene.mesh->channels.size() > 1)) return;
     function->fail(
         "is of one variable, but here are channels; give \"gaussians\", or put the points "
         "into \"tables\": [{\"channel\": ..., \"points\": ...}]");
   }
   try {
-    make_multivariate(*multivariate, channel_names(scene_channels(scene)), known_channels(scene));
+    make_multivariate(*multivariate, function_channels(scene), known_channels(scene));
   } catch (const Error& error) {
     function->fail(error.what());
   }
@@ -130,7 +136,7 @@ SceneDescription parse_scene(std::string_view json, const std::string& name,
                  " volumes, but this version renders exactly one");
   }
   const Node volume = volumes.element(0);
-  volume.expect_object({"field", "channels", "transfer_function"});
+  volume.expect_object({"field", "channels", "mesh", "transfer_function"});
 
   SceneDescription scene;
   read_data(volume, folder, scene);

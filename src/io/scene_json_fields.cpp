@@ -47,9 +47,7 @@ FieldSource file_source(const Node& field, const std::filesystem::path& folder) 
   FieldSource source;
   const Node file = field.at("file", "");
   const std::string& path = file.string();
-  if (path.empty()) file.fail("is empty; give the path of a volume file");
-  if (path.find('\0') != std::string::npos) file.fail("has a NUL character");
-  source.file = folder / std::filesystem::path(std::u8string(path.begin(), path.end()));
+  source.file = file_path(file, folder);
 
   // Files with a header say these themselves; two sources of one truth would have to be compared.
   if (ends_with_extension(path, {".nii", ".nii.gz", ".hdr", ".hdr.gz", ".img", ".img.gz", ".nrrd",
@@ -148,6 +146,13 @@ ChannelSource channel_source(const Node& node, const std::filesystem::path& fold
 }
 
 }  // namespace
+
+std::filesystem::path file_path(const Node& file, const std::filesystem::path& folder) {
+  const std::string& path = file.string();
+  if (path.empty()) file.fail("is empty; give the path of a file");
+  if (path.find('\0') != std::string::npos) file.fail("has a NUL character");
+  return folder / std::filesystem::path(std::u8string(path.begin(), path.end()));
+}
 
 FieldSource field_source(const Node& field, const std::filesystem::path& folder) {
   field.expect_object(both(file_keys, builtin_keys));

@@ -48,9 +48,35 @@ void fill_channels(const SceneDescription& description, const std::vector<Channe
   scene.channels = std::make_shared<const Channels>(load_channels(sources, parallel));
 }
 
+/// Whose function is of one variable or of several.
+void fill_mesh(const SceneDescription& description, const ParallelFor& parallel, Scene& scene,
+               MeshSource* mesh_used) {
+  const std::vector<std::string> names = function_channels(description);
+  if (const MultivariateDescription* const function = multivariate(description)) {
+    scene.multivariate = make_multivariate(*function, names, names);
+  } else if (names.size() > 1) {
+    throw Error(
+        "scene: several arrays of a mesh need a function of them all; give \"gaussians\" or "
+        "\"tables\", or leave one array");
+  }
+  const LoadedMesh loaded = load_mesh(*description.mesh, parallel);
+  scene.mesh = loaded.mesh;
+  if (mesh_used != nullptr) {
+    *mesh_used = *description.mesh;
+    mesh_used->channels = loaded.channels;
+  }
+  if (scene.multivariate) return;
+  scene.transfer_function = std::make_shared<const TransferFunction>(
+      description.transfer_function
+          ? make_transfer_function(*description.transfer_function,
+                                   description.integration.tolerance, description.background)
+          : default_transfer_function(*scene.mesh));
+}
+
 }  // namespace
 
 std::vector<ChannelSource> scene_channels(const SceneDescription& description) {
+  if (description.mesh) return {};
   if (!description.channels.empty()) return description.channels;
   const MultivariateDescription* const function = multivariate(description);
   if (function == nullptr) return {};
@@ -63,16 +89,25 @@ std::vector<ChannelSource> scene_channels(const SceneDescription& description) {
   return channels;
 }
 
+std::vector<std::string> function_channels(const SceneDescription& description) {
+  return description.mesh ? channel_names(*description.mesh)
+                          : channel_names(scene_channels(description));
+}
+
 std::vector<std::string> known_channels(const SceneDescription& description) {
+  if (description.mesh) return channel_names(*description.mesh);
   if (!description.channels.empty()) return channel_names(description.channels);
   std::vector<std::string> names{std::string(field_channel)};
   for (const auto kind : made_of_field) names.emplace_back(derived_name(kind));
   return names;
 }
 
-Scene make_scene(const SceneDescription& description, const ParallelFor& parallel) {
+Scene make_scene(const SceneDescription& description, const ParallelFor& parallel,
+                 MeshSource* mesh_used) {
   Scene scene;
-  if (const auto sources = scene_channels(description); !sources.empty()) {
+  if (description.mesh) {
+    fill_mesh(description, parallel, scene, mesh_used);
+  } else if (const auto sources = scene_channels(description); !sources.empty()) {
     fill_channels(description, sources, parallel, scene);
   } else {
     scene.volume = std::make_shared<const Volume>(load_field(description.field));
@@ -85,7 +120,7 @@ Scene make_scene(const SceneDescription& description, const ParallelFor& paralle
   scene.size = description.size;
   scene.samples = description.samples;
   scene.camera = description.camera ? *description.camera
-                                    : default_camera(grid_volume(scene), description.size);
+                                    : default_camera(world_corners(scene), description.size);
   scene.integration = description.integration;
   scene.background = description.background;
   return scene;

@@ -26,6 +26,9 @@ std::string channel_name(const Node& node);
 
 FieldSource field_source(const Node& field, const std::filesystem::path& folder);
 std::vector<ChannelSource> channel_sources(const Node& list, const std::filesystem::path& folder);
+MeshSource mesh_source(const Node& mesh, const std::filesystem::path& folder);
+/// A path that is not empty.
+std::filesystem::path file_path(const Node& file, const std::filesystem::path& folder);
 
 /// The points of a piecewise-linear function; at least one.
 std::vector<TransferFunction::Point> extinction_points(const Node& list);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <charconv>
 #include <cmath>
+#include <filesystem>
 #include <initializer_list>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -36,6 +37,11 @@ std::string quoted(const std::string& text, std::string_view what) {
   } catch (const nlohmann::json::exception&) {
     throw Error(joined({"scene: ", what, " is not UTF-8; JSON cannot hold it"}));
   }
+}
+
+std::string path_text(const std::filesystem::path& path, std::string_view what) {
+  const std::u8string text = path.u8string();
+  return quoted(std::string(text.begin(), text.end()), what);
 }
 
 std::string array(const Vec3<double>& v, std::string_view what) {
@@ -200,8 +206,7 @@ void add_field(const FieldSource& field, Members& members) {
     members.add("points", std::to_string(field.points));
     return;
   }
-  const std::u8string path = field.file.u8string();
-  members.add("file", quoted(std::string(path.begin(), path.end()), "the path of the field"));
+  members.add("file", path_text(field.file, "the path of the field"));
   const ReadOptions& options = field.options;
   if (options.dimensions) {
     const auto& d = *options.dimensions;
@@ -250,11 +255,36 @@ std::string channels_text(const std::vector<ChannelSource>& channels, const std:
   return list + "]";
 }
 
+std::string array_choice_text(const MeshArrayChoice& choice) {
+  std::string text = joined({"{\"name\": ", quoted(choice.name, "the name of a channel"),
+                             ", \"array\": ", quoted(choice.array, "the name of an array")});
+  if (choice.component) text += joined({", \"component\": ", std::to_string(*choice.component)});
+  return text + "}";
+}
+
+/// One channel per line.
+std::string mesh_text(const MeshSource& mesh, const std::string& indent) {
+  Members members(indent);
+  members.add("file", path_text(mesh.file, "the path of the mesh"));
+  if (mesh.options.time) members.add("time", number(*mesh.options.time, "the time"));
+  if (!mesh.options.q.empty()) members.add("q", path_text(mesh.options.q, "the path of q"));
+  if (!mesh.channels.empty()) {
+    std::string list;
+    for (const MeshArrayChoice& choice : mesh.channels) {
+      list += joined({list.empty() ? "[" : ",", "\n", indent, "    ", array_choice_text(choice)});
+    }
+    members.add("channels", joined({list, "\n", indent, "  ]"}));
+  }
+  return members.object();
+}
+
 }  // namespace
 
 std::string scene_to_json(const SceneDescription& scene) {
   Members volume("    ");
-  if (scene.channels.empty()) {
+  if (scene.mesh) {
+    volume.add("mesh", mesh_text(*scene.mesh, "      "));
+  } else if (scene.channels.empty()) {
     volume.add("field", field_text(scene.field, "      "));
   } else {
     volume.add("channels", channels_text(scene.channels, "      "));

@@ -84,6 +84,7 @@ void gather_arrays(vtkDataSetAttributes& data, Centering centering, vtkIdType co
   for (int a = 0; a < data.GetNumberOfArrays(); ++a) {
     vtkDataArray* const array = data.GetArray(a);  // null for text
     if (array == nullptr || array->GetNumberOfComponents() < 1) continue;
+    if (array == data.GetGlobalIds() || array == data.GetPedigreeIds()) continue;
     std::string name = array->GetName() == nullptr ? "" : array->GetName();
     if (name == vtkDataSetAttributes::GhostArrayName()) continue;
     if (name.empty()) name = "array_" + std::to_string(a);

@@ -58,6 +58,9 @@ void read_grid(const std::filesystem::path& path, const VtkMessages& messages, M
   reader->ReadAllTCoordsOn();
   reader->ReadAllFieldsOn();
   update(*reader, {}, messages, mesh.file);
+  // Steps are files of their own; one alone is given the time 0.
+  mesh.file.times.clear();
+  mesh.file.time.reset();
   gather(*reader->GetOutput(), mesh);
 }
 

@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "pellucid/geometry/box.h"
 #include "pellucid/scene/volume.h"
 
 namespace pellucid {
@@ -15,6 +16,12 @@ inline double mean_chord(const Volume& volume) {
                      c = axes.column[2] * size.z;
   const double surface = 2 * (length(cross(a, b)) + length(cross(b, c)) + length(cross(c, a)));
   return 4 * std::abs(dot(a, cross(b, c))) / surface;
+}
+
+/// The same of a box along the axes.
+inline double mean_chord(const Box<double>& box) {
+  const Vec3<double> size = box.upper - box.lower;
+  return 2 * size.x * size.y * size.z / (size.x * size.y + size.y * size.z + size.z * size.x);
 }
 
 }  // namespace pellucid

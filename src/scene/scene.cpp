@@ -152,6 +152,16 @@ void check_data(const Scene& scene) {
   }
 }
 
+std::array<Vec3<double>, 8> world_corners(const Scene& scene) noexcept {
+  if (!scene.mesh) return grid_volume(scene).world_corners();
+  const Box<double>& box = scene.mesh->mesh().bounds();
+  std::array<Vec3<double>, 8> corners{};
+  for (std::size_t i = 0; i < corners.size(); ++i) {
+    for (int a = 0; a < 3; ++a) corners[i][a] = (i >> a & 1) != 0 ? box.upper[a] : box.lower[a];
+  }
+  return corners;
+}
+
 const Volume& grid_volume(const Scene& scene) noexcept {
   return scene.channels ? scene.channels->grid() : *scene.volume;
 }

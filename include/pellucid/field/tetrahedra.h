@@ -18,6 +18,8 @@ struct Tetrahedron {
   std::int32_t behind[4]{outside, outside, outside, outside};
 
   PELLUCID_HD constexpr std::int32_t operator[](int i) const noexcept { return corner[i]; }
+  const std::int32_t* begin() const noexcept { return corner; }
+  const std::int32_t* end() const noexcept { return corner + 4; }
 };
 
 /// A node of the tree over a mesh's boundary: a box and what is in it.

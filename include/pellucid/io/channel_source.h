@@ -39,6 +39,8 @@ ChannelSource parse_channel_source(std::string_view text);
 /// A name is 1 to 64 bytes without spaces, control characters and , : ; = ~ which stand around
 /// names on command lines.
 bool is_channel_name(std::string_view name) noexcept;
+/// What a name may hold of a text, at most 56 bytes, and "_" in the place of the rest.
+std::string as_channel_name(std::string_view text);
 
 std::vector<std::string> channel_names(const std::vector<ChannelSource>& sources);
 

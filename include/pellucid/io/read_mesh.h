@@ -53,7 +53,8 @@ std::string mesh_extensions();
 /// Temperature, in its own dimensionless units (P. P. Walatka et al.: PLOT3D User's Manual, NASA TM
 /// 101067, 1990).
 ///
-/// Whole numbers of 64 bits become double, bits u8.
+/// Whole numbers of 64 bits become double, bits u8. What a file marks as numbers of points or cells
+/// (global ids, pedigree ids) is left out.
 ///
 /// Throws Error where the file is no mesh (naming what it is), is cut off or contradicts itself,
 /// has cells of shapes that CellShape does not know, or no volume cell at all, or memory does not

@@ -9,6 +9,7 @@
 
 #include "pellucid/io/channel_source.h"
 #include "pellucid/io/field_source.h"
+#include "pellucid/io/mesh_source.h"
 #include "pellucid/io/transfer_function_description.h"
 #include "pellucid/scene/scene.h"
 
@@ -19,6 +20,7 @@ namespace pellucid {
 struct SceneDescription {
   FieldSource field;
   std::vector<ChannelSource> channels;  ///< in place of the field, where there are any
+  std::optional<MeshSource> mesh;       ///< in place of both
   std::optional<TransferFunctionDescription> transfer_function;
   std::optional<Camera> camera;
   ImageSize size;
@@ -54,13 +56,17 @@ std::string camera_to_json(const Camera& camera);
 
 /// The channels that the scene's function sees: its own, or its field, named "value", and behind it
 /// "gradient_magnitude" and "second_derivative" of it where a Gaussian or a table names them. None
-/// where a field has a function of one variable.
+/// where a field has a function of one variable, or where there is a mesh.
 std::vector<ChannelSource> scene_channels(const SceneDescription& description);
+/// The names of the channels that a function of several would see.
+std::vector<std::string> function_channels(const SceneDescription& description);
 /// The names that a term of the scene's function may look at: of a field all three.
 std::vector<std::string> known_channels(const SceneDescription& description);
 
-/// Reads the data, and fills defaults for the transfer function of a field and for the camera.
-/// Throws Error, also for channels without a function of them.
-Scene make_scene(const SceneDescription& description, const ParallelFor& parallel = {});
+/// Reads the data, and fills defaults for the transfer function of a field or of one array of a
+/// mesh, and for the camera. `mesh_used` gets the scene's mesh, with the array that was taken where
+/// it names none. Throws Error, also for several channels without a function of them.
+Scene make_scene(const SceneDescription& description, const ParallelFor& parallel = {},
+                 MeshSource* mesh_used = nullptr);
 
 }  // namespace pellucid

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
+
 #include "pellucid/scene/scene.h"
 
 namespace pellucid {
@@ -21,10 +23,16 @@ namespace pellucid {
 /// transfer function of its own. A constant volume is a haze of optical depth 1; one without any
 /// value is empty. Never throws for a valid volume.
 TransferFunction default_transfer_function(const Volume& volume);
+/// The same of a mesh's first channel, whose values count as the volume that they fill: a boundary
+/// layer has many points and little volume. A class that fills a share of the box around the mesh
+/// is taken for a body of the box's shape.
+TransferFunction default_transfer_function(const MeshChannels& mesh);
 
 /// A perspective camera of 30° that sees the whole box of the volume with a margin of 5 %, from the
 /// direction (½ cos 20°, -cos 30° cos 20°, sin 20°) with +z up: for medical data (LPS) obliquely
 /// from the front, from the patient's left and a little from above.
 Camera default_camera(const Volume& volume, ImageSize size);
+/// The same of a box by its corners (world_corners).
+Camera default_camera(const std::array<Vec3<double>, 8>& corners, ImageSize size);
 
 }  // namespace pellucid

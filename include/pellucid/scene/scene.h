@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <memory>
 #include <optional>
 #include <string>
@@ -106,6 +107,8 @@ void check_data(const Scene& scene);
 /// The volume whose grid the rays cross. Of a scene that check_data() accepts, as all below, and
 /// that has no mesh.
 const Volume& grid_volume(const Scene& scene) noexcept;
+/// The corners of a box around the data: that of the grid, or one along the world's axes of a mesh.
+std::array<Vec3<double>, 8> world_corners(const Scene& scene) noexcept;
 /// Largest color component of the transfer function.
 double largest_color(const Scene& scene) noexcept;
 

@@ -11,7 +11,8 @@ template <class T>
 struct SeenFace {
   index_t<T> point[3];
   SeenPoint<T> seen[3];
-  T area[3];  ///< |twice the area| between the ray and the edge opposite to the point
+  T area[3];     ///< |twice the area| between the ray and the edge opposite to the point
+  T carried[3];  ///< what else is wanted of the points
   mask_t<T> left = mask_t<T>(false);  ///< how the points turn around the ray, in their order
 
   /// A bound on how far a weight may be off where the places of the points across the ray are off
@@ -44,6 +45,7 @@ PELLUCID_HD inline bool see_face(const Tetrahedra& mesh, const RayView<double>& 
     if (k == (code & 3)) continue;
     face.point[n] = t.corner[k];
     face.seen[n] = view.see(mesh.point[t.corner[k]]);
+    face.carried[n] = 0;
     ++n;
   }
   bool left[3];

@@ -97,11 +97,11 @@ PELLUCID_HD void for_each_mesh_span(const Tetrahedra& mesh, const MeshFields& fi
     SeenFace<double> face;
     see_face(mesh, view, hits[i].code, face);
     MeshWalk<double> walk(mesh, view);
-    walk.enter(face, hits[i].code);
+    walk.enter(true, face, hits[i].code);
     MeshPlace from = detail::place_on(face, fields, view.blur);
     for (std::int32_t steps = 0; walk.ahead() != Tetrahedron::outside; ++steps) {
       const std::int32_t tetrahedron = walk.ahead() >> 2;
-      walk.step(true);
+      walk.step(true, [](int) noexcept { return 0.0; });
       const MeshPlace to = detail::place_on(walk.face(), fields, view.blur);
       MeshSpan span = detail::span_between(from, to, fields, tetrahedron, front);
       const double most = front_error + from.t_error + to.t_error;

@@ -23,10 +23,19 @@ class MeshWalk {
   PELLUCID_HD MeshWalk(const Tetrahedra& mesh, const RayView<T>& view) noexcept
       : mesh_(mesh), view_(view) {}
 
-  /// Begins behind `face`, which the ray goes through: code = 4 · tetrahedron + face.
-  PELLUCID_HD void enter(const SeenFace<T>& face, Index code) noexcept {
-    face_ = face;
-    code_ = code;
+  /// Begins behind `face`, which the ray goes through, in the lanes of `begun`: code = 4 ·
+  /// tetrahedron + face.
+  PELLUCID_HD void enter(Mask begun, const SeenFace<T>& face, Index code) noexcept {
+    for (int i = 0; i < 3; ++i) {
+      assign(begun, face_.point[i], face.point[i]);
+      assign(begun, face_.seen[i].x, face.seen[i].x);
+      assign(begun, face_.seen[i].y, face.seen[i].y);
+      assign(begun, face_.seen[i].t, face.seen[i].t);
+      assign(begun, face_.area[i], face.area[i]);
+      assign(begun, face_.carried[i], face.carried[i]);
+    }
+    assign(begun, face_.left, face.left);
+    assign(begun, code_, code);
   }
 
   /// The face that was reached last.
@@ -36,14 +45,17 @@ class MeshWalk {
   /// The face as the tetrahedron gone through last has it.
   PELLUCID_HD Index left_by() const noexcept { return left_by_; }
 
-  /// Goes through the tetrahedron ahead in the lanes of `on`, where there is one.
-  PELLUCID_HD void step(Mask on) noexcept {
+  /// Goes through the tetrahedron ahead in the lanes of `on`, where there is one. load(point): what
+  /// is to be carried of it.
+  template <class Load>
+  PELLUCID_HD void step(Mask on, Load&& load) noexcept {
     const Index tetrahedron = select(on, code_ >> 2, Index(0)), entry = code_ & Index(3);
     // In words of the tetrahedron.
     const Index record = tetrahedron << 3;
     const std::int32_t* words = mesh_.tetrahedron->corner;
     const Index point = gather(words, record + select(on, entry, Index(0)));
     const SeenPoint<T> seen = view_.see(gather_point(mesh_.point, point));
+    const T carried = load(point);
     Side<T> side[3];
     Mask forward[3];
     for (int i = 0; i < 3; ++i) {
@@ -67,6 +79,7 @@ class MeshWalk {
       assign(drop[i], face_.seen[i].x, seen.x);
       assign(drop[i], face_.seen[i].y, seen.y);
       assign(drop[i], face_.seen[i].t, seen.t);
+      assign(drop[i], face_.carried[i], carried);
       assign(drop[i], face_.area[next], abs(side[last].area));
       assign(drop[i], face_.area[last], abs(side[next].area));
     }

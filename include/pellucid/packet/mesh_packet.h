@@ -1,0 +1,342 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "pellucid/error/budget.h"
+#include "pellucid/packet/mesh_march.h"
+#include "pellucid/segment/fold.h"
+#include "pellucid/segment/linear.h"
+#include "pellucid/transfer/binned.h"
+
+#if PELLUCID_HAS_BATCH_4  // in sources compiled per instruction set
+namespace pellucid {
+
+/// Integrates N rays through a variable of a mesh, each in a lane of its own and within its own
+/// tolerance. What a ray becomes depends on no other lane.
+///
+/// The rays go ahead some steps at a time (MeshMarch); then each lane takes the spans of its ray
+/// that absorb, piece by piece: cut where the extinction has a corner, each is Moreland's integral
+/// of linear extinction and color. Where the color has corners of its own, its line between the
+/// ends stands for it as far as the budget pays for that. What binary32 is not good enough for is
+/// handed back.
+template <int N>
+class MeshPacket {
+ public:
+  using F = Batch<float, N>;
+  using D = Batch<double, N>;
+  using I = Batch<std::int32_t, N>;
+  using M = BatchMask<N>;
+  /// What many packets have one after the other.
+  using Room = MeshSpanRows<N>;
+
+  MeshPacket(const PellucidMeshJob& job, Room& rows, int first, int count) noexcept
+      : job_(job),
+        transfer_(*static_cast<const BinnedTransfer*>(job.transfer)),
+        rows_(rows),
+        first_(first),
+        count_(count),
+        march_(job, job.rays + first, count),
+        largest_color_(static_cast<float>(job.largest_color)),
+        color_bends_(transfer_.color_bend[transfer_.bins] > 0) {
+    double length[N];
+    std::int32_t lane[N];
+    for (int l = 0; l < N; ++l) {
+      const PellucidMeshRay& ray = job.rays[first + (l < count ? l : 0)];
+      length[l] = ray.end - ray.begin;
+      lane[l] = l;
+    }
+    lane_ = I::load(lane);
+    budget_ = RayBudget<F>(F(static_cast<float>(job.tolerance * (1 - kept_back))),
+                           convert<float>(D::load(length)));
+  }
+
+  void run() noexcept {
+    while (any(march_.walking)) {
+      waiting_ = march_.fill(rows_, cells_, [this](F least, F most, I& note) noexcept {
+        return absorbs(least, most, note);
+      });
+      for (take_spans(); any(pending_); take_spans()) integrate_pieces();
+    }
+  }
+
+  void store(PellucidRayResult* results) const noexcept {
+    const SegmentResult<D> all = fold_.result();
+    // As PacketIntegrator does: folding in double costs 4 u a piece, adding up costs in float 2 u.
+    constexpr double folding = 8 * rounding_unit<double>;
+    constexpr double account = 2 * static_cast<double>(rounding_unit<float>);
+    const D pieces = convert<double>(pieces_) + D(1);
+    const D error = convert<double>(budget_.spent() + select(cut_off_, rest_behind(), F(0))) *
+                        (D(1) + D(account) * pieces) +
+                    D(folding * job_.largest_color) * pieces;
+    for (int l = 0; l < count_; ++l) {
+      PellucidRayResult& r = results[first_ + l];
+      r = {};
+      for (int c = 0; c < 3; ++c) {
+        r.radiance[c] = c == 0 ? all.radiance.r[l] : c == 1 ? all.radiance.g[l] : all.radiance.b[l];
+      }
+      r.opacity = all.opacity[l];
+      r.optical_depth = all.optical_depth[l];
+      r.error = error[l];
+      r.cells = r.evaluations = cells_[l];
+      r.closed = pieces_[l];
+      r.in_double = in_double_[l];
+      r.proved = 1;
+    }
+  }
+
+ private:
+  /// As in PacketIntegrator.
+  static constexpr double kept_back = 0x1p-9;
+  static constexpr float narrowest = 1.0f / 16;
+
+  M absorbs(F least, F most, I& note) const noexcept {
+    // Vacuum is NaN, which is nowhere.
+    M found = (most >= F(transfer_.support_min)) & (least <= F(transfer_.support_max));
+    if (!transfer_.has_marks || none(found)) return found;
+    const F safe_least = select(found, least, F(0)), safe_most = select(found, most, F(0));
+    const I marks = gather(transfer_.marks, bin_of(transfer_, safe_most) + I(1)) -
+                    gather(transfer_.marks, bin_of(transfer_, safe_least));
+    found = found & (marks > I(0));
+    note = note +
+           select(found & (marks >= I(BinnedTransfer::one_jump)), I(SpanNote::handed_back), I(0));
+    return found;
+  }
+
+  /// Gives the lanes without a span the next one of their ray, if there is any.
+  [[gnu::flatten]] void take_spans() noexcept {
+    const M lanes = (!pending_) & (waiting_ != I(0));
+    if (none(lanes)) return;
+    // The number of the lowest bit (de Bruijn).
+    static constexpr std::int32_t number_of[32] = {0,  1,  28, 2,  29, 14, 24, 3,  30, 22, 20,
+                                                   15, 25, 17, 4,  8,  31, 27, 13, 23, 21, 19,
+                                                   16, 7,  26, 12, 18, 6,  11, 5,  10, 9};
+    const I lowest = waiting_ & (I(0) - waiting_);
+    const I step = gather(number_of, ((lowest * I(0x077cb531)) >> 27) & I(31));
+    waiting_ = select(lanes, waiting_ - lowest, waiting_);
+    row_ = select(lanes, step * I(N) + lane_, row_);
+    const I at = select(lanes, row_, lane_);
+    const auto take = [&](const float* numbers, F& kept) noexcept {
+      kept = select(lanes, gather(numbers, at), kept);
+    };
+    take(rows_.front, front_);
+    take(rows_.back, back_);
+    take(rows_.rounding, rounding_);
+    take(rows_.length, length_);
+    take(rows_.left, left_);
+    take(rows_.place_error, place_error_);
+    const I note = gather(rows_.code, at);
+    handed_back_ = handed_back_ | (lanes & (note > I(0)));
+    span_length_ = select(lanes, length_, span_length_);
+    from_ = select(lanes, F(0), from_);
+    cap_ = select(lanes, F(1), cap_);
+    pending_ = pending_ | lanes;
+    located_ = located_ & !lanes;
+  }
+
+  [[gnu::flatten]] void integrate_pieces() noexcept {
+    if (any(handed_back_)) {
+      hand_back(handed_back_);
+      handed_back_ = M(false);
+      if (none(pending_)) return;
+    }
+    const M on = pending_;
+    const M lost = on & !located_;
+    if (any(lost)) {
+      const M moved = lost & ((front_ < extinction_.lower) | (front_ >= extinction_.upper));
+      if (any(moved)) extinction_ = find_extinction(transfer_, front_, moved, interval_);
+      assign_color(lost, front_color_, color_at(transfer_, front_));
+      located_ = located_ | on;
+    }
+    const ExtinctionInterval<F>& interval = extinction_;
+    const M rising = back_ > front_;
+    const F limit = select(rising, interval.upper, interval.lower);
+    const M beyond = select(rising, back_ > limit, back_ < limit);
+    const F rise = back_ - front_;
+    F place = select(beyond, clamp((limit - front_) / rise, F(0), F(1)), F(1));
+    const M capped = cap_ < place;
+    place = min(place, cap_);
+    const M crosses = beyond & !capped;
+    const F end = select(crosses, limit, select(capped, front_ + place * rise, back_));
+    const F length = length_ * place;
+    const auto extinction = [&](F value) noexcept {
+      return max(interval.at_lower + interval.slope * (value - interval.lower), F(0));
+    };
+    const Rgb<F> color = color_at(transfer_, end);
+    const SegmentResult<F> s =
+        linear_segment(extinction(front_), extinction(end), front_color_, color, length);
+
+    const F least = min(front_, end), most = max(front_, end), range = most - least;
+    F color_error(0);
+    if (color_bends_) {
+      // A kink at k moves a line between a and b by no more than (k - a)(b - k)/(b - a).
+      const F bend = (gather(transfer_.color_bend, bin_of(transfer_, most) + I(1)) -
+                      gather(transfer_.color_bend, bin_of(transfer_, least))) +
+                     F(transfer_.bend_rounding);
+      color_error = s.opacity * min(F(0.25f) * (bend * range), interval.color_range);
+    }
+    // What rounding can do, as in PacketIntegrator.
+    constexpr float u = rounding_unit<float>;
+    const F value_error = rounding_;
+    const M touches =
+        (least - value_error < interval.lower) | (most + value_error > interval.upper) | crosses;
+    const F near = select(range > F(2) * value_error, F(2) * value_error / range, F(1));
+    const F slope = abs(interval.slope);
+    const F steep = select(touches, slope + near * (interval.steepest - slope), slope);
+    const F depth_error = length * (value_error * steep + F(8 * u) * interval.largest) +
+                          place_error_ * (length / span_length_) * interval.largest;
+    const F color_rounding =
+        F(32 * u) * largest_color_ + min(value_error * interval.color_slope, largest_color_);
+    const F opacity_rounding =
+        F(32 * u) * s.opacity +
+        min(select(depth_error <= F(1), F(2) * depth_error * s.transparency, F(1)), F(1));
+    const F rounding = s.opacity * color_rounding + largest_color_ * opacity_rounding;
+    const F error = color_error + rounding;
+
+    budget_.pass_to(select(on, left_ - from_ * span_length_, budget_.length_left()));
+    const F transparency = convert<float>(fold_.transparency());
+    const F allowance = budget_.allowance(length, s.opacity, transparency);
+    const M take = on & (error <= allowance);
+    const M rest = on & !take;
+    if (any(rest)) {
+      const F half = F(0.5f) * place;
+      const M halve = rest & ((F(1) - from_) * half >= F(narrowest)) &
+                      (color_error <= F(64) * allowance) & (rounding <= F(0.25f) * allowance);
+      cap_ = select(halve, half, cap_);
+      const M give_up = rest & !halve;
+      if (any(give_up)) hand_back(give_up);
+    }
+    if (none(take)) return;
+    fold(take, s);
+    budget_.spend(select(take, length, F(0)), s.opacity, transparency, select(take, error, F(0)));
+    pieces_ += select(take, I(1), I(0));
+
+    const F remaining = F(1) - place;
+    front_ = select(take, end, front_);
+    assign_color(take, front_color_, color);
+    length_ = select(take, length_ * remaining, length_);
+    from_ = select(take, from_ + (F(1) - from_) * place, from_);
+    cap_ = select(take, select(capped & (place < remaining), place / remaining, F(1)), cap_);
+    const M crossed = take & crosses;
+    if (any(crossed)) {
+      interval_ += select(crossed, select(rising, I(1), I(-1)), I(0));
+      extinction_ = load_extinction<F>(transfer_, interval_);
+    }
+    const M clear = (max(front_, back_) + rounding_ < F(transfer_.support_min)) |
+                    (min(front_, back_) - rounding_ > F(transfer_.support_max));
+    pending_ = pending_ & !(take & ((place >= F(1)) | clear));
+    retire();
+  }
+
+  static void assign_color(M lanes, Rgb<F>& to, const Rgb<F>& from) noexcept {
+    assign(lanes, to.r, from.r);
+    assign(lanes, to.g, from.g);
+    assign(lanes, to.b, from.b);
+  }
+
+  /// Adds the lanes' segments to their rays.
+  void fold(M lanes, const SegmentResult<F>& s) noexcept {
+    const auto masked = [&](F value) noexcept {
+      return select(lanes, convert<double>(value), D(0));
+    };
+    fold_.add(SegmentResult<D>{masked(s.optical_depth),
+                               masked(s.opacity),
+                               select(lanes, convert<double>(s.transparency), D(1)),
+                               {masked(s.radiance.r), masked(s.radiance.g), masked(s.radiance.b)}});
+  }
+
+  /// Ends the rays that no longer matter.
+  void retire() noexcept {
+    const M done = (!cut_off_) & (rest_behind() <= budget_.left());
+    if (none(done)) return;
+    march_.stop(done);
+    pending_ = pending_ & !done;
+    waiting_ = select(done, I(0), waiting_);
+    cut_off_ = cut_off_ | done;
+  }
+
+  /// A bound on what lies behind the last piece, as little as light can come from there.
+  F rest_behind() const noexcept {
+    const F opacity = min(F(transfer_.largest_extinction) * budget_.length_left(), F(1));
+    return convert<float>(fold_.transparency()) * opacity * largest_color_;
+  }
+
+  /// Has what is left of the lanes' spans integrated by other means.
+  void hand_back(M lanes) noexcept {
+    lanes = lanes & pending_;
+    const F transparency = convert<float>(fold_.transparency());
+    budget_.pass_to(select(lanes, left_ - from_ * span_length_, budget_.length_left()));
+    double depth[N] = {}, opacity[N] = {}, through[N], red[N] = {}, green[N] = {}, blue[N] = {},
+           error[N] = {}, bound[N] = {};
+    for (int l = 0; l < N; ++l) {
+      through[l] = 1;
+      if ((bits(lanes) >> l & 1) == 0) continue;
+      const int row = row_[l];
+      if ((rows_.code[row] & SpanNote::overlaps) != 0) {
+        error[l] = job_.largest_color;  // anything may be there
+        continue;
+      }
+      const double from = static_cast<double>(from_[l]), front = rows_.exact_front[row],
+                   back = rows_.exact_back[row];
+      // Where pieces have ended is known in binary32.
+      const double off = from > 0 ? 4 * static_cast<double>(rounding_unit<float>) : 0;
+      const PellucidLinearSpan span{
+          front + from * (back - front), back, rows_.error[row],
+          static_cast<double>(place_error_[l]) + off * rows_.exact_length[row],
+          (1 - from) * rows_.exact_length[row]};
+      PellucidCellResult result;
+      job_.integrate_span(job_.context, &span, &result);
+      depth[l] = result.optical_depth;
+      opacity[l] = result.opacity;
+      through[l] = result.transparency;
+      red[l] = result.radiance[0];
+      green[l] = result.radiance[1];
+      blue[l] = result.radiance[2];
+      error[l] = result.error;
+      bound[l] = result.opacity_bound;
+    }
+    fold_.add(SegmentResult<D>{D::load(depth),
+                               D::load(opacity),
+                               D::load(through),
+                               {D::load(red), D::load(green), D::load(blue)}});
+    budget_.spend(select(lanes, length_, F(0)), convert<float>(D::load(bound)), transparency,
+                  convert<float>(D::load(error)) * F(1 + 4 * rounding_unit<float>));
+    pieces_ += select(lanes, I(1), I(0));
+    in_double_ += select(lanes, I(1), I(0));
+    pending_ = pending_ & !lanes;
+    retire();
+  }
+
+  const PellucidMeshJob& job_;
+  const BinnedTransfer& transfer_;
+  Room& rows_;
+  int first_, count_;
+  MeshMarch<N> march_;
+  I lane_;
+
+  I waiting_{0};  ///< per lane, the rows whose spans are not taken yet
+
+  // The span that a lane works on.
+  M pending_{false};
+  M handed_back_{false};  ///< those of them that are not for the rule here
+  M located_{false};      ///< whether `interval_` and the color at the front are known
+  I row_{0}, interval_{0};
+  F front_{0}, back_{0};  ///< data, of what is left of it
+  F left_{0};             ///< of the ray, from the span's begin on, world length
+  F length_{0};           ///< world length of what is left of it
+  F span_length_{1};      ///< of all of it
+  F from_{0};             ///< the share that is done
+  F cap_{1};              ///< the most that the next piece may be of what is left
+  F rounding_{0}, place_error_{0};
+  Rgb<F> front_color_{F(0), F(0), F(0)};
+  ExtinctionInterval<F> extinction_{F(0), F(0), F(0), F(0), F(0), F(0), F(0), F(0)};
+
+  RayBudget<F> budget_;
+  FrontToBack<D> fold_;
+  F largest_color_;
+  bool color_bends_;
+  M cut_off_{false};
+  std::int32_t cells_[N] = {};
+  I pieces_{0}, in_double_{0};
+};
+
+}  // namespace pellucid
+#endif

@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pellucid/io/mesh_source.h"
+
+#include <algorithm>
+#include <charconv>
+#include <utility>
+
+#include "memory_limit.h"
+#include "pellucid/io/channel_source.h"
+#include "pellucid/scene/error.h"
+#include "scene_json_document.h"
+
+namespace pellucid {
+
+namespace {
+
+using scene_json::printable;
+
+/// The C of "ARRAY:C", which is taken off.
+std::optional<int> take_component(std::string_view& text) {
+  const std::size_t colon = text.rfind(':');
+  if (colon == std::string_view::npos) return std::nullopt;
+  int component = 0;
+  const char* const end = text.data() + text.size();
+  const auto result = std::from_chars(text.data() + colon + 1, end, component);
+  if (result.ec != std::errc() || result.ptr != end || component < 0) return std::nullopt;
+  text = text.substr(0, colon);
+  return component;
+}
+
+/// About how many tetrahedra a cell becomes.
+std::size_t pieces_of(CellShape shape) {
+  switch (shape) {
+    case CellShape::tetrahedron:
+      return 1;
+    case CellShape::pyramid:
+      return 2;
+    case CellShape::wedge:
+      return 3;
+    case CellShape::hexahedron:
+    case CellShape::voxel:
+      return 6;
+    case CellShape::quadratic_tetrahedron:
+      return 8;
+    case CellShape::quadratic_pyramid:
+      return 20;
+    case CellShape::quadratic_wedge:
+    case CellShape::biquadratic_wedge:
+      return 24;
+    case CellShape::quadratic_hexahedron:
+    case CellShape::triquadratic_hexahedron:
+      break;
+  }
+  return 48;
+}
+
+void check_mesh_memory(const UnstructuredGrid& grid) {
+  std::size_t tetrahedra = 0;
+  for (const CellShape shape : grid.shapes) tetrahedra += pieces_of(shape);
+  // Corners and neighbors, and while neighbors are looked for the faces too.
+  constexpr std::size_t bytes = 128;
+  check_memory(tetrahedra * bytes,
+               grid.name + ": its " + std::to_string(tetrahedra) + " tetrahedra");
+}
+
+}  // namespace
+
+MeshArrayChoice parse_mesh_array(std::string_view text) {
+  const std::string what = "array " + printable(text) + ": ";
+  MeshArrayChoice choice;
+  std::string_view rest = text;
+  if (const std::size_t equals = rest.find('=');
+      equals != std::string_view::npos && is_channel_name(rest.substr(0, equals))) {
+    choice.name = rest.substr(0, equals);
+    rest.remove_prefix(equals + 1);
+  }
+  choice.component = take_component(rest);
+  choice.array = rest;
+  if (choice.array.empty()) {
+    throw Error(what + "expected ARRAY, ARRAY:COMPONENT or NAME=ARRAY, as in speed=V or V:0");
+  }
+  if (choice.name.empty()) {
+    choice.name = as_channel_name(choice.array);
+    if (choice.component) choice.name += "_" + std::to_string(*choice.component);
+  }
+  return choice;
+}
+
+std::vector<std::string> channel_names(const MeshSource& source) {
+  if (source.channels.empty()) return {std::string(field_channel)};
+  std::vector<std::string> names;
+  names.reserve(source.channels.size());
+  for (const MeshArrayChoice& channel : source.channels) names.push_back(channel.name);
+  return names;
+}
+
+void check_mesh_source(const MeshSource& source) {
+  std::vector<ChannelSource> channels;
+  channels.reserve(source.channels.size() + 1);
+  for (const std::string& name : channel_names(source))
+    channels.push_back({name, "", FieldSource{}});
+  check_channel_sources(channels);
+}
+
+LoadedMesh load_mesh(const MeshSource& source, const ParallelFor& parallel) {
+  MeshFile file = read_mesh(source.file, source.options);
+  LoadedMesh loaded{nullptr, source.channels};
+  if (loaded.channels.empty()) {
+    loaded.channels = {{default_array(file).name, std::nullopt, std::string(field_channel)}};
+  }
+  std::vector<MeshArray>& arrays = file.grid.arrays;
+  const auto is_chosen = [&](const MeshArray& array) {
+    return std::ranges::any_of(loaded.channels,
+                               [&](const auto& choice) { return choice.array == array.name; });
+  };
+  const bool all_there = std::ranges::all_of(loaded.channels, [&](const auto& choice) {
+    return std::ranges::any_of(arrays,
+                               [&](const auto& array) { return choice.array == array.name; });
+  });
+  // Where one is missing the message names those that are there.
+  if (all_there) std::erase_if(arrays, [&](const MeshArray& array) { return !is_chosen(array); });
+  check_mesh_memory(file.grid);
+  loaded.mesh = cut_into_tetrahedra(file.grid, loaded.channels, parallel);
+  return loaded;
+}
+
+}  // namespace pellucid
