@@ -5,8 +5,11 @@
 #include <numbers>
 #include <utility>
 
+#include "pellucid/io/read_mesh.h"
+#include "pellucid/scene/cut_cells.h"
 #include "tests/scenes/gallery.h"
 #include "tests/scenes/meshes.h"
+#include "tests/support/test_data.h"
 
 namespace pellucid::scenes {
 namespace {
@@ -188,7 +191,7 @@ Exhibit two_variables(int) {
 }
 
 /// Linear data over three variables, one of them constant in the cells: turned and rank-deficient
-/// Gaussians, and a table with a jump.
+/// Gaussians, and a table.
 Exhibit three_variables(int) {
   const MeshPointer mesh = make_mesh(random_delaunay(250, 13));
   return exhibit(
@@ -198,7 +201,7 @@ Exhibit three_variables(int) {
        gaussian({0, 1, 2}, {0.4, 0.6, 110}, {{6, 4, 0}, {-4, 6, 0.01}, {0, 0.3, 0.02}}, 5,
                 {0, 0.5, 1}),
        gaussian({2, 0}, {80, 0.5}, matrix_of_widths({20, 0.004}), 40, {0.4, 1, 0.4})},
-      {{1, TransferFunction({{0.5, 0.1, {1, 0, 1}}, {0.5, 1, {1, 1, 1}}, {0.6, 0, {1, 1, 1}}})}});
+      {{1, TransferFunction({{0.5, 0, {1, 0, 1}}, {0.55, 1, {1, 1, 1}}, {0.6, 0, {1, 1, 1}}})}});
 }
 
 /// Features of a 500th of the range and of a 50,000th.
@@ -272,10 +275,50 @@ Exhibit far_away(int) {
   return scaled(1, {1e6, -2e6, 5e5});
 }
 
+/// Simulations and what comes with VTK (the data folder beside the sources), by an array of theirs.
+struct RealMesh {
+  const char *name, *file, *array;
+  double extinction;  ///< times the size of the mesh: largest
+};
+
+constexpr RealMesh real_meshes[] = {
+    {"post", "post.vtk", "Pressure", 6},
+    {"aneurysm", "output_fem.vtu", "Umag", 40},
+    {"disk", "disk_out_ref.ex2", "Temp", 8},
+    {"crushed can", "can.vtu", "EQPS", 40},
+    {"hexahedra", "hexa.vtk", "scalars", 5},
+    {"96 tetrahedra", "Tetrahedron.vtu", "", 5},
+    {"notch", "notch_disp.vtu", "displacement", 10},
+};
+
+GalleryEntry entry_of(const RealMesh& real) {
+  const std::filesystem::path file = test_data_folder() / "unstructured" / real.file;
+  const auto make = [=](int) {
+    const MeshFile read = read_mesh(file);
+    const bool there = std::any_of(read.grid.arrays.begin(), read.grid.arrays.end(),
+                                   [&](const MeshArray& a) { return a.name == real.array; });
+    MeshArrayChoice choice;
+    choice.array = there ? real.array : default_array(read).name;
+    choice.name = "field";
+    const MeshChannelsPointer mesh = cut_into_tetrahedra(read.grid, std::vector{choice});
+    // The ramps over the range of the data, their depth by the size of the mesh.
+    const VolumeStatistics& range = mesh->statistics(0);
+    const Box<double>& box = mesh->mesh().bounds();
+    const double unit = length(box.upper - box.lower) / real.extinction;
+    Points points = ramps();
+    for (TransferFunction::Point& p : points) {
+      p.value = range.minimum + p.value * (range.maximum - range.minimum);
+      p.extinction /= unit;
+    }
+    return exhibit(mesh, std::move(points));
+  };
+  return {std::string("mesh: ") + real.name, make, file};
+}
+
 }  // namespace
 
 Gallery mesh_gallery() {
-  return {
+  Gallery entries{
       {"tetrahedra, linear field", linear_field},
       {"tetrahedra, smooth field", smooth_field},
       {"tetrahedra along the axes", along_the_axes},
@@ -287,15 +330,17 @@ Gallery mesh_gallery() {
       {"tetrahedra, vacuum at points and in cells", vacuum},
       {"Gaussians over two variables of tetrahedra", two_variables},
       {"Gaussians and a table over three variables of tetrahedra", three_variables},
-      {"tetrahedra, spikes of 1/500 and 1/50000 of the range", spikes},
+      {"tetrahedra, spikes of 1/500 and 1/50000 of the range", spikes, {}, 1e-3},
       {"tetrahedra, jumps", jumps},
       {"tetrahedra of a million depths", deep},
-      {"tetrahedra, colors of 50", bright_colors},
-      {"tetrahedra, data of a million and a hundredth", far_from_zero},
+      {"tetrahedra, colors of 50", bright_colors, {}, 1e-5},
+      {"tetrahedra, data of a million and a hundredth", far_from_zero, {}, 1e-4},
       {"tetrahedra of 1e-5 units", tiny},
       {"tetrahedra of a million units", huge},
-      {"tetrahedra a million units away", far_away},
+      {"tetrahedra a million units away", far_away, {}, 1e-4},
   };
+  for (const RealMesh& real : real_meshes) entries.push_back(entry_of(real));
+  return entries;
 }
 
 }  // namespace pellucid::scenes
