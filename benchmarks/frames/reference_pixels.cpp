@@ -21,15 +21,15 @@ namespace {
 /// Counts up where the reference, the choice of pixels or the file changes.
 constexpr unsigned version = 1;
 
-std::array<double, 4> reference_pixel(const Scene& scene, const CameraFrame<double>& camera,
-                                      std::size_t index) {
+std::array<double, 4> reference_pixel(const Scene& scene, const ReferenceRays& rays,
+                                      const CameraFrame<double>& camera, std::size_t index) {
   const auto width = static_cast<std::size_t>(scene.size.width);
   const auto column = static_cast<int>(index % width), row = static_cast<int>(index / width);
   const int count = scene.samples * scene.samples;
   std::array<double, 4> mean{};
   for (int n = 0; n < count; ++n) {
     const Ray<double> ray = camera.ray(column, row, n, scene.samples);
-    const ReferencePixel pixel = reference_ray(scene, ray.origin, ray.direction);
+    const ReferencePixel pixel = rays(ray.origin, ray.direction);
     const double channel[4] = {pixel.radiance.r, pixel.radiance.g, pixel.radiance.b, pixel.opacity};
     for (std::size_t c = 0; c < 4; ++c) mean[c] += channel[c] / count;
   }
@@ -38,10 +38,11 @@ std::array<double, 4> reference_pixel(const Scene& scene, const CameraFrame<doub
 
 void render_pixels(const Scene& scene, int threads, ReferencePixels& pixels) {
   const CameraFrame<double> camera = make_camera_frame(scene.camera, scene.size);
+  const ReferenceRays rays(scene);
   std::atomic<std::size_t> next{0};
   const auto work = [&] {
     for (std::size_t i = next++; i < pixels.index.size(); i = next++) {
-      pixels.value[i] = reference_pixel(scene, camera, pixels.index[i]);
+      pixels.value[i] = reference_pixel(scene, rays, camera, pixels.index[i]);
     }
   };
   std::vector<std::jthread> others;

@@ -44,6 +44,12 @@ Chord::Chord(const std::array<Real, 8>& corner, const Real3& entry, const Real3&
   if (lower_ == upper_) monomial_ = {lower_, 0, 0, 0};
 }
 
+Chord Chord::linear(Real at_entry, Real at_exit) {
+  std::array<Real, 8> corner;
+  for (std::size_t k = 0; k < 8; ++k) corner[k] = is_upper(k, 0) ? at_exit : at_entry;
+  return {corner, {0, 0, 0}, {1, 0, 0}};
+}
+
 Real Chord::operator()(Real u) const {
   Real sum = 0;
   for (std::size_t k = 0; k < 8; ++k) {

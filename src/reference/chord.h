@@ -7,11 +7,14 @@
 
 namespace pellucid::reference {
 
-/// Trilinear data along a straight chord of a cell, u in [0, 1] from entry to exit.
+/// Data along a straight chord of a cell, u in [0, 1] from entry to exit: trilinear data, or linear
+/// ones, which are the trilinear ones along an edge.
 class Chord {
  public:
   /// Corners x fastest; entry and exit in the cell's coordinates, [0, 1]³.
   Chord(const std::array<Real, 8>& corner, const Real3& entry, const Real3& exit);
+
+  static Chord linear(Real at_entry, Real at_exit);
 
   /// The sum of the eight corners, each times the product of its three weights.
   Real operator()(Real u) const;

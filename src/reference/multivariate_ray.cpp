@@ -89,42 +89,27 @@ class MixtureGatherer {
 
 }  // namespace
 
-MultivariateIntegral::MultivariateIntegral(const Channels& channels,
-                                           const MultivariateTransferFunction& function)
-    : mixture_(function) {
-  for (const Channel& channel : channels) grids_.emplace_back(*channel.volume);
-}
-
-std::vector<Chord> MultivariateIntegral::chords(const Crossing& crossing) const {
-  std::vector<Chord> result;
-  for (const Grid& grid : grids_) {
-    const std::optional<Chord> chord = grid.chord(crossing);
-    if (!chord) return {};
-    result.push_back(*chord);
-  }
-  return result;
-}
-
-ReferencePixel MultivariateIntegral::operator()(const RealRay& ray, bool with_depth,
-                                                std::uint64_t& cells) const {
+ReferencePixel integrate(const Field& field, const Mixture& mixture, const RealRay& ray,
+                         bool with_depth, std::uint64_t& cells) {
   MixtureGatherer gatherer(with_depth);
-  for (const Crossing& crossing : grids_.front().crossings(ray)) {
+  const Real overlap = field.visit(ray, [&](const Stretch& stretch) {
     ++cells;
-    const std::vector<Chord> along = chords(crossing);
-    if (along.empty()) continue;
-    std::vector<Real> ends = mixture_.cuts(along);
+    if (stretch.chords.empty()) return true;
+    std::vector<Real> ends = mixture.cuts(stretch.chords);
     ends.insert(ends.begin(), 0);
     ends.push_back(1);
-    const Real length = crossing.t_end - crossing.t_begin;
+    const Real length = stretch.t_end - stretch.t_begin;
     for (std::size_t i = 0; i + 1 < ends.size(); ++i) {
       if (!(ends[i] < ends[i + 1])) continue;
-      gatherer.add(MixturePart(mixture_, along, ends[i], ends[i + 1],
-                               crossing.t_begin + ends[i] * length,
+      gatherer.add(MixturePart(mixture, stretch.chords, ends[i], ends[i + 1],
+                               stretch.t_begin + ends[i] * length,
                                (ends[i + 1] - ends[i]) * length));
     }
-    if (gatherer.done()) break;
-  }
-  return gatherer.result();
+    return !gatherer.done();
+  });
+  ReferencePixel pixel = gatherer.result();
+  pixel.overlap = static_cast<double>(overlap);
+  return pixel;
 }
 
 }  // namespace pellucid::reference

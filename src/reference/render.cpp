@@ -11,15 +11,13 @@
 #include <algorithm>
 #include <atomic>
 #include <chrono>
-#include <functional>
 #include <mutex>
 #include <optional>
 #include <vector>
 
 #include "camera.h"
-#include "multivariate_ray.h"
 #include "pellucid/scene/error.h"
-#include "ray.h"
+#include "scene_integral.h"
 
 namespace pellucid {
 namespace {
@@ -37,23 +35,9 @@ ReferencePixel mean_of(const std::vector<ReferencePixel>& rays) {
   return mean;
 }
 
-/// What integrate() of ray.h does with all but the ray.
-using RayIntegral = std::function<ReferencePixel(const reference::RealRay& ray, bool with_depth,
-                                                 std::uint64_t& cells)>;
-
-RayIntegral make_integral(const Scene& scene) {
-  if (scene.multivariate) {
-    return reference::MultivariateIntegral(*scene.channels, *scene.multivariate);
-  }
-  return [grid = reference::Grid(*scene.volume),
-          table = reference::Table(scene.transfer_function->points())](
-             const reference::RealRay& ray, bool with_depth, std::uint64_t& cells) {
-    return reference::integrate(grid, table, ray, with_depth, cells);
-  };
-}
-
-void render_row(const reference::CameraRays& camera, int samples, const RayIntegral& integral,
-                int row, Image& image, std::uint64_t& cells) {
+void render_row(const reference::CameraRays& camera, int samples,
+                const reference::SceneIntegral& integral, int row, Image& image,
+                std::uint64_t& cells) {
   const bool with_depth = !image.depth.empty();
   std::vector<ReferencePixel> rays(static_cast<std::size_t>(samples * samples));
   for (int column = 0; column < image.width; ++column) {
@@ -81,7 +65,7 @@ Image render_reference(const Scene& scene, const RenderOptions& options, RenderR
   make_camera_frame(scene.camera, scene.size);  // For its checks; the rays are made here.
 
   const reference::CameraRays camera(scene.camera, scene.size);
-  const RayIntegral integral = make_integral(scene);
+  const reference::SceneIntegral integral(scene);
 
   Image image;
   image.width = scene.size.width;

@@ -15,6 +15,8 @@ struct NamedCamera {
 
 /// Parallel and oblique, perspective from outside, and from within: for any placement of the grid.
 std::vector<NamedCamera> three_cameras(const Volume& volume);
+/// The same for what is in the box.
+std::vector<NamedCamera> three_cameras(const Box<double>& box);
 
 /// Parallel, from `position` along `direction`.
 Camera parallel_camera(const Vec3<double>& position, const Vec3<double>& direction,

@@ -6,7 +6,7 @@ namespace pellucid::scenes {
 Gallery gallery() {
   Gallery all;
   for (const auto group : {marschner_lobb_gallery, scan_gallery, cell_gallery, table_gallery,
-                           grid_gallery, stride_gallery, gaussian_gallery}) {
+                           grid_gallery, stride_gallery, gaussian_gallery, mesh_gallery}) {
     for (GalleryEntry& entry : group()) all.push_back(std::move(entry));
   }
   return all;
@@ -17,6 +17,7 @@ Scene scene_of(const Exhibit& exhibit, std::size_t camera, int size) {
                            exhibit.cameras.at(camera).camera, {size, size});
   scene.channels = exhibit.channels;
   scene.multivariate = exhibit.multivariate;
+  scene.mesh = exhibit.mesh;
   scene.samples = exhibit.samples;
   return scene;
 }

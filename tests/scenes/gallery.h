@@ -10,7 +10,7 @@
 /// The scenes on which the tolerance is put to the test.
 namespace pellucid::scenes {
 
-/// A volume behind a transfer function, and the cameras that look at it.
+/// Data behind a transfer function, and the cameras that look at it.
 struct Exhibit {
   VolumePointer volume;
   TransferPointer transfer_function;
@@ -19,6 +19,8 @@ struct Exhibit {
   /// In place of the first two.
   std::shared_ptr<const Channels> channels{};
   std::shared_ptr<const MultivariateTransferFunction> multivariate{};
+  /// In place of `volume` or `channels`.
+  std::shared_ptr<const MeshChannels> mesh{};
 };
 
 /// Makes an exhibit for images of size × size pixels. Only cameras depend on the size: those that
@@ -46,6 +48,7 @@ Gallery table_gallery();           ///< transfer functions that are special
 Gallery grid_gallery();            ///< placements, types and values of the data
 Gallery stride_gallery();          ///< what estimates over several cells can miss
 Gallery gaussian_gallery();        ///< Gaussians over several channels
+Gallery mesh_gallery();            ///< tetrahedra
 
 /// One of the exhibit's cameras, with the integration that a scene has by default.
 Scene scene_of(const Exhibit& exhibit, std::size_t camera, int size);

@@ -4,6 +4,7 @@
 #include <atomic>
 #include <cstdio>
 #include <fstream>
+#include <limits>
 #include <thread>
 
 #include "pellucid/reference/render.h"
@@ -15,13 +16,18 @@ namespace {
 /// Counts up where the reference or the frame's format changes, so that older files are not used.
 constexpr unsigned version = 1;
 
-std::array<double, 4> reference_pixel(const Scene& scene, const CameraFrame<double>& camera,
-                                      int column, int row) {
+/// Of the size of a mesh: what overlaps by less does so by rounding.
+constexpr double least_overlap = 1e-12;
+
+std::array<double, 4> reference_pixel(const ReferenceRays& rays, int samples,
+                                      const CameraFrame<double>& camera, int column, int row,
+                                      double size) {
   std::array<double, 4> sum{};
-  const int count = scene.samples * scene.samples;
+  const int count = samples * samples;
   for (int n = 0; n < count; ++n) {
-    const Ray<double> ray = camera.ray(column, row, n, scene.samples);
-    const ReferencePixel pixel = reference_ray(scene, ray.origin, ray.direction);
+    const Ray<double> ray = camera.ray(column, row, n, samples);
+    const ReferencePixel pixel = rays(ray.origin, ray.direction);
+    if (pixel.overlap > least_overlap * size) sum.fill(std::numeric_limits<double>::quiet_NaN());
     const double channel[4] = {pixel.radiance.r, pixel.radiance.g, pixel.radiance.b, pixel.opacity};
     for (std::size_t c = 0; c < 4; ++c) sum[c] += channel[c] / count;
   }
@@ -32,6 +38,10 @@ std::array<double, 4> reference_pixel(const Scene& scene, const CameraFrame<doub
 
 ReferenceFrame reference_frame(const Scene& scene, int threads) {
   const CameraFrame<double> camera = make_camera_frame(scene.camera, scene.size);
+  const ReferenceRays rays(scene);
+  const double size =
+      scene.mesh ? length(scene.mesh->mesh().bounds().upper - scene.mesh->mesh().bounds().lower)
+                 : 0;
   ReferenceFrame frame{scene.size.width, scene.size.height, {}};
   const auto width = static_cast<std::size_t>(frame.width);
   frame.pixels.resize(width * static_cast<std::size_t>(frame.height));
@@ -40,7 +50,7 @@ ReferenceFrame reference_frame(const Scene& scene, int threads) {
     for (int row = next_row++; row < frame.height; row = next_row++) {
       for (int column = 0; column < frame.width; ++column) {
         frame.pixels[static_cast<std::size_t>(row) * width + static_cast<std::size_t>(column)] =
-            reference_pixel(scene, camera, column, row);
+            reference_pixel(rays, scene.samples, camera, column, row, size);
       }
     }
   };

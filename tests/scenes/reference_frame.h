@@ -14,7 +14,8 @@ namespace pellucid::scenes {
 /// to 1e-12 in each piece. What is smaller says nothing about the judged.
 inline constexpr double reference_accuracy = 1e-11;
 
-/// A picture that is not rounded: premultiplied linear RGBA in double, row 0 at the top.
+/// A picture that is not rounded: premultiplied linear RGBA in double, row 0 at the top. NaN: a ray
+/// is in two tetrahedra at once.
 struct ReferenceFrame {
   int width = 0, height = 0;
   std::vector<std::array<double, 4>> pixels;

@@ -35,6 +35,18 @@ void add_volume(Hash& hash, const Volume& volume) {
   for (const auto& axis : d.coordinates) hash.add(axis.data(), axis.size() * sizeof(double));
 }
 
+void add_mesh(Hash& hash, const MeshChannels& channels) {
+  const TetrahedralMesh& mesh = channels.mesh();
+  for (const Vec3<double>& point : mesh.points()) hash.add_vector(point);
+  for (const Tetrahedron& t : mesh.tetrahedra()) hash.add(t.corner, sizeof t.corner);
+  for (const MeshChannel& channel : channels) {
+    hash.add_numbers(channel.values.index(), channel.centering);
+    std::visit(
+        [&](const auto& values) { hash.add(values.data(), values.size() * sizeof(values[0])); },
+        channel.values);
+  }
+}
+
 void add_points(Hash& hash, const TransferFunction& function) {
   for (const auto& p : function.points()) {
     hash.add_numbers(p.value, p.extinction, p.color.r, p.color.g, p.color.b);
@@ -59,11 +71,16 @@ void add_terms(Hash& hash, const MultivariateTransferFunction& function) {
 
 std::uint64_t scene_hash(const Scene& scene) {
   Hash hash;
-  if (scene.multivariate) {
+  if (scene.mesh) {
+    add_mesh(hash, *scene.mesh);
+  } else if (scene.channels) {
     for (const Channel& channel : *scene.channels) add_volume(hash, *channel.volume);
-    add_terms(hash, *scene.multivariate);
   } else {
     add_volume(hash, *scene.volume);
+  }
+  if (scene.multivariate) {
+    add_terms(hash, *scene.multivariate);
+  } else {
     add_points(hash, *scene.transfer_function);
   }
   const Camera& c = scene.camera;

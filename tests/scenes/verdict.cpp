@@ -76,6 +76,11 @@ Verdict judge(const Image& image, const ReferenceFrame& reference, double tolera
     const bool said_over = !(reported >= 0 && reported <= tolerance);
     if (said_over) ++verdict.said_over;
     if (image.proved[p] != 0) ++verdict.proved;
+    verdict.reported = std::max(verdict.reported, reported < 0 ? infinity : reported);
+    if (std::isnan(reference.pixels[p][3])) {
+      if (!said_over) ++verdict.over;
+      continue;
+    }
     if (error.largest > tolerance) {
       ++(said_over && error.rounding > 0.5 * tolerance ? verdict.too_bright : verdict.over);
     }
@@ -93,7 +98,6 @@ Verdict judge(const Image& image, const ReferenceFrame& reference, double tolera
       verdict.found = error.largest;
       verdict.worst = place;
     }
-    verdict.reported = std::max(verdict.reported, reported < 0 ? infinity : reported);
     verdict.brightest = std::max(verdict.brightest, error.brightest);
   }
   return verdict;

@@ -11,7 +11,8 @@ namespace pellucid::scenes {
 /// How an image stands to a tolerance and to the errors that it reports. A pixel's error is the
 /// largest difference of its four floats, as they are in the image, from the reference's doubles:
 /// the rounding of the image counts. The reference's own accuracy is taken off; a value that is not
-/// finite is infinitely far.
+/// finite is infinitely far. Where the reference is NaN nothing is right, and the image must say
+/// so.
 struct Verdict {
   struct Place {
     int column = 0, row = 0, channel = 0;

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <memory>
+#include <optional>
+
+#include "field.h"
+#include "mixture.h"
+#include "pellucid/reference/render.h"
+#include "table.h"
+
+namespace pellucid::reference {
+
+/// The volume rendering integral through data with a transfer function. A view of both.
+class SceneIntegral {
+ public:
+  /// Of a scene that check_data() accepts.
+  explicit SceneIntegral(const Scene& scene);
+  SceneIntegral(const Volume& volume, const TransferFunction& transfer_function);
+  SceneIntegral(const Channels& channels, const MultivariateTransferFunction& transfer_function);
+
+  /// Along a ray with a direction of length 1. Adds the number of cells crossed to `cells`.
+  ReferencePixel operator()(const RealRay& ray, bool with_depth, std::uint64_t& cells) const;
+  /// The same with its half-opacity depth. Throws Error for a direction of length 0.
+  ReferencePixel operator()(const Vec3<double>& origin, const Vec3<double>& direction) const;
+
+ private:
+  std::unique_ptr<const Field> field_;
+  std::optional<Table> table_;  ///< or
+  std::optional<Mixture> mixture_;
+};
+
+}  // namespace pellucid::reference
