@@ -74,7 +74,7 @@ ValueRange range_of(const MeshArray& array, int component) {
 }
 
 /// The mesh of the cells alone. A mesh has a channel, so here is one of nothing.
-std::shared_ptr<const MeshChannels> tetrahedra_of(UnstructuredGrid grid) {
+std::shared_ptr<const MeshChannels> cells_alone(UnstructuredGrid grid) {
   const std::string none = "none";
   grid.arrays = {{none, Centering::cell, 1, DataArray<std::uint8_t>(grid.shapes.size())}};
   const MeshArrayChoice choice{none, std::nullopt, none};
@@ -212,7 +212,7 @@ void print_json_report(const MeshFile& file, const TetrahedralMesh& mesh,
 
 void print_mesh_info(const MeshSource& source, bool json) {
   MeshFile file = read_mesh(source.file, source.options);
-  const auto mesh = tetrahedra_of(file.grid);
+  const auto mesh = cells_alone(file.grid);
   if (json) {
     print_json_report(file, mesh->mesh(), source.file.string());
   } else {

@@ -211,7 +211,7 @@ SceneDescription describe(const RenderArguments& arguments) {
 }
 
 std::vector<NamedFile> data_files(const SceneDescription& description) {
-  if (description.mesh) return data_files(*description.mesh);
+  if (description.mesh) return cli::data_files(*description.mesh);
   std::vector<NamedFile> files{{"volume", description.field.file.string()}};
   for (const ChannelSource& channel : description.channels) {
     if (const auto* field = std::get_if<FieldSource>(&channel.source)) {

@@ -14,7 +14,7 @@ inline std::string xml_array(const std::string& type, const std::string& name,
 
 inline std::string xml_file(const std::string& kind, const std::string& content) {
   return "<?xml version=\"1.0\"?>\n<VTKFile type=\"" + kind +
-         "\" version=\"0.1\" byte_order=\"LittleEndian\">\n" + content + "</VTKFile>\n";
+         "\" version=\"1.0\" byte_order=\"LittleEndian\">\n" + content + "</VTKFile>\n";
 }
 
 /// What may be put in the place of what is right.

@@ -482,8 +482,8 @@ TEST_P(RealMesh, IsAsTheManifestSays) {
     minimum = std::min(minimum, x);
     maximum = std::max(maximum, x);
   }
-  EXPECT_NEAR(minimum, facts.minimum, 0.005 * std::abs(facts.maximum));
-  EXPECT_NEAR(maximum, facts.maximum, 0.005 * std::abs(facts.maximum));
+  EXPECT_NEAR(minimum, facts.minimum, 0.005 * std::abs(facts.maximum - facts.minimum));
+  EXPECT_NEAR(maximum, facts.maximum, 0.005 * std::abs(facts.maximum - facts.minimum));
 }
 
 INSTANTIATE_TEST_SUITE_P(
