@@ -60,15 +60,23 @@ std::optional<std::int64_t> take_big_endian(std::string_view& rest) {
 
 /// "N SIZE", and behind them N times a number of points and as many indices, SIZE numbers in all.
 bool is_whole(std::string_view rest, bool binary) {
+  const auto begins_with_letter = [](std::string_view word) {
+    const char first = word.empty() ? ' ' : lower(word.front());
+    return first >= 'a' && first <= 'z';
+  };
+  // An array may have such a name, and then its type stands behind it, or behind two numbers.
+  std::string_view after = rest;
+  if (begins_with_letter(take_word(after))) return true;
   const auto cells = take_integer(rest), size = take_integer(rest);
   if (!cells || !size || *cells < 0 || *size < 0) return false;
-  // Newer files have two arrays, each with its length.
-  std::string_view after = rest;
-  if (equal_words(take_word(after), "offsets")) return true;
+  after = binary ? rest.substr(0, rest.find('\n')) : rest;
+  if (begins_with_letter(take_word(after))) return true;
   if (binary) {  // begins behind the line
     const std::size_t line = rest.find('\n');
     if (line == std::string_view::npos) return *size == 0;
     rest.remove_prefix(line + 1);
+    // Newer files have two arrays in the list's place, each with its length.
+    if (equal_words(rest.substr(0, 7), "offsets")) return true;
   }
   const auto next = [&] { return binary ? take_big_endian(rest) : take_integer(rest); };
   std::int64_t taken = 0;
@@ -101,10 +109,10 @@ void check_legacy_vtk_cells(const std::filesystem::path& path) {
   for (auto at = std::find_if(rest.begin(), rest.end(), first); at != rest.end();
        at = std::find_if(at + 1, rest.end(), first)) {
     const auto place = static_cast<std::size_t>(at - rest.begin());
-    if (place == 0 || !is_space(rest[place - 1])) continue;
     if (!equal_words(rest.substr(place, word.size()), word)) continue;
-    const std::string_view list = rest.substr(place + word.size());
-    if (list.empty() || !is_space(list.front())) continue;
+    // VTK looks at no more of the word than this.
+    std::string_view list = rest.substr(place);
+    take_word(list);
     if (!is_whole(list, binary)) {
       throw Error(path.string() +
                   ": its list of CELLS is not as long as it says; the file is cut off or damaged");

@@ -405,6 +405,25 @@ TEST_F(ReadMesh, RefusesWhatContradictsItself) {
                        "no cell with a volume, but 3 of surfaces"));
 }
 
+TEST_F(ReadMesh, RefusesLegacyListsOfCellsThatAreTooLong) {
+  const auto replaced = [](const std::string& from, const std::string& to) {
+    std::string text = test::small_vtk();
+    return text.replace(text.find(from), from.size(), to);
+  };
+  for (const auto& [from, to] :
+       {std::pair{"4 1 2 3 4", "9 1 2 3 4"}, std::pair{"CELLS 2 10", "CELLS 2 4"},
+        std::pair{"CELLS 2 10", "CELLSK2 10"}, std::pair{"CELLS 2 10", "CELLS 3 10"},
+        std::pair{"CELLS 2 10", "cells 2 99999999999"}}) {
+    EXPECT_TRUE(contains(refused("a.vtk", replaced(from, to)), "CELLS")) << to;
+  }
+  // Arrays of such names are none.
+  const MeshFile file = read_mesh(write(
+      "b.vtk", test::small_vtk() + "CELL_DATA 2\nSCALARS cells float 1\nLOOKUP_TABLE default\n5 6\n"
+                                   "FIELD more 1\ncells_twice 1 2 float\n7 8\n"));
+  EXPECT_EQ(values(file, "cells"), (std::vector<double>{5, 6}));
+  EXPECT_EQ(values(file, "cells_twice"), (std::vector<double>{7, 8}));
+}
+
 TEST_F(ReadMesh, RefusesFilesThatAreCutOff) {
   for (const auto& [name, whole] :
        {std::pair{"a.vtu", test::small_vtu()}, std::pair{"a.vtk", test::small_vtk()},
