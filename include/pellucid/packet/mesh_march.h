@@ -50,7 +50,8 @@ class MeshMarch {
   }
 
   MeshRays<S, N> rays;
-  M walking{false};  ///< whether a lane has tetrahedra ahead
+  M walking{false};    ///< whether a lane has tetrahedra ahead
+  F beside_vacuum{0};  ///< how far off are the places where vacuum begins and ends, all in all
 
   /// Rays that are not to be followed any further.
   void stop(M lanes) noexcept { walking = walking & !lanes; }
@@ -122,12 +123,14 @@ class MeshMarch {
       overlaps = behind & (front_ > rays.eye) & (convert<float>(front_ - min(t_, t)) > most);
     }
     const M ahead = on & (begin < t);
+    const M vacuum = is_nan(front_value + value);
     const F error = max(value_error_, value_error);
 
     const F f = convert<float>(at_begin), b = convert<float>(value);
     const F rounding = F(4 * u) * max(abs(f), abs(b)) + error;
     I note = select(overlaps, I(SpanNote::overlaps), I(0));
-    const M found = (ahead & absorbs(min(f, b) - rounding, max(f, b) + rounding, note)) | overlaps;
+    const M found =
+        (ahead & !vacuum & absorbs(min(f, b) - rounding, max(f, b) + rounding, note)) | overlaps;
     if (any(found)) {
       f.store(rows.front + at);
       b.store(rows.back + at);
@@ -146,6 +149,7 @@ class MeshMarch {
       error.store(rows.error + at);
       note.store(rows.code + at);
     }
+    beside_vacuum += select(on & vacuum, t_error_ + t_error, F(0));
     const M forward = ahead | overlaps;
     front_ = select(forward, max(t, begin), front_);
     front_error_ = select(forward, t_error, front_error_);
@@ -154,7 +158,7 @@ class MeshMarch {
     t_error_ = select(on, t_error, t_error_);
     value_error_ = select(on, value_error, value_error_);
     // Behind vacuum the data begin anew.
-    first_ = is_nan(b);
+    first_ = vacuum;
     return found;
   }
 

@@ -58,6 +58,9 @@ class MeshRayIntegrator {
     }
     if (span.vacuum) {
       ++counts_.skipped;
+      // What is beside it may begin and end elsewhere.
+      const double beside = transfer_.largest_extinction * (span.place_error + span.end_error);
+      budget_.spend(length, 0, fold_.transparency(), largest_color_ * min(beside, 1.0));
       return;
     }
     const LinearData data{span.front[0], span.back[0],     span.value_error[0],
@@ -179,9 +182,14 @@ PELLUCID_HD inline void add_span(const Multivariate<double>& transfer, const Mes
                                  double largest_extinction,
                                  MultivariateRayIntegrator& integrator) noexcept {
   const double length = span.end - span.begin;
-  if (span.vacuum || span.overlaps) {
-    // Anything may be where cells overlap.
-    integrator.skip(length, span.overlaps ? std::numeric_limits<double>::infinity() : 0);
+  if (span.overlaps) {
+    // Anything may be there.
+    integrator.skip(length, std::numeric_limits<double>::infinity());
+    return;
+  }
+  if (span.vacuum) {
+    // What is beside it may begin and end elsewhere.
+    integrator.skip(span.place_error + span.end_error, largest_extinction);
     return;
   }
   MultivariateSpan<double> data;
