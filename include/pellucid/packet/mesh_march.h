@@ -146,7 +146,10 @@ class MeshMarch {
       at_begin.store(rows.exact_front + at);
       value.store(rows.exact_back + at);
       length.store(rows.exact_length + at);
-      error.store(rows.error + at);
+      // What is handed back is in numbers S. Where all that it comes of is equal it is exact.
+      const F rounded = F(static_cast<float>(4 * rounding_unit<S>)) * max(abs(f), abs(b));
+      const M even = (!M(std::is_same_v<S, float>)) & (error == F(0)) & (f == b);
+      (error + select(even, F(0), rounded)).store(rows.error + at);
       note.store(rows.code + at);
     }
     beside_vacuum += select(on & vacuum, t_error_ + t_error, F(0));

@@ -294,8 +294,9 @@ class MeshPacket {
                    front = static_cast<double>(rows_.exact_front[row]),
                    back = static_cast<double>(rows_.exact_back[row]),
                    length = static_cast<double>(rows_.exact_length[row]);
-      // Where pieces have ended is known in binary32.
-      const double off = from > 0 ? 4 * static_cast<double>(rounding_unit<float>) : 0;
+      // Where pieces have ended is known in binary32, and lengths are rounded.
+      const double off = (from > 0 ? 4 * static_cast<double>(rounding_unit<float>) : 0) +
+                         2 * static_cast<double>(rounding_unit<S>);
       const PellucidLinearSpan span{
           front + from * (back - front),         back,
           static_cast<double>(rows_.error[row]), (1 - from) * length,
