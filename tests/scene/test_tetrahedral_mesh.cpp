@@ -8,13 +8,13 @@
 #include <cmath>
 #include <limits>
 #include <map>
-#include <random>
 #include <string>
 #include <thread>
 #include <utility>
 #include <vector>
 
 #include "expect_error.h"
+#include "lattice_mesh.h"
 
 namespace pellucid {
 namespace {
@@ -29,48 +29,6 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 
 Description corner() {
   return {{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, {{0, 1, 2, 3}}, "corner.vtu"};
-}
-
-/// n³ cubes of six tetrahedra around their diagonals; points and corners in any order.
-Description cubes(int n, unsigned seed) {
-  Description mesh;
-  mesh.name = "cubes";
-  const int side = n + 1;
-  std::mt19937 random(seed);
-  std::vector<std::int32_t> number(static_cast<std::size_t>(side * side * side));
-  for (std::size_t i = 0; i < number.size(); ++i) number[i] = static_cast<std::int32_t>(i);
-  std::shuffle(number.begin(), number.end(), random);
-  mesh.points.resize(number.size());
-  const auto at = [&](int i, int j, int k) {
-    return number[static_cast<std::size_t>((k * side + j) * side + i)];
-  };
-  for (int k = 0; k < side; ++k) {
-    for (int j = 0; j < side; ++j) {
-      for (int i = 0; i < side; ++i) {
-        mesh.points[static_cast<std::size_t>(at(i, j, k))] = {1.0 * i, 1.0 * j, 1.0 * k};
-      }
-    }
-  }
-  std::array<int, 3> order{0, 1, 2};
-  for (int k = 0; k < n; ++k) {
-    for (int j = 0; j < n; ++j) {
-      for (int i = 0; i < n; ++i) {
-        std::sort(order.begin(), order.end());
-        do {
-          std::array<int, 3> p{i, j, k};
-          Corners t{at(i, j, k)};
-          for (std::size_t step = 0; step < 3; ++step) {
-            ++p[static_cast<std::size_t>(order[step])];
-            t[step + 1] = at(p[0], p[1], p[2]);
-          }
-          std::shuffle(t.begin(), t.end(), random);
-          mesh.tetrahedra.push_back(t);
-        } while (std::next_permutation(order.begin(), order.end()));
-      }
-    }
-  }
-  std::shuffle(mesh.tetrahedra.begin(), mesh.tetrahedra.end(), random);
-  return mesh;
 }
 
 /// The codes of the tetrahedra that have each face.
@@ -115,7 +73,7 @@ TEST(TetrahedralMesh, IsCounted) {
 }
 
 TEST(TetrahedralMesh, KeepsTetrahedraInOrderAndTheirPointsAscending) {
-  Description description = cubes(2, 5);
+  Description description = lattice_mesh(2, 5);
   std::vector<Corners> given = description.tetrahedra;
   const TetrahedralMesh mesh(std::move(description));
   ASSERT_EQ(mesh.tetrahedra().size(), given.size());
@@ -127,7 +85,7 @@ TEST(TetrahedralMesh, KeepsTetrahedraInOrderAndTheirPointsAscending) {
 
 TEST(TetrahedralMesh, FacesArePairedAsByComparingAllOfThem) {
   for (const unsigned seed : {1u, 2u, 3u}) {
-    Description description = cubes(4, seed);
+    Description description = lattice_mesh(4, seed);
     // With holes, so that inner faces become outer ones.
     std::erase_if(description.tetrahedra, [](const Corners& t) { return t[0] % 7 == 0; });
     const TetrahedralMesh mesh(std::move(description));
@@ -155,7 +113,7 @@ TEST(TetrahedralMesh, FacesArePairedAsByComparingAllOfThem) {
 /// Each boundary face once, in a leaf whose box holds it, as do those of all nodes above.
 TEST(TetrahedralMesh, TheTreeHoldsTheBoundary) {
   for (const int n : {1, 2, 5}) {
-    Description description = cubes(n, 9);
+    Description description = lattice_mesh(n, 9);
     for (Place& p : description.points) p = {1e3 + 0.1 * p.x, p.y / 3, -1e-3 * p.z};
     const TetrahedralMesh mesh(std::move(description));
     const Tetrahedra view = mesh.view();
@@ -257,7 +215,7 @@ TEST(TetrahedralMesh, IsTheSameForAnyNumberOfThreads) {
     body(0, count / 2);
     other.join();
   };
-  Description description = cubes(12, 4);
+  Description description = lattice_mesh(12, 4);
   for (Place& p : description.points) p = {0.1 * p.x, p.y / 3, p.z * p.z};
   const TetrahedralMesh one(description), two(description, in_two);
   ASSERT_EQ(one.tetrahedra().size(), two.tetrahedra().size());
@@ -270,7 +228,7 @@ TEST(TetrahedralMesh, IsTheSameForAnyNumberOfThreads) {
 }
 
 TEST(TetrahedralMesh, TakesAtMostAHundredBytesATetrahedron) {
-  const TetrahedralMesh mesh(cubes(16, 6));
+  const TetrahedralMesh mesh(lattice_mesh(16, 6));
   EXPECT_LE(mesh.memory(), 100 * mesh.tetrahedra().size());
 }
 
