@@ -9,7 +9,9 @@
 #include <vector>
 
 #include "commands.h"
+#include "info_mesh.h"
 #include "input.h"
+#include "mesh_input.h"
 #include "orientation.h"
 #include "output.h"
 #include "pellucid/base/version.h"
@@ -21,6 +23,7 @@ namespace {
 struct InfoArguments {
   std::string input;
   VolumeOptions volume;
+  MeshOptions mesh;
   bool json = false;
 };
 
@@ -240,7 +243,13 @@ Json json_report(const std::vector<Volume>& components, const Facts& facts, cons
 }
 
 int run_info(const InfoArguments& arguments) {
+  if (is_mesh(arguments.input, arguments.mesh)) {
+    arguments.volume.refuse("a mesh");
+    print_mesh_info(mesh_source(arguments.input, arguments.mesh), arguments.json);
+    return 0;
+  }
   const FieldSource source = field_source(arguments.input, arguments.volume);
+  arguments.mesh.refuse("a volume");
   std::vector<Volume> components;
   if (source.builtin.empty()) {
     components = read_components(source.file, source.options);
@@ -262,17 +271,20 @@ int run_info(const InfoArguments& arguments) {
 }  // namespace
 
 Command add_info(CLI::App& app) {
-  CLI::App& command = *app.add_subcommand("info", "Say what is in a volume file");
+  CLI::App& command = *app.add_subcommand("info", "Say what is in a volume or mesh file");
   const auto arguments = std::make_shared<InfoArguments>();
   command
-      .add_option("INPUT", arguments->input, std::string(input_help) + " or builtin:NAME[:POINTS]")
+      .add_option("INPUT", arguments->input,
+                  std::string(input_help) + ", " + mesh_input_help() + " or builtin:NAME[:POINTS]")
       ->required();
   command.add_flag("--json", arguments->json, "Print JSON, with a histogram of 256 bins");
   arguments->volume.add_to(command);
+  arguments->mesh.add_to(command, false);
   command.footer(
       "Examples:\n"
       "  pellucid info brain.nii.gz\n"
       "  pellucid info male.raw --dimensions 128,256,256 --type u8 --spacing 1.57,0.99,0.99\n"
+      "  pellucid info disk_out_ref.ex2\n"
       "  pellucid info builtin:hydrogen:64 --json");
   return {&command, [arguments] { return run_info(*arguments); }};
 }

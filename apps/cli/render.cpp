@@ -28,6 +28,19 @@ void print_notes(const RenderArguments& arguments, const PreparedScene& prepared
   if (const std::size_t nan = nan_values(prepared.scene); nan > 0) {
     print_note(fmt::format("{} values are NaN: rendered as vacuum", nan));
   }
+  if (prepared.array_chosen) {
+    print_note(
+        fmt::format("no array named: showing \"{}\" (--array names others, which 'pellucid info' "
+                    "lists)",
+                    prepared.description.mesh->channels.front().array));
+  }
+  if (prepared.scene.mesh) {
+    if (const std::size_t folded = prepared.scene.mesh->mesh().statistics().folded_faces;
+        folded > 0) {
+      print_note(
+          fmt::format("tetrahedra overlap at {} faces: pixels that see it are not known", folded));
+    }
+  }
   if (const double used = prepared.scene.integration.tolerance; used != prepared.tolerance_asked) {
     print_note(fmt::format("a tolerance of {} is beyond the limits: {} is used",
                            prepared.tolerance_asked, used));
@@ -135,11 +148,12 @@ int run_render(const RenderArguments& arguments) {
 }  // namespace
 
 Command add_render(CLI::App& app) {
-  CLI::App& command = *app.add_subcommand("render", "Render a volume or a scene to an image");
+  CLI::App& command =
+      *app.add_subcommand("render", "Render a volume, a mesh or a scene to an image");
   const auto arguments = std::make_shared<RenderArguments>();
   command.add_option(
       "INPUT", arguments->input,
-      std::string(input_help) +
+      std::string(input_help) + ", " + mesh_input_help() +
           ", SCENE.json or builtin:NAME[:POINTS]; may be left out where --channel is "
           "given");
   add_render_options(command, *arguments);

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "input.h"
+#include "mesh_input.h"
 #include "output.h"
 #include "pellucid/cpu/render.h"
 #include "pellucid/io/scene_json.h"
@@ -25,6 +26,7 @@ struct RenderArguments {
   int threads = 0;
   bool print_tf = false, reference = false, strict = false, json = false, quiet = false;
   VolumeOptions volume;
+  MeshOptions mesh;
 
   bool renders() const { return !outputs.empty() || !depth_picture.empty() || !error_map.empty(); }
 };
@@ -34,6 +36,7 @@ struct PreparedScene {
   Scene scene;
   SceneDescription description;  ///< complete: with nothing left to defaults
   std::string transfer_function_from;
+  bool array_chosen = false;   ///< of a mesh, for want of a name
   double tolerance_asked = 0;  ///< Integration::tolerance is the one used
 
   /// Of whether an error comes with the picture.
@@ -52,7 +55,7 @@ void check_arguments(const RenderArguments& arguments);
 /// Reads the input and puts the arguments over what it says. Throws Error.
 PreparedScene prepare(const RenderArguments& arguments);
 
-/// In all channels together.
+/// In all channels together; of a mesh over the points or cells that are used.
 std::size_t nan_values(const Scene& scene);
 /// What makes the picture, and its error, and nothing else: no time, no thread count, so that the
 /// same scene gives the same file.

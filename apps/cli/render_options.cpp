@@ -153,6 +153,7 @@ void add_render_options(CLI::App& command, RenderArguments& arguments) {
   add_scene_options(command, arguments);
   add_integration_options(command, arguments);
   arguments.volume.add_to(command);
+  arguments.mesh.add_to(command, true);
 }
 
 }  // namespace pellucid::cli

@@ -56,16 +56,41 @@ bool has_step(const RenderArguments& arguments, const Integration& integration) 
   return !arguments.reference && integration.method != Method::exact;
 }
 
+Json channel_json(const std::string& name, const std::string& unit, const VolumeData& values,
+                  const VolumeStatistics& data) {
+  return {{"name", name},
+          {"unit", unit},
+          {"type", type_name(values)},
+          {"minimum", data.minimum},
+          {"maximum", data.maximum},
+          {"nan", data.nan}};
+}
+
+Json channels_json(const MeshChannels& mesh) {
+  Json list = Json::array();
+  for (int c = 0; c < mesh.count(); ++c) {
+    list.push_back(channel_json(mesh[c].name, mesh[c].unit, mesh[c].values, mesh.statistics(c)));
+  }
+  return list;
+}
+
+Json mesh_json(const MeshChannels& mesh, const MeshSource& source) {
+  const MeshStatistics& of_mesh = mesh.mesh().statistics();
+  Json arrays = Json::array();
+  for (const MeshArrayChoice& choice : source.channels) {
+    arrays.push_back({{"array", choice.array},
+                      {"component", choice.component ? Json(*choice.component) : Json()}});
+  }
+  return {{"points", of_mesh.points}, {"tetrahedra", of_mesh.tetrahedra},
+          {"flat", of_mesh.flat},     {"folded_faces", of_mesh.folded_faces},
+          {"vacuum", mesh.vacuum()},  {"arrays", arrays}};
+}
+
 Json channels_json(const Channels& channels) {
   Json list = Json::array();
   for (const Channel& channel : channels) {
-    const VolumeStatistics& data = channel.volume->statistics();
-    list.push_back({{"name", channel.name},
-                    {"unit", channel.unit},
-                    {"type", type_name(channel.volume->data())},
-                    {"minimum", data.minimum},
-                    {"maximum", data.maximum},
-                    {"nan", data.nan}});
+    list.push_back(channel_json(channel.name, channel.unit, channel.volume->data(),
+                                channel.volume->statistics()));
   }
   return list;
 }
@@ -73,6 +98,11 @@ Json channels_json(const Channels& channels) {
 }  // namespace
 
 std::size_t nan_values(const Scene& scene) {
+  if (scene.mesh) {
+    std::size_t count = 0;
+    for (int c = 0; c < scene.mesh->count(); ++c) count += scene.mesh->statistics(c).nan;
+    return count;
+  }
   if (!scene.channels) return scene.volume->statistics().nan;
   std::size_t count = 0;
   for (const Channel& channel : *scene.channels) count += channel.volume->statistics().nan;
@@ -172,10 +202,13 @@ Json report_json(const RenderArguments& arguments, const PreparedScene& prepared
   Json json;
   json["pellucid"] = PELLUCID_VERSION_STRING;
   json["input"] = source_text(arguments);
-  json["dimensions"] = dimensions_json(grid_volume(scene));
-  json["type"] = type_name(grid_volume(scene).data());
+  json["dimensions"] = scene.mesh ? Json() : dimensions_json(grid_volume(scene));
+  json["type"] = type_name(scene.mesh ? (*scene.mesh)[0].values : grid_volume(scene).data());
+  json["mesh"] = scene.mesh ? mesh_json(*scene.mesh, *prepared.description.mesh) : Json();
   json["nan"] = nan_values(scene);
-  json["channels"] = scene.channels ? channels_json(*scene.channels) : Json();
+  json["channels"] = scene.mesh       ? channels_json(*scene.mesh)
+                     : scene.channels ? channels_json(*scene.channels)
+                                      : Json();
   json["size"] = {scene.size.width, scene.size.height};
   json["method"] = method_text(arguments, scene.integration);
   json["step"] = has_step(arguments, scene.integration) ? Json(scene.integration.step) : Json();

@@ -47,6 +47,7 @@ std::vector<NamedFile> output_files(const RenderArguments& arguments) {
 
 std::string source_text(const RenderArguments& arguments) {
   std::string text = arguments.input;
+  if (!arguments.mesh.q.empty()) text += ", " + arguments.mesh.q;
   for (const std::string& channel : arguments.channels) {
     text += (text.empty() ? "" : ", ") + channel;
   }
@@ -92,6 +93,7 @@ void check_arguments(const RenderArguments& arguments) {
   }
   const std::vector<NamedFile> outputs = output_files(arguments);
   const NamedFile inputs[] = {{"INPUT", arguments.input},
+                              {"--q", arguments.mesh.q},
                               {"--tf", arguments.transfer_function},
                               {"--camera", arguments.camera}};
   refuse_overwriting(outputs, inputs);
@@ -144,6 +146,9 @@ auto parse_argument(const char* argument, Parse&& parse) {
 /// Behind the channels of the input, or alone.
 void add_channels(const RenderArguments& arguments, SceneDescription& description) {
   if (arguments.channels.empty()) return;
+  if (description.mesh) {
+    throw UsageError("--channel: the channels of a mesh are its arrays; give --array NAME=ARRAY");
+  }
   if (!arguments.input.empty()) description.channels = scene_channels(description);
   if (description.channels.empty() && !arguments.input.empty()) {
     description.channels = {{std::string(field_channel), "", description.field}};
@@ -173,9 +178,16 @@ SceneDescription describe(const RenderArguments& arguments) {
   const bool is_scene = extension_of(input) == ".json";
   if (is_scene) {
     arguments.volume.refuse("a scene; write it into the scene's field");
+    arguments.mesh.refuse("a scene; write it into the scene's mesh");
     description = parse_scene(read_text_file(input), arguments.input, input.parent_path());
+  } else if (is_mesh(arguments.input, arguments.mesh)) {
+    arguments.volume.refuse("a mesh");
+    description.mesh = mesh_source(arguments.input, arguments.mesh);
   } else if (!arguments.input.empty()) {
     description.field = field_source(arguments.input, arguments.volume);
+    arguments.mesh.refuse("a volume");
+  } else {
+    arguments.mesh.refuse("channels of volumes");
   }
   if (!arguments.gaussians.empty()) description.transfer_function = gaussians(arguments);
   if (!arguments.transfer_function.empty()) {
@@ -191,11 +203,15 @@ SceneDescription describe(const RenderArguments& arguments) {
     description.background = parse_color("--background", arguments.background);
   }
   if (arguments.samples) description.samples = *arguments.samples;
+  if (arguments.step && description.mesh) {
+    throw UsageError("--step: a mesh is rendered cell by cell, without steps; drop it");
+  }
   set_integration(arguments, description.integration);
   return description;
 }
 
 std::vector<NamedFile> data_files(const SceneDescription& description) {
+  if (description.mesh) return cli::data_files(*description.mesh);
   std::vector<NamedFile> files{{"volume", description.field.file.string()}};
   for (const ChannelSource& channel : description.channels) {
     if (const auto* field = std::get_if<FieldSource>(&channel.source)) {
@@ -231,11 +247,13 @@ PreparedScene prepare(const RenderArguments& arguments) {
     rendered.integration.tolerance = table_tolerance;
   }
   const int threads = arguments.threads > 0 ? arguments.threads : default_threads();
-  prepared.scene = make_scene(rendered, parallel_for(threads));
+  prepared.array_chosen = description.mesh && description.mesh->channels.empty();
+  prepared.scene =
+      make_scene(rendered, parallel_for(threads), description.mesh ? &*description.mesh : nullptr);
   Scene& scene = prepared.scene;
   scene.integration = integration;
   if (!arguments.view.empty()) {
-    scene.camera = view_camera(grid_volume(scene), arguments.view, scene.size);
+    scene.camera = view_camera(world_corners(scene), arguments.view, scene.size);
   }
   if (!description.transfer_function) {
     description.transfer_function = scene.transfer_function->points();

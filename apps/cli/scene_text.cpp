@@ -14,6 +14,10 @@ std::string scene_text(SceneDescription description, const std::filesystem::path
     if (!relative.empty()) file = relative;
   };
   relocate(description.field.file);
+  if (description.mesh) {
+    relocate(description.mesh->file);
+    relocate(description.mesh->options.q);
+  }
   for (ChannelSource& channel : description.channels) {
     if (auto* field = std::get_if<FieldSource>(&channel.source)) relocate(field->file);
   }

@@ -31,12 +31,12 @@ const std::vector<std::string>& view_names() {
   return names;
 }
 
-Camera view_camera(const Volume& volume, std::string_view name, ImageSize size) {
+Camera view_camera(const std::array<Vec3<double>, 8>& corners, std::string_view name,
+                   ImageSize size) {
   const auto view = std::find_if(std::begin(views), std::end(views),
                                  [&](const View& v) { return v.name == name; });
-  if (view == std::end(views)) return default_camera(volume, size);
+  if (view == std::end(views)) return default_camera(corners, size);
 
-  const auto corners = volume.world_corners();
   Vec3<double> center{0, 0, 0};
   for (const Vec3<double>& corner : corners) center = center + corner * 0.125;
 

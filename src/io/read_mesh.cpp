@@ -11,8 +11,10 @@
 #include <utility>
 
 #include "input_file.h"
+#include "legacy_vtk_cells.h"
 #include "memory_limit.h"
 #include "mesh_blocks.h"
+#include "net_cdf_size.h"
 #include "pellucid/scene/error.h"
 #include "plot3d.h"
 #include "vtk_module.h"
@@ -94,6 +96,8 @@ MeshBlocks read_blocks(const std::filesystem::path& path, const MeshReadOptions&
   // VTK's copy beside ours; what is compressed takes more.
   check_memory(2 * bytes, path.string() + ": its mesh");
   const Format format = format_of(path, options);
+  if (format == Format::exodus) check_net_cdf_size(path);
+  if (format == Format::legacy) check_legacy_vtk_cells(path);
   if (format != Format::plot3d) return read_by_vtk(path, format, options);
   if (options.time) {
     throw Error(path.string() + ": the file has no steps in time; leave the time out");

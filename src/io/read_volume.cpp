@@ -11,6 +11,7 @@
 #include "components.h"
 #include "input_file.h"
 #include "medical_volumes.h"
+#include "pellucid/io/read_mesh.h"
 #include "pellucid/scene/error.h"
 
 namespace pellucid {
@@ -54,6 +55,10 @@ VolumeFile open_file(const std::filesystem::path& path, const ReadOptions& optio
   Opener open = opener_of(path);
   // Whoever says how large the data is and of what type has said that it has no header.
   if (open == nullptr && options.dimensions && options.type) open = open_raw_file;
+  if (open == nullptr && is_mesh_file(path)) {
+    throw Error(path.string() +
+                ": is a mesh, and here a volume is needed; 'render' and 'info' take meshes");
+  }
   if (open == nullptr) {
     std::string known;
     for (const Format& format : formats) {

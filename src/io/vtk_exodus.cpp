@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <vtkExodusIIReader.h>
 #include <vtkMultiBlockDataSet.h>
+#include <vtk_exodusII.h>
 
 #include "pellucid/scene/error.h"
 #include "vtk_gather.h"
@@ -11,6 +12,7 @@ namespace pellucid {
 void read_exodus(const std::filesystem::path& path, const MeshReadOptions& options,
                  const VtkMessages& messages, MeshBlocks& mesh) {
   const auto reader = vtkSmartPointer<vtkExodusIIReader>::New();
+  ex_opts(0);  // else Exodus prints what it finds wrong
   if (reader->CanReadFile(path.c_str()) == 0) {
     throw Error("is no Exodus II file, or is cut off or damaged");
   }

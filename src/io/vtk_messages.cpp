@@ -66,11 +66,14 @@ vtkStandardNewMacro(VtkMessages::Window)
     VtkMessages::VtkMessages()
     : lock_(one_at_a_time()),
       before_(vtkOutputWindow::GetInstance()),
-      window_(vtkSmartPointer<Window>::New()) {
+      window_(vtkSmartPointer<Window>::New()),
+      verbosity_(vtkLogger::GetCurrentVerbosityCutoff()) {
   vtkOutputWindow::SetInstance(window_);
+  vtkLogger::SetStderrVerbosity(vtkLogger::VERBOSITY_OFF);
 }
 
 VtkMessages::~VtkMessages() {
+  vtkLogger::SetStderrVerbosity(verbosity_);
   vtkOutputWindow::SetInstance(before_);
 }
 

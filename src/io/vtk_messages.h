@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <vtkLogger.h>
 #include <vtkOutputWindow.h>
 #include <vtkSmartPointer.h>
 
@@ -29,6 +30,7 @@ class VtkMessages {
   std::unique_lock<std::mutex> lock_;
   vtkSmartPointer<vtkOutputWindow> before_;
   vtkSmartPointer<Window> window_;
+  vtkLogger::Verbosity verbosity_;
 };
 
 }  // namespace pellucid

@@ -28,7 +28,7 @@ TEST(View, HoldsTheVolume) {
   const Volume volume = box_volume();
   for (const std::string& name : view_names()) {
     for (const ImageSize size : {ImageSize{64, 64}, ImageSize{200, 50}, ImageSize{30, 90}}) {
-      const Camera camera = view_camera(volume, name, size);
+      const Camera camera = view_camera(volume.world_corners(), name, size);
       const CameraFrame<double> frame = make_camera_frame(camera, size);
       double widest = 0;
       for (const Vec3<double>& corner : volume.world_corners()) {
@@ -51,7 +51,7 @@ TEST(View, HoldsTheVolume) {
 TEST(View, StandsOnTheSideNamed) {
   const Volume volume = box_volume();
   const auto position = [&](const char* name) {
-    const Camera camera = view_camera(volume, name, {64, 64});
+    const Camera camera = view_camera(volume.world_corners(), name, {64, 64});
     return camera.position - camera.focal_point;
   };
   EXPECT_LT(position("front").y, 0);
@@ -62,7 +62,7 @@ TEST(View, StandsOnTheSideNamed) {
   EXPECT_LT(position("bottom").z, 0);
   // Seen from the front, the patient's left is on the right of the image.
   const CameraFrame<double> front =
-      make_camera_frame(view_camera(volume, "front", {64, 64}), {64, 64});
+      make_camera_frame(view_camera(volume.world_corners(), "front", {64, 64}), {64, 64});
   EXPECT_GT(front.right.x, 0);
   EXPECT_GT(front.up.z, 0);
 }

@@ -253,7 +253,7 @@ TEST(SceneJson, ExamplesAndTheDocumentedSceneAreValid) {
   const std::size_t begin = page.find("```json\n") + 8, end = page.find("```", begin);
   ASSERT_NE(end, std::string::npos);
   EXPECT_EQ(error_of([&] { parse_scene(page.substr(begin, end - begin), "docs/scene.md"); }), "");
-  // Behind it stand a volume with channels and two transfer functions.
+  // Behind it stand a volume with a mesh, one with channels, and two transfer functions.
   std::vector<std::string> blocks;
   for (std::size_t at = end + 3; (at = page.find("```json\n", at)) != std::string::npos;) {
     const std::size_t from = at + 8;
@@ -262,15 +262,17 @@ TEST(SceneJson, ExamplesAndTheDocumentedSceneAreValid) {
     blocks.push_back(page.substr(from, at - from));
     at += 3;
   }
-  ASSERT_EQ(blocks.size(), 3U);
-  EXPECT_EQ(error_of([&] { parse_scene("{\"volumes\": [" + blocks[0] + "]}", "scene.md"); }), "");
+  ASSERT_EQ(blocks.size(), 4U);
+  for (const std::string& volume : {blocks[0], blocks[1]}) {
+    EXPECT_EQ(error_of([&] { parse_scene("{\"volumes\": [" + volume + "]}", "scene.md"); }), "");
+  }
   const auto function = [&](const std::string& text) {
     TransferFunctionDescription description;
     EXPECT_EQ(error_of([&] { description = parse_transfer_function(text, "scene.md"); }), "");
     return description;
   };
-  EXPECT_TRUE(std::holds_alternative<OpacityTable>(function(blocks[1])));
-  EXPECT_TRUE(std::holds_alternative<MultivariateDescription>(function(blocks[2])));
+  EXPECT_TRUE(std::holds_alternative<OpacityTable>(function(blocks[2])));
+  EXPECT_TRUE(std::holds_alternative<MultivariateDescription>(function(blocks[3])));
 }
 
 TEST(SceneJson, AbsoluteFilesStayAndRelativeOnesStartAtTheFolder) {

@@ -99,18 +99,35 @@ std::vector<json> mutants(const json& whole) {
       list.back()[place] = replacement;
     }
     if (whole[place].is_object()) {
-      for (const char* key : {"unknown",        "points",
-                              "type",           "value",
-                              "parallel_scale", "builtin",
-                              "unit_distance",  "opacity",
-                              "extinction",     "samples",
-                              "tolerance",      "channel",
-                              "channels",       "gaussians",
-                              "tables",         "width",
-                              "axes",           "covariance",
-                              "matrix",         "sigma",
-                              "smoothed",       "gradient_magnitude",
-                              "name",           "unit"}) {
+      for (const char* key : {"unknown",
+                              "points",
+                              "type",
+                              "value",
+                              "parallel_scale",
+                              "builtin",
+                              "unit_distance",
+                              "opacity",
+                              "extinction",
+                              "samples",
+                              "tolerance",
+                              "channel",
+                              "channels",
+                              "gaussians",
+                              "tables",
+                              "width",
+                              "axes",
+                              "covariance",
+                              "matrix",
+                              "sigma",
+                              "smoothed",
+                              "gradient_magnitude",
+                              "name",
+                              "unit",
+                              "mesh",
+                              "array",
+                              "component",
+                              "time",
+                              "q"}) {
         if (whole[place].contains(key)) continue;
         list.push_back(whole);
         list.back()[place][key] = 1;
@@ -142,7 +159,7 @@ TEST(SceneJsonSchema, AgreesWithTheParser) {
   {
     std::ofstream out(verdicts);
     for (const char* name : {"perspective", "orthographic", "raw", "header_replaced", "opacity",
-                             "channels", "gaussians", "one_channel"}) {
+                             "channels", "gaussians", "one_channel", "mesh", "mesh_one_array"}) {
       std::ifstream file(source / "tests" / "io" / "scenes" / "valid" /
                          (std::string(name) + ".json"));
       ASSERT_TRUE(file) << name;

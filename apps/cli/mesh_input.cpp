@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "mesh_input.h"
+
+#include <fmt/format.h>
+
+#include "parse.h"
+
+namespace pellucid::cli {
+
+namespace {
+
+constexpr const char* group = "Options of mesh files";
+
+}  // namespace
+
+void MeshOptions::add_to(CLI::App& command, bool with_arrays) {
+  const auto add = [&](CLI::Option* option) { given.push_back(option->group(group)); };
+  if (with_arrays) {
+    add(command
+            .add_option("--array", arrays,
+                        "An array to show, C one component of it (from 0), else the length of its "
+                        "vectors; several are channels for Gaussians, of these names. Default: the "
+                        "active scalars, else the first of points with one component")
+            ->option_text("[NAME=]ARRAY[:C]")
+            ->allow_extra_args(false));
+  }
+  add(command.add_option("--time", time, "The step nearest to this time; default: the first")
+          ->option_text("T"));
+  add(command.add_option("--q", q, "PLOT3D: the solution; makes INPUT a grid of PLOT3D")
+          ->option_text("FILE"));
+}
+
+void MeshOptions::refuse(const std::string& what) const {
+  for (const CLI::Option* option : given) {
+    if (option->count() > 0) {
+      throw UsageError(
+          fmt::format("{} applies to mesh files, not to {}", option->get_name(), what));
+    }
+  }
+}
+
+std::string mesh_input_help() {
+  return fmt::format("mesh ({})", mesh_extensions());
+}
+
+bool is_mesh(const std::string& input, const MeshOptions& options) {
+  return !input.empty() && !input.starts_with("builtin:") &&
+         (!options.q.empty() || is_mesh_file(input));
+}
+
+MeshSource mesh_source(const std::string& input, const MeshOptions& options) {
+  MeshSource source;
+  source.file = input;
+  source.options = {options.time, options.q};
+  try {
+    for (const std::string& text : options.arrays) {
+      source.channels.push_back(parse_mesh_array(text));
+    }
+    check_mesh_source(source);
+  } catch (const Error& error) {
+    throw UsageError(fmt::format("--array: {}", error.what()));
+  }
+  return source;
+}
+
+std::vector<NamedFile> data_files(const MeshSource& source) {
+  return {{"mesh", source.file.string()}, {"--q", source.options.q.string()}};
+}
+
+}  // namespace pellucid::cli

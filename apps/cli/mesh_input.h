@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "overwriting.h"
+#include "pellucid/io/mesh_source.h"
+
+namespace pellucid::cli {
+
+/// The options that say what of a mesh file is read.
+struct MeshOptions {
+  std::string q;
+  std::optional<double> time;
+  std::vector<std::string> arrays;  ///< [NAME=]ARRAY[:C]
+  std::vector<CLI::Option*> given;  ///< all of them, to ask which were used
+
+  /// `--array` where the command looks at arrays.
+  void add_to(CLI::App& command, bool with_arrays);
+  /// Throws UsageError where an option is used, saying that it does not apply to `what`.
+  void refuse(const std::string& what) const;
+};
+
+/// What INPUT may be besides a volume, for help texts.
+std::string mesh_input_help();
+
+/// Whether INPUT is a mesh: by --q, or by the file.
+bool is_mesh(const std::string& input, const MeshOptions& options);
+/// Throws UsageError.
+MeshSource mesh_source(const std::string& input, const MeshOptions& options);
+/// The files that are read, to be kept from being written.
+std::vector<NamedFile> data_files(const MeshSource& source);
+
+}  // namespace pellucid::cli
