@@ -91,7 +91,8 @@ void add_integration_options(CLI::App& command, RenderArguments& arguments) {
   constexpr Method methods[] = {Method::exact,    Method::rectangle,     Method::taylor,
                                 Method::midpoint, Method::trapezoid,     Method::simpson,
                                 Method::linear,   Method::preintegrated, Method::kniss,
-                                Method::gaussian};
+                                Method::gaussian, Method::homogeneous,   Method::average,
+                                Method::partial};
   std::vector<std::string> names;
   for (const Method method : methods) names.emplace_back(method_name(method));
   auto* method =

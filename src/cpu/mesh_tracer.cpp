@@ -4,57 +4,20 @@
 #include <limits>
 #include <numeric>
 #include <optional>
-#include <string>
 #include <vector>
 
+#include "mesh_field_storage.h"
+#include "mesh_hits.h"
 #include "packet_setup.h"
 #include "packet_tracer.h"
 #include "pellucid/packet/mesh_interface.h"
 #include "pellucid/render/integrate_mesh_ray.h"
 #include "pellucid/scene/binned_transfer_storage.h"
-#include "pellucid/scene/error.h"
 #include "pellucid/scene/transfer_tables_storage.h"
 #include "ray_tracer.h"
 
 namespace pellucid {
 namespace {
-
-/// The channels' values in double, as rays see them.
-class FieldStorage {
- public:
-  explicit FieldStorage(const MeshChannels& channels)
-      : values_(static_cast<std::size_t>(channels.count())) {
-    fields_.channels = channels.count();
-    for (int c = 0; c < channels.count(); ++c) {
-      std::vector<double>& values = values_[static_cast<std::size_t>(c)];
-      std::visit([&](const auto& own) { values.assign(own.begin(), own.end()); },
-                 channels[c].values);
-      fields_.channel[c] = {values.data(), channels[c].centering == Centering::cell};
-    }
-  }
-  const MeshFields& view() const noexcept { return fields_; }
-
-  /// The mesh's points with the values of the first channel.
-  std::vector<MeshPoint> points(const std::vector<Vec3<double>>& positions) const {
-    std::vector<MeshPoint> points(positions.size());
-    const MeshField& first = fields_.channel[0];
-    for (std::size_t i = 0; i < points.size(); ++i) {
-      points[i] = {positions[i], first.per_cell ? 0 : first.value[i]};
-    }
-    return points;
-  }
-
- private:
-  std::vector<std::vector<double>> values_;
-  MeshFields fields_;
-};
-
-/// Throws Error for a method that marches at a step.
-void check_method(Method method) {
-  if (method == Method::exact) return;
-  throw Error("integration: the method " + std::string(method_name(method)) +
-              " goes in steps through a grid, but the scene has a mesh; take the exact one");
-}
 
 using Kernel = void (*)(const PellucidMeshJob*);
 
@@ -68,41 +31,19 @@ Kernel kernel_for([[maybe_unused]] InstructionSet set) {
 #endif
 }
 
-/// Where a ray meets the boundary of a mesh.
-class RayHits {
- public:
-  /// Valid until the next call.
-  MeshRay find(const Tetrahedra& mesh, const Ray<double>& ray) {
-    MeshRay result;
-    result.view = make_ray_view(ray, mesh.middle(), mesh.reach);
-    hits_.clear();
-    for_each_boundary_hit(mesh, ray, result.view,
-                          [&](const MeshHit& hit) { hits_.push_back(hit); });
-    std::sort(hits_.begin(), hits_.end());
-    result.hits = hits_.data();
-    result.count = static_cast<int>(hits_.size());
-    return result;
-  }
-
- private:
-  std::vector<MeshHit> hits_;
-};
-
 class MeshTracer : public RayTracer {
  public:
   explicit MeshTracer(const TracerTask& task)
       : mesh_(task.scene.mesh->mesh().view()),
         fields_(*task.scene.mesh),
         wanted_(task.wanted),
-        depth_(task.options.depth) {
-    check_method(task.scene.integration.method);
-  }
+        depth_(task.options.depth) {}
 
   std::vector<RayResult> trace(const std::vector<Ray<double>>& world) const override {
     std::vector<RayResult> results(world.size());
     integrate(world, results);
     if (!depth_) return results;
-    RayHits hits;
+    MeshHits hits;
     for (std::size_t i = 0; i < world.size(); ++i) {
       if (!(results[i].opacity > 0)) continue;
       results[i].half_opacity_depth =
@@ -118,7 +59,7 @@ class MeshTracer : public RayTracer {
   virtual double find_half_opacity(const MeshRay& ray, double opacity) const = 0;
 
   const Tetrahedra mesh_;
-  const FieldStorage fields_;
+  const MeshFieldStorage fields_;
   const RayTolerance wanted_;
 
  private:
@@ -166,7 +107,7 @@ class UnivariateMeshTracer : public MeshTracer {
       // Those with more hits than a lane has room for.
       std::erase_if(left, [&](std::size_t i) { return results[i].error < infinity; });
     }
-    RayHits hits;
+    MeshHits hits;
     for (const std::size_t i : left) {
       results[i] = integrate_mesh_ray(mesh_, fields_.view(), transfer_.tables(),
                                       hits.find(mesh_, rays[i]), wanted_);
@@ -242,7 +183,7 @@ class MultivariateMeshTracer : public MeshTracer {
  protected:
   void integrate(const std::vector<Ray<double>>& rays,
                  std::vector<RayResult>& results) const override {
-    RayHits hits;
+    MeshHits hits;
     for (std::size_t i = 0; i < rays.size(); ++i) {
       results[i] = integrate_multivariate_mesh_ray(mesh_, fields_.view(), transfer_,
                                                    transfer_function_.largest_extinction(),
@@ -265,6 +206,7 @@ class MultivariateMeshTracer : public MeshTracer {
 }  // namespace
 
 std::unique_ptr<const RayTracer> make_mesh_tracer(const TracerTask& task) {
+  if (task.scene.integration.method != Method::exact) return make_mesh_sampler(task);
   if (task.scene.multivariate) return std::make_unique<MultivariateMeshTracer>(task);
   return std::make_unique<UnivariateMeshTracer>(task);
 }

@@ -8,7 +8,6 @@
 #include "pellucid/packet/multivariate_interface.h"
 #include "pellucid/render/integrate_multivariate_ray.h"
 #include "pellucid/render/sample_ray.h"
-#include "pellucid/scene/error.h"
 #include "pellucid/scene/multivariate_blocks_storage.h"
 #include "ray_tracer.h"
 #include "sampling_rule.h"
@@ -49,11 +48,6 @@ class MultivariateTracer : public RayTracer {
         grid_(multichannel_grid(channels_)),
         transfer_(transfer_function_.view()),
         step_(integration_.step * channels_.grid().voxel_size()) {
-    if (integration_.method == Method::preintegrated) {
-      throw Error(
-          "integration: the method preintegrated looks up a table of one variable, but the scene "
-          "has channels; take another method");
-    }
     if (integration_.method == Method::midpoint && !depth_ &&
         integration_.precision != Precision::float64) {
       sampler_ = MultivariatePacketSampler::make(

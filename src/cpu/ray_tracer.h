@@ -23,8 +23,8 @@ class RayTracer {
   virtual std::vector<RayResult> trace(const std::vector<Ray<double>>& world) const = 0;
 };
 
-/// What is to be followed. The scene must outlive the tracer; what it needs of the data's blocks is
-/// made on so many threads.
+/// What is to be followed: a scene that check_method() accepts. It must outlive the tracer; what is
+/// needed of the data's blocks is made on so many threads.
 struct TracerTask {
   const Scene& scene;
   const RenderOptions& options;
@@ -34,9 +34,11 @@ struct TracerTask {
 
 /// Of a volume with a transfer function.
 std::unique_ptr<const RayTracer> make_univariate_tracer(const TracerTask& task);
-/// Of channels with a multivariate transfer function. Throws Error for a method that it has not.
+/// Of channels with a multivariate transfer function.
 std::unique_ptr<const RayTracer> make_multivariate_tracer(const TracerTask& task);
-/// Of a mesh with either function. Throws as above.
+/// Of a mesh with either function.
 std::unique_ptr<const RayTracer> make_mesh_tracer(const TracerTask& task);
+/// The same, by one of the methods for comparison.
+std::unique_ptr<const RayTracer> make_mesh_sampler(const TracerTask& task);
 
 }  // namespace pellucid

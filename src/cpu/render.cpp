@@ -18,6 +18,7 @@ namespace {
 void check(const Scene& scene, const RenderOptions& options) {
   check_data(scene);
   check_integration(scene);
+  check_method(scene);
   if (options.threads < 0) throw Error("threads: must not be negative; 0 takes one per core");
   if (options.preview < 0 || options.preview > largest_preview) {
     throw Error("preview: " + std::to_string(options.preview) + " levels, but must be from 0 to " +

@@ -19,6 +19,9 @@ SamplingRule sampling_rule(Method method) noexcept {
     case Method::preintegrated:
     case Method::kniss:
     case Method::gaussian:
+    case Method::homogeneous:
+    case Method::average:
+    case Method::partial:
     case Method::exact:
       break;
   }

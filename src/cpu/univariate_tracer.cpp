@@ -1,14 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <optional>
-#include <string>
 
 #include "packet_sampler.h"
 #include "packet_tracer.h"
 #include "pellucid/render/integrate_ray.h"
 #include "pellucid/render/sample_preintegrated.h"
 #include "pellucid/scene/block_classes_storage.h"
-#include "pellucid/scene/error.h"
 #include "pellucid/scene/transfer_tables_storage.h"
 #include "preintegrated_storage.h"
 #include "ray_tracer.h"
@@ -17,14 +15,6 @@
 
 namespace pellucid {
 namespace {
-
-/// Throws Error where the method is one for Gaussians of several channels.
-void check_method(Method method) {
-  if (method != Method::kniss && method != Method::gaussian) return;
-  throw Error("integration: the method " + std::string(method_name(method)) +
-              " is for Gaussians of channels, but the scene has a transfer function of one "
-              "variable; take another method");
-}
 
 /// Whether the method has a sampler in packets.
 bool goes_in_packets(const Integration& integration) {
@@ -71,7 +61,6 @@ UnivariateTracer::UnivariateTracer(const TracerTask& task)
       depth_(task.options.depth),
       step_(integration_.step * volume_.voxel_size()),
       transfer_(transfer_function_) {
-  check_method(integration_.method);
   const ParallelFor parallel = parallel_for(task.threads);
   if (integration_.method == Method::preintegrated) {
     const VolumeStatistics& data = volume_.statistics();

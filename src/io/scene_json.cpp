@@ -63,7 +63,7 @@ void read_integration(const Node& node, Integration& integration) {
   node.expect_object({"method", "tolerance", "grade", "precision", "step"});
   if (const auto method = node.find("method")) {
     method->one_of({"exact", "rectangle", "taylor", "midpoint", "trapezoid", "simpson", "linear",
-                    "preintegrated", "kniss", "gaussian"});
+                    "preintegrated", "kniss", "gaussian", "homogeneous", "average", "partial"});
     integration.method = *method_from_name(method->string());
   }
   if (const auto tolerance = node.find("tolerance")) {

@@ -16,7 +16,7 @@ namespace {
 
 constexpr int largest_size = 65536;
 
-constexpr std::array<std::pair<Method, std::string_view>, 10> methods{{
+constexpr std::array<std::pair<Method, std::string_view>, 13> methods{{
     {Method::exact, "exact"},
     {Method::rectangle, "rectangle"},
     {Method::taylor, "taylor"},
@@ -27,6 +27,9 @@ constexpr std::array<std::pair<Method, std::string_view>, 10> methods{{
     {Method::preintegrated, "preintegrated"},
     {Method::kniss, "kniss"},
     {Method::gaussian, "gaussian"},
+    {Method::homogeneous, "homogeneous"},
+    {Method::average, "average"},
+    {Method::partial, "partial"},
 }};
 
 void require_finite(const Vec3<double>& v, const std::string& what) {
@@ -188,6 +191,49 @@ void check_integration(const Scene& scene) {
   } else {
     require("step", integration.step, " voxels", smallest_step, largest_step);
   }
+}
+
+void check_method(const Scene& scene) {
+  const Method method = scene.integration.method;
+  const auto refuse = [&](std::string_view why) {
+    throw Error("integration: the method " + std::string(method_name(method)) + " " +
+                std::string(why));
+  };
+  switch (method) {
+    case Method::exact:
+    case Method::linear:
+      return;
+    case Method::homogeneous:
+    case Method::average:
+    case Method::partial:
+      if (scene.mesh) return;
+      refuse(
+          "is for the cells of a mesh, but the scene has a grid; take midpoint, trapezoid or "
+          "linear there");
+      return;
+    case Method::preintegrated:
+      if (scene.mesh) break;
+      if (!scene.multivariate) return;
+      refuse("looks up a table of one variable, but the scene has channels; take another method");
+      return;
+    case Method::kniss:
+    case Method::gaussian:
+      if (scene.multivariate) return;
+      refuse(
+          "is for Gaussians of channels, but the scene has a transfer function of one variable; "
+          "take another method");
+      return;
+    case Method::rectangle:
+    case Method::taylor:
+    case Method::midpoint:
+    case Method::trapezoid:
+    case Method::simpson:
+      break;
+  }
+  if (!scene.mesh) return;
+  refuse(
+      "goes in steps through a grid, but the scene has a mesh; take homogeneous, average, "
+      "partial, linear or exact there");
 }
 
 }  // namespace pellucid

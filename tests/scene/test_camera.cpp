@@ -153,8 +153,9 @@ TEST(Camera, TinyAndHugeDistancesKeepTheirDirection) {
 }
 
 TEST(Method, NamesGoBothWays) {
-  const char* names[] = {"exact",   "rectangle", "taylor",        "midpoint", "trapezoid",
-                         "simpson", "linear",    "preintegrated", "kniss",    "gaussian"};
+  const char* names[] = {"exact",       "rectangle", "taylor",        "midpoint", "trapezoid",
+                         "simpson",     "linear",    "preintegrated", "kniss",    "gaussian",
+                         "homogeneous", "average",   "partial"};
   for (const char* name : names) {
     const std::optional<Method> method = method_from_name(name);
     ASSERT_TRUE(method.has_value()) << name;

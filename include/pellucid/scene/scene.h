@@ -37,9 +37,11 @@ struct ImageSize {
 /// focal point, up parallel to the view, angle or scale out of range, sizes not in [1, 65536]).
 CameraFrame<double> make_camera_frame(const Camera& camera, ImageSize size);
 
-/// exact: the integral of the trilinear data. The others march at a fixed step and are here for
-/// comparison; docs/theory.md says which text gives each its name.
-/// preintegrated is for one volume, kniss and gaussian are for channels.
+/// exact: the integral of the reconstructed data. The others are here for comparison,
+/// docs/theory.md says which text gives each its name. Through a grid they march at a fixed step,
+/// all but homogeneous, average and partial; preintegrated is for one volume, kniss and gaussian
+/// are for channels. Through a mesh they make one segment of each tetrahedron: homogeneous,
+/// average, partial and linear, and for Gaussians kniss and gaussian.
 enum class Method {
   exact,
   rectangle,
@@ -50,7 +52,10 @@ enum class Method {
   linear,
   preintegrated,
   kniss,
-  gaussian
+  gaussian,
+  homogeneous,
+  average,
+  partial
 };
 std::string_view method_name(Method method) noexcept;
 std::optional<Method> method_from_name(std::string_view name) noexcept;
@@ -71,7 +76,7 @@ inline constexpr double default_tolerance = 1.0 / 512;
 struct Integration {
   Method method = Method::exact;
   Precision precision = Precision::automatic;
-  double step = 0.5;  ///< of the sampling methods, in voxels (Volume::voxel_size)
+  double step = 0.5;  ///< of the methods that march, in voxels (Volume::voxel_size)
   /// How far a pixel of the exact method may be from the integral, in each channel of premultiplied
   /// linear RGBA. render() throws Error where it is beyond the limits above.
   double tolerance = default_tolerance;
@@ -115,5 +120,8 @@ double largest_color(const Scene& scene) noexcept;
 /// Throws Error where the samples of a pixel are beyond their limits, or what the method goes by
 /// is: the tolerance of the exact one, the step of the others.
 void check_integration(const Scene& scene);
+/// Throws Error for a method that is not for such data or such a function. Of a scene that
+/// check_data() accepts.
+void check_method(const Scene& scene);
 
 }  // namespace pellucid

@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <limits>
+
+#include "pellucid/render/integrate_mesh_ray.h"
+#include "pellucid/segment/cell_model.h"
+#include "pellucid/segment/gaussian_step.h"
+
+namespace pellucid {
+
+/// Follows a ray through a mesh with one segment for each tetrahedron, by a method for comparison:
+/// segment_of(span) makes it. Nothing is known of its error. It ends where the transparency is
+/// `stop` at most; what is vacuum or lies where the mesh overlaps itself is left out.
+///
+/// `depth`: asks for the place where the optical depth reaches that,
+/// RayResult::half_opacity_depth; the ray ends there.
+template <class SegmentOf>
+PELLUCID_HD RayResult
+sample_mesh_spans(const Tetrahedra& mesh, const MeshFields& fields, const MeshRay& ray,
+                  const SegmentOf& segment_of, double stop,
+                  double depth = std::numeric_limits<double>::infinity()) noexcept {
+  RayResult result;
+  FrontToBack<double> fold(stop);
+  for_each_mesh_span(mesh, fields, ray.view, ray.hits, ray.count, [&](const MeshSpan& span) {
+    ++result.cells;
+    if (span.vacuum || span.overlaps) return true;
+    const SegmentResult<double> segment = segment_of(span);
+    const double before = fold.optical_depth();
+    fold.add(segment);
+    if (fold.optical_depth() >= depth) {
+      // Within a cell the models know no more than a constant extinction.
+      result.half_opacity_depth =
+          span.begin + (depth - before) / segment.optical_depth * (span.end - span.begin);
+      return false;
+    }
+    return !fold.done();
+  });
+  result.evaluations = result.cells;
+  result.radiance = fold.radiance();
+  result.optical_depth = fold.optical_depth();
+  result.opacity = fold.opacity();
+  return result;
+}
+
+/// By a model of the cell; `transfer` is a PiecewiseLinear of one variable or a Multivariate.
+template <class Transfer>
+PELLUCID_HD RayResult
+sample_mesh_ray(const Tetrahedra& mesh, const MeshFields& fields, const Transfer& transfer,
+                CellModel model, const PsiTable& psi, const MeshRay& ray, double stop,
+                double depth = std::numeric_limits<double>::infinity()) noexcept {
+  const auto segment_of = [&](const MeshSpan& span) noexcept {
+    return cell_segment(model, psi, transfer, fields.channels, span.front, span.back,
+                        span.end - span.begin);
+  };
+  return sample_mesh_spans(mesh, fields, ray, segment_of, stop, depth);
+}
+
+/// As Kniss et al. 2003 have it, for whom the data of a segment are linear: in a tetrahedron they
+/// are.
+PELLUCID_HD inline RayResult sample_mesh_gaussians(
+    const Tetrahedra& mesh, const MeshFields& fields, const Multivariate<double>& transfer,
+    GaussianRule rule, const MeshRay& ray, double stop,
+    double depth = std::numeric_limits<double>::infinity()) noexcept {
+  const auto segment_of = [&](const MeshSpan& span) noexcept {
+    return mean_color_segment(rule, transfer, span.front, span.back, span.end - span.begin);
+  };
+  return sample_mesh_spans(mesh, fields, ray, segment_of, stop, depth);
+}
+
+}  // namespace pellucid
