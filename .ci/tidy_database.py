@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Writes the compilation database that clang-tidy goes through: the sources of src/ and apps/, and one source
-that includes every header of the core.
+"""Writes the compilation database that clang-tidy goes through: the sources of src/ and apps/, each once
+(kernels are compiled once per instruction set, but say the same in each), and one source that includes
+every header of the core.
 
   tidy_database.py COMPILE_COMMANDS FOLDER
 """
@@ -14,7 +15,8 @@ def main():
     commands, folder = pathlib.Path(sys.argv[1]), pathlib.Path(sys.argv[2]).resolve()
     root = pathlib.Path(__file__).resolve().parent.parent
     ours = [f"{root}/src/", f"{root}/apps/"]
-    entries = [entry for entry in json.loads(commands.read_text()) if entry["file"].startswith(tuple(ours))]
+    all_entries = [entry for entry in json.loads(commands.read_text()) if entry["file"].startswith(tuple(ours))]
+    entries = list({entry["file"]: entry for entry in all_entries}.values())
 
     headers = sorted((root / "include").rglob("*.h"))
     source = folder / "all_headers.cpp"

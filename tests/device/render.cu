@@ -42,6 +42,6 @@ template __global__ void render_preintegrated<float, std::int16_t>(
       StructuredGrid<Value, double>, ClassifiedBlocks, TransferTables, RayTolerance, \
       CameraFrame<double>, bool, SamplingRule, double, RayResult*);
 PELLUCID_RENDER(float, std::int16_t)
-PELLUCID_RENDER(double, double)
+PELLUCID_RENDER(double, std::int16_t)
 
 }  // namespace pellucid

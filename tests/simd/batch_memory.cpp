@@ -195,17 +195,17 @@ TEST_P(BatchMemory, LargeIntegersAreRoundedOnce) {
   }
 }
 
-void expect_records(void (*load)(const float*, const std::int32_t*, float*), int fields,
-                    int lanes) {
+template <class T>
+void expect_records(void (*load)(const T*, const std::int32_t*, T*), int fields, int lanes) {
   const Guarded memory;
-  memory.fill<float>();
-  for (const auto& index : places(lanes, memory.count<float>() / fields - 1)) {
-    float out[16 * 16];
-    load(memory.begin<float>(), index.data(), out);
+  memory.fill<T>();
+  for (const auto& index : places(lanes, memory.count<T>() / fields - 1)) {
+    T out[16 * 16];
+    load(memory.begin<T>(), index.data(), out);
     for (int k = 0; k < fields; ++k) {
       for (int lane = 0; lane < lanes; ++lane) {
         ASSERT_EQ(out[k * lanes + lane],
-                  memory.begin<float>()[fields * index[static_cast<std::size_t>(lane)] + k])
+                  memory.begin<T>()[fields * index[static_cast<std::size_t>(lane)] + k])
             << "field " << k << ", lane " << lane;
       }
     }
@@ -215,6 +215,8 @@ TEST_P(BatchMemory, RecordsAreReadAndNothingElse) {
   expect_records(table().records_4, 4, lanes());
   expect_records(table().records_8, 8, lanes());
   expect_records(table().records_16, 16, lanes());
+  expect_records(table().int_records_8, 8, lanes());
+  expect_records(table().double_records_4, 4, lanes());
 }
 
 TEST_P(BatchMemory, RecordsAreWrittenAndNothingElse) {

@@ -189,9 +189,9 @@ void pairs(const Value* const* base, const std::int32_t* offset, float* first, f
   a.store(first);
   b.store(second);
 }
-template <int K>
-void records(const float* base, const std::int32_t* index, float* out) {
-  Float fields[K];
+template <int K, class T>
+void records(const T* base, const std::int32_t* index, T* out) {
+  Batch<T, width> fields[K];
   load_records<K>(base, Int::load(index), fields);
   for (int k = 0; k < K; ++k) fields[k].store(out + k * width);
 }
@@ -245,9 +245,11 @@ constexpr batch_operations::Table table = {
     pairs<std::int32_t>,
     pairs<float>,
     pairs<double>,
-    records<4>,
-    records<8>,
-    records<16>,
+    records<4, float>,
+    records<8, float>,
+    records<16, float>,
+    records<8, std::int32_t>,
+    records<4, double>,
     put_records<8>,
     pack<float>,
     pack<double>,

@@ -71,6 +71,8 @@ struct Table {
   void (*records_4)(const float* base, const std::int32_t* index, float* out);
   void (*records_8)(const float* base, const std::int32_t* index, float* out);
   void (*records_16)(const float* base, const std::int32_t* index, float* out);
+  void (*int_records_8)(const std::int32_t* base, const std::int32_t* index, std::int32_t* out);
+  void (*double_records_4)(const double* base, const std::int32_t* index, double* out);
   /// in[k * lanes + lane]
   void (*store_records_8)(const float* in, float* base, const std::int32_t* index);
   /// Of the lanes whose bit is set.

@@ -50,7 +50,8 @@ class MeshMarch {
   }
 
   MeshRays<S, N> rays;
-  M walking{false};  ///< whether a lane has tetrahedra ahead
+  M walking{false};    ///< whether a lane has tetrahedra ahead
+  F beside_vacuum{0};  ///< how far off are the places where vacuum begins and ends, all in all
 
   /// Rays that are not to be followed any further.
   void stop(M lanes) noexcept { walking = walking & !lanes; }
@@ -122,12 +123,14 @@ class MeshMarch {
       overlaps = behind & (front_ > rays.eye) & (convert<float>(front_ - min(t_, t)) > most);
     }
     const M ahead = on & (begin < t);
+    const M vacuum = is_nan(front_value + value);
     const F error = max(value_error_, value_error);
 
     const F f = convert<float>(at_begin), b = convert<float>(value);
     const F rounding = F(4 * u) * max(abs(f), abs(b)) + error;
     I note = select(overlaps, I(SpanNote::overlaps), I(0));
-    const M found = (ahead & absorbs(min(f, b) - rounding, max(f, b) + rounding, note)) | overlaps;
+    const M found =
+        (ahead & !vacuum & absorbs(min(f, b) - rounding, max(f, b) + rounding, note)) | overlaps;
     if (any(found)) {
       f.store(rows.front + at);
       b.store(rows.back + at);
@@ -143,9 +146,13 @@ class MeshMarch {
       at_begin.store(rows.exact_front + at);
       value.store(rows.exact_back + at);
       length.store(rows.exact_length + at);
-      error.store(rows.error + at);
+      // What is handed back is in numbers S. Where all that it comes of is equal it is exact.
+      const F rounded = F(static_cast<float>(4 * rounding_unit<S>)) * max(abs(f), abs(b));
+      const M even = (!M(std::is_same_v<S, float>)) & (error == F(0)) & (f == b);
+      (error + select(even, F(0), rounded)).store(rows.error + at);
       note.store(rows.code + at);
     }
+    beside_vacuum += select(on & vacuum, t_error_ + t_error, F(0));
     const M forward = ahead | overlaps;
     front_ = select(forward, max(t, begin), front_);
     front_error_ = select(forward, t_error, front_error_);
@@ -154,7 +161,7 @@ class MeshMarch {
     t_error_ = select(on, t_error, t_error_);
     value_error_ = select(on, value_error, value_error_);
     // Behind vacuum the data begin anew.
-    first_ = is_nan(b);
+    first_ = vacuum;
     return found;
   }
 

@@ -62,9 +62,12 @@ class MeshPacket {
     constexpr double folding = 8 * rounding_unit<double>;
     constexpr double account = 2 * static_cast<double>(rounding_unit<float>);
     const D pieces = convert<double>(pieces_) + D(1);
-    const D error = convert<double>(budget_.spent() + select(cut_off_, rest_behind(), F(0))) *
-                        (D(1) + D(account) * pieces) +
-                    D(folding * job_.largest_color) * pieces;
+    const D error =
+        convert<double>(budget_.spent() + select(cut_off_, rest_behind(), F(0))) *
+            (D(1) + D(account) * pieces) +
+        D(folding * job_.largest_color) * pieces +
+        D(job_.largest_color) *
+            min(D(job_.largest_extinction) * convert<double>(march_.beside_vacuum), D(1));
     for (int l = 0; l < count_; ++l) {
       PellucidRayResult& r = results[first_ + l];
       r = {};
@@ -89,7 +92,6 @@ class MeshPacket {
   static constexpr float narrowest = 1.0f / 16;
 
   M absorbs(F least, F most, I& note) const noexcept {
-    // Vacuum is NaN, which is nowhere.
     M found = (most >= F(transfer_.support_min)) & (least <= F(transfer_.support_max));
     if (!transfer_.has_marks || none(found)) return found;
     const F safe_least = select(found, least, F(0)), safe_most = select(found, most, F(0));
@@ -144,7 +146,7 @@ class MeshPacket {
     if (any(lost)) {
       const M moved = lost & ((front_ < extinction_.lower) | (front_ >= extinction_.upper));
       if (any(moved)) extinction_ = find_extinction(transfer_, front_, moved, interval_);
-      assign_color(lost, front_color_, color_at(transfer_, front_));
+      assign_color(lost, front_color_, color_inside(front_));
       located_ = located_ | on;
     }
     const ExtinctionInterval<F>& interval = extinction_;
@@ -161,7 +163,7 @@ class MeshPacket {
     const auto extinction = [&](F value) noexcept {
       return max(interval.at_lower + interval.slope * (value - interval.lower), F(0));
     };
-    const Rgb<F> color = color_at(transfer_, end);
+    const Rgb<F> color = color_inside(end);
     const SegmentResult<F> s =
         linear_segment(extinction(front_), extinction(end), front_color_, color, length);
 
@@ -223,11 +225,21 @@ class MeshPacket {
     if (any(crossed)) {
       interval_ += select(crossed, select(rising, I(1), I(-1)), I(0));
       extinction_ = load_extinction<F>(transfer_, interval_);
+      assign_color(crossed, front_color_, color_inside(front_));
     }
     const M clear = (max(front_, back_) + rounding_ < F(transfer_.support_min)) |
                     (min(front_, back_) - rounding_ > F(transfer_.support_max));
     pending_ = pending_ & !(take & ((place >= F(1)) | clear));
     retire();
+  }
+
+  /// The color at a value, coming from inside of the extinction's interval: at its upper end,
+  /// behind which the color may be another where nothing absorbs, that just below, by less than the
+  /// rounding of the data.
+  Rgb<F> color_inside(F value) const noexcept {
+    const F below =
+        extinction_.upper - F(4 * rounding_unit<float>) * max(abs(extinction_.upper), F(1e-30f));
+    return color_at(transfer_, max(min(value, below), extinction_.lower));
   }
 
   static void assign_color(M lanes, Rgb<F>& to, const Rgb<F>& from) noexcept {
@@ -282,8 +294,9 @@ class MeshPacket {
                    front = static_cast<double>(rows_.exact_front[row]),
                    back = static_cast<double>(rows_.exact_back[row]),
                    length = static_cast<double>(rows_.exact_length[row]);
-      // Where pieces have ended is known in binary32.
-      const double off = from > 0 ? 4 * static_cast<double>(rounding_unit<float>) : 0;
+      // Where pieces have ended is known in binary32, and lengths are rounded.
+      const double off = (from > 0 ? 4 * static_cast<double>(rounding_unit<float>) : 0) +
+                         2 * static_cast<double>(rounding_unit<S>);
       const PellucidLinearSpan span{
           front + from * (back - front),         back,
           static_cast<double>(rows_.error[row]), (1 - from) * length,

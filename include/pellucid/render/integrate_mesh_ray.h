@@ -58,6 +58,9 @@ class MeshRayIntegrator {
     }
     if (span.vacuum) {
       ++counts_.skipped;
+      // What is beside it may begin and end elsewhere.
+      const double beside = transfer_.largest_extinction * (span.place_error + span.end_error);
+      budget_.spend(length, 0, fold_.transparency(), largest_color_ * min(beside, 1.0));
       return;
     }
     const LinearData data{span.front[0], span.back[0],     span.value_error[0],
@@ -137,6 +140,12 @@ class MeshRayIntegrator {
 
 namespace detail {
 
+/// Linear data as a cubic.
+PELLUCID_HD inline CubicBernstein<double> linear_data(double front, double back) noexcept {
+  const double third = (back - front) / 3;
+  return {{front, front + third, back - third, back}};
+}
+
 /// What a span's data may be off by, beyond what the panels charge for rounding themselves, as a
 /// bound on the change of the extinction: no Gaussian is steeper than √(2/e) times its peak and
 /// |K|, Frobenius' norm.
@@ -163,14 +172,15 @@ PELLUCID_HD inline double extinction_error(const Multivariate<double>& transfer,
   for (int i = 0; i < transfer.tables; ++i) {
     const int c = transfer.table[i].channel;
     const PiecewiseLinear<double>& table = transfer.table[i].table;
-    const double lower = min(span.front[c], span.back[c]) - span.value_error[c],
-                 upper = max(span.front[c], span.back[c]) + span.value_error[c];
-    const Sensitivity<double> slopes =
-        sensitivity(table, table.interval(lower), table.interval(upper), span.value_error[c]);
+    const double off = span.value_error[c];
+    const CubicBernstein<double> data = linear_data(span.front[c], span.back[c]);
+    const int first = table.interval(data.hull_min() - off),
+              last = table.interval(data.hull_max() + off);
+    const Sensitivity<double> slopes = sensitivity(table, first, last, off);
     // Colors count like the extinction that shows them.
     const double change = slopes.extinction_slope + slopes.largest_extinction * slopes.color_slope;
-    sum += slopes.jump ? slopes.largest_extinction
-                       : min(span.value_error[c] * change, slopes.largest_extinction);
+    sum += min(off * change, slopes.largest_extinction);
+    if (slopes.jump) sum += jump_rounding(data, table, first, last, off);
   }
   return sum;
 }
@@ -179,16 +189,20 @@ PELLUCID_HD inline void add_span(const Multivariate<double>& transfer, const Mes
                                  double largest_extinction,
                                  MultivariateRayIntegrator& integrator) noexcept {
   const double length = span.end - span.begin;
-  if (span.vacuum || span.overlaps) {
-    // Anything may be where cells overlap.
-    integrator.skip(length, span.overlaps ? std::numeric_limits<double>::infinity() : 0);
+  if (span.overlaps) {
+    // Anything may be there.
+    integrator.skip(length, std::numeric_limits<double>::infinity());
+    return;
+  }
+  if (span.vacuum) {
+    // What is beside it may begin and end elsewhere.
+    integrator.skip(span.place_error + span.end_error, largest_extinction);
     return;
   }
   MultivariateSpan<double> data;
   data.length = length;
   for (int c = 0; c < transfer.channels; ++c) {
-    const double front = span.front[c], back = span.back[c], third = (back - front) / 3;
-    data.data[c] = {{front, front + third, back - third, back}};
+    data.data[c] = linear_data(span.front[c], span.back[c]);
   }
   integrator.stretch(data, {span.begin, span.end}, {},
                      min(extinction_error(transfer, span), largest_extinction),
