@@ -20,9 +20,14 @@ std::string method_text(const RenderArguments& arguments, const Integration& int
   return arguments.reference ? "reference" : std::string(method_name(integration.method));
 }
 
-/// The sampling methods know no tolerance: automatic is float for them.
-std::string precision_text(const RenderArguments& arguments, const Integration& integration) {
-  if (arguments.reference || integration.precision == Precision::float64) return "double";
+/// The sampling methods know no tolerance: automatic is float for them. Those of meshes are in
+/// double alone.
+std::string precision_text(const RenderArguments& arguments, const Scene& scene) {
+  const Integration& integration = scene.integration;
+  const bool always_double = scene.mesh && integration.method != Method::exact;
+  if (arguments.reference || always_double || integration.precision == Precision::float64) {
+    return "double";
+  }
   if (integration.precision == Precision::float32) return "float";
   return integration.method == Method::exact ? "automatic" : "float";
 }
@@ -52,8 +57,8 @@ std::vector<NamedCount> by_rule(const RuleCounts& spans) {
           {"lines", spans.lines},     {"closed", spans.closed},     {"panels", spans.panels}};
 }
 
-bool has_step(const RenderArguments& arguments, const Integration& integration) {
-  return !arguments.reference && integration.method != Method::exact;
+bool has_step(const RenderArguments& arguments, const Scene& scene) {
+  return !arguments.reference && !scene.mesh && scene.integration.method != Method::exact;
 }
 
 Json channel_json(const std::string& name, const std::string& unit, const VolumeData& values,
@@ -116,12 +121,12 @@ void add_metadata(const RenderArguments& arguments, const PreparedScene& prepare
   metadata["pellucid.version"] = PELLUCID_VERSION_STRING;
   metadata["pellucid.source"] = source_text(arguments);
   metadata["pellucid.method"] = method_text(arguments, integration);
-  metadata["pellucid.precision"] = precision_text(arguments, integration);
+  metadata["pellucid.precision"] = precision_text(arguments, prepared.scene);
   if (const double error = transfer_function_error(prepared.scene); error > 0) {
     metadata["pellucid.transfer_function_error"] = fmt::format("{}", error);
   }
   metadata["pellucid.samples"] = fmt::format("{}", prepared.scene.samples);
-  if (has_step(arguments, integration)) {
+  if (has_step(arguments, prepared.scene)) {
     metadata["pellucid.step"] = fmt::format("{}", integration.step);
   }
   if (prepared.knows_its_error(arguments)) {
@@ -211,8 +216,8 @@ Json report_json(const RenderArguments& arguments, const PreparedScene& prepared
                                       : Json();
   json["size"] = {scene.size.width, scene.size.height};
   json["method"] = method_text(arguments, scene.integration);
-  json["step"] = has_step(arguments, scene.integration) ? Json(scene.integration.step) : Json();
-  json["precision"] = precision_text(arguments, scene.integration);
+  json["step"] = has_step(arguments, scene) ? Json(scene.integration.step) : Json();
+  json["precision"] = precision_text(arguments, scene);
   json["samples"] = scene.samples;
   const bool exact = prepared.knows_its_error(arguments);
   const auto of_exact = [&](const Json& value) { return exact ? value : Json(); };

@@ -3,7 +3,7 @@
 // The methods for comparison on meshes, whole frames.
 #include <gtest/gtest.h>
 
-#include <array>
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <memory>
@@ -49,6 +49,7 @@ Difference difference(const Image& a, const Image& b) {
   for (std::size_t i = 0; i < a.pixels.size(); ++i) {
     for (std::size_t c = 0; c < 4; ++c) {
       const double off = std::fabs(static_cast<double>(a.pixels[i][c] - b.pixels[i][c]));
+      EXPECT_TRUE(std::isfinite(off)) << "pixel " << i;
       result.largest = std::max(result.largest, off);
       result.rms += off * off;
     }

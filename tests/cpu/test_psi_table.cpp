@@ -45,7 +45,7 @@ WeightErrors weight_errors(double smallest, double largest) {
                        : largest * std::pow(smallest / largest, unit(random));
   };
   WeightErrors errors;
-  for (int n = 0; n < 20000; ++n) {
+  for (int n = 0; n < 4000; ++n) {
     double x_f = draw();
     const double x_b = draw();
     if (x_b == 0) x_f = std::max(x_f, smallest);
