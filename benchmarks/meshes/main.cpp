@@ -10,6 +10,7 @@
 #include <set>
 #include <thread>
 
+#include "benchmarks/meshes/mesh_frames.h"
 #include "benchmarks/meshes/mesh_report.h"
 #include "benchmarks/support/document.h"
 #include "benchmarks/support/environment.h"

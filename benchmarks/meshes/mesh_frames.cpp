@@ -4,7 +4,7 @@
 #include <algorithm>
 
 #include "benchmarks/meshes/mesh_contender.h"
-#include "benchmarks/support/interleave.h"
+#include "benchmarks/meshes/mesh_scenes.h"
 #include "benchmarks/vtk/unstructured.h"
 #include "pellucid/cpu/render.h"
 #include "pellucid/cpu/threads.h"
@@ -102,17 +102,6 @@ bool wants(const MeshFrameOptions& options, const std::string& name) {
 }
 
 }  // namespace
-
-double MeshWay::median_seconds() const {
-  return median(seconds);
-}
-
-const MeshWay* MeshResult::find(const std::string& way, int threads) const {
-  for (const MeshWay& one : ways) {
-    if (one.name == way && one.threads == threads) return &one;
-  }
-  return nullptr;
-}
 
 std::vector<MeshResult> measure_mesh_frames(const MeshFrameOptions& options) {
   std::vector<MeshResult> results;

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "benchmarks/meshes/building.h"
-#include "benchmarks/meshes/mesh_frames.h"
+#include "benchmarks/meshes/mesh_result.h"
 #include "benchmarks/meshes/reconstruction.h"
 #include "benchmarks/meshes/segments.h"
 #include "benchmarks/support/plot.h"
