@@ -74,6 +74,14 @@ class Plot3d(ProgramTest):
         self.assertIsNone(report["dimensions"])
         self.assertEqual(report["pixels_over"], 0)
 
+    def test_methods(self):
+        for method in ("homogeneous", "average", "linear", "partial"):
+            report = self.report("render", "grid.bin", "--q", "q.bin", "-o", "a.exr", "--size", "16",
+                                 "--method", method)
+            self.assertEqual(report["method"], method)
+            self.assertIsNone(report["step"])
+            self.assertEqual(report["precision"], "double")
+
     def test_scene_is_the_same_picture(self):
         gaussian = ["--gaussian", "d=2~1, Momentum_0=0~1; extinction 2; color #ff8040"]
         self.succeed("render", "grid.bin", "--q", "q.bin", "--array", "d=Density", "--array",
@@ -92,6 +100,7 @@ class Plot3d(ProgramTest):
                 (["--channel", "a=gradient_magnitude:value"], "--array"),
                 (["--spacing", "1,1,1"], "--spacing applies to volume files"),
                 (["--method", "midpoint"], "mesh"),
+                (["--method", "kniss"], "Gaussians"),
                 (["--array", "none"], "none"),
                 (["--array", "Density", "--array", "Pressure"], "several arrays"),
                 (["--time", "3"], "no steps"),
