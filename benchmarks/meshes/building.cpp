@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "benchmarks/meshes/building.h"
 
+#include <algorithm>
 #include <chrono>
 #include <utility>
 
@@ -51,12 +52,20 @@ double bytes_of_values(const MeshChannels& channels) {
   return count * (own + sizeof(double) + sizeof(MeshPoint));
 }
 
+bool wants(const BuildOptions& options, const std::string& name) {
+  return options.filters.empty() ||
+         std::any_of(options.filters.begin(), options.filters.end(), [&](const std::string& f) {
+           return name.find(f) != std::string::npos || f.find(name) != std::string::npos;
+         });
+}
+
 }  // namespace
 
 std::vector<BuildResult> measure_building(const BuildOptions& options) {
   std::vector<BuildResult> results;
   const MeshArrayChoice value{"value", std::nullopt, {}};
   for (const MeshSource& source : mesh_sources(options.tiny)) {
+    if (!wants(options, source.name)) continue;
     options.say("building: " + source.name);
     const UnstructuredGrid grid = source.make();
     const auto channels = cut_into_tetrahedra(grid, {&value, 1}, parallel_for(default_threads()));

@@ -21,6 +21,7 @@ struct BuildOptions {
   std::vector<int> threads{1};
   int repeats = 3;
   bool tiny = false;
+  std::vector<std::string> filters;  ///< parts of the meshes' names, or of theirs; none: all
   std::function<void(const std::string&)> say;
 };
 

@@ -119,8 +119,8 @@ void run(Arguments a) {
     }
   }
   if (a.has("building")) {
-    const std::vector<BuildResult> results =
-        measure_building({a.frames.threads, a.frames.repeats, a.tiny, a.frames.say});
+    const std::vector<BuildResult> results = measure_building(
+        {a.frames.threads, a.frames.repeats, a.tiny, a.frames.filters, a.frames.say});
     text += "\n### Building\n\nMillions of tetrahedra per second.\n\n" +
             building_table(results, a.frames.threads);
     json["building"] = to_json(results, a.frames.threads);
@@ -162,6 +162,7 @@ int main(int argc, char** argv) {
       ->delimiter(',')
       ->check(CLI::PositiveNumber);
   app.add_flag("!--no-vtk", a.frames.vtk, "without VTK's mappers");
+  app.add_flag("!--no-sweep", a.frames.sweep, "without VTK's ZSweep mapper");
   app.add_flag("--tiny", a.tiny, "small meshes: to try this program");
   app.add_option("--cache", a.frames.cache, "folder that keeps reference pixels");
   app.add_option("--markdown", a.markdown, "file to put the tables into; default: print");

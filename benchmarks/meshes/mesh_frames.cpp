@@ -5,6 +5,7 @@
 
 #include "benchmarks/meshes/mesh_contender.h"
 #include "benchmarks/meshes/mesh_scenes.h"
+#include "benchmarks/support/document.h"
 #include "benchmarks/vtk/unstructured.h"
 #include "pellucid/cpu/render.h"
 #include "pellucid/cpu/threads.h"
@@ -43,7 +44,7 @@ class SceneRun {
                     ours(shown.scene, mesh_proved_name, Grade::proved)} {
     if (!vtk) return;
     for (MeshContender& contender : vtk_mesh_contenders(vtk, shown)) {
-      contenders_.push_back(std::move(contender));
+      if (contender.threaded || options.sweep) contenders_.push_back(std::move(contender));
     }
   }
 
@@ -69,7 +70,6 @@ class SceneRun {
   /// The picture is the same on any number of threads.
   void first_round(std::size_t c, MeshResult& result) {
     const MeshContender& contender = contenders_[c];
-    options_.say(result.name + ": " + contender.name);
     // Makes what depends on the data alone, and warms up.
     const TimedFrame warm = contender.render(largest_threads());
     MeshCrossings crossings{warm.work, 0};
@@ -86,6 +86,9 @@ class SceneRun {
                              error_of(warm.image, reference_),
                              crossings.segments,
                              crossings.nan_pixels});
+      const MeshWay& way = result.ways.back();
+      options_.say(result.name + ": " + way.name +
+                   format(" on %d: %.3g s, error %.2g", threads, again, way.error.largest));
     }
   }
 

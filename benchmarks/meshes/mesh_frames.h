@@ -19,6 +19,7 @@ struct MeshFrameOptions {
   int repeats = 3;
   double longest_repeated_seconds = 3;  ///< frames that take longer are rendered once
   bool vtk = true;
+  bool sweep = true;  ///< VTK's ZSweep mapper too, which takes minutes for large meshes
   bool tiny = false;
   std::vector<std::string> filters;  ///< parts of "MESH, SCENE"; none: all
   std::function<void(const std::string&)> say;
