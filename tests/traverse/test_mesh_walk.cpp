@@ -171,25 +171,5 @@ TEST(MeshWalk, GoesThroughEachTetrahedronOnceInFloat) {
   expect_every_tetrahedron_once<float>(Cubes(3));
 }
 
-/// Points so far off in float that many fall together: what is between them has no volume any more,
-/// and still the ray ends.
-TEST(MeshWalk, EndsWherePointsAreNotToldApart) {
-  Cubes cubes(3);
-  std::mt19937 random(2);
-  std::uniform_real_distribution<double> uniform(-1, 1);
-  for (Place& p : cubes.points) {
-    p = {1.0 + 1e-9 * uniform(random), 1.0 + 1e-8 * uniform(random), 1.0 + 1e-8 * uniform(random)};
-  }
-  for (int i = 0; i < 200; ++i) {
-    const Place direction = normalized(Place{uniform(random), uniform(random), uniform(random)});
-    const Place target = cubes.points[random() % cubes.points.size()];
-    std::vector<int> met;
-    const Tetrahedra mesh = cubes.view();
-    follow<float>(cubes, {target - direction * 20.0, direction}, met);
-    follow<double>(cubes, {target - direction * 20.0, direction}, met);
-    EXPECT_EQ(mesh.count, 162);
-  }
-}
-
 }  // namespace
 }  // namespace pellucid
