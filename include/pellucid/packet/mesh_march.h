@@ -56,6 +56,13 @@ class MeshMarch {
   /// Rays that are not to be followed any further.
   void stop(M lanes) noexcept { walking = walking & !lanes; }
 
+  /// Gives up rays that have gone through more tetrahedra than there are: none should.
+  void stop_lost(const I& cells) noexcept {
+    const M lost = walking & (cells > I(rays.tetrahedra()));
+    rays.crowded = rays.crowded | lost;
+    stop(lost);
+  }
+
   /// Goes on until the rows are full or all rays are at their end. Bit s of a lane of the result:
   /// its s-th row holds a span that absorbs. absorbs(least, most, note): whether data in that range
   /// do, and what is to be noted of them.

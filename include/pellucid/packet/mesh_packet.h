@@ -52,6 +52,7 @@ class MeshPacket {
       waiting_ = march_.fill(rows_, cells_, [this](F least, F most, I& note) noexcept {
         return absorbs(least, most, note);
       });
+      march_.stop_lost(cells_);
       for (take_spans(); any(pending_); take_spans()) integrate_pieces();
     }
   }
@@ -183,18 +184,20 @@ class MeshPacket {
         (least - value_error < interval.lower) | (most + value_error > interval.upper) | crosses;
     const F near = select(range > F(2) * value_error, F(2) * value_error / range, F(1));
     const F slope = abs(interval.slope);
-    const F recolored =
-        min(interval.color_slope * range * (F(1) / largest_color_), F(1)) * interval.largest;
+    const F colors = min(interval.color_slope * range, interval.color_range);
     const F steep = select(touches, slope + near * (interval.steepest - slope), slope);
     const F depth_error = length * (value_error * steep + F(8 * u) * interval.largest) +
-                          place_error_ * (slope * range + recolored) +
+                          place_error_ * (slope * range) +
                           end_error_ * (length / span_length_) * interval.largest;
-    const F color_rounding =
-        F(32 * u) * largest_color_ + min(value_error * interval.color_slope, largest_color_);
+    const F color_rounding = F(32 * u) * largest_color_ +
+                             min(value_error * interval.color_slope, largest_color_) +
+                             colors * min(place_error_ / max(length, F(1e-30f)), F(1));
     const F opacity_rounding =
         F(32 * u) * s.opacity +
         min(select(depth_error <= F(1), F(2) * depth_error * s.transparency, F(1)), F(1));
-    const F rounding = s.opacity * color_rounding + largest_color_ * opacity_rounding;
+    // Extinction that is elsewhere in the piece shows another color of it.
+    const F rounding = s.opacity * color_rounding + largest_color_ * opacity_rounding +
+                       colors * min(depth_error, F(1));
     const F error = color_error + rounding;
 
     budget_.pass_to(select(on, left_ - from_ * span_length_, budget_.length_left()));

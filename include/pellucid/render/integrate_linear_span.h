@@ -48,15 +48,18 @@ PELLUCID_HD bool integrate_linear_span(const LinearData& data, const TransferTab
   const T range = upper - lower + T(2) * data_error;
   const T change = slopes.jump ? slopes.largest_extinction
                                : min(slopes.extinction_slope * range, slopes.largest_extinction);
-  const T recolored = min(slopes.color_slope * range, T(largest_color)) *
-                      slopes.largest_extinction / T(largest_color);
-  rounding.depth += static_cast<T>(data.place_error) * (change + recolored) +
-                    static_cast<T>(data.end_error) * slopes.largest_extinction;
+  const T colors = min(slopes.color_slope * range, T(largest_color)),
+          place_error = static_cast<T>(data.place_error);
+  rounding.depth +=
+      place_error * change + static_cast<T>(data.end_error) * slopes.largest_extinction;
+  rounding.color += place_error < length ? colors * (place_error / length) : colors;
+  // Extinction that is elsewhere in the span shows another color of it.
+  const double shifted = static_cast<double>(colors * min(rounding.depth, T(1)));
   // Control points beyond the sixteenth cost 3 u each.
   const T more = T(3 * rounding_unit<T>) * T(max(reach.last - reach.first - 16, 0));
   const auto cost = [&](const T alpha, const T transparency) noexcept {
     if (lacks) return largest_color;  // anything may be there
-    return static_cast<double>(rounding.color_error(alpha)) +
+    return shifted + static_cast<double>(rounding.color_error(alpha)) +
            largest_color *
                static_cast<double>(rounding.opacity_error(alpha, transparency) + more * alpha);
   };

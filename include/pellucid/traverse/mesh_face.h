@@ -52,7 +52,11 @@ PELLUCID_HD mask_t<T> turn_around_ray(SeenFace<T>& face) noexcept {
     left[i] = side.left;
   }
   face.left = left[0];
-  return (left[0] == left[1]) & (left[1] == left[2]);
+  // Three points in one place are on no side of each other.
+  const SeenPoint<T>* p = face.seen;
+  const auto one_place =
+      (p[0].x == p[1].x) & (p[0].y == p[1].y) & (p[0].x == p[2].x) & (p[0].y == p[2].y);
+  return (left[0] == left[1]) & (left[1] == left[2]) & !one_place;
 }
 
 /// The face `code` (4 · tetrahedron + face): false where the ray does not go through. see(point):
