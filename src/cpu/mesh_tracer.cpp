@@ -104,8 +104,8 @@ class UnivariateMeshTracer : public MeshTracer {
         follow(rays, false, left, results);
       }
       if (!left.empty()) follow(rays, true, left, results);
-      // Those with more hits than a lane has room for.
-      std::erase_if(left, [&](std::size_t i) { return results[i].error < infinity; });
+      // What is left has more hits than a lane has room for, or runs along faces, of which a ray by
+      // itself knows more.
     }
     MeshHits hits;
     for (const std::size_t i : left) {
@@ -118,7 +118,6 @@ class UnivariateMeshTracer : public MeshTracer {
   }
 
  private:
-  static constexpr double infinity = std::numeric_limits<double>::infinity();
   /// Below it most rays would be followed twice.
   static constexpr double least_tolerance_in_float = 2e-4;
 

@@ -176,12 +176,12 @@ void expect_within_what_is_reported(bool jump, double scale, double smallest_use
 
 TEST(IntegrateLinearSpan, IsAsNearAsItReportsInDouble) {
   expect_within_what_is_reported<double>(false, 1, 1e-11);
-  expect_within_what_is_reported<double>(false, 1e4, 2e-8);
+  expect_within_what_is_reported<double>(false, 1e4, 2e-7);
   expect_within_what_is_reported<double>(true, 1, 1e-10);
 }
 TEST(IntegrateLinearSpan, IsAsNearAsItReportsInFloat) {
-  expect_within_what_is_reported<float>(false, 1, 1e-2);
-  expect_within_what_is_reported<float>(true, 1, 1e-2);
+  expect_within_what_is_reported<float>(false, 1, 3e-2);
+  expect_within_what_is_reported<float>(true, 1, 3e-2);
 }
 
 TEST(IntegrateLinearSpan, IsClearWhereNothingAbsorbs) {

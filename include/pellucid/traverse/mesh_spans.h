@@ -56,6 +56,44 @@ PELLUCID_HD inline MeshPlace place_on(const SeenFace<double>& face, const MeshFi
   return place;
 }
 
+/// |gradient| of a variable in a tetrahedron; infinite where it has no volume.
+PELLUCID_HD inline double steepness(const Tetrahedra& mesh, const double* value,
+                                    std::int32_t tetrahedron) noexcept {
+  const Tetrahedron& t = mesh.tetrahedron[tetrahedron];
+  const Vec3<double> origin = mesh.point[t[0]];
+  const Vec3<double> a = mesh.point[t[1]] - origin, b = mesh.point[t[2]] - origin,
+                     c = mesh.point[t[3]] - origin;
+  const double v = value[t[0]], volume = abs(dot(a, cross(b, c)));
+  const Vec3<double> sum = (value[t[1]] - v) * cross(b, c) + (value[t[2]] - v) * cross(c, a) +
+                           (value[t[3]] - v) * cross(a, b);
+  return volume > 0 ? length(sum) / volume : std::numeric_limits<double>::infinity();
+}
+
+/// A better bound for the place on an inner face that the ray sees edge-on. Weights tell little of
+/// where the ray meets it; but the place that they make, at t, has its value exactly, and is no
+/// farther from the ray than the points' weighted sum says and what is seen is off by: times how
+/// steep the data are there that is the error of the value at t, and t needs none of its own.
+PELLUCID_HD inline void improve(const Tetrahedra& mesh, const MeshFields& fields,
+                                const SeenFace<double>& face, double blur, std::int32_t before,
+                                std::int32_t behind, MeshPlace& place) noexcept {
+  double weight[3], x = 0, y = 0;
+  face.weights(weight);
+  for (int i = 0; i < 3; ++i) {
+    x += weight[i] * face.seen[i].x;
+    y += weight[i] * face.seen[i].y;
+  }
+  const double away = 2 * blur + abs(x) + abs(y);
+  double error[most_channels];
+  for (int c = 0; c < fields.channels; ++c) {
+    if (fields.channel[c].per_cell) return;
+    const double* value = fields.channel[c].value;
+    error[c] = away * max(steepness(mesh, value, before), steepness(mesh, value, behind));
+    if (!(error[c] < place.value_error[c])) return;
+  }
+  for (int c = 0; c < fields.channels; ++c) place.value_error[c] = error[c];
+  place.t_error = blur;
+}
+
 /// What lies between two places on the faces of a tetrahedron; `front`: how far along the ray one
 /// is already.
 PELLUCID_HD inline MeshSpan span_between(const MeshPlace& from, const MeshPlace& to,
@@ -111,7 +149,10 @@ PELLUCID_HD void for_each_mesh_span(const Tetrahedra& mesh, const MeshFields& fi
     for (std::int32_t steps = 0; walk.ahead() != Tetrahedron::outside; ++steps) {
       const std::int32_t tetrahedron = walk.ahead() >> 2;
       walk.step(true, load);
-      const MeshPlace to = detail::place_on(walk.face(), fields, view.blur);
+      MeshPlace to = detail::place_on(walk.face(), fields, view.blur);
+      if (to.t_error > 1e4 * view.blur && walk.ahead() != Tetrahedron::outside) {
+        detail::improve(mesh, fields, walk.face(), view.blur, tetrahedron, walk.ahead() >> 2, to);
+      }
       MeshSpan span = detail::span_between(from, to, fields, tetrahedron, front);
       // Where the ray comes in and goes out, and beside vacuum, nothing makes good for it.
       if (steps == 0 || was_vacuum) span.end_error += from.t_error;
