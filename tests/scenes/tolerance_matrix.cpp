@@ -4,13 +4,18 @@
 namespace pellucid::scenes {
 namespace {
 
-/// Evaluations per ray and error of what a sampler does by default.
+/// Evaluations per ray and error of what a sampler does by default: a sample per voxel, and in
+/// meshes the mean of both ends of each tetrahedron.
 void measure_sampling(Scene scene, const ReferenceFrame& reference, const MatrixOptions& options,
                       MatrixRow& row) {
   scene.integration = {};
-  scene.integration.method = Method::midpoint;
-  scene.integration.precision = Precision::float32;
-  scene.integration.step = 1;
+  if (scene.mesh) {
+    scene.integration.method = Method::average;
+  } else {
+    scene.integration.method = Method::midpoint;
+    scene.integration.precision = Precision::float32;
+    scene.integration.step = 1;
+  }
   RenderOptions render_options;
   render_options.threads = options.threads;
   RenderReport report;

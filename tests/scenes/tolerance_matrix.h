@@ -26,7 +26,7 @@ struct MatrixRow {
   std::string scene, camera;
   std::size_t pixels = 0;
   double brightest = 0;         ///< largest channel of the reference
-  double sampling_per_ray = 0;  ///< evaluations per ray of one-voxel sampling (midpoint)
+  double sampling_per_ray = 0;  ///< evaluations per ray of one-voxel sampling, or one per cell
   double sampling_error = 0;    ///< its largest error
   std::vector<MatrixCell> cells;
 };
