@@ -58,7 +58,13 @@ std::int32_t pair_faces(std::vector<Tetrahedron>& tetrahedra, std::size_t points
       while (face != bucket_end) {
         Face* next = face + 1;
         while (next != bucket_end && next->others == face->others) ++next;
-        if (next - face == 2) {
+        const auto same_corners = [&] {
+          return std::ranges::equal(tetrahedra[static_cast<std::size_t>(face[0].code >> 2)].corner,
+                                    tetrahedra[static_cast<std::size_t>(face[1].code >> 2)].corner);
+        };
+        if (next - face == 2 && same_corners()) {
+          crowded = face->code >> 2;
+        } else if (next - face == 2) {
           set(face[0].code, face[1].code);
           set(face[1].code, face[0].code);
         } else if (next - face > 2) {

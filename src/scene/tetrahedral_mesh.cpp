@@ -120,6 +120,10 @@ TetrahedralMesh::TetrahedralMesh(Description description, const ParallelFor& par
   }
   measure(run);
   BoundaryTree tree = build_boundary_tree(tetrahedra_, points_, bounds_);
+  if (tree.face.empty()) {
+    check.fail(
+        "no face is at the boundary, so its cells lie upon each other; remove those that do");
+  }
   tree_ = std::move(tree.node);
   boundary_ = std::move(tree.face);
   statistics_.boundary_faces = boundary_.size();

@@ -50,8 +50,10 @@ class MeshMarch {
   }
 
   MeshRays<S, N> rays;
-  M walking{false};    ///< whether a lane has tetrahedra ahead
-  F beside_vacuum{0};  ///< how far off are the places where vacuum begins and ends, all in all
+  M walking{false};  ///< whether a lane has tetrahedra ahead
+  /// How far off are places that no span makes good for, all in all: where vacuum begins and ends,
+  /// and where rounding has left a span no length.
+  F beside_vacuum{0};
 
   /// Rays that are not to be followed any further.
   void stop(M lanes) noexcept { walking = walking & !lanes; }
@@ -159,7 +161,13 @@ class MeshMarch {
       (error + select(even, F(0), rounded)).store(rows.error + at);
       note.store(rows.code + at);
     }
-    beside_vacuum += select(on & vacuum, t_error_ + t_error, F(0));
+    beside_vacuum += select(on & (vacuum | !ahead), t_error_ + t_error, F(0));
+    // Past a hit that may not be the way's own: for a ray by itself to find out.
+    const M past = on & (t - T(4) * rays.t_blur > next_t_) & (walk_.ahead() >= I(0));
+    if (any(past)) {
+      rays.crowded = rays.crowded | past;
+      stop(past);
+    }
     const M forward = ahead | overlaps;
     front_ = select(forward, max(t, begin), front_);
     front_error_ = select(forward, t_error, front_error_);
@@ -195,7 +203,7 @@ class MeshMarch {
   void begin_paths(M lanes) noexcept {
     struct {
       std::int32_t point[3][N], code[N];
-      S x[3][N], y[3][N], t[3][N], area[3][N], value[3][N];
+      S x[3][N], y[3][N], t[3][N], area[3][N], value[3][N], next[N];
     } all{};
     unsigned begun = 0, turned = 0;
     for (unsigned left = bits(lanes); left != 0; left &= left - 1) {
@@ -207,6 +215,7 @@ class MeshMarch {
       begun |= 1u << l;
       if (face.left) turned |= 1u << l;
       all.code[l] = hit->code;
+      all.next[l] = rays.next_t(l);
       for (int i = 0; i < 3; ++i) {
         all.point[i][l] = face.point[i];
         all.x[i][l] = face.seen[i].x;
@@ -238,6 +247,7 @@ class MeshMarch {
     const F off = convert<float>(face.weight_error(rays.blur));
     const SeenPoint<T>* p = face.seen;
     const T* v = face.carried;
+    next_t_ = select(on, T::load(all.next), next_t_);
     t_ = select(on, interpolate(p[0].t, p[1].t, p[2].t), t_);
     value_ = select(on, interpolate(v[0], v[1], v[2]), value_);
     t_error_ = select(on, off * range(p[0].t, p[1].t, p[2].t) + t_blur_, t_error_);
@@ -254,6 +264,7 @@ class MeshMarch {
   // Where the lanes are: on the face reached last, and how far along the ray all in all.
   T t_, value_;
   F t_error_, value_error_;
+  T next_t_;       ///< of the next hit that is not used up
   M first_{true};  ///< whether there is nothing in front of what comes
   T front_;
   F front_error_{0};

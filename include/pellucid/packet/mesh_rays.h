@@ -37,6 +37,8 @@ class MeshRays {
     };
     using View = RayView<double>;
     double eye_at[N], direction[3][N];
+    const double extent = length(mesh_.upper - mesh_.lower);
+    const double unit = power_of_two_below(1 / extent);
     for (int l = 0; l < N; ++l) {
       const PellucidMeshRay& ray = job.rays[first + (l < count ? l : 0)];
       const Vec3<double> o{ray.origin[0], ray.origin[1], ray.origin[2]},
@@ -45,6 +47,11 @@ class MeshRays {
       eye_at[l] = -view_of_[l].t_origin;
       eye_of_[l] = static_cast<S>(eye_at[l]);
       view_of_[l].t_origin = 0;
+      // Places across the ray in units of about the mesh's size: products of small ones must not
+      // underflow in binary32.
+      view_of_[l].x = view_of_[l].x * unit;
+      view_of_[l].y = view_of_[l].y * unit;
+      view_of_[l].blur *= unit;
       for (int a = 0; a < 3; ++a) direction[a][l] = d[a];
       hits_[l] = 0;
       next_[l] = 0;
@@ -56,19 +63,20 @@ class MeshRays {
       view_.t[a] = load([a](const View& v) { return v.t[a]; });
       direction_[a] = convert<float>(D::load(direction[a]));
     }
-    const Vec3<double> size = mesh_.upper - mesh_.lower;
     blur = convert<S>(load([](const View& v) { return v.blur; }));
     // A parameter is no farther from the middle than the diagonal.
-    t_blur = blur + T(static_cast<S>(static_cast<double>(rounding_unit<S>) * length(size)));
+    t_blur = blur * T(static_cast<S>(1 / unit)) +
+             T(static_cast<S>(static_cast<double>(rounding_unit<S>) * extent));
     eye = convert<S>(D::load(eye_at));
     find_hits(M::from_bits(count == N ? (1u << N) - 1u : (1u << count) - 1u));
   }
 
-  T blur;            ///< how far what is seen may be off across the ray, beside its rounding to S
-  T t_blur;          ///< and along it, all in all
-  T eye;             ///< the parameter of where the rays begin
-  T begin, end;      ///< where the rays may be in the mesh
-  M meets{false};    ///< whether they meet it
+  T blur;          ///< how far what is seen may be off across the ray, beside its rounding to S, in
+                   ///< the units of such places
+  T t_blur;        ///< and along it, all in all
+  T eye;           ///< the parameter of where the rays begin
+  T begin, end;    ///< where the rays may be in the mesh
+  M meets{false};  ///< whether they meet it
   M crowded{false};  ///< whether they are not for lanes: more hits than there is room for
 
   std::int32_t tetrahedra() const noexcept { return mesh_.count; }
@@ -88,6 +96,12 @@ class MeshRays {
     int& n = next_[lane];
     while (n < hits_[lane] && hit_[lane][n].code == Tetrahedron::outside) ++n;
     return n < hits_[lane] ? &hit_[lane][n++] : nullptr;
+  }
+  /// The parameter of the next hit, which stays.
+  S next_t(int lane) const noexcept {
+    int n = next_[lane];
+    while (n < hits_[lane] && hit_[lane][n].code == Tetrahedron::outside) ++n;
+    return n < hits_[lane] ? hit_[lane][n].t : std::numeric_limits<S>::max();
   }
   /// Takes a hit out by which the ray has left.
   void use_up(int lane, std::int32_t code) noexcept {
@@ -110,6 +124,14 @@ class MeshRays {
   }
 
  private:
+  /// The largest power of two <= x, for normal x > 0.
+  static double power_of_two_below(double x) noexcept {
+    double power = 1;
+    while (power > x) power *= 0.5;
+    while (2 * power <= x) power *= 2;
+    return power;
+  }
+
   /// Which rays may meet the box. Boxes are larger than what is in them by 2^-21 of the largest
   /// coordinate; where the ray meets a plane is known to 8 u of the way.
   M meet(const BoundaryNode& box, const F (&origin)[3], const F (&inverse)[3],

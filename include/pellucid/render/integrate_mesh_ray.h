@@ -190,12 +190,12 @@ PELLUCID_HD inline void add_span(const Multivariate<double>& transfer, const Mes
                                  MultivariateRayIntegrator& integrator) noexcept {
   const double length = span.end - span.begin;
   if (span.overlaps) {
-    // Anything may be there.
-    integrator.skip(length, std::numeric_limits<double>::infinity());
+    // Anything may be there, and in all that it hides.
+    integrator.skip(1, std::numeric_limits<double>::infinity());
     return;
   }
-  if (span.vacuum) {
-    // What is beside it may begin and end elsewhere.
+  if (span.vacuum || length == 0) {
+    // What is beside it, or in it, may begin and end elsewhere.
     integrator.skip(span.place_error + span.end_error, largest_extinction);
     return;
   }

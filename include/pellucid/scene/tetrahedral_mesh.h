@@ -19,7 +19,7 @@ struct MeshStatistics {
   std::size_t tetrahedra = 0;
   std::size_t boundary_faces = 0;
   std::size_t flat = 0;  ///< tetrahedra without volume
-  /// Pairs of tetrahedra on the same side of the face that they share, and faces of more than two.
+  /// Pairs of tetrahedra on the same side of the face that they share.
   std::size_t folded_faces = 0;
   double volume = 0;     ///< of all tetrahedra, world units cubed
   double mean_edge = 0;  ///< length of an edge, the mean over the tetrahedra's
@@ -41,7 +41,8 @@ class TetrahedralMesh {
 
   /// Throws Error where there is no tetrahedron, an index is out of range or twice in one
   /// tetrahedron, a point that is used is not finite or beyond ±2.1e37, there are more than 2^28
-  /// tetrahedra, or a face belongs to more than two of them. Tetrahedra that overlap are counted
+  /// tetrahedra, a face belongs to more than two of
+  /// them, one stands twice, or none is at the boundary. Tetrahedra that overlap are counted
   /// where they share a face (MeshStatistics::folded_faces); rays that find themselves in two of
   /// them say that they do not know.
   explicit TetrahedralMesh(Description description, const ParallelFor& parallel = {});

@@ -121,6 +121,16 @@ PELLUCID_HD inline MeshSpan span_between(const MeshPlace& from, const MeshPlace&
   return span;
 }
 
+/// Whether a place is behind the boundary at a hit, by more than rounding.
+PELLUCID_HD inline bool is_beyond(const Tetrahedra& mesh, const MeshFields& fields,
+                                  const RayView<double>& view, const MeshHit& hit,
+                                  const MeshPlace& place) noexcept {
+  if (!(place.t - place.t_error > hit.t)) return false;
+  SeenFace<double> face;
+  see_face(mesh, view, hit.code, face);
+  return place.t - place.t_error > hit.t + place_on(face, fields, view.blur).t_error;
+}
+
 }  // namespace detail
 
 /// visit(MeshSpan), front to back and while it returns true, for the tetrahedra that a ray goes
@@ -128,8 +138,9 @@ PELLUCID_HD inline MeshSpan span_between(const MeshPlace& from, const MeshPlace&
 /// are used up. A mesh that is not convex is left and entered again; each way through it begins at
 /// one of the hits and ends at another.
 ///
-/// Where rounding lets places be out of order, what is behind the farthest one counts. Where more
-/// than rounding does, tetrahedra overlap: the span says so.
+/// Where rounding lets places be out of order, what is behind the farthest one counts, and a span
+/// without length says how far its ends may be off. Where more than rounding does, or where the way
+/// goes past a hit that is not its own, tetrahedra overlap: the span says so.
 template <class Visit>
 PELLUCID_HD void for_each_mesh_span(const Tetrahedra& mesh, const MeshFields& fields,
                                     const RayView<double>& view, MeshHit* hits, int count,
@@ -146,6 +157,8 @@ PELLUCID_HD void for_each_mesh_span(const Tetrahedra& mesh, const MeshFields& fi
     walk.enter(true, face, hits[i].code, load);
     MeshPlace from = detail::place_on(face, fields, view.blur);
     bool was_vacuum = false;
+    int next = i + 1;
+    while (next < count && hits[next].code == Tetrahedron::outside) ++next;
     for (std::int32_t steps = 0; walk.ahead() != Tetrahedron::outside; ++steps) {
       const std::int32_t tetrahedron = walk.ahead() >> 2;
       walk.step(true, load);
@@ -159,9 +172,14 @@ PELLUCID_HD void for_each_mesh_span(const Tetrahedra& mesh, const MeshFields& fi
       if (walk.ahead() == Tetrahedron::outside || span.vacuum) span.end_error += to.t_error;
       was_vacuum = span.vacuum;
       const double most = front_error + from.t_error + to.t_error;
-      span.overlaps = (front > 0 && min(from.t, to.t) < front - most) || steps > mesh.count;
-      if (span.begin < span.end || span.overlaps) {
-        span.end = max(span.begin, span.end);
+      span.overlaps = (front > 0 && min(from.t, to.t) < front - most) || steps > mesh.count ||
+                      (next < count && hits[next].code != walk.left_by() && to.t > 0 &&
+                       detail::is_beyond(mesh, fields, view, hits[next], to));
+      if (to.t > 0 || span.overlaps) {
+        if (!(span.begin < span.end)) {
+          span.end = span.begin;
+          span.end_error += span.place_error;
+        }
         if (!visit(span)) return;
         front = span.end;
         front_error = to.t_error;
