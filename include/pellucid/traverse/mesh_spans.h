@@ -169,7 +169,12 @@ PELLUCID_HD void for_each_mesh_span(const Tetrahedra& mesh, const MeshFields& fi
       MeshSpan span = detail::span_between(from, to, fields, tetrahedron, front);
       // Where the ray comes in and goes out, and beside vacuum, nothing makes good for it.
       if (steps == 0 || was_vacuum) span.end_error += from.t_error;
-      if (walk.ahead() == Tetrahedron::outside || span.vacuum) span.end_error += to.t_error;
+      if (walk.ahead() == Tetrahedron::outside) span.end_error += to.t_error;
+      // Of vacuum only where it begins matters, behind data.
+      if (span.vacuum) {
+        span.place_error = 0;
+        span.end_error = steps == 0 || was_vacuum ? 0 : from.t_error;
+      }
       was_vacuum = span.vacuum;
       const double most = front_error + from.t_error + to.t_error;
       span.overlaps = (front > 0 && min(from.t, to.t) < front - most) || steps > mesh.count ||
