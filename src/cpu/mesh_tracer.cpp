@@ -31,6 +31,11 @@ Kernel kernel_for([[maybe_unused]] InstructionSet set) {
 #endif
 }
 
+/// The optical depth a at which half of the opacity is reached: exp(-a) = 1 - opacity/2.
+double depth_of_half(double opacity) {
+  return -std::log1p(-0.5 * opacity);
+}
+
 class MeshTracer : public RayTracer {
  public:
   explicit MeshTracer(const TracerTask& task)
@@ -114,7 +119,9 @@ class UnivariateMeshTracer : public MeshTracer {
     }
   }
   double find_half_opacity(const MeshRay& ray, double opacity) const override {
-    return find_mesh_half_opacity(mesh_, fields_.view(), transfer_.tables(), ray, wanted_, opacity);
+    return integrate_mesh_ray(mesh_, fields_.view(), transfer_.tables(), ray, wanted_,
+                              depth_of_half(opacity))
+        .half_opacity_depth;
   }
 
  private:
@@ -190,10 +197,9 @@ class MultivariateMeshTracer : public MeshTracer {
     }
   }
   double find_half_opacity(const MeshRay& ray, double opacity) const override {
-    // There exp(-a) = 1 - opacity/2.
     return integrate_multivariate_mesh_ray(mesh_, fields_.view(), transfer_,
                                            transfer_function_.largest_extinction(), ray, wanted_,
-                                           -std::log1p(-0.5 * opacity))
+                                           depth_of_half(opacity))
         .half_opacity_depth;
   }
 

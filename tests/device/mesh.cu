@@ -36,8 +36,9 @@ __global__ void render_mesh(Tetrahedra mesh, MeshFields fields, TransferTables t
   }
   result = integrate_mesh_ray(mesh, fields, transfer, find_hits(mesh, ray, hits), wanted);
   // The hits are used up.
-  result.half_opacity_depth = find_mesh_half_opacity(
-      mesh, fields, transfer, find_hits(mesh, ray, hits), wanted, result.opacity);
+  result.half_opacity_depth = integrate_mesh_ray(mesh, fields, transfer, find_hits(mesh, ray, hits),
+                                                 wanted, -log1p(-0.5 * result.opacity))
+                                  .half_opacity_depth;
 }
 
 /// The walk in binary32.

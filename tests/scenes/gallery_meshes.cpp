@@ -329,7 +329,7 @@ Gallery mesh_gallery() {
       {"two rings of tetrahedra", two_rings},
       {"a shell of tetrahedra with holes", shell},
       {"tetrahedra of constant data", constant_cells},
-      {"tetrahedra, vacuum at points and in cells", vacuum, {}, 1},
+      {"tetrahedra, vacuum at points and in cells", vacuum},
       {"Gaussians over two variables of tetrahedra", two_variables},
       {"Gaussians and a table over three variables of tetrahedra", three_variables},
       {"tetrahedra, spikes of 1/500 and 1/50000 of the range", spikes, {}, 1e-3},

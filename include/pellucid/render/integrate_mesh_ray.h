@@ -189,14 +189,10 @@ PELLUCID_HD inline void add_span(const Multivariate<double>& transfer, const Mes
                                  double largest_extinction,
                                  MultivariateRayIntegrator& integrator) noexcept {
   const double length = span.end - span.begin;
-  if (span.overlaps) {
-    // Anything may be there, and in all that it hides.
-    integrator.skip(1, std::numeric_limits<double>::infinity());
-    return;
-  }
-  if (span.vacuum || length == 0) {
-    // What is beside it, or in it, may begin and end elsewhere.
-    integrator.skip(span.place_error + span.end_error, largest_extinction);
+  if (span.overlaps || span.vacuum || length == 0) {
+    // Where cells overlap, anything may be, and in all that they hide; what is beside vacuum, or in
+    // no length, may begin and end elsewhere.
+    integrator.lose(span.overlaps ? 1 : largest_extinction * (span.place_error + span.end_error));
     return;
   }
   MultivariateSpan<double> data;
@@ -211,9 +207,32 @@ PELLUCID_HD inline void add_span(const Multivariate<double>& transfer, const Mes
 
 }  // namespace detail
 
-/// The same through several variables of a mesh and a function of them all. `largest_extinction`: a
-/// bound on that of the function. `depth`: asks for the place where the optical depth reaches that,
+/// The volume rendering integral along a ray through a variable of a mesh: RayResult::error is a
+/// bound, what is wanted or what rounding leaves. A ray that finds cells overlapping says that it
+/// does not know. `depth`: asks for the place where the optical depth reaches that,
 /// RayResult::half_opacity_depth; the ray ends there.
+PELLUCID_HD inline RayResult integrate_mesh_ray(
+    const Tetrahedra& mesh, const MeshFields& fields, const TransferTables& transfer,
+    const MeshRay& ray, const RayTolerance& wanted,
+    double depth = std::numeric_limits<double>::infinity()) noexcept {
+  RayResult nothing;
+  nothing.error = 0;
+  nothing.proved = true;
+  const Interval<double> inside = ray.inside();
+  if (inside.empty()) return nothing;
+  MeshRayIntegrator integrator(transfer, wanted, inside);
+  integrator.look_for(depth);
+  for_each_mesh_span(mesh, fields, ray.view, ray.hits, ray.count, [&](const MeshSpan& span) {
+    integrator.span(span);
+    return !integrator.done();
+  });
+  RayResult result = integrator.result();
+  result.half_opacity_depth = integrator.found();
+  return result;
+}
+
+/// The same through several variables of a mesh and a function of them all. `largest_extinction`: a
+/// bound on that of the function.
 PELLUCID_HD inline RayResult integrate_multivariate_mesh_ray(
     const Tetrahedra& mesh, const MeshFields& fields, const Multivariate<double>& transfer,
     double largest_extinction, const MeshRay& ray, const RayTolerance& wanted,
@@ -225,54 +244,19 @@ PELLUCID_HD inline RayResult integrate_multivariate_mesh_ray(
   if (inside.empty()) return nothing;
   MultivariateRayIntegrator integrator(transfer, largest_extinction, wanted,
                                        inside.end - inside.begin);
-  if (depth < std::numeric_limits<double>::infinity()) integrator.look_for(depth);
+  integrator.look_for(depth);
   long cells = 0;
   for_each_mesh_span(mesh, fields, ray.view, ray.hits, ray.count, [&](const MeshSpan& span) {
     ++cells;
     integrator.pass_to(max(inside.end - span.begin, 0.0));
     detail::add_span(transfer, span, largest_extinction, integrator);
+    integrator.pass_to(max(inside.end - span.end, 0.0));
     return !integrator.done();
   });
   RayResult result = integrator.result();
   result.cells = cells;
   result.half_opacity_depth = integrator.found();
   return result;
-}
-
-/// The volume rendering integral along a ray through a variable of a mesh: RayResult::error is a
-/// bound, what is wanted or what rounding leaves. A ray that finds cells overlapping says that it
-/// does not know.
-PELLUCID_HD inline RayResult integrate_mesh_ray(const Tetrahedra& mesh, const MeshFields& fields,
-                                                const TransferTables& transfer, const MeshRay& ray,
-                                                const RayTolerance& wanted) noexcept {
-  RayResult nothing;
-  nothing.error = 0;
-  nothing.proved = true;
-  const Interval<double> inside = ray.inside();
-  if (inside.empty()) return nothing;
-  MeshRayIntegrator integrator(transfer, wanted, inside);
-  for_each_mesh_span(mesh, fields, ray.view, ray.hits, ray.count, [&](const MeshSpan& span) {
-    integrator.span(span);
-    return !integrator.done();
-  });
-  return integrator.result();
-}
-
-/// RayResult::half_opacity_depth of a ray of this opacity.
-PELLUCID_HD inline double find_mesh_half_opacity(const Tetrahedra& mesh, const MeshFields& fields,
-                                                 const TransferTables& transfer, const MeshRay& ray,
-                                                 const RayTolerance& wanted,
-                                                 double opacity) noexcept {
-  const Interval<double> inside = ray.inside();
-  if (!(opacity > 0) || inside.empty()) return std::numeric_limits<double>::infinity();
-  MeshRayIntegrator integrator(transfer, wanted, inside);
-  // There exp(-a) = 1 - opacity/2.
-  integrator.look_for(-log1p(-0.5 * opacity));
-  for_each_mesh_span(mesh, fields, ray.view, ray.hits, ray.count, [&](const MeshSpan& span) {
-    integrator.span(span);
-    return !integrator.done();
-  });
-  return integrator.found();
 }
 
 }  // namespace pellucid

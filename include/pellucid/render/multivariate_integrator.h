@@ -40,6 +40,12 @@ class MultivariateRayIntegrator {
   /// Goes past stretches in which nothing is, up to where so much is left of the ray.
   PELLUCID_HD void pass_to(double length_left) noexcept { budget_.pass_to(length_left); }
 
+  /// Where something may hide at most this opacity, in no length.
+  PELLUCID_HD void lose(double opacity) noexcept {
+    ++counts_.skipped;
+    budget_.spend(0, 0, fold_.transparency(), demand_.largest_color * min(opacity, 1.0));
+  }
+
   /// A stretch whose extinction is at most this and is left out.
   PELLUCID_HD void skip(double length, double extinction) noexcept {
     ++counts_.skipped;
