@@ -204,7 +204,9 @@ UnstructuredGrid read_block(Reader& file, const Layout& layout, const Dimensions
   if (most > 0) {
     add_cells(d, shown, block, about.ghost_cells);
   } else {
-    about.flat_cells += count;
+    // Those of the sheet, the line or the point that it is.
+    const auto along = [&](std::size_t axis) { return std::max<std::size_t>(d[axis] - 1, 1); };
+    about.flat_cells += count == 0 ? 0 : along(0) * along(1) * along(2);
   }
   return block;
 }

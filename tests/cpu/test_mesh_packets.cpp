@@ -206,6 +206,52 @@ TEST(MeshPackets, AreTheSameToTheBitForAnyNumberOfThreads) {
   }
 }
 
+/// A component that lies inside of another overlaps it: no ray that meets both is taken for proved.
+TEST(MeshPackets, SayWhereComponentsAreInsideOfOthers) {
+  TetrahedralMesh::Description both = lattice_mesh(6, 3);
+  const TetrahedralMesh::Description inner = lattice_mesh(1, 4);
+  const auto first = static_cast<std::int32_t>(both.points.size());
+  for (const Place& p : inner.points) both.points.push_back(p + Place{2.6, 2.7, 2.4});
+  for (auto t : inner.tetrahedra) {
+    for (std::int32_t& corner : t) corner += first;
+    both.tetrahedra.push_back(t);
+  }
+  Scene scene = scene_of(at_points(std::make_shared<const TetrahedralMesh>(std::move(both))));
+  scene.transfer_function = std::make_shared<const TransferFunction>(
+      std::vector<TransferFunction::Point>{{0, 0.01, {1, 1, 1}}, {1, 0.02, {1, 1, 1}}});
+  scene.camera.position = Place{3.1, 3.2, -20};
+  scene.camera.focal_point = Place{3.1, 3.2, 2.9};
+  scene.camera.up = {0, 1, 0};
+  for (const InstructionSet set : {InstructionSet::scalar, InstructionSet::sse4,
+                                   InstructionSet::avx2, InstructionSet::avx512}) {
+    if (!is_supported(set)) continue;
+    RenderReport report;
+    const Image image = rendered(scene, set, report);
+    const std::size_t middle = static_cast<std::size_t>(11 * scene.size.width + 14);
+    EXPECT_GT(image.error[middle], 0.1f) << name_of(set);
+    EXPECT_GT(report.pixels_over, 0u) << name_of(set);
+    EXPECT_LT(image.error[0], 1e-2f) << name_of(set);
+  }
+}
+
+/// Meshes of any size: in units a billion times as large.
+TEST(MeshPackets, TakeTinyMeshes) {
+  constexpr double small = 1e-9;
+  TetrahedralMesh::Description mesh = lattice_mesh(6, 3);
+  std::vector<float> values;
+  for (Place& p : mesh.points) {
+    values.push_back(static_cast<float>(wave(p)));
+    p = small * p;
+  }
+  const auto pointer = std::make_shared<const TetrahedralMesh>(std::move(mesh));
+  Scene scene = scene_of(std::make_shared<const MeshChannels>(
+      pointer, std::vector<MeshChannel>{{"f", "", Centering::point, std::move(values)}}));
+  std::vector<TransferFunction::Point> points = scene.transfer_function->points();
+  for (TransferFunction::Point& p : points) p.extinction /= small;
+  scene.transfer_function = std::make_shared<const TransferFunction>(std::move(points));
+  expect_same(scene, "a billionth");
+}
+
 /// What is compared above is not the same code twice.
 TEST(MeshPackets, DoMostOfTheWorkInBinary32) {
   if (!PELLUCID_HAS_PACKETS || !is_supported(InstructionSet::sse4)) GTEST_SKIP() << "no packets";

@@ -277,5 +277,11 @@ TEST(TetrahedralMesh, RefusesAFaceOfMoreThanTwo) {
   expect_refused(description, {"more than two tetrahedra", "cells stand twice"});
 }
 
+TEST(TetrahedralMesh, RefusesATetrahedronThatStandsTwice) {
+  Description description = corner();
+  description.tetrahedra = {{0, 1, 2, 3}, {2, 0, 3, 1}};
+  expect_refused(description, {"stand twice"});
+}
+
 }  // namespace
 }  // namespace pellucid
