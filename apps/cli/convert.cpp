@@ -6,6 +6,7 @@
 #include <optional>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "commands.h"
 #include "input.h"
@@ -17,7 +18,9 @@
 #include "pellucid/io/atomic_file.h"
 #include "pellucid/io/image_files.h"
 #include "pellucid/io/read_mesh.h"
+#include "pellucid/io/read_volume.h"
 #include "pellucid/io/write_mesh.h"
+#include "pellucid/io/write_volume.h"
 #include "pellucid/scene/cut_cells.h"
 #include "progress.h"
 
@@ -35,12 +38,18 @@ struct ConvertArguments {
   bool is_mesh() const {
     return !q.empty() || (!input.starts_with("builtin:") && is_mesh_file(input));
   }
+  bool writes_tetrahedra() const { return extension_of(output) == ".vtu"; }
 };
 
 void check_arguments(const ConvertArguments& arguments) {
-  if (extension_of(arguments.output) != ".vtu") {
+  if (arguments.is_mesh() && !arguments.writes_tetrahedra()) {
+    throw UsageError(fmt::format("-o {}: a mesh is written as tetrahedra, .vtu; give such a name",
+                                 arguments.output));
+  }
+  if (!arguments.writes_tetrahedra() && !is_written_volume(arguments.output)) {
     throw UsageError(
-        fmt::format("-o {}: tetrahedra are written as .vtu; give such a name", arguments.output));
+        fmt::format("-o {}: a volume is written as {}, or as tetrahedra, .vtu; give such a name",
+                    arguments.output, written_volume_extensions()));
   }
   const NamedFile outputs[] = {{"--output", arguments.output}};
   const NamedFile inputs[] = {{"INPUT", arguments.input}, {"--q", arguments.q}};
@@ -103,8 +112,44 @@ Json json_report(const ConvertArguments& arguments, const Converted& converted) 
   return json;
 }
 
+/// All components of a file, or the one that is chosen.
+NamedComponents read_input(const ConvertArguments& arguments) {
+  const FieldSource source = field_source(arguments.input, arguments.volume);
+  if (!source.builtin.empty()) return {source.builtin, {load_field(source)}};
+  NamedComponents read = read_named_components(source.file, source.options);
+  if (read.array.empty()) {
+    const std::string name = source.file.filename().string();
+    read.array = name.substr(0, name.find('.', 1));
+  }
+  return read;
+}
+
+int convert_volume(const ConvertArguments& arguments) {
+  const InterruptGuard guard;
+  const NamedComponents read = read_input(arguments);
+  InterruptGuard::check();
+  const std::vector<std::string> losses =
+      write_volume(read.components, arguments.output, read.array);
+  if (arguments.json) {
+    Json json;
+    json["pellucid"] = PELLUCID_VERSION_STRING;
+    json["input"] = arguments.input;
+    json["array"] = read.array;
+    json["dimensions"] = dimensions_json(read.components.front());
+    json["type"] = type_name(read.components.front().data());
+    json["components"] = read.components.size();
+    json["losses"] = losses;
+    json["output"] = arguments.output;
+    print_json(json);
+  } else if (!arguments.quiet) {
+    for (const std::string& loss : losses) print_note(loss);
+  }
+  return 0;
+}
+
 int run_convert(const ConvertArguments& arguments) {
   check_arguments(arguments);
+  if (!arguments.writes_tetrahedra()) return convert_volume(arguments);
   const InterruptGuard guard;
   const Converted converted = convert(
       arguments, parallel_for(arguments.threads > 0 ? arguments.threads : default_threads()));
@@ -122,7 +167,8 @@ int run_convert(const ConvertArguments& arguments) {
 }  // namespace
 
 Command add_convert(CLI::App& app) {
-  CLI::App& command = *app.add_subcommand("convert", "Write a volume or mesh as tetrahedra");
+  CLI::App& command = *app.add_subcommand(
+      "convert", "Write a volume in another format, or a volume or mesh as tetrahedra");
   const auto arguments = std::make_shared<ConvertArguments>();
   command
       .add_option("input", arguments->input,
@@ -130,8 +176,11 @@ Command add_convert(CLI::App& app) {
                               mesh_extensions()))
       ->option_text("INPUT")
       ->required();
-  command.add_option("-o,--output", arguments->output, "Tetrahedra to write, with all arrays")
-      ->option_text("FILE.vtu")
+  command
+      .add_option("-o,--output", arguments->output,
+                  fmt::format("Volume to write ({}), or tetrahedra with all arrays (.vtu)",
+                              written_volume_extensions()))
+      ->option_text("FILE")
       ->required();
   command
       .add_option("--time", arguments->time,
@@ -146,11 +195,16 @@ Command add_convert(CLI::App& app) {
       ->check(CLI::Range(0, 4096));
   arguments->volume.add_to(command);
   command.footer(
+      "Volumes keep their type, their components and what the format has of their placement; what\n"
+      "it has not is said.\n"
+      "\n"
       "Meshes are cut as 'pellucid render' cuts them: quadrilaterals by the diagonal at their "
       "point\n"
       "of the smallest index, quadratic cells at their nodes.\n"
       "\n"
       "Examples:\n"
+      "  pellucid convert isabel.vti -o isabel.nrrd --array velocityMag\n"
+      "  pellucid convert head.raw --dimensions 256,256,113 --type u16 -o head.nii.gz\n"
       "  pellucid convert brain.nii.gz -o brain.vtu\n"
       "  pellucid convert can.ex2 -o can.vtu --time 0.002\n"
       "  pellucid convert bluntfin.xyz --q bluntfin.q -o bluntfin.vtu");

@@ -6,9 +6,11 @@
 #include <iterator>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "commands.h"
+#include "info_arrays.h"
 #include "info_mesh.h"
 #include "info_series.h"
 #include "input.h"
@@ -256,8 +258,13 @@ int run_info(const InfoArguments& arguments) {
   if (print_series(source, arguments.input, arguments.json)) return 0;
   set_notes(source, false);
   std::vector<Volume> components;
+  std::vector<VolumeArray> arrays;
+  std::string chosen;
   if (source.builtin.empty()) {
-    components = read_components(source.file, source.options);
+    arrays = list_arrays(source.file, source.options);
+    NamedComponents read = read_named_components(source.file, source.options);
+    components = std::move(read.components);
+    chosen = read.array;
   } else {
     components.push_back(load_field(source));
   }
@@ -266,9 +273,14 @@ int run_info(const InfoArguments& arguments) {
   const std::string name =
       components.size() > 1 ? source.file.string() : components.front().description().name;
   if (arguments.json) {
-    print_json(json_report(components, facts, name, arguments.input));
+    Json json = json_report(components, facts, name, arguments.input);
+    if (!arrays.empty()) {
+      json["array"] = chosen;
+      json["arrays"] = arrays_json(arrays);
+    }
+    print_json(json);
   } else {
-    print_text(text_report(components, facts, name));
+    print_text(text_report(components, facts, name) + arrays_text(arrays, chosen));
   }
   return 0;
 }

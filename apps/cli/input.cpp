@@ -8,6 +8,7 @@
 
 #include "output.h"
 #include "parse.h"
+#include "pellucid/io/mesh_source.h"
 
 namespace pellucid::cli {
 
@@ -17,7 +18,7 @@ constexpr const char* group = "Options of volume files";
 
 }  // namespace
 
-void VolumeOptions::add_to(CLI::App& command) {
+void VolumeOptions::add_to(CLI::App& command, bool with_array) {
   const auto add = [&](CLI::Option* option) { given.push_back(option->group(group)); };
   add(command.add_option("--dimensions", dimensions, "Values along x, y, z of a .raw file")
           ->option_text("X,Y,Z"));
@@ -31,6 +32,13 @@ void VolumeOptions::add_to(CLI::App& command) {
           ->option_text("N"));
   add(command.add_option("--component", component, "Which one, from 0, of a file with several")
           ->option_text("C"));
+  if (with_array) {
+    add(command
+            .add_option("--array", array,
+                        "Which one, by name, of a file with several; default: the active scalars, "
+                        "else the first of points with one component. :C is --component C")
+            ->option_text("ARRAY[:C]"));
+  }
   add(command
           .add_option("--series", series,
                       "Of a folder with several DICOM series: its number as 'pellucid info' lists "
@@ -67,6 +75,11 @@ ReadOptions VolumeOptions::read_options() const {
   read.components = components;
   read.component = component;
   if (!series.empty()) read.series = series;
+  if (!array.empty()) {
+    const MeshArrayChoice choice = parse_mesh_array(array);
+    read.array = choice.array;
+    if (choice.component) read.component = choice.component;
+  }
   if (!spacing.empty()) {
     const auto [x, y, z] = parse_triple("--spacing", spacing);
     read.spacing = Vec3<double>{x, y, z};

@@ -13,19 +13,20 @@ namespace pellucid::cli {
 
 /// What INPUT may be, for help texts.
 inline constexpr const char* input_help =
-    "Volume file (.nii, .nii.gz, .hdr, .img, .nrrd, .nhdr, .mha, .mhd, .npy, .raw, .mrc, .map, "
-    ".rec, .st, .ccp4), DICOM series (its folder or one of its files), stack of images (a .tif, "
-    ".tiff or .png of it, NAME%03d.tif, its folder)";
+    "Volume file (.nii, .nii.gz, .hdr, .img, .nrrd, .nhdr, .mha, .mhd, .npy, .vti, .pvti, .vtr, "
+    ".pvtr, .vtk, .slc, .mrc, .map, .rec, .st, .ccp4, .raw), DICOM series (its folder or one of its "
+    "files), stack of images (a .tif, .tiff or .png of it, NAME%03d.tif, its folder)";
 
 /// The options that say, or replace, what a volume file says about itself.
 struct VolumeOptions {
-  std::string dimensions, type, spacing, origin, centering, series;
+  std::string dimensions, type, spacing, origin, centering, array, series;
   bool big_endian = false;
   std::size_t skip_bytes = 0;
   std::optional<int> components, component;
   std::vector<CLI::Option*> given;  ///< all of them, to ask which were used
 
-  void add_to(CLI::App& command);
+  /// `--array` where no other option of the command has this name.
+  void add_to(CLI::App& command, bool with_array = true);
   /// Throws UsageError where an option is used, saying that it does not apply to `what`.
   void refuse(const std::string& what) const;
   ReadOptions read_options() const;

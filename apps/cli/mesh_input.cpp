@@ -18,9 +18,10 @@ void MeshOptions::add_to(CLI::App& command, bool with_arrays) {
   if (with_arrays) {
     add(command
             .add_option("--array", arrays,
-                        "An array to show, C one component of it (from 0), else the length of its "
-                        "vectors; several are channels for Gaussians, of these names. Default: the "
-                        "active scalars, else the first of points with one component")
+                        "An array to show, also of a volume file, C one component of it (from 0), "
+                        "else of a mesh the length of its vectors; several are channels for "
+                        "Gaussians, of these names. Default: the active scalars, else the first "
+                        "of points with one component")
             ->option_text("[NAME=]ARRAY[:C]")
             ->allow_extra_args(false));
   }
@@ -31,8 +32,15 @@ void MeshOptions::add_to(CLI::App& command, bool with_arrays) {
 }
 
 void MeshOptions::refuse(const std::string& what) const {
+  refuse_but_arrays(what);
+  if (!arrays.empty()) {
+    throw UsageError(fmt::format("--array applies to files with arrays, not to {}", what));
+  }
+}
+
+void MeshOptions::refuse_but_arrays(const std::string& what) const {
   for (const CLI::Option* option : given) {
-    if (option->count() > 0) {
+    if (option->count() > 0 && option->get_name() != "--array") {
       throw UsageError(
           fmt::format("{} applies to mesh files, not to {}", option->get_name(), what));
     }

@@ -152,7 +152,7 @@ void add_render_options(CLI::App& command, RenderArguments& arguments) {
   add_output_options(command, arguments);
   add_scene_options(command, arguments);
   add_integration_options(command, arguments);
-  arguments.volume.add_to(command);
+  arguments.volume.add_to(command, false);
   arguments.mesh.add_to(command, true);
 }
 

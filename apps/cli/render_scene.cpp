@@ -172,6 +172,39 @@ MultivariateDescription gaussians(const RenderArguments& arguments) {
   return function;
 }
 
+/// One array is the field, unless it is given a name as a channel; several are channels.
+void set_volume(const RenderArguments& arguments, SceneDescription& description) {
+  arguments.mesh.refuse_but_arrays("a volume");
+  const FieldSource field = field_source(arguments.input, arguments.volume);
+  std::vector<MeshArrayChoice> choices;
+  for (const std::string& text : arguments.mesh.arrays) {
+    choices.push_back(parse_argument("--array", [&] { return parse_mesh_array(text); }));
+  }
+  if (!field.builtin.empty() && !choices.empty()) arguments.mesh.refuse("a built-in field");
+  const bool named =
+      choices.size() == 1 && arguments.mesh.arrays.front().starts_with(choices.front().name + "=");
+  if (choices.empty()) {
+    description.field = field;
+    return;
+  }
+  for (const MeshArrayChoice& choice : choices) {
+    ChannelSource channel{choice.name, "", field};
+    ReadOptions& options = std::get<FieldSource>(channel.source).options;
+    options.array = choice.array;
+    if (choice.component) options.component = choice.component;
+    description.channels.push_back(std::move(channel));
+  }
+  if (choices.size() > 1 || named) {
+    parse_argument("--array", [&] {
+      check_channel_sources(description.channels);
+      return 0;
+    });
+    return;
+  }
+  description.field = std::get<FieldSource>(description.channels.front().source);
+  description.channels.clear();
+}
+
 SceneDescription describe(const RenderArguments& arguments) {
   SceneDescription description;
   const std::filesystem::path input = arguments.input;
@@ -184,8 +217,7 @@ SceneDescription describe(const RenderArguments& arguments) {
     arguments.volume.refuse("a mesh");
     description.mesh = mesh_source(arguments.input, arguments.mesh);
   } else if (!arguments.input.empty()) {
-    description.field = field_source(arguments.input, arguments.volume);
-    arguments.mesh.refuse("a volume");
+    set_volume(arguments, description);
   } else {
     arguments.mesh.refuse("channels of volumes");
   }

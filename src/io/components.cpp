@@ -114,6 +114,32 @@ std::size_t value_count(std::size_t points, int components, const std::string& n
   return points * static_cast<std::size_t>(components);
 }
 
+std::vector<VolumeData> split_components(const VolumeData& values, int components,
+                                         ComponentRange range, const std::string& name) {
+  if (components == 1) return {values};
+  return std::visit(
+      [&](const auto& all) {
+        using Value = typename std::decay_t<decltype(all)>::value_type;
+        const auto stride = static_cast<std::size_t>(components);
+        const std::size_t points = all.size() / stride;
+        check_memory(
+            std::uintmax_t{points} * sizeof(Value) * static_cast<std::uintmax_t>(range.number),
+            name + ": its values");
+        std::vector<VolumeData> list;
+        list.reserve(static_cast<std::size_t>(range.number));
+        for (int c = range.first; c < range.first + range.number; ++c) {
+          DataArray<Value> component(points);
+          const std::span<Value> to = component.writable();
+          for (std::size_t i = 0; i < points; ++i) {
+            to[i] = all[i * stride + static_cast<std::size_t>(c)];
+          }
+          list.emplace_back(std::move(component));
+        }
+        return list;
+      },
+      values);
+}
+
 std::vector<VolumeData> read_components(const ByteSource& source, const ValueLayout& layout,
                                         std::size_t points, ComponentRange range) {
   if (layout.interleaved && layout.components > 1) {

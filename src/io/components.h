@@ -22,6 +22,7 @@ struct VolumeFile {
   Volume::Description description;
   int components = 1;
   std::string holds;  ///< what several components are: "3 time steps (axis 4)"
+  std::string array;  ///< the one of the file's arrays that this is; empty: they have no names
   /// The values of each component by itself. Throws Error.
   std::function<std::vector<VolumeData>(ComponentRange)> read;
 };
@@ -49,8 +50,14 @@ std::vector<VolumeData> read_components(const ByteSource& source, const ValueLay
 std::vector<VolumeData> read_components(DataStream& stream, const ValueLayout& layout,
                                         std::size_t points, ComponentRange range);
 
+/// Components that lie side by side in memory, each by itself; one alone is not copied. Throws
+/// Error where there is no memory for them.
+std::vector<VolumeData> split_components(const VolumeData& values, int components,
+                                         ComponentRange range, const std::string& name);
+
 /// The formats whose headers are read without ITK.
 VolumeFile open_npy(const ByteSource& source, const ReadOptions& options);
 VolumeFile open_raw(const ByteSource& source, const ReadOptions& options);
+VolumeFile open_slc(const ByteSource& source, const ReadOptions& options);
 
 }  // namespace pellucid

@@ -17,7 +17,9 @@
 #include "net_cdf_size.h"
 #include "pellucid/scene/error.h"
 #include "plot3d.h"
+#include "vtk_file_kind.h"
 #include "vtk_module.h"
+#include "vtk_xml_end.h"
 
 namespace pellucid {
 
@@ -98,6 +100,7 @@ MeshBlocks read_blocks(const std::filesystem::path& path, const MeshReadOptions&
   const Format format = format_of(path, options);
   if (format == Format::exodus) check_net_cdf_size(path);
   if (format == Format::legacy) check_legacy_vtk_cells(path);
+  if (format == Format::xml) check_vtk_xml_end(path);
   if (format != Format::plot3d) return read_by_vtk(path, format, options);
   if (options.time) {
     throw Error(path.string() + ": the file has no steps in time; leave the time out");
@@ -108,6 +111,8 @@ MeshBlocks read_blocks(const std::filesystem::path& path, const MeshReadOptions&
 }  // namespace
 
 bool is_mesh_file(const std::filesystem::path& path) {
+  const std::optional<VtkFileKind> kind = vtk_file_kind(path);
+  if (kind && kind->is_volume()) return false;
   return format_by_extension(path).has_value() || format_by_content(path).has_value();
 }
 

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <new>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <string_view>
@@ -18,6 +19,8 @@
 #include "pellucid/io/dicom_series.h"
 #include "pellucid/io/read_mesh.h"
 #include "pellucid/scene/error.h"
+#include "vtk_file_kind.h"
+#include "vtk_volume.h"
 
 namespace pellucid {
 
@@ -25,16 +28,9 @@ namespace {
 
 using Opener = VolumeFile (*)(const std::filesystem::path&, const ReadOptions&);
 
-VolumeFile open_npy_file(const std::filesystem::path& path, const ReadOptions& options) {
-  return open_npy(file_source(path), options);
-}
-
-VolumeFile open_raw_file(const std::filesystem::path& path, const ReadOptions& options) {
-  return open_raw(file_source(path), options);
-}
-
-VolumeFile open_mrc_file(const std::filesystem::path& path, const ReadOptions& options) {
-  return open_mrc(file_source(path), options);
+template <VolumeFile (*open)(const ByteSource&, const ReadOptions&)>
+VolumeFile open_bytes(const std::filesystem::path& path, const ReadOptions& options) {
+  return open(file_source(path), options);
 }
 
 struct Format {
@@ -42,38 +38,49 @@ struct Format {
   Opener open;
 };
 
-constexpr std::array formats{
-    Format{".nii", open_nifti},      Format{".nii.gz", open_nifti}, Format{".hdr", open_nifti},
-    Format{".hdr.gz", open_nifti},   Format{".img", open_nifti},    Format{".img.gz", open_nifti},
-    Format{".nrrd", open_nrrd},      Format{".nhdr", open_nrrd},    Format{".mha", open_meta_image},
-    Format{".mhd", open_meta_image}, Format{".npy", open_npy_file}, Format{".raw", open_raw_file},
-    Format{".dcm", open_dicom},      Format{".ima", open_dicom},    Format{".tif", open_stack},
-    Format{".tiff", open_stack},     Format{".png", open_stack},    Format{".mrc", open_mrc_file},
-    Format{".map", open_mrc_file},   Format{".rec", open_mrc_file}, Format{".st", open_mrc_file},
-    Format{".ccp4", open_mrc_file}};
+constexpr Opener open_raw_file = open_bytes<open_raw>;
 
-Opener opener_of(const std::filesystem::path& path) {
-  std::string name = path.filename().string();
+constexpr std::array formats{
+    Format{".nii", open_nifti},           Format{".nii.gz", open_nifti},
+    Format{".hdr", open_nifti},           Format{".hdr.gz", open_nifti},
+    Format{".img", open_nifti},           Format{".img.gz", open_nifti},
+    Format{".nrrd", open_nrrd},           Format{".nhdr", open_nrrd},
+    Format{".mha", open_meta_image},      Format{".mhd", open_meta_image},
+    Format{".npy", open_bytes<open_npy>}, Format{".slc", open_bytes<open_slc>},
+    Format{".vti", open_vtk_volume},      Format{".pvti", open_vtk_volume},
+    Format{".vtr", open_vtk_volume},      Format{".pvtr", open_vtk_volume},
+    Format{".vtk", open_vtk_volume},      Format{".raw", open_raw_file},
+    Format{".dcm", open_dicom},           Format{".ima", open_dicom},
+    Format{".tif", open_stack},           Format{".tiff", open_stack},
+    Format{".png", open_stack},           Format{".mrc", open_bytes<open_mrc>},
+    Format{".map", open_bytes<open_mrc>}, Format{".rec", open_bytes<open_mrc>},
+    Format{".st", open_bytes<open_mrc>},  Format{".ccp4", open_bytes<open_mrc>}};
+
+const Format* format_of(std::string_view file_name) {
+  std::string name(file_name);
   std::ranges::transform(name, name.begin(), [](char c) {
     return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
   });
-  for (const Format& format : formats) {
-    if (name.ends_with(format.extension)) return format.open;
+  const auto format = std::ranges::find_if(
+      formats, [&](const Format& known) { return name.ends_with(known.extension); });
+  return format == formats.end() ? nullptr : &*format;
+}
+
+/// By the extension; VTK's files, of whatever name, by their first bytes.
+Opener opener_of(const std::filesystem::path& path) {
+  const Format* const format = format_of(path.filename().string());
+  const std::optional<VtkFileKind> kind = vtk_file_kind(path);
+  if (kind && kind->is_volume() && (format == nullptr || format->open != open_raw_file)) {
+    return open_vtk_volume;
   }
-  return nullptr;
+  if (format == nullptr) return nullptr;
+  return format->open == open_vtk_volume && is_mesh_file(path) ? nullptr : format->open;
 }
 
-VolumeFile open_folder(const std::filesystem::path& path, const ReadOptions& options) {
-  return is_dicom(path) ? open_dicom(path, options) : open_stack(path, options);
-}
-
-VolumeFile open_file(const std::filesystem::path& path, const ReadOptions& options) {
+Opener find_opener(const std::filesystem::path& path, const ReadOptions& options) {
   std::error_code error;
-  if (options.series && !is_dicom(path)) {
-    throw Error(path.string() + ": is no DICOM, and only of DICOM a series may be chosen");
-  }
-  if (std::filesystem::is_directory(path, error)) return open_folder(path, options);
-  if (is_stack_pattern(path)) return open_stack(path, options);
+  if (std::filesystem::is_directory(path, error)) return is_dicom(path) ? open_dicom : open_stack;
+  if (is_stack_pattern(path)) return open_stack;
   check_input_file(path);
   Opener open = opener_of(path);
   // Whoever says how large the data is and of what type has said that it has no header.
@@ -84,26 +91,39 @@ VolumeFile open_file(const std::filesystem::path& path, const ReadOptions& optio
                 ": is a mesh, and here a volume is needed; 'render' and 'info' take meshes");
   }
   if (open == nullptr) {
-    std::string known;
-    for (const Format& format : formats) {
-      known += (known.empty() ? "" : " ") + std::string(format.extension);
-    }
-    throw Error(path.string() + ": the file's extension is not known; read are " + known +
+    throw Error(path.string() + ": the file's extension is not known; read are " +
+                volume_extensions() +
                 ", and headerless data of any name with its dimensions and type given");
+  }
+  return open;
+}
+
+VolumeFile open_file(const std::filesystem::path& path, const ReadOptions& options) {
+  const Opener open = find_opener(path, options);
+  if (options.series && !is_dicom(path)) {
+    throw Error(path.string() + ": is no DICOM, and only of DICOM a series may be chosen");
+  }
+  if (options.array && open != open_vtk_volume) {
+    throw Error(path.string() + ": has no arrays with names; leave the array out");
   }
   return open(path, options);
 }
 
 /// What `read` makes of the opened file, with one line for all that memory does not hold.
 template <class Read>
-auto open_and(const std::filesystem::path& path, const ReadOptions& options, const Read& read) {
+auto with_memory(const std::filesystem::path& path, const Read& read) {
   try {
-    return read(open_file(path, options));
+    return read();
   } catch (const std::bad_alloc&) {
     throw Error(path.string() + ": not enough memory for the data; crop or reduce the volume");
   } catch (const std::length_error&) {
     throw Error(path.string() + ": not enough memory for the data; crop or reduce the volume");
   }
+}
+
+template <class Read>
+auto open_and(const std::filesystem::path& path, const ReadOptions& options, const Read& read) {
+  return with_memory(path, [&] { return read(open_file(path, options)); });
 }
 
 }  // namespace
@@ -118,7 +138,35 @@ int component_count(const std::filesystem::path& path, const ReadOptions& option
 }
 
 std::vector<Volume> read_components(const std::filesystem::path& path, const ReadOptions& options) {
-  return open_and(path, options, [&](const VolumeFile& file) { return read_all(file, options); });
+  return read_named_components(path, options).components;
+}
+
+NamedComponents read_named_components(const std::filesystem::path& path,
+                                      const ReadOptions& options) {
+  return open_and(path, options, [&](const VolumeFile& file) {
+    return NamedComponents{file.array, read_all(file, options)};
+  });
+}
+
+std::vector<VolumeArray> list_arrays(const std::filesystem::path& path,
+                                     const ReadOptions& options) {
+  return with_memory(path, [&]() -> std::vector<VolumeArray> {
+    if (find_opener(path, options) == open_vtk_volume) return list_vtk_arrays(path);
+    return {};
+  });
+}
+
+bool has_volume_header(std::string_view file_name) {
+  const Format* const format = format_of(file_name);
+  return format != nullptr && format->open != open_raw_file;
+}
+
+std::string volume_extensions() {
+  std::string known;
+  for (const Format& format : formats) {
+    known += (known.empty() ? "" : " ") + std::string(format.extension);
+  }
+  return known;
 }
 
 }  // namespace pellucid

@@ -14,17 +14,16 @@ namespace {
 constexpr int largest_grid = 1 << 20;
 constexpr long long largest_skip = 1LL << 50;
 
-bool ends_with_extension(std::string file, std::initializer_list<std::string_view> extensions) {
+bool is_raw(std::string file) {
   std::transform(file.begin(), file.end(), file.begin(), [](char c) {
     return static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
   });
-  return std::any_of(extensions.begin(), extensions.end(),
-                     [&](std::string_view e) { return std::string_view(file).ends_with(e); });
+  return file.ends_with(".raw");
 }
 
-const std::vector<std::string_view> file_keys{"file",       "component",  "dimensions", "type",
-                                              "components", "byte_order", "skip_bytes", "spacing",
-                                              "origin",     "centering",  "series"};
+const std::vector<std::string_view> file_keys{"file",    "array",      "component",  "dimensions",
+                                              "type",    "components", "byte_order", "skip_bytes",
+                                              "spacing", "origin",     "centering",  "series"};
 const std::vector<std::string_view> builtin_keys{"builtin", "points"};
 const std::vector<std::string_view> channel_keys{"name", "unit"};
 
@@ -50,10 +49,7 @@ FieldSource file_source(const Node& field, const std::filesystem::path& folder) 
   source.file = file_path(file, folder);
 
   // Files with a header say these themselves; two sources of one truth would have to be compared.
-  if (ends_with_extension(path,
-                          {".nii",  ".nii.gz", ".hdr", ".hdr.gz", ".img", ".img.gz", ".nrrd",
-                           ".nhdr", ".mha",    ".mhd", ".npy",    ".dcm", ".ima",    ".tif",
-                           ".tiff", ".png",    ".mrc", ".map",    ".rec", ".st",     ".ccp4"})) {
+  if (has_volume_header(path)) {
     for (const char* key : {"dimensions", "type", "components", "byte_order", "skip_bytes"}) {
       if (field.has(key)) {
         field.fail_at(key, "makes no sense for " + scene_json::printable(path) +
@@ -61,7 +57,7 @@ FieldSource file_source(const Node& field, const std::filesystem::path& folder) 
       }
     }
   }
-  if (ends_with_extension(path, {".raw"})) {
+  if (is_raw(path)) {
     field.at("dimensions", "a headerless file needs [x, y, z]");
     field.at("type", "a headerless file needs one, e.g. \"u8\" or \"f32\"");
   }
@@ -78,6 +74,10 @@ FieldSource file_source(const Node& field, const std::filesystem::path& folder) 
   }
   if (const auto components = field.find("components")) {
     source.options.components = static_cast<int>(components->integer(1, largest_grid));
+  }
+  if (const auto array = field.find("array")) {
+    if (array->string().empty()) array->fail("is empty; give the name of an array of the file");
+    source.options.array = array->string();
   }
   if (const auto component = field.find("component")) {
     source.options.component = static_cast<int>(component->integer(0, largest_grid));

@@ -76,9 +76,7 @@ void read_legacy(const std::filesystem::path& path, const MeshReadOptions& optio
   } else if (dataset == "STRUCTURED_GRID") {
     read_grid<vtkStructuredGridReader>(path, messages, mesh);
   } else if (dataset == "STRUCTURED_POINTS" || dataset == "RECTILINEAR_GRID") {
-    throw Error(
-        "holds " + dataset +
-        ", a volume on a regular grid and no mesh; convert it to a volume file (.nrrd, .npy)");
+    throw Error("holds " + dataset + ", a volume on a regular grid and no mesh; read it as one");
   } else if (dataset == "POLYDATA") {
     throw Error("holds POLYDATA, a surface; give the volume that it belongs to");
   } else {

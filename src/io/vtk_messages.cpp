@@ -4,6 +4,7 @@
 #include <vtkObjectFactory.h>
 
 #include <algorithm>
+#include <string_view>
 
 #include "pellucid/scene/error.h"
 
@@ -43,8 +44,8 @@ class VtkMessages::Window : public vtkOutputWindow {
   static Window* New();
 
   void DisplayText(const char*) override {}
-  void DisplayWarningText(const char*) override {}
-  void DisplayGenericWarningText(const char*) override {}
+  void DisplayWarningText(const char* text) override { take_warning(text); }
+  void DisplayGenericWarningText(const char* text) override { take_warning(text); }
   void DisplayDebugText(const char*) override {}
   void DisplayErrorText(const char* text) override {
     const std::lock_guard lock(mutex_);
@@ -57,6 +58,13 @@ class VtkMessages::Window : public vtkOutputWindow {
   }
 
  private:
+  /// Of a legacy text that is cut off VTK only warns, and gives what memory holds.
+  void take_warning(const char* text) {
+    if (text != nullptr && std::string_view(text).find("Error reading") != std::string_view::npos) {
+      DisplayErrorText(text);
+    }
+  }
+
   std::mutex mutex_;
   std::string error_;
 };

@@ -1,8 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
+#include <cstdint>
 #include <filesystem>
+#include <functional>
+#include <optional>
 #include <string>
+#include <vector>
 
 #include "mesh_blocks.h"
 
@@ -18,16 +23,44 @@ struct VtkAnswer {
   std::string error;  ///< empty: none
 };
 
-/// The module's one function, by this name.
+/// The module's functions, by these names.
 using ReadWithVtk = void(const std::filesystem::path& path, VtkFormat format,
                          const MeshReadOptions& options, VtkAnswer& answer);
 inline constexpr const char* read_with_vtk_name = "pellucid_read_with_vtk_1";
 
-/// The function of the module, loaded by the first call and kept: VTK's libraries, and those that
-/// they need in turn, would otherwise double the time that every start of a program takes. Looked
-/// for in the folder that the environment variable PELLUCID_MODULES names, then where an
-/// installation has it as seen from the program, then where this library was to be installed.
-/// Throws Error where the build has none or it does not load.
+/// What is wanted of an image or a rectilinear grid.
+struct VtkVolumeRequest {
+  VtkFormat format = VtkFormat::xml;
+  std::string data;                  ///< as VtkFileKind has it
+  std::optional<std::string> array;  ///< none: the one to show by itself
+  bool all = false;                  ///< every array instead
+  /// Throws Error where there is no room for so many bytes; asked before they are read.
+  std::function<void(std::uintmax_t bytes)> check_memory;
+};
+
+/// A grid as VTK has it, with the arrays that were wanted, or what went wrong.
+struct VtkVolume {
+  std::array<int, 3> points{};
+  /// Of an image: where its first point stands, the distances, and the axes.
+  GridPlacement placement;
+  /// Of a rectilinear grid: the positions of its points, and the largest relative error that their
+  /// type leaves them.
+  std::array<std::vector<double>, 3> positions;
+  double rounding = 0;
+  std::vector<MeshArray> arrays;
+  std::vector<std::string> names;  ///< of all arrays of the file
+  std::string shown;               ///< the array that is shown where none is named
+  /// Flags of vtkGhostType, one for each point or cell; empty: there are none.
+  std::vector<std::uint8_t> point_ghosts, cell_ghosts;
+  std::string error;
+};
+
+using ReadVolumeWithVtk = void(const std::filesystem::path& path, const VtkVolumeRequest& request,
+                               VtkVolume& answer);
+inline constexpr const char* read_volume_with_vtk_name = "pellucid_read_volume_with_vtk_1";
+
+/// Loaded by the first call. Throw Error where the build has no such module or it does not load.
 ReadWithVtk& vtk_module();
+ReadVolumeWithVtk& vtk_volume_module();
 
 }  // namespace pellucid

@@ -31,9 +31,7 @@ std::string kind_of(const std::filesystem::path& path, const VtkMessages& messag
 void read_data(const std::filesystem::path& path, const std::string& kind,
                const MeshReadOptions& options, const VtkMessages& messages, MeshBlocks& mesh) {
   if (kind.ends_with("ImageData") || kind.ends_with("RectilinearGrid")) {
-    throw Error(
-        "holds " + kind +
-        ", a volume on a regular grid and no mesh; convert it to a volume file (.nrrd, .npy)");
+    throw Error("holds " + kind + ", a volume on a regular grid and no mesh; read it as one");
   }
   if (kind.ends_with("PolyData")) {
     throw Error("holds " + kind + ", a surface; give the volume that it belongs to");

@@ -1,19 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <fstream>
-#include <nlohmann/json.hpp>
 #include <ostream>
 #include <string>
-#include <string_view>
-#include <type_traits>
 #include <utility>
 #include <vector>
 
 #include "pellucid/io/atomic_file.h"
 #include "pellucid/io/write_mesh.h"
 #include "pellucid/scene/error.h"
+#include "vtk_xml_text.h"
 
 namespace pellucid {
 
@@ -48,57 +45,19 @@ std::uint8_t vtk_type(CellShape shape) {
   return 0;  // VTK's empty cell
 }
 
-/// "UInt8" … "Float64".
-template <class Value>
-std::string vtk_name() {
-  return (std::is_floating_point_v<Value> ? "Float"
-          : std::is_signed_v<Value>       ? "Int"
-                                          : "UInt") +
-         std::to_string(8 * sizeof(Value));
-}
-
-/// As an attribute of XML: UTF-8, which allows no control characters even where they are escaped.
-std::string attribute(std::string_view text) {
-  using nlohmann::json;
-  const std::string utf8 =
-      json::parse(json(text).dump(-1, ' ', false, json::error_handler_t::replace));
-  std::string escaped;
-  for (const char c : utf8) {
-    switch (c) {
-      case '&':
-        escaped += "&amp;";
-        break;
-      case '<':
-        escaped += "&lt;";
-        break;
-      case '>':
-        escaped += "&gt;";
-        break;
-      case '"':
-        escaped += "&quot;";
-        break;
-      default:
-        escaped += static_cast<unsigned char>(c) < ' ' || c == '\x7f' ? '_' : c;
-    }
-  }
-  return escaped;
-}
-
 /// The file: a head of XML that says where each array begins in the bytes that follow.
 class VtuFile {
  public:
   /// `path` is for messages.
   VtuFile(const UnstructuredGrid& grid, std::string path) : grid_(grid), path_(std::move(path)) {
-    head_ =
-        "<?xml version=\"1.0\"?>\n<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" byte_order=\"";
-    head_ += std::endian::native == std::endian::little ? "LittleEndian" : "BigEndian";
-    head_ += "\" header_type=\"UInt64\">\n<UnstructuredGrid>\n<Piece NumberOfPoints=\"" +
-             std::to_string(grid.points.size()) + "\" NumberOfCells=\"" +
-             std::to_string(grid.shapes.size()) + "\">\n";
+    head_ = vtk_file_element("UnstructuredGrid") + "<UnstructuredGrid>\n<Piece NumberOfPoints=\"" +
+            std::to_string(grid.points.size()) + "\" NumberOfCells=\"" +
+            std::to_string(grid.shapes.size()) + "\">\n";
     add_cells();
     add_arrays(Centering::point, "PointData");
     add_arrays(Centering::cell, "CellData");
-    head_ += "</Piece>\n</UnstructuredGrid>\n<AppendedData encoding=\"raw\">\n_";
+    head_ += "</Piece>\n</UnstructuredGrid>\n";
+    head_ += vtk_append_begin;
   }
 
   void write(std::ostream& stream) const {
@@ -108,8 +67,7 @@ class VtuFile {
       write(stream, &bytes, sizeof bytes);
       write(stream, block.data, block.bytes);
     }
-    constexpr std::string_view end = "\n</AppendedData>\n</VTKFile>\n";
-    write(stream, end.data(), end.size());
+    write(stream, vtk_append_end.data(), vtk_append_end.size());
   }
 
  private:
@@ -126,9 +84,7 @@ class VtuFile {
   template <class Value>
   void add(const std::string& name, std::size_t components, const Value* values,
            std::size_t count) {
-    head_ += "<DataArray type=\"" + vtk_name<Value>() + "\" Name=\"" + attribute(name) +
-             "\" NumberOfComponents=\"" + std::to_string(components) +
-             "\" format=\"appended\" offset=\"" + std::to_string(offset_) + "\"/>\n";
+    head_ += vtk_appended_array(vtk_type_name<Value>(), name, components, offset_);
     blocks_.push_back({values, count * sizeof(Value)});
     offset_ += sizeof(std::uint64_t) + blocks_.back().bytes;
   }

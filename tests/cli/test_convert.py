@@ -1,10 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
+import json
 import os
 import re
 import struct
 import unittest
 
-from program import ProgramTest, npy
+from program import HAZE, ProgramTest, npy
 
 # Two tetrahedra on a wedge's place, in VTK's legacy format: 0 1 2 and 3 4 5 are its triangles.
 LEGACY_WEDGE = """# vtk DataFile Version 2.0
@@ -112,10 +113,57 @@ class Convert(ProgramTest):
         self.succeed("convert", "wedge.vtu", "-o", "again.vtu")
         self.assertEqual(self.read("again.vtu"), self.read("wedge.vtu"))
 
+    def test_a_volume_in_other_formats_makes_the_same_picture(self):
+        n = 9
+        values = [((7 * x) % 5 + y * z % 3) / 6 for z in range(n) for y in range(n) for x in range(n)]
+        self.write("v.npy", npy(values, (n, n, n)))
+        self.write("tf.json", json.dumps(HAZE))
+        place = ("--spacing", "0.5,1,2", "--origin", "-8,4,0.25")
+        self.succeed("render", "v.npy", *place, "--tf", "tf.json", "-o", "v.exr", "--size", "48")
+        for name in ("v.nrrd", "v.nii", "v.nii.gz", "v.vti", "v.raw"):
+            with self.subTest(name=name):
+                report = self.report("convert", "v.npy", *place, "-o", name)
+                self.assertEqual(report["dimensions"], [n, n, n])
+                self.assertEqual((report["type"], report["components"]), ("f32", 1))
+                self.assertEqual(report["array"], "v")
+                self.assertEqual(report["output"], name)
+                options = ()
+                if name == "v.raw":
+                    (note,) = report["losses"]
+                    options = tuple(note.split("read it with ")[1].split())
+                else:
+                    self.assertEqual(report["losses"], [])
+                picture = name + ".exr"
+                result = self.run_program("render", name, *options, "--tf", "tf.json", "-o", picture,
+                                          "--size", "48")
+                if b"this build does not read" in result.stderr or b"without ITK" in result.stderr:
+                    continue
+                self.assertEqual(result.returncode, 0, result.stderr)
+                self.assertTrue(self.report("compare", "v.exr", picture)["identical"])
+
+    def test_components_are_kept(self):
+        values = list(range(48))
+        self.write("v.raw", struct.pack("<48H", *values))
+        read = ("--dimensions", "4,3,2", "--type", "u16", "--components", "2")
+        self.succeed("convert", "v.raw", *read, "-o", "w.raw")
+        self.assertEqual(self.read("w.raw"), self.read("v.raw"))
+        self.succeed("convert", "v.raw", *read, "--component", "1", "-o", "one.raw")
+        self.assertEqual(self.read("one.raw"), struct.pack("<24H", *values[1::2]))
+        result = self.run_program("convert", "v.raw", *read, "-o", "w.nii")
+        self.assertEqual((result.returncode, result.stderr), (0, b""))
+        result = self.run_program("convert", "v.raw", *read, "--centering", "cell", "-o", "w.nii")
+        self.assertRegex(result.stderr.decode(), r"\Apellucid: [^\n]*--centering cell\n\Z")
+        self.assertEqual(self.run_program("convert", "v.raw", *read, "--centering", "cell", "-o",
+                                          "w.nii", "-q").stderr, b"")
+        report = self.report("convert", "builtin:ramp:4", "-o", "ramp.raw")
+        self.assertEqual(report["array"], "ramp")
+
     def test_refuses(self):
         self.write("v.npy", npy(list(range(24)), (4, 3, 2)))
         self.write("wedge.vtk", LEGACY_WEDGE)
         self.fail_with(r"\.vtu", "convert", "v.npy", "-o", "v.vtk", code=2)
+        self.fail_with("a mesh is written as", "convert", "wedge.vtk", "-o", "w.nrrd", code=2)
+        self.fail_with("no arrays", "convert", "v.npy", "-o", "v.raw", "--array", "a")
         self.fail_with("--output", "convert", "v.npy", code=2)
         self.fail_with("--time applies to mesh files", "convert", "v.npy", "-o", "v.vtu",
                        "--time", "1", code=2)

@@ -1,8 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
+import json
+import os
 import struct
 import unittest
 
-from program import ProgramTest, npy, ramp
+from program import HAZE, ProgramTest, npy, ramp
 
 
 def metaimage(matrix="1 0 0 0 1 0 0 0 1"):
@@ -129,6 +131,78 @@ class Info(ProgramTest):
                                     stderr=subprocess.PIPE, check=False)
         self.assertEqual(result.returncode, 1)
         self.assertRegex(result.stderr.decode(), r"\Apellucid: error: stdout: [^\n]+\n\Z")
+
+
+# 3 x 3 x 2 points.
+VTK_IMAGE = """# vtk DataFile Version 3.0
+an image
+ASCII
+DATASET STRUCTURED_POINTS
+DIMENSIONS 3 3 2
+ORIGIN 0 0 0
+SPACING 1 2 3
+POINT_DATA 18
+VECTORS v float
+""" + " ".join(map(str, range(54))) + """
+SCALARS a unsigned_char 1
+LOOKUP_TABLE default
+""" + " ".join(map(str, range(18))) + """
+CELL_DATA 4
+SCALARS c double 1
+LOOKUP_TABLE default
+1 2 3 4
+"""
+
+
+@unittest.skipUnless(os.environ.get("PELLUCID_HAS_VTK") == "1", "the program was built without VTK")
+class Arrays(ProgramTest):
+    def setUp(self):
+        super().setUp()
+        self.write("a.vtk", VTK_IMAGE)
+
+    def test_all_are_listed_and_one_is_shown(self):
+        report = self.report("info", "a.vtk")
+        self.assertEqual(report["array"], "a")
+        self.assertEqual(report["type"], "u8")
+        arrays = {array["name"]: array for array in report["arrays"]}
+        self.assertEqual(sorted(arrays), ["a", "c", "v"])
+        self.assertEqual(arrays["c"]["centering"], "cell")
+        self.assertEqual(arrays["c"]["dimensions"], [2, 2, 1])
+        self.assertEqual([c["range"] for c in arrays["v"]["components"]],
+                         [[0, 51], [1, 52], [2, 53]])
+        text = self.succeed("info", "a.vtk")
+        self.assertRegex(text, r"(?m)^  a \(point, u8\), shown here  0 to 17$")
+        self.assertRegex(text, r"(?m)^  v \(point, f32 x 3\)  0 to 51; 1 to 52; 2 to 53$")
+
+    def test_one_is_chosen(self):
+        report = self.report("info", "a.vtk", "--array", "c")
+        self.assertEqual((report["array"], report["centering"]), ("c", "cell"))
+        self.assertEqual(report["range"], [1, 4])
+        self.assertEqual(self.report("info", "a.vtk", "--array", "v:1")["range"], [1, 52])
+        self.assertEqual(self.report("info", "a.vtk", "--array", "v", "--component", "2")["range"],
+                         [2, 53])
+        self.assertEqual(len(self.report("info", "a.vtk", "--array", "v")["components"]), 3)
+        self.fail_with('no array "b"; its arrays are .*a', "info", "a.vtk", "--array", "b")
+
+    def test_they_are_rendered(self):
+        self.write("tf.json", json.dumps(HAZE))
+        self.succeed("render", "a.vtk", "--array", "v:2", "--tf", "tf.json", "-o", "v.exr", "--size",
+                     "16", "--save-scene", "scene.json")
+        field = json.loads(self.read("scene.json"))["volumes"][0]["field"]
+        self.assertEqual((field["array"], field["component"]), ("v", 2))
+        self.succeed("render", "scene.json", "-o", "w.exr")
+        self.assertTrue(self.report("compare", "v.exr", "w.exr")["identical"])
+        self.fail_with("3 components", "render", "a.vtk", "--array", "v", "-o", "x.exr")
+        self.fail_with("--array applies", "render", "builtin:ramp", "--array", "v", "-o", "x.exr",
+                       code=2)
+
+    def test_several_are_channels(self):
+        gaussian = "up=30~10, a=9~4; extinction 0.5; color #ffcc99"
+        self.succeed("render", "a.vtk", "--array", "up=v:2", "--array", "a", "--gaussian", gaussian,
+                     "-o", "v.exr", "--size", "16", "--save-scene", "scene.json")
+        channels = json.loads(self.read("scene.json"))["volumes"][0]["channels"]
+        self.assertEqual([c["name"] for c in channels], ["up", "a"])
+        self.assertEqual([c["array"] for c in channels], ["v", "a"])
 
 
 if __name__ == "__main__":

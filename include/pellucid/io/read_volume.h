@@ -6,6 +6,7 @@
 #include <functional>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "pellucid/scene/volume.h"
@@ -23,6 +24,7 @@ struct ReadOptions {
   std::optional<Centering> centering;            ///< replaces the file's
   std::optional<int> components;                 ///< raw: numbers at each point, side by side
   std::optional<int> component;                  ///< which of a file's, from 0
+  std::optional<std::string> array;  ///< by name, of a file that has several; none: see VolumeArray
   /// DICOM: which of a folder's series: its number as list_dicom_series() has them, from 1, its
   /// UID, or the unique end of one.
   std::optional<std::string> series;
@@ -31,11 +33,14 @@ struct ReadOptions {
 };
 
 /// Reads a volume by its extension: .nii .nii.gz .hdr/.img(.gz) .nrrd .nhdr .mha .mhd (through ITK,
-/// where the build has it), .npy, .raw, .mrc .map .rec .st .ccp4, .dcm .ima; a stack of images,
-/// .tif .tiff .png, by any of its files, a pattern of them ("slice%03d.tif") or its folder; a DICOM
-/// series by its folder or any of its files, of any name; and any file as raw where dimensions and
-/// type are both given. Throws Error: what, where, what to do; also for a file of several
-/// components of which the options choose none.
+/// where the build has it), .npy, .slc, .raw, .mrc .map .rec .st .ccp4, .dcm .ima; a stack of
+/// images, .tif .tiff .png, by any of its files, a pattern of them ("slice%03d.tif") or its folder;
+/// a DICOM series by its folder or any of its files, of any name; any file as raw where dimensions
+/// and type are both given; and images and rectilinear grids of VTK's by their first bytes (.vti,
+/// .pvti, .vtr, .pvtr, legacy .vtk; through VTK, where the build has it): arrays of points are
+/// point-centred, arrays of cells cell-centred, whole numbers of 64 bits become double, bits u8.
+/// Throws Error: what, where, what to do; also for a file of several components of which the
+/// options choose none.
 Volume read_volume(const std::filesystem::path& path, const ReadOptions& options = {});
 
 /// A file may have several numbers at each point, its components: colors and vectors, the steps of
@@ -47,10 +52,41 @@ int component_count(const std::filesystem::path& path, const ReadOptions& option
 std::vector<Volume> read_components(const std::filesystem::path& path,
                                     const ReadOptions& options = {});
 
+/// The same, with the name of the array that they are of; empty where the format has no names.
+struct NamedComponents {
+  std::string array;
+  std::vector<Volume> components;
+};
+NamedComponents read_named_components(const std::filesystem::path& path,
+                                      const ReadOptions& options = {});
+
+/// What a file has under one name.
+struct VolumeArray {
+  std::string name;
+  Centering centering = Centering::point;
+  std::string type;             ///< as it is read: "u8" … "f64"
+  std::vector<int> dimensions;  ///< data values along x, y, z
+  std::vector<VolumeStatistics> components;
+  /// Read where no array is chosen: the one that the file marks as its scalars, else the first of
+  /// points with one component, else the first.
+  bool shown = false;
+};
+/// All arrays of a file in which they have names; none of other files. Reads all of their values.
+/// Throws Error like read_volume.
+std::vector<VolumeArray> list_arrays(const std::filesystem::path& path,
+                                     const ReadOptions& options = {});
+/// Whether the program reads files of this name as volumes with a header, which says of itself what
+/// headerless data need to be told.
+bool has_volume_header(std::string_view file_name);
+/// The extensions of volumes, for messages and help: ".nii .nii.gz …".
+std::string volume_extensions();
+
 /// The parsers of our own, from memory, so that they can be fuzzed. `name` is for messages.
 Volume parse_npy(const std::vector<std::byte>& bytes, const std::string& name,
                  const ReadOptions& options = {});
 Volume parse_raw(const std::vector<std::byte>& bytes, const std::string& name,
                  const ReadOptions& options);
+Volume parse_slc(const std::vector<std::byte>& bytes, const std::string& name,
+                 const ReadOptions& options = {});
 
 }  // namespace pellucid

@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "info_arrays.h"
+
+#include <fmt/format.h>
+
+namespace pellucid::cli {
+
+namespace {
+
+std::string centering_name(const VolumeArray& array) {
+  return array.centering == Centering::point ? "point" : "cell";
+}
+
+/// Also of infinite values, of which no volume can be made.
+std::string range_text(const VolumeStatistics& component) {
+  // The sums turn -0 into 0.
+  std::string text =
+      component.finite == 0
+          ? "no finite value"
+          : fmt::format("{:.6g} to {:.6g}", component.minimum + 0.0, component.maximum + 0.0);
+  if (component.nan > 0) text += fmt::format(", NaN {} (rendered as vacuum)", component.nan);
+  if (component.infinite > 0) text += fmt::format(", infinite {} (refused)", component.infinite);
+  return text;
+}
+
+}  // namespace
+
+std::string arrays_text(const std::vector<VolumeArray>& arrays, const std::string& chosen) {
+  std::string text = arrays.empty() ? "" : "arrays       range of each component\n";
+  for (const VolumeArray& array : arrays) {
+    std::string ranges;
+    for (const VolumeStatistics& component : array.components) {
+      ranges += (ranges.empty() ? "" : "; ") + range_text(component);
+    }
+    const std::size_t components = array.components.size();
+    text += fmt::format("  {} ({}, {}{}){}  {}\n", array.name, centering_name(array), array.type,
+                        components > 1 ? fmt::format(" x {}", components) : "",
+                        array.name == chosen ? ", shown here" : "", ranges);
+  }
+  return text;
+}
+
+Json arrays_json(const std::vector<VolumeArray>& arrays) {
+  Json list = Json::array();
+  for (const VolumeArray& array : arrays) {
+    Json components = Json::array();
+    for (const VolumeStatistics& component : array.components) {
+      components.push_back(
+          {{"range", component.finite > 0 ? Json{component.minimum, component.maximum} : Json()},
+           {"nan", component.nan},
+           {"infinite", component.infinite}});
+    }
+    list.push_back({{"name", array.name},
+                    {"centering", centering_name(array)},
+                    {"type", array.type},
+                    {"dimensions", array.dimensions},
+                    {"components", std::move(components)}});
+  }
+  return list;
+}
+
+}  // namespace pellucid::cli

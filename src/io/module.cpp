@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "module.h"
+
+#include <dlfcn.h>
+
+#include <array>
+#include <cstdlib>
+#include <filesystem>
+#include <string>
+#include <system_error>
+
+#include "pellucid/scene/error.h"
+
+namespace pellucid {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+// A build without any module does not name their folders.
+#ifndef PELLUCID_MODULES_INSTALLED
+#define PELLUCID_MODULES_FROM_PROGRAM ""
+#define PELLUCID_MODULES_INSTALLED ""
+#endif
+
+std::array<fs::path, 3> folders() {
+  const char* const named = std::getenv("PELLUCID_MODULES");
+  std::error_code error;
+  const fs::path program = fs::read_symlink("/proc/self/exe", error);
+  return {named == nullptr ? fs::path() : fs::path(named),
+          program.empty() ? fs::path() : program.parent_path() / PELLUCID_MODULES_FROM_PROGRAM,
+          PELLUCID_MODULES_INSTALLED};
+}
+
+}  // namespace
+
+void* module_function(const Module& module, const char* name) {
+  if (!module.built) {
+    throw Error(std::string("this build does not read ") + module.reads + "; build with " +
+                module.build_with);
+  }
+  for (const fs::path& folder : folders()) {
+    std::error_code error;
+    const fs::path file = folder / module.file;
+    if (!folder.is_absolute() || !fs::exists(file, error)) continue;
+    void* const library = dlopen(file.c_str(), RTLD_NOW | RTLD_LOCAL);
+    if (library == nullptr) {
+      throw Error(std::string("the module ") + module.file + " does not load: " + dlerror());
+    }
+    void* const function = dlsym(library, name);
+    if (function == nullptr) {
+      throw Error(file.string() + ": is of another version; install them together");
+    }
+    return function;
+  }
+  throw Error(std::string("the module ") + module.file + " that reads " + module.reads +
+              " is not there; install it, or name its folder in the environment variable "
+              "PELLUCID_MODULES");
+}
+
+}  // namespace pellucid

@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+namespace pellucid {
+
+/// A part of this library in a file of its own, which is loaded when it is needed: the libraries
+/// that it is linked to would otherwise multiply the time that every start of a program takes.
+struct Module {
+  const char* file;   ///< "pellucid_vtk.so"
+  const char* reads;  ///< "VTK's and Exodus files"
+  bool built;
+  const char* build_with;  ///< "VTK (Debian: libvtk9-dev) and -DPELLUCID_WITH_VTK=ON"
+};
+
+/// A function of the module, loaded by the first call and kept, never unloaded: what it read is
+/// freed by its code. Looked for in the folder that the environment variable PELLUCID_MODULES
+/// names, then where an installation has it as seen from the program, then where this library was
+/// to be installed. Throws Error where the build has none, it does not load, or it lacks the
+/// function, whose name has its version.
+void* module_function(const Module& module, const char* name);
+
+}  // namespace pellucid

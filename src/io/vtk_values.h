@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "pellucid/scene/volume.h"
+
+class vtkDataArray;
+
+namespace pellucid {
+
+/// All values of an array, its components side by side: in place, owned together with VTK, where
+/// there is such a type here; whole numbers of 64 bits as double, bits as u8.
+VolumeData values_in_place(vtkDataArray& array);
+
+}  // namespace pellucid

@@ -1,0 +1,310 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <vtkBitArray.h>
+#include <vtkCellData.h>
+#include <vtkDataArray.h>
+#include <vtkDataArraySelection.h>
+#include <vtkImageData.h>
+#include <vtkInformation.h>
+#include <vtkInformationVector.h>
+#include <vtkMatrix3x3.h>
+#include <vtkPointData.h>
+#include <vtkRectilinearGrid.h>
+#include <vtkRectilinearGridReader.h>
+#include <vtkSmartPointer.h>
+#include <vtkStreamingDemandDrivenPipeline.h>
+#include <vtkStructuredPoints.h>
+#include <vtkStructuredPointsReader.h>
+#include <vtkUnsignedCharArray.h>
+#include <vtkXMLImageDataReader.h>
+#include <vtkXMLPImageDataReader.h>
+#include <vtkXMLPRectilinearGridReader.h>
+#include <vtkXMLRectilinearGridReader.h>
+
+#include <algorithm>
+#include <new>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "pellucid/scene/error.h"
+#include "vtk_messages.h"
+#include "vtk_module.h"
+#include "vtk_values.h"
+
+namespace pellucid {
+
+namespace {
+
+constexpr const char* damaged = "; the file is cut off or damaged";
+
+/// An array of the file, by the name that it is called by here.
+struct Entry {
+  std::string name, in_file;
+  Centering centering = Centering::point;
+  int components = 1, type = VTK_DOUBLE;
+  bool active = false;
+};
+
+std::string ghost_name() {
+  return vtkDataSetAttributes::GhostArrayName();
+}
+
+/// One of cells that is named like one of points gets "_cell" behind its name, as in meshes.
+void add_entry(Entry entry, std::vector<Entry>& entries) {
+  if (entry.in_file.empty() || entry.in_file == ghost_name() || entry.components < 1) return;
+  entry.name = entry.in_file;
+  const bool is_taken =
+      std::ranges::any_of(entries, [&](const Entry& other) { return other.name == entry.name; });
+  if (is_taken) entry.name += "_cell";
+  entries.push_back(std::move(entry));
+}
+
+/// As the file's head tells them, before values are read.
+std::vector<Entry> entries_of(vtkInformation& about) {
+  std::vector<Entry> entries;
+  for (const Centering centering : {Centering::point, Centering::cell}) {
+    vtkInformationVector* const fields =
+        about.Get(centering == Centering::point ? vtkDataObject::POINT_DATA_VECTOR()
+                                                : vtkDataObject::CELL_DATA_VECTOR());
+    for (int i = 0; fields != nullptr && i < fields->GetNumberOfInformationObjects(); ++i) {
+      vtkInformation* const field = fields->GetInformationObject(i);
+      const char* const name = field->Get(vtkDataObject::FIELD_NAME());
+      const int type = field->Get(vtkDataObject::FIELD_ARRAY_TYPE());
+      if (name == nullptr || type == VTK_STRING) continue;
+      const int active = field->Get(vtkDataObject::FIELD_ACTIVE_ATTRIBUTE());
+      add_entry({"", name, centering,
+                 std::max(field->Get(vtkDataObject::FIELD_NUMBER_OF_COMPONENTS()), 1), type,
+                 (active & (1 << vtkDataSetAttributes::SCALARS)) != 0},
+                entries);
+    }
+  }
+  return entries;
+}
+
+vtkDataSetAttributes& attributes(vtkDataSet& set, Centering centering) {
+  if (centering == Centering::point) return *set.GetPointData();
+  return *set.GetCellData();
+}
+
+std::vector<Entry> entries_of(vtkDataSet& set) {
+  std::vector<Entry> entries;
+  for (const Centering centering : {Centering::point, Centering::cell}) {
+    vtkDataSetAttributes& data = attributes(set, centering);
+    for (int a = 0; a < data.GetNumberOfArrays(); ++a) {
+      vtkDataArray* const array = data.GetArray(a);  // null for text
+      if (array == nullptr || array->GetName() == nullptr) continue;
+      add_entry({"", array->GetName(), centering, array->GetNumberOfComponents(),
+                 array->GetDataType(), array == data.GetScalars()},
+                entries);
+    }
+  }
+  return entries;
+}
+
+/// The active scalars, else the first of points with one component, else the first.
+const Entry& entry_to_show(const std::vector<Entry>& entries) {
+  const auto active = std::ranges::find_if(entries, [](const Entry& e) { return e.active; });
+  if (active != entries.end()) return *active;
+  const auto scalar = std::ranges::find_if(
+      entries, [](const Entry& e) { return e.centering == Centering::point && e.components == 1; });
+  return scalar != entries.end() ? *scalar : entries.front();
+}
+
+/// Those that are wanted. Throws Error where there is none, or none of that name.
+std::vector<Entry> choose(const std::vector<Entry>& entries, const VtkVolumeRequest& request,
+                          VtkVolume& volume) {
+  if (entries.empty()) throw Error("has no array of numbers");
+  volume.shown = entry_to_show(entries).name;
+  std::string list;
+  for (const Entry& entry : entries) {
+    volume.names.push_back(entry.name);
+    list += (list.empty() ? "" : ", ") + entry.name;
+  }
+  if (request.all) return entries;
+  const std::string& wanted = request.array ? *request.array : volume.shown;
+  const auto found =
+      std::ranges::find_if(entries, [&](const Entry& entry) { return entry.name == wanted; });
+  if (found != entries.end()) return {*found};
+  constexpr std::size_t longest = 400;
+  if (list.size() > longest) list = list.substr(0, longest) + " ...";
+  throw Error("has no array \"" + wanted + "\"; its arrays are " + list);
+}
+
+std::vector<std::uint8_t> ghosts_of(vtkUnsignedCharArray* ghosts, vtkIdType count) {
+  if (ghosts == nullptr) return {};
+  if (ghosts->GetNumberOfValues() != count) {
+    throw Error(std::string("the number of ghost flags is not that of the values") + damaged);
+  }
+  return {ghosts->GetPointer(0), ghosts->GetPointer(0) + count};
+}
+
+void take_values(vtkDataSet& set, const std::vector<Entry>& entries, VtkVolume& volume) {
+  for (const Entry& entry : entries) {
+    const bool point = entry.centering == Centering::point;
+    vtkDataArray* const array = attributes(set, entry.centering).GetArray(entry.in_file.c_str());
+    const vtkIdType count = point ? set.GetNumberOfPoints() : set.GetNumberOfCells();
+    if (array == nullptr || array->GetNumberOfTuples() != count) {
+      throw Error("the array \"" + entry.name + "\" has " +
+                  std::to_string(array == nullptr ? 0 : array->GetNumberOfTuples()) +
+                  " values, but there are " + std::to_string(count) +
+                  (point ? " points" : " cells") + damaged);
+    }
+    volume.arrays.push_back(
+        {entry.name, entry.centering, array->GetNumberOfComponents(), values_in_place(*array)});
+  }
+  volume.point_ghosts = ghosts_of(set.GetPointGhostArray(), set.GetNumberOfPoints());
+  volume.cell_ghosts = ghosts_of(set.GetCellGhostArray(), set.GetNumberOfCells());
+}
+
+void take_grid(vtkImageData& image, VtkVolume& volume) {
+  int extent[6];
+  image.GetExtent(extent);
+  GridPlacement& placement = volume.placement;
+  vtkMatrix3x3* const direction = image.GetDirectionMatrix();
+  for (int a = 0; a < 3; ++a) {
+    volume.points[static_cast<std::size_t>(a)] = extent[2 * a + 1] - extent[2 * a] + 1;
+    for (int row = 0; row < 3; ++row) {
+      placement.direction.column[a][row] = direction->GetElement(row, a);
+    }
+    placement.origin[a] = image.GetOrigin()[a];
+    placement.spacing[a] = image.GetSpacing()[a];
+  }
+  for (int a = 0; a < 3; ++a) {
+    placement.origin =
+        placement.origin + placement.direction.column[a] * (placement.spacing[a] * extent[2 * a]);
+    if (placement.spacing[a] < 0) {
+      placement.spacing[a] = -placement.spacing[a];
+      placement.direction.column[a] = placement.direction.column[a] * -1.0;
+    }
+  }
+}
+
+void take_grid(vtkRectilinearGrid& grid, VtkVolume& volume) {
+  grid.GetDimensions(volume.points.data());
+  vtkDataArray* const axes[] = {grid.GetXCoordinates(), grid.GetYCoordinates(),
+                                grid.GetZCoordinates()};
+  for (std::size_t a = 0; a < 3; ++a) {
+    if (axes[a] == nullptr || axes[a]->GetNumberOfTuples() != volume.points[a]) {
+      throw Error("the positions along " + std::string(1, "xyz"[a]) +
+                  " are not as many as its points" + damaged);
+    }
+    std::vector<double>& positions = volume.positions[a];
+    for (int i = 0; i < volume.points[a]; ++i) {
+      positions.push_back(axes[a]->GetComponent(i, 0));
+    }
+    volume.rounding =
+        std::max(volume.rounding, axes[a]->GetDataType() == VTK_FLOAT ? 0x1p-24 : 0x1p-53);
+  }
+}
+
+template <class Grid>
+void take_all(vtkDataObject* object, VtkVolume& volume) {
+  auto* const grid = Grid::SafeDownCast(object);
+  if (grid == nullptr || grid->GetNumberOfPoints() < 1) {
+    throw Error("the file has no points, or is cut off or damaged");
+  }
+  take_grid(*grid, volume);
+}
+
+void check(vtkAlgorithm& reader, const VtkMessages& messages) {
+  messages.check();
+  if (reader.GetErrorCode() != 0) throw Error("the file is cut off or damaged");
+}
+
+/// What the entries take, as they are read and as they are kept.
+std::uintmax_t bytes_of(const std::vector<Entry>& entries, vtkInformation& about) {
+  int extent[6] = {0, -1, 0, -1, 0, -1};
+  about.Get(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT(), extent);
+  double points = 1, bytes = 0;
+  for (int a = 0; a < 3; ++a) {
+    const double side = static_cast<double>(extent[2 * a + 1]) - extent[2 * a] + 1;
+    if (side < 1) throw Error("the file has no points, or is cut off or damaged");
+    points *= side;
+  }
+  for (const Entry& entry : entries) {
+    bytes += points * entry.components * std::max(1, vtkDataArray::GetDataTypeSize(entry.type));
+  }
+  constexpr double most = 0x1p62;
+  if (bytes > most) throw Error("a volume of that many values is too large");
+  return static_cast<std::uintmax_t>(bytes);
+}
+
+template <class Reader, class Grid>
+void read_xml_grid(const std::filesystem::path& path, const VtkVolumeRequest& request,
+                   const VtkMessages& messages, VtkVolume& volume) {
+  const auto reader = vtkSmartPointer<Reader>::New();
+  reader->SetFileName(path.c_str());
+  reader->UpdateInformation();
+  check(*reader, messages);
+  vtkInformation* const about = reader->GetOutputInformation(0);
+  if (about == nullptr) throw Error("the file is cut off or damaged");
+  const std::vector<Entry> entries = choose(entries_of(*about), request, volume);
+  request.check_memory(bytes_of(entries, *about));
+  vtkDataArraySelection* const points = reader->GetPointDataArraySelection();
+  vtkDataArraySelection* const cells = reader->GetCellDataArraySelection();
+  for (vtkDataArraySelection* const selection : {points, cells}) {
+    selection->DisableAllArrays();
+    if (selection->ArrayExists(ghost_name().c_str()) != 0) {
+      selection->EnableArray(ghost_name().c_str());
+    }
+  }
+  for (const Entry& entry : entries) {
+    (entry.centering == Centering::point ? points : cells)->EnableArray(entry.in_file.c_str());
+  }
+  reader->Update();
+  check(*reader, messages);
+  take_all<Grid>(reader->GetOutput(), volume);
+  take_values(*reader->GetOutput(), entries, volume);
+}
+
+template <class Reader, class Grid>
+void read_legacy_grid(const std::filesystem::path& path, const VtkVolumeRequest& request,
+                      const VtkMessages& messages, VtkVolume& volume) {
+  const auto reader = vtkSmartPointer<Reader>::New();
+  reader->SetFileName(path.c_str());
+  // By itself it reads the first array of each kind.
+  reader->ReadAllScalarsOn();
+  reader->ReadAllVectorsOn();
+  reader->ReadAllNormalsOn();
+  reader->ReadAllTensorsOn();
+  reader->ReadAllColorScalarsOn();
+  reader->ReadAllTCoordsOn();
+  reader->ReadAllFieldsOn();
+  reader->Update();
+  check(*reader, messages);
+  take_all<Grid>(reader->GetOutput(), volume);
+  take_values(*reader->GetOutput(), choose(entries_of(*reader->GetOutput()), request, volume),
+              volume);
+}
+
+void read_volume(const std::filesystem::path& path, const VtkVolumeRequest& request,
+                 VtkVolume& volume) {
+  const VtkMessages messages;
+  const std::string& data = request.data;
+  const auto read = request.format == VtkFormat::legacy
+                        ? (data == "RECTILINEAR_GRID"
+                               ? read_legacy_grid<vtkRectilinearGridReader, vtkRectilinearGrid>
+                               : read_legacy_grid<vtkStructuredPointsReader, vtkImageData>)
+                    : data == "ImageData"  ? read_xml_grid<vtkXMLImageDataReader, vtkImageData>
+                    : data == "PImageData" ? read_xml_grid<vtkXMLPImageDataReader, vtkImageData>
+                    : data == "PRectilinearGrid"
+                        ? read_xml_grid<vtkXMLPRectilinearGridReader, vtkRectilinearGrid>
+                        : read_xml_grid<vtkXMLRectilinearGridReader, vtkRectilinearGrid>;
+  read(path, request, messages, volume);
+}
+
+}  // namespace
+
+}  // namespace pellucid
+
+extern "C" __attribute__((visibility("default"))) void pellucid_read_volume_with_vtk_1(
+    const std::filesystem::path& path, const pellucid::VtkVolumeRequest& request,
+    pellucid::VtkVolume& answer) {
+  try {
+    pellucid::read_volume(path, request, answer);
+  } catch (const std::bad_alloc&) {
+    answer.error = "not enough memory for the data; crop or reduce the volume";
+  } catch (const std::exception& error) {
+    answer.error = error.what();
+  }
+}
