@@ -43,7 +43,9 @@ OTHER_PROJECTS = [
     (re.compile(r"^nlohmann/"), "nlohmann_json::nlohmann_json"),
     (re.compile(r"^fmt/"), "fmt::fmt"),
     (re.compile(r"^CLI/"), "CLI11::CLI11"),
+    (re.compile(r"^tiffio\.h$"), "TIFF::TIFF"),
     (re.compile(r"^itk.*\.h$"), "ITKCommon"),
+    (re.compile(r"^gdcm.*\.h$"), "GDCM"),
     (re.compile(r"^vtk.*\.h$"), "VTK::CommonCore"),
 ]
 
