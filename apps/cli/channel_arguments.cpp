@@ -158,8 +158,10 @@ ChannelSelection select_channels(const ChannelArguments& arguments, int most) {
   return selection;
 }
 
-LoadedChannels load_channels(const ChannelSelection& selection, int threads) {
-  Channels channels = pellucid::load_channels(selection.sources, parallel_for(threads));
+LoadedChannels load_channels(const ChannelSelection& selection, int threads, bool quiet) {
+  std::vector<ChannelSource> sources = selection.sources;
+  set_notes(sources, quiet);
+  Channels channels = pellucid::load_channels(sources, parallel_for(threads));
   std::vector<int> which;
   for (const std::string& axis : selection.axes) which.push_back(*channels.find(axis));
   return {std::move(channels), std::move(which)};

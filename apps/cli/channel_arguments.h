@@ -46,7 +46,7 @@ struct LoadedChannels {
   Channels channels;
   std::vector<int> which;
 };
-LoadedChannels load_channels(const ChannelSelection& selection, int threads);
+LoadedChannels load_channels(const ChannelSelection& selection, int threads, bool quiet = false);
 
 /// The files that are read, to be kept from being written.
 std::vector<NamedFile> data_files(const std::vector<ChannelSource>& sources);

@@ -74,7 +74,9 @@ Converted convert(const ConvertArguments& arguments, const ParallelFor& parallel
     InterruptGuard::check();
     return {tetrahedra_of(file.grid, parallel), file.grid.shapes.size()};
   }
-  const Volume volume = load_field(field_source(arguments.input, arguments.volume));
+  FieldSource source = field_source(arguments.input, arguments.volume);
+  set_notes(source, arguments.quiet);
+  const Volume volume = load_field(source);
   InterruptGuard::check();
   return {volume_tetrahedra(volume, parallel), count_cells(volume)};
 }

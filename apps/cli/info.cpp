@@ -10,11 +10,13 @@
 
 #include "commands.h"
 #include "info_mesh.h"
+#include "info_series.h"
 #include "input.h"
 #include "mesh_input.h"
 #include "orientation.h"
 #include "output.h"
 #include "pellucid/base/version.h"
+#include "pellucid/io/dicom_series.h"
 
 namespace pellucid::cli {
 
@@ -38,6 +40,7 @@ struct Facts {
 
 /// The formats that are placed in LPS by what they say themselves.
 bool is_medical(const std::filesystem::path& file) {
+  if (is_dicom(file)) return true;
   const std::string name = lower_case(file.filename().string());
   for (const char* end : {".nii", ".nii.gz", ".hdr", ".img", ".hdr.gz", ".img.gz", ".nrrd", ".nhdr",
                           ".mha", ".mhd"}) {
@@ -248,8 +251,10 @@ int run_info(const InfoArguments& arguments) {
     print_mesh_info(mesh_source(arguments.input, arguments.mesh), arguments.json);
     return 0;
   }
-  const FieldSource source = field_source(arguments.input, arguments.volume);
+  FieldSource source = field_source(arguments.input, arguments.volume);
   arguments.mesh.refuse("a volume");
+  if (print_series(source, arguments.input, arguments.json)) return 0;
+  set_notes(source, false);
   std::vector<Volume> components;
   if (source.builtin.empty()) {
     components = read_components(source.file, source.options);

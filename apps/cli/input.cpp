@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <variant>
 
+#include "output.h"
 #include "parse.h"
 
 namespace pellucid::cli {
@@ -30,6 +31,11 @@ void VolumeOptions::add_to(CLI::App& command) {
           ->option_text("N"));
   add(command.add_option("--component", component, "Which one, from 0, of a file with several")
           ->option_text("C"));
+  add(command
+          .add_option("--series", series,
+                      "Of a folder with several DICOM series: its number as 'pellucid info' lists "
+                      "them, its UID, or the unique end of it")
+          ->option_text("N|UID"));
   add(command
           .add_option("--spacing", spacing, "Distance of values along x, y, z; replaces the file's")
           ->option_text("X,Y,Z"));
@@ -60,6 +66,7 @@ ReadOptions VolumeOptions::read_options() const {
   read.skip_bytes = skip_bytes;
   read.components = components;
   read.component = component;
+  if (!series.empty()) read.series = series;
   if (!spacing.empty()) {
     const auto [x, y, z] = parse_triple("--spacing", spacing);
     read.spacing = Vec3<double>{x, y, z};
@@ -80,6 +87,20 @@ FieldSource field_source(const std::string& input, const VolumeOptions& options)
     options.refuse("a built-in field");
   }
   return source;
+}
+
+void set_notes(FieldSource& field, bool quiet) {
+  if (quiet) {
+    field.options.note = {};
+  } else {
+    field.options.note = print_note;
+  }
+}
+
+void set_notes(std::vector<ChannelSource>& channels, bool quiet) {
+  for (ChannelSource& channel : channels) {
+    if (auto* field = std::get_if<FieldSource>(&channel.source)) set_notes(*field, quiet);
+  }
 }
 
 ChannelSource channel_source(const std::string& text, const VolumeOptions& options) {

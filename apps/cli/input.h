@@ -13,11 +13,13 @@ namespace pellucid::cli {
 
 /// What INPUT may be, for help texts.
 inline constexpr const char* input_help =
-    "Volume file (.nii, .nii.gz, .hdr, .img, .nrrd, .nhdr, .mha, .mhd, .npy, .raw)";
+    "Volume file (.nii, .nii.gz, .hdr, .img, .nrrd, .nhdr, .mha, .mhd, .npy, .raw, .mrc, .map, "
+    ".rec, .st, .ccp4), DICOM series (its folder or one of its files), stack of images (a .tif, "
+    ".tiff or .png of it, NAME%03d.tif, its folder)";
 
 /// The options that say, or replace, what a volume file says about itself.
 struct VolumeOptions {
-  std::string dimensions, type, spacing, origin, centering;
+  std::string dimensions, type, spacing, origin, centering, series;
   bool big_endian = false;
   std::size_t skip_bytes = 0;
   std::optional<int> components, component;
@@ -31,6 +33,9 @@ struct VolumeOptions {
 
 /// Where the input comes from: "builtin:NAME[:POINTS]" or a volume file. Throws Error.
 FieldSource field_source(const std::string& input, const VolumeOptions& options);
+/// Has notes on what is read printed, unless it is to be quiet.
+void set_notes(FieldSource& field, bool quiet);
+void set_notes(std::vector<ChannelSource>& channels, bool quiet);
 /// A channel of "NAME=SOURCE". Of a file the options say the rest; a component in brackets goes
 /// before theirs. Throws Error.
 ChannelSource channel_source(const std::string& text, const VolumeOptions& options);

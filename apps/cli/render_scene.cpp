@@ -246,6 +246,8 @@ PreparedScene prepare(const RenderArguments& arguments) {
   if (arguments.reference && integration.tolerance > table_tolerance) {
     rendered.integration.tolerance = table_tolerance;
   }
+  set_notes(rendered.field, arguments.quiet);
+  set_notes(rendered.channels, arguments.quiet);
   const int threads = arguments.threads > 0 ? arguments.threads : default_threads();
   prepared.array_chosen = description.mesh && description.mesh->channels.empty();
   prepared.scene =

@@ -82,7 +82,7 @@ int run_suggest(const SuggestArguments& arguments) {
   check_arguments(arguments, selection);
   const int threads =
       arguments.channels.threads > 0 ? arguments.channels.threads : default_threads();
-  const LoadedChannels loaded = load_channels(selection, threads);
+  const LoadedChannels loaded = load_channels(selection, threads, arguments.quiet);
   const bool boundaries = are_value_and_gradient(selection) && arguments.primitives == 0;
   const std::vector<GaussianPrimitive> primitives =
       boundaries ? suggest_boundaries(loaded.channels, loaded.which[0], loaded.which[1],

@@ -7,10 +7,15 @@
 #include <stdexcept>
 #include <string>
 #include <string_view>
+#include <system_error>
 
 #include "components.h"
+#include "dicom.h"
+#include "image_stack.h"
 #include "input_file.h"
 #include "medical_volumes.h"
+#include "mrc.h"
+#include "pellucid/io/dicom_series.h"
 #include "pellucid/io/read_mesh.h"
 #include "pellucid/scene/error.h"
 
@@ -28,6 +33,10 @@ VolumeFile open_raw_file(const std::filesystem::path& path, const ReadOptions& o
   return open_raw(file_source(path), options);
 }
 
+VolumeFile open_mrc_file(const std::filesystem::path& path, const ReadOptions& options) {
+  return open_mrc(file_source(path), options);
+}
+
 struct Format {
   std::string_view extension;
   Opener open;
@@ -37,7 +46,11 @@ constexpr std::array formats{
     Format{".nii", open_nifti},      Format{".nii.gz", open_nifti}, Format{".hdr", open_nifti},
     Format{".hdr.gz", open_nifti},   Format{".img", open_nifti},    Format{".img.gz", open_nifti},
     Format{".nrrd", open_nrrd},      Format{".nhdr", open_nrrd},    Format{".mha", open_meta_image},
-    Format{".mhd", open_meta_image}, Format{".npy", open_npy_file}, Format{".raw", open_raw_file}};
+    Format{".mhd", open_meta_image}, Format{".npy", open_npy_file}, Format{".raw", open_raw_file},
+    Format{".dcm", open_dicom},      Format{".ima", open_dicom},    Format{".tif", open_stack},
+    Format{".tiff", open_stack},     Format{".png", open_stack},    Format{".mrc", open_mrc_file},
+    Format{".map", open_mrc_file},   Format{".rec", open_mrc_file}, Format{".st", open_mrc_file},
+    Format{".ccp4", open_mrc_file}};
 
 Opener opener_of(const std::filesystem::path& path) {
   std::string name = path.filename().string();
@@ -50,11 +63,22 @@ Opener opener_of(const std::filesystem::path& path) {
   return nullptr;
 }
 
+VolumeFile open_folder(const std::filesystem::path& path, const ReadOptions& options) {
+  return is_dicom(path) ? open_dicom(path, options) : open_stack(path, options);
+}
+
 VolumeFile open_file(const std::filesystem::path& path, const ReadOptions& options) {
+  std::error_code error;
+  if (options.series && !is_dicom(path)) {
+    throw Error(path.string() + ": is no DICOM, and only of DICOM a series may be chosen");
+  }
+  if (std::filesystem::is_directory(path, error)) return open_folder(path, options);
+  if (is_stack_pattern(path)) return open_stack(path, options);
   check_input_file(path);
   Opener open = opener_of(path);
   // Whoever says how large the data is and of what type has said that it has no header.
   if (open == nullptr && options.dimensions && options.type) open = open_raw_file;
+  if (open == nullptr && is_dicom(path)) open = open_dicom;
   if (open == nullptr && is_mesh_file(path)) {
     throw Error(path.string() +
                 ": is a mesh, and here a volume is needed; 'render' and 'info' take meshes");

@@ -24,7 +24,7 @@ bool ends_with_extension(std::string file, std::initializer_list<std::string_vie
 
 const std::vector<std::string_view> file_keys{"file",       "component",  "dimensions", "type",
                                               "components", "byte_order", "skip_bytes", "spacing",
-                                              "origin",     "centering"};
+                                              "origin",     "centering",  "series"};
 const std::vector<std::string_view> builtin_keys{"builtin", "points"};
 const std::vector<std::string_view> channel_keys{"name", "unit"};
 
@@ -50,8 +50,10 @@ FieldSource file_source(const Node& field, const std::filesystem::path& folder) 
   source.file = file_path(file, folder);
 
   // Files with a header say these themselves; two sources of one truth would have to be compared.
-  if (ends_with_extension(path, {".nii", ".nii.gz", ".hdr", ".hdr.gz", ".img", ".img.gz", ".nrrd",
-                                 ".nhdr", ".mha", ".mhd", ".npy"})) {
+  if (ends_with_extension(path,
+                          {".nii",  ".nii.gz", ".hdr", ".hdr.gz", ".img", ".img.gz", ".nrrd",
+                           ".nhdr", ".mha",    ".mhd", ".npy",    ".dcm", ".ima",    ".tif",
+                           ".tiff", ".png",    ".mrc", ".map",    ".rec", ".st",     ".ccp4"})) {
     for (const char* key : {"dimensions", "type", "components", "byte_order", "skip_bytes"}) {
       if (field.has(key)) {
         field.fail_at(key, "makes no sense for " + scene_json::printable(path) +
@@ -79,6 +81,10 @@ FieldSource file_source(const Node& field, const std::filesystem::path& folder) 
   }
   if (const auto component = field.find("component")) {
     source.options.component = static_cast<int>(component->integer(0, largest_grid));
+  }
+  if (const auto series = field.find("series")) {
+    if (series->string().empty()) series->fail("is empty; give the series' number or its UID");
+    source.options.series = series->string();
   }
   if (const auto order = field.find("byte_order")) {
     source.options.big_endian = order->one_of({"little", "big"}) == 1;

@@ -216,6 +216,7 @@ void add_field(const FieldSource& field, Members& members) {
   if (options.type) members.add("type", quoted(*options.type, "a type"));
   if (options.components) members.add("components", std::to_string(*options.components));
   if (options.component) members.add("component", std::to_string(*options.component));
+  if (options.series) members.add("series", quoted(*options.series, "a series"));
   if (options.big_endian) members.add("byte_order", *options.big_endian ? "\"big\"" : "\"little\"");
   if (options.skip_bytes != 0) members.add("skip_bytes", std::to_string(options.skip_bytes));
   if (options.spacing) members.add("spacing", array(*options.spacing, "the spacing"));

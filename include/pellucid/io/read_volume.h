@@ -3,6 +3,7 @@
 
 #include <array>
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -22,12 +23,19 @@ struct ReadOptions {
   std::optional<Centering> centering;            ///< replaces the file's
   std::optional<int> components;                 ///< raw: numbers at each point, side by side
   std::optional<int> component;                  ///< which of a file's, from 0
+  /// DICOM: which of a folder's series: its number as list_dicom_series() has them, from 1, its
+  /// UID, or the unique end of one.
+  std::optional<std::string> series;
+  /// Is told, a line each, what is assumed where files do not say it, and what is left out.
+  std::function<void(const std::string&)> note;
 };
 
 /// Reads a volume by its extension: .nii .nii.gz .hdr/.img(.gz) .nrrd .nhdr .mha .mhd (through ITK,
-/// where the build has it), .npy, .raw; and any file as raw where dimensions and type are both
-/// given. Throws Error: what, where, what to do; also for a file of several components of which
-/// the options choose none.
+/// where the build has it), .npy, .raw, .mrc .map .rec .st .ccp4, .dcm .ima; a stack of images,
+/// .tif .tiff .png, by any of its files, a pattern of them ("slice%03d.tif") or its folder; a DICOM
+/// series by its folder or any of its files, of any name; and any file as raw where dimensions and
+/// type are both given. Throws Error: what, where, what to do; also for a file of several
+/// components of which the options choose none.
 Volume read_volume(const std::filesystem::path& path, const ReadOptions& options = {});
 
 /// A file may have several numbers at each point, its components: colors and vectors, the steps of

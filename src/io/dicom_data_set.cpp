@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <string_view>
+
+#include "dicom_elements.h"
+
+namespace pellucid {
+
+namespace {
+
+std::string_view without_blanks(std::string_view text) {
+  constexpr std::string_view blanks(" \t\r\n\0", 5);
+  const std::size_t begin = text.find_first_not_of(blanks);
+  if (begin == std::string_view::npos) return {};
+  return text.substr(begin, text.find_last_not_of(blanks) - begin + 1);
+}
+
+}  // namespace
+
+std::string DicomDataSet::text(DicomTag tag) const {
+  const auto found = values.find(tag);
+  if (found == values.end()) return {};
+  std::string text(without_blanks(found->second));
+  // Character sets beyond ASCII are not looked up: only names of series would need them.
+  std::ranges::replace_if(
+      text, [](char c) { return c < ' ' || c > '~'; }, '?');
+  return text;
+}
+
+std::vector<double> DicomDataSet::decimals(DicomTag tag) const {
+  const std::string whole = text(tag);
+  std::vector<double> numbers;
+  for (std::string_view rest = whole; !rest.empty();) {
+    const std::size_t end = rest.find('\\');
+    std::string_view part = without_blanks(rest.substr(0, end));
+    rest.remove_prefix(end == std::string_view::npos ? rest.size() : end + 1);
+    if (part.starts_with('+')) part.remove_prefix(1);
+    double value = 0;
+    const auto [stop, error] = std::from_chars(part.data(), part.data() + part.size(), value);
+    if (error != std::errc{} || stop != part.data() + part.size() || !std::isfinite(value)) {
+      return {};
+    }
+    numbers.push_back(value);
+  }
+  return numbers;
+}
+
+std::optional<int> DicomDataSet::number(DicomTag tag) const {
+  const auto found = values.find(tag);
+  if (found == values.end() || found->second.size() < 2) return std::nullopt;
+  const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(found->second[i]); };
+  return big_endian ? byte(0) << 8 | byte(1) : byte(1) << 8 | byte(0);
+}
+
+const DicomDataSet* DicomDataSet::item(DicomTag tag) const {
+  const auto found = sequences.find(tag);
+  return found == sequences.end() || found->second.empty() ? nullptr : &found->second.front();
+}
+
+}  // namespace pellucid

@@ -1,0 +1,162 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "dicom_folder.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <system_error>
+#include <tuple>
+
+#include "dicom_elements.h"
+#include "input_file.h"
+#include "numbered_files.h"
+#include "pellucid/scene/error.h"
+
+namespace pellucid {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+std::vector<fs::path> files_of(const fs::path& folder) {
+  return files_in(folder, [](const std::string&) { return true; });
+}
+
+fs::path folder_of(const fs::path& path) {
+  if (fs::is_directory(path)) return path;
+  check_input_file(path);
+  const fs::path folder = path.parent_path();
+  return folder.empty() ? fs::path(".") : folder;
+}
+
+bool same_orientation(const DicomSlice& a, const DicomSlice& b) {
+  if (!a.orientation || !b.orientation) return !a.orientation && !b.orientation;
+  // Cosines come with three digits and more.
+  constexpr double tolerance = 2e-3;
+  return length((*a.orientation)[0] - (*b.orientation)[0]) < tolerance &&
+         length((*a.orientation)[1] - (*b.orientation)[1]) < tolerance;
+}
+
+bool same_spacing(const DicomSlice& a, const DicomSlice& b) {
+  if (!a.spacing || !b.spacing) return !a.spacing && !b.spacing;
+  constexpr double tolerance = 1e-4;  // as a share; spacings come with four digits and more
+  for (std::size_t axis = 0; axis < 2; ++axis) {
+    const double x = (*a.spacing)[axis], y = (*b.spacing)[axis];
+    if (std::abs(x - y) > tolerance * x) return false;
+  }
+  return true;
+}
+
+bool belong_together(const DicomSlice& a, const DicomSlice& b) {
+  return a.image->series == b.image->series && a.image->format == b.image->format &&
+         a.image->refused == b.image->refused && same_orientation(a, b) && same_spacing(a, b);
+}
+
+// "2: T1w (MR, 384 slices of 274 x 384)"
+std::string listed(const DicomFolder& folder) {
+  constexpr std::size_t most = 12;
+  std::string text;
+  for (std::size_t i = 0; i < std::min(most, folder.series.size()); ++i) {
+    const DicomSeries& s = folder.series[i].about;
+    text += (i == 0 ? "" : ", ") + std::to_string(i + 1) + ": " +
+            (s.description.empty() ? "without a description" : s.description) + " (" +
+            (s.modality.empty() ? "" : s.modality + ", ") + std::to_string(s.slices) +
+            (s.slices == 1 ? " slice of " : " slices of ") + std::to_string(s.columns) + " x " +
+            std::to_string(s.rows) + ")";
+  }
+  if (folder.series.size() > most) {
+    text += " and " + std::to_string(folder.series.size() - most) + " more";
+  }
+  return text;
+}
+
+// The series that the text means, by number, whole UID or end of one.
+std::vector<const DicomGroup*> meant(const DicomFolder& folder, const std::string& text) {
+  std::vector<const DicomGroup*> found;
+  for (const DicomGroup& group : folder.series) {
+    if (group.about.uid == text) found.push_back(&group);
+  }
+  if (!found.empty()) return found;
+  std::size_t number = 0;
+  const char* const end = text.data() + text.size();
+  const auto [stop, error] = std::from_chars(text.data(), end, number);
+  if (error == std::errc{} && stop == end && number >= 1 && number <= folder.series.size()) {
+    return {&folder.series[number - 1]};
+  }
+  for (const DicomGroup& group : folder.series) {
+    if (!text.empty() && group.about.uid.ends_with(text)) found.push_back(&group);
+  }
+  return found;
+}
+
+}  // namespace
+
+DicomFolder scan_dicom_folder(const fs::path& path) {
+  DicomFolder folder;
+  for (const fs::path& file : files_of(folder_of(path))) {
+    std::vector<DicomSlice> slices = read_dicom_slices(file);
+    if (slices.empty()) ++folder.others;
+    for (DicomSlice& slice : slices) {
+      auto group = std::ranges::find_if(folder.series, [&](const DicomGroup& g) {
+        return belong_together(g.slices.front(), slice);
+      });
+      if (group == folder.series.end()) {
+        const DicomImage& image = *slice.image;
+        folder.series.push_back({{image.series, image.description, image.modality, 0,
+                                  image.format.columns, image.format.rows, image.refused},
+                                 {}});
+        group = folder.series.end() - 1;
+      }
+      ++group->about.slices;
+      group->slices.push_back(std::move(slice));
+    }
+  }
+  std::ranges::stable_sort(folder.series, {}, [](const DicomGroup& group) {
+    return std::tuple(group.slices.front().image->series_number, group.about.uid);
+  });
+  return folder;
+}
+
+DicomGroup choose_dicom_series(const DicomFolder& folder, const fs::path& path,
+                               const std::optional<std::string>& wanted) {
+  const std::string name = path.string();
+  if (folder.series.empty()) {
+    throw Error(name + ": holds no DICOM file with pixels; folders within are not looked into");
+  }
+  std::vector<const DicomGroup*> found;
+  if (wanted) {
+    found = meant(folder, *wanted);
+  } else {
+    for (const DicomGroup& group : folder.series) {
+      const bool has_file = std::ranges::any_of(group.slices, [&](const DicomSlice& slice) {
+        return slice.image->file.filename() == path.filename();
+      });
+      if (fs::is_directory(path) || has_file) found.push_back(&group);
+    }
+  }
+  if (found.size() == 1) return *found.front();
+  const std::string all = std::to_string(folder.series.size()) + " DICOM series, " + listed(folder);
+  if (wanted) {
+    throw Error(name + ": " + (found.empty() ? "none" : "more than one") +
+                " of its series is meant by \"" + *wanted + "\"; there are " + all +
+                "; choose by number, UID or the unique end of one");
+  }
+  if (found.empty()) throw Error(name + ": has no pixels; beside it are " + all);
+  throw Error(name + ": holds " + all + "; choose one of them as the series, by number or UID");
+}
+
+bool is_dicom(const fs::path& path) {
+  std::error_code error;
+  if (fs::is_regular_file(path, error)) return is_dicom(file_source(path));
+  if (!fs::is_directory(path, error)) return false;
+  return std::ranges::any_of(files_of(path),
+                             [](const fs::path& file) { return is_dicom(file_source(file)); });
+}
+
+std::vector<DicomSeries> list_dicom_series(const fs::path& path) {
+  std::vector<DicomSeries> list;
+  for (const DicomGroup& group : scan_dicom_folder(path).series) list.push_back(group.about);
+  return list;
+}
+
+}  // namespace pellucid

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "dicom_slices.h"
+#include "pellucid/io/dicom_series.h"
+
+namespace pellucid {
+
+struct DicomGroup {
+  DicomSeries about;
+  std::vector<DicomSlice> slices;  ///< in the order of the files' names
+};
+
+struct DicomFolder {
+  std::vector<DicomGroup> series;
+  std::size_t others = 0;  ///< files that hold no slice
+};
+
+/// Throws Error where a file cannot be read.
+DicomFolder scan_dicom_folder(const std::filesystem::path& folder);
+
+/// The series that is wanted: its number from 1, its UID or the unique end of it; where none is,
+/// the only one, or for a file its own. Throws Error, listing what there is.
+DicomGroup choose_dicom_series(const DicomFolder& folder, const std::filesystem::path& path,
+                               const std::optional<std::string>& wanted);
+
+}  // namespace pellucid

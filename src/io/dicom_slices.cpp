@@ -1,0 +1,196 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "dicom_slices.h"
+
+#include <cmath>
+#include <limits>
+#include <string_view>
+#include <utility>
+
+#include "dicom_elements.h"
+#include "pellucid/scene/error.h"
+
+namespace pellucid {
+
+namespace {
+
+// PS3.6.
+namespace tag {
+constexpr DicomTag sop_class = 0x00080016, modality = 0x00080060, series_description = 0x0008103e,
+                   slice_thickness = 0x00180050, spacing_between_slices = 0x00180088,
+                   study = 0x0020000d, series = 0x0020000e, series_number = 0x00200011,
+                   instance_number = 0x00200013, position = 0x00200032, orientation = 0x00200037,
+                   samples = 0x00280002, photometric = 0x00280004, planar = 0x00280006,
+                   frames = 0x00280008, rows = 0x00280010, columns = 0x00280011,
+                   pixel_spacing = 0x00280030, bits_allocated = 0x00280100,
+                   bits_stored = 0x00280101, high_bit = 0x00280102, representation = 0x00280103,
+                   intercept = 0x00281052, slope = 0x00281053, lookup_table = 0x00283000,
+                   shared_groups = 0x52009229, frame_groups = 0x52009230,
+                   plane_position = 0x00209113, plane_orientation = 0x00209116,
+                   pixel_measures = 0x00289110, value_transformation = 0x00289145;
+}  // namespace tag
+
+std::optional<double> first_of(const std::vector<double>& numbers) {
+  return numbers.empty() ? std::nullopt : std::optional(numbers.front());
+}
+
+DicomFormat format_of(const DicomFile& file) {
+  const DicomDataSet& data = file.data;
+  DicomFormat format;
+  format.columns = data.number(tag::columns).value_or(0);
+  format.rows = data.number(tag::rows).value_or(0);
+  format.samples = data.number(tag::samples).value_or(1);
+  format.floating = file.pixel_tag != 0x7fe00010;
+  format.bits_allocated = data.number(tag::bits_allocated)
+                              .value_or(file.pixel_tag == 0x7fe00008   ? 32
+                                        : file.pixel_tag == 0x7fe00009 ? 64
+                                                                       : 0);
+  format.bits_stored = data.number(tag::bits_stored).value_or(format.bits_allocated);
+  format.high_bit = data.number(tag::high_bit).value_or(format.bits_stored - 1);
+  format.is_signed = data.number(tag::representation).value_or(0) == 1;
+  format.plane_by_plane = format.samples > 1 && data.number(tag::planar).value_or(0) == 1;
+  return format;
+}
+
+// Why the values of such an image are not read; empty where they are.
+std::string refusal(const DicomImage& image, const DicomFile& file) {
+  const DicomFormat& f = image.format;
+  const bool several = f.samples > 1;
+  if (image.photometric == "PALETTE COLOR") return "its values are indices into a palette";
+  if (several && image.photometric != "RGB" && image.photometric != "YBR_RCT" &&
+      image.photometric != "YBR_ICT") {
+    return "its colors are " + image.photometric + "; convert it to RGB";
+  }
+  if (file.data.sequences.contains(tag::lookup_table)) {
+    return "its values go through a lookup table (ModalityLUTSequence); convert it to a slope and "
+           "an intercept";
+  }
+  if (f.columns < 1 || f.rows < 1 || f.samples < 1) {
+    return "its header says " + std::to_string(f.columns) + " x " + std::to_string(f.rows) +
+           " pixels of " + std::to_string(f.samples) + " values";
+  }
+  const int bits = f.bits_allocated;
+  const bool known = f.floating ? bits == 32 || bits == 64 : bits == 8 || bits == 16 || bits == 32;
+  if (!known) return "values of " + std::to_string(bits) + " bits are not read";
+  if (!f.floating && (f.bits_stored < 1 || f.high_bit >= bits || f.high_bit + 1 < f.bits_stored)) {
+    return "its header says that " + std::to_string(f.bits_stored) + " bits end at bit " +
+           std::to_string(f.high_bit) + " of " + std::to_string(bits);
+  }
+  if (image.big_endian && bits == 8) return "big-endian values of 8 bits are not read";
+  return {};
+}
+
+// What is said of one frame: in its own functional group, in the shared one, else in the file.
+class FrameFacts {
+ public:
+  FrameFacts(const DicomDataSet& file, const DicomDataSet* frame)
+      : file_(file), shared_(file.item(tag::shared_groups)), frame_(frame) {}
+
+  std::vector<double> decimals(DicomTag group, DicomTag element) const {
+    for (const DicomDataSet* groups : {frame_, shared_}) {
+      const DicomDataSet* item = groups == nullptr ? nullptr : groups->item(group);
+      if (item == nullptr) continue;
+      std::vector<double> numbers = item->decimals(element);
+      if (!numbers.empty()) return numbers;
+    }
+    return file_.decimals(element);
+  }
+
+ private:
+  const DicomDataSet& file_;
+  const DicomDataSet *shared_, *frame_;
+};
+
+std::optional<std::array<Vec3<double>, 2>> directions(const std::vector<double>& cosines) {
+  if (cosines.size() != 6) return std::nullopt;
+  const Vec3<double> row{cosines[0], cosines[1], cosines[2]};
+  const Vec3<double> column{cosines[3], cosines[4], cosines[5]};
+  // Cosines come with three digits and more.
+  constexpr double tolerance = 0.01;
+  if (std::abs(length(row) - 1) > tolerance || std::abs(length(column) - 1) > tolerance ||
+      std::abs(dot(row, column)) > tolerance) {
+    return std::nullopt;
+  }
+  return std::array{row * (1 / length(row)), column * (1 / length(column))};
+}
+
+DicomSlice slice_of(const FrameFacts& facts) {
+  DicomSlice slice;
+  const std::vector<double> position = facts.decimals(tag::plane_position, tag::position);
+  if (position.size() == 3) slice.position = {position[0], position[1], position[2]};
+  slice.orientation = directions(facts.decimals(tag::plane_orientation, tag::orientation));
+  const std::vector<double> spacing = facts.decimals(tag::pixel_measures, tag::pixel_spacing);
+  // PS3.3, 10.7.1.3: first the distance of rows.
+  if (spacing.size() == 2 && spacing[0] > 0 && spacing[1] > 0) {
+    slice.spacing = std::array{spacing[1], spacing[0]};
+  }
+  slice.distance = first_of(facts.decimals(tag::pixel_measures, tag::spacing_between_slices));
+  slice.thickness = first_of(facts.decimals(tag::pixel_measures, tag::slice_thickness));
+  slice.slope = first_of(facts.decimals(tag::value_transformation, tag::slope)).value_or(1);
+  slice.intercept = first_of(facts.decimals(tag::value_transformation, tag::intercept)).value_or(0);
+  return slice;
+}
+
+}  // namespace
+
+std::string DicomSlice::name() const {
+  const std::string file = image->file.filename().string();
+  return image->frames == 1 ? file : "frame " + std::to_string(frame + 1) + " of " + file;
+}
+
+std::vector<DicomSlice> read_dicom_slices(const std::filesystem::path& path) {
+  const ByteSource source = file_source(path);
+  if (!is_dicom(source)) return {};
+  const DicomFile file = parse_dicom(source);
+  if (!file.has_pixels) return {};
+  const DicomDataSet& data = file.data;
+
+  auto image = std::make_shared<DicomImage>();
+  image->file = path;
+  image->study = data.text(tag::study);
+  image->series = data.text(tag::series);
+  image->description = data.text(tag::series_description);
+  image->modality = data.text(tag::modality);
+  image->photometric = data.text(tag::photometric);
+  const double series_number = first_of(data.decimals(tag::series_number)).value_or(0);
+  if (std::abs(series_number) < 1e9) {
+    image->series_number = static_cast<std::int64_t>(series_number);
+  }
+  image->transfer_syntax = file.transfer_syntax;
+  image->format = format_of(file);
+  image->big_endian = data.big_endian;
+  image->encapsulated = file.encapsulated;
+  image->pixel_offset = file.pixel_offset;
+  image->pixel_bytes = file.pixel_bytes;
+  image->refused = refusal(*image, file);
+
+  const double frames = first_of(data.decimals(tag::frames)).value_or(1);
+  const auto groups = data.sequences.find(tag::frame_groups);
+  const bool has_groups = groups != data.sequences.end();
+  if (!(frames >= 1) || frames > std::numeric_limits<std::uint16_t>::max() * 16.0) {
+    image->refused = "its header says " + std::to_string(frames) + " frames";
+  } else if (frames > 1 && !has_groups) {
+    image->refused = "its " + std::to_string(static_cast<int>(frames)) +
+                     " frames have no positions of their own: a film, or a kind that is not read; "
+                     "save its frames as files with positions";
+  } else if (has_groups && groups->second.size() != static_cast<std::size_t>(frames)) {
+    image->refused = "it has " + std::to_string(static_cast<int>(frames)) + " frames, but places " +
+                     "for " + std::to_string(groups->second.size());
+  } else {
+    image->frames = static_cast<int>(frames);
+  }
+
+  std::vector<DicomSlice> slices;
+  for (int frame = 0; frame < image->frames; ++frame) {
+    const DicomDataSet* group = has_groups && image->refused.empty()
+                                    ? &groups->second[static_cast<std::size_t>(frame)]
+                                    : nullptr;
+    DicomSlice slice = slice_of(FrameFacts(data, group));
+    slice.image = image;
+    slice.frame = frame;
+    slice.number = first_of(data.decimals(tag::instance_number));
+    slices.push_back(std::move(slice));
+  }
+  return slices;
+}
+
+}  // namespace pellucid

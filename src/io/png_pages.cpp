@@ -1,0 +1,128 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <png.h>
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <csetjmp>
+#include <cstdint>
+#include <cstdio>
+#include <string>
+#include <vector>
+
+#include "image_pages.h"
+#include "pellucid/scene/error.h"
+#include "volume_source.h"
+
+namespace pellucid {
+
+namespace {
+
+struct Failure {
+  char text[128] = "not enough memory";
+};
+
+// libpng's own handler prints; and a handler may not return.
+[[noreturn]] void leave(png_structp png, png_const_charp message) {
+  Failure& failure = *static_cast<Failure*>(png_get_error_ptr(png));
+  std::snprintf(failure.text, sizeof(failure.text), "%s", message);
+  png_longjmp(png, 1);
+}
+void ignore(png_structp, png_const_charp) {}
+
+// The bytes of a row, as libpng is about to write them.
+struct Rows {
+  png_bytepp rows;
+  std::size_t bytes_per_row;
+};
+
+// libpng leaves by longjmp where it fails, so nothing in here may need a destructor.
+bool read_with_libpng(std::FILE* file, const Rows& to, Failure& failure) {
+  png_structp png = png_create_read_struct(PNG_LIBPNG_VER_STRING, &failure, leave, ignore);
+  if (png == nullptr) return false;
+  png_infop info = png_create_info_struct(png);
+  if (info == nullptr || setjmp(png_jmpbuf(png)) != 0) {
+    png_destroy_read_struct(&png, &info, nullptr);
+    return false;
+  }
+  png_set_crc_action(png, PNG_CRC_ERROR_QUIT, PNG_CRC_ERROR_QUIT);
+  png_init_io(png, file);
+  png_read_info(png, info);
+  if (std::endian::native == std::endian::little) png_set_swap(png);
+  png_set_interlace_handling(png);
+  png_read_update_info(png, info);
+  if (png_get_rowbytes(png, info) != to.bytes_per_row)
+    png_error(png, "its header contradicts itself");
+  png_read_image(png, to.rows);
+  png_read_end(png, nullptr);
+  png_destroy_read_struct(&png, &info, nullptr);
+  return true;
+}
+
+class PngReader : public PageReader {
+ public:
+  // The PNG specification, 5.2 and 11.2.2: a signature of 8 bytes and a chunk IHDR.
+  explicit PngReader(const std::filesystem::path& file) : file_(file), name_(file.string()) {
+    const ByteSource source = file_source(file);
+    std::array<std::byte, 26> start{};
+    if (source.size >= start.size()) source.read(0, start);
+    const auto byte = [&](std::size_t i) { return std::to_integer<std::uint32_t>(start[i]); };
+    const auto word = [&](std::size_t i) {
+      return byte(i) << 24 | byte(i + 1) << 16 | byte(i + 2) << 8 | byte(i + 3);
+    };
+    if (word(0) != 0x89504e47 || word(4) != 0x0d0a1a0a || word(12) != 0x49484452) {
+      throw Error(name_ + ": does not begin like a PNG file");
+    }
+    const int bits = std::to_integer<int>(start[24]), color = std::to_integer<int>(start[25]);
+    if (color == PNG_COLOR_TYPE_PALETTE || (bits != 8 && bits != 16)) {
+      throw Error(name_ +
+                  (color == PNG_COLOR_TYPE_PALETTE
+                       ? ": its values are indices into a palette"
+                       : ": values of " + std::to_string(bits) + " bits are not read") +
+                  "; convert it to gray or RGB of 8 or 16 bits");
+    }
+    format_.samples = color == PNG_COLOR_TYPE_GRAY         ? 1
+                      : color == PNG_COLOR_TYPE_GRAY_ALPHA ? 2
+                      : color == PNG_COLOR_TYPE_RGB        ? 3
+                                                           : 4;
+    format_.type = bits == 8 ? "u8" : "u16";
+    value_count({word(16), word(20), format_.samples}, name_);
+    format_.columns = static_cast<int>(word(16));
+    format_.rows = static_cast<int>(word(20));
+  }
+
+  PageFormat format() const override { return format_; }
+
+  void read(std::span<std::byte> to) override {
+    const auto height = static_cast<std::size_t>(format_.rows);
+    const std::size_t bytes = to.size() / height;
+    std::vector<png_bytep> rows(height);
+    for (std::size_t y = 0; y < height; ++y) {
+      rows[y] = reinterpret_cast<png_bytep>(&to[y * bytes]);
+    }
+    std::FILE* stream = std::fopen(file_.c_str(), "rb");
+    if (stream == nullptr) throw Error(name_ + ": cannot read the file");
+    Failure failure;
+    const bool done = read_with_libpng(stream, {rows.data(), bytes}, failure);
+    std::fclose(stream);
+    if (!done) {
+      throw Error(name_ + ": cannot read its pixels (" + failure.text +
+                  "); it is cut off or damaged");
+    }
+  }
+
+  bool next() override { return false; }
+
+ private:
+  std::filesystem::path file_;
+  std::string name_;
+  PageFormat format_;
+};
+
+}  // namespace
+
+std::unique_ptr<PageReader> open_png(const std::filesystem::path& file) {
+  return std::make_unique<PngReader>(file);
+}
+
+}  // namespace pellucid
