@@ -17,6 +17,7 @@
 #include "image_pages.h"
 #include "memory_limit.h"
 #include "pellucid/scene/error.h"
+#include "tiff_chain.h"
 #include "volume_source.h"
 
 namespace pellucid {
@@ -79,6 +80,7 @@ std::string word_of(std::string_view description, std::string_view key) {
 class TiffReader : public PageReader {
  public:
   explicit TiffReader(const std::filesystem::path& file) : name_(file.string()) {
+    check_tiff_chain(file);
     const std::unique_ptr<TIFFOpenOptions, Close> options(TIFFOpenOptionsAlloc());
     if (!options) throw std::bad_alloc();
     TIFFOpenOptionsSetErrorHandlerExtR(options.get(), keep_message, &message_);
