@@ -17,46 +17,17 @@ std::vector<std::byte> decode_dicom(const DicomImage& image) {
 #else
 
 #include <gdcmImageReader.h>
-#include <gdcmTrace.h>
 
 #include <algorithm>
-#include <exception>
-#include <mutex>
+#include <optional>
+#include <span>
 
+#include "contained.h"
 #include "memory_limit.h"
 
 namespace pellucid {
 
 namespace {
-
-// GDCM tells on stderr what it thinks of a file; a library has nothing to say there. The switches
-// are the whole program's, so one file is read at a time.
-class Silence {
- public:
-  Silence()
-      : lock_(mutex()),
-        debug_(gdcm::Trace::GetDebugFlag()),
-        warning_(gdcm::Trace::GetWarningFlag()),
-        error_(gdcm::Trace::GetErrorFlag()) {
-    set(false, false, false);
-  }
-  ~Silence() { set(debug_, warning_, error_); }
-  Silence(const Silence&) = delete;
-  Silence& operator=(const Silence&) = delete;
-
- private:
-  static std::mutex& mutex() {
-    static std::mutex instance;
-    return instance;
-  }
-  static void set(bool debug, bool warning, bool error) {
-    gdcm::Trace::SetDebug(debug);
-    gdcm::Trace::SetWarning(warning);
-    gdcm::Trace::SetError(error);
-  }
-  std::lock_guard<std::mutex> lock_;
-  bool debug_, warning_, error_;
-};
 
 // RGBRGB… out of R…G…B… frame by frame.
 std::vector<std::byte> side_by_side(const std::vector<std::byte>& planes, const DicomFormat& format,
@@ -80,29 +51,30 @@ std::vector<std::byte> side_by_side(const std::vector<std::byte>& planes, const 
   return result;
 }
 
-std::vector<std::byte> decode(const DicomImage& image, std::uintmax_t bytes) {
+// Whether the values were written to `to`.
+bool decode(const DicomImage& image, std::span<std::byte> to) {
   gdcm::ImageReader reader;
   reader.SetFileName(image.file.c_str());
-  if (!reader.Read()) return {};
+  if (!reader.Read()) return false;
   const gdcm::Image& decoded = reader.GetImage();
   const DicomFormat& format = image.format;
-  const auto side = [&](unsigned axis) {
-    return static_cast<std::uintmax_t>(decoded.GetDimension(axis));
+  const auto is = [&](unsigned axis, int side) {
+    return decoded.GetDimension(axis) == static_cast<unsigned>(side);
   };
-  const std::uintmax_t frames = decoded.GetNumberOfDimensions() > 2 ? side(2) : 1;
-  if (side(0) != static_cast<std::uintmax_t>(format.columns) ||
-      side(1) != static_cast<std::uintmax_t>(format.rows) ||
-      frames != static_cast<std::uintmax_t>(image.frames) ||
+  const bool has_frames =
+      decoded.GetNumberOfDimensions() > 2 ? is(2, image.frames) : image.frames == 1;
+  if (!is(0, format.columns) || !is(1, format.rows) || !has_frames ||
       decoded.GetPixelFormat().GetBitsAllocated() != format.bits_allocated ||
       decoded.GetPixelFormat().GetSamplesPerPixel() != format.samples ||
-      decoded.GetBufferLength() != bytes) {
-    throw Error(image.file.string() +
-                ": its compressed pixels are of another size or type than its header says");
+      decoded.GetBufferLength() != to.size() ||
+      !decoded.GetBuffer(reinterpret_cast<char*>(to.data()))) {
+    return false;
   }
-  std::vector<std::byte> values(bytes);
-  if (!decoded.GetBuffer(reinterpret_cast<char*>(values.data()))) return {};
-  const bool planes = format.samples > 1 && decoded.GetPlanarConfiguration() == 1;
-  return planes ? side_by_side(values, format, image.frames) : values;
+  if (format.samples > 1 && decoded.GetPlanarConfiguration() == 1) {
+    const std::vector<std::byte> planes(to.begin(), to.end());
+    std::ranges::copy(side_by_side(planes, format, image.frames), to.begin());
+  }
+  return true;
 }
 
 }  // namespace
@@ -110,28 +82,21 @@ std::vector<std::byte> decode(const DicomImage& image, std::uintmax_t bytes) {
 std::vector<std::byte> decode_dicom(const DicomImage& image) {
   const std::string name = image.file.string();
   const DicomFormat& format = image.format;
-  const std::uintmax_t bytes =
-      std::uintmax_t{static_cast<unsigned>(format.columns)} * static_cast<unsigned>(format.rows) *
-      static_cast<unsigned>(format.samples) * static_cast<unsigned>(format.bits_allocated / 8) *
-      static_cast<unsigned>(image.frames);
-  // Decompressed, and once more with colors side by side.
+  std::uintmax_t bytes = static_cast<std::uintmax_t>(format.bits_allocated / 8);
+  for (const int factor : {format.columns, format.rows, format.samples, image.frames}) {
+    bytes *= static_cast<std::uintmax_t>(factor);
+  }
+  // Where they are decompressed, and where they are given back.
   check_memory(2 * bytes, name + ": its pixels");
-  const Silence silence;
-  std::vector<std::byte> values;
-  try {
-    values = decode(image, bytes);
-  } catch (const Error&) {
-    throw;
-  } catch (const std::bad_alloc&) {
-    throw;
-  } catch (const std::exception&) {
-    values.clear();
-  }
-  if (values.empty()) {
-    throw Error(name + ": cannot decompress its pixels (transfer syntax " + image.transfer_syntax +
-                "); decompress the file with another program, or get it again");
-  }
-  return values;
+  // GDCM 3.0.21 crashes on damaged files, some 8 of 1000 (docs/limitations.md).
+  std::optional<std::vector<std::byte>> values =
+      run_contained(bytes, [&](std::span<std::byte> to) { return decode(image, to); });
+  if (values) return *std::move(values);
+  throw Error(name +
+              ": GDCM cannot decompress its pixels to what its header says (transfer syntax " +
+              image.transfer_syntax +
+              "); decompress the file with another program, or get it "
+              "again");
 }
 
 }  // namespace pellucid

@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <csignal>
+#include <cstddef>
+#include <cstdio>
+#include <cstdlib>
+#include <stdexcept>
+#include <vector>
+
+#include "sanitized.h"
+#include "src/io/contained.h"
+
+namespace pellucid {
+namespace {
+
+TEST(Contained, GivesWhatWasWritten) {
+  const auto filled = run_contained(1000, [](std::span<std::byte> to) {
+    std::ranges::fill(to, std::byte{7});
+    return true;
+  });
+  ASSERT_TRUE(filled);
+  EXPECT_EQ(*filled, std::vector(1000, std::byte{7}));
+  EXPECT_TRUE(run_contained(0, [](std::span<std::byte>) { return true; })->empty());
+}
+
+TEST(Contained, GivesNothingAfterAFailure) {
+  const auto nothing = [](auto work) {
+    return !run_contained(10, [&](std::span<std::byte>) {
+      work();
+      return false;
+    });
+  };
+  EXPECT_TRUE(nothing([] {}));
+  EXPECT_TRUE(nothing([] { throw std::runtime_error("no"); }));
+  EXPECT_TRUE(nothing([] { std::abort(); }));
+  EXPECT_TRUE(nothing([] { std::raise(SIGSEGV); }));
+  EXPECT_TRUE(nothing([] { std::raise(SIGFPE); }));
+  EXPECT_TRUE(nothing([] { std::raise(SIGKILL); }));
+}
+
+TEST(Contained, NothingIsPrinted) {
+  ::testing::internal::CaptureStderr();
+  EXPECT_FALSE(run_contained(1, [](std::span<std::byte>) -> bool {
+    std::fputs("noise", stderr);
+    std::abort();
+  }));
+  EXPECT_EQ(::testing::internal::GetCapturedStderr(), "");
+}
+
+#ifndef PELLUCID_SANITIZED
+TEST(Contained, MemoryIsLimited) {
+  EXPECT_FALSE(run_contained(1, [](std::span<std::byte> to) {
+    std::vector<std::byte> much(std::size_t{2} << 30);
+    to.front() = much.back();
+    return true;
+  }));
+}
+#endif
+
+}  // namespace
+}  // namespace pellucid
