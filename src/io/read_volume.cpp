@@ -10,6 +10,7 @@
 #include <system_error>
 
 #include "components.h"
+#include "dat_header.h"
 #include "dicom.h"
 #include "image_stack.h"
 #include "input_file.h"
@@ -78,6 +79,7 @@ VolumeFile open_file(const std::filesystem::path& path, const ReadOptions& optio
   Opener open = opener_of(path);
   // Whoever says how large the data is and of what type has said that it has no header.
   if (open == nullptr && options.dimensions && options.type) open = open_raw_file;
+  if (open == nullptr && is_dat_header(path)) open = open_dat;
   if (open == nullptr && is_dicom(path)) open = open_dicom;
   if (open == nullptr && is_mesh_file(path)) {
     throw Error(path.string() +
@@ -89,7 +91,8 @@ VolumeFile open_file(const std::filesystem::path& path, const ReadOptions& optio
       known += (known.empty() ? "" : " ") + std::string(format.extension);
     }
     throw Error(path.string() + ": the file's extension is not known; read are " + known +
-                ", and headerless data of any name with its dimensions and type given");
+                ", .dat headers of Inviwo and Voreen, and headerless data of any name with its "
+                "dimensions and type given");
   }
   return open(path, options);
 }
