@@ -15,7 +15,7 @@ namespace {
 
 // PS3.6.
 namespace tag {
-constexpr DicomTag sop_class = 0x00080016, modality = 0x00080060, series_description = 0x0008103e,
+constexpr DicomTag image_type = 0x00080008, modality = 0x00080060, series_description = 0x0008103e,
                    slice_thickness = 0x00180050, spacing_between_slices = 0x00180088,
                    study = 0x0020000d, series = 0x0020000e, series_number = 0x00200011,
                    instance_number = 0x00200013, position = 0x00200032, orientation = 0x00200037,
@@ -63,6 +63,10 @@ std::string refusal(const DicomImage& image, const DicomFile& file) {
   if (file.data.sequences.contains(tag::lookup_table)) {
     return "its values go through a lookup table (ModalityLUTSequence); convert it to a slope and "
            "an intercept";
+  }
+  // Siemens: the slices of a volume side by side in one image, placed by a header of its own.
+  if (file.data.text(tag::image_type).find("MOSAIC") != std::string::npos) {
+    return "it is a mosaic of slices; convert it to one image per slice, or to NIfTI with dcm2niix";
   }
   if (f.columns < 1 || f.rows < 1 || f.samples < 1) {
     return "its header says " + std::to_string(f.columns) + " x " + std::to_string(f.rows) +

@@ -337,6 +337,11 @@ VolumeFile open_nrrd(const fs::path& path, const ReadOptions& options) {
   refuse_raw_options(options, name);
   check_input_file(path);
   const Header header = read_header(path);
+  const Line* encoding = find_field(header, "encoding");
+  if (encoding != nullptr && in_small_letters(encoding->value).starts_with("bz")) {
+    throw Error(name +
+                ": its values are compressed with bzip2, which is not read; save it with gzip");
+  }
   NrrdText text;
   text.count = header_count(header, name);
   text.components_axis = find_components_axis(header, name);

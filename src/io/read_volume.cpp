@@ -11,6 +11,7 @@
 #include <system_error>
 
 #include "components.h"
+#include "dat_header.h"
 #include "dicom.h"
 #include "image_stack.h"
 #include "input_file.h"
@@ -85,6 +86,7 @@ Opener find_opener(const std::filesystem::path& path, const ReadOptions& options
   Opener open = opener_of(path);
   // Whoever says how large the data is and of what type has said that it has no header.
   if (open == nullptr && options.dimensions && options.type) open = open_raw_file;
+  if (open == nullptr && is_dat_header(path)) open = open_dat;
   if (open == nullptr && is_dicom(path)) open = open_dicom;
   if (open == nullptr && is_mesh_file(path)) {
     throw Error(path.string() +
@@ -93,7 +95,8 @@ Opener find_opener(const std::filesystem::path& path, const ReadOptions& options
   if (open == nullptr) {
     throw Error(path.string() + ": the file's extension is not known; read are " +
                 volume_extensions() +
-                ", and headerless data of any name with its dimensions and type given");
+                ", .dat headers of Inviwo and Voreen, and headerless data of any name with its "
+                "dimensions and type given");
   }
   return open;
 }

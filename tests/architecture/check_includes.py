@@ -37,6 +37,8 @@ OTHER_PROJECTS = [
     (re.compile(r"^(oneapi/)?tbb/"), "TBB::tbb"),
     (re.compile(r"^boost/"), "Boost::headers"),
     (re.compile(r"^png\.h$"), "PNG::PNG"),
+    (re.compile(r"^tiffio\.h$"), "TIFF::TIFF"),
+    (re.compile(r"^gdcm[A-Z].*\.h$"), "GDCM"),
     (re.compile(r"^zlib\.h$"), "ZLIB::ZLIB"),
     (re.compile(r"^(OpenEXR/)?(Imf|Iex)"), "OpenEXR::OpenEXR"),
     (re.compile(r"^(Imath/)?(Imath|half)"), "OpenEXR::OpenEXR"),

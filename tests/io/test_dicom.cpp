@@ -408,6 +408,10 @@ TEST_F(DicomTest, OtherKindsAreRefusedByName) {
   EXPECT_TRUE(
       contains(refuse([](auto& f) { f.set(0x00280004, "YBR_FULL_422").set(0x00280002, 3); }),
                "YBR_FULL_422"));
+  EXPECT_TRUE(contains(refuse([](auto& f) {
+                         f.text[0x00080008] = {"CS", "ORIGINAL\\PRIMARY\\M\\MOSAIC"};
+                       }),
+                       "mosaic"));
   EXPECT_TRUE(contains(refuse([](auto& f) { f.set(0x00280100, 1); }), "1 bits"));
   EXPECT_TRUE(contains(refuse([](auto& f) { f.set(0x00280100, 12); }), "12 bits"));
   EXPECT_TRUE(contains(refuse([](auto& f) { f.set(0x00280101, 17); }), "17 bits end at bit 11"));

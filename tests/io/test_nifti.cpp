@@ -144,6 +144,58 @@ TEST_F(NiftiTest, SformStandsInLps) {
   expect_near(world_of(volume, 0, 0, 1), {-10, -23, 30});
 }
 
+// One image with its axes in eight orders, as nifti_space of the conformance files: the letters say
+// where the indices grow to.
+TEST_F(NiftiTest, EightOrdersOfAxesAreOneImage) {
+  const std::array<int, 3> sides{5, 4, 3};  // to the right, anterior, superior
+  const std::array<double, 3> steps{1, 2, 3}, corner{10, 20, 30};
+  for (const std::string order : {"RAS", "LAS", "LPS", "LPI", "PSR", "AIL", "SAR", "IRP"}) {
+    SCOPED_TRACE(order);
+    std::array<std::size_t, 3> axis{};
+    std::array<bool, 3> turned{};
+    for (std::size_t a = 0; a < 3; ++a) {
+      const std::size_t letter = std::string("RASLPI").find(order[a]);
+      axis[a] = letter % 3;
+      turned[a] = letter >= 3;
+    }
+    NiftiFile file;
+    file.sform_code = 1;
+    std::array<double, 3> origin = corner;
+    for (std::size_t a = 0; a < 3; ++a) {
+      file.dim[a + 1] = static_cast<std::int16_t>(sides[axis[a]]);
+      file.pixdim[a + 1] = static_cast<float>(steps[axis[a]]);
+      file.sform[4 * axis[a] + a] =
+          static_cast<float>(turned[a] ? -steps[axis[a]] : steps[axis[a]]);
+      if (turned[a]) origin[axis[a]] += steps[axis[a]] * (sides[axis[a]] - 1);
+    }
+    for (std::size_t a = 0; a < 3; ++a) file.sform[4 * a + 3] = static_cast<float>(origin[a]);
+    // The value at (i, j, k) to the right, anterior, superior is i + 5 j + 20 k.
+    std::vector<float> values;
+    std::array<int, 3> index{};
+    for (index[2] = 0; index[2] < file.dim[3]; ++index[2]) {
+      for (index[1] = 0; index[1] < file.dim[2]; ++index[1]) {
+        for (index[0] = 0; index[0] < file.dim[1]; ++index[0]) {
+          std::array<int, 3> at{};
+          for (std::size_t a = 0; a < 3; ++a) {
+            at[axis[a]] = turned[a] ? sides[axis[a]] - 1 - index[a] : index[a];
+          }
+          values.push_back(static_cast<float>(at[0] + 5 * at[1] + 20 * at[2]));
+        }
+      }
+    }
+    const Volume volume = parse(file.with(bytes_of(values)));
+    for (int k = 0; k < file.dim[3]; ++k) {
+      for (int j = 0; j < file.dim[2]; ++j) {
+        for (int i = 0; i < file.dim[1]; ++i) {
+          const int value = static_cast<int>(test::value_at(volume, i, j, k));
+          expect_near(world_of(volume, i, j, k),
+                      {-(10.0 + value % 5), -(20.0 + value / 5 % 4 * 2), 30.0 + value / 20 * 3});
+        }
+      }
+    }
+  }
+}
+
 TEST_F(NiftiTest, ObliqueSformStandsAsItLies) {
   const double angle = 0.3, c = std::cos(angle), s = std::sin(angle);
   NiftiFile file;

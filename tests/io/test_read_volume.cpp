@@ -29,7 +29,7 @@ TEST_F(ReadVolumeTest, MissingFilesFoldersAndDevices) {
 }
 
 TEST_F(ReadVolumeTest, AnUnknownExtensionNamesTheKnownOnes) {
-  for (const char* name : {"brain.dcm", "brain", "nii", "brain.gz", "brain.nii.bz2"}) {
+  for (const char* name : {"brain.dat", "brain", "nii", "brain.gz", "brain.nii.bz2"}) {
     write(name, "bytes");
     const std::string text = error_of([&] { read_volume(path(name)); });
     for (const char* known :

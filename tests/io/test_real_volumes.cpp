@@ -2,6 +2,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <cstdlib>
 #include <filesystem>
 #include <numeric>
 #include <string>
@@ -49,9 +50,66 @@ TEST_P(RealFile, IsAsTheManifestSays) {
   expect_facts(GetParam());
 }
 
-INSTANTIATE_TEST_SUITE_P(Own, RealFile,
-                         ::testing::Values(Facts{
-                             "structured/hdz2000.npy", "u8", {128, 128, 128}, {1, 1, 1}, 0, 255}));
+INSTANTIATE_TEST_SUITE_P(
+    Own, RealFile,
+    ::testing::Values(
+        Facts{"structured/hdz2000.npy", "u8", {128, 128, 128}, {1, 1, 1}, 0, 255},
+        // The thickness says 8.
+        Facts{"dicom/cptac_sar_mr_3slice", "u16", {512, 512, 3}, {0.97656, 0.97656, 12}, 0, 346},
+        Facts{"structured/cthead_tiff", "u16", {256, 256, 99}, {1, 1, 1}, 0, 3272},
+        Facts{
+            "structured/hydrogenatom/hydrogenatom.dat", "u8", {128, 128, 128}, {1, 1, 1}, 0, 250}));
+
+TEST(RealVolumes, AnObliqueSeriesOfManyFiles) {
+  const fs::path archive = data / "dicom/n2d_t1w.tar.xz";
+  if (!fs::exists(archive)) GTEST_SKIP() << archive.string() << " not found";
+  std::string pattern = (fs::temp_directory_path() / "pellucid_n2d_XXXXXX").string();
+  ASSERT_NE(mkdtemp(pattern.data()), nullptr);
+  const std::string command = "tar -xJf '" + archive.string() + "' -C '" + pattern + "'";
+  if (std::system(command.c_str()) != 0) GTEST_SKIP() << "cannot unpack by: " << command;
+  const Volume volume = read_volume(fs::path(pattern) / "n2d_t1w");
+  const Volume by_file = read_volume(fs::path(pattern) / "n2d_t1w/N2D_0200.dcm");
+  fs::remove_all(pattern);
+  EXPECT_EQ(type_name(volume.data()), "i16");
+  EXPECT_EQ(volume.description().dimensions, (std::array<int, 3>{274, 384, 384}));
+  test::expect_near(volume.description().placement.spacing, {0.69999, 0.66667, 0.66667}, 1e-4);
+  EXPECT_EQ(volume.statistics().minimum, 0);
+  EXPECT_EQ(volume.statistics().maximum, 278);
+  EXPECT_EQ(volume.data(), by_file.data());
+  // Neighbors are alike only if the slices are in their order: of 384 files in any other, each
+  // pair of neighbors would differ about as much as a slice from one far away.
+  const auto difference = [&](int distance) {
+    double sum = 0;
+    for (int k = 0; k + distance < 384; k += 7) {
+      for (int i = 0; i < 274; i += 3) {
+        sum += std::abs(test::value_at(volume, i, 192, k) -
+                        test::value_at(volume, i, 192, k + distance));
+      }
+    }
+    return sum / (384 - distance);
+  };
+  EXPECT_LT(difference(1), 0.5 * difference(60));
+}
+
+TEST(RealVolumes, DatHeaders) {
+  const fs::path folder = data / "conformance/inviwo_types";
+  if (!fs::exists(folder)) GTEST_SKIP() << folder.string() << " not found";
+  for (const char* name : {"INT8", "UINT8", "INT16.LittleEndian", "INT16.BigEndian",
+                           "FLOAT32.LittleEndian", "FLOAT64.BigEndian"}) {
+    SCOPED_TRACE(name);
+    const Volume volume = read_volume(folder / ("testdata." + std::string(name) + ".dat"));
+    EXPECT_EQ(volume.description().dimensions, (std::array<int, 3>{13, 7, 3}));
+  }
+  for (const char* name : {"FLOAT16.BigEndian", "INT64.LittleEndian", "UINT64.BigEndian"}) {
+    EXPECT_TRUE(test::contains(
+        test::error_of([&] { read_volume(folder / ("testdata." + std::string(name) + ".dat")); }),
+        "are not read"));
+  }
+  const std::vector<Volume> both = read_components(data / "multivariate/Bi2O3/Bi2O3.dat");
+  ASSERT_EQ(both.size(), 2u);
+  EXPECT_NEAR(both[1].statistics().maximum, 0.69314718, 1e-8);
+  test::expect_near(both[0].world_corners()[7] - both[0].world_corners()[0], {5.684, 5.684, 5.684});
+}
 
 #ifdef PELLUCID_HAVE_ITK
 INSTANTIATE_TEST_SUITE_P(

@@ -33,14 +33,14 @@ struct ReadOptions {
 };
 
 /// Reads a volume by its extension: .nii .nii.gz .hdr/.img(.gz) .nrrd .nhdr .mha .mhd (through ITK,
-/// where the build has it), .npy, .slc, .raw, .mrc .map .rec .st .ccp4, .dcm .ima; a stack of
-/// images, .tif .tiff .png, by any of its files, a pattern of them ("slice%03d.tif") or its folder;
-/// a DICOM series by its folder or any of its files, of any name; any file as raw where dimensions
-/// and type are both given; and images and rectilinear grids of VTK's by their first bytes (.vti,
-/// .pvti, .vtr, .pvtr, legacy .vtk; through VTK, where the build has it): arrays of points are
-/// point-centred, arrays of cells cell-centred, whole numbers of 64 bits become double, bits u8.
-/// Throws Error: what, where, what to do; also for a file of several components of which the
-/// options choose none.
+/// where the build has it), .npy, .slc, .raw, .mrc .map .rec .st .ccp4, .dcm .ima; a .dat
+/// header of Inviwo's or Voreen's; a stack of images, .tif .tiff .png, by any of its files, a
+/// pattern of them ("slice%03d.tif") or its folder; a DICOM series by its folder or any of its
+/// files, of any name; any file as raw where dimensions and type are both given; and images and
+/// rectilinear grids of VTK's by their first bytes (.vti, .pvti, .vtr, .pvtr, legacy .vtk; through
+/// VTK, where the build has it): arrays of points are point-centred, arrays of cells cell-centred,
+/// whole numbers of 64 bits become double, bits u8. Throws Error: what, where, what to do; also for
+/// a file of several components of which the options choose none.
 Volume read_volume(const std::filesystem::path& path, const ReadOptions& options = {});
 
 /// A file may have several numbers at each point, its components: colors and vectors, the steps of

@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "pellucid/io/read_volume.h"
+#include "volume_files.h"
+
+namespace pellucid {
+namespace {
+
+using test::bytes_of;
+using test::contains;
+using test::counting;
+using test::error_of;
+using test::expect_counting;
+using test::expect_near;
+using test::world_of;
+
+class DatTest : public test::ScratchFolder {
+ protected:
+  void SetUp() override {
+    ScratchFolder::SetUp();
+    write("v.raw", bytes_of(counting()));
+  }
+  Volume parse(const std::string& header) { return read_volume(write("a.dat", header)); }
+  std::string error(const std::string& header) {
+    return error_of([&] { parse(header); });
+  }
+};
+
+TEST_F(DatTest, OfVoreen) {
+  const Volume volume = parse(
+      "ObjectFileName:\tv.raw\r\nTaggedFileName: ---\r\nResolution:     5 4 3\r\n"
+      "SliceThickness: 1 2 3\r\nFormat:         FLOAT");
+  expect_counting(volume, "f32");
+  expect_near(world_of(volume, 4, 3, 2), {4, 6, 6});
+  EXPECT_EQ(volume.description().name, path("a.dat").string());
+}
+
+TEST_F(DatTest, OfInviwo) {
+  expect_counting(parse("RawFile: v.raw\nResolution: 5 4 3\nFormat: FLOAT32\n"), "f32");
+  write("v.raw", test::swapped_bytes_of(counting<std::int16_t>()));
+  expect_counting(parse("RawFile: v.raw\nResolution: 5 4 3\nFormat: INT16\nByteOrder: BigEndian\n"),
+                  "i16");
+}
+
+// The basis spans the cells: values are half a cell inside of it.
+TEST_F(DatTest, BasisVectorsSpanTheCells) {
+  const std::string basis =
+      "RawFile: v.raw\nResolution: 5 4 3\nFormat: FLOAT32\nBasisVector1: 10 0 0\n"
+      "BasisVector2: 0 0 4\nBasisVector3: 0 9 0\n";
+  const Volume placed = parse(basis + "Offset: 100 200 300\n");
+  EXPECT_EQ(placed.description().centering, Centering::cell);
+  expect_near(world_of(placed, 0, 0, 0), {101, 201.5, 300.5});
+  expect_near(world_of(placed, 4, 3, 2), {109, 207.5, 303.5});
+  expect_near(placed.world_corners()[0], {100, 200, 300});
+  expect_near(parse(basis).world_corners()[7], {5, 4.5, 2});
+}
+
+TEST_F(DatTest, VectorsAreComponents) {
+  std::vector<std::uint8_t> values;
+  for (int i = 0; i < 120; ++i) values.push_back(static_cast<std::uint8_t>(i / 2 + 60 * (i % 2)));
+  write("v.raw", bytes_of(values));
+  write("a.dat", "RawFile: v.raw\nResolution: 5 4 3\nFormat: Vec2UINT8\n");
+  const std::vector<Volume> both = read_components(path("a.dat"));
+  ASSERT_EQ(both.size(), 2u);
+  expect_counting(both[0], "u8");
+  EXPECT_EQ(test::value_at(both[1], 4, 3, 2), 119);
+}
+
+TEST_F(DatTest, BadHeadersAreRefused) {
+  const auto with = [](const std::string& resolution, const std::string& format) {
+    return "RawFile: v.raw\nResolution: " + resolution + "\nFormat: " + format + "\n";
+  };
+  EXPECT_TRUE(contains(error(with("5 4 3", "FLOAT16")), "half floats"));
+  EXPECT_TRUE(contains(error(with("5 4 3", "UINT64")), "32 bits"));
+  EXPECT_TRUE(contains(error(with("5 4 3", "nonsense")), "\"nonsense\" are not read"));
+  EXPECT_TRUE(contains(error(with("5 4", "FLOAT")), "no three numbers"));
+  EXPECT_TRUE(contains(error(with("5 4 0", "FLOAT")), "whole numbers from 1"));
+  EXPECT_TRUE(contains(error(with("5 4 2.5", "FLOAT")), "whole numbers from 1"));
+  EXPECT_TRUE(contains(error(with("1e9 1e9 1e9", "FLOAT")), "too large"));
+  EXPECT_TRUE(contains(error(with("5 4 4", "FLOAT")), "240 bytes"));
+  EXPECT_TRUE(contains(error(with("5 4 3", "FLOAT") + "RawFile: w.raw\n"), "several files"));
+  EXPECT_TRUE(contains(error("RawFile: none.raw\nResolution: 5 4 3\nFormat: FLOAT\n"),
+                       "none.raw: no such file"));
+  EXPECT_TRUE(contains(error("RawFile: v.raw\nFormat: FLOAT\n"), "extension is not known"));
+  EXPECT_TRUE(contains(error(with("5 4 3", "FLOAT") + "SliceThickness: 1 0 1\n"), "spacing"));
+  EXPECT_TRUE(contains(error(with("5 4 3", "FLOAT") + "BasisVector1: 0 0 0\nBasisVector2: 0 1 0\n"
+                                                      "BasisVector3: 0 0 1\n"),
+                       "no length"));
+}
+
+// Values without a header may have the same extension.
+TEST_F(DatTest, HeaderlessDataStaysHeaderless) {
+  ReadOptions options;
+  options.dimensions = {5, 4, 3};
+  options.type = "f32";
+  expect_counting(read_volume(write("m.dat", bytes_of(counting())), options), "f32");
+}
+
+}  // namespace
+}  // namespace pellucid
