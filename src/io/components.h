@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <filesystem>
 #include <functional>
 #include <span>
 #include <string>
@@ -58,6 +59,7 @@ std::vector<VolumeData> split_components(const VolumeData& values, int component
 /// The formats whose headers are read without ITK.
 VolumeFile open_npy(const ByteSource& source, const ReadOptions& options);
 VolumeFile open_raw(const ByteSource& source, const ReadOptions& options);
+VolumeFile open_raw_gzip(const std::filesystem::path& path, const ReadOptions& options);
 VolumeFile open_slc(const ByteSource& source, const ReadOptions& options);
 
 }  // namespace pellucid

@@ -118,6 +118,11 @@ void DataStream::skip(std::uintmax_t bytes) {
   }
 }
 
+bool DataStream::at_end() {
+  std::byte next{};
+  return read_some(std::span(&next, 1)) == 0;
+}
+
 void DataStream::finish() {
   if (!inflater_) return;
   // Far beyond any padding; a longer rest is not worth inflating for its checksum.

@@ -31,6 +31,8 @@ class DataStream {
   /// Fills the whole span.
   void read(std::span<std::byte> to);
   void skip(std::uintmax_t bytes);
+  /// Whether nothing comes any more; takes a byte where something does.
+  bool at_end();
   /// Checks the checksum of compressed data, where its end is near; there may be more data.
   void finish();
 

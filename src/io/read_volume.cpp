@@ -55,7 +55,8 @@ constexpr std::array formats{
     Format{".tif", open_stack},           Format{".tiff", open_stack},
     Format{".png", open_stack},           Format{".mrc", open_bytes<open_mrc>},
     Format{".map", open_bytes<open_mrc>}, Format{".rec", open_bytes<open_mrc>},
-    Format{".st", open_bytes<open_mrc>},  Format{".ccp4", open_bytes<open_mrc>}};
+    Format{".st", open_bytes<open_mrc>},  Format{".ccp4", open_bytes<open_mrc>},
+    Format{".raw.gz", open_raw_gzip}};
 
 const Format* format_of(std::string_view file_name) {
   std::string name(file_name);
@@ -161,7 +162,7 @@ std::vector<VolumeArray> list_arrays(const std::filesystem::path& path,
 
 bool has_volume_header(std::string_view file_name) {
   const Format* const format = format_of(file_name);
-  return format != nullptr && format->open != open_raw_file;
+  return format != nullptr && format->open != open_raw_file && format->open != open_raw_gzip;
 }
 
 std::string volume_extensions() {

@@ -18,7 +18,7 @@ bool is_raw(std::string file) {
   std::transform(file.begin(), file.end(), file.begin(), [](char c) {
     return static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
   });
-  return file.ends_with(".raw");
+  return file.ends_with(".raw") || file.ends_with(".raw.gz");
 }
 
 const std::vector<std::string_view> file_keys{"file",    "array",      "component",  "dimensions",

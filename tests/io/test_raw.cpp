@@ -121,5 +121,31 @@ TEST(Raw, NanIsKeptAndInfinityRefused) {
   EXPECT_TRUE(contains(error(test::bytes_of(values), raw("f64")), "infinite"));
 }
 
+class GzippedRaw : public test::ScratchFolder {};
+
+TEST_F(GzippedRaw, IsReadAsHeaderless) {
+  const std::string values = test::swapped_bytes_of(counting<std::uint16_t>());
+  ReadOptions options = raw("u16");
+  options.big_endian = true;
+  expect_counting(read_volume(write("a.raw.gz", test::gzipped(values)), options), "u16");
+  options.skip_bytes = 3;
+  expect_counting(read_volume(write("b.raw.gz", test::gzipped("abc" + values)), options), "u16");
+}
+
+TEST_F(GzippedRaw, SaysWhatIsWrong) {
+  const std::string whole = test::gzipped(test::bytes_of(counting<float>()));
+  const auto refused = [&](const std::string& bytes, const ReadOptions& options,
+                           const std::string& part) {
+    const std::string message = error_of([&] { read_volume(write("a.raw.gz", bytes), options); });
+    EXPECT_TRUE(contains(message, part)) << message;
+  };
+  refused(whole, {}, "give its dimensions");
+  refused(whole, raw("f32", {5, 4, 2}), "holds more than");
+  refused(whole, raw("f32", {5, 4, 4}), "ends too early");
+  refused(whole, raw("f64", {1000, 1000, 1000}), "too small");
+  refused(whole.substr(0, whole.size() / 2), raw("f32"), "cut off");
+  refused("no gzip at all", raw("u8", {2, 2, 2}), "damaged");
+}
+
 }  // namespace
 }  // namespace pellucid
