@@ -13,14 +13,19 @@ namespace pellucid {
 TransferFunction::TransferFunction(std::vector<Point> points)
     : TransferFunction(std::move(points), 0) {}
 
-TransferFunction::TransferFunction(std::vector<Point> points, double relative_error)
-    : points_(std::move(points)), relative_error_(relative_error) {
+TransferFunction::TransferFunction(std::vector<Point> points, double relative_error,
+                                   double color_error)
+    : points_(std::move(points)), relative_error_(relative_error), color_error_(color_error) {
   if (points_.empty()) {
     throw Error(
         "transfer function: it has no points; give at least one (value, extinction, color)");
   }
   if (!(relative_error >= 0 && std::isfinite(relative_error))) {
     throw Error("transfer function: its relative error is " + number(relative_error) +
+                ", but must be a number from 0");
+  }
+  if (!(color_error >= 0 && std::isfinite(color_error))) {
+    throw Error("transfer function: its color error is " + number(color_error) +
                 ", but must be a number from 0");
   }
   const PointCheck check("transfer function");
@@ -62,7 +67,8 @@ void TransferFunction::fill(Table<T>& table) const {
 }
 
 double TransferFunction::approximation_error(double background) const noexcept {
-  return relative_error_ * std::max(std::max(largest_color_, background) / 2, 1 / std::numbers::e);
+  return std::max(relative_error_ * std::max(largest_color_, background) / 2 + color_error_,
+                  relative_error_ / std::numbers::e);
 }
 
 }  // namespace pellucid

@@ -70,6 +70,43 @@ TEST(ApproximationError, BoundsWhatAnyRayCanBeOff) {
   EXPECT_LE(opacity.largest(), 1);
 }
 
+TEST(ApproximationError, CountsColorsThatAreOff) {
+  std::mt19937_64 random(12);
+  std::uniform_real_distribution<long double> uniform;
+  test::ErrorRecord radiance("radiance", "of the bound");
+  for (int round = 0; round < 20000; ++round) {
+    const long double error = round % 4 == 0 ? 0 : std::pow(10.0L, -4 * uniform(random)) * 0.5L;
+    const long double off = std::pow(10.0L, -4 * uniform(random));
+    const long double background = round % 5 == 0 ? 3 * uniform(random) : 0;
+    const auto count = 1 + random() % 60;
+    const long double depth = std::pow(10.0L, 4 * uniform(random) - 3) / count;
+    const bool one_sign = round % 2 == 0;
+    std::vector<Layer> true_ray, known_ray;
+    for (unsigned i = 0; i < count; ++i) {
+      const bool up = random() % 2 == 0;
+      const Layer known{2 * depth * uniform(random), one_sign || up ? error : -error,
+                        up ? 1.0L : 0.0L};
+      Layer truth = known;
+      truth.color += one_sign || up ? off : -off;
+      known_ray.push_back(known);
+      true_ray.push_back(truth);
+    }
+    const TransferFunction function({{0, 1, {}}, {1, 1, {0, 1, 0}}}, static_cast<double>(error),
+                                    static_cast<double>(off));
+    const long double limit =
+        function.approximation_error(static_cast<double>(background)) * (1 + 1e-15L) + 1e-17L;
+    const long double change =
+        gather(known_ray, background, true).radiance - gather(true_ray, background, false).radiance;
+    radiance.add(std::fabs(change) / limit, std::to_string(round));
+  }
+  radiance.print();
+  EXPECT_LE(radiance.largest(), 1);
+  // An opaque ray shows all of it.
+  EXPECT_GE(radiance.largest(), 0.9);
+  // Opacity does not know of colors.
+  EXPECT_EQ(TransferFunction({{0, 1, {}}}, 0, 0.25).approximation_error(), 0.25);
+}
+
 TEST(ApproximationError, IsReached) {
   // Bright layers are too dense and dark ones too thin, by turns.
   const double error = 1e-3;

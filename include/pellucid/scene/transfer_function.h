@@ -21,9 +21,9 @@ class TransferFunction {
   /// an extinction or color is negative.
   explicit TransferFunction(std::vector<Point> points);
   /// One that stands for another whose extinction τ it does not meet exactly: |ln(τ̂/τ)| <=
-  /// relative_error everywhere, both zero at the same values, the colors alike. Throws as above,
-  /// and where relative_error is negative or not finite.
-  TransferFunction(std::vector<Point> points, double relative_error);
+  /// relative_error everywhere, both zero at the same values, and no channel of the color further
+  /// off than color_error. Throws as above, and where an error is negative or not finite.
+  TransferFunction(std::vector<Point> points, double relative_error, double color_error = 0);
 
   const std::vector<Point>& points() const noexcept { return points_; }
   /// The view that kernels use, in float or double. Valid while this object lives.
@@ -34,9 +34,12 @@ class TransferFunction {
 
   /// A bound on |ln(τ̂/τ)|, as given to the constructor.
   double relative_error() const noexcept { return relative_error_; }
-  /// How far any channel of a pixel can be off because of relative_error() = ρ:
+  /// A bound on how far any channel of a color is off, as given to the constructor.
+  double color_error() const noexcept { return color_error_; }
+  /// How far any channel of a pixel can be off because of relative_error() = ρ and color_error() =
+  /// δ:
   ///
-  ///   ρ · max(C/2, 1/e),  C = max(largest_color(), background)
+  ///   max(ρ C/2 + δ, ρ/e),  C = max(largest_color(), background)
   ///
   /// and 0 for exact functions. `background` is the largest component of what lies behind the data.
   ///
@@ -48,7 +51,9 @@ class TransferFunction {
   ///   (T X (C - X))' = -T τ_λ ((X - c)² + c (C - c))
   /// follows ∫ T τ_λ (X - c)² ds <= X(0) (C - X(0)) <= C²/4, and with ∫ T τ_λ ds <= 1 and the
   /// inequality of Cauchy and Schwarz |Y| <= ρ C/2. Integrated over λ: |X̂ - X| <= ρ C/2. Opacity is
-  /// 1 - e^-m, and |dm_λ/dλ| <= ρ m_λ: it changes by at most ρ max m e^-m = ρ/e. ∎
+  /// 1 - e^-m, and |dm_λ/dλ| <= ρ m_λ: it changes by at most ρ max m e^-m = ρ/e. Colors that
+  /// are off are put right first: with the same τ they change X by ∫ T τ (ĉ - c) ds <= δ ∫ T τ ds
+  /// <= δ and no opacity; what is above then holds for the colors ĉ, which are known. ∎
   double approximation_error(double background = 0) const noexcept;
 
   /// The values, ascending, to which points of different values were rounded by view<float>().
@@ -71,6 +76,7 @@ class TransferFunction {
   std::vector<double> merged_in_float_;
   double largest_color_ = 0;
   double relative_error_ = 0;
+  double color_error_ = 0;
 };
 
 template <>
