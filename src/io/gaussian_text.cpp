@@ -9,6 +9,7 @@
 #include "pellucid/io/channel_source.h"
 #include "pellucid/io/transfer_function_description.h"
 #include "pellucid/scene/error.h"
+#include "pellucid/scene/srgb.h"
 #include "scene_json_document.h"
 
 namespace pellucid {
@@ -39,12 +40,6 @@ std::vector<std::string_view> split(std::string_view text, char separator) {
 bool is_unit(std::string_view text) {
   return text.find_first_of("0123456789,+-%") == std::string_view::npos && !text.starts_with('.') &&
          text != "e" && text != "E";
-}
-
-// IEC 61966-2-1: the sRGB signal, 8 bits, to linear light.
-double linear_light(int srgb8) {
-  const double s = srgb8 / 255.0;
-  return s <= 0.04045 ? s / 12.92 : std::pow((s + 0.055) / 1.055, 2.4);
 }
 
 /// Reads one text; messages show it whole.
@@ -141,9 +136,7 @@ class GaussianReader {
       const char* const end = text.data() + text.size();
       const auto result = std::from_chars(text.data() + 1, end, rgb, 16);
       if (result.ec == std::errc() && result.ptr == end) {
-        const auto part = [&](int shift) {
-          return linear_light(static_cast<int>(rgb >> shift & 0xff));
-        };
+        const auto part = [&](int shift) { return linear_light((rgb >> shift & 0xff) / 255.0); };
         return {part(16), part(8), part(0)};
       }
     }

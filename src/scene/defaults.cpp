@@ -11,6 +11,7 @@
 
 #include "mean_chord.h"
 #include "readable_numbers.h"
+#include "value_sample.h"
 
 namespace pellucid {
 namespace {
@@ -19,95 +20,6 @@ using Point = TransferFunction::Point;
 
 /// Transfer functions and scene files hold numbers up to this.
 constexpr double largest_number = 1e30;
-
-/// Ascending, the outermost drawn in.
-std::vector<double> sorted(std::vector<double> sample) {
-  std::sort(sample.begin(), sample.end());
-  if (sample.empty()) return sample;
-  // A few wild values (spikes, fill values) would take all of the range for themselves. What is
-  // left of rarer data than that is kept: a thin vessel in a large box.
-  const std::size_t tail = sample.size() / 1000;
-  const double lower = sample[tail], upper = sample[sample.size() - 1 - tail];
-  if (lower < upper) {
-    for (double& value : sample) value = std::clamp(value, lower, upper);
-  }
-  return sample;
-}
-
-/// Up to 2^18 finite values, ascending: a quarter of a million puts a quantile within 0.1 %, and
-/// sorts in milliseconds. Taken at the fractional parts of n/golden ratio, which are even at every
-/// scale: a fixed stride would see single columns of the grid.
-std::vector<double> sorted_sample(const Volume& volume) {
-  constexpr std::size_t largest = std::size_t{1} << 18;
-  std::vector<double> sample;
-  std::visit(
-      [&](const auto& data) {
-        const auto take = [&](std::size_t index) {
-          const auto value = static_cast<double>(data[index]);
-          if (!std::isnan(value))
-            sample.push_back(std::clamp(value, -largest_number, largest_number));
-        };
-        if (data.size() <= largest) {
-          for (std::size_t i = 0; i < data.size(); ++i) take(i);
-          return;
-        }
-        const auto size = static_cast<double>(data.size());
-        for (std::size_t n = 0; n < largest; ++n) {
-          const double s = static_cast<double>(n) / std::numbers::phi;
-          take(std::min(static_cast<std::size_t>((s - std::floor(s)) * size), data.size() - 1));
-        }
-      },
-      volume.data());
-  return sorted(std::move(sample));
-}
-
-/// The corners' weights at the n-th of points that fill a tetrahedron evenly: the parts into which
-/// three numbers cut the unit interval, here multiples of the powers of 1/1.2207 (x⁴ = x + 1),
-/// whose fractional parts are even in three dimensions.
-std::array<double, 4> even_weights(std::size_t n) {
-  constexpr double root = 1.2207440846057596;
-  std::array<double, 3> cut{1 / root, 1 / (root * root), 1 / (root * root * root)};
-  for (double& x : cut) {
-    x *= static_cast<double>(n);
-    x -= std::floor(x);
-  }
-  std::sort(cut.begin(), cut.end());
-  return {cut[0], cut[1] - cut[0], cut[2] - cut[1], 1 - cut[2]};
-}
-
-double volume_of(const TetrahedralMesh& mesh, const Tetrahedron& tetrahedron) {
-  const auto point = [&](int i) { return mesh.points()[static_cast<std::size_t>(tetrahedron[i])]; };
-  const Vec3<double> a = point(0);
-  return std::abs(dot(point(1) - a, cross(point(2) - a, point(3) - a))) / 6;
-}
-
-/// The first channel at up to 2^18 points that are even in the mesh's volume.
-std::vector<double> sorted_sample(const MeshChannels& channels) {
-  constexpr std::size_t largest = std::size_t{1} << 18;
-  const TetrahedralMesh& mesh = channels.mesh();
-  std::vector<double> sample;
-  sample.reserve(largest);
-  const double every = mesh.statistics().volume / static_cast<double>(largest);
-  double next = every / 2, passed = 0;
-  for (std::size_t t = 0; t < mesh.tetrahedra().size() && every > 0; ++t) {
-    const Tetrahedron& tetrahedron = mesh.tetrahedra()[t];
-    passed += volume_of(mesh, tetrahedron);
-    for (; next < passed && sample.size() < largest; next += every) {
-      double value = 0;
-      if (channels[0].centering == Centering::cell) {
-        value = channels.value(0, t);
-      } else {
-        const std::array<double, 4> weight = even_weights(sample.size());
-        for (int i = 0; i < 4; ++i) {
-          value += weight[static_cast<std::size_t>(i)] *
-                   channels.value(0, static_cast<std::size_t>(tetrahedron[i]));
-        }
-      }
-      if (!std::isnan(value)) sample.push_back(std::clamp(value, -largest_number, largest_number));
-    }
-  }
-  return sorted(std::move(sample));
-}
 
 /// Three classes of the sorted values: [0, foreground), [foreground, bright), [bright, n).
 struct Classes {
@@ -226,14 +138,14 @@ TransferFunction make_default(const std::vector<double>& v, double chord, double
 }  // namespace
 
 TransferFunction default_transfer_function(const Volume& volume) {
-  return make_default(sorted_sample(volume), mean_chord(volume), 1);
+  return make_default(value_sample(volume), mean_chord(volume), 1);
 }
 
 TransferFunction default_transfer_function(const MeshChannels& mesh) {
   const Box<double>& box = mesh.mesh().bounds();
   const Vec3<double> size = box.upper - box.lower;
   const double filled = mesh.mesh().statistics().volume / (size.x * size.y * size.z);
-  return make_default(sorted_sample(mesh), mean_chord(box), std::min(filled, 1.0));
+  return make_default(value_sample(mesh), mean_chord(box), std::min(filled, 1.0));
 }
 
 Camera default_camera(const Volume& volume, ImageSize size) {

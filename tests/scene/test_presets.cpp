@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <string>
+#include <vector>
+
+#include "expect_error.h"
+#include "pellucid/scene/presets.h"
+
+namespace pellucid {
+namespace {
+
+/// A cube of 11³ values from `first` to `last`, evenly along x, of this spacing.
+Volume ramp(float first, float last, double spacing = 1) {
+  Volume::Description description;
+  description.dimensions = {11, 11, 11};
+  description.placement.spacing = {spacing, spacing, spacing};
+  std::vector<float> values;
+  for (int i = 0; i < 11 * 11 * 11; ++i) {
+    values.push_back(first + (last - first) * static_cast<float>(i % 11) / 10);
+  }
+  return Volume(description, VolumeData(values));
+}
+
+std::vector<double> values_of(const TransferFunction& function) {
+  std::vector<double> values;
+  for (const auto& point : function.points()) values.push_back(point.value);
+  return values;
+}
+
+TEST(Presets, AreFunctionsOfAnyData) {
+  EXPECT_EQ(presets().size(), 7u);
+  for (const Preset& preset : presets()) {
+    const std::string name(preset.name);
+    EXPECT_EQ(find_preset(name)->name, name);
+    EXPECT_GT(preset.description.size(), 20u);
+    for (const Volume& volume :
+         {ramp(-1000, 3000), ramp(0, 1e-20F), ramp(1e30F, 2e30F), ramp(7, 7), ramp(-1e-3F, 0)}) {
+      const TransferFunction function = make_preset(name, volume);
+      double largest = 0;
+      for (const auto& p : function.points()) {
+        largest = std::max(largest, p.extinction);
+        EXPECT_LE(largest_component(p.color), 1) << name;
+      }
+      EXPECT_GT(largest, 0) << name;
+      EXPECT_EQ(function.approximation_error(), 0) << name;
+    }
+  }
+}
+
+TEST(Presets, InHounsfieldUnitsDoNotLookAtTheData) {
+  const TransferFunction bone = make_preset("ct-bone", ramp(0, 1));
+  EXPECT_EQ(values_of(bone), values_of(make_preset("ct-bone", ramp(-1000, 3000, 0.5))));
+  // Nothing of water and soft tissue, and compact bone is dense: half of the light within a few mm.
+  EXPECT_EQ(bone.points().front().extinction, 0);
+  EXPECT_GE(bone.points().front().value, 100);
+  EXPECT_GT(bone.points().back().extinction, 0.3);
+}
+
+TEST(Presets, AreRelativeToTheRangeAndTheMeanChordOtherwise) {
+  // The mean chord of a cube is 2/3 of its edge: 10 · spacing here.
+  for (const double spacing : {1.0, 1e-3, 50.0}) {
+    const TransferFunction film = make_preset("x-ray", ramp(-40, 60, spacing));
+    EXPECT_EQ(values_of(film), (std::vector<double>{-40, 60}));
+    EXPECT_EQ(film.points()[0].extinction, 0);
+    const double depth = film.points()[1].extinction * 10 * spacing * 2 / 3;
+    EXPECT_NEAR(depth, 1.5, 0.05 * 1.5);  // rounded to two digits
+  }
+}
+
+TEST(Presets, OfTissueGoByItsMedian) {
+  // 0, 10, …, 100 in equal shares: above an eighth lie 20 to 100, of which 60 is the median.
+  const TransferFunction brain = make_preset("mr-t1-brain", ramp(0, 100));
+  EXPECT_EQ(brain.points().front().value, 0);
+  EXPECT_NEAR(brain.points().back().value, 1.65 * 60, 1e-12);
+  EXPECT_EQ(brain.points().front().extinction, 0);
+}
+
+TEST(Presets, AreMovedToARange) {
+  for (const Preset& preset : presets()) {
+    const TransferFunction moved =
+        make_preset(preset.name, ramp(0, 1), std::array<double, 2>{100, 300});
+    EXPECT_EQ(moved.points().front().value, 100) << preset.name;
+    EXPECT_EQ(moved.points().back().value, 300) << preset.name;
+  }
+}
+
+TEST(Presets, RefuseWhatIsNotThere) {
+  expect_error([] { make_preset("ct-bones", ramp(0, 1)); },
+               {"there is none of the name \"ct-bones\""});
+  expect_error(
+      [] {
+        make_preset("x-ray", ramp(0, 1), std::array<double, 2>{1, 1});
+      },
+      {"two ascending numbers"});
+  EXPECT_EQ(find_preset("ct-bones"), nullptr);
+}
+
+}  // namespace
+}  // namespace pellucid
