@@ -19,5 +19,7 @@ Command add_compare(CLI::App& app);
 Command add_histogram(CLI::App& app);
 Command add_suggest(CLI::App& app);
 Command add_convert(CLI::App& app);
+Command add_presets(CLI::App& app);
+Command add_transfer_function(CLI::App& app);
 
 }  // namespace pellucid::cli

@@ -54,7 +54,7 @@ int run(int argc, char** argv) {
   app.require_subcommand(1);
   const Command commands[] = {add_render(app),  add_info(app),    add_histogram(app),
                               add_suggest(app), add_convert(app), add_evaluate(app),
-                              add_compare(app)};
+                              add_compare(app), add_presets(app), add_transfer_function(app)};
 
   try {
     app.parse(argc, argv);

@@ -25,6 +25,7 @@ namespace {
 
 void print_notes(const RenderArguments& arguments, const PreparedScene& prepared) {
   if (arguments.quiet) return;
+  for (const std::string& note : prepared.import_notes) print_note(note);
   if (const std::size_t nan = nan_values(prepared.scene); nan > 0) {
     print_note(fmt::format("{} values are NaN: rendered as vacuum", nan));
   }
@@ -166,6 +167,8 @@ Command add_render(CLI::App& app) {
       "  pellucid render brain.nii.gz -o brain.png\n"
       "  pellucid render brain.nii.gz --print-tf > tf.json\n"
       "  pellucid render brain.nii.gz --tf tf.json --view left -o brain.exr -o brain.png\n"
+      "  pellucid render head.nrrd --preset ct-bone -o bone.png\n"
+      "  pellucid render head.nrrd --tf CT-AAA.vp.json -o slicer.png\n"
       "  pellucid render scene.json -o scene.exr --size 1920x1080 --samples 2 --json\n"
       "  pellucid render scene.json -o scene.exr --tolerance 1/4096 --grade proved --error-map "
       "e.png\n"

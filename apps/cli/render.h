@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "import_arguments.h"
 #include "input.h"
 #include "mesh_input.h"
 #include "output.h"
@@ -18,7 +19,8 @@ struct RenderArguments {
   std::vector<std::string> outputs;
   std::string depth_picture, error_map, save_tf, save_scene;
   std::vector<std::string> channels, gaussians;
-  std::string transfer_function, camera, view, size, background;
+  std::string transfer_function, preset, camera, view, size, background;
+  ImportArguments import;
   std::string method, precision, grade;
   std::optional<std::string> tolerance;
   std::optional<double> step;
@@ -36,8 +38,9 @@ struct PreparedScene {
   Scene scene;
   SceneDescription description;  ///< complete: with nothing left to defaults
   std::string transfer_function_from;
-  bool array_chosen = false;   ///< of a mesh, for want of a name
-  double tolerance_asked = 0;  ///< Integration::tolerance is the one used
+  std::vector<std::string> import_notes;  ///< of a transfer function of another program
+  bool array_chosen = false;              ///< of a mesh, for want of a name
+  double tolerance_asked = 0;             ///< Integration::tolerance is the one used
 
   /// Of whether an error comes with the picture.
   bool knows_its_error(const RenderArguments& arguments) const {

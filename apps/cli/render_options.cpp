@@ -53,9 +53,10 @@ void add_scene_options(CLI::App& command, RenderArguments& arguments) {
       ->allow_extra_args(false);
   auto* transfer_function =
       command
-          .add_option("--tf", arguments.transfer_function,
-                      "Transfer function; default: the scene's, else made from the histogram")
-          ->option_text("FILE.json");
+          .add_option("--tf,--transfer-function", arguments.transfer_function,
+                      "Transfer function, of our own or of ParaView, 3D Slicer, VisIt, vtk.js, "
+                      "ANARI, or a color table; default: the scene's, else made from the histogram")
+          ->option_text("FILE");
   command
       .add_option("--gaussian", arguments.gaussians,
                   "A Gaussian of the transfer function, may be given several times: "
@@ -64,6 +65,13 @@ void add_scene_options(CLI::App& command, RenderArguments& arguments) {
       ->option_text("TEXT")
       ->allow_extra_args(false)
       ->excludes(transfer_function);
+  command
+      .add_option("--preset", arguments.preset,
+                  "A transfer function for this kind of data; 'pellucid presets' lists them")
+      ->option_text("NAME")
+      ->excludes(transfer_function)
+      ->excludes("--gaussian");
+  arguments.import.add_to(command);
   auto* camera = command
                      .add_option("--camera", arguments.camera,
                                  "Camera; default: the scene's, else obliquely from the front")

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <string>
 #include <utility>
@@ -12,6 +13,8 @@
 #include "pellucid/cpu/threads.h"
 #include "pellucid/io/atomic_file.h"
 #include "pellucid/io/image_files.h"
+#include "pellucid/io/import_transfer_function.h"
+#include "pellucid/scene/presets.h"
 #include "render.h"
 #include "view.h"
 
@@ -131,6 +134,10 @@ void set_integration(const RenderArguments& arguments, Integration& integration)
   integration.step = *arguments.step;
 }
 
+/// The points that stand for an opacity table have an error; the reference should have none worth
+/// speaking of. Each further digit makes it three times slower.
+constexpr double reference_tolerance = 1e-5;
+
 /// A text of the command line that does not read is a wrong argument.
 template <class Parse>
 auto parse_argument(const char* argument, Parse&& parse) {
@@ -172,7 +179,57 @@ MultivariateDescription gaussians(const RenderArguments& arguments) {
   return function;
 }
 
-SceneDescription describe(const RenderArguments& arguments) {
+/// What a picture leaves to the deviations of an imported function, in its color and in its
+/// extinction each.
+double import_share(const RenderArguments& arguments, const SceneDescription& description) {
+  const double tolerance = arguments.tolerance
+                               ? parse_tolerance("--tolerance", *arguments.tolerance)
+                               : description.integration.tolerance;
+  const double smaller = arguments.reference ? std::min(tolerance, reference_tolerance) : tolerance;
+  return std::clamp(smaller / 16, smallest_deviation, largest_deviation);
+}
+
+/// That of --preset or --tf.
+void set_transfer_function(const RenderArguments& arguments, SceneDescription& description,
+                           std::vector<std::string>& import_notes) {
+  const std::string& file = arguments.transfer_function;
+  if (!arguments.preset.empty()) {
+    arguments.import.refuse("a preset");
+    if (find_preset(arguments.preset) == nullptr) {
+      throw UsageError(
+          fmt::format("--preset {}: there is none of that name; 'pellucid presets' "
+                      "lists them",
+                      arguments.preset));
+    }
+    PresetDescription preset{arguments.preset, {}};
+    if (!arguments.import.range.empty()) {
+      preset.range = parse_range("--range", arguments.import.range);
+    }
+    if (!description.channels.empty()) {
+      throw UsageError("--preset: is of one variable, but here are channels; drop one of the two");
+    }
+    description.transfer_function = preset;
+    return;
+  }
+  const std::string text = file.empty() ? "" : read_text_file(file);
+  if (!file.empty() && is_foreign_transfer_function(text)) {
+    const ImportedTransferFunction imported = import_transfer_function(
+        text, file, arguments.import.options(import_share(arguments, description)));
+    description.transfer_function = imported.table;
+    import_notes = import_lines(imported, file);
+    return;
+  }
+  const char* const what =
+      file.empty() ? "a scene's own transfer function" : "a transfer function of our own";
+  arguments.import.refuse(what);
+  if (!arguments.import.range.empty()) {
+    throw UsageError(fmt::format("--range does not apply to {}; drop it", what));
+  }
+  if (!file.empty()) description.transfer_function = parse_transfer_function(text, file);
+}
+
+SceneDescription describe(const RenderArguments& arguments,
+                          std::vector<std::string>& import_notes) {
   SceneDescription description;
   const std::filesystem::path input = arguments.input;
   const bool is_scene = extension_of(input) == ".json";
@@ -190,11 +247,8 @@ SceneDescription describe(const RenderArguments& arguments) {
     arguments.mesh.refuse("channels of volumes");
   }
   if (!arguments.gaussians.empty()) description.transfer_function = gaussians(arguments);
-  if (!arguments.transfer_function.empty()) {
-    description.transfer_function = parse_transfer_function(
-        read_text_file(arguments.transfer_function), arguments.transfer_function);
-  }
   add_channels(arguments, description);
+  set_transfer_function(arguments, description, import_notes);
   if (!arguments.camera.empty()) {
     description.camera = parse_camera(read_text_file(arguments.camera), arguments.camera);
   }
@@ -225,7 +279,7 @@ std::vector<NamedFile> data_files(const SceneDescription& description) {
 
 PreparedScene prepare(const RenderArguments& arguments) {
   PreparedScene prepared;
-  prepared.description = describe(arguments);
+  prepared.description = describe(arguments, prepared.import_notes);
   SceneDescription& description = prepared.description;
   Integration& integration = description.integration;
   prepared.tolerance_asked = arguments.tolerance
@@ -236,15 +290,13 @@ PreparedScene prepare(const RenderArguments& arguments) {
   refuse_overwriting(output_files(arguments), data_files(description));
   prepared.transfer_function_from = !arguments.transfer_function.empty()
                                         ? arguments.transfer_function
+                                    : !arguments.preset.empty()     ? "--preset " + arguments.preset
                                     : !arguments.gaussians.empty()  ? "--gaussian"
                                     : description.transfer_function ? arguments.input
                                                                     : "default";
   SceneDescription rendered = description;
-  // The points that stand for an opacity table have an error; the reference should have none worth
-  // speaking of. Each further digit makes it three times slower.
-  constexpr double table_tolerance = 1e-5;
-  if (arguments.reference && integration.tolerance > table_tolerance) {
-    rendered.integration.tolerance = table_tolerance;
+  if (arguments.reference && integration.tolerance > reference_tolerance) {
+    rendered.integration.tolerance = reference_tolerance;
   }
   const int threads = arguments.threads > 0 ? arguments.threads : default_threads();
   prepared.array_chosen = description.mesh && description.mesh->channels.empty();
@@ -255,7 +307,8 @@ PreparedScene prepare(const RenderArguments& arguments) {
   if (!arguments.view.empty()) {
     scene.camera = view_camera(world_corners(scene), arguments.view, scene.size);
   }
-  if (!description.transfer_function) {
+  if (!description.transfer_function ||
+      std::holds_alternative<PresetDescription>(*description.transfer_function)) {
     description.transfer_function = scene.transfer_function->points();
   }
   description.camera = scene.camera;

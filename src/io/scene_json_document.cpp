@@ -203,8 +203,12 @@ std::string did_you_mean(std::string_view word, const std::vector<std::string_vi
   return best.empty() ? std::string() : " (did you mean \"" + std::string(best) + "\"?)";
 }
 
+std::string Node::where() const {
+  return name_ + (pointer_.empty() ? "" : ": " + pointer_);
+}
+
 void Node::fail(const std::string& what) const {
-  throw Error(name_ + ": " + (pointer_.empty() ? "" : pointer_ + ": ") + what);
+  throw Error(where() + ": " + what);
 }
 
 void Node::fail_at(std::string_view key, const std::string& what) const {
@@ -236,6 +240,11 @@ void Node::expect_object(const std::vector<std::string_view>& known_keys) const 
               "unknown key" + (hint.empty() ? "; known here: " + list(known_keys) : hint));
     }
   }
+}
+
+bool Node::is_true() const {
+  if (value_->is_number()) return value_->get<double>() != 0;
+  return value_->is_boolean() && value_->get<bool>();
 }
 
 bool Node::has(std::string_view key) const {

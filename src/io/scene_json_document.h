@@ -39,6 +39,9 @@ class Node {
   /// Fails unless this is an object that has no keys but these.
   void expect_object(const std::vector<std::string_view>& known_keys) const;
   bool is_object() const noexcept { return value_->is_object(); }
+  bool is_array() const noexcept { return value_->is_array(); }
+  /// true, or a number that is not 0, as other programs write it.
+  bool is_true() const;
   bool has(std::string_view key) const;
   /// The value of a key of this object; none where it is absent.
   std::optional<Node> find(std::string_view key) const;
@@ -62,6 +65,8 @@ class Node {
   std::size_t one_of(const std::vector<std::string_view>& words) const;
 
   const std::string& pointer() const noexcept { return pointer_; }
+  /// What opens the messages: "name: pointer".
+  std::string where() const;
 
  private:
   Node child(const nlohmann::json& value, std::string_view token) const;

@@ -44,7 +44,7 @@ GaussianShape shape(const Node& node, std::size_t channels) {
   return widths;
 }
 
-GaussianDescription gaussian(const Node& node) {
+GaussianDescription gaussian(const Node& node, bool srgb) {
   node.expect_object(
       {"channels", "center", "width", "axes", "covariance", "matrix", "extinction", "color"});
   GaussianDescription g;
@@ -58,11 +58,11 @@ GaussianDescription gaussian(const Node& node) {
   }
   g.shape = shape(node, n);
   g.extinction = node.at("extinction", "give the peak, per world length").number(0, largest_number);
-  g.color = linear_rgb(node.at("color", "give linear [r, g, b]"));
+  g.color = color_of(node.at("color", "give [r, g, b]"), srgb);
   return g;
 }
 
-ChannelTableDescription table(const Node& node) {
+ChannelTableDescription table(const Node& node, bool srgb) {
   if (node.has("unit_distance")) {
     node.fail_at("unit_distance",
                  "makes an opacity table, which a sum cannot hold; remove it and give extinctions");
@@ -70,7 +70,8 @@ ChannelTableDescription table(const Node& node) {
   node.expect_object({"channel", "points"});
   ChannelTableDescription t;
   if (const auto channel = node.find("channel")) t.channel = channel_name(*channel);
-  t.points = extinction_points(node.at("points", "give an array of {value, extinction, color}"));
+  t.points =
+      extinction_points(node.at("points", "give an array of {value, extinction, color}"), srgb);
   return t;
 }
 
@@ -90,7 +91,8 @@ void check(const Node& node, const GaussianDescription& description) {
 }  // namespace
 
 MultivariateDescription multivariate(const Node& function) {
-  function.expect_object({"channels", "gaussians", "tables"});
+  function.expect_object({"color_space", "channels", "gaussians", "tables"});
+  const bool srgb = is_srgb(function);
   MultivariateDescription description;
   if (const auto channels = function.find("channels")) {
     description.channels = channel_names(*channels);
@@ -102,10 +104,10 @@ MultivariateDescription multivariate(const Node& function) {
     for (std::size_t i = 0; i < list->array_size(); ++i) read(list->element(i));
   };
   elements("gaussians", [&](const Node& node) {
-    description.gaussians.push_back(gaussian(node));
+    description.gaussians.push_back(gaussian(node, srgb));
     check(node, description.gaussians.back());
   });
-  elements("tables", [&](const Node& node) { description.tables.push_back(table(node)); });
+  elements("tables", [&](const Node& node) { description.tables.push_back(table(node, srgb)); });
   return description;
 }
 

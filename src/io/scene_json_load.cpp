@@ -8,6 +8,7 @@
 #include "pellucid/io/scene_json.h"
 #include "pellucid/scene/defaults.h"
 #include "pellucid/scene/error.h"
+#include "pellucid/scene/presets.h"
 
 namespace pellucid {
 namespace {
@@ -25,6 +26,17 @@ bool names(const MultivariateDescription& function, std::string_view channel) {
                      [&](const auto& gaussian) { return in(gaussian.channels); }) ||
          std::any_of(function.tables.begin(), function.tables.end(),
                      [&](const auto& table) { return table.channel == channel; });
+}
+
+/// Of a volume or a mesh.
+template <class Data>
+TransferFunction function_of(const SceneDescription& description, const Data& data) {
+  if (!description.transfer_function) return default_transfer_function(data);
+  if (const auto* preset = std::get_if<PresetDescription>(&*description.transfer_function)) {
+    return make_preset(preset->name, data, preset->range);
+  }
+  return make_transfer_function(*description.transfer_function, description.integration.tolerance,
+                                description.background);
 }
 
 const MultivariateDescription* multivariate(const SceneDescription& description) {
@@ -66,11 +78,8 @@ void fill_mesh(const SceneDescription& description, const ParallelFor& parallel,
     mesh_used->channels = loaded.channels;
   }
   if (scene.multivariate) return;
-  scene.transfer_function = std::make_shared<const TransferFunction>(
-      description.transfer_function
-          ? make_transfer_function(*description.transfer_function,
-                                   description.integration.tolerance, description.background)
-          : default_transfer_function(*scene.mesh));
+  scene.transfer_function =
+      std::make_shared<const TransferFunction>(function_of(description, *scene.mesh));
 }
 
 }  // namespace
@@ -111,11 +120,8 @@ Scene make_scene(const SceneDescription& description, const ParallelFor& paralle
     fill_channels(description, sources, parallel, scene);
   } else {
     scene.volume = std::make_shared<const Volume>(load_field(description.field));
-    scene.transfer_function = std::make_shared<const TransferFunction>(
-        description.transfer_function
-            ? make_transfer_function(*description.transfer_function,
-                                     description.integration.tolerance, description.background)
-            : default_transfer_function(*scene.volume));
+    scene.transfer_function =
+        std::make_shared<const TransferFunction>(function_of(description, *scene.volume));
   }
   scene.size = description.size;
   scene.samples = description.samples;

@@ -30,8 +30,12 @@ MeshSource mesh_source(const Node& mesh, const std::filesystem::path& folder);
 /// A path that is not empty.
 std::filesystem::path file_path(const Node& file, const std::filesystem::path& folder);
 
+/// Whether the colors of a transfer function are sRGB signals: its "color_space".
+bool is_srgb(const Node& function);
+/// [r, g, b] as linear light: 0 or more, or of sRGB 0 to 1.
+Rgb<double> color_of(const Node& node, bool srgb);
 /// The points of a piecewise-linear function; at least one.
-std::vector<TransferFunction::Point> extinction_points(const Node& list);
+std::vector<TransferFunction::Point> extinction_points(const Node& list, bool srgb);
 TransferFunctionDescription transfer_function(const Node& function);
 /// The names of channels that it uses are not looked up.
 MultivariateDescription multivariate(const Node& function);

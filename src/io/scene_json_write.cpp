@@ -92,7 +92,22 @@ std::string transfer_function_text(const OpacityTable& table, const std::string&
   Members members(indent);
   members.add("type", "\"piecewise_linear\"");
   members.add("unit_distance", number(table.unit_distance, "the unit distance"));
+  if (table.extinction_deviation != 0 || table.color_deviation != 0) {
+    members.add("deviation",
+                joined({"{\"extinction\": ", number(table.extinction_deviation, "a deviation"),
+                        ", \"color\": ", number(table.color_deviation, "a deviation"), "}"}));
+  }
   members.add("points", points_text(table.points, &OpacityPoint::opacity, "opacity", indent));
+  return members.object();
+}
+
+std::string transfer_function_text(const PresetDescription& preset, const std::string& indent) {
+  Members members(indent);
+  members.add("preset", quoted(preset.name, "the name of a preset"));
+  if (preset.range) {
+    members.add("range", joined({"[", number((*preset.range)[0], "the range"), ", ",
+                                 number((*preset.range)[1], "the range"), "]"}));
+  }
   return members.object();
 }
 

@@ -64,6 +64,10 @@ TransferFunction make_transfer_function(const TransferFunctionDescription& descr
         "transfer function: it has Gaussians or tables of channels, but points in one "
         "variable are needed here");
   }
+  if (const auto* preset = std::get_if<PresetDescription>(&description)) {
+    throw Error("transfer function: the preset \"" + scene_json::printable(preset->name) +
+                "\" is made of its data, which are not given here");
+  }
   const OpacityTable& table = std::get<OpacityTable>(description);
   double largest_color = 0;
   const auto count = [&](const Rgb<double>& c) {
@@ -71,8 +75,12 @@ TransferFunction make_transfer_function(const TransferFunctionDescription& descr
   };
   for (const OpacityPoint& p : table.points) count(p.color);
   if (background) count(*background);
-  return from_opacity_table(table.points, table.unit_distance,
-                            relative_error_for(opacity_table_share(tolerance), largest_color));
+  TransferFunction function =
+      from_opacity_table(table.points, table.unit_distance,
+                         relative_error_for(opacity_table_share(tolerance), largest_color));
+  if (table.extinction_deviation == 0 && table.color_deviation == 0) return function;
+  return {function.points(), function.relative_error() + table.extinction_deviation,
+          table.color_deviation};
 }
 
 std::shared_ptr<const MultivariateTransferFunction> make_multivariate(

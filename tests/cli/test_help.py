@@ -6,7 +6,8 @@ import unittest
 
 from program import SOURCE_DIR, ProgramTest, options_of
 
-COMMANDS = ("render", "info", "histogram", "suggest", "convert", "evaluate", "compare")
+COMMANDS = ("render", "info", "histogram", "suggest", "convert", "evaluate", "compare",
+            "presets", "transfer-function")
 READ_VOLUMES = ("render", "info", "histogram", "suggest", "convert")
 
 
@@ -32,7 +33,7 @@ class Help(ProgramTest):
 
     def test_every_command_is_in_the_overview(self):
         text = self.succeed("--help")
-        listed = re.findall(r"(?m)^  ([a-z]+)  ", text[text.index("Subcommands:"):])
+        listed = re.findall(r"(?m)^  ([a-z-]+)  ", text[text.index("Subcommands:"):])
         self.assertEqual(sorted(listed), sorted(COMMANDS))
 
     def test_manual_and_help_name_the_same_options(self):
@@ -69,7 +70,8 @@ class Help(ProgramTest):
         self.fail_with(r"--help", code=2)
         self.fail_with(r"paint.*'pellucid --help'", "paint", code=2)
         for command in COMMANDS:
-            self.fail_with(rf"'pellucid {command} --help'", command, code=2)
+            if command != "presets":  # which needs no argument
+                self.fail_with(rf"'pellucid {command} --help'", command, code=2)
             positional = ("linear_segment", "a.csv", "-o", "b.csv") if command == "evaluate" else ("a",)
             positional += ("b",) if command == "compare" else ()
             self.fail_with(rf"--frobnicate.*'pellucid {command} --help'", command, *positional,

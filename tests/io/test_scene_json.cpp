@@ -353,6 +353,31 @@ TEST(TransferFunctionJson, StandsAloneBareOrUnderItsName) {
   EXPECT_NE(error("[]").find("must be an object"), std::string::npos);
 }
 
+TEST(TransferFunctionJson, TakesSrgbColorsAsSignals) {
+  const auto points = std::get<std::vector<TransferFunction::Point>>(parse_transfer_function(
+      R"({"color_space": "srgb", "points": [
+           {"value": 0, "extinction": 1, "color": [0, 0.04, 1]},
+           {"value": 1, "extinction": 1, "color": [0.5, 0.25, 0.75]}]})",
+      "t"));
+  // IEC 61966-2-1: 0.04/12.92 and ((x + 0.055)/1.055)^2.4, to 12 digits.
+  EXPECT_NEAR(points[0].color.g, 0.00309597523220, 1e-14);
+  EXPECT_EQ(points[0].color.b, 1);
+  EXPECT_NEAR(points[1].color.r, 0.214041140482, 1e-12);
+  EXPECT_NEAR(points[1].color.g, 0.0508760881716, 1e-12);
+  EXPECT_NEAR(points[1].color.b, 0.522521553968, 1e-12);
+  const auto linear = std::get<std::vector<TransferFunction::Point>>(parse_transfer_function(
+      R"({"color_space": "linear", "points": [{"value": 0, "extinction": 1, "color": [0, 7, 1]}]})",
+      "t"));
+  EXPECT_EQ(linear[0].color.g, 7);
+  const auto sum = std::get<MultivariateDescription>(parse_transfer_function(
+      R"({"color_space": "srgb", "gaussians": [{"center": [0], "width": [1], "extinction": 1,
+           "color": [0.5, 0, 0]}], "tables": [{"points": [
+           {"value": 0, "extinction": 1, "color": [0.5, 0, 0]}]}]})",
+      "t"));
+  EXPECT_NEAR(sum.gaussians[0].color.r, 0.214041140482, 1e-12);
+  EXPECT_NEAR(sum.tables[0].points[0].color.r, 0.214041140482, 1e-12);
+}
+
 TEST(TransferFunctionJson, MakesOpacityTablesAsExactAsTheToleranceAsks) {
   for (const double tolerance : {1e-2, 1.0 / 512, 1e-4, 1e-6}) {
     for (const double brightest : {0.0, 0.5, 1.0, 30.0}) {

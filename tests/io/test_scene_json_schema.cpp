@@ -29,6 +29,7 @@ const std::filesystem::path source = PELLUCID_SOURCE_DIR;
 /// Reasons for which the parser refuses what JSON Schema cannot tell.
 constexpr const char* beyond_schema[] = {"is below the value of the point before it",
                                          "is the third equal value",
+                                         "must be two ascending values",
                                          "/camera: camera: ",
                                          "transfer function: ",
                                          "channels: ",
@@ -127,7 +128,11 @@ std::vector<json> mutants(const json& whole) {
                               "array",
                               "component",
                               "time",
-                              "q"}) {
+                              "q",
+                              "color_space",
+                              "deviation",
+                              "preset",
+                              "range"}) {
         if (whole[place].contains(key)) continue;
         list.push_back(whole);
         list.back()[place][key] = 1;
@@ -159,7 +164,8 @@ TEST(SceneJsonSchema, AgreesWithTheParser) {
   {
     std::ofstream out(verdicts);
     for (const char* name : {"perspective", "orthographic", "raw", "header_replaced", "opacity",
-                             "channels", "gaussians", "one_channel", "mesh", "mesh_one_array"}) {
+                             "channels", "gaussians", "one_channel", "mesh", "mesh_one_array",
+                             "preset", "deviation", "gaussians_srgb"}) {
       std::ifstream file(source / "tests" / "io" / "scenes" / "valid" /
                          (std::string(name) + ".json"));
       ASSERT_TRUE(file) << name;

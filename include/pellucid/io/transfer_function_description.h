@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <memory>
 #include <optional>
 #include <string>
@@ -17,7 +18,13 @@ namespace pellucid {
 struct OpacityTable {
   std::vector<OpacityPoint> points;
   double unit_distance = 1;  ///< in world units
+  /// How far it is from the function that it stands for, where it is a fit to one: a bound on |ln|
+  /// of the ratio of the extinctions, and one on each channel of the color, linear. Both count in
+  /// the tolerance.
+  double extinction_deviation = 0, color_deviation = 0;
 };
+/// Limits of the deviations of an OpacityTable.
+inline constexpr double largest_extinction_deviation = 0.5, largest_color_deviation = 1;
 
 /// The shape of a Gaussian as written, by one of the three functions of
 /// scene/multivariate_transfer_function.h, or as its matrix itself.
@@ -55,10 +62,16 @@ struct MultivariateDescription {
   std::vector<ChannelTableDescription> tables;
 };
 
-/// A transfer function as written: points with extinctions, an opacity table, or a function of
-/// several channels.
-using TransferFunctionDescription =
-    std::variant<std::vector<TransferFunction::Point>, OpacityTable, MultivariateDescription>;
+/// One of presets(), made when the data are known.
+struct PresetDescription {
+  std::string name;
+  std::optional<std::array<double, 2>> range;  ///< values of its first and its last point
+};
+
+/// A transfer function as written: points with extinctions, an opacity table, a function of several
+/// channels, or a preset.
+using TransferFunctionDescription = std::variant<std::vector<TransferFunction::Point>, OpacityTable,
+                                                 MultivariateDescription, PresetDescription>;
 
 /// A Gaussian in short, as on a command line:
 ///
@@ -81,8 +94,9 @@ constexpr double opacity_table_share(double tolerance) noexcept {
   return tolerance / 8;
 }
 /// The transfer function itself. An opacity table is approximated to within
-/// opacity_table_share(tolerance), seen over that background; points are taken as they are. Throws
-/// Error, also for a function of several channels.
+/// opacity_table_share(tolerance), seen over that background, and has its deviations besides;
+/// points are taken as they are. Throws Error, also for a function of several channels and for a
+/// preset.
 TransferFunction make_transfer_function(const TransferFunctionDescription& description,
                                         double tolerance,
                                         const std::optional<Rgb<double>>& background = {});

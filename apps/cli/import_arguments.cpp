@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "import_arguments.h"
+
+#include <fmt/format.h>
+
+#include "parse.h"
+
+namespace pellucid::cli {
+
+void ImportArguments::add_to(CLI::App& command) {
+  command
+      .add_option("--range", range,
+                  "Values that the first and the last point of a preset, or of another program's "
+                  "transfer function, are moved to")
+      ->option_text("A,B");
+  given = {
+      command.add_option("--map", map, "Of another program's file: the color map of this name")
+          ->option_text("NAME"),
+      command
+          .add_option("--unit-distance", unit_distance,
+                      "Of another program's transfer function: the thickness, in world units, of a "
+                      "layer that has its opacities; default: the file's, else 1")
+          ->option_text("LENGTH"),
+      command
+          .add_option("--colors", colors,
+                      "Of another program's transfer function: whether its colors are srgb or "
+                      "linear; default: what the format means")
+          ->option_text("KIND")
+          ->check(CLI::IsMember({"srgb", "linear"}))};
+}
+
+ImportOptions ImportArguments::options(double deviation) const {
+  ImportOptions options;
+  options.deviation = deviation;
+  options.name = map;
+  if (!range.empty()) options.range = parse_range("--range", range);
+  options.unit_distance = unit_distance;
+  if (unit_distance &&
+      !(*unit_distance >= smallest_unit_distance && *unit_distance <= largest_unit_distance)) {
+    throw UsageError(fmt::format("--unit-distance {}: expected a length from {} to {}",
+                                 *unit_distance, smallest_unit_distance, largest_unit_distance));
+  }
+  if (!colors.empty()) {
+    options.numbers = colors == "linear" ? ColorNumbers::linear : ColorNumbers::srgb;
+  }
+  return options;
+}
+
+void ImportArguments::refuse(const std::string& what) const {
+  for (const CLI::Option* option : given) {
+    if (option->count() == 0) continue;
+    throw UsageError(fmt::format("{} does not apply to {}; drop it", option->get_name(), what));
+  }
+}
+
+std::vector<std::string> import_lines(const ImportedTransferFunction& imported,
+                                      const std::string& file) {
+  std::vector<std::string> lines{
+      fmt::format("{}: {}{}", file, imported.format,
+                  imported.name.empty() ? "" : fmt::format(" \"{}\"", one_line(imported.name)))};
+  for (const std::string& note : imported.notes) lines.push_back(fmt::format("  {}", note));
+  return lines;
+}
+
+}  // namespace pellucid::cli

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pellucid/scene/presets.h"
+
+#include <fmt/format.h>
+
+#include <memory>
+#include <string>
+
+#include "commands.h"
+#include "output.h"
+
+namespace pellucid::cli {
+
+namespace {
+
+int list_presets(bool json) {
+  if (json) {
+    Json list = Json::array();
+    for (const Preset& preset : presets()) {
+      list.push_back({{"name", preset.name},
+                      {"description", preset.description},
+                      {"hounsfield", preset.hounsfield}});
+    }
+    print_json(list);
+    return 0;
+  }
+  std::string text;
+  for (const Preset& preset : presets()) {
+    text += fmt::format("{:<24}{}\n", preset.name, preset.description);
+  }
+  print_text(text);
+  return 0;
+}
+
+}  // namespace
+
+Command add_presets(CLI::App& app) {
+  CLI::App& command =
+      *app.add_subcommand("presets", "List the transfer functions that 'render --preset' takes");
+  const auto json = std::make_shared<bool>(false);
+  command.add_flag("--json", *json, "Print the list as JSON");
+  command.footer(
+      "Examples:\n"
+      "  pellucid render head.nrrd --preset ct-bone -o bone.png\n"
+      "  pellucid render flow.npy --preset simulation-diverging --range 0,40 -o flow.png");
+  return {&command, [json] { return list_presets(*json); }};
+}
+
+}  // namespace pellucid::cli

@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "commands.h"
+#include "import_arguments.h"
+#include "output.h"
+#include "overwriting.h"
+#include "parse.h"
+#include "pellucid/io/atomic_file.h"
+#include "pellucid/io/export_transfer_function.h"
+#include "pellucid/io/image_files.h"
+#include "pellucid/io/scene_json.h"
+
+namespace pellucid::cli {
+
+namespace {
+
+struct TransferFunctionArguments {
+  std::string input, output, format = "pellucid";
+  std::string deviation = "1e-4";
+  ImportArguments import;
+  bool quiet = false;
+};
+
+/// What the input is, and what is told of it.
+TransferFunctionDescription read(const TransferFunctionArguments& arguments, double deviation,
+                                 std::vector<std::string>& notes) {
+  const std::string text = read_text_file(arguments.input);
+  if (is_foreign_transfer_function(text)) {
+    const ImportedTransferFunction imported =
+        import_transfer_function(text, arguments.input, arguments.import.options(deviation));
+    notes = import_lines(imported, arguments.input);
+    return imported.table;
+  }
+  arguments.import.refuse("a transfer function of our own");
+  if (!arguments.import.range.empty()) {
+    throw UsageError("--range does not apply to a transfer function of our own; drop it");
+  }
+  if (text.find("\"volumes\"") == std::string::npos) {
+    return parse_transfer_function(text, arguments.input);
+  }
+  const SceneDescription scene = parse_scene(text, arguments.input);
+  if (!scene.transfer_function) {
+    throw Error(
+        arguments.input +
+        ": the scene has no transfer function; 'pellucid render --save-tf FILE.json' writes "
+        "the one that it is rendered with");
+  }
+  return *scene.transfer_function;
+}
+
+int convert(const TransferFunctionArguments& arguments) {
+  const double deviation = parse_tolerance("--deviation", arguments.deviation);
+  if (!(deviation >= smallest_deviation && deviation <= largest_deviation)) {
+    throw UsageError(fmt::format("--deviation {}: expected a number from {:g} to {:g}",
+                                 arguments.deviation, smallest_deviation, largest_deviation));
+  }
+  if (!arguments.output.empty()) {
+    const NamedFile outputs[] = {{"OUTPUT", arguments.output}};
+    const NamedFile inputs[] = {{"INPUT", arguments.input}};
+    refuse_overwriting(outputs, inputs);
+    check_writable(arguments.output);
+  }
+  std::vector<std::string> notes;
+  const TransferFunctionDescription function = read(arguments, deviation, notes);
+  std::string text;
+  if (arguments.format == "pellucid") {
+    text = transfer_function_to_json(function) + "\n";
+  } else {
+    ExportOptions options;
+    options.format = *export_format_from_name(arguments.format);
+    options.deviation = deviation;
+    const ExportedTransferFunction exported = export_transfer_function(function, options);
+    text = exported.text;
+    for (const std::string& note : exported.notes) {
+      notes.push_back(fmt::format("{}: {}", arguments.format, note));
+    }
+  }
+  if (arguments.output.empty()) {
+    print_text(text);
+  } else {
+    write_text_file(arguments.output, text);
+  }
+  if (!arguments.quiet) {
+    for (const std::string& note : notes) print_note(note);
+  }
+  return 0;
+}
+
+}  // namespace
+
+Command add_transfer_function(CLI::App& app) {
+  CLI::App& command = *app.add_subcommand(
+      "transfer-function", "Convert a transfer function from or to that of another program");
+  const auto arguments = std::make_shared<TransferFunctionArguments>();
+  command
+      .add_option("INPUT", arguments->input,
+                  "Transfer function of our own, a scene, or one of ParaView, 3D Slicer, VisIt, "
+                  "vtk.js, ANARI, or a color table as CSV; which is seen by its content")
+      ->required();
+  command.add_option("OUTPUT", arguments->output, "File to write; default: stdout");
+  command
+      .add_option("--format", arguments->format,
+                  "pellucid (the default), slicer (.vp.json), paraview (.json) or table (.csv)")
+      ->option_text("NAME")
+      ->check(CLI::IsMember({"pellucid", "slicer", "paraview", "table"}));
+  command
+      .add_option("--deviation", arguments->deviation,
+                  "How far what is fitted may be off: each channel of the color, linear, and the "
+                  "logarithm of the extinction; default: 1e-4")
+      ->option_text("E");
+  arguments->import.add_to(command);
+  command.add_flag("-q,--quiet", arguments->quiet, "No notes, only errors");
+  command.footer(
+      "What was exact, what was fitted and how far it is off is told on stderr. The deviation is\n"
+      "kept in the file, and counts in the tolerance of a picture.\n"
+      "\n"
+      "Examples:\n"
+      "  pellucid transfer-function CT-AAA.vp.json tf.json\n"
+      "  pellucid transfer-function maps.json tf.json --map 'Cool to Warm' --range 0,300\n"
+      "  pellucid transfer-function viridis.csv tf.json --range -1,1 --unit-distance 0.1\n"
+      "  pellucid transfer-function scene.json out.vp.json --format slicer");
+  return {&command, [arguments] { return convert(*arguments); }};
+}
+
+}  // namespace pellucid::cli

@@ -1,0 +1,212 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pellucid/io/export_transfer_function.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "chord_fit.h"
+#include "foreign_curves.h"
+#include "pellucid/scene/error.h"
+
+namespace pellucid {
+namespace {
+
+using foreign::Jet;
+using foreign::Triple;
+
+/// The largest slope of the sRGB curve, at 1: light is off by so much more than signals.
+constexpr double steepest_light = 2.4 / 1.055;
+/// By which the two branches of the curve do not meet.
+constexpr double branch_step = 5e-8;
+
+/// A function of our own, as signals and opacities.
+class OwnCurves {
+ public:
+  struct Node {
+    double value = 0;
+    double strength = 0;  ///< an opacity or a depth
+    Triple<double> light{};
+  };
+  /// The node before the stretch; their number where there is none.
+  struct Place {
+    std::size_t node = 0;
+  };
+
+  OwnCurves(std::vector<Node> nodes, bool depths) : nodes_(std::move(nodes)), depths_(depths) {
+    for (const Node& node : nodes_) breaks_.push_back(node.value);
+    breaks_.erase(std::unique(breaks_.begin(), breaks_.end()), breaks_.end());
+  }
+
+  const std::vector<double>& breaks() const noexcept { return breaks_; }
+  Place place(double inside) const {
+    const auto after = std::upper_bound(nodes_.begin(), nodes_.end(), inside,
+                                        [](double v, const Node& node) { return v < node.value; });
+    if (after == nodes_.begin()) return {nodes_.size()};
+    return {static_cast<std::size_t>(after - nodes_.begin()) - 1};
+  }
+  template <class T>
+  Triple<T> color(const T& value, const Place& place) const {
+    Triple<T> signals;
+    for (std::size_t i = 0; i < 3; ++i) {
+      signals[i] = foreign::signal_of(
+          between(value, place, [&](const Node& node) { return node.light[i]; }));
+    }
+    return signals;
+  }
+  template <class T>
+  T opacity(const T& value, const Place& place) const {
+    const T strength = between(value, place, [](const Node& node) { return node.strength; });
+    return depths_ ? T(1) - foreign::exponential(T(0) - strength) : strength;
+  }
+
+ private:
+  template <class T, class Part>
+  T between(const T& value, const Place& place, Part&& part) const {
+    if (place.node == nodes_.size()) return T(part(nodes_.front()));
+    const Node& a = nodes_[place.node];
+    if (place.node + 1 == nodes_.size()) return T(part(a));
+    const Node& b = nodes_[place.node + 1];
+    return foreign::mix(part(a), part(b), foreign::ratio(value - T(a.value), b.value - a.value));
+  }
+
+  std::vector<Node> nodes_;
+  std::vector<double> breaks_;
+  bool depths_;
+};
+
+void check_color(const Rgb<double>& color, std::size_t index) {
+  if (std::max({color.r, color.g, color.b}) <= 1) return;
+  throw Error("export: the color of point " + std::to_string(index) +
+              " is above 1, which signals cannot be; make it darker");
+}
+
+template <class Point>
+std::vector<OwnCurves::Node> nodes(const std::vector<Point>& points, double Point::*strength,
+                                   double scale) {
+  std::vector<OwnCurves::Node> list;
+  for (const Point& p : points) {
+    check_color(p.color, list.size());
+    list.push_back({p.value, p.*strength * scale, foreign::triple(p.color)});
+  }
+  return list;
+}
+
+nlohmann::ordered_json slicer(const std::vector<OpacityPoint>& points, double unit_distance) {
+  using Json = nlohmann::ordered_json;
+  Json colors = Json::array(), opacities = Json::array();
+  for (const OpacityPoint& p : points) {
+    colors.push_back({{"x", p.value},
+                      {"color", {p.color.r, p.color.g, p.color.b}},
+                      {"midpoint", 0.5},
+                      {"sharpness", 0.0}});
+    opacities.push_back({{"x", p.value}, {"y", p.opacity}, {"midpoint", 0.5}, {"sharpness", 0.0}});
+  }
+  const Json component{
+      {"componentWeight", 1.0},
+      {"shade", false},
+      {"lighting", {{"diffuse", 1.0}, {"ambient", 0.0}, {"specular", 0.0}, {"specularPower", 1.0}}},
+      {"disableGradientOpacity", true},
+      {"scalarOpacityUnitDistance", unit_distance},
+      {"rgbTransferFunction", {{"type", "colorTransferFunction"}, {"points", colors}}},
+      {"scalarOpacity", {{"type", "piecewiseFunction"}, {"points", opacities}}}};
+  return {{"@schema",
+           "https://raw.githubusercontent.com/slicer/slicer/main/Modules/Loadable/VolumeRendering/"
+           "Resources/Schema/volume-property-schema-v1.0.0.json#"},
+          {"volumeProperties",
+           {{{"effectiveRange", {points.front().value, points.back().value}},
+             {"independentComponents", true},
+             {"interpolationType", "linear"},
+             {"components", {component}}}}}};
+}
+
+nlohmann::ordered_json paraview(const std::vector<OpacityPoint>& points) {
+  using Json = nlohmann::ordered_json;
+  Json colors = Json::array(), opacities = Json::array();
+  for (const OpacityPoint& p : points) {
+    for (const double x : {p.value, p.color.r, p.color.g, p.color.b}) colors.push_back(x);
+    for (const double x : {p.value, p.opacity, 0.5, 0.0}) opacities.push_back(x);
+  }
+  return Json::array({{{"Name", "pellucid"},
+                       {"ColorSpace", "RGB"},
+                       {"RGBPoints", colors},
+                       {"Points", opacities}}});
+}
+
+std::string number(double x) {
+  char text[32];
+  return {text, std::to_chars(text, text + sizeof text, x).ptr};
+}
+
+std::string table(const std::vector<OpacityPoint>& points) {
+  std::string text = "value,r,g,b,a\n";
+  for (const OpacityPoint& p : points) {
+    for (const double x : {p.value, p.color.r, p.color.g, p.color.b}) text += number(x) + ",";
+    text += number(p.opacity) + "\n";
+  }
+  return text;
+}
+
+void add_notes(const ExportOptions& options, double unit_distance, std::size_t points,
+               ExportedTransferFunction& exported) {
+  const std::string unit = "the opacities are those of a unit distance of " + number(unit_distance);
+  exported.notes.push_back(std::to_string(points) + " nodes");
+  exported.notes.push_back(exported.color_deviation > 0
+                               ? "colors: fitted by lines in sRGB, within " +
+                                     foreign::text_of(exported.color_deviation) +
+                                     " of each channel in linear light"
+                               : "colors: exact");
+  exported.notes.push_back(exported.extinction_deviation > 0
+                               ? "opacities: fitted, extinctions within a factor of 1 + " +
+                                     foreign::text_of(exported.extinction_deviation)
+                               : "opacities: exact");
+  exported.notes.push_back(options.format == ExportFormat::slicer
+                               ? unit
+                               : unit + ", which the file cannot say: set it where it is read");
+}
+
+}  // namespace
+
+std::optional<ExportFormat> export_format_from_name(std::string_view name) noexcept {
+  if (name == "slicer") return ExportFormat::slicer;
+  if (name == "paraview") return ExportFormat::paraview;
+  if (name == "table") return ExportFormat::table;
+  return std::nullopt;
+}
+
+ExportedTransferFunction export_transfer_function(const TransferFunctionDescription& function,
+                                                  const ExportOptions& options) {
+  if (std::holds_alternative<MultivariateDescription>(function)) {
+    throw Error("export: functions of several channels have no counterpart in other programs");
+  }
+  if (std::holds_alternative<PresetDescription>(function)) {
+    throw Error(
+        "export: a preset is made of its data; 'pellucid render DATA --preset NAME "
+        "--save-tf FILE.json' writes its points");
+  }
+  const OpacityTable* const own_table = std::get_if<OpacityTable>(&function);
+  const double unit_distance = own_table != nullptr ? own_table->unit_distance : 1;
+  std::vector<OwnCurves::Node> list =
+      own_table != nullptr ? nodes(own_table->points, &OpacityPoint::opacity, 1)
+                           : nodes(std::get<std::vector<TransferFunction::Point>>(function),
+                                   &TransferFunction::Point::extinction, unit_distance);
+  if (list.empty()) throw Error("export: the transfer function has no points");
+  const OwnCurves curves(std::move(list), own_table == nullptr);
+  foreign::ChordFit<OwnCurves> chords(curves, options.deviation / steepest_light, options.deviation,
+                                      "export");
+  const std::vector<OpacityPoint> points = chords.points();
+  ExportedTransferFunction exported;
+  if (chords.color_deviation() > 0) {
+    exported.color_deviation = chords.color_deviation() * steepest_light + branch_step;
+  }
+  exported.extinction_deviation = chords.depth_deviation();
+  exported.text = options.format == ExportFormat::slicer
+                      ? slicer(points, unit_distance).dump(4) + "\n"
+                  : options.format == ExportFormat::paraview ? paraview(points).dump(1) + "\n"
+                                                             : table(points);
+  add_notes(options, unit_distance, points.size(), exported);
+  return exported;
+}
+
+}  // namespace pellucid

@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "pellucid/io/import_transfer_function.h"
+
+/// Transfer functions of other programs, as those programs mean them: what the readers of their
+/// files give, and what fit() turns into an opacity table.
+namespace pellucid::foreign {
+
+/// A node of vtkColorTransferFunction; midpoint and sharpness shape the way to the next one.
+struct ColorNode {
+  double x = 0;
+  Rgb<double> color{};  ///< numbers as in the file, 0 to 1
+  double midpoint = 0.5, sharpness = 0;
+};
+
+/// A node of vtkPiecewiseFunction.
+struct OpacityNode {
+  double x = 0, opacity = 0;
+  double midpoint = 0.5, sharpness = 0;
+};
+
+/// A control point of VisIt's and vtk.js's Gaussians, which reaches from x - width to x + width.
+struct GaussianNode {
+  double x = 0, height = 0, width = 0;
+  double x_bias = 0;  ///< moves the top, by less than the width
+  double y_bias = 0;  ///< 0 Gaussian, 1 parabola, 2 box
+};
+
+/// In what the way from one color to the next is straight.
+enum class ColorSpace { rgb, hsv, hsv_without_wrap, lab, diverging, step };
+
+/// The largest number of nodes of a file.
+inline constexpr std::size_t most_nodes = 100'000;
+
+struct Function {
+  std::string format;  ///< for people: "ParaView color map"
+  std::string name;    ///< in the file; may be empty
+  std::vector<ColorNode> colors;
+  ColorSpace space = ColorSpace::rgb;
+  ColorNumbers numbers = ColorNumbers::srgb;
+  std::vector<OpacityNode> opacities;
+  /// In place of `opacities`: the largest of them at each value, between these values and constant
+  /// beyond them.
+  std::vector<GaussianNode> gaussians;
+  double lower = 0, upper = 1;
+  double unit_distance = 1;
+  std::vector<std::string> notes;  ///< what was left out or supposed
+};
+
+/// The function as an opacity table within the deviations asked for.
+ImportedTransferFunction fit(const Function& function, const ImportOptions& options);
+
+}  // namespace pellucid::foreign

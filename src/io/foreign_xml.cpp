@@ -1,0 +1,234 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <cmath>
+#include <map>
+#include <optional>
+
+#include "foreign_readers.h"
+#include "foreign_text.h"
+#include "pellucid/scene/error.h"
+
+namespace pellucid::foreign {
+namespace {
+
+/// A start or end tag, and the text behind it up to the next one.
+struct Tag {
+  std::string_view name;
+  std::map<std::string_view, std::string_view> attributes;
+  std::string_view text;
+  bool closes = false;  ///< "</name>"
+  bool closed = false;  ///< "<name/>"
+  std::size_t line = 0;
+};
+
+/// Tags one after the other, without entities: what the two programs write of numbers and names.
+class Scanner {
+ public:
+  Scanner(std::string_view text, const std::string& name) : rest_(text), name_(name) {}
+
+  std::optional<Tag> next() {
+    skip_to('<');
+    while (rest_.starts_with("<?") || rest_.starts_with("<!")) {
+      advance(find(rest_.starts_with("<!--") ? "-->" : ">") + 1);
+      skip_to('<');
+    }
+    if (rest_.empty()) return std::nullopt;
+    Tag tag;
+    tag.line = line_;
+    const std::size_t end = find(">");
+    std::string_view inside = rest_.substr(1, end - 1);
+    tag.closes = inside.starts_with('/');
+    if (tag.closes) inside.remove_prefix(1);
+    tag.closed = inside.ends_with('/');
+    if (tag.closed) inside.remove_suffix(1);
+    tag.name = inside.substr(0, inside.find_first_of(" \t\r\n"));
+    inside.remove_prefix(tag.name.size());
+    read_attributes(inside, tag);
+    advance(end + 1);
+    tag.text = rest_.substr(0, rest_.find('<'));
+    return tag;
+  }
+
+  std::string where(const Tag& tag) const { return name_ + ": line " + std::to_string(tag.line); }
+
+ private:
+  std::size_t find(std::string_view what) const {
+    const std::size_t at = rest_.find(what);
+    if (at == std::string_view::npos) {
+      throw Error(name_ + ": line " + std::to_string(line_) +
+                  ": a tag does not end; is the file complete?");
+    }
+    return at;
+  }
+  void advance(std::size_t count) {
+    for (const char c : rest_.substr(0, count)) line_ += c == '\n';
+    rest_.remove_prefix(std::min(count, rest_.size()));
+  }
+  void skip_to(char c) { advance(std::min(rest_.find(c), rest_.size())); }
+  void read_attributes(std::string_view inside, Tag& tag) const {
+    for (;;) {
+      const std::size_t begin = inside.find_first_not_of(" \t\r\n");
+      if (begin == std::string_view::npos) return;
+      const std::size_t equals = inside.find('=', begin);
+      const char quote = equals < inside.size() - 1 ? inside[equals + 1] : ' ';
+      const std::size_t end = equals == std::string_view::npos || (quote != '"' && quote != '\'')
+                                  ? std::string_view::npos
+                                  : inside.find(quote, equals + 2);
+      if (end == std::string_view::npos) {
+        throw Error(where(tag) + ": <" + scene_json::printable(tag.name) +
+                    "> has an attribute without a quoted value");
+      }
+      tag.attributes[inside.substr(begin, equals - begin)] =
+          inside.substr(equals + 2, end - equals - 2);
+      inside.remove_prefix(end + 1);
+    }
+  }
+
+  std::string_view rest_;
+  const std::string& name_;
+  std::size_t line_ = 1;
+};
+
+double attribute(const Tag& tag, std::string_view key, const std::string& where) {
+  const auto found = tag.attributes.find(key);
+  if (found == tag.attributes.end()) {
+    throw Error(where + ": <" + scene_json::printable(tag.name) + "> has no " + std::string(key));
+  }
+  return number_of(found->second, where);
+}
+
+double checked(double x, double lower, double upper, const std::string& where) {
+  if (x >= lower && x <= upper) return x;
+  throw Error(where + ": " + text_of(x) + " must be from " + text_of(lower) + " to " +
+              text_of(upper));
+}
+
+ColorSpace space_of(std::string_view word, const std::string& where) {
+  if (word.empty() || word == "RGB") return ColorSpace::rgb;
+  if (word == "HSV") return ColorSpace::hsv;
+  if (word == "Wrapped") return ColorSpace::hsv;
+  if (word == "Lab" || word == "CIELAB") return ColorSpace::lab;
+  if (word == "Diverging") return ColorSpace::diverging;
+  if (word == "Step") return ColorSpace::step;
+  throw Error(where + ": the space \"" + scene_json::printable(word) +
+              "\" is not read; save the map as RGB, HSV, Lab, Diverging or Step");
+}
+
+/// <ColorMap name="" space=""><Point x="" o="" r="" g="" b=""/>…</ColorMap>.
+Function read_color_maps(Scanner& scanner, Tag tag, const std::string& name,
+                         const std::string& wanted) {
+  Function function;
+  function.format = "ParaView color map";
+  bool inside = false, found = false;
+  std::size_t count = 0;
+  for (std::optional<Tag> next = tag; next; next = scanner.next()) {
+    const std::string where = scanner.where(*next);
+    if (next->name == "ColorMap") {
+      if (!next->closes) ++count;
+      const std::string map(next->attributes["name"]);
+      inside = !next->closes && !next->closed && !found && (wanted.empty() || map == wanted);
+      if (!inside) continue;
+      found = true;
+      function.name = map;
+      function.space = space_of(next->attributes["space"], where);
+    } else if (inside && next->name == "Point" && !next->closes) {
+      const double x = attribute(*next, "x", where);
+      const auto part = [&](const char* key) {
+        return checked(attribute(*next, key, where), 0, 1, where);
+      };
+      function.colors.push_back({x, {part("r"), part("g"), part("b")}});
+      if (next->attributes.contains("o")) function.opacities.push_back({x, part("o")});
+    }
+  }
+  if (!found) {
+    throw Error(name + ": has no color map" +
+                (wanted.empty() ? "" : " \"" + scene_json::printable(wanted) + "\""));
+  }
+  if (count > 1 && wanted.empty()) {
+    function.notes.push_back("the first of " + std::to_string(count) + " maps is taken, \"" +
+                             scene_json::printable(function.name) + "\"");
+  }
+  complete(function, name);
+  return function;
+}
+
+/// The fields of one control point by their names.
+using Fields = std::map<std::string_view, std::string_view>;
+
+double field(const Fields& fields, std::string_view key, const std::string& where) {
+  const auto found = fields.find(key);
+  const auto list =
+      found == fields.end() ? std::vector<std::string_view>() : words(found->second, " \t\r\n");
+  if (list.size() != 1) throw Error(where + ": a control point has no " + std::string(key));
+  return number_of(list.front(), where);
+}
+
+GaussianNode visit_gaussian(const Fields& fields, const std::string& where) {
+  GaussianNode g;
+  g.x = field(fields, "x", where);
+  g.height = checked(field(fields, "height", where), 0, 1, where);
+  g.width = checked(field(fields, "width", where), 0, 1e30, where);
+  if (g.width == 0) g.width = 0.00001;  // as VisIt
+  g.x_bias = checked(field(fields, "xBias", where), -g.width, g.width, where);
+  g.y_bias = checked(field(fields, "yBias", where), 0, 2, where);
+  return g;
+}
+
+ColorNode visit_color(const Fields& fields, const std::string& where) {
+  const auto found = fields.find("colors");
+  const auto list =
+      found == fields.end() ? std::vector<std::string_view>() : words(found->second, " \t\r\n");
+  if (list.size() < 3) throw Error(where + ": a color control point has no colors");
+  const auto part = [&](std::size_t i) {
+    return checked(number_of(list[i], where), 0, 255, where) / 255;
+  };
+  return {field(fields, "position", where), {part(0), part(1), part(2)}};
+}
+
+/// <Object name="GaussianControlPoint"><Field name="x" type="float">0.3</Field>…</Object>.
+Function read_visit(Scanner& scanner, Tag tag, const std::string& name) {
+  Function function;
+  function.format = "VisIt volume attributes";
+  constexpr std::size_t most_gaussians = 1000;
+  std::string_view object;
+  Fields fields;
+  for (std::optional<Tag> next = tag; next; next = scanner.next()) {
+    const std::string where = scanner.where(*next);
+    if (next->name == "Field" && !next->closes) {
+      if (next->attributes["name"] == "opacityMode" &&
+          next->text.find("Gaussian") == std::string_view::npos) {
+        throw Error(where + ": the opacity mode is not Gaussian; only that one is read");
+      }
+      if (next->attributes["name"] == "opacityAttenuation") {
+        function.notes.emplace_back("VisIt's attenuation of opacities is left out");
+      }
+      fields[next->attributes["name"]] = next->text;
+    } else if (next->name == "Object" && !next->closes) {
+      object = next->attributes["name"];
+      fields.clear();
+    } else if (next->name == "Object") {
+      if (object == "GaussianControlPoint") {
+        function.gaussians.push_back(visit_gaussian(fields, where));
+      }
+      if (object == "ColorControlPoint") function.colors.push_back(visit_color(fields, where));
+      if (function.gaussians.size() > most_gaussians || function.colors.size() > most_nodes) {
+        throw Error(where + ": too many control points");
+      }
+      object = {};
+    }
+  }
+  complete(function, name);
+  return function;
+}
+
+}  // namespace
+
+Function read_xml(std::string_view text, const std::string& name, const std::string& wanted) {
+  Scanner scanner(text, name);
+  for (std::optional<Tag> tag = scanner.next(); tag; tag = scanner.next()) {
+    if (tag->name == "ColorMap") return read_color_maps(scanner, *tag, name, wanted);
+    if (tag->name == "Object") return read_visit(scanner, *tag, name);
+  }
+  throw Error(name + ": is XML, but neither ParaView's color maps nor VisIt's attributes");
+}
+
+}  // namespace pellucid::foreign

@@ -1,0 +1,324 @@
+// SPDX-License-Identifier: Apache-2.0
+
+// The formats that are no VTK of ours: what their formulas give, computed here from their
+// definitions.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "pellucid/io/import_transfer_function.h"
+#include "pellucid/io/scene_json.h"
+#include "scratch_folder.h"
+
+namespace pellucid {
+namespace {
+
+using test::contains;
+
+ImportedTransferFunction read(const std::string& text, const ImportOptions& options = {}) {
+  return import_transfer_function(text, "f", options);
+}
+
+bool has_note(const ImportedTransferFunction& imported, const std::string& part) {
+  return std::any_of(imported.notes.begin(), imported.notes.end(),
+                     [&](const std::string& note) { return contains(note, part); });
+}
+
+OpacityPoint at(const OpacityTable& table, double value) {
+  const auto& points = table.points;
+  if (value <= points.front().value) return points.front();
+  if (value >= points.back().value) return points.back();
+  const auto after = std::upper_bound(points.begin(), points.end(), value,
+                                      [](double v, const OpacityPoint& p) { return v < p.value; });
+  const OpacityPoint &a = *(after - 1), &b = *after;
+  const double s = (value - a.value) / (b.value - a.value);
+  return {value, a.opacity + s * (b.opacity - a.opacity), a.color + (b.color - a.color) * s};
+}
+
+/// By VisIt's and vtk.js's own steps: x is stretched about the biased top, then normalised.
+double gaussian(double x, double pos, double height, double width, double x_bias, double y_bias) {
+  if (x > pos + width || x < pos - width) return 0;
+  double x0 = x;
+  if (x_bias != 0 && x > pos + x_bias) x0 = pos + (x - pos - x_bias) * (width / (width - x_bias));
+  if (x_bias != 0 && x < pos + x_bias) x0 = pos - (x - pos - x_bias) * (width / (width + x_bias));
+  const double x1 = (x0 - pos) / width;
+  const double h0a = std::exp(-(4 * x1 * x1)), h0b = 1 - x1 * x1;
+  return height *
+         (y_bias < 1 ? y_bias * h0b + (1 - y_bias) * h0a : (2 - y_bias) * h0b + (y_bias - 1));
+}
+
+void expect_depths_near(const OpacityTable& table, double value, double opacity) {
+  const double ours = at(table, value).opacity;
+  if (opacity == 0) {
+    EXPECT_EQ(ours, 0) << value;
+    return;
+  }
+  const double ratio = std::log1p(-ours) / std::log1p(-opacity);
+  EXPECT_LE(std::abs(std::log(ratio)), table.extinction_deviation + 1e-12) << value;
+}
+
+TEST(ImportVtkJs, FollowsTheGaussians) {
+  const std::string text = R"({"gaussians": [
+    {"position": 0.3, "height": 0.8, "width": 0.2, "xBias": 0.1, "yBias": 0.4},
+    {"position": 0.6, "height": 0.5, "width": 0.35, "xBias": -0.2, "yBias": 1.6},
+    {"position": 0.9, "height": 1, "width": 0.05, "xBias": 0, "yBias": 0}],
+    "mappingRange": [-100, 300]})";
+  for (const double deviation : {1e-2, 1e-4}) {
+    ImportOptions options;
+    options.deviation = deviation;
+    const ImportedTransferFunction f = read(text, options);
+    EXPECT_EQ(f.format, "vtk.js Gaussians");
+    EXPECT_GT(f.table.extinction_deviation, 0);
+    EXPECT_LE(f.table.extinction_deviation, deviation + 1e-13);
+    EXPECT_TRUE(has_note(f, "white"));
+    for (int i = 0; i <= 2000; ++i) {
+      const double x = (i + 0.37) / 2001;
+      const double opacity =
+          std::max({gaussian(x, 0.3, 0.8, 0.2, 0.1, 0.4), gaussian(x, 0.6, 0.5, 0.35, -0.2, 1.6),
+                    gaussian(x, 0.9, 1, 0.05, 0, 0)});
+      // Above, an opacity is known to 1e-6 only, as chord_fit.h says.
+      if (opacity > 1 - 1e-6) continue;
+      expect_depths_near(f.table, -100 + 400 * x, opacity);
+    }
+  }
+}
+
+TEST(ImportVisIt, ReadsItsAttributes) {
+  const std::string text = R"(<?xml version="1.0"?>
+<!-- saved -->
+<Object name="VolumeAttributes">
+  <Object name="ColorControlPointList">
+    <Object name="ColorControlPoint">
+      <Field name="colors" type="unsignedCharArray" length="4">0 0 255 255 </Field>
+      <Field name="position" type="float">0</Field>
+    </Object>
+    <Object name="ColorControlPoint">
+      <Field name="colors" type="unsignedCharArray" length="4">255 0 0 255 </Field>
+      <Field name="position" type="float">1</Field>
+    </Object>
+  </Object>
+  <Object name="GaussianControlPointList">
+    <Object name="GaussianControlPoint">
+      <Field name="x" type="float">0.4</Field>
+      <Field name="height" type="float">0.6</Field>
+      <Field name="width" type="float">0.25</Field>
+      <Field name="xBias" type="float">0.05</Field>
+      <Field name="yBias" type="float">0.5</Field>
+    </Object>
+  </Object>
+</Object>
+)";
+  ImportOptions options;
+  options.range = {{0, 10}};
+  const ImportedTransferFunction f = read(text, options);
+  EXPECT_EQ(f.format, "VisIt volume attributes");
+  for (int i = 0; i <= 200; ++i) {
+    const double x = (i + 0.37) / 201;
+    expect_depths_near(f.table, 10 * x, gaussian(x, 0.4, 0.6, 0.25, 0.05, 0.5));
+  }
+  EXPECT_EQ(at(f.table, 0).color, (Rgb<double>{0, 0, 1}));
+  EXPECT_EQ(at(f.table, 10).color, (Rgb<double>{1, 0, 0}));
+}
+
+TEST(ImportAnari, TakesColorsAsLinearAndSpreadsThem) {
+  const ImportedTransferFunction f = read(R"({"color": [[1, 0, 0], [0, 0.5, 0], [0, 0, 1]],
+    "opacity": [0, 0.5], "valueRange": [10, 20], "unitDistance": 0.25})");
+  EXPECT_EQ(f.format, "ANARI transferFunction1D");
+  EXPECT_EQ(f.table.unit_distance, 0.25);
+  EXPECT_EQ(f.table.color_deviation, 0);
+  EXPECT_EQ(f.table.extinction_deviation, 0);
+  ASSERT_EQ(f.table.points.size(), 3u);
+  EXPECT_EQ(f.table.points[1].value, 15);
+  EXPECT_EQ(f.table.points[1].color, (Rgb<double>{0, 0.5, 0}));
+  EXPECT_EQ(f.table.points[1].opacity, 0.25);
+  EXPECT_EQ(f.table.points[2].value, 20);
+  const ImportedTransferFunction placed = read(
+      R"({"color": [[1, 0, 0, 0.2], [0, 0, 1, 0.4]], "color.position": [0.25, 1], "valueRange": [0, 4]})");
+  EXPECT_EQ(placed.table.points.front().value, 1);
+  EXPECT_EQ(placed.table.points.back().opacity, 0.4);
+}
+
+TEST(ImportTable, ReadsRowsOfColors) {
+  ImportOptions linear;
+  linear.numbers = ColorNumbers::linear;
+  const OpacityTable plain = read("0,0,0\n0.5 0.25 0\n1;1;1\n", linear).table;
+  ASSERT_EQ(plain.points.size(), 3u);
+  EXPECT_EQ(plain.points[1].value, 0.5);
+  EXPECT_EQ(plain.points[1].opacity, 0.5);  // the ramp
+  EXPECT_EQ(plain.points[1].color, (Rgb<double>{0.5, 0.25, 0}));
+  const OpacityTable bytes =
+      read("# a map\nvalue,r,g,b,a\r\n-10,255,0,0,0\r\n30,0,0,51,128\r\n", linear).table;
+  ASSERT_EQ(bytes.points.size(), 2u);
+  EXPECT_EQ(bytes.points[1].value, 30);
+  EXPECT_DOUBLE_EQ(bytes.points[1].color.b, 0.2);
+  EXPECT_DOUBLE_EQ(bytes.points[1].opacity, 128 / 255.0);
+  EXPECT_EQ(read("0.5,0.5,0.5,0.25", linear).table.points.front().opacity, 0.25);
+}
+
+TEST(ImportParaView, ReadsXmlAndMapsByName) {
+  const std::string text = R"(<ColorMaps><ColorMap name="a" space="RGB">
+    <Point x="0" o="0" r="1" g="0" b="0"/><Point x="2" o="1" r="0" g="0" b="1"/></ColorMap>
+    <ColorMap name="b" space="Step"><Point x="0" o="0.5" r="1" g="1" b="0"/></ColorMap></ColorMaps>)";
+  ImportOptions options;
+  options.numbers = ColorNumbers::linear;
+  EXPECT_EQ(read(text, options).table.points.size(), 2u);
+  EXPECT_TRUE(has_note(read(text, options), "first of 2 maps"));
+  options.name = "b";
+  EXPECT_EQ(read(text, options).table.points.front().color, (Rgb<double>{1, 1, 0}));
+  options.name = "c";
+  EXPECT_TRUE(contains(test::error_of([&] { read(text, options); }), "no color map \"c\""));
+}
+
+TEST(ImportSlicer, ReadsTheLegacyText) {
+  const std::string text =
+      "1\n1\n0.9\n0.1\n0.2\n10\n6 -100 0 50 0.25 300 0.5\n4 0 1 255 1\n"
+      "8 -100 0 0 0 300 1 0.5 0.25\n";
+  ImportOptions options;
+  options.numbers = ColorNumbers::linear;
+  const ImportedTransferFunction f = read(text, options);
+  EXPECT_EQ(f.format, "3D Slicer volume property");
+  EXPECT_EQ(f.table.unit_distance, 1);
+  ASSERT_EQ(f.table.points.size(), 3u);
+  EXPECT_EQ(f.table.points[1].opacity, 0.25);
+  EXPECT_DOUBLE_EQ(f.table.points[1].color.r, 0.375);
+  EXPECT_TRUE(has_note(f, "shading is left out"));
+  EXPECT_FALSE(has_note(f, "gradient"));
+  std::string dented = text;
+  dented.replace(dented.find("255 1"), 5, "255 0");
+  EXPECT_TRUE(has_note(read(dented, options), "the gradient opacity is left out"));
+}
+
+TEST(Import, MovesAFunctionToARange) {
+  ImportOptions options;
+  options.range = {{-5, 15}};
+  options.unit_distance = 3;
+  options.numbers = ColorNumbers::linear;
+  const OpacityTable table =
+      read(R"([{"RGBPoints": [0,1,0,0, 0.25,0,1,0, 1,0,0,1], "Points": [0,0,0.5,0, 1,1,0.5,0]}])",
+           options)
+          .table;
+  ASSERT_EQ(table.points.size(), 3u);
+  EXPECT_EQ(table.points[0].value, -5);
+  EXPECT_EQ(table.points[1].value, 0);
+  EXPECT_EQ(table.points[2].value, 15);
+  EXPECT_EQ(table.unit_distance, 3);
+}
+
+TEST(Import, CountsItsDeviationsInThePixel) {
+  const ImportedTransferFunction f = read(
+      R"([{"RGBPoints": [0,0.1,0.2,0.9, 1,1,0.5,0], "ColorSpace": "Lab", "Points": [0,0.2,0.5,0.4, 1,0.4,0.5,0]}])");
+  ASSERT_GT(f.table.color_deviation, 0);
+  ASSERT_GT(f.table.extinction_deviation, 0);
+  OpacityTable without = f.table;
+  without.color_deviation = without.extinction_deviation = 0;
+  const TransferFunction with = make_transfer_function(f.table, 1.0 / 512);
+  const TransferFunction exact = make_transfer_function(without, 1.0 / 512);
+  EXPECT_EQ(with.color_error(), f.table.color_deviation);
+  EXPECT_EQ(with.relative_error(), exact.relative_error() + f.table.extinction_deviation);
+  EXPECT_GE(with.approximation_error(),
+            exact.approximation_error() + 0.99 * f.table.color_deviation);
+  // Saved and read again, they still count.
+  const auto again = parse_transfer_function(transfer_function_to_json(f.table), "t");
+  EXPECT_EQ(std::get<OpacityTable>(again).color_deviation, f.table.color_deviation);
+  EXPECT_EQ(std::get<OpacityTable>(again).extinction_deviation, f.table.extinction_deviation);
+}
+
+TEST(Import, KnowsForeignFromOwn) {
+  for (const char* own : {R"({"points": []})", R"({"gaussians": [{"center": [1]}]})",
+                          R"({"transfer_function": {}})", R"({"preset": "x-ray"})", "{", ""}) {
+    EXPECT_FALSE(is_foreign_transfer_function(own)) << own;
+  }
+  for (const char* foreign :
+       {R"([{"RGBPoints": []}])", R"({"volumeProperties": []})", R"({"valueRange": [0, 1]})",
+        R"({"gaussians": [{"position": 1}]})", "<ColorMap>", "1,2,3", "1\n1\n"}) {
+    EXPECT_TRUE(is_foreign_transfer_function(foreign)) << foreign;
+  }
+}
+
+TEST(Import, RefusesWhatIsWrongInOneLineThatNamesThePlace) {
+  const auto error = [](const std::string& text) { return test::error_of([&] { read(text); }); };
+  const std::pair<const char*, const char*> cases[] = {
+      {"", "f: is empty"},
+      {"[]", "f: has no color map"},
+      {"[3]", "f: /0: must be an object"},
+      {"{\"a\": 1}", "f: is no transfer function"},
+      {R"([{"RGBPoints": []}])", "f: /0/RGBPoints: has 0 numbers"},
+      {R"([{"RGBPoints": [0, 1, 1]}])", "f: /0/RGBPoints: has 3 numbers"},
+      {R"([{"RGBPoints": [0, 1, 1, 1.5]}])", "f: /0/RGBPoints/3: is 1.5"},
+      {R"([{"RGBPoints": [0, 1, 1, null]}])", "f: /0/RGBPoints/3: must be a number"},
+      {R"([{"RGBPoints": [1e999, 1, 1, 1]}])", "f: line 1"},
+      {R"([{"RGBPoints": [1e31, 1, 1, 1]}])", "f: /0/RGBPoints/0: is 1e+31"},
+      {R"([{"RGBPoints": [1,1,1,1, 0,1,1,1]}])", "f: /0: color 1 lies at a smaller value"},
+      {R"([{"RGBPoints": [0,1,1,1], "Points": [0,2,0.5,0]}])", "f: /0/Points/1: is 2"},
+      {R"([{"RGBPoints": [0,1,1,1], "ColorSpace": "Lab/CIEDE2000"}])",
+       "f: /0/ColorSpace: is \"Lab"},
+      {R"([{"RGBPoints": [0,1,1,1], "UseLogScale": 1}])", "f: /0/UseLogScale: asks"},
+      {R"([{"IndexedColors": [1, 1, 1]}])", "f: /0/IndexedColors: are colors of categories"},
+      {R"({"volumeProperties": []})", "f: /volumeProperties: is empty"},
+      {R"({"volumeProperties": [{}]})", "f: /volumeProperties/0/components: is missing"},
+      {R"({"volumeProperties": [{"components": [{}]}]})", "has neither colors nor opacities"},
+      {R"({"volumeProperties": [{"components": [{"scalarOpacity": {"points": [{"x": 0}]}}]}]})",
+       "/points/0/y: is missing"},
+      {R"({"volumeProperties": [{"components": [{"scalarOpacityUnitDistance": 0}]}]})",
+       "/scalarOpacityUnitDistance: is 0"},
+      {R"({"gaussians": [{"position": 0, "height": 2, "width": 1}]})",
+       "f: /gaussians/0/height: is 2"},
+      {R"({"gaussians": [{"position": 0, "height": 1, "width": 0.1, "xBias": 0.2}]})",
+       "f: /gaussians/0/xBias: moves the top further"},
+      {R"({"color": [[1, 1]]})", "f: /color/0: must have 3 numbers"},
+      {R"({"color": [[1, 1, 1]], "color.position": [0, 1]})", "f: /color.position: has 2 numbers"},
+      {R"({"color": [[1, 1, 1]], "valueRange": [1, 1]})", "f: /valueRange: is empty"},
+      {"0,0\n", "f: line 1: has 2 numbers"},
+      {"0,0,0\n0,0,0,0\n", "f: line 2: has 4 numbers"},
+      {"0,0,nan\n", "f: line 1: \"nan\" is no number"},
+      {"0,0,inf\n", "f: line 1: \"inf\" is no number"},
+      {"0,0,256\n", "f: line 1: 256 must be from 0 to 1"},
+      {"value,r,g,b\n1,0,0,0\n0,0,0,0\n", "f: color 1 lies at a smaller value"},
+      {"hello\n", "f: has no rows of numbers"},
+      {"1\n1\n", "f: has 2 lines"},
+      {"1\n1\n1\n1\n1\n1\n3 0 0\n2 0 1\n4 0 1 1 1\n", "f: line 7: does not begin with the count"},
+      {"1\n1\n1\n1\n1\n1\n2 0 7\n2 0 1\n4 0 1 1 1\n", "f: line 7: 7 must be from 0 to 1"},
+      {"<a/>", "f: is XML, but neither"},
+      {"<ColorMap", "f: line 1: a tag does not end"},
+      {"<ColorMap name=>", "f: line 1: <ColorMap> has an attribute without"},
+      {"<ColorMap name=\"a\"><Point x=\"0\" r=\"1\" g=\"1\"/></ColorMap>",
+       "f: line 1: <Point> has no b"},
+      {"<Object name=\"GaussianControlPoint\"><Field name=\"x\">1</Field></Object>",
+       "f: line 1: a control point has no height"}};
+  for (const auto& [text, part] : cases) {
+    const std::string message = error(text);
+    EXPECT_TRUE(contains(message, part)) << text << "\n  " << message;
+    EXPECT_EQ(message.rfind("f", 0), 0u) << message;
+  }
+  std::string many = "[{\"RGBPoints\": [";
+  for (int i = 0; i <= 100'000; ++i) many += (i > 0 ? "," : "") + std::to_string(i) + ",0,0,0";
+  EXPECT_TRUE(contains(error(many + "]}]"), "has 100001 colors, but at most 100000"));
+}
+
+TEST(Import, RefusesOptionsOutOfRange) {
+  const auto error = [](const ImportOptions& options) {
+    return test::error_of([&] { read("0,0,0\n1,1,1\n", options); });
+  };
+  ImportOptions options;
+  options.deviation = 0;
+  EXPECT_TRUE(contains(error(options), "deviation"));
+  options = {};
+  options.range = {{1, 1}};
+  EXPECT_TRUE(contains(error(options), "range"));
+  options = {};
+  options.unit_distance = 0;
+  EXPECT_TRUE(contains(error(options), "unit distance"));
+  // The smallest deviation of a table of opposites.
+  options = {};
+  options.deviation = smallest_deviation;
+  std::string rows;
+  for (int i = 0; i < 2000; ++i) rows += i % 2 == 0 ? "0,0,0\n" : "1,1,1\n";
+  EXPECT_TRUE(contains(test::error_of([&] { read(rows, options); }), "allow a larger deviation"));
+}
+
+}  // namespace
+}  // namespace pellucid
