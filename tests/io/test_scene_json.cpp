@@ -72,6 +72,8 @@ bool same(const std::vector<TransferFunction::Point>& a,
 }
 bool same(const OpacityTable& a, const OpacityTable& b) {
   return same(a.unit_distance, b.unit_distance) &&
+         same(a.extinction_deviation, b.extinction_deviation) &&
+         same(a.color_deviation, b.color_deviation) &&
          std::equal(a.points.begin(), a.points.end(), b.points.begin(), b.points.end(),
                     [](const auto& p, const auto& q) {
                       return same(p.value, q.value) && same(p.opacity, q.opacity) &&
@@ -114,7 +116,9 @@ bool same(const TransferFunctionDescription& a, const TransferFunctionDescriptio
   if (a.index() != b.index()) return false;
   if (a.index() == 0) return same(std::get<0>(a), std::get<0>(b));
   if (a.index() == 1) return same(std::get<1>(a), std::get<1>(b));
-  return same(std::get<2>(a), std::get<2>(b));
+  if (a.index() == 2) return same(std::get<2>(a), std::get<2>(b));
+  const auto &p = std::get<PresetDescription>(a), &q = std::get<PresetDescription>(b);
+  return p.name == q.name && p.range == q.range;
 }
 bool same(const Camera& a, const Camera& b) {
   return a.projection == b.projection && same(a.position, b.position) &&
