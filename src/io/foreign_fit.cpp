@@ -31,16 +31,16 @@ void move_to(Function& function, const std::array<double, 2>& range) {
   if (!(first < last)) {
     throw Error(function.format + ": it has one value only, which cannot be moved to a range");
   }
-  const double scale = (range[1] - range[0]) / (last - first);
+  const double span = last - first, length = range[1] - range[0];
   const auto moved = [&](double x) {
-    return x == last ? range[1] : range[0] + (x - first) * scale;
+    return x == last ? range[1] : range[0] + (x - first) / span * length;
   };
   for (ColorNode& node : function.colors) node.x = moved(node.x);
   for (OpacityNode& node : function.opacities) node.x = moved(node.x);
   for (GaussianNode& node : function.gaussians) {
     node.x = moved(node.x);
-    node.width *= scale;
-    node.x_bias *= scale;
+    node.width = node.width / span * length;
+    node.x_bias = node.x_bias / span * length;
   }
   function.lower = moved(function.lower);
   function.upper = moved(function.upper);

@@ -8,8 +8,6 @@
 namespace pellucid::foreign {
 namespace {
 
-/// Each is looked at at every value.
-constexpr std::size_t most_gaussians = 1000;
 /// vtk.js takes smaller widths for this one.
 constexpr double smallest_width_of_vtk_js = 0.001;
 

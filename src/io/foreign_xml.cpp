@@ -188,7 +188,6 @@ ColorNode visit_color(const Fields& fields, const std::string& where) {
 Function read_visit(Scanner& scanner, Tag tag, const std::string& name) {
   Function function;
   function.format = "VisIt volume attributes";
-  constexpr std::size_t most_gaussians = 1000;
   std::string_view object;
   Fields fields;
   for (std::optional<Tag> next = tag; next; next = scanner.next()) {
