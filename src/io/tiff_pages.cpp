@@ -25,7 +25,8 @@ namespace pellucid {
 namespace {
 
 // libtiff tells through these, and otherwise on stderr.
-int keep_message(TIFF*, void* last, const char*, const char* format, std::va_list arguments) {
+[[gnu::format(printf, 4, 0)]] int keep_message(TIFF*, void* last, const char*, const char* format,
+                                               std::va_list arguments) {
   char text[256];
   std::vsnprintf(text, sizeof text, format, arguments);
   std::string& message = *static_cast<std::string*>(last);
