@@ -55,7 +55,7 @@ TEST(MultivariateScene, IsReadAsWritten) {
                                                   "b", "edge", "bend", "soft"}));
   EXPECT_EQ(scene.channels[0].unit, "a.u.");
   const auto& file = std::get<FieldSource>(scene.channels[0].source);
-  EXPECT_EQ(file.file, "/scans/patient/T1.nii.gz");
+  EXPECT_EQ(file.file, "/scans/patient/T1.vti");
   EXPECT_EQ(file.options.spacing, (Vec3<double>{1, 1, 2}));
   EXPECT_EQ(std::get<FieldSource>(scene.channels[1].source).options.type, "u16");
   EXPECT_EQ(std::get<FieldSource>(scene.channels[2].source).points, 16);
