@@ -74,6 +74,7 @@ class Help(ProgramTest):
                 self.fail_with(rf"'pellucid {command} --help'", command, code=2)
             positional = ("linear_segment", "a.csv", "-o", "b.csv") if command == "evaluate" else ("a",)
             positional += ("b",) if command == "compare" else ()
+            positional += ("-o", "b.vtu") if command == "convert" else ()
             self.fail_with(rf"--frobnicate.*'pellucid {command} --help'", command, *positional,
                            "--frobnicate", code=2)
 
