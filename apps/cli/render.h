@@ -55,6 +55,13 @@ void add_render_options(CLI::App& command, RenderArguments& arguments);
 
 /// Throws UsageError for what cannot be done, and Error where a file could not be written later.
 void check_arguments(const RenderArguments& arguments);
+/// The points that stand for an opacity table have an error; the reference should have none worth
+/// speaking of. Each further digit makes it three times slower.
+inline constexpr double reference_tolerance = 1e-5;
+/// Puts that of --preset or --tf into the description; `import_notes` gets what is told of a file
+/// of another program. Throws Error.
+void set_transfer_function(const RenderArguments& arguments, SceneDescription& description,
+                           std::vector<std::string>& import_notes);
 /// Reads the input and puts the arguments over what it says. Throws Error.
 PreparedScene prepare(const RenderArguments& arguments);
 

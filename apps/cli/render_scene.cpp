@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <filesystem>
 #include <string>
 #include <utility>
@@ -13,8 +12,6 @@
 #include "pellucid/cpu/threads.h"
 #include "pellucid/io/atomic_file.h"
 #include "pellucid/io/image_files.h"
-#include "pellucid/io/import_transfer_function.h"
-#include "pellucid/scene/presets.h"
 #include "render.h"
 #include "view.h"
 
@@ -134,10 +131,6 @@ void set_integration(const RenderArguments& arguments, Integration& integration)
   integration.step = *arguments.step;
 }
 
-/// The points that stand for an opacity table have an error; the reference should have none worth
-/// speaking of. Each further digit makes it three times slower.
-constexpr double reference_tolerance = 1e-5;
-
 /// A text of the command line that does not read is a wrong argument.
 template <class Parse>
 auto parse_argument(const char* argument, Parse&& parse) {
@@ -210,55 +203,6 @@ void set_volume(const RenderArguments& arguments, SceneDescription& description)
   }
   description.field = std::get<FieldSource>(description.channels.front().source);
   description.channels.clear();
-}
-
-/// What a picture leaves to the deviations of an imported function, in its color and in its
-/// extinction each.
-double import_share(const RenderArguments& arguments, const SceneDescription& description) {
-  const double tolerance = arguments.tolerance
-                               ? parse_tolerance("--tolerance", *arguments.tolerance)
-                               : description.integration.tolerance;
-  const double smaller = arguments.reference ? std::min(tolerance, reference_tolerance) : tolerance;
-  return std::clamp(smaller / 16, smallest_deviation, largest_deviation);
-}
-
-/// That of --preset or --tf.
-void set_transfer_function(const RenderArguments& arguments, SceneDescription& description,
-                           std::vector<std::string>& import_notes) {
-  const std::string& file = arguments.transfer_function;
-  if (!arguments.preset.empty()) {
-    arguments.import.refuse("a preset");
-    if (find_preset(arguments.preset) == nullptr) {
-      throw UsageError(
-          fmt::format("--preset {}: there is none of that name; 'pellucid presets' "
-                      "lists them",
-                      arguments.preset));
-    }
-    PresetDescription preset{arguments.preset, {}};
-    if (!arguments.import.range.empty()) {
-      preset.range = parse_range("--range", arguments.import.range);
-    }
-    if (!description.channels.empty()) {
-      throw UsageError("--preset: is of one variable, but here are channels; drop one of the two");
-    }
-    description.transfer_function = preset;
-    return;
-  }
-  const std::string text = file.empty() ? "" : read_text_file(file);
-  if (!file.empty() && is_foreign_transfer_function(text)) {
-    const ImportedTransferFunction imported = import_transfer_function(
-        text, file, arguments.import.options(import_share(arguments, description)));
-    description.transfer_function = imported.table;
-    import_notes = import_lines(imported, file);
-    return;
-  }
-  const char* const what =
-      file.empty() ? "a scene's own transfer function" : "a transfer function of our own";
-  arguments.import.refuse(what);
-  if (!arguments.import.range.empty()) {
-    throw UsageError(fmt::format("--range does not apply to {}; drop it", what));
-  }
-  if (!file.empty()) description.transfer_function = parse_transfer_function(text, file);
 }
 
 SceneDescription describe(const RenderArguments& arguments,

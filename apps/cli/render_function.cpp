@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <string>
+#include <vector>
+
+#include "parse.h"
+#include "pellucid/io/atomic_file.h"
+#include "pellucid/io/import_transfer_function.h"
+#include "pellucid/scene/presets.h"
+#include "render.h"
+
+namespace pellucid::cli {
+
+namespace {
+
+/// What a picture leaves to the deviations of an imported function, in its color and in its
+/// extinction each.
+double import_share(const RenderArguments& arguments, const SceneDescription& description) {
+  const double tolerance = arguments.tolerance
+                               ? parse_tolerance("--tolerance", *arguments.tolerance)
+                               : description.integration.tolerance;
+  const double smaller = arguments.reference ? std::min(tolerance, reference_tolerance) : tolerance;
+  return std::clamp(smaller / 16, smallest_deviation, largest_deviation);
+}
+
+}  // namespace
+
+void set_transfer_function(const RenderArguments& arguments, SceneDescription& description,
+                           std::vector<std::string>& import_notes) {
+  const std::string& file = arguments.transfer_function;
+  if (!arguments.preset.empty()) {
+    arguments.import.refuse("a preset");
+    if (find_preset(arguments.preset) == nullptr) {
+      throw UsageError(
+          fmt::format("--preset {}: there is none of that name; 'pellucid presets' "
+                      "lists them",
+                      arguments.preset));
+    }
+    PresetDescription preset{arguments.preset, {}};
+    if (!arguments.import.range.empty()) {
+      preset.range = parse_range("--range", arguments.import.range);
+    }
+    if (!description.channels.empty()) {
+      throw UsageError("--preset: is of one variable, but here are channels; drop one of the two");
+    }
+    description.transfer_function = preset;
+    return;
+  }
+  const std::string text = file.empty() ? "" : read_text_file(file);
+  if (!file.empty() && is_foreign_transfer_function(text)) {
+    const ImportedTransferFunction imported = import_transfer_function(
+        text, file, arguments.import.options(import_share(arguments, description)));
+    description.transfer_function = imported.table;
+    import_notes = import_lines(imported, file);
+    return;
+  }
+  const char* const what =
+      file.empty() ? "a scene's own transfer function" : "a transfer function of our own";
+  arguments.import.refuse(what);
+  if (!arguments.import.range.empty()) {
+    throw UsageError(fmt::format("--range does not apply to {}; drop it", what));
+  }
+  if (!file.empty()) description.transfer_function = parse_transfer_function(text, file);
+}
+
+}  // namespace pellucid::cli
