@@ -250,8 +250,10 @@ int run_info(const InfoArguments& arguments) {
     print_mesh_info(mesh_source(arguments.input, arguments.mesh), arguments.json);
     return 0;
   }
-  const FieldSource source = field_source(arguments.input, arguments.volume);
-  arguments.mesh.refuse("a volume");
+  FieldSource source = field_source(arguments.input, arguments.volume);
+  if (!source.builtin.empty()) arguments.mesh.refuse("a built-in field");
+  arguments.mesh.refuse_q("a volume");
+  source.options.time = arguments.mesh.time;
   std::vector<Volume> components;
   std::vector<VolumeArray> arrays;
   std::string chosen;

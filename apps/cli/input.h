@@ -14,7 +14,7 @@ namespace pellucid::cli {
 /// What INPUT may be, for help texts.
 inline constexpr const char* input_help =
     "Volume file (.nii, .nii.gz, .hdr, .img, .nrrd, .nhdr, .mha, .mhd, .npy, .vti, .pvti, .vtr, "
-    ".pvtr, .vtk, .slc, .raw)";
+    ".pvtr, .vtk, .slc, .h5, .hdf5, .he5, .nc, .nc4, .cdf, .raw)";
 
 /// The options that say, or replace, what a volume file says about itself.
 struct VolumeOptions {

@@ -10,6 +10,7 @@
 #include <string_view>
 
 #include "components.h"
+#include "grid_files.h"
 #include "input_file.h"
 #include "medical_volumes.h"
 #include "pellucid/io/read_mesh.h"
@@ -44,7 +45,18 @@ constexpr std::array formats{
     Format{".npy", open_bytes<open_npy>}, Format{".slc", open_bytes<open_slc>},
     Format{".vti", open_vtk_volume},      Format{".pvti", open_vtk_volume},
     Format{".vtr", open_vtk_volume},      Format{".pvtr", open_vtk_volume},
-    Format{".vtk", open_vtk_volume},      Format{".raw", open_raw_file}};
+    Format{".vtk", open_vtk_volume},      Format{".h5", open_hdf5},
+    Format{".hdf5", open_hdf5},           Format{".he5", open_hdf5},
+    Format{".nc", open_net_cdf},          Format{".nc4", open_net_cdf},
+    Format{".cdf", open_net_cdf},         Format{".raw", open_raw_file}};
+
+/// What lists the arrays of files that are read by it; null where they have no names.
+std::vector<VolumeArray> (*lister_of(Opener open))(const std::filesystem::path&) {
+  return open == open_vtk_volume ? list_vtk_arrays
+         : open == open_hdf5     ? list_hdf5_arrays
+         : open == open_net_cdf  ? list_net_cdf_arrays
+                                 : nullptr;
+}
 
 const Format* format_of(std::string_view file_name) {
   std::string name(file_name);
@@ -86,8 +98,11 @@ Opener find_opener(const std::filesystem::path& path, const ReadOptions& options
 
 VolumeFile open_file(const std::filesystem::path& path, const ReadOptions& options) {
   const Opener open = find_opener(path, options);
-  if (options.array && open != open_vtk_volume) {
+  if (options.array && lister_of(open) == nullptr) {
     throw Error(path.string() + ": has no arrays with names; leave the array out");
+  }
+  if (options.time && open != open_net_cdf) {
+    throw Error(path.string() + ": the file has no steps in time; leave the time out");
   }
   return open(path, options);
 }
@@ -134,8 +149,8 @@ NamedComponents read_named_components(const std::filesystem::path& path,
 std::vector<VolumeArray> list_arrays(const std::filesystem::path& path,
                                      const ReadOptions& options) {
   return with_memory(path, [&]() -> std::vector<VolumeArray> {
-    if (find_opener(path, options) == open_vtk_volume) return list_vtk_arrays(path);
-    return {};
+    const auto list = lister_of(find_opener(path, options));
+    return list == nullptr ? std::vector<VolumeArray>{} : list(path);
   });
 }
 
