@@ -56,8 +56,8 @@ void check_arguments(const ConvertArguments& arguments) {
   refuse_overwriting(outputs, inputs);
   if (arguments.is_mesh()) {
     arguments.volume.refuse("meshes");
-  } else if (arguments.time) {
-    throw UsageError("--time applies to mesh files, not to volumes");
+  } else if (arguments.time && arguments.input.starts_with("builtin:")) {
+    throw UsageError("--time applies to files, not to a built-in field");
   }
   check_writable(arguments.output);
 }
@@ -77,13 +77,19 @@ std::size_t count_cells(const Volume& volume) {
   return cells;
 }
 
+FieldSource volume_source(const ConvertArguments& arguments) {
+  FieldSource source = field_source(arguments.input, arguments.volume);
+  source.options.time = arguments.time;
+  return source;
+}
+
 Converted convert(const ConvertArguments& arguments, const ParallelFor& parallel) {
   if (arguments.is_mesh()) {
     const MeshFile file = read_mesh(arguments.input, {arguments.time, arguments.q});
     InterruptGuard::check();
     return {tetrahedra_of(file.grid, parallel), file.grid.shapes.size()};
   }
-  FieldSource source = field_source(arguments.input, arguments.volume);
+  FieldSource source = volume_source(arguments);
   set_notes(source, arguments.quiet);
   const Volume volume = load_field(source);
   InterruptGuard::check();
@@ -114,7 +120,7 @@ Json json_report(const ConvertArguments& arguments, const Converted& converted) 
 
 /// All components of a file, or the one that is chosen.
 NamedComponents read_input(const ConvertArguments& arguments) {
-  const FieldSource source = field_source(arguments.input, arguments.volume);
+  const FieldSource source = volume_source(arguments);
   if (!source.builtin.empty()) return {source.builtin, {load_field(source)}};
   NamedComponents read = read_named_components(source.file, source.options);
   if (read.array.empty()) {
@@ -183,8 +189,9 @@ Command add_convert(CLI::App& app) {
       ->option_text("FILE")
       ->required();
   command
-      .add_option("--time", arguments->time,
-                  "Of a mesh file with several steps, the nearest to this time; default: the first")
+      .add_option(
+          "--time", arguments->time,
+          "Of a file with several steps, the nearest to this time; default: the first of a mesh")
       ->option_text("T");
   command.add_option("--q", arguments->q, "The solution that belongs to a PLOT3D grid")
       ->option_text("FILE");

@@ -254,7 +254,9 @@ int run_info(const InfoArguments& arguments) {
     return 0;
   }
   FieldSource source = field_source(arguments.input, arguments.volume);
-  arguments.mesh.refuse("a volume");
+  if (!source.builtin.empty()) arguments.mesh.refuse("a built-in field");
+  arguments.mesh.refuse_q("a volume");
+  source.options.time = arguments.mesh.time;
   if (print_series(source, arguments.input, arguments.json)) return 0;
   set_notes(source, false);
   std::vector<Volume> components;

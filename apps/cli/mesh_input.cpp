@@ -25,26 +25,24 @@ void MeshOptions::add_to(CLI::App& command, bool with_arrays) {
             ->option_text("[NAME=]ARRAY[:C]")
             ->allow_extra_args(false));
   }
-  add(command.add_option("--time", time, "The step nearest to this time; default: the first")
+  add(command
+          .add_option("--time", time, "The step nearest to this time; default: the first of a mesh")
           ->option_text("T"));
   add(command.add_option("--q", q, "PLOT3D: the solution; makes INPUT a grid of PLOT3D")
           ->option_text("FILE"));
 }
 
 void MeshOptions::refuse(const std::string& what) const {
-  refuse_but_arrays(what);
-  if (!arrays.empty()) {
-    throw UsageError(fmt::format("--array applies to files with arrays, not to {}", what));
-  }
-}
-
-void MeshOptions::refuse_but_arrays(const std::string& what) const {
   for (const CLI::Option* option : given) {
-    if (option->count() > 0 && option->get_name() != "--array") {
+    if (option->count() > 0) {
       throw UsageError(
           fmt::format("{} applies to mesh files, not to {}", option->get_name(), what));
     }
   }
+}
+
+void MeshOptions::refuse_q(const std::string& what) const {
+  if (!q.empty()) throw UsageError(fmt::format("--q applies to mesh files, not to {}", what));
 }
 
 std::string mesh_input_help() {

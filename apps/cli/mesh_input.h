@@ -22,8 +22,8 @@ struct MeshOptions {
   void add_to(CLI::App& command, bool with_arrays);
   /// Throws UsageError where an option is used, saying that it does not apply to `what`.
   void refuse(const std::string& what) const;
-  /// The same for all but `--array`.
-  void refuse_but_arrays(const std::string& what) const;
+  /// The same of `--q` alone: volume files have arrays and times too.
+  void refuse_q(const std::string& what) const;
 };
 
 /// What INPUT may be besides a volume, for help texts.

@@ -174,13 +174,14 @@ MultivariateDescription gaussians(const RenderArguments& arguments) {
 
 /// One array is the field, unless it is given a name as a channel; several are channels.
 void set_volume(const RenderArguments& arguments, SceneDescription& description) {
-  arguments.mesh.refuse_but_arrays("a volume");
-  const FieldSource field = field_source(arguments.input, arguments.volume);
+  arguments.mesh.refuse_q("a volume");
+  FieldSource field = field_source(arguments.input, arguments.volume);
+  if (!field.builtin.empty()) arguments.mesh.refuse("a built-in field");
+  field.options.time = arguments.mesh.time;
   std::vector<MeshArrayChoice> choices;
   for (const std::string& text : arguments.mesh.arrays) {
     choices.push_back(parse_argument("--array", [&] { return parse_mesh_array(text); }));
   }
-  if (!field.builtin.empty() && !choices.empty()) arguments.mesh.refuse("a built-in field");
   const bool named =
       choices.size() == 1 && arguments.mesh.arrays.front().starts_with(choices.front().name + "=");
   if (choices.empty()) {

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <optional>
 #include <utility>
 
 #include "memory_limit.h"
@@ -22,8 +23,9 @@ std::string choices(const VolumeFile& file) {
   return "0 to " + std::to_string(file.components - 1);
 }
 
-/// The component that the options name, checked. Throws Error.
-int chosen_component(const VolumeFile& file, const ReadOptions& options) {
+/// The component that the options name, or their time; nothing where they name none. Throws Error.
+std::optional<int> chosen_component(const VolumeFile& file, const ReadOptions& options) {
+  if (!options.component) return file.step;
   const int component = *options.component;
   if (component >= 0 && component < file.components) return component;
   throw Error(file.description.name + ": there is no component " + std::to_string(component) +
@@ -74,21 +76,20 @@ std::vector<VolumeData> read_interleaved(const ReadOn& read, const ValueLayout& 
 }  // namespace
 
 Volume read_chosen(const VolumeFile& file, const ReadOptions& options) {
-  int component = 0;
-  if (options.component) {
-    component = chosen_component(file, options);
-  } else if (file.components > 1) {
+  const std::optional<int> chosen = chosen_component(file, options);
+  if (!chosen && file.components > 1) {
     throw Error(file.description.name + ": holds " + file.holds +
                 ", but one number at each point is needed; choose a component, " + choices(file) +
                 ", or save one of them as a file of its own");
   }
+  const int component = chosen.value_or(0);
   std::vector<VolumeData> data = file.read({component, 1});
   return make_volume(file, component, std::move(data.front()));
 }
 
 std::vector<Volume> read_all(const VolumeFile& file, const ReadOptions& options) {
   ComponentRange range{0, file.components};
-  if (options.component) range = {chosen_component(file, options), 1};
+  if (const std::optional<int> chosen = chosen_component(file, options)) range = {*chosen, 1};
   std::vector<Volume> volumes;
   int component = range.first;
   for (VolumeData& data : file.read(range)) {

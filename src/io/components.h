@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <filesystem>
 #include <functional>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -22,7 +23,8 @@ struct ComponentRange {
 struct VolumeFile {
   Volume::Description description;
   int components = 1;
-  std::string holds;  ///< what several components are: "3 time steps (axis 4)"
+  std::string holds;        ///< what several components are: "3 time steps (axis 4)"
+  std::optional<int> step;  ///< the component that a time chose
   std::string array;  ///< the one of the file's arrays that this is; empty: they have no names
   /// The values of each component by itself. Throws Error.
   std::function<std::vector<VolumeData>(ComponentRange)> read;

@@ -13,6 +13,7 @@
 #include "components.h"
 #include "dat_header.h"
 #include "dicom.h"
+#include "grid_files.h"
 #include "image_stack.h"
 #include "input_file.h"
 #include "medical_volumes.h"
@@ -56,7 +57,18 @@ constexpr std::array formats{
     Format{".png", open_stack},           Format{".mrc", open_bytes<open_mrc>},
     Format{".map", open_bytes<open_mrc>}, Format{".rec", open_bytes<open_mrc>},
     Format{".st", open_bytes<open_mrc>},  Format{".ccp4", open_bytes<open_mrc>},
-    Format{".raw.gz", open_raw_gzip}};
+    Format{".raw.gz", open_raw_gzip},     Format{".h5", open_hdf5},
+    Format{".hdf5", open_hdf5},           Format{".he5", open_hdf5},
+    Format{".nc", open_net_cdf},          Format{".nc4", open_net_cdf},
+    Format{".cdf", open_net_cdf}};
+
+/// What lists the arrays of files that are read by it; null where they have no names.
+std::vector<VolumeArray> (*lister_of(Opener open))(const std::filesystem::path&) {
+  return open == open_vtk_volume ? list_vtk_arrays
+         : open == open_hdf5     ? list_hdf5_arrays
+         : open == open_net_cdf  ? list_net_cdf_arrays
+                                 : nullptr;
+}
 
 const Format* format_of(std::string_view file_name) {
   std::string name(file_name);
@@ -107,8 +119,11 @@ VolumeFile open_file(const std::filesystem::path& path, const ReadOptions& optio
   if (options.series && !is_dicom(path)) {
     throw Error(path.string() + ": is no DICOM, and only of DICOM a series may be chosen");
   }
-  if (options.array && open != open_vtk_volume) {
+  if (options.array && lister_of(open) == nullptr) {
     throw Error(path.string() + ": has no arrays with names; leave the array out");
+  }
+  if (options.time && open != open_net_cdf) {
+    throw Error(path.string() + ": the file has no steps in time; leave the time out");
   }
   return open(path, options);
 }
@@ -155,8 +170,8 @@ NamedComponents read_named_components(const std::filesystem::path& path,
 std::vector<VolumeArray> list_arrays(const std::filesystem::path& path,
                                      const ReadOptions& options) {
   return with_memory(path, [&]() -> std::vector<VolumeArray> {
-    if (find_opener(path, options) == open_vtk_volume) return list_vtk_arrays(path);
-    return {};
+    const auto list = lister_of(find_opener(path, options));
+    return list == nullptr ? std::vector<VolumeArray>{} : list(path);
   });
 }
 

@@ -21,9 +21,9 @@ bool is_raw(std::string file) {
   return file.ends_with(".raw") || file.ends_with(".raw.gz");
 }
 
-const std::vector<std::string_view> file_keys{"file",    "array",      "component",  "dimensions",
-                                              "type",    "components", "byte_order", "skip_bytes",
-                                              "spacing", "origin",     "centering",  "series"};
+const std::vector<std::string_view> file_keys{
+    "file",       "array",      "time",    "component", "dimensions", "type",  "components",
+    "byte_order", "skip_bytes", "spacing", "origin",    "centering",  "series"};
 const std::vector<std::string_view> builtin_keys{"builtin", "points"};
 const std::vector<std::string_view> channel_keys{"name", "unit"};
 
@@ -79,6 +79,7 @@ FieldSource file_source(const Node& field, const std::filesystem::path& folder) 
     if (array->string().empty()) array->fail("is empty; give the name of an array of the file");
     source.options.array = array->string();
   }
+  if (const auto time = field.find("time")) source.options.time = time->number();
   if (const auto component = field.find("component")) {
     source.options.component = static_cast<int>(component->integer(0, largest_grid));
   }

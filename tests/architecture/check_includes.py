@@ -49,6 +49,8 @@ OTHER_PROJECTS = [
     (re.compile(r"^itk.*\.h$"), "ITKCommon"),
     (re.compile(r"^gdcm.*\.h$"), "GDCM"),
     (re.compile(r"^vtk.*\.h$"), "VTK::CommonCore"),
+    (re.compile(r"^hdf5\.h$"), "hdf5"),
+    (re.compile(r"^netcdf\.h$"), "netcdf"),
 ]
 
 INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]')

@@ -165,7 +165,8 @@ class Convert(ProgramTest):
         self.fail_with("a mesh is written as", "convert", "wedge.vtk", "-o", "w.nrrd", code=2)
         self.fail_with("no arrays", "convert", "v.npy", "-o", "v.raw", "--array", "a")
         self.fail_with("--output", "convert", "v.npy", code=2)
-        self.fail_with("--time applies to mesh files", "convert", "v.npy", "-o", "v.vtu",
+        self.fail_with("no steps in time", "convert", "v.npy", "-o", "v.vtu", "--time", "1")
+        self.fail_with("--time applies to files", "convert", "builtin:ramp", "-o", "v.vtu",
                        "--time", "1", code=2)
         self.fail_with("--spacing applies to volume files", "convert", "wedge.vtk", "-o", "w.vtu",
                        "--spacing", "1,1,1", code=2)

@@ -193,7 +193,7 @@ class Arrays(ProgramTest):
         self.succeed("render", "scene.json", "-o", "w.exr")
         self.assertTrue(self.report("compare", "v.exr", "w.exr")["identical"])
         self.fail_with("3 components", "render", "a.vtk", "--array", "v", "-o", "x.exr")
-        self.fail_with("--array applies", "render", "builtin:ramp", "--array", "v", "-o", "x.exr",
+        self.fail_with("--array applies to mesh files", "render", "builtin:ramp", "--array", "v", "-o", "x.exr",
                        code=2)
 
     def test_several_are_channels(self):
@@ -203,6 +203,52 @@ class Arrays(ProgramTest):
         channels = json.loads(self.read("scene.json"))["volumes"][0]["channels"]
         self.assertEqual([c["name"] for c in channels], ["up", "a"])
         self.assertEqual([c["array"] for c in channels], ["v", "a"])
+
+
+def net_cdf():
+    """A classic file: v of floats at the times 1 and 4, on axes z, y, x of 2, 3, 4."""
+    def text(name):
+        return struct.pack(">i", len(name)) + name.encode() + b"\0" * (-len(name) % 4)
+
+    axes = b"".join(text(name) + struct.pack(">i", n)
+                    for name, n in (("t", 2), ("z", 2), ("y", 3), ("x", 4)))
+    head = b"CDF\1" + struct.pack(">iii", 0, 10, 4) + axes + struct.pack(">iiii", 0, 0, 11, 2)
+    of_v = text("v") + struct.pack(">iiiiiii", 4, 0, 1, 2, 3, 0, 0) + struct.pack(">ii", 5, 192)
+    of_t = text("t") + struct.pack(">iiii", 1, 0, 0, 0) + struct.pack(">ii", 5, 8)
+    begin = len(head) + len(of_v) + len(of_t) + 8
+    return (head + of_v + struct.pack(">i", begin) + of_t + struct.pack(">i", begin + 192)
+            + struct.pack(">48f", *range(48)) + struct.pack(">2f", 1, 4))
+
+
+@unittest.skipUnless(os.environ.get("PELLUCID_HAS_NETCDF") == "1",
+                     "the program was built without NetCDF")
+class NetCdf(ProgramTest):
+    def setUp(self):
+        super().setUp()
+        self.write("a.nc", net_cdf())
+
+    def test_steps(self):
+        report = self.report("info", "a.nc")
+        self.assertEqual(report["array"], "v")
+        self.assertEqual(report["dimensions"], [4, 3, 2])
+        self.assertEqual([c["range"] for c in report["components"]], [[0, 23], [24, 47]])
+        self.assertEqual(self.report("info", "a.nc", "--time", "3")["range"], [24, 47])
+        self.assertEqual(self.report("info", "a.nc", "--component", "0")["range"], [0, 23])
+        self.fail_with("2 steps", "render", "a.nc", "-o", "a.exr")
+
+    def test_a_time_is_kept_in_the_scene(self):
+        self.succeed("render", "a.nc", "--time", "5", "-o", "a.exr", "--size", "16",
+                     "--save-scene", "scene.json")
+        field = json.loads(self.read("scene.json"))["volumes"][0]["field"]
+        self.assertEqual(field["time"], 5)
+        self.succeed("render", "scene.json", "-o", "b.exr")
+        self.assertTrue(self.report("compare", "a.exr", "b.exr")["identical"])
+        self.succeed("convert", "a.nc", "--time", "5", "-o", "a.raw", "-q")
+        self.assertEqual(self.read("a.raw"), struct.pack("<24f", *range(24, 48)))
+
+    def test_cut_off(self):
+        self.write("cut.nc", net_cdf()[:-60])
+        self.fail_with("cut off", "info", "cut.nc")
 
 
 if __name__ == "__main__":

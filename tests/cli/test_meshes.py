@@ -108,7 +108,7 @@ class Plot3d(ProgramTest):
             with self.subTest(arguments=arguments):
                 error = self.fail_with(arguments)
                 self.assertIn(part, error)
-        self.assertIn("--array applies to files with arrays", self.fail_with(
+        self.assertIn("--array applies to mesh files", self.fail_with(
             ["--array", "a"], ["builtin:sphere:8"]))
         self.assertIn("is a mesh", self.error_of("histogram", self.write("a.vtu", "x"), "-o",
                                                  "h.png"))

@@ -24,6 +24,7 @@ struct ReadOptions {
   std::optional<Centering> centering;            ///< replaces the file's
   std::optional<int> components;                 ///< raw: numbers at each point, side by side
   std::optional<int> component;                  ///< which of a file's, from 0
+  std::optional<double> time;        ///< in place of a component, the step nearest to it: NetCDF
   std::optional<std::string> array;  ///< by name, of a file that has several; none: see VolumeArray
   /// DICOM: which of a folder's series: its number as list_dicom_series() has them, from 1, its
   /// UID, or the unique end of one.
@@ -39,8 +40,10 @@ struct ReadOptions {
 /// files, of any name; any file as raw where dimensions and type are both given; and images and
 /// rectilinear grids of VTK's by their first bytes (.vti, .pvti, .vtr, .pvtr, legacy .vtk; through
 /// VTK, where the build has it): arrays of points are point-centred, arrays of cells cell-centred,
-/// whole numbers of 64 bits become double, bits u8. Throws Error: what, where, what to do; also for
-/// a file of several components of which the options choose none.
+/// whole numbers of 64 bits become double, bits u8; datasets of HDF5 (.h5, .hdf5, .he5) and
+/// variables of NetCDF (.nc, .nc4, .cdf), where the build has these: of NetCDF positions along the
+/// axes where it has them, scaled, and NaN for what is missing. Throws Error: what, where, what to
+/// do; also for a file of several components of which the options choose none.
 Volume read_volume(const std::filesystem::path& path, const ReadOptions& options = {});
 
 /// A file may have several numbers at each point, its components: colors and vectors, the steps of

@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <vector>
+
+#include "components.h"
+
+namespace pellucid {
+
+/// Datasets of HDF5 (.h5, .hdf5, .he5) and variables of NetCDF (.nc, .nc4, .cdf) of three axes, or
+/// of four, of which one are components: the last where it has at most four entries (HDF5 alone),
+/// else the first. Axes of one entry in front and behind do not count. The file's last axis is x.
+VolumeFile open_hdf5(const std::filesystem::path& path, const ReadOptions& options);
+VolumeFile open_net_cdf(const std::filesystem::path& path, const ReadOptions& options);
+std::vector<VolumeArray> list_hdf5_arrays(const std::filesystem::path& path);
+std::vector<VolumeArray> list_net_cdf_arrays(const std::filesystem::path& path);
+
+}  // namespace pellucid

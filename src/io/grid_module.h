@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "components.h"
+
+namespace pellucid {
+
+/// A variable on a grid, in a file of HDF5 or NetCDF, as its module finds it.
+struct GridArray {
+  std::string name;
+  std::string type;                     ///< of its values as they are read, if none is missing
+  std::array<std::int64_t, 3> sides{};  ///< x, y, z: the last axis of the file is x
+  int components = 1;
+  std::string holds;          ///< what several are: "12 steps (axis time)"
+  std::vector<double> times;  ///< of these steps, where the file says them
+  /// Where the values stand along x, y, z; empty: the file does not say. Each has the largest
+  /// relative error that its type leaves it.
+  std::array<std::vector<double>, 3> positions;
+  std::array<double, 3> rounding{};
+};
+
+/// What a module answers. No exception leaves it; `error` is without the file's name.
+struct GridContents {
+  std::vector<GridArray> arrays;
+  std::vector<std::string> others;  ///< names of what is no volume of numbers
+  std::string error;
+};
+struct GridValues {
+  std::vector<VolumeData> components;
+  std::string error;
+};
+
+/// The functions of such a module, by these names.
+using ListGrids = void(const std::filesystem::path& path, GridContents& answer);
+using ReadGrid = void(const std::filesystem::path& path, const std::string& array,
+                      ComponentRange range, GridValues& answer);
+inline constexpr const char* list_grids_name = "pellucid_list_grids_1";
+inline constexpr const char* read_grid_name = "pellucid_read_grid_1";
+
+}  // namespace pellucid

@@ -1,0 +1,217 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <hdf5.h>
+
+#include <algorithm>
+#include <limits>
+#include <mutex>
+#include <new>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "grid_module.h"
+#include "pellucid/scene/error.h"
+
+namespace pellucid {
+
+namespace {
+
+/// Debian's HDF5 may be in one thread at a time.
+std::mutex& one_at_a_time() {
+  static std::mutex mutex;
+  return mutex;
+}
+
+/// Closed by the function that belongs to its kind.
+class Id {
+ public:
+  Id(hid_t id, herr_t (*close)(hid_t), const char* what) : id_(id), close_(close) {
+    if (id < 0) throw Error(std::string("HDF5 cannot read ") + what + "; the file is damaged");
+  }
+  ~Id() { close_(id_); }
+  Id(const Id&) = delete;
+  Id& operator=(const Id&) = delete;
+  hid_t get() const { return id_; }
+
+ private:
+  hid_t id_;
+  herr_t (*close_)(hid_t);
+};
+
+hid_t open_file(const std::filesystem::path& path) {
+  // What it would print stands in our own words in exceptions.
+  H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
+  if (H5Fis_hdf5(path.c_str()) <= 0) throw Error("is no HDF5 file, or damaged");
+  return H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT);
+}
+
+/// The type that values are kept in; nothing where they are no plain numbers.
+std::optional<std::string> type_of(hid_t type) {
+  const std::size_t bytes = H5Tget_size(type);
+  switch (H5Tget_class(type)) {
+    case H5T_FLOAT:
+      return bytes <= 4 ? "f32" : "f64";
+    case H5T_ENUM: {  // as h5py writes what is true or false
+      const Id base(H5Tget_super(type), H5Tclose, "a type");
+      return type_of(base.get());
+    }
+    case H5T_BITFIELD:
+      return bytes == 1 ? std::optional<std::string>("u8") : std::nullopt;
+    case H5T_INTEGER: {
+      if (bytes > 4) return "f64";
+      const std::string sign = H5Tget_sign(type) == H5T_SGN_NONE ? "u" : "i";
+      return sign + (bytes == 1 ? "8" : bytes == 2 ? "16" : "32");
+    }
+    default:
+      return std::nullopt;
+  }
+}
+
+hid_t memory_type(const std::string& type) {
+  if (type == "u8") return H5T_NATIVE_UINT8;
+  if (type == "i8") return H5T_NATIVE_INT8;
+  if (type == "u16") return H5T_NATIVE_UINT16;
+  if (type == "i16") return H5T_NATIVE_INT16;
+  if (type == "u32") return H5T_NATIVE_UINT32;
+  if (type == "i32") return H5T_NATIVE_INT32;
+  return type == "f32" ? H5T_NATIVE_FLOAT : H5T_NATIVE_DOUBLE;
+}
+
+/// A dataset's axes, and which of them are those of the volume.
+struct Axes {
+  std::vector<hsize_t> sides;
+  std::size_t first = 0;                  ///< of z, y, x, which follow each other
+  std::optional<std::size_t> components;  ///< the one beside them
+};
+
+/// Nothing where there are not three of them, or four.
+std::optional<Axes> axes_of(hid_t space) {
+  const int rank = H5Sget_simple_extent_ndims(space);
+  if (rank < 3) return std::nullopt;
+  Axes axes;
+  axes.sides.resize(static_cast<std::size_t>(rank));
+  if (H5Sget_simple_extent_dims(space, axes.sides.data(), nullptr) != rank) return std::nullopt;
+  std::size_t begin = 0, end = axes.sides.size();
+  while (end - begin > 3 && axes.sides[begin] == 1) ++begin;
+  while (end - begin > 3 && axes.sides[end - 1] == 1) --end;
+  if (end - begin > 4) return std::nullopt;
+  axes.first = begin;
+  if (end - begin == 4) {
+    // Colors and vectors stand behind, steps in front.
+    constexpr hsize_t most_behind = 4;
+    const bool behind = axes.sides[end - 1] <= most_behind;
+    axes.components = behind ? end - 1 : begin;
+    if (!behind) ++axes.first;
+  }
+  constexpr hsize_t most = std::numeric_limits<int>::max();
+  if (std::ranges::any_of(axes.sides, [](hsize_t side) { return side < 1 || side > most; })) {
+    return std::nullopt;
+  }
+  return axes;
+}
+
+std::optional<GridArray> describe(hid_t dataset, const std::string& name) {
+  const Id space(H5Dget_space(dataset), H5Sclose, "the axes of a dataset");
+  const Id type(H5Dget_type(dataset), H5Tclose, "the type of a dataset");
+  const auto axes = axes_of(space.get());
+  const auto kept = type_of(type.get());
+  if (!axes || !kept) return std::nullopt;
+  GridArray array;
+  array.name = name;
+  array.type = *kept;
+  for (std::size_t a = 0; a < 3; ++a) {
+    array.sides[2 - a] = static_cast<std::int64_t>(axes->sides[axes->first + a]);
+  }
+  if (axes->components) {
+    const auto count = static_cast<int>(axes->sides[*axes->components]);
+    array.components = count;
+    array.holds =
+        std::to_string(count) + " components (axis " + std::to_string(*axes->components) + ")";
+  }
+  return array;
+}
+
+herr_t take_name(hid_t, const char* name, const H5O_info_t* about, void* names) {
+  if (about->type == H5O_TYPE_DATASET) {
+    static_cast<std::vector<std::string>*>(names)->push_back("/" + std::string(name));
+  }
+  return 0;
+}
+
+void list(const std::filesystem::path& path, GridContents& contents) {
+  const Id file(open_file(path), H5Fclose, "the file");
+  std::vector<std::string> names;
+  if (H5Ovisit(file.get(), H5_INDEX_NAME, H5_ITER_INC, take_name, &names) < 0) {
+    throw Error("HDF5 cannot read its list of datasets; the file is damaged");
+  }
+  for (const std::string& name : names) {
+    const Id dataset(H5Dopen2(file.get(), name.c_str(), H5P_DEFAULT), H5Dclose, name.c_str());
+    if (auto array = describe(dataset.get(), name)) {
+      contents.arrays.push_back(*std::move(array));
+    } else {
+      contents.others.push_back(name);
+    }
+  }
+}
+
+void read(const std::filesystem::path& path, const std::string& name, ComponentRange range,
+          GridValues& values) {
+  const Id file(open_file(path), H5Fclose, "the file");
+  const Id dataset(H5Dopen2(file.get(), name.c_str(), H5P_DEFAULT), H5Dclose, name.c_str());
+  const Id space(H5Dget_space(dataset.get()), H5Sclose, "the axes of a dataset");
+  const auto axes = axes_of(space.get());
+  const auto array = describe(dataset.get(), name);
+  if (!axes || !array) throw Error("the file was changed while it was read");
+  std::vector<hsize_t> start(axes->sides.size(), 0), count(axes->sides.size(), 1);
+  hsize_t points = 1;
+  for (std::size_t a = axes->first; a < axes->first + 3; ++a) {
+    count[a] = axes->sides[a];
+    points *= count[a];
+  }
+  const Id memory(H5Screate_simple(1, &points, nullptr), H5Sclose, "the axes of a dataset");
+  for (int c = range.first; c < range.first + range.number; ++c) {
+    if (axes->components) start[*axes->components] = static_cast<hsize_t>(c);
+    VolumeData data = make_volume_data(array->type, points);
+    const bool done = H5Sselect_hyperslab(space.get(), H5S_SELECT_SET, start.data(), nullptr,
+                                          count.data(), nullptr) >= 0 &&
+                      std::visit(
+                          [&](auto& to) {
+                            return H5Dread(dataset.get(), memory_type(array->type), memory.get(),
+                                           space.get(), H5P_DEFAULT, to.writable().data()) >= 0;
+                          },
+                          data);
+    if (!done) {
+      throw Error("HDF5 cannot read the values of \"" + name +
+                  "\"; the file is cut off or damaged, or compressed in a way that it lacks");
+    }
+    values.components.push_back(std::move(data));
+  }
+}
+
+template <class Work>
+void guarded(std::string& error, const Work& work) {
+  const std::lock_guard lock(one_at_a_time());
+  try {
+    work();
+  } catch (const std::bad_alloc&) {
+    error = "not enough memory for the data; crop or reduce the volume";
+  } catch (const std::exception& e) {
+    error = e.what();
+  }
+}
+
+}  // namespace
+
+}  // namespace pellucid
+
+extern "C" __attribute__((visibility("default"))) void pellucid_list_grids_1(
+    const std::filesystem::path& path, pellucid::GridContents& answer) {
+  pellucid::guarded(answer.error, [&] { pellucid::list(path, answer); });
+}
+
+extern "C" __attribute__((visibility("default"))) void pellucid_read_grid_1(
+    const std::filesystem::path& path, const std::string& array, pellucid::ComponentRange range,
+    pellucid::GridValues& answer) {
+  pellucid::guarded(answer.error, [&] { pellucid::read(path, array, range, answer); });
+}

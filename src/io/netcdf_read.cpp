@@ -1,0 +1,201 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <netcdf.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <mutex>
+#include <new>
+#include <optional>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "grid_module.h"
+#include "netcdf_variables.h"
+#include "pellucid/scene/error.h"
+
+namespace pellucid {
+
+namespace {
+
+/// Neither NetCDF nor Debian's HDF5 beneath it may be in two threads.
+std::mutex& one_at_a_time() {
+  static std::mutex mutex;
+  return mutex;
+}
+
+/// Stored numbers of up to 16 bits fit float after scaling to its own rounding.
+bool fits_float(const std::string& type) {
+  return type == "f32" || type.ends_with("8") || type.ends_with("16");
+}
+
+std::string kept_type(const NetCdfVariable& variable) {
+  const std::string type = *stored_type(variable);
+  if (meaning_of(variable).is_plain()) return type;
+  return fits_float(type) ? "f32" : "f64";
+}
+
+/// Where z, y, x stand, which follow each other, and the axis in front of them.
+struct Axes {
+  std::size_t first = 0;
+  std::optional<std::size_t> components;
+};
+
+std::optional<Axes> axes_of(const NetCdfVariable& variable) {
+  std::size_t begin = 0, end = variable.sides.size();
+  constexpr std::size_t most = std::numeric_limits<int>::max();
+  for (const std::size_t side : variable.sides) {
+    if (side < 1 || side > most) return std::nullopt;
+  }
+  while (end - begin > 3 && variable.sides[begin] == 1) ++begin;
+  if (end - begin < 3 || end - begin > 4) return std::nullopt;
+  return end - begin == 3 ? Axes{begin, std::nullopt} : Axes{begin + 1, begin};
+}
+
+std::optional<GridArray> describe(const NetCdfVariable& variable) {
+  const std::optional<Axes> axes = axes_of(variable);
+  if (!axes || !stored_type(variable)) return std::nullopt;
+  GridArray array;
+  array.name = variable.name;
+  array.type = kept_type(variable);
+  for (std::size_t a = 0; a < 3; ++a) {
+    const std::size_t axis = axes->first + 2 - a;
+    array.sides[a] = static_cast<std::int64_t>(variable.sides[axis]);
+    NetCdfPositions positions = positions_of(variable, axis);
+    array.positions[a] = std::move(positions.numbers);
+    array.rounding[a] = positions.rounding;
+  }
+  if (axes->components) {
+    array.components = static_cast<int>(variable.sides[*axes->components]);
+    array.times = positions_of(variable, *axes->components).numbers;
+    array.holds = std::to_string(array.components) + " steps (axis " +
+                  net_cdf_axis(variable, *axes->components) + ")";
+  }
+  return array;
+}
+
+/// The numbers as they are stored, those of 64 bits as double.
+VolumeData read_stored(const NetCdfVariable& variable, const std::vector<std::size_t>& start,
+                       const std::vector<std::size_t>& count, std::size_t points) {
+  VolumeData data = make_volume_data(*stored_type(variable), points);
+  const int status = std::visit(
+      [&](auto& values) {
+        void* const to = values.writable().data();
+        if (variable.type == NC_INT64 || variable.type == NC_UINT64) {
+          return nc_get_vara_double(variable.group, variable.id, start.data(), count.data(),
+                                    static_cast<double*>(to));
+        }
+        return nc_get_vara(variable.group, variable.id, start.data(), count.data(), to);
+      },
+      data);
+  check_net_cdf(status, "the values of \"" + variable.name + "\"");
+  return data;
+}
+
+VolumeData with_meaning(VolumeData stored, const NetCdfMeaning& meaning) {
+  return std::visit(
+      [&](auto& values) -> VolumeData {
+        using Value = typename std::decay_t<decltype(values)>::value_type;
+        using Kept =
+            std::conditional_t<sizeof(Value) <= 2 || std::is_same_v<Value, float>, float, double>;
+        // Compared as they are stored: 1e20 as an attribute of double is another number in float.
+        std::vector<Value> missing;
+        for (const double number : meaning.missing) {
+          const bool fits = std::is_floating_point_v<Value> ||
+                            (number >= static_cast<double>(std::numeric_limits<Value>::lowest()) &&
+                             number <= static_cast<double>(std::numeric_limits<Value>::max()));
+          if (fits) missing.push_back(static_cast<Value>(number));
+        }
+        const auto is_missing = [&](Value value) {
+          return std::find(missing.begin(), missing.end(), value) != missing.end();
+        };
+        if (meaning.is_plain() && std::none_of(values.begin(), values.end(), is_missing)) {
+          return std::move(values);
+        }
+        if constexpr (std::is_same_v<Value, Kept>) {
+          for (Value& value : values.writable()) {
+            value = is_missing(value)
+                        ? std::numeric_limits<Value>::quiet_NaN()
+                        : static_cast<Value>(meaning.scale * static_cast<double>(value) +
+                                             meaning.offset);
+          }
+          return std::move(values);
+        } else {
+          DataArray<Kept> kept(values.size());
+          const std::span<Kept> to = kept.writable();
+          for (std::size_t i = 0; i < values.size(); ++i) {
+            to[i] = is_missing(values[i])
+                        ? std::numeric_limits<Kept>::quiet_NaN()
+                        : static_cast<Kept>(meaning.scale * static_cast<double>(values[i]) +
+                                            meaning.offset);
+          }
+          return kept;
+        }
+      },
+      stored);
+}
+
+void list(const std::filesystem::path& path, GridContents& contents) {
+  const NetCdfFile file(path);
+  const std::vector<NetCdfVariable> variables = net_cdf_variables(file.id());
+  for (const NetCdfVariable& variable : variables) {
+    if (auto array = describe(variable)) {
+      contents.arrays.push_back(*std::move(array));
+    } else {
+      contents.others.push_back(variable.name);
+    }
+  }
+}
+
+void read(const std::filesystem::path& path, const std::string& name, ComponentRange range,
+          GridValues& values) {
+  const NetCdfFile file(path);
+  const std::vector<NetCdfVariable> variables = net_cdf_variables(file.id());
+  const auto variable =
+      std::ranges::find_if(variables, [&](const NetCdfVariable& v) { return v.name == name; });
+  const std::optional<Axes> axes = variable == variables.end() ? std::nullopt : axes_of(*variable);
+  if (!axes) throw Error("the file was changed while it was read");
+  std::vector<std::size_t> start(variable->sides.size(), 0), count(variable->sides.size(), 1);
+  std::size_t points = 1;
+  for (std::size_t a = axes->first; a < axes->first + 3; ++a) {
+    count[a] = variable->sides[a];
+    points *= count[a];
+  }
+  const NetCdfMeaning meaning = meaning_of(*variable);
+  for (int c = range.first; c < range.first + range.number; ++c) {
+    if (axes->components) start[*axes->components] = static_cast<std::size_t>(c);
+    values.components.push_back(
+        with_meaning(read_stored(*variable, start, count, points), meaning));
+  }
+}
+
+template <class Work>
+void guarded(std::string& error, const Work& work) {
+  const std::lock_guard lock(one_at_a_time());
+  try {
+    work();
+  } catch (const std::bad_alloc&) {
+    error = "not enough memory for the data; crop or reduce the volume";
+  } catch (const std::exception& e) {
+    error = e.what();
+  }
+}
+
+}  // namespace
+
+}  // namespace pellucid
+
+extern "C" __attribute__((visibility("default"))) void pellucid_list_grids_1(
+    const std::filesystem::path& path, pellucid::GridContents& answer) {
+  pellucid::guarded(answer.error, [&] { pellucid::list(path, answer); });
+}
+
+extern "C" __attribute__((visibility("default"))) void pellucid_read_grid_1(
+    const std::filesystem::path& path, const std::string& array, pellucid::ComponentRange range,
+    pellucid::GridValues& answer) {
+  pellucid::guarded(answer.error, [&] { pellucid::read(path, array, range, answer); });
+}

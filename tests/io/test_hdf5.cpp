@@ -1,0 +1,195 @@
+// SPDX-License-Identifier: Apache-2.0
+#ifdef PELLUCID_HAVE_HDF5
+
+#include <hdf5.h>
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "pellucid/io/read_volume.h"
+#include "volume_files.h"
+
+namespace pellucid {
+namespace {
+
+namespace fs = std::filesystem;
+
+using test::contains;
+using test::counting;
+using test::error_of;
+using test::expect_counting;
+
+/// Writes datasets by HDF5 itself.
+class Hdf5 : public test::ScratchFolder {
+ protected:
+  void SetUp() override {
+    ScratchFolder::SetUp();
+    file_ = H5Fcreate(path("a.h5").c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT);
+    ASSERT_GE(file_, 0);
+  }
+  void TearDown() override {
+    close();
+    ScratchFolder::TearDown();
+  }
+  void close() {
+    if (file_ >= 0) H5Fclose(file_);
+    file_ = -1;
+  }
+
+  /// Values of type `memory`, stored as `stored`, in chunks with deflate where asked.
+  void add(const std::string& name, const std::vector<hsize_t>& sides, hid_t stored, hid_t memory,
+           const void* values, bool packed = false) {
+    const hid_t links = H5Pcreate(H5P_LINK_CREATE), how = H5Pcreate(H5P_DATASET_CREATE);
+    H5Pset_create_intermediate_group(links, 1);
+    if (packed) {
+      std::vector<hsize_t> chunk(sides);
+      for (hsize_t& side : chunk) side = (side + 1) / 2;
+      H5Pset_chunk(how, static_cast<int>(sides.size()), chunk.data());
+      H5Pset_shuffle(how);
+      H5Pset_deflate(how, 9);
+    }
+    const hid_t space = H5Screate_simple(static_cast<int>(sides.size()), sides.data(), nullptr);
+    const hid_t set = H5Dcreate2(file_, name.c_str(), stored, space, links, how, H5P_DEFAULT);
+    ASSERT_GE(set, 0) << name;
+    EXPECT_GE(H5Dwrite(set, memory, H5S_ALL, H5S_ALL, H5P_DEFAULT, values), 0);
+    H5Dclose(set);
+    H5Sclose(space);
+    H5Pclose(how);
+    H5Pclose(links);
+  }
+  template <class Value>
+  void add_counting(const std::string& name, hid_t stored, hid_t memory, bool packed = false) {
+    add(name, {3, 4, 5}, stored, memory, counting<Value>().data(), packed);
+  }
+  Volume read(const std::string& array, std::optional<int> component = {}) {
+    close();
+    ReadOptions options;
+    options.array = array;
+    options.component = component;
+    return read_volume(path("a.h5"), options);
+  }
+
+ private:
+  hid_t file_ = -1;
+};
+
+TEST_F(Hdf5, EveryTypeOfBothByteOrders) {
+  add_counting<std::uint8_t>("u8", H5T_STD_U8LE, H5T_NATIVE_UINT8);
+  add_counting<std::int8_t>("i8", H5T_STD_I8BE, H5T_NATIVE_INT8);
+  add_counting<std::uint16_t>("u16", H5T_STD_U16BE, H5T_NATIVE_UINT16);
+  add_counting<std::int16_t>("i16", H5T_STD_I16LE, H5T_NATIVE_INT16, true);
+  add_counting<std::uint32_t>("u32", H5T_STD_U32BE, H5T_NATIVE_UINT32, true);
+  add_counting<std::int32_t>("i32", H5T_STD_I32LE, H5T_NATIVE_INT32);
+  add_counting<std::int64_t>("i64", H5T_STD_I64BE, H5T_NATIVE_INT64);
+  add_counting<float>("f32", H5T_IEEE_F32BE, H5T_NATIVE_FLOAT, true);
+  add_counting<double>("f64", H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE);
+  for (const char* type : {"u8", "i8", "u16", "i16", "u32", "i32", "f32", "f64"}) {
+    SCOPED_TRACE(type);
+    expect_counting(read(type), type);
+  }
+  expect_counting(read("i64"), "f64");
+}
+
+TEST_F(Hdf5, HalfFloatsAndTruthValues) {
+  // As h5py writes them.
+  const hid_t half = H5Tcopy(H5T_IEEE_F32LE);
+  H5Tset_fields(half, 15, 10, 5, 0, 10);
+  H5Tset_size(half, 2);
+  H5Tset_ebias(half, 15);
+  add_counting<float>("half", half, H5T_NATIVE_FLOAT);
+  H5Tclose(half);
+  const hid_t truth = H5Tenum_create(H5T_NATIVE_INT8);
+  const std::int8_t no = 0, yes = 1;
+  H5Tenum_insert(truth, "FALSE", &no);
+  H5Tenum_insert(truth, "TRUE", &yes);
+  std::vector<std::int8_t> values(60);
+  values[7] = 1;
+  add("truth", {3, 4, 5}, truth, truth, values.data());
+  H5Tclose(truth);
+  expect_counting(read("half"), "f32");
+  const Volume volume = read("truth");
+  EXPECT_EQ(test::value_at(volume, 2, 1, 0), 1);
+  EXPECT_EQ(volume.statistics().maximum, 1);
+  EXPECT_EQ(volume.statistics().minimum, 0);
+}
+
+TEST_F(Hdf5, GroupsAreNamesWithSlashes) {
+  add_counting<float>("/a/b/data", H5T_IEEE_F32LE, H5T_NATIVE_FLOAT);
+  add_counting<std::uint8_t>("/z", H5T_STD_U8LE, H5T_NATIVE_UINT8);
+  const std::vector<double> flat(20);
+  add("/a/flat", {4, 5}, H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE, flat.data());
+  expect_counting(read("/a/b/data"), "f32");
+  expect_counting(read("a/b/data"), "f32");
+  const std::string error = error_of([&] { read("/a/flat"); });
+  EXPECT_TRUE(contains(error, "\"/a/flat\"") && contains(error, "/a/b/data, /z")) << error;
+  const std::vector<VolumeArray> arrays = list_arrays(path("a.h5"));
+  ASSERT_EQ(arrays.size(), 2u);
+  EXPECT_EQ(arrays[0].name, "/a/b/data");
+  EXPECT_TRUE(arrays[0].shown);
+  EXPECT_EQ(arrays[0].dimensions, (std::vector<int>{5, 4, 3}));
+  EXPECT_EQ(arrays[1].type, "u8");
+  EXPECT_EQ(arrays[1].components.front().maximum, 59);
+  expect_counting(read_volume(path("a.h5")), "f32");
+}
+
+TEST_F(Hdf5, AFourthAxisIsComponents) {
+  std::vector<float> colors, steps;
+  for (int i = 0; i < 180; ++i) colors.push_back(static_cast<float>(i));
+  for (int i = 0; i < 420; ++i) steps.push_back(static_cast<float>(i));
+  add("colors", {3, 4, 5, 3}, H5T_IEEE_F32LE, H5T_NATIVE_FLOAT, colors.data(), true);
+  add("steps", {7, 3, 4, 5}, H5T_IEEE_F32LE, H5T_NATIVE_FLOAT, steps.data());
+  add("one", {1, 1, 3, 4, 5}, H5T_IEEE_F32LE, H5T_NATIVE_FLOAT, steps.data());
+  EXPECT_EQ(test::value_at(read("colors", 2), 1, 0, 0), 5);
+  EXPECT_EQ(test::value_at(read("steps", 2), 1, 0, 0), 121);
+  expect_counting(read("one"), "f32");
+  EXPECT_TRUE(contains(error_of([&] { read("colors"); }), "3 components (axis 3)"));
+  EXPECT_TRUE(contains(error_of([&] { read("steps"); }), "7 components (axis 0)"));
+  ReadOptions options;
+  options.array = "steps";
+  EXPECT_EQ(component_count(path("a.h5"), options), 7);
+  options.time = 1;
+  EXPECT_TRUE(contains(error_of([&] { read_volume(path("a.h5"), options); }), "no steps"));
+}
+
+TEST_F(Hdf5, RefusesWhatIsNone) {
+  const std::vector<double> flat(20);
+  add("flat", {4, 5}, H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE, flat.data());
+  close();
+  const std::string error = error_of([&] { read_volume(path("a.h5")); });
+  EXPECT_TRUE(contains(error, "three or four axes") && contains(error, "/flat")) << error;
+  EXPECT_TRUE(contains(error_of([&] { read_volume(write("b.h5", "no")); }), "no HDF5"));
+  EXPECT_TRUE(contains(error_of([&] { read_volume(write("c.h5", "")); }), "no HDF5"));
+  error_of([&] { read_volume(path("none.h5")); });
+}
+
+TEST_F(Hdf5, SizesBeyondMemoryAreRefused) {
+  // In chunks of which none is written, which takes no room in the file.
+  const std::vector<hsize_t> sides{1 << 20, 1 << 20, 1 << 20}, chunk{64, 64, 64};
+  const hid_t file = H5Fcreate(path("b.h5").c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT);
+  const hid_t how = H5Pcreate(H5P_DATASET_CREATE);
+  H5Pset_chunk(how, 3, chunk.data());
+  const hid_t space = H5Screate_simple(3, sides.data(), nullptr);
+  H5Dclose(H5Dcreate2(file, "huge", H5T_IEEE_F64LE, space, H5P_DEFAULT, how, H5P_DEFAULT));
+  H5Sclose(space);
+  H5Pclose(how);
+  H5Fclose(file);
+  EXPECT_TRUE(contains(error_of([&] { read_volume(path("b.h5")); }), "its values"));
+}
+
+TEST_F(Hdf5, CutOffIsAnError) {
+  add_counting<double>("plain", H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE);
+  add_counting<double>("packed", H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE, true);
+  close();
+  const std::string whole = ScratchFolder::read(path("a.h5"));
+  for (std::size_t length = 0; length < whole.size(); length += 97) {
+    SCOPED_TRACE(length);
+    write("cut.h5", whole.substr(0, length));
+    error_of([&] { read_volume(path("cut.h5")); });
+  }
+}
+
+}  // namespace
+}  // namespace pellucid
+
+#endif
