@@ -120,7 +120,8 @@ Json json_report(const ConvertArguments& arguments, const Converted& converted) 
 
 /// All components of a file, or the one that is chosen.
 NamedComponents read_input(const ConvertArguments& arguments) {
-  const FieldSource source = volume_source(arguments);
+  FieldSource source = volume_source(arguments);
+  set_notes(source, arguments.quiet);
   if (!source.builtin.empty()) return {source.builtin, {load_field(source)}};
   NamedComponents read = read_named_components(source.file, source.options);
   if (read.array.empty()) {
