@@ -4,13 +4,13 @@
 #include <algorithm>
 #include <limits>
 #include <mutex>
-#include <new>
 #include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "grid_module.h"
+#include "module_answer.h"
 #include "pellucid/scene/error.h"
 
 namespace pellucid {
@@ -192,13 +192,7 @@ void read(const std::filesystem::path& path, const std::string& name, ComponentR
 template <class Work>
 void guarded(std::string& error, const Work& work) {
   const std::lock_guard lock(one_at_a_time());
-  try {
-    work();
-  } catch (const std::bad_alloc&) {
-    error = "not enough memory for the data; crop or reduce the volume";
-  } catch (const std::exception& e) {
-    error = e.what();
-  }
+  answer(error, "crop or reduce the volume", work);
 }
 
 }  // namespace

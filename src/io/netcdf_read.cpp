@@ -7,7 +7,6 @@
 #include <cstdint>
 #include <limits>
 #include <mutex>
-#include <new>
 #include <optional>
 #include <span>
 #include <string>
@@ -15,6 +14,7 @@
 #include <vector>
 
 #include "grid_module.h"
+#include "module_answer.h"
 #include "netcdf_variables.h"
 #include "pellucid/scene/error.h"
 
@@ -176,13 +176,7 @@ void read(const std::filesystem::path& path, const std::string& name, ComponentR
 template <class Work>
 void guarded(std::string& error, const Work& work) {
   const std::lock_guard lock(one_at_a_time());
-  try {
-    work();
-  } catch (const std::bad_alloc&) {
-    error = "not enough memory for the data; crop or reduce the volume";
-  } catch (const std::exception& e) {
-    error = e.what();
-  }
+  answer(error, "crop or reduce the volume", work);
 }
 
 }  // namespace

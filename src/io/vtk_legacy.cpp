@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <vtkDataReader.h>
 #include <vtkStructuredGrid.h>
 #include <vtkStructuredGridReader.h>
 #include <vtkUnstructuredGrid.h>
@@ -49,14 +50,7 @@ template <class Reader>
 void read_grid(const std::filesystem::path& path, const VtkMessages& messages, MeshBlocks& mesh) {
   const auto reader = vtkSmartPointer<Reader>::New();
   reader->SetFileName(path.c_str());
-  // By itself it reads the first array of each kind.
-  reader->ReadAllScalarsOn();
-  reader->ReadAllVectorsOn();
-  reader->ReadAllNormalsOn();
-  reader->ReadAllTensorsOn();
-  reader->ReadAllColorScalarsOn();
-  reader->ReadAllTCoordsOn();
-  reader->ReadAllFieldsOn();
+  read_all_arrays(*reader);
   update(*reader, {}, messages, mesh.file);
   // Steps are files of their own; one alone is given the time 0.
   mesh.file.times.clear();
@@ -65,6 +59,16 @@ void read_grid(const std::filesystem::path& path, const VtkMessages& messages, M
 }
 
 }  // namespace
+
+void read_all_arrays(vtkDataReader& reader) {
+  reader.ReadAllScalarsOn();
+  reader.ReadAllVectorsOn();
+  reader.ReadAllNormalsOn();
+  reader.ReadAllTensorsOn();
+  reader.ReadAllColorScalarsOn();
+  reader.ReadAllTCoordsOn();
+  reader.ReadAllFieldsOn();
+}
 
 void read_legacy(const std::filesystem::path& path, const MeshReadOptions& options,
                  const VtkMessages& messages, MeshBlocks& mesh) {

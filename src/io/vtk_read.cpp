@@ -3,9 +3,9 @@
 #include <vtkInformation.h>
 #include <vtkStreamingDemandDrivenPipeline.h>
 
-#include <new>
 #include <string>
 
+#include "module_answer.h"
 #include "pellucid/scene/error.h"
 #include "vtk_module.h"
 #include "vtk_readers.h"
@@ -40,15 +40,11 @@ extern "C" __attribute__((visibility("default"))) void pellucid_read_with_vtk_1(
     const std::filesystem::path& path, pellucid::VtkFormat format,
     const pellucid::MeshReadOptions& options, pellucid::VtkAnswer& answer) {
   using pellucid::VtkFormat;
-  try {
+  pellucid::answer(answer.error, "the file may be damaged, or split it", [&] {
     const pellucid::VtkMessages messages;
     const auto read = format == VtkFormat::xml      ? pellucid::read_xml
                       : format == VtkFormat::legacy ? pellucid::read_legacy
                                                     : pellucid::read_exodus;
     read(path, options, messages, answer.mesh);
-  } catch (const std::bad_alloc&) {
-    answer.error = "not enough memory for the data; the file may be damaged, or split it";
-  } catch (const std::exception& error) {
-    answer.error = error.what();
-  }
+  });
 }

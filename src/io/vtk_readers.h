@@ -10,6 +10,7 @@
 #include "vtk_messages.h"
 
 class vtkAlgorithm;
+class vtkDataReader;
 
 namespace pellucid {
 
@@ -26,6 +27,8 @@ void read_exodus(const std::filesystem::path& path, const MeshReadOptions& optio
 /// Throws Error where VTK says one, or a time is asked for where there is none.
 void update(vtkAlgorithm& reader, const MeshReadOptions& options, const VtkMessages& messages,
             MeshFile& file);
+/// Legacy files: by itself a reader takes the first array of each kind.
+void read_all_arrays(vtkDataReader& reader);
 /// Throws Error where a time is asked for.
 void refuse_time(const MeshReadOptions& options);
 

@@ -21,14 +21,15 @@
 #include <vtkXMLRectilinearGridReader.h>
 
 #include <algorithm>
-#include <new>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "module_answer.h"
 #include "pellucid/scene/error.h"
 #include "vtk_messages.h"
 #include "vtk_module.h"
+#include "vtk_readers.h"
 #include "vtk_values.h"
 
 namespace pellucid {
@@ -262,14 +263,7 @@ void read_legacy_grid(const std::filesystem::path& path, const VtkVolumeRequest&
                       const VtkMessages& messages, VtkVolume& volume) {
   const auto reader = vtkSmartPointer<Reader>::New();
   reader->SetFileName(path.c_str());
-  // By itself it reads the first array of each kind.
-  reader->ReadAllScalarsOn();
-  reader->ReadAllVectorsOn();
-  reader->ReadAllNormalsOn();
-  reader->ReadAllTensorsOn();
-  reader->ReadAllColorScalarsOn();
-  reader->ReadAllTCoordsOn();
-  reader->ReadAllFieldsOn();
+  read_all_arrays(*reader);
   reader->Update();
   check(*reader, messages);
   take_all<Grid>(reader->GetOutput(), volume);
@@ -300,11 +294,6 @@ void read_volume(const std::filesystem::path& path, const VtkVolumeRequest& requ
 extern "C" __attribute__((visibility("default"))) void pellucid_read_volume_with_vtk_1(
     const std::filesystem::path& path, const pellucid::VtkVolumeRequest& request,
     pellucid::VtkVolume& answer) {
-  try {
-    pellucid::read_volume(path, request, answer);
-  } catch (const std::bad_alloc&) {
-    answer.error = "not enough memory for the data; crop or reduce the volume";
-  } catch (const std::exception& error) {
-    answer.error = error.what();
-  }
+  pellucid::answer(answer.error, "crop or reduce the volume",
+                   [&] { pellucid::read_volume(path, request, answer); });
 }
