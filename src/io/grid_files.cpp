@@ -2,7 +2,9 @@
 #include "grid_files.h"
 
 #include <algorithm>
+#include <mutex>
 #include <string>
+#include <type_traits>
 #include <utility>
 
 #include "array_statistics.h"
@@ -35,19 +37,24 @@ constexpr Module hdf5{"pellucid_hdf5.so", "HDF5 files", has_hdf5,
 constexpr Module net_cdf{"pellucid_netcdf.so", "NetCDF files", has_net_cdf,
                          "NetCDF (Debian: libnetcdf-dev) and -DPELLUCID_WITH_NETCDF=ON"};
 
+std::mutex one_at_a_time;
+
 constexpr const char* wanted = "array of three or four axes of numbers";
 
-/// Kept once they are loaded, which takes dlopen() each time to find out.
-template <class Function>
-Function& function_of(const Module& module, const char* name) {
-  return *reinterpret_cast<Function*>(module_function(module, name));
+/// Calls a module's function. Both modules stand on Debian's HDF5, which may be in one thread at a
+/// time. Libraries are kept once they are loaded, which takes dlopen() each time to find out.
+template <class Function, class... Arguments>
+void call(const Module& module, const char* name, Arguments&&... arguments) {
+  static_assert(std::is_invocable_v<Function, Arguments...>);
+  const std::lock_guard lock(one_at_a_time);
+  (*reinterpret_cast<Function*>(module_function(module, name)))(arguments...);
 }
 
 GridContents contents_of(const std::filesystem::path& path, const Module& module) {
   check_input_file(path);
   GridContents contents;
   try {
-    function_of<ListGrids>(module, list_grids_name)(path, contents);
+    call<ListGrids>(module, list_grids_name, path, contents);
   } catch (const Error& error) {
     throw Error(path.string() + ": " + error.what());
   }
@@ -100,7 +107,7 @@ std::vector<VolumeData> read_values(const std::filesystem::path& path, const Mod
       std::uintmax_t{value_count(points, range.number, name)} * value_size(array.type, name),
       name + ": its values");
   GridValues values;
-  function_of<ReadGrid>(module, read_grid_name)(path, array.name, range, values);
+  call<ReadGrid>(module, read_grid_name, path, array.name, range, values);
   if (!values.error.empty()) throw Error(name + ": " + values.error);
   return std::move(values.components);
 }

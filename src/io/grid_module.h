@@ -36,7 +36,7 @@ struct GridValues {
   std::string error;
 };
 
-/// The functions of such a module, by these names.
+/// The functions of such a module, by these names; for one thread at a time, of all modules.
 using ListGrids = void(const std::filesystem::path& path, GridContents& answer);
 using ReadGrid = void(const std::filesystem::path& path, const std::string& array,
                       ComponentRange range, GridValues& answer);

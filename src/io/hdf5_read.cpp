@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <limits>
-#include <mutex>
 #include <optional>
 #include <string>
 #include <utility>
@@ -16,12 +15,6 @@
 namespace pellucid {
 
 namespace {
-
-/// Debian's HDF5 may be in one thread at a time.
-std::mutex& one_at_a_time() {
-  static std::mutex mutex;
-  return mutex;
-}
 
 /// Closed by the function that belongs to its kind.
 class Id {
@@ -189,23 +182,19 @@ void read(const std::filesystem::path& path, const std::string& name, ComponentR
   }
 }
 
-template <class Work>
-void guarded(std::string& error, const Work& work) {
-  const std::lock_guard lock(one_at_a_time());
-  answer(error, "crop or reduce the volume", work);
-}
-
 }  // namespace
 
 }  // namespace pellucid
 
 extern "C" __attribute__((visibility("default"))) void pellucid_list_grids_1(
     const std::filesystem::path& path, pellucid::GridContents& answer) {
-  pellucid::guarded(answer.error, [&] { pellucid::list(path, answer); });
+  pellucid::answer(answer.error, "crop or reduce the volume",
+                   [&] { pellucid::list(path, answer); });
 }
 
 extern "C" __attribute__((visibility("default"))) void pellucid_read_grid_1(
     const std::filesystem::path& path, const std::string& array, pellucid::ComponentRange range,
     pellucid::GridValues& answer) {
-  pellucid::guarded(answer.error, [&] { pellucid::read(path, array, range, answer); });
+  pellucid::answer(answer.error, "crop or reduce the volume",
+                   [&] { pellucid::read(path, array, range, answer); });
 }

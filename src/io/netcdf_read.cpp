@@ -6,7 +6,6 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
-#include <mutex>
 #include <optional>
 #include <span>
 #include <string>
@@ -21,12 +20,6 @@
 namespace pellucid {
 
 namespace {
-
-/// Neither NetCDF nor Debian's HDF5 beneath it may be in two threads.
-std::mutex& one_at_a_time() {
-  static std::mutex mutex;
-  return mutex;
-}
 
 /// Stored numbers of up to 16 bits fit float after scaling to its own rounding.
 bool fits_float(const std::string& type) {
@@ -173,23 +166,19 @@ void read(const std::filesystem::path& path, const std::string& name, ComponentR
   }
 }
 
-template <class Work>
-void guarded(std::string& error, const Work& work) {
-  const std::lock_guard lock(one_at_a_time());
-  answer(error, "crop or reduce the volume", work);
-}
-
 }  // namespace
 
 }  // namespace pellucid
 
 extern "C" __attribute__((visibility("default"))) void pellucid_list_grids_1(
     const std::filesystem::path& path, pellucid::GridContents& answer) {
-  pellucid::guarded(answer.error, [&] { pellucid::list(path, answer); });
+  pellucid::answer(answer.error, "crop or reduce the volume",
+                   [&] { pellucid::list(path, answer); });
 }
 
 extern "C" __attribute__((visibility("default"))) void pellucid_read_grid_1(
     const std::filesystem::path& path, const std::string& array, pellucid::ComponentRange range,
     pellucid::GridValues& answer) {
-  pellucid::guarded(answer.error, [&] { pellucid::read(path, array, range, answer); });
+  pellucid::answer(answer.error, "crop or reduce the volume",
+                   [&] { pellucid::read(path, array, range, answer); });
 }

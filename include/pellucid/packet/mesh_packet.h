@@ -116,36 +116,24 @@ class MeshPacket {
     const I step = gather(number_of, ((lowest * I(0x077cb531)) >> 27) & I(31));
     waiting_ = select(lanes, waiting_ - lowest, waiting_);
     row_ = select(lanes, step * I(N) + lane_, row_);
-    // Rays that absorb all along are in step, and what they take lies side by side.
-    const int first_step = step[__builtin_ctz(bits(lanes))];
-    if (none(lanes & (step != I(first_step)))) {
-      const int from = first_step * N;
-      take(lanes, [from](const auto* numbers) noexcept { return load_row(numbers + from); });
-    } else {
-      const I at = select(lanes, row_, lane_);
-      take(lanes, [&at](const auto* numbers) noexcept { return gather(numbers, at); });
-    }
+    const I at = select(lanes, row_, lane_);
+    const auto take = [&](const float* numbers, F& kept) noexcept {
+      kept = select(lanes, gather(numbers, at), kept);
+    };
+    take(rows_.front, front_);
+    take(rows_.back, back_);
+    take(rows_.rounding, rounding_);
+    take(rows_.length, length_);
+    take(rows_.left, left_);
+    take(rows_.place_error, place_error_);
+    take(rows_.end_error, end_error_);
+    const I note = gather(rows_.code, at);
+    handed_back_ = handed_back_ | (lanes & (note > I(0)));
     span_length_ = select(lanes, length_, span_length_);
     from_ = select(lanes, F(0), from_);
     cap_ = select(lanes, F(1), cap_);
     pending_ = pending_ | lanes;
     located_ = located_ & !lanes;
-  }
-
-  static F load_row(const float* numbers) noexcept { return F::load(numbers); }
-  static I load_row(const std::int32_t* numbers) noexcept { return I::load(numbers); }
-
-  /// load(numbers): of each lane's row.
-  template <class Load>
-  void take(M lanes, Load&& load) noexcept {
-    assign(lanes, front_, load(rows_.front));
-    assign(lanes, back_, load(rows_.back));
-    assign(lanes, rounding_, load(rows_.rounding));
-    assign(lanes, length_, load(rows_.length));
-    assign(lanes, left_, load(rows_.left));
-    assign(lanes, place_error_, load(rows_.place_error));
-    assign(lanes, end_error_, load(rows_.end_error));
-    handed_back_ = handed_back_ | (lanes & (load(rows_.code) > I(0)));
   }
 
   [[gnu::flatten]] void integrate_pieces() noexcept {
