@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <cmath>
 #include <optional>
 #include <utility>
 
+#include "gaussian_packets.h"
 #include "multivariate_sampler.h"
 #include "packet_setup.h"
 #include "pellucid/packet/multivariate_interface.h"
@@ -60,7 +62,11 @@ class MultivariateTracer : public RayTracer {
                                          parallel_for(task.threads));
     blocks_ = storage_.view();
     wanted_.tolerance *= 1 - left_out_share;
-    kernel_ = kernel_for(packet_instruction_set(task.options.instruction_set));
+    const InstructionSet set = packet_instruction_set(task.options.instruction_set);
+    kernel_ = kernel_for(set);
+    if (kernel_ == nullptr || integration_.precision != Precision::automatic) return;
+    packets_ = GaussianPackets::make(channels_, transfer_function_, *blocks_, grid_, wanted_,
+                                     negligible_extinction(task), set, parallel_for(task.threads));
   }
 
   std::vector<RayResult> trace(const std::vector<Ray<double>>& world) const override {
@@ -89,18 +95,12 @@ class MultivariateTracer : public RayTracer {
     std::vector<RayResult> results(rays.size(), clear);
     const PacketRays inside(channels_.grid(), rays.data(), static_cast<int>(rays.size()));
     std::vector<PellucidRayResult> found(inside.ray.size());
-    PellucidMultivariateJob job{};
-    job.grid = &grid_;
-    job.blocks = &*blocks_;
-    job.transfer = &transfer_;
-    job.largest_extinction = transfer_function_.largest_extinction();
-    job.tolerance = wanted_.tolerance;
-    job.largest_color = wanted_.largest_color;
-    job.proved = wanted_.grade == Grade::proved ? 1 : 0;
-    job.rays = inside.ray.data();
-    job.count = static_cast<std::int32_t>(inside.ray.size());
-    job.results = found.data();
-    kernel_(&job);
+    if (packets_) {
+      packets_->trace(inside.ray, found.data());
+      integrate_what_is_left(inside.ray, found);
+    } else {
+      integrate(inside.ray, found);
+    }
     for (std::size_t i = 0; i < found.size(); ++i) {
       const auto n = static_cast<std::size_t>(inside.of[i]);
       read_result(found[i], results[n]);
@@ -112,6 +112,39 @@ class MultivariateTracer : public RayTracer {
       }
     }
     return results;
+  }
+
+  /// In double, one after the other.
+  void integrate(const std::vector<PellucidRay>& rays,
+                 std::vector<PellucidRayResult>& found) const {
+    PellucidMultivariateJob job{};
+    job.grid = &grid_;
+    job.blocks = &*blocks_;
+    job.transfer = &transfer_;
+    job.largest_extinction = transfer_function_.largest_extinction();
+    job.tolerance = wanted_.tolerance;
+    job.largest_color = wanted_.largest_color;
+    job.proved = wanted_.grade == Grade::proved ? 1 : 0;
+    job.rays = rays.data();
+    job.count = static_cast<std::int32_t>(rays.size());
+    job.results = found.data();
+    kernel_(&job);
+  }
+
+  /// Those of the rays that packets gave up.
+  void integrate_what_is_left(const std::vector<PellucidRay>& rays,
+                              std::vector<PellucidRayResult>& found) const {
+    std::vector<PellucidRay> left;
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+      if (std::isinf(found[i].error)) left.push_back(rays[i]);
+    }
+    if (left.empty()) return;
+    std::vector<PellucidRayResult> alone(left.size());
+    integrate(left, alone);
+    auto next = alone.begin();
+    for (PellucidRayResult& result : found) {
+      if (std::isinf(result.error)) result = *next++;
+    }
   }
 
   RayResult trace_one(const Ray<double>& ray) const {
@@ -141,6 +174,7 @@ class MultivariateTracer : public RayTracer {
   MultivariateBlocksStorage storage_;
   std::optional<MultivariateBlocks> blocks_;                  ///< of the exact method
   Kernel kernel_ = nullptr;                                   ///< null: rays go one by one
+  std::unique_ptr<const GaussianPackets> packets_;            ///< null: all rays go to the kernel
   std::unique_ptr<const MultivariatePacketSampler> sampler_;  ///< null: another method, or that
 };
 

@@ -7,9 +7,7 @@
 #include "pellucid/scene/transfer_tables_storage.h"
 
 namespace pellucid {
-namespace {
-
-Gaussian<float> rounded(const Gaussian<double>& g) {
+Gaussian<float> rounded_to_binary32(const Gaussian<double>& g) {
   Gaussian<float> result;
   result.channels = g.channels;
   result.rows = g.rows;
@@ -23,14 +21,12 @@ Gaussian<float> rounded(const Gaussian<double>& g) {
   return result;
 }
 
-}  // namespace
-
 SampledMultivariateStorage::SampledMultivariateStorage(
     const MultivariateTransferFunction& transfer_function, double negligible) {
   const GaussianMixture<double> all = transfer_function.view().gaussians;
   for (int i = 0; i < all.count; ++i) {
     const Gaussian<double>& g = all.primitive[i];
-    gaussians_.push_back(rounded(g));
+    gaussians_.push_back(rounded_to_binary32(g));
     const double far = g.peak > 0 ? std::log(g.peak * all.count / negligible) : 0;
     // Where e^-far is no normal number nothing is seen either.
     far_.push_back(static_cast<float>(std::clamp(far, 0.0, 87.0)));

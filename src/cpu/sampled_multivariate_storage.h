@@ -10,6 +10,9 @@
 
 namespace pellucid {
 
+/// The same primitive in binary32.
+Gaussian<float> rounded_to_binary32(const Gaussian<double>& g);
+
 /// Owns what a SampledMultivariate refers to. Not copied, for the view refers to it.
 class SampledMultivariateStorage {
  public:

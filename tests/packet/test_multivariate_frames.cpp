@@ -112,7 +112,7 @@ TEST_P(MultivariateFrames, AreTheSameInEveryInstructionSet) {
           opaque = std::max(opaque, double{lanes.pixels[i][3]});
         }
         EXPECT_GT(opaque, 0.01);
-        EXPECT_GT(report.spans.lines + report.spans.panels, 0u);
+        EXPECT_GT(report.spans.lines + report.spans.panels + report.spans.strides, 0u);
       }
     }
   }

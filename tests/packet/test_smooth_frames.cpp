@@ -14,19 +14,13 @@
 
 #include "pellucid/cpu/render.h"
 #include "pellucid/scene/defaults.h"
+#include "tests/packet/against_one_by_one.h"
 
 namespace pellucid {
 namespace {
 
-constexpr InstructionSet sets[] = {InstructionSet::sse4, InstructionSet::avx2,
-                                   InstructionSet::avx512};
-
 using Field = std::function<double(double, double, double)>;
 using Points = std::vector<TransferFunction::Point>;
-
-bool no_packets() {
-  return std::none_of(std::begin(sets), std::end(sets), is_supported);
-}
 
 std::shared_ptr<const Volume> make_volume(const std::array<int, 3>& values, const Field& field,
                                           Vec3<double> spacing = {1, 1, 1}) {
@@ -41,51 +35,6 @@ std::shared_ptr<const Volume> make_volume(const std::array<int, 3>& values, cons
   description.placement.spacing = spacing;
   description.name = "smooth";
   return std::make_shared<Volume>(description, DataArray<float>(std::move(data)));
-}
-
-/// What was seen over many frames.
-struct Seen {
-  int frames = 0, with_strides = 0;
-  double largest_of_error = 0;
-};
-
-/// The scene in packets against rays one by one in binary64, proved.
-void compare(Scene scene, const std::vector<double>& tolerances, Seen& seen) {
-  constexpr double judge_tolerance = 1e-6;
-  RenderOptions options;
-  options.threads = 1;
-  options.error = true;
-  options.instruction_set = InstructionSet::scalar;
-  scene.integration.tolerance = judge_tolerance;
-  scene.integration.precision = Precision::float64;
-  scene.integration.grade = Grade::proved;
-  const Image truth = render(scene, options);
-  scene.integration.precision = Precision::automatic;
-  for (const InstructionSet set : sets) {
-    if (!is_supported(set)) continue;
-    options.instruction_set = set;
-    for (const double tolerance : tolerances) {
-      SCOPED_TRACE(testing::Message() << name_of(set) << " at " << tolerance);
-      scene.integration.tolerance = tolerance;
-      scene.integration.grade = Grade::estimated;
-      RenderReport report;
-      const Image image = render(scene, options, &report);
-      ++seen.frames;
-      if (report.spans.strides > 0) ++seen.with_strides;
-      for (std::size_t i = 0; i < image.pixels.size(); ++i) {
-        const auto said = static_cast<double>(image.error[i]);
-        ASSERT_LE(said, tolerance * (1 + 1e-6)) << "pixel " << i;
-        for (std::size_t c = 0; c < 4; ++c) {
-          const double off = std::fabs(static_cast<double>(image.pixels[i][c]) -
-                                       static_cast<double>(truth.pixels[i][c]));
-          ASSERT_LE(off, said + 1.3 * judge_tolerance) << "pixel " << i << ", channel " << c;
-          if (said > 30 * judge_tolerance) {
-            seen.largest_of_error = std::max(seen.largest_of_error, off / said);
-          }
-        }
-      }
-    }
-  }
 }
 
 class SmoothFrames : public testing::Test {

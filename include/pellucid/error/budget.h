@@ -87,6 +87,18 @@ class RayBudget {
   /// Goes past stretches in which nothing was, up to where so much is left of the ray.
   PELLUCID_HD void pass_to(T length_left) noexcept { length_ = length_left; }
 
+  /// Of several rays at once, lane by lane.
+  PELLUCID_HD friend RayBudget select(mask_t<T> mask, const RayBudget& a,
+                                      const RayBudget& b) noexcept {
+    RayBudget r;
+    r.opacity_pot_ = select(mask, a.opacity_pot_, b.opacity_pot_);
+    r.length_pot_ = select(mask, a.length_pot_, b.length_pot_);
+    r.length_ = select(mask, a.length_, b.length_);
+    r.spent_ = select(mask, a.spent_, b.spent_);
+    r.reserved_ = select(mask, a.reserved_, b.reserved_);
+    return r;
+  }
+
   PELLUCID_HD T spent() const noexcept { return spent_; }
   PELLUCID_HD T left() const noexcept { return opacity_pot_ + length_pot_; }
   /// Of the ray, behind the spans gone past.

@@ -62,6 +62,15 @@ class RandomErrors {
     root_ = sqrt(sum_);
   }
 
+  /// Of several rays at once, lane by lane.
+  friend RandomErrors select(mask_t<T> mask, const RandomErrors& a,
+                             const RandomErrors& b) noexcept {
+    RandomErrors r;
+    r.sum_ = select(mask, a.sum_, b.sum_);
+    r.root_ = select(mask, a.root_, b.root_);
+    return r;
+  }
+
  private:
   T sum_{}, root_{};
 };

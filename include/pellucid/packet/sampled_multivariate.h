@@ -52,8 +52,11 @@ PELLUCID_ALWAYS_INLINE ExtinctionAndEmission<Batch<float, N>> extinction_and_emi
       }
       square = multiply_add(p, p, square);
     }
-    if (none(wanted & (square < F(t.far[i])))) continue;
-    add(F(g.peak) * exp(F(0) - square), {F(g.color.r), F(g.color.g), F(g.color.b)});
+    const auto near = wanted & (square < F(t.far[i]));
+    if (none(near)) continue;
+    // Nothing where it does not matter: numbers that are not normal take many times as long.
+    const F extinction = select(near, F(g.peak) * exp(F(0) - select(near, square, F(0))), F(0));
+    add(extinction, {F(g.color.r), F(g.color.g), F(g.color.b)});
   }
   for (int i = 0; i < t.tables; ++i) {
     const SamplerTransfer& table = t.table[i].table;

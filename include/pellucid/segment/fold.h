@@ -38,6 +38,19 @@ class FrontToBack {
                            transparency_ * static_cast<A>(segment.transparency));
   }
 
+  /// Of several pixels at once, lane by lane.
+  PELLUCID_HD friend FrontToBack select(mask_t<A> mask, const FrontToBack& a,
+                                        const FrontToBack& b) noexcept {
+    const auto each = [&](const A& x, const A& y) noexcept { return select(mask, x, y); };
+    FrontToBack r(each(a.stop_, b.stop_));
+    r.transparency_ = each(a.transparency_, b.transparency_);
+    r.opacity_ = each(a.opacity_, b.opacity_);
+    r.optical_depth_ = each(a.optical_depth_, b.optical_depth_);
+    r.radiance_ = {each(a.radiance_.r, b.radiance_.r), each(a.radiance_.g, b.radiance_.g),
+                   each(a.radiance_.b, b.radiance_.b)};
+    return r;
+  }
+
   /// Whether what is left can no longer matter.
   PELLUCID_HD bool done() const noexcept { return transparency_ <= stop_; }
 

@@ -13,14 +13,14 @@ struct SampledSegment {
   T difference;  ///< the largest of opacity and the channels of radiance
 };
 
-namespace detail {
-
 /// An end of a step: its extinction, and its emission, which is extinction · color.
 template <class T>
 struct StepEnd {
   T extinction;
   Rgb<T> emission;
 };
+
+namespace detail {
 
 /// The trapezoidal rule: a mean of the ends' extinctions, and of their colors weighted by these.
 template <class T>
@@ -52,7 +52,7 @@ SegmentResult<T> improve(const SegmentResult<T>& first, const SegmentResult<T>& 
 
 }  // namespace detail
 
-/// The segment of four steps of this length, from the material at their five ends: Simpson's rule
+/// The segment of four steps of this length, from what is at their five ends: Simpson's rule
 /// in effect, of which `difference` takes the same at twice the length. What the segment itself
 /// errs is a small part of it where the data are smooth (a sixteenth where they are so smooth that
 /// this says all), and less than it where they bend at places that the samples do not know.
@@ -60,9 +60,7 @@ SegmentResult<T> improve(const SegmentResult<T>& first, const SegmentResult<T>& 
 ///
 /// Not accurate to the last digits where opacity is small: of a stretch among others of a ray.
 template <class T>
-SampledSegment<T> sampled_segment(const Material<T>* at, T length) noexcept {
-  detail::StepEnd<T> end[5];
-  for (int i = 0; i < 5; ++i) end[i] = {at[i].extinction, at[i].extinction * at[i].color};
+SampledSegment<T> sampled_segment(const StepEnd<T>* end, T length) noexcept {
   const T two = T(2) * length;
   const SegmentResult<T> first = detail::trapezoid(end[0], end[2], two),
                          second = detail::trapezoid(end[2], end[4], two);
@@ -82,6 +80,13 @@ SampledSegment<T> sampled_segment(const Material<T>* at, T length) noexcept {
       max(max(abs(s.opacity - coarse.opacity), abs(s.radiance.r - coarse.radiance.r)),
           max(abs(s.radiance.g - coarse.radiance.g), abs(s.radiance.b - coarse.radiance.b)));
   return r;
+}
+
+template <class T>
+SampledSegment<T> sampled_segment(const Material<T>* at, T length) noexcept {
+  StepEnd<T> end[5];
+  for (int i = 0; i < 5; ++i) end[i] = {at[i].extinction, at[i].extinction * at[i].color};
+  return sampled_segment(end, length);
 }
 
 }  // namespace pellucid

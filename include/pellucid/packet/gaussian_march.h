@@ -1,0 +1,273 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "pellucid/error/random_errors.h"
+#include "pellucid/packet/multichannel_samples.h"
+#include "pellucid/packet/rays_in_blocks.h"
+#include "pellucid/packet/resolved_gaussians.h"
+#include "pellucid/traverse/block_variation.h"
+
+#if PELLUCID_HAS_BATCH_4  // in sources compiled per instruction set
+namespace pellucid {
+
+/// Rays in lanes that go through several fields in steps, four at a time, which resolve what
+/// Gaussians make of them: how long the steps are is each lane's own matter. Where nothing absorbs
+/// they grow to the distance at which something can; where something does they shrink to what it
+/// takes to see it, and on to what its error demands.
+template <int N>
+class GaussianMarch {
+ public:
+  using F = Batch<float, N>;
+  using D = Batch<double, N>;
+  using I = Batch<std::int32_t, N>;
+  using M = BatchMask<N>;
+
+  M alive;  ///< whether a lane's ray is not yet through
+  D at;     ///< world length from the entry into the grid
+
+  /// Lanes have no rays yet.
+  GaussianMarch(const PacketGrid<void>& grid, const MultichannelGrid& fields,
+                const SteppedMixture& mixture, const PrimitiveSet* primitives,
+                const BlockVariation* variation) noexcept
+      : grid_(grid),
+        fields_(fields),
+        mixture_(mixture),
+        primitives_(primitives),
+        variation_(reinterpret_cast<const std::int32_t*>(variation)),
+        rays_(grid, nullptr, 0),
+        samples_(fields, grid) {
+    at = D(0);
+    alive = M(false);
+  }
+
+  /// Gives the lanes the rays of theirs; `rays` has one for each lane, also of those that go on.
+  void begin(M lanes, const PellucidRay* rays) noexcept {
+    rays_ = RaysInBlocks<void, N>(grid_, rays, N);
+    samples_.set_direction(rays_.direction());
+    F fastest(1e-30f);
+    for (int a = 0; a < 3; ++a) {
+      direction_[a] = convert<float>(rays_.direction()[a]);
+      fastest = max(fastest, abs(direction_[a]));
+    }
+    longest_ = F(longest_step) / fastest;
+    step_ = select(lanes, longest_, step_);
+    at = select(lanes, D(0), at);
+    known_ = known_ & !lanes;
+    alive = alive | (lanes & (rays_.end > D(0)));
+  }
+
+  D end() const noexcept { return rays_.end; }
+
+  /// Takes the lanes on to the next block in which anything absorbs, if there is any.
+  void skip(I& skipped) noexcept {
+    M lanes = alive;
+    while (any(lanes)) {
+      const M inside = at < rays_.end;
+      alive = alive & (inside | !lanes);
+      lanes = lanes & inside;
+      D leave;
+      lanes = rays_.find_skipped(lanes, at, leave);
+      if (none(lanes)) return;
+      // A little further, so that the next block is found there; it touches the last one.
+      at = select(lanes, max(leave, at) + convert<double>(F(5e-7f) * longest_), at);
+      known_ = known_ & !lanes;
+      skipped += select(lanes, I(1), I(0));
+    }
+  }
+
+  /// Four steps.
+  struct Look {
+    F step, length;  ///< world length of one, and of all four
+    M last;          ///< whether they end the ray
+    M empty;         ///< nothing matters on any of them
+    M resolved;      ///< else they are too long, or in vacuum
+    ResolvedGaussians<N> ends;
+    F value[ResolvedGaussians<N>::steps + 1][most_channels];
+    SampledSegment<F> found;
+    F least_variance;  ///< of the error beside what `found` says
+  };
+
+  [[gnu::flatten]] void look(Look& s) noexcept {
+    D place[3];
+    rays_.place(at, place);
+    samples_.anchor(place);
+    const F left = convert<float>(rays_.end - at);
+    s.last = F(4.0001f) * step_ >= left;
+    s.step = select(s.last, F(0.25f) * left, step_);
+    s.length = select(s.last, left, F(4) * step_);
+    if (any(alive & !known_)) find_front();
+    F offset[steps];
+    for (int j = 0; j < steps; ++j) offset[j] = s.step * F(static_cast<float>(j + 1));
+    samples_.template sample<steps>(offset, s.value + 1);
+    F sum(0);
+    for (int c = 0; c < fields_.channels; ++c) {
+      s.value[0][c] = front_value_[c];
+      for (int j = 0; j <= steps; ++j) sum += s.value[j][c];
+    }
+    const M there = alive & !is_nan(sum);
+    look_at_blocks(place, s.length);
+    s.ends.end[0] = front_;
+    s.ends.find(mixture_, near_, fields_.channels, s.value, around_, s.step, alive);
+    M matters(false), unresolved = !there;
+    for (int j = 0; j < steps; ++j) {
+      matters = matters | s.ends.matters[j];
+      unresolved = unresolved | s.ends.unresolved[j];
+    }
+    s.empty = there & !matters;
+    s.resolved = alive & !unresolved;
+    if (none(s.resolved & !s.empty)) return;
+    F densest(0);
+    for (int j = 0; j <= steps; ++j) densest = max(densest, s.ends.end[j].extinction);
+    const F depth = s.step * densest;
+    s.resolved = s.resolved & (depth <= F(1));
+    s.found = sampled_segment(s.ends.end, s.step);
+    F variance(0);
+    for (int a = 0; a < 3; ++a) {
+      const F cells = s.step * abs(direction_[a]);
+      // What the mean squares are for short steps.
+      F weight = F(1.25f * 0.03f) * cells * cells * cells;
+      const M longer = alive & (cells > F(0.5f));
+      if (any(longer)) {
+        weight = select(longer, mean_square_of_bend(cells) + F(0.25f) * mean_square_of_bends(cells),
+                        weight);
+      }
+      variance += weight * (s.ends.bending[a] * s.ends.bending[a]);
+    }
+    // Rounding of the four ends, each by itself.
+    variance += F(4) * (s.ends.slope * s.ends.slope);
+    s.least_variance = s.step * s.step * variance;
+  }
+
+  /// Goes behind the steps of these lanes. `easy`: those which could do with longer ones.
+  void take(M lanes, const Look& s, M easy) noexcept {
+    at = select(lanes, select(s.last, rays_.end, at + convert<double>(s.length)), at);
+    set_front(lanes, s.ends.end[steps], s.value[steps]);
+    known_ = known_ | lanes;
+    // Over empty steps one may go on to where something can matter; the next look tells whether.
+    const F leap = select(s.empty, F(0.25f) * s.ends.clearance(), F(0));
+    const M resolves = F(2) * s.ends.most <= F(1);
+    const F grown = select(easy & (resolves | s.empty), F(2), F(1));
+    step_ = select(lanes & !s.last, min(max(grown, leap) * s.step, longest_), step_);
+  }
+
+  /// Has these lanes look again, in finer steps; from the first in which something matters. Those
+  /// that are returned cannot.
+  M retry(M lanes, const Look& s) noexcept {
+    M before = lanes;
+    const F finer = s.ends.finer();
+    for (int j = 0; j < steps; ++j) {
+      const M here = before & s.ends.matters[j];
+      before = before & !here;
+      if (j > 0 && any(here)) {
+        const F passed = s.step * F(static_cast<float>(j));
+        at = select(here, at + convert<double>(passed), at);
+        set_front(here, {}, s.value[j]);
+      }
+      // To where it can begin to matter, if that is further than four steps that see it.
+      const F wanted = max(finer, F(0.2495f) * s.ends.approach(j));
+      const F least = j == 0 ? F(0.5f) : F(1);
+      step_ = select(here, min(wanted, least) * s.step, step_);
+    }
+    step_ = select(before, F(0.5f) * s.step, step_);
+    return lanes & !(step_ >= F(shortest_step / longest_step) * longest_);
+  }
+
+ private:
+  static constexpr int steps = ResolvedGaussians<N>::steps;
+  /// Cells along the axis on which they are the most: four of them are a block's width.
+  static constexpr float longest_step = 2;
+  static constexpr float shortest_step = 0x1p-13f;
+
+  void find_front() noexcept {
+    const F here(0);
+    F value[1][most_channels];
+    samples_.template sample<1>(&here, value);
+    StepEnd<F> found{};
+    for (int i = 0; i < mixture_.count; ++i) {
+      const Gaussian<float>& g = mixture_.primitive[i].gaussian;
+      const F extinction = F(g.peak) * g.density(value[0]);
+      found.extinction += extinction;
+      found.emission += extinction * Rgb<F>{F(g.color.r), F(g.color.g), F(g.color.b)};
+    }
+    set_front(!known_, found, value[0]);
+    known_ = known_ | alive;
+  }
+
+  void set_front(M lanes, const StepEnd<F>& end, const F* value) noexcept {
+    front_.extinction = select(lanes, end.extinction, front_.extinction);
+    front_.emission.r = select(lanes, end.emission.r, front_.emission.r);
+    front_.emission.g = select(lanes, end.emission.g, front_.emission.g);
+    front_.emission.b = select(lanes, end.emission.b, front_.emission.b);
+    for (int c = 0; c < fields_.channels; ++c) {
+      front_value_[c] = select(lanes, value[c], front_value_[c]);
+    }
+  }
+
+  /// What the blocks know: how the data vary around where the lanes stand, and which primitives may
+  /// matter on the way.
+  PELLUCID_ALWAYS_INLINE void look_at_blocks(const D* place, F length) noexcept {
+    F from[3];
+    for (int a = 0; a < 3; ++a) from[a] = convert<float>(place[a]);
+    const auto block_at = [&](F offset) noexcept {
+      F there[3];
+      for (int a = 0; a < 3; ++a) there[a] = multiply_add(offset, direction_[a], from[a]);
+      return select(alive, rays_.block_of(there), I(0));
+    };
+    const I block = block_at(F(0));
+    const I upper_half(static_cast<std::int32_t>(0xffff0000u));
+    for (int c = 0; c < fields_.channels; ++c) {
+      I packed[4];
+      load_records<4>(variation_, block * I(fields_.channels) + I(c), packed);
+      const auto low = [](I x) noexcept { return float_of_bits(x << 16); };
+      const auto high = [&](I x) noexcept { return float_of_bits(x & upper_half); };
+      const F oscillation[3] = {low(packed[0]), high(packed[0]), low(packed[1])};
+      around_.bend[c][0] = high(packed[1]);
+      around_.bend[c][1] = low(packed[2]);
+      around_.bend[c][2] = high(packed[2]);
+      F along(0);
+      for (int a = 0; a < 3; ++a) {
+        // An axis along which nothing moves does not count, even if unbounded.
+        const F speed = abs(direction_[a]);
+        along += select(speed > F(0), speed * oscillation[a], F(0));
+      }
+      around_.oscillation[c] = along * F(1 + 8 * rounding_unit<float>);
+    }
+    near_.clear();
+    add_primitives(block, alive);
+    for (const float part : {1.0f, 0.5f, 0.25f, 0.75f}) {
+      const I other = block_at(F(part) * length);
+      const M elsewhere = alive & (other != block);
+      // A straight way between two places of a block stays in it.
+      if (part == 1 && none(elsewhere)) break;
+      add_primitives(other, elsewhere);
+    }
+    near_.finish(alive);
+  }
+
+  void add_primitives(I block, M lanes) noexcept {
+    std::int32_t of_lane[N];
+    block.store(of_lane);
+    for (unsigned left = bits(lanes); left != 0; left &= left - 1) {
+      const int l = __builtin_ctz(left);
+      near_.add(l, primitives_[of_lane[l]]);
+    }
+  }
+
+  const PacketGrid<void>& grid_;
+  const MultichannelGrid& fields_;
+  const SteppedMixture& mixture_;
+  const PrimitiveSet* primitives_;
+  const std::int32_t* variation_;
+  RaysInBlocks<void, N> rays_;
+  MultichannelSamples<N> samples_;
+  F direction_[3];            ///< cells by world length
+  F longest_, step_;          ///< world length
+  M known_{false};            ///< whether front_ and front_value_ are those at `at`
+  LocalVariation<N> around_;  ///< where the lanes stand
+  LanePrimitives<N> near_;    ///< on the way of four steps
+  StepEnd<F> front_{};
+  F front_value_[most_channels];
+};
+
+}  // namespace pellucid
+#endif

@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "pellucid/packet/interface.h"
+
+/// What goes between the renderer and packets of rays through several fields, as
+/// packet/interface.h.
+extern "C" {
+
+struct PellucidGaussianPacketJob {
+  /// Of this the grid without data, its blocks, what is wanted, rays and results. A result whose
+  /// error is infinite is none: the ray is beyond what packets can do.
+  PellucidPacketJob grid_and_rays;
+  const void* grid;        ///< MultichannelGrid
+  const void* primitives;  ///< PrimitiveSet per block: those that matter there
+  const void* variation;   ///< BlockVariation per block and channel
+  const void* mixture;     ///< SteppedMixture
+  double left_out;         ///< of the extinction, anywhere, at most
+};
+
+void pellucid_integrate_gaussian_packets_sse4(const PellucidGaussianPacketJob* job);
+void pellucid_integrate_gaussian_packets_avx2(const PellucidGaussianPacketJob* job);
+void pellucid_integrate_gaussian_packets_avx512(const PellucidGaussianPacketJob* job);
+}

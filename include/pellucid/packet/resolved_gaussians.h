@@ -1,0 +1,223 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "pellucid/segment/sampled.h"
+#include "pellucid/simd/batch.h"
+#include "pellucid/transfer/gaussian.h"
+
+namespace pellucid {
+
+/// A Gaussian primitive for steps in lanes, in binary32.
+struct SteppedGaussian {
+  Gaussian<float> gaussian;
+  float reach = 0;     ///< the distance |K (v - c)| from which on it does not matter
+  float rounding = 0;  ///< how far rounding moves K (v - c): its standard deviation, or more
+  float column_norm[most_channels] = {};  ///< of K, by channel
+};
+
+/// A sum of them. A view; owns nothing.
+struct SteppedMixture {
+  const SteppedGaussian* primitive = nullptr;
+  int count = 0;
+};
+
+#if PELLUCID_HAS_BATCH_4  // in sources compiled per instruction set
+
+/// How the channels vary on the way of each lane: bounds for four steps from where it stands.
+template <int N>
+struct LocalVariation {
+  /// How much the derivative along the ray varies, per world length.
+  Batch<float, N> oscillation[most_channels];
+  /// The largest jump of the derivative by each axis's grid coordinate.
+  Batch<float, N> bend[most_channels][3];
+};
+
+/// Which primitives may matter to the ray of each lane.
+template <int N>
+class LanePrimitives {
+ public:
+  using M = BatchMask<N>;
+
+  void clear() noexcept {
+    for (PrimitiveSet& set : of_lane_) set.bits = 0;
+  }
+  PELLUCID_ALWAYS_INLINE void add(int lane, PrimitiveSet set) noexcept {
+    of_lane_[lane].bits |= set.bits;
+  }
+  /// Of these lanes, behind all that is added.
+  void finish(M lanes) noexcept {
+    any_.bits = 0;
+    all_.bits = ~0ULL;
+    for (unsigned left = bits(lanes); left != 0; left &= left - 1) {
+      const unsigned long long set = of_lane_[__builtin_ctz(left)].bits;
+      any_.bits |= set;
+      all_.bits &= set;
+    }
+  }
+
+  bool of_any(int primitive) const noexcept { return any_.holds(primitive); }
+  PELLUCID_ALWAYS_INLINE M lanes(int primitive, M of) const noexcept {
+    if (all_.holds(primitive)) return of;
+    unsigned found = 0;
+    for (unsigned left = bits(of); left != 0; left &= left - 1) {
+      const int l = __builtin_ctz(left);
+      if (of_lane_[l].holds(primitive)) found |= 1u << l;
+    }
+    return M::from_bits(found);
+  }
+
+ private:
+  PrimitiveSet of_lane_[N], any_, all_;
+};
+
+/// What a sum of Gaussians is at the five ends of four steps of one length, and whether the steps
+/// resolve it: no primitive comes and goes between two ends unseen, and none changes much from one
+/// to the next.
+///
+/// Between two ends data leave their chord by at most a quarter of the step times the oscillation
+/// of their derivative (traverse/block_bends.h), so that a primitive's p = K (v - c) leaves its own
+/// by at most e = step/4 Σ |column of K| · oscillation. On the chord from p to q no place is nearer
+/// to 0 than (|p| + |q| - |q - p|) / 2. So a primitive that matters nowhere on the step is known
+/// not to, and p moves by at most |q - p| + 2 e on any other.
+template <int N>
+class ResolvedGaussians {
+ public:
+  using F = Batch<float, N>;
+  using M = BatchMask<N>;
+  static constexpr int steps = 4;
+
+  StepEnd<F> end[steps + 1];  ///< end[0] is left as it is
+  M matters[steps];           ///< whether a primitive does, somewhere on the step
+  M unresolved[steps];
+  F most;        ///< how far a primitive that matters moves in a step, at most
+  F slope;       ///< the extinction's by p, times how far rounding moves that: the largest
+  F bending[3];  ///< what a bend of the data along an axis makes of the extinction, by its largest
+                 ///<   deviation from the curve, in cells squared (error/random_errors.h)
+
+  /// What the step should be, by what it is, for what is unresolved to be resolved.
+  F finer() const noexcept { return min(F(0.8f * coarsest) / max(most, F(1e-30f)), F(1)); }
+  /// The share of step j, from its front on, on which none matters of those that do on it.
+  F approach(int j) const noexcept { return ahead_[j] / max(fastest_[j], F(1e-30f)); }
+  /// On how many steps behind the last one none matters, if data go on as on that.
+  F clearance() const noexcept { return clear_ / max(fastest_behind_, F(1e-30f)); }
+
+  /// `value[j][c]`: channel c at end j.
+  PELLUCID_ALWAYS_INLINE void find(const SteppedMixture& mixture,
+                                   const LanePrimitives<N>& primitives, int channels,
+                                   const F (*value)[most_channels],
+                                   const LocalVariation<N>& variation, F step, M on) noexcept {
+    for (int j = 0; j < steps; ++j) {
+      matters[j] = unresolved[j] = M(false);
+      ahead_[j] = F(far_away);
+      fastest_[j] = F(0);
+      end[j + 1] = {};
+    }
+    clear_ = F(far_away);
+    fastest_behind_ = most = slope = F(0);
+    for (F& b : bending) b = F(0);
+    for (int i = 0; i < mixture.count; ++i) {
+      if (!primitives.of_any(i)) continue;
+      add(mixture.primitive[i], channels, value, variation, step, primitives.lanes(i, on));
+    }
+  }
+
+ private:
+  /// The most that p may move in a step of a primitive that matters.
+  static constexpr float coarsest = 1.5f;
+  static constexpr float far_away = 1e6f;
+
+  PELLUCID_ALWAYS_INLINE void add(const SteppedGaussian& of, int channels,
+                                  const F (*value)[most_channels],
+                                  const LocalVariation<N>& variation, F step, M on) noexcept {
+    const Gaussian<float>& g = of.gaussian;
+    F off_chord(0);
+    for (int c = 0; c < channels; ++c) {
+      off_chord = multiply_add(F(of.column_norm[c]), variation.oscillation[c], off_chord);
+    }
+    off_chord *= F(0.25f) * step;
+    F away[steps + 1], between[steps];
+    find_distances(g, value, away, between);
+    const F reach(of.reach);
+    M somewhere(false);
+    for (int j = 0; j < steps; ++j) {
+      const F nearest = F(0.5f) * (away[j] + away[j + 1] - between[j]) - off_chord;
+      // Written so that NaN matters.
+      const M here = on & !(nearest >= reach);
+      const F moves = between[j] + F(2) * off_chord;
+      const M coarse = here & !(moves <= F(coarsest));
+      somewhere = somewhere | here;
+      matters[j] = matters[j] | here;
+      unresolved[j] = unresolved[j] | coarse;
+      most = max(most, select(here, moves, F(0)));
+      ahead_[j] = min(ahead_[j], select(here, max(away[j] - reach, F(0)), F(far_away)));
+      fastest_[j] = max(fastest_[j], select(here, moves + F(2) * off_chord, F(0)));
+    }
+    clear_ = min(clear_, select(on, max(away[steps] - reach, F(0)), F(far_away)));
+    fastest_behind_ = max(fastest_behind_, select(on, between[steps - 1] + F(4) * off_chord, F(0)));
+    if (none(somewhere)) return;
+    F largest(0);
+    for (int j = 1; j <= steps; ++j) {
+      // Nothing where it does not matter: numbers that are not normal take many times as long.
+      const auto near = on & (away[j] < reach);
+      const F square = select(near, away[j] * away[j], F(0));
+      const F here = select(near, F(g.peak) * exp(F(0) - square), F(0));
+      end[j].extinction += here;
+      end[j].emission += here * Rgb<F>{F(g.color.r), F(g.color.g), F(g.color.b)};
+      // 2 |p| <= 1 + |p|²: the slope by p.
+      largest = max(largest, multiply_add(here, square, here));
+    }
+    largest = select(somewhere, largest, F(0));
+    slope = multiply_add(largest, F(of.rounding), slope);
+    for (int a = 0; a < 3; ++a) {
+      F bend(0);
+      for (int c = 0; c < channels; ++c) {
+        bend = multiply_add(F(of.column_norm[c]), variation.bend[c][a], bend);
+      }
+      bending[a] = multiply_add(largest, bend, bending[a]);
+    }
+  }
+
+  // In p: how far primitives that matter are from doing so at the front of each step, at least, and
+  // how far they move in it, at most; and the same of all, behind the last one.
+  F ahead_[steps], fastest_[steps], clear_, fastest_behind_;
+
+  /// |p| at the ends, and between ends.
+  PELLUCID_ALWAYS_INLINE static void find_distances(const Gaussian<float>& g,
+                                                    const F (*value)[most_channels], F* away,
+                                                    F* between) noexcept {
+    F p[steps + 1];
+    if (g.rows == 1) {
+      for (int j = 0; j <= steps; ++j) {
+        place_row(g, 0, value[j], p[j]);
+        away[j] = abs(p[j]);
+      }
+      for (int j = 0; j < steps; ++j) between[j] = abs(p[j + 1] - p[j]);
+      return;
+    }
+    for (int j = 0; j <= steps; ++j) away[j] = F(0);
+    for (int j = 0; j < steps; ++j) between[j] = F(0);
+    for (int row = 0; row < g.rows; ++row) {
+      for (int j = 0; j <= steps; ++j) {
+        place_row(g, row, value[j], p[j]);
+        away[j] = multiply_add(p[j], p[j], away[j]);
+      }
+      for (int j = 0; j < steps; ++j) {
+        const F d = p[j + 1] - p[j];
+        between[j] = multiply_add(d, d, between[j]);
+      }
+    }
+    for (int j = 0; j <= steps; ++j) away[j] = sqrt(away[j]);
+    for (int j = 0; j < steps; ++j) between[j] = sqrt(between[j]);
+  }
+
+  PELLUCID_ALWAYS_INLINE static void place_row(const Gaussian<float>& g, int row, const F* value,
+                                               F& p) noexcept {
+    p = F(0);
+    for (int c = 0; c < g.channels; ++c) {
+      p = multiply_add(F(g.matrix[row][c]), value[c] - F(g.center[c]), p);
+    }
+  }
+};
+#endif
+
+}  // namespace pellucid

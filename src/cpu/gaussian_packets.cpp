@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "gaussian_packets.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "packet_setup.h"
+#include "sampled_multivariate_storage.h"
+
+namespace pellucid {
+namespace {
+
+/// Below this binary32 cannot keep most rays' tolerance.
+constexpr double least_tolerance = 1e-5;
+/// How far rounding may move the data, in widths.
+constexpr double farthest_rounding = 1e-2;
+/// Of the largest terms of K (v - c), in u of binary32: the data by the trilinear formula (8 u at
+/// most, mostly one), and where they are looked for.
+constexpr double rounding_in_units = 4;
+
+using Kernel = void (*)(const PellucidGaussianPacketJob*);
+
+Kernel kernel_for([[maybe_unused]] InstructionSet set) {
+#if PELLUCID_HAS_PACKETS
+  return kernel_of<Kernel>(set, pellucid_integrate_gaussian_packets_sse4,
+                           pellucid_integrate_gaussian_packets_avx2,
+                           pellucid_integrate_gaussian_packets_avx512);
+#else
+  return nullptr;
+#endif
+}
+
+SteppedGaussian stepped(const Gaussian<double>& g, const Channels& channels, double negligible) {
+  SteppedGaussian result;
+  result.gaussian = rounded_to_binary32(g);
+  result.reach = static_cast<float>(
+      g.peak > negligible ? std::sqrt(std::min(std::log(g.peak / negligible), 87.0)) : 0);
+  double rounding = 0;
+  for (int k = 0; k < g.channels; ++k) {
+    double square = 0;
+    for (int i = 0; i < g.rows; ++i) square += g.matrix[i][k] * g.matrix[i][k];
+    const double norm = std::sqrt(square);
+    // Upward, for it is in bounds.
+    result.column_norm[k] = static_cast<float>(norm * (1 + 0x1p-20));
+    rounding += norm * std::max(largest_value(*channels[k].volume), std::fabs(g.center[k]));
+  }
+  result.rounding = static_cast<float>(rounding * rounding_in_units * double{rounding_unit<float>});
+  return result;
+}
+
+}  // namespace
+
+std::unique_ptr<const GaussianPackets> GaussianPackets::make(
+    const Channels& channels, const MultivariateTransferFunction& transfer_function,
+    const MultivariateBlocks& blocks, const MultichannelGrid& grid, const RayTolerance& wanted,
+    double negligible, InstructionSet instruction_set, const ParallelFor& parallel) {
+  const Kernel kernel = kernel_for(instruction_set);
+  const double largest_extinction = transfer_function.largest_extinction();
+  const bool suit = std::all_of(channels.begin(), channels.end(), [&](const Channel& channel) {
+    return suits_packets(*channel.volume, largest_extinction);
+  });
+  const Multivariate<double> transfer = transfer_function.view();
+  if (kernel == nullptr || !suit || transfer.tables > 0 || wanted.grade == Grade::proved ||
+      !(wanted.tolerance >= least_tolerance)) {
+    return nullptr;
+  }
+  std::vector<SteppedGaussian> primitives;
+  const int count = transfer.gaussians.count;
+  for (int i = 0; i < count; ++i) {
+    primitives.push_back(stepped(transfer.gaussians.primitive[i], channels, negligible / count));
+    if (!(double{primitives.back().rounding} <= farthest_rounding)) return nullptr;
+  }
+  std::unique_ptr<GaussianPackets> packets(
+      new GaussianPackets(channels, std::move(primitives), parallel, kernel));
+  PellucidGaussianPacketJob& job = packets->job_;
+  set_grid(channels.grid(), job.grid_and_rays);
+  job.grid_and_rays.classes = blocks.classes.block;
+  job.grid_and_rays.largest_extinction = largest_extinction;
+  job.grid_and_rays.largest_color = std::max(wanted.largest_color, 1.0);
+  job.left_out = blocks.left_out + negligible;
+  // What the blocks leave out is not in `wanted` any more.
+  job.grid_and_rays.tolerance =
+      wanted.tolerance - negligible * diagonal(channels.grid()) * job.grid_and_rays.largest_color;
+  job.grid = &grid;
+  job.primitives = blocks.primitives;
+  return packets;
+}
+
+GaussianPackets::GaussianPackets(const Channels& channels, std::vector<SteppedGaussian> primitives,
+                                 const ParallelFor& parallel, Kernel kernel)
+    : primitives_(std::move(primitives)),
+      mixture_{primitives_.data(), static_cast<int>(primitives_.size())},
+      variation_(channels, parallel),
+      kernel_(kernel) {
+  job_.variation = variation_.data();
+  job_.mixture = &mixture_;
+}
+
+void GaussianPackets::trace(const std::vector<PellucidRay>& rays,
+                            PellucidRayResult* results) const {
+  PellucidGaussianPacketJob job = job_;
+  job.grid_and_rays.rays = rays.data();
+  job.grid_and_rays.count = static_cast<std::int32_t>(rays.size());
+  job.grid_and_rays.results = results;
+  kernel_(&job);
+}
+
+}  // namespace pellucid

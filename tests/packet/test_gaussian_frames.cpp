@@ -1,0 +1,143 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <limits>
+#include <memory>
+#include <numbers>
+#include <random>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "pellucid/cpu/render.h"
+#include "pellucid/scene/defaults.h"
+#include "tests/packet/against_one_by_one.h"
+
+namespace pellucid {
+namespace {
+
+/// Random scenes of several variables behind Gaussians.
+class GaussianFrames : public testing::Test {
+ protected:
+  void SetUp() override {
+    if (no_packets()) GTEST_SKIP() << "this machine has no instruction set for packets";
+  }
+  double uniform(double a, double b) {
+    return std::uniform_real_distribution<double>(a, b)(random_);
+  }
+  double power(double a, double b) { return std::exp(uniform(std::log(a), std::log(b))); }
+  int whole(int a, int b) { return std::uniform_int_distribution<int>(a, b)(random_); }
+
+  /// Between 0 and 1: waves, ridges that are sharp, noise, single values that stand out.
+  std::shared_ptr<const Volume> volume(const std::array<int, 3>& values, Vec3<double> spacing,
+                                       Centering centering) {
+    const int kind = whole(0, 5);
+    const double shortest = power(2.5, 60), noise = kind == 4 ? power(1e-4, 0.3) : 0;
+    struct Wave {
+      Vec3<double> k;
+      double phase;
+    };
+    std::vector<Wave> waves;
+    for (int n = whole(1, 3); n > 0; --n) {
+      Vec3<double> k{uniform(-1, 1), uniform(-1, 1), uniform(-1, 1)};
+      k = k * (2 * std::numbers::pi / (shortest * uniform(1, 3) * length(k)));
+      waves.push_back({k, uniform(0, 6.3)});
+    }
+    std::vector<float> data;
+    for (int z = 0; z < values[2]; ++z) {
+      for (int y = 0; y < values[1]; ++y) {
+        for (int x = 0; x < values[0]; ++x) {
+          double sum = 0;
+          for (const Wave& w : waves) {
+            const double s = std::sin(dot(w.k, Vec3<double>{x + 0.0, y + 0.0, z + 0.0}) + w.phase);
+            sum += kind == 3 ? 2 * std::fabs(s) - 1 : s;
+          }
+          double value = 0.5 + 0.5 * sum / static_cast<double>(waves.size());
+          value += noise * uniform(-1, 1);
+          if (kind == 5 && random_() % 97 == 0) value = uniform(0, 1);
+          data.push_back(static_cast<float>(value));
+        }
+      }
+    }
+    Volume::Description description;
+    description.dimensions = values;
+    description.placement.spacing = spacing;
+    description.centering = centering;
+    return std::make_shared<Volume>(description, DataArray<float>(std::move(data)));
+  }
+
+  Scene scene() {
+    const std::array<int, 3> values{whole(2, 40), whole(2, 40), whole(2, 40)};
+    const Vec3<double> spacing{power(0.5, 2), power(0.5, 2), power(0.5, 2)};
+    const int channels = std::array<int, 6>{1, 1, 1, 2, 2, 3}[random_() % 6];
+    const Centering centering = random_() % 4 == 0 ? Centering::cell : Centering::point;
+    std::vector<Channel> all;
+    for (int c = 0; c < channels; ++c) {
+      all.push_back({std::to_string(c), "", volume(values, spacing, centering)});
+    }
+    Scene scene;
+    scene.channels = std::make_shared<const Channels>(std::move(all));
+    const double narrowest = power(0.002, 0.5), depth = power(0.2, 20);
+    std::vector<GaussianPrimitive> primitives;
+    for (int n = std::array<int, 5>{1, 2, 3, 5, 12}[random_() % 5]; n > 0; --n) {
+      GaussianPrimitive p;
+      std::vector<double> widths;
+      for (int c = 0; c < channels; ++c) {
+        if (c > 0 && random_() % 3 == 0) continue;
+        p.channels.push_back(c);
+        p.center.push_back(uniform(0, 1));
+        widths.push_back(narrowest * power(1, 4));
+      }
+      p.matrix = matrix_of_widths(widths);
+      p.extinction = power(0.1, 1) * depth / (40 * widths.front());
+      p.color = {uniform(0, 1), uniform(0, 1), uniform(0, 1)};
+      primitives.push_back(p);
+    }
+    scene.multivariate =
+        std::make_shared<const MultivariateTransferFunction>(channels, std::move(primitives));
+    scene.size = {12, 12};
+    scene.camera = default_camera(scene.channels->grid(), scene.size);
+    const Vec3<double> axis[] = {{1, 0, 0}, {0, 1, 1}, {1, 1, 1}, {1, 0.01, 0}};
+    Vec3<double> direction{uniform(-1, 1), uniform(-1, 1), uniform(-1, 1)};
+    if (random_() % 3 == 0) direction = axis[random_() % 4];
+    const double far = length(scene.camera.position - scene.camera.focal_point);
+    scene.camera.position = scene.camera.focal_point + direction * (far / length(direction));
+    scene.camera.up = std::fabs(direction.z) > 0.9 * length(direction) ? Vec3<double>{0, 1, 0}
+                                                                       : Vec3<double>{0, 0, 1};
+    if (random_() % 2 == 0) {
+      scene.camera.projection = Projection::orthographic;
+      scene.camera.parallel_scale = 0.3 * far;
+    }
+    return scene;
+  }
+
+  std::mt19937 random_{29};
+};
+
+/// PELLUCID_TEST_SCENES sets how many there are, PELLUCID_TEST_SEED where they begin.
+TEST_F(GaussianFrames, AreWithinWhatTheySay) {
+  const char* const wanted = std::getenv("PELLUCID_TEST_SCENES");
+  const char* const seed = std::getenv("PELLUCID_TEST_SEED");
+  const int count = wanted != nullptr ? std::atoi(wanted) : 60;
+  const unsigned first = seed != nullptr ? static_cast<unsigned>(std::atoi(seed)) : 1;
+  Seen seen;
+  for (int n = 0; n < count; ++n) {
+    random_.seed(first + static_cast<unsigned>(n));
+    SCOPED_TRACE(testing::Message() << "scene " << first + static_cast<unsigned>(n));
+    compare(scene(), {3e-2, 1.0 / 512, 1e-4}, seen);
+    if (HasFatalFailure()) return;
+  }
+  EXPECT_GT(seen.with_strides, seen.frames / 2);
+  RecordProperty("largest_error_of_said", std::to_string(seen.largest_of_error));
+  if (wanted != nullptr) {
+    std::printf("%d frames, %d with strides; largest error %.3g of what is said\n", seen.frames,
+                seen.with_strides, seen.largest_of_error);
+  }
+}
+
+}  // namespace
+}  // namespace pellucid
