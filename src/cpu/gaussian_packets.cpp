@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <type_traits>
 #include <utility>
 
 #include "packet_setup.h"
@@ -15,9 +16,17 @@ namespace {
 constexpr double least_tolerance = 1e-5;
 /// How far rounding may move the data, in widths.
 constexpr double farthest_rounding = 1e-2;
-/// Of the largest terms of K (v - c), in u of binary32: the data by the trilinear formula (8 u at
-/// most, mostly one), and where they are looked for.
-constexpr double rounding_in_units = 4;
+/// Of the reach of a primitive, in u of binary32: how far K (v - c) is off where it matters, beside
+/// what places in a cell are.
+constexpr double rounding_in_units = 8;
+
+/// Whether binary32 has all of the values.
+bool fits_binary32(const Volume& volume) {
+  return volume.visit([](const auto& grid) {
+    using Value = std::remove_cvref_t<decltype(*grid.data)>;
+    return std::is_same_v<Value, float> || sizeof(Value) <= 2;
+  });
+}
 
 using Kernel = void (*)(const PellucidGaussianPacketJob*);
 
@@ -43,9 +52,14 @@ SteppedGaussian stepped(const Gaussian<double>& g, const Channels& channels, dou
     const double norm = std::sqrt(square);
     // Upward, for it is in bounds.
     result.column_norm[k] = static_cast<float>(norm * (1 + 0x1p-20));
-    rounding += norm * std::max(largest_value(*channels[k].volume), std::fabs(g.center[k]));
+    // The center becomes a number of binary32, and so do the data.
+    const Volume& data = *channels[k].volume;
+    double off = std::fabs(double{result.gaussian.center[k]} - g.center[k]);
+    if (!fits_binary32(data)) off += double{rounding_unit<float>} * largest_value(data);
+    rounding += norm * off;
   }
-  result.rounding = static_cast<float>(rounding * rounding_in_units * double{rounding_unit<float>});
+  rounding += rounding_in_units * double{rounding_unit<float>} * double{result.reach};
+  result.rounding = static_cast<float>(rounding);
   return result;
 }
 

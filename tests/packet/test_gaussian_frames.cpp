@@ -34,7 +34,7 @@ class GaussianFrames : public testing::Test {
 
   /// Between 0 and 1: waves, ridges that are sharp, noise, single values that stand out.
   std::shared_ptr<const Volume> volume(const std::array<int, 3>& values, Vec3<double> spacing,
-                                       Centering centering) {
+                                       Centering centering, double offset) {
     const int kind = whole(0, 5);
     const double shortest = power(2.5, 60), noise = kind == 4 ? power(1e-4, 0.3) : 0;
     struct Wave {
@@ -59,7 +59,7 @@ class GaussianFrames : public testing::Test {
           double value = 0.5 + 0.5 * sum / static_cast<double>(waves.size());
           value += noise * uniform(-1, 1);
           if (kind == 5 && random_() % 97 == 0) value = uniform(0, 1);
-          data.push_back(static_cast<float>(value));
+          data.push_back(static_cast<float>(value + offset));
         }
       }
     }
@@ -75,9 +75,11 @@ class GaussianFrames : public testing::Test {
     const Vec3<double> spacing{power(0.5, 2), power(0.5, 2), power(0.5, 2)};
     const int channels = std::array<int, 6>{1, 1, 1, 2, 2, 3}[random_() % 6];
     const Centering centering = random_() % 4 == 0 ? Centering::cell : Centering::point;
+    // Far from 0 rounding of the data counts.
+    const double offset = random_() % 3 == 0 ? power(1, 1000) : 0;
     std::vector<Channel> all;
     for (int c = 0; c < channels; ++c) {
-      all.push_back({std::to_string(c), "", volume(values, spacing, centering)});
+      all.push_back({std::to_string(c), "", volume(values, spacing, centering, offset)});
     }
     Scene scene;
     scene.channels = std::make_shared<const Channels>(std::move(all));
@@ -89,7 +91,7 @@ class GaussianFrames : public testing::Test {
       for (int c = 0; c < channels; ++c) {
         if (c > 0 && random_() % 3 == 0) continue;
         p.channels.push_back(c);
-        p.center.push_back(uniform(0, 1));
+        p.center.push_back(offset + uniform(0, 1));
         widths.push_back(narrowest * power(1, 4));
       }
       p.matrix = matrix_of_widths(widths);
@@ -117,6 +119,64 @@ class GaussianFrames : public testing::Test {
 
   std::mt19937 random_{29};
 };
+
+/// A narrow Gaussian somewhere on a ramp, which steps of the longest kind would pass: its depth is
+/// the integral of all of it.
+TEST_F(GaussianFrames, DoNotPassANarrowOneUnseen) {
+  constexpr int cells = 48;
+  std::vector<float> data;
+  for (int i = 0; i < 4 * (cells + 1); ++i) {
+    data.push_back(static_cast<float>(i % (cells + 1)) / cells);
+  }
+  Volume::Description description;
+  description.dimensions = {cells + 1, 2, 2};
+  Scene scene;
+  scene.channels = std::make_shared<const Channels>(std::vector<Channel>{
+      {"ramp", "", std::make_shared<Volume>(description, DataArray<float>(std::move(data)))}});
+  scene.size = {4, 4};
+  scene.camera = default_camera(scene.channels->grid(), scene.size);
+  scene.camera.position = scene.camera.focal_point - Vec3<double>{100, 0, 0};
+  scene.camera.up = {0, 0, 1};
+  scene.camera.projection = Projection::orthographic;
+  scene.camera.parallel_scale = 0.3;
+  RenderOptions options;
+  options.error = true;
+  int places = 0;
+  double worst = 0;
+  for (const InstructionSet set : sets) {
+    if (!is_supported(set)) continue;
+    options.instruction_set = set;
+    for (double center = 0.1; center < 0.9; center += 0.0137) {
+      for (const double width : {0.03, 0.004, 0.0006}) {
+        GaussianPrimitive p;
+        p.channels = {0};
+        p.center = {center};
+        p.matrix = matrix_of_widths({width});
+        p.extinction = 1 / (cells * width * std::sqrt(std::numbers::pi));
+        p.color = {1, 0.5, 0.25};
+        scene.multivariate = std::make_shared<const MultivariateTransferFunction>(
+            1, std::vector<GaussianPrimitive>{p});
+        for (const double tolerance : {1e-2, 1.0 / 512, 1e-4}) {
+          scene.integration.tolerance = tolerance;
+          RenderReport report;
+          const Image image = render(scene, options, &report);
+          EXPECT_GT(report.spans.strides, 0u);
+          for (std::size_t i = 0; i < image.pixels.size(); ++i) {
+            const double said = double{image.error[i]};
+            const double off = std::fabs(double{image.pixels[i][3]} - (1 - std::exp(-1.0)));
+            EXPECT_LE(said, tolerance);
+            EXPECT_LE(off, said) << name_of(set) << ", center " << center << ", width " << width
+                                 << ", tolerance " << tolerance;
+            worst = std::max(worst, off / said);
+          }
+          ++places;
+        }
+      }
+    }
+  }
+  RecordProperty("largest_error_of_said", std::to_string(worst));
+  EXPECT_GT(places, 500);
+}
 
 /// PELLUCID_TEST_SCENES sets how many there are, PELLUCID_TEST_SEED where they begin.
 TEST_F(GaussianFrames, AreWithinWhatTheySay) {

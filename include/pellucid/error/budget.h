@@ -88,8 +88,7 @@ class RayBudget {
   PELLUCID_HD void pass_to(T length_left) noexcept { length_ = length_left; }
 
   /// Of several rays at once, lane by lane.
-  PELLUCID_HD friend RayBudget select(mask_t<T> mask, const RayBudget& a,
-                                      const RayBudget& b) noexcept {
+  friend RayBudget select(mask_t<T> mask, const RayBudget& a, const RayBudget& b) noexcept {
     RayBudget r;
     r.opacity_pot_ = select(mask, a.opacity_pot_, b.opacity_pot_);
     r.length_pot_ = select(mask, a.length_pot_, b.length_pot_);

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <limits>
+
 #include "pellucid/error/budget.h"
 
 namespace pellucid {
@@ -73,6 +75,42 @@ class RandomErrors {
 
  private:
   T sum_{}, root_{};
+};
+
+/// What sampled stretches of a ray cost: random errors, and what rounding makes of them for sure.
+/// T: of several rays at once.
+template <class T>
+class SampledErrors {
+ public:
+  /// How large the variance of the next stretch may be: of this length and opacity, where so much
+  /// is left of the ray, if its rounding costs so much. Both in the pixel.
+  T largest_variance(const RayBudget<T>& budget, T rounding, T opacity, T length,
+                     T left) const noexcept {
+    const T share = T(0.5f) * (opacity + min(length / left, T(1)));
+    return random_.largest(budget.left() - rounding, share);
+  }
+
+  /// Goes past these stretches, where the budget stands at any place in front of them.
+  void pay(mask_t<T> lanes, RayBudget<T>& budget, T variance, T rounding, T opacity, T length,
+           T left, T transparency) noexcept {
+    const T cost = random_.charge(variance) + rounding;
+    random_.add(select(lanes, variance, T(0)));
+    budget.pass_to(select(lanes, left, budget.length_left()));
+    budget.spend(
+        select(lanes, length, T(0)), opacity, transparency,
+        select(lanes, cost / max(transparency, T(std::numeric_limits<scalar_t<T>>::min())), T(0)));
+  }
+
+  /// Lane by lane.
+  friend SampledErrors select(mask_t<T> mask, const SampledErrors& a,
+                              const SampledErrors& b) noexcept {
+    SampledErrors r;
+    r.random_ = select(mask, a.random_, b.random_);
+    return r;
+  }
+
+ private:
+  RandomErrors<T> random_;
 };
 
 }  // namespace pellucid

@@ -44,12 +44,12 @@ class GaussianMarch {
   void begin(M lanes, const PellucidRay* rays) noexcept {
     rays_ = RaysInBlocks<void, N>(grid_, rays, N);
     samples_.set_direction(rays_.direction());
-    F fastest(1e-30f);
+    fastest_ = F(1e-30f);
     for (int a = 0; a < 3; ++a) {
       direction_[a] = convert<float>(rays_.direction()[a]);
-      fastest = max(fastest, abs(direction_[a]));
+      fastest_ = max(fastest_, abs(direction_[a]));
     }
-    longest_ = F(longest_step) / fastest;
+    longest_ = F(longest_step) / fastest_;
     step_ = select(lanes, longest_, step_);
     at = select(lanes, D(0), at);
     known_ = known_ & !lanes;
@@ -82,7 +82,7 @@ class GaussianMarch {
     M empty;         ///< nothing matters on any of them
     M resolved;      ///< else they are too long, or in vacuum
     ResolvedGaussians<N> ends;
-    F value[ResolvedGaussians<N>::steps + 1][most_channels];
+    DatumInCell<F> value[ResolvedGaussians<N>::steps + 1][most_channels];
     SampledSegment<F> found;
     F least_variance;  ///< of the error beside what `found` says
   };
@@ -102,7 +102,7 @@ class GaussianMarch {
     F sum(0);
     for (int c = 0; c < fields_.channels; ++c) {
       s.value[0][c] = front_value_[c];
-      for (int j = 0; j <= steps; ++j) sum += s.value[j][c];
+      for (int j = 0; j <= steps; ++j) sum += s.value[j][c].corner + s.value[j][c].rest;
     }
     const M there = alive & !is_nan(sum);
     look_at_blocks(place, s.length);
@@ -133,8 +133,9 @@ class GaussianMarch {
       }
       variance += weight * (s.ends.bending[a] * s.ends.bending[a]);
     }
-    // Rounding of the four ends, each by itself.
-    variance += F(4) * (s.ends.slope * s.ends.slope);
+    // Each of the four ends is a little beside where it should be.
+    const F beside = F(place_error) / (s.step * fastest_) * s.ends.steepest;
+    variance = multiply_add(F(4) * beside, beside, variance);
     s.least_variance = s.step * s.step * variance;
   }
 
@@ -177,15 +178,19 @@ class GaussianMarch {
   /// Cells along the axis on which they are the most: four of them are a block's width.
   static constexpr float longest_step = 2;
   static constexpr float shortest_step = 0x1p-13f;
+  /// Cells: what sample_places.h says of so short ways, as a standard deviation at most.
+  static constexpr float place_error = 1e-6f;
 
   void find_front() noexcept {
     const F here(0);
-    F value[1][most_channels];
+    DatumInCell<F> value[1][most_channels];
     samples_.template sample<1>(&here, value);
+    F v[most_channels];
+    for (int c = 0; c < fields_.channels; ++c) v[c] = value[0][c].corner + value[0][c].rest;
     StepEnd<F> found{};
     for (int i = 0; i < mixture_.count; ++i) {
       const Gaussian<float>& g = mixture_.primitive[i].gaussian;
-      const F extinction = F(g.peak) * g.density(value[0]);
+      const F extinction = F(g.peak) * g.density(v);
       found.extinction += extinction;
       found.emission += extinction * Rgb<F>{F(g.color.r), F(g.color.g), F(g.color.b)};
     }
@@ -193,13 +198,14 @@ class GaussianMarch {
     known_ = known_ | alive;
   }
 
-  void set_front(M lanes, const StepEnd<F>& end, const F* value) noexcept {
+  void set_front(M lanes, const StepEnd<F>& end, const DatumInCell<F>* value) noexcept {
     front_.extinction = select(lanes, end.extinction, front_.extinction);
     front_.emission.r = select(lanes, end.emission.r, front_.emission.r);
     front_.emission.g = select(lanes, end.emission.g, front_.emission.g);
     front_.emission.b = select(lanes, end.emission.b, front_.emission.b);
     for (int c = 0; c < fields_.channels; ++c) {
-      front_value_[c] = select(lanes, value[c], front_value_[c]);
+      front_value_[c] = {select(lanes, value[c].corner, front_value_[c].corner),
+                         select(lanes, value[c].rest, front_value_[c].rest)};
     }
   }
 
@@ -234,14 +240,41 @@ class GaussianMarch {
     }
     near_.clear();
     add_primitives(block, alive);
-    for (const float part : {1.0f, 0.5f, 0.25f, 0.75f}) {
-      const I other = block_at(F(part) * length);
-      const M elsewhere = alive & (other != block);
-      // A straight way between two places of a block stays in it.
-      if (part == 1 && none(elsewhere)) break;
-      add_primitives(other, elsewhere);
-    }
+    // A straight way between two places of a block stays in it.
+    if (any(alive & (block_at(length) != block))) add_blocks_on_the_way(from, length);
     near_.finish(alive);
+  }
+
+  /// The blocks of the other ends of the steps, and those that may lie between.
+  void add_blocks_on_the_way(const F* from, F length) noexcept {
+    I before[3], here[3];
+    for (int j = 0; j <= steps; ++j) {
+      F there[3];
+      for (int a = 0; a < 3; ++a) {
+        there[a] = multiply_add(F(0.25f * static_cast<float>(j)) * length, direction_[a], from[a]);
+      }
+      rays_.find_block(there, here);
+      if (j > 0) {
+        I moved(0);
+        for (int a = 0; a < 3; ++a) {
+          moved += select(alive & (here[a] != before[a]), I(1), I(0));
+        }
+        const M beyond = moved > I(0);
+        if (any(beyond)) add_primitives(index_of(here), beyond);
+        if (any(moved > I(1))) {
+          // Past an edge or a corner: any that has some of its places from before, some from here.
+          for (int which = 1; which < 7; ++which) {
+            I between[3];
+            for (int a = 0; a < 3; ++a) between[a] = (which >> a & 1) != 0 ? here[a] : before[a];
+            add_primitives(index_of(between), moved > I(1));
+          }
+        }
+      }
+      for (int a = 0; a < 3; ++a) before[a] = here[a];
+    }
+  }
+  I index_of(const I* block) const noexcept {
+    return select(alive, grid_.index_of_block(block), I(0));
   }
 
   void add_primitives(I block, M lanes) noexcept {
@@ -261,12 +294,13 @@ class GaussianMarch {
   RaysInBlocks<void, N> rays_;
   MultichannelSamples<N> samples_;
   F direction_[3];            ///< cells by world length
+  F fastest_;                 ///< the same along the axis on which it is the most
   F longest_, step_;          ///< world length
   M known_{false};            ///< whether front_ and front_value_ are those at `at`
   LocalVariation<N> around_;  ///< where the lanes stand
   LanePrimitives<N> near_;    ///< on the way of four steps
   StepEnd<F> front_{};
-  F front_value_[most_channels];
+  DatumInCell<F> front_value_[most_channels];
 };
 
 }  // namespace pellucid

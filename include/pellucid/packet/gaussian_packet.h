@@ -54,8 +54,9 @@ class GaussianPacket {
 
   /// The share of the tolerance that pays for adding up costs in float: of 16000 segments.
   static constexpr double kept_back = 0x1p-9;
-  /// Of the difference of two rules what counts as the standard deviation of the better one.
-  static constexpr float share_of_difference = 0.4f;
+  /// Of the difference of two rules what counts as the standard deviation of the better one: more
+  /// than in smooth stretches, for all of a narrow primitive may lie in a few steps.
+  static constexpr float share_of_difference = 0.6f;
   /// Rays that need more are given up.
   static constexpr int most_looks = 1 << 16;
 
@@ -73,7 +74,7 @@ class GaussianPacket {
     const RayBudget<F> budget(F(static_cast<float>(rays_.tolerance * (1 - kept_back))),
                               convert<float>(march_.end()));
     budget_ = select(given, budget, budget_);
-    random_ = select(given, RandomErrors<F>(), random_);
+    sampled_ = select(given, SampledErrors<F>(), sampled_);
     fold_ = select(given, FrontToBack<D>(), fold_);
     cut_off_ = cut_off_ & !given;
     given_up_ = given_up_ & !given;
@@ -143,9 +144,10 @@ class GaussianPacket {
     const F variance =
         transparency * transparency *
         (deviation * deviation + largest_color_ * largest_color_ * look_.least_variance);
-    const F share = F(0.5f) * (s.opacity + min(look_.length / left, F(1)));
-    const F rounding = transparency * F(32 * rounding_unit<float>) * s.opacity * largest_color_;
-    const F largest = random_.largest(budget_.left() - rounding, share);
+    const F rounding =
+        transparency * largest_color_ *
+        (F(32 * rounding_unit<float>) * s.opacity + look_.ends.rounding * look_.length);
+    const F largest = sampled_.largest_variance(budget_, rounding, s.opacity, look_.length, left);
     const M take = lanes & (variance <= largest) & (rounding <= budget_.left());
     if (none(take)) return take;
     const auto masked = [&](F value) noexcept {
@@ -155,11 +157,7 @@ class GaussianPacket {
                                masked(s.opacity),
                                select(take, convert<double>(s.transparency), D(1)),
                                {masked(s.radiance.r), masked(s.radiance.g), masked(s.radiance.b)}});
-    const F cost = random_.charge(variance) + rounding;
-    random_.add(select(take, variance, F(0)));
-    budget_.pass_to(select(take, left, budget_.length_left()));
-    budget_.spend(select(take, look_.length, F(0)), s.opacity, transparency,
-                  select(take, cost / max(transparency, F(smallest_normal<float>)), F(0)));
+    sampled_.pay(take, budget_, variance, rounding, s.opacity, look_.length, left, transparency);
     segments_ += select(take, I(1), I(0));
     march_.take(take, look_, variance <= F(0.05f) * largest);
     const M done = take & (rest_behind() <= budget_.left());
@@ -187,7 +185,7 @@ class GaussianPacket {
   PellucidRay lane_ray_[N];
   March march_;
   typename March::Look look_;
-  RandomErrors<F> random_;
+  SampledErrors<F> sampled_;
   RayBudget<F> budget_;
   FrontToBack<D> fold_;
   F largest_color_;

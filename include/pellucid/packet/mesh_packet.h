@@ -120,7 +120,10 @@ class MeshPacket {
     const auto take = [&](const float* numbers, F& kept) noexcept {
       kept = select(lanes, gather(numbers, at), kept);
     };
+    // Where the data go on from where they were, so do extinction and color.
+    const F was = front_;
     take(rows_.front, front_);
+    located_ = located_ & !(lanes & (front_ != was));
     take(rows_.back, back_);
     take(rows_.rounding, rounding_);
     take(rows_.length, length_);
@@ -133,7 +136,6 @@ class MeshPacket {
     from_ = select(lanes, F(0), from_);
     cap_ = select(lanes, F(1), cap_);
     pending_ = pending_ | lanes;
-    located_ = located_ & !lanes;
   }
 
   [[gnu::flatten]] void integrate_pieces() noexcept {

@@ -27,24 +27,39 @@ class MultichannelSamples {
   /// channel's own.
   template <int K>
   PELLUCID_ALWAYS_INLINE void sample(const F* offset, F (*value)[most_channels]) const noexcept {
+    each<K>(offset, [&]<class Value>(int k, int c, const Value* const* at, const std::int32_t* on,
+                                     const Vec3<F>& local) noexcept {
+      value[k][c] = load_trilinear<Value, N>(at, on, places_.row, places_.slice, local);
+    });
+  }
+  template <int K>
+  PELLUCID_ALWAYS_INLINE void sample(const F* offset,
+                                     DatumInCell<F> (*value)[most_channels]) const noexcept {
+    each<K>(offset, [&]<class Value>(int k, int c, const Value* const* at, const std::int32_t* on,
+                                     const Vec3<F>& local) noexcept {
+      value[k][c] = load_in_cell<Value, N>(at, on, places_.row, places_.slice, local);
+    });
+  }
+
+ private:
+  template <int K, class Load>
+  PELLUCID_ALWAYS_INLINE void each(const F* offset, Load&& load) const noexcept {
     Vec3<F> local[K];
     std::int32_t on[K][N];
     places_.template find<K>(offset, on, local);
     asm("" : "+m"(on));
     for (int c = 0; c < fields_.channels; ++c) {
-      fields_.with_channel(
-          c, [&]<class Value>(const StructuredGrid<Value, double>& field) noexcept {
-            const Value* at[N];
-            for (int l = 0; l < N; ++l) at[l] = field.data + base_[l];
-            for (int k = 0; k < K; ++k) {
-              value[k][c] =
-                  load_trilinear<Value, N>(at, on[k], places_.row, places_.slice, local[k]);
-            }
-          });
+      fields_.with_channel(c,
+                           [&]<class Value>(const StructuredGrid<Value, double>& field) noexcept {
+                             const Value* at[N];
+                             for (int l = 0; l < N; ++l) at[l] = field.data + base_[l];
+                             for (int k = 0; k < K; ++k) {
+                               load.template operator()<Value>(k, c, at, on[k], local[k]);
+                             }
+                           });
     }
   }
 
- private:
   const MultichannelGrid& fields_;
   SamplePlaces<N> places_;
   std::ptrdiff_t base_[N];  ///< the value at the lower corner of the anchor's cell

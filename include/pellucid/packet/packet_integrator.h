@@ -198,10 +198,9 @@ class PacketIntegrator {
     const F transparency = convert<float>(fold_.transparency());
     const F deviation = F(share_of_difference) * steps.found.difference;
     const F variance = transparency * transparency * (deviation * deviation + steps.least_variance);
-    const F share = F(0.5f) * (s.opacity + min(steps.length / left, F(1)));
     const F rounding = transparency * (F(32 * rounding_unit<float>) * s.opacity * largest_color_ +
                                        F(static_cast<float>(job_.sample_rounding)) * steps.length);
-    const F largest = random_.largest(budget_.left() - rounding, share);
+    const F largest = sampled_.largest_variance(budget_, rounding, s.opacity, steps.length, left);
     const M take = on & steps.valid & (variance <= largest) & (rounding <= budget_.left());
     const M refused = smooth_.finer(on & !take);
     if (any(refused)) {
@@ -210,11 +209,7 @@ class PacketIntegrator {
     }
     if (none(take)) return;
     fold(take, s);
-    const F cost = random_.charge(variance) + rounding;
-    random_.add(select(take, variance, F(0)));
-    budget_.pass_to(select(take, left, budget_.length_left()));
-    budget_.spend(select(take, steps.length, F(0)), s.opacity, transparency,
-                  select(take, cost / transparency, F(0)));
+    sampled_.pay(take, budget_, variance, rounding, s.opacity, steps.length, left, transparency);
     smooth_.take(take, steps, variance <= F(0.05f) * largest);
     strides_ += select(take, I(1), I(0));
     proved_ = proved_ & !take;
@@ -424,7 +419,7 @@ class PacketIntegrator {
   ExtinctionInterval<F> extinction_;  ///< that of `interval_`
   I interval_, pieces_of_span_, code_;
 
-  RandomErrors<F> random_;
+  SampledErrors<F> sampled_;
   RayBudget<F> budget_;
   FrontToBack<D> fold_;
   F largest_color_;

@@ -48,7 +48,15 @@ class RaysInBlocks {
   /// Plane coordinates by world length.
   const D* direction() const noexcept { return direction_; }
 
-  /// The number of the block that holds a place in plane coordinates, clamped into the grid.
+  /// The block that holds a place in plane coordinates, clamped into the grid; and its number.
+  template <class T>
+  PELLUCID_ALWAYS_INLINE void find_block(const Batch<T, N>* place, I* block) const noexcept {
+    using B = Batch<T, N>;
+    for (int a = 0; a < 3; ++a) {
+      const B inside = clamp(place[a], B(0), B(static_cast<T>(grid_->cells[a] - 1)));
+      block[a] = convert<std::int32_t>(inside) >> 3;
+    }
+  }
   template <class T>
   PELLUCID_ALWAYS_INLINE I block_of(const Batch<T, N>* place) const noexcept {
     I block[3];
@@ -84,15 +92,6 @@ class RaysInBlocks {
   }
 
  private:
-  template <class T>
-  PELLUCID_ALWAYS_INLINE void find_block(const Batch<T, N>* place, I* block) const noexcept {
-    using B = Batch<T, N>;
-    for (int a = 0; a < 3; ++a) {
-      const B inside = clamp(place[a], B(0), B(static_cast<T>(grid_->cells[a] - 1)));
-      block[a] = convert<std::int32_t>(inside) >> 3;
-    }
-  }
-
   static_assert(block_width == 8);
   const PacketGrid<Value>* grid_;
   D origin_[3], direction_[3], inverse_[3];  ///< plane coordinates, by world length

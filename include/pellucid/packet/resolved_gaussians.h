@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "pellucid/packet/sample_places.h"
 #include "pellucid/segment/sampled.h"
 #include "pellucid/simd/batch.h"
 #include "pellucid/transfer/gaussian.h"
@@ -11,7 +12,7 @@ namespace pellucid {
 struct SteppedGaussian {
   Gaussian<float> gaussian;
   float reach = 0;     ///< the distance |K (v - c)| from which on it does not matter
-  float rounding = 0;  ///< how far rounding moves K (v - c): its standard deviation, or more
+  float rounding = 0;  ///< how far K (v - c) may be off because numbers of it are rounded
   float column_norm[most_channels] = {};  ///< of K, by channel
 };
 
@@ -90,7 +91,8 @@ class ResolvedGaussians {
   M matters[steps];           ///< whether a primitive does, somewhere on the step
   M unresolved[steps];
   F most;        ///< how far a primitive that matters moves in a step, at most
-  F slope;       ///< the extinction's by p, times how far rounding moves that: the largest
+  F rounding;    ///< how far the extinction may be off because numbers are rounded
+  F steepest;    ///< how much the extinction changes on a step where it changes most
   F bending[3];  ///< what a bend of the data along an axis makes of the extinction, by its largest
                  ///<   deviation from the curve, in cells squared (error/random_errors.h)
 
@@ -104,7 +106,7 @@ class ResolvedGaussians {
   /// `value[j][c]`: channel c at end j.
   PELLUCID_ALWAYS_INLINE void find(const SteppedMixture& mixture,
                                    const LanePrimitives<N>& primitives, int channels,
-                                   const F (*value)[most_channels],
+                                   const DatumInCell<F> (*value)[most_channels],
                                    const LocalVariation<N>& variation, F step, M on) noexcept {
     for (int j = 0; j < steps; ++j) {
       matters[j] = unresolved[j] = M(false);
@@ -113,7 +115,7 @@ class ResolvedGaussians {
       end[j + 1] = {};
     }
     clear_ = F(far_away);
-    fastest_behind_ = most = slope = F(0);
+    fastest_behind_ = most = rounding = steepest = F(0);
     for (F& b : bending) b = F(0);
     for (int i = 0; i < mixture.count; ++i) {
       if (!primitives.of_any(i)) continue;
@@ -127,7 +129,7 @@ class ResolvedGaussians {
   static constexpr float far_away = 1e6f;
 
   PELLUCID_ALWAYS_INLINE void add(const SteppedGaussian& of, int channels,
-                                  const F (*value)[most_channels],
+                                  const DatumInCell<F> (*value)[most_channels],
                                   const LocalVariation<N>& variation, F step, M on) noexcept {
     const Gaussian<float>& g = of.gaussian;
     F off_chord(0);
@@ -139,6 +141,7 @@ class ResolvedGaussians {
     find_distances(g, value, away, between);
     const F reach(of.reach);
     M somewhere(false);
+    F moves_most(0);
     for (int j = 0; j < steps; ++j) {
       const F nearest = F(0.5f) * (away[j] + away[j + 1] - between[j]) - off_chord;
       // Written so that NaN matters.
@@ -148,13 +151,14 @@ class ResolvedGaussians {
       somewhere = somewhere | here;
       matters[j] = matters[j] | here;
       unresolved[j] = unresolved[j] | coarse;
-      most = max(most, select(here, moves, F(0)));
+      moves_most = max(moves_most, select(here, moves, F(0)));
       ahead_[j] = min(ahead_[j], select(here, max(away[j] - reach, F(0)), F(far_away)));
       fastest_[j] = max(fastest_[j], select(here, moves + F(2) * off_chord, F(0)));
     }
     clear_ = min(clear_, select(on, max(away[steps] - reach, F(0)), F(far_away)));
     fastest_behind_ = max(fastest_behind_, select(on, between[steps - 1] + F(4) * off_chord, F(0)));
     if (none(somewhere)) return;
+    most = max(most, moves_most);
     F largest(0);
     for (int j = 1; j <= steps; ++j) {
       // Nothing where it does not matter: numbers that are not normal take many times as long.
@@ -167,7 +171,8 @@ class ResolvedGaussians {
       largest = max(largest, multiply_add(here, square, here));
     }
     largest = select(somewhere, largest, F(0));
-    slope = multiply_add(largest, F(of.rounding), slope);
+    rounding = multiply_add(largest, F(of.rounding), rounding);
+    steepest = multiply_add(largest, moves_most, steepest);
     for (int a = 0; a < 3; ++a) {
       F bend(0);
       for (int c = 0; c < channels; ++c) {
@@ -183,8 +188,8 @@ class ResolvedGaussians {
 
   /// |p| at the ends, and between ends.
   PELLUCID_ALWAYS_INLINE static void find_distances(const Gaussian<float>& g,
-                                                    const F (*value)[most_channels], F* away,
-                                                    F* between) noexcept {
+                                                    const DatumInCell<F> (*value)[most_channels],
+                                                    F* away, F* between) noexcept {
     F p[steps + 1];
     if (g.rows == 1) {
       for (int j = 0; j <= steps; ++j) {
@@ -210,11 +215,12 @@ class ResolvedGaussians {
     for (int j = 0; j < steps; ++j) between[j] = sqrt(between[j]);
   }
 
-  PELLUCID_ALWAYS_INLINE static void place_row(const Gaussian<float>& g, int row, const F* value,
-                                               F& p) noexcept {
+  PELLUCID_ALWAYS_INLINE static void place_row(const Gaussian<float>& g, int row,
+                                               const DatumInCell<F>* value, F& p) noexcept {
     p = F(0);
     for (int c = 0; c < g.channels; ++c) {
-      p = multiply_add(F(g.matrix[row][c]), value[c] - F(g.center[c]), p);
+      const F away = (value[c].corner - F(g.center[c])) + value[c].rest;
+      p = multiply_add(F(g.matrix[row][c]), away, p);
     }
   }
 };

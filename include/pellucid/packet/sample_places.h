@@ -76,12 +76,14 @@ class SamplePlaces {
   F place_[3], least_[3], most_[3];  ///< of the anchor and of the data's ends, in its cell
 };
 
-/// The data in cells, one in each lane, whose lower corners' values stand at at[lane] + on[lane].
+/// The data at the corners of cells, one in each lane, whose lower corners' values stand at
+/// at[lane]
+/// + on[lane].
 template <class Value, int N>
-PELLUCID_ALWAYS_INLINE Batch<float, N> load_trilinear(const Value* const* at,
-                                                      const std::int32_t* on, std::ptrdiff_t row,
-                                                      std::ptrdiff_t slice,
-                                                      Vec3<Batch<float, N>> local) noexcept {
+PELLUCID_ALWAYS_INLINE CellCorners<Batch<float, N>> load_corners(const Value* const* at,
+                                                                 const std::int32_t* on,
+                                                                 std::ptrdiff_t row,
+                                                                 std::ptrdiff_t slice) noexcept {
   const Value* corner[N];
   for (int l = 0; l < N; ++l) corner[l] = at[l] + on[l];
   asm("" : "+m"(corner));
@@ -92,7 +94,32 @@ PELLUCID_ALWAYS_INLINE Batch<float, N> load_trilinear(const Value* const* at,
     for (std::int32_t& to : to_row) to = static_cast<std::int32_t>(rows[n]);
     gather_pairs(corner, to_row, corners.value[2 * n], corners.value[2 * n + 1]);
   }
-  return trilinear_value(corners, local);
+  return corners;
+}
+
+/// The data in such cells.
+template <class Value, int N>
+PELLUCID_ALWAYS_INLINE Batch<float, N> load_trilinear(const Value* const* at,
+                                                      const std::int32_t* on, std::ptrdiff_t row,
+                                                      std::ptrdiff_t slice,
+                                                      Vec3<Batch<float, N>> local) noexcept {
+  return trilinear_value(load_corners<Value, N>(at, on, row, slice), local);
+}
+
+/// A datum as a sum of two, so that what is small beside it is not rounded off.
+template <class T>
+struct DatumInCell {
+  T corner;  ///< that at the cell's lower corner
+  T rest;
+};
+template <class Value, int N>
+PELLUCID_ALWAYS_INLINE DatumInCell<Batch<float, N>> load_in_cell(
+    const Value* const* at, const std::int32_t* on, std::ptrdiff_t row, std::ptrdiff_t slice,
+    Vec3<Batch<float, N>> local) noexcept {
+  CellCorners<Batch<float, N>> corners = load_corners<Value, N>(at, on, row, slice);
+  const Batch<float, N> lower = corners.value[0];
+  for (Batch<float, N>& corner : corners.value) corner -= lower;
+  return {lower, trilinear_value(corners, local)};
 }
 
 }  // namespace pellucid

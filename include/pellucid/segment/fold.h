@@ -39,8 +39,7 @@ class FrontToBack {
   }
 
   /// Of several pixels at once, lane by lane.
-  PELLUCID_HD friend FrontToBack select(mask_t<A> mask, const FrontToBack& a,
-                                        const FrontToBack& b) noexcept {
+  friend FrontToBack select(mask_t<A> mask, const FrontToBack& a, const FrontToBack& b) noexcept {
     const auto each = [&](const A& x, const A& y) noexcept { return select(mask, x, y); };
     FrontToBack r(each(a.stop_, b.stop_));
     r.transparency_ = each(a.transparency_, b.transparency_);
