@@ -52,11 +52,11 @@ SteppedGaussian stepped(const Gaussian<double>& g, const Channels& channels, dou
     const double norm = std::sqrt(square);
     // Upward, for it is in bounds.
     result.column_norm[k] = static_cast<float>(norm * (1 + 0x1p-20));
-    // The center becomes a number of binary32, and so do the data.
+    result.center_rest[k] = static_cast<float>(g.center[k] - double{result.gaussian.center[k]});
     const Volume& data = *channels[k].volume;
-    double off = std::fabs(double{result.gaussian.center[k]} - g.center[k]);
-    if (!fits_binary32(data)) off += double{rounding_unit<float>} * largest_value(data);
-    rounding += norm * off;
+    if (!fits_binary32(data)) {
+      rounding += norm * double{rounding_unit<float>} * largest_value(data);
+    }
   }
   rounding += rounding_in_units * double{rounding_unit<float>} * double{result.reach};
   result.rounding = static_cast<float>(rounding);

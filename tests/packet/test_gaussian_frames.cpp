@@ -120,13 +120,11 @@ class GaussianFrames : public testing::Test {
   std::mt19937 random_{29};
 };
 
-/// A narrow Gaussian somewhere on a ramp, which steps of the longest kind would pass: its depth is
-/// the integral of all of it.
-TEST_F(GaussianFrames, DoNotPassANarrowOneUnseen) {
-  constexpr int cells = 48;
+/// A ramp along x from `least` on, over a range of 1, seen along it.
+Scene ramp_scene(int cells, float least) {
   std::vector<float> data;
   for (int i = 0; i < 4 * (cells + 1); ++i) {
-    data.push_back(static_cast<float>(i % (cells + 1)) / cells);
+    data.push_back(least + static_cast<float>(i % (cells + 1)) / static_cast<float>(cells));
   }
   Volume::Description description;
   description.dimensions = {cells + 1, 2, 2};
@@ -139,6 +137,26 @@ TEST_F(GaussianFrames, DoNotPassANarrowOneUnseen) {
   scene.camera.up = {0, 0, 1};
   scene.camera.projection = Projection::orthographic;
   scene.camera.parallel_scale = 0.3;
+  return scene;
+}
+
+/// One Gaussian of so much depth where a ramp over `cells` passes it.
+std::shared_ptr<const MultivariateTransferFunction> one_on_ramp(double center, double width,
+                                                                double depth, int cells) {
+  GaussianPrimitive p;
+  p.channels = {0};
+  p.center = {center};
+  p.matrix = matrix_of_widths({width});
+  p.extinction = depth / (cells * width * std::sqrt(std::numbers::pi));
+  p.color = {1, 0.5, 0.25};
+  return std::make_shared<const MultivariateTransferFunction>(1, std::vector<GaussianPrimitive>{p});
+}
+
+/// A narrow Gaussian somewhere on a ramp, which steps of the longest kind would pass: its depth is
+/// the integral of all of it.
+TEST_F(GaussianFrames, DoNotPassANarrowOneUnseen) {
+  constexpr int cells = 48;
+  Scene scene = ramp_scene(cells, 0);
   RenderOptions options;
   options.error = true;
   int places = 0;
@@ -148,14 +166,7 @@ TEST_F(GaussianFrames, DoNotPassANarrowOneUnseen) {
     options.instruction_set = set;
     for (double center = 0.1; center < 0.9; center += 0.0137) {
       for (const double width : {0.03, 0.004, 0.0006}) {
-        GaussianPrimitive p;
-        p.channels = {0};
-        p.center = {center};
-        p.matrix = matrix_of_widths({width});
-        p.extinction = 1 / (cells * width * std::sqrt(std::numbers::pi));
-        p.color = {1, 0.5, 0.25};
-        scene.multivariate = std::make_shared<const MultivariateTransferFunction>(
-            1, std::vector<GaussianPrimitive>{p});
+        scene.multivariate = one_on_ramp(center, width, 1, cells);
         for (const double tolerance : {1e-2, 1.0 / 512, 1e-4}) {
           scene.integration.tolerance = tolerance;
           RenderReport report;
@@ -176,6 +187,18 @@ TEST_F(GaussianFrames, DoNotPassANarrowOneUnseen) {
   }
   RecordProperty("largest_error_of_said", std::to_string(worst));
   EXPECT_GT(places, 500);
+}
+
+/// Units of binary32 at 1000 are a 500th of the width: next to the center they do not count.
+TEST_F(GaussianFrames, LargeValuesCostNoDigits) {
+  Seen seen;
+  Scene scene = ramp_scene(48, 1000);
+  for (const double center : {1000.21, 1000.4, 1000.77}) {
+    scene.multivariate = one_on_ramp(center, 0.03, 1, 48);
+    compare(scene, {1e-4}, seen);
+    if (HasFatalFailure()) return;
+  }
+  EXPECT_EQ(seen.with_strides, seen.frames);
 }
 
 /// PELLUCID_TEST_SCENES sets how many there are, PELLUCID_TEST_SEED where they begin.

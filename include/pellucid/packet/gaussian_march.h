@@ -185,12 +185,10 @@ class GaussianMarch {
     const F here(0);
     DatumInCell<F> value[1][most_channels];
     samples_.template sample<1>(&here, value);
-    F v[most_channels];
-    for (int c = 0; c < fields_.channels; ++c) v[c] = value[0][c].corner + value[0][c].rest;
     StepEnd<F> found{};
     for (int i = 0; i < mixture_.count; ++i) {
       const Gaussian<float>& g = mixture_.primitive[i].gaussian;
-      const F extinction = F(g.peak) * g.density(v);
+      const F extinction = ResolvedGaussians<N>::extinction(mixture_.primitive[i], value[0]);
       found.extinction += extinction;
       found.emission += extinction * Rgb<F>{F(g.color.r), F(g.color.g), F(g.color.b)};
     }

@@ -14,6 +14,7 @@ struct SteppedGaussian {
   float reach = 0;     ///< the distance |K (v - c)| from which on it does not matter
   float rounding = 0;  ///< how far K (v - c) may be off because numbers of it are rounded
   float column_norm[most_channels] = {};  ///< of K, by channel
+  float center_rest[most_channels] = {};  ///< what binary32 leaves of the center
 };
 
 /// A sum of them. A view; owns nothing.
@@ -123,6 +124,18 @@ class ResolvedGaussians {
     }
   }
 
+  /// What a primitive is at one place.
+  static F extinction(const SteppedGaussian& of, const DatumInCell<F>* value) noexcept {
+    F square(0);
+    for (int row = 0; row < of.gaussian.rows; ++row) {
+      F p;
+      place_row(of, row, value, p);
+      square = multiply_add(p, p, square);
+    }
+    const auto near = square < F(of.reach * of.reach);
+    return select(near, F(of.gaussian.peak) * exp(F(0) - select(near, square, F(0))), F(0));
+  }
+
  private:
   /// The most that p may move in a step of a primitive that matters.
   static constexpr float coarsest = 1.5f;
@@ -138,7 +151,7 @@ class ResolvedGaussians {
     }
     off_chord *= F(0.25f) * step;
     F away[steps + 1], between[steps];
-    find_distances(g, value, away, between);
+    find_distances(of, value, away, between);
     const F reach(of.reach);
     M somewhere(false);
     F moves_most(0);
@@ -187,13 +200,14 @@ class ResolvedGaussians {
   F ahead_[steps], fastest_[steps], clear_, fastest_behind_;
 
   /// |p| at the ends, and between ends.
-  PELLUCID_ALWAYS_INLINE static void find_distances(const Gaussian<float>& g,
+  PELLUCID_ALWAYS_INLINE static void find_distances(const SteppedGaussian& of,
                                                     const DatumInCell<F> (*value)[most_channels],
                                                     F* away, F* between) noexcept {
     F p[steps + 1];
-    if (g.rows == 1) {
+    const int rows = of.gaussian.rows;
+    if (rows == 1) {
       for (int j = 0; j <= steps; ++j) {
-        place_row(g, 0, value[j], p[j]);
+        place_row(of, 0, value[j], p[j]);
         away[j] = abs(p[j]);
       }
       for (int j = 0; j < steps; ++j) between[j] = abs(p[j + 1] - p[j]);
@@ -201,9 +215,9 @@ class ResolvedGaussians {
     }
     for (int j = 0; j <= steps; ++j) away[j] = F(0);
     for (int j = 0; j < steps; ++j) between[j] = F(0);
-    for (int row = 0; row < g.rows; ++row) {
+    for (int row = 0; row < rows; ++row) {
       for (int j = 0; j <= steps; ++j) {
-        place_row(g, row, value[j], p[j]);
+        place_row(of, row, value[j], p[j]);
         away[j] = multiply_add(p[j], p[j], away[j]);
       }
       for (int j = 0; j < steps; ++j) {
@@ -215,11 +229,12 @@ class ResolvedGaussians {
     for (int j = 0; j < steps; ++j) between[j] = sqrt(between[j]);
   }
 
-  PELLUCID_ALWAYS_INLINE static void place_row(const Gaussian<float>& g, int row,
+  PELLUCID_ALWAYS_INLINE static void place_row(const SteppedGaussian& of, int row,
                                                const DatumInCell<F>* value, F& p) noexcept {
+    const Gaussian<float>& g = of.gaussian;
     p = F(0);
     for (int c = 0; c < g.channels; ++c) {
-      const F away = (value[c].corner - F(g.center[c])) + value[c].rest;
+      const F away = (value[c].corner - F(g.center[c])) + (value[c].rest - F(of.center_rest[c]));
       p = multiply_add(F(g.matrix[row][c]), away, p);
     }
   }
