@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <type_traits>
 #include <utility>
 
@@ -12,13 +13,16 @@
 namespace pellucid {
 namespace {
 
-/// Below this binary32 cannot keep most rays' tolerance.
-constexpr double least_tolerance = 1e-5;
+/// Below 1e-5 binary32 cannot keep most rays' tolerance; some of what was asked for is spent on
+/// what blocks leave out.
+constexpr double least_tolerance = 0.95e-5;
 /// How far rounding may move the data, in widths.
 constexpr double farthest_rounding = 1e-2;
 /// Of the reach of a primitive, in u of binary32: how far K (v - c) is off where it matters, beside
 /// what places in a cell are.
 constexpr double rounding_in_units = 8;
+
+constexpr double unit{rounding_unit<float>};
 
 /// Whether binary32 has all of the values.
 bool fits_binary32(const Volume& volume) {
@@ -40,11 +44,31 @@ Kernel kernel_for([[maybe_unused]] InstructionSet set) {
 #endif
 }
 
+/// What rounding of the terms of K (v - c) makes, in units: where the primitive matters they may be
+/// large and cancel. Each is as large as the others let it be there, or as the data do.
+double cancelled(const Gaussian<double>& g, const Channels& channels, double reach) {
+  double sum = 0;
+  for (int i = 0; i < g.rows; ++i) {
+    double term[most_channels], all = 0;
+    for (int k = 0; k < g.channels; ++k) {
+      const VolumeStatistics& s = channels[k].volume->statistics();
+      term[k] = std::fabs(g.matrix[i][k]) *
+                std::max(std::fabs(s.minimum - g.center[k]), std::fabs(s.maximum - g.center[k]));
+      all += term[k];
+    }
+    for (int k = 0; k < g.channels; ++k) sum += std::min(term[k], reach + (all - term[k]));
+  }
+  return 4 * sum;
+}
+
 SteppedGaussian stepped(const Gaussian<double>& g, const Channels& channels, double negligible) {
   SteppedGaussian result;
   result.gaussian = rounded_to_binary32(g);
-  result.reach = static_cast<float>(
-      g.peak > negligible ? std::sqrt(std::min(std::log(g.peak / negligible), 87.0)) : 0);
+  const bool matters = g.peak > negligible;
+  const double reach = matters ? std::sqrt(std::min(std::log(g.peak / negligible), 87.0)) : 0;
+  // Upward, for it is in bounds.
+  result.reach =
+      matters ? static_cast<float>(reach * (1 + 0x1p-20)) : -std::numeric_limits<float>::max();
   double rounding = 0;
   for (int k = 0; k < g.channels; ++k) {
     double square = 0;
@@ -55,10 +79,10 @@ SteppedGaussian stepped(const Gaussian<double>& g, const Channels& channels, dou
     result.center_rest[k] = static_cast<float>(g.center[k] - double{result.gaussian.center[k]});
     const Volume& data = *channels[k].volume;
     if (!fits_binary32(data)) {
-      rounding += norm * double{rounding_unit<float>} * largest_value(data);
+      rounding += norm * unit * largest_value(data);
     }
   }
-  rounding += rounding_in_units * double{rounding_unit<float>} * double{result.reach};
+  rounding += unit * (rounding_in_units * reach + cancelled(g, channels, reach));
   result.rounding = static_cast<float>(rounding);
   return result;
 }
@@ -75,8 +99,9 @@ std::unique_ptr<const GaussianPackets> GaussianPackets::make(
     return suits_packets(*channel.volume, largest_extinction);
   });
   const Multivariate<double> transfer = transfer_function.view();
-  if (kernel == nullptr || !suit || transfer.tables > 0 || wanted.grade == Grade::proved ||
-      !(wanted.tolerance >= least_tolerance)) {
+  const int most_blocks = std::numeric_limits<int>::max() / most_channels;
+  if (kernel == nullptr || !suit || blocks.records.count() > most_blocks || transfer.tables > 0 ||
+      wanted.grade == Grade::proved || !(wanted.tolerance >= least_tolerance)) {
     return nullptr;
   }
   std::vector<SteppedGaussian> primitives;

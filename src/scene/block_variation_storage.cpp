@@ -4,10 +4,14 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
+#include <cstdint>
 #include <functional>
 
 namespace pellucid {
 namespace {
+
+/// The upper half of infinity.
+constexpr std::uint16_t infinite = 0x7f80;
 
 void join(BlockVariation& all, const BlockVariation& other) {
   for (std::size_t a = 0; a < 3; ++a) {
@@ -31,6 +35,11 @@ BlockVariationStorage::BlockVariationStorage(const Channels& channels,
     for (int b = first; b < last; ++b) {
       for (std::size_t c = 0; c < fields; ++c) {
         const BlockRecord& r = records[c][b];
+        if (r.vacuum() != BlockVacuum::none) {
+          from[static_cast<std::size_t>(b) * fields + c] = {
+              {infinite, infinite, infinite}, {infinite, infinite, infinite}, {}};
+          continue;
+        }
         from[static_cast<std::size_t>(b) * fields + c] = {
             {r.oscillation[0], r.oscillation[1], r.oscillation[2]},
             {r.bend[0], r.bend[1], r.bend[2]},

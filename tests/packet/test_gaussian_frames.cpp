@@ -35,7 +35,10 @@ class GaussianFrames : public testing::Test {
   /// Between 0 and 1: waves, ridges that are sharp, noise, single values that stand out.
   std::shared_ptr<const Volume> volume(const std::array<int, 3>& values, Vec3<double> spacing,
                                        Centering centering, double offset) {
-    const int kind = whole(0, 5);
+    const int kind = whole(0, 7);
+    constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+    // On planes of blocks, and beside them.
+    const double bend = 8 * whole(1, 3) - 1 + whole(0, 2);
     const double shortest = power(2.5, 60), noise = kind == 4 ? power(1e-4, 0.3) : 0;
     struct Wave {
       Vec3<double> k;
@@ -47,7 +50,7 @@ class GaussianFrames : public testing::Test {
       k = k * (2 * std::numbers::pi / (shortest * uniform(1, 3) * length(k)));
       waves.push_back({k, uniform(0, 6.3)});
     }
-    std::vector<float> data;
+    std::vector<double> data;
     for (int z = 0; z < values[2]; ++z) {
       for (int y = 0; y < values[1]; ++y) {
         for (int x = 0; x < values[0]; ++x) {
@@ -59,7 +62,9 @@ class GaussianFrames : public testing::Test {
           double value = 0.5 + 0.5 * sum / static_cast<double>(waves.size());
           value += noise * uniform(-1, 1);
           if (kind == 5 && random_() % 97 == 0) value = uniform(0, 1);
-          data.push_back(static_cast<float>(value + offset));
+          if (kind == 6) value = std::fabs(x - bend) / 20 + 0.01 * std::fabs(y - 8.0);
+          if (kind == 7 && std::fabs(x + 0.7 * y - 0.4 * z - bend) < 0.6) value = nan;
+          data.push_back(value + offset);
         }
       }
     }
@@ -67,11 +72,16 @@ class GaussianFrames : public testing::Test {
     description.dimensions = values;
     description.placement.spacing = spacing;
     description.centering = centering;
-    return std::make_shared<Volume>(description, DataArray<float>(std::move(data)));
+    if (random_() % 4 == 0) {
+      return std::make_shared<Volume>(description, DataArray<double>(std::move(data)));
+    }
+    return std::make_shared<Volume>(description,
+                                    DataArray<float>(std::vector<float>(data.begin(), data.end())));
   }
 
   Scene scene() {
-    const std::array<int, 3> values{whole(2, 40), whole(2, 40), whole(2, 40)};
+    std::array<int, 3> values{whole(2, 40), whole(2, 40), whole(2, 40)};
+    if (random_() % 8 == 0) values[0] = whole(100, 900);
     const Vec3<double> spacing{power(0.5, 2), power(0.5, 2), power(0.5, 2)};
     const int channels = std::array<int, 6>{1, 1, 1, 2, 2, 3}[random_() % 6];
     const Centering centering = random_() % 4 == 0 ? Centering::cell : Centering::point;
@@ -85,7 +95,7 @@ class GaussianFrames : public testing::Test {
     scene.channels = std::make_shared<const Channels>(std::move(all));
     const double narrowest = power(0.002, 0.5), depth = power(0.2, 20);
     std::vector<GaussianPrimitive> primitives;
-    for (int n = std::array<int, 5>{1, 2, 3, 5, 12}[random_() % 5]; n > 0; --n) {
+    for (int n = std::array<int, 6>{1, 2, 3, 5, 12, 80}[random_() % 6]; n > 0; --n) {
       GaussianPrimitive p;
       std::vector<double> widths;
       for (int c = 0; c < channels; ++c) {
@@ -95,6 +105,14 @@ class GaussianFrames : public testing::Test {
         widths.push_back(narrowest * power(1, 4));
       }
       p.matrix = matrix_of_widths(widths);
+      if (widths.size() > 1 && random_() % 2 == 0) {
+        // Rows of several channels, as many or one alone.
+        const std::size_t rows = random_() % 2 == 0 ? 1 : widths.size();
+        p.matrix.assign(rows, {});
+        for (std::vector<double>& row : p.matrix) {
+          for (const double width : widths) row.push_back(uniform(-1, 1) / width);
+        }
+      }
       p.extinction = power(0.1, 1) * depth / (40 * widths.front());
       p.color = {uniform(0, 1), uniform(0, 1), uniform(0, 1)};
       primitives.push_back(p);
@@ -199,6 +217,145 @@ TEST_F(GaussianFrames, LargeValuesCostNoDigits) {
     if (HasFatalFailure()) return;
   }
   EXPECT_EQ(seen.with_strides, seen.frames);
+}
+
+/// Data that turn at a plane between two blocks, in each of which their slope is one number.
+TEST_F(GaussianFrames, SeeWhatTurnsBetweenBlocks) {
+  Seen seen;
+  for (const Centering centering : {Centering::point, Centering::cell}) {
+    for (const int turn : {15, 16, 17, 23, 24}) {
+      std::vector<float> data;
+      for (int i = 0; i < 48 * 8 * 8; ++i) {
+        data.push_back(static_cast<float>(std::abs(i % 48 - turn)));
+      }
+      Volume::Description description;
+      description.dimensions = {48, 8, 8};
+      description.centering = centering;
+      Scene scene = ramp_scene(47, 0);
+      scene.channels = std::make_shared<const Channels>(std::vector<Channel>{
+          {"turn", "", std::make_shared<Volume>(description, DataArray<float>(std::move(data)))}});
+      scene.multivariate = one_on_ramp(0, 0.1, 40, 48);
+      const Camera along = scene.camera;
+      scene.camera = default_camera(scene.channels->grid(), scene.size);
+      scene.camera.position = scene.camera.focal_point - Vec3<double>{100, 0, 0};
+      scene.camera.up = along.up;
+      scene.camera.projection = along.projection;
+      scene.camera.parallel_scale = 3;
+      compare(scene, {1e-2, 1e-4}, seen);
+      if (HasFatalFailure()) return;
+    }
+  }
+  EXPECT_GT(seen.with_strides, seen.frames / 2);
+}
+
+/// A wall of vacuum, thinner than a step, before which a narrow Gaussian lies.
+TEST_F(GaussianFrames, DoNotStepOverVacuum) {
+  constexpr int n = 44;
+  constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+  std::vector<float> data;
+  for (int z = 0; z < n; ++z) {
+    for (int y = 0; y < n; ++y) {
+      for (int x = 0; x < n; ++x) {
+        const int sum = x + y + z;
+        const double value = sum / 120.0 - (sum > 60 ? 0.5 : 0);
+        data.push_back(static_cast<float>(sum == 60 ? nan : value));
+      }
+    }
+  }
+  Volume::Description description;
+  description.dimensions = {n, n, n};
+  Scene scene = ramp_scene(n, 0);
+  scene.channels = std::make_shared<const Channels>(std::vector<Channel>{
+      {"wall", "", std::make_shared<Volume>(description, DataArray<float>(std::move(data)))}});
+  scene.multivariate = one_on_ramp(0.4815, 0.0003, 3, 1);
+  scene.size = {16, 16};
+  scene.camera = default_camera(scene.channels->grid(), scene.size);
+  const double far = length(scene.camera.position - scene.camera.focal_point);
+  scene.camera.position = scene.camera.focal_point - Vec3<double>{1, 1, 1} * (far / std::sqrt(3));
+  scene.camera.up = {0, 0, 1};
+  Seen seen;
+  compare(scene, {1e-2, 1.0 / 512}, seen);
+}
+
+/// Large terms of K (v - c) that cancel.
+TEST_F(GaussianFrames, DoNotTrustWhatCancels) {
+  Volume::Description description;
+  description.dimensions = {9, 9, 9};
+  const auto constant = [&](float value) {
+    return std::make_shared<const Volume>(description,
+                                          DataArray<float>(std::vector<float>(9 * 9 * 9, value)));
+  };
+  Scene scene = ramp_scene(9, 0);
+  scene.channels = std::make_shared<const Channels>(
+      std::vector<Channel>{{"a", "", constant(1.4e7f)}, {"b", "", constant(6000001.0f)}});
+  GaussianPrimitive p;
+  p.channels = {0, 1};
+  p.center = {0, 0};
+  p.matrix = {{0.3, -0.7}};
+  p.extinction = 0.1;
+  p.color = {1, 0.5, 0.25};
+  scene.multivariate =
+      std::make_shared<const MultivariateTransferFunction>(2, std::vector<GaussianPrimitive>{p});
+  scene.camera = default_camera(scene.channels->grid(), scene.size);
+  Seen seen;
+  compare(scene, {1e-2, 1e-4}, seen);
+}
+
+/// Long rays along an axis of the grid: samples that keep in step with the cells would all err
+/// alike.
+TEST_F(GaussianFrames, DoNotKeepInStepWithTheCells) {
+  Seen seen;
+  for (const int cells : {700, 6000}) {
+    std::vector<float> data;
+    for (int i = 0; i < 4 * (cells + 1); ++i) {
+      const double x = 2 * std::numbers::pi * (i % (cells + 1)) / 24.3;
+      data.push_back(static_cast<float>(std::sin(x)));
+    }
+    Volume::Description description;
+    description.dimensions = {cells + 1, 2, 2};
+    Scene scene = ramp_scene(cells, 0);
+    scene.channels = std::make_shared<const Channels>(std::vector<Channel>{
+        {"wave", "", std::make_shared<Volume>(description, DataArray<float>(std::move(data)))}});
+    const double depth = 4 * 0.6 * std::sqrt(std::numbers::pi);
+    scene.multivariate = one_on_ramp(0, 0.6, depth, cells);
+    scene.camera = default_camera(scene.channels->grid(), scene.size);
+    scene.camera.position = scene.camera.focal_point - Vec3<double>{2.0 * cells, 0, 0};
+    scene.camera.up = {0, 0, 1};
+    scene.camera.projection = Projection::orthographic;
+    scene.camera.parallel_scale = 0.3;
+    compare(scene, {1e-2, 1.0 / 512}, seen);
+    if (HasFatalFailure()) return;
+  }
+  EXPECT_EQ(seen.with_strides, seen.frames);
+}
+
+TEST_F(GaussianFrames, AreTheSameForAnyNumberOfThreads) {
+  for (unsigned seed = 400; seed < 406; ++seed) {
+    random_.seed(seed);
+    Scene one = scene();
+    one.size = {40, 40};
+    RenderOptions options;
+    options.error = true;
+    options.threads = 1;
+    const Image alone = render(one, options);
+    options.threads = 3;
+    options.preview = 3;  // other pixels beside each other
+    const Image together = render(one, options);
+    EXPECT_EQ(alone.pixels, together.pixels) << seed;
+    EXPECT_EQ(alone.error, together.error) << seed;
+  }
+}
+
+/// The smallest tolerance for packets is one for them.
+TEST_F(GaussianFrames, GoDownToTheirSmallestTolerance) {
+  Scene scene = ramp_scene(48, 0);
+  scene.multivariate = one_on_ramp(0.4, 0.1, 0.5, 48);
+  for (const auto& [tolerance, packets] : {std::pair{1e-5, true}, {0.9e-5, false}}) {
+    scene.integration.tolerance = tolerance;
+    RenderReport report;
+    render(scene, {}, &report);
+    EXPECT_EQ(report.spans.strides > 0, packets) << tolerance;
+  }
 }
 
 /// PELLUCID_TEST_SCENES sets how many there are, PELLUCID_TEST_SEED where they begin.

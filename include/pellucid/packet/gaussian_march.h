@@ -175,8 +175,10 @@ class GaussianMarch {
 
  private:
   static constexpr int steps = ResolvedGaussians<N>::steps;
-  /// Cells along the axis on which they are the most: four of them are a block's width.
-  static constexpr float longest_step = 2;
+  /// Cells along the axis on which they are the most: four of them are less than a block's width;
+  /// nor are they, or a half or quarter of them, in step with the cells, so that spans one behind
+  /// the other have to do with different places in cells.
+  static constexpr float longest_step = 1.87f;
   static constexpr float shortest_step = 0x1p-13f;
   /// Cells: what sample_places.h says of so short ways, as a standard deviation at most.
   static constexpr float place_error = 1e-6f;
@@ -212,12 +214,19 @@ class GaussianMarch {
   PELLUCID_ALWAYS_INLINE void look_at_blocks(const D* place, F length) noexcept {
     F from[3];
     for (int a = 0; a < 3; ++a) from[a] = convert<float>(place[a]);
-    const auto block_at = [&](F offset) noexcept {
-      F there[3];
-      for (int a = 0; a < 3; ++a) there[a] = multiply_add(offset, direction_[a], from[a]);
-      return select(alive, rays_.block_of(there), I(0));
-    };
-    const I block = block_at(F(0));
+    // Where the steps end in another block their way is in several.
+    I here[3], there[3];
+    F to[3];
+    for (int a = 0; a < 3; ++a) to[a] = multiply_add(length, direction_[a], from[a]);
+    rays_.find_block(from, here);
+    rays_.find_block(to, there);
+    M leaves[3];
+    F blocks(1);
+    for (int a = 0; a < 3; ++a) {
+      leaves[a] = alive & (here[a] != there[a]);
+      blocks += select(leaves[a], F(1), F(0));
+    }
+    const I block = index_of(here);
     const I upper_half(static_cast<std::int32_t>(0xffff0000u));
     for (int c = 0; c < fields_.channels; ++c) {
       I packed[4];
@@ -225,21 +234,23 @@ class GaussianMarch {
       const auto low = [](I x) noexcept { return float_of_bits(x << 16); };
       const auto high = [&](I x) noexcept { return float_of_bits(x & upper_half); };
       const F oscillation[3] = {low(packed[0]), high(packed[0]), low(packed[1])};
-      around_.bend[c][0] = high(packed[1]);
-      around_.bend[c][1] = low(packed[2]);
-      around_.bend[c][2] = high(packed[2]);
+      F* const bend = around_.bend[c];
+      bend[0] = high(packed[1]);
+      bend[1] = low(packed[2]);
+      bend[2] = high(packed[2]);
       F along(0);
       for (int a = 0; a < 3; ++a) {
         // An axis along which nothing moves does not count, even if unbounded.
         const F speed = abs(direction_[a]);
-        along += select(speed > F(0), speed * oscillation[a], F(0));
+        const F range = blocks * oscillation[a] + select(leaves[a], bend[a], F(0));
+        along += select(speed > F(0), speed * range, F(0));
       }
-      around_.oscillation[c] = along * F(1 + 8 * rounding_unit<float>);
+      around_.oscillation[c] = along * F(1 + 16 * rounding_unit<float>);
     }
     near_.clear();
     add_primitives(block, alive);
     // A straight way between two places of a block stays in it.
-    if (any(alive & (block_at(length) != block))) add_blocks_on_the_way(from, length);
+    if (any(blocks > F(1))) add_blocks_on_the_way(from, length);
     near_.finish(alive);
   }
 

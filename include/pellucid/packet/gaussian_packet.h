@@ -57,8 +57,8 @@ class GaussianPacket {
   /// Of the difference of two rules what counts as the standard deviation of the better one: more
   /// than in smooth stretches, for all of a narrow primitive may lie in a few steps.
   static constexpr float share_of_difference = 0.6f;
-  /// Rays that need more are given up.
-  static constexpr int most_looks = 1 << 16;
+  /// Rays that need more are given up: `kept_back` pays for so many.
+  static constexpr int most_looks = 1 << 14;
 
   /// Gives these lanes the next rays; false: there are none, and no lane has any.
   bool begin_rays(M lanes) noexcept {

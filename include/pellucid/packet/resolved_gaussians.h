@@ -11,7 +11,8 @@ namespace pellucid {
 /// A Gaussian primitive for steps in lanes, in binary32.
 struct SteppedGaussian {
   Gaussian<float> gaussian;
-  float reach = 0;     ///< the distance |K (v - c)| from which on it does not matter
+  /// The distance |K (v - c)| from which on it does not matter; below 0 where it never does.
+  float reach = 0;
   float rounding = 0;  ///< how far K (v - c) may be off because numbers of it are rounded
   float column_norm[most_channels] = {};  ///< of K, by channel
   float center_rest[most_channels] = {};  ///< what binary32 leaves of the center
@@ -126,6 +127,7 @@ class ResolvedGaussians {
 
   /// What a primitive is at one place.
   static F extinction(const SteppedGaussian& of, const DatumInCell<F>* value) noexcept {
+    if (!(of.reach > 0)) return F(0);
     F square(0);
     for (int row = 0; row < of.gaussian.rows; ++row) {
       F p;
@@ -156,7 +158,9 @@ class ResolvedGaussians {
     M somewhere(false);
     F moves_most(0);
     for (int j = 0; j < steps; ++j) {
-      const F nearest = F(0.5f) * (away[j] + away[j + 1] - between[j]) - off_chord;
+      // What rounding makes of it.
+      const F slack = F(4 * rounding_unit<float>) * (away[j] + away[j + 1] + between[j]);
+      const F nearest = F(0.5f) * (away[j] + away[j + 1] - between[j]) - (off_chord + slack);
       // Written so that NaN matters.
       const M here = on & !(nearest >= reach);
       const F moves = between[j] + F(2) * off_chord;
@@ -173,13 +177,15 @@ class ResolvedGaussians {
     if (none(somewhere)) return;
     most = max(most, moves_most);
     F largest(0);
-    for (int j = 1; j <= steps; ++j) {
+    for (int j = 0; j <= steps; ++j) {
       // Nothing where it does not matter: numbers that are not normal take many times as long.
-      const auto near = on & (away[j] < reach);
+      const auto near = somewhere & (away[j] < reach);
       const F square = select(near, away[j] * away[j], F(0));
       const F here = select(near, F(g.peak) * exp(F(0) - square), F(0));
-      end[j].extinction += here;
-      end[j].emission += here * Rgb<F>{F(g.color.r), F(g.color.g), F(g.color.b)};
+      if (j > 0) {
+        end[j].extinction += here;
+        end[j].emission += here * Rgb<F>{F(g.color.r), F(g.color.g), F(g.color.b)};
+      }
       // 2 |p| <= 1 + |p|²: the slope by p.
       largest = max(largest, multiply_add(here, square, here));
     }

@@ -9,7 +9,8 @@
 namespace pellucid {
 
 /// Makes and owns how much the data of channels vary around each block: once a frame, from the
-/// blocks' records alone. 16 bytes a block of 8³ cells and channel.
+/// blocks' records alone. 16 bytes a block of 8³ cells and channel, and as
+/// many while they are made.
 class BlockVariationStorage {
  public:
   BlockVariationStorage() = default;
