@@ -140,7 +140,9 @@ void find_components(const itk::ImageIOBase& io, const std::string& name, ItkHea
   if (components > static_cast<unsigned>(std::numeric_limits<int>::max())) {
     throw Error(name + ": has " + std::to_string(components) + " components at each point");
   }
-  if (components == 1 && io.GetPixelType() != itk::IOPixelEnum::SCALAR) {
+  // A list of one number at each point is that number.
+  if (components == 1 && io.GetPixelType() != itk::IOPixelEnum::SCALAR &&
+      io.GetPixelType() != itk::IOPixelEnum::VECTOR) {
     throw Error(name + ": its values are no plain numbers; convert the file to float");
   }
   if (components != 1) {

@@ -351,6 +351,13 @@ TEST_F(NrrdTest, OtherThanThreeAxesOrOneNumberIsRefused) {
                   "u8");
 }
 
+TEST_F(NrrdTest, AListOfOneNumberIsThatNumber) {
+  expect_counting(
+      parse("NRRD0005\ntype: float\ndimension: 4\nspace: left-posterior-superior\nsizes: 5 4 3 1\n"
+            "space directions: (1,0,0) (0,1,0) (0,0,1) none\nendian: little\nencoding: raw\n"),
+      "f32");
+}
+
 TEST_F(NrrdTest, NanIsKeptAndInfinityRefused) {
   std::vector<float> values = counting();
   values[31] = std::numeric_limits<float>::quiet_NaN();

@@ -72,6 +72,12 @@ TEST_F(VtkCollection, AdaptiveOnesAreRefusedByName) {
   }
 }
 
+TEST_F(VtkCollection, AdaptiveOnesOfFilesThatAreGone) {
+  const fs::path file = list("vtkOverlappingAMR", {"none.vti"}, "gone.vth");
+  EXPECT_FALSE(is_mesh_file(file));
+  EXPECT_TRUE(contains(error_of([&] { read_volume(file); }), "adaptive (vtkOverlappingAMR"));
+}
+
 TEST_F(VtkCollection, MeshesStayMeshes) {
   const fs::path file = list("vtkMultiBlockDataSet", {"m.vtu"}, "mesh.vtm");
   EXPECT_TRUE(is_mesh_file(file));
