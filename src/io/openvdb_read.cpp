@@ -73,9 +73,8 @@ std::optional<Box> active_box(const openvdb::GridBase& grid) {
   const openvdb::CoordBBox box = grid.evalActiveVoxelBoundingBox();
   if (box.empty()) return std::nullopt;
   Box active{box.min(), {}};
-  for (int a = 0; a < 3; ++a) {
-    active.sides[static_cast<std::size_t>(a)] =
-        std::int64_t{box.max()[a]} - std::int64_t{box.min()[a]} + 1;
+  for (std::size_t a = 0; a < 3; ++a) {
+    active.sides[a] = std::int64_t{box.max()[a]} - std::int64_t{box.min()[a]} + 1;
   }
   return active;
 }
@@ -91,7 +90,8 @@ GridPlacement placement_of(const openvdb::GridBase& grid, const Box& box) {
     if (!(size > 0)) throw Error("its transform makes an axis vanish");
     placement.spacing[a] = size;
     placement.direction.column[a] = row(a) * (1 / size);
-    placement.origin = placement.origin + row(a) * static_cast<double>(box.first[a]);
+    placement.origin =
+        placement.origin + row(a) * static_cast<double>(box.first[static_cast<unsigned>(a)]);
   }
   return placement;
 }
