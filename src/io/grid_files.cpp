@@ -80,6 +80,13 @@ std::shared_ptr<std::byte> contained(
               "damaged");
 }
 
+/// Names and messages of libraries may hold anything.
+std::string one_line(std::string text) {
+  std::ranges::replace_if(
+      text, [](char c) { return static_cast<unsigned char>(c) < ' ' || c == '\x7f'; }, ' ');
+  return text;
+}
+
 /// Of what is no volume, in a line.
 std::string list_of(const std::vector<GridOther>& others) {
   std::string list;
@@ -87,7 +94,7 @@ std::string list_of(const std::vector<GridOther>& others) {
     list +=
         (list.empty() ? "" : ", ") + other.name + (other.is.empty() ? "" : " (" + other.is + ")");
   }
-  return list.substr(0, 400);
+  return one_line(list.substr(0, 400));
 }
 
 GridContents contents_of(const std::filesystem::path& path, const Format& format) {
@@ -101,7 +108,7 @@ GridContents contents_of(const std::filesystem::path& path, const Format& format
                                           });
   std::optional<GridContents> contents = read_grid_contents({bytes.get(), room});
   if (!contents) throw Error(path.string() + ": its list of arrays is damaged");
-  if (!contents->error.empty()) throw Error(path.string() + ": " + contents->error);
+  if (!contents->error.empty()) throw Error(path.string() + ": " + one_line(contents->error));
   if (!contents->arrays.empty()) return *std::move(contents);
   const std::string list = list_of(contents->others);
   throw Error(path.string() + ": has no " + std::string(format.wanted) +
@@ -122,10 +129,10 @@ const GridArray& choose(const GridContents& contents, const ReadOptions& options
   }
   for (const GridOther& other : contents.others) {
     if (other.name != *options.array || other.is.empty()) continue;
-    throw Error(name + ": \"" + other.name + "\" is " + other.is);
+    throw Error(name + ": \"" + one_line(other.name) + "\" is " + one_line(other.is));
   }
   throw Error(name + ": has no array \"" + *options.array + "\", a " + std::string(format.wanted) +
-              "; it has " + list.substr(0, 400));
+              "; it has " + one_line(list.substr(0, 400)));
 }
 
 Volume::Description describe(const GridArray& array, const ReadOptions& options,
@@ -224,7 +231,9 @@ std::vector<VolumeData> read_values(const std::filesystem::path& path, const For
         return true;
       });
   const Trailer trailer({bytes.get() + end, Trailer::size(range.number)});
-  if (const std::string error = trailer.error(); !error.empty()) throw Error(name + ": " + error);
+  if (const std::string error = trailer.error(); !error.empty()) {
+    throw Error(name + ": " + one_line(error));
+  }
   std::vector<VolumeData> components;
   for (std::size_t c = 0; c < static_cast<std::size_t>(range.number); ++c) {
     const std::string type = trailer.type(c, name);
@@ -245,11 +254,12 @@ VolumeFile open_grid(const std::filesystem::path& path, const ReadOptions& optio
   file.description = describe(array, options, name);
   apply_overrides(options, file.description);
   file.components = array.components;
-  file.holds = array.holds + " in \"" + array.name + "\"";
+  file.holds = one_line(array.holds + " in \"" + array.name + "\"");
   file.array = array.name;
   if (options.time) {
     if (array.times.empty()) {
-      throw Error(name + ": \"" + array.name + "\" has no steps in time; leave the time out");
+      throw Error(name + ": \"" + one_line(array.name) +
+                  "\" has no steps in time; leave the time out");
     }
     if (options.component) throw Error(name + ": give a time or a component, not both");
     file.step = static_cast<int>(nearest_step(array.times, options.time));

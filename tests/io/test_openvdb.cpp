@@ -182,6 +182,17 @@ TEST_F(OpenVdb, RefusesByNameWhatIsNoVolume) {
   EXPECT_TRUE(contains(error, "no fog volume; it has ball (a level set")) << error;
 }
 
+TEST_F(OpenVdb, NamesOfAnyLettersAreOneLine) {
+  const auto vectors = counting_grid<openvdb::Vec3SGrid>(
+      "a\nb\x1b[31m", [](int) { return openvdb::Vec3s(1, 2, 3); });
+  auto empty = openvdb::FloatGrid::create();
+  empty->setName("\xff\n");
+  const fs::path file = save({vectors, empty});
+  EXPECT_TRUE(contains(error_of([&] { read_volume(file); }), "in \"a b [31m\""));
+  EXPECT_TRUE(contains(error_of([&] { read(file, "none"); }), "it has a b [31m"));
+  EXPECT_TRUE(contains(error_of([&] { read(file, "\xff\n"); }), "without an active voxel"));
+}
+
 // The library opens no file with such a grid in it.
 TEST_F(OpenVdb, TreesOfOtherShapesAreRefused) {
   const auto other = openvdb::Grid<openvdb::tree::Tree4<float, 3, 3, 3>::Type>::create();
