@@ -300,7 +300,7 @@ TEST_F(MutantsTest, OpenVdb) {
     file.close();
     seeds.push_back(read(path("seed.vdb")));
   }
-  // OpenVDB goes round in circles in one of thirty, which takes seconds to be ended.
+  // OpenVDB goes round in circles in one of a hundred, which takes seconds to be ended.
   survive(seeds, "a.vdb", path("a.vdb"), 20);
 }
 #endif
