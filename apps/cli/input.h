@@ -14,7 +14,9 @@ namespace pellucid::cli {
 /// What INPUT may be, for help texts.
 inline constexpr const char* input_help =
     "Volume file (.nii, .nii.gz, .hdr, .img, .nrrd, .nhdr, .mha, .mhd, .npy, .vti, .pvti, .vtr, "
-    ".pvtr, .vtk, .slc, .h5, .hdf5, .he5, .nc, .nc4, .cdf, .mrc, .map, .rec, .st, .ccp4, .raw), "
+    ".pvtr, .vtk, .slc, .h5, .hdf5, .he5, .nc, .nc4, .cdf, .vdb, .mrc, .map, .rec, .st, .ccp4, "
+    ".ivf, "
+    ".raw), "
     "DICOM series (its folder or one of its files), stack of images (a .tif, .tiff or .png of it, "
     "NAME%03d.tif, its folder)";
 

@@ -3,10 +3,12 @@
 
 #include <fcntl.h>
 #include <sys/mman.h>
+#include <sys/prctl.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <csignal>
 #include <cstdint>
@@ -18,29 +20,25 @@ namespace pellucid {
 namespace {
 
 /// Memory that two processes see.
-class SharedMemory {
- public:
-  explicit SharedMemory(std::size_t bytes) : bytes_(bytes) {
-    void* const at =
-        mmap(nullptr, bytes, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
-    if (at == MAP_FAILED) throw std::bad_alloc();
-    at_ = static_cast<std::byte*>(at);
-  }
-  ~SharedMemory() { munmap(at_, bytes_); }
-  SharedMemory(const SharedMemory&) = delete;
-  SharedMemory& operator=(const SharedMemory&) = delete;
+std::shared_ptr<std::byte> shared_memory(std::size_t bytes) {
+  // Whoever asks has looked whether there is memory; what stays untouched needs none.
+  void* const at = mmap(nullptr, bytes, PROT_READ | PROT_WRITE,
+                        MAP_SHARED | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
+  if (at == MAP_FAILED) throw std::bad_alloc();
+  return {static_cast<std::byte*>(at), [bytes](std::byte* p) { munmap(p, bytes); }};
+}
 
-  std::span<std::byte> bytes() const { return {at_, bytes_}; }
-
- private:
-  std::byte* at_;
-  std::size_t bytes_;
-};
-
-void limit(std::size_t bytes) {
-  constexpr unsigned seconds = 300;
-  // What a decoder takes beside what it gives.
-  constexpr std::uintmax_t room = std::uintmax_t{1} << 30;
+void limit(std::size_t bytes, std::uintmax_t file_bytes) {
+  constexpr std::uintmax_t per_file_byte = 64, bytes_per_second = 10'000'000, most = 100'000;
+  const std::uintmax_t at_work =
+      std::min(3 + (bytes + per_file_byte * file_bytes) / bytes_per_second, most);
+  const rlimit processor{static_cast<rlim_t>(at_work), static_cast<rlim_t>(at_work)};
+  setrlimit(RLIMIT_CPU, &processor);
+  // A file that does not come, from a slow disk or a pipe.
+  alarm(static_cast<unsigned>(300 + at_work));
+  // What a decoder takes beside what it gives: trees of sparse data are far larger than their file.
+  constexpr std::uintmax_t room_for_any = std::uintmax_t{1} << 30;
+  const std::uintmax_t room = room_for_any + per_file_byte * file_bytes;
   std::uintmax_t pages = 0;
   std::ifstream("/proc/self/statm") >> pages;
   const auto taken = pages * static_cast<std::uintmax_t>(sysconf(_SC_PAGE_SIZE));
@@ -56,11 +54,12 @@ void limit(std::size_t bytes) {
 #endif
   const rlimit no_core{0, 0};
   setrlimit(RLIMIT_CORE, &no_core);
-  alarm(seconds);
 }
 
 void forget_what_the_program_does() {
-  for (const int signal : {SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT, SIGALRM}) {
+  // Nobody waits for it any more where the program has ended.
+  prctl(PR_SET_PDEATHSIG, SIGKILL);
+  for (const int signal : {SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT, SIGALRM, SIGXCPU}) {
     std::signal(signal, SIG_DFL);
   }
   const int nowhere = open("/dev/null", O_WRONLY | O_CLOEXEC);
@@ -71,17 +70,19 @@ void forget_what_the_program_does() {
 
 }  // namespace
 
-std::optional<std::vector<std::byte>> run_contained(
-    std::size_t bytes, const std::function<bool(std::span<std::byte>)>& work) {
+std::shared_ptr<std::byte> run_contained(std::size_t bytes,
+                                         const std::function<bool(std::span<std::byte>)>& work,
+                                         std::uintmax_t file_bytes) {
   // One byte more, which says that the rest is there.
-  const SharedMemory shared(bytes + 1);
+  std::shared_ptr<std::byte> shared = shared_memory(bytes + 1);
+  std::byte& is_there = shared.get()[bytes];
   const pid_t child = fork();
   if (child < 0) throw std::bad_alloc();
   if (child == 0) {
     forget_what_the_program_does();
-    limit(bytes);
+    limit(bytes, file_bytes);
     try {
-      if (work(shared.bytes().first(bytes))) shared.bytes().back() = std::byte{1};
+      if (work({shared.get(), bytes})) is_there = std::byte{1};
     } catch (...) {
       _exit(1);
     }
@@ -89,9 +90,7 @@ std::optional<std::vector<std::byte>> run_contained(
   }
   while (waitpid(child, nullptr, 0) < 0 && errno == EINTR) {
   }
-  if (shared.bytes().back() != std::byte{1}) return std::nullopt;
-  const std::span<const std::byte> result = shared.bytes().first(bytes);
-  return std::vector<std::byte>(result.begin(), result.end());
+  return is_there == std::byte{1} ? shared : nullptr;
 }
 
 }  // namespace pellucid

@@ -17,6 +17,7 @@
 #include <vector>
 
 #include "input_file.h"
+#include "inviwo_values.h"
 #include "pellucid/scene/error.h"
 
 namespace pellucid {
@@ -84,64 +85,7 @@ std::optional<Vec3<double>> three_numbers(const Fields& fields, const std::strin
 std::array<int, 3> dimensions_of(const Fields& fields, const std::string& name) {
   const std::optional<Vec3<double>> sides = three_numbers(fields, "resolution", name);
   if (!sides) throw Error(name + ": the header has no \"Resolution\"; mend the header");
-  std::array<int, 3> dimensions{};
-  for (std::size_t a = 0; a < 3; ++a) {
-    const double side = (*sides)[static_cast<int>(a)];
-    if (side < 1 || side > 1e9 || side != std::floor(side)) {
-      throw Error(name + ": the header's resolution is " + value_of(fields, "resolution") +
-                  ", where whole numbers from 1 are meant");
-    }
-    dimensions[a] = static_cast<int>(side);
-  }
-  return dimensions;
-}
-
-// "Vec2FLOAT32": two at each point.
-void find_type(const Fields& fields, ReadOptions& raw, const std::string& name) {
-  static constexpr std::pair<std::string_view, const char*> types[] = {
-      {"uchar", "u8"},   {"uint8", "u8"},    {"char", "i8"},    {"int8", "i8"},
-      {"ushort", "u16"}, {"uint16", "u16"},  {"short", "i16"},  {"int16", "i16"},
-      {"uint", "u32"},   {"uint32", "u32"},  {"int", "i32"},    {"int32", "i32"},
-      {"float", "f32"},  {"float32", "f32"}, {"double", "f64"}, {"float64", "f64"}};
-  const std::string format = value_of(fields, "format");
-  std::string word = in_small_letters(format);
-  if (word.starts_with("vec") && word.size() > 4 && word[3] >= '2' && word[3] <= '4') {
-    raw.components = word[3] - '0';
-    word.erase(0, 4);
-  }
-  for (const auto& [known, type] : types) {
-    if (word == known) raw.type = type;
-  }
-  if (raw.type) return;
-  throw Error(name + ": values of format \"" + format + "\" are not read" +
-              (word == "float16" || word == "half" ? ": half floats; convert them to FLOAT32"
-               : word.ends_with("64")              ? ": convert them to 32 bits or FLOAT64"
-                                                   : ""));
-}
-
-void place(const Fields& fields, const std::string& name, Volume::Description& description) {
-  GridPlacement& placement = description.placement;
-  if (const auto thickness = three_numbers(fields, "slicethickness", name)) {
-    placement.spacing = *thickness;
-  }
-  std::array<std::optional<Vec3<double>>, 3> basis;
-  for (std::size_t a = 0; a < 3; ++a) {
-    basis[a] = three_numbers(fields, "basisvector" + std::to_string(a + 1), name);
-    if (!basis[a]) return;
-  }
-  description.centering = Centering::cell;
-  Vec3<double> all{0, 0, 0}, half_step{0, 0, 0};
-  for (std::size_t a = 0; a < 3; ++a) {
-    const int i = static_cast<int>(a);
-    const double size = length(*basis[a]);
-    if (!(size > 0)) throw Error(name + ": a basis vector has no length; mend the header");
-    placement.direction.column[i] = *basis[a] * (1 / size);
-    placement.spacing[i] = size / description.dimensions[a];
-    all = all + *basis[a];
-    half_step = half_step + *basis[a] * (0.5 / description.dimensions[a]);
-  }
-  // Without an offset the volume's middle is at the origin.
-  placement.origin = three_numbers(fields, "offset", name).value_or(all * -0.5) + half_step;
+  return {inviwo_side(sides->x, name), inviwo_side(sides->y, name), inviwo_side(sides->z, name)};
 }
 
 }  // namespace
@@ -155,15 +99,19 @@ VolumeFile open_dat(const fs::path& path, const ReadOptions& options) {
   const std::string name = path.string();
   refuse_raw_options(options, name);
   const Fields fields = read_fields(path, name);
-  ReadOptions raw;
-  raw.dimensions = dimensions_of(fields, name);
-  find_type(fields, raw, name);
-  raw.big_endian = in_small_letters(value_of(fields, "byteorder")) == "bigendian";
-  VolumeFile file = open_raw(file_source(path.parent_path() / file_of(fields)), raw);
-  file.description.name = name;
-  place(fields, name, file.description);
-  apply_overrides(options, file.description);
-  return file;
+  InviwoHeader header;
+  header.values = path.parent_path() / file_of(fields);
+  header.dimensions = dimensions_of(fields, name);
+  header.format = value_of(fields, "format");
+  header.big_endian = in_small_letters(value_of(fields, "byteorder")) == "bigendian";
+  header.spacing = three_numbers(fields, "slicethickness", name);
+  std::array<std::optional<Vec3<double>>, 3> basis;
+  for (std::size_t a = 0; a < 3; ++a) {
+    basis[a] = three_numbers(fields, "basisvector" + std::to_string(a + 1), name);
+  }
+  if (basis[0] && basis[1] && basis[2]) header.basis = {*basis[0], *basis[1], *basis[2]};
+  header.offset = three_numbers(fields, "offset", name);
+  return open_inviwo_values(header, name, options);
 }
 
 }  // namespace pellucid

@@ -1,11 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "data_stream.h"
 
-#include <zlib.h>
-
 #include <algorithm>
 #include <array>
-#include <limits>
 
 #include "input_file.h"
 #include "pellucid/scene/error.h"
@@ -20,20 +17,6 @@ bool is_gzip(const std::filesystem::path& path) {
   return file && start[0] == '\x1f' && start[1] == '\x8b';
 }
 
-struct DataStream::Inflater {
-  Inflater() {
-    // 32 + 15: a zlib or a gzip header, whichever is there, and the largest window.
-    if (inflateInit2(&state, 32 + 15) != Z_OK) throw std::bad_alloc();
-  }
-  ~Inflater() { inflateEnd(&state); }
-  Inflater(const Inflater&) = delete;
-  Inflater& operator=(const Inflater&) = delete;
-
-  z_stream state{};
-  std::vector<char> input = std::vector<char>(std::size_t{1} << 18);
-  bool at_end = false;  // of the last member
-};
-
 DataStream::DataStream(const std::filesystem::path& path, std::uintmax_t offset,
                        Compression compression)
     : name_(path.string()) {
@@ -46,53 +29,16 @@ DataStream::DataStream(const std::filesystem::path& path, std::uintmax_t offset,
   file_.open(path, std::ios::binary);
   file_.seekg(static_cast<std::streamoff>(offset));
   if (!file_) throw Error(name_ + ": cannot read the file");
-  if (compression == Compression::deflate) inflater_ = std::make_unique<Inflater>();
-}
-
-DataStream::~DataStream() = default;
-
-std::size_t DataStream::inflate_some(std::span<std::byte> to) {
-  Inflater& in = *inflater_;
-  z_stream& state = in.state;
-  const std::size_t largest = std::numeric_limits<uInt>::max();
-  const uInt wanted = static_cast<uInt>(std::min(to.size(), largest));
-  state.next_out = reinterpret_cast<Bytef*>(to.data());
-  state.avail_out = wanted;
-  while (state.avail_out == wanted && !in.at_end) {
-    if (state.avail_in == 0) {
-      file_.read(in.input.data(), static_cast<std::streamsize>(in.input.size()));
-      state.next_in = reinterpret_cast<Bytef*>(in.input.data());
-      state.avail_in = static_cast<uInt>(file_.gcount());
-      if (state.avail_in == 0) {
-        throw Error(name_ + ": the compressed data ends too early; the file is cut off");
-      }
-    }
-    const int status = inflate(&state, Z_NO_FLUSH);
-    if (status == Z_STREAM_END) {
-      if (state.avail_in == 0) {
-        file_.read(in.input.data(), static_cast<std::streamsize>(in.input.size()));
-        state.next_in = reinterpret_cast<Bytef*>(in.input.data());
-        state.avail_in = static_cast<uInt>(file_.gcount());
-      }
-      // Another gzip member may follow; anything else after the end is not of the data.
-      if (state.avail_in > 0 && state.next_in[0] == 0x1f) {
-        inflateReset(&state);
-      } else {
-        in.at_end = true;
-      }
-    } else if (status != Z_OK && status != Z_BUF_ERROR) {
-      throw Error(name_ + ": the compressed data is damaged" +
-                  (state.msg != nullptr ? " (" + std::string(state.msg) + ")" : "") +
-                  "; get the file again");
-    }
-  }
-  return wanted - state.avail_out;
+  if (compression == Compression::deflate) inflater_ = make_zlib_inflater();
+  if (compression == Compression::bzip2) inflater_ = make_bzip2_inflater(name_);
 }
 
 std::size_t DataStream::read_some(std::span<std::byte> to) {
-  if (inflater_) return inflate_some(to);
-  file_.read(reinterpret_cast<char*>(to.data()), static_cast<std::streamsize>(to.size()));
-  return static_cast<std::size_t>(file_.gcount());
+  const auto read_file = [&](std::span<std::byte> part) {
+    file_.read(reinterpret_cast<char*>(part.data()), static_cast<std::streamsize>(part.size()));
+    return static_cast<std::size_t>(file_.gcount());
+  };
+  return inflater_ ? inflater_->read(to, read_file, name_) : read_file(to);
 }
 
 void DataStream::read(std::span<std::byte> to) {
@@ -118,6 +64,13 @@ void DataStream::skip(std::uintmax_t bytes) {
   }
 }
 
+std::uintmax_t DataStream::skip_all() {
+  std::vector<std::byte> scratch(std::size_t{1} << 18);
+  std::uintmax_t bytes = 0;
+  for (std::size_t got = 1; got > 0; bytes += got) got = read_some(scratch);
+  return bytes;
+}
+
 bool DataStream::at_end() {
   std::byte next{};
   return read_some(std::span(&next, 1)) == 0;
@@ -129,7 +82,7 @@ void DataStream::finish() {
   constexpr int largest_rest = 256;
   std::array<std::byte, 4096> scratch;
   for (int part = 0; part < largest_rest; ++part) {
-    if (inflate_some(scratch) == 0) return;
+    if (read_some(scratch) == 0) return;
   }
 }
 

@@ -10,20 +10,22 @@
 #include <string>
 #include <vector>
 
+#include "inflater.h"
+
 namespace pellucid {
 
 /// Whether the file begins as gzip does. Throws Error where it cannot be read.
 bool is_gzip(const std::filesystem::path& path);
 
-/// Bytes of a file one after the other, inflated where they are compressed (zlib or gzip, also of
-/// several members). Data that ends early or is damaged is an Error, never zeros.
+/// Bytes of a file one after the other, inflated where they are compressed (zlib or gzip, bzip2,
+/// also of several members). Data that ends early or is damaged is an Error, never zeros.
 class DataStream {
  public:
-  enum class Compression { none, deflate };
+  enum class Compression { none, deflate, bzip2 };
 
   /// Begins at byte `offset` of the file.
   DataStream(const std::filesystem::path& path, std::uintmax_t offset, Compression compression);
-  ~DataStream();
+  ~DataStream() = default;
   DataStream(const DataStream&) = delete;
   DataStream& operator=(const DataStream&) = delete;
 
@@ -31,16 +33,15 @@ class DataStream {
   /// Fills the whole span.
   void read(std::span<std::byte> to);
   void skip(std::uintmax_t bytes);
+  /// Goes to the end, and says how many bytes there were.
+  std::uintmax_t skip_all();
   /// Whether nothing comes any more; takes a byte where something does.
   bool at_end();
   /// Checks the checksum of compressed data, where its end is near; there may be more data.
   void finish();
 
  private:
-  struct Inflater;
-
   std::size_t read_some(std::span<std::byte> to);
-  std::size_t inflate_some(std::span<std::byte> to);
 
   std::string name_;
   std::ifstream file_;

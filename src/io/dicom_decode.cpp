@@ -6,7 +6,7 @@
 
 namespace pellucid {
 
-std::vector<std::byte> decode_dicom(const DicomImage& image) {
+std::shared_ptr<const std::byte> decode_dicom(const DicomImage& image) {
   throw Error(image.file.string() +
               ": its pixels are compressed, and this build has no GDCM, which decompresses them; "
               "decompress it, with gdcmconv --raw or dcmdjpeg");
@@ -19,10 +19,10 @@ std::vector<std::byte> decode_dicom(const DicomImage& image) {
 #include <gdcmImageReader.h>
 
 #include <algorithm>
-#include <optional>
 #include <span>
 
 #include "contained.h"
+#include "input_file.h"
 #include "memory_limit.h"
 
 namespace pellucid {
@@ -79,19 +79,21 @@ bool decode(const DicomImage& image, std::span<std::byte> to) {
 
 }  // namespace
 
-std::vector<std::byte> decode_dicom(const DicomImage& image) {
+std::shared_ptr<const std::byte> decode_dicom(const DicomImage& image) {
   const std::string name = image.file.string();
   const DicomFormat& format = image.format;
   std::uintmax_t bytes = static_cast<std::uintmax_t>(format.bits_allocated / 8);
   for (const int factor : {format.columns, format.rows, format.samples, image.frames}) {
     bytes *= static_cast<std::uintmax_t>(factor);
   }
-  // Where they are decompressed, and where they are given back.
+  // Where they are decompressed, and planes beside them.
   check_memory(2 * bytes, name + ": its pixels");
   // GDCM 3.0.21 crashes on damaged files, some 8 of 1000 (docs/limitations.md).
-  std::optional<std::vector<std::byte>> values =
-      run_contained(bytes, [&](std::span<std::byte> to) { return decode(image, to); });
-  if (values) return *std::move(values);
+  if (auto values = run_contained(
+          bytes, [&](std::span<std::byte> to) { return decode(image, to); },
+          check_input_file(image.file))) {
+    return values;
+  }
   throw Error(name +
               ": GDCM cannot decompress its pixels to what its header says (transfer syntax " +
               image.transfer_syntax +

@@ -71,10 +71,10 @@ class FrameReader {
     const std::uintmax_t from = bytes * static_cast<std::uintmax_t>(slice.frame);
     if (image.encapsulated) {
       if (decoded_ != slice.image) {
-        bytes_ = decode_dicom(image);
+        pixels_ = decode_dicom(image);
         decoded_ = slice.image;
       }
-      return std::span(bytes_).subspan(from, bytes);
+      return {pixels_.get() + from, bytes};
     }
     const ByteSource source = file_source(image.file);
     const std::uintmax_t end = from + bytes;
@@ -92,6 +92,7 @@ class FrameReader {
  private:
   std::vector<std::byte> bytes_;
   std::shared_ptr<const DicomImage> decoded_;
+  std::shared_ptr<const std::byte> pixels_;  ///< of it
 };
 
 template <std::size_t size>

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -21,6 +22,6 @@ std::vector<VolumeData> read_dicom_values(const std::vector<DicomSlice>& slices,
 
 /// The values of all frames of a file, decompressed by GDCM, in this machine's byte order, colors
 /// side by side. Throws Error, also where the build has no GDCM.
-std::vector<std::byte> decode_dicom(const DicomImage& image);
+std::shared_ptr<const std::byte> decode_dicom(const DicomImage& image);
 
 }  // namespace pellucid

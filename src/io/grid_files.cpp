@@ -2,13 +2,19 @@
 #include "grid_files.h"
 
 #include <algorithm>
-#include <mutex>
+#include <array>
+#include <cstddef>
+#include <cstring>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <span>
 #include <string>
-#include <type_traits>
 #include <utility>
 
 #include "array_statistics.h"
-#include "grid_module.h"
+#include "contained.h"
+#include "grid_answer.h"
 #include "input_file.h"
 #include "memory_limit.h"
 #include "mesh_blocks.h"
@@ -31,44 +37,87 @@ constexpr bool has_net_cdf = true;
 #else
 constexpr bool has_net_cdf = false;
 #endif
+#ifdef PELLUCID_HAVE_OPENVDB
+constexpr bool has_vdb = true;
+#else
+constexpr bool has_vdb = false;
+#endif
 
-constexpr Module hdf5{"pellucid_hdf5.so", "HDF5 files", has_hdf5,
-                      "HDF5 (Debian: libhdf5-dev) and -DPELLUCID_WITH_HDF5=ON"};
-constexpr Module net_cdf{"pellucid_netcdf.so", "NetCDF files", has_net_cdf,
-                         "NetCDF (Debian: libnetcdf-dev) and -DPELLUCID_WITH_NETCDF=ON"};
+struct Format {
+  Module module;
+  const char* wanted;  ///< what a volume is among its arrays
+};
 
-std::mutex one_at_a_time;
+constexpr const char* three_axes = "array of three or four axes of numbers";
+constexpr Format hdf5{{"pellucid_hdf5.so", "HDF5 files", has_hdf5,
+                       "HDF5 (Debian: libhdf5-dev) and -DPELLUCID_WITH_HDF5=ON"},
+                      three_axes};
+constexpr Format net_cdf{{"pellucid_netcdf.so", "NetCDF files", has_net_cdf,
+                          "NetCDF (Debian: libnetcdf-dev) and -DPELLUCID_WITH_NETCDF=ON"},
+                         three_axes};
+constexpr Format vdb{{"pellucid_openvdb.so", "OpenVDB files", has_vdb,
+                      "OpenVDB (Debian: libopenvdb-dev) and -DPELLUCID_WITH_OPENVDB=ON"},
+                     "fog volume"};
 
-constexpr const char* wanted = "array of three or four axes of numbers";
-
-/// Calls a module's function. Both modules stand on Debian's HDF5, which may be in one thread at a
-/// time. Libraries are kept once they are loaded, which takes dlopen() each time to find out.
-template <class Function, class... Arguments>
-void call(const Module& module, const char* name, Arguments&&... arguments) {
-  static_assert(std::is_invocable_v<Function, Arguments...>);
-  const std::lock_guard lock(one_at_a_time);
-  (*reinterpret_cast<Function*>(module_function(module, name)))(arguments...);
-}
-
-GridContents contents_of(const std::filesystem::path& path, const Module& module) {
-  check_input_file(path);
-  GridContents contents;
+/// Calls a module's function in a process of its own: `work` says with what, where its answer goes,
+/// and whether that is well. The module is loaded here, where its own errors can be told.
+template <class Function>
+std::shared_ptr<std::byte> contained(
+    const Format& format, const char* name, const std::filesystem::path& path, std::size_t bytes,
+    const std::function<bool(Function&, std::span<std::byte>)>& work) {
+  const std::uintmax_t file_bytes = check_input_file(path);
+  std::shared_ptr<std::byte> answer;
   try {
-    call<ListGrids>(module, list_grids_name, path, contents);
+    auto* const function = reinterpret_cast<Function*>(module_function(format.module, name));
+    answer = run_contained(
+        bytes, [&](std::span<std::byte> to) { return work(*function, to); }, file_bytes);
   } catch (const Error& error) {
     throw Error(path.string() + ": " + error.what());
   }
-  if (!contents.error.empty()) throw Error(path.string() + ": " + contents.error);
-  if (!contents.arrays.empty()) return contents;
+  if (answer) return answer;
+  throw Error(path.string() + ": the library that reads " + format.module.reads +
+              " fails on it, or takes far more memory or time than its size lets expect; it is "
+              "damaged");
+}
+
+/// Names and messages of libraries may hold anything.
+std::string one_line(std::string text) {
+  std::ranges::replace_if(
+      text, [](char c) { return static_cast<unsigned char>(c) < ' ' || c == '\x7f'; }, ' ');
+  return text;
+}
+
+/// Of what is no volume, in a line.
+std::string list_of(const std::vector<GridOther>& others) {
   std::string list;
-  for (const std::string& other : contents.others) list += (list.empty() ? "" : ", ") + other;
-  throw Error(path.string() + ": has no " + std::string(wanted) +
-              (list.empty() ? "" : "; it has " + list.substr(0, 400)));
+  for (const GridOther& other : others) {
+    list +=
+        (list.empty() ? "" : ", ") + other.name + (other.is.empty() ? "" : " (" + other.is + ")");
+  }
+  return one_line(list.substr(0, 400));
+}
+
+GridContents contents_of(const std::filesystem::path& path, const Format& format) {
+  // Room for the positions along axes; what is not written to is no memory.
+  constexpr std::size_t room = std::size_t{16} << 20;
+  const auto bytes = contained<ListGrids>(format, list_grids_name, path, room,
+                                          [&](ListGrids& list, std::span<std::byte> to) {
+                                            GridContents contents;
+                                            list(path, contents);
+                                            return write_grid_contents(contents, to);
+                                          });
+  std::optional<GridContents> contents = read_grid_contents({bytes.get(), room});
+  if (!contents) throw Error(path.string() + ": its list of arrays is damaged");
+  if (!contents->error.empty()) throw Error(path.string() + ": " + one_line(contents->error));
+  if (!contents->arrays.empty()) return *std::move(contents);
+  const std::string list = list_of(contents->others);
+  throw Error(path.string() + ": has no " + std::string(format.wanted) +
+              (list.empty() ? "" : "; it has " + list));
 }
 
 /// With or without the slash in front.
 const GridArray& choose(const GridContents& contents, const ReadOptions& options,
-                        const std::string& name) {
+                        const Format& format, const std::string& name) {
   if (!options.array) return contents.arrays.front();
   const auto bare = [](const std::string& text) {
     return text.starts_with('/') ? text.substr(1) : text;
@@ -78,14 +127,19 @@ const GridArray& choose(const GridContents& contents, const ReadOptions& options
     if (bare(array.name) == bare(*options.array)) return array;
     list += (list.empty() ? "" : ", ") + array.name;
   }
-  throw Error(name + ": has no array \"" + *options.array + "\", a " + std::string(wanted) +
-              "; it has " + list.substr(0, 400));
+  for (const GridOther& other : contents.others) {
+    if (other.name != *options.array || other.is.empty()) continue;
+    throw Error(name + ": \"" + one_line(other.name) + "\" is " + one_line(other.is));
+  }
+  throw Error(name + ": has no array \"" + *options.array + "\", a " + std::string(format.wanted) +
+              "; it has " + one_line(list.substr(0, 400)));
 }
 
 Volume::Description describe(const GridArray& array, const ReadOptions& options,
                              const std::string& name) {
   Volume::Description description;
   description.name = name;
+  if (array.placement) description.placement = *array.placement;
   for (std::size_t a = 0; a < 3; ++a) {
     description.dimensions[a] = static_cast<int>(array.sides[a]);
     // A spacing that is given is that of the values, wherever the file has them.
@@ -99,47 +153,125 @@ Volume::Description describe(const GridArray& array, const ReadOptions& options,
   return description;
 }
 
-std::vector<VolumeData> read_values(const std::filesystem::path& path, const Module& module,
+constexpr std::array value_types{"u8", "i8", "u16", "i16", "u32", "i32", "f32", "f64"};
+
+/// What stands behind the values that a process hands over: what went wrong, else the types of the
+/// components, by their numbers in value_types.
+class Trailer {
+ public:
+  Trailer(std::span<std::byte> bytes)
+      : error_(bytes.first(longest)), types_(bytes.subspan(longest)) {}
+
+  static std::size_t size(int components) { return longest + static_cast<std::size_t>(components); }
+  void set_error(const std::string& error) const {
+    const std::size_t length = std::min(error.size(), longest - 1);
+    std::memcpy(error_.data(), error.data(), length);
+    error_[length] = std::byte{0};
+  }
+  std::string error() const {
+    const auto end = std::ranges::find(error_, std::byte{0});
+    return {reinterpret_cast<const char*>(error_.data()),
+            static_cast<std::size_t>(end - error_.begin())};
+  }
+  void set_type(std::size_t component, const std::string& type) const {
+    const auto known = std::ranges::find(value_types, type);
+    types_[component] = static_cast<std::byte>(known - value_types.begin());
+  }
+  /// Throws Error where the bytes are none.
+  std::string type(std::size_t component, const std::string& name) const {
+    const auto number = std::to_integer<std::size_t>(types_[component]);
+    if (number < value_types.size()) return value_types[number];
+    throw Error(name + ": cannot be read; it is damaged");
+  }
+
+ private:
+  static constexpr std::size_t longest = 4096;
+  std::span<std::byte> error_, types_;
+};
+
+/// The values in place: whoever has them keeps all that the process handed over.
+VolumeData values_at(const std::shared_ptr<std::byte>& all, std::size_t offset, std::size_t points,
+                     const std::string& type) {
+  VolumeData data = make_volume_data(type, 0);
+  std::visit(
+      [&](auto& values) {
+        using Value = typename std::decay_t<decltype(values)>::value_type;
+        const auto* const first = reinterpret_cast<const Value*>(all.get() + offset);
+        values = DataArray<Value>(std::shared_ptr<const Value>(all, first), points);
+      },
+      data);
+  return data;
+}
+
+std::vector<VolumeData> read_values(const std::filesystem::path& path, const Format& format,
                                     const GridArray& array, ComponentRange range) {
   const std::string name = path.string();
   const std::size_t points = value_count(array.sides, name);
-  check_memory(
-      std::uintmax_t{value_count(points, range.number, name)} * value_size(array.type, name),
-      name + ": its values");
-  GridValues values;
-  call<ReadGrid>(module, read_grid_name, path, array.name, range, values);
-  if (!values.error.empty()) throw Error(name + ": " + values.error);
-  return std::move(values.components);
+  const std::size_t count = value_count(points, range.number, name);
+  check_memory(std::uintmax_t{count} * value_size(array.type, name), name + ": its values");
+  // What is not written to is no memory. Each component begins where any type may.
+  const std::size_t largest =
+      std::max(value_size(array.type, name),
+               array.type_with_missing.empty() ? 0 : value_size(array.type_with_missing, name));
+  constexpr std::size_t alignment = 8;
+  const std::size_t stride = (points * largest + alignment - 1) / alignment * alignment;
+  const std::size_t end = stride * static_cast<std::size_t>(range.number);
+  const auto bytes = contained<ReadGrid>(
+      format, read_grid_name, path, end + Trailer::size(range.number),
+      [&](ReadGrid& read, std::span<std::byte> to) {
+        const Trailer trailer(to.subspan(end));
+        std::size_t component = 0;
+        GridValues values;
+        values.next = [&](const std::string& type) {
+          trailer.set_type(component, type);
+          return to.subspan(component++ * stride, points * value_size(type, name));
+        };
+        read(path, array.name, range, values);
+        trailer.set_error(values.error);
+        return true;
+      });
+  const Trailer trailer({bytes.get() + end, Trailer::size(range.number)});
+  if (const std::string error = trailer.error(); !error.empty()) {
+    throw Error(name + ": " + one_line(error));
+  }
+  std::vector<VolumeData> components;
+  for (std::size_t c = 0; c < static_cast<std::size_t>(range.number); ++c) {
+    const std::string type = trailer.type(c, name);
+    if (value_size(type, name) > largest) throw Error(name + ": cannot be read; it is damaged");
+    components.push_back(values_at(bytes, c * stride, points, type));
+  }
+  return components;
 }
 
 VolumeFile open_grid(const std::filesystem::path& path, const ReadOptions& options,
-                     const Module& module) {
+                     const Format& format) {
   const std::string name = path.string();
   refuse_raw_options(options, name);
-  const GridContents contents = contents_of(path, module);
-  const GridArray array = choose(contents, options, name);
+  const GridContents contents = contents_of(path, format);
+  const GridArray array = choose(contents, options, format, name);
   value_count(array.sides, name);
   VolumeFile file;
   file.description = describe(array, options, name);
   apply_overrides(options, file.description);
   file.components = array.components;
-  file.holds = array.holds + " in \"" + array.name + "\"";
+  file.holds = one_line(array.holds + " in \"" + array.name + "\"");
   file.array = array.name;
   if (options.time) {
     if (array.times.empty()) {
-      throw Error(name + ": \"" + array.name + "\" has no steps in time; leave the time out");
+      throw Error(name + ": \"" + one_line(array.name) +
+                  "\" has no steps in time; leave the time out");
     }
     if (options.component) throw Error(name + ": give a time or a component, not both");
     file.step = static_cast<int>(nearest_step(array.times, options.time));
   }
-  file.read = [path, &module, array](ComponentRange range) {
-    return read_values(path, module, array, range);
+  file.read = [path, &format, array](ComponentRange range) {
+    return read_values(path, format, array, range);
   };
   return file;
 }
 
-std::vector<VolumeArray> list_arrays(const std::filesystem::path& path, const Module& module) {
-  const GridContents contents = contents_of(path, module);
+std::vector<VolumeArray> list_arrays(const std::filesystem::path& path, const Format& format) {
+  const GridContents contents = contents_of(path, format);
   std::vector<VolumeArray> list;
   for (const GridArray& array : contents.arrays) {
     VolumeArray about;
@@ -147,7 +279,7 @@ std::vector<VolumeArray> list_arrays(const std::filesystem::path& path, const Mo
     about.shown = list.empty();
     about.dimensions.assign(array.sides.begin(), array.sides.end());
     for (int c = 0; c < array.components; ++c) {
-      const VolumeData values = read_values(path, module, array, {c, 1}).front();
+      const VolumeData values = read_values(path, format, array, {c, 1}).front();
       about.type = type_name(values);
       about.components.push_back(component_statistics(values, 1).front());
     }
@@ -176,6 +308,14 @@ std::vector<VolumeArray> list_net_cdf_arrays(const std::filesystem::path& path) 
   check_input_file(path);
   check_net_cdf_size(path);
   return list_arrays(path, net_cdf);
+}
+
+VolumeFile open_vdb(const std::filesystem::path& path, const ReadOptions& options) {
+  return open_grid(path, options, vdb);
+}
+
+std::vector<VolumeArray> list_vdb_arrays(const std::filesystem::path& path) {
+  return list_arrays(path, vdb);
 }
 
 }  // namespace pellucid

@@ -13,7 +13,12 @@ namespace pellucid {
 /// else the first. Axes of one entry in front and behind do not count. The file's last axis is x.
 VolumeFile open_hdf5(const std::filesystem::path& path, const ReadOptions& options);
 VolumeFile open_net_cdf(const std::filesystem::path& path, const ReadOptions& options);
+/// Grids of OpenVDB (.vdb) as dense ones of their active box, what is not active by its value as
+/// well: the background. Vectors are components. Level sets, staggered grids, points, and grids
+/// that no affine map places are refused.
+VolumeFile open_vdb(const std::filesystem::path& path, const ReadOptions& options);
 std::vector<VolumeArray> list_hdf5_arrays(const std::filesystem::path& path);
 std::vector<VolumeArray> list_net_cdf_arrays(const std::filesystem::path& path);
+std::vector<VolumeArray> list_vdb_arrays(const std::filesystem::path& path);
 
 }  // namespace pellucid

@@ -2,8 +2,12 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <functional>
+#include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -11,10 +15,11 @@
 
 namespace pellucid {
 
-/// A variable on a grid, in a file of HDF5 or NetCDF, as its module finds it.
+/// A variable on a grid, in a file of HDF5, NetCDF or OpenVDB, as its module finds it.
 struct GridArray {
   std::string name;
   std::string type;                     ///< of its values as they are read, if none is missing
+  std::string type_with_missing;        ///< else; empty: none can be
   std::array<std::int64_t, 3> sides{};  ///< x, y, z: the last axis of the file is x
   int components = 1;
   std::string holds;          ///< what several are: "12 steps (axis time)"
@@ -23,20 +28,29 @@ struct GridArray {
   /// relative error that its type leaves it.
   std::array<std::vector<double>, 3> positions;
   std::array<double, 3> rounding{};
+  std::optional<GridPlacement> placement;  ///< in place of positions
+};
+
+/// What is no volume of numbers.
+struct GridOther {
+  std::string name;
+  std::string is;  ///< why: "a level set: …"; may be empty
 };
 
 /// What a module answers. No exception leaves it; `error` is without the file's name.
 struct GridContents {
   std::vector<GridArray> arrays;
-  std::vector<std::string> others;  ///< names of what is no volume of numbers
+  std::vector<GridOther> others;
   std::string error;
 };
 struct GridValues {
-  std::vector<VolumeData> components;
+  /// Room for all values of one component, the next, of this type.
+  std::function<std::span<std::byte>(const std::string& type)> next;
   std::string error;
 };
 
-/// The functions of such a module, by these names; for one thread at a time, of all modules.
+/// The functions of such a module, by these names. They are called in a process of their own, for
+/// the libraries of these formats do not stand any file that is damaged.
 using ListGrids = void(const std::filesystem::path& path, GridContents& answer);
 using ReadGrid = void(const std::filesystem::path& path, const std::string& array,
                       ComponentRange range, GridValues& answer);

@@ -2,8 +2,10 @@
 #include <hdf5.h>
 
 #include <algorithm>
+#include <cstddef>
 #include <limits>
 #include <optional>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -143,7 +145,7 @@ void list(const std::filesystem::path& path, GridContents& contents) {
     if (auto array = describe(dataset.get(), name)) {
       contents.arrays.push_back(*std::move(array));
     } else {
-      contents.others.push_back(name);
+      contents.others.push_back({name, {}});
     }
   }
 }
@@ -165,20 +167,18 @@ void read(const std::filesystem::path& path, const std::string& name, ComponentR
   const Id memory(H5Screate_simple(1, &points, nullptr), H5Sclose, "the axes of a dataset");
   for (int c = range.first; c < range.first + range.number; ++c) {
     if (axes->components) start[*axes->components] = static_cast<hsize_t>(c);
-    VolumeData data = make_volume_data(array->type, points);
+    const std::span<std::byte> to = values.next(array->type);
+    if (to.size() != points * H5Tget_size(memory_type(array->type))) {
+      throw Error("the file was changed while it was read");
+    }
     const bool done = H5Sselect_hyperslab(space.get(), H5S_SELECT_SET, start.data(), nullptr,
                                           count.data(), nullptr) >= 0 &&
-                      std::visit(
-                          [&](auto& to) {
-                            return H5Dread(dataset.get(), memory_type(array->type), memory.get(),
-                                           space.get(), H5P_DEFAULT, to.writable().data()) >= 0;
-                          },
-                          data);
+                      H5Dread(dataset.get(), memory_type(array->type), memory.get(), space.get(),
+                              H5P_DEFAULT, to.data()) >= 0;
     if (!done) {
       throw Error("HDF5 cannot read the values of \"" + name +
                   "\"; the file is cut off or damaged, or compressed in a way that it lacks");
     }
-    values.components.push_back(std::move(data));
   }
 }
 

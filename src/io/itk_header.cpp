@@ -140,7 +140,9 @@ void find_components(const itk::ImageIOBase& io, const std::string& name, ItkHea
   if (components > static_cast<unsigned>(std::numeric_limits<int>::max())) {
     throw Error(name + ": has " + std::to_string(components) + " components at each point");
   }
-  if (components == 1 && io.GetPixelType() != itk::IOPixelEnum::SCALAR) {
+  // A list of one number at each point is that number.
+  if (components == 1 && io.GetPixelType() != itk::IOPixelEnum::SCALAR &&
+      io.GetPixelType() != itk::IOPixelEnum::VECTOR) {
     throw Error(name + ": its values are no plain numbers; convert the file to float");
   }
   if (components != 1) {
@@ -214,8 +216,15 @@ typename ImageIO::Pointer open_header(const std::filesystem::path& path, const s
 
 std::vector<VolumeData> read_raw_values(const NrrdValues& values, ValueLayout layout,
                                         std::size_t points, ComponentRange range) {
-  const ByteSource source = file_source(values.file);
   layout.big_endian = values.big_endian.value_or(false);
+  if (values.compression) {
+    DataStream stream(values.file, values.offset, *values.compression);
+    stream.skip(values.skip_inside);
+    std::vector<VolumeData> list = read_components(stream, layout, points, range);
+    stream.finish();
+    return list;
+  }
+  const ByteSource source = file_source(values.file);
   layout.offset = values.offset;
   const std::size_t count = value_count(points, layout.components, source.name);
   const std::uintmax_t bytes = std::uintmax_t{count} * value_size(layout.type, source.name);
@@ -327,7 +336,13 @@ VolumeFile open_nrrd_file(const std::filesystem::path& path, const std::string& 
     file.holds = header.holds;
     file.read = [io, type, header, text, points, name](ComponentRange range) {
       ValueLayout layout{type, false, 0, header.components, header.interleaved};
-      if (text.values && (text.values->big_endian || value_size(type, name) == 1)) {
+      const bool order_is_known =
+          text.values && (text.values->big_endian || value_size(type, name) == 1);
+      if (text.values && text.values->compression && !order_is_known) {
+        throw Error(name +
+                    ": the NRRD header does not say the byte order (endian); mend the header");
+      }
+      if (order_is_known) {
         if (text.components_axis > 1) layout.interleaved = false;
         return read_raw_values(*text.values, layout, points, range);
       }

@@ -38,13 +38,15 @@ struct MetaImageHeader : ItkHeader {
 };
 MetaImageHeader read_meta_image_header(const std::filesystem::path& path);
 
-/// Where the values of a NRRD file are that are neither compressed nor text.
+/// Where the values of a NRRD file are that are plain, or compressed as ITK does not read them.
 struct NrrdValues {
   static constexpr std::uintmax_t last_bytes = std::numeric_limits<std::uintmax_t>::max();
 
   std::filesystem::path file;
   std::uintmax_t offset = 0;  ///< last_bytes: they are the file's last
   std::optional<bool> big_endian;
+  std::optional<DataStream::Compression> compression;  ///< begins at the offset
+  std::uintmax_t skip_inside = 0;                      ///< of what is decompressed
 };
 
 /// What the text of a NRRD header says that ITK does not tell.

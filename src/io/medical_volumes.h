@@ -12,10 +12,10 @@ namespace pellucid {
 /// several such axes, complex numbers and 64-bit integers are refused.
 VolumeFile open_nifti(const std::filesystem::path& path, const ReadOptions& options);
 
-/// NRRD, attached (.nrrd) or detached (.nhdr), raw, gzip, ascii or hex. Turned from RAS or LAS to
-/// LPS; other spaces are taken as they are. Cell-centred where all three axes say so. A first or
-/// last axis that is none of space, by its kind or for want of a direction, holds components, and
-/// so does a fourth axis.
+/// NRRD, attached (.nrrd) or detached (.nhdr), raw, gzip, bzip2, ascii or hex. Turned from RAS or
+/// LAS to LPS; other spaces are taken as they are. Cell-centred where all three axes say so. A
+/// first or last axis that is none of space, by its kind or for want of a direction, holds
+/// components, and so does a fourth axis.
 VolumeFile open_nrrd(const std::filesystem::path& path, const ReadOptions& options);
 
 /// MetaImage, .mha or .mhd, raw or zlib; values in one file or in one per slice. Channels and a

@@ -161,11 +161,23 @@ std::vector<VolumeData> read_files(const std::vector<DataFile>& files,
                          points, range);
 }
 
+/// MetaIO reads as many numbers as the header says that there are axes, 2^32 - 3 for -3.
+void check_axes(const std::filesystem::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  std::string line;
+  for (int lines = 0; lines < 100 && std::getline(file, line); ++lines) {
+    if (!line.starts_with("NDims")) continue;
+    if (line.find('-') == std::string::npos) continue;
+    throw Error(path.string() + ": the header says \"NDims\" below 0; mend the header");
+  }
+}
+
 }  // namespace
 
 VolumeFile open_meta_image(const fs::path& path, const ReadOptions& options) {
   const std::string name = path.string();
   refuse_raw_options(options, name);
+  check_axes(path);
   const MetaImageHeader header = read_meta_image_header(path);
   if (header.text) {
     throw Error(name + ": values written as text are not read; save the MetaImage as binary");

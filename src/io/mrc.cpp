@@ -14,6 +14,7 @@
 #include <string_view>
 
 #include "pellucid/scene/error.h"
+#include "widened_source.h"
 
 namespace pellucid {
 
@@ -95,7 +96,7 @@ std::string type_of(const MrcHeader& header, const std::string& name) {
       throw Error(name + ": complex numbers (MRC mode " + std::to_string(mode) +
                   ") are not read; save their magnitude or one part");
     case 12:
-      throw Error(name + ": half floats (MRC mode 12) are not read; convert the file to mode 2");
+      return "f16";
     default:
       throw Error(name + ": MRC mode " + std::to_string(mode) +
                   " is not read; convert the file to mode 2");
@@ -197,7 +198,15 @@ VolumeFile open_mrc(const ByteSource& source, const ReadOptions& options) {
                 std::to_string(extended) + " bytes; mend the header");
   }
   layout.offset = header_bytes + static_cast<std::uintmax_t>(extended);
-  check_size(source, layout, value_count(points, layout.components, name));
+  const std::size_t count = value_count(points, layout.components, name);
+  ByteSource values = source;
+  if (const auto kept = widened_type(layout.type)) {
+    values = widened_source(source, layout, count);
+    layout.type = *kept;
+    layout.big_endian = std::endian::native == std::endian::big;
+    layout.offset = 0;
+  }
+  check_size(values, layout, count);
 
   VolumeFile file;
   file.description.name = name;
@@ -206,8 +215,8 @@ VolumeFile open_mrc(const ByteSource& source, const ReadOptions& options) {
   apply_overrides(options, file.description);
   file.components = layout.components;
   file.holds = std::to_string(layout.components) + " volumes (space group 401)";
-  file.read = [source, layout, points](ComponentRange range) {
-    return read_components(source, layout, points, range);
+  file.read = [values, layout, points](ComponentRange range) {
+    return read_components(values, layout, points, range);
   };
   return file;
 }

@@ -37,37 +37,43 @@ class Header {
     const std::uint64_t records = count();
     read_dimensions();
     skip_attributes();
-    std::uint64_t fixed_end = 0, record_begin = 0, record_size = 0;
+    std::uint64_t fixed_end = 0, record_begin = 0, record_size = 0, unpadded = 0;
     int recorded = 0;
     number(4);
     for (std::uint64_t variables = count(); variables > 0; --variables) {
       check();
       skip_text();
       bool has_records = false;
+      std::uint64_t values = 1;
       for (std::uint64_t n = count(); n > 0; --n) {
         check();
         const std::uint64_t dimension = count();
         if (dimension >= lengths_.size()) fail();
         has_records = has_records || lengths_[dimension] == 0;
+        if (lengths_[dimension] != 0) values = product(values, lengths_[dimension]);
       }
       skip_attributes();
-      number(4);  // the type
-      const std::uint64_t size = count(), begin = number(version_ == 1 ? 4 : 8);
+      const std::uint64_t size = product(values, size_of(number(4)));
+      // What the header says of the size is redundant; NetCDF does not look at it either.
+      count();
+      const std::uint64_t begin = number(version_ == 1 ? 4 : 8);
       if (has_records) {
         if (record_size == 0) record_begin = begin;
-        record_size = sum(record_size, size);
+        record_size = sum(record_size, sum(size, padding(size)));
+        unpadded = size;
         ++recorded;
       } else {
         fixed_end = std::max(fixed_end, sum(begin, size));
       }
     }
-    // The records of one variable alone are not padded, whatever its size says.
-    if (recorded == 1) record_size -= std::min<std::uint64_t>(record_size, 3);
+    // The records of one variable alone are not padded.
+    if (recorded == 1) record_size = unpadded;
     // Files that are being written do not know how many.
     const bool streaming = records == (version_ == 5 ? ~std::uint64_t{0} : 0xffffffffU);
     if (record_size == 0 || records == 0 || streaming) return fixed_end;
-    if (record_size > std::numeric_limits<std::uint64_t>::max() / records) fail();
-    return std::max(fixed_end, sum(record_begin, record_size * records));
+    const std::uint64_t record_end = sum(record_begin, product(record_size, records));
+    // The last value of the last one need not be padded.
+    return std::max(fixed_end, record_end - (recorded == 1 ? 0 : 3));
   }
 
   std::uintmax_t size() const { return source_.size; }
@@ -84,6 +90,18 @@ class Header {
     if (a > std::numeric_limits<std::uint64_t>::max() - b) fail();
     return a + b;
   }
+  std::uint64_t product(std::uint64_t a, std::uint64_t b) const {
+    if (b != 0 && a > std::numeric_limits<std::uint64_t>::max() / b) fail();
+    return a * b;
+  }
+  /// To whole words.
+  static std::uint64_t padding(std::uint64_t bytes) { return (4 - bytes % 4) % 4; }
+  /// Bytes of a value, by its type.
+  std::uint64_t size_of(std::uint64_t type) const {
+    constexpr std::array<std::uint64_t, 12> sizes{0, 1, 1, 2, 4, 4, 8, 1, 2, 4, 8, 8};
+    if (type >= sizes.size()) fail();
+    return sizes[type];
+  }
 
   std::uint64_t number(std::size_t bytes) {
     std::array<std::byte, 8> buffer{};
@@ -98,7 +116,7 @@ class Header {
   std::uint64_t count() { return number(version_ == 5 ? 8 : 4); }
 
   void skip(std::uint64_t bytes) {
-    at_ = sum(at_, sum(bytes, (4 - bytes % 4) % 4));
+    at_ = sum(at_, sum(bytes, padding(bytes)));
     check();
   }
   void skip_text() { skip(count()); }
@@ -111,16 +129,11 @@ class Header {
     }
   }
   void skip_attributes() {
-    // Bytes of a value, by its type.
-    constexpr std::array<std::uint64_t, 12> sizes{0, 1, 1, 2, 4, 4, 8, 1, 2, 4, 8, 8};
     number(4);
     for (std::uint64_t n = count(); n > 0; --n) {
       skip_text();
-      const std::uint64_t type = number(4);
-      if (type >= sizes.size()) fail();
-      const std::uint64_t values = count();
-      if (values > source_.size) fail();
-      skip(values * sizes[type]);
+      const std::uint64_t bytes = size_of(number(4));
+      skip(product(count(), bytes));
     }
   }
 
@@ -136,8 +149,7 @@ void check_net_cdf_size(const std::filesystem::path& path) {
   Header header(path);
   if (!header.is_classic()) return;
   const std::uint64_t end = header.end();
-  // The last variable need not be padded.
-  if (end <= header.size() + 3) return;
+  if (end <= header.size()) return;
   throw Error(header.name() + ": the file has " + std::to_string(header.size()) +
               " bytes, but its header says " + std::to_string(end) + "; it is cut off");
 }

@@ -55,6 +55,8 @@ std::optional<GridArray> describe(const NetCdfVariable& variable) {
   GridArray array;
   array.name = variable.name;
   array.type = kept_type(variable);
+  if (!meaning_of(variable).missing.empty())
+    array.type_with_missing = fits_float(array.type) ? "f32" : "f64";
   for (std::size_t a = 0; a < 3; ++a) {
     const std::size_t axis = axes->first + 2 - a;
     array.sides[a] = static_cast<std::int64_t>(variable.sides[axis]);
@@ -139,7 +141,7 @@ void list(const std::filesystem::path& path, GridContents& contents) {
     if (auto array = describe(variable)) {
       contents.arrays.push_back(*std::move(array));
     } else {
-      contents.others.push_back(variable.name);
+      contents.others.push_back({variable.name, {}});
     }
   }
 }
@@ -161,8 +163,15 @@ void read(const std::filesystem::path& path, const std::string& name, ComponentR
   const NetCdfMeaning meaning = meaning_of(*variable);
   for (int c = range.first; c < range.first + range.number; ++c) {
     if (axes->components) start[*axes->components] = static_cast<std::size_t>(c);
-    values.components.push_back(
-        with_meaning(read_stored(*variable, start, count, points), meaning));
+    const VolumeData data = with_meaning(read_stored(*variable, start, count, points), meaning);
+    std::visit(
+        [&](const auto& of_type) {
+          const auto all = std::as_bytes(std::span(of_type.data(), of_type.size()));
+          const std::span<std::byte> to = values.next(std::string(type_name(data)));
+          if (to.size() != all.size()) throw Error("the file was changed while it was read");
+          std::ranges::copy(all, to.begin());
+        },
+        data);
   }
 }
 

@@ -293,16 +293,24 @@ bool is_left_anterior_superior(const Header& header) {
   return space == "las" || space == "leftanteriorsuperior";
 }
 
-// Where the values are if they lie in one file as they are in memory, or nothing: ITK then finds
-// and decodes them.
+bool is_bzip2(const Header& header) {
+  const Line* encoding = find_field(header, "encoding");
+  return encoding != nullptr && in_small_letters(encoding->value).starts_with("bz");
+}
+
+// Where the values are if they lie in one file as they are in memory, or compressed by bzip2, which
+// Debian's ITK lacks; or nothing: ITK then finds and decodes them.
 std::optional<NrrdValues> raw_values(const Header& header, const fs::path& path) {
   const auto says = [&](std::string_view field) {
     const Line* line = find_field(header, field);
     return line == nullptr ? std::string() : in_small_letters(line->value);
   };
-  NrrdValues values{path, header.bytes, {}};
-  if (says("encoding") != "raw" || (!says("lineskip").empty() && says("lineskip") != "0"))
+  NrrdValues values{path, header.bytes, {}, {}, 0};
+  if (is_bzip2(header)) values.compression = DataStream::Compression::bzip2;
+  if ((says("encoding") != "raw" && !values.compression) ||
+      (!says("lineskip").empty() && says("lineskip") != "0")) {
     return {};
+  }
   if (says("endian") == "little" || says("endian") == "big") {
     values.big_endian = says("endian") == "big";
   }
@@ -313,7 +321,11 @@ std::optional<NrrdValues> raw_values(const Header& header, const fs::path& path)
     std::error_code error;
     if (!fs::is_regular_file(values.file, error)) return {};
   }
-  if (says("byteskip") == "-1") {
+  if (values.compression && !says("byteskip").empty()) {
+    const std::optional<std::uint64_t> skipped = number_in(says("byteskip"));
+    if (!skipped) return {};
+    values.skip_inside = *skipped;
+  } else if (says("byteskip") == "-1") {
     values.offset = NrrdValues::last_bytes;
   } else if (!says("byteskip").empty()) {
     const std::optional<std::uint64_t> skipped = number_in(says("byteskip"));
@@ -337,17 +349,17 @@ VolumeFile open_nrrd(const fs::path& path, const ReadOptions& options) {
   refuse_raw_options(options, name);
   check_input_file(path);
   const Header header = read_header(path);
-  const Line* encoding = find_field(header, "encoding");
-  if (encoding != nullptr && in_small_letters(encoding->value).starts_with("bz")) {
-    throw Error(name +
-                ": its values are compressed with bzip2, which is not read; save it with gzip");
-  }
   NrrdText text;
   text.count = header_count(header, name);
   text.components_axis = find_components_axis(header, name);
   check_spacing(header, text.components_axis, options, name);
   text.left_anterior_superior = is_left_anterior_superior(header);
   text.values = raw_values(header, path);
+  if (is_bzip2(header) && !text.values) {
+    throw Error(name +
+                ": its values are compressed with bzip2, which is read of one file, without a line "
+                "skip; save it with gzip");
+  }
   const std::vector<std::string> mended = mended_header(header, text.components_axis, path);
   if (mended.empty()) return open_nrrd_file(path, name, text, options);
   // A space is kept beside directions alone.

@@ -17,6 +17,7 @@
 #include "net_cdf_size.h"
 #include "pellucid/scene/error.h"
 #include "plot3d.h"
+#include "vtk_collection.h"
 #include "vtk_file_kind.h"
 #include "vtk_module.h"
 #include "vtk_xml_end.h"
@@ -112,7 +113,7 @@ MeshBlocks read_blocks(const std::filesystem::path& path, const MeshReadOptions&
 
 bool is_mesh_file(const std::filesystem::path& path) {
   const std::optional<VtkFileKind> kind = vtk_file_kind(path);
-  if (kind && kind->is_volume()) return false;
+  if ((kind && kind->is_volume()) || is_image_collection(path)) return false;
   return format_by_extension(path).has_value() || format_by_content(path).has_value();
 }
 

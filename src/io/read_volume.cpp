@@ -14,13 +14,16 @@
 #include "dat_header.h"
 #include "dicom.h"
 #include "grid_files.h"
+#include "gzip_source.h"
 #include "image_stack.h"
 #include "input_file.h"
+#include "ivf_header.h"
 #include "medical_volumes.h"
 #include "mrc.h"
 #include "pellucid/io/dicom_series.h"
 #include "pellucid/io/read_mesh.h"
 #include "pellucid/scene/error.h"
+#include "vtk_collection.h"
 #include "vtk_file_kind.h"
 #include "vtk_volume.h"
 
@@ -42,32 +45,61 @@ struct Format {
 
 constexpr Opener open_raw_file = open_bytes<open_raw>;
 
-constexpr std::array formats{
-    Format{".nii", open_nifti},           Format{".nii.gz", open_nifti},
-    Format{".hdr", open_nifti},           Format{".hdr.gz", open_nifti},
-    Format{".img", open_nifti},           Format{".img.gz", open_nifti},
-    Format{".nrrd", open_nrrd},           Format{".nhdr", open_nrrd},
-    Format{".mha", open_meta_image},      Format{".mhd", open_meta_image},
-    Format{".npy", open_bytes<open_npy>}, Format{".slc", open_bytes<open_slc>},
-    Format{".vti", open_vtk_volume},      Format{".pvti", open_vtk_volume},
-    Format{".vtr", open_vtk_volume},      Format{".pvtr", open_vtk_volume},
-    Format{".vtk", open_vtk_volume},      Format{".raw", open_raw_file},
-    Format{".dcm", open_dicom},           Format{".ima", open_dicom},
-    Format{".tif", open_stack},           Format{".tiff", open_stack},
-    Format{".png", open_stack},           Format{".mrc", open_bytes<open_mrc>},
-    Format{".map", open_bytes<open_mrc>}, Format{".rec", open_bytes<open_mrc>},
-    Format{".st", open_bytes<open_mrc>},  Format{".ccp4", open_bytes<open_mrc>},
-    Format{".raw.gz", open_raw_gzip},     Format{".h5", open_hdf5},
-    Format{".hdf5", open_hdf5},           Format{".he5", open_hdf5},
-    Format{".nc", open_net_cdf},          Format{".nc4", open_net_cdf},
-    Format{".cdf", open_net_cdf}};
+VolumeFile open_mrc_file(const std::filesystem::path& path, const ReadOptions& options) {
+  return open_mrc(plain_or_gzip_source(path), options);
+}
+
+constexpr std::array formats{Format{".nii", open_nifti},
+                             Format{".nii.gz", open_nifti},
+                             Format{".hdr", open_nifti},
+                             Format{".hdr.gz", open_nifti},
+                             Format{".img", open_nifti},
+                             Format{".img.gz", open_nifti},
+                             Format{".nrrd", open_nrrd},
+                             Format{".nhdr", open_nrrd},
+                             Format{".mha", open_meta_image},
+                             Format{".mhd", open_meta_image},
+                             Format{".npy", open_bytes<open_npy>},
+                             Format{".slc", open_bytes<open_slc>},
+                             Format{".vti", open_vtk_volume},
+                             Format{".pvti", open_vtk_volume},
+                             Format{".vtr", open_vtk_volume},
+                             Format{".pvtr", open_vtk_volume},
+                             Format{".vtk", open_vtk_volume},
+                             Format{".raw", open_raw_file},
+                             Format{".dcm", open_dicom},
+                             Format{".ima", open_dicom},
+                             Format{".tif", open_stack},
+                             Format{".tiff", open_stack},
+                             Format{".png", open_stack},
+                             Format{".mrc", open_mrc_file},
+                             Format{".map", open_mrc_file},
+                             Format{".rec", open_mrc_file},
+                             Format{".st", open_mrc_file},
+                             Format{".ccp4", open_mrc_file},
+                             Format{".raw.gz", open_raw_gzip},
+                             Format{".h5", open_hdf5},
+                             Format{".hdf5", open_hdf5},
+                             Format{".he5", open_hdf5},
+                             Format{".nc", open_net_cdf},
+                             Format{".nc4", open_net_cdf},
+                             Format{".cdf", open_net_cdf},
+                             Format{".vdb", open_vdb},
+                             Format{".ivf", open_ivf},
+                             Format{".mrc.gz", open_mrc_file},
+                             Format{".map.gz", open_mrc_file},
+                             Format{".rec.gz", open_mrc_file},
+                             Format{".st.gz", open_mrc_file},
+                             Format{".ccp4.gz", open_mrc_file}};
 
 /// What lists the arrays of files that are read by it; null where they have no names.
 std::vector<VolumeArray> (*lister_of(Opener open))(const std::filesystem::path&) {
-  return open == open_vtk_volume ? list_vtk_arrays
-         : open == open_hdf5     ? list_hdf5_arrays
-         : open == open_net_cdf  ? list_net_cdf_arrays
-                                 : nullptr;
+  return open == open_vtk_volume         ? list_vtk_arrays
+         : open == open_hdf5             ? list_hdf5_arrays
+         : open == open_net_cdf          ? list_net_cdf_arrays
+         : open == open_vdb              ? list_vdb_arrays
+         : open == open_image_collection ? list_collection_arrays
+                                         : nullptr;
 }
 
 const Format* format_of(std::string_view file_name) {
@@ -83,6 +115,7 @@ const Format* format_of(std::string_view file_name) {
 /// By the extension; VTK's files, of whatever name, by their first bytes.
 Opener opener_of(const std::filesystem::path& path) {
   const Format* const format = format_of(path.filename().string());
+  if (is_image_collection(path)) return open_image_collection;
   const std::optional<VtkFileKind> kind = vtk_file_kind(path);
   if (kind && kind->is_volume() && (format == nullptr || format->open != open_raw_file)) {
     return open_vtk_volume;

@@ -98,11 +98,14 @@ std::size_t value_size(const std::string& type, const std::string& name) {
 }
 
 void check_size(const ByteSource& source, const ValueLayout& layout, std::size_t count) {
-  const std::uintmax_t bytes = std::uintmax_t{count} * value_size(layout.type, source.name);
-  if (layout.offset <= source.size && source.size - layout.offset >= bytes) return;
+  check_bytes(source, layout.offset, std::uintmax_t{count} * value_size(layout.type, source.name));
+}
+
+void check_bytes(const ByteSource& source, std::uintmax_t offset, std::uintmax_t bytes) {
+  if (offset <= source.size && source.size - offset >= bytes) return;
   throw Error(source.name + ": the file has " + std::to_string(source.size) +
               " bytes, but its header says that " + std::to_string(bytes) +
-              " bytes of values begin at byte " + std::to_string(layout.offset) +
+              " bytes of values begin at byte " + std::to_string(offset) +
               "; it is cut off or its header is wrong");
 }
 

@@ -47,6 +47,8 @@ std::size_t value_size(const std::string& type, const std::string& name);
 /// Throws Error where the source ends before the last of `count` values, those of all components.
 /// There may be more behind it.
 void check_size(const ByteSource& source, const ValueLayout& layout, std::size_t count);
+/// The same of so many bytes of values from `offset` on.
+void check_bytes(const ByteSource& source, std::uintmax_t offset, std::uintmax_t bytes);
 
 /// Memory for so many values. Throws Error where there is not enough.
 VolumeData make_values(const std::string& type, std::size_t count, const std::string& name);

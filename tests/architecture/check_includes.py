@@ -51,6 +51,8 @@ OTHER_PROJECTS = [
     (re.compile(r"^vtk.*\.h$"), "VTK::CommonCore"),
     (re.compile(r"^hdf5\.h$"), "hdf5"),
     (re.compile(r"^netcdf\.h$"), "netcdf"),
+    (re.compile(r"^openvdb/"), "openvdb"),
+    (re.compile(r"^bzlib\.h$"), "BZip2::BZip2"),
 ]
 
 INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]')

@@ -1,8 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
+import base64
 import json
 import os
 import struct
 import unittest
+import zlib
 
 from program import HAZE, ProgramTest, npy, ramp
 
@@ -249,6 +251,48 @@ class NetCdf(ProgramTest):
     def test_cut_off(self):
         self.write("cut.nc", net_cdf()[:-60])
         self.fail_with("cut off", "info", "cut.nc")
+
+
+# Written by OpenVDB 10.0.1: float grids "density" (0 to 23) and "heat" (100 to 123) of 4 x 3 x 2 voxels of 1/2.
+OPENVDB = (
+    "eNrt2j9oE1EABvAXo1bEP3EoOGbSKWAv1zadksaulYJ/Rs93l5d6cH9C7nIk4NCxYydxdHSsm4vgKCIiUkREJIiIiEgRcfZ73J1N"
+    "ghUcKkq+H3x87y7vXV5y6ys3V64JGCLHRapg1KQyFo25iqy25yqmsaQqS4u2U6mZJm7UjHl7wdETDyEzSEsFkRsPShhe6Spltb1Q"
+    "xta8ZVpVPe1W9tyH59K+fj5tvfwYcgRxPBlFRzGI4q4brOuttMP1chJ6PV+d1FeupyzbDvuWL/t6RaKcqnsCg2L2qAIyMdMNxmaO"
+    "KuUzndDvdFUUuWGw9/36OdKJ3USVE+n1VHQmn95SnhyoloWf2NKzrPyOvjGbbeOntaxP5ct95Vv2IFaR3pgbxAum/ge27h8e31QS"
+    "9pWHrfWCeGzi2ex5enogfbW345H3cBrDq4HbDrv+ZUd6alV20lXD+p+1aPy6S/v0bn2yR/+MwsQbmLwmIiIiIiIiIiIiIiIiIiKi"
+    "/xAPABBNsWKx+Ns+6PWZxrIQGw0ELZC7+rouxJoe4/4muoTc05/j+gb6EXoLXUa2kQauO+gh+g76AvJgWR/TuqlkvN/JuNvZSbid"
+    "1bR7l9KegpNxF7M++JNx+UvgsTgiIiIiIiIiIiIiIiIiIiL6W3gAgGiK/QPH4h43hRgiz5GPyCtkF3mCvENeIJ+Q18hX5CnyHtlB"
+    "PiNvkG/IM+QD8hL5grxFvjd/AAiVBFw="
+)
+
+
+@unittest.skipUnless(os.environ.get("PELLUCID_HAS_OPENVDB") == "1",
+                     "the program was built without OpenVDB")
+class OpenVdb(ProgramTest):
+    def setUp(self):
+        super().setUp()
+        self.write("a.vdb", zlib.decompress(base64.b64decode(OPENVDB)))
+
+    def test_grids(self):
+        report = self.report("info", "a.vdb")
+        self.assertEqual(report["array"], "density")
+        self.assertEqual(report["dimensions"], [4, 3, 2])
+        self.assertEqual(report["spacing"], [0.5, 0.5, 0.5])
+        self.assertEqual(report["range"], [0, 23])
+        self.assertEqual([array["name"] for array in report["arrays"]], ["density", "heat"])
+        self.assertEqual(self.report("info", "a.vdb", "--array", "heat")["range"], [100, 123])
+        self.fail_with("it has density, heat", "info", "a.vdb", "--array", "cold")
+        self.succeed("convert", "a.vdb", "--array", "heat", "-o", "a.raw", "-q")
+        self.assertEqual(self.read("a.raw"), struct.pack("<24f", *range(100, 124)))
+
+    def test_a_picture(self):
+        self.succeed("render", "a.vdb", "-o", "a.exr", "--size", "16", "--save-scene", "scene.json")
+        self.succeed("render", "scene.json", "-o", "b.exr")
+        self.assertTrue(self.report("compare", "a.exr", "b.exr")["identical"])
+
+    def test_cut_off(self):
+        self.write("cut.vdb", zlib.decompress(base64.b64decode(OPENVDB))[:-60])
+        self.fail_with("cut.vdb: ", "info", "cut.vdb")
 
 
 if __name__ == "__main__":

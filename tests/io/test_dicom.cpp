@@ -5,6 +5,12 @@
 #include <string>
 #include <vector>
 
+#ifdef PELLUCID_HAVE_GDCM
+#include <gdcmImageChangeTransferSyntax.h>
+#include <gdcmImageReader.h>
+#include <gdcmImageWriter.h>
+#endif
+
 #include "dicom_files.h"
 #include "pellucid/io/dicom_series.h"
 #include "pellucid/io/read_volume.h"
@@ -506,6 +512,63 @@ TEST_F(DicomTest, RunLengthsAreDecodedByGdcm) {
   });
   EXPECT_TRUE(contains(refused(), "GDCM cannot decompress"));
   EXPECT_EQ(::testing::internal::GetCapturedStderr(), "");
+}
+
+// Compressed by GDCM, as other programs do it: what reads them is another part of it. Its encoder
+// of JPEG 2000 writes beyond its buffer for images of 5 × 4.
+TEST_F(DicomTest, JpegIsDecodedByGdcm) {
+  constexpr int columns = 64, rows = 48, slices = 3;
+  const auto value = [](int x, int y, int z) { return 2 * x + y + 20 * z; };
+  const auto write_slices = [&]<class Value>(Value) {
+    write_series([&](DicomSliceFile& file, int k) {
+      constexpr int bits = 8 * sizeof(Value);
+      file.set(0x00280010, rows).set(0x00280011, columns);
+      file.set(0x00280100, bits).set(0x00280101, bits).set(0x00280102, bits - 1);
+      std::vector<Value> values;
+      for (int y = 0; y < rows; ++y) {
+        for (int x = 0; x < columns; ++x) values.push_back(static_cast<Value>(value(x, y, k)));
+      }
+      file.pixels = bytes_of(values);
+    });
+  };
+  const auto compress = [&](gdcm::TransferSyntax::TSType syntax) {
+    for (const auto& entry : std::filesystem::directory_iterator(folder_)) {
+      gdcm::ImageReader reader;
+      reader.SetFileName(entry.path().c_str());
+      ASSERT_TRUE(reader.Read());
+      gdcm::ImageChangeTransferSyntax change;
+      change.SetTransferSyntax(syntax);
+      change.SetInput(reader.GetImage());
+      ASSERT_TRUE(change.Change());
+      gdcm::ImageWriter writer;
+      writer.SetFile(reader.GetFile());
+      writer.SetImage(change.GetOutput());
+      writer.SetFileName(entry.path().c_str());
+      ASSERT_TRUE(writer.Write());
+      EXPECT_TRUE(contains(read(entry.path()), gdcm::TransferSyntax::GetTSString(syntax)));
+    }
+  };
+  const auto expect_values = [&](const std::string& type, double tolerance) {
+    const Volume volume = read_volume(folder_);
+    EXPECT_EQ(type_name(volume.data()), type);
+    ASSERT_EQ(volume.description().dimensions, (std::array<int, 3>{columns, rows, slices}));
+    for (int i = 0; i < columns * rows * slices; ++i) {
+      const int x = i % columns, y = i / columns % rows, z = i / columns / rows;
+      ASSERT_NEAR(value_at(volume, x, y, z), value(x, y, z), tolerance) << i;
+    }
+  };
+  using gdcm::TransferSyntax;
+  for (const auto syntax :
+       {TransferSyntax::JPEGLosslessProcess14, TransferSyntax::JPEGLosslessProcess14_1,
+        TransferSyntax::JPEGLSLossless, TransferSyntax::JPEG2000Lossless}) {
+    SCOPED_TRACE(TransferSyntax::GetTSString(syntax));
+    write_slices(std::uint16_t{});
+    compress(syntax);
+    expect_values("u16", 0);
+  }
+  write_slices(std::uint8_t{});
+  compress(TransferSyntax::JPEGBaselineProcess1);
+  expect_values("u8", 6);
 }
 #endif
 

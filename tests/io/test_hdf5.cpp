@@ -140,8 +140,10 @@ TEST_F(Hdf5, AFourthAxisIsComponents) {
   add("colors", {3, 4, 5, 3}, H5T_IEEE_F32LE, H5T_NATIVE_FLOAT, colors.data(), true);
   add("steps", {7, 3, 4, 5}, H5T_IEEE_F32LE, H5T_NATIVE_FLOAT, steps.data());
   add("one", {1, 1, 3, 4, 5}, H5T_IEEE_F32LE, H5T_NATIVE_FLOAT, steps.data());
+  add("behind", {7, 3, 4, 5, 1}, H5T_IEEE_F32LE, H5T_NATIVE_FLOAT, steps.data());
   EXPECT_EQ(test::value_at(read("colors", 2), 1, 0, 0), 5);
   EXPECT_EQ(test::value_at(read("steps", 2), 1, 0, 0), 121);
+  EXPECT_EQ(test::value_at(read("behind", 2), 1, 0, 0), 121);
   expect_counting(read("one"), "f32");
   EXPECT_TRUE(contains(error_of([&] { read("colors"); }), "3 components (axis 3)"));
   EXPECT_TRUE(contains(error_of([&] { read("steps"); }), "7 components (axis 0)"));

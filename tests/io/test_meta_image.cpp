@@ -225,6 +225,12 @@ TEST_F(MetaImageTest, NothingIsPrinted) {
   EXPECT_EQ(::testing::internal::GetCapturedStderr(), "");
 }
 
+// MetaIO goes on reading numbers, 2^32 - 3 of them.
+TEST_F(MetaImageTest, FewerAxesThanNoneAreRefused) {
+  write("a.mha", "ObjectType = Image\nNDims =-3\nDimSize = 5 4 3\nOffset = 1 2 3\n");
+  EXPECT_TRUE(test::contains(test::error_of([&] { read_volume(path("a.mha")); }), "below 0"));
+}
+
 }  // namespace
 }  // namespace pellucid
 

@@ -83,9 +83,63 @@ TEST_F(MrcTest, ModesInBothByteOrders) {
   expect_mode<std::uint16_t>(6, "u16");
   MrcFile file;
   EXPECT_TRUE(contains(error(file.set(4, {4})), "complex"));
-  EXPECT_TRUE(contains(error(file.set(4, {12})), "half floats"));
   EXPECT_TRUE(contains(error(file.set(4, {101})), "mode 101"));
   EXPECT_TRUE(contains(error(file.set(4, {-1})), "mode -1"));
+}
+
+TEST_F(MrcTest, HalfFloats) {
+  MrcFile file;
+  file.set(4, {12});
+  expect_counting(parse(file, bytes_of(test::counting_halves())), "f32");
+  // 1/2, −2, the smallest number, NaN.
+  std::vector<std::uint16_t> values = test::counting_halves();
+  values[0] = 0x3800;
+  values[1] = 0xc000;
+  values[2] = 0x0001;
+  values[3] = 0x7e00;
+  const Volume volume = parse(file, bytes_of(values));
+  EXPECT_EQ(value_at(volume, 0, 0, 0), 0.5);
+  EXPECT_EQ(value_at(volume, 1, 0, 0), -2);
+  EXPECT_EQ(value_at(volume, 2, 0, 0), std::ldexp(1., -24));
+  EXPECT_EQ(volume.statistics().nan, 1U);
+  values[3] = 0xfc00;
+  EXPECT_TRUE(contains(error(file, bytes_of(values)), "infinite"));
+  EXPECT_TRUE(contains(error(file, std::string(119, '\0')), "cut off"));
+  file.big_endian = true;
+  expect_counting(parse(file, test::swapped_bytes_of(test::counting_halves())), "f32");
+}
+
+TEST_F(MrcTest, Gzipped) {
+  MrcFile file;
+  file.set(24, {7});
+  const std::string whole = file.header() + "1234567" + bytes_of(counting());
+  const std::string packed = test::gzipped(whole);
+  for (const char* name : {"a.mrc.gz", "a.map.gz", "a.CCP4.GZ"}) {
+    expect_counting(read_volume(write(name, packed)), "f32");
+  }
+  // What is not gzipped, and what is by another name.
+  expect_counting(read_volume(write("b.map.gz", whole)), "f32");
+  expect_counting(read_volume(write("b.map", packed)), "f32");
+  // The last four bytes only repeat the length.
+  for (std::size_t length = 0; length < packed.size() - 4; length += 7) {
+    write("cut.mrc.gz", packed.substr(0, length));
+    error_of([&] { read_volume(path("cut.mrc.gz")); });
+  }
+  write("short.mrc.gz", test::gzipped(whole.substr(0, whole.size() - 1)));
+  EXPECT_TRUE(contains(error_of([&] { read_volume(path("short.mrc.gz")); }), "cut off"));
+}
+
+TEST_F(MrcTest, AStackOfGzippedVolumesGivesAnyOfThem) {
+  MrcFile file;
+  file.set(3, {6}).set(10, {3}).set(23, {401});
+  std::vector<float> values = counting();
+  for (int i = 60; i < 120; ++i) values.push_back(static_cast<float>(i));
+  write("a.mrc.gz", test::gzipped(file.header() + bytes_of(values)));
+  ReadOptions options;
+  options.component = 1;
+  EXPECT_EQ(value_at(read_volume(path("a.mrc.gz"), options), 4, 3, 2), 119);
+  options.component = 0;
+  expect_counting(read_volume(path("a.mrc.gz"), options), "f32");
 }
 
 TEST_F(MrcTest, UnsignedBytesOfOldFiles) {

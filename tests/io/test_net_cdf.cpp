@@ -100,6 +100,47 @@ TEST_F(NetCdf, ClassicByteByByte) {
   }
 }
 
+// What a header says of a variable's bytes is redundant: the lengths of its axes count.
+TEST_F(NetCdf, AxesBeyondTheFileAreRefused) {
+  std::string bytes = classic();
+  const std::size_t length_of_y = bytes.find('y') + 4;
+  bytes[length_of_y + 2] = 1;  // 260 in place of 4
+  write("a.nc", bytes);
+  EXPECT_TRUE(contains(error_of([&] { parse(); }), "header says 15748"));
+  // One byte of the last value.
+  bytes = classic();
+  write("a.nc", bytes.substr(0, bytes.size() - 1));
+  EXPECT_TRUE(contains(error_of([&] { parse(); }), "cut off"));
+}
+
+TEST_F(NetCdf, RecordsAreCountedWithTheirPadding) {
+  for (const int variables : {1, 2}) {
+    SCOPED_TRACE(variables);
+    ok(nc_create(path("a.nc").c_str(), NC_CLOBBER, &file_));
+    int axes[4] = {}, id = 0;
+    ok(nc_def_dim(file_, "t", NC_UNLIMITED, &axes[0]));
+    for (int a = 1; a < 4; ++a)
+      ok(nc_def_dim(file_, std::string(1, "tzyx"[a]).c_str(), 3, &axes[a]));
+    for (int v = 0; v < variables; ++v) {
+      ok(nc_def_var(file_, std::string(1, static_cast<char>('a' + v)).c_str(), NC_BYTE, 4, axes,
+                    &id));
+    }
+    ok(nc_enddef(file_));
+    const std::vector<signed char> values(81, 5);
+    const std::size_t start[4] = {}, count[4] = {3, 3, 3, 3};
+    for (int v = 0; v < variables; ++v)
+      ok(nc_put_vara_schar(file_, v, start, count, values.data()));
+    finish();
+    const std::string whole = ScratchFolder::read(path("a.nc"));
+    ReadOptions options;
+    options.array = variables == 1 ? "a" : "b";
+    options.component = 2;
+    EXPECT_EQ(read_volume(path("a.nc"), options).statistics().minimum, 5);
+    write("a.nc", whole.substr(0, whole.size() - 4));
+    EXPECT_TRUE(contains(error_of([&] { read_volume(path("a.nc"), options); }), "cut off"));
+  }
+}
+
 TEST_F(NetCdf, EveryTypeOfEveryFormat) {
   for (const int mode : {NC_CLOBBER, NC_CLOBBER | NC_64BIT_OFFSET, NC_CLOBBER | NC_64BIT_DATA,
                          NC_CLOBBER | NC_NETCDF4}) {
@@ -216,6 +257,25 @@ TEST_F(NetCdf, StepsInTime) {
   EXPECT_TRUE(contains(error_of([&] { read_volume(path("a.nc"), options); }), "not both"));
   options.time.reset();
   EXPECT_EQ(test::value_at(read_volume(path("a.nc"), options), 4, 3, 2), 119);
+}
+
+TEST_F(NetCdf, PositionsAreScaledAndThoseOfAGroupAround) {
+  create(NC_CLOBBER | NC_NETCDF4);
+  const int x = define("x", NC_SHORT, 3, 1);
+  const double scale = 0.25, offset = 10;
+  ok(nc_put_att_double(file_, x, "scale_factor", NC_DOUBLE, 1, &scale));
+  ok(nc_put_att_double(file_, x, "add_offset", NC_DOUBLE, 1, &offset));
+  int group = -1, id = -1;
+  ok(nc_def_grp(file_, "inner", &group));
+  ok(nc_def_var(group, "v", NC_DOUBLE, 3, axes_ + 1, &id));
+  ok(nc_enddef(file_));
+  ok(nc_put_var_double(group, id, counting<double>().data()));
+  const short places[] = {0, 2, 4, 6, 8};
+  ok(nc_put_var_short(file_, x, places));
+  finish();
+  const Volume volume = parse("inner/v");
+  EXPECT_EQ(volume.description().placement.spacing.x, 0.5);
+  expect_near(world_of(volume, 4, 0, 0), {12, 0, 0}, 0);
 }
 
 TEST_F(NetCdf, GroupsAndWhatIsNoVolume) {

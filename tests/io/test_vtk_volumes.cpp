@@ -210,6 +210,12 @@ TEST_F(VtkVolumes, RectilinearGridsOfOneDistanceAreUniform) {
   EXPECT_TRUE(volume.description().coordinates[0].empty());
   expect_near(volume.description().placement.spacing, {0.2, 5, 2}, 1e-7);
   expect_near(world_of(volume, 2, 1, 1), {0.5, 4, 2}, 1e-7);
+  EXPECT_TRUE(
+      parse(rectilinear("1000.1 1000.2 1000.3", values)).description().coordinates[0].empty());
+  EXPECT_FALSE(parse(rectilinear("1000.1 1000.2 1000.3001", values, "double"))
+                   .description()
+                   .coordinates[0]
+                   .empty());
   const Volume cells = parse(rectilinear("0 1 2", "CELL_DATA 2\n" + scalars("float", "7 8")));
   EXPECT_EQ(cells.description().dimensions, (std::array<int, 3>{2, 1, 1}));
   expect_near(world_of(cells, 1, 0, 0), {1.5, 1.5, 1}, 0);
@@ -289,6 +295,25 @@ TEST_F(VtkVolumes, DirectionsAreTheColumnsOfTheMatrix) {
   expect_near(world_of(volume, 2, 0, 0), {1, 3, -1}, 0);
   expect_near(world_of(volume, 0, 3, 0), {-2, 2, -1}, 0);
   EXPECT_EQ(parse(image.text(), "c", "a.vti").world_corners(), volume.world_corners());
+}
+
+TEST_F(VtkVolumes, LegacyFilesOfFewBytesHaveFewPoints) {
+  const std::string error = refused(
+      "# vtk DataFile Version 3.0\ntitle\nASCII\nDATASET STRUCTURED_POINTS\nDIMENSIONS 100 100 "
+      "100\n"
+      "ORIGIN 0 0 0\nSPACING 1 1 1\nPOINT_DATA 1000000\n" +
+      scalars("float", numbers(60)));
+  EXPECT_TRUE(contains(error, "1000000 points, which its")) << error;
+}
+
+TEST_F(VtkVolumes, ANegativeSpacingTurnsTheAxis) {
+  XmlImage image;
+  image.spacing = "0.5 -1 2";
+  image.points = test::xml_array("Float64", "p", numbers(60));
+  const Volume volume = parse(image.text(), "", "a.vti");
+  EXPECT_EQ(volume.description().placement.spacing.y, 1);
+  expect_near(world_of(volume, 0, 0, 0), {1, 2, -3}, 0);
+  expect_near(world_of(volume, 4, 3, 2), {3, -1, 1}, 0);
 }
 
 TEST_F(VtkVolumes, AppendedBytesOfBothOrders) {

@@ -109,6 +109,16 @@ TEST_F(WriteVolume, NiftiSaysWhatItDoesNotHold) {
 
 #ifdef PELLUCID_HAVE_ITK
 
+TEST_F(WriteVolume, NiftiCountsTheRoundingOfItsOrigin) {
+  Volume::Description description;
+  description.dimensions = {5, 4, 3};
+  description.placement.origin = {0.1, 0, 0};
+  const Volume volume(description, DataArray<float>(test::counting()));
+  const std::vector<std::string> losses = write_volume({&volume, 1}, path("a.nii"));
+  ASSERT_EQ(losses.size(), 1U);
+  EXPECT_TRUE(contains(losses[0], "moved by up to 1.49")) << losses[0];
+}
+
 TEST_F(WriteVolume, MedicalFilesAreReadBackInEveryBitAndPlace) {
   const auto expect = [&](auto value, const std::string& name, int components, Centering centering,
                           double tolerance) {

@@ -34,15 +34,16 @@ struct ReadOptions {
 };
 
 /// Reads a volume by its extension: .nii .nii.gz .hdr/.img(.gz) .nrrd .nhdr .mha .mhd (through ITK,
-/// where the build has it), .npy, .slc, .raw, .mrc .map .rec .st .ccp4, .dcm .ima; a .dat
-/// header of Inviwo's or Voreen's; a stack of images, .tif .tiff .png, by any of its files, a
-/// pattern of them ("slice%03d.tif") or its folder; a DICOM series by its folder or any of its
-/// files, of any name; any file as raw where dimensions and type are both given; and images and
+/// where the build has it), .npy, .slc, .raw, .mrc .map .rec .st .ccp4 (each also .gz), .dcm .ima;
+/// a .dat or .ivf header of Inviwo's or Voreen's; a stack of images, .tif .tiff .png, by any of its
+/// files, a pattern of them ("slice%03d.tif") or its folder; a DICOM series by its folder or any of
+/// its files, of any name; any file as raw where dimensions and type are both given; and images and
 /// rectilinear grids of VTK's by their first bytes (.vti, .pvti, .vtr, .pvtr, legacy .vtk; through
 /// VTK, where the build has it): arrays of points are point-centred, arrays of cells cell-centred,
 /// whole numbers of 64 bits become double, bits u8; datasets of HDF5 (.h5, .hdf5, .he5) and
 /// variables of NetCDF (.nc, .nc4, .cdf), where the build has these: of NetCDF positions along the
-/// axes where it has them, scaled, and NaN for what is missing. Throws Error: what, where, what to
+/// axes where it has them, scaled, and NaN for what is missing; fog volumes of OpenVDB (.vdb) as
+/// the dense grid of their active box, where the build has it. Throws Error: what, where, what to
 /// do; also for a file of several components of which the options choose none.
 Volume read_volume(const std::filesystem::path& path, const ReadOptions& options = {});
 

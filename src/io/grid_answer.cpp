@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "grid_answer.h"
+
+#include <algorithm>
+#include <cstdint>
+#include <cstring>
+#include <nlohmann/json.hpp>
+#include <vector>
+
+namespace pellucid {
+
+namespace {
+
+using nlohmann::json;
+
+json of_vector(const Vec3<double>& v) {
+  return {v.x, v.y, v.z};
+}
+
+Vec3<double> vector_of(const json& v) {
+  return {v.at(0), v.at(1), v.at(2)};
+}
+
+// Names need not be UTF-8, which CBOR's bytes do not mind and its text does.
+json of_text(const std::string& text) {
+  return json::binary(std::vector<std::uint8_t>(text.begin(), text.end()));
+}
+
+std::string text_of(const json& text) {
+  const auto& bytes = text.get_binary();
+  return {bytes.begin(), bytes.end()};
+}
+
+json of_array(const GridArray& array) {
+  json j{{"name", of_text(array.name)},
+         {"type", array.type},
+         {"type_with_missing", array.type_with_missing},
+         {"sides", array.sides},
+         {"components", array.components},
+         {"holds", of_text(array.holds)},
+         {"times", array.times},
+         {"positions", array.positions},
+         {"rounding", array.rounding}};
+  if (array.placement) {
+    const GridPlacement& p = *array.placement;
+    j["placement"] = {of_vector(p.origin), of_vector(p.spacing), of_vector(p.direction.column[0]),
+                      of_vector(p.direction.column[1]), of_vector(p.direction.column[2])};
+  }
+  return j;
+}
+
+GridArray array_of(const json& j) {
+  GridArray array;
+  array.name = text_of(j.at("name"));
+  j.at("type").get_to(array.type);
+  j.at("type_with_missing").get_to(array.type_with_missing);
+  j.at("sides").get_to(array.sides);
+  j.at("components").get_to(array.components);
+  array.holds = text_of(j.at("holds"));
+  j.at("times").get_to(array.times);
+  j.at("positions").get_to(array.positions);
+  j.at("rounding").get_to(array.rounding);
+  if (j.contains("placement")) {
+    const json& p = j.at("placement");
+    array.placement = GridPlacement{vector_of(p.at(0)), vector_of(p.at(1)), {}};
+    for (int a = 0; a < 3; ++a) {
+      array.placement->direction.column[a] = vector_of(p.at(static_cast<std::size_t>(a) + 2));
+    }
+  }
+  return array;
+}
+
+}  // namespace
+
+bool write_grid_contents(const GridContents& contents, std::span<std::byte> to) {
+  json j{{"arrays", json::array()}, {"others", json::array()}, {"error", of_text(contents.error)}};
+  for (const GridArray& array : contents.arrays) j["arrays"].push_back(of_array(array));
+  for (const GridOther& other : contents.others) {
+    j["others"].push_back({of_text(other.name), of_text(other.is)});
+  }
+  const std::vector<std::uint8_t> bytes = json::to_cbor(j);
+  const std::uint64_t size = bytes.size();
+  if (to.size() < sizeof(size) || to.size() - sizeof(size) < size) return false;
+  std::memcpy(to.data(), &size, sizeof(size));
+  std::memcpy(to.data() + sizeof(size), bytes.data(), size);
+  return true;
+}
+
+std::optional<GridContents> read_grid_contents(std::span<const std::byte> from) {
+  std::uint64_t size = 0;
+  if (from.size() < sizeof(size)) return std::nullopt;
+  std::memcpy(&size, from.data(), sizeof(size));
+  if (size > from.size() - sizeof(size)) return std::nullopt;
+  const auto* const bytes = reinterpret_cast<const std::uint8_t*>(from.data() + sizeof(size));
+  try {
+    const json j = json::from_cbor(bytes, bytes + size);
+    GridContents contents;
+    for (const json& array : j.at("arrays")) contents.arrays.push_back(array_of(array));
+    for (const json& other : j.at("others")) {
+      contents.others.push_back({text_of(other.at(0)), text_of(other.at(1))});
+    }
+    contents.error = text_of(j.at("error"));
+    return contents;
+  } catch (const json::exception&) {
+    return std::nullopt;
+  }
+}
+
+}  // namespace pellucid

@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+
+#include "components.h"
+
+namespace pellucid {
+
+/// What a header of Inviwo or Voreen says of a file of values.
+struct InviwoHeader {
+  std::filesystem::path values;  ///< the file
+  std::array<int, 3> dimensions{};
+  std::string format;  ///< "UINT8", "Vec2FLOAT32", of Voreen "UCHAR"
+  bool big_endian = false;
+  std::uint64_t skip_bytes = 0;
+  bool compressed = false;  ///< by gzip
+  std::optional<Vec3<double>> spacing;
+  /// What the whole grid spans, from its first cell's corner at `offset`; without an offset its
+  /// middle is at the origin.
+  std::optional<std::array<Vec3<double>, 3>> basis;
+  std::optional<Vec3<double>> offset;
+};
+
+/// A side that a header says, as a number. Throws Error where it is no whole number from 1.
+int inviwo_side(double side, const std::string& name);
+
+/// The values, which with a basis are the centres of its cells; of a vector each component by
+/// itself. `name` is the header's. Throws Error.
+VolumeFile open_inviwo_values(const InviwoHeader& header, const std::string& name,
+                              const ReadOptions& options);
+
+}  // namespace pellucid

@@ -1,0 +1,159 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// What Inviwo's IvfVolumeReader takes of such a file: <RawFile content="">, <Format content="">,
+// <Dimension x="" y="" z="">, <ByteOffset content="">, <ByteOrder content=""> (1: big-endian), in
+// older files <MetaDataItem key="LittleEndian"> with <MetaData content="0|1">, <Compression
+// content=""> (1: gzip), <BasisAndOffset> and <WorldTransform> with <col0 x="" y="" z="" w="">.
+
+#include "ivf_header.h"
+
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <fstream>
+#include <iterator>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "foreign_text.h"
+#include "input_file.h"
+#include "inviwo_values.h"
+#include "pellucid/scene/error.h"
+#include "xml_scanner.h"
+
+namespace pellucid {
+
+namespace {
+
+using Columns = std::array<Vec3<double>, 4>;
+
+constexpr Columns identity{Vec3<double>{1, 0, 0}, Vec3<double>{0, 1, 0}, Vec3<double>{0, 0, 1},
+                           Vec3<double>{0, 0, 0}};
+
+struct Document {
+  InviwoHeader header;
+  std::optional<Columns> basis;
+  Columns world = identity;
+  int files = 0;
+};
+
+/// One file's tags.
+class Reader {
+ public:
+  Reader(std::string_view text, const std::string& name) : scanner_(text, name), name_(name) {}
+
+  Document read() {
+    bool little = true;
+    std::string_view key;
+    Columns* columns = nullptr;
+    while (const std::optional<XmlTag> tag = scanner_.next()) {
+      if (tag->name == "BasisAndOffset" && !tag->closes) {
+        columns = &document_.basis.emplace(identity);
+      } else if (tag->name == "WorldTransform" && !tag->closes) {
+        columns = &document_.world;
+      } else if (tag->closes) {
+        if (tag->name == "BasisAndOffset" || tag->name == "WorldTransform") columns = nullptr;
+      } else if (columns != nullptr && tag->name.starts_with("col") && tag->name.size() == 4) {
+        take_column(*tag, *columns);
+      } else if (tag->name == "MetaDataItem") {
+        key = attribute(*tag, "key");
+      } else if (tag->name == "MetaData" && key == "LittleEndian") {
+        little = number(*tag, "content") != 0;
+      } else {
+        take(*tag);
+      }
+    }
+    document_.header.big_endian = document_.header.big_endian || !little;
+    if (document_.files != 1) {
+      throw Error(name_ + ": names " + (document_.files == 0 ? "no file" : "several files") +
+                  " of values (RawFile); a volume has one");
+    }
+    if (!has_sides_) throw Error(name_ + ": has no Dimension; mend the header");
+    return document_;
+  }
+
+ private:
+  std::string_view attribute(const XmlTag& tag, std::string_view key) const {
+    const auto found = tag.attributes.find(key);
+    if (found != tag.attributes.end()) return found->second;
+    throw Error(scanner_.where(tag) + ": <" + std::string(tag.name.substr(0, 40)) + "> has no " +
+                std::string(key));
+  }
+  double number(const XmlTag& tag, std::string_view key) const {
+    return foreign::number_of(attribute(tag, key), scanner_.where(tag));
+  }
+  Vec3<double> vector(const XmlTag& tag) const {
+    return {number(tag, "x"), number(tag, "y"), number(tag, "z")};
+  }
+
+  void take_column(const XmlTag& tag, Columns& columns) const {
+    const auto number_of_column = static_cast<std::size_t>(tag.name[3] - '0');
+    if (number_of_column > 3) return;
+    if (number(tag, "w") != (number_of_column == 3 ? 1 : 0)) {
+      throw Error(scanner_.where(tag) + ": is no affine map, which w = 0, 0, 0, 1 says");
+    }
+    columns[number_of_column] = vector(tag);
+  }
+
+  void take(const XmlTag& tag) {
+    InviwoHeader& header = document_.header;
+    if (tag.name == "RawFile") {
+      header.values = std::string(attribute(tag, "content"));
+      ++document_.files;
+    } else if (tag.name == "Format") {
+      header.format = std::string(attribute(tag, "content"));
+    } else if (tag.name == "Dimension") {
+      const Vec3<double> sides = vector(tag);
+      for (int a = 0; a < 3; ++a) {
+        header.dimensions[static_cast<std::size_t>(a)] = inviwo_side(sides[a], name_);
+      }
+      has_sides_ = true;
+    } else if (tag.name == "ByteOffset") {
+      const double bytes = number(tag, "content");
+      constexpr double most = 9007199254740992;  // 2^53
+      if (!(bytes >= 0 && bytes <= most && bytes == std::floor(bytes))) {
+        throw Error(scanner_.where(tag) + ": ByteOffset is no number of bytes");
+      }
+      header.skip_bytes = static_cast<std::uint64_t>(bytes);
+    } else if (tag.name == "ByteOrder") {
+      header.big_endian = number(tag, "content") == 1;
+    } else if (tag.name == "Compression") {
+      header.compressed = number(tag, "content") != 0;
+    }
+  }
+
+  XmlScanner scanner_;
+  const std::string& name_;
+  Document document_;
+  bool has_sides_ = false;
+};
+
+/// The basis in the world.
+void place(const Document& document, InviwoHeader& header) {
+  if (!document.basis) return;
+  const auto turned = [&](const Vec3<double>& v) {
+    return document.world[0] * v.x + document.world[1] * v.y + document.world[2] * v.z;
+  };
+  const Columns& basis = *document.basis;
+  header.basis = {turned(basis[0]), turned(basis[1]), turned(basis[2])};
+  header.offset = turned(basis[3]) + document.world[3];
+}
+
+}  // namespace
+
+VolumeFile open_ivf(const std::filesystem::path& path, const ReadOptions& options) {
+  const std::string name = path.string();
+  refuse_raw_options(options, name);
+  constexpr std::uintmax_t largest = std::uintmax_t{1} << 24;
+  if (check_input_file(path) > largest) throw Error(name + ": is too large for a header");
+  std::ifstream file(path, std::ios::binary);
+  const std::string text{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+  const Document document = Reader(text, name).read();
+  InviwoHeader header = document.header;
+  header.values = path.parent_path() / header.values;
+  place(document, header);
+  return open_inviwo_values(header, name, options);
+}
+
+}  // namespace pellucid

@@ -1,0 +1,213 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <openvdb/openvdb.h>
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <span>
+#include <string>
+#include <type_traits>
+#include <vector>
+
+#include "grid_module.h"
+#include "module_answer.h"
+#include "pellucid/scene/error.h"
+
+namespace pellucid {
+
+namespace {
+
+using NumberGrids = openvdb::TypeList<openvdb::FloatGrid, openvdb::DoubleGrid, openvdb::Int32Grid,
+                                      openvdb::Int64Grid, openvdb::BoolGrid, openvdb::MaskGrid,
+                                      openvdb::Vec3SGrid, openvdb::Vec3DGrid, openvdb::Vec3IGrid>;
+
+/// What one number of a voxel is kept as.
+template <class Number>
+using Kept =
+    std::conditional_t<std::is_same_v<Number, bool>, std::uint8_t,
+                       std::conditional_t<std::is_same_v<Number, std::int64_t>, double, Number>>;
+
+template <class Kept>
+constexpr const char* type_of() {
+  if constexpr (std::is_same_v<Kept, std::uint8_t>) return "u8";
+  if constexpr (std::is_same_v<Kept, std::int32_t>) return "i32";
+  if constexpr (std::is_same_v<Kept, float>) return "f32";
+  return "f64";
+}
+
+/// The file is open as long as this lives. Trees are never freed: this process ends with them, and
+/// freeing them asks for threads, which a forked one has not.
+class File {
+ public:
+  /// `delayed`: the values of voxels are read where they are asked for.
+  File(const std::filesystem::path& path, bool delayed) : file_(path.string()) {
+    openvdb::initialize();
+    file_.setCopyMaxBytes(0);  // no copy of the file
+    file_.open(delayed);
+  }
+  /// Several of one name have a number behind it: "density[1]".
+  std::vector<std::string> names() const {
+    std::vector<std::string> names;
+    for (auto name = file_.beginName(); name != file_.endName(); ++name) {
+      names.push_back(name.gridName());
+    }
+    return names;
+  }
+  const openvdb::GridBase& grid(const std::string& name) {
+    return **new openvdb::GridBase::Ptr(file_.readGrid(name));
+  }
+
+ private:
+  openvdb::io::File file_;
+};
+
+/// Where the box of active voxels begins, and how many there are along each axis.
+struct Box {
+  openvdb::Coord first;
+  std::array<std::int64_t, 3> sides{};
+};
+
+std::optional<Box> active_box(const openvdb::GridBase& grid) {
+  const openvdb::CoordBBox box = grid.evalActiveVoxelBoundingBox();
+  if (box.empty()) return std::nullopt;
+  Box active{box.min(), {}};
+  for (std::size_t a = 0; a < 3; ++a) {
+    active.sides[a] = std::int64_t{box.max()[a]} - std::int64_t{box.min()[a]} + 1;
+  }
+  return active;
+}
+
+/// OpenVDB's matrices stand behind the vector: their rows are the axes, the last the origin.
+GridPlacement placement_of(const openvdb::GridBase& grid, const Box& box) {
+  const openvdb::Mat4R matrix = grid.transform().baseMap()->getAffineMap()->getMat4();
+  const auto row = [&](int i) { return Vec3<double>{matrix[i][0], matrix[i][1], matrix[i][2]}; };
+  GridPlacement placement;
+  placement.origin = row(3);
+  for (int a = 0; a < 3; ++a) {
+    const double size = length(row(a));
+    if (!(size > 0)) throw Error("its transform makes an axis vanish");
+    placement.spacing[a] = size;
+    placement.direction.column[a] = row(a) * (1 / size);
+    placement.origin =
+        placement.origin + row(a) * static_cast<double>(box.first[static_cast<unsigned>(a)]);
+  }
+  return placement;
+}
+
+/// Why a grid is no volume; empty where it is one.
+std::string refusal(const openvdb::GridBase& grid) {
+  if (grid.getGridClass() == openvdb::GRID_LEVEL_SET) {
+    return "a level set: distances to a surface, known beside it alone; make a fog volume of it "
+           "(OpenVDB's sdfToFogVolume)";
+  }
+  if (grid.getGridClass() == openvdb::GRID_STAGGERED) {
+    return "a staggered grid: its vectors stand on the faces of voxels; resample it to their "
+           "centers";
+  }
+  if (grid.type().starts_with("Tree_ptdata") || grid.type().starts_with("Tree_ptidx")) {
+    return "points; rasterize them to a fog volume";
+  }
+  if (!grid.apply<NumberGrids>([](const auto&) {})) {
+    return "of the type " + grid.type() + ", which is not read";
+  }
+  if (!grid.transform().isLinear()) {
+    return "a frustum, which no affine map places; resample it to a box";
+  }
+  if (!active_box(grid)) return "without an active voxel";
+  return {};
+}
+
+GridArray describe(const openvdb::GridBase& grid, const std::string& name) {
+  GridArray array;
+  array.name = name;
+  grid.apply<NumberGrids>([&]<class Grid>(const Grid&) {
+    using Traits = openvdb::VecTraits<typename Grid::ValueType>;
+    array.type = type_of<Kept<typename Traits::ElementType>>();
+    array.components = Traits::Size;
+  });
+  if (array.components > 1) array.holds = std::to_string(array.components) + " components";
+  const Box box = *active_box(grid);
+  array.sides = box.sides;
+  array.placement = placement_of(grid, box);
+  return array;
+}
+
+void list(const std::filesystem::path& path, GridContents& contents) {
+  File file(path, true);
+  for (const std::string& name : file.names()) {
+    try {
+      const openvdb::GridBase& grid = file.grid(name);
+      if (std::string why = refusal(grid); !why.empty()) {
+        contents.others.push_back({name, std::move(why)});
+      } else {
+        contents.arrays.push_back(describe(grid, name));
+      }
+    } catch (const std::bad_alloc&) {
+      throw;
+    } catch (const std::exception& e) {
+      contents.others.push_back({name, std::string("not read: ") + e.what()});
+    }
+  }
+}
+
+/// The numbers `component` of all voxels of the box, x fastest.
+template <class Grid>
+void copy_box(const Grid& grid, const Box& box, int component, std::span<std::byte> to) {
+  using Number = typename openvdb::VecTraits<typename Grid::ValueType>::ElementType;
+  using Value = Kept<Number>;
+  const auto access = grid.getConstUnsafeAccessor();
+  auto* at = reinterpret_cast<Value*>(to.data());
+  for (std::int64_t z = 0; z < box.sides[2]; ++z) {
+    for (std::int64_t y = 0; y < box.sides[1]; ++y) {
+      for (std::int64_t x = 0; x < box.sides[0]; ++x) {
+        const auto value = access.getValue(
+            box.first.offsetBy(static_cast<int>(x), static_cast<int>(y), static_cast<int>(z)));
+        if constexpr (std::is_same_v<std::decay_t<decltype(value)>, Number>) {
+          *at++ = static_cast<Value>(value);
+        } else {
+          *at++ = static_cast<Value>(value[component]);
+        }
+      }
+    }
+  }
+}
+
+void read(const std::filesystem::path& path, const std::string& name, ComponentRange range,
+          GridValues& values) {
+  File file(path, false);
+  const openvdb::GridBase& grid = file.grid(name);
+  if (!refusal(grid).empty()) throw Error("the file was changed while it was read");
+  const GridArray array = describe(grid, name);
+  const Box box = *active_box(grid);
+  std::size_t points = 1;
+  for (const std::int64_t side : box.sides) points *= static_cast<std::size_t>(side);
+  for (int c = range.first; c < range.first + range.number; ++c) {
+    const std::span<std::byte> to = values.next(array.type);
+    grid.apply<NumberGrids>([&]<class Grid>(const Grid& of_type) {
+      using Number = typename openvdb::VecTraits<typename Grid::ValueType>::ElementType;
+      if (to.size() != points * sizeof(Kept<Number>)) {
+        throw Error("the file was changed while it was read");
+      }
+      copy_box(of_type, box, c, to);
+    });
+  }
+}
+
+}  // namespace
+
+}  // namespace pellucid
+
+extern "C" __attribute__((visibility("default"))) void pellucid_list_grids_1(
+    const std::filesystem::path& path, pellucid::GridContents& answer) {
+  pellucid::answer(answer.error, "crop or reduce the volume",
+                   [&] { pellucid::list(path, answer); });
+}
+
+extern "C" __attribute__((visibility("default"))) void pellucid_read_grid_1(
+    const std::filesystem::path& path, const std::string& array, pellucid::ComponentRange range,
+    pellucid::GridValues& answer) {
+  pellucid::answer(answer.error, "crop or reduce the volume",
+                   [&] { pellucid::read(path, array, range, answer); });
+}
