@@ -28,11 +28,19 @@ std::string range_text(const VolumeStatistics& component) {
 std::string arrays_text(const std::vector<VolumeArray>& arrays, const std::string& chosen) {
   std::string text = arrays.empty() ? "" : "arrays       range of each component\n";
   for (const VolumeArray& array : arrays) {
+    if (!array.not_read.empty()) {
+      text += fmt::format("  {}  not read: {}\n", array.name, array.not_read);
+      continue;
+    }
     std::string ranges;
     for (const VolumeStatistics& component : array.components) {
       ranges += (ranges.empty() ? "" : "; ") + range_text(component);
     }
-    const std::size_t components = array.components.size();
+    const std::size_t components =
+        array.components.size() + static_cast<std::size_t>(array.more_components);
+    if (array.more_components > 0) {
+      ranges += fmt::format("; {} more are not looked at", array.more_components);
+    }
     text += fmt::format("  {} ({}, {}{}){}  {}\n", array.name, centering_name(array), array.type,
                         components > 1 ? fmt::format(" x {}", components) : "",
                         array.name == chosen ? ", shown here" : "", ranges);
@@ -55,6 +63,8 @@ Json arrays_json(const std::vector<VolumeArray>& arrays) {
                     {"type", array.type},
                     {"dimensions", array.dimensions},
                     {"components", std::move(components)}});
+    if (array.more_components > 0) list.back()["more_components"] = array.more_components;
+    if (!array.not_read.empty()) list.back()["not_read"] = array.not_read;
   }
   return list;
 }

@@ -56,10 +56,12 @@ void limit(std::size_t bytes, std::uintmax_t file_bytes) {
   setrlimit(RLIMIT_CORE, &no_core);
 }
 
-void forget_what_the_program_does() {
-  // Nobody waits for it any more where the program has ended.
+void forget_what_the_program_does(pid_t program) {
+  // Nobody waits for it any more where the program has ended, now or before this was said.
   prctl(PR_SET_PDEATHSIG, SIGKILL);
-  for (const int signal : {SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT, SIGALRM, SIGXCPU}) {
+  if (getppid() != program) _exit(1);
+  for (const int signal :
+       {SIGINT, SIGTERM, SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT, SIGALRM, SIGXCPU}) {
     std::signal(signal, SIG_DFL);
   }
   const int nowhere = open("/dev/null", O_WRONLY | O_CLOEXEC);
@@ -76,10 +78,11 @@ std::shared_ptr<std::byte> run_contained(std::size_t bytes,
   // One byte more, which says that the rest is there.
   std::shared_ptr<std::byte> shared = shared_memory(bytes + 1);
   std::byte& is_there = shared.get()[bytes];
+  const pid_t program = getpid();
   const pid_t child = fork();
   if (child < 0) throw std::bad_alloc();
   if (child == 0) {
-    forget_what_the_program_does();
+    forget_what_the_program_does(program);
     limit(bytes, file_bytes);
     try {
       if (work({shared.get(), bytes})) is_there = std::byte{1};

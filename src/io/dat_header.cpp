@@ -19,6 +19,8 @@
 #include "input_file.h"
 #include "inviwo_values.h"
 #include "pellucid/scene/error.h"
+#include "scene_json_document.h"
+#include "text.h"
 
 namespace pellucid {
 
@@ -27,19 +29,6 @@ namespace fs = std::filesystem;
 namespace {
 
 using Fields = std::map<std::string, std::string>;
-
-std::string in_small_letters(std::string text) {
-  std::ranges::transform(text, text.begin(), [](char c) {
-    return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
-  });
-  return text;
-}
-
-std::string trimmed(const std::string& text) {
-  const std::size_t begin = text.find_first_not_of(" \t\r");
-  if (begin == std::string::npos) return {};
-  return text.substr(begin, text.find_last_not_of(" \t\r") - begin + 1);
-}
 
 // Keys in small letters. Nothing of a file that is no text of this kind.
 Fields read_fields(const fs::path& path, const std::string& name) {
@@ -53,8 +42,9 @@ Fields read_fields(const fs::path& path, const std::string& name) {
     if (line.find('\0') != std::string::npos) return {};
     const std::size_t colon = line.find(':');
     if (colon == std::string::npos || line.starts_with('#')) continue;
-    const std::string key = in_small_letters(trimmed(line.substr(0, colon)));
-    if (!fields.emplace(key, trimmed(line.substr(colon + 1))).second && key == "rawfile") {
+    const std::string_view text = line;
+    const std::string key = in_small_letters(trimmed(text.substr(0, colon)));
+    if (!fields.emplace(key, trimmed(text.substr(colon + 1))).second && key == "rawfile") {
       throw Error(name + ": names several files of values; save one of them as a volume");
     }
   }
@@ -78,7 +68,8 @@ std::optional<Vec3<double>> three_numbers(const Fields& fields, const std::strin
   std::istringstream words(text);
   Vec3<double> v{};
   words >> v.x >> v.y >> v.z;
-  if (words && std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z)) return v;
+  const bool is_three = words && std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
+  if (std::string more; is_three && !(words >> more)) return v;
   throw Error(name + ": \"" + key + ": " + text + "\" are no three numbers; mend the header");
 }
 
@@ -86,6 +77,14 @@ std::array<int, 3> dimensions_of(const Fields& fields, const std::string& name) 
   const std::optional<Vec3<double>> sides = three_numbers(fields, "resolution", name);
   if (!sides) throw Error(name + ": the header has no \"Resolution\"; mend the header");
   return {inviwo_side(sides->x, name), inviwo_side(sides->y, name), inviwo_side(sides->z, name)};
+}
+
+bool is_big_endian(const Fields& fields, const std::string& name) {
+  const std::string text = value_of(fields, "byteorder"), order = in_small_letters(text);
+  if (order == "bigendian" || order == "big") return true;
+  if (order.empty() || order == "littleendian" || order == "little") return false;
+  throw Error(name + ": \"ByteOrder: " + scene_json::printable(text) +
+              "\" is neither LittleEndian nor BigEndian; mend the header");
 }
 
 }  // namespace
@@ -103,7 +102,7 @@ VolumeFile open_dat(const fs::path& path, const ReadOptions& options) {
   header.values = path.parent_path() / file_of(fields);
   header.dimensions = dimensions_of(fields, name);
   header.format = value_of(fields, "format");
-  header.big_endian = in_small_letters(value_of(fields, "byteorder")) == "bigendian";
+  header.big_endian = is_big_endian(fields, name);
   header.spacing = three_numbers(fields, "slicethickness", name);
   std::array<std::optional<Vec3<double>>, 3> basis;
   for (std::size_t a = 0; a < 3; ++a) {

@@ -99,7 +99,20 @@ class FrameFacts {
     return file_.decimals(element);
   }
 
+  /// What stands there and is no number; empty where nothing does.
+  std::string no_number(DicomTag group, DicomTag element) const {
+    for (const DicomDataSet* groups : {frame_, shared_}) {
+      const DicomDataSet* item = groups == nullptr ? nullptr : groups->item(group);
+      if (item != nullptr && !item->text(element).empty()) return no_number(*item, element);
+    }
+    return no_number(file_, element);
+  }
+
  private:
+  static std::string no_number(const DicomDataSet& data, DicomTag element) {
+    return data.decimals(element).empty() ? data.text(element) : std::string();
+  }
+
   const DicomDataSet& file_;
   const DicomDataSet *shared_, *frame_;
 };
@@ -115,6 +128,16 @@ std::optional<std::array<Vec3<double>, 2>> directions(const std::vector<double>&
     return std::nullopt;
   }
   return std::array{row * (1 / length(row)), column * (1 / length(column))};
+}
+
+/// Why the scale of the values is not known; empty where it is.
+std::string refusal(const FrameFacts& facts) {
+  for (const auto& [element, name] : {std::pair{tag::slope, "RescaleSlope (0028,1053)"},
+                                      std::pair{tag::intercept, "RescaleIntercept (0028,1052)"}}) {
+    const std::string text = facts.no_number(tag::value_transformation, element);
+    if (!text.empty()) return std::string(name) + " is \"" + text + "\", no number";
+  }
+  return {};
 }
 
 DicomSlice slice_of(const FrameFacts& facts) {
@@ -188,7 +211,9 @@ std::vector<DicomSlice> read_dicom_slices(const std::filesystem::path& path) {
     const DicomDataSet* group = has_groups && image->refused.empty()
                                     ? &groups->second[static_cast<std::size_t>(frame)]
                                     : nullptr;
-    DicomSlice slice = slice_of(FrameFacts(data, group));
+    const FrameFacts facts(data, group);
+    if (image->refused.empty()) image->refused = refusal(facts);
+    DicomSlice slice = slice_of(facts);
     slice.image = image;
     slice.frame = frame;
     slice.number = first_of(data.decimals(tag::instance_number));

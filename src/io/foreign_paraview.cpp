@@ -1,21 +1,24 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "foreign_readers.h"
+#include "text.h"
 
 namespace pellucid::foreign {
 namespace {
 
-ColorSpace color_space(const Node& map) {
+ColorSpace color_space(const Node& map, std::vector<std::string>& notes) {
   const auto node = map.find("ColorSpace");
   if (!node) return ColorSpace::rgb;
-  std::string word;
-  for (const char c : node->string()) word += c >= 'A' && c <= 'Z' ? char(c - 'A' + 'a') : c;
+  const std::string word = in_small_letters(node->string());
   if (word == "rgb") return ColorSpace::rgb;
   if (word == "lab" || word == "cielab") return ColorSpace::lab;
   if (word == "diverging") return ColorSpace::diverging;
   if (word == "step") return ColorSpace::step;
   if (word == "hsv") {
     const auto wrap = map.find("HSVWrap");
-    return wrap && wrap->integer(0, 1) == 0 ? ColorSpace::hsv_without_wrap : ColorSpace::hsv;
+    if (!wrap) {
+      notes.emplace_back("HSVWrap is not said: hues do not go past red, as in ParaView");
+    }
+    return wrap && wrap->integer(0, 1) == 1 ? ColorSpace::hsv : ColorSpace::hsv_without_wrap;
   }
   node->fail("is \"" + scene_json::printable(node->string()) +
              "\", which is not read; save the map as RGB, HSV, Lab, Diverging or Step");
@@ -71,10 +74,13 @@ Function read_paraview(const Node& document, const std::string& wanted) {
   if (map.has("IndexedColors") && !map.has("RGBPoints")) {
     map.fail_at("IndexedColors", "are colors of categories, not of values; take another map");
   }
+  if (map.has("IndexedColors")) {
+    function.notes.emplace_back("the colors of categories (IndexedColors) are left out");
+  }
   if (const auto scale = map.find("UseLogScale"); scale && scale->is_true()) {
     scale->fail("asks for a logarithmic scale, which is not read; save the map without");
   }
-  function.space = color_space(map);
+  function.space = color_space(map, function.notes);
   if (map.has("RGBPoints")) function.colors = color_nodes(*map.find("RGBPoints"));
   if (const auto points = map.find("Points")) function.opacities = opacity_nodes(*points);
   if (map.has("NanColor")) {

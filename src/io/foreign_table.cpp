@@ -5,6 +5,7 @@
 #include "foreign_readers.h"
 #include "foreign_text.h"
 #include "pellucid/scene/error.h"
+#include "text.h"
 
 namespace pellucid::foreign {
 namespace {
@@ -15,11 +16,30 @@ struct Rows {
   std::vector<std::vector<double>> rows;
   std::vector<std::size_t> lines;
   bool value_first = false;  ///< as the header says
+  std::size_t header = 0;    ///< its columns, where there is one
 };
 
 bool begins_number(std::string_view word) {
   return word.find_first_of("0123456789") <= 2 &&
          word.find_first_not_of("0123456789+-.eE") == std::string_view::npos;
+}
+
+/// Whether the header has a value before the colors: "value,r,g,b", "Red Green Blue", in letters of
+/// either case. Throws Error for one that says neither.
+bool value_first(const std::vector<std::string_view>& header, const std::string& where) {
+  std::string columns;
+  for (const std::string_view word : header) {
+    const std::string small = in_small_letters(trimmed(word, "\""));
+    const bool is_value = small == "value" || small == "x" || small == "scalar";
+    const bool is_color = small == "r" || small == "red" || small == "g" || small == "green" ||
+                          small == "b" || small == "blue" || small == "a" || small == "alpha";
+    columns += is_value ? 'v' : is_color ? small.front() : small == "opacity" ? 'a' : '?';
+  }
+  for (const char* known : {"rgb", "rgba", "vrgb", "vrgba"}) {
+    if (columns == known) return columns.front() == 'v';
+  }
+  throw Error(where + ": the header is no \"r,g,b\" or \"value,r,g,b\", with or without \"a\"; " +
+              "name the columns so, if it is a color table");
 }
 
 Rows read_rows(std::string_view text, const std::string& name) {
@@ -35,13 +55,15 @@ Rows read_rows(std::string_view text, const std::string& name) {
     if (list.empty()) continue;
     const std::string where = name + ": line " + std::to_string(line);
     if (table.rows.empty() && !begins_number(list.front())) {
-      const std::string_view first = list.front();
-      table.value_first = first == "value" || first == "x" || first == "scalar";
+      if (table.header != 0) throw Error(where + ": is a second header; take it out");
+      table.value_first = value_first(list, where);
+      table.header = list.size();
       continue;
     }
     std::vector<double> numbers;
     for (const std::string_view word : list) numbers.push_back(number_of(word, where));
     if (numbers.size() < 3 || numbers.size() > 5 ||
+        (table.header != 0 && numbers.size() != table.header) ||
         (!table.rows.empty() && numbers.size() != table.rows.front().size())) {
       throw Error(where + ": has " + std::to_string(numbers.size()) +
                   " numbers; a color table has rows r,g,b or r,g,b,a, or behind a header \"value\" "

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
 #include <cmath>
 #include <map>
 #include <optional>
@@ -30,7 +31,7 @@ double checked(double x, double lower, double upper, const std::string& where) {
 
 ColorSpace space_of(std::string_view word, const std::string& where) {
   if (word.empty() || word == "RGB") return ColorSpace::rgb;
-  if (word == "HSV") return ColorSpace::hsv;
+  if (word == "HSV") return ColorSpace::hsv_without_wrap;  // vtkSMTransferFunctionProxy
   if (word == "Wrapped") return ColorSpace::hsv;
   if (word == "Lab" || word == "CIELAB") return ColorSpace::lab;
   if (word == "Diverging") return ColorSpace::diverging;
@@ -39,7 +40,13 @@ ColorSpace space_of(std::string_view word, const std::string& where) {
               "\" is not read; save the map as RGB, HSV, Lab, Diverging or Step");
 }
 
-/// <ColorMap name="" space=""><Point x="" o="" r="" g="" b=""/>…</ColorMap>.
+void note_once(Function& function, const std::string& note) {
+  if (std::ranges::find(function.notes, note) == function.notes.end()) {
+    function.notes.push_back(note);
+  }
+}
+
+/// <ColorMap name="" space=""><Point x="" o="" r="" g="" b=""/>…</ColorMap>; ParaView ignores o.
 Function read_color_maps(Scanner& scanner, Tag tag, const std::string& name,
                          const std::string& wanted) {
   Function function;
@@ -55,6 +62,11 @@ Function read_color_maps(Scanner& scanner, Tag tag, const std::string& name,
       if (!inside) continue;
       found = true;
       function.name = map;
+      if (const auto word = next->attributes["indexedLookup"]; word == "true" || word == "1") {
+        throw Error(where +
+                    ": has colors of categories (indexedLookup), not of values; take "
+                    "another map");
+      }
       function.space = space_of(next->attributes["space"], where);
     } else if (inside && next->name == "Point" && !next->closes) {
       const double x = attribute(*next, "x", where);
@@ -62,7 +74,9 @@ Function read_color_maps(Scanner& scanner, Tag tag, const std::string& name,
         return checked(attribute(*next, key, where), 0, 1, where);
       };
       function.colors.push_back({x, {part("r"), part("g"), part("b")}});
-      if (next->attributes.contains("o")) function.opacities.push_back({x, part("o")});
+      if (next->attributes.contains("o")) {
+        note_once(function, "the attribute o of the points is left out, as ParaView leaves it");
+      }
     }
   }
   if (!found) {
@@ -110,6 +124,34 @@ ColorNode visit_color(const Fields& fields, const std::string& where) {
   return {field(fields, "position", where), {part(0), part(1), part(2)}};
 }
 
+/// What VisIt's attributes say besides the control points: by enumerators' names or their numbers,
+/// as versions of VisIt write either.
+void visit_setting(Function& function, std::string_view key, std::string_view text,
+                   const std::string& where) {
+  const auto list = words(text, " \t\r\n");
+  const std::string_view value = list.empty() ? std::string_view() : list.front();
+  const auto is = [&](std::string_view name, std::string_view number) {
+    return value.find(name) != std::string_view::npos || value == number;
+  };
+  const auto note = [&](const std::string& what) { note_once(function, what + " left out"); };
+  if (key == "opacityMode" && value.find("Gaussian") == std::string_view::npos) {
+    throw Error(where + ": the opacity mode is not Gaussian; only that one is read");
+  }
+  if (key == "scaling" && (is("Log", "1") || is("Skew", "2"))) {
+    throw Error(where + ": the scaling is \"" + scene_json::printable(value) +
+                "\", not Linear; only that one is read");
+  }
+  if (key == "opacityAttenuation") note("VisIt's attenuation of opacities is");
+  if (key == "smoothing" && !is("None", "0") && !is("Linear", "1")) {
+    note("the smoothing of colors, \"" + scene_json::printable(value) + "\", is");
+  }
+  for (const std::string_view limit : {"useColorVarMin", "useColorVarMax"}) {
+    if (key != limit || !is("true", "1")) continue;
+    note("a limit of the range, " + std::string(limit.substr(3)) +
+         ", which gives the values of the control points (--range says it), is");
+  }
+}
+
 /// <Object name="GaussianControlPoint"><Field name="x" type="float">0.3</Field>…</Object>.
 Function read_visit(Scanner& scanner, Tag tag, const std::string& name) {
   Function function;
@@ -119,13 +161,7 @@ Function read_visit(Scanner& scanner, Tag tag, const std::string& name) {
   for (std::optional<Tag> next = tag; next; next = scanner.next()) {
     const std::string where = scanner.where(*next);
     if (next->name == "Field" && !next->closes) {
-      if (next->attributes["name"] == "opacityMode" &&
-          next->text.find("Gaussian") == std::string_view::npos) {
-        throw Error(where + ": the opacity mode is not Gaussian; only that one is read");
-      }
-      if (next->attributes["name"] == "opacityAttenuation") {
-        function.notes.emplace_back("VisIt's attenuation of opacities is left out");
-      }
+      visit_setting(function, next->attributes["name"], next->text, where);
       fields[next->attributes["name"]] = next->text;
     } else if (next->name == "Object" && !next->closes) {
       object = next->attributes["name"];

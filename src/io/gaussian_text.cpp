@@ -11,19 +11,12 @@
 #include "pellucid/scene/error.h"
 #include "pellucid/scene/srgb.h"
 #include "scene_json_document.h"
+#include "text.h"
 
 namespace pellucid {
 namespace {
 
 using scene_json::printable;
-
-constexpr std::string_view spaces = " \t";
-
-std::string_view trimmed(std::string_view text) {
-  const std::size_t first = text.find_first_not_of(spaces);
-  if (first == std::string_view::npos) return {};
-  return text.substr(first, text.find_last_not_of(spaces) - first + 1);
-}
 
 std::vector<std::string_view> split(std::string_view text, char separator) {
   std::vector<std::string_view> parts;

@@ -208,11 +208,11 @@ std::vector<VolumeData> read_values(const std::filesystem::path& path, const For
   const std::string name = path.string();
   const std::size_t points = value_count(array.sides, name);
   const std::size_t count = value_count(points, range.number, name);
-  check_memory(std::uintmax_t{count} * value_size(array.type, name), name + ": its values");
-  // What is not written to is no memory. Each component begins where any type may.
+  // Each component begins where any type may.
   const std::size_t largest =
       std::max(value_size(array.type, name),
                array.type_with_missing.empty() ? 0 : value_size(array.type_with_missing, name));
+  check_memory(std::uintmax_t{count} * largest, name + ": its values");
   constexpr std::size_t alignment = 8;
   const std::size_t stride = (points * largest + alignment - 1) / alignment * alignment;
   const std::size_t end = stride * static_cast<std::size_t>(range.number);
@@ -278,11 +278,30 @@ std::vector<VolumeArray> list_arrays(const std::filesystem::path& path, const Fo
     about.name = array.name;
     about.shown = list.empty();
     about.dimensions.assign(array.sides.begin(), array.sides.end());
-    for (int c = 0; c < array.components; ++c) {
-      const VolumeData values = read_values(path, format, array, {c, 1}).front();
-      about.type = type_name(values);
-      about.components.push_back(component_statistics(values, 1).front());
+    // Each takes a process of its own.
+    constexpr int most = 64;
+    about.more_components = std::max(array.components - most, 0);
+    about.type = array.type;
+    try {
+      for (int c = 0; c < std::min(array.components, most); ++c) {
+        const VolumeData values = read_values(path, format, array, {c, 1}).front();
+        about.type = type_name(values);
+        about.components.push_back(component_statistics(values, 1).front());
+      }
+    } catch (const Error& error) {
+      // One that cannot be read is no reason to say nothing of the others.
+      const std::string message = error.what(), name = path.string() + ": ";
+      about.not_read = message.starts_with(name) ? message.substr(name.size()) : message;
+      about.components.clear();
+      about.more_components = array.components;
     }
+    list.push_back(std::move(about));
+  }
+  for (const GridOther& other : contents.others) {
+    if (other.is.empty()) continue;
+    VolumeArray about;
+    about.name = one_line(other.name);
+    about.not_read = one_line(other.is);
     list.push_back(std::move(about));
   }
   return list;

@@ -51,8 +51,6 @@ std::optional<std::string> type_of(hid_t type) {
       const Id base(H5Tget_super(type), H5Tclose, "a type");
       return type_of(base.get());
     }
-    case H5T_BITFIELD:
-      return bytes == 1 ? std::optional<std::string>("u8") : std::nullopt;
     case H5T_INTEGER: {
       if (bytes > 4) return "f64";
       const std::string sign = H5Tget_sign(type) == H5T_SGN_NONE ? "u" : "i";
@@ -106,12 +104,31 @@ std::optional<Axes> axes_of(hid_t space) {
   return axes;
 }
 
+/// Throws Error for values that lie in other files, which a file from elsewhere could name at will,
+/// and for types that are no numbers though they look like some.
+void check_kind(hid_t dataset, hid_t type) {
+  const Id how(H5Dget_create_plist(dataset), H5Pclose, "the layout of a dataset");
+  if (H5Pget_layout(how.get()) == H5D_VIRTUAL) {
+    throw Error("a virtual dataset, whose values lie in others; save it as one of its own");
+  }
+  if (H5Pget_external_count(how.get()) > 0) {
+    throw Error(
+        "a dataset of external storage, whose values lie in other files; save it as one of "
+        "its own");
+  }
+  if (H5Tget_class(type) == H5T_BITFIELD) {
+    throw Error("a dataset of bit fields, which are no numbers; save it as integers");
+  }
+}
+
 std::optional<GridArray> describe(hid_t dataset, const std::string& name) {
   const Id space(H5Dget_space(dataset), H5Sclose, "the axes of a dataset");
   const Id type(H5Dget_type(dataset), H5Tclose, "the type of a dataset");
   const auto axes = axes_of(space.get());
   const auto kept = type_of(type.get());
-  if (!axes || !kept) return std::nullopt;
+  if (!axes) return std::nullopt;
+  check_kind(dataset, type.get());
+  if (!kept) return std::nullopt;
   GridArray array;
   array.name = name;
   array.type = *kept;
@@ -142,10 +159,14 @@ void list(const std::filesystem::path& path, GridContents& contents) {
   }
   for (const std::string& name : names) {
     const Id dataset(H5Dopen2(file.get(), name.c_str(), H5P_DEFAULT), H5Dclose, name.c_str());
-    if (auto array = describe(dataset.get(), name)) {
-      contents.arrays.push_back(*std::move(array));
-    } else {
-      contents.others.push_back({name, {}});
+    try {
+      if (auto array = describe(dataset.get(), name)) {
+        contents.arrays.push_back(*std::move(array));
+      } else {
+        contents.others.push_back({name, {}});
+      }
+    } catch (const Error& error) {
+      contents.others.push_back({name, error.what()});
     }
   }
 }

@@ -13,19 +13,13 @@
 #include "memory_limit.h"
 #include "numbered_files.h"
 #include "pellucid/scene/error.h"
+#include "text.h"
 
 namespace pellucid {
 
 namespace fs = std::filesystem;
 
 namespace {
-
-std::string in_small_letters(std::string text) {
-  std::ranges::transform(text, text.begin(), [](char c) {
-    return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
-  });
-  return text;
-}
 
 bool is_tiff(const std::string& name) {
   const std::string small = in_small_letters(name);

@@ -9,18 +9,12 @@
 
 #include "gzip_source.h"
 #include "pellucid/scene/error.h"
+#include "text.h"
 #include "widened_source.h"
 
 namespace pellucid {
 
 namespace {
-
-std::string in_small_letters(std::string text) {
-  std::ranges::transform(text, text.begin(), [](char c) {
-    return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
-  });
-  return text;
-}
 
 struct StoredType {
   std::string name;

@@ -16,18 +16,13 @@
 #include "itk_header.h"
 #include "medical_volumes.h"
 #include "pellucid/scene/error.h"
+#include "text.h"
 
 namespace pellucid {
 
 namespace fs = std::filesystem;
 
 namespace {
-
-std::string trimmed(const std::string& text) {
-  const std::size_t begin = text.find_first_not_of(" \t\r");
-  if (begin == std::string::npos) return {};
-  return text.substr(begin, text.find_last_not_of(" \t\r") - begin + 1);
-}
 
 // The stream just behind the line of ElementDataFile.
 std::ifstream open_behind_header(const fs::path& path) {
@@ -44,7 +39,7 @@ std::vector<std::string> listed_files(const fs::path& path) {
   std::vector<std::string> names;
   std::string line;
   while (std::getline(file, line)) {
-    if (line = trimmed(line); !line.empty()) names.push_back(line);
+    if (line = std::string(trimmed(line)); !line.empty()) names.push_back(line);
   }
   return names;
 }
@@ -85,7 +80,7 @@ struct DataFile {
 std::vector<DataFile> find_files(const fs::path& path, const MetaImageHeader& header,
                                  std::uintmax_t bytes) {
   const std::string name = path.string();
-  const std::string where = trimmed(header.data_file);
+  const std::string where(trimmed(header.data_file));
   std::vector<DataFile> files;
   if (where == "LOCAL" || where == "Local" || where == "local") {
     const std::streamoff at = open_behind_header(path).tellg();

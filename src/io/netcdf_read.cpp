@@ -46,6 +46,10 @@ std::optional<Axes> axes_of(const NetCdfVariable& variable) {
   }
   while (end - begin > 3 && variable.sides[begin] == 1) ++begin;
   if (end - begin < 3 || end - begin > 4) return std::nullopt;
+  if (end - begin == 3 && is_time_axis(variable, begin)) {
+    throw Error("an array whose axis " + net_cdf_axis(variable, begin) +
+                " is time and not z: images, no volume; save it with an axis of depth");
+  }
   return end - begin == 3 ? Axes{begin, std::nullopt} : Axes{begin + 1, begin};
 }
 
@@ -138,10 +142,14 @@ void list(const std::filesystem::path& path, GridContents& contents) {
   const NetCdfFile file(path);
   const std::vector<NetCdfVariable> variables = net_cdf_variables(file.id());
   for (const NetCdfVariable& variable : variables) {
-    if (auto array = describe(variable)) {
-      contents.arrays.push_back(*std::move(array));
-    } else {
-      contents.others.push_back({variable.name, {}});
+    try {
+      if (auto array = describe(variable)) {
+        contents.arrays.push_back(*std::move(array));
+      } else {
+        contents.others.push_back({variable.name, {}});
+      }
+    } catch (const Error& error) {
+      contents.others.push_back({variable.name, error.what()});
     }
   }
 }

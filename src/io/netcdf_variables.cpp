@@ -126,8 +126,14 @@ std::optional<std::string> stored_type(const NetCdfVariable& variable) {
 NetCdfMeaning meaning_of(const NetCdfVariable& variable) {
   NetCdfMeaning meaning;
   const auto first = [&](const char* attribute, double& number) {
+    int id = 0;
+    if (nc_inq_attid(variable.group, variable.id, attribute, &id) != NC_NOERR) return;
     const std::vector<double> numbers = numbers_of(variable, attribute);
-    if (!numbers.empty() && std::isfinite(numbers[0])) number = numbers[0];
+    if (numbers.empty() || !std::isfinite(numbers[0])) {
+      throw Error("the " + std::string(attribute) + " of \"" + variable.name +
+                  "\" is no finite number; mend the attribute");
+    }
+    number = numbers[0];
   };
   first("scale_factor", meaning.scale);
   first("add_offset", meaning.offset);
@@ -148,17 +154,48 @@ std::string net_cdf_axis(const NetCdfVariable& variable, std::size_t axis) {
   return name.data();
 }
 
-NetCdfPositions positions_of(const NetCdfVariable& variable, std::size_t axis) {
+namespace {
+
+/// The variable that is named like the axis, here or in a group around.
+std::optional<NetCdfVariable> coordinate_of(const NetCdfVariable& variable, std::size_t axis) {
   const std::string name = net_cdf_axis(variable, axis);
   int group = variable.group, id = 0;
   while (nc_inq_varid(group, name.c_str(), &id) != NC_NOERR) {
-    if (nc_inq_grp_parent(group, &group) != NC_NOERR) return {};
+    if (nc_inq_grp_parent(group, &group) != NC_NOERR) return std::nullopt;
   }
-  const NetCdfVariable found = variable_of(group, id, "");
+  return variable_of(group, id, "");
+}
+
+/// An attribute of text; empty where there is none.
+std::string text_of(const NetCdfVariable& variable, const char* attribute) {
+  nc_type type = NC_NAT;
+  std::size_t length = 0;
+  constexpr std::size_t most = 1024;
+  if (nc_inq_att(variable.group, variable.id, attribute, &type, &length) != NC_NOERR ||
+      type != NC_CHAR || length > most) {
+    return {};
+  }
+  std::string text(length, '\0');
+  const int status = nc_get_att_text(variable.group, variable.id, attribute, text.data());
+  return status == NC_NOERR ? text : std::string();
+}
+
+}  // namespace
+
+bool is_time_axis(const NetCdfVariable& variable, std::size_t axis) {
+  const auto coordinate = coordinate_of(variable, axis);
+  return coordinate && (text_of(*coordinate, "units").find(" since ") != std::string::npos ||
+                        text_of(*coordinate, "axis").starts_with('T'));
+}
+
+NetCdfPositions positions_of(const NetCdfVariable& variable, std::size_t axis) {
+  const auto coordinate = coordinate_of(variable, axis);
+  if (!coordinate) return {};
+  const NetCdfVariable& found = *coordinate;
   if (found.sides != std::vector{variable.sides[axis]} || !stored_type(found)) return {};
   NetCdfPositions positions{std::vector<double>(variable.sides[axis]), 0x1p-53};
-  check_net_cdf(nc_get_var_double(group, id, positions.numbers.data()),
-                "the positions along " + name);
+  check_net_cdf(nc_get_var_double(found.group, found.id, positions.numbers.data()),
+                "the positions along " + found.name);
   if (found.type == NC_FLOAT) positions.rounding = 0x1p-24;
   const NetCdfMeaning meaning = meaning_of(found);
   for (double& number : positions.numbers) number = meaning.scale * number + meaning.offset;

@@ -40,6 +40,9 @@ std::vector<NetCdfVariable> net_cdf_variables(int group);
 
 std::string net_cdf_axis(const NetCdfVariable& variable, std::size_t axis);
 
+/// Whether it counts time, as the CF conventions mark it: units "days since 1990-1-1", axis "T".
+bool is_time_axis(const NetCdfVariable& variable, std::size_t axis);
+
 /// The type that the values have in memory, whole numbers of 64 bits double; nothing where they are
 /// no numbers.
 std::optional<std::string> stored_type(const NetCdfVariable& variable);
@@ -51,6 +54,7 @@ struct NetCdfMeaning {
 
   bool is_plain() const { return scale == 1 && offset == 0; }
 };
+/// Throws Error where a scale or an offset stands there and is no finite number.
 NetCdfMeaning meaning_of(const NetCdfVariable& variable);
 
 /// The numbers of the variable that is named like the axis, here or in a group around; none where

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <array>
 #include <span>
 #include <type_traits>
 #include <utility>
@@ -114,6 +115,41 @@ Volume::Description describe(const NiftiFiles& files, const NiftiHeader& header,
   return description;
 }
 
+/// The largest distance of the same corner in both, in voxels of the first.
+double difference(const GridPlacement& one, const GridPlacement& other,
+                  const std::array<std::int64_t, 3>& dimensions) {
+  const double voxel = std::min({one.spacing.x, one.spacing.y, one.spacing.z});
+  double largest = 0;
+  for (int corner = 0; corner < 8; ++corner) {
+    Vec3<double> apart = one.origin - other.origin;
+    for (int a = 0; a < 3; ++a) {
+      if ((corner >> a & 1) == 0) continue;
+      const auto last = static_cast<double>(dimensions[static_cast<std::size_t>(a)] - 1);
+      apart = apart + (one.direction.column[a] * one.spacing[a] -
+                       other.direction.column[a] * other.spacing[a]) *
+                          last;
+    }
+    largest = std::max(largest, length(apart) / voxel);
+  }
+  return largest;
+}
+
+/// Tells of two maps that differ which one is used.
+void note_maps(const NiftiHeader& header, const Volume::Description& description,
+               const ReadOptions& options) {
+  if (!options.note || !header.sform || !header.qform) return;
+  constexpr double alike = 1e-3;
+  const double apart = difference(*header.sform, *header.qform, header.dimensions);
+  if (apart <= alike) return;
+  GridPlacement used = description.placement;
+  used.origin = used.origin * (1 / header.unit);
+  used.spacing = used.spacing * (1 / header.unit);
+  const bool is_sform = difference(*header.sform, used, header.dimensions) <=
+                        difference(*header.qform, used, header.dimensions);
+  options.note(description.name + ": its qform and its sform place it differently; the " +
+               (is_sform ? "sform" : "qform") + " is used");
+}
+
 }  // namespace
 
 VolumeFile open_nifti(const std::filesystem::path& path, const ReadOptions& options) {
@@ -131,6 +167,7 @@ VolumeFile open_nifti(const std::filesystem::path& path, const ReadOptions& opti
   value_count(count, header.layout.components, name);
   VolumeFile file;
   file.description = describe(files, header, name);
+  note_maps(header, file.description, options);
   apply_overrides(options, file.description);
   file.components = header.layout.components;
   file.holds = header.holds;

@@ -138,6 +138,29 @@ std::optional<GridPlacement> sform_of(const HeaderBytes& bytes, bool big_endian)
   return placement;
 }
 
+// nifti1.h, method 2: a rotation as a quaternion of positive a, and a flip of z.
+std::optional<GridPlacement> qform_of(const HeaderBytes& bytes, bool big_endian) {
+  if (number_at<std::int16_t>(bytes, 252, big_endian) <= 0) return std::nullopt;
+  const auto number = [&](std::size_t offset) {
+    return static_cast<double>(number_at<float>(bytes, offset, big_endian));
+  };
+  const double b = number(256), c = number(260), d = number(264);
+  const double a = std::sqrt(std::max(0.0, 1 - (b * b + c * c + d * d)));
+  const double flip = number(76) < 0 ? -1 : 1;
+  GridPlacement placement;
+  // Left and posterior instead of right and anterior.
+  placement.origin = {-number(268), -number(272), number(276)};
+  placement.spacing = {number(80), number(84), number(88)};
+  placement.direction.column[0] = {-(a * a + b * b - c * c - d * d), -2 * (b * c + a * d),
+                                   2 * (b * d - a * c)};
+  placement.direction.column[1] = {-2 * (b * c - a * d), -(a * a + c * c - b * b - d * d),
+                                   2 * (c * d + a * b)};
+  placement.direction.column[2] =
+      Vec3<double>{-2 * (b * d + a * c), -2 * (c * d - a * b), a * a + d * d - b * b - c * c} *
+      flip;
+  return placement;
+}
+
 // ITK 5.2 ends the whole program on a matrix with NaN or infinity.
 void check_orientation(const HeaderBytes& bytes, bool big_endian, const std::string& name) {
   const auto check = [&](std::size_t offset, std::size_t count, const char* what) {
@@ -195,6 +218,7 @@ NiftiHeader read_nifti_header(const std::filesystem::path& path) {
   const int unit_code = std::to_integer<int>(bytes[123]) & 7;
   header.unit = unit_code == 1 ? 1e3 : unit_code == 3 ? 1e-3 : 1;
   header.sform = sform_of(bytes, big_endian);
+  header.qform = qform_of(bytes, big_endian);
   return header;
 }
 

@@ -24,6 +24,7 @@ struct NiftiHeader {
   /// The affine map of the sform, where there is one, its world turned from RAS to LPS, in the
   /// file's unit.
   std::optional<GridPlacement> sform;
+  std::optional<GridPlacement> qform;  ///< as the sform
 };
 
 /// Reads and checks the header of a .nii or .hdr file, compressed or not. Throws Error.

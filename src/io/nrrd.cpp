@@ -19,6 +19,7 @@
 #include "itk_header.h"
 #include "medical_volumes.h"
 #include "pellucid/scene/error.h"
+#include "text.h"
 
 namespace pellucid {
 
@@ -38,13 +39,6 @@ struct Header {
 };
 
 constexpr const char* blanks = " \t";
-
-std::string in_small_letters(std::string text) {
-  std::ranges::transform(text, text.begin(), [](char c) {
-    return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
-  });
-  return text;
-}
 
 // NrrdIO takes a field's name in letters of either case, and "axis mins" for "axismins".
 Line parse_line(std::string text) {

@@ -8,7 +8,6 @@
 #include <cstdint>
 #include <cstdio>
 #include <string>
-#include <vector>
 
 #include "image_pages.h"
 #include "pellucid/scene/error.h"
@@ -30,9 +29,11 @@ struct Failure {
 }
 void ignore(png_structp, png_const_charp) {}
 
-// The bytes of a row, as libpng is about to write them.
+// Where all rows go, and the bytes of each, as libpng is about to write them. No pointers to rows:
+// a header of many rows would ask for eight bytes each that no check of memory knows of.
 struct Rows {
-  png_bytepp rows;
+  png_bytep first;
+  png_uint_32 rows;
   std::size_t bytes_per_row;
 };
 
@@ -49,11 +50,15 @@ bool read_with_libpng(std::FILE* file, const Rows& to, Failure& failure) {
   png_init_io(png, file);
   png_read_info(png, info);
   if (std::endian::native == std::endian::little) png_set_swap(png);
-  png_set_interlace_handling(png);
+  const int passes = png_set_interlace_handling(png);
   png_read_update_info(png, info);
   if (png_get_rowbytes(png, info) != to.bytes_per_row)
     png_error(png, "its header contradicts itself");
-  png_read_image(png, to.rows);
+  for (int pass = 0; pass < passes; ++pass) {
+    for (png_uint_32 y = 0; y < to.rows; ++y) {
+      png_read_row(png, to.first + y * to.bytes_per_row, nullptr);
+    }
+  }
   png_read_end(png, nullptr);
   png_destroy_read_struct(&png, &info, nullptr);
   return true;
@@ -96,14 +101,12 @@ class PngReader : public PageReader {
   void read(std::span<std::byte> to) override {
     const auto height = static_cast<std::size_t>(format_.rows);
     const std::size_t bytes = to.size() / height;
-    std::vector<png_bytep> rows(height);
-    for (std::size_t y = 0; y < height; ++y) {
-      rows[y] = reinterpret_cast<png_bytep>(&to[y * bytes]);
-    }
+    const Rows rows{reinterpret_cast<png_bytep>(to.data()), static_cast<png_uint_32>(height),
+                    bytes};
     std::FILE* stream = std::fopen(file_.c_str(), "rb");
     if (stream == nullptr) throw Error(name_ + ": cannot read the file");
     Failure failure;
-    const bool done = read_with_libpng(stream, {rows.data(), bytes}, failure);
+    const bool done = read_with_libpng(stream, rows, failure);
     std::fclose(stream);
     if (!done) {
       throw Error(name_ + ": cannot read its pixels (" + failure.text +

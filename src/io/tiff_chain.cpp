@@ -30,9 +30,16 @@ class Chain {
     const std::uint64_t offset_bytes = is_big ? 8 : 4, count_bytes = is_big ? 8 : 2,
                         entry_bytes = is_big ? 20 : 12;
     std::uint64_t at = number(is_big ? 8 : 4, offset_bytes);
-    // No chain of so many directories fits: it would go in a circle.
-    for (std::uint64_t pages = 0; at != 0; ++pages) {
-      if (pages > source_.size / entry_bytes) fail();
+    // Brent's test for circles: a directory is kept for twice as long each time, until one comes
+    // again. The number of directories that fit would be a bound too, but one of hours.
+    std::uint64_t kept = 0, steps = 0, limit = 1;
+    while (at != 0) {
+      if (at == kept) fail();
+      if (++steps == limit) {
+        kept = at;
+        steps = 0;
+        limit *= 2;
+      }
       const std::uint64_t entries = number(at, count_bytes);
       if (entries > source_.size / entry_bytes) fail();
       at = number(at + count_bytes + entries * entry_bytes, offset_bytes);
@@ -42,7 +49,7 @@ class Chain {
  private:
   [[noreturn]] void fail() const {
     throw Error(source_.name +
-                ": its list of pages leads out of the file; it is cut off or "
+                ": its list of pages leads out of the file, or in a circle; it is cut off or "
                 "damaged");
   }
   std::uint64_t number(std::uint64_t at, std::uint64_t size) const {

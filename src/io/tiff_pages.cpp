@@ -16,6 +16,7 @@
 
 #include "image_pages.h"
 #include "memory_limit.h"
+#include "ome_xml.h"
 #include "pellucid/scene/error.h"
 #include "tiff_chain.h"
 #include "volume_source.h"
@@ -35,7 +36,10 @@ namespace {
       message, [](char c) { return c >= 0 && c < ' '; }, ' ');
   return 1;
 }
-int ignore_message(TIFF*, void*, const char*, const char*, std::va_list) {
+// libtiff warns of bytes of a single strip that cannot be right, and takes as many as the image
+// needs: those of something else in the file, or of its neighbor.
+int find_bogus_bytes(TIFF*, void* found, const char*, const char* format, std::va_list) {
+  if (std::string_view(format).starts_with("Bogus")) *static_cast<bool*>(found) = true;
   return 1;
 }
 
@@ -85,7 +89,7 @@ class TiffReader : public PageReader {
     const std::unique_ptr<TIFFOpenOptions, Close> options(TIFFOpenOptionsAlloc());
     if (!options) throw std::bad_alloc();
     TIFFOpenOptionsSetErrorHandlerExtR(options.get(), keep_message, &message_);
-    TIFFOpenOptionsSetWarningHandlerExtR(options.get(), ignore_message, nullptr);
+    TIFFOpenOptionsSetWarningHandlerExtR(options.get(), find_bogus_bytes, &has_bogus_bytes_);
     // "m": not mapped, so that a file that is cut short meanwhile is an error and no signal.
     tiff_.reset(TIFFOpenExt(file.c_str(), "rm", options.get()));
     if (!tiff_) fail("cannot read the TIFF file");
@@ -119,6 +123,11 @@ class TiffReader : public PageReader {
     const std::string description = "\n" + text(TIFFTAG_IMAGEDESCRIPTION);
     const double x = resolution(TIFFTAG_XRESOLUTION), y = resolution(TIFFTAG_YRESOLUTION);
     const bool has_both = x > 0 && y > 0 && std::isfinite(1 / x) && std::isfinite(1 / y);
+    if (is_ome_xml(description)) {
+      const int samples = field<std::uint16_t>(TIFFTAG_SAMPLESPERPIXEL);
+      const PageSpacing said = read_ome_xml(description, samples, name_);
+      if (said.pixels) return said;
+    }
     PageSpacing spacing;
     if (description.starts_with("\nImageJ=")) {
       check_imagej(description);
@@ -180,7 +189,7 @@ class TiffReader : public PageReader {
   bool next() override {
     message_.clear();
     if (TIFFLastDirectory(tiff_.get()) != 0) return false;
-    if (TIFFReadDirectory(tiff_.get()) == 0) fail("cannot read its next page");
+    go_on();
     if (is_thumbnail()) return next();
     choose_colors();
     return true;
@@ -214,8 +223,12 @@ class TiffReader : public PageReader {
   }
   void skip_thumbnails() {
     while (is_thumbnail() && TIFFLastDirectory(tiff_.get()) == 0) {
-      if (TIFFReadDirectory(tiff_.get()) == 0) fail("cannot read its next page");
+      go_on();
     }
+  }
+  void go_on() {
+    has_bogus_bytes_ = false;
+    if (TIFFReadDirectory(tiff_.get()) == 0) fail("cannot read its next page");
   }
 
   bool is_jpeg_color() const {
@@ -247,6 +260,11 @@ class TiffReader : public PageReader {
     message_.clear();
     const std::size_t bytes = block.columns * rows * block.samples * block.value_bytes;
     const auto wanted = static_cast<tmsize_t>(bytes);
+    // libtiff reads on behind the end of a strip that says it is smaller.
+    if (field<std::uint16_t>(TIFFTAG_COMPRESSION) == COMPRESSION_NONE &&
+        (has_bogus_bytes_ || TIFFGetStrileByteCount(tiff_.get(), number) < bytes)) {
+      fail("its strips or tiles have other lengths than their pixels");
+    }
     const tmsize_t got =
         tiled ? TIFFReadEncodedTile(tiff_.get(), number, block.bytes.data(), wanted)
               : TIFFReadEncodedStrip(tiff_.get(), number, block.bytes.data(), wanted);
@@ -267,6 +285,7 @@ class TiffReader : public PageReader {
   }
 
   std::string name_, message_;
+  bool has_bogus_bytes_ = false;  ///< of the page that it stands at
   std::unique_ptr<TIFF, Close> tiff_;
 };
 

@@ -202,6 +202,8 @@ std::vector<VolumeArray> list_vtk_arrays(const std::filesystem::path& path) {
                     std::string(type_name(array.values)),
                     {},
                     component_statistics(array.values, array.components),
+                    0,
+                    {},
                     array.name == grid.shown});
     const int fewer = array.centering == Centering::cell ? 1 : 0;
     for (const int points : grid.points) list.back().dimensions.push_back(points - fewer);

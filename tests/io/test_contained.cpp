@@ -41,6 +41,18 @@ TEST(Contained, GivesNothingAfterAFailure) {
   EXPECT_TRUE(nothing([] { std::raise(SIGKILL); }));
 }
 
+// A program's own handlers would let its child go on.
+TEST(Contained, EndsBySignalsThatTheProgramHandles) {
+  for (const int signal : {SIGINT, SIGTERM}) {
+    const auto before = std::signal(signal, SIG_IGN);
+    EXPECT_FALSE(run_contained(1, [signal](std::span<std::byte>) {
+      std::raise(signal);
+      return true;
+    }));
+    std::signal(signal, before);
+  }
+}
+
 TEST(Contained, NothingIsPrinted) {
   ::testing::internal::CaptureStderr();
   EXPECT_FALSE(run_contained(1, [](std::span<std::byte>) -> bool {

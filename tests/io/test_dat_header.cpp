@@ -45,6 +45,14 @@ TEST_F(DatTest, OfInviwo) {
                   "i16");
 }
 
+TEST_F(DatTest, RefusesWordsThatItDoesNotKnow) {
+  const std::string begin = "RawFile: v.raw\nResolution: 5 4 3", end = "\nFormat: FLOAT32\n";
+  expect_counting(parse(begin + end + "ByteOrder: littleEndian\n"), "f32");
+  EXPECT_TRUE(
+      contains(error(begin + end + "ByteOrder: Middle\n"), "\"ByteOrder: Middle\" is neither"));
+  EXPECT_TRUE(contains(error(begin + " 2" + end), "are no three numbers"));
+}
+
 // The basis spans the cells: values are half a cell inside of it.
 TEST_F(DatTest, BasisVectorsSpanTheCells) {
   const std::string basis =

@@ -177,6 +177,17 @@ TEST_F(DicomTest, SlopeAndIntercept) {
   EXPECT_TRUE(contains(refused(), "slope"));
 }
 
+TEST_F(DicomTest, ScalesThatAreNoNumbersAreNamed) {
+  for (const char* text : {"2,5", "abc"}) {
+    write_series([&](DicomSliceFile& file, int) { file.set(0x00281053, text); });
+    EXPECT_TRUE(contains(refused(), "RescaleSlope (0028,1053) is \"" + std::string(text)))
+        << refused();
+    write_series(
+        [&](DicomSliceFile& file, int) { file.set(0x00281053, "1").set(0x00281052, text); });
+    EXPECT_TRUE(contains(refused(), "RescaleIntercept (0028,1052) is")) << refused();
+  }
+}
+
 // Bits above and below those of the value belong to others (overlays).
 TEST_F(DicomTest, OnlyTheBitsOfTheValueCount) {
   const auto read_bits = [&](bool is_signed, int high_bit) {

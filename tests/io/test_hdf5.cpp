@@ -74,6 +74,27 @@ class Hdf5 : public test::ScratchFolder {
   hid_t file_ = -1;
 };
 
+TEST_F(Hdf5, RefusesValuesOfOtherFilesAndBitFields) {
+  const hsize_t sides[] = {3, 4, 5};
+  const hid_t space = H5Screate_simple(3, sides, nullptr);
+  const hid_t outside = H5Pcreate(H5P_DATASET_CREATE), apart = H5Pcreate(H5P_DATASET_CREATE);
+  close();
+  H5Pset_external(outside, path("v.raw").c_str(), 0, 240);
+  H5Pset_virtual(apart, space, path("b.h5").c_str(), "v", space);
+  const hid_t file = H5Fcreate(path("a.h5").c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT);
+  write("v.raw", test::bytes_of(counting()));
+  H5Dclose(H5Dcreate2(file, "o", H5T_IEEE_F32LE, space, H5P_DEFAULT, outside, H5P_DEFAULT));
+  H5Dclose(H5Dcreate2(file, "v", H5T_IEEE_F32LE, space, H5P_DEFAULT, apart, H5P_DEFAULT));
+  H5Dclose(H5Dcreate2(file, "b", H5T_STD_B8LE, space, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT));
+  for (const hid_t how : {outside, apart}) H5Pclose(how);
+  H5Sclose(space);
+  H5Fclose(file);
+  const std::string all = error_of([&] { read_volume(path("a.h5")); });
+  for (const char* part : {"external storage", "a virtual dataset", "bit fields"}) {
+    EXPECT_TRUE(contains(all, part)) << all;
+  }
+}
+
 TEST_F(Hdf5, EveryTypeOfBothByteOrders) {
   add_counting<std::uint8_t>("u8", H5T_STD_U8LE, H5T_NATIVE_UINT8);
   add_counting<std::int8_t>("i8", H5T_STD_I8BE, H5T_NATIVE_INT8);

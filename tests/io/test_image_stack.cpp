@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <unistd.h>
+
 #include <cstdint>
 #include <filesystem>
 #include <string>
@@ -251,6 +253,54 @@ TEST_F(StackTest, ImageJsOtherStacksAreRefused) {
   EXPECT_TRUE(contains(refuse("images=4\nchannels=2\nslices=2\n", 4), "several channels"));
   EXPECT_TRUE(contains(refuse("images=4\nslices=2\nframes=2\n", 4), "several frames"));
   EXPECT_TRUE(contains(refuse("images=4\nslices=4\n", 1), "above 4 GB"));
+}
+
+TEST_F(StackTest, OmesSizesAndOtherStacks) {
+  const auto parse = [&](const std::string& attributes) {
+    const fs::path file = write_pages(
+        [&](TiffPage& one, int k) {
+          if (k > 0) return;
+          one.description =
+              "<?xml version=\"1.0\"?><OME xmlns=\"x\"><Image ID=\"Image:0\"><Pixels " +
+              attributes + "><TiffData/></Pixels></Image></OME>";
+        },
+        "o.tif");
+    return read_noting(file).description().placement.spacing;
+  };
+  test::expect_near(parse("ID=\"p\" SizeC=\"1\" SizeT=\"1\" SizeZ=\"3\" PhysicalSizeX=\"0.25\" "
+                          "PhysicalSizeY=\"0.5\" PhysicalSizeZ=\"2\""),
+                    {0.25, 0.5, 2});
+  EXPECT_TRUE(contains(notes_, "in µm")) << notes_;
+  EXPECT_TRUE(contains(error_of([&] { parse("SizeC=\"3\" SizeT=\"1\""); }), "several channels"));
+  EXPECT_TRUE(contains(error_of([&] { parse("SizeC=\"1\" SizeT=\"3\""); }), "several times"));
+}
+
+// What is behind a strip belongs to another.
+TEST_F(StackTest, StripsShorterThanTheirPixels) {
+  for (const bool several : {false, true}) {
+    const fs::path file = write_pages([&](TiffPage& one, int) {
+      if (several) {
+        one.fields[278] = {2};
+        one.strips = {one.strips[0].substr(0, 10), one.strips[0].substr(20)};
+      } else {
+        one.strips[0].resize(10);
+      }
+    });
+    EXPECT_TRUE(contains(refused(file), "other lengths than their pixels")) << refused(file);
+  }
+}
+
+TEST_F(StackTest, PagesInACircle) {
+  TiffFile file(false);
+  for (int k = 0; k < 3; ++k) file.add(page(k));
+  std::string bytes = file.bytes();
+  const std::string first = bytes.substr(4, 4);
+  bytes.replace(bytes.size() - 4, 4, first);
+  write("c.tif", bytes);
+  fs::resize_file(path("c.tif"), std::uintmax_t{1} << 32);
+  alarm(20);
+  EXPECT_TRUE(contains(refused(path("c.tif")), "in a circle"));
+  alarm(0);
 }
 
 TEST_F(StackTest, Png) {

@@ -173,6 +173,70 @@ TEST(ImportParaView, ReadsXmlAndMapsByName) {
   EXPECT_TRUE(contains(test::error_of([&] { read(text, options); }), "no color map \"c\""));
 }
 
+// Half of the way from red to magenta, whose hue is 5/6: wrapped it goes past red, else through
+// yellow, green and blue.
+TEST(ImportParaView, HuesWrapWhereTheMapSaysIt) {
+  ImportOptions options;
+  options.numbers = ColorNumbers::linear;
+  const auto green = [&](const std::string& text) {
+    return at(read(text, options).table, 0.5).color.g;
+  };
+  const auto xml = [](const std::string& space) {
+    return "<ColorMap name=\"a\" space=\"" + space +
+           "\"><Point x=\"0\" r=\"1\" g=\"0\" b=\"0\"/><Point x=\"1\" r=\"1\" g=\"0\" "
+           "b=\"1\"/></ColorMap>";
+  };
+  const auto json = [](const std::string& more) {
+    return R"([{"ColorSpace": "HSV", )" + more + R"("RGBPoints": [0,1,0,0, 1,1,0,1]}])";
+  };
+  EXPECT_GT(green(xml("HSV")), 0.9);
+  EXPECT_LT(green(xml("Wrapped")), 0.01);
+  EXPECT_GT(green(json("")), 0.9);
+  EXPECT_TRUE(has_note(read(json("")), "HSVWrap is not said"));
+  EXPECT_LT(green(json("\"HSVWrap\": 1, ")), 0.01);
+  EXPECT_GT(green(json("\"HSVWrap\": 0, ")), 0.9);
+}
+
+TEST(ImportParaView, LeavesOutWhatParaViewLeavesOut) {
+  const ImportedTransferFunction f =
+      read(R"(<ColorMap name="a"><Point x="0" o="0.7" r="1" g="0" b="0"/>)"
+           R"(<Point x="1" o="0.7" r="0" g="0" b="1"/></ColorMap>)");
+  EXPECT_EQ(at(f.table, 0.5).opacity, 0.5);  // the ramp
+  EXPECT_TRUE(has_note(f, "the attribute o"));
+  EXPECT_TRUE(has_note(f, "a ramp from 0 to 1"));
+  EXPECT_TRUE(has_note(read(R"([{"IndexedColors": [1, 0, 0], "RGBPoints": [0,1,0,0, 1,0,0,1]}])"),
+                       "IndexedColors"));
+}
+
+TEST(ImportVisIt, RefusesScalingsAndSaysWhatItLeavesOut) {
+  const auto visit = [](const std::string& key, const std::string& value) {
+    return R"(<Object name="VolumeAttributes"><Field name=")" + key + "\" type=\"x\">" + value +
+           R"(</Field><Object name="GaussianControlPoint"><Field name="x">0.4</Field>)"
+           R"(<Field name="height">0.6</Field><Field name="width">0.25</Field>)"
+           R"(<Field name="xBias">0</Field><Field name="yBias">0</Field></Object></Object>)";
+  };
+  for (const char* scaling : {"Log", "Skew", "1"}) {
+    const std::string error = test::error_of([&] { read(visit("scaling", scaling)); });
+    EXPECT_TRUE(contains(error, "not Linear")) << error;
+  }
+  EXPECT_FALSE(has_note(read(visit("scaling", "Linear")), "left out"));
+  EXPECT_TRUE(has_note(read(visit("useColorVarMin", "true")), "ColorVarMin"));
+  EXPECT_FALSE(has_note(read(visit("useColorVarMin", "false")), "ColorVarMin"));
+  EXPECT_TRUE(has_note(read(visit("smoothing", "CubicSpline")), "smoothing"));
+}
+
+TEST(ImportTable, ReadsHeadersInLettersOfEitherCase) {
+  ImportOptions linear;
+  linear.numbers = ColorNumbers::linear;
+  const std::string rows = "\n0.2,0.1,0.2,0.3\n0.6,1,0,0\n";
+  EXPECT_EQ(at(read("Value,R,G,B" + rows, linear).table, 0.6).color, (Rgb<double>{1, 0, 0}));
+  EXPECT_EQ(at(read("Red;Green;Blue;Alpha" + rows, linear).table, 1).color,
+            (Rgb<double>{0.6, 1, 0}));
+  for (const char* other : {"x position,R,G,B", "R,G,B,value", "hue,s,v", "r,g,b"}) {
+    EXPECT_NE(test::error_of([&] { read(other + rows); }), "") << other;
+  }
+}
+
 TEST(ImportSlicer, ReadsTheLegacyText) {
   const std::string text =
       "1\n1\n0.9\n0.1\n0.2\n10\n6 -100 0 50 0.25 300 0.5\n4 0 1 255 1\n"
@@ -278,12 +342,16 @@ TEST(Import, RefusesWhatIsWrongInOneLineThatNamesThePlace) {
       {"0,0,inf\n", "f: line 1: \"inf\" is no number"},
       {"0,0,256\n", "f: line 1: 256 must be from 0 to 1"},
       {"value,r,g,b\n1,0,0,0\n0,0,0,0\n", "f: color 1 lies at a smaller value"},
-      {"hello\n", "f: has no rows of numbers"},
+      {"hello\n", "f: line 1: the header is no"},
+      {"r,g,b\n", "f: has no rows of numbers"},
       {"1\n1\n", "f: has 2 lines"},
       {"1\n1\n1\n1\n1\n1\n3 0 0\n2 0 1\n4 0 1 1 1\n", "f: line 7: does not begin with the count"},
       {"1\n1\n1\n1\n1\n1\n2 0 7\n2 0 1\n4 0 1 1 1\n", "f: line 7: 7 must be from 0 to 1"},
       {"<a/>", "f: is XML, but neither"},
       {"<ColorMap", "f: line 1: a tag does not end"},
+      {"<ColorMap indexedLookup=\"true\"><Point x=\"0\" r=\"1\" g=\"0\" b=\"0\"/></ColorMap>",
+       "f: line 1: has colors of categories"},
+      {"x position,R,G,B\n0,0,0,0\n", "f: line 1: the header is no \"r,g,b\""},
       {"<ColorMap name=>", "f: line 1: <ColorMap> has an attribute without"},
       {"<ColorMap name=\"a\"><Point x=\"0\" r=\"1\" g=\"1\"/></ColorMap>",
        "f: line 1: <Point> has no b"},

@@ -6,6 +6,7 @@
 #include <bit>
 #include <cmath>
 #include <cstdint>
+#include <cstring>
 #include <string>
 #include <vector>
 
@@ -97,6 +98,59 @@ TEST_F(NetCdf, ClassicByteByByte) {
     SCOPED_TRACE(length);
     write("a.nc", classic().substr(0, length));
     error_of([&] { parse(); });
+  }
+}
+
+TEST_F(NetCdf, ScalesThatAreTextAreNamed) {
+  for (const char* attribute : {"scale_factor", "add_offset"}) {
+    create(NC_CLOBBER);
+    const int id = define("v", NC_FLOAT);
+    ok(nc_put_att_text(file_, id, attribute, 3, "0.5"));
+    ok(nc_enddef(file_));
+    ok(nc_put_var_float(file_, id, counting().data()));
+    finish();
+    const std::string message = error_of([&] { parse(); });
+    EXPECT_TRUE(contains(message, std::string(attribute) + " of \"v\" is no finite number"))
+        << message;
+  }
+}
+
+// Each component that is looked at takes a process of its own; and one array that is not read does
+// not hide the others.
+TEST_F(NetCdf, ListsManyStepsAndArraysThatAreNotRead) {
+  ok(nc_create(path("a.nc").c_str(), NC_CLOBBER, &file_));
+  const char* const names[] = {"t", "z", "y", "x"};
+  for (int a = 0; a < 4; ++a) ok(nc_def_dim(file_, names[a], a == 0 ? 70 : 2, &axes_[a]));
+  define("v", NC_FLOAT, 0, 4);
+  const int bad = define("bad", NC_FLOAT);
+  ok(nc_put_att_text(file_, bad, "scale_factor", 3, "0.5"));
+  ok(nc_enddef(file_));
+  finish();
+  const std::vector<VolumeArray> arrays = list_arrays(path("a.nc"));
+  ASSERT_EQ(arrays.size(), 2u);
+  EXPECT_EQ(arrays[0].components.size(), 64u);
+  EXPECT_EQ(arrays[0].more_components, 6);
+  EXPECT_EQ(arrays[1].name, "bad");
+  EXPECT_TRUE(contains(arrays[1].not_read, "scale_factor")) << arrays[1].not_read;
+}
+
+TEST_F(NetCdf, TimeIsNotDepth) {
+  for (const auto& [attribute, text] : {std::pair{"units", "days since 1990-1-1"},
+                                        std::pair{"axis", "T"}, std::pair{"units", "m"}}) {
+    create(NC_CLOBBER);
+    const int id = define("v", NC_FLOAT), z = define("z", NC_FLOAT, 1, 1);
+    ok(nc_put_att_text(file_, z, attribute, std::strlen(text), text));
+    ok(nc_enddef(file_));
+    ok(nc_put_var_float(file_, id, counting().data()));
+    const float depths[] = {0, 1, 2};
+    ok(nc_put_var_float(file_, z, depths));
+    finish();
+    if (std::string(text) == "m") {
+      expect_counting(parse(), "f32");
+    } else {
+      const std::string message = error_of([&] { parse(); });
+      EXPECT_TRUE(contains(message, "axis z is time and not z")) << message;
+    }
   }
 }
 

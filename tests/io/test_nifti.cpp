@@ -132,6 +132,22 @@ TEST_F(NiftiTest, QformStandsInLps) {
   expect_near(world_of(parse(file), 0, 0, 1), {-10, -20, 27});
 }
 
+TEST_F(NiftiTest, TwoMapsThatDifferAreTold) {
+  std::string notes;
+  ReadOptions options;
+  options.note = [&](const std::string& note) { notes += note; };
+  NiftiFile file;
+  file.qform_code = file.sform_code = 1;
+  file.qform = {0, 0, static_cast<float>(std::sqrt(0.5)), 10, 20, 30};
+  file.sform = {0, -2, 0, 10, 1, 0, 0, 20, 0, 0, 3, 30};
+  parse(file.with(bytes_of(counting())), options);
+  EXPECT_EQ(notes, "");
+  file.sform[3] = 10.01F;
+  const Volume volume = parse(file.with(bytes_of(counting())), options);
+  const bool is_qform = world_of(volume, 0, 0, 0).x > -10.005;
+  EXPECT_TRUE(contains(notes, is_qform ? "the qform is used" : "the sform is used")) << notes;
+}
+
 TEST_F(NiftiTest, SformStandsInLps) {
   NiftiFile file;
   file.sform_code = 2;

@@ -47,10 +47,10 @@ def slicer(colors, opacities, unit):
 
 CASES = {
     "rgb": paraview("RGB", RAINBOW, RAMP),
-    "hsv": paraview("HSV", RAINBOW, RAMP),
-    "hsv_wrapped": paraview("HSV", [0, 1, 0.2, 0.4, 0.4, 0.9, 0.6, 0.1, 1, 0.5, 0.1, 1], HAZE),
+    "hsv": paraview("HSV", RAINBOW, RAMP, HSVWrap=1),
+    "hsv_wrapped": paraview("HSV", [0, 1, 0.2, 0.4, 0.4, 0.9, 0.6, 0.1, 1, 0.5, 0.1, 1], HAZE, HSVWrap=1),
     "hsv_not_wrapped": paraview("HSV", [0, 1, 0, 0.4, 1, 1, 0.6, 0.1], HAZE, HSVWrap=0),
-    "hsv_grey": paraview("HSV", [0, 0.3, 0.3, 0.3, 1, 0.2, 0.4, 0.9], HAZE),
+    "hsv_grey": paraview("HSV", [0, 0.3, 0.3, 0.3, 1, 0.2, 0.4, 0.9], HAZE, HSVWrap=1),
     "lab": paraview("Lab", RAINBOW, RAMP),
     "lab_dark": paraview("Lab", [0, 0, 0, 0, 1, 0.02, 0.05, 0.1], HAZE),
     "diverging": paraview("Diverging", [0, 0.230, 0.299, 0.754, 1, 0.706, 0.016, 0.150], HAZE),
@@ -79,7 +79,7 @@ def functions(case):
     if isinstance(case, list):
         points, flat = case[0]["RGBPoints"], case[0]["Points"]
         getattr(color, SPACES[case[0]["ColorSpace"]])()
-        color.SetHSVWrap(case[0].get("HSVWrap", 1))
+        color.SetHSVWrap(case[0].get("HSVWrap", 0))
         for i in range(0, len(points), 4):
             color.AddRGBPoint(*points[i:i + 4])
         for i in range(0, len(flat), 4):
