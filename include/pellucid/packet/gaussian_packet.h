@@ -56,7 +56,7 @@ class GaussianPacket {
   static constexpr double kept_back = 0x1p-9;
   /// Of the difference of two rules what counts as the standard deviation of the better one: more
   /// than in smooth stretches, for all of a narrow primitive may lie in a few steps.
-  static constexpr float share_of_difference = 0.6f;
+  static constexpr float share_of_difference = 0.8f;
   /// Rays that need more are given up: `kept_back` pays for so many.
   static constexpr int most_looks = 1 << 14;
 
