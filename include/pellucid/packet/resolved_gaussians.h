@@ -140,7 +140,7 @@ class ResolvedGaussians {
 
  private:
   /// The most that p may move in a step of a primitive that matters.
-  static constexpr float coarsest = 1.5f;
+  static constexpr float coarsest = 1.2f;
   static constexpr float far_away = 1e6f;
 
   PELLUCID_ALWAYS_INLINE void add(const SteppedGaussian& of, int channels,
