@@ -92,9 +92,10 @@ class ResolvedGaussians {
   StepEnd<F> end[steps + 1];  ///< end[0] is left as it is
   M matters[steps];           ///< whether a primitive does, somewhere on the step
   M unresolved[steps];
-  F most;        ///< how far a primitive that matters moves in a step, at most
-  F rounding;    ///< how far the extinction may be off because numbers are rounded
-  F steepest;    ///< how much the extinction changes on a step where it changes most
+  F most;      ///< how far a primitive that matters moves in a step, at most
+  F rounding;  ///< how far the extinction may be off because numbers are rounded
+  F steepest;  ///< how much the extinction changes on a step where it changes most
+  F coarse;    ///< the extinction, times the fourth power of how far the primitive moves in a step
   F bending[3];  ///< what a bend of the data along an axis makes of the extinction, by its largest
                  ///<   deviation from the curve, in cells squared (error/random_errors.h)
 
@@ -117,7 +118,7 @@ class ResolvedGaussians {
       end[j + 1] = {};
     }
     clear_ = F(far_away);
-    fastest_behind_ = most = rounding = steepest = F(0);
+    fastest_behind_ = most = rounding = steepest = coarse = F(0);
     for (F& b : bending) b = F(0);
     for (int i = 0; i < mixture.count; ++i) {
       if (!primitives.of_any(i)) continue;
@@ -164,10 +165,10 @@ class ResolvedGaussians {
       // Written so that NaN matters.
       const M here = on & !(nearest >= reach);
       const F moves = between[j] + F(2) * off_chord;
-      const M coarse = here & !(moves <= F(coarsest));
+      const M too_far = here & !(moves <= F(coarsest));
       somewhere = somewhere | here;
       matters[j] = matters[j] | here;
-      unresolved[j] = unresolved[j] | coarse;
+      unresolved[j] = unresolved[j] | too_far;
       moves_most = max(moves_most, select(here, moves, F(0)));
       ahead_[j] = min(ahead_[j], select(here, max(away[j] - reach, F(0)), F(far_away)));
       fastest_[j] = max(fastest_[j], select(here, moves + F(2) * off_chord, F(0)));
@@ -192,6 +193,8 @@ class ResolvedGaussians {
     largest = select(somewhere, largest, F(0));
     rounding = multiply_add(largest, F(of.rounding), rounding);
     steepest = multiply_add(largest, moves_most, steepest);
+    const F squared = moves_most * moves_most;
+    coarse = multiply_add(largest, squared * squared, coarse);
     for (int a = 0; a < 3; ++a) {
       F bend(0);
       for (int c = 0; c < channels; ++c) {
