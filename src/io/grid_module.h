@@ -57,4 +57,9 @@ using ReadGrid = void(const std::filesystem::path& path, const std::string& arra
 inline constexpr const char* list_grids_name = "pellucid_list_grids_1";
 inline constexpr const char* read_grid_name = "pellucid_read_grid_1";
 
+/// What each module has of its own, behind these names. They throw.
+void list_grids(const std::filesystem::path& path, GridContents& contents);
+void read_grid(const std::filesystem::path& path, const std::string& name, ComponentRange range,
+               GridValues& values);
+
 }  // namespace pellucid

@@ -11,7 +11,6 @@
 #include <vector>
 
 #include "grid_module.h"
-#include "module_answer.h"
 #include "pellucid/scene/error.h"
 
 namespace pellucid {
@@ -151,7 +150,9 @@ herr_t take_name(hid_t, const char* name, const H5O_info_t* about, void* names) 
   return 0;
 }
 
-void list(const std::filesystem::path& path, GridContents& contents) {
+}  // namespace
+
+void list_grids(const std::filesystem::path& path, GridContents& contents) {
   const Id file(open_file(path), H5Fclose, "the file");
   std::vector<std::string> names;
   if (H5Ovisit(file.get(), H5_INDEX_NAME, H5_ITER_INC, take_name, &names) < 0) {
@@ -171,8 +172,8 @@ void list(const std::filesystem::path& path, GridContents& contents) {
   }
 }
 
-void read(const std::filesystem::path& path, const std::string& name, ComponentRange range,
-          GridValues& values) {
+void read_grid(const std::filesystem::path& path, const std::string& name, ComponentRange range,
+               GridValues& values) {
   const Id file(open_file(path), H5Fclose, "the file");
   const Id dataset(H5Dopen2(file.get(), name.c_str(), H5P_DEFAULT), H5Dclose, name.c_str());
   const Id space(H5Dget_space(dataset.get()), H5Sclose, "the axes of a dataset");
@@ -203,19 +204,4 @@ void read(const std::filesystem::path& path, const std::string& name, ComponentR
   }
 }
 
-}  // namespace
-
 }  // namespace pellucid
-
-extern "C" __attribute__((visibility("default"))) void pellucid_list_grids_1(
-    const std::filesystem::path& path, pellucid::GridContents& answer) {
-  pellucid::answer(answer.error, "crop or reduce the volume",
-                   [&] { pellucid::list(path, answer); });
-}
-
-extern "C" __attribute__((visibility("default"))) void pellucid_read_grid_1(
-    const std::filesystem::path& path, const std::string& array, pellucid::ComponentRange range,
-    pellucid::GridValues& answer) {
-  pellucid::answer(answer.error, "crop or reduce the volume",
-                   [&] { pellucid::read(path, array, range, answer); });
-}

@@ -13,7 +13,6 @@
 #include <vector>
 
 #include "grid_module.h"
-#include "module_answer.h"
 #include "netcdf_variables.h"
 #include "pellucid/scene/error.h"
 
@@ -138,7 +137,9 @@ VolumeData with_meaning(VolumeData stored, const NetCdfMeaning& meaning) {
       stored);
 }
 
-void list(const std::filesystem::path& path, GridContents& contents) {
+}  // namespace
+
+void list_grids(const std::filesystem::path& path, GridContents& contents) {
   const NetCdfFile file(path);
   const std::vector<NetCdfVariable> variables = net_cdf_variables(file.id());
   for (const NetCdfVariable& variable : variables) {
@@ -154,8 +155,8 @@ void list(const std::filesystem::path& path, GridContents& contents) {
   }
 }
 
-void read(const std::filesystem::path& path, const std::string& name, ComponentRange range,
-          GridValues& values) {
+void read_grid(const std::filesystem::path& path, const std::string& name, ComponentRange range,
+               GridValues& values) {
   const NetCdfFile file(path);
   const std::vector<NetCdfVariable> variables = net_cdf_variables(file.id());
   const auto variable =
@@ -183,19 +184,4 @@ void read(const std::filesystem::path& path, const std::string& name, ComponentR
   }
 }
 
-}  // namespace
-
 }  // namespace pellucid
-
-extern "C" __attribute__((visibility("default"))) void pellucid_list_grids_1(
-    const std::filesystem::path& path, pellucid::GridContents& answer) {
-  pellucid::answer(answer.error, "crop or reduce the volume",
-                   [&] { pellucid::list(path, answer); });
-}
-
-extern "C" __attribute__((visibility("default"))) void pellucid_read_grid_1(
-    const std::filesystem::path& path, const std::string& array, pellucid::ComponentRange range,
-    pellucid::GridValues& answer) {
-  pellucid::answer(answer.error, "crop or reduce the volume",
-                   [&] { pellucid::read(path, array, range, answer); });
-}

@@ -12,7 +12,6 @@
 #include <vector>
 
 #include "grid_module.h"
-#include "module_answer.h"
 #include "pellucid/scene/error.h"
 
 namespace pellucid {
@@ -134,7 +133,9 @@ GridArray describe(const openvdb::GridBase& grid, const std::string& name) {
   return array;
 }
 
-void list(const std::filesystem::path& path, GridContents& contents) {
+}  // namespace
+
+void list_grids(const std::filesystem::path& path, GridContents& contents) {
   File file(path, true);
   for (const std::string& name : file.names()) {
     try {
@@ -174,8 +175,8 @@ void copy_box(const Grid& grid, const Box& box, int component, std::span<std::by
   }
 }
 
-void read(const std::filesystem::path& path, const std::string& name, ComponentRange range,
-          GridValues& values) {
+void read_grid(const std::filesystem::path& path, const std::string& name, ComponentRange range,
+               GridValues& values) {
   File file(path, false);
   const openvdb::GridBase& grid = file.grid(name);
   if (!refusal(grid).empty()) throw Error("the file was changed while it was read");
@@ -195,19 +196,4 @@ void read(const std::filesystem::path& path, const std::string& name, ComponentR
   }
 }
 
-}  // namespace
-
 }  // namespace pellucid
-
-extern "C" __attribute__((visibility("default"))) void pellucid_list_grids_1(
-    const std::filesystem::path& path, pellucid::GridContents& answer) {
-  pellucid::answer(answer.error, "crop or reduce the volume",
-                   [&] { pellucid::list(path, answer); });
-}
-
-extern "C" __attribute__((visibility("default"))) void pellucid_read_grid_1(
-    const std::filesystem::path& path, const std::string& array, pellucid::ComponentRange range,
-    pellucid::GridValues& answer) {
-  pellucid::answer(answer.error, "crop or reduce the volume",
-                   [&] { pellucid::read(path, array, range, answer); });
-}

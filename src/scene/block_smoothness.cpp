@@ -7,6 +7,8 @@
 #include <cstddef>
 #include <limits>
 
+#include "block_neighbours.h"
+
 namespace pellucid {
 namespace {
 
@@ -61,33 +63,6 @@ struct Group {
                       static_cast<double>(sampled.unevenness));
   }
 };
-
-/// Gives each block the largest of its numbers and those of the blocks that touch it.
-void spread_to_neighbours(const BlockRecords& records, const ParallelFor& parallel,
-                          std::vector<float>& local) {
-  std::vector<float>& from = local;
-  std::vector<float> to(local.size());
-  const std::array<int, 3> blocks{records.axis[0].cells(), records.axis[1].cells(),
-                                  records.axis[2].cells()};
-  // The largest of three, along one axis after the other.
-  int stride = 1;
-  for (const int along : blocks) {
-    parallel(records.count(), [&](int first, int last) {
-      for (int b = first; b < last; ++b) {
-        const int place = b / stride % along;
-        const int least = place > 0 ? b - stride : b, most = place + 1 < along ? b + stride : b;
-        for (std::size_t n = 0; n < fields; ++n) {
-          const auto at = [&](int block) {
-            return from[fields * static_cast<std::size_t>(block) + n];
-          };
-          to[fields * static_cast<std::size_t>(b) + n] = std::max({at(least), at(b), at(most)});
-        }
-      }
-    });
-    from.swap(to);
-    stride *= along;
-  }
-}
 
 }  // namespace
 
@@ -155,7 +130,10 @@ SmoothBlocks find_smooth_blocks(const BlockRecords& records,
       all.bend[a] = std::max(all.bend[a], slab.bend[a]);
     }
   }
-  if (all.longest_step > 0) spread_to_neighbours(records, parallel, local);
+  if (all.longest_step > 0) {
+    join_with_neighbours(records, parallel, fields, local,
+                         [](float& most, float other) { most = std::max(most, other); });
+  }
   return all;
 }
 

@@ -195,10 +195,7 @@ class GaussianMarch {
     samples_.template sample<1>(&here, value);
     StepEnd<F> found{};
     for (int i = 0; i < mixture_.count; ++i) {
-      const Gaussian<float>& g = mixture_.primitive[i].gaussian;
-      const F extinction = ResolvedGaussians<N>::extinction(mixture_.primitive[i], value[0]);
-      found.extinction += extinction;
-      found.emission += extinction * Rgb<F>{F(g.color.r), F(g.color.g), F(g.color.b)};
+      ResolvedGaussians<N>::add_at(mixture_.primitive[i], value[0], found);
     }
     set_front(!known_, found, value[0]);
     known_ = known_ | alive;

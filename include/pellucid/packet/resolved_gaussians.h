@@ -126,17 +126,17 @@ class ResolvedGaussians {
     }
   }
 
-  /// What a primitive is at one place.
-  static F extinction(const SteppedGaussian& of, const DatumInCell<F>* value) noexcept {
-    if (!(of.reach > 0)) return F(0);
+  /// Adds what a primitive is at one place.
+  static void add_at(const SteppedGaussian& of, const DatumInCell<F>* value,
+                     StepEnd<F>& end) noexcept {
+    if (!(of.reach > 0)) return;
     F square(0);
     for (int row = 0; row < of.gaussian.rows; ++row) {
       F p;
       place_row(of, row, value, p);
       square = multiply_add(p, p, square);
     }
-    const auto near = square < F(of.reach * of.reach);
-    return select(near, F(of.gaussian.peak) * exp(F(0) - select(near, square, F(0))), F(0));
+    end.add(extinction(of, square, square < F(of.reach * of.reach)), color(of));
   }
 
  private:
@@ -144,10 +144,19 @@ class ResolvedGaussians {
   static constexpr float coarsest = 1.2f;
   static constexpr float far_away = 1e6f;
 
+  /// At |p|² where it is near: nothing where it does not matter, for numbers that are not normal
+  /// take many times as long.
+  PELLUCID_ALWAYS_INLINE static F extinction(const SteppedGaussian& of, F square, M near) noexcept {
+    return select(near, F(of.gaussian.peak) * exp(F(0) - select(near, square, F(0))), F(0));
+  }
+  static Rgb<F> color(const SteppedGaussian& of) noexcept {
+    const Rgb<float>& c = of.gaussian.color;
+    return {F(c.r), F(c.g), F(c.b)};
+  }
+
   PELLUCID_ALWAYS_INLINE void add(const SteppedGaussian& of, int channels,
                                   const DatumInCell<F> (*value)[most_channels],
                                   const LocalVariation<N>& variation, F step, M on) noexcept {
-    const Gaussian<float>& g = of.gaussian;
     F off_chord(0);
     for (int c = 0; c < channels; ++c) {
       off_chord = multiply_add(F(of.column_norm[c]), variation.oscillation[c], off_chord);
@@ -179,14 +188,10 @@ class ResolvedGaussians {
     most = max(most, moves_most);
     F largest(0);
     for (int j = 0; j <= steps; ++j) {
-      // Nothing where it does not matter: numbers that are not normal take many times as long.
-      const auto near = somewhere & (away[j] < reach);
+      const M near = somewhere & (away[j] < reach);
       const F square = select(near, away[j] * away[j], F(0));
-      const F here = select(near, F(g.peak) * exp(F(0) - square), F(0));
-      if (j > 0) {
-        end[j].extinction += here;
-        end[j].emission += here * Rgb<F>{F(g.color.r), F(g.color.g), F(g.color.b)};
-      }
+      const F here = extinction(of, square, near);
+      if (j > 0) end[j].add(here, color(of));
       // 2 |p| <= 1 + |p|²: the slope by p.
       largest = max(largest, multiply_add(here, square, here));
     }

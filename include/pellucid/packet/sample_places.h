@@ -76,9 +76,8 @@ class SamplePlaces {
   F place_[3], least_[3], most_[3];  ///< of the anchor and of the data's ends, in its cell
 };
 
-/// The data at the corners of cells, one in each lane, whose lower corners' values stand at
-/// at[lane]
-/// + on[lane].
+/// The data at the corners of cells, one in each lane: the value at the lower corner stands at
+/// at[lane] + on[lane].
 template <class Value, int N>
 PELLUCID_ALWAYS_INLINE CellCorners<Batch<float, N>> load_corners(const Value* const* at,
                                                                  const std::int32_t* on,

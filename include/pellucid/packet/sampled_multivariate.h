@@ -2,6 +2,7 @@
 #pragma once
 
 #include "pellucid/packet/sampler_transfer.h"
+#include "pellucid/segment/sampled.h"
 #include "pellucid/transfer/gaussian.h"
 
 namespace pellucid {
@@ -22,25 +23,14 @@ struct SampledMultivariate {
 };
 
 #if PELLUCID_HAS_BATCH_4  // in sources compiled per instruction set
-/// Extinction and color · extinction.
-template <class T>
-struct ExtinctionAndEmission {
-  T extinction{};
-  Rgb<T> emission{};
-};
-
 /// What the primitives of a set and all tables make of data that are no NaN, in the lanes of
 /// `wanted`; in others anything.
 template <int N>
-PELLUCID_ALWAYS_INLINE ExtinctionAndEmission<Batch<float, N>> extinction_and_emission(
+PELLUCID_ALWAYS_INLINE StepEnd<Batch<float, N>> extinction_and_emission(
     const SampledMultivariate& t, PrimitiveSet set, BatchMask<N> wanted,
     const Batch<float, N>* value) noexcept {
   using F = Batch<float, N>;
-  ExtinctionAndEmission<F> sum;
-  const auto add = [&](F extinction, Rgb<F> color) noexcept {
-    sum.extinction += extinction;
-    sum.emission += extinction * color;
-  };
+  StepEnd<F> sum{};
   for (int i = 0; i < t.gaussians.count; ++i) {
     if (!set.holds(i)) continue;
     const Gaussian<float>& g = t.gaussians.primitive[i];
@@ -56,7 +46,7 @@ PELLUCID_ALWAYS_INLINE ExtinctionAndEmission<Batch<float, N>> extinction_and_emi
     if (none(near)) continue;
     // Nothing where it does not matter: numbers that are not normal take many times as long.
     const F extinction = select(near, F(g.peak) * exp(F(0) - select(near, square, F(0))), F(0));
-    add(extinction, {F(g.color.r), F(g.color.g), F(g.color.b)});
+    sum.add(extinction, {F(g.color.r), F(g.color.g), F(g.color.b)});
   }
   for (int i = 0; i < t.tables; ++i) {
     const SamplerTransfer& table = t.table[i].table;
@@ -64,7 +54,7 @@ PELLUCID_ALWAYS_INLINE ExtinctionAndEmission<Batch<float, N>> extinction_and_emi
     const auto inside = wanted & (v >= F(table.support_min)) & (v <= F(table.support_max));
     if (none(inside)) continue;
     const Material<F> m = material_at(table, select(inside, v, F(table.support_min)));
-    add(select(inside, m.extinction, F(0)), m.color);
+    sum.add(select(inside, m.extinction, F(0)), m.color);
   }
   return sum;
 }

@@ -13,11 +13,17 @@ struct SampledSegment {
   T difference;  ///< the largest of opacity and the channels of radiance
 };
 
-/// An end of a step: its extinction, and its emission, which is extinction · color.
+/// What is at one place, an end of a step say: extinction, and emission, which is extinction ·
+/// color.
 template <class T>
 struct StepEnd {
   T extinction;
   Rgb<T> emission;
+
+  void add(T more, const Rgb<T>& color) noexcept {
+    extinction += more;
+    emission += more * color;
+  }
 };
 
 namespace detail {

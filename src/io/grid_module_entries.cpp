@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// Part of every module of grids: its functions, by the names that it is asked for.
+#include "grid_module.h"
+#include "module_answer.h"
+
+namespace {
+
+constexpr const char* remedy = "crop or reduce the volume";
+
+}  // namespace
+
+extern "C" __attribute__((visibility("default"))) void pellucid_list_grids_1(
+    const std::filesystem::path& path, pellucid::GridContents& answer) {
+  pellucid::answer(answer.error, remedy, [&] { pellucid::list_grids(path, answer); });
+}
+
+extern "C" __attribute__((visibility("default"))) void pellucid_read_grid_1(
+    const std::filesystem::path& path, const std::string& array, pellucid::ComponentRange range,
+    pellucid::GridValues& answer) {
+  pellucid::answer(answer.error, remedy, [&] { pellucid::read_grid(path, array, range, answer); });
+}
