@@ -12,12 +12,23 @@
 #include <cerrno>
 #include <csignal>
 #include <cstdint>
+#include <cstring>
 #include <fstream>
 #include <new>
+#include <string_view>
+
+#include "pellucid/scene/error.h"
 
 namespace pellucid {
 
 namespace {
+
+/// How it went, behind the bytes: nothing is said by a process that does not come to its end.
+struct Outcome {
+  static constexpr std::size_t longest = 1000;
+  enum : unsigned char { none, filled, error } is;
+  char message[longest + 1];
+};
 
 /// Memory that two processes see.
 std::shared_ptr<std::byte> shared_memory(std::size_t bytes) {
@@ -75,9 +86,9 @@ void forget_what_the_program_does(pid_t program) {
 std::shared_ptr<std::byte> run_contained(std::size_t bytes,
                                          const std::function<bool(std::span<std::byte>)>& work,
                                          std::uintmax_t file_bytes) {
-  // One byte more, which says that the rest is there.
-  std::shared_ptr<std::byte> shared = shared_memory(bytes + 1);
-  std::byte& is_there = shared.get()[bytes];
+  std::shared_ptr<std::byte> shared = shared_memory(bytes + sizeof(Outcome));
+  // Aligned like a character.
+  auto& outcome = *reinterpret_cast<Outcome*>(shared.get() + bytes);
   const pid_t program = getpid();
   const pid_t child = fork();
   if (child < 0) throw std::bad_alloc();
@@ -85,7 +96,12 @@ std::shared_ptr<std::byte> run_contained(std::size_t bytes,
     forget_what_the_program_does(program);
     limit(bytes, file_bytes);
     try {
-      if (work({shared.get(), bytes})) is_there = std::byte{1};
+      if (work({shared.get(), bytes})) outcome.is = Outcome::filled;
+    } catch (const Error& error) {
+      const std::string_view message = error.what();
+      std::memcpy(outcome.message, message.data(), std::min(message.size(), Outcome::longest));
+      outcome.is = Outcome::error;
+      _exit(1);
     } catch (...) {
       _exit(1);
     }
@@ -93,7 +109,11 @@ std::shared_ptr<std::byte> run_contained(std::size_t bytes,
   }
   while (waitpid(child, nullptr, 0) < 0 && errno == EINTR) {
   }
-  return is_there == std::byte{1} ? shared : nullptr;
+  if (outcome.is == Outcome::error) {
+    outcome.message[Outcome::longest] = '\0';
+    throw Error(outcome.message);
+  }
+  return outcome.is == Outcome::filled ? shared : nullptr;
 }
 
 }  // namespace pellucid

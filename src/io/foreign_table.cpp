@@ -61,6 +61,7 @@ Rows read_rows(std::string_view text, const std::string& name) {
       continue;
     }
     std::vector<double> numbers;
+    numbers.reserve(list.size());
     for (const std::string_view word : list) numbers.push_back(number_of(word, where));
     if (numbers.size() < 3 || numbers.size() > 5 ||
         (table.header != 0 && numbers.size() != table.header) ||

@@ -59,8 +59,15 @@ constexpr Format vdb{{"pellucid_openvdb.so", "OpenVDB files", has_vdb,
                       "OpenVDB (Debian: libopenvdb-dev) and -DPELLUCID_WITH_OPENVDB=ON"},
                      "fog volume"};
 
+/// Names and messages of libraries may hold anything.
+std::string one_line(std::string text) {
+  std::ranges::replace_if(
+      text, [](char c) { return static_cast<unsigned char>(c) < ' ' || c == '\x7f'; }, ' ');
+  return text;
+}
+
 /// Calls a module's function in a process of its own: `work` says with what, where its answer goes,
-/// and whether that is well. The module is loaded here, where its own errors can be told.
+/// and whether that is well. The module is loaded there and nowhere else.
 template <class Function>
 std::shared_ptr<std::byte> contained(
     const Format& format, const char* name, const std::filesystem::path& path, std::size_t bytes,
@@ -68,23 +75,19 @@ std::shared_ptr<std::byte> contained(
   const std::uintmax_t file_bytes = check_input_file(path);
   std::shared_ptr<std::byte> answer;
   try {
-    auto* const function = reinterpret_cast<Function*>(module_function(format.module, name));
     answer = run_contained(
-        bytes, [&](std::span<std::byte> to) { return work(*function, to); }, file_bytes);
+        bytes,
+        [&](std::span<std::byte> to) {
+          return work(*reinterpret_cast<Function*>(module_function(format.module, name)), to);
+        },
+        file_bytes);
   } catch (const Error& error) {
-    throw Error(path.string() + ": " + error.what());
+    throw Error(path.string() + ": " + one_line(error.what()));
   }
   if (answer) return answer;
   throw Error(path.string() + ": the library that reads " + format.module.reads +
               " fails on it, or takes far more memory or time than its size lets expect; it is "
               "damaged");
-}
-
-/// Names and messages of libraries may hold anything.
-std::string one_line(std::string text) {
-  std::ranges::replace_if(
-      text, [](char c) { return static_cast<unsigned char>(c) < ' ' || c == '\x7f'; }, ' ');
-  return text;
 }
 
 /// Of what is no volume, in a line.

@@ -205,7 +205,9 @@ UnstructuredGrid read_block(Reader& file, const Layout& layout, const Dimensions
     add_cells(d, shown, block, about.ghost_cells);
   } else {
     // Those of the sheet, the line or the point that it is.
-    const auto along = [&](std::size_t axis) { return std::max<std::size_t>(d[axis] - 1, 1); };
+    const auto along = [&](std::size_t axis) {
+      return static_cast<std::size_t>(std::max(d[axis] - 1, 1));
+    };
     about.flat_cells += count == 0 ? 0 : along(0) * along(1) * along(2);
   }
   return block;

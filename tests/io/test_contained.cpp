@@ -8,9 +8,11 @@
 #include <cstdio>
 #include <cstdlib>
 #include <stdexcept>
+#include <string>
 #include <vector>
 
 #include "sanitized.h"
+#include "pellucid/scene/error.h"
 #include "src/io/contained.h"
 
 namespace pellucid {
@@ -39,6 +41,20 @@ TEST(Contained, GivesNothingAfterAFailure) {
   EXPECT_TRUE(nothing([] { std::raise(SIGSEGV); }));
   EXPECT_TRUE(nothing([] { std::raise(SIGFPE); }));
   EXPECT_TRUE(nothing([] { std::raise(SIGKILL); }));
+}
+
+TEST(Contained, ErrorsComeThrough) {
+  const auto message_of = [](const std::string& message) {
+    try {
+      run_contained(10, [&](std::span<std::byte>) -> bool { throw Error(message); });
+    } catch (const Error& error) {
+      return std::string(error.what());
+    }
+    return std::string("nothing was thrown");
+  };
+  EXPECT_EQ(message_of("take another file"), "take another file");
+  EXPECT_EQ(message_of(""), "");
+  EXPECT_EQ(message_of(std::string(5000, 'x')), std::string(1000, 'x'));
 }
 
 // A program's own handlers would let its child go on.

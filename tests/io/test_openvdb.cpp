@@ -4,6 +4,8 @@
 #include <openvdb/openvdb.h>
 
 #include <cstdint>
+#include <fstream>
+#include <iterator>
 #include <string>
 #include <vector>
 
@@ -69,6 +71,17 @@ TEST_F(OpenVdb, EveryType) {
     expect_counting(read(file, type), type);
   }
   expect_counting(read(file, "i64"), "f64");
+}
+
+// Its library has threads from its first moment, and whoever forks beside them may wait for ever.
+TEST_F(OpenVdb, ModulesAreLoadedElsewhere) {
+  const fs::path maps = "/proc/self/maps";
+  if (!fs::exists(maps)) GTEST_SKIP() << "no /proc/self/maps";
+  expect_counting(read(save({floats()}), "density"), "f32");
+  std::ifstream file(maps);
+  const std::string mapped(std::istreambuf_iterator<char>(file), {});
+  ASSERT_NE(mapped.find("test_io"), std::string::npos);
+  EXPECT_EQ(mapped.find("pellucid_openvdb"), std::string::npos);
 }
 
 TEST_F(OpenVdb, TruthValuesAndMasks) {
