@@ -67,7 +67,7 @@ std::string image(const Arguments& a, const std::string& what, const std::string
 }
 
 std::string frames_text(const Arguments& a, const std::vector<MeshResult>& results) {
-  return format("Images of %d×%d. Ours to 1/512.\n", a.size, a.size) +
+  return format("Images of %d×%d. Ours to 1/%.4g.\n", a.size, a.size, 1 / a.frames.tolerance) +
          "\n### Frames of meshes\n\nTime; in bold how many times that of *exact* on as many "
          "threads.\n\n" +
          frame_times_table(results, a.frames.threads) + "\nLargest error (root mean square):\n\n" +
@@ -155,6 +155,8 @@ int main(int argc, char** argv) {
   app.add_option("--repeats", a.frames.repeats, "rounds of which the median is taken")
       ->capture_default_str()
       ->check(CLI::Range(1, 100));
+  app.add_option("--tolerance", a.frames.tolerance, "of ours; default: 1/512")
+      ->check(CLI::Range(1e-12, 0.5));
   app.add_option("--longest-repeated", a.frames.longest_repeated_seconds,
                  "seconds; frames that take longer are rendered once")
       ->capture_default_str();

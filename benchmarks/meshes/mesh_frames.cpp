@@ -14,10 +14,11 @@
 namespace pellucid::bench {
 namespace {
 
-MeshContender ours(const Scene& scene, const char* name, Grade grade) {
+MeshContender ours(const Scene& scene, const char* name, Grade grade, double tolerance) {
   return {name, true, [=](int threads) {
             Scene one = scene;
             one.integration.grade = grade;
+            one.integration.tolerance = tolerance;
             RenderOptions options;
             options.threads = threads;
             RenderReport report;
@@ -40,8 +41,8 @@ class SceneRun {
            const MeshFrameOptions& options)
       : options_(options),
         reference_(reference_pixels(shown.scene, options.pixels, largest_threads(), options.cache)),
-        contenders_{ours(shown.scene, mesh_estimated_name, Grade::estimated),
-                    ours(shown.scene, mesh_proved_name, Grade::proved)} {
+        contenders_{ours(shown.scene, mesh_estimated_name, Grade::estimated, options.tolerance),
+                    ours(shown.scene, mesh_proved_name, Grade::proved, options.tolerance)} {
     if (!vtk) return;
     for (MeshContender& contender : vtk_mesh_contenders(vtk, shown)) {
       if (contender.threaded || options.sweep) contenders_.push_back(std::move(contender));

@@ -69,10 +69,10 @@ std::string frame_errors_table(const std::vector<MeshResult>& results) {
     text += "| " + result.name + " |";
     for (const char* name :
          {mesh_estimated_name, mesh_proved_name, vtk_names[0], vtk_names[1], vtk_names[2]}) {
-      const MeshWay* way = result.find(name, 1);
+      const MeshWay* way = result.find(name);
       text += way == nullptr ? std::string(" — |") : " " + error_cell(way->error) + " |";
     }
-    const MeshWay *linear = result.find(vtk_names[0], 1), *other = result.find(vtk_names[1], 1);
+    const MeshWay *linear = result.find(vtk_names[0]), *other = result.find(vtk_names[1]);
     text += linear == nullptr || other == nullptr
                 ? std::string(" — |\n")
                 : format(" %llu, %llu |\n", static_cast<unsigned long long>(linear->nan_pixels),
@@ -95,7 +95,7 @@ std::string segment_costs_table(const std::vector<MeshResult>& results) {
                           1e9 * way->median_seconds() / static_cast<double>(way->segments));
     };
     const auto pieces = [&](const char* name) {
-      const MeshWay* way = result.find(name, 1);
+      const MeshWay* way = result.find(name);
       return way == nullptr ? std::string(" — |")
                             : format(" %.2f M |", 1e-6 * static_cast<double>(way->segments));
     };

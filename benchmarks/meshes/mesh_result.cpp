@@ -16,4 +16,12 @@ const MeshWay* MeshResult::find(const std::string& way, int threads) const {
   return nullptr;
 }
 
+const MeshWay* MeshResult::find(const std::string& way) const {
+  const MeshWay* least = nullptr;
+  for (const MeshWay& one : ways) {
+    if (one.name == way && (least == nullptr || one.threads < least->threads)) least = &one;
+  }
+  return least;
+}
+
 }  // namespace pellucid::bench

@@ -28,9 +28,11 @@ struct MeshResult {
   std::vector<MeshWay> ways;
 
   const MeshWay* find(const std::string& way, int threads) const;  ///< null: not measured
+  /// On the least threads that it was measured on: pictures do not depend on them.
+  const MeshWay* find(const std::string& way) const;
 };
 
-/// Names of our ways: the exact method to 1/512, by grade.
+/// Names of our ways: the exact method, by grade.
 inline constexpr const char* mesh_estimated_name = "exact";
 inline constexpr const char* mesh_proved_name = "exact, proved";
 

@@ -29,21 +29,35 @@ class RayBudget {
   /// How large the error x of the next span may be: of a span of this length and at most this
   /// opacity, behind this transparency (> 0).
   PELLUCID_HD T allowance(T length, T opacity, T transparency) const noexcept {
-    return (opacity_pot_ * opacity + length_pot_ * share(length)) / transparency;
+    return shares(length, opacity).sum() / transparency;
   }
   /// Goes past a span that cost `error` (x of above; 0 where nothing was there).
   PELLUCID_HD void spend(T length, T opacity, T transparency, T error) noexcept {
     const T cost = transparency * error;
     if (any(cost > T(0))) {
-      const T from_opacity = opacity_pot_ * opacity, from_length = length_pot_ * share(length);
-      const T sum = from_opacity + from_length;
-      // What one pot does not have is taken from the other: together they lose all that is spent.
-      T part = select(sum > T(0), cost * (from_opacity / sum), T(0));
-      part = clamp(part, min(cost - length_pot_, opacity_pot_), opacity_pot_);
-      opacity_pot_ = max(opacity_pot_ - part, T(0));
-      length_pot_ = max(length_pot_ - (cost - part), T(0));
-      spent_ += cost;
+      spend(length, shares(length, opacity), cost);
+    } else {
+      length_ = max(length_ - length, T(0));
     }
+  }
+
+  /// What a span may take of each pot.
+  struct Shares {
+    T of_opacity, of_length;
+    PELLUCID_HD T sum() const noexcept { return of_opacity + of_length; }
+  };
+  PELLUCID_HD Shares shares(T length, T opacity) const noexcept {
+    return {opacity_pot_ * opacity, length_pot_ * share(length)};
+  }
+  /// Goes past a span whose shares these are and that costs transparency · error <= their sum.
+  PELLUCID_HD void spend(T length, const Shares& from, T cost) noexcept {
+    const T sum = from.sum();
+    // What one pot does not have is taken from the other: together they lose all that is spent.
+    T part = select(sum > T(0), cost * (from.of_opacity / sum), T(0));
+    part = clamp(part, min(cost - length_pot_, opacity_pot_), opacity_pot_);
+    opacity_pot_ = max(opacity_pot_ - part, T(0));
+    length_pot_ = max(length_pot_ - (cost - part), T(0));
+    spent_ += cost;
     length_ = max(length_ - length, T(0));
   }
 

@@ -18,10 +18,16 @@ struct MeshSpanRows {
   // they are there, and where they do not.
   float front[size], back[size], rounding[size], length[size], left[size], place_error[size],
       end_error[size];
-  // As they are, for what is handed back.
-  S exact_front[size], exact_back[size], exact_length[size];
-  float error[size];
   std::int32_t code[size];  ///< SpanNote
+
+  /// The same in numbers S, for what is handed back: in binary32 there is nothing to add.
+  static constexpr bool more_exact = !std::is_same_v<S, float>;
+  struct Exact {
+    S front[size], back[size], length[size];
+    float error[size];
+  };
+  struct Nothing {};
+  [[no_unique_address]] std::conditional_t<more_exact, Exact, Nothing> exact;
 };
 
 /// What is known of a span beside its numbers.
@@ -152,13 +158,15 @@ class MeshMarch {
       const F at_ends = select(first_, t_error_, F(0)) + select(leaves, t_error, F(0));
       (field_.per_cell ? F(0) : both).store(rows.place_error + at);
       (field_.per_cell ? both : at_ends).store(rows.end_error + at);
-      at_begin.store(rows.exact_front + at);
-      value.store(rows.exact_back + at);
-      length.store(rows.exact_length + at);
-      // What is handed back is in numbers S. Where all that it comes of is equal it is exact.
-      const F rounded = F(static_cast<float>(4 * rounding_unit<S>)) * max(abs(f), abs(b));
-      const M even = (!M(std::is_same_v<S, float>)) & (error == F(0)) & (f == b);
-      (error + select(even, F(0), rounded)).store(rows.error + at);
+      if constexpr (Rows::more_exact) {
+        at_begin.store(rows.exact.front + at);
+        value.store(rows.exact.back + at);
+        length.store(rows.exact.length + at);
+        // Where all that it comes of is equal it is exact.
+        const F rounded = F(static_cast<float>(4 * rounding_unit<S>)) * max(abs(f), abs(b));
+        const M even = (error == F(0)) & (f == b);
+        (error + select(even, F(0), rounded)).store(rows.exact.error + at);
+      }
       note.store(rows.code + at);
     }
     beside_vacuum += select(on & (vacuum | !ahead), t_error_ + t_error, F(0));

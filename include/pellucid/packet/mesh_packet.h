@@ -91,6 +91,9 @@ class MeshPacket {
   /// As in PacketIntegrator.
   static constexpr double kept_back = 0x1p-9;
   static constexpr float narrowest = 1.0f / 16;
+  /// What a piece may take of all that is left of the budget for rounding, which shorter pieces
+  /// have as well, and binary64 can do little about.
+  static constexpr float for_rounding = 1.0f / 4;
 
   M absorbs(F least, F most, I& note) const noexcept {
     M found = (most >= F(transfer_.support_min)) & (least <= F(transfer_.support_max));
@@ -116,21 +119,30 @@ class MeshPacket {
     const I step = gather(number_of, ((lowest * I(0x077cb531)) >> 27) & I(31));
     waiting_ = select(lanes, waiting_ - lowest, waiting_);
     row_ = select(lanes, step * I(N) + lane_, row_);
-    const I at = select(lanes, row_, lane_);
-    const auto take = [&](const float* numbers, F& kept) noexcept {
-      kept = select(lanes, gather(numbers, at), kept);
-    };
-    // Where the data go on from where they were, so do extinction and color.
     const F was = front_;
-    take(rows_.front, front_);
+    // Rays beside each other are at nearly the same step: two or three loads instead of a gather.
+    std::int32_t step_of[N];
+    step.store(step_of);
+    I note(0);
+    for (M left = lanes; any(left);) {
+      const std::int32_t at_step = step_of[__builtin_ctz(bits(left))];
+      const M here = left & (step == I(at_step));
+      const std::int32_t at = at_step * N;
+      const auto take = [&](const float* numbers, F& kept) noexcept {
+        kept = select(here, F::load(numbers + at), kept);
+      };
+      take(rows_.front, front_);
+      take(rows_.back, back_);
+      take(rows_.rounding, rounding_);
+      take(rows_.length, length_);
+      take(rows_.left, left_);
+      take(rows_.place_error, place_error_);
+      take(rows_.end_error, end_error_);
+      note = select(here, I::load(rows_.code + at), note);
+      left = left & !here;
+    }
+    // Where the data go on from where they were, so do extinction and color.
     located_ = located_ & !(lanes & (front_ != was));
-    take(rows_.back, back_);
-    take(rows_.rounding, rounding_);
-    take(rows_.length, length_);
-    take(rows_.left, left_);
-    take(rows_.place_error, place_error_);
-    take(rows_.end_error, end_error_);
-    const I note = gather(rows_.code, at);
     handed_back_ = handed_back_ | (lanes & (note > I(0)));
     span_length_ = select(lanes, length_, span_length_);
     from_ = select(lanes, F(0), from_);
@@ -149,7 +161,7 @@ class MeshPacket {
     if (any(lost)) {
       const M moved = lost & ((front_ < extinction_.lower) | (front_ >= extinction_.upper));
       if (any(moved)) extinction_ = find_extinction(transfer_, front_, moved, interval_);
-      assign_color(lost, front_color_, color_inside(front_));
+      assign_color(lost, front_color_, color_inside(on, front_));
       located_ = located_ | on;
     }
     const ExtinctionInterval<F>& interval = extinction_;
@@ -157,7 +169,10 @@ class MeshPacket {
     const F limit = select(rising, interval.upper, interval.lower);
     const M beyond = select(rising, back_ > limit, back_ < limit);
     const F rise = back_ - front_;
-    F place = select(beyond, clamp((limit - front_) / rise, F(0), F(1)), F(1));
+    F place(1);
+    if (any(beyond)) {
+      place = select(beyond, clamp((limit - front_) / rise, F(0), F(1)), F(1));
+    }
     const M capped = cap_ < place;
     place = min(place, cap_);
     const M crosses = beyond & !capped;
@@ -166,7 +181,7 @@ class MeshPacket {
     const auto extinction = [&](F value) noexcept {
       return max(interval.at_lower + interval.slope * (value - interval.lower), F(0));
     };
-    const Rgb<F> color = color_inside(end);
+    const Rgb<F> color = color_inside(on, end);
     const SegmentResult<F> s =
         linear_segment(extinction(front_), extinction(end), front_color_, color, length);
 
@@ -182,69 +197,85 @@ class MeshPacket {
     // What rounding can do, as in PacketIntegrator.
     constexpr float u = rounding_unit<float>;
     const F value_error = rounding_;
+    const F slope = abs(interval.slope);
+    F steep = slope;
     const M touches =
         (least - value_error < interval.lower) | (most + value_error > interval.upper) | crosses;
-    const F near = select(range > F(2) * value_error, F(2) * value_error / range, F(1));
-    const F slope = abs(interval.slope);
+    if (any(touches)) {
+      const F near = select(range > F(2) * value_error, F(2) * value_error / range, F(1));
+      steep = select(touches, slope + near * (interval.steepest - slope), slope);
+    }
+    F depth_error = length * (value_error * steep + F(8 * u) * interval.largest) +
+                    place_error_ * (slope * range);
+    if (any(end_error_ > F(0))) {
+      depth_error += end_error_ * (length / span_length_) * interval.largest;
+    }
     const F colors = min(interval.color_slope * range, interval.color_range);
-    const F steep = select(touches, slope + near * (interval.steepest - slope), slope);
-    const F depth_error = length * (value_error * steep + F(8 * u) * interval.largest) +
-                          place_error_ * (slope * range) +
-                          end_error_ * (length / span_length_) * interval.largest;
-    const F color_rounding = F(32 * u) * largest_color_ +
-                             min(value_error * interval.color_slope, largest_color_) +
-                             colors * min(place_error_ / max(length, F(1e-30f)), F(1));
+    const F color_rounding =
+        F(32 * u) * largest_color_ + min(value_error * interval.color_slope, largest_color_);
     const F opacity_rounding =
         F(32 * u) * s.opacity +
         min(select(depth_error <= F(1), F(2) * depth_error * s.transparency, F(1)), F(1));
-    // Extinction that is elsewhere in the piece shows another color of it.
-    const F rounding = s.opacity * color_rounding + largest_color_ * opacity_rounding +
-                       colors * min(depth_error, F(1));
-    const F error = color_error + rounding;
+    // Ends that are elsewhere show another color of the piece, and so does extinction: opacity by
+    // their share of the length, and opacity is below extinction · length.
+    const F rounding = s.opacity * color_rounding +
+                       colors * min(interval.largest * place_error_, s.opacity) +
+                       largest_color_ * opacity_rounding + colors * min(depth_error, F(1));
 
     budget_.pass_to(select(on, left_ - from_ * span_length_, budget_.length_left()));
     const F transparency = convert<float>(fold_.transparency());
-    const F allowance = budget_.allowance(length, s.opacity, transparency);
-    const M take = on & (error <= allowance);
+    const typename RayBudget<F>::Shares shares = budget_.shares(length, s.opacity);
+    const F cost = transparency * (color_error + rounding);
+    const M take =
+        on & ((cost <= shares.sum()) | ((transparency * color_error <= F(0.5f) * shares.sum()) &
+                                        (cost <= F(for_rounding) * budget_.left())));
     const M rest = on & !take;
     if (any(rest)) {
       const F half = F(0.5f) * place;
       const M halve = rest & ((F(1) - from_) * half >= F(narrowest)) &
-                      (color_error <= F(64) * allowance) & (rounding <= F(0.25f) * allowance);
+                      (transparency * color_error <= F(64) * shares.sum()) &
+                      (transparency * rounding <= F(0.25f) * shares.sum());
       cap_ = select(halve, half, cap_);
       const M give_up = rest & !halve;
       if (any(give_up)) hand_back(give_up);
     }
     if (none(take)) return;
     fold(take, s);
-    budget_.spend(select(take, length, F(0)), s.opacity, transparency, select(take, error, F(0)));
+    budget_.spend(select(take, length, F(0)), shares, select(take, cost, F(0)));
     pieces_ += select(take, I(1), I(0));
 
-    const F remaining = F(1) - place;
     front_ = select(take, end, front_);
     assign_color(take, front_color_, color);
-    length_ = select(take, length_ * remaining, length_);
-    from_ = select(take, from_ + (F(1) - from_) * place, from_);
-    cap_ = select(take, select(capped & (place < remaining), place / remaining, F(1)), cap_);
+    const M whole = place >= F(1);
+    if (any(take & !whole)) {
+      const F remaining = F(1) - place;
+      length_ = select(take, length_ * remaining, length_);
+      from_ = select(take, from_ + (F(1) - from_) * place, from_);
+      cap_ = select(take, select(capped & (place < remaining), place / remaining, F(1)), cap_);
+    }
     const M crossed = take & crosses;
     if (any(crossed)) {
       interval_ += select(crossed, select(rising, I(1), I(-1)), I(0));
       extinction_ = load_extinction<F>(transfer_, interval_);
-      assign_color(crossed, front_color_, color_inside(front_));
+      assign_color(crossed, front_color_, color_inside(crossed, front_));
     }
     const M clear = (max(front_, back_) + rounding_ < F(transfer_.support_min)) |
                     (min(front_, back_) - rounding_ > F(transfer_.support_max));
-    pending_ = pending_ & !(take & ((place >= F(1)) | clear));
+    pending_ = pending_ & !(take & (whole | clear));
     retire();
   }
 
   /// The color at a value, coming from inside of the extinction's interval: at its upper end,
   /// behind which the color may be another where nothing absorbs, that just below, by less than the
   /// rounding of the data.
-  Rgb<F> color_inside(F value) const noexcept {
+  Rgb<F> color_inside(M lanes, F value) noexcept {
     const F below =
         extinction_.upper - F(4 * rounding_unit<float>) * max(abs(extinction_.upper), F(1e-30f));
-    return color_at(transfer_, max(min(value, below), extinction_.lower));
+    const F inside = max(min(value, below), extinction_.lower);
+    if (any(lanes & ((inside < color_.lower) | (inside >= color_.upper)))) {
+      color_ = find_color(transfer_, inside);
+    }
+    return color_.at(inside);
   }
 
   static void assign_color(M lanes, Rgb<F>& to, const Rgb<F>& from) noexcept {
@@ -295,17 +326,17 @@ class MeshPacket {
         error[l] = job_.largest_color;  // anything may be there
         continue;
       }
-      const double from = static_cast<double>(from_[l]),
-                   front = static_cast<double>(rows_.exact_front[row]),
-                   back = static_cast<double>(rows_.exact_back[row]),
-                   length = static_cast<double>(rows_.exact_length[row]);
+      const auto [front, back, length, off_by] = exact_span(row);
+      const double from = static_cast<double>(from_[l]);
       // Where pieces have ended is known in binary32, and lengths are rounded.
       const double off = (from > 0 ? 4 * static_cast<double>(rounding_unit<float>) : 0) +
                          2 * static_cast<double>(rounding_unit<S>);
-      const PellucidLinearSpan span{
-          front + from * (back - front),         back,
-          static_cast<double>(rows_.error[row]), (1 - from) * length,
-          static_cast<double>(place_error_[l]),  static_cast<double>(end_error_[l]) + off * length};
+      const PellucidLinearSpan span{front + from * (back - front),
+                                    back,
+                                    off_by,
+                                    (1 - from) * length,
+                                    static_cast<double>(place_error_[l]),
+                                    static_cast<double>(end_error_[l]) + off * length};
       PellucidCellResult result;
       job_.integrate_span(job_.context, &span, &result);
       depth[l] = result.optical_depth;
@@ -327,6 +358,22 @@ class MeshPacket {
     in_double_ += select(lanes, I(1), I(0));
     pending_ = pending_ & !lanes;
     retire();
+  }
+
+  struct ExactSpan {
+    double front, back, length, error;
+  };
+  ExactSpan exact_span(int row) const noexcept {
+    const auto span = [row](const auto& numbers, const float* error) noexcept {
+      return ExactSpan{static_cast<double>(numbers.front[row]),
+                       static_cast<double>(numbers.back[row]),
+                       static_cast<double>(numbers.length[row]), static_cast<double>(error[row])};
+    };
+    if constexpr (Room::more_exact) {
+      return span(rows_.exact, rows_.exact.error);
+    } else {
+      return span(rows_, rows_.rounding);
+    }
   }
 
   const PellucidMeshJob& job_;
@@ -352,6 +399,7 @@ class MeshPacket {
   F rounding_{0}, place_error_{0}, end_error_{0};
   Rgb<F> front_color_{F(0), F(0), F(0)};
   ExtinctionInterval<F> extinction_{F(0), F(0), F(0), F(0), F(0), F(0), F(0), F(0)};
+  ColorInterval<F> color_{F(0), F(0), {F(0), F(0), F(0)}, {F(0), F(0), F(0)}};
 
   RayBudget<F> budget_;
   FrontToBack<D> fold_;

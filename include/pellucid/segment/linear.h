@@ -55,6 +55,21 @@ struct ThinSums {
   PELLUCID_HD ThinSums(T h, T g) noexcept : ThinSums(h, g, h) {}
   /// `reach` >= max(h, |g|), for where |g| may be above h; h >= 0.
   PELLUCID_HD ThinSums(T h, T g, T reach) noexcept {
+    // With r = reach the tail of F1 after N terms is below r^N e^{r/2}/(2N+3)!! (proof in 3.3):
+    // N = 8 and 15 leave less than u/10 of the weights up to r = 1, N = 4 and 8 up to r = 0.05.
+    // There each term left out is below half a unit in the last place of its sum, so that adding
+    // them changes nothing: what a lane becomes does not depend on its neighbours.
+    // b0 and H1 are even in h and end sooner.
+    if (all(reach <= T(0.05))) {
+      add<is_single<T> ? 2 : 4, is_single<T> ? 4 : 8>(h, g);
+    } else {
+      add<is_single<T> ? 5 : 9, is_single<T> ? 8 : 15>(h, g);
+    }
+  }
+
+ private:
+  template <int even_terms, int terms>
+  PELLUCID_HD void add(T h, T g) noexcept {
     using S = scalar_t<T>;
     // 1/n, c_n and 2 n c_n for n = 1 … 15.
     static constexpr S inverse[15] = {S(1.0),        S(1.0 / 2.0),  S(1.0 / 3.0),  S(1.0 / 4.0),
@@ -76,15 +91,7 @@ struct ThinSums {
                                 S(1.0 / 213458046676875.0),
                                 S(1.0 / 6190283353629375.0),
                                 S(1.0 / 191898783962510625.0)};
-    // With r = reach the tail of F1 after N terms is below r^N e^{r/2}/(2N+3)!! (proof in 3.3):
-    // N = 8 and 15 leave less than u/10 of the weights up to r = 1, N = 4 and 8 up to r = 0.05.
-    // There each term left out is below half a unit in the last place of its sum, so that adding
-    // them changes nothing: what a lane becomes does not depend on its neighbours.
     const T y = T(0.5) * (h * h);
-    const bool tiny = all(reach <= T(0.05));
-    const int terms = is_single<T> ? (tiny ? 4 : 8) : (tiny ? 8 : 15);
-    // b0 and H1 are even in h and end sooner.
-    const int even_terms = is_single<T> ? (tiny ? 2 : 5) : (tiny ? 4 : 9);
     T power = T(1), p = T(1), b = T(0), sum_h = T(0), sum_f = T(0);
     for (int n = 1; n <= even_terms; ++n) {
       sum_f = multiply_add(T(c[n - 1]), p, sum_f);

@@ -84,9 +84,23 @@ ExtinctionInterval<F> find_extinction(const BinnedTransfer& t, F value, const Ma
   return found;
 }
 
-/// The color at a value. Largest error: 4 u of the largest color beside that of the value's own.
+/// One interval of the color, in lanes.
 template <class F>
-Rgb<F> color_at(const BinnedTransfer& t, F value) noexcept {
+struct ColorInterval {
+  F lower, upper;
+  Rgb<F> at_lower, slope;
+
+  /// Largest error: 4 u of the largest color beside that of the value's own.
+  Rgb<F> at(F value) const noexcept {
+    const F offset = value - lower;
+    return {at_lower.r + offset * slope.r, at_lower.g + offset * slope.g,
+            at_lower.b + offset * slope.b};
+  }
+};
+
+/// The interval of the color that holds `value`.
+template <class F>
+ColorInterval<F> find_color(const BinnedTransfer& t, F value) noexcept {
   value = clamp(value, F(-BinnedTransfer::far / 2), F(BinnedTransfer::far / 2));
   const auto bin = bin_of(t, value);
   auto index = gather(t.first_color, bin);
@@ -100,8 +114,14 @@ Rgb<F> color_at(const BinnedTransfer& t, F value) noexcept {
       load_records<BinnedTransfer::color_fields>(t.color, index, r);
     }
   }
-  const F offset = value - r[0];
-  return {r[2] + offset * r[5], r[3] + offset * r[6], r[4] + offset * r[7]};
+  return {r[0], r[1], {r[2], r[3], r[4]}, {r[5], r[6], r[7]}};
+}
+
+/// The color at a value. Largest error: as ColorInterval::at().
+template <class F>
+Rgb<F> color_at(const BinnedTransfer& t, F value) noexcept {
+  value = clamp(value, F(-BinnedTransfer::far / 2), F(BinnedTransfer::far / 2));
+  return find_color(t, value).at(value);
 }
 
 }  // namespace pellucid
