@@ -266,22 +266,36 @@ BinnedTransferStorage::BinnedTransferStorage(const PiecewiseLinear<double>& tabl
   }
   view_.has_marks = jumps || runs > 1;
 
-  double support_min = infinity, support_max = -infinity;
-  if (table.material[0].extinction > 0) support_min = -infinity;
-  if (table.material[last].extinction > 0) support_max = infinity;
+  struct Range {
+    double lower, upper;
+  };
+  std::vector<Range> supports;
+  if (table.material[0].extinction > 0) supports.push_back({-infinity, first_value});
   for (int i = 1; i <= last; ++i) {
     if (!absorbs(table, i)) continue;
-    support_min = std::min(support_min, table.value[i - 1]);
-    support_max = std::max(support_max, table.value[i]);
+    if (supports.empty() || supports.back().upper < table.value[i - 1]) {
+      supports.push_back({table.value[i - 1], table.value[i]});
+    }
+    supports.back().upper = table.value[i];
   }
-  if (support_min == -infinity) support_max = std::max(support_max, first_value);
-  if (support_max == infinity) support_min = std::min(support_min, table.value[last]);
+  if (table.material[last].extinction > 0) {
+    if (supports.empty()) supports.push_back({table.value[last], infinity});
+    supports.back().upper = infinity;
+  }
   const double far = static_cast<double>(BinnedTransfer::far);
-  view_.support_min = static_cast<float>(std::clamp(support_min - 16 * unit * size, -far, far));
-  view_.support_max = static_cast<float>(std::clamp(support_max + 16 * unit * size, -far, far));
-  if (support_min > support_max) {
-    view_.support_min = BinnedTransfer::far;
-    view_.support_max = -BinnedTransfer::far;
+  const auto as_float = [&](double x) { return static_cast<float>(std::clamp(x, -far, far)); };
+  const bool none = supports.empty();
+  view_.support_min =
+      none ? BinnedTransfer::far : as_float(supports.front().lower - 16 * unit * size);
+  view_.support_max =
+      none ? -BinnedTransfer::far : as_float(supports.back().upper + 16 * unit * size);
+  constexpr std::size_t most_supports = BinnedTransfer::most_supports;
+  if (!jumps && supports.size() > 1 && supports.size() <= most_supports) {
+    view_.supports = static_cast<int>(supports.size());
+    for (std::size_t i = 0; i < supports.size(); ++i) {
+      view_.support[2 * i] = as_float(supports[i].lower - 16 * unit * size);
+      view_.support[2 * i + 1] = as_float(supports[i].upper + 16 * unit * size);
+    }
   }
   view_.largest_extinction = above(largest_extinction);
   view_.largest_color = above(largest_color);

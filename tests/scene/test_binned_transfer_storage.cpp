@@ -269,6 +269,40 @@ TEST(BinnedTransfer, WhatIsNotMarkedDoesNotAbsorb) {
   EXPECT_GT(marked, 10000);
 }
 
+TEST(BinnedTransfer, SupportsAreWhatAbsorbs) {
+  int tables_with = 0, met = 0, missed = 0;
+  for_many([&](const Case& c, Tables& tables) {
+    if (c.bins.supports == 0) return;
+    ++tables_with;
+    ASSERT_GT(c.bins.supports, 1);
+    ASSERT_LE(c.bins.supports, BinnedTransfer::most_supports);
+    ASSERT_LT(c.bins.marks[c.bins.bins], BinnedTransfer::one_jump);
+    const auto any_value = [&] {
+      return c.values[static_cast<std::size_t>(tables.uniform() *
+                                               static_cast<double>(c.values.size()))];
+    };
+    for (int n = 0; n < 300; ++n) {
+      const float a = any_value(), b = n % 2 == 0 ? a : any_value();
+      const float lower = std::min(a, b), upper = std::max(a, b);
+      const double x = static_cast<double>(lower), y = static_cast<double>(upper);
+      const bool meets = meets_support(c.bins, lower, upper);
+      if (range_over(c.table, x, y, extinction_of).most > 0) {
+        ASSERT_TRUE(meets) << x << " to " << y;
+        ++met;
+      }
+      // Beyond rounding of what has extinction at either end.
+      const double reach = 18 * u * c.size;
+      if (!c.table.has_extinction(c.table.interval(x - reach), c.table.interval(y + reach))) {
+        ASSERT_FALSE(meets) << x << " to " << y;
+        ++missed;
+      }
+    }
+  });
+  EXPECT_GT(tables_with, 40);
+  EXPECT_GT(met, 10000);
+  EXPECT_GT(missed, 3000);
+}
+
 TEST(BinnedTransfer, MarksStayNearWhatAbsorbs) {
   for_many([](const Case& c, Tables&) {
     const double span = c.table.value[c.table.count - 1] - c.table.value[0];

@@ -98,6 +98,7 @@ class MeshPacket {
   M absorbs(F least, F most, I& note) const noexcept {
     M found = (most >= F(transfer_.support_min)) & (least <= F(transfer_.support_max));
     if (!transfer_.has_marks || none(found)) return found;
+    if (transfer_.supports > 0) return found & meets_support(transfer_, least, most);
     const F safe_least = select(found, least, F(0)), safe_most = select(found, most, F(0));
     const I marks = gather(transfer_.marks, bin_of(transfer_, safe_most) + I(1)) -
                     gather(transfer_.marks, bin_of(transfer_, safe_least));

@@ -146,7 +146,9 @@ class SpanFinder {
     F code = convert<float>(cells_.stretch) * F(SpanCode::stretch) +
              select(step.last, F(SpanCode::last), F(0));
     for (int a = 0; a < 3; ++a) code += F(SpanCode::cell[a]) * step.cell[a];
-    if (transfer_.has_marks) {
+    if (transfer_.supports > 0) {
+      found = found & meets_support(transfer_, least, most);
+    } else if (transfer_.has_marks) {
       const I marks = marks_in(least, most);
       found = found & (marks > I(0));
       code += select(marks >= jump(), F(SpanCode::handed_back), F(0));

@@ -4,6 +4,7 @@
 #include <cstdint>
 
 #include "pellucid/math/rgb.h"
+#include "pellucid/simd/scalar.h"
 
 namespace pellucid {
 
@@ -39,6 +40,11 @@ struct BinnedTransfer {
   /// Whether marks say more than support_min and support_max do: there are jumps, or gaps.
   bool has_marks = false;
   float support_min = 0, support_max = 0;  ///< nothing absorbs outside; crossed over: nowhere
+  /// Where marks hold no jump and there are few gaps: the ranges of values that absorb, lower and
+  /// upper ends, in ascending order, which take less than looking up marks. 0: see the marks.
+  static constexpr int most_supports = 4;
+  int supports = 0;
+  float support[2 * most_supports] = {};
   float largest_extinction = 0;
   float largest_color = 0;
 
@@ -54,6 +60,16 @@ auto bin_of(const BinnedTransfer& t, F value) noexcept {
   // Bounded as a float: a conversion that overflows has no value.
   const F place = (value - F(t.origin)) * F(t.bins_per_value) + F(1);
   return convert<std::int32_t>(clamp(place, F(0), F(static_cast<float>(t.bins - 1))));
+}
+
+/// Whether any of the ranges `support` meets that between `least` and `most`, in lanes.
+template <class F>
+mask_t<F> meets_support(const BinnedTransfer& t, F least, F most) noexcept {
+  mask_t<F> found(false);
+  for (int i = 0; i < t.supports; ++i) {
+    found = found | ((most >= F(t.support[2 * i])) & (least <= F(t.support[2 * i + 1])));
+  }
+  return found;
 }
 
 /// One interval of the extinction, in lanes.
