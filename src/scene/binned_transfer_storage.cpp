@@ -256,6 +256,7 @@ BinnedTransferStorage::BinnedTransferStorage(const PiecewiseLinear<double>& tabl
   color_bend_.push_back(static_cast<float>(bends));
   // Of either sum, of their difference, and what colors of less than `flat` leave out.
   view_.bend_rounding = above(4 * unit * bends);
+  view_.bends = bends > 0;
 
   // Bins that absorb are one run, and none of them holds a jump.
   int runs = 0;

@@ -305,6 +305,7 @@ TEST(ExtinctionPiece, DepthAndColorAreWithinWhatIsSaid) {
     const PiecewiseLinear<double> table = function.view<double>();
     const BinnedTransferStorage storage(table, nullptr, 0);
     const BinnedTransfer& bins = storage.view();
+    ColorInterval<float> color;
     const double first = table.value[0], last = table.value[table.count - 1];
     for (int n = 0; n < 200; ++n) {
       const auto start = static_cast<float>(first + (last - first) * cubics.uniform());
@@ -323,7 +324,8 @@ TEST(ExtinctionPiece, DepthAndColorAreWithinWhatIsSaid) {
         if (end.crosses) piece.b[3] = end.rising ? interval.upper : interval.lower;
       }
       const auto length = static_cast<float>(std::pow(10.0, cubics.uniform() * 4 - 3)) * end.place;
-      const BoundedSegment<float> found = extinction_piece(piece, interval, length, bins);
+      const BoundedSegment<float> found =
+          extinction_piece(piece, interval, length, bins, true, color);
       const Truth truth = quadrature(piece, static_cast<double>(length), table, 64);
 
       ++pieces;

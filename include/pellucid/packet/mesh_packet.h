@@ -38,8 +38,7 @@ class MeshPacket {
         first_(first),
         count_(count),
         march_(job, first, count),
-        largest_color_(static_cast<float>(job.largest_color)),
-        color_bends_(transfer_.color_bend[transfer_.bins] > 0) {
+        largest_color_(static_cast<float>(job.largest_color)) {
     std::int32_t lane[N];
     for (int l = 0; l < N; ++l) lane[l] = l;
     lane_ = I::load(lane);
@@ -188,11 +187,9 @@ class MeshPacket {
 
     const F least = min(front_, end), most = max(front_, end), range = most - least;
     F color_error(0);
-    if (color_bends_) {
+    if (transfer_.bends) {
       // A kink at k moves a line between a and b by no more than (k - a)(b - k)/(b - a).
-      const F bend = (gather(transfer_.color_bend, bin_of(transfer_, most) + I(1)) -
-                      gather(transfer_.color_bend, bin_of(transfer_, least))) +
-                     F(transfer_.bend_rounding);
+      const F bend = color_bend(transfer_, least, most);
       color_error = s.opacity * min(F(0.25f) * (bend * range), interval.color_range);
     }
     // What rounding can do, as in PacketIntegrator.
@@ -273,10 +270,7 @@ class MeshPacket {
     const F below =
         extinction_.upper - F(4 * rounding_unit<float>) * max(abs(extinction_.upper), F(1e-30f));
     const F inside = max(min(value, below), extinction_.lower);
-    if (any(lanes & ((inside < color_.lower) | (inside >= color_.upper)))) {
-      color_ = find_color(transfer_, inside);
-    }
-    return color_.at(inside);
+    return color_at(transfer_, inside, lanes, color_);
   }
 
   static void assign_color(M lanes, Rgb<F>& to, const Rgb<F>& from) noexcept {
@@ -400,12 +394,11 @@ class MeshPacket {
   F rounding_{0}, place_error_{0}, end_error_{0};
   Rgb<F> front_color_{F(0), F(0), F(0)};
   ExtinctionInterval<F> extinction_{F(0), F(0), F(0), F(0), F(0), F(0), F(0), F(0)};
-  ColorInterval<F> color_{F(0), F(0), {F(0), F(0), F(0)}, {F(0), F(0), F(0)}};
+  ColorInterval<F> color_;
 
   RayBudget<F> budget_;
   FrontToBack<D> fold_;
   F largest_color_;
-  bool color_bends_;
   M cut_off_{false};
   I cells_{0}, pieces_{0}, in_double_{0};
 };

@@ -242,7 +242,8 @@ class PacketIntegrator {
       parts.back.b[0] = select(crosses, limit, parts.back.b[0]);
     }
     const F length = length_ * place;
-    const BoundedSegment<F> piece = extinction_piece(parts.front, interval, length, transfer_);
+    const BoundedSegment<F> piece =
+        extinction_piece(parts.front, interval, length, transfer_, on, color_);
     const SegmentResult<F>& s = piece.segment;
 
     // What rounding can do, as in segment/rounding.h.
@@ -255,23 +256,27 @@ class PacketIntegrator {
                       (f.hull_max() + value_error > interval.upper) | crosses;
     const F d0 = f.b[1] - f.b[0], d1 = f.b[2] - f.b[1], d2 = f.b[3] - f.b[2];
     const F least_slope = F(3) * max(min(d0, min(d1, d2)), -max(d0, max(d1, d2)));
-    const F near = select(least_slope > F(2) * value_error, F(2) * value_error / least_slope, F(1));
     const F slope = abs(interval.slope);
-    const F steep = select(touches, slope + near * (interval.steepest - slope), slope);
+    F steep = slope;
+    if (any(touches)) {
+      const F near =
+          select(least_slope > F(2) * value_error, F(2) * value_error / least_slope, F(1));
+      steep = select(touches, slope + near * (interval.steepest - slope), slope);
+    }
     const F depth_error = length * (value_error * steep + F(8 * u) * interval.largest) +
-                          place_error() * (length / span_length_) * interval.largest;
+                          place_error() * ((F(1) - from_) * place) * interval.largest;
     const F color_rounding =
         F(32 * u) * largest_color_ + min(value_error * interval.color_slope, largest_color_);
     const F opacity_rounding =
         F(32 * u) * s.opacity +
         min(select(depth_error <= F(1), F(2) * depth_error * s.transparency, F(1)), F(1));
     const F rounding = s.opacity * color_rounding + largest_color_ * opacity_rounding;
-    const F error = piece.color_error + rounding;
-
     budget_.pass_to(select(on, left_ - from_ * span_length_, budget_.length_left()));
     const F transparency = convert<float>(fold_.transparency());
-    const F allowance = budget_.allowance(length, s.opacity, transparency);
-    const M take = on & end.found & (error <= allowance);
+    const typename RayBudget<F>::Shares shares = budget_.shares(length, s.opacity);
+    const F allowed = shares.sum(), cost_of_color = transparency * piece.color_error,
+            cost_of_rounding = transparency * rounding, cost = cost_of_color + cost_of_rounding;
+    const M take = on & end.found & (cost <= allowed);
     const M restart = on & !take & whole_block_;
     if (any(restart)) go_back(restart);
     const M rest = on & !take & !restart;
@@ -280,15 +285,15 @@ class PacketIntegrator {
       const F part = (F(1) - from_) * half;  // of the cell
       // Halving makes it at most four times better, and the half of a half sixteen times.
       const M halve = rest & end.found & (pieces_of_span_ < I(most_pieces)) &
-                      (part >= F(narrowest)) & (piece.color_error <= F(64) * allowance) &
-                      (rounding <= F(0.25f) * allowance);
+                      (part >= F(narrowest)) & (cost_of_color <= F(64) * allowed) &
+                      (cost_of_rounding <= F(0.25f) * allowed);
       cap_ = select(halve, half, cap_);
       const M give_up = rest & !halve;
       if (any(give_up)) hand_back(give_up);
     }
     if (none(take)) return;
     fold(take, s);
-    budget_.spend(select(take, length, F(0)), s.opacity, transparency, select(take, error, F(0)));
+    budget_.spend(select(take, length, F(0)), shares, select(take, cost, F(0)));
     pieces_ += select(take, I(1), I(0));
 
     const F left = F(1) - place;
@@ -417,6 +422,7 @@ class PacketIntegrator {
   F rounding_;                        ///< of the data
   F place_error_, end_error_;         ///< world length: of any place, of the end of a block
   ExtinctionInterval<F> extinction_;  ///< that of `interval_`
+  ColorInterval<F> color_;            ///< of a piece before
   I interval_, pieces_of_span_, code_;
 
   SampledErrors<F> sampled_;

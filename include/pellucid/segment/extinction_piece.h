@@ -111,11 +111,12 @@ CutCubic<F> cut(const CubicBernstein<F>& f, F t) noexcept {
 /// color_error is proved: by (5), range of the colors · opacity · κ(depth) for the weighting by
 /// transparency; and where the color c bends, |E c(v) - c(E v)| <= (change of its slope, in all) ·
 /// (range of the values) / 4, for a kink at k moves it by no more than (k - a)(b - k)/(b - a).
-/// Neither error counts rounding.
+/// Neither error counts rounding. `wanted` and `known` are as of color_at().
 template <class F>
 BoundedSegment<F> extinction_piece(const CubicBernstein<F>& data,
                                    const ExtinctionInterval<F>& interval, F length,
-                                   const BinnedTransfer& transfer) noexcept {
+                                   const BinnedTransfer& transfer, const mask_t<F>& wanted,
+                                   ColorInterval<F>& known) noexcept {
   using S = scalar_t<F>;
   const F lower = max(data.hull_min(), interval.lower),
           upper = min(data.hull_max(), interval.upper);
@@ -131,15 +132,12 @@ BoundedSegment<F> extinction_piece(const CubicBernstein<F>& data,
   const F value = clamp(mean + shift, lower, upper);
 
   BoundedSegment<F> piece;
-  piece.segment = segment_of_depth(depth, color_at(transfer, value));
+  piece.segment = segment_of_depth(depth, color_at(transfer, value, wanted, known));
   const F range = max(upper - lower, F(0));
-  const F bend = (gather(transfer.color_bend, bin_of(transfer, upper) + index_t<F>(1)) -
-                  gather(transfer.color_bend, bin_of(transfer, lower))) +
-                 F(transfer.bend_rounding);
   const F colors = min(interval.color_range, interval.color_slope * range);
-  piece.color_error =
-      piece.segment.opacity *
-      min(colors * mean_color_bound(depth) + F(S(0.25)) * (bend * range), interval.color_range);
+  F moves = colors * mean_color_bound(depth);
+  if (transfer.bends) moves += F(S(0.25)) * (color_bend(transfer, lower, upper) * range);
+  piece.color_error = piece.segment.opacity * min(moves, interval.color_range);
   return piece;
 }
 

@@ -37,6 +37,7 @@ struct BinnedTransfer {
   float origin = 0, bins_per_value = 0;
   std::int32_t bins = 0;
   float bend_rounding = 0;  ///< of a difference of two of color_bend
+  bool bends = false;       ///< whether any of them is not 0
   /// Whether marks say more than support_min and support_max do: there are jumps, or gaps.
   bool has_marks = false;
   float support_min = 0, support_max = 0;  ///< nothing absorbs outside; crossed over: nowhere
@@ -103,8 +104,8 @@ ExtinctionInterval<F> find_extinction(const BinnedTransfer& t, F value, const Ma
 /// One interval of the color, in lanes.
 template <class F>
 struct ColorInterval {
-  F lower, upper;
-  Rgb<F> at_lower, slope;
+  F lower = F(0), upper = F(0);  ///< equal: no interval yet
+  Rgb<F> at_lower{}, slope{};
 
   /// Largest error: 4 u of the largest color beside that of the value's own.
   Rgb<F> at(F value) const noexcept {
@@ -114,10 +115,9 @@ struct ColorInterval {
   }
 };
 
-/// The interval of the color that holds `value`.
+/// The interval of the color that holds `value`, of no more than far/2.
 template <class F>
 ColorInterval<F> find_color(const BinnedTransfer& t, F value) noexcept {
-  value = clamp(value, F(-BinnedTransfer::far / 2), F(BinnedTransfer::far / 2));
   const auto bin = bin_of(t, value);
   auto index = gather(t.first_color, bin);
   using Index = decltype(index);
@@ -133,11 +133,33 @@ ColorInterval<F> find_color(const BinnedTransfer& t, F value) noexcept {
   return {r[0], r[1], {r[2], r[3], r[4]}, {r[5], r[6], r[7]}};
 }
 
-/// The color at a value. Largest error: as ColorInterval::at().
+/// The color at a value, where `known` holds the interval of a value before it, which mostly holds
+/// this one too; where not in all of the lanes of `wanted`, all are found anew. In other lanes: any
+/// color. Largest error: as ColorInterval::at().
+template <class F>
+Rgb<F> color_at(const BinnedTransfer& t, F value, const mask_t<F>& wanted,
+                ColorInterval<F>& known) noexcept {
+  value = clamp(value, F(-BinnedTransfer::far / 2), F(BinnedTransfer::far / 2));
+  if (any(wanted & ((value < known.lower) | (value >= known.upper)))) {
+    known = find_color(t, value);
+  }
+  return known.at(value);
+}
+/// The same with nothing known.
 template <class F>
 Rgb<F> color_at(const BinnedTransfer& t, F value) noexcept {
-  value = clamp(value, F(-BinnedTransfer::far / 2), F(BinnedTransfer::far / 2));
-  return find_color(t, value).at(value);
+  ColorInterval<F> nothing;
+  return color_at(t, value, mask_t<F>(true), nothing);
+}
+
+/// A bound on how much the slope of the color changes between two values, in all, largest channel,
+/// where the extinction has no corner.
+template <class F>
+F color_bend(const BinnedTransfer& t, F least, F most) noexcept {
+  using Index = index_t<F>;
+  return (gather(t.color_bend, bin_of(t, most) + Index(1)) -
+          gather(t.color_bend, bin_of(t, least))) +
+         F(t.bend_rounding);
 }
 
 }  // namespace pellucid
