@@ -5,6 +5,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <string>
 #include <vector>
 
 #include "pellucid/cpu/render.h"
@@ -62,6 +65,29 @@ inline void compare(Scene scene, const std::vector<double>& tolerances, Seen& se
         }
       }
     }
+  }
+}
+
+/// Many scenes, of which make(seed) gives one each. PELLUCID_TEST_SCENES sets how many there are,
+/// PELLUCID_TEST_SEED where they begin.
+template <class Make>
+void compare_random_scenes(int count, const std::vector<double>& tolerances, const Make& make) {
+  const char* const wanted = std::getenv("PELLUCID_TEST_SCENES");
+  const char* const seed = std::getenv("PELLUCID_TEST_SEED");
+  if (wanted != nullptr) count = std::atoi(wanted);
+  const unsigned first = seed != nullptr ? static_cast<unsigned>(std::atoi(seed)) : 1;
+  Seen seen;
+  for (int n = 0; n < count; ++n) {
+    const unsigned one = first + static_cast<unsigned>(n);
+    SCOPED_TRACE(testing::Message() << "scene " << one);
+    compare(make(one), tolerances, seen);
+    if (testing::Test::HasFatalFailure()) return;
+  }
+  EXPECT_GT(seen.with_strides, seen.frames / 2);
+  testing::Test::RecordProperty("largest_error_of_said", std::to_string(seen.largest_of_error));
+  if (wanted != nullptr) {
+    std::printf("%d frames, %d with strides; largest error %.3g of what is said\n", seen.frames,
+                seen.with_strides, seen.largest_of_error);
   }
 }
 

@@ -358,25 +358,11 @@ TEST_F(GaussianFrames, GoDownToTheirSmallestTolerance) {
   }
 }
 
-/// PELLUCID_TEST_SCENES sets how many there are, PELLUCID_TEST_SEED where they begin.
 TEST_F(GaussianFrames, AreWithinWhatTheySay) {
-  const char* const wanted = std::getenv("PELLUCID_TEST_SCENES");
-  const char* const seed = std::getenv("PELLUCID_TEST_SEED");
-  const int count = wanted != nullptr ? std::atoi(wanted) : 60;
-  const unsigned first = seed != nullptr ? static_cast<unsigned>(std::atoi(seed)) : 1;
-  Seen seen;
-  for (int n = 0; n < count; ++n) {
-    random_.seed(first + static_cast<unsigned>(n));
-    SCOPED_TRACE(testing::Message() << "scene " << first + static_cast<unsigned>(n));
-    compare(scene(), {3e-2, 1.0 / 512, 1e-4}, seen);
-    if (HasFatalFailure()) return;
-  }
-  EXPECT_GT(seen.with_strides, seen.frames / 2);
-  RecordProperty("largest_error_of_said", std::to_string(seen.largest_of_error));
-  if (wanted != nullptr) {
-    std::printf("%d frames, %d with strides; largest error %.3g of what is said\n", seen.frames,
-                seen.with_strides, seen.largest_of_error);
-  }
+  compare_random_scenes(60, {3e-2, 1.0 / 512, 1e-4}, [&](unsigned seed) {
+    random_.seed(seed);
+    return scene();
+  });
 }
 
 }  // namespace
