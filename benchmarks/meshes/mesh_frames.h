@@ -17,7 +17,7 @@ struct MeshFrameOptions {
   std::size_t pixels = 2048;    ///< that are held against the reference
   std::filesystem::path cache;  ///< of reference pixels
   int repeats = 3;
-  double tolerance = 1.0 / 512;  ///< of ours
+  double tolerance = 1.0 / 512;         ///< of ours
   double longest_repeated_seconds = 3;  ///< frames that take longer are rendered once
   bool vtk = true;
   bool sweep = true;  ///< VTK's ZSweep mapper too, which takes minutes for large meshes

@@ -17,6 +17,7 @@
 #include <new>
 #include <string_view>
 
+#include "module.h"
 #include "pellucid/scene/error.h"
 
 namespace pellucid {
@@ -87,10 +88,13 @@ std::shared_ptr<std::byte> run_contained(std::size_t bytes,
                                          const std::function<bool(std::span<std::byte>)>& work,
                                          std::uintmax_t file_bytes) {
   std::shared_ptr<std::byte> shared = shared_memory(bytes + sizeof(Outcome));
-  // Aligned like a character.
+  static_assert(alignof(Outcome) == 1);
   auto& outcome = *reinterpret_cast<Outcome*>(shared.get() + bytes);
   const pid_t program = getpid();
+  // Unlocked in both.
+  loading_modules().lock();
   const pid_t child = fork();
+  loading_modules().unlock();
   if (child < 0) throw std::bad_alloc();
   if (child == 0) {
     forget_what_the_program_does(program);

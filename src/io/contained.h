@@ -17,8 +17,10 @@ namespace pellucid {
 /// seen. Throws Error where `work` does, with the same words (of 1000 bytes at most), and
 /// std::bad_alloc where there is no memory for the bytes or no process to be had.
 ///
-/// Libraries that `work` needs are best loaded by it: locks that threads of this process hold are
-/// held for ever in the other one, and many a library has threads from its first moment.
+/// Libraries that `work` needs are best loaded by it, as modules: locks that threads of this
+/// process hold are held for ever in the other one, and many a library has threads from its first
+/// moment. That takes 20 to 60 ms each time. A program whose own threads load libraries (dlopen) at
+/// the same moment may still leave the loader's lock held there, and wait for the 300 s.
 std::shared_ptr<std::byte> run_contained(std::size_t bytes,
                                          const std::function<bool(std::span<std::byte>)>& work,
                                          std::uintmax_t file_bytes = 0);

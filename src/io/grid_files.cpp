@@ -75,6 +75,7 @@ std::shared_ptr<std::byte> contained(
   const std::uintmax_t file_bytes = check_input_file(path);
   std::shared_ptr<std::byte> answer;
   try {
+    module_file(format.module);  // says at once if it is not there
     answer = run_contained(
         bytes,
         [&](std::span<std::byte> to) {

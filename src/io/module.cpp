@@ -34,28 +34,38 @@ std::array<fs::path, 3> folders() {
 
 }  // namespace
 
-void* module_function(const Module& module, const char* name) {
+std::mutex& loading_modules() {
+  static std::mutex mutex;
+  return mutex;
+}
+
+fs::path module_file(const Module& module) {
   if (!module.built) {
     throw Error(std::string("this build does not read ") + module.reads + "; build with " +
                 module.build_with);
   }
   for (const fs::path& folder : folders()) {
     std::error_code error;
-    const fs::path file = folder / module.file;
-    if (!folder.is_absolute() || !fs::exists(file, error)) continue;
-    void* const library = dlopen(file.c_str(), RTLD_NOW | RTLD_LOCAL);
-    if (library == nullptr) {
-      throw Error(std::string("the module ") + module.file + " does not load: " + dlerror());
-    }
-    void* const function = dlsym(library, name);
-    if (function == nullptr) {
-      throw Error(file.string() + ": is of another version; install them together");
-    }
-    return function;
+    fs::path file = folder / module.file;
+    if (folder.is_absolute() && fs::exists(file, error)) return file;
   }
   throw Error(std::string("the module ") + module.file + " that reads " + module.reads +
               " is not there; install it, or name its folder in the environment variable "
               "PELLUCID_MODULES");
+}
+
+void* module_function(const Module& module, const char* name) {
+  const fs::path file = module_file(module);
+  const std::lock_guard lock(loading_modules());
+  void* const library = dlopen(file.c_str(), RTLD_NOW | RTLD_LOCAL);
+  if (library == nullptr) {
+    throw Error(std::string("the module ") + module.file + " does not load: " + dlerror());
+  }
+  void* const function = dlsym(library, name);
+  if (function == nullptr) {
+    throw Error(file.string() + ": is of another version; install them together");
+  }
+  return function;
 }
 
 }  // namespace pellucid

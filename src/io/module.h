@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <filesystem>
+#include <mutex>
+
 namespace pellucid {
 
 /// A part of this library in a file of its own, which is loaded when it is needed: the libraries
@@ -12,11 +15,18 @@ struct Module {
   const char* build_with;  ///< "VTK (Debian: libvtk9-dev) and -DPELLUCID_WITH_VTK=ON"
 };
 
-/// A function of the module, loaded by the first call and kept, never unloaded: what it read is
-/// freed by its code. Looked for in the folder that the environment variable PELLUCID_MODULES
+/// Where the module is. Looked for in the folder that the environment variable PELLUCID_MODULES
 /// names, then where an installation has it as seen from the program, then where this library was
-/// to be installed. Throws Error where the build has none, it does not load, or it lacks the
+/// to be installed. Throws Error where the build has none or it is not there.
+std::filesystem::path module_file(const Module& module);
+
+/// A function of the module, loaded by the first call and kept, never unloaded: what it read is
+/// freed by its code. Throws Error as module_file(), where it does not load, or where it lacks the
 /// function, whose name has its version.
 void* module_function(const Module& module, const char* name);
+
+/// Held while a module is loaded; and by whoever forks a process that loads one: the loader's own
+/// lock, held by another thread at that moment, would be held there for ever.
+std::mutex& loading_modules();
 
 }  // namespace pellucid

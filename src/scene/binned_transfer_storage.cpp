@@ -146,7 +146,7 @@ BinnedTransferStorage::BinnedTransferStorage(const PiecewiseLinear<double>& tabl
     const double width = below || beyond ? 0 : table.value[b] - table.value[a];
     const std::array<double, 3> from = components(table.material[a].color),
                                 to = components(table.material[b].color);
-    color_.push_back(static_cast<float>(table.value[a]));
+    color_.push_back(below ? -BinnedTransfer::far : static_cast<float>(table.value[a]));
     color_.push_back(beyond ? std::numeric_limits<float>::infinity()
                             : static_cast<float>(table.value[b]));
     for (const double c : from) color_.push_back(static_cast<float>(c));
@@ -159,6 +159,14 @@ BinnedTransferStorage::BinnedTransferStorage(const PiecewiseLinear<double>& tabl
   const double first_value = table.value[0], span = table.value[last] - first_value;
   const double size =
       std::max({std::fabs(first_value), std::fabs(table.value[last]), largest_value});
+  // What is narrower is marked as a jump, below.
+  const double widest_jump = 256 * unit * size;
+  double narrowest = infinity;
+  for (std::size_t i = 1; i < at_extinction.size(); ++i) {
+    const double its_width = table.value[at_extinction[i]] - table.value[at_extinction[i - 1]];
+    if (its_width > widest_jump) narrowest = std::min(narrowest, its_width);
+  }
+  view_.narrowest = static_cast<float>(narrowest);
   const int inside = span > 0 ? std::clamp(4 * table.count, 254, 4094) : 0;
   view_.bins = span > 0 ? inside + 2 : 1;
   view_.origin = static_cast<float>(first_value);
@@ -227,7 +235,7 @@ BinnedTransferStorage::BinnedTransferStorage(const PiecewiseLinear<double>& tabl
   };
   for (int i = 0; i <= last; ++i) {
     const bool in_front = i > 0 && absorbs(table, i), behind = i < last && absorbs(table, i + 1);
-    if (i > 0 && absorbs(table, i) && !(table.value[i] - table.value[i - 1] > 256 * unit * size) &&
+    if (i > 0 && absorbs(table, i) && !(table.value[i] - table.value[i - 1] > widest_jump) &&
         !(table.material[i].extinction == table.material[i - 1].extinction &&
           table.material[i].color == table.material[i - 1].color)) {
       mark_jump(table.value[i - 1]);

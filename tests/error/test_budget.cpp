@@ -155,6 +155,26 @@ TEST(RayBudget, WhatOnePotLacksComesFromTheOther) {
   EXPECT_DOUBLE_EQ(budget.spent(), 1);
 }
 
+TEST(RayBudget, LosesWhatASpanCostsAndNoMore) {
+  for (const double opacity : {0.0, 0.3, 1.0}) {
+    for (const double length : {0.0, 0.2, 1.0}) {
+      for (const double share_of_left : {0.0, 0.25, 0.9, 1.0}) {
+        RayBudget<double> budget(1e-2, 1);
+        budget.spend(0, 1, 1, 4e-3);  // pots that are not alike
+        const auto shares = budget.shares(length, opacity);
+        EXPECT_DOUBLE_EQ(shares.sum(), budget.allowance(length, opacity, 1));
+        const double left = budget.left(), cost = share_of_left * left;
+        budget.spend(length, shares, cost);
+        EXPECT_NEAR(budget.left(), left - cost, 1e-15) << opacity << ", " << length;
+        EXPECT_GE(budget.left(), 0);
+        EXPECT_GE(budget.allowance(1, 0, 1), 0);
+        EXPECT_GE(budget.allowance(0, 1, 1), 0);
+        EXPECT_DOUBLE_EQ(budget.spent(), 4e-3 + cost);
+      }
+    }
+  }
+}
+
 TEST(RayBudget, EdgesAreFinite) {
   RayBudget nothing(0, 0);
   EXPECT_EQ(nothing.allowance(0, 0, 1), 0);

@@ -11,8 +11,8 @@
 #include <string>
 #include <vector>
 
-#include "sanitized.h"
 #include "pellucid/scene/error.h"
+#include "sanitized.h"
 #include "src/io/contained.h"
 
 namespace pellucid {

@@ -24,11 +24,19 @@ inline bool no_packets() {
 /// What was seen over many frames.
 struct Seen {
   int frames = 0, with_strides = 0;
+  std::size_t pixels = 0, over = 0;  ///< compared, and over their tolerance as they say
   double largest_of_error = 0;
 };
 
+/// What pixels may say of themselves.
+enum class Promise {
+  within_tolerance,
+  honest  ///< that they are over it, too; and the judge need not know all of them
+};
+
 /// The scene in packets against rays one by one in binary64, proved.
-inline void compare(Scene scene, const std::vector<double>& tolerances, Seen& seen) {
+inline void compare(Scene scene, const std::vector<double>& tolerances, Seen& seen,
+                    Promise promise = Promise::within_tolerance) {
   constexpr double judge_tolerance = 1e-6;
   RenderOptions options;
   options.threads = 1;
@@ -51,9 +59,15 @@ inline void compare(Scene scene, const std::vector<double>& tolerances, Seen& se
       ++seen.frames;
       if (report.spans.strides > 0) ++seen.with_strides;
       for (std::size_t i = 0; i < image.pixels.size(); ++i) {
-        ASSERT_LE(double{truth.error[i]}, 1e-5) << "the judge does not know pixel " << i;
         const auto said = static_cast<double>(image.error[i]);
-        ASSERT_LE(said, tolerance * (1 + 1e-6)) << "pixel " << i;
+        if (promise == Promise::within_tolerance) {
+          ASSERT_LE(double{truth.error[i]}, 1e-5) << "the judge does not know pixel " << i;
+          ASSERT_LE(said, tolerance * (1 + 1e-6)) << "pixel " << i;
+        } else if (!(double{truth.error[i]} <= 1e-5)) {
+          continue;
+        }
+        ++seen.pixels;
+        if (!(said <= tolerance * (1 + 1e-6))) ++seen.over;
         for (std::size_t c = 0; c < 4; ++c) {
           const double off = std::fabs(static_cast<double>(image.pixels[i][c]) -
                                        static_cast<double>(truth.pixels[i][c]));
@@ -71,7 +85,8 @@ inline void compare(Scene scene, const std::vector<double>& tolerances, Seen& se
 /// Many scenes, of which make(seed) gives one each. PELLUCID_TEST_SCENES sets how many there are,
 /// PELLUCID_TEST_SEED where they begin.
 template <class Make>
-void compare_random_scenes(int count, const std::vector<double>& tolerances, const Make& make) {
+Seen compare_random_scenes(int count, const std::vector<double>& tolerances, const Make& make,
+                           Promise promise = Promise::within_tolerance) {
   const char* const wanted = std::getenv("PELLUCID_TEST_SCENES");
   const char* const seed = std::getenv("PELLUCID_TEST_SEED");
   if (wanted != nullptr) count = std::atoi(wanted);
@@ -80,15 +95,16 @@ void compare_random_scenes(int count, const std::vector<double>& tolerances, con
   for (int n = 0; n < count; ++n) {
     const unsigned one = first + static_cast<unsigned>(n);
     SCOPED_TRACE(testing::Message() << "scene " << one);
-    compare(make(one), tolerances, seen);
-    if (testing::Test::HasFatalFailure()) return;
+    compare(make(one), tolerances, seen, promise);
+    if (testing::Test::HasFatalFailure()) return seen;
   }
-  EXPECT_GT(seen.with_strides, seen.frames / 2);
   testing::Test::RecordProperty("largest_error_of_said", std::to_string(seen.largest_of_error));
   if (wanted != nullptr) {
-    std::printf("%d frames, %d with strides; largest error %.3g of what is said\n", seen.frames,
-                seen.with_strides, seen.largest_of_error);
+    std::printf(
+        "%d frames, %d with strides; %zu pixels, %zu over; largest error %.3g of what is said\n",
+        seen.frames, seen.with_strides, seen.pixels, seen.over, seen.largest_of_error);
   }
+  return seen;
 }
 
 }  // namespace pellucid

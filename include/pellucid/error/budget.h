@@ -13,7 +13,8 @@ namespace pellucid {
 /// the first, because it takes the share α of the light that is left; a span of length l at most
 /// the share l / (length left) of the second. Shares of what is left never empty a pot: every
 /// sequence of spans, however long, stays within the tolerance, and what a span leaves unspent is
-/// there for those behind it. Dense spans live on the first pot, thin ones on the second.
+/// there for those behind it. Dense spans live on the first pot, thin ones on the second. A span
+/// that takes more than its shares takes it from those behind it.
 ///
 /// The ray may end as soon as what is left in both pots pays for all that is behind.
 ///
@@ -49,7 +50,8 @@ class RayBudget {
   PELLUCID_HD Shares shares(T length, T opacity) const noexcept {
     return {opacity_pot_ * opacity, length_pot_ * share(length)};
   }
-  /// Goes past a span whose shares these are and that costs transparency · error <= their sum.
+  /// Goes past a span whose shares these are and that costs so much, transparency · error: at most
+  /// their sum, or left(), or all is lost.
   PELLUCID_HD void spend(T length, const Shares& from, T cost) noexcept {
     const T sum = from.sum();
     // What one pot does not have is taken from the other: together they lose all that is spent.

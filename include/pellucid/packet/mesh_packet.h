@@ -91,8 +91,8 @@ class MeshPacket {
   static constexpr double kept_back = 0x1p-9;
   static constexpr float narrowest = 1.0f / 16;
   /// What a piece may take of all that is left of the budget for rounding, which shorter pieces
-  /// have as well, and binary64 can do little about.
-  static constexpr float for_rounding = 1.0f / 4;
+  /// have as well, and so has binary64 where what it is handed is known to binary32 only.
+  static constexpr float for_rounding = Room::more_exact ? 0.0f : 0.25f;
 
   M absorbs(F least, F most, I& note) const noexcept {
     M found = (most >= F(transfer_.support_min)) & (least <= F(transfer_.support_max));
@@ -224,13 +224,15 @@ class MeshPacket {
     const F transparency = convert<float>(fold_.transparency());
     const typename RayBudget<F>::Shares shares = budget_.shares(length, s.opacity);
     const F cost = transparency * (color_error + rounding);
+    const M known = value_error < F(transfer_.narrowest);
     const M take =
-        on & ((cost <= shares.sum()) | ((transparency * color_error <= F(0.5f) * shares.sum()) &
-                                        (cost <= F(for_rounding) * budget_.left())));
+        on & known &
+        ((cost <= shares.sum()) | ((transparency * color_error <= F(0.5f) * shares.sum()) &
+                                   (cost <= F(for_rounding) * budget_.left())));
     const M rest = on & !take;
     if (any(rest)) {
       const F half = F(0.5f) * place;
-      const M halve = rest & ((F(1) - from_) * half >= F(narrowest)) &
+      const M halve = rest & known & ((F(1) - from_) * half >= F(narrowest)) &
                       (transparency * color_error <= F(64) * shares.sum()) &
                       (transparency * rounding <= F(0.25f) * shares.sum());
       cap_ = select(halve, half, cap_);
@@ -260,7 +262,7 @@ class MeshPacket {
     const M clear = (max(front_, back_) + rounding_ < F(transfer_.support_min)) |
                     (min(front_, back_) - rounding_ > F(transfer_.support_max));
     pending_ = pending_ & !(take & (whole | clear));
-    retire();
+    retire(take);
   }
 
   /// The color at a value, coming from inside of the extinction's interval: at its upper end,
@@ -290,9 +292,9 @@ class MeshPacket {
                                {masked(s.radiance.r), masked(s.radiance.g), masked(s.radiance.b)}});
   }
 
-  /// Ends the rays that no longer matter.
-  void retire() noexcept {
-    const M done = (!cut_off_) & (rest_behind() <= budget_.left());
+  /// Ends those of the lanes' rays that no longer matter.
+  void retire(M lanes) noexcept {
+    const M done = lanes & (!cut_off_) & (rest_behind() <= budget_.left());
     if (none(done)) return;
     march_.stop(done);
     pending_ = pending_ & !done;
@@ -352,7 +354,7 @@ class MeshPacket {
     pieces_ += select(lanes, I(1), I(0));
     in_double_ += select(lanes, I(1), I(0));
     pending_ = pending_ & !lanes;
-    retire();
+    retire(lanes);
   }
 
   struct ExactSpan {

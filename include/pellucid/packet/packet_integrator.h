@@ -213,7 +213,7 @@ class PacketIntegrator {
     smooth_.take(take, steps, variance <= F(0.05f) * largest);
     strides_ += select(take, I(1), I(0));
     proved_ = proved_ & !take;
-    retire();
+    retire(take);
   }
 
   [[gnu::flatten]] void integrate_pieces() noexcept {
@@ -270,7 +270,11 @@ class PacketIntegrator {
     const F opacity_rounding =
         F(32 * u) * s.opacity +
         min(select(depth_error <= F(1), F(2) * depth_error * s.transparency, F(1)), F(1));
-    const F rounding = s.opacity * color_rounding + largest_color_ * opacity_rounding;
+    // Extinction that is elsewhere in the piece shows another color of it.
+    const F colors =
+        min(interval.color_slope * (f.hull_max() - f.hull_min()), interval.color_range);
+    const F rounding = s.opacity * color_rounding + largest_color_ * opacity_rounding +
+                       colors * min(depth_error, F(1));
     budget_.pass_to(select(on, left_ - from_ * span_length_, budget_.length_left()));
     const F transparency = convert<float>(fold_.transparency());
     const typename RayBudget<F>::Shares shares = budget_.shares(length, s.opacity);
@@ -309,7 +313,7 @@ class PacketIntegrator {
     const M clear = (parts.back.hull_max() + rounding_ < F(transfer_.support_min)) |
                     (parts.back.hull_min() - rounding_ > F(transfer_.support_max));
     pending_ = pending_ & !(take & ((place >= F(1)) | clear));
-    retire();
+    retire(take);
   }
 
   /// Adds the lanes' segments to their rays.
@@ -323,9 +327,9 @@ class PacketIntegrator {
                                {masked(s.radiance.r), masked(s.radiance.g), masked(s.radiance.b)}});
   }
 
-  /// Ends the rays that no longer matter.
-  void retire() noexcept {
-    const M done = (!cut_off_) & (rest_behind() <= budget_.left());
+  /// Ends those of the lanes' rays that no longer matter.
+  void retire(M lanes) noexcept {
+    const M done = lanes & (!cut_off_) & (rest_behind() <= budget_.left());
     blocks_.alive = blocks_.alive & !done;
     drop_spans(done);
     smooth_.walking = smooth_.walking & !done;
@@ -390,7 +394,7 @@ class PacketIntegrator {
     in_double_ += select(lanes, I(1), I(0));
     panels_ += select(M::from_bits(with_panels), I(1), I(0));
     pending_ = pending_ & !lanes;
-    retire();
+    retire(lanes);
   }
 
   const PellucidPacketJob& job_;

@@ -67,9 +67,12 @@ PELLUCID_HD bool integrate_cell(const CubicBernstein<T>& data, T length, double 
   RoundingError<T> rounding = rounding_error(data, length, T(largest_color), table, reach.first,
                                              reach.last, data_error, slopes);
   rounding.depth += static_cast<T>(place_error) * slopes.largest_extinction;
+  // Extinction that is elsewhere in the cell shows another color of it.
+  const T colors = slopes.color_change(upper - lower + T(2) * data_error, T(largest_color));
+  const double shifted = static_cast<double>(colors * min(rounding.depth, T(1)));
   const auto rounding_cost = [&](const T alpha, const T transparency) noexcept {
     if (lacks) return largest_color;  // anything may be there
-    return static_cast<double>(rounding.color_error(alpha)) +
+    return shifted + static_cast<double>(rounding.color_error(alpha)) +
            largest_color * static_cast<double>(rounding.opacity_error(alpha, transparency));
   };
   // The most it can be, as if nothing absorbed in front.

@@ -48,7 +48,7 @@ PELLUCID_HD bool integrate_linear_span(const LinearData& data, const TransferTab
   const T range = upper - lower + T(2) * data_error;
   const T change = slopes.jump ? slopes.largest_extinction
                                : min(slopes.extinction_slope * range, slopes.largest_extinction);
-  const T colors = min(slopes.color_slope * range, T(largest_color)),
+  const T colors = slopes.color_change(range, T(largest_color)),
           place_error = static_cast<T>(data.place_error);
   rounding.depth +=
       place_error * change + static_cast<T>(data.end_error) * slopes.largest_extinction;

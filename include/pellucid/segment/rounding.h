@@ -14,6 +14,12 @@ struct Sensitivity {
   T extinction_slope{};  ///< largest |change of extinction| per data value, jumps left out
   T color_slope{};       ///< the same of any color channel
   bool jump = false;     ///< whether two control points have (nearly) one value
+
+  /// How far apart the colors of data within `range` of each other may be: any two on either side
+  /// of a jump.
+  PELLUCID_HD T color_change(T range, T largest_color) const noexcept {
+    return jump ? largest_color : min(color_slope * range, largest_color);
+  }
 };
 
 /// Over the intervals first … last of the table: a loop, for the few that a cell reaches. What is

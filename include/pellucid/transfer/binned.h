@@ -46,6 +46,9 @@ struct BinnedTransfer {
   static constexpr int most_supports = 4;
   int supports = 0;
   float support[2 * most_supports] = {};
+  /// The width of the narrowest interval of the extinction that is no jump: what is said of an
+  /// interval and its neighbours holds for data that are off by less. Infinite: there is none.
+  float narrowest = 0;
   float largest_extinction = 0;
   float largest_color = 0;
 

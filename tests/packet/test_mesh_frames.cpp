@@ -1,0 +1,139 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// Random meshes behind random functions, in packets against rays one by one.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <memory>
+#include <random>
+#include <utility>
+#include <vector>
+
+#include "pellucid/cpu/render.h"
+#include "tests/packet/against_one_by_one.h"
+#include "tests/scene/lattice_mesh.h"
+
+namespace pellucid {
+namespace {
+
+using Place = Vec3<double>;
+using Points = std::vector<TransferFunction::Point>;
+
+class MeshFrames : public testing::Test {
+ protected:
+  void SetUp() override {
+    if (no_packets()) GTEST_SKIP() << "this machine has no instruction set for packets";
+  }
+  double uniform(double a, double b) {
+    return std::uniform_real_distribution<double>(a, b)(random_);
+  }
+  double power(double a, double b) { return a * std::pow(b / a, uniform(0, 1)); }
+  bool one_of(int n) { return static_cast<int>(random_() % static_cast<unsigned>(n)) == 0; }
+  Place aside() { return {uniform(-1, 1), uniform(-1, 1), uniform(-1, 1)}; }
+
+  std::shared_ptr<const TetrahedralMesh> mesh(unsigned seed, double scale) {
+    TetrahedralMesh::Description all = lattice_mesh(1 + static_cast<int>(random_() % 5), seed);
+    const double moved = one_of(4) ? 0 : uniform(0, 0.14);
+    for (Place& p : all.points) p = scale * (p + moved * aside());
+    return std::make_shared<const TetrahedralMesh>(std::move(all));
+  }
+
+  /// Values around `offset`, at points or in tetrahedra, with holes or without.
+  std::shared_ptr<const MeshChannels> channels(const std::shared_ptr<const TetrahedralMesh>& mesh,
+                                               double scale, double offset, double width) {
+    const bool noise = one_of(3), per_cell = one_of(4);
+    const double holes = one_of(4) ? uniform(0, 0.1) : 0;
+    const Place k = (1 / scale) * (aside() * 2.5);
+    const auto value = [&](const Place& p) {
+      if (uniform(0, 1) < holes) return std::numeric_limits<double>::quiet_NaN();
+      const double v =
+          noise ? uniform(0, 1) : 0.5 + 0.5 * std::sin(dot(k, p)) * std::cos(k.y * p.x);
+      return offset + width * (one_of(20) ? 0.5 : v);
+    };
+    std::vector<double> values;
+    if (per_cell) {
+      for (const Tetrahedron& t : mesh->tetrahedra()) {
+        Place middle;
+        for (const std::int32_t p : t) {
+          middle = middle + 0.25 * mesh->points()[static_cast<std::size_t>(p)];
+        }
+        values.push_back(value(middle));
+      }
+    } else {
+      for (const Place& p : mesh->points()) values.push_back(value(p));
+    }
+    const Centering centering = per_cell ? Centering::cell : Centering::point;
+    MeshChannel channel{"f", "", centering, values};
+    if (one_of(2)) channel.values = std::vector<float>(values.begin(), values.end());
+    return std::make_shared<const MeshChannels>(mesh, std::vector<MeshChannel>{std::move(channel)});
+  }
+
+  /// One to six ranges that absorb, some of them thin, with steep colors and jumps.
+  Points points(double scale, double offset, double width) {
+    const double most = power(0.05, one_of(4) ? 1000 : 20) / scale;
+    const auto color = [&] { return Rgb<double>{uniform(0, 1), uniform(0, 1), uniform(0, 1)}; };
+    const auto extinction = [&] { return one_of(6) ? most : uniform(0, most); };
+    const bool jumps = one_of(10), steep = one_of(2), one_color = one_of(6);
+    Points all;
+    double v = uniform(-0.2, 0.2);
+    const auto add = [&](double e) { all.push_back({offset + width * v, e, color()}); };
+    if (one_of(5)) add(extinction());
+    const int ranges = 1 + static_cast<int>(random_() % 6);
+    for (int n = 0; n < ranges; ++n) {
+      v += one_of(2) ? power(1e-4, 0.1) : uniform(0.01, 0.3);
+      const double size = one_of(2) ? power(3e-4, 0.05) : uniform(0.02, 0.3);
+      add(0);
+      const int inner = 1 + static_cast<int>(random_() % (one_of(3) ? 8 : 2));
+      for (int i = 0; i < inner; ++i) {
+        v += size / (inner + 1) * uniform(0.3, 1.7);
+        add(extinction());
+        if (steep && one_of(4)) {
+          v += power(1e-4, 1e-2);
+          add(extinction());
+        }
+        if (jumps && one_of(4)) add(extinction());
+      }
+      v += size / (inner + 1);
+      add(0);
+    }
+    if (one_of(5)) add(extinction());
+    for (std::size_t i = 1; i < all.size(); ++i) {
+      all[i].value = std::max(all[i].value, all[i - 1].value);
+      if (one_color) all[i].color = all[0].color;
+    }
+    return all;
+  }
+
+  Scene scene(unsigned seed) {
+    random_.seed(seed);
+    const double scale = one_of(4) ? power(1e-4, 1e4) : 1;
+    const double offset = one_of(2) ? power(1, 1e4) * (one_of(2) ? 1 : -1) : 0,
+                 width = one_of(4) ? power(1e-3, 1e3) : 1;
+    const auto bodies = mesh(seed, scale);
+    Scene scene;
+    scene.mesh = channels(bodies, scale, offset, width);
+    scene.transfer_function =
+        std::make_shared<const TransferFunction>(points(scale, offset, width));
+    scene.size = {12, 9};
+    const auto& box = bodies->bounds();
+    const double size = length(box.upper - box.lower);
+    scene.camera.focal_point = 0.5 * (box.lower + box.upper) + 0.1 * size * aside();
+    scene.camera.position =
+        scene.camera.focal_point + aside() * (size * (one_of(4) ? 0.2 : uniform(0.9, 2.5)));
+    scene.camera.up = {0.1, 0.2, 1};
+    return scene;
+  }
+
+  std::mt19937 random_;
+};
+
+TEST_F(MeshFrames, AreWithinWhatTheySay) {
+  const Seen seen = compare_random_scenes(
+      120, {1e-2, 1.0 / 512, 2e-4}, [&](unsigned seed) { return scene(seed); }, Promise::honest);
+  EXPECT_GT(seen.pixels, 20000U);
+  EXPECT_LT(seen.over, seen.pixels / 100);
+}
+
+}  // namespace
+}  // namespace pellucid
