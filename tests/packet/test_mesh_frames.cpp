@@ -135,5 +135,21 @@ TEST_F(MeshFrames, AreWithinWhatTheySay) {
   EXPECT_LT(seen.over, seen.pixels / 100);
 }
 
+TEST_F(MeshFrames, AreTheSameWhateverElseIsInAPacket) {
+  for (unsigned seed = 1; seed <= 400; ++seed) {
+    SCOPED_TRACE(testing::Message() << "scene " << seed);
+    Scene one = scene(seed);
+    one.integration.tolerance = 1e-2;
+    RenderOptions options;
+    options.threads = 1;
+    options.error = true;
+    const Image whole = render(one, options);
+    options.preview = 3;  // other pixels beside each other
+    const Image other = render(one, options);
+    ASSERT_EQ(whole.pixels, other.pixels);
+    ASSERT_EQ(whole.error, other.error);
+  }
+}
+
 }  // namespace
 }  // namespace pellucid
