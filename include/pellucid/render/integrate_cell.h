@@ -66,10 +66,11 @@ PELLUCID_HD bool integrate_cell(const CubicBernstein<T>& data, T length, double 
   const double allowed = allowance(result.opacity);
   RoundingError<T> rounding = rounding_error(data, length, T(largest_color), table, reach.first,
                                              reach.last, data_error, slopes);
-  rounding.depth += static_cast<T>(place_error) * slopes.largest_extinction;
-  // Extinction that is elsewhere in the cell shows another color of it.
-  const T colors = slopes.color_change(upper - lower + T(2) * data_error, T(largest_color));
+  // Extinction on the other side of what is narrower than data_error shows another color.
+  const T colors = min(slopes.color_jumps, T(largest_color));
   const double shifted = static_cast<double>(colors * min(rounding.depth, T(1)));
+  // Where the cell ends has the color that it has there.
+  rounding.depth += static_cast<T>(place_error) * slopes.largest_extinction;
   const auto rounding_cost = [&](const T alpha, const T transparency) noexcept {
     if (lacks) return largest_color;  // anything may be there
     return shifted + static_cast<double>(rounding.color_error(alpha)) +

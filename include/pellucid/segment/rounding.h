@@ -15,10 +15,11 @@ struct Sensitivity {
   T color_slope{};       ///< the same of any color channel
   bool jump = false;     ///< whether two control points have (nearly) one value
 
-  /// How far apart the colors of data within `range` of each other may be: any two on either side
-  /// of a jump.
+  T color_jumps{};  ///< how much the color changes in those, in all
+
+  /// How far apart the colors of data within `range` of each other may be.
   PELLUCID_HD T color_change(T range, T largest_color) const noexcept {
-    return jump ? largest_color : min(color_slope * range, largest_color);
+    return min(color_slope * range + color_jumps, largest_color);
   }
 };
 
@@ -34,11 +35,12 @@ PELLUCID_HD Sensitivity<T> sensitivity(const PiecewiseLinear<T>& table, int firs
     if (i == 0 || i == table.count) continue;
     const T width = table.value[i] - table.value[i - 1];
     const T extinction = abs(b.extinction - a.extinction);
+    const T color = largest_component(b.color - a.color);
     if (!(width > T(4) * data_error)) {
       result.jump = true;
+      result.color_jumps += color;
       continue;
     }
-    const T color = largest_component(b.color - a.color);
     result.extinction_slope = max(result.extinction_slope, extinction / width);
     if (max(a.extinction, b.extinction) > T(0)) {
       result.color_slope = max(result.color_slope, color / width);
