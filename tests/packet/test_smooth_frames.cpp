@@ -227,6 +227,27 @@ TEST_F(SmoothFrames, AreWithinWhatTheySay) {
   EXPECT_GT(seen.with_strides, seen.frames / 2);
 }
 
+TEST_F(SmoothFrames, BesideVacuumAreWithinWhatTheySay) {
+  // Stretches are given up in the middle of cells, and their rest is handed back to binary64.
+  const Seen seen = compare_random_scenes(100, {3e-2, 1.0 / 512, 4e-4, 1e-4}, [&](unsigned seed) {
+    random_.seed(seed);
+    const int across = static_cast<int>(uniform(10, 30)), first = static_cast<int>(uniform(9, 30)),
+              apart = static_cast<int>(uniform(3, 40));
+    const Field field = waves(1 + static_cast<int>(uniform(0, 3)), uniform(30, 200));
+    const auto with_empty_planes = [&](double x, double y, double z) {
+      const int from_first = static_cast<int>(x) - first;
+      const bool empty = from_first >= 0 && from_first % apart == 0;
+      return empty ? std::numeric_limits<double>::quiet_NaN() : field(x, y, z);
+    };
+    const auto volume = make_volume({50, across, across}, with_empty_planes);
+    Points points = line(std::pow(10, uniform(-1, 1)), 50);
+    points.insert(points.begin(), {-1, uniform(0, 1) < 0.5 ? 0 : 1e-3, {1, 1, 1}});
+    return make_scene(volume, std::move(points), {uniform(-1, 1), uniform(-1, 1), uniform(-1, 1)},
+                      uniform(0, 1) < 0.5);
+  });
+  EXPECT_GT(seen.with_strides, seen.frames / 2);
+}
+
 TEST_F(SmoothFrames, AreTheSameWhateverElseIsInAPacket) {
   const auto volume = make_volume({40, 36, 40}, waves(2, 20), {1, 0.8, 1.3});
   Scene scene = make_scene(volume, table(2, 40), {0.6, 0.5, -0.4}, false);

@@ -26,9 +26,10 @@ struct PellucidRayResult {
 };
 
 /// A part of a cell that binary32, or the packets' rule, is not good enough for: [from, 1] of the
-/// way through it.
+/// way through it, or through what lies behind `begin`.
 struct PellucidCell {
   std::int32_t cell[3];
+  double begin;  ///< world length from the ray's begin: what is before has been done otherwise
   double from;
   double place_error;  ///< world length
   /// The most that its error may be: per_opacity · (a bound on its opacity) + flat.

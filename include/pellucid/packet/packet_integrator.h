@@ -361,11 +361,12 @@ class PacketIntegrator {
       through[l] = 1;
       if ((bits(lanes) >> l & 1) == 0) continue;
       PellucidCell cell;
-      const int code = code_[l];
+      const int code = code_[l], stretch = code / SpanCode::stretch;
       for (int a = 0; a < 3; ++a) {
-        cell.cell[a] = room_.stretches.block[a][code / SpanCode::stretch] * block_width +
+        cell.cell[a] = room_.stretches.block[a][stretch] * block_width +
                        code / SpanCode::cell[a] % block_width;
       }
+      cell.begin = room_.stretches.begin[stretch];
       cell.from = static_cast<double>(from_[l]);
       cell.place_error = static_cast<double>(place_error_[l]);
       cell.allowance_flat = static_cast<double>(flat[l]);
