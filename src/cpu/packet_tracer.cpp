@@ -38,8 +38,8 @@ struct CellContext {
 double PacketTracer::most_bending(const Volume& volume, const RayTolerance& wanted) {
   if (wanted.grade == Grade::proved) return 0;
   // What SmoothMarch takes for the least error of its shortest steps, from corner to corner.
-  const double step = 0.5 * volume.voxel_size();
-  const double one = step * std::sqrt(mean_square_of_bends(0.5));
+  const double step = shortest_sampled_step * volume.voxel_size();
+  const double one = step * std::sqrt(mean_square_of_bends(shortest_sampled_step));
   const double times = diagonal(volume) / (4 * step);
   return wanted.tolerance / (RandomErrors<double>::deviations * one * std::sqrt(times));
 }
@@ -81,7 +81,7 @@ PacketTracer::PacketTracer(const Volume& volume, const ClassifiedBlocks& blocks,
   const double range = table.value[table.count - 1] - table.value[0];
   job_.sample_rounding = static_cast<double>(rounding_unit<float>) *
                          (32 * largest_value(volume) + 8 * range) * smooth.roughness;
-  if (job_.sample_rounding * diagonal(volume) <= 0.125 * wanted.tolerance) smooth_ = smooth;
+  if (job_.sample_rounding * diagonal(volume) <= 0.5 * wanted.tolerance) smooth_ = smooth;
   job_.samples = &samples_.view();
   job_.smooth = &smooth_;
   job_.integrate_cell = &PacketTracer::integrate_cell;

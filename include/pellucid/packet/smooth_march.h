@@ -131,7 +131,7 @@ class SmoothMarch {
   }
 
  private:
-  static constexpr int levels = 4, choices = 8;
+  static constexpr int levels = sampled_step_levels, choices = 8;
   /// The optical depth of a step at most: the rule goes by what is small against 1.
   static constexpr float deepest = 1;
   /// mean_square_of_bend() above which steps are in step with the cells, and by how much shorter
