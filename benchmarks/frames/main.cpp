@@ -133,7 +133,8 @@ int main(int argc, char** argv) {
       ->capture_default_str();
   app.add_flag("--tiny", arguments.selection.tiny, "small data and few steps: to try this program");
   app.add_option("--cache", measure.cache, "folder that keeps reference pixels");
-  app.add_option("--markdown", arguments.markdown, "file to put the tables into; default: print");
+  app.add_option("--markdown", arguments.markdown, "file to put the tables into; default: print")
+      ->check(CLI::ExistingFile);
   app.add_option("--section", arguments.section, "section of that file")->capture_default_str();
   app.add_option("--json", arguments.json, "file for all figures");
   app.add_option("--plots", arguments.plots, "folder for a plot of each scene, as SVG");

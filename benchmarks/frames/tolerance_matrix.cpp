@@ -125,7 +125,8 @@ int main(int argc, char** argv) {
   app.add_option("--threads", arguments.matrix.threads, "0: one per core")
       ->check(CLI::NonNegativeNumber);
   app.add_option("--cache", arguments.matrix.cache, "folder that keeps reference frames");
-  app.add_option("--markdown", arguments.markdown, "file to put the tables into; default: print");
+  app.add_option("--markdown", arguments.markdown, "file to put the tables into; default: print")
+      ->check(CLI::ExistingFile);
   app.add_option("--section", arguments.section, "section of that file")->capture_default_str();
   app.add_option("--json", arguments.json, "file for all figures");
   app.add_option("--commit", arguments.commit, "commit to name in the tables");

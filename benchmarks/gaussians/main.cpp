@@ -219,7 +219,8 @@ int main(int argc, char** argv) {
       ->capture_default_str();
   app.add_flag("--tiny", a.tiny, "small data and few steps: to try this program");
   app.add_option("--cache", a.measure.cache, "folder that keeps reference pixels");
-  app.add_option("--markdown", a.markdown, "file to put the tables into; default: print");
+  app.add_option("--markdown", a.markdown, "file to put the tables into; default: print")
+      ->check(CLI::ExistingFile);
   app.add_option("--json", a.json, "file for all figures");
   app.add_option("--plots", a.plots, "folder for plots, as SVG");
   app.add_option("--commit", a.commit, "commit to name in the tables");

@@ -167,9 +167,11 @@ int main(int argc, char** argv) {
   app.add_flag("!--no-sweep", a.frames.sweep, "without VTK's ZSweep mapper");
   app.add_flag("--tiny", a.tiny, "small meshes: to try this program");
   app.add_option("--cache", a.frames.cache, "folder that keeps reference pixels");
-  app.add_option("--markdown", a.markdown, "file to put the tables into; default: print");
+  app.add_option("--markdown", a.markdown, "file to put the tables into; default: print")
+      ->check(CLI::ExistingFile);
   app.add_option("--limitations", a.limitations,
-                 "file to put the table of reconstructions into; default: print");
+                 "file to put the table of reconstructions into; default: print")
+      ->check(CLI::ExistingFile);
   app.add_option("--json", a.json, "file for all figures");
   app.add_option("--plots", a.plots, "folder for plots, as SVG");
   app.add_option("--commit", a.commit, "commit to name in the tables");

@@ -72,7 +72,8 @@ int main(int argc, char** argv) {
       ->capture_default_str()
       ->check(CLI::Range(16, 2048));
   app.add_flag("--tiny", arguments.tiny, "small data: to try this program");
-  app.add_option("--markdown", arguments.markdown, "file to put the tables into; default: print");
+  app.add_option("--markdown", arguments.markdown, "file to put the tables into; default: print")
+      ->check(CLI::ExistingFile);
   app.add_option("--json", arguments.json, "file for all figures");
   app.add_option("--commit", arguments.commit, "commit to name in the tables");
   CLI11_PARSE(app, argc, argv);

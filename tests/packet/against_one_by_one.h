@@ -7,19 +7,30 @@
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
+#include <random>
 #include <string>
 #include <vector>
 
 #include "pellucid/cpu/render.h"
+#include "tests/packet/instruction_sets.h"
 
 namespace pellucid {
 
-inline constexpr InstructionSet sets[] = {InstructionSet::sse4, InstructionSet::avx2,
-                                          InstructionSet::avx512};
+/// Frames of random scenes, in packets.
+class RandomFrames : public testing::Test {
+ protected:
+  explicit RandomFrames(unsigned seed) : random_(seed) {}
+  void SetUp() override {
+    if (no_packets()) GTEST_SKIP() << "this machine has no instruction set for packets";
+  }
+  double uniform(double a, double b) {
+    return std::uniform_real_distribution<double>(a, b)(random_);
+  }
+  /// As often of one order of magnitude as of another.
+  double power(double a, double b) { return a * std::pow(b / a, uniform(0, 1)); }
 
-inline bool no_packets() {
-  return std::none_of(std::begin(sets), std::end(sets), is_supported);
-}
+  std::mt19937 random_;
+};
 
 /// What was seen over many frames.
 struct Seen {

@@ -12,12 +12,10 @@
 
 #include "pellucid/cpu/render.h"
 #include "pellucid/scene/defaults.h"
+#include "tests/packet/instruction_sets.h"
 
 namespace pellucid {
 namespace {
-
-constexpr InstructionSet sets[] = {InstructionSet::sse4, InstructionSet::avx2,
-                                   InstructionSet::avx512};
 
 /// Waves and noise in [0, 1], as values of a type: bytes over all of their range, the others over
 /// some thousands.
@@ -133,10 +131,6 @@ void compare(Scene scene, Seen& seen) {
       }
     }
   }
-}
-
-bool no_packets() {
-  return std::none_of(std::begin(sets), std::end(sets), is_supported);
 }
 
 template <class Value>

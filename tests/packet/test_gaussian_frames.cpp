@@ -21,15 +21,9 @@ namespace pellucid {
 namespace {
 
 /// Random scenes of several variables behind Gaussians.
-class GaussianFrames : public testing::Test {
+class GaussianFrames : public RandomFrames {
  protected:
-  void SetUp() override {
-    if (no_packets()) GTEST_SKIP() << "this machine has no instruction set for packets";
-  }
-  double uniform(double a, double b) {
-    return std::uniform_real_distribution<double>(a, b)(random_);
-  }
-  double power(double a, double b) { return std::exp(uniform(std::log(a), std::log(b))); }
+  GaussianFrames() : RandomFrames(29) {}
   int whole(int a, int b) { return std::uniform_int_distribution<int>(a, b)(random_); }
 
   /// Between 0 and 1: waves, ridges that are sharp, noise, single values that stand out.
@@ -134,8 +128,6 @@ class GaussianFrames : public testing::Test {
     }
     return scene;
   }
-
-  std::mt19937 random_{29};
 };
 
 /// A ramp along x from `least` on, over a range of 1, seen along it.

@@ -20,15 +20,9 @@ namespace {
 using Place = Vec3<double>;
 using Points = std::vector<TransferFunction::Point>;
 
-class MeshFrames : public testing::Test {
+class MeshFrames : public RandomFrames {
  protected:
-  void SetUp() override {
-    if (no_packets()) GTEST_SKIP() << "this machine has no instruction set for packets";
-  }
-  double uniform(double a, double b) {
-    return std::uniform_real_distribution<double>(a, b)(random_);
-  }
-  double power(double a, double b) { return a * std::pow(b / a, uniform(0, 1)); }
+  MeshFrames() : RandomFrames(1) {}
   bool one_of(int n) { return static_cast<int>(random_() % static_cast<unsigned>(n)) == 0; }
   Place aside() { return {uniform(-1, 1), uniform(-1, 1), uniform(-1, 1)}; }
 
@@ -124,8 +118,6 @@ class MeshFrames : public testing::Test {
     scene.camera.up = {0.1, 0.2, 1};
     return scene;
   }
-
-  std::mt19937 random_;
 };
 
 TEST_F(MeshFrames, AreWithinWhatTheySay) {

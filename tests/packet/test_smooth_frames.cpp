@@ -38,14 +38,9 @@ std::shared_ptr<const Volume> make_volume(const std::array<int, 3>& values, cons
   return std::make_shared<Volume>(description, DataArray<float>(std::move(data)));
 }
 
-class SmoothFrames : public testing::Test {
+class SmoothFrames : public RandomFrames {
  protected:
-  void SetUp() override {
-    if (no_packets()) GTEST_SKIP() << "this machine has no instruction set for packets";
-  }
-  double uniform(double a, double b) {
-    return std::uniform_real_distribution<double>(a, b)(random_);
-  }
+  SmoothFrames() : RandomFrames(17) {}
 
   /// Waves of so many cells and more, between 0 and 1.
   Field waves(int count, double shortest) {
@@ -105,8 +100,6 @@ class SmoothFrames : public testing::Test {
     }
     return scene;
   }
-
-  std::mt19937 random_{17};
 };
 
 const Vec3<double> directions[] = {{1, 0, 0}, {0, 1, 1},        {1, 1, 1},   {2, 1, 0},

@@ -3,10 +3,9 @@
 
 #include <limits>
 
-#include "pellucid/error/budget.h"
 #include "pellucid/packet/gaussian_march.h"
 #include "pellucid/packet/gaussian_packet_interface.h"
-#include "pellucid/segment/fold.h"
+#include "pellucid/packet/packet_fold.h"
 
 #if PELLUCID_HAS_BATCH_4  // in sources compiled per instruction set
 namespace pellucid {
@@ -52,12 +51,10 @@ class GaussianPacket {
  private:
   using March = GaussianMarch<N>;
 
-  /// The share of the tolerance that pays for adding up costs in float: of 16000 segments.
-  static constexpr double kept_back = 0x1p-9;
   /// Of the difference of two rules what counts as the standard deviation of the better one: more
   /// than in smooth stretches, for all of a narrow primitive may lie in a few steps.
   static constexpr float share_of_difference = 0.8f;
-  /// Rays that need more are given up: `kept_back` pays for so many.
+  /// Rays that need more are given up: PacketFold keeps back what so many cost.
   static constexpr int most_looks = 1 << 14;
 
   /// Gives these lanes the next rays; false: there are none, and no lane has any.
@@ -71,12 +68,10 @@ class GaussianPacket {
     }
     if (none(given)) return any(march_.alive);
     march_.begin(given, lane_ray_);
-    const RayBudget<F> budget(F(static_cast<float>(rays_.tolerance * (1 - kept_back))),
-                              convert<float>(march_.end()));
-    budget_ = select(given, budget, budget_);
+    const PacketFold<N> nothing(rays_.tolerance, rays_.largest_extinction, rays_.largest_color,
+                                convert<float>(march_.end()));
+    fold_ = select(given, nothing, fold_);
     sampled_ = select(given, SampledErrors<F>(), sampled_);
-    fold_ = select(given, FrontToBack<D>(), fold_);
-    cut_off_ = cut_off_ & !given;
     given_up_ = given_up_ & !given;
     for (I* counter : {&skipped_, &segments_, &looks_}) *counter = select(given, I(0), *counter);
     return true;
@@ -85,13 +80,7 @@ class GaussianPacket {
   /// What the rays of these lanes have gathered.
   void store(M lanes) noexcept {
     const SegmentResult<D> all = fold_.result();
-    // Folding in double costs 4 u a segment, and adding up costs in float 2 u of them.
-    constexpr double folding = 8 * rounding_unit<double>;
-    constexpr double account = 2 * static_cast<double>(rounding_unit<float>);
-    const D segments = convert<double>(segments_) + D(1);
-    const D error = convert<double>(budget_.spent() + select(cut_off_, rest_behind(), F(0))) *
-                        (D(1) + D(account) * segments) +
-                    D(folding * rays_.largest_color) * segments +
+    const D error = fold_.error(convert<double>(segments_)) +
                     D(rays_.largest_color) * min(D(job_.left_out) * march_.end(), D(1));
     double field[6][N];
     std::int32_t looks[N], skipped[N], taken[N];
@@ -139,7 +128,7 @@ class GaussianPacket {
   /// returned.
   M integrate(M lanes, F left) noexcept {
     const SegmentResult<F>& s = look_.found.segment;
-    const F transparency = convert<float>(fold_.transparency());
+    const F transparency = fold_.transparency();
     const F deviation = F(share_of_difference) * look_.found.difference;
     const F variance =
         transparency * transparency *
@@ -147,35 +136,22 @@ class GaussianPacket {
     const F rounding =
         transparency * largest_color_ *
         (F(32 * rounding_unit<float>) * s.opacity + look_.ends.rounding * look_.length);
-    const F largest = sampled_.largest_variance(budget_, rounding, s.opacity, look_.length, left);
-    const M take = lanes & (variance <= largest) & (rounding <= budget_.left());
+    const F largest =
+        sampled_.largest_variance(fold_.budget, rounding, s.opacity, look_.length, left);
+    const M take = lanes & (variance <= largest) & (rounding <= fold_.budget.left());
     if (none(take)) return take;
-    const auto masked = [&](F value) noexcept {
-      return select(take, convert<double>(value), D(0));
-    };
-    fold_.add(SegmentResult<D>{masked(s.optical_depth),
-                               masked(s.opacity),
-                               select(take, convert<double>(s.transparency), D(1)),
-                               {masked(s.radiance.r), masked(s.radiance.g), masked(s.radiance.b)}});
-    sampled_.pay(take, budget_, variance, rounding, s.opacity, look_.length, left, transparency);
+    fold_.add(take, s);
+    sampled_.pay(take, fold_.budget, variance, rounding, s.opacity, look_.length, left,
+                 transparency);
     segments_ += select(take, I(1), I(0));
     march_.take(take, look_, variance <= F(0.05f) * largest);
-    const M done = take & (rest_behind() <= budget_.left());
-    march_.alive = march_.alive & !done;
-    cut_off_ = cut_off_ | done;
+    march_.alive = march_.alive & !fold_.cut_off(take);
     return take;
   }
 
   void give_up(M lanes) noexcept {
     given_up_ = given_up_ | lanes;
     march_.alive = march_.alive & !lanes;
-  }
-
-  /// A bound on what lies behind the last step, as little as light can come from there.
-  F rest_behind() const noexcept {
-    const F opacity =
-        min(F(static_cast<float>(rays_.largest_extinction)) * budget_.length_left(), F(1));
-    return convert<float>(fold_.transparency()) * opacity * largest_color_;
   }
 
   const PellucidGaussianPacketJob& job_;
@@ -186,10 +162,9 @@ class GaussianPacket {
   March march_;
   typename March::Look look_;
   SampledErrors<F> sampled_;
-  RayBudget<F> budget_;
-  FrontToBack<D> fold_;
+  PacketFold<N> fold_;
   F largest_color_;
-  M cut_off_{false}, given_up_{false};
+  M given_up_{false};
   I skipped_, segments_, looks_;
 };
 

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "pellucid/error/budget.h"
 #include "pellucid/packet/mesh_march.h"
-#include "pellucid/segment/fold.h"
+#include "pellucid/packet/packet_fold.h"
 #include "pellucid/segment/linear.h"
 #include "pellucid/transfer/binned.h"
 
@@ -38,12 +37,12 @@ class MeshPacket {
         first_(first),
         count_(count),
         march_(job, first, count),
+        fold_(job.tolerance, transfer_.largest_extinction, job.largest_color,
+              max(convert<float>(march_.rays.end - march_.rays.begin), F(0))),
         largest_color_(static_cast<float>(job.largest_color)) {
     std::int32_t lane[N];
     for (int l = 0; l < N; ++l) lane[l] = l;
     lane_ = I::load(lane);
-    budget_ = RayBudget<F>(F(static_cast<float>(job.tolerance * (1 - kept_back))),
-                           max(convert<float>(march_.rays.end - march_.rays.begin), F(0)));
   }
 
   void run() noexcept {
@@ -58,14 +57,8 @@ class MeshPacket {
 
   void store(PellucidRayResult* results) const noexcept {
     const SegmentResult<D> all = fold_.result();
-    // As PacketIntegrator does: folding in double costs 4 u a piece, adding up costs in float 2 u.
-    constexpr double folding = 8 * rounding_unit<double>;
-    constexpr double account = 2 * static_cast<double>(rounding_unit<float>);
-    const D pieces = convert<double>(pieces_) + D(1);
     const D error =
-        convert<double>(budget_.spent() + select(cut_off_, rest_behind(), F(0))) *
-            (D(1) + D(account) * pieces) +
-        D(folding * job_.largest_color) * pieces +
+        fold_.error(convert<double>(pieces_)) +
         D(job_.largest_color) *
             min(D(job_.largest_extinction) * convert<double>(march_.beside_vacuum), D(1));
     for (int l = 0; l < count_; ++l) {
@@ -88,22 +81,15 @@ class MeshPacket {
 
  private:
   /// As in PacketIntegrator.
-  static constexpr double kept_back = 0x1p-9;
   static constexpr float narrowest = 1.0f / 16;
   /// What a piece may take of all that is left of the budget for rounding, which shorter pieces
   /// have as well, and so has binary64 where what it is handed is known to binary32 only.
   static constexpr float for_rounding = Room::more_exact ? 0.0f : 0.25f;
 
   M absorbs(F least, F most, I& note) const noexcept {
-    M found = (most >= F(transfer_.support_min)) & (least <= F(transfer_.support_max));
-    if (!transfer_.has_marks || none(found)) return found;
-    if (transfer_.supports > 0) return found & meets_support(transfer_, least, most);
-    const F safe_least = select(found, least, F(0)), safe_most = select(found, most, F(0));
-    const I marks = gather(transfer_.marks, bin_of(transfer_, safe_most) + I(1)) -
-                    gather(transfer_.marks, bin_of(transfer_, safe_least));
-    found = found & (marks > I(0));
-    note = note +
-           select(found & (marks >= I(BinnedTransfer::one_jump)), I(SpanNote::handed_back), I(0));
+    M jumps;
+    const M found = may_absorb(transfer_, M(true), least, most, jumps);
+    note += select(jumps, I(SpanNote::handed_back), I(0));
     return found;
   }
 
@@ -220,15 +206,15 @@ class MeshPacket {
                        colors * min(interval.largest * place_error_, s.opacity) +
                        largest_color_ * opacity_rounding + colors * min(depth_error, F(1));
 
-    budget_.pass_to(select(on, left_ - from_ * span_length_, budget_.length_left()));
-    const F transparency = convert<float>(fold_.transparency());
-    const typename RayBudget<F>::Shares shares = budget_.shares(length, s.opacity);
+    fold_.budget.pass_to(select(on, left_ - from_ * span_length_, fold_.budget.length_left()));
+    const F transparency = fold_.transparency();
+    const typename RayBudget<F>::Shares shares = fold_.budget.shares(length, s.opacity);
     const F cost = transparency * (color_error + rounding);
     const M known = value_error < F(transfer_.narrowest);
     const M take =
         on & known &
         ((cost <= shares.sum()) | ((transparency * color_error <= F(0.5f) * shares.sum()) &
-                                   (cost <= F(for_rounding) * budget_.left())));
+                                   (cost <= F(for_rounding) * fold_.budget.left())));
     const M rest = on & !take;
     if (any(rest)) {
       const F half = F(0.5f) * place;
@@ -240,8 +226,8 @@ class MeshPacket {
       if (any(give_up)) hand_back(give_up);
     }
     if (none(take)) return;
-    fold(take, s);
-    budget_.spend(select(take, length, F(0)), shares, select(take, cost, F(0)));
+    fold_.add(take, s);
+    fold_.budget.spend(select(take, length, F(0)), shares, select(take, cost, F(0)));
     pieces_ += select(take, I(1), I(0));
 
     front_ = select(take, end, front_);
@@ -281,46 +267,25 @@ class MeshPacket {
     assign(lanes, to.b, from.b);
   }
 
-  /// Adds the lanes' segments to their rays.
-  void fold(M lanes, const SegmentResult<F>& s) noexcept {
-    const auto masked = [&](F value) noexcept {
-      return select(lanes, convert<double>(value), D(0));
-    };
-    fold_.add(SegmentResult<D>{masked(s.optical_depth),
-                               masked(s.opacity),
-                               select(lanes, convert<double>(s.transparency), D(1)),
-                               {masked(s.radiance.r), masked(s.radiance.g), masked(s.radiance.b)}});
-  }
-
   /// Ends those of the lanes' rays that no longer matter.
   void retire(M lanes) noexcept {
-    const M done = lanes & (!cut_off_) & (rest_behind() <= budget_.left());
+    const M done = fold_.cut_off(lanes);
     if (none(done)) return;
     march_.stop(done);
     pending_ = pending_ & !done;
     waiting_ = select(done, I(0), waiting_);
-    cut_off_ = cut_off_ | done;
-  }
-
-  /// A bound on what lies behind the last piece, as little as light can come from there.
-  F rest_behind() const noexcept {
-    const F opacity = min(F(transfer_.largest_extinction) * budget_.length_left(), F(1));
-    return convert<float>(fold_.transparency()) * opacity * largest_color_;
   }
 
   /// Has what is left of the lanes' spans integrated by other means.
   void hand_back(M lanes) noexcept {
     lanes = lanes & pending_;
-    const F transparency = convert<float>(fold_.transparency());
-    budget_.pass_to(select(lanes, left_ - from_ * span_length_, budget_.length_left()));
-    double depth[N] = {}, opacity[N] = {}, through[N], red[N] = {}, green[N] = {}, blue[N] = {},
-           error[N] = {}, bound[N] = {};
+    fold_.budget.pass_to(select(lanes, left_ - from_ * span_length_, fold_.budget.length_left()));
+    HandedBack<N> handed_back;
     for (int l = 0; l < N; ++l) {
-      through[l] = 1;
       if ((bits(lanes) >> l & 1) == 0) continue;
       const int row = row_[l];
       if ((rows_.code[row] & SpanNote::overlaps) != 0) {
-        error[l] = job_.largest_color;  // anything may be there
+        handed_back.error[l] = job_.largest_color;  // anything may be there
         continue;
       }
       const auto [front, back, length, off_by] = exact_span(row);
@@ -336,21 +301,9 @@ class MeshPacket {
                                     static_cast<double>(end_error_[l]) + off * length};
       PellucidCellResult result;
       job_.integrate_span(job_.context, &span, &result);
-      depth[l] = result.optical_depth;
-      opacity[l] = result.opacity;
-      through[l] = result.transparency;
-      red[l] = result.radiance[0];
-      green[l] = result.radiance[1];
-      blue[l] = result.radiance[2];
-      error[l] = result.error;
-      bound[l] = result.opacity_bound;
+      handed_back.set(l, result);
     }
-    fold_.add(SegmentResult<D>{D::load(depth),
-                               D::load(opacity),
-                               D::load(through),
-                               {D::load(red), D::load(green), D::load(blue)}});
-    budget_.spend(select(lanes, length_, F(0)), convert<float>(D::load(bound)), transparency,
-                  convert<float>(D::load(error)) * F(1 + 4 * rounding_unit<float>));
+    fold_.add(handed_back, select(lanes, length_, F(0)));
     pieces_ += select(lanes, I(1), I(0));
     in_double_ += select(lanes, I(1), I(0));
     pending_ = pending_ & !lanes;
@@ -398,10 +351,8 @@ class MeshPacket {
   ExtinctionInterval<F> extinction_{F(0), F(0), F(0), F(0), F(0), F(0), F(0), F(0)};
   ColorInterval<F> color_;
 
-  RayBudget<F> budget_;
-  FrontToBack<D> fold_;
+  PacketFold<N> fold_;
   F largest_color_;
-  M cut_off_{false};
   I cells_{0}, pieces_{0}, in_double_{0};
 };
 

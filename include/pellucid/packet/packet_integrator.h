@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "pellucid/error/budget.h"
 #include "pellucid/error/random_errors.h"
+#include "pellucid/packet/packet_fold.h"
 #include "pellucid/packet/smooth_march.h"
 #include "pellucid/packet/span_finder.h"
 #include "pellucid/segment/extinction_piece.h"
-#include "pellucid/segment/fold.h"
 
 #if PELLUCID_HAS_BATCH_4  // in sources compiled per instruction set
 namespace pellucid {
@@ -45,9 +44,9 @@ class PacketIntegrator {
         blocks_(grid, job.rays + first, count),
         finder_(grid, blocks_, transfer_),
         smooth_(job, grid, blocks_.origin, blocks_.direction),
+        fold_(job.tolerance, transfer_.largest_extinction, job.largest_color,
+              convert<float>(D::load(blocks_.end))),
         largest_color_(static_cast<float>(job.largest_color)) {
-    const F lengths = convert<float>(D::load(blocks_.end));
-    budget_ = RayBudget<F>(F(static_cast<float>(job.tolerance * (1 - kept_back))), lengths);
     float far[N], block[N];
     for (int l = 0; l < N; ++l) {
       // Where the ray meets the planes is known to a few units of its arc length.
@@ -77,13 +76,7 @@ class PacketIntegrator {
 
   void store(PellucidRayResult* results) const noexcept {
     const SegmentResult<D> all = fold_.result();
-    // Folding in double costs 4 u a piece, and adding up costs in float 2 u of them.
-    constexpr double folding = 8 * rounding_unit<double>;
-    constexpr double account = 2 * static_cast<double>(rounding_unit<float>);
-    const D pieces = convert<double>(pieces_ + strides_) + D(1);
-    const D error = convert<double>(budget_.spent() + select(cut_off_, rest_behind(), F(0))) *
-                        (D(1) + D(account) * pieces) +
-                    D(folding * job_.largest_color) * pieces;
+    const D error = fold_.error(convert<double>(pieces_ + strides_));
     for (int l = 0; l < count_; ++l) {
       PellucidRayResult& r = results[first_ + l];
       r = {{all.radiance.r[l], all.radiance.g[l], all.radiance.b[l]},
@@ -109,8 +102,6 @@ class PacketIntegrator {
     return I::load(lane);
   }
 
-  /// The share of the tolerance that pays for adding up costs in float: of 16000 pieces.
-  static constexpr double kept_back = 0x1p-9;
   /// How narrow a part of a cell may get before it is handed back.
   static constexpr float narrowest = 1.0f / 16;
   /// Of the difference of two rules what counts as the standard deviation of the better one.
@@ -195,21 +186,23 @@ class PacketIntegrator {
     samples_taken_ += select(on, I(4), I(0));
     const SegmentResult<F>& s = steps.found.segment;
     const F left = convert<float>(D::load(blocks_.end) - from);
-    const F transparency = convert<float>(fold_.transparency());
+    const F transparency = fold_.transparency();
     const F deviation = F(share_of_difference) * steps.found.difference;
     const F variance = transparency * transparency * (deviation * deviation + steps.least_variance);
     const F rounding = transparency * (F(32 * rounding_unit<float>) * s.opacity * largest_color_ +
                                        F(static_cast<float>(job_.sample_rounding)) * steps.length);
-    const F largest = sampled_.largest_variance(budget_, rounding, s.opacity, steps.length, left);
-    const M take = on & steps.valid & (variance <= largest) & (rounding <= budget_.left());
+    const F largest =
+        sampled_.largest_variance(fold_.budget, rounding, s.opacity, steps.length, left);
+    const M take = on & steps.valid & (variance <= largest) & (rounding <= fold_.budget.left());
     const M refused = smooth_.finer(on & !take);
     if (any(refused)) {
       blocks_.go_in_cells(refused, from, smooth_.end);
       smooth_.walking = smooth_.walking & !refused;
     }
     if (none(take)) return;
-    fold(take, s);
-    sampled_.pay(take, budget_, variance, rounding, s.opacity, steps.length, left, transparency);
+    fold_.add(take, s);
+    sampled_.pay(take, fold_.budget, variance, rounding, s.opacity, steps.length, left,
+                 transparency);
     smooth_.take(take, steps, variance <= F(0.05f) * largest);
     strides_ += select(take, I(1), I(0));
     proved_ = proved_ & !take;
@@ -275,9 +268,9 @@ class PacketIntegrator {
         min(interval.color_slope * (f.hull_max() - f.hull_min()), interval.color_range);
     const F rounding = s.opacity * color_rounding + largest_color_ * opacity_rounding +
                        colors * min(depth_error, F(1));
-    budget_.pass_to(select(on, left_ - from_ * span_length_, budget_.length_left()));
-    const F transparency = convert<float>(fold_.transparency());
-    const typename RayBudget<F>::Shares shares = budget_.shares(length, s.opacity);
+    fold_.budget.pass_to(select(on, left_ - from_ * span_length_, fold_.budget.length_left()));
+    const F transparency = fold_.transparency();
+    const typename RayBudget<F>::Shares shares = fold_.budget.shares(length, s.opacity);
     const F allowed = shares.sum(), cost_of_color = transparency * piece.color_error,
             cost_of_rounding = transparency * rounding, cost = cost_of_color + cost_of_rounding;
     const M take = on & end.found & (cost <= allowed);
@@ -296,8 +289,8 @@ class PacketIntegrator {
       if (any(give_up)) hand_back(give_up);
     }
     if (none(take)) return;
-    fold(take, s);
-    budget_.spend(select(take, length, F(0)), shares, select(take, cost, F(0)));
+    fold_.add(take, s);
+    fold_.budget.spend(select(take, length, F(0)), shares, select(take, cost, F(0)));
     pieces_ += select(take, I(1), I(0));
 
     const F left = F(1) - place;
@@ -316,30 +309,12 @@ class PacketIntegrator {
     retire(take);
   }
 
-  /// Adds the lanes' segments to their rays.
-  void fold(M lanes, const SegmentResult<F>& s) noexcept {
-    const auto masked = [&](F value) noexcept {
-      return select(lanes, convert<double>(value), D(0));
-    };
-    fold_.add(SegmentResult<D>{masked(s.optical_depth),
-                               masked(s.opacity),
-                               select(lanes, convert<double>(s.transparency), D(1)),
-                               {masked(s.radiance.r), masked(s.radiance.g), masked(s.radiance.b)}});
-  }
-
   /// Ends those of the lanes' rays that no longer matter.
   void retire(M lanes) noexcept {
-    const M done = lanes & (!cut_off_) & (rest_behind() <= budget_.left());
+    const M done = fold_.cut_off(lanes);
     blocks_.alive = blocks_.alive & !done;
     drop_spans(done);
     smooth_.walking = smooth_.walking & !done;
-    cut_off_ = cut_off_ | done;
-  }
-
-  /// A bound on what lies behind the last piece, as little as light can come from there.
-  F rest_behind() const noexcept {
-    const F opacity = min(F(transfer_.largest_extinction) * budget_.length_left(), F(1));
-    return convert<float>(fold_.transparency()) * opacity * largest_color_;
   }
 
   /// How far a span's ends may be from where they are thought to be, world length. Where cells meet
@@ -350,15 +325,13 @@ class PacketIntegrator {
   /// Has what is left of the lanes' spans integrated by other means.
   void hand_back(M lanes) noexcept {
     lanes = lanes & pending_;
-    const F transparency = convert<float>(fold_.transparency());
-    budget_.pass_to(select(lanes, left_ - from_ * span_length_, budget_.length_left()));
-    const F flat = budget_.allowance(length_, F(0), transparency),
-            all = budget_.allowance(length_, F(1), transparency);
-    double depth[N] = {}, opacity[N] = {}, through[N], red[N] = {}, green[N] = {}, blue[N] = {},
-           error[N] = {}, bound[N] = {};
+    const F transparency = fold_.transparency();
+    fold_.budget.pass_to(select(lanes, left_ - from_ * span_length_, fold_.budget.length_left()));
+    const F flat = fold_.budget.allowance(length_, F(0), transparency),
+            all = fold_.budget.allowance(length_, F(1), transparency);
+    HandedBack<N> handed_back;
     unsigned not_proved = 0, with_panels = 0;
     for (int l = 0; l < N; ++l) {
-      through[l] = 1;
       if ((bits(lanes) >> l & 1) == 0) continue;
       PellucidCell cell;
       const int code = code_[l], stretch = code / SpanCode::stretch;
@@ -373,23 +346,11 @@ class PacketIntegrator {
       cell.allowance_per_opacity = static_cast<double>(all[l] - flat[l]);
       PellucidCellResult result;
       job_.integrate_cell(job_.context, first_ + l, &cell, &result);
-      depth[l] = result.optical_depth;
-      opacity[l] = result.opacity;
-      through[l] = result.transparency;
-      red[l] = result.radiance[0];
-      green[l] = result.radiance[1];
-      blue[l] = result.radiance[2];
-      error[l] = result.error;
-      bound[l] = result.opacity_bound;
+      handed_back.set(l, result);
       if (result.proved == 0) not_proved |= 1u << l;
       if (result.panels != 0) with_panels |= 1u << l;
     }
-    fold_.add(SegmentResult<D>{D::load(depth),
-                               D::load(opacity),
-                               D::load(through),
-                               {D::load(red), D::load(green), D::load(blue)}});
-    budget_.spend(select(lanes, length_, F(0)), convert<float>(D::load(bound)), transparency,
-                  convert<float>(D::load(error)) * F(1 + 4 * rounding_unit<float>));
+    fold_.add(handed_back, select(lanes, length_, F(0)));
     proved_ = proved_ & !M::from_bits(not_proved);
     pieces_ += select(lanes, I(1), I(0));
     in_double_ += select(lanes, I(1), I(0));
@@ -431,10 +392,9 @@ class PacketIntegrator {
   I interval_, pieces_of_span_, code_;
 
   SampledErrors<F> sampled_;
-  RayBudget<F> budget_;
-  FrontToBack<D> fold_;
+  PacketFold<N> fold_;
   F largest_color_;
-  M proved_{true}, cut_off_{false};
+  M proved_{true};
   std::int32_t cells_seen_[N] = {};
   I skipped_, constant_;
   I pieces_;  ///< all of them

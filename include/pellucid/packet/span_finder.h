@@ -60,13 +60,6 @@ class SpanFinder {
   }
 
  private:
-  /// The marks of the transfer function over a range of values.
-  I marks_in(F least, F most) const noexcept {
-    return gather(transfer_.marks, bin_of(transfer_, most) + I(1)) -
-           gather(transfer_.marks, bin_of(transfer_, least));
-  }
-  static I jump() noexcept { return I(BinnedTransfer::one_jump); }
-
   [[gnu::flatten]] void fill(All& stretches, Walks<Value, N>& walks, Rows& rows) noexcept {
     list_.fill(stretches, walks, [&](M lanes, I stretch, F value, F length, F left) noexcept {
       lanes = is_constant(lanes, value);
@@ -93,7 +86,8 @@ class SpanFinder {
     if (!exact) return M(false);
     if (!transfer_.has_marks) return lanes;
     const F rounding = F(2 * rounding_unit<float>) * abs(value);
-    return lanes & (marks_in(value - rounding, value + rounding) < jump());
+    return lanes & (marks_between(transfer_, value - rounding, value + rounding) <
+                    I(BinnedTransfer::one_jump));
   }
 
   /// Whether there is anything left to be gone through.
@@ -146,15 +140,9 @@ class SpanFinder {
     F code = convert<float>(cells_.stretch) * F(SpanCode::stretch) +
              select(step.last, F(SpanCode::last), F(0));
     for (int a = 0; a < 3; ++a) code += F(SpanCode::cell[a]) * step.cell[a];
-    if (transfer_.supports > 0) {
-      found = found & meets_support(transfer_, least, most);
-    } else if (transfer_.has_marks) {
-      const I marks = marks_in(least, most);
-      found = found & (marks > I(0));
-      code += select(marks >= jump(), F(SpanCode::handed_back), F(0));
-    } else {
-      found = found & (most >= F(transfer_.support_min)) & (least <= F(transfer_.support_max));
-    }
+    M jumps;
+    found = may_absorb(transfer_, found, least, most, jumps);
+    code += select(jumps, F(SpanCode::handed_back), F(0));
     if (none(found)) return;
     const F span[] = {data.b[0],
                       data.b[1],

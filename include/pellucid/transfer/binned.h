@@ -76,6 +76,27 @@ mask_t<F> meets_support(const BinnedTransfer& t, F least, F most) noexcept {
   return found;
 }
 
+/// The marks between `least` and `most`, in lanes.
+template <class F>
+auto marks_between(const BinnedTransfer& t, F least, F most) noexcept {
+  using Index = index_t<F>;
+  return gather(t.marks, bin_of(t, most) + Index(1)) - gather(t.marks, bin_of(t, least));
+}
+
+/// Those of the lanes of which something between `least` and `most` may absorb; of these, `jumps`:
+/// whether one may lie there.
+template <class F>
+mask_t<F> may_absorb(const BinnedTransfer& t, mask_t<F> lanes, F least, F most,
+                     mask_t<F>& jumps) noexcept {
+  jumps = mask_t<F>(false);
+  if (t.supports > 0) return lanes & meets_support(t, least, most);
+  lanes = lanes & (most >= F(t.support_min)) & (least <= F(t.support_max));
+  if (!t.has_marks || none(lanes)) return lanes;
+  const auto marks = marks_between(t, select(lanes, least, F(0)), select(lanes, most, F(0)));
+  jumps = lanes & (marks >= index_t<F>(BinnedTransfer::one_jump));
+  return lanes & (marks > index_t<F>(0));
+}
+
 /// One interval of the extinction, in lanes.
 template <class F>
 struct ExtinctionInterval {

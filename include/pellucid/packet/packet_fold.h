@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "pellucid/error/budget.h"
+#include "pellucid/packet/interface.h"
+#include "pellucid/segment/fold.h"
+#include "pellucid/simd/batch.h"
+
+#if PELLUCID_HAS_BATCH_4  // in sources compiled per instruction set
+namespace pellucid {
+
+/// What was integrated by other means, lane by lane; of other lanes nothing.
+template <int N>
+struct HandedBack {
+  double optical_depth[N] = {}, opacity[N] = {}, transparency[N], radiance[3][N] = {};
+  double error[N] = {}, opacity_bound[N] = {};
+
+  HandedBack() noexcept {
+    for (double& t : transparency) t = 1;
+  }
+  void set(int lane, const PellucidCellResult& found) noexcept {
+    optical_depth[lane] = found.optical_depth;
+    opacity[lane] = found.opacity;
+    transparency[lane] = found.transparency;
+    for (int c = 0; c < 3; ++c) radiance[c][lane] = found.radiance[c];
+    error[lane] = found.error;
+    opacity_bound[lane] = found.opacity_bound;
+  }
+};
+
+/// What rays in lanes have gathered, folded in double, and what their tolerances have left, in
+/// float.
+template <int N>
+class PacketFold {
+ public:
+  using F = Batch<float, N>;
+  using D = Batch<double, N>;
+  using M = BatchMask<N>;
+
+  PacketFold() = default;
+  /// `lengths` of the rays, in world units.
+  PacketFold(double tolerance, double largest_extinction, double largest_color, F lengths) noexcept
+      : budget(F(static_cast<float>(tolerance * (1 - kept_back))), lengths),
+        largest_extinction_(static_cast<float>(largest_extinction)),
+        largest_color_(largest_color) {}
+
+  RayBudget<F> budget;
+
+  F transparency() const noexcept { return convert<float>(fold_.transparency()); }
+
+  /// Adds the lanes' segments to their rays, not what they cost.
+  void add(M lanes, const SegmentResult<F>& s) noexcept {
+    const auto masked = [&](F value) noexcept {
+      return select(lanes, convert<double>(value), D(0));
+    };
+    fold_.add(SegmentResult<D>{masked(s.optical_depth),
+                               masked(s.opacity),
+                               select(lanes, convert<double>(s.transparency), D(1)),
+                               {masked(s.radiance.r), masked(s.radiance.g), masked(s.radiance.b)}});
+  }
+  /// What was handed back, of these world lengths, and what it costs.
+  void add(const HandedBack<N>& s, F lengths) noexcept {
+    const F before = transparency();
+    fold_.add(
+        SegmentResult<D>{D::load(s.optical_depth),
+                         D::load(s.opacity),
+                         D::load(s.transparency),
+                         {D::load(s.radiance[0]), D::load(s.radiance[1]), D::load(s.radiance[2])}});
+    budget.spend(lengths, convert<float>(D::load(s.opacity_bound)), before,
+                 convert<float>(D::load(s.error)) * F(1 + 4 * rounding_unit<float>));
+  }
+
+  /// Those of the lanes whose rays no longer matter from here on, and did until now. What is
+  /// behind is charged to them.
+  M cut_off(M lanes) noexcept {
+    const M done = lanes & (!cut_off_) & (rest_behind() <= budget.left());
+    cut_off_ = cut_off_ | done;
+    return done;
+  }
+
+  SegmentResult<D> result() const noexcept { return fold_.result(); }
+  /// What rays of so many segments may be off by. Folding in double costs 4 u a segment, adding up
+  /// costs in float 2 u of them.
+  D error(D segments) const noexcept {
+    constexpr double folding = 8 * rounding_unit<double>;
+    constexpr double account = 2 * static_cast<double>(rounding_unit<float>);
+    const D all = segments + D(1);
+    return convert<double>(budget.spent() + select(cut_off_, rest_behind(), F(0))) *
+               (D(1) + D(account) * all) +
+           D(folding * largest_color_) * all;
+  }
+
+  friend PacketFold select(M mask, const PacketFold& a, const PacketFold& b) noexcept {
+    PacketFold r = a;
+    r.budget = select(mask, a.budget, b.budget);
+    r.fold_ = select(mask, a.fold_, b.fold_);
+    r.cut_off_ = (mask & a.cut_off_) | ((!mask) & b.cut_off_);
+    return r;
+  }
+
+ private:
+  /// The share of the tolerance that pays for adding up costs in float: of 16000 segments.
+  static constexpr double kept_back = 0x1p-9;
+
+  /// A bound on what lies behind the last segment, as little as light can come from there.
+  F rest_behind() const noexcept {
+    const F opacity = min(F(largest_extinction_) * budget.length_left(), F(1));
+    return transparency() * opacity * F(static_cast<float>(largest_color_));
+  }
+
+  FrontToBack<D> fold_;
+  float largest_extinction_ = 0;
+  double largest_color_ = 0;
+  M cut_off_{false};
+};
+
+}  // namespace pellucid
+#endif
