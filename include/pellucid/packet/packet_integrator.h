@@ -203,7 +203,7 @@ class PacketIntegrator {
     fold_.add(take, s);
     sampled_.pay(take, fold_.budget, variance, rounding, s.opacity, steps.length, left,
                  transparency);
-    smooth_.take(take, steps, variance <= F(0.05f) * largest);
+    smooth_.take(take, steps, variance <= F(0.2f) * largest);
     strides_ += select(take, I(1), I(0));
     proved_ = proved_ & !take;
     retire(take);

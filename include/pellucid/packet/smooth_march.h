@@ -11,7 +11,8 @@
 namespace pellucid {
 
 /// Rays in lanes that go through smooth blocks (SmoothBlocks) in steps, four at a time: how long
-/// these are is each lane's own matter, from longest_step halved as often as its errors demand.
+/// these are is each lane's own matter, from longest_step downward in powers of √½ as its errors
+/// demand.
 ///
 /// Steps that keep in step with the cells are avoided: what trilinear data lie below the curve
 /// through their points between two of these would be missed by all samples alike, and by the
@@ -123,7 +124,7 @@ class SmoothMarch {
     level_ = select(lanes & easy & s.may_be_longer & (level_ > I(0)), level_ - I(1), level_);
   }
 
-  /// Halves the steps of these lanes; of those whose are the shortest returns which they are.
+  /// Shortens the steps of these lanes; of those whose are the shortest returns which they are.
   M finer(M lanes) noexcept {
     const M finest = lanes & (level_ >= I(levels - 1));
     level_ = select(lanes & !finest, level_ + I(1), level_);
@@ -131,7 +132,7 @@ class SmoothMarch {
   }
 
  private:
-  static constexpr int levels = sampled_step_levels, choices = 8;
+  static constexpr int levels = sampled_step_levels, choices = 5;
   /// The optical depth of a step at most: the rule goes by what is small against 1.
   static constexpr float deepest = 1;
   /// mean_square_of_bend() above which steps are in step with the cells, and by how much shorter
@@ -170,13 +171,12 @@ class SmoothMarch {
   /// The length of steps of a level: a little below the longest, and of those the one whose
   /// variance by length is the least.
   void find_step(int level) noexcept {
-    const F longest = F(static_cast<float>(smooth_.longest_step) / static_cast<float>(1 << level)) /
-                      cells_per_length_;
+    const float shorter = (level % 2 == 0 ? 1 : 0.7071068f) / static_cast<float>(1 << level / 2);
+    const F longest = F(static_cast<float>(smooth_.longest_step) * shorter) / cells_per_length_;
     F least(std::numeric_limits<float>::infinity());
     for (int c = 0; c < choices; ++c) {
       // 2^(-c/10)
-      static constexpr float share[choices] = {1,          0.9330330f, 0.8705506f, 0.8122524f,
-                                               0.7578583f, 0.7071068f, 0.6597540f, 0.6155722f};
+      static constexpr float share[choices] = {1, 0.9330330f, 0.8705506f, 0.8122524f, 0.7578583f};
       const F candidate = F(share[c]) * longest;
       F weight[3], cost(0);
       weigh(candidate, weight);
@@ -199,7 +199,7 @@ class SmoothMarch {
   }
 
   /// Of the blocks that the steps are in: least_variance; and whether the steps are short enough,
-  /// with twice as long ones being so, too.
+  /// with those of the level before being so, too.
   void look_at_blocks(const F* weight, F step, Steps& s) const noexcept {
     // The block in the middle of the steps, whose neighbours hold the others.
     const D middle = at + D(0.5) * convert<double>(s.length);
@@ -216,7 +216,7 @@ class SmoothMarch {
     s.least_variance = step * step * sum;
     const F part = step * cells_per_length_ * local[3];
     s.valid = part <= F(1.0001f);
-    s.may_be_longer = part <= F(0.5f);
+    s.may_be_longer = part <= F(0.7071f);
   }
 
   const SamplerTransfer& transfer_;

@@ -59,11 +59,11 @@ struct SmoothBlocks {
 };
 /// Cells; half the width of a block.
 inline constexpr double longest_sampled_step = 4;
-/// Their lengths: this one, a half of it, and so on. The shortest is worth about a cell that is gone
-/// through with a closed form.
-inline constexpr int sampled_step_levels = 6;
+/// Their lengths: this one, times √½, a half of it, and so on. The shortest is worth about a cell
+/// that is gone through with a closed form.
+inline constexpr int sampled_step_levels = 11;
 inline constexpr double shortest_sampled_step =
-    longest_sampled_step / (1 << (sampled_step_levels - 1));
+    longest_sampled_step / (1 << (sampled_step_levels - 1) / 2);
 
 /// The classes of a grid's blocks, in the order of BlockRecords. A view; owns nothing. Built by
 /// scene/block_classes_storage.h.
