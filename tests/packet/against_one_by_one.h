@@ -7,7 +7,6 @@
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
-#include <random>
 #include <string>
 #include <vector>
 
@@ -15,22 +14,6 @@
 #include "tests/packet/instruction_sets.h"
 
 namespace pellucid {
-
-/// Frames of random scenes, in packets.
-class RandomFrames : public testing::Test {
- protected:
-  explicit RandomFrames(unsigned seed) : random_(seed) {}
-  void SetUp() override {
-    if (no_packets()) GTEST_SKIP() << "this machine has no instruction set for packets";
-  }
-  double uniform(double a, double b) {
-    return std::uniform_real_distribution<double>(a, b)(random_);
-  }
-  /// As often of one order of magnitude as of another.
-  double power(double a, double b) { return a * std::pow(b / a, uniform(0, 1)); }
-
-  std::mt19937 random_;
-};
 
 /// What was seen over many frames.
 struct Seen {

@@ -12,19 +12,17 @@
 
 #include "pellucid/cpu/render.h"
 #include "tests/packet/against_one_by_one.h"
+#include "tests/packet/random_frames.h"
 #include "tests/scene/lattice_mesh.h"
 
 namespace pellucid {
 namespace {
 
 using Place = Vec3<double>;
-using Points = std::vector<TransferFunction::Point>;
 
 class MeshFrames : public RandomFrames {
  protected:
   MeshFrames() : RandomFrames(1) {}
-  bool one_of(int n) { return static_cast<int>(random_() % static_cast<unsigned>(n)) == 0; }
-  Place aside() { return {uniform(-1, 1), uniform(-1, 1), uniform(-1, 1)}; }
 
   std::shared_ptr<const TetrahedralMesh> mesh(unsigned seed, double scale) {
     TetrahedralMesh::Description all = lattice_mesh(1 + static_cast<int>(random_() % 5), seed);
@@ -63,42 +61,6 @@ class MeshFrames : public RandomFrames {
     return std::make_shared<const MeshChannels>(mesh, std::vector<MeshChannel>{std::move(channel)});
   }
 
-  /// One to six ranges that absorb, some of them thin, with steep colors and jumps.
-  Points points(double scale, double offset, double width) {
-    const double most = power(0.05, one_of(4) ? 1000 : 20) / scale;
-    const auto color = [&] { return Rgb<double>{uniform(0, 1), uniform(0, 1), uniform(0, 1)}; };
-    const auto extinction = [&] { return one_of(6) ? most : uniform(0, most); };
-    const bool jumps = one_of(10), steep = one_of(2), one_color = one_of(6);
-    Points all;
-    double v = uniform(-0.2, 0.2);
-    const auto add = [&](double e) { all.push_back({offset + width * v, e, color()}); };
-    if (one_of(5)) add(extinction());
-    const int ranges = 1 + static_cast<int>(random_() % 6);
-    for (int n = 0; n < ranges; ++n) {
-      v += one_of(2) ? power(1e-4, 0.1) : uniform(0.01, 0.3);
-      const double size = one_of(2) ? power(3e-4, 0.05) : uniform(0.02, 0.3);
-      add(0);
-      const int inner = 1 + static_cast<int>(random_() % (one_of(3) ? 8 : 2));
-      for (int i = 0; i < inner; ++i) {
-        v += size / (inner + 1) * uniform(0.3, 1.7);
-        add(extinction());
-        if (steep && one_of(4)) {
-          v += power(1e-4, 1e-2);
-          add(extinction());
-        }
-        if (jumps && one_of(4)) add(extinction());
-      }
-      v += size / (inner + 1);
-      add(0);
-    }
-    if (one_of(5)) add(extinction());
-    for (std::size_t i = 1; i < all.size(); ++i) {
-      all[i].value = std::max(all[i].value, all[i - 1].value);
-      if (one_color) all[i].color = all[0].color;
-    }
-    return all;
-  }
-
   Scene scene(unsigned seed) {
     random_.seed(seed);
     const double scale = one_of(4) ? power(1e-4, 1e4) : 1;
@@ -107,8 +69,7 @@ class MeshFrames : public RandomFrames {
     const auto bodies = mesh(seed, scale);
     Scene scene;
     scene.mesh = channels(bodies, scale, offset, width);
-    scene.transfer_function =
-        std::make_shared<const TransferFunction>(points(scale, offset, width));
+    scene.transfer_function = table(scale, offset, width);
     scene.size = {12, 9};
     const auto& box = bodies->bounds();
     const double size = length(box.upper - box.lower);

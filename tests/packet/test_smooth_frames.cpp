@@ -16,6 +16,7 @@
 #include "pellucid/cpu/render.h"
 #include "pellucid/scene/defaults.h"
 #include "tests/packet/against_one_by_one.h"
+#include "tests/packet/random_frames.h"
 
 namespace pellucid {
 namespace {

@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <random>
+#include <utility>
+#include <vector>
+
+#include "pellucid/scene/transfer_function.h"
+#include "tests/packet/instruction_sets.h"
+
+namespace pellucid {
+
+/// Frames of random scenes, in packets.
+class RandomFrames : public testing::Test {
+ protected:
+  explicit RandomFrames(unsigned seed) : random_(seed) {}
+  void SetUp() override {
+    if (no_packets()) GTEST_SKIP() << "this machine has no instruction set for packets";
+  }
+
+  double uniform(double a, double b) {
+    return std::uniform_real_distribution<double>(a, b)(random_);
+  }
+  /// As often of one order of magnitude as of another.
+  double power(double a, double b) { return a * std::pow(b / a, uniform(0, 1)); }
+  bool one_of(int n) { return static_cast<int>(random_() % static_cast<unsigned>(n)) == 0; }
+  Vec3<double> aside() { return {uniform(-1, 1), uniform(-1, 1), uniform(-1, 1)}; }
+
+  /// One to six ranges that absorb, some of them thin, with steep colors and jumps: over the data
+  /// offset + width · [0, 1], of a field that is `scale` large.
+  std::shared_ptr<const TransferFunction> table(double scale, double offset, double width) {
+    const double most = power(0.05, one_of(4) ? 1000 : 20) / scale;
+    const auto color = [&] { return Rgb<double>{uniform(0, 1), uniform(0, 1), uniform(0, 1)}; };
+    const auto extinction = [&] { return one_of(6) ? most : uniform(0, most); };
+    const bool jumps = one_of(10), steep = one_of(2), one_color = one_of(6);
+    std::vector<TransferFunction::Point> all;
+    double v = uniform(-0.2, 0.2);
+    const auto add = [&](double e) { all.push_back({offset + width * v, e, color()}); };
+    if (one_of(5)) add(extinction());
+    const int ranges = 1 + static_cast<int>(random_() % 6);
+    for (int n = 0; n < ranges; ++n) {
+      v += one_of(2) ? power(1e-4, 0.1) : uniform(0.01, 0.3);
+      const double size = one_of(2) ? power(3e-4, 0.05) : uniform(0.02, 0.3);
+      add(0);
+      const int inner = 1 + static_cast<int>(random_() % (one_of(3) ? 8 : 2));
+      for (int i = 0; i < inner; ++i) {
+        v += size / (inner + 1) * uniform(0.3, 1.7);
+        add(extinction());
+        if (steep && one_of(4)) {
+          v += power(1e-4, 1e-2);
+          add(extinction());
+        }
+        if (jumps && one_of(4)) add(extinction());
+      }
+      v += size / (inner + 1);
+      add(0);
+    }
+    if (one_of(5)) add(extinction());
+    for (std::size_t i = 1; i < all.size(); ++i) {
+      all[i].value = std::max(all[i].value, all[i - 1].value);
+      if (one_color) all[i].color = all[0].color;
+    }
+    return std::make_shared<const TransferFunction>(std::move(all));
+  }
+
+  std::mt19937 random_;
+};
+
+}  // namespace pellucid

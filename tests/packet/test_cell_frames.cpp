@@ -1,0 +1,137 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <memory>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+#include "pellucid/cpu/render.h"
+#include "pellucid/scene/defaults.h"
+#include "tests/packet/against_one_by_one.h"
+#include "tests/packet/random_frames.h"
+
+namespace pellucid {
+namespace {
+
+class CellFrames : public RandomFrames {
+ protected:
+  CellFrames() : RandomFrames(1) {}
+
+  /// Between 0 and 1: waves, steps, single values that stand out, noise; or one number for the most
+  /// part. NaN in single places, in planes, or beyond one.
+  std::vector<double> field(const std::array<int, 3>& values) {
+    const Vec3<double> k = aside() * power(0.05, 3);
+    const double noise = one_of(3) ? 0 : power(1e-6, 0.3), odd = one_of(3) ? 0.02 : 0;
+    const bool steps = one_of(4), mostly_one = one_of(6), vacuum = one_of(2);
+    const double holes = vacuum && one_of(2) ? power(1e-3, 0.2) : 0;
+    const int empty_axis = vacuum && one_of(2) ? static_cast<int>(random_() % 3) : -1;
+    const int apart = 2 + static_cast<int>(random_() % 20), edge = vacuum && one_of(3) ? 9 : 1000;
+    std::vector<double> data;
+    for (int z = 0; z < values[2]; ++z) {
+      for (int y = 0; y < values[1]; ++y) {
+        for (int x = 0; x < values[0]; ++x) {
+          const int at[3] = {x, y, z};
+          double v = 0.5 + 0.4 * std::sin(dot(k, Vec3<double>{1.0 * x, 1.0 * y, 1.0 * z}));
+          if (steps) v = std::floor(5 * v) / 5;
+          if (mostly_one) v = std::max(v, 0.6);
+          v += noise * uniform(-1, 1);
+          if (uniform(0, 1) < odd) v = uniform(0, 1);
+          const bool empty = uniform(0, 1) < holes ||
+                             (empty_axis >= 0 && at[empty_axis] % apart == apart - 1) ||
+                             x + y > edge;
+          data.push_back(empty ? std::numeric_limits<double>::quiet_NaN() : v);
+        }
+      }
+    }
+    return data;
+  }
+
+  /// Of integers that have no NaN, 0 in its place.
+  template <class Value>
+  static VolumeData as(const std::vector<double>& field, double offset, double width) {
+    std::vector<Value> data;
+    for (const double v : field) {
+      const double value = offset + width * v;
+      if constexpr (std::is_integral_v<Value>) {
+        data.push_back(std::isnan(v) ? Value{0} : static_cast<Value>(std::lround(value)));
+      } else {
+        data.push_back(static_cast<Value>(value));
+      }
+    }
+    return DataArray<Value>(std::move(data));
+  }
+
+  Scene scene(unsigned seed) {
+    random_.seed(seed);
+    const auto size = [&] {
+      return one_of(4) ? 2 + static_cast<int>(random_() % 8) : 9 + static_cast<int>(random_() % 26);
+    };
+    Volume::Description description;
+    description.dimensions = {size(), size(), size()};
+    const double unit = one_of(4) ? power(1e-4, 1e4) : 1;
+    description.placement.spacing = {unit, unit * uniform(0.4, 2.5), unit * uniform(0.4, 2.5)};
+    description.centering = one_of(3) ? Centering::cell : Centering::point;
+    description.name = "random";
+    const std::vector<double> numbers = field(description.dimensions);
+    double offset = 0, width = 1;
+    VolumeData data = as<std::uint8_t>(numbers, 0, 255);
+    switch (random_() % 6) {
+      case 0:
+        width = 255;
+        break;
+      case 1:
+        width = 4000;
+        offset = -1024;
+        data = as<std::int16_t>(numbers, offset, width);
+        break;
+      case 2:
+        width = 60000;
+        data = as<std::uint16_t>(numbers, offset, width);
+        break;
+      case 3:
+        offset = one_of(2) ? power(1, 1e4) * (one_of(2) ? 1 : -1) : 0;
+        width = one_of(2) ? power(1e-3, 1e3) : 1;
+        data = as<double>(numbers, offset, width);
+        break;
+      default:
+        offset = one_of(3) ? power(1, 1e4) * (one_of(2) ? 1 : -1) : 0;
+        width = one_of(3) ? power(1e-3, 1e3) : 1;
+        data = as<float>(numbers, offset, width);
+    }
+    Scene scene;
+    const auto volume = std::make_shared<const Volume>(description, std::move(data));
+    scene.volume = volume;
+    const int most =
+        *std::max_element(description.dimensions.begin(), description.dimensions.end());
+    scene.transfer_function = table(unit * most, offset, width);
+    scene.size = {12, 9};
+    scene.camera = default_camera(*volume, scene.size);
+    const Vec3<double> middle = scene.camera.focal_point;
+    const double far = length(scene.camera.position - middle);
+    Vec3<double> direction = aside();
+    if (one_of(4)) direction = Vec3<double>{1.0 * one_of(2), 1.0 * one_of(2), 1};
+    scene.camera.position = middle + direction * ((one_of(5) ? 0.05 : 1) * far / length(direction));
+    scene.camera.up = {0.1, 1, 0.2};
+    if (one_of(3)) {
+      scene.camera.projection = Projection::orthographic;
+      scene.camera.parallel_scale = far * uniform(0.05, 0.4);
+    }
+    return scene;
+  }
+};
+
+TEST_F(CellFrames, AreWithinWhatTheySay) {
+  const Seen seen = compare_random_scenes(
+      150, {1e-2, 1.0 / 512, 2e-4}, [&](unsigned seed) { return scene(seed); }, Promise::honest);
+  EXPECT_GT(seen.pixels, 20000U);
+  EXPECT_LT(seen.over, seen.pixels / 100);
+}
+
+}  // namespace
+}  // namespace pellucid
