@@ -67,12 +67,15 @@ SamplerRecords::SamplerRecords(const PiecewiseLinear<float>& table) {
   const auto put = [](std::vector<float>& out, const Material<float>& m) {
     out.insert(out.end(), {m.extinction, m.color.r, m.color.g, m.color.b});
   };
+  const auto jumps_at = [&](int i) { return !(table.value[i] < table.value[i + 1]); };
   for (int b = 0; b < bins; ++b) {
     const double from = origin + b * width, to = from + width;
     const int first = table.interval(static_cast<float>(from + rounding));
     const int last = table.interval(static_cast<float>(to - rounding));
-    // Below and above the table values fall into the bins at its ends.
-    const bool whole = usable && first == last && b > 0 && b < bins - 1;
+    // Values below and above the table fall into the bins at its ends, where the line is at its
+    // own.
+    const bool whole = usable && first == last && !(b == 0 && jumps_at(0)) &&
+                       !(b == bins - 1 && jumps_at(table.count - 2));
     if (whole) {
       const Material<float> lower = table.evaluate_in(first, static_cast<float>(from));
       const Material<float> upper = table.evaluate_in(first, static_cast<float>(to));

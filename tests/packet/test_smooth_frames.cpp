@@ -74,6 +74,18 @@ class SmoothFrames : public RandomFrames {
     const double e = depth / size;
     return {{-0.1, 0.4 * e, {1, 0.2, 0.1}}, {1.1, 1.6 * e, {0.1, 0.7, 0.9}}};
   }
+  /// A few points, with corners.
+  Points corners(double depth, double size) {
+    Points points;
+    double v = uniform(-0.3, 0.3);
+    while (v < 1.1) {
+      const double e = one_of(4) ? 0 : uniform(0, 2 * depth / size);
+      points.push_back({v, e, {uniform(0, 1), uniform(0, 1), uniform(0, 1)}});
+      v += one_of(3) ? uniform(0.02, 0.15) : uniform(0.1, 0.8);
+    }
+    points.push_back({1.2, uniform(0, 2 * depth / size), points.back().color});
+    return points;
+  }
   /// Smooth curves in a table.
   static Points table(double depth, double size) {
     Points points;
@@ -219,6 +231,21 @@ TEST_F(SmoothFrames, AreWithinWhatTheySay) {
     return make_scene(volume, std::move(points), direction, uniform(0, 1) < 0.5);
   });
   EXPECT_GT(seen.with_strides, seen.frames / 2);
+}
+
+TEST_F(SmoothFrames, BehindCornersAreWithinWhatTheySay) {
+  const Seen seen = compare_random_scenes(60, {3e-2, 1.0 / 512, 4e-4, 1e-4}, [&](unsigned seed) {
+    random_.seed(seed);
+    const auto size = [&] { return static_cast<int>(uniform(20, 60)); };
+    const std::array<int, 3> values{size(), size(), size()};
+    const auto volume =
+        make_volume(values, waves(1 + static_cast<int>(uniform(0, 3)), power(9, 200)),
+                    {uniform(0.7, 1.4), uniform(0.7, 1.4), uniform(0.7, 1.4)});
+    Points points = corners(power(0.1, 10), values[0]);
+    const Vec3<double> direction = one_of(3) ? directions[seed % std::size(directions)] : aside();
+    return make_scene(volume, std::move(points), direction, one_of(2));
+  });
+  EXPECT_GT(seen.with_strides, seen.frames / 8);
 }
 
 TEST_F(SmoothFrames, BesideVacuumAreWithinWhatTheySay) {
