@@ -33,13 +33,21 @@ struct CellContext {
   const PellucidRay* rays;
 };
 
+/// Steps get as short as cells that are gone through with closed forms are worth: half a voxel, or
+/// an eighth where cells are cut at the many points of a table.
+int sampled_step_levels(const TransferTables& transfer) {
+  return transfer.wide.count > 32 ? most_sampled_step_levels : most_sampled_step_levels - 4;
+}
+
 }  // namespace
 
-double PacketTracer::most_bending(const Volume& volume, const RayTolerance& wanted) {
+double PacketTracer::most_bending(const Volume& volume, const TransferTables& transfer,
+                                  const RayTolerance& wanted) {
   if (wanted.grade == Grade::proved) return 0;
   // What SmoothMarch takes for the least error of its shortest steps, from corner to corner.
-  const double step = shortest_sampled_step * volume.voxel_size();
-  const double one = step * std::sqrt(mean_square_of_bends(shortest_sampled_step));
+  const double cells = longest_sampled_step * std::exp2(-0.5 * (sampled_step_levels(transfer) - 1));
+  const double step = cells * volume.voxel_size();
+  const double one = step * std::sqrt(mean_square_of_bends(cells));
   const double times = diagonal(volume) / (4 * step);
   return wanted.tolerance / (RandomErrors<double>::deviations * one * std::sqrt(times));
 }
@@ -81,7 +89,10 @@ PacketTracer::PacketTracer(const Volume& volume, const ClassifiedBlocks& blocks,
   const double range = table.value[table.count - 1] - table.value[0];
   job_.sample_rounding = static_cast<double>(rounding_unit<float>) *
                          (32 * largest_value(volume) + 8 * range) * smooth.roughness;
-  if (job_.sample_rounding * diagonal(volume) <= 0.5 * wanted.tolerance) smooth_ = smooth;
+  if (job_.sample_rounding * diagonal(volume) <= 0.5 * wanted.tolerance) {
+    smooth_ = smooth;
+    smooth_.levels = sampled_step_levels(transfer);
+  }
   job_.samples = &samples_.view();
   job_.smooth = &smooth_;
   job_.integrate_cell = &PacketTracer::integrate_cell;

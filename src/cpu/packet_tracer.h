@@ -22,7 +22,8 @@ class PacketTracer {
  public:
   /// For BlockClassesStorage: how much smooth blocks may bend to be worth a try. 0 where only what
   /// is proved counts.
-  static double most_bending(const Volume& volume, const RayTolerance& wanted);
+  static double most_bending(const Volume& volume, const TransferTables& transfer,
+                             const RayTolerance& wanted);
 
   /// Null where rays have to go one by one: no such instructions, a rectilinear grid, a single
   /// layer of values, one precision wanted, a very small tolerance, or numbers

@@ -60,7 +60,8 @@ SamplerRecords::SamplerRecords(const PiecewiseLinear<float>& table) {
   view_.origin = table.value[0];
   view_.bins_per_value = usable ? per_value : 0;
   if (!usable) bins = 1;
-  view_.bins_end = std::nextafter(static_cast<float>(bins), 0.0f);
+  view_.bin_count = static_cast<float>(bins);
+  view_.bins_end = std::nextafter(view_.bin_count, 0.0f);
   const double width = usable ? 1 / double{per_value} : 0;
   // Which bin a value falls into is rounded, by no more than this of the range.
   const double rounding = 0x1p-22 * range;
@@ -93,12 +94,40 @@ SamplerRecords::SamplerRecords(const PiecewiseLinear<float>& table) {
     const auto line = line_of(table, i);
     lines_.insert(lines_.end(), line.begin(), line.end());
   }
+  add_corners(table, bins, width);
+  view_.corners = corners_.data();
   view_.bins = bins_.data();
   view_.first_line = first_line_.data();
   view_.lines = lines_.data();
   const Support support = support_of(table);
   view_.support_min = support.min;
   view_.support_max = support.max;
+}
+
+void SamplerRecords::add_corners(const PiecewiseLinear<float>& table, int bins, double width) {
+  double largest_color = 1;
+  for (int i = 0; i < table.count; ++i) {
+    const Rgb<float>& c = table.material[i].color;
+    largest_color = std::max(largest_color, double{std::max({c.r, c.g, c.b})});
+  }
+  const auto square_at = [&](int i) {
+    const auto a = line_of(table, i), b = line_of(table, i + 1);
+    const auto change = [&](std::size_t field) {
+      return std::abs(double{b[field]} - double{a[field]});
+    };
+    const double of_colors = std::max({change(9), change(10), change(11)});
+    const double all = largest_color * change(8) + double{table.material[i].extinction} * of_colors;
+    return all * all;
+  };
+  double sum = 0;
+  int i = 0;
+  for (int b = 0; b <= bins; ++b) {
+    const double edge = double{table.value[0]} + b * width;
+    while (i < table.count && (b == bins || double{table.value[i]} < edge)) sum += square_at(i++);
+    const auto rounded = static_cast<float>(sum);
+    corners_.push_back(rounded);
+    corners_.push_back(std::isfinite(rounded) ? static_cast<float>(sum - double{rounded}) : 0);
+  }
 }
 
 }  // namespace pellucid

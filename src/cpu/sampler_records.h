@@ -34,7 +34,9 @@ class SamplerRecords {
   const SamplerTransfer& view() const noexcept { return view_; }
 
  private:
-  std::vector<float> bins_, first_line_, lines_;
+  void add_corners(const PiecewiseLinear<float>& table, int bins, double width);
+
+  std::vector<float> bins_, first_line_, lines_, corners_;
   SamplerTransfer view_;
 };
 

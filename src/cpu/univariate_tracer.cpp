@@ -70,8 +70,9 @@ UnivariateTracer::UnivariateTracer(const TracerTask& task)
   const bool samples = goes_in_packets(integration_) && !depth_;
   if (integration_.method != Method::exact && !samples) return;
   const BlockRecords& records = volume_.block_ranges(parallel);
-  block_classes_ = BlockClassesStorage(records, transfer_.tables(), wanted_.largest_color, parallel,
-                                       samples ? 0 : PacketTracer::most_bending(volume_, wanted_));
+  block_classes_ = BlockClassesStorage(
+      records, transfer_.tables(), wanted_.largest_color, parallel,
+      samples ? 0 : PacketTracer::most_bending(volume_, transfer_.tables(), wanted_));
   blocks_ = ClassifiedBlocks{records, block_classes_.view()};
   if (samples) {
     sampler_ = PacketSamplerTracer::make(

@@ -104,8 +104,7 @@ BlockClass classify(const BlockRecord& record, const CodeTable& codes,
   }
   if (codes.has_jump(record.lower, record.upper)) return {infinite, BlockKind::cells, 0};
   const BlockRoughness::Range range = roughness(record.lower, record.upper);
-  sampled = {float_above(range.of_sample), float_above(range.unevenness),
-             static_cast<float>(range.steps)};
+  sampled = {float_above(range.of_sample), static_cast<float>(range.steps)};
   return {range.roughness, BlockKind::cells, 0};
 }
 

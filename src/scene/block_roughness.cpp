@@ -17,11 +17,22 @@ BlockRoughness::BlockRoughness(const BlockCode& code, const TransferTables& tran
   while ((std::max(code.last - 1, 0) >> shift_) >= most_bins) ++shift_;
   bins_ = static_cast<std::size_t>(std::max(code.last - 1, 0) >> shift_) + 1;
   runs_.emplace_back(bins_);
+  std::vector<Slopes> slopes(bins_);
   parallel(static_cast<int>(bins_), [&](int first, int last) {
     for (int b = first; b < last; ++b) {
-      runs_[0][static_cast<std::size_t>(b)] = make_bin(b, transfer);
+      const auto at = static_cast<std::size_t>(b);
+      runs_[0][at] = make_bin(b, transfer, slopes[at]);
     }
   });
+  before_.resize(bins_ + 1);
+  up_to_.resize(bins_ + 1);
+  for (std::size_t b = 0; b < bins_; ++b) {
+    for (std::size_t c = 0; c < curves; ++c) {
+      const double jump = b == 0 ? 0 : std::abs(slopes[b].first[c] - slopes[b - 1].last[c]);
+      up_to_[b][c] = before_[b][c] + jump;
+      before_[b + 1][c] = up_to_[b][c] + slopes[b].variation[c];
+    }
+  }
   for (std::size_t length = 2; length <= bins_; length *= 2) {
     std::vector<Bin> run(bins_ - length + 1);
     const std::vector<Bin>& half = runs_.back();
@@ -47,7 +58,8 @@ void BlockRoughness::Bin::merge(const Bin& other) noexcept {
   }
 }
 
-BlockRoughness::Bin BlockRoughness::make_bin(int bin, const TransferTables& transfer) const {
+BlockRoughness::Bin BlockRoughness::make_bin(int bin, const TransferTables& transfer,
+                                             Slopes& slopes) const {
   const double lower = code_.value(bin << shift_);
   const double upper = code_.value(std::min((bin + 1) << shift_, code_.last));
   RangeSummary<double> all;
@@ -60,7 +72,7 @@ BlockRoughness::Bin BlockRoughness::make_bin(int bin, const TransferTables& tran
     result.slope = float_above(std::max(std::abs(all.slope_min), std::abs(all.slope_max)));
     result.color_slope = float_above(all.color_slope);
   }
-  find_slopes(transfer.wide, lower, upper, result);
+  find_slopes(transfer.wide, lower, upper, result, slopes);
   const double least[3] = {all.color_min.r, all.color_min.g, all.color_min.b};
   const double most[3] = {all.color_max.r, all.color_max.g, all.color_max.b};
   for (int c = 0; c < 3; ++c) {
@@ -71,12 +83,13 @@ BlockRoughness::Bin BlockRoughness::make_bin(int bin, const TransferTables& tran
 }
 
 void BlockRoughness::find_slopes(const PiecewiseLinear<double>& table, double lower, double upper,
-                                 Bin& bin) const {
+                                 Bin& bin, Slopes& slopes) const {
   bin.most =
       float_above(std::max(table.evaluate(lower).extinction, table.evaluate(upper).extinction));
   std::fill(bin.slope_min, bin.slope_min + curves, std::numeric_limits<float>::infinity());
   std::fill(bin.slope_max, bin.slope_max + curves, -std::numeric_limits<float>::infinity());
   const int last = interval_below(table, upper, table.interval(lower));
+  bool none = true;
   for (int i = table.interval(lower); i <= last; ++i) {
     const Material<double>&a = table.lower_material(i), &b = table.upper_material(i);
     if (i < last) bin.most = std::max(bin.most, float_above(b.extinction));
@@ -87,16 +100,30 @@ void BlockRoughness::find_slopes(const PiecewiseLinear<double>& table, double lo
                                  b.color.g - a.color.g, b.color.b - a.color.b};
     for (std::size_t c = 0; c < curves; ++c) {
       const double slope = inside ? rise[c] / width : 0;
+      if (none) slopes.first[c] = slopes.last[c] = slope;
+      slopes.variation[c] += std::abs(slope - slopes.last[c]);
+      slopes.last[c] = slope;
       bin.slope_min[c] = std::min(bin.slope_min[c], float_below(slope));
       bin.slope_max[c] = std::max(bin.slope_max[c], float_above(slope));
     }
+    none = false;
   }
 }
 
-double BlockRoughness::Bin::change(std::size_t curve, double largest_color) const noexcept {
-  const double range =
-      static_cast<double>(slope_max[curve]) - static_cast<double>(slope_min[curve]);
-  return range > 0 ? range * (curve == 0 ? largest_color : static_cast<double>(most)) : 0;
+double BlockRoughness::Bin::range(std::size_t curve) const noexcept {
+  return std::max(static_cast<double>(slope_max[curve]) - static_cast<double>(slope_min[curve]),
+                  0.0);
+}
+
+double BlockRoughness::Bin::weight(std::size_t curve, double largest_color) const noexcept {
+  return curve == 0 ? largest_color : static_cast<double>(most);
+}
+
+double BlockRoughness::to_and_fro(std::size_t first, std::size_t count, std::size_t curve,
+                                  double range) const noexcept {
+  const double all = before_[first + count][curve];
+  // Sums are rounded; beside slopes that are huge nothing is known of others.
+  return std::max(all - up_to_[first][curve] - range, 0.0) + 1e-12 * all;
 }
 
 BlockRoughness::Bin BlockRoughness::over(std::size_t first, std::size_t count) const noexcept {
@@ -126,24 +153,26 @@ BlockRoughness::Range BlockRoughness::operator()(int lower, int upper) const noe
   range.of_sample = (largest_color_ * slope + color_slope) * rounded;
   // Windows as wide as an eighth, each half-way over the one before.
   constexpr std::size_t parts = 8, windows = 2 * parts - 1;
-  double largest[curves] = {};
+  double largest_to_and_fro[curves] = {};
   const std::size_t width = (count + parts - 1) / parts + 1;
   for (std::size_t w = 0; w < windows; ++w) {
     const std::size_t skipped = w * count / (2 * parts);
-    const Bin some = over(first + skipped, std::min(width, count - skipped));
+    const std::size_t some_count = std::min(width, count - skipped);
+    const Bin some = over(first + skipped, some_count);
     for (std::size_t c = 0; c < curves; ++c) {
-      largest[c] = std::max(largest[c], some.change(c, largest_color_));
+      const double weight = some.weight(c, largest_color_);
+      largest_to_and_fro[c] =
+          std::max(largest_to_and_fro[c],
+                   weight * to_and_fro(first + skipped, some_count, c, some.range(c)));
     }
   }
-  const int end = std::min(static_cast<int>((first + count) << shift_), code_.last);
-  const double eighth = (code_.value(end) - code_.value(static_cast<int>(first << shift_))) / parts;
-  range.unevenness = *std::max_element(largest, largest + curves) * eighth;
   // What changes less may be rounding, and is little beside what bends of the data make.
   const double negligible = 0x1p-4 * range.of_sample;
   range.steps = parts;
   for (std::size_t c = 0; c < curves; ++c) {
-    if (largest[c] > negligible) {
-      range.steps = std::min(range.steps, all.change(c, largest_color_) / largest[c]);
+    if (largest_to_and_fro[c] > negligible) {
+      range.steps = std::min(range.steps,
+                             all.weight(c, largest_color_) * all.range(c) / largest_to_and_fro[c]);
     }
   }
   return range;

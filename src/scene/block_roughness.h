@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -21,10 +22,8 @@ class BlockRoughness {
   struct Range {
     std::uint16_t roughness;
     double of_sample;  ///< SmoothBlocks::roughness
-    /// How much the function's slope changes over an eighth of the range, times that eighth:
-    /// 1/length. What the data change in a cell is no more than that as a rule.
-    double unevenness;
-    /// How many eighths its slopes take to go from the least to the largest, at least.
+    /// By how many times the slopes' range is more than what they go to and fro in an eighth; at
+    /// most 8. Corners at which they change for good are not to and fro.
     double steps;
   };
 
@@ -38,25 +37,36 @@ class BlockRoughness {
   static constexpr std::size_t curves = 4;
 
   /// What bounds need of a transfer function over a range (RangeSummary), rounded outward.
+  struct Slopes {
+    std::array<double, curves> first{}, last{}, variation{};  ///< within a bin; total
+  };
   struct Bin {
     float slope = 0, color_slope = 0;
     float color_min[3], color_max[3];
     float most = 0;                              ///< extinction
     float slope_min[curves], slope_max[curves];  ///< of each curve
     void merge(const Bin& other) noexcept;
-    /// At most how much of a sample's error the slopes' changes account for.
-    double change(std::size_t curve, double largest_color) const noexcept;
+    double range(std::size_t curve) const noexcept;
+    /// What a change of a curve's slope makes of a sample's error, at most.
+    double weight(std::size_t curve, double largest_color) const noexcept;
   };
-  Bin make_bin(int bin, const TransferTables& transfer) const;
-  void find_slopes(const PiecewiseLinear<double>& table, double lower, double upper,
-                   Bin& bin) const;
+  Bin make_bin(int bin, const TransferTables& transfer, Slopes& slopes) const;
+  void find_slopes(const PiecewiseLinear<double>& table, double lower, double upper, Bin& bin,
+                   Slopes& slopes) const;
   Bin over(std::size_t first, std::size_t count) const noexcept;
+  /// What the slopes of a curve go to and fro over `count` bins from `first` on, whose range is
+  /// `range`.
+  double to_and_fro(std::size_t first, std::size_t count, std::size_t curve,
+                    double range) const noexcept;
 
   BlockCode code_;
   double largest_color_;
   int shift_ = 0;  ///< a bin has 2^shift steps of the code
   std::size_t bins_ = 1;
   std::vector<std::vector<Bin>> runs_;  ///< [n][begin]
+  /// The total variation of the slopes up to the begin of a bin, without and with what they change
+  /// by there.
+  std::vector<std::array<double, curves>> before_, up_to_;
 };
 
 }  // namespace pellucid

@@ -36,7 +36,6 @@ struct Group {
       twist[a] = std::max(twist[a], from_upper_half(record.twist[a]));
     }
     sampled.roughness = std::max(sampled.roughness, its.roughness);
-    sampled.unevenness = std::max(sampled.unevenness, its.unevenness);
     sampled.steps = std::min(sampled.steps, its.steps);
   }
 
@@ -58,9 +57,8 @@ struct Group {
 
   /// Of roughness times how much the data bend over a cell.
   double most_bending() const noexcept {
-    return std::hypot(static_cast<double>(sampled.roughness) *
-                          static_cast<double>(std::max({bend[0], bend[1], bend[2]})),
-                      static_cast<double>(sampled.unevenness));
+    return static_cast<double>(sampled.roughness) *
+           static_cast<double>(std::max({bend[0], bend[1], bend[2]}));
   }
 };
 
@@ -107,8 +105,7 @@ SmoothBlocks find_smooth_blocks(const BlockRecords& records,
             classes[b].kind = BlockKind::smooth;
             float* const out = local.data() + fields * static_cast<std::size_t>(b);
             for (std::size_t a = 0; a < 3; ++a) {
-              out[a] =
-                  std::hypot(its.roughness * from_upper_half(records[b].bend[a]), its.unevenness);
+              out[a] = its.roughness * from_upper_half(records[b].bend[a]);
             }
             out[3] = static_cast<float>(1 / longest);
           });

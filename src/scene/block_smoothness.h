@@ -11,7 +11,7 @@ namespace pellucid {
 /// What there is to know of the transfer function over the range of a block, if it may be sampled.
 struct SampledBlock {
   float roughness = -1;  ///< SmoothBlocks::roughness; negative: it may not
-  float unevenness = 0, steps = std::numeric_limits<float>::infinity();  ///< BlockRoughness::Range
+  float steps = std::numeric_limits<float>::infinity();  ///< BlockRoughness::Range
 };
 
 /// Makes those blocks smooth (BlockKind, SmoothBlocks) that are: of those that may be sampled,

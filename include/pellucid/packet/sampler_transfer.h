@@ -16,8 +16,12 @@ struct SamplerTransfer {
   const float* first_line = nullptr;  ///< per bin: the line at its lower edge
   /// Per line: lower, upper, two unused; extinction and color at lower; their slopes.
   const float* lines = nullptr;
+  /// Per bin, and once more, in two numbers that are to be added: of the control points below its
+  /// lower edge the squares, summed, of what their slopes change by: of extinction times the
+  /// largest color, and of colors times the extinction there, largest channel.
+  const float* corners = nullptr;
   float origin = 0, bins_per_value = 0;
-  float bins_end = 0;                      ///< just below their number
+  float bin_count = 0, bins_end = 0;       ///< how many, and just below that
   float support_min = 0, support_max = 0;  ///< nothing absorbs outside; crossed over: nowhere
 
   static constexpr int bin_fields = 8, line_fields = 12;
@@ -44,6 +48,22 @@ Material<Batch<float, N>> material_on_lines(const SamplerTransfer& t, Batch<std:
 }
 
 }  // namespace detail
+
+/// Of the control points between two values, and up to two bins beside, the sum of squares of
+/// SamplerTransfer::corners; at most so much, but for 2^-44 of that of all points below.
+template <int N>
+Batch<float, N> corners_between(const SamplerTransfer& t, Batch<float, N> least,
+                                Batch<float, N> most) noexcept {
+  using F = Batch<float, N>;
+  using I = Batch<std::int32_t, N>;
+  const auto at = [&](F value, float aside) noexcept {
+    const F place = (value - F(t.origin)) * F(t.bins_per_value) + F(aside);
+    return I(2) * convert<std::int32_t>(clamp(place, F(0), F(t.bin_count)));
+  };
+  const I first = at(least, -1), last = at(most, 2);
+  return (gather(t.corners, last) - gather(t.corners, first)) +
+         (gather(t.corners, last + I(1)) - gather(t.corners, first + I(1)));
+}
 
 /// The material at values that are no NaN. Error: 4 u of the largest extinction and color of the
 /// line, beside that of the value's own and what 4 u of the control points' range make.

@@ -108,33 +108,40 @@ class SmoothMarch {
     for (int i = 0; i < 4; ++i) {
       material[i + 1] = material_at(transfer_, select(s.valid, value[i], F(transfer_.support_min)));
     }
+    s.least_variance += of_corners(value, step, s.valid);
     F densest = material[0].extinction;
     for (int i = 1; i < 5; ++i) densest = max(densest, material[i].extinction);
     s.valid = s.valid & (step * densest <= F(deepest));
     s.found = sampled_segment(material, step);
     back_ = material[4];
+    back_value_ = value[3];
     return s;
   }
 
   /// Goes behind the steps of these lanes. `easy`: those which could do with longer ones.
   void take(M lanes, const Steps& s, M easy) noexcept {
     at = select(lanes, select(s.last, end, at + convert<double>(s.length)), at);
-    set_front(lanes, back_);
+    set_front(lanes, back_, back_value_);
     walking = walking & !(lanes & s.last);
     level_ = select(lanes & easy & s.may_be_longer & (level_ > I(0)), level_ - I(1), level_);
   }
 
+  /// Where what is refused may be tried again.
+  D beyond() const noexcept { return min(at + D(16) / convert<double>(cells_per_length_), end); }
+
   /// Shortens the steps of these lanes; of those whose are the shortest returns which they are.
   M finer(M lanes) noexcept {
-    const M finest = lanes & (level_ >= I(levels - 1));
+    const M finest = lanes & (level_ >= I(smooth_.levels - 1));
     level_ = select(lanes & !finest, level_ + I(1), level_);
     return finest;
   }
 
  private:
-  static constexpr int levels = sampled_step_levels, choices = 5;
+  static constexpr int choices = 5, most_levels = most_sampled_step_levels;
   /// The optical depth of a step at most: the rule goes by what is small against 1.
   static constexpr float deepest = 1;
+  /// Of a corner, as mean_square_of_bends() of many; doubled, for `fastest` is a mean over a step.
+  static constexpr float corner = 2 * 38.0f / (9 * 720);
   /// mean_square_of_bend() above which steps are in step with the cells, and by how much shorter
   /// ones are taken then.
   static constexpr float resonant = 0.004f, first_part = 0.62f;
@@ -147,11 +154,12 @@ class SmoothMarch {
     const M vacuum = is_nan(value);
     Material<F> found = material_at(transfer_, select(vacuum, F(transfer_.support_min), value));
     found.extinction = select(vacuum, value, found.extinction);
-    set_front(!known_, found);
+    set_front(!known_, found, value);
     known_ = known_ | walking;
   }
 
-  void set_front(M lanes, const Material<F>& m) noexcept {
+  void set_front(M lanes, const Material<F>& m, F value) noexcept {
+    front_value_ = select(lanes, value, front_value_);
     front_.extinction = select(lanes, m.extinction, front_.extinction);
     front_.color.r = select(lanes, m.color.r, front_.color.r);
     front_.color.g = select(lanes, m.color.g, front_.color.g);
@@ -219,6 +227,24 @@ class SmoothMarch {
     s.may_be_longer = part <= F(0.7071f);
   }
 
+  /// The mean square of what corners of the transfer function make steps err, over where in a step
+  /// they are: each the more, the faster the data pass it. A corner that the data come near to
+  /// between two steps counts as well.
+  F of_corners(const F* value, F step, M lanes) const noexcept {
+    F least = front_value_, most = front_value_, fastest(0), before = front_value_;
+    for (int i = 0; i < 4; ++i) {
+      least = min(least, value[i]);
+      most = max(most, value[i]);
+      fastest = max(fastest, abs(value[i] - before));
+      before = value[i];
+    }
+    const F margin = F(0.5f) * fastest;
+    const F squares = corners_between(transfer_, select(lanes, least - margin, F(0)),
+                                      select(lanes, most + margin, F(0)));
+    const F passed = step * fastest;
+    return F(corner) * (passed * passed) * squares;
+  }
+
   const SamplerTransfer& transfer_;
   const SmoothBlocks& smooth_;
   const PacketGrid<Value>& grid_;
@@ -226,10 +252,11 @@ class SmoothMarch {
   D origin_[3], direction_[3];
   F direction_in_float_[3], cells_per_length_;
   int levels_known_ = 0;
-  F step_[levels], weight_[levels][3];  ///< of each level; those known
+  F step_[most_levels], weight_[most_levels][3];  ///< of each level; those known
   I level_;
   M known_{false};            ///< whether `front_` is that at `at`
   Material<F> front_, back_;  ///< of the steps that were looked at
+  F front_value_{0}, back_value_{0};
 };
 
 }  // namespace pellucid

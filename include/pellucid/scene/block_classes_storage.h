@@ -17,7 +17,7 @@ class BlockClassesStorage {
   BlockClassesStorage() = default;
   /// `largest_color`: that of RayTolerance. In parallel where it is told how.
   /// `most_bending`: blocks are smooth only where SmoothBlocks::roughness times what the data bend
-  /// over a cell, and the transfer function's unevenness, are no more than that; 0: none is.
+  /// over a cell is no more than that; 0: none is.
   BlockClassesStorage(const BlockRecords& records, const TransferTables& transfer,
                       double largest_color, const ParallelFor& parallel = {},
                       double most_bending = 0);

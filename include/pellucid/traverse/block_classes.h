@@ -50,20 +50,17 @@ struct SmoothBlocks {
   double roughness = 0;
   /// Cells; the longest of any block. 0: none is smooth.
   double longest_step = 0;
-  /// Of each block, smooth or not, `fields` numbers: roughness times bend along x, y and z, and
-  /// with it what corners of the transfer function do; and 1 / the longest step, in cells: waves of
-  /// the data are longer than three times that. The largest of all smooth blocks among it and those
-  /// that touch it.
+  /// Of each block, smooth or not, `fields` numbers: roughness times bend along x, y and z; and 1 /
+  /// the longest step, in cells: waves of the data are longer than three times that. The largest of
+  /// all smooth blocks among it and those that touch it.
   const float* local = nullptr;
   static constexpr int fields = 4;
+  /// How many lengths steps may have: longest_step, times √½, a half of it, and so on.
+  int levels = 0;
 };
 /// Cells; half the width of a block.
 inline constexpr double longest_sampled_step = 4;
-/// Their lengths: this one, times √½, a half of it, and so on. The shortest is worth about a cell
-/// that is gone through with a closed form.
-inline constexpr int sampled_step_levels = 11;
-inline constexpr double shortest_sampled_step =
-    longest_sampled_step / (1 << (sampled_step_levels - 1) / 2);
+inline constexpr int most_sampled_step_levels = 11;
 
 /// The classes of a grid's blocks, in the order of BlockRecords. A view; owns nothing. Built by
 /// scene/block_classes_storage.h.
