@@ -74,9 +74,14 @@ class SmoothFrames : public RandomFrames {
     const double e = depth / size;
     return {{-0.1, 0.4 * e, {1, 0.2, 0.1}}, {1.1, 1.6 * e, {0.1, 0.7, 0.9}}};
   }
-  /// A few points, with corners.
+  /// A few points, with corners; some with a steep tooth where there are no data.
   Points corners(double depth, double size) {
     Points points;
+    if (one_of(4)) {
+      const double e = depth / size;
+      points = {
+          {-0.6, 0, {1, 1, 1}}, {-0.6 + power(1e-7, 1e-3), e, {1, 1, 1}}, {-0.5, e, {1, 1, 1}}};
+    }
     double v = uniform(-0.3, 0.3);
     while (v < 1.1) {
       const double e = one_of(4) ? 0 : uniform(0, 2 * depth / size);

@@ -50,7 +50,7 @@ Material<Batch<float, N>> material_on_lines(const SamplerTransfer& t, Batch<std:
 }  // namespace detail
 
 /// Of the control points between two values, and up to two bins beside, the sum of squares of
-/// SamplerTransfer::corners; at most so much, but for 2^-44 of that of all points below.
+/// SamplerTransfer::corners; with 2^-44 of that of all points below, for what their sum has lost.
 template <int N>
 Batch<float, N> corners_between(const SamplerTransfer& t, Batch<float, N> least,
                                 Batch<float, N> most) noexcept {
@@ -61,8 +61,9 @@ Batch<float, N> corners_between(const SamplerTransfer& t, Batch<float, N> least,
     return I(2) * convert<std::int32_t>(clamp(place, F(0), F(t.bin_count)));
   };
   const I first = at(least, -1), last = at(most, 2);
-  return (gather(t.corners, last) - gather(t.corners, first)) +
-         (gather(t.corners, last + I(1)) - gather(t.corners, first + I(1)));
+  const F below = gather(t.corners, last);
+  return (below - gather(t.corners, first)) +
+         (gather(t.corners, last + I(1)) - gather(t.corners, first + I(1))) + F(0x1p-44f) * below;
 }
 
 /// The material at values that are no NaN. Error: 4 u of the largest extinction and color of the
