@@ -45,7 +45,8 @@ double PacketTracer::most_bending(const Volume& volume, const TransferTables& tr
                                   const RayTolerance& wanted) {
   if (wanted.grade == Grade::proved) return 0;
   // What SmoothMarch takes for the least error of its shortest steps, from corner to corner.
-  const double cells = longest_sampled_step * std::exp2(-0.5 * (sampled_step_levels(transfer) - 1));
+  const double shortest = double{sampled_step_share(sampled_step_levels(transfer) - 1)};
+  const double cells = longest_sampled_step * shortest;
   const double step = cells * volume.voxel_size();
   const double one = step * std::sqrt(mean_square_of_bends(cells));
   const double times = diagonal(volume) / (4 * step);

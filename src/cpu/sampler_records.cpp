@@ -111,9 +111,10 @@ void SamplerRecords::add_corners(const PiecewiseLinear<float>& table, int bins, 
     largest_color = std::max(largest_color, double{std::max({c.r, c.g, c.b})});
   }
   const auto square_at = [&](int i) {
-    const auto a = line_of(table, i), b = line_of(table, i + 1);
-    const auto change = [&](std::size_t field) {
-      return std::abs(double{b[field]} - double{a[field]});
+    const float* const behind = lines_.data() + i * SamplerTransfer::line_fields;
+    const float* const ahead = behind + SamplerTransfer::line_fields;
+    const auto change = [&](int field) {
+      return std::abs(double{ahead[field]} - double{behind[field]});
     };
     const double of_colors = std::max({change(9), change(10), change(11)});
     const double all = largest_color * change(8) + double{table.material[i].extinction} * of_colors;

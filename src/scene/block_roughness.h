@@ -36,10 +36,11 @@ class BlockRoughness {
   /// Extinction and the channels of the color.
   static constexpr std::size_t curves = 4;
 
-  /// What bounds need of a transfer function over a range (RangeSummary), rounded outward.
+  /// Of the curves in a bin; `variation` is the total one.
   struct Slopes {
-    std::array<double, curves> first{}, last{}, variation{};  ///< within a bin; total
+    std::array<double, curves> first{}, last{}, variation{};
   };
+  /// What bounds need of a transfer function over a range (RangeSummary), rounded outward.
   struct Bin {
     float slope = 0, color_slope = 0;
     float color_min[3], color_max[3];

@@ -289,10 +289,9 @@ TEST_F(SmoothFrames, BesideVacuumAreWithinWhatTheySay) {
       return empty ? std::numeric_limits<double>::quiet_NaN() : field(x, y, z);
     };
     const auto volume = make_volume({50, across, across}, with_empty_planes);
-    Points points = line(std::pow(10, uniform(-1, 1)), 50);
+    Points points = line(power(0.1, 10), 50);
     points.insert(points.begin(), {-1, uniform(0, 1) < 0.5 ? 0 : 1e-3, {1, 1, 1}});
-    return make_scene(volume, std::move(points), {uniform(-1, 1), uniform(-1, 1), uniform(-1, 1)},
-                      uniform(0, 1) < 0.5);
+    return make_scene(volume, std::move(points), aside(), uniform(0, 1) < 0.5);
   });
   EXPECT_GT(seen.with_strides, seen.frames / 2);
 }

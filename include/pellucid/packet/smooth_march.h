@@ -179,8 +179,8 @@ class SmoothMarch {
   /// The length of steps of a level: a little below the longest, and of those the one whose
   /// variance by length is the least.
   void find_step(int level) noexcept {
-    const float shorter = (level % 2 == 0 ? 1 : 0.7071068f) / static_cast<float>(1 << level / 2);
-    const F longest = F(static_cast<float>(smooth_.longest_step) * shorter) / cells_per_length_;
+    const F longest =
+        F(static_cast<float>(smooth_.longest_step) * sampled_step_share(level)) / cells_per_length_;
     F least(std::numeric_limits<float>::infinity());
     for (int c = 0; c < choices; ++c) {
       // 2^(-c/10)

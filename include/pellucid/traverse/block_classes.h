@@ -55,12 +55,16 @@ struct SmoothBlocks {
   /// all smooth blocks among it and those that touch it.
   const float* local = nullptr;
   static constexpr int fields = 4;
-  /// How many lengths steps may have: longest_step, times √½, a half of it, and so on.
+  /// How many lengths steps may have: longest_step times sampled_step_share() of each.
   int levels = 0;
 };
 /// Cells; half the width of a block.
 inline constexpr double longest_sampled_step = 4;
 inline constexpr int most_sampled_step_levels = 11;
+/// The length of a level's steps, of that of the longest.
+constexpr float sampled_step_share(int level) noexcept {
+  return (level % 2 == 0 ? 1 : 0.7071068f) / static_cast<float>(1 << level / 2);
+}
 
 /// The classes of a grid's blocks, in the order of BlockRecords. A view; owns nothing. Built by
 /// scene/block_classes_storage.h.
