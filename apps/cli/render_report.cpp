@@ -184,6 +184,10 @@ std::vector<std::string> report_lines(const RenderArguments& arguments,
       std::isfinite(report.largest_error) ? fmt::format("{:.3g}", report.largest_error) : "unknown",
       table_text, scene.integration.tolerance, grade_text(scene.integration.grade),
       share_text(report.pixels_proved, report.pixels)));
+  if (report.pixels_between > 0) {
+    lines.back() += fmt::format(", {} interpolated between rays",
+                                share_text(report.pixels_between, report.pixels));
+  }
   std::uint64_t spans = 0;
   for (const NamedCount& rule : by_rule(report.spans)) spans += rule.count;
   std::string line = fmt::format("{:.1f} field evaluations per ray, {}",
@@ -228,6 +232,7 @@ Json report_json(const RenderArguments& arguments, const PreparedScene& prepared
   json["pixels"] = scene.size.width * static_cast<std::int64_t>(scene.size.height);
   json["pixels_proved"] = of_exact(report.pixels_proved);
   json["pixels_over"] = of_exact(report.pixels_over);
+  json["pixels_between"] = of_exact(report.pixels_between);
   json["threads"] = report.threads;
   json["seconds"] = report.seconds;
   json["rays"] = report.rays;

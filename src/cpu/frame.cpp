@@ -22,6 +22,7 @@ double storage_error(double value) {
 Frame::Frame(const Scene& described, const RenderOptions& options, int threads)
     : scene(described),
       camera(make_camera_frame(described.camera, described.size)),
+      tolerance(0),
       reserved(described.transfer_function ? described.transfer_function->approximation_error(
                                                  brightest(described.background))
                                            : 0) {
@@ -30,6 +31,7 @@ Frame::Frame(const Scene& described, const RenderOptions& options, int threads)
   task.wanted.tolerance =
       std::max(integration.tolerance - reserved - storage_error(largest_color(scene)),
                0.25 * integration.tolerance);
+  tolerance = task.wanted.tolerance;
   task.wanted.grade = integration.grade;
   task.wanted.precision = integration.precision;
   task.wanted.largest_color = std::max(largest_color(scene), brightest(scene.background));

@@ -17,7 +17,8 @@ struct Frame {
 
   const Scene& scene;
   CameraFrame<double> camera;
-  double reserved;  ///< of the tolerance: what the transfer function is off by
+  double tolerance;  ///< what rays may be off by
+  double reserved;   ///< of the tolerance: what the transfer function is off by
   std::unique_ptr<const RayTracer> tracer;
 };
 

@@ -33,10 +33,26 @@ struct CellContext {
   const PellucidRay* rays;
 };
 
+/// Whether there is extinction at all control points among the data and at the ends of these.
+bool absorbs_everywhere(const PiecewiseLinear<double>& table, const VolumeStatistics& data) {
+  const auto absorbs = [&](double value) {
+    return table.evaluate(value).extinction > 0;
+  };
+  for (int i = 0; i < table.count; ++i) {
+    const double value = table.value[i];
+    if (value >= data.minimum && value <= data.maximum && !(table.material[i].extinction > 0)) {
+      return false;
+    }
+  }
+  return absorbs(data.minimum) && absorbs(data.maximum);
+}
+
 /// Steps get as short as cells that are gone through with closed forms are worth: half a voxel, or
-/// an eighth where cells are cut at the many points of a table.
-int sampled_step_levels(const TransferTables& transfer) {
-  return transfer.wide.count > 32 ? most_sampled_step_levels : most_sampled_step_levels - 4;
+/// an eighth where cells are cut at the many points of a table and none of them is empty.
+int sampled_step_levels(const Volume& volume, const TransferTables& transfer) {
+  const bool dear =
+      transfer.wide.count > 32 && absorbs_everywhere(transfer.wide, volume.statistics());
+  return dear ? most_sampled_step_levels : most_sampled_step_levels - 4;
 }
 
 }  // namespace
@@ -45,7 +61,7 @@ double PacketTracer::most_bending(const Volume& volume, const TransferTables& tr
                                   const RayTolerance& wanted) {
   if (wanted.grade == Grade::proved) return 0;
   // What SmoothMarch takes for the least error of its shortest steps, from corner to corner.
-  const double shortest = double{sampled_step_share(sampled_step_levels(transfer) - 1)};
+  const double shortest = double{sampled_step_share(sampled_step_levels(volume, transfer) - 1)};
   const double cells = longest_sampled_step * shortest;
   const double step = cells * volume.voxel_size();
   const double one = step * std::sqrt(mean_square_of_bends(cells));
@@ -92,28 +108,38 @@ PacketTracer::PacketTracer(const Volume& volume, const ClassifiedBlocks& blocks,
                          (32 * largest_value(volume) + 8 * range) * smooth.roughness;
   if (job_.sample_rounding * diagonal(volume) <= 0.5 * wanted.tolerance) {
     smooth_ = smooth;
-    smooth_.levels = sampled_step_levels(transfer);
+    smooth_.levels = sampled_step_levels(volume, transfer);
   }
   job_.samples = &samples_.view();
   job_.smooth = &smooth_;
   job_.integrate_cell = &PacketTracer::integrate_cell;
 }
 
-void PacketTracer::trace(const Ray<double>* rays, int count, RayResult* results) const {
+void PacketTracer::trace(const Ray<double>* rays, int count, double share,
+                         RayResult* results) const {
   RayResult clear;
-  clear.error = 0;
+  clear.error = clear.unevenness = 0;
+  clear.longest_step = std::numeric_limits<float>::infinity();
+  clear.by_corners = false;
   clear.proved = true;
   std::fill(results, results + count, clear);
   const PacketRays inside(volume_, rays, count);
   std::vector<PellucidRayResult> found(inside.ray.size());
   PellucidPacketJob job = job_;
+  job.tolerance *= share;
   const CellContext context{this, inside.ray.data()};
   job.rays = inside.ray.data();
   job.results = found.data();
   job.count = static_cast<std::int32_t>(inside.ray.size());
   job.context = &context;
   kernel_(&job);
-  for (std::size_t i = 0; i < found.size(); ++i) read_result(found[i], results[inside.of[i]]);
+  for (std::size_t i = 0; i < found.size(); ++i) {
+    RayResult& to = results[inside.of[i]];
+    read_result(found[i], to);
+    to.unevenness = found[i].unevenness;
+    to.longest_step = found[i].longest_step;
+    to.by_corners = found[i].by_corners != 0;
+  }
 }
 
 void PacketTracer::integrate_cell(const void* context, std::int32_t ray, const PellucidCell* cell,

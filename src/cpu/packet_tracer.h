@@ -38,7 +38,10 @@ class PacketTracer {
 
   /// Rays in grid coordinates, their parameter the world arc length; neighbours are packed
   /// together, and what becomes of a ray does not depend on them. Without half_opacity_depth.
-  void trace(const Ray<double>* rays, int count, RayResult* results) const;
+  /// `share`: of the tolerance, what the rays may be off by.
+  void trace(const Ray<double>* rays, int count, double share, RayResult* results) const;
+  /// Whether smooth blocks are sampled.
+  bool goes_in_steps() const noexcept { return smooth_.longest_step > 0; }
 
  private:
   using Kernel = void (*)(const PellucidPacketJob*);

@@ -44,6 +44,8 @@ void store_pixel(const Frame& frame, const RayResult& result, std::size_t pixel,
 }
 
 void add(RenderReport& sum, const RenderReport& part) {
+  sum.rays += part.rays;
+  sum.pixels_between += part.pixels_between;
   sum.cells += part.cells;
   sum.largest_error = std::max(sum.largest_error, part.largest_error);
   sum.pixels_proved += part.pixels_proved;

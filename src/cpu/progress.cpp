@@ -27,6 +27,14 @@ void Progress::finish_tile(const Tile& tile) {
   }
 }
 
+void Progress::look_up() {
+  if (!options_.progress || cancelled_) return;
+  const std::unique_lock lock(calling_, std::try_to_lock);
+  if (!lock.owns_lock()) return;
+  const double share = static_cast<double>(told_) / static_cast<double>(total_);
+  if (!cancelled_ && !options_.progress(share)) cancelled_ = true;
+}
+
 void Progress::finish() {
   if (!cancelled_) tell();
 }

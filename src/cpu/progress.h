@@ -20,6 +20,8 @@ class Progress {
 
   /// The pixels of the tile are final. Any thread.
   void finish_tile(const Tile& tile);
+  /// Between tiles, for whoever would cancel. Any thread.
+  void look_up();
   /// The last word, when all threads are done, in case one was calling when the last tile was.
   void finish();
   bool cancelled() const noexcept { return cancelled_; }

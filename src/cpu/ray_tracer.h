@@ -2,12 +2,15 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "pellucid/cpu/render.h"
 #include "pellucid/geometry/ray.h"
 #include "pellucid/render/integrate_cell.h"
 #include "pellucid/render/ray_result.h"
+#include "pellucid/scene/volume.h"
+#include "pellucid/traverse/block_classes.h"
 
 namespace pellucid {
 
@@ -21,6 +24,20 @@ class RayTracer {
 
   /// What the rays (in the world, directions of length 1) gather. Safe to call from any thread.
   virtual std::vector<RayResult> trace(const std::vector<Ray<double>>& world) const = 0;
+
+  /// What there is to find out between rays.
+  struct Surroundings {
+    const Volume& volume;
+    const ClassifiedBlocks& blocks;
+    double longest_step;  ///< voxels: how far apart rays may be at most
+  };
+  /// None: nothing is known of what is between rays.
+  virtual std::optional<Surroundings> surroundings() const { return std::nullopt; }
+  /// As trace(), where surroundings() are known, to this share of the tolerance.
+  virtual std::vector<RayResult> trace_to_share(const std::vector<Ray<double>>& world,
+                                                double /*share*/) const {
+    return trace(world);
+  }
 };
 
 /// What is to be followed: a scene that check_method() accepts. It must outlive the tracer; what is

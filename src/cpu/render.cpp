@@ -2,9 +2,11 @@
 #include "pellucid/cpu/render.h"
 
 #include <chrono>
+#include <memory>
 #include <mutex>
 #include <string>
 
+#include "between_pixels.h"
 #include "frame.h"
 #include "pellucid/scene/error.h"
 #include "progress.h"
@@ -47,16 +49,28 @@ void render_tiles(const Frame& frame, const RenderOptions& options, Image& image
   const ImageView view(image);
   std::mutex report_mutex;
   Progress progress(options, image, tiles);
-  take_in_turn(tiles.size(), report.threads, [&](std::size_t i) {
-    RenderReport part;
-    render_tile(frame, tiles[i], view, part);
-    {
-      const std::lock_guard lock(report_mutex);
-      add(report, part);
+  const std::unique_ptr<BetweenPixels> between = BetweenPixels::make(frame, view);
+  const auto render_level = [&](const std::vector<Tile>& some, int level, const auto& finish) {
+    take_in_turn(some.size(), report.threads, [&](std::size_t i) {
+      RenderReport part;
+      render_tile(frame, some[i], level, between.get(), view, part);
+      {
+        const std::lock_guard lock(report_mutex);
+        add(report, part);
+      }
+      finish(some[i]);
+      return !progress.cancelled();
+    });
+  };
+  if (between) {
+    for (int level = between->stride(); level > 1 && between->goes_on(); level /= 2) {
+      render_level(make_lattice(frame.scene.size, level), level,
+                   [&](const Tile&) { progress.look_up(); });
+      if (progress.cancelled()) throw Cancelled();
+      between->finish_level(level);
     }
-    progress.finish_tile(tiles[i]);
-    return !progress.cancelled();
-  });
+  }
+  render_level(tiles, 1, [&](const Tile& tile) { progress.finish_tile(tile); });
   progress.finish();
   if (progress.cancelled()) throw Cancelled();
 }
@@ -71,8 +85,6 @@ Image render(const Scene& scene, const RenderOptions& options, RenderReport* rep
   const Frame frame(scene, options, local.threads);
   Image image = make_image(scene.size, options);
   local.pixels = image.pixels.size();
-  local.rays = local.pixels * static_cast<std::uint64_t>(scene.samples) *
-               static_cast<std::uint64_t>(scene.samples);
   render_tiles(frame, options, image, local);
   local.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   if (report != nullptr) *report = local;

@@ -2,6 +2,7 @@
 #include "render_tile.h"
 
 #include <algorithm>
+#include <limits>
 #include <vector>
 
 #include "tiles.h"
@@ -13,7 +14,9 @@ namespace {
 RayResult mean_of(const RayResult* rays, int count) {
   if (count == 1) return rays[0];
   RayResult mean;
-  mean.error = 0;
+  mean.error = mean.unevenness = 0;
+  mean.by_corners = false;
+  mean.longest_step = std::numeric_limits<float>::infinity();
   mean.proved = true;
   for (int n = 0; n < count; ++n) {
     const RayResult& one = rays[n];
@@ -22,6 +25,9 @@ RayResult mean_of(const RayResult* rays, int count) {
     mean.optical_depth += one.optical_depth;
     mean.half_opacity_depth = std::min(mean.half_opacity_depth, one.half_opacity_depth);
     mean.cells += one.cells;
+    mean.unevenness = std::max(mean.unevenness, one.unevenness);
+    mean.by_corners = mean.by_corners || one.by_corners;
+    mean.longest_step = std::min(mean.longest_step, one.longest_step);
     mean.error += one.error;
     mean.proved = mean.proved && one.proved;
     mean.evaluations += one.evaluations;
@@ -58,10 +64,25 @@ std::vector<Place> places_of(const Tile& tile) {
 
 }  // namespace
 
-void render_tile(const Frame& frame, const Tile& tile, const ImageView& image,
-                 RenderReport& report) {
+void render_tile(const Frame& frame, const Tile& tile, int level, BetweenPixels* between,
+                 const ImageView& image, RenderReport& report) {
   const int samples = frame.scene.samples, rays_of_pixel = samples * samples;
-  const std::vector<Place> places = places_of(tile);
+  const auto finish = [&](const Place& place, const RayResult& result) {
+    store_pixel(frame, result, image.index(place.column, place.row), image, report);
+    if (level > 1) between->keep(place.column, place.row, result);
+  };
+  std::vector<Place> places = places_of(tile);
+  if (between != nullptr && level < between->stride()) {
+    std::erase_if(places, [&](const Place& place) {
+      if (between->is_done(place.column, place.row)) return true;
+      RayResult result;
+      if (!between->goes_on() || !between->find(place.column, place.row, level, result))
+        return false;
+      finish(place, result);
+      ++report.pixels_between;
+      return true;
+    });
+  }
   std::vector<Ray<double>> rays;
   rays.reserve(places.size() * static_cast<std::size_t>(rays_of_pixel));
   for (const Place& place : places) {
@@ -73,11 +94,12 @@ void render_tile(const Frame& frame, const Tile& tile, const ImageView& image,
       }
     }
   }
-  const std::vector<RayResult> results = frame.tracer->trace(rays);
+  const std::vector<RayResult> results =
+      frame.tracer->trace_to_share(rays, between != nullptr ? BetweenPixels::share(level) : 1);
+  report.rays += rays.size();
   const RayResult* of_pixel = results.data();
   for (const Place& place : places) {
-    store_pixel(frame, mean_of(of_pixel, rays_of_pixel), image.index(place.column, place.row),
-                image, report);
+    finish(place, mean_of(of_pixel, rays_of_pixel));
     of_pixel += rays_of_pixel;
   }
 }

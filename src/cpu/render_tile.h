@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "between_pixels.h"
 #include "frame.h"
 #include "pixel.h"
 
@@ -8,7 +9,10 @@ namespace pellucid {
 
 /// Renders the pixels of the tile into the image, and adds them to the report. What a pixel becomes
 /// depends on nothing but the frame and its place: neither on the tile nor on the thread.
-void render_tile(const Frame& frame, const Tile& tile, const ImageView& image,
-                 RenderReport& report);
+///
+/// With `between` these are pixels of its level `level`: all of the coarser ones must be done.
+/// Null: all are traced.
+void render_tile(const Frame& frame, const Tile& tile, int level, BetweenPixels* between,
+                 const ImageView& image, RenderReport& report);
 
 }  // namespace pellucid

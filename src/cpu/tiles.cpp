@@ -68,4 +68,12 @@ std::vector<Tile> make_tiles(ImageSize size, int preview) {
   return tiles;
 }
 
+std::vector<Tile> make_lattice(ImageSize size, int stride) {
+  std::vector<Place> places;
+  add_lattice(size, 0, stride, 0, 0, places);
+  std::vector<Tile> tiles;
+  for (const Place& place : places) tiles.push_back(place.tile);
+  return tiles;
+}
+
 }  // namespace pellucid

@@ -17,6 +17,9 @@ inline constexpr int tile_edge = 16;
 /// data.
 std::vector<Tile> make_tiles(ImageSize size, int preview);
 
+/// Squares of the pixels whose columns and rows are multiples of `stride`.
+std::vector<Tile> make_lattice(ImageSize size, int stride);
+
 inline std::size_t pixel_count(const Tile& tile) {
   return static_cast<std::size_t>(tile.columns) * static_cast<std::size_t>(tile.rows);
 }

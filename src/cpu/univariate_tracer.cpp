@@ -27,14 +27,19 @@ class UnivariateTracer : public RayTracer {
   explicit UnivariateTracer(const TracerTask& task);
 
   std::vector<RayResult> trace(const std::vector<Ray<double>>& world) const override {
+    return trace_to_share(world, 1);
+  }
+  std::optional<Surroundings> surroundings() const override;
+  std::vector<RayResult> trace_to_share(const std::vector<Ray<double>>& world,
+                                        double share) const override {
     std::vector<Ray<double>> rays;
     rays.reserve(world.size());
     for (const Ray<double>& ray : world) rays.push_back(volume_.grid_from_world().ray(ray));
-    return packets_ || sampler_ ? trace_in_packets(rays) : trace_one_by_one(rays);
+    return packets_ || sampler_ ? trace_in_packets(rays, share) : trace_one_by_one(rays);
   }
 
  private:
-  std::vector<RayResult> trace_in_packets(const std::vector<Ray<double>>& rays) const;
+  std::vector<RayResult> trace_in_packets(const std::vector<Ray<double>>& rays, double share) const;
   std::vector<RayResult> trace_one_by_one(const std::vector<Ray<double>>& rays) const;
   template <class Value>
   RayResult trace_one(const StructuredGrid<Value, double>& grid, const Ray<double>& ray) const;
@@ -86,15 +91,23 @@ UnivariateTracer::UnivariateTracer(const TracerTask& task)
   }
 }
 
-std::vector<RayResult> UnivariateTracer::trace_in_packets(
-    const std::vector<Ray<double>>& rays) const {
+std::optional<RayTracer::Surroundings> UnivariateTracer::surroundings() const {
+  // Vacuum ends anywhere between rays; and where half of the opacity is reached goes in leaps.
+  if (!packets_ || !packets_->goes_in_steps() || depth_ || volume_.statistics().nan > 0) {
+    return std::nullopt;
+  }
+  return Surroundings{volume_, *blocks_, block_classes_.smooth().longest_step};
+}
+
+std::vector<RayResult> UnivariateTracer::trace_in_packets(const std::vector<Ray<double>>& rays,
+                                                          double share) const {
   std::vector<RayResult> results(rays.size());
   const int count = static_cast<int>(rays.size());
   if (sampler_) {
     sampler_->trace(rays.data(), count, results.data());
     return results;
   }
-  packets_->trace(rays.data(), count, results.data());
+  packets_->trace(rays.data(), count, share, results.data());
   if (!depth_) return results;
   volume_.visit([&](const auto& grid) {
     for (std::size_t i = 0; i < rays.size(); ++i) {

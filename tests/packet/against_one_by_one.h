@@ -19,6 +19,7 @@ namespace pellucid {
 struct Seen {
   int frames = 0, with_strides = 0;
   std::size_t pixels = 0, over = 0;  ///< compared, and over their tolerance as they say
+  std::size_t between = 0;           ///< that were interpolated
   double largest_of_error = 0;
 };
 
@@ -52,6 +53,7 @@ inline void compare(Scene scene, const std::vector<double>& tolerances, Seen& se
       const Image image = render(scene, options, &report);
       ++seen.frames;
       if (report.spans.strides > 0) ++seen.with_strides;
+      seen.between += report.pixels_between;
       for (std::size_t i = 0; i < image.pixels.size(); ++i) {
         const auto said = static_cast<double>(image.error[i]);
         if (promise == Promise::within_tolerance) {
@@ -95,8 +97,10 @@ Seen compare_random_scenes(int count, const std::vector<double>& tolerances, con
   testing::Test::RecordProperty("largest_error_of_said", std::to_string(seen.largest_of_error));
   if (wanted != nullptr) {
     std::printf(
-        "%d frames, %d with strides; %zu pixels, %zu over; largest error %.3g of what is said\n",
-        seen.frames, seen.with_strides, seen.pixels, seen.over, seen.largest_of_error);
+        "%d frames, %d with strides; %zu pixels, %zu over, %zu between others; largest error %.3g "
+        "of what is said\n",
+        seen.frames, seen.with_strides, seen.pixels, seen.over, seen.between,
+        seen.largest_of_error);
   }
   return seen;
 }

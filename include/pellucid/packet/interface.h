@@ -22,7 +22,8 @@ struct PellucidRayResult {
   double error;
   std::int32_t cells, evaluations;
   std::int32_t skipped, constant, closed, panels, in_double, strides;
-  std::uint8_t proved;
+  float unevenness, longest_step;  ///< of grids' rays
+  std::uint8_t by_corners, proved;
 };
 
 /// A part of a cell that binary32, or the packets' rule, is not good enough for: [from, 1] of the

@@ -77,6 +77,9 @@ class PacketIntegrator {
   void store(PellucidRayResult* results) const noexcept {
     const SegmentResult<D> all = fold_.result();
     const D error = fold_.error(convert<double>(pieces_ + strides_));
+    const F unevenness = smooth_.unevenness(convert<float>(D::load(blocks_.end)));
+    const F longest_step = smooth_.longest_step();
+    const unsigned by_corners = bits(smooth_.by_corners());
     for (int l = 0; l < count_; ++l) {
       PellucidRayResult& r = results[first_ + l];
       r = {{all.radiance.r[l], all.radiance.g[l], all.radiance.b[l]},
@@ -91,6 +94,9 @@ class PacketIntegrator {
            panels_[l],
            in_double_[l],
            strides_[l],
+           unevenness[l],
+           longest_step[l],
+           static_cast<std::uint8_t>(by_corners >> l & 1),
            static_cast<std::uint8_t>(bits(proved_) >> l & 1)};
     }
   }
@@ -197,13 +203,13 @@ class PacketIntegrator {
     const M refused = smooth_.finer(on & !take);
     if (any(refused)) {
       blocks_.go_in_cells(refused, from, smooth_.end);
-      smooth_.walking = smooth_.walking & !refused;
+      smooth_.refuse(refused, steps, transparency);
     }
     if (none(take)) return;
     fold_.add(take, s);
     sampled_.pay(take, fold_.budget, variance, rounding, s.opacity, steps.length, left,
                  transparency);
-    smooth_.take(take, steps, variance <= F(0.2f) * largest);
+    smooth_.take(take, steps, transparency, variance <= F(0.2f) * largest);
     strides_ += select(take, I(1), I(0));
     proved_ = proved_ & !take;
     retire(take);

@@ -39,6 +39,23 @@ class PacketSamples {
     }
   }
 
+  /// Has the data at K world lengths from the anchor, which are wanted soon, loaded into the cache:
+  /// rays beside each other share lines of it, and those far apart wait for memory.
+  template <int K>
+  PELLUCID_ALWAYS_INLINE void load_ahead(const F* offset) const noexcept {
+    Vec3<F> local[K];
+    std::int32_t on[K][N];
+    places_.template find<K>(offset, on, local);
+    asm("" : "+m"(on));
+    const std::ptrdiff_t rows[4] = {0, places_.row, places_.slice, places_.slice + places_.row};
+    for (int k = 0; k < K; ++k) {
+      for (int l = 0; l < N; ++l) {
+        const Value* at = base_[l] + on[k][l];
+        for (const std::ptrdiff_t row : rows) __builtin_prefetch(at + row);
+      }
+    }
+  }
+
  private:
   const PacketGrid<Value>& grid_;
   SamplePlaces<N> places_;

@@ -34,7 +34,8 @@ class SmoothMarch {
       : transfer_(*static_cast<const SamplerTransfer*>(job.samples)),
         smooth_(*static_cast<const SmoothBlocks*>(job.smooth)),
         grid_(grid),
-        samples_(grid) {
+        samples_(grid),
+        negligible_(static_cast<float>(job.tolerance * job.tolerance) * 0x1p-10f) {
     at = end = D(0);
     F square(0);
     for (int a = 0; a < 3; ++a) {
@@ -60,8 +61,10 @@ class SmoothMarch {
     F length;  ///< world length of all four
     M last;    ///< whether they end the stretch
     SampledSegment<F> found;
-    F least_variance;  ///< of the error beside what `found` says
-    M valid;           ///< false: there is vacuum, or a step is too dense, or too long
+    F least_variance;               ///< of the error beside what `found` says
+    F local[SmoothBlocks::fields];  ///< of SmoothBlocks
+    M corners;  ///< whether the data come by corners of the transfer function that count
+    M valid;    ///< false: there is vacuum, or a step is too dense, or too long
     M may_be_longer;
   };
 
@@ -101,6 +104,8 @@ class SmoothMarch {
     F offset[4], value[4];
     for (int i = 0; i < 4; ++i) offset[i] = step * F(static_cast<float>(i + 1));
     samples_.template sample<4>(offset, value);
+    for (int i = 0; i < 4; ++i) offset[i] = step * F(static_cast<float>(i + 5));
+    samples_.template load_ahead<4>(offset);
     s.valid = s.valid & walking &
               !is_nan(((value[0] + value[1]) + (value[2] + value[3])) + front_.extinction);
     Material<F> material[5];
@@ -108,7 +113,9 @@ class SmoothMarch {
     for (int i = 0; i < 4; ++i) {
       material[i + 1] = material_at(transfer_, select(s.valid, value[i], F(transfer_.support_min)));
     }
-    s.least_variance += of_corners(value, step, s.valid);
+    const F variance_of_corners = of_corners(value, step, s.valid);
+    s.corners = variance_of_corners > F(negligible_);
+    s.least_variance += variance_of_corners;
     F densest = material[0].extinction;
     for (int i = 1; i < 5; ++i) densest = max(densest, material[i].extinction);
     s.valid = s.valid & (step * densest <= F(deepest));
@@ -119,15 +126,39 @@ class SmoothMarch {
   }
 
   /// Goes behind the steps of these lanes. `easy`: those which could do with longer ones.
-  void take(M lanes, const Steps& s, M easy) noexcept {
+  void take(M lanes, const Steps& s, F transparency, M easy) noexcept {
+    note(lanes, s, s.length, transparency);
     at = select(lanes, select(s.last, end, at + convert<double>(s.length)), at);
     set_front(lanes, back_, back_value_);
     walking = walking & !(lanes & s.last);
     level_ = select(lanes & easy & s.may_be_longer & (level_ > I(0)), level_ - I(1), level_);
   }
 
-  /// Where what is refused may be tried again.
-  D beyond() const noexcept { return min(at + D(16) / convert<double>(cells_per_length_), end); }
+  /// Leaves what is left of their stretches to others.
+  void refuse(M lanes, const Steps& s, F transparency) noexcept {
+    note(lanes, s, convert<float>(end - at), transparency);
+    walking = walking & !lanes;
+  }
+
+  /// RayResult::unevenness of rays of this length, of what was taken.
+  F unevenness(F length) const noexcept {
+    // Over a whole cell what trilinear data lie off the curve that they follow comes to nothing, up
+    // to how much the bends change within it. What is left is of the cells where a ray begins and
+    // ends, and all of it where it runs along the cells: at most the root of 1/720 of a bend.
+    constexpr float of_ends = 1.5e-4f, of_cell = 1e-6f, along = 1.0f / 720;
+    const F all = max(length, F(std::numeric_limits<float>::min()));
+    F variance(0);
+    for (int a = 0; a < 3; ++a) {
+      const F cells = abs(direction_in_float_[a]) * all;
+      const F across = (F(of_ends) + F(of_cell) * cells) / max(cells * cells, F(1e-12f));
+      variance += bends_[a] * all * min(across, F(along));
+    }
+    return sqrt(variance);
+  }
+  /// RayResult::by_corners, likewise.
+  M by_corners() const noexcept { return by_corners_; }
+  /// RayResult::longest_step, likewise.
+  F longest_step() const noexcept { return F(1) / shortest_wave_; }
 
   /// Shortens the steps of these lanes; of those whose are the shortest returns which they are.
   M finer(M lanes) noexcept {
@@ -145,6 +176,14 @@ class SmoothMarch {
   /// mean_square_of_bend() above which steps are in step with the cells, and by how much shorter
   /// ones are taken then.
   static constexpr float resonant = 0.004f, first_part = 0.62f;
+
+  /// Notes how much the data bend along so much of the lanes' rays.
+  void note(M lanes, const Steps& s, F length, F transparency) noexcept {
+    const F weight = select(lanes, transparency * transparency * length, F(0));
+    for (int a = 0; a < 3; ++a) bends_[a] += weight * (s.local[a] * s.local[a]);
+    shortest_wave_ = max(shortest_wave_, select(lanes, s.local[3], F(0)));
+    by_corners_ = by_corners_ | (lanes & s.corners);
+  }
 
   /// The material where the lanes stand; that of NaN, which is none, in vacuum.
   void find_front() noexcept {
@@ -217,12 +256,11 @@ class SmoothMarch {
       block[a] = convert<std::int32_t>(clamp(place, D(0), D(grid_.blocks[a] - 1)));
     }
     const I index = grid_.index_of_block(block);
-    F local[SmoothBlocks::fields];
-    load_records<SmoothBlocks::fields>(smooth_.local, select(walking, index, I(0)), local);
+    load_records<SmoothBlocks::fields>(smooth_.local, select(walking, index, I(0)), s.local);
     F sum(0);
-    for (int a = 0; a < 3; ++a) sum += weight[a] * (local[a] * local[a]);
+    for (int a = 0; a < 3; ++a) sum += weight[a] * (s.local[a] * s.local[a]);
     s.least_variance = step * step * sum;
-    const F part = step * cells_per_length_ * local[3];
+    const F part = step * cells_per_length_ * s.local[3];
     s.valid = part <= F(1.0001f);
     s.may_be_longer = part <= F(0.7071f);
   }
@@ -249,6 +287,7 @@ class SmoothMarch {
   const SmoothBlocks& smooth_;
   const PacketGrid<Value>& grid_;
   PacketSamples<Value, N> samples_;
+  float negligible_;  ///< variance, of the tolerance divided by 256
   D origin_[3], direction_[3];
   F direction_in_float_[3], cells_per_length_;
   int levels_known_ = 0;
@@ -257,6 +296,10 @@ class SmoothMarch {
   M known_{false};            ///< whether `front_` is that at `at`
   Material<F> front_, back_;  ///< of the steps that were looked at
   F front_value_{0}, back_value_{0};
+  M by_corners_{false};
+  // Of what was taken: squares of roughness times bend along each axis, over length; and the
+  // largest of 1 / the longest step.
+  F bends_[3] = {F(0), F(0), F(0)}, shortest_wave_{0};
 };
 
 }  // namespace pellucid

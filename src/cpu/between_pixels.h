@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <vector>
+
+#include "frame.h"
+#include "pellucid/render/ray_result.h"
+#include "pixel.h"
+#include "screen_mask.h"
+
+namespace pellucid {
+
+/// Pixels that are interpolated between others instead of traced (Levoy 1990, adaptive refinement),
+/// where what they may be off by is known well enough: of a frame whose rays go through smooth
+/// blocks, with other rays so near that no wave of the data fits in between.
+///
+/// Pixels come in levels: every stride()-th along each axis, all of them traced; then those in the
+/// middle between them; and so on. One in the middle is taken from the cubic through the four
+/// pixels of the level before along the axis, or from that of both axes. It is off by
+///
+///   what these four may be off by, times the cubic's weights;
+///   what the cubic errs, for which stand fourth differences of the pixels nearby, the more the
+///     less these are below second ones;
+///   what trilinear data do from cell to cell and rays beside each other do not have in common
+///     (RayResult::unevenness), four standard deviations of it.
+///
+/// An estimate, not a bound. What a pixel becomes depends on nothing but the pixels of the levels
+/// before.
+class BetweenPixels {
+ public:
+  /// Null where all pixels are to be traced.
+  static std::unique_ptr<BetweenPixels> make(const Frame& frame, const ImageView& image);
+
+  int stride() const noexcept { return stride_; }
+  /// To be called when the pixels of a level are done, not the last: finds out on a few pixels
+  /// whether the next one is worth it. Where it is not, all that is left is to be traced.
+  void finish_level(int stride) noexcept;
+  bool goes_on() const noexcept { return goes_on_; }
+  /// Of the tolerance, what rays of this level may be off by, so that there is something left for
+  /// the pixels between them.
+  static double share(int stride) noexcept;
+
+  /// Whether the pixel is one of the levels that are finished.
+  bool is_done(int column, int row) const noexcept {
+    return finished_ > 0 && column % finished_ == 0 && row % finished_ == 0;
+  }
+
+  /// Notes what became of a pixel of a level other than the last.
+  void keep(int column, int row, const RayResult& result) noexcept;
+  /// What is between the pixels of the levels that are finished; false: to be traced.
+  bool find(int column, int row, int stride, RayResult& result) const noexcept;
+
+ private:
+  BetweenPixels(const Frame& frame, const ImageView& image, int stride, double voxels,
+                ScreenMask mask);
+
+  /// Of each second pixel of each second row.
+  struct Known {
+    float error, unevenness, longest_step;
+    bool by_corners;
+  };
+  struct Around;
+  /// What a pixel may be off by.
+  struct Cost {
+    bool known = false;
+    double inherited = 0, cubic = 0, uneven = 0;
+  };
+  /// The pixel, but for its error.
+  Cost look(int column, int row, int stride, RayResult& result) const noexcept;
+
+  std::size_t index(int column, int row) const noexcept {
+    return static_cast<std::size_t>(row / 2) * columns_ + static_cast<std::size_t>(column / 2);
+  }
+
+  const Frame& frame_;
+  ImageView image_;
+  int stride_;
+  int finished_ = 0;  ///< the last level that is; 0: none
+  bool goes_on_ = true;
+  double voxels_;  ///< from pixel to pixel, at most
+  ScreenMask mask_;
+  std::size_t columns_;
+  std::vector<Known> known_;
+};
+
+}  // namespace pellucid

@@ -1,0 +1,141 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "screen_mask.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+
+namespace pellucid {
+namespace {
+
+Vec3<double> plane(const BlockRecords& records, int i, int j, int k) {
+  return {records.axis[0].plane(i), records.axis[1].plane(j), records.axis[2].plane(k)};
+}
+
+double depth_of(const CameraFrame<double>& camera, Vec3<double> world) noexcept {
+  return camera.perspective ? dot(world - camera.position, camera.forward) : 1;
+}
+
+/// Of the grid's box, in the world.
+std::array<Vec3<double>, 8> corners_of(const Volume& volume, const BlockRecords& records) {
+  const Vec3<double> least = plane(records, 0, 0, 0),
+                     most = plane(records, records.axis[0].cells(), records.axis[1].cells(),
+                                  records.axis[2].cells());
+  std::array<Vec3<double>, 8> corner;
+  for (std::size_t n = 0; n < 8; ++n) {
+    corner[n] = volume.world_from_grid().point({(n & 1) != 0 ? most.x : least.x,
+                                                (n & 2) != 0 ? most.y : least.y,
+                                                (n & 4) != 0 ? most.z : least.z});
+  }
+  return corner;
+}
+
+}  // namespace
+
+double farthest_depth(const CameraFrame<double>& camera, const Volume& volume,
+                      const BlockRecords& records) noexcept {
+  double farthest = 0;
+  for (const Vec3<double>& corner : corners_of(volume, records)) {
+    farthest = std::max(farthest, depth_of(camera, corner));
+  }
+  return farthest;
+}
+
+ScreenMask::ScreenMask(const CameraFrame<double>& camera, const Volume& volume,
+                       const ClassifiedBlocks& blocks, int square)
+    : camera_(camera),
+      square_(square),
+      columns_((camera.width + square - 1) / square),
+      rows_((camera.height + square - 1) / square),
+      marked_(static_cast<std::size_t>(columns_) * static_cast<std::size_t>(rows_), 0) {
+  const std::array<Vec3<double>, 8> corner = corners_of(volume, blocks.records);
+  const double farthest = farthest_depth(camera, volume, blocks.records);
+  for (const Vec3<double>& c : corner) {
+    // From inside, or nearly so, there is no saying what is beside what.
+    if (depth_of(camera, c) > 1e-3 * farthest) continue;
+    std::fill(marked_.begin(), marked_.end(), std::uint8_t{1});
+    return;
+  }
+  mark_edges(corner);
+  mark_blocks(volume, blocks);
+}
+
+double ScreenMask::clear_share() const noexcept {
+  const auto clear = std::count(marked_.begin(), marked_.end(), std::uint8_t{0});
+  return static_cast<double>(clear) / static_cast<double>(std::max(marked_.size(), std::size_t{1}));
+}
+
+ScreenMask::Projected ScreenMask::project(Vec3<double> world) const noexcept {
+  const Vec3<double> to = world - camera_.position;
+  const double share = 1 / depth_of(camera_, world);
+  const double right = dot(camera_.right, camera_.right), up = dot(camera_.up, camera_.up);
+  const double x = dot(to, camera_.right) / right * share, y = dot(to, camera_.up) / up * share;
+  const double width = camera_.width / (2.0 * square_), height = camera_.height / (2.0 * square_);
+  return {(x + 1) * width, (1 - y) * height,
+          share * std::max(width / std::sqrt(right), height / std::sqrt(up))};
+}
+
+void ScreenMask::mark(double x0, double y0, double x1, double y1, int around) noexcept {
+  const auto within = [](double place, int count) {
+    return static_cast<int>(std::clamp(std::floor(place), -1.0, static_cast<double>(count)));
+  };
+  const int left = std::max(within(x0, columns_) - around, 0),
+            right = std::min(within(x1, columns_) + around, columns_ - 1),
+            top = std::max(within(y0, rows_) - around, 0),
+            bottom = std::min(within(y1, rows_) + around, rows_ - 1);
+  for (int y = top; y <= bottom; ++y) {
+    for (int x = left; x <= right; ++x) marked_[index(x, y)] = 1;
+  }
+}
+
+void ScreenMask::mark_edges(const std::array<Vec3<double>, 8>& corner) noexcept {
+  for (std::size_t n = 0; n < 8; ++n) {
+    for (std::size_t bit = 1; bit < 8; bit *= 2) {
+      if ((n & bit) != 0) continue;
+      const Projected from = project(corner[n]), to = project(corner[n + bit]);
+      const double length = std::hypot(to.x - from.x, to.y - from.y);
+      // What is far outside of the image is not gone along.
+      const double most = 16.0 * (columns_ + rows_);
+      const int steps = static_cast<int>(std::ceil(std::min(2 * length, most)));
+      if (2 * length > most) {
+        std::fill(marked_.begin(), marked_.end(), std::uint8_t{1});
+        return;
+      }
+      for (int i = 0; i <= steps; ++i) {
+        const double t = steps > 0 ? static_cast<double>(i) / steps : 0;
+        const double x = from.x + t * (to.x - from.x), y = from.y + t * (to.y - from.y);
+        mark(x, y, x, y, 1);
+      }
+    }
+  }
+}
+
+void ScreenMask::mark_blocks(const Volume& volume, const ClassifiedBlocks& blocks) noexcept {
+  const BlockRecords& records = blocks.records;
+  const Affine<double>& world = volume.world_from_grid();
+  const Vec3<double> first = plane(records, 0, 0, 0), second = plane(records, 1, 1, 1),
+                     width = second - first;
+  double radius = 0;
+  for (int n = 0; n < 4; ++n) {
+    const Vec3<double> half =
+        world.vector({0.5 * width.x, (n & 1) != 0 ? -0.5 * width.y : 0.5 * width.y,
+                      (n & 2) != 0 ? -0.5 * width.z : 0.5 * width.z});
+    radius = std::max(radius, std::sqrt(dot(half, half)));
+  }
+  for (int k = 0; k < records.axis[2].cells(); ++k) {
+    for (int j = 0; j < records.axis[1].cells(); ++j) {
+      for (int i = 0; i < records.axis[0].cells(); ++i) {
+        if (blocks.classes[records.index(i, j, k)].kind != BlockKind::cells) continue;
+        const Vec3<double> middle =
+            world.point((plane(records, i, j, k) + plane(records, i + 1, j + 1, k + 1)) * 0.5);
+        // Twice, for what perspective makes of what is nearer than the middle.
+        const Projected p = project(middle);
+        const double aside = (camera_.perspective ? 2 : 1) * radius * p.scale;
+        mark(p.x - aside, p.y - aside, p.x + aside, p.y + aside, 2);
+      }
+    }
+  }
+}
+
+}  // namespace pellucid

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "pellucid/render/camera.h"
+#include "pellucid/scene/volume.h"
+#include "pellucid/traverse/block_classes.h"
+
+namespace pellucid {
+
+/// How far the volume reaches from the eye, along the camera's axis; with parallel rays 1.
+double farthest_depth(const CameraFrame<double>& camera, const Volume& volume,
+                      const BlockRecords& records) noexcept;
+
+/// Where on the screen rays may be unlike those beside them: where one goes through a block that is
+/// gone through cell by cell, or past an edge of the volume's box. In squares of pixels, each
+/// marked together with those around it: rays through a square that is not have all between them
+/// in blocks that are smooth, of one material, or empty.
+class ScreenMask {
+ public:
+  /// `square`: pixels.
+  ScreenMask(const CameraFrame<double>& camera, const Volume& volume,
+             const ClassifiedBlocks& blocks, int square);
+
+  bool marked(int column, int row) const noexcept {
+    return marked_[index(column / square_, row / square_)] != 0;
+  }
+  /// The share of the squares that are not marked.
+  double clear_share() const noexcept;
+
+ private:
+  /// In squares, and how many of them a world length is there at most.
+  struct Projected {
+    double x, y, scale;
+  };
+  Projected project(Vec3<double> world) const noexcept;
+  void mark(double x0, double y0, double x1, double y1, int around) noexcept;
+  void mark_edges(const std::array<Vec3<double>, 8>& corner) noexcept;
+  void mark_blocks(const Volume& volume, const ClassifiedBlocks& blocks) noexcept;
+  std::size_t index(int x, int y) const noexcept {
+    return static_cast<std::size_t>(y) * static_cast<std::size_t>(columns_) +
+           static_cast<std::size_t>(x);
+  }
+
+  const CameraFrame<double>& camera_;
+  int square_, columns_, rows_;
+  std::vector<std::uint8_t> marked_;
+};
+
+}  // namespace pellucid

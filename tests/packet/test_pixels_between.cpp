@@ -1,0 +1,211 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <iterator>
+#include <limits>
+#include <numbers>
+#include <utility>
+#include <vector>
+
+#include "pellucid/cpu/render.h"
+#include "tests/packet/against_one_by_one.h"
+#include "tests/packet/smooth_frames.h"
+
+namespace pellucid {
+namespace {
+
+/// Smooth scenes seen so closely that pixels lie between others.
+class PixelsBetween : public SmoothFrames {
+ protected:
+  /// Looks at some place of the scene from nearby, so many voxels from pixel to pixel.
+  void zoom(Scene& scene, double voxels) {
+    scene.size = {44 + static_cast<int>(random_() % 9), 44 + static_cast<int>(random_() % 9)};
+    Camera& camera = scene.camera;
+    const double far = length(camera.position - camera.focal_point),
+                 half = 0.5 * voxels * scene.size.height * scene.volume->voxel_size();
+    if (camera.projection == Projection::orthographic) {
+      camera.parallel_scale = half;
+    } else {
+      camera.vertical_angle = 2 * std::atan(half / far) * 180 / std::numbers::pi;
+    }
+    const Vec3<double> aside = {uniform(-1, 1), uniform(-1, 1), uniform(-1, 1)};
+    camera.position = camera.position + aside * (0.15 * far);
+    camera.focal_point = camera.focal_point + aside * (0.15 * far);
+  }
+
+  std::array<int, 3> values() {
+    const auto size = [&] { return static_cast<int>(uniform(24, 60)); };
+    return {size(), size(), size()};
+  }
+
+  Scene of_waves() {
+    const auto volume =
+        make_volume(values(), waves(1 + static_cast<int>(uniform(0, 4)), power(9, 40)),
+                    {uniform(0.7, 1.4), uniform(0.7, 1.4), uniform(0.7, 1.4)});
+    const double depth = power(0.1, 10);
+    const bool oblique = !one_of(3);
+    Scene scene =
+        make_scene(volume, one_of(2) ? line(depth, 40) : table(depth, 40),
+                   oblique ? aside() : directions[random_() % std::size(directions)], one_of(2));
+    zoom(scene, power(0.05, 1.5));
+    return scene;
+  }
+};
+
+const std::vector<double> tolerances{3e-2, 1e-2, 1.0 / 512, 4e-4};
+
+TEST_F(PixelsBetween, AreWithinWhatTheySay) {
+  const Seen seen = compare_random_scenes(30, tolerances, [&](unsigned seed) {
+    random_.seed(seed);
+    return of_waves();
+  });
+  EXPECT_GT(seen.between, static_cast<std::size_t>(seen.frames) * 100U);
+}
+
+TEST_F(PixelsBetween, OfQuadraticsAreWithinWhatTheySay) {
+  // What trilinear data are off by has one sign everywhere.
+  const Seen seen = compare_random_scenes(30, tolerances, [&](unsigned seed) {
+    random_.seed(seed);
+    const std::array<int, 3> size = values();
+    const auto share = [&] { return one_of(3) ? 0 : uniform(-1, 1); };
+    const Vec3<double> k{share(), share(), share()};
+    const auto volume = make_volume(size, [=](double x, double y, double z) {
+      x = 2 * x / size[0] - 1;
+      y = 2 * y / size[1] - 1;
+      z = 2 * z / size[2] - 1;
+      return 0.5 + 0.3 * (k.x * x * x + k.y * y * y + k.z * z * z);
+    });
+    Scene scene =
+        make_scene(volume, line(power(0.3, 10), size[0]),
+                   one_of(2) ? aside() : directions[random_() % std::size(directions)], one_of(2));
+    zoom(scene, power(0.05, 1.5));
+    return scene;
+  });
+  EXPECT_GT(seen.between, static_cast<std::size_t>(seen.frames) * 100U);
+}
+
+TEST_F(PixelsBetween, BehindCornersAreWithinWhatTheySay) {
+  // Tops of waves that rise above where it begins to absorb lie between pixels.
+  const Seen seen = compare_random_scenes(40, tolerances, [&](unsigned seed) {
+    random_.seed(seed);
+    const std::array<int, 3> size = values();
+    const auto volume = make_volume(size, waves(1 + static_cast<int>(uniform(0, 3)), power(9, 200)),
+                                    {uniform(0.7, 1.4), uniform(0.7, 1.4), uniform(0.7, 1.4)});
+    Scene scene =
+        make_scene(volume, corners(power(0.1, 10), size[0]),
+                   one_of(3) ? directions[random_() % std::size(directions)] : aside(), one_of(2));
+    zoom(scene, power(0.05, 1.5));
+    return scene;
+  });
+  EXPECT_GT(seen.between, static_cast<std::size_t>(seen.frames) * 100U);
+}
+
+TEST_F(PixelsBetween, BesideThinLayersAndHolesAreWithinWhatTheySay) {
+  // Blocks that are gone through cell by cell, a few of them, among smooth ones.
+  const Seen seen = compare_random_scenes(30, tolerances, [&](unsigned seed) {
+    random_.seed(seed);
+    const std::array<int, 3> size = values();
+    const Field field = waves(1 + static_cast<int>(uniform(0, 3)), power(15, 200));
+    const Vec3<double> odd{uniform(0, size[0]), uniform(0, size[1]), uniform(0, size[2])};
+    const bool hole = one_of(3);
+    const double radius = uniform(0.5, 3), more = uniform(0.1, 2);
+    const auto volume = make_volume(size, [=](double x, double y, double z) {
+      const bool inside = length(Vec3<double>{x, y, z} - odd) < radius;
+      if (inside && hole) return std::numeric_limits<double>::quiet_NaN();
+      return field(x, y, z) + (inside ? more : 0);
+    });
+    Points points = line(power(0.1, 10), size[0]);
+    points.push_back({1.15, power(0.01, 10), {0.3, 1, 0.4}});
+    points.push_back({4, power(0.01, 10), {1, 1, 0.4}});
+    Scene scene = make_scene(volume, std::move(points), aside(), one_of(2));
+    zoom(scene, power(0.05, 1.5));
+    return scene;
+  });
+  EXPECT_GT(seen.between, static_cast<std::size_t>(seen.frames) * 20U);
+}
+
+TEST_F(PixelsBetween, AreTheSameForAnyThreadsAndTiles) {
+  random_.seed(5);
+  const auto volume = make_volume({40, 36, 40}, waves(2, 20), {1, 0.8, 1.3});
+  Scene scene = make_scene(volume, table(2, 40), {0.6, 0.5, -0.4}, false);
+  zoom(scene, 0.4);
+  scene.size = {150, 83};
+  scene.integration.tolerance = 1e-2;
+  for (const int samples : {1, 2}) {
+    scene.samples = samples;
+    RenderOptions options;
+    options.error = true;
+    options.threads = 1;
+    RenderReport report;
+    const Image whole = render(scene, options, &report);
+    const std::uint64_t rays_of_pixel = static_cast<std::uint64_t>(samples * samples);
+    EXPECT_GT(report.pixels_between, report.pixels / 4);
+    EXPECT_EQ(report.rays, (report.pixels - report.pixels_between) * rays_of_pixel);
+    EXPECT_LE(report.largest_error, 1e-2);
+    options.threads = 3;
+    for (const int preview : {0, 1, 3}) {
+      options.preview = preview;
+      std::uint64_t of_tiles = 0;
+      options.tile = [&](const TileResult& result) {
+        of_tiles += static_cast<std::uint64_t>(result.tile.columns * result.tile.rows);
+        return true;
+      };
+      const Image other = render(scene, options);
+      EXPECT_EQ(whole.pixels, other.pixels);
+      EXPECT_EQ(whole.error, other.error);
+      EXPECT_EQ(of_tiles, report.pixels);
+    }
+  }
+}
+
+TEST_F(PixelsBetween, AreNoneWhereTheyAreNotWanted) {
+  random_.seed(5);
+  const Field field = waves(2, 20);
+  Scene scene = make_scene(make_volume({40, 36, 40}, field), line(2, 40), {0.6, 0.5, -0.4}, true);
+  zoom(scene, 0.4);
+  RenderOptions options;
+  const auto between = [&](const Scene& of) {
+    RenderReport report;
+    render(of, options, &report);
+    EXPECT_EQ(report.rays + report.pixels_between, report.pixels);
+    return report.pixels_between;
+  };
+  EXPECT_GT(between(scene), 0u);
+  Scene proved = scene;
+  proved.integration.grade = Grade::proved;
+  EXPECT_EQ(between(proved), 0u);
+  Scene far = scene;
+  far.camera.parallel_scale *= 10;  // many voxels from pixel to pixel
+  EXPECT_EQ(between(far), 0u);
+  Scene hole = scene;
+  hole.volume = make_volume({40, 36, 40}, [&](double x, double y, double z) {
+    return x + y + z > 0 ? field(x, y, z) : std::numeric_limits<double>::quiet_NaN();
+  });
+  EXPECT_EQ(between(hole), 0u);
+  options.depth = true;
+  EXPECT_EQ(between(scene), 0u);
+}
+
+TEST_F(PixelsBetween, CanBeCancelled) {
+  random_.seed(5);
+  Scene scene =
+      make_scene(make_volume({40, 36, 40}, waves(2, 20)), line(2, 40), {0.6, 0.5, -0.4}, true);
+  zoom(scene, 0.2);
+  scene.size = {200, 200};
+  RenderOptions options;
+  options.threads = 2;
+  int calls = 0;
+  options.progress = [&](double share) {
+    EXPECT_EQ(share, 0) << "while the first level is rendered";
+    return ++calls < 3;
+  };
+  EXPECT_THROW(render(scene, options), Cancelled);
+  EXPECT_EQ(calls, 3);
+}
+
+}  // namespace
+}  // namespace pellucid
