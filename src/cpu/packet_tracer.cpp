@@ -35,9 +35,7 @@ struct CellContext {
 
 /// Whether there is extinction at all control points among the data and at the ends of these.
 bool absorbs_everywhere(const PiecewiseLinear<double>& table, const VolumeStatistics& data) {
-  const auto absorbs = [&](double value) {
-    return table.evaluate(value).extinction > 0;
-  };
+  const auto absorbs = [&](double value) { return table.evaluate(value).extinction > 0; };
   for (int i = 0; i < table.count; ++i) {
     const double value = table.value[i];
     if (value >= data.minimum && value <= data.maximum && !(table.material[i].extinction > 0)) {
