@@ -14,22 +14,20 @@ namespace pellucid {
 namespace {
 
 constexpr int largest_stride = 16;
+/// From one side of the image to the other, of pixels of the first level.
+constexpr int least_cells = 8;
 /// Of the distance at which rays show all that is between them.
 constexpr double most_of_step = 0.9;
-/// Of fourth and second differences of pixels what the cubic may err. It errs 3/128 of the fourth
-/// where they say all, and 0.07 where a surface that begins to absorb is seen edge on, where pixels
-/// go with the power 3/2. Fourth differences as large as second ones are those of six pixels to a
-/// wave or fewer: over random scenes it erred up to 0.22 of them then.
-constexpr double of_fourth = 0.05, of_unresolved = 0.3, of_second = 0.006;
-/// What may lie between pixels where waves of the data just reach a corner of the transfer
-/// function.
-constexpr double at_corners = 1.5;
+/// Of fourth and second differences of pixels what the cubic may err: 3/128 of the fourth where
+/// they say all, 0.22 in waves as short as random scenes had them, and 0.375 where there is a kink
+/// between pixels; second ones for what of a kink's the others have taken away.
+constexpr double of_fourth = 0.38, of_second = 0.02;
 /// At smaller tolerances few pixels pass, and those that they are taken from cost more.
 constexpr double least_tolerance = 8e-4;
 /// What is tried of a level: every so-manieth pixel each way. Less than that share of them, and
 /// tracing the others to smaller tolerances costs more than it saves.
-constexpr int apart_of_tried = 3, least_tried = 8;
-constexpr double least_found = 0.1;
+constexpr int apart_of_tried = 3;
+constexpr double least_found = 0.25;
 /// Where less of the screen is clear, tracing to smaller tolerances costs more than it saves.
 constexpr double least_clear_share = 1.0 / 16;
 
@@ -37,49 +35,63 @@ constexpr double least_clear_share = 1.0 / 16;
 constexpr std::array<double, 4> weight{-1.0 / 16, 9.0 / 16, 9.0 / 16, -1.0 / 16};
 constexpr double sum_of_weights = 1.25;
 
-/// Of six pixels in a row.
-struct Differences {
-  float second = 0, fourth = 0;
-
-  void add(const std::array<const std::array<float, 4>*, 6>& p) noexcept {
-    for (std::size_t c = 0; c < 4; ++c) {
-      const auto v = [&](std::size_t i) { return (*p[i])[c]; };
-      const auto fourth_at = [&](std::size_t i) {
-        return (v(i - 2) - v(i - 1)) + (v(i + 2) - v(i + 1)) -
-               3 * ((v(i - 1) - v(i)) + (v(i + 1) - v(i)));
-      };
-      second = std::max({second, std::fabs((v(1) - v(2)) + (v(3) - v(2))),
-                         std::fabs((v(2) - v(3)) + (v(4) - v(3)))});
-      fourth = std::max({fourth, std::fabs(fourth_at(2)), std::fabs(fourth_at(3))});
-    }
+/// What the cubic errs in the middle of six pixels in a row, the largest of the channels.
+double error_of_cubic(const std::array<const std::array<float, 4>*, 6>& p) noexcept {
+  double most = 0;
+  for (std::size_t c = 0; c < 4; ++c) {
+    const auto second = [&](std::size_t i) {
+      return ((*p[i - 1])[c] - (*p[i])[c]) + ((*p[i + 1])[c] - (*p[i])[c]);
+    };
+    const float s[4] = {second(1), second(2), second(3), second(4)};
+    const float fourth = std::max(std::fabs((s[0] - s[1]) + (s[2] - s[1])),
+                                  std::fabs((s[1] - s[2]) + (s[3] - s[2])));
+    const float at_middle = std::max(std::fabs(s[1]), std::fabs(s[2]));
+    most = std::max(
+        most, of_fourth * static_cast<double>(fourth) + of_second * static_cast<double>(at_middle));
   }
-  double error(bool by_corners) const noexcept {
-    const double f = static_cast<double>(fourth), s = static_cast<double>(second);
-    const double share = std::min(f / std::max(s, 1e-30), 1.0);
-    const double unresolved = (by_corners ? at_corners : 1) * of_unresolved * share * share;
-    return (of_fourth + unresolved) * f + of_second * s;
-  }
-};
+  return most;
+}
 
 /// Of the tolerance, what a pixel of a level may be off by if those between are taken from it.
 double allowed(int stride) noexcept {
   return stride == 1 ? 1 : stride == 2 ? 0.6 : 0.3;
 }
 
-/// From pixel to pixel, at most, in the narrowest of the widths of a cell.
+/// How many cells a world length takes at most, in any direction: the largest singular value of the
+/// map, for cells may be sheared.
+double cells_by_length(const Volume& volume, Vec3<double> width) noexcept {
+  const auto to_cells = [&](Vec3<double> world) {
+    const Vec3<double> grid = volume.grid_from_world().vector(world);
+    return Vec3<double>{grid.x / width.x, grid.y / width.y, grid.z / width.z};
+  };
+  const Vec3<double> x = to_cells({1, 0, 0}), y = to_cells({0, 1, 0}), z = to_cells({0, 0, 1});
+  // Powers of the matrix of products: its trace lies between the largest and three times that.
+  double m[3][3] = {{dot(x, x), dot(x, y), dot(x, z)},
+                    {dot(y, x), dot(y, y), dot(y, z)},
+                    {dot(z, x), dot(z, y), dot(z, z)}};
+  double log_of_scale = 0, power = 1;
+  for (int n = 0; n < 6; ++n) {
+    const double trace = m[0][0] + m[1][1] + m[2][2];
+    double square[3][3] = {};
+    for (int i = 0; i < 3; ++i) {
+      for (int j = 0; j < 3; ++j) {
+        for (int k = 0; k < 3; ++k) square[i][j] += m[i][k] * m[k][j] / (trace * trace);
+      }
+    }
+    log_of_scale = 2 * (log_of_scale + std::log(trace));
+    power *= 2;
+    std::copy(&square[0][0], &square[0][0] + 9, &m[0][0]);
+  }
+  const double trace = m[0][0] + m[1][1] + m[2][2];
+  return std::exp(0.5 * (log_of_scale + std::log(trace)) / power);
+}
+
+/// From pixel to pixel, at most.
 double voxels_between_pixels(const CameraFrame<double>& camera, const Volume& volume,
                              const BlockRecords& records, double farthest) {
   const double across = 2 * std::sqrt(dot(camera.right, camera.right)) / camera.width,
                down = 2 * std::sqrt(dot(camera.up, camera.up)) / camera.height;
-  const Affine<double>& world = volume.world_from_grid();
-  const Vec3<double> along[3] = {world.vector({records.mean_width.x, 0, 0}),
-                                 world.vector({0, records.mean_width.y, 0}),
-                                 world.vector({0, 0, records.mean_width.z})};
-  double narrowest = std::numeric_limits<double>::infinity();
-  for (const Vec3<double>& cell : along) {
-    narrowest = std::min(narrowest, std::sqrt(dot(cell, cell)));
-  }
-  return std::max(across, down) * farthest / narrowest;
+  return std::max(across, down) * farthest * cells_by_length(volume, records.mean_width);
 }
 
 }  // namespace
@@ -90,8 +102,9 @@ std::unique_ptr<BetweenPixels> BetweenPixels::make(const Frame& frame, const Ima
   const BlockRecords& records = around->blocks.records;
   const double voxels = voxels_between_pixels(
       frame.camera, around->volume, records, farthest_depth(frame.camera, around->volume, records));
+  const int smaller_side = std::min(frame.scene.size.width, frame.scene.size.height);
   int stride = 1;
-  while (2 * stride <= largest_stride &&
+  while (2 * stride <= largest_stride && least_cells * 2 * stride <= smaller_side &&
          2 * stride * voxels <= most_of_step * around->longest_step) {
     stride *= 2;
   }
@@ -120,7 +133,7 @@ void BetweenPixels::keep(int column, int row, const RayResult& result) noexcept 
   const bool known = result.unevenness >= 0;  // and no NaN
   known_[index(column, row)] = {float_above(result.error),
                                 known ? result.unevenness : std::numeric_limits<float>::infinity(),
-                                result.longest_step, result.by_corners};
+                                result.longest_step};
 }
 
 /// The pixels of a lattice around one between them.
@@ -155,11 +168,12 @@ void BetweenPixels::finish_level(int stride) noexcept {
       if (!cost.known) continue;
       ++tried;
       // A level further on there is a sixteenth of what the cubic errs.
-      const double then = cost.inherited + cost.cubic * (1.0 / 16) + cost.uneven;
+      const double cubic = cost.cubic * (next > 1 ? 1.0 / 16 : 1);
+      const double then = cost.inherited + cubic + cost.uneven;
       if (then <= allowed(next) * frame_.tolerance) ++found;
     }
   }
-  goes_on_ = tried < least_tried || found >= least_found * tried;
+  goes_on_ = found > 0 && found >= least_found * tried;
 }
 
 bool BetweenPixels::find(int column, int row, int stride, RayResult& result) const noexcept {
@@ -178,7 +192,6 @@ BetweenPixels::Cost BetweenPixels::look(int column, int row, int stride,
 
   // The cubic, and what its pixels are off by.
   std::array<double, 4> found{};
-  bool by_corners = false;
   double inherited = 0, unevenness = 0, brightest = 0,
          longest = std::numeric_limits<double>::infinity();
   for (int j = down ? 0 : 1; j < (down ? 4 : 2); ++j) {
@@ -194,28 +207,30 @@ BetweenPixels::Cost BetweenPixels::look(int column, int row, int stride,
       inherited += std::fabs(w) * static_cast<double>(known.error);
       unevenness = std::max(unevenness, static_cast<double>(known.unevenness));
       longest = std::min(longest, static_cast<double>(known.longest_step));
-      by_corners = by_corners || known.by_corners;
     }
   }
   // What is clear is traced for next to nothing, and known for sure then.
-  if (!(brightest > 0) || !(before * voxels_ <= most_of_step * longest)) return {};
+  if (!(brightest > 0) || !(found[3] > 0)) return {};
+  if (!(before * voxels_ <= most_of_step * longest)) {
+    return {true, std::numeric_limits<double>::infinity(), 0, 0};
+  }
 
-  // Second differences across the middle, and fourth ones, the most of those around.
-  Differences of_columns, of_rows;
+  double of_columns = 0, of_rows = 0;
   if (across) {
     for (int j = -1; j <= (down ? 2 : 1); ++j) {
-      of_columns.add({&around.value(-2, j), &around.value(-1, j), &around.value(0, j),
-                      &around.value(1, j), &around.value(2, j), &around.value(3, j)});
+      of_columns = std::max(of_columns, error_of_cubic({&around.value(-2, j), &around.value(-1, j),
+                                                        &around.value(0, j), &around.value(1, j),
+                                                        &around.value(2, j), &around.value(3, j)}));
     }
   }
   if (down) {
     for (int i = -1; i <= (across ? 2 : 1); ++i) {
-      of_rows.add({&around.value(i, -2), &around.value(i, -1), &around.value(i, 0),
-                   &around.value(i, 1), &around.value(i, 2), &around.value(i, 3)});
+      of_rows = std::max(
+          of_rows, error_of_cubic({&around.value(i, -2), &around.value(i, -1), &around.value(i, 0),
+                                   &around.value(i, 1), &around.value(i, 2), &around.value(i, 3)}));
     }
   }
-  const double cubic = (across && down ? sum_of_weights : 1) *
-                       (of_columns.error(by_corners) + of_rows.error(by_corners));
+  const double cubic = (across && down ? sum_of_weights : 1) * (of_columns + of_rows);
   // Its own unevenness, and that of those which it is taken from: 1 and at most 0.64 of variance.
   const double uneven = 1.3 * RandomErrors<double>::deviations * unevenness;
   result = {};
@@ -223,7 +238,6 @@ BetweenPixels::Cost BetweenPixels::look(int column, int row, int stride,
   result.opacity = std::clamp(found[3], 0.0, 1.0);
   result.unevenness = static_cast<float>(unevenness);
   result.longest_step = static_cast<float>(longest);
-  result.by_corners = by_corners;
   return {true, inherited + 4 * 0x1p-24 * brightest, cubic, uneven};
 }
 

@@ -21,8 +21,8 @@ namespace pellucid {
 /// pixels of the level before along the axis, or from that of both axes. It is off by
 ///
 ///   what these four may be off by, times the cubic's weights;
-///   what the cubic errs, for which stand fourth differences of the pixels nearby, the more the
-///     less these are below second ones;
+///   what the cubic errs, for which stand fourth differences of the pixels nearby, so many times
+///     that it holds for a kink between any two of them;
 ///   what trilinear data do from cell to cell and rays beside each other do not have in common
 ///     (RayResult::unevenness), four standard deviations of it.
 ///
@@ -59,7 +59,6 @@ class BetweenPixels {
   /// Of each second pixel of each second row.
   struct Known {
     float error, unevenness, longest_step;
-    bool by_corners;
   };
   struct Around;
   /// What a pixel may be off by.

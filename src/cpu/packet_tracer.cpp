@@ -118,7 +118,6 @@ void PacketTracer::trace(const Ray<double>* rays, int count, double share,
   RayResult clear;
   clear.error = clear.unevenness = 0;
   clear.longest_step = std::numeric_limits<float>::infinity();
-  clear.by_corners = false;
   clear.proved = true;
   std::fill(results, results + count, clear);
   const PacketRays inside(volume_, rays, count);
@@ -136,7 +135,6 @@ void PacketTracer::trace(const Ray<double>* rays, int count, double share,
     read_result(found[i], to);
     to.unevenness = found[i].unevenness;
     to.longest_step = found[i].longest_step;
-    to.by_corners = found[i].by_corners != 0;
   }
 }
 

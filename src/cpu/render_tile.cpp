@@ -15,7 +15,6 @@ RayResult mean_of(const RayResult* rays, int count) {
   if (count == 1) return rays[0];
   RayResult mean;
   mean.error = mean.unevenness = 0;
-  mean.by_corners = false;
   mean.longest_step = std::numeric_limits<float>::infinity();
   mean.proved = true;
   for (int n = 0; n < count; ++n) {
@@ -26,7 +25,6 @@ RayResult mean_of(const RayResult* rays, int count) {
     mean.half_opacity_depth = std::min(mean.half_opacity_depth, one.half_opacity_depth);
     mean.cells += one.cells;
     mean.unevenness = std::max(mean.unevenness, one.unevenness);
-    mean.by_corners = mean.by_corners || one.by_corners;
     mean.longest_step = std::min(mean.longest_step, one.longest_step);
     mean.error += one.error;
     mean.proved = mean.proved && one.proved;

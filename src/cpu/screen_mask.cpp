@@ -53,7 +53,10 @@ ScreenMask::ScreenMask(const CameraFrame<double>& camera, const Volume& volume,
   const double farthest = farthest_depth(camera, volume, blocks.records);
   for (const Vec3<double>& c : corner) {
     // From inside, or nearly so, there is no saying what is beside what.
-    if (depth_of(camera, c) > 1e-3 * farthest) continue;
+    const bool ahead = camera.perspective
+                           ? depth_of(camera, c) > 1e-3 * farthest
+                           : dot(c - camera.position, camera.forward) > 0;  // of where rays begin
+    if (ahead) continue;
     std::fill(marked_.begin(), marked_.end(), std::uint8_t{1});
     return;
   }
@@ -115,7 +118,8 @@ void ScreenMask::mark_blocks(const Volume& volume, const ClassifiedBlocks& block
   const BlockRecords& records = blocks.records;
   const Affine<double>& world = volume.world_from_grid();
   const Vec3<double> first = plane(records, 0, 0, 0), second = plane(records, 1, 1, 1),
-                     width = second - first;
+                     width = (second - first) *
+                             (8.0 / 7.5);  // of blocks at the border half a cell less
   double radius = 0;
   for (int n = 0; n < 4; ++n) {
     const Vec3<double> half =
@@ -123,15 +127,17 @@ void ScreenMask::mark_blocks(const Volume& volume, const ClassifiedBlocks& block
                       (n & 2) != 0 ? -0.5 * width.z : 0.5 * width.z});
     radius = std::max(radius, std::sqrt(dot(half, half)));
   }
+  const double corner = dot(camera_.right, camera_.right) + dot(camera_.up, camera_.up);
+  const double longer = camera_.perspective ? std::max(2.0, std::sqrt(1 + corner)) : 1;
   for (int k = 0; k < records.axis[2].cells(); ++k) {
     for (int j = 0; j < records.axis[1].cells(); ++j) {
       for (int i = 0; i < records.axis[0].cells(); ++i) {
         if (blocks.classes[records.index(i, j, k)].kind != BlockKind::cells) continue;
         const Vec3<double> middle =
             world.point((plane(records, i, j, k) + plane(records, i + 1, j + 1, k + 1)) * 0.5);
-        // Twice, for what perspective makes of what is nearer than the middle.
+        // Aside of the camera's axis a ball looks longer.
         const Projected p = project(middle);
-        const double aside = (camera_.perspective ? 2 : 1) * radius * p.scale;
+        const double aside = longer * radius * p.scale;
         mark(p.x - aside, p.y - aside, p.x + aside, p.y + aside, 2);
       }
     }

@@ -23,7 +23,7 @@ struct PellucidRayResult {
   std::int32_t cells, evaluations;
   std::int32_t skipped, constant, closed, panels, in_double, strides;
   float unevenness, longest_step;  ///< of grids' rays
-  std::uint8_t by_corners, proved;
+  std::uint8_t proved;
 };
 
 /// A part of a cell that binary32, or the packets' rule, is not good enough for: [from, 1] of the

@@ -77,9 +77,8 @@ class PacketIntegrator {
   void store(PellucidRayResult* results) const noexcept {
     const SegmentResult<D> all = fold_.result();
     const D error = fold_.error(convert<double>(pieces_ + strides_));
-    const F unevenness = smooth_.unevenness(convert<float>(D::load(blocks_.end)));
+    const F unevenness = smooth_.unevenness();
     const F longest_step = smooth_.longest_step();
-    const unsigned by_corners = bits(smooth_.by_corners());
     for (int l = 0; l < count_; ++l) {
       PellucidRayResult& r = results[first_ + l];
       r = {{all.radiance.r[l], all.radiance.g[l], all.radiance.b[l]},
@@ -96,7 +95,6 @@ class PacketIntegrator {
            strides_[l],
            unevenness[l],
            longest_step[l],
-           static_cast<std::uint8_t>(by_corners >> l & 1),
            static_cast<std::uint8_t>(bits(proved_) >> l & 1)};
     }
   }
@@ -203,7 +201,7 @@ class PacketIntegrator {
     const M refused = smooth_.finer(on & !take);
     if (any(refused)) {
       blocks_.go_in_cells(refused, from, smooth_.end);
-      smooth_.refuse(refused, steps, transparency);
+      smooth_.refuse(refused);
     }
     if (none(take)) return;
     fold_.add(take, s);

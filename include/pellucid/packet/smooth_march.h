@@ -34,8 +34,7 @@ class SmoothMarch {
       : transfer_(*static_cast<const SamplerTransfer*>(job.samples)),
         smooth_(*static_cast<const SmoothBlocks*>(job.smooth)),
         grid_(grid),
-        samples_(grid),
-        negligible_(static_cast<float>(job.tolerance * job.tolerance) * 0x1p-10f) {
+        samples_(grid) {
     at = end = D(0);
     F square(0);
     for (int a = 0; a < 3; ++a) {
@@ -63,8 +62,7 @@ class SmoothMarch {
     SampledSegment<F> found;
     F least_variance;               ///< of the error beside what `found` says
     F local[SmoothBlocks::fields];  ///< of SmoothBlocks
-    M corners;  ///< whether the data come by corners of the transfer function that count
-    M valid;    ///< false: there is vacuum, or a step is too dense, or too long
+    M valid;                        ///< false: there is vacuum, or a step is too dense, or too long
     M may_be_longer;
   };
 
@@ -113,9 +111,7 @@ class SmoothMarch {
     for (int i = 0; i < 4; ++i) {
       material[i + 1] = material_at(transfer_, select(s.valid, value[i], F(transfer_.support_min)));
     }
-    const F variance_of_corners = of_corners(value, step, s.valid);
-    s.corners = variance_of_corners > F(negligible_);
-    s.least_variance += variance_of_corners;
+    s.least_variance += of_corners(value, step, s.valid);
     F densest = material[0].extinction;
     for (int i = 1; i < 5; ++i) densest = max(densest, material[i].extinction);
     s.valid = s.valid & (step * densest <= F(deepest));
@@ -127,26 +123,26 @@ class SmoothMarch {
 
   /// Goes behind the steps of these lanes. `easy`: those which could do with longer ones.
   void take(M lanes, const Steps& s, F transparency, M easy) noexcept {
-    note(lanes, s, s.length, transparency);
+    note(lanes, s, transparency);
     at = select(lanes, select(s.last, end, at + convert<double>(s.length)), at);
     set_front(lanes, back_, back_value_);
     walking = walking & !(lanes & s.last);
     level_ = select(lanes & easy & s.may_be_longer & (level_ > I(0)), level_ - I(1), level_);
   }
 
-  /// Leaves what is left of their stretches to others.
-  void refuse(M lanes, const Steps& s, F transparency) noexcept {
-    note(lanes, s, convert<float>(end - at), transparency);
+  /// Leaves what is left of their stretches to others: of other blocks in them nothing is known.
+  void refuse(M lanes) noexcept {
+    shortest_wave_ = select(lanes, F(std::numeric_limits<float>::infinity()), shortest_wave_);
     walking = walking & !lanes;
   }
 
-  /// RayResult::unevenness of rays of this length, of what was taken.
-  F unevenness(F length) const noexcept {
+  /// RayResult::unevenness, of what was taken.
+  F unevenness() const noexcept {
     // Over a whole cell what trilinear data lie off the curve that they follow comes to nothing, up
     // to how much the bends change within it. What is left is of the cells where a ray begins and
     // ends, and all of it where it runs along the cells: at most the root of 1/720 of a bend.
     constexpr float of_ends = 1.5e-4f, of_cell = 1e-6f, along = 1.0f / 720;
-    const F all = max(length, F(std::numeric_limits<float>::min()));
+    const F all = max(seen_, F(std::numeric_limits<float>::min()));
     F variance(0);
     for (int a = 0; a < 3; ++a) {
       const F cells = abs(direction_in_float_[a]) * all;
@@ -155,8 +151,6 @@ class SmoothMarch {
     }
     return sqrt(variance);
   }
-  /// RayResult::by_corners, likewise.
-  M by_corners() const noexcept { return by_corners_; }
   /// RayResult::longest_step, likewise.
   F longest_step() const noexcept { return F(1) / shortest_wave_; }
 
@@ -177,12 +171,12 @@ class SmoothMarch {
   /// ones are taken then.
   static constexpr float resonant = 0.004f, first_part = 0.62f;
 
-  /// Notes how much the data bend along so much of the lanes' rays.
-  void note(M lanes, const Steps& s, F length, F transparency) noexcept {
-    const F weight = select(lanes, transparency * transparency * length, F(0));
+  /// Notes how much the data bend along the lanes' steps.
+  void note(M lanes, const Steps& s, F transparency) noexcept {
+    const F weight = select(lanes, transparency * transparency * s.length, F(0));
+    seen_ += weight;
     for (int a = 0; a < 3; ++a) bends_[a] += weight * (s.local[a] * s.local[a]);
     shortest_wave_ = max(shortest_wave_, select(lanes, s.local[3], F(0)));
-    by_corners_ = by_corners_ | (lanes & s.corners);
   }
 
   /// The material where the lanes stand; that of NaN, which is none, in vacuum.
@@ -287,7 +281,6 @@ class SmoothMarch {
   const SmoothBlocks& smooth_;
   const PacketGrid<Value>& grid_;
   PacketSamples<Value, N> samples_;
-  float negligible_;  ///< variance, of the tolerance divided by 256
   D origin_[3], direction_[3];
   F direction_in_float_[3], cells_per_length_;
   int levels_known_ = 0;
@@ -296,10 +289,10 @@ class SmoothMarch {
   M known_{false};            ///< whether `front_` is that at `at`
   Material<F> front_, back_;  ///< of the steps that were looked at
   F front_value_{0}, back_value_{0};
-  M by_corners_{false};
   // Of what was taken: squares of roughness times bend along each axis, over length; and the
   // largest of 1 / the longest step.
   F bends_[3] = {F(0), F(0), F(0)}, shortest_wave_{0};
+  F seen_{0};  ///< their length, by the square of what they show of it
 };
 
 }  // namespace pellucid

@@ -47,8 +47,6 @@ struct RayResult {
   /// from ray to ray, as a standard deviation; and how far apart rays may be to show all that
   /// there is between them, in voxels. Infinite and 0 where nothing is known.
   float unevenness = std::numeric_limits<float>::infinity(), longest_step = 0;
-  bool by_corners =
-      true;              ///< whether data in smooth blocks come by corners of the transfer function
   bool proved = false;   ///< whether `error` is a bound and not an estimate
   long evaluations = 0;  ///< of the field: cells gathered and points sampled
   RuleCounts spans;
