@@ -20,7 +20,7 @@ constexpr int least_cells = 8;
 constexpr double most_of_step = 0.9;
 /// Of fourth and second differences of pixels what the cubic may err: 3/128 of the fourth where
 /// they say all, 0.22 in waves as short as random scenes had them, and 0.375 where there is a kink
-/// between pixels; second ones for what of a kink's the others have taken away.
+/// between pixels; second ones for what bends beside a kink take away of its fourth.
 constexpr double of_fourth = 0.38, of_second = 0.02;
 /// At smaller tolerances few pixels pass, and those that they are taken from cost more.
 constexpr double least_tolerance = 8e-4;
@@ -52,9 +52,20 @@ double error_of_cubic(const std::array<const std::array<float, 4>*, 6>& p) noexc
   return most;
 }
 
-/// Of the tolerance, what a pixel of a level may be off by if those between are taken from it.
-double allowed(int stride) noexcept {
-  return stride == 1 ? 1 : stride == 2 ? 0.6 : 0.3;
+/// Of the tolerance, what pixels of a level may be off by, for others are taken from them.
+struct Shares {
+  double of_rays, in_between;
+};
+constexpr Shares shares_of(int stride) noexcept {
+  return stride == 1 ? Shares{1, 1} : stride == 2 ? Shares{0.45, 0.6} : Shares{0.2, 0.3};
+}
+/// What a pixel in the middle of sixteen inherits of either kind leaves something for itself.
+static_assert(sum_of_weights * sum_of_weights * shares_of(2).in_between < shares_of(1).in_between &&
+              sum_of_weights * sum_of_weights * shares_of(4).in_between < shares_of(2).in_between);
+
+/// Whether rays so many pixels apart show all that is between them.
+bool are_near(int pixels, double voxels_between_pixels, double longest_step) noexcept {
+  return pixels * voxels_between_pixels <= most_of_step * longest_step;
 }
 
 /// How many cells a world length takes at most, in any direction: the largest singular value of the
@@ -105,7 +116,7 @@ std::unique_ptr<BetweenPixels> BetweenPixels::make(const Frame& frame, const Ima
   const int smaller_side = std::min(frame.scene.size.width, frame.scene.size.height);
   int stride = 1;
   while (2 * stride <= largest_stride && least_cells * 2 * stride <= smaller_side &&
-         2 * stride * voxels <= most_of_step * around->longest_step) {
+         are_near(2 * stride, voxels, around->longest_step)) {
     stride *= 2;
   }
   if (stride < 2) return nullptr;
@@ -125,8 +136,8 @@ BetweenPixels::BetweenPixels(const Frame& frame, const ImageView& image, int str
       columns_(static_cast<std::size_t>((frame.scene.size.width + 1) / 2)),
       known_(columns_ * static_cast<std::size_t>((frame.scene.size.height + 1) / 2)) {}
 
-double BetweenPixels::share(int stride) noexcept {
-  return stride == 1 ? 1 : stride == 2 ? 0.45 : 0.2;
+double BetweenPixels::share_of_rays(int stride) noexcept {
+  return shares_of(stride).of_rays;
 }
 
 void BetweenPixels::keep(int column, int row, const RayResult& result) noexcept {
@@ -170,16 +181,17 @@ void BetweenPixels::finish_level(int stride) noexcept {
       // A level further on there is a sixteenth of what the cubic errs.
       const double cubic = cost.cubic * (next > 1 ? 1.0 / 16 : 1);
       const double then = cost.inherited + cubic + cost.uneven;
-      if (then <= allowed(next) * frame_.tolerance) ++found;
+      if (then <= shares_of(next).in_between * frame_.tolerance) ++found;
     }
   }
   goes_on_ = found > 0 && found >= least_found * tried;
 }
 
 bool BetweenPixels::find(int column, int row, int stride, RayResult& result) const noexcept {
+  if (!goes_on_) return false;
   const Cost cost = look(column, row, stride, result);
   result.error = cost.inherited + cost.cubic + cost.uneven;
-  return cost.known && result.error <= allowed(stride) * frame_.tolerance;
+  return cost.known && result.error <= shares_of(stride).in_between * frame_.tolerance;
 }
 
 BetweenPixels::Cost BetweenPixels::look(int column, int row, int stride,
@@ -211,7 +223,7 @@ BetweenPixels::Cost BetweenPixels::look(int column, int row, int stride,
   }
   // What is clear is traced for next to nothing, and known for sure then.
   if (!(brightest > 0) || !(found[3] > 0)) return {};
-  if (!(before * voxels_ <= most_of_step * longest)) {
+  if (!are_near(before, voxels_, longest)) {
     return {true, std::numeric_limits<double>::infinity(), 0, 0};
   }
 

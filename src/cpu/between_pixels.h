@@ -40,7 +40,7 @@ class BetweenPixels {
   bool goes_on() const noexcept { return goes_on_; }
   /// Of the tolerance, what rays of this level may be off by, so that there is something left for
   /// the pixels between them.
-  static double share(int stride) noexcept;
+  static double share_of_rays(int stride) noexcept;
 
   /// Whether the pixel is one of the levels that are finished.
   bool is_done(int column, int row) const noexcept {
@@ -49,7 +49,8 @@ class BetweenPixels {
 
   /// Notes what became of a pixel of a level other than the last.
   void keep(int column, int row, const RayResult& result) noexcept;
-  /// What is between the pixels of the levels that are finished; false: to be traced.
+  /// What is between the pixels of the levels that are finished, where it goes on; false: to be
+  /// traced.
   bool find(int column, int row, int stride, RayResult& result) const noexcept;
 
  private:
@@ -78,8 +79,8 @@ class BetweenPixels {
   int stride_;
   int finished_ = 0;  ///< the last level that is; 0: none
   bool goes_on_ = true;
-  double voxels_;  ///< from pixel to pixel, at most
-  ScreenMask mask_;
+  double voxels_;    ///< from pixel to pixel, at most
+  ScreenMask mask_;  ///< whose squares are stride_ wide
   std::size_t columns_;
   std::vector<Known> known_;
 };

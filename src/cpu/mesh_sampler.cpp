@@ -41,7 +41,8 @@ class MeshSampler : public RayTracer {
         stop_(stop_tolerance<double>() / std::max(largest_color(task.scene), 1.0)),
         depth_(task.options.depth) {}
 
-  std::vector<RayResult> trace(const std::vector<Ray<double>>& world) const override {
+  std::vector<RayResult> trace(const std::vector<Ray<double>>& world,
+                               double /*share*/) const override {
     std::vector<RayResult> results;
     results.reserve(world.size());
     MeshHits hits;

@@ -44,7 +44,8 @@ class MeshTracer : public RayTracer {
         wanted_(task.wanted),
         depth_(task.options.depth) {}
 
-  std::vector<RayResult> trace(const std::vector<Ray<double>>& world) const override {
+  std::vector<RayResult> trace(const std::vector<Ray<double>>& world,
+                               double /*share*/) const override {
     std::vector<RayResult> results(world.size());
     integrate(world, results);
     if (!depth_) return results;

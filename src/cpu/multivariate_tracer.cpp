@@ -69,7 +69,8 @@ class MultivariateTracer : public RayTracer {
                                      negligible_extinction(task), set, parallel_for(task.threads));
   }
 
-  std::vector<RayResult> trace(const std::vector<Ray<double>>& world) const override {
+  std::vector<RayResult> trace(const std::vector<Ray<double>>& world,
+                               double /*share*/) const override {
     std::vector<Ray<double>> rays;
     rays.reserve(world.size());
     for (const Ray<double>& ray : world) {

@@ -27,12 +27,9 @@ void Progress::finish_tile(const Tile& tile) {
   }
 }
 
-void Progress::look_up() {
-  if (!options_.progress || cancelled_) return;
+void Progress::ask_whether_to_go_on() {
   const std::unique_lock lock(calling_, std::try_to_lock);
-  if (!lock.owns_lock()) return;
-  const double share = static_cast<double>(told_) / static_cast<double>(total_);
-  if (!cancelled_ && !options_.progress(share)) cancelled_ = true;
+  if (lock.owns_lock()) tell_share();
 }
 
 void Progress::finish() {
@@ -44,8 +41,12 @@ void Progress::tell() {
   if (cancelled_ || done <= told_) return;
   tell_tiles();
   told_ = done;
+  tell_share();
+}
+
+void Progress::tell_share() {
   if (cancelled_ || !options_.progress) return;
-  if (!options_.progress(static_cast<double>(done) / static_cast<double>(total_))) {
+  if (!options_.progress(static_cast<double>(told_) / static_cast<double>(total_))) {
     cancelled_ = true;
   }
 }

@@ -21,7 +21,7 @@ class Progress {
   /// The pixels of the tile are final. Any thread.
   void finish_tile(const Tile& tile);
   /// Between tiles, for whoever would cancel. Any thread.
-  void look_up();
+  void ask_whether_to_go_on();
   /// The last word, when all threads are done, in case one was calling when the last tile was.
   void finish();
   bool cancelled() const noexcept { return cancelled_; }
@@ -35,6 +35,7 @@ class Progress {
   };
 
   void tell();
+  void tell_share();
   void tell_tiles();
   bool next_tile(Tile& tile);
 

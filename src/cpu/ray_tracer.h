@@ -23,7 +23,9 @@ class RayTracer {
   virtual ~RayTracer() = default;
 
   /// What the rays (in the world, directions of length 1) gather. Safe to call from any thread.
-  virtual std::vector<RayResult> trace(const std::vector<Ray<double>>& world) const = 0;
+  /// `share`: of the tolerance, what they may be off by; 1 but where surroundings() are known.
+  virtual std::vector<RayResult> trace(const std::vector<Ray<double>>& world,
+                                       double share) const = 0;
 
   /// What there is to find out between rays.
   struct Surroundings {
@@ -33,11 +35,6 @@ class RayTracer {
   };
   /// None: nothing is known of what is between rays.
   virtual std::optional<Surroundings> surroundings() const { return std::nullopt; }
-  /// As trace(), where surroundings() are known, to this share of the tolerance.
-  virtual std::vector<RayResult> trace_to_share(const std::vector<Ray<double>>& world,
-                                                double /*share*/) const {
-    return trace(world);
-  }
 };
 
 /// What is to be followed: a scene that check_method() accepts. It must outlive the tracer; what is

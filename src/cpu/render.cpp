@@ -65,7 +65,7 @@ void render_tiles(const Frame& frame, const RenderOptions& options, Image& image
   if (between) {
     for (int level = between->stride(); level > 1 && between->goes_on(); level /= 2) {
       render_level(make_lattice(frame.scene.size, level), level,
-                   [&](const Tile&) { progress.look_up(); });
+                   [&](const Tile&) { progress.ask_whether_to_go_on(); });
       if (progress.cancelled()) throw Cancelled();
       between->finish_level(level);
     }

@@ -74,8 +74,7 @@ void render_tile(const Frame& frame, const Tile& tile, int level, BetweenPixels*
     std::erase_if(places, [&](const Place& place) {
       if (between->is_done(place.column, place.row)) return true;
       RayResult result;
-      if (!between->goes_on() || !between->find(place.column, place.row, level, result))
-        return false;
+      if (!between->find(place.column, place.row, level, result)) return false;
       finish(place, result);
       ++report.pixels_between;
       return true;
@@ -93,7 +92,7 @@ void render_tile(const Frame& frame, const Tile& tile, int level, BetweenPixels*
     }
   }
   const std::vector<RayResult> results =
-      frame.tracer->trace_to_share(rays, between != nullptr ? BetweenPixels::share(level) : 1);
+      frame.tracer->trace(rays, between != nullptr ? BetweenPixels::share_of_rays(level) : 1);
   report.rays += rays.size();
   const RayResult* of_pixel = results.data();
   for (const Place& place : places) {

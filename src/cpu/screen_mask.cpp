@@ -31,6 +31,21 @@ std::array<Vec3<double>, 8> corners_of(const Volume& volume, const BlockRecords&
   return corner;
 }
 
+/// A place on the screen in squares, and how many of them a world length is there at most.
+struct Projected {
+  double x, y, scale;
+};
+
+Projected project(const CameraFrame<double>& camera, int square, Vec3<double> world) noexcept {
+  const Vec3<double> to = world - camera.position;
+  const double share = 1 / depth_of(camera, world);
+  const double right = dot(camera.right, camera.right), up = dot(camera.up, camera.up);
+  const double x = dot(to, camera.right) / right * share, y = dot(to, camera.up) / up * share;
+  const double width = camera.width / (2.0 * square), height = camera.height / (2.0 * square);
+  return {(x + 1) * width, (1 - y) * height,
+          share * std::max(width / std::sqrt(right), height / std::sqrt(up))};
+}
+
 }  // namespace
 
 double farthest_depth(const CameraFrame<double>& camera, const Volume& volume,
@@ -44,8 +59,7 @@ double farthest_depth(const CameraFrame<double>& camera, const Volume& volume,
 
 ScreenMask::ScreenMask(const CameraFrame<double>& camera, const Volume& volume,
                        const ClassifiedBlocks& blocks, int square)
-    : camera_(camera),
-      square_(square),
+    : square_(square),
       columns_((camera.width + square - 1) / square),
       rows_((camera.height + square - 1) / square),
       marked_(static_cast<std::size_t>(columns_) * static_cast<std::size_t>(rows_), 0) {
@@ -60,23 +74,13 @@ ScreenMask::ScreenMask(const CameraFrame<double>& camera, const Volume& volume,
     std::fill(marked_.begin(), marked_.end(), std::uint8_t{1});
     return;
   }
-  mark_edges(corner);
-  mark_blocks(volume, blocks);
+  mark_edges(camera, corner);
+  mark_blocks(camera, volume, blocks);
 }
 
 double ScreenMask::clear_share() const noexcept {
   const auto clear = std::count(marked_.begin(), marked_.end(), std::uint8_t{0});
   return static_cast<double>(clear) / static_cast<double>(std::max(marked_.size(), std::size_t{1}));
-}
-
-ScreenMask::Projected ScreenMask::project(Vec3<double> world) const noexcept {
-  const Vec3<double> to = world - camera_.position;
-  const double share = 1 / depth_of(camera_, world);
-  const double right = dot(camera_.right, camera_.right), up = dot(camera_.up, camera_.up);
-  const double x = dot(to, camera_.right) / right * share, y = dot(to, camera_.up) / up * share;
-  const double width = camera_.width / (2.0 * square_), height = camera_.height / (2.0 * square_);
-  return {(x + 1) * width, (1 - y) * height,
-          share * std::max(width / std::sqrt(right), height / std::sqrt(up))};
 }
 
 void ScreenMask::mark(double x0, double y0, double x1, double y1, int around) noexcept {
@@ -92,21 +96,21 @@ void ScreenMask::mark(double x0, double y0, double x1, double y1, int around) no
   }
 }
 
-void ScreenMask::mark_edges(const std::array<Vec3<double>, 8>& corner) noexcept {
+void ScreenMask::mark_edges(const CameraFrame<double>& camera,
+                            const std::array<Vec3<double>, 8>& corner) noexcept {
   for (std::size_t n = 0; n < 8; ++n) {
     for (std::size_t bit = 1; bit < 8; bit *= 2) {
       if ((n & bit) != 0) continue;
-      const Projected from = project(corner[n]), to = project(corner[n + bit]);
-      const double length = std::hypot(to.x - from.x, to.y - from.y);
+      const Projected from = project(camera, square_, corner[n]),
+                      to = project(camera, square_, corner[n + bit]);
+      const double halves = std::ceil(2 * std::hypot(to.x - from.x, to.y - from.y));
       // What is far outside of the image is not gone along.
-      const double most = 16.0 * (columns_ + rows_);
-      const int steps = static_cast<int>(std::ceil(std::min(2 * length, most)));
-      if (2 * length > most) {
+      if (!(halves <= 16.0 * (columns_ + rows_))) {
         std::fill(marked_.begin(), marked_.end(), std::uint8_t{1});
         return;
       }
-      for (int i = 0; i <= steps; ++i) {
-        const double t = steps > 0 ? static_cast<double>(i) / steps : 0;
+      for (double i = 0; i <= halves; ++i) {
+        const double t = halves > 0 ? i / halves : 0;
         const double x = from.x + t * (to.x - from.x), y = from.y + t * (to.y - from.y);
         mark(x, y, x, y, 1);
       }
@@ -114,7 +118,8 @@ void ScreenMask::mark_edges(const std::array<Vec3<double>, 8>& corner) noexcept 
   }
 }
 
-void ScreenMask::mark_blocks(const Volume& volume, const ClassifiedBlocks& blocks) noexcept {
+void ScreenMask::mark_blocks(const CameraFrame<double>& camera, const Volume& volume,
+                             const ClassifiedBlocks& blocks) noexcept {
   const BlockRecords& records = blocks.records;
   const Affine<double>& world = volume.world_from_grid();
   const Vec3<double> first = plane(records, 0, 0, 0), second = plane(records, 1, 1, 1),
@@ -127,8 +132,8 @@ void ScreenMask::mark_blocks(const Volume& volume, const ClassifiedBlocks& block
                       (n & 2) != 0 ? -0.5 * width.z : 0.5 * width.z});
     radius = std::max(radius, std::sqrt(dot(half, half)));
   }
-  const double corner = dot(camera_.right, camera_.right) + dot(camera_.up, camera_.up);
-  const double longer = camera_.perspective ? std::max(2.0, std::sqrt(1 + corner)) : 1;
+  const double corner = dot(camera.right, camera.right) + dot(camera.up, camera.up);
+  const double longer = camera.perspective ? std::max(2.0, std::sqrt(1 + corner)) : 1;
   for (int k = 0; k < records.axis[2].cells(); ++k) {
     for (int j = 0; j < records.axis[1].cells(); ++j) {
       for (int i = 0; i < records.axis[0].cells(); ++i) {
@@ -136,7 +141,7 @@ void ScreenMask::mark_blocks(const Volume& volume, const ClassifiedBlocks& block
         const Vec3<double> middle =
             world.point((plane(records, i, j, k) + plane(records, i + 1, j + 1, k + 1)) * 0.5);
         // Aside of the camera's axis a ball looks longer.
-        const Projected p = project(middle);
+        const Projected p = project(camera, square_, middle);
         const double aside = longer * radius * p.scale;
         mark(p.x - aside, p.y - aside, p.x + aside, p.y + aside, 2);
       }

@@ -33,20 +33,16 @@ class ScreenMask {
   double clear_share() const noexcept;
 
  private:
-  /// In squares, and how many of them a world length is there at most.
-  struct Projected {
-    double x, y, scale;
-  };
-  Projected project(Vec3<double> world) const noexcept;
   void mark(double x0, double y0, double x1, double y1, int around) noexcept;
-  void mark_edges(const std::array<Vec3<double>, 8>& corner) noexcept;
-  void mark_blocks(const Volume& volume, const ClassifiedBlocks& blocks) noexcept;
+  void mark_edges(const CameraFrame<double>& camera,
+                  const std::array<Vec3<double>, 8>& corner) noexcept;
+  void mark_blocks(const CameraFrame<double>& camera, const Volume& volume,
+                   const ClassifiedBlocks& blocks) noexcept;
   std::size_t index(int x, int y) const noexcept {
     return static_cast<std::size_t>(y) * static_cast<std::size_t>(columns_) +
            static_cast<std::size_t>(x);
   }
 
-  const CameraFrame<double>& camera_;
   int square_, columns_, rows_;
   std::vector<std::uint8_t> marked_;
 };

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdlib>
 #include <tuple>
+#include <utility>
 
 namespace pellucid {
 namespace {
@@ -47,6 +48,11 @@ void add_lattice(ImageSize size, int level, int stride, int first_column, int fi
   }
 }
 
+void append_in_order(std::vector<Place> places, std::vector<Tile>& tiles) {
+  std::sort(places.begin(), places.end());
+  for (const Place& place : places) tiles.push_back(place.tile);
+}
+
 }  // namespace
 
 std::vector<Tile> make_tiles(ImageSize size, int preview) {
@@ -62,8 +68,7 @@ std::vector<Tile> make_tiles(ImageSize size, int preview) {
       add_lattice(size, level, 2 * square, 0, square, places);
       add_lattice(size, level, 2 * square, square, square, places);
     }
-    std::sort(places.begin(), places.end());
-    for (const Place& place : places) tiles.push_back(place.tile);
+    append_in_order(std::move(places), tiles);
   }
   return tiles;
 }
@@ -72,7 +77,7 @@ std::vector<Tile> make_lattice(ImageSize size, int stride) {
   std::vector<Place> places;
   add_lattice(size, 0, stride, 0, 0, places);
   std::vector<Tile> tiles;
-  for (const Place& place : places) tiles.push_back(place.tile);
+  append_in_order(std::move(places), tiles);
   return tiles;
 }
 

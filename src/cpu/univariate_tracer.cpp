@@ -26,12 +26,8 @@ class UnivariateTracer : public RayTracer {
  public:
   explicit UnivariateTracer(const TracerTask& task);
 
-  std::vector<RayResult> trace(const std::vector<Ray<double>>& world) const override {
-    return trace_to_share(world, 1);
-  }
   std::optional<Surroundings> surroundings() const override;
-  std::vector<RayResult> trace_to_share(const std::vector<Ray<double>>& world,
-                                        double share) const override {
+  std::vector<RayResult> trace(const std::vector<Ray<double>>& world, double share) const override {
     std::vector<Ray<double>> rays;
     rays.reserve(world.size());
     for (const Ray<double>& ray : world) rays.push_back(volume_.grid_from_world().ray(ray));

@@ -11,6 +11,7 @@
 
 #include "pellucid/scene/defaults.h"
 #include "tests/packet/random_frames.h"
+#include "tests/scenes/makers.h"
 
 namespace pellucid {
 
@@ -20,17 +21,7 @@ using Points = std::vector<TransferFunction::Point>;
 inline std::shared_ptr<const Volume> make_volume(const std::array<int, 3>& values,
                                                  const Field& field,
                                                  Vec3<double> spacing = {1, 1, 1}) {
-  std::vector<float> data;
-  for (int z = 0; z < values[2]; ++z) {
-    for (int y = 0; y < values[1]; ++y) {
-      for (int x = 0; x < values[0]; ++x) data.push_back(static_cast<float>(field(x, y, z)));
-    }
-  }
-  Volume::Description description;
-  description.dimensions = values;
-  description.placement.spacing = spacing;
-  description.name = "smooth";
-  return std::make_shared<Volume>(description, DataArray<float>(std::move(data)));
+  return scenes::make_volume<float>(scenes::grid_description(values, {0, 0, 0}, spacing), field);
 }
 
 class SmoothFrames : public RandomFrames {

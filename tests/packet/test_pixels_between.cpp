@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <iterator>
 #include <limits>
+#include <memory>
 #include <numbers>
 #include <utility>
 #include <vector>
@@ -42,17 +43,28 @@ class PixelsBetween : public SmoothFrames {
     return {size(), size(), size()};
   }
 
-  Scene of_waves() {
-    const auto volume =
-        make_volume(values(), waves(1 + static_cast<int>(uniform(0, 4)), power(9, 40)),
-                    {uniform(0.7, 1.4), uniform(0.7, 1.4), uniform(0.7, 1.4)});
-    const double depth = power(0.1, 10);
-    const bool oblique = !one_of(3);
-    Scene scene =
-        make_scene(volume, one_of(2) ? line(depth, 40) : table(depth, 40),
-                   oblique ? aside() : directions[random_() % std::size(directions)], one_of(2));
+  /// The scene from nearby, from the side or along an axis or a diagonal.
+  Scene seen_closely(std::shared_ptr<const Volume> volume, Points points) {
+    const Vec3<double> direction =
+        one_of(3) ? directions[random_() % std::size(directions)] : aside();
+    Scene scene = make_scene(std::move(volume), std::move(points), direction, one_of(2));
     zoom(scene, power(0.05, 1.5));
     return scene;
+  }
+
+  std::shared_ptr<const Volume> of_waves(int most, double longest) {
+    return make_volume(values(), waves(1 + static_cast<int>(uniform(0, most)), power(9, longest)),
+                       {uniform(0.7, 1.4), uniform(0.7, 1.4), uniform(0.7, 1.4)});
+  }
+
+  Scene smooth_scene() {
+    const auto volume = of_waves(4, 40);
+    const double depth = power(0.1, 10);
+    return seen_closely(volume, one_of(2) ? line(depth, 40) : table(depth, 40));
+  }
+
+  static void expect_many(const Seen& seen, std::size_t of_a_frame) {
+    EXPECT_GT(seen.between, static_cast<std::size_t>(seen.frames) * of_a_frame);
   }
 };
 
@@ -61,9 +73,9 @@ const std::vector<double> tolerances{3e-2, 1e-2, 1.0 / 512, 9e-4};
 TEST_F(PixelsBetween, AreWithinWhatTheySay) {
   const Seen seen = compare_random_scenes(30, tolerances, [&](unsigned seed) {
     random_.seed(seed);
-    return of_waves();
+    return smooth_scene();
   });
-  EXPECT_GT(seen.between, static_cast<std::size_t>(seen.frames) * 100U);
+  expect_many(seen, 100);
 }
 
 TEST_F(PixelsBetween, OfQuadraticsAreWithinWhatTheySay) {
@@ -79,29 +91,19 @@ TEST_F(PixelsBetween, OfQuadraticsAreWithinWhatTheySay) {
       z = 2 * z / size[2] - 1;
       return 0.5 + 0.3 * (k.x * x * x + k.y * y * y + k.z * z * z);
     });
-    Scene scene =
-        make_scene(volume, line(power(0.3, 10), size[0]),
-                   one_of(2) ? aside() : directions[random_() % std::size(directions)], one_of(2));
-    zoom(scene, power(0.05, 1.5));
-    return scene;
+    return seen_closely(volume, line(power(0.3, 10), size[0]));
   });
-  EXPECT_GT(seen.between, static_cast<std::size_t>(seen.frames) * 100U);
+  expect_many(seen, 100);
 }
 
 TEST_F(PixelsBetween, BehindCornersAreWithinWhatTheySay) {
   // Tops of waves that rise above where it begins to absorb lie between pixels.
   const Seen seen = compare_random_scenes(40, tolerances, [&](unsigned seed) {
     random_.seed(seed);
-    const std::array<int, 3> size = values();
-    const auto volume = make_volume(size, waves(1 + static_cast<int>(uniform(0, 3)), power(9, 200)),
-                                    {uniform(0.7, 1.4), uniform(0.7, 1.4), uniform(0.7, 1.4)});
-    Scene scene =
-        make_scene(volume, corners(power(0.1, 10), size[0]),
-                   one_of(3) ? directions[random_() % std::size(directions)] : aside(), one_of(2));
-    zoom(scene, power(0.05, 1.5));
-    return scene;
+    const auto volume = of_waves(3, 200);
+    return seen_closely(volume, corners(power(0.1, 10), volume->description().dimensions[0]));
   });
-  EXPECT_GT(seen.between, static_cast<std::size_t>(seen.frames) * 100U);
+  expect_many(seen, 100);
 }
 
 TEST_F(PixelsBetween, OfCornersSeenEdgeOnAreWithinWhatTheySay) {
@@ -129,13 +131,13 @@ TEST_F(PixelsBetween, OfCornersSeenEdgeOnAreWithinWhatTheySay) {
     scene.size = {64, 64};
     return scene;
   });
-  EXPECT_GT(seen.between, seen.frames * std::size_t{100});
+  expect_many(seen, 100);
 }
 
 TEST_F(PixelsBetween, OfRaysThatBeginInTheVolumeAreWithinWhatTheySay) {
   const Seen seen = compare_random_scenes(10, tolerances, [&](unsigned seed) {
     random_.seed(seed);
-    Scene scene = of_waves();
+    Scene scene = smooth_scene();
     const Vec3<double> middle = scene.camera.focal_point;
     scene.camera.position = middle + (scene.camera.position - middle) * uniform(0, 0.3);
     return scene;
@@ -164,7 +166,7 @@ TEST_F(PixelsBetween, BesideThinLayersAndHolesAreWithinWhatTheySay) {
     zoom(scene, power(0.05, 1.5));
     return scene;
   });
-  EXPECT_GT(seen.between, static_cast<std::size_t>(seen.frames) * 20U);
+  expect_many(seen, 20);
 }
 
 TEST_F(PixelsBetween, AreTheSameForAnyThreadsAndTiles) {

@@ -15,6 +15,7 @@
 #include "pellucid/scene/block_classes_storage.h"
 #include "pellucid/scene/transfer_tables_storage.h"
 #include "pellucid/scene/volume.h"
+#include "tests/scenes/makers.h"
 
 namespace pellucid {
 namespace {
@@ -25,17 +26,8 @@ using Points = std::vector<TransferFunction::Point>;
 /// Not so few that the blocks' bends are a reason.
 constexpr double any_bending = 1e9;
 
-Volume make_volume(const std::array<int, 3>& values, const Field& field) {
-  std::vector<float> data;
-  for (int z = 0; z < values[2]; ++z) {
-    for (int y = 0; y < values[1]; ++y) {
-      for (int x = 0; x < values[0]; ++x) data.push_back(static_cast<float>(field(x, y, z)));
-    }
-  }
-  Volume::Description description;
-  description.dimensions = values;
-  description.name = "smooth";
-  return {description, DataArray<float>(std::move(data))};
+scenes::VolumePointer make_volume(const std::array<int, 3>& values, const Field& field) {
+  return scenes::make_volume<float>(scenes::grid_description(values), field);
 }
 
 Points line() {
@@ -78,9 +70,9 @@ constexpr std::array<int, 3> size{65, 33, 33};  // two groups of 4³ blocks
 TEST(SmoothBlocksTest, WavesOfTwelveCellsAreAndThoseOfFiveAreNot) {
   for (const Vec3<double> direction :
        {Vec3<double>{1, 0, 0}, Vec3<double>{0, 1, 0}, Vec3<double>{1, 0, 1}}) {
-    const Volume slow = make_volume(size, wave(12, direction)),
-                 fast = make_volume(size, wave(5, direction));
-    const SmoothBlocksOf yes(slow, line()), no(fast, line());
+    const auto slow = make_volume(size, wave(12, direction)),
+               fast = make_volume(size, wave(5, direction));
+    const SmoothBlocksOf yes(*slow, line()), no(*fast, line());
     EXPECT_EQ(yes.count(), yes.all());
     EXPECT_GE(yes.classes().smooth().longest_step, 3);
     EXPECT_LE(yes.classes().smooth().longest_step, longest_sampled_step);
@@ -90,20 +82,20 @@ TEST(SmoothBlocksTest, WavesOfTwelveCellsAreAndThoseOfFiveAreNot) {
 }
 
 TEST(SmoothBlocksTest, QuadraticsAre) {
-  const Volume round = make_volume(size, [](int x, int y, int z) {
+  const auto round = make_volume(size, [](int x, int y, int z) {
     return ((x - 20) * (x - 20) + (y - 7) * (y - 7) + z * z) * 1e-3 - 1;
   });
-  const SmoothBlocksOf found(round, line());
+  const SmoothBlocksOf found(*round, line());
   EXPECT_EQ(found.count(), found.all());
   EXPECT_EQ(found.classes().smooth().longest_step, longest_sampled_step);
 }
 
 TEST(SmoothBlocksTest, OneOddVoxelTakesItsGroupAlone) {
   const Field even = wave(30);
-  const Volume volume = make_volume(size, [&](int x, int y, int z) {
+  const auto volume = make_volume(size, [&](int x, int y, int z) {
     return even(x, y, z) + (x == 12 && y == 13 && z == 14 ? 0.5 : 0);
   });
-  const SmoothBlocksOf found(volume, line());
+  const SmoothBlocksOf found(*volume, line());
   for (int k = 0; k < 4; ++k) {
     for (int j = 0; j < 4; ++j) {
       for (int i = 0; i < 8; ++i) {
@@ -117,13 +109,13 @@ TEST(SmoothBlocksTest, NoiseIsNot) {
   std::mt19937 random(3);
   std::uniform_real_distribution<double> uniform(-1, 1);
   const Field even = wave(30);
-  const Volume volume =
+  const auto volume =
       make_volume(size, [&](int x, int y, int z) { return even(x, y, z) + 0.1 * uniform(random); });
-  EXPECT_EQ(SmoothBlocksOf(volume, line()).count(), 0);
+  EXPECT_EQ(SmoothBlocksOf(*volume, line()).count(), 0);
 }
 
 TEST(SmoothBlocksTest, NarrowFeaturesOfTheTransferFunctionAreNot) {
-  const Volume volume = make_volume(size, wave(24));
+  const auto volume = make_volume(size, wave(24));
   Points peak, color, teeth, smooth;
   for (int i = 0; i < 256; ++i) {
     const double v = -1 + i / 127.5, s = (v - 0.1) / 0.05;
@@ -133,25 +125,25 @@ TEST(SmoothBlocksTest, NarrowFeaturesOfTheTransferFunctionAreNot) {
     teeth.push_back({v, 1 + 0.5 * v + (i / 4 % 2 == 0 ? 0.05 : 0.0), {1, 0.5, 0.2}});
     smooth.push_back({v, 1 + 0.5 * v, {0.5 + 0.5 * std::sin(v), 0.5, 0.5 - 0.3 * v}});
   }
-  EXPECT_LT(SmoothBlocksOf(volume, peak).count(), 64);
-  EXPECT_LT(SmoothBlocksOf(volume, color).count(), 64);
-  EXPECT_LT(SmoothBlocksOf(volume, teeth).count(), 8);
-  EXPECT_EQ(SmoothBlocksOf(volume, smooth).count(), SmoothBlocksOf(volume, smooth).all());
+  EXPECT_LT(SmoothBlocksOf(*volume, peak).count(), 64);
+  EXPECT_LT(SmoothBlocksOf(*volume, color).count(), 64);
+  EXPECT_LT(SmoothBlocksOf(*volume, teeth).count(), 8);
+  EXPECT_EQ(SmoothBlocksOf(*volume, smooth).count(), SmoothBlocksOf(*volume, smooth).all());
 }
 
 TEST(SmoothBlocksTest, NoneWhereNothingMayBend) {
-  const Volume volume = make_volume(size, wave(30));
-  EXPECT_EQ(SmoothBlocksOf(volume, line(), 0).count(), 0);
-  EXPECT_EQ(SmoothBlocksOf(volume, line(), 1e-9).count(), 0);
-  const SmoothBlocksOf all(volume, line());
+  const auto volume = make_volume(size, wave(30));
+  EXPECT_EQ(SmoothBlocksOf(*volume, line(), 0).count(), 0);
+  EXPECT_EQ(SmoothBlocksOf(*volume, line(), 1e-9).count(), 0);
+  const SmoothBlocksOf all(*volume, line());
   EXPECT_EQ(all.count(), all.all());
 }
 
 TEST(SmoothBlocksTest, LocalNumbersAreThoseOfTheBlocksAround) {
-  const Volume volume = make_volume({73, 41, 50}, [](int x, int y, int z) {
+  const auto volume = make_volume({73, 41, 50}, [](int x, int y, int z) {
     return std::sin(0.004 * x * x) * 0.3 + 0.2 * std::cos(0.1 * y + 0.2 * z);
   });
-  const SmoothBlocksOf found(volume, line());
+  const SmoothBlocksOf found(*volume, line());
   ASSERT_GT(found.count(), 0);
   const SmoothBlocks smooth = found.classes().smooth();
   const BlockRecords& records = found.records();
@@ -188,8 +180,8 @@ TEST(SmoothBlocksTest, LocalNumbersAreThoseOfTheBlocksAround) {
 }
 
 TEST(SmoothBlocksTest, LevelsAreThoseOfSmoothCubes) {
-  const Volume volume = make_volume(size, wave(30));
-  const SmoothBlocksOf found(volume, line());
+  const auto volume = make_volume(size, wave(30));
+  const SmoothBlocksOf found(*volume, line());
   for (int b = 0; b < found.all(); ++b) {
     EXPECT_EQ(found.classes().view()[b].level, BlockClasses::highest_level) << b;
   }
@@ -197,7 +189,7 @@ TEST(SmoothBlocksTest, LevelsAreThoseOfSmoothCubes) {
 
 TEST(SmoothBlocksTest, AreTheSameInParallel) {
   const Field even = wave(16);
-  const Volume volume = make_volume({73, 60, 70}, [&](int x, int y, int z) {
+  const auto volume = make_volume({73, 60, 70}, [&](int x, int y, int z) {
     return even(x, y, z) + (x % 40 == 12 && y == 13 ? 0.5 : 0);
   });
   const ParallelFor threads = [](int count, const std::function<void(int, int)>& body) {
@@ -207,7 +199,7 @@ TEST(SmoothBlocksTest, AreTheSameInParallel) {
     }
     for (std::thread& t : all) t.join();
   };
-  const SmoothBlocksOf serial(volume, line()), parallel(volume, line(), any_bending, threads);
+  const SmoothBlocksOf serial(*volume, line()), parallel(*volume, line(), any_bending, threads);
   EXPECT_GT(serial.count(), 0);
   EXPECT_LT(serial.count(), serial.all());
   const SmoothBlocks a = serial.classes().smooth(), b = parallel.classes().smooth();

@@ -7,6 +7,10 @@
 
 namespace pellucid {
 
+/// The mean square that mean_square_of_bend() has where its four steps have nothing to do with each
+/// other.
+inline constexpr float mean_square_of_strange_bends = 38.0f / (9 * 720);
+
 /// What samples of trilinear data do not know of these: the mean square, over where in a cell they
 /// begin, of what four steps of Simpson's rule err because of a bend of 1 along one axis, of which
 /// a step takes so many cells; in units of the step squared.
@@ -30,7 +34,13 @@ T mean_square_of_bend(T cells) noexcept {
 /// The same where the bend changes so much on the way that no step has to do with the next.
 template <class T>
 T mean_square_of_bends(T cells) noexcept {
-  return min(T(38.0f / (9 * 720)), T(0.03f) * cells * cells * cells);
+  return min(T(mean_square_of_strange_bends), T(0.03f) * cells * cells * cells);
+}
+
+/// What is charged: how much the bend changes on the way is not known.
+template <class T>
+T charged_for_bend(T cells) noexcept {
+  return mean_square_of_bend(cells) + T(0.25f) * mean_square_of_bends(cells);
 }
 
 /// Errors of a ray's spans that have nothing to do with each other: their squares add up, and the

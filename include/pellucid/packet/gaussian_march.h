@@ -128,8 +128,7 @@ class GaussianMarch {
       F weight = F(1.25f * 0.03f) * cells * cells * cells;
       const M longer = alive & (cells > F(0.5f));
       if (any(longer)) {
-        weight = select(longer, mean_square_of_bend(cells) + F(0.25f) * mean_square_of_bends(cells),
-                        weight);
+        weight = select(longer, charged_for_bend(cells), weight);
       }
       variance += weight * (s.ends.bending[a] * s.ends.bending[a]);
     }

@@ -31,9 +31,7 @@ class PacketSamples {
   PELLUCID_ALWAYS_INLINE void sample(const F* offset, F* value) const noexcept {
     Vec3<F> local[K];
     std::int32_t on[K][N];
-    places_.template find<K>(offset, on, local);
-    // Addresses are loaded from there: taking lanes out of registers costs more.
-    asm("" : "+m"(on));
+    find<K>(offset, on, local);
     for (int k = 0; k < K; ++k) {
       value[k] = load_trilinear<Value, N>(base_, on[k], places_.row, places_.slice, local[k]);
     }
@@ -45,8 +43,7 @@ class PacketSamples {
   PELLUCID_ALWAYS_INLINE void load_ahead(const F* offset) const noexcept {
     Vec3<F> local[K];
     std::int32_t on[K][N];
-    places_.template find<K>(offset, on, local);
-    asm("" : "+m"(on));
+    find<K>(offset, on, local);
     const std::ptrdiff_t rows[4] = {0, places_.row, places_.slice, places_.slice + places_.row};
     for (int k = 0; k < K; ++k) {
       for (int l = 0; l < N; ++l) {
@@ -57,6 +54,14 @@ class PacketSamples {
   }
 
  private:
+  template <int K>
+  PELLUCID_ALWAYS_INLINE void find(const F* offset, std::int32_t (&on)[K][N],
+                                   Vec3<F>* local) const noexcept {
+    places_.template find<K>(offset, on, local);
+    // Addresses are loaded from there: taking lanes out of registers costs more.
+    asm("" : "+m"(on));
+  }
+
   const PacketGrid<Value>& grid_;
   SamplePlaces<N> places_;
   const Value* base_[N];  ///< the anchor's cell

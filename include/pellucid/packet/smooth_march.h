@@ -166,7 +166,7 @@ class SmoothMarch {
   /// The optical depth of a step at most: the rule goes by what is small against 1.
   static constexpr float deepest = 1;
   /// Of a corner, as mean_square_of_bends() of many; doubled, for `fastest` is a mean over a step.
-  static constexpr float corner = 2 * 38.0f / (9 * 720);
+  static constexpr float corner = 2 * mean_square_of_strange_bends;
   /// mean_square_of_bend() above which steps are in step with the cells, and by how much shorter
   /// ones are taken then.
   static constexpr float resonant = 0.004f, first_part = 0.62f;
@@ -204,7 +204,7 @@ class SmoothMarch {
   void weigh(F step, F* weight) const noexcept {
     for (int a = 0; a < 3; ++a) {
       const F cells = abs(step * direction_in_float_[a]);
-      weight[a] = mean_square_of_bend(cells) + F(0.25f) * mean_square_of_bends(cells);
+      weight[a] = charged_for_bend(cells);
     }
   }
   F worst(const F* weight) const noexcept { return max(weight[0], max(weight[1], weight[2])); }
@@ -290,7 +290,7 @@ class SmoothMarch {
   Material<F> front_, back_;  ///< of the steps that were looked at
   F front_value_{0}, back_value_{0};
   // Of what was taken: squares of roughness times bend along each axis, over length; and the
-  // largest of 1 / the longest step.
+  // largest of 1 / the longest step, infinite where a stretch was refused.
   F bends_[3] = {F(0), F(0), F(0)}, shortest_wave_{0};
   F seen_{0};  ///< their length, by the square of what they show of it
 };
