@@ -58,7 +58,7 @@ __global__ void walk_in_float(Tetrahedra mesh, RayView<double> view, std::int32_
   MeshWalk<float> walk(mesh);
   for (walk.enter(true, face, code, load); walk.ahead() != Tetrahedron::outside;) {
     walk.step(true, load);
-    *area += walk.face().area[0] + walk.face().weight_error(0.0f);
+    *area += walk.face().area[0] + walk.face().error(0.0f);
   }
 }
 

@@ -65,15 +65,16 @@ PELLUCID_HD inline RayView<double> make_ray_view(const Ray<double>& ray, const V
 template <class T>
 struct Side {
   T area{};
+  T size{};  ///< of both products that it is the difference of, without their signs
   mask_t<T> left = mask_t<T>(false);  ///< whether the sign is positive
 };
 template <class T>
 PELLUCID_HD Side<T> side_of(const SeenPoint<T>& a, const SeenPoint<T>& b) noexcept {
-  const T area = determinant(a.x, a.y, b.x, b.y);
+  const T area = determinant(a.x, a.y, b.x, b.y), size = abs(a.x * b.y) + abs(a.y * b.x);
   const auto met = area == T(0);
   auto left = area > T(0);
   if (any(met)) left = left | (met & ((a.y > b.y) | ((a.y == b.y) & (b.x > a.x))));
-  return {area, left};
+  return {area, size, left};
 }
 
 }  // namespace pellucid

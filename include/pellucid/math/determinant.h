@@ -27,13 +27,14 @@ PELLUCID_HD T product_error(T a, T b, T product) noexcept {
 template <class T>
 struct RoundedDeterminant {
   T value{};
+  T size{};  ///< |a_x b_y| + |a_y b_x|
   mask_t<T> certain = mask_t<T>(false);
 };
 template <class T>
 PELLUCID_HD RoundedDeterminant<T> rounded_determinant(T a_x, T a_y, T b_x, T b_y) noexcept {
   const T p = a_x * b_y, q = a_y * b_x;
-  const T difference = p - q;
-  return {difference, abs(difference) > T(4 * rounding_unit<T>) * (abs(p) + abs(q))};
+  const T difference = p - q, size = abs(p) + abs(q);
+  return {difference, size, abs(difference) > T(4 * rounding_unit<T>) * size};
 }
 
 /// a_x b_y - a_y b_x, twice the signed area of the triangle (0, a, b). Its sign is the exact one,

@@ -99,15 +99,13 @@ class MeshMarch {
     const T inverse = T(1) / select(flat, T(1), sum);
     const T to_second = select(flat, T(S(1.0 / 3)), face.area[1] * inverse),
             to_third = select(flat, T(S(1.0 / 3)), face.area[2] * inverse);
-    // As SeenFace::weight_error().
-    F across(0);
+    F across(0), size(0);
     for (int i = 0; i < 3; ++i) {
       across += abs(convert<float>(face.seen[i].x)) + abs(convert<float>(face.seen[i].y));
+      size += convert<float>(face.size[i]);
     }
-    constexpr float u = rounding_unit<float>;
-    const F coarse = blur_ + F(static_cast<float>(rounding_unit<S>)) * across;
     const F off =
-        select(flat, F(1), min(F(3.01f) * coarse * across * convert<float>(inverse), F(1)));
+        select(flat, F(1), interpolation_error<S>(size, across, blur_, convert<float>(inverse)));
     // From the first point's, and how far that may be off.
     const auto interpolate = [&](const T& a, const T& b, const T& c, F& error) noexcept {
       const T second = b - a, third = c - a;
@@ -117,7 +115,7 @@ class MeshMarch {
     const SeenPoint<T>* p = face.seen;
     F t_error, value_error(0);
     const T t = interpolate(p[0].t, p[1].t, p[2].t, t_error);
-    t_error += t_blur_;
+    t_error += known_to(t);
     T value, front_value;
     if (field_.per_cell) {
       value = front_value = load_cells(tetrahedron);
@@ -141,6 +139,7 @@ class MeshMarch {
     const M vacuum = is_nan(front_value + value);
     const F error = max(value_error_, value_error);
 
+    constexpr float u = rounding_unit<float>;
     const F f = convert<float>(at_begin), b = convert<float>(value);
     const F rounding = F(4 * u) * max(abs(f), abs(b)) + error;
     I note = select(overlaps, I(SpanNote::overlaps), I(0));
@@ -171,7 +170,8 @@ class MeshMarch {
     }
     beside_vacuum += select(on & (vacuum | !ahead), t_error_ + t_error, F(0));
     // Past a hit that may not be the way's own: for a ray by itself to find out.
-    const M past = on & (t - T(4) * rays.t_blur > next_t_) & (walk_.ahead() >= I(0));
+    const M past =
+        on & (t - T(4) * (rays.t_blur + T(rays.t_rounding)) > next_t_) & (walk_.ahead() >= I(0));
     if (any(past)) {
       rays.crowded = rays.crowded | past;
       stop(past);
@@ -186,6 +186,13 @@ class MeshMarch {
     // Behind vacuum the data begin anew.
     first_ = vacuum;
     return found;
+  }
+
+  /// How far a parameter is off that is interpolated, weights aside: points' are rounded, and it
+  /// is.
+  F known_to(const T& t) const noexcept {
+    return t_blur_ + F(static_cast<float>(2.1 * static_cast<double>(rounding_unit<S>))) *
+                         abs(convert<float>(t));
   }
 
   T load_cells(I tetrahedron) const noexcept {
@@ -211,7 +218,7 @@ class MeshMarch {
   void begin_paths(M lanes) noexcept {
     struct {
       std::int32_t point[3][N], code[N];
-      S x[3][N], y[3][N], t[3][N], area[3][N], value[3][N], next[N];
+      S x[3][N], y[3][N], t[3][N], area[3][N], size[3][N], value[3][N], next[N];
     } all{};
     unsigned begun = 0, turned = 0;
     for (unsigned left = bits(lanes); left != 0; left &= left - 1) {
@@ -230,6 +237,7 @@ class MeshMarch {
         all.y[i][l] = face.seen[i].y;
         all.t[i][l] = face.seen[i].t;
         all.area[i][l] = face.area[i];
+        all.size[i][l] = face.size[i];
         all.value[i][l] = face.carried[i];
       }
     }
@@ -241,6 +249,7 @@ class MeshMarch {
       face.point[i] = I::load(all.point[i]);
       face.seen[i] = {T::load(all.x[i]), T::load(all.y[i]), T::load(all.t[i])};
       face.area[i] = T::load(all.area[i]);
+      face.size[i] = T::load(all.size[i]);
       face.carried[i] = T::load(all.value[i]);
     }
     face.left = M::from_bits(turned);
@@ -252,13 +261,14 @@ class MeshMarch {
     const auto range = [](const T& a, const T& b, const T& c) noexcept {
       return convert<float>(abs(b - a) + abs(c - a));
     };
-    const F off = convert<float>(face.weight_error(rays.blur));
+    const F off = convert<float>(face.error(rays.blur));
     const SeenPoint<T>* p = face.seen;
     const T* v = face.carried;
     next_t_ = select(on, T::load(all.next), next_t_);
-    t_ = select(on, interpolate(p[0].t, p[1].t, p[2].t), t_);
+    const T t = interpolate(p[0].t, p[1].t, p[2].t);
+    t_ = select(on, t, t_);
     value_ = select(on, interpolate(v[0], v[1], v[2]), value_);
-    t_error_ = select(on, off * range(p[0].t, p[1].t, p[2].t) + t_blur_, t_error_);
+    t_error_ = select(on, off * range(p[0].t, p[1].t, p[2].t) + known_to(t), t_error_);
     value_error_ = select(on, off * range(v[0], v[1], v[2]), value_error_);
     first_ = first_ | on;
     walk_.enter(on, face, I::load(all.code),

@@ -189,8 +189,11 @@ class MeshPacket {
       const F near = select(range > F(2) * value_error, F(2) * value_error / range, F(1));
       steep = select(touches, slope + near * (interval.steepest - slope), slope);
     }
-    F depth_error = length * (value_error * steep + F(8 * u) * interval.largest) +
-                    place_error_ * (slope * range);
+    // An end that is elsewhere, of the same data, takes half of what extinction changes by from one
+    // side and gives it to the other; where that is no line, up to all of it.
+    const F moved = place_error_ * select((from_ > F(0)) | (place < F(1)), F(1), F(0.5f));
+    F depth_error =
+        length * (value_error * steep + F(8 * u) * interval.largest) + moved * (slope * range);
     if (any(end_error_ > F(0))) {
       depth_error += end_error_ * (length / span_length_) * interval.largest;
     }

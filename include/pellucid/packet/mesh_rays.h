@@ -64,16 +64,17 @@ class MeshRays {
       direction_[a] = convert<float>(D::load(direction[a]));
     }
     blur = convert<S>(load([](const View& v) { return v.blur; }));
+    t_blur = blur * T(static_cast<S>(1 / unit));
     // A parameter is no farther from the middle than the diagonal.
-    t_blur = blur * T(static_cast<S>(1 / unit)) +
-             T(static_cast<S>(static_cast<double>(rounding_unit<S>) * extent));
+    t_rounding = static_cast<S>(static_cast<double>(rounding_unit<S>) * extent);
     eye = convert<S>(D::load(eye_at));
     find_hits(M::from_bits(count == N ? (1u << N) - 1u : (1u << count) - 1u));
   }
 
   T blur;          ///< how far what is seen may be off across the ray, beside its rounding to S, in
                    ///< the units of such places
-  T t_blur;        ///< and along it, all in all
+  T t_blur;        ///< and along it, in world units
+  S t_rounding;    ///< what rounding to S takes from a parameter at most
   T eye;           ///< the parameter of where the rays begin
   T begin, end;    ///< where the rays may be in the mesh
   M meets{false};  ///< whether they meet it

@@ -6,25 +6,43 @@
 
 namespace pellucid {
 
+/// What a number is off by at most that is interpolated between three seen points, as a share of
+/// their numbers' range, or 1: where places across the ray are off by `blur`, and they and the
+/// numbers are rounded to T. `inverse`: of the three areas' sum; `size`: of their products, all in
+/// all; `across`: the sum of |x| + |y|.
+///
+/// Areas that are off by e_i move a value v by Σ e_i (v_i - v) / Σ area_i; products are off by 3 u
+/// of their size, what blur does aside, and areas are rounded: r = Σ |e_i| / Σ area_i. The true
+/// weights may be below 0 then, by r/(1 - r), so that v is that much outside of the range:
+/// r/(1 - r) <= r + 2 r² up to 1/2. Rounding of weights, differences and numbers takes 8 u.
+template <class T, class F>
+PELLUCID_HD F interpolation_error(F size, F across, F blur, F inverse) noexcept {
+  using S = scalar_t<F>;
+  constexpr S u = static_cast<S>(rounding_unit<T>);
+  const F moved = F(S(4.1) * u) * size + blur * (F(S(2.1)) * across + F(S(6.3)) * blur);
+  const F share = moved * inverse + F(S(8.1) * u);
+  return min(share + F(2) * (share * share), F(1));
+}
+
 /// A face of a mesh that a ray goes through.
 template <class T>
 struct SeenFace {
   index_t<T> point[3];
   SeenPoint<T> seen[3];
   T area[3];     ///< |twice the area| between the ray and the edge opposite to the point
+  T size[3];     ///< of the products that it is the difference of (Side)
   T carried[3];  ///< what else is wanted of the points
   mask_t<T> left = mask_t<T>(false);  ///< how the points turn around the ray, in their order
 
-  /// A bound on how far a weight may be off where the places of the points across the ray are off
-  /// by `blur`, and rounded to T.
-  PELLUCID_HD T weight_error(T blur) const noexcept {
+  /// interpolation_error() with weights().
+  PELLUCID_HD T error(T blur) const noexcept {
     T across = T(0);
     for (const SeenPoint<T>& p : seen) across += abs(p.x) + abs(p.y);
-    // An area is off by what its points are off, times their sizes; a weight by that and by its
-    // share of what all three are off.
-    const T moved = T(3) * (blur + T(rounding_unit<T>) * across) * across;
     const T sum = area[0] + area[1] + area[2];
-    return select(moved < sum, moved / select(moved < sum, sum, T(1)), T(1));
+    const auto flat = !(sum > T(0));
+    return select(flat, T(1),
+                  interpolation_error<T>(size[0] + size[1] + size[2], across, blur,
+                                         T(1) / select(flat, T(1), sum)));
   }
 
   /// What the points contribute where the ray goes through, in [0, 1], in all 1 to 3 u.
@@ -49,6 +67,7 @@ PELLUCID_HD mask_t<T> turn_around_ray(SeenFace<T>& face) noexcept {
   for (int i = 0; i < 3; ++i) {
     const Side<T> side = side_of(face.seen[(i + 1) % 3], face.seen[(i + 2) % 3]);
     face.area[i] = abs(side.area);
+    face.size[i] = side.size;
     left[i] = side.left;
   }
   face.left = left[0];

@@ -34,7 +34,7 @@ PELLUCID_HD inline MeshPlace place_on(const SeenFace<double>& face, const MeshFi
                                       double blur) noexcept {
   double weight[3];
   face.weights(weight);
-  const double off = face.weight_error(blur);
+  const double off = face.error(blur);
   // From the first point's, so that equal values stay what they are.
   const auto interpolate = [&](double a, double b, double c) noexcept {
     return a + (weight[1] * (b - a) + weight[2] * (c - a));

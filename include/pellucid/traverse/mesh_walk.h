@@ -32,6 +32,7 @@ class MeshWalk {
       assign(begun, face_.seen[i].y, face.seen[i].y);
       assign(begun, face_.seen[i].t, face.seen[i].t);
       assign(begun, face_.area[i], face.area[i]);
+      assign(begun, face_.size[i], face.size[i]);
       assign(begun, face_.carried[i], face.carried[i]);
     }
     assign(begun, face_.left, face.left);
@@ -59,7 +60,7 @@ class MeshWalk {
     for (int i = 0; i < 3; ++i) {
       const RoundedDeterminant<T> area =
           rounded_determinant(seen.x, seen.y, corner[i].x, corner[i].y);
-      side[i] = {area.value, area.value > T(0)};
+      side[i] = {area.value, area.size, area.value > T(0)};
       certain = certain & area.certain;
     }
     if (any(on & !certain)) {
@@ -87,6 +88,8 @@ class MeshWalk {
       assign(drop[i], face_.carried[i], carried);
       assign(drop[i], face_.area[next], abs(side[last].area));
       assign(drop[i], face_.area[last], abs(side[next].area));
+      assign(drop[i], face_.size[next], side[last].size);
+      assign(drop[i], face_.size[last], side[next].size);
     }
     const Index here = (code_ >> 2) << 2;
     left_by_ = select(on, here + place, left_by_);
