@@ -35,7 +35,7 @@ struct SpanNote {
   static constexpr std::int32_t handed_back = 1, overlaps = 2;
 };
 
-/// Rays in lanes through a mesh, in numbers S, some steps at a time.
+/// Rays in lanes through a mesh, in numbers S, tetrahedron by tetrahedron.
 template <class S, int N>
 class MeshMarch {
  public:
@@ -71,28 +71,31 @@ class MeshMarch {
     stop(lost);
   }
 
-  /// Goes on until the rows are full or all rays are at their end. Bit s of a lane of the result:
-  /// its s-th row holds a span that absorbs. absorbs(least, most, note): whether data in that range
-  /// do, and what is to be noted of them.
+  // A step of each lane, in parts as those of MeshWalk.
+
+  [[gnu::flatten]] void cross() noexcept {
+    tetrahedron_ = select(walking, walk_.ahead() >> 2, I(0));
+    walk_.cross(walking);
+  }
+  [[gnu::flatten]] void load_ahead() noexcept { walk_.load_ahead(); }
+  [[gnu::flatten]] void see_ahead() noexcept {
+    walk_.see_ahead([this](I point, SeenPoint<T>& q, T& v) noexcept { rays.see(point, q, v); });
+  }
+  /// Puts what lies in the tetrahedra that were crossed down in row s, and begins anew where rays
+  /// have left the mesh. Returns the lanes whose span absorbs: absorbs(least, most, note), whether
+  /// data in that range do, and what is to be noted of them.
   template <class Absorbs>
-  I fill(Rows& rows, I& cells, Absorbs&& absorbs) noexcept {
-    I found(0);
-    for (int s = 0; s < Rows::steps && any(walking); ++s) {
-      cells += select(walking, I(1), I(0));
-      found = found + select(step(rows, s * N, absorbs), I(1 << s), I(0));
-      const M ended = walking & (walk_.ahead() < I(0));
-      if (any(ended)) end_paths(ended);
-    }
+  M put_down(Rows& rows, int s, Absorbs&& absorbs) noexcept {
+    const M found = find_span(rows, s * N, absorbs);
+    const M ended = walking & (walk_.ahead() < I(0));
+    if (any(ended)) end_paths(ended);
     return found;
   }
 
  private:
-  /// One tetrahedron of each lane.
   template <class Absorbs>
-  [[gnu::flatten]] M step(Rows& rows, int at, Absorbs&& absorbs) noexcept {
+  [[gnu::flatten]] M find_span(Rows& rows, int at, Absorbs&& absorbs) noexcept {
     const M on = walking;
-    const I tetrahedron = select(on, walk_.ahead() >> 2, I(0));
-    walk_.step(on, [this](I point, SeenPoint<T>& q, T& v) noexcept { rays.see(point, q, v); });
     const SeenFace<T>& face = walk_.face();
     const T sum = face.area[0] + face.area[1] + face.area[2];
     const M flat = !(sum > T(0));
@@ -118,7 +121,7 @@ class MeshMarch {
     t_error += known_to(t);
     T value, front_value;
     if (field_.per_cell) {
-      value = front_value = load_cells(tetrahedron);
+      value = front_value = load_cells(tetrahedron_);
     } else {
       value = interpolate(face.carried[0], face.carried[1], face.carried[2], value_error);
       front_value = value_;
@@ -278,6 +281,7 @@ class MeshMarch {
   const MeshField field_;
   MeshWalk<T> walk_;
   F blur_, t_blur_;
+  I tetrahedron_{0};  ///< that is crossed
 
   // Where the lanes are: on the face reached last, and how far along the ray all in all.
   T t_, value_;

@@ -45,13 +45,23 @@ class MeshPacket {
     lane_ = I::load(lane);
   }
 
-  void run() noexcept {
-    while (any(march_.walking)) {
-      waiting_ = march_.fill(rows_, cells_, [this](F least, F most, I& note) noexcept {
-        return absorbs(least, most, note);
-      });
-      march_.stop_lost(cells_);
-      for (take_spans(); any(pending_); take_spans()) integrate_pieces();
+  /// Integrates the rays of K packets. They march by turns: while one waits for what it loads the
+  /// others go on.
+  template <int K>
+  static void run(MeshPacket* const (&packets)[K]) noexcept {
+    const auto walking = [&] {
+      M lanes(false);
+      for (const MeshPacket* p : packets) lanes = lanes | p->march_.walking;
+      return any(lanes);
+    };
+    while (walking()) {
+      for (int s = 0; s < Room::steps && walking(); ++s) {
+        for (MeshPacket* p : packets) p->march_.cross();
+        for (MeshPacket* p : packets) p->march_.load_ahead();
+        for (MeshPacket* p : packets) p->march_.see_ahead();
+        for (MeshPacket* p : packets) p->put_down(s);
+      }
+      for (MeshPacket* p : packets) p->integrate();
     }
   }
 
@@ -80,6 +90,17 @@ class MeshPacket {
   }
 
  private:
+  void put_down(int s) noexcept {
+    cells_ += select(march_.walking, I(1), I(0));
+    const M found = march_.put_down(
+        rows_, s, [this](F least, F most, I& note) noexcept { return absorbs(least, most, note); });
+    waiting_ = waiting_ + select(found, I(1 << s), I(0));
+  }
+  void integrate() noexcept {
+    march_.stop_lost(cells_);
+    for (take_spans(); any(pending_); take_spans()) integrate_pieces();
+  }
+
   /// As in PacketIntegrator.
   static constexpr float narrowest = 1.0f / 16;
   /// What a piece may take of all that is left of the budget for rounding, which shorter pieces

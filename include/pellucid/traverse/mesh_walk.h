@@ -37,7 +37,8 @@ class MeshWalk {
     }
     assign(begun, face_.left, face.left);
     assign(begun, code_, code);
-    look_ahead(load);
+    load_ahead();
+    see_ahead(load);
   }
 
   /// The face that was reached last.
@@ -51,6 +52,15 @@ class MeshWalk {
   /// carried) tells where the ray sees a point, and what is to be carried of it.
   template <class Load>
   PELLUCID_HD void step(Mask on, Load&& load) noexcept {
+    cross(on);
+    load_ahead();
+    see_ahead(load);
+  }
+
+  // The same in parts, for those who have something else to do until what each loads is there.
+
+  /// Finds the face by which the ray leaves the tetrahedron ahead, and which one lies behind it.
+  PELLUCID_HD void cross(Mask on) noexcept {
     const Index point = point_;
     const SeenPoint<T> seen = seen_;
     const T carried = carried_;
@@ -73,10 +83,13 @@ class MeshWalk {
     Mask drop[3];
     for (int i = 0; i < 3; ++i) drop[i] = on & forward[(i + 1) % 3] & !forward[(i + 2) % 3];
 
-    Index before = select(drop[0], face_.point[0], select(drop[1], face_.point[1], face_.point[2]));
-    Index place = select(point < before, Index(1), Index(0));
-    for (int i = 0; i < 3; ++i) {
-      place += select(face_.point[i] < before, Index(1), Index(0));
+    const Index before =
+        select(drop[0], face_.point[0], select(drop[1], face_.point[1], face_.point[2]));
+    Index place(0), behind = words_[4];
+    for (int i = 1; i < 4; ++i) {
+      const auto is_it = before == words_[i];
+      place = select(is_it, Index(i), place);
+      behind = select(is_it, words_[4 + i], behind);
     }
     for (int i = 0; i < 3; ++i) {
       // The areas between the new point and those that stay.
@@ -93,8 +106,18 @@ class MeshWalk {
     }
     const Index here = (code_ >> 2) << 2;
     left_by_ = select(on, here + place, left_by_);
-    code_ = select(on, of_four(words_ + 4, place), code_);
-    look_ahead(load);
+    code_ = select(on, behind, code_);
+  }
+  /// Loads the tetrahedron ahead.
+  PELLUCID_HD void load_ahead() noexcept {
+    const Index code = select(code_ < Index(0), Index(0), code_);
+    load_records<8>(mesh_.tetrahedron->corner, code >> 2, words_);
+    point_ = of_four(words_, code & Index(3));
+  }
+  /// Loads its point on the other side.
+  template <class Load>
+  PELLUCID_HD void see_ahead(Load&& load) noexcept {
+    load(point_, seen_, carried_);
   }
 
  private:
@@ -102,16 +125,6 @@ class MeshWalk {
     const Index low = select(which < Index(1), word[0], word[1]),
                 high = select(which < Index(3), word[2], word[3]);
     return select(which < Index(2), low, high);
-  }
-
-  /// Loads the tetrahedron ahead and its point on the other side, before they are wanted: whoever
-  /// asked has something to do until they are there.
-  template <class Load>
-  PELLUCID_HD void look_ahead(Load&& load) noexcept {
-    const Index code = select(code_ < Index(0), Index(0), code_);
-    load_records<8>(mesh_.tetrahedron->corner, code >> 2, words_);
-    point_ = of_four(words_, code & Index(3));
-    load(point_, seen_, carried_);
   }
 
   const Tetrahedra& mesh_;
