@@ -119,8 +119,10 @@ std::vector<MeshResult> measure_mesh_frames(const MeshFrameOptions& options) {
       if (!wants(options, name)) continue;
       if (!mesh) {
         options.say(source.name);
-        mesh = cut_into_tetrahedra(source.make(), {&value, 1}, parallel_for(default_threads()));
-        if (options.vtk) vtk = vtk_mesh(*mesh);
+        const UnstructuredGrid grid = source.make();
+        mesh = cut_into_tetrahedra(grid, {&value, 1}, parallel_for(default_threads()));
+        // As it is given, cut alike: not in the order that this program puts it into.
+        if (options.vtk) vtk = vtk_mesh(tetrahedra_of(grid), mesh->mesh().bounds());
       }
       MeshScene shown = named;
       shown.scene.mesh = mesh;

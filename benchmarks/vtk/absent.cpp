@@ -28,7 +28,7 @@ std::vector<std::int32_t> delaunay_tetrahedra(const std::vector<Vec3<double>>&) 
 
 struct VtkMesh {};
 
-std::shared_ptr<VtkMesh> vtk_mesh(const MeshChannels&) {
+std::shared_ptr<VtkMesh> vtk_mesh(const UnstructuredGrid&, const Box<double>&) {
   return nullptr;
 }
 

@@ -227,27 +227,32 @@ struct VtkMesh {
   vtkSmartPointer<Sweeper> sweeper = vtkSmartPointer<Sweeper>::New();
 };
 
-std::shared_ptr<VtkMesh> vtk_mesh(const MeshChannels& channels) {
+std::shared_ptr<VtkMesh> vtk_mesh(const UnstructuredGrid& tetrahedra, const Box<double>& bounds) {
   vtkLogger::SetStderrVerbosity(vtkLogger::VERBOSITY_ERROR);
   auto made = std::make_shared<VtkMesh>();
-  const TetrahedralMesh& mesh = channels.mesh();
-  made->bounds = mesh.bounds();
+  made->bounds = bounds;
   vtkNew<vtkPoints> points;
   points->SetDataTypeToDouble();
-  points->SetNumberOfPoints(static_cast<vtkIdType>(mesh.points().size()));
+  points->SetNumberOfPoints(static_cast<vtkIdType>(tetrahedra.points.size()));
   vtkNew<vtkFloatArray> values;
   values->SetName("value");
-  values->SetNumberOfTuples(static_cast<vtkIdType>(mesh.points().size()));
-  for (std::size_t i = 0; i < mesh.points().size(); ++i) {
-    const Vec3<double>& p = mesh.points()[i];
+  values->SetNumberOfTuples(static_cast<vtkIdType>(tetrahedra.points.size()));
+  for (std::size_t i = 0; i < tetrahedra.points.size(); ++i) {
+    const Vec3<double>& p = tetrahedra.points[i];
     points->SetPoint(static_cast<vtkIdType>(i), p.x, p.y, p.z);
-    values->SetValue(static_cast<vtkIdType>(i), static_cast<float>(channels.value(0, i)));
   }
+  std::visit(
+      [&](const auto& given) {
+        vtkIdType i = 0;
+        for (const auto value : given) values->SetValue(i++, static_cast<float>(value));
+      },
+      tetrahedra.arrays.at(0).values);
   made->grid->SetPoints(points);
   made->grid->GetPointData()->SetScalars(values);
-  made->grid->Allocate(static_cast<vtkIdType>(mesh.tetrahedra().size()));
-  for (const Tetrahedron& t : mesh.tetrahedra()) {
-    const vtkIdType ids[4] = {t[0], t[1], t[2], t[3]};
+  made->grid->Allocate(static_cast<vtkIdType>(tetrahedra.shapes.size()));
+  for (std::size_t t = 0; t < tetrahedra.corners.size(); t += 4) {
+    const std::int32_t* corner = tetrahedra.corners.data() + t;
+    const vtkIdType ids[4] = {corner[0], corner[1], corner[2], corner[3]};
     made->grid->InsertNextCell(VTK_TETRA, 4, ids);
   }
   made->sweeper->SetInputData(made->grid);

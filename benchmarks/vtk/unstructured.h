@@ -12,8 +12,9 @@ namespace pellucid::bench {
 /// A mesh as VTK's mappers want it, with what they make of it and keep.
 struct VtkMesh;
 
-/// Null where the program was built without VTK.
-std::shared_ptr<VtkMesh> vtk_mesh(const MeshChannels& mesh);
+/// `tetrahedra`: with one array of points; `bounds`: of those that cells use. Null where the
+/// program was built without VTK.
+std::shared_ptr<VtkMesh> vtk_mesh(const UnstructuredGrid& tetrahedra, const Box<double>& bounds);
 
 /// VTK's mappers for unstructured data on the processor, through Render() without the drawing of
 /// the picture, so that no display is needed. Its opacity is attenuation per unit distance here, so

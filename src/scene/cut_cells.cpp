@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "cut_arrays.h"
+#include "cut_order.h"
 
 namespace pellucid {
 
@@ -15,14 +16,18 @@ std::shared_ptr<const MeshChannels> cut_into_tetrahedra(const UnstructuredGrid& 
     return chosen_array(grid, choice).centering == Centering::cell;
   });
   CellCut cut = cut_cells(grid, with_cells, parallel);
+  std::vector<std::int32_t> numbers = put_in_spatial_order(cut, parallel);
 
   std::vector<MeshChannel> channels;
   channels.reserve(choices.size());
   for (const MeshArrayChoice& choice : choices) {
-    channels.push_back(chosen_channel(grid, choice, cut));
+    MeshChannel channel = chosen_channel(grid, choice, cut);
+    if (channel.centering == Centering::point) channel.values = reordered(channel.values, numbers);
+    channels.push_back(std::move(channel));
   }
   const auto mesh = std::make_shared<const TetrahedralMesh>(
-      TetrahedralMesh::Description{std::move(cut.points), std::move(cut.tetrahedra), grid.name},
+      TetrahedralMesh::Description{std::move(cut.points), std::move(cut.tetrahedra), grid.name,
+                                   std::move(numbers)},
       parallel);
   return std::make_shared<const MeshChannels>(mesh, std::move(channels));
 }

@@ -61,8 +61,10 @@ VolumeStatistics check_values(const TetrahedralMesh& mesh, const MeshChannel& ch
                               const std::vector<std::uint8_t>& used) {
   const VolumeScan s = scan_used(values, used);
   const auto at = [&](bool infinite) {
-    return std::string(channel.centering == Centering::point ? "point " : "tetrahedron ") +
-           std::to_string(first_beyond(values, used, infinite));
+    const std::size_t first = first_beyond(values, used, infinite);
+    return channel.centering == Centering::point
+               ? "point " + std::to_string(mesh.point_number(first))
+               : mesh.named(first);
   };
   if (const std::size_t n = s.statistics.infinite; n > 0) {
     fail(mesh, "channel \"" + channel.name + "\" has " + std::to_string(n) + " infinite value" +

@@ -46,6 +46,10 @@ class Check {
     if (d_.points.size() > static_cast<std::size_t>(std::numeric_limits<std::int32_t>::max())) {
       fail("more points than can be addressed; take a part of the mesh");
     }
+    if (!d_.point_numbers.empty() && d_.point_numbers.size() != d_.points.size()) {
+      fail("there are " + std::to_string(d_.point_numbers.size()) + " numbers for " +
+           std::to_string(d_.points.size()) + " points; give one for each, or none");
+    }
   }
 
   /// `corners` in ascending order.
@@ -64,7 +68,10 @@ class Check {
       const Vec3<double>& p = d_.points[static_cast<std::size_t>(corners[k])];
       for (int a = 0; a < 3; ++a) {
         if (std::fabs(p[a]) <= largest_coordinate) continue;
-        fail("point " + std::to_string(corners[k]) + " is " + tuple(p) +
+        const std::int32_t number = d_.point_numbers.empty()
+                                        ? corners[k]
+                                        : d_.point_numbers[static_cast<std::size_t>(corners[k])];
+        fail("point " + std::to_string(number) + " is " + tuple(p) +
              ", but coordinates must be finite and within 2.1e37");
       }
     }
@@ -113,9 +120,10 @@ TetrahedralMesh::TetrahedralMesh(Description description, const ParallelFor& par
   });
   description.tetrahedra = {};
   points_ = std::move(description.points);
+  point_numbers_ = std::move(description.point_numbers);
   const std::int32_t crowded = pair_faces(tetrahedra_, points_.size(), run);
   if (crowded >= 0) {
-    check.fail("a face of tetrahedron " + std::to_string(crowded) +
+    check.fail("a face of " + named(static_cast<std::size_t>(crowded)) +
                " belongs to more than two tetrahedra: cells stand twice, or overlap; remove them");
   }
   measure(run);
@@ -191,9 +199,21 @@ void TetrahedralMesh::measure(const ParallelFor& parallel) {
   statistics_.mean_edge = edges / (6 * static_cast<double>(tetrahedra_.size()));
 }
 
+std::string TetrahedralMesh::named(std::size_t tetrahedron) const {
+  std::int32_t number[4];
+  for (int i = 0; i < 4; ++i) {
+    number[i] = point_number(static_cast<std::size_t>(tetrahedra_[tetrahedron][i]));
+  }
+  std::sort(number, number + 4);
+  return "the tetrahedron of points " + std::to_string(number[0]) + ", " +
+         std::to_string(number[1]) + ", " + std::to_string(number[2]) + " and " +
+         std::to_string(number[3]);
+}
+
 std::size_t TetrahedralMesh::memory() const noexcept {
   return points_.size() * sizeof(points_[0]) + tetrahedra_.size() * sizeof(tetrahedra_[0]) +
-         tree_.size() * sizeof(tree_[0]) + boundary_.size() * sizeof(boundary_[0]);
+         tree_.size() * sizeof(tree_[0]) + boundary_.size() * sizeof(boundary_[0]) +
+         point_numbers_.size() * sizeof(point_numbers_[0]);
 }
 
 Tetrahedra TetrahedralMesh::view() const noexcept {

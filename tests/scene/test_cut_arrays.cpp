@@ -35,12 +35,26 @@ std::shared_ptr<const MeshChannels> cut(const UnstructuredGrid& g,
   return cut_into_tetrahedra(g, choices);
 }
 
+/// The value at the point that the grid calls by this number.
+double value_at(const MeshChannels& channels, int channel, std::int32_t number) {
+  for (std::size_t p = 0; p < channels.mesh().points().size(); ++p) {
+    if (channels.mesh().point_number(p) == number) return channels.value(channel, p);
+  }
+  ADD_FAILURE() << "there is no point " << number;
+  return 0;
+}
+
 TEST(CutArrays, PointsKeepTheirValuesAndTheirType) {
   const auto channels = cut(grid(), {{"t", {}, {}}});
   EXPECT_EQ((*channels)[0].name, "t");
   EXPECT_EQ((*channels)[0].centering, Centering::point);
   EXPECT_EQ(type_name((*channels)[0].values), "u8");
-  for (std::size_t i = 0; i < 10; ++i) EXPECT_EQ(channels->value(0, i), static_cast<double>(i));
+  const UnstructuredGrid given = grid();
+  for (std::size_t p = 0; p < 10; ++p) {
+    const std::int32_t number = channels->mesh().point_number(p);
+    EXPECT_EQ(channels->value(0, p), static_cast<double>(number));
+    EXPECT_EQ(channels->mesh().points()[p], given.points[static_cast<std::size_t>(number)]);
+  }
   EXPECT_EQ(channels->mesh().statistics().orphans, 1U);
   EXPECT_EQ(channels->statistics(0).maximum, 8);
   EXPECT_EQ(channels->mesh().name(), "two.vtu");
@@ -55,7 +69,10 @@ TEST(CutArrays, CellsGiveTheirValuesToTheirTetrahedra) {
   EXPECT_EQ(type_name((*channels)[2].values), "f32");
   std::size_t of_pyramid = 0;
   for (std::size_t t = 0; t < mesh.tetrahedra().size(); ++t) {
-    const bool pyramid = mesh.tetrahedra()[t][3] == 8;  // the largest index; only it has the point
+    bool pyramid = false;  // only it has the point
+    for (const std::int32_t p : mesh.tetrahedra()[t].corner) {
+      pyramid = pyramid || mesh.point_number(static_cast<std::size_t>(p)) == 8;
+    }
     of_pyramid += pyramid ? 1 : 0;
     EXPECT_EQ(channels->value(0, t), pyramid ? 2.5 : 1.5);
     EXPECT_EQ(channels->value(1, t), pyramid ? 12 : 4);
@@ -86,13 +103,25 @@ TEST(CutArrays, LengthsAreThoseOfTheVectorsBetween) {
   one[3] = std::numeric_limits<float>::quiet_NaN();
   g.arrays = {{"turning", Centering::point, 2, turning}, {"one", Centering::point, 1, one}};
   const auto lengths = cut(g, {{"turning", {}, {}}});
-  EXPECT_EQ(lengths->value(0, 13), 0);
-  EXPECT_EQ(lengths->value(0, 0), static_cast<double>(std::sqrt(2.F)));
+  EXPECT_EQ(value_at(*lengths, 0, 13), 0);
+  EXPECT_EQ(value_at(*lengths, 0, 0), static_cast<double>(std::sqrt(2.F)));
   const auto vacuum = cut(g, {{"one", {}, {}}});
-  EXPECT_TRUE(std::isnan(vacuum->value(0, 13)));
+  EXPECT_TRUE(std::isnan(value_at(*vacuum, 0, 13)));
   EXPECT_EQ(vacuum->statistics(0).nan, 2U);
   // All but the pyramid at the top touch the middle.
   EXPECT_EQ(vacuum->vacuum(), vacuum->mesh().tetrahedra().size() - 2);
+}
+
+// What is wrong is named as the file has it.
+TEST(CutArrays, MessagesCallPointsAsTheGridDoes) {
+  UnstructuredGrid g = grid();
+  g.points[8].z = std::numeric_limits<double>::infinity();
+  expect_error([&] { cut(g, {{"t", {}, {}}}); }, {"two.vtu: point 8 is (2, 0.5, inf)"});
+  g = grid();
+  std::vector<float> values(10, 1);
+  values[6] = std::numeric_limits<float>::infinity();
+  g.arrays = {{"t", Centering::point, 1, values}};
+  expect_error([&] { cut(g, {{"t", {}, {}}}); }, {"the first at point 6"});
 }
 
 TEST(CutArrays, RefusesWhatIsNotThere) {

@@ -87,8 +87,9 @@ TEST(MeshChannels, RefusesWhatCannotBe) {
   expect_refused({at_points("a", {1, 2, 3})}, {"\"a\" has 3 values", "7 points"});
   expect_refused({at_points("a", {0, 0, 0, infinity, 0, -infinity, infinity})},
                  {"\"a\" has 2 infinite values, the first at point 5"});
-  expect_refused({at_tetrahedra("a", {0, 0, infinity})},
-                 {"\"a\" has 1 infinite value, the first at tetrahedron 2"});
+  expect_refused(
+      {at_tetrahedra("a", {0, 0, infinity})},
+      {"\"a\" has 1 infinite value, the first at the tetrahedron of points 2, 4, 5 and 6"});
   expect_refused({at_points("a", {0, 0, 0, -3e38F, -3e37F, 0, 0})},
                  {"the value at point 4 is beyond"});
 }

@@ -272,9 +272,23 @@ TEST(TetrahedralMesh, RefusesAFaceOfMoreThanTwo) {
   description.points.push_back({-1, -1, -1});
   description.points.push_back({1, 1, 1});
   description.tetrahedra = {{0, 1, 2, 3}, {0, 1, 2, 4}, {0, 1, 2, 5}};
-  expect_refused(description, {"a face of tetrahedron 0", "more than two tetrahedra"});
+  expect_refused(description,
+                 {"a face of the tetrahedron of points 0, 1, 2 and 3", "more than two tetrahedra"});
   description.tetrahedra = {{0, 1, 2, 3}, {3, 2, 1, 0}, {1, 0, 2, 3}};
   expect_refused(description, {"more than two tetrahedra", "cells stand twice"});
+}
+
+TEST(TetrahedralMesh, CallsPointsByTheirNumbers) {
+  Description description = corner();
+  description.point_numbers = {40, 10, 30, 20};
+  const TetrahedralMesh mesh(description);
+  EXPECT_EQ(mesh.point_number(2), 30);
+  EXPECT_EQ(mesh.named(0), "the tetrahedron of points 10, 20, 30 and 40");
+  EXPECT_EQ(TetrahedralMesh(corner()).point_number(2), 2);
+  description.points[1].y = infinity;
+  expect_refused(description, {"point 10 is (1, inf, 0)"});
+  description.point_numbers.pop_back();
+  expect_refused(description, {"3 numbers for 4 points"});
 }
 
 TEST(TetrahedralMesh, RefusesATetrahedronThatStandsTwice) {

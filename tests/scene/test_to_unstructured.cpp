@@ -42,7 +42,9 @@ TEST(ToUnstructured, PointsStandWhereTheValuesAre) {
   EXPECT_TRUE(grid.points[2 + 4 * (1 + 3)] == (Vec3<double>{8, -18, 30.5}));
   const std::vector<MeshArrayChoice> choices{{"value", {}, {}}};
   const auto channels = cut_into_tetrahedra(grid, choices);
-  EXPECT_EQ(channels->value(0, 17), 17);
+  for (std::size_t p = 0; p < 24; ++p) {
+    EXPECT_EQ(channels->value(0, p), channels->mesh().point_number(p));
+  }
   EXPECT_DOUBLE_EQ(channels->mesh().statistics().volume, 3 * 4 * 0.5);
   EXPECT_EQ(channels->mesh().statistics().boundary_faces, 2U * 2U * (3 * 2 + 3 * 1 + 2 * 1));
 }

@@ -33,6 +33,9 @@ struct MeshArrayChoice {
 /// That the data are linear in each of these tetrahedra is the reconstruction that the tolerance
 /// speaks of.
 ///
+/// Points and tetrahedra stand in the order of a Morton curve, so that what lies together does in
+/// memory; TetrahedralMesh::point_number() is the grid's, and goes on with the new points.
+///
 /// Throws Error where an array is not there (naming those that are), or has no such component, the
 /// sizes do not agree, a point's index is out of range, there is no cell, or as TetrahedralMesh and
 /// MeshChannels do.

@@ -31,12 +31,17 @@ struct MeshStatistics {
 /// Where points fall on a ray or faces along it, a ray is in exactly one of the cells that touch
 /// there: it is thought of as moved aside by less than any number (traverse/mesh_walk.h). Meshes
 /// need not be convex nor connected. Tetrahedra may be given in either orientation.
+///
+/// Rays are fastest where tetrahedra, and points, that lie together stand together, as those of
+/// cut_into_tetrahedra() do; their order changes nothing else.
 class TetrahedralMesh {
  public:
   struct Description {
     std::vector<Vec3<double>> points;                     ///< world
     std::vector<std::array<std::int32_t, 4>> tetrahedra;  ///< indices of points
     std::string name;                                     ///< for messages
+    /// The numbers by which messages and point_number() call the points; empty: as they stand.
+    std::vector<std::int32_t> point_numbers{};
   };
 
   /// Throws Error where there is no tetrahedron, an index is out of range or twice in one
@@ -53,6 +58,12 @@ class TetrahedralMesh {
   const std::vector<Vec3<double>>& points() const noexcept { return points_; }
   /// In the order in which they were given, the points of each in ascending order.
   const std::vector<Tetrahedron>& tetrahedra() const noexcept { return tetrahedra_; }
+  /// What a point is called where it comes from.
+  std::int32_t point_number(std::size_t point) const noexcept {
+    return point_numbers_.empty() ? static_cast<std::int32_t>(point) : point_numbers_[point];
+  }
+  /// "the tetrahedron of points 3, 7, 8 and 12", by those numbers.
+  std::string named(std::size_t tetrahedron) const;
   const MeshStatistics& statistics() const noexcept { return statistics_; }
   const Box<double>& bounds() const noexcept { return bounds_; }
   /// What rays need, in memory: bytes.
@@ -67,6 +78,7 @@ class TetrahedralMesh {
   std::string name_;
   std::vector<Vec3<double>> points_;
   std::vector<Tetrahedron> tetrahedra_;
+  std::vector<std::int32_t> point_numbers_;
   std::vector<BoundaryNode> tree_;
   std::vector<std::int32_t> boundary_;
   MeshStatistics statistics_;

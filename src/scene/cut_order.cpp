@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "cut_order.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <utility>
+
+#include "spatial_order.h"
+
+namespace pellucid {
+namespace {
+
+template <class T>
+std::vector<T> taken(const std::vector<T>& from, const std::vector<std::int32_t>& order) {
+  std::vector<T> to(order.size());
+  for (std::size_t i = 0; i < to.size(); ++i) to[i] = from[static_cast<std::size_t>(order[i])];
+  return to;
+}
+
+Box<double> box_of(const std::vector<Vec3<double>>& points) {
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  Box<double> box{{infinity, infinity, infinity}, {-infinity, -infinity, -infinity}};
+  for (const Vec3<double>& p : points) {
+    for (int a = 0; a < 3; ++a) {
+      if (!std::isfinite(p[a])) continue;
+      box.lower[a] = std::min(box.lower[a], p[a]);
+      box.upper[a] = std::max(box.upper[a], p[a]);
+    }
+  }
+  return box;
+}
+
+/// The order of `count` things, whose places place(i) tells.
+template <class Place>
+std::vector<std::int32_t> order_of(std::size_t count, const MortonCurve& curve,
+                                   const ParallelFor& parallel, Place&& place) {
+  std::vector<std::uint64_t> codes(count);
+  parallel(static_cast<int>(count), [&](int first, int last) {
+    for (auto i = static_cast<std::size_t>(first); i < static_cast<std::size_t>(last); ++i) {
+      codes[i] = curve(place(i));
+    }
+  });
+  return in_order(std::move(codes), parallel);
+}
+
+}  // namespace
+
+std::vector<std::int32_t> put_in_spatial_order(CellCut& cut, const ParallelFor& parallel) {
+  const ParallelFor run =
+      parallel ? parallel
+               : [](int count, const std::function<void(int, int)>& body) { body(0, count); };
+  const MortonCurve curve(box_of(cut.points));
+  std::vector<std::int32_t> order =
+      order_of(cut.points.size(), curve, run, [&](std::size_t i) { return cut.points[i]; });
+  std::vector<std::int32_t> place(order.size());
+  for (std::size_t i = 0; i < order.size(); ++i) {
+    place[static_cast<std::size_t>(order[i])] = static_cast<std::int32_t>(i);
+  }
+  cut.points = taken(cut.points, order);
+  for (auto& corners : cut.tetrahedra) {
+    for (std::int32_t& corner : corners) corner = place[static_cast<std::size_t>(corner)];
+  }
+  const std::vector<std::int32_t> of_tetrahedra =
+      order_of(cut.tetrahedra.size(), curve, run, [&](std::size_t i) {
+        Vec3<double> middle;
+        for (const std::int32_t corner : cut.tetrahedra[i]) {
+          middle = middle + 0.25 * cut.points[static_cast<std::size_t>(corner)];
+        }
+        return middle;
+      });
+  cut.tetrahedra = taken(cut.tetrahedra, of_tetrahedra);
+  if (!cut.cell.empty()) cut.cell = taken(cut.cell, of_tetrahedra);
+  return order;
+}
+
+VolumeData reordered(const VolumeData& values, const std::vector<std::int32_t>& order) {
+  return std::visit(
+      [&](const auto& given) -> VolumeData {
+        using Value = typename std::decay_t<decltype(given)>::value_type;
+        DataArray<Value> kept(order.size());
+        Value* out = kept.writable().data();
+        for (const std::int32_t i : order) *out++ = given[static_cast<std::size_t>(i)];
+        return kept;
+      },
+      values);
+}
+
+}  // namespace pellucid

@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "src/scene/spatial_order.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <random>
+#include <thread>
+#include <vector>
+
+#include "src/scene/cut_order.h"
+
+namespace pellucid {
+namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+void serial(int count, const std::function<void(int, int)>& body) {
+  body(0, count);
+}
+void in_two(int count, const std::function<void(int, int)>& body) {
+  std::thread other([&] { body(count / 2, count); });
+  body(0, count / 2);
+  other.join();
+}
+
+TEST(MortonCurve, GoesThroughOctantsInTurn) {
+  const MortonCurve curve({{-2, 0, 1}, {2, 4, 5}});
+  std::uint64_t before = 0;
+  // By halves of each axis, x fastest, and within each octant again.
+  for (int outer = 0; outer < 8; ++outer) {
+    for (int inner = 0; inner < 8; ++inner) {
+      const auto at = [&](int a) { return 2.0 * (outer >> a & 1) + 1.0 * (inner >> a & 1) + 0.5; };
+      const std::uint64_t code = curve({at(0) - 2, at(1), at(2) + 1});
+      EXPECT_GT(code, before) << outer << ' ' << inner;
+      before = code;
+    }
+  }
+}
+
+TEST(MortonCurve, OfWhatIsOutsideOrNowhere) {
+  const MortonCurve curve({{0, 0, 0}, {1, 1, 1}});
+  EXPECT_EQ(curve({-5, -5, -5}), curve({0, 0, 0}));
+  EXPECT_EQ(curve({7, 7, 7}), curve({1, 1, 1}));
+  for (const double odd : {infinity, -infinity, std::nan("")}) {
+    EXPECT_GT(curve({0, odd, 0}), curve({7, 7, 7}));
+  }
+  // A flat box, one without any extent, and one of nothing.
+  EXPECT_LT(MortonCurve({{0, 0, 3}, {1, 1, 3}})({0.1, 0.1, 3}),
+            MortonCurve({{0, 0, 3}, {1, 1, 3}})({0.9, 0.9, 3}));
+  EXPECT_EQ(MortonCurve({{2, 2, 2}, {2, 2, 2}})({2, 2, 2}), 0u);
+  EXPECT_EQ(
+      MortonCurve({{infinity, infinity, infinity}, {-infinity, -infinity, -infinity}})({1, 2, 3}),
+      MortonCurve({{infinity, infinity, infinity}, {-infinity, -infinity, -infinity}})({3, 2, 1}));
+}
+
+TEST(InOrder, IsThatOfAStableSortForAnyNumberOfThreads) {
+  std::mt19937 random(3);
+  for (const std::size_t count : {0u, 1u, 2u, 15u, 16u, 17u, 1000u, 4099u}) {
+    std::vector<std::uint64_t> keys(count);
+    for (auto& key : keys) key = random() % 50;
+    std::vector<std::int32_t> expected(count);
+    for (std::size_t i = 0; i < count; ++i) expected[i] = static_cast<std::int32_t>(i);
+    std::stable_sort(expected.begin(), expected.end(), [&](std::int32_t a, std::int32_t b) {
+      return keys[static_cast<std::size_t>(a)] < keys[static_cast<std::size_t>(b)];
+    });
+    EXPECT_EQ(in_order(keys, serial), expected);
+    EXPECT_EQ(in_order(keys, in_two), expected);
+  }
+}
+
+// 20³ points at random: neighbours in memory are neighbours in space, and nothing is lost.
+TEST(SpatialOrder, KeepsTetrahedraAndBringsThemTogether) {
+  std::mt19937 random(5);
+  CellCut cut;
+  for (int i = 0; i < 8000; ++i) {
+    const auto any = [&] { return 1e-9 * static_cast<double>(random()); };
+    const double x = any(), y = any();
+    cut.points.push_back({x, y, any()});
+  }
+  cut.points[17].x = infinity;
+  cut.tetrahedra.push_back({17, 1, 2, 3});
+  cut.cell.push_back(0);
+  for (std::int32_t i = 0; i < 20000; ++i) {
+    const auto any = [&] { return static_cast<std::int32_t>(random() % 8000); };
+    cut.tetrahedra.push_back({any(), any(), any(), any()});
+    cut.cell.push_back(i + 1);
+  }
+  const CellCut given = cut;
+  const std::vector<std::int32_t> numbers = put_in_spatial_order(cut, in_two);
+  CellCut alone = given;
+  EXPECT_EQ(put_in_spatial_order(alone, {}), numbers);
+  EXPECT_EQ(alone.tetrahedra, cut.tetrahedra);
+
+  ASSERT_EQ(cut.tetrahedra.size(), given.tetrahedra.size());
+  std::vector<char> seen(given.tetrahedra.size(), 0);
+  for (std::size_t t = 0; t < cut.tetrahedra.size(); ++t) {
+    const auto was = static_cast<std::size_t>(cut.cell[t]);
+    ++seen[was];
+    for (std::size_t c = 0; c < 4; ++c) {
+      EXPECT_EQ(numbers[static_cast<std::size_t>(cut.tetrahedra[t][c])], given.tetrahedra[was][c]);
+    }
+  }
+  EXPECT_EQ(std::count(seen.begin(), seen.end(), 1), static_cast<int>(seen.size()));
+  EXPECT_EQ(numbers.back(), 17);
+
+  const auto step = [](const std::vector<Vec3<double>>& points) {
+    double sum = 0;
+    for (std::size_t i = 1; i + 1 < points.size(); ++i) {
+      const double way = length(points[i] - points[i - 1]);
+      if (std::isfinite(way)) sum += way;
+    }
+    return sum;
+  };
+  EXPECT_LT(step(cut.points), 0.15 * step(given.points));
+  std::vector<float> values(8000);
+  for (std::size_t i = 0; i < 8000; ++i) values[i] = static_cast<float>(i);
+  const VolumeData moved = reordered(VolumeData(DataArray<float>(values)), numbers);
+  EXPECT_EQ(std::get<DataArray<float>>(moved)[5], static_cast<float>(numbers[5]));
+}
+
+}  // namespace
+}  // namespace pellucid
