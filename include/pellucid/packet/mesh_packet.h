@@ -49,19 +49,24 @@ class MeshPacket {
   /// others go on.
   template <int K>
   static void run(MeshPacket* const (&packets)[K]) noexcept {
-    const auto walking = [&] {
-      M lanes(false);
-      for (const MeshPacket* p : packets) lanes = lanes | p->march_.walking;
-      return any(lanes);
-    };
-    while (walking()) {
-      for (int s = 0; s < Room::steps && walking(); ++s) {
+    const auto walking = [](const MeshPacket& p) { return p.march_.walking; };
+    while (any_of(packets, walking)) {
+      for (int s = 0; s < Room::steps && any_of(packets, walking); ++s) {
         for (MeshPacket* p : packets) p->march_.cross();
         for (MeshPacket* p : packets) p->march_.load_ahead();
         for (MeshPacket* p : packets) p->march_.see_ahead();
         for (MeshPacket* p : packets) p->put_down(s);
       }
-      for (MeshPacket* p : packets) p->integrate();
+      for (MeshPacket* p : packets) {
+        p->march_.stop_lost(p->cells_);
+        p->take_spans();
+      }
+      while (any_of(packets, [](const MeshPacket& p) { return p.pending_; })) {
+        for (MeshPacket* p : packets) p->find_end();
+        for (MeshPacket* p : packets) p->integrate_piece();
+        for (MeshPacket* p : packets) p->settle_piece();
+        for (MeshPacket* p : packets) p->take_spans();
+      }
     }
   }
 
@@ -90,15 +95,18 @@ class MeshPacket {
   }
 
  private:
+  template <int K, class Lanes>
+  static bool any_of(MeshPacket* const (&packets)[K], Lanes&& lanes) noexcept {
+    M found(false);
+    for (const MeshPacket* p : packets) found = found | lanes(*p);
+    return any(found);
+  }
+
   void put_down(int s) noexcept {
     cells_ += select(march_.walking, I(1), I(0));
     const M found = march_.put_down(
         rows_, s, [this](F least, F most, I& note) noexcept { return absorbs(least, most, note); });
     waiting_ = waiting_ + select(found, I(1 << s), I(0));
-  }
-  void integrate() noexcept {
-    march_.stop_lost(cells_);
-    for (take_spans(); any(pending_); take_spans()) integrate_pieces();
   }
 
   /// As in PacketIntegrator.
@@ -157,13 +165,16 @@ class MeshPacket {
     pending_ = pending_ | lanes;
   }
 
-  [[gnu::flatten]] void integrate_pieces() noexcept {
+  // A piece of each lane that has a span, in parts.
+
+  /// Where it ends, and the color there.
+  [[gnu::flatten]] void find_end() noexcept {
     if (any(handed_back_)) {
       hand_back(handed_back_);
       handed_back_ = M(false);
-      if (none(pending_)) return;
     }
     const M on = pending_;
+    if (none(on)) return;
     const M lost = on & !located_;
     if (any(lost)) {
       const M moved = lost & ((front_ < extinction_.lower) | (front_ >= extinction_.upper));
@@ -185,13 +196,26 @@ class MeshPacket {
     const M crosses = beyond & !capped;
     const F end = select(crosses, limit, select(capped, front_ + place * rise, back_));
     const F length = length_ * place;
+    piece_ = {rising, capped, crosses, place, end, length, color_inside(on, end)};
+  }
+
+  [[gnu::flatten]] void integrate_piece() noexcept {
+    if (none(pending_)) return;
+    const ExtinctionInterval<F>& interval = extinction_;
     const auto extinction = [&](F value) noexcept {
       return max(interval.at_lower + interval.slope * (value - interval.lower), F(0));
     };
-    const Rgb<F> color = color_inside(on, end);
-    const SegmentResult<F> s =
-        linear_segment(extinction(front_), extinction(end), front_color_, color, length);
+    segment_ = linear_segment(extinction(front_), extinction(piece_.end), front_color_,
+                              piece_.color, piece_.length);
+  }
 
+  /// Takes it where the budget pays for it; else cuts it in two or hands it back.
+  [[gnu::flatten]] void settle_piece() noexcept {
+    const M on = pending_;
+    if (none(on)) return;
+    const ExtinctionInterval<F>& interval = extinction_;
+    const auto& [rising, capped, crosses, place, end, length, color] = piece_;
+    const SegmentResult<F>& s = segment_;
     const F least = min(front_, end), most = max(front_, end), range = most - least;
     F color_error(0);
     if (transfer_.bends) {
@@ -374,6 +398,14 @@ class MeshPacket {
   Rgb<F> front_color_{F(0), F(0), F(0)};
   ExtinctionInterval<F> extinction_{F(0), F(0), F(0), F(0), F(0), F(0), F(0), F(0)};
   ColorInterval<F> color_;
+
+  struct Piece {
+    M rising{false}, capped{false}, crosses{false};
+    F place{0}, end{0}, length{0};
+    Rgb<F> color{F(0), F(0), F(0)};
+  };
+  Piece piece_;
+  SegmentResult<F> segment_;
 
   PacketFold<N> fold_;
   F largest_color_;
