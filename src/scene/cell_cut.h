@@ -12,7 +12,9 @@ namespace pellucid {
 
 /// The tetrahedra of a grid's cells, and where each comes from.
 struct CellCut {
-  std::vector<Vec3<double>> points;  ///< the grid's, then the new ones
+  std::vector<Vec3<double>> points;
+  /// Which they are, of the grid's and then the new ones; empty: in that order.
+  std::vector<std::int32_t> numbers;
   std::vector<std::array<std::int32_t, 4>> tetrahedra;
   std::vector<std::int32_t> cell;  ///< of each tetrahedron; empty unless asked for
   MiddlePoints middle;             ///< the new points; looks into the grid

@@ -19,11 +19,11 @@ using Combined =
     std::conditional_t<std::is_same_v<Value, float> || sizeof(Value) <= 2, float, double>;
 
 template <class Value>
-VolumeData at_tetrahedra(const DataArray<Value>& values, std::size_t components,
-                         const std::vector<std::int32_t>& cell) {
-  DataArray<Value> carried(cell.size() * components);
+VolumeData taken(const DataArray<Value>& values, std::size_t components,
+                 const std::vector<std::int32_t>& from) {
+  DataArray<Value> carried(from.size() * components);
   Value* out = carried.writable().data();
-  for (const std::int32_t c : cell) {
+  for (const std::int32_t c : from) {
     out = std::copy_n(values.data() + static_cast<std::size_t>(c) * components, components, out);
   }
   return carried;
@@ -98,14 +98,15 @@ std::string names_of(const UnstructuredGrid& grid) {
 
 VolumeData carried(const UnstructuredGrid& grid, const MeshArray& array, const CellCut& cut) {
   check_array(grid, array);
-  return std::visit(
-      [&](const auto& values) {
-        const auto components = static_cast<std::size_t>(array.components);
-        return array.centering == Centering::cell
-                   ? at_tetrahedra(values, components, cut.cell)
-                   : at_points(values, components, cut.middle.points);
-      },
+  const auto components = static_cast<std::size_t>(array.components);
+  const auto taken_from = [&](const VolumeData& data, const std::vector<std::int32_t>& from) {
+    return std::visit([&](const auto& values) { return taken(values, components, from); }, data);
+  };
+  if (array.centering == Centering::cell) return taken_from(array.values, cut.cell);
+  VolumeData carried = std::visit(
+      [&](const auto& values) { return at_points(values, components, cut.middle.points); },
       array.values);
+  return cut.numbers.empty() ? carried : taken_from(carried, cut.numbers);
 }
 
 const MeshArray& chosen_array(const UnstructuredGrid& grid, const MeshArrayChoice& choice) {

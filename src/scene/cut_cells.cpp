@@ -16,18 +16,16 @@ std::shared_ptr<const MeshChannels> cut_into_tetrahedra(const UnstructuredGrid& 
     return chosen_array(grid, choice).centering == Centering::cell;
   });
   CellCut cut = cut_cells(grid, with_cells, parallel);
-  std::vector<std::int32_t> numbers = put_in_spatial_order(cut, parallel);
+  put_in_spatial_order(cut, parallel);
 
   std::vector<MeshChannel> channels;
   channels.reserve(choices.size());
   for (const MeshArrayChoice& choice : choices) {
-    MeshChannel channel = chosen_channel(grid, choice, cut);
-    if (channel.centering == Centering::point) channel.values = reordered(channel.values, numbers);
-    channels.push_back(std::move(channel));
+    channels.push_back(chosen_channel(grid, choice, cut));
   }
   const auto mesh = std::make_shared<const TetrahedralMesh>(
       TetrahedralMesh::Description{std::move(cut.points), std::move(cut.tetrahedra), grid.name,
-                                   std::move(numbers)},
+                                   std::move(cut.numbers)},
       parallel);
   return std::make_shared<const MeshChannels>(mesh, std::move(channels));
 }

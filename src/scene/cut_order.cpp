@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <functional>
 #include <limits>
 #include <utility>
 
@@ -19,14 +20,18 @@ std::vector<T> taken(const std::vector<T>& from, const std::vector<std::int32_t>
   return to;
 }
 
-Box<double> box_of(const std::vector<Vec3<double>>& points) {
+/// Of the points that tetrahedra have.
+Box<double> box_of(const CellCut& cut) {
   constexpr double infinity = std::numeric_limits<double>::infinity();
   Box<double> box{{infinity, infinity, infinity}, {-infinity, -infinity, -infinity}};
-  for (const Vec3<double>& p : points) {
-    for (int a = 0; a < 3; ++a) {
-      if (!std::isfinite(p[a])) continue;
-      box.lower[a] = std::min(box.lower[a], p[a]);
-      box.upper[a] = std::max(box.upper[a], p[a]);
+  for (const auto& corners : cut.tetrahedra) {
+    for (const std::int32_t corner : corners) {
+      const Vec3<double>& p = cut.points[static_cast<std::size_t>(corner)];
+      for (int a = 0; a < 3; ++a) {
+        if (!std::isfinite(p[a])) continue;
+        box.lower[a] = std::min(box.lower[a], p[a]);
+        box.upper[a] = std::max(box.upper[a], p[a]);
+      }
     }
   }
   return box;
@@ -47,11 +52,11 @@ std::vector<std::int32_t> order_of(std::size_t count, const MortonCurve& curve,
 
 }  // namespace
 
-std::vector<std::int32_t> put_in_spatial_order(CellCut& cut, const ParallelFor& parallel) {
+void put_in_spatial_order(CellCut& cut, const ParallelFor& parallel) {
   const ParallelFor run =
       parallel ? parallel
                : [](int count, const std::function<void(int, int)>& body) { body(0, count); };
-  const MortonCurve curve(box_of(cut.points));
+  const MortonCurve curve(box_of(cut));
   std::vector<std::int32_t> order =
       order_of(cut.points.size(), curve, run, [&](std::size_t i) { return cut.points[i]; });
   std::vector<std::int32_t> place(order.size());
@@ -72,19 +77,7 @@ std::vector<std::int32_t> put_in_spatial_order(CellCut& cut, const ParallelFor& 
       });
   cut.tetrahedra = taken(cut.tetrahedra, of_tetrahedra);
   if (!cut.cell.empty()) cut.cell = taken(cut.cell, of_tetrahedra);
-  return order;
-}
-
-VolumeData reordered(const VolumeData& values, const std::vector<std::int32_t>& order) {
-  return std::visit(
-      [&](const auto& given) -> VolumeData {
-        using Value = typename std::decay_t<decltype(given)>::value_type;
-        DataArray<Value> kept(order.size());
-        Value* out = kept.writable().data();
-        for (const std::int32_t i : order) *out++ = given[static_cast<std::size_t>(i)];
-        return kept;
-      },
-      values);
+  cut.numbers = std::move(order);
 }
 
 }  // namespace pellucid

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <type_traits>
 #include <utility>
@@ -42,17 +43,19 @@ VolumeScan scan_used(std::span<const Value> values, const std::vector<std::uint8
   return scan(std::span<const Value>(kept));
 }
 
-/// The index of the first value that is used and that cannot be shown.
+/// Where the first value is that is used and that cannot be shown, by the numbers of points.
 template <class Value>
-std::size_t first_beyond(std::span<const Value> values, const std::vector<std::uint8_t>& used,
-                         bool infinite) {
-  std::size_t i = 0;
-  for (; i < values.size(); ++i) {
+std::string first_beyond(const TetrahedralMesh& mesh, std::span<const Value> values,
+                         const std::vector<std::uint8_t>& used, bool points, bool infinite) {
+  std::int32_t first_point = std::numeric_limits<std::int32_t>::max();
+  for (std::size_t i = 0; i < values.size(); ++i) {
     if (!used.empty() && used[i] == 0) continue;
     const double size = std::abs(static_cast<double>(values[i]));
-    if (infinite ? std::isinf(size) : size > largest_value) break;
+    if (infinite ? !std::isinf(size) : !(size > largest_value)) continue;
+    if (!points) return mesh.named(i);
+    first_point = std::min(first_point, mesh.point_number(i));
   }
-  return i;
+  return "point " + std::to_string(first_point);
 }
 
 template <class Value>
@@ -61,10 +64,7 @@ VolumeStatistics check_values(const TetrahedralMesh& mesh, const MeshChannel& ch
                               const std::vector<std::uint8_t>& used) {
   const VolumeScan s = scan_used(values, used);
   const auto at = [&](bool infinite) {
-    const std::size_t first = first_beyond(values, used, infinite);
-    return channel.centering == Centering::point
-               ? "point " + std::to_string(mesh.point_number(first))
-               : mesh.named(first);
+    return first_beyond(mesh, values, used, channel.centering == Centering::point, infinite);
   };
   if (const std::size_t n = s.statistics.infinite; n > 0) {
     fail(mesh, "channel \"" + channel.name + "\" has " + std::to_string(n) + " infinite value" +

@@ -61,17 +61,15 @@ class Check {
     }
     for (int k = 0; k < 3; ++k) {
       if (corners[k] == corners[k + 1]) {
-        fail(named() + " has point " + std::to_string(corners[k]) + " twice; leave it out");
+        fail(named() + " has point " + std::to_string(number_of(corners[k])) +
+             " twice; leave it out");
       }
     }
     for (int k = 0; k < 4; ++k) {
       const Vec3<double>& p = d_.points[static_cast<std::size_t>(corners[k])];
       for (int a = 0; a < 3; ++a) {
         if (std::fabs(p[a]) <= largest_coordinate) continue;
-        const std::int32_t number = d_.point_numbers.empty()
-                                        ? corners[k]
-                                        : d_.point_numbers[static_cast<std::size_t>(corners[k])];
-        fail("point " + std::to_string(number) + " is " + tuple(p) +
+        fail("point " + std::to_string(number_of(corners[k])) + " is " + tuple(p) +
              ", but coordinates must be finite and within 2.1e37");
       }
     }
@@ -82,6 +80,10 @@ class Check {
   }
 
  private:
+  std::int32_t number_of(std::int32_t point) const {
+    return d_.point_numbers.empty() ? point : d_.point_numbers[static_cast<std::size_t>(point)];
+  }
+
   const TetrahedralMesh::Description& d_;
 };
 

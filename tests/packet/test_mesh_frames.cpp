@@ -89,7 +89,7 @@ TEST_F(MeshFrames, AreTheSameWhateverElseIsInAPacket) {
   for (unsigned seed = 1; seed <= 400; ++seed) {
     SCOPED_TRACE(testing::Message() << "scene " << seed);
     Scene one = scene(seed);
-    one.integration.tolerance = 1e-2;
+    one.integration.tolerance = seed % 4 == 0 ? 1e-4 : 1e-2;  // seen in double, and in binary32
     RenderOptions options;
     options.threads = 1;
     options.error = true;

@@ -119,6 +119,7 @@ int follow(const Cubes& cubes, const Ray<double>& ray, std::vector<int>& met) {
           if (alone.point[k] == walk.face().point[i]) {
             EXPECT_NEAR(static_cast<double>(walk.face().area[i]),
                         static_cast<double>(alone.area[k]), 1e-5 * mesh.reach * mesh.reach);
+            EXPECT_EQ(walk.face().size[i], alone.size[k]);
           }
         }
       }

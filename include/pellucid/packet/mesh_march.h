@@ -64,12 +64,14 @@ class MeshMarch {
   /// Rays that are not to be followed any further.
   void stop(M lanes) noexcept { walking = walking & !lanes; }
 
-  /// Gives up rays that have gone through more tetrahedra than there are: none should.
-  void stop_lost(const I& cells) noexcept {
-    const M lost = walking & (cells > I(rays.tetrahedra()));
-    rays.crowded = rays.crowded | lost;
-    stop(lost);
+  /// Rays of which this will not tell anything.
+  void give_up(M lanes) noexcept {
+    rays.crowded = rays.crowded | lanes;
+    stop(lanes);
   }
+
+  /// Gives up rays that have gone through more tetrahedra than there are: none should.
+  void stop_lost(const I& cells) noexcept { give_up(walking & (cells > I(rays.tetrahedra()))); }
 
   // A step of each lane, in parts as those of MeshWalk.
 
@@ -130,6 +132,7 @@ class MeshMarch {
     // As span_between() and for_each_mesh_span() in traverse/mesh_spans.h.
     T begin = t_, at_begin = front_value;
     M overlaps(false);
+    F both = t_error_ + t_error, at_eye(0);
     const M behind = on & (min(t_, t) < front_);
     if (any(behind)) {
       begin = max(t_, front_);
@@ -137,6 +140,12 @@ class MeshMarch {
       at_begin = front_value + share * (value - front_value);
       const F most = front_error_ + t_error_ + t_error;
       overlaps = behind & (front_ > rays.eye) & (convert<float>(front_ - min(t_, t)) > most);
+      // What the data are where the span is cut moves with both faces, and no neighbour makes good
+      // for it: twice what they are charged where it is whole. Where rays begin is rounded to S.
+      both = select(behind, both + both, both);
+      at_eye =
+          select(behind & !(front_ > rays.eye),
+                 F(static_cast<float>(rounding_unit<S>)) * abs(convert<float>(rays.eye)), F(0));
     }
     const M ahead = on & (begin < t);
     const M vacuum = is_nan(front_value + value);
@@ -155,11 +164,10 @@ class MeshMarch {
       const T length = max(t - begin, T(0));
       convert<float>(length).store(rows.length + at);
       convert<float>(rays.end - begin).store(rows.left + at);
-      const F both = t_error_ + t_error;
       const M leaves = walk_.ahead() < I(0);
       const F at_ends = select(first_, t_error_, F(0)) + select(leaves, t_error, F(0));
       (field_.per_cell ? F(0) : both).store(rows.place_error + at);
-      (field_.per_cell ? both : at_ends).store(rows.end_error + at);
+      ((field_.per_cell ? both : at_ends) + at_eye).store(rows.end_error + at);
       if constexpr (Rows::more_exact) {
         at_begin.store(rows.exact.front + at);
         value.store(rows.exact.back + at);
@@ -175,10 +183,7 @@ class MeshMarch {
     // Past a hit that may not be the way's own: for a ray by itself to find out.
     const M past =
         on & (t - T(4) * (rays.t_blur + T(rays.t_rounding)) > next_t_) & (walk_.ahead() >= I(0));
-    if (any(past)) {
-      rays.crowded = rays.crowded | past;
-      stop(past);
-    }
+    if (any(past)) give_up(past);
     const M forward = ahead | overlaps;
     front_ = select(forward, max(t, begin), front_);
     front_error_ = select(forward, t_error, front_error_);
@@ -191,8 +196,8 @@ class MeshMarch {
     return found;
   }
 
-  /// How far a parameter is off that is interpolated, weights aside: points' are rounded, and it
-  /// is.
+  /// How far a parameter that is interpolated is off, beside what the weights are: those of the
+  /// points are rounded, and so is the result.
   F known_to(const T& t) const noexcept {
     return t_blur_ + F(static_cast<float>(2.1 * static_cast<double>(rounding_unit<S>))) *
                          abs(convert<float>(t));

@@ -52,10 +52,15 @@ class MeshPacket {
     const auto walking = [](const MeshPacket& p) { return p.march_.walking; };
     while (any_of(packets, walking)) {
       for (int s = 0; s < Room::steps && any_of(packets, walking); ++s) {
-        for (MeshPacket* p : packets) p->march_.cross();
-        for (MeshPacket* p : packets) p->march_.load_ahead();
-        for (MeshPacket* p : packets) p->march_.see_ahead();
-        for (MeshPacket* p : packets) p->put_down(s);
+        const auto each = [&](auto&& part) {
+          for (MeshPacket* p : packets) {
+            if (any(p->march_.walking)) part(*p);
+          }
+        };
+        each([](MeshPacket& p) { p.march_.cross(); });
+        each([](MeshPacket& p) { p.march_.load_ahead(); });
+        each([](MeshPacket& p) { p.march_.see_ahead(); });
+        each([s](MeshPacket& p) { p.put_down(s); });
       }
       for (MeshPacket* p : packets) {
         p->march_.stop_lost(p->cells_);
@@ -111,6 +116,8 @@ class MeshPacket {
 
   /// As in PacketIntegrator.
   static constexpr float narrowest = 1.0f / 16;
+  /// How far ends may be elsewhere, in optical depth.
+  static constexpr float farthest = 1.0f / 8;
   /// What a piece may take of all that is left of the budget for rounding, which shorter pieces
   /// have as well, and so has binary64 where what it is handed is known to binary32 only.
   static constexpr float for_rounding = Room::more_exact ? 0.0f : 0.25f;
@@ -211,9 +218,12 @@ class MeshPacket {
 
   /// Takes it where the budget pays for it; else cuts it in two or hands it back.
   [[gnu::flatten]] void settle_piece() noexcept {
+    const ExtinctionInterval<F>& interval = extinction_;
+    // What is charged for an end that is elsewhere is the first order of what it does.
+    const M coarse = pending_ & (interval.largest * place_error_ > F(farthest));
+    if (any(coarse)) give_up(coarse);
     const M on = pending_;
     if (none(on)) return;
-    const ExtinctionInterval<F>& interval = extinction_;
     const auto& [rising, capped, crosses, place, end, length, color] = piece_;
     const SegmentResult<F>& s = segment_;
     const F least = min(front_, end), most = max(front_, end), range = most - least;
@@ -237,8 +247,8 @@ class MeshPacket {
     // An end that is elsewhere, of the same data, takes half of what extinction changes by from one
     // side and gives it to the other; where that is no line, up to all of it.
     const F moved = place_error_ * select((from_ > F(0)) | (place < F(1)), F(1), F(0.5f));
-    F depth_error =
-        length * (value_error * steep + F(8 * u) * interval.largest) + moved * (slope * range);
+    F depth_error = (length + place_error_) * (value_error * steep) +
+                    F(8 * u) * (length * interval.largest) + moved * (slope * range);
     if (any(end_error_ > F(0))) {
       depth_error += end_error_ * (length / span_length_) * interval.largest;
     }
@@ -270,8 +280,8 @@ class MeshPacket {
                       (transparency * color_error <= F(64) * shares.sum()) &
                       (transparency * rounding <= F(0.25f) * shares.sum());
       cap_ = select(halve, half, cap_);
-      const M give_up = rest & !halve;
-      if (any(give_up)) hand_back(give_up);
+      const M other = rest & !halve;
+      if (any(other)) hand_back(other);
     }
     if (none(take)) return;
     fold_.add(take, s);
@@ -313,6 +323,13 @@ class MeshPacket {
     assign(lanes, to.r, from.r);
     assign(lanes, to.g, from.g);
     assign(lanes, to.b, from.b);
+  }
+
+  /// Leaves the lanes' rays to those who know better where they are.
+  void give_up(M lanes) noexcept {
+    march_.give_up(lanes);
+    pending_ = pending_ & !lanes;
+    waiting_ = select(lanes, I(0), waiting_);
   }
 
   /// Ends those of the lanes' rays that no longer matter.

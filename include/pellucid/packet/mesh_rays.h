@@ -78,7 +78,7 @@ class MeshRays {
   T eye;           ///< the parameter of where the rays begin
   T begin, end;    ///< where the rays may be in the mesh
   M meets{false};  ///< whether they meet it
-  M crowded{false};  ///< whether they are not for lanes: more hits than there is room for
+  M crowded{false};  ///< whether they are not for lanes, as with more hits than there is room for
 
   std::int32_t tetrahedra() const noexcept { return mesh_.count; }
 

@@ -33,7 +33,7 @@ struct MeshStatistics {
 /// need not be convex nor connected. Tetrahedra may be given in either orientation.
 ///
 /// Rays are fastest where tetrahedra, and points, that lie together stand together, as those of
-/// cut_into_tetrahedra() do; their order changes nothing else.
+/// cut_into_tetrahedra() do; their order changes nothing else beyond rounding.
 class TetrahedralMesh {
  public:
   struct Description {
@@ -45,11 +45,11 @@ class TetrahedralMesh {
   };
 
   /// Throws Error where there is no tetrahedron, an index is out of range or twice in one
-  /// tetrahedron, a point that is used is not finite or beyond ±2.1e37, there are more than 2^28
-  /// tetrahedra, a face belongs to more than two of
-  /// them, one stands twice, or none is at the boundary. Tetrahedra that overlap are counted
-  /// where they share a face (MeshStatistics::folded_faces); rays that find themselves in two of
-  /// them say that they do not know.
+  /// tetrahedron, the numbers of points are not one for each, a point that is used is not finite or
+  /// beyond ±2.1e37, there are more than 2^28 tetrahedra, a face belongs to more than two of them,
+  /// one stands twice, or none is at the boundary. Tetrahedra that overlap are counted where they
+  /// share a face (MeshStatistics::folded_faces); rays that find themselves in two of them say that
+  /// they do not know.
   explicit TetrahedralMesh(Description description, const ParallelFor& parallel = {});
   TetrahedralMesh(const TetrahedralMesh&) = delete;
   TetrahedralMesh& operator=(const TetrahedralMesh&) = delete;
@@ -66,7 +66,7 @@ class TetrahedralMesh {
   std::string named(std::size_t tetrahedron) const;
   const MeshStatistics& statistics() const noexcept { return statistics_; }
   const Box<double>& bounds() const noexcept { return bounds_; }
-  /// What rays need, in memory: bytes.
+  /// What rays need, and the numbers of points, in memory: bytes.
   std::size_t memory() const noexcept;
 
   /// The view that rays walk through. Valid while this object lives.

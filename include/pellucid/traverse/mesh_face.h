@@ -14,7 +14,9 @@ namespace pellucid {
 /// Areas that are off by e_i move a value v by Σ e_i (v_i - v) / Σ area_i; products are off by 3 u
 /// of their size, what blur does aside, and areas are rounded: r = Σ |e_i| / Σ area_i. The true
 /// weights may be below 0 then, by r/(1 - r), so that v is that much outside of the range:
-/// r/(1 - r) <= r + 2 r² up to 1/2. Rounding of weights, differences and numbers takes 8 u.
+/// r/(1 - r) <= r + 2 r² up to 1/2. Beyond, the face is no larger than rounding, and the value
+/// taken for one of those on it. Rounding of weights (4 u of the range), of differences, products
+/// and sum, and of the numbers takes 8 u; of these |v_i| <= |v| + range, and u |v| is not counted.
 template <class T, class F>
 PELLUCID_HD F interpolation_error(F size, F across, F blur, F inverse) noexcept {
   using S = scalar_t<F>;
