@@ -3,6 +3,7 @@
 // Compiled once per instruction set, with namespace pellucid under a name of its own
 // (cmake/PellucidInstructionSets.cmake).
 #include "pellucid/packet/mesh_packet.h"
+#include "pellucid/simd/flush_to_zero.h"
 #include "pellucid/simd/instruction_set.h"
 
 namespace {
@@ -33,5 +34,6 @@ void run(const PellucidMeshJob& job) {
 }  // namespace
 
 extern "C" void PELLUCID_ENTRY(pellucid_integrate_mesh)(const PellucidMeshJob* job) {
+  const pellucid::FlushToZero mode;
   job->in_double != 0 ? run<double>(*job) : run<float>(*job);
 }

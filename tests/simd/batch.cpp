@@ -270,6 +270,23 @@ void expect_multiply_add(const batch_operations::List<batch_operations::Operatio
     }
   }
 }
+TEST_P(Batches, ResultsBelowNormalNumbersAreZeroWhileTheyAreFlushed) {
+  const auto count = static_cast<std::size_t>(lanes());
+  const std::vector<float> a(count, 1e-20f), tiny(count, 3e-20f), normal(count, 2e-18f);
+  std::vector<float> within(count), behind(count);
+  table().flushed(a.data(), tiny.data(), within.data(), behind.data());
+  EXPECT_EQ(within, std::vector<float>(count, 0.0f));
+  EXPECT_EQ(behind, std::vector<float>(count, 1e-20f * 3e-20f));
+  EXPECT_GT(behind[0], 0.0f);
+  table().flushed(a.data(), normal.data(), within.data(), behind.data());
+  EXPECT_EQ(within, std::vector<float>(count, 1e-20f * 2e-18f));
+  // What is given is taken as it is.
+  const std::vector<float> denormal(count, 1e-40f), large(count, 1e10f);
+  table().flushed(denormal.data(), large.data(), within.data(), behind.data());
+  EXPECT_EQ(within, behind);
+  EXPECT_GT(within[0], 0.0f);
+}
+
 TEST_P(Batches, MultiplyAddIsFusedWhereThatIsOneInstruction) {
   expect_multiply_add(table().floats, lanes());
   expect_multiply_add(table().doubles, lanes());

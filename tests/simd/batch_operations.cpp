@@ -2,6 +2,7 @@
 #include "tests/simd/batch_operations.h"
 
 #include "pellucid/simd/batch.h"
+#include "pellucid/simd/flush_to_zero.h"
 #include "pellucid/simd/instruction_set.h"
 
 namespace pellucid {
@@ -214,6 +215,17 @@ void spread(unsigned lanes, const T* from, T* in_out) {
 void as_floats(const std::int32_t* in, float* out) {
   float_of_bits(Int::load(in)).store(out);
 }
+// Not to be moved before or behind what sets the mode.
+[[gnu::noinline]] void product(const float* a, const float* b, float* out) {
+  (Float::load(a) * Float::load(b)).store(out);
+}
+void flushed(const float* a, const float* b, float* out, float* out_behind) {
+  {
+    const FlushToZero mode;
+    product(a, b, out);
+  }
+  product(a, b, out_behind);
+}
 
 constexpr batch_operations::Table table = {
     width,
@@ -257,6 +269,7 @@ constexpr batch_operations::Table table = {
     spread<float>,
     spread<std::int32_t>,
     as_floats,
+    flushed,
 };
 
 }  // namespace

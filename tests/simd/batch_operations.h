@@ -82,6 +82,8 @@ struct Table {
   void (*load_spread_floats)(unsigned lanes, const float* from, float* in_out);
   void (*load_spread_ints)(unsigned lanes, const std::int32_t* from, std::int32_t* in_out);
   void (*float_of_bits)(const std::int32_t* in, float* out);
+  /// a · b while there is a FlushToZero, and when it is gone.
+  void (*flushed)(const float* a, const float* b, float* out, float* out_behind);
 };
 
 }  // namespace batch_operations
