@@ -101,11 +101,7 @@ PreintegratedStorage::PreintegratedStorage(const PiecewiseLinear<double>& transf
       }
     }
   };
-  if (parallel) {
-    parallel(nodes, make_rows);
-  } else {
-    make_rows(0, nodes);
-  }
+  or_serial(parallel)(nodes, make_rows);
   view_.entry = entries_.data();
   view_.nodes = nodes;
   view_.origin = static_cast<float>(lower);

@@ -114,9 +114,7 @@ BlockClassesStorage::BlockClassesStorage(const BlockRecords& records,
                                          const TransferTables& transfer, double largest_color,
                                          const ParallelFor& parallel, double most_bending)
     : classes_(static_cast<std::size_t>(records.count())) {
-  const ParallelFor run =
-      parallel ? parallel
-               : [](int count, const std::function<void(int, int)>& body) { body(0, count); };
+  const ParallelFor run = or_serial(parallel);
   const CodeTable codes(records.code, transfer);
   const BlockRoughness roughness(records.code, transfer, largest_color, run);
   std::vector<SampledBlock> sampled(most_bending > 0 ? classes_.size() : 0);

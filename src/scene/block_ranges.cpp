@@ -37,16 +37,10 @@ void build(const StructuredGrid<Value, double>& grid, const std::string& name,
       make_block_code(statistics.minimum, statistics.maximum, std::is_integral_v<Value>);
   blocks.record.resize(count);
   blocks.view.record = blocks.record.data();
-  const auto body = [&](int first, int last) {
+  or_serial(parallel)(static_cast<int>(count), [&](int first, int last) {
     build_block_records(grid, blocks.view.axis, blocks.view.code, first, last,
                         blocks.record.data());
-  };
-  const int all = static_cast<int>(count);
-  if (parallel) {
-    parallel(all, body);
-  } else {
-    body(0, all);
-  }
+  });
 }
 
 }  // namespace

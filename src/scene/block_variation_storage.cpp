@@ -26,8 +26,7 @@ void join_variation(BlockVariation& all, const BlockVariation& other) {
 
 BlockVariationStorage::BlockVariationStorage(const Channels& channels,
                                              const ParallelFor& parallel) {
-  const ParallelFor run =
-      parallel ? parallel : [](int n, const std::function<void(int, int)>& body) { body(0, n); };
+  const ParallelFor run = or_serial(parallel);
   std::vector<BlockRecords> records;
   for (const Channel& channel : channels) records.push_back(channel.volume->block_ranges(parallel));
   const BlockRecords& blocks = records.front();

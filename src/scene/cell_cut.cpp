@@ -36,15 +36,9 @@ std::vector<Part> make_parts(const UnstructuredGrid& grid) {
 /// Calls body(part) for all parts but the end.
 template <class Body>
 void each_part(const std::vector<Part>& parts, const ParallelFor& parallel, const Body& body) {
-  const auto run = [&](int first, int last) {
+  or_serial(parallel)(static_cast<int>(parts.size()) - 1, [&](int first, int last) {
     for (int p = first; p < last; ++p) body(static_cast<std::size_t>(p));
-  };
-  const int count = static_cast<int>(parts.size()) - 1;
-  if (parallel) {
-    parallel(count, run);
-  } else {
-    run(0, count);
-  }
+  });
 }
 
 /// Calls emit(a, b, c, d) for the tetrahedra of a cell; `lacking` are the nodes that it lacks.

@@ -182,11 +182,7 @@ JointHistogram joint_histogram(const Channels& channels, const std::vector<int>&
     const std::lock_guard lock(mutex);
     counter.add_to(all);
   };
-  if (parallel) {
-    parallel(parts, body);
-  } else {
-    body(0, parts);
-  }
+  or_serial(parallel)(parts, body);
   return all;
 }
 

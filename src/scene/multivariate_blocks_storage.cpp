@@ -93,8 +93,7 @@ MultivariateBlocksStorage::MultivariateBlocksStorage(
   primitives_.resize(count);
   const Multivariate<double> transfer = transfer_function.view();
   const BlockClassifier classifier(transfer, negligible);
-  const ParallelFor run =
-      parallel ? parallel : [](int n, const std::function<void(int, int)>& body) { body(0, n); };
+  const ParallelFor run = or_serial(parallel);
   run(records_.count(), [&](int first, int last) {
     for (int i = first; i < last; ++i) {
       const auto b = static_cast<std::size_t>(i);

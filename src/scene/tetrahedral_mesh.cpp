@@ -20,6 +20,10 @@ constexpr double largest_coordinate = 2.1e37;
 /// The words of a tetrahedron are counted in 31 bits.
 constexpr std::size_t most_tetrahedra = std::size_t{1} << 28;
 
+std::int32_t number_of(const std::vector<std::int32_t>& numbers, std::size_t point) {
+  return numbers.empty() ? static_cast<std::int32_t>(point) : numbers[point];
+}
+
 /// Six times the volume of a tetrahedron, positive or negative by its orientation; 0 where rounding
 /// does not tell.
 double six_volumes(const Vec3<double>& a, const Vec3<double>& b, const Vec3<double>& c,
@@ -61,7 +65,7 @@ class Check {
     }
     for (int k = 0; k < 3; ++k) {
       if (corners[k] == corners[k + 1]) {
-        fail(named() + " has point " + std::to_string(number_of(corners[k])) +
+        fail(named() + " has point " + std::to_string(number_at(corners[k])) +
              " twice; leave it out");
       }
     }
@@ -69,7 +73,7 @@ class Check {
       const Vec3<double>& p = d_.points[static_cast<std::size_t>(corners[k])];
       for (int a = 0; a < 3; ++a) {
         if (std::fabs(p[a]) <= largest_coordinate) continue;
-        fail("point " + std::to_string(number_of(corners[k])) + " is " + tuple(p) +
+        fail("point " + std::to_string(number_at(corners[k])) + " is " + tuple(p) +
              ", but coordinates must be finite and within 2.1e37");
       }
     }
@@ -80,8 +84,8 @@ class Check {
   }
 
  private:
-  std::int32_t number_of(std::int32_t point) const {
-    return d_.point_numbers.empty() ? point : d_.point_numbers[static_cast<std::size_t>(point)];
+  std::int32_t number_at(std::int32_t point) const {
+    return number_of(d_.point_numbers, static_cast<std::size_t>(point));
   }
 
   const TetrahedralMesh::Description& d_;
@@ -107,9 +111,7 @@ TetrahedralMesh::TetrahedralMesh(Description description, const ParallelFor& par
     : name_(description.name) {
   const Check check(description);
   check.counts();
-  const ParallelFor run =
-      parallel ? parallel
-               : [](int count, const std::function<void(int, int)>& body) { body(0, count); };
+  const ParallelFor run = or_serial(parallel);
   const std::size_t count = description.tetrahedra.size();
   tetrahedra_.resize(count);
   run(static_cast<int>(count), [&](int first, int last) {
@@ -199,6 +201,10 @@ void TetrahedralMesh::measure(const ParallelFor& parallel) {
     edges += sum.edges;
   }
   statistics_.mean_edge = edges / (6 * static_cast<double>(tetrahedra_.size()));
+}
+
+std::int32_t TetrahedralMesh::point_number(std::size_t point) const noexcept {
+  return number_of(point_numbers_, point);
 }
 
 std::string TetrahedralMesh::named(std::size_t tetrahedron) const {

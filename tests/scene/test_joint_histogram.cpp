@@ -6,10 +6,10 @@
 #include <cmath>
 #include <limits>
 #include <memory>
-#include <thread>
 #include <vector>
 
 #include "expect_error.h"
+#include "in_threads.h"
 
 namespace pellucid {
 namespace {
@@ -32,15 +32,6 @@ Channels two(const std::vector<A>& a, const std::vector<B>& b) {
 template <class A>
 Channels one(const std::vector<A>& a) {
   return Channels({{"a", "", volume(a)}});
-}
-
-/// On two threads, in parts of one and of many.
-void in_threads(int count, const std::function<void(int, int)>& body) {
-  std::thread first([&] {
-    for (int i = 0; i < count / 2; ++i) body(i, i + 1);
-  });
-  body(count / 2, count);
-  first.join();
 }
 
 TEST(JointHistogram, CountsByHand) {

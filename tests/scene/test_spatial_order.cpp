@@ -7,24 +7,15 @@
 #include <cmath>
 #include <limits>
 #include <random>
-#include <thread>
 #include <vector>
 
+#include "in_threads.h"
 #include "src/scene/cut_order.h"
 
 namespace pellucid {
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
-
-void serial(int count, const std::function<void(int, int)>& body) {
-  body(0, count);
-}
-void in_two(int count, const std::function<void(int, int)>& body) {
-  std::thread other([&] { body(count / 2, count); });
-  body(0, count / 2);
-  other.join();
-}
 
 TEST(MortonCurve, GoesThroughOctantsInTurn) {
   const MortonCurve curve({{-2, 0, 1}, {2, 4, 5}});
@@ -83,8 +74,8 @@ TEST(InOrder, IsThatOfAStableSortForAnyNumberOfThreads) {
     std::stable_sort(expected.begin(), expected.end(), [&](std::int32_t a, std::int32_t b) {
       return keys[static_cast<std::size_t>(a)] < keys[static_cast<std::size_t>(b)];
     });
-    EXPECT_EQ(in_order(keys, serial), expected);
-    EXPECT_EQ(in_order(keys, in_two), expected);
+    EXPECT_EQ(in_order(keys, or_serial({})), expected);
+    EXPECT_EQ(in_order(keys, in_threads), expected);
   }
 }
 
@@ -106,7 +97,7 @@ TEST(SpatialOrder, KeepsTetrahedraAndBringsThemTogether) {
     cut.cell.push_back(i + 1);
   }
   const CellCut given = cut;
-  put_in_spatial_order(cut, in_two);
+  put_in_spatial_order(cut, in_threads);
   const std::vector<std::int32_t>& numbers = cut.numbers;
   CellCut alone = given;
   put_in_spatial_order(alone, {});

@@ -9,11 +9,11 @@
 #include <limits>
 #include <map>
 #include <string>
-#include <thread>
 #include <utility>
 #include <vector>
 
 #include "expect_error.h"
+#include "in_threads.h"
 #include "lattice_mesh.h"
 
 namespace pellucid {
@@ -210,14 +210,9 @@ TEST(TetrahedralMesh, FlatTetrahedraAreCountedAndFoldNothing) {
 }
 
 TEST(TetrahedralMesh, IsTheSameForAnyNumberOfThreads) {
-  const auto in_two = [](int count, const std::function<void(int, int)>& body) {
-    std::thread other([&] { body(count / 2, count); });
-    body(0, count / 2);
-    other.join();
-  };
   Description description = lattice_mesh(12, 4);
   for (Place& p : description.points) p = {0.1 * p.x, p.y / 3, p.z * p.z};
-  const TetrahedralMesh one(description), two(description, in_two);
+  const TetrahedralMesh one(description), two(description, in_threads);
   ASSERT_EQ(one.tetrahedra().size(), two.tetrahedra().size());
   for (std::size_t i = 0; i < one.tetrahedra().size(); ++i) {
     ASSERT_TRUE(std::equal(one.tetrahedra()[i].behind, one.tetrahedra()[i].behind + 4,

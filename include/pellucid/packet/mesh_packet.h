@@ -50,13 +50,13 @@ class MeshPacket {
   template <int K>
   static void run(MeshPacket* const (&packets)[K]) noexcept {
     const auto walking = [](const MeshPacket& p) { return p.march_.walking; };
+    const auto each = [&](auto&& part) {
+      for (MeshPacket* p : packets) {
+        if (any(p->march_.walking)) part(*p);
+      }
+    };
     while (any_of(packets, walking)) {
       for (int s = 0; s < Room::steps && any_of(packets, walking); ++s) {
-        const auto each = [&](auto&& part) {
-          for (MeshPacket* p : packets) {
-            if (any(p->march_.walking)) part(*p);
-          }
-        };
         each([](MeshPacket& p) { p.march_.cross(); });
         each([](MeshPacket& p) { p.march_.load_ahead(); });
         each([](MeshPacket& p) { p.march_.see_ahead(); });

@@ -59,9 +59,7 @@ class TetrahedralMesh {
   /// In the order in which they were given, the points of each in ascending order.
   const std::vector<Tetrahedron>& tetrahedra() const noexcept { return tetrahedra_; }
   /// What a point is called where it comes from.
-  std::int32_t point_number(std::size_t point) const noexcept {
-    return point_numbers_.empty() ? static_cast<std::int32_t>(point) : point_numbers_[point];
-  }
+  std::int32_t point_number(std::size_t point) const noexcept;
   /// "the tetrahedron of points 3, 7, 8 and 12", by those numbers.
   std::string named(std::size_t tetrahedron) const;
   const MeshStatistics& statistics() const noexcept { return statistics_; }

@@ -23,6 +23,11 @@ enum class Centering { point, cell };
 /// Calls body(first, last) on parts of 0 <= i < count that together are all of it, on as many
 /// threads as it likes, and returns when all are done.
 using ParallelFor = std::function<void(int count, const std::function<void(int, int)>& body)>;
+/// The same, or where it is empty all at once on this thread.
+inline ParallelFor or_serial(const ParallelFor& parallel) {
+  if (parallel) return parallel;
+  return [](int count, const std::function<void(int, int)>& body) { body(0, count); };
+}
 
 class VolumeBlocks;
 
