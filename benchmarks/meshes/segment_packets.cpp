@@ -6,6 +6,7 @@
 
 #ifdef PELLUCID_INSTRUCTION_SET
 #include "pellucid/simd/batch.h"
+#include "pellucid/simd/flush_to_zero.h"
 #define PELLUCID_BENCH_ENTRY PELLUCID_ENTRY(pellucid_bench_segments)
 #define PELLUCID_BENCH_ENTRY_DOUBLE PELLUCID_ENTRY(pellucid_bench_segments_double)
 #else
@@ -20,6 +21,8 @@ namespace pellucid::bench {
 namespace {
 
 #if PELLUCID_LANES > 1
+/// Packets of meshes run in it.
+using Mode = FlushToZero;
 template <class T>
 using Number = Batch<T, PELLUCID_LANES>;
 template <class T>
@@ -31,6 +34,9 @@ void store(Number<T> x, T* to) {
   x.store(to);
 }
 #else
+struct Mode {
+  Mode() {}
+};
 template <class T>
 using Number = T;
 template <class T>
@@ -46,6 +52,7 @@ void store(T x, T* to) {
 /// Flattened: a kernel that stays a call takes its packets through memory.
 template <class T>
 [[gnu::flatten]] void run(const PellucidBenchSegments<T>& s) {
+  [[maybe_unused]] const Mode mode;
   for (int i = 0; i < s.count; i += PELLUCID_LANES) {
     const auto w = linear_weights<Number<T>>(load<T>(s.extinction_f + i),
                                              load<T>(s.extinction_b + i), load<T>(s.length + i));

@@ -3,6 +3,7 @@
 // Compiled once per instruction set, with namespace pellucid under a name of its own
 // (cmake/PellucidInstructionSets.cmake).
 #include "pellucid/packet/packet_integrator.h"
+#include "pellucid/simd/flush_to_zero.h"
 #include "pellucid/simd/instruction_set.h"
 
 namespace {
@@ -23,5 +24,6 @@ void run(const PellucidPacketJob& job) {
 }  // namespace
 
 extern "C" void PELLUCID_ENTRY(pellucid_integrate_packets)(const PellucidPacketJob* job) {
+  const pellucid::FlushToZero mode;
   pellucid::with_value_type(job->type, [job](auto value) { run<decltype(value)>(*job); });
 }

@@ -3,6 +3,7 @@
 // Compiled once per instruction set, with namespace pellucid under a name of its own
 // (cmake/PellucidInstructionSets.cmake).
 #include "pellucid/packet/packet_sampler.h"
+#include "pellucid/simd/flush_to_zero.h"
 #include "pellucid/simd/instruction_set.h"
 
 namespace {
@@ -27,6 +28,7 @@ void run(const PellucidSamplerJob& job) {
 }  // namespace
 
 extern "C" void PELLUCID_ENTRY(pellucid_sample_packets)(const PellucidSamplerJob* job) {
+  const pellucid::FlushToZero mode;
   pellucid::with_value_type(job->grid_and_rays.type,
                             [job](auto value) { run<decltype(value)>(*job); });
 }
