@@ -24,6 +24,21 @@ class MeshFieldStorage {
   }
   const MeshFields& view() const noexcept { return fields_; }
 
+  /// PellucidMeshJob::values of all channels.
+  std::vector<double> values_by_point(std::size_t points) const {
+    const auto groups = static_cast<std::size_t>((fields_.channels + 3) / 4);
+    std::vector<double> result(4 * points * groups, 0.0);
+    for (int c = 0; c < fields_.channels; ++c) {
+      const MeshField& field = fields_.channel[c];
+      if (field.per_cell) continue;
+      const std::size_t first = 4 * points * static_cast<std::size_t>(c / 4);
+      for (std::size_t i = 0; i < points; ++i) {
+        result[first + 4 * i + static_cast<std::size_t>(c % 4)] = field.value[i];
+      }
+    }
+    return result;
+  }
+
   /// The mesh's points with the values of the first channel.
   std::vector<MeshPoint> points(const std::vector<Vec3<double>>& positions) const {
     std::vector<MeshPoint> points(positions.size());

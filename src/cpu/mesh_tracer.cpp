@@ -8,6 +8,7 @@
 
 #include "mesh_field_storage.h"
 #include "mesh_hits.h"
+#include "mesh_mixture_storage.h"
 #include "packet_setup.h"
 #include "packet_tracer.h"
 #include "pellucid/packet/mesh_interface.h"
@@ -22,8 +23,13 @@ namespace {
 using Kernel = void (*)(const PellucidMeshJob*);
 
 /// Null: rays go one by one.
-Kernel kernel_for([[maybe_unused]] InstructionSet set) {
+Kernel kernel_for([[maybe_unused]] InstructionSet set, [[maybe_unused]] bool several) {
 #if PELLUCID_HAS_PACKETS
+  if (several) {
+    return kernel_of(set, pellucid_integrate_multivariate_mesh_sse4,
+                     pellucid_integrate_multivariate_mesh_avx2,
+                     pellucid_integrate_multivariate_mesh_avx512);
+  }
   return kernel_of(set, pellucid_integrate_mesh_sse4, pellucid_integrate_mesh_avx2,
                    pellucid_integrate_mesh_avx512);
 #else
@@ -64,12 +70,60 @@ class MeshTracer : public RayTracer {
   /// Of a ray of this opacity > 0.
   virtual double find_half_opacity(const MeshRay& ray, double opacity) const = 0;
 
+  /// Sets up packets, where the mesh and what is wanted suit them.
+  void prepare(const TracerTask& task, double largest_extinction, bool several) {
+    const InstructionSet set = packet_instruction_set(task.options.instruction_set);
+    if (wanted_.precision != Precision::automatic || wanted_.tolerance < least_packet_tolerance ||
+        !is_moderate(task.scene.mesh->mesh().statistics().mean_edge) || largest_extinction > 1e12) {
+      return;
+    }
+    kernel_ = kernel_for(set, several);
+    if (kernel_ == nullptr) return;
+    job_.mesh = &mesh_;
+    job_.fields = &fields_.view();
+    job_.tolerance = wanted_.tolerance;
+    job_.largest_color = std::max(wanted_.largest_color, 1.0);
+    job_.largest_extinction = largest_extinction;
+    job_.proved = wanted_.grade == Grade::proved ? 1 : 0;
+    job_.context = this;
+    points_ = fields_.points(task.scene.mesh->mesh().points());
+    job_.points = points_.data();
+  }
+
+  /// Follows the rays of `left` in packets, and leaves those there that are beyond the tolerance.
+  void follow(const std::vector<Ray<double>>& rays, bool in_double, std::vector<std::size_t>& left,
+              std::vector<RayResult>& results) const {
+    std::vector<PellucidMeshRay> of_job;
+    of_job.reserve(left.size());
+    for (const std::size_t i : left) {
+      const Vec3<double>&o = rays[i].origin, &d = rays[i].direction;
+      of_job.push_back({{o.x, o.y, o.z}, {d.x, d.y, d.z}});
+    }
+    std::vector<PellucidRayResult> found(left.size());
+    PellucidMeshJob job = job_;
+    job.in_double = in_double ? 1 : 0;
+    job.rays = of_job.data();
+    job.results = found.data();
+    job.count = static_cast<std::int32_t>(left.size());
+    kernel_(&job);
+    std::vector<std::size_t> beyond;
+    beyond.reserve(left.size());
+    for (std::size_t n = 0; n < left.size(); ++n) {
+      read_result(found[n], results[left[n]]);
+      if (!(results[left[n]].error <= wanted_.tolerance)) beyond.push_back(left[n]);
+    }
+    left = std::move(beyond);
+  }
+
   const Tetrahedra mesh_;
   const MeshFieldStorage fields_;
   const RayTolerance wanted_;
+  PellucidMeshJob job_{};
+  Kernel kernel_ = nullptr;  ///< null: rays go one by one
 
  private:
   const bool depth_;
+  std::vector<MeshPoint> points_;
 };
 
 class UnivariateMeshTracer : public MeshTracer {
@@ -79,25 +133,12 @@ class UnivariateMeshTracer : public MeshTracer {
     const VolumeStatistics& data = task.scene.mesh->statistics(0);
     const double largest = std::max(std::fabs(data.minimum), std::fabs(data.maximum));
     const TransferTables& tables = transfer_.tables();
-    const InstructionSet set = packet_instruction_set(task.options.instruction_set);
-    if (wanted_.precision != Precision::automatic || wanted_.tolerance < least_packet_tolerance ||
-        !is_moderate(largest) || !is_moderate(task.scene.mesh->mesh().statistics().mean_edge) ||
-        tables.largest_extinction > 1e12) {
-      return;
-    }
-    kernel_ = kernel_for(set);
+    if (!is_moderate(largest)) return;
+    prepare(task, tables.largest_extinction, false);
     if (kernel_ == nullptr) return;
     binned_.emplace(tables.wide, tables.merged, tables.merged_count, largest);
-    job_.mesh = &mesh_;
-    job_.field = &fields_.view().channel[0];
     job_.transfer = &binned_->view();
-    job_.tolerance = wanted_.tolerance;
-    job_.largest_color = std::max(wanted_.largest_color, 1.0);
-    job_.largest_extinction = tables.largest_extinction;
     job_.integrate_span = &UnivariateMeshTracer::integrate_span;
-    job_.context = this;
-    points_ = fields_.points(task.scene.mesh->mesh().points());
-    job_.points = points_.data();
   }
 
  protected:
@@ -129,31 +170,6 @@ class UnivariateMeshTracer : public MeshTracer {
   /// Below it most rays would be followed twice.
   static constexpr double least_tolerance_in_float = 2e-4;
 
-  /// Follows the rays of `left` in packets, and leaves those there that are beyond the tolerance.
-  void follow(const std::vector<Ray<double>>& rays, bool in_double, std::vector<std::size_t>& left,
-              std::vector<RayResult>& results) const {
-    std::vector<PellucidMeshRay> of_job;
-    of_job.reserve(left.size());
-    for (const std::size_t i : left) {
-      const Vec3<double>&o = rays[i].origin, &d = rays[i].direction;
-      of_job.push_back({{o.x, o.y, o.z}, {d.x, d.y, d.z}});
-    }
-    std::vector<PellucidRayResult> found(left.size());
-    PellucidMeshJob job = job_;
-    job.in_double = in_double ? 1 : 0;
-    job.rays = of_job.data();
-    job.results = found.data();
-    job.count = static_cast<std::int32_t>(left.size());
-    kernel_(&job);
-    std::vector<std::size_t> beyond;
-    beyond.reserve(left.size());
-    for (std::size_t n = 0; n < left.size(); ++n) {
-      read_result(found[n], results[left[n]]);
-      if (!(results[left[n]].error <= wanted_.tolerance)) beyond.push_back(left[n]);
-    }
-    left = std::move(beyond);
-  }
-
   static void integrate_span(const void* context, const PellucidLinearSpan* span,
                              PellucidCellResult* result) {
     const auto& tracer = *static_cast<const UnivariateMeshTracer*>(context);
@@ -175,9 +191,6 @@ class UnivariateMeshTracer : public MeshTracer {
 
   TransferTablesStorage transfer_;
   std::optional<BinnedTransferStorage> binned_;
-  std::vector<MeshPoint> points_;
-  PellucidMeshJob job_{};
-  Kernel kernel_ = nullptr;  ///< null: rays go one by one
 };
 
 class MultivariateMeshTracer : public MeshTracer {
@@ -185,13 +198,29 @@ class MultivariateMeshTracer : public MeshTracer {
   explicit MultivariateMeshTracer(const TracerTask& task)
       : MeshTracer(task),
         transfer_function_(*task.scene.multivariate),
-        transfer_(transfer_function_.view()) {}
+        transfer_(transfer_function_.view()) {
+    prepare(task, transfer_function_.largest_extinction(), true);
+    if (kernel_ == nullptr) return;
+    // Half of what is left out is for Gaussians, half for what errors of the data change there.
+    mixture_ = MeshMixtureStorage(*task.scene.mesh, transfer_,
+                                  0.5 * left_out_share * job_.tolerance / job_.largest_color,
+                                  length(mesh_.upper - mesh_.lower));
+    job_.tolerance *= 1 - left_out_share;
+    job_.transfer = &mixture_.view();
+    const std::size_t points = task.scene.mesh->mesh().points().size();
+    values_ = fields_.values_by_point(points);
+    job_.values = values_.data();
+    job_.value_points = static_cast<std::int32_t>(points);
+  }
 
  protected:
   void integrate(const std::vector<Ray<double>>& rays,
                  std::vector<RayResult>& results) const override {
+    std::vector<std::size_t> left(rays.size());
+    std::iota(left.begin(), left.end(), std::size_t{0});
+    if (kernel_ != nullptr) follow(rays, true, left, results);
     MeshHits hits;
-    for (std::size_t i = 0; i < rays.size(); ++i) {
+    for (const std::size_t i : left) {
       results[i] = integrate_multivariate_mesh_ray(mesh_, fields_.view(), transfer_,
                                                    transfer_function_.largest_extinction(),
                                                    hits.find(mesh_, rays[i]), wanted_);
@@ -205,8 +234,13 @@ class MultivariateMeshTracer : public MeshTracer {
   }
 
  private:
+  /// Of the tolerance, for what is not looked at.
+  static constexpr double left_out_share = 1.0 / 16;
+
   const MultivariateTransferFunction& transfer_function_;
   Multivariate<double> transfer_;
+  MeshMixtureStorage mixture_;
+  std::vector<double> values_;
 };
 
 }  // namespace

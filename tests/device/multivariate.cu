@@ -33,6 +33,13 @@ PELLUCID_HD void panel(const T* in, T* out) noexcept {
   out[0] = found.found.segment.radiance.r + found.error(in[22]) + found.cut;
   out[1] = table_mass(span.data[0], table.table, span.length).depth;
   out[2] = least_exponent(two[0], in, in + 1, in[23]) + transfer.evaluate(in).extinction;
+  LinearSpan<T> straight;
+  straight.data[0] = {{in[12], in[13]}};
+  straight.length = in[16];
+  out[3] = integrate_multivariate_panel(transfer, straight.part(1, in[18], in[19]), demand,
+                                        [&](T) noexcept { return in[21]; })
+               .opacity +
+           (GaussianLinear<T>(two[0], straight.data).comes_within(in[23]) ? T(1) : T(0));
 }
 PELLUCID_DEVICE_KERNEL(panel)
 

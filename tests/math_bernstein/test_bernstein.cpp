@@ -104,5 +104,34 @@ TYPED_TEST(Bernstein, WholeIntervalIsItself) {
   }
 }
 
+TEST(LinearBernstein, IsTheCubicThatItIsElevatedTo) {
+  std::mt19937_64 random(5);
+  std::normal_distribution<double> normal;
+  for (int i = 0; i < 10000; ++i) {
+    const LinearBernstein<double> f{{normal(random), normal(random)}};
+    const CubicBernstein<double> g = as_cubic(f);
+    EXPECT_EQ(f.hull_min(), g.hull_min());
+    EXPECT_EQ(f.hull_max(), g.hull_max());
+    const double size = std::max(std::fabs(f.b[0]), std::fabs(f.b[1]));
+    const double ta = std::uniform_real_distribution<>(0, 1)(random),
+                 tb = std::uniform_real_distribution<>(0, 1)(random);
+    const LinearBernstein<double> part = restrict_to(f, ta, tb);
+    EXPECT_EQ(part.b[0], evaluate(f, ta));
+    EXPECT_EQ(part.b[1], evaluate(f, tb));
+    const auto exact = [&](double t) {
+      return static_cast<double>((1 - static_cast<long double>(t)) *
+                                     static_cast<long double>(f.b[0]) +
+                                 static_cast<long double>(t) * static_cast<long double>(f.b[1]));
+    };
+    for (const double t : {0.0, ta, tb, 1.0}) {
+      ASSERT_NEAR(evaluate(f, t), exact(t), 2 * size * rounding_unit<double>);
+      ASSERT_NEAR(evaluate(g, t), exact(t), 8 * size * rounding_unit<double>);
+    }
+  }
+  const LinearBernstein<double> ends{{3, -2}};
+  EXPECT_EQ(evaluate(ends, 0.0), 3);
+  EXPECT_EQ(evaluate(ends, 1.0), -2);
+}
+
 }  // namespace
 }  // namespace pellucid

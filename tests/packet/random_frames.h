@@ -4,12 +4,14 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <memory>
 #include <random>
 #include <utility>
 #include <vector>
 
+#include "pellucid/scene/multivariate_transfer_function.h"
 #include "pellucid/scene/transfer_function.h"
 #include "tests/packet/instruction_sets.h"
 
@@ -66,6 +68,38 @@ class RandomFrames : public testing::Test {
       if (one_color) all[i].color = all[0].color;
     }
     return std::make_shared<const TransferFunction>(std::move(all));
+  }
+
+  /// Primitives over so many channels, their data offset + width · [0, 1], of a field that is
+  /// `size` large: wide ones and narrow ones, some of which mix channels.
+  std::vector<GaussianPrimitive> primitives(int channels, double offset, double width,
+                                            double size) {
+    const double narrowest = power(0.002, 0.5), depth = power(0.2, 20);
+    std::vector<GaussianPrimitive> all;
+    for (int n = std::array<int, 6>{1, 2, 3, 5, 12, 80}[random_() % 6]; n > 0; --n) {
+      GaussianPrimitive p;
+      std::vector<double> widths;
+      for (int c = 0; c < channels; ++c) {
+        if (c > 0 && one_of(3)) continue;
+        p.channels.push_back(c);
+        p.center.push_back(offset + width * uniform(0, 1));
+        widths.push_back(narrowest * power(1, 4));
+      }
+      p.extinction = power(0.1, 1) * depth / (size * widths.front());
+      for (double& w : widths) w *= width;
+      p.matrix = matrix_of_widths(widths);
+      if (widths.size() > 1 && one_of(2)) {
+        // Rows of several channels, as many or one alone.
+        const std::size_t rows = one_of(2) ? 1 : widths.size();
+        p.matrix.assign(rows, {});
+        for (std::vector<double>& row : p.matrix) {
+          for (const double w : widths) row.push_back(uniform(-1, 1) / w);
+        }
+      }
+      p.color = {uniform(0, 1), uniform(0, 1), uniform(0, 1)};
+      all.push_back(p);
+    }
+    return all;
   }
 
   std::mt19937 random_;

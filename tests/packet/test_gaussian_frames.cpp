@@ -88,32 +88,8 @@ class GaussianFrames : public RandomFrames {
     }
     Scene scene;
     scene.channels = std::make_shared<const Channels>(std::move(all));
-    const double narrowest = power(0.002, 0.5), depth = power(0.2, 20);
-    std::vector<GaussianPrimitive> primitives;
-    for (int n = std::array<int, 6>{1, 2, 3, 5, 12, 80}[random_() % 6]; n > 0; --n) {
-      GaussianPrimitive p;
-      std::vector<double> widths;
-      for (int c = 0; c < channels; ++c) {
-        if (c > 0 && random_() % 3 == 0) continue;
-        p.channels.push_back(c);
-        p.center.push_back(offset + uniform(0, 1));
-        widths.push_back(narrowest * power(1, 4));
-      }
-      p.matrix = matrix_of_widths(widths);
-      if (widths.size() > 1 && random_() % 2 == 0) {
-        // Rows of several channels, as many or one alone.
-        const std::size_t rows = random_() % 2 == 0 ? 1 : widths.size();
-        p.matrix.assign(rows, {});
-        for (std::vector<double>& row : p.matrix) {
-          for (const double width : widths) row.push_back(uniform(-1, 1) / width);
-        }
-      }
-      p.extinction = power(0.1, 1) * depth / (40 * widths.front());
-      p.color = {uniform(0, 1), uniform(0, 1), uniform(0, 1)};
-      primitives.push_back(p);
-    }
-    scene.multivariate =
-        std::make_shared<const MultivariateTransferFunction>(channels, std::move(primitives));
+    scene.multivariate = std::make_shared<const MultivariateTransferFunction>(
+        channels, primitives(channels, offset, 1, 40));
     scene.size = {12, 12};
     scene.camera = default_camera(scene.channels->grid(), scene.size);
     const Vec3<double> axis[] = {{1, 0, 0}, {0, 1, 1}, {1, 1, 1}, {1, 0.01, 0}};

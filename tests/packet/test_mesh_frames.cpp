@@ -3,10 +3,12 @@
 // Random meshes behind random functions, in packets against rays one by one.
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <limits>
 #include <memory>
 #include <random>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -31,9 +33,18 @@ class MeshFrames : public RandomFrames {
     return std::make_shared<const TetrahedralMesh>(std::move(all));
   }
 
-  /// Values around `offset`, at points or in tetrahedra, with holes or without.
+  /// Variables around `offset`, at points or in tetrahedra, with holes or without.
   std::shared_ptr<const MeshChannels> channels(const std::shared_ptr<const TetrahedralMesh>& mesh,
-                                               double scale, double offset, double width) {
+                                               int count, double scale, double offset,
+                                               double width) {
+    std::vector<MeshChannel> all;
+    for (int c = 0; c < count; ++c) {
+      all.push_back(channel(*mesh, scale, offset, width));
+      all.back().name = std::to_string(c);
+    }
+    return std::make_shared<const MeshChannels>(mesh, std::move(all));
+  }
+  MeshChannel channel(const TetrahedralMesh& mesh, double scale, double offset, double width) {
     const bool noise = one_of(3), per_cell = one_of(4);
     const double holes = one_of(4) ? uniform(0, 0.1) : 0;
     const Place k = (1 / scale) * (aside() * 2.5);
@@ -45,20 +56,20 @@ class MeshFrames : public RandomFrames {
     };
     std::vector<double> values;
     if (per_cell) {
-      for (const Tetrahedron& t : mesh->tetrahedra()) {
+      for (const Tetrahedron& t : mesh.tetrahedra()) {
         Place middle;
         for (const std::int32_t p : t) {
-          middle = middle + 0.25 * mesh->points()[static_cast<std::size_t>(p)];
+          middle = middle + 0.25 * mesh.points()[static_cast<std::size_t>(p)];
         }
         values.push_back(value(middle));
       }
     } else {
-      for (const Place& p : mesh->points()) values.push_back(value(p));
+      for (const Place& p : mesh.points()) values.push_back(value(p));
     }
     const Centering centering = per_cell ? Centering::cell : Centering::point;
-    MeshChannel channel{"f", "", centering, values};
-    if (one_of(2)) channel.values = std::vector<float>(values.begin(), values.end());
-    return std::make_shared<const MeshChannels>(mesh, std::vector<MeshChannel>{std::move(channel)});
+    MeshChannel result{"", "", centering, values};
+    if (one_of(2)) result.values = std::vector<float>(values.begin(), values.end());
+    return result;
   }
 
   Scene scene(unsigned seed) {
@@ -68,8 +79,7 @@ class MeshFrames : public RandomFrames {
                  width = one_of(4) ? power(1e-3, 1e3) : 1;
     const auto bodies = mesh(seed, scale);
     Scene scene;
-    scene.mesh = channels(bodies, scale, offset, width);
-    scene.transfer_function = table(scale, offset, width);
+    set_data(scene, bodies, scale, offset, width);
     scene.size = {12, 9};
     const auto& box = bodies->bounds();
     const double size = length(box.upper - box.lower);
@@ -79,26 +89,61 @@ class MeshFrames : public RandomFrames {
     scene.camera.up = {0.1, 0.2, 1};
     return scene;
   }
+
+  virtual void set_data(Scene& scene, const std::shared_ptr<const TetrahedralMesh>& bodies,
+                        double scale, double offset, double width) {
+    scene.mesh = channels(bodies, 1, scale, offset, width);
+    scene.transfer_function = table(scale, offset, width);
+  }
+
+  void expect_to_be_the_same_in_other_packets() {
+    for (unsigned seed = 1; seed <= 400; ++seed) {
+      SCOPED_TRACE(testing::Message() << "scene " << seed);
+      Scene one = scene(seed);
+      one.integration.tolerance = seed % 4 == 0 ? 1e-4 : 1e-2;  // seen in double, and in binary32
+      RenderOptions options;
+      options.threads = 1;
+      options.error = true;
+      const Image whole = render(one, options);
+      options.preview = 3;  // other pixels beside each other
+      const Image other = render(one, options);
+      ASSERT_EQ(whole.pixels, other.pixels);
+      ASSERT_EQ(whole.error, other.error);
+    }
+  }
 };
 
 TEST_F(MeshFrames, AreWithinWhatTheySay) {
   expect_honest_scenes(120, [&](unsigned seed) { return scene(seed); });
 }
-
 TEST_F(MeshFrames, AreTheSameWhateverElseIsInAPacket) {
-  for (unsigned seed = 1; seed <= 400; ++seed) {
-    SCOPED_TRACE(testing::Message() << "scene " << seed);
-    Scene one = scene(seed);
-    one.integration.tolerance = seed % 4 == 0 ? 1e-4 : 1e-2;  // seen in double, and in binary32
-    RenderOptions options;
-    options.threads = 1;
-    options.error = true;
-    const Image whole = render(one, options);
-    options.preview = 3;  // other pixels beside each other
-    const Image other = render(one, options);
-    ASSERT_EQ(whole.pixels, other.pixels);
-    ASSERT_EQ(whole.error, other.error);
+  expect_to_be_the_same_in_other_packets();
+}
+
+/// Several variables, behind Gaussians, and tables of single ones.
+class MultivariateMeshFrames : public MeshFrames {
+ protected:
+  void set_data(Scene& scene, const std::shared_ptr<const TetrahedralMesh>& bodies, double scale,
+                double offset, double width) override {
+    const int count = std::array<int, 6>{1, 1, 2, 3, 5, 8}[random_() % 6];
+    scene.mesh = channels(bodies, count, scale, offset, width);
+    std::vector<ChannelTransferFunction> tables;
+    std::vector<GaussianPrimitive> gaussians;
+    if (!one_of(8)) gaussians = primitives(count, offset, width, scale);
+    if (gaussians.empty() || one_of(4)) {
+      const int channel = static_cast<int>(random_() % static_cast<unsigned>(count));
+      tables.push_back({channel, *table(scale, offset, width)});
+    }
+    scene.multivariate = std::make_shared<const MultivariateTransferFunction>(
+        count, std::move(gaussians), std::move(tables));
   }
+};
+
+TEST_F(MultivariateMeshFrames, AreWithinWhatTheySay) {
+  expect_honest_scenes(60, [&](unsigned seed) { return scene(seed); });
+}
+TEST_F(MultivariateMeshFrames, AreTheSameWhateverElseIsInAPacket) {
+  expect_to_be_the_same_in_other_packets();
 }
 
 }  // namespace

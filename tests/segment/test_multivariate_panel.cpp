@@ -27,9 +27,24 @@ PanelDemand<double> demand_of(const MultivariateCase& at, Grade grade, bool last
   return demand;
 }
 
+/// Of straight panels the data are cubics for the truth alone.
+enum class Data { cubic, linear };
+
+LinearSpan<double> linear_span(const MultivariateCase& at) {
+  LinearSpan<double> span;
+  span.length = at.span.length;
+  for (int c = 0; c < at.channels; ++c)
+    span.data[c] = {{at.span.data[c].b[0], at.span.data[c].b[3]}};
+  return span;
+}
+void straighten(MultivariateCase& at) {
+  const LinearSpan<double> span = linear_span(at);
+  for (int c = 0; c < at.channels; ++c) at.span.data[c] = as_cubic(span.data[c]);
+}
+
 /// The panel, or that part of it, always one of the two that are left, for which it does.
 PanelSegment<double> part_that_does(MultivariateCase& at, Maker& maker, Grade grade,
-                                    double tolerance, int& cuts) {
+                                    double tolerance, Data data, int& cuts) {
   std::vector<ChannelTable<double>> storage;
   const Multivariate<double> transfer = at.view(storage);
   PanelDemand<double> demand = demand_of(at, grade, false);
@@ -37,18 +52,22 @@ PanelSegment<double> part_that_does(MultivariateCase& at, Maker& maker, Grade gr
   for (cuts = 0;; ++cuts) {
     demand.last_resort = cuts == 50;
     const PanelSegment<double> panel =
-        integrate_multivariate_panel(transfer, at.span, demand, allowance);
+        data == Data::linear
+            ? integrate_multivariate_panel(transfer, linear_span(at), demand, allowance)
+            : integrate_multivariate_panel(transfer, at.span, demand, allowance);
     if (panel.done) return panel;
     EXPECT_GT(panel.cut, 0);
     EXPECT_LT(panel.cut, 1);
     at.span = maker.pick(2) == 0 ? at.span.part(at.channels, 0, panel.cut)
                                  : at.span.part(at.channels, panel.cut, 1);
+    if (data == Data::linear) straighten(at);
   }
 }
 
 /// Random panels, cut until they do: none is further off than it says, alone or in front of any
 /// backdrop, nor says more than is allowed.
-void expect_within_error(Grade grade, double tolerance, int tables, long count, unsigned seed) {
+void expect_within_error(Grade grade, double tolerance, int tables, long count, unsigned seed,
+                         Data data = Data::cubic) {
   Maker maker(seed);
   ErrorRecord share("pixel error / error(), tolerance " + std::to_string(std::log10(tolerance)),
                     ""),
@@ -56,8 +75,9 @@ void expect_within_error(Grade grade, double tolerance, int tables, long count, 
   long clear = 0, nodes = 0, all_cuts = 0, last = 0;
   for (long i = 0; i < count; ++i) {
     MultivariateCase at(maker, 4, tables);
+    if (data == Data::linear) straighten(at);
     int cuts = 0;
-    const PanelSegment<double> panel = part_that_does(at, maker, grade, tolerance, cuts);
+    const PanelSegment<double> panel = part_that_does(at, maker, grade, tolerance, data, cuts);
     std::vector<ChannelTable<double>> storage;
     const test::WideStretch truth = test::wide_multivariate(at.view(storage), at.span);
     const long double error = static_cast<long double>(panel.error(at.largest_color));
@@ -106,6 +126,20 @@ TEST(MultivariatePanel, ProvedErrorsHoldWithTables) {
   unsigned seed = 50;
   for (const double tolerance : {1e-1, 1e-2, 1e-4, 1e-6, 1e-9}) {
     expect_within_error(Grade::proved, tolerance, 3, test::span_count(1000), ++seed);
+  }
+}
+TEST(MultivariatePanel, ProvedErrorsHoldForLinearData) {
+  unsigned seed = 80;
+  for (const double tolerance : {1e-1, 1e-3, 1e-5, 1e-9}) {
+    expect_within_error(Grade::proved, tolerance, 0, test::span_count(1000), ++seed, Data::linear);
+    expect_within_error(Grade::proved, tolerance, 3, test::span_count(500), ++seed, Data::linear);
+  }
+}
+TEST(MultivariatePanel, EstimatesHoldForLinearData) {
+  unsigned seed = 90;
+  for (const double tolerance : {1e-2, 1e-4, 1e-9}) {
+    expect_within_error(Grade::estimated, tolerance, 0, test::span_count(1000), ++seed,
+                        Data::linear);
   }
 }
 TEST(MultivariatePanel, EstimatesHoldForGaussians) {

@@ -68,4 +68,32 @@ PELLUCID_HD constexpr CubicBernstein<T> restrict_to(const CubicBernstein<T>& f, 
            interpolate(bb0, bb1, tb)}};
 }
 
+/// Linear on [0,1], by its values at 0 and 1.
+template <class T>
+struct LinearBernstein {
+  T b[2]{};
+
+  PELLUCID_HD constexpr T hull_min() const noexcept { return min(b[0], b[1]); }
+  PELLUCID_HD constexpr T hull_max() const noexcept { return max(b[0], b[1]); }
+};
+/// The same as a cubic.
+template <class T>
+PELLUCID_HD constexpr CubicBernstein<T> as_cubic(const LinearBernstein<T>& f) noexcept {
+  return {{f.b[0], interpolate(f.b[0], f.b[1], T(1.0 / 3)), interpolate(f.b[0], f.b[1], T(2.0 / 3)),
+           f.b[1]}};
+}
+template <class T>
+PELLUCID_HD constexpr const CubicBernstein<T>& as_cubic(const CubicBernstein<T>& f) noexcept {
+  return f;
+}
+template <class T>
+PELLUCID_HD constexpr T evaluate(const LinearBernstein<T>& f, T t) noexcept {
+  return interpolate(f.b[0], f.b[1], t);
+}
+template <class T>
+PELLUCID_HD constexpr LinearBernstein<T> restrict_to(const LinearBernstein<T>& f, T ta,
+                                                     T tb) noexcept {
+  return {{interpolate(f.b[0], f.b[1], ta), interpolate(f.b[0], f.b[1], tb)}};
+}
+
 }  // namespace pellucid

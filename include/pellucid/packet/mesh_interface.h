@@ -22,17 +22,22 @@ struct PellucidLinearSpan {
 struct PellucidMeshJob {
   const void* mesh;    ///< Tetrahedra
   const void* points;  ///< MeshPoint per point
-  const void* field;   ///< MeshField
+  const void* fields;  ///< MeshFields
+  /// Of several variables: their values at value_points points, 0 where they have none there: of
+  /// the first four channels at each point, then of the next four.
+  const double* values;
+  std::int32_t value_points;
   /// Whether rays see the mesh in double, and not in binary32.
   std::int32_t in_double;
   // The transfer function and what is wanted.
-  const void* transfer;  ///< BinnedTransfer
+  const void* transfer;  ///< BinnedTransfer; for several variables MeshMixture
   double tolerance, largest_color, largest_extinction;
+  std::int32_t proved;  ///< whether only what is proved counts
   // Rays and results.
   const PellucidMeshRay* rays;
   PellucidRayResult* results;
   std::int32_t count;
-  /// Integrates what the packets hand back.
+  /// Integrates what the packets hand back; those of several variables hand nothing back.
   void (*integrate_span)(const void* context, const PellucidLinearSpan* span,
                          PellucidCellResult* result);
   const void* context;
@@ -41,4 +46,9 @@ struct PellucidMeshJob {
 void pellucid_integrate_mesh_sse4(const PellucidMeshJob* job);
 void pellucid_integrate_mesh_avx2(const PellucidMeshJob* job);
 void pellucid_integrate_mesh_avx512(const PellucidMeshJob* job);
+
+/// Rays through several variables, in double.
+void pellucid_integrate_multivariate_mesh_sse4(const PellucidMeshJob* job);
+void pellucid_integrate_multivariate_mesh_avx2(const PellucidMeshJob* job);
+void pellucid_integrate_multivariate_mesh_avx512(const PellucidMeshJob* job);
 }

@@ -1,53 +1,27 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "pellucid/packet/mesh_rays.h"
+#include "pellucid/packet/mesh_values.h"
 #include "pellucid/traverse/mesh_spans.h"
 
 #if PELLUCID_HAS_BATCH_4  // in sources compiled per instruction set
 namespace pellucid {
 
-/// What rays find ahead of them: spans of linear data, those of a step beside each other.
-template <class S, int N>
-struct MeshSpanRows {
-  static constexpr int steps = 24;
-  static constexpr int size = steps * N;
-
-  // In binary32, for the pieces: the data at both ends, how far they are off, and world lengths: of
-  // the span, of the ray from its begin on, of how far its ends are off where the data go on as
-  // they are there, and where they do not.
-  float front[size], back[size], rounding[size], length[size], left[size], place_error[size],
-      end_error[size];
-  std::int32_t code[size];  ///< SpanNote
-
-  /// The same in numbers S, for what is handed back: in binary32 there is nothing to add.
-  static constexpr bool more_exact = !std::is_same_v<S, float>;
-  struct Exact {
-    S front[size], back[size], length[size];
-    float error[size];
-  };
-  struct Nothing {};
-  [[no_unique_address]] std::conditional_t<more_exact, Exact, Nothing> exact;
-};
-
-/// What is known of a span beside its numbers.
-struct SpanNote {
-  static constexpr std::int32_t handed_back = 1, overlaps = 2;
-};
-
-/// Rays in lanes through a mesh, in numbers S, tetrahedron by tetrahedron.
-template <class S, int N>
+/// Rays in lanes through a mesh, in numbers S, tetrahedron by tetrahedron. Values: what they see of
+/// it, as MeshVariable.
+template <class S, int N, class Values>
 class MeshMarch {
  public:
   using T = Batch<S, N>;
   using F = Batch<float, N>;
   using I = Batch<std::int32_t, N>;
   using M = BatchMask<N>;
-  using Rows = MeshSpanRows<S, N>;
+  using Rows = typename Values::Rows;
+  using Span = typename Values::Span;
 
   MeshMarch(const PellucidMeshJob& job, int first, int count) noexcept
       : rays(job, first, count),
-        field_(*static_cast<const MeshField*>(job.field)),
+        values_(job),
         walk_(*static_cast<const Tetrahedra*>(job.mesh)),
         blur_(convert<float>(rays.blur)),
         t_blur_(convert<float>(rays.t_blur)),
@@ -78,14 +52,15 @@ class MeshMarch {
   [[gnu::flatten]] void cross() noexcept {
     tetrahedron_ = select(walking, walk_.ahead() >> 2, I(0));
     walk_.cross(walking);
+    values_.cross(walk_.dropped());
   }
   [[gnu::flatten]] void load_ahead() noexcept { walk_.load_ahead(); }
   [[gnu::flatten]] void see_ahead() noexcept {
-    walk_.see_ahead([this](I point, SeenPoint<T>& q, T& v) noexcept { rays.see(point, q, v); });
+    walk_.see_ahead([this](I point, SeenPoint<T>& q, T& v) noexcept { see(point, q, v); });
   }
   /// Puts what lies in the tetrahedra that were crossed down in row s, and begins anew where rays
-  /// have left the mesh. Returns the lanes whose span absorbs: absorbs(least, most, note), whether
-  /// data in that range do, and what is to be noted of them.
+  /// have left the mesh. Returns the lanes whose span absorbs: absorbs(span, rows, at, note),
+  /// whether it does, and what is to be noted of it in the rows.
   template <class Absorbs>
   M put_down(Rows& rows, int s, Absorbs&& absorbs) noexcept {
     const M found = find_span(rows, s * N, absorbs);
@@ -99,45 +74,21 @@ class MeshMarch {
   [[gnu::flatten]] M find_span(Rows& rows, int at, Absorbs&& absorbs) noexcept {
     const M on = walking;
     const SeenFace<T>& face = walk_.face();
-    const T sum = face.area[0] + face.area[1] + face.area[2];
-    const M flat = !(sum > T(0));
-    const T inverse = T(1) / select(flat, T(1), sum);
-    const T to_second = select(flat, T(S(1.0 / 3)), face.area[1] * inverse),
-            to_third = select(flat, T(S(1.0 / 3)), face.area[2] * inverse);
-    F across(0), size(0);
-    for (int i = 0; i < 3; ++i) {
-      across += abs(convert<float>(face.seen[i].x)) + abs(convert<float>(face.seen[i].y));
-      size += convert<float>(face.size[i]);
-    }
-    const F off =
-        select(flat, F(1), interpolation_error<S>(size, across, blur_, convert<float>(inverse)));
-    // From the first point's, and how far that may be off.
-    const auto interpolate = [&](const T& a, const T& b, const T& c, F& error) noexcept {
-      const T second = b - a, third = c - a;
-      error = off * convert<float>(abs(second) + abs(third));
-      return a + multiply_add(to_second, second, to_third * third);
-    };
+    const FacePlace<S, N> place(face, blur_);
     const SeenPoint<T>* p = face.seen;
-    F t_error, value_error(0);
-    const T t = interpolate(p[0].t, p[1].t, p[2].t, t_error);
+    F t_error;
+    const T t = place.interpolate(p[0].t, p[1].t, p[2].t, t_error);
     t_error += known_to(t);
-    T value, front_value;
-    if (field_.per_cell) {
-      value = front_value = load_cells(tetrahedron_);
-    } else {
-      value = interpolate(face.carried[0], face.carried[1], face.carried[2], value_error);
-      front_value = value_;
-    }
+    auto&& span = values_.reach(face, place, tetrahedron_);
 
     // As span_between() and for_each_mesh_span() in traverse/mesh_spans.h.
-    T begin = t_, at_begin = front_value;
+    T begin = t_;
     M overlaps(false);
     F both = t_error_ + t_error, at_eye(0);
     const M behind = on & (min(t_, t) < front_);
     if (any(behind)) {
       begin = max(t_, front_);
-      const T share = select((t_ < front_) & (front_ < t), (front_ - t_) / (t - t_), T(0));
-      at_begin = front_value + share * (value - front_value);
+      values_.cut(span, select((t_ < front_) & (front_ < t), (front_ - t_) / (t - t_), T(0)));
       const F most = front_error_ + t_error_ + t_error;
       overlaps = behind & (front_ > rays.eye) & (convert<float>(front_ - min(t_, t)) > most);
       // What the data are where the span is cut moves with both faces, and no neighbour makes good
@@ -148,35 +99,19 @@ class MeshMarch {
                  F(static_cast<float>(rounding_unit<S>)) * abs(convert<float>(rays.eye)), F(0));
     }
     const M ahead = on & (begin < t);
-    const M vacuum = is_nan(front_value + value);
-    const F error = max(value_error_, value_error);
-
-    constexpr float u = rounding_unit<float>;
-    const F f = convert<float>(at_begin), b = convert<float>(value);
-    const F rounding = F(4 * u) * max(abs(f), abs(b)) + error;
+    const M vacuum = values_.vacuum(span);
     I note = select(overlaps, I(SpanNote::overlaps), I(0));
-    const M found =
-        (ahead & !vacuum & absorbs(min(f, b) - rounding, max(f, b) + rounding, note)) | overlaps;
+    const M found = (ahead & !vacuum & absorbs(span, rows, at, note)) | overlaps;
     if (any(found)) {
-      f.store(rows.front + at);
-      b.store(rows.back + at);
-      rounding.store(rows.rounding + at);
       const T length = max(t - begin, T(0));
+      values_.put_down(span, length, rows, at);
       convert<float>(length).store(rows.length + at);
       convert<float>(rays.end - begin).store(rows.left + at);
       const M leaves = walk_.ahead() < I(0);
       const F at_ends = select(first_, t_error_, F(0)) + select(leaves, t_error, F(0));
-      (field_.per_cell ? F(0) : both).store(rows.place_error + at);
-      ((field_.per_cell ? both : at_ends) + at_eye).store(rows.end_error + at);
-      if constexpr (Rows::more_exact) {
-        at_begin.store(rows.exact.front + at);
-        value.store(rows.exact.back + at);
-        length.store(rows.exact.length + at);
-        // Where all that it comes of is equal it is exact.
-        const F rounded = F(static_cast<float>(4 * rounding_unit<S>)) * max(abs(f), abs(b));
-        const M even = (error == F(0)) & (f == b);
-        (error + select(even, F(0), rounded)).store(rows.exact.error + at);
-      }
+      const bool steps = values_.steps();
+      (steps ? F(0) : both).store(rows.place_error + at);
+      ((steps ? both : at_ends) + at_eye).store(rows.end_error + at);
       note.store(rows.code + at);
     }
     beside_vacuum += select(on & (vacuum | !ahead), t_error_ + t_error, F(0));
@@ -188,12 +123,16 @@ class MeshMarch {
     front_ = select(forward, max(t, begin), front_);
     front_error_ = select(forward, t_error, front_error_);
     t_ = select(on, t, t_);
-    value_ = select(on, value, value_);
     t_error_ = select(on, t_error, t_error_);
-    value_error_ = select(on, value_error, value_error_);
+    values_.go_on(on, span);
     // Behind vacuum the data begin anew.
     first_ = vacuum;
     return found;
+  }
+
+  void see(I point, SeenPoint<T>& seen, T& carried) noexcept {
+    rays.see(point, seen, carried);
+    values_.see(point);
   }
 
   /// How far a parameter that is interpolated is off, beside what the weights are: those of the
@@ -201,14 +140,6 @@ class MeshMarch {
   F known_to(const T& t) const noexcept {
     return t_blur_ + F(static_cast<float>(2.1 * static_cast<double>(rounding_unit<S>))) *
                          abs(convert<float>(t));
-  }
-
-  T load_cells(I tetrahedron) const noexcept {
-    std::int32_t at[N];
-    S value[N];
-    tetrahedron.store(at);
-    for (int l = 0; l < N; ++l) value[l] = static_cast<S>(field_.value[at[l]]);
-    return T::load(value);
   }
 
   /// Takes the hits out by which the lanes' rays have left the mesh, and begins what comes next.
@@ -261,36 +192,27 @@ class MeshMarch {
       face.carried[i] = T::load(all.value[i]);
     }
     face.left = M::from_bits(turned);
-    T weight[3];
-    face.weights(weight);
-    const auto interpolate = [&](const T& a, const T& b, const T& c) noexcept {
-      return a + multiply_add(weight[1], b - a, weight[2] * (c - a));
-    };
-    const auto range = [](const T& a, const T& b, const T& c) noexcept {
-      return convert<float>(abs(b - a) + abs(c - a));
-    };
-    const F off = convert<float>(face.error(rays.blur));
+    const FacePlace<S, N> place(face, blur_);
     const SeenPoint<T>* p = face.seen;
-    const T* v = face.carried;
+    F t_error;
+    const T t = place.interpolate(p[0].t, p[1].t, p[2].t, t_error);
     next_t_ = select(on, T::load(all.next), next_t_);
-    const T t = interpolate(p[0].t, p[1].t, p[2].t);
     t_ = select(on, t, t_);
-    value_ = select(on, interpolate(v[0], v[1], v[2]), value_);
-    t_error_ = select(on, off * range(p[0].t, p[1].t, p[2].t) + known_to(t), t_error_);
-    value_error_ = select(on, off * range(v[0], v[1], v[2]), value_error_);
+    t_error_ = select(on, t_error + known_to(t), t_error_);
+    values_.begin(on, face, place);
     first_ = first_ | on;
     walk_.enter(on, face, I::load(all.code),
-                [this](I point, SeenPoint<T>& q, T& w) noexcept { rays.see(point, q, w); });
+                [this](I point, SeenPoint<T>& q, T& w) noexcept { see(point, q, w); });
   }
 
-  const MeshField field_;
+  Values values_;
   MeshWalk<T> walk_;
   F blur_, t_blur_;
   I tetrahedron_{0};  ///< that is crossed
 
   // Where the lanes are: on the face reached last, and how far along the ray all in all.
-  T t_, value_;
-  F t_error_, value_error_;
+  T t_;
+  F t_error_;
   T next_t_;       ///< of the next hit that is not used up
   M first_{true};  ///< whether there is nothing in front of what comes
   T front_;

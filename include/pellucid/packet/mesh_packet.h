@@ -28,7 +28,7 @@ class MeshPacket {
   using I = Batch<std::int32_t, N>;
   using M = BatchMask<N>;
   /// What many packets have one after the other.
-  using Room = MeshSpanRows<S, N>;
+  using Room = typename MeshVariable<S, N>::Rows;
 
   MeshPacket(const PellucidMeshJob& job, Room& rows, int first, int count) noexcept
       : job_(job),
@@ -109,8 +109,12 @@ class MeshPacket {
 
   void put_down(int s) noexcept {
     cells_ += select(march_.walking, I(1), I(0));
-    const M found = march_.put_down(
-        rows_, s, [this](F least, F most, I& note) noexcept { return absorbs(least, most, note); });
+    using Span = typename MeshVariable<S, N>::Span;
+    const M found =
+        march_.put_down(rows_, s, [this](const Span& span, Room&, int, I& note) noexcept {
+          const F rounding = span.rounding();
+          return absorbs(span.least() - rounding, span.most() + rounding, note);
+        });
     waiting_ = waiting_ + select(found, I(1 << s), I(0));
   }
 
@@ -395,7 +399,7 @@ class MeshPacket {
   const BinnedTransfer& transfer_;
   Room& rows_;
   int first_, count_;
-  MeshMarch<S, N> march_;
+  MeshMarch<S, N, MeshVariable<S, N>> march_;
   I lane_;
 
   I waiting_{0};  ///< per lane, the rows whose spans are not taken yet

@@ -299,7 +299,7 @@ class MultivariateRay {
       end[l] = panel.end;
       length[l] = l < count ? cells.length(panel.lane) : 0;
       // Cuts inside of a cell are where they are thought to be.
-      place[l] = panel.begin > 0 ? 0 : cells.place_error(panel.lane);
+      place[l] = panel.begin > 0 && panel.end < 1 ? 0 : cells.place_error(panel.lane);
       demand_.primitives.bits |= cells.primitives(panel.lane).bits;
       whole = whole && panel.begin == 0 && panel.end == 1;
       const bool small = !(panel.end - panel.begin > 1e-9) || panel.cuts >= most_cuts;

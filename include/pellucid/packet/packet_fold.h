@@ -49,8 +49,9 @@ class PacketFold {
   F transparency() const noexcept { return convert<float>(fold_.transparency()); }
 
   /// Adds the lanes' segments to their rays, not what they cost.
-  void add(M lanes, const SegmentResult<F>& s) noexcept {
-    const auto masked = [&](F value) noexcept {
+  template <class T>
+  void add(M lanes, const SegmentResult<T>& s) noexcept {
+    const auto masked = [&](const T& value) noexcept {
       return select(lanes, convert<double>(value), D(0));
     };
     fold_.add(SegmentResult<D>{masked(s.optical_depth),

@@ -140,10 +140,40 @@ class MeshRayIntegrator {
 
 namespace detail {
 
-/// Linear data as a cubic.
-PELLUCID_HD inline CubicBernstein<double> linear_data(double front, double back) noexcept {
-  const double third = (back - front) / 3;
-  return {{front, front + third, back - third, back}};
+/// Of what a span's data may be off by, what tables make of it: a bound on the change of the
+/// extinction, and of colors, which count like the extinction that shows them.
+PELLUCID_HD inline double error_through_tables(const Multivariate<double>& transfer,
+                                               const MeshSpan& span) noexcept {
+  double sum = 0;
+  for (int i = 0; i < transfer.tables; ++i) {
+    const int c = transfer.table[i].channel;
+    const PiecewiseLinear<double>& table = transfer.table[i].table;
+    const double off = span.value_error[c];
+    const CubicBernstein<double> data =
+        as_cubic(LinearBernstein<double>{{span.front[c], span.back[c]}});
+    const int first = table.interval(data.hull_min() - off),
+              last = table.interval(data.hull_max() + off);
+    const Sensitivity<double> slopes = sensitivity(table, first, last, off);
+    const double change = slopes.extinction_slope + slopes.largest_extinction * slopes.color_slope;
+    sum += min(off * change, slopes.largest_extinction);
+    if (slopes.jump) sum += jump_rounding(data, table, first, last, off);
+  }
+  return sum;
+}
+
+/// Whether a table may absorb anywhere in a span.
+inline bool tables_absorb(const Multivariate<double>& transfer, const MeshSpan& span) noexcept {
+  for (int i = 0; i < transfer.tables; ++i) {
+    const int c = transfer.table[i].channel;
+    const PiecewiseLinear<double>& table = transfer.table[i].table;
+    const LinearBernstein<double> data{{span.front[c], span.back[c]}};
+    const double off = span.value_error[c] + data_rounding(as_cubic(data));
+    if (table.has_extinction(table.interval(data.hull_min() - off),
+                             table.interval(data.hull_max() + off))) {
+      return true;
+    }
+  }
+  return false;
 }
 
 /// What a span's data may be off by, beyond what the panels charge for rounding themselves, as a
@@ -169,20 +199,7 @@ PELLUCID_HD inline double extinction_error(const Multivariate<double>& transfer,
     }
     sum += g.peak * min(0.86 * sqrt(square * static_cast<double>(g.channels)), 1.0);
   }
-  for (int i = 0; i < transfer.tables; ++i) {
-    const int c = transfer.table[i].channel;
-    const PiecewiseLinear<double>& table = transfer.table[i].table;
-    const double off = span.value_error[c];
-    const CubicBernstein<double> data = linear_data(span.front[c], span.back[c]);
-    const int first = table.interval(data.hull_min() - off),
-              last = table.interval(data.hull_max() + off);
-    const Sensitivity<double> slopes = sensitivity(table, first, last, off);
-    // Colors count like the extinction that shows them.
-    const double change = slopes.extinction_slope + slopes.largest_extinction * slopes.color_slope;
-    sum += min(off * change, slopes.largest_extinction);
-    if (slopes.jump) sum += jump_rounding(data, table, first, last, off);
-  }
-  return sum;
+  return sum + error_through_tables(transfer, span);
 }
 
 PELLUCID_HD inline void add_span(const Multivariate<double>& transfer, const MeshSpan& span,
@@ -195,11 +212,9 @@ PELLUCID_HD inline void add_span(const Multivariate<double>& transfer, const Mes
     integrator.lose(span.overlaps ? 1 : largest_extinction * (span.place_error + span.end_error));
     return;
   }
-  MultivariateSpan<double> data;
+  LinearSpan<double> data;
   data.length = length;
-  for (int c = 0; c < transfer.channels; ++c) {
-    data.data[c] = linear_data(span.front[c], span.back[c]);
-  }
+  for (int c = 0; c < transfer.channels; ++c) data.data[c] = {{span.front[c], span.back[c]}};
   integrator.stretch(data, {span.begin, span.end}, {},
                      min(extinction_error(transfer, span), largest_extinction),
                      span.place_error + span.end_error);

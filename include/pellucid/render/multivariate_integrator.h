@@ -53,12 +53,13 @@ class MultivariateRayIntegrator {
                   demand_.largest_color * min(extinction * length, 1.0));
   }
 
-  /// A stretch of the ray on which all channels are cubics, cut until it is good enough.
+  /// A stretch of the ray on which all channels are cubics, or linear, cut until it is good enough.
   /// `range`: where it is on the ray, world arc length. `left_out`: a bound on the extinction that
   /// is not looked at, that of primitives that are not in the set above all. `place_error`: how far
   /// its ends may be off.
-  PELLUCID_HD void stretch(const MultivariateSpan<double>& span, Interval<double> range,
-                           PrimitiveSet primitives, double left_out, double place_error) noexcept {
+  template <class Span>
+  PELLUCID_HD void stretch(const Span& span, Interval<double> range, PrimitiveSet primitives,
+                           double left_out, double place_error) noexcept {
     ++evaluations_;
     demand_.primitives = primitives;
     // The parts still to do, by their ends, the nearest last.
@@ -69,7 +70,7 @@ class MultivariateRayIntegrator {
     while (open > 0) {
       const double end = ends[open - 1];
       // Cuts inside of a cell are where they are thought to be.
-      demand_.place_error = begin > 0 ? 0 : place_error;
+      demand_.place_error = begin > 0 && end < 1 ? 0 : place_error;
       demand_.last_resort = open > most_cuts || !(end - begin > 1e-9);
       const PanelSegment<double> panel = integrate(span, begin, end, left_out);
       if (!panel.done) {
@@ -113,10 +114,10 @@ class MultivariateRayIntegrator {
     return fold_.transparency() * opacity * demand_.largest_color;
   }
 
-  PELLUCID_HD PanelSegment<double> integrate(const MultivariateSpan<double>& whole, double begin,
-                                             double end, double left_out) noexcept {
-    const MultivariateSpan<double> span =
-        begin == 0 && end == 1 ? whole : whole.part(transfer_.channels, begin, end);
+  template <class Span>
+  PELLUCID_HD PanelSegment<double> integrate(const Span& whole, double begin, double end,
+                                             double left_out) noexcept {
+    const Span span = begin == 0 && end == 1 ? whole : whole.part(transfer_.channels, begin, end);
     const auto allowance = [&](double opacity) noexcept {
       return max(budget_.allowance(span.length, opacity, fold_.transparency()),
                  RayBudget<double>::least_allowance(tolerance_, span.length / length_));
@@ -141,7 +142,8 @@ class MultivariateRayIntegrator {
 
   /// The place in the part [begin, end] of a cell where the depth reaches the target: by bisection,
   /// with the depths of lines, which is what the tolerance allows there.
-  PELLUCID_HD void find(const MultivariateSpan<double>& span, double begin, double end,
+  template <class Span>
+  PELLUCID_HD void find(const Span& span, double begin, double end,
                         Interval<double> range) noexcept {
     PanelDemand<double> demand = demand_;
     demand.last_resort = true;

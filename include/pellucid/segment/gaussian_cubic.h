@@ -191,4 +191,11 @@ class GaussianCubic {
   T lower_, upper_;
 };
 
+/// The primitive along the data of all channels.
+template <class S, class T>
+PELLUCID_HD GaussianCubic<T> gaussian_along(const Gaussian<S>& primitive,
+                                            const CubicBernstein<T>* data) noexcept {
+  return {primitive, data};
+}
+
 }  // namespace pellucid

@@ -4,16 +4,17 @@
 #include "pellucid/error/grade.h"
 #include "pellucid/segment/gauss_panel.h"
 #include "pellucid/segment/gaussian_cubic.h"
+#include "pellucid/segment/gaussian_linear.h"
 #include "pellucid/segment/gaussian_panels.h"
 #include "pellucid/segment/panel_tables.h"
 
 namespace pellucid {
 
 /// How good a panel has to be, and what is known without looking. T may be a batch: panels in
-/// lanes, of which one without length is none.
-template <class T>
+/// lanes, of which one without length is none. Set: a PrimitiveSet for all, or one of each lane.
+template <class T, class Set = PrimitiveSet>
 struct PanelDemand {
-  PrimitiveSet primitives;
+  Set primitives;
   Grade grade = Grade::estimated;
   scalar_t<T> largest_color = 1;  ///< C_max >= 1: a bound on every color on the ray
   T place_error{};  ///< how far the ends may be from where they are thought to be, world
@@ -69,13 +70,16 @@ struct PanelRoom {
 namespace detail {
 
 /// One panel: all terms measured, then the cheapest rule that is good enough.
-template <class T, class Allowance>
+template <class T, class Data, class Set, class Allowance>
 class PanelIntegrator {
   using S = scalar_t<T>;
+  /// Whether lines stand for data that are none.
+  static constexpr bool bent = std::is_same_v<Data, CubicBernstein<T>>;
 
  public:
-  PELLUCID_HD PanelIntegrator(const Multivariate<S>& transfer, const MultivariateSpan<T>& span,
-                              const PanelDemand<T>& demand, const Allowance& allowance,
+  PELLUCID_HD PanelIntegrator(const Multivariate<S>& transfer,
+                              const MultivariateSpan<T, Data>& span,
+                              const PanelDemand<T, Set>& demand, const Allowance& allowance,
                               PanelRoom<T>& room) noexcept
       : transfer_(transfer),
         span_(span),
@@ -112,40 +116,45 @@ class PanelIntegrator {
     const GaussianMixture<S>& all = transfer_.gaussians;
     const T negligible = allowance_(T(0)) / (T(8 * max(all.count, 1)) * largest_color_);
     for (int i = 0; i < all.count; ++i) {
-      if (!demand_.primitives.holds(i)) continue;
+      const mask_t<T> held(demand_.primitives.holds(i));
+      if (none(held)) continue;
       const Gaussian<S>& g = all.primitive[i];
-      const GaussianCubic<T> cubic(g, span_.data);
+      const auto along = gaussian_along(g, span_.data);
       const T peak = T(g.peak) * span_.length;
-      const T bound = peak * exp(-cubic.lower());
-      const auto matters = bound > negligible;
-      rest_ += select(matters, T(0), bound);
-      if (any(matters)) measure(i, g, cubic, peak, bound, matters);
+      const T bound = peak * exp(-along.lower());
+      const auto matters = held & (bound > negligible);
+      rest_ += select(held & !matters, bound, T(0));
+      if (any(matters)) measure(i, g, along, peak, bound, matters);
     }
   }
 
-  template <class Mask>
-  PELLUCID_HD void measure(int primitive, const Gaussian<S>& g, const GaussianCubic<T>& cubic,
-                           T peak, T bound, Mask matters) noexcept {
-    const auto line = cubic.line();
-    const LineLoss<T> loss = cubic.line_loss(line);
+  template <class Along, class Mask>
+  PELLUCID_HD void measure(int primitive, const Gaussian<S>& g, const Along& along, T peak, T bound,
+                           Mask matters) noexcept {
+    const auto& line = along.line();
     const auto part = [&](T x) noexcept { return select(matters, x, T(0)); };
     Term& term = term_[count_++];
     term.primitive = primitive;
-    term.mass = part(peak * cubic.mean_density(line));
-    term.loss = part(peak * loss.mean);
+    term.mass = part(peak * along.mean_density(line));
+    term.loss = T(0);
     term.bend = line.squared_length;
-    term.slope = cubic.slope(line);
+    term.slope = along.slope(line);
     most_ += part(bound);
-    loss_ += term.loss;
-    absolute_loss_ += part(peak * loss.absolute);
-    exponents_ = max(exponents_, part(cubic.upper() - cubic.lower()));
-    bend_ = max(bend_, part((T(2) * sqrt(cubic.upper()) + line.farthest) * line.farthest));
+    seen_ += part(T(1));
+    exponents_ = max(exponents_, part(along.upper() - along.lower()));
+    if constexpr (bent) {
+      const LineLoss<T> loss = along.line_loss(line);
+      term.loss = part(peak * loss.mean);
+      loss_ += term.loss;
+      absolute_loss_ += part(peak * loss.absolute);
+      bend_ = max(bend_, part((T(2) * sqrt(along.upper()) + line.farthest) * line.farthest));
+    }
     sum_.add(term.mass, color_of(g));
     // The closed form's own, with its logarithm; and K (v - c), which is off by some units of its
     // largest terms, seen through the density's slope: (2.4 max(1, s)) e^(-s²) at most, |p| >= s.
-    const T away = sqrt(max(cubic.lower(), T(1)));
+    const T away = sqrt(max(along.lower(), T(1)));
     rounding_ += part(
-        bound * (T(rounding_unit<T>) * (T(48) + T(32) * cubic.lower() + T(160) * away * reach(g))));
+        bound * (T(rounding_unit<T>) * (T(48) + T(32) * along.lower() + T(160) * away * reach(g))));
   }
 
   /// max |K| |v - c| over the span, moduli entry by entry.
@@ -155,7 +164,7 @@ class PanelIntegrator {
       T sum = T(0);
       for (int c = 0; c < g.channels; ++c) {
         if (g.matrix[i][c] == S(0)) continue;
-        const CubicBernstein<T>& f = span_.data[c];
+        const Data& f = span_.data[c];
         const T away = max(abs(f.hull_min()), abs(f.hull_max())) + T(abs(g.center[c]));
         sum += T(abs(g.matrix[i][c])) * away;
       }
@@ -183,7 +192,8 @@ class PanelIntegrator {
     Rgb<T> emission{};
     for (int n = 0; n < count_; ++n) {
       const Gaussian<S>& g = gaussian(term_[n]);
-      const T here = T(g.peak) * g.density(v);
+      // Of other lanes' terms nothing.
+      const T here = select(term_[n].mass > T(0), T(g.peak) * g.density(v), T(0));
       extinction += here;
       emission += here * color_of(g);
     }
@@ -269,7 +279,7 @@ class PanelIntegrator {
     const T loss = loss_ + max(result.opacity, alpha) * absolute_loss_ + rest_;
     found.opacity_error = min(loss + fixed_, T(1));
     const T all_colors = max(sum_.range.oscillation(), T(1e-6) * largest_color_);
-    const Matter m = matter(allowed / (T(16 * max(count_, 1)) * all_colors));
+    const Matter m = matter(allowed / (T(16) * max(seen_, T(1)) * all_colors));
     // Weights e^s whose s differ by at most Δ move a mean of colors by at most ω tanh(Δ/4); the
     // colors of a table change by themselves.
     const T range = m.colors.oscillation();
@@ -314,13 +324,14 @@ class PanelIntegrator {
   }
 
   const Multivariate<S>& transfer_;
-  const MultivariateSpan<T>& span_;
-  const PanelDemand<T>& demand_;
+  const MultivariateSpan<T, Data>& span_;
+  const PanelDemand<T, Set>& demand_;
   const Allowance& allowance_;
   T largest_color_;
 
   Term* term_;
   int count_ = 0;
+  T seen_{};       ///< how many of them matter, lane by lane
   T most_{};       ///< a bound on their depth, together
   T exponents_{};  ///< how much an exponent changes at most
   T bend_{};       ///< how much it differs from that of its line at most
@@ -353,18 +364,19 @@ class PanelIntegrator {
 /// panel: at most (range of all) · Δ/4 + (range of a table's own color), Δ as there.
 ///
 /// T: double, or a batch of it, panels in lanes. `room` is for the function alone.
-template <class T, class Allowance>
+template <class T, class Data, class Set, class Allowance>
 PELLUCID_HD PanelSegment<T> integrate_multivariate_panel(const Multivariate<scalar_t<T>>& transfer,
-                                                         const MultivariateSpan<T>& span,
-                                                         const PanelDemand<T>& demand,
+                                                         const MultivariateSpan<T, Data>& span,
+                                                         const PanelDemand<T, Set>& demand,
                                                          const Allowance& allowance,
                                                          PanelRoom<T>& room) noexcept {
-  return detail::PanelIntegrator<T, Allowance>(transfer, span, demand, allowance, room).run();
+  return detail::PanelIntegrator<T, Data, Set, Allowance>(transfer, span, demand, allowance, room)
+      .run();
 }
-template <class T, class Allowance>
+template <class T, class Data, class Set, class Allowance>
 PELLUCID_HD PanelSegment<T> integrate_multivariate_panel(const Multivariate<T>& transfer,
-                                                         const MultivariateSpan<T>& span,
-                                                         const PanelDemand<T>& demand,
+                                                         const MultivariateSpan<T, Data>& span,
+                                                         const PanelDemand<T, Set>& demand,
                                                          const Allowance& allowance) noexcept {
   PanelRoom<T> room;
   return integrate_multivariate_panel(transfer, span, demand, allowance, room);

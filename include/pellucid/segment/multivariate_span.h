@@ -6,10 +6,10 @@
 
 namespace pellucid {
 
-/// A stretch of a ray on which every channel is a cubic of u in [0, 1].
-template <class T>
+/// A stretch of a ray on which every channel is Data of u in [0, 1]: a cubic, or linear.
+template <class T, class Data = CubicBernstein<T>>
 struct MultivariateSpan {
-  CubicBernstein<T> data[most_channels];
+  Data data[most_channels];
   T length{};  ///< world
 
   PELLUCID_HD MultivariateSpan part(int channels, T begin, T end) const noexcept {
@@ -19,5 +19,9 @@ struct MultivariateSpan {
     return result;
   }
 };
+
+/// Of linear data.
+template <class T>
+using LinearSpan = MultivariateSpan<T, LinearBernstein<T>>;
 
 }  // namespace pellucid

@@ -29,14 +29,14 @@ struct PanelTables {
   TopTwo<T> changes;  ///< of the logarithms of their extinctions
 };
 
-template <class S>
+template <class S, class Data>
 PELLUCID_HD PanelTables<S> measure_tables_of_one(const Multivariate<S>& transfer,
-                                                 const MultivariateSpan<S>& span,
+                                                 const MultivariateSpan<S, Data>& span,
                                                  S largest_color) noexcept {
   PanelTables<S> result;
   for (int i = 0; i < transfer.tables; ++i) {
     const PiecewiseLinear<S>& table = transfer.table[i].table;
-    const CubicBernstein<S>& data = span.data[transfer.table[i].channel];
+    const CubicBernstein<S> data = as_cubic(span.data[transfer.table[i].channel]);
     const S error = data_rounding(data);
     const int first = table.interval(data.hull_min() - error);
     const int last = table.interval(data.hull_max() + error);
@@ -62,24 +62,24 @@ PELLUCID_HD PanelTables<S> measure_tables_of_one(const Multivariate<S>& transfer
 }
 
 /// Lane by lane where T is a batch: tables are looked up one number at a time.
-template <class T>
+template <class T, template <class> class Data>
 PELLUCID_HD PanelTables<T> measure_tables(const Multivariate<scalar_t<T>>& transfer,
-                                          const MultivariateSpan<T>& span,
+                                          const MultivariateSpan<T, Data<T>>& span,
                                           scalar_t<T> largest_color) noexcept {
   if constexpr (lanes<T> == 1) {
     return measure_tables_of_one(transfer, span, largest_color);
   } else {
     using S = scalar_t<T>;
-    constexpr int n = lanes<T>, fields = 15;
-    S in[4][most_channels][n], lengths[n], out[fields][n];
+    constexpr int n = lanes<T>, fields = 15, numbers = sizeof(Data<S>) / sizeof(S);
+    S in[numbers][most_channels][n], lengths[n], out[fields][n];
     for (int c = 0; c < transfer.channels; ++c) {
-      for (int k = 0; k < 4; ++k) span.data[c].b[k].store(in[k][c]);
+      for (int k = 0; k < numbers; ++k) span.data[c].b[k].store(in[k][c]);
     }
     span.length.store(lengths);
     for (int l = 0; l < n; ++l) {
-      MultivariateSpan<S> one;
+      MultivariateSpan<S, Data<S>> one;
       for (int c = 0; c < transfer.channels; ++c) {
-        for (int k = 0; k < 4; ++k) one.data[c].b[k] = in[k][c][l];
+        for (int k = 0; k < numbers; ++k) one.data[c].b[k] = in[k][c][l];
       }
       one.length = lengths[l];
       const PanelTables<S> t = measure_tables_of_one(transfer, one, largest_color);

@@ -47,6 +47,8 @@ class MeshWalk {
   PELLUCID_HD Index ahead() const noexcept { return code_; }
   /// The face as the tetrahedron gone through last has it.
   PELLUCID_HD Index left_by() const noexcept { return left_by_; }
+  /// Which corner of the face before has given way to the new point: drop[i], corner i.
+  const Mask* dropped() const noexcept { return drop_; }
 
   /// Goes through the tetrahedron ahead in the lanes of `on`, where there is one. load(point, seen,
   /// carried) tells where the ray sees a point, and what is to be carried of it.
@@ -81,7 +83,10 @@ class MeshWalk {
     // With points a, b, c of the face and the new one d: through (b, c, d) if d sees b ahead of the
     // ray and not c; a is left behind then. And so on around.
     Mask drop[3];
-    for (int i = 0; i < 3; ++i) drop[i] = on & forward[(i + 1) % 3] & !forward[(i + 2) % 3];
+    for (int i = 0; i < 3; ++i) {
+      drop[i] = on & forward[(i + 1) % 3] & !forward[(i + 2) % 3];
+      drop_[i] = drop[i];
+    }
 
     const Index before =
         select(drop[0], face_.point[0], select(drop[1], face_.point[1], face_.point[2]));
@@ -130,6 +135,7 @@ class MeshWalk {
   const Tetrahedra& mesh_;
   SeenFace<T> face_;
   Index code_{}, left_by_{};
+  Mask drop_[3]{Mask(false), Mask(false), Mask(false)};
   Index words_[8];  ///< the tetrahedron ahead
   Index point_{};   ///< that is not on the face
   SeenPoint<T> seen_;

@@ -1,0 +1,185 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "pellucid/packet/mesh_values.h"
+#include "pellucid/transfer/multivariate.h"
+
+namespace pellucid {
+
+/// A Gaussian primitive in binary32: it matters where |K (v - c)|² < square, and everywhere if that
+/// is NaN.
+struct NearGaussian {
+  Gaussian<float> gaussian;
+  float square = 0;
+};
+
+/// A transfer function of a mesh's variables, as rays in lanes look at it before they integrate
+/// anything. A view; owns nothing.
+struct MeshMixture {
+  Multivariate<double> transfer;
+  const NearGaussian* primitive = nullptr;  ///< for each Gaussian of it
+  /// The extinction that all may have together where none is near; as much again may be what errors
+  /// of the data make of it. For rays of the length `diagonal`, which none is beyond.
+  double left_out = 0, diagonal = 1;
+  /// How fast the extinction of all Gaussians together may change with a channel, at most.
+  double steepness[most_channels] = {};
+};
+
+}  // namespace pellucid
+
+#if PELLUCID_HAS_BATCH_4  // in sources compiled per instruction set
+namespace pellucid {
+
+/// Which primitives may matter to the ray of each lane: as PrimitiveSet.
+template <int N>
+struct LanePrimitiveSets {
+  using I = Batch<std::int32_t, N>;
+
+  I low{0}, high{0};
+
+  BatchMask<N> holds(int primitive) const noexcept {
+    return ((is_high(primitive) ? high : low) & bit(primitive)) != I(0);
+  }
+  void add(BatchMask<N> lanes, int primitive) noexcept {
+    I& word = is_high(primitive) ? high : low;
+    word = word | select(lanes, bit(primitive), I(0));
+  }
+
+ private:
+  static bool is_high(int primitive) noexcept { return (primitive & 32) != 0; }
+  static I bit(int primitive) noexcept {
+    return I(static_cast<std::int32_t>(1u << (primitive & 31)));
+  }
+};
+
+/// The variables that rays in lanes see of a mesh (MeshMarch), in numbers S.
+template <class S, int N>
+class MeshVariables {
+ public:
+  using T = Batch<S, N>;
+  using F = Batch<float, N>;
+  using I = Batch<std::int32_t, N>;
+  using M = BatchMask<N>;
+
+  struct Rows : MeshRows<N, 8> {
+    using MeshRows<N, 8>::size;
+    S front[most_channels][size], back[most_channels][size], exact_length[size];
+    float left_out[size];  ///< a bound on the change of extinction that errors of the data make
+    std::int32_t low[size], high[size];  ///< LanePrimitiveSets
+  };
+
+  explicit MeshVariables(const PellucidMeshJob& job) noexcept
+      : fields_(*static_cast<const MeshFields*>(job.fields)),
+        values_(job.values),
+        points_(job.value_points) {
+    for (int c = 0; c < fields_.channels; ++c) {
+      steps_ = steps_ || fields_.channel[c].per_cell;
+      value_[c] = T(0);
+      error_[c] = F(0);
+    }
+  }
+
+  /// Whether data step from tetrahedron to tetrahedron.
+  bool steps() const noexcept { return steps_; }
+
+  /// A span: the data at its ends, and how far they may be off, beside the rounding of what they
+  /// are made of.
+  struct Span {
+    int channels;
+    T front[most_channels], back[most_channels];
+    F front_error[most_channels], back_error[most_channels];
+
+    F error(int c) const noexcept { return max(front_error[c], back_error[c]); }
+  };
+
+  /// Rays see the point ahead of them.
+  void see(I point) noexcept { load(point, ahead_); }
+  /// They cross the tetrahedron that it is of: corners of the face that they came by give way.
+  void cross(const M* dropped) noexcept {
+    for (int c = 0; c < fields_.channels; ++c) {
+      for (int i = 0; i < 3; ++i) assign(dropped[i], corner_[i][c], ahead_[c]);
+    }
+  }
+
+  /// Rays come to a face, by the first one of their way.
+  void begin(M on, const SeenFace<T>& face, const FacePlace<S, N>& place) noexcept {
+    for (int i = 0; i < 3; ++i) {
+      T loaded[most_channels];
+      load(face.point[i], loaded);
+      for (int c = 0; c < fields_.channels; ++c) assign(on, corner_[i][c], loaded[c]);
+    }
+    for (int c = 0; c < fields_.channels; ++c) {
+      F error;
+      const T value = value_on(place, c, error);
+      value_[c] = select(on, value, value_[c]);
+      error_[c] = select(on, error, error_[c]);
+    }
+  }
+  /// What they see of the tetrahedron in front of it.
+  Span& reach(const SeenFace<T>& /*face*/, const FacePlace<S, N>& place, I tetrahedron) noexcept {
+    Span& span = span_;
+    span.channels = fields_.channels;
+    for (int c = 0; c < fields_.channels; ++c) {
+      if (fields_.channel[c].per_cell) {
+        span.front[c] = span.back[c] = load_values<S>(fields_.channel[c].value, tetrahedron);
+        span.front_error[c] = span.back_error[c] = F(0);
+      } else {
+        span.front[c] = value_[c];
+        span.front_error[c] = error_[c];
+        span.back[c] = value_on(place, c, span.back_error[c]);
+      }
+    }
+    return span;
+  }
+  /// Begins a span at so much of it.
+  static void cut(Span& span, const T& share) noexcept {
+    for (int c = 0; c < span.channels; ++c) {
+      span.front[c] += share * (span.back[c] - span.front[c]);
+    }
+  }
+  static M vacuum(const Span& span) noexcept {
+    T sum = span.front[0] + span.back[0];
+    for (int c = 1; c < span.channels; ++c) sum += span.front[c] + span.back[c];
+    return is_nan(sum);
+  }
+  static void put_down(const Span& span, const T& length, Rows& rows, int at) noexcept {
+    for (int c = 0; c < span.channels; ++c) {
+      span.front[c].store(rows.front[c] + at);
+      span.back[c].store(rows.back[c] + at);
+    }
+    length.store(rows.exact_length + at);
+  }
+  /// Goes past it.
+  void go_on(M on, const Span& span) noexcept {
+    for (int c = 0; c < span.channels; ++c) {
+      value_[c] = select(on, span.back[c], value_[c]);
+      error_[c] = select(on, span.back_error[c], error_[c]);
+    }
+  }
+
+ private:
+  /// The values of points, four channels at a time.
+  void load(I point, T* values) const noexcept {
+    for (int first = 0; first < fields_.channels; first += 4) {
+      Batch<double, N> four[4];
+      load_records<4>(values_ + static_cast<std::ptrdiff_t>(first) * points_, point, four);
+      const int here = min(4, fields_.channels - first);
+      for (int k = 0; k < here; ++k) values[first + k] = convert<S>(four[k]);
+    }
+  }
+  T value_on(const FacePlace<S, N>& place, int channel, F& error) const noexcept {
+    return place.interpolate(corner_[0][channel], corner_[1][channel], corner_[2][channel], error);
+  }
+
+  const MeshFields fields_;
+  const double* values_;
+  std::int32_t points_;
+  bool steps_ = false;
+  Span span_;  ///< of the step that is made
+  T corner_[3][most_channels], ahead_[most_channels];
+  T value_[most_channels];  ///< on the face reached last
+  F error_[most_channels];
+};
+
+}  // namespace pellucid
+#endif
