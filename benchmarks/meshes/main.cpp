@@ -165,6 +165,8 @@ int main(int argc, char** argv) {
       ->check(CLI::PositiveNumber);
   app.add_flag("!--no-vtk", a.frames.vtk, "without VTK's mappers");
   app.add_flag("!--no-sweep", a.frames.sweep, "without VTK's ZSweep mapper");
+  app.add_flag("--sweep-axis", a.frames.sweep_axis,
+               "VTK's ZSweep mapper along axes too, where it takes minutes");
   app.add_flag("--tiny", a.tiny, "small meshes: to try this program");
   app.add_option("--cache", a.frames.cache, "folder that keeps reference pixels");
   app.add_option("--markdown", a.markdown, "file to put the tables into; default: print")

@@ -45,7 +45,8 @@ class SceneRun {
                     ours(shown.scene, mesh_proved_name, Grade::proved, options.tolerance)} {
     if (!vtk) return;
     for (MeshContender& contender : vtk_mesh_contenders(vtk, shown)) {
-      if (contender.threaded || options.sweep) contenders_.push_back(std::move(contender));
+      const bool sweep = options.sweep && (options.sweep_axis || !shown.along_axis);
+      if (contender.threaded || sweep) contenders_.push_back(std::move(contender));
     }
   }
 

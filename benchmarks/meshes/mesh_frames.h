@@ -20,7 +20,8 @@ struct MeshFrameOptions {
   double tolerance = 1.0 / 512;         ///< of ours
   double longest_repeated_seconds = 3;  ///< frames that take longer are rendered once
   bool vtk = true;
-  bool sweep = true;  ///< VTK's ZSweep mapper too, which takes minutes for large meshes
+  bool sweep = true;        ///< VTK's ZSweep mapper too, which takes minutes for large meshes
+  bool sweep_axis = false;  ///< along an axis as well: six minutes for a grid of 48³ points
   bool tiny = false;
   std::vector<std::string> filters;  ///< parts of "MESH, SCENE"; none: all
   std::function<void(const std::string&)> say;

@@ -113,7 +113,7 @@ std::vector<MeshScene> mesh_scenes(const MeshSource& source,
       scene.camera = scenes::view_camera(view);
       scene.size = size;
       list.push_back({std::string(one.name) + ", " + scenes::view_name(view), std::move(scene),
-                      one.colors_apart});
+                      one.colors_apart, view == View::axis});
     }
   }
   return list;

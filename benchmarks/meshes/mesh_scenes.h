@@ -28,6 +28,7 @@ struct MeshScene {
   Scene scene;
   /// VTK is given colors at the points where they bend alone, which are not those of the opacity.
   bool colors_apart = false;
+  bool along_axis = false;  ///< of a grid: faces lie in the rays
 };
 
 /// What is shown of a mesh: a ramp, a smooth table (haze), three thin peaks, and peaks over colors

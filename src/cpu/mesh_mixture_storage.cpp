@@ -51,8 +51,7 @@ MeshMixtureStorage::MeshMixtureStorage(const MeshChannels& channels,
     const Gaussian<double>& g = all.primitive[i];
     // No Gaussian is steeper than √(2/e) times its peak.
     for (int c = 0; c < g.channels; ++c) {
-      mixture_.steepness[c] =
-          std::min(mixture_.steepness[c] + 0.858 * g.peak * column_norm(g, c), 1e30);
+      mixture_.steepness[c] += 0.858 * g.peak * column_norm(g, c);
     }
     const double negligible = left_out / all.count;
     NearGaussian near;
@@ -60,6 +59,10 @@ MeshMixtureStorage::MeshMixtureStorage(const MeshChannels& channels,
     near.square =
         g.peak > negligible ? square_in_float(g, largest, std::log(g.peak / negligible)) : -1;
     near_.push_back(near);
+  }
+  for (int c = 0; c < transfer.channels; ++c) {
+    const double steepness = mixture_.steepness[c];
+    suits_packets_ = suits_packets_ && (steepness == 0 || (steepness > 1e-30 && steepness < 1e30));
   }
 }
 

@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "pellucid/packet/mesh_variables.h"
+#include "pellucid/packet/mesh_mixture.h"
 #include "pellucid/scene/mesh_channels.h"
 
 namespace pellucid {
@@ -17,6 +17,9 @@ class MeshMixtureStorage {
   MeshMixtureStorage(const MeshChannels& channels, const Multivariate<double>& transfer,
                      double opacity, double diagonal);
 
+  /// Whether binary32 has its numbers.
+  bool suits_packets() const noexcept { return suits_packets_; }
+
   /// Of this object while it stays where it is.
   const MeshMixture& view() noexcept {
     mixture_.primitive = near_.data();
@@ -26,6 +29,7 @@ class MeshMixtureStorage {
  private:
   MeshMixture mixture_;
   std::vector<NearGaussian> near_;
+  bool suits_packets_ = true;
 };
 
 }  // namespace pellucid

@@ -37,6 +37,11 @@ Kernel kernel_for([[maybe_unused]] InstructionSet set, [[maybe_unused]] bool sev
 #endif
 }
 
+/// The largest magnitude of a channel's data.
+double largest_value(const VolumeStatistics& data) {
+  return std::max(std::fabs(data.minimum), std::fabs(data.maximum));
+}
+
 /// The optical depth a at which half of the opacity is reached: exp(-a) = 1 - opacity/2.
 double depth_of_half(double opacity) {
   return -std::log1p(-0.5 * opacity);
@@ -73,9 +78,14 @@ class MeshTracer : public RayTracer {
   /// Sets up packets, where the mesh and what is wanted suit them.
   void prepare(const TracerTask& task, double largest_extinction, bool several) {
     const InstructionSet set = packet_instruction_set(task.options.instruction_set);
+    const MeshChannels& channels = *task.scene.mesh;
     if (wanted_.precision != Precision::automatic || wanted_.tolerance < least_packet_tolerance ||
-        !is_moderate(task.scene.mesh->mesh().statistics().mean_edge) || largest_extinction > 1e12) {
+        !is_moderate(channels.mesh().statistics().mean_edge) || largest_extinction > 1e12) {
       return;
+    }
+    for (int c = 0; c < channels.count(); ++c) {
+      const double largest = largest_value(channels.statistics(c));
+      if (!is_moderate(largest) && !(several && largest == 0)) return;
     }
     kernel_ = kernel_for(set, several);
     if (kernel_ == nullptr) return;
@@ -130,13 +140,11 @@ class UnivariateMeshTracer : public MeshTracer {
  public:
   explicit UnivariateMeshTracer(const TracerTask& task)
       : MeshTracer(task), transfer_(*task.scene.transfer_function) {
-    const VolumeStatistics& data = task.scene.mesh->statistics(0);
-    const double largest = std::max(std::fabs(data.minimum), std::fabs(data.maximum));
     const TransferTables& tables = transfer_.tables();
-    if (!is_moderate(largest)) return;
     prepare(task, tables.largest_extinction, false);
     if (kernel_ == nullptr) return;
-    binned_.emplace(tables.wide, tables.merged, tables.merged_count, largest);
+    binned_.emplace(tables.wide, tables.merged, tables.merged_count,
+                    largest_value(task.scene.mesh->statistics(0)));
     job_.transfer = &binned_->view();
     job_.integrate_span = &UnivariateMeshTracer::integrate_span;
   }
@@ -205,6 +213,10 @@ class MultivariateMeshTracer : public MeshTracer {
     mixture_ = MeshMixtureStorage(*task.scene.mesh, transfer_,
                                   0.5 * left_out_share * job_.tolerance / job_.largest_color,
                                   length(mesh_.upper - mesh_.lower));
+    if (!mixture_.suits_packets()) {
+      kernel_ = nullptr;
+      return;
+    }
     job_.tolerance *= 1 - left_out_share;
     job_.transfer = &mixture_.view();
     const std::size_t points = task.scene.mesh->mesh().points().size();
@@ -218,7 +230,10 @@ class MultivariateMeshTracer : public MeshTracer {
                  std::vector<RayResult>& results) const override {
     std::vector<std::size_t> left(rays.size());
     std::iota(left.begin(), left.end(), std::size_t{0});
-    if (kernel_ != nullptr) follow(rays, true, left, results);
+    if (kernel_ != nullptr) {
+      follow(rays, true, left, results);
+      for (RayResult& result : results) std::swap(result.spans.closed, result.spans.lines);
+    }
     MeshHits hits;
     for (const std::size_t i : left) {
       results[i] = integrate_multivariate_mesh_ray(mesh_, fields_.view(), transfer_,

@@ -7,7 +7,7 @@
 
 extern "C" void PELLUCID_ENTRY(pellucid_integrate_multivariate_mesh)(const PellucidMeshJob* job) {
   constexpr int lanes = PELLUCID_LANES;
-  using Packet = pellucid::MultivariateMeshPacket<double, lanes>;
+  using Packet = pellucid::MultivariateMeshPacket<lanes>;
   typename Packet::Room room;
   for (int first = 0; first < job->count; first += lanes) {
     Packet packet(*job, room, first, pellucid::min(lanes, job->count - first));

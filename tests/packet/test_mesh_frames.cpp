@@ -100,7 +100,8 @@ class MeshFrames : public RandomFrames {
     for (unsigned seed = 1; seed <= 400; ++seed) {
       SCOPED_TRACE(testing::Message() << "scene " << seed);
       Scene one = scene(seed);
-      one.integration.tolerance = seed % 4 == 0 ? 1e-4 : 1e-2;  // seen in double, and in binary32
+      // One variable is seen in double, and in binary32.
+      one.integration.tolerance = seed % 4 == 0 ? 1e-4 : 1e-2;
       RenderOptions options;
       options.threads = 1;
       options.error = true;
@@ -139,6 +140,22 @@ class MultivariateMeshFrames : public MeshFrames {
   }
 };
 
+TEST_F(MultivariateMeshFrames, GoInPackets) {
+  const Scene one = scene(3);
+  RenderOptions options;
+  options.error = true;
+  const Image lanes = render(one, options);
+  options.instruction_set = InstructionSet::scalar;
+  const Image alone = render(one, options);
+  // Lanes charge for what they pass over.
+  std::size_t others = 0, opaque = 0;
+  for (std::size_t i = 0; i < lanes.pixels.size(); ++i) {
+    others += lanes.error[i] != alone.error[i];
+    opaque += lanes.pixels[i][3] > 0;
+  }
+  EXPECT_GT(opaque, 10U);
+  EXPECT_GE(others, opaque / 2);
+}
 TEST_F(MultivariateMeshFrames, AreWithinWhatTheySay) {
   expect_honest_scenes(60, [&](unsigned seed) { return scene(seed); });
 }

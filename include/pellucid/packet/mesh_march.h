@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "pellucid/packet/mesh_values.h"
+#include "pellucid/packet/face_place.h"
+#include "pellucid/packet/mesh_rays.h"
+#include "pellucid/packet/mesh_rows.h"
 #include "pellucid/traverse/mesh_spans.h"
 
 #if PELLUCID_HAS_BATCH_4  // in sources compiled per instruction set
@@ -34,6 +36,8 @@ class MeshMarch {
   /// How far off are places that no span makes good for, all in all: where vacuum begins and ends,
   /// and where rounding has left a span no length.
   F beside_vacuum{0};
+  /// And those of the mesh, where what was passed over may have absorbed something.
+  F passed_ends{0};
 
   /// Rays that are not to be followed any further.
   void stop(M lanes) noexcept { walking = walking & !lanes; }
@@ -107,12 +111,14 @@ class MeshMarch {
       values_.put_down(span, length, rows, at);
       convert<float>(length).store(rows.length + at);
       convert<float>(rays.end - begin).store(rows.left + at);
-      const M leaves = walk_.ahead() < I(0);
-      const F at_ends = select(first_, t_error_, F(0)) + select(leaves, t_error, F(0));
+      const F at_ends = off_at_ends(t_error);
       const bool steps = values_.steps();
       (steps ? F(0) : both).store(rows.place_error + at);
       ((steps ? both : at_ends) + at_eye).store(rows.end_error + at);
       note.store(rows.code + at);
+    }
+    if constexpr (Values::passes_over_light) {
+      passed_ends += select(ahead & !(vacuum | found), off_at_ends(t_error), F(0));
     }
     beside_vacuum += select(on & (vacuum | !ahead), t_error_ + t_error, F(0));
     // Past a hit that may not be the way's own: for a ray by itself to find out.
@@ -133,6 +139,12 @@ class MeshMarch {
   void see(I point, SeenPoint<T>& seen, T& carried) noexcept {
     rays.see(point, seen, carried);
     values_.see(point);
+  }
+
+  /// How far off those ends of a span are that no neighbour makes good for.
+  F off_at_ends(const F& t_error) const noexcept {
+    const M leaves = walk_.ahead() < I(0);
+    return select(first_, t_error_, F(0)) + select(leaves, t_error, F(0));
   }
 
   /// How far a parameter that is interpolated is off, beside what the weights are: those of the

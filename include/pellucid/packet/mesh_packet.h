@@ -2,6 +2,7 @@
 #pragma once
 
 #include "pellucid/packet/mesh_march.h"
+#include "pellucid/packet/mesh_variable.h"
 #include "pellucid/packet/packet_fold.h"
 #include "pellucid/segment/linear.h"
 #include "pellucid/transfer/binned.h"

@@ -1,56 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "pellucid/packet/mesh_values.h"
-#include "pellucid/transfer/multivariate.h"
-
-namespace pellucid {
-
-/// A Gaussian primitive in binary32: it matters where |K (v - c)|² < square, and everywhere if that
-/// is NaN.
-struct NearGaussian {
-  Gaussian<float> gaussian;
-  float square = 0;
-};
-
-/// A transfer function of a mesh's variables, as rays in lanes look at it before they integrate
-/// anything. A view; owns nothing.
-struct MeshMixture {
-  Multivariate<double> transfer;
-  const NearGaussian* primitive = nullptr;  ///< for each Gaussian of it
-  /// The extinction that all may have together where none is near; as much again may be what errors
-  /// of the data make of it. For rays of the length `diagonal`, which none is beyond.
-  double left_out = 0, diagonal = 1;
-  /// How fast the extinction of all Gaussians together may change with a channel, at most.
-  double steepness[most_channels] = {};
-};
-
-}  // namespace pellucid
+#include "pellucid/packet/mesh_variable.h"
 
 #if PELLUCID_HAS_BATCH_4  // in sources compiled per instruction set
 namespace pellucid {
-
-/// Which primitives may matter to the ray of each lane: as PrimitiveSet.
-template <int N>
-struct LanePrimitiveSets {
-  using I = Batch<std::int32_t, N>;
-
-  I low{0}, high{0};
-
-  BatchMask<N> holds(int primitive) const noexcept {
-    return ((is_high(primitive) ? high : low) & bit(primitive)) != I(0);
-  }
-  void add(BatchMask<N> lanes, int primitive) noexcept {
-    I& word = is_high(primitive) ? high : low;
-    word = word | select(lanes, bit(primitive), I(0));
-  }
-
- private:
-  static bool is_high(int primitive) noexcept { return (primitive & 32) != 0; }
-  static I bit(int primitive) noexcept {
-    return I(static_cast<std::int32_t>(1u << (primitive & 31)));
-  }
-};
 
 /// The variables that rays in lanes see of a mesh (MeshMarch), in numbers S.
 template <class S, int N>
@@ -67,6 +21,8 @@ class MeshVariables {
     float left_out[size];  ///< a bound on the change of extinction that errors of the data make
     std::int32_t low[size], high[size];  ///< LanePrimitiveSets
   };
+
+  static constexpr bool passes_over_light = true;
 
   explicit MeshVariables(const PellucidMeshJob& job) noexcept
       : fields_(*static_cast<const MeshFields*>(job.fields)),

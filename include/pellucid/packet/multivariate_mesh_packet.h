@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "pellucid/packet/lane_primitive_sets.h"
 #include "pellucid/packet/mesh_march.h"
+#include "pellucid/packet/mesh_mixture.h"
 #include "pellucid/packet/mesh_variables.h"
 #include "pellucid/packet/packet_fold.h"
 #include "pellucid/render/integrate_mesh_ray.h"
@@ -16,24 +18,21 @@ namespace pellucid {
 ///
 /// The rays go ahead some steps at a time (MeshMarch), past spans in which nothing matters; then
 /// each lane takes the spans of its ray that are left, panel by panel, cut where the budget does
-/// not pay for them.
-///
-/// S: the numbers that the rays see the mesh in, and that panels are in.
-template <class S, int N>
+/// not pay for them. All of it in double, but for what tells near from far.
+template <int N>
 class MultivariateMeshPacket {
  public:
-  using T = Batch<S, N>;
   using F = Batch<float, N>;
   using D = Batch<double, N>;
   using I = Batch<std::int32_t, N>;
   using M = BatchMask<N>;
-  using Variables = MeshVariables<S, N>;
+  using Variables = MeshVariables<double, N>;
   static constexpr int most_cuts = 60;
-  /// What many packets have one after the other; too large for the stack of a small thread.
+  /// What many packets have one after the other: with 16 lanes 200 kB.
   struct Room {
     typename Variables::Rows rows;
-    PanelRoom<T> terms;
-    S end[most_cuts + 1][N];  ///< of the parts of a lane's span that are still to do
+    PanelRoom<D> terms;
+    double end[most_cuts + 1][N];  ///< of the parts of a lane's span that are still to do
   };
 
   MultivariateMeshPacket(const PellucidMeshJob& job, Room& room, int first, int count) noexcept
@@ -47,7 +46,7 @@ class MultivariateMeshPacket {
         length_(max(convert<float>(march_.rays.end - march_.rays.begin), F(0))),
         fold_(job.tolerance, job.largest_extinction, job.largest_color, length_) {
     demand_.grade = job.proved != 0 ? Grade::proved : Grade::estimated;
-    demand_.largest_color = static_cast<S>(job.largest_color);
+    demand_.largest_color = job.largest_color;
   }
 
   void run() noexcept {
@@ -67,8 +66,11 @@ class MultivariateMeshPacket {
     const SegmentResult<D> all = fold_.result();
     const D beside = D(job_.largest_color) *
                      min(D(job_.largest_extinction) * convert<double>(march_.beside_vacuum), D(1));
-    const D not_seen = D(2 * job_.largest_color * mixture_.left_out * mixture_.diagonal);
-    const D error = fold_.error(convert<double>(panels_)) + beside + not_seen;
+    // As long as the way is, and where it may be longer.
+    const D longer = convert<double>(march_.passed_ends / share_of_diagonal());
+    const D not_seen =
+        D(2 * job_.largest_color * mixture_.left_out) * (D(mixture_.diagonal) + longer);
+    const D error = fold_.error(convert<double>(taken_)) + beside + not_seen;
     for (int l = 0; l < count_; ++l) {
       PellucidRayResult& r = results[first_ + l];
       r = {};
@@ -93,11 +95,13 @@ class MultivariateMeshPacket {
   /// in front there is less of it.
   void see_less() noexcept {
     const F depth = convert<float>(fold_.result().optical_depth);
-    const F share = min(length_, F(diagonal())) * F(1 / diagonal());
-    less_ = max(depth - log(max(share, F(1e-6f))), F(0)) * F(1 - 16 * rounding_unit<float>);
+    less_ = max(depth - log(share_of_diagonal()), F(0)) * F(1 - 16 * rounding_unit<float>);
     left_out_ = F(static_cast<float>(mixture_.left_out)) * exp(min(less_, F(60)));
   }
-  float diagonal() const noexcept { return static_cast<float>(mixture_.diagonal); }
+  F share_of_diagonal() const noexcept {
+    const auto diagonal = static_cast<float>(mixture_.diagonal);
+    return clamp(length_ * F(1 / diagonal), F(1e-6f), F(1));
+  }
 
   void step(int s) noexcept {
     march_.cross();
@@ -143,7 +147,7 @@ class MultivariateMeshPacket {
 
   /// Whether tables absorb, lane by lane; and how far errors of the data change that.
   M tables_matter(const typename Variables::Span& span, F& changed) const noexcept {
-    S front[most_channels][N], back[most_channels][N];
+    double front[most_channels][N], back[most_channels][N];
     float error[most_channels][N], of_lane[N];
     for (int c = 0; c < span.channels; ++c) {
       span.front[c].store(front[c]);
@@ -157,18 +161,32 @@ class MultivariateMeshPacket {
       MeshSpan one;
       bool vacuum = false;
       for (int c = 0; c < span.channels; ++c) {
-        one.front[c] = static_cast<double>(front[c][l]);
-        one.back[c] = static_cast<double>(back[c][l]);
+        one.front[c] = front[c][l];
+        one.back[c] = back[c][l];
         one.value_error[c] = static_cast<double>(error[c][l]);
         vacuum = vacuum || is_nan(one.front[c] + one.back[c]);
       }
       if (vacuum) continue;
-      if (detail::tables_absorb(transfer_, one)) found |= 1u << l;
+      if (tables_absorb(one)) found |= 1u << l;
       of_lane[l] += static_cast<float>(detail::error_through_tables(transfer_, one)) *
                     (1 + 4 * rounding_unit<float>);
     }
     changed = F::load(of_lane);
     return M::from_bits(found);
+  }
+
+  bool tables_absorb(const MeshSpan& span) const noexcept {
+    for (int i = 0; i < transfer_.tables; ++i) {
+      const int c = transfer_.table[i].channel;
+      const PiecewiseLinear<double>& table = transfer_.table[i].table;
+      const LinearBernstein<double> data{{span.front[c], span.back[c]}};
+      const double off = span.value_error[c] + data_rounding(as_cubic(data));
+      if (table.has_extinction(table.interval(data.hull_min() - off),
+                               table.interval(data.hull_max() + off))) {
+        return true;
+      }
+    }
+    return false;
   }
 
   /// Gives the lanes without a span the next one of their ray, if there is any.
@@ -212,8 +230,8 @@ class MultivariateMeshPacket {
       take(rows.code, note);
       left &= ~at_step;
     }
-    from_ = select(lanes, T(0), from_);
-    to_ = select(lanes, T(1), to_);
+    from_ = select(lanes, D(0), from_);
+    to_ = select(lanes, D(1), to_);
     open_ = select(lanes, I(0), open_);
     pending_ = pending_ | lanes;
     // What lies in tetrahedra that overlap is for a ray by itself to say.
@@ -225,25 +243,27 @@ class MultivariateMeshPacket {
   void integrate() noexcept {
     const M on = pending_;
     if (none(on)) return;
-    const M whole = (from_ == T(0)) & (to_ == T(1));
-    LinearSpan<T> span;
+    const M whole = (!on) | ((from_ == D(0)) & (to_ == D(1)));
+    LinearSpan<D> span;
     for (int c = 0; c < transfer_.channels; ++c) span.data[c] = {{front_[c], back_[c]}};
-    span.length = select(on, span_length_, T(0));
+    span.length = select(on, span_length_, D(0));
     if (!all(whole)) span = span.part(transfer_.channels, from_, to_);
-    // Cuts inside of a cell are where they are thought to be.
-    demand_.place_error = convert<S>(select((from_ == T(0)) | (to_ == T(1)), place_error_, F(0)));
-    demand_.last_resort = (open_ >= I(most_cuts)) | !(to_ - from_ > T(S(1e-9)));
+    // Cuts inside of a span move by their share of what it is longer or shorter by.
+    const D place_error = convert<double>(place_error_);
+    demand_.place_error =
+        select((from_ > D(0)) & (to_ < D(1)), (to_ - from_) * place_error, place_error);
+    demand_.last_resort = (open_ >= I(most_cuts)) | !(to_ - from_ > D(1e-9));
     fold_.budget.pass_to(select(on, max(left_ - convert<float>(from_ * span_length_), F(0)),
                                 fold_.budget.length_left()));
     const F length = convert<float>(span.length);
     const F transparency = select(on, fold_.transparency(), F(1));
     const F least = RayBudget<F>::least_allowance(F(static_cast<float>(job_.tolerance)),
                                                   length / max(length_, length));
-    const auto allowance = [&](const T& opacity) noexcept {
-      return convert<S>(
+    const auto allowance = [&](const D& opacity) noexcept {
+      return convert<double>(
           max(fold_.budget.allowance(length, convert<float>(opacity), transparency), least));
     };
-    const PanelSegment<T> panel =
+    const PanelSegment<D> panel =
         integrate_multivariate_panel(transfer_, span, demand_, allowance, room_.terms);
 
     const M take = on & panel.done;
@@ -253,7 +273,8 @@ class MultivariateMeshPacket {
       fold_.add(take, panel.found.segment);
       fold_.budget.spend(select(take, length, F(0)), convert<float>(panel.opacity), transparency,
                          select(take, error * F(1 + 8 * rounding_unit<float>), F(0)));
-      const M absorbs = take & (panel.found.segment.optical_depth > T(0));
+      const M absorbs = take & (panel.found.segment.optical_depth > D(0));
+      taken_ += select(take, I(1), I(0));
       panels_ += select(absorbs, I(1), I(0));
       nodes_ += select(absorbs & panel.found.panels, I(1), I(0));
       estimated_ = estimated_ | (absorbs & !panel.found.proved);
@@ -270,16 +291,16 @@ class MultivariateMeshPacket {
     from_ = select(more, to_, from_);
     for (unsigned left = bits(more); left != 0; left &= left - 1) {
       const int l = __builtin_ctz(left);
-      to_ = select(M::from_bits(1u << l), T(room_.end[open_[l] - 1][l]), to_);
+      to_ = select(M::from_bits(1u << l), D(room_.end[open_[l] - 1][l]), to_);
     }
     open_ -= select(more, I(1), I(0));
     pending_ = pending_ & !(lanes & !more);
   }
 
-  void cut(M lanes, const T& share) noexcept {
-    const T at = from_ + share * (to_ - from_);
+  void cut(M lanes, const D& share) noexcept {
+    const D at = from_ + share * (to_ - from_);
     const M inside = (at > from_) & (at < to_);
-    const T end = select(inside, at, T(S(0.5)) * (from_ + to_));
+    const D end = select(inside, at, D(0.5) * (from_ + to_));
     for (unsigned left = bits(lanes); left != 0; left &= left - 1) {
       const int l = __builtin_ctz(left);
       room_.end[open_[l]][l] = to_[l];
@@ -309,23 +330,25 @@ class MultivariateMeshPacket {
   const Multivariate<double>& transfer_;
   Room& room_;
   int first_, count_;
-  MeshMarch<S, N, Variables> march_;
+  MeshMarch<double, N, Variables> march_;
   F length_;       ///< of the rays, from where they enter the mesh to where they leave it
   F less_{0};      ///< ln of how much more may be left out than on the longest ray, behind nothing
   F left_out_{0};  ///< that extinction
-  PanelDemand<T, LanePrimitiveSets<N>> demand_;  ///< of the spans that lanes work on
+  PanelDemand<D, LanePrimitiveSets<N>> demand_;  ///< of the spans that lanes work on
   PacketFold<N> fold_;
 
   I waiting_{0};  ///< per lane, the rows whose spans are not taken yet
 
   // The span that a lane works on, and which part of it.
   M pending_{false};
-  T front_[most_channels], back_[most_channels], span_length_{0};
+  D front_[most_channels], back_[most_channels], span_length_{0};
   F left_{0}, changed_{0}, place_error_{0};
-  T from_{0}, to_{1};
+  D from_{0}, to_{1};
   I open_{0};  ///< parts behind that one
 
-  I cells_{0}, panels_{0}, nodes_{0};
+  I cells_{0};
+  I taken_{0};  ///< panels that are done; of these absorb `panels_`, of them by nodes `nodes_`
+  I panels_{0}, nodes_{0};
   M estimated_{false};
 };
 

@@ -298,8 +298,9 @@ class MultivariateRay {
       begin[l] = panel.begin;
       end[l] = panel.end;
       length[l] = l < count ? cells.length(panel.lane) : 0;
-      // Cuts inside of a cell are where they are thought to be.
-      place[l] = panel.begin > 0 && panel.end < 1 ? 0 : cells.place_error(panel.lane);
+      // Cuts inside move by their share of what the cell is longer or shorter by.
+      const double off = cells.place_error(panel.lane);
+      place[l] = panel.begin > 0 && panel.end < 1 ? (panel.end - panel.begin) * off : off;
       demand_.primitives.bits |= cells.primitives(panel.lane).bits;
       whole = whole && panel.begin == 0 && panel.end == 1;
       const bool small = !(panel.end - panel.begin > 1e-9) || panel.cuts >= most_cuts;

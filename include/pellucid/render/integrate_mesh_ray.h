@@ -149,6 +149,7 @@ PELLUCID_HD inline double error_through_tables(const Multivariate<double>& trans
     const int c = transfer.table[i].channel;
     const PiecewiseLinear<double>& table = transfer.table[i].table;
     const double off = span.value_error[c];
+    if (!(off > 0)) continue;
     const CubicBernstein<double> data =
         as_cubic(LinearBernstein<double>{{span.front[c], span.back[c]}});
     const int first = table.interval(data.hull_min() - off),
@@ -159,21 +160,6 @@ PELLUCID_HD inline double error_through_tables(const Multivariate<double>& trans
     if (slopes.jump) sum += jump_rounding(data, table, first, last, off);
   }
   return sum;
-}
-
-/// Whether a table may absorb anywhere in a span.
-inline bool tables_absorb(const Multivariate<double>& transfer, const MeshSpan& span) noexcept {
-  for (int i = 0; i < transfer.tables; ++i) {
-    const int c = transfer.table[i].channel;
-    const PiecewiseLinear<double>& table = transfer.table[i].table;
-    const LinearBernstein<double> data{{span.front[c], span.back[c]}};
-    const double off = span.value_error[c] + data_rounding(as_cubic(data));
-    if (table.has_extinction(table.interval(data.hull_min() - off),
-                             table.interval(data.hull_max() + off))) {
-      return true;
-    }
-  }
-  return false;
 }
 
 /// What a span's data may be off by, beyond what the panels charge for rounding themselves, as a

@@ -69,8 +69,8 @@ class MultivariateRayIntegrator {
     double begin = 0;
     while (open > 0) {
       const double end = ends[open - 1];
-      // Cuts inside of a cell are where they are thought to be.
-      demand_.place_error = begin > 0 && end < 1 ? 0 : place_error;
+      // Cuts inside move by their share of what the stretch is longer or shorter by.
+      demand_.place_error = begin > 0 && end < 1 ? (end - begin) * place_error : place_error;
       demand_.last_resort = open > most_cuts || !(end - begin > 1e-9);
       const PanelSegment<double> panel = integrate(span, begin, end, left_out);
       if (!panel.done) {

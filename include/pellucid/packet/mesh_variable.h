@@ -1,57 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "pellucid/packet/mesh_rays.h"
+#include "pellucid/packet/face_place.h"
+#include "pellucid/packet/mesh_interface.h"
+#include "pellucid/packet/mesh_rows.h"
 
 #if PELLUCID_HAS_BATCH_4  // in sources compiled per instruction set
 namespace pellucid {
-
-/// What is known of a span of a row beside its numbers.
-struct SpanNote {
-  static constexpr std::int32_t handed_back = 1, overlaps = 2;
-};
-
-/// Rows of what rays find ahead of them, spans of linear data: those of a step beside each other.
-/// World lengths in binary32: of the spans, of the ray from their begin on, of how far their ends
-/// are off where the data go on as they are there, and where they do not.
-template <int N, int Steps>
-struct MeshRows {
-  static constexpr int steps = Steps, size = steps * N;
-
-  float length[size], left[size], place_error[size], end_error[size];
-  std::int32_t code[size];  ///< SpanNote
-};
-
-/// Where rays go through a face, for what is linear on it.
-template <class S, int N>
-struct FacePlace {
-  using T = Batch<S, N>;
-  using F = Batch<float, N>;
-
-  T second, third;  ///< what these points contribute
-  F off;            ///< by how much of the points' differences a result may be off
-
-  FacePlace(const SeenFace<T>& face, F blur) noexcept {
-    const T sum = face.area[0] + face.area[1] + face.area[2];
-    const auto flat = !(sum > T(0));
-    const T inverse = T(1) / select(flat, T(1), sum);
-    second = select(flat, T(S(1.0 / 3)), face.area[1] * inverse);
-    third = select(flat, T(S(1.0 / 3)), face.area[2] * inverse);
-    F across(0), size(0);
-    for (int i = 0; i < 3; ++i) {
-      across += abs(convert<float>(face.seen[i].x)) + abs(convert<float>(face.seen[i].y));
-      size += convert<float>(face.size[i]);
-    }
-    off = select(flat, F(1), interpolation_error<S>(size, across, blur, convert<float>(inverse)));
-  }
-
-  /// From the first point's, and how far that may be off.
-  T interpolate(const T& a, const T& b, const T& c, F& error) const noexcept {
-    const T to_second = b - a, to_third = c - a;
-    error = off * convert<float>(abs(to_second) + abs(to_third));
-    return a + multiply_add(second, to_second, third * to_third);
-  }
-};
 
 /// The values in these tetrahedra.
 template <class S, int N>
@@ -86,6 +41,9 @@ class MeshVariable {
     struct Nothing {};
     [[no_unique_address]] std::conditional_t<more_exact, Exact, Nothing> exact;
   };
+
+  /// Whether spans that are taken for clear may absorb something all the same.
+  static constexpr bool passes_over_light = false;
 
   explicit MeshVariable(const PellucidMeshJob& job) noexcept
       : field_(static_cast<const MeshFields*>(job.fields)->channel[0]) {}
