@@ -3,8 +3,11 @@
 // Scenes × cameras × tolerances × grades against the reference. Fails where a pixel is over.
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cstdio>
+#include <string>
 #include <thread>
+#include <vector>
 
 #include "benchmarks/frames/matrix_report.h"
 #include "benchmarks/support/document.h"
@@ -19,7 +22,8 @@ using namespace pellucid;
 struct Arguments {
   scenes::MatrixOptions matrix;
   bool quick = false;
-  std::string filter, pictures, markdown, section = "matrix", json, commit;
+  std::vector<std::string> parts;  ///< of scenes' names; none: all
+  std::string pictures, markdown, section = "matrix", json, commit;
 };
 
 /// What the reference sees, over black.
@@ -45,11 +49,17 @@ void write_pictures(const scenes::GalleryEntry& entry, const Arguments& argument
   }
 }
 
+bool is_wanted(const std::string& name, const std::vector<std::string>& parts) {
+  return parts.empty() || std::any_of(parts.begin(), parts.end(), [&](const std::string& part) {
+           return name.find(part) != std::string::npos;
+         });
+}
+
 std::vector<scenes::MatrixRow> measure(const Arguments& arguments,
                                        std::vector<std::string>& missing) {
   std::vector<scenes::MatrixRow> rows;
   for (const scenes::GalleryEntry& entry : scenes::gallery()) {
-    if (entry.name.find(arguments.filter) == std::string::npos) continue;
+    if (!is_wanted(entry.name, arguments.parts)) continue;
     if (!entry.file.empty() && !std::filesystem::exists(entry.file)) {
       missing.push_back(entry.name + " (" + entry.file.filename().string() + ")");
       continue;
@@ -121,7 +131,7 @@ int main(int argc, char** argv) {
       ->check(CLI::Range(4, 4096));
   app.add_flag("--quick", arguments.quick, "frames of 16 x 16 to three tolerances");
   app.add_option("--tolerances", arguments.matrix.tolerances, "those asked for")->delimiter(',');
-  app.add_option("--scenes", arguments.filter, "only those whose name contains this");
+  app.add_option("--scenes", arguments.parts, "only those whose name contains one of these");
   app.add_option("--threads", arguments.matrix.threads, "0: one per core")
       ->check(CLI::NonNegativeNumber);
   app.add_option("--cache", arguments.matrix.cache, "folder that keeps reference frames");
