@@ -71,9 +71,7 @@ SteppedGaussian stepped(const Gaussian<double>& g, const Channels& channels, dou
       matters ? static_cast<float>(reach * (1 + 0x1p-20)) : -std::numeric_limits<float>::max();
   double rounding = 0;
   for (int k = 0; k < g.channels; ++k) {
-    double square = 0;
-    for (int i = 0; i < g.rows; ++i) square += g.matrix[i][k] * g.matrix[i][k];
-    const double norm = std::sqrt(square);
+    const double norm = column_norm(g, k);
     // Upward, for it is in bounds.
     result.column_norm[k] = static_cast<float>(norm * (1 + 0x1p-20));
     result.center_rest[k] = static_cast<float>(g.center[k] - double{result.gaussian.center[k]});

@@ -1,21 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "mesh_mixture_storage.h"
 
-#include <algorithm>
 #include <cmath>
 #include <limits>
 
+#include "packet_setup.h"
 #include "sampled_multivariate_storage.h"
 
 namespace pellucid {
 namespace {
-
-/// The length of a column of K.
-double column_norm(const Gaussian<double>& g, int channel) {
-  double square = 0;
-  for (int r = 0; r < g.rows; ++r) square += g.matrix[r][channel] * g.matrix[r][channel];
-  return std::sqrt(square);
-}
 
 /// The square of the distance |K (v - c)| from which on e^(-|K (v - c)|²) is below e^-exponent,
 /// as it is found in binary32 of data no larger than this.
@@ -44,8 +37,7 @@ MeshMixtureStorage::MeshMixtureStorage(const MeshChannels& channels,
   mixture_.left_out = left_out;
   double largest[most_channels] = {};
   for (int c = 0; c < transfer.channels; ++c) {
-    const VolumeStatistics& data = channels.statistics(c);
-    largest[c] = std::max(std::fabs(data.minimum), std::fabs(data.maximum));
+    largest[c] = largest_value(channels.statistics(c));
   }
   for (int i = 0; i < all.count; ++i) {
     const Gaussian<double>& g = all.primitive[i];

@@ -37,11 +37,6 @@ Kernel kernel_for([[maybe_unused]] InstructionSet set, [[maybe_unused]] bool sev
 #endif
 }
 
-/// The largest magnitude of a channel's data.
-double largest_value(const VolumeStatistics& data) {
-  return std::max(std::fabs(data.minimum), std::fabs(data.maximum));
-}
-
 /// The optical depth a at which half of the opacity is reached: exp(-a) = 1 - opacity/2.
 double depth_of_half(double opacity) {
   return -std::log1p(-0.5 * opacity);

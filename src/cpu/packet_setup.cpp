@@ -39,8 +39,8 @@ InstructionSet packet_instruction_set(std::optional<InstructionSet> wanted) {
   return InstructionSet::scalar;
 }
 
-double largest_value(const Volume& volume) {
-  return std::max(std::fabs(volume.statistics().minimum), std::fabs(volume.statistics().maximum));
+double largest_value(const VolumeStatistics& data) {
+  return std::max(std::fabs(data.minimum), std::fabs(data.maximum));
 }
 
 double diagonal(const Volume& volume) {

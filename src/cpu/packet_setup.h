@@ -34,7 +34,10 @@ Kernel kernel_of(InstructionSet set, Kernel sse4, Kernel avx2, Kernel avx512) {
 }
 
 /// The largest magnitude of the data.
-double largest_value(const Volume& volume);
+double largest_value(const VolumeStatistics& data);
+inline double largest_value(const Volume& volume) {
+  return largest_value(volume.statistics());
+}
 
 /// The longest way through the volume, from corner to corner, world length.
 double diagonal(const Volume& volume);

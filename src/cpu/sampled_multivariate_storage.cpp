@@ -7,6 +7,13 @@
 #include "pellucid/scene/transfer_tables_storage.h"
 
 namespace pellucid {
+
+double column_norm(const Gaussian<double>& g, int channel) {
+  double square = 0;
+  for (int r = 0; r < g.rows; ++r) square += g.matrix[r][channel] * g.matrix[r][channel];
+  return std::sqrt(square);
+}
+
 Gaussian<float> rounded_to_binary32(const Gaussian<double>& g) {
   Gaussian<float> result;
   result.channels = g.channels;

@@ -10,6 +10,9 @@
 
 namespace pellucid {
 
+/// The length of a column of K.
+double column_norm(const Gaussian<double>& g, int channel);
+
 /// The same primitive in binary32.
 Gaussian<float> rounded_to_binary32(const Gaussian<double>& g);
 

@@ -12,6 +12,7 @@
 #include "pellucid/segment/gaussian_linear.h"
 #include "src/cpu/mesh_mixture_storage.h"
 #include "tests/scene/lattice_mesh.h"
+#include "tests/segment/line_exponent.h"
 
 namespace pellucid {
 namespace {
@@ -26,33 +27,6 @@ MeshChannels channels_of(int count, double lower, double upper) {
     all.push_back({std::to_string(c), "", Centering::point, values});
   }
   return {mesh, std::move(all)};
-}
-
-/// |K (v - c)|² at u of the way.
-long double exponent(const Gaussian<double>& g, const double* front, const double* back,
-                     long double u) {
-  long double sum = 0;
-  for (int i = 0; i < g.rows; ++i) {
-    long double p = 0;
-    for (int c = 0; c < g.channels; ++c) {
-      const long double v =
-          (1 - u) * static_cast<long double>(front[c]) + u * static_cast<long double>(back[c]);
-      p += static_cast<long double>(g.matrix[i][c]) * (v - static_cast<long double>(g.center[c]));
-    }
-    sum += p * p;
-  }
-  return sum;
-}
-
-long double least_exponent(const Gaussian<double>& g, const double* front, const double* back) {
-  long double lower = 0, upper = 1;
-  for (int i = 0; i < 100; ++i) {
-    const long double a = (2 * lower + upper) / 3, b = (lower + 2 * upper) / 3;
-    const bool rises = exponent(g, front, back, a) < exponent(g, front, back, b);
-    (rises ? upper : lower) = rises ? b : a;
-  }
-  return std::min(
-      {exponent(g, front, back, 0), exponent(g, front, back, 1), exponent(g, front, back, lower)});
 }
 
 /// What binary32 takes for far has no more extinction than it may, of data in double, also far from
@@ -101,7 +75,8 @@ TEST(MeshMixture, FarIsFar) {
         const Gaussian<double>& g = transfer.gaussians.primitive[i];
         const NearGaussian& one = mixture.primitive[i];
         const long double extinction =
-            static_cast<long double>(g.peak) * std::exp(-least_exponent(g, front, back));
+            static_cast<long double>(g.peak) *
+            std::exp(-test::LineExponent<double>{g, front, back}.least());
         const long double negligible =
             static_cast<long double>(mixture.left_out / transfer.gaussians.count * std::exp(less));
         const bool comes = GaussianLinear<float>(one.gaussian, data)

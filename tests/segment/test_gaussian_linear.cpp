@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 
+#include "tests/segment/line_exponent.h"
 #include "tests/segment/random_cells.h"
 #include "tests/support/accuracy.h"
 
@@ -18,6 +19,8 @@ template <class T>
 struct Case {
   Gaussian<T> primitive;
   LinearBernstein<T> data[most_channels];
+  T front[most_channels], back[most_channels];
+  test::LineExponent<T> exponent{primitive, front, back};
 
   explicit Case(std::mt19937_64& random) {
     const auto pick = [&](int n) { return static_cast<int>(random() % static_cast<unsigned>(n)); };
@@ -30,6 +33,8 @@ struct Case {
     for (int c = 0; c < g.channels; ++c) {
       const double a = normal(random), b = constant ? a : normal(random);
       data[c] = {{static_cast<T>(a), static_cast<T>(b)}};
+      front[c] = data[c].b[0];
+      back[c] = data[c].b[1];
       const double center = through ? 0.3 * a + 0.7 * b : 3 * normal(random);
       g.center[c] = static_cast<T>(center);
       for (int i = 0; i < g.rows; ++i) {
@@ -38,32 +43,6 @@ struct Case {
     }
   }
 
-  /// |p|² at u.
-  long double exponent(long double u) const {
-    long double sum = 0;
-    for (int i = 0; i < primitive.rows; ++i) {
-      long double p = 0;
-      for (int c = 0; c < primitive.channels; ++c) {
-        const auto front = static_cast<long double>(data[c].b[0]),
-                   back = static_cast<long double>(data[c].b[1]);
-        const long double v = (1 - u) * front + u * back;
-        p += static_cast<long double>(primitive.matrix[i][c]) *
-             (v - static_cast<long double>(primitive.center[c]));
-      }
-      sum += p * p;
-    }
-    return sum;
-  }
-  /// The least of it: a parabola, whose middle is where its slope is half way between those at the
-  /// ends; found by thirds.
-  long double least() const {
-    long double lower = 0, upper = 1;
-    for (int i = 0; i < 120; ++i) {
-      const long double a = lower + (upper - lower) / 3, b = upper - (upper - lower) / 3;
-      (exponent(a) < exponent(b) ? upper : lower) = exponent(a) < exponent(b) ? b : a;
-    }
-    return std::min({exponent(0), exponent(1), exponent(lower)});
-  }
   /// What rounding makes of |p|² where p is small beside what it is the difference of.
   long double rounding() const {
     long double size = 0;
@@ -93,7 +72,7 @@ TYPED_TEST(GaussianLinears, BoundsAreThoseOfTheExponent) {
   for (long i = 0; i < test::span_count(20000); ++i) {
     const Case<T> at(random);
     const GaussianLinear<T> line(at.primitive, at.data);
-    const long double least = at.least(), most = std::max(at.exponent(0), at.exponent(1));
+    const long double least = at.exponent.least(), most = std::max(at.exponent(0), at.exponent(1));
     const long double slack = at.rounding();
     ASSERT_LE(static_cast<long double>(line.lower()), least + slack) << i;
     ASSERT_GE(line.lower(), T(0)) << i;
@@ -122,7 +101,7 @@ TYPED_TEST(GaussianLinears, NothingNearIsTakenForFar) {
   for (long i = 0; i < test::span_count(20000); ++i) {
     const Case<T> at(random);
     const GaussianLinear<T> line(at.primitive, at.data);
-    const long double least = at.least(), slack = at.rounding();
+    const long double least = at.exponent.least(), slack = at.rounding();
     const T square = static_cast<T>(static_cast<double>(least) *
                                     std::exp(std::uniform_real_distribution<>(-2, 2)(random)));
     if (least + slack < static_cast<long double>(square)) {

@@ -67,7 +67,7 @@ class MeshPacket {
         p->march_.stop_lost(p->cells_);
         p->take_spans();
       }
-      while (any_of(packets, [](const MeshPacket& p) { return p.pending_; })) {
+      while (any_of(packets, [](const MeshPacket& p) { return p.spans_.pending; })) {
         for (MeshPacket* p : packets) p->find_end();
         for (MeshPacket* p : packets) p->integrate_piece();
         for (MeshPacket* p : packets) p->settle_piece();
@@ -84,12 +84,7 @@ class MeshPacket {
             min(D(job_.largest_extinction) * convert<double>(march_.beside_vacuum), D(1));
     for (int l = 0; l < count_; ++l) {
       PellucidRayResult& r = results[first_ + l];
-      r = {};
-      for (int c = 0; c < 3; ++c) {
-        r.radiance[c] = c == 0 ? all.radiance.r[l] : c == 1 ? all.radiance.g[l] : all.radiance.b[l];
-      }
-      r.opacity = all.opacity[l];
-      r.optical_depth = all.optical_depth[l];
+      r = light_of_lane(all, l);
       r.error = error[l];
       r.cells = r.evaluations = cells_[l];
       // Nothing is known of those that were not followed.
@@ -116,7 +111,7 @@ class MeshPacket {
           const F rounding = span.rounding();
           return absorbs(span.least() - rounding, span.most() + rounding, note);
         });
-    waiting_ = waiting_ + select(found, I(1 << s), I(0));
+    spans_.put_down(found, s);
   }
 
   /// As in PacketIntegrator.
@@ -136,15 +131,15 @@ class MeshPacket {
 
   /// Gives the lanes without a span the next one of their ray, if there is any.
   [[gnu::flatten]] void take_spans() noexcept {
-    const M lanes = (!pending_) & (waiting_ != I(0));
+    const M lanes = spans_.ready();
     if (none(lanes)) return;
     // The number of the lowest bit (de Bruijn).
     static constexpr std::int32_t number_of[32] = {0,  1,  28, 2,  29, 14, 24, 3,  30, 22, 20,
                                                    15, 25, 17, 4,  8,  31, 27, 13, 23, 21, 19,
                                                    16, 7,  26, 12, 18, 6,  11, 5,  10, 9};
-    const I lowest = waiting_ & (I(0) - waiting_);
+    const I lowest = spans_.waiting & (I(0) - spans_.waiting);
     const I step = gather(number_of, ((lowest * I(0x077cb531)) >> 27) & I(31));
-    waiting_ = select(lanes, waiting_ - lowest, waiting_);
+    spans_.waiting = select(lanes, spans_.waiting - lowest, spans_.waiting);
     row_ = select(lanes, step * I(N) + lane_, row_);
     const F was = front_;
     // Rays beside each other are at nearly the same step: two or three loads instead of a gather.
@@ -174,7 +169,7 @@ class MeshPacket {
     span_length_ = select(lanes, length_, span_length_);
     from_ = select(lanes, F(0), from_);
     cap_ = select(lanes, F(1), cap_);
-    pending_ = pending_ | lanes;
+    spans_.pending = spans_.pending | lanes;
   }
 
   // A piece of each lane that has a span, in parts.
@@ -185,7 +180,7 @@ class MeshPacket {
       hand_back(handed_back_);
       handed_back_ = M(false);
     }
-    const M on = pending_;
+    const M on = spans_.pending;
     if (none(on)) return;
     const M lost = on & !located_;
     if (any(lost)) {
@@ -212,7 +207,7 @@ class MeshPacket {
   }
 
   [[gnu::flatten]] void integrate_piece() noexcept {
-    if (none(pending_)) return;
+    if (none(spans_.pending)) return;
     const ExtinctionInterval<F>& interval = extinction_;
     const auto extinction = [&](F value) noexcept {
       return max(interval.at_lower + interval.slope * (value - interval.lower), F(0));
@@ -225,9 +220,9 @@ class MeshPacket {
   [[gnu::flatten]] void settle_piece() noexcept {
     const ExtinctionInterval<F>& interval = extinction_;
     // What is charged for an end that is elsewhere is the first order of what it does.
-    const M coarse = pending_ & (interval.largest * place_error_ > F(farthest));
+    const M coarse = spans_.pending & (interval.largest * place_error_ > F(farthest));
     if (any(coarse)) give_up(coarse);
-    const M on = pending_;
+    const M on = spans_.pending;
     if (none(on)) return;
     const auto& [rising, capped, crosses, place, end, length, color] = piece_;
     const SegmentResult<F>& s = segment_;
@@ -310,7 +305,7 @@ class MeshPacket {
     }
     const M clear = (max(front_, back_) + rounding_ < F(transfer_.support_min)) |
                     (min(front_, back_) - rounding_ > F(transfer_.support_max));
-    pending_ = pending_ & !(take & (whole | clear));
+    spans_.pending = spans_.pending & !(take & (whole | clear));
     retire(take);
   }
 
@@ -333,8 +328,7 @@ class MeshPacket {
   /// Leaves the lanes' rays to those who know better where they are.
   void give_up(M lanes) noexcept {
     march_.give_up(lanes);
-    pending_ = pending_ & !lanes;
-    waiting_ = select(lanes, I(0), waiting_);
+    spans_.forget(lanes);
   }
 
   /// Ends those of the lanes' rays that no longer matter.
@@ -342,13 +336,12 @@ class MeshPacket {
     const M done = fold_.cut_off(lanes);
     if (none(done)) return;
     march_.stop(done);
-    pending_ = pending_ & !done;
-    waiting_ = select(done, I(0), waiting_);
+    spans_.forget(done);
   }
 
   /// Has what is left of the lanes' spans integrated by other means.
   void hand_back(M lanes) noexcept {
-    lanes = lanes & pending_;
+    lanes = lanes & spans_.pending;
     fold_.budget.pass_to(select(lanes, left_ - from_ * span_length_, fold_.budget.length_left()));
     HandedBack<N> handed_back;
     for (int l = 0; l < N; ++l) {
@@ -376,7 +369,7 @@ class MeshPacket {
     fold_.add(handed_back, select(lanes, length_, F(0)));
     pieces_ += select(lanes, I(1), I(0));
     in_double_ += select(lanes, I(1), I(0));
-    pending_ = pending_ & !lanes;
+    spans_.pending = spans_.pending & !lanes;
     retire(lanes);
   }
 
@@ -403,10 +396,9 @@ class MeshPacket {
   MeshMarch<S, N, MeshVariable<S, N>> march_;
   I lane_;
 
-  I waiting_{0};  ///< per lane, the rows whose spans are not taken yet
+  LaneSpans<N> spans_;
 
   // The span that a lane works on.
-  M pending_{false};
   M handed_back_{false};  ///< those of them that are not for the rule here
   M located_{false};      ///< whether `interval_` and the color at the front are known
   I row_{0}, interval_{0};

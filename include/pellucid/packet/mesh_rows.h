@@ -22,5 +22,23 @@ struct MeshRows {
   std::int32_t code[size];  ///< SpanNote
 };
 
+/// Which spans lanes have left to integrate.
+template <int N>
+struct LaneSpans {
+  using I = Batch<std::int32_t, N>;
+  using M = BatchMask<N>;
+
+  I waiting{0};      ///< the rows whose spans are not taken yet, a bit each
+  M pending{false};  ///< whether a lane works on one
+
+  void put_down(M found, int row) noexcept { waiting += select(found, I(1 << row), I(0)); }
+  /// Lanes that can take another one.
+  M ready() const noexcept { return (!pending) & (waiting != I(0)); }
+  void forget(M lanes) noexcept {
+    pending = pending & !lanes;
+    waiting = select(lanes, I(0), waiting);
+  }
+};
+
 }  // namespace pellucid
 #endif

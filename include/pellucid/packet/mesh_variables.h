@@ -6,19 +6,19 @@
 #if PELLUCID_HAS_BATCH_4  // in sources compiled per instruction set
 namespace pellucid {
 
-/// The variables that rays in lanes see of a mesh (MeshMarch), in numbers S.
-template <class S, int N>
+/// The variables that rays in lanes see of a mesh (MeshMarch), in double.
+template <int N>
 class MeshVariables {
  public:
-  using T = Batch<S, N>;
+  using T = Batch<double, N>;
   using F = Batch<float, N>;
   using I = Batch<std::int32_t, N>;
   using M = BatchMask<N>;
 
   struct Rows : MeshRows<N, 8> {
     using MeshRows<N, 8>::size;
-    S front[most_channels][size], back[most_channels][size], exact_length[size];
-    float left_out[size];  ///< a bound on the change of extinction that errors of the data make
+    double front[most_channels][size], back[most_channels][size], exact_length[size];
+    float changed[size];  ///< a bound on the change of extinction that errors of the data make
     std::int32_t low[size], high[size];  ///< LanePrimitiveSets
   };
 
@@ -58,7 +58,7 @@ class MeshVariables {
   }
 
   /// Rays come to a face, by the first one of their way.
-  void begin(M on, const SeenFace<T>& face, const FacePlace<S, N>& place) noexcept {
+  void begin(M on, const SeenFace<T>& face, const FacePlace<double, N>& place) noexcept {
     for (int i = 0; i < 3; ++i) {
       T loaded[most_channels];
       load(face.point[i], loaded);
@@ -72,12 +72,13 @@ class MeshVariables {
     }
   }
   /// What they see of the tetrahedron in front of it.
-  Span& reach(const SeenFace<T>& /*face*/, const FacePlace<S, N>& place, I tetrahedron) noexcept {
+  Span& reach(const SeenFace<T>& /*face*/, const FacePlace<double, N>& place,
+              I tetrahedron) noexcept {
     Span& span = span_;
     span.channels = fields_.channels;
     for (int c = 0; c < fields_.channels; ++c) {
       if (fields_.channel[c].per_cell) {
-        span.front[c] = span.back[c] = load_values<S>(fields_.channel[c].value, tetrahedron);
+        span.front[c] = span.back[c] = load_values<double>(fields_.channel[c].value, tetrahedron);
         span.front_error[c] = span.back_error[c] = F(0);
       } else {
         span.front[c] = value_[c];
@@ -117,13 +118,13 @@ class MeshVariables {
   /// The values of points, four channels at a time.
   void load(I point, T* values) const noexcept {
     for (int first = 0; first < fields_.channels; first += 4) {
-      Batch<double, N> four[4];
+      T four[4];
       load_records<4>(values_ + static_cast<std::ptrdiff_t>(first) * points_, point, four);
       const int here = min(4, fields_.channels - first);
-      for (int k = 0; k < here; ++k) values[first + k] = convert<S>(four[k]);
+      for (int k = 0; k < here; ++k) values[first + k] = four[k];
     }
   }
-  T value_on(const FacePlace<S, N>& place, int channel, F& error) const noexcept {
+  T value_on(const FacePlace<double, N>& place, int channel, F& error) const noexcept {
     return place.interpolate(corner_[0][channel], corner_[1][channel], corner_[2][channel], error);
   }
 

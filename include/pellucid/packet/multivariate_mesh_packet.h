@@ -6,6 +6,7 @@
 #include "pellucid/packet/mesh_mixture.h"
 #include "pellucid/packet/mesh_variables.h"
 #include "pellucid/packet/packet_fold.h"
+#include "pellucid/packet/table_absorbs.h"
 #include "pellucid/render/integrate_mesh_ray.h"
 #include "pellucid/segment/multivariate_panel.h"
 
@@ -26,7 +27,7 @@ class MultivariateMeshPacket {
   using D = Batch<double, N>;
   using I = Batch<std::int32_t, N>;
   using M = BatchMask<N>;
-  using Variables = MeshVariables<double, N>;
+  using Variables = MeshVariables<N>;
   static constexpr int most_cuts = 60;
   /// What many packets have one after the other: with 16 lanes 200 kB.
   struct Room {
@@ -55,7 +56,7 @@ class MultivariateMeshPacket {
       for (int s = 0; s < Variables::Rows::steps && any(march_.walking); ++s) step(s);
       march_.stop_lost(cells_);
       take_spans();
-      while (any(pending_)) {
+      while (any(spans_.pending)) {
         integrate();
         take_spans();
       }
@@ -73,12 +74,7 @@ class MultivariateMeshPacket {
     const D error = fold_.error(convert<double>(taken_)) + beside + not_seen;
     for (int l = 0; l < count_; ++l) {
       PellucidRayResult& r = results[first_ + l];
-      r = {};
-      for (int c = 0; c < 3; ++c) {
-        r.radiance[c] = c == 0 ? all.radiance.r[l] : c == 1 ? all.radiance.g[l] : all.radiance.b[l];
-      }
-      r.opacity = all.opacity[l];
-      r.optical_depth = all.optical_depth[l];
+      r = light_of_lane(all, l);
       r.error = march_.rays.meets[l] ? error[l] : 0;
       r.cells = r.evaluations = cells_[l];
       // Nothing is known of those that were not followed.
@@ -112,7 +108,7 @@ class MultivariateMeshPacket {
         march_.put_down(room_.rows, s,
                         [this](const typename Variables::Span& span, typename Variables::Rows& rows,
                                int at, I& /*note*/) noexcept { return matters(span, rows, at); });
-    waiting_ = waiting_ + select(found, I(1 << s), I(0));
+    spans_.put_down(found, s);
   }
 
   /// Whether anything of the spans may be seen; where |p|² >= square - less_ a primitive has
@@ -139,7 +135,7 @@ class MultivariateMeshPacket {
     if (transfer_.tables > 0) found = found | tables_matter(span, changed);
     changed = min(changed, F(static_cast<float>(job_.largest_extinction)));
     found = found | (changed > left_out_);
-    changed.store(rows.left_out + at);
+    changed.store(rows.changed + at);
     sets.low.store(rows.low + at);
     sets.high.store(rows.high + at);
     return found;
@@ -178,31 +174,26 @@ class MultivariateMeshPacket {
   bool tables_absorb(const MeshSpan& span) const noexcept {
     for (int i = 0; i < transfer_.tables; ++i) {
       const int c = transfer_.table[i].channel;
-      const PiecewiseLinear<double>& table = transfer_.table[i].table;
       const LinearBernstein<double> data{{span.front[c], span.back[c]}};
-      const double off = span.value_error[c] + data_rounding(as_cubic(data));
-      if (table.has_extinction(table.interval(data.hull_min() - off),
-                               table.interval(data.hull_max() + off))) {
-        return true;
-      }
+      if (table_absorbs(transfer_.table[i].table, as_cubic(data), span.value_error[c])) return true;
     }
     return false;
   }
 
   /// Gives the lanes without a span the next one of their ray, if there is any.
   void take_spans() noexcept {
-    const M lanes = (!pending_) & (waiting_ != I(0));
+    const M lanes = spans_.ready();
     if (none(lanes)) return;
     const auto& rows = room_.rows;
     std::int32_t waiting[N];
-    waiting_.store(waiting);
+    spans_.waiting.store(waiting);
     int step_of[N] = {};
     for (unsigned left = bits(lanes); left != 0; left &= left - 1) {
       const int l = __builtin_ctz(left);
       step_of[l] = __builtin_ctz(static_cast<unsigned>(waiting[l]));
       waiting[l] &= waiting[l] - 1;
     }
-    waiting_ = I::load(waiting);
+    spans_.waiting = I::load(waiting);
     I note(0);
     // Rays beside each other are at nearly the same step.
     for (unsigned left = bits(lanes); left != 0;) {
@@ -220,7 +211,7 @@ class MultivariateMeshPacket {
       }
       take(rows.exact_length, span_length_);
       take(rows.left, left_);
-      take(rows.left_out, changed_);
+      take(rows.changed, changed_);
       take(rows.low, demand_.primitives.low);
       take(rows.high, demand_.primitives.high);
       F place_error(0), end_error(0);
@@ -233,7 +224,7 @@ class MultivariateMeshPacket {
     from_ = select(lanes, D(0), from_);
     to_ = select(lanes, D(1), to_);
     open_ = select(lanes, I(0), open_);
-    pending_ = pending_ | lanes;
+    spans_.pending = spans_.pending | lanes;
     // What lies in tetrahedra that overlap is for a ray by itself to say.
     const M lost = lanes & (note > I(0));
     if (any(lost)) give_up(lost);
@@ -241,7 +232,7 @@ class MultivariateMeshPacket {
 
   /// A panel of each lane that has a span.
   void integrate() noexcept {
-    const M on = pending_;
+    const M on = spans_.pending;
     if (none(on)) return;
     const M whole = (!on) | ((from_ == D(0)) & (to_ == D(1)));
     LinearSpan<D> span;
@@ -294,7 +285,7 @@ class MultivariateMeshPacket {
       to_ = select(M::from_bits(1u << l), D(room_.end[open_[l] - 1][l]), to_);
     }
     open_ -= select(more, I(1), I(0));
-    pending_ = pending_ & !(lanes & !more);
+    spans_.pending = spans_.pending & !(lanes & !more);
   }
 
   void cut(M lanes, const D& share) noexcept {
@@ -312,8 +303,7 @@ class MultivariateMeshPacket {
   /// Leaves the lanes' rays to those who know better where they are.
   void give_up(M lanes) noexcept {
     march_.give_up(lanes);
-    pending_ = pending_ & !lanes;
-    waiting_ = select(lanes, I(0), waiting_);
+    spans_.forget(lanes);
   }
 
   /// Ends those of the lanes' rays that no longer matter.
@@ -321,8 +311,7 @@ class MultivariateMeshPacket {
     const M done = fold_.cut_off(lanes);
     if (none(done)) return;
     march_.stop(done);
-    pending_ = pending_ & !done;
-    waiting_ = select(done, I(0), waiting_);
+    spans_.forget(done);
   }
 
   const PellucidMeshJob& job_;
@@ -337,10 +326,9 @@ class MultivariateMeshPacket {
   PanelDemand<D, LanePrimitiveSets<N>> demand_;  ///< of the spans that lanes work on
   PacketFold<N> fold_;
 
-  I waiting_{0};  ///< per lane, the rows whose spans are not taken yet
+  LaneSpans<N> spans_;
 
   // The span that a lane works on, and which part of it.
-  M pending_{false};
   D front_[most_channels], back_[most_channels], span_length_{0};
   F left_{0}, changed_{0}, place_error_{0};
   D from_{0}, to_{1};

@@ -5,6 +5,7 @@
 #include "pellucid/packet/cell_chunk.h"
 #include "pellucid/packet/multivariate_interface.h"
 #include "pellucid/packet/panel_list.h"
+#include "pellucid/packet/table_absorbs.h"
 #include "pellucid/segment/fold.h"
 #include "pellucid/traverse/block_walk.h"
 #include "pellucid/traverse/multivariate_blocks.h"
@@ -207,7 +208,7 @@ class MultivariateRay {
         ++clear;
         continue;
       }
-      if (transfer_.tables > 0 && table_absorbs(cells, l)) {
+      if (transfer_.tables > 0 && tables_absorb(cells, l)) {
         begin[l] = 0;
         end[l] = 1;
       }
@@ -230,16 +231,12 @@ class MultivariateRay {
     if (whole) unculled_ = 3;
   }
 
-  bool table_absorbs(const CellChunk<N>& cells, int lane) const noexcept {
+  bool tables_absorb(const CellChunk<N>& cells, int lane) const noexcept {
     for (int i = 0; i < transfer_.tables; ++i) {
       const ChannelTable<double>& t = transfer_.table[i];
       CubicBernstein<double> data;
       for (int k = 0; k < 4; ++k) data.b[k] = cells.coefficient(t.channel, k, lane);
-      const double error = data_rounding(data);
-      if (t.table.has_extinction(t.table.interval(data.hull_min() - error),
-                                 t.table.interval(data.hull_max() + error))) {
-        return true;
-      }
+      if (table_absorbs(t.table, data, 0)) return true;
     }
     return false;
   }

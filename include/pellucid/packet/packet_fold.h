@@ -28,6 +28,18 @@ struct HandedBack {
   }
 };
 
+/// The light of a lane's ray; of the rest nothing.
+template <int N>
+PellucidRayResult light_of_lane(const SegmentResult<Batch<double, N>>& all, int lane) noexcept {
+  PellucidRayResult r{};
+  r.radiance[0] = all.radiance.r[lane];
+  r.radiance[1] = all.radiance.g[lane];
+  r.radiance[2] = all.radiance.b[lane];
+  r.opacity = all.opacity[lane];
+  r.optical_depth = all.optical_depth[lane];
+  return r;
+}
+
 /// What rays in lanes have gathered, folded in double, and what their tolerances have left, in
 /// float.
 template <int N>
