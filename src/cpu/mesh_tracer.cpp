@@ -8,7 +8,7 @@
 
 #include "mesh_field_storage.h"
 #include "mesh_hits.h"
-#include "mesh_mixture_storage.h"
+#include "near_mixture_storage.h"
 #include "packet_setup.h"
 #include "packet_tracer.h"
 #include "pellucid/packet/mesh_interface.h"
@@ -205,7 +205,11 @@ class MultivariateMeshTracer : public MeshTracer {
     prepare(task, transfer_function_.largest_extinction(), true);
     if (kernel_ == nullptr) return;
     // Half of what is left out is for Gaussians, half for what errors of the data change there.
-    mixture_ = MeshMixtureStorage(*task.scene.mesh, transfer_,
+    double largest[most_channels] = {};
+    for (int c = 0; c < transfer_.channels; ++c) {
+      largest[c] = largest_value(task.scene.mesh->statistics(c));
+    }
+    mixture_ = NearMixtureStorage(largest, true, transfer_,
                                   0.5 * left_out_share * job_.tolerance / job_.largest_color,
                                   length(mesh_.upper - mesh_.lower));
     if (!mixture_.suits_packets()) {
@@ -249,7 +253,7 @@ class MultivariateMeshTracer : public MeshTracer {
 
   const MultivariateTransferFunction& transfer_function_;
   Multivariate<double> transfer_;
-  MeshMixtureStorage mixture_;
+  NearMixtureStorage mixture_;
   std::vector<double> values_;
 };
 

@@ -4,6 +4,7 @@
 #include <optional>
 #include <utility>
 
+#include "cell_packets.h"
 #include "gaussian_packets.h"
 #include "multivariate_sampler.h"
 #include "packet_setup.h"
@@ -65,8 +66,11 @@ class MultivariateTracer : public RayTracer {
     const InstructionSet set = packet_instruction_set(task.options.instruction_set);
     kernel_ = kernel_for(set);
     if (kernel_ == nullptr || integration_.precision != Precision::automatic) return;
-    packets_ = GaussianPackets::make(channels_, transfer_function_, *blocks_, grid_, wanted_,
+    cells_ = CellPackets::make(channels_, transfer_function_, *blocks_, grid_, wanted_, set);
+    if (!cells_ || task.options.gaussian_march.value_or(faster_march()) == GaussianMarch::steps) {
+      steps_ = GaussianPackets::make(channels_, transfer_function_, *blocks_, grid_, wanted_,
                                      negligible_extinction(task), set, parallel_for(task.threads));
+    }
   }
 
   std::vector<RayResult> trace(const std::vector<Ray<double>>& world,
@@ -89,6 +93,15 @@ class MultivariateTracer : public RayTracer {
   }
 
  private:
+  /// Steps cost less the further they may go and the more error they are allowed; cells cost the
+  /// same. Where both take as long was measured (docs/performance.md).
+  GaussianMarch faster_march() const {
+    const double lax = std::min(512 * wanted_.tolerance, 1.0);
+    return movement_in_cells(channels_, transfer_.gaussians, *blocks_) <= 0.5 * lax
+               ? GaussianMarch::steps
+               : GaussianMarch::cells;
+  }
+
   std::vector<RayResult> trace_in_lanes(const std::vector<Ray<double>>& rays) const {
     RayResult clear;
     clear.error = 0;
@@ -96,8 +109,8 @@ class MultivariateTracer : public RayTracer {
     std::vector<RayResult> results(rays.size(), clear);
     const PacketRays inside(channels_.grid(), rays.data(), static_cast<int>(rays.size()));
     std::vector<PellucidRayResult> found(inside.ray.size());
-    if (packets_) {
-      packets_->trace(inside.ray, found.data());
+    if (steps_) {
+      steps_->trace(inside.ray, found.data());
       integrate_what_is_left(inside.ray, found);
     } else {
       integrate(inside.ray, found);
@@ -115,9 +128,14 @@ class MultivariateTracer : public RayTracer {
     return results;
   }
 
-  /// In double, one after the other.
+  /// Cell by cell.
   void integrate(const std::vector<PellucidRay>& rays,
                  std::vector<PellucidRayResult>& found) const {
+    if (cells_) {
+      cells_->trace(rays, found.data());
+      return;
+    }
+    // One ray after the other.
     PellucidMultivariateJob job{};
     job.grid = &grid_;
     job.blocks = &*blocks_;
@@ -132,7 +150,7 @@ class MultivariateTracer : public RayTracer {
     kernel_(&job);
   }
 
-  /// Those of the rays that packets gave up.
+  /// Those of the rays that steps gave up.
   void integrate_what_is_left(const std::vector<PellucidRay>& rays,
                               std::vector<PellucidRayResult>& found) const {
     std::vector<PellucidRay> left;
@@ -173,9 +191,10 @@ class MultivariateTracer : public RayTracer {
   Multivariate<double> transfer_;
   double step_;  ///< of the sampling methods, world length
   MultivariateBlocksStorage storage_;
-  std::optional<MultivariateBlocks> blocks_;                  ///< of the exact method
-  Kernel kernel_ = nullptr;                                   ///< null: rays go one by one
-  std::unique_ptr<const GaussianPackets> packets_;            ///< null: all rays go to the kernel
+  std::optional<MultivariateBlocks> blocks_;      ///< of the exact method
+  Kernel kernel_ = nullptr;                       ///< null: rays go one by one
+  std::unique_ptr<const CellPackets> cells_;      ///< null: what it does the kernel does
+  std::unique_ptr<const GaussianPackets> steps_;  ///< null: all rays go cell by cell
   std::unique_ptr<const MultivariatePacketSampler> sampler_;  ///< null: another method, or that
 };
 

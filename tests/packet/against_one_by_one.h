@@ -31,9 +31,8 @@ enum class Promise {
 
 /// The scene in packets against rays one by one in binary64, proved.
 inline void compare(Scene scene, const std::vector<double>& tolerances, Seen& seen,
-                    Promise promise = Promise::within_tolerance) {
+                    Promise promise = Promise::within_tolerance, RenderOptions options = {}) {
   constexpr double judge_tolerance = 1e-6;
-  RenderOptions options;
   options.threads = 1;
   options.error = true;
   options.instruction_set = InstructionSet::scalar;
@@ -82,7 +81,8 @@ inline void compare(Scene scene, const std::vector<double>& tolerances, Seen& se
 /// PELLUCID_TEST_SEED where they begin.
 template <class Make>
 Seen compare_random_scenes(int count, const std::vector<double>& tolerances, const Make& make,
-                           Promise promise = Promise::within_tolerance) {
+                           Promise promise = Promise::within_tolerance,
+                           const RenderOptions& options = {}) {
   const char* const wanted = std::getenv("PELLUCID_TEST_SCENES");
   const char* const seed = std::getenv("PELLUCID_TEST_SEED");
   if (wanted != nullptr) count = std::atoi(wanted);
@@ -91,7 +91,7 @@ Seen compare_random_scenes(int count, const std::vector<double>& tolerances, con
   for (int n = 0; n < count; ++n) {
     const unsigned one = first + static_cast<unsigned>(n);
     SCOPED_TRACE(testing::Message() << "scene " << one);
-    compare(make(one), tolerances, seen, promise);
+    compare(make(one), tolerances, seen, promise, options);
     if (testing::Test::HasFatalFailure()) return seen;
   }
   testing::Test::RecordProperty("largest_error_of_said", std::to_string(seen.largest_of_error));

@@ -21,10 +21,28 @@
 namespace pellucid {
 namespace {
 
-/// Random scenes of several variables behind Gaussians.
-class GaussianFrames : public RandomFrames {
+/// Random scenes of several variables behind Gaussians, by either way to go through them.
+class GaussianFrames : public RandomFrames, public testing::WithParamInterface<GaussianMarch> {
  protected:
   GaussianFrames() : RandomFrames(29) {}
+
+  static RenderOptions options() {
+    RenderOptions options;
+    options.gaussian_march = GetParam();
+    return options;
+  }
+  static void compare(const Scene& scene, const std::vector<double>& tolerances, Seen& seen) {
+    pellucid::compare(scene, tolerances, seen, Promise::within_tolerance, options());
+  }
+  /// At least so many frames in steps, where these are what is tested.
+  static void expect_steps(const Seen& seen, int frames) {
+    if (GetParam() == GaussianMarch::steps) {
+      EXPECT_GE(seen.with_strides, frames);
+    } else {
+      EXPECT_EQ(seen.with_strides, 0);
+    }
+  }
+
   int whole(int a, int b) { return std::uniform_int_distribution<int>(a, b)(random_); }
 
   /// Between 0 and 1: waves, ridges that are sharp, noise, single values that stand out.
@@ -141,10 +159,10 @@ std::shared_ptr<const MultivariateTransferFunction> one_on_ramp(double center, d
 
 /// A narrow Gaussian somewhere on a ramp, which steps of the longest kind would pass: its depth is
 /// the integral of all of it.
-TEST_F(GaussianFrames, DoNotPassANarrowOneUnseen) {
+TEST_P(GaussianFrames, DoNotPassANarrowOneUnseen) {
   constexpr int cells = 48;
   Scene scene = ramp_scene(cells, 0);
-  RenderOptions options;
+  RenderOptions options = GaussianFrames::options();
   options.error = true;
   int places = 0;
   double worst = 0;
@@ -158,7 +176,7 @@ TEST_F(GaussianFrames, DoNotPassANarrowOneUnseen) {
           scene.integration.tolerance = tolerance;
           RenderReport report;
           const Image image = render(scene, options, &report);
-          EXPECT_GT(report.spans.strides, 0u);
+          EXPECT_EQ(report.spans.strides > 0, GetParam() == GaussianMarch::steps);
           for (std::size_t i = 0; i < image.pixels.size(); ++i) {
             const double said = double{image.error[i]};
             const double off = std::fabs(double{image.pixels[i][3]} - (1 - std::exp(-1.0)));
@@ -177,7 +195,7 @@ TEST_F(GaussianFrames, DoNotPassANarrowOneUnseen) {
 }
 
 /// Units of binary32 at 1000 are a 500th of the width: next to the center they do not count.
-TEST_F(GaussianFrames, LargeValuesCostNoDigits) {
+TEST_P(GaussianFrames, LargeValuesCostNoDigits) {
   Seen seen;
   Scene scene = ramp_scene(48, 1000);
   for (const double center : {1000.21, 1000.4, 1000.77}) {
@@ -185,11 +203,11 @@ TEST_F(GaussianFrames, LargeValuesCostNoDigits) {
     compare(scene, {1e-4}, seen);
     if (HasFatalFailure()) return;
   }
-  EXPECT_EQ(seen.with_strides, seen.frames);
+  expect_steps(seen, seen.frames);
 }
 
 /// Data that turn at a plane between two blocks, in each of which their slope is one number.
-TEST_F(GaussianFrames, SeeWhatTurnsBetweenBlocks) {
+TEST_P(GaussianFrames, SeeWhatTurnsBetweenBlocks) {
   Seen seen;
   for (const Centering centering : {Centering::point, Centering::cell}) {
     for (const int turn : {15, 16, 17, 23, 24}) {
@@ -214,11 +232,11 @@ TEST_F(GaussianFrames, SeeWhatTurnsBetweenBlocks) {
       if (HasFatalFailure()) return;
     }
   }
-  EXPECT_GT(seen.with_strides, seen.frames / 2);
+  expect_steps(seen, seen.frames / 2);
 }
 
 /// A wall of vacuum, thinner than a step, before which a narrow Gaussian lies.
-TEST_F(GaussianFrames, DoNotStepOverVacuum) {
+TEST_P(GaussianFrames, DoNotStepOverVacuum) {
   constexpr int n = 44;
   constexpr double nan = std::numeric_limits<double>::quiet_NaN();
   std::vector<float> data;
@@ -247,7 +265,7 @@ TEST_F(GaussianFrames, DoNotStepOverVacuum) {
 }
 
 /// Large terms of K (v - c) that cancel.
-TEST_F(GaussianFrames, DoNotTrustWhatCancels) {
+TEST_P(GaussianFrames, DoNotTrustWhatCancels) {
   Volume::Description description;
   description.dimensions = {9, 9, 9};
   const auto constant = [&](float value) {
@@ -272,7 +290,7 @@ TEST_F(GaussianFrames, DoNotTrustWhatCancels) {
 
 /// Long rays along an axis of the grid: samples that keep in step with the cells would all err
 /// alike.
-TEST_F(GaussianFrames, DoNotKeepInStepWithTheCells) {
+TEST_P(GaussianFrames, DoNotKeepInStepWithTheCells) {
   Seen seen;
   for (const int cells : {700, 6000}) {
     std::vector<float> data;
@@ -295,15 +313,15 @@ TEST_F(GaussianFrames, DoNotKeepInStepWithTheCells) {
     compare(scene, {1e-2, 1.0 / 512}, seen);
     if (HasFatalFailure()) return;
   }
-  EXPECT_EQ(seen.with_strides, seen.frames);
+  expect_steps(seen, seen.frames);
 }
 
-TEST_F(GaussianFrames, AreTheSameForAnyNumberOfThreads) {
+TEST_P(GaussianFrames, AreTheSameForAnyNumberOfThreads) {
   for (unsigned seed = 400; seed < 406; ++seed) {
     random_.seed(seed);
     Scene one = scene();
     one.size = {40, 40};
-    RenderOptions options;
+    RenderOptions options = GaussianFrames::options();
     options.error = true;
     options.threads = 1;
     const Image alone = render(one, options);
@@ -315,25 +333,33 @@ TEST_F(GaussianFrames, AreTheSameForAnyNumberOfThreads) {
   }
 }
 
-/// The smallest tolerance for packets is one for them.
-TEST_F(GaussianFrames, GoDownToTheirSmallestTolerance) {
+/// The smallest tolerance for steps is one for them.
+TEST_P(GaussianFrames, GoDownToTheirSmallestTolerance) {
   Scene scene = ramp_scene(48, 0);
   scene.multivariate = one_on_ramp(0.4, 0.1, 0.5, 48);
-  for (const auto& [tolerance, packets] : {std::pair{1e-5, true}, {0.9e-5, false}}) {
+  for (const auto& [tolerance, steps] : {std::pair{1e-5, true}, {0.9e-5, false}}) {
     scene.integration.tolerance = tolerance;
     RenderReport report;
-    render(scene, {}, &report);
-    EXPECT_EQ(report.spans.strides > 0, packets) << tolerance;
+    render(scene, options(), &report);
+    EXPECT_EQ(report.spans.strides > 0, steps && GetParam() == GaussianMarch::steps) << tolerance;
   }
 }
 
-TEST_F(GaussianFrames, AreWithinWhatTheySay) {
-  const Seen seen = compare_random_scenes(60, {3e-2, 1.0 / 512, 1e-4}, [&](unsigned seed) {
+TEST_P(GaussianFrames, AreWithinWhatTheySay) {
+  const auto make = [&](unsigned seed) {
     random_.seed(seed);
     return scene();
-  });
-  EXPECT_GT(seen.with_strides, seen.frames / 2);
+  };
+  const Seen seen = compare_random_scenes(60, {3e-2, 1.0 / 512, 1e-4}, make,
+                                          Promise::within_tolerance, options());
+  expect_steps(seen, seen.frames / 2);
 }
+
+INSTANTIATE_TEST_SUITE_P(, GaussianFrames,
+                         testing::Values(GaussianMarch::steps, GaussianMarch::cells),
+                         [](const auto& one) {
+                           return one.param == GaussianMarch::steps ? "Steps" : "Cells";
+                         });
 
 }  // namespace
 }  // namespace pellucid

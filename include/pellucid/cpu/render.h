@@ -12,6 +12,10 @@
 
 namespace pellucid {
 
+/// How rays in packets go through Gaussians: in steps that resolve what these make of the data, or
+/// cell by cell.
+enum class GaussianMarch { steps, cells };
+
 /// Some pixels of a frame that are rendered together: (column + i·stride, row + j·stride) for
 /// 0 <= i < columns, 0 <= j < rows.
 struct Tile {
@@ -37,6 +41,8 @@ struct RenderOptions {
   bool error = false;  ///< fill Image::error and Image::proved
   /// For rays in packets; none: the fastest that the machine has. Error where it has not this one.
   std::optional<InstructionSet> instruction_set;
+  /// For those through Gaussians, where both can be; none: the one that is likely to be faster.
+  std::optional<GaussianMarch> gaussian_march;
   /// Called now and then, from any one thread at a time, with the share done in [0, 1]; false
   /// cancels the frame, which then throws Cancelled.
   std::function<bool(double)> progress;

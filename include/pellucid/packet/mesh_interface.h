@@ -30,7 +30,7 @@ struct PellucidMeshJob {
   /// Whether rays see the mesh in double, and not in binary32.
   std::int32_t in_double;
   // The transfer function and what is wanted.
-  const void* transfer;  ///< BinnedTransfer; for several variables MeshMixture
+  const void* transfer;  ///< BinnedTransfer; for several variables NearMixture
   double tolerance, largest_color, largest_extinction;
   std::int32_t proved;  ///< whether only what is proved counts
   // Rays and results.

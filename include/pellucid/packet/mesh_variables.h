@@ -2,6 +2,7 @@
 #pragma once
 
 #include "pellucid/packet/mesh_variable.h"
+#include "pellucid/packet/panel_lanes.h"
 
 #if PELLUCID_HAS_BATCH_4  // in sources compiled per instruction set
 namespace pellucid {
@@ -15,12 +16,7 @@ class MeshVariables {
   using I = Batch<std::int32_t, N>;
   using M = BatchMask<N>;
 
-  struct Rows : MeshRows<N, 8> {
-    using MeshRows<N, 8>::size;
-    double front[most_channels][size], back[most_channels][size], exact_length[size];
-    float changed[size];  ///< a bound on the change of extinction that errors of the data make
-    std::int32_t low[size], high[size];  ///< LanePrimitiveSets
-  };
+  using Rows = PanelRows<N, LinearBernstein>;
 
   static constexpr bool passes_over_light = true;
 
@@ -101,8 +97,8 @@ class MeshVariables {
   }
   static void put_down(const Span& span, const T& length, Rows& rows, int at) noexcept {
     for (int c = 0; c < span.channels; ++c) {
-      span.front[c].store(rows.front[c] + at);
-      span.back[c].store(rows.back[c] + at);
+      span.front[c].store(rows.data[c][0] + at);
+      span.back[c].store(rows.data[c][1] + at);
     }
     length.store(rows.exact_length + at);
   }

@@ -31,7 +31,9 @@ struct LineLoss {
 ///   L2 norm is at most M_3 |d|²/(12 √5), as for a parabola, because the kernel of that residual,
 ///   the Green's function of a clamped beam, is positive. Hence |∫(φ(p) - φ(l))| <= M_3 |d|² N /(12
 ///   √5) + M_2 N²/2: fourth order in the width of the panel.
-template <class T>
+///
+/// Most: how many rows there may be.
+template <class T, int Most = most_channels>
 class GaussianCubic {
  public:
   /// data: one cubic for each channel of the primitive.
@@ -43,9 +45,16 @@ class GaussianCubic {
       for (int c = 0; c < primitive.channels; ++c) v[c] = data[c].b[k];
       primitive.place(v, p_[k]);
     }
-    upper_ = T(0);
-    for (int k = 0; k < 4; ++k) upper_ = max(upper_, dot(p_[k], p_[k]));
-    lower_ = rows_ == 1 ? squared_gap() : squared_distance();
+    bound();
+  }
+  /// p at u = 0, and the differences from each of its coefficients to the next.
+  PELLUCID_HD GaussianCubic(int rows, const T* first, const T (*difference)[Most]) noexcept
+      : rows_(rows) {
+    for (int i = 0; i < this->rows(); ++i) {
+      p_[0][i] = first[i];
+      for (int k = 0; k < 3; ++k) p_[k + 1][i] = p_[k][i] + difference[k][i];
+    }
+    bound();
   }
 
   /// Bounds on the exponent |p|² all over [0, 1].
@@ -59,13 +68,13 @@ class GaussianCubic {
     T from, to;
   };
   PELLUCID_HD Part within(T reach) const noexcept {
-    T n[most_channels], x[4];
+    T n[Most], x[4];
     T square = T(0);
-    for (int i = 0; i < rows_; ++i) {
-      n[i] = rows_ == 1 ? T(1) : p_[3][i] - p_[0][i];
+    for (int i = 0; i < rows(); ++i) {
+      n[i] = rows() == 1 ? T(1) : p_[3][i] - p_[0][i];
       square = multiply_add(n[i], n[i], square);
     }
-    const T scale = rows_ == 1 ? T(1) : T(1) / sqrt(max(square, T(smallest_normal<T>)));
+    const T scale = rows() == 1 ? T(1) : T(1) / sqrt(max(square, T(smallest_normal<T>)));
     for (int k = 0; k < 4; ++k) x[k] = scale * dot(n, p_[k]);
     // Rounding must not make the band narrower.
     const T band = reach * T(1 + 1e-9) + T(16 * rounding_unit<T>) * sqrt(upper_);
@@ -74,7 +83,7 @@ class GaussianCubic {
 
   /// The line, and what it leaves out.
   struct Line {
-    T front[most_channels], back[most_channels], d[most_channels];
+    T front[Most], back[Most], d[Most];
     T squared_length{};  ///< |d|²
     T squared_norm{};    ///< N²
     T farthest{};        ///< |q| + |r|
@@ -82,7 +91,7 @@ class GaussianCubic {
   PELLUCID_HD Line line() const noexcept {
     Line l;
     T qq = T(0), rr = T(0);
-    for (int i = 0; i < rows_; ++i) {
+    for (int i = 0; i < rows(); ++i) {
       const T d0 = p_[1][i] - p_[0][i], d1 = p_[2][i] - p_[1][i], d2 = p_[3][i] - p_[2][i];
       const T mean = T(0.25) * ((p_[0][i] + p_[3][i]) + (p_[1][i] + p_[2][i]));
       const T half = T(0.15) * (T(3) * (d0 + d1 + d2) + d1);
@@ -100,7 +109,7 @@ class GaussianCubic {
     return l;
   }
   PELLUCID_HD T mean_density(const Line& l) const noexcept {
-    return gaussian_mean_density(l.front, l.back, l.d, rows_);
+    return gaussian_mean_density(l.front, l.back, l.d, rows());
   }
   PELLUCID_HD LineLoss<T> line_loss(const Line& l) const noexcept {
     T m1 = T(0.857764), m2 = T(2), m3 = T(3.905);
@@ -124,10 +133,18 @@ class GaussianCubic {
   PELLUCID_HD T slope(const Line& l) const noexcept { return T(2) * dot(l.front, l.d); }
 
  private:
+  PELLUCID_HD constexpr int rows() const noexcept { return Most == 1 ? 1 : rows_; }
+
   PELLUCID_HD T dot(const T* a, const T* b) const noexcept {
     T sum = T(0);
-    for (int i = 0; i < rows_; ++i) sum = multiply_add(a[i], b[i], sum);
+    for (int i = 0; i < rows(); ++i) sum = multiply_add(a[i], b[i], sum);
     return sum;
+  }
+
+  PELLUCID_HD void bound() noexcept {
+    upper_ = T(0);
+    for (int k = 0; k < 4; ++k) upper_ = max(upper_, dot(p_[k], p_[k]));
+    lower_ = rows() == 1 ? squared_gap() : squared_distance();
   }
 
   /// Where a cubic with these coefficients can be within the band, at the earliest.
@@ -150,8 +167,8 @@ class GaussianCubic {
   /// the plane at right angles to any x at min p_k·x / |x|. x goes from the mean of the
   /// coefficients towards the nearest point of the hull (Gilbert 1966).
   PELLUCID_HD T squared_distance() const noexcept {
-    T x[most_channels];
-    for (int i = 0; i < rows_; ++i) {
+    T x[Most];
+    for (int i = 0; i < rows(); ++i) {
       x[i] = T(0.25) * ((p_[0][i] + p_[3][i]) + (p_[1][i] + p_[2][i]));
     }
     T best = T(0);
@@ -159,13 +176,13 @@ class GaussianCubic {
     for (int step = 0; step < steps; ++step) {
       const T xx = dot(x, x);
       T least = dot(p_[0], x);
-      T nearest[most_channels];
-      for (int i = 0; i < rows_; ++i) nearest[i] = p_[0][i];
+      T nearest[Most];
+      for (int i = 0; i < rows(); ++i) nearest[i] = p_[0][i];
       for (int k = 1; k < 4; ++k) {
         const T along = dot(p_[k], x);
         const auto nearer = along < least;
         least = min(least, along);
-        for (int i = 0; i < rows_; ++i) nearest[i] = select(nearer, p_[k][i], nearest[i]);
+        for (int i = 0; i < rows(); ++i) nearest[i] = select(nearer, p_[k][i], nearest[i]);
       }
       // Rounding of the products must not raise the bound.
       const T ahead = max(least - T(16 * rounding_unit<T>) * sqrt(upper_ * xx), T(0));
@@ -175,19 +192,19 @@ class GaussianCubic {
       if (none(go_on)) break;
       // The point of the stretch from x to p that is nearest to 0.
       T difference = T(0);
-      for (int i = 0; i < rows_; ++i) {
+      for (int i = 0; i < rows(); ++i) {
         const T between = x[i] - nearest[i];
         difference += between * between;
       }
       const T share = select(
           go_on, clamp((xx - least) / max(difference, T(smallest_normal<T>)), T(0), T(1)), T(0));
-      for (int i = 0; i < rows_; ++i) x[i] += share * (nearest[i] - x[i]);
+      for (int i = 0; i < rows(); ++i) x[i] += share * (nearest[i] - x[i]);
     }
     return min(best, upper_);
   }
 
   int rows_;
-  T p_[4][most_channels];
+  T p_[4][Most];
   T lower_, upper_;
 };
 

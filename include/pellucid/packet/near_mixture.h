@@ -10,16 +10,20 @@ namespace pellucid {
 struct NearGaussian {
   Gaussian<float> gaussian;
   float square = 0;
+  /// |K (v - c)| is at least this times the distance of v from c in a channel, whatever v is in the
+  /// others.
+  float least_scale[most_channels] = {};
 };
 
-/// A transfer function of a mesh's variables, as rays in lanes look at it before they integrate
+/// A transfer function of several variables, as rays in lanes look at it before they integrate
 /// anything. A view; owns nothing.
-struct MeshMixture {
+struct NearMixture {
   Multivariate<double> transfer;
   const NearGaussian* primitive = nullptr;  ///< for each Gaussian of it
-  /// The extinction that all may have together where none is near; as much again may be what errors
-  /// of the data make of it. For rays of the length `diagonal`, which none is beyond.
+  /// The extinction that all may have together where none is near, for rays of the length
+  /// `diagonal`, which none is beyond.
   double left_out = 0, diagonal = 1;
+  double charged = 0;  ///< the same with what errors of the data may make of it
   /// How fast the extinction of all Gaussians together may change with a channel, at most.
   double steepness[most_channels] = {};
 };

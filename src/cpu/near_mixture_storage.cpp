@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "mesh_mixture_storage.h"
+#include "near_mixture_storage.h"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 #include "packet_setup.h"
 #include "sampled_multivariate_storage.h"
@@ -25,9 +28,43 @@ float square_in_float(const Gaussian<double>& g, const double* largest, double e
   return static_cast<float>(reach * reach) * (1 + 4 * rounding_unit<float>);
 }
 
+/// How far column k of K is from what the others span, a little less.
+float least_scale(const Gaussian<double>& g, int k) {
+  std::vector<std::array<double, most_channels>> others;
+  const auto column = [&](int c) {
+    std::array<double, most_channels> result{};
+    for (int i = 0; i < g.rows; ++i) result[static_cast<std::size_t>(i)] = g.matrix[i][c];
+    return result;
+  };
+  // What is left of a column beside those before it; twice, for rounding.
+  const auto beside = [&](std::array<double, most_channels> rest) {
+    for (int twice = 0; twice < 2; ++twice) {
+      for (const auto& unit : others) {
+        const double along = std::inner_product(rest.begin(), rest.end(), unit.begin(), 0.0);
+        for (std::size_t i = 0; i < rest.size(); ++i) rest[i] -= along * unit[i];
+      }
+    }
+    return rest;
+  };
+  const auto norm = [](const std::array<double, most_channels>& v) {
+    return std::sqrt(std::inner_product(v.begin(), v.end(), v.begin(), 0.0));
+  };
+  for (int c = 0; c < g.channels; ++c) {
+    if (c == k) continue;
+    auto rest = beside(column(c));
+    const double length = norm(rest);
+    // The rest of one that the others span is rounding alone.
+    if (!(length > 1e-12 * column_norm(g, c))) continue;
+    for (double& x : rest) x /= length;
+    others.push_back(rest);
+  }
+  const double least = norm(beside(column(k))) - 1e-9 * column_norm(g, k);
+  return static_cast<float>(std::max(least, 0.0) * (1 - 0x1p-20));
+}
+
 }  // namespace
 
-MeshMixtureStorage::MeshMixtureStorage(const MeshChannels& channels,
+NearMixtureStorage::NearMixtureStorage(const double* largest, bool off,
                                        const Multivariate<double>& transfer, double opacity,
                                        double diagonal) {
   const double left_out = opacity / diagonal;
@@ -35,10 +72,7 @@ MeshMixtureStorage::MeshMixtureStorage(const MeshChannels& channels,
   const GaussianMixture<double>& all = transfer.gaussians;
   mixture_.transfer = transfer;
   mixture_.left_out = left_out;
-  double largest[most_channels] = {};
-  for (int c = 0; c < transfer.channels; ++c) {
-    largest[c] = largest_value(channels.statistics(c));
-  }
+  mixture_.charged = (off ? 2 : 1) * left_out;
   for (int i = 0; i < all.count; ++i) {
     const Gaussian<double>& g = all.primitive[i];
     // No Gaussian is steeper than √(2/e) times its peak.
@@ -48,6 +82,7 @@ MeshMixtureStorage::MeshMixtureStorage(const MeshChannels& channels,
     const double negligible = left_out / all.count;
     NearGaussian near;
     near.gaussian = rounded_to_binary32(g);
+    for (int c = 0; c < g.channels; ++c) near.least_scale[c] = least_scale(g, c);
     near.square =
         g.peak > negligible ? square_in_float(g, largest, std::log(g.peak / negligible)) : -1;
     near_.push_back(near);

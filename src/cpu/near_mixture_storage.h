@@ -3,31 +3,32 @@
 
 #include <vector>
 
-#include "pellucid/packet/mesh_mixture.h"
-#include "pellucid/scene/mesh_channels.h"
+#include "pellucid/packet/near_mixture.h"
 
 namespace pellucid {
 
 /// What rays in lanes look at of a transfer function before they integrate.
-class MeshMixtureStorage {
+class NearMixtureStorage {
  public:
-  MeshMixtureStorage() = default;
+  NearMixtureStorage() = default;
   /// `opacity`: how much of Gaussians may be passed over on a ray, of which none is longer in the
   /// mesh than the diagonal.
-  MeshMixtureStorage(const MeshChannels& channels, const Multivariate<double>& transfer,
+  /// `largest`: magnitude of each channel's data. `off`: as much may be what errors of the data
+  /// make of the extinction, where they make any.
+  NearMixtureStorage(const double* largest, bool off, const Multivariate<double>& transfer,
                      double opacity, double diagonal);
 
   /// Whether binary32 has its numbers.
   bool suits_packets() const noexcept { return suits_packets_; }
 
   /// Of this object while it stays where it is.
-  const MeshMixture& view() noexcept {
+  const NearMixture& view() noexcept {
     mixture_.primitive = near_.data();
     return mixture_;
   }
 
  private:
-  MeshMixture mixture_;
+  NearMixture mixture_;
   std::vector<NearGaussian> near_;
   bool suits_packets_ = true;
 };

@@ -3,35 +3,21 @@
 
 #include <algorithm>
 #include <cmath>
-#include <memory>
 #include <random>
 #include <utility>
 #include <vector>
 
 #include "pellucid/scene/multivariate_transfer_function.h"
 #include "pellucid/segment/gaussian_linear.h"
-#include "src/cpu/mesh_mixture_storage.h"
-#include "tests/scene/lattice_mesh.h"
+#include "src/cpu/near_mixture_storage.h"
 #include "tests/segment/line_exponent.h"
 
 namespace pellucid {
 namespace {
 
-/// One tetrahedron's points with these values in all channels.
-MeshChannels channels_of(int count, double lower, double upper) {
-  const auto mesh = std::make_shared<const TetrahedralMesh>(lattice_mesh(1, 1));
-  std::vector<MeshChannel> all;
-  for (int c = 0; c < count; ++c) {
-    std::vector<double> values(mesh->points().size(), lower);
-    values.back() = upper;
-    all.push_back({std::to_string(c), "", Centering::point, values});
-  }
-  return {mesh, std::move(all)};
-}
-
 /// What binary32 takes for far has no more extinction than it may, of data in double, also far from
 /// 0; and it takes most of what is far for that.
-TEST(MeshMixture, FarIsFar) {
+TEST(NearMixture, FarIsFar) {
   std::mt19937_64 random(3);
   const auto uniform = [&](double a, double b) {
     return std::uniform_real_distribution<double>(a, b)(random);
@@ -58,8 +44,9 @@ TEST(MeshMixture, FarIsFar) {
     const MultivariateTransferFunction function(count, primitives);
     const Multivariate<double> transfer = function.view();
     const double opacity = power(1e-7, 1e-3), diagonal = power(0.1, 100);
-    MeshMixtureStorage storage(channels_of(count, offset, offset + 1), transfer, opacity, diagonal);
-    const MeshMixture& mixture = storage.view();
+    const std::vector<double> largest(most_channels, offset + 1);
+    NearMixtureStorage storage(largest.data(), true, transfer, opacity, diagonal);
+    const NearMixture& mixture = storage.view();
     ASSERT_DOUBLE_EQ(mixture.left_out * diagonal, opacity);
     for (int span = 0; span < 50; ++span) {
       double front[most_channels], back[most_channels];
@@ -94,7 +81,7 @@ TEST(MeshMixture, FarIsFar) {
 }
 
 /// Extinction changes by no more than steepness times what the data do.
-TEST(MeshMixture, SteepnessBoundsChanges) {
+TEST(NearMixture, SteepnessBoundsChanges) {
   std::mt19937_64 random(4);
   std::normal_distribution<double> normal;
   double largest = 0;
@@ -115,8 +102,9 @@ TEST(MeshMixture, SteepnessBoundsChanges) {
       primitives.push_back(p);
     }
     const MultivariateTransferFunction function(count, primitives);
-    MeshMixtureStorage storage(channels_of(count, -1, 1), function.view(), 1e-3, 1);
-    const MeshMixture& mixture = storage.view();
+    const std::vector<double> values(most_channels, 1.0);
+    NearMixtureStorage storage(values.data(), true, function.view(), 1e-3, 1);
+    const NearMixture& mixture = storage.view();
     ASSERT_TRUE(storage.suits_packets());
     for (int n = 0; n < 200; ++n) {
       double a[most_channels], b[most_channels], bound = 0;
@@ -134,14 +122,78 @@ TEST(MeshMixture, SteepnessBoundsChanges) {
   EXPECT_GT(largest, 0.9);
 }
 
-TEST(MeshMixture, WhatBinary32HasNotIsNotForPackets) {
+/// |K (v - c)| is at least least_scale times the distance in a channel, and that is where the other
+/// channels make it least.
+TEST(NearMixture, LeastScaleIsReached) {
+  std::mt19937_64 random(7);
+  std::normal_distribution<double> normal;
+  int reached = 0, without = 0;
+  for (int n = 0; n < 400; ++n) {
+    const int channels = 1 + n % 5,
+              rows = 1 + static_cast<int>(random() % static_cast<unsigned>(channels));
+    GaussianPrimitive p;
+    for (int c = 0; c < channels; ++c) {
+      p.channels.push_back(c);
+      p.center.push_back(0);
+    }
+    p.matrix.assign(static_cast<std::size_t>(rows), {});
+    for (auto& row : p.matrix) {
+      for (int c = 0; c < channels; ++c) row.push_back(normal(random));
+    }
+    // A channel that it does not look at, and one that another can make up for.
+    if (n % 7 == 0) {
+      for (auto& row : p.matrix) row.front() = 0;
+    }
+    if (n % 11 == 0 && channels > 1) {
+      for (auto& row : p.matrix) row.back() = 3 * row.front();
+    }
+    p.extinction = 1;
+    const MultivariateTransferFunction function(channels, {p});
+    const std::vector<double> values(most_channels, 1.0);
+    NearMixtureStorage storage(values.data(), false, function.view(), 1e-3, 1);
+    const NearGaussian& near = storage.view().primitive[0];
+    const Gaussian<double>& g = function.view().gaussians.primitive[0];
+    for (int c = 0; c < channels; ++c) {
+      // A convex quadratic in the others, axis by axis to its least.
+      double v[most_channels] = {};
+      v[c] = 1;
+      const auto square = [&] {
+        double q[most_channels], sum = 0;
+        g.place(v, q);
+        for (int i = 0; i < g.rows; ++i) sum += q[i] * q[i];
+        return sum;
+      };
+      for (int sweep = 0; sweep < 3000; ++sweep) {
+        for (int other = 0; other < channels; ++other) {
+          if (other == c) continue;
+          double q[most_channels], slope = 0, bend = 0;
+          g.place(v, q);
+          for (int i = 0; i < g.rows; ++i) {
+            slope += q[i] * g.matrix[i][other];
+            bend += g.matrix[i][other] * g.matrix[i][other];
+          }
+          if (bend > 0) v[other] -= slope / bend;
+        }
+      }
+      const double least = std::sqrt(square()), scale = static_cast<double>(near.least_scale[c]);
+      ASSERT_LE(scale, least + 1e-15) << n << ' ' << c;
+      if (scale > 0.05 && least < scale * 1.001) ++reached;
+      if (scale == 0) ++without;
+    }
+  }
+  EXPECT_GT(reached, 300);
+  EXPECT_GT(without, 100);
+}
+
+TEST(NearMixture, WhatBinary32HasNotIsNotForPackets) {
   GaussianPrimitive p;
   p.channels = {0};
   p.center = {0};
   p.matrix = {{1e36}};
   p.extinction = 1;
   const MultivariateTransferFunction function(1, {p});
-  MeshMixtureStorage storage(channels_of(1, 0, 1e-35), function.view(), 1e-3, 1);
+  const double largest = 1e-35;
+  NearMixtureStorage storage(&largest, true, function.view(), 1e-3, 1);
   EXPECT_FALSE(storage.suits_packets());
   EXPECT_TRUE(std::isnan(storage.view().primitive[0].square));
 }

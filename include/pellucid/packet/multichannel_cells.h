@@ -1,0 +1,251 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "pellucid/field/multichannel_grid.h"
+#include "pellucid/packet/panel_lanes.h"
+#include "pellucid/packet/sample_places.h"
+
+#if PELLUCID_HAS_BATCH_4  // in sources compiled per instruction set
+namespace pellucid {
+
+/// Rays in lanes through several fields on a uniform grid, cell by cell, past blocks in which no
+/// primitive is near. In double.
+template <int N>
+class MultichannelCells {
+ public:
+  using F = Batch<float, N>;
+  using D = Batch<double, N>;
+  using I = Batch<std::int32_t, N>;
+  using M = BatchMask<N>;
+  using Rows = PanelRows<N, CubicBernstein>;
+
+  /// What lies in a cell.
+  struct Span {
+    CubicBernstein<D> data[most_channels];
+  };
+
+  MultichannelCells(const PellucidPacketJob& job, const PacketGrid<void>& grid,
+                    const MultichannelGrid& fields, const PrimitiveSet* primitives, int first,
+                    int count) noexcept
+      : grid_(grid), fields_(fields), primitives_(primitives) {
+    double o[3][N], d[3][N], e[N];
+    for (int l = 0; l < N; ++l) {
+      const PellucidRay& ray = job.rays[first + (l < count ? l : 0)];
+      for (int a = 0; a < 3; ++a) {
+        d[a][l] = ray.direction[a];
+        o[a][l] = ray.origin[a] + ray.begin * ray.direction[a] + grid.padding[a];
+      }
+      e[l] = l < count ? ray.end - ray.begin : 0;
+    }
+    end = D::load(e);
+    for (int a = 0; a < 3; ++a) {
+      origin_[a] = D::load(o[a]);
+      direction_[a] = D::load(d[a]);
+      inverse_[a] = D(1) / direction_[a];
+      forward_[a] = direction_[a] > D(0);
+      still_[a] = direction_[a] == D(0);
+      cell_[a] = convert<std::int32_t>(
+          clamp(floor(origin_[a]), D(0), D(static_cast<double>(grid.cells[a] - 1))));
+    }
+    walking = end > D(0);
+  }
+
+  D end;             ///< world length inside of the grid
+  M walking{false};  ///< whether a lane has cells ahead
+  I cells{0}, skipped{0};
+  LanePrimitiveSets<N> near;  ///< of the blocks that the lanes are in
+
+  void stop(M lanes) noexcept { walking = walking & !lanes; }
+
+  /// Takes the lanes on to the next cell in a block in which something may be near.
+  [[gnu::flatten]] void skip() noexcept {
+    M lanes = walking & fresh_;
+    if (none(lanes)) return;
+    while (any(lanes)) {
+      I block[3];
+      for (int a = 0; a < 3; ++a) block[a] = cell_[a] >> 3;
+      const I index = select(lanes, grid_.index_of_block(block), I(0));
+      const I found = gather(grid_.classes, index);
+      const M skip = lanes & (((found >> 16) & I(255)) == I(static_cast<int>(BlockKind::skip)));
+      const M stays = lanes & !skip;
+      if (any(stays)) {
+        std::int32_t low[N], high[N], of_lane[N];
+        near.low.store(low);
+        near.high.store(high);
+        index.store(of_lane);
+        for (unsigned left = bits(stays); left != 0; left &= left - 1) {
+          const int l = __builtin_ctz(left);
+          const unsigned long long set = primitives_[of_lane[l]].bits;
+          low[l] = static_cast<std::int32_t>(static_cast<std::uint32_t>(set));
+          high[l] = static_cast<std::int32_t>(static_cast<std::uint32_t>(set >> 32));
+        }
+        near.low = I::load(low);
+        near.high = I::load(high);
+        fresh_ = fresh_ & !stays;
+      }
+      lanes = skip;
+      if (none(lanes)) break;
+      leave_cube(lanes, block, (found >> 24) & I(7));
+      skipped += select(lanes, I(1), I(0));
+      lanes = lanes & walking;
+    }
+  }
+
+  /// Goes through a cell in each lane that walks, and puts it down in a row: the lanes in which
+  /// matters(span, rows, at) something is to be integrated.
+  template <class Matters>
+  [[gnu::flatten]] M step(Rows& rows, int at, Matters&& matters) noexcept {
+    const M on = walking;
+    cells += select(on, I(1), I(0));
+    D next[3];
+    const D infinity(std::numeric_limits<double>::infinity());
+    for (int a = 0; a < 3; ++a) {
+      const D plane = convert<double>(cell_[a] + select(forward_[a], I(1), I(0)));
+      next[a] = select(still_[a], infinity, (plane - origin_[a]) * inverse_[a]);
+    }
+    const D begin = at_;
+    const D leave = max(min(min(next[0], next[1]), min(next[2], end)), begin);
+    Vec3<D> entry, exit;
+    for (int a = 0; a < 3; ++a) {
+      const D cell = convert<double>(cell_[a]);
+      const auto local = [&](const D& there) noexcept {
+        return clamp(multiply_add(there, direction_[a], origin_[a] - cell), D(0), D(1));
+      };
+      entry[a] = local(begin);
+      exit[a] = local(leave);
+    }
+    const M filled = load(entry, exit);
+    const M ahead = on & filled & (leave > begin);
+    M found(false);
+    if (any(ahead)) {
+      found = ahead & matters(span_, rows, at);
+      if (any(found)) {
+        for (int c = 0; c < fields_.channels; ++c) {
+          for (int k = 0; k < 4; ++k) span_.data[c].b[k].store(rows.data[c][k] + at);
+        }
+        const D length = leave - begin;
+        length.store(rows.exact_length + at);
+        convert<float>(end - begin).store(rows.left + at);
+        convert<float>(D(8 * rounding_unit<double>) * leave).store(rows.place_error + at);
+        F(0).store(rows.end_error + at);
+        F(0).store(rows.changed + at);
+        I(0).store(rows.code + at);
+      }
+    }
+    at_ = select(on, leave, at_);
+    M outside = leave >= end;
+    for (int a = 0; a < 3; ++a) {
+      const I before = cell_[a];
+      const M moves = on & (next[a] <= leave);
+      cell_[a] = select(moves, cell_[a] + select(forward_[a], I(1), I(-1)), cell_[a]);
+      fresh_ = fresh_ | (on & ((before >> 3) != (cell_[a] >> 3)));
+      outside = outside | (cell_[a] < I(0)) | (cell_[a] >= I(grid_.cells[a]));
+    }
+    walking = walking & !(on & outside);
+    return found;
+  }
+
+ private:
+  /// Leaves the cubes of 2^level blocks that hold the lanes' blocks.
+  void leave_cube(M lanes, const I* block, I level) noexcept {
+    static constexpr std::int32_t sides[8] = {1, 2, 4, 8, 16, 32, 64, 128};
+    const I side = gather(sides, level);
+    const D infinity(std::numeric_limits<double>::infinity());
+    I lower[3], upper[3];
+    D exit[3];
+    for (int a = 0; a < 3; ++a) {
+      const I first = block[a] & (I(0) - side);
+      lower[a] = first << 3;
+      upper[a] = (first + side) << 3;
+      const D plane = convert<double>(select(forward_[a], upper[a], lower[a]));
+      exit[a] = select(still_[a], infinity, (plane - origin_[a]) * inverse_[a]);
+    }
+    const D leave = max(min(min(exit[0], exit[1]), min(exit[2], end)), at_);
+    M outside = leave >= end;
+    for (int a = 0; a < 3; ++a) {
+      const D place = floor(multiply_add(leave, direction_[a], origin_[a]));
+      const D inside = clamp(place, convert<double>(lower[a]), convert<double>(upper[a] - I(1)));
+      const I beyond = select(forward_[a], upper[a], lower[a] - I(1));
+      const I cell = select(exit[a] <= leave, beyond, convert<std::int32_t>(inside));
+      cell_[a] = select(lanes, cell, cell_[a]);
+      outside = outside | (cell < I(0)) | (cell >= I(grid_.cells[a]));
+    }
+    at_ = select(lanes, leave, at_);
+    walking = walking & !(lanes & outside);
+  }
+
+  /// The cubics of the lanes' cells; false in vacuum.
+  M load(const Vec3<D>& entry, const Vec3<D>& exit) noexcept {
+    F cell[3], from[3];
+    std::int32_t first[3][N];
+    for (int a = 0; a < 3; ++a) {
+      const I inside = min(max(cell_[a], I(0)), I(grid_.cells[a] - 1)) - I(grid_.padding[a]);
+      const I lower = min(max(inside, I(0)), I(grid_.values[a] - 2));
+      lower.store(first[a]);
+      cell[a] = convert<float>(inside);
+      from[a] = convert<float>(lower);
+    }
+    std::ptrdiff_t base[N];
+    for (int l = 0; l < N; ++l) {
+      base[l] = first[0][l] + grid_.row * first[1][l] + grid_.slice * first[2][l];
+    }
+    D sum(0);
+    for (int c = 0; c < fields_.channels; ++c) {
+      fields_.with_channel(c,
+                           [&]<class Value>(const StructuredGrid<Value, double>& field) noexcept {
+                             const Value* at[N];
+                             for (int l = 0; l < N; ++l) at[l] = field.data + base[l];
+                             CellCorners<D> corners = load_exactly<Value>(at);
+                             if (grid_.padded()) repeat_border(cell, from, corners);
+                             for (const D& v : corners.value) sum += v;
+                             span_.data[c] = trilinear_cubic(corners, entry, exit);
+                           });
+    }
+    return !is_nan(sum);
+  }
+
+  template <class Value>
+  CellCorners<D> load_exactly(const Value* const* at) const noexcept {
+    static constexpr std::int32_t none_on[N] = {};
+    CellCorners<D> result;
+    if constexpr (sizeof(Value) > 2 && !std::is_same_v<Value, float>) {
+      for (int n = 0; n < 8; ++n) {
+        double of_lane[N];
+        const std::ptrdiff_t to = (n & 1) + (n >> 1 & 1) * grid_.row + (n >> 2) * grid_.slice;
+        for (int l = 0; l < N; ++l) of_lane[l] = static_cast<double>(at[l][to]);
+        result.value[n] = D::load(of_lane);
+      }
+    } else {
+      const CellCorners<F> corners = load_corners<Value, N>(at, none_on, grid_.row, grid_.slice);
+      for (int n = 0; n < 8; ++n) result.value[n] = convert<double>(corners.value[n]);
+    }
+    return result;
+  }
+
+  /// Cells outside of the outermost values have the border's twice.
+  static void repeat_border(const F* cell, const F* from, CellCorners<D>& corners) noexcept {
+    for (int a = 0; a < 3; ++a) {
+      const M below = cell[a] < from[a], beyond = from[a] < cell[a];
+      if (none(below | beyond)) continue;
+      for (int n = 0; n < 8; ++n) {
+        if ((n >> a & 1) != 0) continue;
+        D &lower = corners.value[n], &upper = corners.value[n | 1 << a];
+        upper = select(below, lower, upper);
+        lower = select(beyond, upper, lower);
+      }
+    }
+  }
+
+  const PacketGrid<void>& grid_;
+  const MultichannelGrid& fields_;
+  const PrimitiveSet* primitives_;
+  D origin_[3], direction_[3], inverse_[3];  ///< plane coordinates, by world length
+  M forward_[3], still_[3];
+  D at_{0};        ///< world length from the entry into the grid
+  I cell_[3];      ///< plane coordinates
+  M fresh_{true};  ///< whether the lane's block has not been looked at
+  Span span_;
+};
+
+}  // namespace pellucid
+#endif

@@ -1,0 +1,237 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "pellucid/math/gauss_legendre.h"
+#include "pellucid/segment/bounded.h"
+#include "pellucid/segment/constant.h"
+#include "pellucid/segment/gaussian_cubic.h"
+#include "pellucid/segment/gaussian_mixture.h"
+
+namespace pellucid {
+
+/// What N Gauss nodes err on a panel of Gaussians e^(-|p_j(u)|²) along cubics p_j, at most by
+/// estimate, in the radiance by the largest color and in the opacity:
+///
+///   factor · Σ w_j m_j^power + linear · depth³ · max m_j · Σ w_j + smallest · Σ w_j,
+///
+/// m_j three times the largest step between Bernstein coefficients of p_j, a bound on how far it
+/// moves; w_j = (depth of its peak over the panel) · min(1, 5/2 e^(-min|p_j|²/2)). Where the
+/// Gaussians differ in color, the depth <= 1.
+///
+/// Along lines the depth's error is at most w m^2N (N!)³ / ((2N + 1) (2N)!²), with Cramér's
+/// inequality for Hermite functions; bends count for more where little moves. The second term is of
+/// colors that change along a panel that is not thin. Twice the worst that hill climbing finds over
+/// up to three curves of one and two rows; asserted in tests/segment. Beyond farthest nothing is
+/// known.
+template <int N>
+struct NodeEstimate {
+  static_assert(N == 3 || N == 5 || N == 8);
+  static constexpr float farthest = N == 3 ? 2.0f : N == 5 ? 3.0f : 6.0f;
+  static constexpr int power = N == 3 ? 2 : N == 5 ? 4 : 8;
+  static constexpr double factor = N == 3 ? 1.3e-3 : N == 5 ? 7.2e-6 : 7.6e-10;
+  static constexpr double linear = N == 3 ? 3e-5 : 0;
+  static constexpr double smallest = 2e-9;
+};
+
+/// What GaussianNodes keeps of a panel's Gaussians: too much for a small stack where T is a batch.
+template <class T>
+struct NodeRoom {
+  struct Term {
+    const Gaussian<scalar_t<T>>* of;
+    T peak;  ///< depth of its peak over the panel's length; 0 where it does not matter
+    T power[4][most_channels];  ///< of u: K (v - c)
+
+    PELLUCID_HD T at(int row, T u) const noexcept {
+      const T p = multiply_add(power[3][row], u, power[2][row]);
+      return multiply_add(multiply_add(p, u, power[1][row]), u, power[0][row]);
+    }
+    PELLUCID_HD T square(T u) const noexcept {
+      const T first = at(0, u);
+      T sum = first * first;
+      for (int row = 1; row < of->rows; ++row) {
+        const T p = at(row, u);
+        sum = multiply_add(p, p, sum);
+      }
+      return sum;
+    }
+  };
+  Term term[most_gaussians];
+};
+
+/// A panel of Gaussians along cubics, by Gauss nodes, in a number type without digits to spare:
+/// what is asked of the curves is relative to their own size. T may be a batch: panels in lanes.
+template <class T>
+class GaussianNodes {
+ public:
+  using S = scalar_t<T>;
+  using Mask = mask_t<T>;
+
+  PELLUCID_HD GaussianNodes(T length, NodeRoom<T>& room) noexcept
+      : length_(length), term_(room.term) {}
+
+  /// Adds a primitive in the lanes `on`, if it comes nearer than the root of `square` to its center
+  /// along the cubic that begins at `first`, by the differences from each Bernstein coefficient of
+  /// K (v - c) to the next.
+  template <int Most>
+  PELLUCID_HD void add(const Gaussian<S>& of, const T* first, const T (*difference)[Most], T square,
+                       Mask on) noexcept {
+    const GaussianCubic<T, Most> curve(of.rows, first, difference);
+    const Mask matters = on & !(curve.lower() >= square);
+    if (none(matters)) return;
+    typename NodeRoom<T>::Term& term = term_[count_++];
+    term.of = &of;
+    term.peak = select(matters, T(of.peak) * length_, T(0));
+    const int rows = Most == 1 ? 1 : of.rows;
+    T step = T(0);
+    for (int i = 0; i < rows; ++i) {
+      const T d0 = difference[0][i], d1 = difference[1][i], d2 = difference[2][i];
+      term.power[0][i] = first[i];
+      term.power[1][i] = T(3) * d0;
+      term.power[2][i] = T(3) * (d1 - d0);
+      term.power[3][i] = (d2 - d1) - (d1 - d0);
+    }
+    for (int k = 0; k < 3; ++k) {
+      T moved = T(0);
+      for (int i = 0; i < rows; ++i) {
+        moved = multiply_add(difference[k][i], difference[k][i], moved);
+      }
+      step = max(step, moved);
+    }
+    const T root = exp(T(-0.5) * select(matters, curve.lower(), T(0)));
+    most_ += term.peak * (root * root);
+    const T weight = term.peak * min(T(2.5) * root, T(1));
+    const T moves = select(matters, T(3) * sqrt(step), T(0));
+    const T farthest = sqrt(select(matters, curve.upper(), T(0)));
+    moves_ = max(moves_, moves);
+    weight_ += weight;
+    T power = moves * moves;
+    square_ = multiply_add(weight, power, square_);
+    power *= power;
+    fourth_ = multiply_add(weight, power, fourth_);
+    eighth_ = multiply_add(weight, power * power, eighth_);
+    // p at a node is off by 2 u |p| and 10 u of what it moves, and no density is steeper than
+    // √(2/e); the rest are the exponential and sums.
+    rounding_ = multiply_add(weight, T(rounding_unit<T>) * (T(32) + T(2) * farthest + T(9) * moves),
+                             rounding_);
+    colors_.add(matters, Rgb<T>{T(of.color.r), T(of.color.g), T(of.color.b)});
+    T from = T(0), to = T(1);
+    const Mask far = matters & (moves > T(NodeEstimate<8>::farthest));
+    if (any(far)) {
+      const auto part = curve.within(sqrt(max(square, T(0))));
+      from = select(far, part.from, from);
+      to = select(far, part.to, to);
+    }
+    from_ = min(from_, select(matters, from, T(1)));
+    to_ = max(to_, select(matters, to, T(0)));
+  }
+
+  /// A bound on the depth, and on what rounding does to the opacity.
+  PELLUCID_HD T most() const noexcept { return most_; }
+  PELLUCID_HD T rounding() const noexcept { return rounding_; }
+  /// Whether it is short enough for nodes; longer ones are to be cut.
+  PELLUCID_HD Mask is_short() const noexcept { return moves_ <= T(NodeEstimate<8>::farthest); }
+
+  /// The panel in those lanes in which the error is at most `allowed`, of the opacity.
+  struct Result {
+    SegmentResult<T> segment;
+    T error{};  ///< of the radiance, by the largest color, and of the opacity
+    Mask done = Mask(false);
+    T clear{}, cut = T(0.5);  ///< else: nothing matters up to `clear`; try from there to `cut`
+  };
+  PELLUCID_HD Result integrate(T allowed) const noexcept {
+    Result result;
+    result.segment = segment_of_depth(T(0), Rgb<T>{});
+    const Mask several = colors_.oscillation() > T(0);
+    const T left = allowed - rounding_;
+    Mask open = Mask(most_ > T(0)) & ((!several) | (most_ <= T(1)));
+    result.done = most_ <= T(0);
+    try_nodes<3>(square_, left, several, open, result);
+    try_nodes<5>(fourth_, left, several, open, result);
+    try_nodes<8>(eighth_, left, several, open, result);
+    if (all(result.done)) return result;
+    // In so many parts of what matters that none moves too far, and none is dense if colors differ.
+    const T share = max(to_ - from_, T(0));
+    const T depth = select(several, most_ * share, T(0));
+    const T parts = clamp(max(moves_ * share * T(0.2), depth), T(1), T(16));
+    // What is cut becomes shorter.
+    const T whole = max(floor(parts + T(0.9375)), select(share > T(0.75), T(2), T(1)));
+    result.clear = min(from_, T(1));
+    result.cut = result.clear + share / whole;
+    return result;
+  }
+
+  /// The panel by N nodes, whatever they err. `several`: whether there are several colors; without
+  /// them they are not asked for.
+  template <int N>
+  PELLUCID_HD SegmentResult<T> by_nodes(bool several) const noexcept {
+    static constexpr auto rule = gauss_legendre<S, N>();
+    T rate[N];
+    Rgb<T> emission[N];
+    for (int j = 0; j < N; ++j) {
+      rate[j] = T(0);
+      emission[j] = {};
+    }
+    for (int i = 0; i < count_; ++i) {
+      const auto& term = term_[i];
+      const Rgb<S>& color = term.of->color;
+      for (int j = 0; j < N; ++j) {
+        const T here = term.peak * exp(-min(term.square(T(rule.node[j])), T(80)));
+        rate[j] += here;
+        if (!several) continue;
+        emission[j].r = multiply_add(here, T(color.r), emission[j].r);
+        emission[j].g = multiply_add(here, T(color.g), emission[j].g);
+        emission[j].b = multiply_add(here, T(color.b), emission[j].b);
+      }
+    }
+    T depth = T(0);
+    for (int j = 0; j < N; ++j) depth = multiply_add(T(rule.weight[j]), rate[j], depth);
+    const Rgb<T> first{colors_.lower.r, colors_.lower.g, colors_.lower.b};
+    if (!several) return segment_of_depth(depth, first);
+    T sum = T(0);
+    Rgb<T> color{};
+    for (int j = 0; j < N; ++j) {
+      T ahead = T(0);
+      for (int k = 0; k < N; ++k) ahead = multiply_add(T(rule.collocation[j][k]), rate[k], ahead);
+      const T seen = T(rule.weight[j]) * exp(-ahead);
+      sum = multiply_add(seen, rate[j], sum);
+      color += seen * emission[j];
+    }
+    const T inverse = T(1) / select(sum > T(0), sum, T(1));
+    return segment_of_depth(depth, colors_.clamped(inverse * color));
+  }
+
+ private:
+  template <int N>
+  PELLUCID_HD void try_nodes(T sum, T left, Mask several, Mask& open,
+                             Result& result) const noexcept {
+    using Estimate = NodeEstimate<N>;
+    const T depth = min(most_, T(1));
+    const T rest = multiply_add(T(S(Estimate::linear)), depth * depth * depth * moves_,
+                                T(S(Estimate::smallest)));
+    const T error = multiply_add(T(S(Estimate::factor)), sum, rest * weight_);
+    const Mask good = open & (error <= left) & (moves_ <= T(Estimate::farthest));
+    if (none(good)) return;
+    const SegmentResult<T> found = by_nodes<N>(any(good & several));
+    result.segment.optical_depth = select(good, found.optical_depth, result.segment.optical_depth);
+    result.segment.opacity = select(good, found.opacity, result.segment.opacity);
+    result.segment.transparency = select(good, found.transparency, result.segment.transparency);
+    Rgb<T>& radiance = result.segment.radiance;
+    radiance = {select(good, found.radiance.r, radiance.r),
+                select(good, found.radiance.g, radiance.g),
+                select(good, found.radiance.b, radiance.b)};
+    result.error = select(good, error + rounding_, result.error);
+    result.done = result.done | good;
+    open = open & !good;
+  }
+
+  T length_;
+  typename NodeRoom<T>::Term* term_;
+  int count_ = 0;
+  T most_{}, rounding_{};
+  T moves_{};                                    ///< the largest movement
+  T weight_{}, square_{}, fourth_{}, eighth_{};  ///< Σ weight · movement^k
+  ColorRange<T> colors_;
+  T from_ = T(1), to_ = T(0);  ///< outside of it none matters
+};
+
+}  // namespace pellucid

@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "cell_packets.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "packet_setup.h"
+#include "packet_tracer.h"
+#include "sampled_multivariate_storage.h"
+
+namespace pellucid {
+namespace {
+
+/// Of the tolerance, for what is not looked at.
+constexpr double left_out_share = 1.0 / 16;
+
+/// Below, what budgets in binary32 lose and what folding in double does would be most of it.
+constexpr double least_tolerance = 1e-11;
+
+using Kernel = void (*)(const PellucidGaussianPacketJob*);
+
+Kernel kernel_for([[maybe_unused]] InstructionSet set) {
+#if PELLUCID_HAS_PACKETS
+  return kernel_of<Kernel>(set, pellucid_integrate_multivariate_cells_sse4,
+                           pellucid_integrate_multivariate_cells_avx2,
+                           pellucid_integrate_multivariate_cells_avx512);
+#else
+  return nullptr;
+#endif
+}
+
+}  // namespace
+
+double movement_in_cells(const Channels& channels, const GaussianMixture<double>& mixture,
+                         const MultivariateBlocks& blocks) {
+  std::vector<BlockRecords> records;
+  for (const Channel& channel : channels) records.push_back(channel.volume->block_ranges());
+  const int count = blocks.records.count();
+  constexpr int most_blocks = 4096;
+  const int stride = std::max(count / most_blocks, 1);
+  double sum = 0;
+  int found = 0;
+  for (int block = 0; block < count; block += stride) {
+    if (blocks.classes[block].kind == BlockKind::skip) continue;
+    double most = 0;
+    for (int i = 0; i < mixture.count; ++i) {
+      if (!blocks.primitives[block].holds(i)) continue;
+      double square = 0;
+      for (int c = 0; c < channels.count(); ++c) {
+        const BlockRange range = records[static_cast<std::size_t>(c)].range(block);
+        if (range.vacuum == BlockVacuum::all) continue;
+        const double moves = column_norm(mixture.primitive[i], c) * (range.max - range.min);
+        square += moves * moves;
+      }
+      most = std::max(most, square);
+    }
+    sum += std::sqrt(most) / block_width;
+    ++found;
+  }
+  return found > 0 ? sum / found : 0;
+}
+
+std::unique_ptr<const CellPackets> CellPackets::make(
+    const Channels& channels, const MultivariateTransferFunction& transfer_function,
+    const MultivariateBlocks& blocks, const MultichannelGrid& grid, const RayTolerance& wanted,
+    InstructionSet instruction_set) {
+  const Kernel kernel = kernel_for(instruction_set);
+  const double largest_extinction = transfer_function.largest_extinction();
+  const bool suit = std::all_of(channels.begin(), channels.end(), [&](const Channel& channel) {
+    return suits_packets(*channel.volume, largest_extinction);
+  });
+  const Multivariate<double> transfer = transfer_function.view();
+  if (kernel == nullptr || !suit || !(wanted.tolerance >= least_tolerance)) return nullptr;
+  const double largest_color = std::max(wanted.largest_color, 1.0);
+  double largest[most_channels] = {};
+  for (int c = 0; c < transfer.channels; ++c) largest[c] = largest_value(*channels[c].volume);
+  std::unique_ptr<CellPackets> packets(new CellPackets());
+  packets->mixture_ = NearMixtureStorage(largest, false, transfer,
+                                         left_out_share * wanted.tolerance / largest_color,
+                                         diagonal(channels.grid()));
+  if (!packets->mixture_.suits_packets()) return nullptr;
+  packets->kernel_ = kernel;
+  PellucidGaussianPacketJob& job = packets->job_;
+  set_grid(channels.grid(), job.grid_and_rays);
+  job.grid_and_rays.classes = blocks.classes.block;
+  job.grid_and_rays.largest_extinction = largest_extinction;
+  job.grid_and_rays.largest_color = largest_color;
+  job.grid_and_rays.tolerance = (1 - left_out_share) * wanted.tolerance;
+  job.left_out = blocks.left_out;
+  job.proved = wanted.grade == Grade::proved ? 1 : 0;
+  job.grid = &grid;
+  job.primitives = blocks.primitives;
+  job.mixture = &packets->mixture_.view();
+  return packets;
+}
+
+void CellPackets::trace(const std::vector<PellucidRay>& rays, PellucidRayResult* results) const {
+  PellucidGaussianPacketJob job = job_;
+  job.grid_and_rays.rays = rays.data();
+  job.grid_and_rays.count = static_cast<std::int32_t>(rays.size());
+  job.grid_and_rays.results = results;
+  kernel_(&job);
+}
+
+}  // namespace pellucid

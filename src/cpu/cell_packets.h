@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "near_mixture_storage.h"
+#include "pellucid/field/multichannel_grid.h"
+#include "pellucid/packet/gaussian_packet_interface.h"
+#include "pellucid/render/integrate_cell.h"
+#include "pellucid/scene/channels.h"
+#include "pellucid/scene/multivariate_transfer_function.h"
+#include "pellucid/simd/instruction_set.h"
+#include "pellucid/traverse/multivariate_blocks.h"
+
+namespace pellucid {
+
+/// How far K (v - c) moves in a cell, about: in the mean over blocks in which a primitive may
+/// matter, spread over all, of the one that moves most. It tells what is faster, and nothing else.
+double movement_in_cells(const Channels& channels, const GaussianMixture<double>& mixture,
+                         const MultivariateBlocks& blocks);
+
+/// Integrates rays through several channels in packets, cell by cell, in the machine's best
+/// instruction set.
+class CellPackets {
+ public:
+  /// Null where rays have to go one by one: no such instructions, a tolerance below 1e-11, a
+  /// rectilinear grid, a single layer of values, numbers whose squares binary32 has not. All that
+  /// is given is referred to.
+  static std::unique_ptr<const CellPackets> make(
+      const Channels& channels, const MultivariateTransferFunction& transfer_function,
+      const MultivariateBlocks& blocks, const MultichannelGrid& grid, const RayTolerance& wanted,
+      InstructionSet instruction_set);
+
+  void trace(const std::vector<PellucidRay>& rays, PellucidRayResult* results) const;
+
+ private:
+  using Kernel = void (*)(const PellucidGaussianPacketJob*);
+
+  CellPackets() = default;
+
+  NearMixtureStorage mixture_;
+  PellucidGaussianPacketJob job_{};
+  Kernel kernel_ = nullptr;
+};
+
+}  // namespace pellucid
