@@ -3,10 +3,12 @@
 // Compiled once per instruction set, with namespace pellucid under a name of its own
 // (cmake/PellucidInstructionSets.cmake).
 #include "pellucid/packet/multivariate_cell_packet.h"
+#include "pellucid/simd/flush_to_zero.h"
 #include "pellucid/simd/instruction_set.h"
 
 extern "C" void PELLUCID_ENTRY(pellucid_integrate_multivariate_cells)(
     const PellucidGaussianPacketJob* job) {
+  const pellucid::FlushToZero mode;
   constexpr int lanes = PELLUCID_LANES;
   using Packet = pellucid::MultivariateCellPacket<lanes>;
   const PellucidPacketJob& rays = job->grid_and_rays;

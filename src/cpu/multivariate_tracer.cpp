@@ -97,7 +97,7 @@ class MultivariateTracer : public RayTracer {
   /// same. Where both take as long was measured (docs/performance.md).
   GaussianMarch faster_march() const {
     const double lax = std::min(512 * wanted_.tolerance, 1.0);
-    return movement_in_cells(channels_, transfer_.gaussians, *blocks_) <= 0.5 * lax
+    return movement_in_cells(channels_, transfer_.gaussians, *blocks_) <= 0.56 * lax
                ? GaussianMarch::steps
                : GaussianMarch::cells;
   }

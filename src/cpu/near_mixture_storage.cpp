@@ -13,14 +13,23 @@
 namespace pellucid {
 namespace {
 
-/// The square of the distance |K (v - c)| from which on e^(-|K (v - c)|²) is below e^-exponent,
-/// as it is found in binary32 of data no larger than this.
-float square_in_float(const Gaussian<double>& g, const double* largest, double exponent) {
+/// What K (v - c) is made of: its terms, together.
+double size_of_terms(const Gaussian<double>& g, const double* largest) {
   double size = 0;
   for (int c = 0; c < g.channels; ++c) {
-    if (!(column_norm(g, c) < 1e30)) return std::numeric_limits<float>::quiet_NaN();
+    if (!(column_norm(g, c) < 1e30)) return std::numeric_limits<double>::infinity();
     size += column_norm(g, c) * (largest[c] + std::fabs(g.center[c]));
   }
+  return size;
+}
+
+/// Up to this size double rounds K (v - c), of cubics and parts of them, by less than 20 u size <
+/// 3e-8: a thirtieth of what is charged for binary32.
+constexpr double largest_size = 1e7;
+
+/// The square of the distance |K (v - c)| from which on e^(-|K (v - c)|²) is below e^-exponent,
+/// as it is found in binary32 of data no larger than this.
+float square_in_float(double size, double exponent) {
   // Binary32 has the fourth power of it.
   if (!(size < 1e9)) return std::numeric_limits<float>::quiet_NaN();
   // K, v, c, their difference and at most 8 products and sums; of both ends.
@@ -72,6 +81,7 @@ NearMixtureStorage::NearMixtureStorage(const double* largest, bool off,
   const GaussianMixture<double>& all = transfer.gaussians;
   mixture_.transfer = transfer;
   mixture_.left_out = left_out;
+  mixture_.few_digits = transfer.tables == 0;
   mixture_.charged = (off ? 2 : 1) * left_out;
   for (int i = 0; i < all.count; ++i) {
     const Gaussian<double>& g = all.primitive[i];
@@ -83,8 +93,9 @@ NearMixtureStorage::NearMixtureStorage(const double* largest, bool off,
     NearGaussian near;
     near.gaussian = rounded_to_binary32(g);
     for (int c = 0; c < g.channels; ++c) near.least_scale[c] = least_scale(g, c);
-    near.square =
-        g.peak > negligible ? square_in_float(g, largest, std::log(g.peak / negligible)) : -1;
+    const double size = size_of_terms(g, largest);
+    near.square = g.peak > negligible ? square_in_float(size, std::log(g.peak / negligible)) : -1;
+    mixture_.few_digits = mixture_.few_digits && size <= largest_size;
     near_.push_back(near);
   }
   for (int c = 0; c < transfer.channels; ++c) {

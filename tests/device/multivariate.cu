@@ -2,6 +2,7 @@
 #include "pellucid/render/camera.h"
 #include "pellucid/render/integrate_multivariate_ray.h"
 #include "pellucid/render/sample_ray.h"
+#include "pellucid/segment/gaussian_nodes.h"
 #include "pellucid/transfer/gaussian_bound.h"
 #include "tests/device/kernel.h"
 
@@ -42,6 +43,23 @@ PELLUCID_HD void panel(const T* in, T* out) noexcept {
            (GaussianLinear<T>(two[0], straight.data).comes_within(in[23]) ? T(1) : T(0));
 }
 PELLUCID_DEVICE_KERNEL(panel)
+
+/// A panel by Gauss nodes.
+template <class T>
+PELLUCID_HD void nodes(const T* in, T* out) noexcept {
+  Gaussian<T> g;
+  g.rows = 1 + static_cast<int>(in[0]);
+  g.peak = in[1];
+  g.color = {in[2], in[3], in[4]};
+  NodeRoom<T> room;
+  GaussianNodes<T> panel(in[5], room);
+  const T steps[3][2] = {{in[6], in[7]}, {in[8], in[9]}, {in[10], in[11]}};
+  panel.add(g, in + 12, steps, in[14], in[15] > T(0));
+  const auto found = panel.integrate(in[16]);
+  out[0] = found.segment.radiance.r + found.error + found.clear + found.cut;
+  out[1] = panel.most() + panel.least_error() + (panel.is_short() ? T(1) : T(0));
+}
+PELLUCID_DEVICE_KERNEL(nodes)
 
 /// One pixel per thread.
 __global__ void render_multivariate(MultichannelGrid grid, MultivariateBlocks blocks,

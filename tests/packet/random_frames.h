@@ -11,11 +11,36 @@
 #include <utility>
 #include <vector>
 
+#include "pellucid/scene/channels.h"
+#include "pellucid/scene/defaults.h"
 #include "pellucid/scene/multivariate_transfer_function.h"
+#include "pellucid/scene/scene.h"
 #include "pellucid/scene/transfer_function.h"
 #include "tests/packet/instruction_sets.h"
 
 namespace pellucid {
+
+/// A ramp along x behind so many cells of nothing, and no wider than `points` across; seen along x
+/// by four rays that lie in the grid's faces, two of them in the upper ones.
+inline Scene ramp_seen_in_faces(int points, int empty) {
+  const int along = 49;
+  std::vector<float> data;
+  for (int i = 0; i < along * points * points; ++i) {
+    data.push_back(static_cast<float>(std::max(i % along - empty, 0)) / 30);
+  }
+  Volume::Description description;
+  description.dimensions = {along, points, points};
+  Scene scene;
+  scene.channels = std::make_shared<const Channels>(std::vector<Channel>{
+      {"ramp", "", std::make_shared<Volume>(description, DataArray<float>(std::move(data)))}});
+  scene.size = {2, 2};
+  scene.camera = default_camera(scene.channels->grid(), scene.size);
+  scene.camera.position = scene.camera.focal_point - Vec3<double>{100, 0, 0};
+  scene.camera.up = {0, 0, 1};
+  scene.camera.projection = Projection::orthographic;
+  scene.camera.parallel_scale = points - 1;
+  return scene;
+}
 
 /// Frames of random scenes, in packets.
 class RandomFrames : public testing::Test {

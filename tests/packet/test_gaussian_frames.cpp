@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <cstdio>
 #include <cstdlib>
 #include <limits>
@@ -47,7 +49,7 @@ class GaussianFrames : public RandomFrames, public testing::WithParamInterface<G
 
   /// Between 0 and 1: waves, ridges that are sharp, noise, single values that stand out.
   std::shared_ptr<const Volume> volume(const std::array<int, 3>& values, Vec3<double> spacing,
-                                       Centering centering, double offset) {
+                                       Centering centering, double offset, double size) {
     const int kind = whole(0, 7);
     constexpr double nan = std::numeric_limits<double>::quiet_NaN();
     // On planes of blocks, and beside them.
@@ -77,7 +79,7 @@ class GaussianFrames : public RandomFrames, public testing::WithParamInterface<G
           if (kind == 5 && random_() % 97 == 0) value = uniform(0, 1);
           if (kind == 6) value = std::fabs(x - bend) / 20 + 0.01 * std::fabs(y - 8.0);
           if (kind == 7 && std::fabs(x + 0.7 * y - 0.4 * z - bend) < 0.6) value = nan;
-          data.push_back(value + offset);
+          data.push_back(size * value + offset);
         }
       }
     }
@@ -85,11 +87,36 @@ class GaussianFrames : public RandomFrames, public testing::WithParamInterface<G
     description.dimensions = values;
     description.placement.spacing = spacing;
     description.centering = centering;
+    if (size > 1) return in_whole_numbers(description, data);
     if (random_() % 4 == 0) {
       return std::make_shared<Volume>(description, DataArray<double>(std::move(data)));
     }
     return std::make_shared<Volume>(description,
                                     DataArray<float>(std::vector<float>(data.begin(), data.end())));
+  }
+
+  /// Data from 0 to 255.
+  std::shared_ptr<const Volume> in_whole_numbers(const Volume::Description& description,
+                                                 const std::vector<double>& data) {
+    const auto as = [&]<class T>(T) {
+      std::vector<T> rounded;
+      for (const double v : data) {
+        rounded.push_back(static_cast<T>(std::isnan(v) ? 0 : std::clamp(v, 0.0, 255.0)));
+      }
+      return std::make_shared<const Volume>(description, DataArray<T>(std::move(rounded)));
+    };
+    switch (random_() % 5) {
+      case 0:
+        return as(std::uint8_t{});
+      case 1:
+        return as(std::int16_t{});
+      case 2:
+        return as(std::uint16_t{});
+      case 3:
+        return as(std::int32_t{});
+      default:
+        return as(std::uint32_t{});
+    }
   }
 
   Scene scene() {
@@ -99,15 +126,16 @@ class GaussianFrames : public RandomFrames, public testing::WithParamInterface<G
     const int channels = std::array<int, 6>{1, 1, 1, 2, 2, 3}[random_() % 6];
     const Centering centering = random_() % 4 == 0 ? Centering::cell : Centering::point;
     // Far from 0 rounding of the data counts.
-    const double offset = random_() % 3 == 0 ? power(1, 1000) : 0;
+    const double size = random_() % 4 == 0 ? 200 : 1;
+    const double offset = size == 1 && random_() % 3 == 0 ? power(1, 1000) : 0;
     std::vector<Channel> all;
     for (int c = 0; c < channels; ++c) {
-      all.push_back({std::to_string(c), "", volume(values, spacing, centering, offset)});
+      all.push_back({std::to_string(c), "", volume(values, spacing, centering, offset, size)});
     }
     Scene scene;
     scene.channels = std::make_shared<const Channels>(std::move(all));
     scene.multivariate = std::make_shared<const MultivariateTransferFunction>(
-        channels, primitives(channels, offset, 1, 40));
+        channels, primitives(channels, offset, size, 40));
     scene.size = {12, 12};
     scene.camera = default_camera(scene.channels->grid(), scene.size);
     const Vec3<double> axis[] = {{1, 0, 0}, {0, 1, 1}, {1, 1, 1}, {1, 0.01, 0}};
@@ -262,6 +290,40 @@ TEST_P(GaussianFrames, DoNotStepOverVacuum) {
   scene.camera.up = {0, 0, 1};
   Seen seen;
   compare(scene, {1e-2, 1.0 / 512}, seen);
+}
+
+/// Cubes of blocks to skip reach beyond the grid.
+TEST_P(GaussianFrames, KeepRaysInTheFacesBehindWhatIsSkipped) {
+  Seen seen;
+  for (const int points : {17, 20, 21, 25, 33}) {
+    SCOPED_TRACE(points);
+    Scene scene = ramp_seen_in_faces(points, 18);
+    scene.multivariate = one_on_ramp(0.5, 0.1, 1, 30);
+    RenderOptions options = GaussianFrames::options();
+    const Image image = render(scene, options);
+    for (const auto& pixel : image.pixels) EXPECT_NEAR(pixel[3], 1 - std::exp(-1.0), 3e-3);
+    compare(scene, {1e-2, 1e-4}, seen);
+    if (HasFatalFailure()) return;
+  }
+}
+
+/// One datum so large that binary32, and in the end double too, have few digits of the others.
+TEST_P(GaussianFrames, LiveWithOutliers) {
+  for (const double outlier : {1e6, 3e7, 2e9, 1e13}) {
+    SCOPED_TRACE(outlier);
+    std::vector<double> data;
+    for (int i = 0; i < 41 * 9 * 9; ++i) data.push_back(20 - i % 41 * 1.01);
+    data[40 + 41 * 8] = outlier;
+    Volume::Description description;
+    description.dimensions = {41, 9, 9};
+    Scene scene = ramp_scene(40, 0);
+    scene.channels = std::make_shared<const Channels>(std::vector<Channel>{
+        {"ramp", "", std::make_shared<Volume>(description, DataArray<double>(std::move(data)))}});
+    scene.multivariate = one_on_ramp(0.05, 0.02, 2, 1);
+    Seen seen;
+    pellucid::compare(scene, {1e-2, 1e-4}, seen, Promise::honest, options());
+    EXPECT_GT(seen.pixels, 0u);
+  }
 }
 
 /// Large terms of K (v - c) that cancel.

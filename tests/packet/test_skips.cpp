@@ -11,12 +11,10 @@
 
 #include "pellucid/cpu/render.h"
 #include "pellucid/scene/defaults.h"
+#include "tests/packet/random_frames.h"
 
 namespace pellucid {
 namespace {
-
-constexpr InstructionSet sets[] = {InstructionSet::sse4, InstructionSet::avx2,
-                                   InstructionSet::avx512};
 
 /// Random smooth fields and narrow peaks on their values: what packets pass over because the data
 /// cannot get that far would be missing from the pixel, and is in the double-precision frame, which
@@ -115,6 +113,28 @@ TEST_P(PacketSkips, LoseNothing) {
                              static_cast<double>(expected.error[i]) + 3e-7)
               << "round " << round << ", pixel " << i << ", " << name_of(set);
         }
+      }
+    }
+  }
+}
+
+/// Cubes of blocks to skip reach beyond the grid.
+TEST(PacketSkip, KeepsRaysInTheFaces) {
+  for (const int points : {17, 20, 21, 25, 33}) {
+    Scene scene = ramp_seen_in_faces(points, 18);
+    scene.volume = scene.channels->begin()->volume;
+    scene.channels = nullptr;
+    scene.transfer_function =
+        std::make_shared<const TransferFunction>(std::vector<TransferFunction::Point>{
+            {0.1, 0, {1, 1, 1}}, {0.2, 0.5, {1, 1, 1}}, {0.3, 0, {1, 1, 1}}});
+    // 30 cells by unit, a triangle of width 0.2.
+    const double opacity = 1 - std::exp(-30 * 0.5 * 0.1);
+    RenderOptions options;
+    for (const InstructionSet set : sets) {
+      if (!is_supported(set)) continue;
+      options.instruction_set = set;
+      for (const auto& pixel : render(scene, options).pixels) {
+        EXPECT_NEAR(pixel[3], opacity, 3e-3) << name_of(set) << ", " << points;
       }
     }
   }

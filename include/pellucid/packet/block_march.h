@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "pellucid/packet/packet_grid.h"
+#include "pellucid/packet/lane_rays.h"
 #include "pellucid/packet/stretches.h"
 #include "pellucid/simd/batch.h"
 
@@ -23,29 +23,18 @@ class BlockMarch {
 
   /// Rays of lanes beyond `count` are not alive.
   BlockMarch(const PacketGrid<Value>& grid, const PellucidRay* rays, int count) noexcept
-      : grid_(grid) {
-    for (int l = 0; l < N; ++l) {
-      const PellucidRay& ray = rays[l < count ? l : 0];
-      for (int a = 0; a < 3; ++a) {
-        direction[a][l] = ray.direction[a];
-        origin[a][l] = ray.origin[a] + ray.begin * ray.direction[a] + grid.padding[a];
-      }
-      end[l] = l < count ? ray.end - ray.begin : 0;
+      : grid_(grid), rays_(grid, rays, count) {
+    for (int a = 0; a < 3; ++a) {
+      rays_.origin[a].store(origin[a]);
+      rays_.direction[a].store(direction[a]);
     }
-    end_ = D::load(end);
+    rays_.end.store(end);
     in_cells_until = smooth_begin = smooth_end = D(0);
     smooth = M(false);
     next_ = D(0);
     refused_ = I(-1);
-    for (int a = 0; a < 3; ++a) {
-      origin_[a] = D::load(origin[a]);
-      direction_[a] = D::load(direction[a]);
-      forward_[a] = direction_[a] > D(0);
-      still_[a] = direction_[a] == D(0);
-      inverse_[a] = D(1) / direction_[a];
-      next_block_[a] = clamp_block(a, origin_[a]);
-    }
-    alive = end_ > D(0);
+    for (int a = 0; a < 3; ++a) next_block_[a] = clamp_block(a, rays_.origin[a]);
+    alive = rays_.end > D(0);
   }
 
   M alive;                     ///< whether a lane's ray is not yet through
@@ -64,7 +53,7 @@ class BlockMarch {
     const I rays = I::load(lane);
     M lanes = alive;
     while (any(lanes)) {
-      M inside = next_ < end_;
+      M inside = next_ < rays_.end;
       for (int a = 0; a < 3; ++a) {
         inside = inside & (next_block_[a] >= I(0)) & (next_block_[a] < I(grid_.blocks[a]));
       }
@@ -126,8 +115,8 @@ class BlockMarch {
     next_ = select(lanes, here, next_);
     in_cells_until = select(lanes, until, in_cells_until);
     for (int a = 0; a < 3; ++a) {
-      next_block_[a] =
-          select(lanes, clamp_block(a, origin_[a] + here * direction_[a]), next_block_[a]);
+      next_block_[a] = select(lanes, clamp_block(a, rays_.origin[a] + here * rays_.direction[a]),
+                              next_block_[a]);
     }
   }
 
@@ -139,35 +128,36 @@ class BlockMarch {
 
   /// Where the lanes leave the cubes of 2^level blocks that they are in, and for which block.
   void cross(M lanes, const I* block, I level) noexcept {
-    static constexpr std::int32_t sides[8] = {1, 2, 4, 8, 16, 32, 64, 128};
     const bool large = any(lanes & (level > I(0)));
-    const I side = large ? gather(sides, level) : I(1);
+    const I side = large ? side_of_cube<N>(level) : I(1);
     I lower[3];
     D exit[3];
     const D infinity(std::numeric_limits<double>::infinity());
     for (int a = 0; a < 3; ++a) {
       lower[a] = block[a] & (I(0) - side);
-      const I plane = I(block_width) * select(forward_[a], lower[a] + side, lower[a]);
-      exit[a] = select(still_[a], infinity, (convert<double>(plane) - origin_[a]) * inverse_[a]);
+      const I plane = I(block_width) * select(rays_.forward[a], lower[a] + side, lower[a]);
+      exit[a] = select(rays_.still[a], infinity,
+                       (convert<double>(plane) - rays_.origin[a]) * rays_.inverse[a]);
     }
     const D first = min(exit[0], min(exit[1], exit[2]));
-    const D leave = max(min(first, end_), next_);
+    const D leave = max(min(first, rays_.end), next_);
     for (int a = 0; a < 3; ++a) {
       I to = block[a];
       if (large) {
         const I here = convert<std::int32_t>(
-            floor((origin_[a] + leave * direction_[a]) * D(1.0 / block_width)));
-        to = min(max(here, lower[a]), lower[a] + side - I(1));
+            floor((rays_.origin[a] + leave * rays_.direction[a]) * D(1.0 / block_width)));
+        // Cubes reach beyond the grid, and rays in its upper faces are there, too.
+        const I beyond = min(lower[a] + side, I(grid_.blocks[a]));
+        to = min(max(here, lower[a]), beyond - I(1));
       }
-      to = select(exit[a] <= leave, select(forward_[a], lower[a] + side, lower[a] - I(1)), to);
+      to = select(exit[a] <= leave, select(rays_.forward[a], lower[a] + side, lower[a] - I(1)), to);
       next_block_[a] = select(lanes, to, next_block_[a]);
     }
     next_ = select(lanes, leave, next_);
   }
 
   const PacketGrid<Value>& grid_;
-  D origin_[3], direction_[3], inverse_[3], end_;
-  M forward_[3], still_[3];
+  LaneRays<N> rays_;
   D next_;           ///< where the block begins that each lane comes to next
   I next_block_[3];  ///< and which it is
   I refused_;        ///< the block that each lane was taken back to, or -1

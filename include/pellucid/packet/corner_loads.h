@@ -8,6 +8,21 @@
 #if PELLUCID_HAS_BATCH_4  // in sources compiled per instruction set
 namespace pellucid {
 
+/// Cells outside of the outermost values, which they were loaded `from`, have the border's twice.
+template <class Place, class T>
+void repeat_border(const Place* cell, const Place* from, CellCorners<T>& corners) noexcept {
+  for (int a = 0; a < 3; ++a) {
+    const auto below = cell[a] < from[a], beyond = from[a] < cell[a];
+    if (none(below | beyond)) continue;
+    for (int n = 0; n < 8; ++n) {
+      if ((n >> a & 1) != 0) continue;
+      T &lower = corners.value[n], &upper = corners.value[n | 1 << a];
+      upper = select(below, lower, upper);
+      lower = select(beyond, upper, lower);
+    }
+  }
+}
+
 /// Loads the corners of cells, one in each lane, that are given in their block.
 template <class Value, int N>
 class CornerLoads {
@@ -45,20 +60,6 @@ class CornerLoads {
   }
 
  private:
-  /// Cells outside of the outermost values have the border's twice.
-  static void repeat_border(const F* cell, const F* from, CellCorners<F>& corners) noexcept {
-    for (int a = 0; a < 3; ++a) {
-      const M below = cell[a] < from[a], beyond = from[a] < cell[a];
-      if (none(below | beyond)) continue;
-      for (int n = 0; n < 8; ++n) {
-        if ((n >> a & 1) != 0) continue;
-        F &lower = corners.value[n], &upper = corners.value[n | 1 << a];
-        upper = select(below, lower, upper);
-        lower = select(beyond, upper, lower);
-      }
-    }
-  }
-
   std::ptrdiff_t row_, slice_;
 };
 

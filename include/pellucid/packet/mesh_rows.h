@@ -11,7 +11,7 @@ struct SpanNote {
   static constexpr std::int32_t handed_back = 1, overlaps = 2;
 };
 
-/// Rows of what rays find ahead of them, spans of linear data: those of a step beside each other.
+/// Rows of what rays find ahead of them, spans of data: those of a step beside each other.
 /// World lengths in binary32: of the spans, of the ray from their begin on, of how far their ends
 /// are off where the data go on as they are there, and where they do not.
 template <int N, int Steps>

@@ -2,6 +2,8 @@
 #pragma once
 
 #include "pellucid/field/multichannel_grid.h"
+#include "pellucid/packet/corner_loads.h"
+#include "pellucid/packet/lane_rays.h"
 #include "pellucid/packet/panel_lanes.h"
 #include "pellucid/packet/sample_places.h"
 
@@ -27,25 +29,14 @@ class MultichannelCells {
   MultichannelCells(const PellucidPacketJob& job, const PacketGrid<void>& grid,
                     const MultichannelGrid& fields, const PrimitiveSet* primitives, int first,
                     int count) noexcept
-      : grid_(grid), fields_(fields), primitives_(primitives) {
-    double o[3][N], d[3][N], e[N];
-    for (int l = 0; l < N; ++l) {
-      const PellucidRay& ray = job.rays[first + (l < count ? l : 0)];
-      for (int a = 0; a < 3; ++a) {
-        d[a][l] = ray.direction[a];
-        o[a][l] = ray.origin[a] + ray.begin * ray.direction[a] + grid.padding[a];
-      }
-      e[l] = l < count ? ray.end - ray.begin : 0;
-    }
-    end = D::load(e);
+      : grid_(grid),
+        fields_(fields),
+        primitives_(primitives),
+        rays_(grid, job.rays + first, count) {
+    end = rays_.end;
     for (int a = 0; a < 3; ++a) {
-      origin_[a] = D::load(o[a]);
-      direction_[a] = D::load(d[a]);
-      inverse_[a] = D(1) / direction_[a];
-      forward_[a] = direction_[a] > D(0);
-      still_[a] = direction_[a] == D(0);
       cell_[a] = convert<std::int32_t>(
-          clamp(floor(origin_[a]), D(0), D(static_cast<double>(grid.cells[a] - 1))));
+          clamp(floor(rays_.origin[a]), D(0), D(static_cast<double>(grid.cells[a] - 1))));
     }
     walking = end > D(0);
   }
@@ -100,8 +91,8 @@ class MultichannelCells {
     D next[3];
     const D infinity(std::numeric_limits<double>::infinity());
     for (int a = 0; a < 3; ++a) {
-      const D plane = convert<double>(cell_[a] + select(forward_[a], I(1), I(0)));
-      next[a] = select(still_[a], infinity, (plane - origin_[a]) * inverse_[a]);
+      const D plane = convert<double>(cell_[a] + select(rays_.forward[a], I(1), I(0)));
+      next[a] = select(rays_.still[a], infinity, (plane - rays_.origin[a]) * rays_.inverse[a]);
     }
     const D begin = at_;
     const D leave = max(min(min(next[0], next[1]), min(next[2], end)), begin);
@@ -109,7 +100,7 @@ class MultichannelCells {
     for (int a = 0; a < 3; ++a) {
       const D cell = convert<double>(cell_[a]);
       const auto local = [&](const D& there) noexcept {
-        return clamp(multiply_add(there, direction_[a], origin_[a] - cell), D(0), D(1));
+        return clamp(multiply_add(there, rays_.direction[a], rays_.origin[a] - cell), D(0), D(1));
       };
       entry[a] = local(begin);
       exit[a] = local(leave);
@@ -126,7 +117,8 @@ class MultichannelCells {
         const D length = leave - begin;
         length.store(rows.exact_length + at);
         convert<float>(end - begin).store(rows.left + at);
-        convert<float>(D(8 * rounding_unit<double>) * leave).store(rows.place_error + at);
+        convert<float>(D(8 * rounding_unit<double>) * (rays_.begin + leave))
+            .store(rows.place_error + at);
         F(0).store(rows.end_error + at);
         F(0).store(rows.changed + at);
         I(0).store(rows.code + at);
@@ -137,7 +129,7 @@ class MultichannelCells {
     for (int a = 0; a < 3; ++a) {
       const I before = cell_[a];
       const M moves = on & (next[a] <= leave);
-      cell_[a] = select(moves, cell_[a] + select(forward_[a], I(1), I(-1)), cell_[a]);
+      cell_[a] = select(moves, cell_[a] + select(rays_.forward[a], I(1), I(-1)), cell_[a]);
       fresh_ = fresh_ | (on & ((before >> 3) != (cell_[a] >> 3)));
       outside = outside | (cell_[a] < I(0)) | (cell_[a] >= I(grid_.cells[a]));
     }
@@ -148,8 +140,7 @@ class MultichannelCells {
  private:
   /// Leaves the cubes of 2^level blocks that hold the lanes' blocks.
   void leave_cube(M lanes, const I* block, I level) noexcept {
-    static constexpr std::int32_t sides[8] = {1, 2, 4, 8, 16, 32, 64, 128};
-    const I side = gather(sides, level);
+    const I side = side_of_cube<N>(level);
     const D infinity(std::numeric_limits<double>::infinity());
     I lower[3], upper[3];
     D exit[3];
@@ -157,15 +148,17 @@ class MultichannelCells {
       const I first = block[a] & (I(0) - side);
       lower[a] = first << 3;
       upper[a] = (first + side) << 3;
-      const D plane = convert<double>(select(forward_[a], upper[a], lower[a]));
-      exit[a] = select(still_[a], infinity, (plane - origin_[a]) * inverse_[a]);
+      const D plane = convert<double>(select(rays_.forward[a], upper[a], lower[a]));
+      exit[a] = select(rays_.still[a], infinity, (plane - rays_.origin[a]) * rays_.inverse[a]);
     }
     const D leave = max(min(min(exit[0], exit[1]), min(exit[2], end)), at_);
     M outside = leave >= end;
     for (int a = 0; a < 3; ++a) {
-      const D place = floor(multiply_add(leave, direction_[a], origin_[a]));
-      const D inside = clamp(place, convert<double>(lower[a]), convert<double>(upper[a] - I(1)));
-      const I beyond = select(forward_[a], upper[a], lower[a] - I(1));
+      const D place = floor(multiply_add(leave, rays_.direction[a], rays_.origin[a]));
+      // Cubes reach beyond the grid, and rays in its upper faces are there, too.
+      const I last = min(upper[a], I(grid_.cells[a])) - I(1);
+      const D inside = clamp(place, convert<double>(lower[a]), convert<double>(last));
+      const I beyond = select(rays_.forward[a], upper[a], lower[a] - I(1));
       const I cell = select(exit[a] <= leave, beyond, convert<std::int32_t>(inside));
       cell_[a] = select(lanes, cell, cell_[a]);
       outside = outside | (cell < I(0)) | (cell >= I(grid_.cells[a]));
@@ -176,14 +169,12 @@ class MultichannelCells {
 
   /// The cubics of the lanes' cells; false in vacuum.
   M load(const Vec3<D>& entry, const Vec3<D>& exit) noexcept {
-    F cell[3], from[3];
+    I cell[3], from[3];
     std::int32_t first[3][N];
     for (int a = 0; a < 3; ++a) {
-      const I inside = min(max(cell_[a], I(0)), I(grid_.cells[a] - 1)) - I(grid_.padding[a]);
-      const I lower = min(max(inside, I(0)), I(grid_.values[a] - 2));
-      lower.store(first[a]);
-      cell[a] = convert<float>(inside);
-      from[a] = convert<float>(lower);
+      cell[a] = min(max(cell_[a], I(0)), I(grid_.cells[a] - 1)) - I(grid_.padding[a]);
+      from[a] = min(max(cell[a], I(0)), I(grid_.values[a] - 2));
+      from[a].store(first[a]);
     }
     std::ptrdiff_t base[N];
     for (int l = 0; l < N; ++l) {
@@ -222,25 +213,10 @@ class MultichannelCells {
     return result;
   }
 
-  /// Cells outside of the outermost values have the border's twice.
-  static void repeat_border(const F* cell, const F* from, CellCorners<D>& corners) noexcept {
-    for (int a = 0; a < 3; ++a) {
-      const M below = cell[a] < from[a], beyond = from[a] < cell[a];
-      if (none(below | beyond)) continue;
-      for (int n = 0; n < 8; ++n) {
-        if ((n >> a & 1) != 0) continue;
-        D &lower = corners.value[n], &upper = corners.value[n | 1 << a];
-        upper = select(below, lower, upper);
-        lower = select(beyond, upper, lower);
-      }
-    }
-  }
-
   const PacketGrid<void>& grid_;
   const MultichannelGrid& fields_;
   const PrimitiveSet* primitives_;
-  D origin_[3], direction_[3], inverse_[3];  ///< plane coordinates, by world length
-  M forward_[3], still_[3];
+  LaneRays<N> rays_;
   D at_{0};        ///< world length from the entry into the grid
   I cell_[3];      ///< plane coordinates
   M fresh_{true};  ///< whether the lane's block has not been looked at

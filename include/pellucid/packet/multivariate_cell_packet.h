@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "pellucid/packet/cubic_panels.h"
 #include "pellucid/packet/gaussian_packet_interface.h"
 #include "pellucid/packet/multichannel_cells.h"
+#include "pellucid/packet/node_panels.h"
 #include "pellucid/packet/table_absorbs.h"
 
 #if PELLUCID_HAS_BATCH_4  // in sources compiled per instruction set
@@ -21,7 +21,7 @@ class MultivariateCellPacket {
   using I = Batch<std::int32_t, N>;
   using M = BatchMask<N>;
   using Cells = MultichannelCells<N>;
-  using Panels = PanelLanes<N, CubicBernstein, CubicPanels<N>>;
+  using Panels = PanelLanes<N, CubicBernstein, NodePanels<N>>;
   using Room = typename Panels::Room;
 
   MultivariateCellPacket(const PellucidGaussianPacketJob& job, const PacketGrid<void>& grid,

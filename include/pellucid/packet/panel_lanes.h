@@ -37,7 +37,7 @@ struct ClosedPanels {
 };
 
 /// Integrates spans of rays in lanes, each within its ray's tolerance: panel by panel, cut where
-/// the budget does not pay for them. What a ray becomes depends on no other lane. Panels: how.
+/// the budget does not pay for them. The light of a ray depends on no other lane. Panels: how.
 template <int N, template <class> class Data, class Panels>
 class PanelLanes {
  public:
@@ -48,7 +48,7 @@ class PanelLanes {
   using Rows = PanelRows<N, Data>;
   using Span = MultivariateSpan<D, Data<D>>;
   static constexpr int most_cuts = 60;
-  /// What many packets have one after the other: with 16 lanes 200 kB.
+  /// What many packets have one after the other: with 16 lanes 800 kB, on the stack.
   struct Room {
     Rows rows;
     typename Panels::Room terms;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "pellucid/packet/packet_grid.h"
+#include "pellucid/packet/lane_rays.h"
 #include "pellucid/simd/batch.h"
 
 #if PELLUCID_HAS_BATCH_4  // in sources compiled per instruction set
@@ -20,33 +20,16 @@ class RaysInBlocks {
 
   /// Rays of lanes beyond `count` end where they begin.
   RaysInBlocks(const PacketGrid<Value>& grid, const PellucidRay* rays, int count) noexcept
-      : grid_(&grid) {
-    double o[3][N], d[3][N], e[N];
-    constexpr PellucidRay none{};
-    for (int l = 0; l < N; ++l) {
-      const PellucidRay& ray = count > 0 ? rays[l < count ? l : 0] : none;
-      for (int a = 0; a < 3; ++a) {
-        d[a][l] = ray.direction[a];
-        o[a][l] = ray.origin[a] + ray.begin * ray.direction[a] + grid.padding[a];
-      }
-      e[l] = l < count ? ray.end - ray.begin : 0;
-    }
-    end = D::load(e);
-    for (int a = 0; a < 3; ++a) {
-      origin_[a] = D::load(o[a]);
-      direction_[a] = D::load(d[a]);
-      inverse_[a] = D(1) / direction_[a];
-      forward_[a] = direction_[a] > D(0);
-      still_[a] = direction_[a] == D(0);
-    }
+      : grid_(&grid), rays_(grid, rays, count) {
+    end = rays_.end;
   }
 
   /// Where the rays are at these world lengths, in plane coordinates.
   PELLUCID_ALWAYS_INLINE void place(D at, D* to) const noexcept {
-    for (int a = 0; a < 3; ++a) to[a] = origin_[a] + at * direction_[a];
+    for (int a = 0; a < 3; ++a) to[a] = rays_.origin[a] + at * rays_.direction[a];
   }
   /// Plane coordinates by world length.
-  const D* direction() const noexcept { return direction_; }
+  const D* direction() const noexcept { return rays_.direction; }
 
   /// The block that holds a place in plane coordinates, clamped into the grid; and its number.
   template <class T>
@@ -80,13 +63,14 @@ class RaysInBlocks {
     const I found = gather(grid_->classes, select(lanes, grid_->index_of_block(block), I(0)));
     const M skip = lanes & (((found >> 16) & I(255)) == I(static_cast<int>(BlockKind::skip)));
     if (none(skip)) return skip;
-    static constexpr std::int32_t sides[8] = {1, 2, 4, 8, 16, 32, 64, 128};
-    const I side = gather(sides, select(skip, (found >> 24) & I(7), I(0)));
+    const I side = side_of_cube<N>(select(skip, (found >> 24) & I(7), I(0)));
     leave = end;
     for (int a = 0; a < 3; ++a) {
       const I lower = block[a] & (I(0) - side);
-      const D plane = convert<double>(I(block_width) * select(forward_[a], lower + side, lower));
-      leave = select(still_[a], leave, min(leave, (plane - origin_[a]) * inverse_[a]));
+      const D plane =
+          convert<double>(I(block_width) * select(rays_.forward[a], lower + side, lower));
+      leave =
+          select(rays_.still[a], leave, min(leave, (plane - rays_.origin[a]) * rays_.inverse[a]));
     }
     return skip;
   }
@@ -94,8 +78,7 @@ class RaysInBlocks {
  private:
   static_assert(block_width == 8);
   const PacketGrid<Value>* grid_;
-  D origin_[3], direction_[3], inverse_[3];  ///< plane coordinates, by world length
-  M forward_[3], still_[3];
+  LaneRays<N> rays_;
 };
 
 }  // namespace pellucid

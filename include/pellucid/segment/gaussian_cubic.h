@@ -77,7 +77,7 @@ class GaussianCubic {
     const T scale = rows() == 1 ? T(1) : T(1) / sqrt(max(square, T(smallest_normal<T>)));
     for (int k = 0; k < 4; ++k) x[k] = scale * dot(n, p_[k]);
     // Rounding must not make the band narrower.
-    const T band = reach * T(1 + 1e-9) + T(16 * rounding_unit<T>) * sqrt(upper_);
+    const T band = reach * T(1 + guard) + T(64 * rounding_unit<T>) * sqrt(upper_);
     return {enters(x[0], x[1], x[2], x[3], band), T(1) - enters(x[3], x[2], x[1], x[0], band)};
   }
 
@@ -147,12 +147,14 @@ class GaussianCubic {
     lower_ = rows() == 1 ? squared_gap() : squared_distance();
   }
 
+  static constexpr scalar_t<T> guard = max(scalar_t<T>(1e-9), 8 * rounding_unit<T>);
+
   /// Where a cubic with these coefficients can be within the band, at the earliest.
   PELLUCID_HD static T enters(T a, T b, T c, T d, T band) noexcept {
     const T sign = select(a < T(0), T(-1), T(1));
     const T above = sign * a - band;
     const T rate = T(3) * max(sign * (a - b), max(sign * (b - c), sign * (c - d)));
-    return select(above > T(0), above / max(rate, T(smallest_normal<T>)) * T(1 - 1e-12), T(0));
+    return select(above > T(0), above / max(rate, T(smallest_normal<T>)) * T(1 - guard), T(0));
   }
 
   /// The square of the distance of 0 from the range of the coefficients, of one row.

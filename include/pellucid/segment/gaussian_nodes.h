@@ -33,17 +33,38 @@ struct NodeEstimate {
   static constexpr double smallest = 2e-9;
 };
 
+/// A number that is not set to 0 where it is made.
+template <class T>
+struct Kept {
+  scalar_t<T> lane[lanes<T>];
+
+  PELLUCID_HD void operator=(const T& value) noexcept {
+    if constexpr (lanes<T> == 1) {
+      lane[0] = value;
+    } else {
+      value.store(lane);
+    }
+  }
+  PELLUCID_HD T get() const noexcept {
+    if constexpr (lanes<T> == 1) {
+      return lane[0];
+    } else {
+      return T::load(lane);
+    }
+  }
+};
+
 /// What GaussianNodes keeps of a panel's Gaussians: too much for a small stack where T is a batch.
 template <class T>
 struct NodeRoom {
   struct Term {
     const Gaussian<scalar_t<T>>* of;
-    T peak;  ///< depth of its peak over the panel's length; 0 where it does not matter
-    T power[4][most_channels];  ///< of u: K (v - c)
+    Kept<T> peak;  ///< depth of its peak over the panel's length; 0 where it does not matter
+    Kept<T> power[4][most_channels];  ///< of u: K (v - c)
 
     PELLUCID_HD T at(int row, T u) const noexcept {
-      const T p = multiply_add(power[3][row], u, power[2][row]);
-      return multiply_add(multiply_add(p, u, power[1][row]), u, power[0][row]);
+      const T p = multiply_add(power[3][row].get(), u, power[2][row].get());
+      return multiply_add(multiply_add(p, u, power[1][row].get()), u, power[0][row].get());
     }
     PELLUCID_HD T square(T u) const noexcept {
       const T first = at(0, u);
@@ -80,7 +101,8 @@ class GaussianNodes {
     if (none(matters)) return;
     typename NodeRoom<T>::Term& term = term_[count_++];
     term.of = &of;
-    term.peak = select(matters, T(of.peak) * length_, T(0));
+    const T peak = select(matters, T(of.peak) * length_, T(0));
+    term.peak = peak;
     const int rows = Most == 1 ? 1 : of.rows;
     T step = T(0);
     for (int i = 0; i < rows; ++i) {
@@ -97,9 +119,11 @@ class GaussianNodes {
       }
       step = max(step, moved);
     }
+    seen_ += select(matters, T(1), T(0));
     const T root = exp(T(-0.5) * select(matters, curve.lower(), T(0)));
-    most_ += term.peak * (root * root);
-    const T weight = term.peak * min(T(2.5) * root, T(1));
+    const T density = root * root;
+    most_ = multiply_add(peak, density, most_);
+    const T weight = peak * min(T(2.5) * root, T(1));
     const T moves = select(matters, T(3) * sqrt(step), T(0));
     const T farthest = sqrt(select(matters, curve.upper(), T(0)));
     moves_ = max(moves_, moves);
@@ -109,10 +133,12 @@ class GaussianNodes {
     power *= power;
     fourth_ = multiply_add(weight, power, fourth_);
     eighth_ = multiply_add(weight, power * power, eighth_);
-    // p at a node is off by 2 u |p| and 10 u of what it moves, and no density is steeper than
-    // √(2/e); the rest are the exponential and sums.
-    rounding_ = multiply_add(weight, T(rounding_unit<T>) * (T(32) + T(2) * farthest + T(9) * moves),
-                             rounding_);
+    // What p at a node is off by, through the steepest slope of e^(-|p|²) from the nearest place
+    // on; the exponential, and sums: nearly four times the worst of random panels (tests/segment).
+    const T nearest = max(select(matters, curve.lower(), T(0)), T(0.5));
+    const T slope = T(2) * sqrt(nearest) * min(density, T(S(0.6065307)));
+    const T rounded = multiply_add(slope, farthest + T(4) * moves, T(16) * density);
+    rounding_ = multiply_add(peak * T(rounding_unit<T>), rounded, rounding_);
     colors_.add(matters, Rgb<T>{T(of.color.r), T(of.color.g), T(of.color.b)});
     T from = T(0), to = T(1);
     const Mask far = matters & (moves > T(NodeEstimate<8>::farthest));
@@ -125,9 +151,14 @@ class GaussianNodes {
     to_ = max(to_, select(matters, to, T(0)));
   }
 
-  /// A bound on the depth, and on what rounding does to the opacity.
+  /// A bound on the depth.
   PELLUCID_HD T most() const noexcept { return most_; }
-  PELLUCID_HD T rounding() const noexcept { return rounding_; }
+  /// What no cutting lowers against the panel's depth: rounding, also of as many sums, and what
+  /// estimates say at least.
+  PELLUCID_HD T least_error() const noexcept {
+    const T sums = seen_ * T(rounding_unit<T>) * most_;
+    return multiply_add(T(S(NodeEstimate<8>::smallest)), weight_, rounding_ + sums);
+  }
   /// Whether it is short enough for nodes; longer ones are to be cut.
   PELLUCID_HD Mask is_short() const noexcept { return moves_ <= T(NodeEstimate<8>::farthest); }
 
@@ -142,7 +173,7 @@ class GaussianNodes {
     Result result;
     result.segment = segment_of_depth(T(0), Rgb<T>{});
     const Mask several = colors_.oscillation() > T(0);
-    const T left = allowed - rounding_;
+    const T left = allowed - least_error();
     Mask open = Mask(most_ > T(0)) & ((!several) | (most_ <= T(1)));
     result.done = most_ <= T(0);
     try_nodes<3>(square_, left, several, open, result);
@@ -175,7 +206,7 @@ class GaussianNodes {
       const auto& term = term_[i];
       const Rgb<S>& color = term.of->color;
       for (int j = 0; j < N; ++j) {
-        const T here = term.peak * exp(-min(term.square(T(rule.node[j])), T(80)));
+        const T here = term.peak.get() * exp(-min(term.square(T(rule.node[j])), T(86)));
         rate[j] += here;
         if (!several) continue;
         emission[j].r = multiply_add(here, T(color.r), emission[j].r);
@@ -206,9 +237,8 @@ class GaussianNodes {
                              Result& result) const noexcept {
     using Estimate = NodeEstimate<N>;
     const T depth = min(most_, T(1));
-    const T rest = multiply_add(T(S(Estimate::linear)), depth * depth * depth * moves_,
-                                T(S(Estimate::smallest)));
-    const T error = multiply_add(T(S(Estimate::factor)), sum, rest * weight_);
+    const T steep = T(S(Estimate::linear)) * (depth * depth * depth) * moves_;
+    const T error = multiply_add(T(S(Estimate::factor)), sum, steep * weight_);
     const Mask good = open & (error <= left) & (moves_ <= T(Estimate::farthest));
     if (none(good)) return;
     const SegmentResult<T> found = by_nodes<N>(any(good & several));
@@ -219,7 +249,7 @@ class GaussianNodes {
     radiance = {select(good, found.radiance.r, radiance.r),
                 select(good, found.radiance.g, radiance.g),
                 select(good, found.radiance.b, radiance.b)};
-    result.error = select(good, error + rounding_, result.error);
+    result.error = select(good, error + least_error(), result.error);
     result.done = result.done | good;
     open = open & !good;
   }
@@ -228,6 +258,7 @@ class GaussianNodes {
   typename NodeRoom<T>::Term* term_;
   int count_ = 0;
   T most_{}, rounding_{};
+  T seen_{};                                     ///< how many matter, lane by lane
   T moves_{};                                    ///< the largest movement
   T weight_{}, square_{}, fourth_{}, eighth_{};  ///< Σ weight · movement^k
   ColorRange<T> colors_;

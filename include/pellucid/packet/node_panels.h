@@ -11,10 +11,10 @@
 namespace pellucid {
 
 /// Panels of Gaussians along cubic data in double: by Gauss nodes, from where the curve K (v - c)
-/// is known on in binary32; and in closed form, in double, where binary32 has too few digits for it
-/// or only what is proved counts.
+/// is known on in binary32; and in closed form, in double, where binary32 has too few digits for
+/// it, beside tables, and where only what is proved counts.
 template <int N>
-class CubicPanels {
+class NodePanels {
  public:
   using F = Batch<float, N>;
   using D = Batch<double, N>;
@@ -33,7 +33,7 @@ class CubicPanels {
                                    const Allowance& allowance, Room& room) noexcept {
     PanelSegment<D> result;
     M left = on;
-    if (demand.grade == Grade::estimated && mixture.transfer.tables == 0) {
+    if (demand.grade == Grade::estimated && mixture.few_digits) {
       left = by_nodes(mixture, span, demand, on, less, allowance, room.nodes, result);
       if (none(left)) return result;
     }
@@ -69,9 +69,9 @@ class CubicPanels {
                           (nodes.most() / max(length, F(smallest_normal<float>)));
     const F allowed = convert<float>(allowance(convert<double>(opacity))) *
                       F(static_cast<float>(1 / demand.largest_color));
-    const F fixed = nodes.rounding() + place_error;
+    const F fixed = nodes.least_error() + place_error;
     const auto found = nodes.integrate(allowed - place_error);
-    const M coarse = nodes.is_short() & !(fixed <= F(0.25f) * allowed);
+    const M coarse = nodes.is_short() & !(fixed <= F(0.5f) * allowed);
     const M hard = on & (coarse | (demand.last_resort & !found.done));
     const auto& s = found.segment;
     result.found.segment = {convert<double>(s.optical_depth),
@@ -97,15 +97,15 @@ class CubicPanels {
     const NearGaussian& near = mixture.primitive[primitive];
     F first[Most], difference[3][Most];
     for (int row = 0; row < min(g.rows, Most); ++row) {
-      D p[4] = {D(0), D(0), D(0), D(0)};
+      D p(0), step[3] = {D(0), D(0), D(0)};
       for (int c = 0; c < g.channels; ++c) {
         const D* b = data[c].b;
         const D k(g.matrix[row][c]);
-        p[0] = multiply_add(k, b[0] - D(g.center[c]), p[0]);
-        for (int n = 1; n < 4; ++n) p[n] = multiply_add(k, b[n] - b[n - 1], p[n]);
+        p = multiply_add(k, b[0] - D(g.center[c]), p);
+        for (int n = 0; n < 3; ++n) step[n] = multiply_add(k, b[n + 1] - b[n], step[n]);
       }
-      first[row] = convert<float>(p[0]);
-      for (int n = 0; n < 3; ++n) difference[n][row] = convert<float>(p[n + 1]);
+      first[row] = convert<float>(p);
+      for (int n = 0; n < 3; ++n) difference[n][row] = convert<float>(step[n]);
     }
     nodes.add(near.gaussian, first, difference, F(near.square) - less, held);
   }
