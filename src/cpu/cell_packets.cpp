@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <numeric>
 
 #include "packet_setup.h"
 #include "packet_tracer.h"
@@ -33,26 +35,31 @@ Kernel kernel_for([[maybe_unused]] InstructionSet set) {
 
 double movement_in_cells(const Channels& channels, const GaussianMixture<double>& mixture,
                          const MultivariateBlocks& blocks) {
+  const auto count = static_cast<std::size_t>(channels.count());
   std::vector<BlockRecords> records;
   for (const Channel& channel : channels) records.push_back(channel.volume->block_ranges());
-  const int count = blocks.records.count();
+  std::vector<double> squared_norm;  // of column c of primitive i
+  for (int i = 0; i < mixture.count; ++i) {
+    for (int c = 0; c < channels.count(); ++c) {
+      squared_norm.push_back(std::pow(column_norm(mixture.primitive[i], c), 2));
+    }
+  }
   constexpr int most_blocks = 4096;
-  const int stride = std::max(count / most_blocks, 1);
+  const int stride = (blocks.records.count() + most_blocks - 1) / most_blocks;
   double sum = 0;
   int found = 0;
-  for (int block = 0; block < count; block += stride) {
+  for (int block = 0; block < blocks.records.count(); block += stride) {
     if (blocks.classes[block].kind == BlockKind::skip) continue;
+    double squared_range[most_channels];
+    for (std::size_t c = 0; c < count; ++c) {
+      const BlockRange range = records[c].range(block);
+      squared_range[c] = range.vacuum == BlockVacuum::all ? 0 : std::pow(range.max - range.min, 2);
+    }
     double most = 0;
     for (int i = 0; i < mixture.count; ++i) {
       if (!blocks.primitives[block].holds(i)) continue;
-      double square = 0;
-      for (int c = 0; c < channels.count(); ++c) {
-        const BlockRange range = records[static_cast<std::size_t>(c)].range(block);
-        if (range.vacuum == BlockVacuum::all) continue;
-        const double moves = column_norm(mixture.primitive[i], c) * (range.max - range.min);
-        square += moves * moves;
-      }
-      most = std::max(most, square);
+      const double* of = &squared_norm[static_cast<std::size_t>(i) * count];
+      most = std::max(most, std::inner_product(of, of + count, squared_range, 0.0));
     }
     sum += std::sqrt(most) / block_width;
     ++found;

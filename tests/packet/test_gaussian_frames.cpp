@@ -185,6 +185,23 @@ std::shared_ptr<const MultivariateTransferFunction> one_on_ramp(double center, d
   return std::make_shared<const MultivariateTransferFunction>(1, std::vector<GaussianPrimitive>{p});
 }
 
+/// Steps where they may be long, cells where the Gaussian is narrow or the tolerance small.
+TEST(GaussianMarchOfAFrame, IsTheOneThatIsLikelyToBeFaster) {
+  if (no_packets()) GTEST_SKIP() << "this machine has no instruction set for packets";
+  Scene scene = ramp_scene(48, 0);
+  const auto in_steps = [&](double width, double tolerance) {
+    scene.multivariate = one_on_ramp(0.4, width, 1, 48);
+    scene.integration.tolerance = tolerance;
+    RenderReport report;
+    render(scene, {}, &report);
+    EXPECT_GT(report.spans.strides + report.spans.panels + report.spans.lines, 0u);
+    return report.spans.strides > 0;
+  };
+  EXPECT_TRUE(in_steps(0.1, 1e-2));
+  EXPECT_FALSE(in_steps(0.01, 1e-2));
+  EXPECT_FALSE(in_steps(0.1, 1e-4));
+}
+
 /// A narrow Gaussian somewhere on a ramp, which steps of the longest kind would pass: its depth is
 /// the integral of all of it.
 TEST_P(GaussianFrames, DoNotPassANarrowOneUnseen) {

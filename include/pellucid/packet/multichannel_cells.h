@@ -21,11 +21,6 @@ class MultichannelCells {
   using M = BatchMask<N>;
   using Rows = PanelRows<N, CubicBernstein>;
 
-  /// What lies in a cell.
-  struct Span {
-    CubicBernstein<D> data[most_channels];
-  };
-
   MultichannelCells(const PellucidPacketJob& job, const PacketGrid<void>& grid,
                     const MultichannelGrid& fields, const PrimitiveSet* primitives, int first,
                     int count) noexcept
@@ -83,7 +78,7 @@ class MultichannelCells {
   }
 
   /// Goes through a cell in each lane that walks, and puts it down in a row: the lanes in which
-  /// matters(span, rows, at) something is to be integrated.
+  /// matters(data, rows, at), of all channels, something is to be integrated.
   template <class Matters>
   [[gnu::flatten]] M step(Rows& rows, int at, Matters&& matters) noexcept {
     const M on = walking;
@@ -109,10 +104,10 @@ class MultichannelCells {
     const M ahead = on & filled & (leave > begin);
     M found(false);
     if (any(ahead)) {
-      found = ahead & matters(span_, rows, at);
+      found = ahead & matters(data_, rows, at);
       if (any(found)) {
         for (int c = 0; c < fields_.channels; ++c) {
-          for (int k = 0; k < 4; ++k) span_.data[c].b[k].store(rows.data[c][k] + at);
+          for (int k = 0; k < 4; ++k) data_[c].b[k].store(rows.data[c][k] + at);
         }
         const D length = leave - begin;
         length.store(rows.exact_length + at);
@@ -189,7 +184,7 @@ class MultichannelCells {
                              CellCorners<D> corners = load_exactly<Value>(at);
                              if (grid_.padded()) repeat_border(cell, from, corners);
                              for (const D& v : corners.value) sum += v;
-                             span_.data[c] = trilinear_cubic(corners, entry, exit);
+                             data_[c] = trilinear_cubic(corners, entry, exit);
                            });
     }
     return !is_nan(sum);
@@ -217,10 +212,10 @@ class MultichannelCells {
   const MultichannelGrid& fields_;
   const PrimitiveSet* primitives_;
   LaneRays<N> rays_;
-  D at_{0};        ///< world length from the entry into the grid
-  I cell_[3];      ///< plane coordinates
-  M fresh_{true};  ///< whether the lane's block has not been looked at
-  Span span_;
+  D at_{0};                                ///< world length from the entry into the grid
+  I cell_[3];                              ///< plane coordinates
+  M fresh_{true};                          ///< whether the lane's block has not been looked at
+  CubicBernstein<D> data_[most_channels];  ///< of the lanes' cells, by channel
 };
 
 }  // namespace pellucid

@@ -76,18 +76,18 @@ class MultivariateCellPacket {
   void step() noexcept {
     march_.skip();
     lanes_.add(march_.step(rows_, lanes_.row() * N,
-                           [this](const typename Cells::Span& span, typename Cells::Rows& rows,
-                                  int at) noexcept { return matters(span, rows, at); }));
+                           [this](const CubicBernstein<D>* data, typename Cells::Rows& rows,
+                                  int at) noexcept { return matters(data, rows, at); }));
   }
 
   /// Whether anything of the cells may be seen, by the ranges of their data.
-  [[gnu::flatten]] M matters(const typename Cells::Span& span, typename Cells::Rows& rows,
+  [[gnu::flatten]] M matters(const CubicBernstein<D>* data, typename Cells::Rows& rows,
                              int at) noexcept {
     F lower[most_channels], upper[most_channels];
     const int channels = mixture_.transfer.channels;
     for (int c = 0; c < channels; ++c) {
-      lower[c] = convert<float>(span.data[c].hull_min());
-      upper[c] = convert<float>(span.data[c].hull_max());
+      lower[c] = convert<float>(data[c].hull_min());
+      upper[c] = convert<float>(data[c].hull_max());
     }
     LanePrimitiveSets<N> sets;
     M found(false);
@@ -107,19 +107,18 @@ class MultivariateCellPacket {
     }
     sets.low.store(rows.low + at);
     sets.high.store(rows.high + at);
-    return mixture_.transfer.tables > 0 ? found | tables_absorb(span) : found;
+    return mixture_.transfer.tables > 0 ? found | tables_absorb(data) : found;
   }
 
   /// Lane by lane.
-  M tables_absorb(const typename Cells::Span& span) const noexcept {
+  M tables_absorb(const CubicBernstein<D>* data) const noexcept {
     const Multivariate<double>& transfer = mixture_.transfer;
     unsigned found = 0;
     for (int i = 0; i < transfer.tables; ++i) {
-      const CubicBernstein<D>& data = span.data[transfer.table[i].channel];
+      const D* b = data[transfer.table[i].channel].b;
       for (unsigned left = bits(march_.walking) & ~found; left != 0; left &= left - 1) {
         const int l = __builtin_ctz(left);
-        const CubicBernstein<double> of_lane{
-            {data.b[0][l], data.b[1][l], data.b[2][l], data.b[3][l]}};
+        const CubicBernstein<double> of_lane{{b[0][l], b[1][l], b[2][l], b[3][l]}};
         if (table_absorbs(transfer.table[i].table, of_lane, 0)) found |= 1u << l;
       }
     }

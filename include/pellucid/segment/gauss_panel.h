@@ -9,6 +9,16 @@ namespace pellucid {
 
 namespace detail {
 
+/// The optical depth from a panel's front to a Gauss node, of extinction · length at all N of them:
+/// by the collocation matrix, exact for extinction of degree < N.
+template <int N, class T>
+PELLUCID_HD T depth_to_node(const T* rate, int node) noexcept {
+  static constexpr auto rule = gauss_legendre<scalar_t<T>, N>();
+  T depth = T(0);
+  for (int k = 0; k < N; ++k) depth += T(rule.collocation[node][k]) * rate[k];
+  return depth;
+}
+
 /// A panel seen at the N Gauss nodes: extinction · length, and the optical depth from the panel's
 /// front by the collocation matrix, exact for extinction of degree < N.
 template <int N, class T>
@@ -26,10 +36,7 @@ struct PanelNodes {
       rate[j] = material[j].extinction * length;
       total += T(rule.weight[j]) * rate[j];
     }
-    for (int j = 0; j < N; ++j) {
-      depth[j] = T(0);
-      for (int k = 0; k < N; ++k) depth[j] += T(rule.collocation[j][k]) * rate[k];
-    }
+    for (int j = 0; j < N; ++j) depth[j] = depth_to_node<N>(rate, j);
   }
 };
 

@@ -4,6 +4,7 @@
 #include "pellucid/math/gauss_legendre.h"
 #include "pellucid/segment/bounded.h"
 #include "pellucid/segment/constant.h"
+#include "pellucid/segment/gauss_panel.h"
 #include "pellucid/segment/gaussian_cubic.h"
 #include "pellucid/segment/gaussian_mixture.h"
 
@@ -221,9 +222,7 @@ class GaussianNodes {
     T sum = T(0);
     Rgb<T> color{};
     for (int j = 0; j < N; ++j) {
-      T ahead = T(0);
-      for (int k = 0; k < N; ++k) ahead = multiply_add(T(rule.collocation[j][k]), rate[k], ahead);
-      const T seen = T(rule.weight[j]) * exp(-ahead);
+      const T seen = T(rule.weight[j]) * exp(-detail::depth_to_node<N>(rate, j));
       sum = multiply_add(seen, rate[j], sum);
       color += seen * emission[j];
     }
