@@ -19,13 +19,11 @@ constexpr double left_out_share = 1.0 / 16;
 /// Below, what budgets in binary32 lose and what folding in double does would be most of it.
 constexpr double least_tolerance = 1e-11;
 
-using Kernel = void (*)(const PellucidGaussianPacketJob*);
-
-Kernel kernel_for([[maybe_unused]] InstructionSet set) {
+GaussianPacketKernel kernel_for([[maybe_unused]] InstructionSet set) {
 #if PELLUCID_HAS_PACKETS
-  return kernel_of<Kernel>(set, pellucid_integrate_multivariate_cells_sse4,
-                           pellucid_integrate_multivariate_cells_avx2,
-                           pellucid_integrate_multivariate_cells_avx512);
+  return kernel_of<GaussianPacketKernel>(set, pellucid_integrate_multivariate_cells_sse4,
+                                         pellucid_integrate_multivariate_cells_avx2,
+                                         pellucid_integrate_multivariate_cells_avx512);
 #else
   return nullptr;
 #endif
@@ -71,42 +69,31 @@ std::unique_ptr<const CellPackets> CellPackets::make(
     const Channels& channels, const MultivariateTransferFunction& transfer_function,
     const MultivariateBlocks& blocks, const MultichannelGrid& grid, const RayTolerance& wanted,
     InstructionSet instruction_set) {
-  const Kernel kernel = kernel_for(instruction_set);
+  const GaussianPacketKernel kernel = kernel_for(instruction_set);
   const double largest_extinction = transfer_function.largest_extinction();
-  const bool suit = std::all_of(channels.begin(), channels.end(), [&](const Channel& channel) {
-    return suits_packets(*channel.volume, largest_extinction);
-  });
-  const Multivariate<double> transfer = transfer_function.view();
-  if (kernel == nullptr || !suit || !(wanted.tolerance >= least_tolerance)) return nullptr;
-  const double largest_color = std::max(wanted.largest_color, 1.0);
-  double largest[most_channels] = {};
-  for (int c = 0; c < transfer.channels; ++c) largest[c] = largest_value(*channels[c].volume);
+  if (kernel == nullptr || !suits_packets(channels, largest_extinction) ||
+      !(wanted.tolerance >= least_tolerance)) {
+    return nullptr;
+  }
   std::unique_ptr<CellPackets> packets(new CellPackets());
-  packets->mixture_ = NearMixtureStorage(largest, false, transfer,
-                                         left_out_share * wanted.tolerance / largest_color,
-                                         diagonal(channels.grid()));
-  if (!packets->mixture_.suits_packets()) return nullptr;
   packets->kernel_ = kernel;
   PellucidGaussianPacketJob& job = packets->job_;
-  set_grid(channels.grid(), job.grid_and_rays);
-  job.grid_and_rays.classes = blocks.classes.block;
-  job.grid_and_rays.largest_extinction = largest_extinction;
-  job.grid_and_rays.largest_color = largest_color;
+  job = gaussian_packet_job(channels, blocks, grid, largest_extinction, wanted.largest_color);
   job.grid_and_rays.tolerance = (1 - left_out_share) * wanted.tolerance;
-  job.left_out = blocks.left_out;
   job.proved = wanted.grade == Grade::proved ? 1 : 0;
-  job.grid = &grid;
-  job.primitives = blocks.primitives;
+  const Multivariate<double> transfer = transfer_function.view();
+  double largest[most_channels] = {};
+  for (int c = 0; c < transfer.channels; ++c) largest[c] = largest_value(*channels[c].volume);
+  packets->mixture_ = NearMixtureStorage(
+      largest, false, transfer, left_out_share * wanted.tolerance / job.grid_and_rays.largest_color,
+      diagonal(channels.grid()));
+  if (!packets->mixture_.suits_packets()) return nullptr;
   job.mixture = &packets->mixture_.view();
   return packets;
 }
 
 void CellPackets::trace(const std::vector<PellucidRay>& rays, PellucidRayResult* results) const {
-  PellucidGaussianPacketJob job = job_;
-  job.grid_and_rays.rays = rays.data();
-  job.grid_and_rays.count = static_cast<std::int32_t>(rays.size());
-  job.grid_and_rays.results = results;
-  kernel_(&job);
+  pellucid::trace(kernel_, job_, rays, results);
 }
 
 }  // namespace pellucid

@@ -4,14 +4,11 @@
 #include <memory>
 #include <vector>
 
+#include "gaussian_packet_job.h"
 #include "near_mixture_storage.h"
-#include "pellucid/field/multichannel_grid.h"
-#include "pellucid/packet/gaussian_packet_interface.h"
 #include "pellucid/render/integrate_cell.h"
-#include "pellucid/scene/channels.h"
 #include "pellucid/scene/multivariate_transfer_function.h"
 #include "pellucid/simd/instruction_set.h"
-#include "pellucid/traverse/multivariate_blocks.h"
 
 namespace pellucid {
 
@@ -35,13 +32,11 @@ class CellPackets {
   void trace(const std::vector<PellucidRay>& rays, PellucidRayResult* results) const;
 
  private:
-  using Kernel = void (*)(const PellucidGaussianPacketJob*);
-
   CellPackets() = default;
 
   NearMixtureStorage mixture_;
   PellucidGaussianPacketJob job_{};
-  Kernel kernel_ = nullptr;
+  GaussianPacketKernel kernel_ = nullptr;
 };
 
 }  // namespace pellucid

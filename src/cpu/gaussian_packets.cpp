@@ -32,13 +32,11 @@ bool fits_binary32(const Volume& volume) {
   });
 }
 
-using Kernel = void (*)(const PellucidGaussianPacketJob*);
-
-Kernel kernel_for([[maybe_unused]] InstructionSet set) {
+GaussianPacketKernel kernel_for([[maybe_unused]] InstructionSet set) {
 #if PELLUCID_HAS_PACKETS
-  return kernel_of<Kernel>(set, pellucid_integrate_gaussian_packets_sse4,
-                           pellucid_integrate_gaussian_packets_avx2,
-                           pellucid_integrate_gaussian_packets_avx512);
+  return kernel_of<GaussianPacketKernel>(set, pellucid_integrate_gaussian_packets_sse4,
+                                         pellucid_integrate_gaussian_packets_avx2,
+                                         pellucid_integrate_gaussian_packets_avx512);
 #else
   return nullptr;
 #endif
@@ -91,14 +89,12 @@ std::unique_ptr<const GaussianPackets> GaussianPackets::make(
     const Channels& channels, const MultivariateTransferFunction& transfer_function,
     const MultivariateBlocks& blocks, const MultichannelGrid& grid, const RayTolerance& wanted,
     double negligible, InstructionSet instruction_set, const ParallelFor& parallel) {
-  const Kernel kernel = kernel_for(instruction_set);
+  const GaussianPacketKernel kernel = kernel_for(instruction_set);
   const double largest_extinction = transfer_function.largest_extinction();
-  const bool suit = std::all_of(channels.begin(), channels.end(), [&](const Channel& channel) {
-    return suits_packets(*channel.volume, largest_extinction);
-  });
   const Multivariate<double> transfer = transfer_function.view();
   const int most_blocks = std::numeric_limits<int>::max() / most_channels;
-  if (kernel == nullptr || !suit || blocks.records.count() > most_blocks || transfer.tables > 0 ||
+  if (kernel == nullptr || !suits_packets(channels, largest_extinction) ||
+      blocks.records.count() > most_blocks || transfer.tables > 0 ||
       wanted.grade == Grade::proved || !(wanted.tolerance >= least_tolerance)) {
     return nullptr;
   }
@@ -108,27 +104,23 @@ std::unique_ptr<const GaussianPackets> GaussianPackets::make(
     primitives.push_back(stepped(transfer.gaussians.primitive[i], channels, negligible / count));
     if (!(double{primitives.back().rounding} <= farthest_rounding)) return nullptr;
   }
-  std::unique_ptr<GaussianPackets> packets(
-      new GaussianPackets(channels, std::move(primitives), parallel, kernel));
-  PellucidGaussianPacketJob& job = packets->job_;
-  set_grid(channels.grid(), job.grid_and_rays);
-  job.grid_and_rays.classes = blocks.classes.block;
-  job.grid_and_rays.largest_extinction = largest_extinction;
-  job.grid_and_rays.largest_color = std::max(wanted.largest_color, 1.0);
-  job.left_out = blocks.left_out + negligible;
+  PellucidGaussianPacketJob job =
+      gaussian_packet_job(channels, blocks, grid, largest_extinction, wanted.largest_color);
+  job.left_out += negligible;
   // What the blocks leave out is not in `wanted` any more.
   job.grid_and_rays.tolerance =
       wanted.tolerance - negligible * diagonal(channels.grid()) * job.grid_and_rays.largest_color;
-  job.grid = &grid;
-  job.primitives = blocks.primitives;
-  return packets;
+  return std::unique_ptr<const GaussianPackets>(
+      new GaussianPackets(channels, std::move(primitives), parallel, job, kernel));
 }
 
 GaussianPackets::GaussianPackets(const Channels& channels, std::vector<SteppedGaussian> primitives,
-                                 const ParallelFor& parallel, Kernel kernel)
+                                 const ParallelFor& parallel, const PellucidGaussianPacketJob& job,
+                                 GaussianPacketKernel kernel)
     : primitives_(std::move(primitives)),
       mixture_{primitives_.data(), static_cast<int>(primitives_.size())},
       variation_(channels, parallel),
+      job_(job),
       kernel_(kernel) {
   job_.variation = variation_.data();
   job_.mixture = &mixture_;
@@ -136,11 +128,7 @@ GaussianPackets::GaussianPackets(const Channels& channels, std::vector<SteppedGa
 
 void GaussianPackets::trace(const std::vector<PellucidRay>& rays,
                             PellucidRayResult* results) const {
-  PellucidGaussianPacketJob job = job_;
-  job.grid_and_rays.rays = rays.data();
-  job.grid_and_rays.count = static_cast<std::int32_t>(rays.size());
-  job.grid_and_rays.results = results;
-  kernel_(&job);
+  pellucid::trace(kernel_, job_, rays, results);
 }
 
 }  // namespace pellucid

@@ -5,7 +5,7 @@
 #include <optional>
 #include <vector>
 
-#include "pellucid/packet/gaussian_packet_interface.h"
+#include "gaussian_packet_job.h"
 #include "pellucid/packet/resolved_gaussians.h"
 #include "pellucid/render/integrate_cell.h"
 #include "pellucid/scene/block_variation_storage.h"
@@ -32,16 +32,15 @@ class GaussianPackets {
   void trace(const std::vector<PellucidRay>& rays, PellucidRayResult* results) const;
 
  private:
-  using Kernel = void (*)(const PellucidGaussianPacketJob*);
-
   GaussianPackets(const Channels& channels, std::vector<SteppedGaussian> primitives,
-                  const ParallelFor& parallel, Kernel kernel);
+                  const ParallelFor& parallel, const PellucidGaussianPacketJob& job,
+                  GaussianPacketKernel kernel);
 
   std::vector<SteppedGaussian> primitives_;
   SteppedMixture mixture_;
   BlockVariationStorage variation_;
-  PellucidGaussianPacketJob job_{};
-  Kernel kernel_;
+  PellucidGaussianPacketJob job_;
+  GaussianPacketKernel kernel_;
 };
 
 }  // namespace pellucid

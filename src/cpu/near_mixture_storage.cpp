@@ -81,7 +81,7 @@ NearMixtureStorage::NearMixtureStorage(const double* largest, bool off,
   const GaussianMixture<double>& all = transfer.gaussians;
   mixture_.transfer = transfer;
   mixture_.left_out = left_out;
-  mixture_.few_digits = transfer.tables == 0;
+  mixture_.suits_binary32 = transfer.tables == 0;
   mixture_.charged = (off ? 2 : 1) * left_out;
   for (int i = 0; i < all.count; ++i) {
     const Gaussian<double>& g = all.primitive[i];
@@ -95,7 +95,7 @@ NearMixtureStorage::NearMixtureStorage(const double* largest, bool off,
     for (int c = 0; c < g.channels; ++c) near.least_scale[c] = least_scale(g, c);
     const double size = size_of_terms(g, largest);
     near.square = g.peak > negligible ? square_in_float(size, std::log(g.peak / negligible)) : -1;
-    mixture_.few_digits = mixture_.few_digits && size <= largest_size;
+    mixture_.suits_binary32 = mixture_.suits_binary32 && size <= largest_size;
     near_.push_back(near);
   }
   for (int c = 0; c < transfer.channels; ++c) {

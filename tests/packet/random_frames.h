@@ -20,6 +20,15 @@
 
 namespace pellucid {
 
+/// Has an orthographic camera look along x, with this scale.
+inline void look_along_x(Scene& scene, double parallel_scale, double distance = 100) {
+  scene.camera = default_camera(scene.channels->grid(), scene.size);
+  scene.camera.position = scene.camera.focal_point - Vec3<double>{distance, 0, 0};
+  scene.camera.up = {0, 0, 1};
+  scene.camera.projection = Projection::orthographic;
+  scene.camera.parallel_scale = parallel_scale;
+}
+
 /// A ramp along x behind so many cells of nothing, and no wider than `points` across; seen along x
 /// by four rays that lie in the grid's faces, two of them in the upper ones.
 inline Scene ramp_seen_in_faces(int points, int empty) {
@@ -34,11 +43,7 @@ inline Scene ramp_seen_in_faces(int points, int empty) {
   scene.channels = std::make_shared<const Channels>(std::vector<Channel>{
       {"ramp", "", std::make_shared<Volume>(description, DataArray<float>(std::move(data)))}});
   scene.size = {2, 2};
-  scene.camera = default_camera(scene.channels->grid(), scene.size);
-  scene.camera.position = scene.camera.focal_point - Vec3<double>{100, 0, 0};
-  scene.camera.up = {0, 0, 1};
-  scene.camera.projection = Projection::orthographic;
-  scene.camera.parallel_scale = points - 1;
+  look_along_x(scene, points - 1);
   return scene;
 }
 

@@ -23,10 +23,10 @@ struct NearMixture {
   /// The extinction that all may have together where none is near, for rays of the length
   /// `diagonal`, which none is beyond.
   double left_out = 0, diagonal = 1;
+  double charged = 0;  ///< the same with what errors of the data may make of it
   /// Whether what double rounds K (v - c) by is next to nothing in binary32, and there are no
   /// tables.
-  bool few_digits = false;
-  double charged = 0;  ///< the same with what errors of the data may make of it
+  bool suits_binary32 = false;
   /// How fast the extinction of all Gaussians together may change with a channel, at most.
   double steepness[most_channels] = {};
 };

@@ -33,15 +33,17 @@ class NodePanels {
                                    const Allowance& allowance, Room& room) noexcept {
     PanelSegment<D> result;
     M left = on;
-    if (demand.grade == Grade::estimated && mixture.few_digits) {
+    if (demand.grade == Grade::estimated && mixture.suits_binary32) {
       left = by_nodes(mixture, span, demand, on, less, allowance, room.nodes, result);
       if (none(left)) return result;
     }
+    const auto in_closed_form = [&](const Span& of) noexcept {
+      return integrate_multivariate_panel(mixture.transfer, of, demand, allowance, room.closed);
+    };
+    if (all((!on) | left)) return in_closed_form(span);
     for (int c = 0; c < mixture.transfer.channels; ++c) room.span.data[c] = span.data[c];
     room.span.length = select(left, span.length, D(0));
-    const PanelSegment<D> closed =
-        integrate_multivariate_panel(mixture.transfer, room.span, demand, allowance, room.closed);
-    return all((!on) | left) ? closed : merged(left, closed, result);
+    return merged(left, in_closed_form(room.span), result);
   }
 
  private:

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <vector>
+
+#include "pellucid/field/multichannel_grid.h"
+#include "pellucid/packet/gaussian_packet_interface.h"
+#include "pellucid/scene/channels.h"
+#include "pellucid/traverse/multivariate_blocks.h"
+
+namespace pellucid {
+
+using GaussianPacketKernel = void (*)(const PellucidGaussianPacketJob*);
+
+/// Whether packets can go through all of the channels (packet_setup.h).
+bool suits_packets(const Channels& channels, double largest_extinction);
+
+/// What rays through several channels are told, whichever way they go; all that is given is
+/// referred to. `largest_color` of the transfer function. Tolerance and mixture are left to the
+/// caller.
+PellucidGaussianPacketJob gaussian_packet_job(const Channels& channels,
+                                              const MultivariateBlocks& blocks,
+                                              const MultichannelGrid& grid,
+                                              double largest_extinction, double largest_color);
+
+void trace(GaussianPacketKernel kernel, PellucidGaussianPacketJob job,
+           const std::vector<PellucidRay>& rays, PellucidRayResult* results);
+
+}  // namespace pellucid
