@@ -92,8 +92,9 @@ std::unique_ptr<const CellPackets> CellPackets::make(
   return packets;
 }
 
-void CellPackets::trace(const std::vector<PellucidRay>& rays, PellucidRayResult* results) const {
-  pellucid::trace(kernel_, job_, rays, results);
+void CellPackets::trace(const std::vector<PellucidRay>& rays, bool depth,
+                        PellucidRayResult* results) const {
+  pellucid::trace(kernel_, job_, rays, depth, results);
 }
 
 }  // namespace pellucid

@@ -29,10 +29,11 @@ PellucidGaussianPacketJob gaussian_packet_job(const Channels& channels,
 }
 
 void trace(GaussianPacketKernel kernel, PellucidGaussianPacketJob job,
-           const std::vector<PellucidRay>& rays, PellucidRayResult* results) {
+           const std::vector<PellucidRay>& rays, bool depth, PellucidRayResult* results) {
   job.grid_and_rays.rays = rays.data();
   job.grid_and_rays.count = static_cast<std::int32_t>(rays.size());
   job.grid_and_rays.results = results;
+  job.grid_and_rays.depth = depth ? 1 : 0;
   kernel(&job);
 }
 

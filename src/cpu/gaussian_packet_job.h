@@ -24,6 +24,6 @@ PellucidGaussianPacketJob gaussian_packet_job(const Channels& channels,
                                               double largest_extinction, double largest_color);
 
 void trace(GaussianPacketKernel kernel, PellucidGaussianPacketJob job,
-           const std::vector<PellucidRay>& rays, PellucidRayResult* results);
+           const std::vector<PellucidRay>& rays, bool depth, PellucidRayResult* results);
 
 }  // namespace pellucid

@@ -126,9 +126,9 @@ GaussianPackets::GaussianPackets(const Channels& channels, std::vector<SteppedGa
   job_.mixture = &mixture_;
 }
 
-void GaussianPackets::trace(const std::vector<PellucidRay>& rays,
+void GaussianPackets::trace(const std::vector<PellucidRay>& rays, bool depth,
                             PellucidRayResult* results) const {
-  pellucid::trace(kernel_, job_, rays, results);
+  pellucid::trace(kernel_, job_, rays, depth, results);
 }
 
 }  // namespace pellucid

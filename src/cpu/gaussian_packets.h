@@ -29,7 +29,7 @@ class GaussianPackets {
       double negligible, InstructionSet instruction_set, const ParallelFor& parallel);
 
   /// What was found of the rays, `error` infinite where they are to go one by one.
-  void trace(const std::vector<PellucidRay>& rays, PellucidRayResult* results) const;
+  void trace(const std::vector<PellucidRay>& rays, bool depth, PellucidRayResult* results) const;
 
  private:
   GaussianPackets(const Channels& channels, std::vector<SteppedGaussian> primitives,

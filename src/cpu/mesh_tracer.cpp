@@ -37,11 +37,6 @@ Kernel kernel_for([[maybe_unused]] InstructionSet set, [[maybe_unused]] bool sev
 #endif
 }
 
-/// The optical depth a at which half of the opacity is reached: exp(-a) = 1 - opacity/2.
-double depth_of_half(double opacity) {
-  return -std::log1p(-0.5 * opacity);
-}
-
 class MeshTracer : public RayTracer {
  public:
   explicit MeshTracer(const TracerTask& task)
@@ -58,8 +53,7 @@ class MeshTracer : public RayTracer {
     MeshHits hits;
     for (std::size_t i = 0; i < world.size(); ++i) {
       if (!(results[i].opacity > 0)) continue;
-      results[i].half_opacity_depth =
-          find_half_opacity(hits.find(mesh_, world[i]), results[i].opacity);
+      results[i].half_opacity_depth = find_half_opacity(hits.find(mesh_, world[i]), results[i]);
     }
     return results;
   }
@@ -67,8 +61,8 @@ class MeshTracer : public RayTracer {
  protected:
   virtual void integrate(const std::vector<Ray<double>>& rays,
                          std::vector<RayResult>& results) const = 0;
-  /// Of a ray of this opacity > 0.
-  virtual double find_half_opacity(const MeshRay& ray, double opacity) const = 0;
+  /// Of a ray of which this is known.
+  virtual double find_half_opacity(const MeshRay& ray, const RayResult& known) const = 0;
 
   /// Sets up packets, where the mesh and what is wanted suit them.
   void prepare(const TracerTask& task, double largest_extinction, bool several) {
@@ -90,6 +84,7 @@ class MeshTracer : public RayTracer {
     job_.largest_color = std::max(wanted_.largest_color, 1.0);
     job_.largest_extinction = largest_extinction;
     job_.proved = wanted_.grade == Grade::proved ? 1 : 0;
+    job_.depth = depth_ ? 1 : 0;
     job_.context = this;
     points_ = fields_.points(task.scene.mesh->mesh().points());
     job_.points = points_.data();
@@ -163,10 +158,9 @@ class UnivariateMeshTracer : public MeshTracer {
                                       hits.find(mesh_, rays[i]), wanted_);
     }
   }
-  double find_half_opacity(const MeshRay& ray, double opacity) const override {
-    return integrate_mesh_ray(mesh_, fields_.view(), transfer_.tables(), ray, wanted_,
-                              depth_of_half(opacity))
-        .half_opacity_depth;
+  double find_half_opacity(const MeshRay& ray, const RayResult& known) const override {
+    return find_mesh_half_opacity(mesh_, fields_.view(), transfer_.tables(), ray, wanted_,
+                                  known.opacity, known.half);
   }
 
  private:
@@ -240,11 +234,10 @@ class MultivariateMeshTracer : public MeshTracer {
                                                    hits.find(mesh_, rays[i]), wanted_);
     }
   }
-  double find_half_opacity(const MeshRay& ray, double opacity) const override {
-    return integrate_multivariate_mesh_ray(mesh_, fields_.view(), transfer_,
-                                           transfer_function_.largest_extinction(), ray, wanted_,
-                                           depth_of_half(opacity))
-        .half_opacity_depth;
+  double find_half_opacity(const MeshRay& ray, const RayResult& known) const override {
+    return find_multivariate_mesh_half_opacity(mesh_, fields_.view(), transfer_,
+                                               transfer_function_.largest_extinction(), ray,
+                                               wanted_, known.opacity, known.half);
   }
 
  private:

@@ -110,7 +110,7 @@ class MultivariateTracer : public RayTracer {
     const PacketRays inside(channels_.grid(), rays.data(), static_cast<int>(rays.size()));
     std::vector<PellucidRayResult> found(inside.ray.size());
     if (steps_) {
-      steps_->trace(inside.ray, found.data());
+      steps_->trace(inside.ray, depth_, found.data());
       integrate_what_is_left(inside.ray, found);
     } else {
       integrate(inside.ray, found);
@@ -122,7 +122,7 @@ class MultivariateTracer : public RayTracer {
       if (depth_) {
         results[n].half_opacity_depth = find_multivariate_half_opacity(
             grid_, &*blocks_, rays[n], transfer_, transfer_function_.largest_extinction(), wanted_,
-            results[n].opacity);
+            results[n].opacity, results[n].half);
       }
     }
     return results;
@@ -132,7 +132,7 @@ class MultivariateTracer : public RayTracer {
   void integrate(const std::vector<PellucidRay>& rays,
                  std::vector<PellucidRayResult>& found) const {
     if (cells_) {
-      cells_->trace(rays, found.data());
+      cells_->trace(rays, depth_, found.data());
       return;
     }
     // One ray after the other.

@@ -9,6 +9,7 @@
 #include "packet_setup.h"
 #include "pellucid/error/random_errors.h"
 #include "pellucid/field/trilinear.h"
+#include "pellucid/render/integrate_ray.h"
 
 namespace pellucid {
 namespace {
@@ -113,7 +114,7 @@ PacketTracer::PacketTracer(const Volume& volume, const ClassifiedBlocks& blocks,
   job_.integrate_cell = &PacketTracer::integrate_cell;
 }
 
-void PacketTracer::trace(const Ray<double>* rays, int count, double share,
+void PacketTracer::trace(const Ray<double>* rays, int count, double share, bool depth,
                          RayResult* results) const {
   RayResult clear;
   clear.error = clear.unevenness = 0;
@@ -128,6 +129,7 @@ void PacketTracer::trace(const Ray<double>* rays, int count, double share,
   job.rays = inside.ray.data();
   job.results = found.data();
   job.count = static_cast<std::int32_t>(inside.ray.size());
+  job.depth = depth ? 1 : 0;
   job.context = &context;
   kernel_(&job);
   for (std::size_t i = 0; i < found.size(); ++i) {
@@ -136,6 +138,14 @@ void PacketTracer::trace(const Ray<double>* rays, int count, double share,
     to.unevenness = found[i].unevenness;
     to.longest_step = found[i].longest_step;
   }
+  if (!depth) return;
+  volume_.visit([&](const auto& grid) {
+    for (std::size_t i = 0; i < found.size(); ++i) {
+      const int n = inside.of[i];
+      results[n].half_opacity_depth = find_half_opacity(grid, rays[n], transfer_, wanted_.precision,
+                                                        results[n].opacity, results[n].half);
+    }
+  });
 }
 
 void PacketTracer::integrate_cell(const void* context, std::int32_t ray, const PellucidCell* cell,

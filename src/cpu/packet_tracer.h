@@ -37,9 +37,10 @@ class PacketTracer {
                                                   std::optional<InstructionSet> instruction_set);
 
   /// Rays in grid coordinates, their parameter the world arc length; neighbours are packed
-  /// together, and what becomes of a ray does not depend on them. Without half_opacity_depth.
-  /// `share`: of the tolerance, what the rays may be off by.
-  void trace(const Ray<double>* rays, int count, double share, RayResult* results) const;
+  /// together, and what becomes of a ray does not depend on them. `share`: of the tolerance, what
+  /// the rays may be off by. `depth`: whether half_opacity_depth is asked for.
+  void trace(const Ray<double>* rays, int count, double share, bool depth,
+             RayResult* results) const;
   /// Whether smooth blocks are sampled.
   bool goes_in_steps() const noexcept { return smooth_.longest_step > 0; }
 

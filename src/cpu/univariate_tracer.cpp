@@ -103,14 +103,7 @@ std::vector<RayResult> UnivariateTracer::trace_in_packets(const std::vector<Ray<
     sampler_->trace(rays.data(), count, results.data());
     return results;
   }
-  packets_->trace(rays.data(), count, share, results.data());
-  if (!depth_) return results;
-  volume_.visit([&](const auto& grid) {
-    for (std::size_t i = 0; i < rays.size(); ++i) {
-      results[i].half_opacity_depth = find_half_opacity(grid, rays[i], transfer_.tables(),
-                                                        wanted_.precision, results[i].opacity);
-    }
-  });
+  packets_->trace(rays.data(), count, share, depth_, results.data());
   return results;
 }
 

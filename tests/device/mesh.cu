@@ -29,16 +29,18 @@ __global__ void render_mesh(Tetrahedra mesh, MeshFields fields, TransferTables t
   const Ray<double> ray = camera.ray(pixel % camera.width, pixel / camera.width);
   MeshHit hits[most_hits];
   RayResult& result = pixels[pixel];
+  // The hits are used up each time.
   if (fields.channels > 1) {
     result = integrate_multivariate_mesh_ray(mesh, fields, multivariate, largest_extinction,
                                              find_hits(mesh, ray, hits), wanted);
+    result.half_opacity_depth =
+        find_multivariate_mesh_half_opacity(mesh, fields, multivariate, largest_extinction,
+                                            find_hits(mesh, ray, hits), wanted, result.opacity, {});
     return;
   }
   result = integrate_mesh_ray(mesh, fields, transfer, find_hits(mesh, ray, hits), wanted);
-  // The hits are used up.
-  result.half_opacity_depth = integrate_mesh_ray(mesh, fields, transfer, find_hits(mesh, ray, hits),
-                                                 wanted, -log1p(-0.5 * result.opacity))
-                                  .half_opacity_depth;
+  result.half_opacity_depth = find_mesh_half_opacity(
+      mesh, fields, transfer, find_hits(mesh, ray, hits), wanted, result.opacity, {});
 }
 
 /// The walk in binary32.

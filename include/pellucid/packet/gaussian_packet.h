@@ -5,6 +5,7 @@
 
 #include "pellucid/packet/gaussian_march.h"
 #include "pellucid/packet/gaussian_packet_interface.h"
+#include "pellucid/packet/opacity_trace.h"
 #include "pellucid/packet/packet_fold.h"
 
 #if PELLUCID_HAS_BATCH_4  // in sources compiled per instruction set
@@ -71,6 +72,7 @@ class GaussianPacket {
     const PacketFold<N> nothing(rays_.tolerance, rays_.largest_extinction, rays_.largest_color,
                                 convert<float>(march_.end()));
     fold_ = select(given, nothing, fold_);
+    if (rays_.depth != 0) trace_.begin(given);
     sampled_ = select(given, SampledErrors<F>(), sampled_);
     given_up_ = given_up_ & !given;
     for (I* counter : {&skipped_, &segments_, &looks_}) *counter = select(given, I(0), *counter);
@@ -107,6 +109,7 @@ class GaussianPacket {
       r.skipped = skipped[l];
       r.strides = taken[l];
       r.proved = taken[l] == 0 ? 1 : 0;
+      if (rays_.depth != 0) trace_.find_half(l, lane_ray_[l].begin, lane_ray_[l].end, r);
       ray_of_lane_[l] = -1;
     }
   }
@@ -145,6 +148,7 @@ class GaussianPacket {
                  transparency);
     segments_ += select(take, I(1), I(0));
     march_.take(take, look_, variance <= F(0.05f) * largest);
+    if (rays_.depth != 0) trace_.note(take, fold_);
     march_.alive = march_.alive & !fold_.cut_off(take);
     return take;
   }
@@ -163,6 +167,7 @@ class GaussianPacket {
   typename March::Look look_;
   SampledErrors<F> sampled_;
   PacketFold<N> fold_;
+  OpacityTrace<N> trace_;  ///< where the depth is asked for
   F largest_color_;
   M given_up_{false};
   I skipped_, segments_, looks_;

@@ -16,10 +16,17 @@ struct PellucidRay {
   double begin, end;
 };
 
+/// Between which world arc lengths half of a ray's opacity is reached, and how much of it is in
+/// front of them.
+struct PellucidHalfOpacity {
+  double begin, end, opacity_before;
+};
+
 /// What one ray gathers: RayResult, as far as packets know it.
 struct PellucidRayResult {
   double radiance[3], opacity, optical_depth;
   double error;
+  PellucidHalfOpacity half;  ///< where it was asked for
   std::int32_t cells, evaluations;
   std::int32_t skipped, constant, closed, panels, in_double, strides;
   float unevenness, longest_step;  ///< of grids' rays
@@ -73,6 +80,7 @@ struct PellucidPacketJob {
   const PellucidRay* rays;
   PellucidRayResult* results;
   std::int32_t count;
+  std::int32_t depth;  ///< whether results are to say where half of the opacity is
   /// Integrates what the packets hand back.
   void (*integrate_cell)(const void* context, std::int32_t ray, const PellucidCell* cell,
                          PellucidCellResult* result);

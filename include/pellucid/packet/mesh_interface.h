@@ -33,6 +33,7 @@ struct PellucidMeshJob {
   const void* transfer;  ///< BinnedTransfer; for several variables NearMixture
   double tolerance, largest_color, largest_extinction;
   std::int32_t proved;  ///< whether only what is proved counts
+  std::int32_t depth;   ///< whether results are to say where half of the opacity is
   // Rays and results.
   const PellucidMeshRay* rays;
   PellucidRayResult* results;

@@ -3,6 +3,7 @@
 
 #include "pellucid/packet/mesh_march.h"
 #include "pellucid/packet/mesh_variable.h"
+#include "pellucid/packet/opacity_trace.h"
 #include "pellucid/packet/packet_fold.h"
 #include "pellucid/segment/linear.h"
 #include "pellucid/transfer/binned.h"
@@ -92,6 +93,11 @@ class MeshPacket {
       r.closed = pieces_[l];
       r.in_double = in_double_[l];
       r.proved = 1;
+      if (job_.depth != 0) {
+        const auto eye = static_cast<double>(march_.rays.eye[l]);
+        trace_.find_half(l, static_cast<double>(march_.rays.begin[l]) - eye,
+                         static_cast<double>(march_.rays.end[l]) - eye, r);
+      }
     }
   }
 
@@ -331,8 +337,9 @@ class MeshPacket {
     spans_.forget(lanes);
   }
 
-  /// Ends those of the lanes' rays that no longer matter.
+  /// Something was added to the lanes' rays: ends those that no longer matter.
   void retire(M lanes) noexcept {
+    if (job_.depth != 0) trace_.note(lanes, fold_);
     const M done = fold_.cut_off(lanes);
     if (none(done)) return;
     march_.stop(done);
@@ -422,6 +429,7 @@ class MeshPacket {
   SegmentResult<F> segment_;
 
   PacketFold<N> fold_;
+  OpacityTrace<N> trace_;  ///< where the depth is asked for
   F largest_color_;
   I cells_{0}, pieces_{0}, in_double_{0};
 };

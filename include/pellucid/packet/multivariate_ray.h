@@ -44,6 +44,7 @@ class MultivariateRay {
         room_(room),
         block_walk_(blocks_.records, ray_, {ray.begin, ray.end}),
         cell_walk_(grid_.axis, ray_, {ray.begin, ray.begin}),
+        begin_(ray.begin),
         length_(ray.end - ray.begin),
         budget_(job.tolerance, length_) {
     room_.panels.clear();
@@ -78,6 +79,7 @@ class MultivariateRay {
     result.opacity = fold_.opacity();
     result.optical_depth = fold_.optical_depth();
     result.error = budget_.spent() + rest() + folding;
+    result.half = {begin_, begin_ + length_, 0};
     result.cells = result.evaluations = cells_;
     result.skipped = skipped_;
     result.closed = folded_ - nodes_;
@@ -385,7 +387,7 @@ class MultivariateRay {
   BlockWalk block_walk_;
   StructuredWalk<double> cell_walk_;  ///< of the block that the ray stands in
   PrimitiveSet primitives_;           ///< of that block
-  double length_;                     ///< of the ray
+  double begin_, length_;             ///< of the ray
   RayBudget<double> budget_;
   FrontToBack<double> fold_{0.0};
   PanelDemand<B> demand_;

@@ -59,6 +59,7 @@ class PacketFold {
   RayBudget<F> budget;
 
   F transparency() const noexcept { return convert<float>(fold_.transparency()); }
+  D opacity() const noexcept { return fold_.opacity(); }
 
   /// Adds the lanes' segments to their rays, not what they cost.
   template <class T>

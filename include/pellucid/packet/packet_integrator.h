@@ -2,6 +2,7 @@
 #pragma once
 
 #include "pellucid/error/random_errors.h"
+#include "pellucid/packet/opacity_trace.h"
 #include "pellucid/packet/packet_fold.h"
 #include "pellucid/packet/smooth_march.h"
 #include "pellucid/packet/span_finder.h"
@@ -85,6 +86,7 @@ class PacketIntegrator {
            all.opacity[l],
            all.optical_depth[l],
            error[l],
+           {},
            cells_seen_[l],
            cells_seen_[l] + samples_taken_[l],
            skipped_[l],
@@ -96,6 +98,10 @@ class PacketIntegrator {
            unevenness[l],
            longest_step[l],
            static_cast<std::uint8_t>(bits(proved_) >> l & 1)};
+      if (job_.depth != 0) {
+        const PellucidRay& ray = job_.rays[first_ + l];
+        trace_.find_half(l, ray.begin, ray.end, r);
+      }
     }
   }
 
@@ -313,8 +319,9 @@ class PacketIntegrator {
     retire(take);
   }
 
-  /// Ends those of the lanes' rays that no longer matter.
+  /// Something was added to the lanes' rays: ends those that no longer matter.
   void retire(M lanes) noexcept {
+    if (job_.depth != 0) trace_.note(lanes, fold_);
     const M done = fold_.cut_off(lanes);
     blocks_.alive = blocks_.alive & !done;
     drop_spans(done);
@@ -397,6 +404,7 @@ class PacketIntegrator {
 
   SampledErrors<F> sampled_;
   PacketFold<N> fold_;
+  OpacityTrace<N> trace_;  ///< where the depth is asked for
   F largest_color_;
   M proved_{true};
   std::int32_t cells_seen_[N] = {};

@@ -4,6 +4,7 @@
 #include "pellucid/packet/lane_primitive_sets.h"
 #include "pellucid/packet/mesh_rows.h"
 #include "pellucid/packet/near_mixture.h"
+#include "pellucid/packet/opacity_trace.h"
 #include "pellucid/packet/packet_fold.h"
 #include "pellucid/segment/multivariate_panel.h"
 
@@ -100,6 +101,13 @@ class PanelLanes {
   void integrate(Stop&& stop, Lost&& lost) noexcept {
     take_spans(lost);
     if (any(spans_.pending)) integrate_panels(stop);
+  }
+
+  /// From now on it is noted where rays have which opacity, for find_half().
+  void note_opacities() noexcept { noted_ = true; }
+  /// As of OpacityTrace.
+  void find_half(int lane, double begin, double end, PellucidRayResult& result) const noexcept {
+    trace_.find_half(lane, begin, end, result);
   }
 
   SegmentResult<D> result() const noexcept { return fold_.result(); }
@@ -226,6 +234,7 @@ class PanelLanes {
       nodes += select(absorbs & panel.found.panels, I(1), I(0));
       estimated = estimated | (absorbs & !panel.found.proved);
       next_part(take);
+      if (noted_) trace_.note(take, fold_);
       const M done = fold_.cut_off(take);
       if (any(done)) {
         forget(done);
@@ -269,6 +278,8 @@ class PanelLanes {
   F length_, log_share_;
   PanelDemand<D, LanePrimitiveSets<N>> demand_;  ///< of the spans that lanes work on
   PacketFold<N> fold_;
+  OpacityTrace<N> trace_;
+  bool noted_ = false;
   LaneSpans<N> spans_;
   int row_ = 0;
 

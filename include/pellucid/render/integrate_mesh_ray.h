@@ -2,6 +2,7 @@
 #pragma once
 
 #include "pellucid/error/budget.h"
+#include "pellucid/math/where_reached.h"
 #include "pellucid/render/integrate_linear_span.h"
 #include "pellucid/render/multivariate_integrator.h"
 #include "pellucid/segment/fold.h"
@@ -112,20 +113,20 @@ class MeshRayIntegrator {
     budget_.spend(data.length, static_cast<double>(found.found.segment.opacity),
                   fold_.transparency(), found.error(largest_color_));
     fold_.add(found.found.segment);
-    if (fold_.optical_depth() >= target_) find(data, begin, target_ - before);
+    if (fold_.optical_depth() >= target_) {
+      find(data, begin, target_ - before, fold_.optical_depth() - before);
+    }
   }
 
-  /// The place in a span where its optical depth reaches `depth`, by bisection.
-  PELLUCID_HD void find(const LinearData& data, double begin, double depth) noexcept {
-    double lo = 0, hi = 1;
-    for (int i = 0; i < 48; ++i) {
-      const double middle = 0.5 * (lo + hi);
-      const SegmentResult<double> part = piecewise_linear_segment(
-          transfer_.wide, data.front, data.front + middle * (data.back - data.front),
-          middle * data.length);
-      (part.optical_depth < depth ? lo : hi) = middle;
-    }
-    found_ = begin + hi * data.length;
+  /// The place in a span of depth `all` where its optical depth reaches `depth`.
+  PELLUCID_HD void find(const LinearData& data, double begin, double depth, double all) noexcept {
+    const auto up_to = [&](double end) noexcept {
+      return piecewise_linear_segment(transfer_.wide, data.front,
+                                      data.front + end * (data.back - data.front),
+                                      end * data.length)
+          .optical_depth;
+    };
+    found_ = begin + where_reached(up_to, depth, 0, 1, 0, all) * data.length;
   }
 
   const TransferTables& transfer_;
@@ -206,46 +207,60 @@ PELLUCID_HD inline void add_span(const Multivariate<double>& transfer, const Mes
                      span.place_error + span.end_error);
 }
 
+/// Of a ray that does not meet the mesh.
+PELLUCID_HD inline RayResult nothing_met() noexcept {
+  RayResult nothing;
+  nothing.error = 0;
+  nothing.proved = true;
+  return nothing;
+}
+
+/// for_each_mesh_span(), of what lies in the range.
+template <class Visit>
+PELLUCID_HD void for_each_span_inside(const Tetrahedra& mesh, const MeshFields& fields,
+                                      const MeshRay& ray, Interval<double> range,
+                                      Visit&& visit) noexcept {
+  for_each_mesh_span(mesh, fields, ray.view, ray.hits, ray.count, [&](MeshSpan span) {
+    if (span.end <= range.begin) return true;
+    if (span.begin >= range.end) return false;
+    if (span.begin < range.begin) {
+      const double share = (range.begin - span.begin) / (span.end - span.begin);
+      for (int c = 0; c < fields.channels; ++c) {
+        span.front[c] += share * (span.back[c] - span.front[c]);
+      }
+      span.begin = range.begin;
+    }
+    return visit(span);
+  });
+}
+
 }  // namespace detail
 
 /// The volume rendering integral along a ray through a variable of a mesh: RayResult::error is a
 /// bound, what is wanted or what rounding leaves. A ray that finds cells overlapping says that it
-/// does not know. `depth`: asks for the place where the optical depth reaches that,
-/// RayResult::half_opacity_depth; the ray ends there.
-PELLUCID_HD inline RayResult integrate_mesh_ray(
-    const Tetrahedra& mesh, const MeshFields& fields, const TransferTables& transfer,
-    const MeshRay& ray, const RayTolerance& wanted,
-    double depth = std::numeric_limits<double>::infinity()) noexcept {
-  RayResult nothing;
-  nothing.error = 0;
-  nothing.proved = true;
+/// does not know.
+PELLUCID_HD inline RayResult integrate_mesh_ray(const Tetrahedra& mesh, const MeshFields& fields,
+                                                const TransferTables& transfer, const MeshRay& ray,
+                                                const RayTolerance& wanted) noexcept {
   const Interval<double> inside = ray.inside();
-  if (inside.empty()) return nothing;
+  if (inside.empty()) return detail::nothing_met();
   MeshRayIntegrator integrator(transfer, wanted, inside);
-  integrator.look_for(depth);
   for_each_mesh_span(mesh, fields, ray.view, ray.hits, ray.count, [&](const MeshSpan& span) {
     integrator.span(span);
     return !integrator.done();
   });
-  RayResult result = integrator.result();
-  result.half_opacity_depth = integrator.found();
-  return result;
+  return integrator.result();
 }
 
 /// The same through several variables of a mesh and a function of them all. `largest_extinction`: a
 /// bound on that of the function.
 PELLUCID_HD inline RayResult integrate_multivariate_mesh_ray(
     const Tetrahedra& mesh, const MeshFields& fields, const Multivariate<double>& transfer,
-    double largest_extinction, const MeshRay& ray, const RayTolerance& wanted,
-    double depth = std::numeric_limits<double>::infinity()) noexcept {
-  RayResult nothing;
-  nothing.error = 0;
-  nothing.proved = true;
+    double largest_extinction, const MeshRay& ray, const RayTolerance& wanted) noexcept {
   const Interval<double> inside = ray.inside();
-  if (inside.empty()) return nothing;
+  if (inside.empty()) return detail::nothing_met();
   MultivariateRayIntegrator integrator(transfer, largest_extinction, wanted,
                                        inside.end - inside.begin);
-  integrator.look_for(depth);
   long cells = 0;
   for_each_mesh_span(mesh, fields, ray.view, ray.hits, ray.count, [&](const MeshSpan& span) {
     ++cells;
@@ -256,8 +271,41 @@ PELLUCID_HD inline RayResult integrate_multivariate_mesh_ray(
   });
   RayResult result = integrator.result();
   result.cells = cells;
-  result.half_opacity_depth = integrator.found();
   return result;
+}
+
+/// RayResult::half_opacity_depth of a ray of this opacity. Where the opacities that are given are
+/// not quite those of the ray, it is an end of the stretch at the worst.
+PELLUCID_HD inline double find_mesh_half_opacity(const Tetrahedra& mesh, const MeshFields& fields,
+                                                 const TransferTables& transfer, const MeshRay& ray,
+                                                 const RayTolerance& wanted, double opacity,
+                                                 const HalfOpacity& half) noexcept {
+  const Interval<double> inside = ray.inside();
+  if (!(opacity > 0) || inside.empty()) return std::numeric_limits<double>::infinity();
+  MeshRayIntegrator integrator(transfer, wanted, inside);
+  integrator.look_for(half.depth_to_half(opacity));
+  detail::for_each_span_inside(mesh, fields, ray, half.range, [&](const MeshSpan& span) {
+    integrator.span(span);
+    return !integrator.done();
+  });
+  return min(integrator.found(), half.range.end);
+}
+
+/// The same through several variables of a mesh.
+PELLUCID_HD inline double find_multivariate_mesh_half_opacity(
+    const Tetrahedra& mesh, const MeshFields& fields, const Multivariate<double>& transfer,
+    double largest_extinction, const MeshRay& ray, const RayTolerance& wanted, double opacity,
+    const HalfOpacity& half) noexcept {
+  const Interval<double> inside = ray.inside();
+  if (!(opacity > 0) || inside.empty()) return std::numeric_limits<double>::infinity();
+  MultivariateRayIntegrator integrator(transfer, largest_extinction, wanted,
+                                       inside.end - inside.begin);
+  integrator.look_for(half.depth_to_half(opacity));
+  detail::for_each_span_inside(mesh, fields, ray, half.range, [&](const MeshSpan& span) {
+    detail::add_span(transfer, span, largest_extinction, integrator);
+    return !integrator.done();
+  });
+  return min(integrator.found(), half.range.end);
 }
 
 }  // namespace pellucid

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "pellucid/field/multichannel_grid.h"
+#include "pellucid/render/half_opacity.h"
 #include "pellucid/render/multivariate_integrator.h"
 #include "pellucid/traverse/block_walk.h"
 #include "pellucid/traverse/multivariate_blocks.h"
@@ -66,19 +67,19 @@ PELLUCID_HD inline long follow_ray(const MultichannelGrid& grid, const Multivari
 
 }  // namespace detail
 
-/// RayResult::half_opacity_depth of a ray of this opacity.
+/// RayResult::half_opacity_depth of a ray of this opacity. Where the opacities that are given are
+/// not quite those of the ray, it is an end of the stretch at the worst.
 PELLUCID_HD inline double find_multivariate_half_opacity(
     const MultichannelGrid& grid, const MultivariateBlocks* blocks, const Ray<double>& ray_grid,
     const Multivariate<double>& transfer, double largest_extinction, const RayTolerance& wanted,
-    double opacity) noexcept {
-  const Interval<double> inside = grid_interval(grid.axis, ray_grid);
+    double opacity, const HalfOpacity& half = {}) noexcept {
+  const Interval<double> inside = grid_interval(grid.axis, ray_grid, half.range);
   if (!(opacity > 0) || inside.empty()) return std::numeric_limits<double>::infinity();
   MultivariateRayIntegrator integrator(transfer, largest_extinction, wanted,
                                        inside.end - inside.begin);
-  // There exp(-a) = 1 - opacity/2.
-  integrator.look_for(-log1p(-0.5 * opacity));
+  integrator.look_for(half.depth_to_half(opacity));
   detail::follow_ray(grid, blocks, ray_grid, inside, integrator);
-  return integrator.found();
+  return min(integrator.found(), half.range.end);
 }
 
 /// The volume rendering integral along a ray (in grid coordinates, its parameter the world arc

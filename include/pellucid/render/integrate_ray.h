@@ -1,51 +1,57 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "pellucid/math/where_reached.h"
+#include "pellucid/render/half_opacity.h"
 #include "pellucid/render/stride_march.h"
 
 namespace pellucid {
 
-/// The world arc length where the optical depth along the ray reaches `target`; infinite where it
-/// never does. The depth inside a span is monotone, so that bisection between its ends finds the
-/// place; it ends where the parameter no longer changes the arc length in float, which is what an
-/// image holds.
+/// The world arc length where the optical depth along this stretch of the ray reaches `target`;
+/// infinite where it never does. As closely as T can say.
 template <class T, class Value>
 PELLUCID_HD double find_optical_depth(const StructuredGrid<Value, double>& grid,
-                                      const Ray<double>& ray_grid,
+                                      const Ray<double>& ray_grid, Interval<double> range,
                                       const PiecewiseLinear<T>& transfer, double target) noexcept {
   double before = 0;
   double found = std::numeric_limits<double>::infinity();
-  for_each_span<T>(grid, ray_grid, [&](const CubicSpan<T>& span) {
-    const T length = span.length();
-    const double inside = static_cast<double>(optical_depth_cubic(span.data, length, transfer));
-    if (before + inside < target) {
-      before += inside;
-      return true;
-    }
-    double lo = 0, hi = 1;
-    for (int i = 0; i < 24; ++i) {
-      const double mid = 0.5 * (lo + hi);
-      const T u = static_cast<T>(mid);
-      const T depth = optical_depth_cubic(restrict_to(span.data, T(0), u), length * u, transfer);
-      (before + static_cast<double>(depth) < target ? lo : hi) = mid;
-    }
-    found = span.t_begin + hi * (span.t_end - span.t_begin);
-    return false;
-  });
+  for_each_span<T>(
+      grid, ray_grid,
+      [&](const CubicSpan<T>& span) {
+        const T length = span.length();
+        const double inside = static_cast<double>(optical_depth_cubic(span.data, length, transfer));
+        if (before + inside < target) {
+          before += inside;
+          return true;
+        }
+        const auto up_to = [&](double end) noexcept {
+          const T u = static_cast<T>(end);
+          return static_cast<double>(
+              optical_depth_cubic(restrict_to(span.data, T(0), u), length * u, transfer));
+        };
+        found = span.t_begin + where_reached(up_to, target - before, 0, 1, 0, inside,
+                                             16 * double{rounding_unit<T>}) *
+                                   (span.t_end - span.t_begin);
+        return false;
+      },
+      range);
   return found;
 }
 
-/// RayResult::half_opacity_depth of a ray of this opacity.
+/// RayResult::half_opacity_depth of a ray of this opacity. Where the opacities that are given are
+/// not quite those of the ray, it is an end of the stretch at the worst.
 template <class Value>
 PELLUCID_HD double find_half_opacity(const StructuredGrid<Value, double>& grid,
                                      const Ray<double>& ray_grid, const TransferTables& transfer,
-                                     Precision precision, double opacity) noexcept {
+                                     Precision precision, double opacity,
+                                     const HalfOpacity& half = {}) noexcept {
   if (!(opacity > 0)) return std::numeric_limits<double>::infinity();
-  // There exp(-a) = 1 - opacity/2.
-  const double target = -log1p(-0.5 * opacity);
-  return precision == Precision::float32
-             ? find_optical_depth<float>(grid, ray_grid, transfer.single, target)
-             : find_optical_depth<double>(grid, ray_grid, transfer.wide, target);
+  const double target = half.depth_to_half(opacity);
+  const double found =
+      precision == Precision::float32
+          ? find_optical_depth<float>(grid, ray_grid, half.range, transfer.single, target)
+          : find_optical_depth<double>(grid, ray_grid, half.range, transfer.wide, target);
+  return min(found, half.range.end);
 }
 
 /// Goes through the blocks of a ray: those that are done at once, those that are smooth together

@@ -3,6 +3,7 @@
 
 #include "pellucid/error/budget.h"
 #include "pellucid/geometry/ray.h"
+#include "pellucid/math/where_reached.h"
 #include "pellucid/render/integrate_cell.h"
 #include "pellucid/segment/fold.h"
 #include "pellucid/segment/multivariate_panel.h"
@@ -34,7 +35,7 @@ class MultivariateRayIntegrator {
 
   /// Whether what is left of the ray can no longer matter.
   PELLUCID_HD bool done() const noexcept {
-    return found_ < infinity || budget_.pays_for(rest(), tolerance_);
+    return found_ < infinity || (target_ == infinity && budget_.pays_for(rest(), tolerance_));
   }
 
   /// Goes past stretches in which nothing is, up to where so much is left of the ray.
@@ -140,8 +141,8 @@ class MultivariateRayIntegrator {
     return panel;
   }
 
-  /// The place in the part [begin, end] of a cell where the depth reaches the target: by bisection,
-  /// with the depths of lines, which is what the tolerance allows there.
+  /// The place in the part [begin, end] of a cell where the depth reaches the target: with the
+  /// depths of lines, which is what the tolerance allows there.
   template <class Span>
   PELLUCID_HD void find(const Span& span, double begin, double end,
                         Interval<double> range) noexcept {
@@ -149,16 +150,14 @@ class MultivariateRayIntegrator {
     demand.last_resort = true;
     demand.grade = Grade::proved;
     const auto nothing = [](double) noexcept { return 0.0; };
-    double lo = begin, hi = end;
-    for (int i = 0; i < 24; ++i) {
-      const double middle = 0.5 * (lo + hi);
-      const double inside =
-          integrate_multivariate_panel(transfer_, span.part(transfer_.channels, begin, middle),
-                                       demand, nothing)
-              .found.segment.optical_depth;
-      (before_ + inside < target_ ? lo : hi) = middle;
-    }
-    found_ = range.begin + hi * (range.end - range.begin);
+    const auto inside = [&](double to) noexcept {
+      return integrate_multivariate_panel(transfer_, span.part(transfer_.channels, begin, to),
+                                          demand, nothing)
+          .found.segment.optical_depth;
+    };
+    const double at =
+        where_reached(inside, target_ - before_, begin, end, 0.0, fold_.optical_depth() - before_);
+    found_ = range.begin + at * (range.end - range.begin);
   }
 
   const Multivariate<double>& transfer_;

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "pellucid/math/rgb.h"
+#include "pellucid/render/half_opacity.h"
 
 namespace pellucid {
 
@@ -39,7 +40,8 @@ struct RayResult {
   /// World arc length at which half of the opacity is reached; infinite where the ray stays clear
   /// or the depth was not asked for.
   double half_opacity_depth = std::numeric_limits<double>::infinity();
-  long cells = 0;  ///< cells walked through, or samples taken
+  HalfOpacity half;  ///< what is known of that place before it is looked for
+  long cells = 0;    ///< cells walked through, or samples taken
 
   /// How far radiance and opacity may be from the exact ones; infinite where nothing is known.
   double error = std::numeric_limits<double>::infinity();

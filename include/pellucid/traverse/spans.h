@@ -35,14 +35,16 @@ PELLUCID_HD bool make_span(const StructuredGrid<Value, double>& grid,
   return true;
 }
 
-/// Calls visit(CubicSpan<T>) for each cell that the ray (in grid coordinates) crosses at t >= 0,
-/// front to back, until it returns false. Cells with a NaN corner are vacuum and are passed over.
-/// Returns the number of cells walked through. The walk is in double, whatever T: its positions are
-/// differences of large numbers where the eye is far away.
+/// Calls visit(CubicSpan<T>) for each cell that the ray (in grid coordinates) crosses in this
+/// range, front to back, until it returns false. Cells with a NaN corner are vacuum and are passed
+/// over. Returns the number of cells walked through. The walk is in double, whatever T: its
+/// positions are differences of large numbers where the eye is far away.
 template <class T, class Value, class Visit>
 PELLUCID_HD long for_each_span(const StructuredGrid<Value, double>& grid,
-                               const Ray<double>& ray_grid, Visit&& visit) noexcept {
-  StructuredWalk<double> walk(grid.axis, ray_grid, {0.0, std::numeric_limits<double>::infinity()});
+                               const Ray<double>& ray_grid, Visit&& visit,
+                               Interval<double> range = {
+                                   0, std::numeric_limits<double>::infinity()}) noexcept {
+  StructuredWalk<double> walk(grid.axis, ray_grid, range);
   typename StructuredWalk<double>::Step step;
   long cells = 0;
   while (walk.next(step)) {

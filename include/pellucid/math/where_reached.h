@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "pellucid/base/config.h"
+
+namespace pellucid {
+
+/// The place in [lo, hi] where an f that does not fall reaches `target`, given f(lo) = below <
+/// target <= above = f(hi): to this share of the interval, or where f is nearer to the target than
+/// a sixteenth of that share of what it rises by. The first such place but for what rounding makes
+/// of f; hi where f is a jump there.
+///
+/// False position by the Illinois rule (Dowell and Jarratt 1971), which halves the weight of an end
+/// that stays; each third place is the middle, so that no f takes more than three for each bit.
+/// Smooth ones take some eight in all.
+template <class Function>
+PELLUCID_HD double where_reached(Function&& f, double target, double lo, double hi, double below,
+                                 double above, double share_of_interval = 0x1p-40) noexcept {
+  const double shortest = share_of_interval * (hi - lo),
+               nearest = share_of_interval / 16 * (above - below);
+  double low = below - target, high = above - target;  // weighed
+  for (int n = 1, moved = 0; hi - lo > shortest; ++n) {
+    const double share = n % 3 == 0 || !(high > low) ? 0.5 : -low / (high - low);
+    const double at = lo + share * (hi - lo), off = f(at) - target;
+    if (off < 0) {
+      if (off > -nearest) return at;
+      lo = at;
+      low = off;
+      if (moved < 0) high *= 0.5;
+      moved = -1;
+    } else {
+      if (off < nearest) return at;
+      hi = at;
+      high = off;
+      if (moved > 0) low *= 0.5;
+      moved = 1;
+    }
+  }
+  return hi;
+}
+
+}  // namespace pellucid
