@@ -31,8 +31,8 @@ GaussianPacketKernel kernel_for([[maybe_unused]] InstructionSet set) {
 
 }  // namespace
 
-double movement_in_cells(const Channels& channels, const GaussianMixture<double>& mixture,
-                         const MultivariateBlocks& blocks) {
+Movement movement_in_cells(const Channels& channels, const GaussianMixture<double>& mixture,
+                           const MultivariateBlocks& blocks) {
   const auto count = static_cast<std::size_t>(channels.count());
   std::vector<BlockRecords> records;
   for (const Channel& channel : channels) records.push_back(channel.volume->block_ranges());
@@ -44,25 +44,32 @@ double movement_in_cells(const Channels& channels, const GaussianMixture<double>
   }
   constexpr int most_blocks = 4096;
   const int stride = (blocks.records.count() + most_blocks - 1) / most_blocks;
-  double sum = 0;
+  Movement sum;
   int found = 0;
   for (int block = 0; block < blocks.records.count(); block += stride) {
     if (blocks.classes[block].kind == BlockKind::skip) continue;
-    double squared_range[most_channels];
+    double squared_range[most_channels] = {}, squared_bend[most_channels] = {};
     for (std::size_t c = 0; c < count; ++c) {
       const BlockRange range = records[c].range(block);
-      squared_range[c] = range.vacuum == BlockVacuum::all ? 0 : std::pow(range.max - range.min, 2);
+      if (range.vacuum != BlockVacuum::none) continue;
+      squared_range[c] = std::pow(range.max - range.min, 2);
+      for (const float bend : records[c].bends(block).bend) {
+        squared_bend[c] += double{bend} * double{bend};
+      }
     }
-    double most = 0;
+    double most = 0, bend = 0;
     for (int i = 0; i < mixture.count; ++i) {
       if (!blocks.primitives[block].holds(i)) continue;
       const double* of = &squared_norm[static_cast<std::size_t>(i) * count];
       most = std::max(most, std::inner_product(of, of + count, squared_range, 0.0));
+      bend = std::max(bend, std::inner_product(of, of + count, squared_bend, 0.0));
     }
-    sum += std::sqrt(most) / block_width;
+    sum.in_cell += std::sqrt(most) / block_width;
+    sum.bend += std::sqrt(bend);
     ++found;
   }
-  return found > 0 ? sum / found : 0;
+  if (found == 0) return {};
+  return {sum.in_cell / found, sum.bend / found};
 }
 
 std::unique_ptr<const CellPackets> CellPackets::make(

@@ -12,10 +12,14 @@
 
 namespace pellucid {
 
-/// How far K (v - c) moves in a cell, about: in the mean over blocks in which a primitive may
-/// matter, spread over all, of the one that moves most. It tells what is faster, and nothing else.
-double movement_in_cells(const Channels& channels, const GaussianMixture<double>& mixture,
-                         const MultivariateBlocks& blocks);
+/// What K (v - c) does in a cell, about: how far it moves, and by how much its slope changes from
+/// cell to cell; in the mean over blocks in which a primitive may matter, spread over all, of the
+/// one that moves most. It tells what is faster, and nothing else.
+struct Movement {
+  double in_cell = 0, bend = 0;
+};
+Movement movement_in_cells(const Channels& channels, const GaussianMixture<double>& mixture,
+                           const MultivariateBlocks& blocks);
 
 /// Integrates rays through several channels in packets, cell by cell, in the machine's best
 /// instruction set.

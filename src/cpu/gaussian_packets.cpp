@@ -69,13 +69,10 @@ SteppedGaussian stepped(const Gaussian<double>& g, const Channels& channels, dou
       matters ? static_cast<float>(reach * (1 + 0x1p-20)) : -std::numeric_limits<float>::max();
   double rounding = 0;
   for (int k = 0; k < g.channels; ++k) {
-    const double norm = column_norm(g, k);
-    // Upward, for it is in bounds.
-    result.column_norm[k] = static_cast<float>(norm * (1 + 0x1p-20));
     result.center_rest[k] = static_cast<float>(g.center[k] - double{result.gaussian.center[k]});
     const Volume& data = *channels[k].volume;
     if (!fits_binary32(data)) {
-      rounding += norm * unit * largest_value(data);
+      rounding += column_norm(g, k) * unit * largest_value(data);
     }
   }
   rounding += unit * (rounding_in_units * reach + cancelled(g, channels, reach));

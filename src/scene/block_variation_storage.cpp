@@ -20,6 +20,7 @@ void join_variation(BlockVariation& all, const BlockVariation& other) {
     all.oscillation[a] = std::max(all.oscillation[a], other.oscillation[a]);
     all.bend[a] = std::max(all.bend[a], other.bend[a]);
   }
+  all.twist = std::max(all.twist, other.twist);
 }
 
 }  // namespace
@@ -38,13 +39,14 @@ BlockVariationStorage::BlockVariationStorage(const Channels& channels,
         const BlockRecord& r = records[c][b];
         if (r.vacuum() != BlockVacuum::none) {
           variation_[static_cast<std::size_t>(b) * fields + c] = {
-              {infinite, infinite, infinite}, {infinite, infinite, infinite}, {}};
+              {infinite, infinite, infinite}, {infinite, infinite, infinite}, infinite, 0};
           continue;
         }
         variation_[static_cast<std::size_t>(b) * fields + c] = {
             {r.oscillation[0], r.oscillation[1], r.oscillation[2]},
             {r.bend[0], r.bend[1], r.bend[2]},
-            {}};
+            std::max({r.twist[0], r.twist[1], r.twist[2]}),
+            0};
       }
     }
   });

@@ -66,6 +66,7 @@ TEST(BlockVariation, IsTheLargestAround) {
                   const std::uint16_t slope = vacuum ? infinite : r.oscillation[a];
                   expected.oscillation[a] = std::max(expected.oscillation[a], slope);
                   expected.bend[a] = std::max(expected.bend[a], vacuum ? infinite : r.bend[a]);
+                  expected.twist = std::max(expected.twist, vacuum ? infinite : r.twist[a]);
                 }
               }
             }
@@ -76,6 +77,7 @@ TEST(BlockVariation, IsTheLargestAround) {
               EXPECT_EQ(found->oscillation[a], expected.oscillation[a]);
               EXPECT_EQ(found->bend[a], expected.bend[a]);
             }
+            EXPECT_EQ(found->twist, expected.twist);
           }
         }
       }

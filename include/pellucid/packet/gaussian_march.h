@@ -107,7 +107,7 @@ class GaussianMarch {
     const M there = alive & !is_nan(sum);
     look_at_blocks(place, s.length);
     s.ends.end[0] = front_;
-    s.ends.find(mixture_, near_, fields_.channels, s.value, around_, s.step, alive);
+    s.ends.find(mixture_, near_, s.value, around_, s.step, alive);
     M matters(false), unresolved = !there;
     for (int j = 0; j < steps; ++j) {
       matters = matters | s.ends.matters[j];
@@ -141,21 +141,20 @@ class GaussianMarch {
     s.least_variance = s.step * s.step * variance;
   }
 
-  /// Goes behind the steps of these lanes. `easy`: those which could do with longer ones.
-  void take(M lanes, const Look& s, M easy) noexcept {
+  /// Goes behind the steps of these lanes. `change`: of a step's length, what would do.
+  void take(M lanes, const Look& s, const F& change) noexcept {
     at = select(lanes, select(s.last, rays_.end, at + convert<double>(s.length)), at);
     set_front(lanes, s.ends.end[steps], s.value[steps]);
     known_ = known_ | lanes;
     // Over empty steps one may go on to where something can matter; the next look tells whether.
     const F leap = select(s.empty, F(0.25f) * s.ends.clearance(), F(0));
-    const M resolves = F(2) * s.ends.most <= F(1);
-    const F grown = select(easy & (resolves | s.empty), F(2), F(1));
+    const F grown = select(s.empty, F(2), min(change, s.ends.longer()));
     step_ = select(lanes & !s.last, min(max(grown, leap) * s.step, longest_), step_);
   }
 
   /// Has these lanes look again, in finer steps; from the first in which something matters. Those
   /// that are returned cannot.
-  M retry(M lanes, const Look& s) noexcept {
+  M retry(M lanes, const Look& s, const F& change) noexcept {
     M before = lanes;
     const F finer = s.ends.finer();
     for (int j = 0; j < steps; ++j) {
@@ -168,7 +167,7 @@ class GaussianMarch {
       }
       // To where it can begin to matter, if that is further than four steps that see it.
       const F wanted = max(finer, F(0.2495f) * s.ends.approach(j));
-      const F least = j == 0 ? F(0.5f) : F(1);
+      const F least = select(s.resolved, min(change, F(0.84f)), j == 0 ? F(0.5f) : F(1));
       step_ = select(here, min(wanted, least) * s.step, step_);
     }
     step_ = select(before, F(0.5f) * s.step, step_);
@@ -229,25 +228,32 @@ class GaussianMarch {
       blocks += select(leaves[a], F(1), F(0));
     }
     const I block = index_of(here);
+    // As of derivative_variation() (traverse/block_bends.h).
+    const F step = F(0.25f) * length;
+    const F twisting = F(2) * step *
+                       (abs(direction_[1] * direction_[2]) + abs(direction_[2] * direction_[0]) +
+                        abs(direction_[0] * direction_[1]));
     const I upper_half(static_cast<std::int32_t>(0xffff0000u));
     for (int c = 0; c < fields_.channels; ++c) {
       I packed[4];
       load_records<4>(variation_, block * I(fields_.channels) + I(c), packed);
       const auto low = [](I x) noexcept { return float_of_bits(x << 16); };
       const auto high = [&](I x) noexcept { return float_of_bits(x & upper_half); };
-      const F oscillation[3] = {low(packed[0]), high(packed[0]), low(packed[1])};
+      const F oscillation[3] = {low(packed[0]), high(packed[0]), low(packed[1])},
+              twist = low(packed[3]);
       F* const bend = around_.bend[c];
       bend[0] = high(packed[1]);
       bend[1] = low(packed[2]);
       bend[2] = high(packed[2]);
-      F along(0);
+      F on_the_way(0), in_a_step = select(twisting > F(0), twisting * twist, F(0));
       for (int a = 0; a < 3; ++a) {
         // An axis along which nothing moves does not count, even if unbounded.
         const F speed = abs(direction_[a]);
         const F range = blocks * oscillation[a] + select(leaves[a], bend[a], F(0));
-        along += select(speed > F(0), speed * range, F(0));
+        on_the_way += select(speed > F(0), speed * range, F(0));
+        in_a_step += select(speed > F(0), speed * (speed * step + F(1)) * bend[a], F(0));
       }
-      around_.oscillation[c] = along * F(1 + 16 * rounding_unit<float>);
+      around_.oscillation[c] = min(on_the_way, in_a_step) * F(1 + 32 * rounding_unit<float>);
     }
     near_.clear();
     add_primitives(block, alive);

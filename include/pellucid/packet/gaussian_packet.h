@@ -120,16 +120,17 @@ class GaussianPacket {
     march_.look(look_);
     looks_ += select(on, I(1), I(0));
     const M empty = on & look_.empty;
-    if (any(empty)) march_.take(empty, look_, empty);
+    F change(2);  // of the step's length, as its error would have it
+    if (any(empty)) march_.take(empty, look_, change);
     M rest = on & !empty;
-    if (any(rest & look_.resolved)) rest = rest & !integrate(rest & look_.resolved, left);
-    if (any(rest)) give_up(march_.retry(rest, look_));
+    if (any(rest & look_.resolved)) rest = rest & !integrate(rest & look_.resolved, left, change);
+    if (any(rest)) give_up(march_.retry(rest, look_, change));
     give_up(on & (looks_ >= I(most_looks)));
   }
 
   /// Adds the steps to their rays where the budget can pay for their error: those that are
-  /// returned.
-  M integrate(M lanes, F left) noexcept {
+  /// returned. `change`: of the step's length, what would have suited it.
+  M integrate(M lanes, F left, F& change) noexcept {
     const SegmentResult<F>& s = look_.found.segment;
     const F transparency = fold_.transparency();
     const F deviation = F(share_of_difference) * look_.found.difference;
@@ -142,12 +143,17 @@ class GaussianPacket {
     const F largest =
         sampled_.largest_variance(fold_.budget, rounding, s.opacity, look_.length, left);
     const M take = lanes & (variance <= largest) & (rounding <= fold_.budget.left());
+    // The variance grows with the step's fifth to tenth power, what it may be with the first.
+    const F ease = F(0.4f) * largest / max(variance, F(1e-30f));
+    const M known = (ease >= F(1e-6f)) & (take | !(variance <= largest));
+    const F suits = exp(F(1.0f / 6) * log(min(select(known, ease, F(1)), F(64))));
+    change = select(lanes, select(known, suits, F(0.5f)), change);
     if (none(take)) return take;
     fold_.add(take, s);
     sampled_.pay(take, fold_.budget, variance, rounding, s.opacity, look_.length, left,
                  transparency);
     segments_ += select(take, I(1), I(0));
-    march_.take(take, look_, variance <= F(0.05f) * largest);
+    march_.take(take, look_, change);
     if (rays_.depth != 0) trace_.note(take, fold_);
     march_.alive = march_.alive & !fold_.cut_off(take);
     return take;

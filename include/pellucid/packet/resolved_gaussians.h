@@ -14,7 +14,6 @@ struct SteppedGaussian {
   /// The distance |K (v - c)| from which on it does not matter; below 0 where it never does.
   float reach = 0;
   float rounding = 0;  ///< how far K (v - c) may be off because numbers of it are rounded
-  float column_norm[most_channels] = {};  ///< of K, by channel
   float center_rest[most_channels] = {};  ///< what binary32 leaves of the center
 };
 
@@ -26,10 +25,11 @@ struct SteppedMixture {
 
 #if PELLUCID_HAS_BATCH_4  // in sources compiled per instruction set
 
-/// How the channels vary on the way of each lane: bounds for four steps from where it stands.
+/// How the channels vary on the way of each lane: bounds for four steps from where it stands, or
+/// for any one of them.
 template <int N>
 struct LocalVariation {
-  /// How much the derivative along the ray varies, per world length.
+  /// How much the derivative along the ray varies in a step, per world length.
   Batch<float, N> oscillation[most_channels];
   /// The largest jump of the derivative by each axis's grid coordinate.
   Batch<float, N> bend[most_channels][3];
@@ -78,8 +78,9 @@ class LanePrimitives {
 /// to the next.
 ///
 /// Between two ends data leave their chord by at most a quarter of the step times the oscillation
-/// of their derivative (traverse/block_bends.h), so that a primitive's p = K (v - c) leaves its own
-/// by at most e = step/4 Σ |column of K| · oscillation. On the chord from p to q no place is nearer
+/// of their derivative (traverse/block_bends.h), so that each row of a primitive's p = K (v - c)
+/// leaves its own by at most step/4 Σ |K| · oscillation, entry by entry, and p by their root of
+/// squares e. On the chord from p to q no place is nearer
 /// to 0 than (|p| + |q| - |q - p|) / 2. So a primitive that matters nowhere on the step is known
 /// not to, and p moves by at most |q - p| + 2 e on any other.
 template <int N>
@@ -100,7 +101,8 @@ class ResolvedGaussians {
                  ///<   deviation from the curve, in cells squared (error/random_errors.h)
 
   /// What the step should be, by what it is, for what is unresolved to be resolved.
-  F finer() const noexcept { return min(F(0.8f * coarsest) / max(most, F(1e-30f)), F(1)); }
+  F finer() const noexcept { return min(longer(), F(1)); }
+  F longer() const noexcept { return F(0.8f * coarsest) / max(most, F(1e-30f)); }
   /// The share of step j, from its front on, on which none matters of those that do on it.
   F approach(int j) const noexcept { return ahead_[j] / max(fastest_[j], F(1e-30f)); }
   /// On how many steps behind the last one none matters, if data go on as on that.
@@ -108,7 +110,7 @@ class ResolvedGaussians {
 
   /// `value[j][c]`: channel c at end j.
   PELLUCID_ALWAYS_INLINE void find(const SteppedMixture& mixture,
-                                   const LanePrimitives<N>& primitives, int channels,
+                                   const LanePrimitives<N>& primitives,
                                    const DatumInCell<F> (*value)[most_channels],
                                    const LocalVariation<N>& variation, F step, M on) noexcept {
     for (int j = 0; j < steps; ++j) {
@@ -122,7 +124,7 @@ class ResolvedGaussians {
     for (F& b : bending) b = F(0);
     for (int i = 0; i < mixture.count; ++i) {
       if (!primitives.of_any(i)) continue;
-      add(mixture.primitive[i], channels, value, variation, step, primitives.lanes(i, on));
+      add(mixture.primitive[i], value, variation, step, primitives.lanes(i, on));
     }
   }
 
@@ -154,14 +156,11 @@ class ResolvedGaussians {
     return {F(c.r), F(c.g), F(c.b)};
   }
 
-  PELLUCID_ALWAYS_INLINE void add(const SteppedGaussian& of, int channels,
+  PELLUCID_ALWAYS_INLINE void add(const SteppedGaussian& of,
                                   const DatumInCell<F> (*value)[most_channels],
                                   const LocalVariation<N>& variation, F step, M on) noexcept {
-    F off_chord(0);
-    for (int c = 0; c < channels; ++c) {
-      off_chord = multiply_add(F(of.column_norm[c]), variation.oscillation[c], off_chord);
-    }
-    off_chord *= F(0.25f) * step;
+    const F off_chord = F(0.25f) * step *
+                        moved_at_most(of, [&](int c) noexcept { return variation.oscillation[c]; });
     F away[steps + 1], between[steps];
     find_distances(of, value, away, between);
     const F reach(of.reach);
@@ -201,12 +200,26 @@ class ResolvedGaussians {
     const F squared = moves_most * moves_most;
     coarse = multiply_add(largest, squared * squared, coarse);
     for (int a = 0; a < 3; ++a) {
-      F bend(0);
-      for (int c = 0; c < channels; ++c) {
-        bend = multiply_add(F(of.column_norm[c]), variation.bend[c][a], bend);
-      }
+      const F bend = moved_at_most(of, [&](int c) noexcept { return variation.bend[c][a]; });
       bending[a] = multiply_add(largest, bend, bending[a]);
     }
+  }
+
+  /// How far p moves where channel c moves by at most change(c) >= 0: row by row.
+  template <class Change>
+  PELLUCID_ALWAYS_INLINE static F moved_at_most(const SteppedGaussian& of,
+                                                Change&& change) noexcept {
+    const Gaussian<float>& g = of.gaussian;
+    F square(0);
+    for (int row = 0; row < g.rows; ++row) {
+      F sum(0);
+      for (int c = 0; c < g.channels; ++c) {
+        sum = multiply_add(F(abs(g.matrix[row][c])), change(c), sum);
+      }
+      if (g.rows == 1) return sum;
+      square = multiply_add(sum, sum, square);
+    }
+    return sqrt(square) * F(1 + 16 * rounding_unit<float>);
   }
 
   // In p: how far primitives that matter are from doing so at the front of each step, at least, and

@@ -8,18 +8,20 @@ namespace pellucid {
 /// How much the data of a block and of all that touch it vary: the largest of their records'
 /// (traverse/block_record.h). Upper halves of floats, as there; both infinite beside vacuum,
 /// through which data are not continuous. In loads of 32 bits: oscillation x and y; oscillation z
-/// and bend x; bend y and z.
+/// and bend x; bend y and z; twist.
 ///
 /// What they say of a straight way that begins in the block and goes no further than a block's
 /// width along each axis: it is in m + 1 blocks at most, m the number of axes on which it ends in
 /// another block. Along its own axis the derivative jumps at a face between two of them by `bend`
 /// at most; the two others are continuous there, so that their ranges in both blocks have a value
 /// in common. Hence over the whole way the derivative by axis a is within a range of (m + 1)
-/// oscillation_a, and bend_a more if the way ends in another block of that axis.
+/// oscillation_a, and bend_a more if the way ends in another block of that axis. Of a part of the
+/// way bend and twist alone say how much it may vary, too: derivative_variation() (block_bends.h).
 struct alignas(16) BlockVariation {
   std::uint16_t oscillation[3];
   std::uint16_t bend[3];
-  std::uint16_t unused[2];
+  std::uint16_t twist;  ///< the largest of the three
+  std::uint16_t unused;
 };
 static_assert(sizeof(BlockVariation) == 16);
 
