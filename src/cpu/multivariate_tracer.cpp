@@ -98,7 +98,7 @@ class MultivariateTracer : public RayTracer {
   /// measured (docs/performance.md).
   GaussianMarch faster_march() const {
     const Movement movement = movement_in_cells(channels_, transfer_.gaussians, *blocks_);
-    return movement.in_cell <= 0.6 && movement.bend <= 450 * wanted_.tolerance
+    return movement.in_cell <= 0.6 && movement.bend <= 620 * wanted_.tolerance
                ? GaussianMarch::steps
                : GaussianMarch::cells;
   }

@@ -293,7 +293,7 @@ class PacketIntegrator {
       // Halving makes it at most four times better, and the half of a half sixteen times.
       const M halve = rest & end.found & (pieces_of_span_ < I(most_pieces)) &
                       (part >= F(narrowest)) & (cost_of_color <= F(64) * allowed) &
-                      (cost_of_rounding <= F(0.25f) * allowed);
+                      (cost_of_rounding <= F(0.6f) * allowed);
       cap_ = select(halve, half, cap_);
       const M give_up = rest & !halve;
       if (any(give_up)) hand_back(give_up);
