@@ -147,7 +147,8 @@ class GaussianPacket {
     const F ease = F(0.4f) * largest / max(variance, F(1e-30f));
     const M known = (ease >= F(1e-6f)) & (take | !(variance <= largest));
     const F suits = exp(F(1.0f / 6) * log(min(select(known, ease, F(1)), F(64))));
-    change = select(lanes, select(known, suits, F(0.5f)), change);
+    // Else rounding alone is too much, or neither is anything.
+    change = select(lanes, select(known, suits, select(take, F(1), F(0.5f))), change);
     if (none(take)) return take;
     fold_.add(take, s);
     sampled_.pay(take, fold_.budget, variance, rounding, s.opacity, look_.length, left,
