@@ -29,9 +29,10 @@ class Depths : public RandomFrames {
   Depths() : RandomFrames(5) {}
 
   /// Waves, and noise on them.
-  std::shared_ptr<const Volume> volume(double longest, double noise, bool rectilinear) {
+  std::shared_ptr<const Volume> volume(double longest, double noise, bool rectilinear,
+                                       std::array<int, 3> dimensions) {
     Volume::Description description;
-    description.dimensions = {24 + static_cast<int>(random_() % 9), 30, 27};
+    description.dimensions = dimensions;
     if (rectilinear) {
       for (int i = 0; i < 30; ++i) description.coordinates[1].push_back(i + 0.01 * i * i);
     }
@@ -48,9 +49,11 @@ class Depths : public RandomFrames {
     return std::make_shared<const Volume>(description, DataArray<float>(std::move(values)));
   }
 
+  std::array<int, 3> some_values() { return {24 + static_cast<int>(random_() % 9), 30, 27}; }
+
   Scene of_volume(double longest, double noise, bool peaks) {
     Scene scene;
-    scene.volume = volume(longest, noise, false);
+    scene.volume = volume(longest, noise, false, some_values());
     const double e = power(0.05, 20) / 27;
     scene.transfer_function =
         peaks ? table(27, 0, 1)
@@ -61,7 +64,7 @@ class Depths : public RandomFrames {
   Scene of_channels(double longest, bool rectilinear, bool with_table) {
     Scene scene;
     std::vector<Channel> channels;
-    const auto first = volume(longest, 0, rectilinear);
+    const auto first = volume(longest, 0, rectilinear, some_values());
     channels.push_back({"0", "", first});
     scene.channels = std::make_shared<const Channels>(std::move(channels));
     std::vector<ChannelTransferFunction> tables;
@@ -69,6 +72,33 @@ class Depths : public RandomFrames {
     scene.multivariate = std::make_shared<const MultivariateTransferFunction>(
         1, primitives(1, 0, 1, 27), std::move(tables));
     return seen(std::move(scene), *first);
+  }
+  /// Rays along so many cells, in each of which something absorbs.
+  Scene of_many_cells(int cells, bool gaussians) {
+    const auto data = volume(9, 0.05, false, {cells + 1, 5, 5});
+    Scene scene;
+    scene.size = {8, 8};
+    if (gaussians) {
+      scene.channels = std::make_shared<const Channels>(std::vector<Channel>{{"0", "", data}});
+      std::vector<GaussianPrimitive> one(1);
+      one[0].channels = {0};
+      one[0].center = {0.5};
+      one[0].matrix = matrix_of_widths({0.2});
+      one[0].extinction = 3.0 / cells;
+      scene.multivariate = std::make_shared<const MultivariateTransferFunction>(1, std::move(one));
+    } else {
+      scene.volume = data;
+      const double e = 3.0 / cells;
+      scene.transfer_function =
+          std::make_shared<const TransferFunction>(std::vector<TransferFunction::Point>{
+              {-0.1, 0, {1, 1, 1}}, {0.5, e, {1, 0, 0}}, {1.1, 0.2 * e, {0, 0, 1}}});
+    }
+    scene.camera = default_camera(*data, scene.size);
+    scene.camera.position = scene.camera.focal_point - Vec3<double>{1.0 * cells, 0.3, 0.2};
+    scene.camera.up = {0, 0, 1};
+    scene.camera.projection = Projection::orthographic;
+    scene.camera.parallel_scale = 1.5;
+    return scene;
   }
   Scene of_mesh(bool several) {
     TetrahedralMesh::Description all = lattice_mesh(2 + static_cast<int>(random_() % 3), 7);
@@ -155,6 +185,17 @@ TEST_F(Depths, OfSmoothData) {
 TEST_F(Depths, OfCells) {
   for (int n = 0; n < 40; ++n) expect_half(of_volume(9, 0.1, true), n % 2 == 0 ? 1e-2 : 1e-4);
   report(300);
+}
+/// More segments than are kept.
+TEST_F(Depths, OfManySegments) {
+  for (const int cells : {300, 700}) {
+    for (const bool gaussians : {false, true}) {
+      RenderOptions options;
+      options.gaussian_march = GaussianMarch::cells;
+      expect_half(of_many_cells(cells, gaussians), 1e-4, options);
+    }
+  }
+  report(200);
 }
 TEST_F(Depths, OfGaussians) {
   for (int n = 0; n < 20; ++n) {
