@@ -49,14 +49,16 @@ Movement movement_in_cells(const Channels& channels, const GaussianMixture<doubl
   for (int block = 0; block < blocks.records.count(); block += stride) {
     if (blocks.classes[block].kind == BlockKind::skip) continue;
     double squared_range[most_channels] = {}, squared_bend[most_channels] = {};
+    bool vacuum = false;
     for (std::size_t c = 0; c < count; ++c) {
       const BlockRange range = records[c].range(block);
-      if (range.vacuum != BlockVacuum::none) continue;
+      vacuum = vacuum || range.vacuum != BlockVacuum::none;
       squared_range[c] = std::pow(range.max - range.min, 2);
       for (const float bend : records[c].bends(block).bend) {
         squared_bend[c] += double{bend} * double{bend};
       }
     }
+    if (vacuum) continue;
     double most = 0, bend = 0;
     for (int i = 0; i < mixture.count; ++i) {
       if (!blocks.primitives[block].holds(i)) continue;

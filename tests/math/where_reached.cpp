@@ -45,7 +45,7 @@ TEST(WhereReached, FindsCurvesInFewSteps) {
     const double target = below + share * (above - below);
     const Found found = find(f, target, lo, hi);
     calls += found.calls;
-    EXPECT_LE(found.calls, 120);
+    EXPECT_LE(found.calls, 130);
     const double off = std::fabs(f(found.at) - target) / (above - below);
     // Near enough in f, or between two places that are near to each other.
     if (off > 0x1p-44) {
@@ -57,6 +57,20 @@ TEST(WhereReached, FindsCurvesInFewSteps) {
   }
   std::printf("%.2f calls in the mean, f off by %.2g of its range at most\n", calls / count, worst);
   EXPECT_LE(calls / count, 18);
+}
+
+/// Where an interval holds few numbers.
+TEST(WhereReached, EndsInNarrowIntervals) {
+  for (double width = 1e-3; width > 1e-17; width /= 3) {
+    const double lo = 0.7, hi = lo + width;
+    if (!(hi > lo)) break;
+    for (int n = 1; n <= 200; ++n) {
+      const auto f = [&](double x) { return (x - lo) / (hi - lo); };
+      const Found found = find(f, n / 200.0, lo, hi);
+      EXPECT_LE(found.calls, 130);
+      EXPECT_NEAR(found.at, lo + n / 200.0 * width, 2e-12 * width + 0x1p-52);
+    }
+  }
 }
 
 TEST(WhereReached, FindsJumpsAndFlats) {

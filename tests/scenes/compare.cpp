@@ -47,7 +47,7 @@ void expect_exact_rays(const NamedScene& named) {
   light.print();
   depth.print();
   EXPECT_LE(light.largest(), ray_bound) << named.name;
-  // Bisection inside of a cell, 24 times (pellucid/render/integrate_ray.h); all grids here are
+  // What is looked for inside of a cell (pellucid/render/integrate_ray.h); all grids here are
   // uniform.
   const long double cell_diagonal =
       static_cast<long double>(length(scene.volume->description().placement.spacing));

@@ -36,7 +36,7 @@ void expect_known_pixels(Precision precision, const Bounds& bounds) {
         EXPECT_EQ(pixel[c], 0.0f) << ray.name;
       }
     }
-    // What the tolerance allows to be left out has no depth.
+    // What the tolerance allows to be left out has no depth that can be relied on.
     const bool faint = ray.opacity > 0 && ray.opacity < 10 * smallest_tolerance;
     if (std::isnan(ray.half_opacity_depth) || faint) continue;
     const auto found = static_cast<double>(image.depth[0]);

@@ -5,10 +5,10 @@
 
 namespace pellucid {
 
-/// The place in [lo, hi] where an f that does not fall reaches `target`, given f(lo) = below <
-/// target <= above = f(hi): to this share of the interval, or where f is nearer to the target than
-/// a sixteenth of that share of what it rises by. The first such place but for what rounding makes
-/// of f; hi where f is a jump there.
+/// A place in [lo, hi] where an f that does not fall reaches `target`, given f(lo) = below < target
+/// <= above = f(hi): to this share of the interval, or where f is nearer to the target than a
+/// sixteenth of that share of what it rises by, or between two neighbouring numbers; behind a jump
+/// where f is one.
 ///
 /// False position by the Illinois rule (Dowell and Jarratt 1971), which halves the weight of an end
 /// that stays; each third place is the middle, so that no f takes more than three for each bit.
@@ -21,7 +21,10 @@ PELLUCID_HD double where_reached(Function&& f, double target, double lo, double 
   double low = below - target, high = above - target;  // weighed
   for (int n = 1, moved = 0; hi - lo > shortest; ++n) {
     const double share = n % 3 == 0 || !(high > low) ? 0.5 : -low / (high - low);
-    const double at = lo + share * (hi - lo), off = f(at) - target;
+    double at = lo + share * (hi - lo);
+    if (!(at > lo && at < hi)) at = lo + 0.5 * (hi - lo);
+    if (!(at > lo && at < hi)) break;
+    const double off = f(at) - target;
     if (off < 0) {
       if (off > -nearest) return at;
       lo = at;

@@ -177,8 +177,8 @@ class GaussianMarch {
  private:
   static constexpr int steps = ResolvedGaussians<N>::steps;
   /// Cells along the axis on which they are the most: four of them are less than a block's width;
-  /// nor are they, or a half or quarter of them, in step with the cells, so that spans one behind
-  /// the other have to do with different places in cells.
+  /// nor are the longest in step with the cells, so that spans one behind the other have to do with
+  /// different places in cells. Shorter ones change from look to look.
   static constexpr float longest_step = 1.87f;
   static constexpr float shortest_step = 0x1p-13f;
   /// Cells: what sample_places.h says of so short ways, as a standard deviation at most.

@@ -143,7 +143,8 @@ class GaussianPacket {
     const F largest =
         sampled_.largest_variance(fold_.budget, rounding, s.opacity, look_.length, left);
     const M take = lanes & (variance <= largest) & (rounding <= fold_.budget.left());
-    // The variance grows with the step's fifth to tenth power, what it may be with the first.
+    // The variance of short steps grows with the step's fifth to tenth power, what it may be with
+    // the first.
     const F ease = F(0.4f) * largest / max(variance, F(1e-30f));
     const M known = (ease >= F(1e-6f)) & (take | !(variance <= largest));
     const F suits = exp(F(1.0f / 6) * log(min(select(known, ease, F(1)), F(64))));

@@ -53,15 +53,17 @@ class OpacityTrace {
       }
     }
     const auto place = [&](const Standing& at) noexcept {
-      return end - static_cast<double>(at.left);
+      return clamp(end - static_cast<double>(at.left), begin, end);
     };
     result.half = {begin, end, 0};
     if (before > 0) {
       result.half.begin = place(noted_[before - 1][l]);
       result.half.opacity_before = static_cast<double>(noted_[before - 1][l].opacity);
     }
-    if (lane.since > 0 || lane.count > 0) {
-      result.half.end = place(behind < lane.count ? noted_[behind][l] : lane.last);
+    if (lane.count > 0) {
+      // Places are rounded, and may be out of order.
+      result.half.end =
+          max(place(behind < lane.count ? noted_[behind][l] : lane.last), result.half.begin);
     }
   }
 

@@ -290,7 +290,8 @@ class PacketIntegrator {
     if (any(rest)) {
       const F half = F(0.5f) * place;
       const F part = (F(1) - from_) * half;  // of the cell
-      // Halving makes it at most four times better, and the half of a half sixteen times.
+      // Halving makes the color at most four times better, and the half of a half sixteen times,
+      // and of rounding nothing: that has to leave some room.
       const M halve = rest & end.found & (pieces_of_span_ < I(most_pieces)) &
                       (part >= F(narrowest)) & (cost_of_color <= F(64) * allowed) &
                       (cost_of_rounding <= F(0.6f) * allowed);

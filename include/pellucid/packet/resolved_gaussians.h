@@ -80,9 +80,9 @@ class LanePrimitives {
 /// Between two ends data leave their chord by at most a quarter of the step times the oscillation
 /// of their derivative (traverse/block_bends.h), so that each row of a primitive's p = K (v - c)
 /// leaves its own by at most step/4 Σ |K| · oscillation, entry by entry, and p by their root of
-/// squares e. On the chord from p to q no place is nearer
-/// to 0 than (|p| + |q| - |q - p|) / 2. So a primitive that matters nowhere on the step is known
-/// not to, and p moves by at most |q - p| + 2 e on any other.
+/// squares e. On the chord from p to q no place is nearer to 0 than (|p| + |q| - |q - p|) / 2. So a
+/// primitive that matters nowhere on the step is known not to, and p moves by at most |q - p| + 2 e
+/// on any other.
 template <int N>
 class ResolvedGaussians {
  public:

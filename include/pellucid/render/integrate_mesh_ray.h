@@ -220,17 +220,17 @@ template <class Visit>
 PELLUCID_HD void for_each_span_inside(const Tetrahedra& mesh, const MeshFields& fields,
                                       const MeshRay& ray, Interval<double> range,
                                       Visit&& visit) noexcept {
-  for_each_mesh_span(mesh, fields, ray.view, ray.hits, ray.count, [&](MeshSpan span) {
+  for_each_mesh_span(mesh, fields, ray.view, ray.hits, ray.count, [&](const MeshSpan& span) {
     if (span.end <= range.begin) return true;
     if (span.begin >= range.end) return false;
-    if (span.begin < range.begin) {
-      const double share = (range.begin - span.begin) / (span.end - span.begin);
-      for (int c = 0; c < fields.channels; ++c) {
-        span.front[c] += share * (span.back[c] - span.front[c]);
-      }
-      span.begin = range.begin;
+    if (span.begin >= range.begin) return visit(span);
+    MeshSpan rest = span;
+    const double share = (range.begin - span.begin) / (span.end - span.begin);
+    for (int c = 0; c < fields.channels; ++c) {
+      rest.front[c] += share * (span.back[c] - span.front[c]);
     }
-    return visit(span);
+    rest.begin = range.begin;
+    return visit(rest);
   });
 }
 

@@ -73,8 +73,9 @@ PELLUCID_HD inline double find_multivariate_half_opacity(
     const MultichannelGrid& grid, const MultivariateBlocks* blocks, const Ray<double>& ray_grid,
     const Multivariate<double>& transfer, double largest_extinction, const RayTolerance& wanted,
     double opacity, const HalfOpacity& half = {}) noexcept {
+  if (!(opacity > 0)) return std::numeric_limits<double>::infinity();
   const Interval<double> inside = grid_interval(grid.axis, ray_grid, half.range);
-  if (!(opacity > 0) || inside.empty()) return std::numeric_limits<double>::infinity();
+  if (inside.empty()) return half.range.end;
   MultivariateRayIntegrator integrator(transfer, largest_extinction, wanted,
                                        inside.end - inside.begin);
   integrator.look_for(half.depth_to_half(opacity));

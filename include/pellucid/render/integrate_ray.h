@@ -8,7 +8,7 @@
 namespace pellucid {
 
 /// The world arc length where the optical depth along this stretch of the ray reaches `target`;
-/// infinite where it never does. As closely as T can say.
+/// infinite where it never does. To 16 u of a cell, or of what it holds.
 template <class T, class Value>
 PELLUCID_HD double find_optical_depth(const StructuredGrid<Value, double>& grid,
                                       const Ray<double>& ray_grid, Interval<double> range,

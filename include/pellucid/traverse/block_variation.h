@@ -6,7 +6,7 @@
 namespace pellucid {
 
 /// How much the data of a block and of all that touch it vary: the largest of their records'
-/// (traverse/block_record.h). Upper halves of floats, as there; both infinite beside vacuum,
+/// (traverse/block_record.h). Upper halves of floats, as there; all infinite beside vacuum,
 /// through which data are not continuous. In loads of 32 bits: oscillation x and y; oscillation z
 /// and bend x; bend y and z; twist.
 ///
