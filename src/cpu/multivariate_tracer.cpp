@@ -104,10 +104,7 @@ class MultivariateTracer : public RayTracer {
   }
 
   std::vector<RayResult> trace_in_lanes(const std::vector<Ray<double>>& rays) const {
-    RayResult clear;
-    clear.error = 0;
-    clear.proved = true;
-    std::vector<RayResult> results(rays.size(), clear);
+    std::vector<RayResult> results(rays.size(), nothing_met());
     const PacketRays inside(channels_.grid(), rays.data(), static_cast<int>(rays.size()));
     std::vector<PellucidRayResult> found(inside.ray.size());
     if (steps_) {

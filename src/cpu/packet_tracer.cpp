@@ -116,10 +116,9 @@ PacketTracer::PacketTracer(const Volume& volume, const ClassifiedBlocks& blocks,
 
 void PacketTracer::trace(const Ray<double>* rays, int count, double share, bool depth,
                          RayResult* results) const {
-  RayResult clear;
-  clear.error = clear.unevenness = 0;
+  RayResult clear = nothing_met();
+  clear.unevenness = 0;
   clear.longest_step = std::numeric_limits<float>::infinity();
-  clear.proved = true;
   std::fill(results, results + count, clear);
   const PacketRays inside(volume_, rays, count);
   std::vector<PellucidRayResult> found(inside.ray.size());

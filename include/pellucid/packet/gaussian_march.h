@@ -5,6 +5,7 @@
 #include "pellucid/packet/multichannel_samples.h"
 #include "pellucid/packet/rays_in_blocks.h"
 #include "pellucid/packet/resolved_gaussians.h"
+#include "pellucid/traverse/block_bends.h"
 #include "pellucid/traverse/block_variation.h"
 
 #if PELLUCID_HAS_BATCH_4  // in sources compiled per instruction set
@@ -228,11 +229,12 @@ class GaussianMarch {
       blocks += select(leaves[a], F(1), F(0));
     }
     const I block = index_of(here);
-    // As of derivative_variation() (traverse/block_bends.h).
     const F step = F(0.25f) * length;
-    const F twisting = F(2) * step *
-                       (abs(direction_[1] * direction_[2]) + abs(direction_[2] * direction_[0]) +
-                        abs(direction_[0] * direction_[1]));
+    F speed[3], planes[3];  // of one step
+    for (int a = 0; a < 3; ++a) {
+      speed[a] = abs(direction_[a]);
+      planes[a] = speed[a] * step + F(1);
+    }
     const I upper_half(static_cast<std::int32_t>(0xffff0000u));
     for (int c = 0; c < fields_.channels; ++c) {
       I packed[4];
@@ -240,20 +242,19 @@ class GaussianMarch {
       const auto low = [](I x) noexcept { return float_of_bits(x << 16); };
       const auto high = [&](I x) noexcept { return float_of_bits(x & upper_half); };
       const F oscillation[3] = {low(packed[0]), high(packed[0]), low(packed[1])},
-              twist = low(packed[3]);
-      F* const bend = around_.bend[c];
+              twist[3] = {low(packed[3]), low(packed[3]), low(packed[3])};
+      F(&bend)[3] = around_.bend[c];
       bend[0] = high(packed[1]);
       bend[1] = low(packed[2]);
       bend[2] = high(packed[2]);
-      F on_the_way(0), in_a_step = select(twisting > F(0), twisting * twist, F(0));
+      F on_the_way(0);
       for (int a = 0; a < 3; ++a) {
         // An axis along which nothing moves does not count, even if unbounded.
-        const F speed = abs(direction_[a]);
         const F range = blocks * oscillation[a] + select(leaves[a], bend[a], F(0));
-        on_the_way += select(speed > F(0), speed * range, F(0));
-        in_a_step += select(speed > F(0), speed * (speed * step + F(1)) * bend[a], F(0));
+        on_the_way += select(speed[a] > F(0), speed[a] * range, F(0));
       }
-      around_.oscillation[c] = min(on_the_way, in_a_step) * F(1 + 32 * rounding_unit<float>);
+      around_.oscillation[c] = min(on_the_way * F(1 + 32 * rounding_unit<float>),
+                                   derivative_variation(bend, twist, speed, planes, step));
     }
     near_.clear();
     add_primitives(block, alive);

@@ -30,6 +30,7 @@ class GaussianPacket {
                *static_cast<const SteppedMixture*>(job.mixture),
                static_cast<const PrimitiveSet*>(job.primitives),
                static_cast<const BlockVariation*>(job.variation)),
+        trace_(rays_.depth != 0),
         largest_color_(static_cast<float>(rays_.largest_color)) {
     for (int l = 0; l < N; ++l) {
       ray_of_lane_[l] = -1;
@@ -72,7 +73,7 @@ class GaussianPacket {
     const PacketFold<N> nothing(rays_.tolerance, rays_.largest_extinction, rays_.largest_color,
                                 convert<float>(march_.end()));
     fold_ = select(given, nothing, fold_);
-    if (rays_.depth != 0) trace_.begin(given);
+    trace_.begin(given);
     sampled_ = select(given, SampledErrors<F>(), sampled_);
     given_up_ = given_up_ & !given;
     for (I* counter : {&skipped_, &segments_, &looks_}) *counter = select(given, I(0), *counter);
@@ -109,7 +110,7 @@ class GaussianPacket {
       r.skipped = skipped[l];
       r.strides = taken[l];
       r.proved = taken[l] == 0 ? 1 : 0;
-      if (rays_.depth != 0) trace_.find_half(l, lane_ray_[l].begin, lane_ray_[l].end, r);
+      trace_.find_half(l, lane_ray_[l].begin, lane_ray_[l].end, r);
       ray_of_lane_[l] = -1;
     }
   }
@@ -156,7 +157,7 @@ class GaussianPacket {
                  transparency);
     segments_ += select(take, I(1), I(0));
     march_.take(take, look_, change);
-    if (rays_.depth != 0) trace_.note(take, fold_);
+    trace_.note(take, fold_);
     march_.alive = march_.alive & !fold_.cut_off(take);
     return take;
   }
@@ -175,7 +176,7 @@ class GaussianPacket {
   typename March::Look look_;
   SampledErrors<F> sampled_;
   PacketFold<N> fold_;
-  OpacityTrace<N> trace_;  ///< where the depth is asked for
+  OpacityTrace<N> trace_;
   F largest_color_;
   M given_up_{false};
   I skipped_, segments_, looks_;

@@ -41,6 +41,7 @@ class MeshPacket {
         march_(job, first, count),
         fold_(job.tolerance, transfer_.largest_extinction, job.largest_color,
               max(convert<float>(march_.rays.end - march_.rays.begin), F(0))),
+        trace_(job.depth != 0),
         largest_color_(static_cast<float>(job.largest_color)) {
     std::int32_t lane[N];
     for (int l = 0; l < N; ++l) lane[l] = l;
@@ -93,11 +94,9 @@ class MeshPacket {
       r.closed = pieces_[l];
       r.in_double = in_double_[l];
       r.proved = 1;
-      if (job_.depth != 0) {
-        const auto eye = static_cast<double>(march_.rays.eye[l]);
-        trace_.find_half(l, static_cast<double>(march_.rays.begin[l]) - eye,
-                         static_cast<double>(march_.rays.end[l]) - eye, r);
-      }
+      const auto eye = static_cast<double>(march_.rays.eye[l]);
+      trace_.find_half(l, static_cast<double>(march_.rays.begin[l]) - eye,
+                       static_cast<double>(march_.rays.end[l]) - eye, r);
     }
   }
 
@@ -339,7 +338,7 @@ class MeshPacket {
 
   /// Something was added to the lanes' rays: ends those that no longer matter.
   void retire(M lanes) noexcept {
-    if (job_.depth != 0) trace_.note(lanes, fold_);
+    trace_.note(lanes, fold_);
     const M done = fold_.cut_off(lanes);
     if (none(done)) return;
     march_.stop(done);
@@ -429,7 +428,7 @@ class MeshPacket {
   SegmentResult<F> segment_;
 
   PacketFold<N> fold_;
-  OpacityTrace<N> trace_;  ///< where the depth is asked for
+  OpacityTrace<N> trace_;
   F largest_color_;
   I cells_{0}, pieces_{0}, in_double_{0};
 };

@@ -35,9 +35,7 @@ class MultivariateCellPacket {
         march_(rays_, grid, *static_cast<const MultichannelGrid*>(job.grid),
                static_cast<const PrimitiveSet*>(job.primitives), first, count),
         lanes_(mixture_, rays_.tolerance, rays_.largest_color, rays_.largest_extinction,
-               job.proved != 0, convert<float>(march_.end), room) {
-    if (rays_.depth != 0) lanes_.note_opacities();
-  }
+               job.proved != 0, rays_.depth != 0, convert<float>(march_.end), room) {}
 
   void run() noexcept {
     for (;;) {
@@ -71,10 +69,8 @@ class MultivariateCellPacket {
       r.in_double = job_.proved == 0 && mixture_.transfer.tables == 0 ? r.closed : 0;
       r.skipped = march_.skipped[l] + max(cells - panels, 0);
       r.proved = lanes_.estimated[l] ? 0 : 1;
-      if (rays_.depth != 0) {
-        const PellucidRay& ray = rays_.rays[first_ + l];
-        lanes_.find_half(l, ray.begin, ray.end, r);
-      }
+      const PellucidRay& ray = rays_.rays[first_ + l];
+      lanes_.trace().find_half(l, ray.begin, ray.end, r);
     }
   }
 

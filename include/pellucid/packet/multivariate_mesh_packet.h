@@ -33,9 +33,8 @@ class MultivariateMeshPacket {
         count_(count),
         march_(job, first, count),
         lanes_(mixture_, job.tolerance, job.largest_color, job.largest_extinction, job.proved != 0,
-               max(convert<float>(march_.rays.end - march_.rays.begin), F(0)), room) {
-    if (job_.depth != 0) lanes_.note_opacities();
-  }
+               job.depth != 0, max(convert<float>(march_.rays.end - march_.rays.begin), F(0)),
+               room) {}
 
   void run() noexcept {
     while (any(march_.walking)) {
@@ -67,10 +66,8 @@ class MultivariateMeshPacket {
       r.panels = nodes;
       r.skipped = max(cells_[l] - panels, 0);
       r.proved = lanes_.estimated[l] ? 0 : 1;
-      if (job_.depth != 0) {
-        const double eye = march_.rays.eye[l];
-        lanes_.find_half(l, march_.rays.begin[l] - eye, march_.rays.end[l] - eye, r);
-      }
+      const double eye = march_.rays.eye[l];
+      lanes_.trace().find_half(l, march_.rays.begin[l] - eye, march_.rays.end[l] - eye, r);
     }
   }
 

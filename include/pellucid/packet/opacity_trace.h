@@ -15,6 +15,9 @@ class OpacityTrace {
   using F = Batch<float, N>;
   using M = BatchMask<N>;
 
+  /// Where `asked` is false nothing is noted, and nothing found.
+  explicit OpacityTrace(bool asked) noexcept : asked_(asked) {}
+
   /// The lanes begin with other rays.
   void begin(M lanes) noexcept {
     for (unsigned left = bits(lanes); left != 0; left &= left - 1) {
@@ -24,6 +27,7 @@ class OpacityTrace {
 
   /// Segments of the lanes' rays were added and paid for.
   void note(M lanes, const PacketFold<N>& fold) noexcept {
+    if (!asked_) return;
     float left_of_ray[N], opacity[N];
     fold.budget.length_left().store(left_of_ray);
     convert<float>(fold.opacity()).store(opacity);
@@ -41,6 +45,7 @@ class OpacityTrace {
   /// Says where half of this opacity is reached, all that the lane's ray has, which is from `begin`
   /// to `end`.
   void find_half(int l, double begin, double end, PellucidRayResult& result) const noexcept {
+    if (!asked_) return;
     const Lane& lane = of_lane_[l];
     const auto half = static_cast<float>(0.5 * result.opacity);
     int before = 0, behind = lane.count;  // how many have less; the first one that may have more
@@ -84,6 +89,7 @@ class OpacityTrace {
     lane.apart *= 2;
   }
 
+  bool asked_;
   Lane of_lane_[N];
   Standing noted_[most][N];
 };

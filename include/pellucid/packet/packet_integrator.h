@@ -47,6 +47,7 @@ class PacketIntegrator {
         smooth_(job, grid, blocks_.origin, blocks_.direction),
         fold_(job.tolerance, transfer_.largest_extinction, job.largest_color,
               convert<float>(D::load(blocks_.end))),
+        trace_(job.depth != 0),
         largest_color_(static_cast<float>(job.largest_color)) {
     float far[N], block[N];
     for (int l = 0; l < N; ++l) {
@@ -98,10 +99,8 @@ class PacketIntegrator {
            unevenness[l],
            longest_step[l],
            static_cast<std::uint8_t>(bits(proved_) >> l & 1)};
-      if (job_.depth != 0) {
-        const PellucidRay& ray = job_.rays[first_ + l];
-        trace_.find_half(l, ray.begin, ray.end, r);
-      }
+      const PellucidRay& ray = job_.rays[first_ + l];
+      trace_.find_half(l, ray.begin, ray.end, r);
     }
   }
 
@@ -322,7 +321,7 @@ class PacketIntegrator {
 
   /// Something was added to the lanes' rays: ends those that no longer matter.
   void retire(M lanes) noexcept {
-    if (job_.depth != 0) trace_.note(lanes, fold_);
+    trace_.note(lanes, fold_);
     const M done = fold_.cut_off(lanes);
     blocks_.alive = blocks_.alive & !done;
     drop_spans(done);
@@ -405,7 +404,7 @@ class PacketIntegrator {
 
   SampledErrors<F> sampled_;
   PacketFold<N> fold_;
-  OpacityTrace<N> trace_;  ///< where the depth is asked for
+  OpacityTrace<N> trace_;
   F largest_color_;
   M proved_{true};
   std::int32_t cells_seen_[N] = {};

@@ -56,9 +56,11 @@ class PanelLanes {
     double end[most_cuts + 1][N];  ///< of the parts of a lane's span that are still to do
   };
 
-  /// `length` of the rays, where they may absorb; `largest_color` >= 1.
+  /// `length` of the rays, where they may absorb; `largest_color` >= 1; `depth`: whether trace() is
+  /// asked for.
   PanelLanes(const NearMixture& mixture, double tolerance, double largest_color,
-             double largest_extinction, bool proved, const F& length, Room& room) noexcept
+             double largest_extinction, bool proved, bool depth, const F& length,
+             Room& room) noexcept
       : mixture_(mixture),
         transfer_(mixture.transfer),
         tolerance_(static_cast<float>(tolerance)),
@@ -66,7 +68,8 @@ class PanelLanes {
         room_(room),
         length_(length),
         log_share_(log(share_of_diagonal())),
-        fold_(tolerance, largest_extinction, largest_color, length) {
+        fold_(tolerance, largest_extinction, largest_color, length),
+        trace_(depth) {
     demand_.grade = proved ? Grade::proved : Grade::estimated;
     demand_.largest_color = largest_color;
     see_less();
@@ -103,12 +106,7 @@ class PanelLanes {
     if (any(spans_.pending)) integrate_panels(stop);
   }
 
-  /// From now on it is noted where rays have which opacity, for find_half().
-  void note_opacities() noexcept { noted_ = true; }
-  /// As of OpacityTrace.
-  void find_half(int lane, double begin, double end, PellucidRayResult& result) const noexcept {
-    trace_.find_half(lane, begin, end, result);
-  }
+  const OpacityTrace<N>& trace() const noexcept { return trace_; }
 
   SegmentResult<D> result() const noexcept { return fold_.result(); }
   /// What that may be off by; `longer`: how much longer the rays may be where spans were passed
@@ -234,7 +232,7 @@ class PanelLanes {
       nodes += select(absorbs & panel.found.panels, I(1), I(0));
       estimated = estimated | (absorbs & !panel.found.proved);
       next_part(take);
-      if (noted_) trace_.note(take, fold_);
+      trace_.note(take, fold_);
       const M done = fold_.cut_off(take);
       if (any(done)) {
         forget(done);
@@ -279,7 +277,6 @@ class PanelLanes {
   PanelDemand<D, LanePrimitiveSets<N>> demand_;  ///< of the spans that lanes work on
   PacketFold<N> fold_;
   OpacityTrace<N> trace_;
-  bool noted_ = false;
   LaneSpans<N> spans_;
   int row_ = 0;
 

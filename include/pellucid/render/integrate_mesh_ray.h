@@ -207,14 +207,6 @@ PELLUCID_HD inline void add_span(const Multivariate<double>& transfer, const Mes
                      span.place_error + span.end_error);
 }
 
-/// Of a ray that does not meet the mesh.
-PELLUCID_HD inline RayResult nothing_met() noexcept {
-  RayResult nothing;
-  nothing.error = 0;
-  nothing.proved = true;
-  return nothing;
-}
-
 /// for_each_mesh_span(), of what lies in the range.
 template <class Visit>
 PELLUCID_HD void for_each_span_inside(const Tetrahedra& mesh, const MeshFields& fields,
@@ -243,7 +235,7 @@ PELLUCID_HD inline RayResult integrate_mesh_ray(const Tetrahedra& mesh, const Me
                                                 const TransferTables& transfer, const MeshRay& ray,
                                                 const RayTolerance& wanted) noexcept {
   const Interval<double> inside = ray.inside();
-  if (inside.empty()) return detail::nothing_met();
+  if (inside.empty()) return nothing_met();
   MeshRayIntegrator integrator(transfer, wanted, inside);
   for_each_mesh_span(mesh, fields, ray.view, ray.hits, ray.count, [&](const MeshSpan& span) {
     integrator.span(span);
@@ -258,7 +250,7 @@ PELLUCID_HD inline RayResult integrate_multivariate_mesh_ray(
     const Tetrahedra& mesh, const MeshFields& fields, const Multivariate<double>& transfer,
     double largest_extinction, const MeshRay& ray, const RayTolerance& wanted) noexcept {
   const Interval<double> inside = ray.inside();
-  if (inside.empty()) return detail::nothing_met();
+  if (inside.empty()) return nothing_met();
   MultivariateRayIntegrator integrator(transfer, largest_extinction, wanted,
                                        inside.end - inside.begin);
   long cells = 0;

@@ -93,10 +93,7 @@ PELLUCID_HD inline RayResult integrate_multivariate_ray(
     const Multivariate<double>& transfer, double largest_extinction, const RayTolerance& wanted,
     bool with_depth) noexcept {
   const Interval<double> inside = grid_interval(grid.axis, ray_grid);
-  RayResult nothing;
-  nothing.error = 0;
-  nothing.proved = true;
-  if (inside.empty()) return nothing;
+  if (inside.empty()) return nothing_met();
 
   MultivariateRayIntegrator integrator(transfer, largest_extinction, wanted,
                                        inside.end - inside.begin);

@@ -100,10 +100,7 @@ PELLUCID_HD RayResult integrate_ray(const StructuredGrid<Value, double>& grid,
                                     const TransferTables& transfer, const RayTolerance& wanted,
                                     bool with_depth) noexcept {
   const Interval<double> inside = grid_interval(grid.axis, ray_grid);
-  RayResult nothing;
-  nothing.error = 0;
-  nothing.proved = true;
-  if (inside.empty()) return nothing;
+  if (inside.empty()) return nothing_met();
 
   RayIntegrator<Value> integrator(grid, ray_grid, transfer, wanted, inside.end - inside.begin);
   long cells = 0;

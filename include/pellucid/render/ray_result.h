@@ -54,4 +54,12 @@ struct RayResult {
   RuleCounts spans;
 };
 
+/// Of a ray that meets nothing.
+PELLUCID_HD inline RayResult nothing_met() noexcept {
+  RayResult nothing;
+  nothing.error = 0;
+  nothing.proved = true;
+  return nothing;
+}
+
 }  // namespace pellucid

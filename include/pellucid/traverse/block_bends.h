@@ -22,19 +22,31 @@ struct BlockBends {
 /// direction d it is 2 Σ d_a d_b twist_ab. Across a plane of axis a the derivative jumps by d_a
 /// times that by a, which is bilinear on the face: at most its largest corner. A stretch of this
 /// length meets at most |d_a| length / (least width) + 1 planes of the axis.
+///
+/// `speed`: |d_a|; `planes`: how many of each axis are met at most. Axes along which nothing moves
+/// do not count, even where what is said of them is unbounded. T: double, or a number of several
+/// rays at once.
+template <class T>
+PELLUCID_HD T derivative_variation(const T (&bend)[3], const T (&twist)[3], const T (&speed)[3],
+                                   const T (&planes)[3], T length) noexcept {
+  T sum(0);
+  for (int a = 0; a < 3; ++a) {
+    const T both = speed[(a + 1) % 3] * speed[(a + 2) % 3];
+    sum += select(both > T(0), T(2) * length * (both * twist[a]), T(0));
+    sum += select(speed[a] > T(0), speed[a] * planes[a] * bend[a], T(0));
+  }
+  return sum * T(1 + 32 * rounding_unit<T>);
+}
 PELLUCID_HD inline double derivative_variation(const BlockBends& bends, Vec3<double> direction,
                                                Vec3<double> least_width, double length) noexcept {
-  double sum = 0;
+  double bend[3], twist[3], speed[3], planes[3];
   for (int a = 0; a < 3; ++a) {
-    const double d = abs(direction[a]);
-    const int b = (a + 1) % 3, c = (a + 2) % 3;
-    const double twist = abs(direction[b] * direction[c]) * static_cast<double>(bends.twist[a]);
-    if (twist > 0) sum += 2 * length * twist;
-    if (d > 0 && bends.bend[a] > 0) {
-      sum += d * (d * length / least_width[a] + 1) * static_cast<double>(bends.bend[a]);
-    }
+    bend[a] = static_cast<double>(bends.bend[a]);
+    twist[a] = static_cast<double>(bends.twist[a]);
+    speed[a] = abs(direction[a]);
+    planes[a] = speed[a] * length / least_width[a] + 1;
   }
-  return sum * (1 + 32 * rounding_unit<double>);
+  return derivative_variation(bend, twist, speed, planes, length);
 }
 
 /// How far data whose derivative varies by `variation` in all can leave the chord of a stretch:
