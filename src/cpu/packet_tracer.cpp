@@ -98,6 +98,7 @@ PacketTracer::PacketTracer(const Volume& volume, const ClassifiedBlocks& blocks,
   job_.transfer = &binned_.view();
   job_.tolerance = wanted.tolerance;
   job_.largest_color = max(wanted.largest_color, 1.0);
+  job_.proved = wanted.grade == Grade::proved ? 1 : 0;
   job_.largest_extinction = transfer.largest_extinction;
   // A sample is rounded, and its place, by 32 u of the largest value, all told; and where it is
   // looked up by 8 u of the control points' range.

@@ -121,6 +121,7 @@ BinnedTransferStorage::BinnedTransferStorage(const PiecewiseLinear<double>& tabl
     for (const double field :
          {below ? -far : table.value[a], beyond ? far : table.value[b], at_lower, slope_of(i)}) {
       extinction_.push_back(static_cast<float>(field));
+      wide_extinction_.push_back(field);
     }
     for (const double field : {std::max(at_lower, at_upper), steepest, range, color_slope}) {
       extinction_.push_back(field > 0 ? above(field) : 0.0f);
@@ -309,6 +310,7 @@ BinnedTransferStorage::BinnedTransferStorage(const PiecewiseLinear<double>& tabl
   view_.largest_extinction = above(largest_extinction);
   view_.largest_color = above(largest_color);
   view_.extinction = extinction_.data();
+  view_.wide_extinction = wide_extinction_.data();
   view_.color = color_.data();
   view_.first_extinction = first_extinction_.data();
   view_.first_color = first_color_.data();

@@ -107,8 +107,9 @@ Seen compare_random_scenes(int count, const std::vector<double>& tolerances, con
 
 /// Random scenes of all kinds, most of which come within their tolerance.
 template <class Make>
-void expect_honest_scenes(int count, const Make& make) {
-  const Seen seen = compare_random_scenes(count, {1e-2, 1.0 / 512, 2e-4}, make, Promise::honest);
+void expect_honest_scenes(int count, const Make& make,
+                          const std::vector<double>& tolerances = {1e-2, 1.0 / 512, 2e-4}) {
+  const Seen seen = compare_random_scenes(count, tolerances, make, Promise::honest);
   EXPECT_GT(seen.pixels, 20000U);
   EXPECT_LT(seen.over, seen.pixels / 100);
 }

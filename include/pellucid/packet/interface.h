@@ -80,7 +80,8 @@ struct PellucidPacketJob {
   const PellucidRay* rays;
   PellucidRayResult* results;
   std::int32_t count;
-  std::int32_t depth;  ///< whether results are to say where half of the opacity is
+  std::int32_t depth;   ///< whether results are to say where half of the opacity is
+  std::int32_t proved;  ///< whether bounds are wanted, not estimates
   /// Integrates what the packets hand back.
   void (*integrate_cell)(const void* context, std::int32_t ray, const PellucidCell* cell,
                          PellucidCellResult* result);

@@ -2,11 +2,13 @@
 #pragma once
 
 #include "pellucid/error/random_errors.h"
+#include "pellucid/packet/cell_places.h"
+#include "pellucid/packet/cells_in_double.h"
 #include "pellucid/packet/opacity_trace.h"
 #include "pellucid/packet/packet_fold.h"
 #include "pellucid/packet/smooth_march.h"
 #include "pellucid/packet/span_finder.h"
-#include "pellucid/segment/extinction_piece.h"
+#include "pellucid/packet/span_piece.h"
 
 #if PELLUCID_HAS_BATCH_4  // in sources compiled per instruction set
 namespace pellucid {
@@ -18,7 +20,8 @@ namespace pellucid {
 /// spans that absorb in these (SpanFinder), whose lanes are any stretches. Then each lane takes the
 /// spans of its ray, piece by piece: each is cut where the extinction has a corner
 /// (segment/extinction_piece.h), and halved where the budget cannot pay for its color. What
-/// binary32 is not good enough for is handed back, cell by cell.
+/// binary32 is not good enough for waits until most lanes have such a span, and is begun anew in
+/// double; what that is not good enough for is handed back, cell by cell.
 template <class Value, int N>
 class PacketIntegrator {
  public:
@@ -38,17 +41,21 @@ class PacketIntegrator {
   PacketIntegrator(const PellucidPacketJob& job, const PacketGrid<Value>& grid, Room& room,
                    int first, int count) noexcept
       : job_(job),
+        grid_(grid),
         transfer_(*static_cast<const BinnedTransfer*>(job.transfer)),
         room_(room),
         first_(first),
         count_(count),
         blocks_(grid, job.rays + first, count),
         finder_(grid, blocks_, transfer_),
+        cells_in_double_(grid, blocks_),
         smooth_(job, grid, blocks_.origin, blocks_.direction),
         fold_(job.tolerance, transfer_.largest_extinction, job.largest_color,
               convert<float>(D::load(blocks_.end))),
         trace_(job.depth != 0),
-        largest_color_(static_cast<float>(job.largest_color)) {
+        largest_color_(static_cast<float>(job.largest_color)),
+        double_will_do_(job.tolerance >
+                        64 * static_cast<double>(rounding_unit<float>) * job.largest_color) {
     float far[N], block[N];
     for (int l = 0; l < N; ++l) {
       // Where the ray meets the planes is known to a few units of its arc length.
@@ -71,7 +78,7 @@ class PacketIntegrator {
     while (any(blocks_.alive)) {
       find_spans();
       begin_spans();
-      for (take_spans(); any(pending_); take_spans()) integrate_pieces();
+      for (take_spans(); any(pending_); take_spans()) integrate_spans();
       sample_smooth();
     }
   }
@@ -147,10 +154,12 @@ class PacketIntegrator {
     const I code = convert<std::int32_t>(row[7]);
     const auto has = [&](int flag) noexcept { return (code & I(flag)) > I(0); };
     pending_ = pending_ | lanes;
-    located_ = located_ & !lanes;
-    for (int k = 0; k < 4; ++k) data_.b[k] = select(lanes, row[k], data_.b[k]);
-    rounding_ = select(lanes, row[4], rounding_);
-    length_ = select(lanes, row[5], length_);
+    in_double_now_ = in_double_now_ & !lanes;
+    for (int k = 0; k < 4; ++k) single_.data.b[k] = select(lanes, row[k], single_.data.b[k]);
+    single_.rounding = select(lanes, row[4], single_.rounding);
+    single_.length = select(lanes, row[5], single_.length);
+    single_.from = select(lanes, F(0), single_.from);
+    single_.begin(lanes);
     span_length_ = select(lanes, row[5], span_length_);
     left_ = select(lanes, row[6], left_);
     code_ = select(lanes, code, code_);
@@ -158,14 +167,12 @@ class PacketIntegrator {
     last_of_block_ = select(lanes, has(SpanCode::last), last_of_block_);
     handed_back_ = handed_back_ | (lanes & has(SpanCode::handed_back));
     constant_ += select(lanes & whole_block_, I(1), I(0));
-    from_ = select(lanes, F(0), from_);
-    cap_ = select(lanes, F(1), cap_);
-    pieces_of_span_ = select(lanes, I(0), pieces_of_span_);
   }
 
   /// Gives up what was found of the lanes' rays.
   void drop_spans(M lanes) noexcept {
     pending_ = pending_ & !lanes;
+    not_begun_ = not_begun_ & !lanes;
     row_ = select(lanes, end_row_, row_);
     stretches_ = select(lanes, I(0), stretches_);
   }
@@ -218,105 +225,128 @@ class PacketIntegrator {
     retire(take);
   }
 
-  [[gnu::flatten]] void integrate_pieces() noexcept {
+  void integrate_spans() noexcept {
     if (any(handed_back_)) {
       hand_back(handed_back_);
       handed_back_ = M(false);
-      if (none(pending_)) return;
     }
-    const M on = pending_;
-    const M lost =
-        on & !located_ & ((data_.b[0] < extinction_.lower) | (data_.b[0] >= extinction_.upper));
-    if (any(lost)) extinction_ = find_extinction(transfer_, data_.b[0], lost, interval_);
-    const ExtinctionInterval<F>& interval = extinction_;
-    located_ = located_ | on;
-    pieces_of_span_ += select(on, I(1), I(0));
-    const F close = F(0.25f) * rounding_;
-    const PieceEnd<F> end = piece_end(data_, interval.lower, interval.upper, close, on);
-    const M capped = cap_ < end.place;
-    const F place = min(end.place, cap_);
-    const M crosses = end.crosses & !capped;
-    CutCubic<F> parts{data_, data_};
-    if (any(on & (place < F(1)))) {
-      parts = cut(data_, place);
-      const F limit = select(end.rising, interval.upper, interval.lower);
-      parts.front.b[3] = select(crosses, limit, parts.front.b[3]);
-      parts.back.b[0] = select(crosses, limit, parts.back.b[0]);
+    const M single = pending_ & !in_double_now_, wide = pending_ & in_double_now_;
+    // What becomes of a lane does not depend on when. Lanes wait until what they lost by that is
+    // what those that do not wait would lose.
+    const int waiting = count(wide);
+    if (any(single) && (waiting == 0 || 2 * waited_ < N - waiting)) {
+      waited_ += waiting;
+      integrate_pieces(single_, single);
+    } else if (waiting > 0) {
+      waited_ = 0;
+      begin_in_double();
+      integrate_pieces(double_, wide);
     }
-    const F length = length_ * place;
-    const BoundedSegment<F> piece =
-        extinction_piece(parts.front, interval, length, transfer_, on, color_);
-    const SegmentResult<F>& s = piece.segment;
+  }
 
-    // What rounding can do, as in segment/rounding.h.
-    constexpr float u = rounding_unit<float>;
-    const F value_error = rounding_ + close;
-    // The slope of the next interval counts for as much of the piece as is near to it: where the
-    // data rise throughout, no more than 2 value_error over their least slope.
-    const CubicBernstein<F>& f = parts.front;
-    const M touches = (f.hull_min() - value_error < interval.lower) |
-                      (f.hull_max() + value_error > interval.upper) | crosses;
-    const F d0 = f.b[1] - f.b[0], d1 = f.b[2] - f.b[1], d2 = f.b[3] - f.b[2];
-    const F least_slope = F(3) * max(min(d0, min(d1, d2)), -max(d0, max(d1, d2)));
-    const F slope = abs(interval.slope);
-    F steep = slope;
-    if (any(touches)) {
-      const F near =
-          select(least_slope > F(2) * value_error, F(2) * value_error / least_slope, F(1));
-      steep = select(touches, slope + near * (interval.steepest - slope), slope);
-    }
-    const F depth_error = length * (value_error * steep + F(8 * u) * interval.largest) +
-                          place_error() * ((F(1) - from_) * place) * interval.largest;
-    const F color_rounding =
-        F(32 * u) * largest_color_ + min(value_error * interval.color_slope, largest_color_);
-    const F opacity_rounding =
-        F(32 * u) * s.opacity +
-        min(select(depth_error <= F(1), F(2) * depth_error * s.transparency, F(1)), F(1));
-    // Extinction that is elsewhere in the piece shows another color of it.
-    const F colors =
-        min(interval.color_slope * (f.hull_max() - f.hull_min()), interval.color_range);
-    const F rounding = s.opacity * color_rounding + largest_color_ * opacity_rounding +
-                       colors * min(depth_error, F(1));
-    fold_.budget.pass_to(select(on, left_ - from_ * span_length_, fold_.budget.length_left()));
+  template <class T>
+  [[gnu::flatten]] void integrate_pieces(SpanLanes<T, N>& span, M on) noexcept {
+    using Place = Batch<T, N>;
+    constexpr bool wide = !is_single<T>;
+    SpanPiece<T, N> piece = next_piece(span, transfer_, on, wide ? place_error_ : place_error(),
+                                       largest_color_, color_);
+    const SegmentResult<F>& s = piece.found.segment;
+    const F length = convert<float>(piece.length);
+    fold_.budget.pass_to(select(on, left_behind(span), fold_.budget.length_left()));
     const F transparency = fold_.transparency();
     const typename RayBudget<F>::Shares shares = fold_.budget.shares(length, s.opacity);
-    const F allowed = shares.sum(), cost_of_color = transparency * piece.color_error,
-            cost_of_rounding = transparency * rounding, cost = cost_of_color + cost_of_rounding;
-    const M take = on & end.found & (cost <= allowed);
+    const F allowed = shares.sum(), cost_of_rounding = transparency * piece.rounding;
+    const auto fits = [&] {
+      return on & piece.end.found &
+             (transparency * piece.found.color_error + cost_of_rounding <= allowed);
+    };
+    M take = fits();
     const M restart = on & !take & whole_block_;
     if (any(restart)) go_back(restart);
-    const M rest = on & !take & !restart;
+    M rest = on & !take & !restart;
+    const M room_for_color = rest & piece.end.found & (cost_of_rounding <= F(0.6f) * allowed);
+    // Panels are worth their price where they will do: where they look up many colors, only for
+    // pieces that are dear, in double or halved again and again.
+    const F in_panel_cost =
+        transparency * s.opacity * panel_piece_error(piece.seen, piece.spread, job_.proved != 0);
+    const F halved_in_vain = wide || !transfer_.bends ? F(0) : F(8) * allowed;
+    const M in_panel = room_for_color & (s.optical_depth <= F(largest_panel_depth<float>)) &
+                       (in_panel_cost + cost_of_rounding <= allowed) &
+                       (transparency * piece.found.color_error > halved_in_vain);
+    if (any(in_panel)) {
+      color_in_panel(span, job_.proved != 0, transfer_, in_panel, color_, piece);
+      take = fits();
+      rest = rest & !take;
+    }
     if (any(rest)) {
-      const F half = F(0.5f) * place;
-      const F part = (F(1) - from_) * half;  // of the cell
+      const Place half = Place(0.5f) * piece.place;
+      const F part = convert<float>((Place(1) - span.from) * half);  // of the cell
       // Halving makes the color at most four times better, and the half of a half sixteen times,
       // and of rounding nothing: that has to leave some room.
-      const M halve = rest & end.found & (pieces_of_span_ < I(most_pieces)) &
-                      (part >= F(narrowest)) & (cost_of_color <= F(64) * allowed) &
-                      (cost_of_rounding <= F(0.6f) * allowed);
-      cap_ = select(halve, half, cap_);
+      const M halve = rest & room_for_color & (span.pieces < I(most_pieces)) &
+                      (part >= F(narrowest)) &
+                      (transparency * piece.found.color_error <= F(64) * allowed);
+      span.halve(halve, half);
       const M give_up = rest & !halve;
-      if (any(give_up)) hand_back(give_up);
+      if (any(give_up)) {
+        if constexpr (wide) {
+          hand_back(give_up);
+        } else {
+          wait_for_double(give_up);
+        }
+      }
     }
     if (none(take)) return;
+    const F cost = transparency * piece.found.color_error + cost_of_rounding;
     fold_.add(take, s);
     fold_.budget.spend(select(take, length, F(0)), shares, select(take, cost, F(0)));
     pieces_ += select(take, I(1), I(0));
+    panels_ += select(take & piece.found.panels, I(1), I(0));
+    proved_ = proved_ & !(take & !piece.found.proved);
 
-    const F left = F(1) - place;
-    for (int k = 0; k < 4; ++k) data_.b[k] = select(take, parts.back.b[k], data_.b[k]);
-    length_ = select(take, length_ * left, length_);
-    from_ = select(take, from_ + (F(1) - from_) * place, from_);
-    cap_ = select(take, select(capped & (place < left), place / left, F(1)), cap_);
-    const M crossed = take & crosses;
+    const CubicBernstein<Place>& back = piece.parts.back;
+    const Place place = piece.place, left = Place(1) - place;
+    for (int k = 0; k < 4; ++k) span.data.b[k] = select(take, back.b[k], span.data.b[k]);
+    span.length = select(take, span.length * left, span.length);
+    span.from = select(take, span.from + (Place(1) - span.from) * place, span.from);
+    span.cap =
+        select(take, select(piece.capped & (place < left), place / left, Place(1)), span.cap);
+    const M crossed = take & piece.crosses;
     if (any(crossed)) {
-      interval_ += select(crossed, select(end.rising, I(1), I(-1)), I(0));
-      extinction_ = load_extinction<F>(transfer_, interval_);
+      span.interval += select(crossed, select(piece.end.rising, I(1), I(-1)), I(0));
+      span.extinction = load_extinction<Place>(transfer_, span.interval);
     }
-    const M clear = (parts.back.hull_max() + rounding_ < F(transfer_.support_min)) |
-                    (parts.back.hull_min() - rounding_ > F(transfer_.support_max));
-    pending_ = pending_ & !(take & ((place >= F(1)) | clear));
+    const M clear = (convert<float>(back.hull_max() + span.rounding) < F(transfer_.support_min)) |
+                    (convert<float>(back.hull_min() - span.rounding) > F(transfer_.support_max));
+    pending_ = pending_ & !(take & ((place >= Place(1)) | clear));
     retire(take);
+  }
+
+  /// Of the rays, from what is left of the lanes' spans on.
+  template <class T>
+  F left_behind(const SpanLanes<T, N>& span) const noexcept {
+    return left_ - convert<float>(span.from) * span_length_;
+  }
+
+  /// Lanes whose span is to be gone on with in double.
+  void wait_for_double(M lanes) noexcept {
+    if (!double_will_do_) return hand_back(lanes);
+    in_double_now_ = in_double_now_ | lanes;
+    not_begun_ = not_begun_ | lanes;
+    in_double_ += select(lanes, I(1), I(0));
+  }
+
+  void begin_in_double() noexcept {
+    if (none(not_begun_)) return;
+    const I code = select(not_begun_, code_, I(0));
+    const I in_block[3] = {code & I(7), (code >> 3) & I(7), (code >> 6) & I(7)};
+    static_assert(block_width == 8 && SpanCode::cell[1] == 1 << 3 && SpanCode::cell[2] == 1 << 6 &&
+                  SpanCode::stretch == 1 << 12);
+    const M last = (code & I(SpanCode::last)) > I(0);
+    cells_in_double_.begin(not_begun_,
+                           cell_places(grid_, blocks_, room_.stretches, code >> 12, in_block, last),
+                           convert<double>(single_.from), double_);
+    not_begun_ = M(false);
   }
 
   /// Something was added to the lanes' rays: ends those that no longer matter.
@@ -337,9 +367,13 @@ class PacketIntegrator {
   void hand_back(M lanes) noexcept {
     lanes = lanes & pending_;
     const F transparency = fold_.transparency();
-    fold_.budget.pass_to(select(lanes, left_ - from_ * span_length_, fold_.budget.length_left()));
-    const F flat = fold_.budget.allowance(length_, F(0), transparency),
-            all = fold_.budget.allowance(length_, F(1), transparency);
+    const M wide = in_double_now_ & !not_begun_;
+    const D from = select(wide, double_.from, convert<double>(single_.from));
+    const F length = select(wide, convert<float>(double_.length), single_.length);
+    fold_.budget.pass_to(
+        select(lanes, left_ - convert<float>(from) * span_length_, fold_.budget.length_left()));
+    const F flat = fold_.budget.allowance(length, F(0), transparency),
+            all = fold_.budget.allowance(length, F(1), transparency);
     HandedBack<N> handed_back;
     unsigned not_proved = 0, with_panels = 0;
     for (int l = 0; l < N; ++l) {
@@ -351,7 +385,7 @@ class PacketIntegrator {
                        code / SpanCode::cell[a] % block_width;
       }
       cell.begin = room_.stretches.begin[stretch];
-      cell.from = static_cast<double>(from_[l]);
+      cell.from = from[l];
       cell.place_error = static_cast<double>(place_error_[l]);
       cell.allowance_flat = static_cast<double>(flat[l]);
       cell.allowance_per_opacity = static_cast<double>(all[l] - flat[l]);
@@ -361,21 +395,23 @@ class PacketIntegrator {
       if (result.proved == 0) not_proved |= 1u << l;
       if (result.panels != 0) with_panels |= 1u << l;
     }
-    fold_.add(handed_back, select(lanes, length_, F(0)));
+    fold_.add(handed_back, select(lanes, length, F(0)));
     proved_ = proved_ & !M::from_bits(not_proved);
     pieces_ += select(lanes, I(1), I(0));
-    in_double_ += select(lanes, I(1), I(0));
+    in_double_ += select(lanes & !in_double_now_, I(1), I(0));
     panels_ += select(M::from_bits(with_panels), I(1), I(0));
     pending_ = pending_ & !lanes;
     retire(lanes);
   }
 
   const PellucidPacketJob& job_;
+  const PacketGrid<Value>& grid_;
   const BinnedTransfer& transfer_;
   Room& room_;
   int first_, count_;
   BlockMarch<Value, N> blocks_;
   SpanFinder<Value, N> finder_;
+  const CellsInDouble<Value, N> cells_in_double_;
   SmoothMarch<Value, N> smooth_;
 
   const I lane_ = lane_numbers();
@@ -386,26 +422,25 @@ class PacketIntegrator {
 
   // The span that a lane works on.
   M pending_{false};
-  M handed_back_{false};  ///< those of them that are not for the rule here
-  M whole_block_{false};  ///< of one material
+  M handed_back_{false};    ///< those of them that are not for the rule here
+  M in_double_now_{false};  ///< those that binary32 is not good enough for
+  M not_begun_{false};      ///< and of which double_ does not hold anything yet
+  M whole_block_{false};    ///< of one material
   M last_of_block_{false};
-  M located_{false};  ///< whether `interval_` is known
-  CubicBernstein<F> data_;
-  F left_;                            ///< of the ray, from the span's begin on, world length
-  F length_;                          ///< world length of what is left of it
-  F span_length_;                     ///< of all of it
-  F from_;                            ///< the share that is done
-  F cap_;                             ///< the most that the next piece may be of what is left
-  F rounding_;                        ///< of the data
-  F place_error_, end_error_;         ///< world length: of any place, of the end of a block
-  ExtinctionInterval<F> extinction_;  ///< that of `interval_`
-  ColorInterval<F> color_;            ///< of a piece before
-  I interval_, pieces_of_span_, code_;
+  SpanLanes<float, N> single_;
+  SpanLanes<double, N> double_;
+  int waited_ = 0;             ///< pieces that lanes which wait for double could have integrated
+  F left_;                     ///< of the ray, from the span's begin on, world length
+  F span_length_;              ///< of all of it
+  F place_error_, end_error_;  ///< world length: of any place, of the end of a block
+  ColorInterval<F> color_;     ///< of a piece before
+  I code_;
 
   SampledErrors<F> sampled_;
   PacketFold<N> fold_;
   OpacityTrace<N> trace_;
   F largest_color_;
+  bool double_will_do_;  ///< with colors in float
   M proved_{true};
   std::int32_t cells_seen_[N] = {};
   I skipped_, constant_;

@@ -41,13 +41,13 @@ struct PanelSums {
 };
 
 /// The N-node Gauss rule with the exact optical depth at each node (specification, 3.7, 3.8), for a
-/// cubic share s(t) and the rate (extinction · length) rate_near + rate_change · s.
-template <int N, class T>
-PELLUCID_HD PanelSums<T> cubic_panel_sums(const CubicBernstein<T>& s, T rate_near, T rate_change,
-                                          T middle) noexcept {
+/// cubic share s(t) and the rate (extinction · length) rate_near + rate_change · s: calls
+/// visit(share, weight) for each node.
+template <int N, class T, class Visit>
+PELLUCID_HD void for_each_panel_node(const CubicBernstein<T>& s, T rate_near, T rate_change,
+                                     Visit&& visit) noexcept {
   using S = scalar_t<T>;
   static constexpr CubicNodes<S, N> nodes;
-  PanelSums<T> sums;
   for (int j = 0; j < N; ++j) {
     const auto& b = nodes.basis[j];
     const auto& a = nodes.integral[j];
@@ -56,10 +56,19 @@ PELLUCID_HD PanelSums<T> cubic_panel_sums(const CubicBernstein<T>& s, T rate_nea
         (T(a[0]) * s.b[0] + T(a[3]) * s.b[3]) + (T(a[1]) * s.b[1] + T(a[2]) * s.b[2]);
     const T rate = max(rate_near + rate_change * share, T(0));
     const T depth = rate_near * T(nodes.position[j]) + rate_change * integral;
-    const T weight = T(nodes.weight[j]) * rate * exp(-depth);
+    visit(share, T(nodes.weight[j]) * rate * exp(-depth));
+  }
+}
+
+/// Its sums.
+template <int N, class T>
+PELLUCID_HD PanelSums<T> cubic_panel_sums(const CubicBernstein<T>& s, T rate_near, T rate_change,
+                                          T middle) noexcept {
+  PanelSums<T> sums;
+  for_each_panel_node<N>(s, rate_near, rate_change, [&](T share, T weight) noexcept {
     sums.weight += weight;
     sums.share += weight * (share - middle);
-  }
+  });
   return sums;
 }
 

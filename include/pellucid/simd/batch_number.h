@@ -260,6 +260,10 @@ struct IndexOf<Batch<T, N>> {
   using type = Batch<std::int32_t, N>;
 };
 template <class T, int N>
+struct InFloat<Batch<T, N>> {
+  using type = Batch<float, N>;
+};
+template <class T, int N>
 inline constexpr int lanes<Batch<T, N>> = N;
 template <class T, int N>
 inline constexpr bool fuses<Batch<T, N>> = detail::Native<N>::has_fma;

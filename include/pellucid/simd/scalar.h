@@ -38,6 +38,10 @@ template <class T>
 struct IndexOf {
   using type = int;
 };
+template <class T>
+struct InFloat {
+  using type = float;
+};
 
 /// What a comparison of two T gives.
 template <class T>
@@ -46,6 +50,9 @@ using mask_t = typename MaskOf<T>::type;
 /// One int per lane of T: what gather() and load_records() take.
 template <class T>
 using index_t = typename IndexOf<T>::type;
+/// One float per lane of T.
+template <class T>
+using in_float_t = typename InFloat<T>::type;
 
 /// How many numbers a T holds.
 template <class T>
@@ -95,6 +102,11 @@ PELLUCID_HD constexpr T lookup(const T (&table)[Entries], int index) noexcept {
 /// out[k] = base[K index + k], k < K.
 template <int K>
 PELLUCID_HD constexpr void load_records(const float* base, int index, float* out) noexcept {
+  for (int k = 0; k < K; ++k) out[k] = base[K * static_cast<std::ptrdiff_t>(index) + k];
+}
+
+template <int K>
+PELLUCID_HD constexpr void load_records(const double* base, int index, double* out) noexcept {
   for (int k = 0; k < K; ++k) out[k] = base[K * static_cast<std::ptrdiff_t>(index) + k];
 }
 

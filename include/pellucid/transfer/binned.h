@@ -22,6 +22,8 @@ struct BinnedTransfer {
   /// the range of the absorbing colors, the largest |slope| of these, and of its neighbours'. The
   /// outsides, whose slope is 0, reach to ∓far.
   const float* extinction = nullptr;
+  /// The first four of these in double, where binary32 is not good enough.
+  const double* wide_extinction = nullptr;
   /// Per interval of the color: lower, upper, color at the lower end, its slope.
   const float* color = nullptr;
   const std::int32_t* first_extinction = nullptr;  ///< per bin: the interval of its lower edge
@@ -52,7 +54,7 @@ struct BinnedTransfer {
   float largest_extinction = 0;
   float largest_color = 0;
 
-  static constexpr int extinction_fields = 8, color_fields = 8;
+  static constexpr int extinction_fields = 8, wide_extinction_fields = 4, color_fields = 8;
   static constexpr std::int32_t one_jump = 1 << 16;
   /// Beyond every value, and its differences to them are finite.
   static constexpr float far = 1.7e38f;
@@ -103,19 +105,28 @@ struct ExtinctionInterval {
   F lower, upper, at_lower, slope, largest, steepest, color_range, color_slope;
 };
 
+/// In double only what is rounded to nearest is known better than in float.
 template <class F, class Index>
 ExtinctionInterval<F> load_extinction(const BinnedTransfer& t, Index interval) noexcept {
-  F r[BinnedTransfer::extinction_fields];
+  in_float_t<F> r[BinnedTransfer::extinction_fields];
   load_records<BinnedTransfer::extinction_fields>(t.extinction, interval, r);
-  return {r[0], r[1], r[2], r[3], r[4], r[5], r[6], r[7]};
+  if constexpr (is_single<F>) {
+    return {r[0], r[1], r[2], r[3], r[4], r[5], r[6], r[7]};
+  } else {
+    F w[BinnedTransfer::wide_extinction_fields];
+    load_records<BinnedTransfer::wide_extinction_fields>(t.wide_extinction, interval, w);
+    const auto bound = [&](int k) noexcept { return convert<double>(r[k]); };
+    return {w[0], w[1], w[2], w[3], bound(4), bound(5), bound(6), bound(7)};
+  }
 }
 
 /// The interval of the extinction that holds `value` where `mask`, and its index; elsewhere
-/// `index` is kept.
+/// `index` is kept. A bin begins with an interval that holds its lower edge or lies below, however
+/// a double is rounded.
 template <class F, class Index, class Mask>
 ExtinctionInterval<F> find_extinction(const BinnedTransfer& t, F value, const Mask& mask,
                                       Index& index) noexcept {
-  index = select(mask, gather(t.first_extinction, bin_of(t, value)), index);
+  index = select(mask, gather(t.first_extinction, bin_of(t, convert<float>(value))), index);
   ExtinctionInterval<F> found = load_extinction<F>(t, index);
   for (auto further = mask & (value >= found.upper); any(further);
        further = mask & (value >= found.upper)) {

@@ -1,0 +1,168 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "pellucid/segment/extinction_piece.h"
+#include "pellucid/simd/batch.h"
+
+#if PELLUCID_HAS_BATCH_4  // in sources compiled per instruction set
+namespace pellucid {
+
+/// What is left of the spans that lanes work on: of a cell, the part [from, 1]. T: float or double.
+template <class T, int N>
+struct SpanLanes {
+  using F = Batch<T, N>;
+
+  CubicBernstein<F> data;
+  F rounding;                        ///< of the data
+  F length;                          ///< world length of what is left
+  F from;                            ///< the share of the cell that is done
+  F cap;                             ///< the most that the next piece may be of what is left
+  BatchMask<N> located{false};       ///< whether `interval` is known
+  Batch<std::int32_t, N> interval;   ///< of the extinction, that holds the first of the data
+  ExtinctionInterval<F> extinction;  ///< that of `interval`
+  Batch<std::int32_t, N> pieces;     ///< that were tried
+
+  /// Lanes that have got a new span.
+  void begin(BatchMask<N> lanes) noexcept {
+    located = located & !lanes;
+    cap = select(lanes, F(1), cap);
+    pieces = select(lanes, Batch<std::int32_t, N>(0), pieces);
+  }
+  /// The lanes go on with the part of the next piece that is in front of `place`.
+  void halve(BatchMask<N> lanes, F half) noexcept { cap = select(lanes, half, cap); }
+};
+
+/// The next piece of spans in lanes: what lies in front of the first corner of the extinction, or
+/// less.
+template <class T, int N>
+struct SpanPiece {
+  using F = Batch<T, N>;
+  using Single = Batch<float, N>;
+
+  PieceEnd<F> end;
+  F place;               ///< where the piece ends, of what is left
+  BatchMask<N> capped;   ///< whether it is shorter than up to the corner
+  BatchMask<N> crosses;  ///< whether it ends at one
+  CutCubic<F> parts;     ///< the piece's data, and those behind it
+  F length;              ///< world length
+  PieceDepth<Single> seen;
+  ColorSpread<Single> spread;
+  BoundedSegment<Single> found;
+  Single rounding;  ///< what rounding does to it, as of RayBudget::spend()
+  Single depth_error;
+};
+
+/// Integrates the next piece of the lanes' spans. `place_error`: how far a span's ends may be from
+/// where they are thought to be, world length. Depths are found in T, colors in float.
+template <class T, int N>
+SpanPiece<T, N> next_piece(SpanLanes<T, N>& span, const BinnedTransfer& transfer,
+                           BatchMask<N> lanes, Batch<float, N> place_error,
+                           Batch<float, N> largest_color,
+                           ColorInterval<Batch<float, N>>& color) noexcept {
+  using F = Batch<T, N>;
+  using Single = Batch<float, N>;
+  using M = BatchMask<N>;
+  const M lost =
+      lanes & !span.located &
+      ((span.data.b[0] < span.extinction.lower) | (span.data.b[0] >= span.extinction.upper));
+  if (any(lost)) {
+    span.extinction = find_extinction(transfer, span.data.b[0], lost, span.interval);
+  }
+  const ExtinctionInterval<F>& interval = span.extinction;
+  span.located = span.located | lanes;
+  span.pieces += select(lanes, Batch<std::int32_t, N>(1), Batch<std::int32_t, N>(0));
+
+  SpanPiece<T, N> piece;
+  const F close = F(0.25f) * span.rounding;
+  piece.end = piece_end(span.data, interval.lower, interval.upper, close, lanes);
+  piece.capped = span.cap < piece.end.place;
+  piece.place = min(piece.end.place, span.cap);
+  piece.crosses = piece.end.crosses & !piece.capped;
+  piece.parts = {span.data, span.data};
+  if (any(lanes & (piece.place < F(1)))) {
+    piece.parts = cut(span.data, piece.place);
+    const F limit = select(piece.end.rising, interval.upper, interval.lower);
+    CubicBernstein<F>&front = piece.parts.front, &back = piece.parts.back;
+    front.b[3] = select(piece.crosses, limit, front.b[3]);
+    back.b[0] = select(piece.crosses, limit, back.b[0]);
+  }
+  const CubicBernstein<F>& f = piece.parts.front;
+  piece.length = span.length * piece.place;
+  const PieceDepth<F> depth = piece_depth(f, interval, piece.length);
+  piece.seen = {convert<float>(depth.depth), convert<float>(depth.value),
+                convert<float>(depth.lower), convert<float>(depth.upper)};
+  piece.spread = {convert<float>(interval.color_range), convert<float>(interval.color_slope),
+                  kinks_of_color(transfer, piece.seen.lower, piece.seen.upper)};
+  piece.found = colored_piece(piece.seen, piece.spread, transfer, lanes, color);
+
+  // What rounding can do, as in segment/rounding.h.
+  constexpr float u = rounding_unit<float>;
+  constexpr float colored = is_single<F> ? 32 * u : 12 * u;  // color, segment; and positions
+  const F value_error = span.rounding + close;
+  // The slope of the next interval counts for as much of the piece as is near to it: where the
+  // data rise throughout, no more than 2 value_error over their least slope.
+  const M touches = (f.hull_min() - value_error < interval.lower) |
+                    (f.hull_max() + value_error > interval.upper) | piece.crosses;
+  const F d0 = f.b[1] - f.b[0], d1 = f.b[2] - f.b[1], d2 = f.b[3] - f.b[2];
+  const F least_slope = F(3) * max(min(d0, min(d1, d2)), -max(d0, max(d1, d2)));
+  const F slope = abs(interval.slope);
+  F steep = slope;
+  if (any(touches)) {
+    const F near = select(least_slope > F(2) * value_error, F(2) * value_error / least_slope, F(1));
+    steep = select(touches, slope + near * (interval.steepest - slope), slope);
+  }
+  const Single largest = convert<float>(interval.largest);
+  piece.depth_error =
+      convert<float>(piece.length * (value_error * steep + F(8 * u) * interval.largest)) +
+      place_error * convert<float>((F(1) - span.from) * piece.place) * largest;
+  const SegmentResult<Single>& s = piece.found.segment;
+  // In double a color is still that of the value in float.
+  const Single shown_error =
+      convert<float>(value_error) +
+      (is_single<F> ? Single(0)
+                    : Single(4 * u) * max(abs(piece.seen.lower), abs(piece.seen.upper)));
+  const Single color_rounding =
+      Single(colored) * largest_color + min(shown_error * piece.spread.slope, largest_color);
+  const Single opacity_rounding =
+      Single(colored) * s.opacity +
+      min(select(piece.depth_error <= Single(1), Single(2) * piece.depth_error * s.transparency,
+                 Single(1)),
+          Single(1));
+  // Extinction that is elsewhere in the piece shows another color of it.
+  const Single colors =
+      min(piece.spread.slope * convert<float>(f.hull_max() - f.hull_min()), piece.spread.range);
+  piece.rounding = s.opacity * color_rounding + largest_color * opacity_rounding +
+                   colors * min(piece.depth_error, Single(1));
+  return piece;
+}
+
+/// Gives the lanes' pieces, no deeper than largest_panel_depth, a better color where there is one.
+template <class T, int N>
+void color_in_panel(const SpanLanes<T, N>& span, bool proved, const BinnedTransfer& transfer,
+                    BatchMask<N> lanes, ColorInterval<Batch<float, N>>& color,
+                    SpanPiece<T, N>& piece) noexcept {
+  using F = Batch<T, N>;
+  using Single = Batch<float, N>;
+  const CubicBernstein<F>& f = piece.parts.front;
+  const ExtinctionInterval<F>& interval = span.extinction;
+  PiecePanel<Single> panel;
+  for (int k = 0; k < 4; ++k) panel.rise.b[k] = convert<float>(f.b[k] - f.b[0]);
+  panel.first = convert<float>(f.b[0]);
+  panel.rate_first = convert<float>(
+      piece.length * max(interval.at_lower + interval.slope * (f.b[0] - interval.lower), F(0)));
+  panel.rate_by_rise = convert<float>(piece.length * interval.slope);
+  BoundedSegment<Single>& found = piece.found;
+  const BoundedSegment<Single> in_panel =
+      panel_piece(piece.seen, panel, piece.spread, proved, found.segment, transfer, lanes, color);
+  const BatchMask<N> better = lanes & (in_panel.color_error < found.color_error);
+  Rgb<Single>& radiance = found.segment.radiance;
+  const Rgb<Single>& improved = in_panel.segment.radiance;
+  radiance = {select(better, improved.r, radiance.r), select(better, improved.g, radiance.g),
+              select(better, improved.b, radiance.b)};
+  found.color_error = select(better, in_panel.color_error, found.color_error);
+  found.proved = found.proved & (in_panel.proved | !better);
+  found.panels = found.panels | better;
+}
+
+}  // namespace pellucid
+#endif
