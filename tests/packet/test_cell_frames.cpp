@@ -163,5 +163,27 @@ TEST_F(CellFrames, AreWithinWhatTheySay) {
                        {1e-2, 1.0 / 512, 2e-4, 2e-5});
 }
 
+TEST_F(CellFrames, AreTheSameWhateverElseIsInAPacket) {
+  std::uint64_t in_double = 0;
+  for (unsigned seed = 1; seed <= 30; ++seed) {
+    SCOPED_TRACE(testing::Message() << "scene " << seed);
+    Scene one = scene(seed);
+    one.size = {21, 19};
+    one.integration.tolerance = seed % 2 == 0 ? 1.0 / 512 : 1e-4;
+    RenderOptions options;
+    options.error = true;
+    options.threads = 1;
+    RenderReport report;
+    const Image whole = render(one, options, &report);
+    in_double += report.spans.in_double;
+    options.threads = 3;
+    options.preview = 3;  // other pixels beside each other
+    const Image other = render(one, options);
+    ASSERT_EQ(whole.pixels, other.pixels);
+    ASSERT_EQ(whole.error, other.error);
+  }
+  EXPECT_GT(in_double, 10000U);
+}
+
 }  // namespace
 }  // namespace pellucid

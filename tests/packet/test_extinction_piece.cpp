@@ -297,12 +297,19 @@ std::vector<TransferFunction::Point> random_points(Cubics& cubics) {
   return points;
 }
 
-/// panel_piece() of data as next_piece() in packet/span_piece.h calls it.
-BoundedSegment<float> seen_in_panel(const CubicBernstein<float>& data,
-                                    const ExtinctionInterval<float>& interval, float length,
-                                    bool proved, const SegmentResult<float>& found,
-                                    const BinnedTransfer& bins) {
-  const PieceDepth<float> depth = piece_depth(data, interval, length);
+/// What the colors of a piece differ by.
+ColorSpread<float> spread_of(const PieceDepth<float>& piece,
+                             const ExtinctionInterval<float>& interval,
+                             const BinnedTransfer& bins) {
+  return {interval.color_range, interval.color_slope,
+          kinks_of_color(bins, piece.lower, piece.upper)};
+}
+
+/// panel_piece() of data as color_in_panel() in packet/span_piece.h calls it.
+BoundedSegment<float> seen_in_panel(const CubicBernstein<float>& data, float length,
+                                    const PieceDepth<float>& depth,
+                                    const ExtinctionInterval<float>& interval, bool proved,
+                                    const SegmentResult<float>& found, const BinnedTransfer& bins) {
   const float first = data.b[0];
   const PiecePanel<float> panel{
       {{0, data.b[1] - first, data.b[2] - first, data.b[3] - first}},
@@ -310,10 +317,8 @@ BoundedSegment<float> seen_in_panel(const CubicBernstein<float>& data,
       length * std::max(interval.at_lower + interval.slope * (first - interval.lower), 0.0f),
       length * interval.slope};
   ColorInterval<float> color;
-  return panel_piece(
-      depth, panel,
-      {interval.color_range, interval.color_slope, kinks_of_color(bins, depth.lower, depth.upper)},
-      proved, found, bins, true, color);
+  return panel_piece(depth, panel, spread_of(depth, interval, bins), proved, found, bins, true,
+                     color);
 }
 
 TEST(ExtinctionPiece, DepthAndColorAreWithinWhatIsSaid) {
@@ -344,8 +349,9 @@ TEST(ExtinctionPiece, DepthAndColorAreWithinWhatIsSaid) {
         if (end.crosses) piece.b[3] = end.rising ? interval.upper : interval.lower;
       }
       const auto length = static_cast<float>(std::pow(10.0, cubics.uniform() * 4 - 3)) * end.place;
+      const PieceDepth<float> depth = piece_depth(piece, interval, length);
       const BoundedSegment<float> found =
-          extinction_piece(piece, interval, length, bins, true, color);
+          colored_piece(depth, spread_of(depth, interval, bins), bins, true, color);
       const Truth truth = quadrature(piece, static_cast<double>(length), table, 64);
 
       ++pieces;
@@ -388,7 +394,7 @@ TEST(ExtinctionPiece, DepthAndColorAreWithinWhatIsSaid) {
       if (!(found.segment.optical_depth <= largest_panel_depth<float>)) continue;
       for (const bool proved : {false, true}) {
         const BoundedSegment<float> better =
-            seen_in_panel(piece, interval, length, proved, found.segment, bins);
+            seen_in_panel(piece, length, depth, interval, proved, found.segment, bins);
         const double still_said = static_cast<double>(better.color_error),
                      still_off = color_off_of(better.segment.radiance);
         ASSERT_LE(still_off, still_said * (1 + 0x1p-11) + slack) << t << ", " << n;

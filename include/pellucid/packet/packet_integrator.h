@@ -20,8 +20,8 @@ namespace pellucid {
 /// spans that absorb in these (SpanFinder), whose lanes are any stretches. Then each lane takes the
 /// spans of its ray, piece by piece: each is cut where the extinction has a corner
 /// (segment/extinction_piece.h), and halved where the budget cannot pay for its color. What
-/// binary32 is not good enough for waits until most lanes have such a span, and is begun anew in
-/// double; what that is not good enough for is handed back, cell by cell.
+/// binary32 is not good enough for is begun anew in double, when enough lanes have waited for that;
+/// what that is not good enough for is handed back, cell by cell.
 template <class Value, int N>
 class PacketIntegrator {
  public:
@@ -231,8 +231,8 @@ class PacketIntegrator {
       handed_back_ = M(false);
     }
     const M single = pending_ & !in_double_now_, wide = pending_ & in_double_now_;
-    // What becomes of a lane does not depend on when. Lanes wait until what they lost by that is
-    // what those that do not wait would lose.
+    // What becomes of a lane does not depend on when it is its turn. Lanes wait until that has cost
+    // half as much as the others then lose, and no longer: who waits alone may be all there is.
     const int waiting = count(wide);
     if (any(single) && (waiting == 0 || 2 * waited_ < N - waiting)) {
       waited_ += waiting;
@@ -265,18 +265,21 @@ class PacketIntegrator {
     if (any(restart)) go_back(restart);
     M rest = on & !take & !restart;
     const M room_for_color = rest & piece.end.found & (cost_of_rounding <= F(0.6f) * allowed);
-    // Panels are worth their price where they will do: where they look up many colors, only for
-    // pieces that are dear, in double or halved again and again.
-    const F in_panel_cost =
-        transparency * s.opacity * panel_piece_error(piece.seen, piece.spread, job_.proved != 0);
-    const F halved_in_vain = wide || !transfer_.bends ? F(0) : F(8) * allowed;
-    const M in_panel = room_for_color & (s.optical_depth <= F(largest_panel_depth<float>)) &
-                       (in_panel_cost + cost_of_rounding <= allowed) &
-                       (transparency * piece.found.color_error > halved_in_vain);
-    if (any(in_panel)) {
-      color_in_panel(span, job_.proved != 0, transfer_, in_panel, color_, piece);
-      take = fits();
-      rest = rest & !take;
+    if (any(room_for_color)) {
+      // Panels are worth their price where they will do: where they look up many colors, only for
+      // pieces that are dear, in double or halved again and again.
+      const bool proved = job_.proved != 0;
+      const F in_panel_cost =
+          transparency * s.opacity * panel_piece_error(piece.seen, piece.spread, proved);
+      const F halved_in_vain = wide || !transfer_.bends ? F(0) : F(8) * allowed;
+      const M in_panel = room_for_color & (s.optical_depth <= F(largest_panel_depth<float>)) &
+                         (in_panel_cost + cost_of_rounding <= allowed) &
+                         (transparency * piece.found.color_error > halved_in_vain);
+      if (any(in_panel)) {
+        color_in_panel(span, proved, transfer_, in_panel, color_, piece);
+        take = fits();
+        rest = rest & !take;
+      }
     }
     if (any(rest)) {
       const Place half = Place(0.5f) * piece.place;
@@ -286,7 +289,7 @@ class PacketIntegrator {
       const M halve = rest & room_for_color & (span.pieces < I(most_pieces)) &
                       (part >= F(narrowest)) &
                       (transparency * piece.found.color_error <= F(64) * allowed);
-      span.halve(halve, half);
+      span.cap = select(halve, half, span.cap);
       const M give_up = rest & !halve;
       if (any(give_up)) {
         if constexpr (wide) {
@@ -343,9 +346,10 @@ class PacketIntegrator {
     static_assert(block_width == 8 && SpanCode::cell[1] == 1 << 3 && SpanCode::cell[2] == 1 << 6 &&
                   SpanCode::stretch == 1 << 12);
     const M last = (code & I(SpanCode::last)) > I(0);
-    cells_in_double_.begin(not_begun_,
-                           cell_places(grid_, blocks_, room_.stretches, code >> 12, in_block, last),
-                           convert<double>(single_.from), double_);
+    cells_in_double_.begin(
+        not_begun_,
+        cell_places(grid_, blocks_, room_.stretches, code >> 12, in_block, span_length_, last),
+        convert<double>(single_.from), double_);
     not_begun_ = M(false);
   }
 

@@ -16,7 +16,7 @@ struct SpanLanes {
   F rounding;                        ///< of the data
   F length;                          ///< world length of what is left
   F from;                            ///< the share of the cell that is done
-  F cap;                             ///< the most that the next piece may be of what is left
+  F cap;                             ///< where the next piece ends at the latest, of what is left
   BatchMask<N> located{false};       ///< whether `interval` is known
   Batch<std::int32_t, N> interval;   ///< of the extinction, that holds the first of the data
   ExtinctionInterval<F> extinction;  ///< that of `interval`
@@ -28,8 +28,6 @@ struct SpanLanes {
     cap = select(lanes, F(1), cap);
     pieces = select(lanes, Batch<std::int32_t, N>(0), pieces);
   }
-  /// The lanes go on with the part of the next piece that is in front of `place`.
-  void halve(BatchMask<N> lanes, F half) noexcept { cap = select(lanes, half, cap); }
 };
 
 /// The next piece of spans in lanes: what lies in front of the first corner of the extinction, or
@@ -49,7 +47,6 @@ struct SpanPiece {
   ColorSpread<Single> spread;
   BoundedSegment<Single> found;
   Single rounding;  ///< what rounding does to it, as of RayBudget::spend()
-  Single depth_error;
 };
 
 /// Integrates the next piece of the lanes' spans. `place_error`: how far a span's ends may be from
@@ -79,12 +76,17 @@ SpanPiece<T, N> next_piece(SpanLanes<T, N>& span, const BinnedTransfer& transfer
   piece.place = min(piece.end.place, span.cap);
   piece.crosses = piece.end.crosses & !piece.capped;
   piece.parts = {span.data, span.data};
-  if (any(lanes & (piece.place < F(1)))) {
-    piece.parts = cut(span.data, piece.place);
+  const M cuts = lanes & (piece.place < F(1));
+  if (any(cuts)) {
+    // At 1 a cut does not give the same to the bit.
+    CutCubic<F> parts = cut(span.data, piece.place);
     const F limit = select(piece.end.rising, interval.upper, interval.lower);
-    CubicBernstein<F>&front = piece.parts.front, &back = piece.parts.back;
-    front.b[3] = select(piece.crosses, limit, front.b[3]);
-    back.b[0] = select(piece.crosses, limit, back.b[0]);
+    parts.front.b[3] = select(piece.crosses, limit, parts.front.b[3]);
+    parts.back.b[0] = select(piece.crosses, limit, parts.back.b[0]);
+    for (int k = 0; k < 4; ++k) {
+      piece.parts.front.b[k] = select(cuts, parts.front.b[k], span.data.b[k]);
+      piece.parts.back.b[k] = select(cuts, parts.back.b[k], span.data.b[k]);
+    }
   }
   const CubicBernstein<F>& f = piece.parts.front;
   piece.length = span.length * piece.place;
@@ -112,7 +114,7 @@ SpanPiece<T, N> next_piece(SpanLanes<T, N>& span, const BinnedTransfer& transfer
     steep = select(touches, slope + near * (interval.steepest - slope), slope);
   }
   const Single largest = convert<float>(interval.largest);
-  piece.depth_error =
+  const Single depth_error =
       convert<float>(piece.length * (value_error * steep + F(8 * u) * interval.largest)) +
       place_error * convert<float>((F(1) - span.from) * piece.place) * largest;
   const SegmentResult<Single>& s = piece.found.segment;
@@ -125,14 +127,13 @@ SpanPiece<T, N> next_piece(SpanLanes<T, N>& span, const BinnedTransfer& transfer
       Single(colored) * largest_color + min(shown_error * piece.spread.slope, largest_color);
   const Single opacity_rounding =
       Single(colored) * s.opacity +
-      min(select(piece.depth_error <= Single(1), Single(2) * piece.depth_error * s.transparency,
-                 Single(1)),
+      min(select(depth_error <= Single(1), Single(2) * depth_error * s.transparency, Single(1)),
           Single(1));
   // Extinction that is elsewhere in the piece shows another color of it.
   const Single colors =
       min(piece.spread.slope * convert<float>(f.hull_max() - f.hull_min()), piece.spread.range);
   piece.rounding = s.opacity * color_rounding + largest_color * opacity_rounding +
-                   colors * min(piece.depth_error, Single(1));
+                   colors * min(depth_error, Single(1));
   return piece;
 }
 

@@ -161,23 +161,9 @@ BoundedSegment<F> colored_piece(const PieceDepth<F>& piece, const ColorSpread<F>
   BoundedSegment<F> result;
   result.segment = segment_of_depth(piece.depth, color_at(transfer, piece.value, wanted, known));
   const F colors = min(spread.range, spread.slope * max(piece.upper - piece.lower, F(0)));
-  const F moves =
-      colors * mean_color_bound(piece.depth) + kinks_of_color(transfer, piece.lower, piece.upper);
+  const F moves = colors * mean_color_bound(piece.depth) + spread.kinks;
   result.color_error = result.segment.opacity * min(moves, spread.range);
   return result;
-}
-
-/// Both at once.
-template <class F>
-BoundedSegment<F> extinction_piece(const CubicBernstein<F>& data,
-                                   const ExtinctionInterval<F>& interval, F length,
-                                   const BinnedTransfer& transfer, const mask_t<F>& wanted,
-                                   ColorInterval<F>& known) noexcept {
-  const PieceDepth<F> piece = piece_depth(data, interval, length);
-  return colored_piece(piece,
-                       {interval.color_range, interval.color_slope,
-                        kinks_of_color(transfer, piece.lower, piece.upper)},
-                       transfer, wanted, known);
 }
 
 /// A piece's data as a Gauss panel takes them, which needs digits of their differences only.
@@ -193,7 +179,7 @@ inline constexpr int piece_nodes = 6;
 
 /// How far the mean of a color with a kink, weighted by extinction · transparency, of data that are
 /// a cubic, may be from the sum over the nodes, for a change of slope of 1 over a range of 1, in
-/// units of what kinks_of_color() says. An estimate, not a bound: 1.8 times what search found, up
+/// units of what kinks_of_color() says. An estimate, not a bound: twice what search found, up
 /// to largest_panel_depth; asserted in packet/test_extinction_piece.
 template <class F>
 F kinks_in_panel(F depth) noexcept {
