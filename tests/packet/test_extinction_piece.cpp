@@ -310,12 +310,7 @@ BoundedSegment<float> seen_in_panel(const CubicBernstein<float>& data, float len
                                     const PieceDepth<float>& depth,
                                     const ExtinctionInterval<float>& interval, bool proved,
                                     const SegmentResult<float>& found, const BinnedTransfer& bins) {
-  const float first = data.b[0];
-  const PiecePanel<float> panel{
-      {{0, data.b[1] - first, data.b[2] - first, data.b[3] - first}},
-      first,
-      length * std::max(interval.at_lower + interval.slope * (first - interval.lower), 0.0f),
-      length * interval.slope};
+  const PiecePanel<float> panel = piece_panel(data, interval, length);
   ColorInterval<float> color;
   return panel_piece(depth, panel, spread_of(depth, interval, bins), proved, found, bins, true,
                      color);

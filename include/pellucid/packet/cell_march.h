@@ -7,6 +7,27 @@
 #if PELLUCID_HAS_BATCH_4  // in sources compiled per instruction set
 namespace pellucid {
 
+/// How far it is, world length, to where rays leave cells along an axis, all of it in the block;
+/// infinite where the cell is the last one on the way.
+template <int N>
+Batch<float, N> cell_exit(Batch<float, N> cell, Batch<float, N> end_cell, Batch<float, N> place,
+                          Batch<float, N> inverse, BatchMask<N> forward) noexcept {
+  using F = Batch<float, N>;
+  const F plane = cell + select(forward, F(1), F(0));
+  return select(cell == end_cell, F(std::numeric_limits<float>::infinity()),
+                (plane - place) * inverse);
+}
+
+/// The last cell on the way along an axis, whose cells in the block end with `last`. Of a direction
+/// so small that its inverse is infinite nothing is met in a block.
+template <int N>
+Batch<float, N> end_of_cells(Batch<float, N> cell, Batch<float, N> last, Batch<float, N> inverse,
+                             BatchMask<N> forward) noexcept {
+  using F = Batch<float, N>;
+  const BatchMask<N> moves = abs(inverse) <= F(std::numeric_limits<float>::max());
+  return select(moves, select(forward, last, F(0)), cell);
+}
+
 /// Walks in lanes, from cell to cell; a lane that is through takes the next walk there is,
 /// whichever ray's. In float, from the lower corner of the block and from where the ray enters it:
 /// a place is off by no more than 16 u of a cell along each axis.
@@ -82,11 +103,9 @@ class CellMarch {
   /// One cell of each of the lanes that walk; of the others something that can be read.
   void step(Step& s) noexcept {
     const M lanes = walking;
-    const F infinity(std::numeric_limits<float>::infinity());
     F next[3];
     for (int a = 0; a < 3; ++a) {
-      const F plane = cell_[a] + select(forward_[a], F(1), F(0));
-      next[a] = select(cell_[a] == end_cell_[a], infinity, (plane - place_[a]) * inverse_[a]);
+      next[a] = cell_exit(cell_[a], end_cell_[a], place_[a], inverse_[a], forward_[a]);
     }
     s.begin = begin_;
     s.end = max(min(min(next[0], next[1]), min(next[2], length_)), begin_);
@@ -138,9 +157,7 @@ class CellMarch {
       const F direction = lookup(direction_of_[a], ray), inverse = lookup(inverse_of_[a], ray);
       const M forward = inverse > F(0);
       const F cell = clamp(floor(place), F(0), last);
-      // Of a direction so small that its inverse is infinite nothing is met in a block.
-      const M moves = abs(inverse) <= F(std::numeric_limits<float>::max());
-      const F end_cell = select(moves, select(forward, last, F(0)), cell);
+      const F end_cell = end_of_cells(cell, last, inverse, forward);
       place_[a] = select(lanes, place, place_[a]);
       direction_[a] = select(lanes, direction, direction_[a]);
       inverse_[a] = select(lanes, inverse, inverse_[a]);

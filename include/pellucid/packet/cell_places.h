@@ -1,10 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <limits>
-
-#include "pellucid/packet/block_march.h"
-#include "pellucid/packet/packet_grid.h"
+#include "pellucid/packet/cell_march.h"
 
 #if PELLUCID_HAS_BATCH_4  // in sources compiled per instruction set
 namespace pellucid {
@@ -43,10 +40,9 @@ CellPlaces<N> cell_places(const PacketGrid<Value>& grid, const BlockMarch<Value,
     const F inverse = F(1) / convert<float>(direction);
     const F last_cell = convert<float>(min(I(grid.cells[a]) - lower, I(block_width)) - I(1));
     const F here = convert<float>(in_block[a]);
-    const auto moves = abs(inverse) <= F(std::numeric_limits<float>::max()),
-               forward = inverse > F(0);
-    const F exit = (here + select(forward, F(1), F(0)) - place) * inverse;
-    end = select(moves & !(here == select(forward, last_cell, F(0))), min(end, exit), end);
+    const BatchMask<N> forward = inverse > F(0);
+    const F end_cell = end_of_cells(here, last_cell, inverse, forward);
+    end = min(end, cell_exit(here, end_cell, place, inverse, forward));
   }
   const D in_float = from + convert<double>(end);
   places.begin = max(in_float - convert<double>(span_length), from);

@@ -3,6 +3,7 @@
 
 #include "pellucid/field/trilinear.h"
 #include "pellucid/packet/cell_places.h"
+#include "pellucid/packet/exact_corners.h"
 #include "pellucid/packet/span_piece.h"
 
 #if PELLUCID_HAS_BATCH_4  // in sources compiled per instruction set
@@ -36,8 +37,7 @@ class CellsInDouble {
         outside = max(outside, select(by > D(1e-12), by / abs(direction), D(0)));
       }
     }
-    CellCorners<D> corners;
-    load(lanes, of, corners);
+    const CellCorners<D> corners = ExactCorners<N>(grid_, of.cell)(grid_.data);
     const CubicBernstein<D> all = trilinear_cubic(corners, entry, exit);
     const D size = max(abs(all.hull_min()), abs(all.hull_max()));
     D least = corners.value[0], most = least;
@@ -60,28 +60,6 @@ class CellsInDouble {
   }
 
  private:
-  /// The corners of the lanes' cells; outside of the outermost values these are repeated.
-  void load(M lanes, const CellPlaces<N>& of, CellCorners<D>& corners) const noexcept {
-    std::int32_t cell[3][N];
-    for (int a = 0; a < 3; ++a) of.cell[a].store(cell[a]);
-    const std::ptrdiff_t stride[3] = {1, grid_.row, grid_.slice};
-    double value[8][N] = {};
-    for (unsigned left = bits(lanes); left != 0; left &= left - 1) {
-      const int l = __builtin_ctz(left);
-      std::ptrdiff_t at[3][2];
-      for (int a = 0; a < 3; ++a) {
-        const std::int32_t first = cell[a][l] - grid_.padding[a];
-        at[a][0] = stride[a] * max(first, 0);
-        at[a][1] = stride[a] * min(first + 1, grid_.values[a] - 1);
-      }
-      for (int n = 0; n < 8; ++n) {
-        value[n][l] =
-            static_cast<double>(grid_.data[at[0][n & 1] + at[1][n >> 1 & 1] + at[2][n >> 2]]);
-      }
-    }
-    for (int n = 0; n < 8; ++n) corners.value[n] = D::load(value[n]);
-  }
-
   const PacketGrid<Value>& grid_;
   const BlockMarch<Value, N>& rays_;
 };

@@ -2,10 +2,9 @@
 #pragma once
 
 #include "pellucid/field/multichannel_grid.h"
-#include "pellucid/packet/corner_loads.h"
+#include "pellucid/packet/exact_corners.h"
 #include "pellucid/packet/lane_rays.h"
 #include "pellucid/packet/panel_lanes.h"
-#include "pellucid/packet/sample_places.h"
 
 #if PELLUCID_HAS_BATCH_4  // in sources compiled per instruction set
 namespace pellucid {
@@ -164,48 +163,17 @@ class MultichannelCells {
 
   /// The cubics of the lanes' cells; false in vacuum.
   M load(const Vec3<D>& entry, const Vec3<D>& exit) noexcept {
-    I cell[3], from[3];
-    std::int32_t first[3][N];
-    for (int a = 0; a < 3; ++a) {
-      cell[a] = min(max(cell_[a], I(0)), I(grid_.cells[a] - 1)) - I(grid_.padding[a]);
-      from[a] = min(max(cell[a], I(0)), I(grid_.values[a] - 2));
-      from[a].store(first[a]);
-    }
-    std::ptrdiff_t base[N];
-    for (int l = 0; l < N; ++l) {
-      base[l] = first[0][l] + grid_.row * first[1][l] + grid_.slice * first[2][l];
-    }
+    const ExactCorners<N> corners_of(grid_, cell_);
     D sum(0);
     for (int c = 0; c < fields_.channels; ++c) {
       fields_.with_channel(c,
                            [&]<class Value>(const StructuredGrid<Value, double>& field) noexcept {
-                             const Value* at[N];
-                             for (int l = 0; l < N; ++l) at[l] = field.data + base[l];
-                             CellCorners<D> corners = load_exactly<Value>(at);
-                             if (grid_.padded()) repeat_border(cell, from, corners);
+                             const CellCorners<D> corners = corners_of(field.data);
                              for (const D& v : corners.value) sum += v;
                              data_[c] = trilinear_cubic(corners, entry, exit);
                            });
     }
     return !is_nan(sum);
-  }
-
-  template <class Value>
-  CellCorners<D> load_exactly(const Value* const* at) const noexcept {
-    static constexpr std::int32_t none_on[N] = {};
-    CellCorners<D> result;
-    if constexpr (sizeof(Value) > 2 && !std::is_same_v<Value, float>) {
-      for (int n = 0; n < 8; ++n) {
-        double of_lane[N];
-        const std::ptrdiff_t to = (n & 1) + (n >> 1 & 1) * grid_.row + (n >> 2) * grid_.slice;
-        for (int l = 0; l < N; ++l) of_lane[l] = static_cast<double>(at[l][to]);
-        result.value[n] = D::load(of_lane);
-      }
-    } else {
-      const CellCorners<F> corners = load_corners<Value, N>(at, none_on, grid_.row, grid_.slice);
-      for (int n = 0; n < 8; ++n) result.value[n] = convert<double>(corners.value[n]);
-    }
-    return result;
   }
 
   const PacketGrid<void>& grid_;

@@ -182,7 +182,7 @@ class PacketIntegrator {
     drop_spans(lanes);
     for (unsigned left = bits(lanes); left != 0; left &= left - 1) {
       const int l = __builtin_ctz(left);
-      blocks_.go_back(l, room_.stretches, code_[l] / SpanCode::stretch);
+      blocks_.go_back(l, room_.stretches, SpanCode::stretch_of(code_[l]));
     }
   }
 
@@ -252,7 +252,8 @@ class PacketIntegrator {
                                        largest_color_, color_);
     const SegmentResult<F>& s = piece.found.segment;
     const F length = convert<float>(piece.length);
-    fold_.budget.pass_to(select(on, left_behind(span), fold_.budget.length_left()));
+    fold_.budget.pass_to(
+        select(on, left_behind(convert<float>(span.from)), fold_.budget.length_left()));
     const F transparency = fold_.transparency();
     const typename RayBudget<F>::Shares shares = fold_.budget.shares(length, s.opacity);
     const F allowed = shares.sum(), cost_of_rounding = transparency * piece.rounding;
@@ -307,29 +308,16 @@ class PacketIntegrator {
     panels_ += select(take & piece.found.panels, I(1), I(0));
     proved_ = proved_ & !(take & !piece.found.proved);
 
+    span.go_past(take, piece, transfer_);
     const CubicBernstein<Place>& back = piece.parts.back;
-    const Place place = piece.place, left = Place(1) - place;
-    for (int k = 0; k < 4; ++k) span.data.b[k] = select(take, back.b[k], span.data.b[k]);
-    span.length = select(take, span.length * left, span.length);
-    span.from = select(take, span.from + (Place(1) - span.from) * place, span.from);
-    span.cap =
-        select(take, select(piece.capped & (place < left), place / left, Place(1)), span.cap);
-    const M crossed = take & piece.crosses;
-    if (any(crossed)) {
-      span.interval += select(crossed, select(piece.end.rising, I(1), I(-1)), I(0));
-      span.extinction = load_extinction<Place>(transfer_, span.interval);
-    }
     const M clear = (convert<float>(back.hull_max() + span.rounding) < F(transfer_.support_min)) |
                     (convert<float>(back.hull_min() - span.rounding) > F(transfer_.support_max));
-    pending_ = pending_ & !(take & ((place >= Place(1)) | clear));
+    pending_ = pending_ & !(take & ((piece.place >= Place(1)) | clear));
     retire(take);
   }
 
-  /// Of the rays, from what is left of the lanes' spans on.
-  template <class T>
-  F left_behind(const SpanLanes<T, N>& span) const noexcept {
-    return left_ - convert<float>(span.from) * span_length_;
-  }
+  /// Of the rays, from this share of the lanes' cells on.
+  F left_behind(F from) const noexcept { return left_ - from * span_length_; }
 
   /// Lanes whose span is to be gone on with in double.
   void wait_for_double(M lanes) noexcept {
@@ -342,14 +330,13 @@ class PacketIntegrator {
   void begin_in_double() noexcept {
     if (none(not_begun_)) return;
     const I code = select(not_begun_, code_, I(0));
-    const I in_block[3] = {code & I(7), (code >> 3) & I(7), (code >> 6) & I(7)};
-    static_assert(block_width == 8 && SpanCode::cell[1] == 1 << 3 && SpanCode::cell[2] == 1 << 6 &&
-                  SpanCode::stretch == 1 << 12);
+    I in_block[3];
+    for (int a = 0; a < 3; ++a) in_block[a] = SpanCode::place_in_block(code, a);
     const M last = (code & I(SpanCode::last)) > I(0);
-    cells_in_double_.begin(
-        not_begun_,
-        cell_places(grid_, blocks_, room_.stretches, code >> 12, in_block, span_length_, last),
-        convert<double>(single_.from), double_);
+    cells_in_double_.begin(not_begun_,
+                           cell_places(grid_, blocks_, room_.stretches, SpanCode::stretch_of(code),
+                                       in_block, span_length_, last),
+                           convert<double>(single_.from), double_);
     not_begun_ = M(false);
   }
 
@@ -375,7 +362,7 @@ class PacketIntegrator {
     const D from = select(wide, double_.from, convert<double>(single_.from));
     const F length = select(wide, convert<float>(double_.length), single_.length);
     fold_.budget.pass_to(
-        select(lanes, left_ - convert<float>(from) * span_length_, fold_.budget.length_left()));
+        select(lanes, left_behind(convert<float>(from)), fold_.budget.length_left()));
     const F flat = fold_.budget.allowance(length, F(0), transparency),
             all = fold_.budget.allowance(length, F(1), transparency);
     HandedBack<N> handed_back;
@@ -383,10 +370,10 @@ class PacketIntegrator {
     for (int l = 0; l < N; ++l) {
       if ((bits(lanes) >> l & 1) == 0) continue;
       PellucidCell cell;
-      const int code = code_[l], stretch = code / SpanCode::stretch;
+      const int code = code_[l], stretch = SpanCode::stretch_of(code);
       for (int a = 0; a < 3; ++a) {
-        cell.cell[a] = room_.stretches.block[a][stretch] * block_width +
-                       code / SpanCode::cell[a] % block_width;
+        cell.cell[a] =
+            room_.stretches.block[a][stretch] * block_width + SpanCode::place_in_block(code, a);
       }
       cell.begin = room_.stretches.begin[stretch];
       cell.from = from[l];

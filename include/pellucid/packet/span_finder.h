@@ -30,7 +30,18 @@ struct SpanCode {
   static constexpr int handed_back = 1024;    ///< not for the packets' rule
   static constexpr int whole_block = 2048;    ///< of one material
   static constexpr int stretch = 4096;        ///< times its number, of 8 bits
+
+  // I: an int, or several.
+  template <class I>
+  static I place_in_block(I code, int a) noexcept {
+    return (code >> 3 * a) & I(7);
+  }
+  template <class I>
+  static I stretch_of(I code) noexcept {
+    return code >> 12;
+  }
 };
+static_assert(block_width == 8 && SpanCode::cell[2] == 1 << 6 && SpanCode::stretch == 1 << 12);
 
 /// Finds what of rays' stretches absorbs: from cell to cell, their range and then the hull of the
 /// data along the ray against the marks of the transfer function.

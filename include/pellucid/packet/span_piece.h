@@ -7,6 +7,25 @@
 #if PELLUCID_HAS_BATCH_4  // in sources compiled per instruction set
 namespace pellucid {
 
+/// The next piece of spans in lanes: what lies in front of the first corner of the extinction, or
+/// less.
+template <class T, int N>
+struct SpanPiece {
+  using F = Batch<T, N>;
+  using Single = Batch<float, N>;
+
+  PieceEnd<F> end;
+  F place;               ///< where the piece ends, of what is left
+  BatchMask<N> capped;   ///< whether it is shorter than up to the corner
+  BatchMask<N> crosses;  ///< whether it ends at one
+  CutCubic<F> parts;     ///< the piece's data, and those behind it
+  F length;              ///< world length
+  PieceDepth<Single> seen;
+  ColorSpread<Single> spread;
+  BoundedSegment<Single> found;
+  Single rounding;  ///< what rounding does to it, as of RayBudget::spend()
+};
+
 /// What is left of the spans that lanes work on: of a cell, the part [from, 1]. T: float or double.
 template <class T, int N>
 struct SpanLanes {
@@ -28,25 +47,21 @@ struct SpanLanes {
     cap = select(lanes, F(1), cap);
     pieces = select(lanes, Batch<std::int32_t, N>(0), pieces);
   }
-};
 
-/// The next piece of spans in lanes: what lies in front of the first corner of the extinction, or
-/// less.
-template <class T, int N>
-struct SpanPiece {
-  using F = Batch<T, N>;
-  using Single = Batch<float, N>;
-
-  PieceEnd<F> end;
-  F place;               ///< where the piece ends, of what is left
-  BatchMask<N> capped;   ///< whether it is shorter than up to the corner
-  BatchMask<N> crosses;  ///< whether it ends at one
-  CutCubic<F> parts;     ///< the piece's data, and those behind it
-  F length;              ///< world length
-  PieceDepth<Single> seen;
-  ColorSpread<Single> spread;
-  BoundedSegment<Single> found;
-  Single rounding;  ///< what rounding does to it, as of RayBudget::spend()
+  /// The lanes' next piece was taken; where it was halved, its other half comes next.
+  void go_past(BatchMask<N> lanes, const SpanPiece<T, N>& piece,
+               const BinnedTransfer& transfer) noexcept {
+    using I = Batch<std::int32_t, N>;
+    const F place = piece.place, left = F(1) - place;
+    for (int k = 0; k < 4; ++k) data.b[k] = select(lanes, piece.parts.back.b[k], data.b[k]);
+    length = select(lanes, length * left, length);
+    from = select(lanes, from + (F(1) - from) * place, from);
+    cap = select(lanes, select(piece.capped & (place < left), place / left, F(1)), cap);
+    const BatchMask<N> crossed = lanes & piece.crosses;
+    if (none(crossed)) return;
+    interval += select(crossed, select(piece.end.rising, I(1), I(-1)), I(0));
+    extinction = load_extinction<F>(transfer, interval);
+  }
 };
 
 /// Integrates the next piece of the lanes' spans. `place_error`: how far a span's ends may be from
@@ -142,16 +157,8 @@ template <class T, int N>
 void color_in_panel(const SpanLanes<T, N>& span, bool proved, const BinnedTransfer& transfer,
                     BatchMask<N> lanes, ColorInterval<Batch<float, N>>& color,
                     SpanPiece<T, N>& piece) noexcept {
-  using F = Batch<T, N>;
   using Single = Batch<float, N>;
-  const CubicBernstein<F>& f = piece.parts.front;
-  const ExtinctionInterval<F>& interval = span.extinction;
-  PiecePanel<Single> panel;
-  for (int k = 0; k < 4; ++k) panel.rise.b[k] = convert<float>(f.b[k] - f.b[0]);
-  panel.first = convert<float>(f.b[0]);
-  panel.rate_first = convert<float>(
-      piece.length * max(interval.at_lower + interval.slope * (f.b[0] - interval.lower), F(0)));
-  panel.rate_by_rise = convert<float>(piece.length * interval.slope);
+  const PiecePanel<Single> panel = piece_panel(piece.parts.front, span.extinction, piece.length);
   BoundedSegment<Single>& found = piece.found;
   const BoundedSegment<Single> in_panel =
       panel_piece(piece.seen, panel, piece.spread, proved, found.segment, transfer, lanes, color);

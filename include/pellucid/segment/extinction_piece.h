@@ -174,6 +174,19 @@ struct PiecePanel {
   F rate_first, rate_by_rise;  ///< extinction · length there, and how it grows with the data
 };
 
+template <class F>
+PiecePanel<in_float_t<F>> piece_panel(const CubicBernstein<F>& data,
+                                      const ExtinctionInterval<F>& interval, F length) noexcept {
+  PiecePanel<in_float_t<F>> panel;
+  const F first = data.b[0];
+  for (int k = 0; k < 4; ++k) panel.rise.b[k] = convert<float>(data.b[k] - first);
+  panel.first = convert<float>(first);
+  panel.rate_first = convert<float>(
+      length * max(interval.at_lower + interval.slope * (first - interval.lower), F(0)));
+  panel.rate_by_rise = convert<float>(length * interval.slope);
+  return panel;
+}
+
 /// How many nodes of a Gauss panel see a piece.
 inline constexpr int piece_nodes = 6;
 
@@ -210,30 +223,28 @@ BoundedSegment<F> panel_piece(const PieceDepth<F>& piece, const PiecePanel<F>& p
                               const mask_t<F>& wanted, ColorInterval<F>& known) noexcept {
   const F lower = piece.lower - panel.first, upper = piece.upper - panel.first;
   const F middle = F(0.5f) * lower + F(0.5f) * upper;
-  F weights(0), rises(0);
-  Rgb<F> colors{};
-  const bool one_color = proved || !transfer.bends;
-  for_each_panel_node<piece_nodes>(
-      panel.rise, panel.rate_first, panel.rate_by_rise, [&](F rise, F weight) noexcept {
-        weights += weight;
-        if (one_color) {
-          rises += weight * (rise - middle);
-        } else {
-          colors += weight * color_at(transfer, panel.first + rise, wanted, known);
-        }
-      });
-  const F weight = proved ? found.opacity : weights;
-  const auto shines = weight > F(0);
-  const F per_weight = select(shines, F(1) / select(shines, weight, F(1)), F(0));
-  if (one_color) {
-    const F mean = panel.first + clamp(middle + rises * per_weight, lower, upper);
-    colors = color_at(transfer, mean, wanted, known);
+  const auto mean_of = [](const auto& sum, F weight) noexcept {
+    const auto shines = weight > F(0);
+    return select(shines, F(1) / select(shines, weight, F(1)), F(0)) * sum;
+  };
+  Rgb<F> color{};
+  if (proved || !transfer.bends) {
+    const PanelSums<F> sums =
+        cubic_panel_sums<piece_nodes>(panel.rise, panel.rate_first, panel.rate_by_rise, middle);
+    const F off = mean_of(sums.share, proved ? found.opacity : sums.weight);
+    color = color_at(transfer, panel.first + clamp(middle + off, lower, upper), wanted, known);
   } else {
-    colors = per_weight * colors;
+    F weights(0);
+    for_each_panel_node<piece_nodes>(
+        panel.rise, panel.rate_first, panel.rate_by_rise, [&](F rise, F weight) noexcept {
+          weights += weight;
+          color += weight * color_at(transfer, panel.first + rise, wanted, known);
+        });
+    color = mean_of(color, weights);
   }
   BoundedSegment<F> result;
   result.segment = found;
-  result.segment.radiance = found.opacity * colors;
+  result.segment.radiance = found.opacity * color;
   result.color_error = found.opacity * panel_piece_error(piece, spread, proved);
   result.proved = mask_t<F>(proved);
   result.panels = mask_t<F>(true);
