@@ -163,6 +163,49 @@ TEST_F(CellFrames, AreWithinWhatTheySay) {
                        {1e-2, 1.0 / 512, 2e-4, 2e-5});
 }
 
+// Rays that hardly rise over planes behind which there is nothing: what one cell has too much no
+// other has too little.
+TEST_F(CellFrames, OfRaysAlongVacuumAreWithinWhatTheySay) {
+  constexpr int points = 22, cube = 4;
+  std::vector<float> data;
+  for (int z = 0; z < points; ++z) {
+    for (int y = 0; y < points; ++y) {
+      for (int x = 0; x < points; ++x) {
+        const bool empty = (x / cube + y / cube + z / cube) % 2 == 0;
+        data.push_back(empty ? std::numeric_limits<float>::quiet_NaN()
+                             : 0.4f + 0.01f * static_cast<float>(x % 5));
+      }
+    }
+  }
+  Volume::Description description;
+  description.dimensions = {points, points, points};
+  const auto volume =
+      std::make_shared<const Volume>(description, DataArray<float>(std::move(data)));
+  Seen seen;
+  for (unsigned seed = 1; seed <= 40; ++seed) {
+    SCOPED_TRACE(testing::Message() << "scene " << seed);
+    random_.seed(seed);
+    Scene one;
+    one.volume = volume;
+    const double dense = power(0.1, 10);
+    one.transfer_function = std::make_shared<const TransferFunction>(
+        std::vector<TransferFunction::Point>{{0, 0, {1, 1, 1}}, {1, dense, {1, 0.5, 0}}});
+    one.size = {12, 9};
+    one.camera = default_camera(*volume, one.size);
+    // All of them meet a plane where data end, in the middle of a block.
+    const double rise = power(1e-5, 1e-1);
+    one.camera.focal_point = {uniform(1, 20), 11, uniform(8, 11)};
+    one.camera.position =
+        one.camera.focal_point + 100 * Vec3<double>{1, one_of(2) ? rise : -rise, uniform(0, 0.02)};
+    one.camera.up = {0, 0, 1};
+    one.camera.projection = Projection::orthographic;
+    one.camera.parallel_scale = 5 * rise;
+    compare(one, {1e-2, 1e-4}, seen);
+    if (HasFatalFailure()) return;
+  }
+  EXPECT_GT(seen.pixels, 20000U);
+}
+
 TEST_F(CellFrames, AreTheSameWhateverElseIsInAPacket) {
   std::uint64_t in_double = 0;
   for (unsigned seed = 1; seed <= 30; ++seed) {

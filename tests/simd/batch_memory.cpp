@@ -286,6 +286,7 @@ void expect_spread(void (*load)(unsigned, const T*, T*), int lanes) {
 }
 TEST_P(BatchMemory, ConsecutiveNumbersAreSpreadOverLanes) {
   expect_spread(table().load_spread_floats, lanes());
+  expect_spread(table().load_spread_doubles, lanes());
   expect_spread(table().load_spread_ints, lanes());
 }
 

@@ -267,6 +267,7 @@ constexpr batch_operations::Table table = {
     pack<double>,
     pack<std::int32_t>,
     spread<float>,
+    spread<double>,
     spread<std::int32_t>,
     as_floats,
     flushed,

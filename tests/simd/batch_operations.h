@@ -80,6 +80,7 @@ struct Table {
   void (*store_packed_doubles)(unsigned lanes, const double* in, double* to);
   void (*store_packed_ints)(unsigned lanes, const std::int32_t* in, std::int32_t* to);
   void (*load_spread_floats)(unsigned lanes, const float* from, float* in_out);
+  void (*load_spread_doubles)(unsigned lanes, const double* from, double* in_out);
   void (*load_spread_ints)(unsigned lanes, const std::int32_t* from, std::int32_t* in_out);
   void (*float_of_bits)(const std::int32_t* in, float* out);
   /// a · b while there is a FlushToZero, and when it is gone.

@@ -10,27 +10,38 @@ namespace pellucid {
 /// How far it is, world length, to where rays leave cells along an axis, all of it in the block;
 /// infinite where the cell is the last one on the way.
 template <int N>
-Batch<float, N> cell_exit(Batch<float, N> cell, Batch<float, N> end_cell, Batch<float, N> place,
-                          Batch<float, N> inverse, BatchMask<N> forward) noexcept {
+Batch<double, N> cell_exit(Batch<float, N> cell, Batch<float, N> end_cell, Batch<double, N> place,
+                           Batch<double, N> inverse, BatchMask<N> forward) noexcept {
   using F = Batch<float, N>;
-  const F plane = cell + select(forward, F(1), F(0));
-  return select(cell == end_cell, F(std::numeric_limits<float>::infinity()),
+  using D = Batch<double, N>;
+  const D plane = convert<double>(cell + select(forward, F(1), F(0)));
+  return select(cell == end_cell, D(std::numeric_limits<double>::infinity()),
                 (plane - place) * inverse);
+}
+
+/// How far it is to where rays enter cells along an axis.
+template <int N>
+Batch<double, N> cell_entry(Batch<float, N> cell, Batch<double, N> place, Batch<double, N> inverse,
+                            BatchMask<N> forward) noexcept {
+  using F = Batch<float, N>;
+  return (convert<double>(cell + select(forward, F(0), F(1))) - place) * inverse;
 }
 
 /// The last cell on the way along an axis, whose cells in the block end with `last`. Of a direction
 /// so small that its inverse is infinite nothing is met in a block.
 template <int N>
-Batch<float, N> end_of_cells(Batch<float, N> cell, Batch<float, N> last, Batch<float, N> inverse,
+Batch<float, N> end_of_cells(Batch<float, N> cell, Batch<float, N> last, Batch<double, N> inverse,
                              BatchMask<N> forward) noexcept {
   using F = Batch<float, N>;
-  const BatchMask<N> moves = abs(inverse) <= F(std::numeric_limits<float>::max());
+  using D = Batch<double, N>;
+  const BatchMask<N> moves = abs(inverse) <= D(std::numeric_limits<double>::max());
   return select(moves, select(forward, last, F(0)), cell);
 }
 
 /// Walks in lanes, from cell to cell; a lane that is through takes the next walk there is,
-/// whichever ray's. In float, from the lower corner of the block and from where the ray enters it:
-/// a place is off by no more than 16 u of a cell along each axis.
+/// whichever ray's. Places are in double, so that planes are where all other means see them: beside
+/// vacuum nothing makes up for what one cell has too much. They count from the lower corner of the
+/// block and from where the ray enters it.
 template <class Value, int N>
 class CellMarch {
  public:
@@ -43,10 +54,9 @@ class CellMarch {
   /// The cells of one step.
   struct Step {
     CellCorners<F> corners;
-    F begin, end;  ///< world length from the block's entry
+    D begin, end;  ///< world length from the block's entry
     F from[3];     ///< the lower corner's place in the block
     F cell[3];     ///< in the block
-    M last;        ///< whether it is the stretch's last one
   };
 
   CellMarch(const PacketGrid<Value>& grid, const BlockMarch<Value, N>& rays) noexcept
@@ -55,9 +65,9 @@ class CellMarch {
     for (int l = 0; l < N; ++l) fastest_of_[l] = 0;
     for (int a = 0; a < 3; ++a) {
       for (int l = 0; l < N; ++l) {
-        direction_of_[a][l] = static_cast<float>(rays.direction[a][l]);
+        direction_of_[a][l] = rays.direction[a][l];
         inverse_of_[a][l] = 1 / direction_of_[a][l];
-        fastest_of_[l] = max(fastest_of_[l], abs(direction_of_[a][l]));
+        fastest_of_[l] = max(fastest_of_[l], static_cast<float>(abs(direction_of_[a][l])));
       }
     }
   }
@@ -91,11 +101,13 @@ class CellMarch {
     return begun;
   }
 
-  /// The place in a step's cell, [0,1]³, so far from the block's entry.
-  Vec3<F> place(const Step& s, F distance) const noexcept {
+  /// The place in a step's cell, [0,1]³, so far from the block's entry; rounded by u.
+  Vec3<F> place(const Step& s, D distance) const noexcept {
     Vec3<F> local;
     for (int a = 0; a < 3; ++a) {
-      local[a] = clamp(multiply_add(distance, direction_[a], place_[a] - s.from[a]), F(0), F(1));
+      const D from_corner = place_[a] - convert<double>(s.from[a]);
+      local[a] =
+          clamp(convert<float>(multiply_add(distance, direction_[a], from_corner)), F(0), F(1));
     }
     return local;
   }
@@ -103,7 +115,7 @@ class CellMarch {
   /// One cell of each of the lanes that walk; of the others something that can be read.
   void step(Step& s) noexcept {
     const M lanes = walking;
-    F next[3];
+    D next[3];
     for (int a = 0; a < 3; ++a) {
       next[a] = cell_exit(cell_[a], end_cell_[a], place_[a], inverse_[a], forward_[a]);
     }
@@ -117,25 +129,23 @@ class CellMarch {
       cell_[a] = select(lanes & (next[a] <= s.end), cell_[a] + step, cell_[a]);
     }
     begin_ = select(lanes, s.end, begin_);
-    s.last = begin_ >= length_;
-    walking = walking & !s.last;
+    walking = walking & (begin_ < length_);
   }
 
   /// Goes on by a distance behind which there is nothing, from where the last step ended: to the
   /// cell that holds its end, or out of the block. Less than a cell is not worth it.
   void skip(M lanes, F distance) noexcept {
-    const F to = min(begin_ + distance, length_);
+    const D to = min(begin_ + convert<double>(distance), length_);
     lanes = lanes & walking & ((to >= length_) | (distance * fastest_ >= F(1.25f)));
     if (none(lanes)) return;
     walking = walking & !(lanes & (to >= length_));
-    F begin = begin_;
+    D begin = begin_;
     for (int a = 0; a < 3; ++a) {
-      const F there = floor(multiply_add(to, direction_[a], place_[a]));
+      const F there = convert<float>(floor(multiply_add(to, direction_[a], place_[a])));
       // Never back.
       const F cell = select(forward_[a], min(max(there, cell_[a]), end_cell_[a]),
                             max(min(there, cell_[a]), end_cell_[a]));
-      const F behind = cell + select(forward_[a], F(0), F(1));
-      begin = max((behind - place_[a]) * inverse_[a], begin);
+      begin = max(cell_entry(cell, place_[a], inverse_[a], forward_[a]), begin);
       cell_[a] = select(lanes, cell, cell_[a]);
     }
     begin_ = select(lanes, min(begin, to), begin_);
@@ -152,11 +162,11 @@ class CellMarch {
     stretch = load_spread(lanes, walks.stretch + at, stretch);
     const I ray = load_spread(lanes, walks.ray + at, I(0));
     for (int a = 0; a < 3; ++a) {
-      const F place = load_spread(lanes, walks.place[a] + at, F(0));
+      const D place = load_spread(lanes, walks.place[a] + at, D(0));
       const F last = load_spread(lanes, walks.last[a] + at, F(0));
-      const F direction = lookup(direction_of_[a], ray), inverse = lookup(inverse_of_[a], ray);
-      const M forward = inverse > F(0);
-      const F cell = clamp(floor(place), F(0), last);
+      const D direction = lookup(direction_of_[a], ray), inverse = lookup(inverse_of_[a], ray);
+      const M forward = inverse > D(0);
+      const F cell = clamp(convert<float>(floor(place)), F(0), last);
       const F end_cell = end_of_cells(cell, last, inverse, forward);
       place_[a] = select(lanes, place, place_[a]);
       direction_[a] = select(lanes, direction, direction_[a]);
@@ -178,22 +188,23 @@ class CellMarch {
     jump = load_spread(lanes, walks.jump + at, jump);
     bend = load_spread(lanes, walks.bend + at, bend);
     variation = load_spread(lanes, walks.variation + at, variation);
-    begin_ = select(lanes, F(0), begin_);
+    begin_ = select(lanes, D(0), begin_);
     walking = walking | lanes;
   }
 
   const CornerLoads<Value, N> load_;
-  float direction_of_[3][N], inverse_of_[3][N];  ///< by ray
-  float fastest_of_[N];                          ///< the largest |direction|
-  int next_ = 0;                                 ///< of the walks, the first not taken
+  double direction_of_[3][N], inverse_of_[3][N];  ///< by ray
+  float fastest_of_[N];                           ///< the largest |direction|
+  int next_ = 0;                                  ///< of the walks, the first not taken
 
   // Of the walks in the lanes.
-  F direction_[3], inverse_[3];
+  D direction_[3], inverse_[3];
   M forward_[3];
-  F place_[3];               ///< of the entry into the block, from the block's lower corner
+  D place_[3];               ///< of the entry into the block, from the block's lower corner
   F cell_[3], end_cell_[3];  ///< in the block; the last one along each axis
   F least_[3], highest_[3];  ///< the cells whose values are there
-  F begin_, length_, fastest_;
+  D begin_, length_;
+  F fastest_;
   const Value* base_[N];  ///< the value at the lower corner of cell `least`
 };
 

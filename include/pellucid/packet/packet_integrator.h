@@ -56,19 +56,13 @@ class PacketIntegrator {
         largest_color_(static_cast<float>(job.largest_color)),
         double_will_do_(job.tolerance >
                         64 * static_cast<double>(rounding_unit<float>) * job.largest_color) {
-    float far[N], block[N];
+    float far[N];
     for (int l = 0; l < N; ++l) {
       // Where the ray meets the planes is known to a few units of its arc length.
       const PellucidRay& ray = job.rays[first + (l < count ? l : 0)];
       far[l] = static_cast<float>(8 * rounding_unit<double> * ray.end);
-      double longest = ray.end - ray.begin;
-      for (const double d : ray.direction) {
-        if (abs(d) * longest > block_width) longest = block_width / abs(d);
-      }
-      block[l] = 2 * rounding_unit<float> * static_cast<float>(longest);
     }
     place_error_ = F::load(far);
-    end_error_ = F::load(block);
     if (!(static_cast<const SmoothBlocks*>(job.smooth)->longest_step > 0)) {
       blocks_.in_cells_until = D(std::numeric_limits<double>::infinity());
     }
@@ -164,7 +158,6 @@ class PacketIntegrator {
     left_ = select(lanes, row[6], left_);
     code_ = select(lanes, code, code_);
     whole_block_ = select(lanes, has(SpanCode::whole_block), whole_block_);
-    last_of_block_ = select(lanes, has(SpanCode::last), last_of_block_);
     handed_back_ = handed_back_ | (lanes & has(SpanCode::handed_back));
     constant_ += select(lanes & whole_block_, I(1), I(0));
   }
@@ -248,8 +241,7 @@ class PacketIntegrator {
   [[gnu::flatten]] void integrate_pieces(SpanLanes<T, N>& span, M on) noexcept {
     using Place = Batch<T, N>;
     constexpr bool wide = !is_single<T>;
-    SpanPiece<T, N> piece = next_piece(span, transfer_, on, wide ? place_error_ : place_error(),
-                                       largest_color_, color_);
+    SpanPiece<T, N> piece = next_piece(span, transfer_, on, place_error_, largest_color_, color_);
     const SegmentResult<F>& s = piece.found.segment;
     const F length = convert<float>(piece.length);
     fold_.budget.pass_to(
@@ -332,11 +324,10 @@ class PacketIntegrator {
     const I code = select(not_begun_, code_, I(0));
     I in_block[3];
     for (int a = 0; a < 3; ++a) in_block[a] = SpanCode::place_in_block(code, a);
-    const M last = (code & I(SpanCode::last)) > I(0);
-    cells_in_double_.begin(not_begun_,
-                           cell_places(grid_, blocks_, room_.stretches, SpanCode::stretch_of(code),
-                                       in_block, span_length_, last),
-                           convert<double>(single_.from), double_);
+    cells_in_double_.begin(
+        not_begun_,
+        cell_places(grid_, blocks_, room_.stretches, SpanCode::stretch_of(code), in_block),
+        convert<double>(single_.from), double_);
     not_begun_ = M(false);
   }
 
@@ -348,11 +339,6 @@ class PacketIntegrator {
     drop_spans(done);
     smooth_.walking = smooth_.walking & !done;
   }
-
-  /// How far a span's ends may be from where they are thought to be, world length. Where cells meet
-  /// is known to binary32 only, but what one has too much the other has too little, of data that
-  /// are the same there; the end of a block is rounded for good.
-  F place_error() const noexcept { return place_error_ + select(last_of_block_, end_error_, F(0)); }
 
   /// Has what is left of the lanes' spans integrated by other means.
   void hand_back(M lanes) noexcept {
@@ -417,14 +403,14 @@ class PacketIntegrator {
   M in_double_now_{false};  ///< those that binary32 is not good enough for
   M not_begun_{false};      ///< and of which double_ does not hold anything yet
   M whole_block_{false};    ///< of one material
-  M last_of_block_{false};
   SpanLanes<float, N> single_;
   SpanLanes<double, N> double_;
-  int waited_ = 0;             ///< pieces that lanes which wait for double could have integrated
-  F left_;                     ///< of the ray, from the span's begin on, world length
-  F span_length_;              ///< of all of it
-  F place_error_, end_error_;  ///< world length: of any place, of the end of a block
-  ColorInterval<F> color_;     ///< of a piece before
+  int waited_ = 0;          ///< pieces that lanes which wait for double could have integrated
+  F left_;                  ///< of the ray, from the span's begin on, world length
+  F span_length_;           ///< of all of it
+  F place_error_;           ///< how far spans' ends may be from where they are thought to be,
+                            ///< world length
+  ColorInterval<F> color_;  ///< of a piece before
   I code_;
 
   SampledErrors<F> sampled_;

@@ -26,10 +26,9 @@ struct SpanRows {
 /// What else is known of a span, in a whole number that a float holds exactly: the sum of these.
 struct SpanCode {
   static constexpr int cell[3] = {1, 8, 64};  ///< times its place in the block
-  static constexpr int last = 512;            ///< of the stretch
-  static constexpr int handed_back = 1024;    ///< not for the packets' rule
-  static constexpr int whole_block = 2048;    ///< of one material
-  static constexpr int stretch = 4096;        ///< times its number, of 8 bits
+  static constexpr int handed_back = 512;     ///< not for the packets' rule
+  static constexpr int whole_block = 1024;    ///< of one material
+  static constexpr int stretch = 2048;        ///< times its number, of 8 bits
 
   // I: an int, or several.
   template <class I>
@@ -38,10 +37,10 @@ struct SpanCode {
   }
   template <class I>
   static I stretch_of(I code) noexcept {
-    return code >> 12;
+    return code >> 11;
   }
 };
-static_assert(block_width == 8 && SpanCode::cell[2] == 1 << 6 && SpanCode::stretch == 1 << 12);
+static_assert(block_width == 8 && SpanCode::cell[2] == 1 << 6 && SpanCode::stretch == 1 << 11);
 
 /// Finds what of rays' stretches absorbs: from cell to cell, their range and then the hull of the
 /// data along the ray against the marks of the transfer function.
@@ -75,8 +74,7 @@ class SpanFinder {
     list_.fill(stretches, walks, [&](M lanes, I stretch, F value, F length, F left) noexcept {
       lanes = is_constant(lanes, value);
       const I number = select(lanes, stretch, I(All::most));
-      const F code =
-          convert<float>(number) * F(SpanCode::stretch) + F(SpanCode::whole_block + SpanCode::last);
+      const F code = convert<float>(number) * F(SpanCode::stretch) + F(SpanCode::whole_block);
       const F rounding = F(4 * rounding_unit<float>) * abs(value);
       const F span[] = {value, value, value, value, rounding, length, left, code};
       store_records<Rows::fields>(span, rows.row, number * I(Rows::of_a_stretch));
@@ -125,8 +123,9 @@ class SpanFinder {
     }
     M found = ready & (upper >= F(transfer_.support_min)) & (lower <= F(transfer_.support_max)) &
               (step.end > step.begin);
-    // Of the values' differences from one of them: what is rounded is their range, and the value
-    // itself only at the end and in cuts. A place is off by 16 u of a cell along each axis.
+    // Of the values' differences from one of them: what is rounded is their range, by 13 u in
+    // trilinear_cubic(), 3 u in places and 1 u in themselves, and the value itself only at the end
+    // and in cuts.
     CellCorners<F> differences;
     for (int n = 0; n < 8; ++n) differences.value[n] = v[n] - v[0];
     CubicBernstein<F> data =
@@ -137,9 +136,9 @@ class SpanFinder {
     for (F& b : data.b) b += v[0];
     constexpr float u = rounding_unit<float>;
     const F range = upper - lower;
-    const F rounding = F(8 * u) * max(abs(lower), abs(upper)) + F(80 * u) * range;
+    const F rounding = F(8 * u) * max(abs(lower), abs(upper)) + F(24 * u) * range;
     if (any(found)) put_down(found, data, rounding, rows);
-    const F per_length = F(1) / (step.end - step.begin);
+    const F per_length = F(1) / convert<float>(step.end - step.begin);
     skip(ready, data.b[3], rounding, F(3) * last_rise * per_length,
          F(512 * u) * range * per_length);
   }
@@ -148,8 +147,7 @@ class SpanFinder {
   void put_down(M found, const CubicBernstein<F>& data, F rounding, Rows& rows) noexcept {
     const typename CellMarch<Value, N>::Step& step = step_;
     const F least = data.hull_min() - rounding, most = data.hull_max() + rounding;
-    F code = convert<float>(cells_.stretch) * F(SpanCode::stretch) +
-             select(step.last, F(SpanCode::last), F(0));
+    F code = convert<float>(cells_.stretch) * F(SpanCode::stretch);
     for (int a = 0; a < 3; ++a) code += F(SpanCode::cell[a]) * step.cell[a];
     M jumps;
     found = may_absorb(transfer_, found, least, most, jumps);
@@ -160,8 +158,8 @@ class SpanFinder {
                       data.b[2],
                       data.b[3],
                       rounding,
-                      step.end - step.begin,
-                      cells_.ray_left - step.begin,
+                      convert<float>(step.end - step.begin),
+                      cells_.ray_left - convert<float>(step.begin),
                       code};
     // Of lanes that found nothing too: behind their last row.
     store_records<Rows::fields>(span, rows.row, row_);

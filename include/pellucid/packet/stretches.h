@@ -34,10 +34,10 @@ struct Walks {
 
   int count;
   std::int32_t stretch[capacity], ray[capacity];
-  float place[3][capacity];  ///< of its entry into the block, from the block's lower corner
-  float last[3][capacity];   ///< the last cell of the block
+  double place[3][capacity];  ///< of its entry into the block, from the block's lower corner
+  float last[3][capacity];    ///< the last cell of the block
   float least[3][capacity], highest[3][capacity];  ///< the cells of it whose values are there
-  float length[capacity];                          ///< world length
+  double length[capacity];                         ///< world length
   float left[capacity];                            ///< of the ray at the entry, world length
   /// By how much the data's derivative by world length varies along the ray: at most by
   /// jump + 2 bend · (length of a part), and by `variation` in all. Infinite where it is not known.

@@ -48,8 +48,8 @@ class WalkList {
     for (int l = 0; l < N; ++l) number[l] = first + l;
     const I stretch = I::load(number), ray = I::load(stretches.ray + first);
     const D begin = D::load(stretches.begin + first);
-    const F length = convert<float>(D::load(stretches.end + first) - begin),
-            left = convert<float>(lookup(rays_.end, ray) - begin);
+    const D length = D::load(stretches.end + first) - begin;
+    const F left = convert<float>(lookup(rays_.end, ray) - begin);
     I block[3], first_cell[3], first_of_block[3];
     for (int a = 0; a < 3; ++a) {
       block[a] = I::load(stretches.block[a] + first);
@@ -61,12 +61,13 @@ class WalkList {
       return grid_.data +
              (first_value[0][l] + grid_.row * first_value[1][l] + grid_.slice * first_value[2][l]);
     };
-    M lanes = (stretch < I(stretches.count)) & (length > F(0));
+    M lanes = (stretch < I(stretches.count)) & (length > D(0));
     const M one_material = lanes & (I::load(stretches.constant + first) > I(0));
     if (any(one_material)) {
       float value[N];
       for (int l = 0; l < N; ++l) value[l] = static_cast<float>(*base(l));
-      lanes = lanes & !constant(one_material, stretch, F::load(value), length, left);
+      lanes =
+          lanes & !constant(one_material, stretch, F::load(value), convert<float>(length), left);
     }
 
     const int at = walks.count;
@@ -78,7 +79,7 @@ class WalkList {
       const D place = lookup(rays_.origin[a], ray) + begin * lookup(rays_.direction[a], ray) -
                       convert<double>(first_cell[a]);
       const I last = min(I(grid_.cells[a]) - first_cell[a], I(block_width)) - I(1);
-      store_packed(lanes, convert<float>(place), walks.place[a] + at);
+      store_packed(lanes, place, walks.place[a] + at);
       store_packed(lanes, convert<float>(last), walks.last[a] + at);
       if (!grid_.padded()) continue;
       const I least = max(I(0) - first_of_block[a], I(0)),

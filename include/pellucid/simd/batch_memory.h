@@ -174,14 +174,17 @@ PELLUCID_ALWAYS_INLINE void store_packed(BatchMask<N> mask, Batch<T, N> x, T* to
 }
 
 /// `rest`, but in the lanes of `mask` the numbers from[0], from[1], … one after the other. Reads N
-/// of them. Of float or std::int32_t.
+/// of them.
 template <class T, int N>
 PELLUCID_ALWAYS_INLINE Batch<T, N> load_spread(BatchMask<N> mask, const T* from,
                                                Batch<T, N> rest) noexcept {
   using Native = detail::Native<N>;
-  if constexpr (Native::has_packing) {
+  if constexpr (Native::has_packing && Batch<T, N>::one_register) {
     return Batch<T, N>(
         typename Batch<T, N>::Register(Native::load_spread(mask.native, from, rest.part[0])));
+  } else if constexpr (Native::has_packing) {
+    Native::load_spread(mask.native, from, rest.part[0], rest.part[1]);
+    return rest;
   } else {
     T all[N];
     rest.store(all);

@@ -257,6 +257,15 @@ struct Native<16> {
                                                 Int rest) noexcept {
     return _mm512_mask_expand_epi32(rest, m, _mm512_loadu_si512(from));
   }
+  /// Reads beyond the numbers that the lower lanes take, but no more than 16 in all.
+  template <class Part>
+  PELLUCID_ALWAYS_INLINE static void load_spread(Mask m, const double* from, Part& low,
+                                                 Part& high) noexcept {
+    const WideMask wide = widen(m);
+    low = _mm512_mask_expand_pd(low, wide.low, _mm512_loadu_pd(from));
+    high = _mm512_mask_expand_pd(high, wide.high,
+                                 _mm512_loadu_pd(from + __builtin_popcount(wide.low)));
+  }
 };
 
 }  // namespace pellucid::detail
