@@ -18,10 +18,6 @@ constexpr int largest_stride = 16;
 constexpr int least_cells = 8;
 /// Of the distance at which rays show all that is between them.
 constexpr double most_of_step = 0.9;
-/// Of fourth and second differences of pixels what the cubic may err: 3/128 of the fourth where
-/// they say all, 0.22 in waves as short as random scenes had them, and 0.375 where there is a kink
-/// between pixels; second ones for what bends beside a kink take away of its fourth.
-constexpr double of_fourth = 0.38, of_second = 0.02;
 /// At smaller tolerances few pixels pass, and those that they are taken from cost more.
 constexpr double least_tolerance = 8e-4;
 /// What is tried of a level: every so-manieth pixel each way. Less than that share of them, and
@@ -35,23 +31,6 @@ constexpr double least_clear_share = 1.0 / 16;
 constexpr std::array<double, 4> weight{-1.0 / 16, 9.0 / 16, 9.0 / 16, -1.0 / 16};
 constexpr double sum_of_weights = 1.25;
 
-/// What the cubic errs in the middle of six pixels in a row, the largest of the channels.
-double error_of_cubic(const std::array<const std::array<float, 4>*, 6>& p) noexcept {
-  double most = 0;
-  for (std::size_t c = 0; c < 4; ++c) {
-    const auto second = [&](std::size_t i) {
-      return ((*p[i - 1])[c] - (*p[i])[c]) + ((*p[i + 1])[c] - (*p[i])[c]);
-    };
-    const float s[4] = {second(1), second(2), second(3), second(4)};
-    const float fourth = std::max(std::fabs((s[0] - s[1]) + (s[2] - s[1])),
-                                  std::fabs((s[1] - s[2]) + (s[3] - s[2])));
-    const float at_middle = std::max(std::fabs(s[1]), std::fabs(s[2]));
-    most = std::max(
-        most, of_fourth * static_cast<double>(fourth) + of_second * static_cast<double>(at_middle));
-  }
-  return most;
-}
-
 /// Of the tolerance, what pixels of a level may be off by, for others are taken from them.
 struct Shares {
   double of_rays, in_between;
@@ -62,6 +41,10 @@ constexpr Shares shares_of(int stride) noexcept {
 /// What a pixel in the middle of sixteen inherits of either kind leaves something for itself.
 static_assert(sum_of_weights * sum_of_weights * shares_of(2).in_between < shares_of(1).in_between &&
               sum_of_weights * sum_of_weights * shares_of(4).in_between < shares_of(2).in_between);
+
+/// What pixels that others are taken from may be off by: what rays beside each other do not err
+/// alike is in the differences that stand for the cubic's error, many times over.
+constexpr double most_of_rays = 2.5e-3;
 
 /// Whether rays so many pixels apart show all that is between them.
 bool are_near(int pixels, double voxels_between_pixels, double longest_step) noexcept {
@@ -136,8 +119,9 @@ BetweenPixels::BetweenPixels(const Frame& frame, const ImageView& image, int str
       columns_(static_cast<std::size_t>((frame.scene.size.width + 1) / 2)),
       known_(columns_ * static_cast<std::size_t>((frame.scene.size.height + 1) / 2)) {}
 
-double BetweenPixels::share_of_rays(int stride) noexcept {
-  return shares_of(stride).of_rays;
+double BetweenPixels::share_of_rays(int stride) const noexcept {
+  const double share = shares_of(stride).of_rays;
+  return stride > 1 ? std::min(share, most_of_rays / frame_.tolerance) : share;
 }
 
 void BetweenPixels::keep(int column, int row, const RayResult& result) noexcept {
@@ -168,8 +152,13 @@ struct BetweenPixels::Around {
   }
 };
 
-void BetweenPixels::finish_level(int stride) noexcept {
+void BetweenPixels::finish_level(int stride, int threads) {
   finished_ = stride;
+  cubic_errors_.emplace(image_, frame_.scene.size, stride, threads);
+  if (stride < stride_) {
+    const auto around = frame_.tracer->surroundings();
+    mask_ = ScreenMask(frame_.camera, around->volume, around->blocks, stride);
+  }
   const int next = stride / 2, apart = apart_of_tried * stride;
   int tried = 0, found = 0;
   for (int row = next; row < frame_.scene.size.height; row += apart) {
@@ -204,53 +193,53 @@ BetweenPixels::Cost BetweenPixels::look(int column, int row, int stride,
 
   // The cubic, and what its pixels are off by.
   std::array<double, 4> found{};
-  double inherited = 0, unevenness = 0, brightest = 0,
-         longest = std::numeric_limits<double>::infinity();
+  std::array<float, 4> brightest{};
+  double inherited = 0;
+  float unevenness = 0, longest = std::numeric_limits<float>::infinity();
   for (int j = down ? 0 : 1; j < (down ? 4 : 2); ++j) {
     for (int i = across ? 0 : 1; i < (across ? 4 : 2); ++i) {
       const double w = (across ? weight[static_cast<std::size_t>(i)] : 1) *
                        (down ? weight[static_cast<std::size_t>(j)] : 1);
       const std::array<float, 4>& value = around.value(i - 1, j - 1);
       const Known& known = around.known(i - 1, j - 1);
+      for (std::size_t c = 0; c < 4; ++c) found[c] += w * static_cast<double>(value[c]);
       for (std::size_t c = 0; c < 4; ++c) {
-        found[c] += w * static_cast<double>(value[c]);
-        brightest = std::max(brightest, std::fabs(static_cast<double>(value[c])));
+        brightest[c] = std::max(brightest[c], std::fabs(value[c]));
       }
       inherited += std::fabs(w) * static_cast<double>(known.error);
-      unevenness = std::max(unevenness, static_cast<double>(known.unevenness));
-      longest = std::min(longest, static_cast<double>(known.longest_step));
+      unevenness = std::max(unevenness, known.unevenness);
+      longest = std::min(longest, known.longest_step);
     }
   }
+  const float largest = *std::max_element(brightest.begin(), brightest.end());
   // What is clear is traced for next to nothing, and known for sure then.
-  if (!(brightest > 0) || !(found[3] > 0)) return {};
-  if (!are_near(before, voxels_, longest)) {
+  if (!(largest > 0) || !(found[3] > 0)) return {};
+  if (!are_near(before, voxels_, static_cast<double>(longest))) {
     return {true, std::numeric_limits<double>::infinity(), 0, 0};
   }
 
-  double of_columns = 0, of_rows = 0;
+  float of_columns = 0, of_rows = 0;
   if (across) {
     for (int j = -1; j <= (down ? 2 : 1); ++j) {
-      of_columns = std::max(of_columns, error_of_cubic({&around.value(-2, j), &around.value(-1, j),
-                                                        &around.value(0, j), &around.value(1, j),
-                                                        &around.value(2, j), &around.value(3, j)}));
+      of_columns =
+          std::max(of_columns, cubic_errors_->across(around.column, around.row + j * before));
     }
   }
   if (down) {
     for (int i = -1; i <= (across ? 2 : 1); ++i) {
-      of_rows = std::max(
-          of_rows, error_of_cubic({&around.value(i, -2), &around.value(i, -1), &around.value(i, 0),
-                                   &around.value(i, 1), &around.value(i, 2), &around.value(i, 3)}));
+      of_rows = std::max(of_rows, cubic_errors_->down(around.column + i * before, around.row));
     }
   }
-  const double cubic = (across && down ? sum_of_weights : 1) * (of_columns + of_rows);
+  const double cubic =
+      (across && down ? sum_of_weights : 1) * static_cast<double>(of_columns + of_rows);
   // Its own unevenness, and that of those which it is taken from: 1 and at most 0.64 of variance.
-  const double uneven = 1.3 * RandomErrors<double>::deviations * unevenness;
+  const double uneven = 1.3 * RandomErrors<double>::deviations * static_cast<double>(unevenness);
   result = {};
   result.radiance = {std::max(found[0], 0.0), std::max(found[1], 0.0), std::max(found[2], 0.0)};
   result.opacity = std::clamp(found[3], 0.0, 1.0);
-  result.unevenness = static_cast<float>(unevenness);
-  result.longest_step = static_cast<float>(longest);
-  return {true, inherited + 4 * 0x1p-24 * brightest, cubic, uneven};
+  result.unevenness = unevenness;
+  result.longest_step = longest;
+  return {true, inherited + 4 * 0x1p-24 * static_cast<double>(largest), cubic, uneven};
 }
 
 }  // namespace pellucid

@@ -3,8 +3,10 @@
 
 #include <cstddef>
 #include <memory>
+#include <optional>
 #include <vector>
 
+#include "cubic_errors.h"
 #include "frame.h"
 #include "pellucid/render/ray_result.h"
 #include "pixel.h"
@@ -36,11 +38,11 @@ class BetweenPixels {
   int stride() const noexcept { return stride_; }
   /// To be called when the pixels of a level are done, not the last: finds out on a few pixels
   /// whether the next one is worth it. Where it is not, all that is left is to be traced.
-  void finish_level(int stride) noexcept;
+  void finish_level(int stride, int threads);
   bool goes_on() const noexcept { return goes_on_; }
   /// Of the tolerance, what rays of this level may be off by, so that there is something left for
   /// the pixels between them.
-  static double share_of_rays(int stride) noexcept;
+  double share_of_rays(int stride) const noexcept;
 
   /// Whether the pixel is one of the levels that are finished.
   bool is_done(int column, int row) const noexcept {
@@ -80,9 +82,10 @@ class BetweenPixels {
   int finished_ = 0;  ///< the last level that is; 0: none
   bool goes_on_ = true;
   double voxels_;    ///< from pixel to pixel, at most
-  ScreenMask mask_;  ///< whose squares are stride_ wide
+  ScreenMask mask_;  ///< whose squares are as wide as pixels of the level before are apart
   std::size_t columns_;
   std::vector<Known> known_;
+  std::optional<CubicErrors> cubic_errors_;  ///< of the level that is finished
 };
 
 }  // namespace pellucid

@@ -67,7 +67,7 @@ void render_tiles(const Frame& frame, const RenderOptions& options, Image& image
       render_level(make_lattice(frame.scene.size, level), level,
                    [&](const Tile&) { progress.ask_whether_to_go_on(); });
       if (progress.cancelled()) throw Cancelled();
-      between->finish_level(level);
+      between->finish_level(level, report.threads);
     }
   }
   render_level(tiles, 1, [&](const Tile& tile) { progress.finish_tile(tile); });

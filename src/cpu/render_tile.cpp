@@ -92,7 +92,7 @@ void render_tile(const Frame& frame, const Tile& tile, int level, BetweenPixels*
     }
   }
   const std::vector<RayResult> results =
-      frame.tracer->trace(rays, between != nullptr ? BetweenPixels::share_of_rays(level) : 1);
+      frame.tracer->trace(rays, between != nullptr ? between->share_of_rays(level) : 1);
   report.rays += rays.size();
   const RayResult* of_pixel = results.data();
   for (const Place& place : places) {

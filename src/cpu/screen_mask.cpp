@@ -103,16 +103,18 @@ void ScreenMask::mark_edges(const CameraFrame<double>& camera,
       if ((n & bit) != 0) continue;
       const Projected from = project(camera, square_, corner[n]),
                       to = project(camera, square_, corner[n + bit]);
-      const double halves = std::ceil(2 * std::hypot(to.x - from.x, to.y - from.y));
+      const double parts = std::ceil(8 * std::hypot(to.x - from.x, to.y - from.y));
       // What is far outside of the image is not gone along.
-      if (!(halves <= 16.0 * (columns_ + rows_))) {
+      if (!(parts <= 64.0 * (columns_ + rows_))) {
         std::fill(marked_.begin(), marked_.end(), std::uint8_t{1});
         return;
       }
-      for (double i = 0; i <= halves; ++i) {
-        const double t = halves > 0 ? i / halves : 0;
+      for (double i = 0; i <= parts; ++i) {
+        const double t = parts > 0 ? i / parts : 0;
         const double x = from.x + t * (to.x - from.x), y = from.y + t * (to.y - from.y);
-        mark(x, y, x, y, 1);
+        // No place of the edge is further from all of these: it may just touch a square.
+        constexpr double near = 1.0 / 16;
+        mark(x - near, y - near, x + near, y + near, 1);
       }
     }
   }

@@ -206,7 +206,7 @@ class PacketIntegrator {
     const M refused = smooth_.finer(on & !take);
     if (any(refused)) {
       blocks_.go_in_cells(refused, from, smooth_.end);
-      smooth_.refuse(refused);
+      smooth_.refuse(refused, transparency);
     }
     if (none(take)) return;
     fold_.add(take, s);

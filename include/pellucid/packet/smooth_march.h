@@ -123,17 +123,25 @@ class SmoothMarch {
 
   /// Goes behind the steps of these lanes. `easy`: those which could do with longer ones.
   void take(M lanes, const Steps& s, F transparency, M easy) noexcept {
-    note(lanes, s, transparency);
+    note(lanes, s.length, s.local, transparency);
     at = select(lanes, select(s.last, end, at + convert<double>(s.length)), at);
     set_front(lanes, back_, back_value_);
     walking = walking & !(lanes & s.last);
     level_ = select(lanes & easy & s.may_be_longer & (level_ > I(0)), level_ - I(1), level_);
   }
 
-  /// Leaves what is left of their stretches to others: of other blocks in them nothing is known.
-  void refuse(M lanes) noexcept {
-    shortest_wave_ = select(lanes, F(std::numeric_limits<float>::infinity()), shortest_wave_);
+  /// Leaves what is left of their stretches to others.
+  [[gnu::noinline]] void refuse(M lanes, F transparency) noexcept {
     walking = walking & !lanes;
+    const D block = convert<double>(F(static_cast<float>(block_width)) / cells_per_length_);
+    D from = at;
+    for (M left = lanes & (from < end); any(left); left = left & (from < end)) {
+      const D to = min(from + block, end);
+      F local[SmoothBlocks::fields];
+      look_up(left, D(0.5) * (from + to), local);
+      note(left, convert<float>(to - from), local, transparency);
+      from = select(left, to, from);
+    }
   }
 
   /// RayResult::unevenness, of what was taken.
@@ -171,12 +179,23 @@ class SmoothMarch {
   /// ones are taken then.
   static constexpr float resonant = 0.004f, first_part = 0.62f;
 
-  /// Notes how much the data bend along the lanes' steps.
-  void note(M lanes, const Steps& s, F transparency) noexcept {
-    const F weight = select(lanes, transparency * transparency * s.length, F(0));
+  /// Notes how much the data bend along this length.
+  void note(M lanes, F length, const F* local, F transparency) noexcept {
+    const F weight = select(lanes, transparency * transparency * length, F(0));
     seen_ += weight;
-    for (int a = 0; a < 3; ++a) bends_[a] += weight * (s.local[a] * s.local[a]);
-    shortest_wave_ = max(shortest_wave_, select(lanes, s.local[3], F(0)));
+    for (int a = 0; a < 3; ++a) bends_[a] += select(lanes, weight * (local[a] * local[a]), F(0));
+    shortest_wave_ = max(shortest_wave_, select(lanes, local[3], F(0)));
+  }
+
+  /// The fields of SmoothBlocks for the block at this length from the entry into the grid.
+  void look_up(M lanes, D there, F* local) const noexcept {
+    I block[3];
+    for (int a = 0; a < 3; ++a) {
+      const D place = floor((origin_[a] + there * direction_[a]) * D(1.0 / block_width));
+      block[a] = convert<std::int32_t>(clamp(place, D(0), D(grid_.blocks[a] - 1)));
+    }
+    const I index = grid_.index_of_block(block);
+    load_records<SmoothBlocks::fields>(smooth_.local, select(lanes, index, I(0)), local);
   }
 
   /// The material where the lanes stand; that of NaN, which is none, in vacuum.
@@ -243,14 +262,7 @@ class SmoothMarch {
   /// with those of the level before being so, too.
   void look_at_blocks(const F* weight, F step, Steps& s) const noexcept {
     // The block in the middle of the steps, whose neighbours hold the others.
-    const D middle = at + D(0.5) * convert<double>(s.length);
-    I block[3];
-    for (int a = 0; a < 3; ++a) {
-      const D place = floor((origin_[a] + middle * direction_[a]) * D(1.0 / block_width));
-      block[a] = convert<std::int32_t>(clamp(place, D(0), D(grid_.blocks[a] - 1)));
-    }
-    const I index = grid_.index_of_block(block);
-    load_records<SmoothBlocks::fields>(smooth_.local, select(walking, index, I(0)), s.local);
+    look_up(walking, at + D(0.5) * convert<double>(s.length), s.local);
     F sum(0);
     for (int a = 0; a < 3; ++a) sum += weight[a] * (s.local[a] * s.local[a]);
     s.least_variance = step * step * sum;

@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "cubic_errors.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "threads.h"
+
+namespace pellucid {
+namespace {
+
+/// Of fourth and second differences: 3/128 of the fourth where they say all, 0.22 in waves as short
+/// as random scenes had them, and 0.375 where there is a kink between pixels; second ones for what
+/// bends beside a kink take away of its fourth.
+constexpr float of_fourth = 0.38f, of_second = 0.02f;
+
+using Pixel = std::array<float, 4>;
+
+Pixel second_difference(const Pixel& a, const Pixel& b, const Pixel& c) noexcept {
+  Pixel d;
+  for (std::size_t k = 0; k < 4; ++k) d[k] = (a[k] - b[k]) + (c[k] - b[k]);
+  return d;
+}
+
+/// Of `count` pixels in a line, `step` apart: between each and the next.
+void find_line(const Pixel* pixel, std::size_t step, std::size_t count, float* out,
+               std::size_t out_step) noexcept {
+  if (count < 6) return;
+  const auto second = [&](std::size_t i) {
+    return second_difference(pixel[(i - 1) * step], pixel[i * step], pixel[(i + 1) * step]);
+  };
+  Pixel before = second(1), here = second(2), next = second(3);
+  Pixel fourth = second_difference(before, here, next);
+  for (std::size_t i = 2; i + 3 < count; ++i) {
+    const Pixel behind = second(i + 2);
+    const Pixel next_fourth = second_difference(here, next, behind);
+    float most = 0;
+    for (std::size_t k = 0; k < 4; ++k) {
+      const float f = std::max(std::fabs(fourth[k]), std::fabs(next_fourth[k]));
+      const float s = std::max(std::fabs(here[k]), std::fabs(next[k]));
+      most = std::max(most, of_fourth * f + of_second * s);
+    }
+    out[i * out_step] = most;
+    here = next;
+    next = behind;
+    fourth = next_fourth;
+  }
+}
+
+}  // namespace
+
+CubicErrors::CubicErrors(const ImageView& image, ImageSize size, int stride, int threads)
+    : stride_(stride),
+      columns_(static_cast<std::size_t>((size.width + stride - 1) / stride)),
+      rows_(static_cast<std::size_t>((size.height + stride - 1) / stride)),
+      across_(columns_ * rows_, std::numeric_limits<float>::infinity()),
+      down_(across_) {
+  const auto apart = static_cast<std::size_t>(stride);
+  // Lines enough that taking one is nothing beside them; of columns those that share memory.
+  constexpr std::size_t group = 16;
+  const std::size_t groups_of_rows = (rows_ + group - 1) / group,
+                    groups_of_columns = (columns_ + group - 1) / group;
+  take_in_turn(groups_of_rows + groups_of_columns, threads, [&](std::size_t n) {
+    if (n < groups_of_rows) {
+      for (std::size_t j = n * group; j < std::min((n + 1) * group, rows_); ++j) {
+        find_line(image.pixels + j * apart * image.width, apart, columns_,
+                  across_.data() + j * columns_, 1);
+      }
+    } else {
+      n -= groups_of_rows;
+      for (std::size_t i = n * group; i < std::min((n + 1) * group, columns_); ++i) {
+        find_line(image.pixels + i * apart, apart * image.width, rows_, down_.data() + i, columns_);
+      }
+    }
+    return true;
+  });
+}
+
+}  // namespace pellucid

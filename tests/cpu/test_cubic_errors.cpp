@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "src/cpu/cubic_errors.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <random>
+
+namespace pellucid {
+namespace {
+
+constexpr int stride = 4;
+
+/// `value` of the lattice's columns and rows in one channel, nothing between them.
+Image on_lattice(ImageSize size, std::size_t channel,
+                 const std::function<double(double, double)>& value) {
+  Image image;
+  image.width = size.width;
+  image.height = size.height;
+  image.pixels.resize(static_cast<std::size_t>(size.width) * static_cast<std::size_t>(size.height));
+  for (int row = 0; row < size.height; ++row) {
+    for (int column = 0; column < size.width; ++column) {
+      const bool of_lattice = column % stride == 0 && row % stride == 0;
+      image.at(column, row)[channel] =
+          of_lattice ? static_cast<float>(value(1.0 * column / stride, 1.0 * row / stride))
+                     : std::numeric_limits<float>::quiet_NaN();
+    }
+  }
+  return image;
+}
+
+CubicErrors errors_of(Image& image, int threads) {
+  return {ImageView(image), {image.width, image.height}, stride, threads};
+}
+
+/// What the cubic makes of it half-way from 0 to 1.
+double off_in_the_middle(const std::function<double(double)>& f) {
+  return std::fabs((9 * (f(0) + f(1)) - (f(-1) + f(2))) / 16 - f(0.5));
+}
+
+TEST(CubicErrors, HoldForKinksWavesAndCubics) {
+  std::mt19937 random(1);
+  const auto uniform = [&](double a, double b) {
+    return std::uniform_real_distribution<double>(a, b)(random);
+  };
+  double worst = 0;
+  for (int n = 0; n < 20000; ++n) {
+    // A kink anywhere on a curve, or waves of more than two and a half pixels of the lattice.
+    const double kink = uniform(-1, 1), place = uniform(-2, 3);
+    const double bend = n % 2 == 0 ? uniform(-0.02, 0.02) : 0, slope = uniform(-1, 1);
+    const double wave = n % 3 == 0 ? 2 * 3.14159265 / uniform(2.5, 9) : 0, phase = uniform(0, 7);
+    const auto f = [&](double t) {
+      return wave > 0 ? std::sin(wave * t + phase)
+                      : kink * std::fabs(t - place) + bend * t * t + slope * t;
+    };
+    const auto channel = static_cast<std::size_t>(n % 4);
+    const bool is_across = n % 5 < 3;
+    Image image = on_lattice({6 * stride, 6 * stride}, channel,
+                             [&](double x, double y) { return f((is_across ? x : y) - 2); });
+    const CubicErrors errors = errors_of(image, 1);
+    const double said = static_cast<double>(is_across ? errors.across(2 * stride, stride)
+                                                      : errors.down(stride, 2 * stride));
+    const double off = off_in_the_middle(f);
+    ASSERT_LE(off, said + 1e-6) << n;
+    if (said > 1e-3) worst = std::max(worst, off / said);
+  }
+  RecordProperty("worst", std::to_string(worst));
+  EXPECT_GT(worst, 0.8);  // and not by much
+}
+
+TEST(CubicErrors, AreNothingForCubicsAndInfiniteWhereTheLatticeEnds) {
+  const ImageSize size{37, 30};  // 10 × 8 of the lattice
+  Image image = on_lattice(size, 2, [](double x, double y) { return 3 + x - 2 * y; });
+  const CubicErrors errors = errors_of(image, 1);
+  for (int row = 0; row < 8; ++row) {
+    for (int column = 0; column < 10; ++column) {
+      const float across = errors.across(column * stride, row * stride),
+                  down = errors.down(column * stride, row * stride);
+      constexpr float infinite = std::numeric_limits<float>::infinity();
+      EXPECT_EQ(across, column < 2 || column > 6 ? infinite : 0) << column;
+      EXPECT_EQ(down, row < 2 || row > 4 ? infinite : 0) << row;
+    }
+  }
+}
+
+TEST(CubicErrors, AreTheSameOnAnyThreads) {
+  const auto value = [](double x, double y) { return std::sin(x * y + x); };
+  Image image = on_lattice({300, 200}, 1, value);
+  const CubicErrors one = errors_of(image, 1), three = errors_of(image, 3);
+  for (int row = 0; row < 200; row += stride) {
+    for (int column = 0; column < 300; column += stride) {
+      EXPECT_EQ(one.across(column, row), three.across(column, row));
+      EXPECT_EQ(one.down(column, row), three.down(column, row));
+    }
+  }
+}
+
+TEST(CubicErrors, OfALatticeTooSmallAreInfinite) {
+  Image image = on_lattice({5 * stride, 5 * stride}, 0, [](double, double) { return 1.0; });
+  const CubicErrors errors = errors_of(image, 2);
+  EXPECT_TRUE(std::isinf(errors.across(2 * stride, 2 * stride)));
+  EXPECT_TRUE(std::isinf(errors.down(2 * stride, 2 * stride)));
+}
+
+}  // namespace
+}  // namespace pellucid
