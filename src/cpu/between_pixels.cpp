@@ -28,8 +28,10 @@ constexpr double least_found = 0.25;
 constexpr double least_clear_share = 1.0 / 16;
 
 /// The cubic through four pixels, in the middle between the second and the third.
-constexpr std::array<double, 4> weight{-1.0 / 16, 9.0 / 16, 9.0 / 16, -1.0 / 16};
+constexpr std::array<float, 4> weight{-1.0f / 16, 9.0f / 16, 9.0f / 16, -1.0f / 16};
 constexpr double sum_of_weights = 1.25;
+/// Of the largest of its pixels, what rounding in float does to it: sixteen products and their sum.
+constexpr double rounding_of_cubic = 32 * 0x1p-24;
 
 /// Of the tolerance, what pixels of a level may be off by, for others are taken from them.
 struct Shares {
@@ -131,27 +133,6 @@ void BetweenPixels::keep(int column, int row, const RayResult& result) noexcept 
                                 result.longest_step};
 }
 
-/// The pixels of a lattice around one between them.
-struct BetweenPixels::Around {
-  const BetweenPixels& of;
-  int column, row;    ///< the pixel's, or that of the level before that is next to it
-  int stride;         ///< of the level before
-  bool across, down;  ///< whether the pixel lies between columns, between rows
-
-  const std::array<float, 4>& value(int i, int j) const noexcept {
-    return of.image_.pixels[of.image_.index(column + i * stride, row + j * stride)];
-  }
-  const Known& known(int i, int j) const noexcept {
-    return of.known_[of.index(column + i * stride, row + j * stride)];
-  }
-  bool is_inside(ImageSize size) const noexcept {
-    const auto fits = [&](bool between, int at, int count) {
-      return at - (between ? 2 : 1) * stride >= 0 && at + (between ? 3 : 1) * stride < count;
-    };
-    return fits(across, column, size.width) && fits(down, row, size.height);
-  }
-};
-
 void BetweenPixels::finish_level(int stride, int threads) {
   finished_ = stride;
   cubic_errors_.emplace(image_, frame_.scene.size, stride, threads);
@@ -185,31 +166,43 @@ bool BetweenPixels::find(int column, int row, int stride, RayResult& result) con
 
 BetweenPixels::Cost BetweenPixels::look(int column, int row, int stride,
                                         RayResult& result) const noexcept {
+  // Of the lattice of the level before; all are powers of two.
   const int before = 2 * stride;
-  const bool across = column % before != 0, down = row % before != 0;
-  const Around around{
-      *this, across ? column - stride : column, down ? row - stride : row, before, across, down};
-  if (mask_.marked(column, row) || !around.is_inside(frame_.scene.size)) return {};
+  const bool across = (column & stride) != 0, down = (row & stride) != 0;
+  const int left = across ? column - stride : column, top = down ? row - stride : row;
+  const ImageSize size = frame_.scene.size;
+  const auto fits = [before](bool between, int at, int count) {
+    return at - (between ? 2 : 1) * before >= 0 && at + (between ? 3 : 1) * before < count;
+  };
+  if (!fits(across, left, size.width) || !fits(down, top, size.height) ||
+      mask_.marked(column, row)) {
+    return {};
+  }
 
   // The cubic, and what its pixels are off by.
-  std::array<double, 4> found{};
-  std::array<float, 4> brightest{};
-  double inherited = 0;
-  float unevenness = 0, longest = std::numeric_limits<float>::infinity();
-  for (int j = down ? 0 : 1; j < (down ? 4 : 2); ++j) {
-    for (int i = across ? 0 : 1; i < (across ? 4 : 2); ++i) {
-      const double w = (across ? weight[static_cast<std::size_t>(i)] : 1) *
-                       (down ? weight[static_cast<std::size_t>(j)] : 1);
-      const std::array<float, 4>& value = around.value(i - 1, j - 1);
-      const Known& known = around.known(i - 1, j - 1);
-      for (std::size_t c = 0; c < 4; ++c) found[c] += w * static_cast<double>(value[c]);
+  static constexpr std::array<float, 4> alone{1, 0, 0, 0};
+  const std::array<float, 4>&of_column = across ? weight : alone, &of_row = down ? weight : alone;
+  const int columns = across ? 4 : 1, rows = down ? 4 : 1;
+  const int first_column = across ? left - before : left, first_row = down ? top - before : top;
+  const std::array<float, 4>* pixels = image_.pixels + image_.index(first_column, first_row);
+  const Known* known = known_.data() + index(first_column, first_row);
+  std::array<float, 4> found{}, brightest{};
+  float inherited = 0, unevenness = 0, longest = std::numeric_limits<float>::infinity();
+  for (int j = 0; j < rows; ++j) {
+    for (int i = 0; i < columns; ++i) {
+      const float w = of_column[static_cast<std::size_t>(i)] * of_row[static_cast<std::size_t>(j)];
+      const std::array<float, 4>& value = pixels[i * before];
       for (std::size_t c = 0; c < 4; ++c) {
+        found[c] += w * value[c];
         brightest[c] = std::max(brightest[c], std::fabs(value[c]));
       }
-      inherited += std::fabs(w) * static_cast<double>(known.error);
-      unevenness = std::max(unevenness, known.unevenness);
-      longest = std::min(longest, known.longest_step);
+      const Known& one = known[i * stride];
+      inherited += std::fabs(w) * one.error;
+      unevenness = std::max(unevenness, one.unevenness);
+      longest = std::min(longest, one.longest_step);
     }
+    pixels += static_cast<std::size_t>(before) * image_.width;
+    known += static_cast<std::size_t>(stride) * columns_;
   }
   const float largest = *std::max_element(brightest.begin(), brightest.end());
   // What is clear is traced for next to nothing, and known for sure then.
@@ -221,13 +214,12 @@ BetweenPixels::Cost BetweenPixels::look(int column, int row, int stride,
   float of_columns = 0, of_rows = 0;
   if (across) {
     for (int j = -1; j <= (down ? 2 : 1); ++j) {
-      of_columns =
-          std::max(of_columns, cubic_errors_->across(around.column, around.row + j * before));
+      of_columns = std::max(of_columns, cubic_errors_->across(left, top + j * before));
     }
   }
   if (down) {
     for (int i = -1; i <= (across ? 2 : 1); ++i) {
-      of_rows = std::max(of_rows, cubic_errors_->down(around.column + i * before, around.row));
+      of_rows = std::max(of_rows, cubic_errors_->down(left + i * before, top));
     }
   }
   const double cubic =
@@ -235,11 +227,15 @@ BetweenPixels::Cost BetweenPixels::look(int column, int row, int stride,
   // Its own unevenness, and that of those which it is taken from: 1 and at most 0.64 of variance.
   const double uneven = 1.3 * RandomErrors<double>::deviations * static_cast<double>(unevenness);
   result = {};
-  result.radiance = {std::max(found[0], 0.0), std::max(found[1], 0.0), std::max(found[2], 0.0)};
-  result.opacity = std::clamp(found[3], 0.0, 1.0);
+  const auto positive = [&](std::size_t c) { return std::max(static_cast<double>(found[c]), 0.0); };
+  result.radiance = {positive(0), positive(1), positive(2)};
+  result.opacity = std::min(positive(3), 1.0);
   result.unevenness = unevenness;
   result.longest_step = longest;
-  return {true, inherited + 4 * 0x1p-24 * static_cast<double>(largest), cubic, uneven};
+  return {true,
+          (1 + 0x1p-20) * static_cast<double>(inherited) +
+              rounding_of_cubic * static_cast<double>(largest),
+          cubic, uneven};
 }
 
 }  // namespace pellucid

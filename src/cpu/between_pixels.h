@@ -63,7 +63,6 @@ class BetweenPixels {
   struct Known {
     float error, unevenness, longest_step;
   };
-  struct Around;
   /// What a pixel may be off by.
   struct Cost {
     bool known = false;
