@@ -186,23 +186,23 @@ BetweenPixels::Cost BetweenPixels::look(int column, int row, int stride,
   const int first_column = across ? left - before : left, first_row = down ? top - before : top;
   const std::array<float, 4>* pixels = image_.pixels + image_.index(first_column, first_row);
   const Known* known = known_.data() + index(first_column, first_row);
+  const auto row_of_pixels = static_cast<std::ptrdiff_t>(image_.width) * before,
+             row_of_known = static_cast<std::ptrdiff_t>(columns_) * stride;
   std::array<float, 4> found{}, brightest{};
   float inherited = 0, unevenness = 0, longest = std::numeric_limits<float>::infinity();
   for (int j = 0; j < rows; ++j) {
     for (int i = 0; i < columns; ++i) {
       const float w = of_column[static_cast<std::size_t>(i)] * of_row[static_cast<std::size_t>(j)];
-      const std::array<float, 4>& value = pixels[i * before];
+      const std::array<float, 4>& value = pixels[j * row_of_pixels + i * before];
       for (std::size_t c = 0; c < 4; ++c) {
         found[c] += w * value[c];
         brightest[c] = std::max(brightest[c], std::fabs(value[c]));
       }
-      const Known& one = known[i * stride];
+      const Known& one = known[j * row_of_known + i * stride];
       inherited += std::fabs(w) * one.error;
       unevenness = std::max(unevenness, one.unevenness);
       longest = std::min(longest, one.longest_step);
     }
-    pixels += static_cast<std::size_t>(before) * image_.width;
-    known += static_cast<std::size_t>(stride) * columns_;
   }
   const float largest = *std::max_element(brightest.begin(), brightest.end());
   // What is clear is traced for next to nothing, and known for sure then.
@@ -233,7 +233,7 @@ BetweenPixels::Cost BetweenPixels::look(int column, int row, int stride,
   result.unevenness = unevenness;
   result.longest_step = longest;
   return {true,
-          (1 + 0x1p-20) * static_cast<double>(inherited) +
+          (1 + 0x1p-19) * static_cast<double>(inherited) +
               rounding_of_cubic * static_cast<double>(largest),
           cubic, uneven};
 }

@@ -154,8 +154,6 @@ void PacketTracer::integrate_cell(const void* context, std::int32_t ray, const P
   const PacketTracer& tracer = *static_cast<const PacketTracer*>(of);
   const PellucidRay& from = rays[ray];
   tracer.volume_.visit([&](const auto& grid) {
-    // Packets know where cells meet in binary32. Here it matters beside narrow features: a cell's
-    // polynomial may go where its neighbour's does not.
     double lower[3], upper[3], begin = from.begin + cell->begin, end = from.end;
     for (int a = 0; a < 3; ++a) {
       lower[a] = grid.axis[a].plane(cell->cell[a]);

@@ -92,7 +92,9 @@ void ScreenMask::mark(double x0, double y0, double x1, double y1, int around) no
             top = std::max(within(y0, rows_) - around, 0),
             bottom = std::min(within(y1, rows_) + around, rows_ - 1);
   for (int y = top; y <= bottom; ++y) {
-    for (int x = left; x <= right; ++x) marked_[index(x, y)] = 1;
+    if (right >= left) {
+      std::fill_n(marked_.data() + index(left, y), right - left + 1, std::uint8_t{1});
+    }
   }
 }
 

@@ -3,10 +3,13 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <functional>
 #include <limits>
 #include <random>
+#include <string>
 
 namespace pellucid {
 namespace {
@@ -81,6 +84,26 @@ TEST(CubicErrors, AreNothingForCubicsAndInfiniteWhereTheLatticeEnds) {
       constexpr float infinite = std::numeric_limits<float>::infinity();
       EXPECT_EQ(across, column < 2 || column > 6 ? infinite : 0) << column;
       EXPECT_EQ(down, row < 2 || row > 4 ? infinite : 0) << row;
+    }
+  }
+}
+
+TEST(CubicErrors, AreThoseOfTheSixPixelsAround) {
+  const auto value = [](double x, double y) { return std::sin(x * y + x) + 0.1 * y; };
+  Image image = on_lattice({15 * stride + 3, 11 * stride}, 3, value);
+  const CubicErrors errors = errors_of(image, 2);
+  const auto of_six = [](const std::function<double(double)>& f) {
+    const auto second = [&](double t) { return f(t - 1) - 2 * f(t) + f(t + 1); };
+    const auto fourth = [&](double t) { return second(t - 1) - 2 * second(t) + second(t + 1); };
+    return 0.38 * std::max(std::fabs(fourth(0)), std::fabs(fourth(1))) +
+           0.02 * std::max(std::fabs(second(0)), std::fabs(second(1)));
+  };
+  for (int row = 2; row < 8; ++row) {
+    for (int column = 2; column < 12; ++column) {
+      const double across = of_six([&](double t) { return value(column + t, row); }),
+                   down = of_six([&](double t) { return value(column, row + t); });
+      EXPECT_NEAR(static_cast<double>(errors.across(column * stride, row * stride)), across, 1e-5);
+      EXPECT_NEAR(static_cast<double>(errors.down(column * stride, row * stride)), down, 1e-5);
     }
   }
 }

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <limits>
+
 #include "pellucid/packet/block_march.h"
 #include "pellucid/packet/corner_loads.h"
 

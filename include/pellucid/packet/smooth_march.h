@@ -130,27 +130,32 @@ class SmoothMarch {
     level_ = select(lanes & easy & s.may_be_longer & (level_ > I(0)), level_ - I(1), level_);
   }
 
-  /// Leaves what is left of their stretches to others.
+  /// Leaves what is left of their stretches to others. What these will see of it, of blocks further
+  /// on no more than of those in front of them, is not known: bends count as in the part of it that
+  /// begins here for which their mean is the largest.
   [[gnu::noinline]] void refuse(M lanes, F transparency) noexcept {
     walking = walking & !lanes;
     const D block = convert<double>(F(static_cast<float>(block_width)) / cells_per_length_);
+    F mean[3] = {F(0), F(0), F(0)};
     D from = at;
     for (M left = lanes & (from < end); any(left); left = left & (from < end)) {
       const D to = min(from + block, end);
       F local[SmoothBlocks::fields];
       look_up(left, D(0.5) * (from + to), local);
       note(left, convert<float>(to - from), local, transparency);
+      for (int a = 0; a < 3; ++a) mean[a] = max(mean[a], bends_[a] / (seen_ + F(tiny)));
       from = select(left, to, from);
     }
+    for (int a = 0; a < 3; ++a) bends_[a] = select(lanes, mean[a] * seen_, bends_[a]);
   }
 
-  /// RayResult::unevenness, of what was taken.
+  /// RayResult::unevenness, of what was taken or refused.
   F unevenness() const noexcept {
     // Over a whole cell what trilinear data lie off the curve that they follow comes to nothing, up
     // to how much the bends change within it. What is left is of the cells where a ray begins and
     // ends, and all of it where it runs along the cells: at most the root of 1/720 of a bend.
     constexpr float of_ends = 1.5e-4f, of_cell = 1e-6f, along = 1.0f / 720;
-    const F all = max(seen_, F(std::numeric_limits<float>::min()));
+    const F all = max(seen_, F(tiny));
     F variance(0);
     for (int a = 0; a < 3; ++a) {
       const F cells = abs(direction_in_float_[a]) * all;
@@ -170,6 +175,7 @@ class SmoothMarch {
   }
 
  private:
+  static constexpr float tiny = std::numeric_limits<float>::min();
   static constexpr int choices = 5, most_levels = most_sampled_step_levels;
   /// The optical depth of a step at most: the rule goes by what is small against 1.
   static constexpr float deepest = 1;
@@ -301,8 +307,8 @@ class SmoothMarch {
   M known_{false};            ///< whether `front_` is that at `at`
   Material<F> front_, back_;  ///< of the steps that were looked at
   F front_value_{0}, back_value_{0};
-  // Of what was taken: squares of roughness times bend along each axis, over length; and the
-  // largest of 1 / the longest step, infinite where a stretch was refused.
+  // Of what was taken or refused: squares of roughness times bend along each axis, over length; and
+  // the largest of 1 / the longest step.
   F bends_[3] = {F(0), F(0), F(0)}, shortest_wave_{0};
   F seen_{0};  ///< their length, by the square of what they show of it
 };

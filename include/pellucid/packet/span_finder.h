@@ -140,7 +140,7 @@ class SpanFinder {
     if (any(found)) put_down(found, data, rounding, rows);
     const F per_length = F(1) / convert<float>(step.end - step.begin);
     skip(ready, data.b[3], rounding, F(3) * last_rise * per_length,
-         F(512 * u) * range * per_length);
+         F(160 * u) * range * per_length);
   }
 
   /// Puts down what of the lanes' cells is a span.
