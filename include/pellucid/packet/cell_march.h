@@ -62,12 +62,11 @@ class CellMarch {
   };
 
   CellMarch(const PacketGrid<Value>& grid, const BlockMarch<Value, N>& rays) noexcept
-      : load_(grid) {
+      : load_(grid), direction_of_(rays.direction) {
     for (int l = 0; l < N; ++l) base_[l] = grid.data;
     for (int l = 0; l < N; ++l) fastest_of_[l] = 0;
     for (int a = 0; a < 3; ++a) {
       for (int l = 0; l < N; ++l) {
-        direction_of_[a][l] = rays.direction[a][l];
         inverse_of_[a][l] = 1 / direction_of_[a][l];
         fastest_of_[l] = max(fastest_of_[l], static_cast<float>(abs(direction_of_[a][l])));
       }
@@ -195,9 +194,10 @@ class CellMarch {
   }
 
   const CornerLoads<Value, N> load_;
-  double direction_of_[3][N], inverse_of_[3][N];  ///< by ray
-  float fastest_of_[N];                           ///< the largest |direction|
-  int next_ = 0;                                  ///< of the walks, the first not taken
+  const double (&direction_of_)[3][N];  ///< by ray
+  double inverse_of_[3][N];
+  float fastest_of_[N];  ///< the largest |direction|
+  int next_ = 0;         ///< of the walks, the first not taken
 
   // Of the walks in the lanes.
   D direction_[3], inverse_[3];

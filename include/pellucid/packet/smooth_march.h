@@ -130,20 +130,21 @@ class SmoothMarch {
     level_ = select(lanes & easy & s.may_be_longer & (level_ > I(0)), level_ - I(1), level_);
   }
 
-  /// Leaves what is left of their stretches to others. What these will see of it, of blocks further
-  /// on no more than of those in front of them, is not known: bends count as in the part of it that
-  /// begins here for which their mean is the largest.
+  /// Leaves what is left of their stretches to others. How far these will see is not known: bends
+  /// count as if it were to where the mean of all that was seen is the largest.
   [[gnu::noinline]] void refuse(M lanes, F transparency) noexcept {
     walking = walking & !lanes;
     const D block = convert<double>(F(static_cast<float>(block_width)) / cells_per_length_);
-    F mean[3] = {F(0), F(0), F(0)};
+    F mean[3];
+    const auto mean_so_far = [&](int a) noexcept { return bends_[a] / (seen_ + F(tiny)); };
+    for (int a = 0; a < 3; ++a) mean[a] = mean_so_far(a);
     D from = at;
     for (M left = lanes & (from < end); any(left); left = left & (from < end)) {
       const D to = min(from + block, end);
       F local[SmoothBlocks::fields];
       look_up(left, D(0.5) * (from + to), local);
       note(left, convert<float>(to - from), local, transparency);
-      for (int a = 0; a < 3; ++a) mean[a] = max(mean[a], bends_[a] / (seen_ + F(tiny)));
+      for (int a = 0; a < 3; ++a) mean[a] = max(mean[a], mean_so_far(a));
       from = select(left, to, from);
     }
     for (int a = 0; a < 3; ++a) bends_[a] = select(lanes, mean[a] * seen_, bends_[a]);
