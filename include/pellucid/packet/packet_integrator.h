@@ -48,7 +48,6 @@ class PacketIntegrator {
         count_(count),
         blocks_(grid, job.rays + first, count),
         finder_(grid, blocks_, transfer_),
-        cells_in_double_(grid, blocks_),
         smooth_(job, grid, blocks_.origin, blocks_.direction),
         fold_(job.tolerance, transfer_.largest_extinction, job.largest_color,
               convert<float>(D::load(blocks_.end))),
@@ -324,8 +323,8 @@ class PacketIntegrator {
     const I code = select(not_begun_, code_, I(0));
     I in_block[3];
     for (int a = 0; a < 3; ++a) in_block[a] = SpanCode::place_in_block(code, a);
-    cells_in_double_.begin(
-        not_begun_,
+    begin_spans_in_double(
+        grid_, not_begun_,
         cell_places(grid_, blocks_, room_.stretches, SpanCode::stretch_of(code), in_block),
         convert<double>(single_.from), double_);
     not_begun_ = M(false);
@@ -388,7 +387,6 @@ class PacketIntegrator {
   int first_, count_;
   BlockMarch<Value, N> blocks_;
   SpanFinder<Value, N> finder_;
-  const CellsInDouble<Value, N> cells_in_double_;
   SmoothMarch<Value, N> smooth_;
 
   const I lane_ = lane_numbers();
