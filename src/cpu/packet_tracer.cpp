@@ -34,38 +34,26 @@ struct CellContext {
   const PellucidRay* rays;
 };
 
-/// Whether there is extinction at all control points among the data and at the ends of these.
-bool absorbs_everywhere(const PiecewiseLinear<double>& table, const VolumeStatistics& data) {
-  const auto absorbs = [&](double value) { return table.evaluate(value).extinction > 0; };
-  for (int i = 0; i < table.count; ++i) {
-    const double value = table.value[i];
-    if (value >= data.minimum && value <= data.maximum && !(table.material[i].extinction > 0)) {
-      return false;
-    }
-  }
-  return absorbs(data.minimum) && absorbs(data.maximum);
-}
-
-/// Steps get as short as cells that are gone through with closed forms are worth: half a voxel, or
-/// an eighth where cells are cut at the many points of a table and none of them is empty.
-int sampled_step_levels(const Volume& volume, const TransferTables& transfer) {
-  const bool dear =
-      transfer.wide.count > 32 && absorbs_everywhere(transfer.wide, volume.statistics());
-  return dear ? most_sampled_step_levels : most_sampled_step_levels - 4;
+/// Steps get as short as cells that are gone through with closed forms are worth: an eighth of a
+/// voxel where these are cut at the many points of a table, a quarter where they are not; half a
+/// one where most of them are empty or hold something in a part of them only.
+int sampled_step_levels(const TransferTables& transfer, double share_throughout) {
+  constexpr int half = most_sampled_step_levels - 4, quarter = half + 2;
+  if (share_throughout < 0.5) return half;
+  return transfer.wide.count > 32 ? most_sampled_step_levels : quarter;
 }
 
 }  // namespace
 
-double PacketTracer::most_bending(const Volume& volume, const TransferTables& transfer,
-                                  const RayTolerance& wanted) {
-  if (wanted.grade == Grade::proved) return 0;
+StepLimits PacketTracer::step_limits(const Volume& volume, const TransferTables& transfer,
+                                     const RayTolerance& wanted, double share_throughout) {
+  const int levels = sampled_step_levels(transfer, share_throughout);
   // What SmoothMarch takes for the least error of its shortest steps, from corner to corner.
-  const double shortest = double{sampled_step_share(sampled_step_levels(volume, transfer) - 1)};
-  const double cells = longest_sampled_step * shortest;
+  const double cells = longest_sampled_step * double{sampled_step_share(levels - 1)};
   const double step = cells * volume.voxel_size();
   const double one = step * std::sqrt(mean_square_of_bends(cells));
   const double times = diagonal(volume) / (4 * step);
-  return wanted.tolerance / (RandomErrors<double>::deviations * one * std::sqrt(times));
+  return {levels, wanted.tolerance / (RandomErrors<double>::deviations * one * std::sqrt(times))};
 }
 
 std::unique_ptr<const PacketTracer> PacketTracer::make(
@@ -108,7 +96,6 @@ PacketTracer::PacketTracer(const Volume& volume, const ClassifiedBlocks& blocks,
                          (32 * largest_value(volume) + 8 * range) * smooth.roughness;
   if (job_.sample_rounding * diagonal(volume) <= 0.5 * wanted.tolerance) {
     smooth_ = smooth;
-    smooth_.levels = sampled_step_levels(volume, transfer);
   }
   job_.samples = &samples_.view();
   job_.smooth = &smooth_;

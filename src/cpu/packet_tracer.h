@@ -7,6 +7,7 @@
 #include "pellucid/packet/interface.h"
 #include "pellucid/render/integrate_cell.h"
 #include "pellucid/scene/binned_transfer_storage.h"
+#include "pellucid/scene/block_classes_storage.h"
 #include "pellucid/scene/volume.h"
 #include "pellucid/simd/instruction_set.h"
 #include "pellucid/traverse/block_classes.h"
@@ -20,10 +21,9 @@ inline constexpr double least_packet_tolerance = 1e-5;
 /// Integrates rays in packets, in the machine's best instruction set; what packets hand back, here.
 class PacketTracer {
  public:
-  /// For BlockClassesStorage: how much smooth blocks may bend to be worth a try. 0 where only what
-  /// is proved counts.
-  static double most_bending(const Volume& volume, const TransferTables& transfer,
-                             const RayTolerance& wanted);
+  /// For BlockClassesStorage. Not where only what is proved counts.
+  static StepLimits step_limits(const Volume& volume, const TransferTables& transfer,
+                                const RayTolerance& wanted, double share_throughout);
 
   /// Null where rays have to go one by one: no such instructions, a rectilinear grid, a single
   /// layer of values, one precision wanted, a very small tolerance, or numbers

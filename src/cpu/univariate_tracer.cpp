@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <functional>
 #include <optional>
 
 #include "packet_sampler.h"
@@ -71,9 +72,14 @@ UnivariateTracer::UnivariateTracer(const TracerTask& task)
   const bool samples = goes_in_packets(integration_) && !depth_;
   if (integration_.method != Method::exact && !samples) return;
   const BlockRecords& records = volume_.block_ranges(parallel);
-  block_classes_ = BlockClassesStorage(
-      records, transfer_.tables(), wanted_.largest_color, parallel,
-      samples ? 0 : PacketTracer::most_bending(volume_, transfer_.tables(), wanted_));
+  std::function<StepLimits(double)> limits;
+  if (!samples && wanted_.grade != Grade::proved) {
+    limits = [this](double share_throughout) {
+      return PacketTracer::step_limits(volume_, transfer_.tables(), wanted_, share_throughout);
+    };
+  }
+  block_classes_ =
+      BlockClassesStorage(records, transfer_.tables(), wanted_.largest_color, parallel, limits);
   blocks_ = ClassifiedBlocks{records, block_classes_.view()};
   if (samples) {
     sampler_ = PacketSamplerTracer::make(

@@ -28,9 +28,10 @@ class CodeTable {
       const double value = code.value(c);
       while (below < table.count && table.value[below] < value) ++below;
       while (up_to < table.count && table.value[up_to] <= value) ++up_to;
-      at_[static_cast<std::size_t>(c)] = {below, up_to};
+      const bool absorbs = table.evaluate_in(up_to, value).extinction > 0;
+      at_[static_cast<std::size_t>(c)] = {below, up_to, absorbs};
     }
-    int absorbing = 0, changes = 0, jumps = 0;
+    int absorbing = 0, clear = 0, changes = 0, jumps = 0;
     for (int i = 0; i < table.count; ++i) {
       const Material<double>& m = table.material[i];
       if (i > 0) {
@@ -38,8 +39,8 @@ class CodeTable {
         const RangeSummary<double>& s = antiderivative.node[antiderivative.leaves + i - 1];
         if (!(s.slope_max < s.infinity && s.color_slope < s.infinity)) ++jumps;
       }
-      if (m.extinction > 0) ++absorbing;
-      sums_.push_back({absorbing, changes, jumps});
+      ++(m.extinction > 0 ? absorbing : clear);
+      sums_.push_back({absorbing, clear, changes, jumps});
     }
   }
 
@@ -47,6 +48,15 @@ class CodeTable {
   bool is_clear(int lower, int upper) const noexcept {
     const Span s = span(lower, upper);
     return sums_[s.last].absorbing == (s.first == 0 ? 0 : sums_[s.first - 1].absorbing);
+  }
+  /// Whether all of these values absorb.
+  bool absorbs_throughout(int lower, int upper) const noexcept {
+    const Place &p = at_[static_cast<std::size_t>(lower)],
+                &q = at_[static_cast<std::size_t>(upper)];
+    const auto clear_below = [&](int point) {
+      return point > 0 ? sums_[static_cast<std::size_t>(point - 1)].clear : 0;
+    };
+    return p.absorbs && q.absorbs && clear_below(p.below) == clear_below(q.up_to);
   }
   bool is_constant(int lower, int upper) const noexcept {
     if (code_.value(lower) == code_.value(upper)) return true;  // two codes may be one number
@@ -60,18 +70,20 @@ class CodeTable {
   }
 
  private:
-  /// How many control points lie below the value of a code, and how many do not lie above it.
+  /// How many control points lie below the value of a code, how many do not lie above it, and
+  /// whether it absorbs.
   struct Place {
     int below, up_to;
+    bool absorbs;
   };
   /// The control points that the function in a range depends on.
   struct Span {
     std::size_t first, last;
   };
-  /// Over the points up to one: those that absorb, those unlike their left neighbour, and those
-  /// that are reached by a jump.
+  /// Over the points up to one: those that absorb and those that do not, those unlike their left
+  /// neighbour, and those that are reached by a jump.
   struct Sums {
-    int absorbing, changes, jumps;
+    int absorbing, clear, changes, jumps;
   };
 
   Span span(int lower, int upper) const noexcept {
@@ -104,20 +116,33 @@ BlockClass classify(const BlockRecord& record, const CodeTable& codes,
   }
   if (codes.has_jump(record.lower, record.upper)) return {infinite, BlockKind::cells, 0};
   const BlockRoughness::Range range = roughness(record.lower, record.upper);
-  sampled = {float_above(range.of_sample), static_cast<float>(range.steps)};
+  sampled = {float_above(range.of_sample), static_cast<float>(range.steps),
+             codes.absorbs_throughout(record.lower, record.upper)};
   return {range.roughness, BlockKind::cells, 0};
+}
+
+/// Of the blocks that may be sampled.
+double share_throughout(const std::vector<SampledBlock>& sampled) {
+  std::ptrdiff_t all = 0, throughout = 0;
+  for (const SampledBlock& block : sampled) {
+    if (block.roughness < 0) continue;
+    ++all;
+    if (block.absorbs_throughout) ++throughout;
+  }
+  return all > 0 ? static_cast<double>(throughout) / static_cast<double>(all) : 0;
 }
 
 }  // namespace
 
 BlockClassesStorage::BlockClassesStorage(const BlockRecords& records,
                                          const TransferTables& transfer, double largest_color,
-                                         const ParallelFor& parallel, double most_bending)
+                                         const ParallelFor& parallel,
+                                         const std::function<StepLimits(double)>& limits)
     : classes_(static_cast<std::size_t>(records.count())) {
   const ParallelFor run = or_serial(parallel);
   const CodeTable codes(records.code, transfer);
   const BlockRoughness roughness(records.code, transfer, largest_color, run);
-  std::vector<SampledBlock> sampled(most_bending > 0 ? classes_.size() : 0);
+  std::vector<SampledBlock> sampled(limits ? classes_.size() : 0);
   run(records.count(), [&](int first, int last) {
     SampledBlock unused;
     for (int i = first; i < last; ++i) {
@@ -128,8 +153,9 @@ BlockClassesStorage::BlockClassesStorage(const BlockRecords& records,
   const std::array<int, 3> count{records.axis[0].cells(), records.axis[1].cells(),
                                  records.axis[2].cells()};
   find_block_levels(count, BlockKind::skip, run, classes_.data());
-  if (!(most_bending > 0)) return;
-  smooth_ = find_smooth_blocks(records, sampled, most_bending, run, classes_.data(), local_);
+  if (!limits) return;
+  smooth_ = find_smooth_blocks(records, sampled, limits(share_throughout(sampled)), run,
+                               classes_.data(), local_);
   if (!(smooth_.longest_step > 0)) return;
   find_block_levels(count, BlockKind::smooth, run, classes_.data());
 }

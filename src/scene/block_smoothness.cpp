@@ -65,7 +65,7 @@ struct Group {
 }  // namespace
 
 SmoothBlocks find_smooth_blocks(const BlockRecords& records,
-                                const std::vector<SampledBlock>& sampled, double most_bending,
+                                const std::vector<SampledBlock>& sampled, const StepLimits& limits,
                                 const ParallelFor& parallel, BlockClass* classes,
                                 std::vector<float>& local) {
   local.assign(fields * sampled.size(), 0);
@@ -97,7 +97,7 @@ SmoothBlocks find_smooth_blocks(const BlockRecords& records,
           const double steps = group.steps(),
                        of_function = cells_by_eighth * static_cast<double>(group.sampled.steps);
           if (its_roughness < 0 || !(steps >= least_steps) || !(of_function >= least_of_function) ||
-              !(group.most_bending() <= most_bending)) {
+              !(group.most_bending() <= limits.most_bending)) {
             continue;
           }
           const double longest = std::min({steps, of_function, longest_sampled_step});
@@ -119,6 +119,7 @@ SmoothBlocks find_smooth_blocks(const BlockRecords& records,
     }
   });
   SmoothBlocks all;
+  all.levels = limits.levels;
   for (const SmoothBlocks& slab : of_slab) {
     if (!(slab.longest_step > 0)) continue;
     all.longest_step = std::max(all.longest_step, slab.longest_step);

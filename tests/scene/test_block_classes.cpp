@@ -227,6 +227,39 @@ TEST(BlockClasses, AJumpAtTheUpperEndIsSeenThere) {
   EXPECT_EQ(classes.view()[3].kind, BlockKind::constant);
 }
 
+TEST(BlockClasses, TellHowManyAbsorbThroughout) {
+  // Nothing up to 20, at 100, and from 200 on.
+  const TransferFunction function({point(20, 0, 1, 1, 1), point(60, 2, 1, 1, 1),
+                                   point(100, 0, 1, 1, 1), point(140, 1, 1, 1, 1),
+                                   point(200, 0, 1, 1, 1)});
+  const TransferTablesStorage storage(function);
+  const struct {
+    int lower, upper;
+    bool absorbs_throughout;
+  } ranges[] = {{21, 99, true},    {101, 199, true}, {60, 61, true},   {20, 30, false},
+                {19, 30, false},   {90, 100, false}, {90, 101, false}, {100, 101, false},
+                {150, 200, false}, {21, 101, false}, {21, 201, false}};
+  for (const auto& range : ranges) {
+    // Beside a block that is skipped, one of vacuum in part and two others.
+    SomeBlocks blocks({5, 1, 1});
+    blocks.view.code = make_block_code(0, 255, true);
+    for (BlockRecord& record : blocks.record) {
+      record.lower = static_cast<std::uint16_t>(range.lower);
+      record.upper = static_cast<std::uint16_t>(range.upper);
+    }
+    blocks.record[1].lower = 3, blocks.record[1].upper = 19;
+    blocks.record[2].flags = static_cast<std::uint16_t>(BlockVacuum::some);
+    blocks.record[3].lower = 101, blocks.record[3].upper = 120;
+    blocks.record[4].lower = 10, blocks.record[4].upper = 120;
+    double share = -1;
+    const BlockClassesStorage classes(blocks.view, storage.tables(), 1, {}, [&](double found) {
+      share = found;
+      return StepLimits{};
+    });
+    EXPECT_EQ(share, range.absorbs_throughout ? 2.0 / 3 : 1.0 / 3) << range.lower;
+  }
+}
+
 /// By definition: cube by cube, from the largest down.
 int level_of(const BlockRecords& blocks, const BlockClasses& classes, int i, int j, int k) {
   const int count[3] = {blocks.axis[0].cells(), blocks.axis[1].cells(), blocks.axis[2].cells()};

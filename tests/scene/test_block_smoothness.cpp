@@ -41,7 +41,9 @@ class SmoothBlocksOf {
       : records_(volume.block_ranges()),
         function_(points),
         tables_(function_),
-        classes_(records_, tables_.tables(), 1, parallel, most_bending) {}
+        classes_(records_, tables_.tables(), 1, parallel, [=](double) {
+          return StepLimits{1, most_bending};
+        }) {}
 
   bool is_smooth(int b) const { return classes_.view()[b].kind == BlockKind::smooth; }
   int count() const {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <functional>
 #include <vector>
 
 #include "pellucid/render/transfer_tables.h"
@@ -9,6 +10,14 @@
 
 namespace pellucid {
 
+/// How rays may go through smooth blocks in steps: how many lengths these have
+/// (SmoothBlocks::levels), and what blocks may bend to be worth a try then, SmoothBlocks::roughness
+/// times what the data bend over a cell.
+struct StepLimits {
+  int levels = 0;
+  double most_bending = 0;
+};
+
 /// Makes and owns the classes of a volume's blocks under one transfer function: once a frame, from
 /// the blocks' records alone, each in a time that does not depend on how many control points the
 /// function has.
@@ -16,11 +25,11 @@ class BlockClassesStorage {
  public:
   BlockClassesStorage() = default;
   /// `largest_color`: that of RayTolerance. In parallel where it is told how.
-  /// `most_bending`: blocks are smooth only where SmoothBlocks::roughness times what the data bend
-  /// over a cell is no more than that; 0: none is.
+  /// `limits`: of smooth blocks, given the share of those that might be smooth in which all values
+  /// absorb; without it none is smooth.
   BlockClassesStorage(const BlockRecords& records, const TransferTables& transfer,
                       double largest_color, const ParallelFor& parallel = {},
-                      double most_bending = 0);
+                      const std::function<StepLimits(double)>& limits = {});
 
   BlockClasses view() const noexcept { return {classes_.data()}; }
   SmoothBlocks smooth() const noexcept {
