@@ -160,6 +160,47 @@ TEST_P(BatchMemory, PairsAreReadInEveryTypeAndNothingElse) {
   expect_pairs(table().pairs_double, lanes());
 }
 
+template <class Value>
+void expect_rows(batch_operations::RowLoad<Value> load, int lanes) {
+  const Guarded memory;
+  memory.fill<Value>();
+  const std::int32_t last = memory.count<Value>() - 2;
+  // The last one is the other way round.
+  for (const std::ptrdiff_t apart : {1, 5, last / 3, -(last / 3)}) {
+    const std::ptrdiff_t row[4] = {0, apart, 2 * apart, 3 * apart};
+    for (auto place : places(lanes, last - static_cast<std::int32_t>(std::abs(row[3])))) {
+      const Value* base[16];
+      std::int32_t offset[16];
+      for (int lane = 0; lane < lanes; ++lane) {
+        std::int32_t& at = place[static_cast<std::size_t>(lane)];
+        if (apart < 0) at -= static_cast<std::int32_t>(row[3]);
+        const std::int32_t start = (lane * 37) % memory.count<Value>();
+        base[lane] = memory.begin<Value>() + start;
+        offset[lane] = at - start;
+      }
+      float out[8 * 16];
+      load(base, offset, row, out);
+      for (int lane = 0; lane < lanes; ++lane) {
+        for (int k = 0; k < 8; ++k) {
+          const std::ptrdiff_t at = place[static_cast<std::size_t>(lane)] + row[k / 2] + k % 2;
+          ASSERT_EQ(out[k * lanes + lane], static_cast<float>(memory.begin<Value>()[at]))
+              << "lane " << lane << ", value " << k;
+        }
+      }
+    }
+  }
+}
+TEST_P(BatchMemory, PairsInRowsAreReadOneByOneAndByGathers) {
+  expect_rows(table().rows_u16, lanes());
+  expect_rows(table().rows_float, lanes());
+  expect_rows(table().loaded_rows_float, lanes());
+  if (table().gathered_rows_float == nullptr) {
+    EXPECT_LT(lanes(), 16);
+  } else {
+    expect_rows(table().gathered_rows_float, lanes());
+  }
+}
+
 /// Integers of 32 bits are rounded to float once: halfway cases and their neighbours.
 TEST_P(BatchMemory, LargeIntegersAreRoundedOnce) {
   std::vector<std::uint32_t> values = {0u, 1u, 0x7fffffffu, 0x80000000u, 0xffffffffu};

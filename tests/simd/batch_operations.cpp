@@ -190,6 +190,32 @@ void pairs(const Value* const* base, const std::int32_t* offset, float* first, f
   a.store(first);
   b.store(second);
 }
+template <class Value>
+void rows(const Value* const* base, const std::int32_t* offset, const std::ptrdiff_t (&row)[4],
+          float* out) {
+  Float found[8];
+  pairs_in_rows<Value, width>(base, offset, row, found);
+  for (int k = 0; k < 8; ++k) found[k].store(out + k * width);
+}
+void loaded_rows(const float* const* base, const std::int32_t* offset,
+                 const std::ptrdiff_t (&row)[4], float* out) {
+  Float found[8];
+  detail::load_pairs_in_rows<float, width>(base, offset, row, found);
+  for (int k = 0; k < 8; ++k) found[k].store(out + k * width);
+}
+template <int N = width>
+constexpr batch_operations::RowLoad<float> gathered_rows() {
+  if constexpr (detail::has_pairs_in_rows<N, float>()) {
+    return [](const float* const* base, const std::int32_t* offset, const std::ptrdiff_t(&row)[4],
+              float* out) {
+      Float found[8];
+      detail::gather_pairs_in_rows<N>(base, offset, row, found);
+      for (int k = 0; k < 8; ++k) found[k].store(out + k * width);
+    };
+  } else {
+    return nullptr;
+  }
+}
 template <int K, class T>
 void records(const T* base, const std::int32_t* index, T* out) {
   Batch<T, width> fields[K];
@@ -257,6 +283,10 @@ constexpr batch_operations::Table table = {
     pairs<std::int32_t>,
     pairs<float>,
     pairs<double>,
+    rows<std::uint16_t>,
+    rows<float>,
+    loaded_rows,
+    gathered_rows(),
     records<4, float>,
     records<8, float>,
     records<16, float>,

@@ -33,6 +33,9 @@ struct List {
 template <class Value>
 using PairLoad = void (*)(const Value* const* base, const std::int32_t* offset, float* first,
                           float* second);
+template <class Value>
+using RowLoad = void (*)(const Value* const* base, const std::int32_t* offset,
+                         const std::ptrdiff_t (&row)[4], float* out);
 
 struct Table {
   int lanes;
@@ -67,6 +70,9 @@ struct Table {
   PairLoad<std::int32_t> pairs_i32;
   PairLoad<float> pairs_float;
   PairLoad<double> pairs_double;
+  /// rows[] of four; out[k * lanes + lane], k < 8.
+  RowLoad<std::uint16_t> rows_u16;
+  RowLoad<float> rows_float, loaded_rows_float, gathered_rows_float;  ///< the last: may be null
   /// out[k * lanes + lane]
   void (*records_4)(const float* base, const std::int32_t* index, float* out);
   void (*records_8)(const float* base, const std::int32_t* index, float* out);

@@ -83,16 +83,9 @@ PELLUCID_ALWAYS_INLINE CellCorners<Batch<float, N>> load_corners(const Value* co
                                                                  const std::int32_t* on,
                                                                  std::ptrdiff_t row,
                                                                  std::ptrdiff_t slice) noexcept {
-  const Value* corner[N];
-  for (int l = 0; l < N; ++l) corner[l] = at[l] + on[l];
-  asm("" : "+m"(corner));
   const std::ptrdiff_t rows[4] = {0, row, slice, slice + row};
   CellCorners<Batch<float, N>> corners;
-  for (int n = 0; n < 4; ++n) {
-    std::int32_t to_row[N];
-    for (std::int32_t& to : to_row) to = static_cast<std::int32_t>(rows[n]);
-    gather_pairs(corner, to_row, corners.value[2 * n], corners.value[2 * n + 1]);
-  }
+  pairs_in_rows<Value, N>(at, on, rows, corners.value);
   return corners;
 }
 

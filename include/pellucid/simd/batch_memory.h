@@ -93,6 +93,56 @@ PELLUCID_ALWAYS_INLINE void gather_pairs(const Value* const* base, Offset offset
   }
 }
 
+namespace detail {
+
+template <int N, class Value>
+constexpr bool has_pairs_in_rows() noexcept {
+  return std::is_same_v<Value, float> && Native<N>::has_pairs_in_rows;
+}
+
+template <class Value, int N, std::size_t Rows>
+PELLUCID_ALWAYS_INLINE void load_pairs_in_rows(const Value* const* base, const std::int32_t* offset,
+                                               const std::ptrdiff_t (&row)[Rows],
+                                               Batch<float, N>* out) noexcept {
+  const Value* at[N];
+  for (int l = 0; l < N; ++l) at[l] = base[l] + offset[l];
+  // From memory: taking lanes out of registers costs more.
+  asm("" : "+m"(at));
+  for (std::size_t k = 0; k < Rows; ++k) {
+    std::int32_t to_row[N];
+    for (std::int32_t& to : to_row) to = static_cast<std::int32_t>(row[k]);
+    gather_pairs(at, to_row, out[2 * k], out[2 * k + 1]);
+  }
+}
+
+template <int N, std::size_t Rows>
+PELLUCID_ALWAYS_INLINE void gather_pairs_in_rows(const float* const* base,
+                                                 const std::int32_t* offset,
+                                                 const std::ptrdiff_t (&row)[Rows],
+                                                 Batch<float, N>* out) noexcept {
+  typename Native<N>::Float pairs[2 * Rows];
+  Native<N>::pairs_in_rows(base, offset, row, pairs);
+  for (std::size_t k = 0; k < 2 * Rows; ++k) {
+    out[k] = Batch<float, N>(typename Batch<float, N>::Register(pairs[k]));
+  }
+}
+
+}  // namespace detail
+
+/// gather_pairs() of several rows: lane l gets base[l][offset[l] + row[k]] in out[2 k], and the
+/// value behind it in out[2 k + 1]. By gathers where the processor is good at them.
+template <class Value, int N, std::size_t Rows>
+PELLUCID_ALWAYS_INLINE void pairs_in_rows(const Value* const* base, const std::int32_t* offset,
+                                          const std::ptrdiff_t (&row)[Rows],
+                                          Batch<float, N>* out) noexcept {
+  if constexpr (detail::has_pairs_in_rows<N, Value>()) {
+    if (detail::Native<N>::gathers_are_fast()) {
+      return detail::gather_pairs_in_rows<N>(base, offset, row, out);
+    }
+  }
+  detail::load_pairs_in_rows<Value, N>(base, offset, row, out);
+}
+
 /// out[k] = base[K index + k] of every lane, k < K, K a multiple of 4: rows are loaded and
 /// transposed, which takes far less than K gathers. Reads nothing else.
 template <int K, int N>

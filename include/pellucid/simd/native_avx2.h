@@ -162,6 +162,7 @@ struct Native<8> {
     first = _mm256_shuffle_ps(a, b, 0x88);
     second = _mm256_shuffle_ps(a, b, 0xdd);
   }
+  static constexpr bool has_pairs_in_rows = false;
   template <class Value, class Offset>
   PELLUCID_ALWAYS_INLINE static Int words(const Value* const* base, Offset offset) noexcept {
     return _mm256_set_m128i(four_words(base + 4, offset + 4), four_words(base, offset));

@@ -174,6 +174,42 @@ struct Native<16> {
     first = _mm512_shuffle_ps(a, b, 0x88);
     second = _mm512_shuffle_ps(a, b, 0xdd);
   }
+  static constexpr bool has_pairs_in_rows = true;
+  /// Whether gathers of 64 bits take less than loads of 64 bits one by one: half as long on Intel's
+  /// processors since Sapphire Rapids. Those before it may guard gathers against other programs
+  /// that read along (Downfall), and AMD's take them apart.
+  PELLUCID_ALWAYS_INLINE static bool gathers_are_fast() noexcept {
+    return __builtin_cpu_is("intel") && __builtin_cpu_supports("avx512bf16") &&
+           __builtin_cpu_supports("avx512vbmi2");
+  }
+  /// Of each lane the pairs at base + offset + row[k], by gathers: first and second values of row
+  /// k, both of 4 bytes, become out[2 k] and out[2 k + 1].
+  template <class Value, std::size_t Rows>
+  PELLUCID_ALWAYS_INLINE static void pairs_in_rows(const Value* const* base,
+                                                   const std::int32_t* offset,
+                                                   const std::ptrdiff_t (&row)[Rows],
+                                                   Float* out) noexcept {
+    static_assert(sizeof(Value) == 4 && sizeof(Value*) == 8);
+    const auto address = [&](int lane) __attribute__((always_inline)) {
+      const __m512i on = _mm512_cvtepi32_epi64(
+          _mm256_loadu_si256(reinterpret_cast<const __m256i*>(offset + lane)));
+      return _mm512_add_epi64(_mm512_loadu_si512(base + lane), _mm512_slli_epi64(on, 2));
+    };
+    const __m512i low = address(0), high = address(8);
+    const __m512i first =
+        _mm512_setr_epi32(0, 2, 4, 6, 8, 10, 12, 14, 16, 18, 20, 22, 24, 26, 28, 30);
+    const __m512i second = _mm512_add_epi32(first, _mm512_set1_epi32(1));
+    for (std::size_t k = 0; k < Rows; ++k) {
+      const auto bytes = row[k] * static_cast<std::ptrdiff_t>(sizeof(Value));
+      const auto pairs = [&](__m512i at) __attribute__((always_inline)) {
+        return _mm512_castpd_ps(
+            _mm512_i64gather_pd(_mm512_add_epi64(at, _mm512_set1_epi64(bytes)), nullptr, 1));
+      };
+      const __m512 a = pairs(low), b = pairs(high);
+      out[2 * k] = _mm512_permutex2var_ps(a, first, b);
+      out[2 * k + 1] = _mm512_permutex2var_ps(a, second, b);
+    }
+  }
   template <class Value, class Offset>
   PELLUCID_ALWAYS_INLINE static Int words(const Value* const* base, Offset offset) noexcept {
     return blocks(four_words(base, offset), four_words(base + 4, offset + 4),

@@ -243,6 +243,8 @@ struct Native<4> {
     first = _mm_shuffle_ps(a, b, 0x88);
     second = _mm_shuffle_ps(a, b, 0xdd);
   }
+  /// Whether there is pairs_in_rows().
+  static constexpr bool has_pairs_in_rows = false;
   /// Pairs of values of 2 bytes: one word per lane, the first value in its lower half.
   template <class Value, class Offset>
   PELLUCID_ALWAYS_INLINE static Int words(const Value* const* base, Offset offset) noexcept {
