@@ -151,8 +151,18 @@ BlockRoughness::Range BlockRoughness::operator()(int lower, int upper) const noe
   range.roughness =
       upper_half_above((largest_color_ * slope + colors * slope + color_slope) * rounded);
   range.of_sample = (largest_color_ * slope + color_slope) * rounded;
-  // Windows as wide as an eighth, each half-way over the one before.
   constexpr std::size_t parts = 8, windows = 2 * parts - 1;
+  range.steps = parts;
+  // What changes less may be rounding, and is little beside what bends of the data make.
+  const double negligible = 0x1p-4 * range.of_sample;
+  // No part of a range goes to and fro by more than all of it.
+  bool goes_to_and_fro = false;
+  for (std::size_t c = 0; c < curves; ++c) {
+    const double all_of_it = to_and_fro(first, count, c, all.range(c));
+    goes_to_and_fro |= all.weight(c, largest_color_) * all_of_it > negligible;
+  }
+  if (!goes_to_and_fro) return range;
+  // Windows as wide as an eighth, each half-way over the one before.
   double largest_to_and_fro[curves] = {};
   const std::size_t width = (count + parts - 1) / parts + 1;
   for (std::size_t w = 0; w < windows; ++w) {
@@ -166,9 +176,6 @@ BlockRoughness::Range BlockRoughness::operator()(int lower, int upper) const noe
                    weight * to_and_fro(first + skipped, some_count, c, some.range(c)));
     }
   }
-  // What changes less may be rounding, and is little beside what bends of the data make.
-  const double negligible = 0x1p-4 * range.of_sample;
-  range.steps = parts;
   for (std::size_t c = 0; c < curves; ++c) {
     if (largest_to_and_fro[c] > negligible) {
       range.steps = std::min(range.steps,
