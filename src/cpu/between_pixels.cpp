@@ -19,7 +19,7 @@ constexpr int least_cells = 8;
 /// Of the distance at which rays show all that is between them.
 constexpr double most_of_step = 0.9;
 /// At smaller tolerances few pixels pass, and those that they are taken from cost more.
-constexpr double least_tolerance = 8e-4;
+constexpr double least_tolerance = 4e-4;
 /// What is tried of a level: every so-manieth pixel each way. Less than that share of them, and
 /// tracing the others to smaller tolerances costs more than it saves.
 constexpr int apart_of_tried = 3;
@@ -148,10 +148,12 @@ void BetweenPixels::finish_level(int stride, int threads) {
       const Cost cost = look(column, row, next, result);
       if (!cost.known) continue;
       ++tried;
-      // A level further on there is a sixteenth of what the cubic errs.
-      const double cubic = cost.cubic * (next > 1 ? 1.0 / 16 : 1);
-      const double then = cost.inherited + cubic + cost.uneven;
-      if (then <= shares_of(next).in_between * frame_.tolerance) ++found;
+      // What this level does not hold is traced, and then the next one may: there the cubic errs a
+      // sixteenth, beside what is inherited from rays.
+      const double then = next > 1 ? sum_of_weights * share_of_rays(next) * frame_.tolerance +
+                                         cost.cubic / 16 + cost.uneven
+                                   : cost.inherited + cost.cubic + cost.uneven;
+      if (then <= shares_of(std::max(next / 2, 1)).in_between * frame_.tolerance) ++found;
     }
   }
   goes_on_ = found > 0 && found >= least_found * tried;

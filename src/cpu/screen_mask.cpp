@@ -116,7 +116,7 @@ void ScreenMask::mark_edges(const CameraFrame<double>& camera,
         const double x = from.x + t * (to.x - from.x), y = from.y + t * (to.y - from.y);
         // No place of the edge is further from all of these: it may just touch a square.
         constexpr double near = 1.0 / 16;
-        mark(x - near, y - near, x + near, y + near, 1);
+        mark(x - near, y - near, x + near, y + near, 0);
       }
     }
   }

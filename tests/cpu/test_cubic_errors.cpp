@@ -43,7 +43,7 @@ double off_in_the_middle(const std::function<double(double)>& f) {
   return std::fabs((9 * (f(0) + f(1)) - (f(-1) + f(2))) / 16 - f(0.5));
 }
 
-TEST(CubicErrors, HoldForKinksWavesAndCubics) {
+TEST(CubicErrors, HoldForKinksStepsAndWaves) {
   std::mt19937 random(1);
   const auto uniform = [&](double a, double b) {
     return std::uniform_real_distribution<double>(a, b)(random);
@@ -55,22 +55,38 @@ TEST(CubicErrors, HoldForKinksWavesAndCubics) {
     const double bend = n % 2 == 0 ? uniform(-0.02, 0.02) : 0, slope = uniform(-1, 1);
     const double wave = n % 3 == 0 ? 2 * 3.14159265 / uniform(2.5, 9) : 0, phase = uniform(0, 7);
     const auto f = [&](double t) {
-      return wave > 0 ? std::sin(wave * t + phase)
-                      : kink * std::fabs(t - place) + bend * t * t + slope * t;
+      if (wave > 0) return std::sin(wave * t + phase);
+      const double broken = n % 7 == 0 ? (t < place ? 0.0 : 1.0) : std::fabs(t - place);
+      return kink * broken + bend * t * t + slope * t;
     };
+    // Six pixels of the lattice in a line, the least there may be; or ten.
+    const int first = n % 4 < 2 ? 2 : 4, count = 2 * first + 2;
     const auto channel = static_cast<std::size_t>(n % 4);
     const bool is_across = n % 5 < 3;
-    Image image = on_lattice({6 * stride, 6 * stride}, channel,
-                             [&](double x, double y) { return f((is_across ? x : y) - 2); });
+    Image image = on_lattice({count * stride, count * stride}, channel,
+                             [&](double x, double y) { return f((is_across ? x : y) - first); });
     const CubicErrors errors = errors_of(image, 1);
-    const double said = static_cast<double>(is_across ? errors.across(2 * stride, stride)
-                                                      : errors.down(stride, 2 * stride));
+    const double said = static_cast<double>(is_across ? errors.across(first * stride, stride)
+                                                      : errors.down(stride, first * stride));
     const double off = off_in_the_middle(f);
     ASSERT_LE(off, said + 1e-6) << n;
     if (said > 1e-3) worst = std::max(worst, off / said);
   }
   RecordProperty("worst", std::to_string(worst));
   EXPECT_GT(worst, 0.8);  // and not by much
+}
+
+TEST(CubicErrors, OfACurveAreAThirdOfThoseOfAKink) {
+  // Waves of eight pixels of the lattice, whose sixth differences are 0.59 of the fourth.
+  constexpr double wave = 2 * 3.14159265 / 8;
+  for (int n = 0; n < 20; ++n) {
+    const auto f = [&](double t) { return std::sin(wave * t + 0.3 * n); };
+    Image image =
+        on_lattice({10 * stride, 10 * stride}, 0, [&](double x, double) { return f(x - 4); });
+    const double said = static_cast<double>(errors_of(image, 1).across(4 * stride, 4 * stride));
+    EXPECT_LE(off_in_the_middle(f), said);
+    EXPECT_LE(said, 0.15 * std::pow(2 * std::sin(wave / 2), 4) + 0.02 * wave * wave);
+  }
 }
 
 TEST(CubicErrors, AreNothingForCubicsAndInfiniteWhereTheLatticeEnds) {
@@ -88,20 +104,26 @@ TEST(CubicErrors, AreNothingForCubicsAndInfiniteWhereTheLatticeEnds) {
   }
 }
 
-TEST(CubicErrors, AreThoseOfTheSixPixelsAround) {
+TEST(CubicErrors, AreThoseOfTheEightPixelsAround) {
   const auto value = [](double x, double y) { return std::sin(x * y + x) + 0.1 * y; };
   Image image = on_lattice({15 * stride + 3, 11 * stride}, 3, value);
   const CubicErrors errors = errors_of(image, 2);
-  const auto of_six = [](const std::function<double(double)>& f) {
+  const auto said = [](const std::function<double(double)>& f, double at, double last) {
     const auto second = [&](double t) { return f(t - 1) - 2 * f(t) + f(t + 1); };
     const auto fourth = [&](double t) { return second(t - 1) - 2 * second(t) + second(t + 1); };
-    return 0.38 * std::max(std::fabs(fourth(0)), std::fabs(fourth(1))) +
-           0.02 * std::max(std::fabs(second(0)), std::fabs(second(1)));
+    const auto sixth = [&](double t) { return fourth(t - 1) - 2 * fourth(t) + fourth(t + 1); };
+    const auto larger = [at](const auto& of) {
+      return std::max(std::fabs(of(at)), std::fabs(of(at + 1)));
+    };
+    // Where two of the eight are not there, the six in the middle.
+    const double of_curve =
+        at < 3 || at + 4 > last ? 1e9 : 0.05 * larger(fourth) + 0.165 * larger(sixth);
+    return std::min(0.38 * larger(fourth), of_curve) + 0.02 * larger(second);
   };
   for (int row = 2; row < 8; ++row) {
     for (int column = 2; column < 12; ++column) {
-      const double across = of_six([&](double t) { return value(column + t, row); }),
-                   down = of_six([&](double t) { return value(column, row + t); });
+      const double across = said([&](double t) { return value(t, row); }, column, 15),
+                   down = said([&](double t) { return value(column, t); }, row, 10);
       EXPECT_NEAR(static_cast<double>(errors.across(column * stride, row * stride)), across, 1e-5);
       EXPECT_NEAR(static_cast<double>(errors.down(column * stride, row * stride)), down, 1e-5);
     }

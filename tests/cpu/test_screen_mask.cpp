@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// Rays through squares that are not marked, and through those around them, against the box and its
+// Rays through squares that are not marked against the box, and with those around them against its
 // blocks, ray by ray.
 #include "src/cpu/screen_mask.h"
 
@@ -150,8 +150,9 @@ TEST_F(ScreenMasks, LeaveSquaresOutAroundWhichAllRaysAreAlike) {
           for (int i = left; i <= right; ++i) {
             ASSERT_FALSE(in_cells[at(i, j)])
                 << i << ", " << j << " beside " << column << ", " << row;
+            if (i / square != column / square || j / square != row / square) continue;
             ASSERT_EQ(faces[at(i, j)], faces[at(column, row)])
-                << i << ", " << j << " beside " << column << ", " << row;
+                << i << ", " << j << " with " << column << ", " << row;
           }
         }
       }
