@@ -38,11 +38,11 @@ struct Shares {
   double of_rays, in_between;
 };
 constexpr Shares shares_of(int stride) noexcept {
-  return stride == 1 ? Shares{1, 1} : stride == 2 ? Shares{0.45, 0.6} : Shares{0.2, 0.3};
+  return stride == 1 ? Shares{1, 1} : stride == 2 ? Shares{0.55, 0.85} : Shares{0.3, 0.5};
 }
-/// What a pixel in the middle of sixteen inherits of either kind leaves something for itself.
-static_assert(sum_of_weights * sum_of_weights * shares_of(2).in_between < shares_of(1).in_between &&
-              sum_of_weights * sum_of_weights * shares_of(4).in_between < shares_of(2).in_between);
+/// What a pixel inherits leaves something for itself.
+static_assert(shares_of(2).in_between < shares_of(1).in_between &&
+              shares_of(4).in_between < shares_of(2).in_between);
 
 /// What pixels that others are taken from may be off by: what rays beside each other do not err
 /// alike is in the differences that stand for the cubic's error, many times over.
@@ -150,9 +150,9 @@ void BetweenPixels::finish_level(int stride, int threads) {
       ++tried;
       // What this level does not hold is traced, and then the next one may: there the cubic errs a
       // sixteenth, beside what is inherited from rays.
-      const double then = next > 1 ? sum_of_weights * share_of_rays(next) * frame_.tolerance +
-                                         cost.cubic / 16 + cost.uneven
-                                   : cost.inherited + cost.cubic + cost.uneven;
+      const double then =
+          next > 1 ? share_of_rays(next) * frame_.tolerance + cost.cubic / 16 + cost.uneven
+                   : cost.inherited + cost.cubic + cost.uneven;
       if (then <= shares_of(std::max(next / 2, 1)).in_between * frame_.tolerance) ++found;
     }
   }
@@ -191,7 +191,8 @@ BetweenPixels::Cost BetweenPixels::look(int column, int row, int stride,
   const auto row_of_pixels = static_cast<std::ptrdiff_t>(image_.width) * before,
              row_of_known = static_cast<std::ptrdiff_t>(columns_) * stride;
   std::array<float, 4> found{}, brightest{};
-  float inherited = 0, unevenness = 0, longest = std::numeric_limits<float>::infinity();
+  float inherited = 0, of_one = 0, weights = 0;
+  float unevenness = 0, longest = std::numeric_limits<float>::infinity();
   for (int j = 0; j < rows; ++j) {
     for (int i = 0; i < columns; ++i) {
       const float w = of_column[static_cast<std::size_t>(i)] * of_row[static_cast<std::size_t>(j)];
@@ -201,7 +202,10 @@ BetweenPixels::Cost BetweenPixels::look(int column, int row, int stride,
         brightest[c] = std::max(brightest[c], std::fabs(value[c]));
       }
       const Known& one = known[j * row_of_known + i * stride];
-      inherited += std::fabs(w) * one.error;
+      const float error = std::fabs(w) * one.error;
+      inherited += error;
+      of_one = std::max(of_one, error);
+      weights += std::fabs(w);
       unevenness = std::max(unevenness, one.unevenness);
       longest = std::min(longest, one.longest_step);
     }
@@ -224,8 +228,9 @@ BetweenPixels::Cost BetweenPixels::look(int column, int row, int stride,
       of_rows = std::max(of_rows, cubic_errors_->down(left + i * before, top));
     }
   }
-  const double cubic =
-      (across && down ? sum_of_weights : 1) * static_cast<double>(of_columns + of_rows);
+  // First along the one, whose errors the other one's weights may add up, 1.25 of them: whichever.
+  const double cubic = static_cast<double>(of_columns + of_rows) +
+                       (sum_of_weights - 1) * static_cast<double>(std::min(of_columns, of_rows));
   // Its own unevenness, and that of those which it is taken from: 1 and at most 0.64 of variance.
   const double uneven = 1.3 * RandomErrors<double>::deviations * static_cast<double>(unevenness);
   result = {};
@@ -235,7 +240,7 @@ BetweenPixels::Cost BetweenPixels::look(int column, int row, int stride,
   result.unevenness = unevenness;
   result.longest_step = longest;
   return {true,
-          (1 + 0x1p-19) * static_cast<double>(inherited) +
+          (1 + 0x1p-19) * static_cast<double>(std::max(inherited / weights, of_one)) +
               rounding_of_cubic * static_cast<double>(largest),
           cubic, uneven};
 }

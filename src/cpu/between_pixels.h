@@ -22,7 +22,9 @@ namespace pellucid {
 /// middle between them; and so on. One in the middle is taken from the cubic through the four
 /// pixels of the level before along the axis, or from that of both axes. It is off by
 ///
-///   what these four may be off by, times the cubic's weights;
+///   what these four may be off by, in the mean weighted as by the cubic, but not less than what any
+///     one of them makes of it: errors that are alike, or waves from pixel to pixel, or random, are
+///     no larger between pixels;
 ///   what the cubic errs, for which stand fourth differences of the pixels nearby, so many times
 ///     that it holds for a kink between any two of them;
 ///   what trilinear data do from cell to cell and rays beside each other do not have in common
