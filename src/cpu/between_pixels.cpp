@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <type_traits>
 #include <utility>
 
 #include "pellucid/error/random_errors.h"
@@ -29,7 +30,7 @@ constexpr double least_clear_share = 1.0 / 16;
 
 /// The cubic through four pixels, in the middle between the second and the third.
 constexpr std::array<float, 4> weight{-1.0f / 16, 9.0f / 16, 9.0f / 16, -1.0f / 16};
-constexpr double sum_of_weights = 1.25;
+constexpr float sum_of_weights = 1.25f;
 /// Of the largest of its pixels, what rounding in float does to it: sixteen products and their sum.
 constexpr double rounding_of_cubic = 32 * 0x1p-24;
 
@@ -48,9 +49,43 @@ static_assert(shares_of(2).in_between < shares_of(1).in_between &&
 /// alike is in the differences that stand for the cubic's error, many times over.
 constexpr double most_of_rays = 2.5e-3;
 
-/// Whether rays so many pixels apart show all that is between them.
-bool are_near(int pixels, double voxels_between_pixels, double longest_step) noexcept {
-  return pixels * voxels_between_pixels <= most_of_step * longest_step;
+/// Whether rays so many pixels apart show all that is between them; `waves`: 1 / the longest step.
+bool are_near(int pixels, double voxels_between_pixels, double waves) noexcept {
+  return pixels * voxels_between_pixels * waves <= most_of_step;
+}
+
+/// Pixels on `Columns` by `Rows` places of a lattice, one or four: the cubic through them, and the
+/// most of what is known of them.
+struct Around {
+  std::array<float, 4> cubic{};
+  float error = 0;  ///< inherited: see BetweenPixels
+  float unevenness = 0, waves = 0;
+};
+
+template <int Columns, int Rows, class Known>
+Around around(const std::array<float, 4>* pixels, std::ptrdiff_t row_of_pixels, int apart,
+              const Known* known, std::ptrdiff_t row_of_known, int known_apart) noexcept {
+  const auto weight_of = [](int i, int count) {
+    return count == 1 ? 1 : weight[static_cast<std::size_t>(i)];
+  };
+  Around a;
+  float of_one = 0;
+  for (int j = 0; j < Rows; ++j) {
+    for (int i = 0; i < Columns; ++i) {
+      const float w = weight_of(i, Columns) * weight_of(j, Rows), size_of_w = std::fabs(w);
+      const std::array<float, 4>& value = pixels[j * row_of_pixels + i * apart];
+      for (std::size_t c = 0; c < 4; ++c) a.cubic[c] += w * value[c];
+      const Known& one = known[j * row_of_known + i * known_apart];
+      const float error = size_of_w * one.error;
+      a.error += error;
+      of_one = std::max(of_one, error);
+      a.unevenness = std::max(a.unevenness, one.unevenness);
+      a.waves = std::max(a.waves, one.waves);
+    }
+  }
+  constexpr float weights = (Columns == 1 ? 1 : sum_of_weights) * (Rows == 1 ? 1 : sum_of_weights);
+  a.error = std::max(a.error / weights, of_one);
+  return a;
 }
 
 /// How many cells a world length takes at most, in any direction: the largest singular value of the
@@ -101,7 +136,7 @@ std::unique_ptr<BetweenPixels> BetweenPixels::make(const Frame& frame, const Ima
   const int smaller_side = std::min(frame.scene.size.width, frame.scene.size.height);
   int stride = 1;
   while (2 * stride <= largest_stride && least_cells * 2 * stride <= smaller_side &&
-         are_near(2 * stride, voxels, around->longest_step)) {
+         are_near(2 * stride, voxels, 1 / around->longest_step)) {
     stride *= 2;
   }
   if (stride < 2) return nullptr;
@@ -117,6 +152,7 @@ BetweenPixels::BetweenPixels(const Frame& frame, const ImageView& image, int str
       image_(image),
       stride_(stride),
       voxels_(voxels),
+      rounding_(rounding_of_cubic * std::max(largest_color(frame.scene), 1.0)),
       mask_(std::move(mask)),
       columns_(static_cast<std::size_t>((frame.scene.size.width + 1) / 2)),
       known_(columns_ * static_cast<std::size_t>((frame.scene.size.height + 1) / 2)) {}
@@ -130,7 +166,7 @@ void BetweenPixels::keep(int column, int row, const RayResult& result) noexcept 
   const bool known = result.unevenness >= 0;  // and no NaN
   known_[index(column, row)] = {float_above(result.error),
                                 known ? result.unevenness : std::numeric_limits<float>::infinity(),
-                                result.longest_step};
+                                1 / result.longest_step};
 }
 
 void BetweenPixels::finish_level(int stride, int threads) {
@@ -145,7 +181,7 @@ void BetweenPixels::finish_level(int stride, int threads) {
   for (int row = next; row < frame_.scene.size.height; row += apart) {
     for (int column = next; column < frame_.scene.size.width; column += apart) {
       RayResult result;
-      const Cost cost = look(column, row, next, result);
+      const Cost cost = look(column, row, next, std::numeric_limits<double>::infinity(), result);
       if (!cost.known) continue;
       ++tried;
       // What this level does not hold is traced, and then the next one may: there the cubic errs a
@@ -161,12 +197,13 @@ void BetweenPixels::finish_level(int stride, int threads) {
 
 bool BetweenPixels::find(int column, int row, int stride, RayResult& result) const noexcept {
   if (!goes_on_) return false;
-  const Cost cost = look(column, row, stride, result);
+  const double most = shares_of(stride).in_between * frame_.tolerance;
+  const Cost cost = look(column, row, stride, most, result);
   result.error = cost.inherited + cost.cubic + cost.uneven;
-  return cost.known && result.error <= shares_of(stride).in_between * frame_.tolerance;
+  return cost.known && result.error <= most;
 }
 
-BetweenPixels::Cost BetweenPixels::look(int column, int row, int stride,
+BetweenPixels::Cost BetweenPixels::look(int column, int row, int stride, double most,
                                         RayResult& result) const noexcept {
   // Of the lattice of the level before; all are powers of two.
   const int before = 2 * stride;
@@ -181,68 +218,54 @@ BetweenPixels::Cost BetweenPixels::look(int column, int row, int stride,
     return {};
   }
 
-  // The cubic, and what its pixels are off by.
-  static constexpr std::array<float, 4> alone{1, 0, 0, 0};
-  const std::array<float, 4>&of_column = across ? weight : alone, &of_row = down ? weight : alone;
-  const int columns = across ? 4 : 1, rows = down ? 4 : 1;
-  const int first_column = across ? left - before : left, first_row = down ? top - before : top;
-  const std::array<float, 4>* pixels = image_.pixels + image_.index(first_column, first_row);
-  const Known* known = known_.data() + index(first_column, first_row);
-  const auto row_of_pixels = static_cast<std::ptrdiff_t>(image_.width) * before,
-             row_of_known = static_cast<std::ptrdiff_t>(columns_) * stride;
-  std::array<float, 4> found{}, brightest{};
-  float inherited = 0, of_one = 0, weights = 0;
-  float unevenness = 0, longest = std::numeric_limits<float>::infinity();
-  for (int j = 0; j < rows; ++j) {
-    for (int i = 0; i < columns; ++i) {
-      const float w = of_column[static_cast<std::size_t>(i)] * of_row[static_cast<std::size_t>(j)];
-      const std::array<float, 4>& value = pixels[j * row_of_pixels + i * before];
-      for (std::size_t c = 0; c < 4; ++c) {
-        found[c] += w * value[c];
-        brightest[c] = std::max(brightest[c], std::fabs(value[c]));
-      }
-      const Known& one = known[j * row_of_known + i * stride];
-      const float error = std::fabs(w) * one.error;
-      inherited += error;
-      of_one = std::max(of_one, error);
-      weights += std::fabs(w);
-      unevenness = std::max(unevenness, one.unevenness);
-      longest = std::min(longest, one.longest_step);
-    }
-  }
-  const float largest = *std::max_element(brightest.begin(), brightest.end());
-  // What is clear is traced for next to nothing, and known for sure then.
-  if (!(largest > 0) || !(found[3] > 0)) return {};
-  if (!are_near(before, voxels_, static_cast<double>(longest))) {
-    return {true, std::numeric_limits<double>::infinity(), 0, 0};
-  }
-
+  const auto at_column = [&](int i) { return left + i * before; };
+  const auto at_row = [&](int j) { return top + j * before; };
   float of_columns = 0, of_rows = 0;
   if (across) {
     for (int j = -1; j <= (down ? 2 : 1); ++j) {
-      of_columns = std::max(of_columns, cubic_errors_->across(left, top + j * before));
+      of_columns = std::max(of_columns, cubic_errors_->across(left, at_row(j)));
     }
   }
   if (down) {
     for (int i = -1; i <= (across ? 2 : 1); ++i) {
-      of_rows = std::max(of_rows, cubic_errors_->down(left + i * before, top));
+      of_rows = std::max(of_rows, cubic_errors_->down(at_column(i), top));
     }
   }
   // First along the one, whose errors the other one's weights may add up, 1.25 of them: whichever.
-  const double cubic = static_cast<double>(of_columns + of_rows) +
-                       (sum_of_weights - 1) * static_cast<double>(std::min(of_columns, of_rows));
-  // Its own unevenness, and that of those which it is taken from: 1 and at most 0.64 of variance.
-  const double uneven = 1.3 * RandomErrors<double>::deviations * static_cast<double>(unevenness);
-  result = {};
-  const auto positive = [&](std::size_t c) { return std::max(static_cast<double>(found[c]), 0.0); };
+  const float of_cubic =
+      of_columns + of_rows + (sum_of_weights - 1) * std::min(of_columns, of_rows);
+  if (!(static_cast<double>(of_cubic) <= most)) return {true, 0, static_cast<double>(of_cubic), 0};
+
+  const int first_column = across ? at_column(-1) : left, first_row = down ? at_row(-1) : top;
+  const auto look_around = [&](auto columns, auto rows) {
+    return around<columns.value, rows.value>(image_.pixels + image_.index(first_column, first_row),
+                                             static_cast<std::ptrdiff_t>(image_.width) * before,
+                                             before, known_.data() + index(first_column, first_row),
+                                             static_cast<std::ptrdiff_t>(columns_) * stride,
+                                             stride);
+  };
+  using One = std::integral_constant<int, 1>;
+  using Four = std::integral_constant<int, 4>;
+  const Around a = !down     ? look_around(Four{}, One{})
+                   : !across ? look_around(One{}, Four{})
+                             : look_around(Four{}, Four{});
+  // What is clear is traced for next to nothing, and known for sure then.
+  if (!(a.cubic[3] > 0)) return {};
+  if (!are_near(before, voxels_, static_cast<double>(a.waves))) {
+    return {true, std::numeric_limits<double>::infinity(), 0, 0};
+  }
+
+  const auto positive = [&](std::size_t c) {
+    return std::max(static_cast<double>(a.cubic[c]), 0.0);
+  };
   result.radiance = {positive(0), positive(1), positive(2)};
   result.opacity = std::min(positive(3), 1.0);
-  result.unevenness = unevenness;
-  result.longest_step = longest;
-  return {true,
-          (1 + 0x1p-19) * static_cast<double>(std::max(inherited / weights, of_one)) +
-              rounding_of_cubic * static_cast<double>(largest),
-          cubic, uneven};
+  result.unevenness = a.unevenness;
+  result.longest_step = 1 / a.waves;
+  // Its own unevenness, and that of those which it is taken from: 1 and at most 0.64 of variance.
+  const double uneven = 1.3 * RandomErrors<double>::deviations * static_cast<double>(a.unevenness);
+  return {true, (1 + 0x1p-19) * static_cast<double>(a.error) + rounding_,
+          static_cast<double>(of_cubic), uneven};
 }
 
 }  // namespace pellucid

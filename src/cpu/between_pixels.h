@@ -22,7 +22,8 @@ namespace pellucid {
 /// middle between them; and so on. One in the middle is taken from the cubic through the four
 /// pixels of the level before along the axis, or from that of both axes. It is off by
 ///
-///   what these four may be off by, in the mean weighted as by the cubic, but not less than what any
+///   what these four may be off by, in the mean weighted as by the cubic, but not less than what
+///   any
 ///     one of them makes of it: errors that are alike, or waves from pixel to pixel, or random, are
 ///     no larger between pixels;
 ///   what the cubic errs, for which stand fourth differences of the pixels nearby, so many times
@@ -53,8 +54,8 @@ class BetweenPixels {
 
   /// Notes what became of a pixel of a level other than the last.
   void keep(int column, int row, const RayResult& result) noexcept;
-  /// What is between the pixels of the levels that are finished, where it goes on; false: to be
-  /// traced.
+  /// Makes what is between the pixels of the levels that are finished of a new result, where it
+  /// goes on; false: to be traced.
   bool find(int column, int row, int stride, RayResult& result) const noexcept;
 
  private:
@@ -63,15 +64,16 @@ class BetweenPixels {
 
   /// Of each second pixel of each second row.
   struct Known {
-    float error, unevenness, longest_step;
+    float error, unevenness;
+    float waves;  ///< 1 / the longest step
   };
   /// What a pixel may be off by.
   struct Cost {
     bool known = false;
     double inherited = 0, cubic = 0, uneven = 0;
   };
-  /// The pixel, but for its error.
-  Cost look(int column, int row, int stride, RayResult& result) const noexcept;
+  /// Makes the pixel of a new result, but for its error; not where the cubic alone errs by more than `most`.
+  Cost look(int column, int row, int stride, double most, RayResult& result) const noexcept;
 
   std::size_t index(int column, int row) const noexcept {
     return static_cast<std::size_t>(row / 2) * columns_ + static_cast<std::size_t>(column / 2);
@@ -83,6 +85,7 @@ class BetweenPixels {
   int finished_ = 0;  ///< the last level that is; 0: none
   bool goes_on_ = true;
   double voxels_;    ///< from pixel to pixel, at most
+  double rounding_;  ///< of the cubic
   ScreenMask mask_;  ///< whose squares are as wide as pixels of the level before are apart
   std::size_t columns_;
   std::vector<Known> known_;

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <limits>
 
@@ -69,7 +70,7 @@ void find_line(const Pixel* pixel, std::size_t step, std::size_t count, float* o
 }  // namespace
 
 CubicErrors::CubicErrors(const ImageView& image, ImageSize size, int stride, int threads)
-    : stride_(stride),
+    : log2_of_stride_(std::countr_zero(static_cast<unsigned>(stride))),
       columns_(static_cast<std::size_t>((size.width + stride - 1) / stride)),
       rows_(static_cast<std::size_t>((size.height + stride - 1) / stride)),
       across_(columns_ * rows_, std::numeric_limits<float>::infinity()),

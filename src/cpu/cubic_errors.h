@@ -15,7 +15,7 @@ namespace pellucid {
 /// the lattice.
 class CubicErrors {
  public:
-  /// Of the pixels whose columns and rows are multiples of `stride`.
+  /// Of the pixels whose columns and rows are multiples of `stride`, a power of two.
   CubicErrors(const ImageView& image, ImageSize size, int stride, int threads);
 
   /// Between the lattice's pixel and the next one of its row; of its column.
@@ -25,11 +25,11 @@ class CubicErrors {
  private:
   /// `column`, `row`: of the image.
   std::size_t index(int column, int row) const noexcept {
-    return static_cast<std::size_t>(row / stride_) * columns_ +
-           static_cast<std::size_t>(column / stride_);
+    return static_cast<std::size_t>(row >> log2_of_stride_) * columns_ +
+           static_cast<std::size_t>(column >> log2_of_stride_);
   }
 
-  int stride_;
+  int log2_of_stride_;
   std::size_t columns_, rows_;
   std::vector<float> across_, down_;
 };

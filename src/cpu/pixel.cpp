@@ -24,9 +24,6 @@ void store_pixel(const Frame& frame, const RayResult& result, std::size_t pixel,
     brightest = std::max(brightest, exact[c]);
   }
   if (image.depth != nullptr) image.depth[pixel] = static_cast<float>(result.half_opacity_depth);
-  report.cells += static_cast<std::uint64_t>(result.cells);
-  report.evaluations += static_cast<std::uint64_t>(result.evaluations);
-  report.spans += result.spans;
 
   // A clear pixel is clear whatever the transfer function is off by where it is not zero.
   const double approximation = result.opacity > 0 ? frame.reserved : 0;
@@ -41,6 +38,12 @@ void store_pixel(const Frame& frame, const RayResult& result, std::size_t pixel,
   report.largest_error = std::max(report.largest_error, error);
   if (result.proved) ++report.pixels_proved;
   if (!(error <= frame.scene.integration.tolerance)) ++report.pixels_over;
+}
+
+void add_work(RenderReport& sum, const RayResult& result) {
+  sum.cells += static_cast<std::uint64_t>(result.cells);
+  sum.evaluations += static_cast<std::uint64_t>(result.evaluations);
+  sum.spans += result.spans;
 }
 
 void add(RenderReport& sum, const RenderReport& part) {

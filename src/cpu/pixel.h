@@ -25,9 +25,12 @@ struct ImageView {
   }
 };
 
-/// Puts the pixel into the image and the report.
+/// Puts the pixel into the image, and what it is off by into the report.
 void store_pixel(const Frame& frame, const RayResult& result, std::size_t pixel,
                  const ImageView& image, RenderReport& report);
+
+/// What its rays went through.
+void add_work(RenderReport& sum, const RayResult& result);
 
 /// One tile's part of the report, or the whole.
 void add(RenderReport& sum, const RenderReport& part);

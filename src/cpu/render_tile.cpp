@@ -96,7 +96,9 @@ void render_tile(const Frame& frame, const Tile& tile, int level, BetweenPixels*
   report.rays += rays.size();
   const RayResult* of_pixel = results.data();
   for (const Place& place : places) {
-    finish(place, mean_of(of_pixel, rays_of_pixel));
+    const RayResult pixel = mean_of(of_pixel, rays_of_pixel);
+    finish(place, pixel);
+    add_work(report, pixel);
     of_pixel += rays_of_pixel;
   }
 }

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <cstddef>
 
@@ -60,6 +61,7 @@ double farthest_depth(const CameraFrame<double>& camera, const Volume& volume,
 ScreenMask::ScreenMask(const CameraFrame<double>& camera, const Volume& volume,
                        const ClassifiedBlocks& blocks, int square)
     : square_(square),
+      log2_of_square_(std::countr_zero(static_cast<unsigned>(square))),
       columns_((camera.width + square - 1) / square),
       rows_((camera.height + square - 1) / square),
       marked_(static_cast<std::size_t>(columns_) * static_cast<std::size_t>(rows_), 0) {

@@ -23,12 +23,12 @@ double farthest_depth(const CameraFrame<double>& camera, const Volume& volume,
 /// empty. An edge of the box is a kink of the picture, or a step, as CubicErrors hold for.
 class ScreenMask {
  public:
-  /// `square`: pixels.
+  /// `square`: pixels, a power of two.
   ScreenMask(const CameraFrame<double>& camera, const Volume& volume,
              const ClassifiedBlocks& blocks, int square);
 
   bool marked(int column, int row) const noexcept {
-    return marked_[index(column / square_, row / square_)] != 0;
+    return marked_[index(column >> log2_of_square_, row >> log2_of_square_)] != 0;
   }
   /// The share of the squares that are not marked.
   double clear_share() const noexcept;
@@ -44,7 +44,7 @@ class ScreenMask {
            static_cast<std::size_t>(x);
   }
 
-  int square_, columns_, rows_;
+  int square_, log2_of_square_, columns_, rows_;
   std::vector<std::uint8_t> marked_;
 };
 
