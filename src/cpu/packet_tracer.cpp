@@ -36,7 +36,7 @@ struct CellContext {
 
 /// Steps get as short as cells that are gone through with closed forms are worth: an eighth of a
 /// voxel where these are cut at the many points of a table, a quarter where they are not; half a
-/// one where most of them are empty or hold something in a part of them only.
+/// one where most blocks that might be sampled do not absorb at all of their values.
 int sampled_step_levels(const TransferTables& transfer, double share_throughout) {
   constexpr int half = most_sampled_step_levels - 4, quarter = half + 2;
   if (share_throughout < 0.5) return half;

@@ -49,14 +49,14 @@ class CodeTable {
     const Span s = span(lower, upper);
     return sums_[s.last].absorbing == (s.first == 0 ? 0 : sums_[s.first - 1].absorbing);
   }
-  /// Whether all of these values absorb.
+  /// Whether all of these values absorb; of a jump at `lower` what is above it.
   bool absorbs_throughout(int lower, int upper) const noexcept {
     const Place &p = at_[static_cast<std::size_t>(lower)],
                 &q = at_[static_cast<std::size_t>(upper)];
     const auto clear_below = [&](int point) {
       return point > 0 ? sums_[static_cast<std::size_t>(point - 1)].clear : 0;
     };
-    return p.absorbs && q.absorbs && clear_below(p.below) == clear_below(q.up_to);
+    return p.absorbs && q.absorbs && clear_below(p.up_to) == clear_below(q.up_to);
   }
   bool is_constant(int lower, int upper) const noexcept {
     if (code_.value(lower) == code_.value(upper)) return true;  // two codes may be one number

@@ -260,6 +260,24 @@ TEST(BlockClasses, TellHowManyAbsorbThroughout) {
   }
 }
 
+TEST(BlockClasses, AbsorbThroughoutFromAJumpOn) {
+  const TransferFunction function(
+      {point(20, 0, 1, 1, 1), point(20, 1, 1, 1, 1), point(200, 2, 1, 1, 1)});
+  const TransferTablesStorage storage(function);
+  for (const int lower : {19, 20, 21}) {
+    SomeBlocks blocks({1, 1, 1});
+    blocks.view.code = make_block_code(0, 255, true);
+    blocks.record[0].lower = static_cast<std::uint16_t>(lower);
+    blocks.record[0].upper = 44;
+    double share = -1;
+    const BlockClassesStorage classes(blocks.view, storage.tables(), 1, {}, [&](double found) {
+      share = found;
+      return StepLimits{};
+    });
+    EXPECT_EQ(share, lower < 20 ? 0 : 1) << lower;
+  }
+}
+
 /// By definition: cube by cube, from the largest down.
 int level_of(const BlockRecords& blocks, const BlockClasses& classes, int i, int j, int k) {
   const int count[3] = {blocks.axis[0].cells(), blocks.axis[1].cells(), blocks.axis[2].cells()};

@@ -36,13 +36,15 @@ Points line() {
 
 class SmoothBlocksOf {
  public:
+  static constexpr int levels = 5;
+
   SmoothBlocksOf(const Volume& volume, const Points& points, double most_bending = any_bending,
                  const ParallelFor& parallel = {})
       : records_(volume.block_ranges()),
         function_(points),
         tables_(function_),
         classes_(records_, tables_.tables(), 1, parallel, [=](double) {
-          return StepLimits{1, most_bending};
+          return StepLimits{levels, most_bending};
         }) {}
 
   bool is_smooth(int b) const { return classes_.view()[b].kind == BlockKind::smooth; }
@@ -78,6 +80,7 @@ TEST(SmoothBlocksTest, WavesOfTwelveCellsAreAndThoseOfFiveAreNot) {
     EXPECT_EQ(yes.count(), yes.all());
     EXPECT_GE(yes.classes().smooth().longest_step, 3);
     EXPECT_LE(yes.classes().smooth().longest_step, longest_sampled_step);
+    EXPECT_EQ(yes.classes().smooth().levels, SmoothBlocksOf::levels);
     EXPECT_EQ(no.count(), 0);
     EXPECT_EQ(no.classes().smooth().longest_step, 0);
   }

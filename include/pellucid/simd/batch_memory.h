@@ -130,7 +130,8 @@ PELLUCID_ALWAYS_INLINE void gather_pairs_in_rows(const float* const* base,
 }  // namespace detail
 
 /// gather_pairs() of several rows: lane l gets base[l][offset[l] + row[k]] in out[2 k], and the
-/// value behind it in out[2 k + 1]. By gathers where the processor is good at them.
+/// value behind it in out[2 k + 1]; the numbers of rows are of 32 bits. By gathers where the
+/// processor is good at them.
 template <class Value, int N, std::size_t Rows>
 PELLUCID_ALWAYS_INLINE void pairs_in_rows(const Value* const* base, const std::int32_t* offset,
                                           const std::ptrdiff_t (&row)[Rows],
