@@ -53,6 +53,7 @@ class PacketTracer {
                              PellucidCellResult* result);
 
   const Volume& volume_;
+  double least_[3], most_[3];  ///< of its box, grid coordinates
   const TransferTables& transfer_;
   const RayTolerance& wanted_;
   BinnedTransferStorage binned_;

@@ -50,10 +50,10 @@ TEST(CubicErrors, HoldForKinksStepsAndWaves) {
   };
   double worst = 0;
   for (int n = 0; n < 20000; ++n) {
-    // A kink anywhere on a curve, or waves of more than two and a half pixels of the lattice.
+    // A kink anywhere on a curve, or waves of more than two and a quarter pixels of the lattice.
     const double kink = uniform(-1, 1), place = uniform(-2, 3);
     const double bend = n % 2 == 0 ? uniform(-0.02, 0.02) : 0, slope = uniform(-1, 1);
-    const double wave = n % 3 == 0 ? 2 * 3.14159265 / uniform(2.5, 9) : 0, phase = uniform(0, 7);
+    const double wave = n % 3 == 0 ? 2 * 3.14159265 / uniform(2.25, 9) : 0, phase = uniform(0, 7);
     const auto f = [&](double t) {
       if (wave > 0) return std::sin(wave * t + phase);
       const double broken = n % 7 == 0 ? (t < place ? 0.0 : 1.0) : std::fabs(t - place);
