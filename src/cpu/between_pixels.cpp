@@ -17,8 +17,6 @@ namespace {
 constexpr int largest_stride = 16;
 /// From one side of the image to the other, of pixels of the first level.
 constexpr int least_cells = 8;
-/// Of the distance at which rays show all that is between them.
-constexpr double most_of_step = 0.9;
 /// At smaller tolerances few pixels pass, and those that they are taken from cost more.
 constexpr double least_tolerance = 4e-4;
 /// What is tried of a level: every so-manieth pixel each way. Less than that share of them, and
@@ -49,9 +47,10 @@ static_assert(shares_of(2).in_between < shares_of(1).in_between &&
 /// alike is in the differences that stand for the cubic's error, many times over.
 constexpr double most_of_rays = 2.5e-3;
 
-/// Whether rays so many pixels apart show all that is between them; `waves`: 1 / the longest step.
+/// Whether rays so many pixels apart show all that is between them; `waves`: 1 / the longest step
+/// from ray to ray.
 bool are_near(int pixels, double voxels_between_pixels, double waves) noexcept {
-  return pixels * voxels_between_pixels * waves <= most_of_step;
+  return pixels * voxels_between_pixels * waves <= 1;
 }
 
 /// Pixels on `Columns` by `Rows` places of a lattice, one or four: the cubic through them, and the

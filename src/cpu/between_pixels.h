@@ -23,9 +23,8 @@ namespace pellucid {
 /// pixels of the level before along the axis, or from that of both axes. It is off by
 ///
 ///   what these four may be off by, in the mean weighted as by the cubic, but not less than what
-///   any
-///     one of them makes of it: errors that are alike, or waves from pixel to pixel, or random, are
-///     no larger between pixels;
+///     any one of them makes of it: errors that are alike, or waves from pixel to pixel, or random,
+///     are no larger between pixels;
 ///   what the cubic errs, for which stand fourth differences of the pixels nearby, so many times
 ///     that it holds for a kink between any two of them;
 ///   what trilinear data do from cell to cell and rays beside each other do not have in common
@@ -72,7 +71,8 @@ class BetweenPixels {
     bool known = false;
     double inherited = 0, cubic = 0, uneven = 0;
   };
-  /// Makes the pixel of a new result, but for its error; not where the cubic alone errs by more than `most`.
+  /// Makes the pixel of a new result, but for its error; not where the cubic alone errs by more
+  /// than `most`.
   Cost look(int column, int row, int stride, double most, RayResult& result) const noexcept;
 
   std::size_t index(int column, int row) const noexcept {

@@ -48,9 +48,6 @@ int sampled_step_levels(const TransferTables& transfer, double share_throughout)
 /// however much shorter for being seen at a grazing angle; CubicErrors hold for 2.25 pixels of the
 /// lattice a wave and more.
 constexpr double most_along_face = 3 / 2.25;
-/// How far apart rays may be that go through smooth blocks, in longest steps (BetweenPixels).
-constexpr double most_across = 0.9;
-
 /// Of the faces at which a ray enters the box and leaves it, how much the more slanted one faces
 /// it: the cosine to its normal, in cells. Infinite where it does not meet any.
 double facing(const PellucidRay& ray, const double (&least)[3], const double (&most)[3]) {
@@ -158,8 +155,9 @@ void PacketTracer::trace(const Ray<double>* rays, int count, double share, bool 
     RayResult& to = results[inside.of[i]];
     read_result(found[i], to);
     to.unevenness = found[i].unevenness;
-    const double near = most_along_face / most_across * facing(inside.ray[i], least_, most_);
-    to.longest_step = found[i].longest_step * static_cast<float>(std::min(near, 1.0));
+    const double apart =
+        std::min(rays_apart, most_along_face * facing(inside.ray[i], least_, most_));
+    to.longest_step = found[i].longest_step * static_cast<float>(apart);
   }
   if (!depth) return;
   volume_.visit([&](const auto& grid) {

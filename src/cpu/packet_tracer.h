@@ -43,9 +43,14 @@ class PacketTracer {
              RayResult* results) const;
   /// Whether smooth blocks are sampled.
   bool goes_in_steps() const noexcept { return smooth_.longest_step > 0; }
+  /// RayResult::longest_step of no ray is longer.
+  double most_between_rays() const noexcept { return rays_apart * smooth_.longest_step; }
 
  private:
   using Kernel = void (*)(const PellucidPacketJob*);
+
+  /// How far apart rays through smooth blocks show all that is between them, in longest steps.
+  static constexpr double rays_apart = 0.9;
 
   PacketTracer(const Volume& volume, const ClassifiedBlocks& blocks, const SmoothBlocks& smooth,
                const TransferTables& transfer, const RayTolerance& wanted, Kernel kernel);

@@ -98,7 +98,7 @@ std::optional<RayTracer::Surroundings> UnivariateTracer::surroundings() const {
   if (!packets_ || !packets_->goes_in_steps() || depth_ || volume_.statistics().nan > 0) {
     return std::nullopt;
   }
-  return Surroundings{volume_, *blocks_, block_classes_.smooth().longest_step};
+  return Surroundings{volume_, *blocks_, packets_->most_between_rays()};
 }
 
 std::vector<RayResult> UnivariateTracer::trace_in_packets(const std::vector<Ray<double>>& rays,
