@@ -123,9 +123,12 @@ GaussianPackets::GaussianPackets(const Channels& channels, std::vector<SteppedGa
   job_.mixture = &mixture_;
 }
 
-void GaussianPackets::trace(const std::vector<PellucidRay>& rays, bool depth,
-                            PellucidRayResult* results) const {
-  pellucid::trace(kernel_, job_, rays, depth, results);
+void GaussianPackets::trace(const std::vector<PellucidRay>& rays, double share, const float* waves,
+                            bool depth, PellucidRayResult* results) const {
+  PellucidGaussianPacketJob job = job_;
+  job.grid_and_rays.tolerance *= share;
+  job.waves = waves;
+  pellucid::trace(kernel_, job, rays, depth, results);
 }
 
 }  // namespace pellucid

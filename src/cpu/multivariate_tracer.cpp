@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <optional>
 #include <utility>
 
@@ -13,6 +14,7 @@
 #include "pellucid/render/sample_ray.h"
 #include "pellucid/scene/multivariate_blocks_storage.h"
 #include "ray_tracer.h"
+#include "rays_apart.h"
 #include "sampling_rule.h"
 #include "threads.h"
 
@@ -71,16 +73,19 @@ class MultivariateTracer : public RayTracer {
       steps_ = GaussianPackets::make(channels_, transfer_function_, *blocks_, grid_, wanted_,
                                      negligible_extinction(task), set, parallel_for(task.threads));
     }
+    if (steps_ && !depth_ && !has_vacuum()) {
+      storage_.find_smooth(channels_, transfer_function_, parallel_for(task.threads));
+      rays_apart_.emplace(blocks_->records);
+    }
   }
 
-  std::vector<RayResult> trace(const std::vector<Ray<double>>& world,
-                               double /*share*/) const override {
+  std::vector<RayResult> trace(const std::vector<Ray<double>>& world, double share) const override {
     std::vector<Ray<double>> rays;
     rays.reserve(world.size());
     for (const Ray<double>& ray : world) {
       rays.push_back(channels_.grid().grid_from_world().ray(ray));
     }
-    if (kernel_ != nullptr) return trace_in_lanes(rays);
+    if (kernel_ != nullptr) return trace_in_lanes(rays, share);
     std::vector<RayResult> results;
     if (sampler_) {
       results.resize(rays.size());
@@ -92,7 +97,19 @@ class MultivariateTracer : public RayTracer {
     return results;
   }
 
+  std::optional<Surroundings> surroundings() const override {
+    const double longest_step = storage_.smooth().longest_step;
+    if (!(longest_step > 0)) return std::nullopt;
+    return Surroundings{
+        channels_.grid(), {blocks_->records, blocks_->classes}, RaysApart::most * longest_step};
+  }
+
  private:
+  bool has_vacuum() const {
+    return std::any_of(channels_.begin(), channels_.end(),
+                       [](const Channel& channel) { return channel.volume->statistics().nan > 0; });
+  }
+
   /// Steps cost less the further they may go: as far as primitives stand still, and as the error
   /// lets them that the data's bends make. Cells cost the same. Where both take as long was
   /// measured (docs/performance.md).
@@ -103,12 +120,12 @@ class MultivariateTracer : public RayTracer {
                : GaussianMarch::cells;
   }
 
-  std::vector<RayResult> trace_in_lanes(const std::vector<Ray<double>>& rays) const {
-    std::vector<RayResult> results(rays.size(), nothing_met());
+  std::vector<RayResult> trace_in_lanes(const std::vector<Ray<double>>& rays, double share) const {
+    std::vector<RayResult> results(rays.size(), missing_ray());
     const PacketRays inside(channels_.grid(), rays.data(), static_cast<int>(rays.size()));
     std::vector<PellucidRayResult> found(inside.ray.size());
     if (steps_) {
-      steps_->trace(inside.ray, depth_, found.data());
+      steps_->trace(inside.ray, share, storage_.smooth().waves, depth_, found.data());
       integrate_what_is_left(inside.ray, found);
     } else {
       integrate(inside.ray, found);
@@ -117,6 +134,9 @@ class MultivariateTracer : public RayTracer {
       const auto n = static_cast<std::size_t>(inside.of[i]);
       read_result(found[i], results[n]);
       std::swap(results[n].spans.closed, results[n].spans.lines);
+      results[n].unevenness = found[i].unevenness;
+      results[n].longest_step =
+          rays_apart_ ? found[i].longest_step * (*rays_apart_)(inside.ray[i]) : 0;
       if (depth_) {
         results[n].half_opacity_depth = find_multivariate_half_opacity(
             grid_, &*blocks_, rays[n], transfer_, transfer_function_.largest_extinction(), wanted_,
@@ -148,7 +168,7 @@ class MultivariateTracer : public RayTracer {
     kernel_(&job);
   }
 
-  /// Those of the rays that steps gave up.
+  /// Those of the rays that steps gave up, of which nothing is known for others beside them.
   void integrate_what_is_left(const std::vector<PellucidRay>& rays,
                               std::vector<PellucidRayResult>& found) const {
     std::vector<PellucidRay> left;
@@ -160,7 +180,9 @@ class MultivariateTracer : public RayTracer {
     integrate(left, alone);
     auto next = alone.begin();
     for (PellucidRayResult& result : found) {
-      if (std::isinf(result.error)) result = *next++;
+      if (!std::isinf(result.error)) continue;
+      result = *next++;
+      result.unevenness = std::numeric_limits<float>::infinity();
     }
   }
 
@@ -193,6 +215,7 @@ class MultivariateTracer : public RayTracer {
   Kernel kernel_ = nullptr;                       ///< null: rays go one by one
   std::unique_ptr<const CellPackets> cells_;      ///< null: what it does the kernel does
   std::unique_ptr<const GaussianPackets> steps_;  ///< null: all rays go cell by cell
+  std::optional<RaysApart> rays_apart_;           ///< none: pixels are not interpolated
   std::unique_ptr<const MultivariatePacketSampler> sampler_;  ///< null: another method, or that
 };
 

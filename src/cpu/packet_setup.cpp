@@ -94,6 +94,13 @@ void read_result(const PellucidRayResult& from, RayResult& to) {
   to.spans.in_double = static_cast<std::uint64_t>(from.in_double);
 }
 
+RayResult missing_ray() {
+  RayResult missing = nothing_met();
+  missing.unevenness = 0;
+  missing.longest_step = std::numeric_limits<float>::infinity();
+  return missing;
+}
+
 PacketRays::PacketRays(const Volume& volume, const Ray<double>* rays, int count) {
   volume.visit([&](const auto& grid) {
     for (int i = 0; i < count; ++i) {

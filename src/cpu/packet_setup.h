@@ -61,6 +61,10 @@ void set_grid(const Volume& volume, PellucidPacketJob& job);
 /// What a packet found of a ray.
 void read_result(const PellucidRayResult& from, RayResult& to);
 
+/// Of a ray that misses the grid's box: so do those beside it, but for the box's edges, and what is
+/// beside these is no pixel to interpolate (ScreenMask).
+RayResult missing_ray();
+
 /// Those of the rays that meet the grid's box, and which of them they are.
 struct PacketRays {
   std::vector<PellucidRay> ray;

@@ -43,34 +43,6 @@ int sampled_step_levels(const TransferTables& transfer, double share_throughout)
   return transfer.wide.count > 32 ? most_sampled_step_levels : quarter;
 }
 
-/// How far apart on the box's faces rays may meet them, in longest steps: three of these are a wave
-/// of the data. There rays begin and end, so that waves along a face are waves of the picture,
-/// however much shorter for being seen at a grazing angle; CubicErrors hold for 2.25 pixels of the
-/// lattice a wave and more.
-constexpr double most_along_face = 3 / 2.25;
-/// Of the faces at which a ray enters the box and leaves it, how much the more slanted one faces
-/// it: the cosine to its normal, in cells. Infinite where it does not meet any.
-double facing(const PellucidRay& ray, const double (&least)[3], const double (&most)[3]) {
-  double entry = 0, exit = std::numeric_limits<double>::infinity(), square = 0;
-  double of_entry = std::numeric_limits<double>::infinity(), of_exit = of_entry;
-  for (int a = 0; a < 3; ++a) {
-    const double d = ray.direction[a];
-    square += d * d;
-    if (d == 0) continue;
-    const double in = ((d > 0 ? least[a] : most[a]) - ray.origin[a]) / d,
-                 out = ((d > 0 ? most[a] : least[a]) - ray.origin[a]) / d;
-    if (in > entry) {
-      entry = in;
-      of_entry = std::fabs(d);
-    }
-    if (out < exit) {
-      exit = out;
-      of_exit = std::fabs(d);
-    }
-  }
-  return std::min(of_entry, of_exit) / std::sqrt(square);
-}
-
 }  // namespace
 
 StepLimits PacketTracer::step_limits(const Volume& volume, const TransferTables& transfer,
@@ -103,16 +75,13 @@ PacketTracer::PacketTracer(const Volume& volume, const ClassifiedBlocks& blocks,
                            const SmoothBlocks& smooth, const TransferTables& transfer,
                            const RayTolerance& wanted, Kernel kernel)
     : volume_(volume),
+      rays_apart_(blocks.records),
       transfer_(transfer),
       wanted_(wanted),
       binned_(transfer.wide, transfer.merged, transfer.merged_count, largest_value(volume)),
       samples_(transfer.single),
       kernel_(kernel) {
   set_grid(volume, job_);
-  for (int a = 0; a < 3; ++a) {
-    least_[a] = blocks.records.axis[a].plane(0);
-    most_[a] = blocks.records.axis[a].plane(blocks.records.axis[a].cells());
-  }
   job_.classes = blocks.classes.block;
   job_.records = blocks.records.record;
   job_.transfer = &binned_.view();
@@ -136,10 +105,7 @@ PacketTracer::PacketTracer(const Volume& volume, const ClassifiedBlocks& blocks,
 
 void PacketTracer::trace(const Ray<double>* rays, int count, double share, bool depth,
                          RayResult* results) const {
-  RayResult clear = nothing_met();
-  clear.unevenness = 0;
-  clear.longest_step = std::numeric_limits<float>::infinity();
-  std::fill(results, results + count, clear);
+  std::fill(results, results + count, missing_ray());
   const PacketRays inside(volume_, rays, count);
   std::vector<PellucidRayResult> found(inside.ray.size());
   PellucidPacketJob job = job_;
@@ -155,9 +121,7 @@ void PacketTracer::trace(const Ray<double>* rays, int count, double share, bool 
     RayResult& to = results[inside.of[i]];
     read_result(found[i], to);
     to.unevenness = found[i].unevenness;
-    const double apart =
-        std::min(rays_apart, most_along_face * facing(inside.ray[i], least_, most_));
-    to.longest_step = found[i].longest_step * static_cast<float>(apart);
+    to.longest_step = found[i].longest_step * rays_apart_(inside.ray[i]);
   }
   if (!depth) return;
   volume_.visit([&](const auto& grid) {

@@ -11,6 +11,7 @@
 #include "pellucid/scene/volume.h"
 #include "pellucid/simd/instruction_set.h"
 #include "pellucid/traverse/block_classes.h"
+#include "rays_apart.h"
 #include "sampler_records.h"
 
 namespace pellucid {
@@ -44,13 +45,10 @@ class PacketTracer {
   /// Whether smooth blocks are sampled.
   bool goes_in_steps() const noexcept { return smooth_.longest_step > 0; }
   /// RayResult::longest_step of no ray is longer.
-  double most_between_rays() const noexcept { return rays_apart * smooth_.longest_step; }
+  double most_between_rays() const noexcept { return RaysApart::most * smooth_.longest_step; }
 
  private:
   using Kernel = void (*)(const PellucidPacketJob*);
-
-  /// How far apart rays through smooth blocks show all that is between them, in longest steps.
-  static constexpr double rays_apart = 0.9;
 
   PacketTracer(const Volume& volume, const ClassifiedBlocks& blocks, const SmoothBlocks& smooth,
                const TransferTables& transfer, const RayTolerance& wanted, Kernel kernel);
@@ -58,7 +56,7 @@ class PacketTracer {
                              PellucidCellResult* result);
 
   const Volume& volume_;
-  double least_[3], most_[3];  ///< of its box, grid coordinates
+  RaysApart rays_apart_;
   const TransferTables& transfer_;
   const RayTolerance& wanted_;
   BinnedTransferStorage binned_;

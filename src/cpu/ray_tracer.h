@@ -29,8 +29,8 @@ class RayTracer {
 
   /// What there is to find out between rays.
   struct Surroundings {
-    const Volume& volume;
-    const ClassifiedBlocks& blocks;
+    const Volume& volume;  ///< whose grid it is
+    ClassifiedBlocks blocks;
     double longest_step;  ///< voxels: how far apart rays may be at most
   };
   /// None: nothing is known of what is between rays.

@@ -116,9 +116,11 @@ void ScreenMask::mark_edges(const CameraFrame<double>& camera,
       for (double i = 0; i <= parts; ++i) {
         const double t = parts > 0 ? i / parts : 0;
         const double x = from.x + t * (to.x - from.x), y = from.y + t * (to.y - from.y);
-        // No place of the edge is further from all of these: it may just touch a square.
+        // No place of the edge is further from all of these: it may just touch a square. And what
+        // is interpolated in a square lies between its first pixel and the next square's.
         constexpr double near = 1.0 / 16;
-        mark(x - near, y - near, x + near, y + near, 0);
+        const double pixel = 1.0 / square_;
+        mark(x - near - pixel, y - near - pixel, x + near, y + near, 0);
       }
     }
   }

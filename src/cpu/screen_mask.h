@@ -18,9 +18,10 @@ double farthest_depth(const CameraFrame<double>& camera, const Volume& volume,
 
 /// Where on the screen rays may be unlike those beside them: where one goes through a block that is
 /// gone through cell by cell, or past an edge of the volume's box. In squares of pixels: rays
-/// through one that is not marked enter the box by one face and leave it by one, and with those
-/// through the squares around have all between them in blocks that are smooth, of one material, or
-/// empty. An edge of the box is a kink of the picture, or a step, as CubicErrors hold for.
+/// through one that is not marked, and through the first pixels of the next ones, enter the box by
+/// one face and leave it by one, and with those through the squares around have all between them in
+/// blocks that are smooth, of one material, or empty. An edge of the box is a kink of the picture,
+/// or a step, as CubicErrors hold for.
 class ScreenMask {
  public:
   /// `square`: pixels, a power of two.

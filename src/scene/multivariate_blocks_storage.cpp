@@ -8,6 +8,7 @@
 #include <type_traits>
 
 #include "block_levels.h"
+#include "channel_smoothness.h"
 #include "pellucid/transfer/gaussian_bound.h"
 
 namespace pellucid {
@@ -103,6 +104,13 @@ MultivariateBlocksStorage::MultivariateBlocksStorage(
   });
   find_block_levels({records_.axis[0].cells(), records_.axis[1].cells(), records_.axis[2].cells()},
                     BlockKind::skip, run, classes_.data());
+}
+
+void MultivariateBlocksStorage::find_smooth(const Channels& channels,
+                                            const MultivariateTransferFunction& transfer_function,
+                                            const ParallelFor& parallel) {
+  longest_step_ = find_smooth_channels(channels, transfer_function, primitives_.data(), negligible_,
+                                       or_serial(parallel), classes_.data(), waves_);
 }
 
 MultichannelGrid multichannel_grid(const Channels& channels) {

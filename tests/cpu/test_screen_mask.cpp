@@ -150,7 +150,11 @@ TEST_F(ScreenMasks, LeaveSquaresOutAroundWhichAllRaysAreAlike) {
           for (int i = left; i <= right; ++i) {
             ASSERT_FALSE(in_cells[at(i, j)])
                 << i << ", " << j << " beside " << column << ", " << row;
-            if (i / square != column / square || j / square != row / square) continue;
+            const auto is_beside = [&](int at_i, int at_column) {
+              const int first = at_column / square * square;
+              return at_i >= first && at_i <= first + square;
+            };
+            if (!is_beside(i, column) || !is_beside(j, row)) continue;
             ASSERT_EQ(faces[at(i, j)], faces[at(column, row)])
                 << i << ", " << j << " with " << column << ", " << row;
           }

@@ -9,7 +9,9 @@
 #include <functional>
 #include <limits>
 #include <memory>
+#include <numbers>
 #include <random>
+#include <set>
 #include <thread>
 #include <vector>
 
@@ -38,6 +40,113 @@ class Maker {
 };
 
 constexpr std::array<int, 3> size{29, 18, 12};
+
+using Field = std::function<double(double, double, double)>;
+
+Channel smooth_channel(const std::array<int, 3>& dimensions, const Field& f) {
+  Volume::Description d;
+  d.dimensions = dimensions;
+  std::vector<float> data;
+  for (int k = 0; k < dimensions[2]; ++k) {
+    for (int j = 0; j < dimensions[1]; ++j) {
+      for (int i = 0; i < dimensions[0]; ++i) data.push_back(static_cast<float>(f(i, j, k)));
+    }
+  }
+  return {"", "", std::make_shared<const Volume>(d, VolumeData(data))};
+}
+
+/// The longest steps of blocks, the least one and the longest, of fields behind one
+/// Gaussian of a width over the first of them; and which kinds there are among the blocks.
+struct StepsBetween {
+  double least = 0, most = 0;
+  std::set<BlockKind> kinds;
+};
+
+StepsBetween steps_between(const std::vector<Field>& fields, double width,
+                           const std::array<int, 3>& dimensions = {65, 65, 65}) {
+  std::vector<Channel> all;
+  for (const Field& f : fields) {
+    all.push_back(smooth_channel(dimensions, f));
+    all.back().name = std::to_string(all.size());
+  }
+  const int count = static_cast<int>(all.size());
+  const Channels channels(std::move(all));
+  GaussianPrimitive p;
+  p.channels = {0};
+  p.center = {0.5};
+  p.matrix = matrix_of_widths({width});
+  p.extinction = 1;
+  const MultivariateTransferFunction function(count, {p});
+  MultivariateBlocksStorage storage(channels, function, 1e-5);
+  EXPECT_EQ(storage.smooth().longest_step, 0) << "nothing is known yet";
+  storage.find_smooth(channels, function);
+  const MultivariateBlocks blocks = storage.view();
+  StepsBetween steps{0, storage.smooth().longest_step, {}};
+  float waves = 0;
+  for (int b = 0; b < blocks.records.count(); ++b) {
+    steps.kinds.insert(blocks.classes[b].kind);
+    if (steps.most > 0) waves = std::max(waves, storage.smooth().waves[b]);
+  }
+  if (steps.most > 0) steps.least = 1 / static_cast<double>(waves);
+  return steps;
+}
+
+Field wave(double length, double noise = 0) {
+  return [=](double x, double y, double z) {
+    const double wild = std::sin(12.9898 * x + 78.233 * y + 37.719 * z) * 43758.5453;
+    return 0.5 + 0.5 * std::sin(2 * std::numbers::pi / length * (x + 0.3 * y - 0.2 * z)) +
+           noise * (wild - std::floor(wild));
+  };
+}
+Field ramp(double slope, const std::array<double, 3>& along) {
+  return [=](double x, double y, double z) {
+    return 0.5 + slope * (along[0] * (x - 32) + along[1] * (y - 32) + along[2] * (z - 32));
+  };
+}
+
+TEST(SmoothChannelsOfBlocks, AreThoseOfLongWaves) {
+  const StepsBetween steps = steps_between({wave(60)}, 3);
+  EXPECT_GT(steps.least, 3.5);
+  EXPECT_EQ(steps.kinds, std::set{BlockKind::smooth});
+  EXPECT_EQ(steps_between({wave(6)}, 3).most, 0);
+  EXPECT_EQ(steps_between({wave(60, 0.1)}, 3).most, 0) << "noise";
+}
+
+TEST(SmoothChannelsOfBlocks, HaveStepsNoLongerThanAGaussianIsWide) {
+  for (const double width : {0.01, 0.04, 0.1}) {
+    SCOPED_TRACE(width);
+    // Along an axis what bounds the slope is the slope; blocks at its end may be thin.
+    for (const int points : {65, 66, 70}) {
+      const StepsBetween along =
+          steps_between({ramp(1.0 / 20, {0, 1, 0})}, width, {points, points, points});
+      EXPECT_NEAR(along.least, std::min(1.6 * width * 20, 4.0), 1e-2);
+      EXPECT_NEAR(along.most, std::min(1.6 * width * 20, 4.0), 1e-2);
+    }
+    // Along a diagonal it is up to √3 of it.
+    const double slope = std::sqrt(3.0) / 40;
+    const StepsBetween aside = steps_between({ramp(1.0 / 40, {1, -1, 1})}, width);
+    EXPECT_LE(aside.most, 1.6 * width / slope * (1 + 1e-2));
+    EXPECT_GE(aside.least, std::min(1.6 * width / slope / std::sqrt(3.0), 4.0) * (1 - 1e-2));
+  }
+  // Where data turn back in the tail of one that reaches far.
+  const Field valley = [](double x, double, double) { return 0.9 + 1e-3 * (x - 32) * (x - 32); };
+  const StepsBetween turned = steps_between({valley}, 0.15);
+  EXPECT_GT(turned.most, 0);
+  EXPECT_LT(turned.most, 1.6 / std::sqrt(3.39 * 2e-3 / 0.15) * (1 + 1e-2));
+}
+
+TEST(SmoothChannelsOfBlocks, AreLookedAtWhereAPrimitiveDoes) {
+  EXPECT_GT(steps_between({wave(60), wave(5, 0.3)}, 3).least, 3.5);
+  const Field hole = [](double x, double y, double z) {
+    return length(Vec3<double>{x, y, z} - Vec3<double>{50, 50, 50}) < 3 ? nan : wave(60)(x, y, z);
+  };
+  EXPECT_EQ(steps_between({hole}, 3).kinds, (std::set{BlockKind::cells, BlockKind::smooth}));
+  // Blocks in which it is not near are skipped, whatever they are like.
+  const Field half = [](double x, double y, double z) {
+    return x < 32 ? wave(60)(x, y, z) : 1e3 + wave(5, 0.3)(x, y, z);
+  };
+  EXPECT_TRUE(steps_between({half}, 3).kinds.count(BlockKind::skip));
+}
 
 template <class Value, class F>
 Channel channel(const std::string& name, const F& f) {

@@ -43,6 +43,21 @@ T charged_for_bend(T cells) noexcept {
   return mean_square_of_bend(cells) + T(0.25f) * mean_square_of_bends(cells);
 }
 
+/// What trilinear data do within cells, which rays beside each other do not have in common: of a
+/// ray's picture, the variance by the data's bends along one axis, of which `speed` planes are met
+/// by length. `inside`: their mean square over the length `seen`, times what they make of the
+/// extinction; `at_ends`: the same where the ray begins and ends.
+///
+/// Over a whole cell what trilinear data lie off the curve that they follow comes to nothing, up to
+/// how much the bends change within it. What is left is of the cells where a ray begins and ends,
+/// and all of it where it runs along the cells: at most the root of 1/720 of a bend.
+template <class T>
+T variance_between_rays(T at_ends, T inside, T seen, T speed) noexcept {
+  constexpr float of_ends = 1.5e-4f, of_cell = 1e-6f, along = 1.0f / 720;
+  const T across = T(of_ends) * at_ends + T(of_cell) * inside * (speed * seen);
+  return min(across / max(speed * speed, T(1e-12f)), T(along) * inside * (seen * seen));
+}
+
 /// Errors of a ray's spans that have nothing to do with each other: their squares add up, and the
 /// pixel is charged with so many times the root of the sum. An estimate, not a bound.
 ///

@@ -29,12 +29,13 @@ class GaussianMarch {
   /// Lanes have no rays yet.
   GaussianMarch(const PacketGrid<void>& grid, const MultichannelGrid& fields,
                 const SteppedMixture& mixture, const PrimitiveSet* primitives,
-                const BlockVariation* variation) noexcept
+                const BlockVariation* variation, const float* waves) noexcept
       : grid_(grid),
         fields_(fields),
         mixture_(mixture),
         primitives_(primitives),
         variation_(reinterpret_cast<const std::int32_t*>(variation)),
+        waves_(waves),
         rays_(grid, nullptr, 0),
         samples_(fields, grid) {
     at = D(0);
@@ -54,6 +55,12 @@ class GaussianMarch {
     step_ = select(lanes, longest_, step_);
     at = select(lanes, D(0), at);
     known_ = known_ & !lanes;
+    seen_ = select(lanes, F(0), seen_);
+    shortest_wave_ = select(lanes, F(0), shortest_wave_);
+    for (int a = 0; a < 3; ++a) {
+      bends_[a] = select(lanes, F(0), bends_[a]);
+      bends_at_ends_[a] = select(lanes, F(0), bends_at_ends_[a]);
+    }
     alive = alive | (lanes & (rays_.end > D(0)));
   }
 
@@ -152,6 +159,32 @@ class GaussianMarch {
     const F grown = select(s.empty, F(2), min(change, s.ends.longer()));
     step_ = select(lanes & !s.last, min(max(grown, leap) * s.step, longest_), step_);
   }
+
+  /// Notes what rays beside these have to do with the steps that are to be taken.
+  void note(M lanes, const Look& s, F transparency) noexcept {
+    if (waves_ == nullptr) return;
+    const F weight = select(lanes, transparency * transparency, F(0));
+    const F at_ends = select((seen_ > F(0)) & !s.last, F(0), weight);
+    seen_ += weight * s.length;
+    for (int a = 0; a < 3; ++a) {
+      const F square = s.ends.bending[a] * s.ends.bending[a];
+      bends_[a] += (weight * s.length) * square;
+      bends_at_ends_[a] += at_ends * square;
+    }
+    const I block = rays_.block_at(at + convert<double>(F(0.5f) * s.length));
+    const F waves = gather(waves_, select(lanes, block, I(0)));
+    shortest_wave_ = max(shortest_wave_, select(lanes, waves, F(0)));
+  }
+  /// RayResult::unevenness and longest_step of what was noted, in units of the largest color.
+  F unevenness() const noexcept {
+    F variance(0);
+    for (int a = 0; a < 3; ++a) {
+      variance += variance_between_rays(bends_at_ends_[a], bends_[a] / max(seen_, F(1e-30f)), seen_,
+                                        abs(direction_[a]));
+    }
+    return sqrt(variance);
+  }
+  F longest_step_between() const noexcept { return F(1) / shortest_wave_; }
 
   /// Has these lanes look again, in finer steps; from the first in which something matters. Those
   /// that are returned cannot.
@@ -309,6 +342,7 @@ class GaussianMarch {
   const SteppedMixture& mixture_;
   const PrimitiveSet* primitives_;
   const std::int32_t* variation_;
+  const float* waves_;  ///< of blocks; null: nothing is noted
   RaysInBlocks<void, N> rays_;
   MultichannelSamples<N> samples_;
   F direction_[3];            ///< cells by world length
@@ -319,6 +353,10 @@ class GaussianMarch {
   LanePrimitives<N> near_;    ///< on the way of four steps
   StepEnd<F> front_{};
   DatumInCell<F> front_value_[most_channels];
+  // What was noted: length, by the square of what is seen of it, and likewise squares of
+  // ResolvedGaussians::bending over length, and those where the rays begin and end; and the largest
+  // of 1 / the longest step.
+  F seen_, bends_[3], bends_at_ends_[3], shortest_wave_;
 };
 
 }  // namespace pellucid

@@ -29,7 +29,7 @@ class GaussianPacket {
         march_(grid, *static_cast<const MultichannelGrid*>(job.grid),
                *static_cast<const SteppedMixture*>(job.mixture),
                static_cast<const PrimitiveSet*>(job.primitives),
-               static_cast<const BlockVariation*>(job.variation)),
+               static_cast<const BlockVariation*>(job.variation), job.waves),
         trace_(rays_.depth != 0),
         largest_color_(static_cast<float>(rays_.largest_color)) {
     for (int l = 0; l < N; ++l) {
@@ -85,6 +85,8 @@ class GaussianPacket {
     const SegmentResult<D> all = fold_.result();
     const D error = fold_.error(convert<double>(segments_)) +
                     D(rays_.largest_color) * min(D(job_.left_out) * march_.end(), D(1));
+    const F unevenness = largest_color_ * march_.unevenness(),
+            longest_step = march_.longest_step_between();
     double field[6][N];
     std::int32_t looks[N], skipped[N], taken[N];
     all.radiance.r.store(field[0]);
@@ -110,6 +112,8 @@ class GaussianPacket {
       r.skipped = skipped[l];
       r.strides = taken[l];
       r.proved = taken[l] == 0 ? 1 : 0;
+      r.unevenness = unevenness[l];
+      r.longest_step = longest_step[l];
       trace_.find_half(l, lane_ray_[l].begin, lane_ray_[l].end, r);
       ray_of_lane_[l] = -1;
     }
@@ -122,7 +126,10 @@ class GaussianPacket {
     looks_ += select(on, I(1), I(0));
     const M empty = on & look_.empty;
     F change(2);  // of the step's length, as its error would have it
-    if (any(empty)) march_.take(empty, look_, change);
+    if (any(empty)) {
+      march_.note(empty, look_, fold_.transparency());
+      march_.take(empty, look_, change);
+    }
     M rest = on & !empty;
     if (any(rest & look_.resolved)) rest = rest & !integrate(rest & look_.resolved, left, change);
     if (any(rest)) give_up(march_.retry(rest, look_, change));
@@ -156,6 +163,7 @@ class GaussianPacket {
     sampled_.pay(take, fold_.budget, variance, rounding, s.opacity, look_.length, left,
                  transparency);
     segments_ += select(take, I(1), I(0));
+    march_.note(take, look_, transparency);
     march_.take(take, look_, change);
     trace_.note(take, fold_);
     march_.alive = march_.alive & !fold_.cut_off(take);

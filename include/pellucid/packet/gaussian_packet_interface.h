@@ -15,8 +15,10 @@ struct PellucidGaussianPacketJob {
   const void* primitives;  ///< PrimitiveSet per block: those that matter there
   const void* variation;   ///< BlockVariation per block and channel
   const void* mixture;     ///< SteppedMixture
-  double left_out;         ///< of the extinction, anywhere, at most
-  std::int32_t proved;     ///< whether only what is proved counts; of cells
+  /// SmoothChannels::waves; null: nothing is to be found out of rays beside each other. Of steps.
+  const float* waves;
+  double left_out;      ///< of the extinction, anywhere, at most
+  std::int32_t proved;  ///< whether only what is proved counts; of cells
 };
 
 void pellucid_integrate_gaussian_packets_sse4(const PellucidGaussianPacketJob* job);

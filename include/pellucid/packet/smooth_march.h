@@ -152,16 +152,10 @@ class SmoothMarch {
 
   /// RayResult::unevenness, of what was taken or refused.
   F unevenness() const noexcept {
-    // Over a whole cell what trilinear data lie off the curve that they follow comes to nothing, up
-    // to how much the bends change within it. What is left is of the cells where a ray begins and
-    // ends, and all of it where it runs along the cells: at most the root of 1/720 of a bend.
-    constexpr float of_ends = 1.5e-4f, of_cell = 1e-6f, along = 1.0f / 720;
-    const F all = max(seen_, F(tiny));
     F variance(0);
     for (int a = 0; a < 3; ++a) {
-      const F cells = abs(direction_in_float_[a]) * all;
-      const F across = (F(of_ends) + F(of_cell) * cells) / max(cells * cells, F(1e-12f));
-      variance += bends_[a] * all * min(across, F(along));
+      const F mean = bends_[a] / max(seen_, F(tiny));
+      variance += variance_between_rays(mean, mean, seen_, abs(direction_in_float_[a]));
     }
     return sqrt(variance);
   }

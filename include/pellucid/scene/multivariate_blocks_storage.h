@@ -11,7 +11,7 @@
 namespace pellucid {
 
 /// Makes and owns what a multivariate transfer function does in the blocks of its channels: once a
-/// frame, from the blocks' ranges alone. 12 bytes a block of 8³ cells.
+/// frame, from the blocks' ranges alone. 12 bytes a block of 8³ cells, 16 with what is smooth.
 class MultivariateBlocksStorage {
  public:
   MultivariateBlocksStorage() = default;
@@ -23,15 +23,23 @@ class MultivariateBlocksStorage {
                             const MultivariateTransferFunction& transfer_function,
                             double negligible, const ParallelFor& parallel = {});
 
+  /// Finds out which blocks are smooth, for the channels and the function that this was made of.
+  void find_smooth(const Channels& channels, const MultivariateTransferFunction& transfer_function,
+                   const ParallelFor& parallel = {});
+
   MultivariateBlocks view() const noexcept {
     return {records_, {classes_.data()}, primitives_.data(), negligible_};
   }
+  /// None is before find_smooth().
+  SmoothChannels smooth() const noexcept { return {waves_.data(), longest_step_}; }
 
  private:
   BlockRecords records_;
   std::vector<BlockClass> classes_;
   std::vector<PrimitiveSet> primitives_;
   double negligible_ = 0;
+  std::vector<float> waves_;
+  double longest_step_ = 0;
 };
 
 /// The fields of the channels as kernels see them. `channels` must outlive the view.

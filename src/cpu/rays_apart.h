@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "pellucid/packet/interface.h"
+#include "pellucid/traverse/block_records.h"
+
+namespace pellucid {
+
+/// How far rays through smooth blocks may be apart to show all that is between them, in the longest
+/// steps of these blocks.
+class RaysApart {
+ public:
+  /// At most.
+  static constexpr double most = 0.9;
+
+  /// Of rays through the box of these blocks.
+  explicit RaysApart(const BlockRecords& records) noexcept;
+
+  /// Beside this ray (grid coordinates).
+  float operator()(const PellucidRay& ray) const noexcept;
+
+ private:
+  double facing(const PellucidRay& ray) const noexcept;
+
+  double least_[3], most_[3];  ///< of the box, grid coordinates
+};
+
+}  // namespace pellucid
