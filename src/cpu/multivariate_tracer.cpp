@@ -124,8 +124,10 @@ class MultivariateTracer : public RayTracer {
     std::vector<RayResult> results(rays.size(), missing_ray());
     const PacketRays inside(channels_.grid(), rays.data(), static_cast<int>(rays.size()));
     std::vector<PellucidRayResult> found(inside.ray.size());
+    // Nothing is taken from rays that spend all of their tolerance.
+    const float* const waves = share < 1 ? storage_.smooth().waves : nullptr;
     if (steps_) {
-      steps_->trace(inside.ray, share, storage_.smooth().waves, depth_, found.data());
+      steps_->trace(inside.ray, share, waves, depth_, found.data());
       integrate_what_is_left(inside.ray, found);
     } else {
       integrate(inside.ray, found);
@@ -134,9 +136,11 @@ class MultivariateTracer : public RayTracer {
       const auto n = static_cast<std::size_t>(inside.of[i]);
       read_result(found[i], results[n]);
       std::swap(results[n].spans.closed, results[n].spans.lines);
-      results[n].unevenness = found[i].unevenness;
-      results[n].longest_step =
-          rays_apart_ ? found[i].longest_step * (*rays_apart_)(inside.ray[i]) : 0;
+      const RayResult unknown;
+      results[n].unevenness = waves != nullptr ? found[i].unevenness : unknown.unevenness;
+      results[n].longest_step = waves != nullptr
+                                    ? found[i].longest_step * (*rays_apart_)(inside.ray[i])
+                                    : unknown.longest_step;
       if (depth_) {
         results[n].half_opacity_depth = find_multivariate_half_opacity(
             grid_, &*blocks_, rays[n], transfer_, transfer_function_.largest_extinction(), wanted_,

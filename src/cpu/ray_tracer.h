@@ -23,7 +23,8 @@ class RayTracer {
   virtual ~RayTracer() = default;
 
   /// What the rays (in the world, directions of length 1) gather. Safe to call from any thread.
-  /// `share`: of the tolerance, what they may be off by; 1 but where surroundings() are known.
+  /// `share`: of the tolerance, what they may be off by; less than 1 where others are to be taken
+  /// from them, by what surroundings() tell.
   virtual std::vector<RayResult> trace(const std::vector<Ray<double>>& world,
                                        double share) const = 0;
 

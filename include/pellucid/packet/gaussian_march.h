@@ -163,13 +163,13 @@ class GaussianMarch {
   /// Notes what rays beside these have to do with the steps that are to be taken.
   void note(M lanes, const Look& s, F transparency) noexcept {
     if (waves_ == nullptr) return;
-    const F weight = select(lanes, transparency * transparency, F(0));
-    const F at_ends = select((seen_ > F(0)) & !s.last, F(0), weight);
-    seen_ += weight * s.length;
+    const M at_ends = lanes & (s.last | !(seen_ > F(0)));
+    const F length = transparency * transparency * s.length;
+    seen_ += select(lanes, length, F(0));
     for (int a = 0; a < 3; ++a) {
-      const F square = s.ends.bending[a] * s.ends.bending[a];
-      bends_[a] += (weight * s.length) * square;
-      bends_at_ends_[a] += at_ends * square;
+      const F bending = transparency * s.ends.bending[a];
+      bends_[a] += select(lanes, s.length * (bending * bending), F(0));
+      bends_at_ends_[a] += select(at_ends, bending * bending, F(0));
     }
     const I block = rays_.block_at(at + convert<double>(F(0.5f) * s.length));
     const F waves = gather(waves_, select(lanes, block, I(0)));
