@@ -13,23 +13,27 @@ Progress::Progress(const RenderOptions& options, const Image& image, const std::
   }
 }
 
-void Progress::finish_tile(const Tile& tile) {
+void Progress::finish_pixels(std::size_t count) {
+  done_ += count;
+  tell_what_is_new();
+}
+
+void Progress::finish_tile(const Tile& tile, std::size_t count) {
   if (options_.tile) {
     const std::lock_guard lock(finishing_);
     levels_[static_cast<std::size_t>(tile.level)].finished.push_back(tile);
   }
-  done_ += pixel_count(tile);
+  finish_pixels(count);
+}
+
+void Progress::tell_what_is_new() {
+  ++finished_;
   // Whoever was calling meanwhile looks again before it leaves, so that no tile is left behind.
-  while (!cancelled_ && told_ < done_) {
+  while (!cancelled_ && told_ < finished_) {
     const std::unique_lock lock(calling_, std::try_to_lock);
     if (!lock.owns_lock()) return;
     tell();
   }
-}
-
-void Progress::ask_whether_to_go_on() {
-  const std::unique_lock lock(calling_, std::try_to_lock);
-  if (lock.owns_lock()) tell_share();
 }
 
 void Progress::finish() {
@@ -37,16 +41,17 @@ void Progress::finish() {
 }
 
 void Progress::tell() {
-  const std::uint64_t done = done_;
-  if (cancelled_ || done <= told_) return;
+  const std::uint64_t finished = finished_, done = done_;
+  if (cancelled_ || finished <= told_) return;
   tell_tiles();
-  told_ = done;
-  tell_share();
+  told_ = finished;
+  tell_share(done);
 }
 
-void Progress::tell_share() {
-  if (cancelled_ || !options_.progress) return;
-  if (!options_.progress(static_cast<double>(told_) / static_cast<double>(total_))) {
+void Progress::tell_share(std::uint64_t done) {
+  if (cancelled_ || !options_.progress || done <= told_pixels_) return;
+  told_pixels_ = done;
+  if (!options_.progress(static_cast<double>(done) / static_cast<double>(total_))) {
     cancelled_ = true;
   }
 }

@@ -18,10 +18,10 @@ class Progress {
   /// All must outlive this. `tiles` are those of the frame.
   Progress(const RenderOptions& options, const Image& image, const std::vector<Tile>& tiles);
 
-  /// The pixels of the tile are final. Any thread.
-  void finish_tile(const Tile& tile);
-  /// Between tiles, for whoever would cancel. Any thread.
-  void ask_whether_to_go_on();
+  /// So many pixels more are final, of which no tile is to be told yet. Any thread.
+  void finish_pixels(std::size_t count);
+  /// All pixels of the tile are final, of which so many were not before. Any thread.
+  void finish_tile(const Tile& tile, std::size_t count);
   /// The last word, when all threads are done, in case one was calling when the last tile was.
   void finish();
   bool cancelled() const noexcept { return cancelled_; }
@@ -34,8 +34,9 @@ class Progress {
     std::vector<Tile> finished;
   };
 
+  void tell_what_is_new();
   void tell();
-  void tell_share();
+  void tell_share(std::uint64_t done);
   void tell_tiles();
   bool next_tile(Tile& tile);
 
@@ -43,9 +44,11 @@ class Progress {
   const Image& image_;
   std::uint64_t total_ = 0;  ///< pixels
   std::atomic<std::uint64_t> done_{0};
+  std::atomic<std::uint64_t> finished_{0};  ///< calls that finished something
   std::atomic<bool> cancelled_{false};
   std::mutex calling_;
-  std::atomic<std::uint64_t> told_{0};  ///< of done_; written under calling_
+  std::atomic<std::uint64_t> told_{0};  ///< of finished_; written under calling_
+  std::uint64_t told_pixels_ = 0;       ///< of done_; under calling_
   std::mutex finishing_;                ///< of the levels
   std::vector<Level> levels_;
 };

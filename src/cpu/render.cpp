@@ -4,7 +4,9 @@
 #include <chrono>
 #include <memory>
 #include <mutex>
+#include <span>
 #include <string>
+#include <vector>
 
 #include "between_pixels.h"
 #include "frame.h"
@@ -43,6 +45,13 @@ Image make_image(ImageSize size, const RenderOptions& options) {
   return image;
 }
 
+/// Of tiles from coarse to fine, those from the `first` on whose pixels are multiples of `stride`.
+std::span<const Tile> tiles_of(const std::vector<Tile>& tiles, std::size_t first, int stride) {
+  std::size_t end = first;
+  while (end < tiles.size() && 1 << tiles[end].level >= stride) ++end;
+  return std::span(tiles).subspan(first, end - first);
+}
+
 void render_tiles(const Frame& frame, const RenderOptions& options, Image& image,
                   RenderReport& report) {
   const std::vector<Tile> tiles = make_tiles(frame.scene.size, options.preview);
@@ -50,27 +59,37 @@ void render_tiles(const Frame& frame, const RenderOptions& options, Image& image
   std::mutex report_mutex;
   Progress progress(options, image, tiles);
   const std::unique_ptr<BetweenPixels> between = BetweenPixels::make(frame, view);
-  const auto render_level = [&](const std::vector<Tile>& some, int level, const auto& finish) {
+  const auto render_level = [&](std::span<const Tile> some, int level, const auto& finish) {
     take_in_turn(some.size(), report.threads, [&](std::size_t i) {
       RenderReport part;
-      render_tile(frame, some[i], level, between.get(), view, part);
+      const std::size_t pixels = render_tile(frame, some[i], level, between.get(), view, part);
       {
         const std::lock_guard lock(report_mutex);
         add(report, part);
       }
-      finish(some[i]);
+      finish(some[i], pixels);
       return !progress.cancelled();
     });
+    if (progress.cancelled()) throw Cancelled();
   };
+  const auto finish_tile = [&](const Tile& tile, std::size_t pixels) {
+    progress.finish_tile(tile, pixels);
+  };
+  std::size_t told = 0;
   if (between) {
     for (int level = between->stride(); level > 1 && between->goes_on(); level /= 2) {
-      render_level(make_lattice(frame.scene.size, level), level,
-                   [&](const Tile&) { progress.ask_whether_to_go_on(); });
-      if (progress.cancelled()) throw Cancelled();
+      const std::span<const Tile> of_preview = tiles_of(tiles, told, level);
+      if (1 << options.preview >= level) {
+        render_level(of_preview, level, finish_tile);
+        told += of_preview.size();
+      } else {
+        render_level(make_lattice(frame.scene.size, level), level,
+                     [&](const Tile&, std::size_t pixels) { progress.finish_pixels(pixels); });
+      }
       between->finish_level(level, report.threads);
     }
   }
-  render_level(tiles, 1, [&](const Tile& tile) { progress.finish_tile(tile); });
+  render_level(tiles_of(tiles, told, 1), 1, finish_tile);
   progress.finish();
   if (progress.cancelled()) throw Cancelled();
 }

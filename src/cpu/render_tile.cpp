@@ -2,6 +2,7 @@
 #include "render_tile.h"
 
 #include <algorithm>
+#include <cstddef>
 #include <limits>
 #include <vector>
 
@@ -62,17 +63,21 @@ std::vector<Place> places_of(const Tile& tile) {
 
 }  // namespace
 
-void render_tile(const Frame& frame, const Tile& tile, int level, BetweenPixels* between,
-                 const ImageView& image, RenderReport& report) {
+std::size_t render_tile(const Frame& frame, const Tile& tile, int level, BetweenPixels* between,
+                        const ImageView& image, RenderReport& report) {
   const int samples = frame.scene.samples, rays_of_pixel = samples * samples;
   const auto finish = [&](const Place& place, const RayResult& result) {
     store_pixel(frame, result, image.index(place.column, place.row), image, report);
     if (level > 1) between->keep(place.column, place.row, result);
   };
   std::vector<Place> places = places_of(tile);
+  if (between != nullptr) {
+    std::erase_if(places,
+                  [&](const Place& place) { return between->is_done(place.column, place.row); });
+  }
+  const std::size_t not_final_before = places.size();
   if (between != nullptr && level < between->stride()) {
     std::erase_if(places, [&](const Place& place) {
-      if (between->is_done(place.column, place.row)) return true;
       RayResult result;
       if (!between->find(place.column, place.row, level, result)) return false;
       finish(place, result);
@@ -101,6 +106,7 @@ void render_tile(const Frame& frame, const Tile& tile, int level, BetweenPixels*
     add_work(report, pixel);
     of_pixel += rays_of_pixel;
   }
+  return not_final_before;
 }
 
 }  // namespace pellucid

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
+
 #include "between_pixels.h"
 #include "frame.h"
 #include "pixel.h"
@@ -11,8 +13,8 @@ namespace pellucid {
 /// depends on nothing but the frame and its place: neither on the tile nor on the thread.
 ///
 /// With `between` these are pixels of its level `level`: all of the coarser ones must be done.
-/// Null: all are traced.
-void render_tile(const Frame& frame, const Tile& tile, int level, BetweenPixels* between,
-                 const ImageView& image, RenderReport& report);
+/// Null: all are traced. Gives how many of them were not final before.
+std::size_t render_tile(const Frame& frame, const Tile& tile, int level, BetweenPixels* between,
+                        const ImageView& image, RenderReport& report);
 
 }  // namespace pellucid

@@ -136,7 +136,7 @@ TEST(Progress, TellsOfACoarseLevelFirst) {
   ASSERT_EQ(tiles.size(), 4u + 12u);
   Progress progress(options, image, tiles);
   std::swap(tiles[3], tiles[15]);
-  for (const Tile& tile : tiles) progress.finish_tile(tile);
+  for (const Tile& tile : tiles) progress.finish_tile(tile, pixel_count(tile));
   progress.finish();
   EXPECT_EQ(levels.size(), tiles.size());
   EXPECT_TRUE(std::ranges::is_sorted(levels, std::greater<>()));

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
@@ -175,17 +176,31 @@ TEST_F(PixelsBetween, AreTheSameForAnyThreadsAndTiles) {
     EXPECT_EQ(report.rays, (report.pixels - report.pixels_between) * rays_of_pixel);
     EXPECT_LE(report.largest_error, 1e-2);
     options.threads = 3;
-    for (const int preview : {0, 1, 3}) {
+    for (const int preview : {0, 1, 2, 3, 5}) {
       options.preview = preview;
       std::uint64_t of_tiles = 0;
+      double share = 0;
       options.tile = [&](const TileResult& result) {
-        of_tiles += static_cast<std::uint64_t>(result.tile.columns * result.tile.rows);
+        const Tile& tile = result.tile;
+        for (int j = 0; j < tile.rows; ++j) {
+          for (int i = 0; i < tile.columns; ++i) {
+            const int column = tile.column + i * tile.stride, row = tile.row + j * tile.stride;
+            EXPECT_EQ(result.image.at(column, row), whole.at(column, row));
+            ++of_tiles;
+          }
+        }
+        return true;
+      };
+      options.progress = [&](double now) {
+        EXPECT_GT(now, share);
+        share = now;
         return true;
       };
       const Image other = render(scene, options);
       EXPECT_EQ(whole.pixels, other.pixels);
       EXPECT_EQ(whole.error, other.error);
       EXPECT_EQ(of_tiles, report.pixels);
+      EXPECT_EQ(share, 1);
     }
   }
 }
@@ -218,6 +233,47 @@ TEST_F(PixelsBetween, AreNoneWhereTheyAreNotWanted) {
   EXPECT_EQ(between(scene), 0u);
 }
 
+TEST_F(PixelsBetween, AreToldOfAsTheyAreDone) {
+  random_.seed(5);
+  Scene scene =
+      make_scene(make_volume({40, 36, 40}, waves(2, 20)), line(2, 40), {0.6, 0.5, -0.4}, true);
+  zoom(scene, 0.2);
+  scene.size = {200, 200};
+  RenderOptions options;
+  options.threads = 1;
+  std::vector<double> shares;
+  options.progress = [&](double share) {
+    shares.push_back(share);
+    return true;
+  };
+  RenderReport report;
+  render(scene, options, &report);
+  ASSERT_GT(report.pixels_between, report.pixels / 2);
+  // Most of the work is in the pixels that others are taken from.
+  const auto traced = static_cast<double>(report.rays) / static_cast<double>(report.pixels);
+  const auto before = std::ranges::count_if(shares, [&](double share) { return share < traced; });
+  EXPECT_GT(before, 5);
+  EXPECT_LT(shares.front(), 0.1);
+  EXPECT_EQ(shares.back(), 1);
+
+  // Those that a preview shows first are among them.
+  for (const int preview : {1, 2, 4}) {
+    options.preview = preview;
+    double share = 0;
+    options.progress = [&](double now) {
+      share = now;
+      return true;
+    };
+    options.tile = [&](const TileResult& result) {
+      if (result.tile.level == preview) {
+        EXPECT_LE(share, std::pow(0.25, preview));
+      }
+      return true;
+    };
+    render(scene, options);
+  }
+}
+
 TEST_F(PixelsBetween, CanBeCancelled) {
   random_.seed(5);
   Scene scene =
@@ -228,7 +284,7 @@ TEST_F(PixelsBetween, CanBeCancelled) {
   options.threads = 2;
   int calls = 0;
   options.progress = [&](double share) {
-    EXPECT_EQ(share, 0) << "while the first level is rendered";
+    EXPECT_LT(share, 0.25) << "while the first levels are rendered";
     return ++calls < 3;
   };
   EXPECT_THROW(render(scene, options), Cancelled);
