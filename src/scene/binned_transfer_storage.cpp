@@ -179,19 +179,20 @@ BinnedTransferStorage::BinnedTransferStorage(const PiecewiseLinear<double>& tabl
   const auto upper_edge = [&](int bin) {
     return bin == view_.bins - 1 ? infinity : first_value + bin * width + margin;
   };
-  const auto bins_of = [&](double value, auto&& visit) {
-    const double place = span > 0 ? (value - first_value) / width : 0;
+  const auto bins_of = [&](double from, double to, auto&& visit) {
     const int reach =
         static_cast<int>(std::ceil(width > 0 ? std::min(margin / width, 4096.0) : 0)) + 1;
-    const int near = static_cast<int>(std::clamp(place, -1.0, static_cast<double>(view_.bins))) + 1;
-    for (int bin = std::max(near - reach, 0); bin <= std::min(near + reach, view_.bins - 1);
-         ++bin) {
-      if (value >= lower_edge(bin) && value <= upper_edge(bin))
-        visit(static_cast<std::size_t>(bin));
+    const auto near = [&](double value) {
+      const double place = span > 0 ? (value - first_value) / width : 0;
+      return static_cast<int>(std::clamp(place, -1.0, static_cast<double>(view_.bins))) + 1;
+    };
+    for (int bin = std::max(near(from) - reach, 0);
+         bin <= std::min(near(to) + reach, view_.bins - 1); ++bin) {
+      if (to >= lower_edge(bin) && from <= upper_edge(bin)) visit(static_cast<std::size_t>(bin));
     }
   };
   const auto bins = static_cast<std::size_t>(view_.bins);
-  std::vector<int> mark(bins, 0);
+  std::vector<int> mark(bins, 0), hard(bins, 0);
   std::vector<double> bend(bins, 0.0);
   const auto interval_in = [&](const std::vector<float>& records, std::size_t fields, double value,
                                std::int32_t from) {
@@ -223,8 +224,11 @@ BinnedTransferStorage::BinnedTransferStorage(const PiecewiseLinear<double>& tabl
       view_.has_full_bins = true;
     }
   }
-  const auto mark_jump = [&](double value) {
-    bins_of(value, [&](std::size_t b) { mark[b] |= BinnedTransfer::one_jump; });
+  const auto mark_jump = [&](double from, double to, bool is_hard) {
+    bins_of(from, to, [&](std::size_t b) {
+      mark[b] |= BinnedTransfer::one_jump;
+      if (is_hard) hard[b] = 1;
+    });
   };
   const auto color_slope = [&](int i, std::size_t c) {  // between points i - 1 and i
     if (i == 0 || i > last) return 0.0;
@@ -236,11 +240,14 @@ BinnedTransferStorage::BinnedTransferStorage(const PiecewiseLinear<double>& tabl
   };
   for (int i = 0; i <= last; ++i) {
     const bool in_front = i > 0 && absorbs(table, i), behind = i < last && absorbs(table, i + 1);
-    if (i > 0 && absorbs(table, i) && !(table.value[i] - table.value[i - 1] > widest_jump) &&
+    const double distance = i > 0 ? table.value[i] - table.value[i - 1] : infinity;
+    if (in_front && !(distance > widest_jump) &&
         !(table.material[i].extinction == table.material[i - 1].extinction &&
           table.material[i].color == table.material[i - 1].color)) {
-      mark_jump(table.value[i - 1]);
-      mark_jump(table.value[i]);
+      // In binary64 only a color is that of the value in binary32, whose rounding takes it from a
+      // neighbour at most if intervals are wider than that.
+      const double here = std::max(std::fabs(table.value[i - 1]), std::fabs(table.value[i]));
+      mark_jump(table.value[i - 1], table.value[i], !(distance > 16 * unit * here));
     }
     // No piece goes across a corner of the extinction.
     const bool is_cut = std::binary_search(at_extinction.begin(), at_extinction.end(), i);
@@ -249,19 +256,22 @@ BinnedTransferStorage::BinnedTransferStorage(const PiecewiseLinear<double>& tabl
     for (std::size_t c = 0; c < 3; ++c) {
       change = std::max(change, std::fabs(color_slope(i + 1, c) - color_slope(i, c)));
     }
-    bins_of(table.value[i], [&](std::size_t b) { bend[b] += change; });
+    bins_of(table.value[i], table.value[i], [&](std::size_t b) { bend[b] += change; });
   }
-  for (int m = 0; m < merged_count; ++m) mark_jump(merged[m]);
+  for (int m = 0; m < merged_count; ++m) mark_jump(merged[m], merged[m], true);
 
-  std::int32_t marks = 0;
+  std::int32_t marks = 0, hard_jumps = 0;
   double bends = 0;
   for (std::size_t b = 0; b < bins; ++b) {
     marks_.push_back(marks);
+    hard_jumps_.push_back(hard_jumps);
+    hard_jumps += hard[b];
     color_bend_.push_back(static_cast<float>(bends));
     marks += mark[b];
     bends += bend[b];
   }
   marks_.push_back(marks);
+  hard_jumps_.push_back(hard_jumps);
   color_bend_.push_back(static_cast<float>(bends));
   // Of either sum, of their difference, and what colors of less than `flat` leave out.
   view_.bend_rounding = above(4 * unit * bends);
@@ -316,6 +326,7 @@ BinnedTransferStorage::BinnedTransferStorage(const PiecewiseLinear<double>& tabl
   view_.first_color = first_color_.data();
   view_.color_split = color_split_.data();
   view_.marks = marks_.data();
+  view_.hard_jumps = hard_jumps_.data();
   view_.color_bend = color_bend_.data();
 }
 

@@ -330,6 +330,7 @@ TEST(BinnedTransfer, JumpsAreMarked) {
       const auto at = static_cast<float>(c.table.value[i]);
       for (const float v : {std::nextafter(at, -1e38f), at, std::nextafter(at, 1e38f)}) {
         ASSERT_GE(c.marks(v, v), BinnedTransfer::one_jump) << v;
+        ASSERT_TRUE(has_hard_jump(c.bins, v, v)) << v;
       }
       ASSERT_TRUE(c.bins.has_marks);
       ++jumps;
@@ -337,9 +338,27 @@ TEST(BinnedTransfer, JumpsAreMarked) {
     for (const double merged : c.function.merged_in_float()) {
       const auto v = static_cast<float>(merged);
       ASSERT_GE(c.marks(v, v), BinnedTransfer::one_jump) << v;
+      ASSERT_TRUE(has_hard_jump(c.bins, v, v)) << v;
     }
   });
   EXPECT_GT(jumps, 100);
+}
+
+/// What binary64 knows well is a jump to binary32 only, all through it; and what is wider is none.
+TEST(BinnedTransfer, NarrowIntervalsAreJumpsThatAreNotHard) {
+  for (const double width : {0x1p-22, 0x1p-19, 0x1p-17, 0x1p-15}) {
+    const TransferFunction function(
+        Points{{0, 0, {1, 0, 0}}, {0.5, 2, {0, 1, 0}}, {0.5 + width, 0, {0, 0, 1}}, {1, 0, {}}});
+    const BinnedTransferStorage storage(function.view<double>(), nullptr, 0);
+    const BinnedTransfer& bins = storage.view();
+    for (const double share : {0.0, 0.3, 0.5, 1.0}) {
+      const auto v = static_cast<float>(0.5 + share * width);
+      const int marks = bins.marks[bin_of(bins, v) + 1] - bins.marks[bin_of(bins, v)];
+      EXPECT_EQ(marks >= BinnedTransfer::one_jump, width <= 256 * u) << width << ", " << share;
+      EXPECT_EQ(has_hard_jump(bins, v, v), width <= 16 * u * 0.5) << width << ", " << share;
+    }
+    EXPECT_FALSE(has_hard_jump(bins, 0.0f, 0.4f));
+  }
 }
 
 /// The slope of a channel of the color between points i - 1 and i.

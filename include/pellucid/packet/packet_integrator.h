@@ -158,6 +158,8 @@ class PacketIntegrator {
     code_ = select(lanes, code, code_);
     whole_block_ = select(lanes, has(SpanCode::whole_block), whole_block_);
     handed_back_ = handed_back_ | (lanes & has(SpanCode::handed_back));
+    const M in_double = lanes & has(SpanCode::in_double);
+    if (any(in_double)) wait_for_double(in_double);
     constant_ += select(lanes & whole_block_, I(1), I(0));
   }
 
@@ -312,7 +314,10 @@ class PacketIntegrator {
 
   /// Lanes whose span is to be gone on with in double.
   void wait_for_double(M lanes) noexcept {
-    if (!double_will_do_) return hand_back(lanes);
+    if (!double_will_do_) {
+      handed_back_ = handed_back_ | lanes;
+      return;
+    }
     in_double_now_ = in_double_now_ | lanes;
     not_begun_ = not_begun_ | lanes;
     in_double_ += select(lanes, I(1), I(0));

@@ -28,7 +28,8 @@ struct SpanCode {
   static constexpr int cell[3] = {1, 8, 64};  ///< times its place in the block
   static constexpr int handed_back = 512;     ///< not for the packets' rule
   static constexpr int whole_block = 1024;    ///< of one material
-  static constexpr int stretch = 2048;        ///< times its number, of 8 bits
+  static constexpr int in_double = 2048;      ///< not for binary32
+  static constexpr int stretch = 4096;        ///< times its number, of 8 bits
 
   // I: an int, or several.
   template <class I>
@@ -37,10 +38,10 @@ struct SpanCode {
   }
   template <class I>
   static I stretch_of(I code) noexcept {
-    return code >> 11;
+    return code >> 12;
   }
 };
-static_assert(block_width == 8 && SpanCode::cell[2] == 1 << 6 && SpanCode::stretch == 1 << 11);
+static_assert(block_width == 8 && SpanCode::cell[2] == 1 << 6 && SpanCode::stretch == 1 << 12);
 
 /// Finds what of rays' stretches absorbs: from cell to cell, their range and then the hull of the
 /// data along the ray against the marks of the transfer function.
@@ -151,7 +152,11 @@ class SpanFinder {
     for (int a = 0; a < 3; ++a) code += F(SpanCode::cell[a]) * step.cell[a];
     M jumps;
     found = may_absorb(transfer_, found, least, most, jumps);
-    code += select(jumps, F(SpanCode::handed_back), F(0));
+    if (any(jumps)) {
+      const M hard =
+          has_hard_jump(transfer_, select(jumps, least, F(0)), select(jumps, most, F(0)));
+      code += select(jumps, select(hard, F(SpanCode::handed_back), F(SpanCode::in_double)), F(0));
+    }
     if (none(found)) return;
     const F span[] = {data.b[0],
                       data.b[1],
@@ -173,26 +178,53 @@ class SpanFinder {
   ///
   ///   (slope + jump) s + bend s² = c,  or  (slope + variation) s = c
   void skip(M lanes, F value, F value_rounding, F slope, F slope_rounding) noexcept {
-    const F below = F(transfer_.support_min) - (value + value_rounding),
-            above = (value - value_rounding) - F(transfer_.support_max);
-    lanes = lanes & cells_.walking & ((below > F(0)) | (above > F(0)));
+    const F above = value + value_rounding, below = value - value_rounding;
+    lanes = lanes & cells_.walking;
+    if (transfer_.supports > 1) return skip_in_gaps(lanes, above, below, slope, slope_rounding);
+    const F rise = F(transfer_.support_min) - above, fall = below - F(transfer_.support_max);
+    lanes = lanes & ((rise > F(0)) | (fall > F(0)));
     if (none(lanes)) return;
+    const F towards = select(rise > F(0), slope, -slope);
+    cells_.skip(lanes, distance_to(max(rise, fall), towards, slope_rounding));
+  }
+
+  /// The same where data between two ranges of values that absorb may rise to the one or fall to
+  /// the other.
+  void skip_in_gaps(M lanes, F above, F below, F slope, F slope_rounding) noexcept {
+    constexpr float far = BinnedTransfer::far;
+    F rise(far), fall(far);
+    for (int i = 0; i < transfer_.supports; ++i) {
+      const F up = F(transfer_.support[2 * i]) - above,
+              down = below - F(transfer_.support[2 * i + 1]);
+      lanes = lanes & ((up > F(0)) | (down > F(0)));
+      rise = select(up > F(0), min(rise, up), rise);
+      fall = select(down > F(0), min(fall, down), fall);
+    }
+    if (none(lanes)) return;
+    const F unbounded(std::numeric_limits<float>::infinity());
+    const auto reach = [&](F gap, F towards) noexcept {
+      return select(gap < F(far), distance_to(gap, towards, slope_rounding), unbounded);
+    };
+    cells_.skip(lanes, min(reach(rise, slope), reach(fall, -slope)));
+  }
+
+  /// How far the data are from having moved by `gap` at least, where they move towards that at this
+  /// rate; 0 where it is not known, as of a cell without a length.
+  F distance_to(F gap, F towards, F slope_rounding) const noexcept {
     constexpr float u = rounding_unit<float>;
-    const F distance = max(below, above), towards = select(below > F(0), slope, -slope);
-    const F size = abs(slope);
+    const F size = abs(towards);
     const auto growth = [&](F bound) noexcept {
       return (towards + bound) + (slope_rounding + F(8 * u) * (size + bound));
     };
     const F by_jumps = growth(cells_.jump), by_variation = growth(cells_.variation);
-    // Of a cell without a length the slope is not known.
-    lanes = lanes & !is_nan(by_jumps + by_variation);
     // Squares may underflow.
-    const F root = sqrt(by_jumps * by_jumps + F(4) * cells_.bend * distance + F(1e-36f));
+    const F root = sqrt(by_jumps * by_jumps + F(4) * cells_.bend * gap + F(1e-36f));
     const M away = by_jumps < F(0);
-    const F smallest = select(away, root - by_jumps, F(2) * distance) /
+    const F smallest = select(away, root - by_jumps, F(2) * gap) /
                        select(away, F(2) * cells_.bend, by_jumps + root);
     constexpr float less = 1 - 32 * u;
-    cells_.skip(lanes, F(less) * max(smallest, distance / max(by_variation, F(0))));
+    return select(is_nan(by_jumps + by_variation), F(0),
+                  F(less) * max(smallest, gap / max(by_variation, F(0))));
   }
 
   /// Notes what was found in stretches that are gone through.

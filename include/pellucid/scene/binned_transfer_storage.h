@@ -24,7 +24,7 @@ class BinnedTransferStorage {
  private:
   std::vector<float> extinction_, color_, color_split_, color_bend_;
   std::vector<double> wide_extinction_;
-  std::vector<std::int32_t> first_extinction_, first_color_, marks_;
+  std::vector<std::int32_t> first_extinction_, first_color_, marks_, hard_jumps_;
   BinnedTransfer view_;
 };
 

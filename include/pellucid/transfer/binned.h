@@ -33,6 +33,9 @@ struct BinnedTransfer {
   /// Sums over the bins in front of each, bins + 1 of them: how many absorb, plus 2^16 times how
   /// many hold a jump or what binary32 cannot tell apart.
   const std::int32_t* marks = nullptr;
+  /// The same, of bins that hold a jump which is one in binary64, or nearly so: the others are
+  /// intervals there, wide enough for their colors in binary32.
+  const std::int32_t* hard_jumps = nullptr;
   /// Sums over the bins in front of each of how much the slope of the color changes, in all,
   /// largest channel, where the extinction has no corner.
   const float* color_bend = nullptr;
@@ -97,6 +100,14 @@ mask_t<F> may_absorb(const BinnedTransfer& t, mask_t<F> lanes, F least, F most,
   const auto marks = marks_between(t, select(lanes, least, F(0)), select(lanes, most, F(0)));
   jumps = lanes & (marks >= index_t<F>(BinnedTransfer::one_jump));
   return lanes & (marks > index_t<F>(0));
+}
+
+/// Whether one of the jumps between `least` and `most` is one in binary64 as well, in lanes.
+template <class F>
+mask_t<F> has_hard_jump(const BinnedTransfer& t, F least, F most) noexcept {
+  using Index = index_t<F>;
+  return gather(t.hard_jumps, bin_of(t, most) + Index(1)) - gather(t.hard_jumps, bin_of(t, least)) >
+         Index(0);
 }
 
 /// One interval of the extinction, in lanes.
