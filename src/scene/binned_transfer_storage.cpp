@@ -92,13 +92,34 @@ BinnedTransferStorage::BinnedTransferStorage(const PiecewiseLinear<double>& tabl
     const double width = table.value[b] - table.value[a];
     return width > 0 ? (table.material[b].extinction - table.material[a].extinction) / width : 0.0;
   };
+  const double size =
+      std::max({std::fabs(table.value[0]), std::fabs(table.value[last]), largest_value});
+  // What is narrower is marked as a jump where it absorbs, below.
+  const double widest_jump = 256 * unit * size;
+  // The largest of something over an interval and those that rounding may take data to: up to the
+  // next one on either side that is no jump.
+  const auto with_neighbours = [&](std::size_t i, const auto& of) {
+    const auto is_jump = [&](std::size_t k) {
+      return k > 0 && k < at_extinction.size() &&
+             !(table.value[at_extinction[k]] - table.value[at_extinction[k - 1]] > widest_jump);
+    };
+    auto largest = of(i);
+    for (std::size_t k = i; k > 0;) {
+      largest = std::max(largest, of(--k));
+      if (!is_jump(k)) break;
+    }
+    for (std::size_t k = i; k < at_extinction.size();) {
+      largest = std::max(largest, of(++k));
+      if (!is_jump(k)) break;
+    }
+    return largest;
+  };
   for (std::size_t i = 0; i <= at_extinction.size(); ++i) {
     const bool below = i == 0, beyond = i == at_extinction.size();
     const int a = below ? 0 : at_extinction[i - 1], b = beyond ? last : at_extinction[i];
     const double at_lower = table.material[a].extinction, at_upper = table.material[b].extinction;
-    double steepest = std::fabs(slope_of(i));
-    if (!below) steepest = std::max(steepest, std::fabs(slope_of(i - 1)));
-    if (!beyond) steepest = std::max(steepest, std::fabs(slope_of(i + 1)));
+    const double steepest =
+        with_neighbours(i, [&](std::size_t k) { return std::fabs(slope_of(k)); });
     std::array<double, 3> least{infinity, infinity, infinity},
         most{-infinity, -infinity, -infinity};
     double color_slope = 0;
@@ -128,16 +149,23 @@ BinnedTransferStorage::BinnedTransferStorage(const PiecewiseLinear<double>& tabl
     }
   }
 
-  // Beside a corner rounding may take a color from the next interval.
+  // A jump of the color alone counts with the extinction that shows it.
+  jump_.assign(at_extinction.size() + 1, 0.0f);
+  for (std::size_t i = 1; i < at_extinction.size(); ++i) {
+    const int a = at_extinction[i - 1], b = at_extinction[i];
+    if (table.value[b] > table.value[a]) continue;
+    const double shown = std::max(table.material[a].extinction, table.material[b].extinction);
+    if (!(shown > 0)) continue;
+    for (const std::size_t k : {i - 1, i, i + 1}) jump_[k] = std::max(jump_[k], above(shown));
+  }
+
+  // Beside a corner rounding may take a color from there, too.
   constexpr std::size_t width_of_record = BinnedTransfer::extinction_fields;
   const std::vector<float> own = extinction_;
-  for (std::size_t at = width_of_record - 1; at < own.size(); at += width_of_record) {
-    if (at >= width_of_record) {
-      extinction_[at] = std::max(extinction_[at], own[at - width_of_record]);
-    }
-    if (at + width_of_record < own.size()) {
-      extinction_[at] = std::max(extinction_[at], own[at + width_of_record]);
-    }
+  const auto at_color_slope = [&](std::size_t i) { return (i + 1) * width_of_record - 1; };
+  for (std::size_t i = 0; i <= at_extinction.size(); ++i) {
+    extinction_[at_color_slope(i)] =
+        with_neighbours(i, [&](std::size_t k) { return own[at_color_slope(k)]; });
   }
 
   // Intervals of the color.
@@ -158,10 +186,6 @@ BinnedTransferStorage::BinnedTransferStorage(const PiecewiseLinear<double>& tabl
 
   // Bins.
   const double first_value = table.value[0], span = table.value[last] - first_value;
-  const double size =
-      std::max({std::fabs(first_value), std::fabs(table.value[last]), largest_value});
-  // What is narrower is marked as a jump, below.
-  const double widest_jump = 256 * unit * size;
   double narrowest = infinity;
   for (std::size_t i = 1; i < at_extinction.size(); ++i) {
     const double its_width = table.value[at_extinction[i]] - table.value[at_extinction[i - 1]];
@@ -244,10 +268,10 @@ BinnedTransferStorage::BinnedTransferStorage(const PiecewiseLinear<double>& tabl
     if (in_front && !(distance > widest_jump) &&
         !(table.material[i].extinction == table.material[i - 1].extinction &&
           table.material[i].color == table.material[i - 1].color)) {
-      // In binary64 only a color is that of the value in binary32, whose rounding takes it from a
-      // neighbour at most if intervals are wider than that.
+      // With data in binary64 only a color is that of the value in binary32, whose rounding takes
+      // it from a neighbour at most if intervals are wider than that.
       const double here = std::max(std::fabs(table.value[i - 1]), std::fabs(table.value[i]));
-      mark_jump(table.value[i - 1], table.value[i], !(distance > 16 * unit * here));
+      mark_jump(table.value[i - 1], table.value[i], distance > 0 && !(distance > 16 * unit * here));
     }
     // No piece goes across a corner of the extinction.
     const bool is_cut = std::binary_search(at_extinction.begin(), at_extinction.end(), i);
@@ -320,6 +344,7 @@ BinnedTransferStorage::BinnedTransferStorage(const PiecewiseLinear<double>& tabl
   view_.largest_extinction = above(largest_extinction);
   view_.largest_color = above(largest_color);
   view_.extinction = extinction_.data();
+  view_.jump = jump_.data();
   view_.wide_extinction = wide_extinction_.data();
   view_.color = color_.data();
   view_.first_extinction = first_extinction_.data();

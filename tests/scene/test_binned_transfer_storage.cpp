@@ -330,7 +330,9 @@ TEST(BinnedTransfer, JumpsAreMarked) {
       const auto at = static_cast<float>(c.table.value[i]);
       for (const float v : {std::nextafter(at, -1e38f), at, std::nextafter(at, 1e38f)}) {
         ASSERT_GE(c.marks(v, v), BinnedTransfer::one_jump) << v;
-        ASSERT_TRUE(has_hard_jump(c.bins, v, v)) << v;
+        if (c.table.value[i] > c.table.value[i - 1]) {
+          ASSERT_TRUE(has_hard_jump(c.bins, v, v)) << v;
+        }
       }
       ASSERT_TRUE(c.bins.has_marks);
       ++jumps;
@@ -342,6 +344,30 @@ TEST(BinnedTransfer, JumpsAreMarked) {
     }
   });
   EXPECT_GT(jumps, 100);
+}
+
+/// Both sides of a jump know of it, and what it may show.
+TEST(BinnedTransfer, IntervalsBesideJumpsKnowThem) {
+  int known = 0;
+  for_many([&](const Case& c, Tables&) {
+    for (int i = 1; i < c.table.count; ++i) {
+      const double at = c.table.value[i];
+      if (c.table.value[i - 1] < at) continue;
+      const double size =
+          std::max(c.table.material[i - 1].extinction, c.table.material[i].extinction);
+      for (const bool above : {false, true}) {
+        // In the middle between the jump and the next point.
+        if (above ? i + 1 == c.table.count : i < 2) continue;
+        const double middle = 0.5 * (at + c.table.value[above ? i + 1 : i - 2]);
+        if (std::fabs(middle - at) < 40 * u * c.size) continue;
+        int interval = 0;
+        find_extinction(c.bins, static_cast<float>(middle), true, interval);
+        ASSERT_GE(static_cast<double>(c.bins.jump[interval]), size) << at;
+        if (size > 0) ++known;
+      }
+    }
+  });
+  EXPECT_GT(known, 100);
 }
 
 /// What binary64 knows well is a jump to binary32 only, all through it; and what is wider is none.

@@ -57,12 +57,70 @@ struct SpanLanes {
     length = select(lanes, length * left, length);
     from = select(lanes, from + (F(1) - from) * place, from);
     cap = select(lanes, select(piece.capped & (place < left), place / left, F(1)), cap);
-    const BatchMask<N> crossed = lanes & piece.crosses;
-    if (none(crossed)) return;
-    interval += select(crossed, select(piece.end.rising, I(1), I(-1)), I(0));
-    extinction = load_extinction<F>(transfer, interval);
+    for (BatchMask<N> crossed = lanes & piece.crosses; any(crossed);) {
+      interval += select(crossed, select(piece.end.rising, I(1), I(-1)), I(0));
+      extinction = load_extinction<F>(transfer, interval);
+      if constexpr (is_single<F>) return;
+      // Past a jump, at once.
+      crossed = crossed & (extinction.upper <= extinction.lower);
+    }
   }
 };
+
+/// What jumps at the ends of its interval do to a piece.
+template <int N>
+struct BesideJumps {
+  Batch<float, N> extinction{0};  ///< how much they may move the mean extinction
+  Batch<float, N> kept_off{0};    ///< how far its values are kept off them, by the values' size
+  BatchMask<N> unclear{false};    ///< whether its colors may be those of the other side
+};
+
+/// Of a piece in double whose data are known to `value_error`. Its values in float, which colors
+/// are those of, are kept on this side.
+///
+/// Data within δ of a jump may be on either side. Of a monotone piece that begins there, with the
+/// differences d of its coefficients, f(t) - f(0) >= d₀ (1 - (1 - t)³) >= d₀ t: that is a share of
+/// at most δ/d₀; and likewise where it ends.
+template <int N>
+BesideJumps<N> keep_off_jumps(const SpanLanes<double, N>& span, const BinnedTransfer& transfer,
+                              BatchMask<N> lanes, Batch<double, N> value_error,
+                              SpanPiece<double, N>& piece) noexcept {
+  using D = Batch<double, N>;
+  using F = Batch<float, N>;
+  using M = BatchMask<N>;
+  BesideJumps<N> jumps;
+  const F size = gather(transfer.jump, select(lanes, span.interval, Batch<std::int32_t, N>(0)));
+  const M beside = lanes & (size > F(0));
+  if (none(beside)) return jumps;
+
+  constexpr float margin = 8 * rounding_unit<float>;
+  const F off = F(margin) * max(abs(piece.seen.lower), abs(piece.seen.upper));
+  jumps.unclear = beside & !(piece.seen.upper - piece.seen.lower > F(8) * off);
+  const M kept = beside & !jumps.unclear;
+  jumps.kept_off = select(kept, F(margin), F(0));
+  piece.seen.lower = select(kept, piece.seen.lower + off, piece.seen.lower);
+  piece.seen.upper = select(kept, piece.seen.upper - off, piece.seen.upper);
+  piece.seen.value =
+      select(kept, clamp(piece.seen.value, piece.seen.lower, piece.seen.upper), piece.seen.value);
+
+  // The coefficients of what ends where the data turn are monotone but for rounding.
+  const D reach = D(6) * value_error;
+  const CubicBernstein<D>& f = piece.parts.front;
+  const D sign = select(f.b[3] > f.b[0], D(1), D(-1));
+  const D d0 = sign * (f.b[1] - f.b[0]), d1 = sign * (f.b[2] - f.b[1]),
+          d2 = sign * (f.b[3] - f.b[2]);
+  const D lower = span.extinction.lower + reach, upper = span.extinction.upper - reach;
+  const auto share_at = [&](D end, D rise) noexcept {
+    const D share = select(rise > reach, reach / select(rise > reach, rise, D(1)), D(1));
+    return select((end < lower) | (end > upper), share, D(0));
+  };
+  const M turns = min(d0, min(d1, d2)) < -value_error;
+  const M near = (f.hull_min() < lower) | (f.hull_max() > upper);
+  const D share = select(turns, select(near, D(1), D(0)),
+                         min(share_at(f.b[0], d0) + share_at(f.b[3], d2), D(1)));
+  jumps.extinction = select(beside, size * convert<float>(share), F(0));
+  return jumps;
+}
 
 /// Integrates the next piece of the lanes' spans. `place_error`: how far a span's ends may be from
 /// where they are thought to be, world length. Depths are found in T, colors in float.
@@ -110,12 +168,16 @@ SpanPiece<T, N> next_piece(SpanLanes<T, N>& span, const BinnedTransfer& transfer
                 convert<float>(depth.lower), convert<float>(depth.upper)};
   piece.spread = {convert<float>(interval.color_range), convert<float>(interval.color_slope),
                   kinks_of_color(transfer, piece.seen.lower, piece.seen.upper)};
+  const F value_error = span.rounding + close;
+  BesideJumps<N> jumps;
+  if constexpr (!is_single<F>) {
+    jumps = keep_off_jumps(span, transfer, lanes, value_error, piece);
+  }
   piece.found = colored_piece(piece.seen, piece.spread, transfer, lanes, color);
 
   // What rounding can do, as in segment/rounding.h.
   constexpr float u = rounding_unit<float>;
   constexpr float colored = is_single<F> ? 32 * u : 12 * u;  // color, segment; and positions
-  const F value_error = span.rounding + close;
   // The slope of the next interval counts for as much of the piece as is near to it: where the
   // data rise throughout, no more than 2 value_error over their least slope.
   const M touches = (f.hull_min() - value_error < interval.lower) |
@@ -131,15 +193,17 @@ SpanPiece<T, N> next_piece(SpanLanes<T, N>& span, const BinnedTransfer& transfer
   const Single largest = convert<float>(interval.largest);
   const Single depth_error =
       convert<float>(piece.length * (value_error * steep + F(8 * u) * interval.largest)) +
+      convert<float>(piece.length) * jumps.extinction +
       place_error * convert<float>((F(1) - span.from) * piece.place) * largest;
   const SegmentResult<Single>& s = piece.found.segment;
-  // In double a color is still that of the value in float.
-  const Single shown_error =
-      convert<float>(value_error) +
-      (is_single<F> ? Single(0)
-                    : Single(4 * u) * max(abs(piece.seen.lower), abs(piece.seen.upper)));
+  // In double a color is still that of the value in float, kept off jumps.
+  const Single shown_error = convert<float>(value_error) +
+                             (is_single<F> ? Single(0)
+                                           : (Single(4 * u) + jumps.kept_off) *
+                                                 max(abs(piece.seen.lower), abs(piece.seen.upper)));
   const Single color_rounding =
-      Single(colored) * largest_color + min(shown_error * piece.spread.slope, largest_color);
+      Single(colored) * largest_color +
+      select(jumps.unclear, largest_color, min(shown_error * piece.spread.slope, largest_color));
   const Single opacity_rounding =
       Single(colored) * s.opacity +
       min(select(depth_error <= Single(1), Single(2) * depth_error * s.transparency, Single(1)),

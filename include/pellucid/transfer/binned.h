@@ -24,6 +24,9 @@ struct BinnedTransfer {
   const float* extinction = nullptr;
   /// The first four of these in double, where binary32 is not good enough.
   const double* wide_extinction = nullptr;
+  /// Per interval of the extinction: the largest extinction on either side of jumps at its ends; 0:
+  /// there are none. Jumps are intervals of no width.
+  const float* jump = nullptr;
   /// Per interval of the color: lower, upper, color at the lower end, its slope.
   const float* color = nullptr;
   const std::int32_t* first_extinction = nullptr;  ///< per bin: the interval of its lower edge
@@ -33,8 +36,8 @@ struct BinnedTransfer {
   /// Sums over the bins in front of each, bins + 1 of them: how many absorb, plus 2^16 times how
   /// many hold a jump or what binary32 cannot tell apart.
   const std::int32_t* marks = nullptr;
-  /// The same, of bins that hold a jump which is one in binary64, or nearly so: the others are
-  /// intervals there, wide enough for their colors in binary32.
+  /// The same, of bins that hold control points which are not equal and yet too close for colors in
+  /// binary32 to tell them apart: not even binary64 is good enough here.
   const std::int32_t* hard_jumps = nullptr;
   /// Sums over the bins in front of each of how much the slope of the color changes, in all,
   /// largest channel, where the extinction has no corner.
@@ -102,7 +105,8 @@ mask_t<F> may_absorb(const BinnedTransfer& t, mask_t<F> lanes, F least, F most,
   return lanes & (marks > index_t<F>(0));
 }
 
-/// Whether one of the jumps between `least` and `most` is one in binary64 as well, in lanes.
+/// Whether there is something between `least` and `most` that binary64 is not good enough for, in
+/// lanes.
 template <class F>
 mask_t<F> has_hard_jump(const BinnedTransfer& t, F least, F most) noexcept {
   using Index = index_t<F>;
