@@ -120,6 +120,16 @@ void SamplerRecords::add_corners(const PiecewiseLinear<float>& table, int bins, 
     const double all = largest_color * change(8) + double{table.material[i].extinction} * of_colors;
     return all * all;
   };
+  view_.few_corners = 0;
+  for (int i = 0; i < table.count && view_.few_corners <= SamplerTransfer::most_corners; ++i) {
+    const auto square = static_cast<float>(square_at(i));
+    if (!(square > 0)) continue;
+    if (view_.few_corners < SamplerTransfer::most_corners) {
+      view_.corner[view_.few_corners] = table.value[i];
+      view_.square[view_.few_corners] = square;
+    }
+    ++view_.few_corners;
+  }
   double sum = 0;
   int i = 0;
   for (int b = 0; b <= bins; ++b) {

@@ -346,6 +346,39 @@ TEST(BinnedTransfer, JumpsAreMarked) {
   EXPECT_GT(jumps, 100);
 }
 
+/// Field by field the records are the same; where there are none nothing is met.
+TEST(BinnedTransfer, FewIntervalsAreKeptFieldByField) {
+  int few = 0, many = 0;
+  for_many([&](const Case& c, Tables&) {
+    constexpr int fields = BinnedTransfer::color_fields;
+    int count = 0;  // the last one reaches to infinity
+    while (std::isfinite(c.bins.color[fields * count + 1])) ++count;
+    ++count;
+    ASSERT_EQ(c.bins.few_colors, count <= BinnedTransfer::few);
+    ++(c.bins.few_colors ? few : many);
+    if (!c.bins.few_colors) return;
+    for (int k = 0; k < fields; ++k) {
+      for (int i = 0; i < count; ++i) {
+        ASSERT_EQ(c.bins.few_color[k][i], c.bins.color[fields * i + k]);
+      }
+    }
+    for (int i = count; i < BinnedTransfer::few; ++i) {
+      ASSERT_EQ(c.bins.few_color[1][i], std::numeric_limits<float>::infinity());
+    }
+    if (!c.bins.few_extinctions) return;
+    for (const float v : c.values) {
+      int at = 0;
+      find_extinction(c.bins, v, true, at);
+      for (int k = 0; k < BinnedTransfer::extinction_fields; ++k) {
+        ASSERT_EQ(c.bins.few_extinction[k][at],
+                  c.bins.extinction[BinnedTransfer::extinction_fields * at + k]);
+      }
+    }
+  });
+  EXPECT_GT(few, 100);
+  EXPECT_GT(many, 50);
+}
+
 /// Both sides of a jump know of it, and what it may show.
 TEST(BinnedTransfer, IntervalsBesideJumpsKnowThem) {
   int known = 0;

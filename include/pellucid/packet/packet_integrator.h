@@ -35,6 +35,7 @@ class PacketIntegrator {
     Stretches<Value, N> stretches;
     Walks<Value, N> walks;
     SpanRows<Value, N> rows;
+    StepLengths<N> step_lengths;
   };
 
   /// Of rays first … first + count - 1 of the job, count <= N.
@@ -48,7 +49,7 @@ class PacketIntegrator {
         count_(count),
         blocks_(grid, job.rays + first, count),
         finder_(grid, blocks_, transfer_),
-        smooth_(job, grid, blocks_.origin, blocks_.direction),
+        smooth_(job, grid, blocks_.origin, blocks_.direction, room.step_lengths),
         fold_(job.tolerance, transfer_.largest_extinction, job.largest_color,
               convert<float>(D::load(blocks_.end))),
         trace_(job.depth != 0),

@@ -20,6 +20,11 @@ struct SamplerTransfer {
   /// lower edge the squares, summed, of what their slopes change by: of extinction times the
   /// largest color, and of colors times the extinction there, largest channel.
   const float* corners = nullptr;
+  /// The same of each control point, where there are few at which slopes change; else `corners`
+  /// says it in less time.
+  static constexpr int most_corners = 4;
+  int few_corners = most_corners + 1;  ///< how many, and one more if there are too many
+  float corner[most_corners] = {}, square[most_corners] = {};
   float origin = 0, bins_per_value = 0;
   float bin_count = 0, bins_end = 0;       ///< how many, and just below that
   float support_min = 0, support_max = 0;  ///< nothing absorbs outside; crossed over: nowhere
@@ -56,6 +61,15 @@ Batch<float, N> corners_between(const SamplerTransfer& t, Batch<float, N> least,
                                 Batch<float, N> most) noexcept {
   using F = Batch<float, N>;
   using I = Batch<std::int32_t, N>;
+  if (t.few_corners <= SamplerTransfer::most_corners) {
+    const F bin = F(1) / F(t.bins_per_value), from = least - bin, to = most + bin;
+    F sum(0);
+    for (int i = 0; i < t.few_corners; ++i) {
+      const F corner(t.corner[i]);
+      sum += select((from <= corner) & (corner <= to), F(t.square[i]), F(0));
+    }
+    return sum;
+  }
   const auto at = [&](F value, float aside) noexcept {
     const F place = (value - F(t.origin)) * F(t.bins_per_value) + F(aside);
     return I(2) * convert<std::int32_t>(clamp(place, F(0), F(t.bin_count)));

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
+
 #include "pellucid/error/random_errors.h"
 #include "pellucid/packet/packet_samples.h"
 #include "pellucid/packet/sampler_transfer.h"
@@ -9,6 +11,28 @@
 
 #if PELLUCID_HAS_BATCH_4  // in sources compiled per instruction set
 namespace pellucid {
+
+/// The lengths of steps for directions of rays in lanes, and the mean squares of what they err
+/// because of bends along each axis: for packets one after the other, which mostly share theirs.
+template <int N>
+struct StepLengths {
+  static constexpr int most_levels = most_sampled_step_levels;
+
+  double direction[3][N];
+  int levels = 0;  ///< those that are known
+  Batch<float, N> step[most_levels], weight[most_levels][3];
+
+  /// Keeps what is known for these directions, if they are the same.
+  void begin(const double (&directions)[3][N]) noexcept {
+    bool same = levels > 0;
+    for (int a = 0; a < 3; ++a) {
+      for (int l = 0; l < N; ++l) same = same && direction[a][l] == directions[a][l];
+    }
+    if (same) return;
+    levels = 0;
+    for (int a = 0; a < 3; ++a) std::copy_n(directions[a], N, direction[a]);
+  }
+};
 
 /// Rays in lanes that go through smooth blocks (SmoothBlocks) in steps, four at a time: how long
 /// these are is each lane's own matter, from longest_step downward in powers of √½ as its errors
@@ -29,12 +53,15 @@ class SmoothMarch {
   M walking{false};  ///< whether a lane has anything left of its smooth stretch
   D at, end;         ///< of it: world length from the entry into the grid
 
+  /// `lengths` is of this march alone while it lasts.
   SmoothMarch(const PellucidPacketJob& job, const PacketGrid<Value>& grid,
-              const double (&origin)[3][N], const double (&direction)[3][N]) noexcept
+              const double (&origin)[3][N], const double (&direction)[3][N],
+              StepLengths<N>& lengths) noexcept
       : transfer_(*static_cast<const SamplerTransfer*>(job.samples)),
         smooth_(*static_cast<const SmoothBlocks*>(job.smooth)),
         grid_(grid),
-        samples_(grid) {
+        samples_(grid),
+        lengths_(lengths) {
     at = end = D(0);
     F square(0);
     for (int a = 0; a < 3; ++a) {
@@ -45,7 +72,9 @@ class SmoothMarch {
     }
     samples_.set_direction(direction_);
     cells_per_length_ = sqrt(square);
-    if (smooth_.longest_step > 0) find_step(0);
+    if (!(smooth_.longest_step > 0)) return;
+    lengths_.begin(direction);
+    if (lengths_.levels == 0) find_step(0);
   }
 
   /// Begins, or goes on with, the stretches of the lanes.
@@ -73,13 +102,13 @@ class SmoothMarch {
     for (int a = 0; a < 3; ++a) place[a] = origin_[a] + at * direction_[a];
     samples_.anchor(place);
     const F left = convert<float>(end - at);
-    while (any(walking & (level_ >= I(levels_known_)))) find_step(levels_known_);
-    F step = step_[0];
-    F weight[3] = {weight_[0][0], weight_[0][1], weight_[0][2]};
-    for (int l = 1; l < levels_known_; ++l) {
+    while (any(walking & (level_ >= I(lengths_.levels)))) find_step(lengths_.levels);
+    F step = lengths_.step[0];
+    F weight[3] = {lengths_.weight[0][0], lengths_.weight[0][1], lengths_.weight[0][2]};
+    for (int l = 1; l < lengths_.levels; ++l) {
       const M here = level_ == I(l);
-      step = select(here, step_[l], step);
-      for (int a = 0; a < 3; ++a) weight[a] = select(here, weight_[l][a], weight[a]);
+      step = select(here, lengths_.step[l], step);
+      for (int a = 0; a < 3; ++a) weight[a] = select(here, lengths_.weight[l][a], weight[a]);
     }
     const M near_end = F(4.0001f) * step >= left;
     s.last = near_end;
@@ -171,7 +200,7 @@ class SmoothMarch {
 
  private:
   static constexpr float tiny = std::numeric_limits<float>::min();
-  static constexpr int choices = 5, most_levels = most_sampled_step_levels;
+  static constexpr int choices = 5;
   /// The optical depth of a step at most: the rule goes by what is small against 1.
   static constexpr float deepest = 1;
   /// Of a corner, as mean_square_of_bends() of many; doubled, for `fastest` is a mean over a step.
@@ -246,13 +275,15 @@ class SmoothMarch {
       }
       cost = (cost + F(1e-4f)) * F(share[c]);
       const M better = cost < least;
-      step_[level] = select(better, candidate, step_[level]);
+      F& step = lengths_.step[level];
+      step = select(better, candidate, step);
       for (int a = 0; a < 3; ++a) {
-        weight_[level][a] = select(better, weight[a], weight_[level][a]);
+        F& of_axis = lengths_.weight[level][a];
+        of_axis = select(better, weight[a], of_axis);
       }
       least = min(cost, least);
     }
-    levels_known_ = level + 1;
+    lengths_.levels = level + 1;
   }
   float largest_square_of_bend() const noexcept {
     const float largest = max(smooth_.bend[0], max(smooth_.bend[1], smooth_.bend[2]));
@@ -296,8 +327,7 @@ class SmoothMarch {
   PacketSamples<Value, N> samples_;
   D origin_[3], direction_[3];
   F direction_in_float_[3], cells_per_length_;
-  int levels_known_ = 0;
-  F step_[most_levels], weight_[most_levels][3];  ///< of each level; those known
+  StepLengths<N>& lengths_;
   I level_;
   M known_{false};            ///< whether `front_` is that at `at`
   Material<F> front_, back_;  ///< of the steps that were looked at

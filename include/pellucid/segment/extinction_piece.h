@@ -42,7 +42,7 @@ F first_turn(F c1, F c2, F c3, F close) noexcept {
 /// f(0) lies in [lower, upper], give or take `close`: so far may the data be outside without having
 /// left, and so far from lower or upper where they cross them.
 ///
-/// Newton's method from the secant of a monotone stretch, in a bracket that always holds the place;
+/// Halley's method from the secant of a monotone stretch, in a bracket that always holds the place;
 /// a step that leaves the bracket becomes a bisection. Lanes that are done wait for the others.
 template <class F>
 PieceEnd<F> piece_end(const CubicBernstein<F>& f, F lower, F upper, F close,
@@ -77,11 +77,12 @@ PieceEnd<F> piece_end(const CubicBernstein<F>& f, F lower, F upper, F close,
     const F value = g0 + place * (g1 + place * (g2 + place * g3));
     open = open & (abs(value) > close);
     if (!any(open)) break;
-    const F slope = g1 + place * (F(2) * g2 + place * (F(3) * g3));
+    const F bend = g2 + place * (F(3) * g3);  // half of the second derivative
+    const F slope = g1 + place * (g2 + bend);
     const auto below = value < F(0);
     lo = select(open & below, place, lo);
     hi = select(open & !below, place, hi);
-    const F next = place - value / slope;
+    const F next = place - value * slope / (slope * slope - value * bend);
     const auto kept = (next > lo) & (next < hi);
     place = select(open, select(kept, next, F(0.5f) * (lo + hi)), place);
   }

@@ -37,6 +37,10 @@ PELLUCID_ALWAYS_INLINE Batch<T, N> lookup(const T (&table)[Entries],
   }
 }
 
+template <class T, int N>
+inline constexpr bool looks_up_in_registers<Batch<T, N>> =
+    detail::Native<N>::template has_lookup<T>;
+
 /// For gather_pairs(): one offset for all lanes.
 struct SameOffset {
   std::ptrdiff_t offset;

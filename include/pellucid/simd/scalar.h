@@ -99,6 +99,10 @@ template <class T, std::size_t Entries>
 PELLUCID_HD constexpr T lookup(const T (&table)[Entries], int index) noexcept {
   return table[index];
 }
+/// Whether lookup() of 16 numbers takes less than a load for each lane.
+template <class T>
+inline constexpr bool looks_up_in_registers = false;
+
 /// out[k] = base[K index + k], k < K.
 template <int K>
 PELLUCID_HD constexpr void load_records(const float* base, int index, float* out) noexcept {

@@ -61,6 +61,11 @@ struct BinnedTransfer {
   float largest_color = 0;
 
   static constexpr int extinction_fields = 8, wide_extinction_fields = 4, color_fields = 8;
+  /// The same records field by field, where there are few of them: looked up in registers. What is
+  /// behind the last one is never met.
+  static constexpr int few = 16;
+  bool few_extinctions = false, few_colors = false;
+  float few_extinction[extinction_fields][few] = {}, few_color[color_fields][few] = {};
   static constexpr std::int32_t one_jump = 1 << 16;
   /// Beyond every value, and its differences to them are finite.
   static constexpr float far = 1.7e38f;
@@ -120,11 +125,24 @@ struct ExtinctionInterval {
   F lower, upper, at_lower, slope, largest, steepest, color_range, color_slope;
 };
 
+/// The records of intervals, from tables of few of them or of many.
+template <int Fields, class F, class Index>
+void load_interval(const float* records, bool are_few, const float (&few)[Fields][16],
+                   Index interval, F* fields) noexcept {
+  if constexpr (looks_up_in_registers<F>) {
+    if (are_few) {
+      for (int k = 0; k < Fields; ++k) fields[k] = lookup(few[k], interval);
+      return;
+    }
+  }
+  load_records<Fields>(records, interval, fields);
+}
+
 /// In double only what is rounded to nearest is known better than in float.
 template <class F, class Index>
 ExtinctionInterval<F> load_extinction(const BinnedTransfer& t, Index interval) noexcept {
   in_float_t<F> r[BinnedTransfer::extinction_fields];
-  load_records<BinnedTransfer::extinction_fields>(t.extinction, interval, r);
+  load_interval(t.extinction, t.few_extinctions, t.few_extinction, interval, r);
   if constexpr (is_single<F>) {
     return {r[0], r[1], r[2], r[3], r[4], r[5], r[6], r[7]};
   } else {
@@ -168,11 +186,25 @@ struct ColorInterval {
 /// The interval of the color that holds `value`, of no more than far/2.
 template <class F>
 ColorInterval<F> find_color(const BinnedTransfer& t, F value) noexcept {
-  const auto bin = bin_of(t, value);
-  auto index = gather(t.first_color, bin);
-  using Index = decltype(index);
-  index = index + select(value >= gather(t.color_split, bin), Index(1), Index(0));
+  using Index = index_t<F>;
   F r[BinnedTransfer::color_fields];
+  const auto found = [&] {
+    return ColorInterval<F>{r[0], r[1], {r[2], r[3], r[4]}, {r[5], r[6], r[7]}};
+  };
+  if constexpr (looks_up_in_registers<F>) {
+    if (t.few_colors) {
+      Index index(0);
+      for (int step = BinnedTransfer::few / 2; step > 0; step /= 2) {
+        const Index next = index + Index(step);
+        index = select(value >= lookup(t.few_color[1], next - Index(1)), next, index);
+      }
+      load_interval(t.color, true, t.few_color, index, r);
+      return found();
+    }
+  }
+  const Index bin = bin_of(t, value);
+  Index index = gather(t.first_color, bin);
+  index = index + select(value >= gather(t.color_split, bin), Index(1), Index(0));
   load_records<BinnedTransfer::color_fields>(t.color, index, r);
   if (t.has_full_bins) {
     for (auto further = value >= r[1]; any(further); further = value >= r[1]) {
@@ -180,7 +212,7 @@ ColorInterval<F> find_color(const BinnedTransfer& t, F value) noexcept {
       load_records<BinnedTransfer::color_fields>(t.color, index, r);
     }
   }
-  return {r[0], r[1], {r[2], r[3], r[4]}, {r[5], r[6], r[7]}};
+  return found();
 }
 
 /// The color at a value, where `known` holds the interval of a value before it, which mostly holds
