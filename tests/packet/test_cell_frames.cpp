@@ -220,6 +220,29 @@ TEST_F(CellFrames, BehindNarrowIntervalsAreWithinWhatTheySay) {
                        {1e-2, 1.0 / 512, 2e-4, 2e-5});
 }
 
+// Both sides of a jump of the color have one value in binary32, which colors are looked up by.
+TEST_F(CellFrames, AtAJumpAmongValuesAlikeInFloatAreWithinWhatTheySay) {
+  Seen seen;
+  for (const double change : {1e-10, 1e-9, 1e-8, 1e-7, 1e-6}) {
+    SCOPED_TRACE(testing::Message() << "change " << change);
+    std::vector<double> data;
+    for (int n = 0; n < 12 * 12 * 12; ++n) data.push_back(0.5 + change * (n % 12 - 5.3));
+    Volume::Description description;
+    description.dimensions = {12, 12, 12};
+    Scene one;
+    one.volume = std::make_shared<const Volume>(description, DataArray<double>(std::move(data)));
+    one.transfer_function = std::make_shared<const TransferFunction>(
+        std::vector<TransferFunction::Point>{{0, 0.1, {1, 0, 0}},
+                                             {0.5, 0.1, {1, 0, 0}},
+                                             {0.5, 0.1, {0, 0, 1}},
+                                             {1, 0.1, {0, 0, 1}}});
+    one.size = {12, 9};
+    one.camera = default_camera(*one.volume, one.size);
+    compare(one, {1e-2, 2e-4}, seen, Promise::honest);
+    if (HasFatalFailure()) return;
+  }
+}
+
 // Rays that hardly rise over planes behind which there is nothing: what one cell has too much no
 // other has too little.
 TEST_F(CellFrames, OfRaysAlongVacuumAreWithinWhatTheySay) {
