@@ -112,28 +112,33 @@ BinnedTransferStorage::BinnedTransferStorage(const PiecewiseLinear<double>& tabl
   const double widest_jump = 256 * unit * size;
   // The largest of something over an interval and those that rounding may take data to: up to the
   // next one on either side that is no jump.
-  const auto with_neighbours = [&](std::size_t i, const auto& of) {
-    const auto is_jump = [&](std::size_t k) {
-      return k > 0 && k < at_extinction.size() &&
-             !(table.value[at_extinction[k]] - table.value[at_extinction[k - 1]] > widest_jump);
+  const auto with_neighbours = [&](const auto& own) {
+    const auto is_jump = [&](std::size_t i) {
+      return i > 0 && i < at_extinction.size() &&
+             !(table.value[at_extinction[i]] - table.value[at_extinction[i - 1]] > widest_jump);
     };
-    auto largest = of(i);
-    for (std::size_t k = i; k > 0;) {
-      largest = std::max(largest, of(--k));
-      if (!is_jump(k)) break;
+    auto largest = own;
+    auto near = own[0];
+    for (std::size_t i = 1; i < own.size(); ++i) {
+      near = is_jump(i - 1) ? std::max(near, own[i - 1]) : own[i - 1];
+      largest[i] = std::max(largest[i], near);
     }
-    for (std::size_t k = i; k < at_extinction.size();) {
-      largest = std::max(largest, of(++k));
-      if (!is_jump(k)) break;
+    near = own.back();
+    for (std::size_t i = own.size() - 1; i > 0; --i) {
+      near = is_jump(i) ? std::max(near, own[i]) : own[i];
+      largest[i - 1] = std::max(largest[i - 1], near);
     }
     return largest;
   };
+  std::vector<double> own_slopes;
+  for (std::size_t i = 0; i <= at_extinction.size(); ++i) {
+    own_slopes.push_back(std::fabs(slope_of(i)));
+  }
+  const std::vector<double> steepest = with_neighbours(own_slopes);
   for (std::size_t i = 0; i <= at_extinction.size(); ++i) {
     const bool below = i == 0, beyond = i == at_extinction.size();
     const int a = below ? 0 : at_extinction[i - 1], b = beyond ? last : at_extinction[i];
     const double at_lower = table.material[a].extinction, at_upper = table.material[b].extinction;
-    const double steepest =
-        with_neighbours(i, [&](std::size_t k) { return std::fabs(slope_of(k)); });
     std::array<double, 3> least{infinity, infinity, infinity},
         most{-infinity, -infinity, -infinity};
     double color_slope = 0;
@@ -158,7 +163,7 @@ BinnedTransferStorage::BinnedTransferStorage(const PiecewiseLinear<double>& tabl
       extinction_.push_back(static_cast<float>(field));
       wide_extinction_.push_back(field);
     }
-    for (const double field : {std::max(at_lower, at_upper), steepest, range, color_slope}) {
+    for (const double field : {std::max(at_lower, at_upper), steepest[i], range, color_slope}) {
       extinction_.push_back(field > 0 ? above(field) : 0.0f);
     }
   }
@@ -174,13 +179,15 @@ BinnedTransferStorage::BinnedTransferStorage(const PiecewiseLinear<double>& tabl
   }
 
   // Beside a corner rounding may take a color from there, too.
-  constexpr std::size_t width_of_record = BinnedTransfer::extinction_fields;
-  const std::vector<float> own = extinction_;
-  const auto at_color_slope = [&](std::size_t i) { return (i + 1) * width_of_record - 1; };
+  const auto color_slope_of = [&](std::size_t i) -> float& {
+    return extinction_[(i + 1) * BinnedTransfer::extinction_fields - 1];
+  };
+  std::vector<float> own_color_slopes;
   for (std::size_t i = 0; i <= at_extinction.size(); ++i) {
-    extinction_[at_color_slope(i)] =
-        with_neighbours(i, [&](std::size_t k) { return own[at_color_slope(k)]; });
+    own_color_slopes.push_back(color_slope_of(i));
   }
+  const std::vector<float> color_slopes = with_neighbours(own_color_slopes);
+  for (std::size_t i = 0; i < color_slopes.size(); ++i) color_slope_of(i) = color_slopes[i];
 
   // Intervals of the color.
   for (std::size_t i = 0; i <= at_color.size(); ++i) {
@@ -283,9 +290,11 @@ BinnedTransferStorage::BinnedTransferStorage(const PiecewiseLinear<double>& tabl
         !(table.material[i].extinction == table.material[i - 1].extinction &&
           table.material[i].color == table.material[i - 1].color)) {
       // With data in binary64 only a color is that of the value in binary32, whose rounding takes
-      // it from a neighbour at most if intervals are wider than that.
+      // it from a neighbour at most if intervals are wider than 16 u of themselves; and beyond what
+      // data in binary64 are off by (32 u of it, six times over) nothing need be known of a jump.
       const double here = std::max(std::fabs(table.value[i - 1]), std::fabs(table.value[i]));
-      mark_jump(table.value[i - 1], table.value[i], distance > 0 && !(distance > 16 * unit * here));
+      const double widest_hard = std::max(16 * unit * here, 0x1p-44 * size);
+      mark_jump(table.value[i - 1], table.value[i], distance > 0 && !(distance > widest_hard));
     }
     // No piece goes across a corner of the extinction.
     const bool is_cut = std::binary_search(at_extinction.begin(), at_extinction.end(), i);

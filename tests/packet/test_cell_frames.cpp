@@ -113,13 +113,13 @@ class CellFrames : public RandomFrames {
     }
     for (std::size_t i = 0; i < corners.size(); ++i) {
       add(corners[i]);
-      if (i + 1 == corners.size() || one_of(2)) continue;
+      if (one_of(2)) continue;
       TransferFunction::Point p = corners[i];
       const double size = one_of(2) ? 1 : std::max(std::fabs(p.value), 1.0);
-      if (!jumps || one_of(2)) {
+      if (i + 1 < corners.size() && (!jumps || one_of(2))) {
         p.value += std::min(power(1e-7, 3e-4) * size, 0.5 * (corners[i + 1].value - p.value));
       }
-      p.extinction = one_of(3) ? 0 : uniform(0, 2) * std::max(p.extinction, 0.1);
+      if (!one_of(4)) p.extinction = one_of(3) ? 0 : uniform(0, 2) * std::max(p.extinction, 0.1);
       p.color = {uniform(0, 1), uniform(0, 1), uniform(0, 1)};
       add(p);
     }
@@ -198,14 +198,44 @@ TEST_F(CellFrames, BehindCellsWithoutALengthAreWithinWhatTheySay) {
   compare(scene(2187), {1e-2, 2e-4}, seen);
 }
 
-// A point that stands twice where nothing absorbs, behind a steep slope.
-TEST_F(CellFrames, BehindAPointThatStandsTwiceAreWithinWhatTheySay) {
+// A point that stands twice where nothing absorbs: behind it a steep slope, which rounding of the
+// data reaches, and in front of it another color, which the values have in binary32.
+TEST_F(CellFrames, BesideAPointThatStandsTwiceAreWithinWhatTheySay) {
   Seen seen;
-  Scene one = scene(3465);
-  const auto narrow = with_narrow_intervals(*one.transfer_function);
-  ASSERT_EQ(narrow->points().rbegin()[0].value, narrow->points().rbegin()[1].value);
-  one.transfer_function = narrow;
-  compare(one, {1e-2, 2e-4}, seen);
+  const auto of_two = [](float a, float b, int along) {
+    std::vector<float> data;
+    for (int n = 0; n < 17 * 17 * 17; ++n) {
+      data.push_back((along == 0 ? n % 17 : n / 289) % 2 == 0 ? a : b);
+    }
+    Volume::Description description;
+    description.dimensions = {17, 17, 17};
+    return std::make_shared<const Volume>(description, DataArray<float>(std::move(data)));
+  };
+  using Points = std::vector<TransferFunction::Point>;
+  for (const int along : {0, 2}) {
+    for (const double steep : {2.0, 50.0, 1e4}) {
+      SCOPED_TRACE(testing::Message() << along << ", " << steep);
+      Scene one;
+      one.volume = of_two(999.99994f, 1000.0f, along);
+      one.transfer_function =
+          std::make_shared<const TransferFunction>(Points{{999, steep, {1, 0, 0}},
+                                                          {1000, 0, {1, 0, 0}},
+                                                          {1000, 0, {0, 0, 1}},
+                                                          {1001, 0, {0, 0, 1}}});
+      one.size = {12, 9};
+      one.camera = default_camera(*one.volume, one.size);
+      one.camera.projection = Projection::orthographic;
+      one.camera.focal_point = {8.15, 8.3, 8};
+      one.camera.position = {8.15, 8.3, -30};
+      one.camera.up = {0, 1, 0};
+      one.camera.parallel_scale = 3.3;
+      compare(one, {1e-2, 2e-4}, seen, Promise::honest);
+      if (HasFatalFailure()) return;
+      one.volume = of_two(999.9999f, 1000.00006f, along);
+      compare(one, {1e-2, 2e-4}, seen, Promise::honest);
+      if (HasFatalFailure()) return;
+    }
+  }
 }
 
 // Jumps, and intervals of the transfer function that binary32 hardly knows, are gone through in

@@ -266,7 +266,7 @@ TEST_F(PixelsBetween, AreToldOfAsTheyAreDone) {
     };
     options.tile = [&](const TileResult& result) {
       if (result.tile.level == preview) {
-        EXPECT_LE(share, std::pow(0.25, preview));
+        EXPECT_LE(share, 1.2 * std::pow(0.25, preview));
       }
       return true;
     };

@@ -17,8 +17,9 @@ template <class Value, int N>
   using D = Batch<double, N>;
   const CellCorners<D> corners = ExactCorners<N>(grid, of.cell)(grid.data);
   const CubicBernstein<D> all = trilinear_cubic(corners, of.entry, of.exit);
-  const D size = max(abs(all.hull_min()), abs(all.hull_max()));
-  // As data_rounding() in segment/rounding.h.
+  // As data_rounding() in segment/rounding.h, but of the corners, which may cancel along the ray.
+  D size(0);
+  for (const D& value : corners.value) size = max(size, abs(value));
   const D rounding = D(32 * rounding_unit<double>) * size;
   const CubicBernstein<D> data = restrict_to(all, from, D(1));
   for (int k = 0; k < 4; ++k) span.data.b[k] = select(lanes, data.b[k], span.data.b[k]);

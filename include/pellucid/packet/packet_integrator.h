@@ -316,6 +316,7 @@ class PacketIntegrator {
   /// Lanes whose span is to be gone on with in double.
   void wait_for_double(M lanes) noexcept {
     if (!double_will_do_) {
+      // Not yet: a span that is being taken is not complete.
       handed_back_ = handed_back_ | lanes;
       return;
     }

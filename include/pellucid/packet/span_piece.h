@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <limits>
+
 #include "pellucid/segment/extinction_piece.h"
 #include "pellucid/simd/batch.h"
 
@@ -60,52 +62,33 @@ struct SpanLanes {
     for (BatchMask<N> crossed = lanes & piece.crosses; any(crossed);) {
       interval += select(crossed, select(piece.end.rising, I(1), I(-1)), I(0));
       extinction = load_extinction<F>(transfer, interval);
+      // What comes near a jump does not go in float. Past one, at once.
       if constexpr (is_single<F>) return;
-      // Past a jump, at once.
       crossed = crossed & (extinction.upper <= extinction.lower);
     }
   }
 };
 
-/// What jumps at the ends of its interval do to a piece.
-template <int N>
-struct BesideJumps {
-  Batch<float, N> extinction{0};  ///< how much they may move the mean extinction
-  Batch<float, N> kept_off{0};    ///< how far its values are kept off them, by the values' size
-  BatchMask<N> unclear{false};    ///< whether its colors may be those of the other side
-};
-
-/// Of a piece in double whose data are known to `value_error`. Its values in float, which colors
-/// are those of, are kept on this side.
+/// What jumps at the ends of its interval can move the mean extinction of a piece by, whose data
+/// are known to `value_error` (that of the corners' places included); lanes without any: 0.
 ///
-/// Data within δ of a jump may be on either side. Of a monotone piece that begins there, with the
-/// differences d of its coefficients, f(t) - f(0) >= d₀ (1 - (1 - t)³) >= d₀ t: that is a share of
-/// at most δ/d₀; and likewise where it ends.
+/// Data within some δ of a jump may be on either side. Of a monotone piece that begins there, with
+/// the differences d of its coefficients, f(t) - f(0) >= d₀ (1 - (1 - t)³) >= d₀ t: that is a share
+/// of at most δ/d₀; and likewise where it ends. δ is six times `value_error`: the data's, twice
+/// that for what d₁ and d₂ may fall short of being monotone, as where the piece ends because its
+/// data turn, and once more what that comes to.
 template <int N>
-BesideJumps<N> keep_off_jumps(const SpanLanes<double, N>& span, const BinnedTransfer& transfer,
-                              BatchMask<N> lanes, Batch<double, N> value_error,
-                              SpanPiece<double, N>& piece) noexcept {
+Batch<float, N> extinction_across_jumps(const SpanLanes<double, N>& span,
+                                        const BinnedTransfer& transfer, BatchMask<N> lanes,
+                                        const CubicBernstein<Batch<double, N>>& f,
+                                        Batch<double, N> value_error) noexcept {
   using D = Batch<double, N>;
   using F = Batch<float, N>;
   using M = BatchMask<N>;
-  BesideJumps<N> jumps;
   const F size = gather(transfer.jump, select(lanes, span.interval, Batch<std::int32_t, N>(0)));
   const M beside = lanes & (size > F(0));
-  if (none(beside)) return jumps;
-
-  constexpr float margin = 8 * rounding_unit<float>;
-  const F off = F(margin) * max(abs(piece.seen.lower), abs(piece.seen.upper));
-  jumps.unclear = beside & !(piece.seen.upper - piece.seen.lower > F(8) * off);
-  const M kept = beside & !jumps.unclear;
-  jumps.kept_off = select(kept, F(margin), F(0));
-  piece.seen.lower = select(kept, piece.seen.lower + off, piece.seen.lower);
-  piece.seen.upper = select(kept, piece.seen.upper - off, piece.seen.upper);
-  piece.seen.value =
-      select(kept, clamp(piece.seen.value, piece.seen.lower, piece.seen.upper), piece.seen.value);
-
-  // The coefficients of what ends where the data turn are monotone but for rounding.
+  if (none(beside)) return F(0);
   const D reach = D(6) * value_error;
-  const CubicBernstein<D>& f = piece.parts.front;
   const D sign = select(f.b[3] > f.b[0], D(1), D(-1));
   const D d0 = sign * (f.b[1] - f.b[0]), d1 = sign * (f.b[2] - f.b[1]),
           d2 = sign * (f.b[3] - f.b[2]);
@@ -118,8 +101,7 @@ BesideJumps<N> keep_off_jumps(const SpanLanes<double, N>& span, const BinnedTran
   const M near = (f.hull_min() < lower) | (f.hull_max() > upper);
   const D share = select(turns, select(near, D(1), D(0)),
                          min(share_at(f.b[0], d0) + share_at(f.b[3], d2), D(1)));
-  jumps.extinction = select(beside, size * convert<float>(share), F(0));
-  return jumps;
+  return select(beside, size * convert<float>(share), F(0));
 }
 
 /// Integrates the next piece of the lanes' spans. `place_error`: how far a span's ends may be from
@@ -164,14 +146,21 @@ SpanPiece<T, N> next_piece(SpanLanes<T, N>& span, const BinnedTransfer& transfer
   const CubicBernstein<F>& f = piece.parts.front;
   piece.length = span.length * piece.place;
   const PieceDepth<F> depth = piece_depth(f, interval, piece.length);
-  piece.seen = {convert<float>(depth.depth), convert<float>(depth.value),
-                convert<float>(depth.lower), convert<float>(depth.upper)};
+  piece.seen = {convert<float>(depth.depth),       convert<float>(depth.value),
+                convert<float>(depth.lower),       convert<float>(depth.upper),
+                convert<float>(depth.color_lower), convert<float>(depth.color_upper)};
   piece.spread = {convert<float>(interval.color_range), convert<float>(interval.color_slope),
                   kinks_of_color(transfer, piece.seen.lower, piece.seen.upper)};
   const F value_error = span.rounding + close;
-  BesideJumps<N> jumps;
   if constexpr (!is_single<F>) {
-    jumps = keep_off_jumps(span, transfer, lanes, value_error, piece);
+    // In float the ends of an interval, and what lies beside them, may have a neighbour's colors.
+    const auto within = [](Single end) noexcept {
+      return Single(2 * rounding_unit<float>) * abs(end) +
+             Single(std::numeric_limits<float>::min());
+    };
+    const Single lower = convert<float>(interval.lower), upper = convert<float>(interval.upper);
+    piece.seen.color_lower = max(piece.seen.lower, lower + within(lower));
+    piece.seen.color_upper = min(piece.seen.upper, upper - within(upper));
   }
   piece.found = colored_piece(piece.seen, piece.spread, transfer, lanes, color);
 
@@ -193,17 +182,15 @@ SpanPiece<T, N> next_piece(SpanLanes<T, N>& span, const BinnedTransfer& transfer
   const Single largest = convert<float>(interval.largest);
   const Single depth_error =
       convert<float>(piece.length * (value_error * steep + F(8 * u) * interval.largest)) +
-      convert<float>(piece.length) * jumps.extinction +
       place_error * convert<float>((F(1) - span.from) * piece.place) * largest;
   const SegmentResult<Single>& s = piece.found.segment;
-  // In double a color is still that of the value in float, kept off jumps.
-  const Single shown_error = convert<float>(value_error) +
-                             (is_single<F> ? Single(0)
-                                           : (Single(4 * u) + jumps.kept_off) *
-                                                 max(abs(piece.seen.lower), abs(piece.seen.upper)));
+  // In double a color is still that of the value in float, kept in the interval.
+  const Single shown_error =
+      convert<float>(value_error) +
+      (is_single<F> ? Single(0)
+                    : Single(8 * u) * max(abs(piece.seen.lower), abs(piece.seen.upper)));
   const Single color_rounding =
-      Single(colored) * largest_color +
-      select(jumps.unclear, largest_color, min(shown_error * piece.spread.slope, largest_color));
+      Single(colored) * largest_color + min(shown_error * piece.spread.slope, largest_color);
   const Single opacity_rounding =
       Single(colored) * s.opacity +
       min(select(depth_error <= Single(1), Single(2) * depth_error * s.transparency, Single(1)),
@@ -213,6 +200,12 @@ SpanPiece<T, N> next_piece(SpanLanes<T, N>& span, const BinnedTransfer& transfer
       min(piece.spread.slope * convert<float>(f.hull_max() - f.hull_min()), piece.spread.range);
   piece.rounding = s.opacity * color_rounding + largest_color * opacity_rounding +
                    colors * min(depth_error, Single(1));
+  if constexpr (!is_single<F>) {
+    // What is on the other side of a jump may be in front of all of the piece, in other colors.
+    const Single across = extinction_across_jumps(span, transfer, lanes, f, value_error);
+    piece.rounding +=
+        Single(2) * largest_color * min(convert<float>(piece.length) * across, Single(1));
+  }
   return piece;
 }
 

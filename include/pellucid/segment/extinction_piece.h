@@ -111,6 +111,9 @@ struct PieceDepth {
   F depth;         ///< exact up to rounding: the mean of a linear function is that of the mean
   F value;         ///< the mean of the data weighted by extinction, exact likewise
   F lower, upper;  ///< what the data lie between
+  /// What values that colors are looked up by are kept between: those of the piece's own interval,
+  /// whatever is rounded.
+  F color_lower, color_upper;
 };
 
 /// mean + slope · variance / mean extinction is the mean that is weighted by extinction.
@@ -131,6 +134,8 @@ PieceDepth<F> piece_depth(const CubicBernstein<F>& data, const ExtinctionInterva
   piece.depth = length * extinction;
   const F shift = select(extinction > F(0), interval.slope * variance / extinction, F(0));
   piece.value = clamp(mean + shift, piece.lower, piece.upper);
+  piece.color_lower = piece.lower;
+  piece.color_upper = piece.upper;
   return piece;
 }
 
@@ -160,7 +165,8 @@ BoundedSegment<F> colored_piece(const PieceDepth<F>& piece, const ColorSpread<F>
                                 const BinnedTransfer& transfer, const mask_t<F>& wanted,
                                 ColorInterval<F>& known) noexcept {
   BoundedSegment<F> result;
-  result.segment = segment_of_depth(piece.depth, color_at(transfer, piece.value, wanted, known));
+  const F value = clamp(piece.value, piece.color_lower, piece.color_upper);
+  result.segment = segment_of_depth(piece.depth, color_at(transfer, value, wanted, known));
   const F colors = min(spread.range, spread.slope * max(piece.upper - piece.lower, F(0)));
   const F moves = colors * mean_color_bound(piece.depth) + spread.kinks;
   result.color_error = result.segment.opacity * min(moves, spread.range);
@@ -228,19 +234,22 @@ BoundedSegment<F> panel_piece(const PieceDepth<F>& piece, const PiecePanel<F>& p
     const auto shines = weight > F(0);
     return select(shines, F(1) / select(shines, weight, F(1)), F(0)) * sum;
   };
+  const auto color_in = [&](F value) noexcept {
+    return color_at(transfer, clamp(value, piece.color_lower, piece.color_upper), wanted, known);
+  };
   Rgb<F> color{};
   if (proved || !transfer.bends) {
     const PanelSums<F> sums =
         cubic_panel_sums<piece_nodes>(panel.rise, panel.rate_first, panel.rate_by_rise, middle);
     const F off = mean_of(sums.share, proved ? found.opacity : sums.weight);
-    color = color_at(transfer, panel.first + clamp(middle + off, lower, upper), wanted, known);
+    color = color_in(panel.first + clamp(middle + off, lower, upper));
   } else {
     F weights(0);
-    for_each_panel_node<piece_nodes>(
-        panel.rise, panel.rate_first, panel.rate_by_rise, [&](F rise, F weight) noexcept {
-          weights += weight;
-          color += weight * color_at(transfer, panel.first + rise, wanted, known);
-        });
+    for_each_panel_node<piece_nodes>(panel.rise, panel.rate_first, panel.rate_by_rise,
+                                     [&](F rise, F weight) noexcept {
+                                       weights += weight;
+                                       color += weight * color_in(panel.first + rise);
+                                     });
     color = mean_of(color, weights);
   }
   BoundedSegment<F> result;

@@ -36,8 +36,8 @@ struct BinnedTransfer {
   /// Sums over the bins in front of each, bins + 1 of them: how many absorb, plus 2^16 times how
   /// many hold a jump or what binary32 cannot tell apart.
   const std::int32_t* marks = nullptr;
-  /// The same, of bins that hold control points which are not equal and yet too close for colors in
-  /// binary32 to tell them apart: not even binary64 is good enough here.
+  /// The same, of bins that hold control points which are not equal and yet too close for colors,
+  /// which are looked up by values in binary32, or even for data in binary64.
   const std::int32_t* hard_jumps = nullptr;
   /// Sums over the bins in front of each of how much the slope of the color changes, in all,
   /// largest channel, where the extinction has no corner.
@@ -127,11 +127,12 @@ struct ExtinctionInterval {
 
 /// The records of intervals, from tables of few of them or of many.
 template <int Fields, class F, class Index>
-void load_interval(const float* records, bool are_few, const float (&few)[Fields][16],
-                   Index interval, F* fields) noexcept {
+void load_interval(const float* records, bool are_few,
+                   const float (&by_field)[Fields][BinnedTransfer::few], Index interval,
+                   F* fields) noexcept {
   if constexpr (looks_up_in_registers<F>) {
     if (are_few) {
-      for (int k = 0; k < Fields; ++k) fields[k] = lookup(few[k], interval);
+      for (int k = 0; k < Fields; ++k) fields[k] = lookup(by_field[k], interval);
       return;
     }
   }
