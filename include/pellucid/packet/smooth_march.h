@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <algorithm>
-
 #include "pellucid/error/random_errors.h"
 #include "pellucid/packet/packet_samples.h"
 #include "pellucid/packet/sampler_transfer.h"
@@ -30,7 +28,9 @@ struct StepLengths {
     }
     if (same) return;
     levels = 0;
-    for (int a = 0; a < 3; ++a) std::copy_n(directions[a], N, direction[a]);
+    for (int a = 0; a < 3; ++a) {
+      for (int l = 0; l < N; ++l) direction[a][l] = directions[a][l];
+    }
   }
 };
 

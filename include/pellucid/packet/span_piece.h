@@ -184,11 +184,17 @@ SpanPiece<T, N> next_piece(SpanLanes<T, N>& span, const BinnedTransfer& transfer
       convert<float>(piece.length * (value_error * steep + F(8 * u) * interval.largest)) +
       place_error * convert<float>((F(1) - span.from) * piece.place) * largest;
   const SegmentResult<Single>& s = piece.found.segment;
-  // In double a color is still that of the value in float, kept in the interval.
-  const Single shown_error =
-      convert<float>(value_error) +
-      (is_single<F> ? Single(0)
-                    : Single(8 * u) * max(abs(piece.seen.lower), abs(piece.seen.upper)));
+  Single shown_error = convert<float>(value_error);
+  if constexpr (!is_single<F>) {
+    // In double a color is still that of the value in float, 2 u of it for itself and the table, 3
+    // at a panel's nodes; to keep it in the interval moves it by up to 3 more. Of a piece that is
+    // not flat that is a quarter of the nodes at most.
+    const PieceDepth<Single>& seen = piece.seen;
+    const Single size = max(abs(seen.lower), abs(seen.upper));
+    const M moved = (seen.value < seen.color_lower) | (seen.value > seen.color_upper) |
+                    !(seen.upper - seen.lower > Single(64 * u) * size);
+    shown_error += select(moved, Single(8 * u), Single(4 * u)) * size;
+  }
   const Single color_rounding =
       Single(colored) * largest_color + min(shown_error * piece.spread.slope, largest_color);
   const Single opacity_rounding =
