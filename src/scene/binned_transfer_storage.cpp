@@ -63,10 +63,11 @@ std::array<double, 3> components(const Rgb<double>& c) {
   return {c.r, c.g, c.b};
 }
 
-/// Records field by field, if there are few of them; `beyond` in the upper ends of those that are
-/// not there.
+/// Records field by field, if there are few of them; the upper ends of those that are not there are
+/// infinite.
 template <std::size_t Fields, std::size_t Few>
-bool by_fields(const std::vector<float>& records, float beyond, float (&fields)[Fields][Few]) {
+bool by_fields(const std::vector<float>& records, float (&fields)[Fields][Few]) {
+  const float beyond = std::numeric_limits<float>::infinity();
   const std::size_t count = records.size() / Fields;
   if (count > Few) return false;
   for (std::size_t i = 0; i < Few; ++i) {
@@ -366,9 +367,8 @@ BinnedTransferStorage::BinnedTransferStorage(const PiecewiseLinear<double>& tabl
   }
   view_.largest_extinction = above(largest_extinction);
   view_.largest_color = above(largest_color);
-  view_.few_extinctions =
-      by_fields(extinction_, std::numeric_limits<float>::infinity(), view_.few_extinction);
-  view_.few_colors = by_fields(color_, std::numeric_limits<float>::infinity(), view_.few_color);
+  view_.few_extinctions = by_fields(extinction_, view_.few_extinction);
+  view_.few_colors = by_fields(color_, view_.few_color);
   view_.extinction = extinction_.data();
   view_.jump = jump_.data();
   view_.wide_extinction = wide_extinction_.data();

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include <cmath>
+#include <cstddef>
 #include <vector>
 
 #include "pellucid/scene/transfer_function.h"
