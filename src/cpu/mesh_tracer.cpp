@@ -133,8 +133,7 @@ class UnivariateMeshTracer : public MeshTracer {
     const TransferTables& tables = transfer_.tables();
     prepare(task, tables.largest_extinction, false);
     if (kernel_ == nullptr) return;
-    binned_.emplace(tables.wide, tables.merged, tables.merged_count,
-                    largest_value(task.scene.mesh->statistics(0)));
+    binned_.emplace(tables.wide, largest_value(task.scene.mesh->statistics(0)));
     job_.transfer = &binned_->view();
     job_.integrate_span = &UnivariateMeshTracer::integrate_span;
   }

@@ -78,7 +78,7 @@ PacketTracer::PacketTracer(const Volume& volume, const ClassifiedBlocks& blocks,
       rays_apart_(blocks.records),
       transfer_(transfer),
       wanted_(wanted),
-      binned_(transfer.wide, transfer.merged, transfer.merged_count, largest_value(volume)),
+      binned_(transfer.wide, largest_value(volume)),
       samples_(transfer.single),
       kernel_(kernel) {
   set_grid(volume, job_);

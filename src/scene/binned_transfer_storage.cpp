@@ -10,6 +10,7 @@ namespace pellucid {
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
+constexpr double far = static_cast<double>(BinnedTransfer::far);
 constexpr double unit = 0x1p-24;
 /// Corners that move a value by less than this share of it are rounding.
 constexpr double flat = 0x1p-46;
@@ -86,7 +87,6 @@ bool absorbs(const PiecewiseLinear<double>& table, int i) {
 }  // namespace
 
 BinnedTransferStorage::BinnedTransferStorage(const PiecewiseLinear<double>& table,
-                                             const double* merged, int merged_count,
                                              double largest_value) {
   const int last = table.count - 1;
   double largest_extinction = 0, largest_color = 0;
@@ -158,7 +158,6 @@ BinnedTransferStorage::BinnedTransferStorage(const PiecewiseLinear<double>& tabl
     }
     double range = 0;
     for (std::size_t c = 0; c < 3; ++c) range = std::max(range, most[c] - least[c]);
-    const double far = static_cast<double>(BinnedTransfer::far);
     for (const double field :
          {below ? -far : table.value[a], beyond ? far : table.value[b], at_lower, slope_of(i)}) {
       extinction_.push_back(static_cast<float>(field));
@@ -197,7 +196,9 @@ BinnedTransferStorage::BinnedTransferStorage(const PiecewiseLinear<double>& tabl
     const double width = below || beyond ? 0 : table.value[b] - table.value[a];
     const std::array<double, 3> from = components(table.material[a].color),
                                 to = components(table.material[b].color);
-    color_.push_back(below ? -BinnedTransfer::far : static_cast<float>(table.value[a]));
+    const double lower = below ? -far : table.value[a];
+    wide_color_end_.push_back(lower);
+    color_.push_back(static_cast<float>(lower));
     color_.push_back(beyond ? std::numeric_limits<float>::infinity()
                             : static_cast<float>(table.value[b]));
     for (const double c : from) color_.push_back(static_cast<float>(c));
@@ -205,6 +206,8 @@ BinnedTransferStorage::BinnedTransferStorage(const PiecewiseLinear<double>& tabl
       color_.push_back(width > 0 ? static_cast<float>((to[c] - from[c]) / width) : 0.0f);
     }
   }
+
+  wide_color_end_.push_back(infinity);
 
   // Bins.
   const double first_value = table.value[0], span = table.value[last] - first_value;
@@ -290,11 +293,9 @@ BinnedTransferStorage::BinnedTransferStorage(const PiecewiseLinear<double>& tabl
     if (in_front && !(distance > widest_jump) &&
         !(table.material[i].extinction == table.material[i - 1].extinction &&
           table.material[i].color == table.material[i - 1].color)) {
-      // With data in binary64 only a color is that of the value in binary32, whose rounding takes
-      // it from a neighbour at most if intervals are wider than 16 u of themselves; and beyond what
-      // data in binary64 are off by (32 u of it, six times over) nothing need be known of a jump.
-      const double here = std::max(std::fabs(table.value[i - 1]), std::fabs(table.value[i]));
-      const double widest_hard = std::max(16 * unit * here, 0x1p-44 * size);
+      // Beyond what data in binary64 are off by (32 u of it, six times over) nothing need be known
+      // of a jump.
+      const double widest_hard = 0x1p-44 * size;
       mark_jump(table.value[i - 1], table.value[i], distance > 0 && !(distance > widest_hard));
     }
     // No piece goes across a corner of the extinction.
@@ -306,7 +307,6 @@ BinnedTransferStorage::BinnedTransferStorage(const PiecewiseLinear<double>& tabl
     }
     bins_of(table.value[i], table.value[i], [&](std::size_t b) { bend[b] += change; });
   }
-  for (int m = 0; m < merged_count; ++m) mark_jump(merged[m], merged[m], true);
 
   std::int32_t marks = 0, hard_jumps = 0;
   double bends = 0;
@@ -350,7 +350,6 @@ BinnedTransferStorage::BinnedTransferStorage(const PiecewiseLinear<double>& tabl
     if (supports.empty()) supports.push_back({table.value[last], infinity});
     supports.back().upper = infinity;
   }
-  const double far = static_cast<double>(BinnedTransfer::far);
   const auto as_float = [&](double x) { return static_cast<float>(std::clamp(x, -far, far)); };
   const bool none = supports.empty();
   view_.support_min =
@@ -373,6 +372,7 @@ BinnedTransferStorage::BinnedTransferStorage(const PiecewiseLinear<double>& tabl
   view_.jump = jump_.data();
   view_.wide_extinction = wide_extinction_.data();
   view_.color = color_.data();
+  view_.wide_color_end = wide_color_end_.data();
   view_.first_extinction = first_extinction_.data();
   view_.first_color = first_color_.data();
   view_.color_split = color_split_.data();

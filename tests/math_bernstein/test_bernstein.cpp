@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
+
 #include "tests/math_bernstein/wide_cubic.h"
 #include "tests/support/accuracy.h"
 
@@ -72,6 +75,32 @@ TYPED_TEST(Bernstein, ValuesAndRestrictionsAreWithinFourUnits) {
   part.print();
   EXPECT_LE(value.largest(), 4);
   EXPECT_LE(part.largest(), 4);
+}
+
+TYPED_TEST(Bernstein, SlopesAreNowhereLessThanTheLeast) {
+  using T = TypeParam;
+  std::mt19937_64 random(3);
+  int known = 0, attained = 0;
+  for (int i = 0; i < 20000; ++i) {
+    const CubicBernstein<T> f = test::some_cubic<T>(random);
+    const auto said = static_cast<long double>(least_slope(f));
+    if (!(said > 0)) continue;
+    ++known;
+    // Secants over a 64th, of which no one is less steep than the slope somewhere in it.
+    const long double rounding = 64 * 8 * static_cast<long double>(rounding_unit<T>) *
+                                 static_cast<long double>(test::largest_coefficient(f));
+    long double least = INFINITY;
+    for (int k = 0; k < 64; ++k) {
+      const long double rise =
+          test::wide_value(f, (k + 1) / 64.0L) - test::wide_value(f, k / 64.0L);
+      least = std::min(least, std::fabs(64 * rise));
+    }
+    ASSERT_GE(least, said - rounding) << i;
+    if (least <= 1.05L * said) ++attained;
+  }
+  EXPECT_GT(known, 2000);
+  EXPECT_GT(attained, 500);
+  EXPECT_LE(least_slope(CubicBernstein<T>{{T(0), T(2), T(1), T(3)}}), T(0));
 }
 
 TYPED_TEST(Bernstein, MeanIsTheIntegral) {

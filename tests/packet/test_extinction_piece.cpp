@@ -316,6 +316,19 @@ BoundedSegment<float> seen_in_panel(const CubicBernstein<float>& data, float len
                      color);
 }
 
+TEST(ExtinctionPiece, KinksBetweenValuesAlikeInFloatCount) {
+  constexpr double offset = 1000, width = 0x1p-20;  // a 64th of what floats differ by
+  const auto point = [](double share, double red) {
+    return TransferFunction::Point{offset + share * width, 1, {red, 0, 0}};
+  };
+  const TransferFunction function({point(0, 0), point(0.5, 1), point(1, 0), point(1e8, 0)});
+  const BinnedTransferStorage storage(function.view<double>());
+  const double lower = offset + 0.25 * width, upper = offset + 0.75 * width;
+  ASSERT_EQ(static_cast<float>(lower), static_cast<float>(upper));
+  // The kink's mean is 0.75 where data are spread evenly, and the color at their mean is 1.
+  EXPECT_GE(kinks_of_color(storage.view(), lower, upper), 0.25f);
+}
+
 TEST(ExtinctionPiece, DepthAndColorAreWithinWhatIsSaid) {
   Cubics cubics(9);
   int pieces = 0, bent = 0, thick = 0, in_panel = 0;
@@ -323,7 +336,7 @@ TEST(ExtinctionPiece, DepthAndColorAreWithinWhatIsSaid) {
   for (int t = 0; t < 300; ++t) {
     const TransferFunction function(random_points(cubics));
     const PiecewiseLinear<double> table = function.view<double>();
-    const BinnedTransferStorage storage(table, nullptr, 0);
+    const BinnedTransferStorage storage(table);
     const BinnedTransfer& bins = storage.view();
     ColorInterval<float> color;
     const double first = table.value[0], last = table.value[table.count - 1];

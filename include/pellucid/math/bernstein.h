@@ -41,6 +41,14 @@ struct CubicBernstein {
   }
 };
 
+/// A bound from below on |f'| over [0,1]; 0 or less where the coefficients are not monotone, and
+/// nothing is known.
+template <class T>
+PELLUCID_HD constexpr T least_slope(const CubicBernstein<T>& f) noexcept {
+  const T d0 = f.b[1] - f.b[0], d1 = f.b[2] - f.b[1], d2 = f.b[3] - f.b[2];
+  return T(3) * max(min(d0, min(d1, d2)), -max(d0, max(d1, d2)));
+}
+
 /// f(t), t in [0,1], by de Casteljau: within the hull, also after rounding; equal coefficients give
 /// their value exactly. Largest error: 4 u max|b_k|, asserted in tests/math_bernstein.
 template <class T>

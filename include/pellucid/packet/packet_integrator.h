@@ -243,7 +243,7 @@ class PacketIntegrator {
   [[gnu::flatten]] void integrate_pieces(SpanLanes<T, N>& span, M on) noexcept {
     using Place = Batch<T, N>;
     constexpr bool wide = !is_single<T>;
-    SpanPiece<T, N> piece = next_piece(span, transfer_, on, place_error_, largest_color_, color_);
+    SpanPiece<T, N> piece = next_piece(span, transfer_, on, place_error_, largest_color_);
     const SegmentResult<F>& s = piece.found.segment;
     const F length = convert<float>(piece.length);
     fold_.budget.pass_to(
@@ -271,7 +271,7 @@ class PacketIntegrator {
                          (in_panel_cost + cost_of_rounding <= allowed) &
                          (transparency * piece.found.color_error > halved_in_vain);
       if (any(in_panel)) {
-        color_in_panel(span, proved, transfer_, in_panel, color_, piece);
+        color_in_panel(span, proved, transfer_, in_panel, piece);
         take = fits();
         rest = rest & !take;
       }
@@ -410,12 +410,11 @@ class PacketIntegrator {
   M whole_block_{false};    ///< of one material
   SpanLanes<float, N> single_;
   SpanLanes<double, N> double_;
-  int waited_ = 0;          ///< pieces that lanes which wait for double could have integrated
-  F left_;                  ///< of the ray, from the span's begin on, world length
-  F span_length_;           ///< of all of it
-  F place_error_;           ///< how far spans' ends may be from where they are thought to be,
-                            ///< world length
-  ColorInterval<F> color_;  ///< of a piece before
+  int waited_ = 0;  ///< pieces that lanes which wait for double could have integrated
+  F left_;          ///< of the ray, from the span's begin on, world length
+  F span_length_;   ///< of all of it
+  F place_error_;   ///< how far spans' ends may be from where they are thought to be,
+                    ///< world length
   I code_;
 
   SampledErrors<F> sampled_;

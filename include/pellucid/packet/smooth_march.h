@@ -72,9 +72,7 @@ class SmoothMarch {
     }
     samples_.set_direction(direction_);
     cells_per_length_ = sqrt(square);
-    if (!(smooth_.longest_step > 0)) return;
-    lengths_.begin(direction);
-    if (lengths_.levels == 0) find_step(0);
+    if (smooth_.longest_step > 0) lengths_.begin(direction);
   }
 
   /// Begins, or goes on with, the stretches of the lanes.

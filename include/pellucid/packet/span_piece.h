@@ -22,7 +22,7 @@ struct SpanPiece {
   BatchMask<N> crosses;  ///< whether it ends at one
   CutCubic<F> parts;     ///< the piece's data, and those behind it
   F length;              ///< world length
-  PieceDepth<Single> seen;
+  PieceDepth<F> seen;
   ColorSpread<Single> spread;
   BoundedSegment<Single> found;
   Single rounding;  ///< what rounding does to it, as of RayBudget::spend()
@@ -42,6 +42,7 @@ struct SpanLanes {
   Batch<std::int32_t, N> interval;   ///< of the extinction, that holds the first of the data
   ExtinctionInterval<F> extinction;  ///< that of `interval`
   Batch<std::int32_t, N> pieces;     ///< that were tried
+  ColorInterval<F> color;            ///< of a piece before
 
   /// Lanes that have got a new span.
   void begin(BatchMask<N> lanes) noexcept {
@@ -105,12 +106,11 @@ Batch<float, N> extinction_across_jumps(const SpanLanes<double, N>& span,
 }
 
 /// Integrates the next piece of the lanes' spans. `place_error`: how far a span's ends may be from
-/// where they are thought to be, world length. Depths are found in T, colors in float.
+/// where they are thought to be, world length. Colors are floats, of values in T.
 template <class T, int N>
 SpanPiece<T, N> next_piece(SpanLanes<T, N>& span, const BinnedTransfer& transfer,
                            BatchMask<N> lanes, Batch<float, N> place_error,
-                           Batch<float, N> largest_color,
-                           ColorInterval<Batch<float, N>>& color) noexcept {
+                           Batch<float, N> largest_color) noexcept {
   using F = Batch<T, N>;
   using Single = Batch<float, N>;
   using M = BatchMask<N>;
@@ -145,24 +145,22 @@ SpanPiece<T, N> next_piece(SpanLanes<T, N>& span, const BinnedTransfer& transfer
   }
   const CubicBernstein<F>& f = piece.parts.front;
   piece.length = span.length * piece.place;
-  const PieceDepth<F> depth = piece_depth(f, interval, piece.length);
-  piece.seen = {convert<float>(depth.depth),       convert<float>(depth.value),
-                convert<float>(depth.lower),       convert<float>(depth.upper),
-                convert<float>(depth.color_lower), convert<float>(depth.color_upper)};
+  piece.seen = piece_depth(f, interval, piece.length);
   piece.spread = {convert<float>(interval.color_range), convert<float>(interval.color_slope),
                   kinks_of_color(transfer, piece.seen.lower, piece.seen.upper)};
   const F value_error = span.rounding + close;
+  F shown_error = value_error;
   if constexpr (!is_single<F>) {
-    // In float the ends of an interval, and what lies beside them, may have a neighbour's colors.
-    const auto within = [](Single end) noexcept {
-      return Single(2 * rounding_unit<float>) * abs(end) +
-             Single(std::numeric_limits<float>::min());
+    // Beside a jump is another color: that of a piece is not looked up at its interval's very ends,
+    // and so up to 3 u further inside.
+    const auto within = [](F end) noexcept {
+      return F(2 * rounding_unit<F>) * abs(end) + F(std::numeric_limits<T>::min());
     };
-    const Single lower = convert<float>(interval.lower), upper = convert<float>(interval.upper);
-    piece.seen.color_lower = max(piece.seen.lower, lower + within(lower));
-    piece.seen.color_upper = min(piece.seen.upper, upper - within(upper));
+    shown_error = F(1.125f) * value_error;  // of 40 u of the data at least
+    piece.seen.color_lower = max(piece.seen.lower, interval.lower + within(interval.lower));
+    piece.seen.color_upper = min(piece.seen.upper, interval.upper - within(interval.upper));
   }
-  piece.found = colored_piece(piece.seen, piece.spread, transfer, lanes, color);
+  piece.found = colored_piece(piece.seen, piece.spread, transfer, lanes, span.color);
 
   // What rounding can do, as in segment/rounding.h.
   constexpr float u = rounding_unit<float>;
@@ -171,12 +169,11 @@ SpanPiece<T, N> next_piece(SpanLanes<T, N>& span, const BinnedTransfer& transfer
   // data rise throughout, no more than 2 value_error over their least slope.
   const M touches = (f.hull_min() - value_error < interval.lower) |
                     (f.hull_max() + value_error > interval.upper) | piece.crosses;
-  const F d0 = f.b[1] - f.b[0], d1 = f.b[2] - f.b[1], d2 = f.b[3] - f.b[2];
-  const F least_slope = F(3) * max(min(d0, min(d1, d2)), -max(d0, max(d1, d2)));
   const F slope = abs(interval.slope);
   F steep = slope;
   if (any(touches)) {
-    const F near = select(least_slope > F(2) * value_error, F(2) * value_error / least_slope, F(1));
+    const F rise = least_slope(f), reach = F(2) * value_error;
+    const F near = select(rise > reach, reach / rise, F(1));
     steep = select(touches, slope + near * (interval.steepest - slope), slope);
   }
   const Single largest = convert<float>(interval.largest);
@@ -184,19 +181,9 @@ SpanPiece<T, N> next_piece(SpanLanes<T, N>& span, const BinnedTransfer& transfer
       convert<float>(piece.length * (value_error * steep + F(8 * u) * interval.largest)) +
       place_error * convert<float>((F(1) - span.from) * piece.place) * largest;
   const SegmentResult<Single>& s = piece.found.segment;
-  Single shown_error = convert<float>(value_error);
-  if constexpr (!is_single<F>) {
-    // In double a color is still that of the value in float, 2 u of it for itself and the table, 3
-    // at a panel's nodes; to keep it in the interval moves it by up to 3 more. Of a piece that is
-    // not flat that is a quarter of the nodes at most.
-    const PieceDepth<Single>& seen = piece.seen;
-    const Single size = max(abs(seen.lower), abs(seen.upper));
-    const M moved = (seen.value < seen.color_lower) | (seen.value > seen.color_upper) |
-                    !(seen.upper - seen.lower > Single(64 * u) * size);
-    shown_error += select(moved, Single(8 * u), Single(4 * u)) * size;
-  }
   const Single color_rounding =
-      Single(colored) * largest_color + min(shown_error * piece.spread.slope, largest_color);
+      Single(colored) * largest_color +
+      min(convert<float>(shown_error) * piece.spread.slope, largest_color);
   const Single opacity_rounding =
       Single(colored) * s.opacity +
       min(select(depth_error <= Single(1), Single(2) * depth_error * s.transparency, Single(1)),
@@ -217,14 +204,14 @@ SpanPiece<T, N> next_piece(SpanLanes<T, N>& span, const BinnedTransfer& transfer
 
 /// Gives the lanes' pieces, no deeper than largest_panel_depth, a better color where there is one.
 template <class T, int N>
-void color_in_panel(const SpanLanes<T, N>& span, bool proved, const BinnedTransfer& transfer,
-                    BatchMask<N> lanes, ColorInterval<Batch<float, N>>& color,
-                    SpanPiece<T, N>& piece) noexcept {
+void color_in_panel(SpanLanes<T, N>& span, bool proved, const BinnedTransfer& transfer,
+                    BatchMask<N> lanes, SpanPiece<T, N>& piece) noexcept {
   using Single = Batch<float, N>;
-  const PiecePanel<Single> panel = piece_panel(piece.parts.front, span.extinction, piece.length);
+  const PiecePanel<Batch<T, N>> panel =
+      piece_panel(piece.parts.front, span.extinction, piece.length);
   BoundedSegment<Single>& found = piece.found;
-  const BoundedSegment<Single> in_panel =
-      panel_piece(piece.seen, panel, piece.spread, proved, found.segment, transfer, lanes, color);
+  const BoundedSegment<Single> in_panel = panel_piece(piece.seen, panel, piece.spread, proved,
+                                                      found.segment, transfer, lanes, span.color);
   const BatchMask<N> better = lanes & (in_panel.color_error < found.color_error);
   Rgb<Single>& radiance = found.segment.radiance;
   const Rgb<Single>& improved = in_panel.segment.radiance;

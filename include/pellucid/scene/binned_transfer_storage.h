@@ -12,10 +12,8 @@ namespace pellucid {
 /// Builds and owns the bins of a transfer function.
 class BinnedTransferStorage {
  public:
-  /// `merged`: values where control points of the function fall together in binary32.
   /// `largest_value`: of the data, in magnitude: what is narrower than its rounding is a jump.
-  BinnedTransferStorage(const PiecewiseLinear<double>& table, const double* merged,
-                        int merged_count, double largest_value = 0);
+  explicit BinnedTransferStorage(const PiecewiseLinear<double>& table, double largest_value = 0);
   BinnedTransferStorage(const BinnedTransferStorage&) = delete;
   BinnedTransferStorage& operator=(const BinnedTransferStorage&) = delete;
 
@@ -23,7 +21,7 @@ class BinnedTransferStorage {
 
  private:
   std::vector<float> extinction_, jump_, color_, color_split_, color_bend_;
-  std::vector<double> wide_extinction_;
+  std::vector<double> wide_extinction_, wide_color_end_;
   std::vector<std::int32_t> first_extinction_, first_color_, marks_, hard_jumps_;
   BinnedTransfer view_;
 };

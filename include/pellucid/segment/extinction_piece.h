@@ -139,13 +139,22 @@ PieceDepth<F> piece_depth(const CubicBernstein<F>& data, const ExtinctionInterva
   return piece;
 }
 
+/// What the data of a piece differ by.
+template <class F>
+in_float_t<F> range_of(const PieceDepth<F>& piece) noexcept {
+  return convert<float>(max(piece.upper - piece.lower, F(0)));
+}
+
 /// |E c(v) - c(E v)| <= this, for data between `lower` and `upper` whatever their distribution:
 /// (change of the slope of the color c, in all) · (range of the values) / 4, for a kink at k moves
 /// it by no more than (k - a)(b - k)/(b - a).
 template <class F>
-F kinks_of_color(const BinnedTransfer& transfer, F lower, F upper) noexcept {
-  if (!transfer.bends) return F(0);
-  return F(0.25f) * (color_bend(transfer, lower, upper) * max(upper - lower, F(0)));
+in_float_t<F> kinks_of_color(const BinnedTransfer& transfer, F lower, F upper) noexcept {
+  using Single = in_float_t<F>;
+  if (!transfer.bends) return Single(0);
+  // The bins' bounds hold for rounded values; their difference does not.
+  const Single bend = color_bend(transfer, convert<float>(lower), convert<float>(upper));
+  return Single(0.25f) * (bend * convert<float>(max(upper - lower, F(0))));
 }
 
 /// What the colors of a piece differ by.
@@ -161,14 +170,17 @@ struct ColorSpread {
 /// transparency; and where the color bends, kinks_of_color(). Neither counts rounding. `wanted` and
 /// `known` are as of color_at().
 template <class F>
-BoundedSegment<F> colored_piece(const PieceDepth<F>& piece, const ColorSpread<F>& spread,
-                                const BinnedTransfer& transfer, const mask_t<F>& wanted,
-                                ColorInterval<F>& known) noexcept {
-  BoundedSegment<F> result;
+BoundedSegment<in_float_t<F>> colored_piece(const PieceDepth<F>& piece,
+                                            const ColorSpread<in_float_t<F>>& spread,
+                                            const BinnedTransfer& transfer, const mask_t<F>& wanted,
+                                            ColorInterval<F>& known) noexcept {
+  using Single = in_float_t<F>;
+  BoundedSegment<Single> result;
   const F value = clamp(piece.value, piece.color_lower, piece.color_upper);
-  result.segment = segment_of_depth(piece.depth, color_at(transfer, value, wanted, known));
-  const F colors = min(spread.range, spread.slope * max(piece.upper - piece.lower, F(0)));
-  const F moves = colors * mean_color_bound(piece.depth) + spread.kinks;
+  const Single depth = convert<float>(piece.depth);
+  result.segment = segment_of_depth(depth, color_at(transfer, value, wanted, known));
+  const Single colors = min(spread.range, spread.slope * range_of(piece));
+  const Single moves = colors * mean_color_bound(depth) + spread.kinks;
   result.color_error = result.segment.opacity * min(moves, spread.range);
   return result;
 }
@@ -176,18 +188,20 @@ BoundedSegment<F> colored_piece(const PieceDepth<F>& piece, const ColorSpread<F>
 /// A piece's data as a Gauss panel takes them, which needs digits of their differences only.
 template <class F>
 struct PiecePanel {
-  CubicBernstein<F> rise;      ///< of the data, from their first value on
-  F first;                     ///< that value
-  F rate_first, rate_by_rise;  ///< extinction · length there, and how it grows with the data
+  using Single = in_float_t<F>;
+
+  CubicBernstein<Single> rise;      ///< of the data, from their first value on
+  F first;                          ///< that value
+  Single rate_first, rate_by_rise;  ///< extinction · length there, and how it grows with the data
 };
 
 template <class F>
-PiecePanel<in_float_t<F>> piece_panel(const CubicBernstein<F>& data,
-                                      const ExtinctionInterval<F>& interval, F length) noexcept {
-  PiecePanel<in_float_t<F>> panel;
+PiecePanel<F> piece_panel(const CubicBernstein<F>& data, const ExtinctionInterval<F>& interval,
+                          F length) noexcept {
+  PiecePanel<F> panel;
   const F first = data.b[0];
   for (int k = 0; k < 4; ++k) panel.rise.b[k] = convert<float>(data.b[k] - first);
-  panel.first = convert<float>(first);
+  panel.first = first;
   panel.rate_first = convert<float>(
       length * max(interval.at_lower + interval.slope * (first - interval.lower), F(0)));
   panel.rate_by_rise = convert<float>(length * interval.slope);
@@ -208,13 +222,14 @@ F kinks_in_panel(F depth) noexcept {
 
 /// The largest error that panel_piece() may say, relative to the opacity.
 template <class F>
-F panel_piece_error(const PieceDepth<F>& piece, const ColorSpread<F>& spread,
-                    bool proved) noexcept {
-  const F range = max(piece.upper - piece.lower, F(0));
-  const F of_range = proved ? panel_error_bound<piece_nodes>(piece.depth)
-                            : panel_error_estimate<piece_nodes>(piece.depth);
-  const F of_kinks = proved ? F(1) : kinks_in_panel(piece.depth);
-  return min(min(spread.range, spread.slope * range) * of_range + spread.kinks * of_kinks,
+in_float_t<F> panel_piece_error(const PieceDepth<F>& piece,
+                                const ColorSpread<in_float_t<F>>& spread, bool proved) noexcept {
+  using Single = in_float_t<F>;
+  const Single depth = convert<float>(piece.depth);
+  const Single of_range =
+      proved ? panel_error_bound<piece_nodes>(depth) : panel_error_estimate<piece_nodes>(depth);
+  const Single of_kinks = proved ? Single(1) : kinks_in_panel(depth);
+  return min(min(spread.range, spread.slope * range_of(piece)) * of_range + spread.kinks * of_kinks,
              spread.range);
 }
 
@@ -224,35 +239,39 @@ F panel_piece_error(const PieceDepth<F>& piece, const ColorSpread<F>& spread,
 /// panel_error_bound(); else the mean of the nodes' colors, by estimates. color_error is
 /// panel_piece_error().
 template <class F>
-BoundedSegment<F> panel_piece(const PieceDepth<F>& piece, const PiecePanel<F>& panel,
-                              const ColorSpread<F>& spread, bool proved,
-                              const SegmentResult<F>& found, const BinnedTransfer& transfer,
-                              const mask_t<F>& wanted, ColorInterval<F>& known) noexcept {
-  const F lower = piece.lower - panel.first, upper = piece.upper - panel.first;
-  const F middle = F(0.5f) * lower + F(0.5f) * upper;
-  const auto mean_of = [](const auto& sum, F weight) noexcept {
-    const auto shines = weight > F(0);
-    return select(shines, F(1) / select(shines, weight, F(1)), F(0)) * sum;
+BoundedSegment<in_float_t<F>> panel_piece(const PieceDepth<F>& piece, const PiecePanel<F>& panel,
+                                          const ColorSpread<in_float_t<F>>& spread, bool proved,
+                                          const SegmentResult<in_float_t<F>>& found,
+                                          const BinnedTransfer& transfer, const mask_t<F>& wanted,
+                                          ColorInterval<F>& known) noexcept {
+  using Single = in_float_t<F>;
+  const Single lower = convert<float>(piece.lower - panel.first),
+               upper = convert<float>(piece.upper - panel.first);
+  const Single middle = Single(0.5f) * lower + Single(0.5f) * upper;
+  const auto mean_of = [](const auto& sum, Single weight) noexcept {
+    const auto shines = weight > Single(0);
+    return select(shines, Single(1) / select(shines, weight, Single(1)), Single(0)) * sum;
   };
-  const auto color_in = [&](F value) noexcept {
+  const auto color_at_rise = [&](Single rise) noexcept {
+    const F value = panel.first + convert<scalar_t<F>>(rise);
     return color_at(transfer, clamp(value, piece.color_lower, piece.color_upper), wanted, known);
   };
-  Rgb<F> color{};
+  Rgb<Single> color{};
   if (proved || !transfer.bends) {
-    const PanelSums<F> sums =
+    const PanelSums<Single> sums =
         cubic_panel_sums<piece_nodes>(panel.rise, panel.rate_first, panel.rate_by_rise, middle);
-    const F off = mean_of(sums.share, proved ? found.opacity : sums.weight);
-    color = color_in(panel.first + clamp(middle + off, lower, upper));
+    const Single off = mean_of(sums.share, proved ? found.opacity : sums.weight);
+    color = color_at_rise(clamp(middle + off, lower, upper));
   } else {
-    F weights(0);
+    Single weights(0);
     for_each_panel_node<piece_nodes>(panel.rise, panel.rate_first, panel.rate_by_rise,
-                                     [&](F rise, F weight) noexcept {
+                                     [&](Single rise, Single weight) noexcept {
                                        weights += weight;
-                                       color += weight * color_in(panel.first + rise);
+                                       color += weight * color_at_rise(rise);
                                      });
     color = mean_of(color, weights);
   }
-  BoundedSegment<F> result;
+  BoundedSegment<Single> result;
   result.segment = found;
   result.segment.radiance = found.opacity * color;
   result.color_error = found.opacity * panel_piece_error(piece, spread, proved);

@@ -61,8 +61,7 @@ PELLUCID_HD T share_near(const CubicBernstein<T>& data, T value, T distance) noe
         restrict_to(data, T(i) * T(1.0 / pieces), T(i + 1) * T(1.0 / pieces));
     const T lower = part.hull_min(), upper = part.hull_max();
     if (value < lower - distance || value > upper + distance) continue;
-    const T d0 = part.b[1] - part.b[0], d1 = part.b[2] - part.b[1], d2 = part.b[3] - part.b[2];
-    const T slope = T(3) * max(min(d0, min(d1, d2)), -max(d0, max(d1, d2)));
+    const T slope = least_slope(part);
     const T within = slope > T(0)           ? T(2) * distance / slope
                      : upper - lower > T(0) ? T(2) * sqrt(distance / (upper - lower))
                                             : T(1);

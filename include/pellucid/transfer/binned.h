@@ -29,6 +29,8 @@ struct BinnedTransfer {
   const float* jump = nullptr;
   /// Per interval of the color: lower, upper, color at the lower end, its slope.
   const float* color = nullptr;
+  /// The lower end of each of these in double, and the upper end of the last one.
+  const double* wide_color_end = nullptr;
   const std::int32_t* first_extinction = nullptr;  ///< per bin: the interval of its lower edge
   const std::int32_t* first_color = nullptr;       ///< likewise
   const float* color_split = nullptr;              ///< per bin: the upper end of that interval
@@ -36,8 +38,8 @@ struct BinnedTransfer {
   /// Sums over the bins in front of each, bins + 1 of them: how many absorb, plus 2^16 times how
   /// many hold a jump or what binary32 cannot tell apart.
   const std::int32_t* marks = nullptr;
-  /// The same, of bins that hold control points which are not equal and yet too close for colors,
-  /// which are looked up by values in binary32, or even for data in binary64.
+  /// The same, of bins that hold control points which are not equal and yet too close even for data
+  /// in binary64.
   const std::int32_t* hard_jumps = nullptr;
   /// Sums over the bins in front of each of how much the slope of the color changes, in all,
   /// largest channel, where the extinction has no corner.
@@ -170,28 +172,27 @@ ExtinctionInterval<F> find_extinction(const BinnedTransfer& t, F value, const Ma
   return found;
 }
 
-/// One interval of the color, in lanes.
+/// One interval of the color, in lanes: of values in float or in double. Colors are floats.
 template <class F>
 struct ColorInterval {
+  using Single = in_float_t<F>;
+
   F lower = F(0), upper = F(0);  ///< equal: no interval yet
-  Rgb<F> at_lower{}, slope{};
+  Rgb<Single> at_lower{}, slope{};
 
   /// Largest error: 4 u of the largest color beside that of the value's own.
-  Rgb<F> at(F value) const noexcept {
-    const F offset = value - lower;
+  Rgb<Single> at(F value) const noexcept {
+    const Single offset = convert<float>(value - lower);
     return {at_lower.r + offset * slope.r, at_lower.g + offset * slope.g,
             at_lower.b + offset * slope.b};
   }
 };
 
-/// The interval of the color that holds `value`, of no more than far/2.
+/// The index of the interval of the color that holds `value`, of no more than far/2, by the floats
+/// that its ends are rounded to.
 template <class F>
-ColorInterval<F> find_color(const BinnedTransfer& t, F value) noexcept {
+index_t<F> find_color_index(const BinnedTransfer& t, F value) noexcept {
   using Index = index_t<F>;
-  F r[BinnedTransfer::color_fields];
-  const auto found = [&] {
-    return ColorInterval<F>{r[0], r[1], {r[2], r[3], r[4]}, {r[5], r[6], r[7]}};
-  };
   if constexpr (looks_up_in_registers<F>) {
     if (t.few_colors) {
       Index index(0);
@@ -199,29 +200,55 @@ ColorInterval<F> find_color(const BinnedTransfer& t, F value) noexcept {
         const Index next = index + Index(step);
         index = select(value >= lookup(t.few_color[1], next - Index(1)), next, index);
       }
-      load_interval(t.color, true, t.few_color, index, r);
-      return found();
+      return index;
     }
   }
   const Index bin = bin_of(t, value);
   Index index = gather(t.first_color, bin);
   index = index + select(value >= gather(t.color_split, bin), Index(1), Index(0));
-  load_records<BinnedTransfer::color_fields>(t.color, index, r);
-  if (t.has_full_bins) {
-    for (auto further = value >= r[1]; any(further); further = value >= r[1]) {
-      index = select(further, index + Index(1), index);
-      load_records<BinnedTransfer::color_fields>(t.color, index, r);
+  if (!t.has_full_bins) return index;
+  const auto is_further = [&] {
+    return value >= gather(t.color + 1, index * Index(BinnedTransfer::color_fields));
+  };
+  for (auto further = is_further(); any(further); further = is_further()) {
+    index = select(further, index + Index(1), index);
+  }
+  return index;
+}
+
+/// The interval of the color that holds `value`, of no more than far/2.
+template <class F>
+ColorInterval<F> find_color(const BinnedTransfer& t, F value) noexcept {
+  using Index = index_t<F>;
+  Index index = find_color_index(t, convert<float>(value));
+  F lower, upper;
+  if constexpr (!is_single<F>) {
+    const auto load_ends = [&] {
+      lower = gather(t.wide_color_end, index);
+      upper = gather(t.wide_color_end, index + Index(1));
+    };
+    load_ends();
+    for (auto below = value < lower, beyond = value >= upper; any(below | beyond);
+         below = value < lower, beyond = value >= upper) {
+      index += select(beyond, Index(1), select(below, Index(-1), Index(0)));
+      load_ends();
     }
   }
-  return found();
+  in_float_t<F> r[BinnedTransfer::color_fields];
+  load_interval(t.color, t.few_colors, t.few_color, index, r);
+  if constexpr (is_single<F>) {
+    lower = r[0];
+    upper = r[1];
+  }
+  return {lower, upper, {r[2], r[3], r[4]}, {r[5], r[6], r[7]}};
 }
 
 /// The color at a value, where `known` holds the interval of a value before it, which mostly holds
 /// this one too; where not in all of the lanes of `wanted`, all are found anew. In other lanes: any
 /// color. Largest error: as ColorInterval::at().
 template <class F>
-Rgb<F> color_at(const BinnedTransfer& t, F value, const mask_t<F>& wanted,
-                ColorInterval<F>& known) noexcept {
+Rgb<in_float_t<F>> color_at(const BinnedTransfer& t, F value, const mask_t<F>& wanted,
+                            ColorInterval<F>& known) noexcept {
   value = clamp(value, F(-BinnedTransfer::far / 2), F(BinnedTransfer::far / 2));
   if (any(wanted & ((value < known.lower) | (value >= known.upper)))) {
     known = find_color(t, value);
@@ -230,7 +257,7 @@ Rgb<F> color_at(const BinnedTransfer& t, F value, const mask_t<F>& wanted,
 }
 /// The same with nothing known.
 template <class F>
-Rgb<F> color_at(const BinnedTransfer& t, F value) noexcept {
+Rgb<in_float_t<F>> color_at(const BinnedTransfer& t, F value) noexcept {
   ColorInterval<F> nothing;
   return color_at(t, value, mask_t<F>(true), nothing);
 }
