@@ -3,7 +3,9 @@
 
 #include <algorithm>
 #include <chrono>
+#include <iterator>
 
+#include "benchmarks/frames/report.h"
 #include "benchmarks/support/document.h"
 #include "benchmarks/vtk/vtk_contenders.h"
 
@@ -34,30 +36,31 @@ std::size_t least_points(Knob knob) {
   return knob == Knob::tolerance ? 3 : 1;
 }
 
-/// How long frames may take: `always`, and `inaccurate` where the last one has not come within the
-/// default tolerance.
-struct Longest {
-  double always, inaccurate;
-};
+/// How slow a sampler has to be, relative to exact at an equal error, to be left alone; and what a
+/// frame takes at most, in seconds.
+constexpr double slow_enough = 10, most_seconds = 30;
 
-/// Until a sampler has taken a dozen times as long as exact at the default tolerance it is not
-/// known that it is ten times slower.
-Longest longest_of(const MeasureOptions& options, const Curve& exact) {
-  const Reach there = reach(exact, default_tolerance, ErrorKind::largest);
-  return {options.longest_seconds,
-          std::max(options.longest_seconds, std::min(12 * there.seconds, 20.0))};
+/// Whether it is not known yet how much slower than exact, whose curve this is, a sampler is at all
+/// of the errors that are compared.
+bool is_to_go_on(const CurvePoint& last, const Curve& exact) {
+  return std::any_of(std::begin(compared_errors), std::end(compared_errors), [&](double error) {
+    const Reach there = reach(exact, error, ErrorKind::largest);
+    return last.error.largest > error && there.reached &&
+           last.seconds.front() < slow_enough * there.seconds;
+  });
 }
 
-/// The first round, with errors: it finds how far each curve goes.
+/// The first round, with errors: it finds how far each curve goes. `exact`: null: it is this curve.
 Curve first_round(const Contender& contender, const ReferencePixels& reference,
-                  const Longest& longest) {
+                  double longest_seconds, const Curve* exact) {
   Curve curve{contender.name, contender.knob, {}, false};
   for (const double setting : contender.settings) {
     if (curve.points.size() >= least_points(curve.knob)) {
       const CurvePoint& last = curve.points.back();
-      const bool goes_on = curve.knob == Knob::step && last.error.largest > default_tolerance;
+      const bool goes_on =
+          exact != nullptr && curve.knob == Knob::step && is_to_go_on(last, *exact);
       if (expected_seconds(last, curve.knob, setting) >
-          (goes_on ? longest.inaccurate : longest.always)) {
+          (goes_on ? most_seconds : longest_seconds)) {
         curve.cut_short = true;
         break;
       }
@@ -103,10 +106,8 @@ SceneResult measure(const scenes::NamedScene& named, const MeasureOptions& optio
   contenders.front().render(contenders.front().settings.front());
   for (const Contender& contender : contenders) {
     options.say(named.name + ": " + contender.name);
-    const Longest longest = result.curves.empty()
-                                ? Longest{options.longest_seconds, options.longest_seconds}
-                                : longest_of(options, result.curves.front());
-    result.curves.push_back(first_round(contender, reference, longest));
+    const Curve* const exact = result.curves.empty() ? nullptr : &result.curves.front();
+    result.curves.push_back(first_round(contender, reference, options.longest_seconds, exact));
   }
   const auto ways = in_turn(result.curves);
   for (int round = 1; round < options.repeats; ++round) {

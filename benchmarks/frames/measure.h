@@ -17,8 +17,9 @@ struct MeasureOptions {
   int repeats = 5;  ///< rounds at most, and two at least where there are as many
   /// A scene gets no further round after this time, which that for the reference does not count in.
   double scene_seconds = 45;
-  /// A curve ends where its next frame is expected to take longer; one that steps and is not yet
-  /// within the default tolerance goes on to 12 times what exact takes there, at most 20 s.
+  /// A curve ends where its next frame is expected to take longer; one that steps goes on until it
+  /// is ten times slower than exact at all of `compared_errors` that it does not come within,
+  /// unless a frame would take half a minute.
   double longest_seconds = 1.5;
   /// Frames that take longer are not repeated.
   double longest_repeated_seconds = 1;

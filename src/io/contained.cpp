@@ -31,6 +31,18 @@ struct Outcome {
   char message[longest + 1];
 };
 
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+/// The sanitizers' allocators, as of GCC 12, stay locked in a child if another thread of the
+/// program is in them at that moment: it waits forever, and is begun anew.
+constexpr bool is_sanitized = true;
+constexpr unsigned patience = 20;  // seconds
+constexpr int most_children = 6;
+#else
+constexpr bool is_sanitized = false;
+constexpr unsigned patience = 300;
+constexpr int most_children = 1;
+#endif
+
 /// Memory that two processes see.
 std::shared_ptr<std::byte> shared_memory(std::size_t bytes) {
   // Whoever asks has looked whether there is memory; what stays untouched needs none.
@@ -47,7 +59,7 @@ void limit(std::size_t bytes, std::uintmax_t file_bytes) {
   const rlimit processor{static_cast<rlim_t>(at_work), static_cast<rlim_t>(at_work)};
   setrlimit(RLIMIT_CPU, &processor);
   // A file that does not come, from a slow disk or a pipe.
-  alarm(static_cast<unsigned>(300 + at_work));
+  alarm(static_cast<unsigned>(patience + at_work));
   // What a decoder takes beside what it gives: trees of sparse data are far larger than their file.
   constexpr std::uintmax_t room_for_any = std::uintmax_t{1} << 30;
   const std::uintmax_t room = room_for_any + per_file_byte * file_bytes;
@@ -56,14 +68,10 @@ void limit(std::size_t bytes, std::uintmax_t file_bytes) {
   const auto taken = pages * static_cast<std::uintmax_t>(sysconf(_SC_PAGE_SIZE));
   rlimit memory{};
   getrlimit(RLIMIT_AS, &memory);
-#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
-  if (taken > 0 && taken + 2 * bytes + room < memory.rlim_cur) {
+  if (!is_sanitized && taken > 0 && taken + 2 * bytes + room < memory.rlim_cur) {
     memory.rlim_cur = taken + 2 * bytes + room;
     setrlimit(RLIMIT_AS, &memory);
   }
-#else
-  static_cast<void>(taken + room + bytes);
-#endif
   const rlimit no_core{0, 0};
   setrlimit(RLIMIT_CORE, &no_core);
 }
@@ -82,14 +90,9 @@ void forget_what_the_program_does(pid_t program) {
   dup2(nowhere, STDERR_FILENO);
 }
 
-}  // namespace
-
-std::shared_ptr<std::byte> run_contained(std::size_t bytes,
-                                         const std::function<bool(std::span<std::byte>)>& work,
-                                         std::uintmax_t file_bytes) {
-  std::shared_ptr<std::byte> shared = shared_memory(bytes + sizeof(Outcome));
-  static_assert(alignof(Outcome) == 1);
-  auto& outcome = *reinterpret_cast<Outcome*>(shared.get() + bytes);
+/// Runs the work in a child, and gives how that ended, as of waitpid().
+int run_in_child(std::span<std::byte> target, const std::function<bool(std::span<std::byte>)>& work,
+                 std::uintmax_t file_bytes, Outcome& outcome) {
   const pid_t program = getpid();
   // Unlocked in both.
   loading_modules().lock();
@@ -98,9 +101,9 @@ std::shared_ptr<std::byte> run_contained(std::size_t bytes,
   if (child < 0) throw std::bad_alloc();
   if (child == 0) {
     forget_what_the_program_does(program);
-    limit(bytes, file_bytes);
+    limit(target.size(), file_bytes);
     try {
-      if (work({shared.get(), bytes})) outcome.is = Outcome::filled;
+      if (work(target)) outcome.is = Outcome::filled;
     } catch (const Error& error) {
       const std::string_view message = error.what();
       std::memcpy(outcome.message, message.data(), std::min(message.size(), Outcome::longest));
@@ -111,7 +114,23 @@ std::shared_ptr<std::byte> run_contained(std::size_t bytes,
     }
     _exit(0);
   }
-  while (waitpid(child, nullptr, 0) < 0 && errno == EINTR) {
+  int status = 0;
+  while (waitpid(child, &status, 0) < 0 && errno == EINTR) {
+  }
+  return status;
+}
+
+}  // namespace
+
+std::shared_ptr<std::byte> run_contained(std::size_t bytes,
+                                         const std::function<bool(std::span<std::byte>)>& work,
+                                         std::uintmax_t file_bytes) {
+  std::shared_ptr<std::byte> shared = shared_memory(bytes + sizeof(Outcome));
+  static_assert(alignof(Outcome) == 1);
+  auto& outcome = *reinterpret_cast<Outcome*>(shared.get() + bytes);
+  for (int n = 0; n < most_children; ++n) {
+    const int status = run_in_child({shared.get(), bytes}, work, file_bytes, outcome);
+    if (!WIFSIGNALED(status) || WTERMSIG(status) != SIGALRM) break;
   }
   if (outcome.is == Outcome::error) {
     outcome.message[Outcome::longest] = '\0';
