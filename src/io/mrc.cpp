@@ -132,18 +132,17 @@ Mat3<double> cell_axes(const MrcHeader& header, const std::string& name) {
 
 /// Which of the cell's edges columns, rows and sections are counted along, from 0.
 std::array<int, 3> axis_order(const MrcHeader& header, const std::string& name) {
-  std::array<int, 3> axes{header.whole(17) - 1, header.whole(18) - 1, header.whole(19) - 1};
-  if (axes == std::array{-1, -1, -1}) return {0, 1, 2};
-  std::array<int, 3> sorted = axes;
+  const std::array<int, 3> counted{header.whole(17), header.whole(18), header.whole(19)};
+  if (counted == std::array{0, 0, 0}) return {0, 1, 2};
+  std::array<int, 3> sorted = counted;
   std::ranges::sort(sorted);
-  if (sorted != std::array{0, 1, 2}) {
+  if (sorted != std::array{1, 2, 3}) {
     throw Error(name + ": the MRC header says that columns, rows and sections are axes " +
-                std::to_string(header.whole(17)) + ", " + std::to_string(header.whole(18)) +
-                " and " + std::to_string(header.whole(19)) +
-                ", which must be 1, 2 and 3 in some "
-                "order; mend the header");
+                std::to_string(counted[0]) + ", " + std::to_string(counted[1]) + " and " +
+                std::to_string(counted[2]) +
+                ", which must be 1, 2 and 3 in some order; mend the header");
   }
-  return axes;
+  return {counted[0] - 1, counted[1] - 1, counted[2] - 1};
 }
 
 GridPlacement placement_of(const MrcHeader& header, const ReadOptions& options,

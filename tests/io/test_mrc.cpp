@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdint>
 #include <cstring>
+#include <limits>
 #include <numbers>
 #include <string>
 #include <vector>
@@ -250,6 +251,10 @@ TEST_F(MrcTest, BadHeadersAreRefused) {
   EXPECT_TRUE(contains(error(MrcFile{}.set(1, {2000000000, 2000000000, 2000000000})), "too large"));
   EXPECT_TRUE(contains(error(MrcFile{}.set(1, {100000, 100000, 100000})), "cut off"));
   EXPECT_TRUE(contains(error(MrcFile{}.real(50, {INFINITY, 0, 0})), "origin"));
+  // Nothing may be taken off the least of all numbers: the fuzz check's sanitizer found that.
+  constexpr int least = std::numeric_limits<int>::min();
+  EXPECT_TRUE(contains(error(MrcFile{}.set(17, {least, 2, 3})), "axes -2147483648, 2 and 3"));
+  EXPECT_TRUE(contains(error(MrcFile{}.set(17, {1, 1, 3})), "axes 1, 1 and 3"));
   MrcFile file;
   file.stamp = false;
   EXPECT_TRUE(contains(error(file.set(1, {-1})), "does not begin"));
