@@ -125,18 +125,18 @@ int run_in_child(std::span<std::byte> target, const std::function<bool(std::span
 std::shared_ptr<std::byte> run_contained(std::size_t bytes,
                                          const std::function<bool(std::span<std::byte>)>& work,
                                          std::uintmax_t file_bytes) {
-  std::shared_ptr<std::byte> shared = shared_memory(bytes + sizeof(Outcome));
-  static_assert(alignof(Outcome) == 1);
-  auto& outcome = *reinterpret_cast<Outcome*>(shared.get() + bytes);
-  for (int n = 0; n < most_children; ++n) {
+  for (int n = 1;; ++n) {
+    std::shared_ptr<std::byte> shared = shared_memory(bytes + sizeof(Outcome));
+    static_assert(alignof(Outcome) == 1);
+    auto& outcome = *reinterpret_cast<Outcome*>(shared.get() + bytes);
     const int status = run_in_child({shared.get(), bytes}, work, file_bytes, outcome);
-    if (!WIFSIGNALED(status) || WTERMSIG(status) != SIGALRM) break;
+    if (n < most_children && WIFSIGNALED(status) && WTERMSIG(status) == SIGALRM) continue;
+    if (outcome.is == Outcome::error) {
+      outcome.message[Outcome::longest] = '\0';
+      throw Error(outcome.message);
+    }
+    return outcome.is == Outcome::filled ? shared : nullptr;
   }
-  if (outcome.is == Outcome::error) {
-    outcome.message[Outcome::longest] = '\0';
-    throw Error(outcome.message);
-  }
-  return outcome.is == Outcome::filled ? shared : nullptr;
 }
 
 }  // namespace pellucid

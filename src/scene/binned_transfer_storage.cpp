@@ -203,7 +203,9 @@ BinnedTransferStorage::BinnedTransferStorage(const PiecewiseLinear<double>& tabl
                             : static_cast<float>(table.value[b]));
     for (const double c : from) color_.push_back(static_cast<float>(c));
     for (std::size_t c = 0; c < 3; ++c) {
-      color_.push_back(width > 0 ? static_cast<float>((to[c] - from[c]) / width) : 0.0f);
+      // Times no offset an infinite one would be NaN.
+      const double slope = width > 0 ? std::clamp((to[c] - from[c]) / width, -far, far) : 0;
+      color_.push_back(static_cast<float>(slope));
     }
   }
 
@@ -268,8 +270,9 @@ BinnedTransferStorage::BinnedTransferStorage(const PiecewiseLinear<double>& tabl
       return color_[static_cast<std::size_t>(interval) * BinnedTransfer::color_fields + 1];
     };
     color_split_.push_back(upper_of(color_interval));
-    const bool is_last = static_cast<std::size_t>(color_interval) == at_color.size();
-    if (!is_last && static_cast<double>(upper_of(color_interval + 1)) <= upper) {
+    // The last interval ends at no corner.
+    const bool has_next = static_cast<std::size_t>(color_interval) + 1 < at_color.size();
+    if (has_next && static_cast<double>(upper_of(color_interval + 1)) <= upper) {
       view_.has_full_bins = true;
     }
   }
@@ -290,13 +293,16 @@ BinnedTransferStorage::BinnedTransferStorage(const PiecewiseLinear<double>& tabl
   for (int i = 0; i <= last; ++i) {
     const bool in_front = i > 0 && absorbs(table, i), behind = i < last && absorbs(table, i + 1);
     const double distance = i > 0 ? table.value[i] - table.value[i - 1] : infinity;
-    if (in_front && !(distance > widest_jump) &&
-        !(table.material[i].extinction == table.material[i - 1].extinction &&
-          table.material[i].color == table.material[i - 1].color)) {
-      // Beyond what data in binary64 are off by (32 u of it, six times over) nothing need be known
-      // of a jump.
-      const double widest_hard = 0x1p-44 * size;
-      mark_jump(table.value[i - 1], table.value[i], distance > 0 && !(distance > widest_hard));
+    // Beyond what data in binary64 are off by (40 u of it, six times over) nothing need be known of
+    // a jump. What is narrower hides one behind it, whether it absorbs or not.
+    const double here = table.value[i], near = 16 * unit * size;
+    const bool is_hard =
+        distance > 0 && !(distance > 0x1p-44 * size) &&
+        table.has_extinction(table.interval(here - near), table.interval(here + near));
+    if (is_hard || (in_front && !(distance > widest_jump) &&
+                    !(table.material[i].extinction == table.material[i - 1].extinction &&
+                      table.material[i].color == table.material[i - 1].color))) {
+      mark_jump(table.value[i - 1], table.value[i], is_hard);
     }
     // No piece goes across a corner of the extinction.
     const bool is_cut = std::binary_search(at_extinction.begin(), at_extinction.end(), i);

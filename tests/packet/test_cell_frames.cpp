@@ -199,7 +199,7 @@ TEST_F(CellFrames, BehindCellsWithoutALengthAreWithinWhatTheySay) {
 }
 
 // A point that stands twice where nothing absorbs: behind it a steep slope, which rounding of the
-// data reaches, and in front of it another color, which the values have in binary32.
+// data reaches, and in front of it another color, for values that binary32 does not tell apart.
 TEST_F(CellFrames, BesideAPointThatStandsTwiceAreWithinWhatTheySay) {
   Seen seen;
   const auto of_two = [](float a, float b, int along) {
@@ -253,7 +253,7 @@ TEST_F(CellFrames, BehindNarrowIntervalsAreWithinWhatTheySay) {
                        {1e-2, 1.0 / 512, 2e-4, 2e-5});
 }
 
-// Both sides of a jump of the color have one value in binary32, which colors are looked up by.
+// Both sides of a jump of the color have one value in binary32.
 TEST_F(CellFrames, AtAJumpAmongValuesAlikeInFloatAreWithinWhatTheySay) {
   Seen seen;
   for (const double change : {1e-10, 1e-9, 1e-8, 1e-7, 1e-6}) {

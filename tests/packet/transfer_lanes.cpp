@@ -25,6 +25,15 @@ void colors(const void* transfer, const T* values, float* red) {
 }
 
 template <class T>
+void next_colors(const void* transfer, const T* before, const T* values, float* red) {
+  std::int32_t lane[N];
+  for (int l = 0; l < N; ++l) lane[l] = l % 2;
+  ColorInterval<Batch<T, N>> known = find_color(as_transfer(transfer), Batch<T, N>::load(before));
+  const M wanted = I::load(lane) < I(1);
+  color_at(as_transfer(transfer), Batch<T, N>::load(values), wanted, known).r.store(red);
+}
+
+template <class T>
 void intervals(const void* transfer, const T* values, int* interval) {
   I found(0);
   find_extinction(as_transfer(transfer), Batch<T, N>::load(values), M(true), found);
@@ -42,8 +51,14 @@ void across_jumps(const void* transfer, const int* interval, const double* const
       .store(across);
 }
 
-constexpr transfer_lanes::Operations operations = {
-    N, colors<float>, colors<double>, intervals<float>, intervals<double>, across_jumps};
+constexpr transfer_lanes::Operations operations = {N,
+                                                   colors<float>,
+                                                   colors<double>,
+                                                   next_colors<float>,
+                                                   next_colors<double>,
+                                                   intervals<float>,
+                                                   intervals<double>,
+                                                   across_jumps};
 
 }  // namespace
 }  // namespace pellucid

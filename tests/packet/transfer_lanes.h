@@ -10,6 +10,11 @@ struct Operations {
   /// Of these values, per lane: the red of the color; the interval of the extinction.
   void (*colors)(const void* transfer, const float* values, float* red);
   void (*wide_colors)(const void* transfer, const double* values, float* red);
+  /// Where intervals are known of other values, as those of every second lane are wanted, the first
+  /// of them among these.
+  void (*next_colors)(const void* transfer, const float* before, const float* values, float* red);
+  void (*next_wide_colors)(const void* transfer, const double* before, const double* values,
+                           float* red);
   void (*intervals)(const void* transfer, const float* values, int* interval);
   void (*wide_intervals)(const void* transfer, const double* values, int* interval);
   /// extinction_across_jumps() of pieces in these intervals; data[k]: their k-th coefficients.

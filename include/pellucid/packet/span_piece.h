@@ -152,7 +152,7 @@ SpanPiece<T, N> next_piece(SpanLanes<T, N>& span, const BinnedTransfer& transfer
   F shown_error = value_error;
   if constexpr (!is_single<F>) {
     // Beside a jump is another color: that of a piece is not looked up at its interval's very ends,
-    // and so up to 3 u further inside.
+    // and so up to 3 u further inside. What lies there altogether is charged for being across.
     const auto within = [](F end) noexcept {
       return F(2 * rounding_unit<F>) * abs(end) + F(std::numeric_limits<T>::min());
     };

@@ -39,7 +39,7 @@ struct BinnedTransfer {
   /// many hold a jump or what binary32 cannot tell apart.
   const std::int32_t* marks = nullptr;
   /// The same, of bins that hold control points which are not equal and yet too close even for data
-  /// in binary64.
+  /// in binary64, whatever is between them.
   const std::int32_t* hard_jumps = nullptr;
   /// Sums over the bins in front of each of how much the slope of the color changes, in all,
   /// largest channel, where the extinction has no corner.
