@@ -126,7 +126,8 @@ int main(int argc, char** argv) {
   app.add_option("--vtk-steps", measure.vtk_steps, "of VTK's mappers, in voxels")
       ->delimiter(',')
       ->capture_default_str();
-  app.add_option("--longest", measure.longest_seconds, "seconds at which a curve ends, but that of a sampler which is not known to be slower")
+  app.add_option("--longest", measure.longest_seconds,
+                 "seconds at which a curve ends, but one of a sampler not known to be slower")
       ->capture_default_str();
   app.add_option("--longest-repeated", measure.longest_repeated_seconds,
                  "seconds above which a frame is not repeated")
