@@ -60,7 +60,7 @@ Curve first_round(const Contender& contender, const ReferencePixels& reference,
       const bool goes_on =
           exact != nullptr && curve.knob == Knob::step && is_to_go_on(last, *exact);
       if (expected_seconds(last, curve.knob, setting) >
-          (goes_on ? most_seconds : longest_seconds)) {
+          (goes_on ? std::max(most_seconds, longest_seconds) : longest_seconds)) {
         curve.cut_short = true;
         break;
       }

@@ -70,6 +70,14 @@ struct SpanLanes {
   }
 };
 
+/// For how much of a piece data that rise at least as a line to `rise` are within `reach` of where
+/// they begin, at most; all of it where they do not rise so far.
+template <class F>
+F share_within(F reach, F rise) noexcept {
+  const auto leaves = rise > reach;
+  return select(leaves, reach / select(leaves, rise, F(1)), F(1));
+}
+
 /// What jumps at the ends of its interval can move the mean extinction of a piece by, whose data
 /// are known to `value_error` (that of the corners' places included); lanes without any: 0.
 ///
@@ -95,8 +103,7 @@ Batch<float, N> extinction_across_jumps(const SpanLanes<double, N>& span,
           d2 = sign * (f.b[3] - f.b[2]);
   const D lower = span.extinction.lower + reach, upper = span.extinction.upper - reach;
   const auto share_at = [&](D end, D rise) noexcept {
-    const D share = select(rise > reach, reach / select(rise > reach, rise, D(1)), D(1));
-    return select((end < lower) | (end > upper), share, D(0));
+    return select((end < lower) | (end > upper), share_within(reach, rise), D(0));
   };
   const M turns = min(d0, min(d1, d2)) < -value_error;
   const M near = (f.hull_min() < lower) | (f.hull_max() > upper);
@@ -172,8 +179,7 @@ SpanPiece<T, N> next_piece(SpanLanes<T, N>& span, const BinnedTransfer& transfer
   const F slope = abs(interval.slope);
   F steep = slope;
   if (any(touches)) {
-    const F rise = least_slope(f), reach = F(2) * value_error;
-    const F near = select(rise > reach, reach / rise, F(1));
+    const F near = share_within(F(2) * value_error, least_slope(f));
     steep = select(touches, slope + near * (interval.steepest - slope), slope);
   }
   const Single largest = convert<float>(interval.largest);

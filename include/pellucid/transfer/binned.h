@@ -223,15 +223,12 @@ ColorInterval<F> find_color(const BinnedTransfer& t, F value) noexcept {
   Index index = find_color_index(t, convert<float>(value));
   F lower, upper;
   if constexpr (!is_single<F>) {
-    const auto load_ends = [&] {
+    for (;;) {
       lower = gather(t.wide_color_end, index);
       upper = gather(t.wide_color_end, index + Index(1));
-    };
-    load_ends();
-    for (auto below = value < lower, beyond = value >= upper; any(below | beyond);
-         below = value < lower, beyond = value >= upper) {
+      const auto below = value < lower, beyond = value >= upper;
+      if (none(below | beyond)) break;
       index += select(beyond, Index(1), select(below, Index(-1), Index(0)));
-      load_ends();
     }
   }
   in_float_t<F> r[BinnedTransfer::color_fields];
