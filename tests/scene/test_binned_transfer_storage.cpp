@@ -343,21 +343,19 @@ TEST(BinnedTransfer, JumpsAreMarked) {
     for (int i = 1; i < c.table.count; ++i) {
       const double width = c.table.value[i] - c.table.value[i - 1];
       const double here = c.table.value[i], near = 15 * u * c.size;
+      const auto at = static_cast<float>(here);
+      const float around[] = {std::nextafter(at, -1e38f), at, std::nextafter(at, 1e38f)};
       if (width > 0 && width <= 0x1p-44 * c.size &&  // whatever it is itself
           c.table.has_extinction(c.table.interval(here - near), c.table.interval(here + near))) {
-        const auto v = static_cast<float>(here);
-        ASSERT_GE(c.marks(v, v), BinnedTransfer::one_jump) << v;
-        ASSERT_TRUE(has_hard_jump(c.bins, v, v)) << v;
+        for (const float v : around) ASSERT_TRUE(has_hard_jump(c.bins, v, v)) << v;
+        for (const float v : around) ASSERT_GE(c.marks(v, v), BinnedTransfer::one_jump) << v;
         ++hard;
       }
       const Material<double>&a = c.table.material[i - 1], &b = c.table.material[i];
       const bool same = a.extinction == b.extinction && a.color == b.color;
       if (width > 2 * u * c.size || same) continue;
       if (a.extinction == 0 && b.extinction == 0) continue;
-      const auto at = static_cast<float>(c.table.value[i]);
-      for (const float v : {std::nextafter(at, -1e38f), at, std::nextafter(at, 1e38f)}) {
-        ASSERT_GE(c.marks(v, v), BinnedTransfer::one_jump) << v;
-      }
+      for (const float v : around) ASSERT_GE(c.marks(v, v), BinnedTransfer::one_jump) << v;
       ASSERT_TRUE(c.bins.has_marks);
       ++jumps;
     }
