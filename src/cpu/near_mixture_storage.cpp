@@ -32,9 +32,10 @@ constexpr double largest_size = 1e7;
 float square_in_float(double size, double exponent) {
   // Binary32 has the fourth power of it.
   if (!(size < 1e9)) return std::numeric_limits<float>::quiet_NaN();
-  // K, v, c, their difference and at most 8 products and sums; of both ends.
+  // K, v, c, their difference and at most 8 products and sums; of both ends. And of at most 8 rows
+  // the squares' sum.
   const double reach = std::sqrt(exponent) + 32 * static_cast<double>(rounding_unit<float>) * size;
-  return static_cast<float>(reach * reach) * (1 + 4 * rounding_unit<float>);
+  return static_cast<float>(reach * reach) * (1 + 16 * rounding_unit<float>);
 }
 
 /// How far column k of K is from what the others span, a little less.
@@ -71,6 +72,20 @@ float least_scale(const Gaussian<double>& g, int k) {
   return static_cast<float>(std::max(least, 0.0) * (1 - 0x1p-20));
 }
 
+bool mixes_channels(const Gaussian<double>& g) {
+  std::array<int, most_channels> looks_at{}, looked_at{};
+  for (int i = 0; i < g.rows; ++i) {
+    for (int c = 0; c < g.channels; ++c) {
+      if (g.matrix[i][c] == 0) continue;
+      ++looks_at[static_cast<std::size_t>(i)];
+      ++looked_at[static_cast<std::size_t>(c)];
+    }
+  }
+  const auto several = [](int n) { return n > 1; };
+  return std::any_of(looks_at.begin(), looks_at.end(), several) ||
+         std::any_of(looked_at.begin(), looked_at.end(), several);
+}
+
 }  // namespace
 
 NearMixtureStorage::NearMixtureStorage(const double* largest, bool off,
@@ -93,6 +108,7 @@ NearMixtureStorage::NearMixtureStorage(const double* largest, bool off,
     NearGaussian near;
     near.gaussian = rounded_to_binary32(g);
     for (int c = 0; c < g.channels; ++c) near.least_scale[c] = least_scale(g, c);
+    near.mixes_channels = mixes_channels(g);
     const double size = size_of_terms(g, largest);
     near.square = g.peak > negligible ? square_in_float(size, std::log(g.peak / negligible)) : -1;
     mixture_.suits_binary32 = mixture_.suits_binary32 && size <= largest_size;

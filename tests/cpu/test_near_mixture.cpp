@@ -80,6 +80,82 @@ TEST(NearMixture, FarIsFar) {
   EXPECT_GT(found, far / 2);
 }
 
+/// The least |K (v - c)|² in a box: of a convex function, along one axis after the other.
+double least_in_box(const Gaussian<double>& g, const double* lower, const double* upper) {
+  double v[most_channels], p[most_channels];
+  for (int c = 0; c < g.channels; ++c) v[c] = std::clamp(g.center[c], lower[c], upper[c]);
+  for (int sweep = 0; sweep < 400; ++sweep) {
+    for (int c = 0; c < g.channels; ++c) {
+      double slope = 0, bend = 0;
+      g.place(v, p);
+      for (int i = 0; i < g.rows; ++i) {
+        slope += p[i] * g.matrix[i][c];
+        bend += g.matrix[i][c] * g.matrix[i][c];
+      }
+      if (bend > 0) v[c] = std::clamp(v[c] - slope / bend, lower[c], upper[c]);
+    }
+  }
+  double square = 0;
+  g.place(v, p);
+  for (int i = 0; i < g.rows; ++i) square += p[i] * p[i];
+  return square;
+}
+
+/// Boxes of values in which a primitive is far in binary32 have no more extinction of it than they
+/// may; where no row looks at two channels this is all that are far, elsewhere many of them.
+TEST(NearMixture, FarFromABoxIsFar) {
+  std::mt19937_64 random(11);
+  const auto uniform = [&](double a, double b) {
+    return std::uniform_real_distribution<double>(a, b)(random);
+  };
+  const auto power = [&](double a, double b) { return a * std::pow(b / a, uniform(0, 1)); };
+  long far[2] = {}, found[2] = {};
+  for (int n = 0; n < 20000; ++n) {
+    const int channels = 1 + static_cast<int>(random() % 4);
+    const bool mixes = channels > 1 && random() % 2 == 0;
+    const double offset = random() % 4 == 0 ? power(1, 1e3) : 0, width = power(1e-2, 1);
+    GaussianPrimitive p;
+    for (int c = 0; c < channels; ++c) {
+      p.channels.push_back(c);
+      p.center.push_back(offset + uniform(0, 1));
+    }
+    p.matrix.assign(static_cast<std::size_t>(channels), std::vector<double>(p.channels.size()));
+    for (std::size_t i = 0; i < p.matrix.size(); ++i) {
+      for (std::size_t c = 0; c < p.matrix.size(); ++c) {
+        if (mixes || i == c) p.matrix[i][c] = uniform(-1, 1) / width;
+      }
+    }
+    p.extinction = power(1e-3, 1e3);
+    const MultivariateTransferFunction function(channels, {p});
+    const std::vector<double> largest(most_channels, offset + 1);
+    const double opacity = power(1e-6, 1e-3);
+    NearMixtureStorage storage(largest.data(), true, function.view(), opacity, 1);
+    const NearMixture& mixture = storage.view();
+    const Gaussian<double>& g = function.view().gaussians.primitive[0];
+    double lower[most_channels], upper[most_channels];
+    float least[most_channels], most[most_channels];
+    for (int c = 0; c < channels; ++c) {
+      lower[c] = offset + uniform(0, 1);
+      upper[c] = std::min(lower[c] + power(1e-3, 1), offset + 1);
+      least[c] = static_cast<float>(lower[c]);
+      most[c] = static_cast<float>(upper[c]);
+    }
+    const NearGaussian& near = mixture.primitive[0];
+    ASSERT_EQ(near.mixes_channels, mixes);
+    const double extinction = g.peak * std::exp(-least_in_box(g, lower, upper));
+    const bool is_found = least_square(near, least, most) >= near.square;
+    if (is_found) {
+      ASSERT_LE(extinction, mixture.left_out * (1 + 1e-5)) << n;
+    }
+    if (extinction > 0.99 * mixture.left_out || offset > 0) continue;
+    ++far[mixes ? 1 : 0];
+    found[mixes ? 1 : 0] += is_found ? 1 : 0;
+  }
+  EXPECT_GT(far[0], 2000);
+  EXPECT_EQ(found[0], far[0]);
+  EXPECT_GT(found[1], far[1] / 2);
+}
+
 /// Extinction changes by no more than steepness times what the data do.
 TEST(NearMixture, SteepnessBoundsChanges) {
   std::mt19937_64 random(4);

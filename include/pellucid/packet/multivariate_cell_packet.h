@@ -85,11 +85,10 @@ class MultivariateCellPacket {
   /// Whether anything of the cells may be seen, by the ranges of their data.
   [[gnu::flatten]] M matters(const CubicBernstein<D>* data, typename Cells::Rows& rows,
                              int at) noexcept {
-    F lower[most_channels], upper[most_channels];
     const int channels = mixture_.transfer.channels;
     for (int c = 0; c < channels; ++c) {
-      lower[c] = convert<float>(data[c].hull_min());
-      upper[c] = convert<float>(data[c].hull_max());
+      lower_[c] = convert<float>(data[c].hull_min());
+      upper_[c] = convert<float>(data[c].hull_max());
     }
     LanePrimitiveSets<N> sets;
     M found(false);
@@ -97,13 +96,7 @@ class MultivariateCellPacket {
       const M held = march_.walking & march_.near.holds(i);
       if (none(held)) continue;
       const NearGaussian& g = mixture_.primitive[i];
-      F away(0);
-      for (int c = 0; c < channels; ++c) {
-        const F center(g.gaussian.center[c]);
-        const F gap = max(lower[c] - center, center - upper[c]);
-        away = max(away, F(g.least_scale[c]) * gap);
-      }
-      const M seen = held & !(away * away >= F(g.square) - lanes_.less);
+      const M seen = held & !(least_square(g, lower_, upper_) >= F(g.square) - lanes_.less);
       sets.add(seen, i);
       found = found | seen;
     }
@@ -134,6 +127,7 @@ class MultivariateCellPacket {
   int first_, count_;
   Cells march_;
   Panels lanes_;
+  F lower_[most_channels], upper_[most_channels];  ///< of a cell's data, by channel
 };
 
 }  // namespace pellucid

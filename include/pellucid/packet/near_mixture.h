@@ -13,7 +13,37 @@ struct NearGaussian {
   /// |K (v - c)| is at least this times the distance of v from c in a channel, whatever v is in the
   /// others.
   float least_scale[most_channels] = {};
+  /// Whether a row of K looks at several channels, or several rows at one.
+  bool mixes_channels = false;
 };
+
+/// A lower bound on |K (v - c)|², v anywhere in the box of these ranges of the channels: of each
+/// row, how far its range is from 0; and where rows look at several channels, what a channel alone
+/// says. In binary32 it is what NearGaussian::square makes up for. T may be a batch.
+template <class T>
+T least_square(const NearGaussian& near, const T* lower, const T* upper) noexcept {
+  const Gaussian<float>& g = near.gaussian;
+  T sum(0);
+  for (int row = 0; row < g.rows; ++row) {
+    T least(0), most(0);
+    for (int c = 0; c < g.channels; ++c) {
+      const float k = g.matrix[row][c];
+      if (k == 0) continue;
+      const T a = T(k) * (lower[c] - T(g.center[c])), b = T(k) * (upper[c] - T(g.center[c]));
+      least += min(a, b);
+      most += max(a, b);
+    }
+    const T gap = max(max(least, -most), T(0));
+    sum += gap * gap;
+  }
+  if (!near.mixes_channels) return sum;
+  T away(0);
+  for (int c = 0; c < g.channels; ++c) {
+    const T gap = max(lower[c] - T(g.center[c]), T(g.center[c]) - upper[c]);
+    away = max(away, T(near.least_scale[c]) * gap);
+  }
+  return max(sum, away * away);
+}
 
 /// A transfer function of several variables, as rays in lanes look at it before they integrate
 /// anything. A view; owns nothing.

@@ -62,6 +62,8 @@ class NodePanels {
         add<1>(mixture, i, span.data, less, held, nodes);
       } else if (rows == 2) {
         add<2>(mixture, i, span.data, less, held, nodes);
+      } else if (rows == 3) {
+        add<3>(mixture, i, span.data, less, held, nodes);
       } else {
         add<most_channels>(mixture, i, span.data, less, held, nodes);
       }
@@ -88,6 +90,7 @@ class NodePanels {
     result.done = found.done & !hard;
     result.cut = convert<double>(found.cut);
     result.clear = convert<double>(found.clear);
+    result.until = convert<double>(found.until);
     return hard;
   }
 
@@ -131,6 +134,7 @@ class NodePanels {
     r.done = mask(a.done, b.done);
     r.cut = of(a.cut, b.cut);
     r.clear = of(a.clear, b.clear);
+    r.until = of(a.until, b.until);
     return r;
   }
 };

@@ -134,26 +134,19 @@ class PanelLanes {
     const M lanes = spans_.ready();
     if (none(lanes)) return;
     const Rows& rows = room_.rows;
-    std::int32_t waiting[N];
-    spans_.waiting.store(waiting);
-    int step_of[N] = {};
-    for (unsigned left = bits(lanes); left != 0; left &= left - 1) {
-      const int l = __builtin_ctz(left);
-      // The row that is written next is the oldest one.
-      const auto rows_of = static_cast<unsigned>(waiting[l]);
-      const unsigned old = rows_of & (~0u << row_);
-      step_of[l] = __builtin_ctz(old != 0 ? old : rows_of);
-      waiting[l] &= ~(1 << step_of[l]);
-    }
-    spans_.waiting = I::load(waiting);
+    // The row that is written next is the oldest one.
+    const I old = spans_.waiting & I(static_cast<std::int32_t>(~0u << row_));
+    const I some = select(old != I(0), old, spans_.waiting);
+    const I first = select(lanes, some & (I(0) - some), I(0));
+    spans_.waiting -= first;
+    std::int32_t bit_of[N];
+    first.store(bit_of);
     I note(0);
     // Rays beside each other are at nearly the same step.
     for (unsigned left = bits(lanes); left != 0;) {
-      const int s = step_of[__builtin_ctz(left)];
-      unsigned at_step = 0;
-      for (int l = 0; l < N; ++l) at_step |= step_of[l] == s ? 1u << l : 0u;
-      const M here = M::from_bits(left & at_step);
-      const int at = s * N;
+      const std::int32_t bit = bit_of[__builtin_ctz(left)];
+      const M here = first == I(bit);
+      const int at = __builtin_ctz(static_cast<unsigned>(bit)) * N;
       const auto take = [&](const auto* numbers, auto& kept) noexcept {
         kept = select(here, std::decay_t<decltype(kept)>::load(numbers + at), kept);
       };
@@ -170,7 +163,7 @@ class PanelLanes {
       take(rows.end_error, end_error);
       place_error_ = select(here, place_error + end_error, place_error_);
       take(rows.code, note);
-      left &= ~at_step;
+      left &= ~bits(here);
     }
     from_ = select(lanes, D(0), from_);
     to_ = select(lanes, D(1), to_);
@@ -240,7 +233,7 @@ class PanelLanes {
       }
     }
     const M rest = on & !panel.done;
-    if (any(rest)) cut(rest, panel.clear, panel.cut);
+    if (any(rest)) cut(rest, panel);
   }
 
   /// Of a span that is cut, what lies behind the panel that is done.
@@ -255,17 +248,21 @@ class PanelLanes {
     spans_.pending = spans_.pending & !(lanes & !more);
   }
 
-  void cut(M lanes, const D& clear, const D& share) noexcept {
-    const D at = from_ + share * (to_ - from_), begin = from_ + clear * (to_ - from_);
+  /// Leaves a first part of the lanes' spans to work on, and what else of them matters for later.
+  void cut(M lanes, const PanelSegment<D>& panel) noexcept {
+    const auto place = [&](const D& share) noexcept { return from_ + share * (to_ - from_); };
+    const D begin = place(panel.clear), at = place(panel.cut);
     const M inside = (at > begin) & (at < to_);
     const D end = select(inside, at, D(0.5) * (from_ + to_));
+    const D until = select(inside, min(place(panel.until), to_), to_);
     from_ = select(lanes & inside, begin, from_);
-    for (unsigned left = bits(lanes); left != 0; left &= left - 1) {
-      const int l = __builtin_ctz(left);
-      room_.end[open_[l]][l] = to_[l];
-    }
-    open_ += select(lanes, I(1), I(0));
     to_ = select(lanes, end, to_);
+    const M more = lanes & (until > end);
+    for (unsigned left = bits(more); left != 0; left &= left - 1) {
+      const int l = __builtin_ctz(left);
+      room_.end[open_[l]][l] = until[l];
+    }
+    open_ += select(more, I(1), I(0));
   }
 
   const NearMixture& mixture_;

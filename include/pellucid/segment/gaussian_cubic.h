@@ -166,43 +166,20 @@ class GaussianCubic {
   }
 
   /// A lower bound on the squared distance of the coefficients' hull from 0: the hull lies beyond
-  /// the plane at right angles to any x at min p_k·x / |x|. x goes from the mean of the
-  /// coefficients towards the nearest point of the hull (Gilbert 1966).
+  /// the plane at right angles to any x at min p_k·x / |x|. x is the mean of the coefficients: what
+  /// steps from there towards the nearest point of the hull (Gilbert 1966) gain costs more than it
+  /// saves.
   PELLUCID_HD T squared_distance() const noexcept {
     T x[Most];
     for (int i = 0; i < rows(); ++i) {
       x[i] = T(0.25) * ((p_[0][i] + p_[3][i]) + (p_[1][i] + p_[2][i]));
     }
-    T best = T(0);
-    constexpr int steps = 4;
-    for (int step = 0; step < steps; ++step) {
-      const T xx = dot(x, x);
-      T least = dot(p_[0], x);
-      T nearest[Most];
-      for (int i = 0; i < rows(); ++i) nearest[i] = p_[0][i];
-      for (int k = 1; k < 4; ++k) {
-        const T along = dot(p_[k], x);
-        const auto nearer = along < least;
-        least = min(least, along);
-        for (int i = 0; i < rows(); ++i) nearest[i] = select(nearer, p_[k][i], nearest[i]);
-      }
-      // Rounding of the products must not raise the bound.
-      const T ahead = max(least - T(16 * rounding_unit<T>) * sqrt(upper_ * xx), T(0));
-      best = max(best,
-                 ahead * (ahead / max(xx, T(smallest_normal<T>))) * T(1 - 64 * rounding_unit<T>));
-      const auto go_on = (least < T(0.95) * xx) & (xx > T(smallest_normal<T>));
-      if (none(go_on)) break;
-      // The point of the stretch from x to p that is nearest to 0.
-      T difference = T(0);
-      for (int i = 0; i < rows(); ++i) {
-        const T between = x[i] - nearest[i];
-        difference += between * between;
-      }
-      const T share = select(
-          go_on, clamp((xx - least) / max(difference, T(smallest_normal<T>)), T(0), T(1)), T(0));
-      for (int i = 0; i < rows(); ++i) x[i] += share * (nearest[i] - x[i]);
-    }
-    return min(best, upper_);
+    const T xx = dot(x, x);
+    const T least = min(min(dot(p_[0], x), dot(p_[3], x)), min(dot(p_[1], x), dot(p_[2], x)));
+    // Rounding of the products must not raise the bound.
+    const T ahead = max(least - T(16 * rounding_unit<T>) * sqrt(upper_ * xx), T(0));
+    return min(ahead * (ahead / max(xx, T(smallest_normal<T>))) * T(1 - 64 * rounding_unit<T>),
+               upper_);
   }
 
   int rows_;

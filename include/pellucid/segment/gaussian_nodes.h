@@ -168,7 +168,8 @@ class GaussianNodes {
     SegmentResult<T> segment;
     T error{};  ///< of the radiance, by the largest color, and of the opacity
     Mask done = Mask(false);
-    T clear{}, cut = T(0.5);  ///< else: nothing matters up to `clear`; try from there to `cut`
+    /// Else: nothing matters up to `clear` nor from `until` on; try from `clear` to `cut`.
+    T clear{}, cut = T(0.5), until = T(1);
   };
   PELLUCID_HD Result integrate(T allowed) const noexcept {
     Result result;
@@ -189,6 +190,7 @@ class GaussianNodes {
     const T whole = max(floor(parts + T(0.9375)), select(share > T(0.75), T(2), T(1)));
     result.clear = min(from_, T(1));
     result.cut = result.clear + share / whole;
+    result.until = max(to_, result.cut);
     return result;
   }
 

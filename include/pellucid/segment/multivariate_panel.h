@@ -28,7 +28,7 @@ struct PanelSegment {
   T opacity{};                        ///< a bound on it, which the allowance was asked for
   mask_t<T> done = mask_t<T>(false);  ///< else: cut it at `cut` and try the parts
   T cut = T(0.5);
-  T clear{};  ///< up to where nothing matters, if it is not done
+  T clear{}, until = T(1);  ///< if it is not done: outside of these nothing matters
 
   PELLUCID_HD T error(T largest_color) const noexcept {
     return found.color_error + largest_color * found.opacity_error;
