@@ -85,9 +85,11 @@ class PacketFold {
   }
 
   /// Those of the lanes whose rays no longer matter from here on, and did until now. What is
-  /// behind is charged to them.
+  /// behind is charged to them: a quarter of what is left to pay for it at most. Behind what is
+  /// opaque all of it is there, where other errors are far below what is charged for them; and the
+  /// way on to a quarter of the light is short.
   M cut_off(M lanes) noexcept {
-    const M done = lanes & (!cut_off_) & (rest_behind() <= budget.left());
+    const M done = lanes & (!cut_off_) & (F(4) * rest_behind() <= budget.left());
     cut_off_ = cut_off_ | done;
     return done;
   }
