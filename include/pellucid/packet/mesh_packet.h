@@ -138,26 +138,13 @@ class MeshPacket {
   [[gnu::flatten]] void take_spans() noexcept {
     const M lanes = spans_.ready();
     if (none(lanes)) return;
-    // The number of the lowest bit (de Bruijn).
-    static constexpr std::int32_t number_of[32] = {0,  1,  28, 2,  29, 14, 24, 3,  30, 22, 20,
-                                                   15, 25, 17, 4,  8,  31, 27, 13, 23, 21, 19,
-                                                   16, 7,  26, 12, 18, 6,  11, 5,  10, 9};
-    const I lowest = spans_.waiting & (I(0) - spans_.waiting);
-    const I step = gather(number_of, ((lowest * I(0x077cb531)) >> 27) & I(31));
-    spans_.waiting = select(lanes, spans_.waiting - lowest, spans_.waiting);
-    row_ = select(lanes, step * I(N) + lane_, row_);
     const F was = front_;
-    // Rays beside each other are at nearly the same step: two or three loads instead of a gather.
-    std::int32_t step_of[N];
-    step.store(step_of);
     I note(0);
-    for (M left = lanes; any(left);) {
-      const std::int32_t at_step = step_of[__builtin_ctz(bits(left))];
-      const M here = left & (step == I(at_step));
-      const std::int32_t at = at_step * N;
+    spans_.take_oldest(lanes, 0, [&](M here, int at) noexcept {
       const auto take = [&](const float* numbers, F& kept) noexcept {
         kept = select(here, F::load(numbers + at), kept);
       };
+      row_ = select(here, I(at) + lane_, row_);
       take(rows_.front, front_);
       take(rows_.back, back_);
       take(rows_.rounding, rounding_);
@@ -166,8 +153,7 @@ class MeshPacket {
       take(rows_.place_error, place_error_);
       take(rows_.end_error, end_error_);
       note = select(here, I::load(rows_.code + at), note);
-      left = left & !here;
-    }
+    });
     // Where the data go on from where they were, so do extinction and color.
     located_ = located_ & !(lanes & (front_ != was));
     handed_back_ = handed_back_ | (lanes & (note > I(0)));

@@ -85,11 +85,9 @@ class PacketFold {
   }
 
   /// Those of the lanes whose rays no longer matter from here on, and did until now. What is
-  /// behind is charged to them: a quarter of what is left to pay for it at most. Behind what is
-  /// opaque all of it is there, where other errors are far below what is charged for them; and the
-  /// way on to a quarter of the light is short.
+  /// behind is charged to them.
   M cut_off(M lanes) noexcept {
-    const M done = lanes & (!cut_off_) & (F(4) * rest_behind() <= budget.left());
+    const M done = lanes & (!cut_off_) & (rest_behind() <= F(share_for_rest) * budget.left());
     cut_off_ = cut_off_ | done;
     return done;
   }
@@ -115,6 +113,10 @@ class PacketFold {
   }
 
  private:
+  /// How much of what is left of the tolerance may go for what is behind. That is really there
+  /// behind what is opaque, where other errors are far below what is charged for them; and the way
+  /// on to a quarter of the light is short.
+  static constexpr float share_for_rest = 0.25f;
   /// The share of the tolerance that pays for adding up costs in float: of 16000 segments.
   static constexpr double kept_back = 0x1p-9;
 

@@ -134,19 +134,8 @@ class PanelLanes {
     const M lanes = spans_.ready();
     if (none(lanes)) return;
     const Rows& rows = room_.rows;
-    // The row that is written next is the oldest one.
-    const I old = spans_.waiting & I(static_cast<std::int32_t>(~0u << row_));
-    const I some = select(old != I(0), old, spans_.waiting);
-    const I first = select(lanes, some & (I(0) - some), I(0));
-    spans_.waiting -= first;
-    std::int32_t bit_of[N];
-    first.store(bit_of);
     I note(0);
-    // Rays beside each other are at nearly the same step.
-    for (unsigned left = bits(lanes); left != 0;) {
-      const std::int32_t bit = bit_of[__builtin_ctz(left)];
-      const M here = first == I(bit);
-      const int at = __builtin_ctz(static_cast<unsigned>(bit)) * N;
+    spans_.take_oldest(lanes, row_, [&](M here, int at) noexcept {
       const auto take = [&](const auto* numbers, auto& kept) noexcept {
         kept = select(here, std::decay_t<decltype(kept)>::load(numbers + at), kept);
       };
@@ -163,8 +152,7 @@ class PanelLanes {
       take(rows.end_error, end_error);
       place_error_ = select(here, place_error + end_error, place_error_);
       take(rows.code, note);
-      left &= ~bits(here);
-    }
+    });
     from_ = select(lanes, D(0), from_);
     to_ = select(lanes, D(1), to_);
     open_ = select(lanes, I(0), open_);
