@@ -72,18 +72,12 @@ float least_scale(const Gaussian<double>& g, int k) {
   return static_cast<float>(std::max(least, 0.0) * (1 - 0x1p-20));
 }
 
-bool mixes_channels(const Gaussian<double>& g) {
-  std::array<int, most_channels> looks_at{}, looked_at{};
+bool couples_channels(const Gaussian<double>& g) {
   for (int i = 0; i < g.rows; ++i) {
-    for (int c = 0; c < g.channels; ++c) {
-      if (g.matrix[i][c] == 0) continue;
-      ++looks_at[static_cast<std::size_t>(i)];
-      ++looked_at[static_cast<std::size_t>(c)];
-    }
+    const auto looks_at = [](double k) { return k != 0; };
+    if (std::count_if(g.matrix[i], g.matrix[i] + g.channels, looks_at) > 1) return true;
   }
-  const auto several = [](int n) { return n > 1; };
-  return std::any_of(looks_at.begin(), looks_at.end(), several) ||
-         std::any_of(looked_at.begin(), looked_at.end(), several);
+  return false;
 }
 
 }  // namespace
@@ -108,7 +102,7 @@ NearMixtureStorage::NearMixtureStorage(const double* largest, bool off,
     NearGaussian near;
     near.gaussian = rounded_to_binary32(g);
     for (int c = 0; c < g.channels; ++c) near.least_scale[c] = least_scale(g, c);
-    near.mixes_channels = mixes_channels(g);
+    near.couples_channels = couples_channels(g);
     const double size = size_of_terms(g, largest);
     near.square = g.peak > negligible ? square_in_float(size, std::log(g.peak / negligible)) : -1;
     mixture_.suits_binary32 = mixture_.suits_binary32 && size <= largest_size;

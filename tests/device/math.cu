@@ -4,6 +4,7 @@
 #include "pellucid/math/dawson.h"
 #include "pellucid/math/erf_over_x.h"
 #include "pellucid/math/error_function.h"
+#include "pellucid/math/expm1_quotient_to_4.h"
 #include "pellucid/math/exponential.h"
 #include "pellucid/math/scaled_tail.h"
 #include "tests/device/kernel.h"
@@ -29,7 +30,7 @@ PELLUCID_HD void special_functions(const T* in, T* out) noexcept {
   const auto square = exact_square(x);
   out[3] = square.square + square.residual;
   out[4] = erf(x) + erfc(x) + erfcx(x) + erfcx_nonnegative(x);
-  out[5] = dawson(x) + erf_over_x(x);
+  out[5] = dawson(x) + erf_over_x(x) + expm1_quotient_to_4(x);
   out[6] = w0_plus(x) + w0_minus(x) + w1_plus(x) + w1_minus(x);
 }
 PELLUCID_DEVICE_KERNEL(special_functions)

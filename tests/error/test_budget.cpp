@@ -108,8 +108,8 @@ TEST(RayBudget, NoSpansTriedTogetherSpendMoreThanTheTolerance) {
 
 TEST(RayBudget, WhatLiesBehindARayThatIsOver) {
   RayBudget<double> budget(1e-3, 1);
-  EXPECT_TRUE(budget.pays_for(1e-3, 1e-3));
-  EXPECT_FALSE(budget.pays_for(2e-3, 1e-3));
+  EXPECT_TRUE(budget.pays_for(0.25e-3, 1e-3));
+  EXPECT_FALSE(budget.pays_for(0.26e-3, 1e-3));
   budget.spend(0.1, 0.5, 1, 2e-3);
   EXPECT_EQ(budget.left(), 0);
   EXPECT_TRUE(budget.pays_for(1e-3 / 64, 1e-3));

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "pellucid/math/expm1_quotient_to_4.h"
 #include "tests/math/sweep.h"
 
 namespace pellucid::test {
@@ -34,6 +35,16 @@ TYPED_TEST(Exponential, Expm1QuotientHasTheStatedError) {
                   .largest(),
               3.3L);
   }
+}
+
+TYPED_TEST(Exponential, Expm1QuotientTo4HasTheStatedError) {
+  using T = TypeParam;
+  const auto function = [](T t) { return expm1_quotient_to_4(t); };
+  const auto truth = [](const Wide& t) { return wide_expm1_quotient(Wide(4 * t)); };
+  EXPECT_LE(relative_errors("expm1_quotient_to_4", arguments<T>(T(0), T(1), {0, T(0.5), 1}, 3000),
+                            function, truth)
+                .largest(),
+            sizeof(T) == sizeof(float) ? 4.0L : 3.0L);
 }
 
 TYPED_TEST(Exponential, Expm1QuotientDerivativeHasTheStatedError) {

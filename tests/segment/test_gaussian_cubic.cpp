@@ -5,6 +5,7 @@
 
 #include <boost/math/quadrature/gauss.hpp>
 #include <cmath>
+#include <limits>
 #include <random>
 #include <string>
 
@@ -161,8 +162,8 @@ TEST(GaussianCubic, BoundsEncloseTheExponent) {
   EXPECT_GT(tightest_above, 0.999);
 }
 
-/// The squared distance of four points' hull from 0 by brute force: projections on all faces.
-/// lower() is at least a part of it: beyond one plane.
+/// The squared distance of four points' hull from 0 by steps towards it: no more than that, and of
+/// five in eight curves at least 0.8 of it.
 TEST(GaussianCubic, LowerIsCloseToTheHull) {
   Maker maker(33);
   long lax = 0, counted = 0;
@@ -207,7 +208,54 @@ TEST(GaussianCubic, LowerIsCloseToTheHull) {
   }
   std::printf("[ accuracy ] lower() below 0.8 of the hull's distance: %ld of %ld\n", lax, counted);
   EXPECT_GT(counted, 5000);
-  EXPECT_LE(lax, 2 * counted / 5);
+  EXPECT_LE(lax, 3 * counted / 8);
+}
+
+/// In binary32, as rays in packets have it, nothing that is rounded raises it above the curve.
+template <int Most>
+void expect_below_in_float(unsigned seed) {
+  Maker maker(seed);
+  for (long i = 0; i < test::span_count(100000); ++i) {
+    const int rows = 1 + maker.pick(Most);
+    const double size = maker.powers(1e-6, 1e6), bent = maker.powers(1e-5, 1);
+    float first[Most], difference[3][Most];
+    for (int row = 0; row < rows; ++row) {
+      first[row] = static_cast<float>(size * maker.normal());
+      const double along = size * maker.normal();
+      for (auto& step : difference) {
+        step[row] = static_cast<float>(along + bent * size * maker.normal());
+      }
+      // Through 0, but for a little.
+      if (maker.pick(3) > 0) {
+        const float middle = difference[0][row] + 0.5f * difference[1][row];
+        first[row] = -middle + first[row] * static_cast<float>(maker.powers(1e-8, 1));
+      }
+    }
+    const GaussianCubic<float, Most> cubic(rows, first, difference);
+    long double least = std::numeric_limits<long double>::infinity();
+    for (int k = 0; k <= 200; ++k) {
+      const long double u = k / 200.0L;
+      long double square = 0;
+      for (int row = 0; row < rows; ++row) {
+        const long double d0 = difference[0][row], d1 = difference[1][row], d2 = difference[2][row];
+        const long double p =
+            first[row] + u * (3 * d0 + u * (3 * (d1 - d0) + u * ((d2 - d1) - (d1 - d0))));
+        square += p * p;
+      }
+      least = std::min(least, square);
+    }
+    // Sums of differences are rounded before there is a curve.
+    const long double rounding = 4 * test::unit_of<float> * std::sqrt(cubic.upper());
+    const long double above = std::sqrt(least) + rounding;
+    ASSERT_LE(static_cast<long double>(cubic.lower()), above * above) << i;
+  }
+}
+
+TEST(GaussianCubic, LowerIsBelowInFloat) {
+  expect_below_in_float<1>(41);
+  expect_below_in_float<2>(42);
+  expect_below_in_float<3>(43);
+  expect_below_in_float<most_channels>(44);
 }
 
 /// Outside of the part that within() gives, the exponent is above the square of the reach.

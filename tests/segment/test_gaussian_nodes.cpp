@@ -287,7 +287,8 @@ struct Driven {
       if (!found.done) {
         const double width = to - from;
         const auto place = [&](T u) { return from + width * static_cast<double>(u); };
-        const double begin = place(found.clear), cut = place(found.cut), until = place(found.until);
+        const double begin = place(found.clear), cut = place(found.cut),
+                     until = std::min(place(found.until), to);
         check_clear(piece, from, begin, negligible);
         check_clear(piece, until, to, negligible);
         left_out += (to - until) / width;

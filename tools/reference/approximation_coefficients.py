@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Generates approximation_coefficients.csv: the polynomials of math/{w0_plus,…,erf_over_x}.h.
+"""Generates approximation_coefficients.csv: the polynomials of math/{w0_plus,…,erf_over_x,expm1_quotient_to_4}.h.
 
 Each is the truncated Chebyshev series of its function on an interval, at 60 digits, written as a
 monomial in s in [-1, 1] and then rounded to the precision it is for.
@@ -40,9 +40,13 @@ def erf_over_x(y):
     return mp.erf(x) / x if x != 0 else 2 / mp.sqrt(mp.pi)
 
 
+def expm1_quotient_to_4(t):
+    return -mp.expm1(-4 * t) / (4 * t) if t != 0 else mpf(1)
+
+
 FUNCTIONS = {"W0_plus": scaled_tail(0, +1), "W0_minus": scaled_tail(0, -1),
              "W1_plus": scaled_tail(1, +1), "W1_minus": scaled_tail(1, -1),
-             "erf_over_x": erf_over_x}
+             "erf_over_x": erf_over_x, "expm1_quotient_to_4": expm1_quotient_to_4}
 
 EXTRA_NODES = 20
 
@@ -51,7 +55,8 @@ FITS = {("W0_plus", "float"): (1, 11), ("W0_plus", "double"): (16, 9),
         ("W0_minus", "float"): (16, 8), ("W0_minus", "double"): (16, 15),
         ("W1_plus", "float"): (1, 13), ("W1_plus", "double"): (16, 10),
         ("W1_minus", "float"): (16, 8), ("W1_minus", "double"): (16, 15),
-        ("erf_over_x", "float"): (1, 6), ("erf_over_x", "double"): (1, 13)}
+        ("erf_over_x", "float"): (1, 6), ("erf_over_x", "double"): (1, 13),
+        ("expm1_quotient_to_4", "float"): (1, 9), ("expm1_quotient_to_4", "double"): (1, 17)}
 
 
 def truncated_chebyshev_series(function, lo, hi, degree):

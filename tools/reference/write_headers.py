@@ -5,8 +5,8 @@
     write_headers.py [--check] [FOLDER]
 
 FOLDER holds approximation_coefficients.csv (w0_plus.h, w0_minus.h, w1_plus.h, w1_minus.h,
-erf_over_x.h) and gauss_legendre.csv (gauss_legendre_rules.h). --check writes nothing and exits with
-1 if a header is not what the tables give.
+erf_over_x.h, expm1_quotient_to_4.h) and gauss_legendre.csv (gauss_legendre_rules.h). --check writes
+nothing and exits with 1 if a header is not what the tables give.
 """
 import argparse
 import csv
@@ -40,6 +40,12 @@ bracket loses all digits for large δ. It changes sign where 2 δ Daw(δ) = 1 (�
 only the absolute error is small."""),
     "erf_over_x": ("erf_over_x", "x_squared", r"""
 erf(x) / x as a function of x² in [0, 1]."""),
+    "expm1_quotient_to_4": ("expm1_quotient_to_4", "t", r"""
+(1 - e^(-x)) / x, x = 4 t, as a function of t in [0, 1]: expm1_quotient(x) of optical depths that
+are known to be no more than 4, in less time.
+
+Largest relative error 4 u (float), 3 u (double); outside of [0, 1] it is no function of use.
+Asserted in tests/math/exponential.cpp."""),
 }
 
 
@@ -100,7 +106,7 @@ def fit_header(function, fit):
              "// Written by tools/reference/write_headers.py from approximation_coefficients.csv.",
              "#pragma once", "", '#include "pellucid/math/polynomial.h"', "",
              "namespace pellucid {", "", "// clang-format off"]
-    lines += ["/// " + line for line in comment.strip().split("\n")]
+    lines += [("/// " + line).rstrip() for line in comment.strip().split("\n")]
     lines += ["template <class T>", f"PELLUCID_HD inline T {name}(T {argument}) noexcept {{",
               "  if constexpr (is_single<T>) {"]
     lines += array("float", fit["float"]) + evaluation(argument, fit["float"]) + ["  } else {"]

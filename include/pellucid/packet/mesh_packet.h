@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "pellucid/packet/lane_spans.h"
 #include "pellucid/packet/mesh_march.h"
 #include "pellucid/packet/mesh_variable.h"
 #include "pellucid/packet/opacity_trace.h"

@@ -96,7 +96,8 @@ class MultivariateCellPacket {
       const M held = march_.walking & march_.near.holds(i);
       if (none(held)) continue;
       const NearGaussian& g = mixture_.primitive[i];
-      const M seen = held & !(least_square(g, lower_, upper_) >= F(g.square) - lanes_.less);
+      const M seen =
+          held & !(least_exponent_by_rows(g, lower_, upper_) >= F(g.square) - lanes_.less);
       sets.add(seen, i);
       found = found | seen;
     }
@@ -127,7 +128,8 @@ class MultivariateCellPacket {
   int first_, count_;
   Cells march_;
   Panels lanes_;
-  F lower_[most_channels], upper_[most_channels];  ///< of a cell's data, by channel
+  /// Of a cell's data, by channel; kept here so that they are not set to 0 for each.
+  F lower_[most_channels], upper_[most_channels];
 };
 
 }  // namespace pellucid

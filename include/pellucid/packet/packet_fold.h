@@ -53,6 +53,7 @@ class PacketFold {
   /// `lengths` of the rays, in world units.
   PacketFold(double tolerance, double largest_extinction, double largest_color, F lengths) noexcept
       : budget(F(static_cast<float>(tolerance * (1 - kept_back))), lengths),
+        tolerance_(static_cast<float>(tolerance * (1 - kept_back))),
         largest_extinction_(static_cast<float>(largest_extinction)),
         largest_color_(largest_color) {}
 
@@ -87,7 +88,7 @@ class PacketFold {
   /// Those of the lanes whose rays no longer matter from here on, and did until now. What is
   /// behind is charged to them.
   M cut_off(M lanes) noexcept {
-    const M done = lanes & (!cut_off_) & (rest_behind() <= F(share_for_rest) * budget.left());
+    const M done = lanes & (!cut_off_) & budget.pays_for(rest_behind(), F(tolerance_));
     cut_off_ = cut_off_ | done;
     return done;
   }
@@ -113,10 +114,6 @@ class PacketFold {
   }
 
  private:
-  /// How much of what is left of the tolerance may go for what is behind. That is really there
-  /// behind what is opaque, where other errors are far below what is charged for them; and the way
-  /// on to a quarter of the light is short.
-  static constexpr float share_for_rest = 0.25f;
   /// The share of the tolerance that pays for adding up costs in float: of 16000 segments.
   static constexpr double kept_back = 0x1p-9;
 
@@ -127,6 +124,7 @@ class PacketFold {
   }
 
   FrontToBack<D> fold_;
+  float tolerance_ = 0;  ///< that the budget began with
   float largest_extinction_ = 0;
   double largest_color_ = 0;
   M cut_off_{false};

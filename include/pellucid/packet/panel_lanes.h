@@ -2,6 +2,7 @@
 #pragma once
 
 #include "pellucid/packet/lane_primitive_sets.h"
+#include "pellucid/packet/lane_spans.h"
 #include "pellucid/packet/mesh_rows.h"
 #include "pellucid/packet/near_mixture.h"
 #include "pellucid/packet/opacity_trace.h"
@@ -236,7 +237,9 @@ class PanelLanes {
     spans_.pending = spans_.pending & !(lanes & !more);
   }
 
-  /// Leaves a first part of the lanes' spans to work on, and what else of them matters for later.
+  /// Leaves a first part of the lanes' spans to work on, and what is behind it for later: the last
+  /// part without what does not matter at its end. Where a part ends the next one begins, so that
+  /// of others that comes back as the beginning of the one behind.
   void cut(M lanes, const PanelSegment<D>& panel) noexcept {
     const auto place = [&](const D& share) noexcept { return from_ + share * (to_ - from_); };
     const D begin = place(panel.clear), at = place(panel.cut);

@@ -30,7 +30,7 @@ class RayIntegrator {
         budget_(wanted.tolerance, length) {}
 
   /// Whether what is left of the ray can no longer matter.
-  PELLUCID_HD bool done() const noexcept { return rest() <= budget_.left(); }
+  PELLUCID_HD bool done() const noexcept { return budget_.pays_for(rest(), wanted_.tolerance); }
 
   /// A stretch in which nothing absorbs.
   PELLUCID_HD void skip(double length) noexcept {

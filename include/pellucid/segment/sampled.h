@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "pellucid/math/expm1_quotient_to_4.h"
 #include "pellucid/segment/constant.h"
 #include "pellucid/transfer/piecewise_linear.h"
 
@@ -32,7 +33,8 @@ namespace detail {
 template <class T>
 SegmentResult<T> trapezoid(const StepEnd<T>& front, const StepEnd<T>& back, T length) noexcept {
   const T half = T(0.5) * length, depth = half * (front.extinction + back.extinction);
-  const T mean_transparency = expm1_quotient(depth), opacity = depth * mean_transparency;
+  const T mean_transparency = expm1_quotient_to_4(T(0.25) * depth),
+          opacity = depth * mean_transparency;
   return {depth, opacity, T(1) - opacity,
           (half * mean_transparency) * (front.emission + back.emission)};
 }

@@ -15,7 +15,8 @@ namespace pellucid {
 /// a proof wherever v stands, and tight where it is the minimum. v is found by descent along one
 /// axis after the other, which for a K of orthogonal columns ends after one round. It stops when
 /// the bound is within a hundredth of f(v), or above `enough`, or after 32 rounds. Never more than
-/// f at any corner, up to 64 u of the largest terms, which is taken off.
+/// f at any corner, up to 64 u of the largest terms, which is taken off. For blocks; cells, of
+/// which there are many, have least_exponent_by_rows().
 template <class T>
 PELLUCID_HD T least_exponent(const Gaussian<T>& g, const T* lower, const T* upper,
                              T enough) noexcept {
