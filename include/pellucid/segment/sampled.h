@@ -33,7 +33,7 @@ namespace detail {
 template <class T>
 SegmentResult<T> trapezoid(const StepEnd<T>& front, const StepEnd<T>& back, T length) noexcept {
   const T half = T(0.5) * length, depth = half * (front.extinction + back.extinction);
-  const T mean_transparency = expm1_quotient_to_4(T(0.25) * depth),
+  const T mean_transparency = expm1_quotient_to_4(min(T(0.25) * depth, T(1))),
           opacity = depth * mean_transparency;
   return {depth, opacity, T(1) - opacity,
           (half * mean_transparency) * (front.emission + back.emission)};
@@ -66,7 +66,9 @@ SegmentResult<T> improve(const SegmentResult<T>& first, const SegmentResult<T>& 
 /// this says all), and less than it where they bend at places that the samples do not know.
 /// tests/segment holds it against quadrature.
 ///
-/// Not accurate to the last digits where opacity is small: of a stretch among others of a ray.
+/// Not accurate to the last digits where opacity is small: of a stretch among others of a ray. Of
+/// steps whose length times the largest extinction is at most 1; of denser ones numbers that are
+/// good for nothing.
 template <class T>
 SampledSegment<T> sampled_segment(const StepEnd<T>* end, T length) noexcept {
   const T two = T(2) * length;
