@@ -41,10 +41,13 @@ TYPED_TEST(Exponential, Expm1QuotientTo4HasTheStatedError) {
   using T = TypeParam;
   const auto function = [](T t) { return expm1_quotient_to_4(t); };
   const auto truth = [](const Wide& t) { return wide_expm1_quotient(Wide(4 * t)); };
-  EXPECT_LE(relative_errors("expm1_quotient_to_4", arguments<T>(T(0), T(1), {0, T(0.5), 1}, 3000),
-                            function, truth)
-                .largest(),
-            sizeof(T) == sizeof(float) ? 4.0L : 3.0L);
+  // The worst that long search found.
+  const std::vector<T> seams = {
+      0, T(0.5), T(0.97901826760728627), T(0.979999006), T(0.9800828945795923), 1};
+  EXPECT_LE(
+      relative_errors("expm1_quotient_to_4", arguments<T>(T(0), T(1), seams, 3000), function, truth)
+          .largest(),
+      sizeof(T) == sizeof(float) ? 4.2L : 3.6L);
 }
 
 TYPED_TEST(Exponential, Expm1QuotientDerivativeHasTheStatedError) {

@@ -37,15 +37,20 @@ void fold(const packet_parts::Fold& wanted, int spans, packet_parts::FoldResult*
   PacketFold<N> rays(wanted.tolerance, wanted.largest_extinction, wanted.largest_color, length);
   const F opacity = F::load(wanted.opacity);
   M alive(true);
-  for (int l = 0; l < N; ++l) result->spans[l] = -1;
-  const auto note = [&](M lanes, int n) {
-    const F left = rays.budget.left();
+  for (int l = 0; l < N; ++l) result->spans[l] = result->could_end[l] = -1;
+  const auto note = [&](M done, int n) {
+    const F left = rays.budget.left(), spent = rays.budget.spent();
     const F rest =
         rays.transparency() *
         min(F(static_cast<float>(wanted.largest_extinction)) * rays.budget.length_left(), F(1)) *
         F(static_cast<float>(wanted.largest_color));
     for (int l = 0; l < N; ++l) {
-      if (!lanes[l]) continue;
+      if (alive[l] && result->could_end[l] < 0 &&
+          static_cast<double>(spent[l]) > wanted.tolerance &&
+          static_cast<double>(rest[l]) <= 0.999 / 64 * (1 - 0x1p-9) * wanted.tolerance) {
+        result->could_end[l] = n;
+      }
+      if (!done[l]) continue;
       result->spans[l] = n;
       result->left[l] = static_cast<double>(left[l]);
       result->rest[l] = static_cast<double>(rest[l]);

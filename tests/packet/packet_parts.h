@@ -18,6 +18,8 @@ struct FoldResult {
   std::int32_t spans[16];  ///< until the ray ended; -1: it did not
   double opacity[16], error[16], spent[16];
   double left[16], rest[16];  ///< where it ended: of the tolerance, and a bound on what is behind
+  /// The first span behind which it was beyond its tolerance and next to nothing was left.
+  std::int32_t could_end[16];
 };
 
 struct Operations {

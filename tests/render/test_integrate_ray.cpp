@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "tests/render/test_grid.h"
 
@@ -90,6 +91,41 @@ TEST(IntegrateRay, ALooserToleranceTakesNoMoreCells) {
     cells = r.cells;
   }
   EXPECT_GT(cells, exact_ray(grid, oblique_ray(33), Precision::automatic, false, 0.5).cells);
+}
+
+/// In front of what is opaque a ray is off by what it leaves out: a quarter of its tolerance at
+/// most, and most of that.
+TEST(IntegrateRay, EndsWhereAQuarterOfItsTolerancePaysForTheRest) {
+  TestGrid<float> grid(33);
+  for (float& v : grid.data) v = 0.5f;
+  int ended = 0;
+  for (const double extinction : {0.3, 0.5, 0.7, 0.9}) {
+    const double value[2] = {0, 1};
+    const Material<double> material[2] = {{extinction, {1, 1, 1}}, {extinction, {1, 1, 1}}};
+    const float single_value[2] = {0, 1};
+    const auto single_extinction = static_cast<float>(extinction);
+    const Material<float> single_material[2] = {{single_extinction, {1, 1, 1}},
+                                                {single_extinction, {1, 1, 1}}};
+    const PiecewiseLinear<double> wide{value, material, 2};
+    const PiecewiseLinear<float> single{single_value, single_material, 2};
+    const AntiderivativeStorage<float> single_antiderivative(single);
+    const AntiderivativeStorage<double> wide_antiderivative(wide);
+    const TransferTables tables{single, wide, single_antiderivative.view(),
+                                wide_antiderivative.view(), extinction};
+    for (const double tolerance : {1e-1, 1e-2, 1e-3, 1e-4}) {
+      const auto off_by = [&](double of) {
+        const RayResult r = integrate_ray(grid.view(), nullptr, oblique_ray(33), tables,
+                                          {of, Grade::estimated, Precision::float64, 1}, false);
+        return std::make_pair(r.opacity, r.error);
+      };
+      const auto exact = off_by(1e-12), found = off_by(tolerance);
+      const double error = exact.first - found.first;
+      EXPECT_LE(error, 0.25 * tolerance) << extinction << ' ' << tolerance;
+      EXPECT_GE(found.second, error);
+      ended += error > 0.1 * tolerance;
+    }
+  }
+  EXPECT_GT(ended, 8);
 }
 
 TEST(IntegrateRay, HalfOpacityDepthHalvesTheOpacity) {

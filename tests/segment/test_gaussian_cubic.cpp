@@ -163,7 +163,7 @@ TEST(GaussianCubic, BoundsEncloseTheExponent) {
 }
 
 /// The squared distance of four points' hull from 0 by steps towards it: no more than that, and of
-/// five in eight curves at least 0.8 of it.
+/// three in five curves at least 0.8 of it.
 TEST(GaussianCubic, LowerIsCloseToTheHull) {
   Maker maker(33);
   long lax = 0, counted = 0;
@@ -206,9 +206,10 @@ TEST(GaussianCubic, LowerIsCloseToTheHull) {
     ASSERT_LE(cubic.lower(), below * (1 + 1e-2) + 1e-9) << i;
     lax += cubic.lower() < 0.8 * below;
   }
-  std::printf("[ accuracy ] lower() below 0.8 of the hull's distance: %ld of %ld\n", lax, counted);
+  std::printf("[ accuracy ] lower() below 0.8 of the hull's squared distance: %ld of %ld\n", lax,
+              counted);
   EXPECT_GT(counted, 5000);
-  EXPECT_LE(lax, 3 * counted / 8);
+  EXPECT_LE(lax, 2 * counted / 5);
 }
 
 /// In binary32, as rays in packets have it, nothing that is rounded raises it above the curve.
@@ -232,22 +233,26 @@ void expect_below_in_float(unsigned seed) {
       }
     }
     const GaussianCubic<float, Most> cubic(rows, first, difference);
+    // Of the coefficients as it has them.
+    float q[4][Most];
+    for (int row = 0; row < rows; ++row) {
+      q[0][row] = first[row];
+      for (int k = 0; k < 3; ++k) q[k + 1][row] = q[k][row] + difference[k][row];
+    }
     long double least = std::numeric_limits<long double>::infinity();
-    for (int k = 0; k <= 200; ++k) {
-      const long double u = k / 200.0L;
+    for (int n = 0; n <= 200; ++n) {
+      const long double u = n / 200.0L, v = 1 - u;
       long double square = 0;
       for (int row = 0; row < rows; ++row) {
-        const long double d0 = difference[0][row], d1 = difference[1][row], d2 = difference[2][row];
-        const long double p =
-            first[row] + u * (3 * d0 + u * (3 * (d1 - d0) + u * ((d2 - d1) - (d1 - d0))));
+        const long double p = v * v * v * q[0][row] + 3 * u * v * v * q[1][row] +
+                              3 * u * u * v * q[2][row] + u * u * u * q[3][row];
         square += p * p;
       }
       least = std::min(least, square);
     }
-    // Sums of differences are rounded before there is a curve.
-    const long double rounding = 4 * test::unit_of<float> * std::sqrt(cubic.upper());
-    const long double above = std::sqrt(least) + rounding;
-    ASSERT_LE(static_cast<long double>(cubic.lower()), above * above) << i;
+    // Of one row the square of the gap is rounded to the nearest.
+    const long double above = rows == 1 ? 2 * test::unit_of<float> : 0;
+    ASSERT_LE(static_cast<long double>(cubic.lower()), least * (1 + above)) << i;
   }
 }
 

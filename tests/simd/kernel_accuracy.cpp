@@ -94,6 +94,7 @@ std::vector<Stated<T>> stated() {
   std::vector<T> sixteenths;
   for (int i = 1; i < 16; ++i) sixteenths.push_back(T(i) / 16);
   const auto opacity = [](const Wide& x) { return Wide(x * wide_expm1_quotient(x)); };
+  const auto wide_quotient_to_4 = [](const Wide& t) { return wide_expm1_quotient(Wide(4 * t)); };
   const auto square = [](const Wide& x) { return Wide(exp(x * x)); };
   const auto minus_square = [](const Wide& x) { return Wide(exp(-x * x)); };
   const auto far_dawson = [](const Wide& x) { return x == 0 ? Wide(0) : wide_dawson(x); };
@@ -105,6 +106,12 @@ std::vector<Stated<T>> stated() {
   return {
       {"expm1_quotient", T(-2.5), T(2.5), {-2, 0, 2}, wide_expm1_quotient, 3.3L},
       {"expm1_quotient", single ? T(-88) : T(-709), T(709), {}, wide_expm1_quotient, 3.3L},
+      {"expm1_quotient_to_4",
+       T(0),
+       T(1),
+       {0, T(0.5), T(0.98), 1},
+       wide_quotient_to_4,
+       single ? 4.2L : 3.6L},
       {"expm1_quotient_derivative",
        T(-2.5),
        T(2.5),

@@ -6,6 +6,7 @@
 #include "pellucid/math/bernstein.h"
 #include "pellucid/math/dawson.h"
 #include "pellucid/math/error_function.h"
+#include "pellucid/math/expm1_quotient_to_4.h"
 #include "pellucid/math/scaled_tail.h"
 #include "pellucid/segment/classical.h"
 #include "pellucid/segment/gaussian_kniss.h"
@@ -27,6 +28,7 @@ constexpr simd_kernels::Unary<T> unary[] = {
     UNARY(exp),
     UNARY(expm1_quotient),
     UNARY(expm1_quotient_derivative),
+    UNARY(expm1_quotient_to_4),
     UNARY(one_minus_exp_neg),
     UNARY(exp_minus_square),
     UNARY(exp_square),

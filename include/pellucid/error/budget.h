@@ -63,10 +63,10 @@ class RayBudget {
     length_ = max(length_ - length, T(0));
   }
 
-  /// How much of what is left may go for what lies behind a ray's end. Behind what is opaque the
-  /// pixel is off by all of it, where other errors are far below what is charged for them: with
-  /// all of what is left images were off by up to 0.9 of their tolerances, with a quarter by 0.1 to
-  /// 0.4. Through what is thin rays go on for longer: up to 15 % of a frame's time.
+  /// How much of what is left may go for what lies behind a ray's end. Where that is opaque the
+  /// pixel is off by nearly all of it, while other errors are far below what is charged for them:
+  /// with all of what is left by up to 0.97 of the tolerance, with a quarter by 0.1 to 0.4
+  /// (docs/performance.md). Through what is thin rays go further: up to 15 % of a frame's time.
   static constexpr double share_for_rest = 0.25;
 
   /// Whether `rest`, a bound on what lies behind, may be left out: it is at most that share, or the

@@ -19,8 +19,8 @@ struct NearGaussian {
 /// A lower bound on |K (v - c)|², v anywhere in the box of these ranges of the channels, without
 /// the descent of least_exponent(): of each row, how far its range is from 0; and where rows couple
 /// channels, what a channel alone says. Exact where they do not; else it knows 19 of 20 boxes that
-/// are far for that, which is asserted in tests/cpu. Rounding is at most 13 u of a row's terms,
-/// which is part of what NearGaussian::square makes up for in binary32. T may be a batch.
+/// are far for that, which is asserted in tests/cpu. What is rounded, in binary32, is part of what
+/// NearGaussian::square makes up for. T may be a batch.
 template <class T>
 T least_exponent_by_rows(const NearGaussian& near, const T* lower, const T* upper) noexcept {
   const Gaussian<float>& g = near.gaussian;

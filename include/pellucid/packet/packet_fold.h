@@ -52,8 +52,8 @@ class PacketFold {
   PacketFold() = default;
   /// `lengths` of the rays, in world units.
   PacketFold(double tolerance, double largest_extinction, double largest_color, F lengths) noexcept
-      : budget(F(static_cast<float>(tolerance * (1 - kept_back))), lengths),
-        tolerance_(static_cast<float>(tolerance * (1 - kept_back))),
+      : budget(F(without_kept_back(tolerance)), lengths),
+        tolerance_(without_kept_back(tolerance)),
         largest_extinction_(static_cast<float>(largest_extinction)),
         largest_color_(largest_color) {}
 
@@ -116,6 +116,9 @@ class PacketFold {
  private:
   /// The share of the tolerance that pays for adding up costs in float: of 16000 segments.
   static constexpr double kept_back = 0x1p-9;
+  static float without_kept_back(double tolerance) noexcept {
+    return static_cast<float>(tolerance * (1 - kept_back));
+  }
 
   /// A bound on what lies behind the last segment, as little as light can come from there.
   F rest_behind() const noexcept {

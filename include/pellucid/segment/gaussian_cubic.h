@@ -167,7 +167,7 @@ class GaussianCubic {
 
   /// A lower bound on the squared distance of the coefficients' hull from 0: the hull lies beyond
   /// the plane at right angles to any x at min p_k·x / |x| (Gilbert 1966); x is the mean of the
-  /// coefficients. Of three in eight random curves it is below 0.8 of that distance, and 0 where
+  /// coefficients. Of two in five random curves at most it is below 0.8 of the square, and 0 where
   /// the mean is no direction that leads away from all of them; asserted in tests/segment.
   PELLUCID_HD T squared_distance() const noexcept {
     T x[Most];

@@ -66,9 +66,9 @@ SegmentResult<T> improve(const SegmentResult<T>& first, const SegmentResult<T>& 
 /// this says all), and less than it where they bend at places that the samples do not know.
 /// tests/segment holds it against quadrature.
 ///
-/// Not accurate to the last digits where opacity is small: of a stretch among others of a ray. Of
-/// steps whose length times the largest extinction is at most 1; of denser ones numbers that are
-/// good for nothing.
+/// Not accurate to the last digits where opacity is small: of a stretch among others of a ray.
+/// length · largest extinction must be at most 1: of denser steps the result is finite, and
+/// meaningless.
 template <class T>
 SampledSegment<T> sampled_segment(const StepEnd<T>* end, T length) noexcept {
   const T two = T(2) * length;
