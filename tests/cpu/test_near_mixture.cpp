@@ -177,7 +177,7 @@ TEST(NearMixture, FarFromABoxIsFar) {
     if (is_found) {
       ASSERT_LE(extinction, may_be * (1 + 1e-5)) << n;
     }
-    if (extinction > 0.97 * may_be || at.offset > 0) continue;
+    if (extinction > 0.99 * may_be || at.offset > 0) continue;
     ++far[near.couples_channels ? 1 : 0];
     found[near.couples_channels ? 1 : 0] += is_found ? 1 : 0;
     NearGaussian rows_alone = near;

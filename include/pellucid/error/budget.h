@@ -63,6 +63,11 @@ class RayBudget {
     length_ = max(length_ - length, T(0));
   }
 
+  /// A bound on what lies behind the spans gone past: as little as light can come from there.
+  PELLUCID_HD T rest_behind(T transparency, T largest_extinction, T largest_color) const noexcept {
+    return transparency * min(largest_extinction * length_, T(1)) * largest_color;
+  }
+
   /// How much of what is left may go for what lies behind a ray's end. Where that is opaque the
   /// pixel is off by nearly all of it, while other errors are far below what is charged for them:
   /// with all of what is left by up to 0.97 of the tolerance, with a quarter by 0.1 to 0.4

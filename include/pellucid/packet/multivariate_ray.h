@@ -97,8 +97,7 @@ class MultivariateRay {
 
   /// A bound on what lies behind: as little as light can come from there.
   double rest() const noexcept {
-    const double opacity = min(job_.largest_extinction * budget_.length_left(), 1.0);
-    return fold_.transparency() * opacity * largest_color_;
+    return budget_.rest_behind(fold_.transparency(), job_.largest_extinction, largest_color_);
   }
 
   /// Stretches in which so much depth, at most, is left out.

@@ -122,8 +122,8 @@ class PacketFold {
 
   /// A bound on what lies behind the last segment, as little as light can come from there.
   F rest_behind() const noexcept {
-    const F opacity = min(F(largest_extinction_) * budget.length_left(), F(1));
-    return transparency() * opacity * F(static_cast<float>(largest_color_));
+    return budget.rest_behind(transparency(), F(largest_extinction_),
+                              F(static_cast<float>(largest_color_)));
   }
 
   FrontToBack<D> fold_;

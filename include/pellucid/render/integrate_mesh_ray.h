@@ -94,8 +94,7 @@ class MeshRayIntegrator {
 
   /// A bound on what lies behind.
   PELLUCID_HD double rest() const noexcept {
-    const double opacity = min(transfer_.largest_extinction * budget_.length_left(), 1.0);
-    return fold_.transparency() * opacity * largest_color_;
+    return budget_.rest_behind(fold_.transparency(), transfer_.largest_extinction, largest_color_);
   }
 
   template <class T>

@@ -111,8 +111,7 @@ class MultivariateRayIntegrator {
 
   /// A bound on what lies behind: as little as light can come from there.
   PELLUCID_HD double rest() const noexcept {
-    const double opacity = min(largest_extinction_ * budget_.length_left(), 1.0);
-    return fold_.transparency() * opacity * demand_.largest_color;
+    return budget_.rest_behind(fold_.transparency(), largest_extinction_, demand_.largest_color);
   }
 
   template <class Span>

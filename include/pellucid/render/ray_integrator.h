@@ -139,8 +139,7 @@ class RayIntegrator {
  private:
   /// A bound on what lies behind: as little as light can come from there.
   PELLUCID_HD double rest() const noexcept {
-    const double opacity = min(transfer_.largest_extinction * budget_.length_left(), 1.0);
-    return fold_.transparency() * opacity * largest_color_;
+    return budget_.rest_behind(fold_.transparency(), transfer_.largest_extinction, largest_color_);
   }
 
   /// `opacity`: what the allowance was asked for.
