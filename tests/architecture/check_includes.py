@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Compares every #include of include/, src/ and apps/ with the order of docs/architecture.md.
+"""Compares every #include of include/, src/ and apps/ with the order of docs/explanation/architecture.md.
 
   check_includes.py ROOT MODULES
 
@@ -109,7 +109,7 @@ def check_file(root, path, modules):
     relative = path.relative_to(root)
     module = module_of(relative)
     if module not in RANK:
-        yield f"{relative}:1: {module} has no place in the order of docs/architecture.md"
+        yield f"{relative}:1: {module} has no place in the order of docs/explanation/architecture.md"
         return
     text = path.read_text()
     if not text.startswith("// SPDX-License-Identifier: Apache-2.0\n"):
@@ -131,7 +131,7 @@ def check_file(root, path, modules):
                 yield f"{where}: {name} does not exist"
             target = name.split("/")[1]
             if target not in RANK:
-                yield f"{where}: {target} has no place in the order of docs/architecture.md"
+                yield f"{where}: {target} has no place in the order of docs/explanation/architecture.md"
                 continue
             reason = check_arrow(module, target)
             if reason:

@@ -13,7 +13,7 @@ READ_VOLUMES = ("render", "info", "histogram", "suggest", "convert")
 
 class Help(ProgramTest):
     def manual(self):
-        with open(os.path.join(SOURCE_DIR, "docs", "command-line.md"), encoding="utf-8") as file:
+        with open(os.path.join(SOURCE_DIR, "docs", "reference", "command-line.md"), encoding="utf-8") as file:
             return file.read()
 
     def introduction(self):
@@ -21,7 +21,7 @@ class Help(ProgramTest):
 
     def section(self, command):
         match = re.search(rf"(?ms)^## pellucid {command}$(.*?)(?=^## |\Z)", self.manual())
-        self.assertIsNotNone(match, f"docs/command-line.md has no section on {command}")
+        self.assertIsNotNone(match, f"docs/reference/command-line.md has no section on {command}")
         return match.group(1)
 
     def test_every_help_has_examples(self):
@@ -44,9 +44,9 @@ class Help(ProgramTest):
             if command in READ_VOLUMES:
                 of_manual |= set(re.findall(r"(?m)^\| `(--[a-z][a-z-]*)", self.introduction()))
             self.assertEqual(set(of_help) - {"--help"} - of_manual, set(),
-                             f"{command}: not in docs/command-line.md")
+                             f"{command}: not in docs/reference/command-line.md")
             self.assertEqual(of_manual - set(of_help), set(),
-                             f"{command}: in docs/command-line.md but not in --help")
+                             f"{command}: in docs/reference/command-line.md but not in --help")
 
     def test_examples_of_the_help_are_understood(self):
         # They stop at the missing file, not at their arguments.

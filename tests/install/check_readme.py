@@ -21,7 +21,7 @@ def check(root):
     for block in blocks:
         if not any(block.strip() in text for text in compiled):
             yield f"README.md: this block stands in none of {', '.join(COMPILED)}:\n{block}"
-    pages = [root / "README.md", root / "CONTRIBUTING.md", *sorted((root / "docs").glob("*.md"))]
+    pages = [root / "README.md", root / "CONTRIBUTING.md", *sorted((root / "docs").rglob("*.md"))]
     for page in pages:
         prose = re.sub(r"```.*?```", "", page.read_text(), flags=re.S)
         for link in re.findall(r"\]\(([^)#]+)(?:#[^)]*)?\)", prose):

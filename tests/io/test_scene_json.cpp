@@ -254,10 +254,12 @@ TEST(SceneJson, ExamplesAndTheDocumentedSceneAreValid) {
     EXPECT_EQ(error_of([&] { parse_scene(read(entry.path()), entry.path().string()); }), "");
   }
   EXPECT_GE(examples, 4);
-  const std::string page = read(source / "docs" / "scene.md");
+  const std::string page = read(source / "docs" / "reference" / "scene.md");
   const std::size_t begin = page.find("```json\n") + 8, end = page.find("```", begin);
   ASSERT_NE(end, std::string::npos);
-  EXPECT_EQ(error_of([&] { parse_scene(page.substr(begin, end - begin), "docs/scene.md"); }), "");
+  EXPECT_EQ(
+      error_of([&] { parse_scene(page.substr(begin, end - begin), "docs/reference/scene.md"); }),
+      "");
   // Behind it stand a volume with a mesh, one with channels, and two transfer functions.
   std::vector<std::string> blocks;
   for (std::size_t at = end + 3; (at = page.find("```json\n", at)) != std::string::npos;) {

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 
-// docs/scene.schema.json and the parser are two statements of one format. This makes some thousands
-// of slightly wrong scenes, asks the parser about each, and has the schema asked about the same.
+// docs/reference/scene.schema.json and the parser are two statements of one format. This makes some
+// thousands of slightly wrong scenes, asks the parser about each, and has the schema asked about
+// the same.
 
 #include <gtest/gtest.h>
 #include <sys/wait.h>
@@ -206,7 +207,7 @@ TEST(SceneJsonSchema, AgreesWithTheParser) {
 }
 
 TEST(SceneJsonSchema, ListsTheBuiltinFields) {
-  std::ifstream file(source / "docs" / "scene.schema.json");
+  std::ifstream file(source / "docs" / "reference" / "scene.schema.json");
   const json schema = json::parse(file);
   std::vector<std::string> names;
   for (const std::string_view name : builtin_field_names()) names.emplace_back(name);

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Holds docs/scene.schema.json against the parser of scenes.
+"""Holds docs/reference/scene.schema.json against the parser of scenes.
 
 usage: test_scene_json_schema.py SOURCE_FOLDER VERDICTS
 
@@ -45,7 +45,7 @@ def described_everywhere(schema, path=""):
 
 def main():
     source, verdicts = pathlib.Path(sys.argv[1]), pathlib.Path(sys.argv[2])
-    schema = json.loads((source / "docs" / "scene.schema.json").read_text(encoding="utf-8"))
+    schema = json.loads((source / "docs" / "reference" / "scene.schema.json").read_text(encoding="utf-8"))
     Draft202012Validator.check_schema(schema)
     validator = Draft202012Validator(schema)
     failures = [f"no description: {path}" for path in described_everywhere(schema)]

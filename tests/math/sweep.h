@@ -16,7 +16,7 @@
 namespace pellucid::test {
 
 /// How many times as many arguments as usual: the environment variable PELLUCID_SWEEP, 1 without.
-/// The bounds hold for any; docs/accuracy.md quotes 10.
+/// The bounds hold for any; docs/explanation/accuracy.md quotes 10.
 inline int sweep_density() {
   const char* text = std::getenv("PELLUCID_SWEEP");
   return text == nullptr ? 1 : std::max(1, std::atoi(text));

@@ -133,8 +133,8 @@ bool admissible(const Example& e) {
 }
 
 /// panel_error_estimate() is twice what a random search with hill climbing finds. The search is
-/// repeated here (from another seed than that of docs/accuracy-segments.md) and has to stay below
-/// 1/1.7 of it, and for some depth above 1/5: the estimate is neither optimistic nor useless.
+/// repeated here (from another seed than that of docs/notes/accuracy-segments.md) and has to stay
+/// below 1/1.7 of it, and for some depth above 1/5: the estimate is neither optimistic nor useless.
 TEST(CubicPanel, EstimateIsTwiceTheWorstFound) {
   const int nodes[6] = {5, 6, 7, 8, 10, 12};
   const auto estimate = [](std::size_t n, double m) {

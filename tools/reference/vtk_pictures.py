@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""How far VTK's pictures are from ours, with the same transfer function files: the table in docs/formats.md.
+"""How far VTK's pictures are from ours, with the same transfer function files: the table in docs/reference/formats.md.
 
 usage: xvfb-run -a python3 vtk_pictures.py PROGRAM FOLDER
 

@@ -16,7 +16,7 @@
 namespace pellucid {
 
 /// A scene as written: nothing is read or rendered yet. What is absent takes the default.
-/// docs/scene.md tells of every key, docs/scene.schema.json is the JSON Schema (draft 2020-12).
+/// docs/reference/scene.md describes every key, scene.schema.json beside it is the JSON Schema.
 struct SceneDescription {
   FieldSource field;
   std::vector<ChannelSource> channels;  ///< in place of the field, where there are any

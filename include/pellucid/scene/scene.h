@@ -38,10 +38,10 @@ struct ImageSize {
 CameraFrame<double> make_camera_frame(const Camera& camera, ImageSize size);
 
 /// exact: the integral of the reconstructed data. The others are here for comparison,
-/// docs/theory.md says which text gives each its name. Through a grid they march at a fixed step,
-/// all but homogeneous, average and partial; preintegrated is for one volume, kniss and gaussian
-/// are for channels. Through a mesh they make one segment of each tetrahedron: homogeneous,
-/// average, partial and linear, and for Gaussians kniss and gaussian.
+/// docs/explanation/theory.md says which text gives each its name. Through a grid they march at a
+/// fixed step, all but homogeneous, average and partial; preintegrated is for one volume, kniss and
+/// gaussian are for channels. Through a mesh they make one segment of each tetrahedron:
+/// homogeneous, average, partial and linear, and for Gaussians kniss and gaussian.
 enum class Method {
   exact,
   rectangle,

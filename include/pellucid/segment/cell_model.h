@@ -10,8 +10,8 @@ namespace pellucid {
 
 /// What a renderer of cells makes of the piece of a ray in one of them, for comparison with the
 /// integral. The data there are linear, the transfer function is seen at one or two places alone: a
-/// control point or a Gaussian that the data pass between them is missed. docs/theory.md names the
-/// sources.
+/// control point or a Gaussian that the data pass between them is missed.
+/// docs/explanation/theory.md names the sources.
 enum class CellModel {
   homogeneous,  ///< the material of the data in the middle
   average,      ///< the mean of extinction and color at both ends

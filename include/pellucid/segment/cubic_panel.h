@@ -96,10 +96,10 @@ inline constexpr scalar_t<T> largest_panel_depth = scalar_t<T>(4);
 
 /// The error of cubic_panel_mean<N>, N = 5, 6, 7, 8, 10 or 12, on a panel of the given optical
 /// depth, relative to the range of the share. An estimate, not a bound: twice the largest error
-/// that random search and hill climbing found (docs/accuracy-segments.md); tests/segment repeats
-/// the search and asserts that it stays below 1/1.7 of this. The powers are those of theory: the
-/// rule is exact to degree 2N-1, and the first term of the exponential's series in the depth that
-/// it misses is j = ⌊(2N-7)/4⌋ + 1, of degree 6 + 4j.
+/// that random search and hill climbing found (docs/notes/accuracy-segments.md); tests/segment
+/// repeats the search and asserts that it stays below 1/1.7 of this. The powers are those of
+/// theory: the rule is exact to degree 2N-1, and the first term of the exponential's series in the
+/// depth that it misses is j = ⌊(2N-7)/4⌋ + 1, of degree 6 + 4j.
 template <int N, class T>
 PELLUCID_HD T panel_error_estimate(T depth) noexcept {
   static_assert((N >= 5 && N <= 8) || N == 10 || N == 12);

@@ -67,8 +67,8 @@ PELLUCID_HD Rgb<T> panel_color(const PanelNodes<N, T>& nodes) noexcept {
 /// colors come out exactly, and the radiance never leaves opacity times the range of the nodes'
 /// colors. The optical depth is the quadrature's, exact for extinction of degree < 2N.
 ///
-/// Its error depends on the data: the table of section 3.7 and docs/accuracy-segments.md say what
-/// was measured; none of it is a bound. Orders are asserted in tests/segment.
+/// Its error depends on the data: the table of section 3.7 and docs/notes/accuracy-segments.md say
+/// what was measured; none of it is a bound. Orders are asserted in tests/segment.
 template <int N, class T, class MaterialAt>
 PELLUCID_HD SegmentResult<T> gauss_panel(T length, const MaterialAt& material_at) noexcept {
   const detail::PanelNodes<N, T> nodes(length, material_at);
