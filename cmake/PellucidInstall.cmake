@@ -5,26 +5,19 @@
 include(CMakePackageConfigHelpers)
 
 # The find_dependency() arguments for what a static library links: the package is the namespace of a
-# target (TBB::tbb: TBB). ITK's targets have none; its modules are the components.
+# target (TBB::tbb: TBB).
 function(_pellucid_packages target result)
   set(packages)
-  set(itk_modules)
   get_target_property(type ${target} TYPE)
   if(type STREQUAL "STATIC_LIBRARY")
     get_target_property(libraries ${target} LINK_LIBRARIES)
     foreach(library IN LISTS libraries)
-      if(library MATCHES "^(pellucid::|ITKInternal|\\$<BUILD_INTERFACE:)")
+      if(library MATCHES "^(pellucid::|\\$<BUILD_INTERFACE:)")
         continue()
       elseif(library MATCHES "^([A-Za-z0-9_]+)::")
         list(APPEND packages "${CMAKE_MATCH_1}")
-      elseif(library MATCHES "^ITK(Common|IO[A-Za-z]+)$")
-        list(APPEND itk_modules ${library})
       endif()
     endforeach()
-  endif()
-  if(itk_modules)
-    list(JOIN itk_modules " " itk_modules)
-    list(APPEND packages "ITK COMPONENTS ${itk_modules}")
   endif()
   list(REMOVE_DUPLICATES packages)
   set(${result} "${packages}" PARENT_SCOPE)

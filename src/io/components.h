@@ -58,7 +58,7 @@ std::vector<VolumeData> read_components(DataStream& stream, const ValueLayout& l
 std::vector<VolumeData> split_components(const VolumeData& values, int components,
                                          ComponentRange range, const std::string& name);
 
-/// The formats whose headers are read without ITK.
+/// Headers of other formats.
 VolumeFile open_npy(const ByteSource& source, const ReadOptions& options);
 VolumeFile open_raw(const ByteSource& source, const ReadOptions& options);
 VolumeFile open_raw_gzip(const std::filesystem::path& path, const ReadOptions& options);

@@ -27,36 +27,16 @@ namespace pellucid {
 
 namespace {
 
-#ifdef PELLUCID_HAVE_HDF5
-constexpr bool has_hdf5 = true;
-#else
-constexpr bool has_hdf5 = false;
-#endif
-#ifdef PELLUCID_HAVE_NETCDF
-constexpr bool has_net_cdf = true;
-#else
-constexpr bool has_net_cdf = false;
-#endif
-#ifdef PELLUCID_HAVE_OPENVDB
-constexpr bool has_vdb = true;
-#else
-constexpr bool has_vdb = false;
-#endif
-
 struct Format {
   Module module;
   const char* wanted;  ///< what a volume is among its arrays
 };
 
 constexpr const char* three_axes = "array of three or four axes of numbers";
-constexpr Format hdf5{{"pellucid_hdf5.so", "HDF5 files", has_hdf5,
-                       "HDF5 (Debian: libhdf5-dev) and -DPELLUCID_WITH_HDF5=ON"},
-                      three_axes};
-constexpr Format net_cdf{{"pellucid_netcdf.so", "NetCDF files", has_net_cdf,
-                          "NetCDF (Debian: libnetcdf-dev) and -DPELLUCID_WITH_NETCDF=ON"},
+constexpr Format hdf5{{"pellucid_hdf5.so", "HDF5 files", "HDF5 (Debian: libhdf5-dev)"}, three_axes};
+constexpr Format net_cdf{{"pellucid_netcdf.so", "NetCDF files", "NetCDF (Debian: libnetcdf-dev)"},
                          three_axes};
-constexpr Format vdb{{"pellucid_openvdb.so", "OpenVDB files", has_vdb,
-                      "OpenVDB (Debian: libopenvdb-dev) and -DPELLUCID_WITH_OPENVDB=ON"},
+constexpr Format vdb{{"pellucid_openvdb.so", "OpenVDB files", "OpenVDB (Debian: libopenvdb-dev)"},
                      "fog volume"};
 
 /// Names and messages of libraries may hold anything.

@@ -9,34 +9,16 @@
 #include <vector>
 
 #include "components.h"
+#include "itk_module.h"
 
 namespace pellucid {
 
-/// ITK knows the formats' headers: where a grid stands, its type, its centering. Its world is left,
-/// posterior, superior (LPS). The values of NIfTI and MetaImage are read by ourselves: ITK 5.2
-/// gives zeros for what a truncated file lacks, and for NaN and infinity in NIfTI. All of these
-/// throw Error, also where the build has no ITK.
-
-struct ItkHeader {
-  Volume::Description description;
-  std::string type;  ///< "u8" … "f64"
-  int components = 1;
-  bool interleaved = false;  ///< as in ValueLayout, where ITK gives the values
-  std::string holds;         ///< what several components are
-};
-
-/// Geometry alone. Of a sheared sform, which ITK refuses, `sheared` is set instead of throwing.
-Volume::Description read_nifti_description(const std::filesystem::path& path, bool& sheared);
-
-/// Where the values of a MetaImage are.
-struct MetaImageHeader : ItkHeader {
-  bool big_endian = false;
-  bool text = false;
-  bool compressed = false;
-  int header_size = 0;    ///< of the file of values; -1: what stands before the last bytes
-  std::string data_file;  ///< a name, a pattern with its range, LIST or LOCAL
-};
+/// Reads the header of a MetaImage through ITK. Throws Error, also where the module that has ITK is
+/// not there.
 MetaImageHeader read_meta_image_header(const std::filesystem::path& path);
+
+/// The grid of a header. Throws Error where its sides are no sizes of a volume.
+Volume::Description describe(const ItkHeader& header, const std::string& name);
 
 /// Where the values of a NRRD file are that are plain, or compressed as ITK does not read them.
 struct NrrdValues {
@@ -61,7 +43,7 @@ struct NrrdText {
   std::optional<NrrdValues> values;  ///< read from there where they are given
 };
 
-/// A NRRD file, as `name` in messages. `path` must stay while values are read.
+/// Opens a NRRD file, as `name` in messages. `path` must stay while values are read. Throws Error.
 VolumeFile open_nrrd_file(const std::filesystem::path& path, const std::string& name,
                           const NrrdText& text, const ReadOptions& options);
 

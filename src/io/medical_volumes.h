@@ -7,9 +7,9 @@
 
 namespace pellucid {
 
-/// NIfTI-1: .nii, or .hdr with .img, each also .gz. The world is LPS. Where ITK finds no orthogonal
-/// axes, the sform is taken as it is written. Colors, and an axis behind the third, are components;
-/// several such axes, complex numbers and 64-bit integers are refused.
+/// NIfTI-1: .nii, or .hdr with .img, each also .gz. The world is LPS. The map is the sform where it
+/// is the scanner's or stands alone, else the qform (as ITK 5.2 chooses). Colors, and an axis
+/// behind the third, are components; several such axes and complex numbers are refused.
 VolumeFile open_nifti(const std::filesystem::path& path, const ReadOptions& options);
 
 /// NRRD, attached (.nrrd) or detached (.nhdr), raw, gzip, bzip2, ascii or hex. Turned from RAS or

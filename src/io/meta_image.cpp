@@ -91,9 +91,9 @@ std::vector<DataFile> find_files(const fs::path& path, const MetaImageHeader& he
   if (where == "LIST" || where.starts_with("LIST ")) {
     names = listed_files(path);
   } else if (where.find('%') != std::string::npos) {
-    names = files_of_pattern(where, header.description.dimensions[2], name);
+    names = files_of_pattern(where, static_cast<int>(header.sides[2]), name);
   }
-  const std::size_t slices = static_cast<std::size_t>(header.description.dimensions[2]) *
+  const std::size_t slices = static_cast<std::size_t>(header.sides[2]) *
                              static_cast<std::size_t>(header.interleaved ? 1 : header.components);
   if (names.empty() || slices % names.size() != 0) {
     throw Error(name + ": " + std::to_string(names.size()) + " files do not make " +
@@ -177,12 +177,12 @@ VolumeFile open_meta_image(const fs::path& path, const ReadOptions& options) {
   if (header.text) {
     throw Error(name + ": values written as text are not read; save the MetaImage as binary");
   }
+  VolumeFile file;
+  file.description = describe(header, name);
   std::size_t points = 1;
-  for (const int side : header.description.dimensions) points *= static_cast<std::size_t>(side);
+  for (const int side : file.description.dimensions) points *= static_cast<std::size_t>(side);
   const std::uintmax_t bytes =
       std::uintmax_t{value_count(points, header.components, name)} * value_size(header.type, name);
-  VolumeFile file;
-  file.description = header.description;
   apply_overrides(options, file.description);
   file.components = header.components;
   file.holds = header.holds;

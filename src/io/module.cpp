@@ -40,18 +40,14 @@ std::mutex& loading_modules() {
 }
 
 fs::path module_file(const Module& module) {
-  if (!module.built) {
-    throw Error(std::string("this build does not read ") + module.reads + "; build with " +
-                module.build_with);
-  }
   for (const fs::path& folder : folders()) {
     std::error_code error;
     fs::path file = folder / module.file;
     if (folder.is_absolute() && fs::exists(file, error)) return file;
   }
-  throw Error(std::string("the module ") + module.file + " that reads " + module.reads +
-              " is not there; install it, or name its folder in the environment variable "
-              "PELLUCID_MODULES");
+  throw Error(std::string("the module ") + module.file + ", which reads " + module.reads +
+              ", is not there; build it, which needs " + module.needs +
+              ", or name its folder in the environment variable PELLUCID_MODULES");
 }
 
 void* module_function(const Module& module, const char* name) {

@@ -11,13 +11,12 @@ namespace pellucid {
 struct Module {
   const char* file;   ///< "pellucid_vtk.so"
   const char* reads;  ///< "VTK's and Exodus files"
-  bool built;
-  const char* build_with;  ///< "VTK (Debian: libvtk9-dev) and -DPELLUCID_WITH_VTK=ON"
+  const char* needs;  ///< the library that it is built with: "VTK (Debian: libvtk9-dev)"
 };
 
-/// Where the module is. Looked for in the folder that the environment variable PELLUCID_MODULES
-/// names, then where an installation has it as seen from the program, then where this library was
-/// to be installed. Throws Error where the build has none or it is not there.
+/// Finds the module's file: in the folder that the environment variable PELLUCID_MODULES names,
+/// then where an installation has it as seen from the program, then where this library was to be
+/// installed. Throws Error where it is in none of them.
 std::filesystem::path module_file(const Module& module);
 
 /// A function of the module, loaded by the first call and kept, never unloaded: what it read is

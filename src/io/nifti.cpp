@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <span>
 #include <type_traits>
 #include <utility>
@@ -8,7 +9,6 @@
 
 #include "components.h"
 #include "data_stream.h"
-#include "itk_header.h"
 #include "medical_volumes.h"
 #include "nifti_header.h"
 #include "pellucid/scene/error.h"
@@ -89,27 +89,43 @@ std::vector<VolumeData> read_file_values(const std::filesystem::path& file,
   return read_scaled(read_on(source, layout.offset + before), header, count, range, name);
 }
 
-Volume::Description describe(const NiftiFiles& files, const NiftiHeader& header,
-                             const std::string& name) {
-  bool sheared = false;
-  Volume::Description description = read_nifti_description(files.header, sheared);
-  if (sheared) {
-    if (!header.sform) {
-      throw Error(name +
-                  ": the header's orientation is no usable map; give spacing and origin by "
-                  "converting the file");
-    }
-    description.placement = *header.sform;
-    description.placement.spacing = description.placement.spacing * header.unit;
-    for (std::size_t a = 0; a < 3; ++a) {
-      description.dimensions[a] = static_cast<int>(header.dimensions[a]);
-    }
+/// Whether the columns are at right angles, to within what a header's floats leave.
+bool is_orthogonal(const Mat3<double>& direction) {
+  constexpr double largest_cosine = 1e-3;
+  for (int a = 0; a < 3; ++a) {
+    const double cosine = dot(direction.column[a], direction.column[(a + 1) % 3]);
+    if (!(std::abs(cosine) <= largest_cosine)) return false;
+  }
+  return true;
+}
+
+/// Chooses between the two maps as ITK 5.2 does: the sform where it is that of the scanner or
+/// stands alone, else the qform. A sheared sform yields to a qform. Without either the axes are
+/// those of the world. Lengths are in the file's unit.
+GridPlacement placement_of(const NiftiHeader& header) {
+  const bool sform_first =
+      header.sform && (!header.qform || (header.sform_code == scanner_coordinates &&
+                                         is_orthogonal(header.sform->direction)));
+  if (sform_first) return *header.sform;
+  if (header.qform) return *header.qform;
+  GridPlacement placement;
+  placement.spacing = {header.spacing[0], header.spacing[1], header.spacing[2]};
+  return placement;
+}
+
+Volume::Description describe(const NiftiHeader& header, const std::string& name) {
+  Volume::Description description;
+  description.placement = placement_of(header);
+  for (int a = 0; a < 3; ++a) {
+    const Vec3<double>& axis = description.placement.direction.column[a];
+    if (length(axis) > 0) continue;  // not where the sform has no length along it
+    throw Error(name + ": the sform gives axis " + std::string(1, "xyz"[a]) +
+                " no length; mend the header");
   }
   for (std::size_t a = 0; a < 3; ++a) {
-    if (description.dimensions[a] == header.dimensions[a]) continue;
-    throw Error(name + ": the NIfTI header contradicts itself about the dimensions");
+    description.dimensions[a] = static_cast<int>(header.dimensions[a]);
   }
-  // ITK 5.2 turns the spacing to millimetres, but leaves the origin in the file's unit.
+  description.placement.spacing = description.placement.spacing * header.unit;
   description.placement.origin = description.placement.origin * header.unit;
   description.name = name;
   return description;
@@ -158,7 +174,6 @@ VolumeFile open_nifti(const std::filesystem::path& path, const ReadOptions& opti
   const NiftiFiles files = find_nifti_files(path);
   const NiftiHeader header = read_nifti_header(files.header);
   const std::size_t count = value_count(header.dimensions, name);
-  // ITK puts 1 in the place of 0.
   for (std::size_t a = 0; a < 3 && !options.spacing; ++a) {
     if (header.spacing[a] > 0) continue;
     throw Error(name + ": the spacing along " + std::string(1, "xyz"[a]) + " is " +
@@ -166,7 +181,7 @@ VolumeFile open_nifti(const std::filesystem::path& path, const ReadOptions& opti
   }
   value_count(count, header.layout.components, name);
   VolumeFile file;
-  file.description = describe(files, header, name);
+  file.description = describe(header, name);
   note_maps(header, file.description, options);
   apply_overrides(options, file.description);
   file.components = header.layout.components;

@@ -144,8 +144,15 @@ std::optional<GridPlacement> qform_of(const HeaderBytes& bytes, bool big_endian)
   const auto number = [&](std::size_t offset) {
     return static_cast<double>(number_at<float>(bytes, offset, big_endian));
   };
-  const double b = number(256), c = number(260), d = number(264);
-  const double a = std::sqrt(std::max(0.0, 1 - (b * b + c * c + d * d)));
+  double b = number(256), c = number(260), d = number(264);
+  // Rounding may leave (b, c, d) longer than 1: half a turn then, as nifti1_io.c has it.
+  const double length = std::sqrt(b * b + c * c + d * d);
+  const double a = std::sqrt(std::max(0.0, 1 - length * length));
+  if (length > 1) {
+    b /= length;
+    c /= length;
+    d /= length;
+  }
   const double flip = number(76) < 0 ? -1 : 1;
   GridPlacement placement;
   // Left and posterior instead of right and anterior.
@@ -161,7 +168,6 @@ std::optional<GridPlacement> qform_of(const HeaderBytes& bytes, bool big_endian)
   return placement;
 }
 
-// ITK 5.2 ends the whole program on a matrix with NaN or infinity.
 void check_orientation(const HeaderBytes& bytes, bool big_endian, const std::string& name) {
   const auto check = [&](std::size_t offset, std::size_t count, const char* what) {
     for (std::size_t i = 0; i < count; ++i) {
@@ -218,6 +224,7 @@ NiftiHeader read_nifti_header(const std::filesystem::path& path) {
   const int unit_code = std::to_integer<int>(bytes[123]) & 7;
   header.unit = unit_code == 1 ? 1e3 : unit_code == 3 ? 1e-3 : 1;
   header.sform = sform_of(bytes, big_endian);
+  header.sform_code = number_at<std::int16_t>(bytes, 254, big_endian);
   header.qform = qform_of(bytes, big_endian);
   return header;
 }

@@ -24,8 +24,12 @@ struct NiftiHeader {
   /// The affine map of the sform, where there is one, its world turned from RAS to LPS, in the
   /// file's unit.
   std::optional<GridPlacement> sform;
+  int sform_code = 0;                  ///< which coordinates the sform gives
   std::optional<GridPlacement> qform;  ///< as the sform
 };
+
+/// The code of an sform whose coordinates are the scanner's (NIFTI_XFORM_SCANNER_ANAT).
+inline constexpr int scanner_coordinates = 1;
 
 /// Reads and checks the header of a .nii or .hdr file, compressed or not. Throws Error.
 NiftiHeader read_nifti_header(const std::filesystem::path& path);

@@ -7,14 +7,7 @@ namespace pellucid {
 
 namespace {
 
-#ifdef PELLUCID_HAVE_VTK
-constexpr bool built = true;
-#else
-constexpr bool built = false;
-#endif
-
-constexpr Module vtk{"pellucid_vtk.so", "VTK's and Exodus files", built,
-                     "VTK (Debian: libvtk9-dev) and -DPELLUCID_WITH_VTK=ON"};
+constexpr Module vtk{"pellucid_vtk.so", "VTK's and Exodus files", "VTK (Debian: libvtk9-dev)"};
 
 }  // namespace
 
