@@ -81,7 +81,7 @@ std::vector<ChannelSource> needed(const std::vector<ChannelSource>& sources,
 
 }  // namespace
 
-void ChannelArguments::add_to(CLI::App& app) {
+void ChannelArguments::add_to(CommandLine& app) {
   command = app.get_name();
   app.add_option(
          "FILE", inputs,
@@ -99,7 +99,7 @@ void ChannelArguments::add_to(CLI::App& app) {
       ->option_text("NAME,NAME");
   app.add_option("--threads", threads, "Threads; 0, the default: one per core")
       ->option_text("N")
-      ->check(CLI::Range(0, 4096));
+      ->in_range(0, 4096);
   volume.add_to(app);
 }
 

@@ -203,8 +203,8 @@ int run_compare(const CompareArguments& arguments) {
 
 }  // namespace
 
-Command add_compare(CLI::App& app) {
-  CLI::App& command = *app.add_subcommand("compare", "Measure how two OpenEXR images differ");
+Command add_compare(CommandLine& app) {
+  CommandLine& command = *app.add_subcommand("compare", "Measure how two OpenEXR images differ");
   const auto arguments = std::make_shared<CompareArguments>();
   command.add_option("A", arguments->a, "OpenEXR image")->required();
   command.add_option("B", arguments->b, "OpenEXR image of the same size")->required();

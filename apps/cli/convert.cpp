@@ -173,8 +173,8 @@ int run_convert(const ConvertArguments& arguments) {
 
 }  // namespace
 
-Command add_convert(CLI::App& app) {
-  CLI::App& command = *app.add_subcommand(
+Command add_convert(CommandLine& app) {
+  CommandLine& command = *app.add_subcommand(
       "convert", "Write a volume in another format, or a volume or mesh as tetrahedra");
   const auto arguments = std::make_shared<ConvertArguments>();
   command
@@ -200,7 +200,7 @@ Command add_convert(CLI::App& app) {
   command.add_flag("-q,--quiet", arguments->quiet, "No notes, only errors");
   command.add_option("--threads", arguments->threads, "Threads; 0, the default: one per core")
       ->option_text("N")
-      ->check(CLI::Range(0, 4096));
+      ->in_range(0, 4096);
   arguments->volume.add_to(command);
   command.footer(
       "Volumes keep their type, their components and what the format has of their placement; what\n"

@@ -137,13 +137,13 @@ template TransferFunction transfer_function_of<float>(const CsvTable&, std::size
 template TransferFunction transfer_function_of<double>(const CsvTable&, std::size_t,
                                                        const std::array<std::size_t, 5>&);
 
-Command add_evaluate(CLI::App& app) {
-  CLI::App& command =
+Command add_evaluate(CommandLine& app) {
+  CommandLine& command =
       *app.add_subcommand("evaluate", "Evaluate the kernels on a table of inputs of your own");
   const auto arguments = std::make_shared<EvaluateArguments>();
   command.add_option("KIND", arguments->kind, fmt::format("{}", fmt::join(kind_names(), ", ")))
       ->required()
-      ->check(CLI::IsMember(kind_names()));
+      ->one_of(kind_names());
   command.add_option("TABLE", arguments->table, "CSV with a header line, an id and the inputs")
       ->required();
   command.add_option("-o,--output", arguments->output, "CSV to write: id and the outputs")
@@ -153,7 +153,7 @@ Command add_evaluate(CLI::App& app) {
       .add_option("--precision", arguments->precision,
                   "float or double (default): inputs are rounded to it, kernels run in it")
       ->option_text("TYPE")
-      ->check(CLI::IsMember({"float", "double"}));
+      ->one_of({"float", "double"});
   command
       .add_option("--tolerance", arguments->tolerance,
                   "Of trilinear_cell and gaussian_mixture_segment; default 1e-6 in float, 1e-10 in "

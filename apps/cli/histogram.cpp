@@ -135,8 +135,8 @@ int run_histogram(const HistogramArguments& arguments) {
 
 }  // namespace
 
-Command add_histogram(CLI::App& app) {
-  CLI::App& command =
+Command add_histogram(CommandLine& app) {
+  CommandLine& command =
       *app.add_subcommand("histogram", "Count how often values, or two values together, occur");
   const auto arguments = std::make_shared<HistogramArguments>();
   command

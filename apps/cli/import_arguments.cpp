@@ -7,7 +7,7 @@
 
 namespace pellucid::cli {
 
-void ImportArguments::add_to(CLI::App& command) {
+void ImportArguments::add_to(CommandLine& command) {
   command
       .add_option("--range", range,
                   "Values that the first and the last point of a preset, or of another program's "
@@ -26,7 +26,7 @@ void ImportArguments::add_to(CLI::App& command) {
                       "Of another program's transfer function: whether its colors are srgb or "
                       "linear; default: what the format means")
           ->option_text("KIND")
-          ->check(CLI::IsMember({"srgb", "linear"}))};
+          ->one_of({"srgb", "linear"})};
 }
 
 ImportOptions ImportArguments::options(double deviation) const {
@@ -47,7 +47,7 @@ ImportOptions ImportArguments::options(double deviation) const {
 }
 
 void ImportArguments::refuse(const std::string& what) const {
-  for (const CLI::Option* option : given) {
+  for (const Option* option : given) {
     if (option->count() == 0) continue;
     throw UsageError(fmt::format("{} does not apply to {}; drop it", option->get_name(), what));
   }

@@ -289,8 +289,8 @@ int run_info(const InfoArguments& arguments) {
 
 }  // namespace
 
-Command add_info(CLI::App& app) {
-  CLI::App& command = *app.add_subcommand("info", "Say what is in a volume or mesh file");
+Command add_info(CommandLine& app) {
+  CommandLine& command = *app.add_subcommand("info", "Say what is in a volume or mesh file");
   const auto arguments = std::make_shared<InfoArguments>();
   command
       .add_option("INPUT", arguments->input,

@@ -18,13 +18,13 @@ constexpr const char* group = "Options of volume files";
 
 }  // namespace
 
-void VolumeOptions::add_to(CLI::App& command, bool with_array) {
-  const auto add = [&](CLI::Option* option) { given.push_back(option->group(group)); };
+void VolumeOptions::add_to(CommandLine& command, bool with_array) {
+  const auto add = [&](Option* option) { given.push_back(option->group(group)); };
   add(command.add_option("--dimensions", dimensions, "Values along x, y, z of a .raw file")
           ->option_text("X,Y,Z"));
   add(command.add_option("--type", type, "Number type of a .raw file")
           ->option_text("TYPE")
-          ->check(CLI::IsMember({"u8", "i8", "u16", "i16", "u32", "i32", "f32", "f64"})));
+          ->one_of({"u8", "i8", "u16", "i16", "u32", "i32", "f32", "f64"}));
   add(command.add_flag("--big-endian", big_endian, "Byte order of a .raw file (default little)"));
   add(command.add_option("--skip-bytes", skip_bytes, "Length of a header to skip in a .raw file")
           ->option_text("N"));
@@ -54,11 +54,11 @@ void VolumeOptions::add_to(CLI::App& command, bool with_array) {
           .add_option("--centering", centering,
                       "Whether values stand at grid points or fill cells; replaces the file's")
           ->option_text("point|cell")
-          ->check(CLI::IsMember({"point", "cell"})));
+          ->one_of({"point", "cell"}));
 }
 
 void VolumeOptions::refuse(const std::string& what) const {
-  for (const CLI::Option* option : given) {
+  for (const Option* option : given) {
     if (option->count() > 0) {
       throw UsageError(
           fmt::format("{} applies to volume files, not to {}", option->get_name(), what));

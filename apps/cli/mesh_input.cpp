@@ -13,8 +13,8 @@ constexpr const char* group = "Options of mesh files";
 
 }  // namespace
 
-void MeshOptions::add_to(CLI::App& command, bool with_arrays) {
-  const auto add = [&](CLI::Option* option) { given.push_back(option->group(group)); };
+void MeshOptions::add_to(CommandLine& command, bool with_arrays) {
+  const auto add = [&](Option* option) { given.push_back(option->group(group)); };
   if (with_arrays) {
     add(command
             .add_option("--array", arrays,
@@ -33,7 +33,7 @@ void MeshOptions::add_to(CLI::App& command, bool with_arrays) {
 }
 
 void MeshOptions::refuse(const std::string& what) const {
-  for (const CLI::Option* option : given) {
+  for (const Option* option : given) {
     if (option->count() > 0) {
       throw UsageError(
           fmt::format("{} applies to mesh files, not to {}", option->get_name(), what));

@@ -148,8 +148,8 @@ int run_render(const RenderArguments& arguments) {
 
 }  // namespace
 
-Command add_render(CLI::App& app) {
-  CLI::App& command =
+Command add_render(CommandLine& app) {
+  CommandLine& command =
       *app.add_subcommand("render", "Render a volume, a mesh or a scene to an image");
   const auto arguments = std::make_shared<RenderArguments>();
   command.add_option(

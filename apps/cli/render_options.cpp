@@ -11,7 +11,7 @@ namespace pellucid::cli {
 
 namespace {
 
-void add_output_options(CLI::App& command, RenderArguments& arguments) {
+void add_output_options(CommandLine& command, RenderArguments& arguments) {
   command
       .add_option("-o,--output", arguments.outputs,
                   "Image to write, .png or .exr; may be given several times")
@@ -43,7 +43,7 @@ void add_output_options(CLI::App& command, RenderArguments& arguments) {
                    "No progress, no report and no notes, only errors");
 }
 
-void add_scene_options(CLI::App& command, RenderArguments& arguments) {
+void add_scene_options(CommandLine& command, RenderArguments& arguments) {
   command
       .add_option("--channel", arguments.channels,
                   "A variable of the data, may be given several times; SOURCE is a file, FILE[C], "
@@ -81,7 +81,7 @@ void add_scene_options(CLI::App& command, RenderArguments& arguments) {
           "--view", arguments.view,
           "Camera on this side of the volume: front, back, left, right, top, bottom, oblique")
       ->option_text("NAME")
-      ->check(CLI::IsMember(view_names()))
+      ->one_of(view_names())
       ->excludes(camera);
   command
       .add_option("--size", arguments.size,
@@ -95,7 +95,7 @@ void add_scene_options(CLI::App& command, RenderArguments& arguments) {
       ->option_text("R,G,B");
 }
 
-void add_integration_options(CLI::App& command, RenderArguments& arguments) {
+void add_integration_options(CommandLine& command, RenderArguments& arguments) {
   constexpr Method methods[] = {Method::exact,    Method::rectangle,     Method::taylor,
                                 Method::midpoint, Method::trapezoid,     Method::simpson,
                                 Method::linear,   Method::preintegrated, Method::kniss,
@@ -108,7 +108,7 @@ void add_integration_options(CLI::App& command, RenderArguments& arguments) {
           .add_option("--method", arguments.method,
                       fmt::format("{}; default: the scene's, else exact", fmt::join(names, ", ")))
           ->option_text("NAME")
-          ->check(CLI::IsMember(names));
+          ->one_of(names);
   command
       .add_option("--tolerance", arguments.tolerance,
                   fmt::format("How far a pixel of method exact may be off, in each channel of "
@@ -121,7 +121,7 @@ void add_integration_options(CLI::App& command, RenderArguments& arguments) {
                   "What the error may rest on: proved is theorems alone, estimated is faster; "
                   "default: the scene's, else estimated")
       ->option_text("GRADE")
-      ->check(CLI::IsMember({"proved", "estimated"}));
+      ->one_of({"proved", "estimated"});
   command.add_flag("--strict", arguments.strict,
                    "Write nothing at all where a pixel may be off by more than the tolerance; the "
                    "exit code is 3 with and without");
@@ -131,7 +131,7 @@ void add_integration_options(CLI::App& command, RenderArguments& arguments) {
                               "scene's, else 1",
                               largest_samples))
       ->option_text("N")
-      ->check(CLI::Range(1, largest_samples));
+      ->in_range(1, largest_samples);
   auto* step = command
                    .add_option("--step", arguments.step,
                                "Step of the sampling methods in voxels (the shortest cell edge)")
@@ -141,7 +141,7 @@ void add_integration_options(CLI::App& command, RenderArguments& arguments) {
                                     "automatic, float or double; automatic is float where it "
                                     "keeps the tolerance; default: the scene's, else automatic")
                         ->option_text("TYPE")
-                        ->check(CLI::IsMember({"automatic", "float", "double"}));
+                        ->one_of({"automatic", "float", "double"});
   command
       .add_flag(
           "--reference", arguments.reference,
@@ -151,12 +151,12 @@ void add_integration_options(CLI::App& command, RenderArguments& arguments) {
       ->excludes(precision);
   command.add_option("--threads", arguments.threads, "Threads; 0, the default: one per core")
       ->option_text("N")
-      ->check(CLI::Range(0, 4096));
+      ->in_range(0, 4096);
 }
 
 }  // namespace
 
-void add_render_options(CLI::App& command, RenderArguments& arguments) {
+void add_render_options(CommandLine& command, RenderArguments& arguments) {
   add_output_options(command, arguments);
   add_scene_options(command, arguments);
   add_integration_options(command, arguments);

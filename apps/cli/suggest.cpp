@@ -117,8 +117,8 @@ int run_suggest(const SuggestArguments& arguments) {
 
 }  // namespace
 
-Command add_suggest(CLI::App& app) {
-  CLI::App& command = *app.add_subcommand(
+Command add_suggest(CommandLine& app) {
+  CommandLine& command = *app.add_subcommand(
       "suggest", "Write a first scene with Gaussians, made from the joint histogram");
   const auto arguments = std::make_shared<SuggestArguments>();
   command
@@ -136,7 +136,7 @@ Command add_suggest(CLI::App& app) {
                               "are found",
                               most_suggested_primitives))
       ->option_text("N")
-      ->check(CLI::Range(1, most_suggested_primitives));
+      ->in_range(1, most_suggested_primitives);
   command.add_flag("-q,--quiet", arguments->quiet, "No notes, only errors");
   arguments->channels.add_to(command);
   command.footer(

@@ -93,8 +93,8 @@ int convert(const TransferFunctionArguments& arguments) {
 
 }  // namespace
 
-Command add_transfer_function(CLI::App& app) {
-  CLI::App& command = *app.add_subcommand(
+Command add_transfer_function(CommandLine& app) {
+  CommandLine& command = *app.add_subcommand(
       "transfer-function", "Convert a transfer function from or to that of another program");
   const auto arguments = std::make_shared<TransferFunctionArguments>();
   command
@@ -107,7 +107,7 @@ Command add_transfer_function(CLI::App& app) {
       .add_option("--format", arguments->format,
                   "pellucid (the default), slicer (.vp.json), paraview (.json) or table (.csv)")
       ->option_text("NAME")
-      ->check(CLI::IsMember({"pellucid", "slicer", "paraview", "table"}));
+      ->one_of({"pellucid", "slicer", "paraview", "table"});
   command
       .add_option("--deviation", arguments->deviation,
                   "How far what is fitted may be off: each channel of the color, linear, and the "
