@@ -1,8 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
 option(PELLUCID_SIMD "Packets of rays for SSE4.1, AVX2 and AVX-512, chosen at run time (x86-64; needs xsimd)" ON)
 
-# The sets, best last, the lanes of a packet in each, and what lets the compiler use it.
+# The sets, best last, the lanes of a packet in each, and the options of the compiler.
 set(PELLUCID_INSTRUCTION_SETS sse4 avx2 avx512)
+set(PELLUCID_BUILD_SETS "sse4;avx2;avx512" CACHE STRING
+    "Instruction sets to build kernels for; native: the best one of this machine alone")
 set(_pellucid_lanes_sse4 4)
 set(_pellucid_lanes_avx2 8)
 set(_pellucid_lanes_avx512 16)
@@ -22,10 +24,36 @@ if(PELLUCID_SIMD AND CMAKE_SYSTEM_PROCESSOR MATCHES "^(x86_64|AMD64|amd64)$" AND
   set(PELLUCID_SIMD_FOUND TRUE)
 endif()
 
-# pellucid_instruction_sets(TARGET SOURCES file... [LIBRARIES target...])
+set(_pellucid_built_sets ${PELLUCID_BUILD_SETS})
+if(_pellucid_built_sets STREQUAL "native" AND PELLUCID_SIMD_FOUND)
+  file(STRINGS /proc/cpuinfo _pellucid_flags REGEX "^flags" LIMIT_COUNT 1)
+  set(_pellucid_built_sets sse4)
+  if(_pellucid_flags MATCHES " avx2( |$)" AND _pellucid_flags MATCHES " fma( |$)")
+    set(_pellucid_built_sets avx2)
+    set(_pellucid_best TRUE)
+    foreach(_pellucid_flag IN ITEMS avx512f avx512cd avx512dq avx512bw avx512vl)
+      if(NOT _pellucid_flags MATCHES " ${_pellucid_flag}( |$)")
+        set(_pellucid_best FALSE)
+      endif()
+    endforeach()
+    if(_pellucid_best)
+      set(_pellucid_built_sets avx512)
+    endif()
+  endif()
+  message(STATUS "Kernels are built for ${_pellucid_built_sets} alone, the best of this machine")
+endif()
+foreach(_pellucid_set IN LISTS _pellucid_built_sets)
+  if(PELLUCID_SIMD_FOUND AND NOT _pellucid_set IN_LIST PELLUCID_INSTRUCTION_SETS)
+    message(FATAL_ERROR "PELLUCID_BUILD_SETS: \"${_pellucid_set}\" is no instruction set; "
+                        "name some of ${PELLUCID_INSTRUCTION_SETS}, or native")
+  endif()
+endforeach()
+
+# pellucid_instruction_sets(TARGET SOURCES file... [ABSENT file] [LIBRARIES target...])
 #
-# Compiles the sources once per instruction set and adds the objects to TARGET; LIBRARIES say what they
-# include. In these sources
+# Compiles the sources once per instruction set and adds the objects to TARGET; LIBRARIES say what
+# they include. For a set that PELLUCID_BUILD_SETS leaves out, ABSENT is compiled in their place.
+# In these sources
 #   PELLUCID_LANES             is 4, 8 or 16,
 #   PELLUCID_INSTRUCTION_SET   is sse4, avx2 or avx512,
 #   pellucid                   is a macro: the project's namespace gets another name in each, so that an
@@ -36,7 +64,7 @@ endif()
 # TARGET's own sources see PELLUCID_HAS_PACKETS, 1 or 0: off x86-64, or without PELLUCID_SIMD, nothing is
 # compiled.
 function(pellucid_instruction_sets target)
-  cmake_parse_arguments(arg "" "" "SOURCES;LIBRARIES" ${ARGN})
+  cmake_parse_arguments(arg "" "ABSENT" "SOURCES;LIBRARIES" ${ARGN})
   if(NOT PELLUCID_SIMD_FOUND)
     target_compile_definitions(${target} PRIVATE PELLUCID_HAS_PACKETS=0)
     return()
@@ -44,7 +72,11 @@ function(pellucid_instruction_sets target)
   target_compile_definitions(${target} PRIVATE PELLUCID_HAS_PACKETS=1)
   foreach(set IN LISTS PELLUCID_INSTRUCTION_SETS)
     set(objects ${target}_${set})
-    add_library(${objects} OBJECT ${arg_SOURCES})
+    if(arg_ABSENT AND NOT set IN_LIST _pellucid_built_sets)
+      add_library(${objects} OBJECT ${arg_ABSENT})
+    else()
+      add_library(${objects} OBJECT ${arg_SOURCES})
+    endif()
     set_target_properties(${objects} PROPERTIES POSITION_INDEPENDENT_CODE ON CXX_EXTENSIONS OFF)
     target_compile_features(${objects} PRIVATE cxx_std_20)
     # The package's target also names a library that it does not need.

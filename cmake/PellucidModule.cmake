@@ -19,7 +19,30 @@ target_compile_options(pellucid_build_flags INTERFACE
   $<$<AND:$<CXX_COMPILER_ID:GNU>,$<VERSION_LESS:$<CXX_COMPILER_VERSION>,13>>:-Wno-restrict>
   $<$<BOOL:${PELLUCID_WERROR}>:-Werror>)
 
-# What the two functions below declare is kept in global properties, from which the package
+option(PELLUCID_PRECOMPILE_HEADERS
+       "Precompile what most sources of the libraries include" ${PROJECT_IS_TOP_LEVEL})
+
+# pellucid_precompiled_headers(TARGET [HEADERS header...]): sources of TARGET have the headers of
+# `scene`, which owns one file of them for all libraries, or HEADERS. They must still include what
+# they use: the presets of clang and the sanitizers compile without.
+function(pellucid_precompiled_headers target)
+  cmake_parse_arguments(arg "" "" "HEADERS" ${ARGN})
+  if(NOT PELLUCID_PRECOMPILE_HEADERS)
+    return()
+  endif()
+  if(arg_HEADERS OR NOT TARGET pellucid_scene OR target STREQUAL "pellucid_scene")
+    target_precompile_headers(${target} PRIVATE
+      <algorithm> <array> <cmath> <cstddef> <cstdint> <filesystem> <functional> <limits> <memory>
+      <optional> <span> <string> <string_view> <utility> <variant> <vector>
+      <pellucid/scene/volume.h> ${arg_HEADERS})
+  else()
+    target_precompile_headers(${target} REUSE_FROM pellucid_scene)
+  endif()
+  # With this ccache can tell what a precompiled header holds.
+  target_compile_options(${target} PRIVATE $<$<CXX_COMPILER_ID:GNU>:-fpch-preprocess>)
+endfunction()
+
+# What the functions below declare is kept in global properties, from which the package
 # (PellucidInstall) and the test of the include order (tests/architecture) are made:
 #   PELLUCID_MODULES            names, in the order of declaration
 #   PELLUCID_DEPENDS_<name>     the modules that its files include
@@ -41,6 +64,7 @@ function(pellucid_library name)
   _pellucid_declare(${name} PUBLIC "${arg_DEPENDS}")
   target_link_libraries(pellucid_${name}
     PRIVATE ${arg_PRIVATE} $<BUILD_INTERFACE:pellucid_build_flags>)
+  pellucid_precompiled_headers(pellucid_${name})
 endfunction()
 
 function(_pellucid_declare name scope depends)
