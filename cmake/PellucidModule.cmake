@@ -15,8 +15,10 @@ target_compile_options(pellucid_build_flags INTERFACE
   $<$<CXX_COMPILER_ID:Clang>:-Wno-double-promotion>
   # Kernels take masks of lanes and bools alike: | and & throughout.
   $<$<CXX_COMPILER_ID:Clang>:-Wno-bitwise-instead-of-logical>
-  # GCC 12 sees overlaps in "text" + std::string that are not there (GCC bug 105651).
+  # GCC 12 sees overlaps and overruns in "text" + std::string that are not there (GCC bug 105651).
   $<$<AND:$<CXX_COMPILER_ID:GNU>,$<VERSION_LESS:$<CXX_COMPILER_VERSION>,13>>:-Wno-restrict>
+  $<$<AND:$<CXX_COMPILER_ID:GNU>,$<VERSION_LESS:$<CXX_COMPILER_VERSION>,13>>:-Wno-array-bounds>
+  $<$<AND:$<CXX_COMPILER_ID:GNU>,$<VERSION_LESS:$<CXX_COMPILER_VERSION>,13>>:-Wno-stringop-overflow>
   $<$<BOOL:${PELLUCID_WERROR}>:-Werror>)
 
 option(PELLUCID_PRECOMPILE_HEADERS
