@@ -178,10 +178,9 @@ Command add_convert(CommandLine& app) {
       "convert", "Write a volume in another format, or a volume or mesh as tetrahedra");
   const auto arguments = std::make_shared<ConvertArguments>();
   command
-      .add_option("input", arguments->input,
+      .add_option("INPUT", arguments->input,
                   fmt::format("{}, builtin:NAME[:POINTS], or mesh file ({})", input_help,
                               mesh_extensions()))
-      ->option_text("INPUT")
       ->required();
   command
       .add_option(
