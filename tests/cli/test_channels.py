@@ -106,7 +106,7 @@ class Channels(ProgramTest):
     def test_wrong_arguments(self):
         def refuse(pattern, *arguments):
             self.refuse(pattern, *arguments, code=2)
-        refuse("nothing to render; give INPUT or --channel")
+        refuse("no input; give INPUT or --channel")
         refuse("--channel.*expected NAME=SOURCE", "a.npy", "--channel", "b.npy")
         refuse('--channel.*"value" stands twice', "a.npy", "--channel", "value=b.npy")
         refuse("--channel.*not before it", "--channel", "e=gradient_magnitude:x", "--channel", "x=a.npy")

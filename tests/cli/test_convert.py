@@ -94,7 +94,7 @@ class Convert(ProgramTest):
 
     def test_says_what_it_did(self):
         result = self.run_program("convert", "builtin:marschner_lobb:3", "-o", "ml.vtu")
-        self.assertRegex(result.stderr.decode(), r"8 cells became \d+ tetrahedra of 27 points\n$")
+        self.assertRegex(result.stderr.decode(), r"cut 8 cells into \d+ tetrahedra of 27 points\n$")
         self.assertEqual(self.run_program("convert", "builtin:marschner_lobb:3", "-o", "ml.vtu",
                                           "-q").stderr, b"")
 

@@ -59,7 +59,7 @@ class BadInput(ProgramTest):
         self.refuse("folder.npy", "folder.npy", also_info=True)
         self.write("a.jpeg", "what is this")
         self.refuse("a.jpeg", "a.jpeg", also_info=True)
-        self.refuse("nothing to render", "", code=2)
+        self.refuse("no input; give INPUT or --channel", "", code=2)
         self.fail_with("is empty", "info", "")
 
     def test_truncated_file(self):

@@ -34,7 +34,8 @@ class Render(ProgramTest):
         self.assertEqual(result.returncode, 0, result.stderr)
         self.assertEqual(result.stdout, b"")
         self.assertRegex(result.stderr.decode(),
-                         r"\Apellucid: [^\n]*default[^\n]*--save-tf[^\n]*\n(pellucid: [^\n]+\n){2}\Z")
+                         r"\Apellucid: no transfer function given: using one made from the histogram "
+                         r"[^\n]*--save-tf[^\n]*\n(pellucid: [^\n]+\n){2}\Z")
         width, height, channels, rows = png(self.read("a.png"))
         self.assertEqual((width, height, channels), (512, 512, 4))
         self.assertGreater(max(max(row[3::4]) for row in rows), 10)

@@ -121,7 +121,8 @@ class Tolerance(ProgramTest):
             report = json.loads(result.stdout)
             self.assertEqual((report["tolerance_asked"], report["tolerance"]), (float(asked), used))
             self.assertRegex(result.stderr.decode(),
-                             rf"\Apellucid: a tolerance of [^\n]*limits: {used:g} is used\n\Z")
+                             rf"\Apellucid: tolerance [^\n]* is outside the limits: "
+                             rf"using {used:g}\n\Z")
             self.assertEqual(self.run_program(*run, "--quiet").stderr, b"")
         for limit in ("1e-7", "1"):
             result = self.run_program(*FIELD, "-o", "a.exr", "--tolerance", limit, "--json")
