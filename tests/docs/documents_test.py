@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Plants what the checks beside this file must find, and what they must not, in a small repository."""
+"""Plants in a small repository what the checks beside this file must find, and what they must not.
+"""
 import contextlib
 import io
 import json
@@ -42,7 +43,8 @@ class Links(Repository):
 
     def test_good_ones(self):
         self.assertEqual(self.check(
-            "# Head line\n[a](docs/other.md) [b](docs/other.md#two-words) [c](#head-line) [d](docs)\n"
+            "# Head line\n[a](docs/other.md) [b](docs/other.md#two-words)\n"
+            "[c](#head-line) [d](docs) "
             "[e](https://example.org/x#y) [f][g] [wrapped\nlink](/docs/other.md)\n"
             "<img src=\"docs/other.md\">\n\n[g]: docs/other.md#other\n",
             "# Other\n## Two *words*\n"), "")
@@ -147,7 +149,8 @@ class Commands(Repository):
 
     def test_good(self):
         status, said = self.run_page(
-            "<!-- file: a.json -->\n```json\n{}\n```\n```sh\n# a comment\nx=a.json\ncat \\\n  \"$x\"\n"
+            "<!-- file: a.json -->\n```json\n{}\n```\n```sh\n# a comment\nx=a.json\n"
+            "cat \\\n  \"$x\"\n"
             "cat <<'E'\nhere\nE\nfor i in 1 2; do\n  echo $i\ndone\npellucid render -o b.png\n```\n"
             "```sh\ntest -s b.png && test \"$x\" = a.json && ls pellucid/page.md\n```\n"
             "<!-- not run: because -->\n```sh\nfalse\n```\n```text\nfalse\n```\n")

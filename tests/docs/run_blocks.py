@@ -4,15 +4,16 @@
 
   run_blocks.py ROOT BUILD_FOLDER PAGE
 
-Run are its blocks of sh, in one shell, and those of python. The program is found in the PATH, and the
-folder holds a `pellucid` with the sources and with the build as `build/release`: a checkout as the
-reader has it. A comment on the line before a block says what else is done with it:
+Run are its blocks of sh, in one shell, and those of python. The program is found in the PATH, and
+the folder holds a `pellucid` with the sources and with the build as `build/release`: a checkout as
+the reader has it. A comment on the line before a block says what else is done with it:
 
   <!-- file: NAME -->       written to that file, whatever its language
   <!-- not run: REASON -->  not run
 
-Files of OPTIONAL, such as the brain MRI of Debian's mricron-data, may be missing here. A command that
-names one is left out with a message, and so is every later one that needs what it would have made.
+Files of OPTIONAL, such as the brain MRI of Debian's mricron-data, may be missing here. A command
+that names one is left out with a message, and so is every later one that needs what it would have
+made.
 """
 import importlib.util
 import os
@@ -30,7 +31,8 @@ FILE_NAME = re.compile(r"[\w./%~-]*\.[A-Za-z]\w*(?:\.\w+)*")
 
 
 def commands_of(text, line):
-    """Yields (line, command) of a block of sh: continued lines and here-documents are one command."""
+    """Yields (line, command) of a block of sh: continued lines and here-documents are one
+    command."""
     begin, command = line, ""
     for number, current in enumerate(text.splitlines(), line):
         if not command and (not current.strip() or current.lstrip().startswith("#")):
