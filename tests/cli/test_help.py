@@ -13,8 +13,7 @@ READ_VOLUMES = ("render", "info", "histogram", "suggest", "convert")
 
 class Help(ProgramTest):
     def manual(self):
-        with open(os.path.join(SOURCE_DIR, "docs", "reference", "command-line.md"),
-                  encoding="utf-8") as file:
+        with open(os.path.join(SOURCE_DIR, "docs", "reference", "command-line.md"), encoding="utf-8") as file:
             return file.read()
 
     def introduction(self):
@@ -41,8 +40,7 @@ class Help(ProgramTest):
         for command in COMMANDS:
             of_help = options_of(self.succeed(command, "--help"))
             self.assertIn("--help", of_help)
-            of_manual = set(re.findall(r"(?m)^\| `(?:-\w, )?(--[a-z][a-z-]*)",
-                                       self.section(command)))
+            of_manual = set(re.findall(r"(?m)^\| `(?:-\w, )?(--[a-z][a-z-]*)", self.section(command)))
             if command in READ_VOLUMES:
                 of_manual |= set(re.findall(r"(?m)^\| `(--[a-z][a-z-]*)", self.introduction()))
             self.assertEqual(set(of_help) - {"--help"} - of_manual, set(),
@@ -74,8 +72,7 @@ class Help(ProgramTest):
         for command in COMMANDS:
             if command != "presets":  # which needs no argument
                 self.fail_with(rf"'pellucid {command} --help'", command, code=2)
-            positional = ("linear_segment", "a.csv",
-                          "-o", "b.csv") if command == "evaluate" else ("a",)
+            positional = ("linear_segment", "a.csv", "-o", "b.csv") if command == "evaluate" else ("a",)
             positional += ("-o", "b.vtu") if command == "convert" else ()
             positional += ("b",) if command == "compare" else ()
             self.fail_with(rf"--frobnicate.*'pellucid {command} --help'", command, *positional,

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <pellucid/base/version.h>
-#include <pellucid/segment/fold.h>
 #include <pellucid/segment/linear.h>
 #include <pellucid/segment/piecewise_linear.h>
 
@@ -12,10 +11,9 @@ using Color = pellucid::Rgb<double>;
 // Two segments of length 2: the extinction rises from 0 to 1 and falls again.
 double opacity_of_two_segments() {
   const Color orange{1, 0.5, 0};
-  pellucid::FrontToBack<double> ray;
-  ray.add(pellucid::linear_segment(0.0, 1.0, orange, orange, 2.0));
-  ray.add(pellucid::linear_segment(1.0, 0.0, orange, orange, 2.0));
-  return ray.opacity();
+  const auto front = pellucid::linear_segment(0.0, 1.0, orange, orange, 2.0);
+  const auto back = pellucid::linear_segment(1.0, 0.0, orange, orange, 2.0);
+  return pellucid::compose(front, back).opacity;
 }
 
 // One segment from the value 0.2 to the value 0.8, across a peak at 0.5 that neither end sees.
