@@ -156,13 +156,14 @@ class Commands(Repository):
             "<!-- not run: because -->\n```sh\nfalse\n```\n```text\nfalse\n```\n")
         self.assertEqual(status, 0, said)
         self.assertIn("left out: because", said)
-        self.assertIn("here\n", said)
+        self.assertIn(": cat <<'E'\nhere\nE\nhere\n", said)
+        self.assertIn(": for i in 1 2; do\n  echo $i\ndone\n1\n2\n", said)
 
     def test_failing_command(self):
-        self.assertEqual(self.run_page("```sh\npellucid fail -o x.png\necho after\n```\n")[0], 1)
+        self.assertEqual(self.run_page("```sh\npellucid fail\necho after\n```\n")[0], 1)
         self.assertEqual(self.run_page("```sh\nfalse | cat\n```\n")[0], 1)
         self.assertEqual(self.run_page("```sh\necho $undefined\n```\n")[0], 1)
-        self.assertEqual(self.run_page("```sh\nif true; then\n```\n")[0], 1)
+        self.assertEqual(self.run_page("```sh\necho before\nif true; then\n```\n")[0], 1)
 
     def test_missing_output(self):
         status, said = self.run_page("```sh\npellucid silent -o x.png\n```\n")
