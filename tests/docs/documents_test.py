@@ -62,11 +62,17 @@ class Links(Repository):
         self.assertIn("no such heading", self.check("[a](docs/other.md#second)\n",
                                                     "```sh\n# second\n```\n"))
 
+    def test_page_that_nothing_leads_to(self):
+        self.write("docs/far.md", "[back](other.md)\n")
+        self.assertEqual(self.check("[a](docs/other.md)\n", "[far](far.md)\n"), "")
+        self.assertIn("docs/far.md: no links lead here", self.check("[a](docs/other.md)\n"))
+
     def test_undefined_name(self):
         self.assertIn("does not define", self.check("[a][b]\n"))
 
     def test_code_is_no_link(self):
-        self.assertEqual(self.check("`[a](none.md)` ``a[i](x)``\n```cpp\n[a](none.md)\n```\n"), "")
+        self.assertEqual(self.check("`[a](none.md)` ``a[i](x)``\n```cpp\n[a](none.md)\n```\n"
+                                    "[a](docs/other.md)\n"), "")
 
     def test_open_fence(self):
         self.assertIn("README.md:2: this block", self.check("\n```sh\nx\n"))
