@@ -147,11 +147,9 @@ class Commands(Repository):
         self.write("page.md", text)
         self.write("program/bin/pellucid", self.PROGRAM)
         (self.root / "program/bin/pellucid").chmod(0o755)
-        with tempfile.TemporaryFile("w+") as output:
-            with contextlib.redirect_stdout(io.StringIO()) as said:
-                status = run_blocks.main(self.root, self.root / "program", "page.md", output)
-            output.seek(0)
-            return status, output.read() + said.getvalue()
+        with contextlib.redirect_stdout(io.StringIO()) as said:
+            status = run_blocks.main(self.root, self.root / "program", "page.md")
+        return status, said.getvalue()
 
     def test_good(self):
         status, said = self.run_page(
@@ -159,7 +157,8 @@ class Commands(Repository):
             "cat \\\n  \"$x\"\n"
             "cat <<'E'\nhere\nE\nfor i in 1 2; do\n  echo $i\ndone\npellucid render -o b.png\n```\n"
             "```sh\ntest -s b.png && test \"$x\" = a.json && ls pellucid/page.md\n```\n"
-            "<!-- not run: because -->\n```sh\nfalse\n```\n```text\nfalse\n```\n")
+            "<!-- not run: because -->\n```sh\nfalse\n```\n"
+            "<!-- file: b.txt -->\n```text\nnot printed\n```\n")
         self.assertEqual(status, 0, said)
         self.assertIn("left out: because", said)
         self.assertIn(": cat <<'E'\nhere\nE\nhere\n", said)
@@ -175,6 +174,14 @@ class Commands(Repository):
         status, said = self.run_page("```sh\npellucid silent -o x.png\n```\n")
         self.assertEqual(status, 1)
         self.assertIn("x.png was not written", said)
+
+    def test_output_that_is_shown(self):
+        command = "```sh\necho 'error 0.5 of 12 pixels; and more'\n```\n"
+        self.assertEqual(self.run_page(
+            command + "```text\nerror 1.25e-3 of 9 pixels … more\n```\n")[0], 0)
+        status, said = self.run_page(command + "```text\nerror 0.5 of 12 points\n```\n")
+        self.assertEqual(status, 1)
+        self.assertIn("page.md:5: no command printed: error 0.5 of 12 points", said)
 
     def test_no_command(self):
         self.assertEqual(self.run_page("# Nothing\n")[0], 1)

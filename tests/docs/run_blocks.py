@@ -11,6 +11,9 @@ the reader has it. A comment on the line before a block says what else is done w
   <!-- file: NAME -->       written to that file, whatever its language
   <!-- not run: REASON -->  not run
 
+A block of text shows what the commands print. Each of its lines must be printed, with any numbers;
+an ellipsis stands for anything.
+
 Files of OPTIONAL, such as the brain MRI of Debian's mricron-data, may be missing here. A command
 that names one is left out with a message, and so is every later one that needs what it would have
 made.
@@ -75,9 +78,8 @@ def python_modules(text):
     return set(re.findall(r"^(?:import|from) +(\w+)", text, re.M))
 
 
-def script_of(page, name, folder):
-    """The shell script that does what the page says, and the pellucid commands that it runs. Writes
-    the page's files into the folder."""
+def script_of(page, name):
+    """The shell script that does what the page says, and the commands that it runs."""
     script = ["set -euo pipefail"]
     run = []
     missing = MissingFiles()
@@ -135,32 +137,59 @@ def make_checkout(root, build, folder):
     (folder / "build" / "release").symlink_to(build)
 
 
-def main(root, build, name, stream=None):
-    """Runs a page's commands, which write to the stream, or else to stdout; the exit status."""
+def shown_but_not_printed(page, output):
+    """Yields the lines of the page's blocks of text that no line of the output contains. Numbers
+    may differ, and an ellipsis stands for anything."""
+    def without_numbers(text):
+        return re.sub(r"[0-9]+(?:\.[0-9]+)?(?:e[-+]?[0-9]+)?", "0", text)
+
+    printed = [without_numbers(line) for line in output.splitlines()]
+    for block in page.blocks:
+        if block.language != "text" or block.mark:
+            continue
+        for line in block.text.splitlines():
+            parts = re.split(r"\s*…\s*", without_numbers(line))
+            pattern = ".*".join(re.escape(part) for part in parts)
+            if not any(re.search(pattern, candidate) for candidate in printed):
+                yield block.line, line
+
+
+def run_script(script, folder, build):
+    """Runs the script in the folder and prints what it prints; returns its status and output."""
+    environment = dict(os.environ, PATH=f"{build / 'bin'}:{os.environ['PATH']}", HOME=str(folder))
+    output = ""
+    with subprocess.Popen(["bash", "-c", script], cwd=folder, env=environment, text=True,
+                          stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
+                          stderr=subprocess.STDOUT) as process:
+        for line in process.stdout:
+            print(line, end="", flush=True)
+            output += line
+    return process.returncode, output
+
+
+def main(root, build, name):
     page = Page((root / name).read_text(encoding="utf-8"))
     with tempfile.TemporaryDirectory() as temporary:
         folder = pathlib.Path(temporary).resolve()
         make_checkout(root, build, folder / "pellucid")
-        script, run = script_of(page, name, folder)
+        script, run = script_of(page, name)
         if "\n" not in script.strip():
             print(f"{name}: shows no command")
             return 1
-        environment = dict(os.environ, PATH=f"{build / 'bin'}:{os.environ['PATH']}",
-                           HOME=str(folder))
-        status = subprocess.run(["bash", "-c", script], cwd=folder, env=environment,
-                                stdin=subprocess.DEVNULL, stdout=stream,
-                                stderr=subprocess.STDOUT).returncode
+        status, output = run_script(script, folder, build)
         if status != 0:
             print(f"{name}: the last command ended with {status}")
             return 1
-        for command in run:
-            for output in outputs_of(command):
-                written = [path for path in folder.glob(f"**/{pathlib.Path(output).name}")
-                           if path.stat().st_size]
-                if not written:
-                    print(f"{name}: {output} was not written, or is empty")
-                    return 1
-    return 0
+        for file in [file for command in run for file in outputs_of(command)]:
+            written = folder.glob(f"**/{pathlib.Path(file).name}")
+            if not any(path.stat().st_size for path in written):
+                print(f"{name}: {file} was not written, or is empty")
+                return 1
+    if "left out: no " not in output:
+        for line, text in shown_but_not_printed(page, output):
+            print(f"{name}:{line}: no command printed: {text}")
+            status = 1
+    return status
 
 
 if __name__ == "__main__":
