@@ -107,7 +107,9 @@ class Lines(Repository):
         generated = {"a.h": "tools/make.py"}
         self.assertEqual(self.check("a.h", "// by tools/make.py\n" + "x" * 101, generated), "")
         self.assertIn("do not say", self.check("a.h", "x" * 101, generated))
-        self.assertIn("no long line", self.check("a.h", "// by tools/make.py\n", generated))
+        generated = {"a.h": "tools/none.py"}
+        self.assertIn("does not exist",
+                      self.check("a.h", "// by tools/none.py\n" + "x" * 101, generated))
 
 
 class Blocks(Repository):
