@@ -100,6 +100,9 @@ class Lines(Repository):
 
     def test_what_may_be_long(self):
         self.assertEqual(self.check("docs/notes/a.md", "| " + "x" * 100 + " |\n"), "")
+        written = "<!-- a: begin -->\n" + "x" * 101 + "\n<!-- a: end -->\n"
+        self.assertEqual(self.check("docs/notes/a.md", written), "")
+        self.assertIn("a.md:4", self.check("docs/notes/a.md", written + "x" * 101))
         self.assertIn("docs/a.md:1", self.check("docs/a.md", "| " + "x" * 100 + " |\n"))
 
     def test_generated_files_name_their_generator(self):
