@@ -29,7 +29,7 @@ function(pellucid_fuzz_target name)
     target_sources(fuzz_${name} PRIVATE "${PROJECT_SOURCE_DIR}/tests/fuzz/standalone_main.cpp")
     add_test(NAME fuzz.${name} COMMAND fuzz_${name} -runs=${arg_RUNS} ${seeds})
   endif()
-  set_tests_properties(fuzz.${name} PROPERTIES LABELS fuzz TIMEOUT 300
+  set_tests_properties(fuzz.${name} PROPERTIES LABELS fuzz TIMEOUT ${PELLUCID_TEST_SECONDS}
     WORKING_DIRECTORY "${CMAKE_CURRENT_BINARY_DIR}")
   if(NOT TARGET fuzz_targets)
     add_custom_target(fuzz_targets)
