@@ -51,7 +51,7 @@ StepLimits PacketTracer::step_limits(const Volume& volume, const TransferTables&
   // What SmoothMarch takes for the least error of its shortest steps, from corner to corner.
   const double cells = longest_sampled_step * double{sampled_step_share(levels - 1)};
   const double step = cells * volume.voxel_size();
-  const double one = step * std::sqrt(mean_square_of_bends(cells));
+  const double one = step * std::sqrt(uncorrelated_error_mean_square(cells));
   const double times = diagonal(volume) / (4 * step);
   return {levels, wanted.tolerance / (RandomErrors<double>::deviations * one * std::sqrt(times))};
 }

@@ -116,9 +116,9 @@ TEST_P(PacketParts, RaysEndWhereAQuarterOfWhatIsLeftPaysForTheRest) {
       // Not before: a span earlier that would not have paid.
       const double transparency =
           std::pow(1 - static_cast<double>(opacity[l]), result.spans[l] - 1);
-      const double length_left = wanted.length * (1 - (result.spans[l] - 1.0) / spans);
+      const double remaining_length = wanted.length * (1 - (result.spans[l] - 1.0) / spans);
       const double before = transparency * wanted.largest_color *
-                            std::min(wanted.largest_extinction * length_left, 1.0);
+                            std::min(wanted.largest_extinction * remaining_length, 1.0);
       ASSERT_GT(before, 0.249 * result.left[l]) << result.spans[l];
     }
   }

@@ -30,32 +30,32 @@ class RayBudget {
   /// How large the error x of the next span may be: of a span of this length and at most this
   /// opacity, behind this transparency (> 0).
   PELLUCID_HD T allowance(T length, T opacity, T transparency) const noexcept {
-    return shares(length, opacity).sum() / transparency;
+    return span_share(length, opacity).sum() / transparency;
   }
   /// Goes past a span that cost `error` (x of above; 0 where nothing was there).
   PELLUCID_HD void spend(T length, T opacity, T transparency, T error) noexcept {
     const T cost = transparency * error;
     if (any(cost > T(0))) {
-      spend(length, shares(length, opacity), cost);
+      spend(length, span_share(length, opacity), cost);
     } else {
       length_ = max(length_ - length, T(0));
     }
   }
 
   /// What a span may take of each pot.
-  struct Shares {
-    T of_opacity, of_length;
-    PELLUCID_HD T sum() const noexcept { return of_opacity + of_length; }
+  struct SpanShare {
+    T opacity_part, length_part;
+    PELLUCID_HD T sum() const noexcept { return opacity_part + length_part; }
   };
-  PELLUCID_HD Shares shares(T length, T opacity) const noexcept {
-    return {opacity_pot_ * opacity, length_pot_ * share(length)};
+  PELLUCID_HD SpanShare span_share(T length, T opacity) const noexcept {
+    return {opacity_pot_ * opacity, length_pot_ * length_fraction(length)};
   }
   /// Goes past a span whose shares these are and that costs so much, transparency · error: at most
-  /// their sum, or left(), or all is lost.
-  PELLUCID_HD void spend(T length, const Shares& from, T cost) noexcept {
+  /// their sum, or remaining(), or all is lost.
+  PELLUCID_HD void spend(T length, const SpanShare& from, T cost) noexcept {
     const T sum = from.sum();
     // What one pot does not have is taken from the other: together they lose all that is spent.
-    T part = select(sum > T(0), cost * (from.of_opacity / sum), T(0));
+    T part = select(sum > T(0), cost * (from.opacity_part / sum), T(0));
     part = clamp(part, min(cost - length_pot_, opacity_pot_), opacity_pot_);
     opacity_pot_ = max(opacity_pot_ - part, T(0));
     length_pot_ = max(length_pot_ - (cost - part), T(0));
@@ -64,7 +64,8 @@ class RayBudget {
   }
 
   /// A bound on what lies behind the spans gone past: as little as light can come from there.
-  PELLUCID_HD T rest_behind(T transparency, T largest_extinction, T largest_color) const noexcept {
+  PELLUCID_HD T remainder_bound(T transparency, T largest_extinction,
+                                T largest_color) const noexcept {
     return transparency * min(largest_extinction * length_, T(1)) * largest_color;
   }
 
@@ -72,19 +73,20 @@ class RayBudget {
   /// pixel is off by nearly all of it, while other errors are far below what is charged for them:
   /// with all of what is left by up to 0.97 of the tolerance, with a quarter by 0.1 to 0.4
   /// (docs/notes/performance.md). Rays go further through thin media: up to 15 % more time.
-  static constexpr double share_for_rest = 0.25;
+  static constexpr double termination_fraction = 0.25;
 
   /// Whether `rest`, a bound on what lies behind, may be left out: it is at most that share, or the
   /// ray is beyond its tolerance already and it is next to nothing.
-  PELLUCID_HD mask_t<T> pays_for(T rest, T tolerance) const noexcept {
+  PELLUCID_HD mask_t<T> allows_termination(T rest, T tolerance) const noexcept {
     const auto next_to_nothing = rest <= T(1.0 / 64) * tolerance;
-    return (rest <= T(share_for_rest) * left()) | ((spent_ > tolerance) & next_to_nothing);
+    return (rest <= T(termination_fraction) * remaining()) |
+           ((spent_ > tolerance) & next_to_nothing);
   }
 
   /// The least that a span is worth trying for, however little is left: a ray that is beyond its
   /// tolerance, because rounding takes more than that, must come to its end. T error as of
   /// allowance().
-  PELLUCID_HD static T least_allowance(T tolerance, T share_of_length) noexcept {
+  PELLUCID_HD static T minimum_allowance(T tolerance, T share_of_length) noexcept {
     return T(1.0 / 64) * tolerance * share_of_length;
   }
 
@@ -93,10 +95,12 @@ class RayBudget {
   /// What one of them may take of the second pot for each unit of its length, and what there is in
   /// the first one for all of them. Shares of the first are taken one after the other, from front
   /// to back; those of spans that are good enough are reserved until they are spent.
-  PELLUCID_HD T for_length() const noexcept {
+  PELLUCID_HD T allowance_per_length() const noexcept {
     return length_ > T(0) ? length_pot_ / length_ : length_pot_;
   }
-  PELLUCID_HD T for_opacity() const noexcept { return max(opacity_pot_ - reserved_, T(0)); }
+  PELLUCID_HD T unreserved_opacity_budget() const noexcept {
+    return max(opacity_pot_ - reserved_, T(0));
+  }
   PELLUCID_HD void reserve(T from_opacity) noexcept { reserved_ += from_opacity; }
   /// Goes past a span whose shares were these: none of the pots loses more than that if `error` is
   /// at most their sum by the transparency that they were given for, or a lower one. No share of
@@ -113,7 +117,7 @@ class RayBudget {
   }
 
   /// Goes past stretches in which nothing was, up to where so much is left of the ray.
-  PELLUCID_HD void pass_to(T length_left) noexcept { length_ = length_left; }
+  PELLUCID_HD void set_remaining_length(T remaining_length) noexcept { length_ = remaining_length; }
 
   /// Of several rays at once, lane by lane.
   friend RayBudget select(mask_t<T> mask, const RayBudget& a, const RayBudget& b) noexcept {
@@ -127,12 +131,12 @@ class RayBudget {
   }
 
   PELLUCID_HD T spent() const noexcept { return spent_; }
-  PELLUCID_HD T left() const noexcept { return opacity_pot_ + length_pot_; }
+  PELLUCID_HD T remaining() const noexcept { return opacity_pot_ + length_pot_; }
   /// Of the ray, behind the spans gone past.
-  PELLUCID_HD T length_left() const noexcept { return length_; }
+  PELLUCID_HD T remaining_length() const noexcept { return length_; }
 
  private:
-  PELLUCID_HD T share(T length) const noexcept {
+  PELLUCID_HD T length_fraction(T length) const noexcept {
     const auto part = length < length_;
     return select(part, length / select(part, length_, T(1)), T(1));
   }

@@ -7,9 +7,9 @@
 
 namespace pellucid {
 
-/// The mean square that mean_square_of_bend() has where its four steps have nothing to do with each
-/// other.
-inline constexpr float mean_square_of_strange_bends = 38.0f / (9 * 720);
+/// The mean square that simpson_error_mean_square() has where its four steps have nothing to do
+/// with each other.
+inline constexpr float uncorrelated_error_limit = 38.0f / (9 * 720);
 
 /// What samples of trilinear data do not know of these: the mean square, over where in a cell they
 /// begin, of what four steps of Simpson's rule err because of a bend of 1 along one axis, of which
@@ -21,7 +21,7 @@ inline constexpr float mean_square_of_strange_bends = 38.0f / (9 * 720);
 /// follow B itself: what they err is that of one corner, at a random place, per cell. From half a
 /// cell to a whole one this is down to half of the mean square.
 template <class T>
-T mean_square_of_bend(T cells) noexcept {
+T simpson_error_mean_square(T cells) noexcept {
   const auto correlation = [&](float lag) noexcept {
     const T at = T(lag) * cells, s = at - floor(at), w = s * (T(1) - s);
     return T(1) - T(30) * w * w;
@@ -33,14 +33,14 @@ T mean_square_of_bend(T cells) noexcept {
 
 /// The same where the bend changes so much on the way that no step has to do with the next.
 template <class T>
-T mean_square_of_bends(T cells) noexcept {
-  return min(T(mean_square_of_strange_bends), T(0.03f) * cells * cells * cells);
+T uncorrelated_error_mean_square(T cells) noexcept {
+  return min(T(uncorrelated_error_limit), T(0.03f) * cells * cells * cells);
 }
 
 /// What is charged: how much the bend changes on the way is not known.
 template <class T>
-T charged_for_bend(T cells) noexcept {
-  return mean_square_of_bend(cells) + T(0.25f) * mean_square_of_bends(cells);
+T charged_error_mean_square(T cells) noexcept {
+  return simpson_error_mean_square(cells) + T(0.25f) * uncorrelated_error_mean_square(cells);
 }
 
 /// What trilinear data do within cells, which rays beside each other do not have in common: of a
@@ -72,7 +72,7 @@ class RandomErrors {
 
   /// How large the variance of the next span may be, which stands for this share of what is still
   /// to come, if `left` is left to pay for all of it.
-  T largest(T left, T share) const noexcept {
+  T largest_variance(T left, T share) const noexcept {
     const T most = root_ + max(left, T(0)) * T(1.0f / deviations);
     return max((most * most - sum_) * share, T(0));
   }
@@ -112,15 +112,15 @@ class SampledErrors {
   T largest_variance(const RayBudget<T>& budget, T rounding, T opacity, T length,
                      T left) const noexcept {
     const T share = T(0.5f) * (opacity + min(length / left, T(1)));
-    return random_.largest(budget.left() - rounding, share);
+    return random_.largest_variance(budget.remaining() - rounding, share);
   }
 
   /// Goes past these stretches, where the budget stands at any place in front of them.
-  void pay(mask_t<T> lanes, RayBudget<T>& budget, T variance, T rounding, T opacity, T length,
-           T left, T transparency) noexcept {
+  void charge(mask_t<T> lanes, RayBudget<T>& budget, T variance, T rounding, T opacity, T length,
+              T left, T transparency) noexcept {
     const T cost = random_.charge(variance) + rounding;
     random_.add(select(lanes, variance, T(0)));
-    budget.pass_to(select(lanes, left, budget.length_left()));
+    budget.set_remaining_length(select(lanes, left, budget.remaining_length()));
     budget.spend(
         select(lanes, length, T(0)), opacity, transparency,
         select(lanes, cost / max(transparency, T(std::numeric_limits<scalar_t<T>>::min())), T(0)));

@@ -136,7 +136,7 @@ class GaussianMarch {
       F weight = F(1.25f * 0.03f) * cells * cells * cells;
       const M longer = alive & (cells > F(0.5f));
       if (any(longer)) {
-        weight = select(longer, charged_for_bend(cells), weight);
+        weight = select(longer, charged_error_mean_square(cells), weight);
       }
       variance += weight * (s.ends.bending[a] * s.ends.bending[a]);
     }

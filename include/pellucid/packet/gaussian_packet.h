@@ -150,7 +150,7 @@ class GaussianPacket {
         (F(32 * rounding_unit<float>) * s.opacity + look_.ends.rounding * look_.length);
     const F largest =
         sampled_.largest_variance(fold_.budget, rounding, s.opacity, look_.length, left);
-    const M take = lanes & (variance <= largest) & (rounding <= fold_.budget.left());
+    const M take = lanes & (variance <= largest) & (rounding <= fold_.budget.remaining());
     // The variance of short steps grows with the step's fifth to tenth power, what it may be with
     // the first.
     const F ease = F(0.4f) * largest / max(variance, F(1e-30f));
@@ -160,8 +160,8 @@ class GaussianPacket {
     change = select(lanes, select(known, suits, select(take, F(1), F(0.5f))), change);
     if (none(take)) return take;
     fold_.add(take, s);
-    sampled_.pay(take, fold_.budget, variance, rounding, s.opacity, look_.length, left,
-                 transparency);
+    sampled_.charge(take, fold_.budget, variance, rounding, s.opacity, look_.length, left,
+                    transparency);
     segments_ += select(take, I(1), I(0));
     march_.note(take, look_, transparency);
     march_.take(take, look_, change);

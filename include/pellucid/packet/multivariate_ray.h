@@ -93,11 +93,11 @@ class MultivariateRay {
   static constexpr int kept_room = most_cuts + 4;
   static constexpr double left_out_share = 1.0 / 8;
 
-  bool done() const noexcept { return budget_.pays_for(rest(), job_.tolerance); }
+  bool done() const noexcept { return budget_.allows_termination(rest(), job_.tolerance); }
 
   /// A bound on what lies behind: as little as light can come from there.
   double rest() const noexcept {
-    return budget_.rest_behind(fold_.transparency(), job_.largest_extinction, largest_color_);
+    return budget_.remainder_bound(fold_.transparency(), job_.largest_extinction, largest_color_);
   }
 
   /// Stretches in which so much depth, at most, is left out.
@@ -171,7 +171,7 @@ class MultivariateRay {
     for (int c = 0; c < grid_.channels; ++c) data[c] = cells.cubic(c);
     const GaussianMixture<double>& all = transfer_.gaussians;
     // The extinction that a primitive may have and be left out.
-    const double negligible = left_out_share * budget_.for_length() /
+    const double negligible = left_out_share * budget_.allowance_per_length() /
                               (fold_.transparency() * max(all.count, 1) * largest_color_);
     B from(2.0), to(-1.0);
     PrimitiveSet wanted[N];
@@ -255,10 +255,10 @@ class MultivariateRay {
     const MultivariateSpan<B> span = load(index, count);
     const double transparency = fold_.transparency();
     Shares shares;
-    const B from_length = span.length * B((1 - left_out_share) * budget_.for_length());
+    const B from_length = span.length * B((1 - left_out_share) * budget_.allowance_per_length());
     from_length.store(shares.from_length);
     const B least =
-        B(RayBudget<double>::least_allowance(job_.tolerance, 1 / length_)) * span.length;
+        B(RayBudget<double>::minimum_allowance(job_.tolerance, 1 / length_)) * span.length;
     const auto allowance = [&](B opacity) noexcept {
       return max((share_out(opacity, shares) + from_length) * B(1 / transparency), least);
     };
@@ -273,7 +273,7 @@ class MultivariateRay {
   };
   /// Shares of the pot that is there for opacity, from front to back.
   B share_out(B opacity, Shares& shares) const noexcept {
-    double of_lane[N], left = budget_.for_opacity();
+    double of_lane[N], left = budget_.unreserved_opacity_budget();
     opacity.store(of_lane);
     for (int l = 0; l < N; ++l) {
       shares.from_opacity[l] = left * of_lane[l];

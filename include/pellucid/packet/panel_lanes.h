@@ -189,11 +189,12 @@ class PanelLanes {
     demand_.place_error =
         select((from_ > D(0)) & (to_ < D(1)), (to_ - from_) * place_error, place_error);
     demand_.last_resort = (open_ >= I(most_cuts)) | !(to_ - from_ > D(1e-9));
-    fold_.budget.pass_to(select(on, max(left_ - convert<float>(from_ * span_length_), F(0)),
-                                fold_.budget.length_left()));
+    fold_.budget.set_remaining_length(
+        select(on, max(left_ - convert<float>(from_ * span_length_), F(0)),
+               fold_.budget.remaining_length()));
     const F length = convert<float>(span.length);
     const F transparency = select(on, fold_.transparency(), F(1));
-    const F least = RayBudget<F>::least_allowance(F(tolerance_), length / max(length_, length));
+    const F least = RayBudget<F>::minimum_allowance(F(tolerance_), length / max(length_, length));
     const auto allowance = [&](const D& opacity) noexcept {
       return convert<double>(
           max(fold_.budget.allowance(length, convert<float>(opacity), transparency), least));

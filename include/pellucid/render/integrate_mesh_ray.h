@@ -45,12 +45,12 @@ class MeshRayIntegrator {
   /// Whether what is left of the ray can no longer matter.
   PELLUCID_HD bool done() const noexcept {
     return found_ < infinity ||
-           (target_ == infinity && budget_.pays_for(rest(), wanted_.tolerance));
+           (target_ == infinity && budget_.allows_termination(rest(), wanted_.tolerance));
   }
 
   PELLUCID_HD void span(const MeshSpan& span) noexcept {
     ++cells_;
-    budget_.pass_to(max(end_ - span.begin, 0.0));
+    budget_.set_remaining_length(max(end_ - span.begin, 0.0));
     const double length = span.end - span.begin;
     if (span.overlaps) {
       // Anything may be there, and in all that it hides.
@@ -94,7 +94,8 @@ class MeshRayIntegrator {
 
   /// A bound on what lies behind.
   PELLUCID_HD double rest() const noexcept {
-    return budget_.rest_behind(fold_.transparency(), transfer_.largest_extinction, largest_color_);
+    return budget_.remainder_bound(fold_.transparency(), transfer_.largest_extinction,
+                                   largest_color_);
   }
 
   template <class T>
@@ -255,9 +256,9 @@ PELLUCID_HD inline RayResult integrate_multivariate_mesh_ray(
   long cells = 0;
   for_each_mesh_span(mesh, fields, ray.view, ray.hits, ray.count, [&](const MeshSpan& span) {
     ++cells;
-    integrator.pass_to(max(inside.end - span.begin, 0.0));
+    integrator.set_remaining_length(max(inside.end - span.begin, 0.0));
     detail::add_span(transfer, span, largest_extinction, integrator);
-    integrator.pass_to(max(inside.end - span.end, 0.0));
+    integrator.set_remaining_length(max(inside.end - span.end, 0.0));
     return !integrator.done();
   });
   RayResult result = integrator.result();

@@ -35,11 +35,14 @@ class MultivariateRayIntegrator {
 
   /// Whether what is left of the ray can no longer matter.
   PELLUCID_HD bool done() const noexcept {
-    return found_ < infinity || (target_ == infinity && budget_.pays_for(rest(), tolerance_));
+    return found_ < infinity ||
+           (target_ == infinity && budget_.allows_termination(rest(), tolerance_));
   }
 
   /// Goes past stretches in which nothing is, up to where so much is left of the ray.
-  PELLUCID_HD void pass_to(double length_left) noexcept { budget_.pass_to(length_left); }
+  PELLUCID_HD void set_remaining_length(double remaining_length) noexcept {
+    budget_.set_remaining_length(remaining_length);
+  }
 
   /// Where something may hide at most this opacity, in no length.
   PELLUCID_HD void lose(double opacity) noexcept {
@@ -111,7 +114,8 @@ class MultivariateRayIntegrator {
 
   /// A bound on what lies behind: as little as light can come from there.
   PELLUCID_HD double rest() const noexcept {
-    return budget_.rest_behind(fold_.transparency(), largest_extinction_, demand_.largest_color);
+    return budget_.remainder_bound(fold_.transparency(), largest_extinction_,
+                                   demand_.largest_color);
   }
 
   template <class Span>
@@ -120,7 +124,7 @@ class MultivariateRayIntegrator {
     const Span span = begin == 0 && end == 1 ? whole : whole.part(transfer_.channels, begin, end);
     const auto allowance = [&](double opacity) noexcept {
       return max(budget_.allowance(span.length, opacity, fold_.transparency()),
-                 RayBudget<double>::least_allowance(tolerance_, span.length / length_));
+                 RayBudget<double>::minimum_allowance(tolerance_, span.length / length_));
     };
     const PanelSegment<double> panel =
         integrate_multivariate_panel(transfer_, span, demand_, allowance);

@@ -30,7 +30,9 @@ class RayIntegrator {
         budget_(wanted.tolerance, length) {}
 
   /// Whether what is left of the ray can no longer matter.
-  PELLUCID_HD bool done() const noexcept { return budget_.pays_for(rest(), wanted_.tolerance); }
+  PELLUCID_HD bool done() const noexcept {
+    return budget_.allows_termination(rest(), wanted_.tolerance);
+  }
 
   /// A stretch in which nothing absorbs.
   PELLUCID_HD void skip(double length) noexcept {
@@ -139,7 +141,8 @@ class RayIntegrator {
  private:
   /// A bound on what lies behind: as little as light can come from there.
   PELLUCID_HD double rest() const noexcept {
-    return budget_.rest_behind(fold_.transparency(), transfer_.largest_extinction, largest_color_);
+    return budget_.remainder_bound(fold_.transparency(), transfer_.largest_extinction,
+                                   largest_color_);
   }
 
   /// `opacity`: what the allowance was asked for.
