@@ -78,7 +78,7 @@ MultivariateDescription described(const std::vector<GaussianPrimitive>& primitiv
 }
 
 int run_suggest(const SuggestArguments& arguments) {
-  const ChannelSelection selection = select_channels(arguments.channels, most_suggested_channels);
+  const ChannelSelection selection = select_channels(arguments.channels, max_suggested_channels);
   check_arguments(arguments, selection);
   const int threads =
       arguments.channels.threads > 0 ? arguments.channels.threads : default_threads();
@@ -134,9 +134,9 @@ Command add_suggest(CommandLine& app) {
                   fmt::format("A mixture of so many, from 1 to {}; default: boundaries and "
                               "materials of a value and its gradient magnitude, else as many as "
                               "are found",
-                              most_suggested_primitives))
+                              max_suggested_primitives))
       ->option_text("N")
-      ->in_range(1, most_suggested_primitives);
+      ->in_range(1, max_suggested_primitives);
   command.add_flag("-q,--quiet", arguments->quiet, "No notes, only errors");
   arguments->channels.add_to(command);
   command.footer(

@@ -48,7 +48,7 @@ Movement movement_in_cells(const Channels& channels, const GaussianMixture<doubl
   int found = 0;
   for (int block = 0; block < blocks.records.count(); block += stride) {
     if (blocks.classes[block].kind == BlockKind::skip) continue;
-    double squared_range[most_channels] = {}, squared_bend[most_channels] = {};
+    double squared_range[max_channels] = {}, squared_bend[max_channels] = {};
     bool vacuum = false;
     for (std::size_t c = 0; c < count; ++c) {
       const BlockRange range = records[c].range(block);
@@ -91,7 +91,7 @@ std::unique_ptr<const CellPackets> CellPackets::make(
   job.grid_and_rays.tolerance = (1 - left_out_share) * wanted.tolerance;
   job.proved = wanted.grade == Grade::proved ? 1 : 0;
   const Multivariate<double> transfer = transfer_function.view();
-  double largest[most_channels] = {};
+  double largest[max_channels] = {};
   for (int c = 0; c < transfer.channels; ++c) largest[c] = largest_value(*channels[c].volume);
   packets->mixture_ = NearMixtureStorage(
       largest, false, transfer, left_out_share * wanted.tolerance / job.grid_and_rays.largest_color,

@@ -198,7 +198,7 @@ class MultivariateMeshTracer : public MeshTracer {
     prepare(task, transfer_function_.largest_extinction(), true);
     if (kernel_ == nullptr) return;
     // Half of what is left out is for Gaussians, half for what errors of the data change there.
-    double largest[most_channels] = {};
+    double largest[max_channels] = {};
     for (int c = 0; c < transfer_.channels; ++c) {
       largest[c] = largest_value(task.scene.mesh->statistics(c));
     }

@@ -151,7 +151,7 @@ std::vector<std::string> channel_names(const std::vector<ChannelSource>& sources
 }
 
 void check_channel_sources(const std::vector<ChannelSource>& sources) {
-  if (sources.empty() || sources.size() > static_cast<std::size_t>(most_channels)) {
+  if (sources.empty() || sources.size() > static_cast<std::size_t>(max_channels)) {
     throw Error("channels: there are " + std::to_string(sources.size()) +
                 ", but must be from 1 to 8");
   }

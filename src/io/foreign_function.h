@@ -37,7 +37,7 @@ enum class ColorSpace { rgb, hsv, hsv_without_wrap, lab, diverging, step };
 /// The largest number of nodes of a file.
 inline constexpr std::size_t most_nodes = 100'000;
 /// The largest number of Gaussians, of which each is looked at at every value.
-inline constexpr std::size_t most_gaussians = 100;
+inline constexpr std::size_t max_gaussians = 100;
 
 struct Function {
   std::string format;  ///< for people: "ParaView color map"

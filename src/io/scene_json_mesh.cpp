@@ -28,7 +28,7 @@ MeshArrayChoice array_choice(const Node& node) {
 
 std::vector<MeshArrayChoice> array_choices(const Node& list) {
   const std::size_t count = list.array_size();
-  if (count < 1 || count > static_cast<std::size_t>(most_channels)) {
+  if (count < 1 || count > static_cast<std::size_t>(max_channels)) {
     list.fail("has " + std::to_string(count) + " channels, but must have from 1 to 8");
   }
   std::vector<MeshArrayChoice> choices;

@@ -362,8 +362,8 @@ BinnedTransferStorage::BinnedTransferStorage(const PiecewiseLinear<double>& tabl
       none ? BinnedTransfer::far : as_float(supports.front().lower - 16 * unit * size);
   view_.support_max =
       none ? -BinnedTransfer::far : as_float(supports.back().upper + 16 * unit * size);
-  constexpr std::size_t most_supports = BinnedTransfer::most_supports;
-  if (!jumps && supports.size() > 1 && supports.size() <= most_supports) {
+  constexpr std::size_t max_supports = BinnedTransfer::max_supports;
+  if (!jumps && supports.size() > 1 && supports.size() <= max_supports) {
     view_.supports = static_cast<int>(supports.size());
     for (std::size_t i = 0; i < supports.size(); ++i) {
       view_.support[2 * i] = as_float(supports[i].lower - 16 * unit * size);

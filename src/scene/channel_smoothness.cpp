@@ -134,7 +134,7 @@ class SmoothnessOfChannels {
         if (classes[b].kind != BlockKind::skip) visit(b);
       });
     };
-    std::array<GroupVariation, most_channels> variation;
+    std::array<GroupVariation, max_channels> variation;
     PrimitiveSet near{0};
     bool vacuum = false;
     each_candidate([&](int b) {
@@ -164,13 +164,13 @@ class SmoothnessOfChannels {
 
  private:
   struct PrimitiveLook {
-    double reach;                            ///< |K (v - c)| beyond which it does not matter
-    std::array<double, most_channels> at{};  ///< the lengths of K's columns
+    double reach;                           ///< |K (v - c)| beyond which it does not matter
+    std::array<double, max_channels> at{};  ///< the lengths of K's columns
   };
 
   /// How far apart rays may be for what the block's primitives make of the data, cells.
   double resolving_steps(int block) const noexcept {
-    double slope[most_channels] = {}, turn[most_channels] = {};
+    double slope[max_channels] = {}, turn[max_channels] = {};
     for (std::size_t c = 0; c < records_.size(); ++c) {
       const ChannelMovement movement(records_[c]);
       slope[c] = movement.slope(block);

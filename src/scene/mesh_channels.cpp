@@ -114,7 +114,7 @@ MeshChannels::MeshChannels(std::shared_ptr<const TetrahedralMesh> mesh,
     : mesh_(std::move(mesh)), channels_(std::move(channels)) {
   if (!mesh_) throw Error("mesh: there is none under the channels; set it");
   if (channels_.empty()) fail(*mesh_, "there is no channel; give from 1 to 8");
-  if (channels_.size() > static_cast<std::size_t>(most_channels)) {
+  if (channels_.size() > static_cast<std::size_t>(max_channels)) {
     fail(*mesh_, "there are " + std::to_string(channels_.size()) +
                      " channels, but at most 8 can be; leave some out");
   }

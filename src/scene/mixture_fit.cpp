@@ -25,9 +25,9 @@ void check(const WeightedPoints& points, int components, const std::vector<doubl
       points.coordinates.size() != points.count() * floor.size()) {
     fail("sizes do not agree; give `dimensions` coordinates per weight and as many floors");
   }
-  if (components < 1 || components > most_components) {
+  if (components < 1 || components > max_components) {
     fail("it has " + std::to_string(components) + " components, but must have from 1 to " +
-         std::to_string(most_components));
+         std::to_string(max_components));
   }
   const auto finite = [](double x) { return std::isfinite(x); };
   const auto at_least_zero = [](double x) { return x >= 0 && std::isfinite(x); };

@@ -16,7 +16,7 @@ namespace {
 
 /// The box of what the channels' data can be in a block.
 struct DataBox {
-  double lower[most_channels], upper[most_channels];
+  double lower[max_channels], upper[max_channels];
   bool vacuum = false;  ///< all of it
 };
 

@@ -79,7 +79,7 @@ void fold(const packet_parts::Fold& wanted, int spans, packet_parts::FoldResult*
 }
 
 void least_exponents(const void* near, const float* lower, const float* upper, float* least) {
-  F from[most_channels], to[most_channels];
+  F from[max_channels], to[max_channels];
   const auto& one = *static_cast<const NearGaussian*>(near);
   for (int c = 0; c < one.gaussian.channels; ++c) {
     from[c] = F::load(lower + c * N);

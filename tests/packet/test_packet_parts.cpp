@@ -135,9 +135,9 @@ TEST_P(PacketParts, BoxesInLanesAreAsOneByOne) {
     NearGaussian near;
     near.couples_channels = random_() % 2 == 0;
     Gaussian<float>& g = near.gaussian;
-    g.channels = 1 + static_cast<int>(random_() % most_channels);
+    g.channels = 1 + static_cast<int>(random_() % max_channels);
     g.rows = 1 + static_cast<int>(random_() % static_cast<unsigned>(g.channels));
-    std::vector<float> lower(lanes * most_channels), upper(lanes * most_channels);
+    std::vector<float> lower(lanes * max_channels), upper(lanes * max_channels);
     for (int c = 0; c < g.channels; ++c) {
       g.center[c] = static_cast<float>(uniform(-1, 1));
       near.least_scale[c] = static_cast<float>(uniform(0, 2));
@@ -153,7 +153,7 @@ TEST_P(PacketParts, BoxesInLanesAreAsOneByOne) {
     float found[16];
     operations().least_exponents(&near, lower.data(), upper.data(), found);
     for (std::size_t l = 0; l < lanes; ++l) {
-      float from[most_channels], to[most_channels];
+      float from[max_channels], to[max_channels];
       for (int c = 0; c < g.channels; ++c) {
         from[c] = lower[static_cast<std::size_t>(c) * lanes + l];
         to[c] = upper[static_cast<std::size_t>(c) * lanes + l];

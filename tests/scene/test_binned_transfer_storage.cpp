@@ -291,7 +291,7 @@ TEST(BinnedTransfer, SupportsAreWhatAbsorbs) {
     if (c.bins.supports == 0) return;
     ++tables_with;
     ASSERT_GT(c.bins.supports, 1);
-    ASSERT_LE(c.bins.supports, BinnedTransfer::most_supports);
+    ASSERT_LE(c.bins.supports, BinnedTransfer::max_supports);
     ASSERT_LT(c.bins.marks[c.bins.bins], BinnedTransfer::one_jump);
     const auto any_value = [&] {
       return c.values[static_cast<std::size_t>(tables.uniform() *

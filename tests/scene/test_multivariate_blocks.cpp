@@ -217,7 +217,7 @@ void look_around(const MultichannelGrid& grid, int i, int j, int k, Maker& maker
       for (int x = 8 * i; x < std::min(8 * i + 8, size[0] - 1); ++x) {
         for (int n = 0; n < 6; ++n) {
           const auto part = [&] { return n < 3 ? 0.999999 * maker.pick(2) : maker.uniform(0, 1); };
-          double v[most_channels];
+          double v[max_channels];
           if (grid.sample<double>({x + part(), y + part(), z + part()}, v)) see(v);
         }
       }

@@ -21,7 +21,7 @@ using test::Maker;
 /// A primitive along data.
 struct Case {
   Gaussian<double> primitive;
-  CubicBernstein<double> data[most_channels];
+  CubicBernstein<double> data[max_channels];
 
   /// Nearly straight or not, near the center or far, K of any rank.
   explicit Case(Maker& maker) {
@@ -70,7 +70,7 @@ struct WideLoss {
     const Gaussian<double>& g = at.primitive;
     const test::WideExponent cubic(g, at.data);
     // The least-squares line of each data channel: m0 + 12 m1 (t - 1/2), m1 = ∫ f (t - 1/2).
-    long double base[most_channels]{}, slope[most_channels]{};
+    long double base[max_channels]{}, slope[max_channels]{};
     for (int c = 0; c < g.channels; ++c) {
       const test::WideRise f(at.data[c]);
       const long double middle = f.c1 / 2 + f.c2 / 3 + f.c3 / 4;
@@ -78,7 +78,7 @@ struct WideLoss {
       slope[c] = 12 * moment;
       base[c] = f.start - static_cast<long double>(g.center[c]) + middle - slope[c] / 2;
     }
-    long double front[most_channels]{}, step[most_channels]{};
+    long double front[max_channels]{}, step[max_channels]{};
     for (int i = 0; i < g.rows; ++i) {
       for (int c = 0; c < g.channels; ++c) {
         front[i] += static_cast<long double>(g.matrix[i][c]) * base[c];
@@ -170,14 +170,14 @@ TEST(GaussianCubic, LowerIsCloseToTheHull) {
   for (int i = 0; i < 20000; ++i) {
     const Case at(maker);
     const GaussianCubic<double> cubic(at.primitive, at.data);
-    double p[4][most_channels];
+    double p[4][max_channels];
     for (int k = 0; k < 4; ++k) {
-      double v[most_channels];
+      double v[max_channels];
       for (int c = 0; c < at.primitive.channels; ++c) v[c] = at.data[c].b[k];
       at.primitive.place(v, p[k]);
     }
     // Frank and Wolfe with exact steps, long enough.
-    double x[most_channels];
+    double x[max_channels];
     for (int r = 0; r < at.primitive.rows; ++r) x[r] = p[0][r];
     double below = 0;
     for (int step = 0; step < 4000; ++step) {
@@ -260,7 +260,7 @@ TEST(GaussianCubic, LowerIsBelowInFloat) {
   expect_below_in_float<1>(41);
   expect_below_in_float<2>(42);
   expect_below_in_float<3>(43);
-  expect_below_in_float<most_channels>(44);
+  expect_below_in_float<max_channels>(44);
 }
 
 /// Outside of the part that within() gives, the exponent is above the square of the reach.

@@ -221,7 +221,7 @@ TEST(NodeEstimate, HoldsUnderHillClimbing) {
 /// One to five Gaussians along one piece of data, wide to very narrow.
 struct Piece {
   std::vector<Gaussian<double>> gaussians;
-  CubicBernstein<double> data[most_channels];
+  CubicBernstein<double> data[max_channels];
   int channels;
 
   explicit Piece(Maker& maker) : channels(1 + maker.pick(3)) {
@@ -327,7 +327,7 @@ struct Driven {
     for (int i = 0; i < 8; ++i) {
       const double u = from + (to - from) * i / 8;
       for (const Gaussian<double>& g : piece.gaussians) {
-        double v[most_channels];
+        double v[max_channels];
         for (int c = 0; c < piece.channels; ++c) v[c] = evaluate(piece.data[c], u);
         if (to > from && g.peak * g.density(v) > negligible * 1.001) passed_over = true;
       }
@@ -342,7 +342,7 @@ Light truth_of(const Piece& piece) {
   static const auto rule = gauss_legendre<double, 8>();
   for (int i = 0; i < parts; ++i) {
     for (int j = 0; j < 8; ++j) {
-      double v[most_channels], depth = 0, emission = 0;
+      double v[max_channels], depth = 0, emission = 0;
       for (int c = 0; c < piece.channels; ++c) {
         v[c] = evaluate(piece.data[c], (i + rule.node[j]) / parts);
       }

@@ -309,7 +309,7 @@ struct EstimatedPanel {
   }
 
   Material<double> material(double u) const {
-    double v[most_channels];
+    double v[max_channels];
     for (int c = 0; c < at.channels; ++c) v[c] = evaluate(at.span.data[c], u);
     double extinction = 0, emission = 0;
     for (const Gaussian<double>& g : at.gaussians) {

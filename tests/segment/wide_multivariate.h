@@ -64,7 +64,7 @@ class WideExponent {
 
  private:
   int rows_;
-  long double p_[most_channels][4]{};
+  long double p_[max_channels][4]{};
 };
 
 /// A stretch of a ray: what it shines, how much it hides, and the integral of extinction · color,

@@ -14,9 +14,9 @@ enum class ValueType : std::uint8_t { u8, i8, u16, i16, u32, i32, f32, f64 };
 /// Several fields on one structured grid, each in its own type. A view; owns nothing. A ray sees a
 /// vector of trilinear fields; a cell with a NaN corner in any of them is vacuum.
 struct MultichannelGrid {
-  const void* data[most_channels]{};  ///< x fastest
-  ValueType type[most_channels]{};
-  int channels = 0;  ///< 1 … most_channels
+  const void* data[max_channels]{};  ///< x fastest
+  ValueType type[max_channels]{};
+  int channels = 0;  ///< 1 … max_channels
   GridAxis<double> axis[3];
 
   /// body(StructuredGrid<Value, double>) with the channel's own type.

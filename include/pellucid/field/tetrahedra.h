@@ -60,7 +60,7 @@ struct MeshField {
 
 /// Several of them.
 struct MeshFields {
-  MeshField channel[most_channels];
+  MeshField channel[max_channels];
   int channels = 0;
 };
 

@@ -85,9 +85,9 @@ class CellChunk {
   PrimitiveSet& primitives(int lane) noexcept { return primitives_[lane]; }
 
  private:
-  double corner_[most_channels][8][N];
+  double corner_[max_channels][8][N];
   double entry_[3][N], exit_[3][N];
-  double coefficient_[most_channels][4][N];
+  double coefficient_[max_channels][4][N];
   double length_[N], place_error_[N];
   PrimitiveSet primitives_[N];
   bool filled_[N];

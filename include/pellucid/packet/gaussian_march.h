@@ -90,7 +90,7 @@ class GaussianMarch {
     M empty;         ///< nothing matters on any of them
     M resolved;      ///< else they are too long, or in vacuum
     ResolvedGaussians<N> ends;
-    DatumInCell<F> value[ResolvedGaussians<N>::steps + 1][most_channels];
+    DatumInCell<F> value[ResolvedGaussians<N>::steps + 1][max_channels];
     SampledSegment<F> found;
     F least_variance;  ///< of the error beside what `found` says
   };
@@ -223,7 +223,7 @@ class GaussianMarch {
 
   void find_front() noexcept {
     const F here(0);
-    DatumInCell<F> value[1][most_channels];
+    DatumInCell<F> value[1][max_channels];
     samples_.template sample<1>(&here, value);
     StepEnd<F> found{};
     for (int i = 0; i < mixture_.count; ++i) {
@@ -352,7 +352,7 @@ class GaussianMarch {
   LocalVariation<N> around_;  ///< where the lanes stand
   LanePrimitives<N> near_;    ///< on the way of four steps
   StepEnd<F> front_{};
-  DatumInCell<F> front_value_[most_channels];
+  DatumInCell<F> front_value_[max_channels];
   // What was noted: length, by the square of what is seen of it, and likewise squares of
   // ResolvedGaussians::bending over length, and those where the rays begin and end; and the largest
   // of 1 / the longest step.

@@ -180,10 +180,10 @@ class MultichannelCells {
   const MultichannelGrid& fields_;
   const PrimitiveSet* primitives_;
   LaneRays<N> rays_;
-  D at_{0};                                ///< world length from the entry into the grid
-  I cell_[3];                              ///< plane coordinates
-  M fresh_{true};                          ///< whether the lane's block has not been looked at
-  CubicBernstein<D> data_[most_channels];  ///< of the lanes' cells, by channel
+  D at_{0};                               ///< world length from the entry into the grid
+  I cell_[3];                             ///< plane coordinates
+  M fresh_{true};                         ///< whether the lane's block has not been looked at
+  CubicBernstein<D> data_[max_channels];  ///< of the lanes' cells, by channel
 };
 
 }  // namespace pellucid

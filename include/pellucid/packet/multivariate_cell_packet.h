@@ -129,7 +129,7 @@ class MultivariateCellPacket {
   Cells march_;
   Panels lanes_;
   /// Of a cell's data, by channel; kept here so that they are not set to 0 for each.
-  F lower_[most_channels], upper_[most_channels];
+  F lower_[max_channels], upper_[max_channels];
 };
 
 }  // namespace pellucid

@@ -167,7 +167,7 @@ class MultivariateRay {
   /// Makes panels of the parts of the cells in which something matters. What is left out of a cell
   /// is at most the share `left_out_share` of what its length may cost.
   void cull(CellChunk<N>& cells) noexcept {
-    CubicBernstein<B> data[most_channels];
+    CubicBernstein<B> data[max_channels];
     for (int c = 0; c < grid_.channels; ++c) data[c] = cells.cubic(c);
     const GaussianMixture<double>& all = transfer_.gaussians;
     // The extinction that a primitive may have and be left out.
@@ -283,7 +283,7 @@ class MultivariateRay {
   }
 
   MultivariateSpan<B> load(const int* index, int count) noexcept {
-    double data[most_channels][4][N], begin[N], end[N], length[N], place[N];
+    double data[max_channels][4][N], begin[N], end[N], length[N], place[N];
     demand_.primitives.bits = 0;
     unsigned last_resort = 0;
     bool whole = true;

@@ -12,7 +12,7 @@ struct NearGaussian {
   float square = 0;
   /// |K (v - c)| is at least this times the distance of v from c in a channel, whatever v is in the
   /// others.
-  float least_scale[most_channels] = {};
+  float least_scale[max_channels] = {};
   bool couples_channels = false;  ///< whether a row of K looks at several of them
 };
 
@@ -59,7 +59,7 @@ struct NearMixture {
   /// tables.
   bool suits_binary32 = false;
   /// How fast the extinction of all Gaussians together may change with a channel, at most.
-  double steepness[most_channels] = {};
+  double steepness[max_channels] = {};
 };
 
 }  // namespace pellucid

@@ -65,7 +65,7 @@ class NodePanels {
       } else if (rows == 3) {
         add<3>(mixture, i, span.data, less, held, nodes);
       } else {
-        add<most_channels>(mixture, i, span.data, less, held, nodes);
+        add<max_channels>(mixture, i, span.data, less, held, nodes);
       }
     }
     const F opacity = min(nodes.most(), F(1));

@@ -18,7 +18,7 @@ struct PanelRows : MeshRows<N, 16> {
   using MeshRows<N, 16>::size;
   static constexpr int numbers = sizeof(Data<double>) / sizeof(double);
 
-  double data[most_channels][numbers][size], exact_length[size];
+  double data[max_channels][numbers][size], exact_length[size];
   float changed[size];  ///< a bound on the change of extinction that errors of the data make
   std::int32_t low[size], high[size];  ///< LanePrimitiveSets: those that may matter
 };

@@ -159,7 +159,7 @@ PELLUCID_HD RayResult sample_multivariate_ray(const MultichannelGrid& grid,
   return sample_materials<T>(
       grid_interval(grid.axis, ray_grid),
       [&](double t) noexcept -> Material<T> {
-        T values[most_channels];
+        T values[max_channels];
         if (!grid.sample(ray_grid.at(t), values)) return {};
         return transfer.evaluate(values);
       },
@@ -169,7 +169,7 @@ PELLUCID_HD RayResult sample_multivariate_ray(const MultichannelGrid& grid,
 /// The values of all channels at a place; `filled` is false where it is vacuum.
 template <class T>
 struct ChannelSample {
-  T value[most_channels]{};
+  T value[max_channels]{};
   bool filled = false;
 };
 

@@ -15,7 +15,7 @@ namespace pellucid {
 /// times what the data bend over a cell.
 struct StepLimits {
   int levels = 0;
-  double most_bending = 0;
+  double max_second_difference = 0;
 };
 
 /// Makes and owns the classes of a volume's blocks under one transfer function: once a frame, from

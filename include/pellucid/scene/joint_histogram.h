@@ -9,8 +9,8 @@
 namespace pellucid {
 
 /// Limits of what is counted: axes of a histogram, and bins of all of them together.
-inline constexpr int most_histogram_axes = 3;
-inline constexpr int most_histogram_bins = 1 << 24;
+inline constexpr int max_histogram_axes = 3;
+inline constexpr int max_histogram_bins = 1 << 24;
 
 /// Equal bins between two values; the last one holds the upper end.
 struct HistogramAxis {
@@ -29,7 +29,7 @@ struct HistogramAxis {
 /// between integers and bins of a whole number of them, all of one size, as many as are needed but
 /// at most `bins`; the other types have `bins`. Around a single value the axis reaches half of its
 /// magnitude to both sides, 1/2 around 0; without any it is [0, 1]. Throws Error where bins is not
-/// from 1 to most_histogram_bins.
+/// from 1 to max_histogram_bins.
 HistogramAxis histogram_axis(const Volume& volume, int bins);
 
 /// How often values occur together at the data points of channels.
@@ -42,9 +42,9 @@ struct JointHistogram {
 
 /// Counts, exactly, the values of the channels `which` (indices, which may repeat) at all data
 /// points, in parallel where it is told how; the result is the same for any number of threads.
-/// Throws Error where there are not from 1 to most_histogram_axes of them with an axis each, an
+/// Throws Error where there are not from 1 to max_histogram_axes of them with an axis each, an
 /// index is out of range, an axis is empty (lower < upper, bins >= 1), or there are more than
-/// most_histogram_bins in all.
+/// max_histogram_bins in all.
 JointHistogram joint_histogram(const Channels& channels, const std::vector<int>& which,
                                const std::vector<HistogramAxis>& axes,
                                const ParallelFor& parallel = {});

@@ -31,7 +31,7 @@ struct MixtureFit {
 };
 
 /// The most components of a mixture.
-inline constexpr int most_components = 16;
+inline constexpr int max_components = 16;
 
 /// A mixture of normal distributions fitted by expectation and maximisation (Dempster, Laird and
 /// Rubin 1977), with full covariances of which no axis has a variance below `floor` (one number per
@@ -39,7 +39,7 @@ inline constexpr int most_components = 16;
 /// spread over the points in eight fixed ways, of which the likeliest after a few steps is taken
 /// on: the same points give the same fit. Components that no point is left to are dropped. Throws
 /// Error where there is no point of positive weight, sizes do not agree, a number is not finite, or
-/// `components` is not from 1 to most_components.
+/// `components` is not from 1 to max_components.
 MixtureFit fit_mixture(const WeightedPoints& points, int components,
                        const std::vector<double>& floor);
 

@@ -32,15 +32,15 @@ std::vector<GaussianPrimitive> suggest_boundaries(const Channels& channels, int 
                                                   const ParallelFor& parallel = {});
 
 /// The most channels that suggest_mixture() looks at, and primitives that it makes.
-inline constexpr int most_suggested_channels = 3;
-inline constexpr int most_suggested_primitives = 8;
+inline constexpr int max_suggested_channels = 3;
+inline constexpr int max_suggested_primitives = 8;
 
 /// A mixture of normal distributions fitted to the joint histogram of one to three channels without
 /// the background (fit_mixture), its counts taken by their square roots, so that rare materials
 /// count beside common ones: each becomes a primitive of half of its covariance. With `primitives`
 /// of 0 the number is that of the least information criterion up to 5. Where nothing but background
 /// is there it is one haze. Throws Error also where there are not one to three channels, one stands
-/// twice, or `primitives` is not from 0 to most_suggested_primitives.
+/// twice, or `primitives` is not from 0 to max_suggested_primitives.
 std::vector<GaussianPrimitive> suggest_mixture(const Channels& channels,
                                                const std::vector<int>& which, int primitives = 0,
                                                const ParallelFor& parallel = {});

@@ -40,7 +40,7 @@ PELLUCID_HD SegmentResult<T> cell_segment(CellModel model, const PsiTable& psi,
                                           const Transfer& transfer, int channels, const T* front,
                                           const T* back, T length) noexcept {
   if (model == CellModel::homogeneous) {
-    T middle[most_channels];
+    T middle[max_channels];
     for (int c = 0; c < channels; ++c) middle[c] = T(0.5) * front[c] + T(0.5) * back[c];
     return midpoint_segment(detail::material_of(transfer, middle), length);
   }

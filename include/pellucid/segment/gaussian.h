@@ -46,7 +46,7 @@ PELLUCID_HD T long_gaussian_density(T square_1, T square_2, T a, T b, T length,
 /// underflows. d = 0 has unit vector 0.
 template <class T>
 struct Direction {
-  T unit[most_channels];
+  T unit[max_channels];
   T length;
   PELLUCID_HD Direction(const T* d, int rows) noexcept {
     T scale = T(smallest_normal<T>);
@@ -72,7 +72,7 @@ struct Direction {
   PELLUCID_HD T perpendicular(const T* p1, const T* p2, T a, T b, int rows) const noexcept {
     const auto first = abs(a) <= abs(b);
     const T along_it = select(first, a, b);
-    T w[most_channels];
+    T w[max_channels];
     for (int k = 0; k < rows; ++k) w[k] = select(first, p1[k], p2[k]) - along_it * unit[k];
     const T rest = along(w, rows);
     T square = T(0);
@@ -128,7 +128,7 @@ PELLUCID_HD T gaussian_mean_density(const T* p1, const T* p2, const T* d, int ro
 template <class S, class T>
 PELLUCID_HD T gaussian_mean_density(const Gaussian<S>& primitive, const T* v1,
                                     const T* v2) noexcept {
-  T p1[most_channels], p2[most_channels], d[most_channels];
+  T p1[max_channels], p2[max_channels], d[max_channels];
   primitive.place(v1, p1);
   primitive.place(v2, p2);
   primitive.displacement(v1, v2, d);

@@ -33,7 +33,7 @@ struct LineLoss {
 ///   √5) + M_2 N²/2: fourth order in the width of the panel.
 ///
 /// Most: how many rows there may be.
-template <class T, int Most = most_channels>
+template <class T, int Most = max_channels>
 class GaussianCubic {
  public:
   /// data: one cubic for each channel of the primitive.
@@ -41,7 +41,7 @@ class GaussianCubic {
   PELLUCID_HD GaussianCubic(const Gaussian<S>& primitive, const CubicBernstein<T>* data) noexcept
       : rows_(primitive.rows) {
     for (int k = 0; k < 4; ++k) {
-      T v[most_channels];
+      T v[max_channels];
       for (int c = 0; c < primitive.channels; ++c) v[c] = data[c].b[k];
       primitive.place(v, p_[k]);
     }

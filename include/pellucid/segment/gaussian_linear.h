@@ -14,7 +14,7 @@ class GaussianLinear {
   template <class S>
   PELLUCID_HD GaussianLinear(const Gaussian<S>& primitive, const LinearBernstein<T>* data) noexcept
       : rows_(primitive.rows) {
-    T front[most_channels], back[most_channels];
+    T front[max_channels], back[max_channels];
     for (int c = 0; c < primitive.channels; ++c) {
       front[c] = data[c].b[0];
       back[c] = data[c].b[1];
@@ -63,7 +63,7 @@ class GaussianLinear {
 
   /// The line of the places p = K (v - c).
   struct Line {
-    T front[most_channels], back[most_channels], d[most_channels];
+    T front[max_channels], back[max_channels], d[max_channels];
     T squared_length{};  ///< |d|²
   };
   PELLUCID_HD const Line& line() const noexcept { return line_; }

@@ -61,7 +61,7 @@ struct NodeRoom {
   struct Term {
     const Gaussian<scalar_t<T>>* of;
     Kept<T> peak;  ///< depth of its peak over the panel's length; 0 where it does not matter
-    Kept<T> power[4][most_channels];  ///< of u: K (v - c)
+    Kept<T> power[4][max_channels];  ///< of u: K (v - c)
 
     PELLUCID_HD T at(int row, T u) const noexcept {
       const T p = multiply_add(power[3][row].get(), u, power[2][row].get());
@@ -77,7 +77,7 @@ struct NodeRoom {
       return sum;
     }
   };
-  Term term[most_gaussians];
+  Term term[max_gaussians];
 };
 
 /// A panel of Gaussians along cubics, by Gauss nodes, in a number type without digits to spare:

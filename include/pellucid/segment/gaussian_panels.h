@@ -10,7 +10,7 @@ namespace pellucid {
 
 /// The most primitives that one segment is cut for; with more of them in sight it is drawn in their
 /// mean color, and says how far that may be off.
-inline constexpr int most_primitives = 64;
+inline constexpr int max_primitives = 64;
 
 /// An estimate of the error of a Gauss panel of N = 4, 6, 8 or 10 nodes over a sum of Gaussians,
 /// relative to opacity and to the range of the colors: `exponents` bounds the change of each
@@ -57,7 +57,7 @@ PELLUCID_HD T parabola_range(T bend, T slope) noexcept {
 /// The color of a sum of Gaussians along a segment, by panels.
 template <class T>
 struct GaussianPanels {
-  SeenGaussian<T> seen[most_primitives];
+  SeenGaussian<T> seen[max_primitives];
   int count = 0;
   T tolerance{};    ///< of the color, per opacity
   T opacity{};      ///< of the whole segment
@@ -257,14 +257,14 @@ PELLUCID_HD void refine_by_panels(const GaussianMixture<S>& mixture, const T* v1
   ColorRange<T> range;
   for (int i = 0; i < mixture.count; ++i) {
     const Gaussian<S>& g = mixture.primitive[i];
-    T p1[most_channels], p2[most_channels], d[most_channels];
+    T p1[max_channels], p2[max_channels], d[max_channels];
     g.place(v1, p1);
     g.place(v2, p2);
     g.displacement(v1, v2, d);
     const GaussianLine<T> line(p1, p2, d, g.rows);
     const T peak = T(g.peak) * length;
     if (!(peak * exp(-line.least_exponent(line.a, line.b)) > T(0))) continue;
-    if (panels.count == most_primitives) return;
+    if (panels.count == max_primitives) return;
     SeenGaussian<T>& seen = panels.seen[panels.count++];
     seen.line = line;
     seen.peak = peak;

@@ -65,7 +65,7 @@ struct PanelRoom {
     T loss;  ///< how far that may be off, because of the line
     T bend, slope;
   };
-  Term term[most_gaussians];
+  Term term[max_gaussians];
 };
 
 namespace detail {
@@ -187,7 +187,7 @@ class PanelIntegrator {
   }
 
   PELLUCID_HD Material<T> material(T u) const noexcept {
-    T v[most_channels];
+    T v[max_channels];
     for (int c = 0; c < transfer_.channels; ++c) v[c] = evaluate(span_.data[c], u);
     T extinction = T(0);
     Rgb<T> emission{};

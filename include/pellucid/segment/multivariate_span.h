@@ -9,7 +9,7 @@ namespace pellucid {
 /// A stretch of a ray on which every channel is Data of u in [0, 1]: a cubic, or linear.
 template <class T, class Data = CubicBernstein<T>>
 struct MultivariateSpan {
-  Data data[most_channels];
+  Data data[max_channels];
   T length{};  ///< world
 
   PELLUCID_HD MultivariateSpan part(int channels, T begin, T end) const noexcept {

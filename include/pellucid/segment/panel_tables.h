@@ -71,7 +71,7 @@ PELLUCID_HD PanelTables<T> measure_tables(const Multivariate<scalar_t<T>>& trans
   } else {
     using S = scalar_t<T>;
     constexpr int n = lanes<T>, fields = 15, numbers = sizeof(Data<S>) / sizeof(S);
-    S in[numbers][most_channels][n], lengths[n], out[fields][n];
+    S in[numbers][max_channels][n], lengths[n], out[fields][n];
     for (int c = 0; c < transfer.channels; ++c) {
       for (int k = 0; k < numbers; ++k) span.data[c].b[k].store(in[k][c]);
     }

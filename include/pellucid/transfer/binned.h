@@ -53,9 +53,9 @@ struct BinnedTransfer {
   float support_min = 0, support_max = 0;  ///< nothing absorbs outside; crossed over: nowhere
   /// Where marks hold no jump and there are few gaps: the ranges of values that absorb, lower and
   /// upper ends, in ascending order, which take less than looking up marks. 0: see the marks.
-  static constexpr int most_supports = 4;
+  static constexpr int max_supports = 4;
   int supports = 0;
-  float support[2 * most_supports] = {};
+  float support[2 * max_supports] = {};
   /// The width of the narrowest interval of the extinction that is no jump: what is said of an
   /// interval and its neighbours holds for data that are off by less. Infinite: there is none.
   float narrowest = 0;

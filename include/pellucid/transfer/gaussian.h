@@ -16,8 +16,8 @@ namespace pellucid {
 /// negative.
 template <class S>
 struct Gaussian {
-  S center[most_channels]{};
-  S matrix[most_channels][most_channels]{};  ///< K, by rows: rows × channels are used
+  S center[max_channels]{};
+  S matrix[max_channels][max_channels]{};  ///< K, by rows: rows × channels are used
   int channels = 1, rows = 1;
   S peak{};  ///< the largest extinction, 1/length
   Rgb<S> color{};
@@ -47,7 +47,7 @@ struct Gaussian {
   /// e^(-|K (v - c)|²), in [0, 1].
   template <class T>
   PELLUCID_HD T density(const T* v) const noexcept {
-    T p[most_channels];
+    T p[max_channels];
     place(v, p);
     T square = T(0);
     for (int i = 0; i < rows; ++i) square = multiply_add(p[i], p[i], square);

@@ -20,8 +20,8 @@ namespace pellucid {
 template <class T>
 PELLUCID_HD T least_exponent(const Gaussian<T>& g, const T* lower, const T* upper,
                              T enough) noexcept {
-  T gram[most_channels][most_channels];  // K^T K
-  T v[most_channels];                    // measured from the center
+  T gram[max_channels][max_channels];  // K^T K
+  T v[max_channels];                   // measured from the center
   T scale = T(0);
   for (int k = 0; k < g.channels; ++k) {
     for (int l = 0; l <= k; ++l) {

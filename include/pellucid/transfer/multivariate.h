@@ -21,7 +21,7 @@ struct Multivariate {
   GaussianMixture<S> gaussians;
   const ChannelTable<S>* table = nullptr;
   int tables = 0;
-  int channels = 1;  ///< 1 … most_channels
+  int channels = 1;  ///< 1 … max_channels
 
   /// The extinction, and the color that makes color · extinction the sum of all. Nothing where the
   /// extinction is no normal number: its quotients could overflow. v has `channels` numbers.

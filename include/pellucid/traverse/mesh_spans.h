@@ -10,15 +10,15 @@ namespace pellucid {
 struct MeshPlace {
   double t = 0;
   double t_error = 0;  ///< how far t may be off
-  double value[most_channels];
-  double value_error[most_channels];  ///< beside the rounding of the values themselves
+  double value[max_channels];
+  double value_error[max_channels];  ///< beside the rounding of the values themselves
 };
 
 /// A stretch of a ray in one tetrahedron: every channel is linear, or constant, along it.
 struct MeshSpan {
   double begin = 0, end = 0;  ///< world arc length
-  double front[most_channels], back[most_channels];
-  double value_error[most_channels];
+  double front[max_channels], back[max_channels];
+  double value_error[max_channels];
   /// How far begin and end may be off, together, where the data go on behind them as they are at
   /// the ends: what one span has too much, its neighbour has too little.
   double place_error = 0;
@@ -83,7 +83,7 @@ PELLUCID_HD inline void improve(const Tetrahedra& mesh, const MeshFields& fields
     y += weight[i] * face.seen[i].y;
   }
   const double away = 2 * blur + abs(x) + abs(y);
-  double error[most_channels];
+  double error[max_channels];
   for (int c = 0; c < fields.channels; ++c) {
     if (fields.channel[c].per_cell) return;
     const double* value = fields.channel[c].value;
