@@ -66,7 +66,7 @@ MultivariateTransferFunction gaussians_of(const CsvTable& table,
 SegmentResult<double> integrate_gaussian_cell(const CubicBernstein<double>& data, double length,
                                               const MultivariateTransferFunction& function,
                                               double tolerance) {
-  const Multivariate<double> transfer = function.view();
+  const MultivariateTransfer<double> transfer = function.view();
   const RayTolerance wanted{tolerance, Grade::estimated, Precision::float64,
                             function.largest_color()};
   MultivariateSpan<double> span;

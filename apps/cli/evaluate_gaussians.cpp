@@ -80,8 +80,8 @@ Gaussian<T> primitive_of(const std::string& what, const Ends<T>& ends, const std
     throw Error(fmt::format("{}: {}", what, error.what()));
   }
   T p[2][max_channels];
-  g.place(ends.v1, p[0]);
-  g.place(ends.v2, p[1]);
+  g.transform(ends.v1, p[0]);
+  g.transform(ends.v2, p[1]);
   for (int i = 0; i < g.rows; ++i) {
     if (!std::isfinite(p[0][i]) || !std::isfinite(p[1][i])) {
       throw Error(fmt::format("{}: K (v - c) is out of the range of {}", what,
@@ -100,8 +100,9 @@ void check_depth(const std::string& what, T peak, T length) {
 
 /// A sum of one primitive is computed by the same kernels as one of many.
 template <class T>
-Multivariate<T> transfer_of(const std::vector<Gaussian<T>>& primitives, std::size_t channels) {
-  Multivariate<T> transfer;
+MultivariateTransfer<T> transfer_of(const std::vector<Gaussian<T>>& primitives,
+                                    std::size_t channels) {
+  MultivariateTransfer<T> transfer;
   transfer.gaussians = {primitives.data(), static_cast<int>(primitives.size())};
   transfer.channels = static_cast<int>(channels);
   return transfer;

@@ -61,7 +61,7 @@ Movement movement_in_cells(const Channels& channels, const GaussianMixture<doubl
     if (vacuum) continue;
     double most = 0, bend = 0;
     for (int i = 0; i < mixture.count; ++i) {
-      if (!blocks.primitives[block].holds(i)) continue;
+      if (!blocks.primitives[block].contains(i)) continue;
       const double* of = &squared_norm[static_cast<std::size_t>(i) * count];
       most = std::max(most, std::inner_product(of, of + count, squared_range, 0.0));
       bend = std::max(bend, std::inner_product(of, of + count, squared_bend, 0.0));
@@ -90,7 +90,7 @@ std::unique_ptr<const CellPackets> CellPackets::make(
   job = gaussian_packet_job(channels, blocks, grid, largest_extinction, wanted.largest_color);
   job.grid_and_rays.tolerance = (1 - left_out_share) * wanted.tolerance;
   job.proved = wanted.grade == Grade::proved ? 1 : 0;
-  const Multivariate<double> transfer = transfer_function.view();
+  const MultivariateTransfer<double> transfer = transfer_function.view();
   double largest[max_channels] = {};
   for (int c = 0; c < transfer.channels; ++c) largest[c] = largest_value(*channels[c].volume);
   packets->mixture_ = NearMixtureStorage(

@@ -88,7 +88,7 @@ std::unique_ptr<const GaussianPackets> GaussianPackets::make(
     double negligible, InstructionSet instruction_set, const ParallelFor& parallel) {
   const GaussianPacketKernel kernel = kernel_for(instruction_set);
   const double largest_extinction = transfer_function.largest_extinction();
-  const Multivariate<double> transfer = transfer_function.view();
+  const MultivariateTransfer<double> transfer = transfer_function.view();
   const int most_blocks = std::numeric_limits<int>::max() / max_channels;
   if (kernel == nullptr || !suits_packets(channels, largest_extinction) ||
       blocks.records.count() > most_blocks || transfer.tables > 0 ||

@@ -244,7 +244,7 @@ class MultivariateMeshTracer : public MeshTracer {
   static constexpr double left_out_share = 1.0 / 16;
 
   const MultivariateTransferFunction& transfer_function_;
-  Multivariate<double> transfer_;
+  MultivariateTransfer<double> transfer_;
   NearMixtureStorage mixture_;
   std::vector<double> values_;
 };

@@ -212,7 +212,7 @@ class MultivariateTracer : public RayTracer {
   RayTolerance wanted_;
   bool depth_;
   MultichannelGrid grid_;
-  Multivariate<double> transfer_;
+  MultivariateTransfer<double> transfer_;
   double step_;  ///< of the sampling methods, world length
   MultivariateBlocksStorage storage_;
   std::optional<MultivariateBlocks> blocks_;      ///< of the exact method

@@ -83,7 +83,7 @@ bool couples_channels(const Gaussian<double>& g) {
 }  // namespace
 
 NearMixtureStorage::NearMixtureStorage(const double* largest, bool off,
-                                       const Multivariate<double>& transfer, double opacity,
+                                       const MultivariateTransfer<double>& transfer, double opacity,
                                        double diagonal) {
   const double left_out = opacity / diagonal;
   mixture_.diagonal = diagonal;

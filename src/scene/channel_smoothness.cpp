@@ -148,7 +148,7 @@ class SmoothnessOfChannels {
     for (std::size_t c = 0; c < records_.size(); ++c) {
       double turned = 0;
       for (std::size_t i = 0; i < looks_.size(); ++i) {
-        if (near.holds(static_cast<int>(i))) {
+        if (near.contains(static_cast<int>(i))) {
           turned = std::max(turned, looks_[i].at[c] * variation[c].most_change());
         }
       }
@@ -179,7 +179,7 @@ class SmoothnessOfChannels {
     double least = std::numeric_limits<double>::infinity();
     for (int i = 0; i < mixture_.count; ++i) {
       const double reach = looks_[static_cast<std::size_t>(i)].reach;
-      if (!primitives_[block].holds(i) || !(reach > 0)) continue;
+      if (!primitives_[block].contains(i) || !(reach > 0)) continue;
       const Gaussian<double>& g = mixture_.primitive[i];
       least = std::min(
           {least, most_moved / moved(g, slope), most_turned / std::sqrt(reach * moved(g, turn))});

@@ -33,7 +33,8 @@ DataBox data_box(const std::vector<const BlockRecords*>& records, int block) {
 
 class BlockClassifier {
  public:
-  BlockClassifier(const Multivariate<double>& transfer, double negligible) : transfer_(transfer) {
+  BlockClassifier(const MultivariateTransfer<double>& transfer, double negligible)
+      : transfer_(transfer) {
     const int count = transfer.gaussians.count;
     for (int i = 0; i < count; ++i) {
       const double peak = transfer.gaussians.primitive[i].peak;
@@ -63,7 +64,7 @@ class BlockClassifier {
   }
 
  private:
-  const Multivariate<double>& transfer_;
+  const MultivariateTransfer<double>& transfer_;
   std::vector<double> enough_;  ///< the exponent from which on a primitive is left out
 };
 
@@ -92,7 +93,7 @@ MultivariateBlocksStorage::MultivariateBlocksStorage(
   const auto count = static_cast<std::size_t>(records_.count());
   classes_.resize(count);
   primitives_.resize(count);
-  const Multivariate<double> transfer = transfer_function.view();
+  const MultivariateTransfer<double> transfer = transfer_function.view();
   const BlockClassifier classifier(transfer, negligible);
   const ParallelFor run = or_serial(parallel);
   run(records_.count(), [&](int first, int last) {

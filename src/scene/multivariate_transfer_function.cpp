@@ -222,7 +222,7 @@ MultivariateTransferFunction::MultivariateTransferFunction(
   }
 }
 
-Multivariate<double> MultivariateTransferFunction::view() const noexcept {
+MultivariateTransfer<double> MultivariateTransferFunction::view() const noexcept {
   return {{gaussian_view_.data(), static_cast<int>(gaussian_view_.size())},
           table_view_.data(),
           static_cast<int>(table_view_.size()),

@@ -185,10 +185,10 @@ void TetrahedralMesh::measure(const ParallelFor& parallel) {
             sum.edges += length(points_[static_cast<std::size_t>(t[j])] -
                                 points_[static_cast<std::size_t>(t[k])]);
           }
-          const auto other = static_cast<std::size_t>(t.behind[j] >> 2);
+          const auto other = static_cast<std::size_t>(t.neighbor[j] >> 2);
           // Each pair once.
-          if (t.behind[j] == Tetrahedron::outside || other < i) continue;
-          sum.folded += is_folded(volume, j, volume_of(other), t.behind[j] & 3) ? 1 : 0;
+          if (t.neighbor[j] == Tetrahedron::outside || other < i) continue;
+          sum.folded += is_folded(volume, j, volume_of(other), t.neighbor[j] & 3) ? 1 : 0;
         }
       }
     }
@@ -229,7 +229,8 @@ Tetrahedra TetrahedralMesh::view() const noexcept {
                   boundary_.data(), bounds_.lower,      bounds_.upper};
   view.count = static_cast<std::int32_t>(tetrahedra_.size());
   for (int a = 0; a < 3; ++a) {
-    view.reach = std::max({view.reach, std::fabs(bounds_.lower[a]), std::fabs(bounds_.upper[a])});
+    view.coordinate_bound =
+        std::max({view.coordinate_bound, std::fabs(bounds_.lower[a]), std::fabs(bounds_.upper[a])});
   }
   return view;
 }

@@ -44,7 +44,7 @@ TEST(NearMixture, FarIsFar) {
       primitives.push_back(p);
     }
     const MultivariateTransferFunction function(count, primitives);
-    const Multivariate<double> transfer = function.view();
+    const MultivariateTransfer<double> transfer = function.view();
     const double opacity = power(1e-7, 1e-3), diagonal = power(0.1, 100);
     const std::vector<double> largest(max_channels, offset + 1);
     NearMixtureStorage storage(largest.data(), true, transfer, opacity, diagonal);
@@ -91,7 +91,7 @@ double least_in_box(const Gaussian<double>& g, const double* lower, const double
   for (int sweep = 0; sweep < sweeps; ++sweep) {
     for (int c = 0; c < g.channels; ++c) {
       double slope = 0, bend = 0;
-      g.place(v, p);
+      g.transform(v, p);
       for (int i = 0; i < g.rows; ++i) {
         slope += p[i] * g.matrix[i][c];
         bend += g.matrix[i][c] * g.matrix[i][c];
@@ -100,7 +100,7 @@ double least_in_box(const Gaussian<double>& g, const double* lower, const double
     }
   }
   double square = 0;
-  g.place(v, p);
+  g.transform(v, p);
   for (int i = 0; i < g.rows; ++i) square += p[i] * p[i];
   return square;
 }

@@ -19,7 +19,7 @@ PELLUCID_HD void panel(const T* in, T* out) noexcept {
   }
   const Material<T> materials[2] = {{in[5], {in[6], in[7], in[8]}}, {in[9], {in[6], in[8], in[7]}}};
   const ChannelTable<T> table{0, {in + 10, materials, 2}};
-  Multivariate<T> transfer;
+  MultivariateTransfer<T> transfer;
   transfer.gaussians = {two, 2};
   transfer.table = &table;
   transfer.tables = 1;
@@ -63,7 +63,7 @@ PELLUCID_DEVICE_KERNEL(nodes)
 
 /// One pixel per thread.
 __global__ void render_multivariate(MultichannelGrid grid, MultivariateBlocks blocks,
-                                    Multivariate<double> transfer, RayTolerance wanted,
+                                    MultivariateTransfer<double> transfer, RayTolerance wanted,
                                     CameraFrame<double> camera, bool exact, double step,
                                     RayResult* pixels) {
   const int pixel = static_cast<int>(blockIdx.x * blockDim.x + threadIdx.x);
@@ -75,7 +75,7 @@ __global__ void render_multivariate(MultichannelGrid grid, MultivariateBlocks bl
                                                 1.0, stop_tolerance<double>(), true);
 }
 
-__global__ void render_linear_steps(MultichannelGrid grid, Multivariate<double> transfer,
+__global__ void render_linear_steps(MultichannelGrid grid, MultivariateTransfer<double> transfer,
                                     CameraFrame<double> camera, GaussianRule rule, double step,
                                     RayResult* pixels) {
   const int pixel = static_cast<int>(blockIdx.x * blockDim.x + threadIdx.x);

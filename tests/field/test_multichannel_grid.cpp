@@ -59,7 +59,7 @@ struct EveryType {
 TEST(MultichannelGrid, EachChannelComesInItsOwnType) {
   const EveryType all(0);
   const auto is = [&](int channel, auto example) {
-    return all.grid.with_channel(channel, [&](const auto& grid) {
+    return all.grid.visit_channel(channel, [&](const auto& grid) {
       EXPECT_EQ(grid.data, all.grid.data[channel]);
       EXPECT_EQ(grid.axis[1].values, EveryType::ny);
       return std::is_same_v<std::decay_t<decltype(*grid.data)>, decltype(example)>;

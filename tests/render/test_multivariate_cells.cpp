@@ -48,7 +48,7 @@ struct CellRow {
   }
 
   RayResult integrate(double tolerance, Grade grade) const {
-    Multivariate<double> transfer;
+    MultivariateTransfer<double> transfer;
     transfer.gaussians = {primitive.data(), static_cast<int>(primitive.size())};
     const RayTolerance wanted{tolerance, grade, Precision::float64, 1};
     MultivariateRayIntegrator integrator(transfer, largest_extinction, wanted, span.length);

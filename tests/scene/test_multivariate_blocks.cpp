@@ -235,7 +235,7 @@ void expect_complete(int count, bool with_table, double negligible, unsigned see
         with_table ? a_table() : std::vector<ChannelTransferFunction>{});
     const MultivariateBlocksStorage storage(channels, transfer_function, negligible);
     const MultivariateBlocks blocks = storage.view();
-    const Multivariate<double> transfer = transfer_function.view();
+    const MultivariateTransfer<double> transfer = transfer_function.view();
     const MultichannelGrid grid = multichannel_grid(channels);
     EXPECT_EQ(blocks.left_out, negligible);
     ASSERT_EQ(blocks.records.count(), 4 * 3 * 2);
@@ -247,13 +247,13 @@ void expect_complete(int count, bool with_table, double negligible, unsigned see
           const PrimitiveSet set = blocks.primitives[block];
           ++(skip ? skipped : cells);
           if (!skip) {
-            for (int n = 0; n < count; ++n) ++(set.holds(n) ? kept : left_out);
+            for (int n = 0; n < count; ++n) ++(set.contains(n) ? kept : left_out);
           }
           look_around(grid, i, j, k, maker, [&](const double* v) {
             double missing = 0;
             for (int n = 0; n < count; ++n) {
               const Gaussian<double>& g = transfer.gaussians.primitive[n];
-              if (skip || !set.holds(n)) missing += g.peak * g.density(v);
+              if (skip || !set.contains(n)) missing += g.peak * g.density(v);
             }
             ASSERT_LE(missing, negligible * (1 + 1e-9)) << block;
             if (skip) {

@@ -68,7 +68,7 @@ TEST(TetrahedralMesh, IsCounted) {
   EXPECT_EQ(mesh.name(), "corner.vtu");
   // The point that none uses counts for nothing.
   EXPECT_EQ(mesh.bounds().upper, (Place{1, 1, 1}));
-  EXPECT_EQ(mesh.view().reach, 1);
+  EXPECT_EQ(mesh.view().coordinate_bound, 1);
   EXPECT_EQ(mesh.view().count, 1);
 }
 
@@ -92,7 +92,7 @@ TEST(TetrahedralMesh, FacesArePairedAsByComparingAllOfThem) {
     std::size_t boundary = 0;
     for (const auto& [face, codes] : owners(mesh)) {
       const auto behind = [&](std::int32_t code) {
-        return mesh.tetrahedra()[static_cast<std::size_t>(code >> 2)].behind[code & 3];
+        return mesh.tetrahedra()[static_cast<std::size_t>(code >> 2)].neighbor[code & 3];
       };
       ASSERT_LE(codes.size(), 2u);
       if (codes.size() == 1) {
@@ -142,7 +142,7 @@ TEST(TetrahedralMesh, TheTreeHoldsTheBoundary) {
           for (const std::int32_t box : above) {
             for (int a = 0; a < 3; ++a) {
               // Larger by more than what rounding to float can take.
-              const double slack = 0x1p-22 * view.reach;
+              const double slack = 0x1p-22 * view.coordinate_bound;
               ASSERT_LE(static_cast<double>(view.tree[box].lower[a]), p[a] - slack);
               ASSERT_GE(static_cast<double>(view.tree[box].upper[a]), p[a] + slack);
             }
@@ -215,8 +215,8 @@ TEST(TetrahedralMesh, IsTheSameForAnyNumberOfThreads) {
   const TetrahedralMesh one(description), two(description, in_threads);
   ASSERT_EQ(one.tetrahedra().size(), two.tetrahedra().size());
   for (std::size_t i = 0; i < one.tetrahedra().size(); ++i) {
-    ASSERT_TRUE(std::equal(one.tetrahedra()[i].behind, one.tetrahedra()[i].behind + 4,
-                           two.tetrahedra()[i].behind));
+    ASSERT_TRUE(std::equal(one.tetrahedra()[i].neighbor, one.tetrahedra()[i].neighbor + 4,
+                           two.tetrahedra()[i].neighbor));
   }
   EXPECT_EQ(one.statistics().volume, two.statistics().volume);
   EXPECT_EQ(one.statistics().mean_edge, two.statistics().mean_edge);

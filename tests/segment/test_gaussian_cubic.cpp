@@ -174,7 +174,7 @@ TEST(GaussianCubic, LowerIsCloseToTheHull) {
     for (int k = 0; k < 4; ++k) {
       double v[max_channels];
       for (int c = 0; c < at.primitive.channels; ++c) v[c] = at.data[c].b[k];
-      at.primitive.place(v, p[k]);
+      at.primitive.transform(v, p[k]);
     }
     // Frank and Wolfe with exact steps, long enough.
     double x[max_channels];

@@ -441,8 +441,8 @@ class GaussianKernels : public Kernels {
       GaussianCase<T> g = gaussian_row<T>(rows, i / 2);
       if (i % 2 == 1) std::swap_ranges(g.v1, g.v1 + max_channels, g.v2);
       T p1[max_channels]{}, p2[max_channels]{}, d[max_channels]{};
-      g.primitive.place(g.v1, p1);
-      g.primitive.place(g.v2, p2);
+      g.primitive.transform(g.v1, p1);
+      g.primitive.transform(g.v2, p2);
       g.primitive.displacement(g.v1, g.v2, d);
       for (std::size_t k = 0; k < 8; ++k) {
         in[k][i] = p1[k];
@@ -465,8 +465,8 @@ class GaussianKernels : public Kernels {
       kniss = std::max(kniss, std::fabs(static_cast<long double>(y[1][i]) - truth));
       ASSERT_TRUE(y[1][i] >= T(0) && y[1][i] <= T(1) && one >= T(0) && one <= T(1)) << i;
       T p1[max_channels]{}, p2[max_channels]{}, d[max_channels]{};
-      g.primitive.place(g.v1, p1);
-      g.primitive.place(g.v2, p2);
+      g.primitive.transform(g.v1, p1);
+      g.primitive.transform(g.v2, p2);
       g.primitive.displacement(g.v1, g.v2, d);
       // A lane rounds otherwise than a scalar does, where products are fused.
       const T scalar = GaussianLine<T>(p1, p2, d, 8).mean_density(T(0.25), T(0.75));

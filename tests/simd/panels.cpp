@@ -36,7 +36,7 @@ void panel(const Task& task, const double* const in[10], double* const out[simd_
     g.peak = number[6];
     g.color = {number[7], number[8], number[9]};
   }
-  Multivariate<double> transfer;
+  MultivariateTransfer<double> transfer;
   transfer.channels = 2;
   transfer.gaussians = {all, task.count};
   Material<double> material[3];

@@ -21,7 +21,7 @@ struct MultichannelGrid {
 
   /// body(StructuredGrid<Value, double>) with the channel's own type.
   template <class Body>
-  PELLUCID_HD auto with_channel(int channel, Body&& body) const noexcept {
+  PELLUCID_HD auto visit_channel(int channel, Body&& body) const noexcept {
     switch (type[channel]) {
       case ValueType::u8:
         return body(grid_of<std::uint8_t>(channel));
@@ -48,7 +48,7 @@ struct MultichannelGrid {
   PELLUCID_HD bool sample(Vec3<double> position_grid, T* values) const noexcept {
     T sum = T(0);
     for (int c = 0; c < channels; ++c) {
-      values[c] = with_channel(
+      values[c] = visit_channel(
           c, [&](const auto& grid) noexcept { return sample_value<T>(grid, position_grid); });
       sum += values[c];
     }

@@ -15,7 +15,7 @@ struct Tetrahedron {
 
   std::int32_t corner[4];
   /// 4 · (the tetrahedron there) + (the number that the face has in it), or `outside`.
-  std::int32_t behind[4]{outside, outside, outside, outside};
+  std::int32_t neighbor[4]{outside, outside, outside, outside};
 
   PELLUCID_HD constexpr std::int32_t operator[](int i) const noexcept { return corner[i]; }
   const std::int32_t* begin() const noexcept { return corner; }
@@ -37,12 +37,12 @@ struct Tetrahedra {
   // The boundary: faces as 4 · tetrahedron + face, in the order of the tree; node 0 is the root.
   const BoundaryNode* tree = nullptr;
   const std::int32_t* boundary = nullptr;
-  /// A box around all points; `reach` is a bound on the size of their coordinates.
+  /// A box around all points; `coordinate_bound` is a bound on the size of their coordinates.
   Vec3<double> lower, upper;
-  double reach = 0;
+  double coordinate_bound = 0;
   std::int32_t count = 0;  ///< of tetrahedra
 
-  PELLUCID_HD Vec3<double> middle() const noexcept { return 0.5 * (lower + upper); }
+  PELLUCID_HD Vec3<double> center() const noexcept { return 0.5 * (lower + upper); }
 };
 
 /// A point and the value of a variable there: four numbers, loaded at once.

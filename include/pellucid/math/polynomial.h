@@ -20,12 +20,13 @@ PELLUCID_HD inline T horner(const scalar_t<T> (&c)[Count], T s) noexcept {
 
 /// A table of polynomials with the coefficients of one power side by side, as batches look them up.
 template <class S, std::size_t Intervals, std::size_t Count>
-struct ByCoefficient {
+struct TransposedCoefficients {
   alignas(64) S c[Count][Intervals];
 };
 template <class S, std::size_t Intervals, std::size_t Count>
-consteval ByCoefficient<S, Intervals, Count> transposed(const S (&c)[Intervals][Count]) noexcept {
-  ByCoefficient<S, Intervals, Count> result{};
+consteval TransposedCoefficients<S, Intervals, Count> transposed(
+    const S (&c)[Intervals][Count]) noexcept {
+  TransposedCoefficients<S, Intervals, Count> result{};
   for (std::size_t i = 0; i < Intervals; ++i) {
     for (std::size_t k = 0; k < Count; ++k) result.c[k][i] = c[i][k];
   }
@@ -68,7 +69,7 @@ PELLUCID_HD inline T interval_polynomial(const scalar_t<T> (&c)[Intervals][Count
 template <class T, std::size_t Intervals, std::size_t Count>
 PELLUCID_HD inline T interval_polynomial(
     [[maybe_unused]] const scalar_t<T> (&c)[Intervals][Count],
-    [[maybe_unused]] const ByCoefficient<scalar_t<T>, Intervals, Count>& by_coefficient,
+    [[maybe_unused]] const TransposedCoefficients<scalar_t<T>, Intervals, Count>& by_coefficient,
     T t) noexcept {
   if constexpr (lanes<T> == 1) {
     return interval_polynomial<T>(c, t);

@@ -26,7 +26,7 @@ class CellChunk {
     const int l = count_++;
     double sum = 0;
     for (int c = 0; c < grid.channels; ++c) {
-      grid.with_channel(c, [&](const auto& field) noexcept {
+      grid.visit_channel(c, [&](const auto& field) noexcept {
         const CellCorners<double> corners =
             field.template corners<double>(step.cell[0], step.cell[1], step.cell[2]);
         for (int n = 0; n < 8; ++n) {

@@ -222,7 +222,7 @@ class MeshPacket {
     F color_error(0);
     if (transfer_.bends) {
       // A kink at k moves a line between a and b by no more than (k - a)(b - k)/(b - a).
-      const F bend = color_bend(transfer_, least, most);
+      const F bend = color_slope_change(transfer_, least, most);
       color_error = s.opacity * min(F(0.25f) * (bend * range), interval.color_range);
     }
     // What rounding can do, as in PacketIntegrator.

@@ -166,12 +166,12 @@ class MultichannelCells {
     const ExactCorners<N> corners_of(grid_, cell_);
     D sum(0);
     for (int c = 0; c < fields_.channels; ++c) {
-      fields_.with_channel(c,
-                           [&]<class Value>(const StructuredGrid<Value, double>& field) noexcept {
-                             const CellCorners<D> corners = corners_of(field.data);
-                             for (const D& v : corners.value) sum += v;
-                             data_[c] = trilinear_cubic(corners, entry, exit);
-                           });
+      fields_.visit_channel(c,
+                            [&]<class Value>(const StructuredGrid<Value, double>& field) noexcept {
+                              const CellCorners<D> corners = corners_of(field.data);
+                              for (const D& v : corners.value) sum += v;
+                              data_[c] = trilinear_cubic(corners, entry, exit);
+                            });
     }
     return !is_nan(sum);
   }

@@ -49,14 +49,14 @@ class MultichannelSamples {
     places_.template find<K>(offset, on, local);
     asm("" : "+m"(on));
     for (int c = 0; c < fields_.channels; ++c) {
-      fields_.with_channel(c,
-                           [&]<class Value>(const StructuredGrid<Value, double>& field) noexcept {
-                             const Value* at[N];
-                             for (int l = 0; l < N; ++l) at[l] = field.data + base_[l];
-                             for (int k = 0; k < K; ++k) {
-                               load.template operator()<Value>(k, c, at, on[k], local[k]);
-                             }
-                           });
+      fields_.visit_channel(c,
+                            [&]<class Value>(const StructuredGrid<Value, double>& field) noexcept {
+                              const Value* at[N];
+                              for (int l = 0; l < N; ++l) at[l] = field.data + base_[l];
+                              for (int k = 0; k < K; ++k) {
+                                load.template operator()<Value>(k, c, at, on[k], local[k]);
+                              }
+                            });
     }
   }
 

@@ -156,7 +156,7 @@ class MultivariateMeshPacket {
 
   const PellucidMeshJob& job_;
   const NearMixture& mixture_;
-  const Multivariate<double>& transfer_;
+  const MultivariateTransfer<double>& transfer_;
   typename Panels::Rows& rows_;
   int first_, count_;
   MeshMarch<double, N, Variables> march_;

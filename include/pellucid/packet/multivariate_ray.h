@@ -37,7 +37,7 @@ class MultivariateRay {
       : job_(job),
         grid_(*static_cast<const MultichannelGrid*>(job.grid)),
         blocks_(*static_cast<const MultivariateBlocks*>(job.blocks)),
-        transfer_(*static_cast<const Multivariate<double>*>(job.transfer)),
+        transfer_(*static_cast<const MultivariateTransfer<double>*>(job.transfer)),
         ray_{{ray.origin[0], ray.origin[1], ray.origin[2]},
              {ray.direction[0], ray.direction[1], ray.direction[2]}},
         largest_color_(max(job.largest_color, 1.0)),
@@ -180,7 +180,7 @@ class MultivariateRay {
     for (int l = 0; l < cells.count(); ++l) any_cell.bits |= cells.primitives(l).bits;
     double left_out = blocks_.left_out;
     for (int i = 0; i < all.count; ++i) {
-      if (!any_cell.holds(i)) continue;
+      if (!any_cell.contains(i)) continue;
       const Gaussian<double>& g = all.primitive[i];
       left_out += min(g.peak, negligible);
       if (!(g.peak > negligible)) continue;
@@ -379,7 +379,7 @@ class MultivariateRay {
   const PellucidMultivariateJob& job_;
   const MultichannelGrid& grid_;
   const MultivariateBlocks& blocks_;
-  const Multivariate<double>& transfer_;
+  const MultivariateTransfer<double>& transfer_;
   Ray<double> ray_;
   double largest_color_;
   Room& room_;

@@ -55,7 +55,7 @@ class NodePanels {
     const F length = convert<float>(span.length);
     GaussianNodes<F> nodes(length, room);
     for (int i = 0; i < mixture.transfer.gaussians.count; ++i) {
-      const M held = on & demand.primitives.holds(i);
+      const M held = on & demand.primitives.contains(i);
       if (none(held)) continue;
       const int rows = mixture.primitive[i].gaussian.rows;
       if (rows == 1) {

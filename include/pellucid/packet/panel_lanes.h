@@ -258,7 +258,7 @@ class PanelLanes {
   }
 
   const NearMixture& mixture_;
-  const Multivariate<double>& transfer_;
+  const MultivariateTransfer<double>& transfer_;
   float tolerance_;
   double largest_color_;
   Room& room_;

@@ -58,13 +58,13 @@ class LanePrimitives {
     }
   }
 
-  bool of_any(int primitive) const noexcept { return any_.holds(primitive); }
+  bool of_any(int primitive) const noexcept { return any_.contains(primitive); }
   PELLUCID_ALWAYS_INLINE M lanes(int primitive, M of) const noexcept {
-    if (all_.holds(primitive)) return of;
+    if (all_.contains(primitive)) return of;
     unsigned found = 0;
     for (unsigned left = bits(of); left != 0; left &= left - 1) {
       const int l = __builtin_ctz(left);
-      if (of_lane_[l].holds(primitive)) found |= 1u << l;
+      if (of_lane_[l].contains(primitive)) found |= 1u << l;
     }
     return M::from_bits(found);
   }

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "pellucid/error/budget.h"
-#include "pellucid/math/where_reached.h"
+#include "pellucid/math/solve_monotone.h"
 #include "pellucid/render/integrate_linear_span.h"
 #include "pellucid/render/multivariate_integrator.h"
 #include "pellucid/segment/fold.h"
@@ -12,7 +12,7 @@ namespace pellucid {
 
 /// A ray that is to go through a mesh, and where it meets the boundary.
 struct MeshRay {
-  RayView<double> view;
+  RayFrame<double> view;
   MeshHit* hits = nullptr;  ///< in ascending order; used up
   int count = 0;
 
@@ -126,7 +126,7 @@ class MeshRayIntegrator {
                                       end * data.length)
           .optical_depth;
     };
-    found_ = begin + where_reached(up_to, depth, 0, 1, 0, all) * data.length;
+    found_ = begin + solve_monotone(up_to, depth, 0, 1, 0, all) * data.length;
   }
 
   const TransferTables& transfer_;
@@ -143,7 +143,7 @@ namespace detail {
 
 /// Of what a span's data may be off by, what tables make of it: a bound on the change of the
 /// extinction, and of colors, which count like the extinction that shows them.
-PELLUCID_HD inline double error_through_tables(const Multivariate<double>& transfer,
+PELLUCID_HD inline double error_through_tables(const MultivariateTransfer<double>& transfer,
                                                const MeshSpan& span) noexcept {
   double sum = 0;
   for (int i = 0; i < transfer.tables; ++i) {
@@ -166,7 +166,7 @@ PELLUCID_HD inline double error_through_tables(const Multivariate<double>& trans
 /// What a span's data may be off by, beyond what the panels charge for rounding themselves, as a
 /// bound on the change of the extinction: no Gaussian is steeper than √(2/e) times its peak and
 /// |K|, Frobenius' norm.
-PELLUCID_HD inline double extinction_error(const Multivariate<double>& transfer,
+PELLUCID_HD inline double extinction_error(const MultivariateTransfer<double>& transfer,
                                            const MeshSpan& span) noexcept {
   double moved = 0;
   for (int c = 0; c < transfer.channels; ++c) {
@@ -189,7 +189,7 @@ PELLUCID_HD inline double extinction_error(const Multivariate<double>& transfer,
   return sum + error_through_tables(transfer, span);
 }
 
-PELLUCID_HD inline void add_span(const Multivariate<double>& transfer, const MeshSpan& span,
+PELLUCID_HD inline void add_span(const MultivariateTransfer<double>& transfer, const MeshSpan& span,
                                  double largest_extinction,
                                  MultivariateRayIntegrator& integrator) noexcept {
   const double length = span.end - span.begin;
@@ -247,7 +247,7 @@ PELLUCID_HD inline RayResult integrate_mesh_ray(const Tetrahedra& mesh, const Me
 /// The same through several variables of a mesh and a function of them all. `largest_extinction`: a
 /// bound on that of the function.
 PELLUCID_HD inline RayResult integrate_multivariate_mesh_ray(
-    const Tetrahedra& mesh, const MeshFields& fields, const Multivariate<double>& transfer,
+    const Tetrahedra& mesh, const MeshFields& fields, const MultivariateTransfer<double>& transfer,
     double largest_extinction, const MeshRay& ray, const RayTolerance& wanted) noexcept {
   const Interval<double> inside = ray.inside();
   if (inside.empty()) return nothing_met();
@@ -285,7 +285,7 @@ PELLUCID_HD inline double find_mesh_half_opacity(const Tetrahedra& mesh, const M
 
 /// The same through several variables of a mesh.
 PELLUCID_HD inline double find_multivariate_mesh_half_opacity(
-    const Tetrahedra& mesh, const MeshFields& fields, const Multivariate<double>& transfer,
+    const Tetrahedra& mesh, const MeshFields& fields, const MultivariateTransfer<double>& transfer,
     double largest_extinction, const MeshRay& ray, const RayTolerance& wanted, double opacity,
     const HalfOpacity& half) noexcept {
   const Interval<double> inside = ray.inside();

@@ -17,7 +17,7 @@ PELLUCID_HD bool make_multivariate_span(const MultichannelGrid& grid,
                                         MultivariateSpan<T>& span) noexcept {
   span.length = static_cast<T>(step.t_end - step.t_begin);
   for (int c = 0; c < grid.channels; ++c) {
-    const bool filled = grid.with_channel(c, [&](const auto& field) noexcept {
+    const bool filled = grid.visit_channel(c, [&](const auto& field) noexcept {
       CubicSpan<T> one;
       if (!make_span(field, step, one)) return false;
       span.data[c] = one.data;
@@ -71,8 +71,8 @@ PELLUCID_HD inline long follow_ray(const MultichannelGrid& grid, const Multivari
 /// not quite those of the ray, it is an end of the stretch at the worst.
 PELLUCID_HD inline double find_multivariate_half_opacity(
     const MultichannelGrid& grid, const MultivariateBlocks* blocks, const Ray<double>& ray_grid,
-    const Multivariate<double>& transfer, double largest_extinction, const RayTolerance& wanted,
-    double opacity, const HalfOpacity& half = {}) noexcept {
+    const MultivariateTransfer<double>& transfer, double largest_extinction,
+    const RayTolerance& wanted, double opacity, const HalfOpacity& half = {}) noexcept {
   if (!(opacity > 0)) return std::numeric_limits<double>::infinity();
   const Interval<double> inside = grid_interval(grid.axis, ray_grid, half.range);
   if (inside.empty()) return half.range.end;
@@ -90,8 +90,8 @@ PELLUCID_HD inline double find_multivariate_half_opacity(
 /// bound on that of the transfer function.
 PELLUCID_HD inline RayResult integrate_multivariate_ray(
     const MultichannelGrid& grid, const MultivariateBlocks* blocks, const Ray<double>& ray_grid,
-    const Multivariate<double>& transfer, double largest_extinction, const RayTolerance& wanted,
-    bool with_depth) noexcept {
+    const MultivariateTransfer<double>& transfer, double largest_extinction,
+    const RayTolerance& wanted, bool with_depth) noexcept {
   const Interval<double> inside = grid_interval(grid.axis, ray_grid);
   if (inside.empty()) return nothing_met();
 

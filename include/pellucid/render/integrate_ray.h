@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "pellucid/math/where_reached.h"
+#include "pellucid/math/solve_monotone.h"
 #include "pellucid/render/half_opacity.h"
 #include "pellucid/render/stride_march.h"
 
@@ -29,8 +29,8 @@ PELLUCID_HD double find_optical_depth(const StructuredGrid<Value, double>& grid,
           return static_cast<double>(
               optical_depth_cubic(restrict_to(span.data, T(0), u), length * u, transfer));
         };
-        found = span.t_begin + where_reached(up_to, target - before, 0, 1, 0, inside,
-                                             16 * double{rounding_unit<T>}) *
+        found = span.t_begin + solve_monotone(up_to, target - before, 0, 1, 0, inside,
+                                              16 * double{rounding_unit<T>}) *
                                    (span.t_end - span.t_begin);
         return false;
       },

@@ -3,7 +3,7 @@
 
 #include "pellucid/error/budget.h"
 #include "pellucid/geometry/ray.h"
-#include "pellucid/math/where_reached.h"
+#include "pellucid/math/solve_monotone.h"
 #include "pellucid/render/integrate_cell.h"
 #include "pellucid/segment/fold.h"
 #include "pellucid/segment/multivariate_panel.h"
@@ -16,7 +16,7 @@ class MultivariateRayIntegrator {
  public:
   /// All that is given is referred to and must outlive the integrator. `length`: of the ray inside
   /// of the grid, in world units.
-  PELLUCID_HD MultivariateRayIntegrator(const Multivariate<double>& transfer,
+  PELLUCID_HD MultivariateRayIntegrator(const MultivariateTransfer<double>& transfer,
                                         double largest_extinction, const RayTolerance& wanted,
                                         double length) noexcept
       : transfer_(transfer),
@@ -159,11 +159,11 @@ class MultivariateRayIntegrator {
           .found.segment.optical_depth;
     };
     const double at =
-        where_reached(inside, target_ - before_, begin, end, 0.0, fold_.optical_depth() - before_);
+        solve_monotone(inside, target_ - before_, begin, end, 0.0, fold_.optical_depth() - before_);
     found_ = range.begin + at * (range.end - range.begin);
   }
 
-  const Multivariate<double>& transfer_;
+  const MultivariateTransfer<double>& transfer_;
   double largest_extinction_;
   double tolerance_, length_;
   PanelDemand<double> demand_;

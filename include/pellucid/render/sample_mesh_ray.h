@@ -59,7 +59,7 @@ sample_mesh_ray(const Tetrahedra& mesh, const MeshFields& fields, const Transfer
 /// As Kniss et al. 2003 have it, for whom the data of a segment are linear: in a tetrahedron they
 /// are.
 PELLUCID_HD inline RayResult sample_mesh_gaussians(
-    const Tetrahedra& mesh, const MeshFields& fields, const Multivariate<double>& transfer,
+    const Tetrahedra& mesh, const MeshFields& fields, const MultivariateTransfer<double>& transfer,
     GaussianRule rule, const MeshRay& ray, double stop,
     double depth = std::numeric_limits<double>::infinity()) noexcept {
   const auto segment_of = [&](const MeshSpan& span) noexcept {

@@ -153,8 +153,8 @@ PELLUCID_HD RayResult sample_ray(const StructuredGrid<Value, double>& grid,
 template <class T>
 PELLUCID_HD RayResult sample_multivariate_ray(const MultichannelGrid& grid,
                                               const Ray<double>& ray_grid,
-                                              const Multivariate<T>& transfer, SamplingRule rule,
-                                              double step, double largest_color,
+                                              const MultivariateTransfer<T>& transfer,
+                                              SamplingRule rule, double step, double largest_color,
                                               double stop_tolerance, bool with_depth) noexcept {
   return sample_materials<T>(
       grid_interval(grid.axis, ray_grid),
@@ -178,9 +178,9 @@ struct ChannelSample {
 /// with an end in a cell with a NaN corner is vacuum.
 template <class T>
 PELLUCID_HD RayResult sample_linear_steps(const MultichannelGrid& grid, const Ray<double>& ray_grid,
-                                          const Multivariate<T>& transfer, GaussianRule rule,
-                                          double step, double largest_color, double stop_tolerance,
-                                          bool with_depth) noexcept {
+                                          const MultivariateTransfer<T>& transfer,
+                                          GaussianRule rule, double step, double largest_color,
+                                          double stop_tolerance, bool with_depth) noexcept {
   using Sample = ChannelSample<T>;
   return march_steps<T, Sample>(
       grid_interval(grid.axis, ray_grid), StepPlaces{},

@@ -20,7 +20,7 @@ class BinnedTransferStorage {
   const BinnedTransfer& view() const noexcept { return view_; }
 
  private:
-  std::vector<float> extinction_, jump_, color_, color_split_, color_bend_;
+  std::vector<float> extinction_, jump_, color_, color_split_, color_slope_change_;
   std::vector<double> wide_extinction_, wide_color_end_;
   std::vector<std::int32_t> first_extinction_, first_color_, marks_, hard_jumps_;
   BinnedTransfer view_;

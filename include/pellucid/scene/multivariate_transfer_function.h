@@ -57,7 +57,7 @@ class MultivariateTransferFunction {
   const std::vector<GaussianPrimitive>& primitives() const noexcept { return primitives_; }
   const std::vector<ChannelTransferFunction>& tables() const noexcept { return tables_; }
   /// What kernels use. Valid while this object lives.
-  Multivariate<double> view() const noexcept;
+  MultivariateTransfer<double> view() const noexcept;
   /// Largest color component: a bound on the radiance behind any point.
   double largest_color() const noexcept { return largest_color_; }
   /// The sum of the largest extinctions of all terms.

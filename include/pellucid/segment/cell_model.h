@@ -26,7 +26,8 @@ PELLUCID_HD Material<T> material_of(const PiecewiseLinear<T>& transfer, const T*
   return transfer.evaluate(values[0]);
 }
 template <class T>
-PELLUCID_HD Material<T> material_of(const Multivariate<T>& transfer, const T* values) noexcept {
+PELLUCID_HD Material<T> material_of(const MultivariateTransfer<T>& transfer,
+                                    const T* values) noexcept {
   return transfer.evaluate(values);
 }
 

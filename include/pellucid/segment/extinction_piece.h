@@ -153,7 +153,7 @@ in_float_t<F> kinks_of_color(const BinnedTransfer& transfer, F lower, F upper) n
   using Single = in_float_t<F>;
   if (!transfer.bends) return Single(0);
   // The bins' bounds hold for rounded values; their difference does not.
-  const Single bend = color_bend(transfer, convert<float>(lower), convert<float>(upper));
+  const Single bend = color_slope_change(transfer, convert<float>(lower), convert<float>(upper));
   return Single(0.25f) * (bend * convert<float>(max(upper - lower, F(0))));
 }
 

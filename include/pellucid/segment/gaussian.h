@@ -129,8 +129,8 @@ template <class S, class T>
 PELLUCID_HD T gaussian_mean_density(const Gaussian<S>& primitive, const T* v1,
                                     const T* v2) noexcept {
   T p1[max_channels], p2[max_channels], d[max_channels];
-  primitive.place(v1, p1);
-  primitive.place(v2, p2);
+  primitive.transform(v1, p1);
+  primitive.transform(v2, p2);
   primitive.displacement(v1, v2, d);
   return gaussian_mean_density(p1, p2, d, primitive.rows);
 }

@@ -43,7 +43,7 @@ class GaussianCubic {
     for (int k = 0; k < 4; ++k) {
       T v[max_channels];
       for (int c = 0; c < primitive.channels; ++c) v[c] = data[c].b[k];
-      primitive.place(v, p_[k]);
+      primitive.transform(v, p_[k]);
     }
     bound();
   }

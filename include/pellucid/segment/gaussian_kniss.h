@@ -44,8 +44,8 @@ PELLUCID_HD T kniss_mean_density(const T* p1, const T* p2, const T* d, int rows)
 template <class S, class T>
 PELLUCID_HD T kniss_mean_density(const Gaussian<S>& primitive, const T* v1, const T* v2) noexcept {
   T p1[max_channels], p2[max_channels], d[max_channels];
-  primitive.place(v1, p1);
-  primitive.place(v2, p2);
+  primitive.transform(v1, p1);
+  primitive.transform(v2, p2);
   primitive.displacement(v1, v2, d);
   return kniss_mean_density(p1, p2, d, primitive.rows);
 }

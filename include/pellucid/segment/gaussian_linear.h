@@ -19,8 +19,8 @@ class GaussianLinear {
       front[c] = data[c].b[0];
       back[c] = data[c].b[1];
     }
-    primitive.place(front, line_.front);
-    primitive.place(back, line_.back);
+    primitive.transform(front, line_.front);
+    primitive.transform(back, line_.back);
     primitive.displacement(front, back, line_.d);
     T from_front = T(0), from_back = T(0), along = T(0);
     for (int i = 0; i < rows_; ++i) {

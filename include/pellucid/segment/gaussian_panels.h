@@ -258,8 +258,8 @@ PELLUCID_HD void refine_by_panels(const GaussianMixture<S>& mixture, const T* v1
   for (int i = 0; i < mixture.count; ++i) {
     const Gaussian<S>& g = mixture.primitive[i];
     T p1[max_channels], p2[max_channels], d[max_channels];
-    g.place(v1, p1);
-    g.place(v2, p2);
+    g.transform(v1, p1);
+    g.transform(v2, p2);
     g.displacement(v1, v2, d);
     const GaussianLine<T> line(p1, p2, d, g.rows);
     const T peak = T(g.peak) * length;

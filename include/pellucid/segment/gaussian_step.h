@@ -28,7 +28,8 @@ PELLUCID_HD T mean_density_by(GaussianRule rule, const Gaussian<S>& primitive, c
 /// table has with both rules its exact depth (piecewise_linear.h) and the color in which it is seen
 /// alone, so that a table alone is exact. v1 and v2 have `channels` numbers; length >= 0.
 template <class T>
-PELLUCID_HD SegmentResult<T> mean_color_segment(GaussianRule rule, const Multivariate<T>& transfer,
+PELLUCID_HD SegmentResult<T> mean_color_segment(GaussianRule rule,
+                                                const MultivariateTransfer<T>& transfer,
                                                 const T* v1, const T* v2, T length) noexcept {
   DepthWeightedColor<T> sum;
   for (int i = 0; i < transfer.gaussians.count; ++i) {

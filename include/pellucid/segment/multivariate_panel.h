@@ -78,7 +78,7 @@ class PanelIntegrator {
   static constexpr bool bent = std::is_same_v<Data, CubicBernstein<T>>;
 
  public:
-  PELLUCID_HD PanelIntegrator(const Multivariate<S>& transfer,
+  PELLUCID_HD PanelIntegrator(const MultivariateTransfer<S>& transfer,
                               const MultivariateSpan<T, Data>& span,
                               const PanelDemand<T, Set>& demand, const Allowance& allowance,
                               PanelRoom<T>& room) noexcept
@@ -117,7 +117,7 @@ class PanelIntegrator {
     const GaussianMixture<S>& all = transfer_.gaussians;
     const T negligible = allowance_(T(0)) / (T(8 * max(all.count, 1)) * largest_color_);
     for (int i = 0; i < all.count; ++i) {
-      const mask_t<T> held(demand_.primitives.holds(i));
+      const mask_t<T> held(demand_.primitives.contains(i));
       if (none(held)) continue;
       const Gaussian<S>& g = all.primitive[i];
       const auto along = gaussian_along(g, span_.data);
@@ -324,7 +324,7 @@ class PanelIntegrator {
     return select(inside(middle - reach), middle - reach, behind);
   }
 
-  const Multivariate<S>& transfer_;
+  const MultivariateTransfer<S>& transfer_;
   const MultivariateSpan<T, Data>& span_;
   const PanelDemand<T, Set>& demand_;
   const Allowance& allowance_;
@@ -366,16 +366,14 @@ class PanelIntegrator {
 ///
 /// T: double, or a batch of it, panels in lanes. `room` is for the function alone.
 template <class T, class Data, class Set, class Allowance>
-PELLUCID_HD PanelSegment<T> integrate_multivariate_panel(const Multivariate<scalar_t<T>>& transfer,
-                                                         const MultivariateSpan<T, Data>& span,
-                                                         const PanelDemand<T, Set>& demand,
-                                                         const Allowance& allowance,
-                                                         PanelRoom<T>& room) noexcept {
+PELLUCID_HD PanelSegment<T> integrate_multivariate_panel(
+    const MultivariateTransfer<scalar_t<T>>& transfer, const MultivariateSpan<T, Data>& span,
+    const PanelDemand<T, Set>& demand, const Allowance& allowance, PanelRoom<T>& room) noexcept {
   return detail::PanelIntegrator<T, Data, Set, Allowance>(transfer, span, demand, allowance, room)
       .run();
 }
 template <class T, class Data, class Set, class Allowance>
-PELLUCID_HD PanelSegment<T> integrate_multivariate_panel(const Multivariate<T>& transfer,
+PELLUCID_HD PanelSegment<T> integrate_multivariate_panel(const MultivariateTransfer<T>& transfer,
                                                          const MultivariateSpan<T, Data>& span,
                                                          const PanelDemand<T, Set>& demand,
                                                          const Allowance& allowance) noexcept {

@@ -30,7 +30,7 @@ struct PanelTables {
 };
 
 template <class S, class Data>
-PELLUCID_HD PanelTables<S> measure_tables_of_one(const Multivariate<S>& transfer,
+PELLUCID_HD PanelTables<S> measure_tables_of_one(const MultivariateTransfer<S>& transfer,
                                                  const MultivariateSpan<S, Data>& span,
                                                  S largest_color) noexcept {
   PanelTables<S> result;
@@ -63,7 +63,7 @@ PELLUCID_HD PanelTables<S> measure_tables_of_one(const Multivariate<S>& transfer
 
 /// Lane by lane where T is a batch: tables are looked up one number at a time.
 template <class T, template <class> class Data>
-PELLUCID_HD PanelTables<T> measure_tables(const Multivariate<scalar_t<T>>& transfer,
+PELLUCID_HD PanelTables<T> measure_tables(const MultivariateTransfer<scalar_t<T>>& transfer,
                                           const MultivariateSpan<T, Data<T>>& span,
                                           scalar_t<T> largest_color) noexcept {
   if constexpr (lanes<T> == 1) {

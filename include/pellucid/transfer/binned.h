@@ -40,14 +40,14 @@ struct BinnedTransfer {
   const std::int32_t* marks = nullptr;
   /// The same, of bins that hold control points which are not equal and yet too close even for data
   /// in binary64, whatever is between them.
-  const std::int32_t* hard_jumps = nullptr;
+  const std::int32_t* unresolved_jumps = nullptr;
   /// Sums over the bins in front of each of how much the slope of the color changes, in all,
   /// largest channel, where the extinction has no corner.
-  const float* color_bend = nullptr;
+  const float* color_slope_change = nullptr;
   float origin = 0, bins_per_value = 0;
   std::int32_t bins = 0;
-  float bend_rounding = 0;  ///< of a difference of two of color_bend
-  bool bends = false;       ///< whether any of them is not 0
+  float color_slope_change_rounding = 0;  ///< of a difference of two of color_slope_change
+  bool bends = false;                     ///< whether any of them is not 0
   /// Whether marks say more than support_min and support_max do: there are jumps, or gaps.
   bool has_marks = false;
   float support_min = 0, support_max = 0;  ///< nothing absorbs outside; crossed over: nowhere
@@ -115,9 +115,10 @@ mask_t<F> may_absorb(const BinnedTransfer& t, mask_t<F> lanes, F least, F most,
 /// Whether there is something between `least` and `most` that binary64 is not good enough for, in
 /// lanes.
 template <class F>
-mask_t<F> has_hard_jump(const BinnedTransfer& t, F least, F most) noexcept {
+mask_t<F> has_unresolved_jump(const BinnedTransfer& t, F least, F most) noexcept {
   using Index = index_t<F>;
-  return gather(t.hard_jumps, bin_of(t, most) + Index(1)) - gather(t.hard_jumps, bin_of(t, least)) >
+  return gather(t.unresolved_jumps, bin_of(t, most) + Index(1)) -
+             gather(t.unresolved_jumps, bin_of(t, least)) >
          Index(0);
 }
 
@@ -262,11 +263,11 @@ Rgb<in_float_t<F>> color_at(const BinnedTransfer& t, F value) noexcept {
 /// A bound on how much the slope of the color changes between two values, in all, largest channel,
 /// where the extinction has no corner.
 template <class F>
-F color_bend(const BinnedTransfer& t, F least, F most) noexcept {
+F color_slope_change(const BinnedTransfer& t, F least, F most) noexcept {
   using Index = index_t<F>;
-  return (gather(t.color_bend, bin_of(t, most) + Index(1)) -
-          gather(t.color_bend, bin_of(t, least))) +
-         F(t.bend_rounding);
+  return (gather(t.color_slope_change, bin_of(t, most) + Index(1)) -
+          gather(t.color_slope_change, bin_of(t, least))) +
+         F(t.color_slope_change_rounding);
 }
 
 }  // namespace pellucid

@@ -24,7 +24,7 @@ struct Gaussian {
 
   /// p = K (v - c), `rows` numbers; v has `channels`. The differences are taken first.
   template <class T>
-  PELLUCID_HD void place(const T* v, T* p) const noexcept {
+  PELLUCID_HD void transform(const T* v, T* p) const noexcept {
     for (int i = 0; i < rows; ++i) {
       p[i] = T(0);
       for (int k = 0; k < channels; ++k) {
@@ -48,7 +48,7 @@ struct Gaussian {
   template <class T>
   PELLUCID_HD T density(const T* v) const noexcept {
     T p[max_channels];
-    place(v, p);
+    transform(v, p);
     T square = T(0);
     for (int i = 0; i < rows; ++i) square = multiply_add(p[i], p[i], square);
     return exp(-square);
@@ -59,7 +59,7 @@ struct Gaussian {
 struct PrimitiveSet {
   unsigned long long bits = ~0ULL;
 
-  PELLUCID_HD constexpr bool holds(int primitive) const noexcept {
+  PELLUCID_HD constexpr bool contains(int primitive) const noexcept {
     return ((bits >> (primitive & 63)) & 1) != 0;
   }
 };

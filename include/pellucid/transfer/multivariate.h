@@ -17,7 +17,7 @@ struct ChannelTable {
 /// single channels, summed. Each is a kind of particles of its own: extinctions add, and so do
 /// color · extinction. A view, it owns nothing; all terms see the same channels.
 template <class S>
-struct Multivariate {
+struct MultivariateTransfer {
   GaussianMixture<S> gaussians;
   const ChannelTable<S>* table = nullptr;
   int tables = 0;

@@ -43,7 +43,7 @@ PELLUCID_HD inline MeshPlace place_on(const SeenFace<double>& face, const MeshFi
     return max(a, max(b, c)) - min(a, min(b, c));
   };
   MeshPlace place;
-  const SeenPoint<double>* p = face.seen;
+  const ProjectedPoint<double>* p = face.seen;
   place.t = interpolate(p[0].t, p[1].t, p[2].t);
   place.t_error = off * range(p[0].t, p[1].t, p[2].t) + blur;
   for (int c = 0; c < fields.channels; ++c) {
@@ -123,12 +123,12 @@ PELLUCID_HD inline MeshSpan span_between(const MeshPlace& from, const MeshPlace&
 
 /// Whether a place is behind the boundary at a hit, by more than rounding.
 PELLUCID_HD inline bool is_beyond(const Tetrahedra& mesh, const MeshFields& fields,
-                                  const RayView<double>& view, const MeshHit& hit,
+                                  const RayFrame<double>& view, const MeshHit& hit,
                                   const MeshPlace& place) noexcept {
   if (!(place.t - place.t_error > hit.t)) return false;
   SeenFace<double> face;
   see_face(mesh, view, hit.code, face);
-  return place.t - place.t_error > hit.t + place_on(face, fields, view.blur).t_error;
+  return place.t - place.t_error > hit.t + place_on(face, fields, view.position_error).t_error;
 }
 
 }  // namespace detail
@@ -143,7 +143,7 @@ PELLUCID_HD inline bool is_beyond(const Tetrahedra& mesh, const MeshFields& fiel
 /// goes past a hit that is not its own, tetrahedra overlap: the span says so.
 template <class Visit>
 PELLUCID_HD void for_each_mesh_span(const Tetrahedra& mesh, const MeshFields& fields,
-                                    const RayView<double>& view, MeshHit* hits, int count,
+                                    const RayFrame<double>& view, MeshHit* hits, int count,
                                     Visit&& visit) noexcept {
   double front = 0, front_error = 0;
   for (int i = 0; i < count; ++i) {
@@ -151,20 +151,21 @@ PELLUCID_HD void for_each_mesh_span(const Tetrahedra& mesh, const MeshFields& fi
     SeenFace<double> face;
     see_face(mesh, view, hits[i].code, face);
     MeshWalk<double> walk(mesh);
-    const auto load = [&](int point, SeenPoint<double>& seen, double&) noexcept {
-      seen = view.see(mesh.point[point]);
+    const auto load = [&](int point, ProjectedPoint<double>& seen, double&) noexcept {
+      seen = view.project(mesh.point[point]);
     };
     walk.enter(true, face, hits[i].code, load);
-    MeshPlace from = detail::place_on(face, fields, view.blur);
+    MeshPlace from = detail::place_on(face, fields, view.position_error);
     bool was_vacuum = false;
     int next = i + 1;
     while (next < count && hits[next].code == Tetrahedron::outside) ++next;
     for (std::int32_t steps = 0; walk.ahead() != Tetrahedron::outside; ++steps) {
       const std::int32_t tetrahedron = walk.ahead() >> 2;
       walk.step(true, load);
-      MeshPlace to = detail::place_on(walk.face(), fields, view.blur);
-      if (to.t_error > 1e4 * view.blur && walk.ahead() != Tetrahedron::outside) {
-        detail::improve(mesh, fields, walk.face(), view.blur, tetrahedron, walk.ahead() >> 2, to);
+      MeshPlace to = detail::place_on(walk.face(), fields, view.position_error);
+      if (to.t_error > 1e4 * view.position_error && walk.ahead() != Tetrahedron::outside) {
+        detail::improve(mesh, fields, walk.face(), view.position_error, tetrahedron,
+                        walk.ahead() >> 2, to);
       }
       MeshSpan span = detail::span_between(from, to, fields, tetrahedron, front);
       // Where the ray comes in and goes out, and beside vacuum, nothing makes good for it.

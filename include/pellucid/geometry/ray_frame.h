@@ -8,7 +8,7 @@ namespace pellucid {
 
 /// A point as a ray sees it: its place across the ray, which is at (0, 0), and along it.
 template <class T>
-struct SeenPoint {
+struct ProjectedPoint {
   T x{}, y{};
   T t{};  ///< the ray's parameter where it is level with the point
 };
@@ -18,14 +18,15 @@ struct SeenPoint {
 /// Watertight Ray/Triangle Intersection, 2013). A point is seen in the same place by whoever looks,
 /// so that triangles that share an edge share it for the ray too.
 template <class T>
-struct RayView {
-  Vec3<T> origin;  ///< a point of the ray close to what is seen
-  T t_origin{};    ///< its parameter
-  Vec3<T> x, y;    ///< rows: a point p is at (x·(p - origin), y·(p - origin))
-  Vec3<T> t;       ///< and its parameter is t_origin + t·(p - origin)
-  T blur{};        ///< how far what is seen may be from its true place, in x and in y; t likewise
+struct RayFrame {
+  Vec3<T> origin;      ///< a point of the ray close to what is seen
+  T t_origin{};        ///< its parameter
+  Vec3<T> x, y;        ///< rows: a point p is at (x·(p - origin), y·(p - origin))
+  Vec3<T> t;           ///< and its parameter is t_origin + t·(p - origin)
+  T position_error{};  ///< how far what is seen may be from its true place, in x and in y; t
+                       ///< likewise
 
-  PELLUCID_HD SeenPoint<T> see(const Vec3<T>& point) const noexcept {
+  PELLUCID_HD ProjectedPoint<T> project(const Vec3<T>& point) const noexcept {
     const Vec3<T> p = point - origin;
     return {dot(x, p), dot(y, p), t_origin + dot(t, p)};
   }
@@ -33,10 +34,10 @@ struct RayView {
 
 /// `near`: what is to be seen, of which the ray's closest point becomes the origin; `reach`: a
 /// bound on the coordinates of all that will be. The ray's direction has length 1.
-PELLUCID_HD inline RayView<double> make_ray_view(const Ray<double>& ray, const Vec3<double>& near,
-                                                 double reach) noexcept {
+PELLUCID_HD inline RayFrame<double> make_ray_frame(const Ray<double>& ray, const Vec3<double>& near,
+                                                   double reach) noexcept {
   const Vec3<double>& d = ray.direction;
-  RayView<double> view;
+  RayFrame<double> view;
   view.t_origin = dot(near - ray.origin, d);
   view.origin = ray.at(view.t_origin);
   int z = 0;
@@ -52,8 +53,8 @@ PELLUCID_HD inline RayView<double> make_ray_view(const Ray<double>& ray, const V
   // The origin is off by 2 u of the way to it and of where it began, as is the ray's direction by
   // the time that it is there; differences and shears add 6 u of what is seen.
   const Vec3<double>& o = ray.origin;
-  view.blur = 16 * rounding_unit<double> *
-              (abs(view.t_origin) + max(abs(o.x), max(abs(o.y), abs(o.z))) + reach);
+  view.position_error = 16 * rounding_unit<double> *
+                        (abs(view.t_origin) + max(abs(o.x), max(abs(o.y), abs(o.z))) + reach);
   return view;
 }
 
@@ -69,7 +70,7 @@ struct Side {
   mask_t<T> left = mask_t<T>(false);  ///< whether the sign is positive
 };
 template <class T>
-PELLUCID_HD Side<T> side_of(const SeenPoint<T>& a, const SeenPoint<T>& b) noexcept {
+PELLUCID_HD Side<T> side_of(const ProjectedPoint<T>& a, const ProjectedPoint<T>& b) noexcept {
   const T area = determinant(a.x, a.y, b.x, b.y), size = abs(a.x * b.y) + abs(a.y * b.x);
   const auto met = area == T(0);
   auto left = area > T(0);

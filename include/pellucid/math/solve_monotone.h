@@ -14,8 +14,8 @@ namespace pellucid {
 /// that stays; each third place is the middle, so that no f takes more than three for each bit.
 /// Smooth ones take some eight in all.
 template <class Function>
-PELLUCID_HD double where_reached(Function&& f, double target, double lo, double hi, double below,
-                                 double above, double share_of_interval = 0x1p-40) noexcept {
+PELLUCID_HD double solve_monotone(Function&& f, double target, double lo, double hi, double below,
+                                  double above, double share_of_interval = 0x1p-40) noexcept {
   const double shortest = share_of_interval * (hi - lo),
                nearest = share_of_interval / 16 * (above - below);
   double low = below - target, high = above - target;  // weighed
