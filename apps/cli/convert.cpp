@@ -159,7 +159,7 @@ int run_convert(const ConvertArguments& arguments) {
   if (!arguments.writes_tetrahedra()) return convert_volume(arguments);
   const InterruptGuard guard;
   const Converted converted = convert(
-      arguments, parallel_for(arguments.threads > 0 ? arguments.threads : default_threads()));
+      arguments, parallel_for(arguments.threads > 0 ? arguments.threads : default_thread_count()));
   InterruptGuard::check();
   write_vtu(converted.tetrahedra, arguments.output);
   if (arguments.json) {

@@ -120,8 +120,7 @@ void segment_row(const CsvTable& table, const std::vector<std::size_t>& columns,
                                         table.list<T>(row, columns[1]), peak, {});
   const SegmentResult<T> s =
       mean_color_segment(rule, transfer_of<T>({g}, ends.channels), ends.v1, ends.v2, length);
-  outputs = {wide(mean_density_by(rule, g, ends.v1, ends.v2)), wide(s.optical_depth),
-             wide(s.opacity)};
+  outputs = {wide(mean_density(rule, g, ends.v1, ends.v2)), wide(s.optical_depth), wide(s.opacity)};
 }
 
 /// The sum's primitives.

@@ -78,7 +78,7 @@ std::shared_ptr<const MeshChannels> cells_alone(UnstructuredGrid grid) {
   const std::string none = "none";
   grid.arrays = {{none, Centering::cell, 1, DataArray<std::uint8_t>(grid.shapes.size())}};
   const MeshArrayChoice choice{none, std::nullopt, none};
-  return cut_into_tetrahedra(grid, {&choice, 1}, parallel_for(default_threads()));
+  return cut_into_tetrahedra(grid, {&choice, 1}, parallel_for(default_thread_count()));
 }
 
 std::string centering_name(const MeshArray& array) {

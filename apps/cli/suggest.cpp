@@ -81,7 +81,7 @@ int run_suggest(const SuggestArguments& arguments) {
   const ChannelSelection selection = select_channels(arguments.channels, max_suggested_channels);
   check_arguments(arguments, selection);
   const int threads =
-      arguments.channels.threads > 0 ? arguments.channels.threads : default_threads();
+      arguments.channels.threads > 0 ? arguments.channels.threads : default_thread_count();
   const LoadedChannels loaded = load_channels(selection, threads, arguments.quiet);
   const bool boundaries = are_value_and_gradient(selection) && arguments.primitives == 0;
   const std::vector<GaussianPrimitive> primitives =

@@ -68,7 +68,8 @@ std::vector<BuildResult> measure_building(const BuildOptions& options) {
     if (!wants(options, source.name)) continue;
     options.say("building: " + source.name);
     const UnstructuredGrid grid = source.make();
-    const auto channels = cut_into_tetrahedra(grid, {&value, 1}, parallel_for(default_threads()));
+    const auto channels =
+        cut_into_tetrahedra(grid, {&value, 1}, parallel_for(default_thread_count()));
     const TetrahedralMesh& mesh = channels->mesh();
     BuildResult result;
     result.name = source.name;

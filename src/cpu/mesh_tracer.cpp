@@ -171,7 +171,7 @@ class UnivariateMeshTracer : public MeshTracer {
     const auto& tracer = *static_cast<const UnivariateMeshTracer*>(context);
     CellSegment<double> found;
     integrate_linear_span(
-        {span->front, span->back, span->error, span->length, span->place_error, span->end_error},
+        {span->front, span->back, span->error, span->length, span->position_error, span->end_error},
         tracer.transfer_.tables(), tracer.job_.largest_color, true,
         [](double) noexcept { return 0.0; }, found);
     const SegmentResult<double>& s = found.found.segment;

@@ -51,13 +51,13 @@ PELLUCID_HD void nodes(const T* in, T* out) noexcept {
   g.rows = 1 + static_cast<int>(in[0]);
   g.peak = in[1];
   g.color = {in[2], in[3], in[4]};
-  NodeRoom<T> room;
+  NodeWorkspace<T> room;
   GaussianNodes<T> panel(in[5], room);
   const T steps[3][2] = {{in[6], in[7]}, {in[8], in[9]}, {in[10], in[11]}};
   panel.add(g, in + 12, steps, in[14], in[15] > T(0));
   const auto found = panel.integrate(in[16]);
   out[0] = found.segment.radiance.r + found.error + found.clear + found.cut;
-  out[1] = panel.most() + panel.least_error() + (panel.is_short() ? T(1) : T(0));
+  out[1] = panel.depth_bound() + panel.least_error() + (panel.is_short() ? T(1) : T(0));
 }
 PELLUCID_DEVICE_KERNEL(nodes)
 

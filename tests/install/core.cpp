@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <pellucid/base/version.h>
 #include <pellucid/render/camera.h>
-#include <pellucid/segment/fold.h>
+#include <pellucid/segment/compositor.h>
 #include <pellucid/segment/linear.h>
 
 #include <cmath>
@@ -12,7 +12,7 @@
 int main() {
   using pellucid::linear_segment;
   const pellucid::Rgb<double> orange{1, 0.5, 0};
-  pellucid::FrontToBack<double> ray;
+  pellucid::FrontToBackCompositor<double> ray;
   ray.add(linear_segment(0.0, 1.0, orange, orange, 2.0));
   ray.add(linear_segment(1.0, 0.0, orange, orange, 2.0));
   const double expected = 1 - std::exp(-2.0);

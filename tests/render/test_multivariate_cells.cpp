@@ -52,7 +52,7 @@ struct CellRow {
     transfer.gaussians = {primitive.data(), static_cast<int>(primitive.size())};
     const RayTolerance wanted{tolerance, grade, Precision::float64, 1};
     MultivariateRayIntegrator integrator(transfer, largest_extinction, wanted, span.length);
-    integrator.stretch(span, {0, span.length}, {}, 0, 8 * rounding_unit<double> * span.length);
+    integrator.add_stretch(span, {0, span.length}, {}, 0, 8 * rounding_unit<double> * span.length);
     return integrator.result();
   }
 };

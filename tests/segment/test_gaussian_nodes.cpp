@@ -268,7 +268,7 @@ struct Driven {
       r.color.r = static_cast<T>(g.color.r);
       rounded.push_back(r);
     }
-    NodeRoom<T> room;
+    NodeWorkspace<T> room;
     std::vector<double> ends{1};
     double from = 0;
     while (!ends.empty() && panels < 5000) {
@@ -408,8 +408,8 @@ TEST(GaussianNodes, RoundingIsWithinItsBound) {
   for (int n = 0; n < 20000; ++n) {
     const double limit = maker.uniform(0.01, 6);
     const EstimatedPanel panel(maker, limit);
-    NodeRoom<double> room;
-    NodeRoom<float> room_in_float;
+    NodeWorkspace<double> room;
+    NodeWorkspace<float> room_in_float;
     GaussianNodes<double> exact(1, room);
     GaussianNodes<float> rounded(1, room_in_float);
     std::vector<Gaussian<double>> all;
@@ -442,8 +442,8 @@ TEST(GaussianNodes, RoundingIsWithinItsBound) {
       rounded.add(all_in_float[k], first_in_float, difference_in_float, 1e3f, true);
     }
     // Eight nodes in both.
-    const auto a = exact.by_nodes<8>(true);
-    const auto b = rounded.by_nodes<8>(true);
+    const auto a = exact.integrate_by_nodes<8>(true);
+    const auto b = rounded.integrate_by_nodes<8>(true);
     const double off = std::max(std::fabs(a.radiance.r - static_cast<double>(b.radiance.r)),
                                 std::fabs(a.opacity - static_cast<double>(b.opacity)));
     const double said = static_cast<double>(rounded.least_error());

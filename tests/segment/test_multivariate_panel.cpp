@@ -522,7 +522,7 @@ TEST(MultivariatePanel, FarFromTheCenter) {
 TEST(MultivariatePanel, EndsThatAreOffAreCharged) {
   Plain plain;
   const double before = plain.panel().found.opacity_error;
-  plain.demand.place_error = 1e-4;
+  plain.demand.position_error = 1e-4;
   const double after = plain.panel().found.opacity_error;
   EXPECT_GE(after - before, 1e-4);
   EXPECT_LE(after - before, 1.01e-4);

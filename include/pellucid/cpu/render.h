@@ -64,13 +64,13 @@ struct RenderReport {
   std::uint64_t cells = 0;  ///< cells visited (exact) or samples taken (the others)
 
   // Of the exact method alone:
-  double largest_error = 0;          ///< of any pixel: largest bound or estimate
-  std::uint64_t pixels = 0;          ///< of the image
-  std::uint64_t pixels_proved = 0;   ///< whose error is a proved bound
-  std::uint64_t pixels_between = 0;  ///< that were interpolated, not traced
-  std::uint64_t pixels_over = 0;     ///< whose error is above the tolerance
-  std::uint64_t evaluations = 0;     ///< of the field: cells gathered and points sampled
-  RuleCounts spans;                  ///< by rule
+  double largest_error = 0;                 ///< of any pixel: largest bound or estimate
+  std::uint64_t pixels = 0;                 ///< of the image
+  std::uint64_t pixels_proved = 0;          ///< whose error is a proved bound
+  std::uint64_t pixels_interpolated = 0;    ///< that were interpolated, not traced
+  std::uint64_t pixels_over_tolerance = 0;  ///< whose error is above the tolerance
+  std::uint64_t evaluations = 0;            ///< of the field: cells gathered and points sampled
+  RuleCounts spans;                         ///< by rule
 };
 
 /// Thrown where the progress callback returned false.

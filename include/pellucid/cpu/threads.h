@@ -6,7 +6,7 @@
 namespace pellucid {
 
 /// One per core that this process may use.
-int default_threads();
+int default_thread_count();
 
 /// Splits work among this many threads. A thread that waits for the others does not take up work
 /// from elsewhere, which might wait for it.

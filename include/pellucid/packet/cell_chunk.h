@@ -78,7 +78,7 @@ class CellChunk {
   /// Of one cell.
   bool filled(int lane) const noexcept { return filled_[lane]; }  ///< whether it is no vacuum
   double length(int lane) const noexcept { return length_[lane]; }
-  double place_error(int lane) const noexcept { return place_error_[lane]; }
+  double position_error(int lane) const noexcept { return place_error_[lane]; }
   double coefficient(int channel, int k, int lane) const noexcept {
     return coefficient_[channel][k][lane];
   }

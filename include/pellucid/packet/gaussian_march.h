@@ -141,7 +141,7 @@ class GaussianMarch {
       variance += weight * (s.ends.bending[a] * s.ends.bending[a]);
     }
     // Each of the four ends is a little beside where it should be.
-    const F beside = F(place_error) / (s.step * fastest_) * s.ends.steepest;
+    const F beside = F(position_error) / (s.step * fastest_) * s.ends.steepest;
     variance = multiply_add(F(4) * beside, beside, variance);
     // Two rules agree by chance now and then.
     const F chance = F(least_share) * s.ends.coarse;
@@ -175,8 +175,9 @@ class GaussianMarch {
     const F waves = gather(waves_, select(lanes, block, I(0)));
     shortest_wave_ = max(shortest_wave_, select(lanes, waves, F(0)));
   }
-  /// RayResult::unevenness and longest_step of what was noted, in units of the largest color.
-  F unevenness() const noexcept {
+  /// RayResult::neighbor_deviation and longest_step of what was noted, in units of the largest
+  /// color.
+  F neighbor_deviation() const noexcept {
     F variance(0);
     for (int a = 0; a < 3; ++a) {
       variance += variance_between_rays(bends_at_ends_[a], bends_[a] / max(seen_, F(1e-30f)), seen_,
@@ -216,7 +217,7 @@ class GaussianMarch {
   static constexpr float longest_step = 1.87f;
   static constexpr float shortest_step = 0x1p-13f;
   /// Cells: what sample_places.h says of so short ways, as a standard deviation at most.
-  static constexpr float place_error = 1e-6f;
+  static constexpr float position_error = 1e-6f;
   /// Of what Simpson's rule errs on four steps over a Gaussian at most, which is 0.27 times the
   /// fourth power of how far it moves in one, what counts as the least standard deviation.
   static constexpr float least_share = 0.01f;

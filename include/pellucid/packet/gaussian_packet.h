@@ -85,7 +85,7 @@ class GaussianPacket {
     const SegmentResult<D> all = fold_.result();
     const D error = fold_.error(convert<double>(segments_)) +
                     D(rays_.largest_color) * min(D(job_.left_out) * march_.end(), D(1));
-    const F unevenness = largest_color_ * march_.unevenness(),
+    const F neighbor_deviation = largest_color_ * march_.neighbor_deviation(),
             longest_step = march_.longest_step_between();
     double field[6][N];
     std::int32_t looks[N], skipped[N], taken[N];
@@ -112,7 +112,7 @@ class GaussianPacket {
       r.skipped = skipped[l];
       r.strides = taken[l];
       r.proved = taken[l] == 0 ? 1 : 0;
-      r.unevenness = unevenness[l];
+      r.neighbor_deviation = neighbor_deviation[l];
       r.longest_step = longest_step[l];
       trace_.find_half(l, lane_ray_[l].begin, lane_ray_[l].end, r);
       ray_of_lane_[l] = -1;

@@ -113,7 +113,7 @@ class MeshMarch {
       convert<float>(rays.end - begin).store(rows.left + at);
       const F at_ends = off_at_ends(t_error);
       const bool steps = values_.steps();
-      (steps ? F(0) : both).store(rows.place_error + at);
+      (steps ? F(0) : both).store(rows.position_error + at);
       ((steps ? both : at_ends) + at_eye).store(rows.end_error + at);
       note.store(rows.code + at);
     }

@@ -151,7 +151,7 @@ class MeshPacket {
       take(rows_.rounding, rounding_);
       take(rows_.length, length_);
       take(rows_.left, left_);
-      take(rows_.place_error, place_error_);
+      take(rows_.position_error, place_error_);
       take(rows_.end_error, end_error_);
       note = select(here, I::load(rows_.code + at), note);
     });

@@ -112,7 +112,7 @@ class MultichannelCells {
         length.store(rows.exact_length + at);
         convert<float>(end - begin).store(rows.left + at);
         convert<float>(D(8 * rounding_unit<double>) * (rays_.begin + leave))
-            .store(rows.place_error + at);
+            .store(rows.position_error + at);
         F(0).store(rows.end_error + at);
         F(0).store(rows.changed + at);
         I(0).store(rows.code + at);

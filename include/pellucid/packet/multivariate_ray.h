@@ -6,7 +6,7 @@
 #include "pellucid/packet/multivariate_interface.h"
 #include "pellucid/packet/panel_list.h"
 #include "pellucid/packet/table_absorbs.h"
-#include "pellucid/segment/fold.h"
+#include "pellucid/segment/compositor.h"
 #include "pellucid/traverse/block_walk.h"
 #include "pellucid/traverse/multivariate_blocks.h"
 
@@ -30,7 +30,7 @@ class MultivariateRay {
     static constexpr int chunks = 8;
     CellChunk<N> chunk[chunks];
     PanelList panels;
-    PanelRoom<B> terms;
+    PanelWorkspace<B> terms;
   };
 
   MultivariateRay(const PellucidMultivariateJob& job, const PellucidRay& ray, Room& room) noexcept
@@ -69,7 +69,7 @@ class MultivariateRay {
   }
 
   void store(PellucidRayResult& result) const noexcept {
-    // Folding in double costs 4 u a panel (segment/fold.h).
+    // Folding in double costs 4 u a panel (segment/compositor.h).
     const double folding = 4 * rounding_unit<double> * largest_color_ * folded_;
     const Rgb<double> radiance = fold_.radiance();
     result = {};
@@ -188,7 +188,7 @@ class MultivariateRay {
       const GaussianCubic<B> cubic(g, data);
       const auto near = cubic.lower() < B(exponent);
       if (none(near)) continue;
-      const auto part = cubic.within(B(sqrt(exponent)));
+      const auto part = cubic.range_within(B(sqrt(exponent)));
       const auto matters = near & (part.from < part.to);
       from = select(matters, min(from, part.from), from);
       to = select(matters, max(to, part.to), to);
@@ -297,7 +297,7 @@ class MultivariateRay {
       end[l] = panel.end;
       length[l] = l < count ? cells.length(panel.lane) : 0;
       // Cuts inside move by their share of what the cell is longer or shorter by.
-      const double off = cells.place_error(panel.lane);
+      const double off = cells.position_error(panel.lane);
       place[l] = panel.begin > 0 && panel.end < 1 ? (panel.end - panel.begin) * off : off;
       demand_.primitives.bits |= cells.primitives(panel.lane).bits;
       whole = whole && panel.begin == 0 && panel.end == 1;
@@ -305,7 +305,7 @@ class MultivariateRay {
       if (small || room_.panels.room() < 2) last_resort |= 1u << l;
     }
     demand_.last_resort = BatchMask<N>::from_bits(last_resort);
-    demand_.place_error = B::load(place);
+    demand_.position_error = B::load(place);
     MultivariateSpan<B> span;
     for (int c = 0; c < grid_.channels; ++c) {
       for (int k = 0; k < 4; ++k) span.data[c].b[k] = B::load(data[c][k]);
@@ -388,7 +388,7 @@ class MultivariateRay {
   PrimitiveSet primitives_;           ///< of that block
   double begin_, length_;             ///< of the ray
   RayBudget<double> budget_;
-  FrontToBack<double> fold_{0.0};
+  FrontToBackCompositor<double> fold_{0.0};
   PanelDemand<B> demand_;
   int oldest_ = 0, newest_ = 0;  ///< chunks that panels refer to: oldest_ <= number < newest_
   int pending_ = 0;              ///< panels that are not done

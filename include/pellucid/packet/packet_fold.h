@@ -3,7 +3,7 @@
 
 #include "pellucid/error/budget.h"
 #include "pellucid/packet/interface.h"
-#include "pellucid/segment/fold.h"
+#include "pellucid/segment/compositor.h"
 #include "pellucid/simd/batch.h"
 
 #if PELLUCID_HAS_BATCH_4  // in sources compiled per instruction set
@@ -127,7 +127,7 @@ class PacketFold {
                                   F(static_cast<float>(largest_color_)));
   }
 
-  FrontToBack<D> fold_;
+  FrontToBackCompositor<D> fold_;
   float tolerance_ = 0;  ///< that the budget began with
   float largest_extinction_ = 0;
   double largest_color_ = 0;

@@ -80,7 +80,7 @@ class PacketIntegrator {
   void store(PellucidRayResult* results) const noexcept {
     const SegmentResult<D> all = fold_.result();
     const D error = fold_.error(convert<double>(pieces_ + strides_));
-    const F unevenness = smooth_.unevenness();
+    const F neighbor_deviation = smooth_.neighbor_deviation();
     const F longest_step = smooth_.longest_step();
     for (int l = 0; l < count_; ++l) {
       PellucidRayResult& r = results[first_ + l];
@@ -97,7 +97,7 @@ class PacketIntegrator {
            panels_[l],
            in_double_[l],
            strides_[l],
-           unevenness[l],
+           neighbor_deviation[l],
            longest_step[l],
            static_cast<std::uint8_t>(bits(proved_) >> l & 1)};
       const PellucidRay& ray = job_.rays[first_ + l];
@@ -370,7 +370,7 @@ class PacketIntegrator {
       }
       cell.begin = room_.stretches.begin[stretch];
       cell.from = from[l];
-      cell.place_error = static_cast<double>(place_error_[l]);
+      cell.position_error = static_cast<double>(place_error_[l]);
       cell.allowance_flat = static_cast<double>(flat[l]);
       cell.allowance_per_opacity = static_cast<double>(all[l] - flat[l]);
       PellucidCellResult result;

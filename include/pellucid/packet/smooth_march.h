@@ -178,8 +178,8 @@ class SmoothMarch {
     for (int a = 0; a < 3; ++a) bends_[a] = select(lanes, mean[a] * seen_, bends_[a]);
   }
 
-  /// RayResult::unevenness, of what was taken or refused.
-  F unevenness() const noexcept {
+  /// RayResult::neighbor_deviation, of what was taken or refused.
+  F neighbor_deviation() const noexcept {
     F variance(0);
     for (int a = 0; a < 3; ++a) {
       const F mean = bends_[a] / max(seen_, F(tiny));

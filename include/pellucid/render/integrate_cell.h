@@ -36,11 +36,11 @@ struct CellSegment {
   }
 };
 
-/// Integrates a cell, or a part of one, in T. `place_error`: how far its ends may be from where
+/// Integrates a cell, or a part of one, in T. `position_error`: how far its ends may be from where
 /// they are thought to be, world length. allowance(opacity): how large its error may be. Without
 /// `forced`, returns false where T's rounding would take more than a quarter of that.
 template <class T, class Allowance>
-PELLUCID_HD bool integrate_cell(const CubicBernstein<T>& data, T length, double place_error,
+PELLUCID_HD bool integrate_cell(const CubicBernstein<T>& data, T length, double position_error,
                                 const TransferTables& transfer, const RayTolerance& wanted,
                                 bool forced, Allowance&& allowance,
                                 CellSegment<T>& result) noexcept {
@@ -50,8 +50,9 @@ PELLUCID_HD bool integrate_cell(const CubicBernstein<T>& data, T length, double 
   const T lower = data.hull_min(), upper = data.hull_max();
   // Squares of the data's differences must not underflow in binary32.
   if (!forced && !(max(abs(lower), abs(upper)) > T(1e-15)) && upper > lower) return false;
-  const bool lacks = is_single<T> && transfer.single_lacks(static_cast<double>(lower - data_error),
-                                                           static_cast<double>(upper + data_error));
+  const bool lacks =
+      is_single<T> && transfer.single_is_inexact(static_cast<double>(lower - data_error),
+                                                 static_cast<double>(upper + data_error));
   if (lacks && !forced) return false;
   const detail::IntervalRange reach =
       detail::interval_range(table, lower - data_error, upper + data_error);
@@ -70,7 +71,7 @@ PELLUCID_HD bool integrate_cell(const CubicBernstein<T>& data, T length, double 
   const T colors = min(slopes.color_jumps, T(largest_color));
   const double shifted = static_cast<double>(colors * min(rounding.depth, T(1)));
   // Where the cell ends has the color that it has there.
-  rounding.depth += static_cast<T>(place_error) * slopes.largest_extinction;
+  rounding.depth += static_cast<T>(position_error) * slopes.largest_extinction;
   const auto rounding_cost = [&](const T alpha, const T transparency) noexcept {
     if (lacks) return largest_color;  // anything may be there
     return shifted + static_cast<double>(rounding.color_error(alpha)) +

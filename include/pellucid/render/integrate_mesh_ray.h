@@ -5,7 +5,7 @@
 #include "pellucid/math/solve_monotone.h"
 #include "pellucid/render/integrate_linear_span.h"
 #include "pellucid/render/multivariate_integrator.h"
-#include "pellucid/segment/fold.h"
+#include "pellucid/segment/compositor.h"
 #include "pellucid/traverse/mesh_spans.h"
 
 namespace pellucid {
@@ -17,7 +17,7 @@ struct MeshRay {
   int count = 0;
 
   /// Where the ray may have anything to do with the mesh, world arc length.
-  PELLUCID_HD Interval<double> inside() const noexcept {
+  PELLUCID_HD Interval<double> extent() const noexcept {
     if (count == 0) return {1, 0};
     return {max(hits[0].t, 0.0), hits[count - 1].t};
   }
@@ -38,9 +38,9 @@ class MeshRayIntegrator {
         budget_(wanted.tolerance, inside.end - inside.begin) {}
 
   /// Asks for the place where the optical depth reaches `depth`; the ray ends there.
-  PELLUCID_HD void look_for(double depth) noexcept { target_ = depth; }
+  PELLUCID_HD void set_target_depth(double depth) noexcept { target_ = depth; }
   /// Its world arc length; infinite where it was not met.
-  PELLUCID_HD double found() const noexcept { return found_; }
+  PELLUCID_HD double target_position() const noexcept { return found_; }
 
   /// Whether what is left of the ray can no longer matter.
   PELLUCID_HD bool done() const noexcept {
@@ -48,7 +48,7 @@ class MeshRayIntegrator {
            (target_ == infinity && budget_.allows_termination(rest(), wanted_.tolerance));
   }
 
-  PELLUCID_HD void span(const MeshSpan& span) noexcept {
+  PELLUCID_HD void add_span(const MeshSpan& span) noexcept {
     ++cells_;
     budget_.set_remaining_length(max(end_ - span.begin, 0.0));
     const double length = span.end - span.begin;
@@ -60,12 +60,12 @@ class MeshRayIntegrator {
     if (span.vacuum) {
       ++counts_.skipped;
       // What is beside it may begin and end elsewhere.
-      const double beside = transfer_.largest_extinction * (span.place_error + span.end_error);
+      const double beside = transfer_.largest_extinction * (span.position_error + span.end_error);
       budget_.spend(length, 0, fold_.transparency(), largest_color_ * min(beside, 1.0));
       return;
     }
-    const LinearData data{span.front[0], span.back[0],     span.value_error[0],
-                          length,        span.place_error, span.end_error};
+    const LinearData data{span.front[0], span.back[0],        span.value_error[0],
+                          length,        span.position_error, span.end_error};
     const bool in_float = wanted_.precision == Precision::float32;
     if (in_float) {
       add<float>(data, span.begin);
@@ -79,7 +79,7 @@ class MeshRayIntegrator {
     result.radiance = fold_.radiance();
     result.optical_depth = fold_.optical_depth();
     result.opacity = fold_.opacity();
-    // Folding in double costs 4 u a span (segment/fold.h).
+    // Folding in double costs 4 u a span (segment/compositor.h).
     const double folding = 4 * rounding_unit<double> * largest_color_ * static_cast<double>(cells_);
     result.error = budget_.spent() + (done() ? rest() : 0) + folding;
     result.proved = true;
@@ -133,7 +133,7 @@ class MeshRayIntegrator {
   const RayTolerance& wanted_;
   double largest_color_, end_;
   RayBudget<double> budget_;
-  FrontToBack<double> fold_{0.0};
+  FrontToBackCompositor<double> fold_{0.0};
   RuleCounts counts_;
   long cells_ = 0;
   double target_ = infinity, found_ = infinity;
@@ -196,15 +196,16 @@ PELLUCID_HD inline void add_span(const MultivariateTransfer<double>& transfer, c
   if (span.overlaps || span.vacuum || length == 0) {
     // Where cells overlap, anything may be, and in all that they hide; what is beside vacuum, or in
     // no length, may begin and end elsewhere.
-    integrator.lose(span.overlaps ? 1 : largest_extinction * (span.place_error + span.end_error));
+    integrator.charge_opacity(
+        span.overlaps ? 1 : largest_extinction * (span.position_error + span.end_error));
     return;
   }
   LinearSpan<double> data;
   data.length = length;
   for (int c = 0; c < transfer.channels; ++c) data.data[c] = {{span.front[c], span.back[c]}};
-  integrator.stretch(data, {span.begin, span.end}, {},
-                     min(extinction_error(transfer, span), largest_extinction),
-                     span.place_error + span.end_error);
+  integrator.add_stretch(data, {span.begin, span.end}, {},
+                         min(extinction_error(transfer, span), largest_extinction),
+                         span.position_error + span.end_error);
 }
 
 /// for_each_mesh_span(), of what lies in the range.
@@ -234,11 +235,11 @@ PELLUCID_HD void for_each_span_inside(const Tetrahedra& mesh, const MeshFields& 
 PELLUCID_HD inline RayResult integrate_mesh_ray(const Tetrahedra& mesh, const MeshFields& fields,
                                                 const TransferTables& transfer, const MeshRay& ray,
                                                 const RayTolerance& wanted) noexcept {
-  const Interval<double> inside = ray.inside();
-  if (inside.empty()) return nothing_met();
+  const Interval<double> inside = ray.extent();
+  if (inside.empty()) return missed_ray_result();
   MeshRayIntegrator integrator(transfer, wanted, inside);
   for_each_mesh_span(mesh, fields, ray.view, ray.hits, ray.count, [&](const MeshSpan& span) {
-    integrator.span(span);
+    integrator.add_span(span);
     return !integrator.done();
   });
   return integrator.result();
@@ -249,8 +250,8 @@ PELLUCID_HD inline RayResult integrate_mesh_ray(const Tetrahedra& mesh, const Me
 PELLUCID_HD inline RayResult integrate_multivariate_mesh_ray(
     const Tetrahedra& mesh, const MeshFields& fields, const MultivariateTransfer<double>& transfer,
     double largest_extinction, const MeshRay& ray, const RayTolerance& wanted) noexcept {
-  const Interval<double> inside = ray.inside();
-  if (inside.empty()) return nothing_met();
+  const Interval<double> inside = ray.extent();
+  if (inside.empty()) return missed_ray_result();
   MultivariateRayIntegrator integrator(transfer, largest_extinction, wanted,
                                        inside.end - inside.begin);
   long cells = 0;
@@ -272,15 +273,15 @@ PELLUCID_HD inline double find_mesh_half_opacity(const Tetrahedra& mesh, const M
                                                  const TransferTables& transfer, const MeshRay& ray,
                                                  const RayTolerance& wanted, double opacity,
                                                  const HalfOpacity& half) noexcept {
-  const Interval<double> inside = ray.inside();
+  const Interval<double> inside = ray.extent();
   if (!(opacity > 0) || inside.empty()) return std::numeric_limits<double>::infinity();
   MeshRayIntegrator integrator(transfer, wanted, inside);
-  integrator.look_for(half.depth_to_half(opacity));
+  integrator.set_target_depth(half.depth_to_half(opacity));
   detail::for_each_span_inside(mesh, fields, ray, half.range, [&](const MeshSpan& span) {
-    integrator.span(span);
+    integrator.add_span(span);
     return !integrator.done();
   });
-  return min(integrator.found(), half.range.end);
+  return min(integrator.target_position(), half.range.end);
 }
 
 /// The same through several variables of a mesh.
@@ -288,16 +289,16 @@ PELLUCID_HD inline double find_multivariate_mesh_half_opacity(
     const Tetrahedra& mesh, const MeshFields& fields, const MultivariateTransfer<double>& transfer,
     double largest_extinction, const MeshRay& ray, const RayTolerance& wanted, double opacity,
     const HalfOpacity& half) noexcept {
-  const Interval<double> inside = ray.inside();
+  const Interval<double> inside = ray.extent();
   if (!(opacity > 0) || inside.empty()) return std::numeric_limits<double>::infinity();
   MultivariateRayIntegrator integrator(transfer, largest_extinction, wanted,
                                        inside.end - inside.begin);
-  integrator.look_for(half.depth_to_half(opacity));
+  integrator.set_target_depth(half.depth_to_half(opacity));
   detail::for_each_span_inside(mesh, fields, ray, half.range, [&](const MeshSpan& span) {
     detail::add_span(transfer, span, largest_extinction, integrator);
     return !integrator.done();
   });
-  return min(integrator.found(), half.range.end);
+  return min(integrator.target_position(), half.range.end);
 }
 
 }  // namespace pellucid

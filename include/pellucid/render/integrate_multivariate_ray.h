@@ -42,8 +42,8 @@ PELLUCID_HD inline long follow_ray(const MultichannelGrid& grid, const Multivari
       ++cells;
       MultivariateSpan<double> span;
       if (make_multivariate_span(grid, step, span)) {
-        integrator.stretch(span, {step.t_begin, step.t_end}, primitives, left_out,
-                           8 * rounding_unit<double> * step.t_end);
+        integrator.add_stretch(span, {step.t_begin, step.t_end}, primitives, left_out,
+                               8 * rounding_unit<double> * step.t_end);
       } else {
         integrator.skip(span.length, 0);
       }
@@ -78,9 +78,9 @@ PELLUCID_HD inline double find_multivariate_half_opacity(
   if (inside.empty()) return half.range.end;
   MultivariateRayIntegrator integrator(transfer, largest_extinction, wanted,
                                        inside.end - inside.begin);
-  integrator.look_for(half.depth_to_half(opacity));
+  integrator.set_target_depth(half.depth_to_half(opacity));
   detail::follow_ray(grid, blocks, ray_grid, inside, integrator);
-  return min(integrator.found(), half.range.end);
+  return min(integrator.target_position(), half.range.end);
 }
 
 /// The volume rendering integral along a ray (in grid coordinates, its parameter the world arc
@@ -93,7 +93,7 @@ PELLUCID_HD inline RayResult integrate_multivariate_ray(
     const MultivariateTransfer<double>& transfer, double largest_extinction,
     const RayTolerance& wanted, bool with_depth) noexcept {
   const Interval<double> inside = grid_interval(grid.axis, ray_grid);
-  if (inside.empty()) return nothing_met();
+  if (inside.empty()) return missed_ray_result();
 
   MultivariateRayIntegrator integrator(transfer, largest_extinction, wanted,
                                        inside.end - inside.begin);

@@ -57,9 +57,9 @@ PELLUCID_HD double find_half_opacity(const StructuredGrid<Value, double>& grid,
 /// Goes through the blocks of a ray: those that are done at once, those that are smooth together
 /// with their neighbours, the rest cell by cell.
 template <class Value, class EachCell>
-PELLUCID_HD void each_block(const ClassifiedBlocks& blocks, const Ray<double>& ray_grid,
-                            Interval<double> inside, RayIntegrator<Value>& integrator,
-                            EachCell&& each_cell) noexcept {
+PELLUCID_HD void integrate_blocks(const ClassifiedBlocks& blocks, const Ray<double>& ray_grid,
+                                  Interval<double> inside, RayIntegrator<Value>& integrator,
+                                  EachCell&& each_cell) noexcept {
   const BlockRecords& records = blocks.records;
   StrideMarch march(ray_grid.direction, records.least_width, records.mean_width);
   Interval<double> smooth{inside.begin, inside.begin};
@@ -71,7 +71,7 @@ PELLUCID_HD void each_block(const ClassifiedBlocks& blocks, const Ray<double>& r
     const BlockClass& block = blocks.classes[step.block];
     const BlockRange range = records.range(step.block);
     const BlockBends own = records.bends(step.block);
-    if (march.knows_places(step.t_end) &&
+    if (march.resolves_positions(step.t_end) &&
         integrator.is_smooth(block, range, own, march.variation(own), march.shortest())) {
       bends = smooth.begin < smooth.end ? join(bends, own) : own;
       smooth.end = step.t_end;
@@ -84,7 +84,7 @@ PELLUCID_HD void each_block(const ClassifiedBlocks& blocks, const Ray<double>& r
     finish();
     smooth = {step.t_end, step.t_end};
     if (integrator.done()) return false;
-    if (!integrator.block(block.kind, range.min, step)) each_cell({step.t_begin, step.t_end});
+    if (!integrator.try_block(block.kind, range.min, step)) each_cell({step.t_begin, step.t_end});
     return !integrator.done();
   });
   finish();
@@ -100,7 +100,7 @@ PELLUCID_HD RayResult integrate_ray(const StructuredGrid<Value, double>& grid,
                                     const TransferTables& transfer, const RayTolerance& wanted,
                                     bool with_depth) noexcept {
   const Interval<double> inside = grid_interval(grid.axis, ray_grid);
-  if (inside.empty()) return nothing_met();
+  if (inside.empty()) return missed_ray_result();
 
   RayIntegrator<Value> integrator(grid, ray_grid, transfer, wanted, inside.end - inside.begin);
   long cells = 0;
@@ -109,13 +109,13 @@ PELLUCID_HD RayResult integrate_ray(const StructuredGrid<Value, double>& grid,
     StructuredWalk<double>::Step step;
     while (!integrator.done() && walk.next(step)) {
       ++cells;
-      integrator.cell(step);
+      integrator.add_cell(step);
     }
   };
   if (blocks == nullptr) {
     each_cell(inside);
   } else {
-    each_block(*blocks, ray_grid, inside, integrator, each_cell);
+    integrate_blocks(*blocks, ray_grid, inside, integrator, each_cell);
   }
   RayResult result = integrator.result();
   result.cells = cells;

@@ -5,7 +5,7 @@
 #include "pellucid/geometry/ray.h"
 #include "pellucid/math/solve_monotone.h"
 #include "pellucid/render/integrate_cell.h"
-#include "pellucid/segment/fold.h"
+#include "pellucid/segment/compositor.h"
 #include "pellucid/segment/multivariate_panel.h"
 
 namespace pellucid {
@@ -29,9 +29,9 @@ class MultivariateRayIntegrator {
   }
 
   /// Asks for the place where the optical depth reaches `depth`; the ray ends there.
-  PELLUCID_HD void look_for(double depth) noexcept { target_ = depth; }
+  PELLUCID_HD void set_target_depth(double depth) noexcept { target_ = depth; }
   /// Its world arc length; infinite where it was not met.
-  PELLUCID_HD double found() const noexcept { return found_; }
+  PELLUCID_HD double target_position() const noexcept { return found_; }
 
   /// Whether what is left of the ray can no longer matter.
   PELLUCID_HD bool done() const noexcept {
@@ -45,7 +45,7 @@ class MultivariateRayIntegrator {
   }
 
   /// Where something may hide at most this opacity, in no length.
-  PELLUCID_HD void lose(double opacity) noexcept {
+  PELLUCID_HD void charge_opacity(double opacity) noexcept {
     ++counts_.skipped;
     budget_.spend(0, 0, fold_.transparency(), demand_.largest_color * min(opacity, 1.0));
   }
@@ -59,11 +59,11 @@ class MultivariateRayIntegrator {
 
   /// A stretch of the ray on which all channels are cubics, or linear, cut until it is good enough.
   /// `range`: where it is on the ray, world arc length. `left_out`: a bound on the extinction that
-  /// is not looked at, that of primitives that are not in the set above all. `place_error`: how far
-  /// its ends may be off.
+  /// is not looked at, that of primitives that are not in the set above all. `position_error`: how
+  /// far its ends may be off.
   template <class Span>
-  PELLUCID_HD void stretch(const Span& span, Interval<double> range, PrimitiveSet primitives,
-                           double left_out, double place_error) noexcept {
+  PELLUCID_HD void add_stretch(const Span& span, Interval<double> range, PrimitiveSet primitives,
+                               double left_out, double position_error) noexcept {
     ++evaluations_;
     demand_.primitives = primitives;
     // The parts still to do, by their ends, the nearest last.
@@ -74,7 +74,8 @@ class MultivariateRayIntegrator {
     while (open > 0) {
       const double end = ends[open - 1];
       // Cuts inside move by their share of what the stretch is longer or shorter by.
-      demand_.place_error = begin > 0 && end < 1 ? (end - begin) * place_error : place_error;
+      demand_.position_error =
+          begin > 0 && end < 1 ? (end - begin) * position_error : position_error;
       demand_.last_resort = open > most_cuts || !(end - begin > 1e-9);
       const PanelSegment<double> panel = integrate(span, begin, end, left_out);
       if (!panel.done) {
@@ -98,7 +99,7 @@ class MultivariateRayIntegrator {
     result.radiance = fold_.radiance();
     result.optical_depth = fold_.optical_depth();
     result.opacity = fold_.opacity();
-    // Folding in double costs 4 u a span (segment/fold.h).
+    // Folding in double costs 4 u a span (segment/compositor.h).
     const double folding =
         4 * rounding_unit<double> * demand_.largest_color * static_cast<double>(panels_);
     result.error = budget_.spent() + rest() + folding;
@@ -168,7 +169,7 @@ class MultivariateRayIntegrator {
   double tolerance_, length_;
   PanelDemand<double> demand_;
   RayBudget<double> budget_;
-  FrontToBack<double> fold_{0.0};
+  FrontToBackCompositor<double> fold_{0.0};
   RuleCounts counts_;
   long evaluations_ = 0, panels_ = 0;
   bool proved_ = true;

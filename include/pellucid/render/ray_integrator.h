@@ -4,7 +4,7 @@
 #include "pellucid/error/budget.h"
 #include "pellucid/field/sample.h"
 #include "pellucid/render/integrate_cell.h"
-#include "pellucid/segment/fold.h"
+#include "pellucid/segment/compositor.h"
 #include "pellucid/segment/stride.h"
 #include "pellucid/traverse/block_bends.h"
 #include "pellucid/traverse/block_walk.h"
@@ -42,7 +42,7 @@ class RayIntegrator {
 
   /// A block of this kind, or a cube of such, at once: false where its cells have to be gone
   /// through. `lower`: the lower end of the block's range.
-  PELLUCID_HD bool block(BlockKind kind, double lower, const BlockStep& step) noexcept {
+  PELLUCID_HD bool try_block(BlockKind kind, double lower, const BlockStep& step) noexcept {
     const double length = step.t_end - step.t_begin;
     if (kind == BlockKind::skip) {
       skip(length);
@@ -60,7 +60,7 @@ class RayIntegrator {
   }
 
   /// One cell of a walk over the grid.
-  PELLUCID_HD void cell(const StructuredWalk<double>::Step& step) noexcept {
+  PELLUCID_HD void add_cell(const StructuredWalk<double>::Step& step) noexcept {
     ++evaluations_;
     if (wanted_.precision == Precision::float64 ||
         (wanted_.grade == Grade::proved && wanted_.precision == Precision::automatic)) {
@@ -96,8 +96,8 @@ class RayIntegrator {
   /// A stride from t_begin, where the data are `front`, in blocks whose derivative varies by at
   /// most `variation` on either half: false where the tolerance does not allow it. `back`: the data
   /// at its end.
-  PELLUCID_HD bool stride(double t_begin, double length, double variation, double front,
-                          double& back) noexcept {
+  PELLUCID_HD bool try_stride(double t_begin, double length, double variation, double front,
+                              double& back) noexcept {
     const double middle = sample(t_begin + 0.5 * length);
     back = sample(t_begin + length);  // NaN on a plane that vacuum begins at: no stride
     // The samples themselves are rounded.
@@ -128,7 +128,7 @@ class RayIntegrator {
     result.radiance = fold_.radiance();
     result.optical_depth = fold_.optical_depth();
     result.opacity = fold_.opacity();
-    // Folding in double costs 4 u a span (segment/fold.h).
+    // Folding in double costs 4 u a span (segment/compositor.h).
     const double folding =
         4 * rounding_unit<double> * largest_color_ * static_cast<double>(evaluations_);
     result.error = budget_.spent() + rest() + folding;
@@ -167,10 +167,10 @@ class RayIntegrator {
       return true;
     }
     // Where the ray meets the planes is known to a few units of its arc length.
-    const double place_error = 8 * rounding_unit<double> * step.t_end;
+    const double position_error = 8 * rounding_unit<double> * step.t_end;
     CellSegment<T> found;
     if (!integrate_cell(
-            span.data, span.length(), place_error, transfer_, wanted_, forced,
+            span.data, span.length(), position_error, transfer_, wanted_, forced,
             [&](double opacity) {
               return budget_.allowance(world_length, opacity, fold_.transparency());
             },
@@ -192,7 +192,7 @@ class RayIntegrator {
   const RayTolerance& wanted_;
   double largest_color_;
   RayBudget<double> budget_;
-  FrontToBack<double> fold_{0.0};
+  FrontToBackCompositor<double> fold_{0.0};
   RuleCounts counts_;
   long evaluations_ = 0;
   bool proved_ = true;

@@ -48,14 +48,14 @@ struct RayResult {
   /// What is known of rays beside this one: by how much these may differ from what goes smoothly
   /// from ray to ray, as a standard deviation; and how far apart rays may be to show all that
   /// there is between them, in voxels. Infinite and 0 where nothing is known.
-  float unevenness = std::numeric_limits<float>::infinity(), longest_step = 0;
+  float neighbor_deviation = std::numeric_limits<float>::infinity(), longest_step = 0;
   bool proved = false;   ///< whether `error` is a bound and not an estimate
   long evaluations = 0;  ///< of the field: cells gathered and points sampled
   RuleCounts spans;
 };
 
 /// Of a ray that meets nothing.
-PELLUCID_HD inline RayResult nothing_met() noexcept {
+PELLUCID_HD inline RayResult missed_ray_result() noexcept {
   RayResult nothing;
   nothing.error = 0;
   nothing.proved = true;

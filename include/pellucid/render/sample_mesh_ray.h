@@ -21,7 +21,7 @@ sample_mesh_spans(const Tetrahedra& mesh, const MeshFields& fields, const MeshRa
                   const SegmentOf& segment_of, double stop,
                   double depth = std::numeric_limits<double>::infinity()) noexcept {
   RayResult result;
-  FrontToBack<double> fold(stop);
+  FrontToBackCompositor<double> fold(stop);
   for_each_mesh_span(mesh, fields, ray.view, ray.hits, ray.count, [&](const MeshSpan& span) {
     ++result.cells;
     if (span.vacuum || span.overlaps) return true;

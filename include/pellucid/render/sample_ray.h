@@ -4,7 +4,7 @@
 #include "pellucid/field/multichannel_grid.h"
 #include "pellucid/render/ray_result.h"
 #include "pellucid/segment/classical.h"
-#include "pellucid/segment/fold.h"
+#include "pellucid/segment/compositor.h"
 #include "pellucid/segment/gaussian_step.h"
 #include "pellucid/segment/linear.h"
 #include "pellucid/transfer/multivariate.h"
@@ -60,9 +60,9 @@ PELLUCID_HD SegmentResult<T> sampled_segment(SamplingRule rule, const Material<T
 /// Folds the steps of a march, which calls visit(segment, t_begin, t_end) front to back until that
 /// returns false, into the ray's result: to the transparency `stop`, and once more for the depth.
 template <class T, class March>
-PELLUCID_HD void fold_march(March&& march, double stop, bool with_depth,
-                            RayResult& result) noexcept {
-  FrontToBack<double> fold(stop);
+PELLUCID_HD void composite_march(March&& march, double stop, bool with_depth,
+                                 RayResult& result) noexcept {
+  FrontToBackCompositor<double> fold(stop);
   march([&](const SegmentResult<T>& segment, double, double) {
     ++result.cells;
     fold.add(segment);
@@ -88,7 +88,7 @@ PELLUCID_HD void fold_march(March&& march, double stop, bool with_depth,
 }
 
 /// What of a step a rule wants to see.
-struct StepPlaces {
+struct SamplePositions {
   bool ends = true, middle = false;
 };
 
@@ -97,9 +97,10 @@ struct StepPlaces {
 /// a step, {} standing for what is not asked for. The last step ends at the box. Samples lie at
 /// multiples of the step from the entry, computed from their index, so that positions do not drift.
 template <class T, class Sample, class SampleAt, class SegmentOf>
-PELLUCID_HD RayResult march_steps(Interval<double> box, StepPlaces seen, const SampleAt& sample_at,
-                                  const SegmentOf& segment_of, double step, double largest_color,
-                                  double stop_tolerance, bool with_depth) noexcept {
+PELLUCID_HD RayResult march_steps(Interval<double> box, SamplePositions seen,
+                                  const SampleAt& sample_at, const SegmentOf& segment_of,
+                                  double step, double largest_color, double stop_tolerance,
+                                  bool with_depth) noexcept {
   RayResult result;
   if (box.empty()) return result;
 
@@ -119,7 +120,7 @@ PELLUCID_HD RayResult march_steps(Interval<double> box, StepPlaces seen, const S
     }
   };
 
-  fold_march<T>(march, stop_tolerance / max(largest_color, 1.0), with_depth, result);
+  composite_march<T>(march, stop_tolerance / max(largest_color, 1.0), with_depth, result);
   return result;
 }
 
@@ -128,8 +129,8 @@ template <class T, class MaterialAt>
 PELLUCID_HD RayResult sample_materials(Interval<double> box, const MaterialAt& material_at,
                                        SamplingRule rule, double step, double largest_color,
                                        double stop_tolerance, bool with_depth) noexcept {
-  const StepPlaces seen{rule != SamplingRule::midpoint,
-                        rule == SamplingRule::midpoint || rule == SamplingRule::simpson};
+  const SamplePositions seen{rule != SamplingRule::midpoint,
+                             rule == SamplingRule::midpoint || rule == SamplingRule::simpson};
   return march_steps<T, Material<T>>(
       box, seen, material_at,
       [&](const Material<T>& front, const Material<T>& middle, const Material<T>& back,
@@ -183,7 +184,7 @@ PELLUCID_HD RayResult sample_linear_steps(const MultichannelGrid& grid, const Ra
                                           double stop_tolerance, bool with_depth) noexcept {
   using Sample = ChannelSample<T>;
   return march_steps<T, Sample>(
-      grid_interval(grid.axis, ray_grid), StepPlaces{},
+      grid_interval(grid.axis, ray_grid), SamplePositions{},
       [&](double t) noexcept {
         Sample here;
         here.filled = grid.sample(ray_grid.at(t), here.value);

@@ -29,7 +29,7 @@ class StrideMarch {
   PELLUCID_HD double shortest() const noexcept { return shortest_; }
 
   /// Whether places on the ray this far from the eye are known to a billionth of a stride.
-  PELLUCID_HD bool knows_places(double t) const noexcept {
+  PELLUCID_HD bool resolves_positions(double t) const noexcept {
     return 8 * rounding_unit<double> * t <= 1e-9 * shortest_;
   }
   /// As much as is worth gathering before it is gone through.
@@ -57,7 +57,7 @@ class StrideMarch {
       known = true;
       const double variation = derivative_variation(bends, direction_, least_width_, 0.5 * length);
       double back;
-      if (integrator.stride(here, length, variation, value, back)) {
+      if (integrator.try_stride(here, length, variation, value, back)) {
         here = length == left ? t.end : here + length;
         value = back;
         pause_ = 2;

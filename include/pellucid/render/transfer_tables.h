@@ -19,7 +19,7 @@ struct TransferTables {
   int merged_count = 0;
 
   /// Whether `single` does not follow the function somewhere in [lower, upper].
-  PELLUCID_HD bool single_lacks(double lower, double upper) const noexcept {
+  PELLUCID_HD bool single_is_inexact(double lower, double upper) const noexcept {
     int lo = 0, hi = merged_count;
     while (lo < hi) {
       const int mid = (lo + hi) / 2;

@@ -149,7 +149,7 @@ in_float_t<F> range_of(const PieceDepth<F>& piece) noexcept {
 /// (change of the slope of the color c, in all) · (range of the values) / 4, for a kink at k moves
 /// it by no more than (k - a)(b - k)/(b - a).
 template <class F>
-in_float_t<F> kinks_of_color(const BinnedTransfer& transfer, F lower, F upper) noexcept {
+in_float_t<F> color_kink_error(const BinnedTransfer& transfer, F lower, F upper) noexcept {
   using Single = in_float_t<F>;
   if (!transfer.bends) return Single(0);
   // The bins' bounds hold for rounded values; their difference does not.
@@ -161,14 +161,14 @@ in_float_t<F> kinks_of_color(const BinnedTransfer& transfer, F lower, F upper) n
 template <class F>
 struct ColorSpread {
   F range, slope;  ///< of its interval of the extinction: see ExtinctionInterval
-  F kinks;         ///< kinks_of_color()
+  F kinks;         ///< color_kink_error()
 };
 
 /// The segment of a piece, with the color at the mean of the data weighted by extinction.
 ///
 /// color_error is proved: by (5), range of the colors · opacity · κ(depth) for the weighting by
-/// transparency; and where the color bends, kinks_of_color(). Neither counts rounding. `wanted` and
-/// `known` are as of color_at().
+/// transparency; and where the color bends, color_kink_error(). Neither counts rounding. `wanted`
+/// and `known` are as of color_at().
 template <class F>
 BoundedSegment<in_float_t<F>> colored_piece(const PieceDepth<F>& piece,
                                             const ColorSpread<in_float_t<F>>& spread,
@@ -213,10 +213,10 @@ inline constexpr int piece_nodes = 6;
 
 /// How far the mean of a color with a kink, weighted by extinction · transparency, of data that are
 /// a cubic, may be from the sum over the nodes, for a change of slope of 1 over a range of 1, in
-/// units of what kinks_of_color() says. An estimate, not a bound: twice what search found, up
+/// units of what color_kink_error() says. An estimate, not a bound: twice what search found, up
 /// to largest_panel_depth; asserted in packet/test_extinction_piece.
 template <class F>
-F kinks_in_panel(F depth) noexcept {
+F panel_kink_factor(F depth) noexcept {
   return F(0.3f) + F(0.03f) * depth;
 }
 
@@ -228,7 +228,7 @@ in_float_t<F> panel_piece_error(const PieceDepth<F>& piece,
   const Single depth = convert<float>(piece.depth);
   const Single of_range =
       proved ? panel_error_bound<piece_nodes>(depth) : panel_error_estimate<piece_nodes>(depth);
-  const Single of_kinks = proved ? Single(1) : kinks_in_panel(depth);
+  const Single of_kinks = proved ? Single(1) : panel_kink_factor(depth);
   return min(min(spread.range, spread.slope * range_of(piece)) * of_range + spread.kinks * of_kinks,
              spread.range);
 }

@@ -8,7 +8,7 @@ namespace pellucid {
 
 /// What is lost where a line stands for a cubic in a Gaussian's density, in means over [0, 1].
 template <class T>
-struct LineLoss {
+struct LineReplacementError {
   T mean{};      ///< |∫ (density of the cubic - density of the line)|, at most
   T absolute{};  ///< ∫ |density of the cubic - density of the line|, at most
 };
@@ -21,9 +21,10 @@ struct LineLoss {
 /// with the second differences D1, D2 of the coefficients q = (D1 + D2)/4, r = (D2 - D1)/20; so
 /// ∫|e|² = |q|²/5 + |r|²/7 =: N², |e| <= |q| + |r|.
 ///
-/// Proof of line_loss(). Let φ(x) = e^(-|x|²), M_k the largest |D^k φ| on the way from the line to
-/// the cubic: derivatives of a symmetric form are largest where all directions agree (Banach), and
-/// along a line φ is a Gaussian of its own, so that M_1 = √(2/e), M_2 = 2, M_3 < 3.905; where |x|
+/// Proof of line_replacement_error(). Let φ(x) = e^(-|x|²), M_k the largest |D^k φ| on the way from
+/// the line to the cubic: derivatives of a symmetric form are largest where all directions agree
+/// (Banach), and along a line φ is a Gaussian of its own, so that M_1 = √(2/e), M_2 = 2, M_3
+/// < 3.905; where |x|
 /// >= s >= 1, also (2 s, 4 s² + 2, 8 s³ + 12 s) e^(-s²), which descend from there on.
 ///   (A) ∫|φ(p) - φ(l)| <= M_1 ∫|e| <= M_1 N.
 ///   (B) φ(p) - φ(l) = ∇φ(l)·e + R, |R| <= M_2 |e|²/2. e is orthogonal to linear functions, so of
@@ -67,7 +68,7 @@ class GaussianCubic {
   struct Part {
     T from, to;
   };
-  PELLUCID_HD Part within(T reach) const noexcept {
+  PELLUCID_HD Part range_within(T reach) const noexcept {
     T n[Most], x[4];
     T square = T(0);
     for (int i = 0; i < rows(); ++i) {
@@ -111,7 +112,7 @@ class GaussianCubic {
   PELLUCID_HD T mean_density(const Line& l) const noexcept {
     return gaussian_mean_density(l.front, l.back, l.d, rows());
   }
-  PELLUCID_HD LineLoss<T> line_loss(const Line& l) const noexcept {
+  PELLUCID_HD LineReplacementError<T> line_replacement_error(const Line& l) const noexcept {
     T m1 = T(0.857764), m2 = T(2), m3 = T(3.905);
     const T s = max(sqrt(lower_) - l.farthest, T(0));
     const auto away = s >= T(1);

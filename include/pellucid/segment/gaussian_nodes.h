@@ -36,7 +36,7 @@ struct NodeEstimate {
 
 /// A number that is not set to 0 where it is made.
 template <class T>
-struct Kept {
+struct UninitializedNumber {
   scalar_t<T> lane[lanes<T>];
 
   PELLUCID_HD void operator=(const T& value) noexcept {
@@ -57,11 +57,12 @@ struct Kept {
 
 /// What GaussianNodes keeps of a panel's Gaussians: too much for a small stack where T is a batch.
 template <class T>
-struct NodeRoom {
+struct NodeWorkspace {
   struct Term {
     const Gaussian<scalar_t<T>>* of;
-    Kept<T> peak;  ///< depth of its peak over the panel's length; 0 where it does not matter
-    Kept<T> power[4][max_channels];  ///< of u: K (v - c)
+    UninitializedNumber<T>
+        peak;  ///< depth of its peak over the panel's length; 0 where it does not matter
+    UninitializedNumber<T> power[4][max_channels];  ///< of u: K (v - c)
 
     PELLUCID_HD T at(int row, T u) const noexcept {
       const T p = multiply_add(power[3][row].get(), u, power[2][row].get());
@@ -88,7 +89,7 @@ class GaussianNodes {
   using S = scalar_t<T>;
   using Mask = mask_t<T>;
 
-  PELLUCID_HD GaussianNodes(T length, NodeRoom<T>& room) noexcept
+  PELLUCID_HD GaussianNodes(T length, NodeWorkspace<T>& room) noexcept
       : length_(length), term_(room.term) {}
 
   /// Adds a primitive in the lanes `on`, if it comes nearer than the root of `square` to its center
@@ -100,7 +101,7 @@ class GaussianNodes {
     const GaussianCubic<T, Most> curve(of.rows, first, difference);
     const Mask matters = on & !(curve.lower() >= square);
     if (none(matters)) return;
-    typename NodeRoom<T>::Term& term = term_[count_++];
+    typename NodeWorkspace<T>::Term& term = term_[count_++];
     term.of = &of;
     const T peak = select(matters, T(of.peak) * length_, T(0));
     term.peak = peak;
@@ -144,7 +145,7 @@ class GaussianNodes {
     T from = T(0), to = T(1);
     const Mask far = matters & (moves > T(NodeEstimate<8>::farthest));
     if (any(far)) {
-      const auto part = curve.within(sqrt(max(square, T(0))));
+      const auto part = curve.range_within(sqrt(max(square, T(0))));
       from = select(far, part.from, from);
       to = select(far, part.to, to);
     }
@@ -153,7 +154,7 @@ class GaussianNodes {
   }
 
   /// A bound on the depth.
-  PELLUCID_HD T most() const noexcept { return most_; }
+  PELLUCID_HD T depth_bound() const noexcept { return most_; }
   /// What no cutting lowers against the panel's depth: rounding, also of as many sums, and what
   /// estimates say at least.
   PELLUCID_HD T least_error() const noexcept {
@@ -197,7 +198,7 @@ class GaussianNodes {
   /// The panel by N nodes, whatever they err. `several`: whether there are several colors; without
   /// them they are not asked for.
   template <int N>
-  PELLUCID_HD SegmentResult<T> by_nodes(bool several) const noexcept {
+  PELLUCID_HD SegmentResult<T> integrate_by_nodes(bool several) const noexcept {
     static constexpr auto rule = gauss_legendre<S, N>();
     T rate[N];
     Rgb<T> emission[N];
@@ -242,7 +243,7 @@ class GaussianNodes {
     const T error = multiply_add(T(S(Estimate::factor)), sum, steep * weight_);
     const Mask good = open & (error <= left) & (moves_ <= T(Estimate::farthest));
     if (none(good)) return;
-    const SegmentResult<T> found = by_nodes<N>(any(good & several));
+    const SegmentResult<T> found = integrate_by_nodes<N>(any(good & several));
     result.segment.optical_depth = select(good, found.optical_depth, result.segment.optical_depth);
     result.segment.opacity = select(good, found.opacity, result.segment.opacity);
     result.segment.transparency = select(good, found.transparency, result.segment.transparency);
@@ -256,7 +257,7 @@ class GaussianNodes {
   }
 
   T length_;
-  typename NodeRoom<T>::Term* term_;
+  typename NodeWorkspace<T>::Term* term_;
   int count_ = 0;
   T most_{}, rounding_{};
   T seen_{};                                     ///< how many matter, lane by lane

@@ -14,8 +14,8 @@ enum class GaussianRule { kniss, closed_form };
 
 /// The mean density of a primitive along data linear from v1 (front) to v2, by a rule.
 template <class S, class T>
-PELLUCID_HD T mean_density_by(GaussianRule rule, const Gaussian<S>& primitive, const T* v1,
-                              const T* v2) noexcept {
+PELLUCID_HD T mean_density(GaussianRule rule, const Gaussian<S>& primitive, const T* v1,
+                           const T* v2) noexcept {
   return rule == GaussianRule::kniss ? kniss_mean_density(primitive, v1, v2)
                                      : gaussian_mean_density(primitive, v1, v2);
 }
@@ -34,7 +34,7 @@ PELLUCID_HD SegmentResult<T> mean_color_segment(GaussianRule rule,
   DepthWeightedColor<T> sum;
   for (int i = 0; i < transfer.gaussians.count; ++i) {
     const Gaussian<T>& g = transfer.gaussians.primitive[i];
-    sum.add((g.peak * length) * mean_density_by(rule, g, v1, v2), g.color);
+    sum.add((g.peak * length) * mean_density(rule, g, v1, v2), g.color);
   }
   for (int i = 0; i < transfer.tables; ++i) {
     const ChannelTable<T>& term = transfer.table[i];

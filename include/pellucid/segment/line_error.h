@@ -104,7 +104,7 @@ PELLUCID_HD LineError<T> line_error(
     const LineWindow<T>& window, const LineMean<T>& mean, const PiecewiseLinear<T>& table,
     const PiecewiseLinearAntiderivative<T>& antiderivative) noexcept {
   const LegendreCubic<T>& f = window.data;
-  const LineRest<T>& rest = window.rest;
+  const LineResidual<T>& rest = window.rest;
   const RangeSummary<T>& all = window.table;
   const T range = all.color_range(), shift = T(2) * f.rounding, k = mean.rise;
   const T a2 = abs(f.p2), a3 = abs(f.p3);
@@ -124,8 +124,8 @@ PELLUCID_HD LineError<T> line_error(
 
   error.ratio = error.spread = error.ends = RangeSummary<T>::infinity;
   const bool inside = !rest.at_lower && !rest.at_upper;
-  const T blur = inside ? f.slope_rounding : f.slope_rounding + T(2) * shift;
-  const T least = (k - blur) + rest.slope_min, most = (k + blur) + rest.slope_max;
+  const T slope_error = inside ? f.slope_rounding : f.slope_rounding + T(2) * shift;
+  const T least = (k - slope_error) + rest.slope_min, most = (k + slope_error) + rest.slope_max;
   if (least > T(0)) {
     const T ratio = max(abs(least - k) / least, abs(most - k) / most);
     const T spread = T(0.5) * (most - least) / k;

@@ -137,10 +137,10 @@ PELLUCID_HD LineResult<T> line_emission_result(const LineStretch<T>& line,
 /// where none does. What both need is computed once. The second is not tried where the line crosses
 /// so many control points that it would not be cheap.
 template <class T, class Fits>
-PELLUCID_HD bool fitting_line_rule(const CubicBernstein<T>& data, T length,
-                                   const PiecewiseLinear<T>& table,
-                                   const PiecewiseLinearAntiderivative<T>& antiderivative,
-                                   LineResult<T>& result, Fits&& fits) noexcept {
+PELLUCID_HD bool select_line_rule(const CubicBernstein<T>& data, T length,
+                                  const PiecewiseLinear<T>& table,
+                                  const PiecewiseLinearAntiderivative<T>& antiderivative,
+                                  LineResult<T>& result, Fits&& fits) noexcept {
   const LegendreCubic<T> cell = legendre(data);
   const T data_min = data.hull_min(), data_max = data.hull_max();
   const int near = table.interval(data_min);
@@ -183,8 +183,8 @@ PELLUCID_HD LineResult<T> line_rule(
     const CubicBernstein<T>& data, T length, const PiecewiseLinear<T>& table,
     const PiecewiseLinearAntiderivative<T>& antiderivative) noexcept {
   LineResult<T> result;
-  fitting_line_rule(data, length, table, antiderivative, result,
-                    [](const LineResult<T>&) noexcept { return true; });
+  select_line_rule(data, length, table, antiderivative, result,
+                   [](const LineResult<T>&) noexcept { return true; });
   return result;
 }
 

@@ -73,14 +73,14 @@ PELLUCID_HD LegendreCubic<T> restrict_to(const LegendreCubic<T>& f, T x, T h) no
 /// give or take what is left, has values in [support_min, support_max]. Elsewhere neither the cubic
 /// nor the line has any.
 template <class T>
-struct LineRest {
+struct LineResidual {
   bool empty;               ///< the cubic has none of these values
   bool at_lower, at_upper;  ///< whether the part reaches the line's lower, upper end
   T begin, end;
   T value;                 ///< largest |f - line|
   T slope_min, slope_max;  ///< of f' - line'
 
-  PELLUCID_HD LineRest(const LegendreCubic<T>& f, T support_min, T support_max) noexcept {
+  PELLUCID_HD LineResidual(const LegendreCubic<T>& f, T support_min, T support_max) noexcept {
     const T rise = T(2) * f.p1, a2 = abs(f.p2), a3 = abs(f.p3);
     const T margin = (a2 + a3) + T(4) * f.rounding;
     const T below = (support_min - f.mean) + (f.p1 - margin),
@@ -112,7 +112,7 @@ template <class T>
 struct LineWindow {
   LegendreCubic<T> data;
   RangeSummary<T> table;
-  LineRest<T> rest;
+  LineResidual<T> rest;
   T begin, width;  ///< of the cell, whose line rises
   int interval;    ///< of the table, not far from the line's lower end
 };
@@ -131,12 +131,12 @@ PELLUCID_HD LineWindow<T> line_window(
       range_summary(table, antiderivative,
                     ValueRange<T>(lower, upper, first, interval_below(table, upper, first)));
   const auto rest_of = [](const LegendreCubic<T>& data, const RangeSummary<T>& s) noexcept {
-    return LineRest<T>(data, s.support_min, s.support_max);
+    return LineResidual<T>(data, s.support_min, s.support_max);
   };
   LineWindow<T> window{cell, over_all, rest_of(cell, over_all), T(0), T(1), first};
   constexpr scalar_t<T> grid = 4 * rounding_unit<T>;
   for (int pass = 0; pass < 3; ++pass) {
-    const LineRest<T>& rest = window.rest;
+    const LineResidual<T>& rest = window.rest;
     if (rest.empty || rest.end - rest.begin > T(0.7)) break;
     const bool turned = window.data.reversed != cell.reversed;
     const T from = window.begin + window.width * (turned ? T(1) - rest.end : rest.begin),

@@ -17,7 +17,7 @@ struct PanelDemand {
   Set primitives;
   Grade grade = Grade::estimated;
   scalar_t<T> largest_color = 1;  ///< C_max >= 1: a bound on every color on the ray
-  T place_error{};  ///< how far the ends may be from where they are thought to be, world
+  T position_error{};  ///< how far the ends may be from where they are thought to be, world
   mask_t<T> last_resort = mask_t<T>(false);  ///< whatever comes out has to do
 };
 
@@ -57,7 +57,7 @@ PELLUCID_HD constexpr T cubic_panel_estimate(T exponents) noexcept {
 /// What a PanelIntegrator keeps of a panel's Gaussians: too much for a small stack where T is a
 /// batch.
 template <class T>
-struct PanelRoom {
+struct PanelWorkspace {
   /// Along the line its exponent is bend u² + slope u and a constant.
   struct Term {
     int primitive;
@@ -81,7 +81,7 @@ class PanelIntegrator {
   PELLUCID_HD PanelIntegrator(const MultivariateTransfer<S>& transfer,
                               const MultivariateSpan<T, Data>& span,
                               const PanelDemand<T, Set>& demand, const Allowance& allowance,
-                              PanelRoom<T>& room) noexcept
+                              PanelWorkspace<T>& room) noexcept
       : transfer_(transfer),
         span_(span),
         demand_(demand),
@@ -96,13 +96,13 @@ class PanelIntegrator {
     const T most = most_ + tables_.most + rest_;
     result.opacity = min(most, T(1));
     const T length = max(span_.length, T(smallest_normal<T>));
-    fixed_ = rounding_ + tables_.rounding + min(demand_.place_error * (most / length), T(1));
+    fixed_ = rounding_ + tables_.rounding + min(demand_.position_error * (most / length), T(1));
     finish(result);
     return result;
   }
 
  private:
-  using Term = typename PanelRoom<T>::Term;
+  using Term = typename PanelWorkspace<T>::Term;
 
   PELLUCID_HD const Gaussian<S>& gaussian(const Term& term) const noexcept {
     return transfer_.gaussians.primitive[term.primitive];
@@ -144,7 +144,7 @@ class PanelIntegrator {
     seen_ += part(T(1));
     exponents_ = max(exponents_, part(along.upper() - along.lower()));
     if constexpr (bent) {
-      const LineLoss<T> loss = along.line_loss(line);
+      const LineReplacementError<T> loss = along.line_replacement_error(line);
       term.loss = part(peak * loss.mean);
       loss_ += term.loss;
       absolute_loss_ += part(peak * loss.absolute);
@@ -368,7 +368,8 @@ class PanelIntegrator {
 template <class T, class Data, class Set, class Allowance>
 PELLUCID_HD PanelSegment<T> integrate_multivariate_panel(
     const MultivariateTransfer<scalar_t<T>>& transfer, const MultivariateSpan<T, Data>& span,
-    const PanelDemand<T, Set>& demand, const Allowance& allowance, PanelRoom<T>& room) noexcept {
+    const PanelDemand<T, Set>& demand, const Allowance& allowance,
+    PanelWorkspace<T>& room) noexcept {
   return detail::PanelIntegrator<T, Data, Set, Allowance>(transfer, span, demand, allowance, room)
       .run();
 }
@@ -377,7 +378,7 @@ PELLUCID_HD PanelSegment<T> integrate_multivariate_panel(const MultivariateTrans
                                                          const MultivariateSpan<T, Data>& span,
                                                          const PanelDemand<T, Set>& demand,
                                                          const Allowance& allowance) noexcept {
-  PanelRoom<T> room;
+  PanelWorkspace<T> room;
   return integrate_multivariate_panel(transfer, span, demand, allowance, room);
 }
 

@@ -21,7 +21,7 @@ struct MeshSpan {
   double value_error[max_channels];
   /// How far begin and end may be off, together, where the data go on behind them as they are at
   /// the ends: what one span has too much, its neighbour has too little.
-  double place_error = 0;
+  double position_error = 0;
   double end_error = 0;  ///< and where they do not
   bool vacuum = false;   ///< some channel has no value
   /// The mesh overlaps itself here: what is in it is not known.
@@ -117,7 +117,7 @@ PELLUCID_HD inline MeshSpan span_between(const MeshPlace& from, const MeshPlace&
     }
     span.vacuum = span.vacuum | is_nan(span.front[c] + span.back[c]);
   }
-  (steps ? span.end_error : span.place_error) = from.t_error + to.t_error;
+  (steps ? span.end_error : span.position_error) = from.t_error + to.t_error;
   return span;
 }
 
@@ -173,7 +173,7 @@ PELLUCID_HD void for_each_mesh_span(const Tetrahedra& mesh, const MeshFields& fi
       if (walk.ahead() == Tetrahedron::outside) span.end_error += to.t_error;
       // Of vacuum only where it begins matters, behind data.
       if (span.vacuum) {
-        span.place_error = 0;
+        span.position_error = 0;
         span.end_error = steps == 0 || was_vacuum ? 0 : from.t_error;
       }
       was_vacuum = span.vacuum;
@@ -184,7 +184,7 @@ PELLUCID_HD void for_each_mesh_span(const Tetrahedra& mesh, const MeshFields& fi
       if (to.t > 0 || span.overlaps) {
         if (!(span.begin < span.end)) {
           span.end = span.begin;
-          span.end_error += span.place_error;
+          span.end_error += span.position_error;
         }
         if (!visit(span)) return;
         front = span.end;

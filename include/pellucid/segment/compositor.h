@@ -19,10 +19,10 @@ namespace pellucid {
 /// most stop · C_max of radiance and `stop` of opacity, C_max a bound on the colors behind.
 /// Asserted in tests/segment.
 template <class A>
-class FrontToBack {
+class FrontToBackCompositor {
  public:
   /// `stop` >= 0: the transparency at which the ray may end. Zero: only when nothing can pass.
-  PELLUCID_HD explicit FrontToBack(A stop = A(0)) noexcept : stop_(stop) {}
+  PELLUCID_HD explicit FrontToBackCompositor(A stop = A(0)) noexcept : stop_(stop) {}
 
   template <class T>
   PELLUCID_HD void add(const SegmentResult<T>& segment) noexcept {
@@ -39,9 +39,10 @@ class FrontToBack {
   }
 
   /// Of several pixels at once, lane by lane.
-  friend FrontToBack select(mask_t<A> mask, const FrontToBack& a, const FrontToBack& b) noexcept {
+  friend FrontToBackCompositor select(mask_t<A> mask, const FrontToBackCompositor& a,
+                                      const FrontToBackCompositor& b) noexcept {
     const auto each = [&](const A& x, const A& y) noexcept { return select(mask, x, y); };
-    FrontToBack r(each(a.stop_, b.stop_));
+    FrontToBackCompositor r(each(a.stop_, b.stop_));
     r.transparency_ = each(a.transparency_, b.transparency_);
     r.opacity_ = each(a.opacity_, b.opacity_);
     r.optical_depth_ = each(a.optical_depth_, b.optical_depth_);
