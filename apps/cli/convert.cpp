@@ -46,10 +46,10 @@ void check_arguments(const ConvertArguments& arguments) {
     throw UsageError(fmt::format("-o {}: a mesh is written as tetrahedra, .vtu; give such a name",
                                  arguments.output));
   }
-  if (!arguments.writes_tetrahedra() && !is_written_volume(arguments.output)) {
+  if (!arguments.writes_tetrahedra() && !is_writable_volume(arguments.output)) {
     throw UsageError(
         fmt::format("-o {}: a volume is written as {}, or as tetrahedra, .vtu; give such a name",
-                    arguments.output, written_volume_extensions()));
+                    arguments.output, writable_volume_extensions()));
   }
   const NamedFile outputs[] = {{"--output", arguments.output}};
   const NamedFile inputs[] = {{"INPUT", arguments.input}, {"--q", arguments.q}};
@@ -87,7 +87,7 @@ Converted convert(const ConvertArguments& arguments, const ParallelFor& parallel
   if (arguments.is_mesh()) {
     const MeshFile file = read_mesh(arguments.input, {arguments.time, arguments.q});
     InterruptGuard::check();
-    return {tetrahedra_of(file.grid, parallel), file.grid.shapes.size()};
+    return {tetrahedralize(file.grid, parallel), file.grid.shapes.size()};
   }
   FieldSource source = volume_source(arguments);
   set_notes(source, arguments.quiet);
@@ -186,7 +186,7 @@ Command add_convert(CommandLine& app) {
   command
       .add_option("-o,--output", arguments->output,
                   fmt::format("Volume to write ({}), or tetrahedra with all arrays (.vtu)",
-                              written_volume_extensions()))
+                              writable_volume_extensions()))
       ->option_text("FILE")
       ->required();
   command

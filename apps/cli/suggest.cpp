@@ -49,7 +49,7 @@ bool are_value_and_gradient(const ChannelSelection& selection) {
     const auto* derived = std::get_if<DerivedSource>(&source.source);
     if (derived != nullptr && source.name == selection.axes[1]) {
       return derived->kind == DerivedSource::Kind::gradient_magnitude &&
-             derived->of == selection.axes[0];
+             derived->channel == selection.axes[0];
     }
   }
   return false;

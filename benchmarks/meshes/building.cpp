@@ -75,7 +75,7 @@ std::vector<BuildResult> measure_building(const BuildOptions& options) {
     result.name = source.name;
     result.tetrahedra = mesh.tetrahedra().size();
     const auto count = static_cast<double>(result.tetrahedra);
-    result.mesh_bytes = static_cast<double>(mesh.memory()) / count;
+    result.mesh_bytes = static_cast<double>(mesh.memory_bytes()) / count;
     result.total_bytes = result.mesh_bytes + bytes_of_values(*channels) / count;
     std::vector<std::function<double()>> ways;
     for (const int threads : options.threads) {

@@ -35,7 +35,7 @@ Movement movement_in_cells(const Channels& channels, const GaussianMixture<doubl
                            const MultivariateBlocks& blocks) {
   const auto count = static_cast<std::size_t>(channels.count());
   std::vector<BlockRecords> records;
-  for (const Channel& channel : channels) records.push_back(channel.volume->block_ranges());
+  for (const Channel& channel : channels) records.push_back(channel.volume->block_records());
   std::vector<double> squared_norm;  // of column c of primitive i
   for (int i = 0; i < mixture.count; ++i) {
     for (int c = 0; c < channels.count(); ++c) {

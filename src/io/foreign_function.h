@@ -44,7 +44,7 @@ struct Function {
   std::string name;    ///< in the file; may be empty
   std::vector<ColorNode> colors;
   ColorSpace space = ColorSpace::rgb;
-  ColorNumbers numbers = ColorNumbers::srgb;
+  ColorEncoding numbers = ColorEncoding::srgb;
   std::vector<OpacityNode> opacities;
   /// In place of `opacities`: the largest of them at each value, between these values and constant
   /// beyond them.

@@ -87,7 +87,7 @@ std::vector<double> positions(const Node& document, const char* key, std::size_t
 Function read_anari(const Node& document) {
   Function function;
   function.format = "ANARI transferFunction1D";
-  function.numbers = ColorNumbers::linear;
+  function.numbers = ColorEncoding::linear;
   if (const auto range = document.find("valueRange")) {
     if (range->array_size() != 2) range->fail("must have two numbers, a range of values");
     function.lower = range->element(0).number();

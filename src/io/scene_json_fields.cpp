@@ -136,7 +136,7 @@ ChannelSource channel_source(const Node& node, const std::filesystem::path& fold
     return channel;
   }
   DerivedSource derived;
-  derived.of = channel_name(*node.find(given[0]));
+  derived.channel = channel_name(*node.find(given[0]));
   for (const auto kind : {DerivedSource::Kind::gradient_magnitude,
                           DerivedSource::Kind::second_derivative, DerivedSource::Kind::smoothed}) {
     if (derived_name(kind) == given[0]) derived.kind = kind;

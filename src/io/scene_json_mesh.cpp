@@ -17,7 +17,7 @@ MeshArrayChoice array_choice(const Node& node) {
   const Node array = node.at("array", "give the name of an array of the mesh");
   choice.array = array.string();
   if (choice.array.empty()) array.fail("is empty; give the name of an array of the mesh");
-  choice.name = as_channel_name(choice.array);
+  choice.name = to_channel_name(choice.array);
   if (const auto component = node.find("component")) {
     choice.component = static_cast<int>(component->integer(0, largest_component));
     choice.name += "_" + std::to_string(*choice.component);

@@ -110,7 +110,7 @@ class SmoothnessOfChannels {
                        const ParallelFor& parallel)
       : mixture_(mixture), primitives_(primitives) {
     for (const Channel& channel : channels) {
-      records_.push_back(channel.volume->block_ranges(parallel));
+      records_.push_back(channel.volume->block_records(parallel));
     }
     for (int i = 0; i < mixture.count; ++i) {
       const Gaussian<double>& g = mixture.primitive[i];

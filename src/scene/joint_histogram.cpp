@@ -182,7 +182,7 @@ JointHistogram joint_histogram(const Channels& channels, const std::vector<int>&
     const std::lock_guard lock(mutex);
     counter.add_to(all);
   };
-  or_serial(parallel)(parts, body);
+  parallel_or_serial(parallel)(parts, body);
   return all;
 }
 

@@ -24,7 +24,7 @@ namespace {
 
 /// 1 for the points that tetrahedra use; empty where all are used.
 std::vector<std::uint8_t> used_points(const TetrahedralMesh& mesh) {
-  if (mesh.statistics().orphans == 0) return {};
+  if (mesh.statistics().unused_points == 0) return {};
   std::vector<std::uint8_t> used(mesh.points().size(), 0);
   for (const Tetrahedron& tetrahedron : mesh.tetrahedra()) {
     for (const std::int32_t point : tetrahedron.corner) used[static_cast<std::size_t>(point)] = 1;
@@ -52,7 +52,7 @@ std::string first_beyond(const TetrahedralMesh& mesh, std::span<const Value> val
     if (!used.empty() && used[i] == 0) continue;
     const double size = std::abs(static_cast<double>(values[i]));
     if (infinite ? !std::isinf(size) : !(size > largest_value)) continue;
-    if (!points) return mesh.named(i);
+    if (!points) return mesh.describe(i);
     first_point = std::min(first_point, mesh.point_number(i));
   }
   return "point " + std::to_string(first_point);

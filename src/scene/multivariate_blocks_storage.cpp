@@ -88,14 +88,14 @@ MultivariateBlocksStorage::MultivariateBlocksStorage(
     : negligible_(negligible) {
   std::vector<const BlockRecords*> records;
   for (const Channel& channel : channels)
-    records.push_back(&channel.volume->block_ranges(parallel));
+    records.push_back(&channel.volume->block_records(parallel));
   records_ = *records.front();
   const auto count = static_cast<std::size_t>(records_.count());
   classes_.resize(count);
   primitives_.resize(count);
   const MultivariateTransfer<double> transfer = transfer_function.view();
   const BlockClassifier classifier(transfer, negligible);
-  const ParallelFor run = or_serial(parallel);
+  const ParallelFor run = parallel_or_serial(parallel);
   run(records_.count(), [&](int first, int last) {
     for (int i = first; i < last; ++i) {
       const auto b = static_cast<std::size_t>(i);
@@ -111,7 +111,7 @@ void MultivariateBlocksStorage::find_smooth(const Channels& channels,
                                             const MultivariateTransferFunction& transfer_function,
                                             const ParallelFor& parallel) {
   longest_step_ = find_smooth_channels(channels, transfer_function, primitives_.data(), negligible_,
-                                       or_serial(parallel), classes_.data(), waves_);
+                                       parallel_or_serial(parallel), classes_.data(), waves_);
 }
 
 MultichannelGrid multichannel_grid(const Channels& channels) {

@@ -129,13 +129,13 @@ Matrix cholesky(const Matrix& a) {
 
 }  // namespace
 
-Matrix matrix_of_widths(const std::vector<double>& widths) {
+Matrix matrix_from_widths(const std::vector<double>& widths) {
   Matrix identity(widths.size(), std::vector<double>(widths.size(), 0.0));
   for (std::size_t i = 0; i < widths.size(); ++i) identity[i][i] = 1;
-  return matrix_of_widths(widths, identity);
+  return matrix_from_widths(widths, identity);
 }
 
-Matrix matrix_of_widths(const std::vector<double>& widths, const Matrix& axes) {
+Matrix matrix_from_widths(const std::vector<double>& widths, const Matrix& axes) {
   if (axes.size() != widths.size() || !is_square(axes)) {
     fail("axes are not a square matrix with a row for each width");
   }
@@ -160,7 +160,7 @@ Matrix matrix_of_widths(const std::vector<double>& widths, const Matrix& axes) {
   return k;
 }
 
-Matrix matrix_of_covariance(const Matrix& covariance) {
+Matrix matrix_from_covariance(const Matrix& covariance) {
   const std::size_t n = covariance.size();
   if (n == 0 || !is_square(covariance)) fail("covariance is not a square matrix");
   for (std::size_t i = 0; i < n; ++i) {

@@ -102,7 +102,7 @@ class Boundaries {
     const HistogramAxis &v = h_.axes[0], &g = h_.axes[1];
     return {which,
             {value_at(v, center[0]), value_at(g, center[1])},
-            of_values(matrix_of_widths({widths[0], widths[1]}), h_.axes),
+            of_values(matrix_from_widths({widths[0], widths[1]}), h_.axes),
             0,
             {}};
   }
@@ -131,7 +131,7 @@ GaussianPrimitive primitive_of(const NormalComponent& component, const std::vect
     primitive.center.push_back(value_at(axes[i], component.mean[i]));
     for (double& x : covariance[i]) x *= kept;
   }
-  primitive.matrix = of_values(matrix_of_covariance(covariance), axes);
+  primitive.matrix = of_values(matrix_from_covariance(covariance), axes);
   return primitive;
 }
 

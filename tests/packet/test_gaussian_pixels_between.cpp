@@ -71,7 +71,7 @@ class GaussianPixelsBetween : public SeenClosely {
       p.center.push_back(uniform(-0.1, 1.1));
       widths.push_back(width * power(0.7, 1.5));
     }
-    p.matrix = matrix_of_widths(widths);
+    p.matrix = matrix_from_widths(widths);
     if (channels > 1 && one_of(2)) {
       for (std::vector<double>& row : p.matrix) {
         for (std::size_t c = 0; c < row.size(); ++c) row[c] = uniform(-1, 1) / widths[c];

@@ -67,7 +67,7 @@ Scene make_scene(const Kind& kind, bool rectilinear) {
       g.channels.push_back(c);
       g.center.push_back((p + 0.5) / kind.primitives);
     }
-    g.matrix = matrix_of_widths(std::vector<double>(g.channels.size(), kind.width));
+    g.matrix = matrix_from_widths(std::vector<double>(g.channels.size(), kind.width));
     g.extinction = kind.extinction;
     g.color = {p % 3 == 0 ? 1.0 : 0.1, p % 3 == 1 ? 1.0 : 0.1, p % 3 == 2 ? 1.0 : 0.1};
     primitives.push_back(g);

@@ -136,10 +136,10 @@ TEST(MeshWalkIsWatertight, ThroughALattice) {
 }
 
 TEST(MeshWalkIsWatertight, ThroughALatticeThatBinaryFractionsLack) {
-  expect_watertight(scenes::tetrahedra_of({{4, 3, 3},
-                                           [](int i, int j, int k) {
-                                             return Place{0.1 * i + 0.3, 0.7 * j, k / 3.0};
-                                           }}),
+  expect_watertight(scenes::tetrahedralize({{4, 3, 3},
+                                            [](int i, int j, int k) {
+                                              return Place{0.1 * i + 0.3, 0.7 * j, k / 3.0};
+                                            }}),
                     many_directions(), 1);
 }
 
@@ -158,7 +158,7 @@ TEST(MeshWalkIsWatertight, ThroughHoles) {
   lattice.cubes = {4, 4, 4};
   lattice.place = [](int i, int j, int k) { return Place{1.0 * i, 1.0 * j, 1.0 * k}; };
   lattice.keep = [](int i, int j, int k) { return (i * 5 + j * 3 + k * 7) % 4 != 0; };
-  expect_watertight(scenes::tetrahedra_of(lattice), {{0.3, -0.5, 0.7}, {0.9, 0.2, 0.1}}, 1);
+  expect_watertight(scenes::tetrahedralize(lattice), {{0.3, -0.5, 0.7}, {0.9, 0.2, 0.1}}, 1);
 }
 
 }  // namespace

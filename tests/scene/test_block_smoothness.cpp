@@ -40,7 +40,7 @@ class SmoothBlocksOf {
 
   SmoothBlocksOf(const Volume& volume, const Points& points,
                  double max_second_difference = any_bending, const ParallelFor& parallel = {})
-      : records_(volume.block_ranges()),
+      : records_(volume.block_records()),
         function_(points),
         tables_(function_),
         classes_(records_, tables_.tables(), 1, parallel, [=](double) {

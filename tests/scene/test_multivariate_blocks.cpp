@@ -74,7 +74,7 @@ StepsBetween steps_between(const std::vector<Field>& fields, double width,
   GaussianPrimitive p;
   p.channels = {0};
   p.center = {0.5};
-  p.matrix = matrix_of_widths({width});
+  p.matrix = matrix_from_widths({width});
   p.extinction = 1;
   const MultivariateTransferFunction function(count, {p});
   MultivariateBlocksStorage storage(channels, function, 1e-5);

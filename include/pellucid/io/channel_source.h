@@ -15,8 +15,8 @@ namespace pellucid {
 struct DerivedSource {
   enum class Kind { gradient_magnitude, second_derivative, smoothed };
   Kind kind = Kind::gradient_magnitude;
-  std::string of;    ///< the name of a channel before this one
-  double sigma = 0;  ///< of smoothed: the standard deviation, world length
+  std::string channel;  ///< the name of a channel before this one
+  double sigma = 0;     ///< of smoothed: the standard deviation, world length
 };
 
 /// A channel as a scene names it: nothing is read yet.
@@ -40,7 +40,7 @@ ChannelSource parse_channel_source(std::string_view text);
 /// names on command lines.
 bool is_channel_name(std::string_view name) noexcept;
 /// What a name may hold of a text, at most 56 bytes, and "_" in the place of the rest.
-std::string as_channel_name(std::string_view text);
+std::string to_channel_name(std::string_view text);
 
 std::vector<std::string> channel_names(const std::vector<ChannelSource>& sources);
 

@@ -13,7 +13,7 @@
 namespace pellucid {
 
 /// What a file's color numbers are: signals of a display, or linear light as they stand.
-enum class ColorNumbers { srgb, linear };
+enum class ColorEncoding { srgb, linear };
 
 struct ImportOptions {
   /// How far the table may be from the function that the file means: each channel of its color, in
@@ -28,7 +28,7 @@ struct ImportOptions {
   std::optional<double> unit_distance;
   /// In place of what the format means: linear for ANARI, sRGB for all others. With `linear` an
   /// RGB color map is exact, and pictures are composited from its numbers, as VTK does.
-  std::optional<ColorNumbers> numbers;
+  std::optional<ColorEncoding> encoding;
 };
 
 /// Limits of ImportOptions::deviation.

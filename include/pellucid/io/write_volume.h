@@ -11,9 +11,9 @@
 namespace pellucid {
 
 /// Whether the name is one of a volume that can be written: .nrrd, .nii, .nii.gz, .vti, .raw.
-bool is_written_volume(const std::filesystem::path& path);
+bool is_writable_volume(const std::filesystem::path& path);
 /// ".nrrd .nii …", for messages and help.
-std::string written_volume_extensions();
+std::string writable_volume_extensions();
 
 /// Writes the components of a volume, on one grid and of one type, side by side (.nii: one behind
 /// the other), in their own type and in this machine's byte order, the file whole or not at all:

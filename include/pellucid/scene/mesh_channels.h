@@ -49,7 +49,7 @@ class MeshChannels {
     return statistics_[static_cast<std::size_t>(channel)];
   }
   /// Tetrahedra that are vacuum because of NaN.
-  std::size_t vacuum() const noexcept { return vacuum_; }
+  std::size_t vacuum_count() const noexcept { return vacuum_; }
 
   /// The value of a channel at a point, or in a tetrahedron where it is centred there, in double.
   double value(int channel, std::size_t index) const;

@@ -27,7 +27,7 @@ struct MixtureFit {
   double log_likelihood = 0;                ///< of all points, each as often as its weight says
   /// Bayesian information criterion (Schwarz 1978): parameters · ln(sum of weights) - 2 ·
   /// log_likelihood; the smaller the better.
-  double information = 0;
+  double bic = 0;
 };
 
 /// The most components of a mixture.

@@ -22,14 +22,14 @@ struct GaussianPrimitive {
 /// K of a primitive whose axes are those of the channels: the extinction falls to 1/e of its peak
 /// at a distance of `width` along an axis. An infinite width does not look at that channel. Throws
 /// Error where a width is not positive.
-std::vector<std::vector<double>> matrix_of_widths(const std::vector<double>& widths);
+std::vector<std::vector<double>> matrix_from_widths(const std::vector<double>& widths);
 /// The same after a rotation: row i of `axes` is the direction along which width i is measured; the
 /// rows must be orthonormal to within 1e-6. Throws Error where they are not.
-std::vector<std::vector<double>> matrix_of_widths(const std::vector<double>& widths,
-                                                  const std::vector<std::vector<double>>& axes);
+std::vector<std::vector<double>> matrix_from_widths(const std::vector<double>& widths,
+                                                    const std::vector<std::vector<double>>& axes);
 /// K of the normal distribution of this covariance Σ, K^T K = Σ^-1 / 2: widths are √2 standard
 /// deviations. Throws Error where Σ is not symmetric and positive definite.
-std::vector<std::vector<double>> matrix_of_covariance(
+std::vector<std::vector<double>> matrix_from_covariance(
     const std::vector<std::vector<double>>& covariance);
 
 /// A piecewise-linear transfer function of one channel.

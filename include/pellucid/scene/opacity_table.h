@@ -17,7 +17,7 @@ struct OpacityPoint {
 
 /// Extinction · unit distance where the opacity is 1, in place of infinity.
 inline constexpr double opaque_extinction = 1e6;
-/// Limits of what from_opacity_table() takes and gives.
+/// Limits of what transfer_function_from_opacity_table() takes and gives.
 inline constexpr double smallest_unit_distance = 1e-20;
 inline constexpr double largest_unit_distance = 1e30;
 inline constexpr double smallest_relative_error = 1e-10;
@@ -48,12 +48,12 @@ inline constexpr std::size_t largest_opacity_table = 4'000'000;  ///< points mad
 ///
 /// Throws Error where the points are not a transfer function's, an opacity is not in [0,1], the
 /// unit distance or the relative error is not within its limits, or the points would be too many.
-TransferFunction from_opacity_table(const std::vector<OpacityPoint>& points, double unit_distance,
-                                    double relative_error);
+TransferFunction transfer_function_from_opacity_table(const std::vector<OpacityPoint>& points,
+                                                      double unit_distance, double relative_error);
 
 /// The relative error, within the limits above, at which approximation_error() is at most `error`;
 /// largest_color is that of the table and of the background. Below 1e-10 · max(largest_color, 1)
 /// the limit keeps it from that.
-double relative_error_for(double error, double largest_color) noexcept;
+double required_relative_error(double error, double largest_color) noexcept;
 
 }  // namespace pellucid

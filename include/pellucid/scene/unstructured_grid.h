@@ -28,7 +28,7 @@ enum class CellShape : std::uint8_t {
 };
 
 /// How many points a cell of this shape has.
-int points_of(CellShape shape) noexcept;
+int point_count(CellShape shape) noexcept;
 
 /// A variable of a mesh as it was read.
 struct MeshArray {
@@ -51,6 +51,6 @@ struct UnstructuredGrid {
 /// The corners of the hexahedra of a curvilinear grid with so many points along each axis, which
 /// are numbered x fastest; cells are too. Throws Error where an axis has fewer than two points, or
 /// they are more than an index can count.
-std::vector<std::int32_t> hexahedra_of_grid(const std::array<int, 3>& points);
+std::vector<std::int32_t> grid_hexahedra(const std::array<int, 3>& points);
 
 }  // namespace pellucid

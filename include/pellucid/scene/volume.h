@@ -24,7 +24,7 @@ enum class Centering { point, cell };
 /// threads as it likes, and returns when all are done.
 using ParallelFor = std::function<void(int count, const std::function<void(int, int)>& body)>;
 /// The same, or where it is empty all at once on this thread.
-inline ParallelFor or_serial(const ParallelFor& parallel) {
+inline ParallelFor parallel_or_serial(const ParallelFor& parallel) {
   if (parallel) return parallel;
   return [](int count, const std::function<void(int, int)>& body) { body(0, count); };
 }
@@ -103,7 +103,7 @@ class Volume {
   /// in parallel where it is told how (a thread that waits in there must not take up work that
   /// calls this again), and kept; copies share it. Safe to call from any thread. Throws Error where
   /// the blocks cannot be counted by an int.
-  const BlockRecords& block_ranges(const ParallelFor& parallel = {}) const;
+  const BlockRecords& block_records(const ParallelFor& parallel = {}) const;
 
   /// Calls visitor(StructuredGrid<Value, double>) with the data's own type.
   template <class Visitor>
