@@ -12,7 +12,8 @@ namespace pellucid {
 /// Builds and owns the bins of a transfer function.
 class BinnedTransferStorage {
  public:
-  /// `largest_value`: of the data, in magnitude: what is narrower than its rounding is a jump.
+  /// Builds the bins of `table`. `largest_value` is the largest magnitude of the data: control
+  /// points closer than its rounding error form a jump.
   explicit BinnedTransferStorage(const PiecewiseLinear<double>& table, double largest_value = 0);
   BinnedTransferStorage(const BinnedTransferStorage&) = delete;
   BinnedTransferStorage& operator=(const BinnedTransferStorage&) = delete;

@@ -7,12 +7,13 @@
 
 namespace pellucid {
 
-/// IEC 61966-2-1: the sRGB signal of a display, 0 to 1, to linear light.
+/// Returns the linear light of an sRGB signal in [0, 1] (IEC 61966-2-1).
 inline double srgb_to_linear(double signal) {
   return signal <= 0.04045 ? signal / 12.92 : std::pow((signal + 0.055) / 1.055, 2.4);
 }
 
-/// The way back. Its two branches meet to within 3e-8, for the standard's constants are rounded.
+/// Returns the sRGB signal of linear light. The two branches differ by up to 3e-8 where they meet,
+/// because the standard's constants are rounded.
 inline double linear_to_srgb(double light) {
   return light <= 0.0031308 ? 12.92 * light : 1.055 * std::pow(light, 1 / 2.4) - 0.055;
 }
