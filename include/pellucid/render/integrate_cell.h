@@ -10,35 +10,36 @@
 
 namespace pellucid {
 
-/// What is asked of every ray.
+/// Accuracy requested of every ray.
 struct RayTolerance {
-  /// How far the ray's result may be from the integral, in each channel of premultiplied RGBA.
+  /// Largest error of the ray's result, in each channel of premultiplied RGBA.
   double tolerance = 1.0 / 512;
   Grade grade = Grade::estimated;
   Precision precision = Precision::automatic;
-  /// C_max of theorem (3): a bound on the colors of the transfer function and on the background.
+  /// C_max of theorem (3): an upper bound on the colors of the transfer function and of the
+  /// background.
   double largest_color = 1;
 };
 
-/// A cell's segment by the cheapest rule that is good enough.
+/// A cell's segment by the cheapest rule within budget, with its error.
 template <class T>
 struct CellSegment {
   BoundedSegment<T> found;  ///< with the errors of the method
-  double rounding = 0;      ///< what rounding adds, as of RayBudget::spend()
-  double opacity = 0;       ///< a bound on it, which the allowance was asked for
+  double rounding = 0;      ///< contribution of rounding, in the unit of RayBudget::spend()
+  double opacity = 0;       ///< upper bound on the opacity, for which the allowance was computed
   bool clear = false;       ///< nothing absorbs
-  bool line = false;        ///< by line_rule()
+  bool line = false;        ///< computed by line_rule()
 
-  /// What it costs, as of RayBudget::spend().
+  /// Returns the total error, in the unit of RayBudget::spend().
   PELLUCID_HD double error(double largest_color) const noexcept {
     return static_cast<double>(found.color_error) +
            largest_color * static_cast<double>(found.opacity_error) + rounding;
   }
 };
 
-/// Integrates a cell, or a part of one, in T. `position_error`: how far its ends may be from where
-/// they are thought to be, world length. allowance(opacity): how large its error may be. Without
-/// `forced`, returns false where T's rounding would take more than a quarter of that.
+/// Integrates a cell, or a part of one, in T. `position_error` bounds the error of the positions of
+/// its ends, in world length. allowance(opacity) returns the largest permitted error. Unless
+/// `forced`, returns false if T's rounding would take more than a quarter of it.
 template <class T, class Allowance>
 PELLUCID_HD bool integrate_cell(const CubicBernstein<T>& data, T length, double position_error,
                                 const TransferTables& transfer, const RayTolerance& wanted,

@@ -6,18 +6,18 @@
 
 namespace pellucid {
 
-/// Data that run linearly from the front of a stretch to its back.
+/// Data that are linear from the front of a span to its back.
 struct LinearData {
   double front = 0, back = 0;
-  double error = 0;           ///< how far they may be off, beside their rounding
-  double length = 0;          ///< world
-  double position_error = 0;  ///< how far the ends may be off where the data go on, world length
-  double end_error = 0;       ///< and where they do not
+  double error = 0;           ///< largest error of the values, beside their rounding
+  double length = 0;          ///< world units
+  double position_error = 0;  ///< of ends at which the data continue, world units
+  double end_error = 0;       ///< of ends at which the data end, world units
 };
 
-/// Integrates a stretch on which the data are linear, in T: Moreland's integral between control
-/// points (segment/piecewise_linear.h), so that only rounding is left to be charged. `forced`,
-/// allowance() and the result as of integrate_cell().
+/// Integrates a span with linear data in T: Moreland's integral between control points
+/// (segment/piecewise_linear.h), so that rounding is the only error. `forced`, allowance() and the
+/// result are those of integrate_cell().
 template <class T, class Allowance>
 PELLUCID_HD bool integrate_linear_span(const LinearData& data, const TransferTables& transfer,
                                        double largest_color, bool forced, Allowance&& allowance,

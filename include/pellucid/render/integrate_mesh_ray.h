@@ -10,25 +10,26 @@
 
 namespace pellucid {
 
-/// A ray that is to go through a mesh, and where it meets the boundary.
+/// A ray through a mesh and its hits of the boundary.
 struct MeshRay {
   RayFrame<double> view;
-  MeshHit* hits = nullptr;  ///< in ascending order; used up
+  MeshHit* hits = nullptr;  ///< in ascending order; consumed by the traversal
   int count = 0;
 
-  /// Where the ray may have anything to do with the mesh, world arc length.
+  /// Returns the interval of the ray, in world arc length, outside of which it cannot touch the
+  /// mesh; empty without hits.
   PELLUCID_HD Interval<double> extent() const noexcept {
     if (count == 0) return {1, 0};
     return {max(hits[0].t, 0.0), hits[count - 1].t};
   }
 };
 
-/// Integrates one ray through a variable of a mesh and keeps account of its error. The integral is
-/// exact in every span, so the budget is spent on rounding and on what lies behind the last span
-/// alone.
+/// Integrates one ray through one variable of a mesh and accounts for its error. The integral of
+/// each span is exact, so the budget is spent on rounding and on early termination only.
 class MeshRayIntegrator {
  public:
-  /// All that is given is referred to. `inside`: where the ray may be in the mesh.
+  /// Keeps references to its arguments. `inside` is the interval in which the ray may be in the
+  /// mesh.
   PELLUCID_HD MeshRayIntegrator(const TransferTables& transfer, const RayTolerance& wanted,
                                 Interval<double> inside) noexcept
       : transfer_(transfer),
@@ -37,17 +38,18 @@ class MeshRayIntegrator {
         end_(inside.end),
         budget_(wanted.tolerance, inside.end - inside.begin) {}
 
-  /// Asks for the place where the optical depth reaches `depth`; the ray ends there.
+  /// Requests the position at which the optical depth reaches `depth`; the ray ends there.
   PELLUCID_HD void set_target_depth(double depth) noexcept { target_ = depth; }
-  /// Its world arc length; infinite where it was not met.
+  /// Returns that position in world arc length; infinite if the depth was not reached.
   PELLUCID_HD double target_position() const noexcept { return found_; }
 
-  /// Whether what is left of the ray can no longer matter.
+  /// Returns whether the remainder of the ray cannot matter.
   PELLUCID_HD bool done() const noexcept {
     return found_ < infinity ||
            (target_ == infinity && budget_.allows_termination(rest(), wanted_.tolerance));
   }
 
+  /// Integrates the next span, front to back.
   PELLUCID_HD void add_span(const MeshSpan& span) noexcept {
     ++cells_;
     budget_.set_remaining_length(max(end_ - span.begin, 0.0));
@@ -74,6 +76,7 @@ class MeshRayIntegrator {
     }
   }
 
+  /// Returns the result up to the last span.
   PELLUCID_HD RayResult result() const noexcept {
     RayResult result;
     result.radiance = fold_.radiance();
@@ -92,7 +95,7 @@ class MeshRayIntegrator {
  private:
   static constexpr double infinity = std::numeric_limits<double>::infinity();
 
-  /// A bound on what lies behind.
+  /// Returns an upper bound on the radiance of the remainder.
   PELLUCID_HD double rest() const noexcept {
     return budget_.remainder_bound(fold_.transparency(), transfer_.largest_extinction,
                                    largest_color_);
@@ -118,7 +121,7 @@ class MeshRayIntegrator {
     }
   }
 
-  /// The place in a span of depth `all` where its optical depth reaches `depth`.
+  /// Finds the position in a span of depth `all` at which its optical depth reaches `depth`.
   PELLUCID_HD void find(const LinearData& data, double begin, double depth, double all) noexcept {
     const auto up_to = [&](double end) noexcept {
       return piecewise_linear_segment(transfer_.wide, data.front,
@@ -141,8 +144,8 @@ class MeshRayIntegrator {
 
 namespace detail {
 
-/// Of what a span's data may be off by, what tables make of it: a bound on the change of the
-/// extinction, and of colors, which count like the extinction that shows them.
+/// Returns the effect of the data errors of a span on the tables: an upper bound on the change of
+/// the extinction, and of the colors, counted like the extinction that shows them.
 PELLUCID_HD inline double error_through_tables(const MultivariateTransfer<double>& transfer,
                                                const MeshSpan& span) noexcept {
   double sum = 0;
@@ -163,9 +166,9 @@ PELLUCID_HD inline double error_through_tables(const MultivariateTransfer<double
   return sum;
 }
 
-/// What a span's data may be off by, beyond what the panels charge for rounding themselves, as a
-/// bound on the change of the extinction: no Gaussian is steeper than √(2/e) times its peak and
-/// |K|, Frobenius' norm.
+/// Returns the effect of the data errors of a span, beyond the rounding that panels charge
+/// themselves, as an upper bound on the change of the extinction: no Gaussian is steeper than
+/// √(2/e) times its peak and |K|, the Frobenius norm.
 PELLUCID_HD inline double extinction_error(const MultivariateTransfer<double>& transfer,
                                            const MeshSpan& span) noexcept {
   double moved = 0;
@@ -208,7 +211,8 @@ PELLUCID_HD inline void add_span(const MultivariateTransfer<double>& transfer, c
                          span.position_error + span.end_error);
 }
 
-/// for_each_mesh_span(), of what lies in the range.
+/// Calls visit for the spans of for_each_mesh_span() inside of `range`, the first one cut at its
+/// begin.
 template <class Visit>
 PELLUCID_HD void for_each_span_inside(const Tetrahedra& mesh, const MeshFields& fields,
                                       const MeshRay& ray, Interval<double> range,
@@ -229,9 +233,9 @@ PELLUCID_HD void for_each_span_inside(const Tetrahedra& mesh, const MeshFields& 
 
 }  // namespace detail
 
-/// The volume rendering integral along a ray through a variable of a mesh: RayResult::error is a
-/// bound, what is wanted or what rounding leaves. A ray that finds cells overlapping says that it
-/// does not know.
+/// Integrates a ray through a variable of a mesh. RayResult::error is a proved bound: the requested
+/// tolerance, or more if rounding requires it. A ray through overlapping cells reports that its
+/// error is unknown.
 PELLUCID_HD inline RayResult integrate_mesh_ray(const Tetrahedra& mesh, const MeshFields& fields,
                                                 const TransferTables& transfer, const MeshRay& ray,
                                                 const RayTolerance& wanted) noexcept {
@@ -245,8 +249,8 @@ PELLUCID_HD inline RayResult integrate_mesh_ray(const Tetrahedra& mesh, const Me
   return integrator.result();
 }
 
-/// The same through several variables of a mesh and a function of them all. `largest_extinction`: a
-/// bound on that of the function.
+/// Integrates a ray through several variables of a mesh with a function of all of them.
+/// `largest_extinction` is an upper bound on the extinction of the function.
 PELLUCID_HD inline RayResult integrate_multivariate_mesh_ray(
     const Tetrahedra& mesh, const MeshFields& fields, const MultivariateTransfer<double>& transfer,
     double largest_extinction, const MeshRay& ray, const RayTolerance& wanted) noexcept {
@@ -267,8 +271,8 @@ PELLUCID_HD inline RayResult integrate_multivariate_mesh_ray(
   return result;
 }
 
-/// RayResult::half_opacity_depth of a ray of this opacity. Where the opacities that are given are
-/// not quite those of the ray, it is an end of the stretch at the worst.
+/// Returns RayResult::half_opacity_depth of a ray with this opacity. If the given opacities differ
+/// slightly from those of the ray, the result is at worst an end of the interval.
 PELLUCID_HD inline double find_mesh_half_opacity(const Tetrahedra& mesh, const MeshFields& fields,
                                                  const TransferTables& transfer, const MeshRay& ray,
                                                  const RayTolerance& wanted, double opacity,
@@ -284,7 +288,7 @@ PELLUCID_HD inline double find_mesh_half_opacity(const Tetrahedra& mesh, const M
   return min(integrator.target_position(), half.range.end);
 }
 
-/// The same through several variables of a mesh.
+/// Returns the same for several variables of a mesh.
 PELLUCID_HD inline double find_multivariate_mesh_half_opacity(
     const Tetrahedra& mesh, const MeshFields& fields, const MultivariateTransfer<double>& transfer,
     double largest_extinction, const MeshRay& ray, const RayTolerance& wanted, double opacity,

@@ -7,8 +7,9 @@
 
 namespace pellucid {
 
-/// The world arc length where the optical depth along this stretch of the ray reaches `target`;
-/// infinite where it never does. To 16 u of a cell, or of what it holds.
+/// Returns the world arc length at which the optical depth, counted from the begin of `range`,
+/// reaches `target`; infinite if it never does. Accurate to 16 u of a cell or of the optical depth
+/// inside it.
 template <class T, class Value>
 PELLUCID_HD double find_optical_depth(const StructuredGrid<Value, double>& grid,
                                       const Ray<double>& ray_grid, Interval<double> range,
@@ -38,8 +39,8 @@ PELLUCID_HD double find_optical_depth(const StructuredGrid<Value, double>& grid,
   return found;
 }
 
-/// RayResult::half_opacity_depth of a ray of this opacity. Where the opacities that are given are
-/// not quite those of the ray, it is an end of the stretch at the worst.
+/// Returns RayResult::half_opacity_depth of a ray with this opacity. If the given opacities differ
+/// slightly from those of the ray, the result is at worst an end of the interval.
 template <class Value>
 PELLUCID_HD double find_half_opacity(const StructuredGrid<Value, double>& grid,
                                      const Ray<double>& ray_grid, const TransferTables& transfer,
@@ -54,8 +55,8 @@ PELLUCID_HD double find_half_opacity(const StructuredGrid<Value, double>& grid,
   return min(found, half.range.end);
 }
 
-/// Goes through the blocks of a ray: those that are done at once, those that are smooth together
-/// with their neighbours, the rest cell by cell.
+/// Integrates the blocks of a ray: uniform blocks at once, smooth blocks together with smooth
+/// neighbors, and all others cell by cell.
 template <class Value, class EachCell>
 PELLUCID_HD void integrate_blocks(const ClassifiedBlocks& blocks, const Ray<double>& ray_grid,
                                   Interval<double> inside, RayIntegrator<Value>& integrator,
@@ -90,10 +91,11 @@ PELLUCID_HD void integrate_blocks(const ClassifiedBlocks& blocks, const Ray<doub
   finish();
 }
 
-/// The volume rendering integral along a ray (in grid coordinates, its parameter the world arc
-/// length) through trilinear data, within a tolerance: RayResult::error is at most what is wanted,
-/// unless binary32 was forced where it cannot keep it, or where not even binary64 tells on which
-/// side of a jump of the transfer function the data lie. `blocks`: of the same grid; null: none.
+/// Integrates a ray (in grid coordinates, its parameter the world arc length) through trilinear
+/// data, within a tolerance. `blocks` belong to the same grid; null: none.
+///
+/// RayResult::error is at most the tolerance, unless binary32 is forced and cannot keep it, or even
+/// binary64 cannot resolve on which side of a discontinuity of the transfer function the data lie.
 template <class Value>
 PELLUCID_HD RayResult integrate_ray(const StructuredGrid<Value, double>& grid,
                                     const ClassifiedBlocks* blocks, const Ray<double>& ray_grid,

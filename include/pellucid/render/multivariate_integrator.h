@@ -10,12 +10,12 @@
 
 namespace pellucid {
 
-/// Integrates one ray through several fields within a tolerance: cuts each cell until every panel
-/// costs no more than the budget pays for, and keeps account of it. In double throughout.
+/// Integrates one ray through several fields within a tolerance. It cuts each cell until every
+/// panel is within budget, and accounts for the errors. In double throughout.
 class MultivariateRayIntegrator {
  public:
-  /// All that is given is referred to and must outlive the integrator. `length`: of the ray inside
-  /// of the grid, in world units.
+  /// Keeps references to its arguments, which must outlive the integrator. `length` is the length
+  /// of the ray inside the grid, in world units.
   PELLUCID_HD MultivariateRayIntegrator(const MultivariateTransfer<double>& transfer,
                                         double largest_extinction, const RayTolerance& wanted,
                                         double length) noexcept
@@ -28,39 +28,39 @@ class MultivariateRayIntegrator {
     demand_.largest_color = max(wanted.largest_color, 1.0);
   }
 
-  /// Asks for the place where the optical depth reaches `depth`; the ray ends there.
+  /// Requests the position at which the optical depth reaches `depth`; the ray ends there.
   PELLUCID_HD void set_target_depth(double depth) noexcept { target_ = depth; }
-  /// Its world arc length; infinite where it was not met.
+  /// Returns that position in world arc length; infinite if the depth was not reached.
   PELLUCID_HD double target_position() const noexcept { return found_; }
 
-  /// Whether what is left of the ray can no longer matter.
+  /// Returns whether the remainder of the ray cannot matter.
   PELLUCID_HD bool done() const noexcept {
     return found_ < infinity ||
            (target_ == infinity && budget_.allows_termination(rest(), tolerance_));
   }
 
-  /// Goes past stretches in which nothing is, up to where so much is left of the ray.
+  /// Skips empty spans: sets the remaining length of the ray.
   PELLUCID_HD void set_remaining_length(double remaining_length) noexcept {
     budget_.set_remaining_length(remaining_length);
   }
 
-  /// Where something may hide at most this opacity, in no length.
+  /// Charges the budget for an unknown opacity of at most `opacity` at a point of the ray.
   PELLUCID_HD void charge_opacity(double opacity) noexcept {
     ++counts_.skipped;
     budget_.spend(0, 0, fold_.transparency(), demand_.largest_color * min(opacity, 1.0));
   }
 
-  /// A stretch whose extinction is at most this and is left out.
+  /// Skips a span with an extinction of at most `extinction`, and charges the budget for it.
   PELLUCID_HD void skip(double length, double extinction) noexcept {
     ++counts_.skipped;
     budget_.spend(length, 0, fold_.transparency(),
                   demand_.largest_color * min(extinction * length, 1.0));
   }
 
-  /// A stretch of the ray on which all channels are cubics, or linear, cut until it is good enough.
-  /// `range`: where it is on the ray, world arc length. `left_out`: a bound on the extinction that
-  /// is not looked at, that of primitives that are not in the set above all. `position_error`: how
-  /// far its ends may be off.
+  /// Integrates a span on which all channels are cubic, or linear; cuts it until it is within
+  /// budget. `range` is its interval on the ray in world arc length. `left_out` is an upper bound
+  /// on the ignored extinction, above all of primitives outside of the set. `position_error` bounds
+  /// the error of its ends.
   template <class Span>
   PELLUCID_HD void add_stretch(const Span& span, Interval<double> range, PrimitiveSet primitives,
                                double left_out, double position_error) noexcept {
@@ -94,6 +94,7 @@ class MultivariateRayIntegrator {
     }
   }
 
+  /// Returns the result up to the last span.
   PELLUCID_HD RayResult result() const noexcept {
     RayResult result;
     result.radiance = fold_.radiance();
@@ -113,7 +114,7 @@ class MultivariateRayIntegrator {
   static constexpr int most_cuts = 60;
   static constexpr double infinity = std::numeric_limits<double>::infinity();
 
-  /// A bound on what lies behind: as little as light can come from there.
+  /// Returns an upper bound on the radiance of the remainder.
   PELLUCID_HD double rest() const noexcept {
     return budget_.remainder_bound(fold_.transparency(), largest_extinction_,
                                    demand_.largest_color);
@@ -145,8 +146,8 @@ class MultivariateRayIntegrator {
     return panel;
   }
 
-  /// The place in the part [begin, end] of a cell where the depth reaches the target: with the
-  /// depths of lines, which is what the tolerance allows there.
+  /// Finds the position in the part [begin, end] of a cell at which the depth reaches the target.
+  /// It uses the depths of lines, which are within the tolerance there.
   template <class Span>
   PELLUCID_HD void find(const Span& span, double begin, double end,
                         Interval<double> range) noexcept {

@@ -12,13 +12,13 @@
 
 namespace pellucid {
 
-/// Integrates one ray within a tolerance: hands each span to the cheapest rule whose error the
-/// budget can pay for, and keeps account of it.
+/// Integrates one ray within a tolerance: it uses, for each span, the cheapest rule whose error is
+/// within budget, and accounts for the errors.
 template <class Value>
 class RayIntegrator {
  public:
-  /// All that is given is referred to and must outlive the integrator. `length`: of the ray inside
-  /// of the grid, in world units.
+  /// Keeps references to its arguments, which must outlive the integrator. `length` is the length
+  /// of the ray inside the grid, in world units.
   PELLUCID_HD RayIntegrator(const StructuredGrid<Value, double>& grid, const Ray<double>& ray_grid,
                             const TransferTables& transfer, const RayTolerance& wanted,
                             double length) noexcept
@@ -29,19 +29,19 @@ class RayIntegrator {
         largest_color_(max(wanted.largest_color, 1.0)),
         budget_(wanted.tolerance, length) {}
 
-  /// Whether what is left of the ray can no longer matter.
+  /// Returns whether the remainder of the ray cannot matter.
   PELLUCID_HD bool done() const noexcept {
     return budget_.allows_termination(rest(), wanted_.tolerance);
   }
 
-  /// A stretch in which nothing absorbs.
+  /// Skips a transparent span.
   PELLUCID_HD void skip(double length) noexcept {
     ++counts_.skipped;
     budget_.spend(length, 0, fold_.transparency(), 0);
   }
 
-  /// A block of this kind, or a cube of such, at once: false where its cells have to be gone
-  /// through. `lower`: the lower end of the block's range.
+  /// Integrates a block of this kind, or a cube of such blocks, at once. Returns false if its cells
+  /// have to be integrated one by one. `lower` is the lower end of the block's range.
   PELLUCID_HD bool try_block(BlockKind kind, double lower, const BlockStep& step) noexcept {
     const double length = step.t_end - step.t_begin;
     if (kind == BlockKind::skip) {
@@ -59,7 +59,7 @@ class RayIntegrator {
     return true;
   }
 
-  /// One cell of a walk over the grid.
+  /// Integrates one cell of a walk over the grid.
   PELLUCID_HD void add_cell(const StructuredWalk<double>::Step& step) noexcept {
     ++evaluations_;
     if (wanted_.precision == Precision::float64 ||
@@ -72,11 +72,13 @@ class RayIntegrator {
     cell_in<double>(step, true);
   }
 
-  /// Whether strides are worth a try in a block where the data's derivative varies by at most
-  /// `variation` on half of a stride of this length: whether the tolerance could allow one even
-  /// where the transfer function is as steep as anywhere in the block's range. An estimate is for
-  /// data that no cell bends by more than half of what the block does: for waves of seven cells
-  /// and longer, but not for noise, whose bends three points do not show.
+  /// Returns whether strides through a block may be within tolerance, assuming that the transfer
+  /// function is everywhere as steep as anywhere in the block's range. `variation` bounds the
+  /// variation of the data's derivative on half of a stride of this `length`.
+  ///
+  /// Estimates are used only if no cell has more than half of the second difference of the block:
+  /// for waves of seven cells and longer, but not for noise, whose second differences three samples
+  /// do not show.
   PELLUCID_HD bool is_smooth(const BlockClass& block, const BlockRange& range,
                              const BlockBends& bends, double variation, double length) noexcept {
     if (!block.absorbs_in_cells()) return false;
@@ -93,9 +95,9 @@ class RayIntegrator {
     return bound <= guard * budget_.allowance(length, 0, fold_.transparency());
   }
 
-  /// A stride from t_begin, where the data are `front`, in blocks whose derivative varies by at
-  /// most `variation` on either half: false where the tolerance does not allow it. `back`: the data
-  /// at its end.
+  /// Integrates a stride from t_begin, where the data are `front`, through blocks whose derivative
+  /// varies by at most `variation` on either half. Returns false if it is not within budget. `back`
+  /// receives the data at its end.
   PELLUCID_HD bool try_stride(double t_begin, double length, double variation, double front,
                               double& back) noexcept {
     const double middle = sample(t_begin + 0.5 * length);
@@ -117,12 +119,13 @@ class RayIntegrator {
     return true;
   }
 
-  /// The data at a place of the ray.
+  /// Returns the data at a position of the ray.
   PELLUCID_HD double sample(double t) noexcept {
     ++evaluations_;
     return sample_value<double>(grid_, ray_.at(t));
   }
 
+  /// Returns the result up to the last span.
   PELLUCID_HD RayResult result() const noexcept {
     RayResult result;
     result.radiance = fold_.radiance();
@@ -139,13 +142,14 @@ class RayIntegrator {
   }
 
  private:
-  /// A bound on what lies behind: as little as light can come from there.
+  /// Returns an upper bound on the radiance of the remainder.
   PELLUCID_HD double rest() const noexcept {
     return budget_.remainder_bound(fold_.transparency(), transfer_.largest_extinction,
                                    largest_color_);
   }
 
-  /// `opacity`: what the allowance was asked for.
+  /// Composites a span and charges its error. `opacity` is the one for which the allowance was
+  /// computed.
   template <class T>
   PELLUCID_HD void add(const BoundedSegment<T>& span, double length, double opacity,
                        double rounding) noexcept {
@@ -156,8 +160,8 @@ class RayIntegrator {
     proved_ = proved_ && span.proved;
   }
 
-  /// Integrates the cell in T. Without `forced`, returns false where T's rounding would take more
-  /// than a quarter of what the span may cost.
+  /// Integrates the cell in T. Unless `forced`, returns false if T's rounding would take more than
+  /// a quarter of the span's allowance.
   template <class T>
   PELLUCID_HD bool cell_in(const StructuredWalk<double>::Step& step, bool forced) noexcept {
     const double world_length = step.t_end - step.t_begin;

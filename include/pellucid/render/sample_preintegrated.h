@@ -10,7 +10,8 @@
 
 namespace pellucid {
 
-/// A part of a step: the opacity of a constant extinction, and the radiance in proportion to it.
+/// Returns the fraction `part` of a step: the opacity of a constant extinction, and the radiance in
+/// proportion to it.
 template <class T>
 PELLUCID_HD PreintegratedStep<T> partial_step(const PreintegratedStep<T>& whole, T part) noexcept {
   if (!(whole.opacity > T(0))) return {};
@@ -18,8 +19,8 @@ PELLUCID_HD PreintegratedStep<T> partial_step(const PreintegratedStep<T>& whole,
   return {opacity, (opacity / whole.opacity) * whole.radiance};
 }
 
-/// Marches a ray as sample_ray() does, by a table made for this step: it sees the data at the ends
-/// of each step. A step with an end in a cell with a NaN corner is vacuum.
+/// Marches a ray like sample_ray(), with a table made for this step length. It samples the data at
+/// both ends of each step. A step with an end in a cell with a NaN corner is vacuum.
 template <class T, class Value>
 PELLUCID_HD RayResult sample_preintegrated(const StructuredGrid<Value, double>& grid,
                                            const Ray<double>& ray_grid,
