@@ -6,11 +6,11 @@
 
 namespace pellucid {
 
-/// A Gaussian primitive along linear data: as GaussianCubic, where nothing is lost.
+/// A Gaussian primitive along linear data: like GaussianCubic, without a replacement error.
 template <class T>
 class GaussianLinear {
  public:
-  /// data: of each channel of the primitive.
+  /// `data` holds the data of each channel of the primitive.
   template <class S>
   PELLUCID_HD GaussianLinear(const Gaussian<S>& primitive, const LinearBernstein<T>* data) noexcept
       : rows_(primitive.rows) {
@@ -45,12 +45,13 @@ class GaussianLinear {
     lower_ = max(nearest - T(16 * rounding_unit<T>) * sqrt(upper_ * nearest), T(0));
   }
 
-  /// Bounds on the exponent |p|² all over [0, 1].
+  /// Return bounds on the exponent |p|² over [0, 1].
   PELLUCID_HD T lower() const noexcept { return lower_; }
   PELLUCID_HD T upper() const noexcept { return upper_; }
 
-  /// Whether |p|² may be below `square` anywhere; true where rounding hides it, and where that is
-  /// NaN. Wanted: numbers whose fourth powers T has. Costs less than lower().
+  /// Returns whether |p|² may be below `square` anywhere; true if rounding hides it or `square` is
+  /// NaN. Precondition: the fourth powers of the numbers do not overflow in T. Cheaper than
+  /// lower().
   PELLUCID_HD mask_t<T> comes_within(T square) const noexcept {
     const T dd = line_.squared_length;
     // Between the ends it is |front|² - along²/|d|², of which rounding hides 40 u |front|².
@@ -61,7 +62,7 @@ class GaussianLinear {
     return !(ends_pass & (beside | passes));
   }
 
-  /// The line of the places p = K (v - c).
+  /// The line of the positions p = K (v - c).
   struct Line {
     T front[max_channels], back[max_channels], d[max_channels];
     T squared_length{};  ///< |d|²
@@ -70,7 +71,7 @@ class GaussianLinear {
   PELLUCID_HD T mean_density(const Line& l) const noexcept {
     return gaussian_mean_density(l.front, l.back, l.d, rows_);
   }
-  /// Along it the exponent is |front|² + slope u + |d|² u².
+  /// Returns the slope of the exponent |front|² + slope u + |d|² u² along the line.
   PELLUCID_HD T slope(const Line& /*own*/) const noexcept { return T(2) * along_; }
 
  private:
@@ -79,7 +80,7 @@ class GaussianLinear {
   T along_, from_front_, from_ends_, lower_, upper_;
 };
 
-/// The primitive along the data of all channels.
+/// Returns the primitive along the data of all channels.
 template <class S, class T>
 PELLUCID_HD GaussianLinear<T> gaussian_along(const Gaussian<S>& primitive,
                                              const LinearBernstein<T>* data) noexcept {

@@ -10,20 +10,20 @@
 
 namespace pellucid {
 
-/// What N Gauss nodes err on a panel of Gaussians e^(-|p_j(u)|²) along cubics p_j, at most by
-/// estimate, in the radiance by the largest color and in the opacity:
+/// An estimated bound on the error of N Gauss nodes on a panel of Gaussians e^(-|p_j(u)|²) along
+/// cubics p_j, of the radiance divided by the largest color and of the opacity:
 ///
 ///   factor · Σ w_j m_j^power + linear · depth³ · max m_j · Σ w_j + smallest · Σ w_j,
 ///
-/// m_j three times the largest step between Bernstein coefficients of p_j, a bound on how far it
-/// moves; w_j = (depth of its peak over the panel) · min(1, 5/2 e^(-min|p_j|²/2)). Where the
-/// Gaussians differ in color, the depth <= 1.
+/// with m_j three times the largest difference of consecutive Bernstein coefficients of p_j, an
+/// upper bound on its movement, and w_j = (depth of its peak over the panel) · min(1, 5/2
+/// e^(-min|p_j|²/2)). If the Gaussians differ in color, it requires depth <= 1.
 ///
-/// Along lines the depth's error is at most w m^2N (N!)³ / ((2N + 1) (2N)!²), with Cramér's
-/// inequality for Hermite functions; bends count for more where little moves. The second term is of
-/// colors that change along a panel that is not thin. Twice the worst that hill climbing finds over
-/// up to three curves of one and two rows; asserted in tests/segment. Beyond farthest nothing is
-/// known.
+/// Along lines the error of the depth is at most w m^2N (N!)³ / ((2N + 1) (2N)!²), by Cramér's
+/// inequality for Hermite functions; the curvature of cubics matters more if the movement is small.
+/// The second term is for colors that change along a panel that is not thin. Twice the largest
+/// error that hill climbing finds over up to three curves with one and two rows; asserted in
+/// tests/segment. Not valid for movements beyond `farthest`.
 template <int N>
 struct NodeEstimate {
   static_assert(N == 3 || N == 5 || N == 8);
@@ -34,9 +34,9 @@ struct NodeEstimate {
   static constexpr double smallest = 2e-9;
 };
 
-/// A number that is not set to 0 where it is made.
+/// A number without initialization.
 template <class T>
-struct UninitializedNumber {
+struct LaneStorage {
   scalar_t<T> lane[lanes<T>];
 
   PELLUCID_HD void operator=(const T& value) noexcept {
@@ -55,14 +55,13 @@ struct UninitializedNumber {
   }
 };
 
-/// What GaussianNodes keeps of a panel's Gaussians: too much for a small stack where T is a batch.
+/// Memory of GaussianNodes for a panel's Gaussians: too large for a small stack if T is a batch.
 template <class T>
 struct NodeWorkspace {
   struct Term {
     const Gaussian<scalar_t<T>>* of;
-    UninitializedNumber<T>
-        peak;  ///< depth of its peak over the panel's length; 0 where it does not matter
-    UninitializedNumber<T> power[4][max_channels];  ///< of u: K (v - c)
+    LaneStorage<T> peak;  ///< depth of its peak over the panel's length; 0 if it is ignored
+    LaneStorage<T> power[4][max_channels];  ///< K (v - c) in powers of u
 
     PELLUCID_HD T at(int row, T u) const noexcept {
       const T p = multiply_add(power[3][row].get(), u, power[2][row].get());
@@ -81,8 +80,8 @@ struct NodeWorkspace {
   Term term[max_gaussians];
 };
 
-/// A panel of Gaussians along cubics, by Gauss nodes, in a number type without digits to spare:
-/// what is asked of the curves is relative to their own size. T may be a batch: panels in lanes.
+/// Integrates a panel of Gaussians along cubics by Gauss nodes, in a number type without spare
+/// digits: the curves are used relative to their own size. T may be a batch, one panel per lane.
 template <class T>
 class GaussianNodes {
  public:
@@ -92,9 +91,9 @@ class GaussianNodes {
   PELLUCID_HD GaussianNodes(T length, NodeWorkspace<T>& room) noexcept
       : length_(length), term_(room.term) {}
 
-  /// Adds a primitive in the lanes `on`, if it comes nearer than the root of `square` to its center
-  /// along the cubic that begins at `first`, by the differences from each Bernstein coefficient of
-  /// K (v - c) to the next.
+  /// Adds a primitive in the lanes `on` if it comes nearer than √square to its center. The cubic
+  /// begins at `first`; `difference` holds the differences of consecutive Bernstein coefficients of
+  /// K (v - c).
   template <int Most>
   PELLUCID_HD void add(const Gaussian<S>& of, const T* first, const T (*difference)[Most], T square,
                        Mask on) noexcept {
@@ -153,25 +152,27 @@ class GaussianNodes {
     to_ = max(to_, select(matters, to, T(0)));
   }
 
-  /// A bound on the depth.
+  /// Returns an upper bound on the depth.
   PELLUCID_HD T depth_bound() const noexcept { return most_; }
-  /// What no cutting lowers against the panel's depth: rounding, also of as many sums, and what
-  /// estimates say at least.
+  /// Returns the part of the error that cutting does not reduce relative to the panel's depth:
+  /// rounding, including that of the sums, and the minimum of the estimates.
   PELLUCID_HD T least_error() const noexcept {
     const T sums = seen_ * T(rounding_unit<T>) * most_;
     return multiply_add(T(S(NodeEstimate<8>::smallest)), weight_, rounding_ + sums);
   }
-  /// Whether it is short enough for nodes; longer ones are to be cut.
+  /// Returns whether the panel is short enough for nodes; longer ones have to be cut.
   PELLUCID_HD Mask is_short() const noexcept { return moves_ <= T(NodeEstimate<8>::farthest); }
 
-  /// The panel in those lanes in which the error is at most `allowed`, of the opacity.
+  /// The panel, in the lanes in which the error is at most `allowed`, relative to the opacity.
   struct Result {
     SegmentResult<T> segment;
-    T error{};  ///< of the radiance, by the largest color, and of the opacity
+    T error{};  ///< of the radiance divided by the largest color, and of the opacity
     Mask done = Mask(false);
-    /// Else: nothing matters up to `clear` nor from `until` on; try from `clear` to `cut`.
+    /// If not done: nothing matters before `clear` nor behind `until`; try again from `clear` to
+    /// `cut`.
     T clear{}, cut = T(0.5), until = T(1);
   };
+  /// Integrates the panel with 3, 5 or 8 nodes, or proposes a cut.
   PELLUCID_HD Result integrate(T allowed) const noexcept {
     Result result;
     result.segment = segment_of_depth(T(0), Rgb<T>{});
@@ -195,8 +196,8 @@ class GaussianNodes {
     return result;
   }
 
-  /// The panel by N nodes, whatever they err. `several`: whether there are several colors; without
-  /// them they are not asked for.
+  /// Integrates the panel with N nodes, whatever their error. `several`: whether there are several
+  /// colors; if not, colors are not computed.
   template <int N>
   PELLUCID_HD SegmentResult<T> integrate_by_nodes(bool several) const noexcept {
     static constexpr auto rule = gauss_legendre<S, N>();
@@ -260,7 +261,7 @@ class GaussianNodes {
   typename NodeWorkspace<T>::Term* term_;
   int count_ = 0;
   T most_{}, rounding_{};
-  T seen_{};                                     ///< how many matter, lane by lane
+  T seen_{};                                     ///< number of primitives that matter, lane by lane
   T moves_{};                                    ///< the largest movement
   T weight_{}, square_{}, fourth_{}, eighth_{};  ///< Σ weight · movement^k
   ColorRange<T> colors_;

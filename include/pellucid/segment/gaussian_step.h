@@ -12,7 +12,7 @@ namespace pellucid {
 /// or accurately (gaussian.h).
 enum class GaussianRule { kniss, closed_form };
 
-/// The mean density of a primitive along data linear from v1 (front) to v2, by a rule.
+/// Returns the mean density of a primitive along data linear from v1 (front) to v2, by a rule.
 template <class S, class T>
 PELLUCID_HD T mean_density(GaussianRule rule, const Gaussian<S>& primitive, const T* v1,
                            const T* v2) noexcept {
@@ -20,13 +20,13 @@ PELLUCID_HD T mean_density(GaussianRule rule, const Gaussian<S>& primitive, cons
                                      : gaussian_mean_density(primitive, v1, v2);
 }
 
-/// Kniss's segment: all terms along data linear from v1 (front) to v2, in one color, the mean of
-/// theirs weighted by optical depth (specification, 3.5 (i)). For comparison: what the color is off
-/// by is not said; gaussian_mixture_mean() bounds it.
+/// Returns Kniss's segment: all terms along data linear from v1 (front) to v2 in a single color,
+/// their mean weighted by optical depth (specification, 3.5 (i)). For comparison: the color's error
+/// is not computed; gaussian_mixture_mean() bounds it.
 ///
-/// With the rule closed_form the depth is exact up to rounding. The paper has Gaussians alone; a
-/// table has with both rules its exact depth (piecewise_linear.h) and the color in which it is seen
-/// alone, so that a table alone is exact. v1 and v2 have `channels` numbers; length >= 0.
+/// With the rule closed_form the depth is exact up to rounding. The paper has Gaussians only; with
+/// both rules a table has its exact depth (piecewise_linear.h) and the color of its own segment, so
+/// that a single table is exact. v1 and v2 have `channels` numbers; length >= 0.
 template <class T>
 PELLUCID_HD SegmentResult<T> mean_color_segment(GaussianRule rule,
                                                 const MultivariateTransfer<T>& transfer,

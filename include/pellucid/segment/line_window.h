@@ -10,18 +10,19 @@ namespace pellucid {
 ///
 ///   f = mean + p1 L1 + p2 L2 + p3 L3,  L1 = 2t - 1, L2 = 6t² - 6t + 1, L3 = 20t³ - 30t² + 12t - 1.
 ///
-/// mean + p1 L1 is its least-squares line; the rest is orthogonal to it. p1 >= 0: where the line
-/// falls, the window is seen from its back.
+/// mean + p1 L1 is its least-squares line; the residual is orthogonal to it. p1 >= 0: if the line
+/// falls, the window is reversed.
 template <class T>
 struct LegendreCubic {
   T mean, p1, p2, p3;
-  T rounding;        ///< of the line at any place
-  T slope_rounding;  ///< of 2 p1 and of 6 p2 and 12 p3, together
+  T rounding;        ///< of the line at any position
+  T slope_rounding;  ///< of 2 p1, 6 p2 and 12 p3, together
   bool reversed;     ///< whether t runs from back to front
 
   PELLUCID_HD T lower() const noexcept { return mean - p1; }
   PELLUCID_HD T upper() const noexcept { return mean + p1; }
 
+  /// Reverses the window if its line falls.
   PELLUCID_HD void rise() noexcept {
     if (p1 < T(0)) {
       p1 = -p1;
@@ -31,10 +32,10 @@ struct LegendreCubic {
   }
 };
 
-/// The cubic on all of [0,1]; mean ∓ p1 are the ends of the least-squares line
-/// (specification, 3.8). Differences come first, so that data that vary little far from zero keep
-/// their digits: p1 is within 5 u, p2 2 u, p3 1.3 u and the mean 2 u of the largest |b_k - b_0|,
-/// the mean u of itself besides.
+/// Returns the cubic on all of [0,1]; mean ∓ p1 are the ends of the least-squares line
+/// (specification, 3.8). Differences are taken first, so that data with small variation far from
+/// zero keep their digits: p1 is within 5 u, p2 2 u, p3 1.3 u and the mean 2 u of the largest |b_k
+/// - b_0|; the mean has an additional error of u of itself.
 template <class T>
 PELLUCID_HD LegendreCubic<T> legendre(const CubicBernstein<T>& f) noexcept {
   const T d1 = f.b[1] - f.b[0], d2 = f.b[2] - f.b[0], d3 = f.b[3] - f.b[0], inner = f.b[2] - f.b[1];
@@ -51,8 +52,9 @@ PELLUCID_HD LegendreCubic<T> legendre(const CubicBernstein<T>& f) noexcept {
   return c;
 }
 
-/// The same on [x - h, x + h], a part of [-1,1], in the coordinate 2t - 1: the Taylor expansion.
-/// Slopes keep their precision relative to those of the whole, however narrow the window is.
+/// Returns the cubic on [x - h, x + h], a part of [-1,1] in the coordinate 2t - 1, by its Taylor
+/// expansion. Slopes keep their precision relative to those of the whole window, however narrow the
+/// part is.
 template <class T>
 PELLUCID_HD LegendreCubic<T> restrict_to(const LegendreCubic<T>& f, T x, T h) noexcept {
   const T xx = x * x, hh = h * h;
@@ -69,9 +71,9 @@ PELLUCID_HD LegendreCubic<T> restrict_to(const LegendreCubic<T>& f, T x, T h) no
   return c;
 }
 
-/// What is left of a cubic beside its line in the part [begin,end] of its window where the line,
-/// give or take what is left, has values in [support_min, support_max]. Elsewhere neither the cubic
-/// nor the line has any.
+/// The residual of a cubic from its line in the part [begin,end] of its window in which the line,
+/// widened by the residual, has values in [support_min, support_max]. Elsewhere neither the cubic
+/// nor the line has such values.
 template <class T>
 struct LineResidual {
   bool empty;               ///< the cubic has none of these values
@@ -106,20 +108,21 @@ struct LineResidual {
   }
 };
 
-/// A part of a cell outside of which nothing absorbs, with what the transfer function does over all
-/// values of the data and of the part's line.
+/// A part of a cell outside of which nothing absorbs, with the summary of the transfer function
+/// over all values of the data and of the part's line.
 template <class T>
 struct LineWindow {
   LegendreCubic<T> data;
   RangeSummary<T> table;
   LineResidual<T> rest;
-  T begin, width;  ///< of the cell, whose line rises
-  int interval;    ///< of the table, not far from the line's lower end
+  T begin, width;  ///< in the cell, whose line rises
+  int interval;    ///< of the table, near the line's lower end
 };
 
-/// The least such window that few steps find: a line in a narrower window leaves less of the cubic
-/// beside it, and says better where the next window is. Its ends lie on a grid on which they and
-/// the middle between them are exact. `interval` is that of data_min, at most the least value.
+/// Returns the smallest such window that a few steps find. A line in a narrower window has a
+/// smaller residual and locates the next window better. The window's ends lie on a grid on which
+/// they and their midpoint are exact. `interval` is that of data_min, which is at most the smallest
+/// value.
 template <class T>
 PELLUCID_HD LineWindow<T> line_window(
     const LegendreCubic<T>& cell, T data_min, T data_max, int interval,
