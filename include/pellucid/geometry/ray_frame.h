@@ -6,34 +6,34 @@
 
 namespace pellucid {
 
-/// A point as a ray sees it: its place across the ray, which is at (0, 0), and along it.
+/// A point in a ray's frame: its coordinates across the ray, which is at (0, 0), and along it.
 template <class T>
 struct ProjectedPoint {
   T x{}, y{};
-  T t{};  ///< the ray's parameter where it is level with the point
+  T t{};  ///< the ray's parameter at which the point is projected
 };
 
-/// A ray's own coordinates: sheared along the axis in which the ray is fastest, so that points on a
-/// grid stay exactly on lines where the ray is parallel to an axis (S. Woop, C. Benthin, I. Wald:
-/// Watertight Ray/Triangle Intersection, 2013). A point is seen in the same place by whoever looks,
-/// so that triangles that share an edge share it for the ray too.
+/// A ray's coordinate frame. It is sheared along the axis in which the ray is fastest, so that grid
+/// points stay exactly on lines if the ray is parallel to an axis (S. Woop, C. Benthin, I. Wald:
+/// Watertight Ray/Triangle Intersection, 2013). A point has the same coordinates in every
+/// computation, so that triangles with a common edge have it in common for the ray, too.
 template <class T>
 struct RayFrame {
-  Vec3<T> origin;      ///< a point of the ray close to what is seen
+  Vec3<T> origin;      ///< a point of the ray near the data
   T t_origin{};        ///< its parameter
   Vec3<T> x, y;        ///< rows: a point p is at (x·(p - origin), y·(p - origin))
-  Vec3<T> t;           ///< and its parameter is t_origin + t·(p - origin)
-  T position_error{};  ///< how far what is seen may be from its true place, in x and in y; t
-                       ///< likewise
+  Vec3<T> t;           ///< its parameter is t_origin + t·(p - origin)
+  T position_error{};  ///< largest error of the coordinates x, y and t
 
+  /// Returns the coordinates of a point.
   PELLUCID_HD ProjectedPoint<T> project(const Vec3<T>& point) const noexcept {
     const Vec3<T> p = point - origin;
     return {dot(x, p), dot(y, p), t_origin + dot(t, p)};
   }
 };
 
-/// `near`: what is to be seen, of which the ray's closest point becomes the origin; `reach`: a
-/// bound on the coordinates of all that will be. The ray's direction has length 1.
+/// Returns the frame of a ray whose direction has length 1. Its origin is the ray's point closest
+/// to `near`; `reach` is an upper bound on the coordinates of all points to be projected.
 PELLUCID_HD inline RayFrame<double> make_ray_frame(const Ray<double>& ray, const Vec3<double>& near,
                                                    double reach) noexcept {
   const Vec3<double>& d = ray.direction;
@@ -58,15 +58,17 @@ PELLUCID_HD inline RayFrame<double> make_ray_frame(const Ray<double>& ray, const
   return view;
 }
 
-/// On which side of the ray the line from a to b passes: twice the signed area of the triangle of
-/// ray, a and b, and its sign. Where the ray meets the line it is thought of as moved from it, by
-/// ε along x and ε² along y, with ε less than any number (H. Edelsbrunner, E. Mücke: Simulation of
-/// Simplicity, 1990): so it never meets an edge or a point, and whoever asks is told the same. From
-/// b to a the answer is the opposite one; only where a and b are in one place it is neither.
+/// The side of the ray on which the line from a to b passes: twice the signed area of the triangle
+/// of ray, a and b, and its sign.
+///
+/// If the ray meets the line, it is treated as displaced by ε along x and ε² along y, with
+/// infinitesimal ε (H. Edelsbrunner, E. Mücke: Simulation of Simplicity, 1990). It therefore never
+/// meets an edge or a point, and every computation gets the same answer. The answer from b to a is
+/// the opposite one; only if a and b coincide there is none.
 template <class T>
 struct Side {
   T area{};
-  T size{};  ///< of both products that it is the difference of, without their signs
+  T size{};  ///< sum of the absolute values of the products whose difference it is
   mask_t<T> left = mask_t<T>(false);  ///< whether the sign is positive
 };
 template <class T>
