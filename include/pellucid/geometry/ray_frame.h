@@ -50,8 +50,8 @@ PELLUCID_HD inline RayFrame<double> make_ray_frame(const Ray<double>& ray, const
   view.y[y] = 1;
   view.y[z] = -(d[y] / d[z]);
   view.t[z] = 1 / d[z];
-  // The origin is off by 2 u of the way to it and of where it began, as is the ray's direction by
-  // the time that it is there; differences and shears add 6 u of what is seen.
+  // The origin has an error of 2 u of the distance to it and of the ray's origin, and so has the
+  // effect of the ray's direction there; differences and shears add 6 u of the point's coordinates.
   const Vec3<double>& o = ray.origin;
   view.position_error = 16 * rounding_unit<double> *
                         (abs(view.t_origin) + max(abs(o.x), max(abs(o.y), abs(o.z))) + reach);

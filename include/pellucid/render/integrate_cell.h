@@ -68,17 +68,17 @@ PELLUCID_HD bool integrate_cell(const CubicBernstein<T>& data, T length, double 
   const double allowed = allowance(result.opacity);
   RoundingError<T> rounding = rounding_error(data, length, T(largest_color), table, reach.first,
                                              reach.last, data_error, slopes);
-  // Extinction on the other side of what is narrower than data_error shows another color.
+  // Extinction on the other side of an interval narrower than data_error shows another color.
   const T colors = min(slopes.color_jumps, T(largest_color));
   const double shifted = static_cast<double>(colors * min(rounding.depth, T(1)));
-  // Where the cell ends has the color that it has there.
+  // The color at the cell's ends is not affected.
   rounding.depth += static_cast<T>(position_error) * slopes.largest_extinction;
   const auto rounding_cost = [&](const T alpha, const T transparency) noexcept {
     if (lacks) return largest_color;  // anything may be there
     return shifted + static_cast<double>(rounding.color_error(alpha)) +
            largest_color * static_cast<double>(rounding.opacity_error(alpha, transparency));
   };
-  // The most it can be, as if nothing absorbed in front.
+  // The upper bound, with full transparency.
   const double at_most = rounding_cost(opacity, T(1));
   if (!forced && !(at_most <= 0.25 * allowed)) return false;
   const double left = max(allowed - at_most, 0.25 * allowed);

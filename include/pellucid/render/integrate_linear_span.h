@@ -45,7 +45,7 @@ PELLUCID_HD bool integrate_linear_span(const LinearData& data, const TransferTab
   result.opacity = static_cast<double>(opacity);
   RoundingError<T> rounding = rounding_error(cubic, length, T(largest_color), table, reach.first,
                                              reach.last, data_error, slopes);
-  // What lies between the two places of an end is between the data there and those of the span.
+  // Data between the two possible positions of an end are between its value and those of the span.
   const T range = upper - lower + T(2) * data_error;
   const T change = slopes.jump ? slopes.largest_extinction
                                : min(slopes.extinction_slope * range, slopes.largest_extinction);
@@ -54,7 +54,7 @@ PELLUCID_HD bool integrate_linear_span(const LinearData& data, const TransferTab
   rounding.depth +=
       position_error * change + static_cast<T>(data.end_error) * slopes.largest_extinction;
   rounding.color += position_error < length ? colors * (position_error / length) : colors;
-  // Extinction that is elsewhere in the span shows another color of it.
+  // Displaced extinction shows another color of the span.
   const double shifted = static_cast<double>(colors * min(rounding.depth, T(1)));
   // Control points beyond the sixteenth cost 3 u each.
   const T more = T(3 * rounding_unit<T>) * T(max(reach.last - reach.first - 16, 0));

@@ -55,13 +55,13 @@ class MeshRayIntegrator {
     budget_.set_remaining_length(max(end_ - span.begin, 0.0));
     const double length = span.end - span.begin;
     if (span.overlaps) {
-      // Anything may be there, and in all that it hides.
+      // The overlap and everything behind it are unknown.
       budget_.spend(length, 0, fold_.transparency(), largest_color_);
       return;
     }
     if (span.vacuum) {
       ++counts_.skipped;
-      // What is beside it may begin and end elsewhere.
+      // Its neighbors may begin and end elsewhere.
       const double beside = transfer_.largest_extinction * (span.position_error + span.end_error);
       budget_.spend(length, 0, fold_.transparency(), largest_color_ * min(beside, 1.0));
       return;
@@ -197,8 +197,8 @@ PELLUCID_HD inline void add_span(const MultivariateTransfer<double>& transfer, c
                                  MultivariateRayIntegrator& integrator) noexcept {
   const double length = span.end - span.begin;
   if (span.overlaps || span.vacuum || length == 0) {
-    // Where cells overlap, anything may be, and in all that they hide; what is beside vacuum, or in
-    // no length, may begin and end elsewhere.
+    // Overlapping cells make the rest of the ray unknown. Cells next to vacuum, or of length 0, may
+    // begin and end elsewhere.
     integrator.charge_opacity(
         span.overlaps ? 1 : largest_extinction * (span.position_error + span.end_error));
     return;

@@ -73,7 +73,7 @@ class MultivariateRayIntegrator {
     double begin = 0;
     while (open > 0) {
       const double end = ends[open - 1];
-      // Cuts inside move by their share of what the stretch is longer or shorter by.
+      // If the span's length changes, inner cuts move in proportion.
       demand_.position_error =
           begin > 0 && end < 1 ? (end - begin) * position_error : position_error;
       demand_.last_resort = open > most_cuts || !(end - begin > 1e-9);

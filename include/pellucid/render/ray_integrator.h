@@ -52,7 +52,7 @@ class RayIntegrator {
     ++counts_.constant;
     const Material<double> material = transfer_.wide.evaluate(lower);
     BoundedSegment<double> segment{constant_segment(material.extinction, material.color, length)};
-    // The length is known to a few units of the arc length.
+    // The length is accurate to a few u of the arc length.
     const double place = 8 * rounding_unit<double> * step.t_end * material.extinction;
     add(segment, length, segment.segment.opacity,
         largest_color_ * (32 * rounding_unit<double> * segment.segment.opacity + min(place, 1.0)));
@@ -170,7 +170,7 @@ class RayIntegrator {
       skip(world_length);
       return true;
     }
-    // Where the ray meets the planes is known to a few units of its arc length.
+    // The positions at which the ray meets the planes are accurate to a few u of its arc length.
     const double position_error = 8 * rounding_unit<double> * step.t_end;
     CellSegment<T> found;
     if (!integrate_cell(

@@ -19,8 +19,8 @@ class StrideMarch {
     for (int a = 0; a < 3; ++a) {
       square += (direction[a] / mean_width[a]) * (direction[a] / mean_width[a]);
     }
-    // Not a whole number of cells: along an axis or a diagonal all places would be alike, and an
-    // error that they share would not show in the difference of two rules.
+    // Not a whole number of cells: along an axis or a diagonal all samples would have the same
+    // position in their cells, and a common error would not show in the difference of two rules.
     shortest_ = 2.2 / sqrt(square);
     length_ = shortest_;
   }
@@ -48,7 +48,7 @@ class StrideMarch {
     bool known = false;
     while (here < t.end && !integrator.done()) {
       const double left = t.end - here;
-      // Nothing is left over that would be short.
+      // No short remainder is left.
       const double length = left < 1.5 * length_ ? left : length_;
       if (left < 0.5 * shortest_) {
         each_cell({here, t.end});
@@ -69,7 +69,7 @@ class StrideMarch {
         length_ = max(0.5 * length_, shortest_);
         continue;
       }
-      // What failed once fails again: the next try is farther away each time.
+      // A failed stride is likely to fail again: the distance to the next try grows each time.
       const double pause = pause_ * shortest_;
       const double end = left < pause + shortest_ ? t.end : here + pause;
       each_cell({here, end});

@@ -16,7 +16,7 @@ struct GaussianPrimitive {
   std::vector<std::vector<double>> matrix;  ///< K by rows: 1 … 8 rows, one column per channel; any
                                             ///< rank
   double extinction = 0;  ///< the peak, 1/length in world units, >= 0
-  Rgb<double> color{};    ///< linear RGB of the particles, straight, >= 0
+  Rgb<double> color{};    ///< linear RGB of the particles, not premultiplied, >= 0
 };
 
 /// Returns the K of a primitive whose axes are the channels: the extinction falls to 1/e of its

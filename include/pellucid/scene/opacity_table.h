@@ -12,7 +12,7 @@ namespace pellucid {
 struct OpacityPoint {
   double value = 0;     ///< in the data's unit
   double opacity = 0;   ///< in [0,1], of a layer as thick as the unit distance
-  Rgb<double> color{};  ///< linear RGB of the particles, straight, >= 0
+  Rgb<double> color{};  ///< linear RGB of the particles, not premultiplied, >= 0
 };
 
 /// Extinction · unit distance that replaces the infinite extinction of opacity 1.

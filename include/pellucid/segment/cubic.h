@@ -58,7 +58,7 @@ PELLUCID_HD BoundedSegment<T> integrate_cubic(const CubicBernstein<T>& data, T l
         if (!table.has_extinction(interval, interval)) return;
         const CubicPiece<T> piece =
             make_cubic_piece(data, table, interval, t_begin, t_end, value_begin, value_end);
-        // Behind an opaque front the depth-weighted color will do.
+        // Behind an opaque front the depth-weighted color suffices.
         const bool matters = result.segment.transparency > T(1.0 / 64) * tolerance;
         result = compose(result, cubic_piece_segment(piece, length * (t_end - t_begin),
                                                      matters ? tolerance : T(largest<T>), grade));

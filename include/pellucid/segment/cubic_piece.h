@@ -51,7 +51,7 @@ PELLUCID_HD CubicPiece<T> make_cubic_piece(const CubicBernstein<T>& data,
     const bool whole = t_begin == T(0) && t_end == T(1);
     const CubicBernstein<T> part = whole ? offset : restrict_to(offset, t_begin, t_end);
     // A cubic with values in [0,1] has coefficients in [-2,3] (those of Chebyshev's T3 are the
-    // extreme ones): the clamp changes only what rounding made of an interval narrower than it.
+    // extreme ones): the clamp only changes rounding errors of very narrow intervals.
     piece.share = {{clamp((value_begin - origin) / change, T(0), T(1)),
                     clamp(part.b[1] / change, T(-2), T(3)), clamp(part.b[2] / change, T(-2), T(3)),
                     clamp((value_end - origin) / change, T(0), T(1))}};

@@ -53,7 +53,7 @@ PieceEnd<F> piece_end(const CubicBernstein<F>& f, F lower, F upper, F close,
   const F d0 = f.b[1] - f.b[0], d1 = f.b[2] - f.b[1], d2 = f.b[3] - f.b[2];
   const auto turns = leaves & !(((d0 >= F(0)) & (d1 >= F(0)) & (d2 >= F(0))) |
                                 ((d0 <= F(0)) & (d1 <= F(0)) & (d2 <= F(0))));
-  // In powers of the place: the differences are of neighbours.
+  // In powers of the position, from differences of neighboring coefficients.
   const F c1 = F(3) * d0, c2 = F(3) * (d1 - d0), c3 = (d2 - d1) - (d1 - d0);
   F last = f.b[3];
   if (any(turns)) {

@@ -33,7 +33,7 @@ class GaussianLinear {
     upper_ = max(from_front, from_back);
     from_ends_ = min(from_front, from_back);
     from_front_ = from_front;
-    // Where the line is closest to the center, or the end that is nearer to there.
+    // The closest approach to the center, or the nearer end.
     const T turn = clamp(-along / max(line_.squared_length, T(smallest_normal<T>)), T(0), T(1));
     T nearest = T(0);
     for (int i = 0; i < rows_; ++i) {
@@ -41,7 +41,7 @@ class GaussianLinear {
       nearest = multiply_add(there, there, nearest);
     }
     nearest = min(nearest, from_ends_);
-    // Rounding must not raise the bound: places are off by 8 u of the farther end.
+    // Rounding must not raise the bound: positions have an error of 8 u of the farther end.
     lower_ = max(nearest - T(16 * rounding_unit<T>) * sqrt(upper_ * nearest), T(0));
   }
 
@@ -54,7 +54,7 @@ class GaussianLinear {
   /// lower().
   PELLUCID_HD mask_t<T> comes_within(T square) const noexcept {
     const T dd = line_.squared_length;
-    // Between the ends it is |front|² - along²/|d|², of which rounding hides 40 u |front|².
+    // Between the ends it is |front|² - along²/|d|², with a rounding error of 40 u |front|².
     const auto beside = (along_ >= T(0)) | (along_ + dd <= T(0));
     const T slack = T(40 * rounding_unit<T>) * (upper_ * dd);
     const auto passes = (from_front_ - square) * dd >= along_ * along_ + slack;

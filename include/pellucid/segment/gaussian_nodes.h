@@ -134,8 +134,9 @@ class GaussianNodes {
     power *= power;
     fourth_ = multiply_add(weight, power, fourth_);
     eighth_ = multiply_add(weight, power * power, eighth_);
-    // What p at a node is off by, through the steepest slope of e^(-|p|²) from the nearest place
-    // on; the exponential, and sums: nearly four times the worst of random panels (tests/segment).
+    // The error of p at a node times the steepest slope of e^(-|p|²) beyond the closest approach;
+    // the exponential, and sums: nearly four times the largest error of random panels
+    // (tests/segment).
     const T nearest = max(select(matters, curve.lower(), T(0)), T(0.5));
     const T slope = T(2) * sqrt(nearest) * min(density, T(S(0.6065307)));
     const T rounded = multiply_add(slope, farthest + T(4) * moves, T(16) * density);
@@ -184,11 +185,11 @@ class GaussianNodes {
     try_nodes<5>(fourth_, left, several, open, result);
     try_nodes<8>(eighth_, left, several, open, result);
     if (all(result.done)) return result;
-    // In so many parts of what matters that none moves too far, and none is dense if colors differ.
+    // The number of parts at which none moves too far, and none is dense if colors differ.
     const T share = max(to_ - from_, T(0));
     const T depth = select(several, most_ * share, T(0));
     const T parts = clamp(max(moves_ * share * T(0.2), depth), T(1), T(16));
-    // What is cut becomes shorter.
+    // A cut makes the panel shorter.
     const T whole = max(floor(parts + T(0.9375)), select(share > T(0.75), T(2), T(1)));
     result.clear = min(from_, T(1));
     result.cut = result.clear + share / whole;
@@ -265,7 +266,7 @@ class GaussianNodes {
   T moves_{};                                    ///< the largest movement
   T weight_{}, square_{}, fourth_{}, eighth_{};  ///< Σ weight · movement^k
   ColorRange<T> colors_;
-  T from_ = T(1), to_ = T(0);  ///< outside of it none matters
+  T from_ = T(1), to_ = T(0);  ///< outside of it no primitive matters
 };
 
 }  // namespace pellucid

@@ -75,7 +75,7 @@ struct GaussianPanels {
   /// Sets the cutoffs from the tolerance.
   PELLUCID_HD void set_cutoffs() noexcept {
     for (int i = 0; i < count; ++i) {
-      // Optical depth below tolerance/64 of the opacity, together, wherever it lies.
+      // Together below tolerance/64 of the opacity in optical depth, wherever they are.
       const T least = tolerance * opacity / (T(64) * T(count) * max(oscillation, T(1e-6)));
       seen[i].cutoff = log(max(seen[i].peak / max(least, T(smallest_normal<T>)), T(1)));
     }
@@ -185,7 +185,7 @@ struct GaussianPanels {
     const Attenuation<T> a = attenuation(mean.depth);
     panel.opacity = a.opacity;
     panel.transparency = a.transparency;
-    // As much of what the panel shines as everywhere, or its share by length.
+    // The same fraction of the panel's radiance as everywhere, or its share by length.
     const T allowed =
         max(T(0.6) * tolerance, T(0.1) * tolerance * opacity * width / (transparency * a.opacity));
     const T negligible = allowed * a.opacity / (T(16) * T(count) * max(oscillation, T(1e-6)));
@@ -219,7 +219,7 @@ struct GaussianPanels {
   PELLUCID_HD Panel fold() noexcept {
     Panel sum;
     T shine = T(0);
-    // What the cutoffs leave out, seen through nothing.
+    // The contribution of the cutoffs, with full transparency.
     T error = tolerance * opacity * T(1.0 / 32);
     T t = T(0), width = width_to_cut(T(0), T(1));
     for (;;) {

@@ -149,7 +149,7 @@ PELLUCID_HD LineWindow<T> line_window(
     window.begin = begin;
     window.width = end - begin;
     window.data = restrict_to(cell, (begin + end) - T(1), end - begin);
-    // Where the new line leaves the range, the range grows, with the jump that may stand there.
+    // If the new line leaves the range, the range grows, including a jump at its end.
     const auto add = [&](T from_value, T to_value) noexcept {
       int i = interval_near(table, from_value, first);
       while (i > 0 && !(table.value[i - 1] < from_value)) --i;

@@ -57,9 +57,9 @@ struct ThinSums {
   PELLUCID_HD ThinSums(T h, T g, T reach) noexcept {
     // With r = reach the tail of F1 after N terms is below r^N e^{r/2}/(2N+3)!! (proof in 3.3):
     // N = 8 and 15 leave less than u/10 of the weights up to r = 1, N = 4 and 8 up to r = 0.05.
-    // There each term left out is below half a unit in the last place of its sum, so that adding
-    // them changes nothing: a lane's result does not depend on its neighbors.
-    // b0 and H1 are even in h and end sooner.
+    // There each omitted term is below half a unit in the last place of its sum, so that adding it
+    // changes nothing: a lane's result does not depend on its neighbors. b0 and H1 are even in h
+    // and end sooner.
     if (all(reach <= T(0.05))) {
       add<is_single<T> ? 2 : 4, is_single<T> ? 4 : 8>(h, g);
     } else {

@@ -152,8 +152,8 @@ class PanelIntegrator {
       bend_ = max(bend_, part((T(2) * sqrt(along.upper()) + line.farthest) * line.farthest));
     }
     sum_.add(term.mass, color_of(g));
-    // The closed form's own, with its logarithm; and K (v - c), which is off by some units of its
-    // largest terms, seen through the density's slope: (2.4 max(1, s)) e^(-s²) at most, |p| >= s.
+    // The error of the closed form, with its logarithm; and that of K (v - c), a few u of its
+    // largest terms, times the density's slope: at most (2.4 max(1, s)) e^(-s²), |p| >= s.
     const T away = sqrt(max(along.lower(), T(1)));
     rounding_ += part(
         bound * (T(rounding_unit<T>) * (T(48) + T(32) * along.lower() + T(160) * away * reach(g))));
@@ -194,7 +194,7 @@ class PanelIntegrator {
     Rgb<T> emission{};
     for (int n = 0; n < count_; ++n) {
       const Gaussian<S>& g = gaussian(term_[n]);
-      // Of other lanes' terms nothing.
+      // Terms of other lanes do not count.
       const T here = select(term_[n].mass > T(0), T(g.peak) * g.density(v), T(0));
       extinction += here;
       emission += here * color_of(g);
@@ -266,7 +266,7 @@ class PanelIntegrator {
       const T bend = term.bend - bend_of, slope = term.slope - slope_of;
       const T sizes = abs(term.bend) + abs(term.slope) + abs(bend_of) + abs(slope_of);
       const T change = parabola_range(bend, slope) + T(16 * rounding_unit<T>) * sizes;
-      // The heaviest against itself changes nothing.
+      // The heaviest term does not change relative to itself.
       const auto same = (term.mass == heaviest) & (bend == T(0)) & (slope == T(0));
       changes.add(select(counts & (alone | !same), change, T(0)));
     }
@@ -289,7 +289,7 @@ class PanelIntegrator {
     found.color_error = min(range, range * (T(0.25) * m.change) + tables_.colors) *
                             (alpha * mean_color_bound(sum_.depth)) +
                         min(T(2) * m.left_out, alpha) * all_colors;
-    // What cutting does not lower must not make it go on forever.
+    // Errors that cutting does not reduce must not prevent termination.
     const T payable = max(allowed - largest_color_ * fixed_, T(0.5) * allowed);
     const T left = payable - largest_color_ * loss;
     const auto wanted = (found.color_error > left) & (left > T(0));
