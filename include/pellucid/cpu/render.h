@@ -51,8 +51,10 @@ struct RenderOptions {
   /// returns false, the frame is cancelled and render() throws Cancelled.
   std::function<bool(double)> progress;
 
-  // Number of preview levels: every 2ⁿ-th pixel along each axis is rendered first, then the pixels
-  // half-way between them, and so on. No pixel is rendered twice; the image is bitwise the same.
+  // The following options apply to render() only.
+
+  /// Number of preview levels: every 2ⁿ-th pixel along each axis is rendered first, then the pixels
+  /// half-way between them, and so on. No pixel is rendered twice; the image is bitwise the same.
   int preview = 0;
   /// Called once per tile, by one thread at a time and never during `progress`. The tiles of a
   /// level follow all tiles of the coarser level. No thread waits for the call. If it returns

@@ -61,7 +61,7 @@ class RayBudget {
   /// The cost must be at most the share's sum, or remaining(); otherwise the budget is exhausted.
   PELLUCID_HD void spend(T length, const SpanShare& from, T cost) noexcept {
     const T sum = from.sum();
-    // What one pot does not have is taken from the other: together they lose all that is spent.
+    // What one budget lacks is taken from the other: together they lose the whole cost.
     T part = select(sum > T(0), cost * (from.opacity_part / sum), T(0));
     part = clamp(part, min(cost - length_pot_, opacity_pot_), opacity_pot_);
     opacity_pot_ = max(opacity_pot_ - part, T(0));
@@ -93,8 +93,8 @@ class RayBudget {
            ((spent_ > tolerance) & next_to_nothing);
   }
 
-  /// Returns a lower limit for the error of a span, as for allowance(). It lets a ray finish that
-  /// has exceeded its tolerance because rounding takes more.
+  /// Returns a lower limit for the allowance of a span, however little budget remains. With it a ray
+  /// finishes that has exceeded its tolerance because rounding takes more.
   PELLUCID_HD static T minimum_allowance(T tolerance, T share_of_length) noexcept {
     return T(1.0 / 64) * tolerance * share_of_length;
   }

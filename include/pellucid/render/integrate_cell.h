@@ -71,7 +71,7 @@ PELLUCID_HD bool integrate_cell(const CubicBernstein<T>& data, T length, double 
   // Extinction on the other side of an interval narrower than data_error shows another color.
   const T colors = min(slopes.color_jumps, T(largest_color));
   const double shifted = static_cast<double>(colors * min(rounding.depth, T(1)));
-  // The color at the cell's ends is not affected.
+  // An error of the ends' positions moves extinction, with the color that it has there.
   rounding.depth += static_cast<T>(position_error) * slopes.largest_extinction;
   const auto rounding_cost = [&](const T alpha, const T transparency) noexcept {
     if (lacks) return largest_color;  // anything may be there
