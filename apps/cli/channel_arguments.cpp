@@ -71,7 +71,7 @@ std::vector<ChannelSource> needed(const std::vector<ChannelSource>& sources,
   for (auto source = sources.rbegin(); source != sources.rend(); ++source) {
     if (std::find(names.begin(), names.end(), source->name) == names.end()) continue;
     if (const auto* derived = std::get_if<DerivedSource>(&source->source)) {
-      names.push_back(derived->of);
+      names.push_back(derived->channel);
     }
     kept.insert(kept.begin(), *source);
   }
@@ -116,7 +116,7 @@ std::vector<std::string> file_channel_names(const std::vector<std::string>& inpu
     const bool builtin = input.starts_with("builtin:");
     const std::string file =
         builtin ? input.substr(8) : std::filesystem::path(input).filename().string();
-    const std::string name = as_channel_name(file.substr(0, file.find(builtin ? ':' : '.')));
+    const std::string name = to_channel_name(file.substr(0, file.find(builtin ? ':' : '.')));
     std::string numbered = name;
     for (int n = 2; std::find(names.begin(), names.end(), numbered) != names.end(); ++n) {
       numbered = fmt::format("{}_{}", name, n);

@@ -112,7 +112,7 @@ int run_histogram(const HistogramArguments& arguments) {
   const ChannelSelection selection = select_channels(arguments.channels, 2);
   check_arguments(arguments, selection);
   const int threads =
-      arguments.channels.threads > 0 ? arguments.channels.threads : default_threads();
+      arguments.channels.threads > 0 ? arguments.channels.threads : default_thread_count();
   const LoadedChannels loaded = load_channels(selection, threads);
   const JointHistogram histogram = joint_histogram(
       loaded.channels, loaded.which, axes_of(arguments, loaded), parallel_for(threads));

@@ -42,7 +42,7 @@ ImportOptions ImportArguments::options(double deviation) const {
                                  *unit_distance, smallest_unit_distance, largest_unit_distance));
   }
   if (!colors.empty()) {
-    options.numbers = colors == "linear" ? ColorNumbers::linear : ColorNumbers::srgb;
+    options.encoding = colors == "linear" ? ColorEncoding::linear : ColorEncoding::srgb;
   }
   return options;
 }

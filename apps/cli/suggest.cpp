@@ -49,7 +49,7 @@ bool are_value_and_gradient(const ChannelSelection& selection) {
     const auto* derived = std::get_if<DerivedSource>(&source.source);
     if (derived != nullptr && source.name == selection.axes[1]) {
       return derived->kind == DerivedSource::Kind::gradient_magnitude &&
-             derived->of == selection.axes[0];
+             derived->channel == selection.axes[0];
     }
   }
   return false;
@@ -78,10 +78,10 @@ MultivariateDescription described(const std::vector<GaussianPrimitive>& primitiv
 }
 
 int run_suggest(const SuggestArguments& arguments) {
-  const ChannelSelection selection = select_channels(arguments.channels, most_suggested_channels);
+  const ChannelSelection selection = select_channels(arguments.channels, max_suggested_channels);
   check_arguments(arguments, selection);
   const int threads =
-      arguments.channels.threads > 0 ? arguments.channels.threads : default_threads();
+      arguments.channels.threads > 0 ? arguments.channels.threads : default_thread_count();
   const LoadedChannels loaded = load_channels(selection, threads, arguments.quiet);
   const bool boundaries = are_value_and_gradient(selection) && arguments.primitives == 0;
   const std::vector<GaussianPrimitive> primitives =
@@ -135,9 +135,9 @@ Command add_suggest(CommandLine& app) {
           "--primitives", arguments->primitives,
           fmt::format("Fit a mixture of N Gaussians, 1 to {}. Default: boundaries and materials of "
                       "a value and its gradient magnitude, else as many as are found",
-                      most_suggested_primitives))
+                      max_suggested_primitives))
       ->option_text("N")
-      ->in_range(1, most_suggested_primitives);
+      ->in_range(1, max_suggested_primitives);
   command.add_flag("-q,--quiet", arguments->quiet, "Print no notes, only errors");
   arguments->channels.add_to(command);
   command.footer(

@@ -29,12 +29,12 @@ std::string advice(const RenderReport& report, const Integration& integration) {
 
 std::optional<std::string> over_tolerance(const RenderReport& report,
                                           const Integration& integration) {
-  if (report.pixels_over == 0) return std::nullopt;
+  if (report.pixels_over_tolerance == 0) return std::nullopt;
   const std::string by = std::isfinite(report.largest_error)
                              ? fmt::format("by up to {:.3g}", report.largest_error)
                              : "by an unknown amount";
   return fmt::format("{} of {} pixels may be off by more than the tolerance {}, {}; {}",
-                     report.pixels_over, report.pixels, integration.tolerance, by,
+                     report.pixels_over_tolerance, report.pixels, integration.tolerance, by,
                      advice(report, integration));
 }
 

@@ -260,7 +260,7 @@ std::vector<VolumeArray> list_arrays(const std::filesystem::path& path, const Fo
   for (const GridArray& array : contents.arrays) {
     VolumeArray about;
     about.name = array.name;
-    about.shown = list.empty();
+    about.is_default = list.empty();
     about.dimensions.assign(array.sides.begin(), array.sides.end());
     // Each takes a process of its own.
     constexpr int most = 64;
@@ -275,7 +275,7 @@ std::vector<VolumeArray> list_arrays(const std::filesystem::path& path, const Fo
     } catch (const Error& error) {
       // One that cannot be read is no reason to say nothing of the others.
       const std::string message = error.what(), name = path.string() + ": ";
-      about.not_read = message.starts_with(name) ? message.substr(name.size()) : message;
+      about.unreadable_reason = message.starts_with(name) ? message.substr(name.size()) : message;
       about.components.clear();
       about.more_components = array.components;
     }
@@ -285,7 +285,7 @@ std::vector<VolumeArray> list_arrays(const std::filesystem::path& path, const Fo
     if (other.is.empty()) continue;
     VolumeArray about;
     about.name = one_line(other.name);
-    about.not_read = one_line(other.is);
+    about.unreadable_reason = one_line(other.is);
     list.push_back(std::move(about));
   }
   return list;

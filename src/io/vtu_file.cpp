@@ -96,7 +96,7 @@ class VtuFile {
     std::int64_t end = 0;
     for (const CellShape shape : grid_.shapes) {
       types_.push_back(vtk_type(shape));
-      ends_.push_back(end += points_of(shape));
+      ends_.push_back(end += point_count(shape));
     }
     if (static_cast<std::size_t>(end) != grid_.corners.size()) {
       throw Error(path_ + ": not written: the shapes of its cells need " + std::to_string(end) +

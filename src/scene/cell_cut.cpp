@@ -26,7 +26,7 @@ std::vector<Part> make_parts(const UnstructuredGrid& grid) {
   for (const CellShape shape : grid.shapes) {
     if (at.cell % cells == 0) parts.push_back(at);
     ++at.cell;
-    at.corner += static_cast<std::size_t>(points_of(shape));
+    at.corner += static_cast<std::size_t>(point_count(shape));
     at.lacking += lacking_nodes(shape).size();
   }
   parts.push_back(at);
@@ -36,7 +36,7 @@ std::vector<Part> make_parts(const UnstructuredGrid& grid) {
 /// Calls body(part) for all parts but the end.
 template <class Body>
 void each_part(const std::vector<Part>& parts, const ParallelFor& parallel, const Body& body) {
-  or_serial(parallel)(static_cast<int>(parts.size()) - 1, [&](int first, int last) {
+  parallel_or_serial(parallel)(static_cast<int>(parts.size()) - 1, [&](int first, int last) {
     for (int p = first; p < last; ++p) body(static_cast<std::size_t>(p));
   });
 }
@@ -47,7 +47,7 @@ void cut_cell(CellShape shape, const std::int32_t* v, const std::int32_t* lackin
               const Vec3<double>* points, const Emit& emit) {
   std::array<std::int32_t, 27> nodes;
   const auto completed = [&] {
-    const std::int32_t* const end = v + points_of(shape);
+    const std::int32_t* const end = v + point_count(shape);
     std::copy_n(lacking, lacking_nodes(shape).size(), std::copy(v, end, nodes.begin()));
     return nodes.data();
   };
@@ -91,7 +91,7 @@ void cut_part(const UnstructuredGrid& grid, const CellCut& cut, const Part& begi
                  emit(cell, a, b, c, d);
                }
              });
-    v += points_of(shape);
+    v += point_count(shape);
     lacking += lacking_nodes(shape).size();
   }
 }

@@ -14,7 +14,7 @@ namespace {
 std::string cell_of_corner(const UnstructuredGrid& grid, std::size_t corner) {
   std::size_t cell = 0, end = 0;
   for (; cell < grid.shapes.size(); ++cell) {
-    end += static_cast<std::size_t>(points_of(grid.shapes[cell]));
+    end += static_cast<std::size_t>(point_count(grid.shapes[cell]));
     if (end > corner) break;
   }
   return "cell " + std::to_string(cell);
@@ -35,7 +35,7 @@ void check_cells(const UnstructuredGrid& grid) {
                    std::to_string(most) + " of each can be; take a part of it");
   }
   std::size_t corners = 0;
-  for (const CellShape shape : grid.shapes) corners += static_cast<std::size_t>(points_of(shape));
+  for (const CellShape shape : grid.shapes) corners += static_cast<std::size_t>(point_count(shape));
   if (grid.corners.size() != corners) {
     fail(grid, "the shapes of its cells need " + std::to_string(corners) + " corners, but " +
                    std::to_string(grid.corners.size()) + " are there");

@@ -61,7 +61,7 @@ void each_cell(const UnstructuredGrid& grid, const Body& body) {
   const std::int32_t* cell = grid.corners.data();
   for (const CellShape shape : grid.shapes) {
     body(shape, cell);
-    cell += points_of(shape);
+    cell += point_count(shape);
   }
 }
 
@@ -70,7 +70,7 @@ Middles given_middles(const UnstructuredGrid& grid) {
   Middles middles;
   each_cell(grid, [&](CellShape shape, const std::int32_t* cell) {
     const std::span<const MiddleNode> given = given_nodes(shape);
-    const std::int32_t* const own = cell + points_of(shape) - given.size();
+    const std::int32_t* const own = cell + point_count(shape) - given.size();
     for (std::size_t i = 0; i < given.size(); ++i) {
       if (given[i].corners == 4) middles.try_emplace(quadrilateral(given[i], cell), own[i]);
     }

@@ -9,12 +9,12 @@
 
 namespace pellucid {
 
-int points_of(CellShape shape) noexcept {
+int point_count(CellShape shape) noexcept {
   constexpr std::array<std::int8_t, 11> points{4, 5, 6, 8, 8, 10, 13, 15, 20, 18, 27};
   return points[static_cast<std::size_t>(shape)];
 }
 
-std::vector<std::int32_t> hexahedra_of_grid(const std::array<int, 3>& points) {
+std::vector<std::int32_t> grid_hexahedra(const std::array<int, 3>& points) {
   constexpr std::int64_t most = std::numeric_limits<std::int32_t>::max();
   std::int64_t count = 1;
   bool counted = true;

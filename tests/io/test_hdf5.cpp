@@ -147,7 +147,7 @@ TEST_F(Hdf5, GroupsAreNamesWithSlashes) {
   const std::vector<VolumeArray> arrays = list_arrays(path("a.h5"));
   ASSERT_EQ(arrays.size(), 2u);
   EXPECT_EQ(arrays[0].name, "/a/b/data");
-  EXPECT_TRUE(arrays[0].shown);
+  EXPECT_TRUE(arrays[0].is_default);
   EXPECT_EQ(arrays[0].dimensions, (std::vector<int>{5, 4, 3}));
   EXPECT_EQ(arrays[1].type, "u8");
   EXPECT_EQ(arrays[1].components.front().maximum, 59);

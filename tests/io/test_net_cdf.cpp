@@ -131,7 +131,7 @@ TEST_F(NetCdf, ListsManyStepsAndArraysThatAreNotRead) {
   EXPECT_EQ(arrays[0].components.size(), 64u);
   EXPECT_EQ(arrays[0].more_components, 6);
   EXPECT_EQ(arrays[1].name, "bad");
-  EXPECT_TRUE(contains(arrays[1].not_read, "scale_factor")) << arrays[1].not_read;
+  EXPECT_TRUE(contains(arrays[1].unreadable_reason, "scale_factor")) << arrays[1].unreadable_reason;
 }
 
 TEST_F(NetCdf, TimeIsNotDepth) {

@@ -213,7 +213,7 @@ TEST_F(OpenVdb, ListsItsGrids) {
   const std::vector<VolumeArray> arrays = list_arrays(file);
   ASSERT_EQ(arrays.size(), 3U);
   EXPECT_EQ(arrays[0].name, "a");
-  EXPECT_TRUE(arrays[0].shown);
+  EXPECT_TRUE(arrays[0].is_default);
   EXPECT_EQ(arrays[0].dimensions, (std::vector<int>{5, 4, 3}));
   EXPECT_EQ(arrays[0].components.front().maximum, 59);
   expect_counting(read(file, arrays[2].name), "f32");

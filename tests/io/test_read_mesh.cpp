@@ -274,7 +274,7 @@ TEST_F(ReadMesh, JoinsPieces) {
   const MeshFile file = read_mesh(write("all.vtm", test::xml_file("vtkMultiBlockDataSet", blocks)));
   EXPECT_EQ(file.blocks, 2);
   EXPECT_EQ(file.merged_points, 1U);
-  EXPECT_EQ(file.torn_points, 1U);
+  EXPECT_EQ(file.discontinuous_points, 1U);
   EXPECT_EQ(file.grid.points.size(), 9U);
   EXPECT_EQ(file.grid.corners,
             (std::vector<std::int32_t>{0, 1, 2, 3, 1, 2, 3, 4, 0, 5, 6, 7, 5, 6, 7, 8}));

@@ -164,15 +164,16 @@ TEST_F(VtkVolumes, ChooseAmongArrays) {
   std::string text;
   for (const VolumeArray& array : arrays) {
     text += array.name + " " + array.type + " " + std::to_string(array.components.size()) + " " +
-            (array.centering == Centering::cell ? "cell " : "") + (array.shown ? "shown " : "") +
-            std::to_string(array.components.front().maximum) + "\n";
+            (array.centering == Centering::cell ? "cell " : "") +
+            (array.is_default ? "shown " : "") + std::to_string(array.components.front().maximum) +
+            "\n";
   }
   for (const char* line :
        {"b i16 1 ", "a i16 1 ", "v f32 3 177.0", "f f64 2 118.0", "b_cell f32 1 cell 23.0"}) {
     EXPECT_TRUE(contains(text, line)) << line << " is not in\n" << text;
   }
   EXPECT_EQ(arrays.size(), 5u);
-  EXPECT_EQ(std::ranges::count_if(arrays, [](const auto& a) { return a.shown; }), 1);
+  EXPECT_EQ(std::ranges::count_if(arrays, [](const auto& a) { return a.is_default; }), 1);
   expect_counting(parse(file, "b"), "i16");
   EXPECT_EQ(test::value_at(parse(file, "a"), 0, 0, 0), 100);
   EXPECT_EQ(parse(file, "b_cell").description().centering, Centering::cell);

@@ -10,9 +10,8 @@
 
 namespace pellucid {
 
-/// The shape of a cell, its points in VTK's order. Quadratic ones have nodes in the middle of their
-/// edges; triquadratic and the like, which have more, are quadratic ones with the further nodes
-/// given.
+/// The shape of a cell, with its points in VTK's order. Quadratic cells have nodes in the middle of
+/// their edges. Triquadratic and similar cells are quadratic ones with additional nodes.
 enum class CellShape : std::uint8_t {
   tetrahedron,
   pyramid,
@@ -23,34 +22,35 @@ enum class CellShape : std::uint8_t {
   quadratic_pyramid,        ///< 13
   quadratic_wedge,          ///< 15
   quadratic_hexahedron,     ///< 20
-  biquadratic_wedge,        ///< 18: and the middles of the quadrilaterals
-  triquadratic_hexahedron,  ///< 27: and the middles of the faces and of the cell
+  biquadratic_wedge,        ///< 18: with the centers of the quadrilaterals
+  triquadratic_hexahedron,  ///< 27: with the centers of the faces and of the cell
 };
 
-/// How many points a cell of this shape has.
-int points_of(CellShape shape) noexcept;
+/// Returns the number of points of a cell of this shape.
+int point_count(CellShape shape) noexcept;
 
-/// A variable of a mesh as it was read.
+/// A variable of a mesh, as read from a file.
 struct MeshArray {
   std::string name;
   Centering centering = Centering::point;
-  /// Per point or per cell, its components one after the other.
+  /// Number of components per point or cell; they are stored next to each other.
   int components = 1;
   VolumeData values = DataArray<float>();
 };
 
-/// Cells of any shape, as a file or a program gives them. Plain data; cut_into_tetrahedra() checks.
+/// Cells of any shape, as a file or a program provides them. Plain data; cut_into_tetrahedra()
+/// checks it.
 struct UnstructuredGrid {
   std::vector<Vec3<double>> points;   ///< world
   std::vector<CellShape> shapes;      ///< per cell
-  std::vector<std::int32_t> corners;  ///< points of the cells, one cell after the other
+  std::vector<std::int32_t> corners;  ///< points of the cells, cell after cell
   std::vector<MeshArray> arrays;
-  std::string name;  ///< for messages
+  std::string name;  ///< used in messages
 };
 
-/// The corners of the hexahedra of a curvilinear grid with so many points along each axis, which
-/// are numbered x fastest; cells are too. Throws Error where an axis has fewer than two points, or
-/// they are more than an index can count.
-std::vector<std::int32_t> hexahedra_of_grid(const std::array<int, 3>& points);
+/// Returns the corners of the hexahedra of a curvilinear grid with `points` points along each axis.
+/// Points and cells are numbered x fastest. Throws Error if an axis has fewer than two points, or
+/// there are more points than an index can count.
+std::vector<std::int32_t> grid_hexahedra(const std::array<int, 3>& points);
 
 }  // namespace pellucid

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "pellucid/geometry/ray_view.h"
+#include "pellucid/geometry/ray_frame.h"
 
 #include <gtest/gtest.h>
 
@@ -13,8 +13,8 @@ namespace {
 using Place = Vec3<double>;
 
 /// The places of points with coordinates in {-1, 0, 1}, so that most meet the ray or lie in line.
-std::vector<SeenPoint<double>> small_lattice() {
-  std::vector<SeenPoint<double>> all;
+std::vector<ProjectedPoint<double>> small_lattice() {
+  std::vector<ProjectedPoint<double>> all;
   for (const double x : {-1.0, 0.0, 1.0}) {
     for (const double y : {-1.0, 0.0, 1.0}) all.push_back({x, y, 0});
   }
@@ -23,7 +23,7 @@ std::vector<SeenPoint<double>> small_lattice() {
 
 /// With the ray moved by ε along x and ε² along y, ε as small as it need be here: the sign of the
 /// determinant then, in numbers that hold it exactly.
-bool left_after_moving(const SeenPoint<double>& a, const SeenPoint<double>& b) {
+bool left_after_moving(const ProjectedPoint<double>& a, const ProjectedPoint<double>& b) {
   const double e = 0x1p-10;
   const double a_x = a.x - e, a_y = a.y - e * e, b_x = b.x - e, b_y = b.y - e * e;
   return a_x * b_y - a_y * b_x > 0;
@@ -38,8 +38,8 @@ TEST(SideOf, TiesAreBrokenAsIfTheRayWereMoved) {
       EXPECT_EQ(side.left, left_after_moving(a, b))
           << a.x << " " << a.y << " to " << b.x << " " << b.y;
       EXPECT_NE(side_of(b, a).left, side.left);
-      EXPECT_EQ(side_of(SeenPoint<float>{static_cast<float>(a.x), static_cast<float>(a.y), 0},
-                        SeenPoint<float>{static_cast<float>(b.x), static_cast<float>(b.y), 0})
+      EXPECT_EQ(side_of(ProjectedPoint<float>{static_cast<float>(a.x), static_cast<float>(a.y), 0},
+                        ProjectedPoint<float>{static_cast<float>(b.x), static_cast<float>(b.y), 0})
                     .left,
                 side.left);
     }
@@ -49,8 +49,8 @@ TEST(SideOf, TiesAreBrokenAsIfTheRayWereMoved) {
 /// Whoever is inside of two of three neighbouring triangles, or of none, sees a crack: around the
 /// ray, and with it on edges and points, exactly one of them is met.
 TEST(SideOf, TrianglesAroundAPointMeetTheRayOnce) {
-  const auto inside = [](const SeenPoint<double>& a, const SeenPoint<double>& b,
-                         const SeenPoint<double>& c) {
+  const auto inside = [](const ProjectedPoint<double>& a, const ProjectedPoint<double>& b,
+                         const ProjectedPoint<double>& c) {
     const bool first = side_of(a, b).left;
     return first == side_of(b, c).left && first == side_of(c, a).left;
   };
@@ -61,8 +61,8 @@ TEST(SideOf, TrianglesAroundAPointMeetTheRayOnce) {
     int met = 0;
     for (int i = 0; i < 8; ++i) {
       const auto corner = [&](int k) {
-        return SeenPoint<double>{middle.x + 2 * around[k % 8][0], middle.y + 2 * around[k % 8][1],
-                                 0};
+        return ProjectedPoint<double>{middle.x + 2 * around[k % 8][0],
+                                      middle.y + 2 * around[k % 8][1], 0};
       };
       met += inside(middle, corner(i), corner(i + 1)) ? 1 : 0;
     }
@@ -71,32 +71,32 @@ TEST(SideOf, TrianglesAroundAPointMeetTheRayOnce) {
 }
 
 /// Along an axis nothing is sheared: what stands on a grid stays there, to the bit.
-TEST(RayView, AlongAnAxisPointsAreWhereTheyAre) {
+TEST(RayFrame, AlongAnAxisPointsAreWhereTheyAre) {
   for (int z = 0; z < 3; ++z) {
     for (const double sign : {1.0, -1.0}) {
       Place direction{}, origin{0.1, -0.7, 1.0 / 3};
       direction[z] = sign;
-      const RayView<double> view = make_ray_view({origin, direction}, {5, 5, 5}, 10);
+      const RayFrame<double> view = make_ray_frame({origin, direction}, {5, 5, 5}, 10);
       const int x = (z + 1) % 3, y = (z + 2) % 3;
       for (const double a : {0.1, 0.3, -2.0 / 3}) {
         Place point{0.7, 1.1, -0.2};
         point[x] = a;
-        const SeenPoint<double> seen = view.see(point);
+        const ProjectedPoint<double> seen = view.project(point);
         EXPECT_EQ(seen.x, a - origin[x]);
         EXPECT_EQ(seen.y, point[y] - origin[y]);
-        EXPECT_NEAR(seen.t, sign * (point[z] - origin[z]), view.blur);
+        EXPECT_NEAR(seen.t, sign * (point[z] - origin[z]), view.position_error);
         // On the ray's own line: at (0, 0), without any rounding.
         point[x] = origin[x];
         point[y] = origin[y];
-        EXPECT_EQ(view.see(point).x, 0);
-        EXPECT_EQ(view.see(point).y, 0);
+        EXPECT_EQ(view.project(point).x, 0);
+        EXPECT_EQ(view.project(point).y, 0);
       }
     }
   }
 }
 
 /// In long double, from the definition: along the ray's fastest axis the point is projected on it.
-TEST(RayView, SeesPointsWithinTheBlurThatItStates) {
+TEST(RayFrame, SeesPointsWithinTheBlurThatItStates) {
   std::mt19937 random(11);
   std::uniform_real_distribution<double> uniform(-1, 1);
   long double largest = 0;
@@ -106,7 +106,7 @@ TEST(RayView, SeesPointsWithinTheBlurThatItStates) {
     const Place direction =
         normalized(Place{uniform(random), uniform(random), i % 3 == 0 ? 1e-9 : uniform(random)});
     const Place point{uniform(random), uniform(random), uniform(random)};
-    const RayView<double> view = make_ray_view({origin, direction}, {0, 0, 0}, 1);
+    const RayFrame<double> view = make_ray_frame({origin, direction}, {0, 0, 0}, 1);
     int z = 0;
     for (int a = 1; a < 3; ++a) {
       if (std::fabs(direction[a]) > std::fabs(direction[z])) z = a;
@@ -117,10 +117,10 @@ TEST(RayView, SeesPointsWithinTheBlurThatItStates) {
     const auto place = [&](int a) {
       return static_cast<long double>(point[a]) - (origin[a] + t * direction[a]);
     };
-    const SeenPoint<double> seen = view.see(point);
+    const ProjectedPoint<double> seen = view.project(point);
     for (const long double off : {seen.x - place(x), seen.y - place(y), seen.t - t}) {
-      ASSERT_LE(std::fabs(off), static_cast<long double>(view.blur)) << i;
-      largest = std::max(largest, std::fabs(off) / static_cast<long double>(view.blur));
+      ASSERT_LE(std::fabs(off), static_cast<long double>(view.position_error)) << i;
+      largest = std::max(largest, std::fabs(off) / static_cast<long double>(view.position_error));
     }
   }
   std::printf("[ accuracy ] places are off by up to %.2Lf of the blur\n", largest);

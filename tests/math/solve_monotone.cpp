@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "pellucid/math/where_reached.h"
+#include "pellucid/math/solve_monotone.h"
 
 #include <gtest/gtest.h>
 
@@ -23,7 +23,7 @@ Found find(Function&& f, double target, double lo, double hi) {
     ++calls;
     return f(x);
   };
-  return {where_reached(counted, target, lo, hi, f(lo), f(hi)), calls};
+  return {solve_monotone(counted, target, lo, hi, f(lo), f(hi)), calls};
 }
 
 TEST(WhereReached, FindsCurvesInFewSteps) {

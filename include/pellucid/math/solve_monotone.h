@@ -5,17 +5,17 @@
 
 namespace pellucid {
 
-/// A place in [lo, hi] where an f that does not fall reaches `target`, given f(lo) = below < target
-/// <= above = f(hi): to this share of the interval, or where f is nearer to the target than a
-/// sixteenth of that share of what it rises by, or between two neighbouring numbers; behind a jump
-/// where f is one.
+/// Returns a position in [lo, hi] at which a non-decreasing f reaches `target`, given f(lo) = below
+/// < target <= above = f(hi). The position is accurate to the fraction `share_of_interval` of the
+/// interval, or f is closer to the target than a sixteenth of that fraction of its rise, or the
+/// position lies between two adjacent numbers. At a jump of f it is behind the jump.
 ///
 /// False position by the Illinois rule (Dowell and Jarratt 1971), which halves the weight of an end
-/// that stays; each third place is the middle, so that no f takes more than three for each bit.
-/// Smooth ones take some eight in all.
+/// that stays. Every third position is the midpoint, so that no f takes more than three evaluations
+/// per bit; smooth ones take about eight in total.
 template <class Function>
-PELLUCID_HD double where_reached(Function&& f, double target, double lo, double hi, double below,
-                                 double above, double share_of_interval = 0x1p-40) noexcept {
+PELLUCID_HD double solve_monotone(Function&& f, double target, double lo, double hi, double below,
+                                  double above, double share_of_interval = 0x1p-40) noexcept {
   const double shortest = share_of_interval * (hi - lo),
                nearest = share_of_interval / 16 * (above - below);
   double low = below - target, high = above - target;  // weighed

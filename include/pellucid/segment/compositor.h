@@ -5,25 +5,26 @@
 
 namespace pellucid {
 
-/// Front-to-back folding of segments into a pixel (specification, 2.2), in the number type A:
-/// double in practice, whatever the segments' type, because N segments folded in binary32 cost 3 N
-/// u and products of 1 - opacity stagnate there (2.3).
+/// Composites the segments of a ray front to back into a pixel (specification, 2.2) in the number
+/// type A:
 ///
 ///   L += T · L_i,  α += T · α_i,  T *= 1 - α_i (thin) or T_i (dense),  depth += depth_i
 ///
-/// Opacity is a sum of its own, so that it keeps its relative precision in clear rays, where
-/// 1 - transparency has none.
+/// A is double in practice, whatever the segments' type: compositing N segments in binary32 costs 3
+/// N u, and products of 1 - opacity stagnate there (2.3). The opacity is summed separately, so that
+/// it keeps its relative precision in nearly transparent rays, where 1 - transparency has none.
 ///
-/// Error: that of the segments, by the theorem of section 2.3: Σ T_{<i} (e_i + C_max d_i), e_i and
-/// d_i the errors of their radiance and opacity; plus 4 N u(A) of its own. done() leaves out at
-/// most stop · C_max of radiance and `stop` of opacity, C_max a bound on the colors behind.
-/// Asserted in tests/segment.
+/// Error: that of the segments, by the theorem of section 2.3, Σ T_{<i} (e_i + C_max d_i) with the
+/// errors e_i and d_i of their radiance and opacity, plus 4 N u(A) of its own. Terminating at
+/// done() omits at most stop · C_max of radiance and `stop` of opacity, with an upper bound C_max
+/// on the colors of the remainder. Asserted in tests/segment.
 template <class A>
-class FrontToBack {
+class FrontToBackCompositor {
  public:
-  /// `stop` >= 0: the transparency at which the ray may end. Zero: only when nothing can pass.
-  PELLUCID_HD explicit FrontToBack(A stop = A(0)) noexcept : stop_(stop) {}
+  /// `stop` >= 0 is the transparency at which the ray may end. Zero: only an opaque ray ends.
+  PELLUCID_HD explicit FrontToBackCompositor(A stop = A(0)) noexcept : stop_(stop) {}
 
+  /// Composites the next segment.
   template <class T>
   PELLUCID_HD void add(const SegmentResult<T>& segment) noexcept {
     const A opacity = static_cast<A>(segment.opacity);
@@ -38,10 +39,11 @@ class FrontToBack {
                            transparency_ * static_cast<A>(segment.transparency));
   }
 
-  /// Of several pixels at once, lane by lane.
-  friend FrontToBack select(mask_t<A> mask, const FrontToBack& a, const FrontToBack& b) noexcept {
+  /// Selects lane by lane.
+  friend FrontToBackCompositor select(mask_t<A> mask, const FrontToBackCompositor& a,
+                                      const FrontToBackCompositor& b) noexcept {
     const auto each = [&](const A& x, const A& y) noexcept { return select(mask, x, y); };
-    FrontToBack r(each(a.stop_, b.stop_));
+    FrontToBackCompositor r(each(a.stop_, b.stop_));
     r.transparency_ = each(a.transparency_, b.transparency_);
     r.opacity_ = each(a.opacity_, b.opacity_);
     r.optical_depth_ = each(a.optical_depth_, b.optical_depth_);
@@ -50,7 +52,7 @@ class FrontToBack {
     return r;
   }
 
-  /// Whether what is left can no longer matter.
+  /// Returns whether the remainder of the ray cannot matter.
   PELLUCID_HD bool done() const noexcept { return transparency_ <= stop_; }
 
   PELLUCID_HD Rgb<A> radiance() const noexcept { return radiance_; }

@@ -7,7 +7,7 @@
 
 namespace pellucid {
 
-UnstructuredGrid tetrahedra_of(const UnstructuredGrid& grid, const ParallelFor& parallel) {
+UnstructuredGrid tetrahedralize(const UnstructuredGrid& grid, const ParallelFor& parallel) {
   const bool with_cells = std::ranges::any_of(
       grid.arrays, [](const MeshArray& array) { return array.centering == Centering::cell; });
   CellCut cut = cut_cells(grid, with_cells, parallel);
