@@ -38,6 +38,7 @@ struct Facts {
   Vec3<double> world_lower, world_upper;
   bool anatomical = false;
   Orientation orientation;
+  std::string unit;  ///< of the values; empty: the file names none
 };
 
 /// The formats that are placed in LPS by what they say themselves.
@@ -85,6 +86,9 @@ Facts facts_of(const std::vector<Volume>& components, const FieldSource& source)
   facts.anatomical = source.builtin.empty() && is_medical(source.file);
   if (facts.anatomical) {
     facts.orientation = anatomical_orientation(volume.description().placement.direction);
+  }
+  if (source.builtin.empty() && is_dicom(source.file)) {
+    facts.unit = dicom_unit(source.file, source.options.series);
   }
   return facts;
 }
@@ -188,6 +192,7 @@ std::string text_report(const std::vector<Volume>& components, const Facts& fact
   }
   const VolumeStatistics& statistics = volume.statistics();
   line("range", range_text(statistics));
+  if (!facts.unit.empty()) line("unit", facts.unit);
   if (statistics.finite > 0) line("mean", number(facts.mean.front()));
   line("NaN", nan_text(statistics));
   if (statistics.finite > 0) {
@@ -236,6 +241,7 @@ Json json_report(const std::vector<Volume>& components, const Facts& facts, cons
   json["orientation"] = facts.anatomical ? Json(facts.orientation.code) : Json();
   json["oblique_degrees"] = facts.anatomical ? Json(facts.orientation.oblique_by) : Json();
   json["world_box"] = {to_json(facts.world_lower), to_json(facts.world_upper)};
+  json["unit"] = facts.unit.empty() ? Json() : Json(facts.unit);
   if (components.size() == 1) {
     json.update(values_json(volume, facts.mean.front()));
     return json;

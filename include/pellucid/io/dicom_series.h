@@ -2,6 +2,8 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -22,7 +24,13 @@ bool is_dicom(const std::filesystem::path& path);
 
 /// The series of a folder, or of the folder around a file, by their number (SeriesNumber), then by
 /// their UID: as ReadOptions::series counts them, from 1. Folders within are not looked into.
-/// Throws Error where a file cannot be read.
-std::vector<DicomSeries> list_dicom_series(const std::filesystem::path& path);
+/// Files that cannot be read are left out, and `note` is told. Throws Error where `path` is one.
+std::vector<DicomSeries> list_dicom_series(
+    const std::filesystem::path& path, const std::function<void(const std::string&)>& note = {});
+
+/// The unit of the values of the series that is chosen as by ReadOptions::series: "Gy" of a dose,
+/// "HU" and others where the files name it; else empty. Throws Error like read_volume.
+std::string dicom_unit(const std::filesystem::path& path,
+                       const std::optional<std::string>& series = {});
 
 }  // namespace pellucid
