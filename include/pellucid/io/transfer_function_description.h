@@ -83,7 +83,7 @@ using TransferFunctionDescription = std::variant<std::vector<TransferFunction::P
 /// or linear R,G,B; white where it is left out. Throws Error.
 GaussianDescription parse_gaussian(std::string_view text);
 
-/// Widths as written lie between this and 1e30.
+/// Widths as written lie between this and 2.1e37.
 inline constexpr double smallest_width = 1e-37;
 
 /// K. Throws Error.

@@ -33,7 +33,7 @@ const Preset* find_preset(std::string_view name) noexcept;
 /// chord (4 · volume / surface) of the data's box. With `range` the first and the last point of any
 /// of them are moved to these values. Colors are made from sRGB. Numbers of relative presets are
 /// rounded to readable ones. Throws Error where there is no such preset, or the range is not two
-/// ascending numbers up to 1e30.
+/// ascending numbers up to 2.1e37.
 TransferFunction make_preset(std::string_view name, const Volume& volume,
                              const std::optional<std::array<double, 2>>& range = {});
 TransferFunction make_preset(std::string_view name, const MeshChannels& mesh,
