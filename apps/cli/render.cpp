@@ -10,6 +10,7 @@
 
 #include "commands.h"
 #include "error_map.h"
+#include "labels.h"
 #include "parse.h"
 #include "pellucid/io/atomic_file.h"
 #include "pellucid/io/image_files.h"
@@ -41,6 +42,9 @@ void print_notes(const RenderArguments& arguments, const PreparedScene& prepared
       print_note(
           fmt::format("tetrahedra overlap at {} faces: pixels that see it are not known", folded));
     }
+  }
+  for (const auto& [channel, count] : prepared.labels) {
+    print_note((channel == field_channel ? "" : "channel " + channel + ": ") + labels_text(count));
   }
   if (const double used = prepared.scene.integration.tolerance; used != prepared.tolerance_asked) {
     print_note(fmt::format("a tolerance of {} is beyond the limits: {} is used",

@@ -3,6 +3,7 @@
 
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "import_arguments.h"
@@ -41,6 +42,8 @@ struct PreparedScene {
   std::vector<std::string> import_notes;  ///< of a transfer function of another program
   bool array_chosen = false;              ///< of a mesh, for want of a name
   double tolerance_asked = 0;             ///< Integration::tolerance is the one used
+  /// The number of different values of each channel that looks like labels, by its name.
+  std::vector<std::pair<std::string, std::size_t>> labels;
 
   /// Of whether an error comes with the picture.
   bool knows_its_error(const RenderArguments& arguments) const {

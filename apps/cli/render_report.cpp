@@ -218,6 +218,8 @@ Json report_json(const RenderArguments& arguments, const PreparedScene& prepared
   json["channels"] = scene.mesh       ? channels_json(*scene.mesh)
                      : scene.channels ? channels_json(*scene.channels)
                                       : Json();
+  json["labels"] = Json::object();
+  for (const auto& [channel, count] : prepared.labels) json["labels"][channel] = count;
   json["size"] = {scene.size.width, scene.size.height};
   json["method"] = method_text(arguments, scene.integration);
   json["step"] = has_step(arguments, scene) ? Json(scene.integration.step) : Json();

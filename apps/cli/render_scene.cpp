@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <string>
 #include <utility>
@@ -12,6 +13,7 @@
 #include "pellucid/cpu/threads.h"
 #include "pellucid/io/atomic_file.h"
 #include "pellucid/io/image_files.h"
+#include "pellucid/scene/labels.h"
 #include "render.h"
 #include "view.h"
 
@@ -252,6 +254,27 @@ std::vector<NamedFile> data_files(const SceneDescription& description) {
   return files;
 }
 
+/// Of the volumes that come from files.
+void find_labels(PreparedScene& prepared) {
+  const Scene& scene = prepared.scene;
+  const SceneDescription& description = prepared.description;
+  const auto is_file = [](const FieldSource& field) { return field.builtin.empty(); };
+  const auto add = [&](const std::string& name, const Volume& volume) {
+    if (const auto count = label_count(volume)) prepared.labels.emplace_back(name, *count);
+  };
+  if (!scene.channels) {
+    if (is_file(description.field)) add(std::string(field_channel), *scene.volume);
+    return;
+  }
+  const std::vector<ChannelSource> sources = scene_channels(description);
+  for (const Channel& channel : *scene.channels) {
+    const auto source = std::ranges::find(sources, channel.name, &ChannelSource::name);
+    if (source == sources.end()) continue;
+    const auto* field = std::get_if<FieldSource>(&source->source);
+    if (field != nullptr && is_file(*field)) add(channel.name, *channel.volume);
+  }
+}
+
 }  // namespace
 
 PreparedScene prepare(const RenderArguments& arguments) {
@@ -291,6 +314,7 @@ PreparedScene prepare(const RenderArguments& arguments) {
     description.transfer_function = scene.transfer_function->points();
   }
   description.camera = scene.camera;
+  if (!scene.mesh) find_labels(prepared);
   make_camera_frame(scene.camera, scene.size);  // throws before anything is written
   return prepared;
 }
