@@ -110,11 +110,13 @@ void add_integration_options(CLI::App& command, RenderArguments& arguments) {
           ->option_text("NAME")
           ->check(CLI::IsMember(names));
   command
-      .add_option("--tolerance", arguments.tolerance,
-                  fmt::format("How far a pixel of method exact may be off, in each channel of "
-                              "premultiplied linear RGBA, from {:g} to {:g}; a fraction is fine; "
-                              "default: the scene's, else 1/512",
-                              smallest_tolerance, largest_tolerance))
+      .add_option(
+          "--tolerance", arguments.tolerance,
+          fmt::format("How far a pixel of method exact may be off, in each channel of "
+                      "premultiplied linear RGBA, from {:g} to {:g}; a fraction is fine; 1% "
+                      "is 1 % of the picture's own largest channel; "
+                      "default: the scene's, else 1/512",
+                      smallest_tolerance, largest_tolerance))
       ->option_text("E");
   command
       .add_option("--grade", arguments.grade,

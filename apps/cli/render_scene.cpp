@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <memory>
 #include <string>
 #include <utility>
 #include <variant>
@@ -277,15 +278,40 @@ void find_labels(PreparedScene& prepared) {
 
 }  // namespace
 
+void set_scene_tolerance(PreparedScene& prepared, double tolerance) {
+  SceneDescription& description = prepared.description;
+  Scene& scene = prepared.scene;
+  prepared.tolerance_asked = tolerance;
+  scene.integration.set_tolerance(tolerance);
+  // With the tolerance that was used, a saved scene gives this picture.
+  description.integration.tolerance = scene.integration.tolerance;
+  description.relative_tolerance.reset();
+  if (description.transfer_function &&
+      std::holds_alternative<OpacityTable>(*description.transfer_function)) {
+    scene.transfer_function = std::make_shared<const TransferFunction>(make_transfer_function(
+        *description.transfer_function, scene.integration.tolerance, scene.background));
+  }
+}
+
 PreparedScene prepare(const RenderArguments& arguments) {
   PreparedScene prepared;
   prepared.description = describe(arguments, prepared.import_notes);
   SceneDescription& description = prepared.description;
   Integration& integration = description.integration;
-  prepared.tolerance_asked = arguments.tolerance
-                                 ? parse_tolerance("--tolerance", *arguments.tolerance)
-                                 : integration.tolerance;
+  prepared.tolerance_asked = integration.tolerance;
+  if (arguments.tolerance) {
+    const PictureTolerance tolerance = parse_picture_tolerance("--tolerance", *arguments.tolerance);
+    description.relative_tolerance.reset();
+    if (tolerance.is_share) {
+      description.relative_tolerance = tolerance.value;
+    } else {
+      prepared.tolerance_asked = tolerance.value;
+    }
+  }
   integration.set_tolerance(prepared.tolerance_asked);
+  if (!arguments.reference && integration.method == Method::exact) {
+    prepared.relative_tolerance = description.relative_tolerance;
+  }
   // The files of a scene are known only now.
   refuse_overwriting(output_files(arguments), data_files(description));
   prepared.transfer_function_from = !arguments.transfer_function.empty()
