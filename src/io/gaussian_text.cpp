@@ -131,7 +131,7 @@ class GaussianReader {
       const char* const end = text.data() + text.size();
       const auto result = std::from_chars(text.data() + 1, end, rgb, 16);
       if (result.ec == std::errc() && result.ptr == end) {
-        const auto part = [&](int shift) { return linear_light((rgb >> shift & 0xff) / 255.0); };
+        const auto part = [&](int shift) { return srgb_to_linear((rgb >> shift & 0xff) / 255.0); };
         return {part(16), part(8), part(0)};
       }
     }

@@ -83,7 +83,7 @@ bool is_srgb(const Node& function) {
 Rgb<double> color_of(const Node& node, bool srgb) {
   if (!srgb) return linear_rgb(node);
   const auto [r, g, b] = three(node);
-  return linear_light(Rgb<double>{r.number(0, 1), g.number(0, 1), b.number(0, 1)});
+  return srgb_to_linear(Rgb<double>{r.number(0, 1), g.number(0, 1), b.number(0, 1)});
 }
 
 std::vector<TransferFunction::Point> extinction_points(const Node& list, bool srgb) {

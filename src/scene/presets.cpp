@@ -63,7 +63,7 @@ TransferFunction make(const NamedPreset& preset, const Scale& scale,
                                              : std::clamp(readable(value, (last - first) / 100),
                                                           -largest_data_value, largest_data_value);
     const double extinction = hounsfield ? p.strength : two_digits(p.strength / scale.chord);
-    const Rgb<double> color = linear_light(p.srgb);
+    const Rgb<double> color = srgb_to_linear(p.srgb);
     const Rgb<double> rounded_color{rounded(color.r, 3), rounded(color.g, 3), rounded(color.b, 3)};
     // Two at one value, of a range that is a few doubles wide.
     if (!made.empty() && !(made.back().value < place)) continue;

@@ -15,7 +15,7 @@ struct DicomSeries {
   std::string uid, description, modality;  ///< as the files say; may be empty
   int slices = 0;
   int columns = 0, rows = 0;
-  std::string refused;  ///< why its values are not read; empty: they are
+  std::string unreadable_reason;  ///< why its values are not read; empty: they are
 };
 
 /// Whether a path leads to DICOM: a file that begins like one, or a folder with such a file. Says

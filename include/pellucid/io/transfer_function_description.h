@@ -90,11 +90,11 @@ inline constexpr double smallest_width = 1e-37;
 std::vector<std::vector<double>> gaussian_matrix(const GaussianShape& shape);
 
 /// What an opacity table may add to the error of any channel: an eighth of the tolerance.
-constexpr double opacity_table_share(double tolerance) noexcept {
+constexpr double opacity_table_tolerance(double tolerance) noexcept {
   return tolerance / 8;
 }
 /// The transfer function itself. An opacity table is approximated to within
-/// opacity_table_share(tolerance), seen over that background, and has its deviations besides;
+/// opacity_table_tolerance(tolerance), seen over that background, and has its deviations besides;
 /// points are taken as they are. Throws Error, also for a function of several channels and for a
 /// preset.
 TransferFunction make_transfer_function(const TransferFunctionDescription& description,
