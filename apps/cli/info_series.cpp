@@ -17,8 +17,11 @@ bool print_series(const FieldSource& source, const std::string& input, bool as_j
       !is_dicom(source.file)) {
     return false;
   }
-  const std::vector<DicomSeries> all = list_dicom_series(source.file);
+  std::vector<std::string> notes;
+  const std::vector<DicomSeries> all =
+      list_dicom_series(source.file, [&](const std::string& note) { notes.push_back(note); });
   if (all.size() < 2) return false;
+  for (const std::string& note : notes) print_note(note);
   Json json;
   json["pellucid"] = PELLUCID_VERSION_STRING;
   json["input"] = input;

@@ -115,7 +115,8 @@ void add_integration_options(CommandLine& command, RenderArguments& arguments) {
           "--tolerance", arguments.tolerance,
           fmt::format(
               "Largest error of a pixel by method exact, in each channel of premultiplied linear "
-              "RGBA, from {:g} to {:g}; a number or a fraction. Default: the scene's, else 1/512",
+              "RGBA, from {:g} to {:g}; a number, a fraction, or a percentage of the picture's own "
+              "largest channel. Default: the scene's, else 1/512",
               smallest_tolerance, largest_tolerance))
       ->option_text("E");
   command

@@ -131,6 +131,9 @@ void add_metadata(const RenderArguments& arguments, const PreparedScene& prepare
   }
   if (prepared.knows_its_error(arguments)) {
     metadata["pellucid.tolerance"] = fmt::format("{}", integration.tolerance);
+    if (prepared.relative_tolerance) {
+      metadata["pellucid.relative_tolerance"] = fmt::format("{}", *prepared.relative_tolerance);
+    }
     metadata["pellucid.grade"] = grade_text(integration.grade);
     metadata["pellucid.largest_error"] = fmt::format("{}", report.largest_error);
     metadata["pellucid.pixels_proved"] = fmt::format("{}", report.pixels_proved);
@@ -206,7 +209,8 @@ std::vector<std::string> report_lines(const RenderArguments& arguments,
 }
 
 Json report_json(const RenderArguments& arguments, const PreparedScene& prepared,
-                 const RenderReport& report, const std::vector<std::string>& written) {
+                 const RenderReport& report, double largest,
+                 const std::vector<std::string>& written) {
   const Scene& scene = prepared.scene;
   Json json;
   json["pellucid"] = PELLUCID_VERSION_STRING;
@@ -218,6 +222,8 @@ Json report_json(const RenderArguments& arguments, const PreparedScene& prepared
   json["channels"] = scene.mesh       ? channels_json(*scene.mesh)
                      : scene.channels ? channels_json(*scene.channels)
                                       : Json();
+  json["labels"] = Json::object();
+  for (const auto& [channel, count] : prepared.labels) json["labels"][channel] = count;
   json["size"] = {scene.size.width, scene.size.height};
   json["method"] = method_text(arguments, scene.integration);
   json["step"] = has_step(arguments, scene) ? Json(scene.integration.step) : Json();
@@ -227,6 +233,10 @@ Json report_json(const RenderArguments& arguments, const PreparedScene& prepared
   const auto of_exact = [&](const Json& value) { return exact ? value : Json(); };
   json["tolerance_asked"] = of_exact(prepared.tolerance_asked);
   json["tolerance"] = of_exact(scene.integration.tolerance);
+  json["relative_tolerance"] =
+      of_exact(prepared.relative_tolerance ? Json(*prepared.relative_tolerance) : Json());
+  json["largest_channel"] = largest;
+  json["below_tolerance"] = of_exact(largest <= scene.integration.tolerance);
   json["grade"] = of_exact(grade_text(scene.integration.grade));
   json["largest_error"] = of_exact(report.largest_error);
   json["pixels"] = scene.size.width * static_cast<std::int64_t>(scene.size.height);

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <filesystem>
+#include <memory>
 #include <string>
 #include <utility>
 #include <variant>
@@ -12,6 +14,7 @@
 #include "pellucid/cpu/threads.h"
 #include "pellucid/io/atomic_file.h"
 #include "pellucid/io/image_files.h"
+#include "pellucid/scene/labels.h"
 #include "render.h"
 #include "view.h"
 
@@ -251,17 +254,63 @@ std::vector<NamedFile> data_files(const SceneDescription& description) {
   return files;
 }
 
+/// Of the volumes that come from files.
+void find_labels(PreparedScene& prepared) {
+  const Scene& scene = prepared.scene;
+  const SceneDescription& description = prepared.description;
+  const auto is_file = [](const FieldSource& field) { return field.builtin.empty(); };
+  const auto add = [&](const std::string& name, const Volume& volume) {
+    if (const auto count = label_count(volume)) prepared.labels.emplace_back(name, *count);
+  };
+  if (!scene.channels) {
+    if (is_file(description.field)) add(std::string(field_channel), *scene.volume);
+    return;
+  }
+  const std::vector<ChannelSource> sources = scene_channels(description);
+  for (const Channel& channel : *scene.channels) {
+    const auto source = std::ranges::find(sources, channel.name, &ChannelSource::name);
+    if (source == sources.end()) continue;
+    const auto* field = std::get_if<FieldSource>(&source->source);
+    if (field != nullptr && is_file(*field)) add(channel.name, *channel.volume);
+  }
+}
+
 }  // namespace
+
+void set_scene_tolerance(PreparedScene& prepared, double tolerance) {
+  SceneDescription& description = prepared.description;
+  Scene& scene = prepared.scene;
+  prepared.tolerance_asked = tolerance;
+  scene.integration.set_tolerance(tolerance);
+  // With the tolerance that was used, a saved scene gives this picture.
+  description.integration.tolerance = scene.integration.tolerance;
+  description.relative_tolerance.reset();
+  if (description.transfer_function &&
+      std::holds_alternative<OpacityTable>(*description.transfer_function)) {
+    scene.transfer_function = std::make_shared<const TransferFunction>(make_transfer_function(
+        *description.transfer_function, scene.integration.tolerance, scene.background));
+  }
+}
 
 PreparedScene prepare(const RenderArguments& arguments) {
   PreparedScene prepared;
   prepared.description = describe(arguments, prepared.import_notes);
   SceneDescription& description = prepared.description;
   Integration& integration = description.integration;
-  prepared.tolerance_asked = arguments.tolerance
-                                 ? parse_tolerance("--tolerance", *arguments.tolerance)
-                                 : integration.tolerance;
+  prepared.tolerance_asked = integration.tolerance;
+  if (arguments.tolerance) {
+    const PictureTolerance tolerance = parse_picture_tolerance("--tolerance", *arguments.tolerance);
+    description.relative_tolerance.reset();
+    if (tolerance.is_share) {
+      description.relative_tolerance = tolerance.value;
+    } else {
+      prepared.tolerance_asked = tolerance.value;
+    }
+  }
   integration.set_tolerance(prepared.tolerance_asked);
+  if (!arguments.reference && integration.method == Method::exact) {
+    prepared.relative_tolerance = description.relative_tolerance;
+  }
   // The files of a scene are known only now.
   refuse_overwriting(output_files(arguments), data_files(description));
   prepared.transfer_function_from = !arguments.transfer_function.empty()
@@ -290,6 +339,7 @@ PreparedScene prepare(const RenderArguments& arguments) {
     description.transfer_function = scene.transfer_function->points();
   }
   description.camera = scene.camera;
+  if (!scene.mesh) find_labels(prepared);
   make_camera_frame(scene.camera, scene.size);  // throws before anything is written
   return prepared;
 }

@@ -5,6 +5,7 @@
 #include <array>
 #include <new>
 #include <optional>
+#include <set>
 #include <stdexcept>
 #include <string>
 #include <string_view>
@@ -173,9 +174,23 @@ auto with_memory(const std::filesystem::path& path, const Read& read) {
   }
 }
 
+/// The same, opened again without the files of a DICOM series that turn out to be damaged.
 template <class Read>
 auto open_and(const std::filesystem::path& path, const ReadOptions& options, const Read& read) {
-  return with_memory(path, [&] { return read(open_file(path, options)); });
+  std::set<std::string> told;
+  ReadOptions once = options;
+  if (options.note) {
+    once.note = [&](const std::string& text) {
+      if (told.insert(text).second) options.note(text);
+    };
+  }
+  return with_memory(path, [&] {
+    try {
+      return read(open_file(path, once));
+    } catch (const DamagedDicom& damaged) {
+      return read(open_dicom_without(damaged.files(), path, once));
+    }
+  });
 }
 
 }  // namespace

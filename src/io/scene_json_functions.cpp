@@ -13,7 +13,7 @@ void read_place(const Node& node, bool srgb, std::vector<Point>& points) {
   const Node value = node.at("value", "give the data value of this point");
   const Rgb<double> color = color_of(node.at("color", "give [r, g, b]"), srgb);
   const std::size_t i = points.size();
-  points.push_back({value.number(), 0, color});
+  points.push_back({value.number(-scene_json::largest_value, scene_json::largest_value), 0, color});
   if (i >= 1 && points[i].value < points[i - 1].value) {
     value.fail("is below the value of the point before it; points must ascend");
   }
@@ -62,7 +62,10 @@ TransferFunctionDescription preset(const Node& function) {
     if (range->array_size() != 2) {
       range->fail("must have 2 numbers, but has " + std::to_string(range->array_size()));
     }
-    description.range = {range->element(0).number(), range->element(1).number()};
+    const auto end = [&](std::size_t i) {
+      return range->element(i).number(-scene_json::largest_value, scene_json::largest_value);
+    };
+    description.range = {end(0), end(1)};
     if (!((*description.range)[0] < (*description.range)[1])) {
       range->fail("must be two ascending values");
     }

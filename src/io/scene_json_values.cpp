@@ -39,7 +39,7 @@ void expect_size(const Node& list, std::size_t least, std::size_t most, const st
 std::vector<double> numbers_of(const Node& list, double lower) {
   std::vector<double> values;
   for (std::size_t i = 0; i < list.array_size(); ++i) {
-    values.push_back(list.element(i).number(lower, largest_number));
+    values.push_back(list.element(i).number(lower, largest_value));
   }
   return values;
 }
@@ -57,7 +57,7 @@ std::vector<std::vector<double>> matrix(const Node& rows, std::size_t columns) {
   for (std::size_t i = 0; i < rows.array_size(); ++i) {
     const Node row = rows.element(i);
     expect_size(row, columns, columns, "numbers, one for each channel");
-    values.push_back(numbers_of(row, -largest_number));
+    values.push_back(numbers_of(row, -largest_value));
   }
   return values;
 }

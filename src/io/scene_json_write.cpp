@@ -317,7 +317,11 @@ std::string scene_to_json(const SceneDescription& scene) {
   if (scene.background) image.add("background", array(*scene.background, "the background"));
   Members integration("  ");
   integration.add("method", joined({"\"", method_name(scene.integration.method), "\""}));
-  integration.add("tolerance", number(scene.integration.tolerance, "the tolerance"));
+  if (scene.relative_tolerance) {
+    integration.add("relative_tolerance", number(*scene.relative_tolerance, "the tolerance"));
+  } else {
+    integration.add("tolerance", number(scene.integration.tolerance, "the tolerance"));
+  }
   integration.add("grade",
                   scene.integration.grade == Grade::proved ? "\"proved\"" : "\"estimated\"");
   integration.add("precision", precision_name(scene.integration.precision));

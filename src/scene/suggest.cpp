@@ -11,6 +11,7 @@
 
 #include "pellucid/scene/error.h"
 #include "pellucid/scene/mixture_fit.h"
+#include "readable_numbers.h"
 #include "suggest_histogram.h"
 #include "suggest_look.h"
 #include "value_peaks.h"
@@ -49,10 +50,10 @@ JointHistogram core_histogram(const Channels& channels, const std::vector<int>& 
 /// K of coordinates in bins as that of values. Bins may be too narrow for a number to hold.
 std::vector<std::vector<double>> of_values(std::vector<std::vector<double>> matrix,
                                            const std::vector<HistogramAxis>& axes) {
-  constexpr double largest = 1e30;
   for (auto& row : matrix) {
     for (std::size_t i = 0; i < axes.size(); ++i) {
-      if (row[i] != 0) row[i] = std::clamp(row[i] / axes[i].bin_width(), -largest, largest);
+      if (row[i] != 0)
+        row[i] = std::clamp(row[i] / axes[i].bin_width(), -largest_data_value, largest_data_value);
     }
   }
   return matrix;

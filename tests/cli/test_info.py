@@ -111,6 +111,26 @@ class Info(ProgramTest):
         self.assertIsNone(report["histogram"])
         self.assertIn("no finite value", self.succeed("info", "a.npy"))
 
+    def test_labels_are_told(self):
+        n = 12
+        blocks = [7 * (i // 4) + 20 * (j // 4) + 60 * (k // 4)
+                  for k in range(n) for j in range(n) for i in range(n)]
+        for kind in ("|u1", "<i2", "<f4"):
+            self.write("labels.npy", npy(blocks, (n, n, n), kind))
+            self.assertEqual(self.report("info", "labels.npy")["labels"], 27)
+            self.assertRegex(self.succeed("info", "labels.npy"),
+                             r"(?m)^labels +looks like labels: 27 whole numbers[^\n]*interpolating")
+            result = self.run_program("render", "labels.npy", "-o", "a.exr", "--size", "4")
+            self.assertRegex(result.stderr.decode(),
+                             r"(?m)^pellucid: looks like labels: 27 whole numbers")
+            report = self.report("render", "labels.npy", "-o", "a.exr", "--size", "4")
+            self.assertEqual(report["labels"], {"value": 27})
+        self.write("ramp.npy", npy([round(255 * x) for x in ramp(n)], (n, n, n), "|u1"))
+        self.assertIsNone(self.report("info", "ramp.npy")["labels"])
+        self.assertNotIn("labels", self.succeed("info", "ramp.npy"))
+        result = self.run_program("render", "ramp.npy", "-o", "a.exr", "--size", "4")
+        self.assertNotIn("labels", result.stderr.decode())
+
     def test_orientation_of_a_medical_file(self):
         self.write("a.mha", metaimage())
         result = self.run_program("info", "a.mha")

@@ -135,6 +135,36 @@ class Render(ProgramTest):
         self.succeed("compare", "double.exr", "reference.exr", "--largest", "1e-6")
         self.assertGreater(self.largest_difference("float.exr", "double.exr"), 0)
 
+    def test_scaled_data_give_the_same_picture(self):
+        n = 12
+        values = [math.exp(-((i - 5) ** 2 + (j - 6) ** 2 + (k - 4.5) ** 2) / 12)
+                  + 0.01 * math.sin(7 * i + 3 * j + k)
+                  for k in range(n) for j in range(n) for i in range(n)]
+        def render(scale, offset, name, *arguments):
+            self.write("a.npy", npy([scale * v + offset for v in values], (n, n, n), "<f8"))
+            return self.report("render", "a.npy", "-o", name, "--size", "32", *arguments)
+        for preset in ((), ("--preset", "simulation-diverging"), ("--preset", "x-ray")):
+            render(1, 0, "plain.exr", *preset)
+            for scale, offset in ((1e30, 0), (1e34, 0), (2e37, 0), (1e-30, 0), (1e-34, 0), (1, 1e6),
+                                  (100, -1e6)):
+                with self.subTest(preset=preset, scale=scale, offset=offset):
+                    report = render(scale, offset, "scaled.exr", "--save-scene", "scene.json",
+                                    *preset)
+                    self.assertEqual(report["pixels_over"], 0)
+                    # Values of the transfer function are rounded to a thousandth of the range.
+                    self.report("compare", "plain.exr", "scaled.exr", "--tolerance", "0.02")
+                    self.succeed("render", "scene.json", "-o", "again.exr", "--size", "32")
+                    self.assertTrue(
+                        self.report("compare", "scaled.exr", "again.exr")["identical"])
+
+    def test_scaled_lengths_give_the_same_picture(self):
+        field = ("render", "ramp.npy", "--size", "16")
+        self.report(*field, "-o", "plain.exr", "--spacing", "1,1,1")
+        for spacing in ("1e-6", "1e6", "1e-12", "1e12"):
+            self.report(*field, "-o", "scaled.exr", "--spacing", ",".join([spacing] * 3))
+            # Extinctions are rounded to two digits.
+            self.report("compare", "plain.exr", "scaled.exr", "--tolerance", "0.03")
+
     def test_step_needs_a_sampling_method(self):
         run = ("render", "ramp.npy", "-o", "a.png")
         self.fail_with("exact method has no step", *run, "--step", "1", code=2)

@@ -105,7 +105,27 @@ class Series(ProgramTest):
             self.write("ct/9", dicom(12, 0))
             self.fail_with("8 and 9 stand at the same place", *command, "ct")
             self.write("ct/9", dicom(0, 0)[:-1])
-            self.fail_with("ct/9: has 11 bytes of pixels, but its header needs 12", *command, "ct")
+            size = ("--size", "8") if "render" in command else ()
+            result = self.run_program(*command, "ct", *size)
+            self.assertEqual(result.returncode, 0)
+            self.assertRegex(result.stderr.decode(), r"(?m)^pellucid: ct: 1 file is left out: ct/9:"
+                             " has 11 bytes of pixels, but its header needs 12")
+            self.fail_with("ct/9: has 11 bytes of pixels, but its header needs 12", *command,
+                           "ct/9")
+            os.remove(self.path("ct/9"))
+
+    def test_damaged_files_of_several_series(self):
+        self.add_other()
+        self.write("ct/9", dicom(0, 0)[:-1])
+        self.write("ct/91", dicom(0, 0)[:150])
+        self.write("ct/empty.dcm", b"")
+        result = self.run_program("info", "ct")
+        self.assertEqual(result.returncode, 0)
+        self.assertRegex(result.stderr.decode(), r"\Apellucid: ct: 3 files are left out; the first: "
+                         r"ct/9: has 11 bytes of pixels[^\n]*\n\Z")
+        self.assertIn(b"one to be chosen by --series", result.stdout)
+        self.fail_with("2 DICOM series[^\n]*; 3 files are left out; the first: ct/9: ", "render",
+                       "ct", "-o", "o.png")
 
 
 class Stacks(ProgramTest):

@@ -26,6 +26,10 @@ struct SceneDescription {
   ImageSize size;
   int samples = 1;
   Integration integration;
+  /// The tolerance as a share of the picture's largest channel, in (0, 1], in place of
+  /// integration.tolerance. The program `pellucid` looks for it; make_scene() does not, for the
+  /// picture must be known first.
+  std::optional<double> relative_tolerance;
   std::optional<Rgb<double>> background;
 };
 

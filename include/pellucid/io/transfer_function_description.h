@@ -82,7 +82,7 @@ using TransferFunctionDescription = std::variant<std::vector<TransferFunction::P
 /// default is white. Throws Error.
 GaussianDescription parse_gaussian(std::string_view text);
 
-/// Widths as written are between this and 1e30.
+/// Widths as written are between this and 2.1e37.
 inline constexpr double smallest_width = 1e-37;
 
 /// Returns the matrix K of a shape. Throws Error.

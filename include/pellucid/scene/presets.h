@@ -34,7 +34,7 @@ const Preset* find_preset(std::string_view name) noexcept;
 /// rounded to readable ones. `range` moves the first and the last point of any preset to these
 /// values. Colors are made from sRGB.
 ///
-/// Throws Error if there is no such preset, or the range is not two ascending numbers up to 1e30.
+/// Throws Error if there is no such preset, or the range is not two ascending numbers up to 2.1e37.
 TransferFunction make_preset(std::string_view name, const Volume& volume,
                              const std::optional<std::array<double, 2>>& range = {});
 /// Returns the same for a mesh.
