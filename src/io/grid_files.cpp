@@ -21,6 +21,7 @@
 #include "module.h"
 #include "net_cdf_size.h"
 #include "pellucid/scene/error.h"
+#include "vdb_size.h"
 #include "volume_axes.h"
 
 namespace pellucid {
@@ -314,10 +315,12 @@ std::vector<VolumeArray> list_net_cdf_arrays(const std::filesystem::path& path) 
 }
 
 VolumeFile open_vdb(const std::filesystem::path& path, const ReadOptions& options) {
+  check_vdb_size(path);
   return open_grid(path, options, vdb);
 }
 
 std::vector<VolumeArray> list_vdb_arrays(const std::filesystem::path& path) {
+  check_vdb_size(path);
   return list_arrays(path, vdb);
 }
 

@@ -6,7 +6,10 @@
 
 namespace {
 
-constexpr const char* remedy = "crop or reduce the volume";
+// The values' memory was there before; what a library takes beside it depends on the file.
+constexpr const char* remedy =
+    "the file is damaged, or asks for far more than its size lets expect; get it again, or crop or "
+    "reduce the volume";
 
 }  // namespace
 
