@@ -109,6 +109,14 @@ void check_bytes(const ByteSource& source, std::uintmax_t offset, std::uintmax_t
               "; it is cut off or its header is wrong");
 }
 
+void note_bytes_left_over(const ByteSource& source, std::uintmax_t end, const Note& note,
+                          const std::string& advice) {
+  if (!note || source.size <= end) return;
+  note(source.name + ": has " + std::to_string(source.size - end) +
+       " bytes more than its header needs; they are left over behind the values" +
+       (advice.empty() ? "" : "; " + advice));
+}
+
 VolumeData make_values(const std::string& type, std::size_t count, const std::string& name) {
   const std::uintmax_t bytes = std::uintmax_t{count} * value_size(type, name);
   check_memory(bytes, name + ": its values");

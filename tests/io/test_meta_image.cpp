@@ -231,6 +231,24 @@ TEST_F(MetaImageTest, FewerAxesThanNoneAreRefused) {
   EXPECT_TRUE(test::contains(test::error_of([&] { read_volume(path("a.mha")); }), "below 0"));
 }
 
+TEST_F(MetaImageTest, BytesThatAreLeftOverAreTold) {
+  std::string notes;
+  ReadOptions options;
+  options.note = [&](const std::string& line) { notes += line + "\n"; };
+  MetaImageFile file;
+  file.data_file = "v.raw";
+  write("v.raw", std::string(100, 'h') + bytes_of(counting()));
+  read_volume(write("a.mhd", file.header()), options);
+  EXPECT_TRUE(contains(notes, "100 bytes more") && contains(notes, "HeaderSize = -1")) << notes;
+  notes.clear();
+  file.more = "HeaderSize = -1\n";
+  expect_counting(read_volume(write("a.mhd", file.header()), options), "f32");
+  EXPECT_EQ(notes, "");
+  file.more = "HeaderSize = -2\n";
+  write("a.mhd", file.header());
+  EXPECT_TRUE(contains(error_of([&] { read_volume(path("a.mhd")); }), "HeaderSize = -2"));
+}
+
 }  // namespace
 }  // namespace pellucid
 

@@ -116,6 +116,47 @@ TEST_F(NrrdTest, Detached) {
   error_of([&] { read_volume(path("a.nhdr")); });
 }
 
+// A file of another format that is named as one of values begins with its own header.
+TEST_F(NrrdTest, BytesThatAreLeftOverAreTold) {
+  std::string notes;
+  ReadOptions options;
+  options.note = [&](const std::string& line) { notes += line + "\n"; };
+  const auto note_of = [&](const std::string& more, const std::string& type = "float") {
+    notes.clear();
+    read_volume(write("n.nhdr", header("data file: s.raw\n" + more, type)), options);
+    return notes;
+  };
+  write("s.raw", std::string(352, 'h') + bytes_of(counting()));
+  EXPECT_TRUE(contains(note_of(""), "s.raw: has 352 bytes more") &&
+              contains(notes, "\"byte skip: -1\""))
+      << notes;
+  EXPECT_EQ(note_of("byte skip: -1\n"), "");
+  expect_counting(read_volume(path("n.nhdr"), options), "f32");
+  EXPECT_EQ(note_of("byte skip: 352\n"), "");
+  EXPECT_TRUE(contains(note_of("byte skip: 300\n"), "52 bytes more")) << notes;
+  for (const char* type : {"unsigned int", "int32_t", "uint", "signed int"}) {
+    EXPECT_TRUE(contains(note_of("", type), "352 bytes more")) << type << notes;
+  }
+  write("s.raw", bytes_of(counting()));
+  EXPECT_EQ(note_of(""), "");
+  notes.clear();
+  read_volume(write("n.nrrd", header("") + "\n" + bytes_of(counting()) + "more"), options);
+  EXPECT_TRUE(contains(notes, "4 bytes more") && !contains(notes, "skip")) << notes;
+}
+
+TEST_F(NrrdTest, SkipsBelowZeroAreOneLine) {
+  write("v.raw", bytes_of(counting()));
+  for (const char* skip : {"byte skip: -2", "byte skip: -352", "line skip: -1", "byte skip: x",
+                           "byteskip: 99999999999999999999"}) {
+    write("n.nhdr", header("data file: v.raw\n" + std::string(skip) + "\n"));
+    const std::string text = error_of([&] { read_volume(path("n.nhdr")); });
+    EXPECT_TRUE(contains(text, skip) && contains(text, "whole number from 0")) << text;
+  }
+  write("v.raw.gz", test::gzipped(bytes_of(counting())));
+  write("n.nhdr", header("data file: v.raw.gz\nbyte skip: -1\n", "float", "gzip"));
+  EXPECT_TRUE(contains(error_of([&] { read_volume(path("n.nhdr")); }), "encoding \"raw\""));
+}
+
 TEST_F(NrrdTest, SpacesAreTurnedToLps) {
   const std::string place = "space directions: (1,0,0) (0,0,2) (0,3,0)\nspace origin: (10,20,30)\n";
   const auto at = [&](const std::string& space) {
