@@ -18,13 +18,14 @@ constexpr const char* group = "Options of volume files";
 
 }  // namespace
 
-void VolumeOptions::add_to(CLI::App& command, bool with_array) {
+void VolumeOptions::add_to(CLI::App& command, bool with_array, bool with_axes) {
   const auto add = [&](CLI::Option* option) { given.push_back(option->group(group)); };
   add(command.add_option("--dimensions", dimensions, "Values along x, y, z of a .raw file")
           ->option_text("X,Y,Z"));
   add(command.add_option("--type", type, "Number type of a .raw file")
           ->option_text("TYPE")
-          ->check(CLI::IsMember({"u8", "i8", "u16", "i16", "u32", "i32", "f32", "f64"})));
+          ->check(CLI::IsMember(
+              {"u8", "i8", "u16", "i16", "u32", "i32", "u64", "i64", "f16", "f32", "f64"})));
   add(command.add_flag("--big-endian", big_endian, "Byte order of a .raw file (default little)"));
   add(command.add_option("--skip-bytes", skip_bytes, "Length of a header to skip in a .raw file")
           ->option_text("N"));
@@ -39,6 +40,16 @@ void VolumeOptions::add_to(CLI::App& command, bool with_array) {
                         "else the first of points with one component. :C is --component C")
             ->option_text("ARRAY[:C]"));
   }
+  add(command
+          .add_option(with_axes ? "--array-axes,--axes" : "--array-axes", axes,
+                      "Axes of a NumPy or HDF5 array in the order of its indices, c: components; "
+                      "default: zyx, or of four zyxc or czyx, as a note says")
+          ->option_text("LETTERS")
+          ->check([](const std::string& text) {
+            return is_array_axes(text) ? std::string()
+                                       : "give x, y and z, and c for components, in the order of "
+                                         "the array's indices: zyx, xyz, czyx";
+          }));
   add(command
           .add_option("--series", series,
                       "Of a folder with several DICOM series: its number as 'pellucid info' lists "
@@ -75,6 +86,7 @@ ReadOptions VolumeOptions::read_options() const {
   read.components = components;
   read.component = component;
   if (!series.empty()) read.series = series;
+  if (!axes.empty()) read.axes = axes;
   if (!array.empty()) {
     const MeshArrayChoice choice = parse_mesh_array(array);
     read.array = choice.array;
@@ -90,6 +102,13 @@ ReadOptions VolumeOptions::read_options() const {
   }
   if (!centering.empty()) read.centering = centering == "cell" ? Centering::cell : Centering::point;
   return read;
+}
+
+bool is_array_axes(const std::string& text) {
+  std::string letters = lower_case(text);
+  std::ranges::replace(letters, 't', 'c');
+  std::ranges::sort(letters);
+  return letters == "xyz" || letters == "cxyz";
 }
 
 FieldSource field_source(const std::string& input, const VolumeOptions& options) {

@@ -73,9 +73,10 @@ TEST_F(MetaImageTest, AllTypesInBothByteOrdersRawAndCompressed) {
   expect_type<std::int32_t>("MET_INT", "i32");
   expect_type<float>("MET_FLOAT", "f32");
   expect_type<double>("MET_DOUBLE", "f64");
+  expect_type<std::int64_t>("MET_LONG_LONG", "u8");
+  expect_type<std::uint64_t>("MET_ULONG_LONG", "u8");
+  expect_type<std::int32_t>("MET_LONG", "i32");
   MetaImageFile file;
-  file.type = "MET_LONG_LONG";
-  EXPECT_TRUE(contains(error(file, bytes_of(counting<std::int64_t>())), "64-bit"));
   file.type = "MET_NONSENSE";
   error(file);
 }

@@ -16,16 +16,20 @@ namespace pellucid {
 /// What a headerless file does not say, and what may be said instead of the file.
 struct ReadOptions {
   std::optional<std::array<int, 3>> dimensions;  ///< raw: required
-  std::optional<std::string> type;               ///< raw: required ("u8" … "f64")
-  std::optional<bool> big_endian;                ///< raw; default little
-  std::size_t skip_bytes = 0;                    ///< raw: header to skip
-  std::optional<Vec3<double>> spacing;           ///< replaces the file's
-  std::optional<Vec3<double>> origin;            ///< replaces the file's
-  std::optional<Centering> centering;            ///< replaces the file's
-  std::optional<int> components;                 ///< raw: numbers at each point, side by side
-  std::optional<int> component;                  ///< which of a file's, from 0
-  std::optional<double> time;        ///< in place of a component, the step nearest to it: NetCDF
+  std::optional<std::string> type;  ///< raw: required ("u8" … "f64", also "i64", "u64", "f16")
+  std::optional<bool> big_endian;   ///< raw; default little
+  std::size_t skip_bytes = 0;       ///< raw: header to skip
+  std::optional<Vec3<double>> spacing;  ///< replaces the file's
+  std::optional<Vec3<double>> origin;   ///< replaces the file's
+  std::optional<Centering> centering;   ///< replaces the file's
+  std::optional<int> components;        ///< raw: numbers at each point, side by side
+  std::optional<int> component;         ///< which of a file's, from 0
+  std::optional<double> time;           ///< in place of a component, the step nearest to it: NetCDF
   std::optional<std::string> array;  ///< by name, of a file that has several; none: see VolumeArray
+  /// .npy, .npz and HDF5: a letter for each axis of the array, in the order of its indices: x, y
+  /// and z, and c for components ("xyz", "czyx"). None: "zyx"; of four axes c is the first or the
+  /// last, whichever is short, and `note` is told which was taken.
+  std::optional<std::string> axes;
   /// DICOM: which of a folder's series: its number as list_dicom_series() has them, from 1, its
   /// UID, or the unique end of one.
   std::optional<std::string> series;
@@ -34,21 +38,23 @@ struct ReadOptions {
 };
 
 /// Reads a volume by its extension: .nii .nii.gz .hdr/.img(.gz) .nrrd .nhdr .mha .mhd (through ITK,
-/// where the build has it), .npy, .slc, .raw, .mrc .map .rec .st .ccp4 (each also .gz), .dcm .ima;
-/// a .dat or .ivf header of Inviwo's or Voreen's; a stack of images, .tif .tiff .png, by any of its
-/// files, a pattern of them ("slice%03d.tif") or its folder; a DICOM series by its folder or any of
-/// its files, of any name; any file as raw where dimensions and type are both given; and images and
-/// rectilinear grids of VTK's by their first bytes (.vti, .pvti, .vtr, .pvtr, legacy .vtk; through
-/// VTK, where the build has it): arrays of points are point-centred, arrays of cells cell-centred,
-/// whole numbers of 64 bits become double, bits u8; datasets of HDF5 (.h5, .hdf5, .he5) and
-/// variables of NetCDF (.nc, .nc4, .cdf), where the build has these: of NetCDF positions along the
-/// axes where it has them, scaled, and NaN for what is missing; fog volumes of OpenVDB (.vdb) as
-/// the dense grid of their active box, where the build has it. Throws Error: what, where, what to
-/// do; also for a file of several components of which the options choose none.
+/// where the build has it), .npy, .npz, .slc, .raw, .mrc .map .rec .st .ccp4 (each also .gz), .dcm
+/// .ima; a .dat or .ivf header of Inviwo's or Voreen's; a stack of images, .tif .tiff .png, by any
+/// of its files, a pattern of them ("slice%03d.tif") or its folder; a DICOM series by its folder or
+/// any of its files, of any name; any file as raw where dimensions and type are both given; and
+/// images and rectilinear grids of VTK's by their first bytes (.vti, .pvti, .vtr, .pvtr, legacy
+/// .vtk; through VTK, where the build has it): arrays of points are point-centred, arrays of cells
+/// cell-centred, bits are u8; datasets of HDF5 (.h5, .hdf5, .he5) and variables of NetCDF (.nc,
+/// .nc4, .cdf), where the build has these: of NetCDF positions along the axes where it has them,
+/// scaled, and NaN for what is missing; fog volumes of OpenVDB (.vdb) as the dense grid of their
+/// active box, where the build has it. Half floats become float, and whole numbers of 64 bits the
+/// smallest type that holds every one of them; if only double is left and it rounds some, `note` is
+/// told. Throws Error: what, where, what to do; also for a file of several components of which the
+/// options choose none, and a .npz of several arrays.
 Volume read_volume(const std::filesystem::path& path, const ReadOptions& options = {});
 
 /// A file may have several numbers at each point, its components: colors and vectors, the steps of
-/// a fourth axis, and of .npy the last of four axes. This is how many, by its header. Throws Error
+/// a fourth axis. This is how many, by its header. Throws Error
 /// like read_volume.
 int component_count(const std::filesystem::path& path, const ReadOptions& options = {});
 /// Each component as a volume of its own, in the file's type and on its one grid; the chosen one
@@ -89,6 +95,8 @@ std::string volume_extensions();
 
 /// The parsers of our own, from memory, so that they can be fuzzed. `name` is for messages.
 Volume parse_npy(const std::vector<std::byte>& bytes, const std::string& name,
+                 const ReadOptions& options = {});
+Volume parse_npz(const std::vector<std::byte>& bytes, const std::string& name,
                  const ReadOptions& options = {});
 Volume parse_raw(const std::vector<std::byte>& bytes, const std::string& name,
                  const ReadOptions& options);
