@@ -1,8 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
-option(PELLUCID_SIMD "Packets of rays for SSE4.1, AVX2 and AVX-512, chosen at run time (x86-64; needs xsimd)" ON)
+option(PELLUCID_SIMD
+  "Packets of rays for SSE4.1, AVX2 and AVX-512, chosen at run time (x86-64; needs xsimd)" ON)
 
-# The sets, best last, the lanes of a packet in each, and what lets the compiler use it.
+# The sets, best last, the lanes of a packet in each, and the options of the compiler.
 set(PELLUCID_INSTRUCTION_SETS sse4 avx2 avx512)
+set(PELLUCID_BUILD_SETS "sse4;avx2;avx512" CACHE STRING
+    "Instruction sets to build kernels for; native: the best one of this machine alone")
 set(_pellucid_lanes_sse4 4)
 set(_pellucid_lanes_avx2 8)
 set(_pellucid_lanes_avx512 16)
@@ -12,8 +15,8 @@ set(_pellucid_flags_avx512 -mavx512f -mavx512cd -mavx512dq -mavx512bw -mavx512vl
     -mprefer-vector-width=512)
 
 set(PELLUCID_SIMD_FOUND FALSE)
-if(PELLUCID_SIMD AND CMAKE_SYSTEM_PROCESSOR MATCHES "^(x86_64|AMD64|amd64)$" AND CMAKE_SIZEOF_VOID_P EQUAL 8
-   AND CMAKE_CXX_COMPILER_ID MATCHES "GNU|Clang")
+if(PELLUCID_SIMD AND CMAKE_SYSTEM_PROCESSOR MATCHES "^(x86_64|AMD64|amd64)$"
+   AND CMAKE_SIZEOF_VOID_P EQUAL 8 AND CMAKE_CXX_COMPILER_ID MATCHES "GNU|Clang")
   find_package(xsimd 8.1 QUIET)
   if(NOT xsimd_FOUND)
     message(FATAL_ERROR "xsimd 8.1 or later is not there: install it (Debian: libxsimd-dev), "
@@ -22,21 +25,47 @@ if(PELLUCID_SIMD AND CMAKE_SYSTEM_PROCESSOR MATCHES "^(x86_64|AMD64|amd64)$" AND
   set(PELLUCID_SIMD_FOUND TRUE)
 endif()
 
-# pellucid_instruction_sets(TARGET SOURCES file... [LIBRARIES target...])
+set(_pellucid_built_sets ${PELLUCID_BUILD_SETS})
+if(_pellucid_built_sets STREQUAL "native" AND PELLUCID_SIMD_FOUND)
+  file(STRINGS /proc/cpuinfo _pellucid_flags REGEX "^flags" LIMIT_COUNT 1)
+  set(_pellucid_built_sets sse4)
+  if(_pellucid_flags MATCHES " avx2( |$)" AND _pellucid_flags MATCHES " fma( |$)")
+    set(_pellucid_built_sets avx2)
+    set(_pellucid_best TRUE)
+    foreach(_pellucid_flag IN ITEMS avx512f avx512cd avx512dq avx512bw avx512vl)
+      if(NOT _pellucid_flags MATCHES " ${_pellucid_flag}( |$)")
+        set(_pellucid_best FALSE)
+      endif()
+    endforeach()
+    if(_pellucid_best)
+      set(_pellucid_built_sets avx512)
+    endif()
+  endif()
+  message(STATUS "Kernels are built for ${_pellucid_built_sets} alone, the best of this machine")
+endif()
+foreach(_pellucid_set IN LISTS _pellucid_built_sets)
+  if(PELLUCID_SIMD_FOUND AND NOT _pellucid_set IN_LIST PELLUCID_INSTRUCTION_SETS)
+    message(FATAL_ERROR "PELLUCID_BUILD_SETS: \"${_pellucid_set}\" is no instruction set; "
+                        "name some of ${PELLUCID_INSTRUCTION_SETS}, or native")
+  endif()
+endforeach()
+
+# pellucid_instruction_sets(TARGET SOURCES file... [ABSENT file] [LIBRARIES target...])
 #
-# Compiles the sources once per instruction set and adds the objects to TARGET; LIBRARIES say what they
-# include. In these sources
+# Compiles the sources once per instruction set and adds the objects to TARGET; LIBRARIES say what
+# they include. For a set that PELLUCID_BUILD_SETS leaves out, ABSENT is compiled in their place.
+# In these sources
 #   PELLUCID_LANES             is 4, 8 or 16,
 #   PELLUCID_INSTRUCTION_SET   is sse4, avx2 or avx512,
-#   pellucid                   is a macro: the project's namespace gets another name in each, so that an
-#                              inline function compiled for AVX-512 is never the one that the linker keeps
-#                              for code that runs elsewhere.
+#   pellucid                   is a macro: the project's namespace gets another name in each, so
+#                              that an inline function compiled for AVX-512 is never the one that
+#                              the linker keeps for code that runs elsewhere.
 # What they give to others are functions declared extern "C" outside of that namespace, named by
-# PELLUCID_ENTRY (simd/instruction_set.h), and plain structs; tests/architecture reads the objects' symbols.
-# TARGET's own sources see PELLUCID_HAS_PACKETS, 1 or 0: off x86-64, or without PELLUCID_SIMD, nothing is
-# compiled.
+# PELLUCID_ENTRY (simd/instruction_set.h), and plain structs; tests/architecture reads the objects'
+# symbols. TARGET's own sources see PELLUCID_HAS_PACKETS, 1 or 0: off x86-64, or without
+# PELLUCID_SIMD, nothing is compiled.
 function(pellucid_instruction_sets target)
-  cmake_parse_arguments(arg "" "" "SOURCES;LIBRARIES" ${ARGN})
+  cmake_parse_arguments(arg "" "ABSENT" "SOURCES;LIBRARIES" ${ARGN})
   if(NOT PELLUCID_SIMD_FOUND)
     target_compile_definitions(${target} PRIVATE PELLUCID_HAS_PACKETS=0)
     return()
@@ -44,7 +73,11 @@ function(pellucid_instruction_sets target)
   target_compile_definitions(${target} PRIVATE PELLUCID_HAS_PACKETS=1)
   foreach(set IN LISTS PELLUCID_INSTRUCTION_SETS)
     set(objects ${target}_${set})
-    add_library(${objects} OBJECT ${arg_SOURCES})
+    if(arg_ABSENT AND NOT set IN_LIST _pellucid_built_sets)
+      add_library(${objects} OBJECT ${arg_ABSENT})
+    else()
+      add_library(${objects} OBJECT ${arg_SOURCES})
+    endif()
     set_target_properties(${objects} PROPERTIES POSITION_INDEPENDENT_CODE ON CXX_EXTENSIONS OFF)
     target_compile_features(${objects} PRIVATE cxx_std_20)
     # The package's target also names a library that it does not need.
@@ -54,14 +87,14 @@ function(pellucid_instruction_sets target)
       pellucid=pellucid_${set}
       PELLUCID_INSTRUCTION_SET=${set}
       PELLUCID_LANES=${_pellucid_lanes_${set}})
+    set(gcc_12 $<AND:$<CXX_COMPILER_ID:GNU>,$<VERSION_LESS:$<CXX_COMPILER_VERSION>,13>>)
     target_compile_options(${objects} PRIVATE
       ${_pellucid_flags_${set}}
-      # Optimised in every configuration: batches that are not kept in registers are of no use, and the
-      # standard library's small functions must be inlined, not left to the linker.
+      # Optimised in every configuration: batches that are not kept in registers are of no use, and
+      # the standard library's small functions must be inlined, not left to the linker.
       $<$<CONFIG:Debug>:-O2>
       # GCC 12 takes the undefined operand of its own intrinsics for a mistake (GCC bug 105593).
-      $<$<AND:$<CXX_COMPILER_ID:GNU>,$<VERSION_LESS:$<CXX_COMPILER_VERSION>,13>>:-Wno-uninitialized>
-      $<$<AND:$<CXX_COMPILER_ID:GNU>,$<VERSION_LESS:$<CXX_COMPILER_VERSION>,13>>:-Wno-maybe-uninitialized>)
+      $<${gcc_12}:-Wno-uninitialized> $<${gcc_12}:-Wno-maybe-uninitialized>)
     target_link_libraries(${objects} PRIVATE ${arg_LIBRARIES} pellucid_build_flags)
     target_sources(${target} PRIVATE $<TARGET_OBJECTS:${objects}>)
     set_property(GLOBAL APPEND PROPERTY PELLUCID_INSTRUCTION_SET_TARGETS ${objects})

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <string>
 #include <vector>
 
+#include "command_line.h"
 #include "input.h"
 #include "overwriting.h"
 #include "pellucid/io/channel_source.h"
@@ -20,7 +20,7 @@ struct ChannelArguments {
   VolumeOptions volume;
   std::string command;  ///< its name, for messages
 
-  void add_to(CLI::App& app);
+  void add_to(CommandLine& app);
   /// One volume alone, whose channels have the names that they have in a scene.
   bool is_one_volume() const { return inputs.size() == 1 && channels.empty(); }
   /// The inputs, for messages.

@@ -1,25 +1,26 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <functional>
+
+#include "command_line.h"
 
 namespace pellucid::cli {
 
 /// A subcommand: what CLI11 parses, and what runs afterwards and returns the exit code.
 struct Command {
-  CLI::App* arguments;
+  CommandLine* arguments;
   std::function<int()> run;
 };
 
-Command add_render(CLI::App& app);
-Command add_info(CLI::App& app);
-Command add_evaluate(CLI::App& app);
-Command add_compare(CLI::App& app);
-Command add_histogram(CLI::App& app);
-Command add_suggest(CLI::App& app);
-Command add_convert(CLI::App& app);
-Command add_presets(CLI::App& app);
-Command add_transfer_function(CLI::App& app);
+Command add_render(CommandLine& app);
+Command add_info(CommandLine& app);
+Command add_evaluate(CommandLine& app);
+Command add_compare(CommandLine& app);
+Command add_histogram(CommandLine& app);
+Command add_suggest(CommandLine& app);
+Command add_convert(CommandLine& app);
+Command add_presets(CommandLine& app);
+Command add_transfer_function(CommandLine& app);
 
 }  // namespace pellucid::cli

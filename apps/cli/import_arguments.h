@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "command_line.h"
 #include "pellucid/io/import_transfer_function.h"
 
 namespace pellucid::cli {
@@ -14,9 +14,9 @@ namespace pellucid::cli {
 struct ImportArguments {
   std::string map, range, colors;
   std::optional<double> unit_distance;
-  std::vector<CLI::Option*> given;  ///< all but --range, to ask which were used
+  std::vector<Option*> given;  ///< all but --range, to ask which were used
 
-  void add_to(CLI::App& command);
+  void add_to(CommandLine& command);
   /// Throws UsageError.
   ImportOptions options(double deviation) const;
   /// Throws UsageError where one but --range is used, saying that it does not apply to `what`.

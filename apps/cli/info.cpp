@@ -172,7 +172,7 @@ std::string text_report(const std::vector<Volume>& components, const Facts& fact
              (facts.orientation.oblique_by > 0.01
                   ? fmt::format(", oblique by {:.2f} degrees", facts.orientation.oblique_by)
                   : "") +
-             " (where the indices grow to; the world is LPS)");
+             " (directions of growing indices; the world is LPS)");
   }
   line("world box", fmt::format("{} to {}", triple(facts.world_lower), triple(facts.world_upper)));
   if (components.size() > 1) {
@@ -191,7 +191,9 @@ std::string text_report(const std::vector<Volume>& components, const Facts& fact
   if (statistics.finite > 0) line("mean", number(facts.mean.front()));
   line("NaN", nan_text(statistics));
   if (statistics.finite > 0) {
-    text += "histogram    lower end of the bin, values, bar on a logarithmic scale\n";
+    text +=
+        "histogram    lower end of each bin, number of values, bar on a logarithmic scale\n"
+        "";
     text += bar_chart(volume.histogram(24));
   }
   return text;
@@ -298,14 +300,15 @@ int run_info(const InfoArguments& arguments) {
 
 }  // namespace
 
-Command add_info(CLI::App& app) {
-  CLI::App& command = *app.add_subcommand("info", "Say what is in a volume or mesh file");
+Command add_info(CommandLine& app) {
+  CommandLine& command = *app.add_subcommand("info", "Print what is in a volume or mesh file");
   const auto arguments = std::make_shared<InfoArguments>();
   command
       .add_option("INPUT", arguments->input,
                   std::string(input_help) + ", " + mesh_input_help() + " or builtin:NAME[:POINTS]")
       ->required();
-  command.add_flag("--json", arguments->json, "Print JSON, with a histogram of 256 bins");
+  command.add_flag("--json", arguments->json,
+                   "Print the same as JSON, with a histogram of 256 bins");
   arguments->volume.add_to(command);
   arguments->mesh.add_to(command, false);
   command.footer(

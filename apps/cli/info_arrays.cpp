@@ -39,7 +39,7 @@ std::string arrays_text(const std::vector<VolumeArray>& arrays, const std::strin
     const std::size_t components =
         array.components.size() + static_cast<std::size_t>(array.more_components);
     if (array.more_components > 0) {
-      ranges += fmt::format("; {} more are not looked at", array.more_components);
+      ranges += fmt::format("; {} more were not examined", array.more_components);
     }
     text += fmt::format("  {} ({}, {}{}){}  {}\n", array.name, centering_name(array), array.type,
                         components > 1 ? fmt::format(" x {}", components) : "",

@@ -127,7 +127,7 @@ void print_text_report(const MeshFile& file, const TetrahedralMesh& mesh) {
     line("left out", fmt::format("{} ghost or hidden cells", file.ghost_cells));
   }
   if (file.blocks > 1) {
-    line("blocks", fmt::format("{}; {} points of theirs made one, {} kept apart, where values jump",
+    line("blocks", fmt::format("{}; {} duplicate points merged, {} kept apart where values jump",
                                file.blocks, file.merged_points, file.torn_points));
   }
   if (!file.times.empty()) {

@@ -23,8 +23,8 @@ bool print_series(const FieldSource& source, const std::string& input, bool as_j
   json["pellucid"] = PELLUCID_VERSION_STRING;
   json["input"] = input;
   json["series"] = Json::array();
-  std::string text = fmt::format("{:<12} {}\n{:<12} {}, one to be chosen by --series\n", "name",
-                                 input, "DICOM series", all.size());
+  std::string text = fmt::format("{:<12} {}\n{:<12} {}; choose one by --series\n", "name", input,
+                                 "DICOM series", all.size());
   for (std::size_t i = 0; i < all.size(); ++i) {
     const DicomSeries& s = all[i];
     json["series"].push_back({{"number", i + 1},

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "command_line.h"
 #include "pellucid/io/channel_source.h"
 #include "pellucid/io/field_source.h"
 
@@ -14,7 +14,6 @@ namespace pellucid::cli {
 /// What INPUT may be, for help texts.
 inline constexpr const char* input_help =
     "Volume file (.nii, .nii.gz, .hdr, .img, .nrrd, .nhdr, .mha, .mhd, .npy, .npz, .vti, .pvti, "
-    ".vtr, "
     ".pvtr, .vtk, .slc, .h5, .hdf5, .he5, .nc, .nc4, .cdf, .vdb, .mrc, .map, .rec, .st, .ccp4, "
     ".ivf, "
     ".raw), "
@@ -27,10 +26,10 @@ struct VolumeOptions {
   bool big_endian = false;
   std::size_t skip_bytes = 0;
   std::optional<int> components, component;
-  std::vector<CLI::Option*> given;  ///< all of them, to ask which were used
+  std::vector<Option*> given;  ///< all of them, to ask which were used
 
   /// `--array` and `--axes` where no other option of the command has this name.
-  void add_to(CLI::App& command, bool with_array = true, bool with_axes = true);
+  void add_to(CommandLine& command, bool with_array = true, bool with_axes = true);
   /// Throws UsageError where an option is used, saying that it does not apply to `what`.
   void refuse(const std::string& what) const;
   ReadOptions read_options() const;

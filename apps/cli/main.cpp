@@ -3,13 +3,10 @@
 
 #include <cstdio>
 #include <exception>
-#include <memory>
 #include <new>
-#include <span>
 #include <string>
 
 #include "commands.h"
-#include "help_format.h"
 #include "output.h"
 #include "parse.h"
 #include "pellucid/base/version.h"
@@ -25,17 +22,9 @@ int fail(int exit_code, const std::string& message) {
   return exit_code;
 }
 
-std::string command_names(std::span<const Command> commands) {
-  std::string names;
-  for (const Command& command : commands) {
-    names += (names.empty() ? "" : ", ") + command.arguments->get_name();
-  }
-  return names;
-}
-
 int run(int argc, char** argv) {
-  CLI::App app("Renders volumes by the volume rendering integral itself instead of samples of it.",
-               "pellucid");
+  CommandLine app("Renders volumes and meshes. You give a tolerance instead of a step size.",
+                  "pellucid");
   app.footer(
       "Examples:\n"
       "  pellucid render brain.nii.gz -o brain.png\n"
@@ -44,39 +33,15 @@ int run(int argc, char** argv) {
       "  pellucid suggest brain.nii.gz -o brain.json\n"
       "  pellucid compare exact.exr midpoint.exr\n"
       "\n"
-      "'pellucid COMMAND --help' shows the options and examples of a command.\n"
-      "Exit codes: 0 done, 1 failed, 2 wrong arguments, 3 over the tolerance, 130 interrupted. A\n"
-      "failure is one line on stderr and leaves no partial file.");
-  app.set_version_flag("--version", "pellucid " PELLUCID_VERSION_STRING,
-                       "Print the version and exit");
-  app.set_help_flag("-h,--help", "Print this help and exit");
-  app.formatter(std::make_shared<HelpFormat>());
-  app.require_subcommand(1);
+      "'pellucid COMMAND --help' prints the options of a command, with examples.\n"
+      "Exit status: 0 success, 1 failure, 2 wrong arguments, 3 over the tolerance, 130 "
+      "interrupted.\n"
+      "A failure prints one line on stderr and leaves no partial file.");
   const Command commands[] = {add_render(app),  add_info(app),    add_histogram(app),
                               add_suggest(app), add_convert(app), add_evaluate(app),
                               add_compare(app), add_presets(app), add_transfer_function(app)};
 
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::CallForHelp&) {
-    print_text(app.help());
-    return 0;
-  } catch (const CLI::CallForAllHelp&) {
-    print_text(app.help());
-    return 0;
-  } catch (const CLI::CallForVersion&) {
-    print_text("pellucid " PELLUCID_VERSION_STRING "\n");
-    return 0;
-  } catch (const CLI::ParseError& error) {
-    const auto chosen = app.get_subcommands();
-    if (chosen.empty() && argc > 1 && argv[1][0] != '-') {
-      throw UsageError(
-          fmt::format("'{}' is no command; the commands are {} (see 'pellucid --help')", argv[1],
-                      command_names(commands)));
-    }
-    const std::string name = chosen.empty() ? "" : " " + chosen.back()->get_name();
-    throw UsageError(fmt::format("{} (see 'pellucid{} --help')", error.what(), name));
-  }
+  if (!app.parse(argc, argv, "pellucid " PELLUCID_VERSION_STRING)) return 0;
   for (const Command& command : commands) {
     if (command.arguments->parsed()) return command.run();
   }

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "command_line.h"
 #include "overwriting.h"
 #include "pellucid/io/mesh_source.h"
 
@@ -16,10 +16,10 @@ struct MeshOptions {
   std::string q;
   std::optional<double> time;
   std::vector<std::string> arrays;  ///< [NAME=]ARRAY[:C]
-  std::vector<CLI::Option*> given;  ///< all of them, to ask which were used
+  std::vector<Option*> given;       ///< all of them, to ask which were used
 
   /// `--array` where the command looks at arrays.
-  void add_to(CLI::App& command, bool with_arrays);
+  void add_to(CommandLine& command, bool with_arrays);
   /// Throws UsageError where an option is used, saying that it does not apply to `what`.
   void refuse(const std::string& what) const;
   /// The same of `--q` alone: volume files have arrays and times too.

@@ -34,8 +34,8 @@ int list_presets(bool json) {
 
 }  // namespace
 
-Command add_presets(CLI::App& app) {
-  CLI::App& command =
+Command add_presets(CommandLine& app) {
+  CommandLine& command =
       *app.add_subcommand("presets", "List the transfer functions that 'render --preset' takes");
   const auto json = std::make_shared<bool>(false);
   command.add_flag("--json", *json, "Print the list as JSON");

@@ -30,10 +30,9 @@ void print_notes(const RenderArguments& arguments, const PreparedScene& prepared
     print_note(fmt::format("{} values are NaN: rendered as vacuum", nan));
   }
   if (prepared.array_chosen) {
-    print_note(
-        fmt::format("no array named: showing \"{}\" (--array names others, which 'pellucid info' "
-                    "lists)",
-                    prepared.description.mesh->channels.front().array));
+    print_note(fmt::format(
+        "no array given: showing \"{}\" (choose another by --array; 'pellucid info' lists them)",
+        prepared.description.mesh->channels.front().array));
   }
   if (prepared.scene.mesh) {
     if (const std::size_t folded = prepared.scene.mesh->mesh().statistics().folded_faces;
@@ -43,14 +42,14 @@ void print_notes(const RenderArguments& arguments, const PreparedScene& prepared
     }
   }
   if (const double used = prepared.scene.integration.tolerance; used != prepared.tolerance_asked) {
-    print_note(fmt::format("a tolerance of {} is beyond the limits: {} is used",
-                           prepared.tolerance_asked, used));
+    print_note(fmt::format("tolerance {} is outside the limits: using {}", prepared.tolerance_asked,
+                           used));
   }
   if (prepared.transfer_function_from == "default" && !arguments.print_tf &&
       arguments.save_tf.empty()) {
     print_note(
-        "no transfer function given: using a default made from the histogram (--save-tf FILE.json "
-        "writes it for editing, --tf FILE.json takes it back)");
+        "no transfer function given: using one made from the histogram (--save-tf FILE.json writes "
+        "it for editing, --tf FILE.json reads it)");
   }
 }
 
@@ -85,7 +84,7 @@ Image render_image(const RenderArguments& arguments, const PreparedScene& prepar
 void write_error_map(Image& image, double tolerance, const std::string& path) {
   std::string& scale = image.metadata["pellucid.error_map"];
   if (extension_of(path) == ".exr") {
-    scale = fmt::format("error: how far a pixel may be off; Y: error / {}", tolerance);
+    scale = fmt::format("error: largest error of a pixel; Y: error / {}", tolerance);
     write_error_exr(image, tolerance, path);
   } else {
     scale = error_scale(tolerance);
@@ -148,20 +147,19 @@ int run_render(const RenderArguments& arguments) {
 
 }  // namespace
 
-Command add_render(CLI::App& app) {
-  CLI::App& command =
+Command add_render(CommandLine& app) {
+  CommandLine& command =
       *app.add_subcommand("render", "Render a volume, a mesh or a scene to an image");
   const auto arguments = std::make_shared<RenderArguments>();
-  command.add_option(
-      "INPUT", arguments->input,
-      std::string(input_help) + ", " + mesh_input_help() +
-          ", SCENE.json or builtin:NAME[:POINTS]; may be left out where --channel is "
-          "given");
+  command.add_option("INPUT", arguments->input,
+                     std::string(input_help) + ", " + mesh_input_help() +
+                         ", SCENE.json or builtin:NAME[:POINTS]; optional with --channel");
   add_render_options(command, *arguments);
   command.footer(
-      fmt::format("Built-in fields, of POINTS values along each axis (128):\n  {}\n",
+      fmt::format("Built-in fields, with POINTS values along each axis (default 128):\n  {}\n",
                   fmt::join(builtin_field_names(), ", ")) +
-      "Views are named for a world of LPS, as medical files are placed: front looks at the face.\n"
+      "Views have the names of an LPS world, in which medical files are placed: front looks at\n"
+      "the face, left at the patient's left side.\n"
       "\n"
       "Examples:\n"
       "  pellucid render brain.nii.gz -o brain.png\n"

@@ -51,7 +51,7 @@ struct PreparedScene {
 /// All that is read as data, as it was given.
 std::string source_text(const RenderArguments& arguments);
 
-void add_render_options(CLI::App& command, RenderArguments& arguments);
+void add_render_options(CommandLine& command, RenderArguments& arguments);
 
 /// Throws UsageError for what cannot be done, and Error where a file could not be written later.
 void check_arguments(const RenderArguments& arguments);

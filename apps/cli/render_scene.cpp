@@ -56,8 +56,7 @@ std::string source_text(const RenderArguments& arguments) {
 
 void check_arguments(const RenderArguments& arguments) {
   if (arguments.input.empty() && arguments.channels.empty()) {
-    throw UsageError(
-        "there is nothing to render; give INPUT or --channel (see 'pellucid render --help')");
+    throw UsageError("no input; give INPUT or --channel (see 'pellucid render --help')");
   }
   if (!arguments.renders() && !arguments.print_tf && arguments.save_tf.empty() &&
       arguments.save_scene.empty()) {
@@ -69,8 +68,8 @@ void check_arguments(const RenderArguments& arguments) {
   }
   if (arguments.reference) {
     refuse_error_arguments(arguments,
-                           "--reference goes to 1e-12 whatever is asked, and gives no error; drop "
-                           "one of the two ('pellucid compare' measures how far pictures differ)");
+                           "--reference always integrates to 1e-12 and reports no error; drop one "
+                           "of the two ('pellucid compare' measures how much pictures differ)");
   }
   if (arguments.strict && !arguments.renders()) {
     throw UsageError("--strict judges a rendering; give -o FILE.png or FILE.exr");

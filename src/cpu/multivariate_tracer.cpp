@@ -112,7 +112,7 @@ class MultivariateTracer : public RayTracer {
 
   /// Steps cost less the further they may go: as far as primitives stand still, and as the error
   /// lets them that the data's bends make. Cells cost the same. Where both take as long was
-  /// measured (docs/notes/performance.md).
+  /// measured (docs/notes/2026-11-performance.md).
   GaussianMarch faster_march() const {
     const Movement movement = movement_in_cells(channels_, transfer_.gaussians, *blocks_);
     return movement.in_cell <= 0.6 && movement.bend <= 620 * wanted_.tolerance

@@ -24,17 +24,36 @@ constexpr PellucidValue value_type() {
   if constexpr (std::is_same_v<Value, double>) return pellucid_f64;
 }
 
+/// Whether this build has the set's kernels (PELLUCID_BUILD_SETS).
+bool is_built(InstructionSet set) {
+  switch (set) {
+    case InstructionSet::scalar:
+      return true;
+    case InstructionSet::sse4:
+      return PELLUCID_BUILT_SSE4 != 0;
+    case InstructionSet::avx2:
+      return PELLUCID_BUILT_AVX2 != 0;
+    case InstructionSet::avx512:
+      return PELLUCID_BUILT_AVX512 != 0;
+  }
+  return false;
+}
+
 }  // namespace
 
 InstructionSet packet_instruction_set(std::optional<InstructionSet> wanted) {
   if (wanted) {
+    if (!is_built(*wanted)) {
+      throw Error(std::string("instruction set: this build has no kernels for ") +
+                  name_of(*wanted) + "; build with -DPELLUCID_BUILD_SETS=" + name_of(*wanted));
+    }
     if (is_supported(*wanted)) return *wanted;
     throw Error(std::string("instruction set: this machine has no ") + name_of(*wanted) +
                 "; leave it out, and the best one is taken");
   }
   for (const InstructionSet set :
        {InstructionSet::avx512, InstructionSet::avx2, InstructionSet::sse4}) {
-    if (is_supported(set)) return set;
+    if (is_built(set) && is_supported(set)) return set;
   }
   return InstructionSet::scalar;
 }

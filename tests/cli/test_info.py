@@ -86,7 +86,8 @@ class Info(ProgramTest):
         self.assertRegex(text, r"(?m)^type +f32, 96 B$")
         self.assertRegex(text, r"(?m)^components +3$")
         self.assertRegex(text, r"(?m)^component 0 +0 to 7, mean 3\.5$")
-        self.assertRegex(text, r"(?m)^component 1 +11 to 17, mean 14, NaN 1 \(rendered as vacuum\)$")
+        self.assertRegex(text,
+                         r"(?m)^component 1 +11 to 17, mean 14, NaN 1 \(rendered as vacuum\)$")
         self.assertNotIn("histogram", text)
 
     def test_one_component(self):
@@ -189,15 +190,15 @@ class Arrays(ProgramTest):
 
     def test_they_are_rendered(self):
         self.write("tf.json", json.dumps(HAZE))
-        self.succeed("render", "a.vtk", "--array", "v:2", "--tf", "tf.json", "-o", "v.exr", "--size",
-                     "16", "--save-scene", "scene.json")
+        self.succeed("render", "a.vtk", "--array", "v:2", "--tf", "tf.json", "-o", "v.exr",
+                     "--size", "16", "--save-scene", "scene.json")
         field = json.loads(self.read("scene.json"))["volumes"][0]["field"]
         self.assertEqual((field["array"], field["component"]), ("v", 2))
         self.succeed("render", "scene.json", "-o", "w.exr")
         self.assertTrue(self.report("compare", "v.exr", "w.exr")["identical"])
         self.fail_with("3 components", "render", "a.vtk", "--array", "v", "-o", "x.exr")
-        self.fail_with("--array applies to mesh files", "render", "builtin:ramp", "--array", "v", "-o", "x.exr",
-                       code=2)
+        self.fail_with("--array applies to mesh files", "render", "builtin:ramp", "--array", "v",
+                       "-o", "x.exr", code=2)
 
     def test_several_are_channels(self):
         gaussian = "up=30~10, a=9~4; extinction 0.5; color #ffcc99"
@@ -254,16 +255,17 @@ class NetCdf(ProgramTest):
         self.fail_with("cut off", "info", "cut.nc")
 
 
-# Written by OpenVDB 10.0.1: float grids "density" (0 to 23) and "heat" (100 to 123) of 4 x 3 x 2 voxels of 1/2.
+# Written by OpenVDB 10.0.1: float grids "density" (0 to 23) and "heat" (100 to 123) of 4 x 3 x 2
+# voxels of 1/2.
 OPENVDB = (
-    "eNrt2j9oE1EABvAXo1bEP3EoOGbSKWAv1zadksaulYJ/Rs93l5d6cH9C7nIk4NCxYydxdHSsm4vgKCIiUkREJIiIiEgRcfZ73J1N"
-    "ghUcKkq+H3x87y7vXV5y6ys3V64JGCLHRapg1KQyFo25iqy25yqmsaQqS4u2U6mZJm7UjHl7wdETDyEzSEsFkRsPShhe6Spltb1Q"
-    "xta8ZVpVPe1W9tyH59K+fj5tvfwYcgRxPBlFRzGI4q4brOuttMP1chJ6PV+d1FeupyzbDvuWL/t6RaKcqnsCg2L2qAIyMdMNxmaO"
-    "KuUzndDvdFUUuWGw9/36OdKJ3USVE+n1VHQmn95SnhyoloWf2NKzrPyOvjGbbeOntaxP5ct95Vv2IFaR3pgbxAum/ge27h8e31QS"
-    "9pWHrfWCeGzi2ex5enogfbW345H3cBrDq4HbDrv+ZUd6alV20lXD+p+1aPy6S/v0bn2yR/+MwsQbmLwmIiIiIiIiIiIiIiIiIiKi"
-    "/xAPABBNsWKx+Ns+6PWZxrIQGw0ELZC7+rouxJoe4/4muoTc05/j+gb6EXoLXUa2kQauO+gh+g76AvJgWR/TuqlkvN/JuNvZSbid"
-    "1bR7l9KegpNxF7M++JNx+UvgsTgiIiIiIiIiIiIiIiIiIiL6W3gAgGiK/QPH4h43hRgiz5GPyCtkF3mCvENeIJ+Q18hX5CnyHtlB"
-    "PiNvkG/IM+QD8hL5grxFvjd/AAiVBFw="
+    "eNrt2j9oE1EABvAXo1bEP3EoOGbSKWAv1zadksaulYJ/Rs93l5d6cH9C7nIk4NCxYydxdHSsm4vgKCIiUkREJIiIiEgR"
+    "cfZ73J1NghUcKkq+H3x87y7vXV5y6ys3V64JGCLHRapg1KQyFo25iqy25yqmsaQqS4u2U6mZJm7UjHl7wdETDyEzSEsF"
+    "kRsPShhe6Spltb1Qxta8ZVpVPe1W9tyH59K+fj5tvfwYcgRxPBlFRzGI4q4brOuttMP1chJ6PV+d1FeupyzbDvuWL/t6"
+    "RaKcqnsCg2L2qAIyMdMNxmaOKuUzndDvdFUUuWGw9/36OdKJ3USVE+n1VHQmn95SnhyoloWf2NKzrPyOvjGbbeOntaxP"
+    "5ct95Vv2IFaR3pgbxAum/ge27h8e31QS9pWHrfWCeGzi2ex5enogfbW345H3cBrDq4HbDrv+ZUd6alV20lXD+p+1aPy6"
+    "S/v0bn2yR/+MwsQbmLwmIiIiIiIiIiIiIiIiIiKi/xAPABBNsWKx+Ns+6PWZxrIQGw0ELZC7+rouxJoe4/4muoTc05/j"
+    "+gb6EXoLXUa2kQauO+gh+g76AvJgWR/TuqlkvN/JuNvZSbid1bR7l9KegpNxF7M++JNx+UvgsTgiIiIiIiIiIiIiIiIi"
+    "IiL6W3gAgGiK/QPH4h43hRgiz5GPyCtkF3mCvENeIJ+Q18hX5CnyHtlBPiNvkG/IM+QD8hL5grxFvjd/AAiVBFw="
 )
 
 

@@ -76,8 +76,8 @@ class Plot3d(ProgramTest):
 
     def test_methods(self):
         for method in ("homogeneous", "average", "linear", "partial"):
-            report = self.report("render", "grid.bin", "--q", "q.bin", "-o", "a.exr", "--size", "16",
-                                 "--method", method)
+            report = self.report("render", "grid.bin", "--q", "q.bin", "-o", "a.exr",
+                                 "--size", "16", "--method", method)
             self.assertEqual(report["method"], method)
             self.assertIsNone(report["step"])
             self.assertEqual(report["precision"], "double")

@@ -34,7 +34,8 @@ class Render(ProgramTest):
         self.assertEqual(result.returncode, 0, result.stderr)
         self.assertEqual(result.stdout, b"")
         self.assertRegex(result.stderr.decode(),
-                         r"\Apellucid: [^\n]*default[^\n]*--save-tf[^\n]*\n(pellucid: [^\n]+\n){2}\Z")
+                         r"\Apellucid: no transfer function given: using one made from the "
+                         r"histogram [^\n]*--save-tf[^\n]*\n(pellucid: [^\n]+\n){2}\Z")
         width, height, channels, rows = png(self.read("a.png"))
         self.assertEqual((width, height, channels), (512, 512, 4))
         self.assertGreater(max(max(row[3::4]) for row in rows), 10)
@@ -199,7 +200,8 @@ class Render(ProgramTest):
         self.assertEqual(report["method"], "exact")
         self.succeed("render", "ramp.npy", "-o", "c.exr", *self.small)
         self.assertEqual(self.largest_difference("b.exr", "c.exr"), 0)
-        self.assertEqual(self.report("render", "scene.json", "-o", "a.exr", "--step", "0.25")["step"],
+        self.assertEqual(self.report("render", "scene.json", "-o", "a.exr",
+                                     "--step", "0.25")["step"],
                          0.25)
 
     def test_saved_scene_renders_the_same_from_another_folder(self):
@@ -248,8 +250,8 @@ class Render(ProgramTest):
         self.assertEqual(pixel(png(self.read("b.png")), 2, 2), (0, 0, 0, 0))
 
     def test_depth_picture(self):
-        self.succeed("render", "builtin:sphere:16", "--depth", "d.png", "--view", "front", "--size", "33",
-                     "--quiet")
+        self.succeed("render", "builtin:sphere:16", "--depth", "d.png", "--view", "front",
+                     "--size", "33", "--quiet")
         picture = png(self.read("d.png"))
         self.assertEqual(picture[2], 4)
         self.assertEqual(pixel(picture, 0, 0)[3], 0)
@@ -322,7 +324,8 @@ class Terminal(ProgramTest):
             process.send_signal(number)
             message = self.read_until(master, b"\n").decode()
             self.assertEqual(process.wait(60), code)
-            self.assertRegex(message.split("\x1b[K")[-1], r"\Apellucid: error: interrupted[^\n]*\n\Z")
+            self.assertRegex(message.split("\x1b[K")[-1],
+                             r"\Apellucid: error: interrupted[^\n]*\n\Z")
             self.assertEqual(self.files(), [])
 
 

@@ -63,8 +63,8 @@ class Series(ProgramTest):
         self.assertEqual(report["series"][1]["number"], 2)
         text = self.succeed("info", "ct")
         self.assertRegex(text, r"(?m)^ +2 other\?, CT, 3 x 2 x 3, UID 1\.2\.3\.99$")
-        self.fail_with(r"2 DICOM series, 1: head \(CT, 4 slices of 3 x 2\), 2: other", "render", "ct",
-                       "-o", "o.png")
+        self.fail_with(r"2 DICOM series, 1: head \(CT, 4 slices of 3 x 2\), 2: other", "render",
+                       "ct", "-o", "o.png")
         for chosen, slices in (("1", 4), ("2", 3), ("99", 3), ("1.2.3.4", 4)):
             self.assertEqual(self.report("info", "ct", "--series", chosen)["dimensions"][2], slices)
         self.fail_with("none of its series", "info", "ct", "--series", "3")
@@ -111,8 +111,8 @@ class Series(ProgramTest):
 class Stacks(ProgramTest):
     def test_a_pattern_of_images(self):
         def tiff(first):
-            fields = ((256, 3), (257, 2), (258, 8), (259, 1), (262, 1), (273, 8), (277, 1), (278, 2),
-                      (279, 6))
+            fields = ((256, 3), (257, 2), (258, 8), (259, 1), (262, 1), (273, 8), (277, 1),
+                      (278, 2), (279, 6))
             directory = struct.pack("<H", len(fields)) + b"".join(
                 struct.pack("<HHII", tag, 4, 1, value) for tag, value in fields) + bytes(4)
             return b"II*\0" + struct.pack("<I", 14) + bytes(range(first, first + 6)) + directory

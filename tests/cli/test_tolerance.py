@@ -64,7 +64,8 @@ class Tolerance(ProgramTest):
                                    r"0\.00195 \(grade estimated\); proved for .* of the pixels$")
         self.assertRegex(lines[1], r"^pellucid: [0-9.]+ field evaluations per ray, .* s; spans: ")
         lines = self.run_program(*FIELD, "-o", "a.exr", "--method", "linear").stderr.decode()
-        self.assertRegex(lines, r"\Apellucid: method linear, [^\n]* not known [^\n]*compare[^\n]*\n\Z")
+        self.assertRegex(lines,
+                         r"\Apellucid: method linear, [^\n]* not known [^\n]*compare[^\n]*\n\Z")
         lines = self.run_program(*FIELD, "-o", "a.exr", "--reference").stderr.decode()
         self.assertRegex(lines, r"\Apellucid: adaptive quadrature to 1e-12[^\n]*\n\Z")
         for silent in ("--json", "--quiet"):
@@ -121,7 +122,8 @@ class Tolerance(ProgramTest):
             report = json.loads(result.stdout)
             self.assertEqual((report["tolerance_asked"], report["tolerance"]), (float(asked), used))
             self.assertRegex(result.stderr.decode(),
-                             rf"\Apellucid: a tolerance of [^\n]*limits: {used:g} is used\n\Z")
+                             rf"\Apellucid: tolerance [^\n]* is outside the limits: "
+                             rf"using {used:g}\n\Z")
             self.assertEqual(self.run_program(*run, "--quiet").stderr, b"")
         for limit in ("1e-7", "1"):
             result = self.run_program(*FIELD, "-o", "a.exr", "--tolerance", limit, "--json")
@@ -169,7 +171,8 @@ class Tolerance(ProgramTest):
         self.assertGreater(over, 0)
         self.assertGreater(report["largest_error"], 1e-7)
         self.assertEqual(report["outputs"], ["a.exr", "a.png"])
-        self.assertRegex(result.stderr.decode(), rf"\Apellucid: error: {over} of 256 pixels [^\n]*1e-07"
+        self.assertRegex(result.stderr.decode(),
+                         rf"\Apellucid: error: {over} of 256 pixels [^\n]*1e-07"
                                                  r"[^\n]*--precision automatic[^\n]*\n\Z")
         self.assertEqual(png(self.read("a.png"))[0], 16)
         self.assertEqual(int(exr_texts(self.read("a.exr"))["pellucid.pixels_over"]), over)
@@ -179,12 +182,14 @@ class Tolerance(ProgramTest):
         self.assertEqual(self.read("a.exr"), self.read("b.exr"))
         # Without --quiet the report comes before it.
         result = self.run_program(*OVER, "-o", "b.exr")
-        self.assertRegex(result.stderr.decode(), r"\A(pellucid: [^\n]+\n){2}pellucid: error: [^\n]*\n\Z")
+        self.assertRegex(result.stderr.decode(),
+                         r"\A(pellucid: [^\n]+\n){2}pellucid: error: [^\n]*\n\Z")
         # What it advises helps.
         self.succeed(*FIELD, "-o", "b.exr", "--tolerance", "1e-7", "--precision", "automatic")
 
     def test_strict_writes_nothing_where_pixels_are_over(self):
-        self.fail_with(r"of 256 pixels[^\n]*--strict", *OVER, "--strict", "-o", "a.exr", "-o", "a.png",
+        self.fail_with(r"of 256 pixels[^\n]*--strict", *OVER, "--strict", "-o", "a.exr",
+                       "-o", "a.png",
                        "--error-map", "e.png", "--depth", "d.png", "--save-tf", "saved.json",
                        "--save-scene", "s.json", "--json", code=3)
         self.fail_with("--strict", *OVER, "--strict", "-o", "a.exr", "--print-tf", code=3)
@@ -227,7 +232,8 @@ class Tolerance(ProgramTest):
 
     def test_error_map_arguments(self):
         for wrong in ("e.gif", "e", "png", ".png.txt"):
-            self.fail_with(r"--error-map [^\n]*\.png or \.exr", *FIELD, "--error-map", wrong, code=2)
+            self.fail_with(r"--error-map [^\n]*\.png or \.exr", *FIELD, "--error-map", wrong,
+                           code=2)
         self.fail_with("missing", *FIELD, "--error-map", "missing/e.png")
         self.fail_with("twice", *FIELD, "-o", "a.png", "--error-map", "a.png", code=2)
         self.write("tf.png", "x")
@@ -294,7 +300,8 @@ class Tolerance(ProgramTest):
             # The reference is more exact than the scene, and says how exact.
             made = self.report("render", "s.json", "-o", "truth.exr", "--reference")
             self.assertLess(made["transfer_function_error"], 1.3e-6)
-            self.assertEqual(float(exr_texts(self.read("truth.exr"))["pellucid.transfer_function_error"]),
+            texts = exr_texts(self.read("truth.exr"))
+            self.assertEqual(float(texts["pellucid.transfer_function_error"]),
                              made["transfer_function_error"])
             report = self.report("compare", "a.exr", "truth.exr", "--tolerance", str(tolerance))
             self.assertEqual(report["error"]["over"], 0)

@@ -137,7 +137,8 @@ TEST(ImportAnari, TakesColorsAsLinearAndSpreadsThem) {
   EXPECT_EQ(f.table.points[1].opacity, 0.25);
   EXPECT_EQ(f.table.points[2].value, 20);
   const ImportedTransferFunction placed = read(
-      R"({"color": [[1, 0, 0, 0.2], [0, 0, 1, 0.4]], "color.position": [0.25, 1], "valueRange": [0, 4]})");
+      R"({"color": [[1, 0, 0, 0.2], [0, 0, 1, 0.4]], "color.position": [0.25, 1],
+          "valueRange": [0, 4]})");
   EXPECT_EQ(placed.table.points.front().value, 1);
   EXPECT_EQ(placed.table.points.back().opacity, 0.4);
 }
@@ -162,7 +163,8 @@ TEST(ImportTable, ReadsRowsOfColors) {
 TEST(ImportParaView, ReadsXmlAndMapsByName) {
   const std::string text = R"(<ColorMaps><ColorMap name="a" space="RGB">
     <Point x="0" o="0" r="1" g="0" b="0"/><Point x="2" o="1" r="0" g="0" b="1"/></ColorMap>
-    <ColorMap name="b" space="Step"><Point x="0" o="0.5" r="1" g="1" b="0"/></ColorMap></ColorMaps>)";
+    <ColorMap name="b" space="Step"><Point x="0" o="0.5" r="1" g="1" b="0"/></ColorMap>
+    </ColorMaps>)";
   ImportOptions options;
   options.numbers = ColorNumbers::linear;
   EXPECT_EQ(read(text, options).table.points.size(), 2u);
@@ -274,7 +276,8 @@ TEST(Import, MovesAFunctionToARange) {
 
 TEST(Import, CountsItsDeviationsInThePixel) {
   const ImportedTransferFunction f = read(
-      R"([{"RGBPoints": [0,0.1,0.2,0.9, 1,1,0.5,0], "ColorSpace": "Lab", "Points": [0,0.2,0.5,0.4, 1,0.4,0.5,0]}])");
+      R"([{"RGBPoints": [0,0.1,0.2,0.9, 1,1,0.5,0], "ColorSpace": "Lab",
+           "Points": [0,0.2,0.5,0.4, 1,0.4,0.5,0]}])");
   ASSERT_GT(f.table.color_deviation, 0);
   ASSERT_GT(f.table.extinction_deviation, 0);
   OpacityTable without = f.table;

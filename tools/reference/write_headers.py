@@ -23,7 +23,8 @@ HEADERS = ROOT / "include/pellucid/math"
 FITS = {
     "W0_plus": ("w0_plus", "t", r"""
 W0+(t) = (δ + 2) (√π / 2) erfcx(δ), δ = 2 (1 - t) / t, on t in [0, 1] (δ = ∞ … 0):
-erfcx scaled to be smooth and bounded, from 1/2 at t = 0 (erfcx(x) ~ 1 / (√π x)) to √π at t = 1."""),
+erfcx scaled to be smooth and bounded, from 1/2 at t = 0 (erfcx(x) ~ 1 / (√π x)) to √π at t = 1.
+"""),
     "W0_minus": ("w0_minus", "t", r"""
 W0-(t) = (δ + 2) Daw(δ), δ = 2 (1 - t) / t, on t in [0, 1] (δ = ∞ … 0):
 Dawson's function scaled to be smooth and bounded, from 1/2 at t = 0 (Daw(x) ~ 1 / (2 x)) to 0 at

@@ -71,7 +71,7 @@ class RayBudget {
   /// How much of what is left may go for what lies behind a ray's end. Where that is opaque the
   /// pixel is off by nearly all of it, while other errors are far below what is charged for them:
   /// with all of what is left by up to 0.97 of the tolerance, with a quarter by 0.1 to 0.4
-  /// (docs/notes/performance.md). Rays go further through thin media: up to 15 % more time.
+  /// (docs/notes/2026-11-performance.md). Rays go further through thin media: up to 15 % more time.
   static constexpr double share_for_rest = 0.25;
 
   /// Whether `rest`, a bound on what lies behind, may be left out: it is at most that share, or the

@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+// CLI11 is compiled in command_line.cpp alone: every file that includes it takes seconds more.
+namespace CLI {
+class App;
+class Option;
+}  // namespace CLI
+
+namespace pellucid::cli {
+
+/// An option or a flag of a command. The functions that set a property return the option.
+class Option {
+ public:
+  explicit Option(CLI::Option* option) : option_(option) {}
+
+  /// What help shows as its value: "FILE".
+  Option* option_text(const std::string& text);
+  /// The heading that help puts it under.
+  Option* group(const std::string& name);
+  Option* required();
+  /// Whether one mention may have several values.
+  Option* allow_extra_args(bool allowed);
+  /// Other values than these are wrong arguments.
+  Option* one_of(const std::vector<std::string>& values);
+  Option* in_range(int least, int greatest);
+  /// The two cannot be given together.
+  Option* excludes(Option* other);
+  Option* excludes(const std::string& name);
+
+  std::size_t count() const;     ///< how often it was given
+  std::string get_name() const;  ///< as help has it: "--type"
+
+ private:
+  CLI::Option* option_;
+};
+
+/// The program's arguments, or those of one command of it. A value that an option sets must outlive
+/// the parsing.
+class CommandLine {
+ public:
+  /// `name` is the program's.
+  CommandLine(const std::string& description, const std::string& name);
+  ~CommandLine();
+  CommandLine(const CommandLine&) = delete;
+  CommandLine& operator=(const CommandLine&) = delete;
+
+  CommandLine* add_subcommand(const std::string& name, const std::string& description);
+
+  Option* add_option(const std::string& names, std::string& value, const std::string& help);
+  Option* add_option(const std::string& names, std::vector<std::string>& value,
+                     const std::string& help);
+  Option* add_option(const std::string& names, std::optional<std::string>& value,
+                     const std::string& help);
+  Option* add_option(const std::string& names, int& value, const std::string& help);
+  Option* add_option(const std::string& names, std::optional<int>& value, const std::string& help);
+  Option* add_option(const std::string& names, double& value, const std::string& help);
+  Option* add_option(const std::string& names, std::optional<double>& value,
+                     const std::string& help);
+  Option* add_option(const std::string& names, std::size_t& value, const std::string& help);
+  Option* add_flag(const std::string& names, bool& value, const std::string& help);
+  /// What help ends with.
+  void footer(const std::string& text);
+
+  std::string get_name() const;
+  bool parsed() const;  ///< whether this is the command that was given
+
+  /// Of the program: reads its arguments. False: help or the version was asked for and printed.
+  /// Throws UsageError.
+  bool parse(int argc, char** argv, const std::string& version);
+
+ private:
+  CommandLine(CLI::App* app);
+  Option* keep(CLI::Option* option);
+
+  std::unique_ptr<CLI::App> program_;  ///< null: a command of one
+  CLI::App* app_;
+  std::vector<std::unique_ptr<Option>> options_;
+  std::vector<std::unique_ptr<CommandLine>> commands_;
+};
+
+}  // namespace pellucid::cli

@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// Stands in for the kernels of an instruction set that this build leaves out
+// (PELLUCID_BUILD_SETS). packet_instruction_set() never chooses such a set.
+#include "pellucid/packet/gaussian_packet_interface.h"
+#include "pellucid/packet/interface.h"
+#include "pellucid/packet/mesh_interface.h"
+#include "pellucid/packet/multivariate_interface.h"
+#include "pellucid/packet/multivariate_sampler_interface.h"
+#include "pellucid/packet/sampler_interface.h"
+#include "pellucid/simd/instruction_set.h"
+
+#define PELLUCID_ABSENT(function, Job)                   \
+  extern "C" void PELLUCID_ENTRY(function)(const Job*) { \
+    __builtin_trap();                                    \
+  }
+
+PELLUCID_ABSENT(pellucid_integrate_packets, PellucidPacketJob)
+PELLUCID_ABSENT(pellucid_sample_packets, PellucidSamplerJob)
+PELLUCID_ABSENT(pellucid_integrate_gaussian_packets, PellucidGaussianPacketJob)
+PELLUCID_ABSENT(pellucid_integrate_multivariate_cells, PellucidGaussianPacketJob)
+PELLUCID_ABSENT(pellucid_integrate_multivariate, PellucidMultivariateJob)
+PELLUCID_ABSENT(pellucid_sample_multivariate, PellucidMultivariateSamplerJob)
+PELLUCID_ABSENT(pellucid_integrate_mesh, PellucidMeshJob)
+PELLUCID_ABSENT(pellucid_integrate_multivariate_mesh, PellucidMeshJob)
