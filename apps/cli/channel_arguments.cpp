@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <utility>
 #include <variant>
 
 #include "parse.h"
@@ -98,7 +99,7 @@ void ChannelArguments::add_to(CommandLine& app) {
   app.add_option("--threads", threads, "Number of threads; 0 (default): one per core")
       ->option_text("N")
       ->in_range(0, 4096);
-  volume.add_to(app);
+  volume.add_to(app, true, false);
 }
 
 std::string ChannelArguments::source_text() const {
@@ -126,9 +127,16 @@ std::vector<std::string> file_channel_names(const std::vector<std::string>& inpu
   return names;
 }
 
-ChannelSelection select_channels(const ChannelArguments& arguments, int most) {
-  const std::vector<ChannelSource> sources = all_sources(arguments);
+ChannelSelection select_channels(const ChannelArguments& given, int most) {
+  ChannelArguments arguments = given;
+  std::vector<ChannelSource> sources = all_sources(arguments);
   const std::vector<std::string> names = channel_names(sources);
+  // Elsewhere --axes are those of an array. What is no channel is meant so here, too.
+  if (arguments.volume.axes.empty() && is_array_axes(arguments.axes) &&
+      std::find(names.begin(), names.end(), arguments.axes) == names.end()) {
+    arguments.volume.axes = std::exchange(arguments.axes, {});
+    sources = all_sources(arguments);
+  }
   ChannelSelection selection;
   if (!arguments.axes.empty()) {
     selection.axes = split(arguments.axes);

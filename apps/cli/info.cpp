@@ -263,6 +263,14 @@ Json json_report(const std::vector<Volume>& components, const Facts& facts, cons
   return json;
 }
 
+/// Chooses the array that the list marks, if its name is that of no other: a file of several arrays
+/// may have none that is read by default.
+void choose_shown(const std::vector<VolumeArray>& arrays, ReadOptions& options) {
+  const auto shown = std::ranges::find_if(arrays, &VolumeArray::shown);
+  if (options.array || shown == arrays.end()) return;
+  if (std::ranges::count(arrays, shown->name, &VolumeArray::name) == 1) options.array = shown->name;
+}
+
 int run_info(const InfoArguments& arguments) {
   if (is_mesh(arguments.input, arguments.mesh)) {
     arguments.volume.refuse("a mesh");
@@ -280,6 +288,7 @@ int run_info(const InfoArguments& arguments) {
   std::string chosen;
   if (source.builtin.empty()) {
     arrays = list_arrays(source.file, source.options);
+    choose_shown(arrays, source.options);
     NamedComponents read = read_named_components(source.file, source.options);
     components = std::move(read.components);
     chosen = read.array;

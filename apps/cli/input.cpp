@@ -18,7 +18,7 @@ constexpr const char* group = "Options of volume files";
 
 }  // namespace
 
-void VolumeOptions::add_to(CommandLine& command, bool with_array) {
+void VolumeOptions::add_to(CommandLine& command, bool with_array, bool with_axes) {
   const auto add = [&](Option* option) { given.push_back(option->group(group)); };
   add(command
           .add_option("--dimensions", dimensions,
@@ -26,9 +26,10 @@ void VolumeOptions::add_to(CommandLine& command, bool with_array) {
           ->option_text("X,Y,Z"));
   add(command
           .add_option("--type", type,
-                      "Headerless data: u8, i8, u16, i16, u32, i32, f32 or f64; required")
+                      "Headerless data: u8, i8, u16, i16, u32, i32, u64, i64, f16, f32 or f64; "
+                      "required")
           ->option_text("TYPE")
-          ->one_of({"u8", "i8", "u16", "i16", "u32", "i32", "f32", "f64"}));
+          ->one_of({"u8", "i8", "u16", "i16", "u32", "i32", "u64", "i64", "f16", "f32", "f64"}));
   add(command.add_flag("--big-endian", big_endian,
                        "Headerless data: big endian. Default: little endian"));
   add(command
@@ -50,6 +51,11 @@ void VolumeOptions::add_to(CommandLine& command, bool with_array) {
                         "else the first point array with one component")
             ->option_text("ARRAY[:C]"));
   }
+  add(command
+          .add_option(with_axes ? "--array-axes,--axes" : "--array-axes", axes,
+                      "NumPy and HDF5: axes of the array in the order of its indices, c for "
+                      "components. Default: zyx; of four zyxc or czyx, as a note says")
+          ->option_text("LETTERS"));
   add(command
           .add_option("--series", series,
                       "Read this DICOM series of a folder: its number in the list of 'pellucid "
@@ -88,6 +94,15 @@ ReadOptions VolumeOptions::read_options() const {
   read.components = components;
   read.component = component;
   if (!series.empty()) read.series = series;
+  if (!axes.empty()) {
+    if (!is_array_axes(axes)) {
+      throw UsageError(fmt::format(
+          "--array-axes: '{}' does not name axes; give x, y and z, and c for components, "
+          "in the order of the array's indices: zyx, xyz, czyx",
+          axes));
+    }
+    read.axes = axes;
+  }
   if (!array.empty()) {
     const MeshArrayChoice choice = parse_mesh_array(array);
     read.array = choice.array;
@@ -103,6 +118,13 @@ ReadOptions VolumeOptions::read_options() const {
   }
   if (!centering.empty()) read.centering = centering == "cell" ? Centering::cell : Centering::point;
   return read;
+}
+
+bool is_array_axes(const std::string& text) {
+  std::string letters = lower_case(text);
+  std::ranges::replace(letters, 't', 'c');
+  std::ranges::sort(letters);
+  return letters == "xyz" || letters == "cxyz";
 }
 
 FieldSource field_source(const std::string& input, const VolumeOptions& options) {

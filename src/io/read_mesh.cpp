@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <array>
-#include <fstream>
 #include <new>
 #include <optional>
 #include <stdexcept>
@@ -57,10 +56,7 @@ std::optional<Format> format_by_extension(const std::filesystem::path& path) {
 /// The formats that begin with words of their own.
 std::optional<Format> format_by_content(const std::filesystem::path& path) {
   constexpr std::size_t longest = std::size_t{1} << 16;
-  std::ifstream stream(path, std::ios::binary);
-  std::string head(longest, '\0');
-  stream.read(head.data(), static_cast<std::streamsize>(head.size()));
-  head.resize(static_cast<std::size_t>(stream.gcount()));
+  const std::string head = first_bytes(path, longest);
   const auto has = [&](std::string_view word) { return head.find(word) != std::string::npos; };
   if (head.starts_with("# vtk DataFile")) return Format::legacy;
   if (head.starts_with("<") && has("<VTKFile")) return Format::xml;

@@ -21,6 +21,7 @@
 #include "ivf_header.h"
 #include "medical_volumes.h"
 #include "mrc.h"
+#include "npy.h"
 #include "pellucid/io/dicom_series.h"
 #include "pellucid/io/read_mesh.h"
 #include "pellucid/scene/error.h"
@@ -45,6 +46,8 @@ struct Format {
 };
 
 constexpr Opener open_raw_file = open_bytes<open_raw>;
+constexpr Opener open_npy_file = open_bytes<open_npy>;
+constexpr Opener open_npz_file = open_bytes<open_npz>;
 
 VolumeFile open_mrc_file(const std::filesystem::path& path, const ReadOptions& options) {
   return open_mrc(plain_or_gzip_source(path), options);
@@ -60,7 +63,8 @@ constexpr std::array formats{Format{".nii", open_nifti},
                              Format{".nhdr", open_nrrd},
                              Format{".mha", open_meta_image},
                              Format{".mhd", open_meta_image},
-                             Format{".npy", open_bytes<open_npy>},
+                             Format{".npy", open_npy_file},
+                             Format{".npz", open_npz_file},
                              Format{".slc", open_bytes<open_slc>},
                              Format{".vti", open_vtk_volume},
                              Format{".pvti", open_vtk_volume},
@@ -93,13 +97,21 @@ constexpr std::array formats{Format{".nii", open_nifti},
                              Format{".st.gz", open_mrc_file},
                              Format{".ccp4.gz", open_mrc_file}};
 
+using Lister = std::vector<VolumeArray> (*)(const std::filesystem::path&, const ReadOptions&);
+
+template <std::vector<VolumeArray> (*list)(const std::filesystem::path&)>
+std::vector<VolumeArray> without_options(const std::filesystem::path& path, const ReadOptions&) {
+  return list(path);
+}
+
 /// What lists the arrays of files that are read by it; null where they have no names.
-std::vector<VolumeArray> (*lister_of(Opener open))(const std::filesystem::path&) {
-  return open == open_vtk_volume         ? list_vtk_arrays
+Lister lister_of(Opener open) {
+  return open == open_npz_file           ? list_npz_arrays
+         : open == open_vtk_volume       ? without_options<list_vtk_arrays>
          : open == open_hdf5             ? list_hdf5_arrays
-         : open == open_net_cdf          ? list_net_cdf_arrays
-         : open == open_vdb              ? list_vdb_arrays
-         : open == open_image_collection ? list_collection_arrays
+         : open == open_net_cdf          ? without_options<list_net_cdf_arrays>
+         : open == open_vdb              ? without_options<list_vdb_arrays>
+         : open == open_image_collection ? without_options<list_collection_arrays>
                                          : nullptr;
 }
 
@@ -155,6 +167,10 @@ VolumeFile open_file(const std::filesystem::path& path, const ReadOptions& optio
   }
   if (options.array && lister_of(open) == nullptr) {
     throw Error(path.string() + ": has no arrays with names; leave the array out");
+  }
+  if (options.axes && open != open_npy_file && open != open_npz_file && open != open_hdf5) {
+    throw Error(path.string() + ": the file's format says which axes are x, y and z; leave the " +
+                "axes out (they are for .npy, .npz and HDF5)");
   }
   if (options.time && open != open_net_cdf) {
     throw Error(path.string() + ": the file has no steps in time; leave the time out");
@@ -219,7 +235,7 @@ std::vector<VolumeArray> list_arrays(const std::filesystem::path& path,
                                      const ReadOptions& options) {
   return with_memory(path, [&]() -> std::vector<VolumeArray> {
     const auto list = lister_of(find_opener(path, options));
-    return list == nullptr ? std::vector<VolumeArray>{} : list(path);
+    return list == nullptr ? std::vector<VolumeArray>{} : list(path, options);
   });
 }
 

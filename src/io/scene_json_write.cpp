@@ -231,6 +231,7 @@ void add_field(const FieldSource& field, Members& members) {
   if (options.type) members.add("type", quoted(*options.type, "a type"));
   if (options.components) members.add("components", std::to_string(*options.components));
   if (options.array) members.add("array", quoted(*options.array, "the name of an array"));
+  if (options.axes) members.add("axes", quoted(*options.axes, "the axes"));
   if (options.time) members.add("time", number(*options.time, "the time"));
   if (options.component) members.add("component", std::to_string(*options.component));
   if (options.series) members.add("series", quoted(*options.series, "a series"));

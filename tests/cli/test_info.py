@@ -4,6 +4,7 @@ import json
 import os
 import struct
 import unittest
+import zipfile
 import zlib
 
 from program import HAZE, ProgramTest, npy, ramp
@@ -315,6 +316,94 @@ class OpenVdb(ProgramTest):
     def test_cut_off(self):
         self.write("cut.vdb", zlib.decompress(base64.b64decode(OPENVDB))[:-60])
         self.fail_with("cut.vdb: ", "info", "cut.vdb")
+
+
+def array(shape, kind="<i2", fortran=False):
+    """A .npy file; an element's value has its indices as its digits."""
+    def values(index):
+        if len(index) == len(shape):
+            order = index[::-1] if fortran else index
+            return [int("".join(map(str, order)))]
+        axis = len(shape) - 1 - len(index) if fortran else len(index)
+        return [v for i in range(shape[axis]) for v in values(index + [i])]
+    header = f"{{'descr': '{kind}', 'fortran_order': {fortran}, 'shape': {tuple(shape)}, }}\n"
+    code = {"i2": "h", "i8": "q", "u8": "Q", "b1": "?"}[kind[1:]]
+    data = values([])
+    return (b"\x93NUMPY\x01\x00" + struct.pack("<H", len(header)) + header.encode() +
+            struct.pack(f"<{len(data)}{code}", *data))
+
+
+class NumpyArrays(ProgramTest):
+    def test_axes(self):
+        self.write("c.npy", array([3, 4, 5]))
+        self.write("f.npy", array([3, 4, 5], fortran=True))
+        for name in ("c.npy", "f.npy"):
+            self.assertEqual(self.report("info", name)["dimensions"], [5, 4, 3])
+            named = self.report("info", name, "--axes", "xyz")
+            self.assertEqual(named["dimensions"], [3, 4, 5])
+            self.assertEqual(named["range"], [0, 234])
+            self.succeed("render", name, "--axes", "zxy", "-o", f"{name}.exr", "--size", "8")
+            self.succeed("convert", name, "--axes", "xyz", "-o", f"{name}.raw", "-q")
+            self.report("histogram", name, "--axes", "xyz", "--bins", "4")
+            self.report("histogram", name, "--array-axes", "xyz", "--axes", "value", "--bins", "4")
+            self.succeed("suggest", name, "--array-axes", "xyz")
+        self.assertTrue(self.report("compare", "c.npy.exr", "f.npy.exr")["identical"])
+        self.assertEqual(self.read("c.npy.raw"), self.read("f.npy.raw"))
+        self.assertEqual(struct.unpack("<4h", self.read("c.npy.raw")[:8]), (0, 100, 200, 10))
+        self.fail_with("give x, y and z", "info", "c.npy", "--axes", "zyq", code=2)
+        self.fail_with("3 axes", "info", "c.npy", "--axes", "czyx")
+        self.fail_with("leave the axes out", "info", "c.npy.raw", "--dimensions", "3,4,5",
+                       "--type", "i16", "--axes", "xyz")
+
+    def test_four_axes(self):
+        self.write("a.npy", array([3, 9, 9, 9]))
+        result = self.run_program("info", "a.npy", "--json")
+        self.assertEqual(result.returncode, 0)
+        self.assertIn(b"axes czyx", result.stderr)
+        self.assertIn(b"zyxc", result.stderr)
+        self.assertEqual(json.loads(result.stdout)["dimensions"], [9, 9, 9])
+        self.assertEqual(len(self.report("info", "a.npy", "--axes", "zyxc")["components"]), 9)
+
+    def test_a_scene_says_axes(self):
+        self.write("a.npy", array([3, 4, 5]))
+        self.succeed("render", "a.npy", "--axes", "xyz", "-o", "a.exr", "--size", "8",
+                     "--save-scene", "scene.json")
+        self.assertEqual(json.loads(self.read("scene.json"))["volumes"][0]["field"]["axes"],
+                         "xyz")
+        self.succeed("render", "scene.json", "-o", "b.exr")
+        self.assertTrue(self.report("compare", "a.exr", "b.exr")["identical"])
+        scene = json.loads(self.read("scene.json"))
+        scene["volumes"][0]["field"]["axes"] = "abc"
+        self.write("scene.json", json.dumps(scene))
+        self.fail_with("axes", "render", "scene.json", "-o", "b.exr")
+
+    def test_whole_numbers_of_64_bits(self):
+        self.write("a.npy", array([3, 4, 5], "<i8"))
+        self.assertEqual(self.report("info", "a.npy")["type"], "u8")
+        header = array([2, 2, 2], "<u8")[:-64]
+        self.write("b.npy", header + struct.pack("<8Q", 2**53 + 1, *range(7)))
+        result = self.run_program("info", "b.npy", "--json")
+        self.assertEqual(json.loads(result.stdout)["type"], "f64")
+        self.assertIn(b"1 of 8 whole numbers of 64 bits", result.stderr)
+
+    def test_npz(self):
+        for name, compression in (("s.npz", zipfile.ZIP_STORED), ("d.npz", zipfile.ZIP_DEFLATED)):
+            with zipfile.ZipFile(self.path(name), "w", compression) as archive:
+                archive.writestr("a.npy", array([3, 4, 5]))
+                with archive.open("b.npy", "w", force_zip64=True) as entry:
+                    entry.write(array([2, 4, 5], "<i8"))
+            self.fail_with(r"choose one of them by its name: a \(3, 4, 5\), b \(2, 4, 5\)",
+                           "render", name, "-o", "a.png")
+            report = self.report("info", name)
+            self.assertEqual([one["name"] for one in report["arrays"]], ["a", "b"])
+            self.assertEqual([one["type"] for one in report["arrays"]], ["i16", "u8"])
+            self.assertEqual(report["array"], "a")
+            self.assertEqual(self.report("info", name, "--array", "b")["dimensions"], [5, 4, 2])
+            self.succeed("render", name, "--array", "a", "-o", "a.exr", "--size", "8",
+                         "--save-scene", "scene.json")
+            self.succeed("render", "scene.json", "-o", "b.exr")
+            self.assertTrue(self.report("compare", "a.exr", "b.exr")["identical"])
+            self.succeed("convert", name, "--array", "b", "-o", "b.nrrd", "-q")
 
 
 if __name__ == "__main__":

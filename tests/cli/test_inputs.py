@@ -62,6 +62,29 @@ class BadInput(ProgramTest):
         self.refuse("no input; give INPUT or --channel", "", code=2)
         self.fail_with("is empty", "info", "")
 
+    def test_pipes_and_devices(self):
+        """Refused at once, wherever a file is read: opening a pipe waits for who writes to it."""
+        os.mkfifo(self.path("pipe"))
+        for name in ("a.npy", "a.npz", "a.vti", "a.vtu", "a.json", "a.vdb", "a.h5", "a"):
+            os.symlink("pipe", self.path(name))
+            self.refuse("not a regular file", name, also_info=name != "a.json")
+            os.remove(self.path(name))
+        self.refuse("not a regular file", "/dev/zero", also_info=True)
+        self.refuse("not a regular file", "good.npy", "--tf", "pipe")
+        self.refuse("not a regular file", "good.npy", "--camera", "pipe")
+        self.refuse_scene("not a regular file",
+                          {"pellucid": 1, "volumes": [{"field": {"file": "pipe"},
+                                                       "transfer_function": HAZE}]})
+        self.fail_with("not a regular file", "histogram", "pipe", "--json")
+        self.fail_with("not a regular file", "suggest", "pipe", "-o", "scene.json")
+        self.fail_with("not a regular file", "convert", "pipe", "-o", "b.nrrd")
+        self.fail_with("not a regular file", "transfer-function", "pipe", "b.json")
+        self.fail_with("not a regular file", "compare", "pipe", "pipe")
+        # What is written to the program's standard input is a pipe, too.
+        result = self.run_program("info", "/dev/stdin", input=self.read("good.npy"))
+        self.assertNotEqual(result.returncode, 0)
+        self.assertIn(b"not a regular file", result.stderr)
+
     def test_truncated_file(self):
         content = self.read("good.npy")
         for size in (0, 5, 40, 128, len(content) - 1):

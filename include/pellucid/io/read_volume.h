@@ -16,16 +16,20 @@ namespace pellucid {
 /// Properties that a file lacks, or that replace the file's own.
 struct ReadOptions {
   std::optional<std::array<int, 3>> dimensions;  ///< raw: required
-  std::optional<std::string> type;               ///< raw: required ("u8" … "f64")
-  std::optional<bool> big_endian;                ///< raw; default little
-  std::size_t skip_bytes = 0;                    ///< raw: header to skip
-  std::optional<Vec3<double>> spacing;           ///< replaces the file's
-  std::optional<Vec3<double>> origin;            ///< replaces the file's
-  std::optional<Centering> centering;            ///< replaces the file's
-  std::optional<int> components;                 ///< raw: numbers at each point, side by side
-  std::optional<int> component;                  ///< component to read, from 0
+  std::optional<std::string> type;  ///< raw: required ("u8" … "f64", also "i64", "u64", "f16")
+  std::optional<bool> big_endian;   ///< raw; default little
+  std::size_t skip_bytes = 0;       ///< raw: header to skip
+  std::optional<Vec3<double>> spacing;  ///< replaces the file's
+  std::optional<Vec3<double>> origin;   ///< replaces the file's
+  std::optional<Centering> centering;   ///< replaces the file's
+  std::optional<int> components;        ///< raw: numbers at each point, side by side
+  std::optional<int> component;         ///< component to read, from 0
   std::optional<double> time;        ///< NetCDF: reads the nearest time step instead of a component
   std::optional<std::string> array;  ///< name of the array to read; none: see VolumeArray
+  /// .npy, .npz and HDF5: a letter for each axis of the array, in the order of its indices: x, y
+  /// and z, and c for components ("xyz", "czyx"). None: "zyx"; of four axes c is the first or the
+  /// last, whichever is short, and `note` is told which was taken.
+  std::optional<std::string> axes;
   /// DICOM: series to read from a folder: its number as in list_dicom_series(), from 1, its UID, or
   /// a unique end of the UID.
   std::optional<std::string> series;
@@ -36,27 +40,29 @@ struct ReadOptions {
 
 /// Reads a volume. The format follows from the extension, for VTK files from the first bytes:
 ///
-/// - .nii .nii.gz .hdr/.img(.gz) .nrrd .nhdr .mha .mhd, through ITK, if the build has it;
-/// - .npy, .slc, .raw, .mrc .map .rec .st .ccp4 (each also .gz);
+/// - .nii .nii.gz .hdr/.img(.gz); .nrrd .nhdr .mha .mhd through ITK, if the build has it;
+/// - .npy, .npz, .slc, .raw, .mrc .map .rec .st .ccp4 (each also .gz);
 /// - a .dat or .ivf header of Inviwo or Voreen;
 /// - DICOM (.dcm .ima): a series by its folder or any of its files, whatever their names;
 /// - a stack of images (.tif .tiff .png): any of its files, a pattern ("slice%03d.tif") or the
 ///   folder;
 /// - images and rectilinear grids of VTK (.vti, .pvti, .vtr, .pvtr, legacy .vtk), if the build has
-///   VTK: arrays of points are point-centred, arrays of cells cell-centred, 64-bit integers become
-///   double, bits become u8;
+///   VTK: arrays of points are point-centred, arrays of cells cell-centred, bits become u8;
 /// - datasets of HDF5 (.h5, .hdf5, .he5) and variables of NetCDF (.nc, .nc4, .cdf), if the build
 ///   has the libraries; NetCDF provides positions along the axes, scaled values, and NaN for
 ///   missing ones;
 /// - fog volumes of OpenVDB (.vdb), if the build has it, as the dense grid of their active box;
 /// - any file as raw data if dimensions and type are both given.
 ///
-/// Throws Error: what, where, what to do; also for a file of several components if the options
-/// select none.
+/// Half floats become float. Integers of 64 bits become the smallest type that holds each of them;
+/// if only double is left and rounds some, `note` is told.
+///
+/// Throws Error: what, where, what to do; also for a file of several components or a .npz of
+/// several arrays if the options select none.
 Volume read_volume(const std::filesystem::path& path, const ReadOptions& options = {});
 
 /// Returns the number of components per point, as the file's header says: colors, vectors, the
-/// steps of a fourth axis, and in .npy the last of four axes. Throws Error like read_volume().
+/// steps of a fourth axis. Throws Error like read_volume().
 int component_count(const std::filesystem::path& path, const ReadOptions& options = {});
 /// Reads each component as a volume, in the file's type and on its grid; only one if the options
 /// select it. Throws Error like read_volume().
@@ -97,6 +103,8 @@ std::string volume_extensions();
 
 /// Parse a file in memory; exposed for fuzzing. `name` opens the messages. Throw Error.
 Volume parse_npy(const std::vector<std::byte>& bytes, const std::string& name,
+                 const ReadOptions& options = {});
+Volume parse_npz(const std::vector<std::byte>& bytes, const std::string& name,
                  const ReadOptions& options = {});
 Volume parse_raw(const std::vector<std::byte>& bytes, const std::string& name,
                  const ReadOptions& options);
