@@ -30,6 +30,11 @@ struct MeshArrayChoice {
 /// functions. Linear cells with collapsed edges are what is left of them. (Quadratic ones too, but
 /// their collapsed quadrilaterals do not meet the triangles of other quadratic cells alike.)
 ///
+/// Lagrange cells of any order are cut at their nodes in the same way. A polyhedron becomes a
+/// tetrahedron for each triangle of its faces, with the mean of its points, or with one of these
+/// where the mean does not see all faces; faces of more than four points are cut by their shape,
+/// whatever cell they are a face of.
+///
 /// That the data are linear in each of these tetrahedra is the reconstruction that the tolerance
 /// speaks of.
 ///
@@ -37,8 +42,8 @@ struct MeshArrayChoice {
 /// memory; TetrahedralMesh::point_number() is the grid's, and goes on with the new points.
 ///
 /// Throws Error where an array is not there (naming those that are), or has no such component, the
-/// sizes do not agree, a point's index is out of range, there is no cell, or as TetrahedralMesh and
-/// MeshChannels do.
+/// sizes do not agree, a point's index is out of range, the faces of a polyhedron do not close,
+/// there is no cell, or as TetrahedralMesh and MeshChannels do.
 std::shared_ptr<const MeshChannels> cut_into_tetrahedra(const UnstructuredGrid& grid,
                                                         std::span<const MeshArrayChoice> choices,
                                                         const ParallelFor& parallel = {});
