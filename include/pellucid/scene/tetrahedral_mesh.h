@@ -21,8 +21,12 @@ struct MeshStatistics {
   std::size_t flat = 0;  ///< tetrahedra without volume
   /// Pairs of tetrahedra on the same side of the face that they share.
   std::size_t folded_faces = 0;
-  double volume = 0;     ///< of all tetrahedra, world units cubed
-  double mean_edge = 0;  ///< length of an edge, the mean over the tetrahedra's
+  std::size_t cells = 0;  ///< that the tetrahedra were cut from
+  /// Cells with a tetrahedron at such a face: they overlap themselves or a neighbour.
+  std::size_t overlapping_cells = 0;
+  std::int32_t first_overlapping_cell = -1;  ///< its number; -1: none
+  double volume = 0;                         ///< of all tetrahedra, world units cubed
+  double mean_edge = 0;                      ///< length of an edge, the mean over the tetrahedra's
 };
 
 /// Tetrahedra that share points, and who lies beside whom: what rays walk through. Immutable once
@@ -42,14 +46,19 @@ class TetrahedralMesh {
     std::string name;                                     ///< for messages
     /// The numbers by which messages and point_number() call the points; empty: as they stand.
     std::vector<std::int32_t> point_numbers{};
+    /// The cell that each tetrahedron was cut from, from 0 on, for the statistics; empty: each is
+    /// one itself.
+    std::vector<std::int32_t> cells{};
+    /// The numbers of these cells; empty: as they are counted.
+    std::vector<std::int32_t> cell_numbers{};
   };
 
   /// Throws Error where there is no tetrahedron, an index is out of range or twice in one
-  /// tetrahedron, the numbers of points are not one for each, a point that is used is not finite or
-  /// beyond ±2.1e37, there are more than 2^28 tetrahedra, a face belongs to more than two of them,
-  /// one stands twice, or none is at the boundary. Tetrahedra that overlap are counted where they
-  /// share a face (MeshStatistics::folded_faces); rays that find themselves in two of them say that
-  /// they do not know.
+  /// tetrahedron, the numbers of points are not one for each, a cell is out of range, a point that
+  /// is used is not finite or beyond ±2.1e37, there are more than 2^28 tetrahedra, a face belongs
+  /// to more than two of them, one stands twice, or none is at the boundary. Tetrahedra that
+  /// overlap are counted where they share a face (MeshStatistics::folded_faces); rays that find
+  /// themselves in two of them say that they do not know.
   explicit TetrahedralMesh(Description description, const ParallelFor& parallel = {});
   TetrahedralMesh(const TetrahedralMesh&) = delete;
   TetrahedralMesh& operator=(const TetrahedralMesh&) = delete;
@@ -72,6 +81,8 @@ class TetrahedralMesh {
 
  private:
   void measure(const ParallelFor& parallel);
+  void count_overlapping_cells(const Description& description);
+  double six_volumes_of(std::size_t tetrahedron) const;
 
   std::string name_;
   std::vector<Vec3<double>> points_;
