@@ -35,13 +35,6 @@ void print_notes(const RenderArguments& arguments, const PreparedScene& prepared
                     "lists)",
                     prepared.description.mesh->channels.front().array));
   }
-  if (prepared.scene.mesh) {
-    if (const std::size_t folded = prepared.scene.mesh->mesh().statistics().folded_faces;
-        folded > 0) {
-      print_note(
-          fmt::format("tetrahedra overlap at {} faces: pixels that see it are not known", folded));
-    }
-  }
   if (const double used = prepared.scene.integration.tolerance; used != prepared.tolerance_asked) {
     print_note(fmt::format("a tolerance of {} is beyond the limits: {} is used",
                            prepared.tolerance_asked, used));
