@@ -14,7 +14,8 @@ namespace pellucid::cli {
 /// What INPUT may be, for help texts.
 inline constexpr const char* input_help =
     "Volume file (.nii, .nii.gz, .hdr, .img, .nrrd, .nhdr, .mha, .mhd, .npy, .vti, .pvti, .vtr, "
-    ".pvtr, .vtk, .slc, .h5, .hdf5, .he5, .nc, .nc4, .cdf, .vdb, .mrc, .map, .rec, .st, .ccp4, "
+    ".pvtr, .vtk, .vtkhdf, .hdf, .slc, .h5, .hdf5, .he5, .nc, .nc4, .cdf, .vdb, .mrc, .map, .rec, "
+    ".st, .ccp4, "
     ".ivf, "
     ".raw), "
     "DICOM series (its folder or one of its files), stack of images (a .tif, .tiff or .png of it, "

@@ -24,6 +24,7 @@
 #include "plot3d.h"
 #include "vtk_collection.h"
 #include "vtk_file_kind.h"
+#include "vtk_hdf.h"
 #include "vtk_module.h"
 #include "vtk_polyhedra.h"
 #include "vtk_xml_end.h"
@@ -32,7 +33,7 @@ namespace pellucid {
 
 namespace {
 
-enum class Format { xml, legacy, exodus, plot3d };
+enum class Format { xml, legacy, exodus, plot3d, vtk_hdf };
 
 struct Extension {
   std::string_view text;
@@ -46,7 +47,7 @@ constexpr std::array extensions{
     Extension{".pvd", Format::xml},        Extension{".vtk", Format::legacy},
     Extension{".ex2", Format::exodus},     Extension{".e", Format::exodus},
     Extension{".exo", Format::exodus},     Extension{".g", Format::exodus},
-    Extension{".xyz", Format::plot3d},
+    Extension{".vtkhdf", Format::vtk_hdf}, Extension{".xyz", Format::plot3d},
     Extension{".p3d", Format::plot3d},     Extension{".x", Format::plot3d}};
 
 std::optional<Format> format_by_extension(const std::filesystem::path& path) {
@@ -70,6 +71,7 @@ std::optional<Format> format_by_content(const std::filesystem::path& path) {
   const auto has = [&](std::string_view word) { return head.find(word) != std::string::npos; };
   if (head.starts_with("# vtk DataFile")) return Format::legacy;
   if (head.starts_with("<") && has("<VTKFile")) return Format::xml;
+  if (vtk_hdf_type(path) == "UnstructuredGrid") return Format::vtk_hdf;
   const bool net_cdf = head.starts_with("CDF") || head.starts_with("\x89HDF");
   if (net_cdf && (has("num_nodes") || has("num_el_blk"))) return Format::exodus;
   return std::nullopt;
@@ -146,6 +148,7 @@ MeshBlocks read_blocks(const std::filesystem::path& path, const MeshReadOptions&
   std::set<std::filesystem::path> files;
   if (format == Format::legacy) files = {path};
   if (format == Format::xml) files = check_vtk_xml_end(path);
+  if (format == Format::vtk_hdf) return read_vtk_hdf(path, options);
   if (format != Format::plot3d) {
     return read_by_vtk(path, format, options, has_vtk_polyhedra(files));
   }
@@ -160,6 +163,10 @@ MeshBlocks read_blocks(const std::filesystem::path& path, const MeshReadOptions&
 bool is_mesh_file(const std::filesystem::path& path) {
   const std::optional<VtkFileKind> kind = vtk_file_kind(path);
   if ((kind && kind->is_volume()) || is_image_collection(path)) return false;
+  // Of the others of its kind the reader of volumes says what they are.
+  if (format_by_extension(path) == Format::vtk_hdf && std::filesystem::exists(path)) {
+    return format_by_content(path) == Format::vtk_hdf;
+  }
   return format_by_extension(path).has_value() || format_by_content(path).has_value();
 }
 

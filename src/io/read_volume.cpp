@@ -25,6 +25,7 @@
 #include "pellucid/scene/error.h"
 #include "vtk_collection.h"
 #include "vtk_file_kind.h"
+#include "vtk_hdf.h"
 #include "vtk_volume.h"
 
 namespace pellucid {
@@ -81,6 +82,8 @@ constexpr std::array formats{Format{".nii", open_nifti},
                              Format{".h5", open_hdf5},
                              Format{".hdf5", open_hdf5},
                              Format{".he5", open_hdf5},
+                             Format{".vtkhdf", open_vtk_hdf},
+                             Format{".hdf", open_vtk_hdf},
                              Format{".nc", open_net_cdf},
                              Format{".nc4", open_net_cdf},
                              Format{".cdf", open_net_cdf},
@@ -96,6 +99,7 @@ constexpr std::array formats{Format{".nii", open_nifti},
 std::vector<VolumeArray> (*lister_of(Opener open))(const std::filesystem::path&) {
   return open == open_vtk_volume         ? list_vtk_arrays
          : open == open_hdf5             ? list_hdf5_arrays
+         : open == open_vtk_hdf          ? list_vtk_hdf_arrays
          : open == open_net_cdf          ? list_net_cdf_arrays
          : open == open_vdb              ? list_vdb_arrays
          : open == open_image_collection ? list_collection_arrays
@@ -120,7 +124,14 @@ Opener opener_of(const std::filesystem::path& path) {
   if (kind && kind->is_volume() && (format == nullptr || format->open != open_raw_file)) {
     return open_vtk_volume;
   }
+  // Of any name that does not speak of something else.
+  if (format == nullptr || format->open == open_hdf5) {
+    const std::string type = vtk_hdf_type(path);
+    if (type == "UnstructuredGrid") return nullptr;
+    if (!type.empty()) return open_vtk_hdf;
+  }
   if (format == nullptr) return nullptr;
+  if (format->open == open_vtk_hdf && is_mesh_file(path)) return nullptr;
   return format->open == open_vtk_volume && is_mesh_file(path) ? nullptr : format->open;
 }
 
