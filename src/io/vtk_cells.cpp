@@ -255,7 +255,10 @@ void VtkCells::add_polyhedron(const VtkCell& given) {
   };
   std::span<const std::int64_t> rest = given.faces;
   if (rest.empty()) {
-    fail("comes without its faces; the file is damaged, or of a version that is not read");
+    fail(
+        "comes without its faces; the file is damaged, or VTK 9.4 or newer wrote them in lists "
+        "that "
+        "are not read: cut its cells into tetrahedra first (ParaView: Tetrahedralize)");
   }
   const auto take = [&] {
     if (rest.empty()) fail(std::string("has faces that are cut off") + damaged);
