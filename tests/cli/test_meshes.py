@@ -189,7 +189,8 @@ class Vtk(ProgramTest):
         self.assertEqual(self.report("info", "right.vtk")["mesh"]["overlapping_cells"], 0)
         result = self.run_program("render", "right.vtk", "-o", "a.png", "--size", "8")
         self.assertNotIn(b"overlap", result.stderr)
-        note = "1 of 1 cells overlap themselves or a neighbour (the first is cell 1, counted from 0)"
+        note = ("1 of 1 cells overlap themselves or a neighbour (the first is cell 1, counted "
+                "from 0)")
         result = self.run_program("render", "wrong.vtk", "-o", "a.png", "--size", "8")
         self.assertEqual(result.returncode, 3)
         for part in (note, "the likely cause is the order of the cells' nodes"):
