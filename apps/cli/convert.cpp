@@ -46,10 +46,10 @@ void check_arguments(const ConvertArguments& arguments) {
     throw UsageError(fmt::format("-o {}: a mesh is written as tetrahedra, .vtu; give such a name",
                                  arguments.output));
   }
-  if (!arguments.writes_tetrahedra() && !is_written_volume(arguments.output)) {
+  if (!arguments.writes_tetrahedra() && !is_writable_volume(arguments.output)) {
     throw UsageError(
         fmt::format("-o {}: a volume is written as {}, or as tetrahedra, .vtu; give such a name",
-                    arguments.output, written_volume_extensions()));
+                    arguments.output, writable_volume_extensions()));
   }
   const NamedFile outputs[] = {{"--output", arguments.output}};
   const NamedFile inputs[] = {{"INPUT", arguments.input}, {"--q", arguments.q}};
@@ -89,7 +89,7 @@ Converted convert(const ConvertArguments& arguments, const ParallelFor& parallel
     if (!arguments.quiet) options.note = print_note;
     const MeshFile file = read_mesh(arguments.input, options);
     InterruptGuard::check();
-    return {tetrahedra_of(file.grid, parallel), file.grid.shapes.size()};
+    return {tetrahedralize(file.grid, parallel), file.grid.shapes.size()};
   }
   FieldSource source = volume_source(arguments);
   set_notes(source, arguments.quiet);
@@ -161,7 +161,7 @@ int run_convert(const ConvertArguments& arguments) {
   if (!arguments.writes_tetrahedra()) return convert_volume(arguments);
   const InterruptGuard guard;
   const Converted converted = convert(
-      arguments, parallel_for(arguments.threads > 0 ? arguments.threads : default_threads()));
+      arguments, parallel_for(arguments.threads > 0 ? arguments.threads : default_thread_count()));
   InterruptGuard::check();
   write_vtu(converted.tetrahedra, arguments.output);
   if (arguments.json) {
@@ -188,7 +188,7 @@ Command add_convert(CLI::App& app) {
   command
       .add_option("-o,--output", arguments->output,
                   fmt::format("Volume to write ({}), or tetrahedra with all arrays (.vtu)",
-                              written_volume_extensions()))
+                              writable_volume_extensions()))
       ->option_text("FILE")
       ->required();
   command

@@ -88,10 +88,10 @@ Json mesh_json(const MeshChannels& mesh, const MeshSource& source) {
   }
   return {{"points", of_mesh.points},
           {"tetrahedra", of_mesh.tetrahedra},
-          {"flat", of_mesh.flat},
+          {"flat", of_mesh.degenerate},
           {"folded_faces", of_mesh.folded_faces},
           {"overlapping_cells", of_mesh.overlapping_cells},
-          {"vacuum", mesh.vacuum()},
+          {"vacuum", mesh.vacuum_count()},
           {"arrays", arrays}};
 }
 
@@ -138,7 +138,7 @@ void add_metadata(const RenderArguments& arguments, const PreparedScene& prepare
     metadata["pellucid.grade"] = grade_text(integration.grade);
     metadata["pellucid.largest_error"] = fmt::format("{}", report.largest_error);
     metadata["pellucid.pixels_proved"] = fmt::format("{}", report.pixels_proved);
-    metadata["pellucid.pixels_over"] = fmt::format("{}", report.pixels_over);
+    metadata["pellucid.pixels_over"] = fmt::format("{}", report.pixels_over_tolerance);
   }
   metadata["pellucid.transfer_function"] =
       transfer_function_to_json(*prepared.description.transfer_function);
@@ -188,9 +188,9 @@ std::vector<std::string> report_lines(const RenderArguments& arguments,
       std::isfinite(report.largest_error) ? fmt::format("{:.3g}", report.largest_error) : "unknown",
       table_text, scene.integration.tolerance, grade_text(scene.integration.grade),
       share_text(report.pixels_proved, report.pixels)));
-  if (report.pixels_between > 0) {
+  if (report.pixels_interpolated > 0) {
     lines.back() += fmt::format(", {} interpolated between rays",
-                                share_text(report.pixels_between, report.pixels));
+                                share_text(report.pixels_interpolated, report.pixels));
   }
   std::uint64_t spans = 0;
   for (const NamedCount& rule : by_rule(report.spans)) spans += rule.count;
@@ -235,8 +235,8 @@ Json report_json(const RenderArguments& arguments, const PreparedScene& prepared
   json["largest_error"] = of_exact(report.largest_error);
   json["pixels"] = scene.size.width * static_cast<std::int64_t>(scene.size.height);
   json["pixels_proved"] = of_exact(report.pixels_proved);
-  json["pixels_over"] = of_exact(report.pixels_over);
-  json["pixels_between"] = of_exact(report.pixels_between);
+  json["pixels_over"] = of_exact(report.pixels_over_tolerance);
+  json["pixels_between"] = of_exact(report.pixels_interpolated);
   json["threads"] = report.threads;
   json["seconds"] = report.seconds;
   json["rays"] = report.rays;

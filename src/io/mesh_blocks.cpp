@@ -235,7 +235,7 @@ void merge_points(const std::vector<std::size_t>& first, MeshFile& file) {
         taken[static_cast<std::size_t>(same->second)] = block;
         ++file.merged_points;
       } else if (from != to) {
-        ++file.torn_points;
+        ++file.discontinuous_points;
       }
     }
     for (std::size_t i = begin; i < end; ++i) {

@@ -93,7 +93,7 @@ MeshArrayChoice parse_mesh_array(std::string_view text) {
     throw Error(what + "expected ARRAY, ARRAY:COMPONENT or NAME=ARRAY, as in speed=V or V:0");
   }
   if (choice.name.empty()) {
-    choice.name = as_channel_name(choice.array);
+    choice.name = to_channel_name(choice.array);
     if (choice.component) choice.name += "_" + std::to_string(*choice.component);
   }
   return choice;

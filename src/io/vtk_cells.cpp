@@ -182,7 +182,7 @@ void VtkCells::add_points(std::span<const std::int64_t> points) {
 }
 
 void VtkCells::add_shape(CellShape shape, std::span<const std::int64_t> points) {
-  const auto needed = static_cast<std::size_t>(points_of(shape));
+  const auto needed = static_cast<std::size_t>(point_count(shape));
   if (points.size() < needed) {
     throw Error("cell " + std::to_string(cell_) + " has " + std::to_string(points.size()) +
                 " points, but one of its shape has " + std::to_string(needed) + damaged);

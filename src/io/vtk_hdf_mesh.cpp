@@ -205,8 +205,8 @@ class Reader {
       const bool point = array.place == VtkHdfArray::Place::point;
       const std::size_t components =
           array.sides.size() == 2 ? static_cast<std::size_t>(array.sides[1]) : 1;
-      constexpr std::size_t most_components = 1 << 20;
-      if (components < 1 || components > most_components) continue;
+      constexpr std::size_t max_components = 1 << 20;
+      if (components < 1 || components > max_components) continue;
       const auto rows = static_cast<std::size_t>(array.sides[0]);
       const std::size_t needed = point ? points_.size() / 3 : types_.size();
       if (rows != needed) {

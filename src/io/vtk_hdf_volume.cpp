@@ -209,7 +209,7 @@ std::vector<VolumeArray> list_vtk_hdf_arrays(const std::filesystem::path& path) 
     about.name = named.name;
     about.centering = named.centering();
     about.type = named.array.type;
-    about.shown = i == image.shown;
+    about.is_default = i == image.shown;
     for (std::size_t a = 0; a < 3; ++a) {
       about.dimensions.push_back(static_cast<int>(named.array.sides[2 - a]));
     }
@@ -225,7 +225,7 @@ std::vector<VolumeArray> list_vtk_hdf_arrays(const std::filesystem::path& path) 
     VolumeArray about;
     about.name = named.name;
     about.centering = named.centering();
-    about.not_read = named.array.fault;
+    about.unreadable_reason = named.array.fault;
     list.push_back(std::move(about));
   }
   return list;

@@ -39,7 +39,7 @@ std::vector<Part> make_parts(const UnstructuredGrid& grid) {
 /// Calls body(part) for all parts but the end.
 template <class Body>
 void each_part(const std::vector<Part>& parts, const ParallelFor& parallel, const Body& body) {
-  or_serial(parallel)(static_cast<int>(parts.size()) - 1, [&](int first, int last) {
+  parallel_or_serial(parallel)(static_cast<int>(parts.size()) - 1, [&](int first, int last) {
     for (int p = first; p < last; ++p) body(static_cast<std::size_t>(p));
   });
 }

@@ -34,7 +34,7 @@ std::size_t check_layouts(const UnstructuredGrid& grid) {
   const std::vector<std::int32_t>& layouts = grid.layouts;
   for (std::size_t cell = 0; cell < grid.shapes.size(); ++cell) {
     const CellShape shape = grid.shapes[cell];
-    if (const int count = points_of(shape); count > 0) {
+    if (const int count = point_count(shape); count > 0) {
       corners += static_cast<std::size_t>(count);
       continue;
     }

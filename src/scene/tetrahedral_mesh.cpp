@@ -126,7 +126,7 @@ TetrahedralMesh::TetrahedralMesh(Description description, const ParallelFor& par
     : name_(description.name) {
   const Check check(description);
   check.counts();
-  const ParallelFor run = or_serial(parallel);
+  const ParallelFor run = parallel_or_serial(parallel);
   const std::size_t count = description.tetrahedra.size();
   tetrahedra_.resize(count);
   run(static_cast<int>(count), [&](int first, int last) {
@@ -142,7 +142,7 @@ TetrahedralMesh::TetrahedralMesh(Description description, const ParallelFor& par
   point_numbers_ = std::move(description.point_numbers);
   const std::int32_t crowded = pair_faces(tetrahedra_, points_.size(), run);
   if (crowded >= 0) {
-    check.fail("a face of " + named(static_cast<std::size_t>(crowded)) +
+    check.fail("a face of " + describe(static_cast<std::size_t>(crowded)) +
                " belongs to more than two tetrahedra: cells stand twice, or overlap; remove them, "
                "or put their nodes into the order of the format");
   }
@@ -173,7 +173,7 @@ void TetrahedralMesh::measure(const ParallelFor& parallel) {
       bounds_.upper[a] = std::max(bounds_.upper[a], points_[p][a]);
     }
   }
-  statistics_.orphans = points_.size() - statistics_.points;
+  statistics_.unused_points = points_.size() - statistics_.points;
   statistics_.tetrahedra = tetrahedra_.size();
 
   // Sums of fixed parts, added up in order: the same for any number of threads.
@@ -195,17 +195,17 @@ void TetrahedralMesh::measure(const ParallelFor& parallel) {
             sum.edges += length(points_[static_cast<std::size_t>(t[j])] -
                                 points_[static_cast<std::size_t>(t[k])]);
           }
-          const auto other = static_cast<std::size_t>(t.behind[j] >> 2);
+          const auto other = static_cast<std::size_t>(t.neighbor[j] >> 2);
           // Each pair once.
-          if (t.behind[j] == Tetrahedron::outside || other < i) continue;
-          sum.folded += is_folded(volume, j, six_volumes_of(other), t.behind[j] & 3) ? 1 : 0;
+          if (t.neighbor[j] == Tetrahedron::outside || other < i) continue;
+          sum.folded += is_folded(volume, j, six_volumes_of(other), t.neighbor[j] & 3) ? 1 : 0;
         }
       }
     }
   });
   double edges = 0;
   for (const Sums& sum : sums) {
-    statistics_.flat += sum.flat;
+    statistics_.degenerate += sum.flat;
     statistics_.folded_faces += sum.folded;
     statistics_.volume += sum.volume;
     edges += sum.edges;
@@ -225,7 +225,7 @@ void TetrahedralMesh::count_overlapping_cells(const Description& description) {
   std::vector<bool> overlaps(count);
   for (std::size_t i = 0; i < tetrahedra_.size(); ++i) {
     for (int face = 0; face < 4; ++face) {
-      const std::int32_t behind = tetrahedra_[i].behind[face];
+      const std::int32_t behind = tetrahedra_[i].neighbor[face];
       if (behind == Tetrahedron::outside) continue;
       const auto other = static_cast<std::size_t>(behind >> 2);
       if (other < i || !is_folded(six_volumes_of(i), face, six_volumes_of(other), behind & 3)) {
@@ -254,7 +254,7 @@ std::int32_t TetrahedralMesh::point_number(std::size_t point) const noexcept {
   return number_of(point_numbers_, point);
 }
 
-std::string TetrahedralMesh::named(std::size_t tetrahedron) const {
+std::string TetrahedralMesh::describe(std::size_t tetrahedron) const {
   std::int32_t number[4];
   for (int i = 0; i < 4; ++i) {
     number[i] = point_number(static_cast<std::size_t>(tetrahedra_[tetrahedron][i]));
@@ -265,7 +265,7 @@ std::string TetrahedralMesh::named(std::size_t tetrahedron) const {
          std::to_string(number[3]);
 }
 
-std::size_t TetrahedralMesh::memory() const noexcept {
+std::size_t TetrahedralMesh::memory_bytes() const noexcept {
   return points_.size() * sizeof(points_[0]) + tetrahedra_.size() * sizeof(tetrahedra_[0]) +
          tree_.size() * sizeof(tree_[0]) + boundary_.size() * sizeof(boundary_[0]) +
          point_numbers_.size() * sizeof(point_numbers_[0]);
@@ -276,7 +276,8 @@ Tetrahedra TetrahedralMesh::view() const noexcept {
                   boundary_.data(), bounds_.lower,      bounds_.upper};
   view.count = static_cast<std::int32_t>(tetrahedra_.size());
   for (int a = 0; a < 3; ++a) {
-    view.reach = std::max({view.reach, std::fabs(bounds_.lower[a]), std::fabs(bounds_.upper[a])});
+    view.coordinate_bound =
+        std::max({view.coordinate_bound, std::fabs(bounds_.lower[a]), std::fabs(bounds_.upper[a])});
   }
   return view;
 }

@@ -10,7 +10,7 @@
 
 namespace pellucid {
 
-int points_of(CellShape shape) noexcept {
+int point_count(CellShape shape) noexcept {
   constexpr std::array<std::int8_t, 15> points{4, 5, 6, 8, 8, 10, 13, 15, 20, 18, 27, 0, 0, 0, 0};
   return points[static_cast<std::size_t>(shape)];
 }
@@ -29,7 +29,7 @@ int lagrange_points(CellShape shape, const std::array<int, 3>& orders) noexcept 
 
 GridCell CellWalk::next() noexcept {
   GridCell cell{grid_->shapes[cell_++], {}, {}};
-  auto count = static_cast<std::size_t>(points_of(cell.shape));
+  auto count = static_cast<std::size_t>(point_count(cell.shape));
   if (count == 0) {
     const std::int32_t* const layout = grid_->layouts.data() + layout_;
     count = static_cast<std::size_t>(layout[0]);
@@ -44,7 +44,7 @@ GridCell CellWalk::next() noexcept {
   return cell;
 }
 
-std::vector<std::int32_t> hexahedra_of_grid(const std::array<int, 3>& points) {
+std::vector<std::int32_t> grid_hexahedra(const std::array<int, 3>& points) {
   constexpr std::int64_t most = std::numeric_limits<std::int32_t>::max();
   std::int64_t count = 1;
   bool counted = true;

@@ -275,7 +275,7 @@ TEST_F(ReadMesh, JoinsPieces) {
   const MeshFile file = read_mesh(write("all.vtm", test::xml_file("vtkMultiBlockDataSet", blocks)));
   EXPECT_EQ(file.blocks, 2);
   EXPECT_EQ(file.merged_points, 1U);
-  EXPECT_EQ(file.torn_points, 1U);
+  EXPECT_EQ(file.discontinuous_points, 1U);
   EXPECT_EQ(file.grid.points.size(), 9U);
   EXPECT_EQ(file.grid.corners,
             (std::vector<std::int32_t>{0, 1, 2, 3, 1, 2, 3, 4, 0, 5, 6, 7, 5, 6, 7, 8}));
@@ -506,7 +506,7 @@ TEST_F(ReadMesh, ReadsLagrangeCells) {
     EXPECT_NEAR(s.volume, 1, 1e-5);
     EXPECT_EQ(s.folded_faces, 0U);
     EXPECT_EQ(s.boundary_faces, static_cast<std::size_t>(12 * order * order));
-    EXPECT_EQ(s.orphans, 0U);
+    EXPECT_EQ(s.unused_points, 0U);
   }
   // The orders along the axes as an array of cells, marked and not.
   test::AnyVtu of = lagrange_vtu({3, 1, 2});

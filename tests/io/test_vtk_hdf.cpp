@@ -114,12 +114,12 @@ TEST_F(VtkHdf, ReadsArraysOfImagesByName) {
   EXPECT_TRUE(contains(error_of([&] { read_volume(path("a.vtkhdf"), options); }), "4 x 4 x 5"));
   const std::vector<VolumeArray> list = list_arrays(path("a.vtkhdf"));
   ASSERT_EQ(list.size(), 6U);
-  EXPECT_TRUE(list[1].shown);
+  EXPECT_TRUE(list[1].is_default);
   EXPECT_EQ(list[1].name, "p");
   EXPECT_EQ(list[2].components.size(), 9U);
   EXPECT_EQ(list[4].name, "p_cell");
   EXPECT_EQ(list[4].components[0].maximum, 23);
-  EXPECT_FALSE(list[5].not_read.empty());
+  EXPECT_FALSE(list[5].unreadable_reason.empty());
 }
 
 TEST_F(VtkHdf, SaysWhatItDoesNotRead) {
@@ -202,7 +202,7 @@ TEST_F(VtkHdf, ReadsMeshes) {
     EXPECT_EQ(file.flat_cells, 1U);
     EXPECT_EQ(file.ghost_cells, 1U);
     EXPECT_EQ(file.grid.cell_numbers, (std::vector<std::int32_t>{0, 2}));
-    EXPECT_EQ(file.torn_points, 3U);  // the vectors differ
+    EXPECT_EQ(file.discontinuous_points, 3U);  // the vectors differ
     ASSERT_EQ(file.grid.arrays.size(), 3U);
     EXPECT_EQ(file.grid.arrays[0].name, "p");
     EXPECT_EQ(numbers(file.grid.arrays[0].values),

@@ -71,7 +71,7 @@ TEST(CutLagrangeCells, TakesNodesInTheOrderOfVtk) {
     SCOPED_TRACE(known.what);
     const LagrangeMesh mesh(
         one_cell(known.shape), [&](CellShape) { return known.lattice; }, side, 0, 0);
-    const UnstructuredGrid tetrahedra = tetrahedra_of(mesh.grid());
+    const UnstructuredGrid tetrahedra = tetrahedralize(mesh.grid());
     const TetrahedraCheck check(tetrahedra);
     EXPECT_EQ(tetrahedra.points.size(), known.lattice.size());
     EXPECT_NEAR(check.six_volumes, 6 * known.share * side * side * side, 1);
@@ -108,7 +108,7 @@ TEST(CutLagrangeCells, OfLowOrderAreTheOthers) {
   for (const int order : {1, 2}) {
     for (const auto& [lagrange, plain] : order == 1 ? linear : quadratic) {
       const int count = lagrange_points(lagrange, {order, order, order});
-      ASSERT_EQ(count, points_of(plain));
+      ASSERT_EQ(count, point_count(plain));
       for (int round = 0; round < 20; ++round) {
         UnstructuredGrid grid;
         grid.shapes = {plain};
@@ -118,10 +118,10 @@ TEST(CutLagrangeCells, OfLowOrderAreTheOthers) {
           grid.points.push_back({any(), any(), any()});
         }
         std::ranges::shuffle(grid.corners, random);
-        const auto expected = sorted(tetrahedra_of(grid));
+        const auto expected = sorted(tetrahedralize(grid));
         grid.shapes = {lagrange};
         grid.layouts = {count, order, order, order};
-        EXPECT_EQ(sorted(tetrahedra_of(grid)), expected) << count;
+        EXPECT_EQ(sorted(tetrahedralize(grid)), expected) << count;
       }
     }
   }
@@ -145,7 +145,7 @@ TEST(CutLagrangeCells, WithMiddlesAreFilled) {
     }
     grid.shapes = {is_wedge ? CellShape::lagrange_wedge : CellShape::lagrange_tetrahedron};
     grid.layouts = {static_cast<std::int32_t>(grid.points.size()), 2, 2, 2};
-    const UnstructuredGrid tetrahedra = tetrahedra_of(grid);
+    const UnstructuredGrid tetrahedra = tetrahedralize(grid);
     const TetrahedraCheck check(tetrahedra);
     EXPECT_EQ(check.six_volumes, (is_wedge ? 3.0 : 1.0) * 12 * 12 * 12);
     EXPECT_GT(check.smallest, 0);
@@ -266,7 +266,7 @@ TEST(CutLagrangeCells, HaveNoCracks) {
             return shape == CellShape::wedge ? wedge_lattice(order) : hexahedron_lattice(order);
           },
           n * side, static_cast<int>(side) / (8 * order), seed);
-      const UnstructuredGrid tetrahedra = tetrahedra_of(mesh.grid());
+      const UnstructuredGrid tetrahedra = tetrahedralize(mesh.grid());
       const TetrahedraCheck check(tetrahedra);
       EXPECT_FALSE(check.crowded());
       EXPECT_EQ(check.euler_characteristic(), 1);
@@ -295,7 +295,7 @@ TEST(CutLagrangeCells, OfTetrahedraHaveNoCracks) {
           linear,
           [&](CellShape) { return fifth ? tetrahedron_of_order_5() : tetrahedron_of_order_4(); },
           side, 100, seed);
-      const UnstructuredGrid tetrahedra = tetrahedra_of(mesh.grid());
+      const UnstructuredGrid tetrahedra = tetrahedralize(mesh.grid());
       const TetrahedraCheck check(tetrahedra);
       EXPECT_FALSE(check.crowded());
       EXPECT_EQ(check.euler_characteristic(), 1);
@@ -314,7 +314,7 @@ TEST(CutLagrangeCells, RefusesLayoutsThatDoNotFit) {
   std::iota(grid.corners.begin(), grid.corners.end(), 0);
   const auto error = [&](const std::vector<std::int32_t>& layouts) {
     grid.layouts = layouts;
-    return error_of([&] { tetrahedra_of(grid); });
+    return error_of([&] { tetrahedralize(grid); });
   };
   EXPECT_NE(error({}).find("layout"), std::string::npos);
   EXPECT_NE(error({27, 2, 2}).find("layout"), std::string::npos);

@@ -93,7 +93,7 @@ TEST(CutPolyhedra, BesideOtherCellsHaveNoCracks) {
       const int n = 1 + static_cast<int>(seed % 4);
       const MixedMesh mixed(n, seed, false);
       const UnstructuredGrid grid = with_polyhedra(mixed.grid(), one_in, random);
-      const UnstructuredGrid tetrahedra = tetrahedra_of(grid);
+      const UnstructuredGrid tetrahedra = tetrahedralize(grid);
       const TetrahedraCheck check(tetrahedra);
       EXPECT_FALSE(check.crowded());
       EXPECT_EQ(check.euler_characteristic(), 1);
@@ -161,7 +161,7 @@ TEST(CutPolyhedra, MeetFinerCells) {
     std::vector<double> values;
     for (const Vec3<double>& p : grid.points) values.push_back(3 * p.x - 2 * p.y + p.z + 1);
     grid.arrays.push_back({"field", Centering::point, 1, values});
-    const UnstructuredGrid tetrahedra = tetrahedra_of(grid);
+    const UnstructuredGrid tetrahedra = tetrahedralize(grid);
     const TetrahedraCheck check(tetrahedra);
     EXPECT_FALSE(check.crowded());
     EXPECT_EQ(check.euler_characteristic(), 1);
@@ -236,7 +236,7 @@ TEST(CutPolyhedra, CutLargeFacesAlikeFromBothSides) {
       SCOPED_TRACE(std::string(outline.what) + ", seed " + std::to_string(seed));
       std::mt19937 random(seed);
       const UnstructuredGrid grid = two_prisms(outline.points, random);
-      const UnstructuredGrid tetrahedra = tetrahedra_of(grid);
+      const UnstructuredGrid tetrahedra = tetrahedralize(grid);
       const TetrahedraCheck check(tetrahedra);
       const std::size_t n = outline.points.size();
       EXPECT_FALSE(check.crowded());
@@ -261,7 +261,7 @@ TEST(CutPolyhedra, ConcaveOnesAreCutFromWhereAllIsSeen) {
       SCOPED_TRACE(std::string(outline.what) + ", seed " + std::to_string(seed));
       std::mt19937 random(seed);
       UnstructuredGrid grid = two_prisms(outline.points, random);
-      const TetrahedraCheck check(tetrahedra_of(grid));
+      const TetrahedraCheck check(tetrahedralize(grid));
       EXPECT_FALSE(check.crowded());
       EXPECT_EQ(check.euler_characteristic(), 1);
       EXPECT_NEAR(check.six_volumes, 6 * 2 * outline.area, 1e-9);
@@ -281,7 +281,7 @@ TEST(CutPolyhedra, RefusesWhatIsNoBody) {
   const auto error = [&](std::vector<Face> of) {
     UnstructuredGrid grid = cube;
     add_polyhedron(grid, of);
-    return error_of([&] { tetrahedra_of(grid); });
+    return error_of([&] { tetrahedralize(grid); });
   };
   const auto has = [](const std::string& text, const char* part) {
     return text.find(part) != std::string::npos;
@@ -306,10 +306,10 @@ TEST(CutPolyhedra, RefusesWhatIsNoBody) {
   UnstructuredGrid grid = cube;
   add_polyhedron(grid, faces);
   grid.layouts[1] = 90;
-  EXPECT_TRUE(has(error_of([&] { tetrahedra_of(grid); }), "90 faces is cut off"));
+  EXPECT_TRUE(has(error_of([&] { tetrahedralize(grid); }), "90 faces is cut off"));
   grid.layouts[1] = 6;
   grid.layouts[4] = 5;
-  EXPECT_TRUE(has(error_of([&] { tetrahedra_of(grid); }), "25 points, but it says 24"));
+  EXPECT_TRUE(has(error_of([&] { tetrahedralize(grid); }), "25 points, but it says 24"));
 }
 
 }  // namespace

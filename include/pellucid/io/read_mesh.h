@@ -41,7 +41,7 @@ struct MeshFile {
   /// Points of different blocks at exactly the same place, with the same values: made one.
   std::size_t merged_points = 0;
   /// The same with different values, where the data jump from block to block: kept apart.
-  std::size_t torn_points = 0;
+  std::size_t discontinuous_points = 0;
 };
 
 /// Whether a file holds a mesh, by its extension, or where that says nothing by its first bytes.

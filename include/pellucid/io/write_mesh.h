@@ -13,7 +13,7 @@ namespace pellucid {
 /// written.
 void write_vtu(const UnstructuredGrid& grid, const std::filesystem::path& path);
 
-/// The cells of a volume's grid as tetrahedra (to_unstructured(), tetrahedra_of()). Throws Error
+/// The cells of a volume's grid as tetrahedra (to_unstructured(), tetrahedralize()). Throws Error
 /// where memory does not hold them.
 UnstructuredGrid volume_tetrahedra(const Volume& volume, const ParallelFor& parallel = {});
 

@@ -49,7 +49,7 @@ std::shared_ptr<const MeshChannels> cut_into_tetrahedra(const UnstructuredGrid& 
                                                         const ParallelFor& parallel = {});
 
 /// The same tetrahedra as a grid, with all its arrays and all their components.
-UnstructuredGrid tetrahedra_of(const UnstructuredGrid& grid, const ParallelFor& parallel = {});
+UnstructuredGrid tetrahedralize(const UnstructuredGrid& grid, const ParallelFor& parallel = {});
 
 /// The cells of a volume's grid as hexahedra, their corners as they stand in the world, with its
 /// values in the array "value": of points, or of cells where the volume is centred there. Throws

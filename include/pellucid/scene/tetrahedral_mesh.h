@@ -14,11 +14,11 @@ namespace pellucid {
 
 /// What is known of a mesh before it is rendered.
 struct MeshStatistics {
-  std::size_t points = 0;   ///< that tetrahedra use
-  std::size_t orphans = 0;  ///< that none uses
+  std::size_t points = 0;         ///< that tetrahedra use
+  std::size_t unused_points = 0;  ///< that none uses
   std::size_t tetrahedra = 0;
   std::size_t boundary_faces = 0;
-  std::size_t flat = 0;  ///< tetrahedra without volume
+  std::size_t degenerate = 0;  ///< tetrahedra without volume
   /// Pairs of tetrahedra on the same side of the face that they share.
   std::size_t folded_faces = 0;
   std::size_t cells = 0;  ///< that the tetrahedra were cut from
@@ -70,11 +70,11 @@ class TetrahedralMesh {
   /// What a point is called where it comes from.
   std::int32_t point_number(std::size_t point) const noexcept;
   /// "the tetrahedron of points 3, 7, 8 and 12", by those numbers.
-  std::string named(std::size_t tetrahedron) const;
+  std::string describe(std::size_t tetrahedron) const;
   const MeshStatistics& statistics() const noexcept { return statistics_; }
   const Box<double>& bounds() const noexcept { return bounds_; }
   /// What rays need, and the numbers of points, in memory: bytes.
-  std::size_t memory() const noexcept;
+  std::size_t memory_bytes() const noexcept;
 
   /// The view that rays walk through. Valid while this object lives.
   Tetrahedra view() const noexcept;

@@ -35,7 +35,7 @@ enum class CellShape : std::uint8_t {
 };
 
 /// How many points a cell of this shape has; 0 where its layout says it.
-int points_of(CellShape shape) noexcept;
+int point_count(CellShape shape) noexcept;
 
 /// How many nodes a Lagrange cell has: of a tetrahedron `orders[0]` counts, of a wedge that and
 /// `orders[2]`, along it. 0 where an order is below 1 or the nodes are more than an int counts.
@@ -96,6 +96,6 @@ class CellWalk {
 /// The corners of the hexahedra of a curvilinear grid with so many points along each axis, which
 /// are numbered x fastest; cells are too. Throws Error where an axis has fewer than two points, or
 /// they are more than an index can count.
-std::vector<std::int32_t> hexahedra_of_grid(const std::array<int, 3>& points);
+std::vector<std::int32_t> grid_hexahedra(const std::array<int, 3>& points);
 
 }  // namespace pellucid
