@@ -85,7 +85,9 @@ FieldSource volume_source(const ConvertArguments& arguments) {
 
 Converted convert(const ConvertArguments& arguments, const ParallelFor& parallel) {
   if (arguments.is_mesh()) {
-    const MeshFile file = read_mesh(arguments.input, {arguments.time, arguments.q});
+    MeshReadOptions options{arguments.time, arguments.q};
+    if (!arguments.quiet) options.note = print_note;
+    const MeshFile file = read_mesh(arguments.input, options);
     InterruptGuard::check();
     return {tetrahedralize(file.grid, parallel), file.grid.shapes.size()};
   }

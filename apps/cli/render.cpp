@@ -37,13 +37,6 @@ void print_notes(const RenderArguments& arguments, const PreparedScene& prepared
         "no array given: showing \"{}\" (choose another by --array; 'pellucid info' lists them)",
         prepared.description.mesh->channels.front().array));
   }
-  if (prepared.scene.mesh) {
-    if (const std::size_t folded = prepared.scene.mesh->mesh().statistics().folded_faces;
-        folded > 0) {
-      print_note(
-          fmt::format("tetrahedra overlap at {} faces: pixels that see it are not known", folded));
-    }
-  }
   for (const auto& [channel, count] : prepared.labels) {
     print_note((channel == field_channel ? "" : "channel " + channel + ": ") + labels_text(count));
   }

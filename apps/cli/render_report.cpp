@@ -86,9 +86,13 @@ Json mesh_json(const MeshChannels& mesh, const MeshSource& source) {
     arrays.push_back({{"array", choice.array},
                       {"component", choice.component ? Json(*choice.component) : Json()}});
   }
-  return {{"points", of_mesh.points},      {"tetrahedra", of_mesh.tetrahedra},
-          {"flat", of_mesh.degenerate},    {"folded_faces", of_mesh.folded_faces},
-          {"vacuum", mesh.vacuum_count()}, {"arrays", arrays}};
+  return {{"points", of_mesh.points},
+          {"tetrahedra", of_mesh.tetrahedra},
+          {"flat", of_mesh.degenerate},
+          {"folded_faces", of_mesh.folded_faces},
+          {"overlapping_cells", of_mesh.overlapping_cells},
+          {"vacuum", mesh.vacuum_count()},
+          {"arrays", arrays}};
 }
 
 Json channels_json(const Channels& channels) {

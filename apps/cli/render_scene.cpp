@@ -325,10 +325,16 @@ PreparedScene prepare(const RenderArguments& arguments) {
   }
   set_notes(rendered.field, arguments.quiet);
   set_notes(rendered.channels, arguments.quiet);
+  if (rendered.mesh) {  // printed last, so that a failure is one line
+    rendered.mesh->options.note = [&notes = prepared.import_notes](const std::string& note) {
+      notes.push_back(note);
+    };
+  }
   const int threads = arguments.threads > 0 ? arguments.threads : default_thread_count();
   prepared.array_chosen = description.mesh && description.mesh->channels.empty();
   prepared.scene =
       make_scene(rendered, parallel_for(threads), description.mesh ? &*description.mesh : nullptr);
+  if (description.mesh) description.mesh->options.note = {};
   Scene& scene = prepared.scene;
   scene.integration = integration;
   if (!arguments.view.empty()) {

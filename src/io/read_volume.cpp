@@ -27,6 +27,7 @@
 #include "pellucid/scene/error.h"
 #include "vtk_collection.h"
 #include "vtk_file_kind.h"
+#include "vtk_hdf.h"
 #include "vtk_volume.h"
 
 namespace pellucid {
@@ -86,6 +87,8 @@ constexpr std::array formats{Format{".nii", open_nifti},
                              Format{".h5", open_hdf5},
                              Format{".hdf5", open_hdf5},
                              Format{".he5", open_hdf5},
+                             Format{".vtkhdf", open_vtk_hdf},
+                             Format{".hdf", open_vtk_hdf},
                              Format{".nc", open_net_cdf},
                              Format{".nc4", open_net_cdf},
                              Format{".cdf", open_net_cdf},
@@ -109,6 +112,7 @@ Lister lister_of(Opener open) {
   return open == open_npz_file           ? list_npz_arrays
          : open == open_vtk_volume       ? without_options<list_vtk_arrays>
          : open == open_hdf5             ? list_hdf5_arrays
+         : open == open_vtk_hdf          ? without_options<list_vtk_hdf_arrays>
          : open == open_net_cdf          ? without_options<list_net_cdf_arrays>
          : open == open_vdb              ? without_options<list_vdb_arrays>
          : open == open_image_collection ? without_options<list_collection_arrays>
@@ -133,7 +137,14 @@ Opener opener_of(const std::filesystem::path& path) {
   if (kind && kind->is_volume() && (format == nullptr || format->open != open_raw_file)) {
     return open_vtk_volume;
   }
+  // Of any name that does not speak of something else.
+  if (format == nullptr || format->open == open_hdf5) {
+    const std::string type = vtk_hdf_type(path);
+    if (type == "UnstructuredGrid") return nullptr;
+    if (!type.empty()) return open_vtk_hdf;
+  }
   if (format == nullptr) return nullptr;
+  if (format->open == open_vtk_hdf && is_mesh_file(path)) return nullptr;
   return format->open == open_vtk_volume && is_mesh_file(path) ? nullptr : format->open;
 }
 

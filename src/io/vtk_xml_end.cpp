@@ -65,9 +65,10 @@ void check(const fs::path& path, const fs::path& of, std::set<fs::path>& seen) {
 
 }  // namespace
 
-void check_vtk_xml_end(const fs::path& path) {
+std::set<fs::path> check_vtk_xml_end(const fs::path& path) {
   std::set<fs::path> seen;
   check(path, path, seen);
+  return seen;
 }
 
 }  // namespace pellucid

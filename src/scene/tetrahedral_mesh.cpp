@@ -54,6 +54,21 @@ class Check {
       fail("there are " + std::to_string(d_.point_numbers.size()) + " numbers for " +
            std::to_string(d_.points.size()) + " points; give one for each, or none");
     }
+    cells();
+  }
+
+  void cells() const {
+    if (!d_.cells.empty() && d_.cells.size() != d_.tetrahedra.size()) {
+      fail("there are cells of " + std::to_string(d_.cells.size()) + " tetrahedra, but " +
+           std::to_string(d_.tetrahedra.size()) + " are there; give one for each, or none");
+    }
+    const auto bad = std::ranges::find_if(d_.cells, [&](std::int32_t cell) {
+      return cell < 0 ||
+             (!d_.cell_numbers.empty() && static_cast<std::size_t>(cell) >= d_.cell_numbers.size());
+    });
+    if (bad != d_.cells.end()) {
+      fail("a tetrahedron is of cell " + std::to_string(*bad) + ", which has no number");
+    }
   }
 
   /// `corners` in ascending order.
@@ -128,9 +143,11 @@ TetrahedralMesh::TetrahedralMesh(Description description, const ParallelFor& par
   const std::int32_t crowded = pair_faces(tetrahedra_, points_.size(), run);
   if (crowded >= 0) {
     check.fail("a face of " + describe(static_cast<std::size_t>(crowded)) +
-               " belongs to more than two tetrahedra: cells stand twice, or overlap; remove them");
+               " belongs to more than two tetrahedra: cells stand twice, or overlap; remove them, "
+               "or put their nodes into the order of the format");
   }
   measure(run);
+  count_overlapping_cells(description);
   BoundaryTree tree = build_boundary_tree(tetrahedra_, points_, bounds_);
   if (tree.face.empty()) {
     check.fail(
@@ -159,13 +176,6 @@ void TetrahedralMesh::measure(const ParallelFor& parallel) {
   statistics_.unused_points = points_.size() - statistics_.points;
   statistics_.tetrahedra = tetrahedra_.size();
 
-  const auto volume_of = [&](std::size_t i) {
-    const Tetrahedron& t = tetrahedra_[i];
-    const auto point = [&](int k) -> const Vec3<double>& {
-      return points_[static_cast<std::size_t>(t[k])];
-    };
-    return six_volumes(point(0), point(1), point(2), point(3));
-  };
   // Sums of fixed parts, added up in order: the same for any number of threads.
   constexpr std::size_t part_size = 4096;
   const std::size_t parts = (tetrahedra_.size() + part_size - 1) / part_size;
@@ -177,7 +187,7 @@ void TetrahedralMesh::measure(const ParallelFor& parallel) {
       const std::size_t end = std::min(tetrahedra_.size(), (part + 1) * part_size);
       for (std::size_t i = part * part_size; i < end; ++i) {
         const Tetrahedron& t = tetrahedra_[i];
-        const double volume = volume_of(i);
+        const double volume = six_volumes_of(i);
         sum.flat += volume == 0 ? 1 : 0;
         sum.volume += std::fabs(volume) / 6;
         for (int j = 0; j < 4; ++j) {
@@ -188,7 +198,7 @@ void TetrahedralMesh::measure(const ParallelFor& parallel) {
           const auto other = static_cast<std::size_t>(t.neighbor[j] >> 2);
           // Each pair once.
           if (t.neighbor[j] == Tetrahedron::outside || other < i) continue;
-          sum.folded += is_folded(volume, j, volume_of(other), t.neighbor[j] & 3) ? 1 : 0;
+          sum.folded += is_folded(volume, j, six_volumes_of(other), t.neighbor[j] & 3) ? 1 : 0;
         }
       }
     }
@@ -201,6 +211,43 @@ void TetrahedralMesh::measure(const ParallelFor& parallel) {
     edges += sum.edges;
   }
   statistics_.mean_edge = edges / (6 * static_cast<double>(tetrahedra_.size()));
+}
+
+void TetrahedralMesh::count_overlapping_cells(const Description& description) {
+  const std::vector<std::int32_t>& cells = description.cells;
+  const auto cell_of = [&](std::size_t i) {
+    return cells.empty() ? i : static_cast<std::size_t>(cells[i]);
+  };
+  const std::size_t count =
+      cells.empty() ? tetrahedra_.size() : static_cast<std::size_t>(std::ranges::max(cells)) + 1;
+  statistics_.cells = description.cell_numbers.empty() ? count : description.cell_numbers.size();
+  if (statistics_.folded_faces == 0) return;
+  std::vector<bool> overlaps(count);
+  for (std::size_t i = 0; i < tetrahedra_.size(); ++i) {
+    for (int face = 0; face < 4; ++face) {
+      const std::int32_t behind = tetrahedra_[i].neighbor[face];
+      if (behind == Tetrahedron::outside) continue;
+      const auto other = static_cast<std::size_t>(behind >> 2);
+      if (other < i || !is_folded(six_volumes_of(i), face, six_volumes_of(other), behind & 3)) {
+        continue;
+      }
+      overlaps[cell_of(i)] = overlaps[cell_of(other)] = true;
+    }
+  }
+  for (std::size_t cell = 0; cell < count; ++cell) {
+    if (!overlaps[cell]) continue;
+    const std::int32_t number = number_of(description.cell_numbers, cell);
+    std::int32_t& first = statistics_.first_overlapping_cell;
+    first = first < 0 ? number : std::min(first, number);
+    ++statistics_.overlapping_cells;
+  }
+}
+
+double TetrahedralMesh::six_volumes_of(std::size_t tetrahedron) const {
+  const auto point = [&](int k) -> const Vec3<double>& {
+    return points_[static_cast<std::size_t>(tetrahedra_[tetrahedron][k])];
+  };
+  return six_volumes(point(0), point(1), point(2), point(3));
 }
 
 std::int32_t TetrahedralMesh::point_number(std::size_t point) const noexcept {

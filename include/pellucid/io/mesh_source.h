@@ -36,6 +36,10 @@ struct LoadedMesh {
   std::vector<MeshArrayChoice> channels;  ///< those of the source, or the default array
 };
 
+/// What to tell where cells are inverted or overlap: how many, the first of them, and the likely
+/// cause; empty where none do.
+std::string overlap_note(const MeshStatistics& statistics);
+
 /// Reads the file and cuts its cells into tetrahedra. Throws Error.
 LoadedMesh load_mesh(const MeshSource& source, const ParallelFor& parallel = {});
 

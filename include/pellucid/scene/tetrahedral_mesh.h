@@ -21,8 +21,12 @@ struct MeshStatistics {
   std::size_t degenerate = 0;  ///< tetrahedra without volume
   /// Pairs of tetrahedra on the same side of their shared face.
   std::size_t folded_faces = 0;
-  double volume = 0;     ///< sum over all tetrahedra, world units cubed
-  double mean_edge = 0;  ///< mean edge length over the tetrahedra
+  std::size_t cells = 0;  ///< cells of the source that the tetrahedra were cut from
+  /// Cells with a tetrahedron at such a face: they overlap themselves or a neighbor.
+  std::size_t overlapping_cells = 0;
+  std::int32_t first_overlapping_cell = -1;  ///< its number; -1: none
+  double volume = 0;                         ///< sum over all tetrahedra, world units cubed
+  double mean_edge = 0;                      ///< mean edge length over the tetrahedra
 };
 
 /// Tetrahedra that share points, with their neighbors: the mesh that rays walk through. Immutable
@@ -42,12 +46,17 @@ class TetrahedralMesh {
     std::string name;                                     ///< for messages
     /// Numbers by which messages and point_number() refer to the points; empty: their indices.
     std::vector<std::int32_t> point_numbers{};
+    /// The cell that each tetrahedron was cut from, from 0 on, for the statistics; empty: each is
+    /// one itself.
+    std::vector<std::int32_t> cells{};
+    /// The numbers of these cells; empty: as they are counted.
+    std::vector<std::int32_t> cell_numbers{};
   };
 
   /// Throws Error if there is no tetrahedron, an index is out of range or twice in one tetrahedron,
-  /// there is not one number per point, a used point is not finite or beyond ±2.1e37, there are
-  /// more than 2^28 tetrahedra, a face belongs to more than two of them, a tetrahedron is a
-  /// duplicate, or none is at the boundary.
+  /// there is not one number per point, a cell is out of range, a used point is not finite or
+  /// beyond ±2.1e37, there are more than 2^28 tetrahedra, a face belongs to more than two of them,
+  /// a tetrahedron is a duplicate, or none is at the boundary.
   ///
   /// Overlapping tetrahedra are counted if they share a face (MeshStatistics::folded_faces). Rays
   /// that are in two tetrahedra at once report that their error is unknown.
@@ -74,6 +83,8 @@ class TetrahedralMesh {
 
  private:
   void measure(const ParallelFor& parallel);
+  void count_overlapping_cells(const Description& description);
+  double six_volumes_of(std::size_t tetrahedron) const;
 
   std::string name_;
   std::vector<Vec3<double>> points_;
