@@ -26,6 +26,7 @@
 #include "vtk_collection.h"
 #include "vtk_file_kind.h"
 #include "vtk_volume.h"
+#include "vvd_header.h"
 
 namespace pellucid {
 
@@ -86,6 +87,7 @@ constexpr std::array formats{Format{".nii", open_nifti},
                              Format{".cdf", open_net_cdf},
                              Format{".vdb", open_vdb},
                              Format{".ivf", open_ivf},
+                             Format{".vvd", open_vvd},
                              Format{".mrc.gz", open_mrc_file},
                              Format{".map.gz", open_mrc_file},
                              Format{".rec.gz", open_mrc_file},
