@@ -40,6 +40,11 @@ void VolumeOptions::add_to(CLI::App& command, bool with_array) {
             ->option_text("ARRAY[:C]"));
   }
   add(command
+          .add_option("--level", level,
+                      "Of an image of OME-Zarr: the resolution, 0 (default) the finest")
+          ->option_text("N")
+          ->check(CLI::NonNegativeNumber));
+  add(command
           .add_option("--series", series,
                       "Of a folder with several DICOM series: its number as 'pellucid info' lists "
                       "them, its UID, or the unique end of it")
@@ -74,6 +79,7 @@ ReadOptions VolumeOptions::read_options() const {
   read.skip_bytes = skip_bytes;
   read.components = components;
   read.component = component;
+  read.level = level;
   if (!series.empty()) read.series = series;
   if (!array.empty()) {
     const MeshArrayChoice choice = parse_mesh_array(array);

@@ -23,10 +23,12 @@
 #include "pellucid/io/dicom_series.h"
 #include "pellucid/io/read_mesh.h"
 #include "pellucid/scene/error.h"
+#include "text.h"
 #include "vtk_collection.h"
 #include "vtk_file_kind.h"
 #include "vtk_volume.h"
 #include "vvd_header.h"
+#include "zarr.h"
 
 namespace pellucid {
 
@@ -88,6 +90,7 @@ constexpr std::array formats{Format{".nii", open_nifti},
                              Format{".vdb", open_vdb},
                              Format{".ivf", open_ivf},
                              Format{".vvd", open_vvd},
+                             Format{".zarr", open_zarr},
                              Format{".mrc.gz", open_mrc_file},
                              Format{".map.gz", open_mrc_file},
                              Format{".rec.gz", open_mrc_file},
@@ -101,6 +104,7 @@ std::vector<VolumeArray> (*lister_of(Opener open))(const std::filesystem::path&)
          : open == open_net_cdf          ? list_net_cdf_arrays
          : open == open_vdb              ? list_vdb_arrays
          : open == open_image_collection ? list_collection_arrays
+         : open == open_zarr             ? list_zarr_arrays
                                          : nullptr;
 }
 
@@ -126,8 +130,17 @@ Opener opener_of(const std::filesystem::path& path) {
   return format->open == open_vtk_volume && is_mesh_file(path) ? nullptr : format->open;
 }
 
+/// Stores of Zarr in one file are folders to be.
+void refuse_zipped_zarr(const std::filesystem::path& path) {
+  const std::string name = in_small_letters(path.filename().string());
+  if (!name.ends_with(".zarr.zip") && !name.ends_with(".ozx")) return;
+  throw Error(path.string() +
+              ": is a store of Zarr in a zip archive; unpack it, and give the folder");
+}
+
 Opener find_opener(const std::filesystem::path& path, const ReadOptions& options) {
   std::error_code error;
+  if (is_zarr(path)) return open_zarr;
   if (std::filesystem::is_directory(path, error)) return is_dicom(path) ? open_dicom : open_stack;
   if (is_stack_pattern(path)) return open_stack;
   check_input_file(path);
@@ -136,6 +149,7 @@ Opener find_opener(const std::filesystem::path& path, const ReadOptions& options
   if (open == nullptr && options.dimensions && options.type) open = open_raw_file;
   if (open == nullptr && is_dat_header(path)) open = open_dat;
   if (open == nullptr && is_dicom(path)) open = open_dicom;
+  refuse_zipped_zarr(path);
   if (open == nullptr && is_mesh_file(path)) {
     throw Error(path.string() +
                 ": is a mesh, and here a volume is needed; 'render' and 'info' take meshes");
@@ -157,7 +171,10 @@ VolumeFile open_file(const std::filesystem::path& path, const ReadOptions& optio
   if (options.array && lister_of(open) == nullptr) {
     throw Error(path.string() + ": has no arrays with names; leave the array out");
   }
-  if (options.time && open != open_net_cdf) {
+  if (options.level && open != open_zarr) {
+    throw Error(path.string() + ": has no levels of resolution; leave the level out");
+  }
+  if (options.time && open != open_net_cdf && open != open_zarr) {
     throw Error(path.string() + ": the file has no steps in time; leave the time out");
   }
   return open(path, options);

@@ -24,8 +24,10 @@ struct ReadOptions {
   std::optional<Centering> centering;            ///< replaces the file's
   std::optional<int> components;                 ///< raw: numbers at each point, side by side
   std::optional<int> component;                  ///< which of a file's, from 0
-  std::optional<double> time;        ///< in place of a component, the step nearest to it: NetCDF
+  /// In place of a component, the step nearest to it: NetCDF, OME-Zarr.
+  std::optional<double> time;
   std::optional<std::string> array;  ///< by name, of a file that has several; none: see VolumeArray
+  std::optional<int> level;          ///< OME-Zarr: the resolution, 0 (default) the finest
   /// DICOM: which of a folder's series: its number as list_dicom_series() has them, from 1, its
   /// UID, or the unique end of one.
   std::optional<std::string> series;
@@ -43,8 +45,9 @@ struct ReadOptions {
 /// whole numbers of 64 bits become double, bits u8; datasets of HDF5 (.h5, .hdf5, .he5) and
 /// variables of NetCDF (.nc, .nc4, .cdf), where the build has these: of NetCDF positions along the
 /// axes where it has them, scaled, and NaN for what is missing; fog volumes of OpenVDB (.vdb) as
-/// the dense grid of their active box, where the build has it. Throws Error: what, where, what to
-/// do; also for a file of several components of which the options choose none.
+/// the dense grid of their active box, where the build has it; stores of Zarr and OME-Zarr by their
+/// folder; data sets of vtk.js by their folder or its index.json; Voreen's .vvd. Throws Error:
+/// what, where, what to do; also for a file of several components of which the options choose none.
 Volume read_volume(const std::filesystem::path& path, const ReadOptions& options = {});
 
 /// A file may have several numbers at each point, its components: colors and vectors, the steps of
