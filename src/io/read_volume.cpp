@@ -26,6 +26,7 @@
 #include "text.h"
 #include "vtk_collection.h"
 #include "vtk_file_kind.h"
+#include "vtk_js.h"
 #include "vtk_volume.h"
 #include "vvd_header.h"
 #include "zarr.h"
@@ -105,6 +106,7 @@ std::vector<VolumeArray> (*lister_of(Opener open))(const std::filesystem::path&)
          : open == open_vdb              ? list_vdb_arrays
          : open == open_image_collection ? list_collection_arrays
          : open == open_zarr             ? list_zarr_arrays
+         : open == open_vtk_js           ? list_vtk_js_arrays
                                          : nullptr;
 }
 
@@ -141,6 +143,7 @@ void refuse_zipped_zarr(const std::filesystem::path& path) {
 Opener find_opener(const std::filesystem::path& path, const ReadOptions& options) {
   std::error_code error;
   if (is_zarr(path)) return open_zarr;
+  if (is_vtk_js(path)) return open_vtk_js;
   if (std::filesystem::is_directory(path, error)) return is_dicom(path) ? open_dicom : open_stack;
   if (is_stack_pattern(path)) return open_stack;
   check_input_file(path);
@@ -230,6 +233,10 @@ std::vector<VolumeArray> list_arrays(const std::filesystem::path& path,
 bool has_volume_header(std::string_view file_name) {
   const Format* const format = format_of(file_name);
   return format != nullptr && format->open != open_raw_file && format->open != open_raw_gzip;
+}
+
+bool is_volume_json(const std::filesystem::path& path) {
+  return is_vtk_js(path);
 }
 
 std::string volume_extensions() {

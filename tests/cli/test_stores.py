@@ -76,6 +76,20 @@ class Stores(ProgramTest):
         self.assertEqual((report["array"], report["range"]), ("b", [10, 17]))
         self.assertEqual([array["name"] for array in report["arrays"]], ["a", "b"])
 
+    def test_data_set_of_vtk_js(self):
+        data = {"data": {"name": "f", "dataType": "Float32Array", "numberOfComponents": 1,
+                         "size": 8, "ref": {"encode": "LittleEndian", "basepath": "data",
+                                            "id": "f"}}}
+        self.make_folder("head.vti", {
+            "index.json": {"vtkClass": "vtkImageData", "extent": [0, 1, 0, 1, 0, 1],
+                           "origin": [0, 0, 0], "spacing": [1, 2, 3],
+                           "pointData": {"arrays": [data]}},
+            "data/f": struct.pack("<8f", *range(8))})
+        for name in ("head.vti", "head.vti/", os.path.join("head.vti", "index.json")):
+            report = self.report("info", name)
+            self.assertEqual((report["range"], report["spacing"]), ([0, 7], [1, 2, 3]))
+            self.succeed("render", name, "--size", "8x8", "-q", "-o", "a.exr")
+
 
 if __name__ == "__main__":
     unittest.main()

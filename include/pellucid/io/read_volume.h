@@ -87,6 +87,8 @@ std::vector<VolumeArray> list_arrays(const std::filesystem::path& path,
 /// Whether the program reads files of this name as volumes with a header, which says of itself what
 /// headerless data need to be told.
 bool has_volume_header(std::string_view file_name);
+/// Whether a .json file is read as a volume, as an index.json of vtk.js is: then it is no scene.
+bool is_volume_json(const std::filesystem::path& path);
 /// The extensions of volumes, for messages and help: ".nii .nii.gz …".
 std::string volume_extensions();
 
