@@ -277,7 +277,7 @@ PreparedScene prepare(const RenderArguments& arguments) {
   }
   set_notes(rendered.field, arguments.quiet);
   set_notes(rendered.channels, arguments.quiet);
-  const int threads = arguments.threads > 0 ? arguments.threads : default_threads();
+  const int threads = arguments.threads > 0 ? arguments.threads : default_thread_count();
   prepared.array_chosen = description.mesh && description.mesh->channels.empty();
   prepared.scene =
       make_scene(rendered, parallel_for(threads), description.mesh ? &*description.mesh : nullptr);

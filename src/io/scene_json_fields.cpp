@@ -139,7 +139,7 @@ ChannelSource channel_source(const Node& node, const std::filesystem::path& fold
     return channel;
   }
   DerivedSource derived;
-  derived.of = channel_name(*node.find(given[0]));
+  derived.channel = channel_name(*node.find(given[0]));
   for (const auto kind : {DerivedSource::Kind::gradient_magnitude,
                           DerivedSource::Kind::second_derivative, DerivedSource::Kind::smoothed}) {
     if (derived_name(kind) == given[0]) derived.kind = kind;
@@ -174,7 +174,7 @@ FieldSource field_source(const Node& field, const std::filesystem::path& folder)
 }
 
 std::vector<ChannelSource> channel_sources(const Node& list, const std::filesystem::path& folder) {
-  if (list.array_size() < 1 || list.array_size() > static_cast<std::size_t>(most_channels)) {
+  if (list.array_size() < 1 || list.array_size() > static_cast<std::size_t>(max_channels)) {
     list.fail("has " + std::to_string(list.array_size()) + " channels, but must have from 1 to 8");
   }
   std::vector<ChannelSource> channels;

@@ -259,7 +259,7 @@ std::string channel_text(const ChannelSource& channel, const std::string& indent
     return members.object();
   }
   const auto& derived = std::get<DerivedSource>(channel.source);
-  members.add(derived_name(derived.kind), quoted(derived.of, "the name of a channel"));
+  members.add(derived_name(derived.kind), quoted(derived.channel, "the name of a channel"));
   if (derived.kind == DerivedSource::Kind::smoothed) {
     members.add("sigma", number(derived.sigma, "sigma"));
   }

@@ -48,7 +48,7 @@ struct Array {
   bool big_endian = false;
   fs::path file;
   bool is_active = false;
-  std::string not_read;  ///< why; empty: it is
+  std::string unreadable_reason;  ///< why; empty: it is
 };
 
 struct Image {
@@ -134,7 +134,7 @@ void add_arrays(const Node& root, const char* key, Centering centering, const fs
     } catch (const Error& error) {
       const auto name = data.find("name");
       array.name = name && name->is_string() ? printable(name->string()) : std::string();
-      array.not_read = error.what();
+      array.unreadable_reason = error.what();
     }
     if (array.name.empty()) array.name = "array " + std::to_string(i);
     array.is_active = array.is_active || active == static_cast<std::int64_t>(i);
@@ -218,7 +218,7 @@ Image read_image(const fs::path& path) {
 
 /// The active scalars, else the first of one component, else the first that is read.
 const Array& default_array(const Image& image, const std::string& name) {
-  const auto readable = [](const Array& array) { return array.not_read.empty(); };
+  const auto readable = [](const Array& array) { return array.unreadable_reason.empty(); };
   for (const Array& array : image.arrays) {
     if (readable(array) && array.is_active) return array;
   }
@@ -227,7 +227,7 @@ const Array& default_array(const Image& image, const std::string& name) {
   }
   const auto first = std::ranges::find_if(image.arrays, readable);
   if (first != image.arrays.end()) return *first;
-  throw Error(name + ": no array can be read; " + image.arrays.front().not_read);
+  throw Error(name + ": no array can be read; " + image.arrays.front().unreadable_reason);
 }
 
 const Array& choose(const Image& image, const ReadOptions& options, const std::string& name) {
@@ -235,7 +235,7 @@ const Array& choose(const Image& image, const ReadOptions& options, const std::s
   std::string list;
   for (const Array& array : image.arrays) {
     if (array.name == *options.array) {
-      if (!array.not_read.empty()) throw Error(array.not_read);
+      if (!array.unreadable_reason.empty()) throw Error(array.unreadable_reason);
       return array;
     }
     list += (list.empty() ? "" : ", ") + array.name;
@@ -360,13 +360,13 @@ std::vector<VolumeArray> list_vtk_js_arrays(const fs::path& path) {
     about.name = array.name;
     about.centering = array.centering;
     about.type = array.type;
-    about.shown = &array == &shown;
-    about.not_read = array.not_read;
-    if (!about.not_read.empty()) continue;
+    about.is_default = &array == &shown;
+    about.unreadable_reason = array.unreadable_reason;
+    if (!about.unreadable_reason.empty()) continue;
     try {
       look_at(open_array(image, array, {}, name), about);
     } catch (const Error& error) {
-      about.not_read = error.what();
+      about.unreadable_reason = error.what();
       about.components.clear();
       about.more_components = 0;
     }

@@ -609,7 +609,7 @@ std::vector<VolumeArray> list_zarr_arrays(const fs::path& path) {
     const Entry& entry = entries[i];
     VolumeArray& about = list[i];
     about.name = printable(entry.path);
-    about.shown = entry.path == shown;
+    about.is_default = entry.path == shown;
     try {
       ReadOptions options;
       options.array = entry.path;
@@ -627,7 +627,7 @@ std::vector<VolumeArray> list_zarr_arrays(const fs::path& path) {
         about.components.push_back(component_statistics(values.front(), 1).front());
       }
     } catch (const Error& error) {
-      about.not_read = error.what();
+      about.unreadable_reason = error.what();
       about.components.clear();
       about.more_components = 0;
     }

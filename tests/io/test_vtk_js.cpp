@@ -105,9 +105,9 @@ TEST_F(VtkJsTest, ArraysByName) {
   EXPECT_TRUE(contains(error(options), "it has vectors, f, active"));
   const std::vector<VolumeArray> arrays = list_arrays(path("head.vti"));
   ASSERT_EQ(arrays.size(), 3u);
-  EXPECT_TRUE(contains(arrays[0].not_read, "data/g"));
+  EXPECT_TRUE(contains(arrays[0].unreadable_reason, "data/g"));
   EXPECT_EQ(arrays[1].components.at(0).maximum, 59);
-  EXPECT_TRUE(arrays[2].shown);
+  EXPECT_TRUE(arrays[2].is_default);
 }
 
 TEST_F(VtkJsTest, ArraysOfCells) {

@@ -503,8 +503,8 @@ TEST_F(ZarrTest, PositionsOfXarray) {
   ASSERT_EQ(arrays.size(), 4u);
   EXPECT_EQ(arrays[0].name, "density");
   EXPECT_EQ(arrays[0].components.at(0).maximum, 59);
-  EXPECT_TRUE(arrays[0].shown);
-  EXPECT_TRUE(contains(arrays[1].not_read, "is no volume")) << arrays[1].not_read;
+  EXPECT_TRUE(arrays[0].is_default);
+  EXPECT_TRUE(contains(arrays[1].unreadable_reason, "is no volume")) << arrays[1].unreadable_reason;
 }
 
 TEST_F(ZarrTest, ArraysOfAGroup) {

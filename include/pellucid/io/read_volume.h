@@ -74,8 +74,8 @@ struct VolumeArray {
   std::string type;             ///< as it is read: "u8" … "f64"
   std::vector<int> dimensions;  ///< data values along x, y, z
   std::vector<VolumeStatistics> components;
-  int more_components = 0;  ///< not looked at: beyond the 64 that are, each of which is read
-  std::string not_read;     ///< why it is not; empty: it is
+  int more_components = 0;        ///< not looked at: beyond the 64 that are, each of which is read
+  std::string unreadable_reason;  ///< why it is not; empty: it is
   /// Read where no array is chosen: the one that the file marks as its scalars, else the first of
   /// points with one component, else the first.
   bool shown = false;
