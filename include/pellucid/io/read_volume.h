@@ -30,7 +30,7 @@ struct ReadOptions {
   /// and z, and c for components ("xyz", "czyx"). None: "zyx"; of four axes c is the first or the
   /// last, whichever is short, and `note` is told which was taken.
   std::optional<std::string> axes;
-  std::optional<int> level;  ///< OME-Zarr: the resolution, 0 (default) the finest
+  std::optional<int> level;  ///< OME-Zarr: level of resolution, 0 is the finest; none: 0
   /// DICOM: series to read from a folder: its number as in list_dicom_series(), from 1, its UID, or
   /// a unique end of the UID.
   std::optional<std::string> series;
@@ -101,8 +101,7 @@ std::vector<VolumeArray> list_arrays(const std::filesystem::path& path,
 /// Returns whether files of this name are volumes with a header, which provides what headerless
 /// data need as options.
 bool has_volume_header(std::string_view file_name);
-/// Returns whether a .json file is read as a volume, as an index.json of vtk.js is: then it is no
-/// scene.
+/// Returns whether a .json file is a volume, such as an index.json of vtk.js, and not a scene.
 bool is_volume_json(const std::filesystem::path& path);
 /// Returns the extensions of volume files for messages and help: ".nii .nii.gz …".
 std::string volume_extensions();
