@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 
-# What is installed beside the program: manual page, bash completion, examples.
+# What is installed beside the program (manual page, bash completion, examples), and the Debian
+# package that cpack makes of a build. scripts/package builds and packs.
 if(NOT PELLUCID_BUILD_RENDERER)
   return()
 endif()
@@ -33,3 +34,30 @@ foreach(scene IN LISTS scenes)
   endif()
 endforeach()
 install(FILES ${examples} DESTINATION "${CMAKE_INSTALL_DATADIR}/doc/pellucid/examples")
+
+set(CPACK_GENERATOR DEB)
+set(CPACK_PACKAGE_NAME pellucid)
+set(CPACK_PACKAGE_CONTACT "The Pellucid authors <pellucid@localhost>")
+set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "volume renderer with a stated error per pixel")
+set(CPACK_DEBIAN_PACKAGE_DESCRIPTION
+"Pellucid renders volumes (medical images, simulations, microscopy) and meshes
+by evaluating the volume rendering integral cell by cell, instead of sampling
+it along the ray. Every pixel is within a tolerance that you choose.
+.
+The package holds the program, its static libraries, headers and a CMake
+package. Formats that need VTK, ITK, HDF5, NetCDF or OpenVDB are read by
+modules, whose libraries are recommended: without them those files alone are
+not read.")
+set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
+set(CPACK_STRIP_FILES ON)
+set(CPACK_INSTALL_DEFAULT_DIRECTORY_PERMISSIONS
+  OWNER_READ OWNER_WRITE OWNER_EXECUTE GROUP_READ GROUP_EXECUTE WORLD_READ WORLD_EXECUTE)
+set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
+set(CPACK_DEBIAN_PACKAGE_SECTION science)
+set(CPACK_DEBIAN_PACKAGE_PRIORITY optional)
+set(CPACK_DEBIAN_PACKAGE_CONTROL_STRICT_PERMISSION ON)
+# Runs when the files are in place, before they are packed.
+set(CPACK_PRE_BUILD_SCRIPTS "${PROJECT_SOURCE_DIR}/cmake/PellucidPackageContents.cmake")
+set(CPACK_PELLUCID_SOURCE_DIR "${PROJECT_SOURCE_DIR}")
+set(CPACK_PELLUCID_LIBDIR "${CMAKE_INSTALL_LIBDIR}")
+include(CPack)
