@@ -4,8 +4,8 @@ option(PELLUCID_LIBFUZZER "Link the fuzz targets with libFuzzer (clang; preset f
 # pellucid_fuzz_target(NAME SOURCES file... [LIBRARIES target...] [SEEDS folder] [RUNS number])
 #
 # The executable fuzz_NAME from sources that define LLVMFuzzerTestOneInput, and the ctest fuzz.NAME.
-# With PELLUCID_LIBFUZZER the test is ten seconds of libFuzzer that begin with the seeds; without, it
-# runs the seeds and RUNS mutants of them, always the same ones (tests/fuzz/standalone_main.cpp).
+# With PELLUCID_LIBFUZZER the test is ten seconds of libFuzzer that begin with the seeds; without,
+# it runs the seeds and RUNS mutants of them, always the same ones (tests/fuzz/standalone_main.cpp).
 function(pellucid_fuzz_target name)
   cmake_parse_arguments(arg "" "SEEDS;RUNS" "SOURCES;LIBRARIES" ${ARGN})
   if(NOT arg_RUNS)
@@ -29,7 +29,7 @@ function(pellucid_fuzz_target name)
     target_sources(fuzz_${name} PRIVATE "${PROJECT_SOURCE_DIR}/tests/fuzz/standalone_main.cpp")
     add_test(NAME fuzz.${name} COMMAND fuzz_${name} -runs=${arg_RUNS} ${seeds})
   endif()
-  set_tests_properties(fuzz.${name} PROPERTIES LABELS fuzz TIMEOUT 300
+  set_tests_properties(fuzz.${name} PROPERTIES LABELS fuzz TIMEOUT ${PELLUCID_TEST_SECONDS}
     WORKING_DIRECTORY "${CMAKE_CURRENT_BINARY_DIR}")
   if(NOT TARGET fuzz_targets)
     add_custom_target(fuzz_targets)

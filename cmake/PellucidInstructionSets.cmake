@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-option(PELLUCID_SIMD "Packets of rays for SSE4.1, AVX2 and AVX-512, chosen at run time (x86-64; needs xsimd)" ON)
+option(PELLUCID_SIMD
+  "Packets of rays for SSE4.1, AVX2 and AVX-512, chosen at run time (x86-64; needs xsimd)" ON)
 
 # The sets, best last, the lanes of a packet in each, and the options of the compiler.
 set(PELLUCID_INSTRUCTION_SETS sse4 avx2 avx512)
@@ -14,8 +15,8 @@ set(_pellucid_flags_avx512 -mavx512f -mavx512cd -mavx512dq -mavx512bw -mavx512vl
     -mprefer-vector-width=512)
 
 set(PELLUCID_SIMD_FOUND FALSE)
-if(PELLUCID_SIMD AND CMAKE_SYSTEM_PROCESSOR MATCHES "^(x86_64|AMD64|amd64)$" AND CMAKE_SIZEOF_VOID_P EQUAL 8
-   AND CMAKE_CXX_COMPILER_ID MATCHES "GNU|Clang")
+if(PELLUCID_SIMD AND CMAKE_SYSTEM_PROCESSOR MATCHES "^(x86_64|AMD64|amd64)$"
+   AND CMAKE_SIZEOF_VOID_P EQUAL 8 AND CMAKE_CXX_COMPILER_ID MATCHES "GNU|Clang")
   find_package(xsimd 8.1 QUIET)
   if(NOT xsimd_FOUND)
     message(FATAL_ERROR "xsimd 8.1 or later is not there: install it (Debian: libxsimd-dev), "
@@ -56,13 +57,13 @@ endforeach()
 # In these sources
 #   PELLUCID_LANES             is 4, 8 or 16,
 #   PELLUCID_INSTRUCTION_SET   is sse4, avx2 or avx512,
-#   pellucid                   is a macro: the project's namespace gets another name in each, so that an
-#                              inline function compiled for AVX-512 is never the one that the linker keeps
-#                              for code that runs elsewhere.
+#   pellucid                   is a macro: the project's namespace gets another name in each, so
+#                              that an inline function compiled for AVX-512 is never the one that
+#                              the linker keeps for code that runs elsewhere.
 # What they give to others are functions declared extern "C" outside of that namespace, named by
-# PELLUCID_ENTRY (simd/instruction_set.h), and plain structs; tests/architecture reads the objects' symbols.
-# TARGET's own sources see PELLUCID_HAS_PACKETS, 1 or 0: off x86-64, or without PELLUCID_SIMD, nothing is
-# compiled.
+# PELLUCID_ENTRY (simd/instruction_set.h), and plain structs; tests/architecture reads the objects'
+# symbols. TARGET's own sources see PELLUCID_HAS_PACKETS, 1 or 0: off x86-64, or without
+# PELLUCID_SIMD, nothing is compiled.
 function(pellucid_instruction_sets target)
   cmake_parse_arguments(arg "" "ABSENT" "SOURCES;LIBRARIES" ${ARGN})
   if(NOT PELLUCID_SIMD_FOUND)
@@ -86,14 +87,14 @@ function(pellucid_instruction_sets target)
       pellucid=pellucid_${set}
       PELLUCID_INSTRUCTION_SET=${set}
       PELLUCID_LANES=${_pellucid_lanes_${set}})
+    set(gcc_12 $<AND:$<CXX_COMPILER_ID:GNU>,$<VERSION_LESS:$<CXX_COMPILER_VERSION>,13>>)
     target_compile_options(${objects} PRIVATE
       ${_pellucid_flags_${set}}
-      # Optimised in every configuration: batches that are not kept in registers are of no use, and the
-      # standard library's small functions must be inlined, not left to the linker.
+      # Optimised in every configuration: batches that are not kept in registers are of no use, and
+      # the standard library's small functions must be inlined, not left to the linker.
       $<$<CONFIG:Debug>:-O2>
       # GCC 12 takes the undefined operand of its own intrinsics for a mistake (GCC bug 105593).
-      $<$<AND:$<CXX_COMPILER_ID:GNU>,$<VERSION_LESS:$<CXX_COMPILER_VERSION>,13>>:-Wno-uninitialized>
-      $<$<AND:$<CXX_COMPILER_ID:GNU>,$<VERSION_LESS:$<CXX_COMPILER_VERSION>,13>>:-Wno-maybe-uninitialized>)
+      $<${gcc_12}:-Wno-uninitialized> $<${gcc_12}:-Wno-maybe-uninitialized>)
     target_link_libraries(${objects} PRIVATE ${arg_LIBRARIES} pellucid_build_flags)
     target_sources(${target} PRIVATE $<TARGET_OBJECTS:${objects}>)
     set_property(GLOBAL APPEND PROPERTY PELLUCID_INSTRUCTION_SET_TARGETS ${objects})

@@ -1,10 +1,11 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
 """Goes through a folder of data and prints for each file what the program makes of it: read (with
-dimensions, spacing, type and range) or refused and why. Where the folder has a MANIFEST.md with tables of
-"file | what | dims | spacing | dtype | range", what it says of a file stands beside, and rows that differ are
-marked. Ends with 1 if a file is refused that is not one of REFUSED, crashed the program, hung it, took more memory than twice its data (and 300 MiB
-for the program and its libraries), or differs.
+dimensions, spacing, type and range) or refused and why. Where the folder has a MANIFEST.md with
+tables of "file | what | dims | spacing | dtype | range", what it says of a file stands beside, and
+rows that differ are marked. Ends with 1 if a file is refused that is not one of REFUSED, crashed
+the program, hung it, took more memory than twice its data (and 300 MiB for the program and its
+libraries), or differs.
 
   survey.py PROGRAM FOLDER [MARKDOWN]
 """
@@ -20,9 +21,12 @@ import tempfile
 SECONDS = 120
 PROGRAM_BYTES = 300 << 20
 # Read with another file, or no data at all.
-PARTS = re.compile(r"\.(raw|zraw|img\.gz|img|py|md|csv|txt|plist)$|SHA256SUMS$|/quarter\.\d+$|q\.bin$")
-# What is no volume, or is refused by name: images of one and two axes and a single value, adaptive grids, level sets.
-REFUSED = re.compile(r"/test[12]d_\w+\.nrrd$|/test_simple4d_raw\.nrrd$|/chombo3d\.vtm$|\.(vthb|htg|amr)$|/sphere\.vdb$")
+PARTS = re.compile(r"\.(raw|zraw|img\.gz|img|py|md|csv|txt|plist)$|SHA256SUMS$|/quarter\.\d+$"
+                   r"|q\.bin$")
+# What is no volume, or is refused by name: images of one and two axes and a single value, adaptive
+# grids, level sets.
+REFUSED = re.compile(r"/test[12]d_\w+\.nrrd$|/test_simple4d_raw\.nrrd$|/chombo3d\.vtm$"
+                     r"|\.(vthb|htg|amr)$|/sphere\.vdb$")
 # What headerless files need to be told, as MANIFEST.md does.
 TOLD = {
     "structured/aneurism/aneurism.raw.gz": ["--dimensions", "256,256,256", "--type", "u8"],
@@ -48,15 +52,17 @@ def expectations(folder):
 
 
 def row_of(rows, name, known=None):
-    """The row whose file it is: by its name, with {a,b} and * of the first column taken for a pattern. Adds it
-    to the known ones."""
+    """The row whose file it is: by its name, with {a,b} and * of the first column taken for a
+    pattern. Adds it to the known ones."""
     for number, row in enumerate(rows):
         for pattern in re.split(r"\s*,\s+(?=\w+/)|\s+;\s+", row[0]):
             pattern = pattern.split(" ")[0]
             folder = pattern.rsplit("/", 1)[0]
             expression = re.escape(pattern).replace(r"\*", ".*")
-            expression = re.sub(r"\\\{([^}]*)\\\}", lambda m: "(" + m.group(1).replace(",", "|") + ")", expression)
-            if re.fullmatch(expression, name) or (pattern.endswith("/") and name.startswith(folder + "/")):
+            expression = re.sub(r"\\\{([^}]*)\\\}",
+                                lambda m: "(" + m.group(1).replace(",", "|") + ")", expression)
+            if re.fullmatch(expression, name) or (pattern.endswith("/")
+                                                  and name.startswith(folder + "/")):
                 if known is not None:
                     known.add(number)
                 return row
@@ -74,7 +80,8 @@ def differences(report, row):
     wanted = re.match(r"^(\d+)(?:x(\d+)x(\d+)|\^3)(?=$| \(| x\d| permuted)", row[2])
     if dims and wanted:
         one = int(wanted.group(1))
-        sides = [one, one, one] if wanted.group(2) is None else [one, int(wanted.group(2)), int(wanted.group(3))]
+        sides = [one, one, one] if wanted.group(2) is None else [one, int(wanted.group(2)),
+                                                                 int(wanted.group(3))]
         if "permuted" in row[2]:
             dims, sides = sorted(dims), sorted(sides)
         if dims != sides:
@@ -103,9 +110,11 @@ def run(program, folder, path, told):
         resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
 
     with tempfile.NamedTemporaryFile("w+") as peak:
-        command = ["/usr/bin/time", "-q", "-f", "%M", "-o", peak.name] if pathlib.Path("/usr/bin/time").exists() else []
+        command = ["/usr/bin/time", "-q", "-f", "%M",
+                   "-o", peak.name] if pathlib.Path("/usr/bin/time").exists() else []
         try:
-            result = subprocess.run(command + [program, "info", path, "--json", *told], cwd=folder, text=True,
+            result = subprocess.run(command + [program, "info", path, "--json", *told], cwd=folder,
+                                    text=True,
                                     capture_output=True, timeout=SECONDS, preexec_fn=limit)
         except subprocess.TimeoutExpired:
             return None, f"HANGS: longer than {SECONDS} s", 0
@@ -158,7 +167,8 @@ def main():
             items.append(parent)
         else:
             items.append(path)
-    lines = ["| file | read as | spacing | type | range | the manifest says otherwise |", "|---|---|---|---|---|---|"]
+    lines = ["| file | read as | spacing | type | range | the manifest says otherwise |",
+             "|---|---|---|---|---|---|"]
     refused, bad = [], []
     with tempfile.TemporaryDirectory() as scratch:
         for item in items:
@@ -182,8 +192,8 @@ def main():
             if wrong:
                 bad.append(f"{item}: {'; '.join(wrong)}")
             lines.append("| " + " | ".join((item, *describe(report), "; ".join(wrong))) + " |")
-    text = "\n".join([f"{len(lines) - 2} read, {len(refused)} refused, {len(bad)} wrong.", "", *lines, "",
-                      "| refused | why |", "|---|---|", *refused, ""])
+    text = "\n".join([f"{len(lines) - 2} read, {len(refused)} refused, {len(bad)} wrong.", "",
+                      *lines, "", "| refused | why |", "|---|---|", *refused, ""])
     if len(sys.argv) > 3:
         pathlib.Path(sys.argv[3]).write_text(text)
     print(text)

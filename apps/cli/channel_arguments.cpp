@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <utility>
 #include <variant>
 
 #include "parse.h"
@@ -52,8 +53,7 @@ std::vector<ChannelSource> all_sources(const ChannelArguments& arguments) {
   }
   if (sources.empty()) {
     throw UsageError(
-        fmt::format("there is nothing to look at; give FILE or --channel NAME=SOURCE (see "
-                    "'pellucid {} --help')",
+        fmt::format("no input; give FILE or --channel NAME=SOURCE (see 'pellucid {} --help')",
                     arguments.command));
   }
   refuse_options_without_files(sources, arguments.volume);
@@ -72,7 +72,7 @@ std::vector<ChannelSource> needed(const std::vector<ChannelSource>& sources,
   for (auto source = sources.rbegin(); source != sources.rend(); ++source) {
     if (std::find(names.begin(), names.end(), source->name) == names.end()) continue;
     if (const auto* derived = std::get_if<DerivedSource>(&source->source)) {
-      names.push_back(derived->of);
+      names.push_back(derived->channel);
     }
     kept.insert(kept.begin(), *source);
   }
@@ -83,24 +83,23 @@ std::vector<ChannelSource> needed(const std::vector<ChannelSource>& sources,
 
 void ChannelArguments::add_to(CommandLine& app) {
   command = app.get_name();
-  app.add_option(
-         "FILE", inputs,
-         std::string(input_help) + " or builtin:NAME[:POINTS]; several are channels on one grid")
+  app.add_option("FILE", inputs,
+                 std::string(input_help) +
+                     " or builtin:NAME[:POINTS]; several files are channels on one grid")
       ->option_text("...");
   app.add_option("--channel", channels,
-                 "A further channel, may be given several times; SOURCE is a file, FILE[C], "
-                 "builtin:NAME, gradient_magnitude:CHANNEL, second_derivative:CHANNEL or "
-                 "smoothed:CHANNEL:SIGMA")
+                 "Add a channel; may be repeated. SOURCE is a file, FILE[C], builtin:NAME, "
+                 "gradient_magnitude:CHANNEL, second_derivative:CHANNEL or smoothed:CHANNEL:SIGMA")
       ->option_text("NAME=SOURCE")
       ->allow_extra_args(false);
   app.add_option("--axes", axes,
-                 "The channels to look at; default: value,gradient_magnitude of one file, else "
-                 "all. Files are named by what stands before the first dot of their names")
+                 "Use these channels. Default: value,gradient_magnitude for one file, else all. "
+                 "Each of several files is named by its file name up to the first dot")
       ->option_text("NAME,NAME");
-  app.add_option("--threads", threads, "Threads; 0, the default: one per core")
+  app.add_option("--threads", threads, "Number of threads; 0 (default): one per core")
       ->option_text("N")
       ->in_range(0, 4096);
-  volume.add_to(app);
+  volume.add_to(app, true, false);
 }
 
 std::string ChannelArguments::source_text() const {
@@ -118,7 +117,7 @@ std::vector<std::string> file_channel_names(const std::vector<std::string>& inpu
     const bool builtin = input.starts_with("builtin:");
     const std::string file =
         builtin ? input.substr(8) : std::filesystem::path(input).filename().string();
-    const std::string name = as_channel_name(file.substr(0, file.find(builtin ? ':' : '.')));
+    const std::string name = to_channel_name(file.substr(0, file.find(builtin ? ':' : '.')));
     std::string numbered = name;
     for (int n = 2; std::find(names.begin(), names.end(), numbered) != names.end(); ++n) {
       numbered = fmt::format("{}_{}", name, n);
@@ -128,9 +127,16 @@ std::vector<std::string> file_channel_names(const std::vector<std::string>& inpu
   return names;
 }
 
-ChannelSelection select_channels(const ChannelArguments& arguments, int most) {
-  const std::vector<ChannelSource> sources = all_sources(arguments);
+ChannelSelection select_channels(const ChannelArguments& given, int most) {
+  ChannelArguments arguments = given;
+  std::vector<ChannelSource> sources = all_sources(arguments);
   const std::vector<std::string> names = channel_names(sources);
+  // Elsewhere --axes are those of an array. What is no channel is meant so here, too.
+  if (arguments.volume.axes.empty() && is_array_axes(arguments.axes) &&
+      std::find(names.begin(), names.end(), arguments.axes) == names.end()) {
+    arguments.volume.axes = std::exchange(arguments.axes, {});
+    sources = all_sources(arguments);
+  }
   ChannelSelection selection;
   if (!arguments.axes.empty()) {
     selection.axes = split(arguments.axes);
@@ -141,17 +147,16 @@ ChannelSelection select_channels(const ChannelArguments& arguments, int most) {
   }
   for (auto axis = selection.axes.begin(); axis != selection.axes.end(); ++axis) {
     if (std::find(names.begin(), names.end(), *axis) == names.end()) {
-      throw UsageError(fmt::format("--axes: '{}' is no channel; the channels are {}", *axis,
+      throw UsageError(fmt::format("--axes: unknown channel '{}'; the channels are {}", *axis,
                                    fmt::join(names, ", ")));
     }
     if (std::find(selection.axes.begin(), axis, *axis) != axis) {
-      throw UsageError(fmt::format("--axes: '{}' stands twice; name each once", *axis));
+      throw UsageError(fmt::format("--axes: '{}' is given twice; name each channel once", *axis));
     }
   }
   if (selection.axes.size() > static_cast<std::size_t>(most)) {
     throw UsageError(
-        fmt::format("there are {} channels to look at, but at most {} can be; choose by --axes, of "
-                    "{}",
+        fmt::format("{} channels are too many, at most {} can be used; choose by --axes from {}",
                     selection.axes.size(), most, fmt::join(names, ", ")));
   }
   selection.sources = needed(sources, selection.axes);

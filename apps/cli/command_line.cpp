@@ -166,7 +166,7 @@ bool CommandLine::parse(int argc, char** argv, const std::string& version) {
     const auto chosen = app_->get_subcommands();
     if (chosen.empty() && argc > 1 && argv[1][0] != '-') {
       throw UsageError(
-          fmt::format("'{}' is no command; the commands are {} (see 'pellucid --help')", argv[1],
+          fmt::format("unknown command '{}'; the commands are {} (see 'pellucid --help')", argv[1],
                       command_names(*app_)));
     }
     const std::string name = chosen.empty() ? "" : " " + chosen.back()->get_name();

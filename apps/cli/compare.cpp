@@ -83,8 +83,9 @@ std::string statistics_line(std::string_view name, const DifferenceStatistics& s
 std::string error_lines(const ErrorCheck& check) {
   const std::size_t known = check.pixels - check.unknown;
   std::string text = fmt::format(
-      "the error that A carries{}: {} of {} pixels differ by more; error / difference: median "
-      "{:.3g}, smallest {:.3g}\n",
+      "the error stored in A{}: {} of {} pixels differ by more; error / difference: median {:.3g}, "
+      "smallest {:.3g}\n"
+      "",
       check.unknown > 0 ? fmt::format(" (unknown in {} pixels)", check.unknown) : "", check.over,
       known, check.tightness_median, check.tightness_smallest);
   if (check.over > 0) {
@@ -104,8 +105,10 @@ std::string text_report(const Image& a, const Comparison& comparison) {
   text += fmt::format("largest at column {}, row {} (from the top left, counted from 0)\n",
                       d.column, d.row);
   if (d.all.not_finite > 0) {
-    text +=
-        fmt::format("{} values are not finite in one image and left out above\n", d.all.not_finite);
+    text += fmt::format(
+        "{} values are not finite in one image and are left out above\n"
+        "",
+        d.all.not_finite);
   }
   if (comparison.errors) text += error_lines(*comparison.errors);
   if (const auto& check = comparison.tolerance) {
@@ -204,29 +207,29 @@ int run_compare(const CompareArguments& arguments) {
 }  // namespace
 
 Command add_compare(CommandLine& app) {
-  CommandLine& command = *app.add_subcommand("compare", "Measure how two OpenEXR images differ");
+  CommandLine& command =
+      *app.add_subcommand("compare", "Measure how much two OpenEXR images differ");
   const auto arguments = std::make_shared<CompareArguments>();
   command.add_option("A", arguments->a, "OpenEXR image")->required();
   command.add_option("B", arguments->b, "OpenEXR image of the same size")->required();
   command
-      .add_option("--difference", arguments->difference,
-                  "Write a picture of |A - B|: .exr as it is, .png in grey with the largest white")
+      .add_option(
+          "--difference", arguments->difference,
+          "Write |A - B| as a picture: .exr not scaled, .png in grey with the largest white")
       ->option_text("FILE");
   command
       .add_option("--largest", arguments->largest,
-                  "Exit with 1 where the largest difference exceeds E")
+                  "Exit with 1 if the largest difference exceeds E")
       ->option_text("E");
   command
       .add_option("--tolerance", arguments->tolerance,
-                  "Exit with 3 where a pixel differs by more than E, and say how many; a fraction "
-                  "as 1/512 is fine")
+                  "Exit with 3 if a pixel differs by more than E, a number or a fraction as 1/512, "
+                  "and print how many do")
       ->option_text("E");
   command.add_flag("--json", arguments->json, "Print JSON");
   command.footer(
-      "Differences are taken of linear, premultiplied R, G, B and A; PSNR is for a peak of 1. "
-      "Where\n"
-      "A carries an error, as an .exr of 'pellucid render' does, it is held against the "
-      "difference.\n"
+      "Compares linear, premultiplied R, G, B and A. The PSNR is for a peak of 1. If A stores an\n"
+      "error, as an .exr of 'pellucid render' does, compares it with the difference.\n"
       "\n"
       "Examples:\n"
       "  pellucid compare exact.exr midpoint.exr\n"

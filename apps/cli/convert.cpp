@@ -43,13 +43,13 @@ struct ConvertArguments {
 
 void check_arguments(const ConvertArguments& arguments) {
   if (arguments.is_mesh() && !arguments.writes_tetrahedra()) {
-    throw UsageError(fmt::format("-o {}: a mesh is written as tetrahedra, .vtu; give such a name",
-                                 arguments.output));
+    throw UsageError(fmt::format(
+        "-o {}: a mesh is written as tetrahedra; give a name that ends in .vtu", arguments.output));
   }
-  if (!arguments.writes_tetrahedra() && !is_written_volume(arguments.output)) {
+  if (!arguments.writes_tetrahedra() && !is_writable_volume(arguments.output)) {
     throw UsageError(
-        fmt::format("-o {}: a volume is written as {}, or as tetrahedra, .vtu; give such a name",
-                    arguments.output, written_volume_extensions()));
+        fmt::format("-o {}: expected a name that ends in {}, or in .vtu for tetrahedra",
+                    arguments.output, writable_volume_extensions()));
   }
   const NamedFile outputs[] = {{"--output", arguments.output}};
   const NamedFile inputs[] = {{"INPUT", arguments.input}, {"--q", arguments.q}};
@@ -85,9 +85,11 @@ FieldSource volume_source(const ConvertArguments& arguments) {
 
 Converted convert(const ConvertArguments& arguments, const ParallelFor& parallel) {
   if (arguments.is_mesh()) {
-    const MeshFile file = read_mesh(arguments.input, {arguments.time, arguments.q});
+    MeshReadOptions options{arguments.time, arguments.q};
+    if (!arguments.quiet) options.note = print_note;
+    const MeshFile file = read_mesh(arguments.input, options);
     InterruptGuard::check();
-    return {tetrahedra_of(file.grid, parallel), file.grid.shapes.size()};
+    return {tetrahedralize(file.grid, parallel), file.grid.shapes.size()};
   }
   FieldSource source = volume_source(arguments);
   set_notes(source, arguments.quiet);
@@ -159,13 +161,13 @@ int run_convert(const ConvertArguments& arguments) {
   if (!arguments.writes_tetrahedra()) return convert_volume(arguments);
   const InterruptGuard guard;
   const Converted converted = convert(
-      arguments, parallel_for(arguments.threads > 0 ? arguments.threads : default_threads()));
+      arguments, parallel_for(arguments.threads > 0 ? arguments.threads : default_thread_count()));
   InterruptGuard::check();
   write_vtu(converted.tetrahedra, arguments.output);
   if (arguments.json) {
     print_json(json_report(arguments, converted));
   } else if (!arguments.quiet) {
-    print_note(fmt::format("{} cells became {} tetrahedra of {} points", converted.cells,
+    print_note(fmt::format("cut {} cells into {} tetrahedra of {} points", converted.cells,
                            converted.tetrahedra.shapes.size(), converted.tetrahedra.points.size()));
   }
   return 0;
@@ -178,37 +180,36 @@ Command add_convert(CommandLine& app) {
       "convert", "Write a volume in another format, or a volume or mesh as tetrahedra");
   const auto arguments = std::make_shared<ConvertArguments>();
   command
-      .add_option("input", arguments->input,
+      .add_option("INPUT", arguments->input,
                   fmt::format("{}, builtin:NAME[:POINTS], or mesh file ({})", input_help,
                               mesh_extensions()))
-      ->option_text("INPUT")
-      ->required();
-  command
-      .add_option("-o,--output", arguments->output,
-                  fmt::format("Volume to write ({}), or tetrahedra with all arrays (.vtu)",
-                              written_volume_extensions()))
-      ->option_text("FILE")
       ->required();
   command
       .add_option(
-          "--time", arguments->time,
-          "Of a file with several steps, the nearest to this time; default: the first of a mesh")
+          "-o,--output", arguments->output,
+          fmt::format("Write this file: a volume ({}), or tetrahedra with all arrays (.vtu)",
+                      writable_volume_extensions()))
+      ->option_text("FILE")
+      ->required();
+  command
+      .add_option("--time", arguments->time,
+                  "Read the step nearest to this time. Default: the first of a mesh")
       ->option_text("T");
-  command.add_option("--q", arguments->q, "The solution that belongs to a PLOT3D grid")
+  command.add_option("--q", arguments->q, "PLOT3D solution; INPUT is then a PLOT3D grid")
       ->option_text("FILE");
-  command.add_flag("--json", arguments->json, "Print what was written as JSON");
-  command.add_flag("-q,--quiet", arguments->quiet, "No notes, only errors");
-  command.add_option("--threads", arguments->threads, "Threads; 0, the default: one per core")
+  command.add_flag("--json", arguments->json, "Print a report of what was written as JSON");
+  command.add_flag("-q,--quiet", arguments->quiet, "Print no notes, only errors");
+  command
+      .add_option("--threads", arguments->threads, "Number of threads; 0 (default): one per core")
       ->option_text("N")
       ->in_range(0, 4096);
   arguments->volume.add_to(command);
   command.footer(
-      "Volumes keep their type, their components and what the format has of their placement; what\n"
-      "it has not is said.\n"
+      "A volume keeps its type and components. A note names each property that the format cannot\n"
+      "hold, and the options that restore it.\n"
       "\n"
-      "Meshes are cut as 'pellucid render' cuts them: quadrilaterals by the diagonal at their "
-      "point\n"
-      "of the smallest index, quadratic cells at their nodes.\n"
+      "Meshes are cut as 'pellucid render' cuts them: quadrilaterals by the diagonal at their\n"
+      "point of smallest index, quadratic cells at their nodes.\n"
       "\n"
       "Examples:\n"
       "  pellucid convert isabel.vti -o isabel.nrrd --array velocityMag\n"

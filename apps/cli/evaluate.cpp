@@ -139,30 +139,32 @@ template TransferFunction transfer_function_of<double>(const CsvTable&, std::siz
 
 Command add_evaluate(CommandLine& app) {
   CommandLine& command =
-      *app.add_subcommand("evaluate", "Evaluate the kernels on a table of inputs of your own");
+      *app.add_subcommand("evaluate", "Run the integration kernels on a table of your own");
   const auto arguments = std::make_shared<EvaluateArguments>();
   command.add_option("KIND", arguments->kind, fmt::format("{}", fmt::join(kind_names(), ", ")))
       ->required()
       ->one_of(kind_names());
-  command.add_option("TABLE", arguments->table, "CSV with a header line, an id and the inputs")
+  command
+      .add_option("TABLE", arguments->table, "CSV with a header line, a column id and the inputs")
       ->required();
-  command.add_option("-o,--output", arguments->output, "CSV to write: id and the outputs")
+  command
+      .add_option("-o,--output", arguments->output, "Write this CSV: id and the outputs. Required")
       ->required()
       ->option_text("FILE.csv");
   command
       .add_option("--precision", arguments->precision,
-                  "float or double (default): inputs are rounded to it, kernels run in it")
+                  "Type of inputs and kernels: float or double (default)")
       ->option_text("TYPE")
       ->one_of({"float", "double"});
   command
       .add_option("--tolerance", arguments->tolerance,
-                  "Of trilinear_cell and gaussian_mixture_segment; default 1e-6 in float, 1e-10 in "
-                  "double")
+                  "Tolerance of trilinear_cell and gaussian_mixture_segment, between 0 and 1. "
+                  "Default: 1e-6 in float, 1e-10 in double")
       ->option_text("E");
 
   std::string footer =
-      "Columns are found by name, in any order; others are passed over. Numbers of a list are\n"
-      "separated by ';', lists in a cell by '|'. Rows keep their order.\n";
+      "Columns are found by name, in any order; others are ignored. ';' separates the numbers of\n"
+      "a list, '|' separates lists. Rows keep their order.\n";
   for (const EvaluateKind& kind : kinds()) {
     footer += fmt::format("\n{}\n  reads  {}\n  writes {}\n", kind.name,
                           fmt::join(kind.inputs, ","), fmt::join(kind.outputs, ","));

@@ -66,14 +66,15 @@ MultivariateTransferFunction gaussians_of(const CsvTable& table,
 SegmentResult<double> integrate_gaussian_cell(const CubicBernstein<double>& data, double length,
                                               const MultivariateTransferFunction& function,
                                               double tolerance) {
-  const Multivariate<double> transfer = function.view();
+  const MultivariateTransfer<double> transfer = function.view();
   const RayTolerance wanted{tolerance, Grade::estimated, Precision::float64,
                             function.largest_color()};
   MultivariateSpan<double> span;
   span.data[0] = data;
   span.length = length;
   MultivariateRayIntegrator integrator(transfer, function.largest_extinction(), wanted, length);
-  if (length > 0) integrator.stretch(span, {0, length}, {}, 0, 8 * rounding_unit<double> * length);
+  if (length > 0)
+    integrator.add_stretch(span, {0, length}, {}, 0, 8 * rounding_unit<double> * length);
   const RayResult result = integrator.result();
   return {result.optical_depth, result.opacity, 1 - result.opacity, result.radiance};
 }

@@ -25,7 +25,7 @@ double wide(T x) {
 /// One to eight numbers at each end, front first.
 template <class T>
 struct Ends {
-  T v1[most_channels]{}, v2[most_channels]{};
+  T v1[max_channels]{}, v2[max_channels]{};
   std::size_t channels = 0;
 };
 
@@ -33,9 +33,9 @@ template <class T>
 Ends<T> ends_of(const CsvTable& table, std::size_t row, std::size_t front, std::size_t back) {
   const std::vector<T> v1 = table.list<T>(row, front);
   const std::vector<T> v2 = list_of<T>(table, row, back, v1.size());
-  if (v1.empty() || v1.size() > most_channels) {
+  if (v1.empty() || v1.size() > max_channels) {
     throw Error(fmt::format("{}, column '{}': {} numbers; expected 1 to {}, one for each channel",
-                            table.where(row), table.columns()[front], v1.size(), most_channels));
+                            table.where(row), table.columns()[front], v1.size(), max_channels));
   }
   Ends<T> ends;
   ends.channels = v1.size();
@@ -52,9 +52,9 @@ Gaussian<T> primitive_of(const std::string& what, const Ends<T>& ends, const std
   if (center.size() != n) {
     throw Error(fmt::format("{}: c has {} numbers where v1 has {}", what, center.size(), n));
   }
-  if (matrix.empty() || matrix.size() % n != 0 || matrix.size() > n * most_channels) {
+  if (matrix.empty() || matrix.size() % n != 0 || matrix.size() > n * max_channels) {
     throw Error(fmt::format("{}: K has {} numbers; expected 1 to {} rows of {}", what,
-                            matrix.size(), most_channels, n));
+                            matrix.size(), max_channels, n));
   }
   GaussianPrimitive checked;
   Gaussian<T> g;
@@ -79,9 +79,9 @@ Gaussian<T> primitive_of(const std::string& what, const Ends<T>& ends, const std
   } catch (const Error& error) {
     throw Error(fmt::format("{}: {}", what, error.what()));
   }
-  T p[2][most_channels];
-  g.place(ends.v1, p[0]);
-  g.place(ends.v2, p[1]);
+  T p[2][max_channels];
+  g.transform(ends.v1, p[0]);
+  g.transform(ends.v2, p[1]);
   for (int i = 0; i < g.rows; ++i) {
     if (!std::isfinite(p[0][i]) || !std::isfinite(p[1][i])) {
       throw Error(fmt::format("{}: K (v - c) is out of the range of {}", what,
@@ -100,8 +100,9 @@ void check_depth(const std::string& what, T peak, T length) {
 
 /// A sum of one primitive is computed by the same kernels as one of many.
 template <class T>
-Multivariate<T> transfer_of(const std::vector<Gaussian<T>>& primitives, std::size_t channels) {
-  Multivariate<T> transfer;
+MultivariateTransfer<T> transfer_of(const std::vector<Gaussian<T>>& primitives,
+                                    std::size_t channels) {
+  MultivariateTransfer<T> transfer;
   transfer.gaussians = {primitives.data(), static_cast<int>(primitives.size())};
   transfer.channels = static_cast<int>(channels);
   return transfer;
@@ -119,8 +120,7 @@ void segment_row(const CsvTable& table, const std::vector<std::size_t>& columns,
                                         table.list<T>(row, columns[1]), peak, {});
   const SegmentResult<T> s =
       mean_color_segment(rule, transfer_of<T>({g}, ends.channels), ends.v1, ends.v2, length);
-  outputs = {wide(mean_density_by(rule, g, ends.v1, ends.v2)), wide(s.optical_depth),
-             wide(s.opacity)};
+  outputs = {wide(mean_density(rule, g, ends.v1, ends.v2)), wide(s.optical_depth), wide(s.opacity)};
 }
 
 /// The sum's primitives.

@@ -31,7 +31,8 @@ void check_arguments(const HistogramArguments& arguments, const ChannelSelection
         "--help')");
   }
   if (!arguments.range_y.empty() && selection.axes.size() < 2) {
-    throw UsageError("--range-y: there is one axis only; drop it, or name two channels by --axes");
+    throw UsageError(
+        "--range-y: there is one axis only; drop --range-y, or name two channels by --axes");
   }
   if (arguments.output.empty()) return;
   if (extension_of(arguments.output) != ".png") {
@@ -111,7 +112,7 @@ int run_histogram(const HistogramArguments& arguments) {
   const ChannelSelection selection = select_channels(arguments.channels, 2);
   check_arguments(arguments, selection);
   const int threads =
-      arguments.channels.threads > 0 ? arguments.channels.threads : default_threads();
+      arguments.channels.threads > 0 ? arguments.channels.threads : default_thread_count();
   const LoadedChannels loaded = load_channels(selection, threads);
   const JointHistogram histogram = joint_histogram(
       loaded.channels, loaded.which, axes_of(arguments, loaded), parallel_for(threads));
@@ -128,7 +129,7 @@ int run_histogram(const HistogramArguments& arguments) {
   }
   if (arguments.json) print_json(json_report(arguments, loaded, histogram));
   if (histogram.nan > 0) {
-    print_note(fmt::format("{} places with a NaN are not counted", histogram.nan));
+    print_note(fmt::format("{} points with a NaN are not counted", histogram.nan));
   }
   return 0;
 }
@@ -137,26 +138,28 @@ int run_histogram(const HistogramArguments& arguments) {
 
 Command add_histogram(CommandLine& app) {
   CommandLine& command =
-      *app.add_subcommand("histogram", "Count how often values, or two values together, occur");
+      *app.add_subcommand("histogram", "Count the values of one or two variables together");
   const auto arguments = std::make_shared<HistogramArguments>();
   command
       .add_option("-o,--output", arguments->output,
-                  "Picture to write: counts on a logarithmic scale, numbers along the axes")
+                  "Write a picture of the counts on a logarithmic scale")
       ->option_text("FILE.png");
-  command.add_flag("--json", arguments->json, "Print edges, counts and ranges as JSON");
+  command.add_flag("--json", arguments->json, "Print the ranges, edges and counts as JSON");
   arguments->channels.add_to(command);
   command
       .add_option("--bins", arguments->bins,
-                  "Bins along each axis, from 1 to 4096; default: 256. Integers share a bin in "
-                  "equal numbers, in fewer bins where that takes fewer")
+                  "Bins along each axis, 1 to 4096. Default: 256. A bin of integers holds equally "
+                  "many of them, so there may be fewer bins")
       ->option_text("N|NxM");
-  command.add_option("--range-x", arguments->range_x, "The first axis; default: all values")
+  command
+      .add_option("--range-x", arguments->range_x, "Range of the first axis. Default: all values")
       ->option_text("LOWER,UPPER");
-  command.add_option("--range-y", arguments->range_y, "The second axis; default: all values")
+  command
+      .add_option("--range-y", arguments->range_y, "Range of the second axis. Default: all values")
       ->option_text("LOWER,UPPER");
   command.footer(
-      "Of one file it is value by gradient magnitude, where boundaries are arches between the\n"
-      "materials that they part.\n"
+      "One file is counted by value and gradient magnitude: materials are spots at small\n"
+      "gradients, boundaries are arches between two materials.\n"
       "\n"
       "Examples:\n"
       "  pellucid histogram brain.nii.gz -o brain-histogram.png\n"

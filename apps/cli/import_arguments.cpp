@@ -10,23 +10,24 @@ namespace pellucid::cli {
 void ImportArguments::add_to(CommandLine& command) {
   command
       .add_option("--range", range,
-                  "Values that the first and the last point of a preset, or of another program's "
-                  "transfer function, are moved to")
+                  "Move the first and last point of a preset, or of another program's transfer "
+                  "function, to these data values")
       ->option_text("A,B");
-  given = {
-      command.add_option("--map", map, "Of another program's file: the color map of this name")
-          ->option_text("NAME"),
-      command
-          .add_option("--unit-distance", unit_distance,
-                      "Of another program's transfer function: the thickness, in world units, of a "
-                      "layer that has its opacities; default: the file's, else 1")
-          ->option_text("LENGTH"),
-      command
-          .add_option("--colors", colors,
-                      "Of another program's transfer function: whether its colors are srgb or "
-                      "linear; default: what the format means")
-          ->option_text("KIND")
-          ->one_of({"srgb", "linear"})};
+  given = {command
+               .add_option("--map", map,
+                           "Use this color map of another program's file. Default: the first")
+               ->option_text("NAME"),
+           command
+               .add_option("--unit-distance", unit_distance,
+                           "Thickness, in world units, of the layer that has the opacities of "
+                           "another program's transfer function. Default: the file's, else 1")
+               ->option_text("LENGTH"),
+           command
+               .add_option("--colors", colors,
+                           "Read the colors of another program's transfer function as srgb or "
+                           "linear. Default: as the format defines")
+               ->option_text("KIND")
+               ->one_of({"srgb", "linear"})};
 }
 
 ImportOptions ImportArguments::options(double deviation) const {
@@ -41,7 +42,7 @@ ImportOptions ImportArguments::options(double deviation) const {
                                  *unit_distance, smallest_unit_distance, largest_unit_distance));
   }
   if (!colors.empty()) {
-    options.numbers = colors == "linear" ? ColorNumbers::linear : ColorNumbers::srgb;
+    options.encoding = colors == "linear" ? ColorEncoding::linear : ColorEncoding::srgb;
   }
   return options;
 }

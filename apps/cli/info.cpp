@@ -5,6 +5,7 @@
 #include <cmath>
 #include <iterator>
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -14,11 +15,13 @@
 #include "info_mesh.h"
 #include "info_series.h"
 #include "input.h"
+#include "labels.h"
 #include "mesh_input.h"
 #include "orientation.h"
 #include "output.h"
 #include "pellucid/base/version.h"
 #include "pellucid/io/dicom_series.h"
+#include "pellucid/scene/labels.h"
 
 namespace pellucid::cli {
 
@@ -38,6 +41,8 @@ struct Facts {
   Vec3<double> world_lower, world_upper;
   bool anatomical = false;
   Orientation orientation;
+  std::string unit;                                ///< of the values; empty: the file names none
+  std::vector<std::optional<std::size_t>> labels;  ///< label_count of each component
 };
 
 /// The formats that are placed in LPS by what they say themselves.
@@ -72,6 +77,7 @@ Facts facts_of(const std::vector<Volume>& components, const FieldSource& source)
     facts.bytes += std::visit([](const auto& values) { return values.size() * sizeof(values[0]); },
                               component.data());
     facts.mean.push_back(mean_of(component));
+    facts.labels.push_back(source.builtin.empty() ? label_count(component) : std::nullopt);
   }
   const Volume& volume = components.front();
   const auto corners = volume.world_corners();
@@ -85,6 +91,9 @@ Facts facts_of(const std::vector<Volume>& components, const FieldSource& source)
   facts.anatomical = source.builtin.empty() && is_medical(source.file);
   if (facts.anatomical) {
     facts.orientation = anatomical_orientation(volume.description().placement.direction);
+  }
+  if (source.builtin.empty() && is_dicom(source.file)) {
+    facts.unit = dicom_unit(source.file, source.options.series);
   }
   return facts;
 }
@@ -172,7 +181,7 @@ std::string text_report(const std::vector<Volume>& components, const Facts& fact
              (facts.orientation.oblique_by > 0.01
                   ? fmt::format(", oblique by {:.2f} degrees", facts.orientation.oblique_by)
                   : "") +
-             " (where the indices grow to; the world is LPS)");
+             " (directions of growing indices; the world is LPS)");
   }
   line("world box", fmt::format("{} to {}", triple(facts.world_lower), triple(facts.world_upper)));
   if (components.size() > 1) {
@@ -182,29 +191,35 @@ std::string text_report(const std::vector<Volume>& components, const Facts& fact
       std::string about = range_text(statistics);
       if (statistics.finite > 0) about += ", mean " + number(facts.mean[c]);
       if (statistics.nan > 0) about += ", NaN " + nan_text(statistics);
+      if (facts.labels[c]) about += ", " + labels_text(*facts.labels[c]);
       line(fmt::format("component {}", c), about);
     }
     return text;
   }
   const VolumeStatistics& statistics = volume.statistics();
   line("range", range_text(statistics));
+  if (!facts.unit.empty()) line("unit", facts.unit);
   if (statistics.finite > 0) line("mean", number(facts.mean.front()));
   line("NaN", nan_text(statistics));
+  if (facts.labels.front()) line("labels", labels_text(*facts.labels.front()));
   if (statistics.finite > 0) {
-    text += "histogram    lower end of the bin, values, bar on a logarithmic scale\n";
+    text +=
+        "histogram    lower end of each bin, number of values, bar on a logarithmic scale\n"
+        "";
     text += bar_chart(volume.histogram(24));
   }
   return text;
 }
 
 /// What is told of each component.
-Json values_json(const Volume& volume, double mean) {
+Json values_json(const Volume& volume, double mean, const std::optional<std::size_t>& labels) {
   const auto& statistics = volume.statistics();
   const bool any = statistics.finite > 0;
   Json json;
   json["range"] = any ? Json{statistics.minimum, statistics.maximum} : Json();
   json["mean"] = any ? Json(mean) : Json();
   json["nan"] = statistics.nan;
+  json["labels"] = labels ? Json(*labels) : Json();
   if (any) {
     const Histogram histogram = volume.histogram(256);
     json["histogram"] = {
@@ -236,15 +251,24 @@ Json json_report(const std::vector<Volume>& components, const Facts& facts, cons
   json["orientation"] = facts.anatomical ? Json(facts.orientation.code) : Json();
   json["oblique_degrees"] = facts.anatomical ? Json(facts.orientation.oblique_by) : Json();
   json["world_box"] = {to_json(facts.world_lower), to_json(facts.world_upper)};
+  json["unit"] = facts.unit.empty() ? Json() : Json(facts.unit);
   if (components.size() == 1) {
-    json.update(values_json(volume, facts.mean.front()));
+    json.update(values_json(volume, facts.mean.front(), facts.labels.front()));
     return json;
   }
   json["components"] = Json::array();
   for (std::size_t c = 0; c < components.size(); ++c) {
-    json["components"].push_back(values_json(components[c], facts.mean[c]));
+    json["components"].push_back(values_json(components[c], facts.mean[c], facts.labels[c]));
   }
   return json;
+}
+
+/// Chooses the array that the list marks, if its name is that of no other: a file of several arrays
+/// may have none that is read by default.
+void choose_shown(const std::vector<VolumeArray>& arrays, ReadOptions& options) {
+  const auto shown = std::ranges::find_if(arrays, &VolumeArray::shown);
+  if (options.array || shown == arrays.end()) return;
+  if (std::ranges::count(arrays, shown->name, &VolumeArray::name) == 1) options.array = shown->name;
 }
 
 int run_info(const InfoArguments& arguments) {
@@ -264,6 +288,7 @@ int run_info(const InfoArguments& arguments) {
   std::string chosen;
   if (source.builtin.empty()) {
     arrays = list_arrays(source.file, source.options);
+    choose_shown(arrays, source.options);
     NamedComponents read = read_named_components(source.file, source.options);
     components = std::move(read.components);
     chosen = read.array;
@@ -290,13 +315,14 @@ int run_info(const InfoArguments& arguments) {
 }  // namespace
 
 Command add_info(CommandLine& app) {
-  CommandLine& command = *app.add_subcommand("info", "Say what is in a volume or mesh file");
+  CommandLine& command = *app.add_subcommand("info", "Print what is in a volume or mesh file");
   const auto arguments = std::make_shared<InfoArguments>();
   command
       .add_option("INPUT", arguments->input,
                   std::string(input_help) + ", " + mesh_input_help() + " or builtin:NAME[:POINTS]")
       ->required();
-  command.add_flag("--json", arguments->json, "Print JSON, with a histogram of 256 bins");
+  command.add_flag("--json", arguments->json,
+                   "Print the same as JSON, with a histogram of 256 bins");
   arguments->volume.add_to(command);
   arguments->mesh.add_to(command, false);
   command.footer(

@@ -28,8 +28,8 @@ std::string range_text(const VolumeStatistics& component) {
 std::string arrays_text(const std::vector<VolumeArray>& arrays, const std::string& chosen) {
   std::string text = arrays.empty() ? "" : "arrays       range of each component\n";
   for (const VolumeArray& array : arrays) {
-    if (!array.not_read.empty()) {
-      text += fmt::format("  {}  not read: {}\n", array.name, array.not_read);
+    if (!array.unreadable_reason.empty()) {
+      text += fmt::format("  {}  not read: {}\n", array.name, array.unreadable_reason);
       continue;
     }
     std::string ranges;
@@ -39,7 +39,7 @@ std::string arrays_text(const std::vector<VolumeArray>& arrays, const std::strin
     const std::size_t components =
         array.components.size() + static_cast<std::size_t>(array.more_components);
     if (array.more_components > 0) {
-      ranges += fmt::format("; {} more are not looked at", array.more_components);
+      ranges += fmt::format("; {} more were not examined", array.more_components);
     }
     text += fmt::format("  {} ({}, {}{}){}  {}\n", array.name, centering_name(array), array.type,
                         components > 1 ? fmt::format(" x {}", components) : "",
@@ -64,7 +64,7 @@ Json arrays_json(const std::vector<VolumeArray>& arrays) {
                     {"dimensions", array.dimensions},
                     {"components", std::move(components)}});
     if (array.more_components > 0) list.back()["more_components"] = array.more_components;
-    if (!array.not_read.empty()) list.back()["not_read"] = array.not_read;
+    if (!array.unreadable_reason.empty()) list.back()["not_read"] = array.unreadable_reason;
   }
   return list;
 }

@@ -30,7 +30,11 @@ constexpr std::array shape_names{
     std::pair{CellShape::quadratic_wedge, "quadratic wedges"},
     std::pair{CellShape::quadratic_hexahedron, "quadratic hexahedra"},
     std::pair{CellShape::biquadratic_wedge, "biquadratic wedges"},
-    std::pair{CellShape::triquadratic_hexahedron, "triquadratic hexahedra"}};
+    std::pair{CellShape::triquadratic_hexahedron, "triquadratic hexahedra"},
+    std::pair{CellShape::lagrange_tetrahedron, "Lagrange tetrahedra"},
+    std::pair{CellShape::lagrange_wedge, "Lagrange wedges"},
+    std::pair{CellShape::lagrange_hexahedron, "Lagrange hexahedra"},
+    std::pair{CellShape::polyhedron, "polyhedra"}};
 
 struct NamedCount {
   const char* name;
@@ -78,7 +82,7 @@ std::shared_ptr<const MeshChannels> cells_alone(UnstructuredGrid grid) {
   const std::string none = "none";
   grid.arrays = {{none, Centering::cell, 1, DataArray<std::uint8_t>(grid.shapes.size())}};
   const MeshArrayChoice choice{none, std::nullopt, none};
-  return cut_into_tetrahedra(grid, {&choice, 1}, parallel_for(default_threads()));
+  return cut_into_tetrahedra(grid, {&choice, 1}, parallel_for(default_thread_count()));
 }
 
 std::string centering_name(const MeshArray& array) {
@@ -127,8 +131,8 @@ void print_text_report(const MeshFile& file, const TetrahedralMesh& mesh) {
     line("left out", fmt::format("{} ghost or hidden cells", file.ghost_cells));
   }
   if (file.blocks > 1) {
-    line("blocks", fmt::format("{}; {} points of theirs made one, {} kept apart, where values jump",
-                               file.blocks, file.merged_points, file.torn_points));
+    line("blocks", fmt::format("{}; {} duplicate points merged, {} kept apart where values jump",
+                               file.blocks, file.merged_points, file.discontinuous_points));
   }
   if (!file.times.empty()) {
     line("times",
@@ -142,10 +146,12 @@ void print_text_report(const MeshFile& file, const TetrahedralMesh& mesh) {
        fmt::format("{} after cutting, with {} faces at the boundary; volume {}, mean "
                    "edge {}",
                    s.tetrahedra, s.boundary_faces, number(s.volume), number(s.mean_edge)));
-  line("orphans", fmt::format("{} points that no cell uses", s.orphans));
-  line("flat", fmt::format("{} tetrahedra without volume", s.flat));
+  line("orphans", fmt::format("{} points that no cell uses", s.unused_points));
+  line("flat", fmt::format("{} tetrahedra without volume", s.degenerate));
   line("folded", fmt::format("{} faces with overlap{}", s.folded_faces,
                              s.folded_faces > 0 ? " (pixels that see it are not known)" : ""));
+  if (const std::string note = overlap_note(s); !note.empty()) line("note", note);
+  for (const std::string& note : file.notes) line("note", note);
   const std::string shown = grid.arrays.empty() ? "" : default_array(file).name;
   line("arrays", grid.arrays.empty() ? "none" : "range of each component");
   for (const MeshArray& array : grid.arrays) {
@@ -189,20 +195,26 @@ void print_json_report(const MeshFile& file, const TetrahedralMesh& mesh,
   for (const NamedCount& shape : count_shapes(file.grid)) json["cells"][shape.name] = shape.count;
   json["flat_cells"] = file.flat_cells;
   json["ghost_cells"] = file.ghost_cells;
+  json["trimmed_cells"] = file.trimmed_cells;
+  json["notes"] = file.notes;
+  if (const std::string note = overlap_note(s); !note.empty()) json["notes"].push_back(note);
   json["blocks"] = file.blocks;
   json["merged_points"] = file.merged_points;
-  json["torn_points"] = file.torn_points;
+  json["torn_points"] = file.discontinuous_points;
   json["times"] = file.times;
   json["time"] = file.time ? Json(*file.time) : Json();
   json["world_box"] = {to_json(mesh.bounds().lower), to_json(mesh.bounds().upper)};
-  json["mesh"] = {{"points", s.points},
-                  {"orphans", s.orphans},
-                  {"tetrahedra", s.tetrahedra},
-                  {"boundary_faces", s.boundary_faces},
-                  {"flat", s.flat},
-                  {"folded_faces", s.folded_faces},
-                  {"volume", s.volume},
-                  {"mean_edge", s.mean_edge}};
+  json["mesh"] = {
+      {"points", s.points},
+      {"orphans", s.unused_points},
+      {"tetrahedra", s.tetrahedra},
+      {"boundary_faces", s.boundary_faces},
+      {"flat", s.degenerate},
+      {"folded_faces", s.folded_faces},
+      {"overlapping_cells", s.overlapping_cells},
+      {"first_overlapping_cell", s.overlapping_cells > 0 ? Json(s.first_overlapping_cell) : Json()},
+      {"volume", s.volume},
+      {"mean_edge", s.mean_edge}};
   json["arrays"] = arrays_json(file.grid);
   json["default_array"] = file.grid.arrays.empty() ? Json() : Json(default_array(file).name);
   print_json(json);

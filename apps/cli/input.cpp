@@ -18,41 +18,60 @@ constexpr const char* group = "Options of volume files";
 
 }  // namespace
 
-void VolumeOptions::add_to(CommandLine& command, bool with_array) {
+void VolumeOptions::add_to(CommandLine& command, bool with_array, bool with_axes) {
   const auto add = [&](Option* option) { given.push_back(option->group(group)); };
-  add(command.add_option("--dimensions", dimensions, "Values along x, y, z of a .raw file")
+  add(command
+          .add_option("--dimensions", dimensions,
+                      "Headerless data: number of values along x, y, z; required")
           ->option_text("X,Y,Z"));
-  add(command.add_option("--type", type, "Number type of a .raw file")
+  add(command
+          .add_option("--type", type,
+                      "Headerless data: u8, i8, u16, i16, u32, i32, u64, i64, f16, f32 or f64; "
+                      "required")
           ->option_text("TYPE")
-          ->one_of({"u8", "i8", "u16", "i16", "u32", "i32", "f32", "f64"}));
-  add(command.add_flag("--big-endian", big_endian, "Byte order of a .raw file (default little)"));
-  add(command.add_option("--skip-bytes", skip_bytes, "Length of a header to skip in a .raw file")
+          ->one_of({"u8", "i8", "u16", "i16", "u32", "i32", "u64", "i64", "f16", "f32", "f64"}));
+  add(command.add_flag("--big-endian", big_endian,
+                       "Headerless data: big endian. Default: little endian"));
+  add(command
+          .add_option("--skip-bytes", skip_bytes,
+                      "Headerless data: skip a header of N bytes. Default: 0")
           ->option_text("N"));
-  add(command.add_option("--components", components, "Numbers at each point of a .raw file")
+  add(command
+          .add_option("--components", components,
+                      "Headerless data: interleaved values at each point. Default: 1")
           ->option_text("N"));
-  add(command.add_option("--component", component, "Which one, from 0, of a file with several")
+  add(command
+          .add_option("--component", component,
+                      "Read this component, from 0, of a file with several")
           ->option_text("C"));
   if (with_array) {
     add(command
             .add_option("--array", array,
-                        "Which one, by name, of a file with several; default: the active scalars, "
-                        "else the first of points with one component. :C is --component C")
+                        "Read this array, or its component C, from 0. Default: the active scalars, "
+                        "else the first point array with one component")
             ->option_text("ARRAY[:C]"));
   }
   add(command
+          .add_option(with_axes ? "--array-axes,--axes" : "--array-axes", axes,
+                      "NumPy and HDF5: axes of the array in the order of its indices, c for "
+                      "components. Default: zyx; of four zyxc or czyx, as a note says")
+          ->option_text("LETTERS"));
+  add(command
           .add_option("--series", series,
-                      "Of a folder with several DICOM series: its number as 'pellucid info' lists "
-                      "them, its UID, or the unique end of it")
+                      "Read this DICOM series of a folder: its number in the list of 'pellucid "
+                      "info', its UID, or a unique ending of it")
           ->option_text("N|UID"));
   add(command
-          .add_option("--spacing", spacing, "Distance of values along x, y, z; replaces the file's")
+          .add_option("--spacing", spacing,
+                      "Distance between neighbouring values along x, y, z, in world units. "
+                      "Default: the file's")
           ->option_text("X,Y,Z"));
   add(command
-          .add_option("--origin", origin, "World position of the first value; replaces the file's")
+          .add_option("--origin", origin, "World position of the first value. Default: the file's")
           ->option_text("X,Y,Z"));
   add(command
           .add_option("--centering", centering,
-                      "Whether values stand at grid points or fill cells; replaces the file's")
+                      "Values lie at grid points, or fill cells. Default: the file's")
           ->option_text("point|cell")
           ->one_of({"point", "cell"}));
 }
@@ -75,6 +94,15 @@ ReadOptions VolumeOptions::read_options() const {
   read.components = components;
   read.component = component;
   if (!series.empty()) read.series = series;
+  if (!axes.empty()) {
+    if (!is_array_axes(axes)) {
+      throw UsageError(fmt::format(
+          "--array-axes: '{}' does not name axes; give x, y and z, and c for components, "
+          "in the order of the array's indices: zyx, xyz, czyx",
+          axes));
+    }
+    read.axes = axes;
+  }
   if (!array.empty()) {
     const MeshArrayChoice choice = parse_mesh_array(array);
     read.array = choice.array;
@@ -90,6 +118,13 @@ ReadOptions VolumeOptions::read_options() const {
   }
   if (!centering.empty()) read.centering = centering == "cell" ? Centering::cell : Centering::point;
   return read;
+}
+
+bool is_array_axes(const std::string& text) {
+  std::string letters = lower_case(text);
+  std::ranges::replace(letters, 't', 'c');
+  std::ranges::sort(letters);
+  return letters == "xyz" || letters == "cxyz";
 }
 
 FieldSource field_source(const std::string& input, const VolumeOptions& options) {

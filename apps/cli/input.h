@@ -13,7 +13,7 @@ namespace pellucid::cli {
 
 /// What INPUT may be, for help texts.
 inline constexpr const char* input_help =
-    "Volume file (.nii, .nii.gz, .hdr, .img, .nrrd, .nhdr, .mha, .mhd, .npy, .vti, .pvti, .vtr, "
+    "Volume file (.nii, .nii.gz, .hdr, .img, .nrrd, .nhdr, .mha, .mhd, .npy, .npz, .vti, .pvti, "
     ".pvtr, .vtk, .slc, .h5, .hdf5, .he5, .nc, .nc4, .cdf, .vdb, .mrc, .map, .rec, .st, .ccp4, "
     ".ivf, "
     ".raw), "
@@ -22,18 +22,21 @@ inline constexpr const char* input_help =
 
 /// The options that say, or replace, what a volume file says about itself.
 struct VolumeOptions {
-  std::string dimensions, type, spacing, origin, centering, array, series;
+  std::string dimensions, type, axes, spacing, origin, centering, array, series;
   bool big_endian = false;
   std::size_t skip_bytes = 0;
   std::optional<int> components, component;
   std::vector<Option*> given;  ///< all of them, to ask which were used
 
-  /// `--array` where no other option of the command has this name.
-  void add_to(CommandLine& command, bool with_array = true);
+  /// `--array` and `--axes` where no other option of the command has this name.
+  void add_to(CommandLine& command, bool with_array = true, bool with_axes = true);
   /// Throws UsageError where an option is used, saying that it does not apply to `what`.
   void refuse(const std::string& what) const;
   ReadOptions read_options() const;
 };
+
+/// Whether the text names the axes of an array: x, y and z, and c or t, in any order.
+bool is_array_axes(const std::string& text);
 
 /// Where the input comes from: "builtin:NAME[:POINTS]" or a volume file. Throws Error.
 FieldSource field_source(const std::string& input, const VolumeOptions& options);

@@ -23,9 +23,8 @@ int fail(int exit_code, const std::string& message) {
 }
 
 int run(int argc, char** argv) {
-  CommandLine app(
-      "Renders volumes by the volume rendering integral itself instead of samples of it.",
-      "pellucid");
+  CommandLine app("Renders volumes and meshes. You give a tolerance instead of a step size.",
+                  "pellucid");
   app.footer(
       "Examples:\n"
       "  pellucid render brain.nii.gz -o brain.png\n"
@@ -34,9 +33,10 @@ int run(int argc, char** argv) {
       "  pellucid suggest brain.nii.gz -o brain.json\n"
       "  pellucid compare exact.exr midpoint.exr\n"
       "\n"
-      "'pellucid COMMAND --help' shows the options and examples of a command.\n"
-      "Exit codes: 0 done, 1 failed, 2 wrong arguments, 3 over the tolerance, 130 interrupted. A\n"
-      "failure is one line on stderr and leaves no partial file.");
+      "'pellucid COMMAND --help' prints the options of a command, with examples.\n"
+      "Exit status: 0 success, 1 failure, 2 wrong arguments, 3 over the tolerance, 130 "
+      "interrupted.\n"
+      "A failure prints one line on stderr and leaves no partial file.");
   const Command commands[] = {add_render(app),  add_info(app),    add_histogram(app),
                               add_suggest(app), add_convert(app), add_evaluate(app),
                               add_compare(app), add_presets(app), add_transfer_function(app)};

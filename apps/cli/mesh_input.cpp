@@ -17,18 +17,19 @@ void MeshOptions::add_to(CommandLine& command, bool with_arrays) {
   const auto add = [&](Option* option) { given.push_back(option->group(group)); };
   if (with_arrays) {
     add(command
-            .add_option("--array", arrays,
-                        "An array to show, also of a volume file, C one component of it (from 0), "
-                        "else of a mesh the length of its vectors; several are channels for "
-                        "Gaussians, of these names. Default: the active scalars, else the first "
-                        "of points with one component")
+            .add_option(
+                "--array", arrays,
+                "Show this array, or its component C, from 0. Without C a vector of a mesh gives "
+                "its length. May be repeated: several arrays are channels for Gaussians, called "
+                "NAME. Default: the active scalars, else the first point array with one component")
             ->option_text("[NAME=]ARRAY[:C]")
             ->allow_extra_args(false));
   }
   add(command
-          .add_option("--time", time, "The step nearest to this time; default: the first of a mesh")
+          .add_option("--time", time,
+                      "Read the step nearest to this time. Default: the first of a mesh")
           ->option_text("T"));
-  add(command.add_option("--q", q, "PLOT3D: the solution; makes INPUT a grid of PLOT3D")
+  add(command.add_option("--q", q, "PLOT3D solution; INPUT is then a PLOT3D grid")
           ->option_text("FILE"));
 }
 

@@ -120,6 +120,19 @@ double parse_tolerance(const std::string& option, const std::string& text) {
   return tolerance;
 }
 
+PictureTolerance parse_picture_tolerance(const std::string& option, const std::string& text) {
+  if (!text.ends_with('%')) return {parse_tolerance(option, text), false};
+  constexpr std::string_view expected =
+      "percent of the picture's largest channel, above 0% and up to 100%, as in 1% or 0.5%";
+  std::string number = text.substr(0, text.size() - 1);
+  while (number.ends_with(' ')) number.pop_back();
+  const std::vector<double> n = parse_list<double>(option, number, ',', expected);
+  if (n.size() != 1 || !(n[0] > 0 && n[0] <= 100)) {
+    throw UsageError(fmt::format("{} '{}': expected {}", option, text, expected));
+  }
+  return {n[0] / 100, true};
+}
+
 Rgb<double> parse_color(const std::string& option, const std::string& text) {
   if (text == "white") return {1, 1, 1};
   if (text == "black") return {0, 0, 0};

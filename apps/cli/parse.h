@@ -38,6 +38,13 @@ std::vector<int> parse_bins(const std::string& option, const std::string& text, 
 std::array<double, 2> parse_range(const std::string& option, const std::string& text);
 /// A finite positive number, or the quotient of two: "0.001", "1e-4", "1/512".
 double parse_tolerance(const std::string& option, const std::string& text);
+/// A tolerance of a picture, or the share of its largest channel that it is.
+struct PictureTolerance {
+  double value = 0;
+  bool is_share = false;
+};
+/// A tolerance as above; or percent, "1%" up to "100%", which is a share.
+PictureTolerance parse_picture_tolerance(const std::string& option, const std::string& text);
 /// "white", "black" or linear "R,G,B", each >= 0.
 Rgb<double> parse_color(const std::string& option, const std::string& text);
 

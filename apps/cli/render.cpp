@@ -6,16 +6,19 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "commands.h"
 #include "error_map.h"
+#include "labels.h"
 #include "parse.h"
 #include "pellucid/io/atomic_file.h"
 #include "pellucid/io/image_files.h"
 #include "pellucid/reference/render.h"
 #include "pellucid/scene/builtin_fields.h"
 #include "progress.h"
+#include "relative_tolerance.h"
 #include "scene_text.h"
 #include "tolerance.h"
 
@@ -30,27 +33,22 @@ void print_notes(const RenderArguments& arguments, const PreparedScene& prepared
     print_note(fmt::format("{} values are NaN: rendered as vacuum", nan));
   }
   if (prepared.array_chosen) {
-    print_note(
-        fmt::format("no array named: showing \"{}\" (--array names others, which 'pellucid info' "
-                    "lists)",
-                    prepared.description.mesh->channels.front().array));
+    print_note(fmt::format(
+        "no array given: showing \"{}\" (choose another by --array; 'pellucid info' lists them)",
+        prepared.description.mesh->channels.front().array));
   }
-  if (prepared.scene.mesh) {
-    if (const std::size_t folded = prepared.scene.mesh->mesh().statistics().folded_faces;
-        folded > 0) {
-      print_note(
-          fmt::format("tetrahedra overlap at {} faces: pixels that see it are not known", folded));
-    }
+  for (const auto& [channel, count] : prepared.labels) {
+    print_note((channel == field_channel ? "" : "channel " + channel + ": ") + labels_text(count));
   }
   if (const double used = prepared.scene.integration.tolerance; used != prepared.tolerance_asked) {
-    print_note(fmt::format("a tolerance of {} is beyond the limits: {} is used",
-                           prepared.tolerance_asked, used));
+    print_note(fmt::format("tolerance {} is outside the limits: using {}", prepared.tolerance_asked,
+                           used));
   }
   if (prepared.transfer_function_from == "default" && !arguments.print_tf &&
       arguments.save_tf.empty()) {
     print_note(
-        "no transfer function given: using a default made from the histogram (--save-tf FILE.json "
-        "writes it for editing, --tf FILE.json takes it back)");
+        "no transfer function given: using one made from the histogram (--save-tf FILE.json writes "
+        "it for editing, --tf FILE.json reads it)");
   }
 }
 
@@ -85,7 +83,7 @@ Image render_image(const RenderArguments& arguments, const PreparedScene& prepar
 void write_error_map(Image& image, double tolerance, const std::string& path) {
   std::string& scale = image.metadata["pellucid.error_map"];
   if (extension_of(path) == ".exr") {
-    scale = fmt::format("error: how far a pixel may be off; Y: error / {}", tolerance);
+    scale = fmt::format("error: largest error of a pixel; Y: error / {}", tolerance);
     write_error_exr(image, tolerance, path);
   } else {
     scale = error_scale(tolerance);
@@ -96,9 +94,37 @@ void write_error_map(Image& image, double tolerance, const std::string& path) {
   image.metadata.erase("pellucid.error_map");
 }
 
+/// At the tolerance that is the wanted share of the picture's range.
+Image render_at_share(const RenderArguments& arguments, PreparedScene& prepared,
+                      RenderReport& report, std::optional<std::string>& over) {
+  RenderOptions options;
+  options.threads = arguments.threads;
+  options.progress = [](double) { return !InterruptGuard::interrupted(); };
+  double range = 0;
+  try {
+    range = estimate_range(prepared.scene, options);
+  } catch (const Cancelled&) {
+    InterruptGuard::check();
+    throw;
+  }
+  RelativePicture picture =
+      render_relative(*prepared.relative_tolerance, range, [&](double tolerance, RenderReport& of) {
+        set_scene_tolerance(prepared, tolerance);
+        return render_image(arguments, prepared, of);
+      });
+  report = picture.report;
+  over = picture.over;
+  if (!arguments.quiet && !arguments.json) {
+    print_note(fmt::format("tolerance {:.3g}: within {} of the largest channel, {:.3g}",
+                           prepared.scene.integration.tolerance,
+                           percent_text(*prepared.relative_tolerance), picture.largest));
+  }
+  return std::move(picture.image);
+}
+
 int run_render(const RenderArguments& arguments) {
   check_arguments(arguments);
-  const PreparedScene prepared = prepare(arguments);
+  PreparedScene prepared = prepare(arguments);
   const std::string transfer_function =
       transfer_function_to_json(*prepared.description.transfer_function);
 
@@ -107,10 +133,12 @@ int run_render(const RenderArguments& arguments) {
   Image image;
   std::optional<std::string> over;
   if (arguments.renders()) {
-    image = render_image(arguments, prepared, report);
+    image = prepared.relative_tolerance ? render_at_share(arguments, prepared, report, over)
+                                        : render_image(arguments, prepared, report);
     add_metadata(arguments, prepared, report, image);
-    over = over_tolerance(report, prepared.scene.integration);
+    if (!over) over = over_tolerance(report, prepared.scene.integration);
   }
+  const double largest = largest_channel(image);
   if (over && arguments.strict) throw OverTolerance(*over + " (--strict: nothing is written)");
   if (arguments.print_tf) print_text(transfer_function);
   std::vector<std::string> written;
@@ -136,9 +164,14 @@ int run_render(const RenderArguments& arguments) {
   write(arguments.save_scene, [&] {
     write_text_file(arguments.save_scene, scene_text(prepared.description, arguments.save_scene));
   });
-  if (arguments.json) print_json(report_json(arguments, prepared, report, written));
+  if (arguments.json) print_json(report_json(arguments, prepared, report, largest, written));
   // Last, so that a failure is one line.
   print_notes(arguments, prepared);
+  if (arguments.renders() && !arguments.quiet && prepared.knows_its_error(arguments)) {
+    const auto text =
+        black_picture_text(largest, prepared.scene.integration.tolerance, report.largest_error);
+    if (text) print_note(*text);
+  }
   if (arguments.renders() && !arguments.json && !arguments.quiet) {
     for (const std::string& line : report_lines(arguments, prepared, report)) print_note(line);
   }
@@ -152,16 +185,15 @@ Command add_render(CommandLine& app) {
   CommandLine& command =
       *app.add_subcommand("render", "Render a volume, a mesh or a scene to an image");
   const auto arguments = std::make_shared<RenderArguments>();
-  command.add_option(
-      "INPUT", arguments->input,
-      std::string(input_help) + ", " + mesh_input_help() +
-          ", SCENE.json or builtin:NAME[:POINTS]; may be left out where --channel is "
-          "given");
+  command.add_option("INPUT", arguments->input,
+                     std::string(input_help) + ", " + mesh_input_help() +
+                         ", SCENE.json or builtin:NAME[:POINTS]; optional with --channel");
   add_render_options(command, *arguments);
   command.footer(
-      fmt::format("Built-in fields, of POINTS values along each axis (128):\n  {}\n",
+      fmt::format("Built-in fields, with POINTS values along each axis (default 128):\n  {}\n",
                   fmt::join(builtin_field_names(), ", ")) +
-      "Views are named for a world of LPS, as medical files are placed: front looks at the face.\n"
+      "Views have the names of an LPS world, in which medical files are placed: front looks at\n"
+      "the face, left at the patient's left side.\n"
       "\n"
       "Examples:\n"
       "  pellucid render brain.nii.gz -o brain.png\n"

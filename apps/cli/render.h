@@ -3,6 +3,7 @@
 
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "import_arguments.h"
@@ -41,6 +42,10 @@ struct PreparedScene {
   std::vector<std::string> import_notes;  ///< of a transfer function of another program
   bool array_chosen = false;              ///< of a mesh, for want of a name
   double tolerance_asked = 0;             ///< Integration::tolerance is the one used
+  /// Share of the picture's largest channel that the tolerance is to be; nothing: it is absolute.
+  std::optional<double> relative_tolerance;
+  /// The number of different values of each channel that looks like labels, by its name.
+  std::vector<std::pair<std::string, std::size_t>> labels;
 
   /// Of whether an error comes with the picture.
   bool knows_its_error(const RenderArguments& arguments) const {
@@ -65,6 +70,10 @@ void set_transfer_function(const RenderArguments& arguments, SceneDescription& d
 /// Reads the input and puts the arguments over what it says. Throws Error.
 PreparedScene prepare(const RenderArguments& arguments);
 
+/// Makes `tolerance` that of the scene, or the nearest one within the limits; opacity tables are
+/// approximated anew. Throws Error.
+void set_scene_tolerance(PreparedScene& prepared, double tolerance);
+
 /// In all channels together; of a mesh over the points or cells that are used.
 std::size_t nan_values(const Scene& scene);
 /// What makes the picture, and its error, and nothing else: no time, no thread count, so that the
@@ -76,7 +85,9 @@ Image depth_picture(const Image& image);
 /// What it took and how exact it is, a few lines for people.
 std::vector<std::string> report_lines(const RenderArguments& arguments,
                                       const PreparedScene& prepared, const RenderReport& report);
+/// `largest` is the largest channel of any pixel.
 Json report_json(const RenderArguments& arguments, const PreparedScene& prepared,
-                 const RenderReport& report, const std::vector<std::string>& written);
+                 const RenderReport& report, double largest,
+                 const std::vector<std::string>& written);
 
 }  // namespace pellucid::cli

@@ -33,17 +33,16 @@ void set_transfer_function(const RenderArguments& arguments, SceneDescription& d
   if (!arguments.preset.empty()) {
     arguments.import.refuse("a preset");
     if (find_preset(arguments.preset) == nullptr) {
-      throw UsageError(
-          fmt::format("--preset {}: there is none of that name; 'pellucid presets' "
-                      "lists them",
-                      arguments.preset));
+      throw UsageError(fmt::format("--preset {}: unknown preset; 'pellucid presets' lists them",
+                                   arguments.preset));
     }
     PresetDescription preset{arguments.preset, {}};
     if (!arguments.import.range.empty()) {
       preset.range = parse_range("--range", arguments.import.range);
     }
     if (!description.channels.empty()) {
-      throw UsageError("--preset: is of one variable, but here are channels; drop one of the two");
+      throw UsageError(
+          "--preset: presets are for one variable, but there are channels; drop one of the two");
     }
     description.transfer_function = preset;
     return;

@@ -14,84 +14,84 @@ namespace {
 void add_output_options(CommandLine& command, RenderArguments& arguments) {
   command
       .add_option("-o,--output", arguments.outputs,
-                  "Image to write, .png or .exr; may be given several times")
+                  "Write this image, .png or .exr; may be repeated")
       ->option_text("FILE")
       ->allow_extra_args(false);
   command
-      .add_option(
-          "--depth", arguments.depth_picture,
-          "Also write a picture of the depth, near white, far black (an .exr of -o always has "
-          "the depth in its channel Z)")
+      .add_option("--depth", arguments.depth_picture,
+                  "Also write the depth as a picture: near white, far black. An .exr of -o has it "
+                  "in channel Z")
       ->option_text("FILE.png");
   command
       .add_option("--error-map", arguments.error_map,
-                  "Also write how far each pixel may be off, as a share of the tolerance: .png in "
-                  "color where proved, grey where estimated, red where over; .exr as numbers")
+                  "Also write the error of each pixel. .png: error / tolerance, in color if "
+                  "proved, grey if estimated, red if over. .exr: numbers")
       ->option_text("FILE");
   command
       .add_option("--save-tf", arguments.save_tf, "Write the transfer function used, for editing")
       ->option_text("FILE.json");
   auto* print_tf =
       command.add_flag("--print-tf", arguments.print_tf,
-                       "Print the transfer function used; without -o nothing is rendered");
+                       "Print the transfer function used. Without -o nothing is rendered");
   command
       .add_option("--save-scene", arguments.save_scene,
-                  "Write the complete scene, which renders to the same picture")
+                  "Write the complete scene. It renders to the same picture")
       ->option_text("FILE.json");
   command.add_flag("--json", arguments.json, "Print a report as JSON")->excludes(print_tf);
   command.add_flag("-q,--quiet", arguments.quiet,
-                   "No progress, no report and no notes, only errors");
+                   "Print no progress, report or notes, only errors");
 }
 
 void add_scene_options(CommandLine& command, RenderArguments& arguments) {
   command
       .add_option("--channel", arguments.channels,
-                  "A variable of the data, may be given several times; SOURCE is a file, FILE[C], "
-                  "builtin:NAME, gradient_magnitude:CHANNEL, second_derivative:CHANNEL or "
-                  "smoothed:CHANNEL:SIGMA; beside INPUT, which is the channel 'value', or without")
+                  "Add a variable; may be repeated. SOURCE is a file, FILE[C], builtin:NAME, "
+                  "gradient_magnitude:CHANNEL, second_derivative:CHANNEL or "
+                  "smoothed:CHANNEL:SIGMA. INPUT, if given, is the channel 'value'")
       ->option_text("NAME=SOURCE")
       ->allow_extra_args(false);
   auto* transfer_function =
       command
-          .add_option("--tf,--transfer-function", arguments.transfer_function,
-                      "Transfer function, of our own or of ParaView, 3D Slicer, VisIt, vtk.js, "
-                      "ANARI, or a color table; default: the scene's, else made from the histogram")
+          .add_option(
+              "--tf,--transfer-function", arguments.transfer_function,
+              "Use this transfer function, of Pellucid, ParaView, 3D Slicer, VisIt, vtk.js, ANARI, "
+              "or a color table. Default: the scene's, else made from the histogram")
           ->option_text("FILE");
   command
       .add_option("--gaussian", arguments.gaussians,
-                  "A Gaussian of the transfer function, may be given several times: "
-                  "'CHANNEL=CENTER~WIDTH, ...; extinction E; color #RRGGBB'; of one volume the "
-                  "channels are value, gradient_magnitude and second_derivative")
+                  "Add a Gaussian to the transfer function; may be repeated. TEXT is "
+                  "'CHANNEL=CENTER~WIDTH, ...; extinction E; color #RRGGBB'. A single volume has "
+                  "the channels value, gradient_magnitude and second_derivative")
       ->option_text("TEXT")
       ->allow_extra_args(false)
       ->excludes(transfer_function);
   command
       .add_option("--preset", arguments.preset,
-                  "A transfer function for this kind of data; 'pellucid presets' lists them")
+                  "Use a transfer function for this kind of data; 'pellucid presets' lists them")
       ->option_text("NAME")
       ->excludes(transfer_function)
       ->excludes("--gaussian");
   arguments.import.add_to(command);
-  auto* camera = command
-                     .add_option("--camera", arguments.camera,
-                                 "Camera; default: the scene's, else obliquely from the front")
-                     ->option_text("FILE.json");
+  auto* camera =
+      command
+          .add_option("--camera", arguments.camera,
+                      "Use this camera. Default: the scene's, else obliquely from the front")
+          ->option_text("FILE.json");
   command
-      .add_option(
-          "--view", arguments.view,
-          "Camera on this side of the volume: front, back, left, right, top, bottom, oblique")
+      .add_option("--view", arguments.view,
+                  "Look from this side: front, back, left, right, top, bottom or oblique")
       ->option_text("NAME")
       ->one_of(view_names())
       ->excludes(camera);
   command
       .add_option("--size", arguments.size,
-                  "Pixels of the image, or N for a square; default: the scene's, else 512x512")
+                  "Size of the image in pixels, 1 to 65536 each; N for a square. Default: the "
+                  "scene's, else 512x512")
       ->option_text("WxH");
   command
-      .add_option(
-          "--background", arguments.background,
-          "Behind a .png: white, black or linear R,G,B; default: the scene's, else transparent "
-          "(an .exr always stays transparent)")
+      .add_option("--background", arguments.background,
+                  "Color behind a .png: white, black or linear R,G,B. Default: the scene's, else "
+                  "transparent. An .exr always stays transparent")
       ->option_text("R,G,B");
 }
 
@@ -106,50 +106,56 @@ void add_integration_options(CommandLine& command, RenderArguments& arguments) {
   auto* method =
       command
           .add_option("--method", arguments.method,
-                      fmt::format("{}; default: the scene's, else exact", fmt::join(names, ", ")))
+                      fmt::format("Integrate by this method: {}. Default: the scene's, else exact",
+                                  fmt::join(names, ", ")))
           ->option_text("NAME")
           ->one_of(names);
   command
-      .add_option("--tolerance", arguments.tolerance,
-                  fmt::format("How far a pixel of method exact may be off, in each channel of "
-                              "premultiplied linear RGBA, from {:g} to {:g}; a fraction is fine; "
-                              "default: the scene's, else 1/512",
-                              smallest_tolerance, largest_tolerance))
+      .add_option(
+          "--tolerance", arguments.tolerance,
+          fmt::format(
+              "Largest error of a pixel by method exact, in each channel of premultiplied linear "
+              "RGBA, from {:g} to {:g}; a number, a fraction, or a percentage of the picture's own "
+              "largest channel. Default: the scene's, else 1/512",
+              smallest_tolerance, largest_tolerance))
       ->option_text("E");
   command
       .add_option("--grade", arguments.grade,
-                  "What the error may rest on: proved is theorems alone, estimated is faster; "
-                  "default: the scene's, else estimated")
+                  "Evidence for the error. proved: proved bounds only; estimated: also estimates, "
+                  "faster. Default: the scene's, else estimated")
       ->option_text("GRADE")
       ->one_of({"proved", "estimated"});
   command.add_flag("--strict", arguments.strict,
-                   "Write nothing at all where a pixel may be off by more than the tolerance; the "
-                   "exit code is 3 with and without");
+                   "Write nothing if a pixel may be off by more than the tolerance. The exit "
+                   "status is 3 with and without --strict");
   command
       .add_option("--samples", arguments.samples,
-                  fmt::format("A pixel is the mean of N x N rays, N from 1 to {}; default: the "
-                              "scene's, else 1",
+                  fmt::format("Make each pixel the mean of N x N rays, N from 1 to {}. Default: "
+                              "the scene's, else 1",
                               largest_samples))
       ->option_text("N")
       ->in_range(1, largest_samples);
   auto* step = command
                    .add_option("--step", arguments.step,
-                               "Step of the sampling methods in voxels (the shortest cell edge)")
+                               "Step of the sampling methods, in voxels (shortest cell edge), from "
+                               "1e-4 to 1e6. Default: the scene's, else 0.5")
                    ->option_text("VOXELS");
-  auto* precision = command
-                        .add_option("--precision", arguments.precision,
-                                    "automatic, float or double; automatic is float where it "
-                                    "keeps the tolerance; default: the scene's, else automatic")
-                        ->option_text("TYPE")
-                        ->one_of({"automatic", "float", "double"});
+  auto* precision =
+      command
+          .add_option("--precision", arguments.precision,
+                      "Number type: automatic, float or double. automatic is float where it keeps "
+                      "the tolerance. Default: the scene's, else automatic")
+          ->option_text("TYPE")
+          ->one_of({"automatic", "float", "double"});
   command
       .add_flag(
           "--reference", arguments.reference,
-          "Render by adaptive quadrature to 1e-12 instead: slow, and independent of the methods")
+          "Integrate by adaptive quadrature to 1e-12 instead: slow, and independent of the methods")
       ->excludes(method)
       ->excludes(step)
       ->excludes(precision);
-  command.add_option("--threads", arguments.threads, "Threads; 0, the default: one per core")
+  command
+      .add_option("--threads", arguments.threads, "Number of threads; 0 (default): one per core")
       ->option_text("N")
       ->in_range(0, 4096);
 }

@@ -86,9 +86,13 @@ Json mesh_json(const MeshChannels& mesh, const MeshSource& source) {
     arrays.push_back({{"array", choice.array},
                       {"component", choice.component ? Json(*choice.component) : Json()}});
   }
-  return {{"points", of_mesh.points}, {"tetrahedra", of_mesh.tetrahedra},
-          {"flat", of_mesh.flat},     {"folded_faces", of_mesh.folded_faces},
-          {"vacuum", mesh.vacuum()},  {"arrays", arrays}};
+  return {{"points", of_mesh.points},
+          {"tetrahedra", of_mesh.tetrahedra},
+          {"flat", of_mesh.degenerate},
+          {"folded_faces", of_mesh.folded_faces},
+          {"overlapping_cells", of_mesh.overlapping_cells},
+          {"vacuum", mesh.vacuum_count()},
+          {"arrays", arrays}};
 }
 
 Json channels_json(const Channels& channels) {
@@ -131,10 +135,13 @@ void add_metadata(const RenderArguments& arguments, const PreparedScene& prepare
   }
   if (prepared.knows_its_error(arguments)) {
     metadata["pellucid.tolerance"] = fmt::format("{}", integration.tolerance);
+    if (prepared.relative_tolerance) {
+      metadata["pellucid.relative_tolerance"] = fmt::format("{}", *prepared.relative_tolerance);
+    }
     metadata["pellucid.grade"] = grade_text(integration.grade);
     metadata["pellucid.largest_error"] = fmt::format("{}", report.largest_error);
     metadata["pellucid.pixels_proved"] = fmt::format("{}", report.pixels_proved);
-    metadata["pellucid.pixels_over"] = fmt::format("{}", report.pixels_over);
+    metadata["pellucid.pixels_over"] = fmt::format("{}", report.pixels_over_tolerance);
   }
   metadata["pellucid.transfer_function"] =
       transfer_function_to_json(*prepared.description.transfer_function);
@@ -184,9 +191,9 @@ std::vector<std::string> report_lines(const RenderArguments& arguments,
       std::isfinite(report.largest_error) ? fmt::format("{:.3g}", report.largest_error) : "unknown",
       table_text, scene.integration.tolerance, grade_text(scene.integration.grade),
       share_text(report.pixels_proved, report.pixels)));
-  if (report.pixels_between > 0) {
+  if (report.pixels_interpolated > 0) {
     lines.back() += fmt::format(", {} interpolated between rays",
-                                share_text(report.pixels_between, report.pixels));
+                                share_text(report.pixels_interpolated, report.pixels));
   }
   std::uint64_t spans = 0;
   for (const NamedCount& rule : by_rule(report.spans)) spans += rule.count;
@@ -206,7 +213,8 @@ std::vector<std::string> report_lines(const RenderArguments& arguments,
 }
 
 Json report_json(const RenderArguments& arguments, const PreparedScene& prepared,
-                 const RenderReport& report, const std::vector<std::string>& written) {
+                 const RenderReport& report, double largest,
+                 const std::vector<std::string>& written) {
   const Scene& scene = prepared.scene;
   Json json;
   json["pellucid"] = PELLUCID_VERSION_STRING;
@@ -218,6 +226,8 @@ Json report_json(const RenderArguments& arguments, const PreparedScene& prepared
   json["channels"] = scene.mesh       ? channels_json(*scene.mesh)
                      : scene.channels ? channels_json(*scene.channels)
                                       : Json();
+  json["labels"] = Json::object();
+  for (const auto& [channel, count] : prepared.labels) json["labels"][channel] = count;
   json["size"] = {scene.size.width, scene.size.height};
   json["method"] = method_text(arguments, scene.integration);
   json["step"] = has_step(arguments, scene) ? Json(scene.integration.step) : Json();
@@ -227,12 +237,16 @@ Json report_json(const RenderArguments& arguments, const PreparedScene& prepared
   const auto of_exact = [&](const Json& value) { return exact ? value : Json(); };
   json["tolerance_asked"] = of_exact(prepared.tolerance_asked);
   json["tolerance"] = of_exact(scene.integration.tolerance);
+  json["relative_tolerance"] =
+      of_exact(prepared.relative_tolerance ? Json(*prepared.relative_tolerance) : Json());
+  json["largest_channel"] = largest;
+  json["below_tolerance"] = of_exact(largest <= scene.integration.tolerance);
   json["grade"] = of_exact(grade_text(scene.integration.grade));
   json["largest_error"] = of_exact(report.largest_error);
   json["pixels"] = scene.size.width * static_cast<std::int64_t>(scene.size.height);
   json["pixels_proved"] = of_exact(report.pixels_proved);
-  json["pixels_over"] = of_exact(report.pixels_over);
-  json["pixels_between"] = of_exact(report.pixels_between);
+  json["pixels_over"] = of_exact(report.pixels_over_tolerance);
+  json["pixels_between"] = of_exact(report.pixels_interpolated);
   json["threads"] = report.threads;
   json["seconds"] = report.seconds;
   json["rays"] = report.rays;

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <filesystem>
+#include <memory>
 #include <string>
 #include <utility>
 #include <variant>
@@ -12,6 +14,7 @@
 #include "pellucid/cpu/threads.h"
 #include "pellucid/io/atomic_file.h"
 #include "pellucid/io/image_files.h"
+#include "pellucid/scene/labels.h"
 #include "render.h"
 #include "view.h"
 
@@ -56,8 +59,7 @@ std::string source_text(const RenderArguments& arguments) {
 
 void check_arguments(const RenderArguments& arguments) {
   if (arguments.input.empty() && arguments.channels.empty()) {
-    throw UsageError(
-        "there is nothing to render; give INPUT or --channel (see 'pellucid render --help')");
+    throw UsageError("no input; give INPUT or --channel (see 'pellucid render --help')");
   }
   if (!arguments.renders() && !arguments.print_tf && arguments.save_tf.empty() &&
       arguments.save_scene.empty()) {
@@ -69,8 +71,8 @@ void check_arguments(const RenderArguments& arguments) {
   }
   if (arguments.reference) {
     refuse_error_arguments(arguments,
-                           "--reference goes to 1e-12 whatever is asked, and gives no error; drop "
-                           "one of the two ('pellucid compare' measures how far pictures differ)");
+                           "--reference always integrates to 1e-12 and reports no error; drop one "
+                           "of the two ('pellucid compare' measures how much pictures differ)");
   }
   if (arguments.strict && !arguments.renders()) {
     throw UsageError("--strict judges a rendering; give -o FILE.png or FILE.exr");
@@ -252,17 +254,63 @@ std::vector<NamedFile> data_files(const SceneDescription& description) {
   return files;
 }
 
+/// Of the volumes that come from files.
+void find_labels(PreparedScene& prepared) {
+  const Scene& scene = prepared.scene;
+  const SceneDescription& description = prepared.description;
+  const auto is_file = [](const FieldSource& field) { return field.builtin.empty(); };
+  const auto add = [&](const std::string& name, const Volume& volume) {
+    if (const auto count = label_count(volume)) prepared.labels.emplace_back(name, *count);
+  };
+  if (!scene.channels) {
+    if (is_file(description.field)) add(std::string(field_channel), *scene.volume);
+    return;
+  }
+  const std::vector<ChannelSource> sources = scene_channels(description);
+  for (const Channel& channel : *scene.channels) {
+    const auto source = std::ranges::find(sources, channel.name, &ChannelSource::name);
+    if (source == sources.end()) continue;
+    const auto* field = std::get_if<FieldSource>(&source->source);
+    if (field != nullptr && is_file(*field)) add(channel.name, *channel.volume);
+  }
+}
+
 }  // namespace
+
+void set_scene_tolerance(PreparedScene& prepared, double tolerance) {
+  SceneDescription& description = prepared.description;
+  Scene& scene = prepared.scene;
+  prepared.tolerance_asked = tolerance;
+  scene.integration.set_tolerance(tolerance);
+  // With the tolerance that was used, a saved scene gives this picture.
+  description.integration.tolerance = scene.integration.tolerance;
+  description.relative_tolerance.reset();
+  if (description.transfer_function &&
+      std::holds_alternative<OpacityTable>(*description.transfer_function)) {
+    scene.transfer_function = std::make_shared<const TransferFunction>(make_transfer_function(
+        *description.transfer_function, scene.integration.tolerance, scene.background));
+  }
+}
 
 PreparedScene prepare(const RenderArguments& arguments) {
   PreparedScene prepared;
   prepared.description = describe(arguments, prepared.import_notes);
   SceneDescription& description = prepared.description;
   Integration& integration = description.integration;
-  prepared.tolerance_asked = arguments.tolerance
-                                 ? parse_tolerance("--tolerance", *arguments.tolerance)
-                                 : integration.tolerance;
+  prepared.tolerance_asked = integration.tolerance;
+  if (arguments.tolerance) {
+    const PictureTolerance tolerance = parse_picture_tolerance("--tolerance", *arguments.tolerance);
+    description.relative_tolerance.reset();
+    if (tolerance.is_share) {
+      description.relative_tolerance = tolerance.value;
+    } else {
+      prepared.tolerance_asked = tolerance.value;
+    }
+  }
   integration.set_tolerance(prepared.tolerance_asked);
+  if (!arguments.reference && integration.method == Method::exact) {
+    prepared.relative_tolerance = description.relative_tolerance;
+  }
   // The files of a scene are known only now.
   refuse_overwriting(output_files(arguments), data_files(description));
   prepared.transfer_function_from = !arguments.transfer_function.empty()
@@ -277,10 +325,16 @@ PreparedScene prepare(const RenderArguments& arguments) {
   }
   set_notes(rendered.field, arguments.quiet);
   set_notes(rendered.channels, arguments.quiet);
-  const int threads = arguments.threads > 0 ? arguments.threads : default_threads();
+  if (rendered.mesh) {  // printed last, so that a failure is one line
+    rendered.mesh->options.note = [&notes = prepared.import_notes](const std::string& note) {
+      notes.push_back(note);
+    };
+  }
+  const int threads = arguments.threads > 0 ? arguments.threads : default_thread_count();
   prepared.array_chosen = description.mesh && description.mesh->channels.empty();
   prepared.scene =
       make_scene(rendered, parallel_for(threads), description.mesh ? &*description.mesh : nullptr);
+  if (description.mesh) description.mesh->options.note = {};
   Scene& scene = prepared.scene;
   scene.integration = integration;
   if (!arguments.view.empty()) {
@@ -291,6 +345,7 @@ PreparedScene prepare(const RenderArguments& arguments) {
     description.transfer_function = scene.transfer_function->points();
   }
   description.camera = scene.camera;
+  if (!scene.mesh) find_labels(prepared);
   make_camera_frame(scene.camera, scene.size);  // throws before anything is written
   return prepared;
 }

@@ -49,7 +49,7 @@ bool are_value_and_gradient(const ChannelSelection& selection) {
     const auto* derived = std::get_if<DerivedSource>(&source.source);
     if (derived != nullptr && source.name == selection.axes[1]) {
       return derived->kind == DerivedSource::Kind::gradient_magnitude &&
-             derived->of == selection.axes[0];
+             derived->channel == selection.axes[0];
     }
   }
   return false;
@@ -78,10 +78,10 @@ MultivariateDescription described(const std::vector<GaussianPrimitive>& primitiv
 }
 
 int run_suggest(const SuggestArguments& arguments) {
-  const ChannelSelection selection = select_channels(arguments.channels, most_suggested_channels);
+  const ChannelSelection selection = select_channels(arguments.channels, max_suggested_channels);
   check_arguments(arguments, selection);
   const int threads =
-      arguments.channels.threads > 0 ? arguments.channels.threads : default_threads();
+      arguments.channels.threads > 0 ? arguments.channels.threads : default_thread_count();
   const LoadedChannels loaded = load_channels(selection, threads, arguments.quiet);
   const bool boundaries = are_value_and_gradient(selection) && arguments.primitives == 0;
   const std::vector<GaussianPrimitive> primitives =
@@ -119,28 +119,29 @@ int run_suggest(const SuggestArguments& arguments) {
 
 Command add_suggest(CommandLine& app) {
   CommandLine& command = *app.add_subcommand(
-      "suggest", "Write a first scene with Gaussians, made from the joint histogram");
+      "suggest", "Write a first scene with Gaussians found in the joint histogram");
   const auto arguments = std::make_shared<SuggestArguments>();
   command
       .add_option("-o,--output", arguments->output,
-                  "Scene to write, for 'pellucid render'; on stdout where nothing is written")
+                  "Write this scene, for 'pellucid render'. Without -o and --save-tf the scene is "
+                  "printed on stdout")
       ->option_text("SCENE.json");
   command
       .add_option("--save-tf", arguments->save_tf,
                   "Write the transfer function alone, for 'pellucid render --tf'")
       ->option_text("FILE.json");
   command
-      .add_option("--primitives", arguments->primitives,
-                  fmt::format("A mixture of so many, from 1 to {}; default: boundaries and "
-                              "materials of a value and its gradient magnitude, else as many as "
-                              "are found",
-                              most_suggested_primitives))
+      .add_option(
+          "--primitives", arguments->primitives,
+          fmt::format("Fit a mixture of N Gaussians, 1 to {}. Default: boundaries and materials of "
+                      "a value and its gradient magnitude, else as many as are found",
+                      max_suggested_primitives))
       ->option_text("N")
-      ->in_range(1, most_suggested_primitives);
-  command.add_flag("-q,--quiet", arguments->quiet, "No notes, only errors");
+      ->in_range(1, max_suggested_primitives);
+  command.add_flag("-q,--quiet", arguments->quiet, "Print no notes, only errors");
   arguments->channels.add_to(command);
   command.footer(
-      "What fills the most of the volume is taken for background, and is transparent.\n"
+      "The most frequent values are taken for the background and are transparent.\n"
       "\n"
       "Examples:\n"
       "  pellucid suggest brain.nii.gz -o brain.json\n"

@@ -18,7 +18,7 @@ double rounded_up(double x) {
 
 std::string advice(const RenderReport& report, const Integration& integration) {
   if (integration.precision == Precision::float32) {
-    return "--precision automatic goes to double where float is not enough";
+    return "--precision automatic uses double where float is too coarse";
   }
   if (!(report.largest_error < largest_tolerance)) return "--error-map FILE.png shows where";
   return fmt::format("ask for --tolerance {:.2g}, or --error-map FILE.png to see where",
@@ -29,12 +29,12 @@ std::string advice(const RenderReport& report, const Integration& integration) {
 
 std::optional<std::string> over_tolerance(const RenderReport& report,
                                           const Integration& integration) {
-  if (report.pixels_over == 0) return std::nullopt;
+  if (report.pixels_over_tolerance == 0) return std::nullopt;
   const std::string by = std::isfinite(report.largest_error)
                              ? fmt::format("by up to {:.3g}", report.largest_error)
-                             : "by nobody knows how much";
+                             : "by an unknown amount";
   return fmt::format("{} of {} pixels may be off by more than the tolerance {}, {}; {}",
-                     report.pixels_over, report.pixels, integration.tolerance, by,
+                     report.pixels_over_tolerance, report.pixels, integration.tolerance, by,
                      advice(report, integration));
 }
 

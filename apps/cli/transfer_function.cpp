@@ -95,29 +95,30 @@ int convert(const TransferFunctionArguments& arguments) {
 
 Command add_transfer_function(CommandLine& app) {
   CommandLine& command = *app.add_subcommand(
-      "transfer-function", "Convert a transfer function from or to that of another program");
+      "transfer-function", "Convert a transfer function from or to another program");
   const auto arguments = std::make_shared<TransferFunctionArguments>();
   command
       .add_option("INPUT", arguments->input,
-                  "Transfer function of our own, a scene, or one of ParaView, 3D Slicer, VisIt, "
-                  "vtk.js, ANARI, or a color table as CSV; which is seen by its content")
+                  "Transfer function of Pellucid, ParaView, 3D Slicer, VisIt, vtk.js or ANARI, a "
+                  "scene, or a color table as CSV; recognised by its content")
       ->required();
-  command.add_option("OUTPUT", arguments->output, "File to write; default: stdout");
+  command.add_option("OUTPUT", arguments->output, "Write this file. Default: stdout");
   command
-      .add_option("--format", arguments->format,
-                  "pellucid (the default), slicer (.vp.json), paraview (.json) or table (.csv)")
+      .add_option(
+          "--format", arguments->format,
+          "Write as pellucid (default), slicer (.vp.json), paraview (.json) or table (.csv)")
       ->option_text("NAME")
       ->one_of({"pellucid", "slicer", "paraview", "table"});
   command
       .add_option("--deviation", arguments->deviation,
-                  "How far what is fitted may be off: each channel of the color, linear, and the "
-                  "logarithm of the extinction; default: 1e-4")
+                  "Largest error of a fit, in each linear color channel and in the logarithm of "
+                  "the extinction, 1e-7 to 0.1. Default: 1e-4")
       ->option_text("E");
   arguments->import.add_to(command);
-  command.add_flag("-q,--quiet", arguments->quiet, "No notes, only errors");
+  command.add_flag("-q,--quiet", arguments->quiet, "Print no notes, only errors");
   command.footer(
-      "What was exact, what was fitted and how far it is off is told on stderr. The deviation is\n"
-      "kept in the file, and counts in the tolerance of a picture.\n"
+      "Notes on stderr say what was exact, what was fitted and to what accuracy. The file stores\n"
+      "the deviation, and a picture counts it in its error.\n"
       "\n"
       "Examples:\n"
       "  pellucid transfer-function CT-AAA.vp.json tf.json\n"

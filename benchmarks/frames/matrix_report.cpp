@@ -199,7 +199,7 @@ std::string rules_table(const std::vector<MatrixRow>& rows, double tolerance) {
 std::string summary_table(const std::vector<MatrixRow>& rows) {
   std::string text =
       "| tolerance | grade | largest found / asked | median found / asked | pixels proved | pixels "
-      "that say they are over | evaluations per ray | time per ray |\n"
+      "that report more | evaluations per ray | time per ray |\n"
       "|---|---|---|---|---|---|---|---|\n";
   for (const double tolerance : tolerances(rows)) {
     for (const Grade grade : grades) {
@@ -292,18 +292,17 @@ std::string matrix_markdown(const std::vector<MatrixRow>& rows) {
   std::string text = format("%zu scenes, %zu views, %zu frames, %zu pixels judged.\n\n",
                             scene_names(rows).size(), rows.size(), total.frames, total.pixels);
   text += format("- Pixels over the tolerance: **%zu**\n", total.over);
-  text += format("- Pixels over the error that they report: **%zu**\n", total.over_reported);
-  text +=
-      format("- Pixels over the tolerance that say so, too bright for binary32 to hold it: %zu\n",
-             total.too_bright);
+  text += format("- Pixels over their reported error: **%zu**\n", total.over_reported);
+  text += format("- Pixels over the tolerance that report it, too bright for binary32: %zu\n",
+                 total.too_bright);
   text += format("- Pixels that report more than the tolerance: %zu\n\n", total.said_over);
   text += summary_table(rows);
-  text += "\n### Error found / tolerance, estimated\n\n" + error_table(rows, Grade::estimated);
-  text += "\n### Error found / tolerance, proved\n\n" + error_table(rows, Grade::proved);
+  text += "\n### Error / tolerance, estimated\n\n" + error_table(rows, Grade::estimated);
+  text += "\n### Error / tolerance, proved\n\n" + error_table(rows, Grade::proved);
   text += "\n### Tightness\n\n" + tightness_table(rows);
-  text += "\n### Work, estimated\n\n" + work_table(rows, Grade::estimated);
-  text += "\n### Work, proved\n\n" + work_table(rows, Grade::proved);
-  text += "\n### Rules at 1/512\n\nSpans per ray.\n\n" + rules_table(rows, 1.0 / 512);
+  text += "\n### Evaluations per ray, estimated\n\n" + work_table(rows, Grade::estimated);
+  text += "\n### Evaluations per ray, proved\n\n" + work_table(rows, Grade::proved);
+  text += "\n### Spans per ray by rule, at 1/512\n\n" + rules_table(rows, 1.0 / 512);
   return text;
 }
 

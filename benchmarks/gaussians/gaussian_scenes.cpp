@@ -38,7 +38,7 @@ GaussianPrimitive primitive(std::vector<double> center, const std::vector<double
   GaussianPrimitive p;
   for (std::size_t i = 0; i < center.size(); ++i) p.channels.push_back(static_cast<int>(i));
   p.center = std::move(center);
-  p.matrix = matrix_of_widths(widths);
+  p.matrix = matrix_from_widths(widths);
   p.extinction = extinction;
   p.color = color;
   return p;

@@ -68,13 +68,14 @@ std::vector<BuildResult> measure_building(const BuildOptions& options) {
     if (!wants(options, source.name)) continue;
     options.say("building: " + source.name);
     const UnstructuredGrid grid = source.make();
-    const auto channels = cut_into_tetrahedra(grid, {&value, 1}, parallel_for(default_threads()));
+    const auto channels =
+        cut_into_tetrahedra(grid, {&value, 1}, parallel_for(default_thread_count()));
     const TetrahedralMesh& mesh = channels->mesh();
     BuildResult result;
     result.name = source.name;
     result.tetrahedra = mesh.tetrahedra().size();
     const auto count = static_cast<double>(result.tetrahedra);
-    result.mesh_bytes = static_cast<double>(mesh.memory()) / count;
+    result.mesh_bytes = static_cast<double>(mesh.memory_bytes()) / count;
     result.total_bytes = result.mesh_bytes + bytes_of_values(*channels) / count;
     std::vector<std::function<double()>> ways;
     for (const int threads : options.threads) {

@@ -13,7 +13,7 @@ struct BuildResult {
   std::size_t tetrahedra = 0;
   std::vector<double> cut_seconds;   ///< per number of threads: cutting, structure, channels
   std::vector<double> mesh_seconds;  ///< of that the structure: from tetrahedra to TetrahedralMesh
-  double mesh_bytes = 0;             ///< per tetrahedron: TetrahedralMesh::memory()
+  double mesh_bytes = 0;             ///< per tetrahedron: TetrahedralMesh::memory_bytes()
   double total_bytes = 0;  ///< per tetrahedron: with the channel, and what a frame keeps of it
 };
 

@@ -121,9 +121,9 @@ std::vector<MeshResult> measure_mesh_frames(const MeshFrameOptions& options) {
       if (!mesh) {
         options.say(source.name);
         const UnstructuredGrid grid = source.make();
-        mesh = cut_into_tetrahedra(grid, {&value, 1}, parallel_for(default_threads()));
+        mesh = cut_into_tetrahedra(grid, {&value, 1}, parallel_for(default_thread_count()));
         // As it is given, cut alike: not in the order that this program puts it into.
-        if (options.vtk) vtk = vtk_mesh(tetrahedra_of(grid), mesh->mesh().bounds());
+        if (options.vtk) vtk = vtk_mesh(tetrahedralize(grid), mesh->mesh().bounds());
       }
       MeshScene shown = named;
       shown.scene.mesh = mesh;

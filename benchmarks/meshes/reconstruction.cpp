@@ -112,7 +112,7 @@ std::vector<ReconstructionResult> study_reconstruction(const ReconstructionOptio
   for (const Data& data : data_of(options)) {
     options.say("reconstruction: " + data.name);
     const auto mesh = cut_into_tetrahedra(to_unstructured(*data.volume), {&value, 1},
-                                          parallel_for(default_threads()));
+                                          parallel_for(default_thread_count()));
     for (const bool narrow : {false, true}) {
       Scene grid;
       grid.volume = data.volume;

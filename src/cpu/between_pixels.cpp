@@ -58,7 +58,7 @@ bool are_near(int pixels, double voxels_between_pixels, double waves) noexcept {
 struct Around {
   std::array<float, 4> cubic{};
   float error = 0;  ///< inherited: see BetweenPixels
-  float unevenness = 0, waves = 0;
+  float neighbor_deviation = 0, waves = 0;
 };
 
 template <int Columns, int Rows, class Known>
@@ -78,7 +78,7 @@ Around around(const std::array<float, 4>* pixels, std::ptrdiff_t row_of_pixels, 
       const float error = size_of_w * one.error;
       a.error += error;
       of_one = std::max(of_one, error);
-      a.unevenness = std::max(a.unevenness, one.unevenness);
+      a.neighbor_deviation = std::max(a.neighbor_deviation, one.neighbor_deviation);
       a.waves = std::max(a.waves, one.waves);
     }
   }
@@ -162,10 +162,11 @@ double BetweenPixels::share_of_rays(int stride) const noexcept {
 }
 
 void BetweenPixels::keep(int column, int row, const RayResult& result) noexcept {
-  const bool known = result.unevenness >= 0;  // and no NaN
-  known_[index(column, row)] = {float_above(result.error),
-                                known ? result.unevenness : std::numeric_limits<float>::infinity(),
-                                1 / result.longest_step};
+  const bool known = result.neighbor_deviation >= 0;  // and no NaN
+  known_[index(column, row)] = {
+      float_above(result.error),
+      known ? result.neighbor_deviation : std::numeric_limits<float>::infinity(),
+      1 / result.longest_step};
 }
 
 void BetweenPixels::finish_level(int stride, int threads) {
@@ -259,10 +260,12 @@ BetweenPixels::Cost BetweenPixels::look(int column, int row, int stride, double 
   };
   result.radiance = {positive(0), positive(1), positive(2)};
   result.opacity = std::min(positive(3), 1.0);
-  result.unevenness = a.unevenness;
+  result.neighbor_deviation = a.neighbor_deviation;
   result.longest_step = 1 / a.waves;
-  // Its own unevenness, and that of those which it is taken from: 1 and at most 0.64 of variance.
-  const double uneven = 1.3 * RandomErrors<double>::deviations * static_cast<double>(a.unevenness);
+  // Its own neighbor_deviation, and that of those which it is taken from: 1 and at most 0.64 of
+  // variance.
+  const double uneven =
+      1.3 * RandomErrors<double>::deviations * static_cast<double>(a.neighbor_deviation);
   return {true, (1 + 0x1p-19) * static_cast<double>(a.error) + rounding_,
           static_cast<double>(of_cubic), uneven};
 }

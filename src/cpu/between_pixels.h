@@ -28,7 +28,7 @@ namespace pellucid {
 ///   what the cubic errs, for which stand fourth differences of the pixels nearby, so many times
 ///     that it holds for a kink between any two of them;
 ///   what trilinear data do from cell to cell and rays beside each other do not have in common
-///     (RayResult::unevenness), four standard deviations of it.
+///     (RayResult::neighbor_deviation), four standard deviations of it.
 ///
 /// An estimate, not a bound. What a pixel becomes depends on nothing but the pixels of the levels
 /// before.
@@ -63,7 +63,7 @@ class BetweenPixels {
 
   /// Of each second pixel of each second row.
   struct Known {
-    float error, unevenness;
+    float error, neighbor_deviation;
     float waves;  ///< 1 / the longest step
   };
   /// What a pixel may be off by.

@@ -35,7 +35,7 @@ Movement movement_in_cells(const Channels& channels, const GaussianMixture<doubl
                            const MultivariateBlocks& blocks) {
   const auto count = static_cast<std::size_t>(channels.count());
   std::vector<BlockRecords> records;
-  for (const Channel& channel : channels) records.push_back(channel.volume->block_ranges());
+  for (const Channel& channel : channels) records.push_back(channel.volume->block_records());
   std::vector<double> squared_norm;  // of column c of primitive i
   for (int i = 0; i < mixture.count; ++i) {
     for (int c = 0; c < channels.count(); ++c) {
@@ -48,7 +48,7 @@ Movement movement_in_cells(const Channels& channels, const GaussianMixture<doubl
   int found = 0;
   for (int block = 0; block < blocks.records.count(); block += stride) {
     if (blocks.classes[block].kind == BlockKind::skip) continue;
-    double squared_range[most_channels] = {}, squared_bend[most_channels] = {};
+    double squared_range[max_channels] = {}, squared_bend[max_channels] = {};
     bool vacuum = false;
     for (std::size_t c = 0; c < count; ++c) {
       const BlockRange range = records[c].range(block);
@@ -61,7 +61,7 @@ Movement movement_in_cells(const Channels& channels, const GaussianMixture<doubl
     if (vacuum) continue;
     double most = 0, bend = 0;
     for (int i = 0; i < mixture.count; ++i) {
-      if (!blocks.primitives[block].holds(i)) continue;
+      if (!blocks.primitives[block].contains(i)) continue;
       const double* of = &squared_norm[static_cast<std::size_t>(i) * count];
       most = std::max(most, std::inner_product(of, of + count, squared_range, 0.0));
       bend = std::max(bend, std::inner_product(of, of + count, squared_bend, 0.0));
@@ -90,8 +90,8 @@ std::unique_ptr<const CellPackets> CellPackets::make(
   job = gaussian_packet_job(channels, blocks, grid, largest_extinction, wanted.largest_color);
   job.grid_and_rays.tolerance = (1 - left_out_share) * wanted.tolerance;
   job.proved = wanted.grade == Grade::proved ? 1 : 0;
-  const Multivariate<double> transfer = transfer_function.view();
-  double largest[most_channels] = {};
+  const MultivariateTransfer<double> transfer = transfer_function.view();
+  double largest[max_channels] = {};
   for (int c = 0; c < transfer.channels; ++c) largest[c] = largest_value(*channels[c].volume);
   packets->mixture_ = NearMixtureStorage(
       largest, false, transfer, left_out_share * wanted.tolerance / job.grid_and_rays.largest_color,

@@ -47,7 +47,7 @@ GaussianPacketKernel kernel_for([[maybe_unused]] InstructionSet set) {
 double cancelled(const Gaussian<double>& g, const Channels& channels, double reach) {
   double sum = 0;
   for (int i = 0; i < g.rows; ++i) {
-    double term[most_channels], all = 0;
+    double term[max_channels], all = 0;
     for (int k = 0; k < g.channels; ++k) {
       const VolumeStatistics& s = channels[k].volume->statistics();
       term[k] = std::fabs(g.matrix[i][k]) *
@@ -88,8 +88,8 @@ std::unique_ptr<const GaussianPackets> GaussianPackets::make(
     double negligible, InstructionSet instruction_set, const ParallelFor& parallel) {
   const GaussianPacketKernel kernel = kernel_for(instruction_set);
   const double largest_extinction = transfer_function.largest_extinction();
-  const Multivariate<double> transfer = transfer_function.view();
-  const int most_blocks = std::numeric_limits<int>::max() / most_channels;
+  const MultivariateTransfer<double> transfer = transfer_function.view();
+  const int most_blocks = std::numeric_limits<int>::max() / max_channels;
   if (kernel == nullptr || !suits_packets(channels, largest_extinction) ||
       blocks.records.count() > most_blocks || transfer.tables > 0 ||
       wanted.grade == Grade::proved || !(wanted.tolerance >= least_tolerance)) {

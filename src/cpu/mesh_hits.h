@@ -15,7 +15,7 @@ class MeshHits {
   /// Valid until the next call.
   MeshRay find(const Tetrahedra& mesh, const Ray<double>& ray) {
     MeshRay result;
-    result.view = make_ray_view(ray, mesh.middle(), mesh.reach);
+    result.view = make_ray_frame(ray, mesh.center(), mesh.coordinate_bound);
     hits_.clear();
     for_each_boundary_hit(mesh, ray, result.view,
                           [&](const MeshHit& hit) { hits_.push_back(hit); });

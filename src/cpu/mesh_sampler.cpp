@@ -109,7 +109,7 @@ class MultivariateMeshSampler : public MeshSampler {
   }
 
  private:
-  Multivariate<double> transfer_;
+  MultivariateTransfer<double> transfer_;
   Method method_;
   PsiTable psi_;
 };

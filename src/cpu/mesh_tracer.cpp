@@ -171,7 +171,7 @@ class UnivariateMeshTracer : public MeshTracer {
     const auto& tracer = *static_cast<const UnivariateMeshTracer*>(context);
     CellSegment<double> found;
     integrate_linear_span(
-        {span->front, span->back, span->error, span->length, span->place_error, span->end_error},
+        {span->front, span->back, span->error, span->length, span->position_error, span->end_error},
         tracer.transfer_.tables(), tracer.job_.largest_color, true,
         [](double) noexcept { return 0.0; }, found);
     const SegmentResult<double>& s = found.found.segment;
@@ -198,7 +198,7 @@ class MultivariateMeshTracer : public MeshTracer {
     prepare(task, transfer_function_.largest_extinction(), true);
     if (kernel_ == nullptr) return;
     // Half of what is left out is for Gaussians, half for what errors of the data change there.
-    double largest[most_channels] = {};
+    double largest[max_channels] = {};
     for (int c = 0; c < transfer_.channels; ++c) {
       largest[c] = largest_value(task.scene.mesh->statistics(c));
     }
@@ -244,7 +244,7 @@ class MultivariateMeshTracer : public MeshTracer {
   static constexpr double left_out_share = 1.0 / 16;
 
   const MultivariateTransferFunction& transfer_function_;
-  Multivariate<double> transfer_;
+  MultivariateTransfer<double> transfer_;
   NearMixtureStorage mixture_;
   std::vector<double> values_;
 };

@@ -112,7 +112,7 @@ class MultivariateTracer : public RayTracer {
 
   /// Steps cost less the further they may go: as far as primitives stand still, and as the error
   /// lets them that the data's bends make. Cells cost the same. Where both take as long was
-  /// measured (docs/notes/performance.md).
+  /// measured (docs/notes/2026-11-performance.md).
   GaussianMarch faster_march() const {
     const Movement movement = movement_in_cells(channels_, transfer_.gaussians, *blocks_);
     return movement.in_cell <= 0.6 && movement.bend <= 620 * wanted_.tolerance
@@ -137,7 +137,8 @@ class MultivariateTracer : public RayTracer {
       read_result(found[i], results[n]);
       std::swap(results[n].spans.closed, results[n].spans.lines);
       const RayResult unknown;
-      results[n].unevenness = waves != nullptr ? found[i].unevenness : unknown.unevenness;
+      results[n].neighbor_deviation =
+          waves != nullptr ? found[i].neighbor_deviation : unknown.neighbor_deviation;
       results[n].longest_step = waves != nullptr
                                     ? found[i].longest_step * (*rays_apart_)(inside.ray[i])
                                     : unknown.longest_step;
@@ -186,7 +187,7 @@ class MultivariateTracer : public RayTracer {
     for (PellucidRayResult& result : found) {
       if (!std::isinf(result.error)) continue;
       result = *next++;
-      result.unevenness = std::numeric_limits<float>::infinity();
+      result.neighbor_deviation = std::numeric_limits<float>::infinity();
     }
   }
 
@@ -212,7 +213,7 @@ class MultivariateTracer : public RayTracer {
   RayTolerance wanted_;
   bool depth_;
   MultichannelGrid grid_;
-  Multivariate<double> transfer_;
+  MultivariateTransfer<double> transfer_;
   double step_;  ///< of the sampling methods, world length
   MultivariateBlocksStorage storage_;
   std::optional<MultivariateBlocks> blocks_;      ///< of the exact method

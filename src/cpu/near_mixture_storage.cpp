@@ -40,14 +40,14 @@ float square_in_float(double size, double exponent) {
 
 /// How far column k of K is from what the others span, a little less.
 float least_scale(const Gaussian<double>& g, int k) {
-  std::vector<std::array<double, most_channels>> others;
+  std::vector<std::array<double, max_channels>> others;
   const auto column = [&](int c) {
-    std::array<double, most_channels> result{};
+    std::array<double, max_channels> result{};
     for (int i = 0; i < g.rows; ++i) result[static_cast<std::size_t>(i)] = g.matrix[i][c];
     return result;
   };
   // What is left of a column beside those before it; twice, for rounding.
-  const auto beside = [&](std::array<double, most_channels> rest) {
+  const auto beside = [&](std::array<double, max_channels> rest) {
     for (int twice = 0; twice < 2; ++twice) {
       for (const auto& unit : others) {
         const double along = std::inner_product(rest.begin(), rest.end(), unit.begin(), 0.0);
@@ -56,7 +56,7 @@ float least_scale(const Gaussian<double>& g, int k) {
     }
     return rest;
   };
-  const auto norm = [](const std::array<double, most_channels>& v) {
+  const auto norm = [](const std::array<double, max_channels>& v) {
     return std::sqrt(std::inner_product(v.begin(), v.end(), v.begin(), 0.0));
   };
   for (int c = 0; c < g.channels; ++c) {
@@ -83,7 +83,7 @@ bool couples_channels(const Gaussian<double>& g) {
 }  // namespace
 
 NearMixtureStorage::NearMixtureStorage(const double* largest, bool off,
-                                       const Multivariate<double>& transfer, double opacity,
+                                       const MultivariateTransfer<double>& transfer, double opacity,
                                        double diagonal) {
   const double left_out = opacity / diagonal;
   mixture_.diagonal = diagonal;

@@ -15,7 +15,7 @@ class NearMixtureStorage {
   /// mesh than the diagonal.
   /// `largest`: magnitude of each channel's data. `off`: as much may be what errors of the data
   /// make of the extinction, where they make any.
-  NearMixtureStorage(const double* largest, bool off, const Multivariate<double>& transfer,
+  NearMixtureStorage(const double* largest, bool off, const MultivariateTransfer<double>& transfer,
                      double opacity, double diagonal);
 
   /// Whether binary32 has its numbers.

@@ -114,8 +114,8 @@ void read_result(const PellucidRayResult& from, RayResult& to) {
 }
 
 RayResult missing_ray() {
-  RayResult missing = nothing_met();
-  missing.unevenness = 0;
+  RayResult missing = missed_ray_result();
+  missing.neighbor_deviation = 0;
   missing.longest_step = std::numeric_limits<float>::infinity();
   return missing;
 }

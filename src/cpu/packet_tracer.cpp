@@ -51,7 +51,7 @@ StepLimits PacketTracer::step_limits(const Volume& volume, const TransferTables&
   // What SmoothMarch takes for the least error of its shortest steps, from corner to corner.
   const double cells = longest_sampled_step * double{sampled_step_share(levels - 1)};
   const double step = cells * volume.voxel_size();
-  const double one = step * std::sqrt(mean_square_of_bends(cells));
+  const double one = step * std::sqrt(uncorrelated_error_mean_square(cells));
   const double times = diagonal(volume) / (4 * step);
   return {levels, wanted.tolerance / (RandomErrors<double>::deviations * one * std::sqrt(times))};
 }
@@ -120,7 +120,7 @@ void PacketTracer::trace(const Ray<double>* rays, int count, double share, bool 
   for (std::size_t i = 0; i < found.size(); ++i) {
     RayResult& to = results[inside.of[i]];
     read_result(found[i], to);
-    to.unevenness = found[i].unevenness;
+    to.neighbor_deviation = found[i].neighbor_deviation;
     to.longest_step = found[i].longest_step * rays_apart_(inside.ray[i]);
   }
   if (!depth) return;
@@ -166,8 +166,8 @@ void PacketTracer::integrate_cell(const void* context, std::int32_t ray, const P
     if (cell->from > 0) data = restrict_to(data, cell->from, 1.0);
     CellSegment<double> found;
     pellucid::integrate_cell(
-        data, (end - begin) * (1 - cell->from), cell->place_error, tracer.transfer_, tracer.wanted_,
-        true,
+        data, (end - begin) * (1 - cell->from), cell->position_error, tracer.transfer_,
+        tracer.wanted_, true,
         [&](double opacity) {
           return cell->allowance_per_opacity * opacity + cell->allowance_flat;
         },

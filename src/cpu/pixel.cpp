@@ -37,7 +37,7 @@ void store_pixel(const Frame& frame, const RayResult& result, std::size_t pixel,
   if (frame.scene.integration.method != Method::exact) return;
   report.largest_error = std::max(report.largest_error, error);
   if (result.proved) ++report.pixels_proved;
-  if (!(error <= frame.scene.integration.tolerance)) ++report.pixels_over;
+  if (!(error <= frame.scene.integration.tolerance)) ++report.pixels_over_tolerance;
 }
 
 void add_work(RenderReport& sum, const RayResult& result) {
@@ -48,11 +48,11 @@ void add_work(RenderReport& sum, const RayResult& result) {
 
 void add(RenderReport& sum, const RenderReport& part) {
   sum.rays += part.rays;
-  sum.pixels_between += part.pixels_between;
+  sum.pixels_interpolated += part.pixels_interpolated;
   sum.cells += part.cells;
   sum.largest_error = std::max(sum.largest_error, part.largest_error);
   sum.pixels_proved += part.pixels_proved;
-  sum.pixels_over += part.pixels_over;
+  sum.pixels_over_tolerance += part.pixels_over_tolerance;
   sum.evaluations += part.evaluations;
   sum.spans += part.spans;
 }

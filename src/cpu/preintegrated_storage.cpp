@@ -101,7 +101,7 @@ PreintegratedStorage::PreintegratedStorage(const PiecewiseLinear<double>& transf
       }
     }
   };
-  or_serial(parallel)(nodes, make_rows);
+  parallel_or_serial(parallel)(nodes, make_rows);
   view_.entry = entries_.data();
   view_.nodes = nodes;
   view_.origin = static_cast<float>(lower);

@@ -99,7 +99,7 @@ void render_tiles(const Frame& frame, const RenderOptions& options, Image& image
 Image render(const Scene& scene, const RenderOptions& options, RenderReport* report) {
   check(scene, options);
   RenderReport local;
-  local.threads = options.threads > 0 ? options.threads : default_threads();
+  local.threads = options.threads > 0 ? options.threads : default_thread_count();
   const auto start = std::chrono::steady_clock::now();
   const Frame frame(scene, options, local.threads);
   Image image = make_image(scene.size, options);

@@ -15,7 +15,7 @@ namespace {
 RayResult mean_of(const RayResult* rays, int count) {
   if (count == 1) return rays[0];
   RayResult mean;
-  mean.error = mean.unevenness = 0;
+  mean.error = mean.neighbor_deviation = 0;
   mean.longest_step = std::numeric_limits<float>::infinity();
   mean.proved = true;
   for (int n = 0; n < count; ++n) {
@@ -25,7 +25,7 @@ RayResult mean_of(const RayResult* rays, int count) {
     mean.optical_depth += one.optical_depth;
     mean.half_opacity_depth = std::min(mean.half_opacity_depth, one.half_opacity_depth);
     mean.cells += one.cells;
-    mean.unevenness = std::max(mean.unevenness, one.unevenness);
+    mean.neighbor_deviation = std::max(mean.neighbor_deviation, one.neighbor_deviation);
     mean.longest_step = std::min(mean.longest_step, one.longest_step);
     mean.error += one.error;
     mean.proved = mean.proved && one.proved;
@@ -81,7 +81,7 @@ std::size_t render_tile(const Frame& frame, const Tile& tile, int level, Between
       RayResult result;
       if (!between->find(place.column, place.row, level, result)) return false;
       finish(place, result);
-      ++report.pixels_between;
+      ++report.pixels_interpolated;
       return true;
     });
   }

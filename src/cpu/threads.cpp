@@ -14,7 +14,7 @@
 
 namespace pellucid {
 
-int default_threads() {
+int default_thread_count() {
   return tbb::info::default_concurrency();
 }
 
@@ -33,7 +33,7 @@ ParallelFor parallel_for(int threads) {
 void take_in_turn(std::size_t count, int threads, const std::function<bool(std::size_t)>& body) {
   // oneTBB keeps to the number of cores, and prints a warning, unless it is told otherwise.
   std::optional<tbb::global_control> more_threads_than_cores;
-  if (threads > default_threads()) {
+  if (threads > default_thread_count()) {
     more_threads_than_cores.emplace(tbb::global_control::max_allowed_parallelism,
                                     static_cast<std::size_t>(threads));
   }

@@ -71,7 +71,7 @@ UnivariateTracer::UnivariateTracer(const TracerTask& task)
   }
   const bool samples = goes_in_packets(integration_) && !depth_;
   if (integration_.method != Method::exact && !samples) return;
-  const BlockRecords& records = volume_.block_ranges(parallel);
+  const BlockRecords& records = volume_.block_records(parallel);
   std::function<StepLimits(double)> limits;
   if (!samples && wanted_.grade != Grade::proved) {
     limits = [this](double share_throughout) {

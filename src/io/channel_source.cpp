@@ -66,7 +66,8 @@ double sigma_of(std::string_view text, std::string_view number) {
 /// "KIND:CHANNEL" or "smoothed:CHANNEL:SIGMA".
 DerivedSource derived_source(std::string_view text, Kind kind, std::string_view rest) {
   DerivedSource source{kind, std::string(cut(rest, ':')), 0};
-  if (source.of.empty()) fail(text, "it does not say of which channel; name it behind the colon");
+  if (source.channel.empty())
+    fail(text, "it does not say of which channel; name it behind the colon");
   if (kind == Kind::smoothed) {
     source.sigma = sigma_of(text, rest);
   } else if (!rest.empty()) {
@@ -110,7 +111,7 @@ bool is_channel_name(std::string_view name) noexcept {
          });
 }
 
-std::string as_channel_name(std::string_view text) {
+std::string to_channel_name(std::string_view text) {
   constexpr std::size_t longest = 56;  // leaves room for a number behind it
   std::string name;
   for (const char c : text.substr(0, longest)) {
@@ -151,7 +152,7 @@ std::vector<std::string> channel_names(const std::vector<ChannelSource>& sources
 }
 
 void check_channel_sources(const std::vector<ChannelSource>& sources) {
-  if (sources.empty() || sources.size() > static_cast<std::size_t>(most_channels)) {
+  if (sources.empty() || sources.size() > static_cast<std::size_t>(max_channels)) {
     throw Error("channels: there are " + std::to_string(sources.size()) +
                 ", but must be from 1 to 8");
   }
@@ -168,9 +169,9 @@ void check_channel_sources(const std::vector<ChannelSource>& sources) {
                   "\" stands twice; give each channel its own");
     }
     const auto* derived = std::get_if<DerivedSource>(&source->source);
-    if (derived != nullptr && !before(derived->of)) {
+    if (derived != nullptr && !before(derived->channel)) {
       throw Error("channels: \"" + printable(source->name) + "\" is made of a channel \"" +
-                  printable(derived->of) + "\", which is not before it; name one that is");
+                  printable(derived->channel) + "\", which is not before it; name one that is");
     }
   }
 }
@@ -186,7 +187,7 @@ Channels load_channels(const std::vector<ChannelSource>& sources, const Parallel
     }
     const auto& derived = std::get<DerivedSource>(source.source);
     const auto of = std::find_if(channels.begin(), channels.end(),
-                                 [&](const Channel& c) { return c.name == derived.of; });
+                                 [&](const Channel& c) { return c.name == derived.channel; });
     auto volume = std::make_shared<const Volume>(derive(*of->volume, derived, parallel));
     channels.push_back({source.name, source.unit, std::move(volume)});
   }

@@ -2,12 +2,15 @@
 #include "components.h"
 
 #include <algorithm>
+#include <array>
+#include <bit>
 #include <cstdint>
 #include <optional>
 #include <utility>
 
 #include "memory_limit.h"
 #include "pellucid/scene/error.h"
+#include "stored_numbers.h"
 
 namespace pellucid {
 
@@ -71,6 +74,116 @@ std::vector<VolumeData> read_interleaved(const ReadOn& read, const ValueLayout& 
       },
       make_volume_data(layout.type, 0));
   return list;
+}
+
+/// Half floats of one component, as floats.
+class Halves {
+ public:
+  using Stored = std::uint16_t;
+  explicit Halves(const MakeValues& make) : values_(make("f32")) {}
+
+  void add(std::span<const Stored> numbers) {
+    const std::span<float> to = std::get<DataArray<float>>(values_).writable();
+    for (const Stored number : numbers) to[done_++] = half_to_float(number);
+  }
+  VolumeData take() { return std::move(values_); }
+
+ private:
+  VolumeData values_;
+  std::size_t done_ = 0;
+};
+
+/// Reads what the layout says lies side by side, or of one component, into the collectors of some
+/// components, those from `first` on.
+template <class Stored, class Collector>
+void collect(const ReadOn& read, bool big_endian, std::size_t points, std::size_t stride,
+             std::size_t first, std::span<Collector> collectors) {
+  constexpr std::size_t values_at_once = std::size_t{1} << 16;
+  const std::size_t at_once = std::min(std::max<std::size_t>(values_at_once / stride, 1), points);
+  const bool swapped = big_endian == (std::endian::native == std::endian::little);
+  std::vector<Stored> part(at_once * stride), component(at_once);
+  for (std::size_t done = 0; done < points; done += at_once) {
+    const std::size_t count = std::min(at_once, points - done);
+    const std::span<Stored> numbers = std::span(part).first(count * stride);
+    read(std::as_writable_bytes(numbers));
+    if (swapped) {
+      for (Stored& number : numbers) {
+        auto bytes = std::bit_cast<std::array<std::byte, sizeof(Stored)>>(number);
+        std::ranges::reverse(bytes);
+        number = std::bit_cast<Stored>(bytes);
+      }
+    }
+    for (std::size_t c = 0; c < collectors.size(); ++c) {
+      for (std::size_t i = 0; i < count; ++i) component[i] = numbers[i * stride + first + c];
+      collectors[c].add(std::span<const Stored>(component).first(count));
+    }
+  }
+}
+
+/// Reads values of a type that volumes do not have.
+template <class Stored, class Collector>
+std::vector<Collector> collect_components(const ReadOn& read, const ValueLayout& layout,
+                                          std::size_t points, ComponentRange range,
+                                          const MakeValues& make, const std::string& name) {
+  const auto number = static_cast<std::size_t>(range.number);
+  const auto stride = static_cast<std::size_t>(layout.interleaved ? layout.components : 1);
+  // One byte of each is the least that is kept.
+  check_memory(std::uintmax_t{points} * number + number * sizeof(Collector) +
+                   std::uintmax_t{stride} * sizeof(Stored),
+               name + ": its values");
+  std::vector<Collector> collectors;
+  collectors.reserve(number);
+  for (std::size_t c = 0; c < number; ++c) collectors.emplace_back(make);
+  if (stride > 1) {
+    collect<Stored>(read, layout.big_endian, points, stride, static_cast<std::size_t>(range.first),
+                    std::span(collectors));
+  } else {
+    for (Collector& collector : collectors) {
+      collect<Stored>(read, layout.big_endian, points, 1, 0, std::span(&collector, 1));
+    }
+  }
+  return collectors;
+}
+
+/// Halves are of one type as they are.
+void unify(std::span<Halves>) {}
+
+std::string rounding_of(const std::vector<WholeNumbers>& components, std::size_t points) {
+  Rounding rounding;
+  for (const WholeNumbers& component : components) rounding.merge(component.rounding());
+  return rounding.count == 0 ? std::string() : rounding.text(points * components.size());
+}
+
+std::string rounding_of(const std::vector<Halves>&, std::size_t) {
+  return {};
+}
+
+template <class Stored, class Collector>
+std::vector<VolumeData> read_as(const ReadOn& read, const ValueLayout& layout, std::size_t points,
+                                ComponentRange range, const std::string& name) {
+  const auto make = [&](const std::string& type) { return make_values(type, points, name); };
+  auto components = collect_components<Stored, Collector>(read, layout, points, range, make, name);
+  unify(std::span(components));
+  if (const std::string rounding = rounding_of(components, points);
+      layout.note && !rounding.empty()) {
+    layout.note(name + ": " + rounding);
+  }
+  std::vector<VolumeData> list;
+  for (Collector& component : components) list.push_back(component.take());
+  return list;
+}
+
+/// `read` stands at the first value of all, or of the first component of the range where they lie
+/// one behind the other.
+std::vector<VolumeData> read_stored_only(const ReadOn& read, const ValueLayout& layout,
+                                         std::size_t points, ComponentRange range,
+                                         const std::string& name) {
+  if (layout.type == "f16")
+    return read_as<std::uint16_t, Halves>(read, layout, points, range, name);
+  if (layout.type == "i64") {
+    return read_as<std::int64_t, WholeNumbers>(read, layout, points, range, name);
+  }
+  return read_as<std::uint64_t, WholeNumbers>(read, layout, points, range, name);
 }
 
 }  // namespace
@@ -143,10 +256,17 @@ std::vector<VolumeData> split_components(const VolumeData& values, int component
 
 std::vector<VolumeData> read_components(const ByteSource& source, const ValueLayout& layout,
                                         std::size_t points, ComponentRange range) {
-  if (layout.interleaved && layout.components > 1) {
+  const bool interleaved = layout.interleaved && layout.components > 1;
+  const std::uintmax_t bytes = std::uintmax_t{points} * value_size(layout.type, source.name);
+  if (is_stored_only(layout.type)) {
+    const std::uintmax_t before =
+        interleaved ? 0 : bytes * static_cast<std::uintmax_t>(range.first);
+    return read_stored_only(read_on(source, layout.offset + before), layout, points, range,
+                            source.name);
+  }
+  if (interleaved) {
     return read_interleaved(read_on(source, layout.offset), layout, points, range, source.name);
   }
-  const std::uintmax_t bytes = std::uintmax_t{points} * value_size(layout.type, source.name);
   std::vector<VolumeData> list;
   for (int c = range.first; c < range.first + range.number; ++c) {
     const std::uintmax_t offset = layout.offset + bytes * static_cast<std::uintmax_t>(c);
@@ -157,15 +277,21 @@ std::vector<VolumeData> read_components(const ByteSource& source, const ValueLay
 
 std::vector<VolumeData> read_components(DataStream& stream, const ValueLayout& layout,
                                         std::size_t points, ComponentRange range) {
+  const ReadOn read = [&](std::span<std::byte> to) { stream.read(to); };
   if (layout.interleaved && layout.components > 1) {
-    return read_interleaved([&](std::span<std::byte> to) { stream.read(to); }, layout, points,
-                            range, stream.name());
+    return is_stored_only(layout.type)
+               ? read_stored_only(read, layout, points, range, stream.name())
+               : read_interleaved(read, layout, points, range, stream.name());
   }
   const std::uintmax_t bytes = std::uintmax_t{points} * value_size(layout.type, stream.name());
   std::vector<VolumeData> list;
-  list.reserve(static_cast<std::size_t>(range.number));
   stream.skip(bytes * static_cast<std::uintmax_t>(range.first));
-  for (int c = 0; c < range.number; ++c) list.push_back(read_values(stream, layout, points));
+  if (is_stored_only(layout.type)) {
+    list = read_stored_only(read, layout, points, range, stream.name());
+  } else {
+    list.reserve(static_cast<std::size_t>(range.number));
+    for (int c = 0; c < range.number; ++c) list.push_back(read_values(stream, layout, points));
+  }
   const int rest = layout.components - range.first - range.number;
   stream.skip(bytes * static_cast<std::uintmax_t>(rest));
   return list;

@@ -60,6 +60,7 @@ std::vector<VolumeData> split_components(const VolumeData& values, int component
 
 /// Headers of other formats.
 VolumeFile open_npy(const ByteSource& source, const ReadOptions& options);
+VolumeFile open_npz(const ByteSource& source, const ReadOptions& options);
 VolumeFile open_raw(const ByteSource& source, const ReadOptions& options);
 VolumeFile open_raw_gzip(const std::filesystem::path& path, const ReadOptions& options);
 VolumeFile open_slc(const ByteSource& source, const ReadOptions& options);

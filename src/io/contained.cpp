@@ -13,6 +13,7 @@
 #include <csignal>
 #include <cstdint>
 #include <cstring>
+#include <ctime>
 #include <fstream>
 #include <new>
 #include <string_view>
@@ -52,6 +53,49 @@ std::shared_ptr<std::byte> shared_memory(std::size_t bytes) {
   return {static_cast<std::byte*>(at), [bytes](std::byte* p) { munmap(p, bytes); }};
 }
 
+/// How long this process may neither run nor wait for a processor, in seconds. Set before the
+/// alarm.
+unsigned idle_limit = 0;
+timespec began{};
+
+/// Seconds that the process ran or was ready to run while others had the processor; nothing else in
+/// the answer to a signal but calls that are safe there. 0 where the system does not tell.
+double busy_seconds() {
+  const int file = open("/proc/self/schedstat", O_RDONLY | O_CLOEXEC);
+  if (file < 0) return 0;
+  char text[128];
+  const ssize_t length = read(file, text, sizeof(text));
+  close(file);
+  double sum = 0, number = 0;
+  int numbers = 0;
+  for (ssize_t i = 0; i < length && numbers < 2; ++i) {
+    if (text[i] >= '0' && text[i] <= '9') {
+      number = number * 10 + (text[i] - '0');
+    } else {
+      sum += number;
+      number = 0;
+      ++numbers;
+    }
+  }
+  return sum * 1e-9;
+}
+
+/// Ends the process where it was idle for too long, as one that waits for a file or a lock that
+/// does not come. On a busy machine the time that it had to wait for a processor does not count.
+void end_if_idle(int) {
+  timespec now{};
+  clock_gettime(CLOCK_MONOTONIC, &now);
+  const double seconds = static_cast<double>(now.tv_sec - began.tv_sec) +
+                         1e-9 * static_cast<double>(now.tv_nsec - began.tv_nsec);
+  const double left = static_cast<double>(idle_limit) - (seconds - busy_seconds());
+  if (left > 0) {
+    alarm(static_cast<unsigned>(left) + 1);
+    return;
+  }
+  std::signal(SIGALRM, SIG_DFL);
+  raise(SIGALRM);
+}
+
 void limit(std::size_t bytes, std::uintmax_t file_bytes) {
   constexpr std::uintmax_t per_file_byte = 64, bytes_per_second = 10'000'000, most = 100'000;
   const std::uintmax_t at_work =
@@ -59,7 +103,10 @@ void limit(std::size_t bytes, std::uintmax_t file_bytes) {
   const rlimit processor{static_cast<rlim_t>(at_work), static_cast<rlim_t>(at_work)};
   setrlimit(RLIMIT_CPU, &processor);
   // A file that does not come, from a slow disk or a pipe.
-  alarm(static_cast<unsigned>(patience + at_work));
+  idle_limit = static_cast<unsigned>(patience + at_work);
+  clock_gettime(CLOCK_MONOTONIC, &began);
+  std::signal(SIGALRM, end_if_idle);
+  alarm(idle_limit);
   // What a decoder takes beside what it gives: trees of sparse data are far larger than their file.
   constexpr std::uintmax_t room_for_any = std::uintmax_t{1} << 30;
   const std::uintmax_t room = room_for_any + per_file_byte * file_bytes;

@@ -11,11 +11,12 @@ namespace pellucid {
 
 /// Lets `work` fill so many bytes in a process of its own, for libraries that a damaged file brings
 /// down, and gives them. Null where it returns false, throws anything but Error, crashes, or takes
-/// far more time or memory than the bytes, and a file of `file_bytes`, may need: 3 s of a processor
-/// and 300 s in all, and a second more for each 10 MB of bytes or 160 kB of the file; twice the
-/// bytes, 64 times the file and 1 GiB. It ends with the thread that waits. What it prints is not
-/// seen. Throws Error where `work` does, with the same words (of 1000 bytes at most), and
-/// std::bad_alloc where there is no memory for the bytes or no process to be had.
+/// far more time or memory than the bytes, and a file of `file_bytes`, may need: 3 s of a
+/// processor, 300 s in which it neither runs nor waits for a processor, and a second more of both
+/// for each 10 MB of bytes or 160 kB of the file; twice the bytes, 64 times the file and 1 GiB. It
+/// ends with the thread that waits. What it prints is not seen. Throws Error where `work` does,
+/// with the same words (of 1000 bytes at most), and std::bad_alloc where there is no memory for the
+/// bytes or no process to be had.
 ///
 /// Libraries that `work` needs are best loaded by it, as modules: locks that threads of this
 /// process hold are held for ever in the other one, and many a library has threads from its first

@@ -11,10 +11,7 @@ namespace pellucid {
 
 bool is_gzip(const std::filesystem::path& path) {
   check_input_file(path);
-  std::ifstream file(path, std::ios::binary);
-  std::array<char, 2> start{};
-  file.read(start.data(), 2);
-  return file && start[0] == '\x1f' && start[1] == '\x8b';
+  return first_bytes(path, 2) == "\x1f\x8b";
 }
 
 DataStream::DataStream(const std::filesystem::path& path, std::uintmax_t offset,

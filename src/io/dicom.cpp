@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "dicom.h"
 
+#include <algorithm>
 #include <limits>
 #include <memory>
+#include <string>
 #include <utility>
+#include <vector>
 
 #include "dicom_folder.h"
 #include "dicom_grid.h"
@@ -12,30 +15,69 @@
 
 namespace pellucid {
 
-VolumeFile open_dicom(const std::filesystem::path& path, const ReadOptions& options) {
+namespace {
+
+/// Tells what is left out, and what is assumed of the series.
+void tell(const DicomFolder& folder, const DicomGroup& group, const std::filesystem::path& path,
+          const ReadOptions& options) {
+  if (!options.note) return;
+  const auto note = [&](const std::string& what) { options.note(path.string() + ": " + what); };
+  if (folder.others > 0 && std::filesystem::is_directory(path)) {
+    note(std::to_string(folder.others) + (folder.others == 1
+                                              ? " file holds no DICOM image and is left out"
+                                              : " files hold no DICOM image and are left out"));
+  }
+  if (!folder.damaged.empty()) note(left_out_text(folder.damaged));
+  std::vector<std::string> told;
+  for (const DicomSlice& slice : group.slices) {
+    if (slice.frame != 0) continue;
+    for (const std::string& text : slice.image->notes) {
+      if (std::ranges::find(told, text) != told.end()) continue;
+      note(text);
+      told.push_back(text);
+    }
+  }
+  if (group.slices.front().image->photometric == "MONOCHROME1") {
+    note("large values are meant to be dark (MONOCHROME1); they are read as they are");
+  }
+}
+
+/// The unit that all slices name; empty where they differ.
+std::string unit_of(const std::vector<DicomSlice>& slices) {
+  const std::string& unit = slices.front().image->unit;
+  const bool same = std::ranges::all_of(
+      slices, [&](const DicomSlice& slice) { return slice.image->unit == unit; });
+  return same ? unit : std::string();
+}
+
+}  // namespace
+
+VolumeFile open_dicom_without(const std::vector<DamagedDicomFile>& damaged,
+                              const std::filesystem::path& path, const ReadOptions& options) {
   const std::string name = path.string();
   refuse_raw_options(options, name);
-  const DicomFolder folder = scan_dicom_folder(path);
+  const DicomFolder folder = scan_dicom_folder(path, damaged);
   DicomGroup group = choose_dicom_series(folder, path, options.series);
   const DicomImage& image = *group.slices.front().image;
+  const std::string left_out = left_out_text(folder.damaged);
+  const auto fail = [&](const std::string& what) {
+    throw Error(name + ": " + what + (left_out.empty() ? "" : "; " + left_out));
+  };
   if (!image.refused.empty()) {
-    throw Error(name + ": " + group.slices.front().name() + " is not read: " + image.refused);
+    fail(group.slices.front().name() + " is not read: " + image.refused);
   }
   if (group.slices.size() > static_cast<std::size_t>(std::numeric_limits<int>::max())) {
-    throw Error(name + ": has too many slices");
+    fail("has too many slices");
   }
-  if (folder.others > 0 && options.note && std::filesystem::is_directory(path)) {
-    options.note(name + ": " + std::to_string(folder.others) +
-                 (folder.others == 1 ? " file holds" : " files hold") + " no DICOM image and " +
-                 (folder.others == 1 ? "is" : "are") + " left out");
+  if (group.slices.size() == 1 && options.centering != Centering::cell) {
+    fail((image.modality == "RTDOSE" ? "holds a single plane of dose"
+                                     : "holds a single slice, " + image.file.filename().string()) +
+         std::string(", and a volume needs two; give the folder of all slices, or read it with "
+                     "cell centering"));
   }
-  if (image.photometric == "MONOCHROME1" && options.note) {
-    options.note(name +
-                 ": large values are meant to be dark (MONOCHROME1); they are read as they "
-                 "are");
-  }
+  tell(folder, group, path, options);
   VolumeFile file;
-  file.description = place_dicom_slices(group.slices, options, name);
+  file.description = place_dicom_slices(group.slices, options, name, !folder.damaged.empty());
   value_count(
       {image.format.columns, image.format.rows, static_cast<std::int64_t>(group.slices.size())},
       name);
@@ -48,6 +90,15 @@ VolumeFile open_dicom(const std::filesystem::path& path, const ReadOptions& opti
     return read_dicom_values(*slices, range, name);
   };
   return file;
+}
+
+std::string dicom_unit(const std::filesystem::path& path,
+                       const std::optional<std::string>& series) {
+  return unit_of(choose_dicom_series(scan_dicom_folder(path), path, series).slices);
+}
+
+VolumeFile open_dicom(const std::filesystem::path& path, const ReadOptions& options) {
+  return open_dicom_without({}, path, options);
 }
 
 }  // namespace pellucid

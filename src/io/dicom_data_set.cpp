@@ -48,10 +48,29 @@ std::vector<double> DicomDataSet::decimals(DicomTag tag) const {
 }
 
 std::optional<int> DicomDataSet::number(DicomTag tag) const {
+  const std::vector<int> all = whole_numbers(tag);
+  return all.empty() ? std::nullopt : std::optional(all.front());
+}
+
+std::vector<int> DicomDataSet::whole_numbers(DicomTag tag) const {
   const auto found = values.find(tag);
-  if (found == values.end() || found->second.size() < 2) return std::nullopt;
-  const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(found->second[i]); };
-  return big_endian ? byte(0) << 8 | byte(1) : byte(1) << 8 | byte(0);
+  if (found == values.end()) return {};
+  const std::string& raw = found->second;
+  const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(raw[i]); };
+  std::vector<int> numbers;
+  for (std::size_t i = 0; i + 2 <= raw.size(); i += 2) {
+    numbers.push_back(big_endian ? byte(i) << 8 | byte(i + 1) : byte(i + 1) << 8 | byte(i));
+  }
+  return numbers;
+}
+
+std::vector<DicomTag> DicomDataSet::tags(DicomTag tag) const {
+  const std::vector<int> halves = whole_numbers(tag);
+  std::vector<DicomTag> list;
+  for (std::size_t i = 0; i + 2 <= halves.size(); i += 2) {
+    list.push_back(static_cast<DicomTag>(halves[i]) << 16 | static_cast<DicomTag>(halves[i + 1]));
+  }
+  return list;
 }
 
 const DicomDataSet* DicomDataSet::item(DicomTag tag) const {

@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <array>
+#include <optional>
 #include <span>
 #include <string_view>
 
@@ -24,15 +25,31 @@ constexpr DicomTag transfer_syntax_tag = 0x00020010;
 // Of float, of double, of whole numbers.
 constexpr std::array<DicomTag, 3> pixel_tags{0x7fe00008, 0x7fe00009, 0x7fe00010};
 
-constexpr std::array<DicomTag, 29> wanted_values{
-    0x00080008, 0x00020010, 0x00080016, 0x00080060, 0x0008103e, 0x00180050, 0x00180088, 0x0020000e,
-    0x00200011, 0x00200013, 0x00200032, 0x00200037, 0x00280002, 0x00280004, 0x00280006, 0x00280008,
-    0x00280010, 0x00280011, 0x00280030, 0x00280100, 0x00280101, 0x00280102, 0x00280103, 0x00281052,
-    0x00281053, 0x00281054, 0x0020000d, 0x00180081, 0x00200012};
+constexpr std::array wanted_values = std::to_array<DicomTag>(
+    {0x00080008, 0x00020010, 0x00080016, 0x00080060, 0x0008103e, 0x00180050, 0x00180088, 0x0020000e,
+     0x00200011, 0x00200013, 0x00200032, 0x00200037, 0x00280002, 0x00280004, 0x00280006, 0x00280008,
+     0x00280009, 0x00280010, 0x00280011, 0x00280030, 0x00280100, 0x00280101, 0x00280102, 0x00280103,
+     0x00281052, 0x00281053, 0x00281054, 0x0020000d, 0x00180081, 0x00200012, 0x00181063, 0x00181065,
+     0x00182005, 0x00540010, 0x00540020, 0x00540030, 0x00540050, 0x00540060, 0x00540070, 0x00540080,
+     0x00540090, 0x00540100, 0x00541001, 0x30040002, 0x3004000a, 0x3004000c, 0x3004000e});
+// One number for each frame of a file.
+constexpr std::array wanted_vectors = std::to_array<DicomTag>(
+    {0x00181065, 0x00182005, 0x00540010, 0x00540020, 0x00540030, 0x00540050, 0x00540060, 0x00540070,
+     0x00540080, 0x00540090, 0x00540100, 0x3004000c});
 // Functional groups, shared and of each frame; what stands in them of place and value; the modality
-// lookup table.
-constexpr std::array<DicomTag, 7> wanted_sequences{0x52009229, 0x52009230, 0x00209113, 0x00209116,
-                                                   0x00289110, 0x00289145, 0x00283000};
+// lookup table; the detectors of nuclear medicine.
+constexpr std::array wanted_sequences =
+    std::to_array<DicomTag>({0x52009229, 0x52009230, 0x00209113, 0x00209116, 0x00289110, 0x00289145,
+                             0x00283000, 0x00540022});
+
+constexpr std::string_view short_types =
+    "AE AS AT CS DA DS DT FD FL IS LO LT PN SH SL SS ST TM UI UL US";
+constexpr std::string_view long_types = "OB OD OF OL OV OW SQ SV UC UN UR UT UV";
+
+template <class List>
+bool contains(const List& list, DicomTag tag) {
+  return std::ranges::find(list, tag) != list.end();
+}
 
 struct Encoding {
   bool explicit_types = true, big_endian = false;
@@ -58,7 +75,7 @@ class Parser {
   explicit Parser(const ByteSource& source) : source_(source) {}
 
   DicomFile parse() {
-    std::uintmax_t at = has_preamble() ? 132 : 0;
+    std::uintmax_t at = begin().value_or(0);
     DicomDataSet meta;
     at = meta_group(at, meta);
     file_.transfer_syntax = meta.text(transfer_syntax_tag);
@@ -68,14 +85,68 @@ class Parser {
     return std::move(file_);
   }
 
-  bool has_preamble() {
-    if (source_.size < 132) return false;
-    const std::span<const std::byte> magic = bytes(128, 4);
-    return std::ranges::equal(magic, std::string_view("DICM"), {},
-                              [](std::byte b) { return std::to_integer<char>(b); });
+  /// Where the first element stands; nothing where the file is no DICOM file.
+  std::optional<std::uintmax_t> begin() {
+    constexpr std::uintmax_t preamble = 128, magic = 4;
+    if (has_magic(preamble)) return preamble + magic;
+    for (const std::uintmax_t at : {std::uintmax_t{0}, preamble, preamble + magic}) {
+      if (begins_elements(at)) return at;
+    }
+    if (has_magic(0) && begins_elements(magic)) return magic;
+    return std::nullopt;
   }
 
  private:
+  bool has_magic(std::uintmax_t at) {
+    if (at + 4 > source_.size) return false;
+    return std::ranges::equal(bytes(at, 4), std::string_view("DICM"), {},
+                              [](std::byte b) { return std::to_integer<char>(b); });
+  }
+
+  // The type of the element, as explicit files have it; empty where it is none of PS3.5, 6.2.
+  std::string type_at(std::uintmax_t at) {
+    if (at + 6 > source_.size) return {};
+    std::string type;
+    for (const std::byte b : bytes(at + 4, 2)) type += std::to_integer<char>(b);
+    const bool is_one = std::ranges::all_of(type, [](char c) { return c >= 'A' && c <= 'Z'; }) &&
+                        (short_types.find(type) != std::string_view::npos ||
+                         long_types.find(type) != std::string_view::npos);
+    return is_one ? type : std::string();
+  }
+
+  // The groups at the start are below 9.
+  bool is_big_endian(std::uintmax_t at) { return tag_at(at, true) >> 16 <= 8; }
+
+  // Without a magic number: elements in ascending order, the first of group 2 or 8, with types, or
+  // all of group 8 with the short values that stand there.
+  bool begins_elements(std::uintmax_t at) {
+    if (at + 8 > source_.size) return false;
+    const Encoding encoding{!type_at(at).empty(), is_big_endian(at)};
+    const DicomTag first = tag_at(at, encoding.big_endian);
+    const bool is_meta = first >> 16 == 2 && encoding.explicit_types && !encoding.big_endian;
+    if (!is_meta && first >> 16 != 8) return false;
+    if ((first & 0xffff) > 0xff) return false;
+    constexpr std::uint32_t longest = 1024;
+    const int enough = encoding.explicit_types ? 2 : 3;
+    DicomTag before = 0;
+    for (int elements = 0; elements < enough; ++elements) {
+      if (at + (encoding.explicit_types ? 12 : 8) > source_.size) return elements > 0;
+      if (encoding.explicit_types && type_at(at).empty()) return false;
+      const Element element = element_at(at, encoding);
+      if (elements > 0 && element.tag <= before) return false;
+      if (!encoding.explicit_types && elements < 2 &&
+          (element.tag >> 16 != 8 || element.length > longest || element.length % 2 != 0)) {
+        return false;
+      }
+      if (element.value > source_.size || element.length > source_.size - element.value) {
+        return elements > 0;
+      }
+      before = element.tag;
+      at = element.value + element.length;
+    }
+    return true;
+  }
+
   [[noreturn]] void fail(const std::string& what) const {
     throw Error(source_.name + ": the DICOM header " + what + "; the file is cut off or damaged");
   }
@@ -119,7 +190,6 @@ class Parser {
     if (!std::ranges::all_of(element.type, [](char c) { return c >= 'A' && c <= 'Z'; })) {
       fail("has no type at element " + in_hexadecimal(element.tag));
     }
-    constexpr std::string_view long_types = "OB OD OF OL OV OW SQ SV UC UN UR UT UV";
     if (long_types.find(element.type) == std::string_view::npos) {
       element.length = number(at + 6, 2, encoding.big_endian);
       element.value = at + 8;
@@ -141,18 +211,21 @@ class Parser {
     return at;
   }
 
-  // PS3.5, annex A. A file without group 2 is implicit, or else begins with a type.
+  // PS3.5, annex A. A file without group 2 shows it by its first element. So does one that is not
+  // written as group 2 says.
   Encoding encoding_at(std::uintmax_t at) {
     const std::string& syntax = file_.transfer_syntax;
-    if (syntax == "1.2.840.10008.1.2") return {false, false};
     if (syntax == "1.2.840.10008.1.2.2") return {true, true};
     if (syntax == "1.2.840.10008.1.2.1.99") {
       throw Error(source_.name +
                   ": deflated DICOM is not read; convert it to explicit little endian");
     }
-    if (!syntax.empty()) return {true, false};
-    const auto is_letter = [](std::byte b) { return b >= std::byte{'A'} && b <= std::byte{'Z'}; };
-    return {std::ranges::all_of(bytes(at + 4, 2), is_letter), false};
+    const bool says_explicit = syntax != "1.2.840.10008.1.2";
+    if (at + 8 > source_.size) return {says_explicit, false};
+    if (!type_at(at).empty()) return {true, syntax.empty() && is_big_endian(at)};
+    if (syntax.empty()) return {false, is_big_endian(at)};
+    const bool fits_implicit = number(at + 4, 4, false) <= source_.size - at - 8;
+    return {says_explicit && !fits_implicit, false};
   }
 
   void check_length(const Element& element, std::uintmax_t end) const {
@@ -163,11 +236,9 @@ class Parser {
 
   void keep(const Element& element, DicomDataSet& set) {
     // Text of more is none of ours.
-    constexpr std::uint32_t longest = 4096;
-    if (element.length > longest ||
-        std::ranges::find(wanted_values, element.tag) == wanted_values.end()) {
-      return;
-    }
+    constexpr std::uint32_t longest = 4096, longest_vector = 1 << 24;
+    if (!contains(wanted_values, element.tag)) return;
+    if (element.length > (contains(wanted_vectors, element.tag) ? longest_vector : longest)) return;
     std::string& value = set.values[element.tag];
     value.clear();
     for (const std::byte b : bytes(element.value, element.length)) {
@@ -185,7 +256,7 @@ class Parser {
     while (delimited || (depth > 0 ? at < end : at + 8 <= end)) {
       const Element element = element_at(at, encoding);
       if (delimited && element.tag == item_end) return element.value;
-      if (depth == 0 && std::ranges::find(pixel_tags, element.tag) != pixel_tags.end()) {
+      if (depth == 0 && contains(pixel_tags, element.tag)) {
         file_.has_pixels = true;
         file_.pixel_tag = element.tag;
         file_.pixel_offset = element.value;
@@ -193,6 +264,7 @@ class Parser {
         // How much there is of it is asked for together with how much is needed.
         file_.pixel_bytes = std::min<std::uintmax_t>(
             file_.encapsulated ? undefined : element.length, source_.size - element.value);
+        if (file_.encapsulated) check_fragments(element.value, encoding);
         return source_.size;
       }
       if (element.length == undefined && (element.type == "OB" || element.type == "OW")) {
@@ -209,9 +281,7 @@ class Parser {
     return at;
   }
 
-  static bool is_wanted_sequence(DicomTag tag) {
-    return std::ranges::find(wanted_sequences, tag) != wanted_sequences.end();
-  }
+  static bool is_wanted_sequence(DicomTag tag) { return contains(wanted_sequences, tag); }
 
   std::uintmax_t sequence(const Element& element, std::uintmax_t end, Encoding encoding, int depth,
                           DicomDataSet* set) {
@@ -263,6 +333,16 @@ class Parser {
     }
   }
 
+  // That none of the compressed pixels are cut off. Some writers leave out the last delimiter.
+  void check_fragments(std::uintmax_t at, const Encoding& encoding) {
+    while (at + 8 <= source_.size) {
+      const Element item = element_at(at, encoding);
+      if (item.tag != item_tag) return;
+      check_length(item, source_.size);
+      at = item.value + item.length;
+    }
+  }
+
   const ByteSource& source_;
   DicomFile file_;
   Encoding encoding_;
@@ -273,15 +353,7 @@ class Parser {
 }  // namespace
 
 bool is_dicom(const ByteSource& source) {
-  if (Parser(source).has_preamble()) return true;
-  // An element (0008,00xx), little-endian, of at most 64 bytes if it is not explicit.
-  if (source.size < 8) return false;
-  std::array<std::byte, 8> start;
-  source.read(0, start);
-  const auto byte = [&](std::size_t i) { return std::to_integer<unsigned char>(start[i]); };
-  const bool typed = byte(4) >= 'A' && byte(4) <= 'Z' && byte(5) >= 'A' && byte(5) <= 'Z';
-  const bool is_short = byte(4) <= 64 && byte(5) == 0 && byte(6) == 0 && byte(7) == 0;
-  return byte(0) == 8 && byte(1) == 0 && byte(3) == 0 && (typed || is_short);
+  return Parser(source).begin().has_value();
 }
 
 DicomFile parse_dicom(const ByteSource& source) {

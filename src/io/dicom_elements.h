@@ -28,6 +28,10 @@ struct DicomDataSet {
   std::vector<double> decimals(DicomTag tag) const;
   /// A number of two bytes (US).
   std::optional<int> number(DicomTag tag) const;
+  /// All numbers of two bytes (US) of an element; empty where there is none.
+  std::vector<int> whole_numbers(DicomTag tag) const;
+  /// The tags that an element names (AT); empty where there is none.
+  std::vector<DicomTag> tags(DicomTag tag) const;
   /// The first item of a sequence; null where there is none.
   const DicomDataSet* item(DicomTag tag) const;
 };
@@ -41,12 +45,13 @@ struct DicomFile {
   bool encapsulated = false;  ///< pixels are in fragments, compressed
 };
 
-/// By its first bytes: with DICOM's preamble, or beginning with an element of group 8 as files
-/// without it do.
+/// By its first bytes: "DICM" behind a preamble of 128 bytes; or, as old devices write, elements of
+/// group 2 or 8 at the start, with or without "DICM", or behind a preamble without it.
 bool is_dicom(const ByteSource& source);
 
 /// Reads up to the pixels: files of PS3.10, explicit and implicit, of either byte order. Throws
-/// Error where a length leads out of what is around it, and for deflated files.
+/// Error where a length leads out of what is around it, where compressed pixels are cut off, and
+/// for deflated files.
 DicomFile parse_dicom(const ByteSource& source);
 
 }  // namespace pellucid

@@ -19,11 +19,17 @@ struct DicomGroup {
 
 struct DicomFolder {
   std::vector<DicomGroup> series;
-  std::size_t others = 0;  ///< files that hold no slice
+  std::size_t others = 0;                 ///< files that hold no slice
+  std::vector<DamagedDicomFile> damaged;  ///< left out, in the order of their names
 };
 
-/// Throws Error where a file cannot be read.
-DicomFolder scan_dicom_folder(const std::filesystem::path& folder);
+/// The files of a folder, or of the one around a file. Those that cannot be read are left out, and
+/// those of `known` too. Throws Error where `path` itself is one of them.
+DicomFolder scan_dicom_folder(const std::filesystem::path& path,
+                              const std::vector<DamagedDicomFile>& known = {});
+
+/// "3 files are left out; the first: ..."; empty where none is.
+std::string left_out_text(const std::vector<DamagedDicomFile>& files);
 
 /// The series that is wanted: its number from 1, its UID or the unique end of it; where none is,
 /// the only one, or for a file its own. Throws Error, listing what there is.

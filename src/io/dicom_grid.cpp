@@ -9,6 +9,7 @@
 #include <cstddef>
 #include <numbers>
 
+#include "dicom_text.h"
 #include "pellucid/scene/error.h"
 
 namespace pellucid {
@@ -19,18 +20,11 @@ namespace {
 // share of the distance of slices, or of pixels.
 constexpr double tolerance = 0.01;
 
-std::string in_millimetres(double x) {
-  std::string text = std::to_string(x);
-  text.erase(text.find_last_not_of('0') + 1);
-  if (text.ends_with('.')) text.pop_back();
-  return text + " mm";
-}
-
 class SlicePlacement {
  public:
   SlicePlacement(std::vector<DicomSlice>& slices, const ReadOptions& options,
-                 const std::string& name)
-      : slices_(slices), options_(options), name_(name) {}
+                 const std::string& name, bool some_left_out)
+      : slices_(slices), options_(options), name_(name), some_left_out_(some_left_out) {}
 
   Volume::Description find() {
     const DicomSlice& any = slices_.front();
@@ -175,7 +169,8 @@ class SlicePlacement {
         gaps.begin());
     const std::string where = "the distance of slices is " + in_millimetres(middle) + ", but " +
                               in_millimetres(gaps[odd]) + " from " + slices_[odd].name() + " to " +
-                              slices_[odd + 1].name();
+                              slices_[odd + 1].name() +
+                              (some_left_out_ ? " (a file that is left out may belong there)" : "");
     if (options_.centering == Centering::cell) {
       fail(where + "; uneven slices are read with their values as points only");
     }
@@ -188,14 +183,15 @@ class SlicePlacement {
   std::vector<DicomSlice>& slices_;
   const ReadOptions& options_;
   const std::string& name_;
+  bool some_left_out_;
   Vec3<double> normal_{0, 0, 1};
 };
 
 }  // namespace
 
 Volume::Description place_dicom_slices(std::vector<DicomSlice>& slices, const ReadOptions& options,
-                                       const std::string& name) {
-  return SlicePlacement(slices, options, name).find();
+                                       const std::string& name, bool some_left_out) {
+  return SlicePlacement(slices, options, name, some_left_out).find();
 }
 
 }  // namespace pellucid

@@ -7,6 +7,8 @@
 #include <utility>
 
 #include "dicom_elements.h"
+#include "dicom_frames.h"
+#include "dicom_text.h"
 #include "pellucid/scene/error.h"
 
 namespace pellucid {
@@ -24,9 +26,11 @@ constexpr DicomTag image_type = 0x00080008, modality = 0x00080060, series_descri
                    pixel_spacing = 0x00280030, bits_allocated = 0x00280100,
                    bits_stored = 0x00280101, high_bit = 0x00280102, representation = 0x00280103,
                    intercept = 0x00281052, slope = 0x00281053, lookup_table = 0x00283000,
-                   shared_groups = 0x52009229, frame_groups = 0x52009230,
-                   plane_position = 0x00209113, plane_orientation = 0x00209116,
-                   pixel_measures = 0x00289110, value_transformation = 0x00289145;
+                   shared_groups = 0x52009229, frame_groups = 0x52009230, dose_scaling = 0x3004000e,
+                   dose_units = 0x30040002, dose_summation = 0x3004000a, rescale_type = 0x00281054,
+                   pet_units = 0x00541001, detectors = 0x00540022, plane_position = 0x00209113,
+                   plane_orientation = 0x00209116, pixel_measures = 0x00289110,
+                   value_transformation = 0x00289145;
 }  // namespace tag
 
 std::optional<double> first_of(const std::vector<double>& numbers) {
@@ -83,11 +87,15 @@ std::string refusal(const DicomImage& image, const DicomFile& file) {
   return {};
 }
 
-// What is said of one frame: in its own functional group, in the shared one, else in the file.
+// What is said of one frame: in its own functional group, in the shared one, else in the file, or
+// of the detector that took it.
 class FrameFacts {
  public:
   FrameFacts(const DicomDataSet& file, const DicomDataSet* frame)
-      : file_(file), shared_(file.item(tag::shared_groups)), frame_(frame) {}
+      : file_(file),
+        shared_(file.item(tag::shared_groups)),
+        frame_(frame),
+        detector_(file.item(tag::detectors)) {}
 
   std::vector<double> decimals(DicomTag group, DicomTag element) const {
     for (const DicomDataSet* groups : {frame_, shared_}) {
@@ -96,8 +104,11 @@ class FrameFacts {
       std::vector<double> numbers = item->decimals(element);
       if (!numbers.empty()) return numbers;
     }
-    return file_.decimals(element);
+    std::vector<double> numbers = file_.decimals(element);
+    return numbers.empty() && detector_ != nullptr ? detector_->decimals(element) : numbers;
   }
+
+  bool is_dose() const { return file_.text(tag::modality) == "RTDOSE"; }
 
   /// What stands there and is no number; empty where nothing does.
   std::string no_number(DicomTag group, DicomTag element) const {
@@ -114,7 +125,7 @@ class FrameFacts {
   }
 
   const DicomDataSet& file_;
-  const DicomDataSet *shared_, *frame_;
+  const DicomDataSet *shared_, *frame_, *detector_;
 };
 
 std::optional<std::array<Vec3<double>, 2>> directions(const std::vector<double>& cosines) {
@@ -132,8 +143,12 @@ std::optional<std::array<Vec3<double>, 2>> directions(const std::vector<double>&
 
 /// Why the scale of the values is not known; empty where it is.
 std::string refusal(const FrameFacts& facts) {
-  for (const auto& [element, name] : {std::pair{tag::slope, "RescaleSlope (0028,1053)"},
-                                      std::pair{tag::intercept, "RescaleIntercept (0028,1052)"}}) {
+  const std::pair<DicomTag, const char*> scales[] = {
+      {tag::slope, "RescaleSlope (0028,1053)"},
+      {tag::intercept, "RescaleIntercept (0028,1052)"},
+      {tag::dose_scaling, "DoseGridScaling (3004,000E)"}};
+  for (const auto& [element, name] : scales) {
+    if ((element == tag::dose_scaling) != facts.is_dose()) continue;
     const std::string text = facts.no_number(tag::value_transformation, element);
     if (!text.empty()) return std::string(name) + " is \"" + text + "\", no number";
   }
@@ -152,16 +167,94 @@ DicomSlice slice_of(const FrameFacts& facts) {
   }
   slice.distance = first_of(facts.decimals(tag::pixel_measures, tag::spacing_between_slices));
   slice.thickness = first_of(facts.decimals(tag::pixel_measures, tag::slice_thickness));
+  if (facts.is_dose()) {
+    // PS3.3, C.8.8.3: the dose grid has a scaling of its own, and no intercept.
+    slice.slope =
+        first_of(facts.decimals(tag::value_transformation, tag::dose_scaling)).value_or(1);
+    return slice;
+  }
   slice.slope = first_of(facts.decimals(tag::value_transformation, tag::slope)).value_or(1);
   slice.intercept = first_of(facts.decimals(tag::value_transformation, tag::intercept)).value_or(0);
   return slice;
 }
+
+/// The unit of the values behind their scaling, and what is told of it.
+void set_unit(const DicomDataSet& data, DicomImage& image) {
+  const std::string type = data.text(tag::rescale_type);
+  if (type == "HU") image.unit = type;
+  if (image.modality == "PT") {
+    const std::string unit = data.text(tag::pet_units);
+    image.unit = unit == "BQML" ? "Bq/ml" : unit == "GML" ? "g/ml" : std::string();
+  }
+  if (image.modality != "RTDOSE") return;
+  const std::string units = data.text(tag::dose_units);
+  std::string note = "radiation dose";
+  if (data.decimals(tag::dose_scaling).empty()) {
+    note += " without DoseGridScaling (3004,000E): the values are the stored numbers, in no unit";
+  } else if (units == "GY") {
+    image.unit = "Gy";
+    note += " in Gy";
+  } else if (units == "RELATIVE") {
+    image.unit = "relative";
+    note += " relative to a reference that the file does not name (DoseUnits RELATIVE)";
+  } else {
+    note += " in a unit that is not known (DoseUnits \"" + units + "\")";
+  }
+  const std::string summation = data.text(tag::dose_summation);
+  if (!summation.empty()) note += ", DoseSummationType " + summation;
+  image.notes.push_back(note);
+}
+
+/// Where the frames of a file without functional groups stand, by a vector of the file.
+class FramePlaces {
+ public:
+  FramePlaces(const DicomDataSet& data, int frames) {
+    const DicomSlice first = slice_of(FrameFacts(data, nullptr));
+    const auto [row, column] =
+        first.orientation.value_or(std::array{Vec3<double>{1, 0, 0}, Vec3<double>{0, 1, 0}});
+    const Vec3<double> normal = normalized(cross(row, column));
+    offsets_ = dicom_frame_offsets(data, frames, normal, first.position);
+    direction_ = offsets_.along_z ? Vec3<double>{0, 0, 1} : normal;
+    origin_ = first.position.value_or(Vec3<double>{});
+    if (!offsets_.note.empty()) notes_.push_back(offsets_.note);
+    if (!first.position) {
+      notes_.emplace_back(
+          "no position (ImagePositionPatient); the first frame stands at the origin");
+    }
+  }
+
+  const std::string& refused() const { return offsets_.refused; }
+  const std::vector<std::string>& notes() const { return notes_; }
+  Vec3<double> operator[](int frame) const {
+    return origin_ + direction_ * offsets_.offset[static_cast<std::size_t>(frame)];
+  }
+
+ private:
+  DicomFrameOffsets offsets_;
+  Vec3<double> direction_, origin_;
+  std::vector<std::string> notes_;
+};
 
 }  // namespace
 
 std::string DicomSlice::name() const {
   const std::string file = image->file.filename().string();
   return image->frames == 1 ? file : "frame " + std::to_string(frame + 1) + " of " + file;
+}
+
+std::uintmax_t dicom_frame_bytes(const DicomFormat& format) {
+  return static_cast<std::uintmax_t>(format.columns) * static_cast<std::uintmax_t>(format.rows) *
+         static_cast<std::uintmax_t>(format.samples) *
+         static_cast<std::uintmax_t>(format.bits_allocated / 8);
+}
+
+void check_dicom_pixels(const DicomImage& image, int frames) {
+  const std::uintmax_t needed =
+      dicom_frame_bytes(image.format) * static_cast<std::uintmax_t>(frames);
+  if (image.encapsulated || image.pixel_bytes >= needed) return;
+  throw Error(image.file.string() + ": has " + std::to_string(image.pixel_bytes) +
+              " bytes of pixels, but its header needs " + std::to_string(needed) +
+              "; it is cut off or its header is wrong");
 }
 
 std::vector<DicomSlice> read_dicom_slices(const std::filesystem::path& path) {
@@ -190,21 +283,31 @@ std::vector<DicomSlice> read_dicom_slices(const std::filesystem::path& path) {
   image->pixel_bytes = file.pixel_bytes;
   image->refused = refusal(*image, file);
 
+  set_unit(data, *image);
+
   const double frames = first_of(data.decimals(tag::frames)).value_or(1);
   const auto groups = data.sequences.find(tag::frame_groups);
   const bool has_groups = groups != data.sequences.end();
   if (!(frames >= 1) || frames > std::numeric_limits<std::uint16_t>::max() * 16.0) {
-    image->refused = "its header says " + std::to_string(frames) + " frames";
-  } else if (frames > 1 && !has_groups) {
-    image->refused = "its " + std::to_string(static_cast<int>(frames)) +
-                     " frames have no positions of their own: a film, or a kind that is not read; "
-                     "save its frames as files with positions";
+    image->refused = "its header says " + readable_number(frames) + " frames";
   } else if (has_groups && groups->second.size() != static_cast<std::size_t>(frames)) {
     image->refused = "it has " + std::to_string(static_cast<int>(frames)) + " frames, but places " +
                      "for " + std::to_string(groups->second.size());
   } else {
     image->frames = static_cast<int>(frames);
   }
+  std::optional<FramePlaces> places;
+  if (image->frames > 1 && !has_groups && image->refused.empty()) {
+    places.emplace(data, image->frames);
+    image->refused = places->refused();
+    if (image->refused.empty()) {
+      image->notes.insert(image->notes.end(), places->notes().begin(), places->notes().end());
+    } else {
+      image->frames = 1;
+      places.reset();
+    }
+  }
+  if (image->refused.empty()) check_dicom_pixels(*image, image->frames);
 
   std::vector<DicomSlice> slices;
   for (int frame = 0; frame < image->frames; ++frame) {
@@ -214,6 +317,7 @@ std::vector<DicomSlice> read_dicom_slices(const std::filesystem::path& path) {
     const FrameFacts facts(data, group);
     if (image->refused.empty()) image->refused = refusal(facts);
     DicomSlice slice = slice_of(facts);
+    if (places) slice.position = (*places)[frame];
     slice.image = image;
     slice.frame = frame;
     slice.number = first_of(data.decimals(tag::instance_number));

@@ -7,9 +7,11 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "pellucid/geometry/vec3.h"
+#include "pellucid/scene/error.h"
 
 namespace pellucid {
 
@@ -33,7 +35,9 @@ struct DicomImage {
   int frames = 1;
   bool big_endian = false, encapsulated = false;
   std::uintmax_t pixel_offset = 0, pixel_bytes = 0;
-  std::string refused;  ///< why its pixels are not read; empty: they are
+  std::string refused;             ///< why its pixels are not read; empty: they are
+  std::string unit;                ///< of the values: "Gy", "HU"; empty: not said
+  std::vector<std::string> notes;  ///< what is assumed of it, a line each
 };
 
 /// One plane of values: a file, or a frame of it.
@@ -53,8 +57,31 @@ struct DicomSlice {
   std::string name() const;
 };
 
+/// A file that cannot be read, and the message that says why.
+struct DamagedDicomFile {
+  std::filesystem::path file;
+  std::string why;
+};
+
+/// Files that turn out to be damaged when their pixels are read. There is one at least.
+class DamagedDicom : public Error {
+ public:
+  explicit DamagedDicom(std::vector<DamagedDicomFile> files)
+      : Error(files.front().why), files_(std::move(files)) {}
+  const std::vector<DamagedDicomFile>& files() const noexcept { return files_; }
+
+ private:
+  std::vector<DamagedDicomFile> files_;
+};
+
 /// The slices of one file; none where it is no DICOM file, or one without pixels. Throws Error
-/// where its header is damaged.
+/// where its header is damaged or its pixels are cut off.
 std::vector<DicomSlice> read_dicom_slices(const std::filesystem::path& file);
+
+/// The bytes of one frame, uncompressed.
+std::uintmax_t dicom_frame_bytes(const DicomFormat& format);
+
+/// Throws Error where an uncompressed image has fewer bytes than so many frames need.
+void check_dicom_pixels(const DicomImage& image, int frames);
 
 }  // namespace pellucid

@@ -19,12 +19,6 @@ namespace pellucid {
 
 namespace {
 
-std::uintmax_t frame_bytes(const DicomFormat& format) {
-  return static_cast<std::uintmax_t>(format.columns) * static_cast<std::uintmax_t>(format.rows) *
-         static_cast<std::uintmax_t>(format.samples) *
-         static_cast<std::uintmax_t>(format.bits_allocated / 8);
-}
-
 struct WholeType {
   const char* name;
   double lowest, highest;
@@ -65,14 +59,24 @@ class StoredValue {
 /// The bytes of one frame after the other, decompressed where they must be.
 class FrameReader {
  public:
+  /// Throws Error where the frame cannot be read, and of those that GDCM cannot decompress
+  /// DamagedDicom with this one.
   std::span<const std::byte> frame(const DicomSlice& slice) {
     const DicomImage& image = *slice.image;
-    const std::uintmax_t bytes = frame_bytes(image.format);
+    const std::uintmax_t bytes = dicom_frame_bytes(image.format);
     const std::uintmax_t from = bytes * static_cast<std::uintmax_t>(slice.frame);
     if (image.encapsulated) {
       if (decoded_ != slice.image) {
         pixels_ = decode_dicom(image);
         decoded_ = slice.image;
+      }
+      if (pixels_ == nullptr) {
+        throw DamagedDicom(
+            {{image.file, image.file.string() +
+                              ": GDCM cannot decompress its pixels to what its header says "
+                              "(transfer syntax " +
+                              image.transfer_syntax +
+                              "); decompress the file with another program, or get it again"}});
       }
       return {pixels_.get() + from, bytes};
     }
@@ -180,13 +184,23 @@ std::vector<VolumeData> read_dicom_values(const std::vector<DicomSlice>& slices,
   const std::size_t points = per_slice * slices.size();
   const std::uintmax_t value_bytes =
       std::uintmax_t{points} * static_cast<std::uintmax_t>(range.number) * value_size(type, name);
-  check_memory(value_bytes + frame_bytes(format), name + ": its values");
+  check_memory(value_bytes + dicom_frame_bytes(format), name + ": its values");
   std::vector<VolumeData> list;
   list.reserve(static_cast<std::size_t>(range.number));
   for (int c = 0; c < range.number; ++c) list.push_back(make_values(type, points, name));
   FrameReader reader;
+  std::vector<DamagedDicomFile> damaged;
   for (std::size_t k = 0; k < slices.size(); ++k) {
-    const std::span<const std::byte> frame = reader.frame(slices[k]);
+    std::span<const std::byte> frame;
+    try {
+      frame = reader.frame(slices[k]);
+    } catch (const DamagedDicom& error) {
+      // Found out for all files at once: they are left out, and the others are read again.
+      if (damaged.empty() || damaged.back().file != error.files().front().file) {
+        damaged.push_back(error.files().front());
+      }
+      continue;
+    }
     for (int c = 0; c < range.number; ++c) {
       std::visit(
           [&](auto& values) {
@@ -196,6 +210,7 @@ std::vector<VolumeData> read_dicom_values(const std::vector<DicomSlice>& slices,
           list[static_cast<std::size_t>(c)]);
     }
   }
+  if (!damaged.empty()) throw DamagedDicom(std::move(damaged));
   return list;
 }
 

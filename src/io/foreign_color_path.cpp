@@ -22,7 +22,7 @@ Triple<double> hsv_of(const Triple<double>& rgb) {
 
 // vtkMath::RGBToXYZ and XYZToLab.
 Triple<double> lab_of(const Triple<double>& rgb) {
-  const auto [r, g, b] = color_of_signals<double>(rgb, ColorNumbers::srgb);
+  const auto [r, g, b] = color_of_signals<double>(rgb, ColorEncoding::srgb);
   const auto compress = [](double t) {
     return t > 0.008856 ? std::pow(t, 1.0 / 3) : 7.787 * t + 16.0 / 116;
   };
@@ -67,7 +67,7 @@ void adjust_hues(Triple<double>& a, Triple<double>& b) {
 }  // namespace
 
 ColorPath::ColorPath(const ColorNode& from, const ColorNode& to, ColorSpace space,
-                     ColorNumbers numbers)
+                     ColorEncoding numbers)
     : from_(from),
       to_(to),
       space_(space),

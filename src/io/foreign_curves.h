@@ -89,11 +89,11 @@ inline double largest_value(const Jet& x) {
 /// vtkMath::XYZToRGB does: signals are divided by the largest of them where that exceeds 1, and
 /// negative ones are 0.
 template <class T>
-Triple<T> color_of_light(const Triple<T>& light, ColorNumbers numbers) {
+Triple<T> color_of_light(const Triple<T>& light, ColorEncoding numbers) {
   bool outside = false;
   for (const T& x : light) outside = outside || largest_value(x) > 1;
   Triple<T> color;
-  if (!outside && numbers == ColorNumbers::srgb) {
+  if (!outside && numbers == ColorEncoding::srgb) {
     for (std::size_t i = 0; i < 3; ++i) color[i] = larger(light[i], T(0));
     return color;
   }
@@ -102,15 +102,15 @@ Triple<T> color_of_light(const Triple<T>& light, ColorNumbers numbers) {
   const T scale = reciprocal(largest);
   for (T& c : color) {
     c = larger(c * scale, T(0));
-    if (numbers == ColorNumbers::srgb) c = light_of(c);
+    if (numbers == ColorEncoding::srgb) c = light_of(c);
   }
   return color;
 }
 
 /// A color of signals, as they are or as light.
 template <class T>
-Triple<T> color_of_signals(const Triple<T>& signals, ColorNumbers numbers) {
-  if (numbers == ColorNumbers::linear) return signals;
+Triple<T> color_of_signals(const Triple<T>& signals, ColorEncoding numbers) {
+  if (numbers == ColorEncoding::linear) return signals;
   return {light_of(signals[0]), light_of(signals[1]), light_of(signals[2])};
 }
 

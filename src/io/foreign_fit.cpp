@@ -67,7 +67,7 @@ void add_notes(const Function& function, ImportedTransferFunction& imported) {
 ImportedTransferFunction fit(const Function& given, const ImportOptions& options) {
   Function function = given;
   if (options.range) move_to(function, *options.range);
-  if (options.numbers) function.numbers = *options.numbers;
+  if (options.encoding) function.numbers = *options.encoding;
   if (options.unit_distance) function.unit_distance = *options.unit_distance;
   ImportedTransferFunction imported;
   imported.format = function.format;

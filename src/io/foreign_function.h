@@ -37,14 +37,14 @@ enum class ColorSpace { rgb, hsv, hsv_without_wrap, lab, diverging, step };
 /// The largest number of nodes of a file.
 inline constexpr std::size_t most_nodes = 100'000;
 /// The largest number of Gaussians, of which each is looked at at every value.
-inline constexpr std::size_t most_gaussians = 100;
+inline constexpr std::size_t max_gaussians = 100;
 
 struct Function {
   std::string format;  ///< for people: "ParaView color map"
   std::string name;    ///< in the file; may be empty
   std::vector<ColorNode> colors;
   ColorSpace space = ColorSpace::rgb;
-  ColorNumbers numbers = ColorNumbers::srgb;
+  ColorEncoding numbers = ColorEncoding::srgb;
   std::vector<OpacityNode> opacities;
   /// In place of `opacities`: the largest of them at each value, between these values and constant
   /// beyond them.

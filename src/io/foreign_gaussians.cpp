@@ -32,8 +32,8 @@ Function read_vtk_js(const Node& document) {
   function.format = "vtk.js Gaussians";
   const Node list = document.is_array() ? document : *document.find("gaussians");
   if (list.array_size() == 0) list.fail("is empty; give at least one Gaussian");
-  if (list.array_size() > most_gaussians) {
-    list.fail("has more than " + std::to_string(most_gaussians) + " Gaussians");
+  if (list.array_size() > max_gaussians) {
+    list.fail("has more than " + std::to_string(max_gaussians) + " Gaussians");
   }
   for (std::size_t i = 0; i < list.array_size(); ++i) {
     function.gaussians.push_back(gaussian(list.element(i)));
@@ -87,7 +87,7 @@ std::vector<double> positions(const Node& document, const char* key, std::size_t
 Function read_anari(const Node& document) {
   Function function;
   function.format = "ANARI transferFunction1D";
-  function.numbers = ColorNumbers::linear;
+  function.numbers = ColorEncoding::linear;
   if (const auto range = document.find("valueRange")) {
     if (range->array_size() != 2) range->fail("must have two numbers, a range of values");
     function.lower = range->element(0).number();

@@ -19,7 +19,7 @@ struct Place {
 /// The way from one color to the next, its ends in the space in which it is straight.
 class ColorPath {
  public:
-  ColorPath(const ColorNode& from, const ColorNode& to, ColorSpace space, ColorNumbers numbers);
+  ColorPath(const ColorNode& from, const ColorNode& to, ColorSpace space, ColorEncoding numbers);
 
   /// The color where no break of breaks() lies within the value.
   template <class T>
@@ -42,7 +42,7 @@ class ColorPath {
 
   ColorNode from_, to_;
   ColorSpace space_;
-  ColorNumbers numbers_;
+  ColorEncoding numbers_;
   double middle_;
   /// In the space of the way; for ColorSpace::diverging those of the second half behind them.
   Triple<double> begin_{}, end_{}, second_begin_{}, second_end_{};

@@ -51,7 +51,7 @@ class GaussianReader {
       std::string_view value = trimmed(parts[i].substr(word.size()));
       if (value.starts_with('=')) value = trimmed(value.substr(1));
       if (word == "extinction" && !std::exchange(has_extinction, true)) {
-        gaussian_.extinction = number(value, "the extinction");
+        gaussian_.extinction = number(value, "the extinction", scene_json::largest_number);
         if (gaussian_.extinction < 0) fail("the extinction is negative; give 0 or more");
       } else if (word == "color" && !std::exchange(has_color, true)) {
         gaussian_.color = color(value);
@@ -72,14 +72,14 @@ class GaussianReader {
     throw Error("Gaussian \"" + printable(text_) + "\": " + what);
   }
 
-  double number(std::string_view text, const std::string& what) const {
+  double number(std::string_view text, const std::string& what, double largest) const {
     if (text.starts_with('+') && !text.starts_with("+-")) text.remove_prefix(1);
     double value = 0;
     const auto result = std::from_chars(text.data(), text.data() + text.size(), value);
     const auto used = static_cast<std::size_t>(result.ptr - text.data());
-    if (result.ec != std::errc() || !is_unit(text.substr(used)) ||
-        !(std::abs(value) <= scene_json::largest_number)) {
-      fail(what + " is \"" + printable(text) + "\", but must be a number up to 1e30");
+    if (result.ec != std::errc() || !is_unit(text.substr(used)) || !(std::abs(value) <= largest)) {
+      fail(what + " is \"" + printable(text) + "\", but must be a number up to " +
+           (largest == scene_json::largest_number ? "1e30" : "2.1e37"));
     }
     return value;
   }
@@ -102,8 +102,10 @@ class GaussianReader {
     if (sign == std::string_view::npos) {
       fail("\"" + printable(text) + "\" has no width; give CENTER~WIDTH, as in 80~10");
     }
-    gaussian_.center.push_back(number(trimmed(text.substr(0, sign)), "a centre"));
-    const double width = number(trimmed(text.substr(sign + length)), "a width");
+    gaussian_.center.push_back(
+        number(trimmed(text.substr(0, sign)), "a centre", scene_json::largest_value));
+    const double width =
+        number(trimmed(text.substr(sign + length)), "a width", scene_json::largest_value);
     if (!(width >= smallest_width)) fail("a width is not positive; it is the distance to 1/e");
     widths_.widths.push_back(width);
     if (!name.empty()) gaussian_.channels.push_back(std::move(name));
@@ -129,7 +131,7 @@ class GaussianReader {
       const char* const end = text.data() + text.size();
       const auto result = std::from_chars(text.data() + 1, end, rgb, 16);
       if (result.ec == std::errc() && result.ptr == end) {
-        const auto part = [&](int shift) { return linear_light((rgb >> shift & 0xff) / 255.0); };
+        const auto part = [&](int shift) { return srgb_to_linear((rgb >> shift & 0xff) / 255.0); };
         return {part(16), part(8), part(0)};
       }
     }
@@ -140,7 +142,7 @@ class GaussianReader {
     }
     std::array<double, 3> rgb{};
     for (std::size_t i = 0; i < 3; ++i) {
-      rgb[i] = number(parts[i], "a part of the color");
+      rgb[i] = number(parts[i], "a part of the color", scene_json::largest_number);
       if (rgb[i] < 0) fail("a part of the color is negative; give 0 or more");
     }
     return {rgb[0], rgb[1], rgb[2]};

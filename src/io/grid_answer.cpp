@@ -40,7 +40,8 @@ json of_array(const GridArray& array) {
          {"holds", of_text(array.holds)},
          {"times", array.times},
          {"positions", array.positions},
-         {"rounding", array.rounding}};
+         {"rounding", array.rounding},
+         {"note", of_text(array.note)}};
   if (array.placement) {
     const GridPlacement& p = *array.placement;
     j["placement"] = {of_vector(p.origin), of_vector(p.spacing), of_vector(p.direction.column[0]),
@@ -60,6 +61,7 @@ GridArray array_of(const json& j) {
   j.at("times").get_to(array.times);
   j.at("positions").get_to(array.positions);
   j.at("rounding").get_to(array.rounding);
+  array.note = text_of(j.at("note"));
   if (j.contains("placement")) {
     const json& p = j.at("placement");
     array.placement = GridPlacement{vector_of(p.at(0)), vector_of(p.at(1)), {}};

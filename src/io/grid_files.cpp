@@ -21,6 +21,7 @@
 #include "module.h"
 #include "net_cdf_size.h"
 #include "pellucid/scene/error.h"
+#include "vdb_size.h"
 #include "volume_axes.h"
 
 namespace pellucid {
@@ -81,13 +82,14 @@ std::string list_of(const std::vector<GridOther>& others) {
   return one_line(list.substr(0, 400));
 }
 
-GridContents contents_of(const std::filesystem::path& path, const Format& format) {
+GridContents contents_of(const std::filesystem::path& path, const ReadOptions& options,
+                         const Format& format) {
   // Room for the positions along axes; what is not written to is no memory.
   constexpr std::size_t room = std::size_t{16} << 20;
   const auto bytes = contained<ListGrids>(format, list_grids_name, path, room,
                                           [&](ListGrids& list, std::span<std::byte> to) {
                                             GridContents contents;
-                                            list(path, contents);
+                                            list(path, options.axes, contents);
                                             return write_grid_contents(contents, to);
                                           });
   std::optional<GridContents> contents = read_grid_contents({bytes.get(), room});
@@ -112,7 +114,7 @@ const GridArray& choose(const GridContents& contents, const ReadOptions& options
     list += (list.empty() ? "" : ", ") + array.name;
   }
   for (const GridOther& other : contents.others) {
-    if (other.name != *options.array || other.is.empty()) continue;
+    if (bare(other.name) != bare(*options.array) || other.is.empty()) continue;
     throw Error(name + ": \"" + one_line(other.name) + "\" is " + one_line(other.is));
   }
   throw Error(name + ": has no array \"" + *options.array + "\", a " + std::string(format.wanted) +
@@ -139,24 +141,22 @@ Volume::Description describe(const GridArray& array, const ReadOptions& options,
 
 constexpr std::array value_types{"u8", "i8", "u16", "i16", "u32", "i32", "f32", "f64"};
 
-/// What stands behind the values that a process hands over: what went wrong, else the types of the
-/// components, by their numbers in value_types.
+/// What stands behind the values that a process hands over: what went wrong, a note, and the types
+/// of the components, by their numbers in value_types.
 class Trailer {
  public:
   Trailer(std::span<std::byte> bytes)
-      : error_(bytes.first(longest)), types_(bytes.subspan(longest)) {}
+      : error_(bytes.first(longest)),
+        note_(bytes.subspan(longest, longest)),
+        types_(bytes.subspan(2 * longest)) {}
 
-  static std::size_t size(int components) { return longest + static_cast<std::size_t>(components); }
-  void set_error(const std::string& error) const {
-    const std::size_t length = std::min(error.size(), longest - 1);
-    std::memcpy(error_.data(), error.data(), length);
-    error_[length] = std::byte{0};
+  static std::size_t size(int components) {
+    return 2 * longest + static_cast<std::size_t>(components);
   }
-  std::string error() const {
-    const auto end = std::ranges::find(error_, std::byte{0});
-    return {reinterpret_cast<const char*>(error_.data()),
-            static_cast<std::size_t>(end - error_.begin())};
-  }
+  void set_error(const std::string& error) const { set(error_, error); }
+  std::string error() const { return text(error_); }
+  void set_note(const std::string& note) const { set(note_, note); }
+  std::string note() const { return text(note_); }
   void set_type(std::size_t component, const std::string& type) const {
     const auto known = std::ranges::find(value_types, type);
     types_[component] = static_cast<std::byte>(known - value_types.begin());
@@ -170,7 +170,19 @@ class Trailer {
 
  private:
   static constexpr std::size_t longest = 4096;
-  std::span<std::byte> error_, types_;
+
+  static void set(std::span<std::byte> bytes, const std::string& text) {
+    const std::size_t length = std::min(text.size(), longest - 1);
+    std::memcpy(bytes.data(), text.data(), length);
+    bytes[length] = std::byte{0};
+  }
+  static std::string text(std::span<const std::byte> bytes) {
+    const auto end = std::ranges::find(bytes, std::byte{0});
+    return {reinterpret_cast<const char*>(bytes.data()),
+            static_cast<std::size_t>(end - bytes.begin())};
+  }
+
+  std::span<std::byte> error_, note_, types_;
 };
 
 /// The values in place: whoever has them keeps all that the process handed over.
@@ -188,7 +200,8 @@ VolumeData values_at(const std::shared_ptr<std::byte>& all, std::size_t offset, 
 }
 
 std::vector<VolumeData> read_values(const std::filesystem::path& path, const Format& format,
-                                    const GridArray& array, ComponentRange range) {
+                                    const GridArray& array, const ReadOptions& options,
+                                    ComponentRange range) {
   const std::string name = path.string();
   const std::size_t points = value_count(array.sides, name);
   const std::size_t count = value_count(points, range.number, name);
@@ -210,13 +223,17 @@ std::vector<VolumeData> read_values(const std::filesystem::path& path, const For
           trailer.set_type(component, type);
           return to.subspan(component++ * stride, points * value_size(type, name));
         };
-        read(path, array.name, range, values);
+        read(path, array.name, options.axes, range, values);
         trailer.set_error(values.error);
+        trailer.set_note(values.note);
         return true;
       });
   const Trailer trailer({bytes.get() + end, Trailer::size(range.number)});
   if (const std::string error = trailer.error(); !error.empty()) {
     throw Error(name + ": " + one_line(error));
+  }
+  if (const std::string note = trailer.note(); options.note && !note.empty()) {
+    options.note(name + ": " + one_line(note));
   }
   std::vector<VolumeData> components;
   for (std::size_t c = 0; c < static_cast<std::size_t>(range.number); ++c) {
@@ -231,7 +248,7 @@ VolumeFile open_grid(const std::filesystem::path& path, const ReadOptions& optio
                      const Format& format) {
   const std::string name = path.string();
   refuse_raw_options(options, name);
-  const GridContents contents = contents_of(path, format);
+  const GridContents contents = contents_of(path, options, format);
   const GridArray array = choose(contents, options, format, name);
   value_count(array.sides, name);
   VolumeFile file;
@@ -248,19 +265,23 @@ VolumeFile open_grid(const std::filesystem::path& path, const ReadOptions& optio
     if (options.component) throw Error(name + ": give a time or a component, not both");
     file.step = static_cast<int>(nearest_step(array.times, options.time));
   }
-  file.read = [path, &format, array](ComponentRange range) {
-    return read_values(path, format, array, range);
+  if (options.note && !array.note.empty()) options.note(name + ": " + one_line(array.note));
+  file.read = [path, &format, array, options](ComponentRange range) {
+    return read_values(path, format, array, options, range);
   };
   return file;
 }
 
-std::vector<VolumeArray> list_arrays(const std::filesystem::path& path, const Format& format) {
-  const GridContents contents = contents_of(path, format);
+std::vector<VolumeArray> list_arrays(const std::filesystem::path& path, const Format& format,
+                                     const ReadOptions& options = {}) {
+  const GridContents contents = contents_of(path, options, format);
+  ReadOptions quiet = options;
+  quiet.note = {};
   std::vector<VolumeArray> list;
   for (const GridArray& array : contents.arrays) {
     VolumeArray about;
     about.name = array.name;
-    about.shown = list.empty();
+    about.is_default = list.empty();
     about.dimensions.assign(array.sides.begin(), array.sides.end());
     // Each takes a process of its own.
     constexpr int most = 64;
@@ -268,14 +289,14 @@ std::vector<VolumeArray> list_arrays(const std::filesystem::path& path, const Fo
     about.type = array.type;
     try {
       for (int c = 0; c < std::min(array.components, most); ++c) {
-        const VolumeData values = read_values(path, format, array, {c, 1}).front();
+        const VolumeData values = read_values(path, format, array, quiet, {c, 1}).front();
         about.type = type_name(values);
         about.components.push_back(component_statistics(values, 1).front());
       }
     } catch (const Error& error) {
       // One that cannot be read is no reason to say nothing of the others.
       const std::string message = error.what(), name = path.string() + ": ";
-      about.not_read = message.starts_with(name) ? message.substr(name.size()) : message;
+      about.unreadable_reason = message.starts_with(name) ? message.substr(name.size()) : message;
       about.components.clear();
       about.more_components = array.components;
     }
@@ -285,7 +306,7 @@ std::vector<VolumeArray> list_arrays(const std::filesystem::path& path, const Fo
     if (other.is.empty()) continue;
     VolumeArray about;
     about.name = one_line(other.name);
-    about.not_read = one_line(other.is);
+    about.unreadable_reason = one_line(other.is);
     list.push_back(std::move(about));
   }
   return list;
@@ -303,8 +324,9 @@ VolumeFile open_net_cdf(const std::filesystem::path& path, const ReadOptions& op
   return open_grid(path, options, net_cdf);
 }
 
-std::vector<VolumeArray> list_hdf5_arrays(const std::filesystem::path& path) {
-  return list_arrays(path, hdf5);
+std::vector<VolumeArray> list_hdf5_arrays(const std::filesystem::path& path,
+                                          const ReadOptions& options) {
+  return list_arrays(path, hdf5, options);
 }
 
 std::vector<VolumeArray> list_net_cdf_arrays(const std::filesystem::path& path) {
@@ -314,10 +336,12 @@ std::vector<VolumeArray> list_net_cdf_arrays(const std::filesystem::path& path) 
 }
 
 VolumeFile open_vdb(const std::filesystem::path& path, const ReadOptions& options) {
+  check_vdb_size(path);
   return open_grid(path, options, vdb);
 }
 
 std::vector<VolumeArray> list_vdb_arrays(const std::filesystem::path& path) {
+  check_vdb_size(path);
   return list_arrays(path, vdb);
 }
 

@@ -29,6 +29,7 @@ struct GridArray {
   std::array<std::vector<double>, 3> positions;
   std::array<double, 3> rounding{};
   std::optional<GridPlacement> placement;  ///< in place of positions
+  std::string note;  ///< what is assumed where the file does not say it; may be empty
 };
 
 /// What is no volume of numbers.
@@ -47,19 +48,23 @@ struct GridValues {
   /// Room for all values of one component, the next, of this type.
   std::function<std::span<std::byte>(const std::string& type)> next;
   std::string error;
+  std::string note;  ///< what a user should know of the values; may be empty
 };
 
 /// The functions of such a module, by these names. They are called in a process of their own, for
 /// the libraries of these formats do not stand any file that is damaged.
-using ListGrids = void(const std::filesystem::path& path, GridContents& answer);
+/// `axes` are ReadOptions::axes, for formats whose axes have no names.
+using AxisLetters = std::optional<std::string>;
+using ListGrids = void(const std::filesystem::path& path, const AxisLetters& axes,
+                       GridContents& answer);
 using ReadGrid = void(const std::filesystem::path& path, const std::string& array,
-                      ComponentRange range, GridValues& answer);
-inline constexpr const char* list_grids_name = "pellucid_list_grids_1";
-inline constexpr const char* read_grid_name = "pellucid_read_grid_1";
+                      const AxisLetters& axes, ComponentRange range, GridValues& answer);
+inline constexpr const char* list_grids_name = "pellucid_list_grids_2";
+inline constexpr const char* read_grid_name = "pellucid_read_grid_2";
 
 /// What each module has of its own, behind these names. They throw.
-void list_grids(const std::filesystem::path& path, GridContents& contents);
-void read_grid(const std::filesystem::path& path, const std::string& name, ComponentRange range,
-               GridValues& values);
+void list_grids(const std::filesystem::path& path, const AxisLetters& axes, GridContents& contents);
+void read_grid(const std::filesystem::path& path, const std::string& name, const AxisLetters& axes,
+               ComponentRange range, GridValues& values);
 
 }  // namespace pellucid

@@ -6,17 +6,22 @@
 
 namespace {
 
-constexpr const char* remedy = "crop or reduce the volume";
+// The values' memory was there before; what a library takes beside it depends on the file.
+constexpr const char* remedy =
+    "the file is damaged, or asks for far more than its size lets expect; get it again, or crop or "
+    "reduce the volume";
 
 }  // namespace
 
-extern "C" __attribute__((visibility("default"))) void pellucid_list_grids_1(
-    const std::filesystem::path& path, pellucid::GridContents& answer) {
-  pellucid::answer(answer.error, remedy, [&] { pellucid::list_grids(path, answer); });
+extern "C" __attribute__((visibility("default"))) void pellucid_list_grids_2(
+    const std::filesystem::path& path, const pellucid::AxisLetters& axes,
+    pellucid::GridContents& answer) {
+  pellucid::answer(answer.error, remedy, [&] { pellucid::list_grids(path, axes, answer); });
 }
 
-extern "C" __attribute__((visibility("default"))) void pellucid_read_grid_1(
-    const std::filesystem::path& path, const std::string& array, pellucid::ComponentRange range,
-    pellucid::GridValues& answer) {
-  pellucid::answer(answer.error, remedy, [&] { pellucid::read_grid(path, array, range, answer); });
+extern "C" __attribute__((visibility("default"))) void pellucid_read_grid_2(
+    const std::filesystem::path& path, const std::string& array, const pellucid::AxisLetters& axes,
+    pellucid::ComponentRange range, pellucid::GridValues& answer) {
+  pellucid::answer(answer.error, remedy,
+                   [&] { pellucid::read_grid(path, array, axes, range, answer); });
 }

@@ -2,7 +2,10 @@
 #include <hdf5.h>
 
 #include <algorithm>
+#include <array>
 #include <cstddef>
+#include <cstdint>
+#include <functional>
 #include <limits>
 #include <optional>
 #include <span>
@@ -10,137 +13,143 @@
 #include <utility>
 #include <vector>
 
+#include "array_axes.h"
 #include "grid_module.h"
+#include "hdf5_parts.h"
 #include "pellucid/scene/error.h"
+#include "stored_numbers.h"
 
 namespace pellucid {
 
 namespace {
 
-/// Closed by the function that belongs to its kind.
-class Id {
- public:
-  Id(hid_t id, herr_t (*close)(hid_t), const char* what) : id_(id), close_(close) {
-    if (id < 0) throw Error(std::string("HDF5 cannot read ") + what + "; the file is damaged");
-  }
-  ~Id() { close_(id_); }
-  Id(const Id&) = delete;
-  Id& operator=(const Id&) = delete;
-  hid_t get() const { return id_; }
-
- private:
-  hid_t id_;
-  herr_t (*close_)(hid_t);
-};
-
-hid_t open_file(const std::filesystem::path& path) {
-  // What it would print stands in our own words in exceptions.
-  H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
-  if (H5Fis_hdf5(path.c_str()) <= 0) throw Error("is no HDF5 file, or damaged");
-  return H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT);
-}
-
-/// The type that values are kept in; nothing where they are no plain numbers.
-std::optional<std::string> type_of(hid_t type) {
-  const std::size_t bytes = H5Tget_size(type);
-  switch (H5Tget_class(type)) {
-    case H5T_FLOAT:
-      return bytes <= 4 ? "f32" : "f64";
-    case H5T_ENUM: {  // as h5py writes what is true or false
-      const Id base(H5Tget_super(type), H5Tclose, "a type");
-      return type_of(base.get());
-    }
-    case H5T_INTEGER: {
-      if (bytes > 4) return "f64";
-      const std::string sign = H5Tget_sign(type) == H5T_SGN_NONE ? "u" : "i";
-      return sign + (bytes == 1 ? "8" : bytes == 2 ? "16" : "32");
-    }
-    default:
-      return std::nullopt;
-  }
-}
-
-hid_t memory_type(const std::string& type) {
-  if (type == "u8") return H5T_NATIVE_UINT8;
-  if (type == "i8") return H5T_NATIVE_INT8;
-  if (type == "u16") return H5T_NATIVE_UINT16;
-  if (type == "i16") return H5T_NATIVE_INT16;
-  if (type == "u32") return H5T_NATIVE_UINT32;
-  if (type == "i32") return H5T_NATIVE_INT32;
-  return type == "f32" ? H5T_NATIVE_FLOAT : H5T_NATIVE_DOUBLE;
-}
-
-/// A dataset's axes, and which of them are those of the volume.
-struct Axes {
-  std::vector<hsize_t> sides;
-  std::size_t first = 0;                  ///< of z, y, x, which follow each other
-  std::optional<std::size_t> components;  ///< the one beside them
-};
-
-/// Nothing where there are not three of them, or four.
-std::optional<Axes> axes_of(hid_t space) {
+/// The sides of a dataset along its axes; nothing where they are fewer than three, or none can be.
+std::optional<std::vector<std::int64_t>> shape_of(hid_t space) {
   const int rank = H5Sget_simple_extent_ndims(space);
   if (rank < 3) return std::nullopt;
-  Axes axes;
-  axes.sides.resize(static_cast<std::size_t>(rank));
-  if (H5Sget_simple_extent_dims(space, axes.sides.data(), nullptr) != rank) return std::nullopt;
-  std::size_t begin = 0, end = axes.sides.size();
-  while (end - begin > 3 && axes.sides[begin] == 1) ++begin;
-  while (end - begin > 3 && axes.sides[end - 1] == 1) --end;
-  if (end - begin > 4) return std::nullopt;
-  axes.first = begin;
-  if (end - begin == 4) {
-    // Colors and vectors stand behind, steps in front.
-    constexpr hsize_t most_behind = 4;
-    const bool behind = axes.sides[end - 1] <= most_behind;
-    axes.components = behind ? end - 1 : begin;
-    if (!behind) ++axes.first;
-  }
+  std::vector<hsize_t> sides(static_cast<std::size_t>(rank));
+  if (H5Sget_simple_extent_dims(space, sides.data(), nullptr) != rank) return std::nullopt;
   constexpr hsize_t most = std::numeric_limits<int>::max();
-  if (std::ranges::any_of(axes.sides, [](hsize_t side) { return side < 1 || side > most; })) {
+  if (std::ranges::any_of(sides, [](hsize_t side) { return side < 1 || side > most; })) {
     return std::nullopt;
   }
-  return axes;
+  return std::vector<std::int64_t>(sides.begin(), sides.end());
 }
 
-/// Throws Error for values that lie in other files, which a file from elsewhere could name at will,
-/// and for types that are no numbers though they look like some.
-void check_kind(hid_t dataset, hid_t type) {
-  const Id how(H5Dget_create_plist(dataset), H5Pclose, "the layout of a dataset");
-  if (H5Pget_layout(how.get()) == H5D_VIRTUAL) {
-    throw Error("a virtual dataset, whose values lie in others; save it as one of its own");
-  }
-  if (H5Pget_external_count(how.get()) > 0) {
-    throw Error(
-        "a dataset of external storage, whose values lie in other files; save it as one of "
-        "its own");
-  }
-  if (H5Tget_class(type) == H5T_BITFIELD) {
-    throw Error("a dataset of bit fields, which are no numbers; save it as integers");
+/// Nothing where there are not three axes, or four. Throws Error for letters that do not fit.
+std::optional<ArrayAxes> axes_of(const std::vector<std::int64_t>& shape,
+                                 const AxisLetters& letters) {
+  if (letters)
+    return array_axes(shape, letters, "an array of shape (" + shape_text(shape) + "), which");
+  try {
+    return array_axes(shape, letters, {});
+  } catch (const Error&) {
+    return std::nullopt;
   }
 }
 
-std::optional<GridArray> describe(hid_t dataset, const std::string& name) {
-  const Id space(H5Dget_space(dataset), H5Sclose, "the axes of a dataset");
-  const Id type(H5Dget_type(dataset), H5Tclose, "the type of a dataset");
-  const auto axes = axes_of(space.get());
-  const auto kept = type_of(type.get());
+struct Dataset {
+  GridArray about;
+  std::string type;  ///< of its values in memory
+  std::vector<std::int64_t> shape;
+  ArrayAxes axes;
+};
+
+std::optional<Dataset> describe(hid_t id, const std::string& name, const AxisLetters& letters) {
+  const Id space(H5Dget_space(id), H5Sclose, "the axes of a dataset");
+  const Id type(H5Dget_type(id), H5Tclose, "the type of a dataset");
+  const auto shape = shape_of(space.get());
+  const auto axes = shape ? axes_of(*shape, letters) : std::nullopt;
+  const auto number = type_of(type.get());
   if (!axes) return std::nullopt;
-  check_kind(dataset, type.get());
-  if (!kept) return std::nullopt;
-  GridArray array;
+  check_kind(id, type.get());
+  if (!number) return std::nullopt;
+  Dataset dataset{{}, *number, *shape, *axes};
+  GridArray& array = dataset.about;
   array.name = name;
-  array.type = *kept;
-  for (std::size_t a = 0; a < 3; ++a) {
-    array.sides[2 - a] = static_cast<std::int64_t>(axes->sides[axes->first + a]);
-  }
+  array.type = is_stored_only(*number) ? "f64" : *number;
+  for (std::size_t a = 0; a < 3; ++a) array.sides[a] = (*shape)[axes->space[a]];
   if (axes->components) {
-    const auto count = static_cast<int>(axes->sides[*axes->components]);
+    const auto count = static_cast<int>((*shape)[*axes->components]);
     array.components = count;
     array.holds =
         std::to_string(count) + " components (axis " + std::to_string(*axes->components) + ")";
+    if (!axes->guess.empty()) array.note = "\"" + name + "\": " + axes_note(*shape, *axes);
   }
-  return array;
+  return dataset;
+}
+
+/// Reads values of one component in the order of the file.
+void read_component(hid_t id, const Dataset& dataset, int component, void* to) {
+  const Id space(H5Dget_space(id), H5Sclose, "the axes of a dataset");
+  std::vector<hsize_t> start(dataset.shape.size(), 0), count(dataset.shape.size(), 1);
+  hsize_t points = 1;
+  for (const std::size_t axis : dataset.axes.space) {
+    count[axis] = static_cast<hsize_t>(dataset.shape[axis]);
+    points *= count[axis];
+  }
+  if (dataset.axes.components) start[*dataset.axes.components] = static_cast<hsize_t>(component);
+  const Id memory(H5Screate_simple(1, &points, nullptr), H5Sclose, "the axes of a dataset");
+  const bool done =
+      H5Sselect_hyperslab(space.get(), H5S_SELECT_SET, start.data(), nullptr, count.data(),
+                          nullptr) >= 0 &&
+      H5Dread(id, memory_type(dataset.type), memory.get(), space.get(), H5P_DEFAULT, to) >= 0;
+  if (!done) {
+    throw Error("HDF5 cannot read the values of \"" + dataset.about.name +
+                "\"; the file is cut off or damaged, or compressed in a way that it lacks");
+  }
+}
+
+/// In values, of x, y and z in the order of the file, without the axis of components.
+std::array<std::size_t, 3> strides_of(const Dataset& dataset) {
+  std::array<std::size_t, 3> strides{};
+  for (std::size_t a = 0; a < 3; ++a) {
+    strides[a] = 1;
+    for (const std::size_t other : dataset.axes.space) {
+      if (other > dataset.axes.space[a]) {
+        strides[a] *= static_cast<std::size_t>(dataset.shape[other]);
+      }
+    }
+  }
+  return strides;
+}
+
+/// Reads values of one component, x fastest.
+void read_ordered(hid_t id, const Dataset& dataset, int component, std::span<std::byte> to,
+                  std::size_t size) {
+  if (std::ranges::is_sorted(dataset.axes.space, std::greater<>())) {
+    read_component(id, dataset, component, to.data());
+    return;
+  }
+  std::vector<std::byte> stored(to.size());
+  read_component(id, dataset, component, stored.data());
+  copy_permuted(stored.data(), to.data(), size, dataset.about.sides, strides_of(dataset));
+}
+
+template <class Number>
+void read_whole_numbers(hid_t id, const Dataset& dataset, std::size_t points, ComponentRange range,
+                        GridValues& values) {
+  std::vector<WholeNumbers> components;
+  std::vector<Number> numbers(points);
+  Rounding rounding;
+  for (int c = range.first; c < range.first + range.number; ++c) {
+    read_ordered(id, dataset, c, std::as_writable_bytes(std::span(numbers)), sizeof(Number));
+    components.emplace_back(
+        [&](const std::string& type) { return make_volume_data(type, points); });
+    components.back().add(std::span<const Number>(numbers));
+    rounding.merge(components.back().rounding());
+  }
+  unify(components);
+  for (WholeNumbers& component : components) {
+    const VolumeData kept = component.take();
+    std::visit(
+        [&](const auto& of_type) {
+          const auto all = std::as_bytes(std::span(of_type.data(), of_type.size()));
+          std::ranges::copy(all, values.next(component.type()).begin());
+        },
+        kept);
+  }
+  if (rounding.count > 0) values.note = rounding.text(points * components.size());
 }
 
 herr_t take_name(hid_t, const char* name, const H5O_info_t* about, void* names) {
@@ -152,7 +161,8 @@ herr_t take_name(hid_t, const char* name, const H5O_info_t* about, void* names) 
 
 }  // namespace
 
-void list_grids(const std::filesystem::path& path, GridContents& contents) {
+void list_grids(const std::filesystem::path& path, const AxisLetters& axes,
+                GridContents& contents) {
   const Id file(open_file(path), H5Fclose, "the file");
   std::vector<std::string> names;
   if (H5Ovisit(file.get(), H5_INDEX_NAME, H5_ITER_INC, take_name, &names) < 0) {
@@ -161,8 +171,8 @@ void list_grids(const std::filesystem::path& path, GridContents& contents) {
   for (const std::string& name : names) {
     const Id dataset(H5Dopen2(file.get(), name.c_str(), H5P_DEFAULT), H5Dclose, name.c_str());
     try {
-      if (auto array = describe(dataset.get(), name)) {
-        contents.arrays.push_back(*std::move(array));
+      if (auto found = describe(dataset.get(), name, axes)) {
+        contents.arrays.push_back(std::move(found->about));
       } else {
         contents.others.push_back({name, {}});
       }
@@ -172,35 +182,25 @@ void list_grids(const std::filesystem::path& path, GridContents& contents) {
   }
 }
 
-void read_grid(const std::filesystem::path& path, const std::string& name, ComponentRange range,
-               GridValues& values) {
+void read_grid(const std::filesystem::path& path, const std::string& name, const AxisLetters& axes,
+               ComponentRange range, GridValues& values) {
   const Id file(open_file(path), H5Fclose, "the file");
-  const Id dataset(H5Dopen2(file.get(), name.c_str(), H5P_DEFAULT), H5Dclose, name.c_str());
-  const Id space(H5Dget_space(dataset.get()), H5Sclose, "the axes of a dataset");
-  const auto axes = axes_of(space.get());
-  const auto array = describe(dataset.get(), name);
-  if (!axes || !array) throw Error("the file was changed while it was read");
-  std::vector<hsize_t> start(axes->sides.size(), 0), count(axes->sides.size(), 1);
-  hsize_t points = 1;
-  for (std::size_t a = axes->first; a < axes->first + 3; ++a) {
-    count[a] = axes->sides[a];
-    points *= count[a];
+  const Id id(H5Dopen2(file.get(), name.c_str(), H5P_DEFAULT), H5Dclose, name.c_str());
+  const auto dataset = describe(id.get(), name, axes);
+  if (!dataset) throw Error("the file was changed while it was read");
+  std::size_t points = 1;
+  for (const std::int64_t side : dataset->about.sides) points *= static_cast<std::size_t>(side);
+  if (dataset->type == "i64") {
+    return read_whole_numbers<std::int64_t>(id.get(), *dataset, points, range, values);
   }
-  const Id memory(H5Screate_simple(1, &points, nullptr), H5Sclose, "the axes of a dataset");
+  if (dataset->type == "u64") {
+    return read_whole_numbers<std::uint64_t>(id.get(), *dataset, points, range, values);
+  }
+  const std::size_t size = H5Tget_size(memory_type(dataset->type));
   for (int c = range.first; c < range.first + range.number; ++c) {
-    if (axes->components) start[*axes->components] = static_cast<hsize_t>(c);
-    const std::span<std::byte> to = values.next(array->type);
-    if (to.size() != points * H5Tget_size(memory_type(array->type))) {
-      throw Error("the file was changed while it was read");
-    }
-    const bool done = H5Sselect_hyperslab(space.get(), H5S_SELECT_SET, start.data(), nullptr,
-                                          count.data(), nullptr) >= 0 &&
-                      H5Dread(dataset.get(), memory_type(array->type), memory.get(), space.get(),
-                              H5P_DEFAULT, to.data()) >= 0;
-    if (!done) {
-      throw Error("HDF5 cannot read the values of \"" + name +
-                  "\"; the file is cut off or damaged, or compressed in a way that it lacks");
-    }
+    const std::span<std::byte> to = values.next(dataset->about.type);
+    if (to.size() != points * size) throw Error("the file was changed while it was read");
+    read_ordered(id.get(), *dataset, c, to, size);
   }
 }
 

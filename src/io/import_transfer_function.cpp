@@ -70,9 +70,9 @@ void check(const ImportOptions& options) {
   }
   if (options.range) {
     const auto [a, b] = *options.range;
-    if (!(a < b && std::abs(a) <= scene_json::largest_number &&
-          std::abs(b) <= scene_json::largest_number)) {
-      throw Error("import: the range must be two ascending numbers up to 1e30");
+    if (!(a < b && std::abs(a) <= scene_json::largest_value &&
+          std::abs(b) <= scene_json::largest_value)) {
+      throw Error("import: the range must be two ascending numbers up to 2.1e37");
     }
   }
   if (options.unit_distance && !(*options.unit_distance >= smallest_unit_distance &&

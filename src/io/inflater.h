@@ -24,6 +24,8 @@ class Inflater {
 
 /// zlib or gzip, whichever begins.
 std::unique_ptr<Inflater> make_zlib_inflater();
+/// Deflate alone, without a header or a checksum, as zip archives have it.
+std::unique_ptr<Inflater> make_deflate_inflater();
 /// bzip2; throws Error that begins with `name` where the build has none.
 std::unique_ptr<Inflater> make_bzip2_inflater(const std::string& name);
 

@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <fstream>
 #include <system_error>
 
 #include "pellucid/scene/error.h"
@@ -12,6 +13,24 @@
 namespace pellucid {
 
 namespace fs = std::filesystem;
+
+namespace {
+
+const char* kind_of(const fs::file_status& status) {
+  switch (status.type()) {
+    case fs::file_type::fifo:
+      return "a pipe";
+    case fs::file_type::socket:
+      return "a socket";
+    case fs::file_type::character:
+    case fs::file_type::block:
+      return "a device";
+    default:
+      return "something else";
+  }
+}
+
+}  // namespace
 
 std::uintmax_t check_input_file(const fs::path& path) {
   std::error_code error;
@@ -25,7 +44,8 @@ std::uintmax_t check_input_file(const fs::path& path) {
   if (fs::is_directory(status)) throw Error(path.string() + ": is a folder; give a file");
   // Reading a pipe or a device might never end.
   if (!fs::is_regular_file(status)) {
-    throw Error(path.string() + ": is not a regular file; copy its content to a file first");
+    throw Error(path.string() + ": is " + kind_of(status) +
+                ", not a regular file; copy its content to a file first");
   }
   if (faccessat(AT_FDCWD, path.c_str(), R_OK, AT_EACCESS) != 0) {
     throw Error(path.string() +
@@ -34,6 +54,16 @@ std::uintmax_t check_input_file(const fs::path& path) {
   const std::uintmax_t size = fs::file_size(path, error);
   if (error) throw Error(path.string() + ": cannot read the file: " + error.message());
   return size;
+}
+
+std::string first_bytes(const fs::path& path, std::size_t most) {
+  std::error_code error;
+  if (!fs::is_regular_file(path, error)) return {};
+  std::ifstream stream(path, std::ios::binary);
+  std::string bytes(most, '\0');
+  stream.read(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+  bytes.resize(static_cast<std::size_t>(stream.gcount()));
+  return bytes;
 }
 
 }  // namespace pellucid

@@ -2,7 +2,6 @@
 #include "inviwo_values.h"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <string_view>
 #include <utility>
@@ -10,7 +9,6 @@
 #include "gzip_source.h"
 #include "pellucid/scene/error.h"
 #include "text.h"
-#include "widened_source.h"
 
 namespace pellucid {
 
@@ -79,15 +77,9 @@ VolumeFile open_inviwo_values(const InviwoHeader& header, const std::string& nam
   raw.big_endian = header.big_endian;
   raw.skip_bytes = header.skip_bytes;
   if (stored.components > 1) raw.components = stored.components;
-  ByteSource source = header.compressed ? gzip_source(header.values) : file_source(header.values);
-  if (const auto kept = widened_type(stored.name)) {
-    const auto [x, y, z] = header.dimensions;
-    const std::size_t count = value_count(value_count({x, y, z}, name), stored.components, name);
-    source = widened_source(source, {stored.name, header.big_endian, header.skip_bytes}, count);
-    raw.type = *kept;
-    raw.big_endian = std::endian::native == std::endian::big;
-    raw.skip_bytes = 0;
-  }
+  const ByteSource source =
+      header.compressed ? gzip_source(header.values) : file_source(header.values);
+  raw.note = options.note;
   VolumeFile file = open_raw(source, raw);
   file.description.name = name;
   place(header, name, file.description);

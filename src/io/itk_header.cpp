@@ -8,8 +8,10 @@
 #include <vector>
 
 #include "input_file.h"
+#include "memory_limit.h"
 #include "module.h"
 #include "pellucid/scene/error.h"
+#include "stored_numbers.h"
 
 namespace pellucid {
 
@@ -56,8 +58,17 @@ std::vector<VolumeData> read_raw_values(const NrrdValues& values, ValueLayout la
 std::vector<VolumeData> read_by_itk(const std::filesystem::path& path, ValueLayout layout,
                                     std::size_t points, ComponentRange range,
                                     const std::string& name) {
+  const std::size_t count = value_count(points, layout.components, name);
+  layout.big_endian = std::endian::native == std::endian::big;
+  if (is_stored_only(layout.type)) {
+    const std::size_t bytes = count * value_size(layout.type, name);
+    check_memory(bytes, name + ": its values");
+    std::vector<std::byte> stored(bytes);
+    call<ReadNrrdValues>(name, read_nrrd_values_name, path, name, std::span(stored));
+    return read_components(memory_source(stored, name), layout, points, range);
+  }
   std::vector<VolumeData> list;
-  list.push_back(make_values(layout.type, value_count(points, layout.components, name), name));
+  list.push_back(make_values(layout.type, count, name));
   std::visit(
       [&](auto& values) {
         call<ReadNrrdValues>(name, read_nrrd_values_name, path, name,
@@ -65,7 +76,6 @@ std::vector<VolumeData> read_by_itk(const std::filesystem::path& path, ValueLayo
       },
       list.front());
   if (layout.components == 1) return list;
-  layout.big_endian = std::endian::native == std::endian::big;
   return std::visit(
       [&](const auto& values) {
         const auto bytes = std::as_bytes(std::span(values.data(), values.size()));
@@ -128,8 +138,8 @@ VolumeFile open_nrrd_file(const std::filesystem::path& path, const std::string& 
   apply_overrides(options, file.description);
   file.components = header.components;
   file.holds = header.holds;
-  file.read = [path, type, header, text, points, name](ComponentRange range) {
-    ValueLayout layout{type, false, 0, header.components, header.interleaved};
+  file.read = [path, type, header, text, points, name, note = options.note](ComponentRange range) {
+    ValueLayout layout{type, false, 0, header.components, header.interleaved, note};
     const bool order_is_known =
         text.values && (text.values->big_endian || value_size(type, name) == 1);
     if (text.values && text.values->compression && !order_is_known) {

@@ -17,7 +17,7 @@ namespace pellucid {
 struct ItkHeader {
   std::array<std::int64_t, 3> sides{};  ///< values along x, y, z; not checked
   GridPlacement placement;
-  std::string type;  ///< "u8" … "f64"
+  std::string type;  ///< "u8" … "f64", also "i64" and "u64"
   int components = 1;
   bool interleaved = false;  ///< as in ValueLayout, where ITK gives the values
   std::string holds;         ///< what several components are

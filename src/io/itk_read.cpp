@@ -96,10 +96,11 @@ std::string type_of(const itk::ImageIOBase& io, const std::string& name) {
     case Type::DOUBLE:
       return "f64";
     case Type::ULONG:
-    case Type::LONG:
     case Type::ULONGLONG:
+      return io.GetComponentSize() == 4 ? "u32" : "u64";
+    case Type::LONG:
     case Type::LONGLONG:
-      throw Error(name + ": 64-bit integers are not read; convert the file to 32 bits or double");
+      return io.GetComponentSize() == 4 ? "i32" : "i64";
     default:
       throw Error(name + ": values of this type are not read; convert the file to float");
   }

@@ -111,11 +111,19 @@ UnstructuredGrid concatenate(std::vector<UnstructuredGrid>&& blocks, const std::
     grid.points.reserve(points);
     grid.shapes.reserve(cells);
     grid.corners.reserve(corners);
+    const bool numbered = std::ranges::all_of(blocks, [](const UnstructuredGrid& block) {
+      return block.cell_numbers.size() == block.shapes.size();
+    });
     for (UnstructuredGrid& block : blocks) {
       const auto first = static_cast<std::int32_t>(grid.points.size());
       grid.points.insert(grid.points.end(), block.points.begin(), block.points.end());
       grid.shapes.insert(grid.shapes.end(), block.shapes.begin(), block.shapes.end());
       for (const std::int32_t corner : block.corners) grid.corners.push_back(first + corner);
+      grid.layouts.insert(grid.layouts.end(), block.layouts.begin(), block.layouts.end());
+      if (numbered) {
+        grid.cell_numbers.insert(grid.cell_numbers.end(), block.cell_numbers.begin(),
+                                 block.cell_numbers.end());
+      }
       block = {};
     }
   }
@@ -126,6 +134,11 @@ UnstructuredGrid concatenate(std::vector<UnstructuredGrid>&& blocks, const std::
     if (array.centering == Centering::cell && twice) array.name += "_cell";
   }
   grid.name = name;
+  // Those that say nothing are not kept.
+  std::int32_t number = 0;
+  if (std::ranges::all_of(grid.cell_numbers, [&](std::int32_t n) { return n == number++; })) {
+    grid.cell_numbers = {};
+  }
   return grid;
 }
 
@@ -222,7 +235,7 @@ void merge_points(const std::vector<std::size_t>& first, MeshFile& file) {
         taken[static_cast<std::size_t>(same->second)] = block;
         ++file.merged_points;
       } else if (from != to) {
-        ++file.torn_points;
+        ++file.discontinuous_points;
       }
     }
     for (std::size_t i = begin; i < end; ++i) {
@@ -255,6 +268,13 @@ MeshFile join_blocks(MeshBlocks&& mesh, const std::string& name) {
   }
   file.grid = concatenate(std::move(mesh.blocks), name);
   if (file.blocks > 1) merge_points(first, file);
+  if (file.trimmed_cells > 0) {
+    file.notes.push_back(
+        std::to_string(file.trimmed_cells) + " of " + std::to_string(file.grid.shapes.size()) +
+        " cells list more points than their shape has (the first is cell " +
+        std::to_string(file.first_trimmed_cell) +
+        ", counted from 0): the points that the shape needs are taken, those behind are left out");
+  }
   return file;
 }
 

@@ -17,6 +17,7 @@ namespace pellucid {
 struct MeshBlocks {
   MeshFile file;
   std::vector<UnstructuredGrid> blocks;
+  std::size_t cells = 0;  ///< of all blocks so far, those that are left out too
 };
 
 /// Joins the blocks to the file's one grid, and makes points of different blocks one where they

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cstdint>
 #include <utility>
 
 #include "memory_limit.h"
@@ -29,8 +30,12 @@ std::optional<int> take_component(std::string_view& text) {
 }
 
 /// About how many tetrahedra a cell becomes.
-std::size_t pieces_of(CellShape shape) {
-  switch (shape) {
+std::uintmax_t pieces_of(const GridCell& cell) {
+  // Below 2001 each: lagrange_points().
+  const auto order = [&](std::size_t axis) {
+    return static_cast<std::uintmax_t>(cell.layout[axis + 1]);
+  };
+  switch (cell.shape) {
     case CellShape::tetrahedron:
       return 1;
     case CellShape::pyramid:
@@ -49,16 +54,24 @@ std::size_t pieces_of(CellShape shape) {
       return 24;
     case CellShape::quadratic_hexahedron:
     case CellShape::triquadratic_hexahedron:
+      return 48;
+    case CellShape::lagrange_tetrahedron:
+      return cell.points.size() + order(0) * order(0) * order(0);
+    case CellShape::lagrange_wedge:
+      return cell.points.size() + 3 * order(0) * order(0) * order(2);
+    case CellShape::lagrange_hexahedron:
+      return 6 * order(0) * order(1) * order(2);
+    case CellShape::polyhedron:
       break;
   }
-  return 48;
+  return cell.points.size();  // two less than its points of each face
 }
 
 void check_mesh_memory(const UnstructuredGrid& grid) {
-  std::size_t tetrahedra = 0;
-  for (const CellShape shape : grid.shapes) tetrahedra += pieces_of(shape);
+  std::uintmax_t tetrahedra = 0;
+  for (CellWalk walk(grid); !walk.done();) tetrahedra += pieces_of(walk.next());
   // Corners and neighbors, and while neighbors are looked for the faces too.
-  constexpr std::size_t bytes = 128;
+  constexpr std::uintmax_t bytes = 128;
   check_memory(tetrahedra * bytes,
                grid.name + ": its " + std::to_string(tetrahedra) + " tetrahedra");
 }
@@ -80,10 +93,23 @@ MeshArrayChoice parse_mesh_array(std::string_view text) {
     throw Error(what + "expected ARRAY, ARRAY:COMPONENT or NAME=ARRAY, as in speed=V or V:0");
   }
   if (choice.name.empty()) {
-    choice.name = as_channel_name(choice.array);
+    choice.name = to_channel_name(choice.array);
     if (choice.component) choice.name += "_" + std::to_string(*choice.component);
   }
   return choice;
+}
+
+std::string overlap_note(const MeshStatistics& s) {
+  if (s.folded_faces == 0) return "";
+  // Crushed cells are few; an exporter writes all of a kind in its own order.
+  const bool most = 2 * s.overlapping_cells >= s.cells;
+  return std::to_string(s.overlapping_cells) + " of " + std::to_string(s.cells) +
+         " cells overlap themselves or a neighbour (the first is cell " +
+         std::to_string(s.first_overlapping_cell) + ", counted from 0), at " +
+         std::to_string(s.folded_faces) +
+         " faces of their tetrahedra: pixels that see it are not known; the likely cause is " +
+         (most ? "the order of the cells' nodes, which is not that of the format"
+               : "the order of their nodes, or that they are crushed or turned inside out");
 }
 
 std::vector<std::string> channel_names(const MeshSource& source) {
@@ -121,6 +147,8 @@ LoadedMesh load_mesh(const MeshSource& source, const ParallelFor& parallel) {
   if (all_there) std::erase_if(arrays, [&](const MeshArray& array) { return !is_chosen(array); });
   check_mesh_memory(file.grid);
   loaded.mesh = cut_into_tetrahedra(file.grid, loaded.channels, parallel);
+  const std::string overlap = overlap_note(loaded.mesh->mesh().statistics());
+  if (source.options.note && !overlap.empty()) source.options.note(overlap);
   return loaded;
 }
 

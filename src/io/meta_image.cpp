@@ -87,6 +87,10 @@ std::vector<DataFile> find_files(const fs::path& path, const MetaImageHeader& he
     files.push_back({path, static_cast<std::uintmax_t>(at)});
     return files;
   }
+  if (header.header_size < -1) {
+    throw Error(name + ": the header says \"HeaderSize = " + std::to_string(header.header_size) +
+                "\", where a whole number from 0 is meant, or -1 for the last bytes");
+  }
   std::vector<std::string> names{where};
   if (where == "LIST" || where.starts_with("LIST ")) {
     names = listed_files(path);
@@ -136,9 +140,10 @@ ByteSource joined_source(const std::vector<DataFile>& files, std::uintmax_t shar
 
 std::vector<VolumeData> read_files(const std::vector<DataFile>& files,
                                    const MetaImageHeader& header, std::size_t points,
-                                   ComponentRange range, const std::string& name) {
-  ValueLayout layout{header.type, header.big_endian, files[0].offset, header.components,
-                     header.interleaved};
+                                   ComponentRange range, const Note& note,
+                                   const std::string& name) {
+  ValueLayout layout{header.type,       header.big_endian,  files[0].offset,
+                     header.components, header.interleaved, note};
   if (header.compressed) {
     // CompressedDataSize is often out of date; the compressed data knows where it ends.
     DataStream stream(files[0].path, layout.offset, DataStream::Compression::deflate);
@@ -148,7 +153,12 @@ std::vector<VolumeData> read_files(const std::vector<DataFile>& files,
   }
   const std::size_t share = value_count(points, layout.components, name) / files.size();
   for (const DataFile& file : files) {
-    check_size(file_source(file.path), {layout.type, layout.big_endian, file.offset}, share);
+    const ByteSource source = file_source(file.path);
+    check_size(source, {layout.type, layout.big_endian, file.offset}, share);
+    const bool own_file = file.path.string() != name;
+    note_bytes_left_over(
+        source, file.offset + share * value_size(layout.type, name), note,
+        own_file ? "\"HeaderSize = -1\" in the MetaImage header takes the last bytes" : "");
   }
   if (files.size() == 1) return read_components(file_source(files[0].path), layout, points, range);
   layout.offset = 0;
@@ -186,8 +196,10 @@ VolumeFile open_meta_image(const fs::path& path, const ReadOptions& options) {
   apply_overrides(options, file.description);
   file.components = header.components;
   file.holds = header.holds;
-  file.read = [header, points, name, files = find_files(path, header, bytes)](
-                  ComponentRange range) { return read_files(files, header, points, range, name); };
+  file.read = [header, points, name, note = options.note,
+               files = find_files(path, header, bytes)](ComponentRange range) {
+    return read_files(files, header, points, range, note, name);
+  };
   return file;
 }
 

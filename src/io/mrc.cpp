@@ -14,7 +14,6 @@
 #include <string_view>
 
 #include "pellucid/scene/error.h"
-#include "widened_source.h"
 
 namespace pellucid {
 
@@ -198,14 +197,9 @@ VolumeFile open_mrc(const ByteSource& source, const ReadOptions& options) {
   }
   layout.offset = header_bytes + static_cast<std::uintmax_t>(extended);
   const std::size_t count = value_count(points, layout.components, name);
-  ByteSource values = source;
-  if (const auto kept = widened_type(layout.type)) {
-    values = widened_source(source, layout, count);
-    layout.type = *kept;
-    layout.big_endian = std::endian::native == std::endian::big;
-    layout.offset = 0;
-  }
-  check_size(values, layout, count);
+  check_size(source, layout, count);
+  note_bytes_left_over(source, layout.offset + count * value_size(layout.type, name), options.note,
+                       {});
 
   VolumeFile file;
   file.description.name = name;
@@ -214,8 +208,8 @@ VolumeFile open_mrc(const ByteSource& source, const ReadOptions& options) {
   apply_overrides(options, file.description);
   file.components = layout.components;
   file.holds = std::to_string(layout.components) + " volumes (space group 401)";
-  file.read = [values, layout, points](ComponentRange range) {
-    return read_components(values, layout, points, range);
+  file.read = [source, layout, points](ComponentRange range) {
+    return read_components(source, layout, points, range);
   };
   return file;
 }

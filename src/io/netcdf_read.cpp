@@ -15,6 +15,7 @@
 #include "grid_module.h"
 #include "netcdf_variables.h"
 #include "pellucid/scene/error.h"
+#include "stored_numbers.h"
 
 namespace pellucid {
 
@@ -76,9 +77,33 @@ std::optional<GridArray> describe(const NetCdfVariable& variable) {
   return array;
 }
 
-/// The numbers as they are stored, those of 64 bits as double.
+/// Whole numbers of 64 bits in the smallest type that holds all of them.
+template <class Number>
+VolumeData read_whole_numbers(const NetCdfVariable& variable, const std::vector<std::size_t>& start,
+                              const std::vector<std::size_t>& count, std::size_t points,
+                              std::string& note) {
+  std::vector<Number> numbers(points);
+  check_net_cdf(
+      nc_get_vara(variable.group, variable.id, start.data(), count.data(), numbers.data()),
+      "the values of \"" + variable.name + "\"");
+  WholeNumbers kept([&](const std::string& type) { return make_volume_data(type, points); });
+  kept.add(std::span<const Number>(numbers));
+  if (kept.rounding().count > 0) note = kept.rounding().text(points);
+  return kept.take();
+}
+
+/// The numbers as they are stored. Those of 64 bits that are scaled or may be missing are double.
 VolumeData read_stored(const NetCdfVariable& variable, const std::vector<std::size_t>& start,
-                       const std::vector<std::size_t>& count, std::size_t points) {
+                       const std::vector<std::size_t>& count, std::size_t points,
+                       const NetCdfMeaning& meaning, std::string& note) {
+  if (meaning.is_plain() && meaning.missing.empty()) {
+    if (variable.type == NC_INT64) {
+      return read_whole_numbers<std::int64_t>(variable, start, count, points, note);
+    }
+    if (variable.type == NC_UINT64) {
+      return read_whole_numbers<std::uint64_t>(variable, start, count, points, note);
+    }
+  }
   VolumeData data = make_volume_data(*stored_type(variable), points);
   const int status = std::visit(
       [&](auto& values) {
@@ -139,7 +164,7 @@ VolumeData with_meaning(VolumeData stored, const NetCdfMeaning& meaning) {
 
 }  // namespace
 
-void list_grids(const std::filesystem::path& path, GridContents& contents) {
+void list_grids(const std::filesystem::path& path, const AxisLetters&, GridContents& contents) {
   const NetCdfFile file(path);
   const std::vector<NetCdfVariable> variables = net_cdf_variables(file.id());
   for (const NetCdfVariable& variable : variables) {
@@ -155,8 +180,8 @@ void list_grids(const std::filesystem::path& path, GridContents& contents) {
   }
 }
 
-void read_grid(const std::filesystem::path& path, const std::string& name, ComponentRange range,
-               GridValues& values) {
+void read_grid(const std::filesystem::path& path, const std::string& name, const AxisLetters&,
+               ComponentRange range, GridValues& values) {
   const NetCdfFile file(path);
   const std::vector<NetCdfVariable> variables = net_cdf_variables(file.id());
   const auto variable =
@@ -172,7 +197,8 @@ void read_grid(const std::filesystem::path& path, const std::string& name, Compo
   const NetCdfMeaning meaning = meaning_of(*variable);
   for (int c = range.first; c < range.first + range.number; ++c) {
     if (axes->components) start[*axes->components] = static_cast<std::size_t>(c);
-    const VolumeData data = with_meaning(read_stored(*variable, start, count, points), meaning);
+    const VolumeData data =
+        with_meaning(read_stored(*variable, start, count, points, meaning, values.note), meaning);
     std::visit(
         [&](const auto& of_type) {
           const auto all = std::as_bytes(std::span(of_type.data(), of_type.size()));

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
+#include <cstdint>
 #include <span>
 #include <type_traits>
 #include <utility>
@@ -50,13 +52,45 @@ VolumeData read_scaled(const ReadOn& read, const NiftiHeader& header, std::size_
       make_volume_data(header.layout.type, 0));
 }
 
+/// The same of whole numbers of 64 bits.
+template <class Stored>
+VolumeData read_scaled_whole(const ReadOn& read, const NiftiHeader& header, std::size_t count,
+                             const std::string& name) {
+  VolumeData data = make_values("f64", count, name);
+  const std::span<double> scaled = std::get<DataArray<double>>(data).writable();
+  const bool swapped = header.layout.big_endian == (std::endian::native == std::endian::little);
+  constexpr std::size_t largest_part = std::size_t{1} << 16;
+  std::vector<Stored> part(std::min(largest_part, count));
+  for (std::size_t first = 0; first < count; first += part.size()) {
+    part.resize(std::min(part.size(), count - first));
+    read(std::as_writable_bytes(std::span(part)));
+    for (std::size_t i = 0; i < part.size(); ++i) {
+      auto bytes = std::bit_cast<std::array<std::byte, sizeof(Stored)>>(part[i]);
+      if (swapped) std::ranges::reverse(bytes);
+      scaled[first + i] =
+          header.slope * static_cast<double>(std::bit_cast<Stored>(bytes)) + header.intercept;
+    }
+  }
+  return data;
+}
+
+VolumeData read_scaled_any(const ReadOn& read, const NiftiHeader& header, std::size_t count,
+                           const std::string& name) {
+  const std::string& type = header.layout.type;
+  if (type == "i64") return read_scaled_whole<std::int64_t>(read, header, count, name);
+  if (type == "u64") return read_scaled_whole<std::uint64_t>(read, header, count, name);
+  return read_scaled(read, header, count, name);
+}
+
 /// Components that are scaled lie one behind the other.
 std::vector<VolumeData> read_scaled(const ReadOn& read, const NiftiHeader& header,
                                     std::size_t count, ComponentRange range,
                                     const std::string& name) {
   std::vector<VolumeData> list;
   list.reserve(static_cast<std::size_t>(range.number));
-  for (int c = 0; c < range.number; ++c) list.push_back(read_scaled(read, header, count, name));
+  for (int c = 0; c < range.number; ++c) {
+    list.push_back(read_scaled_any(read, header, count, name));
+  }
   return list;
 }
 
@@ -84,7 +118,10 @@ std::vector<VolumeData> read_file_values(const std::filesystem::path& file,
     return list;
   }
   const ByteSource source = file_source(file);
-  check_size(source, layout, value_count(count, layout.components, name));
+  const std::size_t all = value_count(count, layout.components, name);
+  check_size(source, layout, all);
+  note_bytes_left_over(source, layout.offset + all * value_size(layout.type, name), layout.note,
+                       {});
   if (as_stored) return read_components(source, layout, count, range);
   return read_scaled(read_on(source, layout.offset + before), header, count, range, name);
 }
@@ -172,7 +209,8 @@ VolumeFile open_nifti(const std::filesystem::path& path, const ReadOptions& opti
   const std::string name = path.string();
   refuse_raw_options(options, name);
   const NiftiFiles files = find_nifti_files(path);
-  const NiftiHeader header = read_nifti_header(files.header);
+  NiftiHeader header = read_nifti_header(files.header);
+  header.layout.note = options.note;
   const std::size_t count = value_count(header.dimensions, name);
   for (std::size_t a = 0; a < 3 && !options.spacing; ++a) {
     if (header.spacing[a] > 0) continue;

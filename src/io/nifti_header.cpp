@@ -50,8 +50,9 @@ std::string type_of(int code, const std::string& name) {
     case 768:
       return "u32";
     case 1024:
+      return "i64";
     case 1280:
-      throw Error(name + ": 64-bit integers are not read; convert the file to 32 bits or double");
+      return "u64";
     case 32:
     case 1792:
     case 2048:

@@ -4,16 +4,22 @@
 // the header (2 bytes, from version 2.0 on 4), the header: a Python dictionary with the keys
 // 'descr', 'fortran_order' and 'shape'; then the values.
 
+#include "npy.h"
+
 #include <algorithm>
 #include <array>
 #include <limits>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
-#include "components.h"
+#include "array_axes.h"
+#include "memory_limit.h"
 #include "pellucid/scene/error.h"
+#include "stored_numbers.h"
 
 namespace pellucid {
 
@@ -159,60 +165,163 @@ class HeaderParser {
   std::size_t position_ = 0;
 };
 
-ValueLayout layout_of(const std::string& descr, std::uintmax_t offset, const std::string& name) {
-  static constexpr std::pair<const char*, const char*> types[] = {
-      {"u1", "u8"},  {"i1", "i8"},  {"u2", "u16"}, {"i2", "i16"},
-      {"u4", "u32"}, {"i4", "i32"}, {"f4", "f32"}, {"f8", "f64"}};
+/// What numpy calls a type, and what it is here.
+struct NpyType {
+  std::string_view numpy;
+  const char* type;
+};
+
+constexpr std::array npy_types{NpyType{"u1", "u8"},  NpyType{"i1", "i8"},  NpyType{"b1", "u8"},
+                               NpyType{"u2", "u16"}, NpyType{"i2", "i16"}, NpyType{"u4", "u32"},
+                               NpyType{"i4", "i32"}, NpyType{"u8", "u64"}, NpyType{"i8", "i64"},
+                               NpyType{"f2", "f16"}, NpyType{"f4", "f32"}, NpyType{"f8", "f64"}};
+
+/// Why a type is not read, and what to do.
+std::string advice_for(std::string_view kind) {
+  const char letter = kind.empty() ? '\0' : kind[0];
+  switch (letter) {
+    case 'c':
+      return "complex numbers; save numpy.abs, .real or .imag of them";
+    case 'f':
+      return "floats of this size; convert with .astype(numpy.float64)";
+    case 'O':
+      return "Python objects; save an array of numbers, with .astype(numpy.float32)";
+    case 'S':
+    case 'U':
+    case 'a':
+      return "text; save an array of numbers";
+    case 'M':
+    case 'm':
+      return "times; convert with .astype(numpy.int64)";
+    case 'V':
+      return "records or bytes without a type; save one field as an array of numbers";
+    default:
+      return "read are b1, u1, i1, u2, i2, u4, i4, u8, i8, f2, f4 and f8; convert with .astype";
+  }
+}
+
+void set_type(const std::string& descr, const std::string& name, NpyArray& array) {
   const char order = descr.empty() ? '\0' : descr[0];
-  const std::string kind = descr.substr(std::min<std::size_t>(1, descr.size()));
-  for (const auto& [numpy_type, type] : types) {
-    if (kind != numpy_type) continue;
+  const std::string_view kind =
+      std::string_view(descr).substr(std::min<std::size_t>(1, descr.size()));
+  for (const NpyType& known : npy_types) {
+    if (kind != known.numpy) continue;
     if (order != '<' && order != '>' && !(order == '|' && kind[1] == '1')) break;
-    return {type, order == '>', offset};
+    array.type = known.type;
+    array.big_endian = order == '>';
+    return;
   }
-  const char* advice = kind == "i8" || kind == "u8"
-                           ? "64-bit integers; convert with .astype(numpy.int32) or numpy.float64"
-                       : kind == "f2" ? "half floats; convert with .astype(numpy.float32)"
-                       : kind == "b1" ? "booleans; convert with .astype(numpy.uint8)"
-                       : kind == "c8" || kind == "c16"
-                           ? "complex numbers; save numpy.abs, .real or .imag of them"
-                           : "read are u1, i1, u2, i2, u4, i4, f4 and f8; convert with .astype";
-  throw Error(name + ": type '" + HeaderParser::printable(descr) + "' is not read: " + advice);
+  throw Error(name + ": type '" + HeaderParser::printable(descr) +
+              "' is not read: " + advice_for(kind));
 }
 
-std::string shape_text(const NpyHeader& header) {
-  std::string text;
-  for (const std::int64_t n : header.shape) text += (text.empty() ? "" : ", ") + std::to_string(n);
-  return text;
+/// In values, for each axis of the array.
+std::vector<std::size_t> strides_of(const NpyArray& array) {
+  const std::size_t axes = array.shape.size();
+  std::vector<std::size_t> strides(axes, 1);
+  for (std::size_t n = 1; n < axes; ++n) {
+    const std::size_t axis = array.fortran_order ? n : axes - 1 - n;
+    const std::size_t faster = array.fortran_order ? n - 1 : axes - n;
+    strides[axis] = strides[faster] * static_cast<std::size_t>(array.shape[faster]);
+  }
+  return strides;
 }
 
-// In either order, a[..., c] is component c.
-int components_of(const NpyHeader& header, const std::string& name) {
-  if (header.shape.size() != 4) return 1;
-  const std::int64_t n = header.shape[3];
-  if (n < 1 || n > std::numeric_limits<int>::max()) {
-    throw Error(name + ": an array of shape (" + shape_text(header) +
-                ") has no usable number of components, its last axis");
+/// How the values of a volume lie among those of an array.
+struct Lie {
+  std::array<std::int64_t, 3> sides{};
+  std::array<std::size_t, 3> strides{};  ///< of x, y, z, in values
+  int components = 1;
+  std::size_t component_stride = 0;
+
+  std::size_t points() const {
+    return static_cast<std::size_t>(sides[0]) * static_cast<std::size_t>(sides[1]) *
+           static_cast<std::size_t>(sides[2]);
   }
-  return static_cast<int>(n);
+  /// Whether x, y, z are in order, and `first` values from one x to the next.
+  bool is_in_order(std::size_t first) const {
+    std::size_t expected = first;
+    for (std::size_t a = 0; a < 3; ++a) {
+      if (sides[a] > 1 && strides[a] != expected) return false;
+      expected *= static_cast<std::size_t>(sides[a]);
+    }
+    return true;
+  }
+  bool is_planar() const {
+    return is_in_order(1) && (components == 1 || component_stride == points());
+  }
+  bool is_interleaved() const {
+    return components > 1 && component_stride == 1 &&
+           is_in_order(static_cast<std::size_t>(components));
+  }
+};
+
+Lie lie_of(const NpyArray& array, const ArrayAxes& axes, const std::string& name) {
+  Lie lie;
+  const std::vector<std::size_t> strides = strides_of(array);
+  for (std::size_t a = 0; a < 3; ++a) {
+    lie.sides[a] = array.shape[axes.space[a]];
+    lie.strides[a] = strides[axes.space[a]];
+  }
+  if (!axes.components) return lie;
+  const std::int64_t components = array.shape[*axes.components];
+  if (components < 1 || components > std::numeric_limits<int>::max()) {
+    throw Error(name + ": an array of shape (" + shape_text(array.shape) +
+                ") has no usable number of components");
+  }
+  lie.components = static_cast<int>(components);
+  lie.component_stride = strides[*axes.components];
+  return lie;
 }
 
-// Dimensions x, y, z: the fastest axis is x.
-std::array<std::int64_t, 3> dimensions_of(const NpyHeader& header, const std::string& name) {
-  if (header.shape.size() != 3 && header.shape.size() != 4) {
-    throw Error(name + ": an array of shape (" + shape_text(header) +
-                ") is no volume; it must have 3 axes, and may have a fourth for components, not " +
-                std::to_string(header.shape.size()) + ": select or reshape with numpy");
+/// All bytes of the values, in place where the source can be mapped.
+std::shared_ptr<const std::byte> all_bytes(const ByteSource& source, std::uintmax_t offset,
+                                           std::size_t bytes) {
+  if (source.map) {
+    if (auto mapped = source.map(offset + bytes)) {
+      return {mapped, mapped.get() + offset};
+    }
   }
-  std::array<std::int64_t, 3> dimensions{header.shape[0], header.shape[1], header.shape[2]};
-  if (!header.fortran_order) std::ranges::reverse(dimensions);
-  return dimensions;
+  check_memory(bytes, source.name + ": its values");
+  const auto read = std::make_shared<std::vector<std::byte>>(bytes);
+  source.read(offset, *read);
+  return {read, read->data()};
+}
+
+/// The components of an array whose axes lie in another order.
+std::vector<VolumeData> read_permuted(const ByteSource& source, const ValueLayout& layout,
+                                      const Lie& lie, ComponentRange range) {
+  const std::size_t points = lie.points(), size = value_size(layout.type, source.name);
+  const std::size_t all = points * static_cast<std::size_t>(lie.components) * size;
+  const std::shared_ptr<const std::byte> from = all_bytes(source, layout.offset, all);
+  const auto copy = [&](int component, std::span<std::byte> to) {
+    const std::size_t first = static_cast<std::size_t>(component) * lie.component_stride;
+    copy_permuted(from.get() + first * size, to.data(), size, lie.sides, lie.strides);
+  };
+  if (is_stored_only(layout.type)) {
+    const auto number = static_cast<std::size_t>(range.number);
+    check_memory(points * number * size, source.name + ": its values");
+    std::vector<std::byte> ordered(points * number * size);
+    for (std::size_t c = 0; c < number; ++c) {
+      copy(range.first + static_cast<int>(c),
+           std::span(ordered).subspan(c * points * size, points * size));
+    }
+    const ValueLayout planar{layout.type, layout.big_endian, 0, range.number, false, layout.note};
+    return read_components(memory_source(ordered, source.name), planar, points, {0, range.number});
+  }
+  std::vector<VolumeData> list;
+  for (int c = range.first; c < range.first + range.number; ++c) {
+    VolumeData data = make_values(layout.type, points, source.name);
+    std::visit([&](auto& values) { copy(c, std::as_writable_bytes(values.writable())); }, data);
+    to_native_order(data, layout.big_endian);
+    list.push_back(std::move(data));
+  }
+  return list;
 }
 
 }  // namespace
 
-VolumeFile open_npy(const ByteSource& source, const ReadOptions& options) {
-  refuse_raw_options(options, source.name);
+NpyArray read_npy_header(const ByteSource& source) {
   const auto truncated = [&] { return Error(source.name + ": the .npy header is cut off"); };
   std::array<std::byte, 12> start{};
   if (source.size < 10) throw truncated();
@@ -246,33 +355,53 @@ VolumeFile open_npy(const ByteSource& source, const ReadOptions& options) {
   }
   std::string text(length, '\0');
   source.read(begin, std::as_writable_bytes(std::span(text)));
+  NpyHeader header = HeaderParser(text, source.name).parse();
+  NpyArray array;
+  set_type(header.descr, source.name, array);
+  array.offset = begin + length;
+  array.fortran_order = header.fortran_order;
+  array.shape = std::move(header.shape);
+  return array;
+}
 
-  const NpyHeader header = HeaderParser(text, source.name).parse();
-  ValueLayout layout = layout_of(header.descr, begin + length, source.name);
-  const std::array<std::int64_t, 3> sides = dimensions_of(header, source.name);
-  const std::size_t count = value_count(sides, source.name);
-  layout.components = components_of(header, source.name);
-  layout.interleaved = !header.fortran_order;
-  const std::uintmax_t expected =
-      std::uintmax_t{value_count(count, layout.components, source.name)} *
-      value_size(layout.type, source.name);
-  const std::uintmax_t present = source.size - layout.offset;
+VolumeFile open_npy(const ByteSource& source, const ReadOptions& options) {
+  refuse_raw_options(options, source.name);
+  const NpyArray array = read_npy_header(source);
+  const ArrayAxes axes =
+      array_axes(array.shape, options.axes,
+                 source.name + ": an array of shape (" + shape_text(array.shape) + ")");
+  const Lie lie = lie_of(array, axes, source.name);
+  const auto& sides = lie.sides;
+  const std::size_t points = value_count(sides, source.name);
+  const std::uintmax_t expected = std::uintmax_t{value_count(points, lie.components, source.name)} *
+                                  value_size(array.type, source.name);
+  const std::uintmax_t present = source.size - array.offset;
   if (present != expected) {
     throw Error(source.name + ": holds " + std::to_string(present) + " bytes of values, but " +
                 std::to_string(sides[0]) + " x " + std::to_string(sides[1]) + " x " +
                 std::to_string(sides[2]) + " of " +
-                (layout.components > 1 ? std::to_string(layout.components) + " x " : "") +
-                layout.type + " are " + std::to_string(expected) +
+                (lie.components > 1 ? std::to_string(lie.components) + " x " : "") + array.type +
+                " are " + std::to_string(expected) +
                 (present < expected ? "; the file is cut off" : "; it holds more than one array"));
   }
   VolumeFile file;
   for (std::size_t a = 0; a < 3; ++a) file.description.dimensions[a] = static_cast<int>(sides[a]);
   file.description.name = source.name;
   apply_overrides(options, file.description);
-  file.components = layout.components;
-  file.holds = std::to_string(layout.components) + " components (the last axis)";
-  file.read = [source, layout, count](ComponentRange range) {
-    return read_components(source, layout, count, range);
+  file.components = lie.components;
+  if (axes.components) {
+    file.holds = std::to_string(lie.components) + " components (axis " +
+                 std::to_string(*axes.components + 1) + " of " +
+                 std::to_string(array.shape.size()) + ")";
+  }
+  if (options.note && !axes.guess.empty()) {
+    options.note(source.name + ": " + axes_note(array.shape, axes));
+  }
+  const ValueLayout layout{array.type,     array.big_endian,     array.offset,
+                           lie.components, lie.is_interleaved(), options.note};
+  file.read = [source, layout, lie, points](ComponentRange range) {
+    return lie.is_planar() || lie.is_interleaved() ? read_components(source, layout, points, range)
+                                                   : read_permuted(source, layout, lie, range);
   };
   return file;
 }

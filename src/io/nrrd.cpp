@@ -292,6 +292,64 @@ bool is_bzip2(const Header& header) {
   return encoding != nullptr && in_small_letters(encoding->value).starts_with("bz");
 }
 
+// How many bytes a value has by its name in the header; 0 where it is none of a number.
+std::size_t bytes_per_value(const Header& header) {
+  const Line* const line = find_field(header, "type");
+  if (line == nullptr) return 0;
+  std::string type = in_small_letters(line->value);
+  for (const std::string_view word : {"unsigned ", "signed "}) {
+    if (type.starts_with(word)) type.erase(0, word.size());
+  }
+  // "uint8_t" and "ushort", but not "u".
+  if (type.size() > 1 && type.starts_with('u')) type.erase(0, 1);
+  if (type.ends_with("_t")) type.erase(type.size() - 2);
+  static constexpr std::pair<std::string_view, std::size_t> sizes[] = {
+      {"char", 1},  {"int8", 1},      {"short", 2},        {"short int", 2}, {"int16", 2},
+      {"int", 4},   {"int32", 4},     {"float", 4},        {"double", 8},    {"longlong", 8},
+      {"int64", 8}, {"long long", 8}, {"long long int", 8}};
+  for (const auto& [known, size] : sizes) {
+    if (type == known) return size;
+  }
+  return 0;
+}
+
+// Skips below 0 have a meaning of their own, -1 alone and of plain bytes alone.
+void check_skips(const Header& header, const std::string& name) {
+  for (const char* const field : {"byteskip", "lineskip"}) {
+    const Line* const line = find_field(header, field);
+    if (line == nullptr) continue;
+    const std::string says = name + ": the NRRD header says \"" + line->text + "\", ";
+    const bool bytes = std::string_view(field) == "byteskip";
+    const Line* const encoding = find_field(header, "encoding");
+    if (bytes && line->value == "-1") {
+      if (encoding == nullptr || in_small_letters(encoding->value) == "raw") continue;
+      throw Error(says +
+                  "but only of encoding \"raw\" the last bytes can be taken; decompress the "
+                  "values");
+    }
+    if (!number_in(line->value)) {
+      throw Error(says + (bytes ? "where a whole number from 0 is meant, or -1 for the last bytes"
+                                : "where a whole number from 0 is meant"));
+    }
+  }
+}
+
+// Tells of bytes that the header does not need. A file of another format, with a header of its own,
+// is often named as one of values.
+void note_left_over(const Header& header, std::uint64_t count, const NrrdValues& values,
+                    const ReadOptions& options) {
+  const std::uintmax_t size = bytes_per_value(header);
+  if (size == 0 || values.compression || values.offset == NrrdValues::last_bytes) return;
+  const bool detached = find_field(header, "datafile") != nullptr;
+  const bool skips = find_field(header, "byteskip") != nullptr;
+  note_bytes_left_over(
+      file_source(values.file), values.offset + count * size, options.note,
+      !detached ? ""
+      : skips   ? "\"byte skip: -1\" in the NRRD header takes the last bytes instead"
+                : "the first bytes are taken; if they are a header of the data file's own, say "
+                  "\"byte skip: -1\" in the NRRD header, which takes the last bytes");
+}
+
 // Where the values are if they lie in one file as they are in memory, or compressed by bzip2, which
 // Debian's ITK lacks; or nothing: ITK then finds and decodes them.
 std::optional<NrrdValues> raw_values(const Header& header, const fs::path& path) {
@@ -312,8 +370,7 @@ std::optional<NrrdValues> raw_values(const Header& header, const fs::path& path)
     if (file->value.starts_with("LIST") || file->value.find('%') != std::string::npos) return {};
     values.file = path.parent_path() / file->value;
     values.offset = 0;
-    std::error_code error;
-    if (!fs::is_regular_file(values.file, error)) return {};
+    check_input_file(values.file);
   }
   if (values.compression && !says("byteskip").empty()) {
     const std::optional<std::uint64_t> skipped = number_in(says("byteskip"));
@@ -327,6 +384,29 @@ std::optional<NrrdValues> raw_values(const Header& header, const fs::path& path)
     values.offset += *skipped;
   }
   return values;
+}
+
+// Checks the files of values, which ITK opens: it would wait for a pipe.
+void check_data_files(const Header& header, const fs::path& path) {
+  const auto check = [&](std::string_view file) {
+    try {
+      check_input_file(path.parent_path() / file);
+    } catch (const Error& error) {
+      throw Error(path.string() + ": its data file " + error.what());
+    }
+  };
+  const Line* const field = find_field(header, "datafile");
+  if (field == nullptr || field->value.find('%') != std::string::npos) return;
+  if (!field->value.starts_with("LIST")) {
+    check(field->value);
+    return;
+  }
+  std::ifstream file(path, std::ios::binary);
+  file.seekg(static_cast<std::streamoff>(header.bytes));
+  for (std::string line; std::getline(file, line);) {
+    const std::string_view listed = trimmed(line);
+    if (!listed.empty()) check(listed);
+  }
 }
 
 std::string replaced(std::string text, const std::string& what, const std::string& with) {
@@ -348,7 +428,10 @@ VolumeFile open_nrrd(const fs::path& path, const ReadOptions& options) {
   text.components_axis = find_components_axis(header, name);
   check_spacing(header, text.components_axis, options, name);
   text.left_anterior_superior = is_left_anterior_superior(header);
+  check_skips(header, name);
+  check_data_files(header, path);
   text.values = raw_values(header, path);
+  if (text.values) note_left_over(header, text.count, *text.values, options);
   if (is_bzip2(header) && !text.values) {
     throw Error(name +
                 ": its values are compressed with bzip2, which is read of one file, without a line "

@@ -13,6 +13,7 @@
 
 #include "grid_module.h"
 #include "pellucid/scene/error.h"
+#include "stored_numbers.h"
 
 namespace pellucid {
 
@@ -22,11 +23,9 @@ using NumberGrids = openvdb::TypeList<openvdb::FloatGrid, openvdb::DoubleGrid, o
                                       openvdb::Int64Grid, openvdb::BoolGrid, openvdb::MaskGrid,
                                       openvdb::Vec3SGrid, openvdb::Vec3DGrid, openvdb::Vec3IGrid>;
 
-/// What one number of a voxel is kept as.
+/// What one number of a voxel is kept as; whole numbers of 64 bits in what holds them all.
 template <class Number>
-using Kept =
-    std::conditional_t<std::is_same_v<Number, bool>, std::uint8_t,
-                       std::conditional_t<std::is_same_v<Number, std::int64_t>, double, Number>>;
+using Kept = std::conditional_t<std::is_same_v<Number, bool>, std::uint8_t, Number>;
 
 template <class Kept>
 constexpr const char* type_of() {
@@ -135,7 +134,7 @@ GridArray describe(const openvdb::GridBase& grid, const std::string& name) {
 
 }  // namespace
 
-void list_grids(const std::filesystem::path& path, GridContents& contents) {
+void list_grids(const std::filesystem::path& path, const AxisLetters&, GridContents& contents) {
   File file(path, true);
   for (const std::string& name : file.names()) {
     try {
@@ -175,8 +174,26 @@ void copy_box(const Grid& grid, const Box& box, int component, std::span<std::by
   }
 }
 
-void read_grid(const std::filesystem::path& path, const std::string& name, ComponentRange range,
-               GridValues& values) {
+/// Those of a grid of whole numbers of 64 bits.
+void read_whole_numbers(const openvdb::Int64Grid& grid, const Box& box, std::size_t points,
+                        GridValues& values) {
+  std::vector<std::int64_t> numbers(points);
+  copy_box(grid, box, 0, std::as_writable_bytes(std::span(numbers)));
+  WholeNumbers kept([&](const std::string& type) { return make_volume_data(type, points); });
+  kept.add(std::span<const std::int64_t>(numbers));
+  const Rounding rounding = kept.rounding();
+  if (rounding.count > 0) values.note = rounding.text(points);
+  const VolumeData data = kept.take();
+  std::visit(
+      [&](const auto& of_type) {
+        const auto all = std::as_bytes(std::span(of_type.data(), of_type.size()));
+        std::ranges::copy(all, values.next(kept.type()).begin());
+      },
+      data);
+}
+
+void read_grid(const std::filesystem::path& path, const std::string& name, const AxisLetters&,
+               ComponentRange range, GridValues& values) {
   File file(path, false);
   const openvdb::GridBase& grid = file.grid(name);
   if (!refusal(grid).empty()) throw Error("the file was changed while it was read");
@@ -184,6 +201,10 @@ void read_grid(const std::filesystem::path& path, const std::string& name, Compo
   const Box box = *active_box(grid);
   std::size_t points = 1;
   for (const std::int64_t side : box.sides) points *= static_cast<std::size_t>(side);
+  if (const auto* const whole = dynamic_cast<const openvdb::Int64Grid*>(&grid)) {
+    read_whole_numbers(*whole, box, points, values);
+    return;
+  }
   for (int c = range.first; c < range.first + range.number; ++c) {
     const std::span<std::byte> to = values.next(array.type);
     grid.apply<NumberGrids>([&]<class Grid>(const Grid& of_type) {

@@ -29,8 +29,9 @@ struct RawShape {
                   " components are given, but there must be at least 1");
     }
     bytes = std::uintmax_t{value_count(count, components, name)} * value_size(*options.type, name);
-    layout = {*options.type, options.big_endian.value_or(false), options.skip_bytes, components,
-              true};
+    layout = {
+        *options.type, options.big_endian.value_or(false), options.skip_bytes, components, true,
+        options.note};
     described = std::to_string(dimensions[0]) + " x " + std::to_string(dimensions[1]) + " x " +
                 std::to_string(dimensions[2]) + " values of " +
                 (components > 1 ? std::to_string(components) + " x " : "") + *options.type;

@@ -3,30 +3,37 @@
 
 #include <algorithm>
 #include <array>
+#include <cstring>
 #include <fstream>
 #include <new>
 #include <optional>
+#include <set>
+#include <span>
 #include <stdexcept>
 #include <string_view>
 #include <utility>
 
+#include "contained.h"
 #include "input_file.h"
 #include "legacy_vtk_cells.h"
 #include "memory_limit.h"
+#include "mesh_archive.h"
 #include "mesh_blocks.h"
 #include "net_cdf_size.h"
 #include "pellucid/scene/error.h"
 #include "plot3d.h"
 #include "vtk_collection.h"
 #include "vtk_file_kind.h"
+#include "vtk_hdf.h"
 #include "vtk_module.h"
+#include "vtk_polyhedra.h"
 #include "vtk_xml_end.h"
 
 namespace pellucid {
 
 namespace {
 
-enum class Format { xml, legacy, exodus, plot3d };
+enum class Format { xml, legacy, exodus, plot3d, vtk_hdf };
 
 struct Extension {
   std::string_view text;
@@ -34,14 +41,14 @@ struct Extension {
 };
 
 constexpr std::array extensions{
-    Extension{".vtu", Format::xml},    Extension{".pvtu", Format::xml},
-    Extension{".vts", Format::xml},    Extension{".pvts", Format::xml},
-    Extension{".vtm", Format::xml},    Extension{".vtmb", Format::xml},
-    Extension{".pvd", Format::xml},    Extension{".vtk", Format::legacy},
-    Extension{".ex2", Format::exodus}, Extension{".e", Format::exodus},
-    Extension{".exo", Format::exodus}, Extension{".g", Format::exodus},
-    Extension{".xyz", Format::plot3d}, Extension{".p3d", Format::plot3d},
-    Extension{".x", Format::plot3d}};
+    Extension{".vtu", Format::xml},        Extension{".pvtu", Format::xml},
+    Extension{".vts", Format::xml},        Extension{".pvts", Format::xml},
+    Extension{".vtm", Format::xml},        Extension{".vtmb", Format::xml},
+    Extension{".pvd", Format::xml},        Extension{".vtk", Format::legacy},
+    Extension{".ex2", Format::exodus},     Extension{".e", Format::exodus},
+    Extension{".exo", Format::exodus},     Extension{".g", Format::exodus},
+    Extension{".vtkhdf", Format::vtk_hdf}, Extension{".xyz", Format::plot3d},
+    Extension{".p3d", Format::plot3d},     Extension{".x", Format::plot3d}};
 
 std::optional<Format> format_by_extension(const std::filesystem::path& path) {
   std::string extension = path.extension().string();
@@ -57,13 +64,11 @@ std::optional<Format> format_by_extension(const std::filesystem::path& path) {
 /// The formats that begin with words of their own.
 std::optional<Format> format_by_content(const std::filesystem::path& path) {
   constexpr std::size_t longest = std::size_t{1} << 16;
-  std::ifstream stream(path, std::ios::binary);
-  std::string head(longest, '\0');
-  stream.read(head.data(), static_cast<std::streamsize>(head.size()));
-  head.resize(static_cast<std::size_t>(stream.gcount()));
+  const std::string head = first_bytes(path, longest);
   const auto has = [&](std::string_view word) { return head.find(word) != std::string::npos; };
   if (head.starts_with("# vtk DataFile")) return Format::legacy;
   if (head.starts_with("<") && has("<VTKFile")) return Format::xml;
+  if (vtk_hdf_type(path) == "UnstructuredGrid") return Format::vtk_hdf;
   const bool net_cdf = head.starts_with("CDF") || head.starts_with("\x89HDF");
   if (net_cdf && (has("num_nodes") || has("num_el_blk"))) return Format::exodus;
   return std::nullopt;
@@ -77,16 +82,52 @@ Format format_of(const std::filesystem::path& path, const MeshReadOptions& optio
               mesh_extensions());
 }
 
+void call_vtk(const std::filesystem::path& path, Format format, const MeshReadOptions& options,
+              VtkAnswer& answer) {
+  ReadWithVtk& read = vtk_module();
+  read(path,
+       format == Format::xml      ? VtkFormat::xml
+       : format == Format::legacy ? VtkFormat::legacy
+                                  : VtkFormat::exodus,
+       options, answer);
+}
+
+/// The same in a process of its own, which may crash, and which hands over what it read.
+VtkAnswer call_vtk_contained(const std::filesystem::path& path, Format format,
+                             const MeshReadOptions& options) {
+  // What stays untouched is no memory. Compressed files may be far smaller than their mesh.
+  constexpr std::size_t least = std::size_t{64} << 20, per_file_byte = 64, longest = 1000;
+  const std::uintmax_t file_bytes = check_input_file(path);
+  const std::size_t room = least + per_file_byte * file_bytes;
+  const auto bytes = run_contained(
+      room,
+      [&](std::span<std::byte> to) {
+        VtkAnswer answer;
+        call_vtk(path, format, options, answer);
+        std::memcpy(to.data(), answer.error.data(), std::min(answer.error.size(), longest - 1));
+        return write_mesh_blocks(answer.mesh, to.subspan(longest));
+      },
+      file_bytes);
+  std::optional<MeshBlocks> mesh;
+  if (bytes) mesh = read_mesh_blocks({bytes.get() + longest, room - longest});
+  if (!mesh) {
+    throw Error(
+        "VTK fails on it, or takes far more memory or time than its size lets expect; it is "
+        "damaged");
+  }
+  const auto* const message = reinterpret_cast<const char*>(bytes.get());
+  return {*std::move(mesh), std::string(message, std::find(message, message + longest, '\0'))};
+}
+
 MeshBlocks read_by_vtk(const std::filesystem::path& path, Format format,
-                       const MeshReadOptions& options) {
+                       const MeshReadOptions& options, bool may_crash) {
   VtkAnswer answer;
   try {
-    ReadWithVtk& read = vtk_module();
-    read(path,
-         format == Format::xml      ? VtkFormat::xml
-         : format == Format::legacy ? VtkFormat::legacy
-                                    : VtkFormat::exodus,
-         options, answer);
+    if (may_crash) {
+      answer = call_vtk_contained(path, format, options);
+    } else {
+      call_vtk(path, format, options, answer);
+    }
   } catch (const Error& error) {
     throw Error(path.string() + ": " + error.what());
   }
@@ -101,8 +142,13 @@ MeshBlocks read_blocks(const std::filesystem::path& path, const MeshReadOptions&
   const Format format = format_of(path, options);
   if (format == Format::exodus) check_net_cdf_size(path);
   if (format == Format::legacy) check_legacy_vtk_cells(path);
-  if (format == Format::xml) check_vtk_xml_end(path);
-  if (format != Format::plot3d) return read_by_vtk(path, format, options);
+  std::set<std::filesystem::path> files;
+  if (format == Format::legacy) files = {path};
+  if (format == Format::xml) files = check_vtk_xml_end(path);
+  if (format == Format::vtk_hdf) return read_vtk_hdf(path, options);
+  if (format != Format::plot3d) {
+    return read_by_vtk(path, format, options, has_vtk_polyhedra(files));
+  }
   if (options.time) {
     throw Error(path.string() + ": the file has no steps in time; leave the time out");
   }
@@ -114,6 +160,10 @@ MeshBlocks read_blocks(const std::filesystem::path& path, const MeshReadOptions&
 bool is_mesh_file(const std::filesystem::path& path) {
   const std::optional<VtkFileKind> kind = vtk_file_kind(path);
   if ((kind && kind->is_volume()) || is_image_collection(path)) return false;
+  // Of the others of its kind the reader of volumes says what they are.
+  if (format_by_extension(path) == Format::vtk_hdf && std::filesystem::exists(path)) {
+    return format_by_content(path) == Format::vtk_hdf;
+  }
   return format_by_extension(path).has_value() || format_by_content(path).has_value();
 }
 
@@ -130,7 +180,11 @@ MeshFile read_mesh(const std::filesystem::path& path, const MeshReadOptions& opt
     return Error(path.string() + ": not enough memory for the mesh; split the file or make room");
   };
   try {
-    return join_blocks(read_blocks(path, options), path.string());
+    MeshFile file = join_blocks(read_blocks(path, options), path.string());
+    for (const std::string& note : file.notes) {
+      if (options.note) options.note(note);
+    }
+    return file;
   } catch (const std::bad_alloc&) {
     throw refuse();
   } catch (const std::length_error&) {

@@ -5,6 +5,7 @@
 #include <array>
 #include <new>
 #include <optional>
+#include <set>
 #include <stdexcept>
 #include <string>
 #include <string_view>
@@ -20,11 +21,13 @@
 #include "ivf_header.h"
 #include "medical_volumes.h"
 #include "mrc.h"
+#include "npy.h"
 #include "pellucid/io/dicom_series.h"
 #include "pellucid/io/read_mesh.h"
 #include "pellucid/scene/error.h"
 #include "vtk_collection.h"
 #include "vtk_file_kind.h"
+#include "vtk_hdf.h"
 #include "vtk_volume.h"
 
 namespace pellucid {
@@ -44,6 +47,8 @@ struct Format {
 };
 
 constexpr Opener open_raw_file = open_bytes<open_raw>;
+constexpr Opener open_npy_file = open_bytes<open_npy>;
+constexpr Opener open_npz_file = open_bytes<open_npz>;
 
 VolumeFile open_mrc_file(const std::filesystem::path& path, const ReadOptions& options) {
   return open_mrc(plain_or_gzip_source(path), options);
@@ -59,7 +64,8 @@ constexpr std::array formats{Format{".nii", open_nifti},
                              Format{".nhdr", open_nrrd},
                              Format{".mha", open_meta_image},
                              Format{".mhd", open_meta_image},
-                             Format{".npy", open_bytes<open_npy>},
+                             Format{".npy", open_npy_file},
+                             Format{".npz", open_npz_file},
                              Format{".slc", open_bytes<open_slc>},
                              Format{".vti", open_vtk_volume},
                              Format{".pvti", open_vtk_volume},
@@ -81,6 +87,8 @@ constexpr std::array formats{Format{".nii", open_nifti},
                              Format{".h5", open_hdf5},
                              Format{".hdf5", open_hdf5},
                              Format{".he5", open_hdf5},
+                             Format{".vtkhdf", open_vtk_hdf},
+                             Format{".hdf", open_vtk_hdf},
                              Format{".nc", open_net_cdf},
                              Format{".nc4", open_net_cdf},
                              Format{".cdf", open_net_cdf},
@@ -92,13 +100,22 @@ constexpr std::array formats{Format{".nii", open_nifti},
                              Format{".st.gz", open_mrc_file},
                              Format{".ccp4.gz", open_mrc_file}};
 
+using Lister = std::vector<VolumeArray> (*)(const std::filesystem::path&, const ReadOptions&);
+
+template <std::vector<VolumeArray> (*list)(const std::filesystem::path&)>
+std::vector<VolumeArray> without_options(const std::filesystem::path& path, const ReadOptions&) {
+  return list(path);
+}
+
 /// What lists the arrays of files that are read by it; null where they have no names.
-std::vector<VolumeArray> (*lister_of(Opener open))(const std::filesystem::path&) {
-  return open == open_vtk_volume         ? list_vtk_arrays
+Lister lister_of(Opener open) {
+  return open == open_npz_file           ? list_npz_arrays
+         : open == open_vtk_volume       ? without_options<list_vtk_arrays>
          : open == open_hdf5             ? list_hdf5_arrays
-         : open == open_net_cdf          ? list_net_cdf_arrays
-         : open == open_vdb              ? list_vdb_arrays
-         : open == open_image_collection ? list_collection_arrays
+         : open == open_vtk_hdf          ? without_options<list_vtk_hdf_arrays>
+         : open == open_net_cdf          ? without_options<list_net_cdf_arrays>
+         : open == open_vdb              ? without_options<list_vdb_arrays>
+         : open == open_image_collection ? without_options<list_collection_arrays>
                                          : nullptr;
 }
 
@@ -120,7 +137,14 @@ Opener opener_of(const std::filesystem::path& path) {
   if (kind && kind->is_volume() && (format == nullptr || format->open != open_raw_file)) {
     return open_vtk_volume;
   }
+  // Of any name that does not speak of something else.
+  if (format == nullptr || format->open == open_hdf5) {
+    const std::string type = vtk_hdf_type(path);
+    if (type == "UnstructuredGrid") return nullptr;
+    if (!type.empty()) return open_vtk_hdf;
+  }
   if (format == nullptr) return nullptr;
+  if (format->open == open_vtk_hdf && is_mesh_file(path)) return nullptr;
   return format->open == open_vtk_volume && is_mesh_file(path) ? nullptr : format->open;
 }
 
@@ -155,6 +179,10 @@ VolumeFile open_file(const std::filesystem::path& path, const ReadOptions& optio
   if (options.array && lister_of(open) == nullptr) {
     throw Error(path.string() + ": has no arrays with names; leave the array out");
   }
+  if (options.axes && open != open_npy_file && open != open_npz_file && open != open_hdf5) {
+    throw Error(path.string() + ": the file's format says which axes are x, y and z; leave the " +
+                "axes out (they are for .npy, .npz and HDF5)");
+  }
   if (options.time && open != open_net_cdf) {
     throw Error(path.string() + ": the file has no steps in time; leave the time out");
   }
@@ -173,9 +201,23 @@ auto with_memory(const std::filesystem::path& path, const Read& read) {
   }
 }
 
+/// The same, opened again without the files of a DICOM series that turn out to be damaged.
 template <class Read>
 auto open_and(const std::filesystem::path& path, const ReadOptions& options, const Read& read) {
-  return with_memory(path, [&] { return read(open_file(path, options)); });
+  std::set<std::string> told;
+  ReadOptions once = options;
+  if (options.note) {
+    once.note = [&](const std::string& text) {
+      if (told.insert(text).second) options.note(text);
+    };
+  }
+  return with_memory(path, [&] {
+    try {
+      return read(open_file(path, once));
+    } catch (const DamagedDicom& damaged) {
+      return read(open_dicom_without(damaged.files(), path, once));
+    }
+  });
 }
 
 }  // namespace
@@ -204,7 +246,7 @@ std::vector<VolumeArray> list_arrays(const std::filesystem::path& path,
                                      const ReadOptions& options) {
   return with_memory(path, [&]() -> std::vector<VolumeArray> {
     const auto list = lister_of(find_opener(path, options));
-    return list == nullptr ? std::vector<VolumeArray>{} : list(path);
+    return list == nullptr ? std::vector<VolumeArray>{} : list(path, options);
   });
 }
 

@@ -14,6 +14,8 @@ namespace pellucid::scene_json {
 /// Numbers of a scene lie in ±largest_number: float holds them, and their products with lengths up
 /// to 1e8.
 constexpr double largest_number = 1e30;
+/// Data values, and what is compared with them, lie in ±largest_value: what a Volume takes.
+constexpr double largest_value = 2.1e37;
 
 /// Parses strict JSON. Beyond what the grammar asks: no key twice in one object, no more than 16
 /// levels of nesting, no number beyond double's range. Throws Error with line and column.

@@ -4,6 +4,7 @@
 #include <cctype>
 #include <utility>
 
+#include "array_axes.h"
 #include "pellucid/scene/builtin_fields.h"
 #include "pellucid/scene/error.h"
 #include "scene_json_parts.h"
@@ -22,8 +23,8 @@ bool is_raw(std::string file) {
 }
 
 const std::vector<std::string_view> file_keys{
-    "file",       "array",      "time",    "component", "dimensions", "type",  "components",
-    "byte_order", "skip_bytes", "spacing", "origin",    "centering",  "series"};
+    "file",       "array",      "time",    "component", "dimensions", "type",   "components",
+    "byte_order", "skip_bytes", "spacing", "origin",    "centering",  "series", "axes"};
 const std::vector<std::string_view> builtin_keys{"builtin", "points"};
 const std::vector<std::string_view> channel_keys{"name", "unit"};
 
@@ -69,7 +70,7 @@ FieldSource file_source(const Node& field, const std::filesystem::path& folder) 
                                  static_cast<int>(z.integer(1, largest_grid))};
   }
   if (const auto type = field.find("type")) {
-    type->one_of({"u8", "i8", "u16", "i16", "u32", "i32", "f32", "f64"});
+    type->one_of({"u8", "i8", "u16", "i16", "u32", "i32", "u64", "i64", "f16", "f32", "f64"});
     source.options.type = type->string();
   }
   if (const auto components = field.find("components")) {
@@ -78,6 +79,13 @@ FieldSource file_source(const Node& field, const std::filesystem::path& folder) 
   if (const auto array = field.find("array")) {
     if (array->string().empty()) array->fail("is empty; give the name of an array of the file");
     source.options.array = array->string();
+  }
+  if (const auto axes = field.find("axes")) {
+    try {
+      source.options.axes = checked_axes(axes->string());
+    } catch (const Error& error) {
+      axes->fail(error.what());
+    }
   }
   if (const auto time = field.find("time")) source.options.time = time->number();
   if (const auto component = field.find("component")) {
@@ -136,7 +144,7 @@ ChannelSource channel_source(const Node& node, const std::filesystem::path& fold
     return channel;
   }
   DerivedSource derived;
-  derived.of = channel_name(*node.find(given[0]));
+  derived.channel = channel_name(*node.find(given[0]));
   for (const auto kind : {DerivedSource::Kind::gradient_magnitude,
                           DerivedSource::Kind::second_derivative, DerivedSource::Kind::smoothed}) {
     if (derived_name(kind) == given[0]) derived.kind = kind;
@@ -171,7 +179,7 @@ FieldSource field_source(const Node& field, const std::filesystem::path& folder)
 }
 
 std::vector<ChannelSource> channel_sources(const Node& list, const std::filesystem::path& folder) {
-  if (list.array_size() < 1 || list.array_size() > static_cast<std::size_t>(most_channels)) {
+  if (list.array_size() < 1 || list.array_size() > static_cast<std::size_t>(max_channels)) {
     list.fail("has " + std::to_string(list.array_size()) + " channels, but must have from 1 to 8");
   }
   std::vector<ChannelSource> channels;

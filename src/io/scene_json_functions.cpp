@@ -13,7 +13,7 @@ void read_place(const Node& node, bool srgb, std::vector<Point>& points) {
   const Node value = node.at("value", "give the data value of this point");
   const Rgb<double> color = color_of(node.at("color", "give [r, g, b]"), srgb);
   const std::size_t i = points.size();
-  points.push_back({value.number(), 0, color});
+  points.push_back({value.number(-scene_json::largest_value, scene_json::largest_value), 0, color});
   if (i >= 1 && points[i].value < points[i - 1].value) {
     value.fail("is below the value of the point before it; points must ascend");
   }
@@ -62,7 +62,10 @@ TransferFunctionDescription preset(const Node& function) {
     if (range->array_size() != 2) {
       range->fail("must have 2 numbers, but has " + std::to_string(range->array_size()));
     }
-    description.range = {range->element(0).number(), range->element(1).number()};
+    const auto end = [&](std::size_t i) {
+      return range->element(i).number(-scene_json::largest_value, scene_json::largest_value);
+    };
+    description.range = {end(0), end(1)};
     if (!((*description.range)[0] < (*description.range)[1])) {
       range->fail("must be two ascending values");
     }
@@ -80,7 +83,7 @@ bool is_srgb(const Node& function) {
 Rgb<double> color_of(const Node& node, bool srgb) {
   if (!srgb) return linear_rgb(node);
   const auto [r, g, b] = three(node);
-  return linear_light(Rgb<double>{r.number(0, 1), g.number(0, 1), b.number(0, 1)});
+  return srgb_to_linear(Rgb<double>{r.number(0, 1), g.number(0, 1), b.number(0, 1)});
 }
 
 std::vector<TransferFunction::Point> extinction_points(const Node& list, bool srgb) {

@@ -10,7 +10,7 @@ namespace pellucid::scene_json {
 namespace {
 
 std::vector<std::string> channel_names(const Node& list) {
-  if (list.array_size() < 1 || list.array_size() > static_cast<std::size_t>(most_channels)) {
+  if (list.array_size() < 1 || list.array_size() > static_cast<std::size_t>(max_channels)) {
     list.fail("names " + std::to_string(list.array_size()) +
               " channels, but must name from 1 to 8");
   }

@@ -17,7 +17,7 @@ MeshArrayChoice array_choice(const Node& node) {
   const Node array = node.at("array", "give the name of an array of the mesh");
   choice.array = array.string();
   if (choice.array.empty()) array.fail("is empty; give the name of an array of the mesh");
-  choice.name = as_channel_name(choice.array);
+  choice.name = to_channel_name(choice.array);
   if (const auto component = node.find("component")) {
     choice.component = static_cast<int>(component->integer(0, largest_component));
     choice.name += "_" + std::to_string(*choice.component);
@@ -28,7 +28,7 @@ MeshArrayChoice array_choice(const Node& node) {
 
 std::vector<MeshArrayChoice> array_choices(const Node& list) {
   const std::size_t count = list.array_size();
-  if (count < 1 || count > static_cast<std::size_t>(most_channels)) {
+  if (count < 1 || count > static_cast<std::size_t>(max_channels)) {
     list.fail("has " + std::to_string(count) + " channels, but must have from 1 to 8");
   }
   std::vector<MeshArrayChoice> choices;

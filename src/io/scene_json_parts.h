@@ -18,7 +18,7 @@ Vec3<double> vector(const Node& node);
 /// [r, g, b], each 0 or more.
 Rgb<double> linear_rgb(const Node& node);
 /// From 1 to 8 numbers.
-std::vector<double> numbers(const Node& list, double lower = -largest_number);
+std::vector<double> numbers(const Node& list, double lower = -largest_value);
 /// From 1 to 8 rows of `columns` numbers.
 std::vector<std::vector<double>> matrix(const Node& rows, std::size_t columns);
 /// A string that is_channel_name().

@@ -39,7 +39,7 @@ void expect_size(const Node& list, std::size_t least, std::size_t most, const st
 std::vector<double> numbers_of(const Node& list, double lower) {
   std::vector<double> values;
   for (std::size_t i = 0; i < list.array_size(); ++i) {
-    values.push_back(list.element(i).number(lower, largest_number));
+    values.push_back(list.element(i).number(lower, largest_value));
   }
   return values;
 }
@@ -47,17 +47,17 @@ std::vector<double> numbers_of(const Node& list, double lower) {
 }  // namespace
 
 std::vector<double> numbers(const Node& list, double lower) {
-  expect_size(list, 1, most_channels, "numbers, one for each channel");
+  expect_size(list, 1, max_channels, "numbers, one for each channel");
   return numbers_of(list, lower);
 }
 
 std::vector<std::vector<double>> matrix(const Node& rows, std::size_t columns) {
-  expect_size(rows, 1, most_channels, "rows");
+  expect_size(rows, 1, max_channels, "rows");
   std::vector<std::vector<double>> values;
   for (std::size_t i = 0; i < rows.array_size(); ++i) {
     const Node row = rows.element(i);
     expect_size(row, columns, columns, "numbers, one for each channel");
-    values.push_back(numbers_of(row, -largest_number));
+    values.push_back(numbers_of(row, -largest_value));
   }
   return values;
 }

@@ -231,6 +231,7 @@ void add_field(const FieldSource& field, Members& members) {
   if (options.type) members.add("type", quoted(*options.type, "a type"));
   if (options.components) members.add("components", std::to_string(*options.components));
   if (options.array) members.add("array", quoted(*options.array, "the name of an array"));
+  if (options.axes) members.add("axes", quoted(*options.axes, "the axes"));
   if (options.time) members.add("time", number(*options.time, "the time"));
   if (options.component) members.add("component", std::to_string(*options.component));
   if (options.series) members.add("series", quoted(*options.series, "a series"));
@@ -258,7 +259,7 @@ std::string channel_text(const ChannelSource& channel, const std::string& indent
     return members.object();
   }
   const auto& derived = std::get<DerivedSource>(channel.source);
-  members.add(derived_name(derived.kind), quoted(derived.of, "the name of a channel"));
+  members.add(derived_name(derived.kind), quoted(derived.channel, "the name of a channel"));
   if (derived.kind == DerivedSource::Kind::smoothed) {
     members.add("sigma", number(derived.sigma, "sigma"));
   }
@@ -317,7 +318,11 @@ std::string scene_to_json(const SceneDescription& scene) {
   if (scene.background) image.add("background", array(*scene.background, "the background"));
   Members integration("  ");
   integration.add("method", joined({"\"", method_name(scene.integration.method), "\""}));
-  integration.add("tolerance", number(scene.integration.tolerance, "the tolerance"));
+  if (scene.relative_tolerance) {
+    integration.add("relative_tolerance", number(*scene.relative_tolerance, "the tolerance"));
+  } else {
+    integration.add("tolerance", number(scene.integration.tolerance, "the tolerance"));
+  }
   integration.add("grade",
                   scene.integration.grade == Grade::proved ? "\"proved\"" : "\"estimated\"");
   integration.add("precision", precision_name(scene.integration.precision));

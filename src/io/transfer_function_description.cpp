@@ -44,11 +44,11 @@ class ChannelIndex {
 
 std::vector<std::vector<double>> gaussian_matrix(const GaussianShape& shape) {
   if (const auto* widths = std::get_if<GaussianWidths>(&shape)) {
-    return widths->axes.empty() ? matrix_of_widths(widths->widths)
-                                : matrix_of_widths(widths->widths, widths->axes);
+    return widths->axes.empty() ? matrix_from_widths(widths->widths)
+                                : matrix_from_widths(widths->widths, widths->axes);
   }
   if (const auto* covariance = std::get_if<GaussianCovariance>(&shape)) {
-    return matrix_of_covariance(covariance->covariance);
+    return matrix_from_covariance(covariance->covariance);
   }
   return std::get<GaussianMatrix>(shape).matrix;
 }
@@ -75,9 +75,9 @@ TransferFunction make_transfer_function(const TransferFunctionDescription& descr
   };
   for (const OpacityPoint& p : table.points) count(p.color);
   if (background) count(*background);
-  TransferFunction function =
-      from_opacity_table(table.points, table.unit_distance,
-                         relative_error_for(opacity_table_share(tolerance), largest_color));
+  TransferFunction function = transfer_function_from_opacity_table(
+      table.points, table.unit_distance,
+      required_relative_error(opacity_table_tolerance(tolerance), largest_color));
   if (table.extinction_deviation == 0 && table.color_deviation == 0) return function;
   return {function.points(), function.relative_error() + table.extinction_deviation,
           table.color_deviation};

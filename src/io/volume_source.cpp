@@ -89,12 +89,13 @@ std::size_t value_count(const std::array<std::int64_t, 3>& dimensions, const std
 
 std::size_t value_size(const std::string& type, const std::string& name) {
   static constexpr std::pair<const char*, std::size_t> sizes[] = {
-      {"u8", 1}, {"i8", 1}, {"u16", 2}, {"i16", 2}, {"u32", 4}, {"i32", 4}, {"f32", 4}, {"f64", 8}};
+      {"u8", 1},  {"i8", 1},  {"u16", 2}, {"i16", 2}, {"u32", 4}, {"i32", 4},
+      {"u64", 8}, {"i64", 8}, {"f16", 2}, {"f32", 4}, {"f64", 8}};
   for (const auto& [known, size] : sizes) {
     if (type == known) return size;
   }
   throw Error(name + ": there is no type \"" + type +
-              "\"; the types are u8, i8, u16, i16, u32, i32, f32 and f64");
+              "\"; the types are u8, i8, u16, i16, u32, i32, u64, i64, f16, f32 and f64");
 }
 
 void check_size(const ByteSource& source, const ValueLayout& layout, std::size_t count) {
@@ -107,6 +108,14 @@ void check_bytes(const ByteSource& source, std::uintmax_t offset, std::uintmax_t
               " bytes, but its header says that " + std::to_string(bytes) +
               " bytes of values begin at byte " + std::to_string(offset) +
               "; it is cut off or its header is wrong");
+}
+
+void note_bytes_left_over(const ByteSource& source, std::uintmax_t end, const Note& note,
+                          const std::string& advice) {
+  if (!note || source.size <= end) return;
+  note(source.name + ": has " + std::to_string(source.size - end) +
+       " bytes more than its header needs; they are left over behind the values" +
+       (advice.empty() ? "" : "; " + advice));
 }
 
 VolumeData make_values(const std::string& type, std::size_t count, const std::string& name) {

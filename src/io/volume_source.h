@@ -29,19 +29,23 @@ ByteSource file_source(const std::filesystem::path& path);
 /// `bytes` must outlive the source.
 ByteSource memory_source(std::span<const std::byte> bytes, std::string name);
 
+/// Is told a line that a user should know.
+using Note = std::function<void(const std::string&)>;
+
 /// How values lie in a file.
 struct ValueLayout {
-  std::string type;  ///< "u8" … "f64"
+  std::string type;  ///< "u8" … "f64", or one that only files have (stored_numbers.h)
   bool big_endian = false;
   std::uintmax_t offset = 0;  ///< of the first value, in bytes
   int components = 1;         ///< of each point
   bool interleaved = false;   ///< those of a point side by side; else one behind the other
+  Note note = {};             ///< is told where whole numbers are rounded; may be missing
 };
 
 /// The number of values of a grid. Throws Error where a side is not positive or the product is too
 /// large for any machine.
 std::size_t value_count(const std::array<std::int64_t, 3>& dimensions, const std::string& name);
-/// 1, 2, 4 or 8 bytes. Throws Error for a name that is no type.
+/// 1, 2, 4 or 8 bytes, also of types that only files have. Throws Error for a name that is no type.
 std::size_t value_size(const std::string& type, const std::string& name);
 
 /// Throws Error where the source ends before the last of `count` values, those of all components.
@@ -49,6 +53,10 @@ std::size_t value_size(const std::string& type, const std::string& name);
 void check_size(const ByteSource& source, const ValueLayout& layout, std::size_t count);
 /// The same of so many bytes of values from `offset` on.
 void check_bytes(const ByteSource& source, std::uintmax_t offset, std::uintmax_t bytes);
+/// Tells `note` how many bytes of `source` stand behind the values; `advice` is what to do where
+/// they are not the first bytes, and may be empty.
+void note_bytes_left_over(const ByteSource& source, std::uintmax_t end, const Note& note,
+                          const std::string& advice);
 
 /// Memory for so many values. Throws Error where there is not enough.
 VolumeData make_values(const std::string& type, std::size_t count, const std::string& name);

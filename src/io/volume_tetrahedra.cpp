@@ -21,7 +21,7 @@ UnstructuredGrid volume_tetrahedra(const Volume& volume, const ParallelFor& para
   constexpr std::uintmax_t hexahedron = 33, tetrahedron = 16 + 17 + 4 + 8;
   check_memory(2 * sizeof(Vec3<double>) * points + (hexahedron + 6 * tetrahedron) * cells,
                (d.name.empty() ? "volume" : d.name) + ": its tetrahedra");
-  return tetrahedra_of(to_unstructured(volume), parallel);
+  return tetrahedralize(to_unstructured(volume), parallel);
 }
 
 }  // namespace pellucid

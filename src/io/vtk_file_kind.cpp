@@ -2,9 +2,10 @@
 #include "vtk_file_kind.h"
 
 #include <algorithm>
-#include <fstream>
 #include <sstream>
 #include <string_view>
+
+#include "input_file.h"
 
 namespace pellucid {
 
@@ -57,10 +58,7 @@ bool VtkFileKind::is_volume() const {
 
 std::optional<VtkFileKind> vtk_file_kind(const std::filesystem::path& path) {
   constexpr std::size_t longest = 4096;
-  std::ifstream stream(path, std::ios::binary);
-  std::string head(longest, '\0');
-  stream.read(head.data(), static_cast<std::streamsize>(head.size()));
-  head.resize(static_cast<std::size_t>(stream.gcount()));
+  const std::string head = first_bytes(path, longest);
   if (head.starts_with("# vtk DataFile")) return legacy_kind(head);
   if (head.starts_with("<")) return xml_kind(head);
   return std::nullopt;

@@ -3,6 +3,7 @@
 
 #include <vtkCellArray.h>
 #include <vtkCellData.h>
+#include <vtkCellType.h>
 #include <vtkCompositeDataIterator.h>
 #include <vtkCompositeDataSet.h>
 #include <vtkDataArray.h>
@@ -16,7 +17,10 @@
 #include <vtkUnsignedCharArray.h>
 #include <vtkUnstructuredGrid.h>
 
+#include <array>
+#include <cstdint>
 #include <limits>
+#include <optional>
 #include <span>
 #include <string>
 #include <utility>
@@ -85,6 +89,7 @@ void gather_arrays(vtkDataSetAttributes& data, Centering centering, vtkIdType co
     vtkDataArray* const array = data.GetArray(a);  // null for text
     if (array == nullptr || array->GetNumberOfComponents() < 1) continue;
     if (array == data.GetGlobalIds() || array == data.GetPedigreeIds()) continue;
+    if (array == data.GetHigherOrderDegrees()) continue;
     std::string name = array->GetName() == nullptr ? "" : array->GetName();
     if (name == vtkDataSetAttributes::GhostArrayName()) continue;
     if (name.empty()) name = "array_" + std::to_string(a);
@@ -131,7 +136,7 @@ vtkUnsignedCharArray* ghosts_of(vtkDataSet& set) {
 /// followed.
 class CellLists {
  public:
-  explicit CellLists(vtkUnstructuredGrid& grid) : points_(grid.GetNumberOfPoints()) {
+  explicit CellLists(vtkUnstructuredGrid& grid) {
     vtkCellArray* const cells = grid.GetCells();
     types_ = grid.GetCellTypesArray();
     count_ = cells == nullptr ? 0 : cells->GetNumberOfCells();
@@ -150,67 +155,113 @@ class CellLists {
     if (offsets_->GetNumberOfValues() != count_ + 1) {
       throw Error(std::string("the cells are not as many as their offsets") + damaged);
     }
+    faces_ = grid.GetFaces();
+    face_begins_ = grid.GetFaceLocations();
+    if (faces_ == nullptr || face_begins_ == nullptr) return;
+    if (face_begins_->GetNumberOfValues() != count_) {
+      throw Error(std::string("the cells are not as many as their lists of faces") + damaged);
+    }
   }
 
   vtkIdType count() const { return count_; }
   int type(vtkIdType cell) const { return types_->GetValue(cell); }
 
-  std::span<const vtkIdType> corners(vtkIdType cell) const {
+  /// Valid until the next call.
+  std::span<const std::int64_t> corners(vtkIdType cell) {
     const vtkIdType begin = offsets_->GetValue(cell), end = offsets_->GetValue(cell + 1);
     if (begin < 0 || end < begin || end > corners_->GetNumberOfValues()) {
       throw Error("cell " + std::to_string(cell) + " is not where its offset says" + damaged);
     }
-    return {corners_->GetPointer(0) + begin, static_cast<std::size_t>(end - begin)};
+    corners_of_cell_.assign(corners_->GetPointer(0) + begin, corners_->GetPointer(0) + end);
+    return corners_of_cell_;
   }
 
-  /// An index of a point of that cell, checked.
-  std::int32_t point(vtkIdType index, vtkIdType cell) const {
-    if (index < 0 || index >= points_) {
-      throw Error("cell " + std::to_string(cell) + " has the point " + std::to_string(index) +
-                  ", but there are " + std::to_string(points_) + damaged);
+  /// From the faces of a cell on; empty: it has none. Valid until the next call.
+  std::span<const std::int64_t> faces(vtkIdType cell) {
+    if (faces_ == nullptr || face_begins_ == nullptr) return {};
+    const vtkIdType begin = face_begins_->GetValue(cell), count = faces_->GetNumberOfValues();
+    if (begin < 0 || begin >= count) return {};
+    // As long as they say, or to the end.
+    const vtkIdType* const list = faces_->GetPointer(0);
+    vtkIdType end = begin + 1;
+    for (vtkIdType face = 0; face < list[begin] && end < count; ++face) {
+      const vtkIdType points = list[end];
+      if (points < 0 || points >= count - end) {
+        end = count;
+        break;
+      }
+      end += 1 + points;
     }
-    return static_cast<std::int32_t>(index);
+    // Lists that lie upon each other would be more than the file has.
+    face_values_ += end - begin;
+    if (face_values_ > count) {
+      throw Error(std::string("the lists of faces overlap") + damaged);
+    }
+    faces_of_cell_.assign(list + begin, list + end);
+    return faces_of_cell_;
   }
 
  private:
-  vtkIdType points_, count_ = 0;
+  vtkIdType count_ = 0, face_values_ = 0;
   vtkUnsignedCharArray* types_ = nullptr;
   vtkSmartPointer<vtkIdTypeArray> offsets_, corners_;
+  vtkIdTypeArray *faces_ = nullptr, *face_begins_ = nullptr;
+  std::vector<std::int64_t> corners_of_cell_, faces_of_cell_;
 };
 
+/// The orders of Lagrange cells along their axes, three numbers for each; null: the file does not
+/// say them.
+vtkDataArray* orders_of_cells(vtkUnstructuredGrid& grid) {
+  vtkCellData& data = *grid.GetCellData();
+  vtkDataArray* orders = data.GetHigherOrderDegrees();
+  // Writers that know VTK's name for it, but not how an array is marked.
+  if (orders == nullptr) orders = data.GetArray("HIGHER_ORDER_DEGREES");
+  if (orders == nullptr) orders = data.GetArray("HigherOrderDegrees");
+  const bool fits = orders != nullptr && orders->GetNumberOfComponents() == 3 &&
+                    orders->GetNumberOfTuples() == grid.GetNumberOfCells();
+  return fits ? orders : nullptr;
+}
+
+std::optional<std::array<int, 3>> orders_of(vtkDataArray* orders, vtkIdType cell) {
+  if (orders == nullptr) return std::nullopt;
+  std::array<int, 3> of{};
+  for (int axis = 0; axis < 3; ++axis) {
+    const double order = orders->GetComponent(cell, axis);
+    constexpr double largest = 1e6;
+    if (!(order >= 0 && order <= largest)) return std::nullopt;
+    of[static_cast<std::size_t>(axis)] = static_cast<int>(order);
+  }
+  return of;
+}
+
 /// The cells that are kept, by their numbers in VTK.
-std::vector<vtkIdType> gather_cells(vtkUnstructuredGrid& grid, MeshFile& file,
-                                    UnstructuredGrid& block) {
-  const CellLists cells(grid);
+std::vector<vtkIdType> gather_cells(vtkUnstructuredGrid& grid, std::size_t first_number,
+                                    MeshFile& file, UnstructuredGrid& block) {
+  CellLists lists(grid);
   vtkUnsignedCharArray* const ghosts = ghosts_of(grid);
+  vtkDataArray* const orders = orders_of_cells(grid);
   std::vector<vtkIdType> kept;
-  kept.reserve(static_cast<std::size_t>(cells.count()));
-  block.shapes.reserve(static_cast<std::size_t>(cells.count()));
-  for (vtkIdType cell = 0; cell < cells.count(); ++cell) {
+  kept.reserve(static_cast<std::size_t>(lists.count()));
+  block.shapes.reserve(static_cast<std::size_t>(lists.count()));
+  VtkCells cells(first_number, file, block);
+  for (vtkIdType cell = 0; cell < lists.count(); ++cell) {
     if (is_ghost(ghosts, cell)) {
-      ++file.ghost_cells;
+      cells.add_ghost();
       continue;
     }
-    const VtkCellKind kind = cell_kind(cells.type(cell));
-    if (!kind.shape) {
-      ++file.flat_cells;
-      continue;
-    }
-    const std::span<const vtkIdType> corners = cells.corners(cell);
-    if (corners.size() != static_cast<std::size_t>(kind.points)) {
-      throw Error("cell " + std::to_string(cell) + " has " + std::to_string(corners.size()) +
-                  " points, but one of its shape has " + std::to_string(kind.points) + damaged);
-    }
-    for (const vtkIdType corner : corners) block.corners.push_back(cells.point(corner, cell));
-    block.shapes.push_back(*kind.shape);
-    kept.push_back(cell);
+    const int type = lists.type(cell);
+    const bool is_polyhedron = type == VTK_POLYHEDRON;
+    const VtkCell given{type, lists.corners(cell),
+                        is_polyhedron ? lists.faces(cell) : std::span<const std::int64_t>{},
+                        orders_of(orders, cell)};
+    if (cells.add(cell, given)) kept.push_back(cell);
   }
   return kept;
 }
 
 /// Hexahedra between the points of a curvilinear grid.
-std::vector<vtkIdType> gather_cells(vtkStructuredGrid& grid, MeshFile& file,
-                                    UnstructuredGrid& block) {
+std::vector<vtkIdType> gather_cells(vtkStructuredGrid& grid, std::size_t first_number,
+                                    MeshFile& file, UnstructuredGrid& block) {
   int dimensions[3];
   grid.GetDimensions(dimensions);
   std::int64_t points = 1, cells = 1;
@@ -252,6 +303,8 @@ std::vector<vtkIdType> gather_cells(vtkStructuredGrid& grid, MeshFile& file,
                                {bottom, bottom + 1, bottom + row + 1, bottom + row});
         }
         block.shapes.push_back(CellShape::hexahedron);
+        block.cell_numbers.push_back(
+            static_cast<std::int32_t>(static_cast<std::size_t>(cell) + first_number));
         kept.push_back(cell);
       }
     }
@@ -263,7 +316,8 @@ template <class Grid>
 void gather_grid(Grid& grid, MeshBlocks& mesh) {
   UnstructuredGrid block;
   gather_points(grid, block);
-  const std::vector<vtkIdType> cells = gather_cells(grid, mesh.file, block);
+  const std::vector<vtkIdType> cells = gather_cells(grid, mesh.cells, mesh.file, block);
+  mesh.cells += static_cast<std::size_t>(grid.GetNumberOfCells());
   std::vector<vtkIdType> points(block.points.size());
   for (std::size_t i = 0; i < points.size(); ++i) points[i] = static_cast<vtkIdType>(i);
   gather_arrays(*grid.GetPointData(), Centering::point, grid.GetNumberOfPoints(), points, block);
@@ -294,6 +348,7 @@ void gather(vtkDataObject& object, MeshBlocks& mesh) {
     gather_grid(*structured, mesh);
   } else if (auto* const surface = vtkPolyData::SafeDownCast(&object)) {
     mesh.file.flat_cells += static_cast<std::size_t>(surface->GetNumberOfCells());
+    mesh.cells += static_cast<std::size_t>(surface->GetNumberOfCells());
   } else {
     throw Error(std::string("holds ") + object.GetClassName() +
                 ", which is no mesh of cells; read are unstructured and structured grids");

@@ -4,7 +4,12 @@
 #include <vtkDataArray.h>
 #include <vtkSmartPointer.h>
 
+#include <cstdint>
 #include <limits>
+#include <span>
+#include <string>
+
+#include "stored_numbers.h"
 
 namespace pellucid {
 
@@ -36,6 +41,15 @@ VolumeData copied(vtkDataArray& array) {
   return values;
 }
 
+/// Whole numbers of 64 bits.
+template <class Number>
+VolumeData whole_numbers(vtkDataArray& array) {
+  const std::size_t count = count_of(array);
+  WholeNumbers kept([&](const std::string& type) { return make_volume_data(type, count); });
+  kept.add(std::span(static_cast<const Number*>(array.GetVoidPointer(0)), count));
+  return kept.take();
+}
+
 }  // namespace
 
 VolumeData values_in_place(vtkDataArray& array) {
@@ -59,11 +73,12 @@ VolumeData values_in_place(vtkDataArray& array) {
     case VTK_INT:
       return in_place<std::int32_t>(array);
     case VTK_LONG:
-      if (bytes == 4) return in_place<std::int32_t>(array);
-      break;
+    case VTK_LONG_LONG:
+    case VTK_ID_TYPE:
+      return bytes == 4 ? in_place<std::int32_t>(array) : whole_numbers<std::int64_t>(array);
     case VTK_UNSIGNED_LONG:
-      if (bytes == 4) return in_place<std::uint32_t>(array);
-      break;
+    case VTK_UNSIGNED_LONG_LONG:
+      return bytes == 4 ? in_place<std::uint32_t>(array) : whole_numbers<std::uint64_t>(array);
     case VTK_FLOAT:
       return in_place<float>(array);
     case VTK_DOUBLE:

@@ -8,7 +8,8 @@ class vtkDataArray;
 namespace pellucid {
 
 /// All values of an array, its components side by side: in place, owned together with VTK, where
-/// there is such a type here; whole numbers of 64 bits as double, bits as u8.
+/// there is such a type here; bits as u8, whole numbers of 64 bits in the smallest type that holds
+/// all of them, else rounded to double.
 VolumeData values_in_place(vtkDataArray& array);
 
 }  // namespace pellucid

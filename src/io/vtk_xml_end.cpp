@@ -9,6 +9,7 @@
 #include <system_error>
 #include <vector>
 
+#include "input_file.h"
 #include "pellucid/scene/error.h"
 
 namespace pellucid {
@@ -43,7 +44,10 @@ std::vector<std::string> files_named(std::string_view text) {
 
 void check(const fs::path& path, const fs::path& of, std::set<fs::path>& seen) {
   std::error_code error;
-  if (!fs::is_regular_file(path, error) || !seen.insert(path.lexically_normal()).second) return;
+  // VTK says what is wrong with those that are not there, but would wait for a pipe.
+  if (!fs::exists(path, error) || fs::is_directory(path, error)) return;
+  check_input_file(path);
+  if (!seen.insert(path.lexically_normal()).second) return;
   // Those that name others have no values, and are short.
   constexpr std::size_t longest_head = std::size_t{1} << 20, longest_end = 256;
   const std::uintmax_t size = fs::file_size(path, error);
@@ -61,9 +65,10 @@ void check(const fs::path& path, const fs::path& of, std::set<fs::path>& seen) {
 
 }  // namespace
 
-void check_vtk_xml_end(const fs::path& path) {
+std::set<fs::path> check_vtk_xml_end(const fs::path& path) {
   std::set<fs::path> seen;
   check(path, path, seen);
+  return seen;
 }
 
 }  // namespace pellucid

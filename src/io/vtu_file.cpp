@@ -41,6 +41,11 @@ std::uint8_t vtk_type(CellShape shape) {
       return 29;
     case CellShape::biquadratic_wedge:
       return 32;
+    case CellShape::lagrange_tetrahedron:
+    case CellShape::lagrange_wedge:
+    case CellShape::lagrange_hexahedron:
+    case CellShape::polyhedron:
+      break;
   }
   return 0;  // VTK's empty cell
 }
@@ -95,8 +100,13 @@ class VtuFile {
     ends_.reserve(grid_.shapes.size());
     std::int64_t end = 0;
     for (const CellShape shape : grid_.shapes) {
+      if (point_count(shape) == 0) {
+        throw Error(path_ +
+                    ": not written: its Lagrange cells and polyhedra have to be cut into "
+                    "tetrahedra first; write tetrahedralize() the grid");
+      }
       types_.push_back(vtk_type(shape));
-      ends_.push_back(end += points_of(shape));
+      ends_.push_back(end += point_count(shape));
     }
     if (static_cast<std::size_t>(end) != grid_.corners.size()) {
       throw Error(path_ + ": not written: the shapes of its cells need " + std::to_string(end) +

@@ -58,11 +58,11 @@ void check(const WrittenVolume& volume) {
 
 }  // namespace
 
-bool is_written_volume(const std::filesystem::path& path) {
+bool is_writable_volume(const std::filesystem::path& path) {
   return format_of(path) != nullptr;
 }
 
-std::string written_volume_extensions() {
+std::string writable_volume_extensions() {
   std::string known;
   for (const Format& format : formats) {
     known += (known.empty() ? "" : " ") + std::string(format.extension);
@@ -76,7 +76,7 @@ std::vector<std::string> write_volume(std::span<const Volume> components,
   const Format* const format = format_of(path);
   if (format == nullptr) {
     throw Error(path.string() + ": not written: a volume is written as one of " +
-                written_volume_extensions());
+                writable_volume_extensions());
   }
   check(volume);
   AtomicFile file(path);

@@ -15,9 +15,9 @@ namespace {
 
 class ZlibInflater : public Inflater {
  public:
-  ZlibInflater() {
-    // 32 + 15: a zlib or a gzip header, whichever is there, and the largest window.
-    if (inflateInit2(&state_, 32 + 15) != Z_OK) throw std::bad_alloc();
+  /// `window_bits` as of inflateInit2().
+  explicit ZlibInflater(int window_bits) : has_header_(window_bits > 0) {
+    if (inflateInit2(&state_, window_bits) != Z_OK) throw std::bad_alloc();
   }
   ~ZlibInflater() override { inflateEnd(&state_); }
   ZlibInflater(const ZlibInflater&) = delete;
@@ -36,7 +36,7 @@ class ZlibInflater : public Inflater {
       const int status = inflate(&state_, Z_NO_FLUSH);
       if (status == Z_STREAM_END) {
         // Another gzip member may follow; anything else after the end is not of the data.
-        if ((state_.avail_in > 0 || fetch(next)) && state_.next_in[0] == 0x1f) {
+        if (has_header_ && (state_.avail_in > 0 || fetch(next)) && state_.next_in[0] == 0x1f) {
           inflateReset(&state_);
         } else {
           at_end_ = true;
@@ -59,13 +59,19 @@ class ZlibInflater : public Inflater {
 
   z_stream state_{};
   std::vector<Bytef> input_ = std::vector<Bytef>(std::size_t{1} << 18);
+  bool has_header_;
   bool at_end_ = false;  // of the last member
 };
 
 }  // namespace
 
 std::unique_ptr<Inflater> make_zlib_inflater() {
-  return std::make_unique<ZlibInflater>();
+  // 32 + 15: a zlib or a gzip header, whichever is there, and the largest window.
+  return std::make_unique<ZlibInflater>(32 + 15);
+}
+
+std::unique_ptr<Inflater> make_deflate_inflater() {
+  return std::make_unique<ZlibInflater>(-15);
 }
 
 }  // namespace pellucid

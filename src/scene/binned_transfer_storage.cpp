@@ -314,21 +314,21 @@ BinnedTransferStorage::BinnedTransferStorage(const PiecewiseLinear<double>& tabl
     bins_of(table.value[i], table.value[i], [&](std::size_t b) { bend[b] += change; });
   }
 
-  std::int32_t marks = 0, hard_jumps = 0;
+  std::int32_t marks = 0, unresolved_jumps = 0;
   double bends = 0;
   for (std::size_t b = 0; b < bins; ++b) {
     marks_.push_back(marks);
-    hard_jumps_.push_back(hard_jumps);
-    hard_jumps += hard[b];
-    color_bend_.push_back(static_cast<float>(bends));
+    hard_jumps_.push_back(unresolved_jumps);
+    unresolved_jumps += hard[b];
+    color_slope_change_.push_back(static_cast<float>(bends));
     marks += mark[b];
     bends += bend[b];
   }
   marks_.push_back(marks);
-  hard_jumps_.push_back(hard_jumps);
-  color_bend_.push_back(static_cast<float>(bends));
+  hard_jumps_.push_back(unresolved_jumps);
+  color_slope_change_.push_back(static_cast<float>(bends));
   // Of either sum, of their difference, and what colors of less than `flat` leave out.
-  view_.bend_rounding = above(4 * unit * bends);
+  view_.color_slope_change_rounding = above(4 * unit * bends);
   view_.bends = bends > 0;
 
   // Bins that absorb are one run, and none of them holds a jump.
@@ -362,8 +362,8 @@ BinnedTransferStorage::BinnedTransferStorage(const PiecewiseLinear<double>& tabl
       none ? BinnedTransfer::far : as_float(supports.front().lower - 16 * unit * size);
   view_.support_max =
       none ? -BinnedTransfer::far : as_float(supports.back().upper + 16 * unit * size);
-  constexpr std::size_t most_supports = BinnedTransfer::most_supports;
-  if (!jumps && supports.size() > 1 && supports.size() <= most_supports) {
+  constexpr std::size_t max_supports = BinnedTransfer::max_supports;
+  if (!jumps && supports.size() > 1 && supports.size() <= max_supports) {
     view_.supports = static_cast<int>(supports.size());
     for (std::size_t i = 0; i < supports.size(); ++i) {
       view_.support[2 * i] = as_float(supports[i].lower - 16 * unit * size);
@@ -383,8 +383,8 @@ BinnedTransferStorage::BinnedTransferStorage(const PiecewiseLinear<double>& tabl
   view_.first_color = first_color_.data();
   view_.color_split = color_split_.data();
   view_.marks = marks_.data();
-  view_.hard_jumps = hard_jumps_.data();
-  view_.color_bend = color_bend_.data();
+  view_.unresolved_jumps = hard_jumps_.data();
+  view_.color_slope_change = color_slope_change_.data();
 }
 
 }  // namespace pellucid

@@ -139,7 +139,7 @@ BlockClassesStorage::BlockClassesStorage(const BlockRecords& records,
                                          const ParallelFor& parallel,
                                          const std::function<StepLimits(double)>& limits)
     : classes_(static_cast<std::size_t>(records.count())) {
-  const ParallelFor run = or_serial(parallel);
+  const ParallelFor run = parallel_or_serial(parallel);
   const CodeTable codes(records.code, transfer);
   const BlockRoughness roughness(records.code, transfer, largest_color, run);
   std::vector<SampledBlock> sampled(limits ? classes_.size() : 0);

@@ -37,7 +37,7 @@ void build(const StructuredGrid<Value, double>& grid, const std::string& name,
       make_block_code(statistics.minimum, statistics.maximum, std::is_integral_v<Value>);
   blocks.record.resize(count);
   blocks.view.record = blocks.record.data();
-  or_serial(parallel)(static_cast<int>(count), [&](int first, int last) {
+  parallel_or_serial(parallel)(static_cast<int>(count), [&](int first, int last) {
     build_block_records(grid, blocks.view.axis, blocks.view.code, first, last,
                         blocks.record.data());
   });
@@ -45,7 +45,7 @@ void build(const StructuredGrid<Value, double>& grid, const std::string& name,
 
 }  // namespace
 
-const BlockRecords& Volume::block_ranges(const ParallelFor& parallel) const {
+const BlockRecords& Volume::block_records(const ParallelFor& parallel) const {
   if (!blocks_->built) {
     const std::lock_guard lock(blocks_->building);
     if (!blocks_->built) {

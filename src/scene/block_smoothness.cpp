@@ -27,7 +27,7 @@ struct Candidates {
   }
 
   /// Of roughness times how much the data bend over a cell.
-  double most_bending() const noexcept {
+  double max_second_difference() const noexcept {
     return static_cast<double>(sampled.roughness) *
            static_cast<double>(std::max({data.bend[0], data.bend[1], data.bend[2]}));
   }
@@ -56,7 +56,7 @@ SmoothBlocks find_smooth_blocks(const BlockRecords& records,
                  of_function = cells_by_eighth * static_cast<double>(candidates.sampled.steps);
     if (its_roughness < 0 || !(steps >= GroupVariation::least_steps) ||
         !(of_function >= least_of_function) ||
-        !(candidates.most_bending() <= limits.most_bending)) {
+        !(candidates.max_second_difference() <= limits.max_second_difference)) {
       return;
     }
     const double longest = std::min({steps, of_function, longest_sampled_step});

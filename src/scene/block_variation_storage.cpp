@@ -27,9 +27,10 @@ void join_variation(BlockVariation& all, const BlockVariation& other) {
 
 BlockVariationStorage::BlockVariationStorage(const Channels& channels,
                                              const ParallelFor& parallel) {
-  const ParallelFor run = or_serial(parallel);
+  const ParallelFor run = parallel_or_serial(parallel);
   std::vector<BlockRecords> records;
-  for (const Channel& channel : channels) records.push_back(channel.volume->block_ranges(parallel));
+  for (const Channel& channel : channels)
+    records.push_back(channel.volume->block_records(parallel));
   const BlockRecords& blocks = records.front();
   const std::size_t fields = records.size();
   variation_.resize(static_cast<std::size_t>(blocks.count()) * fields);

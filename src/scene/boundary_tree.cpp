@@ -75,14 +75,14 @@ BoundaryTree build_boundary_tree(const std::vector<Tetrahedron>& tetrahedra,
   const double margin = 0x1p-21 * reach;
   std::size_t count = 0;
   for (const Tetrahedron& t : tetrahedra) {
-    for (const std::int32_t behind : t.behind) count += behind == Tetrahedron::outside ? 1 : 0;
+    for (const std::int32_t behind : t.neighbor) count += behind == Tetrahedron::outside ? 1 : 0;
   }
   std::vector<Leaf> leaves;
   leaves.reserve(count);
   for (std::size_t i = 0; i < tetrahedra.size(); ++i) {
     const Tetrahedron& t = tetrahedra[i];
     for (int f = 0; f < 4; ++f) {
-      if (t.behind[f] != Tetrahedron::outside) continue;
+      if (t.neighbor[f] != Tetrahedron::outside) continue;
       Leaf leaf{{}, {}, static_cast<std::int32_t>(4 * i) + f};
       for (int a = 0; a < 3; ++a) {
         double lower = std::numeric_limits<double>::infinity(), upper = -lower;

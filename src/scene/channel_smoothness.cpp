@@ -110,7 +110,7 @@ class SmoothnessOfChannels {
                        const ParallelFor& parallel)
       : mixture_(mixture), primitives_(primitives) {
     for (const Channel& channel : channels) {
-      records_.push_back(channel.volume->block_ranges(parallel));
+      records_.push_back(channel.volume->block_records(parallel));
     }
     for (int i = 0; i < mixture.count; ++i) {
       const Gaussian<double>& g = mixture.primitive[i];
@@ -134,7 +134,7 @@ class SmoothnessOfChannels {
         if (classes[b].kind != BlockKind::skip) visit(b);
       });
     };
-    std::array<GroupVariation, most_channels> variation;
+    std::array<GroupVariation, max_channels> variation;
     PrimitiveSet near{0};
     bool vacuum = false;
     each_candidate([&](int b) {
@@ -148,7 +148,7 @@ class SmoothnessOfChannels {
     for (std::size_t c = 0; c < records_.size(); ++c) {
       double turned = 0;
       for (std::size_t i = 0; i < looks_.size(); ++i) {
-        if (near.holds(static_cast<int>(i))) {
+        if (near.contains(static_cast<int>(i))) {
           turned = std::max(turned, looks_[i].at[c] * variation[c].most_change());
         }
       }
@@ -164,13 +164,13 @@ class SmoothnessOfChannels {
 
  private:
   struct PrimitiveLook {
-    double reach;                            ///< |K (v - c)| beyond which it does not matter
-    std::array<double, most_channels> at{};  ///< the lengths of K's columns
+    double reach;                           ///< |K (v - c)| beyond which it does not matter
+    std::array<double, max_channels> at{};  ///< the lengths of K's columns
   };
 
   /// How far apart rays may be for what the block's primitives make of the data, cells.
   double resolving_steps(int block) const noexcept {
-    double slope[most_channels] = {}, turn[most_channels] = {};
+    double slope[max_channels] = {}, turn[max_channels] = {};
     for (std::size_t c = 0; c < records_.size(); ++c) {
       const ChannelMovement movement(records_[c]);
       slope[c] = movement.slope(block);
@@ -179,7 +179,7 @@ class SmoothnessOfChannels {
     double least = std::numeric_limits<double>::infinity();
     for (int i = 0; i < mixture_.count; ++i) {
       const double reach = looks_[static_cast<std::size_t>(i)].reach;
-      if (!primitives_[block].holds(i) || !(reach > 0)) continue;
+      if (!primitives_[block].contains(i) || !(reach > 0)) continue;
       const Gaussian<double>& g = mixture_.primitive[i];
       least = std::min(
           {least, most_moved / moved(g, slope), most_turned / std::sqrt(reach * moved(g, turn))});

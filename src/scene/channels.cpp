@@ -61,7 +61,7 @@ void check_agreement(const Channel& first, const Channel& other) {
 
 Channels::Channels(std::vector<Channel> channels) : channels_(std::move(channels)) {
   if (channels_.empty()) throw Error("channels: there is none; give from 1 to 8");
-  if (channels_.size() > static_cast<std::size_t>(most_channels)) {
+  if (channels_.size() > static_cast<std::size_t>(max_channels)) {
     throw Error("channels: there are " + std::to_string(channels_.size()) +
                 ", but at most 8 can be; leave some out");
   }

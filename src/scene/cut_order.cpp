@@ -53,7 +53,7 @@ std::vector<std::int32_t> order_of(std::size_t count, const MortonCurve& curve,
 }  // namespace
 
 void put_in_spatial_order(CellCut& cut, const ParallelFor& parallel) {
-  const ParallelFor run = or_serial(parallel);
+  const ParallelFor run = parallel_or_serial(parallel);
   const MortonCurve curve(box_of(cut));
   std::vector<std::int32_t> order =
       order_of(cut.points.size(), curve, run, [&](std::size_t i) { return cut.points[i]; });

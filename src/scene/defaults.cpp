@@ -18,9 +18,6 @@ namespace {
 
 using Point = TransferFunction::Point;
 
-/// Transfer functions and scene files hold numbers up to this.
-constexpr double largest_number = 1e30;
-
 /// Three classes of the sorted values: [0, foreground), [foreground, bright), [bright, n).
 struct Classes {
   std::size_t foreground = 0, bright = 0;
@@ -86,7 +83,8 @@ class PointList {
   /// Where the rounded value falls on the point before, it keeps more digits.
   void add(double value, double extinction, Rgb<double> color) {
     for (double range = range_; range > range_ * 1e-18; range /= 10) {
-      const double near = readable(value, range);
+      const double near =
+          std::clamp(readable(value, range), -largest_data_value, largest_data_value);
       if (points_.empty() || near > points_.back().value) {
         points_.push_back({near, extinction, color});
         return;

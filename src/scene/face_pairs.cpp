@@ -46,7 +46,7 @@ std::int32_t pair_faces(std::vector<Tetrahedron>& tetrahedra, std::size_t points
   std::atomic<std::int32_t> crowded{-1};
   parallel(static_cast<int>(points), [&](int first_point, int last_point) {
     const auto set = [&](std::int32_t code, std::int32_t behind) {
-      tetrahedra[static_cast<std::size_t>(code >> 2)].behind[code & 3] = behind;
+      tetrahedra[static_cast<std::size_t>(code >> 2)].neighbor[code & 3] = behind;
     };
     for (auto p = static_cast<std::size_t>(first_point); p < static_cast<std::size_t>(last_point);
          ++p) {

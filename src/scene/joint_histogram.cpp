@@ -20,9 +20,9 @@ namespace {
 }
 
 void check_bins(int bins) {
-  if (bins < 1 || bins > most_histogram_bins) {
+  if (bins < 1 || bins > max_histogram_bins) {
     fail("bins is " + std::to_string(bins) + ", but must be from 1 to " +
-         std::to_string(most_histogram_bins));
+         std::to_string(max_histogram_bins));
   }
 }
 
@@ -35,8 +35,8 @@ std::size_t check_axes(const std::vector<HistogramAxis>& axes) {
            " is empty or endless; give two finite values, the lower one first");
     }
     all *= static_cast<std::size_t>(axis.bins);
-    if (all > static_cast<std::size_t>(most_histogram_bins)) {
-      fail("there are more than " + std::to_string(most_histogram_bins) +
+    if (all > static_cast<std::size_t>(max_histogram_bins)) {
+      fail("there are more than " + std::to_string(max_histogram_bins) +
            " bins in all; give fewer for each axis");
     }
   }
@@ -145,9 +145,9 @@ HistogramAxis histogram_axis(const Volume& volume, int bins) {
 JointHistogram joint_histogram(const Channels& channels, const std::vector<int>& which,
                                const std::vector<HistogramAxis>& axes,
                                const ParallelFor& parallel) {
-  if (which.empty() || which.size() > static_cast<std::size_t>(most_histogram_axes)) {
+  if (which.empty() || which.size() > static_cast<std::size_t>(max_histogram_axes)) {
     fail("it has " + std::to_string(which.size()) + " channels, but must have from 1 to " +
-         std::to_string(most_histogram_axes));
+         std::to_string(max_histogram_axes));
   }
   if (axes.size() != which.size()) {
     fail("it has " + std::to_string(which.size()) + " channels and " + std::to_string(axes.size()) +
@@ -182,7 +182,7 @@ JointHistogram joint_histogram(const Channels& channels, const std::vector<int>&
     const std::lock_guard lock(mutex);
     counter.add_to(all);
   };
-  or_serial(parallel)(parts, body);
+  parallel_or_serial(parallel)(parts, body);
   return all;
 }
 

@@ -24,7 +24,7 @@ namespace {
 
 /// 1 for the points that tetrahedra use; empty where all are used.
 std::vector<std::uint8_t> used_points(const TetrahedralMesh& mesh) {
-  if (mesh.statistics().orphans == 0) return {};
+  if (mesh.statistics().unused_points == 0) return {};
   std::vector<std::uint8_t> used(mesh.points().size(), 0);
   for (const Tetrahedron& tetrahedron : mesh.tetrahedra()) {
     for (const std::int32_t point : tetrahedron.corner) used[static_cast<std::size_t>(point)] = 1;
@@ -52,7 +52,7 @@ std::string first_beyond(const TetrahedralMesh& mesh, std::span<const Value> val
     if (!used.empty() && used[i] == 0) continue;
     const double size = std::abs(static_cast<double>(values[i]));
     if (infinite ? !std::isinf(size) : !(size > largest_value)) continue;
-    if (!points) return mesh.named(i);
+    if (!points) return mesh.describe(i);
     first_point = std::min(first_point, mesh.point_number(i));
   }
   return "point " + std::to_string(first_point);
@@ -114,7 +114,7 @@ MeshChannels::MeshChannels(std::shared_ptr<const TetrahedralMesh> mesh,
     : mesh_(std::move(mesh)), channels_(std::move(channels)) {
   if (!mesh_) throw Error("mesh: there is none under the channels; set it");
   if (channels_.empty()) fail(*mesh_, "there is no channel; give from 1 to 8");
-  if (channels_.size() > static_cast<std::size_t>(most_channels)) {
+  if (channels_.size() > static_cast<std::size_t>(max_channels)) {
     fail(*mesh_, "there are " + std::to_string(channels_.size()) +
                      " channels, but at most 8 can be; leave some out");
   }

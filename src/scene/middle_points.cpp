@@ -6,6 +6,7 @@
 #include <unordered_map>
 
 #include "grid_check.h"
+#include "polyhedra.h"
 
 namespace pellucid {
 namespace {
@@ -55,26 +56,18 @@ Quadrilateral quadrilateral(const MiddleNode& node, const std::int32_t* cell) {
   return corners;
 }
 
-/// Calls body(shape, the cell's points).
-template <class Body>
-void each_cell(const UnstructuredGrid& grid, const Body& body) {
-  const std::int32_t* cell = grid.corners.data();
-  for (const CellShape shape : grid.shapes) {
-    body(shape, cell);
-    cell += points_of(shape);
-  }
-}
-
 /// The middles of quadrilaterals that cells bring along: their neighbours may lack them.
 Middles given_middles(const UnstructuredGrid& grid) {
   Middles middles;
-  each_cell(grid, [&](CellShape shape, const std::int32_t* cell) {
-    const std::span<const MiddleNode> given = given_nodes(shape);
-    const std::int32_t* const own = cell + points_of(shape) - given.size();
+  for (CellWalk walk(grid); !walk.done();) {
+    const GridCell cell = walk.next();
+    const std::span<const MiddleNode> given = given_nodes(cell.shape);
+    const std::span<const std::int32_t> own = cell.points.last(given.size());
     for (std::size_t i = 0; i < given.size(); ++i) {
-      if (given[i].corners == 4) middles.try_emplace(quadrilateral(given[i], cell), own[i]);
+      if (given[i].corners != 4) continue;
+      middles.try_emplace(quadrilateral(given[i], cell.points.data()), own[i]);
     }
-  });
+  }
   return middles;
 }
 
@@ -87,32 +80,73 @@ std::span<const MiddleNode> lacking_nodes(CellShape shape) noexcept {
   return {};
 }
 
+std::size_t lacking_count(CellShape shape) noexcept {
+  return shape == CellShape::polyhedron ? 1 : lacking_nodes(shape).size();
+}
+
+Vec3<double> place_of(const UnstructuredGrid& grid, const MiddlePoint& point) {
+  Vec3<double> at;
+  for (int axis = 0; axis < 3; ++axis) {
+    at[axis] = point.interpolated(
+        [&](std::int32_t node) { return grid.points[static_cast<std::size_t>(node)][axis]; });
+  }
+  return at;
+}
+
 MiddlePoints find_middle_points(const UnstructuredGrid& grid) {
   MiddlePoints found;
   std::size_t lacking = 0;
-  for (const CellShape shape : grid.shapes) lacking += lacking_nodes(shape).size();
+  bool has_polyhedra = false;
+  for (const CellShape shape : grid.shapes) {
+    lacking += lacking_count(shape);
+    has_polyhedra = has_polyhedra || shape == CellShape::polyhedron;
+  }
   if (lacking == 0) return found;
   if (lacking >
       static_cast<std::size_t>(std::numeric_limits<std::int32_t>::max()) - grid.points.size()) {
-    fail(grid, "its quadratic cells need more points than can be counted; take a part of it");
+    fail(grid,
+         "its quadratic cells and polyhedra need more points than can be counted; take a part of "
+         "it");
   }
 
   Middles middles = given_middles(grid);
   found.indices.reserve(lacking);
   found.points.reserve(lacking / 2);
-  each_cell(grid, [&](CellShape shape, const std::int32_t* cell) {
-    for (const MiddleNode& node : lacking_nodes(shape)) {
-      auto index = static_cast<std::int32_t>(grid.points.size() + found.points.size());
+  // Pointers into it stay where they are: it never grows beyond this.
+  if (has_polyhedra) found.distinct.reserve(grid.corners.size());
+  PolyhedronApex apex(grid.points.data());
+  for (CellWalk walk(grid); !walk.done();) {
+    const GridCell cell = walk.next();
+    const std::int32_t* const own = cell.points.data();
+    const auto next_index = [&] {
+      return static_cast<std::int32_t>(grid.points.size() + found.points.size());
+    };
+    if (cell.shape == CellShape::polyhedron) {
+      std::vector<std::int32_t>& all = found.distinct;
+      const auto begin = static_cast<std::ptrdiff_t>(all.size());
+      all.insert(all.end(), cell.points.begin(), cell.points.end());
+      std::sort(all.begin() + begin, all.end());
+      all.erase(std::unique(all.begin() + begin, all.end()), all.end());
+      const MiddlePoint mean{nullptr, all.data() + begin,
+                             static_cast<std::int32_t>(std::ssize(all) - begin)};
+      const std::span<const std::int32_t> distinct(mean.cell, static_cast<std::size_t>(mean.count));
+      const std::int32_t own_point = apex(cell, distinct, place_of(grid, mean));
+      found.indices.push_back(own_point < 0 ? next_index() : own_point);
+      if (own_point < 0) found.points.push_back(mean);
+      continue;
+    }
+    for (const MiddleNode& node : lacking_nodes(cell.shape)) {
+      auto index = next_index();
       bool is_new = true;
       if (node.corners == 4) {
-        const auto [at, inserted] = middles.try_emplace(quadrilateral(node, cell), index);
+        const auto [at, inserted] = middles.try_emplace(quadrilateral(node, own), index);
         index = at->second;
         is_new = inserted;
       }
-      if (is_new) found.points.push_back({&node, cell});
+      if (is_new) found.points.push_back({&node, own, 0});
       found.indices.push_back(index);
     }
-  });
+  }
   return found;
 }
 

@@ -26,15 +26,25 @@ struct MiddleNode {
 /// shapes.
 std::span<const MiddleNode> lacking_nodes(CellShape shape) noexcept;
 
-/// A new point: a middle node of a cell.
-struct MiddlePoint {
-  const MiddleNode* node = nullptr;
-  const std::int32_t* cell = nullptr;  ///< the points of its cell, in the grid
+/// How many points beside its own a cell of this shape is cut with: those nodes; of a polyhedron
+/// the one that its tetrahedra meet in.
+std::size_t lacking_count(CellShape shape) noexcept;
 
-  /// What the shape functions make of the numbers that value(point) gives.
+/// A new point: a middle node of a cell, or the mean of the points of a polyhedron.
+struct MiddlePoint {
+  const MiddleNode* node = nullptr;  ///< null: the mean of `count` points
+  /// The points of its cell, in the grid or in MiddlePoints::distinct.
+  const std::int32_t* cell = nullptr;
+  std::int32_t count = 0;
+
+  /// What the shape functions, or the mean, make of the numbers that value(point) gives.
   template <class Value>
   double interpolated(const Value& value) const {
     double sum = 0;
+    if (node == nullptr) {
+      for (std::int32_t i = 0; i < count; ++i) sum += value(cell[i]);
+      return sum / count;
+    }
     for (int i = 0; i < node->count(); ++i) {
       sum += node->weight(i) * value(cell[node->nodes[static_cast<std::size_t>(i)]]);
     }
@@ -42,16 +52,23 @@ struct MiddlePoint {
   }
 };
 
-/// The nodes that the quadratic cells of a grid lack. Two cells that share a quadrilateral share
-/// the node in its middle, which is found by the corners.
+/// The nodes that the quadratic cells of a grid lack, and the points that the tetrahedra of its
+/// polyhedra meet in: new ones, the mean of the cell's points, or one of these. Two
+/// quadratic cells that share a quadrilateral share the node in its middle, which is found by the
+/// corners.
 struct MiddlePoints {
   /// In the order of their indices, which follow those of the grid's points.
   std::vector<MiddlePoint> points;
-  /// What the cells lack, one cell after the other (lacking_nodes): indices of points.
+  /// What the cells lack, one cell after the other (lacking_count): indices of points.
   std::vector<std::int32_t> indices;
+  /// The points of polyhedra, each once.
+  std::vector<std::int32_t> distinct{};
 };
 
-/// Of a grid whose indices are in range. Throws Error where the points are more than an index can
+/// Where a new point stands.
+Vec3<double> place_of(const UnstructuredGrid& grid, const MiddlePoint& point);
+
+/// Of a grid that agrees with itself. Throws Error where the points are more than an index can
 /// count.
 MiddlePoints find_middle_points(const UnstructuredGrid& grid);
 

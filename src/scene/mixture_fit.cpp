@@ -25,9 +25,9 @@ void check(const WeightedPoints& points, int components, const std::vector<doubl
       points.coordinates.size() != points.count() * floor.size()) {
     fail("sizes do not agree; give `dimensions` coordinates per weight and as many floors");
   }
-  if (components < 1 || components > most_components) {
+  if (components < 1 || components > max_components) {
     fail("it has " + std::to_string(components) + " components, but must have from 1 to " +
-         std::to_string(most_components));
+         std::to_string(max_components));
   }
   const auto finite = [](double x) { return std::isfinite(x); };
   const auto at_least_zero = [](double x) { return x >= 0 && std::isfinite(x); };
@@ -230,7 +230,7 @@ class Fitter {
                      [](const auto& a, const auto& b) { return a.weight > b.weight; });
     const double n = static_cast<double>(n_), m = static_cast<double>(fit.components.size());
     const double parameters = m * (n + n * (n + 1) / 2) + m - 1;
-    fit.information = parameters * std::log(total_) - 2 * fit.log_likelihood;
+    fit.bic = parameters * std::log(total_) - 2 * fit.log_likelihood;
   }
 
   const WeightedPoints& points_;
@@ -254,7 +254,7 @@ MixtureFit fit_mixture(const WeightedPoints& points, int least, int most,
   std::optional<MixtureFit> best;
   for (int components = least; components <= most; ++components) {
     MixtureFit fit = Fitter(points, floor).best(components);
-    if (!best || fit.information < best->information) best = std::move(fit);
+    if (!best || fit.bic < best->bic) best = std::move(fit);
   }
   if (!best) fail("there is no number from least to most; give least <= most");
   return *best;

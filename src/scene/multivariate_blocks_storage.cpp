@@ -16,7 +16,7 @@ namespace {
 
 /// The box of what the channels' data can be in a block.
 struct DataBox {
-  double lower[most_channels], upper[most_channels];
+  double lower[max_channels], upper[max_channels];
   bool vacuum = false;  ///< all of it
 };
 
@@ -33,7 +33,8 @@ DataBox data_box(const std::vector<const BlockRecords*>& records, int block) {
 
 class BlockClassifier {
  public:
-  BlockClassifier(const Multivariate<double>& transfer, double negligible) : transfer_(transfer) {
+  BlockClassifier(const MultivariateTransfer<double>& transfer, double negligible)
+      : transfer_(transfer) {
     const int count = transfer.gaussians.count;
     for (int i = 0; i < count; ++i) {
       const double peak = transfer.gaussians.primitive[i].peak;
@@ -63,7 +64,7 @@ class BlockClassifier {
   }
 
  private:
-  const Multivariate<double>& transfer_;
+  const MultivariateTransfer<double>& transfer_;
   std::vector<double> enough_;  ///< the exponent from which on a primitive is left out
 };
 
@@ -87,14 +88,14 @@ MultivariateBlocksStorage::MultivariateBlocksStorage(
     : negligible_(negligible) {
   std::vector<const BlockRecords*> records;
   for (const Channel& channel : channels)
-    records.push_back(&channel.volume->block_ranges(parallel));
+    records.push_back(&channel.volume->block_records(parallel));
   records_ = *records.front();
   const auto count = static_cast<std::size_t>(records_.count());
   classes_.resize(count);
   primitives_.resize(count);
-  const Multivariate<double> transfer = transfer_function.view();
+  const MultivariateTransfer<double> transfer = transfer_function.view();
   const BlockClassifier classifier(transfer, negligible);
-  const ParallelFor run = or_serial(parallel);
+  const ParallelFor run = parallel_or_serial(parallel);
   run(records_.count(), [&](int first, int last) {
     for (int i = first; i < last; ++i) {
       const auto b = static_cast<std::size_t>(i);
@@ -110,7 +111,7 @@ void MultivariateBlocksStorage::find_smooth(const Channels& channels,
                                             const MultivariateTransferFunction& transfer_function,
                                             const ParallelFor& parallel) {
   longest_step_ = find_smooth_channels(channels, transfer_function, primitives_.data(), negligible_,
-                                       or_serial(parallel), classes_.data(), waves_);
+                                       parallel_or_serial(parallel), classes_.data(), waves_);
 }
 
 MultichannelGrid multichannel_grid(const Channels& channels) {

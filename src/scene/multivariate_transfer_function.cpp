@@ -37,7 +37,7 @@ class GaussianCheck {
              " numbers, but it looks at " + std::to_string(n) + " channels; give one for each");
     }
     if (primitive_.matrix.empty() ||
-        primitive_.matrix.size() > static_cast<std::size_t>(most_channels)) {
+        primitive_.matrix.size() > static_cast<std::size_t>(max_channels)) {
       refuse("matrix has " + std::to_string(primitive_.matrix.size()) +
              " rows, but must have from 1 to 8");
     }
@@ -129,13 +129,13 @@ Matrix cholesky(const Matrix& a) {
 
 }  // namespace
 
-Matrix matrix_of_widths(const std::vector<double>& widths) {
+Matrix matrix_from_widths(const std::vector<double>& widths) {
   Matrix identity(widths.size(), std::vector<double>(widths.size(), 0.0));
   for (std::size_t i = 0; i < widths.size(); ++i) identity[i][i] = 1;
-  return matrix_of_widths(widths, identity);
+  return matrix_from_widths(widths, identity);
 }
 
-Matrix matrix_of_widths(const std::vector<double>& widths, const Matrix& axes) {
+Matrix matrix_from_widths(const std::vector<double>& widths, const Matrix& axes) {
   if (axes.size() != widths.size() || !is_square(axes)) {
     fail("axes are not a square matrix with a row for each width");
   }
@@ -160,7 +160,7 @@ Matrix matrix_of_widths(const std::vector<double>& widths, const Matrix& axes) {
   return k;
 }
 
-Matrix matrix_of_covariance(const Matrix& covariance) {
+Matrix matrix_from_covariance(const Matrix& covariance) {
   const std::size_t n = covariance.size();
   if (n == 0 || !is_square(covariance)) fail("covariance is not a square matrix");
   for (std::size_t i = 0; i < n; ++i) {
@@ -189,15 +189,15 @@ MultivariateTransferFunction::MultivariateTransferFunction(
     int channels, std::vector<GaussianPrimitive> primitives,
     std::vector<ChannelTransferFunction> tables)
     : channels_(channels), primitives_(std::move(primitives)), tables_(std::move(tables)) {
-  if (channels < 1 || channels > most_channels) {
+  if (channels < 1 || channels > max_channels) {
     fail("it sees " + std::to_string(channels) + " channels, but must see from 1 to 8");
   }
   if (primitives_.empty() && tables_.empty()) {
     fail("it has no terms; give a Gaussian or a piecewise-linear function");
   }
-  if (primitives_.size() > static_cast<std::size_t>(most_gaussians)) {
+  if (primitives_.size() > static_cast<std::size_t>(max_gaussians)) {
     fail("it has " + std::to_string(primitives_.size()) + " Gaussians, but at most " +
-         std::to_string(most_gaussians) + " can be; leave some out");
+         std::to_string(max_gaussians) + " can be; leave some out");
   }
   for (std::size_t i = 0; i < primitives_.size(); ++i) {
     const GaussianPrimitive& p = primitives_[i];
@@ -222,7 +222,7 @@ MultivariateTransferFunction::MultivariateTransferFunction(
   }
 }
 
-Multivariate<double> MultivariateTransferFunction::view() const noexcept {
+MultivariateTransfer<double> MultivariateTransferFunction::view() const noexcept {
   return {{gaussian_view_.data(), static_cast<int>(gaussian_view_.size())},
           table_view_.data(),
           static_cast<int>(table_view_.size()),

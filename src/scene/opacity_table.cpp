@@ -153,8 +153,8 @@ void check_limits(double x, double lower, double upper, const char* what) {
 
 }  // namespace
 
-TransferFunction from_opacity_table(const std::vector<OpacityPoint>& points, double unit_distance,
-                                    double relative_error) {
+TransferFunction transfer_function_from_opacity_table(const std::vector<OpacityPoint>& points,
+                                                      double unit_distance, double relative_error) {
   check_limits(unit_distance, smallest_unit_distance, largest_unit_distance, "unit distance");
   check_limits(relative_error, smallest_relative_error, largest_relative_error, "relative error");
   if (points.empty()) {
@@ -170,7 +170,7 @@ TransferFunction from_opacity_table(const std::vector<OpacityPoint>& points, dou
   return refinement.result(unit_distance);
 }
 
-double relative_error_for(double error, double largest_color) noexcept {
+double required_relative_error(double error, double largest_color) noexcept {
   const double wanted = error / std::max(largest_color / 2, 1 / std::numbers::e);
   return std::clamp(wanted, smallest_relative_error, largest_relative_error);
 }

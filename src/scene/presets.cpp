@@ -17,8 +17,6 @@
 namespace pellucid {
 namespace {
 
-constexpr double largest_number = 1e30;
-
 /// What relative presets are relative to.
 struct Scale {
   double first = 0, last = 1;
@@ -58,11 +56,14 @@ TransferFunction make(const NamedPreset& preset, const Scale& scale,
   std::vector<TransferFunction::Point> made;
   for (const PresetPoint& p : points) {
     const double share = (p.at - begin) / (end - begin);
-    const double value = first + share * (last - first);
+    const double value =
+        std::clamp(first + share * (last - first), -largest_data_value, largest_data_value);
     // Five digits tell the narrowest peaks apart.
-    const double place = as_written || range ? value : readable(value, (last - first) / 100);
+    const double place = as_written || range ? value
+                                             : std::clamp(readable(value, (last - first) / 100),
+                                                          -largest_data_value, largest_data_value);
     const double extinction = hounsfield ? p.strength : two_digits(p.strength / scale.chord);
-    const Rgb<double> color = linear_light(p.srgb);
+    const Rgb<double> color = srgb_to_linear(p.srgb);
     const Rgb<double> rounded_color{rounded(color.r, 3), rounded(color.g, 3), rounded(color.b, 3)};
     // Two at one value, of a range that is a few doubles wide.
     if (!made.empty() && !(made.back().value < place)) continue;
@@ -87,9 +88,9 @@ const NamedPreset& named(std::string_view name) {
 void check(const std::optional<std::array<double, 2>>& range) {
   if (!range) return;
   const auto [a, b] = *range;
-  if (a < b && std::abs(a) <= largest_number && std::abs(b) <= largest_number) return;
+  if (a < b && std::abs(a) <= largest_data_value && std::abs(b) <= largest_data_value) return;
   throw Error("preset: the range is " + number(a) + " to " + number(b) +
-              ", but must be two ascending numbers up to 1e30");
+              ", but must be two ascending numbers up to 2.1e37");
 }
 
 }  // namespace

@@ -13,17 +13,13 @@
 
 namespace pellucid {
 
-/// 10 nodes: a tetrahedron at each corner, and the octahedron of the edges' nodes, cut into four
-/// around its shortest diagonal: the one that is most likely inside where edges are curved.
+/// An octahedron, of whose six points 0 and 3, 1 and 4, 2 and 5 are opposite to each other: four
+/// tetrahedra around its shortest diagonal, the one that is most likely inside where edges are
+/// curved.
 template <class Emit>
-void cut_quadratic_tetrahedron(const std::int32_t* v, const Vec3<double>* points,
-                               const Emit& emit) {
-  emit(v[0], v[4], v[6], v[7]);
-  emit(v[4], v[1], v[5], v[8]);
-  emit(v[6], v[5], v[2], v[9]);
-  emit(v[7], v[8], v[9], v[3]);
-  // Opposite corners of the octahedron, and the four others in a circle.
-  constexpr int diagonal[3][6] = {{4, 9, 5, 8, 7, 6}, {5, 7, 4, 8, 9, 6}, {6, 8, 4, 5, 9, 7}};
+void cut_octahedron(const std::int32_t* v, const Vec3<double>* points, const Emit& emit) {
+  // Opposite corners, and the four others in a circle.
+  constexpr int diagonal[3][6] = {{0, 3, 5, 4, 2, 1}, {5, 2, 0, 4, 3, 1}, {1, 4, 0, 5, 3, 2}};
   const int* shortest = nullptr;
   double least = 0;
   for (const int* d : diagonal) {
@@ -37,6 +33,18 @@ void cut_quadratic_tetrahedron(const std::int32_t* v, const Vec3<double>* points
   for (int i = 0; i < 4; ++i) {
     emit(v[shortest[0]], v[shortest[1]], v[shortest[2 + i]], v[shortest[2 + (i + 1) % 4]]);
   }
+}
+
+/// 10 nodes: a tetrahedron at each corner, and the octahedron of the edges' nodes.
+template <class Emit>
+void cut_quadratic_tetrahedron(const std::int32_t* v, const Vec3<double>* points,
+                               const Emit& emit) {
+  emit(v[0], v[4], v[6], v[7]);
+  emit(v[4], v[1], v[5], v[8]);
+  emit(v[6], v[5], v[2], v[9]);
+  emit(v[7], v[8], v[9], v[3]);
+  const std::int32_t octahedron[6] = {v[4], v[6], v[7], v[9], v[8], v[5]};
+  cut_octahedron(octahedron, points, emit);
 }
 
 /// 14 nodes: a pyramid at each corner, one upside down between them, and a tetrahedron below each

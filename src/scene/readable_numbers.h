@@ -7,6 +7,10 @@
 
 namespace pellucid {
 
+/// Extinctions and colors of transfer functions and of scene files lie up to the first; data values
+/// up to the second.
+inline constexpr double largest_number = 1e30, largest_data_value = 2.1e37;
+
 /// The decimal with this many digits behind the point of scientific notation that is nearest.
 inline double rounded(double value, int digits) {
   char text[64];

@@ -11,6 +11,7 @@
 
 #include "pellucid/scene/error.h"
 #include "pellucid/scene/mixture_fit.h"
+#include "readable_numbers.h"
 #include "suggest_histogram.h"
 #include "suggest_look.h"
 #include "value_peaks.h"
@@ -49,10 +50,10 @@ JointHistogram core_histogram(const Channels& channels, const std::vector<int>& 
 /// K of coordinates in bins as that of values. Bins may be too narrow for a number to hold.
 std::vector<std::vector<double>> of_values(std::vector<std::vector<double>> matrix,
                                            const std::vector<HistogramAxis>& axes) {
-  constexpr double largest = 1e30;
   for (auto& row : matrix) {
     for (std::size_t i = 0; i < axes.size(); ++i) {
-      if (row[i] != 0) row[i] = std::clamp(row[i] / axes[i].bin_width(), -largest, largest);
+      if (row[i] != 0)
+        row[i] = std::clamp(row[i] / axes[i].bin_width(), -largest_data_value, largest_data_value);
     }
   }
   return matrix;
@@ -102,7 +103,7 @@ class Boundaries {
     const HistogramAxis &v = h_.axes[0], &g = h_.axes[1];
     return {which,
             {value_at(v, center[0]), value_at(g, center[1])},
-            of_values(matrix_of_widths({widths[0], widths[1]}), h_.axes),
+            of_values(matrix_from_widths({widths[0], widths[1]}), h_.axes),
             0,
             {}};
   }
@@ -131,7 +132,7 @@ GaussianPrimitive primitive_of(const NormalComponent& component, const std::vect
     primitive.center.push_back(value_at(axes[i], component.mean[i]));
     for (double& x : covariance[i]) x *= kept;
   }
-  primitive.matrix = of_values(matrix_of_covariance(covariance), axes);
+  primitive.matrix = of_values(matrix_from_covariance(covariance), axes);
   return primitive;
 }
 
@@ -194,7 +195,7 @@ std::vector<GaussianPrimitive> suggest_mixture(const Channels& channels,
                                                const std::vector<int>& which, int primitives,
                                                const ParallelFor& parallel) {
   const std::size_t n = which.size();
-  if (n < 1 || n > static_cast<std::size_t>(most_suggested_channels)) {
+  if (n < 1 || n > static_cast<std::size_t>(max_suggested_channels)) {
     fail("it looks at " + std::to_string(n) + " channels, but can look at 1 to 3; choose those");
   }
   for (std::size_t i = 0; i < n; ++i) {
@@ -204,11 +205,11 @@ std::vector<GaussianPrimitive> suggest_mixture(const Channels& channels,
       fail("it looks at channel " + std::to_string(which[i]) + " twice; name each once");
     }
   }
-  if (primitives < 0 || primitives > most_suggested_primitives) {
+  if (primitives < 0 || primitives > max_suggested_primitives) {
     fail("primitives is " + std::to_string(primitives) + ", but must be from 1 to " +
-         std::to_string(most_suggested_primitives) + ", or 0 for as many as are found");
+         std::to_string(max_suggested_primitives) + ", or 0 for as many as are found");
   }
-  constexpr std::array<int, most_suggested_channels> bins{256, 96, 40};
+  constexpr std::array<int, max_suggested_channels> bins{256, 96, 40};
   const JointHistogram h = core_histogram(channels, which, bins[n - 1], parallel);
   const Background background(h);
 

@@ -16,8 +16,6 @@ namespace {
 
 /// Optical depths of what few lines meet, and of the background through the whole box.
 constexpr double deepest = 5, faintest = 0.002;
-/// What extinctions and shapes are kept within, as transfer functions want them.
-constexpr double largest_number = 1e30;
 
 class Stage {
  public:
@@ -154,7 +152,7 @@ class Stage {
       for (double& x : row) {
         if (x == 0) continue;
         x = is_diagonal ? 1 / rounded(1 / x, 2) : rounded(x, 3);
-        x = std::clamp(x, -largest_number, largest_number);
+        x = std::clamp(x, -largest_data_value, largest_data_value);
       }
     }
     return p;

@@ -54,6 +54,21 @@ class Check {
       fail("there are " + std::to_string(d_.point_numbers.size()) + " numbers for " +
            std::to_string(d_.points.size()) + " points; give one for each, or none");
     }
+    cells();
+  }
+
+  void cells() const {
+    if (!d_.cells.empty() && d_.cells.size() != d_.tetrahedra.size()) {
+      fail("there are cells of " + std::to_string(d_.cells.size()) + " tetrahedra, but " +
+           std::to_string(d_.tetrahedra.size()) + " are there; give one for each, or none");
+    }
+    const auto bad = std::ranges::find_if(d_.cells, [&](std::int32_t cell) {
+      return cell < 0 ||
+             (!d_.cell_numbers.empty() && static_cast<std::size_t>(cell) >= d_.cell_numbers.size());
+    });
+    if (bad != d_.cells.end()) {
+      fail("a tetrahedron is of cell " + std::to_string(*bad) + ", which has no number");
+    }
   }
 
   /// `corners` in ascending order.
@@ -111,7 +126,7 @@ TetrahedralMesh::TetrahedralMesh(Description description, const ParallelFor& par
     : name_(description.name) {
   const Check check(description);
   check.counts();
-  const ParallelFor run = or_serial(parallel);
+  const ParallelFor run = parallel_or_serial(parallel);
   const std::size_t count = description.tetrahedra.size();
   tetrahedra_.resize(count);
   run(static_cast<int>(count), [&](int first, int last) {
@@ -127,10 +142,12 @@ TetrahedralMesh::TetrahedralMesh(Description description, const ParallelFor& par
   point_numbers_ = std::move(description.point_numbers);
   const std::int32_t crowded = pair_faces(tetrahedra_, points_.size(), run);
   if (crowded >= 0) {
-    check.fail("a face of " + named(static_cast<std::size_t>(crowded)) +
-               " belongs to more than two tetrahedra: cells stand twice, or overlap; remove them");
+    check.fail("a face of " + describe(static_cast<std::size_t>(crowded)) +
+               " belongs to more than two tetrahedra: cells stand twice, or overlap; remove them, "
+               "or put their nodes into the order of the format");
   }
   measure(run);
+  count_overlapping_cells(description);
   BoundaryTree tree = build_boundary_tree(tetrahedra_, points_, bounds_);
   if (tree.face.empty()) {
     check.fail(
@@ -156,16 +173,9 @@ void TetrahedralMesh::measure(const ParallelFor& parallel) {
       bounds_.upper[a] = std::max(bounds_.upper[a], points_[p][a]);
     }
   }
-  statistics_.orphans = points_.size() - statistics_.points;
+  statistics_.unused_points = points_.size() - statistics_.points;
   statistics_.tetrahedra = tetrahedra_.size();
 
-  const auto volume_of = [&](std::size_t i) {
-    const Tetrahedron& t = tetrahedra_[i];
-    const auto point = [&](int k) -> const Vec3<double>& {
-      return points_[static_cast<std::size_t>(t[k])];
-    };
-    return six_volumes(point(0), point(1), point(2), point(3));
-  };
   // Sums of fixed parts, added up in order: the same for any number of threads.
   constexpr std::size_t part_size = 4096;
   const std::size_t parts = (tetrahedra_.size() + part_size - 1) / part_size;
@@ -177,7 +187,7 @@ void TetrahedralMesh::measure(const ParallelFor& parallel) {
       const std::size_t end = std::min(tetrahedra_.size(), (part + 1) * part_size);
       for (std::size_t i = part * part_size; i < end; ++i) {
         const Tetrahedron& t = tetrahedra_[i];
-        const double volume = volume_of(i);
+        const double volume = six_volumes_of(i);
         sum.flat += volume == 0 ? 1 : 0;
         sum.volume += std::fabs(volume) / 6;
         for (int j = 0; j < 4; ++j) {
@@ -185,17 +195,17 @@ void TetrahedralMesh::measure(const ParallelFor& parallel) {
             sum.edges += length(points_[static_cast<std::size_t>(t[j])] -
                                 points_[static_cast<std::size_t>(t[k])]);
           }
-          const auto other = static_cast<std::size_t>(t.behind[j] >> 2);
+          const auto other = static_cast<std::size_t>(t.neighbor[j] >> 2);
           // Each pair once.
-          if (t.behind[j] == Tetrahedron::outside || other < i) continue;
-          sum.folded += is_folded(volume, j, volume_of(other), t.behind[j] & 3) ? 1 : 0;
+          if (t.neighbor[j] == Tetrahedron::outside || other < i) continue;
+          sum.folded += is_folded(volume, j, six_volumes_of(other), t.neighbor[j] & 3) ? 1 : 0;
         }
       }
     }
   });
   double edges = 0;
   for (const Sums& sum : sums) {
-    statistics_.flat += sum.flat;
+    statistics_.degenerate += sum.flat;
     statistics_.folded_faces += sum.folded;
     statistics_.volume += sum.volume;
     edges += sum.edges;
@@ -203,11 +213,48 @@ void TetrahedralMesh::measure(const ParallelFor& parallel) {
   statistics_.mean_edge = edges / (6 * static_cast<double>(tetrahedra_.size()));
 }
 
+void TetrahedralMesh::count_overlapping_cells(const Description& description) {
+  const std::vector<std::int32_t>& cells = description.cells;
+  const auto cell_of = [&](std::size_t i) {
+    return cells.empty() ? i : static_cast<std::size_t>(cells[i]);
+  };
+  const std::size_t count =
+      cells.empty() ? tetrahedra_.size() : static_cast<std::size_t>(std::ranges::max(cells)) + 1;
+  statistics_.cells = description.cell_numbers.empty() ? count : description.cell_numbers.size();
+  if (statistics_.folded_faces == 0) return;
+  std::vector<bool> overlaps(count);
+  for (std::size_t i = 0; i < tetrahedra_.size(); ++i) {
+    for (int face = 0; face < 4; ++face) {
+      const std::int32_t behind = tetrahedra_[i].neighbor[face];
+      if (behind == Tetrahedron::outside) continue;
+      const auto other = static_cast<std::size_t>(behind >> 2);
+      if (other < i || !is_folded(six_volumes_of(i), face, six_volumes_of(other), behind & 3)) {
+        continue;
+      }
+      overlaps[cell_of(i)] = overlaps[cell_of(other)] = true;
+    }
+  }
+  for (std::size_t cell = 0; cell < count; ++cell) {
+    if (!overlaps[cell]) continue;
+    const std::int32_t number = number_of(description.cell_numbers, cell);
+    std::int32_t& first = statistics_.first_overlapping_cell;
+    first = first < 0 ? number : std::min(first, number);
+    ++statistics_.overlapping_cells;
+  }
+}
+
+double TetrahedralMesh::six_volumes_of(std::size_t tetrahedron) const {
+  const auto point = [&](int k) -> const Vec3<double>& {
+    return points_[static_cast<std::size_t>(tetrahedra_[tetrahedron][k])];
+  };
+  return six_volumes(point(0), point(1), point(2), point(3));
+}
+
 std::int32_t TetrahedralMesh::point_number(std::size_t point) const noexcept {
   return number_of(point_numbers_, point);
 }
 
-std::string TetrahedralMesh::named(std::size_t tetrahedron) const {
+std::string TetrahedralMesh::describe(std::size_t tetrahedron) const {
   std::int32_t number[4];
   for (int i = 0; i < 4; ++i) {
     number[i] = point_number(static_cast<std::size_t>(tetrahedra_[tetrahedron][i]));
@@ -218,7 +265,7 @@ std::string TetrahedralMesh::named(std::size_t tetrahedron) const {
          std::to_string(number[3]);
 }
 
-std::size_t TetrahedralMesh::memory() const noexcept {
+std::size_t TetrahedralMesh::memory_bytes() const noexcept {
   return points_.size() * sizeof(points_[0]) + tetrahedra_.size() * sizeof(tetrahedra_[0]) +
          tree_.size() * sizeof(tree_[0]) + boundary_.size() * sizeof(boundary_[0]) +
          point_numbers_.size() * sizeof(point_numbers_[0]);
@@ -229,7 +276,8 @@ Tetrahedra TetrahedralMesh::view() const noexcept {
                   boundary_.data(), bounds_.lower,      bounds_.upper};
   view.count = static_cast<std::int32_t>(tetrahedra_.size());
   for (int a = 0; a < 3; ++a) {
-    view.reach = std::max({view.reach, std::fabs(bounds_.lower[a]), std::fabs(bounds_.upper[a])});
+    view.coordinate_bound =
+        std::max({view.coordinate_bound, std::fabs(bounds_.lower[a]), std::fabs(bounds_.upper[a])});
   }
   return view;
 }

@@ -25,8 +25,8 @@ UnstructuredGrid to_unstructured(const Volume& volume) {
                                               corners_along(d, 2)};
   UnstructuredGrid grid;
   grid.name = d.name;
-  grid.corners = hexahedra_of_grid({static_cast<int>(at[0].size()), static_cast<int>(at[1].size()),
-                                    static_cast<int>(at[2].size())});
+  grid.corners = grid_hexahedra({static_cast<int>(at[0].size()), static_cast<int>(at[1].size()),
+                                 static_cast<int>(at[2].size())});
   grid.shapes.assign(grid.corners.size() / 8, CellShape::hexahedron);
   grid.points.reserve(at[0].size() * at[1].size() * at[2].size());
   for (const double z : at[2]) {

@@ -9,11 +9,10 @@
 #include <utility>
 #include <variant>
 
+#include "readable_numbers.h"
+
 namespace pellucid {
 namespace {
-
-/// Transfer functions and scene files hold numbers up to this.
-constexpr double largest_number = 1e30;
 
 /// Ascending, the outermost drawn in.
 std::vector<double> sorted(std::vector<double> sample) {
@@ -41,7 +40,7 @@ std::vector<double> value_sample(const Volume& volume) {
         const auto take = [&](std::size_t index) {
           const auto value = static_cast<double>(data[index]);
           if (!std::isnan(value))
-            sample.push_back(std::clamp(value, -largest_number, largest_number));
+            sample.push_back(std::clamp(value, -largest_data_value, largest_data_value));
         };
         if (data.size() <= largest) {
           for (std::size_t i = 0; i < data.size(); ++i) take(i);
@@ -102,7 +101,8 @@ std::vector<double> value_sample(const MeshChannels& channels) {
                    channels.value(0, static_cast<std::size_t>(tetrahedron[i]));
         }
       }
-      if (!std::isnan(value)) sample.push_back(std::clamp(value, -largest_number, largest_number));
+      if (!std::isnan(value))
+        sample.push_back(std::clamp(value, -largest_data_value, largest_data_value));
     }
   }
   return sorted(std::move(sample));

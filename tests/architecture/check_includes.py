@@ -1,36 +1,39 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Compares every #include of include/, src/ and apps/ with the order of docs/explanation/architecture.md.
+"""Compares every #include with the order of docs/explanation/architecture.md.
+
+The includes are those of include/, src/ and apps/.
 
   check_includes.py ROOT MODULES
 
-MODULES is what CMake declares, a line "name: depends... | other targets..." per module. Prints one line
-per violation and ends with 1 if there is any.
+MODULES is what CMake declares, a line "name: depends... | other targets..." per module. Prints one
+line per violation and ends with 1 if there is any.
 """
 import pathlib
 import re
 import sys
 
-# Left to right: a module may include those whose rank is smaller. Equal rank: siblings that never see
-# each other.
+# Left to right: a module may include those whose rank is smaller. Equal rank: siblings that never
+# see each other.
 RANK = {
     "base": 0, "simd": 1, "math": 2, "geometry": 3, "field": 4, "transfer": 4, "error": 4,
-    "segment": 5, "traverse": 6, "render": 7, "packet": 8, "scene": 9, "cpu": 10, "io": 10, "reference": 11,
-    "apps": 12,
+    "segment": 5, "traverse": 6, "render": 7, "packet": 8, "scene": 9, "cpu": 10, "io": 10,
+    "reference": 11, "apps": 12,
 }
 CORE = {name for name, rank in RANK.items() if rank <= RANK["packet"]}
-# Further pairs that the ranks would allow: the closed forms of segment/ are tested without any grid, and
-# the judge in reference/ shares no kernel with what it judges.
+# Further pairs that the ranks would allow: the closed forms of segment/ are tested without any
+# grid, and the judge in reference/ shares no kernel with what it judges.
 FORBIDDEN = {("segment", "field")} | {("reference", name) for name in CORE - {"base", "geometry"}}
 
 # The core is free of the standard library but for these; what computes is wrapped by simd/scalar.h.
+ORDER = "docs/explanation/architecture.md"
 CORE_HEADERS = {"cstddef", "cstdint", "limits", "type_traits"}
 SIMD_HEADERS = CORE_HEADERS | {"cmath", "bit"}
 
 SIMD_LIBRARY = re.compile(r"^(.*intrin\.h|arm_neon\.h|arm_sve\.h|experimental/simd|xsimd/.*|hwy/.*|"
                           r"Vc/.*|eve/.*)$")
-CUDA_NAME = re.compile(r"__(CUDACC|CUDA_ARCH|NVCC|host|device|global|constant|shared|forceinline)_*\b"
-                       r"|\bcuda_?runtime")
+CUDA_NAME = re.compile(r"__(CUDACC|CUDA_ARCH|NVCC|host|device|global|constant|shared"
+                       r"|forceinline)_*\b|\bcuda_?runtime")
 
 # Headers of other projects, and the target that a module must declare to include them.
 OTHER_PROJECTS = [
@@ -109,7 +112,7 @@ def check_file(root, path, modules):
     relative = path.relative_to(root)
     module = module_of(relative)
     if module not in RANK:
-        yield f"{relative}:1: {module} has no place in the order of docs/explanation/architecture.md"
+        yield f"{relative}:1: {module} has no place in the order of {ORDER}"
         return
     text = path.read_text()
     if not text.startswith("// SPDX-License-Identifier: Apache-2.0\n"):
@@ -131,13 +134,14 @@ def check_file(root, path, modules):
                 yield f"{where}: {name} does not exist"
             target = name.split("/")[1]
             if target not in RANK:
-                yield f"{where}: {target} has no place in the order of docs/explanation/architecture.md"
+                yield f"{where}: {target} has no place in the order of {ORDER}"
                 continue
             reason = check_arrow(module, target)
             if reason:
                 yield f"{where}: {module} includes {name}, but {reason}"
             elif target != module and module in closure and target not in closure[module]:
-                yield f"{where}: {module} includes {name}, but CMake does not say that it depends on {target}"
+                yield (f"{where}: {module} includes {name}, but CMake does not say that it depends "
+                       f"on {target}")
         elif quoted:
             if relative.parts[0] == "include" or ".." in name or not (path.parent / name).is_file():
                 yield f'{where}: "{name}" is neither "pellucid/..." nor a file beside this one'
@@ -148,7 +152,8 @@ def check_file(root, path, modules):
             if name not in (SIMD_HEADERS if module == "simd" else CORE_HEADERS):
                 yield f"{where}: <{name}> in the core; use pellucid/simd/scalar.h, or do without"
         else:
-            owner = next((target for pattern, target in OTHER_PROJECTS if pattern.match(name)), None)
+            owner = next((target for pattern, target in OTHER_PROJECTS if pattern.match(name)),
+                         None)
             if owner is None and not PLAIN.match(name):
                 yield f"{where}: <{name}> belongs to no project that check_includes.py knows"
             elif owner and relative.parts[0] == "include":

@@ -15,11 +15,16 @@ HEAD = "// SPDX-License-Identifier: Apache-2.0\n#pragma once\n"
 
 # (file to plant, a wrong line, what the message must say)
 PLANTS = [
-    ("include/pellucid/segment/planted.h", '#include "pellucid/field/structured_grid.h"', "never sees field"),
-    ("include/pellucid/field/planted.h", '#include "pellucid/transfer/piecewise_linear.h"', "siblings"),
-    ("include/pellucid/transfer/planted.h", '#include "pellucid/field/structured_grid.h"', "siblings"),
-    ("include/pellucid/math/planted.h", '#include "pellucid/geometry/vec3.h"', "to the right of math"),
-    ("include/pellucid/render/planted.h", '#include "pellucid/scene/error.h"', "to the right of render"),
+    ("include/pellucid/segment/planted.h", '#include "pellucid/field/structured_grid.h"',
+     "never sees field"),
+    ("include/pellucid/field/planted.h", '#include "pellucid/transfer/piecewise_linear.h"',
+     "siblings"),
+    ("include/pellucid/transfer/planted.h", '#include "pellucid/field/structured_grid.h"',
+     "siblings"),
+    ("include/pellucid/math/planted.h", '#include "pellucid/geometry/vec3.h"',
+     "to the right of math"),
+    ("include/pellucid/render/planted.h", '#include "pellucid/scene/error.h"',
+     "to the right of render"),
     ("src/cpu/planted.h", '#include "pellucid/io/image_files.h"', "siblings"),
     ("src/io/planted.h", '  #  include "pellucid/cpu/render.h"', "siblings"),
     ("src/reference/planted.h", '#include "pellucid/segment/linear.h"', "never sees segment"),
@@ -50,14 +55,16 @@ def violations(root, modules, plant=None):
 
 
 def main():
-    root, modules = pathlib.Path(sys.argv[1]), check_includes.read_modules(pathlib.Path(sys.argv[2]))
+    root = pathlib.Path(sys.argv[1])
+    modules = check_includes.read_modules(pathlib.Path(sys.argv[2]))
     clean = violations(root, modules)
     failures = 0
     for plant in PLANTS:
         found = [line for line in violations(root, modules, plant) if line not in clean]
         if len(found) != 1 or plant[2] not in found[0] or not found[0].startswith(plant[0]):
             failures += 1
-            print(f"planted in {plant[0]}: {plant[1]}\n  expected one line with: {plant[2]}\n  found: {found}")
+            print(f"planted in {plant[0]}: {plant[1]}\n"
+                  f"  expected one line with: {plant[2]}\n  found: {found}")
 
     # A wrong arrow in CMake itself, and a right one that is missing there.
     depends, private, closure = modules

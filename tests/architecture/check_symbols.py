@@ -5,11 +5,12 @@
   check_symbols.py NM SET OBJECT... [SET OBJECT...]
   check_symbols.py --self-test
 
-What such an object offers to the linker must not be known to any other by the same name: an inline function
-of the standard library, or of the core under its own name, compiled for AVX-512 and kept by the linker for
-the whole program, would be run on machines that have no AVX-512. Allowed are names within the namespace that
-the set gives to the project (cmake/PellucidInstructionSets.cmake), and C functions that end with the set.
-Prints one line per violation and ends with 1 if there is any.
+What such an object offers to the linker must not be known to any other by the same name: an inline
+function of the standard library, or of the core under its own name, compiled for AVX-512 and kept
+by the linker for the whole program, would be run on machines that have no AVX-512. Allowed are
+names within the namespace that the set gives to the project (cmake/PellucidInstructionSets.cmake),
+and C functions that end with the set. Prints one line per violation and ends with 1 if there is
+any.
 """
 import re
 import subprocess
@@ -49,7 +50,8 @@ def self_test():
              "_ZNSt6vectorIN15pellucid_avx5123RayEED2Ev W 0 0", "DW.ref.__gxx_personality_v0 V 0 8"]
     failures = [line for line in wrong if len(list(violations("avx512", line))) != 1]
     failures += [line for line in right if list(violations("avx512", line))]
-    print("\n".join(f"judged wrongly: {line}" for line in failures) or f"{len(wrong)} found, {len(right)} let through")
+    print("\n".join(f"judged wrongly: {line}" for line in failures)
+          or f"{len(wrong)} found, {len(right)} let through")
     return 1 if failures else 0
 
 
@@ -64,7 +66,8 @@ def main():
         command = [nm, "--extern-only", "--format=posix", argument]
         result = subprocess.run(command, capture_output=True, text=True)
         if result.returncode != 0:
-            found.append(f"{argument}: not read: {result.stderr.strip()}; build all before this test")
+            found.append(f"{argument}: not read: {result.stderr.strip()}; "
+                         "build all before this test")
             continue
         output = result.stdout
         if not any(f"_{set_name}" in name for name, _ in symbols(output)):

@@ -82,6 +82,20 @@ TEST(Parse, Tolerance) {
   }
 }
 
+TEST(Parse, ToleranceInPercentIsAShare) {
+  const auto parse = [](const char* text) { return parse_picture_tolerance("--tolerance", text); };
+  EXPECT_FALSE(parse("1/512").is_share);
+  EXPECT_EQ(parse("1/512").value, 1.0 / 512);
+  EXPECT_TRUE(parse("1%").is_share);
+  EXPECT_EQ(parse("1%").value, 0.01);
+  EXPECT_EQ(parse("0.5 %").value, 0.005);
+  EXPECT_EQ(parse("100%").value, 1);
+  for (const char* bad :
+       {"%", " %", "0%", "-1%", "101%", "nan%", "inf%", "1/2%", "1,2%", "1%%", "x%", "1e-400%"}) {
+    EXPECT_THROW(parse(bad), UsageError) << bad;
+  }
+}
+
 TEST(Parse, MessagesAreOneLine) {
   EXPECT_EQ(one_line("two\nlines\r\n\there\n"), "two lines here");
   EXPECT_EQ(one_line("\x1b[31mred"), "[31mred");

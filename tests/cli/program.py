@@ -48,7 +48,7 @@ class ProgramTest(unittest.TestCase):
 
     def run_program(self, *arguments, **options):
         return subprocess.run([PROGRAM, *arguments], cwd=self.folder, stdout=subprocess.PIPE,
-                              stderr=subprocess.PIPE, timeout=300, check=False, **options)
+                              stderr=subprocess.PIPE, timeout=3600, check=False, **options)
 
     def succeed(self, *arguments):
         """Runs, expects exit code 0 and gives stdout."""

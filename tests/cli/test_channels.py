@@ -106,14 +106,15 @@ class Channels(ProgramTest):
     def test_wrong_arguments(self):
         def refuse(pattern, *arguments):
             self.refuse(pattern, *arguments, code=2)
-        refuse("nothing to render; give INPUT or --channel")
+        refuse("no input; give INPUT or --channel")
         refuse("--channel.*expected NAME=SOURCE", "a.npy", "--channel", "b.npy")
         refuse('--channel.*"value" stands twice', "a.npy", "--channel", "value=b.npy")
-        refuse("--channel.*not before it", "--channel", "e=gradient_magnitude:x", "--channel", "x=a.npy")
+        refuse("--channel.*not before it", "--channel", "e=gradient_magnitude:x",
+               "--channel", "x=a.npy")
         refuse("--channel.*from 1 to 8", *(f"--channel=c{i}=a.npy" for i in range(9)))
         refuse("--type applies to volume files, not to built-in fields", "--channel",
-               "a=builtin:ramp:4", "--channel", "e=gradient_magnitude:a", "--type", "u8", "--spacing",
-               "1,2,3", "--gaussian", "1~1, 1~1; extinction 1")
+               "a=builtin:ramp:4", "--channel", "e=gradient_magnitude:a", "--type", "u8",
+               "--spacing", "1,2,3", "--gaussian", "1~1, 1~1; extinction 1")
         refuse("--gaussian.*has no width", "a.npy", "--gaussian", "value=3; extinction 1")
         refuse("--gaussian.*no extinction", "a.npy", "--gaussian", "value=3~1")
         refuse("--gaussian.*--tf|--tf.*--gaussian", "a.npy", "--gaussian", TEXT, "--tf", "tf.json")
@@ -124,7 +125,8 @@ class Channels(ProgramTest):
         self.refuse('"gradient_magntude", which is not there .did you mean "gradient_magnitude".*'
                     'there are: value, gradient_magnitude, second_derivative', "a.npy",
                     "--gaussian", "value=1~1, gradient_magntude=1~1; extinction 1")
-        self.refuse('channel "b" .*not on one grid: 4 x 4 x 4 and 5 x 5 x 5', "--channel", "a=a.npy",
+        self.refuse('channel "b" .*not on one grid: 4 x 4 x 4 and 5 x 5 x 5',
+                    "--channel", "a=a.npy",
                     "--channel", "b=small.npy", "--gaussian", "1~1, 1~1; extinction 1")
         self.refuse("channels need a transfer function.*pellucid suggest", "--channel", "a=a.npy")
         self.refuse("points in one variable", "--channel", "a=a.npy", "--tf", self.write(
@@ -135,7 +137,8 @@ class Channels(ProgramTest):
         arguments = ("a.npy", "--gaussian", TEXT, "--size", "8", "-q")
         self.succeed("render", *arguments, "-o", "exact.exr", "--tolerance", "1e-6")
         for method, largest in (("kniss", 2e-3), ("gaussian", 1e-3)):
-            self.succeed("render", *arguments, "-o", "steps.exr", "--method", method, "--step", "0.1")
+            self.succeed("render", *arguments, "-o", "steps.exr", "--method", method,
+                         "--step", "0.1")
             self.succeed("compare", "exact.exr", "steps.exr", "--largest", str(largest))
             self.fail_with("for Gaussians of channels", "render", "a.npy", "-o", "o.exr", "--size",
                            "8", "--method", method)
@@ -144,7 +147,8 @@ class Channels(ProgramTest):
 
     def test_no_output_replaces_a_channel(self):
         self.fail_with("would overwrite the input channel z b.npy", "render", "a.npy", "--channel",
-                       "z=b.npy", "--gaussian", "1~1, 1~1; extinction 1", "--save-tf", "b.npy", code=2)
+                       "z=b.npy", "--gaussian", "1~1, 1~1; extinction 1", "--save-tf", "b.npy",
+                       code=2)
 
 
 if __name__ == "__main__":

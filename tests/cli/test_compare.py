@@ -58,7 +58,8 @@ class Compare(ProgramTest):
         self.assertNotIn("pixels_over", self.report("compare", "a.exr", "b.exr"))
         result = self.run_program("compare", "a.exr", "b.exr", "--tolerance", "1/5", "--json")
         self.assertEqual(result.returncode, 3)
-        self.assertRegex(result.stderr.decode(), r"\Apellucid: error: 2 of 12 pixels differ by more "
+        self.assertRegex(result.stderr.decode(),
+                         r"\Apellucid: error: 2 of 12 pixels differ by more "
                          r"than 0\.2, [^\n]*column 2, row 1[^\n]*\n\Z")
         report = json.loads(result.stdout)
         self.assertEqual((report["tolerance"], report["pixels_over"]), (0.2, 2))
@@ -69,7 +70,8 @@ class Compare(ProgramTest):
             self.fail_with("--tolerance", "compare", "a.exr", "b.exr", "--tolerance", wrong, code=2)
 
     def test_not_finite_is_over_any_tolerance(self):
-        self.write("n.exr", exr([[(0.25, float("inf"), 0.75, 1.0)] + [(0.25, 0.5, 0.75, 1.0)] * 3] * 3))
+        self.write("n.exr",
+                   exr([[(0.25, float("inf"), 0.75, 1.0)] + [(0.25, 0.5, 0.75, 1.0)] * 3] * 3))
         result = self.run_program("compare", "a.exr", "n.exr", "--tolerance", "1e300")
         self.assertEqual(result.returncode, 3)
         self.assertIn(b"3 of 12 pixels", result.stderr)

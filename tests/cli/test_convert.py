@@ -94,7 +94,7 @@ class Convert(ProgramTest):
 
     def test_says_what_it_did(self):
         result = self.run_program("convert", "builtin:marschner_lobb:3", "-o", "ml.vtu")
-        self.assertRegex(result.stderr.decode(), r"8 cells became \d+ tetrahedra of 27 points\n$")
+        self.assertRegex(result.stderr.decode(), r"cut 8 cells into \d+ tetrahedra of 27 points\n$")
         self.assertEqual(self.run_program("convert", "builtin:marschner_lobb:3", "-o", "ml.vtu",
                                           "-q").stderr, b"")
 
@@ -115,7 +115,8 @@ class Convert(ProgramTest):
 
     def test_a_volume_in_other_formats_makes_the_same_picture(self):
         n = 9
-        values = [((7 * x) % 5 + y * z % 3) / 6 for z in range(n) for y in range(n) for x in range(n)]
+        values = [((7 * x) % 5 + y * z % 3) / 6 for z in range(n) for y in range(n)
+                  for x in range(n)]
         self.write("v.npy", npy(values, (n, n, n)))
         self.write("tf.json", json.dumps(HAZE))
         place = ("--spacing", "0.5,1,2", "--origin", "-8,4,0.25")
@@ -134,8 +135,8 @@ class Convert(ProgramTest):
                 else:
                     self.assertEqual(report["losses"], [])
                 picture = name + ".exr"
-                result = self.run_program("render", name, *options, "--tf", "tf.json", "-o", picture,
-                                          "--size", "48")
+                result = self.run_program("render", name, *options, "--tf", "tf.json",
+                                          "-o", picture, "--size", "48")
                 if b"this build does not read" in result.stderr or b"without ITK" in result.stderr:
                     continue
                 self.assertEqual(result.returncode, 0, result.stderr)

@@ -39,7 +39,8 @@ class Evaluate(ProgramTest):
         table = os.path.join(TABLES, kind + ".csv")
         if not os.path.exists(table):
             self.skipTest(table + " not found")
-        self.succeed("evaluate", own_kind or kind, table, "-o", "own.csv", "--precision", precision, *arguments)
+        self.succeed("evaluate", own_kind or kind, table, "-o", "own.csv", "--precision", precision,
+                     *arguments)
         with open(table, newline="") as file:
             truth = list(csv.DictReader(file))
         with open(self.path("own.csv"), newline="") as file:
@@ -106,8 +107,10 @@ class Evaluate(ProgramTest):
 
     def test_special_functions(self):
         # Twice the figures of section 4.3; erfcx of negative x and expm1_quotient as 4.1 has them.
-        limits = {"float": {"erf": 4.4, "erfc": 9.2, "erfcx": 8.8, "dawson": 24, "expm1_quotient": 16},
-                  "double": {"erf": 4.6, "erfc": 7.8, "erfcx": 8.8, "dawson": 32, "expm1_quotient": 16}}
+        limits = {"float": {"erf": 4.4, "erfc": 9.2, "erfcx": 8.8, "dawson": 24,
+                            "expm1_quotient": 16},
+                  "double": {"erf": 4.6, "erfc": 7.8, "erfcx": 8.8, "dawson": 32,
+                             "expm1_quotient": 16}}
         largest = {"float": Decimal("3.4e38"), "double": Decimal("1.79e308")}
         smallest_normal = {"float": Decimal("1.2e-38"), "double": Decimal("2.3e-308")}
         for precision, u in ROUNDING_UNIT.items():
@@ -169,10 +172,12 @@ class Evaluate(ProgramTest):
                 ("linear_segment", "", "empty"),
                 ("linear_segment", "id,tau_f,tau_b,C_f,C_b\n1,1,1,1,1\n", "no column 'D'"),
                 ("linear_segment", "tau_f,tau_b,C_f,C_b,D\n1,1,1,1,1\n", "no column 'id'"),
-                ("linear_segment", LINEAR + "1,1,1,1,1,1\n2,1,x,1,1,1\n", "line 3, column 'tau_b': 'x'"),
+                ("linear_segment", LINEAR + "1,1,1,1,1,1\n2,1,x,1,1,1\n",
+                 "line 3, column 'tau_b': 'x'"),
                 ("linear_segment", LINEAR + "1,1,1,1,1\n", "line 2: 5 cells"),
                 ("linear_segment", LINEAR + "1,1,1,1,1,1,1\n", "line 2: 7 cells"),
-                ("linear_segment", LINEAR + "1,-1,1,1,1,1\n", "line 2, column 'tau_f': -1 is negative"),
+                ("linear_segment", LINEAR + "1,-1,1,1,1,1\n",
+                 "line 2, column 'tau_f': -1 is negative"),
                 ("linear_segment", LINEAR + "1,1,1,1,1,nan\n", "column 'D': 'nan' is not finite"),
                 ("linear_segment", LINEAR + "1,1,1,1,1,inf\n", "column 'D': 'inf' is not finite"),
                 ("special_functions", "id,x\n1,2\n1,\n", "line 3, column 'x': ''"),
@@ -182,17 +187,22 @@ class Evaluate(ProgramTest):
                  "column 'exit': 2 is outside"),
                 ("trilinear_cell", cell + f"1,{eight},{ends},1,cubic,0,1,1,1,1\n",
                  "column 'tf_kind': 'cubic'"),
-                ("trilinear_cell", cell + f"1,{eight},{ends},1,gaussian,0,1,1,1,1\n", "no column 'tf_k'"),
-                ("trilinear_cell", cell[:-1] + f",tf_k\n1,{eight},{ends},1,gaussian,0,1,1,1,1,2;3\n",
+                ("trilinear_cell", cell + f"1,{eight},{ends},1,gaussian,0,1,1,1,1\n",
+                 "no column 'tf_k'"),
+                ("trilinear_cell",
+                 cell[:-1] + f",tf_k\n1,{eight},{ends},1,gaussian,0,1,1,1,1,2;3\n",
                  "column 'tf_k': 2 numbers where 1"),
                 ("trilinear_cell", cell[:-1] + f",tf_k\n1,{eight},{ends},1,gaussian,0,-1,1,1,1,2\n",
                  "line 2: .*extinction"),
-                ("gaussian_segment", SEGMENT + "1,1;2;3,0;0,0;0,1;1,1,1\n", "line 2: K has 3 numbers"),
+                ("gaussian_segment", SEGMENT + "1,1;2;3,0;0,0;0,1;1,1,1\n",
+                 "line 2: K has 3 numbers"),
                 ("gaussian_segment", SEGMENT + "1,1,0;0,0,1,1,1\n", "line 2: c has 2 numbers"),
-                ("gaussian_segment", SEGMENT + "1,1,0,0,1;2,1,1\n", "column 'v2': 2 numbers where 1"),
+                ("gaussian_segment", SEGMENT + "1,1,0,0,1;2,1,1\n",
+                 "column 'v2': 2 numbers where 1"),
                 ("gaussian_segment", SEGMENT + "1,1,0,,,1,1\n", "column 'v1': 0 numbers"),
                 ("gaussian_segment", SEGMENT + "1,1,0,0,1,-1,1\n", "column 'tau': -1 is negative"),
-                ("gaussian_segment", SEGMENT + "1,1e30,0,1e300,1,1,1\n", "out of the range of double"),
+                ("gaussian_segment", SEGMENT + "1,1e30,0,1e300,1,1,1\n",
+                 "out of the range of double"),
                 ("gaussian_segment_kniss", SEGMENT + "1,1,0,0,1,1e200,1e200\n",
                  "tau times length is out of the range"),
                 ("gaussian_mixture_segment", MIXTURE + "1,1|1,0,1;1,1;1;1|1;1;1,0,1,1\n",
@@ -200,10 +210,12 @@ class Evaluate(ProgramTest):
                 ("gaussian_mixture_segment", MIXTURE + "1,1,0,1,1;1,0,1,1\n",
                  "primitive 0: colour has 2"),
                 ("gaussian_mixture_segment_kniss", MIXTURE + "1,,,,,0,1,1\n", "0 lists in K"),
-                ("trilinear_cell", cell + f"1,{eight},{ends},1,piecewise_linear,,,,,\n", "line 2: "),
-                ("trilinear_cell", cell + f"1,{eight},{ends},1,piecewise_linear,1;0,1;1,1;1,1;1,1;1\n",
+                ("trilinear_cell", cell + f"1,{eight},{ends},1,piecewise_linear,,,,,\n",
                  "line 2: "),
-                ("trilinear_cell", cell + f"1,{eight},{ends},1,piecewise_linear,0;1,1,1;1,1;1,1;1\n",
+                ("trilinear_cell",
+                 cell + f"1,{eight},{ends},1,piecewise_linear,1;0,1;1,1;1,1;1,1;1\n", "line 2: "),
+                ("trilinear_cell",
+                 cell + f"1,{eight},{ends},1,piecewise_linear,0;1,1,1;1,1;1,1;1\n",
                  "column 'tf_tau': 1 numbers where 2")):
             with self.subTest(text=text):
                 self.write("t.csv", text)

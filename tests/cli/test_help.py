@@ -11,9 +11,15 @@ COMMANDS = ("render", "info", "histogram", "suggest", "convert", "evaluate", "co
 READ_VOLUMES = ("render", "info", "histogram", "suggest", "convert")
 
 
+def options_of_manual(text):
+    """The long options that begin an item of a list, or a row of a table, of the manual."""
+    return set(re.findall(r"(?m)^(?:\||-) `(?:-\w, )?(--[a-z][a-z-]*)", text))
+
+
 class Help(ProgramTest):
     def manual(self):
-        with open(os.path.join(SOURCE_DIR, "docs", "reference", "command-line.md"), encoding="utf-8") as file:
+        path = os.path.join(SOURCE_DIR, "docs", "reference", "command-line.md")
+        with open(path, encoding="utf-8") as file:
             return file.read()
 
     def introduction(self):
@@ -40,9 +46,9 @@ class Help(ProgramTest):
         for command in COMMANDS:
             of_help = options_of(self.succeed(command, "--help"))
             self.assertIn("--help", of_help)
-            of_manual = set(re.findall(r"(?m)^\| `(?:-\w, )?(--[a-z][a-z-]*)", self.section(command)))
+            of_manual = options_of_manual(self.section(command))
             if command in READ_VOLUMES:
-                of_manual |= set(re.findall(r"(?m)^\| `(--[a-z][a-z-]*)", self.introduction()))
+                of_manual |= options_of_manual(self.introduction())
             self.assertEqual(set(of_help) - {"--help"} - of_manual, set(),
                              f"{command}: not in docs/reference/command-line.md")
             self.assertEqual(of_manual - set(of_help), set(),
@@ -72,7 +78,9 @@ class Help(ProgramTest):
         for command in COMMANDS:
             if command != "presets":  # which needs no argument
                 self.fail_with(rf"'pellucid {command} --help'", command, code=2)
-            positional = ("linear_segment", "a.csv", "-o", "b.csv") if command == "evaluate" else ("a",)
+            positional = ("a",)
+            if command == "evaluate":
+                positional = ("linear_segment", "a.csv", "-o", "b.csv")
             positional += ("-o", "b.vtu") if command == "convert" else ()
             positional += ("b",) if command == "compare" else ()
             self.fail_with(rf"--frobnicate.*'pellucid {command} --help'", command, *positional,

@@ -95,7 +95,7 @@ class Histogram(ProgramTest):
         self.assertIsNone(report["axes"][0]["range"])
         result = self.run_program("histogram", "a.npy", "-o", "h.png")
         self.assertEqual(result.returncode, 0)
-        self.assertIn(b"8 places with a NaN", result.stderr)
+        self.assertIn(b"8 points with a NaN", result.stderr)
 
     def test_numbers_are_json(self):
         self.write("a.npy", npy([-1e37, 1e37, 0, 1, 2, 3, 4, NAN], (2, 2, 2), "<f8"))
@@ -111,12 +111,12 @@ class Histogram(ProgramTest):
         self.fail_with(r"-o a\.jpg: expected a name that ends in \.png", "histogram", "a.npy", "-o",
                        "a.jpg", code=2)
         self.fail_with("give FILE or --channel", "histogram", "--json", code=2)
-        self.fail_with("'b' is no channel; the channels are value, gradient_magnitude",
+        self.fail_with("unknown channel 'b'; the channels are value, gradient_magnitude",
                        "histogram", "a.npy", "--axes", "b", "--json", code=2)
-        self.fail_with("'value' stands twice", "histogram", "a.npy", "--axes", "value,value",
+        self.fail_with("'value' is given twice", "histogram", "a.npy", "--axes", "value,value",
                        "--json", code=2)
-        self.fail_with("3 channels to look at, but at most 2 can be; choose by --axes, of a, b, c",
-                       "histogram", "a.npy", "b.npy", "c.npy", "--json", code=2)
+        self.fail_with("3 channels are too many, at most 2 can be used; choose by --axes from a, "
+                       "c", "histogram", "a.npy", "b.npy", "c.npy", "--json", code=2)
         for bins in ("0", "x", "4097", "3x4x5", "-1", "2x", "1.5"):
             self.fail_with(rf"--bins '{bins}': expected a number of bins from 1 to 4096",
                            "histogram", "a.npy", "--json", f"--bins={bins}", code=2)

@@ -4,6 +4,7 @@ import json
 import os
 import struct
 import unittest
+import zipfile
 import zlib
 
 from program import HAZE, ProgramTest, npy, ramp
@@ -85,7 +86,8 @@ class Info(ProgramTest):
         self.assertRegex(text, r"(?m)^type +f32, 96 B$")
         self.assertRegex(text, r"(?m)^components +3$")
         self.assertRegex(text, r"(?m)^component 0 +0 to 7, mean 3\.5$")
-        self.assertRegex(text, r"(?m)^component 1 +11 to 17, mean 14, NaN 1 \(rendered as vacuum\)$")
+        self.assertRegex(text,
+                         r"(?m)^component 1 +11 to 17, mean 14, NaN 1 \(rendered as vacuum\)$")
         self.assertNotIn("histogram", text)
 
     def test_one_component(self):
@@ -109,6 +111,26 @@ class Info(ProgramTest):
         self.assertIsNone(report["mean"])
         self.assertIsNone(report["histogram"])
         self.assertIn("no finite value", self.succeed("info", "a.npy"))
+
+    def test_labels_are_told(self):
+        n = 12
+        blocks = [7 * (i // 4) + 20 * (j // 4) + 60 * (k // 4)
+                  for k in range(n) for j in range(n) for i in range(n)]
+        for kind in ("|u1", "<i2", "<f4"):
+            self.write("labels.npy", npy(blocks, (n, n, n), kind))
+            self.assertEqual(self.report("info", "labels.npy")["labels"], 27)
+            self.assertRegex(self.succeed("info", "labels.npy"),
+                             r"(?m)^labels +looks like labels: 27 whole numbers[^\n]*interpolating")
+            result = self.run_program("render", "labels.npy", "-o", "a.exr", "--size", "4")
+            self.assertRegex(result.stderr.decode(),
+                             r"(?m)^pellucid: looks like labels: 27 whole numbers")
+            report = self.report("render", "labels.npy", "-o", "a.exr", "--size", "4")
+            self.assertEqual(report["labels"], {"value": 27})
+        self.write("ramp.npy", npy([round(255 * x) for x in ramp(n)], (n, n, n), "|u1"))
+        self.assertIsNone(self.report("info", "ramp.npy")["labels"])
+        self.assertNotIn("labels", self.succeed("info", "ramp.npy"))
+        result = self.run_program("render", "ramp.npy", "-o", "a.exr", "--size", "4")
+        self.assertNotIn("labels", result.stderr.decode())
 
     def test_orientation_of_a_medical_file(self):
         self.write("a.mha", metaimage())
@@ -188,15 +210,15 @@ class Arrays(ProgramTest):
 
     def test_they_are_rendered(self):
         self.write("tf.json", json.dumps(HAZE))
-        self.succeed("render", "a.vtk", "--array", "v:2", "--tf", "tf.json", "-o", "v.exr", "--size",
-                     "16", "--save-scene", "scene.json")
+        self.succeed("render", "a.vtk", "--array", "v:2", "--tf", "tf.json", "-o", "v.exr",
+                     "--size", "16", "--save-scene", "scene.json")
         field = json.loads(self.read("scene.json"))["volumes"][0]["field"]
         self.assertEqual((field["array"], field["component"]), ("v", 2))
         self.succeed("render", "scene.json", "-o", "w.exr")
         self.assertTrue(self.report("compare", "v.exr", "w.exr")["identical"])
         self.fail_with("3 components", "render", "a.vtk", "--array", "v", "-o", "x.exr")
-        self.fail_with("--array applies to mesh files", "render", "builtin:ramp", "--array", "v", "-o", "x.exr",
-                       code=2)
+        self.fail_with("--array applies to mesh files", "render", "builtin:ramp", "--array", "v",
+                       "-o", "x.exr", code=2)
 
     def test_several_are_channels(self):
         gaussian = "up=30~10, a=9~4; extinction 0.5; color #ffcc99"
@@ -253,16 +275,17 @@ class NetCdf(ProgramTest):
         self.fail_with("cut off", "info", "cut.nc")
 
 
-# Written by OpenVDB 10.0.1: float grids "density" (0 to 23) and "heat" (100 to 123) of 4 x 3 x 2 voxels of 1/2.
+# Written by OpenVDB 10.0.1: float grids "density" (0 to 23) and "heat" (100 to 123) of 4 x 3 x 2
+# voxels of 1/2.
 OPENVDB = (
-    "eNrt2j9oE1EABvAXo1bEP3EoOGbSKWAv1zadksaulYJ/Rs93l5d6cH9C7nIk4NCxYydxdHSsm4vgKCIiUkREJIiIiEgRcfZ73J1N"
-    "ghUcKkq+H3x87y7vXV5y6ys3V64JGCLHRapg1KQyFo25iqy25yqmsaQqS4u2U6mZJm7UjHl7wdETDyEzSEsFkRsPShhe6Spltb1Q"
-    "xta8ZVpVPe1W9tyH59K+fj5tvfwYcgRxPBlFRzGI4q4brOuttMP1chJ6PV+d1FeupyzbDvuWL/t6RaKcqnsCg2L2qAIyMdMNxmaO"
-    "KuUzndDvdFUUuWGw9/36OdKJ3USVE+n1VHQmn95SnhyoloWf2NKzrPyOvjGbbeOntaxP5ct95Vv2IFaR3pgbxAum/ge27h8e31QS"
-    "9pWHrfWCeGzi2ex5enogfbW345H3cBrDq4HbDrv+ZUd6alV20lXD+p+1aPy6S/v0bn2yR/+MwsQbmLwmIiIiIiIiIiIiIiIiIiKi"
-    "/xAPABBNsWKx+Ns+6PWZxrIQGw0ELZC7+rouxJoe4/4muoTc05/j+gb6EXoLXUa2kQauO+gh+g76AvJgWR/TuqlkvN/JuNvZSbid"
-    "1bR7l9KegpNxF7M++JNx+UvgsTgiIiIiIiIiIiIiIiIiIiL6W3gAgGiK/QPH4h43hRgiz5GPyCtkF3mCvENeIJ+Q18hX5CnyHtlB"
-    "PiNvkG/IM+QD8hL5grxFvjd/AAiVBFw="
+    "eNrt2j9oE1EABvAXo1bEP3EoOGbSKWAv1zadksaulYJ/Rs93l5d6cH9C7nIk4NCxYydxdHSsm4vgKCIiUkREJIiIiEgR"
+    "cfZ73J1NghUcKkq+H3x87y7vXV5y6ys3V64JGCLHRapg1KQyFo25iqy25yqmsaQqS4u2U6mZJm7UjHl7wdETDyEzSEsF"
+    "kRsPShhe6Spltb1Qxta8ZVpVPe1W9tyH59K+fj5tvfwYcgRxPBlFRzGI4q4brOuttMP1chJ6PV+d1FeupyzbDvuWL/t6"
+    "RaKcqnsCg2L2qAIyMdMNxmaOKuUzndDvdFUUuWGw9/36OdKJ3USVE+n1VHQmn95SnhyoloWf2NKzrPyOvjGbbeOntaxP"
+    "5ct95Vv2IFaR3pgbxAum/ge27h8e31QS9pWHrfWCeGzi2ex5enogfbW345H3cBrDq4HbDrv+ZUd6alV20lXD+p+1aPy6"
+    "S/v0bn2yR/+MwsQbmLwmIiIiIiIiIiIiIiIiIiKi/xAPABBNsWKx+Ns+6PWZxrIQGw0ELZC7+rouxJoe4/4muoTc05/j"
+    "+gb6EXoLXUa2kQauO+gh+g76AvJgWR/TuqlkvN/JuNvZSbid1bR7l9KegpNxF7M++JNx+UvgsTgiIiIiIiIiIiIiIiIi"
+    "IiL6W3gAgGiK/QPH4h43hRgiz5GPyCtkF3mCvENeIJ+Q18hX5CnyHtlBPiNvkG/IM+QD8hL5grxFvjd/AAiVBFw="
 )
 
 
@@ -293,6 +316,94 @@ class OpenVdb(ProgramTest):
     def test_cut_off(self):
         self.write("cut.vdb", zlib.decompress(base64.b64decode(OPENVDB))[:-60])
         self.fail_with("cut.vdb: ", "info", "cut.vdb")
+
+
+def array(shape, kind="<i2", fortran=False):
+    """A .npy file; an element's value has its indices as its digits."""
+    def values(index):
+        if len(index) == len(shape):
+            order = index[::-1] if fortran else index
+            return [int("".join(map(str, order)))]
+        axis = len(shape) - 1 - len(index) if fortran else len(index)
+        return [v for i in range(shape[axis]) for v in values(index + [i])]
+    header = f"{{'descr': '{kind}', 'fortran_order': {fortran}, 'shape': {tuple(shape)}, }}\n"
+    code = {"i2": "h", "i8": "q", "u8": "Q", "b1": "?"}[kind[1:]]
+    data = values([])
+    return (b"\x93NUMPY\x01\x00" + struct.pack("<H", len(header)) + header.encode() +
+            struct.pack(f"<{len(data)}{code}", *data))
+
+
+class NumpyArrays(ProgramTest):
+    def test_axes(self):
+        self.write("c.npy", array([3, 4, 5]))
+        self.write("f.npy", array([3, 4, 5], fortran=True))
+        for name in ("c.npy", "f.npy"):
+            self.assertEqual(self.report("info", name)["dimensions"], [5, 4, 3])
+            named = self.report("info", name, "--axes", "xyz")
+            self.assertEqual(named["dimensions"], [3, 4, 5])
+            self.assertEqual(named["range"], [0, 234])
+            self.succeed("render", name, "--axes", "zxy", "-o", f"{name}.exr", "--size", "8")
+            self.succeed("convert", name, "--axes", "xyz", "-o", f"{name}.raw", "-q")
+            self.report("histogram", name, "--axes", "xyz", "--bins", "4")
+            self.report("histogram", name, "--array-axes", "xyz", "--axes", "value", "--bins", "4")
+            self.succeed("suggest", name, "--array-axes", "xyz")
+        self.assertTrue(self.report("compare", "c.npy.exr", "f.npy.exr")["identical"])
+        self.assertEqual(self.read("c.npy.raw"), self.read("f.npy.raw"))
+        self.assertEqual(struct.unpack("<4h", self.read("c.npy.raw")[:8]), (0, 100, 200, 10))
+        self.fail_with("give x, y and z", "info", "c.npy", "--axes", "zyq", code=2)
+        self.fail_with("3 axes", "info", "c.npy", "--axes", "czyx")
+        self.fail_with("leave the axes out", "info", "c.npy.raw", "--dimensions", "3,4,5",
+                       "--type", "i16", "--axes", "xyz")
+
+    def test_four_axes(self):
+        self.write("a.npy", array([3, 9, 9, 9]))
+        result = self.run_program("info", "a.npy", "--json")
+        self.assertEqual(result.returncode, 0)
+        self.assertIn(b"axes czyx", result.stderr)
+        self.assertIn(b"zyxc", result.stderr)
+        self.assertEqual(json.loads(result.stdout)["dimensions"], [9, 9, 9])
+        self.assertEqual(len(self.report("info", "a.npy", "--axes", "zyxc")["components"]), 9)
+
+    def test_a_scene_says_axes(self):
+        self.write("a.npy", array([3, 4, 5]))
+        self.succeed("render", "a.npy", "--axes", "xyz", "-o", "a.exr", "--size", "8",
+                     "--save-scene", "scene.json")
+        self.assertEqual(json.loads(self.read("scene.json"))["volumes"][0]["field"]["axes"],
+                         "xyz")
+        self.succeed("render", "scene.json", "-o", "b.exr")
+        self.assertTrue(self.report("compare", "a.exr", "b.exr")["identical"])
+        scene = json.loads(self.read("scene.json"))
+        scene["volumes"][0]["field"]["axes"] = "abc"
+        self.write("scene.json", json.dumps(scene))
+        self.fail_with("axes", "render", "scene.json", "-o", "b.exr")
+
+    def test_whole_numbers_of_64_bits(self):
+        self.write("a.npy", array([3, 4, 5], "<i8"))
+        self.assertEqual(self.report("info", "a.npy")["type"], "u8")
+        header = array([2, 2, 2], "<u8")[:-64]
+        self.write("b.npy", header + struct.pack("<8Q", 2**53 + 1, *range(7)))
+        result = self.run_program("info", "b.npy", "--json")
+        self.assertEqual(json.loads(result.stdout)["type"], "f64")
+        self.assertIn(b"1 of 8 whole numbers of 64 bits", result.stderr)
+
+    def test_npz(self):
+        for name, compression in (("s.npz", zipfile.ZIP_STORED), ("d.npz", zipfile.ZIP_DEFLATED)):
+            with zipfile.ZipFile(self.path(name), "w", compression) as archive:
+                archive.writestr("a.npy", array([3, 4, 5]))
+                with archive.open("b.npy", "w", force_zip64=True) as entry:
+                    entry.write(array([2, 4, 5], "<i8"))
+            self.fail_with(r"choose one of them by its name: a \(3, 4, 5\), b \(2, 4, 5\)",
+                           "render", name, "-o", "a.png")
+            report = self.report("info", name)
+            self.assertEqual([one["name"] for one in report["arrays"]], ["a", "b"])
+            self.assertEqual([one["type"] for one in report["arrays"]], ["i16", "u8"])
+            self.assertEqual(report["array"], "a")
+            self.assertEqual(self.report("info", name, "--array", "b")["dimensions"], [5, 4, 2])
+            self.succeed("render", name, "--array", "a", "-o", "a.exr", "--size", "8",
+                         "--save-scene", "scene.json")
+            self.succeed("render", "scene.json", "-o", "b.exr")
+            self.assertTrue(self.report("compare", "a.exr", "b.exr")["identical"])
+            self.succeed("convert", name, "--array", "b", "-o", "b.nrrd", "-q")
 
 
 if __name__ == "__main__":

@@ -70,8 +70,31 @@ class BadInput(ProgramTest):
         self.refuse("folder.npy", "folder.npy", also_info=True)
         self.write("a.jpeg", "what is this")
         self.refuse("a.jpeg", "a.jpeg", also_info=True)
-        self.refuse("nothing to render", "", code=2)
+        self.refuse("no input; give INPUT or --channel", "", code=2)
         self.fail_with("is empty", "info", "")
+
+    def test_pipes_and_devices(self):
+        """Refused at once, wherever a file is read: opening a pipe waits for who writes to it."""
+        os.mkfifo(self.path("pipe"))
+        for name in ("a.npy", "a.npz", "a.vti", "a.vtu", "a.json", "a.vdb", "a.h5", "a"):
+            os.symlink("pipe", self.path(name))
+            self.refuse("not a regular file", name, also_info=name != "a.json")
+            os.remove(self.path(name))
+        self.refuse("not a regular file", "/dev/zero", also_info=True)
+        self.refuse("not a regular file", "good.npy", "--tf", "pipe")
+        self.refuse("not a regular file", "good.npy", "--camera", "pipe")
+        self.refuse_scene("not a regular file",
+                          {"pellucid": 1, "volumes": [{"field": {"file": "pipe"},
+                                                       "transfer_function": HAZE}]})
+        self.fail_with("not a regular file", "histogram", "pipe", "--json")
+        self.fail_with("not a regular file", "suggest", "pipe", "-o", "scene.json")
+        self.fail_with("not a regular file", "convert", "pipe", "-o", "b.nrrd")
+        self.fail_with("not a regular file", "transfer-function", "pipe", "b.json")
+        self.fail_with("not a regular file", "compare", "pipe", "pipe")
+        # What is written to the program's standard input is a pipe, too.
+        result = self.run_program("info", "/dev/stdin", input=self.read("good.npy"))
+        self.assertNotEqual(result.returncode, 0)
+        self.assertIn(b"not a regular file", result.stderr)
 
     def test_truncated_file(self):
         content = self.read("good.npy")
@@ -83,7 +106,8 @@ class BadInput(ProgramTest):
         self.write("cut.mha", b"ObjectType = Image\nNDims = 3\nDimSize = 4 4 4\n"
                               b"ElementType = MET_FLOAT\nElementDataFile = LOCAL\n1234")
         self.refuse("cut.mha", "cut.mha", also_info=True)
-        self.write("cut.nrrd", b"NRRD0004\ntype: float\ndimension: 3\nsizes: 4 4 4\nendian: little\n"
+        self.write("cut.nrrd",
+                   b"NRRD0004\ntype: float\ndimension: 3\nsizes: 4 4 4\nendian: little\n"
                                b"encoding: raw\n\n1234")
         self.refuse("cut.nrrd", "cut.nrrd", also_info=True)
 
@@ -102,7 +126,8 @@ class BadInput(ProgramTest):
         self.refuse("64 bytes", *raw, "--dimensions", "4,4,5", also_info=True)
         self.refuse("64 bytes", *raw, "--dimensions", "4,4,3", also_info=True)
         self.refuse("a.raw", *raw, "--dimensions", "4,4,4", "--skip-bytes", "1", also_info=True)
-        self.refuse("a.raw", *raw, "--dimensions", "2000000000,2000000000,2000000000", also_info=True)
+        self.refuse("a.raw", *raw, "--dimensions", "2000000000,2000000000,2000000000",
+                    also_info=True)
         self.refuse("a.raw", *raw, "--dimensions", "64,1,1", also_info=True)
         self.refuse("a.raw", *raw, also_info=True)
         self.refuse("--dimensions", *raw, "--dimensions", "4,4", code=2, also_info=True)
@@ -236,13 +261,15 @@ class Overwriting(ProgramTest):
 
     def test_render_keeps_its_outputs(self):
         os.symlink("new.png", self.path("dangling.png"))
-        for first, second in (("x.png", "x.png"), ("x.png", "./x.png"), ("x.png", self.path("x.png")),
+        for first, second in (("x.png", "x.png"), ("x.png", "./x.png"),
+                              ("x.png", self.path("x.png")),
                               ("folder/x.png", "also/x.png"), ("new.png", "dangling.png"),
                               ("dangling.png", "new.png")):
             for option in ("-o", "--depth", "--save-tf", "--save-scene"):
                 with self.subTest(first=first, second=second, option=option):
                     self.refuse("twice", "render", "good.npy", "-o", first, option, second)
-        self.refuse("twice", "render", "good.npy", "--save-tf", "x.json", "--save-scene", "./x.json")
+        self.refuse("twice", "render", "good.npy", "--save-tf", "x.json",
+                    "--save-scene", "./x.json")
 
     def test_evaluate_keeps_its_table(self):
         self.write("t.csv", "id,x\n1,2\n")

@@ -33,6 +33,19 @@ LOOKUP_TABLE default
 0 1 2 3 4
 """
 
+
+def legacy_vtk(points, cells):
+    """A file of cells, each a type of VTK's and its points; "p" counts the points."""
+    lines = ["# vtk DataFile Version 3.0", "cells", "ASCII", "DATASET UNSTRUCTURED_GRID",
+             f"POINTS {len(points)} float"]
+    lines += [" ".join(str(x) for x in point) for point in points]
+    lines += [f"CELLS {len(cells)} {sum(len(c) + 1 for _, c in cells)}"]
+    lines += [" ".join(str(x) for x in [len(c), *c]) for _, c in cells]
+    lines += [f"CELL_TYPES {len(cells)}", *(str(kind) for kind, _ in cells)]
+    lines += [f"POINT_DATA {len(points)}", "SCALARS p float 1", "LOOKUP_TABLE default"]
+    return "\n".join(lines + [str(i) for i in range(len(points))]) + "\n"
+
+
 VTK = os.environ.get("PELLUCID_HAS_VTK") == "1"
 
 
@@ -76,8 +89,8 @@ class Plot3d(ProgramTest):
 
     def test_methods(self):
         for method in ("homogeneous", "average", "linear", "partial"):
-            report = self.report("render", "grid.bin", "--q", "q.bin", "-o", "a.exr", "--size", "16",
-                                 "--method", method)
+            report = self.report("render", "grid.bin", "--q", "q.bin", "-o", "a.exr",
+                                 "--size", "16", "--method", method)
             self.assertEqual(report["method"], method)
             self.assertIsNone(report["step"])
             self.assertEqual(report["precision"], "double")
@@ -143,6 +156,50 @@ class Vtk(ProgramTest):
         channels = {channel["name"]: channel for channel in report["channels"]}
         self.assertEqual((channels["c"]["minimum"], channels["c"]["maximum"]), (1, 2))
         self.assertEqual((channels["speed"]["minimum"], channels["speed"]["maximum"]), (2, 5))
+
+    def test_more_points_than_the_shape_has_are_noted(self):
+        points = [(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0), (0, 0, 1), (1, 0, 1), (1, 1, 1),
+                  (0, 1, 1)] + [(0.5, 0.5, 0.5)] * 12
+        self.write("twenty.vtk", legacy_vtk(points, [(12, list(range(20)))]))
+        note = "1 of 1 cells list more points than their shape has (the first is cell 0"
+        result = self.run_program("render", "twenty.vtk", "-o", "a.png", "--size", "8")
+        self.assertEqual(result.returncode, 0, result.stderr.decode())
+        self.assertIn(note, result.stderr.decode())
+        self.assertNotIn(b"cells", self.run_program("render", "twenty.vtk", "-q", "-o", "a.png",
+                                                    "--size", "8").stderr)
+        self.assertIn(note, self.succeed("info", "twenty.vtk"))
+        report = self.report("info", "twenty.vtk")
+        self.assertEqual(report["trimmed_cells"], 1)
+        self.assertEqual(len(report["notes"]), 1)
+        self.assertAlmostEqual(report["mesh"]["volume"], 1)
+
+    def test_the_order_of_nodes_is_named_where_cells_overlap(self):
+        # Edges as another program numbers them: those along z before those of the top.
+        corners = [(0, 0, 0), (2, 0, 0), (2, 2, 0), (0, 2, 0), (0, 0, 2), (2, 0, 2), (2, 2, 2),
+                   (0, 2, 2)]
+        edges = [(0, 1), (1, 2), (2, 3), (3, 0), (4, 5), (5, 6), (6, 7), (7, 4), (0, 4), (1, 5),
+                 (2, 6), (3, 7)]
+        points = corners + [tuple((corners[a][i] + corners[b][i]) / 2 for i in range(3))
+                            for a, b in edges]
+        right = list(range(20))
+        wrong = right[:12] + right[16:] + right[12:16]
+        self.write("right.vtk", legacy_vtk(points, [(25, right)]))
+        self.write("wrong.vtk", legacy_vtk(points, [(5, [0, 1, 2]), (25, wrong)]))
+        self.assertNotIn("note", self.succeed("info", "right.vtk"))
+        self.assertEqual(self.report("info", "right.vtk")["mesh"]["overlapping_cells"], 0)
+        result = self.run_program("render", "right.vtk", "-o", "a.png", "--size", "8")
+        self.assertNotIn(b"overlap", result.stderr)
+        note = ("1 of 1 cells overlap themselves or a neighbour (the first is cell 1, counted "
+                "from 0)")
+        result = self.run_program("render", "wrong.vtk", "-o", "a.png", "--size", "8")
+        self.assertEqual(result.returncode, 3)
+        for part in (note, "the likely cause is the order of the cells' nodes"):
+            self.assertIn(part, result.stderr.decode())
+            self.assertIn(part, self.succeed("info", "wrong.vtk"))
+        report = self.report("info", "wrong.vtk")
+        self.assertEqual(report["mesh"]["overlapping_cells"], 1)
+        self.assertEqual(report["mesh"]["first_overlapping_cell"], 1)
+        self.assertIn(note, report["notes"][0])
 
     def test_a_broken_file_is_one_line(self):
         self.write("cut.vtk", TETRAHEDRA[:150])

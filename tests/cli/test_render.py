@@ -34,7 +34,8 @@ class Render(ProgramTest):
         self.assertEqual(result.returncode, 0, result.stderr)
         self.assertEqual(result.stdout, b"")
         self.assertRegex(result.stderr.decode(),
-                         r"\Apellucid: [^\n]*default[^\n]*--save-tf[^\n]*\n(pellucid: [^\n]+\n){2}\Z")
+                         r"\Apellucid: no transfer function given: using one made from the "
+                         r"histogram [^\n]*--save-tf[^\n]*\n(pellucid: [^\n]+\n){2}\Z")
         width, height, channels, rows = png(self.read("a.png"))
         self.assertEqual((width, height, channels), (512, 512, 4))
         self.assertGreater(max(max(row[3::4]) for row in rows), 10)
@@ -134,6 +135,36 @@ class Render(ProgramTest):
         self.succeed("compare", "double.exr", "reference.exr", "--largest", "1e-6")
         self.assertGreater(self.largest_difference("float.exr", "double.exr"), 0)
 
+    def test_scaled_data_give_the_same_picture(self):
+        n = 12
+        values = [math.exp(-((i - 5) ** 2 + (j - 6) ** 2 + (k - 4.5) ** 2) / 12)
+                  + 0.01 * math.sin(7 * i + 3 * j + k)
+                  for k in range(n) for j in range(n) for i in range(n)]
+        def render(scale, offset, name, *arguments):
+            self.write("a.npy", npy([scale * v + offset for v in values], (n, n, n), "<f8"))
+            return self.report("render", "a.npy", "-o", name, "--size", "32", *arguments)
+        for preset in ((), ("--preset", "simulation-diverging"), ("--preset", "x-ray")):
+            render(1, 0, "plain.exr", *preset)
+            for scale, offset in ((1e30, 0), (1e34, 0), (2e37, 0), (1e-30, 0), (1e-34, 0), (1, 1e6),
+                                  (100, -1e6)):
+                with self.subTest(preset=preset, scale=scale, offset=offset):
+                    report = render(scale, offset, "scaled.exr", "--save-scene", "scene.json",
+                                    *preset)
+                    self.assertEqual(report["pixels_over"], 0)
+                    # Values of the transfer function are rounded to a thousandth of the range.
+                    self.report("compare", "plain.exr", "scaled.exr", "--tolerance", "0.02")
+                    self.succeed("render", "scene.json", "-o", "again.exr", "--size", "32")
+                    self.assertTrue(
+                        self.report("compare", "scaled.exr", "again.exr")["identical"])
+
+    def test_scaled_lengths_give_the_same_picture(self):
+        field = ("render", "ramp.npy", "--size", "16")
+        self.report(*field, "-o", "plain.exr", "--spacing", "1,1,1")
+        for spacing in ("1e-6", "1e6", "1e-12", "1e12"):
+            self.report(*field, "-o", "scaled.exr", "--spacing", ",".join([spacing] * 3))
+            # Extinctions are rounded to two digits.
+            self.report("compare", "plain.exr", "scaled.exr", "--tolerance", "0.03")
+
     def test_step_needs_a_sampling_method(self):
         run = ("render", "ramp.npy", "-o", "a.png")
         self.fail_with("exact method has no step", *run, "--step", "1", code=2)
@@ -199,7 +230,8 @@ class Render(ProgramTest):
         self.assertEqual(report["method"], "exact")
         self.succeed("render", "ramp.npy", "-o", "c.exr", *self.small)
         self.assertEqual(self.largest_difference("b.exr", "c.exr"), 0)
-        self.assertEqual(self.report("render", "scene.json", "-o", "a.exr", "--step", "0.25")["step"],
+        self.assertEqual(self.report("render", "scene.json", "-o", "a.exr",
+                                     "--step", "0.25")["step"],
                          0.25)
 
     def test_saved_scene_renders_the_same_from_another_folder(self):
@@ -248,8 +280,8 @@ class Render(ProgramTest):
         self.assertEqual(pixel(png(self.read("b.png")), 2, 2), (0, 0, 0, 0))
 
     def test_depth_picture(self):
-        self.succeed("render", "builtin:sphere:16", "--depth", "d.png", "--view", "front", "--size", "33",
-                     "--quiet")
+        self.succeed("render", "builtin:sphere:16", "--depth", "d.png", "--view", "front",
+                     "--size", "33", "--quiet")
         picture = png(self.read("d.png"))
         self.assertEqual(picture[2], 4)
         self.assertEqual(pixel(picture, 0, 0)[3], 0)
@@ -322,7 +354,8 @@ class Terminal(ProgramTest):
             process.send_signal(number)
             message = self.read_until(master, b"\n").decode()
             self.assertEqual(process.wait(60), code)
-            self.assertRegex(message.split("\x1b[K")[-1], r"\Apellucid: error: interrupted[^\n]*\n\Z")
+            self.assertRegex(message.split("\x1b[K")[-1],
+                             r"\Apellucid: error: interrupted[^\n]*\n\Z")
             self.assertEqual(self.files(), [])
 
 

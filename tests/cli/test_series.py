@@ -63,8 +63,8 @@ class Series(ProgramTest):
         self.assertEqual(report["series"][1]["number"], 2)
         text = self.succeed("info", "ct")
         self.assertRegex(text, r"(?m)^ +2 other\?, CT, 3 x 2 x 3, UID 1\.2\.3\.99$")
-        self.fail_with(r"2 DICOM series, 1: head \(CT, 4 slices of 3 x 2\), 2: other", "render", "ct",
-                       "-o", "o.png")
+        self.fail_with(r"2 DICOM series, 1: head \(CT, 4 slices of 3 x 2\), 2: other", "render",
+                       "ct", "-o", "o.png")
         for chosen, slices in (("1", 4), ("2", 3), ("99", 3), ("1.2.3.4", 4)):
             self.assertEqual(self.report("info", "ct", "--series", chosen)["dimensions"][2], slices)
         self.fail_with("none of its series", "info", "ct", "--series", "3")
@@ -105,14 +105,34 @@ class Series(ProgramTest):
             self.write("ct/9", dicom(12, 0))
             self.fail_with("8 and 9 stand at the same place", *command, "ct")
             self.write("ct/9", dicom(0, 0)[:-1])
-            self.fail_with("ct/9: has 11 bytes of pixels, but its header needs 12", *command, "ct")
+            size = ("--size", "8") if "render" in command else ()
+            result = self.run_program(*command, "ct", *size)
+            self.assertEqual(result.returncode, 0)
+            self.assertRegex(result.stderr.decode(), r"(?m)^pellucid: ct: 1 file is left out: ct/9:"
+                             " has 11 bytes of pixels, but its header needs 12")
+            self.fail_with("ct/9: has 11 bytes of pixels, but its header needs 12", *command,
+                           "ct/9")
+            os.remove(self.path("ct/9"))
+
+    def test_damaged_files_of_several_series(self):
+        self.add_other()
+        self.write("ct/9", dicom(0, 0)[:-1])
+        self.write("ct/91", dicom(0, 0)[:150])
+        self.write("ct/empty.dcm", b"")
+        result = self.run_program("info", "ct")
+        self.assertEqual(result.returncode, 0)
+        self.assertRegex(result.stderr.decode(), r"\Apellucid: ct: 3 files are left out; the first: "
+                         r"ct/9: has 11 bytes of pixels[^\n]*\n\Z")
+        self.assertIn(b"one to be chosen by --series", result.stdout)
+        self.fail_with("2 DICOM series[^\n]*; 3 files are left out; the first: ct/9: ", "render",
+                       "ct", "-o", "o.png")
 
 
 class Stacks(ProgramTest):
     def test_a_pattern_of_images(self):
         def tiff(first):
-            fields = ((256, 3), (257, 2), (258, 8), (259, 1), (262, 1), (273, 8), (277, 1), (278, 2),
-                      (279, 6))
+            fields = ((256, 3), (257, 2), (258, 8), (259, 1), (262, 1), (273, 8), (277, 1),
+                      (278, 2), (279, 6))
             directory = struct.pack("<H", len(fields)) + b"".join(
                 struct.pack("<HHII", tag, 4, 1, value) for tag, value in fields) + bytes(4)
             return b"II*\0" + struct.pack("<I", 14) + bytes(range(first, first + 6)) + directory

@@ -108,7 +108,8 @@ class Suggest(ProgramTest):
         self.fail_with("give FILE or --channel", "suggest", code=2)
         self.fail_with("--save-tf", "suggest", "ball.npy", "-o", "a.json", "--save-tf", "a.json",
                        code=2)
-        self.fail_with("4 channels to look at, but at most 3 can be", "suggest", *["ball.npy"] * 4,
+        self.fail_with("4 channels are too many, at most 3 can be used", "suggest",
+                       *["ball.npy"] * 4,
                        code=2)
         self.fail_with("no/scene.json", "suggest", "ball.npy", "-o", "no/scene.json")
 

@@ -64,7 +64,8 @@ class Tolerance(ProgramTest):
                                    r"0\.00195 \(grade estimated\); proved for .* of the pixels$")
         self.assertRegex(lines[1], r"^pellucid: [0-9.]+ field evaluations per ray, .* s; spans: ")
         lines = self.run_program(*FIELD, "-o", "a.exr", "--method", "linear").stderr.decode()
-        self.assertRegex(lines, r"\Apellucid: method linear, [^\n]* not known [^\n]*compare[^\n]*\n\Z")
+        self.assertRegex(lines,
+                         r"\Apellucid: method linear, [^\n]* not known [^\n]*compare[^\n]*\n\Z")
         lines = self.run_program(*FIELD, "-o", "a.exr", "--reference").stderr.decode()
         self.assertRegex(lines, r"\Apellucid: adaptive quadrature to 1e-12[^\n]*\n\Z")
         for silent in ("--json", "--quiet"):
@@ -103,6 +104,113 @@ class Tolerance(ProgramTest):
                     self.assertGreaterEqual(error["tightness_smallest"], 0.99)
                     self.assertLessEqual(made["largest_error"], made["tolerance"])
 
+    def faint(self, extinction):
+        self.write("faint.json", json.dumps({"points": [
+            {"value": point["value"], "extinction": extinction, "color": point["color"]}
+            for point in HAZE["points"]]}))
+        return ("render", "builtin:marschner_lobb:12", "--tf", "faint.json", "--size", "16")
+
+    def test_black_pictures_are_told(self):
+        faint = self.faint(1e-4)
+        result = self.run_program(*faint, "-o", "a.exr")
+        self.assertEqual(result.returncode, 0)
+        self.assertRegex(result.stderr.decode(), r"(?m)^pellucid: no channel of any pixel is above "
+                         r"the tolerance, 0\.00195: [^\n]*--tolerance 1%[^\n]*$")
+        self.assertEqual(self.run_program(*faint, "-o", "a.exr", "--quiet").stderr, b"")
+        report = self.report(*faint, "-o", "a.exr")
+        self.assertIs(report["below_tolerance"], True)
+        self.assertLess(report["largest_channel"], 1 / 512)
+        report = self.report(*FIELD, "-o", "a.exr")
+        self.assertIs(report["below_tolerance"], False)
+        self.assertGreater(report["largest_channel"], 0.1)
+        self.assertIsNone(report["relative_tolerance"])
+        report = self.report(*FIELD, "-o", "a.exr", "--method", "midpoint")
+        self.assertIsNone(report["below_tolerance"])
+        # Nothing absorbs at all.
+        empty = self.run_program(*self.faint(0), "-o", "a.exr")
+        self.assertEqual(empty.returncode, 0)
+        self.assertRegex(empty.stderr.decode(), "pellucid: the picture is empty: no ray meets")
+
+    def test_relative_to_the_range_of_the_picture(self):
+        for extinction in (1, 1e-3, 1e-5):
+            faint = self.faint(extinction)
+            self.succeed(*faint, "-o", "truth.exr", "--reference")
+            for percent, share in (("10%", 0.1), ("1%", 0.01), ("2.5 %", 0.025)):
+                with self.subTest(extinction=extinction, percent=percent):
+                    if extinction == 1e-5 and share != 0.1:
+                        continue  # below the smallest tolerance
+                    result = self.run_program(*faint, "-o", "a.exr", "--tolerance", percent,
+                                              "--json")
+                    self.assertEqual(result.returncode, 0, result.stderr)
+                    self.assertEqual(result.stderr, b"")
+                    report = json.loads(result.stdout)
+                    largest, used = report["largest_channel"], report["tolerance"]
+                    self.assertEqual(report["relative_tolerance"], share)
+                    self.assertLessEqual(used, share * largest)
+                    self.assertGreater(used, 0.3 * share * largest)
+                    self.assertIs(report["below_tolerance"], False)
+                    report = self.report("compare", "a.exr", "truth.exr", "--tolerance",
+                                         str(share * largest))
+                    self.assertEqual(report["pixels_over"], 0)
+        lines = self.run_program(*self.faint(1e-3), "-o", "a.exr", "--tolerance", "1%")
+        self.assertRegex(lines.stderr.decode(), r"(?m)^pellucid: tolerance [0-9.e-]+: within 1 % "
+                         r"of the largest channel, 0\.00[0-9]+$")
+        texts = exr_texts(self.read("a.exr"))
+        self.assertEqual(float(texts["pellucid.relative_tolerance"]), 0.01)
+
+    def test_ranges_below_the_smallest_tolerance(self):
+        # 1e-9 of opacity cannot be told from nothing at 1e-7.
+        result = self.run_program(*self.faint(1e-9), "-o", "a.exr", "--tolerance", "1%")
+        self.assertEqual(result.returncode, 3, result.stderr)
+        self.assertRegex(result.stderr.decode(), r"more than 1 % of the largest channel, "
+                         r"[^\n]*; the smallest tolerance is 1e-07")
+        self.fail_with("smallest tolerance", *self.faint(1e-9), "-o", "b.exr", "--tolerance", "1%",
+                       "--strict", "--quiet", code=3)
+
+    def test_relative_tolerances_that_are_none(self):
+        for wrong in ("0%", "-1%", "101%", "%", "x%", "1/2%"):
+            self.fail_with(r"--tolerance[^\n]*1%", *FIELD, "-o", "a.png", f"--tolerance={wrong}",
+                           code=2)
+        self.fail_with("--tolerance", *FIELD, "-o", "a.png", "--tolerance", "1%", "--method",
+                       "midpoint", code=2)
+
+    def test_relative_tolerance_of_a_scene(self):
+        faint = {"points": [{"value": 0, "extinction": 1e-3, "color": [1, 0, 0]},
+                            {"value": 1, "extinction": 2e-3, "color": [0, 0, 1]}]}
+        scene = json.loads(self.scene(relative_tolerance=0.02))
+        scene["volumes"][0]["transfer_function"] = faint
+        self.write("scene.json", json.dumps(scene))
+        report = self.report("render", "scene.json", "-o", "a.exr", "--save-scene", "used.json")
+        self.assertEqual(report["relative_tolerance"], 0.02)
+        self.assertLessEqual(report["tolerance"], 0.02 * report["largest_channel"])
+        # The saved scene has the tolerance that was used, and gives the same picture.
+        used = json.loads(self.read("used.json"))["integration"]
+        self.assertEqual(used["tolerance"], report["tolerance"])
+        self.assertNotIn("relative_tolerance", used)
+        self.succeed("render", "used.json", "-o", "b.exr")
+        self.assertTrue(self.report("compare", "a.exr", "b.exr")["identical"])
+        # Not rendered, it stays relative.
+        self.succeed("render", "scene.json", "--save-scene", "kept.json")
+        self.assertEqual(json.loads(self.read("kept.json"))["integration"]["relative_tolerance"],
+                         0.02)
+        # A number on the command line stands in its place.
+        report = self.report("render", "scene.json", "-o", "a.exr", "--tolerance", "1e-3")
+        self.assertEqual((report["tolerance"], report["relative_tolerance"]), (1e-3, None))
+        for wrong in (0, -1, 1.5, "1%"):
+            self.write("wrong.json", self.scene(relative_tolerance=wrong))
+            self.fail_with("/integration/relative_tolerance", "render", "wrong.json", "-o", "c.exr")
+        self.write("wrong.json", self.scene(relative_tolerance=0.1, tolerance=0.1))
+        self.fail_with("beside", "render", "wrong.json", "-o", "c.exr")
+
+    def test_opacity_tables_follow_a_relative_tolerance(self):
+        self.write("table.json", json.dumps({"unit_distance": 1, "points": [
+            {"value": 0, "opacity": 0, "color": [1, 0, 0]},
+            {"value": 1, "opacity": 2e-3, "color": [0, 0, 1]}]}))
+        table = ("render", "builtin:marschner_lobb:12", "--tf", "table.json", "--size", "16")
+        report = self.report(*table, "-o", "a.exr", "--tolerance", "1%")
+        self.assertLessEqual(report["transfer_function_error"], report["tolerance"] / 8)
+        self.assertLessEqual(report["largest_error"], 0.01 * report["largest_channel"])
+
     def test_tolerances_that_are_none(self):
         for wrong in ("nan", "inf", "-inf", "0", "-0", "-1", "1/0", "0/1", "-1/-2", "1/2/3", "1/",
                       " ", "small", "1e400", "0.001mm", "1e-3 "):
@@ -121,7 +229,8 @@ class Tolerance(ProgramTest):
             report = json.loads(result.stdout)
             self.assertEqual((report["tolerance_asked"], report["tolerance"]), (float(asked), used))
             self.assertRegex(result.stderr.decode(),
-                             rf"\Apellucid: a tolerance of [^\n]*limits: {used:g} is used\n\Z")
+                             rf"\Apellucid: tolerance [^\n]* is outside the limits: "
+                             rf"using {used:g}\n\Z")
             self.assertEqual(self.run_program(*run, "--quiet").stderr, b"")
         for limit in ("1e-7", "1"):
             result = self.run_program(*FIELD, "-o", "a.exr", "--tolerance", limit, "--json")
@@ -169,7 +278,8 @@ class Tolerance(ProgramTest):
         self.assertGreater(over, 0)
         self.assertGreater(report["largest_error"], 1e-7)
         self.assertEqual(report["outputs"], ["a.exr", "a.png"])
-        self.assertRegex(result.stderr.decode(), rf"\Apellucid: error: {over} of 256 pixels [^\n]*1e-07"
+        self.assertRegex(result.stderr.decode(),
+                         rf"\Apellucid: error: {over} of 256 pixels [^\n]*1e-07"
                                                  r"[^\n]*--precision automatic[^\n]*\n\Z")
         self.assertEqual(png(self.read("a.png"))[0], 16)
         self.assertEqual(int(exr_texts(self.read("a.exr"))["pellucid.pixels_over"]), over)
@@ -179,12 +289,14 @@ class Tolerance(ProgramTest):
         self.assertEqual(self.read("a.exr"), self.read("b.exr"))
         # Without --quiet the report comes before it.
         result = self.run_program(*OVER, "-o", "b.exr")
-        self.assertRegex(result.stderr.decode(), r"\A(pellucid: [^\n]+\n){2}pellucid: error: [^\n]*\n\Z")
+        self.assertRegex(result.stderr.decode(),
+                         r"\A(pellucid: [^\n]+\n){2}pellucid: error: [^\n]*\n\Z")
         # What it advises helps.
         self.succeed(*FIELD, "-o", "b.exr", "--tolerance", "1e-7", "--precision", "automatic")
 
     def test_strict_writes_nothing_where_pixels_are_over(self):
-        self.fail_with(r"of 256 pixels[^\n]*--strict", *OVER, "--strict", "-o", "a.exr", "-o", "a.png",
+        self.fail_with(r"of 256 pixels[^\n]*--strict", *OVER, "--strict", "-o", "a.exr",
+                       "-o", "a.png",
                        "--error-map", "e.png", "--depth", "d.png", "--save-tf", "saved.json",
                        "--save-scene", "s.json", "--json", code=3)
         self.fail_with("--strict", *OVER, "--strict", "-o", "a.exr", "--print-tf", code=3)
@@ -227,7 +339,8 @@ class Tolerance(ProgramTest):
 
     def test_error_map_arguments(self):
         for wrong in ("e.gif", "e", "png", ".png.txt"):
-            self.fail_with(r"--error-map [^\n]*\.png or \.exr", *FIELD, "--error-map", wrong, code=2)
+            self.fail_with(r"--error-map [^\n]*\.png or \.exr", *FIELD, "--error-map", wrong,
+                           code=2)
         self.fail_with("missing", *FIELD, "--error-map", "missing/e.png")
         self.fail_with("twice", *FIELD, "-o", "a.png", "--error-map", "a.png", code=2)
         self.write("tf.png", "x")
@@ -294,7 +407,8 @@ class Tolerance(ProgramTest):
             # The reference is more exact than the scene, and says how exact.
             made = self.report("render", "s.json", "-o", "truth.exr", "--reference")
             self.assertLess(made["transfer_function_error"], 1.3e-6)
-            self.assertEqual(float(exr_texts(self.read("truth.exr"))["pellucid.transfer_function_error"]),
+            texts = exr_texts(self.read("truth.exr"))
+            self.assertEqual(float(texts["pellucid.transfer_function_error"]),
                              made["transfer_function_error"])
             report = self.report("compare", "a.exr", "truth.exr", "--tolerance", str(tolerance))
             self.assertEqual(report["error"]["over"], 0)

@@ -6,7 +6,8 @@ import unittest
 
 from program import ProgramTest, npy, pixel, png
 
-COOL_TO_WARM = [{"Name": "warm", "ColorSpace": "Diverging", "RGBPoints": [0, 0.23, 0.3, 0.75, 1, 0.7, 0.02, 0.15],
+COOL_TO_WARM = [{"Name": "warm", "ColorSpace": "Diverging",
+                 "RGBPoints": [0, 0.23, 0.3, 0.75, 1, 0.7, 0.02, 0.15],
                  "Points": [0, 0.2, 0.5, 0, 1, 0.6, 0.5, 0]},
                 {"Name": "plain", "ColorSpace": "RGB", "RGBPoints": [0, 1, 0, 0, 1, 0, 0, 1],
                  "Points": [0, 0.5, 0.5, 0, 1, 0.5, 0.5, 0]}]
@@ -23,9 +24,11 @@ class TransferFunctions(ProgramTest):
         self.write("half.npy", constant(0.5))
 
     def test_render_takes_a_foreign_function(self):
-        # Opacity 1/2 per unit distance over three units, seen along an axis: 1 - 1/8 of (0.5, 0, 0.5).
-        result = self.run_program("render", "half.npy", "--tf", "maps.json", "--map", "plain", "--colors", "linear",
-                                  "-o", "a.exr", "-o", "a.png", "--view", "front", "--size", "33", "--save-tf", "tf.json")
+        # Opacity 1/2 per unit distance over three units, seen along an axis: 1 - 1/8 of (0.5, 0,
+        # 0.5).
+        result = self.run_program("render", "half.npy", "--tf", "maps.json", "--map", "plain",
+                                  "--colors", "linear", "-o", "a.exr", "-o", "a.png", "--view",
+                                  "front", "--size", "33", "--save-tf", "tf.json")
         self.assertEqual(result.returncode, 0, result.stderr)
         self.assertIn(b'maps.json: ParaView color map "plain"', result.stderr)
         self.assertIn(b"colors: exact", result.stderr)
@@ -33,10 +36,12 @@ class TransferFunctions(ProgramTest):
         self.assertEqual(saved["unit_distance"], 1)
         self.assertNotIn("deviation", saved)
         alpha = pixel(png(self.read("a.png")), 16, 16)[3]
-        self.assertAlmostEqual(alpha / 255, 7 / 8, delta=0.02)  # 1/255, and the view is a perspective
+        self.assertAlmostEqual(alpha / 255, 7 / 8,
+                               delta=0.02)  # 1/255, and the view is a perspective
 
     def test_deviations_count(self):
-        report = self.report("render", "half.npy", "--tf", "maps.json", "-o", "a.png", "--size", "16")
+        report = self.report("render", "half.npy", "--tf", "maps.json", "-o", "a.png",
+                             "--size", "16")
         self.assertEqual(report["transfer_function_from"], "maps.json")
         deviation = report["transfer_function"]["deviation"]
         self.assertGreater(deviation["color"], 0)
@@ -69,20 +74,27 @@ class TransferFunctions(ProgramTest):
 
     def test_refuses_in_one_line(self):
         self.write("bad.json", '[{"RGBPoints": [0, 0, 0, 2]}]')
-        self.write("own.json", json.dumps({"points": [{"value": 0, "extinction": 1, "color": [1, 1, 1]}]}))
+        self.write("own.json",
+                   json.dumps({"points": [{"value": 0, "extinction": 1, "color": [1, 1, 1]}]}))
         for code, arguments in [(1, ["render", "half.npy", "--tf", "bad.json", "-o", "a.png"]),
                                 (1, ["transfer-function", "bad.json", "out.json"]),
-                                (2, ["transfer-function", "own.json", "out.json", "--range", "0,1"]),
+                                (2, ["transfer-function", "own.json", "out.json",
+                                     "--range", "0,1"]),
                                 (2, ["transfer-function", "maps.json", "maps.json"]),
-                                (2, ["transfer-function", "maps.json", "out.json", "--deviation", "1"]),
-                                (2, ["render", "half.npy", "--tf", "own.json", "--colors", "srgb", "-o", "a.png"]),
+                                (2, ["transfer-function", "maps.json", "out.json",
+                                     "--deviation", "1"]),
+                                (2, ["render", "half.npy", "--tf", "own.json", "--colors", "srgb",
+                                     "-o", "a.png"]),
                                 (2, ["render", "half.npy", "--preset", "ct-bones", "-o", "a.png"]),
-                                (2, ["render", "half.npy", "--preset", "x-ray", "--map", "a", "-o", "a.png"]),
-                                (2, ["render", "half.npy", "--preset", "x-ray", "--tf", "own.json", "-o", "a.png"])]:
+                                (2, ["render", "half.npy", "--preset", "x-ray", "--map", "a",
+                                     "-o", "a.png"]),
+                                (2, ["render", "half.npy", "--preset", "x-ray", "--tf", "own.json",
+                                     "-o", "a.png"])]:
             result = self.run_program(*arguments)
             self.assertEqual(result.returncode, code, (arguments, result.stderr))
             self.assertEqual(result.stderr.count(b"\n"), 1, result.stderr)
-        self.assertFalse(os.path.exists(self.path("out.json")) or os.path.exists(self.path("a.png")))
+        self.assertFalse(os.path.exists(self.path("out.json"))
+                         or os.path.exists(self.path("a.png")))
 
     def test_presets(self):
         names = [preset["name"] for preset in json.loads(self.succeed("presets", "--json"))]
@@ -92,8 +104,8 @@ class TransferFunctions(ProgramTest):
         self.write("ramp.npy", npy([x for _ in range(64) for x in range(8)], (8, 8, 8)))
         for name in names:
             self.assertIn(name, listed)
-            report = self.report("render", "ramp.npy", "--preset", name, "-o", "a.png", "--size", "16",
-                                 "--save-scene", "scene.json")
+            report = self.report("render", "ramp.npy", "--preset", name, "-o", "a.png",
+                                 "--size", "16", "--save-scene", "scene.json")
             self.assertEqual(report["transfer_function_from"], "--preset " + name)
             points = report["transfer_function"]["points"]
             self.assertGreater(max(p["extinction"] for p in points), 0)
@@ -104,16 +116,19 @@ class TransferFunctions(ProgramTest):
             # The scene that is saved has the numbers.
             saved = json.loads(self.read("scene.json"))["volumes"][0]["transfer_function"]
             self.assertEqual(saved["points"], points)
-            ranged = json.loads(self.succeed("render", "ramp.npy", "--preset", name, "--range", "2,5", "--print-tf"))
+            ranged = json.loads(self.succeed("render", "ramp.npy", "--preset", name,
+                                             "--range", "2,5", "--print-tf"))
             self.assertEqual([ranged["points"][0]["value"], ranged["points"][-1]["value"]], [2, 5])
 
     def test_preset_in_a_scene(self):
-        self.write("scene.json", json.dumps({"volumes": [{"field": {"builtin": "ramp", "points": 8},
-                                                          "transfer_function": {"preset": "x-ray", "range": [0, 2]}}]}))
+        self.write("scene.json", json.dumps({"volumes": [
+            {"field": {"builtin": "ramp", "points": 8},
+             "transfer_function": {"preset": "x-ray", "range": [0, 2]}}]}))
         printed = json.loads(self.succeed("render", "scene.json", "--print-tf"))
         self.assertEqual([p["value"] for p in printed["points"]], [0, 2])
         # The mean chord of a cube of edge 2 is 4/3: an optical depth of 1.5 over it.
-        self.assertAlmostEqual(printed["points"][1]["extinction"], 1.1, delta=1e-12)  # of two digits
+        self.assertAlmostEqual(printed["points"][1]["extinction"], 1.1,
+                               delta=1e-12)  # of two digits
 
 
 if __name__ == "__main__":

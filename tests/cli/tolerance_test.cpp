@@ -17,7 +17,7 @@ using pellucid::cli::share_text;
 RenderReport report_of(std::uint64_t over, double largest_error) {
   RenderReport report;
   report.pixels = 4096;
-  report.pixels_over = over;
+  report.pixels_over_tolerance = over;
   report.largest_error = largest_error;
   return report;
 }

@@ -117,7 +117,7 @@ void expect_same(Scene scene, const std::string& what) {
     scene.integration.tolerance = tolerance;
     RenderReport one, packets;
     const Image scalar = rendered(scene, InstructionSet::scalar, one);
-    EXPECT_EQ(one.pixels_over, 0u) << what;
+    EXPECT_EQ(one.pixels_over_tolerance, 0u) << what;
     float most = 0;
     for (const auto& pixel : scalar.pixels) most = std::max(most, pixel[3]);
     EXPECT_GT(most, 0.2f) << what << " shows nothing";
@@ -125,7 +125,7 @@ void expect_same(Scene scene, const std::string& what) {
       if (!PELLUCID_HAS_PACKETS || !is_supported(set)) continue;
       const Image image = rendered(scene, set, packets);
       const std::string where = what + ", " + name_of(set) + ", " + std::to_string(tolerance);
-      EXPECT_EQ(packets.pixels_over, 0u) << where;
+      EXPECT_EQ(packets.pixels_over_tolerance, 0u) << where;
       for (std::size_t i = 0; i < image.pixels.size(); ++i) {
         const float allowed = image.error[i] + scalar.error[i] + 1e-6f;
         for (std::size_t c = 0; c < 4; ++c) {
@@ -229,7 +229,7 @@ TEST(MeshPackets, SayWhereComponentsAreInsideOfOthers) {
     const Image image = rendered(scene, set, report);
     const std::size_t middle = static_cast<std::size_t>(11 * scene.size.width + 14);
     EXPECT_GT(image.error[middle], 0.1f) << name_of(set);
-    EXPECT_GT(report.pixels_over, 0u) << name_of(set);
+    EXPECT_GT(report.pixels_over_tolerance, 0u) << name_of(set);
     EXPECT_LT(image.error[0], 1e-2f) << name_of(set);
   }
 }

@@ -78,7 +78,7 @@ MeshChannelsPointer in_layers() {
     };
     return Place{crooked(i, j, k), crooked(j, k, i), crooked(k, i, j)};
   };
-  const MeshPointer mesh = scenes::make_mesh(scenes::tetrahedra_of({{n, n, n}, place}));
+  const MeshPointer mesh = scenes::make_mesh(scenes::tetrahedralize({{n, n, n}, place}));
   std::vector<double> values;
   values.reserve(mesh->points().size());
   for (std::size_t p = 0; p < mesh->points().size(); ++p) {
@@ -173,7 +173,7 @@ Scene gaussian_scene(const MeshPointer& mesh, std::vector<GaussianPrimitive> pri
 }
 
 GaussianPrimitive blob(double a, double b, double width, double extinction, Rgb<double> color) {
-  return {{0, 1}, {a, b}, matrix_of_widths({width, 1.3 * width}), extinction, color};
+  return {{0, 1}, {a, b}, matrix_from_widths({width, 1.3 * width}), extinction, color};
 }
 
 TEST(MeshSampler, OneNarrowGaussianIsNotMissed) {

@@ -52,7 +52,7 @@ GaussianPrimitive primitive(std::vector<int> channels, std::vector<double> cente
   GaussianPrimitive p;
   p.channels = std::move(channels);
   p.center = std::move(center);
-  p.matrix = matrix_of_widths(widths);
+  p.matrix = matrix_from_widths(widths);
   p.extinction = extinction;
   p.color = color;
   return p;

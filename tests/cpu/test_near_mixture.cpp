@@ -44,15 +44,15 @@ TEST(NearMixture, FarIsFar) {
       primitives.push_back(p);
     }
     const MultivariateTransferFunction function(count, primitives);
-    const Multivariate<double> transfer = function.view();
+    const MultivariateTransfer<double> transfer = function.view();
     const double opacity = power(1e-7, 1e-3), diagonal = power(0.1, 100);
-    const std::vector<double> largest(most_channels, offset + 1);
+    const std::vector<double> largest(max_channels, offset + 1);
     NearMixtureStorage storage(largest.data(), true, transfer, opacity, diagonal);
     const NearMixture& mixture = storage.view();
     ASSERT_DOUBLE_EQ(mixture.left_out * diagonal, opacity);
     for (int span = 0; span < 50; ++span) {
-      double front[most_channels], back[most_channels];
-      LinearBernstein<float> data[most_channels];
+      double front[max_channels], back[max_channels];
+      LinearBernstein<float> data[max_channels];
       const double size = power(1e-3, 1);
       for (int c = 0; c < count; ++c) {
         front[c] = offset + uniform(0, 1);
@@ -86,12 +86,12 @@ TEST(NearMixture, FarIsFar) {
 /// above: of rows that are nearly alike it may be short of the least.
 double least_in_box(const Gaussian<double>& g, const double* lower, const double* upper,
                     int sweeps) {
-  double v[most_channels], p[most_channels];
+  double v[max_channels], p[max_channels];
   for (int c = 0; c < g.channels; ++c) v[c] = std::clamp(g.center[c], lower[c], upper[c]);
   for (int sweep = 0; sweep < sweeps; ++sweep) {
     for (int c = 0; c < g.channels; ++c) {
       double slope = 0, bend = 0;
-      g.place(v, p);
+      g.transform(v, p);
       for (int i = 0; i < g.rows; ++i) {
         slope += p[i] * g.matrix[i][c];
         bend += g.matrix[i][c] * g.matrix[i][c];
@@ -100,7 +100,7 @@ double least_in_box(const Gaussian<double>& g, const double* lower, const double
     }
   }
   double square = 0;
-  g.place(v, p);
+  g.transform(v, p);
   for (int i = 0; i < g.rows; ++i) square += p[i] * p[i];
   return square;
 }
@@ -118,7 +118,7 @@ struct BoxCase {
     const auto uniform = [&](double a, double b) {
       return std::uniform_real_distribution<double>(a, b)(random);
     };
-    channels = 1 + static_cast<int>(random() % most_channels);
+    channels = 1 + static_cast<int>(random() % max_channels);
     const auto count = static_cast<std::size_t>(channels);
     couples = channels > 1 && random() % 2 == 0;
     offset = random() % 4 == 0 ? std::pow(10.0, uniform(0, 3)) : 0;
@@ -149,8 +149,8 @@ TEST(NearMixture, FarFromABoxIsFar) {
   long far[2] = {}, found[2] = {}, by_a_channel = 0;
   for (int n = 0; n < 40000; ++n) {
     BoxCase at(random);
-    double lower[most_channels], upper[most_channels];
-    float least[most_channels], most[most_channels];
+    double lower[max_channels], upper[max_channels];
+    float least[max_channels], most[max_channels];
     for (int c = 0; c < at.channels; ++c) {
       lower[c] = at.offset + uniform(0, 1);
       upper[c] = std::min(lower[c] + power(1e-3, 1), at.offset + 1);
@@ -166,7 +166,7 @@ TEST(NearMixture, FarFromABoxIsFar) {
     at.primitive.extinction =
         is_close ? opacity * std::exp(exponent + less) * (1 + power(2e-5, 1)) : power(1e-3, 1e3);
     const MultivariateTransferFunction function(at.channels, {at.primitive});
-    const std::vector<double> largest(most_channels, at.offset + 1);
+    const std::vector<double> largest(max_channels, at.offset + 1);
     NearMixtureStorage storage(largest.data(), true, function.view(), opacity, 1);
     const NearGaussian& near = storage.view().primitive[0];
     ASSERT_TRUE(at.couples || !near.couples_channels);
@@ -217,12 +217,12 @@ TEST(NearMixture, SteepnessBoundsChanges) {
       primitives.push_back(p);
     }
     const MultivariateTransferFunction function(count, primitives);
-    const std::vector<double> values(most_channels, 1.0);
+    const std::vector<double> values(max_channels, 1.0);
     NearMixtureStorage storage(values.data(), true, function.view(), 1e-3, 1);
     const NearMixture& mixture = storage.view();
     ASSERT_TRUE(storage.suits_packets());
     for (int n = 0; n < 200; ++n) {
-      double a[most_channels], b[most_channels], bound = 0;
+      double a[max_channels], b[max_channels], bound = 0;
       for (int c = 0; c < count; ++c) {
         a[c] = 0.3 * normal(random);
         b[c] = a[c] + 1e-4 * normal(random);
@@ -264,12 +264,12 @@ TEST(NearMixture, LeastScaleIsReached) {
     }
     p.extinction = 1;
     const MultivariateTransferFunction function(channels, {p});
-    const std::vector<double> values(most_channels, 1.0);
+    const std::vector<double> values(max_channels, 1.0);
     NearMixtureStorage storage(values.data(), false, function.view(), 1e-3, 1);
     const NearGaussian& near = storage.view().primitive[0];
     const Gaussian<double>& g = function.view().gaussians.primitive[0];
     for (int c = 0; c < channels; ++c) {
-      double lower[most_channels], upper[most_channels];
+      double lower[max_channels], upper[max_channels];
       std::fill(lower, lower + channels, -std::numeric_limits<double>::infinity());
       std::fill(upper, upper + channels, std::numeric_limits<double>::infinity());
       lower[c] = upper[c] = 1;

@@ -42,12 +42,12 @@ TEST(PacketTracerSteps, GetAsShortAsCellsAreWorth) {
 }
 
 TEST(PacketTracerSteps, ThatAreShorterBearMoreBending) {
-  const double half = limits_of(4, 0, 1e-3).most_bending,
-               quarter = limits_of(4, 1, 1e-3).most_bending;
+  const double half = limits_of(4, 0, 1e-3).max_second_difference,
+               quarter = limits_of(4, 1, 1e-3).max_second_difference;
   // Of second order, and twice as many of them, whose errors are random.
   EXPECT_GT(quarter, 2.5 * half);
   EXPECT_LT(quarter, 16 * half);
-  EXPECT_DOUBLE_EQ(limits_of(4, 0, 1e-2).most_bending, 10 * half);
+  EXPECT_DOUBLE_EQ(limits_of(4, 0, 1e-2).max_second_difference, 10 * half);
 }
 
 }  // namespace

@@ -61,7 +61,7 @@ class ScreenMasks : public testing::Test {
                                    static_cast<std::size_t>(description.dimensions[1]) *
                                    static_cast<std::size_t>(description.dimensions[2]));
     volume_ = std::make_shared<const Volume>(description, DataArray<std::uint8_t>(std::move(data)));
-    records_ = volume_->block_ranges();
+    records_ = volume_->block_records();
     classes_.assign(static_cast<std::size_t>(records_.count()), {0, BlockKind::skip, 0});
     for (BlockClass& one : classes_) {
       if (uniform(0, 1) < share_of_cells) one.kind = BlockKind::cells;

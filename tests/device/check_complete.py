@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Every function of the core that is marked PELLUCID_HD is called by another one or by a device test, so
-that nvcc really compiles it: a template that nothing calls compiles everywhere.
+"""Every function of the core that is marked PELLUCID_HD is called by another one or by a device
+test, so that nvcc really compiles it: a template that nothing calls compiles everywhere.
 
   check_complete.py ROOT
 """
@@ -21,17 +21,21 @@ def code(path):
 
 def main():
     root = pathlib.Path(sys.argv[1])
-    headers = [path for folder in CORE for path in sorted((root / "include/pellucid" / folder).glob("*.h"))]
-    marked = {name: path for path in headers for name in MARKED.findall(code(path)) if name != "operator"}
+    headers = [path for folder in CORE
+               for path in sorted((root / "include/pellucid" / folder).glob("*.h"))]
+    marked = {name: path for path in headers for name in MARKED.findall(code(path))
+              if name != "operator"}
     words = collections.Counter()
     for path in headers:
         words.update(re.findall(r"\w+", code(path)))
         words.subtract(MARKED.findall(code(path)))
     for path in (root / "tests/device").glob("*.cu"):
         words.update(re.findall(r"\w+", code(path)))
-    missing = [f"{path.relative_to(root)}: {name}() is called by no kernel and by no file of tests/device"
+    missing = [f"{path.relative_to(root)}: {name}() is called by no kernel "
+               "and by no file of tests/device"
                for name, path in marked.items() if words[name] <= 0]
-    print("\n".join(missing) if missing else f"{len(marked)} functions, all reached by the device tests")
+    print("\n".join(missing) if missing
+          else f"{len(marked)} functions, all reached by the device tests")
     return 1 if missing or not marked else 0
 
 

@@ -10,7 +10,7 @@ constexpr int most_hits = 64;
 /// Where a ray meets the boundary, in ascending order.
 PELLUCID_HD inline MeshRay find_hits(const Tetrahedra& mesh, const Ray<double>& ray,
                                      MeshHit (&hits)[most_hits]) noexcept {
-  MeshRay found{make_ray_view(ray, mesh.middle(), mesh.reach), hits, 0};
+  MeshRay found{make_ray_frame(ray, mesh.center(), mesh.coordinate_bound), hits, 0};
   for_each_boundary_hit(mesh, ray, found.view, [&](const MeshHit& hit) {
     int place = found.count < most_hits ? found.count++ : most_hits - 1;
     for (; place > 0 && hit < hits[place - 1]; --place) hits[place] = hits[place - 1];
@@ -22,7 +22,7 @@ PELLUCID_HD inline MeshRay find_hits(const Tetrahedra& mesh, const Ray<double>& 
 /// One pixel per thread, through a variable of a mesh or several, and the depth of half its
 /// opacity.
 __global__ void render_mesh(Tetrahedra mesh, MeshFields fields, TransferTables transfer,
-                            Multivariate<double> multivariate, double largest_extinction,
+                            MultivariateTransfer<double> multivariate, double largest_extinction,
                             RayTolerance wanted, CameraFrame<double> camera, RayResult* pixels) {
   const int pixel = static_cast<int>(blockIdx.x * blockDim.x + threadIdx.x);
   if (pixel >= camera.width * camera.height) return;
@@ -44,14 +44,14 @@ __global__ void render_mesh(Tetrahedra mesh, MeshFields fields, TransferTables t
 }
 
 /// The walk in binary32.
-__global__ void walk_in_float(Tetrahedra mesh, RayView<double> view, std::int32_t code,
+__global__ void walk_in_float(Tetrahedra mesh, RayFrame<double> view, std::int32_t code,
                               float* area) {
   const auto see = [&](std::int32_t point) noexcept {
-    const SeenPoint<double> p = view.see(mesh.point[point]);
-    return SeenPoint<float>{static_cast<float>(p.x), static_cast<float>(p.y),
-                            static_cast<float>(p.t)};
+    const ProjectedPoint<double> p = view.project(mesh.point[point]);
+    return ProjectedPoint<float>{static_cast<float>(p.x), static_cast<float>(p.y),
+                                 static_cast<float>(p.t)};
   };
-  const auto load = [&](std::int32_t point, SeenPoint<float>& seen, float& carried) noexcept {
+  const auto load = [&](std::int32_t point, ProjectedPoint<float>& seen, float& carried) noexcept {
     seen = see(point);
     carried = 0;
   };

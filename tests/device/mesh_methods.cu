@@ -18,8 +18,8 @@ PELLUCID_DEVICE_KERNEL(cell_models)
 
 /// One ray per thread; its hits were found before.
 __global__ void sample_meshes(Tetrahedra mesh, MeshFields fields, PiecewiseLinear<double> transfer,
-                              Multivariate<double> multivariate, CellModel model, PsiTable psi,
-                              const MeshRay* rays, RayResult* pixels) {
+                              MultivariateTransfer<double> multivariate, CellModel model,
+                              PsiTable psi, const MeshRay* rays, RayResult* pixels) {
   const int pixel = static_cast<int>(blockIdx.x * blockDim.x + threadIdx.x);
   pixels[3 * pixel] = sample_mesh_ray(mesh, fields, transfer, model, psi, rays[pixel], 1e-10);
   pixels[3 * pixel + 1] =

@@ -19,7 +19,7 @@ PELLUCID_HD void panel(const T* in, T* out) noexcept {
   }
   const Material<T> materials[2] = {{in[5], {in[6], in[7], in[8]}}, {in[9], {in[6], in[8], in[7]}}};
   const ChannelTable<T> table{0, {in + 10, materials, 2}};
-  Multivariate<T> transfer;
+  MultivariateTransfer<T> transfer;
   transfer.gaussians = {two, 2};
   transfer.table = &table;
   transfer.tables = 1;
@@ -51,19 +51,19 @@ PELLUCID_HD void nodes(const T* in, T* out) noexcept {
   g.rows = 1 + static_cast<int>(in[0]);
   g.peak = in[1];
   g.color = {in[2], in[3], in[4]};
-  NodeRoom<T> room;
+  NodeWorkspace<T> room;
   GaussianNodes<T> panel(in[5], room);
   const T steps[3][2] = {{in[6], in[7]}, {in[8], in[9]}, {in[10], in[11]}};
   panel.add(g, in + 12, steps, in[14], in[15] > T(0));
   const auto found = panel.integrate(in[16]);
   out[0] = found.segment.radiance.r + found.error + found.clear + found.cut;
-  out[1] = panel.most() + panel.least_error() + (panel.is_short() ? T(1) : T(0));
+  out[1] = panel.depth_bound() + panel.least_error() + (panel.is_short() ? T(1) : T(0));
 }
 PELLUCID_DEVICE_KERNEL(nodes)
 
 /// One pixel per thread.
 __global__ void render_multivariate(MultichannelGrid grid, MultivariateBlocks blocks,
-                                    Multivariate<double> transfer, RayTolerance wanted,
+                                    MultivariateTransfer<double> transfer, RayTolerance wanted,
                                     CameraFrame<double> camera, bool exact, double step,
                                     RayResult* pixels) {
   const int pixel = static_cast<int>(blockIdx.x * blockDim.x + threadIdx.x);
@@ -75,7 +75,7 @@ __global__ void render_multivariate(MultichannelGrid grid, MultivariateBlocks bl
                                                 1.0, stop_tolerance<double>(), true);
 }
 
-__global__ void render_linear_steps(MultichannelGrid grid, Multivariate<double> transfer,
+__global__ void render_linear_steps(MultichannelGrid grid, MultivariateTransfer<double> transfer,
                                     CameraFrame<double> camera, GaussianRule rule, double step,
                                     RayResult* pixels) {
   const int pixel = static_cast<int>(blockIdx.x * blockDim.x + threadIdx.x);

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "pellucid/segment/classical.h"
+#include "pellucid/segment/compositor.h"
 #include "pellucid/segment/constant.h"
 #include "pellucid/segment/cubic.h"
-#include "pellucid/segment/fold.h"
 #include "pellucid/segment/gauss_panel.h"
 #include "pellucid/segment/gaussian_kniss.h"
 #include "pellucid/segment/gaussian_panels.h"
@@ -50,7 +50,7 @@ PELLUCID_HD void linear(const T* in, T* out) noexcept {
   const auto three =
       linear_segment_independent(f.extinction, b.extinction, f.color, b.color, length);
   put(compose(one, two), out);
-  FrontToBack<double> fold(static_cast<double>(in[9]));
+  FrontToBackCompositor<double> fold(static_cast<double>(in[9]));
   fold.add(one);
   if (!fold.done()) fold.add(three);
   out[2] = static_cast<T>(fold.radiance().r + fold.opacity() + fold.optical_depth() +

@@ -74,7 +74,7 @@ TEST(RayBudget, NoSpansTriedTogetherSpendMoreThanTheTolerance) {
     double transparency = 1, error = 0;
     std::size_t front = 0;
     while (front < tries.size() && transparency > 0) {
-      double left = budget.for_opacity();
+      double left = budget.unreserved_opacity_budget();
       int tried = 0;
       for (std::size_t i = front; i < tries.size() && tried < 16; ++i) {
         Try& one = tries[i];
@@ -85,7 +85,7 @@ TEST(RayBudget, NoSpansTriedTogetherSpendMoreThanTheTolerance) {
         if (unit(random) < 0.3) continue;
         one.done = true;
         one.from_opacity = from_opacity;
-        one.from_length = one.span.length * budget.for_length();
+        one.from_length = one.span.length * budget.allowance_per_length();
         one.error = (one.from_opacity + one.from_length) / transparency;
         budget.reserve(from_opacity);
       }
@@ -108,12 +108,12 @@ TEST(RayBudget, NoSpansTriedTogetherSpendMoreThanTheTolerance) {
 
 TEST(RayBudget, WhatLiesBehindARayThatIsOver) {
   RayBudget<double> budget(1e-3, 1);
-  EXPECT_TRUE(budget.pays_for(0.25e-3, 1e-3));
-  EXPECT_FALSE(budget.pays_for(0.26e-3, 1e-3));
+  EXPECT_TRUE(budget.allows_termination(0.25e-3, 1e-3));
+  EXPECT_FALSE(budget.allows_termination(0.26e-3, 1e-3));
   budget.spend(0.1, 0.5, 1, 2e-3);
-  EXPECT_EQ(budget.left(), 0);
-  EXPECT_TRUE(budget.pays_for(1e-3 / 64, 1e-3));
-  EXPECT_FALSE(budget.pays_for(1e-3 / 63, 1e-3));
+  EXPECT_EQ(budget.remaining(), 0);
+  EXPECT_TRUE(budget.allows_termination(1e-3 / 64, 1e-3));
+  EXPECT_FALSE(budget.allows_termination(1e-3 / 63, 1e-3));
 }
 
 TEST(RayBudget, ThousandsOfThinSpansEachGetAFairShare) {
@@ -127,11 +127,11 @@ TEST(RayBudget, ThousandsOfThinSpansEachGetAFairShare) {
 TEST(RayBudget, WhatIsLeftUnspentIsThereForTheNext) {
   const double tolerance = 1e-2;
   RayBudget<double> budget(tolerance, 2);
-  EXPECT_EQ(budget.left(), tolerance);
+  EXPECT_EQ(budget.remaining(), tolerance);
   EXPECT_DOUBLE_EQ(budget.allowance(1, 0, 1), 0.25 * tolerance);
   budget.spend(1, 0.25, 1, 0);
-  EXPECT_EQ(budget.left(), tolerance);
-  EXPECT_DOUBLE_EQ(budget.length_left(), 1);
+  EXPECT_EQ(budget.remaining(), tolerance);
+  EXPECT_DOUBLE_EQ(budget.remaining_length(), 1);
   // An opaque last span may take all, and more the less of it is seen.
   EXPECT_DOUBLE_EQ(budget.allowance(1, 1, 0.75), tolerance / 0.75);
 }
@@ -140,7 +140,7 @@ TEST(RayBudget, OverspendingIsCountedAndLeavesNothing) {
   RayBudget<double> budget(1e-3, 1);
   budget.spend(0.5, 0.5, 1, 1);
   EXPECT_EQ(budget.spent(), 1);
-  EXPECT_EQ(budget.left(), 0);
+  EXPECT_EQ(budget.remaining(), 0);
   EXPECT_EQ(budget.allowance(0.5, 0.5, 0.5), 0);
   EXPECT_GT(spend_all({{1, 0.5}, {1, 0.5}}, 1e-3, 4), 1.5e-3);
 }
@@ -149,9 +149,9 @@ TEST(RayBudget, WhatOnePotLacksComesFromTheOther) {
   RayBudget<double> budget(1, 1);
   // More than a span so thin may take, but less than there is.
   budget.spend(0.5, 0, 1, 0.75);
-  EXPECT_DOUBLE_EQ(budget.left(), 0.25);
+  EXPECT_DOUBLE_EQ(budget.remaining(), 0.25);
   budget.spend(0.25, 1, 1, 0.25);
-  EXPECT_DOUBLE_EQ(budget.left(), 0);
+  EXPECT_DOUBLE_EQ(budget.remaining(), 0);
   EXPECT_DOUBLE_EQ(budget.spent(), 1);
 }
 
@@ -161,12 +161,12 @@ TEST(RayBudget, LosesWhatASpanCostsAndNoMore) {
       for (const double share_of_left : {0.0, 0.25, 0.9, 1.0}) {
         RayBudget<double> budget(1e-2, 1);
         budget.spend(0, 1, 1, 4e-3);  // pots that are not alike
-        const auto shares = budget.shares(length, opacity);
+        const auto shares = budget.span_share(length, opacity);
         EXPECT_DOUBLE_EQ(shares.sum(), budget.allowance(length, opacity, 1));
-        const double left = budget.left(), cost = share_of_left * left;
+        const double left = budget.remaining(), cost = share_of_left * left;
         budget.spend(length, shares, cost);
-        EXPECT_NEAR(budget.left(), left - cost, 1e-15) << opacity << ", " << length;
-        EXPECT_GE(budget.left(), 0);
+        EXPECT_NEAR(budget.remaining(), left - cost, 1e-15) << opacity << ", " << length;
+        EXPECT_GE(budget.remaining(), 0);
         EXPECT_GE(budget.allowance(1, 0, 1), 0);
         EXPECT_GE(budget.allowance(0, 1, 1), 0);
         EXPECT_DOUBLE_EQ(budget.spent(), 4e-3 + cost);
@@ -179,14 +179,14 @@ TEST(RayBudget, EdgesAreFinite) {
   RayBudget nothing(0, 0);
   EXPECT_EQ(nothing.allowance(0, 0, 1), 0);
   nothing.spend(0, 0, 1, 0);
-  EXPECT_EQ(nothing.left(), 0);
+  EXPECT_EQ(nothing.remaining(), 0);
   // The last span is as long as what is left, up to rounding.
   RayBudget<double> budget(1, 0.3);
   budget.spend(0.1, 0, 1, 0);
   budget.spend(0.1, 0, 1, 0);
   EXPECT_NEAR(budget.allowance(0.1, 0, 1), 0.5, 1e-15);
   budget.spend(0.1, 0, 1, 0);
-  EXPECT_LE(budget.length_left(), 1e-16);
+  EXPECT_LE(budget.remaining_length(), 1e-16);
   EXPECT_LE(budget.allowance(0.1, 1, 1), 1);
 }
 

@@ -41,7 +41,7 @@ TYPED_TEST(RandomErrorsOf, LargestNeverLetsTheChargesPassWhatIsLeft) {
     T left = static_cast<T>(std::pow(10.0, -6 * uniform(random)));
     const T all = left;
     for (int n = 0; n < 50; ++n) {
-      const T variance = errors.largest(left, uniform(random));
+      const T variance = errors.largest_variance(left, uniform(random));
       const T cost = errors.charge(variance);
       errors.add(variance);
       ASSERT_LE(cost, left + 16 * std::numeric_limits<T>::epsilon() * all);
@@ -56,11 +56,11 @@ TYPED_TEST(RandomErrorsOf, AllOfTheShareIsAllOfWhatIsLeft) {
   RandomErrors<T> errors;
   errors.add(T(9));
   const T left = T(8);
-  EXPECT_NEAR(static_cast<double>(errors.largest(left, T(1))), 16, 1e-5);  // 4 (5 - 3) = 8
+  EXPECT_NEAR(static_cast<double>(errors.largest_variance(left, T(1))), 16, 1e-5);  // 4 (5 - 3) = 8
   EXPECT_NEAR(static_cast<double>(errors.charge(T(16))), 8, 1e-5);
-  EXPECT_NEAR(static_cast<double>(errors.largest(left, T(0.25))), 4, 1e-5);
-  EXPECT_EQ(errors.largest(T(0), T(1)), T(0));
-  EXPECT_EQ(errors.largest(T(-1), T(1)), T(0));
+  EXPECT_NEAR(static_cast<double>(errors.largest_variance(left, T(0.25))), 4, 1e-5);
+  EXPECT_EQ(errors.largest_variance(T(0), T(1)), T(0));
+  EXPECT_EQ(errors.largest_variance(T(-1), T(1)), T(0));
 }
 
 TYPED_TEST(RandomErrorsOf, NothingAndNextToNothing) {
@@ -94,13 +94,13 @@ TEST(BendsOfTheData, AreAsQuadratureOverPlacesSays) {
       for (int i = 0; i < parts; ++i) exact += 4.0 / parts * off(t + 4 * cells * (i + 0.5) / parts);
       square += (rule - exact) * (rule - exact) / places;
     }
-    const double said = mean_square_of_bend(cells);
+    const double said = simpson_error_mean_square(cells);
     EXPECT_GE(said, 0.5 * square) << cells;
     EXPECT_LE(said, 2 * square + 1e-3) << cells;
   }
-  EXPECT_NEAR(mean_square_of_bend(2.0), 16.0 / 720, 1e-5);
-  EXPECT_LT(mean_square_of_bend(2.25), 3e-4);
-  EXPECT_NEAR(mean_square_of_bends(2.0), 38.0 / 9 / 720, 1e-6);
+  EXPECT_NEAR(simpson_error_mean_square(2.0), 16.0 / 720, 1e-5);
+  EXPECT_LT(simpson_error_mean_square(2.25), 3e-4);
+  EXPECT_NEAR(uncorrelated_error_mean_square(2.0), 38.0 / 9 / 720, 1e-6);
 }
 
 }  // namespace

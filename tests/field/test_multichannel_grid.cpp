@@ -59,7 +59,7 @@ struct EveryType {
 TEST(MultichannelGrid, EachChannelComesInItsOwnType) {
   const EveryType all(0);
   const auto is = [&](int channel, auto example) {
-    return all.grid.with_channel(channel, [&](const auto& grid) {
+    return all.grid.visit_channel(channel, [&](const auto& grid) {
       EXPECT_EQ(grid.data, all.grid.data[channel]);
       EXPECT_EQ(grid.axis[1].values, EveryType::ny);
       return std::is_same_v<std::decay_t<decltype(*grid.data)>, decltype(example)>;
@@ -78,7 +78,7 @@ TEST(MultichannelGrid, EachChannelComesInItsOwnType) {
 /// At data values, and at the middle of cells: their mean.
 TEST(MultichannelGrid, SamplesAreTrilinear) {
   const EveryType all(0);
-  double v[most_channels];
+  double v[max_channels];
   for (int k = 0; k < EveryType::nz; ++k) {
     for (int j = 0; j < EveryType::ny; ++j) {
       for (int i = 0; i < EveryType::nx; ++i) {
@@ -103,7 +103,7 @@ TEST(MultichannelGrid, SamplesAreTrilinear) {
   }
   EXPECT_NEAR(v[3], sum[0] / 8, 1e-13);
   EXPECT_NEAR(v[7], sum[1] / 8, 1e-13);
-  float single[most_channels];
+  float single[max_channels];
   ASSERT_TRUE(all.grid.sample<float>({0.5, 1.5, 0.5}, single));
   EXPECT_NEAR(static_cast<double>(single[3]), sum[0] / 8, 1e-5);
 }
@@ -111,7 +111,7 @@ TEST(MultichannelGrid, SamplesAreTrilinear) {
 TEST(MultichannelGrid, PositionsAreClampedIntoTheBox) {
   for (const int padding : {0, 1}) {
     const EveryType all(padding);
-    double inside[most_channels], outside[most_channels];
+    double inside[max_channels], outside[max_channels];
     ASSERT_TRUE(all.grid.sample<double>({0, 0, 1}, inside));
     ASSERT_TRUE(all.grid.sample<double>({-7, -1e30, 1}, outside));
     for (int c = 0; c < 8; ++c) EXPECT_EQ(inside[c], outside[c]) << padding;
@@ -124,7 +124,7 @@ TEST(MultichannelGrid, PositionsAreClampedIntoTheBox) {
 TEST(MultichannelGrid, ANaNCornerOfAnyChannelIsVacuum) {
   EveryType all(0);
   std::get<6>(all.data)[1 + 3 * (1 + 4 * 0)] = std::numeric_limits<float>::quiet_NaN();
-  double v[most_channels];
+  double v[max_channels];
   // The cells with i = 0 or 1 and j = 0 or 1 have that corner; those with j = 2 have not.
   EXPECT_FALSE(all.grid.sample<double>({0.5, 0.5, 0.5}, v));
   EXPECT_FALSE(all.grid.sample<double>({1.9, 1.1, 0.99}, v));
@@ -147,7 +147,7 @@ TEST(MultichannelGrid, LargeNumbersAreNoVacuum) {
     grid.type[c] = ValueType::f64;
   }
   for (GridAxis<double>& axis : grid.axis) axis = {nullptr, 2, 0};
-  double v[most_channels];
+  double v[max_channels];
   EXPECT_TRUE(grid.sample<double>({0, 0, 0}, v));
 }
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
-// The parser of DICOM's elements: any bytes give elements that stand in them, or an Error of one
-// line.
+// The parser of DICOM's elements, and what places frames: any bytes give elements that stand in
+// them, or an Error of one line.
 
 #include <cstddef>
 #include <cstdint>
@@ -11,6 +11,7 @@
 
 #include "pellucid/scene/error.h"
 #include "src/io/dicom_elements.h"
+#include "src/io/dicom_frames.h"
 
 namespace {
 
@@ -41,6 +42,9 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     pellucid::is_dicom(source);
     const pellucid::DicomFile file = pellucid::parse_dicom(source);
     require(bytes_in(file.data) <= size);
+    constexpr int frames = 3;
+    const auto places = pellucid::dicom_frame_offsets(file.data, frames, {0, 0, 1}, {});
+    require(places.refused.empty() == (places.offset.size() == frames));
     if (file.has_pixels) {
       require(file.pixel_offset <= size && file.pixel_bytes <= size - file.pixel_offset);
     }

@@ -40,8 +40,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     const std::string written = pellucid::transfer_function_to_json(table);
     const auto again = pellucid::parse_transfer_function(written, "again");
     require(pellucid::transfer_function_to_json(again) == written);
-    pellucid::from_opacity_table(table.points, table.unit_distance,
-                                 pellucid::largest_relative_error);
+    pellucid::transfer_function_from_opacity_table(table.points, table.unit_distance,
+                                                   pellucid::largest_relative_error);
     pellucid::export_transfer_function(table, {pellucid::ExportFormat::table, 0.05});
   } catch (const pellucid::Error& error) {
     const std::string_view message = error.what();

@@ -69,8 +69,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     require(pellucid::transfer_function_to_json(again) == written);
     // What is parsed can be made.
     if (const auto* table = std::get_if<pellucid::OpacityTable>(&function)) {
-      pellucid::from_opacity_table(table->points, table->unit_distance,
-                                   pellucid::largest_relative_error);
+      pellucid::transfer_function_from_opacity_table(table->points, table->unit_distance,
+                                                     pellucid::largest_relative_error);
     }
   });
   attempt([&] {

@@ -51,10 +51,10 @@ TEST(ChannelSource, ReadsFieldsAndWhatIsMadeOfThem) {
     return std::get<DerivedSource>(parse_channel_source(text).source);
   };
   EXPECT_EQ(made("edge=gradient_magnitude:t1").kind, Kind::gradient_magnitude);
-  EXPECT_EQ(made("edge=gradient_magnitude:t1").of, "t1");
+  EXPECT_EQ(made("edge=gradient_magnitude:t1").channel, "t1");
   EXPECT_EQ(made("bend=second_derivative:t1").kind, Kind::second_derivative);
   EXPECT_EQ(made("soft=smoothed:t1:2.5e-1").kind, Kind::smoothed);
-  EXPECT_EQ(made("soft=smoothed:t1:2.5e-1").of, "t1");
+  EXPECT_EQ(made("soft=smoothed:t1:2.5e-1").channel, "t1");
   EXPECT_EQ(made("soft=smoothed:t1:2.5e-1").sigma, 0.25);
 }
 

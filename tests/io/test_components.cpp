@@ -87,11 +87,9 @@ std::string npy(const std::string& descr, const std::string& order, const std::s
   return std::string("\x93NUMPY\1\0", 8) + static_cast<char>(header.size()) + '\0' + header + data;
 }
 
-TEST_F(ComponentsTest, OfNpyAreTheLastAxisInEitherOrder) {
+TEST_F(ComponentsTest, OfNpyAreTheLastAxis) {
   write("c.npy", npy("<f4", "False", "(3, 4, 5, 2)", bytes_of(values(2, Lie::side_by_side))));
   expect_components("c.npy", 2, "f32");
-  write("f.npy", npy("<f4", "True", "(5, 4, 3, 2)", bytes_of(values(2, Lie::behind))));
-  expect_components("f.npy", 2, "f32");
   write("b.npy", npy(">i2", "False", "(3, 4, 5, 3)",
                      swapped_bytes_of(values<std::int16_t>(3, Lie::side_by_side))));
   expect_components("b.npy", 3, "i16");
@@ -107,7 +105,9 @@ TEST_F(ComponentsTest, OfNpyThatCannotBe) {
   const std::string data = bytes_of(values(2, Lie::side_by_side));
   write("a.npy", npy("<f4", "False", "(3, 4, 5, 0)", data));
   EXPECT_TRUE(contains(error("a.npy"), "components"));
-  write("a.npy", npy("<f4", "False", "(3, 4, 5, 99999999999)", data));
+  write("a.npy", npy("<f4", "False", "(9, 9, 9, 99999999999)", data));
+  EXPECT_TRUE(contains(error("a.npy"), "99999999999"));
+  write("a.npy", npy("<f4", "False", "(99999999999, 9, 9, 9)", data));
   EXPECT_TRUE(contains(error("a.npy"), "components"));
   write("a.npy", npy("<f4", "False", "(1000000000, 1000000000, 1, 2147483647)", data));
   EXPECT_TRUE(contains(error("a.npy"), "too large"));
@@ -115,7 +115,7 @@ TEST_F(ComponentsTest, OfNpyThatCannotBe) {
   EXPECT_TRUE(contains(error("a.npy"), "cut off"));
   write("a.npy", npy("<f4", "False", "(3, 4, 5, 1)", data));
   EXPECT_TRUE(contains(error("a.npy"), "more than one array"));
-  write("a.npy", npy("<f4", "False", "(3, 4, 5, 2, 1)", data));
+  write("a.npy", npy("<f4", "False", "(3, 4, 5, 2, 2)", data));
   EXPECT_TRUE(contains(error("a.npy"), "no volume"));
 }
 

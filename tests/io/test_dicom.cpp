@@ -1,8 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
+#include <filesystem>
 #include <numbers>
 #include <string>
+#include <utility>
 #include <vector>
 
 #ifdef PELLUCID_HAVE_GDCM
@@ -126,12 +130,80 @@ TEST_F(DicomTest, TransferSyntaxes) {
 }
 
 TEST_F(DicomTest, WithoutAPreamble) {
-  for (const bool is_implicit : {false, true}) {
-    write_series([&](DicomSliceFile& file, int) {
+  for (const char* syntax : {"1.2.840.10008.1.2", "1.2.840.10008.1.2.1", "1.2.840.10008.1.2.2"}) {
+    SCOPED_TRACE(syntax);
+    write_series([&](DicomSliceFile& file, int k) {
       file.preamble = false;
-      if (is_implicit) file.syntax = "1.2.840.10008.1.2";
+      file.syntax = syntax;
+      if (file.writer().big_endian) {
+        file.pixels = test::swapped_bytes_of(slice_values<std::uint16_t>(k));
+      }
     });
     expect_counting(read_volume(folder_), "u16");
+    expect_counting(read_volume(path("c")), "u16");
+    // As the two standards before DICOM begin: with the length of the group.
+    write_series([&](DicomSliceFile& file, int k) {
+      file.preamble = false;
+      file.syntax = syntax;
+      file.text.erase(0x00080016);
+      file.text[0x00080000] = {"UL", file.writer().number(100, 4)};
+      file.text[0x00080010] = {"LO", "ACR-NEMA 2.0"};
+      if (file.writer().big_endian) {
+        file.pixels = test::swapped_bytes_of(slice_values<std::uint16_t>(k));
+      }
+    });
+    expect_counting(read_volume(folder_), "u16");
+  }
+}
+
+TEST_F(DicomTest, WithPartsOfThePreamble) {
+  for (const char* syntax : {"1.2.840.10008.1.2", "1.2.840.10008.1.2.1"}) {
+    const auto without = [&](std::size_t first, std::size_t count) {
+      for (int k = 0; k < 3; ++k) {
+        DicomSliceFile file = slice(k);
+        file.syntax = syntax;
+        write(std::to_string(k), file.bytes().erase(first, count));
+      }
+      expect_counting(read_volume(folder_), "u16");
+      expect_counting(read_volume(path("1")), "u16");
+    };
+    without(0, 0);
+    without(0, 132);  // begins with group 2
+    without(0, 128);  // begins with "DICM"
+    without(128, 4);  // the preamble alone
+  }
+  // Group 2 may say what the data set is not.
+  write_series([&](DicomSliceFile& file, int) { file.syntax = "1.2.840.10008.1.2"; }, "implicit-");
+  for (const char* name : {"implicit-a", "implicit-b.txt", "implicit-c"}) {
+    std::string bytes = read(path(name));
+    const std::string said("1.2.840.10008.1.2\0", 18);
+    const std::size_t at = bytes.find(said);
+    ASSERT_NE(at, std::string::npos);
+    write(name, bytes.replace(at, 18, std::string("1.2.840.10008.1.2.", 18)));
+  }
+  for (const char* name : {"0", "1", "2"}) std::filesystem::remove(path(name));
+  expect_counting(read_volume(folder_), "u16");
+}
+
+TEST_F(DicomTest, OtherFilesAreNotTakenForDicom) {
+  const auto is_one = [&](const std::string& bytes) {
+    write("x", bytes);
+    return is_dicom(path("x"));
+  };
+  EXPECT_FALSE(is_one(""));
+  EXPECT_FALSE(is_one("DICM"));
+  EXPECT_FALSE(is_one("DICM is what this text is about, and nothing else of it is"));
+  EXPECT_FALSE(is_one(std::string(4096, '\0')));
+  EXPECT_FALSE(is_one(std::string(4096, '\x8')));
+  // Values of 16 bits that are near 8.
+  for (std::uint16_t first = 0; first < 16; ++first) {
+    for (std::uint16_t step = 0; step < 4; ++step) {
+      std::vector<std::uint16_t> values;
+      for (std::uint16_t i = 0; i < 400; ++i) {
+        values.push_back(static_cast<std::uint16_t>(first + step * (i / (1 + i % 3))));
+      }
+      EXPECT_FALSE(is_one(bytes_of(values))) << first << ", " << step;
+    }
   }
 }
 
@@ -301,10 +373,29 @@ TEST_F(DicomTest, PlacesThatContradictAreRefused) {
     if (k == 1) file.at("11\\20\\42");
   });
   EXPECT_TRUE(contains(refused(), "a is 1 mm beside the line"));
-  write_series([](DicomSliceFile& file, int k) {
-    if (k == 1) file.without(0x00200032);
-  });
-  EXPECT_TRUE(contains(refused(), "a has no position"));
+}
+
+TEST_F(DicomTest, SlicesThatLackWhatOthersHaveAreLeftOut) {
+  const auto left_out = [&](const auto& change) {
+    write_series([&](DicomSliceFile& file, int k) {
+      if (k == 2) change(file);
+    });
+    EXPECT_EQ(read_noting().description().dimensions[2], 2);
+    EXPECT_TRUE(contains(notes_, "1 file is left out: " + path("b.txt").string())) << notes_;
+    // Asked for by name, it is told why it cannot be read.
+    EXPECT_FALSE(error_of([&] { read_volume(path("b.txt")); }).empty());
+    return notes_;
+  };
+  const auto has = [&](const std::string& text, const auto& change) {
+    const std::string notes = left_out(change);
+    EXPECT_TRUE(contains(notes, text)) << notes;
+  };
+  has("no usable position", [](auto& f) { f.without(0x00200032); });
+  has("no usable position", [](auto& f) { f.at("10\\x\\54"); });
+  has("no usable orientation", [](auto& f) { f.set(0x00200037, "1\\0\\0\\0\\1"); });
+  has("no usable spacing", [](auto& f) { f.set(0x00280030, "2\\-1"); });
+  has("RescaleSlope (0028,1053) is \"2,5\"", [](auto& f) { f.set(0x00281053, "2,5"); });
+  has("17 bits end at bit 11", [](auto& f) { f.set(0x00280101, 17); });
 }
 
 TEST_F(DicomTest, WhatIsMissingIsTold) {
@@ -412,6 +503,158 @@ TEST_F(DicomTest, FramesWithPlacesAreSlices) {
   EXPECT_EQ(notes_, "");
 }
 
+/// Planes of dose in one file, 12 apart from z = 30 on, at these offsets as it says.
+DicomSliceFile dose_of_one_file(const std::string& offsets) {
+  DicomSliceFile file;
+  file.text[0x00080060] = {"CS", "RTDOSE"};
+  file.text[0x00080016] = {"UI", "1.2.840.10008.5.1.4.1.1.481.2"};
+  file.text[0x00280008] = {"IS", "3"};
+  file.text[0x00280009] = {"AT", file.writer().tag(0x3004000c)};
+  file.text[0x30040002] = {"CS", "GY"};
+  file.text[0x30040004] = {"CS", "PHYSICAL"};
+  file.text[0x3004000a] = {"CS", "PLAN"};
+  file.text[0x3004000c] = {"DS", offsets};
+  file.text[0x3004000e] = {"DS", "0.25"};
+  file.set(0x00280100, 32).set(0x00280101, 32).set(0x00280102, 31);
+  for (int k = 0; k < 3; ++k) file.pixels += bytes_of(slice_values<std::uint32_t>(k));
+  return file;
+}
+
+TEST_F(DicomTest, ADoseStandsAtItsOffsetsInGray) {
+  struct Case {
+    const char *offsets, *orientation;
+    std::array<double, 3> heights;  // of frames, z
+  };
+  const char *axial = "1\\0\\0\\0\\1\\0", *feet_first = "-1\\0\\0\\0\\1\\0",
+             *prone = "-1\\0\\0\\0\\-1\\0";
+  const Case cases[] = {
+      {"0\\12\\24", axial, {30, 42, 54}},     {"30\\42\\54", axial, {30, 42, 54}},
+      {"0\\-12\\-24", axial, {30, 18, 6}},    {"30\\18\\6", axial, {30, 18, 6}},
+      {"0\\12\\24", prone, {30, 42, 54}},     {"30\\42\\54", prone, {30, 42, 54}},
+      {"0\\12\\24", feet_first, {30, 18, 6}}, {"30\\42\\54", feet_first, {30, 42, 54}},
+      {"0\\12\\36", axial, {30, 42, 66}},     {"30.00\\20\\6", axial, {30, 20, 6}}};
+  for (const Case& c : cases) {
+    SCOPED_TRACE(std::string(c.offsets) + ", " + c.orientation);
+    DicomSliceFile file = dose_of_one_file(c.offsets);
+    file.set(0x00200037, c.orientation);
+    write("dose", file.bytes());
+    const Volume volume = read_noting();
+    EXPECT_EQ(type_name(volume.data()), "f64");
+    ASSERT_EQ(volume.description().dimensions, (std::array<int, 3>{5, 4, 3}));
+    EXPECT_TRUE(contains(notes_, "radiation dose in Gy, DoseSummationType PLAN")) << notes_;
+    for (int index = 0; index < 3; ++index) {
+      const int frame = static_cast<int>(value_at(volume, 0, 0, index) / 0.25) / 20;
+      EXPECT_EQ(value_at(volume, 4, 3, index), 0.25 * (20 * frame + 19));
+      const auto& coordinates = volume.description().coordinates[2];
+      const Vec3<double> place = coordinates.empty()
+                                     ? world_of(volume, 0, 0, index)
+                                     : volume.description().placement.origin +
+                                           volume.description().placement.direction.column[2] *
+                                               coordinates[static_cast<std::size_t>(index)];
+      expect_near(place, {10, 20, c.heights[static_cast<std::size_t>(frame)]});
+    }
+  }
+  EXPECT_EQ(dicom_unit(folder_), "Gy");
+}
+
+TEST_F(DicomTest, DosesOfOtherKinds) {
+  const auto noted = [&](const auto& change) {
+    DicomSliceFile file = dose_of_one_file("0\\12\\24");
+    change(file);
+    write("dose", file.bytes());
+    read_noting();
+    return notes_;
+  };
+  const std::string relative = noted([](auto& f) { f.text[0x30040002].second = "RELATIVE"; });
+  EXPECT_TRUE(contains(relative, "relative to a reference")) << relative;
+  EXPECT_EQ(dicom_unit(folder_), "relative");
+  const std::string unscaled = noted([](auto& f) { f.without(0x3004000e); });
+  EXPECT_TRUE(contains(unscaled, "without DoseGridScaling")) << unscaled;
+  EXPECT_EQ(dicom_unit(folder_), "");
+  const std::string elsewhere = noted([](auto& f) { f.text[0x3004000c].second = "5\\17\\29"; });
+  EXPECT_TRUE(contains(elsewhere, "begins with 5, neither with 0")) << elsewhere;
+  expect_near(world_of(read_volume(folder_), 4, 3, 2), {14, 26, 54});
+  noted([](auto& f) {
+    f.set(0x00280100, 16).set(0x00280101, 16).set(0x00280102, 15);
+    f.pixels.clear();
+    for (int k = 0; k < 3; ++k) f.pixels += bytes_of(slice_values<std::uint16_t>(k));
+  });
+  EXPECT_EQ(type_name(read_volume(folder_).data()), "f32");
+  EXPECT_EQ(value_at(read_volume(folder_), 4, 3, 2), 59 * 0.25);
+
+  const auto refuse = [&](const auto& change) {
+    DicomSliceFile file = dose_of_one_file("0\\12\\24");
+    change(file);
+    write("dose", file.bytes());
+    return refused();
+  };
+  const std::string short_vector = refuse([](auto& f) { f.text[0x3004000c].second = "0\\12"; });
+  EXPECT_TRUE(contains(short_vector, "has 2 numbers, but there are 3 frames")) << short_vector;
+  EXPECT_TRUE(
+      contains(refuse([](auto& f) { f.text[0x3004000c].second = "0\\x\\24"; }), "no number"));
+  EXPECT_TRUE(
+      contains(refuse([](auto& f) { f.text[0x3004000c].second = "0\\12\\12"; }), "same place"));
+  EXPECT_TRUE(contains(refuse([](auto& f) { f.text[0x3004000e].second = "1,5"; }),
+                       "DoseGridScaling (3004,000E) is \"1,5\""));
+  EXPECT_TRUE(contains(refuse([](auto& f) { f.without(0x3004000c); }), "no GridFrameOffsetVector"));
+  const std::string single = refuse([](auto& f) {
+    f.text[0x00280008].second = "1";
+    f.text[0x3004000c].second = "0";
+  });
+  EXPECT_TRUE(contains(single, "a single plane of dose, and a volume needs two")) << single;
+}
+
+TEST_F(DicomTest, FramesAtOffsetsOfOtherVectors) {
+  const auto frames = [] {
+    DicomSliceFile file;
+    file.text[0x00280008] = {"IS", "3"};
+    for (int k = 0; k < 3; ++k) file.pixels += bytes_of(slice_values<std::uint16_t>(k));
+    return file;
+  };
+  const auto reads = [&](const DicomSliceFile& file, double last) {
+    write("frames", file.bytes());
+    const Volume volume = read_noting();
+    const int top = last > 30 ? 2 : 0;
+    EXPECT_EQ(value_at(volume, 4, 3, top), 59);
+    expect_near(world_of(volume, 4, 3, top), {14, 26, last});
+  };
+  const test::DicomWriter w;
+  DicomSliceFile locations = frames();
+  locations.text[0x00182005] = {"DS", "7\\19\\31"};
+  reads(locations, 54);
+  locations.text[0x00280009] = {"AT", w.tag(0x00182005)};
+  reads(locations, 54);
+
+  // Nuclear medicine: the place is that of a detector, distances may be negative.
+  DicomSliceFile tomography = frames();
+  tomography.without(0x00200032).without(0x00200037);
+  tomography.sequences[0x00540022] = {w.element(0x00200032, "DS", "10\\20\\30") +
+                                      w.element(0x00200037, "DS", "1\\0\\0\\0\\1\\0")};
+  tomography.text[0x00280009] = {"AT", w.tag(0x00540010) + w.tag(0x00540080)};
+  tomography.text[0x00540010] = {"US", w.number(1, 2) + w.number(1, 2) + w.number(1, 2)};
+  tomography.text[0x00540080] = {"US", w.number(1, 2) + w.number(2, 2) + w.number(3, 2)};
+  tomography.set(0x00180088, "12");
+  reads(tomography, 54);
+  EXPECT_EQ(notes_, "");
+  tomography.set(0x00180088, "-12");
+  reads(tomography, 6);
+  tomography.without(0x00180088).set(0x00180050, "4");
+  reads(tomography, 38);
+  EXPECT_TRUE(contains(notes_, "thickness, 4 mm")) << notes_;
+  tomography.text[0x00540010].second = w.number(1, 2) + w.number(2, 2) + w.number(2, 2);
+  write("frames", tomography.bytes());
+  EXPECT_TRUE(contains(refused(), "are of 2 energy windows")) << refused();
+
+  DicomSliceFile even = frames();
+  even.set(0x00180088, "12");
+  reads(even, 54);
+  EXPECT_TRUE(contains(notes_, "SpacingBetweenSlices apart, 12 mm")) << notes_;
+  even.text[0x00181063] = {"DS", "33"};
+  even.text[0x00280009] = {"AT", w.tag(0x00181063)};
+  write("frames", even.bytes());
+  EXPECT_TRUE(contains(refused(), "a film")) << refused();
+}
+
 TEST_F(DicomTest, OtherKindsAreRefusedByName) {
   const auto refuse = [&](const auto& change) {
     write_series([&](DicomSliceFile& file, int) { change(file); });
@@ -452,27 +695,69 @@ TEST_F(DicomTest, EmptyFoldersAndFilesWithoutPixels) {
   EXPECT_TRUE(contains(refused(), "no DICOM file with pixels"));
 }
 
-TEST_F(DicomTest, EveryTruncationIsAnErrorOrLessThanASeries) {
+TEST_F(DicomTest, EveryTruncatedFileIsLeftOut) {
   write_series();
   const std::string whole = slice(1).bytes();
-  const std::size_t pixels = whole.size() - 12 - 40;  // where the element begins
   for (std::size_t length = 0; length < whole.size(); ++length) {
     write("a", whole.substr(0, length));
-    // Cut between two elements, or in the first bytes, nothing is wrong with what is left: the
-    // slice is missing, and that is seen by the gap.
-    if (length >= pixels + 12) {
-      EXPECT_TRUE(contains(refused(), "cut off")) << length;
-      continue;
-    }
-    try {
-      notes_.clear();
-      const Volume rest = read_noting();
-      EXPECT_EQ(rest.description().dimensions[2], 2) << length;
-      EXPECT_TRUE(contains(notes_, "no DICOM image")) << length;
-    } catch (const Error& e) {
-      EXPECT_TRUE(contains(e.what(), "cut off")) << e.what();
-    }
+    const Volume rest = read_noting();
+    EXPECT_EQ(rest.description().dimensions[2], 2) << length;
+    EXPECT_EQ(value_at(rest, 4, 3, 1), 59) << length;
+    EXPECT_EQ(std::ranges::count(notes_, '\n'), 1) << notes_;
+    // Cut between two elements, or in the first bytes, nothing is wrong with what is left.
+    const bool told = contains(notes_, "1 file is left out: " + path("a").string()) ||
+                      contains(notes_, "1 file holds no DICOM image and is left out");
+    EXPECT_TRUE(told) << length << ": " << notes_;
+    EXPECT_FALSE(error_of([&] { read_volume(path("a")); }).empty()) << length;
   }
+}
+
+TEST_F(DicomTest, DamagedFilesAreLeftOutCountedAndNamed) {
+  write_series();
+  for (int k = 3; k < 9; ++k) write("more" + std::to_string(k), slice(k).bytes());
+  write("more4", slice(4).bytes().substr(0, 200));
+  write("more6", slice(6).bytes().substr(0, slice(6).bytes().size() - 1));
+  write("more7", std::string(128, '\0') + "DICM" + std::string(300, '\x7f'));
+  const Volume volume = read_noting();
+  EXPECT_EQ(volume.description().coordinates[2], (std::vector<double>{0, 12, 24, 36, 60, 96}));
+  EXPECT_TRUE(contains(notes_, "3 files are left out; the first: " + path("more4").string()))
+      << notes_;
+  EXPECT_TRUE(contains(notes_, "a file that is left out may belong there")) << notes_;
+  EXPECT_EQ(list_dicom_series(folder_).size(), 1u);
+  std::string told;
+  list_dicom_series(folder_, [&](const std::string& note) { told += note; });
+  EXPECT_TRUE(contains(told, "3 files are left out")) << told;
+
+  // With a file of the series asked for by name.
+  EXPECT_EQ(read_volume(path("more3")).description().dimensions[2], 6);
+  EXPECT_TRUE(contains(error_of([&] { read_volume(path("more6")); }), "has 39 bytes of pixels"));
+  // With nothing but damaged files.
+  for (const auto& entry : std::filesystem::directory_iterator(folder_)) {
+    write(entry.path().filename().string(), slice(0).bytes().substr(0, 200));
+  }
+  EXPECT_TRUE(contains(refused(), "no DICOM file with pixels that can be read; 9 files"))
+      << refused();
+}
+
+TEST_F(DicomTest, OtherFilesOfTheFolderAreLeftOut) {
+  write_series();
+  write("empty.dcm", "");
+  write("notes.txt", "hello");
+  write("picture.jpg", "\xff\xd8\xff\xe0 JFIF");
+  write("zeros", std::string(4096, '\0'));
+  std::string noise;
+  for (unsigned i = 0; i < 4096; ++i) noise += static_cast<char>((i * 2654435761U) >> 13);
+  write("noise", noise);
+  DicomSliceFile directory = slice(0);  // without pixels, as a DICOMDIR
+  const std::string bytes = directory.bytes();
+  write("DICOMDIR", bytes.substr(0, bytes.size() - 12 - directory.pixels.size()));
+  expect_counting(read_noting(), "u16");
+  EXPECT_TRUE(contains(notes_, "5 files hold no DICOM image and are left out")) << notes_;
+  EXPECT_TRUE(contains(notes_, "1 file is left out: " + path("empty.dcm").string() + ": is empty"))
+      << notes_;
+  write("noise.DCM", noise);
+  read_noting();
+  EXPECT_TRUE(contains(notes_, "2 files are left out; the first: ")) << notes_;
 }
 
 TEST_F(DicomTest, HostileLengthsAreRefused) {
@@ -481,7 +766,7 @@ TEST_F(DicomTest, HostileLengthsAreRefused) {
       std::string(128, '\0') + "DICM" + w.element(0x00020010, "UI", "1.2.840.10008.1.2.1");
   const auto refuse = [&](const std::string& bytes) {
     write("a", start + bytes);
-    return refused();
+    return error_of([&] { read_volume(path("a")); });
   };
   EXPECT_TRUE(contains(refuse(w.element(0x00091010, "OB", "abcd", 0xfffffff0)), "more than there"));
   EXPECT_TRUE(contains(refuse(w.element(0x00091010, "SQ", "abcd", 0x7ffffff0)), "more than there"));
@@ -497,7 +782,7 @@ TEST_F(DicomTest, HostileLengthsAreRefused) {
   DicomSliceFile huge = slice(0);
   huge.set(0x00280010, 65535).set(0x00280011, 65535);
   write("a", huge.bytes());
-  EXPECT_FALSE(refused().empty());
+  EXPECT_TRUE(contains(error_of([&] { read_volume(path("a")); }), "cut off"));
 }
 
 #ifdef PELLUCID_HAVE_GDCM
@@ -521,7 +806,23 @@ TEST_F(DicomTest, RunLengthsAreDecodedByGdcm) {
     file.pixels =
         test::fragments({test::run_length_encoded(std::vector<std::uint16_t>(k == 1 ? 9 : 20, 1))});
   });
-  EXPECT_TRUE(contains(refused(), "GDCM cannot decompress"));
+  EXPECT_EQ(read_noting().description().dimensions[2], 2);
+  EXPECT_TRUE(
+      contains(notes_, "1 file is left out: " + path("a").string() + ": GDCM cannot decompress"))
+      << notes_;
+  EXPECT_EQ(std::ranges::count(notes_, '\n'), 1) << notes_;
+  EXPECT_TRUE(contains(error_of([&] { read_volume(path("a")); }), "GDCM cannot decompress"));
+  write_series([&](DicomSliceFile& file, int k) {
+    compress(file, k);
+    file.pixels = test::fragments({test::run_length_encoded(std::vector<std::uint16_t>(9, 1))});
+  });
+  EXPECT_TRUE(contains(refused(), "3 files are left out; the first: ")) << refused();
+  // Cut off within a fragment.
+  write_series(compress);
+  const std::string cut = read(path("b.txt"));
+  write("b.txt", cut.substr(0, cut.size() - 20));
+  EXPECT_EQ(read_noting().description().dimensions[2], 2);
+  EXPECT_TRUE(contains(notes_, "(FFFE,E000)")) << notes_;
   EXPECT_EQ(::testing::internal::GetCapturedStderr(), "");
 }
 

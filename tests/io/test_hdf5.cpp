@@ -109,7 +109,7 @@ TEST_F(Hdf5, EveryTypeOfBothByteOrders) {
     SCOPED_TRACE(type);
     expect_counting(read(type), type);
   }
-  expect_counting(read("i64"), "f64");
+  expect_counting(read("i64"), "u8");
 }
 
 TEST_F(Hdf5, HalfFloatsAndTruthValues) {
@@ -147,7 +147,7 @@ TEST_F(Hdf5, GroupsAreNamesWithSlashes) {
   const std::vector<VolumeArray> arrays = list_arrays(path("a.h5"));
   ASSERT_EQ(arrays.size(), 2u);
   EXPECT_EQ(arrays[0].name, "/a/b/data");
-  EXPECT_TRUE(arrays[0].shown);
+  EXPECT_TRUE(arrays[0].is_default);
   EXPECT_EQ(arrays[0].dimensions, (std::vector<int>{5, 4, 3}));
   EXPECT_EQ(arrays[1].type, "u8");
   EXPECT_EQ(arrays[1].components.front().maximum, 59);
@@ -173,6 +173,46 @@ TEST_F(Hdf5, AFourthAxisIsComponents) {
   EXPECT_EQ(component_count(path("a.h5"), options), 7);
   options.time = 1;
   EXPECT_TRUE(contains(error_of([&] { read_volume(path("a.h5"), options); }), "no steps"));
+}
+
+TEST_F(Hdf5, AxesAreChosen) {
+  std::vector<std::int64_t> numbers(120);
+  for (int i = 0; i < 120; ++i) numbers[static_cast<std::size_t>(i)] = i * 10;
+  add("four", {2, 3, 4, 5}, H5T_STD_I64LE, H5T_NATIVE_INT64, numbers.data());
+  add("three", {4, 5, 6}, H5T_STD_I64LE, H5T_NATIVE_INT64, numbers.data());
+  close();
+  std::string notes;
+  ReadOptions options;
+  options.array = "four";
+  options.note = [&](const std::string& line) { notes += line + "\n"; };
+  EXPECT_EQ(read_components(path("a.h5"), options).size(), 2u);
+  EXPECT_TRUE(contains(notes, "axes czyx")) << notes;
+  notes.clear();
+  options.axes = "xyzc";
+  const std::vector<Volume> five = read_components(path("a.h5"), options);
+  ASSERT_EQ(five.size(), 5u);
+  EXPECT_EQ(notes, "");
+  EXPECT_EQ(five[4].description().dimensions, (std::array<int, 3>{2, 3, 4}));
+  EXPECT_EQ(type_name(five[4].data()), "u16");
+  EXPECT_EQ(test::value_at(five[4], 1, 2, 3), 10 * (((1 * 3 + 2) * 4 + 3) * 5 + 4));
+  options.array = "three";
+  EXPECT_TRUE(contains(error_of([&] { read_volume(path("a.h5"), options); }), "3 axes"));
+  options.axes = "yxz";
+  EXPECT_EQ(test::value_at(read_volume(path("a.h5"), options), 4, 3, 5), 10 * 119);
+  EXPECT_EQ(test::value_at(read_volume(path("a.h5"), options), 2, 0, 1), 10 * 13);
+}
+
+TEST_F(Hdf5, WholeNumbersThatAreRoundedAreTold) {
+  std::vector<std::int64_t> numbers(60, 3);
+  numbers[5] = 9007199254740993;
+  add("large", {3, 4, 5}, H5T_STD_I64BE, H5T_NATIVE_INT64, numbers.data());
+  close();
+  std::string note;
+  ReadOptions options;
+  options.note = [&](const std::string& line) { note = line; };
+  const Volume volume = read_volume(path("a.h5"), options);
+  EXPECT_EQ(type_name(volume.data()), "f64");
+  EXPECT_TRUE(contains(note, "1 of 60 whole numbers of 64 bits")) << note;
 }
 
 TEST_F(Hdf5, RefusesWhatIsNone) {

@@ -137,14 +137,15 @@ TEST(ImportAnari, TakesColorsAsLinearAndSpreadsThem) {
   EXPECT_EQ(f.table.points[1].opacity, 0.25);
   EXPECT_EQ(f.table.points[2].value, 20);
   const ImportedTransferFunction placed = read(
-      R"({"color": [[1, 0, 0, 0.2], [0, 0, 1, 0.4]], "color.position": [0.25, 1], "valueRange": [0, 4]})");
+      R"({"color": [[1, 0, 0, 0.2], [0, 0, 1, 0.4]], "color.position": [0.25, 1],
+          "valueRange": [0, 4]})");
   EXPECT_EQ(placed.table.points.front().value, 1);
   EXPECT_EQ(placed.table.points.back().opacity, 0.4);
 }
 
 TEST(ImportTable, ReadsRowsOfColors) {
   ImportOptions linear;
-  linear.numbers = ColorNumbers::linear;
+  linear.encoding = ColorEncoding::linear;
   const OpacityTable plain = read("0,0,0\n0.5 0.25 0\n1;1;1\n", linear).table;
   ASSERT_EQ(plain.points.size(), 3u);
   EXPECT_EQ(plain.points[1].value, 0.5);
@@ -162,9 +163,10 @@ TEST(ImportTable, ReadsRowsOfColors) {
 TEST(ImportParaView, ReadsXmlAndMapsByName) {
   const std::string text = R"(<ColorMaps><ColorMap name="a" space="RGB">
     <Point x="0" o="0" r="1" g="0" b="0"/><Point x="2" o="1" r="0" g="0" b="1"/></ColorMap>
-    <ColorMap name="b" space="Step"><Point x="0" o="0.5" r="1" g="1" b="0"/></ColorMap></ColorMaps>)";
+    <ColorMap name="b" space="Step"><Point x="0" o="0.5" r="1" g="1" b="0"/></ColorMap>
+    </ColorMaps>)";
   ImportOptions options;
-  options.numbers = ColorNumbers::linear;
+  options.encoding = ColorEncoding::linear;
   EXPECT_EQ(read(text, options).table.points.size(), 2u);
   EXPECT_TRUE(has_note(read(text, options), "first of 2 maps"));
   options.name = "b";
@@ -177,7 +179,7 @@ TEST(ImportParaView, ReadsXmlAndMapsByName) {
 // yellow, green and blue.
 TEST(ImportParaView, HuesWrapWhereTheMapSaysIt) {
   ImportOptions options;
-  options.numbers = ColorNumbers::linear;
+  options.encoding = ColorEncoding::linear;
   const auto green = [&](const std::string& text) {
     return at(read(text, options).table, 0.5).color.g;
   };
@@ -227,7 +229,7 @@ TEST(ImportVisIt, RefusesScalingsAndSaysWhatItLeavesOut) {
 
 TEST(ImportTable, ReadsHeadersInLettersOfEitherCase) {
   ImportOptions linear;
-  linear.numbers = ColorNumbers::linear;
+  linear.encoding = ColorEncoding::linear;
   const std::string rows = "\n0.2,0.1,0.2,0.3\n0.6,1,0,0\n";
   EXPECT_EQ(at(read("Value,R,G,B" + rows, linear).table, 0.6).color, (Rgb<double>{1, 0, 0}));
   EXPECT_EQ(at(read("Red;Green;Blue;Alpha" + rows, linear).table, 1).color,
@@ -242,7 +244,7 @@ TEST(ImportSlicer, ReadsTheLegacyText) {
       "1\n1\n0.9\n0.1\n0.2\n10\n6 -100 0 50 0.25 300 0.5\n4 0 1 255 1\n"
       "8 -100 0 0 0 300 1 0.5 0.25\n";
   ImportOptions options;
-  options.numbers = ColorNumbers::linear;
+  options.encoding = ColorEncoding::linear;
   const ImportedTransferFunction f = read(text, options);
   EXPECT_EQ(f.format, "3D Slicer volume property");
   EXPECT_EQ(f.table.unit_distance, 1);
@@ -260,7 +262,7 @@ TEST(Import, MovesAFunctionToARange) {
   ImportOptions options;
   options.range = {{-5, 15}};
   options.unit_distance = 3;
-  options.numbers = ColorNumbers::linear;
+  options.encoding = ColorEncoding::linear;
   const OpacityTable table =
       read(R"([{"RGBPoints": [0,1,0,0, 0.25,0,1,0, 1,0,0,1], "Points": [0,0,0.5,0, 1,1,0.5,0]}])",
            options)
@@ -274,7 +276,8 @@ TEST(Import, MovesAFunctionToARange) {
 
 TEST(Import, CountsItsDeviationsInThePixel) {
   const ImportedTransferFunction f = read(
-      R"([{"RGBPoints": [0,0.1,0.2,0.9, 1,1,0.5,0], "ColorSpace": "Lab", "Points": [0,0.2,0.5,0.4, 1,0.4,0.5,0]}])");
+      R"([{"RGBPoints": [0,0.1,0.2,0.9, 1,1,0.5,0], "ColorSpace": "Lab",
+           "Points": [0,0.2,0.5,0.4, 1,0.4,0.5,0]}])");
   ASSERT_GT(f.table.color_deviation, 0);
   ASSERT_GT(f.table.extinction_deviation, 0);
   OpacityTable without = f.table;

@@ -50,8 +50,8 @@ TEST_P(ImportOfVtk, IsWhatVtkShowsToWithinTheStatedDeviation) {
   ImportOptions options;
   options.deviation = GetParam();
   const test::Table truth = test::Table::read((folder / "vtk_values.csv").string());
-  for (const ColorNumbers numbers : {ColorNumbers::srgb, ColorNumbers::linear}) {
-    options.numbers = numbers;
+  for (const ColorEncoding numbers : {ColorEncoding::srgb, ColorEncoding::linear}) {
+    options.encoding = numbers;
     std::map<std::string, ImportedTransferFunction> imported;
     test::ErrorRecord colors("colors", "of the deviation"), depths("depths", "of the deviation");
     for (std::size_t row = 0; row < truth.rows(); ++row) {
@@ -67,7 +67,7 @@ TEST_P(ImportOfVtk, IsWhatVtkShowsToWithinTheStatedDeviation) {
       };
       const OpacityPoint ours = at(table, number("value"));
       const Rgb<double> shown{number("r"), number("g"), number("b")};
-      const Rgb<double> color = numbers == ColorNumbers::srgb ? linear_light(shown) : shown;
+      const Rgb<double> color = numbers == ColorEncoding::srgb ? srgb_to_linear(shown) : shown;
       const double off = largest_component(ours.color - color);
       // Rounding of VTK's own, 1e-15, is not charged.
       colors.add(off / (table.color_deviation + 1e-14), name);
@@ -91,19 +91,19 @@ TEST_P(ImportOfVtk, IsWhatVtkShowsToWithinTheStatedDeviation) {
 INSTANTIATE_TEST_SUITE_P(Deviations, ImportOfVtk, ::testing::Values(0.05, 1e-3, 1e-5));
 
 TEST(ImportOfVtkNotes, SayWhatIsExact) {
-  const auto deviations = [](const std::string& name, ColorNumbers numbers) {
+  const auto deviations = [](const std::string& name, ColorEncoding numbers) {
     ImportOptions options;
-    options.numbers = numbers;
+    options.encoding = numbers;
     const OpacityTable table = import_transfer_function(folder / (name + ".json"), options).table;
     return std::pair(table.color_deviation > 0, table.extinction_deviation > 0);
   };
   using Fitted = std::pair<bool, bool>;
-  EXPECT_EQ(deviations("rgb", ColorNumbers::linear), Fitted(false, false));
-  EXPECT_EQ(deviations("rgb", ColorNumbers::srgb), Fitted(true, false));
-  EXPECT_EQ(deviations("step", ColorNumbers::srgb), Fitted(false, false));
-  EXPECT_EQ(deviations("slicer", ColorNumbers::linear), Fitted(false, false));
-  EXPECT_EQ(deviations("slicer_hermite", ColorNumbers::linear), Fitted(true, true));
-  EXPECT_EQ(deviations("lab", ColorNumbers::linear), Fitted(true, false));
+  EXPECT_EQ(deviations("rgb", ColorEncoding::linear), Fitted(false, false));
+  EXPECT_EQ(deviations("rgb", ColorEncoding::srgb), Fitted(true, false));
+  EXPECT_EQ(deviations("step", ColorEncoding::srgb), Fitted(false, false));
+  EXPECT_EQ(deviations("slicer", ColorEncoding::linear), Fitted(false, false));
+  EXPECT_EQ(deviations("slicer_hermite", ColorEncoding::linear), Fitted(true, true));
+  EXPECT_EQ(deviations("lab", ColorEncoding::linear), Fitted(true, false));
 }
 
 }  // namespace

@@ -78,13 +78,18 @@ TEST_F(InPlace, RawOutOfPlaceOrOrderIsRead) {
 }
 
 TEST_F(InPlace, Npy) {
-  for (const char* order : {"False, 'shape': (3, 4, 5)", "True, 'shape': (5, 4, 3)"}) {
-    std::string header = std::string("{'descr': '<f4', 'fortran_order': ") + order + ", }";
+  for (const bool fortran : {false, true}) {
+    // The last axis is the fastest in C, the first in Fortran.
+    ReadOptions options;
+    if (fortran) options.axes = "xyz";
+    std::string header = "{'descr': '<f4', 'fortran_order': ";
+    header += fortran ? "True, 'shape': (5, 4, 3)}" : "False, 'shape': (3, 4, 5)}";
     header.resize(118, ' ');
     const std::string magic("\x93NUMPY\1\0\x76\0", 10);
-    EXPECT_TRUE(maps("a.npy", magic + header + bytes_of(counting()), "f32"));
+    EXPECT_TRUE(maps("a.npy", magic + header + bytes_of(counting()), "f32", options));
     header.replace(header.find('<'), 1, ">");
-    EXPECT_FALSE(maps("b.npy", magic + header + test::swapped_bytes_of(counting()), "f32"));
+    EXPECT_FALSE(
+        maps("b.npy", magic + header + test::swapped_bytes_of(counting()), "f32", options));
   }
 }
 

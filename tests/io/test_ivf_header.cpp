@@ -55,7 +55,7 @@ TEST_F(IvfTest, TypesAndByteOrders) {
   };
   expect_counting(parse(header(old("0"), "INT16")), "i16");
   write("v.raw", bytes_of(counting<std::uint64_t>()));
-  expect_counting(parse(header(old("1"), "UINT64")), "f64");
+  expect_counting(parse(header(old("1"), "UINT64")), "u8");
 }
 
 TEST_F(IvfTest, OffsetAndCompression) {

@@ -61,9 +61,9 @@ TEST(MultivariateScene, IsReadAsWritten) {
   EXPECT_EQ(std::get<FieldSource>(scene.channels[2].source).points, 16);
   const auto& soft = std::get<DerivedSource>(scene.channels[5].source);
   EXPECT_EQ(soft.kind, DerivedSource::Kind::smoothed);
-  EXPECT_EQ(soft.of, "t1");
+  EXPECT_EQ(soft.channel, "t1");
   EXPECT_EQ(soft.sigma, 0.1);
-  EXPECT_EQ(std::get<DerivedSource>(scene.channels[4].source).of, "edge");
+  EXPECT_EQ(std::get<DerivedSource>(scene.channels[4].source).channel, "edge");
 
   const MultivariateDescription& function = function_of(scene);
   EXPECT_EQ(function.channels, (Names{"t1", "edge"}));
@@ -90,7 +90,7 @@ TEST(MultivariateScene, TermsFindTheirChannels) {
   EXPECT_EQ(made->primitives()[2].channels, (std::vector<int>{0, 4}));
   EXPECT_EQ(made->primitives()[3].channels, (std::vector<int>{2, 1}));
   EXPECT_EQ(made->primitives()[0].matrix, (Matrix{{0.1, 0}, {0, 0.2}}));
-  EXPECT_EQ(made->primitives()[2].matrix, matrix_of_covariance({{4, 1}, {1, 0.5}}));
+  EXPECT_EQ(made->primitives()[2].matrix, matrix_from_covariance({{4, 1}, {1, 0.5}}));
   EXPECT_EQ(made->primitives()[3].matrix, (Matrix{{0.1, -0.3}, {0, 0}, {1, 1}}));
   EXPECT_EQ(made->tables()[0].channel, 5);
   EXPECT_EQ(made->tables()[1].channel, 0);

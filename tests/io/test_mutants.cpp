@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <sys/mman.h>
 #include <sys/resource.h>
+#include <sys/time.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -82,10 +83,11 @@ class MutantsTest : public test::ScratchFolder {
 #endif
     const rlimit no_core{0, 0};
     setrlimit(RLIMIT_CORE, &no_core);
-    constexpr unsigned seconds = 120;  // a sanitizer is slow, and so is a machine of many jobs
+    // Of a processor: a sanitizer is slow, and so is a machine of many jobs.
+    const itimerval limit{{0, 0}, {120, 0}};
     for (*at = first; *at < count; ++*at) {
       write(file, mutants(*at));
-      alarm(seconds);
+      setitimer(ITIMER_PROF, &limit, nullptr);
       try {
         const std::vector<Volume> volumes = read_components(input);
         if (volumes.empty()) _exit(3);

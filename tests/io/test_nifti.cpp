@@ -59,14 +59,15 @@ TEST_F(NiftiTest, AllTypesInBothByteOrdersPlainAndCompressed) {
   expect_type<std::int32_t>(8, "i32");
   expect_type<float>(16, "f32");
   expect_type<double>(64, "f64");
+  // Whole numbers of 64 bits in the smallest type that holds them.
+  expect_type<std::int64_t>(1024, "u8");
+  expect_type<std::uint64_t>(1280, "u8");
 }
 
 TEST_F(NiftiTest, TypesThatAreNotReadAreNamed) {
   NiftiFile file;
   for (const auto& [code, word] :
-       std::initializer_list<std::pair<std::int16_t, const char*>>{{1024, "64-bit"},
-                                                                   {1280, "64-bit"},
-                                                                   {128, "RGB"},
+       std::initializer_list<std::pair<std::int16_t, const char*>>{{128, "RGB"},
                                                                    {2304, "RGB"},
                                                                    {32, "complex"},
                                                                    {1792, "complex"},
@@ -90,6 +91,19 @@ TEST_F(NiftiTest, SlopeAndInterceptAreApplied) {
   const Volume scaled = parse(file.with(values));
   EXPECT_EQ(type_name(scaled.data()), "f32");
   EXPECT_EQ(test::value_at(scaled, 1, 2, 2), 0.25 * 51 - 3);
+  NiftiFile of_64_bits = file;
+  of_64_bits.bitpix = 64;
+  for (const std::int16_t datatype : {std::int16_t{1024}, std::int16_t{1280}}) {
+    of_64_bits.datatype = datatype;
+    for (const bool big : {false, true}) {
+      of_64_bits.big_endian = big;
+      const std::vector<std::int64_t> numbers = counting<std::int64_t>();
+      const Volume whole =
+          parse(of_64_bits.with(big ? test::swapped_bytes_of(numbers) : bytes_of(numbers)));
+      EXPECT_EQ(type_name(whole.data()), "f64");
+      EXPECT_EQ(test::value_at(whole, 1, 2, 2), 0.25 * 51 - 3);
+    }
+  }
   file.slope = 1;
   EXPECT_EQ(test::value_at(parse(file.with(values)), 1, 2, 2), 51 - 3);
   file.slope = 0;

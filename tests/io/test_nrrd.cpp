@@ -75,8 +75,9 @@ TEST_F(NrrdTest, AllTypesInBothByteOrdersRawAndGzip) {
   expect_type<std::int32_t>("int32_t", "i32");
   expect_type<float>("float", "f32");
   expect_type<double>("double", "f64");
-  EXPECT_TRUE(contains(error(header("", "int64"), bytes_of(counting<std::int64_t>())), "64-bit"));
-  EXPECT_TRUE(contains(error(header("", "uint64"), bytes_of(counting<std::uint64_t>())), "64-bit"));
+  // Whole numbers of 64 bits in the smallest type that holds them.
+  expect_type<std::int64_t>("int64", "u8");
+  expect_type<std::uint64_t>("unsigned long long", "u8");
 }
 
 TEST_F(NrrdTest, TextAndHexadecimal) {
@@ -114,6 +115,47 @@ TEST_F(NrrdTest, Detached) {
   EXPECT_TRUE(contains(error_of([&] { read_volume(path("f.nhdr")); }), "none.raw"));
   write("v.raw", bytes_of(counting()).substr(4));
   error_of([&] { read_volume(path("a.nhdr")); });
+}
+
+// A file of another format that is named as one of values begins with its own header.
+TEST_F(NrrdTest, BytesThatAreLeftOverAreTold) {
+  std::string notes;
+  ReadOptions options;
+  options.note = [&](const std::string& line) { notes += line + "\n"; };
+  const auto note_of = [&](const std::string& more, const std::string& type = "float") {
+    notes.clear();
+    read_volume(write("n.nhdr", header("data file: s.raw\n" + more, type)), options);
+    return notes;
+  };
+  write("s.raw", std::string(352, 'h') + bytes_of(counting()));
+  EXPECT_TRUE(contains(note_of(""), "s.raw: has 352 bytes more") &&
+              contains(notes, "\"byte skip: -1\""))
+      << notes;
+  EXPECT_EQ(note_of("byte skip: -1\n"), "");
+  expect_counting(read_volume(path("n.nhdr"), options), "f32");
+  EXPECT_EQ(note_of("byte skip: 352\n"), "");
+  EXPECT_TRUE(contains(note_of("byte skip: 300\n"), "52 bytes more")) << notes;
+  for (const char* type : {"unsigned int", "int32_t", "uint", "signed int"}) {
+    EXPECT_TRUE(contains(note_of("", type), "352 bytes more")) << type << notes;
+  }
+  write("s.raw", bytes_of(counting()));
+  EXPECT_EQ(note_of(""), "");
+  notes.clear();
+  read_volume(write("n.nrrd", header("") + "\n" + bytes_of(counting()) + "more"), options);
+  EXPECT_TRUE(contains(notes, "4 bytes more") && !contains(notes, "skip")) << notes;
+}
+
+TEST_F(NrrdTest, SkipsBelowZeroAreOneLine) {
+  write("v.raw", bytes_of(counting()));
+  for (const char* skip : {"byte skip: -2", "byte skip: -352", "line skip: -1", "byte skip: x",
+                           "byteskip: 99999999999999999999"}) {
+    write("n.nhdr", header("data file: v.raw\n" + std::string(skip) + "\n"));
+    const std::string text = error_of([&] { read_volume(path("n.nhdr")); });
+    EXPECT_TRUE(contains(text, skip) && contains(text, "whole number from 0")) << text;
+  }
+  write("v.raw.gz", test::gzipped(bytes_of(counting())));
+  write("n.nhdr", header("data file: v.raw.gz\nbyte skip: -1\n", "float", "gzip"));
+  EXPECT_TRUE(contains(error_of([&] { read_volume(path("n.nhdr")); }), "encoding \"raw\""));
 }
 
 TEST_F(NrrdTest, SpacesAreTurnedToLps) {

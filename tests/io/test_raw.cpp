@@ -34,14 +34,18 @@ std::string error(const std::string& file, const ReadOptions& options) {
 }
 
 template <class Value>
-void expect_both_orders(const std::string& type) {
+void expect_both_orders(const std::string& type, const std::string& kept) {
   SCOPED_TRACE(type);
   ReadOptions options = raw(type);
-  expect_counting(parse(test::bytes_of(counting<Value>()), options), type);
+  expect_counting(parse(test::bytes_of(counting<Value>()), options), kept);
   options.big_endian = false;
-  expect_counting(parse(test::bytes_of(counting<Value>()), options), type);
+  expect_counting(parse(test::bytes_of(counting<Value>()), options), kept);
   options.big_endian = true;
-  expect_counting(parse(test::swapped_bytes_of(counting<Value>()), options), type);
+  expect_counting(parse(test::swapped_bytes_of(counting<Value>()), options), kept);
+}
+template <class Value>
+void expect_both_orders(const std::string& type) {
+  expect_both_orders<Value>(type, type);
 }
 
 TEST(Raw, AllTypesInBothByteOrders) {
@@ -53,6 +57,31 @@ TEST(Raw, AllTypesInBothByteOrders) {
   expect_both_orders<std::int32_t>("i32");
   expect_both_orders<float>("f32");
   expect_both_orders<double>("f64");
+  expect_both_orders<std::int64_t>("i64", "u8");
+  expect_both_orders<std::uint64_t>("u64", "u8");
+  const std::string halves = test::bytes_of(test::counting_halves());
+  expect_counting(parse(halves, raw("f16")), "f32");
+}
+
+TEST(Raw, ComponentsOf64BitsAndHalves) {
+  std::vector<std::int64_t> numbers(240);
+  std::vector<std::uint16_t> halves(240);
+  for (std::size_t i = 0; i < 240; ++i) {
+    // Components are i, -1, 2 i and 300 i.
+    const auto point = static_cast<std::int64_t>(i / 4);
+    numbers[i] = std::array<std::int64_t, 4>{point, -1, 2 * point, 300 * point}[i % 4];
+    halves[i] = i % 4 == 2 ? test::counting_halves()[i / 4] : std::uint16_t{0x3c00};
+  }
+  ReadOptions options = raw("i64");
+  options.components = 4;
+  options.component = 3;
+  EXPECT_EQ(type_name(parse(test::bytes_of(numbers), options).data()), "u16");
+  EXPECT_EQ(test::value_at(parse(test::bytes_of(numbers), options), 4, 3, 2), 300 * 59);
+  options.component = 0;
+  expect_counting(parse(test::bytes_of(numbers), options), "u8");
+  options.type = "f16";
+  options.component = 2;
+  expect_counting(parse(test::bytes_of(halves), options), "f32");
 }
 
 TEST(Raw, SkipsWhatStandsBefore) {
@@ -73,7 +102,7 @@ TEST(Raw, NeedsDimensionsAndType) {
   options = raw("f32");
   options.dimensions.reset();
   EXPECT_TRUE(contains(error("", options), "dimensions"));
-  for (const char* type : {"", "f16", "u64", "i64", "float", "U8", "u8 "}) {
+  for (const char* type : {"", "f8", "u128", "int64", "float", "U8", "u8 "}) {
     EXPECT_TRUE(contains(error(std::string(60, '\0'), raw(type)), "there is no type")) << type;
   }
 }
@@ -128,6 +157,8 @@ TEST_F(GzippedRaw, IsReadAsHeaderless) {
   ReadOptions options = raw("u16");
   options.big_endian = true;
   expect_counting(read_volume(write("a.raw.gz", test::gzipped(values)), options), "u16");
+  const std::string wide = test::gzipped(test::bytes_of(counting<std::uint64_t>()));
+  expect_counting(read_volume(write("w.raw.gz", wide), raw("u64")), "u8");
   options.skip_bytes = 3;
   expect_counting(read_volume(write("b.raw.gz", test::gzipped("abc" + values)), options), "u16");
 }

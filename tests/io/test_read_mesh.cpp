@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "pellucid/io/read_mesh.h"
 
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <filesystem>
@@ -274,7 +275,7 @@ TEST_F(ReadMesh, JoinsPieces) {
   const MeshFile file = read_mesh(write("all.vtm", test::xml_file("vtkMultiBlockDataSet", blocks)));
   EXPECT_EQ(file.blocks, 2);
   EXPECT_EQ(file.merged_points, 1U);
-  EXPECT_EQ(file.torn_points, 1U);
+  EXPECT_EQ(file.discontinuous_points, 1U);
   EXPECT_EQ(file.grid.points.size(), 9U);
   EXPECT_EQ(file.grid.corners,
             (std::vector<std::int32_t>{0, 1, 2, 3, 1, 2, 3, 4, 0, 5, 6, 7, 5, 6, 7, 8}));
@@ -374,11 +375,237 @@ TEST_F(ReadMesh, NamesCellsThatItCannotRead) {
     return refused("a.vtu", test::small_vtu(of));
   };
   EXPECT_TRUE(contains(error("41"), "convex point set"));
-  EXPECT_TRUE(contains(error("71"), "Lagrange tetrahedron"));
   EXPECT_TRUE(contains(error("78"), "Bezier tetrahedron"));
-  EXPECT_TRUE(contains(error("16"), "hexagonal prism"));
+  EXPECT_TRUE(contains(error("33"), "biquadratic-quadratic hexahedron"));
+  EXPECT_TRUE(contains(error("74"), "Lagrange pyramid"));
+  EXPECT_TRUE(contains(error("16"), "has 4 points, but one of its shape has 12"));
+  EXPECT_TRUE(contains(error("72"), "has 4 points, as no Lagrange cell of its shape has"));
+  EXPECT_TRUE(contains(error("42"), "a polyhedron, comes without its faces"));
   EXPECT_TRUE(contains(error("200"), "number 200"));
   EXPECT_TRUE(contains(error("12"), "has 4 points, but one of its shape has 8"));
+}
+
+/// A unit cube, and what follows it in its list of points; of all types that have eight corners.
+test::AnyVtu cubes_with_more_points(const std::string& type, int listed) {
+  test::AnyVtu of;
+  of.points = "0 0 0 1 0 0 1 1 0 0 1 0 0 0 1 1 0 1 1 1 1 0 1 1";
+  for (int i = 0; i < 8; ++i) of.connectivity += std::to_string(i) + " ";
+  for (int i = 8; i < listed; ++i) {
+    of.points += " 0.5 0.5 0.5";
+    of.connectivity += std::to_string(i) + " ";
+  }
+  of.point_count = listed;
+  of.cell_count = 1;
+  of.offsets = std::to_string(listed);
+  of.types = type;
+  return of;
+}
+
+TEST_F(ReadMesh, TakesTheCornersOfLinearCellsThatListMorePoints) {
+  for (const int listed : {9, 20, 27}) {
+    const fs::path file = write("a.vtu", cubes_with_more_points("12", listed).text());
+    std::vector<std::string> notes;
+    MeshReadOptions options;
+    options.note = [&](const std::string& note) { notes.push_back(note); };
+    const MeshFile mesh = read_mesh(file, options);
+    EXPECT_EQ(mesh.grid.shapes, std::vector{CellShape::hexahedron});
+    EXPECT_EQ(mesh.grid.corners, (std::vector<std::int32_t>{0, 1, 2, 3, 4, 5, 6, 7}));
+    EXPECT_EQ(mesh.trimmed_cells, 1U);
+    EXPECT_EQ(mesh.first_trimmed_cell, 0);
+    EXPECT_EQ(notes, mesh.notes);
+    ASSERT_EQ(notes.size(), 1U);
+    EXPECT_TRUE(contains(notes[0], "1 of 1 cells list more points than their shape has"));
+    EXPECT_TRUE(contains(notes[0], "cell 0"));
+    EXPECT_DOUBLE_EQ(load_mesh({file, {}, {}}).mesh->mesh().statistics().volume, 1);
+  }
+  EXPECT_TRUE(read_mesh(write("a.vtu", cubes_with_more_points("12", 8).text())).notes.empty());
+  // Of all shapes, legacy files too; fewer than needed are an error as before.
+  const std::pair<int, int> shapes[] = {{10, 4},  {11, 8},  {12, 8},  {13, 6},  {14, 5}, {24, 10},
+                                        {25, 20}, {26, 15}, {27, 13}, {29, 27}, {32, 18}};
+  for (const auto& [type, points] : shapes) {
+    for (const int listed : {points - 1, points + 1}) {
+      SCOPED_TRACE(std::to_string(type) + " of " + std::to_string(listed));
+      std::string text =
+          "# vtk DataFile Version 3.0\nt\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS " +
+          std::to_string(listed) + " float\n";
+      std::string list = std::to_string(listed);
+      for (int i = 0; i < listed; ++i) {
+        text += std::to_string(i % 3) + " " + std::to_string(i / 3 % 3) + " " +
+                std::to_string(i / 9) + "\n";
+        list += " " + std::to_string(i);
+      }
+      text += "CELLS 1 " + std::to_string(listed + 1) + "\n" + list + "\nCELL_TYPES 1\n" +
+              std::to_string(type) + "\n";
+      if (listed < points) {
+        EXPECT_TRUE(contains(refused("a.vtk", text), "but one of its shape has"));
+        continue;
+      }
+      const MeshFile mesh = read_mesh(write("a.vtk", text));
+      EXPECT_EQ(mesh.trimmed_cells, 1U);
+      EXPECT_EQ(mesh.grid.corners.size(), static_cast<std::size_t>(points));
+    }
+  }
+}
+
+/// A unit cube as one Lagrange hexahedron; each node stands at its place in the lattice, by the
+/// rule of VTK 9, or of 8, whose last two upright edges are exchanged.
+test::AnyVtu lagrange_vtu(const std::array<int, 3>& orders, bool of_vtk_8 = false) {
+  const auto index = [&](int i, int j, int k) {
+    const int last[3] = {orders[0], orders[1], orders[2]}, at[3] = {i, j, k};
+    bool end[3];
+    for (int a = 0; a < 3; ++a) end[a] = at[a] == 0 || at[a] == last[a];
+    const int n[3] = {last[0] - 1, last[1] - 1, last[2] - 1};
+    const int corner = i > 0 ? (j > 0 ? 2 : 1) : (j > 0 ? 3 : 0);
+    const int upright = of_vtk_8 && corner >= 2 ? 5 - corner : corner;
+    const int ring = 2 * (n[0] + n[1]);
+    if (end[0] && end[1] && end[2]) return corner + (k > 0 ? 4 : 0);
+    if (end[1] && end[2]) return 8 + (k > 0 ? ring : 0) + (j > 0 ? n[0] + n[1] : 0) + i - 1;
+    if (end[0] && end[2]) return 8 + (k > 0 ? ring : 0) + (i > 0 ? n[0] : ring - n[1]) + j - 1;
+    int from = 8 + 2 * ring;
+    if (end[0] && end[1]) return from + n[2] * upright + k - 1;
+    from += 4 * n[2];
+    if (end[0]) return from + (i > 0 ? n[1] * n[2] : 0) + n[1] * (k - 1) + j - 1;
+    from += 2 * n[1] * n[2];
+    if (end[1]) return from + (j > 0 ? n[0] * n[2] : 0) + n[0] * (k - 1) + i - 1;
+    from += 2 * n[0] * n[2];
+    if (end[2]) return from + (k > 0 ? n[0] * n[1] : 0) + n[0] * (j - 1) + i - 1;
+    return from + 2 * n[0] * n[1] + n[0] * (n[1] * (k - 1) + j - 1) + i - 1;
+  };
+  test::AnyVtu of;
+  of.point_count = (orders[0] + 1) * (orders[1] + 1) * (orders[2] + 1);
+  std::vector<std::string> places(static_cast<std::size_t>(of.point_count));
+  for (int k = 0; k <= orders[2]; ++k) {
+    for (int j = 0; j <= orders[1]; ++j) {
+      for (int i = 0; i <= orders[0]; ++i) {
+        const auto x = [&](int at, std::size_t axis) {
+          return std::to_string(static_cast<double>(at) / orders[axis]) + " ";
+        };
+        places[static_cast<std::size_t>(index(i, j, k))] = x(i, 0) + x(j, 1) + x(k, 2);
+      }
+    }
+  }
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    of.points += places[i] + " ";
+    of.connectivity += std::to_string(i) + " ";
+  }
+  of.cell_count = 1;
+  of.offsets = std::to_string(of.point_count);
+  of.types = "72";
+  return of;
+}
+
+TEST_F(ReadMesh, ReadsLagrangeCells) {
+  for (int order = 1; order <= 6; ++order) {
+    SCOPED_TRACE(order);
+    const fs::path file = write("a.vtu", lagrange_vtu({order, order, order}).text());
+    const MeshFile mesh = read_mesh(file);
+    EXPECT_EQ(mesh.grid.shapes[0], order == 1   ? CellShape::hexahedron
+                                   : order == 2 ? CellShape::triquadratic_hexahedron
+                                                : CellShape::lagrange_hexahedron);
+    const MeshStatistics s = load_mesh({file, {}, {}}).mesh->mesh().statistics();
+    EXPECT_NEAR(s.volume, 1, 1e-5);
+    EXPECT_EQ(s.folded_faces, 0U);
+    EXPECT_EQ(s.boundary_faces, static_cast<std::size_t>(12 * order * order));
+    EXPECT_EQ(s.unused_points, 0U);
+  }
+  // The orders along the axes as an array of cells, marked and not.
+  test::AnyVtu of = lagrange_vtu({3, 1, 2});
+  EXPECT_TRUE(contains(refused("a.vtu", of.text()), "HIGHER_ORDER_DEGREES"));
+  for (const bool marked : {true, false}) {
+    of.cell_data = "<CellData" +
+                   std::string(marked ? " HigherOrderDegrees=\"HIGHER_ORDER_DEGREES\"" : "") + ">" +
+                   test::xml_array("Float64", "HIGHER_ORDER_DEGREES", "3 1 2", 3) + "</CellData>";
+    const fs::path file = write("a.vtu", of.text());
+    const MeshStatistics s = load_mesh({file, {}, {}}).mesh->mesh().statistics();
+    EXPECT_NEAR(s.volume, 1, 1e-5);
+    EXPECT_EQ(s.boundary_faces, static_cast<std::size_t>(4 * (3 + 6 + 2)));
+  }
+}
+
+// Files that VTK 8 wrote say so by their version.
+TEST_F(ReadMesh, KnowsTheOrderOfNodesOfOlderFiles) {
+  for (const bool old : {false, true}) {
+    test::AnyVtu of = lagrange_vtu({3, 3, 3}, old);
+    of.version = old ? "2.0" : "2.1";
+    const fs::path file = write("a.vtu", of.text());
+    EXPECT_EQ(load_mesh({file, {}, {}}).mesh->mesh().statistics().folded_faces, 0U);
+    // The other way round the edges cross, and that is said.
+    of.version = old ? "2.1" : "2.0";
+    std::vector<std::string> notes;
+    MeshSource source{write("a.vtu", of.text()), {}, {}};
+    source.options.note = [&](const std::string& note) { notes.push_back(note); };
+    EXPECT_GT(load_mesh(source).mesh->mesh().statistics().folded_faces, 0U);
+    ASSERT_EQ(notes.size(), 1U);
+    EXPECT_TRUE(contains(notes[0], "1 of 1 cells overlap themselves or a neighbour"));
+    EXPECT_TRUE(contains(notes[0], "the likely cause is the order of the cells' nodes"));
+  }
+}
+
+TEST_F(ReadMesh, ReadsPolyhedra) {
+  const auto expect = [&](const fs::path& file) {
+    const MeshFile mesh = read_mesh(file);
+    EXPECT_EQ(mesh.grid.shapes, (std::vector{CellShape::polyhedron, CellShape::hexahedron}));
+    const MeshStatistics s = load_mesh({file, {}, {}}).mesh->mesh().statistics();
+    EXPECT_DOUBLE_EQ(s.volume, 2);
+    EXPECT_EQ(s.boundary_faces, 20U);
+    EXPECT_EQ(s.points, 13U);
+    EXPECT_EQ(s.folded_faces, 0U);
+  };
+  expect(write("a.vtu", test::polyhedron_vtu().text()));
+  expect(write("a.vtk", test::polyhedron_vtk(false)));
+  expect(write("b.vtk", test::polyhedron_vtk(true)));
+  // Two files of it, joined.
+  const std::string blocks =
+      "<vtkMultiBlockDataSet><DataSet index=\"0\" file=\"a.vtu\"/><DataSet index=\"1\" "
+      "file=\"a.vtu\"/></vtkMultiBlockDataSet>\n";
+  const MeshFile two = read_mesh(write("all.vtm", test::xml_file("vtkMultiBlockDataSet", blocks)));
+  EXPECT_EQ(two.grid.layouts.size(), 16U);
+  EXPECT_EQ(two.grid.shapes.size(), 4U);
+}
+
+TEST_F(ReadMesh, ReadsPrismsOfFiveAndSixSides) {
+  for (const int sides : {5, 6}) {
+    test::AnyVtu of;
+    double area = 0;
+    for (int k = 0; k < 2; ++k) {
+      for (int i = 0; i < sides; ++i) {
+        const double angle = 2 * 3.14159265358979 * i / sides;
+        of.points += std::to_string(std::cos(angle)) + " " + std::to_string(std::sin(angle)) + " " +
+                     std::to_string(k) + " ";
+        of.connectivity += std::to_string(k * sides + i) + " ";
+      }
+      area = sides / 2.0 * std::sin(2 * 3.14159265358979 / sides);
+    }
+    of.point_count = 2 * sides;
+    of.cell_count = 1;
+    of.offsets = std::to_string(2 * sides);
+    of.types = sides == 5 ? "15" : "16";
+    const MeshStatistics s =
+        load_mesh({write("a.vtu", of.text()), {}, {}}).mesh->mesh().statistics();
+    EXPECT_NEAR(s.volume, area, 1e-5);
+    EXPECT_EQ(s.boundary_faces, static_cast<std::size_t>(2 * (sides - 2) + 2 * sides));
+  }
+}
+
+TEST_F(ReadMesh, RefusesFacesThatContradictThemselves) {
+  const auto error = [&](const std::string& from, const std::string& to) {
+    std::string text = test::polyhedron_vtu().text();
+    text.replace(text.find(from), from.size(), to);
+    const fs::path file = write("a.vtu", text);
+    return error_of([&] { load_mesh({file, {}, {}}); });
+  };
+  EXPECT_TRUE(contains(error("4 4 5 6 7", "4 4 5 6 99"), "has the point 99"));
+  EXPECT_TRUE(contains(error("4 4 5 6 7", "4 4 5 6 -7"), "has the point -7"));
+  EXPECT_TRUE(contains(error("4 3 0 4 7", "4 3 0 4 5"), "do not close"));
+  EXPECT_TRUE(contains(error("4 3 0 4 7", "4 3 0 4 5"), "cell 0"));
+  error("4 3 0 4 7", "9 3 0 4 7");
+  error("4 3 0 4 7", "-4 3 0 4 7");
+  error("6 4 0 3 2 1", "7 4 0 3 2 1");
+  error("6 4 0 3 2 1", "-6 4 0 3 2 1");
+  error("6 4 0 3 2 1", "2147483647 4 0 3 2 1");
+  error("31 -1", "99 -1");
+  error("31 -1", "-1 -1");
+  error("31 -1", "-1 31");
 }
 
 TEST_F(ReadMesh, RefusesWhatContradictsItself) {
@@ -447,8 +674,14 @@ TEST_F(ReadMesh, SurvivesSpoiledFiles) {
   std::mt19937 random(5);
   for (const auto& [name, whole] :
        {std::pair{"a.vtu", test::small_vtu()}, std::pair{"a.vtk", test::small_vtk()},
-        std::pair{"b.vtk", test::small_structured_vtk()}, std::pair{"a.xyz", plot3d_grid({}, 1)}}) {
-    for (int round = 0; round < 300; ++round) {
+        std::pair{"b.vtk", test::small_structured_vtk()}, std::pair{"a.xyz", plot3d_grid({}, 1)},
+        std::pair{"b.vtu", test::polyhedron_vtu().text()},
+        std::pair{"c.vtk", test::polyhedron_vtk(false)},
+        std::pair{"d.vtk", test::polyhedron_vtk(true)}}) {
+    // Those of polyhedra take a process each.
+    const bool polyhedra = std::string(name) == "b.vtu" || name[0] == 'c' || name[0] == 'd';
+    const int rounds = polyhedra ? 40 : 300;
+    for (int round = 0; round < rounds; ++round) {
       std::string bytes = whole;
       const int changes = 1 + static_cast<int>(random() % 4);
       for (int i = 0; i < changes; ++i) {

@@ -1,8 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "pellucid/io/read_volume.h"
 
+#include <sys/stat.h>
+
+#include <algorithm>
+#include <filesystem>
 #include <string>
 
+#include "pellucid/io/dicom_series.h"
+#include "pellucid/io/read_mesh.h"
 #include "volume_files.h"
 
 namespace pellucid {
@@ -26,6 +32,56 @@ TEST_F(ReadVolumeTest, MissingFilesFoldersAndDevices) {
   EXPECT_TRUE(contains(error_of([&] { read_volume(folder_); }), "is a folder"));
   EXPECT_TRUE(contains(error_of([&] { read_volume("/dev/zero"); }), "not a regular file"));
   EXPECT_TRUE(contains(error_of([&] { read_volume(""); }), "no such file"));
+}
+
+// Opening a pipe that nobody writes to waits for ever, and a device may have no end.
+TEST_F(ReadVolumeTest, PipesAndDevicesAreRefusedAtOnce) {
+  const auto expect_refused = [](const std::string& what, const auto& call) {
+    const std::string text = error_of(call);
+    EXPECT_TRUE(contains(text, what) && contains(text, "not a regular file")) << text;
+  };
+  const std::string extensions =
+      volume_extensions() + " .vtu .pvtu .vts .vtm .pvd .ex2 .xyz .dat .x";
+  for (std::size_t at = 0; at < extensions.size();) {
+    const std::size_t end = std::min(extensions.find(' ', at), extensions.size());
+    const std::filesystem::path pipe = path("a" + extensions.substr(at, end - at));
+    SCOPED_TRACE(pipe);
+    at = end + 1;
+    ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
+    expect_refused("a pipe", [&] { read_volume(pipe); });
+    expect_refused("a pipe", [&] { list_arrays(pipe); });
+    expect_refused("a pipe", [&] { component_count(pipe, raw_options()); });
+    expect_refused("a pipe", [&] { read_mesh(pipe); });
+    is_mesh_file(pipe);
+    is_dicom(pipe);
+  }
+  std::filesystem::create_symlink("/dev/zero", path("zero.npy"));
+  expect_refused("a device", [&] { read_volume(path("zero.npy")); });
+  EXPECT_FALSE(is_mesh_file(path("zero.npy")));
+}
+
+TEST_F(ReadVolumeTest, PipesThatOtherFilesNameAreRefusedAtOnce) {
+  ASSERT_EQ(mkfifo(path("pipe").c_str(), 0600), 0);
+  const auto refused = [&](const std::string& name, const std::string& text) {
+    write(name, text);
+    const std::string message = error_of([&] { read_volume(path(name)); });
+    EXPECT_TRUE(contains(message, "not a regular file")) << message;
+  };
+  refused("a.dat", "RawFile: pipe\nResolution: 5 4 3\nFormat: FLOAT\n");
+#ifdef PELLUCID_HAVE_ITK
+  const std::string nrrd = "NRRD0004\ntype: float\ndimension: 3\nsizes: 5 4 3\nendian: little\n";
+  refused("a.nhdr", nrrd + "encoding: raw\ndata file: pipe\n");
+  refused("b.nhdr", nrrd + "encoding: gzip\ndata file: pipe\n");
+  refused("c.nhdr", nrrd + "encoding: raw\ndata file: LIST\npipe\npipe\npipe\n");
+  refused("a.mhd",
+          "ObjectType = Image\nNDims = 3\nDimSize = 5 4 3\nElementType = MET_FLOAT\n"
+          "ElementDataFile = pipe\n");
+#endif
+#ifdef PELLUCID_HAVE_VTK
+  refused("a.pvti",
+          "<VTKFile type=\"PImageData\"><PImageData WholeExtent=\"0 4 0 3 0 2\">"
+          "<Piece Extent=\"0 4 0 3 0 2\" Source=\"pipe\"/></PImageData></VTKFile>");
+#endif
 }
 
 TEST_F(ReadVolumeTest, AnUnknownExtensionNamesTheKnownOnes) {

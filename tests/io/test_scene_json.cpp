@@ -143,7 +143,7 @@ bool same(const ChannelSource& a, const ChannelSource& b) {
   if (a.name != b.name || a.unit != b.unit || a.source.index() != b.source.index()) return false;
   if (a.source.index() == 0) return same(std::get<0>(a.source), std::get<0>(b.source));
   const auto &p = std::get<1>(a.source), &q = std::get<1>(b.source);
-  return p.kind == q.kind && p.of == q.of && same(p.sigma, q.sigma);
+  return p.kind == q.kind && p.channel == q.channel && same(p.sigma, q.sigma);
 }
 bool same(const SceneDescription& a, const SceneDescription& b) {
   return same(a.field, b.field) && same_lists(a.channels, b.channels) &&
@@ -151,6 +151,7 @@ bool same(const SceneDescription& a, const SceneDescription& b) {
          a.size.width == b.size.width && a.size.height == b.size.height && a.samples == b.samples &&
          a.integration.method == b.integration.method &&
          same(a.integration.tolerance, b.integration.tolerance) &&
+         a.relative_tolerance == b.relative_tolerance &&
          a.integration.grade == b.integration.grade &&
          a.integration.precision == b.integration.precision &&
          same(a.integration.step, b.integration.step) && same(a.background, b.background);

@@ -69,6 +69,8 @@ std::vector<json> mutants(const json& whole) {
                                        1e30,
                                        1e31,
                                        -1e31,
+                                       2.1e37,
+                                       -2.2e37,
                                        1e300,
                                        json::array(),
                                        json::object(),

@@ -3,9 +3,10 @@
 
 usage: test_scene_json_schema.py SOURCE_FOLDER VERDICTS
 
-VERDICTS is what tests/io/test_scene_json_schema.cpp wrote: one JSON object per line, {"document": text,
-"accepted": whether the parser took it, "beyond_schema": whether it refused for a reason that JSON Schema
-cannot express}. Exit code 77 where the module jsonschema is missing or too old for draft 2020-12.
+VERDICTS is what tests/io/test_scene_json_schema.cpp wrote: one JSON object per line, {"document":
+text, "accepted": whether the parser took it, "beyond_schema": whether it refused for a reason that
+JSON Schema cannot express}. Exit code 77 where the module jsonschema is missing or too old for
+draft 2020-12.
 """
 
 import json
@@ -45,7 +46,8 @@ def described_everywhere(schema, path=""):
 
 def main():
     source, verdicts = pathlib.Path(sys.argv[1]), pathlib.Path(sys.argv[2])
-    schema = json.loads((source / "docs" / "reference" / "scene.schema.json").read_text(encoding="utf-8"))
+    schema = json.loads((source / "docs" / "reference"
+                         / "scene.schema.json").read_text(encoding="utf-8"))
     Draft202012Validator.check_schema(schema)
     validator = Draft202012Validator(schema)
     failures = [f"no description: {path}" for path in described_everywhere(schema)]
@@ -77,12 +79,13 @@ def main():
         if verdict["beyond_schema"]:
             continue
         if accepted != verdict["accepted"]:
-            failures.append(f"parser {verdict['accepted']}, schema {accepted}: {verdict['document']}")
+            failures.append(f"parser {verdict['accepted']}, schema {accepted}: "
+                            f"{verdict['document']}")
 
     for failure in failures[:20]:
         print(failure)
-    print(f"{len(expected)} invalid files; mutants: schema takes {counts[True]}, refuses {counts[False]}; "
-          f"{len(failures)} disagreements")
+    print(f"{len(expected)} invalid files; mutants: schema takes {counts[True]}, "
+          f"refuses {counts[False]}; {len(failures)} disagreements")
     if counts[True] < 50 or counts[False] < 500:
         print("too few mutants on one side: the comparison says nothing")
         return 1

@@ -100,8 +100,8 @@ TEST_F(VtkVolumes, ArraysAreRefusedWhereTheyHaveNoNames) {
 TEST_F(VtkVolumes, LegacyTextOfEveryType) {
   const std::pair<const char*, const char*> types[] = {
       {"unsigned_char", "u8"}, {"char", "i8"},   {"unsigned_short", "u16"}, {"short", "i16"},
-      {"unsigned_int", "u32"}, {"int", "i32"},   {"unsigned_long", "f64"},  {"long", "f64"},
-      {"vtktypeint64", "f64"}, {"float", "f32"}, {"double", "f64"}};
+      {"unsigned_int", "u32"}, {"int", "i32"},   {"unsigned_long", "u8"},   {"long", "u8"},
+      {"vtktypeint64", "u8"},  {"float", "f32"}, {"double", "f64"}};
   for (const auto& [vtk, type] : types) {
     SCOPED_TRACE(vtk);
     expect_counting(parse(legacy("POINT_DATA 60\n" + scalars(vtk, numbers(60)))), type);
@@ -128,7 +128,7 @@ TEST_F(VtkVolumes, LegacyBinaryIsBigEndian) {
   expect(std::uint16_t{}, "unsigned_short", "u16");
   expect(std::int16_t{}, "short", "i16");
   expect(std::int32_t{}, "int", "i32");
-  expect(std::int64_t{}, "long", "f64");
+  expect(std::int64_t{}, "long", "u8");
   expect(0.F, "float", "f32");
   expect(0., "double", "f64");
 }
@@ -164,15 +164,16 @@ TEST_F(VtkVolumes, ChooseAmongArrays) {
   std::string text;
   for (const VolumeArray& array : arrays) {
     text += array.name + " " + array.type + " " + std::to_string(array.components.size()) + " " +
-            (array.centering == Centering::cell ? "cell " : "") + (array.shown ? "shown " : "") +
-            std::to_string(array.components.front().maximum) + "\n";
+            (array.centering == Centering::cell ? "cell " : "") +
+            (array.is_default ? "shown " : "") + std::to_string(array.components.front().maximum) +
+            "\n";
   }
   for (const char* line :
        {"b i16 1 ", "a i16 1 ", "v f32 3 177.0", "f f64 2 118.0", "b_cell f32 1 cell 23.0"}) {
     EXPECT_TRUE(contains(text, line)) << line << " is not in\n" << text;
   }
   EXPECT_EQ(arrays.size(), 5u);
-  EXPECT_EQ(std::ranges::count_if(arrays, [](const auto& a) { return a.shown; }), 1);
+  EXPECT_EQ(std::ranges::count_if(arrays, [](const auto& a) { return a.is_default; }), 1);
   expect_counting(parse(file, "b"), "i16");
   EXPECT_EQ(test::value_at(parse(file, "a"), 0, 0, 0), 100);
   EXPECT_EQ(parse(file, "b_cell").description().centering, Centering::cell);
@@ -264,7 +265,7 @@ TEST_F(VtkVolumes, XmlImages) {
   // No scalars are marked: the first of points with one component.
   expect_counting(parse(image.text(), "", "a.vti"), "u16");
   const Volume cells = parse(image.text(), "c", "a.vti");
-  EXPECT_EQ(type_name(cells.data()), "f64");
+  EXPECT_EQ(type_name(cells.data()), "u8");
   expect_near(world_of(cells, 0, 0, 0), {1.25, 2.5, -2}, 0);
   ReadOptions options;
   options.array = "v";

@@ -23,7 +23,7 @@ UnstructuredGrid grid() {
         CellShape::quadratic_wedge, CellShape::quadratic_hexahedron, CellShape::biquadratic_wedge,
         CellShape::triquadratic_hexahedron}) {
     g.shapes.push_back(shape);
-    for (int i = 0; i < points_of(shape); ++i) {
+    for (int i = 0; i < point_count(shape); ++i) {
       const auto n = static_cast<std::int32_t>(g.points.size());
       g.corners.push_back(n);
       g.points.push_back({n + 0.1, n * n * 1e-3, -n / 3.0});

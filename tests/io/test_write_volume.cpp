@@ -85,8 +85,8 @@ TEST_F(WriteVolume, Refuses) {
   const Volume long_one(wide, DataArray<std::uint8_t>(std::size_t{32768} * 4));
   EXPECT_TRUE(contains(error_of([&] { write_all({long_one}, "a.nii"); }), "32767"));
   EXPECT_TRUE(files().empty());
-  EXPECT_FALSE(is_written_volume("a.vtu"));
-  EXPECT_TRUE(is_written_volume("a.NII.GZ"));
+  EXPECT_FALSE(is_writable_volume("a.vtu"));
+  EXPECT_TRUE(is_writable_volume("a.NII.GZ"));
 }
 
 TEST_F(WriteVolume, NiftiSaysWhatItDoesNotHold) {

@@ -52,7 +52,7 @@ inline void compare(Scene scene, const std::vector<double>& tolerances, Seen& se
       const Image image = render(scene, options, &report);
       ++seen.frames;
       if (report.spans.strides > 0) ++seen.with_strides;
-      seen.between += report.pixels_between;
+      seen.between += report.pixels_interpolated;
       for (std::size_t i = 0; i < image.pixels.size(); ++i) {
         const auto said = static_cast<double>(image.error[i]);
         if (promise == Promise::within_tolerance) {

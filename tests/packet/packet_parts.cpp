@@ -39,10 +39,11 @@ void fold(const packet_parts::Fold& wanted, int spans, packet_parts::FoldResult*
   M alive(true);
   for (int l = 0; l < N; ++l) result->spans[l] = result->could_end[l] = -1;
   const auto note = [&](M done, int n) {
-    const F left = rays.budget.left(), spent = rays.budget.spent();
+    const F left = rays.budget.remaining(), spent = rays.budget.spent();
     const F rest =
         rays.transparency() *
-        min(F(static_cast<float>(wanted.largest_extinction)) * rays.budget.length_left(), F(1)) *
+        min(F(static_cast<float>(wanted.largest_extinction)) * rays.budget.remaining_length(),
+            F(1)) *
         F(static_cast<float>(wanted.largest_color));
     for (int l = 0; l < N; ++l) {
       if (alive[l] && result->could_end[l] < 0 &&
@@ -58,7 +59,7 @@ void fold(const packet_parts::Fold& wanted, int spans, packet_parts::FoldResult*
   };
   for (int n = 1; n <= spans; ++n) {
     const F before = rays.transparency();
-    const typename RayBudget<F>::Shares shares = rays.budget.shares(step, opacity);
+    const typename RayBudget<F>::SpanShare shares = rays.budget.span_share(step, opacity);
     const F cost = F::load(wanted.share) * F::load(wanted.allowance) * shares.sum();
     SegmentResult<F> s;
     s.optical_depth = -log(F(1) - opacity);
@@ -78,7 +79,7 @@ void fold(const packet_parts::Fold& wanted, int spans, packet_parts::FoldResult*
 }
 
 void least_exponents(const void* near, const float* lower, const float* upper, float* least) {
-  F from[most_channels], to[most_channels];
+  F from[max_channels], to[max_channels];
   const auto& one = *static_cast<const NearGaussian*>(near);
   for (int c = 0; c < one.gaussian.channels; ++c) {
     from[c] = F::load(lower + c * N);

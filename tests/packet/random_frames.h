@@ -117,7 +117,7 @@ class RandomFrames : public testing::Test {
       }
       p.extinction = power(0.1, 1) * depth / (size * widths.front());
       for (double& w : widths) w *= width;
-      p.matrix = matrix_of_widths(widths);
+      p.matrix = matrix_from_widths(widths);
       if (widths.size() > 1 && one_of(2)) {
         // Rows of several channels, as many or one alone.
         const std::size_t rows = one_of(2) ? 1 : widths.size();

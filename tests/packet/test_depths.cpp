@@ -83,7 +83,7 @@ class Depths : public RandomFrames {
       std::vector<GaussianPrimitive> one(1);
       one[0].channels = {0};
       one[0].center = {0.5};
-      one[0].matrix = matrix_of_widths({0.2});
+      one[0].matrix = matrix_from_widths({0.2});
       one[0].extinction = 3.0 / cells;
       scene.multivariate = std::make_shared<const MultivariateTransferFunction>(1, std::move(one));
     } else {

@@ -303,7 +303,7 @@ template <class T>
 ColorSpread<float> spread_of(const PieceDepth<T>& piece, const ExtinctionInterval<T>& interval,
                              const BinnedTransfer& bins) {
   return {static_cast<float>(interval.color_range), static_cast<float>(interval.color_slope),
-          kinks_of_color(bins, piece.lower, piece.upper)};
+          color_kink_error(bins, piece.lower, piece.upper)};
 }
 
 /// panel_piece() of data as color_in_panel() in packet/span_piece.h calls it.
@@ -328,7 +328,7 @@ TEST(ExtinctionPiece, KinksBetweenValuesAlikeInFloatCount) {
   const double lower = offset + 0.25 * width, upper = offset + 0.75 * width;
   ASSERT_EQ(static_cast<float>(lower), static_cast<float>(upper));
   // The kink's mean is 0.75 where data are spread evenly, and the color at their mean is 1.
-  EXPECT_GE(kinks_of_color(storage.view(), lower, upper), 0.25f);
+  EXPECT_GE(color_kink_error(storage.view(), lower, upper), 0.25f);
 }
 
 template <class T>
@@ -535,8 +535,8 @@ TEST(ExtinctionPiece, KinksInPanelsAreTwiceTheWorstFound) {
       if (s.near + s.change < 0) continue;
       if (!look_at(s)) spread = std::max(0.98 * spread, 1e-3);
     }
-    // kinks_of_color() is a quarter for this kink.
-    const double said = 0.25 * kinks_in_panel(depth);
+    // color_kink_error() is a quarter for this kink.
+    const double said = 0.25 * panel_kink_factor(depth);
     std::printf("[ accuracy ] depth %-5g kinks in a panel: worst %.2e = %.2f of the estimate\n",
                 depth, worst, worst / said);
     EXPECT_LE(worst, said / 1.7) << "depth " << depth;

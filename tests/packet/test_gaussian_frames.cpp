@@ -177,7 +177,7 @@ std::shared_ptr<const MultivariateTransferFunction> one_on_ramp(double center, d
   GaussianPrimitive p;
   p.channels = {0};
   p.center = {center};
-  p.matrix = matrix_of_widths({width});
+  p.matrix = matrix_from_widths({width});
   p.extinction = depth / (cells * width * std::sqrt(std::numbers::pi));
   p.color = {1, 0.5, 0.25};
   return std::make_shared<const MultivariateTransferFunction>(1, std::vector<GaussianPrimitive>{p});

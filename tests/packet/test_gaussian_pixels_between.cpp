@@ -71,7 +71,7 @@ class GaussianPixelsBetween : public SeenClosely {
       p.center.push_back(uniform(-0.1, 1.1));
       widths.push_back(width * power(0.7, 1.5));
     }
-    p.matrix = matrix_of_widths(widths);
+    p.matrix = matrix_from_widths(widths);
     if (channels > 1 && one_of(2)) {
       for (std::vector<double>& row : p.matrix) {
         for (std::size_t c = 0; c < row.size(); ++c) row[c] = uniform(-1, 1) / widths[c];
@@ -176,7 +176,7 @@ TEST_F(GaussianPixelsBetween, AreTheSameForAnyThreadsAndTiles) {
   options.threads = 1;
   RenderReport report;
   const Image whole = render(scene, options, &report);
-  EXPECT_GT(report.pixels_between, report.pixels / 4);
+  EXPECT_GT(report.pixels_interpolated, report.pixels / 4);
   EXPECT_LE(report.largest_error, 1e-2);
   options.threads = 3;
   options.preview = 2;
@@ -195,8 +195,8 @@ TEST_F(GaussianPixelsBetween, AreNoneWhereTheyAreNotWanted) {
   const auto between = [&](const Scene& of) {
     RenderReport report;
     render(of, options, &report);
-    EXPECT_EQ(report.rays + report.pixels_between, report.pixels);
-    return report.pixels_between;
+    EXPECT_EQ(report.rays + report.pixels_interpolated, report.pixels);
+    return report.pixels_interpolated;
   };
   EXPECT_GT(between(scene), 0u);
   Scene proved = scene;

@@ -116,9 +116,9 @@ TEST_P(PacketParts, RaysEndWhereAQuarterOfWhatIsLeftPaysForTheRest) {
       // Not before: a span earlier that would not have paid.
       const double transparency =
           std::pow(1 - static_cast<double>(opacity[l]), result.spans[l] - 1);
-      const double length_left = wanted.length * (1 - (result.spans[l] - 1.0) / spans);
+      const double remaining_length = wanted.length * (1 - (result.spans[l] - 1.0) / spans);
       const double before = transparency * wanted.largest_color *
-                            std::min(wanted.largest_extinction * length_left, 1.0);
+                            std::min(wanted.largest_extinction * remaining_length, 1.0);
       ASSERT_GT(before, 0.249 * result.left[l]) << result.spans[l];
     }
   }
@@ -135,9 +135,9 @@ TEST_P(PacketParts, BoxesInLanesAreAsOneByOne) {
     NearGaussian near;
     near.couples_channels = random_() % 2 == 0;
     Gaussian<float>& g = near.gaussian;
-    g.channels = 1 + static_cast<int>(random_() % most_channels);
+    g.channels = 1 + static_cast<int>(random_() % max_channels);
     g.rows = 1 + static_cast<int>(random_() % static_cast<unsigned>(g.channels));
-    std::vector<float> lower(lanes * most_channels), upper(lanes * most_channels);
+    std::vector<float> lower(lanes * max_channels), upper(lanes * max_channels);
     for (int c = 0; c < g.channels; ++c) {
       g.center[c] = static_cast<float>(uniform(-1, 1));
       near.least_scale[c] = static_cast<float>(uniform(0, 2));
@@ -153,7 +153,7 @@ TEST_P(PacketParts, BoxesInLanesAreAsOneByOne) {
     float found[16];
     operations().least_exponents(&near, lower.data(), upper.data(), found);
     for (std::size_t l = 0; l < lanes; ++l) {
-      float from[most_channels], to[most_channels];
+      float from[max_channels], to[max_channels];
       for (int c = 0; c < g.channels; ++c) {
         from[c] = lower[static_cast<std::size_t>(c) * lanes + l];
         to[c] = upper[static_cast<std::size_t>(c) * lanes + l];

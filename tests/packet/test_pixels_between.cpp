@@ -182,8 +182,8 @@ TEST_F(PixelsBetween, AreTheSameForAnyThreadsAndTiles) {
     RenderReport report;
     const Image whole = render(scene, options, &report);
     const std::uint64_t rays_of_pixel = static_cast<std::uint64_t>(samples * samples);
-    EXPECT_GT(report.pixels_between, report.pixels / 4);
-    EXPECT_EQ(report.rays, (report.pixels - report.pixels_between) * rays_of_pixel);
+    EXPECT_GT(report.pixels_interpolated, report.pixels / 4);
+    EXPECT_EQ(report.rays, (report.pixels - report.pixels_interpolated) * rays_of_pixel);
     EXPECT_LE(report.largest_error, 1e-2);
     options.threads = 3;
     for (const int preview : {0, 1, 2, 3, 5}) {
@@ -224,8 +224,8 @@ TEST_F(PixelsBetween, AreNoneWhereTheyAreNotWanted) {
   const auto between = [&](const Scene& of) {
     RenderReport report;
     render(of, options, &report);
-    EXPECT_EQ(report.rays + report.pixels_between, report.pixels);
-    return report.pixels_between;
+    EXPECT_EQ(report.rays + report.pixels_interpolated, report.pixels);
+    return report.pixels_interpolated;
   };
   EXPECT_GT(between(scene), 0u);
   Scene proved = scene;
@@ -254,7 +254,7 @@ TEST_F(PixelsBetween, AreToldOfAsTheyAreDone) {
   };
   RenderReport report;
   render(scene, options, &report);
-  ASSERT_GT(report.pixels_between, report.pixels / 2);
+  ASSERT_GT(report.pixels_interpolated, report.pixels / 2);
   // Most of the work is in the pixels that others are taken from.
   const auto traced = static_cast<double>(report.rays) / static_cast<double>(report.pixels);
   const auto before = std::ranges::count_if(shares, [&](double share) { return share < traced; });

@@ -155,7 +155,7 @@ TEST_P(TransferLanes, KnowColorsInIntervalsOfNextToNoWidth) {
                                          {1e-4, 1, {0, 0, 1}},
                                          {255, 1, {0, 0, 1}}}};
   const BinnedTransferStorage storage(function.view<double>());
-  EXPECT_TRUE(has_hard_jump(storage.view(), 0.0f, 0.0f));
+  EXPECT_TRUE(has_unresolved_jump(storage.view(), 0.0f, 0.0f));
   const std::vector<double> values{0.0, -0.0, -1.0, 1e-5, 1e30, -1e300, 1e300};
   const std::vector<float> red =
       in_lanes<double>(operations().lanes, values, &storage.view(), operations().wide_colors);

@@ -33,7 +33,7 @@ inline GaussianPrimitive make_gaussian(const std::vector<double>& center,
   GaussianPrimitive g;
   for (std::size_t i = 0; i < center.size(); ++i) g.channels.push_back(static_cast<int>(i));
   g.center = center;
-  g.matrix = matrix_of_widths(widths);
+  g.matrix = matrix_from_widths(widths);
   g.extinction = extinction;
   g.color = color;
   return g;

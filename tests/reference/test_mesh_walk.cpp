@@ -30,7 +30,8 @@ Walked walk(const TetrahedralMesh& mesh, const std::vector<double>& numbers, con
   fields.channels = 1;
   fields.channel[0] = {numbers.data(), true};
   const Ray<double> ray{origin, direction};
-  const RayView<double> seen = make_ray_view(ray, 0.5 * (view.lower + view.upper), view.reach);
+  const RayFrame<double> seen =
+      make_ray_frame(ray, 0.5 * (view.lower + view.upper), view.coordinate_bound);
   std::vector<MeshHit> hits;
   for_each_boundary_hit(view, ray, seen, [&](const MeshHit& hit) { hits.push_back(hit); });
   std::sort(hits.begin(), hits.end());
@@ -65,7 +66,7 @@ std::vector<Place> marks_of(const TetrahedralMesh& mesh) {
   return marks;
 }
 
-/// A ray within the boundary, or as near to it as `blur`, may be in or out.
+/// A ray within the boundary, or as near to it as `position_error`, may be in or out.
 bool in_doubt(const reference::Mesh& own, const Place& origin, const Place& direction,
               double length, double blur) {
   for (int i = 0; i < 8; ++i) {
@@ -135,10 +136,10 @@ TEST(MeshWalkIsWatertight, ThroughALattice) {
 }
 
 TEST(MeshWalkIsWatertight, ThroughALatticeThatBinaryFractionsLack) {
-  expect_watertight(scenes::tetrahedra_of({{4, 3, 3},
-                                           [](int i, int j, int k) {
-                                             return Place{0.1 * i + 0.3, 0.7 * j, k / 3.0};
-                                           }}),
+  expect_watertight(scenes::tetrahedralize({{4, 3, 3},
+                                            [](int i, int j, int k) {
+                                              return Place{0.1 * i + 0.3, 0.7 * j, k / 3.0};
+                                            }}),
                     many_directions(), 1);
 }
 
@@ -157,7 +158,7 @@ TEST(MeshWalkIsWatertight, ThroughHoles) {
   lattice.cubes = {4, 4, 4};
   lattice.place = [](int i, int j, int k) { return Place{1.0 * i, 1.0 * j, 1.0 * k}; };
   lattice.keep = [](int i, int j, int k) { return (i * 5 + j * 3 + k * 7) % 4 != 0; };
-  expect_watertight(scenes::tetrahedra_of(lattice), {{0.3, -0.5, 0.7}, {0.9, 0.2, 0.1}}, 1);
+  expect_watertight(scenes::tetrahedralize(lattice), {{0.3, -0.5, 0.7}, {0.9, 0.2, 0.1}}, 1);
 }
 
 }  // namespace

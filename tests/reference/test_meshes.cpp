@@ -120,9 +120,9 @@ TEST(ReferenceMesh, LinearDataOnAGridAreThoseOfItsTetrahedra) {
       scenes::make_volume<double>(scenes::grid_description({n + 1, n + 1, n + 1}),
                                   [&](int i, int j, int k) { return field(i, j, k); });
   const MeshPointer mesh =
-      make_mesh(scenes::tetrahedra_of({{n, n, n}, [](int i, int j, int k) {
-                                         return Place{1.0 * i, 1.0 * j, 1.0 * k};
-                                       }}));
+      make_mesh(scenes::tetrahedralize({{n, n, n}, [](int i, int j, int k) {
+                                          return Place{1.0 * i, 1.0 * j, 1.0 * k};
+                                        }}));
   Scene grid;
   grid.volume = volume;
   grid.transfer_function = scenes::transfer({{0, 0, {1, 0, 0}},
@@ -188,9 +188,9 @@ TEST(ReferenceMesh, LinearDataOnAGridAreThoseOfItsTetrahedra) {
 /// NaN at a point, or in the cell: the tetrahedra that have it are vacuum.
 TEST(ReferenceMesh, NaNIsVacuum) {
   const MeshPointer mesh =
-      make_mesh(scenes::tetrahedra_of({{3, 1, 1}, [](int i, int j, int k) {
-                                         return Place{1.0 * i, 1.0 * j, 1.0 * k};
-                                       }}));
+      make_mesh(scenes::tetrahedralize({{3, 1, 1}, [](int i, int j, int k) {
+                                          return Place{1.0 * i, 1.0 * j, 1.0 * k};
+                                        }}));
   const Scene at_point =
       scene_of(mesh, at_points(*mesh, "f", [](const Place& p) { return p.x > 2.5 ? nan : 1.0; }),
                {{0, 1, {1, 1, 1}}});
@@ -206,9 +206,9 @@ TEST(ReferenceMesh, NaNIsVacuum) {
 TEST(ReferenceMesh, RaysThroughPointsEdgesAndFacesAreInOneTetrahedronAtATime) {
   constexpr int n = 4;
   const MeshPointer mesh =
-      make_mesh(scenes::tetrahedra_of({{n, n, n}, [](int i, int j, int k) {
-                                         return Place{1.0 * i, 1.0 * j, 1.0 * k};
-                                       }}));
+      make_mesh(scenes::tetrahedralize({{n, n, n}, [](int i, int j, int k) {
+                                          return Place{1.0 * i, 1.0 * j, 1.0 * k};
+                                        }}));
   const reference::Mesh own(*mesh);
   std::vector<Place> targets;  // Those of every third tetrahedron.
   for (std::size_t n_th = 0; n_th < mesh->tetrahedra().size(); n_th += 3) {

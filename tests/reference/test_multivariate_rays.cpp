@@ -135,8 +135,8 @@ TEST(ReferenceMultivariateRay, RotatedAndRankDeficientGaussiansFollowTheClosedFo
   GaussianPrimitive rotated;
   rotated.channels = {2, 0, 1};
   rotated.center = {0.55, 1.1, 0.9};
-  rotated.matrix =
-      matrix_of_widths({0.07, 0.2, 0.11}, {{0.36, 0.48, -0.8}, {-0.8, 0.6, 0}, {0.48, 0.64, 0.6}});
+  rotated.matrix = matrix_from_widths({0.07, 0.2, 0.11},
+                                      {{0.36, 0.48, -0.8}, {-0.8, 0.6, 0}, {0.48, 0.64, 0.6}});
   rotated.extinction = 9;
   rotated.color = {1, 0.25, 0};
   GaussianPrimitive flat;  // Looks at one combination of two channels, twice.

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The truth tables and tools/reference: samples of the committed tables are recomputed, fresh tables are
-generated and verified, and a table with a wrong digit is refused."""
+"""The truth tables and tools/reference: samples of the committed tables are recomputed, fresh
+tables are generated and verified, and a table with a wrong digit is refused."""
 import importlib
 import pathlib
 import random
@@ -14,7 +14,8 @@ import verify  # noqa: E402
 from mpmath import mpf  # noqa: E402
 
 # table -> (rows of the committed table to recompute, rows to generate)
-WITH_ROWS = {"special_functions": (60, 40), "linear_segment": (60, 40), "gaussian_segment": (40, 30),
+WITH_ROWS = {"special_functions": (60, 40), "linear_segment": (60, 40),
+             "gaussian_segment": (40, 30),
              "piecewise_linear_segment": (40, 30), "gaussian_mixture_segment": (3, 2),
              "trilinear_cell": (5, 4)}
 OF_VALUES = ("gauss_legendre", "approximation_coefficients")

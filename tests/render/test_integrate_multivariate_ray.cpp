@@ -84,8 +84,8 @@ struct TestTransfer {
     }
     if (with_table) tables.push_back({maker.pick(channels), table.view()});
   }
-  Multivariate<double> view() const {
-    Multivariate<double> result;
+  MultivariateTransfer<double> view() const {
+    MultivariateTransfer<double> result;
     result.gaussians = {gaussians.data(), static_cast<int>(gaussians.size())};
     result.table = tables.data();
     result.tables = static_cast<int>(tables.size());
@@ -130,7 +130,7 @@ WideStretch wide_ray(const TestChannels& channels, const Ray<double>& ray,
   cuts.push_back(begin);
   cuts.push_back(end);
   std::sort(cuts.begin(), cuts.end());
-  const Multivariate<double> view = transfer.view();
+  const MultivariateTransfer<double> view = transfer.view();
   WideStretch sum;
   for (std::size_t k = 0; k + 1 < cuts.size(); ++k) {
     const Number t0 = cuts[k], t1 = cuts[k + 1];

@@ -52,8 +52,8 @@ struct Slab {
     result.axis[1] = result.axis[2] = {nullptr, 2, 0};
     return result;
   }
-  Multivariate<double> transfer(int primitives) const {
-    Multivariate<double> result;
+  MultivariateTransfer<double> transfer(int primitives) const {
+    MultivariateTransfer<double> result;
     result.gaussians = {primitive, primitives};
     result.channels = 2;
     return result;
@@ -65,7 +65,7 @@ struct Slab {
   }
   /// The data are linear from cell to cell: each a stretch of its own.
   test::WideStretch truth(int primitives) const {
-    const Multivariate<double> view = transfer(primitives);
+    const MultivariateTransfer<double> view = transfer(primitives);
     test::WideStretch sum;
     for (std::size_t i = 0; i + 1 < static_cast<std::size_t>(n); ++i) {
       MultivariateSpan<double> span;
@@ -145,7 +145,7 @@ TEST(LinearSteps, StepsThatEndInVacuumAreVacuum) {
   slab.primitive[1].matrix[0][0] = slab.primitive[1].matrix[1][1] = 0;  // constant 0.9
   // The cells from 3 to 5 are vacuum; of steps of 2 the second and the third end in them.
   slab.data[1][4] = std::numeric_limits<double>::quiet_NaN();
-  Multivariate<double> transfer = slab.transfer(2);
+  MultivariateTransfer<double> transfer = slab.transfer(2);
   transfer.gaussians = {slab.primitive + 1, 1};
   const auto depth = [&](GaussianRule rule, double step) {
     return sample_linear_steps(slab.grid(), {{-2, 0.5, 0.5}, {1, 0, 0}}, transfer, rule, step, 1, 0,

@@ -48,11 +48,11 @@ struct CellRow {
   }
 
   RayResult integrate(double tolerance, Grade grade) const {
-    Multivariate<double> transfer;
+    MultivariateTransfer<double> transfer;
     transfer.gaussians = {primitive.data(), static_cast<int>(primitive.size())};
     const RayTolerance wanted{tolerance, grade, Precision::float64, 1};
     MultivariateRayIntegrator integrator(transfer, largest_extinction, wanted, span.length);
-    integrator.stretch(span, {0, span.length}, {}, 0, 8 * rounding_unit<double> * span.length);
+    integrator.add_stretch(span, {0, span.length}, {}, 0, 8 * rounding_unit<double> * span.length);
     return integrator.result();
   }
 };

@@ -25,7 +25,7 @@ class QuadraticMesh {
     const std::int32_t* cell = linear.corners.data();
     for (const CellShape shape : linear.shapes) {
       const bool completed = middles && random_() % 2 == 0;
-      std::vector<std::int32_t> nodes(cell, cell + points_of(shape));
+      std::vector<std::int32_t> nodes(cell, cell + point_count(shape));
       for (const auto& edge : edges_of(shape)) add_middle(nodes, cell, edge);
       const bool is_wedge = shape == CellShape::wedge;
       if (completed && (is_wedge || shape == CellShape::hexahedron)) {
@@ -39,7 +39,7 @@ class QuadraticMesh {
         grid_.shapes.push_back(quadratic(shape));
       }
       grid_.corners.insert(grid_.corners.end(), nodes.begin(), nodes.end());
-      cell += points_of(shape);
+      cell += point_count(shape);
     }
   }
 

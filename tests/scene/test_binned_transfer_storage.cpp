@@ -291,7 +291,7 @@ TEST(BinnedTransfer, SupportsAreWhatAbsorbs) {
     if (c.bins.supports == 0) return;
     ++tables_with;
     ASSERT_GT(c.bins.supports, 1);
-    ASSERT_LE(c.bins.supports, BinnedTransfer::most_supports);
+    ASSERT_LE(c.bins.supports, BinnedTransfer::max_supports);
     ASSERT_LT(c.bins.marks[c.bins.bins], BinnedTransfer::one_jump);
     const auto any_value = [&] {
       return c.values[static_cast<std::size_t>(tables.uniform() *
@@ -347,7 +347,7 @@ TEST(BinnedTransfer, JumpsAreMarked) {
       const float around[] = {std::nextafter(at, -1e38f), at, std::nextafter(at, 1e38f)};
       if (width > 0 && width <= 0x1p-44 * c.size &&  // whatever it is itself
           c.table.has_extinction(c.table.interval(here - near), c.table.interval(here + near))) {
-        for (const float v : around) ASSERT_TRUE(has_hard_jump(c.bins, v, v)) << v;
+        for (const float v : around) ASSERT_TRUE(has_unresolved_jump(c.bins, v, v)) << v;
         for (const float v : around) ASSERT_GE(c.marks(v, v), BinnedTransfer::one_jump) << v;
         ++hard;
       }
@@ -432,9 +432,9 @@ TEST(BinnedTransfer, NarrowIntervalsAreJumpsThatAreNotHard) {
       const auto v = static_cast<float>(0.5 + share * width);
       const int marks = bins.marks[bin_of(bins, v) + 1] - bins.marks[bin_of(bins, v)];
       EXPECT_EQ(marks >= BinnedTransfer::one_jump, width <= 256 * u) << width << ", " << share;
-      EXPECT_EQ(has_hard_jump(bins, v, v), width <= 0x1p-44) << width << ", " << share;
+      EXPECT_EQ(has_unresolved_jump(bins, v, v), width <= 0x1p-44) << width << ", " << share;
     }
-    EXPECT_FALSE(has_hard_jump(bins, 0.0f, 0.4f));
+    EXPECT_FALSE(has_unresolved_jump(bins, 0.0f, 0.4f));
   }
 }
 
@@ -480,9 +480,9 @@ TEST(BinnedTransfer, BendsAreNoLessThanTheSlopesChangeWithinAnInterval) {
         }
       }
       const double most = *std::max_element(change.begin(), change.end());
-      const float said = (c.bins.color_bend[bin_of(c.bins, upper) + 1] -
-                          c.bins.color_bend[bin_of(c.bins, lower)]) +
-                         c.bins.bend_rounding;
+      const float said = (c.bins.color_slope_change[bin_of(c.bins, upper) + 1] -
+                          c.bins.color_slope_change[bin_of(c.bins, lower)]) +
+                         c.bins.color_slope_change_rounding;
       ASSERT_GE(static_cast<double>(said), most) << lower << " to " << upper;
       if (most > 0) ++bent;
     }

@@ -72,7 +72,7 @@ void expect_built(const Volume& volume, const BlockRecords& blocks) {
 
 TEST(VolumeBlockRanges, OfEveryTypeAndCentering) {
   for (const Centering centering : {Centering::point, Centering::cell}) {
-    const auto check = [](const Volume& v) { expect_built(v, v.block_ranges()); };
+    const auto check = [](const Volume& v) { expect_built(v, v.block_records()); };
     check(make<std::uint8_t>(20, 9, 17, centering));
     check(make<std::int8_t>(20, 9, 17, centering));
     check(make<std::uint16_t>(20, 9, 17, centering));
@@ -97,40 +97,41 @@ TEST(VolumeBlockRanges, OfRectilinearAxes) {
     int n = 0;
     for (float& v : data) v = static_cast<float>(n++ * 37 % 101);
     const Volume volume(d, VolumeData(data));
-    expect_built(volume, volume.block_ranges());
+    expect_built(volume, volume.block_records());
   }
 }
 
 TEST(VolumeBlockRanges, PlanesAtWhichTheDataCanBendLieApart) {
   // Half cells at the border make no two such planes closer.
-  EXPECT_EQ(make<float>(9, 9, 9, Centering::cell).block_ranges().least_width.x, 1);
-  EXPECT_EQ(make<float>(9, 9, 9, Centering::point).block_ranges().least_width.x, 1);
-  EXPECT_EQ(make<float>(1, 2, 9, Centering::cell).block_ranges().least_width.x, 0.5);
-  EXPECT_EQ(make<float>(1, 2, 9, Centering::cell).block_ranges().least_width.y, 1);
+  EXPECT_EQ(make<float>(9, 9, 9, Centering::cell).block_records().least_width.x, 1);
+  EXPECT_EQ(make<float>(9, 9, 9, Centering::point).block_records().least_width.x, 1);
+  EXPECT_EQ(make<float>(1, 2, 9, Centering::cell).block_records().least_width.x, 0.5);
+  EXPECT_EQ(make<float>(1, 2, 9, Centering::cell).block_records().least_width.y, 1);
 }
 
 TEST(VolumeBlockRanges, AreBuiltOnceAndSharedByCopies) {
   auto volume = std::make_unique<Volume>(make<float>(30, 20, 10, Centering::point));
   const Volume before = *volume;
-  const BlockRecord* const record = volume->block_ranges().record;
-  EXPECT_EQ(volume->block_ranges().record, record);
-  EXPECT_EQ(before.block_ranges().record, record);
+  const BlockRecord* const record = volume->block_records().record;
+  EXPECT_EQ(volume->block_records().record, record);
+  EXPECT_EQ(before.block_records().record, record);
   const Volume after = *volume;
   const Volume moved = std::move(*volume);
   volume.reset();
-  EXPECT_EQ(after.block_ranges().record, record);
-  EXPECT_EQ(moved.block_ranges().record, record);
-  expect_built(moved, moved.block_ranges());
+  EXPECT_EQ(after.block_records().record, record);
+  EXPECT_EQ(moved.block_records().record, record);
+  expect_built(moved, moved.block_records());
 }
 
 TEST(VolumeBlockRanges, FromManyThreadsAtOnce) {
   for (int n = 0; n < 20; ++n) {
     const Volume volume = make<std::uint16_t>(40, 30, 20, Centering::cell);
     std::vector<const BlockRecord*> record(8);
-    run_threads(static_cast<int>(record.size()),
-                [&](int t) { record[static_cast<std::size_t>(t)] = volume.block_ranges().record; });
+    run_threads(static_cast<int>(record.size()), [&](int t) {
+      record[static_cast<std::size_t>(t)] = volume.block_records().record;
+    });
     for (const BlockRecord* r : record) EXPECT_EQ(r, record[0]);
-    expect_built(volume, volume.block_ranges());
+    expect_built(volume, volume.block_records());
   }
 }
 
@@ -141,8 +142,8 @@ TEST(VolumeBlockRanges, InParallelAsToldAndOnlyOnce) {
     ++calls;
     run_threads(4, [&](int t) { body(count * t / 4, count * (t + 1) / 4); });
   };
-  expect_built(volume, volume.block_ranges(parallel));
-  expect_built(volume, volume.block_ranges(parallel));
+  expect_built(volume, volume.block_records(parallel));
+  expect_built(volume, volume.block_records(parallel));
   EXPECT_EQ(calls, 1);
 }
 
@@ -152,8 +153,8 @@ TEST(VolumeBlockRanges, AFailureLeavesNothingHalfDone) {
     body(0, count / 2);
     throw std::runtime_error("cancelled");
   };
-  EXPECT_THROW(volume.block_ranges(fails), std::runtime_error);
-  expect_built(volume, volume.block_ranges());
+  EXPECT_THROW(volume.block_records(fails), std::runtime_error);
+  expect_built(volume, volume.block_records());
 }
 
 }  // namespace

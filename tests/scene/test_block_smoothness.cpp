@@ -38,13 +38,13 @@ class SmoothBlocksOf {
  public:
   static constexpr int levels = 5;
 
-  SmoothBlocksOf(const Volume& volume, const Points& points, double most_bending = any_bending,
-                 const ParallelFor& parallel = {})
-      : records_(volume.block_ranges()),
+  SmoothBlocksOf(const Volume& volume, const Points& points,
+                 double max_second_difference = any_bending, const ParallelFor& parallel = {})
+      : records_(volume.block_records()),
         function_(points),
         tables_(function_),
         classes_(records_, tables_.tables(), 1, parallel, [=](double) {
-          return StepLimits{levels, most_bending};
+          return StepLimits{levels, max_second_difference};
         }) {}
 
   bool is_smooth(int b) const { return classes_.view()[b].kind == BlockKind::smooth; }

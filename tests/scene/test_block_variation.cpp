@@ -48,14 +48,14 @@ TEST(BlockVariation, IsTheLargestAround) {
     other.join();
   };
   const BlockVariationStorage alone(channels), parallel(channels, in_parts);
-  const BlockRecords blocks = channels.grid().block_ranges();
+  const BlockRecords blocks = channels.grid().block_records();
   const int along[3] = {blocks.axis[0].cells(), blocks.axis[1].cells(), blocks.axis[2].cells()};
   ASSERT_GT(along[0] * along[1] * along[2], 60);
   for (int k = 0; k < along[2]; ++k) {
     for (int j = 0; j < along[1]; ++j) {
       for (int i = 0; i < along[0]; ++i) {
         for (int c = 0; c < 2; ++c) {
-          const BlockRecords its = channels[c].volume->block_ranges();
+          const BlockRecords its = channels[c].volume->block_records();
           BlockVariation expected{};
           for (int z = std::max(k - 1, 0); z <= std::min(k + 1, along[2] - 1); ++z) {
             for (int y = std::max(j - 1, 0); y <= std::min(j + 1, along[1] - 1); ++y) {

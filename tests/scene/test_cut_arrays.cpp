@@ -55,7 +55,7 @@ TEST(CutArrays, PointsKeepTheirValuesAndTheirType) {
     EXPECT_EQ(channels->value(0, p), static_cast<double>(number));
     EXPECT_EQ(channels->mesh().points()[p], given.points[static_cast<std::size_t>(number)]);
   }
-  EXPECT_EQ(channels->mesh().statistics().orphans, 1U);
+  EXPECT_EQ(channels->mesh().statistics().unused_points, 1U);
   EXPECT_EQ(channels->statistics(0).maximum, 8);
   EXPECT_EQ(channels->mesh().name(), "two.vtu");
 }
@@ -109,7 +109,7 @@ TEST(CutArrays, LengthsAreThoseOfTheVectorsBetween) {
   EXPECT_TRUE(std::isnan(value_at(*vacuum, 0, 13)));
   EXPECT_EQ(vacuum->statistics(0).nan, 2U);
   // All but the pyramid at the top touch the middle.
-  EXPECT_EQ(vacuum->vacuum(), vacuum->mesh().tetrahedra().size() - 2);
+  EXPECT_EQ(vacuum->vacuum_count(), vacuum->mesh().tetrahedra().size() - 2);
 }
 
 // What is wrong is named as the file has it.
@@ -140,7 +140,7 @@ TEST(CutArrays, RefusesWhatIsNotThere) {
   UnstructuredGrid bad = g;
   bad.arrays[0].values = std::vector<float>(9);
   expect_error([&] { cut(bad, {{"t", {}, {}}}); }, {"\"t\" has 9 values, but 10 points"});
-  expect_error([&] { tetrahedra_of(bad); }, {"\"t\" has 9 values"});
+  expect_error([&] { tetrahedralize(bad); }, {"\"t\" has 9 values"});
   bad = g;
   bad.arrays.clear();
   expect_error([&] { cut(bad, {{"t", {}, {}}}); }, {"there is no array \"t\"; it has none"});

@@ -59,7 +59,7 @@ void expect_right_in_every_order(const Cell& cell, std::size_t least, std::size_
   std::iota(numbers.begin(), numbers.end(), 0);
   do {
     const UnstructuredGrid grid = numbered(cell, numbers);
-    const TetrahedraCheck check(tetrahedra_of(grid));
+    const TetrahedraCheck check(tetrahedralize(grid));
 
     std::vector<Triangle> surface;
     double six_volumes = 0;
@@ -117,7 +117,7 @@ TEST(CutLinearCells, TetrahedraStayAsTheyAre) {
   grid.points = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {1, 1, 1}};
   grid.shapes = {CellShape::tetrahedron, CellShape::tetrahedron};
   grid.corners = {3, 1, 0, 2, 1, 2, 3, 4};
-  EXPECT_EQ(tetrahedra_of(grid).corners, grid.corners);
+  EXPECT_EQ(tetrahedralize(grid).corners, grid.corners);
 }
 
 // A hexahedron with collapsed edges is the wedge, pyramid or tetrahedron that is left.
@@ -141,7 +141,7 @@ TEST(CutLinearCells, CollapsedHexahedra) {
     do {
       UnstructuredGrid grid = numbered({CellShape::hexahedron, cube, {}}, numbers);
       for (std::size_t k = 0; k < 8; ++k) grid.corners[k] = numbers[c.same[k]];
-      const TetrahedraCheck check(tetrahedra_of(grid));
+      const TetrahedraCheck check(tetrahedralize(grid));
       ASSERT_EQ(check.boundary().size(), c.faces) << c.what << testing::PrintToString(numbers);
       ASSERT_FALSE(check.crowded()) << c.what << testing::PrintToString(numbers);
       // A side of it is bent: its volume depends on the diagonal.
@@ -156,19 +156,19 @@ TEST(CutLinearCells, RefusesWhatDoesNotFit) {
   UnstructuredGrid grid = good;
   grid.name = "part.vtu";
   grid.corners[4] = 6;
-  expect_error([&] { tetrahedra_of(grid); }, {"part.vtu: cell 0 has point 6", "from 0 to 5"});
+  expect_error([&] { tetrahedralize(grid); }, {"part.vtu: cell 0 has point 6", "from 0 to 5"});
   grid.corners[4] = -1;
-  expect_error([&] { tetrahedra_of(grid); }, {"cell 0 has point -1"});
+  expect_error([&] { tetrahedralize(grid); }, {"cell 0 has point -1"});
   grid = good;
   grid.shapes.push_back(CellShape::tetrahedron);
   grid.corners.insert(grid.corners.end(), {0, 1, 2, 77});
-  expect_error([&] { tetrahedra_of(grid); }, {"cell 1 has point 77"});
+  expect_error([&] { tetrahedralize(grid); }, {"cell 1 has point 77"});
   grid.corners.pop_back();
-  expect_error([&] { tetrahedra_of(grid); }, {"need 10 corners, but 9 are there"});
+  expect_error([&] { tetrahedralize(grid); }, {"need 10 corners, but 9 are there"});
   grid = good;
   grid.shapes.clear();
   grid.corners.clear();
-  expect_error([&] { tetrahedra_of(grid); }, {"there is no cell"});
+  expect_error([&] { tetrahedralize(grid); }, {"there is no cell"});
 }
 
 }  // namespace

@@ -45,7 +45,7 @@ TEST(CutMeshes, OfLinearCellsHaveNoCracks) {
       SCOPED_TRACE((collapsed ? "collapsed, seed " : "seed ") + std::to_string(seed));
       const int n = 1 + static_cast<int>(seed % 4);
       const MixedMesh mixed(n, seed, collapsed);
-      const UnstructuredGrid tetrahedra = tetrahedra_of(mixed.grid());
+      const UnstructuredGrid tetrahedra = tetrahedralize(mixed.grid());
       const TetrahedraCheck check(tetrahedra);
       expect_box(check, tetrahedra, n * MixedMesh::side, static_cast<std::size_t>(12 * n * n));
       EXPECT_GT(check.smallest, 0);
@@ -61,7 +61,7 @@ TEST(CutMeshes, OfQuadraticCellsHaveNoCracks) {
       const double size = n * MixedMesh::side;
       const MixedMesh mixed(n, seed, false);
       const QuadraticMesh quadratic(mixed.grid(), size, 40, middles, seed);
-      const UnstructuredGrid tetrahedra = tetrahedra_of(quadratic.grid());
+      const UnstructuredGrid tetrahedra = tetrahedralize(quadratic.grid());
       const TetrahedraCheck check(tetrahedra);
       expect_box(check, tetrahedra, size, static_cast<std::size_t>(48 * n * n));
       EXPECT_GT(check.smallest, 0);
@@ -76,7 +76,7 @@ TEST(CutMeshes, HaveNoFoldedFaces) {
   const std::vector<MeshArrayChoice> choices{{"x", {}, {}}};
   const MeshStatistics s = cut_into_tetrahedra(grid, choices)->mesh().statistics();
   EXPECT_EQ(s.folded_faces, 0U);
-  EXPECT_EQ(s.flat, 0U);
+  EXPECT_EQ(s.degenerate, 0U);
   EXPECT_EQ(s.boundary_faces, 12U * 9U);
 }
 
@@ -87,9 +87,9 @@ TEST(CutMeshes, AreTheSameInParallel) {
   std::vector<std::int32_t> numbers(grid.shapes.size());
   for (std::size_t i = 0; i < numbers.size(); ++i) numbers[i] = static_cast<std::int32_t>(i);
   grid.arrays.push_back({"cell", Centering::cell, 1, numbers});
-  const UnstructuredGrid once = tetrahedra_of(grid);
+  const UnstructuredGrid once = tetrahedralize(grid);
   const UnstructuredGrid split =
-      tetrahedra_of(grid, [](int count, const std::function<void(int, int)>& body) {
+      tetrahedralize(grid, [](int count, const std::function<void(int, int)>& body) {
         EXPECT_GT(count, 1);
         for (int i = count; i-- > 0;) body(i, i + 1);
       });

@@ -75,7 +75,7 @@ TEST(CutQuadraticCells, OfStraightEdgesAreTheLinearOnes) {
     for (const bool middles : {false, true}) {
       SCOPED_TRACE(cell.what);
       const QuadraticMesh mesh(linear_grid(cell), 0, 0, middles, 0);
-      const UnstructuredGrid tetrahedra = tetrahedra_of(mesh.grid());
+      const UnstructuredGrid tetrahedra = tetrahedralize(mesh.grid());
       const TetrahedraCheck check(tetrahedra);
       EXPECT_EQ(check.six_volumes, cell.six_volumes);
       EXPECT_GT(check.smallest, 0);
@@ -83,7 +83,7 @@ TEST(CutQuadraticCells, OfStraightEdgesAreTheLinearOnes) {
       EXPECT_LE(check.tetrahedra, cell.most);
       EXPECT_EQ(check.euler_characteristic(), 1);
       EXPECT_EQ(check.boundary().size(),
-                4 * TetrahedraCheck(tetrahedra_of(linear_grid(cell))).boundary().size());
+                4 * TetrahedraCheck(tetrahedralize(linear_grid(cell))).boundary().size());
       const bool complete = mesh.grid().shapes[0] == CellShape::biquadratic_wedge ||
                             mesh.grid().shapes[0] == CellShape::triquadratic_hexahedron;
       EXPECT_EQ(tetrahedra.points.size(),
@@ -118,7 +118,7 @@ TEST(CutQuadraticCells, ReproduceLinearFields) {
       }
       grid.arrays.push_back({"field", Centering::point, 1, values});
       grid.arrays.push_back({"place", Centering::point, 3, vectors});
-      const UnstructuredGrid tetrahedra = tetrahedra_of(grid);
+      const UnstructuredGrid tetrahedra = tetrahedralize(grid);
       ASSERT_EQ(tetrahedra.points.size(), grid.points.size() + cell.new_points);
       const auto& found = std::get<DataArray<double>>(tetrahedra.arrays[0].values);
       ASSERT_EQ(found.size(), tetrahedra.points.size());
@@ -161,7 +161,7 @@ TEST(CutQuadraticCells, MiddlesAreThoseOfTheShapeFunctions) {
   values.reserve(grid.points.size());
   for (const Vec3<double>& p : grid.points) values.push_back(field(p));
   grid.arrays.push_back({"field", Centering::point, 1, values});
-  const UnstructuredGrid tetrahedra = tetrahedra_of(grid);
+  const UnstructuredGrid tetrahedra = tetrahedralize(grid);
   const auto& found = std::get<DataArray<double>>(tetrahedra.arrays[0].values);
   ASSERT_EQ(found.size(), 27U);
   for (std::size_t i = 20; i < 27; ++i) EXPECT_EQ(found[i], field(tetrahedra.points[i])) << i;

@@ -8,6 +8,7 @@
 #include <limits>
 #include <numbers>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "pellucid/scene/builtin_fields.h"
@@ -172,6 +173,36 @@ TEST(DefaultTransferFunction, TakesEveryValidVolume) {
                      std::to_string(period) + " " + std::to_string(spacing));
         EXPECT_NO_THROW(default_transfer_function(make_volume(values, spacing)));
       }
+    }
+  }
+}
+
+// Up to the largest numbers that a volume holds.
+TEST(DefaultTransferFunction, ScalesWithTheData) {
+  const std::vector<float> values = head();
+  const auto plain = default_transfer_function(make_volume(values)).points();
+  for (const auto& [scale, offset] : std::vector<std::pair<double, double>>{
+           {1e30, 0}, {1e34, 0}, {2e34, 0}, {1e-30, 0}, {1e-37, 0}, {1e3, 1e6}, {1, -1e6}}) {
+    SCOPED_TRACE(std::to_string(scale) + ", " + std::to_string(offset));
+    std::vector<double> scaled;
+    for (const float value : values) {
+      scaled.push_back(scale * static_cast<double>(value) + offset);
+    }
+    const auto points = default_transfer_function(make_volume(scaled)).points();
+    ASSERT_EQ(points.size(), plain.size());
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      // What is rounded to a readable number is off by a thousandth of the range, 1010.
+      EXPECT_NEAR((points[i].value - offset) / scale, plain[i].value, 5.1) << i;
+      EXPECT_EQ(points[i].extinction, plain[i].extinction) << i;
+      EXPECT_EQ(points[i].color, plain[i].color) << i;
+    }
+  }
+  for (const double spacing : {1e-6, 1e6, 1e-25, 1e25}) {
+    const auto points = default_transfer_function(make_volume(values, spacing)).points();
+    ASSERT_EQ(points.size(), plain.size());
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      EXPECT_EQ(points[i].value, plain[i].value);
+      EXPECT_NEAR(points[i].extinction * spacing, plain[i].extinction, 0.06 * plain[i].extinction);
     }
   }
 }

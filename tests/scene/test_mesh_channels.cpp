@@ -47,7 +47,7 @@ TEST(MeshChannels, KeepTheirOrderNamesAndValues) {
   EXPECT_EQ(channels.value(0, 2), 9);
   EXPECT_EQ(channels.value(1, 5), 5);
   EXPECT_EQ(channels[1].unit, "K");
-  EXPECT_EQ(channels.vacuum(), 0U);
+  EXPECT_EQ(channels.vacuum_count(), 0U);
 }
 
 TEST(MeshChannels, StatisticsAreOfValuesThatTetrahedraUse) {
@@ -66,7 +66,7 @@ TEST(MeshChannels, StatisticsAreOfValuesThatTetrahedraUse) {
 
 TEST(MeshChannels, ATetrahedronWithNanInAnyChannelIsVacuum) {
   const auto vacuum = [](std::vector<MeshChannel> list) {
-    return MeshChannels(mesh(), std::move(list)).vacuum();
+    return MeshChannels(mesh(), std::move(list)).vacuum_count();
   };
   EXPECT_EQ(vacuum({at_points("a", {nan, 0, 0, 0, 0, 0, 0})}), 1U);
   EXPECT_EQ(vacuum({at_points("a", {0, 0, nan, 0, 0, 0, 0})}), 3U);

@@ -89,9 +89,8 @@ TEST(MixtureFit, FindsTheNumber) {
   const WeightedPoints points = sampled(mixture, 2, 64);
   EXPECT_EQ(fit_mixture(points, 1, 6, {0.1, 0.1}).components.size(), 3U);
   double best = std::numeric_limits<double>::infinity();
-  for (int n = 1; n <= 6; ++n)
-    best = std::min(best, fit_mixture(points, n, {0.1, 0.1}).information);
-  EXPECT_EQ(fit_mixture(points, 1, 6, {0.1, 0.1}).information, best);
+  for (int n = 1; n <= 6; ++n) best = std::min(best, fit_mixture(points, n, {0.1, 0.1}).bic);
+  EXPECT_EQ(fit_mixture(points, 1, 6, {0.1, 0.1}).bic, best);
 }
 
 TEST(MixtureFit, FindsCovariances) {
@@ -126,7 +125,7 @@ TEST(MixtureFit, LikelihoodOfOneNormalDistribution) {
   const double s = 1.25;
   const double expected = 6 * (-0.5 * std::log(2 * std::numbers::pi * s) - 0.5 / s);
   EXPECT_NEAR(fit.log_likelihood, expected, 1e-9);
-  EXPECT_NEAR(fit.information, 2 * std::log(6) - 2 * expected, 1e-9);
+  EXPECT_NEAR(fit.bic, 2 * std::log(6) - 2 * expected, 1e-9);
 }
 
 TEST(MixtureFit, TakesFewPoints) {

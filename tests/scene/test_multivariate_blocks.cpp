@@ -74,7 +74,7 @@ StepsBetween steps_between(const std::vector<Field>& fields, double width,
   GaussianPrimitive p;
   p.channels = {0};
   p.center = {0.5};
-  p.matrix = matrix_of_widths({width});
+  p.matrix = matrix_from_widths({width});
   p.extinction = 1;
   const MultivariateTransferFunction function(count, {p});
   MultivariateBlocksStorage storage(channels, function, 1e-5);
@@ -217,7 +217,7 @@ void look_around(const MultichannelGrid& grid, int i, int j, int k, Maker& maker
       for (int x = 8 * i; x < std::min(8 * i + 8, size[0] - 1); ++x) {
         for (int n = 0; n < 6; ++n) {
           const auto part = [&] { return n < 3 ? 0.999999 * maker.pick(2) : maker.uniform(0, 1); };
-          double v[most_channels];
+          double v[max_channels];
           if (grid.sample<double>({x + part(), y + part(), z + part()}, v)) see(v);
         }
       }
@@ -235,7 +235,7 @@ void expect_complete(int count, bool with_table, double negligible, unsigned see
         with_table ? a_table() : std::vector<ChannelTransferFunction>{});
     const MultivariateBlocksStorage storage(channels, transfer_function, negligible);
     const MultivariateBlocks blocks = storage.view();
-    const Multivariate<double> transfer = transfer_function.view();
+    const MultivariateTransfer<double> transfer = transfer_function.view();
     const MultichannelGrid grid = multichannel_grid(channels);
     EXPECT_EQ(blocks.left_out, negligible);
     ASSERT_EQ(blocks.records.count(), 4 * 3 * 2);
@@ -247,13 +247,13 @@ void expect_complete(int count, bool with_table, double negligible, unsigned see
           const PrimitiveSet set = blocks.primitives[block];
           ++(skip ? skipped : cells);
           if (!skip) {
-            for (int n = 0; n < count; ++n) ++(set.holds(n) ? kept : left_out);
+            for (int n = 0; n < count; ++n) ++(set.contains(n) ? kept : left_out);
           }
           look_around(grid, i, j, k, maker, [&](const double* v) {
             double missing = 0;
             for (int n = 0; n < count; ++n) {
               const Gaussian<double>& g = transfer.gaussians.primitive[n];
-              if (skip || !set.holds(n)) missing += g.peak * g.density(v);
+              if (skip || !set.contains(n)) missing += g.peak * g.density(v);
             }
             ASSERT_LE(missing, negligible * (1 + 1e-9)) << block;
             if (skip) {

@@ -75,39 +75,39 @@ double residual(const Matrix& k, const Matrix& sigma) {
 }
 
 TEST(MatrixOfWidths, FallsToOneEthAtTheWidth) {
-  EXPECT_EQ(matrix_of_widths({2, 0.25}), (Matrix{{0.5, 0}, {0, 4}}));
-  EXPECT_EQ(matrix_of_widths({infinity, 8}), (Matrix{{0, 0}, {0, 0.125}}));
-  EXPECT_EQ(matrix_of_widths({5}, {{-1}}), (Matrix{{-0.2}}));
+  EXPECT_EQ(matrix_from_widths({2, 0.25}), (Matrix{{0.5, 0}, {0, 4}}));
+  EXPECT_EQ(matrix_from_widths({infinity, 8}), (Matrix{{0, 0}, {0, 0.125}}));
+  EXPECT_EQ(matrix_from_widths({5}, {{-1}}), (Matrix{{-0.2}}));
   // A turn by the angle of the 3-4-5 triangle.
-  const Matrix k = matrix_of_widths({10, 5}, {{0.6, 0.8}, {-0.8, 0.6}});
+  const Matrix k = matrix_from_widths({10, 5}, {{0.6, 0.8}, {-0.8, 0.6}});
   EXPECT_EQ(k, (Matrix{{0.06, 0.08}, {-0.16, 0.12}}));
 }
 
 TEST(MatrixOfWidths, RefusesWhatIsNoShape) {
   for (const double bad : {0.0, -1.0, nan}) {
-    expect_error([&] { matrix_of_widths({1, bad}); }, {"width is", "must be a positive number"});
+    expect_error([&] { matrix_from_widths({1, bad}); }, {"width is", "must be a positive number"});
   }
-  expect_error([] { matrix_of_widths({1, 2}, {{1, 0}}); }, {"not a square matrix", "each width"});
-  expect_error([] { matrix_of_widths({1, 2}, {{1, 0}, {0}}); }, {"not a square matrix"});
+  expect_error([] { matrix_from_widths({1, 2}, {{1, 0}}); }, {"not a square matrix", "each width"});
+  expect_error([] { matrix_from_widths({1, 2}, {{1, 0}, {0}}); }, {"not a square matrix"});
   expect_error(
       [] {
-        matrix_of_widths({1, 2}, {{1, 0}, {0.1, 1}});
+        matrix_from_widths({1, 2}, {{1, 0}, {0.1, 1}});
       },
       {"axes 0 and 1 are not orthonormal", "product is 0.1", "right angles"});
   expect_error(
       [] {
-        matrix_of_widths({1, 2}, {{1, 0}, {0, 2}});
+        matrix_from_widths({1, 2}, {{1, 0}, {0, 2}});
       },
       {"axes 1 and 1 are not orthonormal", "product is 4", "length 1"});
-  expect_error([] { matrix_of_widths({1, 2}, {{1, 0}, {0, nan}}); }, {"not orthonormal"});
-  EXPECT_NO_THROW(matrix_of_widths({1, 2}, {{1, 0}, {0.99e-6, 1}}));
-  expect_error([] { matrix_of_widths({1, 2}, {{1, 0}, {1.01e-6, 1}}); }, {"not orthonormal"});
+  expect_error([] { matrix_from_widths({1, 2}, {{1, 0}, {0, nan}}); }, {"not orthonormal"});
+  EXPECT_NO_THROW(matrix_from_widths({1, 2}, {{1, 0}, {0.99e-6, 1}}));
+  expect_error([] { matrix_from_widths({1, 2}, {{1, 0}, {1.01e-6, 1}}); }, {"not orthonormal"});
 }
 
 TEST(MatrixOfCovariance, IsThatOfTheNormalDistribution) {
   // A variance of 2 is a width of 2.
-  EXPECT_EQ(matrix_of_covariance({{2}}), (Matrix{{0.5}}));
-  const Matrix k = matrix_of_covariance({{8, 0}, {0, 0.5}});
+  EXPECT_EQ(matrix_from_covariance({{2}}), (Matrix{{0.5}}));
+  const Matrix k = matrix_from_covariance({{8, 0}, {0, 0.5}});
   EXPECT_DOUBLE_EQ(k[0][0], 0.25);
   EXPECT_DOUBLE_EQ(k[1][1], 1);
   EXPECT_EQ(k[0][1], 0);
@@ -135,26 +135,26 @@ TEST(MatrixOfCovariance, IsInverseToTheLastDigits) {
         sigma[i][j] = sigma[j][i] = sum * scale[i] * scale[j];
       }
     }
-    worst = std::max(worst, residual(matrix_of_covariance(sigma), sigma));
+    worst = std::max(worst, residual(matrix_from_covariance(sigma), sigma));
   }
   std::printf("largest entry of 2 K S K^T - 1: %.2g\n", worst);
   EXPECT_LT(worst, 2e-15);
 }
 
 TEST(MatrixOfCovariance, RefusesWhatIsNone) {
-  expect_error([] { matrix_of_covariance({}); }, {"covariance is not a square matrix"});
-  expect_error([] { matrix_of_covariance({{1, 0}}); }, {"covariance is not a square matrix"});
+  expect_error([] { matrix_from_covariance({}); }, {"covariance is not a square matrix"});
+  expect_error([] { matrix_from_covariance({{1, 0}}); }, {"covariance is not a square matrix"});
   expect_error(
       [] {
-        matrix_of_covariance({{1, 0.5}, {0.25, 1}});
+        matrix_from_covariance({{1, 0.5}, {0.25, 1}});
       },
       {"not symmetric", "0.5 and 0.25"});
   for (const Matrix& bad : {Matrix{{0}}, Matrix{{-1}}, Matrix{{nan}}, Matrix{{1, 1}, {1, 1}},
                             Matrix{{1, 2}, {2, 1}}, Matrix{{1, 0}, {0, -1}}}) {
-    expect_error([&] { matrix_of_covariance(bad); },
+    expect_error([&] { matrix_from_covariance(bad); },
                  {"covariance is not positive definite", "give a matrix"});
   }
-  expect_error([] { matrix_of_covariance({{1, nan}, {nan, 1}}); }, {"covariance is not"});
+  expect_error([] { matrix_from_covariance({{1, nan}, {nan, 1}}); }, {"covariance is not"});
 }
 
 TEST(MultivariateTransferFunction, SumsItsTerms) {
@@ -228,7 +228,7 @@ TEST(MultivariateTransferFunction, RefusesTablesThatItCannotSum) {
                    {{channel, table()}});
   }
   const TransferFunction opacities =
-      from_opacity_table({{0, 0, {1, 1, 1}}, {1, 0.5, {1, 1, 1}}}, 1, 1e-3);
+      transfer_function_from_opacity_table({{0, 0, {1, 1, 1}}, {1, 0.5, {1, 1, 1}}}, 1, 1e-3);
   expect_refused(1, {}, {"stands for an opacity table", "give points with extinctions"},
                  {{0, opacities}});
 }

@@ -148,7 +148,8 @@ std::string place(const Entries& table, double v) {
 /// Checks extinction and color of the table's transfer function against the truth.
 void expect_within(const Entries& table, double unit_distance, double relative_error,
                    std::mt19937_64& random, test::ErrorRecord& record) {
-  const TransferFunction function = from_opacity_table(table, unit_distance, relative_error);
+  const TransferFunction function =
+      transfer_function_from_opacity_table(table, unit_distance, relative_error);
   ASSERT_LE(function.relative_error(), relative_error);
   const PiecewiseLinear<double> view = function.view<double>();
   for (const double v : samples(table, function, random)) {
@@ -337,7 +338,8 @@ TEST(OpacityTable, RaysStayWithinTheApproximationError) {
                          {2 * static_cast<double>(random() % 2), 0, 0}});
       }
       const double unit_distance = std::array{1.0, 1e-2, 40.0}[random() % 3];
-      const TransferFunction function = from_opacity_table(table, unit_distance, relative_error);
+      const TransferFunction function =
+          transfer_function_from_opacity_table(table, unit_distance, relative_error);
       for (int ray = 0; ray < 4; ++ray) {
         std::vector<double> values(2 + random() % 4);
         for (double& value : values) value = (count + 1) * uniform(random) - 1;
@@ -357,7 +359,8 @@ TEST(OpacityTable, RaysThroughSinglePeaksOfOne) {
   const Entries table{{0, 0, {}}, {100, 0, {1, 0, 0}}, {101, 1, {1, 0, 0}}, {102, 0, {0, 1, 0}}};
   for (const double relative_error : {1e-2, 1.0 / 2048, 1e-5}) {
     test::ErrorRecord radiance("peak, radiance", "of the bound"), opacity("peak", "of the bound");
-    const TransferFunction function = from_opacity_table(table, 0.5, relative_error);
+    const TransferFunction function =
+        transfer_function_from_opacity_table(table, 0.5, relative_error);
     for (const double end : {100.5, 101.0, 101.5, 150.0}) {
       for (double length = 1e-3; length < 1e3; length *= 1.7) {
         expect_ray(table, function, {50, end}, length, 0.5, radiance, opacity);
@@ -375,7 +378,7 @@ TEST(OpacityTable, RaysThroughSinglePeaksOfOne) {
 TEST(OpacityTable, ConstantDataWhereTheOpacityIsOneAreOpaque) {
   const double unit_distance = 0.25;
   const auto opacity = [unit_distance](const Entries& table, double v, double length) {
-    const TransferFunction f = from_opacity_table(table, unit_distance, 1e-3);
+    const TransferFunction f = transfer_function_from_opacity_table(table, unit_distance, 1e-3);
     return piecewise_linear_segment(f.view<double>(), v, v, length * unit_distance).opacity;
   };
   const auto expect_opaque = [&opacity](const Entries& table, double v) {
@@ -402,11 +405,11 @@ TEST(OpacityTable, ConstantDataWhereTheOpacityIsOneAreOpaque) {
   expect_opaque({{-1, 0, {}}, {0, 1, {}}, {1, 0, {}}}, 0);
   expect_opaque({{1, 0, {}}, {next(1), 1, {}}, {next(next(1)), 0, {}}}, next(1));
 
-  const TransferFunction f = from_opacity_table(wall, unit_distance, 1e-3);
+  const TransferFunction f = transfer_function_from_opacity_table(wall, unit_distance, 1e-3);
   EXPECT_EQ(f.view<double>().evaluate(0.2).extinction, opaque_extinction / unit_distance);
   // A long way through a wall is as opaque in float; a peak between two floats is gone there.
   EXPECT_GE(f.view<float>().evaluate(0.2F).extinction, 3.9e6F);
-  const TransferFunction g = from_opacity_table(peak, unit_distance, 1e-3);
+  const TransferFunction g = transfer_function_from_opacity_table(peak, unit_distance, 1e-3);
   EXPECT_LT(g.view<float>().evaluate(101.0F).extinction, 200);
   EXPECT_NE(std::find(g.merged_in_float().begin(), g.merged_in_float().end(), 101.0),
             g.merged_in_float().end());
@@ -419,7 +422,7 @@ TEST(OpacityTable, WhatIsConstantStaysExact) {
            Entries{{0, 0.3, {}}, {1, 0.3, {1, 1, 1}}, {1, 1, {}}, {2, 1, {}}, {2, 0, {}}},
            Entries{{0, 0, {}}, {1, 0, {}}, {2, 0, {1, 1, 1}}, {3, 0, {}}},
        }) {
-    const TransferFunction function = from_opacity_table(table, 0.5, 1e-3);
+    const TransferFunction function = transfer_function_from_opacity_table(table, 0.5, 1e-3);
     EXPECT_EQ(function.relative_error(), 0);
     EXPECT_EQ(function.approximation_error(), 0);
     ASSERT_EQ(function.points().size(), table.size());
@@ -432,8 +435,8 @@ TEST(OpacityTable, WhatIsConstantStaysExact) {
     }
   }
   // A plateau beside a slope is still one.
-  const TransferFunction function =
-      from_opacity_table({{0, 0.4, {}}, {1, 0.4, {}}, {2, 0, {}}, {3, 0, {}}}, 1, 1e-3);
+  const TransferFunction function = transfer_function_from_opacity_table(
+      {{0, 0.4, {}}, {1, 0.4, {}}, {2, 0, {}}, {3, 0, {}}}, 1, 1e-3);
   const auto& points = function.points();
   EXPECT_EQ(points[0].extinction, points[1].extinction);
   EXPECT_EQ(points[points.size() - 2].value, 2);
@@ -444,7 +447,9 @@ TEST(OpacityTable, TakesFewPoints) {
   // Steps of the root of the depth, from 0 to √36.7 for an opacity from 0 to 1, are about
   // 2 √relative_error long.
   const auto ramp = [](double opacity, double relative_error) {
-    return from_opacity_table({{0, 0, {}}, {255, opacity, {}}}, 1, relative_error).points().size();
+    return transfer_function_from_opacity_table({{0, 0, {}}, {255, opacity, {}}}, 1, relative_error)
+        .points()
+        .size();
   };
   EXPECT_LE(ramp(1, 1.0 / 2048), 160U);
   EXPECT_LE(ramp(1, 2.5e-5), 640U);
@@ -458,21 +463,22 @@ TEST(OpacityTable, RelativeErrorForAnError) {
   std::mt19937_64 random(6);
   for (const double error : {1e-2, 1e-4, 1e-7}) {
     for (const double largest : {0.0, 0.3, 1.0, 20.0}) {
-      const double relative_error = relative_error_for(error, largest);
-      const TransferFunction function =
-          from_opacity_table({{0, 0, {0, largest, 0}}, {1, 1, {}}}, 3, relative_error);
+      const double relative_error = required_relative_error(error, largest);
+      const TransferFunction function = transfer_function_from_opacity_table(
+          {{0, 0, {0, largest, 0}}, {1, 1, {}}}, 3, relative_error);
       EXPECT_LE(function.approximation_error(), error);
       EXPECT_GE(function.approximation_error(), 0.9 * error);
     }
   }
-  EXPECT_EQ(relative_error_for(1, 1), largest_relative_error);
-  EXPECT_EQ(relative_error_for(1e-7, 1e6), smallest_relative_error);
-  EXPECT_EQ(relative_error_for(0, 1), smallest_relative_error);
+  EXPECT_EQ(required_relative_error(1, 1), largest_relative_error);
+  EXPECT_EQ(required_relative_error(1e-7, 1e6), smallest_relative_error);
+  EXPECT_EQ(required_relative_error(0, 1), smallest_relative_error);
 }
 
 void expect_refused(const Entries& table, std::initializer_list<const char*> parts,
                     double unit_distance = 1, double relative_error = 1e-3) {
-  expect_error([&] { from_opacity_table(table, unit_distance, relative_error); }, parts);
+  expect_error([&] { transfer_function_from_opacity_table(table, unit_distance, relative_error); },
+               parts);
 }
 
 TEST(OpacityTableErrors, EachNamesThePointAndTheNumber) {
@@ -498,7 +504,7 @@ TEST(OpacityTableErrors, Limits) {
                    bad == 1e31 ? 0.6 : bad);
   }
   for (const double unit_distance : {smallest_unit_distance, largest_unit_distance}) {
-    EXPECT_NO_THROW(from_opacity_table(table, unit_distance, 1e-3));
+    EXPECT_NO_THROW(transfer_function_from_opacity_table(table, unit_distance, 1e-3));
   }
   Entries comb;
   for (int i = 0; i < 64; ++i) comb.push_back({1.0 * i, 1.0 * (i % 2), {}});

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <string>
 #include <vector>
 
@@ -47,6 +48,23 @@ TEST(Presets, AreFunctionsOfAnyData) {
       EXPECT_EQ(function.approximation_error(), 0) << name;
     }
   }
+}
+
+TEST(Presets, RelativeOnesScaleWithTheData) {
+  for (const char* name : {"simulation-diverging", "simulation-isosurfaces", "x-ray"}) {
+    const auto plain = make_preset(name, ramp(0, 1)).points();
+    for (const float scale : {1e30F, 2e37F, 1e-30F}) {
+      const auto points = make_preset(name, ramp(0, scale)).points();
+      ASSERT_EQ(points.size(), plain.size());
+      for (std::size_t i = 0; i < points.size(); ++i) {
+        EXPECT_NEAR(points[i].value / static_cast<double>(scale), plain[i].value, 1e-4) << name;
+        EXPECT_EQ(points[i].extinction, plain[i].extinction) << name;
+      }
+    }
+  }
+  EXPECT_NO_THROW(make_preset("mr-t1-brain", ramp(-1e37F, 2.1e37F)));
+  EXPECT_NO_THROW(make_preset("x-ray", ramp(2.1e37F, 2.1e37F)));
+  EXPECT_NO_THROW(make_preset("x-ray", ramp(0, 1), std::array{-2e37, 2e37}));
 }
 
 TEST(Presets, InHounsfieldUnitsDoNotLookAtTheData) {

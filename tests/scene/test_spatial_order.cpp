@@ -74,7 +74,7 @@ TEST(InOrder, IsThatOfAStableSortForAnyNumberOfThreads) {
     std::stable_sort(expected.begin(), expected.end(), [&](std::int32_t a, std::int32_t b) {
       return keys[static_cast<std::size_t>(a)] < keys[static_cast<std::size_t>(b)];
     });
-    EXPECT_EQ(in_order(keys, or_serial({})), expected);
+    EXPECT_EQ(in_order(keys, parallel_or_serial({})), expected);
     EXPECT_EQ(in_order(keys, in_threads), expected);
   }
 }

@@ -58,17 +58,17 @@ TEST(TetrahedralMesh, IsCounted) {
   const TetrahedralMesh mesh(description);
   const MeshStatistics& s = mesh.statistics();
   EXPECT_EQ(s.points, 4u);
-  EXPECT_EQ(s.orphans, 1u);
+  EXPECT_EQ(s.unused_points, 1u);
   EXPECT_EQ(s.tetrahedra, 1u);
   EXPECT_EQ(s.boundary_faces, 4u);
-  EXPECT_EQ(s.flat, 0u);
+  EXPECT_EQ(s.degenerate, 0u);
   EXPECT_EQ(s.folded_faces, 0u);
   EXPECT_DOUBLE_EQ(s.volume, 1.0 / 6);
   EXPECT_DOUBLE_EQ(s.mean_edge, (1 + std::sqrt(2.0)) / 2);
   EXPECT_EQ(mesh.name(), "corner.vtu");
   // The point that none uses counts for nothing.
   EXPECT_EQ(mesh.bounds().upper, (Place{1, 1, 1}));
-  EXPECT_EQ(mesh.view().reach, 1);
+  EXPECT_EQ(mesh.view().coordinate_bound, 1);
   EXPECT_EQ(mesh.view().count, 1);
 }
 
@@ -92,7 +92,7 @@ TEST(TetrahedralMesh, FacesArePairedAsByComparingAllOfThem) {
     std::size_t boundary = 0;
     for (const auto& [face, codes] : owners(mesh)) {
       const auto behind = [&](std::int32_t code) {
-        return mesh.tetrahedra()[static_cast<std::size_t>(code >> 2)].behind[code & 3];
+        return mesh.tetrahedra()[static_cast<std::size_t>(code >> 2)].neighbor[code & 3];
       };
       ASSERT_LE(codes.size(), 2u);
       if (codes.size() == 1) {
@@ -105,7 +105,7 @@ TEST(TetrahedralMesh, FacesArePairedAsByComparingAllOfThem) {
     }
     EXPECT_EQ(mesh.statistics().boundary_faces, boundary);
     EXPECT_EQ(mesh.statistics().folded_faces, 0u);
-    EXPECT_EQ(mesh.statistics().flat, 0u);
+    EXPECT_EQ(mesh.statistics().degenerate, 0u);
     EXPECT_NEAR(mesh.statistics().volume, static_cast<double>(mesh.tetrahedra().size()) / 6, 1e-9);
   }
 }
@@ -142,7 +142,7 @@ TEST(TetrahedralMesh, TheTreeHoldsTheBoundary) {
           for (const std::int32_t box : above) {
             for (int a = 0; a < 3; ++a) {
               // Larger by more than what rounding to float can take.
-              const double slack = 0x1p-22 * view.reach;
+              const double slack = 0x1p-22 * view.coordinate_bound;
               ASSERT_LE(static_cast<double>(view.tree[box].lower[a]), p[a] - slack);
               ASSERT_GE(static_cast<double>(view.tree[box].upper[a]), p[a] + slack);
             }
@@ -196,7 +196,7 @@ TEST(TetrahedralMesh, FlatTetrahedraAreCountedAndFoldNothing) {
   description.points.push_back({0.25, 0.5, 0});
   description.tetrahedra.push_back({0, 1, 2, 4});
   const TetrahedralMesh mesh(description);
-  EXPECT_EQ(mesh.statistics().flat, 1u);
+  EXPECT_EQ(mesh.statistics().degenerate, 1u);
   EXPECT_EQ(mesh.statistics().folded_faces, 0u);
   EXPECT_DOUBLE_EQ(mesh.statistics().volume, 1.0 / 6);
   // All points in one place, and on a line that binary fractions lack.
@@ -204,9 +204,9 @@ TEST(TetrahedralMesh, FlatTetrahedraAreCountedAndFoldNothing) {
   for (std::size_t i = 0; i < 4; ++i) {
     description.points[i] = Place{0.1, 0.7, 1.0 / 3} * static_cast<double>(i);
   }
-  EXPECT_EQ(TetrahedralMesh(description).statistics().flat, 1u);
+  EXPECT_EQ(TetrahedralMesh(description).statistics().degenerate, 1u);
   description.points.assign(4, {0.1, 0.2, 0.3});
-  EXPECT_EQ(TetrahedralMesh(description).statistics().flat, 1u);
+  EXPECT_EQ(TetrahedralMesh(description).statistics().degenerate, 1u);
 }
 
 TEST(TetrahedralMesh, IsTheSameForAnyNumberOfThreads) {
@@ -215,8 +215,8 @@ TEST(TetrahedralMesh, IsTheSameForAnyNumberOfThreads) {
   const TetrahedralMesh one(description), two(description, in_threads);
   ASSERT_EQ(one.tetrahedra().size(), two.tetrahedra().size());
   for (std::size_t i = 0; i < one.tetrahedra().size(); ++i) {
-    ASSERT_TRUE(std::equal(one.tetrahedra()[i].behind, one.tetrahedra()[i].behind + 4,
-                           two.tetrahedra()[i].behind));
+    ASSERT_TRUE(std::equal(one.tetrahedra()[i].neighbor, one.tetrahedra()[i].neighbor + 4,
+                           two.tetrahedra()[i].neighbor));
   }
   EXPECT_EQ(one.statistics().volume, two.statistics().volume);
   EXPECT_EQ(one.statistics().mean_edge, two.statistics().mean_edge);
@@ -224,7 +224,7 @@ TEST(TetrahedralMesh, IsTheSameForAnyNumberOfThreads) {
 
 TEST(TetrahedralMesh, TakesAtMostAHundredBytesATetrahedron) {
   const TetrahedralMesh mesh(lattice_mesh(16, 6));
-  EXPECT_LE(mesh.memory(), 100 * mesh.tetrahedra().size());
+  EXPECT_LE(mesh.memory_bytes(), 100 * mesh.tetrahedra().size());
 }
 
 TEST(TetrahedralMesh, RefusesWhatIsNoMesh) {
@@ -257,7 +257,7 @@ TEST(TetrahedralMesh, RefusesPointsThatAreNowhereOnlyWhereTheyAreUsed) {
       description.points[0][a] = wrong;
       description.points[3] = {0, 1, 0};
       description.tetrahedra[0] = {1, 2, 3, 4};
-      EXPECT_EQ(TetrahedralMesh(description).statistics().orphans, 1u);
+      EXPECT_EQ(TetrahedralMesh(description).statistics().unused_points, 1u);
     }
   }
 }
@@ -278,7 +278,7 @@ TEST(TetrahedralMesh, CallsPointsByTheirNumbers) {
   description.point_numbers = {40, 10, 30, 20};
   const TetrahedralMesh mesh(description);
   EXPECT_EQ(mesh.point_number(2), 30);
-  EXPECT_EQ(mesh.named(0), "the tetrahedron of points 10, 20, 30 and 40");
+  EXPECT_EQ(mesh.describe(0), "the tetrahedron of points 10, 20, 30 and 40");
   EXPECT_EQ(TetrahedralMesh(corner()).point_number(2), 2);
   description.points[1].y = infinity;
   expect_refused(description, {"point 10 is (1, inf, 0)"});

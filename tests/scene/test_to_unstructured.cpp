@@ -77,14 +77,14 @@ TEST(ToUnstructured, RectilinearAxesKeepTheirCoordinates) {
 }
 
 TEST(HexahedraOfGrid, AreOfVTKsOrder) {
-  const std::vector<std::int32_t> corners = hexahedra_of_grid({3, 2, 2});
+  const std::vector<std::int32_t> corners = grid_hexahedra({3, 2, 2});
   EXPECT_EQ(corners, (std::vector<std::int32_t>{0, 1, 4, 3, 6, 7, 10, 9,  //
                                                 1, 2, 5, 4, 7, 8, 11, 10}));
 }
 
 TEST(HexahedraOfGrid, RefusesWhatSpansNoCellOrCannotBeCounted) {
-  expect_error([] { hexahedra_of_grid({3, 1, 2}); }, {"3 x 1 x 2 points span no cells"});
-  expect_error([] { hexahedra_of_grid({2000, 2000, 2000}); }, {"more than 2147483647"});
+  expect_error([] { grid_hexahedra({3, 1, 2}); }, {"3 x 1 x 2 points span no cells"});
+  expect_error([] { grid_hexahedra({2000, 2000, 2000}); }, {"more than 2147483647"});
 }
 
 }  // namespace

@@ -40,7 +40,8 @@ GaussianPrimitive gaussian(std::vector<double> center, const std::vector<double>
                            double extinction, Rgb<double> color) {
   std::vector<int> channels;
   for (std::size_t i = 0; i < center.size(); ++i) channels.push_back(static_cast<int>(i));
-  return over(std::move(channels), std::move(center), matrix_of_widths(widths), extinction, color);
+  return over(std::move(channels), std::move(center), matrix_from_widths(widths), extinction,
+              color);
 }
 
 /// A smooth field in [0, 1], another one for each number.
@@ -137,7 +138,7 @@ Exhibit turned_and_rank_deficient(int) {
       {0.36, 0.48, -0.8}, {-0.8, 0.6, 0}, {0.48, 0.64, 0.6}};
   return exhibit(
       {axis(0), axis(1), axis(2)},
-      {over({2, 0, 1}, {0.5, 0.4, 0.6}, matrix_of_widths({0.3, 0.02, 0.1}, axes), 4, {1, 0.5, 0}),
+      {over({2, 0, 1}, {0.5, 0.4, 0.6}, matrix_from_widths({0.3, 0.02, 0.1}, axes), 4, {1, 0.5, 0}),
        over({0, 1, 2}, {0.3, 0.5, 0.4}, {{40, -30, 20}}, 3, {0, 0.5, 1}),
        over({0, 2}, {0.7, 0.6}, {{12, 9}, {4, 3}, {-8, -6}}, 1, {0.4, 1, 0.4}),
        over({1}, {0.2}, {{500}}, 20, {1, 1, 1})});
@@ -192,7 +193,7 @@ Exhibit eight_channels(int) {
       g.center.push_back(center(c) + width(c, 0.03 * (i - 3)));
       widths.push_back(width(c, c == i ? 0.05 : 0.4));
     }
-    g.matrix = matrix_of_widths(widths);
+    g.matrix = matrix_from_widths(widths);
     g.extinction = 4;
     g.color = hue(i);
     primitives.push_back(std::move(g));

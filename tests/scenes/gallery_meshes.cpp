@@ -82,10 +82,10 @@ Exhibit smooth_field(int) {
 Exhibit along_the_axes(int size) {
   constexpr int n = 17;
   const MeshChannelsPointer mesh =
-      with_field(tetrahedra_of({{n, n, n},
-                                [](int i, int j, int k) {
-                                  return Place{1.0 * i, 1.0 * j, 1.0 * k};
-                                }}),
+      with_field(tetrahedralize({{n, n, n},
+                                 [](int i, int j, int k) {
+                                   return Place{1.0 * i, 1.0 * j, 1.0 * k};
+                                 }}),
                  [](const Place& p) {
                    return wave(p * (2.0 / n) - Place{1, 1, 1});
                  });
@@ -127,7 +127,7 @@ TetrahedralMesh::Description ring(std::array<int, 3> cubes, double inner, double
     const double z = height * (1.0 * k / cubes[2] - 0.5);
     return centre + Place{radius * std::cos(angle), radius * std::sin(angle), z};
   };
-  return tetrahedra_of(lattice);
+  return tetrahedralize(lattice);
 }
 
 /// One goes through the other and does not touch it; a piece is missing from it.
@@ -155,7 +155,7 @@ Exhibit shell(int) {
                  radius * std::cos(latitude) * std::sin(longitude), radius * std::sin(latitude)};
   };
   lattice.keep = [](int i, int j, int k) { return (5 * i + 3 * j + 2 * k) % 11 > 1; };
-  return exhibit(with_field(tetrahedra_of(lattice), wave), [] {
+  return exhibit(with_field(tetrahedralize(lattice), wave), [] {
     Points points = ramps();
     for (TransferFunction::Point& p : points) p.extinction *= 6;
     return points;
@@ -185,8 +185,8 @@ Exhibit two_variables(int) {
   const MeshPointer mesh = make_mesh(box_of_cubes(8));
   return exhibit(
       on_mesh(mesh, {at_points(*mesh, "first", wave), at_points(*mesh, "second", other_wave)}),
-      {gaussian({0, 1}, {0.5, 0.5}, matrix_of_widths({0.02, 0.3}), 20, {1, 0.5, 0.1}),
-       gaussian({0, 1}, {0.35, 0.6}, matrix_of_widths({0.2, 0.01}), 30, {0.1, 0.5, 1}),
+      {gaussian({0, 1}, {0.5, 0.5}, matrix_from_widths({0.02, 0.3}), 20, {1, 0.5, 0.1}),
+       gaussian({0, 1}, {0.35, 0.6}, matrix_from_widths({0.2, 0.01}), 30, {0.1, 0.5, 1}),
        gaussian({1}, {0.4}, {{3}}, 0.4, {0.3, 1, 0.4})});
 }
 
@@ -200,7 +200,7 @@ Exhibit three_variables(int) {
       {gaussian({0, 1}, {0.5, 0.45}, {{30, -40}, {15, -20}}, 8, {1, 0.5, 0}),
        gaussian({0, 1, 2}, {0.4, 0.6, 110}, {{6, 4, 0}, {-4, 6, 0.01}, {0, 0.3, 0.02}}, 5,
                 {0, 0.5, 1}),
-       gaussian({2, 0}, {80, 0.5}, matrix_of_widths({20, 0.004}), 40, {0.4, 1, 0.4})},
+       gaussian({2, 0}, {80, 0.5}, matrix_from_widths({20, 0.004}), 40, {0.4, 1, 0.4})},
       {{1, TransferFunction({{0.5, 0, {1, 0, 1}}, {0.55, 1, {1, 1, 1}}, {0.6, 0, {1, 1, 1}}})}});
 }
 

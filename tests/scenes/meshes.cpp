@@ -74,7 +74,7 @@ MeshChannel channel(const std::string& name, Centering centering, std::size_t co
 
 }  // namespace
 
-TetrahedralMesh::Description tetrahedra_of(const Lattice& lattice) {
+TetrahedralMesh::Description tetrahedralize(const Lattice& lattice) {
   const auto [nx, ny, nz] = lattice.cubes;
   TetrahedralMesh::Description mesh;
   mesh.name = "lattice";
@@ -132,9 +132,9 @@ TetrahedralMesh::Description random_delaunay(int points, unsigned seed) {
 
 TetrahedralMesh::Description box_of_cubes(int cubes) {
   const auto at = [=](int i) { return 2.0 * i / cubes - 1; };
-  return tetrahedra_of({{cubes, cubes, cubes}, [&](int i, int j, int k) {
-                          return Vec3<double>{at(i), at(j), at(k)};
-                        }});
+  return tetrahedralize({{cubes, cubes, cubes}, [&](int i, int j, int k) {
+                           return Vec3<double>{at(i), at(j), at(k)};
+                         }});
 }
 
 TetrahedralMesh::Description joined(TetrahedralMesh::Description first,

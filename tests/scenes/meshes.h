@@ -24,7 +24,7 @@ struct Lattice {
   bool closed = false;  ///< the last layer of points along i is the first: a ring
   std::function<bool(int i, int j, int k)> keep{};  ///< which cubes are there; empty: all
 };
-TetrahedralMesh::Description tetrahedra_of(const Lattice& lattice);
+TetrahedralMesh::Description tetrahedralize(const Lattice& lattice);
 
 /// Delaunay's tetrahedra of points at random in [-1,1]³ (A. Bowyer, D. F. Watson 1981), with all
 /// the slivers that they have. The boundary is not quite convex.

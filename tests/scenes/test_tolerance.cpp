@@ -46,7 +46,8 @@ void expect_kept(const MatrixRow& row, double least_tolerance) {
     if (cell.grade == Grade::proved) {
       EXPECT_EQ(verdict.proved, static_cast<int>(row.pixels)) << where;
     }
-    EXPECT_EQ(cell.report.pixels_over, static_cast<std::uint64_t>(verdict.said_over)) << where;
+    EXPECT_EQ(cell.report.pixels_over_tolerance, static_cast<std::uint64_t>(verdict.said_over))
+        << where;
     EXPECT_EQ(cell.report.pixels_proved, static_cast<std::uint64_t>(verdict.proved)) << where;
     EXPECT_FLOAT_EQ(static_cast<float>(cell.report.largest_error),
                     static_cast<float>(verdict.reported))

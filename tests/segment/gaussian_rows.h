@@ -21,7 +21,7 @@ constexpr long double smallest_density = is_single<T> ? 1e-30L : 1e-290L;
 template <class T>
 struct GaussianCase {
   Gaussian<T> primitive;
-  T v1[most_channels]{}, v2[most_channels]{};
+  T v1[max_channels]{}, v2[max_channels]{};
 
   /// R of the specification (3.4) in units of u, from the true mean density.
   long double allowed_relative(long double density) const {

@@ -94,12 +94,12 @@ struct MultivariateCase {
   }
 
   /// Valid while nothing is added; `storage` holds what it points to.
-  Multivariate<double> view(std::vector<ChannelTable<double>>& storage) const {
+  MultivariateTransfer<double> view(std::vector<ChannelTable<double>>& storage) const {
     storage.clear();
     for (std::size_t i = 0; i < tables.size(); ++i) {
       storage.push_back({table_channel[i], tables[i].table()});
     }
-    Multivariate<double> result;
+    MultivariateTransfer<double> result;
     result.gaussians = {gaussians.data(), static_cast<int>(gaussians.size())};
     result.table = storage.data();
     result.tables = static_cast<int>(storage.size());

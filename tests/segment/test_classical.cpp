@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "pellucid/segment/fold.h"
+#include "pellucid/segment/compositor.h"
 #include "pellucid/segment/gauss_panel.h"
 #include "pellucid/segment/linear.h"
 
@@ -49,7 +49,7 @@ Truth example_truth() {
 using Step = std::function<SegmentResult<double>(double s, double length)>;
 
 SegmentResult<double> march(const Step& step, int n) {
-  FrontToBack<double> fold;
+  FrontToBackCompositor<double> fold;
   for (int i = 0; i < n; ++i) fold.add(step(static_cast<double>(i) / n, 1.0 / n));
   return fold.result();
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "pellucid/segment/fold.h"
+#include "pellucid/segment/compositor.h"
 
 #include <gtest/gtest.h>
 
@@ -25,7 +25,7 @@ std::vector<SegmentResult<double>> some_segments(std::mt19937_64& random, int co
 }
 
 SegmentResult<double> fold_all(const std::vector<SegmentResult<double>>& segments) {
-  FrontToBack<double> fold;
+  FrontToBackCompositor<double> fold;
   for (const auto& s : segments) fold.add(s);
   return fold.result();
 }
@@ -57,7 +57,7 @@ TEST(Compose, DoesNotCommute) {
 }
 
 /// A tree of any shape gives the fold's result.
-TEST(FrontToBack, AgreesWithATreeReduction) {
+TEST(FrontToBackCompositor, AgreesWithATreeReduction) {
   std::mt19937_64 random(2);
   for (const double depth : {1e-3, 0.1, 3.0}) {
     auto level = some_segments(random, 1000, depth);
@@ -76,7 +76,7 @@ TEST(FrontToBack, AgreesWithATreeReduction) {
 
 /// Equation (3): whatever the errors of the segments, the pixel's is at most
 /// Σ T_{<i} (e_i + C_max d_i). The errors are drawn at the bound, with signs that add up.
-TEST(FrontToBack, ErrorOfAPixelIsBoundedByThatOfItsSegments) {
+TEST(FrontToBackCompositor, ErrorOfAPixelIsBoundedByThatOfItsSegments) {
   std::mt19937_64 random(3);
   std::uniform_real_distribution<double> unit(0, 1);
   double largest_share = 0;
@@ -106,12 +106,12 @@ TEST(FrontToBack, ErrorOfAPixelIsBoundedByThatOfItsSegments) {
 
 /// A million binary32 segments of opacity below u/2 = 3e-8: products of 1 - opacity in binary32
 /// stay at 1 for ever; the fold becomes opaque as it should.
-TEST(FrontToBack, ThinSegmentsDoNotStagnate) {
+TEST(FrontToBackCompositor, ThinSegmentsDoNotStagnate) {
   const int count = 1 << 20;
   const float depth = 0x1p-26f;
   const SegmentResult<float> thin = constant_segment(depth, Rgb<float>{1, 0.5f, 0}, 1.0f);
   ASSERT_LT(thin.opacity, 0x1p-25f);
-  FrontToBack<double> fold;
+  FrontToBackCompositor<double> fold;
   float naive = 1;
   for (int i = 0; i < count; ++i) {
     fold.add(thin);
@@ -126,16 +126,16 @@ TEST(FrontToBack, ThinSegmentsDoNotStagnate) {
 }
 
 /// Opacity keeps its relative precision where 1 - transparency has none.
-TEST(FrontToBack, ClearRaysKeepTheirOpacity) {
-  FrontToBack<double> fold;
+TEST(FrontToBackCompositor, ClearRaysKeepTheirOpacity) {
+  FrontToBackCompositor<double> fold;
   for (int i = 0; i < 10; ++i) fold.add(constant_segment(1e-20, Rgb<double>{1, 1, 1}, 1.0));
   EXPECT_NEAR(fold.opacity() / 1e-19, 1, 1e-14);
   EXPECT_EQ(fold.transparency(), 1.0);
 }
 
 /// Optical depth and transparency keep what the opacity loses behind opaque fronts.
-TEST(FrontToBack, OpaqueRaysKeepTheirDepth) {
-  FrontToBack<double> fold;
+TEST(FrontToBackCompositor, OpaqueRaysKeepTheirDepth) {
+  FrontToBackCompositor<double> fold;
   for (int i = 0; i < 100; ++i) fold.add(constant_segment(5.0, Rgb<double>{1, 1, 1}, 1.0));
   EXPECT_EQ(fold.optical_depth(), 500.0);
   EXPECT_NEAR(fold.transparency() / std::exp(-500.0), 1, 1e-13);
@@ -145,13 +145,13 @@ TEST(FrontToBack, OpaqueRaysKeepTheirDepth) {
 
 /// What an early end leaves out is at most stop · C_max in radiance and `stop` in opacity; what it
 /// left in is not rescaled.
-TEST(FrontToBack, EarlyOutLeavesOutNoMoreThanItSays) {
+TEST(FrontToBackCompositor, EarlyOutLeavesOutNoMoreThanItSays) {
   std::mt19937_64 random(4);
   for (const double stop : {1e-2, 1e-4, 1e-8}) {
     double largest = 0;
     for (int trial = 0; trial < 100; ++trial) {
       const auto segments = some_segments(random, 400, 2);
-      FrontToBack<double> fold(stop);
+      FrontToBackCompositor<double> fold(stop);
       int used = 0;
       for (const auto& s : segments) {
         fold.add(s);
@@ -168,8 +168,8 @@ TEST(FrontToBack, EarlyOutLeavesOutNoMoreThanItSays) {
   }
 }
 
-TEST(FrontToBack, StopAtZeroEndsOnlyBehindWhatNothingPasses) {
-  FrontToBack<double> fold;
+TEST(FrontToBackCompositor, StopAtZeroEndsOnlyBehindWhatNothingPasses) {
+  FrontToBackCompositor<double> fold;
   EXPECT_FALSE(fold.done());
   fold.add(constant_segment(100.0, Rgb<double>{1, 1, 1}, 1.0));
   EXPECT_FALSE(fold.done());

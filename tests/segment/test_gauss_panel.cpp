@@ -6,7 +6,7 @@
 #include <cmath>
 #include <utility>
 
-#include "pellucid/segment/fold.h"
+#include "pellucid/segment/compositor.h"
 #include "tests/segment/wide_linear.h"
 
 namespace pellucid {
@@ -36,7 +36,7 @@ std::pair<double, double> smooth_truth() {
 
 template <int N>
 std::pair<double, double> march(int panels) {
-  FrontToBack<double> particle, independent;
+  FrontToBackCompositor<double> particle, independent;
   for (int i = 0; i < panels; ++i) {
     const double d = 1.0 / panels;
     const auto at = [=](double u) { return smooth((i + u) * d); };

@@ -213,7 +213,7 @@ TYPED_TEST(GaussianSegment, ErrorOfKniss) {
     above += kniss > 0.01L * truth && truth > 1e-30L;
     own_above +=
         off(gaussian_mean_density(g.primitive, g.v1, g.v2)) > 0.01L * truth && truth > 1e-30L;
-    T d[most_channels];
+    T d[max_channels];
     g.primitive.displacement(g.v1, g.v2, d);
     const detail::Direction<T> direction(d, g.primitive.rows);
     if (direction.length > T(0.1) && truth > 0.01L) {

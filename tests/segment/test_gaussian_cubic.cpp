@@ -21,7 +21,7 @@ using test::Maker;
 /// A primitive along data.
 struct Case {
   Gaussian<double> primitive;
-  CubicBernstein<double> data[most_channels];
+  CubicBernstein<double> data[max_channels];
 
   /// Nearly straight or not, near the center or far, K of any rank.
   explicit Case(Maker& maker) {
@@ -70,7 +70,7 @@ struct WideLoss {
     const Gaussian<double>& g = at.primitive;
     const test::WideExponent cubic(g, at.data);
     // The least-squares line of each data channel: m0 + 12 m1 (t - 1/2), m1 = ∫ f (t - 1/2).
-    long double base[most_channels]{}, slope[most_channels]{};
+    long double base[max_channels]{}, slope[max_channels]{};
     for (int c = 0; c < g.channels; ++c) {
       const test::WideRise f(at.data[c]);
       const long double middle = f.c1 / 2 + f.c2 / 3 + f.c3 / 4;
@@ -78,7 +78,7 @@ struct WideLoss {
       slope[c] = 12 * moment;
       base[c] = f.start - static_cast<long double>(g.center[c]) + middle - slope[c] / 2;
     }
-    long double front[most_channels]{}, step[most_channels]{};
+    long double front[max_channels]{}, step[max_channels]{};
     for (int i = 0; i < g.rows; ++i) {
       for (int c = 0; c < g.channels; ++c) {
         front[i] += static_cast<long double>(g.matrix[i][c]) * base[c];
@@ -170,14 +170,14 @@ TEST(GaussianCubic, LowerIsCloseToTheHull) {
   for (int i = 0; i < 20000; ++i) {
     const Case at(maker);
     const GaussianCubic<double> cubic(at.primitive, at.data);
-    double p[4][most_channels];
+    double p[4][max_channels];
     for (int k = 0; k < 4; ++k) {
-      double v[most_channels];
+      double v[max_channels];
       for (int c = 0; c < at.primitive.channels; ++c) v[c] = at.data[c].b[k];
-      at.primitive.place(v, p[k]);
+      at.primitive.transform(v, p[k]);
     }
     // Frank and Wolfe with exact steps, long enough.
-    double x[most_channels];
+    double x[max_channels];
     for (int r = 0; r < at.primitive.rows; ++r) x[r] = p[0][r];
     double below = 0;
     for (int step = 0; step < 4000; ++step) {
@@ -260,7 +260,7 @@ TEST(GaussianCubic, LowerIsBelowInFloat) {
   expect_below_in_float<1>(41);
   expect_below_in_float<2>(42);
   expect_below_in_float<3>(43);
-  expect_below_in_float<most_channels>(44);
+  expect_below_in_float<max_channels>(44);
 }
 
 /// Outside of the part that within() gives, the exponent is above the square of the reach.
@@ -272,7 +272,7 @@ TEST(GaussianCubic, WithinHoldsAllThatIsNear) {
     const GaussianCubic<double> cubic(at.primitive, at.data);
     const test::WideExponent exponent(at.primitive, at.data);
     const double reach = maker.powers(0.1, 10);
-    const auto part = cubic.within(reach);
+    const auto part = cubic.range_within(reach);
     narrowed += part.from > 0 || part.to < 1;
     none += part.to < part.from;
     for (int k = 0; k <= 128; ++k) {
@@ -295,17 +295,17 @@ struct Shares {
   }
   static long double mean_share(const Case& at) {
     const GaussianCubic<double> cubic(at.primitive, at.data);
-    const LineLoss<double> loss = cubic.line_loss(cubic.line());
+    const LineReplacementError<double> loss = cubic.line_replacement_error(cubic.line());
     return WideLoss(at, 16).mean / (static_cast<long double>(loss.mean) + rounding_of(at));
   }
   static long double absolute_share(const Case& at) {
     const GaussianCubic<double> cubic(at.primitive, at.data);
-    const LineLoss<double> loss = cubic.line_loss(cubic.line());
+    const LineReplacementError<double> loss = cubic.line_replacement_error(cubic.line());
     return WideLoss(at, 16).absolute / (static_cast<long double>(loss.absolute) + rounding_of(at));
   }
 };
 
-TEST(LineLoss, HoldsForRandomCubics) {
+TEST(LineReplacementError, HoldsForRandomCubics) {
   Maker maker(34);
   Shares shares;
   for (long i = 0; i < test::span_count(60000); ++i) {
@@ -320,7 +320,7 @@ TEST(LineLoss, HoldsForRandomCubics) {
 }
 
 /// Random cases made worse by hill climbing, for either bound.
-TEST(LineLoss, HoldsUnderHillClimbing) {
+TEST(LineReplacementError, HoldsUnderHillClimbing) {
   Maker maker(35);
   for (const bool mean : {false, true}) {
     long double worst = 0;
@@ -328,7 +328,7 @@ TEST(LineLoss, HoldsUnderHillClimbing) {
       // Where all is lost the bound is 1, and met.
       const auto share = [&](const Case& at) {
         const GaussianCubic<double> cubic(at.primitive, at.data);
-        if (cubic.line_loss(cubic.line()).absolute > 0.5) return 0.0L;
+        if (cubic.line_replacement_error(cubic.line()).absolute > 0.5) return 0.0L;
         return mean ? Shares::mean_share(at) : Shares::absolute_share(at);
       };
       Case best(maker);
@@ -364,7 +364,7 @@ TEST(LineLoss, HoldsUnderHillClimbing) {
 
 /// The constants of the proof, from φ itself along lines: its derivatives there are those of a
 /// Gaussian times a factor.
-TEST(LineLoss, ConstantsOfTheProof) {
+TEST(LineReplacementError, ConstantsOfTheProof) {
   long double m[4] = {0, 0, 0, 0};
   long double before[4] = {0, 1e9L, 1e9L, 1e9L};
   for (int i = 0; i <= 60000; ++i) {
@@ -391,7 +391,7 @@ TEST(LineLoss, ConstantsOfTheProof) {
 
 /// What a line leaves out of g, |g''| <= 1, is in L2 at most what it leaves out of a parabola: for
 /// bounded second derivatives of either sign that jump at random places.
-TEST(LineLoss, AParabolaIsWhatALineFitsWorst) {
+TEST(LineReplacementError, AParabolaIsWhatALineFitsWorst) {
   Maker maker(36);
   constexpr int n = 2000;
   const auto left_out = [](const std::vector<long double>& second) {
@@ -435,7 +435,7 @@ TEST(GaussianCubic, PartWithinReach) {
     const Case at(maker);
     const GaussianCubic<double> cubic(at.primitive, at.data);
     const double reach = std::sqrt(cubic.upper()) * maker.powers(1e-3, 1);
-    const auto part = cubic.within(reach);
+    const auto part = cubic.range_within(reach);
     const test::WideExponent exponent(at.primitive, at.data);
     for (int i = 0; i <= 64; ++i) {
       const double t = i / 64.0;
@@ -452,11 +452,11 @@ TEST(GaussianCubic, PartWithinReach) {
   g.center[0] = 0.4;
   g.center[1] = 0.5;
   const CubicBernstein<double> line[2] = {{{0, 1.0 / 3, 2.0 / 3, 1}}, {{0.5, 0.5, 0.5, 0.5}}};
-  const auto part = GaussianCubic<double>(g, line).within(3);
+  const auto part = GaussianCubic<double>(g, line).range_within(3);
   EXPECT_NEAR(part.from, 0.1, 1e-7);
   EXPECT_NEAR(part.to, 0.7, 1e-7);
   const CubicBernstein<double> beside[2] = {{{1, 1.1, 1.2, 1.3}}, line[1]};
-  const auto nothing = GaussianCubic<double>(g, beside).within(3);
+  const auto nothing = GaussianCubic<double>(g, beside).range_within(3);
   EXPECT_LT(nothing.to, nothing.from);
 }
 
@@ -469,7 +469,7 @@ TEST(GaussianCubic, DegenerateData) {
   EXPECT_NEAR(constant.lower(), 9, 1e-12);
   EXPECT_LE(constant.lower(), 9);
   EXPECT_EQ(constant.upper(), 9);
-  EXPECT_EQ(constant.line_loss(constant.line()).mean, 0);
+  EXPECT_EQ(constant.line_replacement_error(constant.line()).mean, 0);
   EXPECT_NEAR(constant.mean_density(constant.line()), std::exp(-9.0), 1e-18);
   g.matrix[0][0] = 0;
   const GaussianCubic<double> blind(g, &data);
@@ -483,7 +483,7 @@ TEST(GaussianCubic, DegenerateData) {
   data = {{-1, 0, 0, 1}};
   const GaussianCubic<double> through(g, &data);
   EXPECT_EQ(through.lower(), 0);
-  const LineLoss<double> loss = through.line_loss(through.line());
+  const LineReplacementError<double> loss = through.line_replacement_error(through.line());
   EXPECT_EQ(loss.absolute, 1);
   EXPECT_EQ(loss.mean, 1);
 }

@@ -18,8 +18,8 @@ namespace {
 template <class T>
 struct Case {
   Gaussian<T> primitive;
-  LinearBernstein<T> data[most_channels];
-  T front[most_channels], back[most_channels];
+  LinearBernstein<T> data[max_channels];
+  T front[max_channels], back[max_channels];
   test::LineExponent<T> exponent{primitive, front, back};
 
   explicit Case(std::mt19937_64& random) {

@@ -20,7 +20,7 @@ using test::Table;
 template <class T>
 struct MixtureCase {
   std::vector<Gaussian<T>> primitive;
-  T v1[most_channels]{}, v2[most_channels]{};
+  T v1[max_channels]{}, v2[max_channels]{};
   T length{};
   GaussianMixture<T> view() const { return {primitive.data(), static_cast<int>(primitive.size())}; }
 
@@ -30,8 +30,8 @@ struct MixtureCase {
     for (const Gaussian<T>& g : primitive) {
       GaussianCase<T> one;
       one.primitive = g;
-      std::copy(v1, v1 + most_channels, one.v1);
-      std::copy(v2, v2 + most_channels, one.v2);
+      std::copy(v1, v1 + max_channels, one.v1);
+      std::copy(v2, v2 + max_channels, one.v2);
       const auto density = static_cast<long double>(gaussian_mean_density(g, v1, v2));
       if (density > 0) {
         sum += static_cast<long double>(g.peak) * static_cast<long double>(length) * density *
@@ -404,7 +404,7 @@ TYPED_TEST(Mixture, EdgesAreFiniteAndInGamut) {
 
 /// More primitives than a segment is cut for: the mean color, and an error that says so.
 TEST(MixtureMany, TooManyGiveTheMeanColorAndItsBound) {
-  std::vector<Gaussian<double>> many(most_primitives + 1);
+  std::vector<Gaussian<double>> many(max_primitives + 1);
   for (std::size_t i = 0; i < many.size(); ++i) {
     many[i].matrix[0][0] = 30;
     many[i].center[0] = static_cast<double>(i) / static_cast<double>(many.size());
@@ -416,12 +416,12 @@ TEST(MixtureMany, TooManyGiveTheMeanColorAndItsBound) {
     return integrate_gaussians(GaussianMixture<double>{many.data(), count}, &v1, &v2, 1.0, 1e-4,
                                Grade::estimated);
   };
-  EXPECT_TRUE(at(most_primitives).panels);
-  EXPECT_LE(at(most_primitives).color_error, 1e-4);
-  const BoundedSegment<double> s = at(most_primitives + 1);
+  EXPECT_TRUE(at(max_primitives).panels);
+  EXPECT_LE(at(max_primitives).color_error, 1e-4);
+  const BoundedSegment<double> s = at(max_primitives + 1);
   EXPECT_FALSE(s.panels);
   EXPECT_GT(s.color_error, 0.01);
-  EXPECT_LE(std::fabs(s.segment.radiance.g - at(most_primitives).segment.radiance.g),
+  EXPECT_LE(std::fabs(s.segment.radiance.g - at(max_primitives).segment.radiance.g),
             s.color_error + 0.01);
 }
 

@@ -221,7 +221,7 @@ TEST(NodeEstimate, HoldsUnderHillClimbing) {
 /// One to five Gaussians along one piece of data, wide to very narrow.
 struct Piece {
   std::vector<Gaussian<double>> gaussians;
-  CubicBernstein<double> data[most_channels];
+  CubicBernstein<double> data[max_channels];
   int channels;
 
   explicit Piece(Maker& maker) : channels(1 + maker.pick(3)) {
@@ -268,7 +268,7 @@ struct Driven {
       r.color.r = static_cast<T>(g.color.r);
       rounded.push_back(r);
     }
-    NodeRoom<T> room;
+    NodeWorkspace<T> room;
     std::vector<double> ends{1};
     double from = 0;
     while (!ends.empty() && panels < 5000) {
@@ -327,7 +327,7 @@ struct Driven {
     for (int i = 0; i < 8; ++i) {
       const double u = from + (to - from) * i / 8;
       for (const Gaussian<double>& g : piece.gaussians) {
-        double v[most_channels];
+        double v[max_channels];
         for (int c = 0; c < piece.channels; ++c) v[c] = evaluate(piece.data[c], u);
         if (to > from && g.peak * g.density(v) > negligible * 1.001) passed_over = true;
       }
@@ -342,7 +342,7 @@ Light truth_of(const Piece& piece) {
   static const auto rule = gauss_legendre<double, 8>();
   for (int i = 0; i < parts; ++i) {
     for (int j = 0; j < 8; ++j) {
-      double v[most_channels], depth = 0, emission = 0;
+      double v[max_channels], depth = 0, emission = 0;
       for (int c = 0; c < piece.channels; ++c) {
         v[c] = evaluate(piece.data[c], (i + rule.node[j]) / parts);
       }
@@ -408,8 +408,8 @@ TEST(GaussianNodes, RoundingIsWithinItsBound) {
   for (int n = 0; n < 20000; ++n) {
     const double limit = maker.uniform(0.01, 6);
     const EstimatedPanel panel(maker, limit);
-    NodeRoom<double> room;
-    NodeRoom<float> room_in_float;
+    NodeWorkspace<double> room;
+    NodeWorkspace<float> room_in_float;
     GaussianNodes<double> exact(1, room);
     GaussianNodes<float> rounded(1, room_in_float);
     std::vector<Gaussian<double>> all;
@@ -442,8 +442,8 @@ TEST(GaussianNodes, RoundingIsWithinItsBound) {
       rounded.add(all_in_float[k], first_in_float, difference_in_float, 1e3f, true);
     }
     // Eight nodes in both.
-    const auto a = exact.by_nodes<8>(true);
-    const auto b = rounded.by_nodes<8>(true);
+    const auto a = exact.integrate_by_nodes<8>(true);
+    const auto b = rounded.integrate_by_nodes<8>(true);
     const double off = std::max(std::fabs(a.radiance.r - static_cast<double>(b.radiance.r)),
                                 std::fabs(a.opacity - static_cast<double>(b.opacity)));
     const double said = static_cast<double>(rounded.least_error());

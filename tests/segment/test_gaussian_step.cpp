@@ -16,7 +16,7 @@ constexpr GaussianRule rules[] = {GaussianRule::kniss, GaussianRule::closed_form
 /// Two channels, two primitives of different color, of which each sees its own part of the data.
 struct TwoPrimitives {
   std::array<Gaussian<double>, 2> primitive;
-  Multivariate<double> transfer;
+  MultivariateTransfer<double> transfer;
   double v1[2] = {0.1, 0.9}, v2[2] = {0.6, 0.3};
 
   TwoPrimitives() {
@@ -89,7 +89,7 @@ TEST(GaussianStep, KnissIsTheFormulaOfThePaper) {
   g.matrix[0][0] = 1;
   g.peak = 1;
   g.color = {1, 1, 1};
-  Multivariate<double> transfer;
+  MultivariateTransfer<double> transfer;
   transfer.gaussians = {&g, 1};
   for (const auto& [from, to] : {std::pair{-1.0, 1.0}, {0.0, 3.0}, {0.5, 0.6}, {2.0, -0.7}}) {
     const double depth =
@@ -112,7 +112,7 @@ struct Ramp {
 
 TEST(GaussianStep, TableAloneIsExact) {
   const Ramp ramp;
-  Multivariate<double> transfer;
+  MultivariateTransfer<double> transfer;
   transfer.table = &ramp.table;
   transfer.tables = 1;
   transfer.channels = 2;
@@ -139,7 +139,7 @@ TEST(GaussianStep, TableAndPrimitivesAreWeightedByDepth) {
   two.v1[1] = two.v2[1] = 0.5;  // a constant segment of extinction 2 in the ramp's mean color
   const double length = 0.3, table = 2 * length;
   for (const GaussianRule rule : rules) {
-    Multivariate<double> alone = two.transfer;
+    MultivariateTransfer<double> alone = two.transfer;
     alone.tables = 0;
     const SegmentResult<double> g = mean_color_segment(rule, alone, two.v1, two.v2, length);
     const SegmentResult<double> both =

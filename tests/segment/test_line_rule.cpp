@@ -416,7 +416,7 @@ TYPED_TEST(LineRule, LinearDataAreExact) {
   }
 }
 
-/// fitting_line_rule() offers the one rule, then the other, and says when neither was taken.
+/// select_line_rule() offers the one rule, then the other, and says when neither was taken.
 TYPED_TEST(LineRule, TheFirstThatFitsIsTaken) {
   using T = TypeParam;
   Random random(12);
@@ -435,7 +435,7 @@ TYPED_TEST(LineRule, TheFirstThatFitsIsTaken) {
     for (const int wanted : {1, 2, 3}) {
       int offered = 0;
       LineResult<T> result;
-      const bool found = fitting_line_rule(
+      const bool found = select_line_rule(
           span.data, span.length, table, storage.view(), result, [&](const LineResult<T>& r) {
             ++offered;
             EXPECT_TRUE(same(r, offered == 1 ? mean : emission)) << i;

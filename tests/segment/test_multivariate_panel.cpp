@@ -46,7 +46,7 @@ void straighten(MultivariateCase& at) {
 PanelSegment<double> part_that_does(MultivariateCase& at, Maker& maker, Grade grade,
                                     double tolerance, Data data, int& cuts) {
   std::vector<ChannelTable<double>> storage;
-  const Multivariate<double> transfer = at.view(storage);
+  const MultivariateTransfer<double> transfer = at.view(storage);
   PanelDemand<double> demand = demand_of(at, grade, false);
   const auto allowance = [&](double) { return tolerance; };
   for (cuts = 0;; ++cuts) {
@@ -158,7 +158,7 @@ TEST(MultivariatePanel, EstimatesHoldWithTables) {
 /// The share of its error that a panel is off by, when it has to do as it is.
 long double forced_share(const MultivariateCase& at) {
   std::vector<ChannelTable<double>> storage;
-  const Multivariate<double> transfer = at.view(storage);
+  const MultivariateTransfer<double> transfer = at.view(storage);
   const PanelSegment<double> panel = integrate_multivariate_panel(
       transfer, at.span, demand_of(at, Grade::proved, true), [](double) { return 1e-9; });
   EXPECT_TRUE(panel.done);
@@ -309,7 +309,7 @@ struct EstimatedPanel {
   }
 
   Material<double> material(double u) const {
-    double v[most_channels];
+    double v[max_channels];
     for (int c = 0; c < at.channels; ++c) v[c] = evaluate(at.span.data[c], u);
     double extinction = 0, emission = 0;
     for (const Gaussian<double>& g : at.gaussians) {
@@ -397,7 +397,7 @@ struct Plain {
     demand.last_resort = true;
   }
   PanelSegment<double> panel() const {
-    Multivariate<double> transfer;
+    MultivariateTransfer<double> transfer;
     transfer.gaussians = {&g, 1};
     return integrate_multivariate_panel(transfer, span, demand, [](double) { return 1e-6; });
   }
@@ -435,7 +435,7 @@ TEST(MultivariatePanel, PrimitivesBeyond64GoByTheirRemainder) {
   std::vector<Gaussian<double>> many(130, Plain().g);
   for (Gaussian<double>& g : many) g.peak = 0;
   many[129].peak = 1;
-  Multivariate<double> transfer;
+  MultivariateTransfer<double> transfer;
   transfer.gaussians = {many.data(), 130};
   Plain plain;
   const auto of = [&](unsigned long long bits) {
@@ -522,7 +522,7 @@ TEST(MultivariatePanel, FarFromTheCenter) {
 TEST(MultivariatePanel, EndsThatAreOffAreCharged) {
   Plain plain;
   const double before = plain.panel().found.opacity_error;
-  plain.demand.place_error = 1e-4;
+  plain.demand.position_error = 1e-4;
   const double after = plain.panel().found.opacity_error;
   EXPECT_GE(after - before, 1e-4);
   EXPECT_LE(after - before, 1.01e-4);

@@ -34,7 +34,7 @@ struct Points {
 test::WideStretch truth_of(const CubicBernstein<double>& data, const PiecewiseLinear<double>& table,
                            double length) {
   const ChannelTable<double> one{0, table};
-  Multivariate<double> transfer;
+  MultivariateTransfer<double> transfer;
   transfer.table = &one;
   transfer.tables = 1;
   MultivariateSpan<double> span;

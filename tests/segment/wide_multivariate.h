@@ -64,7 +64,7 @@ class WideExponent {
 
  private:
   int rows_;
-  long double p_[most_channels][4]{};
+  long double p_[max_channels][4]{};
 };
 
 /// A stretch of a ray: what it shines, how much it hides, and the integral of extinction · color,
@@ -84,7 +84,8 @@ struct WideStretch {
 
 class WideMultivariate {
  public:
-  WideMultivariate(const Multivariate<double>& transfer, const MultivariateSpan<double>& span)
+  WideMultivariate(const MultivariateTransfer<double>& transfer,
+                   const MultivariateSpan<double>& span)
       : transfer_(transfer), length_(static_cast<long double>(span.length)) {
     for (int i = 0; i < transfer.gaussians.count; ++i) {
       exponents_.emplace_back(transfer.gaussians.primitive[i], span.data);
@@ -232,14 +233,14 @@ class WideMultivariate {
     return result;
   }
 
-  const Multivariate<double>& transfer_;
+  const MultivariateTransfer<double>& transfer_;
   long double length_;
   std::vector<WideExponent> exponents_;
   std::vector<WideRise> rises_;
   std::vector<long double> cuts_;
 };
 
-inline WideStretch wide_multivariate(const Multivariate<double>& transfer,
+inline WideStretch wide_multivariate(const MultivariateTransfer<double>& transfer,
                                      const MultivariateSpan<double>& span) {
   return WideMultivariate(transfer, span).integrate();
 }

@@ -439,10 +439,10 @@ class GaussianKernels : public Kernels {
     std::vector<GaussianCase<T>> cases;
     for (std::size_t i = 0; i < 2 * rows.rows(); ++i) {
       GaussianCase<T> g = gaussian_row<T>(rows, i / 2);
-      if (i % 2 == 1) std::swap_ranges(g.v1, g.v1 + most_channels, g.v2);
-      T p1[most_channels]{}, p2[most_channels]{}, d[most_channels]{};
-      g.primitive.place(g.v1, p1);
-      g.primitive.place(g.v2, p2);
+      if (i % 2 == 1) std::swap_ranges(g.v1, g.v1 + max_channels, g.v2);
+      T p1[max_channels]{}, p2[max_channels]{}, d[max_channels]{};
+      g.primitive.transform(g.v1, p1);
+      g.primitive.transform(g.v2, p2);
       g.primitive.displacement(g.v1, g.v2, d);
       for (std::size_t k = 0; k < 8; ++k) {
         in[k][i] = p1[k];
@@ -464,9 +464,9 @@ class GaussianKernels : public Kernels {
       const T one = kniss_mean_density(g.primitive, g.v1, g.v2);
       kniss = std::max(kniss, std::fabs(static_cast<long double>(y[1][i]) - truth));
       ASSERT_TRUE(y[1][i] >= T(0) && y[1][i] <= T(1) && one >= T(0) && one <= T(1)) << i;
-      T p1[most_channels]{}, p2[most_channels]{}, d[most_channels]{};
-      g.primitive.place(g.v1, p1);
-      g.primitive.place(g.v2, p2);
+      T p1[max_channels]{}, p2[max_channels]{}, d[max_channels]{};
+      g.primitive.transform(g.v1, p1);
+      g.primitive.transform(g.v2, p2);
       g.primitive.displacement(g.v1, g.v2, d);
       // A lane rounds otherwise than a scalar does, where products are fused.
       const T scalar = GaussianLine<T>(p1, p2, d, 8).mean_density(T(0.25), T(0.75));

@@ -36,7 +36,7 @@ void panel(const Task& task, const double* const in[10], double* const out[simd_
     g.peak = number[6];
     g.color = {number[7], number[8], number[9]};
   }
-  Multivariate<double> transfer;
+  MultivariateTransfer<double> transfer;
   transfer.channels = 2;
   transfer.gaussians = {all, task.count};
   Material<double> material[3];
@@ -55,7 +55,7 @@ void panel(const Task& task, const double* const in[10], double* const out[simd_
   PanelDemand<T> demand;
   demand.grade = task.proved ? Grade::proved : Grade::estimated;
   demand.last_resort = Numbers<T>::load(in[9]) > T(0.0);
-  PanelRoom<T> room;
+  PanelWorkspace<T> room;
   const PanelSegment<T> found = integrate_multivariate_panel(
       transfer, span, demand, [&](T) { return T(task.tolerance); }, room);
   Numbers<T>::store(found.found.segment.opacity, out[simd_panels::opacity]);

@@ -16,7 +16,7 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 
 struct Boxed {
   Gaussian<double> primitive;
-  double lower[most_channels], upper[most_channels];
+  double lower[max_channels], upper[max_channels];
   double bound(double enough = infinity) const {
     return least_exponent(primitive, lower, upper, enough);
   }
@@ -40,7 +40,7 @@ long double true_least(const Boxed& at) {
   using Number = long double;
   const Gaussian<double>& g = at.primitive;
   const int n = g.channels;
-  Number gram[most_channels][most_channels]{}, lower[most_channels], upper[most_channels];
+  Number gram[max_channels][max_channels]{}, lower[max_channels], upper[max_channels];
   for (int k = 0; k < n; ++k) {
     lower[k] = static_cast<Number>(at.lower[k]) - static_cast<Number>(g.center[k]);
     upper[k] = static_cast<Number>(at.upper[k]) - static_cast<Number>(g.center[k]);
@@ -54,8 +54,8 @@ long double true_least(const Boxed& at) {
   for (int k = 0; k < n; ++k) faces *= 3;
   Number least = std::numeric_limits<Number>::infinity();
   for (int face = 0; face < faces; ++face) {
-    Number x[most_channels]{}, a[most_channels][most_channels + 1];
-    int free[most_channels], count = 0;
+    Number x[max_channels]{}, a[max_channels][max_channels + 1];
+    int free[max_channels], count = 0;
     for (int k = 0, rest = face; k < n; ++k, rest /= 3) {
       if (rest % 3 == 2) {
         free[count++] = k;

@@ -54,8 +54,8 @@ struct Cubes {
         const auto code = static_cast<std::int32_t>(4 * i) + f;
         const auto [found, is_new] = open.insert({face, code});
         if (is_new) continue;
-        tetrahedra[i].behind[f] = found->second;
-        tetrahedra[static_cast<std::size_t>(found->second >> 2)].behind[found->second & 3] = code;
+        tetrahedra[i].neighbor[f] = found->second;
+        tetrahedra[static_cast<std::size_t>(found->second >> 2)].neighbor[found->second & 3] = code;
         open.erase(found);
       }
     }
@@ -75,12 +75,12 @@ struct Cubes {
 template <class T>
 int follow(const Cubes& cubes, const Ray<double>& ray, std::vector<int>& met) {
   const Tetrahedra mesh = cubes.view();
-  const RayView<double> view = make_ray_view(ray, mesh.middle(), mesh.reach);
+  const RayFrame<double> view = make_ray_frame(ray, mesh.center(), mesh.coordinate_bound);
   const auto see = [&](std::int32_t point) {
-    const SeenPoint<double> p = view.see(mesh.point[point]);
-    return SeenPoint<T>{static_cast<T>(p.x), static_cast<T>(p.y), static_cast<T>(p.t)};
+    const ProjectedPoint<double> p = view.project(mesh.point[point]);
+    return ProjectedPoint<T>{static_cast<T>(p.x), static_cast<T>(p.y), static_cast<T>(p.t)};
   };
-  const auto load = [&](int point, SeenPoint<T>& seen, T& carried) noexcept {
+  const auto load = [&](int point, ProjectedPoint<T>& seen, T& carried) noexcept {
     seen = see(point);
     carried = static_cast<T>(point);
   };
@@ -118,7 +118,8 @@ int follow(const Cubes& cubes, const Ray<double>& ray, std::vector<int>& met) {
         for (int k = 0; k < 3; ++k) {
           if (alone.point[k] == walk.face().point[i]) {
             EXPECT_NEAR(static_cast<double>(walk.face().area[i]),
-                        static_cast<double>(alone.area[k]), 1e-5 * mesh.reach * mesh.reach);
+                        static_cast<double>(alone.area[k]),
+                        1e-5 * mesh.coordinate_bound * mesh.coordinate_bound);
             EXPECT_EQ(walk.face().size[i], alone.size[k]);
           }
         }

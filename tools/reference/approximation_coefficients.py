@@ -1,6 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Generates approximation_coefficients.csv: the polynomials of math/{w0_plus,…,erf_over_x,expm1_quotient_to_4}.h.
+"""Generates approximation_coefficients.csv: the polynomials of include/pellucid/math.
+
+They stand in w0_plus.h, w0_minus.h, w1_plus.h, w1_minus.h, erf_over_x.h and expm1_quotient_to_4.h.
 
 Each is the truncated Chebyshev series of its function on an interval, at 60 digits, written as a
 monomial in s in [-1, 1] and then rounded to the precision it is for.
@@ -60,8 +62,8 @@ FITS = {("W0_plus", "float"): (1, 11), ("W0_plus", "double"): (16, 9),
 
 
 def truncated_chebyshev_series(function, lo, hi, degree):
-    """Monomial coefficients in s, constant first. The Chebyshev coefficients come from more nodes than
-    are kept, so that the tail of the series does not alias into them."""
+    """Monomial coefficients in s, constant first. The Chebyshev coefficients come from more nodes
+    than are kept, so that the tail of the series does not alias into them."""
     n = degree + 1 + EXTRA_NODES
     values = [function((lo + hi + mp.cos(mp.pi * (2 * k + 1) / (2 * n)) * (hi - lo)) / 2)
               for k in range(n)]
@@ -112,8 +114,8 @@ def compare(table):
         raise ValueError(f"{len(known)} rows are missing, {next(iter(known))} among them")
 
 
-# Relative to the largest coefficient: a rounding to binary32; one to 16 decimal digits, which is how
-# the table prints binary64.
+# Relative to the largest coefficient: a rounding to binary32; one to 16 decimal digits, which is
+# how the table prints binary64.
 TOLERANCE = {f"{name} {precision}": mpf(2) ** -24 if precision == "float" else mpf("2.5e-16")
              for name, precision in FITS}
 

@@ -2,9 +2,9 @@
 """Numbers, files and command line that the generators share.
 
 A table's module has NAME, INPUTS, OUTPUTS (column names), ROWS (its usual number of rows),
-`inputs(random, count)` that yields `(regime, {column: text})`, and
-`outputs(row) -> {column: mpf}`, where row maps columns to texts. Whatever `inputs` writes, `outputs`
-reads back from the text: generating and verifying a table are the same computation.
+`inputs(random, count)` that yields `(regime, {column: text})`, and `outputs(row) -> {column: mpf}`,
+where row maps columns to texts. Whatever `inputs` writes, `outputs` reads back from the text:
+generating and verifying a table are the same computation.
 """
 import argparse
 import csv

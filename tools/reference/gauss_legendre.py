@@ -36,7 +36,8 @@ def nodes(n):
 
 
 def lagrange(points, k):
-    """Coefficients, constant first, of the polynomial that is 1 at points[k] and 0 at the others."""
+    """Coefficients, constant first, of the polynomial that is 1 at points[k] and 0 at the
+    others."""
     c = [mpf(1)]
     for i, point in enumerate(points):
         if i != k:

@@ -2,8 +2,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """Generates gaussian_mixture_segment.csv: sums of Gaussian primitives along linear data.
 
-The depth is the sum of the closed forms of gaussian_segment.py at 200 digits; the radiance, which has
-no closed form, comes from adaptive quadrature at 45 digits. The depth of the quadrature must agree.
+The depth is the sum of the closed forms of gaussian_segment.py at 200 digits; the radiance, which
+has no closed form, comes from adaptive quadrature at 45 digits. The depth of the quadrature must
+agree.
 """
 import sys
 

@@ -2,9 +2,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """Generates linear_segment.csv: extinction and color (or source) linear along the segment.
 
-Truth is the classical closed form with erfcx and Dawson's function (specification, equations 6 and 7)
-at 300 digits, which leaves more than 100 after all its cancellation; constant extinction is a case of
-its own, chosen by exact comparison.
+Truth is the classical closed form with erfcx and Dawson's function (specification, equations 6 and
+7) at 300 digits, which leaves more than 100 after all its cancellation; constant extinction is a
+case of its own, chosen by exact comparison.
 """
 import sys
 
@@ -22,8 +22,8 @@ PRECISION = 300
 
 
 def integrals(x_f, x_b):
-    """Optical depth, opacity, transparency, and the integrals of T(u) and u T(u) over [0, 1] for the
-    rate x_f + (x_b - x_f) u, at the working precision (less what cancels)."""
+    """Optical depth, opacity, transparency, and the integrals of T(u) and u T(u) over [0, 1] for
+    the rate x_f + (x_b - x_f) u, at the working precision (less what cancels)."""
     m = (x_f + x_b) / 2
     opacity, transparency = -mp.expm1(-m), mp.exp(-m)
     if m == 0:

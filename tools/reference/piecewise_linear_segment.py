@@ -2,8 +2,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Generates piecewise_linear_segment.csv: linear data through a piecewise-linear transfer function.
 
-Truth is the sum of the closed forms of linear_segment.py over the pieces between control values, cut
-exactly (the cuts are quotients of exact numbers at 300 digits).
+Truth is the sum of the closed forms of linear_segment.py over the pieces between control values,
+cut exactly (the cuts are quotients of exact numbers at 300 digits).
 """
 import sys
 

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Emission and absorption along a segment by adaptive Gauss-Legendre panels in arbitrary precision.
 
-Shares no closed form with the kernels: depth inside a panel comes from the collocation matrix, panels
-are halved until whole and halves agree.
+Shares no closed form with the kernels: depth inside a panel comes from the collocation matrix,
+panels are halved until whole and halves agree.
 """
 from functools import lru_cache
 
@@ -20,7 +20,8 @@ def panel_rule(digits):
 
 
 def panel(rates, a, b):
-    """[optical depth, radiance per channel] of [a, b]; rates(u) = [τ, g per channel] per unit of u."""
+    """[optical depth, radiance per channel] of [a, b]; rates(u) = [τ, g per channel] per unit of
+    u."""
     nodes, weights, collocation = panel_rule(mp.dps)
     width = b - a
     values = [rates(a + width * u) for u in nodes]

@@ -2,8 +2,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Generates special_functions.csv: erf, erfc, erfcx, Dawson's function and (1 - e^-x) / x.
 
-Truth is mpmath's erf, erfc and erfi at 60 digits, with the scaled functions by their asymptotic series
-from x = 40 on.
+Truth is mpmath's erf, erfc and erfi at 60 digits, with the scaled functions by their asymptotic
+series from x = 40 on.
 """
 import sys
 

@@ -1,12 +1,13 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Generates trilinear_cell.csv: a ray through one trilinear cell, piecewise-linear or Gaussian transfer
-function.
+"""Generates trilinear_cell.csv: a ray through one trilinear cell.
 
-The cubic along the ray is interpolated exactly; it is cut at its extrema and at its crossings with the
-control values, bracketed on monotone stretches, at 60 digits. With a piecewise-linear table the depth
-is then a sum of exact quartics. Radiance, and the depth of Gaussians, come from adaptive quadrature at
-45 digits.
+The transfer function is piecewise linear or Gaussian.
+
+The cubic along the ray is interpolated exactly; it is cut at its extrema and at its crossings with
+the control values, bracketed on monotone stretches, at 60 digits. With a piecewise-linear table the
+depth is then a sum of exact quartics. Radiance, and the depth of Gaussians, come from adaptive
+quadrature at 45 digits.
 """
 import sys
 
@@ -44,7 +45,8 @@ def evaluate(c, t):
 
 
 def extrema(c):
-    """The zeros of the derivative in (0, 1). Coefficients that are zero but for rounding are zero."""
+    """The zeros of the derivative in (0, 1). Coefficients that are zero but for rounding are
+    zero."""
     noise = mp.eps * mpf("1e6") * max(abs(x) for x in c)
     a, b, d = (x if abs(x) > noise else mpf(0) for x in (3 * c[3], 2 * c[2], c[1]))
     if a == 0:
@@ -185,9 +187,8 @@ def inputs(rng, count):
         row, x = transfer_function(rng, 0, scale, rng.choice((0.01, 1, 30)) / length)
         row.update(tf_kind="piecewise_linear", tf_k="")
         if i // len(regimes) % 2:
-            row.update(tf_kind="gaussian",
-                       tf_k=common.text_list(common.binary32(common.log_uniform(rng, 0.5, 40) / scale)
-                                             for _ in x))
+            widths = [common.binary32(common.log_uniform(rng, 0.5, 40) / scale) for _ in x]
+            row.update(tf_kind="gaussian", tf_k=common.text_list(widths))
         yield regime, {"corners": common.text_list(corners), "entry": common.text_list(entry),
                        "exit": common.text_list(leave), "D": common.text_in(length), **row}
 

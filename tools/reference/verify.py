@@ -4,10 +4,11 @@
 
     verify.py [--sample N] [--tolerance E] TABLE.csv ...
 
-A table is known by its file name. --sample takes N rows spread over the table. Disagreement is relative;
-where a table says 0.0, the recomputed number has to be below the smallest normal binary64.
-Coefficients of approximations are compared with the largest one of their polynomial. Exits with 1 when
-a disagreement exceeds the tolerance (1e-21; coefficients: the rounding of their precision).
+A table is known by its file name. --sample takes N rows spread over the table. Disagreement is
+relative; where a table says 0.0, the recomputed number has to be below the smallest normal
+binary64. Coefficients of approximations are compared with the largest one of their polynomial.
+Exits with 1 when a disagreement exceeds the tolerance (1e-21; coefficients: the rounding of their
+precision).
 """
 import argparse
 import importlib

@@ -1,13 +1,15 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""How far VTK's pictures are from ours, with the same transfer function files: the table in docs/reference/formats.md.
+"""Measures how far VTK's pictures are from ours with the same transfer function files.
+
+This is the table in docs/reference/formats.md.
 
 usage: xvfb-run -a python3 vtk_pictures.py PROGRAM FOLDER
 
 PROGRAM is pellucid, FOLDER is tests/io/transfer_functions. Draws a field of 48³ floats with
-vtkOpenGLGPUVolumeRayCastMapper of VTK (Debian: python3-vtk9) at smaller and smaller steps, and once with
-pellucid to 1e-4 with --colors linear, and prints the largest and the root mean square difference of the
-channels over black, both from 8 bits: ours of sRGB, VTK's of numbers as they are.
+vtkOpenGLGPUVolumeRayCastMapper of VTK (Debian: python3-vtk9) at smaller and smaller steps, and once
+with pellucid to 1e-4 with --colors linear, and prints the largest and the root mean square
+difference of the channels over black, both from 8 bits: ours of sRGB, VTK's of numbers as they are.
 """
 
 import importlib.util
@@ -30,7 +32,8 @@ from vtkmodules.vtkRenderingVolumeOpenGL2 import vtkOpenGLGPUVolumeRayCastMapper
 N, SIZE, UNIT = 48, 128, 6
 WINDOWS = []  # a display without windows may end
 MIDDLE = [(N - 1) / 2] * 3
-CAMERA = {"projection": "orthographic", "position": [MIDDLE[0] + 90, MIDDLE[1] - 120, MIDDLE[2] + 60],
+CAMERA = {"projection": "orthographic", "position": [MIDDLE[0] + 90, MIDDLE[1] - 120,
+                                                     MIDDLE[2] + 60],
           "focal_point": MIDDLE, "up": [0, 0, 1], "parallel_scale": 40}
 
 
@@ -50,7 +53,8 @@ def write_npy(path, values):
 def numbers(image):
     """The first three components of all pixels, bottom row first."""
     scalars = image.GetPointData().GetScalars()
-    return [scalars.GetComponent(i, c) / 255 for i in range(scalars.GetNumberOfTuples()) for c in range(3)]
+    return [scalars.GetComponent(i, c) / 255 for i in range(scalars.GetNumberOfTuples())
+            for c in range(3)]
 
 
 def by_vtk(image, functions, step):
@@ -93,13 +97,16 @@ def by_vtk(image, functions, step):
 
 def by_pellucid(program, folder, name, scratch):
     picture = scratch / "ours.png"
-    subprocess.run([program, "render", scratch / "field.npy", "--tf", folder / f"{name}.json", "--colors",
-                    "linear", "--unit-distance", str(UNIT), "--camera", scratch / "camera.json", "--size",
-                    str(SIZE), "--background", "black", "--tolerance", "1e-4", "-q", "-o", picture], check=True)
+    subprocess.run([program, "render", scratch / "field.npy", "--tf", folder / f"{name}.json",
+                    "--colors", "linear", "--unit-distance", str(UNIT),
+                    "--camera", scratch / "camera.json", "--size", str(SIZE),
+                    "--background", "black", "--tolerance", "1e-4", "-q", "-o", picture],
+                   check=True)
     reader = vtkPNGReader()
     reader.SetFileName(str(picture))
     reader.Update()
-    return [s / 12.92 if s <= 0.04045 else ((s + 0.055) / 1.055) ** 2.4 for s in numbers(reader.GetOutput())]
+    return [s / 12.92 if s <= 0.04045 else ((s + 0.055) / 1.055) ** 2.4
+            for s in numbers(reader.GetOutput())]
 
 
 def main():

@@ -4,11 +4,11 @@
 
 usage: vtk_transfer_functions.py FOLDER [--check]
 
-Writes into FOLDER (tests/io/transfer_functions) a file of each case, as ParaView or 3D Slicer writes it,
-and vtk_values.csv: case,value,r,g,b,opacity at values within the pieces. The numbers come from
-vtkColorTransferFunction::GetColor and vtkPiecewiseFunction::GetValue of VTK 9.1 (Debian: python3-vtk9).
-With --check nothing is written, and the values that VTK gives now are compared with those that stand
-there; exit code 77 where VTK's Python modules are missing.
+Writes into FOLDER (tests/io/transfer_functions) a file of each case, as ParaView or 3D Slicer
+writes it, and vtk_values.csv: case,value,r,g,b,opacity at values within the pieces. The numbers
+come from vtkColorTransferFunction::GetColor and vtkPiecewiseFunction::GetValue of VTK 9.1 (Debian:
+python3-vtk9). With --check nothing is written, and the values that VTK gives now are compared with
+those that stand there; exit code 77 where VTK's Python modules are missing.
 """
 
 import csv
@@ -31,7 +31,8 @@ HAZE = [0, 0, 0.5, 0, 1, 0.5, 0.5, 0]
 
 
 def paraview(space, points, opacities, **others):
-    return [{"Name": "case", "ColorSpace": space, "RGBPoints": points, "Points": opacities, **others}]
+    return [{"Name": "case", "ColorSpace": space, "RGBPoints": points, "Points": opacities,
+             **others}]
 
 
 def slicer(colors, opacities, unit):
@@ -48,7 +49,8 @@ def slicer(colors, opacities, unit):
 CASES = {
     "rgb": paraview("RGB", RAINBOW, RAMP),
     "hsv": paraview("HSV", RAINBOW, RAMP, HSVWrap=1),
-    "hsv_wrapped": paraview("HSV", [0, 1, 0.2, 0.4, 0.4, 0.9, 0.6, 0.1, 1, 0.5, 0.1, 1], HAZE, HSVWrap=1),
+    "hsv_wrapped": paraview("HSV", [0, 1, 0.2, 0.4, 0.4, 0.9, 0.6, 0.1, 1, 0.5, 0.1, 1], HAZE,
+                            HSVWrap=1),
     "hsv_not_wrapped": paraview("HSV", [0, 1, 0, 0.4, 1, 1, 0.6, 0.1], HAZE, HSVWrap=0),
     "hsv_grey": paraview("HSV", [0, 0.3, 0.3, 0.3, 1, 0.2, 0.4, 0.9], HAZE, HSVWrap=1),
     "lab": paraview("Lab", RAINBOW, RAMP),
@@ -58,7 +60,8 @@ CASES = {
     "diverging_alike": paraview("Diverging", [0, 0.9, 0.2, 0.1, 1, 0.6, 0.3, 0.05], HAZE),
     "diverging_from_white": paraview("Diverging", [0, 1, 1, 1, 1, 0.2, 0.6, 0.3], HAZE),
     "step": paraview("Step", RAINBOW, RAMP),
-    "slicer": slicer([(-50, [0, 0, 0], 0.5, 0), (40, [0.5, 0.2, 0.1], 0.3, 0), (100, [1, 1, 0.9], 0.5, 0)],
+    "slicer": slicer([(-50, [0, 0, 0], 0.5, 0), (40, [0.5, 0.2, 0.1], 0.3, 0),
+                      (100, [1, 1, 0.9], 0.5, 0)],
                      [(-50, 0, 0.5, 0), (40, 0.3, 0.2, 0), (100, 0.9, 0.5, 0)], 2.5),
     "slicer_jump": slicer([(0, [1, 0, 0], 0.5, 1), (1, [0, 0, 1], 0.5, 0)],
                           [(0, 0.1, 0.7, 1), (1, 0.6, 0.5, 0)], 1),
@@ -118,10 +121,12 @@ def main():
         if len(now) != len(stands):
             print(f"{len(stands)} rows, but VTK gives {len(now)}")
             return 1
-        worst = max(abs(float(a) - b) for old, new in zip(stands, now) for a, b in zip(old[1:], new[1:]))
+        worst = max(abs(float(a) - b) for old, new in zip(stands, now)
+                    for a, b in zip(old[1:], new[1:]))
         files = all(json.loads((folder / f"{name}.json").read_text()) == case
                     for name, case in CASES.items())
-        print(f"{len(now)} rows; largest difference {worst:.3g}; files {'agree' if files else 'differ'}")
+        print(f"{len(now)} rows; largest difference {worst:.3g}; "
+              f"files {'agree' if files else 'differ'}")
         return 0 if worst <= 1e-12 and files else 1
     for name, case in CASES.items():
         (folder / f"{name}.json").write_text(json.dumps(case, indent=1) + "\n")

@@ -6,7 +6,7 @@
 
 FOLDER holds approximation_coefficients.csv (w0_plus.h, w0_minus.h, w1_plus.h, w1_minus.h,
 erf_over_x.h, expm1_quotient_to_4.h) and gauss_legendre.csv (gauss_legendre_rules.h). --check writes
-nothing and exits with 1 if a header is not what the tables give.
+nothing and exits with 1 if a header differs from the tables.
 """
 import argparse
 import csv
@@ -22,31 +22,32 @@ HEADERS = ROOT / "include/pellucid/math"
 # function of the table -> (file and function name, argument, comment)
 FITS = {
     "W0_plus": ("w0_plus", "t", r"""
-W0+(t) = (δ + 2) (√π / 2) erfcx(δ), δ = 2 (1 - t) / t, on t in [0, 1] (δ = ∞ … 0):
-erfcx scaled to be smooth and bounded, from 1/2 at t = 0 (erfcx(x) ~ 1 / (√π x)) to √π at t = 1."""),
+Returns W0+(t) = (δ + 2) (√π / 2) erfcx(δ), δ = 2 (1 - t) / t, on t in [0, 1] (δ = ∞ … 0):
+erfcx scaled to be smooth and bounded, from 1/2 at t = 0 (erfcx(x) ~ 1 / (√π x)) to √π at t = 1.
+"""),
     "W0_minus": ("w0_minus", "t", r"""
-W0-(t) = (δ + 2) Daw(δ), δ = 2 (1 - t) / t, on t in [0, 1] (δ = ∞ … 0):
-Dawson's function scaled to be smooth and bounded, from 1/2 at t = 0 (Daw(x) ~ 1 / (2 x)) to 0 at
-t = 1. The zero is a simple one at the end of the interval: near it only the absolute error is
-small, and `dawson` uses a series instead."""),
+Returns W0-(t) = (δ + 2) Daw(δ), δ = 2 (1 - t) / t, on t in [0, 1] (δ = ∞ … 0): Dawson's
+function scaled to be smooth and bounded, from 1/2 at t = 0 (Daw(x) ~ 1 / (2 x)) to 0 at t = 1.
+That zero is a simple one: near it only the absolute error is small, and dawson() uses a series.
+"""),
     "W1_plus": ("w1_plus", "t", r"""
-W1+(t) = (δ + 2)² (1 - √π δ erfcx(δ)) / 2, δ = 2 (1 - t) / t, on t in [0, 1] (δ = ∞ … 0):
-from 1/4 at t = 0 to 2 at t = 1. The first moment that goes with W0+; evaluated as written the
-bracket loses all digits for large δ."""),
+Returns W1+(t) = (δ + 2)² (1 - √π δ erfcx(δ)) / 2, δ = 2 (1 - t) / t, on t in [0, 1]
+(δ = ∞ … 0): from 1/4 at t = 0 to 2 at t = 1. The counterpart of W0+ for the first moment. The
+polynomials avoid the formula's bracket, which loses all digits for large δ."""),
     "W1_minus": ("w1_minus", "t", r"""
-W1-(t) = (δ + 2)² (2 δ Daw(δ) - 1) / 2, δ = 2 (1 - t) / t, on t in [0, 1] (δ = ∞ … 0):
-from 1/4 at t = 0 to -2 at t = 1. The first moment that goes with W0-; evaluated as written the
-bracket loses all digits for large δ. It changes sign where 2 δ Daw(δ) = 1 (δ = 0.924): near there
-only the absolute error is small."""),
+Returns W1-(t) = (δ + 2)² (2 δ Daw(δ) - 1) / 2, δ = 2 (1 - t) / t, on t in [0, 1]
+(δ = ∞ … 0): from 1/4 at t = 0 to -2 at t = 1. The counterpart of W0- for the first moment. The
+polynomials avoid the formula's bracket, which loses all digits for large δ. It changes sign at
+2 δ Daw(δ) = 1 (δ = 0.924): near there only the absolute error is small."""),
     "erf_over_x": ("erf_over_x", "x_squared", r"""
-erf(x) / x as a function of x² in [0, 1]."""),
+Returns erf(x) / x as a function of x² in [0, 1]."""),
     "expm1_quotient_to_4": ("expm1_quotient_to_4", "t", r"""
-(1 - e^(-x)) / x, x = 4 t, as a function of t in [0, 1]: expm1_quotient(x) of optical depths that
-are known to be no more than 4, without an exponential, whose difference from 1 would cancel where x
-is small: a truncated Chebyshev series, cut where the rest is 0.6 u (float), 0.1 u (double).
+Returns (1 - e^(-x)) / x, x = 4 t, as a function of t in [0, 1]: expm1_quotient(x) for optical
+depths of at most 4, without an exponential, whose difference from 1 would cancel for small x. A
+Chebyshev series, truncated where the remainder is 0.6 u (float), 0.1 u (double).
 
-Largest relative error 4.2 u (float), 3.6 u (double), near t = 0.98; outside of [0, 1] it is no
-function of use. Asserted in tests/math/exponential.cpp and, in lanes, tests/simd."""),
+Largest relative error 4.2 u (float), 3.6 u (double), near t = 0.98; not valid outside of
+[0, 1]. Asserted in tests/math/exponential.cpp and, in lanes, tests/simd."""),
 }
 
 
@@ -148,7 +149,7 @@ def rules_header(rules):
              "template <class S, int N>", "struct GaussLegendre {",
              "  static_assert(N >= 1 && N <= 12);", "  S node[N];", "  S weight[N];",
              "  S collocation[N][N];", "};", "",
-             "/// The rules in double; kernels take gauss_legendre<S, N>() of gauss_legendre.h.",
+             "/// The rules in double; kernels use gauss_legendre<S, N>() of gauss_legendre.h.",
              "template <int N>", "inline constexpr GaussLegendre<double, N> gauss_legendre_rule{};"]
     for n in sorted(rules):
         rule = rules[n]

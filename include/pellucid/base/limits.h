@@ -3,10 +3,10 @@
 
 namespace pellucid {
 
-/// The most variables per point that a field has and that a Gaussian primitive looks at.
-inline constexpr int most_channels = 8;
+/// The largest number of variables per point, and of channels of a Gaussian primitive.
+inline constexpr int max_channels = 8;
 
-/// The most Gaussian primitives of one transfer function.
-inline constexpr int most_gaussians = 256;
+/// The largest number of Gaussian primitives of a transfer function.
+inline constexpr int max_gaussians = 256;
 
 }  // namespace pellucid

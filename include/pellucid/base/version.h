@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-// The one place where the version is written; CMake reads it from here.
+// The version; CMake reads it from here.
 #define PELLUCID_VERSION_MAJOR 0
 #define PELLUCID_VERSION_MINOR 1
 #define PELLUCID_VERSION_PATCH 0

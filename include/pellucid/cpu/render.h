@@ -12,12 +12,12 @@
 
 namespace pellucid {
 
-/// How rays in packets go through Gaussians: in steps that resolve what these make of the data, or
+/// How packets of rays traverse Gaussians: in steps that resolve their variation along the ray, or
 /// cell by cell.
 enum class GaussianMarch { steps, cells };
 
-/// Some pixels of a frame that are rendered together: (column + i·stride, row + j·stride) for
-/// 0 <= i < columns, 0 <= j < rows.
+/// Pixels of a frame that are rendered together: (column + i·stride, row + j·stride) for 0 <= i <
+/// columns, 0 <= j < rows.
 struct Tile {
   int column = 0, row = 0;
   int columns = 0, rows = 0;
@@ -25,62 +25,69 @@ struct Tile {
   int level = 0;  ///< of the preview; 0 is the finest
 };
 
-/// A tile whose pixels are final, in the image that is being made. Until finer ones are there, a
-/// pixel of level n stands for the square of 2ⁿ × 2ⁿ pixels of which it is the upper left.
+/// A finished tile and the image that contains it. Until finer tiles are finished, a pixel of level
+/// n represents the 2ⁿ × 2ⁿ pixels of which it is the upper left.
 struct TileResult {
   const Tile& tile;
   const Image& image;
 };
 
-/// Limit of RenderOptions::preview.
+/// Upper limit of RenderOptions::preview.
 inline constexpr int largest_preview = 8;
 
+/// How render() uses the machine, and what it computes beside the color. The image does not depend
+/// on the number of threads.
 struct RenderOptions {
   int threads = 0;     ///< 0: one per core
   bool depth = false;  ///< fill Image::depth
   bool error = false;  ///< fill Image::error and Image::proved
-  /// For rays in packets; none: the fastest that the machine has. Error where it has not this one.
+  /// Instruction set for packets of rays; none: the fastest that the machine has. render() throws
+  /// Error if the machine lacks it.
   std::optional<InstructionSet> instruction_set;
-  /// For those through Gaussians, where both can be; none: the one that is likely to be faster.
+  /// Method for packets through Gaussians where both are possible; none: the one expected to be
+  /// faster.
   std::optional<GaussianMarch> gaussian_march;
-  /// Called now and then, from any one thread at a time, with the share done in [0, 1]; false
-  /// cancels the frame, which then throws Cancelled.
+  /// Called occasionally with the finished fraction in [0, 1], by one thread at a time. If it
+  /// returns false, the frame is cancelled and render() throws Cancelled.
   std::function<bool(double)> progress;
 
-  // Of render() alone:
-  /// Levels of a preview: every 2ⁿ-th pixel along each axis is rendered first, then those in the
-  /// middle between them, and so on. No pixel is rendered twice; the image is bitwise the same.
+  // The following options apply to render() only.
+
+  /// Number of preview levels: every 2ⁿ-th pixel along each axis is rendered first, then the pixels
+  /// half-way between them, and so on. No pixel is rendered twice; the image is bitwise the same.
   int preview = 0;
-  /// Called once for each tile, from any one thread at a time and not while `progress` is; the
-  /// tiles of a level after all of the coarser one. No thread waits for it. False cancels as above:
-  /// the other threads finish the tiles that they are at.
+  /// Called once per tile, by one thread at a time and never during `progress`. The tiles of a
+  /// level follow all tiles of the coarser level. No thread waits for the call. If it returns
+  /// false, the frame is cancelled as above; other threads finish their current tiles.
   std::function<bool(const TileResult&)> tile;
 };
 
+/// Statistics of a rendered frame.
 struct RenderReport {
   double seconds = 0;
   int threads = 0;
-  std::uint64_t rays = 0;   ///< that were traced
+  std::uint64_t rays = 0;   ///< traced rays
   std::uint64_t cells = 0;  ///< cells visited (exact) or samples taken (the others)
 
-  // Of the exact method alone:
-  double largest_error = 0;          ///< of any pixel: largest bound or estimate
-  std::uint64_t pixels = 0;          ///< of the image
-  std::uint64_t pixels_proved = 0;   ///< whose error is a proved bound
-  std::uint64_t pixels_between = 0;  ///< that were interpolated, not traced
-  std::uint64_t pixels_over = 0;     ///< whose error is above the tolerance
-  std::uint64_t evaluations = 0;     ///< of the field: cells gathered and points sampled
-  RuleCounts spans;                  ///< by rule
+  // The following members are set by the exact method only.
+  double largest_error = 0;                 ///< largest error bound or estimate of any pixel
+  std::uint64_t pixels = 0;                 ///< in the image
+  std::uint64_t pixels_proved = 0;          ///< with a proved error bound
+  std::uint64_t pixels_interpolated = 0;    ///< interpolated from traced neighbors
+  std::uint64_t pixels_over_tolerance = 0;  ///< with an error above the tolerance
+  std::uint64_t evaluations = 0;            ///< of the field: cells gathered and points sampled
+  RuleCounts spans;                         ///< number of spans by rule
 };
 
-/// Thrown where the progress callback returned false.
+/// Thrown by render() if a callback returned false.
 class Cancelled : public std::runtime_error {
  public:
   Cancelled() : std::runtime_error("rendering was cancelled") {}
 };
 
 /// Renders the scene with its own method and precision. The image is bitwise the same for any
-/// number of threads. Throws Error for what `scene` checks (camera, sizes, step).
+/// number of threads. Throws Error if `scene` fails its checks (camera, sizes, step), and
+/// Cancelled.
 Image render(const Scene& scene, const RenderOptions& options = {}, RenderReport* report = nullptr);
 
 }  // namespace pellucid

@@ -5,11 +5,11 @@
 
 namespace pellucid {
 
-/// One per core that this process may use.
-int default_threads();
+/// Returns the number of cores that this process may use.
+int default_thread_count();
 
-/// Splits work among this many threads. A thread that waits for the others does not take up work
-/// from elsewhere, which might wait for it.
+/// Returns a function that splits work among `threads` threads. A thread that waits for the others
+/// takes up no other work, which might wait for it in turn.
 ParallelFor parallel_for(int threads);
 
 }  // namespace pellucid

@@ -5,57 +5,64 @@
 
 namespace pellucid {
 
-/// Shares the tolerance of a pixel among the spans of its ray, front to back, so that whatever the
-/// spans are, their errors sum to no more (specification, 2.3).
+/// The error budget of a ray. It distributes the tolerance of a pixel among the spans of the ray,
+/// front to back, so that the errors of any sequence of spans sum to at most the tolerance
+/// (specification, 2.3).
 ///
-/// By theorem (3) a span whose error is x, behind a transparency T, changes the pixel by at most
-/// T x. Two pots hold half of the tolerance each. A span of opacity α takes at most the share α of
-/// the first, because it takes the share α of the light that is left; a span of length l at most
-/// the share l / (length left) of the second. Shares of what is left never empty a pot: every
-/// sequence of spans, however long, stays within the tolerance, and what a span leaves unspent is
-/// there for those behind it. Dense spans live on the first pot, thin ones on the second. A span
-/// that takes more than its shares takes it from those behind it.
+/// By theorem (3) a span with error x behind transparency T changes the pixel by at most T x. The
+/// budget has two halves, the opacity budget and the length budget:
 ///
-/// The ray may end as soon as a share of what is left in both pots pays for all that is behind.
+/// - A span of opacity α may use the fraction α of the remaining opacity budget, because it absorbs
+///   the fraction α of the remaining light.
+/// - A span of length l may use the fraction l / (remaining length) of the remaining length budget.
 ///
-/// T: double, or a double of several rays at once.
+/// A fraction of the remainder never exhausts a budget, so every sequence of spans, however long,
+/// stays within the tolerance. What a span does not use remains for the spans behind it; a span
+/// that exceeds its share reduces theirs. Dense spans rely on the opacity budget, thin ones on the
+/// length budget.
+///
+/// A ray may terminate when the upper bound on its remainder is below a fixed fraction of the
+/// remaining budget.
+///
+/// T: double, or a batch of several rays.
 template <class T>
 class RayBudget {
  public:
   RayBudget() = default;
-  /// tolerance >= 0, of the pixel; length >= 0, of the ray inside the data.
+  /// `tolerance` >= 0 is that of the pixel; `length` >= 0 that of the ray inside the data.
   PELLUCID_HD RayBudget(T tolerance, T length) noexcept
       : opacity_pot_(T(0.5) * tolerance), length_pot_(T(0.5) * tolerance), length_(length) {}
 
-  /// How large the error x of the next span may be: of a span of this length and at most this
-  /// opacity, behind this transparency (> 0).
+  /// Returns the largest error x permitted for the next span, given its length, an upper bound on
+  /// its opacity, and the transparency in front of it (> 0).
   PELLUCID_HD T allowance(T length, T opacity, T transparency) const noexcept {
-    return shares(length, opacity).sum() / transparency;
+    return span_share(length, opacity).sum() / transparency;
   }
-  /// Goes past a span that cost `error` (x of above; 0 where nothing was there).
+  /// Charges a span with error x = `error` (0 for an empty span), and moves behind it.
   PELLUCID_HD void spend(T length, T opacity, T transparency, T error) noexcept {
     const T cost = transparency * error;
     if (any(cost > T(0))) {
-      spend(length, shares(length, opacity), cost);
+      spend(length, span_share(length, opacity), cost);
     } else {
       length_ = max(length_ - length, T(0));
     }
   }
 
-  /// What a span may take of each pot.
-  struct Shares {
-    T of_opacity, of_length;
-    PELLUCID_HD T sum() const noexcept { return of_opacity + of_length; }
+  /// The parts of the opacity budget and of the length budget that a span may use.
+  struct SpanShare {
+    T opacity_part, length_part;
+    PELLUCID_HD T sum() const noexcept { return opacity_part + length_part; }
   };
-  PELLUCID_HD Shares shares(T length, T opacity) const noexcept {
-    return {opacity_pot_ * opacity, length_pot_ * share(length)};
+  /// Returns the share of a span.
+  PELLUCID_HD SpanShare span_share(T length, T opacity) const noexcept {
+    return {opacity_pot_ * opacity, length_pot_ * length_fraction(length)};
   }
-  /// Goes past a span whose shares these are and that costs so much, transparency · error: at most
-  /// their sum, or left(), or all is lost.
-  PELLUCID_HD void spend(T length, const Shares& from, T cost) noexcept {
+  /// Charges `cost` = transparency · error to a span with the share `from`, and moves behind it.
+  /// The cost must be at most the share's sum, or remaining(); otherwise the budget is exhausted.
+  PELLUCID_HD void spend(T length, const SpanShare& from, T cost) noexcept {
     const T sum = from.sum();
-    // What one pot does not have is taken from the other: together they lose all that is spent.
-    T part = select(sum > T(0), cost * (from.of_opacity / sum), T(0));
+    // What one budget lacks is taken from the other: together they lose the whole cost.
+    T part = select(sum > T(0), cost * (from.opacity_part / sum), T(0));
     part = clamp(part, min(cost - length_pot_, opacity_pot_), opacity_pot_);
     opacity_pot_ = max(opacity_pot_ - part, T(0));
     length_pot_ = max(length_pot_ - (cost - part), T(0));
@@ -63,44 +70,51 @@ class RayBudget {
     length_ = max(length_ - length, T(0));
   }
 
-  /// A bound on what lies behind the spans gone past: as little as light can come from there.
-  PELLUCID_HD T rest_behind(T transparency, T largest_extinction, T largest_color) const noexcept {
+  /// Returns an upper bound on the radiance of the remainder of the ray.
+  PELLUCID_HD T remainder_bound(T transparency, T largest_extinction,
+                                T largest_color) const noexcept {
     return transparency * min(largest_extinction * length_, T(1)) * largest_color;
   }
 
-  /// How much of what is left may go for what lies behind a ray's end. Where that is opaque the
-  /// pixel is off by nearly all of it, while other errors are far below what is charged for them:
-  /// with all of what is left by up to 0.97 of the tolerance, with a quarter by 0.1 to 0.4
-  /// (docs/notes/performance.md). Rays go further through thin media: up to 15 % more time.
-  static constexpr double share_for_rest = 0.25;
+  /// Fraction of the remaining budget that early termination may use.
+  ///
+  /// If the remainder is opaque, the pixel's error is nearly the whole bound, while other errors
+  /// are far below what is charged for them: with the whole remaining budget the error reaches 0.97
+  /// of the tolerance, with a quarter of it 0.1 to 0.4 (docs/notes/2026-11-performance.md). Rays go
+  /// further through thin media, for up to 15 % more time.
+  static constexpr double termination_fraction = 0.25;
 
-  /// Whether `rest`, a bound on what lies behind, may be left out: it is at most that share, or the
-  /// ray is beyond its tolerance already and it is next to nothing.
-  PELLUCID_HD mask_t<T> pays_for(T rest, T tolerance) const noexcept {
+  /// Returns whether the ray may terminate, given the bound `rest` on its remainder: if it is at
+  /// most that fraction of the remaining budget, or if the ray has exceeded its tolerance and it is
+  /// below 1/64 of the tolerance.
+  PELLUCID_HD mask_t<T> allows_termination(T rest, T tolerance) const noexcept {
     const auto next_to_nothing = rest <= T(1.0 / 64) * tolerance;
-    return (rest <= T(share_for_rest) * left()) | ((spent_ > tolerance) & next_to_nothing);
+    return (rest <= T(termination_fraction) * remaining()) |
+           ((spent_ > tolerance) & next_to_nothing);
   }
 
-  /// The least that a span is worth trying for, however little is left: a ray that is beyond its
-  /// tolerance, because rounding takes more than that, must come to its end. T error as of
-  /// allowance().
-  PELLUCID_HD static T least_allowance(T tolerance, T share_of_length) noexcept {
+  /// Returns a lower limit for the allowance of a span, however little budget remains. With it a
+  /// ray finishes that has exceeded its tolerance because rounding takes more.
+  PELLUCID_HD static T minimum_allowance(T tolerance, T share_of_length) noexcept {
     return T(1.0 / 64) * tolerance * share_of_length;
   }
 
-  // For spans that are tried together before those in front of them are folded:
+  // For spans that are tested together, before those in front of them are composited:
 
-  /// What one of them may take of the second pot for each unit of its length, and what there is in
-  /// the first one for all of them. Shares of the first are taken one after the other, from front
-  /// to back; those of spans that are good enough are reserved until they are spent.
-  PELLUCID_HD T for_length() const noexcept {
+  /// Returns the length budget that such a span may use per unit of its length.
+  PELLUCID_HD T allowance_per_length() const noexcept {
     return length_ > T(0) ? length_pot_ / length_ : length_pot_;
   }
-  PELLUCID_HD T for_opacity() const noexcept { return max(opacity_pot_ - reserved_, T(0)); }
+  /// Returns the opacity budget for all of them. Their shares are taken one after the other, front
+  /// to back; the shares of accepted spans are reserved until they are spent.
+  PELLUCID_HD T unreserved_opacity_budget() const noexcept {
+    return max(opacity_pot_ - reserved_, T(0));
+  }
+  /// Reserves a part of the opacity budget.
   PELLUCID_HD void reserve(T from_opacity) noexcept { reserved_ += from_opacity; }
-  /// Goes past a span whose shares were these: none of the pots loses more than that if `error` is
-  /// at most their sum by the transparency that they were given for, or a lower one. No share of
-  /// another span is touched.
+  /// Charges a span with these reserved shares, and moves behind it. Neither budget loses more than
+  /// its share if `error` is at most their sum divided by the transparency for which they were
+  /// computed, or by a lower one. Shares of other spans are not affected.
   PELLUCID_HD void spend_reserved(T length, T from_opacity, T from_length, T transparency,
                                   T error) noexcept {
     reserved_ = max(reserved_ - from_opacity, T(0));
@@ -112,10 +126,10 @@ class RayBudget {
     length_ = max(length_ - length, T(0));
   }
 
-  /// Goes past stretches in which nothing was, up to where so much is left of the ray.
-  PELLUCID_HD void pass_to(T length_left) noexcept { length_ = length_left; }
+  /// Skips empty spans: sets the remaining length of the ray.
+  PELLUCID_HD void set_remaining_length(T remaining_length) noexcept { length_ = remaining_length; }
 
-  /// Of several rays at once, lane by lane.
+  /// Selects lane by lane.
   friend RayBudget select(mask_t<T> mask, const RayBudget& a, const RayBudget& b) noexcept {
     RayBudget r;
     r.opacity_pot_ = select(mask, a.opacity_pot_, b.opacity_pot_);
@@ -126,13 +140,15 @@ class RayBudget {
     return r;
   }
 
+  /// Returns the sum of all charges, as an error of the pixel.
   PELLUCID_HD T spent() const noexcept { return spent_; }
-  PELLUCID_HD T left() const noexcept { return opacity_pot_ + length_pot_; }
-  /// Of the ray, behind the spans gone past.
-  PELLUCID_HD T length_left() const noexcept { return length_; }
+  /// Returns the remaining budget.
+  PELLUCID_HD T remaining() const noexcept { return opacity_pot_ + length_pot_; }
+  /// Returns the length of the ray behind the spans charged so far.
+  PELLUCID_HD T remaining_length() const noexcept { return length_; }
 
  private:
-  PELLUCID_HD T share(T length) const noexcept {
+  PELLUCID_HD T length_fraction(T length) const noexcept {
     const auto part = length < length_;
     return select(part, length / select(part, length_, T(1)), T(1));
   }
@@ -140,7 +156,7 @@ class RayBudget {
   T opacity_pot_{}, length_pot_{};
   T length_{};
   T spent_{};
-  T reserved_{};  ///< of the first pot
+  T reserved_{};  ///< part of the opacity budget
 };
 
 }  // namespace pellucid

@@ -3,9 +3,9 @@
 
 namespace pellucid {
 
-/// What the error of a pixel may rest on. `proved`: on theorems alone (docs/explanation/accuracy.md
-/// says which), but for rounding, which is charged with constants that tests assert. `estimated`:
-/// also on estimates with a safety factor, where a proof would cost several times the work.
+/// What the error of a pixel may rely on. `proved`: on theorems only (docs/explanation/accuracy.md
+/// lists them); rounding is charged with constants that tests assert. `estimated`: also on
+/// estimates with a safety factor, where a proved bound would cost several times the work.
 enum class Grade { estimated, proved };
 
 }  // namespace pellucid

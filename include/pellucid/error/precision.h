@@ -3,7 +3,7 @@
 
 namespace pellucid {
 
-/// automatic: binary32 where it keeps the tolerance, else binary64, span by span.
+/// automatic: for each span binary32 if it keeps the tolerance, else binary64.
 enum class Precision { automatic, float32, float64 };
 
 }  // namespace pellucid

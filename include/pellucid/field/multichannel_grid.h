@@ -11,17 +11,17 @@ namespace pellucid {
 /// The number type of a channel's values.
 enum class ValueType : std::uint8_t { u8, i8, u16, i16, u32, i32, f32, f64 };
 
-/// Several fields on one structured grid, each in its own type. A view; owns nothing. A ray sees a
-/// vector of trilinear fields; a cell with a NaN corner in any of them is vacuum.
+/// Several fields on one structured grid, each in its own type. A view; owns nothing. A cell with a
+/// NaN corner in any field is vacuum.
 struct MultichannelGrid {
-  const void* data[most_channels]{};  ///< x fastest
-  ValueType type[most_channels]{};
-  int channels = 0;  ///< 1 … most_channels
+  const void* data[max_channels]{};  ///< x fastest
+  ValueType type[max_channels]{};
+  int channels = 0;  ///< 1 … max_channels
   GridAxis<double> axis[3];
 
-  /// body(StructuredGrid<Value, double>) with the channel's own type.
+  /// Calls body(StructuredGrid<Value, double>) with the channel's own type and returns its result.
   template <class Body>
-  PELLUCID_HD auto with_channel(int channel, Body&& body) const noexcept {
+  PELLUCID_HD auto visit_channel(int channel, Body&& body) const noexcept {
     switch (type[channel]) {
       case ValueType::u8:
         return body(grid_of<std::uint8_t>(channel));
@@ -43,12 +43,13 @@ struct MultichannelGrid {
     return body(grid_of<double>(channel));
   }
 
-  /// The values at a position in grid coordinates, clamped into the box; false in vacuum.
+  /// Computes the values at a position in grid coordinates, clamped into the box. Returns false in
+  /// vacuum.
   template <class T>
   PELLUCID_HD bool sample(Vec3<double> position_grid, T* values) const noexcept {
     T sum = T(0);
     for (int c = 0; c < channels; ++c) {
-      values[c] = with_channel(
+      values[c] = visit_channel(
           c, [&](const auto& grid) noexcept { return sample_value<T>(grid, position_grid); });
       sum += values[c];
     }

@@ -5,8 +5,8 @@
 
 namespace pellucid {
 
-/// The trilinear value at a position in grid coordinates, clamped into the box; NaN in a cell with
-/// a NaN corner (a corner of weight 0 counts too).
+/// Returns the trilinear value at a position in grid coordinates, clamped into the box; NaN in a
+/// cell with a NaN corner, even a corner of weight 0.
 template <class T, class Value>
 PELLUCID_HD T sample_value(const StructuredGrid<Value, double>& grid,
                            Vec3<double> position_grid) noexcept {

@@ -7,14 +7,15 @@
 
 namespace pellucid {
 
-/// One axis of a structured grid, in the grid's own coordinates: planes 0 … cells bound the cells
-/// 0 … cells-1, and each plane shows the data value `value_index(plane)`.
+/// One axis of a structured grid in the grid's own coordinates. Planes 0 … cells bound the cells 0
+/// … cells-1; plane i has the data value `value_index(i)`.
 ///
 ///   point-centred, n values:  planes at 0, 1, …, n-1                      (n-1 cells)
 ///   cell-centred,  n values:  planes at -½, 0, 1, …, n-1, n-½             (n+1 cells)
 ///
-/// Cell-centred data has its values at the centres; the outer half cells repeat the border value,
-/// so that the box is that of the cells. On a rectilinear axis `plane_position` lists the planes.
+/// Cell-centred data have their values at the centres; the outer half cells repeat the border
+/// value, so that the box is that of the cells. On a rectilinear axis `plane_position` lists the
+/// planes.
 template <class T>
 struct GridAxis {
   const T* plane_position = nullptr;  ///< cells + 1 numbers, strictly ascending; null: uniform
@@ -22,16 +23,19 @@ struct GridAxis {
   int padding = 0;                    ///< 0 point-centred, 1 cell-centred
 
   PELLUCID_HD constexpr int cells() const noexcept { return values - 1 + 2 * padding; }
+  /// Returns the position of plane i.
   PELLUCID_HD constexpr T plane(int i) const noexcept {
     if (plane_position != nullptr) return plane_position[i];
     return clamp(T(i - padding), T(-0.5), T(values) - T(0.5));
   }
+  /// Returns the index of the data value on a plane.
   PELLUCID_HD constexpr int value_index(int plane) const noexcept {
     return clamp(plane - padding, 0, values - 1);
   }
 };
 
-/// The cell that holds a position: the upper one on a plane between two, the border cell outside.
+/// Returns the cell that contains a position: the upper one on a plane between two, the border cell
+/// outside of the grid.
 template <class T>
 PELLUCID_HD inline int find_cell(const GridAxis<T>& axis, T position) noexcept {
   const int last = axis.cells() - 1;
@@ -52,19 +56,20 @@ struct CellCorners {
   T value[8];
 };
 
-/// A structured grid of Value (kept in its own type), seen as trilinear cells. A view; owns
-/// nothing. T is the number type of positions, not of the data.
+/// A structured grid with data of type Value, as trilinear cells. A view; owns nothing. T is the
+/// number type of positions, not of the data.
 template <class Value, class T>
 struct StructuredGrid {
   const Value* data = nullptr;  ///< x fastest
   GridAxis<T> axis[3];
 
+  /// Returns the index of data value (i, j, k).
   PELLUCID_HD std::ptrdiff_t offset(int i, int j, int k) const noexcept {
     return i + static_cast<std::ptrdiff_t>(axis[0].values) *
                    (j + static_cast<std::ptrdiff_t>(axis[1].values) * k);
   }
 
-  /// Corners of cell (i, j, k) as numbers of type Number.
+  /// Returns the corners of cell (i, j, k), converted to Number.
   template <class Number>
   PELLUCID_HD CellCorners<Number> corners(int i, int j, int k) const noexcept {
     const int x[2] = {axis[0].value_index(i), axis[0].value_index(i + 1)};

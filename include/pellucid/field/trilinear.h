@@ -6,8 +6,9 @@
 
 namespace pellucid {
 
-/// The trilinear value at a position in [0,1]³ of the cell, by nested interpolation a + t (b - a):
-/// equal corners give their value exactly. Largest error as that of trilinear_cubic's end values.
+/// Returns the trilinear value at a position in [0,1]³ of the cell, by nested interpolation a + t
+/// (b - a): equal corners give their value exactly. Largest error as that of the end values of
+/// trilinear_cubic().
 template <class T>
 PELLUCID_HD constexpr T trilinear_value(const CellCorners<T>& corners, Vec3<T> local) noexcept {
   const T* v = corners.value;
@@ -18,8 +19,9 @@ PELLUCID_HD constexpr T trilinear_value(const CellCorners<T>& corners, Vec3<T> l
   return z0 + local.z * (z1 - z0);
 }
 
-/// The derivative of the trilinear value by the local position, in data units per cell width: in
-/// grid coordinates divide each component by its width. Largest error of a component: 22 u max|V|.
+/// Returns the gradient of the trilinear value by the local position, in data units per cell width;
+/// for grid coordinates divide each component by its width. Largest error of a component: 22 u
+/// max|V|.
 template <class T>
 PELLUCID_HD constexpr Vec3<T> trilinear_gradient(const CellCorners<T>& corners,
                                                  Vec3<T> local) noexcept {
@@ -33,18 +35,20 @@ PELLUCID_HD constexpr Vec3<T> trilinear_gradient(const CellCorners<T>& corners,
           bilinear(v[4] - v[0], v[5] - v[1], v[6] - v[2], v[7] - v[3], local.x, local.y)};
 }
 
-/// The trilinear data along the straight way from entry to exit (both in [0,1]³ of the cell), as a
-/// cubic in Bernstein form on [0,1]. Specification, equation (16): the coefficients are means of
-/// the trilinear values at the corners of the box that entry and exit span (its polar form), so
-/// that all are convex combinations of the corner values and nothing cancels.
+/// Returns the trilinear data along the straight line from entry to exit (both in [0,1]³ of the
+/// cell) as a cubic in Bernstein form on [0,1].
 ///
-/// The eight values share their differences, along x for the four edges, then y, then z, so that
-/// all cost 12 differences and 24 multiplications with additions. Plain a + t (b - a) is used: the
-/// form that is exact at both ends takes three times as long, for an error smaller by a third. The
-/// means are taken of differences from an end, so that equal corners give their value exactly.
+/// The coefficients are means of the trilinear values at the corners of the box between entry and
+/// exit (its polar form; specification, equation (16)): all are convex combinations of the corner
+/// values, and nothing cancels.
 ///
-/// Largest error of a coefficient, for positions in [0,1] and finite differences of the corners:
-/// 13 u max|V|, 9 u max|V| where no two corners differ in sign; asserted in tests/field/.
+/// The eight values share their differences, along x for the four edges, then y, then z; all
+/// together cost 12 differences and 24 multiplications with additions. Plain a + t (b - a) is used:
+/// the form that is exact at both ends takes three times as long and reduces the error by a third.
+/// Means are taken of differences from an end, so that equal corners give their value exactly.
+///
+/// Largest error of a coefficient, for positions in [0,1] and finite differences of the corners: 13
+/// u max|V|, 9 u max|V| if no two corners differ in sign; asserted in tests/field/.
 template <class T>
 PELLUCID_HD constexpr CubicBernstein<T> trilinear_cubic(const CellCorners<T>& corners,
                                                         Vec3<T> entry, Vec3<T> exit) noexcept {

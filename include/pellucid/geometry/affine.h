@@ -5,7 +5,7 @@
 
 namespace pellucid {
 
-/// A 3×3 matrix by its columns: the images of the three axes.
+/// A 3×3 matrix by its columns, the images of the three axes.
 template <class T>
 struct Mat3 {
   Vec3<T> column[3]{{T(1), T(0), T(0)}, {T(0), T(1), T(0)}, {T(0), T(0), T(1)}};
@@ -20,7 +20,7 @@ PELLUCID_HD constexpr T determinant(const Mat3<T>& m) noexcept {
   return dot(m.column[0], cross(m.column[1], m.column[2]));
 }
 
-/// By the adjugate. The caller has checked that the determinant is not 0.
+/// Returns the inverse by the adjugate. Precondition: the determinant is not 0.
 template <class T>
 PELLUCID_HD constexpr Mat3<T> inverse(const Mat3<T>& m) noexcept {
   const Vec3<T> r0 = cross(m.column[1], m.column[2]);
@@ -38,9 +38,11 @@ struct Affine {
   Mat3<T> matrix;
   Vec3<T> translation;
 
+  /// Maps a point.
   PELLUCID_HD constexpr Vec3<T> point(Vec3<T> p) const noexcept { return matrix * p + translation; }
+  /// Maps a direction.
   PELLUCID_HD constexpr Vec3<T> vector(Vec3<T> v) const noexcept { return matrix * v; }
-  /// The same ray in the other space, with the same parameter t.
+  /// Maps a ray; its parameter t stays the same.
   PELLUCID_HD constexpr Ray<T> ray(const Ray<T>& r) const noexcept {
     return {point(r.origin), vector(r.direction)};
   }

@@ -11,14 +11,13 @@ struct Box {
   Vec3<T> lower, upper;
 };
 
-/// The part of a ray that lies in a box; empty where it misses.
+/// Returns the interval of a ray inside a box; empty if it misses.
 ///
-/// Slab by slab: a plane is met at t = (plane - origin) / direction, which never is NaN, for the
-/// direction component is not 0 there; so the parameters of the lower and of the upper plane are in
-/// order whatever the rounding. Along an axis whose direction is ±0 the ray stays where it is:
-/// everything or nothing, a ray in a face is inside. Where a component is so small that t
-/// overflows, the slab begins or ends at ±infinity, as it should; a box that lies wholly at
-/// infinity is missed. A ray with a NaN meets nothing.
+/// Slab method: a plane is met at t = (plane - origin) / direction, which is never NaN because the
+/// direction component is not 0; the parameters of the lower and the upper plane are in order
+/// whatever the rounding. Along an axis with direction ±0 the ray is entirely inside or outside; a
+/// ray in a face is inside. If a component is so small that t overflows, the slab correctly begins
+/// or ends at ±infinity; a box entirely at infinity is missed. A ray with a NaN misses.
 template <class T>
 PELLUCID_HD inline Interval<T> intersect(const Box<T>& box, const Ray<T>& ray) noexcept {
   constexpr T infinity = std::numeric_limits<T>::infinity();

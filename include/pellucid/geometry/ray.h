@@ -5,9 +5,9 @@
 
 namespace pellucid {
 
-/// origin + t · direction. With a direction of length 1 in world space t is the arc length in world
-/// units, and it stays so when the ray is carried into a grid's own coordinates by an affine map
-/// (whose direction then has another length).
+/// origin + t · direction. With a direction of length 1 in world space, t is the arc length in
+/// world units. It remains so when an affine map carries the ray into grid coordinates, where the
+/// direction has another length.
 template <class T>
 struct Ray {
   Vec3<T> origin;

@@ -5,7 +5,7 @@
 
 namespace pellucid {
 
-/// A point or a direction in space. Which space is in the name of the variable.
+/// A point or a direction in space. The variable's name says which space.
 template <class T>
 struct Vec3 {
   T x{}, y{}, z{};
@@ -44,7 +44,7 @@ template <class T>
 PELLUCID_HD inline T length(Vec3<T> p) noexcept {
   return sqrt(dot(p, p));
 }
-/// p / |p|; the zero vector gives NaN.
+/// Returns p / |p|; NaN for the zero vector.
 template <class T>
 PELLUCID_HD inline Vec3<T> normalized(Vec3<T> p) noexcept {
   return p * (T(1) / length(p));

@@ -7,27 +7,28 @@
 
 namespace pellucid {
 
-/// A file that appears whole or not at all: write to temporary_path(), then commit(). Without a
-/// commit the destructor removes the temporary file.
+/// A file that appears complete or not at all. Write to temporary_path(), then call commit().
+/// Without a commit the destructor removes the temporary file.
 class AtomicFile {
  public:
-  /// Throws Error where the folder of target is missing or not writable.
+  /// Throws Error if the target's folder is missing or not writable.
   explicit AtomicFile(std::filesystem::path target);
   ~AtomicFile();
   AtomicFile(const AtomicFile&) = delete;
   AtomicFile& operator=(const AtomicFile&) = delete;
 
   const std::filesystem::path& temporary_path() const noexcept { return temporary_; }
-  void commit();  ///< Renames over the target. Throws Error.
+  void commit();  ///< renames the temporary file to the target; throws Error
 
  private:
   std::filesystem::path target_, temporary_;
   bool committed_ = false;
 };
 
-/// Writes the text whole or not at all. Throws Error.
+/// Writes a text file, complete or not at all. Throws Error.
 void write_text_file(const std::filesystem::path& path, std::string_view text);
-/// Reads a whole text file. Throws Error (missing, a folder, larger than the limit in bytes).
+/// Reads a whole text file of at most `largest` bytes. Throws Error if it is missing, a folder or
+/// larger.
 std::string read_text_file(const std::filesystem::path& path, std::size_t largest = std::size_t(64)
                                                                                     << 20);
 

@@ -13,26 +13,30 @@ namespace pellucid {
 /// slicer: a volume property of 3D Slicer as JSON; paraview: a color map with opacities as JSON;
 /// table: CSV with the columns value,r,g,b,a.
 enum class ExportFormat { slicer, paraview, table };
+/// Returns the format of this name, or none.
 std::optional<ExportFormat> export_format_from_name(std::string_view name) noexcept;
 
+/// Format and accuracy of an export.
 struct ExportOptions {
   ExportFormat format = ExportFormat::slicer;
-  /// How far what is written may be from the function: each channel of its color, in linear light,
-  /// and |ln| of the ratio of the extinctions.
+  /// Largest deviation from the function: of each color channel in linear light, and of the
+  /// extinction as |ln| of the ratio.
   double deviation = 1e-4;
 };
 
+/// A transfer function in another program's format.
 struct ExportedTransferFunction {
   std::string text;
-  /// Bounds; of an opacity table with deviations of its own beside those.
+  /// Bounds on the deviation from the function. The deviations of an opacity table itself come on
+  /// top.
   double extinction_deviation = 0, color_deviation = 0;
-  std::vector<std::string> notes;  ///< for people, a line each
+  std::vector<std::string> notes;  ///< messages for the user, one line each
 };
 
-/// The function in the form of another program: opacities of the table's unit distance, or of 1 in
-/// world units where it has extinctions, and sRGB signals, both linear in the value between the
-/// nodes that are written. Throws Error for a function of several channels and for a preset, where
-/// a color is above 1, and where too many nodes would be needed.
+/// Converts a function to another program's format: opacities of the table's unit distance (1 in
+/// world units for a function with extinctions) and sRGB signals, both linear in the value between
+/// the nodes. Throws Error for a function of several channels, for a preset, if a color is above 1,
+/// or if too many nodes would be needed.
 ExportedTransferFunction export_transfer_function(const TransferFunctionDescription& function,
                                                   const ExportOptions& options);
 

@@ -9,7 +9,7 @@
 
 namespace pellucid {
 
-/// A field as a scene names it: a file, or a built-in field with its size.
+/// A field as named in a scene: a file, or a built-in field with its size.
 struct FieldSource {
   std::filesystem::path file;  ///< empty: built-in
   ReadOptions options;
@@ -17,8 +17,8 @@ struct FieldSource {
   int points = 128;     ///< per axis; built-in
 };
 
-/// "builtin:NAME" and "builtin:NAME:POINTS" are built-in fields; anything else is a file's path.
-/// Throws Error for an unknown name or a wrong number of points.
+/// Parses "builtin:NAME", "builtin:NAME:POINTS" or the path of a file. Throws Error if the name is
+/// unknown or the number of points is out of range.
 FieldSource parse_field_source(std::string_view text);
 
 /// Reads the file or makes the built-in field. Throws Error.

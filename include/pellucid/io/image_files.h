@@ -9,25 +9,26 @@
 
 namespace pellucid {
 
-/// All writers write to a temporary file beside the target and rename it: a failure leaves no
-/// partial file. They throw Error.
+/// All writers write to a temporary file beside the target and rename it, so that a failure leaves
+/// no partial file. They throw Error.
 
-/// 8-bit sRGB with straight alpha; over the background, without alpha, where one is given (linear
-/// RGB).
+/// Writes 8-bit sRGB with alpha that is not premultiplied. If `background` (linear RGB) is given,
+/// composites over it and writes no alpha.
 void write_png(const Image& image, const std::filesystem::path& path,
                const std::optional<Rgb<double>>& background = std::nullopt);
-/// Linear premultiplied float R, G, B, A; Z where the image has depth; `error` (float) and
-/// `error.proved` (half, 0 or 1) where it has an error; metadata as string attributes.
+/// Writes linear premultiplied float R, G, B, A. Adds Z if the image has depth, `error` (float) and
+/// `error.proved` (half, 0 or 1) if it has an error, and the metadata as string attributes.
 void write_exr(const Image& image, const std::filesystem::path& path);
-/// What write_exr writes, and what others do: R, G and B must be there. `error` without
-/// `error.proved` is an estimate.
+/// Reads EXR files of write_exr() and of other programs; R, G and B are required. An `error`
+/// without `error.proved` is an estimate. Throws Error.
 Image read_exr(const std::filesystem::path& path);
-/// The error alone: `error` and `error.proved` as above, and Y = error / tolerance for viewers that
-/// show nothing else. Throws Error where the image has no error or the tolerance is not positive.
+/// Writes the error alone: `error` and `error.proved` as in write_exr(), and Y = error / tolerance
+/// for viewers that show nothing else. Throws Error if the image has no error or the tolerance is
+/// not positive.
 void write_error_exr(const Image& image, double tolerance, const std::filesystem::path& path);
 
-/// Throws Error where a file could not be written there later: missing folder, no permission, the
-/// path is a folder. For asking before the work is done.
+/// Throws Error if a file cannot be written to this path later: the folder is missing, permission
+/// is denied, or the path is a folder. To be called before a long computation.
 void check_writable(const std::filesystem::path& path);
 
 }  // namespace pellucid

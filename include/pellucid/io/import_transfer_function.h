@@ -12,39 +12,39 @@
 
 namespace pellucid {
 
-/// What a file's color numbers are: signals of a display, or linear light as they stand.
-enum class ColorNumbers { srgb, linear };
+/// Encoding of a file's color numbers: display signals, or linear light.
+enum class ColorEncoding { srgb, linear };
 
 struct ImportOptions {
-  /// How far the table may be from the function that the file means: each channel of its color, in
-  /// linear light, and |ln| of the ratio of the extinctions. What is a straight line already is
-  /// taken as it is.
+  /// Largest deviation of the table from the file's function: of each color channel in linear
+  /// light, and of the extinction as |ln| of the ratio. Straight lines are converted exactly.
   double deviation = 1e-4;
-  /// The color map to take, where a file has several; the first of them where this is empty.
+  /// Name of the color map to read from a file with several; empty: the first.
   std::string name;
-  /// The values that the first and the last node are moved to, all others in proportion.
+  /// New values of the first and the last node; all others are moved in proportion.
   std::optional<std::array<double, 2>> range;
-  /// In place of the file's, or of 1 where it has none; in world units.
+  /// Replaces the file's unit distance, or 1 if the file has none; in world units.
   std::optional<double> unit_distance;
-  /// In place of what the format means: linear for ANARI, sRGB for all others. With `linear` an
-  /// RGB color map is exact, and pictures are composited from its numbers, as VTK does.
-  std::optional<ColorNumbers> numbers;
+  /// Replaces the encoding of the format, which is linear for ANARI and sRGB for all others. With
+  /// `linear` an RGB color map is converted exactly, and its numbers are composited as VTK does.
+  std::optional<ColorEncoding> encoding;
 };
 
 /// Limits of ImportOptions::deviation.
 inline constexpr double smallest_deviation = 1e-7;
 inline constexpr double largest_deviation = 0.1;
 
+/// A transfer function of another program as an opacity table.
 struct ImportedTransferFunction {
-  OpacityTable table;  ///< its deviations are bounds
-  std::string format;  ///< for people, as "ParaView color map"
+  OpacityTable table;  ///< its deviations are upper bounds
+  std::string format;  ///< shown to the user, such as "ParaView color map"
   std::string name;    ///< in the file; may be empty
-  /// For people, a line each: what was exact, what was fitted and how far it is off, what was left
-  /// out or supposed.
+  /// Messages for the user, one line each: what is exact, what is fitted and with which deviation,
+  /// what is left out or assumed.
   std::vector<std::string> notes;
 };
 
-/// A transfer function of another program. Which one is seen by what is in it:
+/// Reads a transfer function of another program. The format is recognized by the content:
 ///
 /// | format | taken from |
 /// |---|---|
@@ -55,16 +55,16 @@ struct ImportedTransferFunction {
 /// | ANARI transferFunction1D, JSON | the specification, 4.5; positions as VisRTX has them |
 /// | color tables, CSV | rows r,g,b[,a] or value,r,g,b[,a] |
 ///
-/// The formulas stand, with their sources, in src/io/foreign_curves.h. `name` (the file's) opens
-/// every message. Throws Error: one line that names the place, for what is not one of these, and
-/// for numbers that are not finite, not in order or out of range.
+/// src/io/foreign_curves.h has the formulas with their sources. `name` (the file's) opens every
+/// message. Throws Error, with one line that names the position, if the text has none of these
+/// formats, or numbers are not finite, not in order or out of range.
 ImportedTransferFunction import_transfer_function(std::string_view text, const std::string& name,
                                                   const ImportOptions& options = {});
-/// The same of a file of at most 64 MiB.
+/// Reads the same from a file of at most 64 MiB.
 ImportedTransferFunction import_transfer_function(const std::filesystem::path& file,
                                                   const ImportOptions& options = {});
-/// Whether the text is not a transfer function of our own (parse_transfer_function), by the keys at
-/// its top.
+/// Returns whether the text is not in our own format (parse_transfer_function()), judged by its
+/// top-level keys.
 bool is_foreign_transfer_function(std::string_view text);
 
 }  // namespace pellucid

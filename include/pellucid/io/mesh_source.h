@@ -12,27 +12,33 @@
 
 namespace pellucid {
 
-/// A mesh as a scene names it: nothing is read yet.
+/// A mesh as named in a scene; nothing has been read yet.
 struct MeshSource {
   std::filesystem::path file;
   MeshReadOptions options;
-  /// Arrays as channels. None: default_array(), as the channel "value".
+  /// Arrays that become channels. Empty: default_array(), as the channel "value".
   std::vector<MeshArrayChoice> channels;
 };
 
-/// "ARRAY", "ARRAY:C" (component C, from 0) or either behind "NAME=". Without a name the channel is
-/// called after the array, "_C" behind it. Throws Error.
+/// Parses "ARRAY", "ARRAY:C" (component C, from 0), or either after "NAME=". Without a name the
+/// channel takes the array's name, followed by "_C" if there is a component. Throws Error.
 MeshArrayChoice parse_mesh_array(std::string_view text);
 
+/// Returns the names of the channels.
 std::vector<std::string> channel_names(const MeshSource& source);
 
-/// Throws Error where there are more than eight channels, or a name is none or stands twice.
+/// Throws Error if there are more than eight channels, or a name is invalid or a duplicate.
 void check_mesh_source(const MeshSource& source);
 
+/// A mesh and the arrays that became its channels.
 struct LoadedMesh {
   std::shared_ptr<const MeshChannels> mesh;
-  std::vector<MeshArrayChoice> channels;  ///< those of the source, or the one that was taken
+  std::vector<MeshArrayChoice> channels;  ///< those of the source, or the default array
 };
+
+/// What to tell where cells are inverted or overlap: how many, the first of them, and the likely
+/// cause; empty where none do.
+std::string overlap_note(const MeshStatistics& statistics);
 
 /// Reads the file and cuts its cells into tetrahedra. Throws Error.
 LoadedMesh load_mesh(const MeshSource& source, const ParallelFor& parallel = {});

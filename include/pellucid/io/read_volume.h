@@ -13,82 +13,98 @@
 
 namespace pellucid {
 
-/// What a headerless file does not say, and what may be said instead of the file.
+/// Properties that a file lacks, or that replace the file's own.
 struct ReadOptions {
   std::optional<std::array<int, 3>> dimensions;  ///< raw: required
-  std::optional<std::string> type;               ///< raw: required ("u8" … "f64")
-  std::optional<bool> big_endian;                ///< raw; default little
-  std::size_t skip_bytes = 0;                    ///< raw: header to skip
-  std::optional<Vec3<double>> spacing;           ///< replaces the file's
-  std::optional<Vec3<double>> origin;            ///< replaces the file's
-  std::optional<Centering> centering;            ///< replaces the file's
-  std::optional<int> components;                 ///< raw: numbers at each point, side by side
-  std::optional<int> component;                  ///< which of a file's, from 0
-  std::optional<double> time;        ///< in place of a component, the step nearest to it: NetCDF
-  std::optional<std::string> array;  ///< by name, of a file that has several; none: see VolumeArray
-  /// DICOM: which of a folder's series: its number as list_dicom_series() has them, from 1, its
-  /// UID, or the unique end of one.
+  std::optional<std::string> type;  ///< raw: required ("u8" … "f64", also "i64", "u64", "f16")
+  std::optional<bool> big_endian;   ///< raw; default little
+  std::size_t skip_bytes = 0;       ///< raw: header to skip
+  std::optional<Vec3<double>> spacing;  ///< replaces the file's
+  std::optional<Vec3<double>> origin;   ///< replaces the file's
+  std::optional<Centering> centering;   ///< replaces the file's
+  std::optional<int> components;        ///< raw: numbers at each point, side by side
+  std::optional<int> component;         ///< component to read, from 0
+  std::optional<double> time;        ///< NetCDF: reads the nearest time step instead of a component
+  std::optional<std::string> array;  ///< name of the array to read; none: see VolumeArray
+  /// .npy, .npz and HDF5: a letter for each axis of the array, in the order of its indices: x, y
+  /// and z, and c for components ("xyz", "czyx"). None: "zyx"; of four axes c is the first or the
+  /// last, whichever is short, and `note` is told which was taken.
+  std::optional<std::string> axes;
+  /// DICOM: series to read from a folder: its number as in list_dicom_series(), from 1, its UID, or
+  /// a unique end of the UID.
   std::optional<std::string> series;
-  /// Is told, a line each, what is assumed where files do not say it, and what is left out.
+  /// Called with one line for each assumption about what the files do not say, and for each part
+  /// that is left out.
   std::function<void(const std::string&)> note;
 };
 
-/// Reads a volume by its extension: .nii .nii.gz .hdr/.img(.gz) .nrrd .nhdr .mha .mhd (through ITK,
-/// where the build has it), .npy, .slc, .raw, .mrc .map .rec .st .ccp4 (each also .gz), .dcm .ima;
-/// a .dat or .ivf header of Inviwo's or Voreen's; a stack of images, .tif .tiff .png, by any of its
-/// files, a pattern of them ("slice%03d.tif") or its folder; a DICOM series by its folder or any of
-/// its files, of any name; any file as raw where dimensions and type are both given; and images and
-/// rectilinear grids of VTK's by their first bytes (.vti, .pvti, .vtr, .pvtr, legacy .vtk; through
-/// VTK, where the build has it): arrays of points are point-centred, arrays of cells cell-centred,
-/// whole numbers of 64 bits become double, bits u8; datasets of HDF5 (.h5, .hdf5, .he5) and
-/// variables of NetCDF (.nc, .nc4, .cdf), where the build has these: of NetCDF positions along the
-/// axes where it has them, scaled, and NaN for what is missing; fog volumes of OpenVDB (.vdb) as
-/// the dense grid of their active box, where the build has it. Throws Error: what, where, what to
-/// do; also for a file of several components of which the options choose none.
+/// Reads a volume. The format follows from the extension, for VTK files from the first bytes:
+///
+/// - .nii .nii.gz .hdr/.img(.gz); .nrrd .nhdr .mha .mhd through ITK, if the build has it;
+/// - .npy, .npz, .slc, .raw, .mrc .map .rec .st .ccp4 (each also .gz);
+/// - a .dat or .ivf header of Inviwo or Voreen;
+/// - DICOM (.dcm .ima): a series by its folder or any of its files, whatever their names;
+/// - a stack of images (.tif .tiff .png): any of its files, a pattern ("slice%03d.tif") or the
+///   folder;
+/// - images and rectilinear grids of VTK (.vti, .pvti, .vtr, .pvtr, legacy .vtk), if the build has
+///   VTK: arrays of points are point-centred, arrays of cells cell-centred, bits become u8;
+/// - datasets of HDF5 (.h5, .hdf5, .he5) and variables of NetCDF (.nc, .nc4, .cdf), if the build
+///   has the libraries; NetCDF provides positions along the axes, scaled values, and NaN for
+///   missing ones;
+/// - fog volumes of OpenVDB (.vdb), if the build has it, as the dense grid of their active box;
+/// - any file as raw data if dimensions and type are both given.
+///
+/// Half floats become float. Integers of 64 bits become the smallest type that holds each of them;
+/// if only double is left and rounds some, `note` is told.
+///
+/// Throws Error: what, where, what to do; also for a file of several components or a .npz of
+/// several arrays if the options select none.
 Volume read_volume(const std::filesystem::path& path, const ReadOptions& options = {});
 
-/// A file may have several numbers at each point, its components: colors and vectors, the steps of
-/// a fourth axis, and of .npy the last of four axes. This is how many, by its header. Throws Error
-/// like read_volume.
+/// Returns the number of components per point, as the file's header says: colors, vectors, the
+/// steps of a fourth axis. Throws Error like read_volume().
 int component_count(const std::filesystem::path& path, const ReadOptions& options = {});
-/// Each component as a volume of its own, in the file's type and on its one grid; the chosen one
-/// alone where the options choose. Throws Error like read_volume.
+/// Reads each component as a volume, in the file's type and on its grid; only one if the options
+/// select it. Throws Error like read_volume().
 std::vector<Volume> read_components(const std::filesystem::path& path,
                                     const ReadOptions& options = {});
 
-/// The same, with the name of the array that they are of; empty where the format has no names.
+/// Components and the name of their array; the name is empty if the format has none.
 struct NamedComponents {
   std::string array;
   std::vector<Volume> components;
 };
+/// Reads the same with the array's name. Throws Error like read_volume().
 NamedComponents read_named_components(const std::filesystem::path& path,
                                       const ReadOptions& options = {});
 
-/// What a file has under one name.
+/// A named array of a file.
 struct VolumeArray {
   std::string name;
   Centering centering = Centering::point;
-  std::string type;             ///< as it is read: "u8" … "f64"
+  std::string type;             ///< after reading: "u8" … "f64"
   std::vector<int> dimensions;  ///< data values along x, y, z
   std::vector<VolumeStatistics> components;
-  int more_components = 0;  ///< not looked at: beyond the 64 that are, each of which is read
-  std::string not_read;     ///< why it is not; empty: it is
-  /// Read where no array is chosen: the one that the file marks as its scalars, else the first of
-  /// points with one component, else the first.
-  bool shown = false;
+  int more_components = 0;        ///< components beyond the 64 that are read for the statistics
+  std::string unreadable_reason;  ///< why it cannot be read; empty: it can
+  /// Whether it is read if none is selected: the array that the file marks as its scalars, else the
+  /// first array of points with one component, else the first array.
+  bool is_default = false;
 };
-/// All arrays of a file in which they have names; none of other files. Reads all of their values.
-/// Throws Error like read_volume.
+/// Returns all arrays of a file whose format names them, else none. Reads all of their values.
+/// Throws Error like read_volume().
 std::vector<VolumeArray> list_arrays(const std::filesystem::path& path,
                                      const ReadOptions& options = {});
-/// Whether the program reads files of this name as volumes with a header, which says of itself what
-/// headerless data need to be told.
+/// Returns whether files of this name are volumes with a header, which provides what headerless
+/// data need as options.
 bool has_volume_header(std::string_view file_name);
-/// The extensions of volumes, for messages and help: ".nii .nii.gz …".
+/// Returns the extensions of volume files for messages and help: ".nii .nii.gz …".
 std::string volume_extensions();
 
-/// The parsers of our own, from memory, so that they can be fuzzed. `name` is for messages.
+/// Parse a file in memory; exposed for fuzzing. `name` opens the messages. Throw Error.
 Volume parse_npy(const std::vector<std::byte>& bytes, const std::string& name,
+                 const ReadOptions& options = {});
+Volume parse_npz(const std::vector<std::byte>& bytes, const std::string& name,
                  const ReadOptions& options = {});
 Volume parse_raw(const std::vector<std::byte>& bytes, const std::string& name,
                  const ReadOptions& options);

@@ -15,57 +15,62 @@
 
 namespace pellucid {
 
-/// A scene as written: nothing is read or rendered yet. What is absent takes the default.
-/// docs/reference/scene.md describes every key, scene.schema.json beside it is the JSON Schema.
+/// A scene as written in a file; no data are read or rendered yet. Absent keys have their defaults.
+/// docs/reference/scene.md describes every key; scene.schema.json beside it is the JSON Schema.
 struct SceneDescription {
   FieldSource field;
-  std::vector<ChannelSource> channels;  ///< in place of the field, where there are any
-  std::optional<MeshSource> mesh;       ///< in place of both
+  std::vector<ChannelSource> channels;  ///< replaces `field` unless empty
+  std::optional<MeshSource> mesh;       ///< replaces `field` and `channels`
   std::optional<TransferFunctionDescription> transfer_function;
   std::optional<Camera> camera;
   ImageSize size;
   int samples = 1;
   Integration integration;
+  /// The tolerance as a share of the picture's largest channel, in (0, 1], in place of
+  /// integration.tolerance. The program `pellucid` looks for it; make_scene() does not, for the
+  /// picture must be known first.
+  std::optional<double> relative_tolerance;
   std::optional<Rgb<double>> background;
 };
 
-/// Parses and validates; reads no other file. Relative files are taken from `folder`. `name` (the
-/// file's) opens every message. Throws Error: one line with line and column where the text is not
-/// JSON, else with the JSON pointer of the key, e.g.
-/// "scene.json: /camera/vertical_angle: is 200, but must be above 0 and below 180".
+/// Parses and validates a scene; reads no other file. Relative paths are resolved against `folder`.
+/// `name` (the file's) opens every message. Throws Error: one line with line and column if the text
+/// is not JSON, else with the JSON pointer of the key, for example "scene.json:
+/// /camera/vertical_angle: is 200, but must be above 0 and below 180".
 SceneDescription parse_scene(std::string_view json, const std::string& name,
                              const std::filesystem::path& folder = {});
-/// The document that parse_scene reads back to the same description, bit for bit. Throws Error
-/// where a path is not UTF-8 or a number is not finite.
+/// Returns a document that parse_scene() reads back to the same description, bit for bit. Throws
+/// Error if a path is not UTF-8 or a number is not finite.
 std::string scene_to_json(const SceneDescription& description);
 
-/// A transfer function alone: the object that stands under "transfer_function" in a scene, or a
-/// document {"transfer_function": that object}. Throws Error like parse_scene.
+/// Parses a transfer function: the object under "transfer_function" of a scene, or a document
+/// {"transfer_function": object}. Throws Error like parse_scene().
 TransferFunctionDescription parse_transfer_function(std::string_view json, const std::string& name);
-/// The bare object, without a line end: what parse_transfer_function reads back, an opacity table
-/// as it was given. Throws Error where a number is not finite.
+/// Returns the bare object without a line end, which parse_transfer_function() reads back; an
+/// opacity table stays one. Throws Error if a number is not finite.
 std::string transfer_function_to_json(const TransferFunctionDescription& description);
-/// The same of the points alone, those that stand for an opacity table included. Throws nothing: a
-/// TransferFunction's numbers are finite.
+/// Returns the same for the points alone, including those made from an opacity table. Never throws
+/// Error: a TransferFunction's numbers are finite.
 std::string transfer_function_to_json(const TransferFunction& transfer_function);
 
-/// A camera alone: the object that stands under "camera" in a scene, or {"camera": that object}.
+/// Parses a camera: the object under "camera" of a scene, or a document {"camera": object}. Throws
+/// Error like parse_scene().
 Camera parse_camera(std::string_view json, const std::string& name);
-/// The bare object. Throws Error where a number is not finite.
+/// Returns the bare object. Throws Error if a number is not finite.
 std::string camera_to_json(const Camera& camera);
 
-/// The channels that the scene's function sees: its own, or its field, named "value", and behind it
-/// "gradient_magnitude" and "second_derivative" of it where a Gaussian or a table names them. None
-/// where a field has a function of one variable, or where there is a mesh.
+/// Returns the channels that the scene's function uses: the scene's own channels, or its field as
+/// "value", followed by the field's "gradient_magnitude" and "second_derivative" if a Gaussian or a
+/// table names them. Empty for a field with a function of one variable, and for a mesh.
 std::vector<ChannelSource> scene_channels(const SceneDescription& description);
-/// The names of the channels that a function of several would see.
+/// Returns the names of the channels that a multivariate function of this scene would use.
 std::vector<std::string> function_channels(const SceneDescription& description);
-/// The names that a term of the scene's function may look at: of a field all three.
+/// Returns the names that a term of the scene's function may refer to; for a field all three.
 std::vector<std::string> known_channels(const SceneDescription& description);
 
-/// Reads the data, and fills defaults for the transfer function of a field or of one array of a
-/// mesh, and for the camera. `mesh_used` gets the scene's mesh, with the array that was taken where
-/// it names none. Throws Error, also for several channels without a function of them.
+/// Reads the data, and adds the defaults for the camera and for the transfer function of a field or
+/// of one array of a mesh. `mesh_used` receives the scene's mesh, with the default array if the
+/// scene selects none. Throws Error, also if there are several channels and no function of them.
 Scene make_scene(const SceneDescription& description, const ParallelFor& parallel = {},
                  MeshSource* mesh_used = nullptr);
 

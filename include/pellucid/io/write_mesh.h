@@ -7,13 +7,13 @@
 
 namespace pellucid {
 
-/// Writes VTK's XML file of unstructured grids (.vtu), uncompressed, with all arrays in their own
-/// types: whole or not at all. Names are made UTF-8 without control characters. Throws Error where
-/// the grid does not agree with itself or the file cannot be written.
+/// Writes an unstructured grid as uncompressed VTK XML (.vtu) with all arrays in their own types,
+/// complete or not at all. Names become UTF-8 without control characters. Throws Error if the grid
+/// is inconsistent or has Lagrange cells or polyhedra, or the file cannot be written.
 void write_vtu(const UnstructuredGrid& grid, const std::filesystem::path& path);
 
-/// The cells of a volume's grid as tetrahedra (to_unstructured(), tetrahedra_of()). Throws Error
-/// where memory does not hold them.
+/// Returns the cells of a volume's grid as tetrahedra (to_unstructured(), tetrahedralize()). Throws
+/// Error if memory does not suffice.
 UnstructuredGrid volume_tetrahedra(const Volume& volume, const ParallelFor& parallel = {});
 
 }  // namespace pellucid

@@ -5,9 +5,9 @@
 
 namespace pellucid {
 
-/// a at t = 0, b at t = 1, both exactly; equal ends give their value exactly; between them the
-/// result never leaves [min(a,b), max(a,b)]. Interpolates from the nearer end, so that the rounding
-/// of b - a is halved: error <= 2 u max(|a|,|b|) for finite b - a, t in [0,1].
+/// Returns a at t = 0 and b at t = 1, both exactly; equal ends give their value exactly; in between
+/// the result never leaves [min(a,b), max(a,b)]. It interpolates from the nearer end, which halves
+/// the rounding of b - a. Largest error: 2 u max(|a|,|b|) for finite b - a, t in [0,1].
 template <class T>
 PELLUCID_HD constexpr T interpolate(T a, T b, T t) noexcept {
   const T d = b - a;
@@ -41,16 +41,17 @@ struct CubicBernstein {
   }
 };
 
-/// A bound from below on |f'| over [0,1]; 0 or less where the coefficients are not monotone, and
-/// nothing is known.
+/// Returns a lower bound on |f'| over [0,1]; 0 or less, without meaning, if the coefficients are
+/// not monotone.
 template <class T>
 PELLUCID_HD constexpr T least_slope(const CubicBernstein<T>& f) noexcept {
   const T d0 = f.b[1] - f.b[0], d1 = f.b[2] - f.b[1], d2 = f.b[3] - f.b[2];
   return T(3) * max(min(d0, min(d1, d2)), -max(d0, max(d1, d2)));
 }
 
-/// f(t), t in [0,1], by de Casteljau: within the hull, also after rounding; equal coefficients give
-/// their value exactly. Largest error: 4 u max|b_k|, asserted in tests/math_bernstein.
+/// Returns f(t), t in [0,1], by de Casteljau: within the hull, also after rounding; equal
+/// coefficients give their value exactly. Largest error: 4 u max|b_k|, asserted in
+/// tests/math_bernstein.
 template <class T>
 PELLUCID_HD constexpr T evaluate(const CubicBernstein<T>& f, T t) noexcept {
   const T p0 = interpolate(f.b[0], f.b[1], t), p1 = interpolate(f.b[1], f.b[2], t),
@@ -58,9 +59,9 @@ PELLUCID_HD constexpr T evaluate(const CubicBernstein<T>& f, T t) noexcept {
   return interpolate(interpolate(p0, p1, t), interpolate(p1, p2, t), t);
 }
 
-/// The same cubic on [ta,tb] (any numbers in [0,1], also equal or reversed), as a cubic on [0,1]:
-/// the values of its polar form at (ta,ta,ta), (ta,ta,tb), (ta,tb,tb), (tb,tb,tb), by de Casteljau
-/// (specification, 3.8). The ends are those of evaluate() to the bit; nothing leaves the hull.
+/// Returns the same cubic on [ta,tb] (any numbers in [0,1], also equal or reversed) as a cubic on
+/// [0,1]: the values of its polar form at (ta,ta,ta), (ta,ta,tb), (ta,tb,tb), (tb,tb,tb), by de
+/// Casteljau (specification, 3.8). The ends equal evaluate() to the bit; nothing leaves the hull.
 /// Largest error of a coefficient: 4 u max|b_k|, asserted in tests/math_bernstein.
 template <class T>
 PELLUCID_HD constexpr CubicBernstein<T> restrict_to(const CubicBernstein<T>& f, T ta,
@@ -76,7 +77,7 @@ PELLUCID_HD constexpr CubicBernstein<T> restrict_to(const CubicBernstein<T>& f, 
            interpolate(bb0, bb1, tb)}};
 }
 
-/// Linear on [0,1], by its values at 0 and 1.
+/// A linear function on [0,1] by its values at 0 and 1.
 template <class T>
 struct LinearBernstein {
   T b[2]{};
@@ -84,7 +85,7 @@ struct LinearBernstein {
   PELLUCID_HD constexpr T hull_min() const noexcept { return min(b[0], b[1]); }
   PELLUCID_HD constexpr T hull_max() const noexcept { return max(b[0], b[1]); }
 };
-/// The same as a cubic.
+/// Returns the same function as a cubic.
 template <class T>
 PELLUCID_HD constexpr CubicBernstein<T> as_cubic(const LinearBernstein<T>& f) noexcept {
   return {{f.b[0], interpolate(f.b[0], f.b[1], T(1.0 / 3)), interpolate(f.b[0], f.b[1], T(2.0 / 3)),

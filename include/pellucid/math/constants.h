@@ -21,7 +21,7 @@ inline constexpr scalar_t<T> two_over_sqrt_pi = scalar_t<T>(1.128379167095512573
 template <class T>
 inline constexpr scalar_t<T> largest = std::numeric_limits<scalar_t<T>>::max();
 
-/// The smallest number with full precision; a divisor that may be zero is kept above it.
+/// The smallest number with full precision; divisors that may be zero are kept above it.
 template <class T>
 inline constexpr scalar_t<T> smallest_normal = std::numeric_limits<scalar_t<T>>::min();
 

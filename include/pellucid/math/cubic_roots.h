@@ -5,7 +5,7 @@
 
 namespace pellucid {
 
-/// The places in (0,1), ascending, where the cubic turns; with 0 and 1 they bound its monotone
+/// The positions in (0,1), ascending, of a cubic's extrema. With 0 and 1 they bound its monotone
 /// pieces, at most three.
 template <class T>
 struct CriticalPoints {
@@ -13,16 +13,18 @@ struct CriticalPoints {
   int count = 0;
 };
 
-/// Specification, 3.8: f'/3 = d0 (1-t)² + 2 d1 t (1-t) + d2 t² with d_k = b_{k+1} - b_k has in
-/// powers of t the coefficients d0, 2 B, A; B = d1 - d0, A = d0 - 2 d1 + d2. The two roots are w/A
-/// and d0/w with w = -(B + sign(B) √(B² - A d0)), which adds numbers of one sign: nothing cancels
-/// where A or d0 vanishes. The radicand is d1² - d0 d2 (the discriminant does not depend on the
-/// basis), formed with one rounding of its products' difference (fma), so that its sign is right
-/// unless it is zero to rounding. The differences are scaled by their largest, so that squares
-/// neither overflow nor vanish.
+/// Returns the extrema of a cubic in (0,1).
 ///
-/// A double root (the slope touches zero without a turn) may be reported twice, once or not at all,
-/// as it falls; every choice bounds monotone pieces. So does none for a constant.
+/// f'/3 = d0 (1-t)² + 2 d1 t (1-t) + d2 t² with d_k = b_{k+1} - b_k has the coefficients d0, 2 B, A
+/// in powers of t; B = d1 - d0, A = d0 - 2 d1 + d2 (specification, 3.8). The two roots are w/A and
+/// d0/w with w = -(B + sign(B) √(B² - A d0)), which adds numbers of the same sign: nothing cancels
+/// if A or d0 vanishes. The radicand is d1² - d0 d2 (the discriminant does not depend on the
+/// basis), computed with one rounding of its products' difference (fma), so that its sign is
+/// correct unless it is zero to rounding. The differences are scaled by the largest one, so that
+/// squares neither overflow nor underflow.
+///
+/// A double root (the slope touches zero without a change of sign) may be reported twice, once or
+/// not at all; every choice bounds monotone pieces. A constant has no extrema.
 template <class T>
 PELLUCID_HD CriticalPoints<T> critical_points(const CubicBernstein<T>& f) noexcept {
   CriticalPoints<T> result;
@@ -55,14 +57,16 @@ PELLUCID_HD CriticalPoints<T> critical_points(const CubicBernstein<T>& f) noexce
   return result;
 }
 
-/// The place in [ta,tb] where f crosses c. Wanted: f is monotone there and f(ta), f(tb) lie on
-/// different sides of c, or at it; then there is exactly one, and it is found. `rising` says which
-/// way. Newton's method from the secant point, kept in a bracket that always holds the root: a step
-/// that would leave it, or that does not halve the one before last, becomes a bisection. Ends when
-/// the place is found to the working precision of t.
+/// Returns the position in [ta,tb] at which f crosses c. Preconditions: f is monotone there, and
+/// f(ta), f(tb) lie on different sides of c, or at it; then there is exactly one crossing. `rising`
+/// is the direction.
 ///
-/// Error: that of a root whose function value is off by 4 u max|b_k - c|, asserted in
-/// tests/math_bernstein; where f is steep a few u, at a turning point √u.
+/// Newton's method from the secant point, in a bracket that always contains the root. A step that
+/// would leave the bracket, or does not halve the step before last, becomes a bisection. It ends
+/// when the position is found to the working precision of t.
+///
+/// Error: that of a root whose function value has an error of 4 u max|b_k - c|, asserted in
+/// tests/math_bernstein; a few u where f is steep, √u at an extremum.
 template <class T>
 PELLUCID_HD T find_crossing(const CubicBernstein<T>& f, T c, T ta, T tb, bool rising) noexcept {
   // f - c with f rising, so that the differences are rounded once, close to the root.

@@ -6,10 +6,12 @@
 
 namespace pellucid {
 
-/// Dawson's function Daw(x) = e^(-x²) ∫ e^(y²) dy over [0, x], odd, at most 0.5411, ~ 1 / (2 x).
-/// |x| < 1/2: x Σ (-2 x²)^k / (2 k + 1)!! (specification, 4.3, which stops at 1/4; between, W0-
-/// would cost 12 u: the rounding of t is amplified near the zero of W0-). Beyond, ±W0-(t) t / 2
-/// with t = 2 / (|x| + 2). Daw(±0) = ±0, Daw(±∞) = ±0.
+/// Returns Dawson's function Daw(x) = e^(-x²) ∫ e^(y²) dy over [0, x], odd, at most 0.5411, ~ 1 /
+/// (2 x).
+///
+/// For |x| < 1/2: x Σ (-2 x²)^k / (2 k + 1)!! (specification, 4.3, which stops at 1/4; in between
+/// W0- would cost 12 u, because the rounding of t is amplified near the zero of W0-). Beyond,
+/// ±W0-(t) t / 2 with t = 2 / (|x| + 2). Daw(±0) = ±0, Daw(±∞) = ±0.
 ///
 /// Largest relative error 7.2 u (float), 7.4 u (double), absolute 3 u, 3 u, for all x whose result
 /// is normal; asserted in tests/math/dawson.cpp.

@@ -7,8 +7,9 @@ namespace pellucid {
 
 namespace detail {
 
-/// a · b - product, exactly, where product is a · b rounded (Dekker 1971, with Veltkamp's split;
-/// where the machine fuses, one operation). Wanted: |a|, |b| < 2^996, and nothing underflows.
+/// Returns a · b - product exactly, where product is a · b rounded (Dekker 1971, with Veltkamp's
+/// split; one operation if the machine has a fused multiply-add). Preconditions: |a|, |b| < 2^996,
+/// and nothing underflows.
 template <class T>
 PELLUCID_HD T product_error(T a, T b, T product) noexcept {
   if constexpr (fuses<T>) {
@@ -23,7 +24,8 @@ PELLUCID_HD T product_error(T a, T b, T product) noexcept {
 
 }  // namespace detail
 
-/// a_x b_y - a_y b_x as rounded, and whether its sign is certain: the products are off by u each.
+/// a_x b_y - a_y b_x with rounding, and whether its sign is certain: the products have an error of
+/// u each.
 template <class T>
 struct RoundedDeterminant {
   T value{};
@@ -37,14 +39,14 @@ PELLUCID_HD RoundedDeterminant<T> rounded_determinant(T a_x, T a_y, T b_x, T b_y
   return {difference, size, abs(difference) > T(4 * rounding_unit<T>) * size};
 }
 
-/// a_x b_y - a_y b_x, twice the signed area of the triangle (0, a, b). Its sign is the exact one,
-/// and exchanging a and b changes the sign alone; largest error 2 u (|a_x b_y| + |a_y b_x|).
-/// Asserted in tests/math. Wanted: |a|, |b| < 2^500, and no product that is not 0 below 2^-900 (in
-/// double; below, the sign may be 0).
+/// Returns a_x b_y - a_y b_x, twice the signed area of the triangle (0, a, b). Its sign is exact,
+/// and exchanging a and b changes only the sign. Largest error 2 u (|a_x b_y| + |a_y b_x|).
+/// Asserted in tests/math. Preconditions: |a|, |b| < 2^500, and no nonzero product below 2^-900 (in
+/// double; below it the sign may be 0).
 ///
-/// Where the sign of the rounded one is not certain, what rounding took from each product is added
-/// again: their difference is exact there (Sterbenz), and that of what they lost is two numbers
-/// (Knuth's sum).
+/// If the sign of the rounded value is not certain, the rounding errors of the products are added
+/// again: the difference of the products is exact there (Sterbenz), and that of their errors is two
+/// numbers (Knuth's sum).
 template <class T>
 PELLUCID_HD T determinant(T a_x, T a_y, T b_x, T b_y) noexcept {
   const RoundedDeterminant<T> rounded = rounded_determinant(a_x, a_y, b_x, b_y);

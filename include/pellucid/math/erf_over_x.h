@@ -7,7 +7,7 @@
 namespace pellucid {
 
 // clang-format off
-/// erf(x) / x as a function of x² in [0, 1].
+/// Returns erf(x) / x as a function of x² in [0, 1].
 template <class T>
 PELLUCID_HD inline T erf_over_x(T x_squared) noexcept {
   if constexpr (is_single<T>) {

@@ -7,12 +7,12 @@
 namespace pellucid {
 
 // clang-format off
-/// (1 - e^(-x)) / x, x = 4 t, as a function of t in [0, 1]: expm1_quotient(x) of optical depths that
-/// are known to be no more than 4, without an exponential, whose difference from 1 would cancel where x
-/// is small: a truncated Chebyshev series, cut where the rest is 0.6 u (float), 0.1 u (double).
+/// Returns (1 - e^(-x)) / x, x = 4 t, as a function of t in [0, 1]: expm1_quotient(x) for optical
+/// depths of at most 4, without an exponential, whose difference from 1 would cancel for small x. A
+/// Chebyshev series, truncated where the remainder is 0.6 u (float), 0.1 u (double).
 ///
-/// Largest relative error 4.2 u (float), 3.6 u (double), near t = 0.98; outside of [0, 1] it is no
-/// function of use. Asserted in tests/math/exponential.cpp and, in lanes, tests/simd.
+/// Largest relative error 4.2 u (float), 3.6 u (double), near t = 0.98; not valid outside of
+/// [0, 1]. Asserted in tests/math/exponential.cpp and, in lanes, tests/simd.
 template <class T>
 PELLUCID_HD inline T expm1_quotient_to_4(T t) noexcept {
   if constexpr (is_single<T>) {

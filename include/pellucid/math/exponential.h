@@ -4,13 +4,13 @@
 #include "pellucid/math/constants.h"
 #include "pellucid/math/polynomial.h"
 
-/// What the volume rendering integral needs of e^x where e^x alone would cancel or lose digits. The
-/// stated errors are for an exp that is within 1.1 u (glibc's is, and that of batches; CUDA's is
-/// not).
+/// Functions of e^x for the volume rendering integral whose direct forms would cancel or lose
+/// digits. The stated errors are for an exp within 1.1 u (glibc's and that of batches, but not
+/// CUDA's).
 namespace pellucid {
 
-/// sinh(h) / h as a function of y = h² in [0, 1]: b_0 of the specification (9). Its Taylor series,
-/// cut where the rest is below 0.07 u.
+/// Returns sinh(h) / h as a function of y = h² in [0, 1]: b_0 of the specification (9). Its Taylor
+/// series, truncated where the remainder is below 0.07 u.
 template <class T>
 PELLUCID_HD inline T sinh_over_x(T y) noexcept {
   if constexpr (is_single<T>) {
@@ -31,8 +31,8 @@ PELLUCID_HD inline T sinh_over_x(T y) noexcept {
   }
 }
 
-/// (cosh(h) - sinh(h) / h) / h² as a function of y = h² in [0, 1]: b_1 of the specification (9),
-/// whose coefficients are (2 j + 2) / (2 j + 3)!.
+/// Returns (cosh(h) - sinh(h) / h) / h² as a function of y = h² in [0, 1]: b_1 of the specification
+/// (9), with the coefficients (2 j + 2) / (2 j + 3)!.
 template <class T>
 PELLUCID_HD inline T cosh_minus_sinh_over_x(T y) noexcept {
   if constexpr (is_single<T>) {
@@ -53,8 +53,8 @@ PELLUCID_HD inline T cosh_minus_sinh_over_x(T y) noexcept {
   }
 }
 
-/// φ₁(x) = (1 - e^(-x)) / x, 1 at 0: the mean transparency of a segment of optical depth x whose
-/// extinction is constant (specification, 4.1). For |x| <= 2 it is e^(-x/2) sinh(x/2) / (x/2), a
+/// Returns φ₁(x) = (1 - e^(-x)) / x, 1 at 0: the mean transparency of a segment of optical depth x
+/// with constant extinction (specification, 4.1). For |x| <= 2 it is e^(-x/2) sinh(x/2) / (x/2), a
 /// series of positive terms where the quotient would lose all digits; beyond, the quotient.
 ///
 /// Largest relative error 3.3 u (float), 3.3 u (double) for every x whose e^(-x) does not overflow
@@ -72,11 +72,12 @@ PELLUCID_HD inline T expm1_quotient(T x) noexcept {
   return select(far, (T(1) - e) / max(T(-largest<T>), x), series);
 }
 
-/// φ₁'(x) = -∫ u e^(-u x) du over [0, 1], -1/2 at 0 (specification, 4.1): -½ e^(-h) (b_0 - h b_1),
-/// h = x / 2, for |x| <= 2, where ((1 + x) e^(-x) - 1) / x² would cancel; that quotient beyond.
+/// Returns φ₁'(x) = -∫ u e^(-u x) du over [0, 1], -1/2 at 0 (specification, 4.1): -½ e^(-h) (b_0 -
+/// h b_1), h = x / 2, for |x| <= 2, where ((1 + x) e^(-x) - 1) / x² would cancel; that quotient
+/// beyond.
 ///
-/// Largest relative error 4.2 u (float), 4.2 u (double) until (1 + x) e^(-x) overflows (x > -84,
-/// x > -702); below, -infinity. φ₁'(+∞) = -0. Asserted in tests/math/exponential.cpp.
+/// Largest relative error 4.2 u (float), 4.2 u (double) until (1 + x) e^(-x) overflows (x > -84, x
+/// > -702); below, -infinity. φ₁'(+∞) = -0. Asserted in tests/math/exponential.cpp.
 template <class T>
 PELLUCID_HD inline T expm1_quotient_derivative(T x) noexcept {
   const T half = T(0.5) * x;
@@ -94,8 +95,8 @@ PELLUCID_HD inline T expm1_quotient_derivative(T x) noexcept {
   return select(far, numerator / divisor / divisor, series);
 }
 
-/// 1 - e^(-x), the opacity of an optical depth x >= 0 (specification, 3.1). For x <= 2 it is x ·
-/// φ₁(x); a thin segment keeps all its digits, down to denormal x, and ±0 gives ±0.
+/// Returns 1 - e^(-x), the opacity of an optical depth x >= 0 (specification, 3.1). For x <= 2 it
+/// is x · φ₁(x); a thin segment keeps all its digits, down to denormal x, and ±0 gives ±0.
 ///
 /// Largest relative error 3.7 u (float), 3.7 u (double) for x >= 0; the result is in [0, 1].
 /// Negative x is allowed, with 4 u, until e^(-x) overflows to -infinity. Asserted in
@@ -112,11 +113,11 @@ PELLUCID_HD inline T one_minus_exp_neg(T x) noexcept {
   return select(far, T(1) - e, series);
 }
 
-/// x² as a rounded product and what its rounding left out: square + residual = x² exactly, as long
-/// as x² neither overflows nor is so small that the residual is not representable (|x| in
-/// [1e-12, 1e15] float, [1e-130, 1e145] double). By Dekker's splitting, because the fused
-/// multiply-add is a function call on the x86-64 baseline (3 ns against 1 ns for the whole); fused
-/// where it is one instruction.
+/// x² as a rounded product and its rounding error: square + residual = x² exactly, if x² neither
+/// overflows nor is so small that the residual is not representable (|x| in [1e-12, 1e15] float,
+/// [1e-130, 1e145] double). By Dekker's splitting, because the fused multiply-add is a function
+/// call on the x86-64 baseline (3 ns against 1 ns for the whole); fused where it is one
+/// instruction.
 template <class T>
 struct ExactSquare {
   T square, residual;
@@ -135,22 +136,22 @@ PELLUCID_HD inline ExactSquare<T> exact_square(T x) noexcept {
   }
 }
 
-/// e^(-x²) (specification, 4.1). The rounding of x² would be amplified to x² u in the result (81 u
-/// at x = 9); it is put back by one factor.
+/// Returns e^(-x²) (specification, 4.1). The rounding of x² would be amplified to x² u in the
+/// result (81 u at x = 9); one factor compensates for it.
 ///
-/// Largest relative error 3.1 u (float), 3.1 u (double) where the result is a normal number
-/// (|x| <= 9.34, 26.6), one denormal step more where it is not; 0 beyond, also for ±∞.
-/// Asserted in tests/math/exponential.cpp.
+/// Largest relative error 3.1 u (float), 3.1 u (double) if the result is a normal number (|x| <=
+/// 9.34, 26.6), one denormal step more otherwise; 0 beyond, also for ±∞. Asserted in
+/// tests/math/exponential.cpp.
 template <class T>
 PELLUCID_HD inline T exp_minus_square(T x) noexcept {
   const ExactSquare<T> exact = exact_square(min(T(32), abs(x)));  // e^(-32²) is 0
   return exp(-exact.square) * (T(1) - exact.residual);
 }
 
-/// e^(x²), likewise.
+/// Returns e^(x²), compensated likewise.
 ///
-/// Largest relative error 3.1 u (float), 3.1 u (double) until it overflows to infinity at |x|
-/// = 9.419 (float), 26.64 (double). Asserted in tests/math/exponential.cpp.
+/// Largest relative error 3.1 u (float), 3.1 u (double) until it overflows to infinity at |x| =
+/// 9.419 (float), 26.64 (double). Asserted in tests/math/exponential.cpp.
 template <class T>
 PELLUCID_HD inline T exp_square(T x) noexcept {
   const ExactSquare<T> exact = exact_square(min(T(32), abs(x)));  // e^(32²) is infinite

@@ -14,7 +14,7 @@ struct GaussLegendre {
   S collocation[N][N];
 };
 
-/// The rules in double; kernels take gauss_legendre<S, N>() of gauss_legendre.h.
+/// The rules in double; kernels use gauss_legendre<S, N>() of gauss_legendre.h.
 template <int N>
 inline constexpr GaussLegendre<double, N> gauss_legendre_rule{};
 

@@ -7,8 +7,8 @@
 
 namespace pellucid {
 
-/// c[0] + c[1] s + … by Horner's rule; the errors stated by the callers hold for fused and for
-/// separately rounded products (multiply_add).
+/// Returns c[0] + c[1] s + … by Horner's rule. The errors stated by the callers hold for fused and
+/// for separately rounded products (multiply_add).
 template <class T, std::size_t Count>
 PELLUCID_HD inline T horner(const scalar_t<T> (&c)[Count], T s) noexcept {
   T sum = T(c[Count - 1]);
@@ -18,14 +18,17 @@ PELLUCID_HD inline T horner(const scalar_t<T> (&c)[Count], T s) noexcept {
   return sum;
 }
 
-/// A table of polynomials with the coefficients of one power side by side, as batches look them up.
+/// A table of polynomials with the coefficients of one power next to each other, for look-up by
+/// batches.
 template <class S, std::size_t Intervals, std::size_t Count>
-struct ByCoefficient {
+struct TransposedCoefficients {
   alignas(64) S c[Count][Intervals];
 };
+/// Returns the transposed table.
 template <class S, std::size_t Intervals, std::size_t Count>
-consteval ByCoefficient<S, Intervals, Count> transposed(const S (&c)[Intervals][Count]) noexcept {
-  ByCoefficient<S, Intervals, Count> result{};
+consteval TransposedCoefficients<S, Intervals, Count> transposed(
+    const S (&c)[Intervals][Count]) noexcept {
+  TransposedCoefficients<S, Intervals, Count> result{};
   for (std::size_t i = 0; i < Intervals; ++i) {
     for (std::size_t k = 0; k < Count; ++k) result.c[k][i] = c[i][k];
   }
@@ -34,7 +37,7 @@ consteval ByCoefficient<S, Intervals, Count> transposed(const S (&c)[Intervals][
 
 namespace detail {
 
-/// Which of the equal parts of [0, 1], and where in it.
+/// One of the equal parts of [0, 1], and the position in it.
 template <class T>
 struct IntervalPlace {
   index_t<T> interval;
@@ -50,8 +53,8 @@ PELLUCID_HD inline IntervalPlace<T> interval_place(T t) noexcept {
 
 }  // namespace detail
 
-/// A function of t in [0, 1] by one polynomial per interval of `Intervals` equal ones, each in
-/// s = 2 Intervals t - (2 i + 1), which runs over [-1, 1] on interval i. The product is exact where
+/// Returns a function of t in [0, 1] by one polynomial on each of `Intervals` equal intervals, in s
+/// = 2 Intervals t - (2 i + 1), which runs over [-1, 1] on interval i. The product is exact if
 /// Intervals is a power of two. t outside of [0, 1] uses the nearest interval; NaN gives NaN.
 template <class T, std::size_t Intervals, std::size_t Count>
 PELLUCID_HD inline T interval_polynomial(const scalar_t<T> (&c)[Intervals][Count], T t) noexcept {
@@ -64,11 +67,12 @@ PELLUCID_HD inline T interval_polynomial(const scalar_t<T> (&c)[Intervals][Count
   }
 }
 
-/// The same, also for batches, which may differ in the interval: c itself, and c transposed.
+/// Returns the same, also for batches with different intervals per lane; takes c itself, and c
+/// transposed.
 template <class T, std::size_t Intervals, std::size_t Count>
 PELLUCID_HD inline T interval_polynomial(
     [[maybe_unused]] const scalar_t<T> (&c)[Intervals][Count],
-    [[maybe_unused]] const ByCoefficient<scalar_t<T>, Intervals, Count>& by_coefficient,
+    [[maybe_unused]] const TransposedCoefficients<scalar_t<T>, Intervals, Count>& by_coefficient,
     T t) noexcept {
   if constexpr (lanes<T> == 1) {
     return interval_polynomial<T>(c, t);

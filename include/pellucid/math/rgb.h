@@ -5,8 +5,8 @@
 
 namespace pellucid {
 
-/// Linear RGB. Whether it is a color (of the particles, straight) or a radiance (premultiplied) is
-/// said by the name of the variable that holds it.
+/// Linear RGB. The variable's name says whether it is a color (of the particles, not premultiplied)
+/// or a radiance (premultiplied).
 template <class T>
 struct Rgb {
   T r{}, g{}, b{};
@@ -27,7 +27,7 @@ struct Rgb {
   }
 };
 
-/// The largest magnitude of the three.
+/// Returns the largest absolute value of the three.
 template <class T>
 PELLUCID_HD T largest_component(const Rgb<T>& c) noexcept {
   return max(abs(c.r), max(abs(c.g), abs(c.b)));

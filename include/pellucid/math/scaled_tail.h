@@ -14,11 +14,11 @@
 ///
 /// the integral of the transmittance to infinity along linearly changing extinction is
 /// M(x, q) = W0±(t) / (x / 2 + 2 σ), and its first moment M₁(x, q) = W1±(t) / (x / 2 + 2 σ)², where
-/// ± is the sign of q. Nothing is divided by σ: t = 0 is constant extinction. All four are smooth
+/// ± is the sign of q. No formula divides by σ: t = 0 is constant extinction. All four are smooth
 /// and bounded on the closed interval.
 ///
-/// Largest absolute error in units of u = 2^-24 (float) or 2^-53 (double) for every t in [0, 1], t
-/// itself taken as exact; asserted in tests/math/scaled_tail.cpp:
+/// Largest absolute error in units of u = 2^-24 (float) or 2^-53 (double) for every exact t in
+/// [0, 1]; asserted in tests/math/scaled_tail.cpp:
 ///
 ///     function   values          float   double
 ///     w0_plus    [0.5, 1.78]     2.6     2.2
@@ -26,4 +26,4 @@
 ///     w1_plus    [0.25, 2]       2.8     2.2
 ///     w1_minus   [-2.24, 1.83]   4.0     4.4
 ///
-/// NaN gives NaN; t outside of [0, 1] is not meant and gives a finite number.
+/// NaN gives NaN; t outside of [0, 1] gives a finite number without meaning.

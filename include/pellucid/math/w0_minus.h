@@ -7,10 +7,9 @@
 namespace pellucid {
 
 // clang-format off
-/// W0-(t) = (δ + 2) Daw(δ), δ = 2 (1 - t) / t, on t in [0, 1] (δ = ∞ … 0):
-/// Dawson's function scaled to be smooth and bounded, from 1/2 at t = 0 (Daw(x) ~ 1 / (2 x)) to 0 at
-/// t = 1. The zero is a simple one at the end of the interval: near it only the absolute error is
-/// small, and `dawson` uses a series instead.
+/// Returns W0-(t) = (δ + 2) Daw(δ), δ = 2 (1 - t) / t, on t in [0, 1] (δ = ∞ … 0): Dawson's
+/// function scaled to be smooth and bounded, from 1/2 at t = 0 (Daw(x) ~ 1 / (2 x)) to 0 at t = 1.
+/// That zero is a simple one: near it only the absolute error is small, and dawson() uses a series.
 template <class T>
 PELLUCID_HD inline T w0_minus(T t) noexcept {
   if constexpr (is_single<T>) {

@@ -7,7 +7,7 @@
 namespace pellucid {
 
 // clang-format off
-/// W0+(t) = (δ + 2) (√π / 2) erfcx(δ), δ = 2 (1 - t) / t, on t in [0, 1] (δ = ∞ … 0):
+/// Returns W0+(t) = (δ + 2) (√π / 2) erfcx(δ), δ = 2 (1 - t) / t, on t in [0, 1] (δ = ∞ … 0):
 /// erfcx scaled to be smooth and bounded, from 1/2 at t = 0 (erfcx(x) ~ 1 / (√π x)) to √π at t = 1.
 template <class T>
 PELLUCID_HD inline T w0_plus(T t) noexcept {

@@ -7,10 +7,10 @@
 namespace pellucid {
 
 // clang-format off
-/// W1-(t) = (δ + 2)² (2 δ Daw(δ) - 1) / 2, δ = 2 (1 - t) / t, on t in [0, 1] (δ = ∞ … 0):
-/// from 1/4 at t = 0 to -2 at t = 1. The first moment that goes with W0-; evaluated as written the
-/// bracket loses all digits for large δ. It changes sign where 2 δ Daw(δ) = 1 (δ = 0.924): near there
-/// only the absolute error is small.
+/// Returns W1-(t) = (δ + 2)² (2 δ Daw(δ) - 1) / 2, δ = 2 (1 - t) / t, on t in [0, 1]
+/// (δ = ∞ … 0): from 1/4 at t = 0 to -2 at t = 1. The counterpart of W0- for the first moment. The
+/// polynomials avoid the formula's bracket, which loses all digits for large δ. It changes sign at
+/// 2 δ Daw(δ) = 1 (δ = 0.924): near there only the absolute error is small.
 template <class T>
 PELLUCID_HD inline T w1_minus(T t) noexcept {
   if constexpr (is_single<T>) {

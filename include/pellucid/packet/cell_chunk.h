@@ -26,7 +26,7 @@ class CellChunk {
     const int l = count_++;
     double sum = 0;
     for (int c = 0; c < grid.channels; ++c) {
-      grid.with_channel(c, [&](const auto& field) noexcept {
+      grid.visit_channel(c, [&](const auto& field) noexcept {
         const CellCorners<double> corners =
             field.template corners<double>(step.cell[0], step.cell[1], step.cell[2]);
         for (int n = 0; n < 8; ++n) {
@@ -78,16 +78,16 @@ class CellChunk {
   /// Of one cell.
   bool filled(int lane) const noexcept { return filled_[lane]; }  ///< whether it is no vacuum
   double length(int lane) const noexcept { return length_[lane]; }
-  double place_error(int lane) const noexcept { return place_error_[lane]; }
+  double position_error(int lane) const noexcept { return place_error_[lane]; }
   double coefficient(int channel, int k, int lane) const noexcept {
     return coefficient_[channel][k][lane];
   }
   PrimitiveSet& primitives(int lane) noexcept { return primitives_[lane]; }
 
  private:
-  double corner_[most_channels][8][N];
+  double corner_[max_channels][8][N];
   double entry_[3][N], exit_[3][N];
-  double coefficient_[most_channels][4][N];
+  double coefficient_[max_channels][4][N];
   double length_[N], place_error_[N];
   PrimitiveSet primitives_[N];
   bool filled_[N];

@@ -90,7 +90,7 @@ class GaussianMarch {
     M empty;         ///< nothing matters on any of them
     M resolved;      ///< else they are too long, or in vacuum
     ResolvedGaussians<N> ends;
-    DatumInCell<F> value[ResolvedGaussians<N>::steps + 1][most_channels];
+    DatumInCell<F> value[ResolvedGaussians<N>::steps + 1][max_channels];
     SampledSegment<F> found;
     F least_variance;  ///< of the error beside what `found` says
   };
@@ -136,12 +136,12 @@ class GaussianMarch {
       F weight = F(1.25f * 0.03f) * cells * cells * cells;
       const M longer = alive & (cells > F(0.5f));
       if (any(longer)) {
-        weight = select(longer, charged_for_bend(cells), weight);
+        weight = select(longer, charged_error_mean_square(cells), weight);
       }
       variance += weight * (s.ends.bending[a] * s.ends.bending[a]);
     }
     // Each of the four ends is a little beside where it should be.
-    const F beside = F(place_error) / (s.step * fastest_) * s.ends.steepest;
+    const F beside = F(position_error) / (s.step * fastest_) * s.ends.steepest;
     variance = multiply_add(F(4) * beside, beside, variance);
     // Two rules agree by chance now and then.
     const F chance = F(least_share) * s.ends.coarse;
@@ -175,8 +175,9 @@ class GaussianMarch {
     const F waves = gather(waves_, select(lanes, block, I(0)));
     shortest_wave_ = max(shortest_wave_, select(lanes, waves, F(0)));
   }
-  /// RayResult::unevenness and longest_step of what was noted, in units of the largest color.
-  F unevenness() const noexcept {
+  /// RayResult::neighbor_deviation and longest_step of what was noted, in units of the largest
+  /// color.
+  F neighbor_deviation() const noexcept {
     F variance(0);
     for (int a = 0; a < 3; ++a) {
       variance += variance_between_rays(bends_at_ends_[a], bends_[a] / max(seen_, F(1e-30f)), seen_,
@@ -216,14 +217,14 @@ class GaussianMarch {
   static constexpr float longest_step = 1.87f;
   static constexpr float shortest_step = 0x1p-13f;
   /// Cells: what sample_places.h says of so short ways, as a standard deviation at most.
-  static constexpr float place_error = 1e-6f;
+  static constexpr float position_error = 1e-6f;
   /// Of what Simpson's rule errs on four steps over a Gaussian at most, which is 0.27 times the
   /// fourth power of how far it moves in one, what counts as the least standard deviation.
   static constexpr float least_share = 0.01f;
 
   void find_front() noexcept {
     const F here(0);
-    DatumInCell<F> value[1][most_channels];
+    DatumInCell<F> value[1][max_channels];
     samples_.template sample<1>(&here, value);
     StepEnd<F> found{};
     for (int i = 0; i < mixture_.count; ++i) {
@@ -352,7 +353,7 @@ class GaussianMarch {
   LocalVariation<N> around_;  ///< where the lanes stand
   LanePrimitives<N> near_;    ///< on the way of four steps
   StepEnd<F> front_{};
-  DatumInCell<F> front_value_[most_channels];
+  DatumInCell<F> front_value_[max_channels];
   // What was noted: length, by the square of what is seen of it, and likewise squares of
   // ResolvedGaussians::bending over length, and those where the rays begin and end; and the largest
   // of 1 / the longest step.

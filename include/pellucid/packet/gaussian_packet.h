@@ -85,7 +85,7 @@ class GaussianPacket {
     const SegmentResult<D> all = fold_.result();
     const D error = fold_.error(convert<double>(segments_)) +
                     D(rays_.largest_color) * min(D(job_.left_out) * march_.end(), D(1));
-    const F unevenness = largest_color_ * march_.unevenness(),
+    const F neighbor_deviation = largest_color_ * march_.neighbor_deviation(),
             longest_step = march_.longest_step_between();
     double field[6][N];
     std::int32_t looks[N], skipped[N], taken[N];
@@ -112,7 +112,7 @@ class GaussianPacket {
       r.skipped = skipped[l];
       r.strides = taken[l];
       r.proved = taken[l] == 0 ? 1 : 0;
-      r.unevenness = unevenness[l];
+      r.neighbor_deviation = neighbor_deviation[l];
       r.longest_step = longest_step[l];
       trace_.find_half(l, lane_ray_[l].begin, lane_ray_[l].end, r);
       ray_of_lane_[l] = -1;
@@ -150,7 +150,7 @@ class GaussianPacket {
         (F(32 * rounding_unit<float>) * s.opacity + look_.ends.rounding * look_.length);
     const F largest =
         sampled_.largest_variance(fold_.budget, rounding, s.opacity, look_.length, left);
-    const M take = lanes & (variance <= largest) & (rounding <= fold_.budget.left());
+    const M take = lanes & (variance <= largest) & (rounding <= fold_.budget.remaining());
     // The variance of short steps grows with the step's fifth to tenth power, what it may be with
     // the first.
     const F ease = F(0.4f) * largest / max(variance, F(1e-30f));
@@ -160,8 +160,8 @@ class GaussianPacket {
     change = select(lanes, select(known, suits, select(take, F(1), F(0.5f))), change);
     if (none(take)) return take;
     fold_.add(take, s);
-    sampled_.pay(take, fold_.budget, variance, rounding, s.opacity, look_.length, left,
-                 transparency);
+    sampled_.charge(take, fold_.budget, variance, rounding, s.opacity, look_.length, left,
+                    transparency);
     segments_ += select(take, I(1), I(0));
     march_.note(take, look_, transparency);
     march_.take(take, look_, change);

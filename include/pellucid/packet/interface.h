@@ -29,7 +29,7 @@ struct PellucidRayResult {
   PellucidHalfOpacity half;  ///< where it was asked for
   std::int32_t cells, evaluations;
   std::int32_t skipped, constant, closed, panels, in_double, strides;
-  float unevenness, longest_step;  ///< of grids' rays
+  float neighbor_deviation, longest_step;  ///< of grids' rays
   std::uint8_t proved;
 };
 
@@ -39,7 +39,7 @@ struct PellucidCell {
   std::int32_t cell[3];
   double begin;  ///< world length from the ray's begin: what is before has been done otherwise
   double from;
-  double place_error;  ///< world length
+  double position_error;  ///< world length
   /// The most that its error may be: per_opacity · (a bound on its opacity) + flat.
   double allowance_per_opacity, allowance_flat;
 };

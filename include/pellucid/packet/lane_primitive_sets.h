@@ -13,7 +13,7 @@ struct LanePrimitiveSets {
 
   I low{0}, high{0};
 
-  BatchMask<N> holds(int primitive) const noexcept {
+  BatchMask<N> contains(int primitive) const noexcept {
     return ((is_high(primitive) ? high : low) & bit(primitive)) != I(0);
   }
   void add(BatchMask<N> lanes, int primitive) noexcept {

@@ -16,7 +16,7 @@ struct PellucidMeshRay {
 /// A part of a span that the packets' rule is not good enough for.
 struct PellucidLinearSpan {
   double front, back;
-  double error, length, place_error, end_error;
+  double error, length, position_error, end_error;
 };
 
 struct PellucidMeshJob {

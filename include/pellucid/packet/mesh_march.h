@@ -60,7 +60,7 @@ class MeshMarch {
   }
   [[gnu::flatten]] void load_ahead() noexcept { walk_.load_ahead(); }
   [[gnu::flatten]] void see_ahead() noexcept {
-    walk_.see_ahead([this](I point, SeenPoint<T>& q, T& v) noexcept { see(point, q, v); });
+    walk_.see_ahead([this](I point, ProjectedPoint<T>& q, T& v) noexcept { see(point, q, v); });
   }
   /// Puts what lies in the tetrahedra that were crossed down in row s, and begins anew where rays
   /// have left the mesh. Returns the lanes whose span absorbs: absorbs(span, rows, at, note),
@@ -79,7 +79,7 @@ class MeshMarch {
     const M on = walking;
     const SeenFace<T>& face = walk_.face();
     const FacePlace<S, N> place(face, blur_);
-    const SeenPoint<T>* p = face.seen;
+    const ProjectedPoint<T>* p = face.seen;
     F t_error;
     const T t = place.interpolate(p[0].t, p[1].t, p[2].t, t_error);
     t_error += known_to(t);
@@ -113,7 +113,7 @@ class MeshMarch {
       convert<float>(rays.end - begin).store(rows.left + at);
       const F at_ends = off_at_ends(t_error);
       const bool steps = values_.steps();
-      (steps ? F(0) : both).store(rows.place_error + at);
+      (steps ? F(0) : both).store(rows.position_error + at);
       ((steps ? both : at_ends) + at_eye).store(rows.end_error + at);
       note.store(rows.code + at);
     }
@@ -136,7 +136,7 @@ class MeshMarch {
     return found;
   }
 
-  void see(I point, SeenPoint<T>& seen, T& carried) noexcept {
+  void see(I point, ProjectedPoint<T>& seen, T& carried) noexcept {
     rays.see(point, seen, carried);
     values_.see(point);
   }
@@ -205,7 +205,7 @@ class MeshMarch {
     }
     face.left = M::from_bits(turned);
     const FacePlace<S, N> place(face, blur_);
-    const SeenPoint<T>* p = face.seen;
+    const ProjectedPoint<T>* p = face.seen;
     F t_error;
     const T t = place.interpolate(p[0].t, p[1].t, p[2].t, t_error);
     next_t_ = select(on, T::load(all.next), next_t_);
@@ -214,7 +214,7 @@ class MeshMarch {
     values_.begin(on, face, place);
     first_ = first_ | on;
     walk_.enter(on, face, I::load(all.code),
-                [this](I point, SeenPoint<T>& q, T& w) noexcept { see(point, q, w); });
+                [this](I point, ProjectedPoint<T>& q, T& w) noexcept { see(point, q, w); });
   }
 
   Values values_;

@@ -151,7 +151,7 @@ class MeshPacket {
       take(rows_.rounding, rounding_);
       take(rows_.length, length_);
       take(rows_.left, left_);
-      take(rows_.place_error, place_error_);
+      take(rows_.position_error, place_error_);
       take(rows_.end_error, end_error_);
       note = select(here, I::load(rows_.code + at), note);
     });
@@ -222,7 +222,7 @@ class MeshPacket {
     F color_error(0);
     if (transfer_.bends) {
       // A kink at k moves a line between a and b by no more than (k - a)(b - k)/(b - a).
-      const F bend = color_bend(transfer_, least, most);
+      const F bend = color_slope_change(transfer_, least, most);
       color_error = s.opacity * min(F(0.25f) * (bend * range), interval.color_range);
     }
     // What rounding can do, as in PacketIntegrator.
@@ -256,15 +256,16 @@ class MeshPacket {
                        colors * min(interval.largest * place_error_, s.opacity) +
                        largest_color_ * opacity_rounding + colors * min(depth_error, F(1));
 
-    fold_.budget.pass_to(select(on, left_ - from_ * span_length_, fold_.budget.length_left()));
+    fold_.budget.set_remaining_length(
+        select(on, left_ - from_ * span_length_, fold_.budget.remaining_length()));
     const F transparency = fold_.transparency();
-    const typename RayBudget<F>::Shares shares = fold_.budget.shares(length, s.opacity);
+    const typename RayBudget<F>::SpanShare shares = fold_.budget.span_share(length, s.opacity);
     const F cost = transparency * (color_error + rounding);
     const M known = value_error < F(transfer_.narrowest);
     const M take =
         on & known &
         ((cost <= shares.sum()) | ((transparency * color_error <= F(0.5f) * shares.sum()) &
-                                   (cost <= F(for_rounding) * fold_.budget.left())));
+                                   (cost <= F(for_rounding) * fold_.budget.remaining())));
     const M rest = on & !take;
     if (any(rest)) {
       const F half = F(0.5f) * place;
@@ -335,7 +336,8 @@ class MeshPacket {
   /// Has what is left of the lanes' spans integrated by other means.
   void hand_back(M lanes) noexcept {
     lanes = lanes & spans_.pending;
-    fold_.budget.pass_to(select(lanes, left_ - from_ * span_length_, fold_.budget.length_left()));
+    fold_.budget.set_remaining_length(
+        select(lanes, left_ - from_ * span_length_, fold_.budget.remaining_length()));
     HandedBack<N> handed_back;
     for (int l = 0; l < N; ++l) {
       if ((bits(lanes) >> l & 1) == 0) continue;

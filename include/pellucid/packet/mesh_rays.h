@@ -35,7 +35,7 @@ class MeshRays {
       for (int l = 0; l < N; ++l) of_lane[l] = number(view_of_[l]);
       return D::load(of_lane);
     };
-    using View = RayView<double>;
+    using View = RayFrame<double>;
     double eye_at[N], direction[3][N];
     const double extent = length(mesh_.upper - mesh_.lower);
     const double unit = power_of_two_below(1 / extent);
@@ -43,7 +43,7 @@ class MeshRays {
       const PellucidMeshRay& ray = job.rays[first + (l < count ? l : 0)];
       const Vec3<double> o{ray.origin[0], ray.origin[1], ray.origin[2]},
           d{ray.direction[0], ray.direction[1], ray.direction[2]};
-      view_of_[l] = make_ray_view({o, d}, mesh_.middle(), mesh_.reach);
+      view_of_[l] = make_ray_frame({o, d}, mesh_.center(), mesh_.coordinate_bound);
       eye_at[l] = -view_of_[l].t_origin;
       eye_of_[l] = static_cast<S>(eye_at[l]);
       view_of_[l].t_origin = 0;
@@ -51,7 +51,7 @@ class MeshRays {
       // underflow in binary32.
       view_of_[l].x = view_of_[l].x * unit;
       view_of_[l].y = view_of_[l].y * unit;
-      view_of_[l].blur *= unit;
+      view_of_[l].position_error *= unit;
       for (int a = 0; a < 3; ++a) direction[a][l] = d[a];
       hits_[l] = 0;
       next_[l] = 0;
@@ -63,7 +63,7 @@ class MeshRays {
       view_.t[a] = load([a](const View& v) { return v.t[a]; });
       direction_[a] = convert<float>(D::load(direction[a]));
     }
-    blur = convert<S>(load([](const View& v) { return v.blur; }));
+    blur = convert<S>(load([](const View& v) { return v.position_error; }));
     t_blur = blur * T(static_cast<S>(1 / unit));
     // A parameter is no farther from the middle than the diagonal.
     t_rounding = static_cast<S>(static_cast<double>(rounding_unit<S>) * extent);
@@ -83,11 +83,11 @@ class MeshRays {
   std::int32_t tetrahedra() const noexcept { return mesh_.count; }
 
   /// A point as the rays see it, and its value.
-  PELLUCID_ALWAYS_INLINE void see(Batch<std::int32_t, N> point, SeenPoint<T>& seen,
+  PELLUCID_ALWAYS_INLINE void see(Batch<std::int32_t, N> point, ProjectedPoint<T>& seen,
                                   T& value) const noexcept {
     D number[4];
     load_records<4>(&points_->position.x, point, number);
-    const SeenPoint<D> exact = view_.see({number[0], number[1], number[2]});
+    const ProjectedPoint<D> exact = view_.project({number[0], number[1], number[2]});
     seen = {convert<S>(exact.x), convert<S>(exact.y), convert<S>(exact.t)};
     value = convert<S>(number[3]);
   }
@@ -115,8 +115,8 @@ class MeshRays {
     see_face(
         mesh_, code,
         [&](std::int32_t point) noexcept {
-          const SeenPoint<double> p = view_of_[lane].see(points_[point].position);
-          return SeenPoint<S>{static_cast<S>(p.x), static_cast<S>(p.y), static_cast<S>(p.t)};
+          const ProjectedPoint<double> p = view_of_[lane].project(points_[point].position);
+          return ProjectedPoint<S>{static_cast<S>(p.x), static_cast<S>(p.y), static_cast<S>(p.t)};
         },
         face);
     for (int i = 0; i < 3; ++i) {
@@ -204,7 +204,7 @@ class MeshRays {
     SeenFace<T> face;
     for (int i = 0; i < 3; ++i) {
       const Vec3<double>& p = points_[t.corner[corner_of_face(code & 3, i)]].position;
-      const SeenPoint<D> exact = view_.see({D(p.x), D(p.y), D(p.z)});
+      const ProjectedPoint<D> exact = view_.project({D(p.x), D(p.y), D(p.z)});
       face.seen[i] = {convert<S>(exact.x), convert<S>(exact.y), convert<S>(exact.t)};
     }
     const M through = on & turn_around_ray(face);
@@ -225,9 +225,9 @@ class MeshRays {
 
   const Tetrahedra& mesh_;
   const MeshPoint* points_;
-  RayView<D> view_;
+  RayFrame<D> view_;
   Vec3<F> direction_;
-  RayView<double> view_of_[N];
+  RayFrame<double> view_of_[N];
   S eye_of_[N];
   int hits_[N], next_[N];
   Hit hit_[N][most_hits];

@@ -19,7 +19,7 @@ struct MeshRows {
   static_assert(Steps <= 32);  // LaneSpans has a bit for each
   static constexpr int steps = Steps, size = steps * N;
 
-  float length[size], left[size], place_error[size], end_error[size];
+  float length[size], left[size], position_error[size], end_error[size];
   std::int32_t code[size];  ///< SpanNote
 };
 

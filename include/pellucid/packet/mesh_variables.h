@@ -38,8 +38,8 @@ class MeshVariables {
   /// are made of.
   struct Span {
     int channels;
-    T front[most_channels], back[most_channels];
-    F front_error[most_channels], back_error[most_channels];
+    T front[max_channels], back[max_channels];
+    F front_error[max_channels], back_error[max_channels];
 
     F error(int c) const noexcept { return max(front_error[c], back_error[c]); }
   };
@@ -56,7 +56,7 @@ class MeshVariables {
   /// Rays come to a face, by the first one of their way.
   void begin(M on, const SeenFace<T>& face, const FacePlace<double, N>& place) noexcept {
     for (int i = 0; i < 3; ++i) {
-      T loaded[most_channels];
+      T loaded[max_channels];
       load(face.point[i], loaded);
       for (int c = 0; c < fields_.channels; ++c) assign(on, corner_[i][c], loaded[c]);
     }
@@ -129,9 +129,9 @@ class MeshVariables {
   std::int32_t points_;
   bool steps_ = false;
   Span span_;  ///< of the step that is made
-  T corner_[3][most_channels], ahead_[most_channels];
-  T value_[most_channels];  ///< on the face reached last
-  F error_[most_channels];
+  T corner_[3][max_channels], ahead_[max_channels];
+  T value_[max_channels];  ///< on the face reached last
+  F error_[max_channels];
 };
 
 }  // namespace pellucid

@@ -112,7 +112,7 @@ class MultichannelCells {
         length.store(rows.exact_length + at);
         convert<float>(end - begin).store(rows.left + at);
         convert<float>(D(8 * rounding_unit<double>) * (rays_.begin + leave))
-            .store(rows.place_error + at);
+            .store(rows.position_error + at);
         F(0).store(rows.end_error + at);
         F(0).store(rows.changed + at);
         I(0).store(rows.code + at);
@@ -166,12 +166,12 @@ class MultichannelCells {
     const ExactCorners<N> corners_of(grid_, cell_);
     D sum(0);
     for (int c = 0; c < fields_.channels; ++c) {
-      fields_.with_channel(c,
-                           [&]<class Value>(const StructuredGrid<Value, double>& field) noexcept {
-                             const CellCorners<D> corners = corners_of(field.data);
-                             for (const D& v : corners.value) sum += v;
-                             data_[c] = trilinear_cubic(corners, entry, exit);
-                           });
+      fields_.visit_channel(c,
+                            [&]<class Value>(const StructuredGrid<Value, double>& field) noexcept {
+                              const CellCorners<D> corners = corners_of(field.data);
+                              for (const D& v : corners.value) sum += v;
+                              data_[c] = trilinear_cubic(corners, entry, exit);
+                            });
     }
     return !is_nan(sum);
   }
@@ -180,10 +180,10 @@ class MultichannelCells {
   const MultichannelGrid& fields_;
   const PrimitiveSet* primitives_;
   LaneRays<N> rays_;
-  D at_{0};                                ///< world length from the entry into the grid
-  I cell_[3];                              ///< plane coordinates
-  M fresh_{true};                          ///< whether the lane's block has not been looked at
-  CubicBernstein<D> data_[most_channels];  ///< of the lanes' cells, by channel
+  D at_{0};                               ///< world length from the entry into the grid
+  I cell_[3];                             ///< plane coordinates
+  M fresh_{true};                         ///< whether the lane's block has not been looked at
+  CubicBernstein<D> data_[max_channels];  ///< of the lanes' cells, by channel
 };
 
 }  // namespace pellucid

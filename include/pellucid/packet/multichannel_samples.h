@@ -26,7 +26,7 @@ class MultichannelSamples {
   /// The data at K world lengths from the anchor, by samples and channels; NaN in vacuum of a
   /// channel's own.
   template <int K>
-  PELLUCID_ALWAYS_INLINE void sample(const F* offset, F (*value)[most_channels]) const noexcept {
+  PELLUCID_ALWAYS_INLINE void sample(const F* offset, F (*value)[max_channels]) const noexcept {
     each<K>(offset, [&]<class Value>(int k, int c, const Value* const* at, const std::int32_t* on,
                                      const Vec3<F>& local) noexcept {
       value[k][c] = load_trilinear<Value, N>(at, on, places_.row, places_.slice, local);
@@ -34,7 +34,7 @@ class MultichannelSamples {
   }
   template <int K>
   PELLUCID_ALWAYS_INLINE void sample(const F* offset,
-                                     DatumInCell<F> (*value)[most_channels]) const noexcept {
+                                     DatumInCell<F> (*value)[max_channels]) const noexcept {
     each<K>(offset, [&]<class Value>(int k, int c, const Value* const* at, const std::int32_t* on,
                                      const Vec3<F>& local) noexcept {
       value[k][c] = load_in_cell<Value, N>(at, on, places_.row, places_.slice, local);
@@ -49,14 +49,14 @@ class MultichannelSamples {
     places_.template find<K>(offset, on, local);
     asm("" : "+m"(on));
     for (int c = 0; c < fields_.channels; ++c) {
-      fields_.with_channel(c,
-                           [&]<class Value>(const StructuredGrid<Value, double>& field) noexcept {
-                             const Value* at[N];
-                             for (int l = 0; l < N; ++l) at[l] = field.data + base_[l];
-                             for (int k = 0; k < K; ++k) {
-                               load.template operator()<Value>(k, c, at, on[k], local[k]);
-                             }
-                           });
+      fields_.visit_channel(c,
+                            [&]<class Value>(const StructuredGrid<Value, double>& field) noexcept {
+                              const Value* at[N];
+                              for (int l = 0; l < N; ++l) at[l] = field.data + base_[l];
+                              for (int k = 0; k < K; ++k) {
+                                load.template operator()<Value>(k, c, at, on[k], local[k]);
+                              }
+                            });
     }
   }
 

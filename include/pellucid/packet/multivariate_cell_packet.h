@@ -93,7 +93,7 @@ class MultivariateCellPacket {
     LanePrimitiveSets<N> sets;
     M found(false);
     for (int i = 0; i < mixture_.transfer.gaussians.count; ++i) {
-      const M held = march_.walking & march_.near.holds(i);
+      const M held = march_.walking & march_.near.contains(i);
       if (none(held)) continue;
       const NearGaussian& g = mixture_.primitive[i];
       const M seen =
@@ -108,7 +108,7 @@ class MultivariateCellPacket {
 
   /// Lane by lane.
   M tables_absorb(const CubicBernstein<D>* data) const noexcept {
-    const Multivariate<double>& transfer = mixture_.transfer;
+    const MultivariateTransfer<double>& transfer = mixture_.transfer;
     unsigned found = 0;
     for (int i = 0; i < transfer.tables; ++i) {
       const D* b = data[transfer.table[i].channel].b;
@@ -129,7 +129,7 @@ class MultivariateCellPacket {
   Cells march_;
   Panels lanes_;
   /// Of a cell's data, by channel; kept here so that they are not set to 0 for each.
-  F lower_[most_channels], upper_[most_channels];
+  F lower_[max_channels], upper_[max_channels];
 };
 
 }  // namespace pellucid

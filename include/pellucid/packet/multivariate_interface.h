@@ -9,7 +9,7 @@ extern "C" {
 struct PellucidMultivariateJob {
   const void* grid;      ///< MultichannelGrid
   const void* blocks;    ///< MultivariateBlocks
-  const void* transfer;  ///< Multivariate<double>
+  const void* transfer;  ///< MultivariateTransfer<double>
   double largest_extinction;
   double tolerance, largest_color;
   std::int32_t proved;  ///< whether only what is proved counts

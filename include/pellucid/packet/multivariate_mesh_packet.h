@@ -90,7 +90,7 @@ class MultivariateMeshPacket {
   /// have, errors of the data may change where all are.
   [[gnu::flatten]] M matters(const typename Variables::Span& span, typename Variables::Rows& rows,
                              int at) noexcept {
-    LinearBernstein<F> data[most_channels];
+    LinearBernstein<F> data[max_channels];
     F changed(0);
     for (int c = 0; c < span.channels; ++c) {
       data[c] = {{convert<float>(span.front[c]), convert<float>(span.back[c])}};
@@ -117,8 +117,8 @@ class MultivariateMeshPacket {
 
   /// Whether tables absorb, lane by lane; and how far errors of the data change that.
   M tables_matter(const typename Variables::Span& span, F& changed) const noexcept {
-    double front[most_channels][N], back[most_channels][N];
-    float error[most_channels][N], of_lane[N];
+    double front[max_channels][N], back[max_channels][N];
+    float error[max_channels][N], of_lane[N];
     for (int c = 0; c < span.channels; ++c) {
       span.front[c].store(front[c]);
       span.back[c].store(back[c]);
@@ -156,7 +156,7 @@ class MultivariateMeshPacket {
 
   const PellucidMeshJob& job_;
   const NearMixture& mixture_;
-  const Multivariate<double>& transfer_;
+  const MultivariateTransfer<double>& transfer_;
   typename Panels::Rows& rows_;
   int first_, count_;
   MeshMarch<double, N, Variables> march_;

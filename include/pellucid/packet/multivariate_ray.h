@@ -6,7 +6,7 @@
 #include "pellucid/packet/multivariate_interface.h"
 #include "pellucid/packet/panel_list.h"
 #include "pellucid/packet/table_absorbs.h"
-#include "pellucid/segment/fold.h"
+#include "pellucid/segment/compositor.h"
 #include "pellucid/traverse/block_walk.h"
 #include "pellucid/traverse/multivariate_blocks.h"
 
@@ -30,14 +30,14 @@ class MultivariateRay {
     static constexpr int chunks = 8;
     CellChunk<N> chunk[chunks];
     PanelList panels;
-    PanelRoom<B> terms;
+    PanelWorkspace<B> terms;
   };
 
   MultivariateRay(const PellucidMultivariateJob& job, const PellucidRay& ray, Room& room) noexcept
       : job_(job),
         grid_(*static_cast<const MultichannelGrid*>(job.grid)),
         blocks_(*static_cast<const MultivariateBlocks*>(job.blocks)),
-        transfer_(*static_cast<const Multivariate<double>*>(job.transfer)),
+        transfer_(*static_cast<const MultivariateTransfer<double>*>(job.transfer)),
         ray_{{ray.origin[0], ray.origin[1], ray.origin[2]},
              {ray.direction[0], ray.direction[1], ray.direction[2]}},
         largest_color_(max(job.largest_color, 1.0)),
@@ -69,7 +69,7 @@ class MultivariateRay {
   }
 
   void store(PellucidRayResult& result) const noexcept {
-    // Folding in double costs 4 u a panel (segment/fold.h).
+    // Folding in double costs 4 u a panel (segment/compositor.h).
     const double folding = 4 * rounding_unit<double> * largest_color_ * folded_;
     const Rgb<double> radiance = fold_.radiance();
     result = {};
@@ -93,11 +93,11 @@ class MultivariateRay {
   static constexpr int kept_room = most_cuts + 4;
   static constexpr double left_out_share = 1.0 / 8;
 
-  bool done() const noexcept { return budget_.pays_for(rest(), job_.tolerance); }
+  bool done() const noexcept { return budget_.allows_termination(rest(), job_.tolerance); }
 
   /// A bound on what lies behind: as little as light can come from there.
   double rest() const noexcept {
-    return budget_.rest_behind(fold_.transparency(), job_.largest_extinction, largest_color_);
+    return budget_.remainder_bound(fold_.transparency(), job_.largest_extinction, largest_color_);
   }
 
   /// Stretches in which so much depth, at most, is left out.
@@ -167,11 +167,11 @@ class MultivariateRay {
   /// Makes panels of the parts of the cells in which something matters. What is left out of a cell
   /// is at most the share `left_out_share` of what its length may cost.
   void cull(CellChunk<N>& cells) noexcept {
-    CubicBernstein<B> data[most_channels];
+    CubicBernstein<B> data[max_channels];
     for (int c = 0; c < grid_.channels; ++c) data[c] = cells.cubic(c);
     const GaussianMixture<double>& all = transfer_.gaussians;
     // The extinction that a primitive may have and be left out.
-    const double negligible = left_out_share * budget_.for_length() /
+    const double negligible = left_out_share * budget_.allowance_per_length() /
                               (fold_.transparency() * max(all.count, 1) * largest_color_);
     B from(2.0), to(-1.0);
     PrimitiveSet wanted[N];
@@ -180,7 +180,7 @@ class MultivariateRay {
     for (int l = 0; l < cells.count(); ++l) any_cell.bits |= cells.primitives(l).bits;
     double left_out = blocks_.left_out;
     for (int i = 0; i < all.count; ++i) {
-      if (!any_cell.holds(i)) continue;
+      if (!any_cell.contains(i)) continue;
       const Gaussian<double>& g = all.primitive[i];
       left_out += min(g.peak, negligible);
       if (!(g.peak > negligible)) continue;
@@ -188,7 +188,7 @@ class MultivariateRay {
       const GaussianCubic<B> cubic(g, data);
       const auto near = cubic.lower() < B(exponent);
       if (none(near)) continue;
-      const auto part = cubic.within(B(sqrt(exponent)));
+      const auto part = cubic.range_within(B(sqrt(exponent)));
       const auto matters = near & (part.from < part.to);
       from = select(matters, min(from, part.from), from);
       to = select(matters, max(to, part.to), to);
@@ -255,10 +255,10 @@ class MultivariateRay {
     const MultivariateSpan<B> span = load(index, count);
     const double transparency = fold_.transparency();
     Shares shares;
-    const B from_length = span.length * B((1 - left_out_share) * budget_.for_length());
+    const B from_length = span.length * B((1 - left_out_share) * budget_.allowance_per_length());
     from_length.store(shares.from_length);
     const B least =
-        B(RayBudget<double>::least_allowance(job_.tolerance, 1 / length_)) * span.length;
+        B(RayBudget<double>::minimum_allowance(job_.tolerance, 1 / length_)) * span.length;
     const auto allowance = [&](B opacity) noexcept {
       return max((share_out(opacity, shares) + from_length) * B(1 / transparency), least);
     };
@@ -273,7 +273,7 @@ class MultivariateRay {
   };
   /// Shares of the pot that is there for opacity, from front to back.
   B share_out(B opacity, Shares& shares) const noexcept {
-    double of_lane[N], left = budget_.for_opacity();
+    double of_lane[N], left = budget_.unreserved_opacity_budget();
     opacity.store(of_lane);
     for (int l = 0; l < N; ++l) {
       shares.from_opacity[l] = left * of_lane[l];
@@ -283,7 +283,7 @@ class MultivariateRay {
   }
 
   MultivariateSpan<B> load(const int* index, int count) noexcept {
-    double data[most_channels][4][N], begin[N], end[N], length[N], place[N];
+    double data[max_channels][4][N], begin[N], end[N], length[N], place[N];
     demand_.primitives.bits = 0;
     unsigned last_resort = 0;
     bool whole = true;
@@ -297,7 +297,7 @@ class MultivariateRay {
       end[l] = panel.end;
       length[l] = l < count ? cells.length(panel.lane) : 0;
       // Cuts inside move by their share of what the cell is longer or shorter by.
-      const double off = cells.place_error(panel.lane);
+      const double off = cells.position_error(panel.lane);
       place[l] = panel.begin > 0 && panel.end < 1 ? (panel.end - panel.begin) * off : off;
       demand_.primitives.bits |= cells.primitives(panel.lane).bits;
       whole = whole && panel.begin == 0 && panel.end == 1;
@@ -305,7 +305,7 @@ class MultivariateRay {
       if (small || room_.panels.room() < 2) last_resort |= 1u << l;
     }
     demand_.last_resort = BatchMask<N>::from_bits(last_resort);
-    demand_.place_error = B::load(place);
+    demand_.position_error = B::load(place);
     MultivariateSpan<B> span;
     for (int c = 0; c < grid_.channels; ++c) {
       for (int k = 0; k < 4; ++k) span.data[c].b[k] = B::load(data[c][k]);
@@ -379,7 +379,7 @@ class MultivariateRay {
   const PellucidMultivariateJob& job_;
   const MultichannelGrid& grid_;
   const MultivariateBlocks& blocks_;
-  const Multivariate<double>& transfer_;
+  const MultivariateTransfer<double>& transfer_;
   Ray<double> ray_;
   double largest_color_;
   Room& room_;
@@ -388,7 +388,7 @@ class MultivariateRay {
   PrimitiveSet primitives_;           ///< of that block
   double begin_, length_;             ///< of the ray
   RayBudget<double> budget_;
-  FrontToBack<double> fold_{0.0};
+  FrontToBackCompositor<double> fold_{0.0};
   PanelDemand<B> demand_;
   int oldest_ = 0, newest_ = 0;  ///< chunks that panels refer to: oldest_ <= number < newest_
   int pending_ = 0;              ///< panels that are not done

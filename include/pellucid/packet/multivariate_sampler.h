@@ -86,7 +86,7 @@ class MultivariateSampler {
       }
       PrimitiveSet set[K];
       find_primitives<K>(middle, set);
-      F value[K][most_channels];
+      F value[K][max_channels];
       samples_.template sample<K>(place, value);
       for (int k = 0; k < K; ++k) {
         F sum = value[k][0];

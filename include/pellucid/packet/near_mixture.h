@@ -12,7 +12,7 @@ struct NearGaussian {
   float square = 0;
   /// |K (v - c)| is at least this times the distance of v from c in a channel, whatever v is in the
   /// others.
-  float least_scale[most_channels] = {};
+  float least_scale[max_channels] = {};
   bool couples_channels = false;  ///< whether a row of K looks at several of them
 };
 
@@ -49,7 +49,7 @@ T least_exponent_by_rows(const NearGaussian& near, const T* lower, const T* uppe
 /// A transfer function of several variables, as rays in lanes look at it before they integrate
 /// anything. A view; owns nothing.
 struct NearMixture {
-  Multivariate<double> transfer;
+  MultivariateTransfer<double> transfer;
   const NearGaussian* primitive = nullptr;  ///< for each Gaussian of it
   /// The extinction that all may have together where none is near, for rays of the length
   /// `diagonal`, which none is beyond.
@@ -59,7 +59,7 @@ struct NearMixture {
   /// tables.
   bool suits_binary32 = false;
   /// How fast the extinction of all Gaussians together may change with a channel, at most.
-  double steepness[most_channels] = {};
+  double steepness[max_channels] = {};
 };
 
 }  // namespace pellucid

@@ -22,8 +22,8 @@ class NodePanels {
   using Span = MultivariateSpan<D, CubicBernstein<D>>;
   using Demand = PanelDemand<D, LanePrimitiveSets<N>>;
   struct Room {
-    NodeRoom<F> nodes;
-    PanelRoom<D> closed;
+    NodeWorkspace<F> nodes;
+    PanelWorkspace<D> closed;
     Span span;
   };
 
@@ -50,12 +50,12 @@ class NodePanels {
   /// The lanes that are left.
   template <class Allowance>
   static M by_nodes(const NearMixture& mixture, const Span& span, const Demand& demand, M on,
-                    const F& less, const Allowance& allowance, NodeRoom<F>& room,
+                    const F& less, const Allowance& allowance, NodeWorkspace<F>& room,
                     PanelSegment<D>& result) noexcept {
     const F length = convert<float>(span.length);
     GaussianNodes<F> nodes(length, room);
     for (int i = 0; i < mixture.transfer.gaussians.count; ++i) {
-      const M held = on & demand.primitives.holds(i);
+      const M held = on & demand.primitives.contains(i);
       if (none(held)) continue;
       const int rows = mixture.primitive[i].gaussian.rows;
       if (rows == 1) {
@@ -65,16 +65,16 @@ class NodePanels {
       } else if (rows == 3) {
         add<3>(mixture, i, span.data, less, held, nodes);
       } else {
-        add<most_channels>(mixture, i, span.data, less, held, nodes);
+        add<max_channels>(mixture, i, span.data, less, held, nodes);
       }
     }
-    const F opacity = min(nodes.most(), F(1));
-    const F place_error = convert<float>(demand.place_error) *
-                          (nodes.most() / max(length, F(smallest_normal<float>)));
+    const F opacity = min(nodes.depth_bound(), F(1));
+    const F position_error = convert<float>(demand.position_error) *
+                             (nodes.depth_bound() / max(length, F(smallest_normal<float>)));
     const F allowed = convert<float>(allowance(convert<double>(opacity))) *
                       F(static_cast<float>(1 / demand.largest_color));
-    const F fixed = nodes.least_error() + place_error;
-    const auto found = nodes.integrate(allowed - place_error);
+    const F fixed = nodes.least_error() + position_error;
+    const auto found = nodes.integrate(allowed - position_error);
     const M coarse = nodes.is_short() & !(fixed <= F(0.5f) * allowed);
     const M hard = on & (coarse | (demand.last_resort & !found.done));
     const auto& s = found.segment;
@@ -83,7 +83,7 @@ class NodePanels {
                             convert<double>(s.transparency),
                             {convert<double>(s.radiance.r), convert<double>(s.radiance.g),
                              convert<double>(s.radiance.b)}};
-    result.found.opacity_error = convert<double>(found.error + place_error);
+    result.found.opacity_error = convert<double>(found.error + position_error);
     result.found.proved = M(false);
     result.found.panels = M(true);
     result.opacity = convert<double>(opacity);

@@ -29,7 +29,7 @@ class OpacityTrace {
   void note(M lanes, const PacketFold<N>& fold) noexcept {
     if (!asked_) return;
     float left_of_ray[N], opacity[N];
-    fold.budget.length_left().store(left_of_ray);
+    fold.budget.remaining_length().store(left_of_ray);
     convert<float>(fold.opacity()).store(opacity);
     for (unsigned left = bits(lanes); left != 0; left &= left - 1) {
       const int l = __builtin_ctz(left);

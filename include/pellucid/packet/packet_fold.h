@@ -3,7 +3,7 @@
 
 #include "pellucid/error/budget.h"
 #include "pellucid/packet/interface.h"
-#include "pellucid/segment/fold.h"
+#include "pellucid/segment/compositor.h"
 #include "pellucid/simd/batch.h"
 
 #if PELLUCID_HAS_BATCH_4  // in sources compiled per instruction set
@@ -88,7 +88,8 @@ class PacketFold {
   /// Those of the lanes whose rays no longer matter from here on, and did until now. What is
   /// behind is charged to them.
   M cut_off(M lanes) noexcept {
-    const M done = lanes & (!cut_off_) & budget.pays_for(rest_behind(), F(tolerance_));
+    const M done =
+        lanes & (!cut_off_) & budget.allows_termination(remainder_bound(), F(tolerance_));
     cut_off_ = cut_off_ | done;
     return done;
   }
@@ -100,7 +101,7 @@ class PacketFold {
     constexpr double folding = 8 * rounding_unit<double>;
     constexpr double account = 2 * static_cast<double>(rounding_unit<float>);
     const D all = segments + D(1);
-    return convert<double>(budget.spent() + select(cut_off_, rest_behind(), F(0))) *
+    return convert<double>(budget.spent() + select(cut_off_, remainder_bound(), F(0))) *
                (D(1) + D(account) * all) +
            D(folding * largest_color_) * all;
   }
@@ -121,12 +122,12 @@ class PacketFold {
   }
 
   /// A bound on what lies behind the last segment, as little as light can come from there.
-  F rest_behind() const noexcept {
-    return budget.rest_behind(transparency(), F(largest_extinction_),
-                              F(static_cast<float>(largest_color_)));
+  F remainder_bound() const noexcept {
+    return budget.remainder_bound(transparency(), F(largest_extinction_),
+                                  F(static_cast<float>(largest_color_)));
   }
 
-  FrontToBack<D> fold_;
+  FrontToBackCompositor<D> fold_;
   float tolerance_ = 0;  ///< that the budget began with
   float largest_extinction_ = 0;
   double largest_color_ = 0;

@@ -80,7 +80,7 @@ class PacketIntegrator {
   void store(PellucidRayResult* results) const noexcept {
     const SegmentResult<D> all = fold_.result();
     const D error = fold_.error(convert<double>(pieces_ + strides_));
-    const F unevenness = smooth_.unevenness();
+    const F neighbor_deviation = smooth_.neighbor_deviation();
     const F longest_step = smooth_.longest_step();
     for (int l = 0; l < count_; ++l) {
       PellucidRayResult& r = results[first_ + l];
@@ -97,7 +97,7 @@ class PacketIntegrator {
            panels_[l],
            in_double_[l],
            strides_[l],
-           unevenness[l],
+           neighbor_deviation[l],
            longest_step[l],
            static_cast<std::uint8_t>(bits(proved_) >> l & 1)};
       const PellucidRay& ray = job_.rays[first_ + l];
@@ -204,7 +204,8 @@ class PacketIntegrator {
                                        F(static_cast<float>(job_.sample_rounding)) * steps.length);
     const F largest =
         sampled_.largest_variance(fold_.budget, rounding, s.opacity, steps.length, left);
-    const M take = on & steps.valid & (variance <= largest) & (rounding <= fold_.budget.left());
+    const M take =
+        on & steps.valid & (variance <= largest) & (rounding <= fold_.budget.remaining());
     const M refused = smooth_.finer(on & !take);
     if (any(refused)) {
       blocks_.go_in_cells(refused, from, smooth_.end);
@@ -212,8 +213,8 @@ class PacketIntegrator {
     }
     if (none(take)) return;
     fold_.add(take, s);
-    sampled_.pay(take, fold_.budget, variance, rounding, s.opacity, steps.length, left,
-                 transparency);
+    sampled_.charge(take, fold_.budget, variance, rounding, s.opacity, steps.length, left,
+                    transparency);
     smooth_.take(take, steps, transparency, variance <= F(0.2f) * largest);
     strides_ += select(take, I(1), I(0));
     proved_ = proved_ & !take;
@@ -246,10 +247,10 @@ class PacketIntegrator {
     SpanPiece<T, N> piece = next_piece(span, transfer_, on, place_error_, largest_color_);
     const SegmentResult<F>& s = piece.found.segment;
     const F length = convert<float>(piece.length);
-    fold_.budget.pass_to(
-        select(on, left_behind(convert<float>(span.from)), fold_.budget.length_left()));
+    fold_.budget.set_remaining_length(
+        select(on, left_behind(convert<float>(span.from)), fold_.budget.remaining_length()));
     const F transparency = fold_.transparency();
-    const typename RayBudget<F>::Shares shares = fold_.budget.shares(length, s.opacity);
+    const typename RayBudget<F>::SpanShare shares = fold_.budget.span_share(length, s.opacity);
     const F allowed = shares.sum(), cost_of_rounding = transparency * piece.rounding;
     const auto fits = [&] {
       return on & piece.end.found &
@@ -353,8 +354,8 @@ class PacketIntegrator {
     const M wide = in_double_now_ & !not_begun_;
     const D from = select(wide, double_.from, convert<double>(single_.from));
     const F length = select(wide, convert<float>(double_.length), single_.length);
-    fold_.budget.pass_to(
-        select(lanes, left_behind(convert<float>(from)), fold_.budget.length_left()));
+    fold_.budget.set_remaining_length(
+        select(lanes, left_behind(convert<float>(from)), fold_.budget.remaining_length()));
     const F flat = fold_.budget.allowance(length, F(0), transparency),
             all = fold_.budget.allowance(length, F(1), transparency);
     HandedBack<N> handed_back;
@@ -369,7 +370,7 @@ class PacketIntegrator {
       }
       cell.begin = room_.stretches.begin[stretch];
       cell.from = from[l];
-      cell.place_error = static_cast<double>(place_error_[l]);
+      cell.position_error = static_cast<double>(place_error_[l]);
       cell.allowance_flat = static_cast<double>(flat[l]);
       cell.allowance_per_opacity = static_cast<double>(all[l] - flat[l]);
       PellucidCellResult result;

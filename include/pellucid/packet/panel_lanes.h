@@ -18,7 +18,7 @@ struct PanelRows : MeshRows<N, 16> {
   using MeshRows<N, 16>::size;
   static constexpr int numbers = sizeof(Data<double>) / sizeof(double);
 
-  double data[most_channels][numbers][size], exact_length[size];
+  double data[max_channels][numbers][size], exact_length[size];
   float changed[size];  ///< a bound on the change of extinction that errors of the data make
   std::int32_t low[size], high[size];  ///< LanePrimitiveSets: those that may matter
 };
@@ -27,7 +27,7 @@ struct PanelRows : MeshRows<N, 16> {
 template <int N>
 struct ClosedPanels {
   using D = Batch<double, N>;
-  using Room = PanelRoom<D>;
+  using Room = PanelWorkspace<D>;
 
   template <class Data, class Demand, class Allowance>
   static PanelSegment<D> integrate(const NearMixture& mixture,
@@ -148,10 +148,10 @@ class PanelLanes {
       take(rows.changed, changed_);
       take(rows.low, demand_.primitives.low);
       take(rows.high, demand_.primitives.high);
-      F place_error(0), end_error(0);
-      take(rows.place_error, place_error);
+      F position_error(0), end_error(0);
+      take(rows.position_error, position_error);
       take(rows.end_error, end_error);
-      place_error_ = select(here, place_error + end_error, place_error_);
+      place_error_ = select(here, position_error + end_error, place_error_);
       take(rows.code, note);
     });
     from_ = select(lanes, D(0), from_);
@@ -185,15 +185,16 @@ class PanelLanes {
     const M on = spans_.pending;
     const Span& span = open_spans(on);
     // Cuts inside of a span move by their share of what it is longer or shorter by.
-    const D place_error = convert<double>(place_error_);
-    demand_.place_error =
-        select((from_ > D(0)) & (to_ < D(1)), (to_ - from_) * place_error, place_error);
+    const D position_error = convert<double>(place_error_);
+    demand_.position_error =
+        select((from_ > D(0)) & (to_ < D(1)), (to_ - from_) * position_error, position_error);
     demand_.last_resort = (open_ >= I(most_cuts)) | !(to_ - from_ > D(1e-9));
-    fold_.budget.pass_to(select(on, max(left_ - convert<float>(from_ * span_length_), F(0)),
-                                fold_.budget.length_left()));
+    fold_.budget.set_remaining_length(
+        select(on, max(left_ - convert<float>(from_ * span_length_), F(0)),
+               fold_.budget.remaining_length()));
     const F length = convert<float>(span.length);
     const F transparency = select(on, fold_.transparency(), F(1));
-    const F least = RayBudget<F>::least_allowance(F(tolerance_), length / max(length_, length));
+    const F least = RayBudget<F>::minimum_allowance(F(tolerance_), length / max(length_, length));
     const auto allowance = [&](const D& opacity) noexcept {
       return convert<double>(
           max(fold_.budget.allowance(length, convert<float>(opacity), transparency), least));
@@ -257,7 +258,7 @@ class PanelLanes {
   }
 
   const NearMixture& mixture_;
-  const Multivariate<double>& transfer_;
+  const MultivariateTransfer<double>& transfer_;
   float tolerance_;
   double largest_color_;
   Room& room_;

@@ -14,7 +14,7 @@ struct SteppedGaussian {
   /// The distance |K (v - c)| from which on it does not matter; below 0 where it never does.
   float reach = 0;
   float rounding = 0;  ///< how far K (v - c) may be off because numbers of it are rounded
-  float center_rest[most_channels] = {};  ///< what binary32 leaves of the center
+  float center_rest[max_channels] = {};  ///< what binary32 leaves of the center
 };
 
 /// A sum of them. A view; owns nothing.
@@ -30,9 +30,9 @@ struct SteppedMixture {
 template <int N>
 struct LocalVariation {
   /// How much the derivative along the ray varies in a step, per world length.
-  Batch<float, N> oscillation[most_channels];
+  Batch<float, N> oscillation[max_channels];
   /// The largest jump of the derivative by each axis's grid coordinate.
-  Batch<float, N> bend[most_channels][3];
+  Batch<float, N> bend[max_channels][3];
 };
 
 /// Which primitives may matter to the ray of each lane.
@@ -58,13 +58,13 @@ class LanePrimitives {
     }
   }
 
-  bool of_any(int primitive) const noexcept { return any_.holds(primitive); }
+  bool of_any(int primitive) const noexcept { return any_.contains(primitive); }
   PELLUCID_ALWAYS_INLINE M lanes(int primitive, M of) const noexcept {
-    if (all_.holds(primitive)) return of;
+    if (all_.contains(primitive)) return of;
     unsigned found = 0;
     for (unsigned left = bits(of); left != 0; left &= left - 1) {
       const int l = __builtin_ctz(left);
-      if (of_lane_[l].holds(primitive)) found |= 1u << l;
+      if (of_lane_[l].contains(primitive)) found |= 1u << l;
     }
     return M::from_bits(found);
   }
@@ -111,7 +111,7 @@ class ResolvedGaussians {
   /// `value[j][c]`: channel c at end j.
   PELLUCID_ALWAYS_INLINE void find(const SteppedMixture& mixture,
                                    const LanePrimitives<N>& primitives,
-                                   const DatumInCell<F> (*value)[most_channels],
+                                   const DatumInCell<F> (*value)[max_channels],
                                    const LocalVariation<N>& variation, F step, M on) noexcept {
     for (int j = 0; j < steps; ++j) {
       matters[j] = unresolved[j] = M(false);
@@ -157,7 +157,7 @@ class ResolvedGaussians {
   }
 
   PELLUCID_ALWAYS_INLINE void add(const SteppedGaussian& of,
-                                  const DatumInCell<F> (*value)[most_channels],
+                                  const DatumInCell<F> (*value)[max_channels],
                                   const LocalVariation<N>& variation, F step, M on) noexcept {
     const F off_chord = F(0.25f) * step *
                         moved_at_most(of, [&](int c) noexcept { return variation.oscillation[c]; });
@@ -228,7 +228,7 @@ class ResolvedGaussians {
 
   /// |p| at the ends, and between ends.
   PELLUCID_ALWAYS_INLINE static void find_distances(const SteppedGaussian& of,
-                                                    const DatumInCell<F> (*value)[most_channels],
+                                                    const DatumInCell<F> (*value)[max_channels],
                                                     F* away, F* between) noexcept {
     F p[steps + 1];
     const int rows = of.gaussian.rows;

@@ -32,7 +32,7 @@ PELLUCID_ALWAYS_INLINE StepEnd<Batch<float, N>> extinction_and_emission(
   using F = Batch<float, N>;
   StepEnd<F> sum{};
   for (int i = 0; i < t.gaussians.count; ++i) {
-    if (!set.holds(i)) continue;
+    if (!set.contains(i)) continue;
     const Gaussian<float>& g = t.gaussians.primitive[i];
     F square(0);
     for (int row = 0; row < g.rows; ++row) {

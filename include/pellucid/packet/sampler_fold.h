@@ -8,7 +8,7 @@
 namespace pellucid {
 
 /// Front-to-back folding in lanes: a few steps in float, which costs them a few u, and these in
-/// double (segment/fold.h).
+/// double (segment/compositor.h).
 template <int N>
 class SamplerFold {
  public:

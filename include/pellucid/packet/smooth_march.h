@@ -41,7 +41,8 @@ struct StepLengths {
 /// Steps that keep in step with the cells are avoided: what trilinear data lie below the curve
 /// through their points between two of these would be missed by all samples alike, and by the
 /// difference of two rules as well. So of a few lengths that is taken for which
-/// mean_square_of_bend() is least, and where a stretch ends it is done in two parts if need be.
+/// simpson_error_mean_square() is least, and where a stretch ends it is done in two parts if need
+/// be.
 template <class Value, int N>
 class SmoothMarch {
  public:
@@ -177,8 +178,8 @@ class SmoothMarch {
     for (int a = 0; a < 3; ++a) bends_[a] = select(lanes, mean[a] * seen_, bends_[a]);
   }
 
-  /// RayResult::unevenness, of what was taken or refused.
-  F unevenness() const noexcept {
+  /// RayResult::neighbor_deviation, of what was taken or refused.
+  F neighbor_deviation() const noexcept {
     F variance(0);
     for (int a = 0; a < 3; ++a) {
       const F mean = bends_[a] / max(seen_, F(tiny));
@@ -201,10 +202,11 @@ class SmoothMarch {
   static constexpr int choices = 5;
   /// The optical depth of a step at most: the rule goes by what is small against 1.
   static constexpr float deepest = 1;
-  /// Of a corner, as mean_square_of_bends() of many; doubled, for `fastest` is a mean over a step.
-  static constexpr float corner = 2 * mean_square_of_strange_bends;
-  /// mean_square_of_bend() above which steps are in step with the cells, and by how much shorter
-  /// ones are taken then.
+  /// Of a corner, as uncorrelated_error_mean_square() of many; doubled, for `fastest` is a mean
+  /// over a step.
+  static constexpr float corner = 2 * uncorrelated_error_limit;
+  /// simpson_error_mean_square() above which steps are in step with the cells, and by how much
+  /// shorter ones are taken then.
   static constexpr float resonant = 0.004f, first_part = 0.62f;
 
   /// Notes how much the data bend along this length.
@@ -251,7 +253,7 @@ class SmoothMarch {
   void weigh(F step, F* weight) const noexcept {
     for (int a = 0; a < 3; ++a) {
       const F cells = abs(step * direction_in_float_[a]);
-      weight[a] = charged_for_bend(cells);
+      weight[a] = charged_error_mean_square(cells);
     }
   }
   F worst(const F* weight) const noexcept { return max(weight[0], max(weight[1], weight[2])); }

@@ -154,7 +154,7 @@ class SpanFinder {
     found = may_absorb(transfer_, found, least, most, jumps);
     if (any(jumps)) {
       const M hard =
-          has_hard_jump(transfer_, select(jumps, least, F(0)), select(jumps, most, F(0)));
+          has_unresolved_jump(transfer_, select(jumps, least, F(0)), select(jumps, most, F(0)));
       code += select(jumps, select(hard, F(SpanCode::handed_back), F(SpanCode::in_double)), F(0));
     }
     if (none(found)) return;

@@ -112,11 +112,11 @@ Batch<float, N> extinction_across_jumps(const SpanLanes<double, N>& span,
   return select(beside, size * convert<float>(share), F(0));
 }
 
-/// Integrates the next piece of the lanes' spans. `place_error`: how far a span's ends may be from
-/// where they are thought to be, world length. Colors are floats, of values in T.
+/// Integrates the next piece of the lanes' spans. `position_error`: how far a span's ends may be
+/// from where they are thought to be, world length. Colors are floats, of values in T.
 template <class T, int N>
 SpanPiece<T, N> next_piece(SpanLanes<T, N>& span, const BinnedTransfer& transfer,
-                           BatchMask<N> lanes, Batch<float, N> place_error,
+                           BatchMask<N> lanes, Batch<float, N> position_error,
                            Batch<float, N> largest_color) noexcept {
   using F = Batch<T, N>;
   using Single = Batch<float, N>;
@@ -154,7 +154,7 @@ SpanPiece<T, N> next_piece(SpanLanes<T, N>& span, const BinnedTransfer& transfer
   piece.length = span.length * piece.place;
   piece.seen = piece_depth(f, interval, piece.length);
   piece.spread = {convert<float>(interval.color_range), convert<float>(interval.color_slope),
-                  kinks_of_color(transfer, piece.seen.lower, piece.seen.upper)};
+                  color_kink_error(transfer, piece.seen.lower, piece.seen.upper)};
   const F value_error = span.rounding + close;
   F shown_error = value_error;
   if constexpr (!is_single<F>) {
@@ -185,7 +185,7 @@ SpanPiece<T, N> next_piece(SpanLanes<T, N>& span, const BinnedTransfer& transfer
   const Single largest = convert<float>(interval.largest);
   const Single depth_error =
       convert<float>(piece.length * (value_error * steep + F(8 * u) * interval.largest)) +
-      place_error * convert<float>((F(1) - span.from) * piece.place) * largest;
+      position_error * convert<float>((F(1) - span.from) * piece.place) * largest;
   const SegmentResult<Single>& s = piece.found.segment;
   const Single color_rounding =
       Single(colored) * largest_color +

@@ -6,18 +6,18 @@
 
 namespace pellucid {
 
-/// Data that run linearly from the front of a stretch to its back.
+/// Data that are linear from the front of a span to its back.
 struct LinearData {
   double front = 0, back = 0;
-  double error = 0;        ///< how far they may be off, beside their rounding
-  double length = 0;       ///< world
-  double place_error = 0;  ///< how far the ends may be off where the data go on, world length
-  double end_error = 0;    ///< and where they do not
+  double error = 0;           ///< largest error of the values, beside their rounding
+  double length = 0;          ///< world units
+  double position_error = 0;  ///< of ends at which the data continue, world units
+  double end_error = 0;       ///< of ends at which the data end, world units
 };
 
-/// Integrates a stretch on which the data are linear, in T: Moreland's integral between control
-/// points (segment/piecewise_linear.h), so that only rounding is left to be charged. `forced`,
-/// allowance() and the result as of integrate_cell().
+/// Integrates a span with linear data in T: Moreland's integral between control points
+/// (segment/piecewise_linear.h), so that rounding is the only error. `forced`, allowance() and the
+/// result are those of integrate_cell().
 template <class T, class Allowance>
 PELLUCID_HD bool integrate_linear_span(const LinearData& data, const TransferTables& transfer,
                                        double largest_color, bool forced, Allowance&& allowance,
@@ -29,8 +29,9 @@ PELLUCID_HD bool integrate_linear_span(const LinearData& data, const TransferTab
   const T third = T(1.0 / 3) * (back - front);
   const CubicBernstein<T> cubic{{front, front + third, back - third, back}};
   const T data_error = data_rounding(cubic) + static_cast<T>(data.error);
-  const bool lacks = is_single<T> && transfer.single_lacks(static_cast<double>(lower - data_error),
-                                                           static_cast<double>(upper + data_error));
+  const bool lacks =
+      is_single<T> && transfer.single_is_inexact(static_cast<double>(lower - data_error),
+                                                 static_cast<double>(upper + data_error));
   if (lacks && !forced) return false;
   const detail::IntervalRange reach =
       detail::interval_range(table, lower - data_error, upper + data_error);
@@ -44,16 +45,16 @@ PELLUCID_HD bool integrate_linear_span(const LinearData& data, const TransferTab
   result.opacity = static_cast<double>(opacity);
   RoundingError<T> rounding = rounding_error(cubic, length, T(largest_color), table, reach.first,
                                              reach.last, data_error, slopes);
-  // What lies between the two places of an end is between the data there and those of the span.
+  // Data between the two possible positions of an end are between its value and those of the span.
   const T range = upper - lower + T(2) * data_error;
   const T change = slopes.jump ? slopes.largest_extinction
                                : min(slopes.extinction_slope * range, slopes.largest_extinction);
   const T colors = slopes.color_change(range, T(largest_color)),
-          place_error = static_cast<T>(data.place_error);
+          position_error = static_cast<T>(data.position_error);
   rounding.depth +=
-      place_error * change + static_cast<T>(data.end_error) * slopes.largest_extinction;
-  rounding.color += place_error < length ? colors * (place_error / length) : colors;
-  // Extinction that is elsewhere in the span shows another color of it.
+      position_error * change + static_cast<T>(data.end_error) * slopes.largest_extinction;
+  rounding.color += position_error < length ? colors * (position_error / length) : colors;
+  // Displaced extinction shows another color of the span.
   const double shifted = static_cast<double>(colors * min(rounding.depth, T(1)));
   // Control points beyond the sixteenth cost 3 u each.
   const T more = T(3 * rounding_unit<T>) * T(max(reach.last - reach.first - 16, 0));

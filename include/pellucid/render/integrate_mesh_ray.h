@@ -2,33 +2,34 @@
 #pragma once
 
 #include "pellucid/error/budget.h"
-#include "pellucid/math/where_reached.h"
+#include "pellucid/math/solve_monotone.h"
 #include "pellucid/render/integrate_linear_span.h"
 #include "pellucid/render/multivariate_integrator.h"
-#include "pellucid/segment/fold.h"
+#include "pellucid/segment/compositor.h"
 #include "pellucid/traverse/mesh_spans.h"
 
 namespace pellucid {
 
-/// A ray that is to go through a mesh, and where it meets the boundary.
+/// A ray through a mesh and its hits of the boundary.
 struct MeshRay {
-  RayView<double> view;
-  MeshHit* hits = nullptr;  ///< in ascending order; used up
+  RayFrame<double> view;
+  MeshHit* hits = nullptr;  ///< in ascending order; consumed by the traversal
   int count = 0;
 
-  /// Where the ray may have anything to do with the mesh, world arc length.
-  PELLUCID_HD Interval<double> inside() const noexcept {
+  /// Returns the interval of the ray, in world arc length, outside of which it cannot touch the
+  /// mesh; empty without hits.
+  PELLUCID_HD Interval<double> extent() const noexcept {
     if (count == 0) return {1, 0};
     return {max(hits[0].t, 0.0), hits[count - 1].t};
   }
 };
 
-/// Integrates one ray through a variable of a mesh and keeps account of its error. The integral is
-/// exact in every span, so the budget is spent on rounding and on what lies behind the last span
-/// alone.
+/// Integrates one ray through one variable of a mesh and accounts for its error. The integral of
+/// each span is exact, so the budget is spent on rounding and on early termination only.
 class MeshRayIntegrator {
  public:
-  /// All that is given is referred to. `inside`: where the ray may be in the mesh.
+  /// Keeps references to its arguments. `inside` is the interval in which the ray may be in the
+  /// mesh.
   PELLUCID_HD MeshRayIntegrator(const TransferTables& transfer, const RayTolerance& wanted,
                                 Interval<double> inside) noexcept
       : transfer_(transfer),
@@ -37,35 +38,36 @@ class MeshRayIntegrator {
         end_(inside.end),
         budget_(wanted.tolerance, inside.end - inside.begin) {}
 
-  /// Asks for the place where the optical depth reaches `depth`; the ray ends there.
-  PELLUCID_HD void look_for(double depth) noexcept { target_ = depth; }
-  /// Its world arc length; infinite where it was not met.
-  PELLUCID_HD double found() const noexcept { return found_; }
+  /// Requests the position at which the optical depth reaches `depth`; the ray ends there.
+  PELLUCID_HD void set_target_depth(double depth) noexcept { target_ = depth; }
+  /// Returns that position in world arc length; infinite if the depth was not reached.
+  PELLUCID_HD double target_position() const noexcept { return found_; }
 
-  /// Whether what is left of the ray can no longer matter.
+  /// Returns whether the remainder of the ray cannot matter.
   PELLUCID_HD bool done() const noexcept {
     return found_ < infinity ||
-           (target_ == infinity && budget_.pays_for(rest(), wanted_.tolerance));
+           (target_ == infinity && budget_.allows_termination(rest(), wanted_.tolerance));
   }
 
-  PELLUCID_HD void span(const MeshSpan& span) noexcept {
+  /// Integrates the next span, front to back.
+  PELLUCID_HD void add_span(const MeshSpan& span) noexcept {
     ++cells_;
-    budget_.pass_to(max(end_ - span.begin, 0.0));
+    budget_.set_remaining_length(max(end_ - span.begin, 0.0));
     const double length = span.end - span.begin;
     if (span.overlaps) {
-      // Anything may be there, and in all that it hides.
+      // The overlap and everything behind it are unknown.
       budget_.spend(length, 0, fold_.transparency(), largest_color_);
       return;
     }
     if (span.vacuum) {
       ++counts_.skipped;
-      // What is beside it may begin and end elsewhere.
-      const double beside = transfer_.largest_extinction * (span.place_error + span.end_error);
+      // Its neighbors may begin and end elsewhere.
+      const double beside = transfer_.largest_extinction * (span.position_error + span.end_error);
       budget_.spend(length, 0, fold_.transparency(), largest_color_ * min(beside, 1.0));
       return;
     }
-    const LinearData data{span.front[0], span.back[0],     span.value_error[0],
-                          length,        span.place_error, span.end_error};
+    const LinearData data{span.front[0], span.back[0],        span.value_error[0],
+                          length,        span.position_error, span.end_error};
     const bool in_float = wanted_.precision == Precision::float32;
     if (in_float) {
       add<float>(data, span.begin);
@@ -74,12 +76,13 @@ class MeshRayIntegrator {
     }
   }
 
+  /// Returns the result up to the last span.
   PELLUCID_HD RayResult result() const noexcept {
     RayResult result;
     result.radiance = fold_.radiance();
     result.optical_depth = fold_.optical_depth();
     result.opacity = fold_.opacity();
-    // Folding in double costs 4 u a span (segment/fold.h).
+    // Folding in double costs 4 u a span (segment/compositor.h).
     const double folding = 4 * rounding_unit<double> * largest_color_ * static_cast<double>(cells_);
     result.error = budget_.spent() + (done() ? rest() : 0) + folding;
     result.proved = true;
@@ -92,9 +95,10 @@ class MeshRayIntegrator {
  private:
   static constexpr double infinity = std::numeric_limits<double>::infinity();
 
-  /// A bound on what lies behind.
+  /// Returns an upper bound on the radiance of the remainder.
   PELLUCID_HD double rest() const noexcept {
-    return budget_.rest_behind(fold_.transparency(), transfer_.largest_extinction, largest_color_);
+    return budget_.remainder_bound(fold_.transparency(), transfer_.largest_extinction,
+                                   largest_color_);
   }
 
   template <class T>
@@ -117,7 +121,7 @@ class MeshRayIntegrator {
     }
   }
 
-  /// The place in a span of depth `all` where its optical depth reaches `depth`.
+  /// Finds the position in a span of depth `all` at which its optical depth reaches `depth`.
   PELLUCID_HD void find(const LinearData& data, double begin, double depth, double all) noexcept {
     const auto up_to = [&](double end) noexcept {
       return piecewise_linear_segment(transfer_.wide, data.front,
@@ -125,14 +129,14 @@ class MeshRayIntegrator {
                                       end * data.length)
           .optical_depth;
     };
-    found_ = begin + where_reached(up_to, depth, 0, 1, 0, all) * data.length;
+    found_ = begin + solve_monotone(up_to, depth, 0, 1, 0, all) * data.length;
   }
 
   const TransferTables& transfer_;
   const RayTolerance& wanted_;
   double largest_color_, end_;
   RayBudget<double> budget_;
-  FrontToBack<double> fold_{0.0};
+  FrontToBackCompositor<double> fold_{0.0};
   RuleCounts counts_;
   long cells_ = 0;
   double target_ = infinity, found_ = infinity;
@@ -140,9 +144,9 @@ class MeshRayIntegrator {
 
 namespace detail {
 
-/// Of what a span's data may be off by, what tables make of it: a bound on the change of the
-/// extinction, and of colors, which count like the extinction that shows them.
-PELLUCID_HD inline double error_through_tables(const Multivariate<double>& transfer,
+/// Returns the effect of the data errors of a span on the tables: an upper bound on the change of
+/// the extinction, and of the colors, counted like the extinction that shows them.
+PELLUCID_HD inline double error_through_tables(const MultivariateTransfer<double>& transfer,
                                                const MeshSpan& span) noexcept {
   double sum = 0;
   for (int i = 0; i < transfer.tables; ++i) {
@@ -162,10 +166,10 @@ PELLUCID_HD inline double error_through_tables(const Multivariate<double>& trans
   return sum;
 }
 
-/// What a span's data may be off by, beyond what the panels charge for rounding themselves, as a
-/// bound on the change of the extinction: no Gaussian is steeper than √(2/e) times its peak and
-/// |K|, Frobenius' norm.
-PELLUCID_HD inline double extinction_error(const Multivariate<double>& transfer,
+/// Returns the effect of the data errors of a span, beyond the rounding that panels charge
+/// themselves, as an upper bound on the change of the extinction: no Gaussian is steeper than
+/// √(2/e) times its peak and |K|, the Frobenius norm.
+PELLUCID_HD inline double extinction_error(const MultivariateTransfer<double>& transfer,
                                            const MeshSpan& span) noexcept {
   double moved = 0;
   for (int c = 0; c < transfer.channels; ++c) {
@@ -188,25 +192,27 @@ PELLUCID_HD inline double extinction_error(const Multivariate<double>& transfer,
   return sum + error_through_tables(transfer, span);
 }
 
-PELLUCID_HD inline void add_span(const Multivariate<double>& transfer, const MeshSpan& span,
+PELLUCID_HD inline void add_span(const MultivariateTransfer<double>& transfer, const MeshSpan& span,
                                  double largest_extinction,
                                  MultivariateRayIntegrator& integrator) noexcept {
   const double length = span.end - span.begin;
   if (span.overlaps || span.vacuum || length == 0) {
-    // Where cells overlap, anything may be, and in all that they hide; what is beside vacuum, or in
-    // no length, may begin and end elsewhere.
-    integrator.lose(span.overlaps ? 1 : largest_extinction * (span.place_error + span.end_error));
+    // Overlapping cells make the rest of the ray unknown. Cells next to vacuum, or of length 0, may
+    // begin and end elsewhere.
+    integrator.charge_opacity(
+        span.overlaps ? 1 : largest_extinction * (span.position_error + span.end_error));
     return;
   }
   LinearSpan<double> data;
   data.length = length;
   for (int c = 0; c < transfer.channels; ++c) data.data[c] = {{span.front[c], span.back[c]}};
-  integrator.stretch(data, {span.begin, span.end}, {},
-                     min(extinction_error(transfer, span), largest_extinction),
-                     span.place_error + span.end_error);
+  integrator.add_stretch(data, {span.begin, span.end}, {},
+                         min(extinction_error(transfer, span), largest_extinction),
+                         span.position_error + span.end_error);
 }
 
-/// for_each_mesh_span(), of what lies in the range.
+/// Calls visit for the spans of for_each_mesh_span() inside of `range`, the first one cut at its
+/// begin.
 template <class Visit>
 PELLUCID_HD void for_each_span_inside(const Tetrahedra& mesh, const MeshFields& fields,
                                       const MeshRay& ray, Interval<double> range,
@@ -227,37 +233,37 @@ PELLUCID_HD void for_each_span_inside(const Tetrahedra& mesh, const MeshFields& 
 
 }  // namespace detail
 
-/// The volume rendering integral along a ray through a variable of a mesh: RayResult::error is a
-/// bound, what is wanted or what rounding leaves. A ray that finds cells overlapping says that it
-/// does not know.
+/// Integrates a ray through a variable of a mesh. RayResult::error is a proved bound: the requested
+/// tolerance, or more if rounding requires it. A ray through overlapping cells reports that its
+/// error is unknown.
 PELLUCID_HD inline RayResult integrate_mesh_ray(const Tetrahedra& mesh, const MeshFields& fields,
                                                 const TransferTables& transfer, const MeshRay& ray,
                                                 const RayTolerance& wanted) noexcept {
-  const Interval<double> inside = ray.inside();
-  if (inside.empty()) return nothing_met();
+  const Interval<double> inside = ray.extent();
+  if (inside.empty()) return missed_ray_result();
   MeshRayIntegrator integrator(transfer, wanted, inside);
   for_each_mesh_span(mesh, fields, ray.view, ray.hits, ray.count, [&](const MeshSpan& span) {
-    integrator.span(span);
+    integrator.add_span(span);
     return !integrator.done();
   });
   return integrator.result();
 }
 
-/// The same through several variables of a mesh and a function of them all. `largest_extinction`: a
-/// bound on that of the function.
+/// Integrates a ray through several variables of a mesh with a function of all of them.
+/// `largest_extinction` is an upper bound on the extinction of the function.
 PELLUCID_HD inline RayResult integrate_multivariate_mesh_ray(
-    const Tetrahedra& mesh, const MeshFields& fields, const Multivariate<double>& transfer,
+    const Tetrahedra& mesh, const MeshFields& fields, const MultivariateTransfer<double>& transfer,
     double largest_extinction, const MeshRay& ray, const RayTolerance& wanted) noexcept {
-  const Interval<double> inside = ray.inside();
-  if (inside.empty()) return nothing_met();
+  const Interval<double> inside = ray.extent();
+  if (inside.empty()) return missed_ray_result();
   MultivariateRayIntegrator integrator(transfer, largest_extinction, wanted,
                                        inside.end - inside.begin);
   long cells = 0;
   for_each_mesh_span(mesh, fields, ray.view, ray.hits, ray.count, [&](const MeshSpan& span) {
     ++cells;
-    integrator.pass_to(max(inside.end - span.begin, 0.0));
+    integrator.set_remaining_length(max(inside.end - span.begin, 0.0));
     detail::add_span(transfer, span, largest_extinction, integrator);
-    integrator.pass_to(max(inside.end - span.end, 0.0));
+    integrator.set_remaining_length(max(inside.end - span.end, 0.0));
     return !integrator.done();
   });
   RayResult result = integrator.result();
@@ -265,38 +271,38 @@ PELLUCID_HD inline RayResult integrate_multivariate_mesh_ray(
   return result;
 }
 
-/// RayResult::half_opacity_depth of a ray of this opacity. Where the opacities that are given are
-/// not quite those of the ray, it is an end of the stretch at the worst.
+/// Returns RayResult::half_opacity_depth of a ray with this opacity. If the given opacities differ
+/// slightly from those of the ray, the result is at worst an end of the interval.
 PELLUCID_HD inline double find_mesh_half_opacity(const Tetrahedra& mesh, const MeshFields& fields,
                                                  const TransferTables& transfer, const MeshRay& ray,
                                                  const RayTolerance& wanted, double opacity,
                                                  const HalfOpacity& half) noexcept {
-  const Interval<double> inside = ray.inside();
+  const Interval<double> inside = ray.extent();
   if (!(opacity > 0) || inside.empty()) return std::numeric_limits<double>::infinity();
   MeshRayIntegrator integrator(transfer, wanted, inside);
-  integrator.look_for(half.depth_to_half(opacity));
+  integrator.set_target_depth(half.depth_to_half(opacity));
   detail::for_each_span_inside(mesh, fields, ray, half.range, [&](const MeshSpan& span) {
-    integrator.span(span);
+    integrator.add_span(span);
     return !integrator.done();
   });
-  return min(integrator.found(), half.range.end);
+  return min(integrator.target_position(), half.range.end);
 }
 
-/// The same through several variables of a mesh.
+/// Returns the same for several variables of a mesh.
 PELLUCID_HD inline double find_multivariate_mesh_half_opacity(
-    const Tetrahedra& mesh, const MeshFields& fields, const Multivariate<double>& transfer,
+    const Tetrahedra& mesh, const MeshFields& fields, const MultivariateTransfer<double>& transfer,
     double largest_extinction, const MeshRay& ray, const RayTolerance& wanted, double opacity,
     const HalfOpacity& half) noexcept {
-  const Interval<double> inside = ray.inside();
+  const Interval<double> inside = ray.extent();
   if (!(opacity > 0) || inside.empty()) return std::numeric_limits<double>::infinity();
   MultivariateRayIntegrator integrator(transfer, largest_extinction, wanted,
                                        inside.end - inside.begin);
-  integrator.look_for(half.depth_to_half(opacity));
+  integrator.set_target_depth(half.depth_to_half(opacity));
   detail::for_each_span_inside(mesh, fields, ray, half.range, [&](const MeshSpan& span) {
     detail::add_span(transfer, span, largest_extinction, integrator);
     return !integrator.done();
   });
-  return min(integrator.found(), half.range.end);
+  return min(integrator.target_position(), half.range.end);
 }
 
 }  // namespace pellucid

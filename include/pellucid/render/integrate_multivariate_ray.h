@@ -10,14 +10,15 @@
 
 namespace pellucid {
 
-/// What a ray sees of several fields inside one cell; false where it is vacuum.
+/// Computes the data of several fields along a ray inside one cell. Returns false if the cell is
+/// vacuum.
 template <class T>
 PELLUCID_HD bool make_multivariate_span(const MultichannelGrid& grid,
                                         const StructuredWalk<double>::Step& step,
                                         MultivariateSpan<T>& span) noexcept {
   span.length = static_cast<T>(step.t_end - step.t_begin);
   for (int c = 0; c < grid.channels; ++c) {
-    const bool filled = grid.with_channel(c, [&](const auto& field) noexcept {
+    const bool filled = grid.visit_channel(c, [&](const auto& field) noexcept {
       CubicSpan<T> one;
       if (!make_span(field, step, one)) return false;
       span.data[c] = one.data;
@@ -30,7 +31,7 @@ PELLUCID_HD bool make_multivariate_span(const MultichannelGrid& grid,
 
 namespace detail {
 
-/// Takes the integrator along the ray; returns the number of cells.
+/// Moves the integrator along the ray; returns the number of cells.
 PELLUCID_HD inline long follow_ray(const MultichannelGrid& grid, const MultivariateBlocks* blocks,
                                    const Ray<double>& ray_grid, Interval<double> inside,
                                    MultivariateRayIntegrator& integrator) noexcept {
@@ -42,8 +43,8 @@ PELLUCID_HD inline long follow_ray(const MultichannelGrid& grid, const Multivari
       ++cells;
       MultivariateSpan<double> span;
       if (make_multivariate_span(grid, step, span)) {
-        integrator.stretch(span, {step.t_begin, step.t_end}, primitives, left_out,
-                           8 * rounding_unit<double> * step.t_end);
+        integrator.add_stretch(span, {step.t_begin, step.t_end}, primitives, left_out,
+                               8 * rounding_unit<double> * step.t_end);
       } else {
         integrator.skip(span.length, 0);
       }
@@ -67,33 +68,34 @@ PELLUCID_HD inline long follow_ray(const MultichannelGrid& grid, const Multivari
 
 }  // namespace detail
 
-/// RayResult::half_opacity_depth of a ray of this opacity. Where the opacities that are given are
-/// not quite those of the ray, it is an end of the stretch at the worst.
+/// Returns RayResult::half_opacity_depth of a ray with this opacity. If the given opacities differ
+/// slightly from those of the ray, the result is at worst an end of the interval.
 PELLUCID_HD inline double find_multivariate_half_opacity(
     const MultichannelGrid& grid, const MultivariateBlocks* blocks, const Ray<double>& ray_grid,
-    const Multivariate<double>& transfer, double largest_extinction, const RayTolerance& wanted,
-    double opacity, const HalfOpacity& half = {}) noexcept {
+    const MultivariateTransfer<double>& transfer, double largest_extinction,
+    const RayTolerance& wanted, double opacity, const HalfOpacity& half = {}) noexcept {
   if (!(opacity > 0)) return std::numeric_limits<double>::infinity();
   const Interval<double> inside = grid_interval(grid.axis, ray_grid, half.range);
   if (inside.empty()) return half.range.end;
   MultivariateRayIntegrator integrator(transfer, largest_extinction, wanted,
                                        inside.end - inside.begin);
-  integrator.look_for(half.depth_to_half(opacity));
+  integrator.set_target_depth(half.depth_to_half(opacity));
   detail::follow_ray(grid, blocks, ray_grid, inside, integrator);
-  return min(integrator.found(), half.range.end);
+  return min(integrator.target_position(), half.range.end);
 }
 
-/// The volume rendering integral along a ray (in grid coordinates, its parameter the world arc
-/// length) through several trilinear fields, within a tolerance: RayResult::error is at most what
-/// is wanted, unless not even binary64 tells on which side of a jump of a table the data lie, or
-/// keeps so narrow a Gaussian. `blocks`: of the same grid; null: none. `largest_extinction`: a
-/// bound on that of the transfer function.
+/// Integrates a ray (in grid coordinates, its parameter the world arc length) through several
+/// trilinear fields, within a tolerance. `blocks` belong to the same grid; null: none.
+/// `largest_extinction` is an upper bound on the extinction of the transfer function.
+///
+/// RayResult::error is at most the tolerance, unless even binary64 cannot resolve on which side of
+/// a table's discontinuity the data lie, or so narrow a Gaussian.
 PELLUCID_HD inline RayResult integrate_multivariate_ray(
     const MultichannelGrid& grid, const MultivariateBlocks* blocks, const Ray<double>& ray_grid,
-    const Multivariate<double>& transfer, double largest_extinction, const RayTolerance& wanted,
-    bool with_depth) noexcept {
+    const MultivariateTransfer<double>& transfer, double largest_extinction,
+    const RayTolerance& wanted, bool with_depth) noexcept {
   const Interval<double> inside = grid_interval(grid.axis, ray_grid);
-  if (inside.empty()) return nothing_met();
+  if (inside.empty()) return missed_ray_result();
 
   MultivariateRayIntegrator integrator(transfer, largest_extinction, wanted,
                                        inside.end - inside.begin);

@@ -1,14 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "pellucid/math/where_reached.h"
+#include "pellucid/math/solve_monotone.h"
 #include "pellucid/render/half_opacity.h"
 #include "pellucid/render/stride_march.h"
 
 namespace pellucid {
 
-/// The world arc length where the optical depth along this stretch of the ray reaches `target`;
-/// infinite where it never does. To 16 u of a cell, or of what it holds.
+/// Returns the world arc length at which the optical depth, counted from the begin of `range`,
+/// reaches `target`; infinite if it never does. Accurate to 16 u of a cell or of the optical depth
+/// inside it.
 template <class T, class Value>
 PELLUCID_HD double find_optical_depth(const StructuredGrid<Value, double>& grid,
                                       const Ray<double>& ray_grid, Interval<double> range,
@@ -29,8 +30,8 @@ PELLUCID_HD double find_optical_depth(const StructuredGrid<Value, double>& grid,
           return static_cast<double>(
               optical_depth_cubic(restrict_to(span.data, T(0), u), length * u, transfer));
         };
-        found = span.t_begin + where_reached(up_to, target - before, 0, 1, 0, inside,
-                                             16 * double{rounding_unit<T>}) *
+        found = span.t_begin + solve_monotone(up_to, target - before, 0, 1, 0, inside,
+                                              16 * double{rounding_unit<T>}) *
                                    (span.t_end - span.t_begin);
         return false;
       },
@@ -38,8 +39,8 @@ PELLUCID_HD double find_optical_depth(const StructuredGrid<Value, double>& grid,
   return found;
 }
 
-/// RayResult::half_opacity_depth of a ray of this opacity. Where the opacities that are given are
-/// not quite those of the ray, it is an end of the stretch at the worst.
+/// Returns RayResult::half_opacity_depth of a ray with this opacity. If the given opacities differ
+/// slightly from those of the ray, the result is at worst an end of the interval.
 template <class Value>
 PELLUCID_HD double find_half_opacity(const StructuredGrid<Value, double>& grid,
                                      const Ray<double>& ray_grid, const TransferTables& transfer,
@@ -54,12 +55,12 @@ PELLUCID_HD double find_half_opacity(const StructuredGrid<Value, double>& grid,
   return min(found, half.range.end);
 }
 
-/// Goes through the blocks of a ray: those that are done at once, those that are smooth together
-/// with their neighbours, the rest cell by cell.
+/// Integrates the blocks of a ray: uniform blocks at once, smooth blocks together with smooth
+/// neighbors, and all others cell by cell.
 template <class Value, class EachCell>
-PELLUCID_HD void each_block(const ClassifiedBlocks& blocks, const Ray<double>& ray_grid,
-                            Interval<double> inside, RayIntegrator<Value>& integrator,
-                            EachCell&& each_cell) noexcept {
+PELLUCID_HD void integrate_blocks(const ClassifiedBlocks& blocks, const Ray<double>& ray_grid,
+                                  Interval<double> inside, RayIntegrator<Value>& integrator,
+                                  EachCell&& each_cell) noexcept {
   const BlockRecords& records = blocks.records;
   StrideMarch march(ray_grid.direction, records.least_width, records.mean_width);
   Interval<double> smooth{inside.begin, inside.begin};
@@ -71,7 +72,7 @@ PELLUCID_HD void each_block(const ClassifiedBlocks& blocks, const Ray<double>& r
     const BlockClass& block = blocks.classes[step.block];
     const BlockRange range = records.range(step.block);
     const BlockBends own = records.bends(step.block);
-    if (march.knows_places(step.t_end) &&
+    if (march.resolves_positions(step.t_end) &&
         integrator.is_smooth(block, range, own, march.variation(own), march.shortest())) {
       bends = smooth.begin < smooth.end ? join(bends, own) : own;
       smooth.end = step.t_end;
@@ -84,23 +85,24 @@ PELLUCID_HD void each_block(const ClassifiedBlocks& blocks, const Ray<double>& r
     finish();
     smooth = {step.t_end, step.t_end};
     if (integrator.done()) return false;
-    if (!integrator.block(block.kind, range.min, step)) each_cell({step.t_begin, step.t_end});
+    if (!integrator.try_block(block.kind, range.min, step)) each_cell({step.t_begin, step.t_end});
     return !integrator.done();
   });
   finish();
 }
 
-/// The volume rendering integral along a ray (in grid coordinates, its parameter the world arc
-/// length) through trilinear data, within a tolerance: RayResult::error is at most what is wanted,
-/// unless binary32 was forced where it cannot keep it, or where not even binary64 tells on which
-/// side of a jump of the transfer function the data lie. `blocks`: of the same grid; null: none.
+/// Integrates a ray (in grid coordinates, its parameter the world arc length) through trilinear
+/// data, within a tolerance. `blocks` belong to the same grid; null: none.
+///
+/// RayResult::error is at most the tolerance, unless binary32 is forced and cannot keep it, or even
+/// binary64 cannot resolve on which side of a discontinuity of the transfer function the data lie.
 template <class Value>
 PELLUCID_HD RayResult integrate_ray(const StructuredGrid<Value, double>& grid,
                                     const ClassifiedBlocks* blocks, const Ray<double>& ray_grid,
                                     const TransferTables& transfer, const RayTolerance& wanted,
                                     bool with_depth) noexcept {
   const Interval<double> inside = grid_interval(grid.axis, ray_grid);
-  if (inside.empty()) return nothing_met();
+  if (inside.empty()) return missed_ray_result();
 
   RayIntegrator<Value> integrator(grid, ray_grid, transfer, wanted, inside.end - inside.begin);
   long cells = 0;
@@ -109,13 +111,13 @@ PELLUCID_HD RayResult integrate_ray(const StructuredGrid<Value, double>& grid,
     StructuredWalk<double>::Step step;
     while (!integrator.done() && walk.next(step)) {
       ++cells;
-      integrator.cell(step);
+      integrator.add_cell(step);
     }
   };
   if (blocks == nullptr) {
     each_cell(inside);
   } else {
-    each_block(*blocks, ray_grid, inside, integrator, each_cell);
+    integrate_blocks(*blocks, ray_grid, inside, integrator, each_cell);
   }
   RayResult result = integrator.result();
   result.cells = cells;

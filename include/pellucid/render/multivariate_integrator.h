@@ -3,20 +3,20 @@
 
 #include "pellucid/error/budget.h"
 #include "pellucid/geometry/ray.h"
-#include "pellucid/math/where_reached.h"
+#include "pellucid/math/solve_monotone.h"
 #include "pellucid/render/integrate_cell.h"
-#include "pellucid/segment/fold.h"
+#include "pellucid/segment/compositor.h"
 #include "pellucid/segment/multivariate_panel.h"
 
 namespace pellucid {
 
-/// Integrates one ray through several fields within a tolerance: cuts each cell until every panel
-/// costs no more than the budget pays for, and keeps account of it. In double throughout.
+/// Integrates one ray through several fields within a tolerance. It cuts each cell until every
+/// panel is within budget, and accounts for the errors. In double throughout.
 class MultivariateRayIntegrator {
  public:
-  /// All that is given is referred to and must outlive the integrator. `length`: of the ray inside
-  /// of the grid, in world units.
-  PELLUCID_HD MultivariateRayIntegrator(const Multivariate<double>& transfer,
+  /// Keeps references to its arguments, which must outlive the integrator. `length` is the length
+  /// of the ray inside the grid, in world units.
+  PELLUCID_HD MultivariateRayIntegrator(const MultivariateTransfer<double>& transfer,
                                         double largest_extinction, const RayTolerance& wanted,
                                         double length) noexcept
       : transfer_(transfer),
@@ -28,39 +28,42 @@ class MultivariateRayIntegrator {
     demand_.largest_color = max(wanted.largest_color, 1.0);
   }
 
-  /// Asks for the place where the optical depth reaches `depth`; the ray ends there.
-  PELLUCID_HD void look_for(double depth) noexcept { target_ = depth; }
-  /// Its world arc length; infinite where it was not met.
-  PELLUCID_HD double found() const noexcept { return found_; }
+  /// Requests the position at which the optical depth reaches `depth`; the ray ends there.
+  PELLUCID_HD void set_target_depth(double depth) noexcept { target_ = depth; }
+  /// Returns that position in world arc length; infinite if the depth was not reached.
+  PELLUCID_HD double target_position() const noexcept { return found_; }
 
-  /// Whether what is left of the ray can no longer matter.
+  /// Returns whether the remainder of the ray cannot matter.
   PELLUCID_HD bool done() const noexcept {
-    return found_ < infinity || (target_ == infinity && budget_.pays_for(rest(), tolerance_));
+    return found_ < infinity ||
+           (target_ == infinity && budget_.allows_termination(rest(), tolerance_));
   }
 
-  /// Goes past stretches in which nothing is, up to where so much is left of the ray.
-  PELLUCID_HD void pass_to(double length_left) noexcept { budget_.pass_to(length_left); }
+  /// Skips empty spans: sets the remaining length of the ray.
+  PELLUCID_HD void set_remaining_length(double remaining_length) noexcept {
+    budget_.set_remaining_length(remaining_length);
+  }
 
-  /// Where something may hide at most this opacity, in no length.
-  PELLUCID_HD void lose(double opacity) noexcept {
+  /// Charges the budget for an unknown opacity of at most `opacity` at a point of the ray.
+  PELLUCID_HD void charge_opacity(double opacity) noexcept {
     ++counts_.skipped;
     budget_.spend(0, 0, fold_.transparency(), demand_.largest_color * min(opacity, 1.0));
   }
 
-  /// A stretch whose extinction is at most this and is left out.
+  /// Skips a span with an extinction of at most `extinction`, and charges the budget for it.
   PELLUCID_HD void skip(double length, double extinction) noexcept {
     ++counts_.skipped;
     budget_.spend(length, 0, fold_.transparency(),
                   demand_.largest_color * min(extinction * length, 1.0));
   }
 
-  /// A stretch of the ray on which all channels are cubics, or linear, cut until it is good enough.
-  /// `range`: where it is on the ray, world arc length. `left_out`: a bound on the extinction that
-  /// is not looked at, that of primitives that are not in the set above all. `place_error`: how far
-  /// its ends may be off.
+  /// Integrates a span on which all channels are cubic, or linear; cuts it until it is within
+  /// budget. `range` is its interval on the ray in world arc length. `left_out` is an upper bound
+  /// on the ignored extinction, above all of primitives outside of the set. `position_error` bounds
+  /// the error of its ends.
   template <class Span>
-  PELLUCID_HD void stretch(const Span& span, Interval<double> range, PrimitiveSet primitives,
-                           double left_out, double place_error) noexcept {
+  PELLUCID_HD void add_stretch(const Span& span, Interval<double> range, PrimitiveSet primitives,
+                               double left_out, double position_error) noexcept {
     ++evaluations_;
     demand_.primitives = primitives;
     // The parts still to do, by their ends, the nearest last.
@@ -70,8 +73,9 @@ class MultivariateRayIntegrator {
     double begin = 0;
     while (open > 0) {
       const double end = ends[open - 1];
-      // Cuts inside move by their share of what the stretch is longer or shorter by.
-      demand_.place_error = begin > 0 && end < 1 ? (end - begin) * place_error : place_error;
+      // If the span's length changes, inner cuts move in proportion.
+      demand_.position_error =
+          begin > 0 && end < 1 ? (end - begin) * position_error : position_error;
       demand_.last_resort = open > most_cuts || !(end - begin > 1e-9);
       const PanelSegment<double> panel = integrate(span, begin, end, left_out);
       if (!panel.done) {
@@ -90,12 +94,13 @@ class MultivariateRayIntegrator {
     }
   }
 
+  /// Returns the result up to the last span.
   PELLUCID_HD RayResult result() const noexcept {
     RayResult result;
     result.radiance = fold_.radiance();
     result.optical_depth = fold_.optical_depth();
     result.opacity = fold_.opacity();
-    // Folding in double costs 4 u a span (segment/fold.h).
+    // Folding in double costs 4 u a span (segment/compositor.h).
     const double folding =
         4 * rounding_unit<double> * demand_.largest_color * static_cast<double>(panels_);
     result.error = budget_.spent() + rest() + folding;
@@ -109,9 +114,10 @@ class MultivariateRayIntegrator {
   static constexpr int most_cuts = 60;
   static constexpr double infinity = std::numeric_limits<double>::infinity();
 
-  /// A bound on what lies behind: as little as light can come from there.
+  /// Returns an upper bound on the radiance of the remainder.
   PELLUCID_HD double rest() const noexcept {
-    return budget_.rest_behind(fold_.transparency(), largest_extinction_, demand_.largest_color);
+    return budget_.remainder_bound(fold_.transparency(), largest_extinction_,
+                                   demand_.largest_color);
   }
 
   template <class Span>
@@ -120,7 +126,7 @@ class MultivariateRayIntegrator {
     const Span span = begin == 0 && end == 1 ? whole : whole.part(transfer_.channels, begin, end);
     const auto allowance = [&](double opacity) noexcept {
       return max(budget_.allowance(span.length, opacity, fold_.transparency()),
-                 RayBudget<double>::least_allowance(tolerance_, span.length / length_));
+                 RayBudget<double>::minimum_allowance(tolerance_, span.length / length_));
     };
     const PanelSegment<double> panel =
         integrate_multivariate_panel(transfer_, span, demand_, allowance);
@@ -140,8 +146,8 @@ class MultivariateRayIntegrator {
     return panel;
   }
 
-  /// The place in the part [begin, end] of a cell where the depth reaches the target: with the
-  /// depths of lines, which is what the tolerance allows there.
+  /// Finds the position in the part [begin, end] of a cell at which the depth reaches the target.
+  /// It uses the depths of lines, which are within the tolerance there.
   template <class Span>
   PELLUCID_HD void find(const Span& span, double begin, double end,
                         Interval<double> range) noexcept {
@@ -155,16 +161,16 @@ class MultivariateRayIntegrator {
           .found.segment.optical_depth;
     };
     const double at =
-        where_reached(inside, target_ - before_, begin, end, 0.0, fold_.optical_depth() - before_);
+        solve_monotone(inside, target_ - before_, begin, end, 0.0, fold_.optical_depth() - before_);
     found_ = range.begin + at * (range.end - range.begin);
   }
 
-  const Multivariate<double>& transfer_;
+  const MultivariateTransfer<double>& transfer_;
   double largest_extinction_;
   double tolerance_, length_;
   PanelDemand<double> demand_;
   RayBudget<double> budget_;
-  FrontToBack<double> fold_{0.0};
+  FrontToBackCompositor<double> fold_{0.0};
   RuleCounts counts_;
   long evaluations_ = 0, panels_ = 0;
   bool proved_ = true;

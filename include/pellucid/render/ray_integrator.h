@@ -4,7 +4,7 @@
 #include "pellucid/error/budget.h"
 #include "pellucid/field/sample.h"
 #include "pellucid/render/integrate_cell.h"
-#include "pellucid/segment/fold.h"
+#include "pellucid/segment/compositor.h"
 #include "pellucid/segment/stride.h"
 #include "pellucid/traverse/block_bends.h"
 #include "pellucid/traverse/block_walk.h"
@@ -12,13 +12,13 @@
 
 namespace pellucid {
 
-/// Integrates one ray within a tolerance: hands each span to the cheapest rule whose error the
-/// budget can pay for, and keeps account of it.
+/// Integrates one ray within a tolerance: it uses, for each span, the cheapest rule whose error is
+/// within budget, and accounts for the errors.
 template <class Value>
 class RayIntegrator {
  public:
-  /// All that is given is referred to and must outlive the integrator. `length`: of the ray inside
-  /// of the grid, in world units.
+  /// Keeps references to its arguments, which must outlive the integrator. `length` is the length
+  /// of the ray inside the grid, in world units.
   PELLUCID_HD RayIntegrator(const StructuredGrid<Value, double>& grid, const Ray<double>& ray_grid,
                             const TransferTables& transfer, const RayTolerance& wanted,
                             double length) noexcept
@@ -29,18 +29,20 @@ class RayIntegrator {
         largest_color_(max(wanted.largest_color, 1.0)),
         budget_(wanted.tolerance, length) {}
 
-  /// Whether what is left of the ray can no longer matter.
-  PELLUCID_HD bool done() const noexcept { return budget_.pays_for(rest(), wanted_.tolerance); }
+  /// Returns whether the remainder of the ray cannot matter.
+  PELLUCID_HD bool done() const noexcept {
+    return budget_.allows_termination(rest(), wanted_.tolerance);
+  }
 
-  /// A stretch in which nothing absorbs.
+  /// Skips a transparent span.
   PELLUCID_HD void skip(double length) noexcept {
     ++counts_.skipped;
     budget_.spend(length, 0, fold_.transparency(), 0);
   }
 
-  /// A block of this kind, or a cube of such, at once: false where its cells have to be gone
-  /// through. `lower`: the lower end of the block's range.
-  PELLUCID_HD bool block(BlockKind kind, double lower, const BlockStep& step) noexcept {
+  /// Integrates a block of this kind, or a cube of such blocks, at once. Returns false if its cells
+  /// have to be integrated one by one. `lower` is the lower end of the block's range.
+  PELLUCID_HD bool try_block(BlockKind kind, double lower, const BlockStep& step) noexcept {
     const double length = step.t_end - step.t_begin;
     if (kind == BlockKind::skip) {
       skip(length);
@@ -50,15 +52,15 @@ class RayIntegrator {
     ++counts_.constant;
     const Material<double> material = transfer_.wide.evaluate(lower);
     BoundedSegment<double> segment{constant_segment(material.extinction, material.color, length)};
-    // The length is known to a few units of the arc length.
+    // The length is accurate to a few u of the arc length.
     const double place = 8 * rounding_unit<double> * step.t_end * material.extinction;
     add(segment, length, segment.segment.opacity,
         largest_color_ * (32 * rounding_unit<double> * segment.segment.opacity + min(place, 1.0)));
     return true;
   }
 
-  /// One cell of a walk over the grid.
-  PELLUCID_HD void cell(const StructuredWalk<double>::Step& step) noexcept {
+  /// Integrates one cell of a walk over the grid.
+  PELLUCID_HD void add_cell(const StructuredWalk<double>::Step& step) noexcept {
     ++evaluations_;
     if (wanted_.precision == Precision::float64 ||
         (wanted_.grade == Grade::proved && wanted_.precision == Precision::automatic)) {
@@ -70,11 +72,13 @@ class RayIntegrator {
     cell_in<double>(step, true);
   }
 
-  /// Whether strides are worth a try in a block where the data's derivative varies by at most
-  /// `variation` on half of a stride of this length: whether the tolerance could allow one even
-  /// where the transfer function is as steep as anywhere in the block's range. An estimate is for
-  /// data that no cell bends by more than half of what the block does: for waves of seven cells
-  /// and longer, but not for noise, whose bends three points do not show.
+  /// Returns whether strides through a block may be within tolerance, assuming that the transfer
+  /// function is everywhere as steep as anywhere in the block's range. `variation` bounds the
+  /// variation of the data's derivative on half of a stride of this `length`.
+  ///
+  /// Estimates are used only if no cell has more than half of the second difference of the block:
+  /// for waves of seven cells and longer, but not for noise, whose second differences three samples
+  /// do not show.
   PELLUCID_HD bool is_smooth(const BlockClass& block, const BlockRange& range,
                              const BlockBends& bends, double variation, double length) noexcept {
     if (!block.absorbs_in_cells()) return false;
@@ -91,11 +95,11 @@ class RayIntegrator {
     return bound <= guard * budget_.allowance(length, 0, fold_.transparency());
   }
 
-  /// A stride from t_begin, where the data are `front`, in blocks whose derivative varies by at
-  /// most `variation` on either half: false where the tolerance does not allow it. `back`: the data
-  /// at its end.
-  PELLUCID_HD bool stride(double t_begin, double length, double variation, double front,
-                          double& back) noexcept {
+  /// Integrates a stride from t_begin, where the data are `front`, through blocks whose derivative
+  /// varies by at most `variation` on either half. Returns false if it is not within budget. `back`
+  /// receives the data at its end.
+  PELLUCID_HD bool try_stride(double t_begin, double length, double variation, double front,
+                              double& back) noexcept {
     const double middle = sample(t_begin + 0.5 * length);
     back = sample(t_begin + length);  // NaN on a plane that vacuum begins at: no stride
     // The samples themselves are rounded.
@@ -115,18 +119,19 @@ class RayIntegrator {
     return true;
   }
 
-  /// The data at a place of the ray.
+  /// Returns the data at a position of the ray.
   PELLUCID_HD double sample(double t) noexcept {
     ++evaluations_;
     return sample_value<double>(grid_, ray_.at(t));
   }
 
+  /// Returns the result up to the last span.
   PELLUCID_HD RayResult result() const noexcept {
     RayResult result;
     result.radiance = fold_.radiance();
     result.optical_depth = fold_.optical_depth();
     result.opacity = fold_.opacity();
-    // Folding in double costs 4 u a span (segment/fold.h).
+    // Folding in double costs 4 u a span (segment/compositor.h).
     const double folding =
         4 * rounding_unit<double> * largest_color_ * static_cast<double>(evaluations_);
     result.error = budget_.spent() + rest() + folding;
@@ -137,12 +142,14 @@ class RayIntegrator {
   }
 
  private:
-  /// A bound on what lies behind: as little as light can come from there.
+  /// Returns an upper bound on the radiance of the remainder.
   PELLUCID_HD double rest() const noexcept {
-    return budget_.rest_behind(fold_.transparency(), transfer_.largest_extinction, largest_color_);
+    return budget_.remainder_bound(fold_.transparency(), transfer_.largest_extinction,
+                                   largest_color_);
   }
 
-  /// `opacity`: what the allowance was asked for.
+  /// Composites a span and charges its error. `opacity` is the one for which the allowance was
+  /// computed.
   template <class T>
   PELLUCID_HD void add(const BoundedSegment<T>& span, double length, double opacity,
                        double rounding) noexcept {
@@ -153,8 +160,8 @@ class RayIntegrator {
     proved_ = proved_ && span.proved;
   }
 
-  /// Integrates the cell in T. Without `forced`, returns false where T's rounding would take more
-  /// than a quarter of what the span may cost.
+  /// Integrates the cell in T. Unless `forced`, returns false if T's rounding would take more than
+  /// a quarter of the span's allowance.
   template <class T>
   PELLUCID_HD bool cell_in(const StructuredWalk<double>::Step& step, bool forced) noexcept {
     const double world_length = step.t_end - step.t_begin;
@@ -163,11 +170,11 @@ class RayIntegrator {
       skip(world_length);
       return true;
     }
-    // Where the ray meets the planes is known to a few units of its arc length.
-    const double place_error = 8 * rounding_unit<double> * step.t_end;
+    // The positions at which the ray meets the planes are accurate to a few u of its arc length.
+    const double position_error = 8 * rounding_unit<double> * step.t_end;
     CellSegment<T> found;
     if (!integrate_cell(
-            span.data, span.length(), place_error, transfer_, wanted_, forced,
+            span.data, span.length(), position_error, transfer_, wanted_, forced,
             [&](double opacity) {
               return budget_.allowance(world_length, opacity, fold_.transparency());
             },
@@ -189,7 +196,7 @@ class RayIntegrator {
   const RayTolerance& wanted_;
   double largest_color_;
   RayBudget<double> budget_;
-  FrontToBack<double> fold_{0.0};
+  FrontToBackCompositor<double> fold_{0.0};
   RuleCounts counts_;
   long evaluations_ = 0;
   bool proved_ = true;

@@ -9,15 +9,15 @@
 
 namespace pellucid {
 
-/// How the spans of a ray were integrated: how many by each rule.
+/// Number of spans of a ray by integration rule.
 struct RuleCounts {
-  std::uint64_t skipped = 0;    ///< blocks and cells in which nothing absorbs
-  std::uint64_t constant = 0;   ///< blocks over whose range the transfer function is constant
-  std::uint64_t strides = 0;    ///< stretches over several cells
-  std::uint64_t lines = 0;      ///< cells (or halves …) whose data a line stands for
+  std::uint64_t skipped = 0;    ///< transparent blocks and cells
+  std::uint64_t constant = 0;   ///< blocks with a constant transfer function over their range
+  std::uint64_t strides = 0;    ///< strides over several cells
+  std::uint64_t lines = 0;      ///< cells or parts of cells with a line in place of the data
   std::uint64_t closed = 0;     ///< cells in closed form: exact depth, mean or linear color
-  std::uint64_t panels = 0;     ///< cells that took Gauß panels
-  std::uint64_t in_double = 0;  ///< those of the above for which binary32 was not enough
+  std::uint64_t panels = 0;     ///< cells that needed Gauß panels
+  std::uint64_t in_double = 0;  ///< of the above, those that needed binary64
 
   PELLUCID_HD constexpr RuleCounts& operator+=(const RuleCounts& other) noexcept {
     skipped += other.skipped;
@@ -31,31 +31,33 @@ struct RuleCounts {
   }
 };
 
-/// What one ray gathers. Accumulated in double whatever the kernels' number type: thousands of
-/// cells in binary32 would cost more than the kernels do (specification, 2.3).
+/// The result of one ray. It is accumulated in double whatever the kernels' number type: summing
+/// thousands of cells in binary32 would cost more accuracy than the kernels do (specification,
+/// 2.3).
 struct RayResult {
   Rgb<double> radiance{};  ///< premultiplied
   double opacity = 0;
   double optical_depth = 0;
-  /// World arc length at which half of the opacity is reached; infinite where the ray stays clear
-  /// or the depth was not asked for.
+  /// World arc length at which half of the opacity is reached; infinite if the ray is transparent
+  /// or the depth was not requested.
   double half_opacity_depth = std::numeric_limits<double>::infinity();
-  HalfOpacity half;  ///< what is known of that place before it is looked for
-  long cells = 0;    ///< cells walked through, or samples taken
+  HalfOpacity half;  ///< bracket of that position, before it is searched for
+  long cells = 0;    ///< cells traversed, or samples taken
 
-  /// How far radiance and opacity may be from the exact ones; infinite where nothing is known.
+  /// Largest possible error of radiance and opacity; infinite if unknown.
   double error = std::numeric_limits<double>::infinity();
-  /// What is known of rays beside this one: by how much these may differ from what goes smoothly
-  /// from ray to ray, as a standard deviation; and how far apart rays may be to show all that
-  /// there is between them, in voxels. Infinite and 0 where nothing is known.
-  float unevenness = std::numeric_limits<float>::infinity(), longest_step = 0;
-  bool proved = false;   ///< whether `error` is a bound and not an estimate
+  /// Information for adaptive pixel interpolation. `neighbor_deviation` is the standard deviation
+  /// by which neighboring rays may differ from a smooth function of the pixel; infinite if unknown.
+  /// `longest_step` is the largest distance between rays, in voxels, that misses no detail; 0 if
+  /// unknown.
+  float neighbor_deviation = std::numeric_limits<float>::infinity(), longest_step = 0;
+  bool proved = false;   ///< whether `error` is a proved bound, not an estimate
   long evaluations = 0;  ///< of the field: cells gathered and points sampled
   RuleCounts spans;
 };
 
-/// Of a ray that meets nothing.
-PELLUCID_HD inline RayResult nothing_met() noexcept {
+/// Returns the result of a ray that misses the data: error 0, proved.
+PELLUCID_HD inline RayResult missed_ray_result() noexcept {
   RayResult nothing;
   nothing.error = 0;
   nothing.proved = true;

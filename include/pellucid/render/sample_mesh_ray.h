@@ -9,19 +9,19 @@
 
 namespace pellucid {
 
-/// Follows a ray through a mesh with one segment for each tetrahedron, by a method for comparison:
-/// segment_of(span) makes it. Nothing is known of its error. It ends where the transparency is
-/// `stop` at most; what is vacuum or lies where the mesh overlaps itself is left out.
+/// Marches a ray through a mesh with one segment per tetrahedron, for comparison: segment_of(span)
+/// returns the segment. Its error is unknown. The ray ends where the transparency is at most
+/// `stop`. Vacuum and overlapping parts of the mesh are skipped.
 ///
-/// `depth`: asks for the place where the optical depth reaches that,
-/// RayResult::half_opacity_depth; the ray ends there.
+/// If `depth` is finite, the ray ends where the optical depth reaches it, and
+/// RayResult::half_opacity_depth is that position.
 template <class SegmentOf>
 PELLUCID_HD RayResult
 sample_mesh_spans(const Tetrahedra& mesh, const MeshFields& fields, const MeshRay& ray,
                   const SegmentOf& segment_of, double stop,
                   double depth = std::numeric_limits<double>::infinity()) noexcept {
   RayResult result;
-  FrontToBack<double> fold(stop);
+  FrontToBackCompositor<double> fold(stop);
   for_each_mesh_span(mesh, fields, ray.view, ray.hits, ray.count, [&](const MeshSpan& span) {
     ++result.cells;
     if (span.vacuum || span.overlaps) return true;
@@ -43,7 +43,8 @@ sample_mesh_spans(const Tetrahedra& mesh, const MeshFields& fields, const MeshRa
   return result;
 }
 
-/// By a model of the cell; `transfer` is a PiecewiseLinear of one variable or a Multivariate.
+/// Marches with a model of the cell. `transfer` is a PiecewiseLinear of one variable or a
+/// MultivariateTransfer.
 template <class Transfer>
 PELLUCID_HD RayResult
 sample_mesh_ray(const Tetrahedra& mesh, const MeshFields& fields, const Transfer& transfer,
@@ -56,10 +57,10 @@ sample_mesh_ray(const Tetrahedra& mesh, const MeshFields& fields, const Transfer
   return sample_mesh_spans(mesh, fields, ray, segment_of, stop, depth);
 }
 
-/// As Kniss et al. 2003 have it, for whom the data of a segment are linear: in a tetrahedron they
+/// Marches like Kniss et al. 2003, who take the data of a segment as linear; in a tetrahedron they
 /// are.
 PELLUCID_HD inline RayResult sample_mesh_gaussians(
-    const Tetrahedra& mesh, const MeshFields& fields, const Multivariate<double>& transfer,
+    const Tetrahedra& mesh, const MeshFields& fields, const MultivariateTransfer<double>& transfer,
     GaussianRule rule, const MeshRay& ray, double stop,
     double depth = std::numeric_limits<double>::infinity()) noexcept {
   const auto segment_of = [&](const MeshSpan& span) noexcept {

@@ -10,16 +10,17 @@
 
 namespace pellucid {
 
-/// A part of a step: the opacity of a constant extinction, and the radiance in proportion to it.
+/// Returns the fraction `part` of a step: the opacity of a constant extinction, and the radiance in
+/// proportion to it.
 template <class T>
-PELLUCID_HD PreintegratedStep<T> part_of_step(const PreintegratedStep<T>& whole, T part) noexcept {
+PELLUCID_HD PreintegratedStep<T> partial_step(const PreintegratedStep<T>& whole, T part) noexcept {
   if (!(whole.opacity > T(0))) return {};
   const T opacity = attenuation(-part * log1p(-whole.opacity)).opacity;
   return {opacity, (opacity / whole.opacity) * whole.radiance};
 }
 
-/// Marches a ray as sample_ray() does, by a table made for this step: it sees the data at the ends
-/// of each step. A step with an end in a cell with a NaN corner is vacuum.
+/// Marches a ray like sample_ray(), with a table made for this step length. It samples the data at
+/// both ends of each step. A step with an end in a cell with a NaN corner is vacuum.
 template <class T, class Value>
 PELLUCID_HD RayResult sample_preintegrated(const StructuredGrid<Value, double>& grid,
                                            const Ray<double>& ray_grid,
@@ -38,7 +39,7 @@ PELLUCID_HD RayResult sample_preintegrated(const StructuredGrid<Value, double>& 
       const T back = sample_value<T>(grid, ray_grid.at(t_end));
       PreintegratedStep<T> found = preintegrated_step(table, front, back);
       const double part = (t_end - t_begin) / step;
-      if (part < 1 - 1e-6) found = part_of_step(found, static_cast<T>(part));
+      if (part < 1 - 1e-6) found = partial_step(found, static_cast<T>(part));
       const SegmentResult<T> segment{-log1p(-found.opacity), found.opacity, T(1) - found.opacity,
                                      found.radiance};
       if (!visit(segment, t_begin, t_end)) break;
@@ -47,7 +48,7 @@ PELLUCID_HD RayResult sample_preintegrated(const StructuredGrid<Value, double>& 
     }
   };
 
-  fold_march<T>(march, stop_tolerance / max(largest_color, 1.0), with_depth, result);
+  composite_march<T>(march, stop_tolerance / max(largest_color, 1.0), with_depth, result);
   return result;
 }
 

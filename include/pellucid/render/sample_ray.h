@@ -4,7 +4,7 @@
 #include "pellucid/field/multichannel_grid.h"
 #include "pellucid/render/ray_result.h"
 #include "pellucid/segment/classical.h"
-#include "pellucid/segment/fold.h"
+#include "pellucid/segment/compositor.h"
 #include "pellucid/segment/gaussian_step.h"
 #include "pellucid/segment/linear.h"
 #include "pellucid/transfer/multivariate.h"
@@ -12,19 +12,19 @@
 
 namespace pellucid {
 
-/// The transparency at which the marching rules end a ray, per unit of color: far below what any of
-/// them can promise.
+/// Returns the transparency at which marching ends a ray, per unit of color: far below the accuracy
+/// of any of the rules.
 template <class T>
 PELLUCID_HD constexpr double stop_tolerance() noexcept {
   return is_single<T> ? 1e-6 : 1e-10;
 }
 
-/// The rules that march along a ray at a fixed step, for comparison with the exact method. Each
-/// sees the data at points only: Max 1995 and Weiß 2020 (rectangle, taylor, midpoint, trapezoid,
+/// Rules that march along a ray at a fixed step, for comparison with the exact method. Each samples
+/// the data at points only: Max 1995 and Weiß 2020 (rectangle, taylor, midpoint, trapezoid,
 /// simpson); linear is Moreland 2004's exact segment between two samples.
 enum class SamplingRule { rectangle, taylor, midpoint, trapezoid, simpson, linear };
 
-/// The material at a point of the grid (grid coordinates, clamped into the box). A cell with a NaN
+/// Returns the material at a position in grid coordinates, clamped into the box. A cell with a NaN
 /// corner is vacuum.
 template <class T, class Value>
 PELLUCID_HD Material<T> sample_material(const StructuredGrid<Value, double>& grid,
@@ -35,7 +35,7 @@ PELLUCID_HD Material<T> sample_material(const StructuredGrid<Value, double>& gri
   return transfer.evaluate(value);
 }
 
-/// One step of a rule: extinction and color at the front, the middle and the back.
+/// Returns one step by a rule, from the materials at its front, middle and back.
 template <class T>
 PELLUCID_HD SegmentResult<T> sampled_segment(SamplingRule rule, const Material<T>& front,
                                              const Material<T>& middle, const Material<T>& back,
@@ -57,12 +57,13 @@ PELLUCID_HD SegmentResult<T> sampled_segment(SamplingRule rule, const Material<T
   return linear_segment(front.extinction, back.extinction, front.color, back.color, length);
 }
 
-/// Folds the steps of a march, which calls visit(segment, t_begin, t_end) front to back until that
-/// returns false, into the ray's result: to the transparency `stop`, and once more for the depth.
+/// Composites the steps of a march into the ray's result, up to the transparency `stop`, and
+/// marches once more for the depth if `with_depth`. march(visit) calls visit(segment, t_begin,
+/// t_end) front to back until it returns false.
 template <class T, class March>
-PELLUCID_HD void fold_march(March&& march, double stop, bool with_depth,
-                            RayResult& result) noexcept {
-  FrontToBack<double> fold(stop);
+PELLUCID_HD void composite_march(March&& march, double stop, bool with_depth,
+                                 RayResult& result) noexcept {
+  FrontToBackCompositor<double> fold(stop);
   march([&](const SegmentResult<T>& segment, double, double) {
     ++result.cells;
     fold.add(segment);
@@ -87,19 +88,20 @@ PELLUCID_HD void fold_march(March&& march, double stop, bool with_depth,
   }
 }
 
-/// What of a step a rule wants to see.
-struct StepPlaces {
+/// The positions of a step that a rule samples.
+struct SamplePositions {
   bool ends = true, middle = false;
 };
 
-/// Marches a ray through `box` at the given step (world length, > 0). sample_at(t) is what is seen
-/// at a place, a Sample; segment_of(front, middle, back, length) makes a segment of what is seen of
-/// a step, {} standing for what is not asked for. The last step ends at the box. Samples lie at
-/// multiples of the step from the entry, computed from their index, so that positions do not drift.
+/// Marches a ray through `box` at the given step (world length, > 0). sample_at(t) returns the
+/// Sample at a position; segment_of(front, middle, back, length) returns the segment of a step,
+/// with {} for positions that are not sampled. The last step ends at the box. Positions are
+/// multiples of the step from the entry, computed from their index, so that they do not drift.
 template <class T, class Sample, class SampleAt, class SegmentOf>
-PELLUCID_HD RayResult march_steps(Interval<double> box, StepPlaces seen, const SampleAt& sample_at,
-                                  const SegmentOf& segment_of, double step, double largest_color,
-                                  double stop_tolerance, bool with_depth) noexcept {
+PELLUCID_HD RayResult march_steps(Interval<double> box, SamplePositions seen,
+                                  const SampleAt& sample_at, const SegmentOf& segment_of,
+                                  double step, double largest_color, double stop_tolerance,
+                                  bool with_depth) noexcept {
   RayResult result;
   if (box.empty()) return result;
 
@@ -119,17 +121,17 @@ PELLUCID_HD RayResult march_steps(Interval<double> box, StepPlaces seen, const S
     }
   };
 
-  fold_march<T>(march, stop_tolerance / max(largest_color, 1.0), with_depth, result);
+  composite_march<T>(march, stop_tolerance / max(largest_color, 1.0), with_depth, result);
   return result;
 }
 
-/// Marches with a rule that sees materials; material_at(t) is what lies at a place.
+/// Marches with a rule that uses materials; material_at(t) returns the material at a position.
 template <class T, class MaterialAt>
 PELLUCID_HD RayResult sample_materials(Interval<double> box, const MaterialAt& material_at,
                                        SamplingRule rule, double step, double largest_color,
                                        double stop_tolerance, bool with_depth) noexcept {
-  const StepPlaces seen{rule != SamplingRule::midpoint,
-                        rule == SamplingRule::midpoint || rule == SamplingRule::simpson};
+  const SamplePositions seen{rule != SamplingRule::midpoint,
+                             rule == SamplingRule::midpoint || rule == SamplingRule::simpson};
   return march_steps<T, Material<T>>(
       box, seen, material_at,
       [&](const Material<T>& front, const Material<T>& middle, const Material<T>& back,
@@ -137,7 +139,7 @@ PELLUCID_HD RayResult sample_materials(Interval<double> box, const MaterialAt& m
       step, largest_color, stop_tolerance, with_depth);
 }
 
-/// A ray (in grid coordinates, its parameter the world arc length) through the grid's box.
+/// Marches a ray (in grid coordinates, its parameter the world arc length) through the grid's box.
 template <class T, class Value>
 PELLUCID_HD RayResult sample_ray(const StructuredGrid<Value, double>& grid,
                                  const Ray<double>& ray_grid, const PiecewiseLinear<T>& transfer,
@@ -149,41 +151,41 @@ PELLUCID_HD RayResult sample_ray(const StructuredGrid<Value, double>& grid,
       step, largest_color, stop_tolerance, with_depth);
 }
 
-/// The same through several fields.
+/// Marches the same ray through several fields.
 template <class T>
 PELLUCID_HD RayResult sample_multivariate_ray(const MultichannelGrid& grid,
                                               const Ray<double>& ray_grid,
-                                              const Multivariate<T>& transfer, SamplingRule rule,
-                                              double step, double largest_color,
+                                              const MultivariateTransfer<T>& transfer,
+                                              SamplingRule rule, double step, double largest_color,
                                               double stop_tolerance, bool with_depth) noexcept {
   return sample_materials<T>(
       grid_interval(grid.axis, ray_grid),
       [&](double t) noexcept -> Material<T> {
-        T values[most_channels];
+        T values[max_channels];
         if (!grid.sample(ray_grid.at(t), values)) return {};
         return transfer.evaluate(values);
       },
       rule, step, largest_color, stop_tolerance, with_depth);
 }
 
-/// The values of all channels at a place; `filled` is false where it is vacuum.
+/// The values of all channels at a position; `filled` is false in vacuum.
 template <class T>
 struct ChannelSample {
-  T value[most_channels]{};
+  T value[max_channels]{};
   bool filled = false;
 };
 
-/// The same as Kniss et al. 2003 march: the data of a step are linear between its ends, whatever
-/// they do on the way, and its terms have their depth along them (segment/gaussian_step.h). A step
-/// with an end in a cell with a NaN corner is vacuum.
+/// Marches like Kniss et al. 2003: the data of a step are taken as linear between its ends, and the
+/// depth of each term is computed along that line (segment/gaussian_step.h). A step with an end in
+/// a cell with a NaN corner is vacuum.
 template <class T>
 PELLUCID_HD RayResult sample_linear_steps(const MultichannelGrid& grid, const Ray<double>& ray_grid,
-                                          const Multivariate<T>& transfer, GaussianRule rule,
-                                          double step, double largest_color, double stop_tolerance,
-                                          bool with_depth) noexcept {
+                                          const MultivariateTransfer<T>& transfer,
+                                          GaussianRule rule, double step, double largest_color,
+                                          double stop_tolerance, bool with_depth) noexcept {
   using Sample = ChannelSample<T>;
   return march_steps<T, Sample>(
-      grid_interval(grid.axis, ray_grid), StepPlaces{},
+      grid_interval(grid.axis, ray_grid), SamplePositions{},
       [&](double t) noexcept {
         Sample here;
         here.filled = grid.sample(ray_grid.at(t), here.value);

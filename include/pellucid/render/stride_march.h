@@ -6,12 +6,12 @@
 
 namespace pellucid {
 
-/// Goes through smooth blocks one behind the other in strides as long as the tolerance allows, and
-/// cell by cell where it does not.
+/// Marches through consecutive smooth blocks in strides as long as the tolerance allows, and cell
+/// by cell elsewhere.
 class StrideMarch {
  public:
-  /// direction: of the ray by world length, in grid coordinates. least_width, mean_width: of the
-  /// cells along each axis.
+  /// `direction` is the ray's direction per world length, in grid coordinates. `least_width` and
+  /// `mean_width` are the smallest and the mean cell width along each axis.
   PELLUCID_HD StrideMarch(Vec3<double> direction, Vec3<double> least_width,
                           Vec3<double> mean_width) noexcept
       : direction_(direction), least_width_(least_width) {
@@ -19,27 +19,28 @@ class StrideMarch {
     for (int a = 0; a < 3; ++a) {
       square += (direction[a] / mean_width[a]) * (direction[a] / mean_width[a]);
     }
-    // Not a whole number of cells: along an axis or a diagonal all places would be alike, and an
-    // error that they share would not show in the difference of two rules.
+    // Not a whole number of cells: along an axis or a diagonal all samples would have the same
+    // position in their cells, and a common error would not show in the difference of two rules.
     shortest_ = 2.2 / sqrt(square);
     length_ = shortest_;
   }
 
-  /// The shortest stride: half of it is about a cell.
+  /// Returns the length of the shortest stride; half of it is about a cell.
   PELLUCID_HD double shortest() const noexcept { return shortest_; }
 
-  /// Whether places on the ray this far from the eye are known to a billionth of a stride.
-  PELLUCID_HD bool knows_places(double t) const noexcept {
+  /// Returns whether positions at this distance from the eye are accurate to a billionth of a
+  /// stride.
+  PELLUCID_HD bool resolves_positions(double t) const noexcept {
     return 8 * rounding_unit<double> * t <= 1e-9 * shortest_;
   }
-  /// As much as is worth gathering before it is gone through.
+  /// Returns the largest length that is worth collecting before run().
   PELLUCID_HD double longest() const noexcept { return 16 * shortest_; }
-  /// That of the data's derivative on half of the shortest stride.
+  /// Returns the variation of the data's derivative on half of the shortest stride.
   PELLUCID_HD double variation(const BlockBends& bends) const noexcept {
     return derivative_variation(bends, direction_, least_width_, 0.5 * shortest_);
   }
 
-  /// From t.begin to t.end; each_cell(Interval) goes cell by cell.
+  /// Integrates from t.begin to t.end; each_cell(Interval) integrates an interval cell by cell.
   template <class Value, class EachCell>
   PELLUCID_HD void run(RayIntegrator<Value>& integrator, Interval<double> t,
                        const BlockBends& bends, EachCell&& each_cell) noexcept {
@@ -47,7 +48,7 @@ class StrideMarch {
     bool known = false;
     while (here < t.end && !integrator.done()) {
       const double left = t.end - here;
-      // Nothing is left over that would be short.
+      // No short remainder is left.
       const double length = left < 1.5 * length_ ? left : length_;
       if (left < 0.5 * shortest_) {
         each_cell({here, t.end});
@@ -57,7 +58,7 @@ class StrideMarch {
       known = true;
       const double variation = derivative_variation(bends, direction_, least_width_, 0.5 * length);
       double back;
-      if (integrator.stride(here, length, variation, value, back)) {
+      if (integrator.try_stride(here, length, variation, value, back)) {
         here = length == left ? t.end : here + length;
         value = back;
         pause_ = 2;
@@ -68,7 +69,7 @@ class StrideMarch {
         length_ = max(0.5 * length_, shortest_);
         continue;
       }
-      // What failed once fails again: the next try is farther away each time.
+      // A failed stride is likely to fail again: the distance to the next try grows each time.
       const double pause = pause_ * shortest_;
       const double end = left < pause + shortest_ ? t.end : here + pause;
       each_cell({here, end});
@@ -81,7 +82,7 @@ class StrideMarch {
  private:
   Vec3<double> direction_, least_width_;
   double shortest_, length_;
-  double pause_ = 2;  ///< in shortest strides
+  double pause_ = 2;  ///< in units of the shortest stride
 };
 
 }  // namespace pellucid

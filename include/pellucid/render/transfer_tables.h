@@ -7,19 +7,19 @@
 
 namespace pellucid {
 
-/// A transfer function as rays see it: in both number types. Views; own nothing.
+/// A transfer function as rays use it, in both number types. A view; owns nothing.
 struct TransferTables {
   PiecewiseLinear<float> single;
   PiecewiseLinear<double> wide;
   PiecewiseLinearAntiderivative<float> single_antiderivative;
   PiecewiseLinearAntiderivative<double> wide_antiderivative;
   double largest_extinction = 0;
-  /// Values, ascending, where control points of `wide` fell together in `single`.
+  /// Values, ascending, at which different control points of `wide` are equal in `single`.
   const double* merged = nullptr;
   int merged_count = 0;
 
-  /// Whether `single` does not follow the function somewhere in [lower, upper].
-  PELLUCID_HD bool single_lacks(double lower, double upper) const noexcept {
+  /// Returns whether `single` differs from the function somewhere in [lower, upper].
+  PELLUCID_HD bool single_is_inexact(double lower, double upper) const noexcept {
     int lo = 0, hi = merged_count;
     while (lo < hi) {
       const int mid = (lo + hi) / 2;
@@ -32,6 +32,7 @@ struct TransferTables {
     return lo < merged_count && merged[lo] <= upper;
   }
 
+  /// Returns the function in the number type T.
   template <class T>
   PELLUCID_HD const PiecewiseLinear<T>& table() const noexcept {
     if constexpr (std::is_same_v<T, float>) {
@@ -40,6 +41,7 @@ struct TransferTables {
       return wide;
     }
   }
+  /// Returns the antiderivative in the number type T.
   template <class T>
   PELLUCID_HD const PiecewiseLinearAntiderivative<T>& antiderivative() const noexcept {
     if constexpr (std::is_same_v<T, float>) {

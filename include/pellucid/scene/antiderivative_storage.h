@@ -8,7 +8,7 @@
 
 namespace pellucid {
 
-/// Builds and owns the antiderivative of a transfer function. On the host alone.
+/// Builds and owns the antiderivative of a transfer function. Host only.
 template <class T>
 class AntiderivativeStorage {
  public:

@@ -12,7 +12,8 @@ namespace pellucid {
 /// Builds and owns the bins of a transfer function.
 class BinnedTransferStorage {
  public:
-  /// `largest_value`: of the data, in magnitude: what is narrower than its rounding is a jump.
+  /// Builds the bins of `table`. `largest_value` is the largest magnitude of the data: control
+  /// points closer than its rounding error form a jump.
   explicit BinnedTransferStorage(const PiecewiseLinear<double>& table, double largest_value = 0);
   BinnedTransferStorage(const BinnedTransferStorage&) = delete;
   BinnedTransferStorage& operator=(const BinnedTransferStorage&) = delete;
@@ -20,7 +21,7 @@ class BinnedTransferStorage {
   const BinnedTransfer& view() const noexcept { return view_; }
 
  private:
-  std::vector<float> extinction_, jump_, color_, color_split_, color_bend_;
+  std::vector<float> extinction_, jump_, color_, color_split_, color_slope_change_;
   std::vector<double> wide_extinction_, wide_color_end_;
   std::vector<std::int32_t> first_extinction_, first_color_, marks_, hard_jumps_;
   BinnedTransfer view_;

@@ -10,23 +10,22 @@
 
 namespace pellucid {
 
-/// How rays may go through smooth blocks in steps: how many lengths these have
-/// (SmoothBlocks::levels), and what blocks may bend to be worth a try then, SmoothBlocks::roughness
-/// times what the data bend over a cell.
+/// Limits of the step lengths that rays may take through smooth blocks.
 struct StepLimits {
-  int levels = 0;
-  double most_bending = 0;
+  int levels = 0;                    ///< number of step lengths (SmoothBlocks::levels)
+  double max_second_difference = 0;  ///< largest SmoothBlocks::roughness, times the data's second
+                                     ///< difference over a cell, of a block that is tried
 };
 
-/// Makes and owns the classes of a volume's blocks under one transfer function: once a frame, from
-/// the blocks' records alone, each in a time that does not depend on how many control points the
-/// function has.
+/// Builds and owns the classes of a volume's blocks under one transfer function. It is built once
+/// per frame from the block records alone; the time per block does not depend on the number of
+/// control points.
 class BlockClassesStorage {
  public:
   BlockClassesStorage() = default;
-  /// `largest_color`: that of RayTolerance. In parallel where it is told how.
-  /// `limits`: of smooth blocks, given the share of those that might be smooth in which all values
-  /// absorb; without it none is smooth.
+  /// Classifies all blocks, in parallel if `parallel` is given. `largest_color` is
+  /// RayTolerance::largest_color. `limits` maps the fraction of candidate blocks in which all
+  /// values absorb to the step limits; without it no block is smooth.
   BlockClassesStorage(const BlockRecords& records, const TransferTables& transfer,
                       double largest_color, const ParallelFor& parallel = {},
                       const std::function<StepLimits(double)>& limits = {});

@@ -8,16 +8,16 @@
 
 namespace pellucid {
 
-/// Makes and owns how much the data of channels vary around each block: once a frame, from the
-/// blocks' records alone. 16 bytes a block of 8³ cells and channel, and as
-/// many while they are made.
+/// Builds and owns the variation of each channel around each block. It is built once per frame from
+/// the block records alone. It takes 16 bytes per channel and block of 8³ cells, and as much again
+/// while it is built.
 class BlockVariationStorage {
  public:
   BlockVariationStorage() = default;
-  /// In parallel where it is told how.
+  /// Measures all blocks, in parallel if `parallel` is given.
   explicit BlockVariationStorage(const Channels& channels, const ParallelFor& parallel = {});
 
-  /// Of block b and channel c at b · channels + c; blocks x fastest.
+  /// Returns the variations: block b and channel c are at index b · channels + c, blocks x fastest.
   const BlockVariation* data() const noexcept { return variation_.data(); }
 
  private:

@@ -14,28 +14,27 @@ namespace pellucid {
 /// One variable of the data.
 struct Channel {
   std::string name;
-  std::string unit;  ///< for people; may be empty
+  std::string unit;  ///< shown to the user; may be empty
   std::shared_ptr<const Volume> volume;
 };
 
 /// One to eight variables on one grid, each in its own type. Immutable; copies share the data.
 ///
-/// What a ray sees of them is a vector of trilinear fields. A cell with a NaN corner in any channel
-/// is vacuum.
+/// Each variable is a trilinear field. A cell with a NaN corner in any channel is vacuum.
 class Channels {
  public:
-  /// Throws Error where there is no channel or more than eight, a name is empty or stands twice, a
-  /// volume is missing, or a grid does not agree with the first one's: dimensions, centering and
-  /// coordinates the same, the placement to within a thousandth of a cell over the whole grid.
+  /// Throws Error if there is no channel or more than eight, a name is empty or a duplicate, a
+  /// volume is missing, or a grid differs from the first one: dimensions, centering and coordinates
+  /// must be equal, placements must agree to within a thousandth of a cell over the whole grid.
   explicit Channels(std::vector<Channel> channels);
 
   int count() const noexcept { return static_cast<int>(channels_.size()); }
   const Channel& operator[](int i) const noexcept { return channels_[static_cast<std::size_t>(i)]; }
   std::vector<Channel>::const_iterator begin() const noexcept { return channels_.begin(); }
   std::vector<Channel>::const_iterator end() const noexcept { return channels_.end(); }
-  /// The index of the channel of this name.
+  /// Returns the index of the channel of this name, or none.
   std::optional<int> find(std::string_view name) const noexcept;
-  /// The first channel's volume: its grid is the grid of all.
+  /// Returns the volume of the first channel; its grid is the grid of all channels.
   const Volume& grid() const noexcept { return *channels_.front().volume; }
 
  private:

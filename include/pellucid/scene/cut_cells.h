@@ -12,43 +12,51 @@
 
 namespace pellucid {
 
-/// An array of a grid, or one component of it, or the length of its vectors, as a channel.
+/// Selects an array of a grid, one of its components, or the length of its vectors, as a channel.
 struct MeshArrayChoice {
-  std::string array;  ///< of points, where points and cells have one of this name
-  /// From 0; none: the only one, or of several the length of the vector.
+  std::string array;  ///< an array of points takes precedence over an array of cells of the same
+  /// Component, from 0. None: the only component, or the length of the vector if there are several.
   std::optional<int> component;
-  std::string name;  ///< of the channel; empty: the array's
+  std::string name;  ///< of the channel; empty: the array's name
 };
 
-/// The mesh of a grid's cells, cut into tetrahedra, with the chosen arrays as channels.
+/// Cuts the cells of a grid into tetrahedra and returns the mesh with the chosen arrays as
+/// channels.
 ///
-/// A quadrilateral is cut by the diagonal at its point of the smallest index, whatever cell it is a
-/// face of: cells that share it are cut alike, and there are no cracks (J. Dompierre, P. Labbé,
-/// M.-G. Vallet, R. Camarero: How to Subdivide Pyramids, Prisms and Hexahedra into Tetrahedra,
-/// 1999). Quadratic cells are first cut into linear ones at their nodes; nodes that they lack, in
-/// the middle of quadrilaterals and of hexahedra, get place and value of the cell's own shape
-/// functions. Linear cells with collapsed edges are what is left of them. (Quadratic ones too, but
-/// their collapsed quadrilaterals do not meet the triangles of other quadratic cells alike.)
+/// Each quadrilateral is cut along the diagonal at its point of the smallest index. Cells that
+/// share a quadrilateral therefore cut it the same way, and no cracks appear (J. Dompierre, P.
+/// Labbé, M.-G. Vallet, R. Camarero: How to Subdivide Pyramids, Prisms and Hexahedra into
+/// Tetrahedra, 1999). Quadratic cells are first cut into linear cells at their nodes; missing
+/// nodes, in the middle of quadrilaterals and of hexahedra, get position and value from the cell's
+/// own shape functions. Linear cells with collapsed edges are cut into the tetrahedra that remain.
+/// Limitation: collapsed quadrilaterals of quadratic cells do not match the triangles of
+/// neighboring quadratic cells.
+///
+/// Lagrange cells of any order are cut at their nodes in the same way. A polyhedron becomes a
+/// tetrahedron for each triangle of its faces, with the mean of its points, or with one of these
+/// where the mean does not see all faces; faces of more than four points are cut by their shape,
+/// whatever cell they are a face of.
 ///
 /// That the data are linear in each of these tetrahedra is the reconstruction that the tolerance
 /// speaks of.
 ///
-/// Points and tetrahedra stand in the order of a Morton curve, so that what lies together does in
-/// memory; TetrahedralMesh::point_number() is the grid's, and goes on with the new points.
+/// Points and tetrahedra are sorted along a Morton curve, so that neighbors in space are neighbors
+/// in memory. TetrahedralMesh::point_number() returns the grid's own indices; new points continue
+/// the numbering.
 ///
 /// Throws Error where an array is not there (naming those that are), or has no such component, the
-/// sizes do not agree, a point's index is out of range, there is no cell, or as TetrahedralMesh and
-/// MeshChannels do.
+/// sizes do not agree, a point's index is out of range, the faces of a polyhedron do not close,
+/// there is no cell, or as TetrahedralMesh and MeshChannels do.
 std::shared_ptr<const MeshChannels> cut_into_tetrahedra(const UnstructuredGrid& grid,
                                                         std::span<const MeshArrayChoice> choices,
                                                         const ParallelFor& parallel = {});
 
 /// The same tetrahedra as a grid, with all its arrays and all their components.
-UnstructuredGrid tetrahedra_of(const UnstructuredGrid& grid, const ParallelFor& parallel = {});
+UnstructuredGrid tetrahedralize(const UnstructuredGrid& grid, const ParallelFor& parallel = {});
 
-/// The cells of a volume's grid as hexahedra, their corners as they stand in the world, with its
-/// values in the array "value": of points, or of cells where the volume is centred there. Throws
-/// Error where the points are more than an index can count.
+/// Returns the cells of a volume's grid as hexahedra with corners in world space and the values in
+/// the array "value", per point or, if the volume is cell-centred, per cell. Throws Error if there
+/// are more points than an index can count.
 UnstructuredGrid to_unstructured(const Volume& volume);
 
 }  // namespace pellucid

@@ -13,8 +13,9 @@
 
 namespace pellucid {
 
-/// The values of a volume, one after the other: in a buffer of its own, or where somebody else
-/// keeps them, as a mapped file. Copies share them until one of them is written to.
+/// The values of a volume in one contiguous array. The array owns its buffer or shares memory that
+/// someone else owns, such as a mapped file. Copies share the values until one of them is written
+/// to.
 template <class T>
 class DataArray {
  public:
@@ -22,7 +23,8 @@ class DataArray {
   static_assert(std::is_arithmetic_v<T>);
 
   DataArray() = default;
-  /// Zeros, which take no memory before they are written to. Throws std::bad_alloc.
+  /// Allocates `count` zeros, which take no memory before they are written to. Throws
+  /// std::bad_alloc.
   explicit DataArray(std::size_t count) : size_(count) {
     if (count == 0) return;
     writable_ = static_cast<T*>(std::calloc(count, sizeof(T)));
@@ -31,13 +33,13 @@ class DataArray {
       std::free(const_cast<T*>(p));  // as calloc gave it
     });
   }
-  /// Takes the buffer over.
+  /// Takes ownership of the vector's buffer, without a copy.
   DataArray(std::vector<T> values) : size_(values.size()) {
     const auto kept = std::make_shared<std::vector<T>>(std::move(values));
     writable_ = kept->data();
     elements_ = std::shared_ptr<const T>(kept, writable_);
   }
-  /// `count` elements that stay as they are until the last owner goes.
+  /// Shares `count` elements, which must not change while any owner lives.
   DataArray(std::shared_ptr<const T> elements, std::size_t count)
       : elements_(std::move(elements)), size_(count) {}
 
@@ -57,7 +59,8 @@ class DataArray {
   const T* end() const noexcept { return data() + size_; }
   const T& operator[](std::size_t i) const noexcept { return data()[i]; }
 
-  /// The elements, to be written to: copied first where they are shared or somebody else's.
+  /// Returns the elements for writing. Copies them first if they are shared or owned by someone
+  /// else.
   std::span<T> writable() {
     if (size_ > 0 && (writable_ == nullptr || elements_.use_count() > 1)) {
       *this = DataArray(std::vector<T>(begin(), end()));

@@ -6,7 +6,8 @@
 
 namespace pellucid {
 
-/// Anything that the caller can mend: one line that says what is wrong, where, and what to do.
+/// Thrown for every fault that the caller can mend. The message is one line: what is wrong, where,
+/// and what to do.
 class Error : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;

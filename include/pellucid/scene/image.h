@@ -14,16 +14,17 @@ namespace pellucid {
 struct Image {
   int width = 0, height = 0;
   std::vector<std::array<float, 4>> pixels;
-  /// Arc length from the ray's origin, in world units, at which half of the pixel's opacity is
-  /// reached; of several samples that of the nearest. +infinity where the pixel is empty. Empty
-  /// vector: not asked for.
+  /// Distance from the ray's origin, in world units, at which half of the pixel's opacity is
+  /// reached; the nearest of several samples. +infinity in an empty pixel. Empty vector: not
+  /// requested.
   std::vector<float> depth;
-  /// How far the pixel may be from the exact one in any channel; +infinity where nothing is known
-  /// (sampling methods). Empty vector: not asked for.
+  /// Largest possible error of the pixel in any channel; +infinity if unknown (sampling methods).
+  /// Empty vector: not requested.
   std::vector<float> error;
-  /// 1 where `error` is a proved bound, 0 where it is an estimate. Of the size of `error`.
+  /// 1 if `error` is a proved bound, 0 if it is an estimate. As many elements as `error`.
   std::vector<std::uint8_t> proved;
-  /// Written into the file's header: version, transfer function, camera, method.
+  /// Attributes that are written into the file's header: version, transfer function, camera,
+  /// method.
   std::map<std::string, std::string> metadata;
 
   std::array<float, 4>& at(int column, int row) {

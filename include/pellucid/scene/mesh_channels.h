@@ -13,24 +13,22 @@
 
 namespace pellucid {
 
-/// One variable of a mesh: linear in each tetrahedron between the values at its points, or constant
-/// in it.
+/// One variable of a mesh: values at points, linear in each tetrahedron, or one value per
+/// tetrahedron.
 struct MeshChannel {
   std::string name;
-  std::string unit;  ///< for people; may be empty
+  std::string unit;  ///< shown to the user; may be empty
   Centering centering = Centering::point;
   VolumeData values = DataArray<float>();  ///< one per point or per tetrahedron
 };
 
-/// One to eight variables on one mesh, each in its own type: what a scene shows of it. Immutable;
-/// copies share the data.
+/// One to eight variables on one mesh, each in its own type. Immutable; copies share the data.
 ///
-/// NaN is vacuum: a tetrahedron with a NaN in any channel, at one of its points or its own, is
-/// empty.
+/// A tetrahedron with a NaN in any channel, at one of its points or as its own value, is vacuum.
 class MeshChannels {
  public:
-  /// Throws Error where there is no channel or more than eight, a name is empty or stands twice, a
-  /// channel has another number of values than the mesh has points or tetrahedra, or a value that
+  /// Throws Error if there is no channel or more than eight, a name is empty or a duplicate, the
+  /// number of a channel's values differs from the number of points or tetrahedra, or a value that
   /// is used is infinite or beyond ±2.1e37.
   MeshChannels(std::shared_ptr<const TetrahedralMesh> mesh, std::vector<MeshChannel> channels);
 
@@ -42,16 +40,17 @@ class MeshChannels {
   }
   std::vector<MeshChannel>::const_iterator begin() const noexcept { return channels_.begin(); }
   std::vector<MeshChannel>::const_iterator end() const noexcept { return channels_.end(); }
+  /// Returns the index of the channel of this name, or none.
   std::optional<int> find(std::string_view name) const noexcept;
 
-  /// Over the values that tetrahedra use.
+  /// Returns the statistics of a channel, over the values that tetrahedra use.
   const VolumeStatistics& statistics(int channel) const noexcept {
     return statistics_[static_cast<std::size_t>(channel)];
   }
-  /// Tetrahedra that are vacuum because of NaN.
-  std::size_t vacuum() const noexcept { return vacuum_; }
+  /// Returns the number of tetrahedra that are vacuum because of NaN.
+  std::size_t vacuum_count() const noexcept { return vacuum_; }
 
-  /// The value of a channel at a point, or in a tetrahedron where it is centred there, in double.
+  /// Returns the value of a channel at a point, or in a tetrahedron if the channel is cell-centred.
   double value(int channel, std::size_t index) const;
 
  private:

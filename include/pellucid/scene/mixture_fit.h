@@ -6,7 +6,7 @@
 
 namespace pellucid {
 
-/// Points with weights >= 0, as the bins of a histogram.
+/// Points with weights >= 0, such as the bins of a histogram.
 struct WeightedPoints {
   int dimensions = 1;
   std::vector<double> coordinates;  ///< `dimensions` numbers per point, finite
@@ -15,36 +15,40 @@ struct WeightedPoints {
   std::size_t count() const noexcept { return weights.size(); }
 };
 
-/// One of the normal distributions of a mixture.
+/// One normal distribution of a mixture.
 struct NormalComponent {
-  double weight = 0;  ///< share of all, in [0, 1]
+  double weight = 0;  ///< fraction of the total weight, in [0, 1]
   std::vector<double> mean;
   std::vector<std::vector<double>> covariance;
 };
 
+/// A mixture of normal distributions and the quality of its fit.
 struct MixtureFit {
   std::vector<NormalComponent> components;  ///< the heaviest first
-  double log_likelihood = 0;                ///< of all points, each as often as its weight says
+  double log_likelihood = 0;  ///< of all points, each counted as often as its weight says
   /// Bayesian information criterion (Schwarz 1978): parameters · ln(sum of weights) - 2 ·
-  /// log_likelihood; the smaller the better.
-  double information = 0;
+  /// log_likelihood. Smaller is better.
+  double bic = 0;
 };
 
-/// The most components of a mixture.
-inline constexpr int most_components = 16;
+/// The largest number of components of a mixture.
+inline constexpr int max_components = 16;
 
-/// A mixture of normal distributions fitted by expectation and maximisation (Dempster, Laird and
-/// Rubin 1977), with full covariances of which no axis has a variance below `floor` (one number per
-/// dimension, > 0, as the square of a bin's width: what is narrower is not seen). The start is
-/// spread over the points in eight fixed ways, of which the likeliest after a few steps is taken
-/// on: the same points give the same fit. Components that no point is left to are dropped. Throws
-/// Error where there is no point of positive weight, sizes do not agree, a number is not finite, or
-/// `components` is not from 1 to most_components.
+/// Fits a mixture of normal distributions with full covariances by expectation maximisation
+/// (Dempster, Laird and Rubin 1977).
+///
+/// No axis of a covariance has a variance below `floor` (one number > 0 per dimension, for example
+/// the square of a bin's width). The fit starts from eight fixed initialisations and continues with
+/// the likeliest after a few steps, so that equal points give an equal fit. Components that lose
+/// all points are dropped.
+///
+/// Throws Error if no point has a positive weight, sizes do not agree, a number is not finite, or
+/// `components` is not in [1, max_components].
 MixtureFit fit_mixture(const WeightedPoints& points, int components,
                        const std::vector<double>& floor);
 
-/// The fit of the least information criterion with `least` … `most` components. Throws Error as
-/// above.
+/// Returns the fit with the smallest information criterion among those with `least` … `most`
+/// components. Throws Error as above.
 MixtureFit fit_mixture(const WeightedPoints& points, int least, int most,
                        const std::vector<double>& floor);
 

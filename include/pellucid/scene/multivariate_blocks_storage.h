@@ -10,27 +10,29 @@
 
 namespace pellucid {
 
-/// Makes and owns what a multivariate transfer function does in the blocks of its channels: once a
-/// frame, from the blocks' ranges alone. 12 bytes a block of 8³ cells, 16 with what is smooth.
+/// Builds and owns, for each block of the channels, the primitives of a multivariate transfer
+/// function that matter there. It is built once per frame from the block ranges alone: 12 bytes per
+/// block of 8³ cells, 16 with the smoothness of the block.
 class MultivariateBlocksStorage {
  public:
   MultivariateBlocksStorage() = default;
-  /// A primitive is left out of a block where it, with all that are left out there, stays below
-  /// `negligible` (extinction, > 0) whatever the data are in the box of the channels' ranges; a
-  /// block where no primitive is left and no table absorbs is skipped. In parallel where it is told
-  /// how. `channels` must outlive the views.
+  /// Classifies all blocks, in parallel if `parallel` is given. `channels` must outlive the views.
+  ///
+  /// A primitive is left out of a block if it and all others left out there together stay below
+  /// `negligible` (an extinction > 0) for all data in the box of the channels' ranges. A block
+  /// without primitives and without an absorbing table is skipped.
   MultivariateBlocksStorage(const Channels& channels,
                             const MultivariateTransferFunction& transfer_function,
                             double negligible, const ParallelFor& parallel = {});
 
-  /// Finds out which blocks are smooth, for the channels and the function that this was made of.
+  /// Finds the smooth blocks, for the same channels and function that this object was made from.
   void find_smooth(const Channels& channels, const MultivariateTransferFunction& transfer_function,
                    const ParallelFor& parallel = {});
 
   MultivariateBlocks view() const noexcept {
     return {records_, {classes_.data()}, primitives_.data(), negligible_};
   }
-  /// None is before find_smooth().
+  /// Returns the smooth blocks; there are none before find_smooth().
   SmoothChannels smooth() const noexcept { return {waves_.data(), longest_step_}; }
 
  private:
@@ -42,7 +44,7 @@ class MultivariateBlocksStorage {
   double longest_step_ = 0;
 };
 
-/// The fields of the channels as kernels see them. `channels` must outlive the view.
+/// Returns the fields of the channels as kernels use them. `channels` must outlive the view.
 MultichannelGrid multichannel_grid(const Channels& channels);
 
 }  // namespace pellucid

@@ -8,28 +8,28 @@
 
 namespace pellucid {
 
-/// A Gaussian primitive over some of the channels (Kniss et al. 2003): its extinction is
-/// peak · e^(-|K (v - c)|²), v the values of its channels. There is no factor 1/2.
+/// A Gaussian primitive over some of the channels (Kniss et al. 2003). Its extinction is peak ·
+/// e^(-|K (v - c)|²) with the values v of its channels. There is no factor 1/2.
 struct GaussianPrimitive {
-  std::vector<int> channels;                ///< which of them it looks at, each once
-  std::vector<double> center;               ///< c, one number for each of its channels
-  std::vector<std::vector<double>> matrix;  ///< K by rows: 1 … 8 rows, a column per channel; any
-                                            ///<   rank
-  double extinction = 0;                    ///< the peak, 1/length in world units, >= 0
-  Rgb<double> color{};                      ///< linear RGB of the particles, straight, >= 0
+  std::vector<int> channels;                ///< indices of its channels, each once
+  std::vector<double> center;               ///< c, one number per channel of the primitive
+  std::vector<std::vector<double>> matrix;  ///< K by rows: 1 … 8 rows, one column per channel; any
+                                            ///< rank
+  double extinction = 0;  ///< the peak, 1/length in world units, >= 0
+  Rgb<double> color{};    ///< linear RGB of the particles, not premultiplied, >= 0
 };
 
-/// K of a primitive whose axes are those of the channels: the extinction falls to 1/e of its peak
-/// at a distance of `width` along an axis. An infinite width does not look at that channel. Throws
-/// Error where a width is not positive.
-std::vector<std::vector<double>> matrix_of_widths(const std::vector<double>& widths);
-/// The same after a rotation: row i of `axes` is the direction along which width i is measured; the
-/// rows must be orthonormal to within 1e-6. Throws Error where they are not.
-std::vector<std::vector<double>> matrix_of_widths(const std::vector<double>& widths,
-                                                  const std::vector<std::vector<double>>& axes);
-/// K of the normal distribution of this covariance Σ, K^T K = Σ^-1 / 2: widths are √2 standard
-/// deviations. Throws Error where Σ is not symmetric and positive definite.
-std::vector<std::vector<double>> matrix_of_covariance(
+/// Returns the K of a primitive whose axes are the channels: the extinction falls to 1/e of its
+/// peak at distance `width` along an axis. An infinite width ignores that channel. Throws Error if
+/// a width is not positive.
+std::vector<std::vector<double>> matrix_from_widths(const std::vector<double>& widths);
+/// Returns the same after a rotation: width i is measured along row i of `axes`. Throws Error if
+/// the rows are not orthonormal to within 1e-6.
+std::vector<std::vector<double>> matrix_from_widths(const std::vector<double>& widths,
+                                                    const std::vector<std::vector<double>>& axes);
+/// Returns the K of the normal distribution with covariance Σ: K^T K = Σ^-1 / 2, so that widths are
+/// √2 standard deviations. Throws Error if Σ is not symmetric and positive definite.
+std::vector<std::vector<double>> matrix_from_covariance(
     const std::vector<std::vector<double>>& covariance);
 
 /// A piecewise-linear transfer function of one channel.
@@ -38,15 +38,14 @@ struct ChannelTransferFunction {
   TransferFunction function;
 };
 
-/// A transfer function of several variables, owning its terms: Gaussian primitives and
-/// piecewise-linear functions of single channels, summed (transfer/multivariate.h).
+/// A transfer function of several variables. It owns its terms, Gaussian primitives and
+/// piecewise-linear functions of single channels, and is their sum (transfer/multivariate.h).
 class MultivariateTransferFunction {
  public:
-  /// Throws Error where there is no term at all, there are more than 256 primitives, the
-  /// number of channels is not from 1 to 8, a term
-  /// looks at a channel that is not there or twice at one, sizes do not agree, a number is not
-  /// finite or beyond ±2.1e37, an extinction or color is negative, or a piecewise-linear term is
-  /// an approximation (relative_error() > 0).
+  /// Throws Error if there is no term, there are more than 256 primitives, the number of channels
+  /// is not in [1, 8], a term refers to a missing channel or to one channel twice, sizes do not
+  /// agree, a number is not finite or beyond ±2.1e37, an extinction or color is negative, or a
+  /// piecewise-linear term is an approximation (relative_error() > 0).
   MultivariateTransferFunction(int channels, std::vector<GaussianPrimitive> primitives,
                                std::vector<ChannelTransferFunction> tables = {});
   // The view points into the object.
@@ -56,11 +55,11 @@ class MultivariateTransferFunction {
   int channels() const noexcept { return channels_; }
   const std::vector<GaussianPrimitive>& primitives() const noexcept { return primitives_; }
   const std::vector<ChannelTransferFunction>& tables() const noexcept { return tables_; }
-  /// What kernels use. Valid while this object lives.
-  Multivariate<double> view() const noexcept;
-  /// Largest color component: a bound on the radiance behind any point.
+  /// Returns the view that kernels use. Valid while this object lives.
+  MultivariateTransfer<double> view() const noexcept;
+  /// Returns the largest color component: an upper bound on the radiance along any ray.
   double largest_color() const noexcept { return largest_color_; }
-  /// The sum of the largest extinctions of all terms.
+  /// Returns the sum of the largest extinctions of all terms.
   double largest_extinction() const noexcept { return largest_extinction_; }
 
  private:

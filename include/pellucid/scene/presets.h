@@ -12,30 +12,32 @@
 
 namespace pellucid {
 
-/// A transfer function for a kind of data, that gives a good picture at once; a point to begin
-/// from.
+/// A transfer function for one kind of data, as a starting point.
 struct Preset {
-  std::string_view name;         ///< as "ct-bone"
-  std::string_view description;  ///< one line, for people
-  /// In Hounsfield units and millimetres; else relative to the data's range and the mean chord of
-  /// its box.
+  std::string_view name;         ///< such as "ct-bone"
+  std::string_view description;  ///< one line, shown to the user
+  /// Whether values are Hounsfield units and lengths millimetres. Otherwise the preset is relative
+  /// to the data's range and the mean chord of the data's box.
   bool hounsfield;
 };
 
-/// All there are, in the order in which they are listed.
+/// Returns all presets in the order in which they are listed.
 std::span<const Preset> presets() noexcept;
-/// None where there is no such name.
+/// Returns the preset of this name, or null.
 const Preset* find_preset(std::string_view name) noexcept;
 
-/// The preset's points for these data. Those in Hounsfield units do not look at the data. Of the
-/// others the first value is that below which 0.1 % of the data lie, the last that above which 0.1
-/// % do, and extinctions are such that what is between has a given optical depth over the mean
-/// chord (4 · volume / surface) of the data's box. With `range` the first and the last point of any
-/// of them are moved to these values. Colors are made from sRGB. Numbers of relative presets are
-/// rounded to readable ones. Throws Error where there is no such preset, or the range is not two
-/// ascending numbers up to 1e30.
+/// Returns the transfer function of a preset for these data.
+///
+/// Presets in Hounsfield units do not depend on the data. For the others the first value has 0.1 %
+/// of the data below it, the last value has 0.1 % above it, and the extinctions give a fixed
+/// optical depth over the mean chord (4 · volume / surface) of the data's box; their numbers are
+/// rounded to readable ones. `range` moves the first and the last point of any preset to these
+/// values. Colors are made from sRGB.
+///
+/// Throws Error if there is no such preset, or the range is not two ascending numbers up to 2.1e37.
 TransferFunction make_preset(std::string_view name, const Volume& volume,
                              const std::optional<std::array<double, 2>>& range = {});
+/// Returns the same for a mesh.
 TransferFunction make_preset(std::string_view name, const MeshChannels& mesh,
                              const std::optional<std::array<double, 2>>& range = {});
 

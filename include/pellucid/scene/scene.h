@@ -20,6 +20,7 @@ namespace pellucid {
 
 enum class Projection { perspective, orthographic };
 
+/// Where the picture is taken from, in world space.
 struct Camera {
   Projection projection = Projection::perspective;
   Vec3<double> position{0, 0, 1};
@@ -33,15 +34,18 @@ struct ImageSize {
   int width = 512, height = 512;
 };
 
-/// Checks the camera and builds the frame that makes rays. Throws Error (position equal to the
-/// focal point, up parallel to the view, angle or scale out of range, sizes not in [1, 65536]).
+/// Checks the camera and returns the frame that makes rays. Throws Error if the position equals the
+/// focal point, up is parallel to the view direction, the angle or scale is out of range, or a size
+/// is not in [1, 65536].
 CameraFrame<double> make_camera_frame(const Camera& camera, ImageSize size);
 
-/// exact: the integral of the reconstructed data. The others are here for comparison,
-/// docs/explanation/theory.md says which text gives each its name. Through a grid they march at a
-/// fixed step, all but homogeneous, average and partial; preintegrated is for one volume, kniss and
-/// gaussian are for channels. Through a mesh they make one segment of each tetrahedron:
-/// homogeneous, average, partial and linear, and for Gaussians kniss and gaussian.
+/// How rays are integrated. `exact` computes the integral of the reconstructed data. The other
+/// methods are there for comparison; docs/explanation/theory.md names their sources.
+///
+/// - Through a grid all of them but homogeneous, average and partial march at a fixed step;
+///   preintegrated needs a single volume, kniss and gaussian need channels.
+/// - Through a mesh homogeneous, average, partial and linear, and for Gaussians kniss and gaussian,
+///   compute one segment per tetrahedron.
 enum class Method {
   exact,
   rectangle,
@@ -57,45 +61,48 @@ enum class Method {
   average,
   partial
 };
+/// Returns the name of a method as in scene files.
 std::string_view method_name(Method method) noexcept;
+/// Returns the method of this name, or none.
 std::optional<Method> method_from_name(std::string_view name) noexcept;
 
-/// Limits of Integration::step. Below the smaller one a frame would take days, and in a large
-/// volume the samples of a ray could no longer be told apart.
+/// Limits of Integration::step. Below the smaller one a frame takes days, and the samples of a ray
+/// through a large volume cannot be told apart.
 inline constexpr double smallest_step = 1e-4;
 inline constexpr double largest_step = 1e6;
-/// Limit of Scene::samples.
+/// Upper limit of Scene::samples.
 inline constexpr int largest_samples = 64;
 
-/// Limits of Integration::tolerance. Images hold binary32, whose rounding next to 1 is 6e-8.
+/// Limits of Integration::tolerance. Images hold binary32, whose rounding error next to 1 is 6e-8.
 inline constexpr double smallest_tolerance = 1e-7;
 inline constexpr double largest_tolerance = 1;
-/// Half a step of 8 bits and better.
+/// Half of a step of 8 bits.
 inline constexpr double default_tolerance = 1.0 / 512;
 
+/// How a scene is integrated, and how accurately.
 struct Integration {
   Method method = Method::exact;
   Precision precision = Precision::automatic;
-  double step = 0.5;  ///< of the methods that march, in voxels (Volume::voxel_size)
-  /// How far a pixel of the exact method may be from the integral, in each channel of premultiplied
-  /// linear RGBA. render() throws Error where it is beyond the limits above.
+  double step = 0.5;  ///< of the marching methods, in voxels (Volume::voxel_size)
+  /// Largest error of a pixel of the exact method, in each channel of premultiplied linear RGBA.
+  /// render() throws Error if it is outside of the limits above.
   double tolerance = default_tolerance;
   Grade grade = Grade::estimated;
 
-  /// Takes the tolerance nearest to `wanted` that is within the limits, and returns it. Throws
-  /// Error where `wanted` is not a positive number.
+  /// Sets the tolerance to `wanted`, clamped to the limits, and returns it. Throws Error if
+  /// `wanted` is not a positive number.
   double set_tolerance(double wanted);
 };
 
-/// One volume with its transfer function, or several variables with a function of them all, seen by
-/// a camera. Of a mesh: its channels with either function.
+/// A volume with its transfer function, several channels with a multivariate one, or a mesh with
+/// either, as seen by a camera.
 struct Scene {
   std::shared_ptr<const Volume> volume;
   std::shared_ptr<const TransferFunction> transfer_function;
-  /// In place of the two above.
+  /// Replaces `volume` and `transfer_function`.
   std::shared_ptr<const Channels> channels;
   std::shared_ptr<const MultivariateTransferFunction> multivariate;
-  /// In place of `volume` or `channels`.
+  /// Replaces `volume` or `channels`.
   std::shared_ptr<const MeshChannels> mesh;
   Camera camera;
   ImageSize size;
@@ -105,23 +112,25 @@ struct Scene {
   std::optional<Rgb<double>> background;  ///< linear; none: the image stays transparent
 };
 
-/// Throws Error where neither a volume with a transfer function nor channels with a multivariate
-/// one nor a mesh with either are there, or more than these, or the function sees another number of
-/// channels.
+/// Throws Error unless the scene has exactly one of: a volume with a transfer function, channels
+/// with a multivariate one, a mesh with either. Also throws if the function expects another number
+/// of channels.
 void check_data(const Scene& scene);
-/// The volume whose grid the rays cross. Of a scene that check_data() accepts, as all below, and
-/// that has no mesh.
+/// Returns the volume whose grid the rays cross. The scene must have passed check_data() and have
+/// no mesh.
 const Volume& grid_volume(const Scene& scene) noexcept;
-/// The corners of a box around the data: that of the grid, or one along the world's axes of a mesh.
+/// Returns the corners of a box around the data: the grid's own box, or for a mesh a box along the
+/// world's axes. The scene must have passed check_data().
 std::array<Vec3<double>, 8> world_corners(const Scene& scene) noexcept;
-/// Largest color component of the transfer function.
+/// Returns the largest color component of the transfer function. The scene must have passed
+/// check_data().
 double largest_color(const Scene& scene) noexcept;
 
-/// Throws Error where the samples of a pixel are beyond their limits, or what the method goes by
-/// is: the tolerance of the exact one, the step of the others.
+/// Throws Error if the number of samples per pixel, the tolerance of the exact method, or the step
+/// of another method is outside of its limits.
 void check_integration(const Scene& scene);
-/// Throws Error for a method that is not for such data or such a function. Of a scene that
-/// check_data() accepts.
+/// Throws Error if the method does not support the scene's data or transfer function. The scene
+/// must have passed check_data().
 void check_method(const Scene& scene);
 
 }  // namespace pellucid

@@ -7,22 +7,23 @@
 
 namespace pellucid {
 
-/// IEC 61966-2-1: the sRGB signal of a display, 0 to 1, to linear light.
-inline double linear_light(double signal) {
+/// Returns the linear light of an sRGB signal in [0, 1] (IEC 61966-2-1).
+inline double srgb_to_linear(double signal) {
   return signal <= 0.04045 ? signal / 12.92 : std::pow((signal + 0.055) / 1.055, 2.4);
 }
 
-/// The way back. Its two branches meet to within 3e-8, for the standard's constants are rounded.
-inline double srgb_signal(double light) {
+/// Returns the sRGB signal of linear light. The two branches differ by up to 3e-8 where they meet,
+/// because the standard's constants are rounded.
+inline double linear_to_srgb(double light) {
   return light <= 0.0031308 ? 12.92 * light : 1.055 * std::pow(light, 1 / 2.4) - 0.055;
 }
 
-inline Rgb<double> linear_light(const Rgb<double>& signal) {
-  return {linear_light(signal.r), linear_light(signal.g), linear_light(signal.b)};
+inline Rgb<double> srgb_to_linear(const Rgb<double>& signal) {
+  return {srgb_to_linear(signal.r), srgb_to_linear(signal.g), srgb_to_linear(signal.b)};
 }
 
-inline Rgb<double> srgb_signal(const Rgb<double>& light) {
-  return {srgb_signal(light.r), srgb_signal(light.g), srgb_signal(light.b)};
+inline Rgb<double> linear_to_srgb(const Rgb<double>& light) {
+  return {linear_to_srgb(light.r), linear_to_srgb(light.g), linear_to_srgb(light.b)};
 }
 
 }  // namespace pellucid

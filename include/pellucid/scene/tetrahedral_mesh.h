@@ -12,66 +12,79 @@
 
 namespace pellucid {
 
-/// What is known of a mesh before it is rendered.
+/// Properties of a mesh that are known before it is rendered.
 struct MeshStatistics {
-  std::size_t points = 0;   ///< that tetrahedra use
-  std::size_t orphans = 0;  ///< that none uses
+  std::size_t points = 0;         ///< used by tetrahedra
+  std::size_t unused_points = 0;  ///< used by none
   std::size_t tetrahedra = 0;
   std::size_t boundary_faces = 0;
-  std::size_t flat = 0;  ///< tetrahedra without volume
-  /// Pairs of tetrahedra on the same side of the face that they share.
+  std::size_t degenerate = 0;  ///< tetrahedra without volume
+  /// Pairs of tetrahedra on the same side of their shared face.
   std::size_t folded_faces = 0;
-  double volume = 0;     ///< of all tetrahedra, world units cubed
-  double mean_edge = 0;  ///< length of an edge, the mean over the tetrahedra's
+  std::size_t cells = 0;  ///< cells of the source that the tetrahedra were cut from
+  /// Cells with a tetrahedron at such a face: they overlap themselves or a neighbor.
+  std::size_t overlapping_cells = 0;
+  std::int32_t first_overlapping_cell = -1;  ///< its number; -1: none
+  double volume = 0;                         ///< sum over all tetrahedra, world units cubed
+  double mean_edge = 0;                      ///< mean edge length over the tetrahedra
 };
 
-/// Tetrahedra that share points, and who lies beside whom: what rays walk through. Immutable once
-/// made; copies are not, share it.
+/// Tetrahedra that share points, with their neighbors: the mesh that rays walk through. Immutable
+/// once made; not copied, but shared.
 ///
-/// Where points fall on a ray or faces along it, a ray is in exactly one of the cells that touch
-/// there: it is thought of as moved aside by less than any number (traverse/mesh_walk.h). Meshes
-/// need not be convex nor connected. Tetrahedra may be given in either orientation.
+/// Where points lie on a ray or faces along it, the ray is in exactly one of the cells that touch
+/// there: it is treated as displaced by an infinitesimal amount (traverse/mesh_walk.h). Meshes need
+/// not be convex nor connected. Tetrahedra may be given in either orientation.
 ///
-/// Rays are fastest where tetrahedra, and points, that lie together stand together, as those of
-/// cut_into_tetrahedra() do; their order changes nothing else beyond rounding.
+/// Rays are fastest if tetrahedra and points that are neighbors in space are neighbors in memory,
+/// as after cut_into_tetrahedra(). Their order changes nothing else beyond rounding.
 class TetrahedralMesh {
  public:
   struct Description {
     std::vector<Vec3<double>> points;                     ///< world
     std::vector<std::array<std::int32_t, 4>> tetrahedra;  ///< indices of points
     std::string name;                                     ///< for messages
-    /// The numbers by which messages and point_number() call the points; empty: as they stand.
+    /// Numbers by which messages and point_number() refer to the points; empty: their indices.
     std::vector<std::int32_t> point_numbers{};
+    /// The cell that each tetrahedron was cut from, from 0 on, for the statistics; empty: each is
+    /// one itself.
+    std::vector<std::int32_t> cells{};
+    /// The numbers of these cells; empty: as they are counted.
+    std::vector<std::int32_t> cell_numbers{};
   };
 
-  /// Throws Error where there is no tetrahedron, an index is out of range or twice in one
-  /// tetrahedron, the numbers of points are not one for each, a point that is used is not finite or
+  /// Throws Error if there is no tetrahedron, an index is out of range or twice in one tetrahedron,
+  /// there is not one number per point, a cell is out of range, a used point is not finite or
   /// beyond ±2.1e37, there are more than 2^28 tetrahedra, a face belongs to more than two of them,
-  /// one stands twice, or none is at the boundary. Tetrahedra that overlap are counted where they
-  /// share a face (MeshStatistics::folded_faces); rays that find themselves in two of them say that
-  /// they do not know.
+  /// a tetrahedron is a duplicate, or none is at the boundary.
+  ///
+  /// Overlapping tetrahedra are counted if they share a face (MeshStatistics::folded_faces). Rays
+  /// that are in two tetrahedra at once report that their error is unknown.
   explicit TetrahedralMesh(Description description, const ParallelFor& parallel = {});
   TetrahedralMesh(const TetrahedralMesh&) = delete;
   TetrahedralMesh& operator=(const TetrahedralMesh&) = delete;
 
   const std::string& name() const noexcept { return name_; }
   const std::vector<Vec3<double>>& points() const noexcept { return points_; }
-  /// In the order in which they were given, the points of each in ascending order.
+  /// Returns the tetrahedra in the order in which they were given, the points of each in ascending
+  /// order.
   const std::vector<Tetrahedron>& tetrahedra() const noexcept { return tetrahedra_; }
-  /// What a point is called where it comes from.
+  /// Returns the number of a point in its source.
   std::int32_t point_number(std::size_t point) const noexcept;
-  /// "the tetrahedron of points 3, 7, 8 and 12", by those numbers.
-  std::string named(std::size_t tetrahedron) const;
+  /// Returns "the tetrahedron of points 3, 7, 8 and 12", with the points' numbers in the source.
+  std::string describe(std::size_t tetrahedron) const;
   const MeshStatistics& statistics() const noexcept { return statistics_; }
   const Box<double>& bounds() const noexcept { return bounds_; }
-  /// What rays need, and the numbers of points, in memory: bytes.
-  std::size_t memory() const noexcept;
+  /// Returns the bytes of memory that the rays' view and the point numbers take.
+  std::size_t memory_bytes() const noexcept;
 
-  /// The view that rays walk through. Valid while this object lives.
+  /// Returns the view that rays walk through. Valid while this object lives.
   Tetrahedra view() const noexcept;
 
  private:
   void measure(const ParallelFor& parallel);
+  void count_overlapping_cells(const Description& description);
+  double six_volumes_of(std::size_t tetrahedron) const;
 
   std::string name_;
   std::vector<Vec3<double>> points_;

@@ -7,58 +7,58 @@
 
 namespace pellucid {
 
-/// A piecewise-linear transfer function over the data's physical values, owning its points.
+/// A piecewise-linear transfer function of the data's physical values. It owns its points.
 class TransferFunction {
  public:
   struct Point {
     double value = 0;       ///< in the data's unit
     double extinction = 0;  ///< 1/length in world units
-    Rgb<double> color{};    ///< linear RGB of the particles, straight, >= 0
+    Rgb<double> color{};    ///< linear RGB of the particles, not premultiplied, >= 0
   };
 
-  /// Throws Error where there is no point, values do not ascend (two equal ones are a jump, three
-  /// are an error), a number is not finite or beyond ±2.1e37 (a sixteenth of the largest float), or
-  /// an extinction or color is negative.
+  /// Throws Error if there is no point, values do not ascend (two equal ones are a jump, three an
+  /// error), a number is not finite or beyond ±2.1e37 (a sixteenth of the largest float), or an
+  /// extinction or color is negative.
   explicit TransferFunction(std::vector<Point> points);
-  /// One that stands for another whose extinction τ it does not meet exactly: |ln(τ̂/τ)| <=
-  /// relative_error everywhere, both zero at the same values, and no channel of the color further
-  /// off than color_error. Throws as above, and where an error is negative or not finite.
+  /// Makes an approximation τ̂ of a function with extinction τ: |ln(τ̂/τ)| <= relative_error
+  /// everywhere, both are zero at the same values, and no color channel differs by more than
+  /// color_error. Throws Error as above, or if an error is negative or not finite.
   TransferFunction(std::vector<Point> points, double relative_error, double color_error = 0);
 
   const std::vector<Point>& points() const noexcept { return points_; }
-  /// The view that kernels use, in float or double. Valid while this object lives.
+  /// Returns the view that kernels use, in float or double. Valid while this object lives.
   template <class T>
   PiecewiseLinear<T> view() const noexcept;
-  /// Largest color component: a bound on the radiance behind any point.
+  /// Returns the largest color component: an upper bound on the radiance along any ray.
   double largest_color() const noexcept { return largest_color_; }
 
-  /// A bound on |ln(τ̂/τ)|, as given to the constructor.
+  /// Returns the bound on |ln(τ̂/τ)| given to the constructor.
   double relative_error() const noexcept { return relative_error_; }
-  /// A bound on how far any channel of a color is off, as given to the constructor.
+  /// Returns the bound on the error of any color channel given to the constructor.
   double color_error() const noexcept { return color_error_; }
-  /// How far any channel of a pixel can be off because of relative_error() = ρ and color_error() =
-  /// δ:
+  /// Returns an upper bound on the error of any channel of a pixel because of relative_error() = ρ
+  /// and color_error() = δ:
   ///
-  ///   max(ρ C/2 + δ, ρ/e),  C = max(largest_color(), background)
+  ///   max(ρ C/2 + δ, ρ/e),  C = max(largest_color(), background),
   ///
-  /// and 0 for exact functions. `background` is the largest component of what lies behind the data.
+  /// and 0 for exact functions. `background` is the largest component of the background color.
   ///
-  /// Proof. Let s run along a ray, c in [0,C] be the color there, and for λ from 0 to 1
-  /// τ_λ = τ^(1-λ) τ̂^λ, m_λ its optical depth, T(s) its transparency up to s, and X(s) in [0,C] the
-  /// radiance that arrives from s on: X' = τ_λ (X - c). The derivative Y of X by λ obeys
-  /// Y' = τ_λ Y + τ_λ θ (X - c), θ = ln(τ̂/τ), and is 0 at the far end; hence, in front,
-  /// |Y| = |∫ T τ_λ θ (c - X) ds| <= ρ ∫ T τ_λ |c - X| ds. From
+  /// Proof. Let s run along a ray, c in [0,C] be the color there, and for λ from 0 to 1 let τ_λ =
+  /// τ^(1-λ) τ̂^λ, m_λ its optical depth, T(s) its transparency up to s, and X(s) in [0,C] the
+  /// radiance of the remainder of the ray from s on: X' = τ_λ (X - c). The derivative Y of X by λ
+  /// satisfies Y' = τ_λ Y + τ_λ θ (X - c), θ = ln(τ̂/τ), and is 0 at the far end. Hence, at the
+  /// front, |Y| = |∫ T τ_λ θ (c - X) ds| <= ρ ∫ T τ_λ |c - X| ds. From
   ///   (T X (C - X))' = -T τ_λ ((X - c)² + c (C - c))
-  /// follows ∫ T τ_λ (X - c)² ds <= X(0) (C - X(0)) <= C²/4, and with ∫ T τ_λ ds <= 1 and the
-  /// inequality of Cauchy and Schwarz |Y| <= ρ C/2. Integrated over λ: |X̂ - X| <= ρ C/2. Opacity is
-  /// 1 - e^-m, and |dm_λ/dλ| <= ρ m_λ: it changes by at most ρ max m e^-m = ρ/e. Colors that
-  /// are off are put right first: with the same τ they change X by ∫ T τ (ĉ - c) ds <= δ ∫ T τ ds
-  /// <= δ and no opacity; what is above then holds for the colors ĉ, which are known. ∎
+  /// follows ∫ T τ_λ (X - c)² ds <= X(0) (C - X(0)) <= C²/4. With ∫ T τ_λ ds <= 1 and the
+  /// Cauchy-Schwarz inequality |Y| <= ρ C/2, and integrated over λ: |X̂ - X| <= ρ C/2. Opacity is 1
+  /// - e^-m, and |dm_λ/dλ| <= ρ m_λ: it changes by at most ρ max m e^-m = ρ/e. Errors of colors are
+  /// corrected first: with the same τ they change X by ∫ T τ (ĉ - c) ds <= δ ∫ T τ ds <= δ, and
+  /// leave the opacity unchanged; the rest of the proof then holds for the colors ĉ, which are
+  /// known. ∎
   double approximation_error(double background = 0) const noexcept;
 
-  /// The values, ascending, to which points of different values were rounded by view<float>().
-  /// There float does not follow the function, nor do data that lie at one of them: those want
-  /// view<double>().
+  /// Returns the values, ascending, that view<float>() rounds different control points to. There
+  /// the float view does not follow the function; data at one of these values need view<double>().
   const std::vector<double>& merged_in_float() const noexcept { return merged_in_float_; }
 
  private:

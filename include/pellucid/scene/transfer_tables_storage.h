@@ -9,8 +9,8 @@
 
 namespace pellucid {
 
-/// Owns what is computed from a transfer function once a frame. The function is referred to and
-/// must outlive this; not copied, for the tables refer to it.
+/// Owns the tables that are computed once per frame from a transfer function. It refers to the
+/// function, which must outlive it. Not copyable, because the tables refer to this object.
 class TransferTablesStorage {
  public:
   explicit TransferTablesStorage(const TransferFunction& function)

@@ -8,12 +8,12 @@
 
 namespace pellucid {
 
-/// What a renderer of cells makes of the piece of a ray in one of them, for comparison with the
-/// integral. The data there are linear, the transfer function is seen at one or two places alone: a
-/// control point or a Gaussian that the data pass between them is missed.
-/// docs/explanation/theory.md names the sources.
+/// How a cell renderer treats the part of a ray inside one cell, for comparison with the integral.
+/// The data are linear there, but the transfer function is sampled at one or two positions only:
+/// control points and Gaussians between them are missed. docs/explanation/theory.md names the
+/// sources.
 enum class CellModel {
-  homogeneous,  ///< the material of the data in the middle
+  homogeneous,  ///< the material at the mean of the data
   average,      ///< the mean of extinction and color at both ends
   linear,       ///< extinction and color linear between the ends: Moreland's integral
   partial       ///< the same by a table: partial_segment()
@@ -26,21 +26,22 @@ PELLUCID_HD Material<T> material_of(const PiecewiseLinear<T>& transfer, const T*
   return transfer.evaluate(values[0]);
 }
 template <class T>
-PELLUCID_HD Material<T> material_of(const Multivariate<T>& transfer, const T* values) noexcept {
+PELLUCID_HD Material<T> material_of(const MultivariateTransfer<T>& transfer,
+                                    const T* values) noexcept {
   return transfer.evaluate(values);
 }
 
 }  // namespace detail
 
-/// The segment by a model, from the values of `channels` variables at its front and at its back.
-/// Over smooth data and a smooth function all are of second order in the size of the cells;
-/// asserted in tests/cpu. `psi`: of the model partial alone.
+/// Returns the segment by a model, from the values of `channels` variables at its front and back.
+/// Over smooth data and a smooth function all models are of second order in the cell size; asserted
+/// in tests/cpu. `psi` is used by the model partial only.
 template <class T, class Transfer>
 PELLUCID_HD SegmentResult<T> cell_segment(CellModel model, const PsiTable& psi,
                                           const Transfer& transfer, int channels, const T* front,
                                           const T* back, T length) noexcept {
   if (model == CellModel::homogeneous) {
-    T middle[most_channels];
+    T middle[max_channels];
     for (int c = 0; c < channels; ++c) middle[c] = T(0.5) * front[c] + T(0.5) * back[c];
     return midpoint_segment(detail::material_of(transfer, middle), length);
   }

@@ -4,22 +4,23 @@
 #include "pellucid/segment/constant.h"
 #include "pellucid/transfer/piecewise_linear.h"
 
-/// The classical rules, for comparison: what a sampling renderer does in one step (specification,
-/// 3.1, 3.2). Each sees extinction and color at single points of the step, so that its error
-/// depends on the step and not on the arithmetic. Orders, in n steps over smooth data, asserted in
-/// tests/segment: rectangle and taylor 1; midpoint, trapezoid and simpson 2 (simpson's opacity 4).
+/// The classical rules, for comparison: one step of a sampling renderer (specification, 3.1, 3.2).
+/// Each uses extinction and color at single points of the step, so that its error depends on the
+/// step and not on the arithmetic. Orders in n steps over smooth data, asserted in tests/segment:
+/// rectangle and taylor 1; midpoint, trapezoid and simpson 2 (simpson's opacity 4).
 namespace pellucid {
 
-/// Left rectangle rule with exponential opacity: 1 - exp(-x), x = extinction · length, at the
-/// front.
+/// Returns the left rectangle rule with exponential opacity: 1 - exp(-x), x = extinction · length
+/// at the front.
 template <class T>
 PELLUCID_HD SegmentResult<T> rectangle_segment(const Material<T>& front, T length) noexcept {
   return constant_segment(front.extinction, front.color, length);
 }
 
-/// Max 1995; Weiß 2020, (7) and (10): the exponential to first order, opacity = min(1, x), with
-/// radiance = x · color. Beyond x = 1 the radiance is not limited by the opacity: that is the rule.
-/// Optical depth here is -log(1 - opacity), infinite from x = 1 on, so that the four members agree.
+/// Returns the rule with the exponential to first order (Max 1995; Weiß 2020, (7) and (10)):
+/// opacity = min(1, x), radiance = x · color. Beyond x = 1 the rule does not limit the radiance by
+/// the opacity. The optical depth is -log(1 - opacity), infinite from x = 1 on, so that the four
+/// members are consistent.
 template <class T>
 PELLUCID_HD SegmentResult<T> taylor_segment(const Material<T>& front, T length) noexcept {
   const T x = front.extinction * length;
@@ -27,14 +28,15 @@ PELLUCID_HD SegmentResult<T> taylor_segment(const Material<T>& front, T length) 
   return {-log1p(-opacity), opacity, T(1) - opacity, x * front.color};
 }
 
-/// Midpoint rule: extinction and color in the middle of the step.
+/// Returns the midpoint rule: extinction and color in the middle of the step.
 template <class T>
 PELLUCID_HD SegmentResult<T> midpoint_segment(const Material<T>& middle, T length) noexcept {
   return constant_segment(middle.extinction, middle.color, length);
 }
 
-/// Average extinction and average color of the ends (specification, 3.2). The opacity is exact
-/// where the extinction is linear; the color should have been weighted by it.
+/// Returns the segment with the mean extinction and the mean color of the ends (specification,
+/// 3.2). The opacity is exact for linear extinction; the color should be weighted by the
+/// extinction.
 template <class T>
 PELLUCID_HD SegmentResult<T> average_segment(const Material<T>& front, const Material<T>& back,
                                              T length) noexcept {
@@ -42,15 +44,16 @@ PELLUCID_HD SegmentResult<T> average_segment(const Material<T>& front, const Mat
                           T(0.5) * (front.color + back.color), length);
 }
 
-/// The trapezoid rule for the depth and the color: the same as the average.
+/// Returns the trapezoid rule for depth and color, which is the same as average_segment().
 template <class T>
 PELLUCID_HD SegmentResult<T> trapezoid_segment(const Material<T>& front, const Material<T>& back,
                                                T length) noexcept {
   return average_segment(front, back, length);
 }
 
-/// Simpson's rule for the optical depth, and the color's mean weighted by Simpson's depths. Fourth
-/// order in the opacity; the one color keeps the radiance at second order (specification, 5).
+/// Returns Simpson's rule for the optical depth, with the mean color weighted by Simpson's depths.
+/// The opacity is of fourth order; the single color limits the radiance to second order
+/// (specification, 5).
 template <class T>
 PELLUCID_HD SegmentResult<T> simpson_segment(const Material<T>& front, const Material<T>& middle,
                                              const Material<T>& back, T length) noexcept {

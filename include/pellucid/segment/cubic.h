@@ -8,8 +8,7 @@ namespace pellucid {
 
 namespace detail {
 
-/// The intervals of the table that the data can reach, by the hull; first == last is the usual
-/// case.
+/// The intervals of the table that the data can reach, judged by the hull; usually first == last.
 struct IntervalRange {
   int first, last;
 };
@@ -28,20 +27,20 @@ PELLUCID_HD IntervalRange interval_range(const CubicBernstein<T>& data,
 
 }  // namespace detail
 
-/// The volume rendering integral (particle model) over data that are a cubic along the segment, as
-/// in a trilinear cell, seen through a piecewise-linear transfer function (specification, 3.8).
+/// Integrates the volume rendering integral (particle model) over cubic data, as in a trilinear
+/// cell, through a piecewise-linear transfer function (specification, 3.8).
 ///
-/// Depth, opacity and transparency are exact up to rounding: on each stretch between control values
-/// the extinction is a cubic with known coefficients. Radiance: closed where the color is constant
-/// or the data are linear, else within tolerance · opacity per channel and unit of color, so that
-/// the errors of the segments along a ray sum to at most the tolerance (2.3). The scheme for it is
-/// chosen in cubic_emission(); in grade proved by bounds that are, else where it is a Gauss
-/// panel by measurement.
+/// Depth, opacity and transparency are exact up to rounding: between control values the extinction
+/// is a cubic with known coefficients. The radiance is in closed form if the color is constant or
+/// the data are linear, else within tolerance · opacity per channel and unit of color, so that the
+/// errors of the segments along a ray sum to at most the tolerance (2.3). cubic_piece_segment()
+/// chooses the scheme: with proved bounds in the grade `proved`, else Gauss panels with measured
+/// errors.
 ///
-/// Wanted: length >= 0, tolerance > 0, finite data whose differences are finite. Tolerances down to
-/// 1e-6 (float) and 1e-12 (double) are met on tests/reference_tables/trilinear_cell.csv, asserted
-/// in tests/segment. What rounding adds where data values are large against the table's intervals
-/// is that of their difference: u · max|data| / interval.
+/// Preconditions: length >= 0, tolerance > 0, finite data with finite differences. Tolerances down
+/// to 1e-6 (float) and 1e-12 (double) are met on tests/reference_tables/trilinear_cell.csv,
+/// asserted in tests/segment. If data values are large compared to the table's intervals, rounding
+/// adds the error of their difference: u · max|data| / interval.
 template <class T>
 PELLUCID_HD BoundedSegment<T> integrate_cubic(const CubicBernstein<T>& data, T length,
                                               const PiecewiseLinear<T>& table, T tolerance,
@@ -59,7 +58,7 @@ PELLUCID_HD BoundedSegment<T> integrate_cubic(const CubicBernstein<T>& data, T l
         if (!table.has_extinction(interval, interval)) return;
         const CubicPiece<T> piece =
             make_cubic_piece(data, table, interval, t_begin, t_end, value_begin, value_end);
-        // Behind an opaque front the depth-weighted color will do.
+        // Behind an opaque front the depth-weighted color suffices.
         const bool matters = result.segment.transparency > T(1.0 / 64) * tolerance;
         result = compose(result, cubic_piece_segment(piece, length * (t_end - t_begin),
                                                      matters ? tolerance : T(largest<T>), grade));
@@ -68,7 +67,7 @@ PELLUCID_HD BoundedSegment<T> integrate_cubic(const CubicBernstein<T>& data, T l
   return result;
 }
 
-/// The segment alone, its radiance within `tolerance` by estimate.
+/// Returns the segment only, with the radiance within `tolerance` by estimate.
 template <class T>
 PELLUCID_HD SegmentResult<T> integrate_cubic(const CubicBernstein<T>& data, T length,
                                              const PiecewiseLinear<T>& table,
@@ -76,7 +75,8 @@ PELLUCID_HD SegmentResult<T> integrate_cubic(const CubicBernstein<T>& data, T le
   return integrate_cubic(data, length, table, tolerance, Grade::estimated).segment;
 }
 
-/// The optical depth of integrate_cubic() alone: exact up to rounding, no exponential.
+/// Returns the optical depth of integrate_cubic() only: exact up to rounding, without an
+/// exponential.
 template <class T>
 PELLUCID_HD T optical_depth_cubic(const CubicBernstein<T>& data, T length,
                                   const PiecewiseLinear<T>& table) noexcept {

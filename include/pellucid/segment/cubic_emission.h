@@ -12,8 +12,8 @@ namespace pellucid {
 
 namespace detail {
 
-/// The mean of the share weighted by extinction alone, ∫ s τ / ∫ τ, by the product of Bernstein
-/// forms: ∫ B_i B_j = C(3,i) C(3,j) / (7 C(6,i+j)).
+/// Returns the mean of the share weighted by extinction only, ∫ s τ / ∫ τ, by the product of
+/// Bernstein forms: ∫ B_i B_j = C(3,i) C(3,j) / (7 C(6,i+j)).
 template <class T>
 PELLUCID_HD T depth_weighted_share(const CubicPiece<T>& piece, T mean_extinction) noexcept {
   const T* s = piece.share.b;
@@ -25,7 +25,7 @@ PELLUCID_HD T depth_weighted_share(const CubicPiece<T>& piece, T mean_extinction
          mean_extinction;
 }
 
-/// How far the share is from the line between its ends: |s - line| <= 3 t (1-t) times this
+/// Returns the deviation e of the share from the line between its ends: |s - line| <= 3 t (1-t) e
 /// (specification, equation 17).
 template <class T>
 PELLUCID_HD T deviation_from_line(const CubicBernstein<T>& s) noexcept {
@@ -35,7 +35,7 @@ PELLUCID_HD T deviation_from_line(const CubicBernstein<T>& s) noexcept {
   return max(abs(e1), abs(e2));
 }
 
-/// A mean share and how far it may be from the one weighted by extinction · transparency.
+/// A mean share, and its largest deviation from the mean weighted by extinction · transparency.
 template <class T>
 struct ShareEstimate {
   T share{};
@@ -43,9 +43,9 @@ struct ShareEstimate {
   bool proved = true, panels = false;
 };
 
-/// The mean share of one panel with the cheapest rule whose error, relative to the range of the
-/// share, is at most `tolerance`; false where none is good enough, so that the panel has to be
-/// halved. `error` is relative to the range as well.
+/// Computes the mean share of one panel by the cheapest rule whose error, relative to the range of
+/// the share, is at most `tolerance`. Returns false if there is none; the panel has to be halved.
+/// `error` is relative to the range as well.
 template <class T>
 PELLUCID_HD bool choose_panel(const CubicPiece<T>& part, T length, T depth, T tolerance,
                               Grade grade, ShareEstimate<T>& result) noexcept {
@@ -84,17 +84,17 @@ PELLUCID_HD bool choose_panel(const CubicPiece<T>& part, T length, T depth, T to
          estimated.template operator()<10>() || estimated.template operator()<12>();
 }
 
-/// The mean share by panels from front to back, each halved until a rule suffices. What is left
-/// behind an opaque front takes the color of the last panel. An opaque piece of depth m costs
-/// about log2(m) halvings and, for tolerance ε, ln(1/ε)/4 panels or a few times as many.
+/// Returns the mean share by panels, front to back, each halved until a rule is accurate enough.
+/// The remainder behind an opaque front gets the color of the last panel. An opaque piece of depth
+/// m takes about log2(m) halvings and, for tolerance ε, ln(1/ε)/4 panels or a few times as many.
 template <class T>
 PELLUCID_HD ShareEstimate<T> panels_share(const CubicPiece<T>& piece, T length, T depth,
                                           T tolerance, Grade grade) noexcept {
   const CubicBernstein<T>& s = piece.share;
   // No rule gives more than that; and a transparency below it would never reach zero, because
-  // products of denormal numbers stay where they are.
+  // products of denormal numbers do not decrease.
   tolerance = max(tolerance, T(4 * rounding_unit<T>));
-  // Three quarters for the panels, a fifth for what is left behind.
+  // Three quarters for the panels, a fifth for the remainder.
   const T panel_tolerance = T(0.75) * tolerance;
   T weighted = T(0), error = T(0), opacity = T(0), transparency = T(1);
   T t = T(0), width = T(1);
@@ -118,7 +118,7 @@ PELLUCID_HD ShareEstimate<T> panels_share(const CubicPiece<T>& piece, T length, 
       next_t = t + width;
       if (next_t >= T(1)) break;
       if (transparency * T(5) <= tolerance) {
-        // The rest is within [0,1], as everything is.
+        // The share of the remainder is in [0,1].
         error += transparency;
         break;
       }
@@ -136,8 +136,8 @@ PELLUCID_HD ShareEstimate<T> panels_share(const CubicPiece<T>& piece, T length, 
   return result;
 }
 
-/// The mean of the share weighted by extinction · transparency, to within `tolerance`: the cheapest
-/// of the forms that are good enough. The line is not among those proved.
+/// Returns the mean of the share weighted by extinction · transparency, to within `tolerance`, by
+/// the cheapest form that is accurate enough. The line is not among the proved ones.
 template <class T>
 PELLUCID_HD ShareEstimate<T> emission_share(const CubicPiece<T>& piece, T length, T mean_extinction,
                                             T depth, T tolerance, Grade grade) noexcept {
@@ -170,9 +170,10 @@ PELLUCID_HD ShareEstimate<T> emission_share(const CubicPiece<T>& piece, T length
 
 }  // namespace detail
 
-/// The segment of one piece: depth, opacity and transparency exact up to rounding; radiance =
-/// opacity times a color between those of the two control points, exact where these are equal, else
-/// with an error of at most color_error in each channel, which is within tolerance · opacity.
+/// Returns the segment of one piece. Depth, opacity and transparency are exact up to rounding. The
+/// radiance is opacity times a color between those of the two control points: exact if these are
+/// equal, else with an error of at most color_error in each channel, which is at most tolerance ·
+/// opacity.
 template <class T>
 PELLUCID_HD BoundedSegment<T> cubic_piece_segment(const CubicPiece<T>& piece, T length, T tolerance,
                                                   Grade grade = Grade::estimated) noexcept {

@@ -6,9 +6,9 @@
 
 namespace pellucid {
 
-/// At the nodes of the Gauss-Legendre rule with N nodes on [0,1]: the weight ω_j, the four
+/// Data of the Gauss-Legendre rule with N nodes on [0,1]: at each node the weight ω_j, the four
 /// Bernstein polynomials of degree 3, and their integrals from 0 to the node. A cubic and its
-/// antiderivative at a node are then four products each.
+/// antiderivative at a node then take four products each.
 template <class S, int N>
 struct CubicNodes {
   S weight[N]{}, position[N]{};
@@ -37,12 +37,12 @@ struct CubicNodes {
 template <class T>
 struct PanelSums {
   T weight{};  ///< of extinction · transparency: nearly the opacity
-  T share{};   ///< of (share - middle), weighted alike
+  T share{};   ///< of (share - middle), with the same weights
 };
 
-/// The N-node Gauss rule with the exact optical depth at each node (specification, 3.7, 3.8), for a
-/// cubic share s(t) and the rate (extinction · length) rate_near + rate_change · s: calls
-/// visit(share, weight) for each node.
+/// Calls visit(share, weight) for each node of the N-node Gauss rule with the exact optical depth
+/// at each node (specification, 3.7, 3.8), for a cubic share s(t) and the rate (extinction ·
+/// length) rate_near + rate_change · s.
 template <int N, class T, class Visit>
 PELLUCID_HD void for_each_panel_node(const CubicBernstein<T>& s, T rate_near, T rate_change,
                                      Visit&& visit) noexcept {
@@ -60,7 +60,7 @@ PELLUCID_HD void for_each_panel_node(const CubicBernstein<T>& s, T rate_near, T 
   }
 }
 
-/// Its sums.
+/// Returns the sums over these nodes.
 template <int N, class T>
 PELLUCID_HD PanelSums<T> cubic_panel_sums(const CubicBernstein<T>& s, T rate_near, T rate_change,
                                           T middle) noexcept {
@@ -72,16 +72,16 @@ PELLUCID_HD PanelSums<T> cubic_panel_sums(const CubicBernstein<T>& s, T rate_nea
   return sums;
 }
 
-/// The mean of the share weighted by extinction · transparency, normalised: within the hull of s at
-/// the nodes. 0 where nothing absorbs at the nodes. Its error: panel_error_estimate().
+/// Returns the normalised mean of the share weighted by extinction · transparency: within the hull
+/// of s at the nodes, 0 if nothing absorbs at the nodes. Its error is panel_error_estimate().
 template <int N, class T>
 PELLUCID_HD T cubic_panel_mean(const CubicBernstein<T>& s, T rate_near, T rate_change) noexcept {
   const PanelSums<T> sums = cubic_panel_sums<N>(s, rate_near, rate_change, T(0));
   return select(sums.weight > T(0), sums.share / sums.weight, T(0));
 }
 
-/// The same, not normalised, from the middle of the share's range and the exact opacity: the form
-/// that panel_error_bound() is proved for. May leave the hull.
+/// Returns the same mean without normalisation, measured from the middle of the share's range and
+/// with the exact opacity: the form for which panel_error_bound() is proved. May leave the hull.
 template <int N, class T>
 PELLUCID_HD T cubic_panel_proved_mean(const CubicBernstein<T>& s, T rate_near, T rate_change,
                                       T opacity) noexcept {
@@ -90,16 +90,16 @@ PELLUCID_HD T cubic_panel_proved_mean(const CubicBernstein<T>& s, T rate_near, T
   return select(opacity > T(0), middle + sums.share / opacity, middle);
 }
 
-/// Up to this optical depth panel_error_estimate() was measured.
+/// The largest optical depth for which panel_error_estimate() was measured.
 template <class T>
 inline constexpr scalar_t<T> largest_panel_depth = scalar_t<T>(4);
 
-/// The error of cubic_panel_mean<N>, N = 5, 6, 7, 8, 10 or 12, on a panel of the given optical
-/// depth, relative to the range of the share. An estimate, not a bound: twice the largest error
-/// that random search and hill climbing found (docs/notes/accuracy-segments.md); tests/segment
-/// repeats the search and asserts that it stays below 1/1.7 of this. The powers are those of
-/// theory: the rule is exact to degree 2N-1, and the first term of the exponential's series in the
-/// depth that it misses is j = ⌊(2N-7)/4⌋ + 1, of degree 6 + 4j.
+/// Returns an estimate of the error of cubic_panel_mean<N>, N = 5, 6, 7, 8, 10 or 12, on a panel of
+/// the given optical depth, relative to the range of the share. Not a bound: twice the largest
+/// error that random search and hill climbing found (docs/notes/accuracy-segments.md).
+/// tests/segment repeats the search and asserts that it stays below 1/1.7 of this. The exponents
+/// follow from theory: the rule is exact to degree 2N-1, and the first term that it misses in the
+/// exponential's series in the depth is j = ⌊(2N-7)/4⌋ + 1, of degree 6 + 4j.
 template <int N, class T>
 PELLUCID_HD T panel_error_estimate(T depth) noexcept {
   static_assert((N >= 5 && N <= 8) || N == 10 || N == 12);

@@ -6,10 +6,10 @@
 
 namespace pellucid {
 
-/// A stretch of data that is a cubic of t in [0,1] and lies in one interval of the transfer
-/// function. With the share s(t) in [0,1] of the far control point, extinction and color are
-/// near + s · (far - near). `near` is the control point closer to the data: shares measured from it
-/// keep their precision, and extinction that vanishes there does not cancel.
+/// A stretch of data that is a cubic of t in [0,1] inside one interval of the transfer function.
+/// Extinction and color are near + s · (far - near), with the share s(t) in [0,1] of the far
+/// control point. The near control point is the one closer to the data: shares measured from it
+/// keep their precision, and an extinction that vanishes there does not cancel.
 template <class T>
 struct CubicPiece {
   CubicBernstein<T> share;
@@ -17,15 +17,16 @@ struct CubicPiece {
   const Rgb<T>* color_near = nullptr;
   const Rgb<T>* color_far = nullptr;
 
-  /// The mean extinction: exactly that of the Bernstein coefficients. They may be negative one by
-  /// one (a cubic from 0 to 1 can have a coefficient of 4/3 and be monotone), the mean may not.
+  /// Returns the mean extinction: exactly that of the Bernstein coefficients. Single coefficients
+  /// may be negative (a cubic from 0 to 1 can have a coefficient of 4/3 and be monotone), the mean
+  /// may not.
   PELLUCID_HD T mean_extinction() const noexcept {
     return max(extinction_near + extinction_change * share.mean(), T(0));
   }
 };
 
-/// The piece of `data` on [t_begin,t_end] in the given interval of the table. The values at the
-/// ends are given, because the caller knows them exactly where a control value is crossed.
+/// Returns the piece of `data` on [t_begin,t_end] in the given interval of the table. The caller
+/// passes the values at the ends, because it knows them exactly where a control value is crossed.
 template <class T>
 PELLUCID_HD CubicPiece<T> make_cubic_piece(const CubicBernstein<T>& data,
                                            const PiecewiseLinear<T>& table, int interval, T t_begin,
@@ -50,7 +51,7 @@ PELLUCID_HD CubicPiece<T> make_cubic_piece(const CubicBernstein<T>& data,
     const bool whole = t_begin == T(0) && t_end == T(1);
     const CubicBernstein<T> part = whole ? offset : restrict_to(offset, t_begin, t_end);
     // A cubic with values in [0,1] has coefficients in [-2,3] (those of Chebyshev's T3 are the
-    // extreme ones): the clamp changes only what rounding made of an interval narrower than it.
+    // extreme ones): the clamp only changes rounding errors of very narrow intervals.
     piece.share = {{clamp((value_begin - origin) / change, T(0), T(1)),
                     clamp(part.b[1] / change, T(-2), T(3)), clamp(part.b[2] / change, T(-2), T(3)),
                     clamp((value_end - origin) / change, T(0), T(1))}};

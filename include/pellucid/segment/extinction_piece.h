@@ -10,21 +10,21 @@
 
 namespace pellucid {
 
-/// Where the first piece of a cubic on [0,1] ends: where it leaves [lower, upper], or where it
-/// turns before it does, or at 1.
+/// The end of the first piece of a cubic on [0,1]: where it leaves [lower, upper], or an earlier
+/// extremum, or 1.
 template <class F>
 struct PieceEnd {
   F place;
   mask_t<F> crosses;  ///< whether the piece ends at lower or upper
-  mask_t<F> rising;   ///< at which of them
-  mask_t<F> found;    ///< false: the place was not found to within `close`
+  mask_t<F> rising;   ///< whether it is upper
+  mask_t<F> found;    ///< false: the position was not found to within `close`
 };
 
 namespace detail {
 
-/// The first turn of the cubic f(0) + t (c1 + t (c2 + t c3)) in (0,1) that is further than `close`
-/// from f(0), or 1. As critical_points() in math/cubic_roots.h, without the fused radicand: a turn
-/// may be found where there is none but to rounding.
+/// Returns the first extremum of the cubic f(0) + t (c1 + t (c2 + t c3)) in (0,1) with a value
+/// further than `close` from f(0), or 1. Like critical_points() in math/cubic_roots.h, but without
+/// the fused radicand: rounding may produce an extremum that is not there.
 template <class F>
 F first_turn(F c1, F c2, F c3, F close) noexcept {
   // f' = c1 + 2 c2 t + 3 c3 t².
@@ -39,11 +39,11 @@ F first_turn(F c1, F c2, F c3, F close) noexcept {
 
 }  // namespace detail
 
-/// f(0) lies in [lower, upper], give or take `close`: so far may the data be outside without having
-/// left, and so far from lower or upper where they cross them.
+/// Returns the end of the first piece. f(0) lies in [lower, upper] to within `close`, which is also
+/// the distance outside that does not yet count as left, and the accuracy of crossings.
 ///
-/// Halley's method from the secant of a monotone stretch, in a bracket that always holds the place;
-/// a step that leaves the bracket becomes a bisection. Lanes that are done wait for the others.
+/// Halley's method from the secant of a monotone stretch, in a bracket that always contains the
+/// crossing; a step out of the bracket becomes a bisection. Finished lanes wait for the others.
 template <class F>
 PieceEnd<F> piece_end(const CubicBernstein<F>& f, F lower, F upper, F close,
                       const mask_t<F>& wanted) noexcept {
@@ -53,7 +53,7 @@ PieceEnd<F> piece_end(const CubicBernstein<F>& f, F lower, F upper, F close,
   const F d0 = f.b[1] - f.b[0], d1 = f.b[2] - f.b[1], d2 = f.b[3] - f.b[2];
   const auto turns = leaves & !(((d0 >= F(0)) & (d1 >= F(0)) & (d2 >= F(0))) |
                                 ((d0 <= F(0)) & (d1 <= F(0)) & (d2 <= F(0))));
-  // In powers of the place: the differences are of neighbours.
+  // In powers of the position, from differences of neighboring coefficients.
   const F c1 = F(3) * d0, c2 = F(3) * (d1 - d0), c3 = (d2 - d1) - (d1 - d0);
   F last = f.b[3];
   if (any(turns)) {
@@ -91,11 +91,12 @@ PieceEnd<F> piece_end(const CubicBernstein<F>& f, F lower, F upper, F close,
   return end;
 }
 
-/// A cubic cut in two at a place: both parts on [0,1], by de Casteljau.
+/// The two parts of a cubic cut at a position, both on [0,1].
 template <class F>
 struct CutCubic {
   CubicBernstein<F> front, back;
 };
+/// Cuts a cubic at t, by de Casteljau.
 template <class F>
 CutCubic<F> cut(const CubicBernstein<F>& f, F t) noexcept {
   const F p0 = f.b[0] + t * (f.b[1] - f.b[0]), p1 = f.b[1] + t * (f.b[2] - f.b[1]),
@@ -105,18 +106,19 @@ CutCubic<F> cut(const CubicBernstein<F>& f, F t) noexcept {
   return {{{f.b[0], p0, q0, r}}, {{r, q1, p2, f.b[3]}}};
 }
 
-/// A piece whose data are a cubic in one interval of the extinction, but for its color.
+/// Optical depth and data of a piece: cubic data in one interval of the extinction.
 template <class F>
 struct PieceDepth {
-  F depth;         ///< exact up to rounding: the mean of a linear function is that of the mean
-  F value;         ///< the mean of the data weighted by extinction, exact likewise
-  F lower, upper;  ///< what the data lie between
-  /// What values that colors are looked up by are kept between: those of the piece's own interval,
-  /// whatever is rounded.
+  F depth;         ///< exact up to rounding: the mean of a linear function is its value at the mean
+  F value;         ///< the mean of the data weighted by extinction, also exact up to rounding
+  F lower, upper;  ///< bounds of the data
+  /// Bounds to which values for color look-ups are clamped: those of the piece's own interval,
+  /// despite rounding.
   F color_lower, color_upper;
 };
 
-/// mean + slope · variance / mean extinction is the mean that is weighted by extinction.
+/// Computes the depth, and mean + slope · variance / mean extinction, which is the mean weighted by
+/// extinction.
 template <class F>
 PieceDepth<F> piece_depth(const CubicBernstein<F>& data, const ExtinctionInterval<F>& interval,
                           F length) noexcept {
@@ -139,36 +141,36 @@ PieceDepth<F> piece_depth(const CubicBernstein<F>& data, const ExtinctionInterva
   return piece;
 }
 
-/// What the data of a piece differ by.
+/// Returns the range of a piece's data.
 template <class F>
 in_float_t<F> range_of(const PieceDepth<F>& piece) noexcept {
   return convert<float>(max(piece.upper - piece.lower, F(0)));
 }
 
-/// |E c(v) - c(E v)| <= this, for data between `lower` and `upper` whatever their distribution:
-/// (change of the slope of the color c, in all) · (range of the values) / 4, for a kink at k moves
-/// it by no more than (k - a)(b - k)/(b - a).
+/// Returns an upper bound on |E c(v) - c(E v)| for the color c and data between `lower` and
+/// `upper`, whatever their distribution: (total change of the slope of c) · (range of the values) /
+/// 4, because a kink at k on a range [a, b] contributes at most (k - a)(b - k)/(b - a).
 template <class F>
-in_float_t<F> kinks_of_color(const BinnedTransfer& transfer, F lower, F upper) noexcept {
+in_float_t<F> color_kink_error(const BinnedTransfer& transfer, F lower, F upper) noexcept {
   using Single = in_float_t<F>;
   if (!transfer.bends) return Single(0);
   // The bins' bounds hold for rounded values; their difference does not.
-  const Single bend = color_bend(transfer, convert<float>(lower), convert<float>(upper));
+  const Single bend = color_slope_change(transfer, convert<float>(lower), convert<float>(upper));
   return Single(0.25f) * (bend * convert<float>(max(upper - lower, F(0))));
 }
 
-/// What the colors of a piece differ by.
+/// Bounds on the differences between the colors of a piece.
 template <class F>
 struct ColorSpread {
   F range, slope;  ///< of its interval of the extinction: see ExtinctionInterval
-  F kinks;         ///< kinks_of_color()
+  F kinks;         ///< color_kink_error()
 };
 
-/// The segment of a piece, with the color at the mean of the data weighted by extinction.
+/// Returns the segment of a piece, with the color at the mean of the data weighted by extinction.
 ///
 /// color_error is proved: by (5), range of the colors · opacity · κ(depth) for the weighting by
-/// transparency; and where the color bends, kinks_of_color(). Neither counts rounding. `wanted` and
-/// `known` are as of color_at().
+/// transparency, plus color_kink_error() if the color has kinks. Neither includes rounding.
+/// `wanted` and `known` are those of color_at().
 template <class F>
 BoundedSegment<in_float_t<F>> colored_piece(const PieceDepth<F>& piece,
                                             const ColorSpread<in_float_t<F>>& spread,
@@ -185,14 +187,14 @@ BoundedSegment<in_float_t<F>> colored_piece(const PieceDepth<F>& piece,
   return result;
 }
 
-/// A piece's data as a Gauss panel takes them, which needs digits of their differences only.
+/// The data of a piece for a Gauss panel, which needs only the digits of their differences.
 template <class F>
 struct PiecePanel {
   using Single = in_float_t<F>;
 
-  CubicBernstein<Single> rise;      ///< of the data, from their first value on
+  CubicBernstein<Single> rise;      ///< data minus their first value
   F first;                          ///< that value
-  Single rate_first, rate_by_rise;  ///< extinction · length there, and how it grows with the data
+  Single rate_first, rate_by_rise;  ///< extinction · length there, and its derivative by the data
 };
 
 template <class F>
@@ -208,19 +210,19 @@ PiecePanel<F> piece_panel(const CubicBernstein<F>& data, const ExtinctionInterva
   return panel;
 }
 
-/// How many nodes of a Gauss panel see a piece.
+/// Number of nodes of a Gauss panel on a piece.
 inline constexpr int piece_nodes = 6;
 
-/// How far the mean of a color with a kink, weighted by extinction · transparency, of data that are
-/// a cubic, may be from the sum over the nodes, for a change of slope of 1 over a range of 1, in
-/// units of what kinks_of_color() says. An estimate, not a bound: twice what search found, up
-/// to largest_panel_depth; asserted in packet/test_extinction_piece.
+/// Returns the error, on a Gauss panel, of a color with a kink over cubic data: its mean weighted
+/// by extinction · transparency minus the sum over the nodes, for a change of slope of 1 over a
+/// range of 1, in units of color_kink_error(). An estimate, not a bound: twice the largest error
+/// that search found, up to largest_panel_depth; asserted in packet/test_extinction_piece.
 template <class F>
-F kinks_in_panel(F depth) noexcept {
+F panel_kink_factor(F depth) noexcept {
   return F(0.3f) + F(0.03f) * depth;
 }
 
-/// The largest error that panel_piece() may say, relative to the opacity.
+/// Returns the largest color error of panel_piece(), relative to the opacity.
 template <class F>
 in_float_t<F> panel_piece_error(const PieceDepth<F>& piece,
                                 const ColorSpread<in_float_t<F>>& spread, bool proved) noexcept {
@@ -228,15 +230,15 @@ in_float_t<F> panel_piece_error(const PieceDepth<F>& piece,
   const Single depth = convert<float>(piece.depth);
   const Single of_range =
       proved ? panel_error_bound<piece_nodes>(depth) : panel_error_estimate<piece_nodes>(depth);
-  const Single of_kinks = proved ? Single(1) : kinks_in_panel(depth);
+  const Single of_kinks = proved ? Single(1) : panel_kink_factor(depth);
   return min(min(spread.range, spread.slope * range_of(piece)) * of_range + spread.kinks * of_kinks,
              spread.range);
 }
 
-/// The segment of colored_piece() with a better color, of pieces no deeper than
-/// largest_panel_depth: weighted by extinction · transparency, which is seen at the nodes of a
-/// Gauss panel (specification, 3.8). In grade `proved` that at the mean of the data so weighted, by
-/// panel_error_bound(); else the mean of the nodes' colors, by estimates. color_error is
+/// Returns the segment of colored_piece() with a more accurate color, for pieces no deeper than
+/// largest_panel_depth: weighted by extinction · transparency at the nodes of a Gauss panel
+/// (specification, 3.8). If `proved`, it is the color at the mean of the data with these weights,
+/// with panel_error_bound(); else the mean of the nodes' colors, with estimates. color_error is
 /// panel_piece_error().
 template <class F>
 BoundedSegment<in_float_t<F>> panel_piece(const PieceDepth<F>& piece, const PiecePanel<F>& panel,

@@ -9,8 +9,8 @@ namespace pellucid {
 
 namespace detail {
 
-/// The optical depth from a panel's front to a Gauss node, of extinction · length at all N of them:
-/// by the collocation matrix, exact for extinction of degree < N.
+/// Returns the optical depth from a panel's front to a Gauss node, from extinction · length at all
+/// N nodes, by the collocation matrix: exact for extinction of degree < N.
 template <int N, class T>
 PELLUCID_HD T depth_to_node(const T* rate, int node) noexcept {
   static constexpr auto rule = gauss_legendre<scalar_t<T>, N>();
@@ -19,8 +19,8 @@ PELLUCID_HD T depth_to_node(const T* rate, int node) noexcept {
   return depth;
 }
 
-/// A panel seen at the N Gauss nodes: extinction · length, and the optical depth from the panel's
-/// front by the collocation matrix, exact for extinction of degree < N.
+/// A panel sampled at the N Gauss nodes: materials, extinction · length, and the optical depth from
+/// the panel's front by the collocation matrix, exact for extinction of degree < N.
 template <int N, class T>
 struct PanelNodes {
   Material<T> material[N];
@@ -40,7 +40,8 @@ struct PanelNodes {
   }
 };
 
-/// Σ W_j C_j / Σ W_j, W_j = ω_j rate_j exp(-depth_j): a color among those of the nodes.
+/// Returns Σ W_j C_j / Σ W_j, W_j = ω_j rate_j exp(-depth_j): a color in the range of the nodes'
+/// colors.
 template <int N, class T>
 PELLUCID_HD Rgb<T> panel_color(const PanelNodes<N, T>& nodes) noexcept {
   static constexpr auto rule = gauss_legendre<scalar_t<T>, N>();
@@ -62,20 +63,20 @@ PELLUCID_HD Rgb<T> panel_color(const PanelNodes<N, T>& nodes) noexcept {
 
 }  // namespace detail
 
-/// Particle model over any smooth extinction and color: material_at(u) for u in (0,1), front to
-/// back, gives both; N Gauss nodes (specification, 3.7). Global order 2N in smooth data. Constant
-/// colors come out exactly, and the radiance never leaves opacity times the range of the nodes'
-/// colors. The optical depth is the quadrature's, exact for extinction of degree < 2N.
+/// Integrates any smooth extinction and color (particle model) with N Gauss nodes (specification,
+/// 3.7); material_at(u) returns both for u in (0,1), front to back. Global order 2N for smooth
+/// data. Constant colors are exact, and the radiance never leaves opacity times the range of the
+/// nodes' colors. The optical depth is that of the quadrature, exact for extinction of degree < 2N.
 ///
-/// Its error depends on the data: the table of section 3.7 and docs/notes/accuracy-segments.md say
-/// what was measured; none of it is a bound. Orders are asserted in tests/segment.
+/// The error depends on the data. The table of section 3.7 and docs/notes/accuracy-segments.md give
+/// measured errors; none is a bound. Orders are asserted in tests/segment.
 template <int N, class T, class MaterialAt>
 PELLUCID_HD SegmentResult<T> gauss_panel(T length, const MaterialAt& material_at) noexcept {
   const detail::PanelNodes<N, T> nodes(length, material_at);
   return segment_of_depth(nodes.total, detail::panel_color(nodes));
 }
 
-/// The same where the panel's optical depth is known exactly.
+/// Integrates the same panel with an optical depth that is known exactly.
 template <int N, class T, class MaterialAt>
 PELLUCID_HD SegmentResult<T> gauss_panel(T length, T optical_depth,
                                          const MaterialAt& material_at) noexcept {
@@ -83,8 +84,8 @@ PELLUCID_HD SegmentResult<T> gauss_panel(T length, T optical_depth,
   return segment_of_depth(optical_depth, detail::panel_color(nodes));
 }
 
-/// Independent emission: the color that material_at(u) gives is radiance per length, and shines
-/// also where nothing absorbs. No gamut bound holds in this model.
+/// Integrates independent emission: the color of material_at(u) is radiance per length, emitted
+/// even where nothing absorbs. No gamut bound holds in this model.
 template <int N, class T, class MaterialAt>
 PELLUCID_HD SegmentResult<T> gauss_panel_independent(T length,
                                                      const MaterialAt& material_at) noexcept {

@@ -9,20 +9,22 @@ namespace pellucid {
 
 namespace detail {
 
-/// e^(-(s1 + s2)/2) F(h², g), equation (15): the mean of a Gaussian over a segment, short in its
-/// widths, with squares s1 and s2 at the ends; max(g, |h|) <= 1.
+/// Returns e^(-(s1 + s2)/2) F(h², g), equation (15): the mean of a Gaussian over a segment that is
+/// short compared to its widths, with squares s1 and s2 at the ends; max(g, |h|) <= 1.
 template <class T>
 PELLUCID_HD T short_gaussian_density(T square_1, T square_2, T g, T h) noexcept {
   const ThinSums<T> sums(abs(h), g, max(g, abs(h)));
   return exp(-(T(0.5) * square_1 + T(0.5) * square_2)) * (sums.b0 + g * sums.f1);
 }
 
-/// The mean over a segment that is not short, √π/2 (Φ(b) - Φ(a)) / |d|, from what lies behind each
-/// end, tail = ρ_end erfcx|end|. On one side of the closest approach (a, b of one sign) it is the
-/// difference of the tails, whose ratio is below e^-2; if the segment crosses it, S erf|a| + S
-/// erf|b|, S = ρ at the closest approach and S erf(x) = S - tail from x = 1 on.
+/// Returns the mean over a segment that is not short, √π/2 (Φ(b) - Φ(a)) / |d|, from the tails
+/// beyond its ends, tail = ρ_end erfcx|end|.
 ///
-/// `perpendicular()` gives -ln S; it is asked only if some lane crosses.
+/// If the closest approach is outside (a, b of one sign), it is the difference of the tails, whose
+/// ratio is below e^-2. If the segment contains it, the sum is S erf|a| + S erf|b|, with S = ρ at
+/// the closest approach and S erf(x) = S - tail from x = 1 on.
+///
+/// `perpendicular()` returns -ln S; it is called only if a lane contains the closest approach.
 template <class T, class Perpendicular>
 PELLUCID_HD T long_gaussian_density(T square_1, T square_2, T a, T b, T length,
                                     const Perpendicular& perpendicular) noexcept {
@@ -42,11 +44,11 @@ PELLUCID_HD T long_gaussian_density(T square_1, T square_2, T a, T b, T length,
   return T(half_sqrt_pi<T>) * sum / max(length, T(smallest_normal<T>));
 }
 
-/// d as a unit vector and its length. Scaled by the largest component: no square over- or
+/// d as a unit vector and its length, scaled by the largest component so that no square over- or
 /// underflows. d = 0 has unit vector 0.
 template <class T>
 struct Direction {
-  T unit[most_channels];
+  T unit[max_channels];
   T length;
   PELLUCID_HD Direction(const T* d, int rows) noexcept {
     T scale = T(smallest_normal<T>);
@@ -61,18 +63,19 @@ struct Direction {
     for (int k = 0; k < rows; ++k) unit[k] *= inverse;
     length = scale * norm;
   }
+  /// Returns the component of p along the direction.
   PELLUCID_HD T along(const T* p, int rows) const noexcept {
     T sum = T(0);
     for (int k = 0; k < rows; ++k) sum = multiply_add(unit[k], p[k], sum);
     return sum;
   }
 
-  /// The squared distance of the line from the center, from the end that is nearer to the closest
-  /// approach; orthogonalised twice.
+  /// Returns the squared distance of the line from the center, computed from the end that is nearer
+  /// to the closest approach and orthogonalised twice.
   PELLUCID_HD T perpendicular(const T* p1, const T* p2, T a, T b, int rows) const noexcept {
     const auto first = abs(a) <= abs(b);
     const T along_it = select(first, a, b);
-    T w[most_channels];
+    T w[max_channels];
     for (int k = 0; k < rows; ++k) w[k] = select(first, p1[k], p2[k]) - along_it * unit[k];
     const T rest = along(w, rows);
     T square = T(0);
@@ -86,18 +89,18 @@ struct Direction {
 
 }  // namespace detail
 
-/// The mean of e^(-|p|²) along the straight segment from p1 to p2 = p1 + d, all of `rows` <= 8
-/// numbers: ∫₀¹ e^(-|p1 + u d|²) du (specification, 3.4). d is given on its own because p2 - p1 has
-/// lost it where both are large; see Gaussian::displacement.
+/// Returns the mean of e^(-|p|²) along the straight segment from p1 to p2 = p1 + d, all of `rows`
+/// <= 8 numbers: ∫₀¹ e^(-|p1 + u d|²) du (specification, 3.4). d is a separate argument, because p2
+/// - p1 has lost its digits where both are large; see Gaussian::displacement().
 ///
-/// Three regimes: short (|d|² <= 2 and |d·(p1 + p2)| <= 2), the entire function of 3.3 without any
-/// division by |d|; crossing the closest approach, positive terms only; on one side of it, scaled
-/// tails whose difference is safe. Neither d = 0, nor ends far in one tail, nor the order of the
-/// ends is a special case; lanes in different regimes take the same steps.
+/// Three regimes: a short segment (|d|² <= 2 and |d·(p1 + p2)| <= 2) uses the entire function of
+/// 3.3 without a division by |d|; a segment across the closest approach uses positive terms only;
+/// otherwise the difference of scaled tails, which is safe. d = 0, ends far in one tail and the
+/// order of the ends are no special cases; lanes in different regimes execute the same steps.
 ///
-/// Largest error: 8 u absolute, and 4 u (1 + 2 l + 2 √(1+l) η) relative, l = |ln| of the result and
-/// η = max |K| |v - c| what the p_i are computed from (for results >= 1e-30 in float, 1e-290 in
-/// double); always in [0, 1]. Asserted in tests/segment and tests/simd.
+/// Largest error: 8 u absolute, and 4 u (1 + 2 l + 2 √(1+l) η) relative, with l = |ln| of the
+/// result and η = max |K| |v - c| from which the p_i are computed (for results >= 1e-30 in float,
+/// 1e-290 in double); always in [0, 1]. Asserted in tests/segment and tests/simd.
 template <class T>
 PELLUCID_HD T gaussian_mean_density(const T* p1, const T* p2, const T* d, int rows) noexcept {
   T square_1 = T(0), square_2 = T(0), g = T(0), h = T(0);
@@ -124,20 +127,20 @@ PELLUCID_HD T gaussian_mean_density(const T* p1, const T* p2, const T* d, int ro
   return clamp(mean, T(0), T(1));
 }
 
-/// The mean density of a primitive along data linear from v1 (front) to v2.
+/// Returns the mean density of a primitive along data that are linear from v1 (front) to v2.
 template <class S, class T>
 PELLUCID_HD T gaussian_mean_density(const Gaussian<S>& primitive, const T* v1,
                                     const T* v2) noexcept {
-  T p1[most_channels], p2[most_channels], d[most_channels];
-  primitive.place(v1, p1);
-  primitive.place(v2, p2);
+  T p1[max_channels], p2[max_channels], d[max_channels];
+  primitive.transform(v1, p1);
+  primitive.transform(v2, p2);
   primitive.displacement(v1, v2, d);
   return gaussian_mean_density(p1, p2, d, primitive.rows);
 }
 
-/// One primitive along linear data, exact: its color is constant (specification, equation 14).
-/// With R the relative error of the mean density and m the depth the opacity is within m e^-m R + 4
-/// u, asserted in tests/segment.
+/// Returns the exact segment of one primitive along linear data; its color is constant
+/// (specification, equation 14). With the relative error R of the mean density and the depth m, the
+/// opacity is within m e^-m R + 4 u, asserted in tests/segment.
 template <class S, class T>
 PELLUCID_HD SegmentResult<T> gaussian_segment(const Gaussian<S>& primitive, const T* v1,
                                               const T* v2, T length) noexcept {
@@ -146,8 +149,8 @@ PELLUCID_HD SegmentResult<T> gaussian_segment(const Gaussian<S>& primitive, cons
                           Rgb<T>{T(c.r), T(c.g), T(c.b)});
 }
 
-/// What the relative error of gaussian_mean_density() is charged with: the R of the specification
-/// (3.4), 16 u (1 + 2 l + 2 √(1+l) η), four times what is asserted. Infinite for a mean of 0.
+/// Returns the charge for the relative error of gaussian_mean_density(): the R of the specification
+/// (3.4), 16 u (1 + 2 l + 2 √(1+l) η), four times the asserted error. Infinite for a mean of 0.
 template <class S, class T>
 PELLUCID_HD T gaussian_rounding(const Gaussian<S>& primitive, const T* v1, const T* v2,
                                 T mean_density) noexcept {

@@ -6,48 +6,48 @@
 
 namespace pellucid {
 
-/// What is lost where a line stands for a cubic in a Gaussian's density, in means over [0, 1].
+/// Errors of a Gaussian's mean density over [0, 1] if a line replaces a cubic.
 template <class T>
-struct LineLoss {
-  T mean{};      ///< |∫ (density of the cubic - density of the line)|, at most
-  T absolute{};  ///< ∫ |density of the cubic - density of the line|, at most
+struct LineReplacementError {
+  T mean{};      ///< upper bound on |∫ (density of the cubic - density of the line)|
+  T absolute{};  ///< upper bound on ∫ |density of the cubic - density of the line|
 };
 
 /// A Gaussian primitive along data whose channels are cubics of u in [0, 1]: density(u) =
-/// e^(-|p(u)|²), p(u) = K (v(u) - c) again a cubic, by its Bernstein coefficients.
+/// e^(-|p(u)|²), where p(u) = K (v(u) - c) is again a cubic, given by its Bernstein coefficients.
 ///
-/// The least-squares line stands for p (specification, 3.8): end values p̄ ∓ (3/20) (3 (p3 - p0) +
-/// (p2 - p1)). What it leaves out is e(u) = q P2(u) + r P3(u), P the Legendre polynomials on [0,1],
-/// with the second differences D1, D2 of the coefficients q = (D1 + D2)/4, r = (D2 - D1)/20; so
-/// ∫|e|² = |q|²/5 + |r|²/7 =: N², |e| <= |q| + |r|.
+/// The least-squares line replaces p (specification, 3.8): end values p̄ ∓ (3/20) (3 (p3 - p0) +
+/// (p2 - p1)). The residual is e(u) = q P2(u) + r P3(u), with the Legendre polynomials P on [0,1],
+/// the second differences D1, D2 of the coefficients, q = (D1 + D2)/4 and r = (D2 - D1)/20. Hence
+/// ∫|e|² = |q|²/5 + |r|²/7 =: N² and |e| <= |q| + |r|.
 ///
-/// Proof of line_loss(). Let φ(x) = e^(-|x|²), M_k the largest |D^k φ| on the way from the line to
-/// the cubic: derivatives of a symmetric form are largest where all directions agree (Banach), and
-/// along a line φ is a Gaussian of its own, so that M_1 = √(2/e), M_2 = 2, M_3 < 3.905; where |x|
-/// >= s >= 1, also (2 s, 4 s² + 2, 8 s³ + 12 s) e^(-s²), which descend from there on.
+/// Proof of line_replacement_error(). Let φ(x) = e^(-|x|²), and M_k the largest |D^k φ| between the
+/// line and the cubic. Derivatives of a symmetric form are largest if all directions agree
+/// (Banach), and along a line φ is a Gaussian, so that M_1 = √(2/e), M_2 = 2, M_3 < 3.905; for |x|
+/// >= s >= 1 also (2 s, 4 s² + 2, 8 s³ + 12 s) e^(-s²), which decrease from there on.
 ///   (A) ∫|φ(p) - φ(l)| <= M_1 ∫|e| <= M_1 N.
-///   (B) φ(p) - φ(l) = ∇φ(l)·e + R, |R| <= M_2 |e|²/2. e is orthogonal to linear functions, so of
-///   ∇φ(l(u)) counts only what a line leaves out, whose second derivative is at most M_3 |d|²: its
-///   L2 norm is at most M_3 |d|²/(12 √5), as for a parabola, because the kernel of that residual,
-///   the Green's function of a clamped beam, is positive. Hence |∫(φ(p) - φ(l))| <= M_3 |d|² N /(12
-///   √5) + M_2 N²/2: fourth order in the width of the panel.
+///   (B) φ(p) - φ(l) = ∇φ(l)·e + R, |R| <= M_2 |e|²/2. As e is orthogonal to linear functions,
+///   only the residual of ∇φ(l(u)) from a line matters, whose second derivative is at most
+///   M_3 |d|²: its L2 norm is at most M_3 |d|²/(12 √5), as for a parabola, because the kernel of
+///   that residual, the Green's function of a clamped beam, is positive. Hence
+///   |∫(φ(p) - φ(l))| <= M_3 |d|² N /(12 √5) + M_2 N²/2: fourth order in the width of the panel.
 ///
-/// Most: how many rows there may be.
-template <class T, int Most = most_channels>
+/// Most: the largest number of rows.
+template <class T, int Most = max_channels>
 class GaussianCubic {
  public:
-  /// data: one cubic for each channel of the primitive.
+  /// `data` holds one cubic per channel of the primitive.
   template <class S>
   PELLUCID_HD GaussianCubic(const Gaussian<S>& primitive, const CubicBernstein<T>* data) noexcept
       : rows_(primitive.rows) {
     for (int k = 0; k < 4; ++k) {
-      T v[most_channels];
+      T v[max_channels];
       for (int c = 0; c < primitive.channels; ++c) v[c] = data[c].b[k];
-      primitive.place(v, p_[k]);
+      primitive.transform(v, p_[k]);
     }
     bound();
   }
-  /// p at u = 0, and the differences from each of its coefficients to the next.
+  /// `first` is p at u = 0, `difference` the differences of consecutive Bernstein coefficients.
   PELLUCID_HD GaussianCubic(int rows, const T* first, const T (*difference)[Most]) noexcept
       : rows_(rows) {
     for (int i = 0; i < this->rows(); ++i) {
@@ -57,17 +57,18 @@ class GaussianCubic {
     bound();
   }
 
-  /// Bounds on the exponent |p|² all over [0, 1].
+  /// Return bounds on the exponent |p|² over [0, 1].
   PELLUCID_HD T lower() const noexcept { return lower_; }
   PELLUCID_HD T upper() const noexcept { return upper_; }
 
-  /// A part of [0, 1] outside of which |p| > reach: nothing where `to` < `from`. Along a direction
-  /// n, |p| >= |n·p|; from either end n·p comes towards 0 no faster than at three times the largest
-  /// difference of its coefficients. n is that from end to end.
+  /// A part of [0, 1]; empty if `to` < `from`.
   struct Part {
     T from, to;
   };
-  PELLUCID_HD Part within(T reach) const noexcept {
+  /// Returns a part of [0, 1] outside of which |p| > reach. For the direction n from end to end,
+  /// |p| >= |n·p|; from either end n·p approaches 0 at most at three times the largest difference
+  /// of its coefficients.
+  PELLUCID_HD Part range_within(T reach) const noexcept {
     T n[Most], x[4];
     T square = T(0);
     for (int i = 0; i < rows(); ++i) {
@@ -81,7 +82,7 @@ class GaussianCubic {
     return {enters(x[0], x[1], x[2], x[3], band), T(1) - enters(x[3], x[2], x[1], x[0], band)};
   }
 
-  /// The line, and what it leaves out.
+  /// The least-squares line and its residual.
   struct Line {
     T front[Most], back[Most], d[Most];
     T squared_length{};  ///< |d|²
@@ -111,7 +112,7 @@ class GaussianCubic {
   PELLUCID_HD T mean_density(const Line& l) const noexcept {
     return gaussian_mean_density(l.front, l.back, l.d, rows());
   }
-  PELLUCID_HD LineLoss<T> line_loss(const Line& l) const noexcept {
+  PELLUCID_HD LineReplacementError<T> line_replacement_error(const Line& l) const noexcept {
     T m1 = T(0.857764), m2 = T(2), m3 = T(3.905);
     const T s = max(sqrt(lower_) - l.farthest, T(0));
     const auto away = s >= T(1);
@@ -129,7 +130,7 @@ class GaussianCubic {
     return {min(absolute, second_order), absolute};
   }
 
-  /// Along the line the exponent is |front|² + slope u + |d|² u².
+  /// Returns the slope of the exponent |front|² + slope u + |d|² u² along the line.
   PELLUCID_HD T slope(const Line& l) const noexcept { return T(2) * dot(l.front, l.d); }
 
  private:
@@ -149,7 +150,7 @@ class GaussianCubic {
 
   static constexpr scalar_t<T> guard = max(scalar_t<T>(1e-9), 8 * rounding_unit<T>);
 
-  /// Where a cubic with these coefficients can be within the band, at the earliest.
+  /// Returns the earliest position at which a cubic with these coefficients can be within the band.
   PELLUCID_HD static T enters(T a, T b, T c, T d, T band) noexcept {
     const T sign = select(a < T(0), T(-1), T(1));
     const T above = sign * a - band;
@@ -157,7 +158,7 @@ class GaussianCubic {
     return select(above > T(0), above / max(rate, T(smallest_normal<T>)) * T(1 - guard), T(0));
   }
 
-  /// The square of the distance of 0 from the range of the coefficients, of one row.
+  /// Returns the squared distance of 0 from the range of the coefficients, for one row.
   PELLUCID_HD T squared_gap() const noexcept {
     const T lower = min(min(p_[0][0], p_[3][0]), min(p_[1][0], p_[2][0]));
     const T upper = max(max(p_[0][0], p_[3][0]), max(p_[1][0], p_[2][0]));
@@ -165,10 +166,10 @@ class GaussianCubic {
     return gap * gap;
   }
 
-  /// A lower bound on the squared distance of the coefficients' hull from 0: the hull lies beyond
-  /// the plane at right angles to any x at min p_k·x / |x| (Gilbert 1966); x is the mean of the
-  /// coefficients. Of two in five random curves at most it is below 0.8 of the square, and 0 where
-  /// the mean is no direction that leads away from all of them; asserted in tests/segment.
+  /// Returns a lower bound on the squared distance of the coefficients' hull from 0. The hull lies
+  /// beyond the plane perpendicular to any x at min p_k·x / |x| (Gilbert 1966); x is the mean of
+  /// the coefficients. For at most two in five random curves it is below 0.8 of the square, and it
+  /// is 0 if the mean is no direction away from all of them; asserted in tests/segment.
   PELLUCID_HD T squared_distance() const noexcept {
     T x[Most];
     for (int i = 0; i < rows(); ++i) {
@@ -187,7 +188,7 @@ class GaussianCubic {
   T lower_, upper_;
 };
 
-/// The primitive along the data of all channels.
+/// Returns the primitive along the data of all channels.
 template <class S, class T>
 PELLUCID_HD GaussianCubic<T> gaussian_along(const Gaussian<S>& primitive,
                                             const CubicBernstein<T>* data) noexcept {

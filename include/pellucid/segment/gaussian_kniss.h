@@ -3,13 +3,13 @@
 
 #include "pellucid/segment/gaussian.h"
 
-/// The integral as Kniss et al. 2003 compute it, beside segment/gaussian.h: to be compared with,
-/// not for pictures. None of its errors is bounded.
+/// The integral as computed by Kniss et al. 2003, for comparison with segment/gaussian.h, not for
+/// pictures. None of its errors is bounded.
 namespace pellucid {
 
-/// erf(x) ≈ 1 - (a1 t + a2 t² + a3 t³) e^(-x²), t = 1/(1 + 0.47047 x), x >= 0, odd: Abramowitz &
-/// Stegun 7.1.25, Kniss (25). Largest absolute error 2.5e-5, asserted in tests/segment; relative to
-/// a small x it is unbounded.
+/// Returns erf(x) ≈ 1 - (a1 t + a2 t² + a3 t³) e^(-x²), t = 1/(1 + 0.47047 x), x >= 0, odd:
+/// Abramowitz & Stegun 7.1.25, Kniss (25). Largest absolute error 2.5e-5, asserted in
+/// tests/segment; the relative error for small x is unbounded.
 template <class T>
 PELLUCID_HD T erf_kniss(T x) noexcept {
   const T y = min(abs(x), T(32));  // e^(-32²) is 0
@@ -18,11 +18,11 @@ PELLUCID_HD T erf_kniss(T x) noexcept {
   return copysign(T(1) - p * exp(-(y * y)), x);
 }
 
-/// The mean density by Kniss (12): √π S (erf B - erf A) / (2 |d|), S = e^(A² - |p1|²), A and B the
-/// ends along d. Where |d| = 0, for which the paper has no value, it is the density there. Kept in
-/// [0, 1], which the formula is not.
+/// Returns the mean density by Kniss (12): √π S (erf B - erf A) / (2 |d|), S = e^(A² - |p1|²), with
+/// the ends A and B along d. For |d| = 0, where the paper has no value, returns the density there.
+/// Clamped to [0, 1], which the formula may leave.
 ///
-/// The error of erf is divided by |d|: up to 5e-5 / |d|, so that no digit is right in short
+/// The error of erf is divided by |d|: up to 5e-5 / |d|, so that no digit is correct in short
 /// segments; S cancels far from the center. Measured in tests/segment.
 template <class T>
 PELLUCID_HD T kniss_mean_density(const T* p1, const T* p2, const T* d, int rows) noexcept {
@@ -43,9 +43,9 @@ PELLUCID_HD T kniss_mean_density(const T* p1, const T* p2, const T* d, int rows)
 
 template <class S, class T>
 PELLUCID_HD T kniss_mean_density(const Gaussian<S>& primitive, const T* v1, const T* v2) noexcept {
-  T p1[most_channels], p2[most_channels], d[most_channels];
-  primitive.place(v1, p1);
-  primitive.place(v2, p2);
+  T p1[max_channels], p2[max_channels], d[max_channels];
+  primitive.transform(v1, p1);
+  primitive.transform(v2, p2);
   primitive.displacement(v1, v2, d);
   return kniss_mean_density(p1, p2, d, primitive.rows);
 }

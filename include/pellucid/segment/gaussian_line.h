@@ -5,12 +5,12 @@
 
 namespace pellucid {
 
-/// All that linear data see of a Gaussian primitive, however many channels it looks at: with x = a
-/// + u length the distance from the closest approach,
+/// A Gaussian primitive along linear data, however many channels it has: with the signed distance x
+/// = a + u length from the closest approach,
 ///
 ///   density(u) = e^(-perpendicular - x²).
 ///
-/// For what asks for parts of the segment again and again. The exponent is a sum of squares: off by
+/// For repeated evaluation of parts of a segment. The exponent is a sum of squares; its error is
 /// the rounding of a and b, which is that of K (v - c).
 template <class T>
 struct GaussianLine {
@@ -27,27 +27,28 @@ struct GaussianLine {
     perpendicular = direction.perpendicular(p1, p2, a, b, rows);
   }
 
-  /// x at u, from the nearer end.
+  /// Returns x at u, computed from the nearer end.
   PELLUCID_HD T position(T u) const noexcept {
     return select(u <= T(0.5), a + u * length, b - (T(1) - u) * length);
   }
+  /// Returns the density at u.
   PELLUCID_HD T density(T u) const noexcept {
     const T x = position(u);
     return exp(-(perpendicular + x * x));
   }
-  /// The u of the closest approach; not in [0, 1] where the segment does not cross it, and not
-  /// finite for a point.
+  /// Returns the u of the closest approach: outside of [0, 1] if the segment does not contain it,
+  /// and not finite for a point.
   PELLUCID_HD T closest() const noexcept {
     return select(abs(a) <= abs(b), -a / length, T(1) - b / length);
   }
-  /// The least exponent over x between x0 and x1.
+  /// Returns the smallest exponent over x between x0 and x1.
   PELLUCID_HD T least_exponent(T x0, T x1) const noexcept {
     const T distance = max(T(0), max(x0, -x1));
     return perpendicular + distance * distance;
   }
 
-  /// The mean density over u in [from, to], as gaussian_mean_density(): within 8 u absolute and the
-  /// relative error named there; asserted in tests/segment.
+  /// Returns the mean density over u in [from, to]. Largest error as gaussian_mean_density(): 8 u
+  /// absolute and the relative error stated there; asserted in tests/segment.
   PELLUCID_HD T mean_density(T from, T to) const noexcept {
     const T x0 = position(from), x1 = position(to), part = (to - from) * length;
     const T g = T(0.5) * (part * part), h = part * (T(0.5) * x0 + T(0.5) * x1);

@@ -7,13 +7,13 @@
 
 namespace pellucid {
 
-/// The range of some colors, and how far they are apart.
+/// The range of a set of colors.
 template <class T>
 struct ColorRange {
   Rgb<T> lower{T(largest<T>), T(largest<T>), T(largest<T>)};
   Rgb<T> upper{T(-largest<T>), T(-largest<T>), T(-largest<T>)};
 
-  /// Takes `color` in, in the lanes of `mask`.
+  /// Adds `color` in the lanes of `mask`.
   template <class Mask>
   PELLUCID_HD void add(Mask mask, const Rgb<T>& color) noexcept {
     lower = {select(mask, min(lower.r, color.r), lower.r),
@@ -23,7 +23,7 @@ struct ColorRange {
              select(mask, max(upper.g, color.g), upper.g),
              select(mask, max(upper.b, color.b), upper.b)};
   }
-  /// The largest difference in a channel; 0 of no color.
+  /// Returns the largest difference in any channel; 0 without colors.
   PELLUCID_HD T oscillation() const noexcept {
     return max(T(0), max(upper.r - lower.r, max(upper.g - lower.g, upper.b - lower.b)));
   }
@@ -33,8 +33,8 @@ struct ColorRange {
   }
 };
 
-/// The depth of a sum of primitives and their mean color weighted by it, primitive after primitive.
-/// A running mean never divides by a depth before it is there, and does not overflow.
+/// The optical depth of a sum of primitives and their mean color weighted by depth, added one by
+/// one. A running mean neither divides by a depth of 0 nor overflows.
 template <class T>
 struct DepthWeightedColor {
   T depth{};
@@ -50,7 +50,7 @@ struct DepthWeightedColor {
   }
 };
 
-/// The optical depth of a sum of primitives along data linear from v1 to v2: exact, Σ of
+/// Returns the optical depth of a sum of primitives along data linear from v1 to v2: exact, Σ of
 /// gaussian_segment().
 template <class S, class T>
 PELLUCID_HD T gaussian_mixture_depth(const GaussianMixture<S>& mixture, const T* v1, const T* v2,
@@ -63,10 +63,10 @@ PELLUCID_HD T gaussian_mixture_depth(const GaussianMixture<S>& mixture, const T*
   return depth;
 }
 
-/// A sum of primitives in one color, the mean of theirs weighted by optical depth: Kniss's segment,
-/// generalised (specification, 3.5 (i)). Depth, opacity and transparency are exact up to rounding.
-/// The color's error is proved: at most κ(depth) times the range of the colors that have any depth
-/// (equation 5); 0 for one primitive or one color.
+/// Returns a sum of primitives in a single color, their mean weighted by optical depth: Kniss's
+/// segment, generalised (specification, 3.5 (i)). Depth, opacity and transparency are exact up to
+/// rounding. The color's error is proved: at most κ(depth) times the range of the colors of
+/// positive depth (equation 5); 0 for one primitive or one color.
 template <class S, class T>
 PELLUCID_HD BoundedSegment<T> gaussian_mixture_mean(const GaussianMixture<S>& mixture, const T* v1,
                                                     const T* v2, T length) noexcept {

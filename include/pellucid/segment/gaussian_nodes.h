@@ -10,20 +10,20 @@
 
 namespace pellucid {
 
-/// What N Gauss nodes err on a panel of Gaussians e^(-|p_j(u)|²) along cubics p_j, at most by
-/// estimate, in the radiance by the largest color and in the opacity:
+/// An estimated bound on the error of N Gauss nodes on a panel of Gaussians e^(-|p_j(u)|²) along
+/// cubics p_j, of the radiance divided by the largest color and of the opacity:
 ///
 ///   factor · Σ w_j m_j^power + linear · depth³ · max m_j · Σ w_j + smallest · Σ w_j,
 ///
-/// m_j three times the largest step between Bernstein coefficients of p_j, a bound on how far it
-/// moves; w_j = (depth of its peak over the panel) · min(1, 5/2 e^(-min|p_j|²/2)). Where the
-/// Gaussians differ in color, the depth <= 1.
+/// with m_j three times the largest difference of consecutive Bernstein coefficients of p_j, an
+/// upper bound on its movement, and w_j = (depth of its peak over the panel) · min(1, 5/2
+/// e^(-min|p_j|²/2)). If the Gaussians differ in color, it requires depth <= 1.
 ///
-/// Along lines the depth's error is at most w m^2N (N!)³ / ((2N + 1) (2N)!²), with Cramér's
-/// inequality for Hermite functions; bends count for more where little moves. The second term is of
-/// colors that change along a panel that is not thin. Twice the worst that hill climbing finds over
-/// up to three curves of one and two rows; asserted in tests/segment. Beyond farthest nothing is
-/// known.
+/// Along lines the error of the depth is at most w m^2N (N!)³ / ((2N + 1) (2N)!²), by Cramér's
+/// inequality for Hermite functions; the curvature of cubics matters more if the movement is small.
+/// The second term is for colors that change along a panel that is not thin. Twice the largest
+/// error that hill climbing finds over up to three curves with one and two rows; asserted in
+/// tests/segment. Not valid for movements beyond `farthest`.
 template <int N>
 struct NodeEstimate {
   static_assert(N == 3 || N == 5 || N == 8);
@@ -34,9 +34,9 @@ struct NodeEstimate {
   static constexpr double smallest = 2e-9;
 };
 
-/// A number that is not set to 0 where it is made.
+/// A number without initialization.
 template <class T>
-struct Kept {
+struct LaneStorage {
   scalar_t<T> lane[lanes<T>];
 
   PELLUCID_HD void operator=(const T& value) noexcept {
@@ -55,13 +55,13 @@ struct Kept {
   }
 };
 
-/// What GaussianNodes keeps of a panel's Gaussians: too much for a small stack where T is a batch.
+/// Memory of GaussianNodes for a panel's Gaussians: too large for a small stack if T is a batch.
 template <class T>
-struct NodeRoom {
+struct NodeWorkspace {
   struct Term {
     const Gaussian<scalar_t<T>>* of;
-    Kept<T> peak;  ///< depth of its peak over the panel's length; 0 where it does not matter
-    Kept<T> power[4][most_channels];  ///< of u: K (v - c)
+    LaneStorage<T> peak;  ///< depth of its peak over the panel's length; 0 if it is ignored
+    LaneStorage<T> power[4][max_channels];  ///< K (v - c) in powers of u
 
     PELLUCID_HD T at(int row, T u) const noexcept {
       const T p = multiply_add(power[3][row].get(), u, power[2][row].get());
@@ -77,30 +77,30 @@ struct NodeRoom {
       return sum;
     }
   };
-  Term term[most_gaussians];
+  Term term[max_gaussians];
 };
 
-/// A panel of Gaussians along cubics, by Gauss nodes, in a number type without digits to spare:
-/// what is asked of the curves is relative to their own size. T may be a batch: panels in lanes.
+/// Integrates a panel of Gaussians along cubics by Gauss nodes, in a number type without spare
+/// digits: the curves are used relative to their own size. T may be a batch, one panel per lane.
 template <class T>
 class GaussianNodes {
  public:
   using S = scalar_t<T>;
   using Mask = mask_t<T>;
 
-  PELLUCID_HD GaussianNodes(T length, NodeRoom<T>& room) noexcept
+  PELLUCID_HD GaussianNodes(T length, NodeWorkspace<T>& room) noexcept
       : length_(length), term_(room.term) {}
 
-  /// Adds a primitive in the lanes `on`, if it comes nearer than the root of `square` to its center
-  /// along the cubic that begins at `first`, by the differences from each Bernstein coefficient of
-  /// K (v - c) to the next.
+  /// Adds a primitive in the lanes `on` if it comes nearer than √square to its center. The cubic
+  /// begins at `first`; `difference` holds the differences of consecutive Bernstein coefficients of
+  /// K (v - c).
   template <int Most>
   PELLUCID_HD void add(const Gaussian<S>& of, const T* first, const T (*difference)[Most], T square,
                        Mask on) noexcept {
     const GaussianCubic<T, Most> curve(of.rows, first, difference);
     const Mask matters = on & !(curve.lower() >= square);
     if (none(matters)) return;
-    typename NodeRoom<T>::Term& term = term_[count_++];
+    typename NodeWorkspace<T>::Term& term = term_[count_++];
     term.of = &of;
     const T peak = select(matters, T(of.peak) * length_, T(0));
     term.peak = peak;
@@ -134,8 +134,9 @@ class GaussianNodes {
     power *= power;
     fourth_ = multiply_add(weight, power, fourth_);
     eighth_ = multiply_add(weight, power * power, eighth_);
-    // What p at a node is off by, through the steepest slope of e^(-|p|²) from the nearest place
-    // on; the exponential, and sums: nearly four times the worst of random panels (tests/segment).
+    // The error of p at a node times the steepest slope of e^(-|p|²) beyond the closest approach;
+    // the exponential, and sums: nearly four times the largest error of random panels
+    // (tests/segment).
     const T nearest = max(select(matters, curve.lower(), T(0)), T(0.5));
     const T slope = T(2) * sqrt(nearest) * min(density, T(S(0.6065307)));
     const T rounded = multiply_add(slope, farthest + T(4) * moves, T(16) * density);
@@ -144,7 +145,7 @@ class GaussianNodes {
     T from = T(0), to = T(1);
     const Mask far = matters & (moves > T(NodeEstimate<8>::farthest));
     if (any(far)) {
-      const auto part = curve.within(sqrt(max(square, T(0))));
+      const auto part = curve.range_within(sqrt(max(square, T(0))));
       from = select(far, part.from, from);
       to = select(far, part.to, to);
     }
@@ -152,25 +153,27 @@ class GaussianNodes {
     to_ = max(to_, select(matters, to, T(0)));
   }
 
-  /// A bound on the depth.
-  PELLUCID_HD T most() const noexcept { return most_; }
-  /// What no cutting lowers against the panel's depth: rounding, also of as many sums, and what
-  /// estimates say at least.
+  /// Returns an upper bound on the depth.
+  PELLUCID_HD T depth_bound() const noexcept { return most_; }
+  /// Returns the part of the error that cutting does not reduce relative to the panel's depth:
+  /// rounding, including that of the sums, and the minimum of the estimates.
   PELLUCID_HD T least_error() const noexcept {
     const T sums = seen_ * T(rounding_unit<T>) * most_;
     return multiply_add(T(S(NodeEstimate<8>::smallest)), weight_, rounding_ + sums);
   }
-  /// Whether it is short enough for nodes; longer ones are to be cut.
+  /// Returns whether the panel is short enough for nodes; longer ones have to be cut.
   PELLUCID_HD Mask is_short() const noexcept { return moves_ <= T(NodeEstimate<8>::farthest); }
 
-  /// The panel in those lanes in which the error is at most `allowed`, of the opacity.
+  /// The panel, in the lanes in which the error is at most `allowed`, relative to the opacity.
   struct Result {
     SegmentResult<T> segment;
-    T error{};  ///< of the radiance, by the largest color, and of the opacity
+    T error{};  ///< of the radiance divided by the largest color, and of the opacity
     Mask done = Mask(false);
-    /// Else: nothing matters up to `clear` nor from `until` on; try from `clear` to `cut`.
+    /// If not done: nothing matters before `clear` nor behind `until`; try again from `clear` to
+    /// `cut`.
     T clear{}, cut = T(0.5), until = T(1);
   };
+  /// Integrates the panel with 3, 5 or 8 nodes, or proposes a cut.
   PELLUCID_HD Result integrate(T allowed) const noexcept {
     Result result;
     result.segment = segment_of_depth(T(0), Rgb<T>{});
@@ -182,11 +185,11 @@ class GaussianNodes {
     try_nodes<5>(fourth_, left, several, open, result);
     try_nodes<8>(eighth_, left, several, open, result);
     if (all(result.done)) return result;
-    // In so many parts of what matters that none moves too far, and none is dense if colors differ.
+    // The number of parts at which none moves too far, and none is dense if colors differ.
     const T share = max(to_ - from_, T(0));
     const T depth = select(several, most_ * share, T(0));
     const T parts = clamp(max(moves_ * share * T(0.2), depth), T(1), T(16));
-    // What is cut becomes shorter.
+    // A cut makes the panel shorter.
     const T whole = max(floor(parts + T(0.9375)), select(share > T(0.75), T(2), T(1)));
     result.clear = min(from_, T(1));
     result.cut = result.clear + share / whole;
@@ -194,10 +197,10 @@ class GaussianNodes {
     return result;
   }
 
-  /// The panel by N nodes, whatever they err. `several`: whether there are several colors; without
-  /// them they are not asked for.
+  /// Integrates the panel with N nodes, whatever their error. `several`: whether there are several
+  /// colors; if not, colors are not computed.
   template <int N>
-  PELLUCID_HD SegmentResult<T> by_nodes(bool several) const noexcept {
+  PELLUCID_HD SegmentResult<T> integrate_by_nodes(bool several) const noexcept {
     static constexpr auto rule = gauss_legendre<S, N>();
     T rate[N];
     Rgb<T> emission[N];
@@ -242,7 +245,7 @@ class GaussianNodes {
     const T error = multiply_add(T(S(Estimate::factor)), sum, steep * weight_);
     const Mask good = open & (error <= left) & (moves_ <= T(Estimate::farthest));
     if (none(good)) return;
-    const SegmentResult<T> found = by_nodes<N>(any(good & several));
+    const SegmentResult<T> found = integrate_by_nodes<N>(any(good & several));
     result.segment.optical_depth = select(good, found.optical_depth, result.segment.optical_depth);
     result.segment.opacity = select(good, found.opacity, result.segment.opacity);
     result.segment.transparency = select(good, found.transparency, result.segment.transparency);
@@ -256,14 +259,14 @@ class GaussianNodes {
   }
 
   T length_;
-  typename NodeRoom<T>::Term* term_;
+  typename NodeWorkspace<T>::Term* term_;
   int count_ = 0;
   T most_{}, rounding_{};
-  T seen_{};                                     ///< how many matter, lane by lane
+  T seen_{};                                     ///< number of primitives that matter, lane by lane
   T moves_{};                                    ///< the largest movement
   T weight_{}, square_{}, fourth_{}, eighth_{};  ///< Σ weight · movement^k
   ColorRange<T> colors_;
-  T from_ = T(1), to_ = T(0);  ///< outside of it none matters
+  T from_ = T(1), to_ = T(0);  ///< outside of it no primitive matters
 };
 
 }  // namespace pellucid

@@ -8,15 +8,15 @@
 
 namespace pellucid {
 
-/// The most primitives that one segment is cut for; with more of them in sight it is drawn in their
-/// mean color, and says how far that may be off.
-inline constexpr int most_primitives = 64;
+/// The largest number of primitives for which a segment is cut. With more of them in a segment the
+/// mean color is used, with its error.
+inline constexpr int max_primitives = 64;
 
-/// An estimate of the error of a Gauss panel of N = 4, 6, 8 or 10 nodes over a sum of Gaussians,
-/// relative to opacity and to the range of the colors: `exponents` bounds the change of each
-/// exponent on the panel, `depth` is its optical depth. 4 times the worst of the specification's
-/// 12000 random panels (3.7); a search by hill climbing in tests/segment stays below half of it.
-/// 1 where it is not known.
+/// Returns an estimate of the error of a Gauss panel with N = 4, 6, 8 or 10 nodes on a sum of
+/// Gaussians, relative to opacity and to the range of the colors. `exponents` bounds the change of
+/// each exponent on the panel, `depth` is its optical depth. It is 4 times the largest error of the
+/// specification's 12000 random panels (3.7); a search by hill climbing in tests/segment stays
+/// below half of it. Returns 1 outside of the tested range.
 template <int N, class T>
 PELLUCID_HD constexpr T gaussian_panel_estimate(T exponents, T depth) noexcept {
   static_assert(N == 4 || N == 6 || N == 8 || N == 10);
@@ -34,18 +34,18 @@ PELLUCID_HD constexpr T gaussian_panel_estimate(T exponents, T depth) noexcept {
 
 namespace detail {
 
-/// One primitive as the segment sees it.
+/// One primitive on the segment.
 template <class T>
 struct SeenGaussian {
   GaussianLine<T> line;
   T peak{};  ///< peak extinction · length of the whole segment
   Rgb<T> color{};
-  T cutoff{};  ///< the exponent beyond which nothing of it is seen anywhere
+  T cutoff{};  ///< the exponent beyond which it is ignored
   T mass{};    ///< its optical depth on the panel
   T x0{}, x1{};
 };
 
-/// How much (bend s + slope) s changes over s in [0, 1].
+/// Returns the range of (bend s + slope) s over s in [0, 1].
 template <class T>
 PELLUCID_HD T parabola_range(T bend, T slope) noexcept {
   const T end = bend + slope;
@@ -54,17 +54,17 @@ PELLUCID_HD T parabola_range(T bend, T slope) noexcept {
   return max(max(T(0), end), there) - min(min(T(0), end), there);
 }
 
-/// The color of a sum of Gaussians along a segment, by panels.
+/// Computes the color of a sum of Gaussians along a segment, by panels.
 template <class T>
 struct GaussianPanels {
-  SeenGaussian<T> seen[most_primitives];
+  SeenGaussian<T> seen[max_primitives];
   int count = 0;
-  T tolerance{};    ///< of the color, per opacity
+  T tolerance{};    ///< of the color, relative to the opacity
   T opacity{};      ///< of the whole segment
   T oscillation{};  ///< of all colors
   Grade grade = Grade::estimated;
 
-  /// What is found on a panel: its color, and how far that may be off, per opacity.
+  /// The result of a panel: its color, and the color's error relative to the opacity.
   struct Panel {
     T depth{}, opacity{}, transparency = T(1);
     Rgb<T> color{};
@@ -72,14 +72,16 @@ struct GaussianPanels {
     bool proved = true;
   };
 
+  /// Sets the cutoffs from the tolerance.
   PELLUCID_HD void set_cutoffs() noexcept {
     for (int i = 0; i < count; ++i) {
-      // Optical depth below tolerance/64 of the opacity, together, wherever it lies.
+      // Together below tolerance/64 of the opacity in optical depth, wherever they are.
       const T least = tolerance * opacity / (T(64) * T(count) * max(oscillation, T(1e-6)));
       seen[i].cutoff = log(max(seen[i].peak / max(least, T(smallest_normal<T>)), T(1)));
     }
   }
 
+  /// Returns the material at u.
   PELLUCID_HD Material<T> material(T u) const noexcept {
     Material<T> result;
     Rgb<T> emission{};
@@ -98,7 +100,8 @@ struct GaussianPanels {
     return panel_color(PanelNodes<N, T>(width, [&](T s) { return material(from + s * width); }));
   }
 
-  /// N nodes, if they are estimated to be within `allowed`; N - 2 nodes have a say in it.
+  /// Uses N nodes if their estimated error is at most `allowed`; the difference to N - 2 nodes is
+  /// part of the estimate.
   template <int N>
   PELLUCID_HD bool try_nodes(T from, T width, T exponents, T range, T allowed,
                              Panel& panel) const noexcept {
@@ -113,7 +116,7 @@ struct GaussianPanels {
     return true;
   }
 
-  /// The depths of all primitives on the panel, and its mean color.
+  /// Computes the depths of all primitives on the panel, and returns its mean color.
   PELLUCID_HD DepthWeightedColor<T> measure(T from, T width) noexcept {
     DepthWeightedColor<T> mean;
     for (int i = 0; i < count; ++i) {
@@ -128,13 +131,13 @@ struct GaussianPanels {
     return mean;
   }
 
-  /// What the primitives with more depth than `negligible` do on a panel. The others are from here
-  /// on as if they were not there.
+  /// Properties of the primitives that are deeper than `negligible` on a panel. All others are
+  /// ignored from here on.
   struct Matter {
     T range{};      ///< of their colors
-    T exponents{};  ///< the largest bound on the change of an exponent
-    T ratio{};      ///< a bound on the change of the logarithm of any ratio of two densities
-    T rest{};       ///< the depth of all others
+    T exponents{};  ///< upper bound on the change of an exponent
+    T ratio{};      ///< upper bound on the change of the logarithm of any ratio of two densities
+    T rest{};       ///< depth of all others
   };
   PELLUCID_HD Matter matter(T negligible) noexcept {
     Matter result;
@@ -170,7 +173,8 @@ struct GaussianPanels {
     return result;
   }
 
-  /// One panel by the cheapest rule that is good enough; false if none is.
+  /// Integrates one panel by the cheapest rule that is accurate enough; returns false if there is
+  /// none.
   PELLUCID_HD bool integrate(T from, T width, T transparency, bool last_resort,
                              Panel& panel) noexcept {
     const DepthWeightedColor<T> mean = measure(from, width);
@@ -181,7 +185,7 @@ struct GaussianPanels {
     const Attenuation<T> a = attenuation(mean.depth);
     panel.opacity = a.opacity;
     panel.transparency = a.transparency;
-    // As much of what the panel shines as everywhere, or its share by length.
+    // The same fraction of the panel's radiance as everywhere, or its share by length.
     const T allowed =
         max(T(0.6) * tolerance, T(0.1) * tolerance * opacity * width / (transparency * a.opacity));
     const T negligible = allowed * a.opacity / (T(16) * T(count) * max(oscillation, T(1e-6)));
@@ -199,8 +203,8 @@ struct GaussianPanels {
     return found;
   }
 
-  /// How wide a panel from t may be, `width` at most: to the next closest approach of a primitive
-  /// that is narrow against it.
+  /// Returns the width of a panel from t, at most `width`: up to the closest approach of the next
+  /// primitive that is narrow compared to it.
   PELLUCID_HD T width_to_cut(T t, T width) const noexcept {
     for (int i = 0; i < count; ++i) {
       const SeenGaussian<T>& g = seen[i];
@@ -211,11 +215,11 @@ struct GaussianPanels {
     return width;
   }
 
-  /// From front to back, halving where no rule is good enough.
+  /// Integrates front to back, halving panels until a rule is accurate enough.
   PELLUCID_HD Panel fold() noexcept {
     Panel sum;
     T shine = T(0);
-    // What the cutoffs leave out, seen through nothing.
+    // The contribution of the cutoffs, with full transparency.
     T error = tolerance * opacity * T(1.0 / 32);
     T t = T(0), width = width_to_cut(T(0), T(1));
     for (;;) {
@@ -246,9 +250,9 @@ struct GaussianPanels {
   }
 };
 
-/// Puts the color by panels in place of the mean color in `result`, if it is the better one. The
-/// mean has the better bound where nothing can be resolved. Apart, because of the room that it
-/// takes.
+/// Replaces the mean color in `result` by the color from panels if that has the smaller error. The
+/// mean has the smaller error if nothing can be resolved. A separate function because of its stack
+/// use.
 template <class S, class T>
 PELLUCID_HD void refine_by_panels(const GaussianMixture<S>& mixture, const T* v1, const T* v2,
                                   T length, T tolerance, Grade grade,
@@ -257,14 +261,14 @@ PELLUCID_HD void refine_by_panels(const GaussianMixture<S>& mixture, const T* v1
   ColorRange<T> range;
   for (int i = 0; i < mixture.count; ++i) {
     const Gaussian<S>& g = mixture.primitive[i];
-    T p1[most_channels], p2[most_channels], d[most_channels];
-    g.place(v1, p1);
-    g.place(v2, p2);
+    T p1[max_channels], p2[max_channels], d[max_channels];
+    g.transform(v1, p1);
+    g.transform(v2, p2);
     g.displacement(v1, v2, d);
     const GaussianLine<T> line(p1, p2, d, g.rows);
     const T peak = T(g.peak) * length;
     if (!(peak * exp(-line.least_exponent(line.a, line.b)) > T(0))) continue;
-    if (panels.count == most_primitives) return;
+    if (panels.count == max_primitives) return;
     SeenGaussian<T>& seen = panels.seen[panels.count++];
     seen.line = line;
     seen.peak = peak;
@@ -287,23 +291,25 @@ PELLUCID_HD void refine_by_panels(const GaussianMixture<S>& mixture, const T* v1
 
 }  // namespace detail
 
-/// The volume rendering integral (particle model) of a sum of Gaussian primitives along data linear
-/// from v1 (front) to v2 (specification, 3.5). Depth, opacity and transparency are exact up to
-/// rounding. The radiance is within tolerance · opacity in each channel, and color_error says
-/// within what: by one mean color (5), else by panels between the closest approaches, each halved
-/// until its mean color or, in the grade `estimated`, a Gauss panel is good enough.
+/// Integrates the volume rendering integral (particle model) of a sum of Gaussian primitives along
+/// data linear from v1 (front) to v2 (specification, 3.5).
 ///
-/// The bound of a panel's mean color is ω κ(m) min(1, Δ/4) per opacity, Δ the most that the
-/// logarithm of a ratio of two densities changes on it. Proof: (5), with the oscillation of the
-/// mean of the colors: from weights w_i to w_i e^(s_i), where the s_i differ by at most Δ, a mean
-/// of colors in [0, ω] moves by at most ω tanh(Δ/4), for its extremes are two-valued. So panels of
-/// mean color converge with second order. Primitives whose depth μ is next to nothing are left out
-/// of ω and Δ and charged with 2 μ times the range of all colors.
+/// Depth, opacity and transparency are exact up to rounding. The radiance is within tolerance ·
+/// opacity in each channel; color_error is its bound. The color is the mean (5), or is composited
+/// from panels between the closest approaches, each halved until its mean color or, in the grade
+/// `estimated`, a Gauss panel is accurate enough.
 ///
-/// Wanted: length >= 0, tolerance > 0, peak · length and K (v - c) finite. Beyond 64 primitives in
-/// sight the mean color is taken. Tolerances down to 1e-5 (float) and 1e-12 (double) are met on
-/// tests/reference_tables/gaussian_mixture_segment.csv, asserted in tests/segment; what rounding
-/// adds is gaussian_rounding() of the depths.
+/// The bound of a panel's mean color is ω κ(m) min(1, Δ/4) relative to the opacity, with the
+/// largest change Δ of the logarithm of a ratio of two densities on the panel. Proof: (5) with the
+/// oscillation of the mean of the colors. From weights w_i to w_i e^(s_i), where the s_i differ by
+/// at most Δ, a mean of colors in [0, ω] moves by at most ω tanh(Δ/4), because its extremes are
+/// two-valued. Panels of mean color therefore converge with second order. Primitives with a
+/// negligible depth μ are excluded from ω and Δ and charged with 2 μ times the range of all colors.
+///
+/// Preconditions: length >= 0, tolerance > 0, peak · length and K (v - c) finite. With more than 64
+/// primitives in the segment the mean color is used. Tolerances down to 1e-5 (float) and 1e-12
+/// (double) are met on tests/reference_tables/gaussian_mixture_segment.csv, asserted in
+/// tests/segment; rounding adds gaussian_rounding() of the depths.
 template <class S, class T>
 PELLUCID_HD BoundedSegment<T> integrate_gaussians(const GaussianMixture<S>& mixture, const T* v1,
                                                   const T* v2, T length, T tolerance,

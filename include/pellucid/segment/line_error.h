@@ -7,8 +7,8 @@
 
 namespace pellucid {
 
-/// How far the opacity of a segment can be from the true one, if at most `error` is wrong in its
-/// depth and 4 u in the opacity of that depth. With e^x - 1 <= x + (e - 2) x² on [0,1].
+/// Returns an upper bound on the error of a segment's opacity, given an error of at most `error` in
+/// its depth and of 4 u in the opacity of that depth. With e^x - 1 <= x + (e - 2) x² on [0,1].
 template <class T>
 PELLUCID_HD T opacity_error_bound(const SegmentResult<T>& s, T error) noexcept {
   constexpr scalar_t<T> u = rounding_unit<T>;
@@ -19,22 +19,23 @@ PELLUCID_HD T opacity_error_bound(const SegmentResult<T>& s, T error) noexcept {
   return T(1 + 16 * u) * max(above, below) + T(4 * u) * s.opacity;
 }
 
-/// The line of a window through the table: the means of extinction and, weighted by it, of color.
+/// The means along the line of a window: of the extinction, and of the color weighted by it.
 template <class T>
 struct LineMean {
   int first, last;  ///< the intervals of the line's ends
   T rise;           ///< the divisor of its integrals
   T extinction;
-  Rgb<T> color;  ///< in the hull of those that absorb
+  Rgb<T> color;  ///< in the hull of the absorbing colors
 };
 
+/// Clamps each channel.
 template <class T>
 PELLUCID_HD Rgb<T> clamp_color(const Rgb<T>& c, const Rgb<T>& lower, const Rgb<T>& upper) noexcept {
   return {clamp(c.r, lower.r, upper.r), clamp(c.g, lower.g, upper.g), clamp(c.b, lower.b, upper.b)};
 }
 
-/// The quotient R(v₂) - R(v₁) by v₂ - v₁ (J. Kniss et al. 2003, equation 5), or where the line does
-/// not leave an interval the material half-way, without a quotient.
+/// Returns the quotient (R(v₂) - R(v₁)) / (v₂ - v₁) (J. Kniss et al. 2003, equation 5), or for a
+/// line inside one interval the material at its middle, without a quotient.
 template <class T>
 PELLUCID_HD LineMean<T> line_mean(const LineWindow<T>& window, const PiecewiseLinear<T>& table,
                                   const PiecewiseLinearAntiderivative<T>& antiderivative) noexcept {
@@ -42,7 +43,7 @@ PELLUCID_HD LineMean<T> line_mean(const LineWindow<T>& window, const PiecewiseLi
   LineMean<T> mean;
   mean.first = interval_near(table, lower, window.interval);
   mean.last = interval_below(table, upper, mean.first);
-  // Where the ends absorb the divisor must fit them as they were rounded; elsewhere it is exacter.
+  // If the ends absorb, the divisor must match their rounded values; otherwise 2 p1 is more exact.
   const bool inside = !window.rest.at_lower && !window.rest.at_upper;
   mean.rise = inside ? T(2) * window.data.p1 : upper - lower;
   RangeIntegrals<T> sum;
@@ -60,51 +61,54 @@ PELLUCID_HD LineMean<T> line_mean(const LineWindow<T>& window, const PiecewiseLi
   return mean;
 }
 
-/// What is wrong when a window's line stands for its data.
+/// Errors if a window's line replaces its data.
 template <class T>
 struct LineError {
   T extinction;  ///< of the mean extinction
   T color;       ///< of the mean color weighted by extinction, times the mean extinction
-  /// Of the integral over a part of the window, from either end, of the extinction, and of
-  /// extinction · (color - c), c any color that absorbs.
+  /// Of the integral over a part of the window that begins at either end: of the extinction, and of
+  /// extinction · (color - c) for any absorbing color c.
   T part_extinction, part_emission;
-  /// By how much of itself the length that a value has in the line can differ from that in the
-  /// data, half of the range of the one over the other, and what the ends add to the mean
-  /// extinction. Infinite where the data turn.
+  /// Relative difference between the lengths that a value has in the line and in the data; half of
+  /// the range of their ratio; and the contribution of the ends to the mean extinction. Infinite if
+  /// the data are not monotone.
   T ratio, spread, ends;
 };
 
+/// Computes the errors if a window's line replaces its data.
+///
 /// Proof. Write f for the data, l for the line, g = f - l, k = v₂ - v₁ >= 0. For a function H of
 /// the data, ∫ H(f) - H(l) dt = ∫ H'(v) Δ(v) dv with Δ(v) = |{t: f > v}| - |{t: l > v}|, and
 ///
-/// (a) ∫ |Δ| dv <= ∫ |g| dt, and ∫ Δ dv = ∫ g dt = 0, so that a constant may be taken off H'. The
-/// mean of |g| is at most that of |p2 L2| + |p3 L3|, 2/√27 and 13/40, and the norm, 1/√5 and 1/√7.
+/// (a) ∫ |Δ| dv <= ∫ |g| dt, and ∫ Δ dv = ∫ g dt = 0, so that a constant may be subtracted from H'.
+/// The mean of |g| is at most that of |p2 L2| + |p3 L3|, 2/√27 and 13/40, and at most the norm,
+/// 1/√5 and 1/√7.
 ///
 /// (b) |Δ(v)| <= min(1, max |g|/k): it is the difference of |{l <= v < f}| and |{f <= v < l}|,
-/// which lie on either side of where l crosses v, neither longer than max |g|/k.
+/// which lie on either side of the crossing of l with v, neither longer than max |g|/k.
 ///
-/// (c) Where f' is in [a,b], a > 0, a value that both have takes dv/f' of f and dv/k of l. What
-/// only one has lies between an end of the line and that of the data and takes dv/min(a,k) at most.
+/// (c) If f' is in [a,b], a > 0, a value of both takes the length dv/f' of f and dv/k of l. A value
+/// of only one lies between an end of the line and that of the data, and takes at most dv/min(a,k).
 ///
-/// In (b) and (c) only those t count where f or l absorb. With H = extinction the mean is wrong by
-/// no more than (a) mean |g| times half of the range of slopes, (b) the variation times max |g|/k,
-/// (c) the mean times max(|a - k|/a, |b - k|/b), and the mass at the ends over min(a,k).
+/// In (b) and (c) only those t count at which f or l absorbs. With H = extinction the error of the
+/// mean is at most (a) mean |g| times half of the range of slopes, (b) the variation times max
+/// |g|/k, (c) the mean times max(|a - k|/a, |b - k|/b), plus the mass at the ends over min(a,k).
 ///
-/// Let ω be the range of colors, c the true mean color and H = extinction · (color - c): as ∫ H(f)
+/// Let ω be the range of colors, c the true mean color and H = extinction · (color - c). As ∫ H(f)
 /// dt = 0, the extinction times the error of the mean color is ∫ H(l) - H(f) dt, with |H'| <= ω
-/// |extinction'| + extinction |color'|, |H| <= ω extinction. In (c), where l gives a value the
-/// share f'/k of the length that f does, a multiple of ∫ H(f) dt may be taken off, so that only
-/// half of the range of f'/k counts, (b - a)/(2k), and ∫ |H(f)| dt, which for a mean c is no more
-/// than ω/2 ∫ extinction(f) dt.
+/// |extinction'| + extinction |color'| and |H| <= ω extinction. In (c), l gives a value the
+/// fraction f'/k of the length that f gives it. A multiple of ∫ H(f) dt may be subtracted, so that
+/// only half of the range of f'/k counts, (b - a)/(2k), and ∫ |H(f)| dt, which for a mean c is at
+/// most ω/2 ∫ extinction(f) dt.
 ///
-/// Over a part [0,ξ] of the window (b) holds as it is, and (a) without the constant. Rounding moves
-/// values by less than twice data.rounding and slopes by less than slope_rounding. ∎
+/// Over a part [0,ξ] of the window (b) holds unchanged, and (a) without the constant. Rounding
+/// changes values by less than twice data.rounding and slopes by less than slope_rounding. ∎
 template <class T>
 PELLUCID_HD LineError<T> line_error(
     const LineWindow<T>& window, const LineMean<T>& mean, const PiecewiseLinear<T>& table,
     const PiecewiseLinearAntiderivative<T>& antiderivative) noexcept {
   const LegendreCubic<T>& f = window.data;
-  const LineRest<T>& rest = window.rest;
+  const LineResidual<T>& rest = window.rest;
   const RangeSummary<T>& all = window.table;
   const T range = all.color_range(), shift = T(2) * f.rounding, k = mean.rise;
   const T a2 = abs(f.p2), a3 = abs(f.p3);
@@ -124,8 +128,8 @@ PELLUCID_HD LineError<T> line_error(
 
   error.ratio = error.spread = error.ends = RangeSummary<T>::infinity;
   const bool inside = !rest.at_lower && !rest.at_upper;
-  const T blur = inside ? f.slope_rounding : f.slope_rounding + T(2) * shift;
-  const T least = (k - blur) + rest.slope_min, most = (k + blur) + rest.slope_max;
+  const T slope_error = inside ? f.slope_rounding : f.slope_rounding + T(2) * shift;
+  const T least = (k - slope_error) + rest.slope_min, most = (k + slope_error) + rest.slope_max;
   if (least > T(0)) {
     const T ratio = max(abs(least - k) / least, abs(most - k) / most);
     const T spread = T(0.5) * (most - least) / k;

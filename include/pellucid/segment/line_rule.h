@@ -9,13 +9,14 @@
 
 namespace pellucid {
 
-/// A segment with the proved bounds of its errors, rounding included.
+/// A segment with proved bounds on its errors, rounding included.
 template <class T>
 using LineResult = BoundedSegment<T>;
 
 namespace detail {
 
-/// A segment of one color: that of `color_error` and what (5) says of the weighting.
+/// Returns a segment of a single color with error `color_error`; the weighting by transparency adds
+/// the error of (5).
 template <class T>
 PELLUCID_HD LineResult<T> mean_result(T length, T extinction, Rgb<T> color, T extinction_error,
                                       T color_error, T color_range) noexcept {
@@ -32,8 +33,9 @@ PELLUCID_HD LineResult<T> mean_result(T length, T extinction, Rgb<T> color, T ex
   return result;
 }
 
-/// Data in one interval of the table: extinction and color are linear in them, and the mean of
-/// their product needs the variance of the data, p1²/3 + p2²/5 + p3²/7.
+/// Returns the segment of data in one interval of the table: extinction and color are linear in the
+/// data, and the mean of their product follows from the variance of the data, p1²/3 + p2²/5 +
+/// p3²/7.
 template <class T>
 PELLUCID_HD LineResult<T> mean_in_interval(const LegendreCubic<T>& f, T data_range, T length,
                                            const PiecewiseLinear<T>& table, int interval) noexcept {
@@ -63,7 +65,7 @@ PELLUCID_HD LineResult<T> mean_in_interval(const LegendreCubic<T>& f, T data_ran
                      share_range * largest_component(change));
 }
 
-/// What both line rules have in common.
+/// The intermediate results that both line rules share.
 template <class T>
 struct LineStretch {
   const LineWindow<T>& window;
@@ -133,14 +135,15 @@ PELLUCID_HD LineResult<T> line_emission_result(const LineStretch<T>& line,
 
 }  // namespace detail
 
-/// The first of line_rule() and line_emission_rule() whose result `fits(LineResult<T>)`; false
-/// where none does. What both need is computed once. The second is not tried where the line crosses
-/// so many control points that it would not be cheap.
+/// Computes the first of line_rule() and line_emission_rule() whose result satisfies
+/// `fits(LineResult<T>)`; returns false if none does. Shared intermediate results are computed
+/// once. The second rule is skipped if the line crosses so many control points that it would not be
+/// cheap.
 template <class T, class Fits>
-PELLUCID_HD bool fitting_line_rule(const CubicBernstein<T>& data, T length,
-                                   const PiecewiseLinear<T>& table,
-                                   const PiecewiseLinearAntiderivative<T>& antiderivative,
-                                   LineResult<T>& result, Fits&& fits) noexcept {
+PELLUCID_HD bool select_line_rule(const CubicBernstein<T>& data, T length,
+                                  const PiecewiseLinear<T>& table,
+                                  const PiecewiseLinearAntiderivative<T>& antiderivative,
+                                  LineResult<T>& result, Fits&& fits) noexcept {
   const LegendreCubic<T> cell = legendre(data);
   const T data_min = data.hull_min(), data_max = data.hull_max();
   const int near = table.interval(data_min);
@@ -165,46 +168,46 @@ PELLUCID_HD bool fitting_line_rule(const CubicBernstein<T>& data, T length,
   return fits(result);
 }
 
-/// The volume rendering integral (particle model) over data that are a cubic along the segment, as
-/// in a trilinear cell, seen through a piecewise-linear transfer function, by a line in place of
-/// the cubic. No roots, no cuts at control points; jumps are allowed.
+/// Integrates the volume rendering integral (particle model) over cubic data, as in a trilinear
+/// cell, through a piecewise-linear transfer function, with a line in place of the cubic. It needs
+/// neither roots nor cuts at control points; jumps are allowed.
 ///
 /// The line is the least-squares line of the part of the segment outside of which nothing absorbs.
-/// Its depth comes of antiderivatives of the extinction, its color is the mean weighted by
-/// extinction. Depth is exact for linear data, and for data in one interval of the table.
-/// What is wrong is bounded in line_error(), and the weighting of colors by (5), with the range of
-/// the colors that absorb.
+/// Its depth comes from antiderivatives of the extinction, its color is the mean weighted by
+/// extinction. The depth is exact for linear data, and for data in one interval of the table.
+/// line_error() bounds the errors of the line, (5) those of the weighting by transparency, with the
+/// range of the absorbing colors.
 ///
-/// Wanted: length >= 0, finite data whose differences are finite, and the table's mass and the
-/// depth finite. The bounds hold but for what is below the least normal number. Asserted in
-/// tests/segment.
+/// Preconditions: length >= 0, finite data with finite differences, finite mass of the table and
+/// finite depth. The bounds hold except for contributions below the smallest normal number.
+/// Asserted in tests/segment.
 template <class T>
 PELLUCID_HD LineResult<T> line_rule(
     const CubicBernstein<T>& data, T length, const PiecewiseLinear<T>& table,
     const PiecewiseLinearAntiderivative<T>& antiderivative) noexcept {
   LineResult<T> result;
-  fitting_line_rule(data, length, table, antiderivative, result,
-                    [](const LineResult<T>&) noexcept { return true; });
+  select_line_rule(data, length, table, antiderivative, result,
+                   [](const LineResult<T>&) noexcept { return true; });
   return result;
 }
 
-/// The same line, but its own integral, exact: cut at the control points that the line crosses.
-/// Where colors vary over a depth that is not small this is what the mean color lacks.
+/// Integrates the same line exactly: cut at the control points that the line crosses. It adds what
+/// the mean color misses if colors vary over a depth that is not small.
 ///
-/// With the letters of line_error(), a_l and a_f the depths in front, c the true color and H =
+/// With the notation of line_error(), the depths a_l and a_f in front, the true color c and H =
 /// extinction · (color - c), the line's opacity times the error of its color is the integral E of
 /// H(l) e^(-a_l) - H(f) e^(-a_f).
 ///
-/// By (a), (b): E = ∫ (H(l) - H(f)) e^(-a_l) dt + ∫ H(f) (e^(-a_l) - e^(-a_f)) dt; by the second
+/// By (a), (b): E = ∫ (H(l) - H(f)) e^(-a_l) dt + ∫ H(f) (e^(-a_l) - e^(-a_f)) dt. By the second
 /// mean value theorem the first is at most part_emission, and the second at most ω · (true opacity)
-/// · (e^δ - 1), δ the largest |a_l - a_f|, part_extinction.
+/// · (e^δ - 1), with δ the largest |a_l - a_f|, part_extinction.
 ///
 /// By (c), with the value in place of t: a value that both have adds H (e^(-a_l) - w e^(-a_f)) da_l
 /// / extinction to E, with |w - 1| <= ratio and |a_f - a_l| <= ratio · a_l + ends. With |1 - w e^x|
 /// <= |w - 1| + w (e^|x| - 1), and r/(1 - r) for the integral of (e^(r a) - 1) e^(-a) over all a >
-/// 0 this bounds E where depths are large. Where not, the same with f and l exchanged, less a
-/// multiple of the integral of H(f) e^(-a_f), which is 0 while that of its absolute value is at
-/// most ω/2 · (true opacity). The values that one of both has add ω · ends/(1 - ratio) at most.
+/// 0, this bounds E if depths are large. If not, exchange f and l and subtract a multiple of the
+/// integral of H(f) e^(-a_f), which is 0 while that of its absolute value is at most ω/2 · (true
+/// opacity). Values that only one of them has add at most ω · ends/(1 - ratio).
 template <class T>
 PELLUCID_HD LineResult<T> line_emission_rule(
     const CubicBernstein<T>& data, T length, const PiecewiseLinear<T>& table,

@@ -10,18 +10,19 @@ namespace pellucid {
 ///
 ///   f = mean + p1 L1 + p2 L2 + p3 L3,  L1 = 2t - 1, L2 = 6t² - 6t + 1, L3 = 20t³ - 30t² + 12t - 1.
 ///
-/// mean + p1 L1 is its least-squares line; the rest is orthogonal to it. p1 >= 0: where the line
-/// falls, the window is seen from its back.
+/// mean + p1 L1 is its least-squares line; the residual is orthogonal to it. p1 >= 0: if the line
+/// falls, the window is reversed.
 template <class T>
 struct LegendreCubic {
   T mean, p1, p2, p3;
-  T rounding;        ///< of the line at any place
-  T slope_rounding;  ///< of 2 p1 and of 6 p2 and 12 p3, together
+  T rounding;        ///< of the line at any position
+  T slope_rounding;  ///< of 2 p1, 6 p2 and 12 p3, together
   bool reversed;     ///< whether t runs from back to front
 
   PELLUCID_HD T lower() const noexcept { return mean - p1; }
   PELLUCID_HD T upper() const noexcept { return mean + p1; }
 
+  /// Reverses the window if its line falls.
   PELLUCID_HD void rise() noexcept {
     if (p1 < T(0)) {
       p1 = -p1;
@@ -31,10 +32,10 @@ struct LegendreCubic {
   }
 };
 
-/// The cubic on all of [0,1]; mean ∓ p1 are the ends of the least-squares line
-/// (specification, 3.8). Differences come first, so that data that vary little far from zero keep
-/// their digits: p1 is within 5 u, p2 2 u, p3 1.3 u and the mean 2 u of the largest |b_k - b_0|,
-/// the mean u of itself besides.
+/// Returns the cubic on all of [0,1]; mean ∓ p1 are the ends of the least-squares line
+/// (specification, 3.8). Differences are taken first, so that data with small variation far from
+/// zero keep their digits: p1 is within 5 u, p2 2 u, p3 1.3 u and the mean 2 u of the largest |b_k
+/// - b_0|; the mean has an additional error of u of itself.
 template <class T>
 PELLUCID_HD LegendreCubic<T> legendre(const CubicBernstein<T>& f) noexcept {
   const T d1 = f.b[1] - f.b[0], d2 = f.b[2] - f.b[0], d3 = f.b[3] - f.b[0], inner = f.b[2] - f.b[1];
@@ -51,8 +52,9 @@ PELLUCID_HD LegendreCubic<T> legendre(const CubicBernstein<T>& f) noexcept {
   return c;
 }
 
-/// The same on [x - h, x + h], a part of [-1,1], in the coordinate 2t - 1: the Taylor expansion.
-/// Slopes keep their precision relative to those of the whole, however narrow the window is.
+/// Returns the cubic on [x - h, x + h], a part of [-1,1] in the coordinate 2t - 1, by its Taylor
+/// expansion. Slopes keep their precision relative to those of the whole window, however narrow the
+/// part is.
 template <class T>
 PELLUCID_HD LegendreCubic<T> restrict_to(const LegendreCubic<T>& f, T x, T h) noexcept {
   const T xx = x * x, hh = h * h;
@@ -69,18 +71,18 @@ PELLUCID_HD LegendreCubic<T> restrict_to(const LegendreCubic<T>& f, T x, T h) no
   return c;
 }
 
-/// What is left of a cubic beside its line in the part [begin,end] of its window where the line,
-/// give or take what is left, has values in [support_min, support_max]. Elsewhere neither the cubic
-/// nor the line has any.
+/// The residual of a cubic from its line in the part [begin,end] of its window in which the line,
+/// widened by the residual, has values in [support_min, support_max]. Elsewhere neither the cubic
+/// nor the line has such values.
 template <class T>
-struct LineRest {
+struct LineResidual {
   bool empty;               ///< the cubic has none of these values
   bool at_lower, at_upper;  ///< whether the part reaches the line's lower, upper end
   T begin, end;
   T value;                 ///< largest |f - line|
   T slope_min, slope_max;  ///< of f' - line'
 
-  PELLUCID_HD LineRest(const LegendreCubic<T>& f, T support_min, T support_max) noexcept {
+  PELLUCID_HD LineResidual(const LegendreCubic<T>& f, T support_min, T support_max) noexcept {
     const T rise = T(2) * f.p1, a2 = abs(f.p2), a3 = abs(f.p3);
     const T margin = (a2 + a3) + T(4) * f.rounding;
     const T below = (support_min - f.mean) + (f.p1 - margin),
@@ -106,20 +108,21 @@ struct LineRest {
   }
 };
 
-/// A part of a cell outside of which nothing absorbs, with what the transfer function does over all
-/// values of the data and of the part's line.
+/// A part of a cell outside of which nothing absorbs, with the summary of the transfer function
+/// over all values of the data and of the part's line.
 template <class T>
 struct LineWindow {
   LegendreCubic<T> data;
   RangeSummary<T> table;
-  LineRest<T> rest;
-  T begin, width;  ///< of the cell, whose line rises
-  int interval;    ///< of the table, not far from the line's lower end
+  LineResidual<T> rest;
+  T begin, width;  ///< in the cell, whose line rises
+  int interval;    ///< of the table, near the line's lower end
 };
 
-/// The least such window that few steps find: a line in a narrower window leaves less of the cubic
-/// beside it, and says better where the next window is. Its ends lie on a grid on which they and
-/// the middle between them are exact. `interval` is that of data_min, at most the least value.
+/// Returns the smallest such window that a few steps find. A line in a narrower window has a
+/// smaller residual and locates the next window better. The window's ends lie on a grid on which
+/// they and their midpoint are exact. `interval` is that of data_min, which is at most the smallest
+/// value.
 template <class T>
 PELLUCID_HD LineWindow<T> line_window(
     const LegendreCubic<T>& cell, T data_min, T data_max, int interval,
@@ -131,12 +134,12 @@ PELLUCID_HD LineWindow<T> line_window(
       range_summary(table, antiderivative,
                     ValueRange<T>(lower, upper, first, interval_below(table, upper, first)));
   const auto rest_of = [](const LegendreCubic<T>& data, const RangeSummary<T>& s) noexcept {
-    return LineRest<T>(data, s.support_min, s.support_max);
+    return LineResidual<T>(data, s.support_min, s.support_max);
   };
   LineWindow<T> window{cell, over_all, rest_of(cell, over_all), T(0), T(1), first};
   constexpr scalar_t<T> grid = 4 * rounding_unit<T>;
   for (int pass = 0; pass < 3; ++pass) {
-    const LineRest<T>& rest = window.rest;
+    const LineResidual<T>& rest = window.rest;
     if (rest.empty || rest.end - rest.begin > T(0.7)) break;
     const bool turned = window.data.reversed != cell.reversed;
     const T from = window.begin + window.width * (turned ? T(1) - rest.end : rest.begin),
@@ -146,7 +149,7 @@ PELLUCID_HD LineWindow<T> line_window(
     window.begin = begin;
     window.width = end - begin;
     window.data = restrict_to(cell, (begin + end) - T(1), end - begin);
-    // Where the new line leaves the range, the range grows, with the jump that may stand there.
+    // If the new line leaves the range, the range grows, including a jump at its end.
     const auto add = [&](T from_value, T to_value) noexcept {
       int i = interval_near(table, from_value, first);
       while (i > 0 && !(table.value[i - 1] < from_value)) --i;

@@ -6,11 +6,11 @@
 
 namespace pellucid {
 
-/// What a segment with linear extinction does to any color that is linear along it:
+/// The weights of a segment with linear extinction for a color that is linear along it:
 ///
 ///   radiance = color_f · weight_f + color_b · weight_b
 ///
-/// with psi = ∫₀¹ transparency(u) du, weight_f = 1 - psi, weight_b = psi - transparency, both
+/// with psi = ∫₀¹ transparency(u) du, weight_f = 1 - psi and weight_b = psi - transparency, both
 /// non-negative, and weight_f + weight_b = opacity (specification, equation 4).
 template <class T>
 struct LinearWeights {
@@ -21,8 +21,8 @@ struct LinearWeights {
   T weight_f{}, weight_b{};
 };
 
-/// What a segment with linear extinction does to an emission that is linear along it and given on
-/// its own: radiance = length · (emission_f · weight_f + emission_b · weight_b).
+/// The weights of a segment with linear extinction for an independent emission that is linear along
+/// it: radiance = length · (emission_f · weight_f + emission_b · weight_b).
 template <class T>
 struct EmissionWeights {
   T optical_depth{};
@@ -34,9 +34,9 @@ struct EmissionWeights {
 
 namespace detail {
 
-/// h = (x_f + x_b)/4 = half of the optical depth and g = (x_b - x_f)/4, x = extinction · length.
-/// The difference is taken before the product: equal ends give g = 0 exactly. Halves first, so that
-/// the sum cannot overflow.
+/// h = (x_f + x_b)/4, half of the optical depth, and g = (x_b - x_f)/4, with x = extinction ·
+/// length. The difference is taken before the product: equal ends give g = 0 exactly. Terms are
+/// halved first, so that the sum cannot overflow.
 template <class T>
 struct LinearRates {
   T x_f, x_b, h, g;
@@ -47,19 +47,19 @@ struct LinearRates {
         g(T(0.5) * ((T(0.5) * extinction_b - T(0.5) * extinction_f) * length)) {}
 };
 
-/// The sums of the thin form (8)-(10): b0 = sinh(h)/h, H1 = cosh(h) - b0 and F1 = Σ g^k b_{k+1},
-/// by the two-term recurrence of section 3.3 with c_n = 1/(2n+1)!!.
+/// The sums of the thin form (8)-(10): b0 = sinh(h)/h, H1 = cosh(h) - b0 and F1 = Σ g^k b_{k+1}, by
+/// the two-term recurrence of section 3.3 with c_n = 1/(2n+1)!!.
 template <class T>
 struct ThinSums {
   T b0, h1, f1;
   PELLUCID_HD ThinSums(T h, T g) noexcept : ThinSums(h, g, h) {}
-  /// `reach` >= max(h, |g|), for where |g| may be above h; h >= 0.
+  /// `reach` >= max(h, |g|), for arguments with |g| above h; h >= 0.
   PELLUCID_HD ThinSums(T h, T g, T reach) noexcept {
     // With r = reach the tail of F1 after N terms is below r^N e^{r/2}/(2N+3)!! (proof in 3.3):
     // N = 8 and 15 leave less than u/10 of the weights up to r = 1, N = 4 and 8 up to r = 0.05.
-    // There each term left out is below half a unit in the last place of its sum, so that adding
-    // them changes nothing: what a lane becomes does not depend on its neighbours.
-    // b0 and H1 are even in h and end sooner.
+    // There each omitted term is below half a unit in the last place of its sum, so that adding it
+    // changes nothing: a lane's result does not depend on its neighbors. b0 and H1 are even in h
+    // and end sooner.
     if (all(reach <= T(0.05))) {
       add<is_single<T> ? 2 : 4, is_single<T> ? 4 : 8>(h, g);
     } else {
@@ -112,7 +112,8 @@ struct ThinSums {
   }
 };
 
-/// W of rising extinction (scaled erfc) in lanes where `rising`, of falling (Dawson) elsewhere.
+/// Returns W of rising extinction (scaled erfc) in the lanes of `rising`, of falling extinction
+/// (Dawson) elsewhere.
 template <class T, class Mask>
 PELLUCID_HD T scaled_tail_0(T t, Mask rising) noexcept {
   if (all(rising)) return w0_plus(t);
@@ -127,7 +128,8 @@ PELLUCID_HD T scaled_tail_1(T t, Mask rising) noexcept {
 }
 
 /// M of the thick form (11), (12): M(x,q) = W0(t)/(x/2 + 2σ), t = 2σ/(x/2 + 2σ), σ = √|q|. The
-/// guard of the denominator matters only in lanes of thin segments, whose result is thrown away.
+/// lower limit of the denominator matters only in lanes with thin segments, whose result is not
+/// used.
 template <class T>
 struct ThickTail {
   T t, inverse;
@@ -170,7 +172,8 @@ PELLUCID_HD EmissionWeights<T> thin_emission_weights(const LinearRates<T>& rate)
           T(0.5) * e * (f - rate.h * sums.f1)};
 }
 
-/// The first moments are M1 = (1 - x M)/(2 q) = W1(t)/(x/2 + 2σ)².
+/// Returns the weights of the thick form; the first moments are M1 = (1 - x M)/(2 q) = W1(t)/(x/2 +
+/// 2σ)².
 template <class T>
 PELLUCID_HD EmissionWeights<T> thick_emission_weights(const LinearRates<T>& rate) noexcept {
   const auto rising = rate.g >= T(0);
@@ -189,18 +192,19 @@ PELLUCID_HD EmissionWeights<T> thick_emission_weights(const LinearRates<T>& rate
 
 }  // namespace detail
 
-/// The exact integral for extinction linear from extinction_f (front, nearest the eye) to
-/// extinction_b over the length. One formula for rising, falling, equal and zero extinction.
+/// Returns the exact weights for extinction that is linear from extinction_f (front, nearest the
+/// eye) to extinction_b over the length. One formula for rising, falling, equal and zero
+/// extinction.
 ///
-/// Specification, 3.3: thin form (8)-(10) for optical depth <= 2, a polynomial of positive terms
-/// with no division by the contrast or by the depth; thick form (11), (12) beyond, Moreland's erf
-/// and Dawson forms rescaled so that neither e^{x²} nor 1/(extinction_b - extinction_f) occurs.
-/// Nothing is subtracted from a number close to it: opacity is not 1 - transparency in a thin
-/// segment.
+/// The thin form (8)-(10) of the specification, 3.3, is used for optical depth <= 2: a polynomial
+/// of positive terms without a division by the contrast or by the depth. The thick form (11), (12)
+/// is used beyond: Moreland's erf and Dawson forms, rescaled so that neither e^{x²} nor
+/// 1/(extinction_b - extinction_f) occurs. No difference of nearly equal numbers is taken: opacity
+/// is not 1 - transparency in a thin segment.
 ///
 /// Largest error: 16 u relative in weight_f, weight_b, psi and opacity, for extinction and length
 /// in [0, 1e6] (results below 1e-30 in float, 1e-290 in double: non-negative); transparency 4 u
-/// absolute. Finite wherever extinction · length is. Asserted in tests/segment.
+/// absolute. Finite if extinction · length is. Asserted in tests/segment.
 template <class T>
 PELLUCID_HD LinearWeights<T> linear_weights(T extinction_f, T extinction_b, T length) noexcept {
   const detail::LinearRates<T> rate(extinction_f, extinction_b, length);
@@ -217,11 +221,11 @@ PELLUCID_HD LinearWeights<T> linear_weights(T extinction_f, T extinction_b, T le
           select(thin, w.weight_b, thick.weight_b)};
 }
 
-/// The weights of a linear emission of its own (specification, equation 13), which need not vanish
-/// where the extinction does.
+/// Returns the weights of an independent linear emission (specification, equation 13), which may be
+/// positive where the extinction is zero.
 ///
 /// Largest error: 32 u relative in both weights, for extinction and length in [0, 1e6]. Finite and
-/// non-negative wherever extinction · length is finite. Asserted in tests/segment.
+/// non-negative if extinction · length is finite. Asserted in tests/segment.
 template <class T>
 PELLUCID_HD EmissionWeights<T> emission_weights(T extinction_f, T extinction_b, T length) noexcept {
   const detail::LinearRates<T> rate(extinction_f, extinction_b, length);
@@ -235,9 +239,9 @@ PELLUCID_HD EmissionWeights<T> emission_weights(T extinction_f, T extinction_b, 
           select(thin, w.weight_f, thick.weight_f), select(thin, w.weight_b, thick.weight_b)};
 }
 
-/// Particle model, extinction and color linear along the segment: Moreland's integral, exact
-/// (specification, 3.3). Colors >= 0 are added with non-negative weights, so that the radiance has
-/// the weights' relative error: 16 u; asserted in tests/segment.
+/// Returns the segment with linear extinction and color (particle model): Moreland's integral,
+/// exact (specification, 3.3). Colors >= 0 are added with non-negative weights, so that the
+/// radiance has the weights' relative error: 16 u; asserted in tests/segment.
 template <class T>
 PELLUCID_HD SegmentResult<T> linear_segment(T extinction_f, T extinction_b, Rgb<T> color_f,
                                             Rgb<T> color_b, T length) noexcept {
@@ -245,15 +249,15 @@ PELLUCID_HD SegmentResult<T> linear_segment(T extinction_f, T extinction_b, Rgb<
   return {w.optical_depth, w.opacity, w.transparency, w.weight_f * color_f + w.weight_b * color_b};
 }
 
-/// The same with one color all along: only the optical depth matters. 16 u.
+/// Returns the same with a constant color: only the optical depth matters. Largest error 16 u.
 template <class T>
 PELLUCID_HD SegmentResult<T> linear_segment(T extinction_f, T extinction_b, Rgb<T> color,
                                             T length) noexcept {
   return segment_of_depth((T(0.5) * extinction_f + T(0.5) * extinction_b) * length, color);
 }
 
-/// Linear extinction, and an emission (radiance per length) that is linear on its own. 32 u;
-/// asserted in tests/segment.
+/// Returns the segment with linear extinction and an independent linear emission (radiance per
+/// length). Largest error 32 u; asserted in tests/segment.
 template <class T>
 PELLUCID_HD SegmentResult<T> linear_segment_independent(T extinction_f, T extinction_b,
                                                         Rgb<T> emission_f, Rgb<T> emission_b,

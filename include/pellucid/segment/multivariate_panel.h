@@ -10,36 +10,37 @@
 
 namespace pellucid {
 
-/// How good a panel has to be, and what is known without looking. T may be a batch: panels in
-/// lanes, of which one without length is none. Set: a PrimitiveSet for all, or one of each lane.
+/// Required accuracy of a panel. T may be a batch, one panel per lane; a lane without length has no
+/// panel. Set: a PrimitiveSet for all lanes, or one per lane.
 template <class T, class Set = PrimitiveSet>
 struct PanelDemand {
   Set primitives;
   Grade grade = Grade::estimated;
-  scalar_t<T> largest_color = 1;  ///< C_max >= 1: a bound on every color on the ray
-  T place_error{};  ///< how far the ends may be from where they are thought to be, world
-  mask_t<T> last_resort = mask_t<T>(false);  ///< whatever comes out has to do
+  scalar_t<T> largest_color = 1;             ///< C_max >= 1: a bound on every color on the ray
+  T position_error{};                        ///< error of the positions of its ends, world units
+  mask_t<T> last_resort = mask_t<T>(false);  ///< accept the result whatever its error
 };
 
-/// A panel done, or why it is not.
+/// The result of a panel, or where to cut it.
 template <class T>
 struct PanelSegment {
   BoundedSegment<T> found;
-  T opacity{};                        ///< a bound on it, which the allowance was asked for
-  mask_t<T> done = mask_t<T>(false);  ///< else: cut it at `cut` and try the parts
+  T opacity{};  ///< upper bound on the opacity, for which the allowance was computed
+  mask_t<T> done = mask_t<T>(false);  ///< if false: cut at `cut` and try the parts
   T cut = T(0.5);
-  T clear{}, until = T(1);  ///< if it is not done: outside of these nothing matters
+  T clear{}, until = T(1);  ///< if not done: nothing matters outside of these
 
+  /// Returns the total error.
   PELLUCID_HD T error(T largest_color) const noexcept {
     return found.color_error + largest_color * found.opacity_error;
   }
 };
 
-/// An estimate of the error of N Gauss nodes in the color of a panel of Gaussians along cubic data,
-/// relative to opacity and to the range of the colors: `exponents` bounds the change of each
-/// exponent, of which an eighth at most is because the data are no line; depth <= 1. Twice the
-/// worst that hill climbing from random panels finds, asserted in tests/segment; 1 where it is not
-/// known.
+/// Returns an estimate of the color error of N Gauss nodes on a panel of Gaussians along cubic
+/// data, relative to opacity and to the range of the colors; depth <= 1. `exponents` bounds the
+/// change of each exponent, at most an eighth of it due to the curvature of the data. Twice the
+/// largest error that hill climbing from random panels finds, asserted in tests/segment; 1 outside
+/// of the tested range.
 template <int N, class T>
 PELLUCID_HD constexpr T cubic_panel_estimate(T exponents) noexcept {
   static_assert(N == 2 || N == 3 || N == 4 || N == 6 || N == 8);
@@ -54,34 +55,33 @@ PELLUCID_HD constexpr T cubic_panel_estimate(T exponents) noexcept {
   return select(exponents <= T(2), T(2) * select(exponents <= T(0.5), low, high), T(1));
 }
 
-/// What a PanelIntegrator keeps of a panel's Gaussians: too much for a small stack where T is a
-/// batch.
+/// Memory of PanelIntegrator for a panel's Gaussians: too large for a small stack if T is a batch.
 template <class T>
-struct PanelRoom {
-  /// Along the line its exponent is bend u² + slope u and a constant.
+struct PanelWorkspace {
+  /// A Gaussian; its exponent along the line is bend u² + slope u and a constant.
   struct Term {
     int primitive;
-    T mass;  ///< its depth; 0 where it does not matter
-    T loss;  ///< how far that may be off, because of the line
+    T mass;  ///< its depth; 0 if it is ignored
+    T loss;  ///< error of the depth because of the line
     T bend, slope;
   };
-  Term term[most_gaussians];
+  Term term[max_gaussians];
 };
 
 namespace detail {
 
-/// One panel: all terms measured, then the cheapest rule that is good enough.
+/// Integrates one panel: computes all terms, then uses the cheapest rule that is accurate enough.
 template <class T, class Data, class Set, class Allowance>
 class PanelIntegrator {
   using S = scalar_t<T>;
-  /// Whether lines stand for data that are none.
+  /// Whether lines replace data that are not linear.
   static constexpr bool bent = std::is_same_v<Data, CubicBernstein<T>>;
 
  public:
-  PELLUCID_HD PanelIntegrator(const Multivariate<S>& transfer,
+  PELLUCID_HD PanelIntegrator(const MultivariateTransfer<S>& transfer,
                               const MultivariateSpan<T, Data>& span,
                               const PanelDemand<T, Set>& demand, const Allowance& allowance,
-                              PanelRoom<T>& room) noexcept
+                              PanelWorkspace<T>& room) noexcept
       : transfer_(transfer),
         span_(span),
         demand_(demand),
@@ -96,13 +96,13 @@ class PanelIntegrator {
     const T most = most_ + tables_.most + rest_;
     result.opacity = min(most, T(1));
     const T length = max(span_.length, T(smallest_normal<T>));
-    fixed_ = rounding_ + tables_.rounding + min(demand_.place_error * (most / length), T(1));
+    fixed_ = rounding_ + tables_.rounding + min(demand_.position_error * (most / length), T(1));
     finish(result);
     return result;
   }
 
  private:
-  using Term = typename PanelRoom<T>::Term;
+  using Term = typename PanelWorkspace<T>::Term;
 
   PELLUCID_HD const Gaussian<S>& gaussian(const Term& term) const noexcept {
     return transfer_.gaussians.primitive[term.primitive];
@@ -111,13 +111,14 @@ class PanelIntegrator {
     return {T(g.color.r), T(g.color.g), T(g.color.b)};
   }
 
-  /// The Gaussians that matter: their depths along the lines, and what the lines leave out. The
-  /// others, together at most an eighth of what every panel of the length is allowed, are left out.
+  /// Computes the Gaussians that matter: their depths along the lines, and the errors of the lines.
+  /// Ignores the others; together they use at most an eighth of the allowance of a panel of this
+  /// length.
   PELLUCID_HD void measure_gaussians() noexcept {
     const GaussianMixture<S>& all = transfer_.gaussians;
     const T negligible = allowance_(T(0)) / (T(8 * max(all.count, 1)) * largest_color_);
     for (int i = 0; i < all.count; ++i) {
-      const mask_t<T> held(demand_.primitives.holds(i));
+      const mask_t<T> held(demand_.primitives.contains(i));
       if (none(held)) continue;
       const Gaussian<S>& g = all.primitive[i];
       const auto along = gaussian_along(g, span_.data);
@@ -144,21 +145,21 @@ class PanelIntegrator {
     seen_ += part(T(1));
     exponents_ = max(exponents_, part(along.upper() - along.lower()));
     if constexpr (bent) {
-      const LineLoss<T> loss = along.line_loss(line);
+      const LineReplacementError<T> loss = along.line_replacement_error(line);
       term.loss = part(peak * loss.mean);
       loss_ += term.loss;
       absolute_loss_ += part(peak * loss.absolute);
       bend_ = max(bend_, part((T(2) * sqrt(along.upper()) + line.farthest) * line.farthest));
     }
     sum_.add(term.mass, color_of(g));
-    // The closed form's own, with its logarithm; and K (v - c), which is off by some units of its
-    // largest terms, seen through the density's slope: (2.4 max(1, s)) e^(-s²) at most, |p| >= s.
+    // The error of the closed form, with its logarithm; and that of K (v - c), a few u of its
+    // largest terms, times the density's slope: at most (2.4 max(1, s)) e^(-s²), |p| >= s.
     const T away = sqrt(max(along.lower(), T(1)));
     rounding_ += part(
         bound * (T(rounding_unit<T>) * (T(48) + T(32) * along.lower() + T(160) * away * reach(g))));
   }
 
-  /// max |K| |v - c| over the span, moduli entry by entry.
+  /// Returns max |K| |v - c| over the span, with absolute values entry by entry.
   PELLUCID_HD T reach(const Gaussian<S>& g) const noexcept {
     T largest_row = T(0);
     for (int i = 0; i < g.rows; ++i) {
@@ -187,13 +188,13 @@ class PanelIntegrator {
   }
 
   PELLUCID_HD Material<T> material(T u) const noexcept {
-    T v[most_channels];
+    T v[max_channels];
     for (int c = 0; c < transfer_.channels; ++c) v[c] = evaluate(span_.data[c], u);
     T extinction = T(0);
     Rgb<T> emission{};
     for (int n = 0; n < count_; ++n) {
       const Gaussian<S>& g = gaussian(term_[n]);
-      // Of other lanes' terms nothing.
+      // Terms of other lanes do not count.
       const T here = select(term_[n].mass > T(0), T(g.peak) * g.density(v), T(0));
       extinction += here;
       emission += here * color_of(g);
@@ -203,7 +204,8 @@ class PanelIntegrator {
     return {select(absorbs, extinction, T(0)), inverse * emission};
   }
 
-  /// The color by N Gauss nodes where it is wanted and they are estimated to do.
+  /// Computes the color by N Gauss nodes in the lanes of `wanted` in which their estimated error is
+  /// within budget.
   template <int N, class Mask>
   PELLUCID_HD void try_nodes_of(T allowed, T oscillation, Mask& wanted,
                                 BoundedSegment<T>& found) const noexcept {
@@ -234,11 +236,11 @@ class PanelIntegrator {
     if (any(wanted)) try_nodes_of<8>(allowed, oscillation, wanted, found);
   }
 
-  /// What the terms with more depth than `negligible` do.
+  /// Properties of the terms that are deeper than `negligible`.
   struct Matter {
     ColorRange<T> colors;
-    T change{};    ///< a bound on the change of the logarithm of any ratio of two of them
-    T left_out{};  ///< the depth of all others
+    T change{};    ///< upper bound on the change of the logarithm of any ratio of two of them
+    T left_out{};  ///< depth of all others
   };
   PELLUCID_HD Matter matter(T negligible) const noexcept {
     Matter result;
@@ -264,7 +266,7 @@ class PanelIntegrator {
       const T bend = term.bend - bend_of, slope = term.slope - slope_of;
       const T sizes = abs(term.bend) + abs(term.slope) + abs(bend_of) + abs(slope_of);
       const T change = parabola_range(bend, slope) + T(16 * rounding_unit<T>) * sizes;
-      // The heaviest against itself changes nothing.
+      // The heaviest term does not change relative to itself.
       const auto same = (term.mass == heaviest) & (bend == T(0)) & (slope == T(0));
       changes.add(select(counts & (alone | !same), change, T(0)));
     }
@@ -287,7 +289,7 @@ class PanelIntegrator {
     found.color_error = min(range, range * (T(0.25) * m.change) + tables_.colors) *
                             (alpha * mean_color_bound(sum_.depth)) +
                         min(T(2) * m.left_out, alpha) * all_colors;
-    // What cutting does not lower must not make it go on forever.
+    // Errors that cutting does not reduce must not prevent termination.
     const T payable = max(allowed - largest_color_ * fixed_, T(0.5) * allowed);
     const T left = payable - largest_color_ * loss;
     const auto wanted = (found.color_error > left) & (left > T(0));
@@ -298,8 +300,8 @@ class PanelIntegrator {
     }
   }
 
-  /// Where to cut: beside the Gaussian that asks for it most, so that it is left alone between two
-  /// cuts; in the middle where that is not inside, or where it is wide.
+  /// Returns where to cut: next to the Gaussian with the largest error or depth, so that two cuts
+  /// isolate it; in the middle if that position is outside, or the Gaussian is wide.
   template <class Mask>
   PELLUCID_HD T best_cut(Mask by_loss, T allowed) const noexcept {
     T most = T(0), bend = T(0), slope = T(0), peak = T(0);
@@ -324,7 +326,7 @@ class PanelIntegrator {
     return select(inside(middle - reach), middle - reach, behind);
   }
 
-  const Multivariate<S>& transfer_;
+  const MultivariateTransfer<S>& transfer_;
   const MultivariateSpan<T, Data>& span_;
   const PanelDemand<T, Set>& demand_;
   const Allowance& allowance_;
@@ -332,54 +334,53 @@ class PanelIntegrator {
 
   Term* term_;
   int count_ = 0;
-  T seen_{};       ///< how many of them matter, lane by lane
-  T most_{};       ///< a bound on their depth, together
-  T exponents_{};  ///< how much an exponent changes at most
-  T bend_{};       ///< how much it differs from that of its line at most
+  T seen_{};       ///< number of terms that matter, lane by lane
+  T most_{};       ///< upper bound on their total depth
+  T exponents_{};  ///< upper bound on the change of an exponent
+  T bend_{};       ///< upper bound on its difference from the exponent of its line
   T loss_{}, absolute_loss_{};
   T rest_{}, rounding_{};
   PanelTables<T> tables_;
   DepthWeightedColor<T> sum_;
-  T fixed_{};  ///< of the depth: what rounding does, however the panel is cut
+  T fixed_{};  ///< error of the depth due to rounding, which cutting does not reduce
 };
 
 }  // namespace detail
 
-/// The volume rendering integral (particle model) of a sum of Gaussians and piecewise-linear
-/// functions along data that are cubics, or why the panel has to be cut. allowance(opacity): how
-/// large PanelSegment::error() may be, >= its value at 0 > 0. Where nothing is seen the segment is
-/// clear, and its errors say what was left out.
+/// Integrates the volume rendering integral (particle model) of a sum of Gaussians and
+/// piecewise-linear functions along cubic data, or says where to cut the panel. allowance(opacity)
+/// returns the largest permitted PanelSegment::error(); it is >= allowance(0) > 0. A transparent
+/// panel has a transparent segment, and its errors include the ignored terms.
 ///
-/// Lines stand for the cubics (gaussian_cubic.h), each depth in closed form; tables have their
-/// exact depth. The color is the mean of theirs; or, where that is not enough and the grade is
-/// `estimated`, that of Gauss nodes on the cubics themselves, while no exponent changes by more
-/// than
-/// 2. What the lines and the mean color cost is proved:
+/// Lines replace the cubics (gaussian_cubic.h), with each depth in closed form; tables have their
+/// exact depth. The color is the mean of the terms. If that is not accurate enough and the grade is
+/// `estimated`, it is computed by Gauss nodes on the cubics themselves, as long as no exponent
+/// changes by more than 2. The errors of the lines and of the mean color are proved bounds:
 ///
-/// Let δ_i be the change of extinction of term i where its line is put in its place. Along the way
-/// from one to the other the pixel's X changes by Y, |Y| = |∫ Σ w_i δ_i| in front, w_i = T (c_i -
-/// X_behind): |w_i| <= C_max, and w_i' = -τ T (c_i - c) for the mean color c, so that w_i varies by
-/// at most C_max α on the panel, α its opacity, of the cubics or the lines. Hence |Y| <= C_max Σ
-/// (|∫ δ_i| + α ∫ |δ_i|), which is charged as an error of the opacity. The mean color then costs ω
-/// κ(m) per opacity (segment/gaussian_panels.h), ω the range of the mean of the colors on the
-/// panel: at most (range of all) · Δ/4 + (range of a table's own color), Δ as there.
+/// Let δ_i be the change of the extinction of term i if its line replaces it. Between the two the
+/// pixel's radiance X changes by Y, |Y| = |∫ Σ w_i δ_i| at the front, w_i = T (c_i - X_behind):
+/// |w_i| <= C_max, and w_i' = -τ T (c_i - c) with the mean color c, so that w_i varies by at most
+/// C_max α on the panel, with the opacity α of the cubics or the lines. Hence |Y| <= C_max Σ (|∫
+/// δ_i| + α ∫ |δ_i|), which is charged as an error of the opacity. The mean color then adds ω κ(m)
+/// relative to the opacity (segment/gaussian_panels.h), with the range ω of the mean of the colors
+/// on the panel: at most (range of all) · Δ/4 + (range of a table's own color), Δ as there.
 ///
-/// T: double, or a batch of it, panels in lanes. `room` is for the function alone.
+/// T: double, or a batch of doubles, one panel per lane. `room` is memory for the function's own
+/// use.
 template <class T, class Data, class Set, class Allowance>
-PELLUCID_HD PanelSegment<T> integrate_multivariate_panel(const Multivariate<scalar_t<T>>& transfer,
-                                                         const MultivariateSpan<T, Data>& span,
-                                                         const PanelDemand<T, Set>& demand,
-                                                         const Allowance& allowance,
-                                                         PanelRoom<T>& room) noexcept {
+PELLUCID_HD PanelSegment<T> integrate_multivariate_panel(
+    const MultivariateTransfer<scalar_t<T>>& transfer, const MultivariateSpan<T, Data>& span,
+    const PanelDemand<T, Set>& demand, const Allowance& allowance,
+    PanelWorkspace<T>& room) noexcept {
   return detail::PanelIntegrator<T, Data, Set, Allowance>(transfer, span, demand, allowance, room)
       .run();
 }
 template <class T, class Data, class Set, class Allowance>
-PELLUCID_HD PanelSegment<T> integrate_multivariate_panel(const Multivariate<T>& transfer,
+PELLUCID_HD PanelSegment<T> integrate_multivariate_panel(const MultivariateTransfer<T>& transfer,
                                                          const MultivariateSpan<T, Data>& span,
                                                          const PanelDemand<T, Set>& demand,
                                                          const Allowance& allowance) noexcept {
-  PanelRoom<T> room;
+  PanelWorkspace<T> room;
   return integrate_multivariate_panel(transfer, span, demand, allowance, room);
 }
 

@@ -6,12 +6,13 @@
 
 namespace pellucid {
 
-/// A stretch of a ray on which every channel is Data of u in [0, 1]: a cubic, or linear.
+/// A span of a ray on which every channel is Data of u in [0, 1]: a cubic, or linear.
 template <class T, class Data = CubicBernstein<T>>
 struct MultivariateSpan {
-  Data data[most_channels];
-  T length{};  ///< world
+  Data data[max_channels];
+  T length{};  ///< world units
 
+  /// Returns the part from u = begin to u = end.
   PELLUCID_HD MultivariateSpan part(int channels, T begin, T end) const noexcept {
     MultivariateSpan result;
     for (int c = 0; c < channels; ++c) result.data[c] = restrict_to(data[c], begin, end);
@@ -20,7 +21,7 @@ struct MultivariateSpan {
   }
 };
 
-/// Of linear data.
+/// A span with linear data.
 template <class T>
 using LinearSpan = MultivariateSpan<T, LinearBernstein<T>>;
 

@@ -19,18 +19,18 @@ struct TopTwo {
   PELLUCID_HD T sum() const noexcept { return first + second; }
 };
 
-/// What the tables of a transfer function do on a panel.
+/// The tables of a transfer function on a panel.
 template <class T>
 struct PanelTables {
   DepthWeightedColor<T> sum;
-  T most{};           ///< a bound on their depth
-  T rounding{};       ///< of the depth, and of the color as if it were of the depth
-  T colors{};         ///< how much the color of any one of them changes
-  TopTwo<T> changes;  ///< of the logarithms of their extinctions
+  T most{};           ///< upper bound on their depth
+  T rounding{};       ///< error of the depth, plus that of the color as if it were one of the depth
+  T colors{};         ///< largest change of the color of any one of them
+  TopTwo<T> changes;  ///< largest changes of the logarithms of their extinctions
 };
 
 template <class S, class Data>
-PELLUCID_HD PanelTables<S> measure_tables_of_one(const Multivariate<S>& transfer,
+PELLUCID_HD PanelTables<S> measure_tables_of_one(const MultivariateTransfer<S>& transfer,
                                                  const MultivariateSpan<S, Data>& span,
                                                  S largest_color) noexcept {
   PanelTables<S> result;
@@ -61,9 +61,9 @@ PELLUCID_HD PanelTables<S> measure_tables_of_one(const Multivariate<S>& transfer
   return result;
 }
 
-/// Lane by lane where T is a batch: tables are looked up one number at a time.
+/// Computes the tables lane by lane if T is a batch: tables are looked up one number at a time.
 template <class T, template <class> class Data>
-PELLUCID_HD PanelTables<T> measure_tables(const Multivariate<scalar_t<T>>& transfer,
+PELLUCID_HD PanelTables<T> measure_tables(const MultivariateTransfer<scalar_t<T>>& transfer,
                                           const MultivariateSpan<T, Data<T>>& span,
                                           scalar_t<T> largest_color) noexcept {
   if constexpr (lanes<T> == 1) {
@@ -71,7 +71,7 @@ PELLUCID_HD PanelTables<T> measure_tables(const Multivariate<scalar_t<T>>& trans
   } else {
     using S = scalar_t<T>;
     constexpr int n = lanes<T>, fields = 15, numbers = sizeof(Data<S>) / sizeof(S);
-    S in[numbers][most_channels][n], lengths[n], out[fields][n];
+    S in[numbers][max_channels][n], lengths[n], out[fields][n];
     for (int c = 0; c < transfer.channels; ++c) {
       for (int k = 0; k < numbers; ++k) span.data[c].b[k].store(in[k][c]);
     }

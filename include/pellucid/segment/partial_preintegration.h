@@ -6,14 +6,14 @@
 
 namespace pellucid {
 
-/// Ψ(x_f, x_b) = ∫₀¹ transparency(u) du of a segment whose extinction · length goes linearly from
-/// x_f to x_b, over γ = x/(1 + x), which brings all of them into [0, 1]. It knows no transfer
-/// function. A view; owns nothing.
+/// A table of Ψ(x_f, x_b) = ∫₀¹ transparency(u) du of a segment whose extinction · length is linear
+/// from x_f to x_b, over γ = x/(1 + x), which maps all of them to [0, 1]. Independent of the
+/// transfer function. A view; owns nothing.
 struct PsiTable {
   const float* psi = nullptr;  ///< nodes², that of x_b fastest; node i is γ = i/(nodes - 1)
   int nodes = 0;               ///< along each axis, >= 2
 
-  /// Bilinear between the nodes, for finite x >= 0.
+  /// Returns Ψ, bilinear between the nodes, for finite x >= 0.
   template <class T>
   PELLUCID_HD T look_up(T x_f, T x_b) const noexcept {
     const T last = T(nodes - 1);
@@ -27,12 +27,13 @@ struct PsiTable {
   }
 };
 
-/// Partial pre-integration (Moreland and Angel 2004): Moreland's integral (segment/linear.h) with Ψ
-/// from a table, for comparison. Optical depth, opacity and transparency are exact up to rounding.
+/// Returns the segment by partial pre-integration (Moreland and Angel 2004): Moreland's integral
+/// (segment/linear.h) with Ψ from a table, for comparison. Optical depth, opacity and transparency
+/// are exact up to rounding.
 ///
-/// Largest error of both colors' weights with 512² nodes: 1.0e-3, and relative to them 1.8e-2, for
-/// extinction · length up to 510 at both ends. Beyond, in the last row of the table, where Ψ ends
-/// like a square root, 1.5e-2. Asserted in tests/cpu.
+/// Largest error of both colors' weights with 512² nodes: 1.0e-3 absolute and 1.8e-2 relative, for
+/// extinction · length up to 510 at both ends. Beyond, in the last row of the table, where Ψ
+/// behaves like a square root, 1.5e-2. Asserted in tests/cpu.
 template <class T>
 PELLUCID_HD SegmentResult<T> partial_segment(const PsiTable& table, const Material<T>& front,
                                              const Material<T>& back, T length) noexcept {

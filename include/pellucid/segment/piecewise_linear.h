@@ -6,19 +6,19 @@
 
 namespace pellucid {
 
-/// The volume rendering integral (particle model) over data that run linearly from v_f (front) to
-/// v_b over the length, seen through a piecewise-linear transfer function: cut at the control
-/// points between them, in ray order; each stretch is a linear_segment(), so that the sum is exact
-/// (specification, 3.6).
+/// Integrates the volume rendering integral (particle model) over data that are linear from v_f
+/// (front) to v_b over the length, through a piecewise-linear transfer function. It cuts at the
+/// control points in between, in ray order; each part is a linear_segment(), so that the sum is
+/// exact (specification, 3.6).
 ///
-/// Stretches between control points begin and end with the table's own materials, not with
-/// interpolated ones, and their lengths are differences of control values: nothing cancels in
-/// narrow intervals. At a jump (two equal control values) the one side ends and the other begins.
-/// v_f = v_b is one constant segment; at a jump itself the right value holds.
+/// Parts between control points begin and end with the table's own materials, not with interpolated
+/// ones, and their lengths are differences of control values: nothing cancels in narrow intervals.
+/// At a jump (two equal control values) one side ends and the other begins. v_f = v_b is one
+/// constant segment; at a jump itself the right value holds.
 ///
-/// Largest error: 16 u · opacity in opacity and, for colors <= 1, in each channel of radiance,
-/// where at most 16 control points are crossed (3 u · opacity for each that follows). Asserted in
-/// tests/segment. Finite where the data's difference and extinction · length are.
+/// Largest error: 16 u · opacity in opacity and, for colors <= 1, in each channel of radiance, if
+/// at most 16 control points are crossed (3 u · opacity for each further one). Asserted in
+/// tests/segment. Finite if the data's difference and extinction · length are.
 template <class T>
 PELLUCID_HD SegmentResult<T> piecewise_linear_segment(const PiecewiseLinear<T>& table, T v_f, T v_b,
                                                       T length) noexcept {

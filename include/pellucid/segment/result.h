@@ -5,9 +5,10 @@
 
 namespace pellucid {
 
-/// What a stretch of a ray does to the light: radiance = L + T · (what enters at its back).
-/// Optical depth keeps what transparency loses by underflow; opacity keeps what 1 − T loses in thin
-/// segments. The four agree: transparency = exp(−optical_depth) = 1 − opacity.
+/// The effect of a segment of a ray on the light: radiance = L + T · (radiance that enters at its
+/// back). The optical depth keeps what the transparency loses by underflow; the opacity keeps what
+/// 1 − T loses in thin segments. The four are consistent: transparency = exp(−optical_depth) = 1 −
+/// opacity.
 template <class T>
 struct SegmentResult {
   T optical_depth{};      ///< >= 0
@@ -16,7 +17,7 @@ struct SegmentResult {
   Rgb<T> radiance{};      ///< premultiplied by construction
 };
 
-/// The over operator, associative: front first (specification, equation 2).
+/// Returns the over operator, which is associative: front first (specification, equation 2).
 template <class T>
 PELLUCID_HD constexpr SegmentResult<T> compose(const SegmentResult<T>& front,
                                                const SegmentResult<T>& back) noexcept {

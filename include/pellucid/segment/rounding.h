@@ -7,24 +7,24 @@
 
 namespace pellucid {
 
-/// What a transfer function does to small errors of the data, over some of its intervals.
+/// The sensitivity of a transfer function to small errors of the data, over some of its intervals.
 template <class T>
 struct Sensitivity {
   T largest_extinction{};
-  T extinction_slope{};  ///< largest |change of extinction| per data value, jumps left out
-  T color_slope{};       ///< the same of any color channel
-  bool jump = false;     ///< whether two control points have (nearly) one value
+  T extinction_slope{};  ///< largest |slope| of the extinction, jumps excluded
+  T color_slope{};       ///< largest |slope| of any color channel, jumps excluded
+  bool jump = false;     ///< whether two control points have (nearly) the same value
 
-  T color_jumps{};  ///< how much the color changes in those, in all
+  T color_jumps{};  ///< total change of the color in those
 
-  /// How far apart the colors of data within `range` of each other may be.
+  /// Returns the largest difference between the colors of data within `range` of each other.
   PELLUCID_HD T color_change(T range, T largest_color) const noexcept {
     return min(color_slope * range + color_jumps, largest_color);
   }
 };
 
-/// Over the intervals first … last of the table: a loop, for the few that a cell reaches. What is
-/// narrower than a few data_error is a jump.
+/// Returns the sensitivity over the intervals first … last of the table, by a loop over the few
+/// intervals that a cell reaches. Intervals narrower than 4 data_error count as jumps.
 template <class T>
 PELLUCID_HD Sensitivity<T> sensitivity(const PiecewiseLinear<T>& table, int first, int last,
                                        T data_error) noexcept {
@@ -49,9 +49,9 @@ PELLUCID_HD Sensitivity<T> sensitivity(const PiecewiseLinear<T>& table, int firs
   return result;
 }
 
-/// For how much of [0,1] the data are within `distance` of `value`, at most, by pieces: where a
-/// piece is monotone, 2 · distance over its least slope; where it turns, √(distance / oscillation)
-/// of it twice, as at the tip of a parabola (an estimate).
+/// Returns an upper bound on the fraction of [0,1] in which the data are within `distance` of
+/// `value`, by pieces: on a monotone piece 2 · distance over its smallest slope; on a piece with an
+/// extremum twice √(distance / oscillation) of it, as at the vertex of a parabola (an estimate).
 template <class T>
 PELLUCID_HD T share_near(const CubicBernstein<T>& data, T value, T distance) noexcept {
   constexpr int pieces = 16;
@@ -70,8 +70,8 @@ PELLUCID_HD T share_near(const CubicBernstein<T>& data, T value, T distance) noe
   return share;
 }
 
-/// How much the jumps in the intervals first … last change the depth when each is off by
-/// `distance`: the jumps' sizes times the share of the length near them.
+/// Returns the change of the depth by the jumps in the intervals first … last if each is displaced
+/// by `distance`: the sizes of the jumps times the fraction of the length near them.
 template <class T>
 PELLUCID_HD T jump_rounding(const CubicBernstein<T>& data, const PiecewiseLinear<T>& table,
                             int first, int last, T distance) noexcept {
@@ -85,10 +85,10 @@ PELLUCID_HD T jump_rounding(const CubicBernstein<T>& data, const PiecewiseLinear
   return sum;
 }
 
-/// How far rounding in T can move the data along a cell: 32 u max|b|, of which 13 u are those of
-/// trilinear_cubic(), as much comes from its positions, the rest from differences and crossings.
-/// Equal corners give their value exactly, but in binary32 neither they nor the control values are
-/// what was given.
+/// Returns the largest effect of rounding in T on the data along a cell: 32 u max|b|. 13 u of it
+/// are those of trilinear_cubic(), as much comes from its positions, the rest from differences and
+/// crossings. Equal corners give their value exactly; in binary32, however, neither they nor the
+/// control values are exact.
 template <class T>
 PELLUCID_HD T data_rounding(const CubicBernstein<T>& data) noexcept {
   const T lower = data.hull_min(), upper = data.hull_max();
@@ -96,18 +96,19 @@ PELLUCID_HD T data_rounding(const CubicBernstein<T>& data) noexcept {
                                        : T(0);
 }
 
-/// What rounding in T can do to the segment of a cell.
+/// The effect of rounding in T on the segment of a cell.
 ///
-/// Data that are off by data_error move the depth by data_error · slope · length, the color by
-/// data_error · slope of the color, and the place of a jump to where the data are near it. The
-/// closed forms add 32 u of the opacity. At least twice what tests/segment finds.
+/// Data with an error data_error change the depth by data_error · slope · length, the color by
+/// data_error · slope of the color, and the position of a jump within the part where the data are
+/// near it. The closed forms add 32 u of the opacity. At least twice the errors that tests/segment
+/// finds.
 template <class T>
 struct RoundingError {
-  T color{};  ///< of the color, per opacity
-  T depth{};  ///< of the optical depth, beside that of the closed forms
+  T color{};  ///< of the color, relative to the opacity
+  T depth{};  ///< of the optical depth, in addition to that of the closed forms
 
-  /// color_error and opacity_error of a segment in the manner of BoundedSegment. Depths beyond
-  /// which nothing is seen may be off by any amount.
+  /// Return color_error and opacity_error of a segment as in BoundedSegment. The error of the depth
+  /// is ignored beyond the depth at which a segment is opaque.
   PELLUCID_HD T color_error(T opacity) const noexcept { return opacity * color; }
   PELLUCID_HD T opacity_error(T opacity, T transparency) const noexcept {
     constexpr T u = T(rounding_unit<T>);
@@ -118,7 +119,8 @@ struct RoundingError {
   }
 };
 
-/// `first`, `last`: the intervals that the data reach, widened by data_error.
+/// Returns the effect of rounding. `first` and `last` are the intervals that the data reach,
+/// widened by data_error.
 template <class T>
 PELLUCID_HD RoundingError<T> rounding_error(const CubicBernstein<T>& data, T length,
                                             T largest_color, const PiecewiseLinear<T>& table,

@@ -7,15 +7,14 @@
 
 namespace pellucid {
 
-/// A stretch of a ray in four steps of one length, and how far it is from the same in two.
+/// A span of four steps of equal length, and its difference from two steps of twice the length.
 template <class T>
 struct SampledSegment {
   SegmentResult<T> segment;
   T difference;  ///< the largest of opacity and the channels of radiance
 };
 
-/// What is at one place, an end of a step say: extinction, and emission, which is extinction ·
-/// color.
+/// Sample at the end of a step: extinction, and emission, which is extinction · color.
 template <class T>
 struct StepEnd {
   T extinction;
@@ -29,7 +28,8 @@ struct StepEnd {
 
 namespace detail {
 
-/// The trapezoidal rule: a mean of the ends' extinctions, and of their colors weighted by these.
+/// Returns the trapezoidal rule: the mean of the ends' extinctions, and of their colors weighted by
+/// these.
 template <class T>
 SegmentResult<T> trapezoid(const StepEnd<T>& front, const StepEnd<T>& back, T length) noexcept {
   const T half = T(0.5) * length, depth = half * (front.extinction + back.extinction);
@@ -39,8 +39,8 @@ SegmentResult<T> trapezoid(const StepEnd<T>& front, const StepEnd<T>& back, T le
           (half * mean_transparency) * (front.emission + back.emission)};
 }
 
-/// Two steps, and the same as one: by Richardson, which takes off what the trapezoidal rule errs in
-/// h².
+/// Returns two steps improved by Richardson extrapolation with the same span as one step, which
+/// cancels the error of the trapezoidal rule in h².
 template <class T>
 SegmentResult<T> improve(const SegmentResult<T>& first, const SegmentResult<T>& second,
                          const SegmentResult<T>& as_one) noexcept {
@@ -60,15 +60,15 @@ SegmentResult<T> improve(const SegmentResult<T>& first, const SegmentResult<T>& 
 
 }  // namespace detail
 
-/// The segment of four steps of this length, from what is at their five ends: Simpson's rule
-/// in effect, of which `difference` takes the same at twice the length. What the segment itself
-/// errs is a small part of it where the data are smooth (a sixteenth where they are so smooth that
-/// this says all), and less than it where they bend at places that the samples do not know.
-/// tests/segment holds it against quadrature.
+/// Returns the segment of four steps of this length from the samples at their five ends. It is in
+/// effect Simpson's rule; `difference` compares it with the rule at twice the step length. For
+/// smooth data the segment's own error is a small fraction of `difference` (a sixteenth in the
+/// limit), and less than it for data with kinks at positions unknown to the samples. tests/segment
+/// compares it with quadrature.
 ///
-/// Not accurate to the last digits where opacity is small: of a stretch among others of a ray.
-/// length · largest extinction must be at most 1: of denser steps the result is finite, and
-/// meaningless.
+/// Limitations: not accurate to the last digits if the opacity is small; meant for a span among
+/// others of a ray. length · largest extinction must be at most 1; otherwise the result is finite
+/// but meaningless.
 template <class T>
 SampledSegment<T> sampled_segment(const StepEnd<T>* end, T length) noexcept {
   const T two = T(2) * length;
@@ -92,6 +92,7 @@ SampledSegment<T> sampled_segment(const StepEnd<T>* end, T length) noexcept {
   return r;
 }
 
+/// Returns the same from five materials.
 template <class T>
 SampledSegment<T> sampled_segment(const Material<T>* at, T length) noexcept {
   StepEnd<T> end[5];

@@ -9,24 +9,24 @@
 
 namespace pellucid {
 
-/// A stretch of a ray that is known at its ends and its middle only, and by how far the data leave
-/// the chords between these: it may cross any number of cells.
+/// A span of a ray, across any number of cells, with data known at its ends and its middle and a
+/// bound on their deviation from the chords between these.
 template <class T>
 struct Stride {
   T front, middle, back;  ///< data values
   T length;
-  T deviation;  ///< |data - chord| <= this on either half; its mean over a half is at most half of
-                ///< it
+  /// |data - chord| <= this on either half; its mean over a half is at most half of it.
+  T deviation;
 };
 
-/// How far below the proved bound an estimate may be: what keeps data that look smooth at three
-/// points and are not from being trusted.
+/// Largest factor by which an estimate may be below the proved bound. It limits the trust in data
+/// that look smooth at three points and are not.
 template <class T>
 inline constexpr scalar_t<T> stride_guard = scalar_t<T>(4);
 
 namespace detail {
 
-/// Means of extinction and of extinction · color over data that run linearly from a to b.
+/// Returns the means of extinction and of extinction · color over data that are linear from a to b.
 template <class T>
 PELLUCID_HD RangeIntegrals<T> line_means(const PiecewiseLinear<T>& table,
                                          const PiecewiseLinearAntiderivative<T>& antiderivative,
@@ -42,8 +42,8 @@ PELLUCID_HD RangeIntegrals<T> line_means(const PiecewiseLinear<T>& table,
   return {mean.mass / width, (T(1) / width) * mean.emission};
 }
 
-/// A half of a stride: its segment with the depth-weighted mean color, whose error by (5) counts.
-/// `depth_error`, `color_error`: of the depth, and of that mean.
+/// Returns the segment of half a stride with its depth-weighted mean color, including the error by
+/// (5). `depth_error` and `color_error` are the errors of the depth and of that mean.
 template <class T>
 PELLUCID_HD BoundedSegment<T> stride_half(T depth, const Rgb<T>& color, T depth_error,
                                           T color_error, T color_range) noexcept {
@@ -63,20 +63,20 @@ PELLUCID_HD BoundedSegment<T> stride_half(T depth, const Rgb<T>& color, T depth_
 
 }  // namespace detail
 
-/// Integrates a stride by the antiderivatives of the transfer function along its two chords; false
-/// where that is not good enough: where color_error + largest_color · opacity_error would be above
-/// allowance(opacity).
+/// Integrates a stride along its two chords by the antiderivatives of the transfer function.
+/// Returns false if it is not accurate enough: if color_error + largest_color · opacity_error would
+/// be above allowance(opacity).
 ///
-/// Proved: with S the largest |slope| of the extinction over the values that the data can have, δ
-/// the deviation, a half of length l is off in depth by at most l min(S δ/2, V δ/k), V the
-/// variation of the extinction and k the change of value along the chord ((a), (b) in
-/// segment/line_rule.h); the mean color by (ω S + S_c) δ/2 over the mean extinction, ω the range of
-/// colors, S_c the largest extinction · |color'|; and (5).
+/// Proved bound: with the largest |slope| S of the extinction over the values that the data can
+/// have, and the deviation δ, the depth of a half of length l has an error of at most l min(S δ/2,
+/// V δ/k), with the variation V of the extinction and the change k of value along the chord ((a),
+/// (b) in segment/line_error.h). The mean color has an error of (ω S + S_c) δ/2 over the mean
+/// extinction, with the range ω of colors and the largest extinction · |color'| S_c; and (5).
 ///
-/// Estimated, but no lower than that bound over stride_guard: the chord of the
-/// whole against those of the halves. A third of their difference is taken off (Richardson), and as
-/// much counts as the error: what it is for one bend of the data at a random place, half of what it
-/// is at the worst.
+/// Estimate, but at least the proved bound over stride_guard: the chord of the whole stride against
+/// those of the halves. A third of their difference is subtracted (Richardson), and the same amount
+/// is charged as the error: it is the error for one kink of the data at a random position, and half
+/// of the error in the worst case.
 template <class T, class Allowance>
 PELLUCID_HD bool integrate_stride(const Stride<T>& stride, const PiecewiseLinear<T>& table,
                                   const PiecewiseLinearAntiderivative<T>& antiderivative,

@@ -7,20 +7,21 @@
 
 namespace pellucid {
 
-/// What a piecewise-linear transfer function of one channel does along a stretch on which that
-/// channel is a cubic.
+/// A piecewise-linear transfer function of one channel along a span on which that channel is a
+/// cubic.
 template <class T>
 struct TableMass {
-  T depth{};            ///< its optical depth: exact up to rounding
-  Rgb<T> color{};       ///< the mean color, weighted by depth: exact too
-  ColorRange<T> range;  ///< of the colors that are seen, at least
-  /// The least and the largest extinction, at least as far apart as they are.
+  T depth{};            ///< optical depth, exact up to rounding
+  Rgb<T> color{};       ///< mean color weighted by depth, also exact up to rounding
+  ColorRange<T> range;  ///< contains all colors on the span
+  /// Lower and upper bound on the extinction.
   T lower = T(largest<T>), upper{};
 };
 
 namespace detail {
 
-/// ∫₀¹ f², by the products of Bernstein polynomials: ∫ B_i B_j = C(3,i) C(3,j) / (7 C(6,i+j)).
+/// Returns ∫₀¹ f², by the products of Bernstein polynomials: ∫ B_i B_j = C(3,i) C(3,j) / (7
+/// C(6,i+j)).
 template <class T>
 PELLUCID_HD T mean_square(const CubicBernstein<T>& f) noexcept {
   const T* b = f.b;
@@ -32,6 +33,7 @@ PELLUCID_HD T mean_square(const CubicBernstein<T>& f) noexcept {
 
 }  // namespace detail
 
+/// Integrates one table along a span of this length.
 template <class T>
 PELLUCID_HD TableMass<T> table_mass(const CubicBernstein<T>& data, const PiecewiseLinear<T>& table,
                                     T length) noexcept {

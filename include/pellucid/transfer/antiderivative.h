@@ -18,29 +18,28 @@ struct RangeIntegrals {
   }
 };
 
-/// What a transfer function does over a range of data values: its integrals over the range, and how
-/// unruly it is there. Two ranges side by side merge into one; the default is the empty range.
-/// "Absorbing" is where the extinction is positive, somewhere in the interval at least: colors of
-/// what is never seen do not count.
+/// The integrals of a transfer function over a range of data values, and bounds on its variation
+/// there. Adjacent ranges merge into one; the default is the empty range. A value absorbs if its
+/// extinction is positive; colors of values that do not absorb are ignored.
 template <class T>
 struct RangeSummary {
   RangeIntegrals<T> integral;
   T variation{};  ///< ∫ |extinction'| dv, jumps included
-  /// The least and the largest extinction'; ∓ infinite with a jump, crossed over in the empty
+  /// The smallest and the largest extinction'; ∓infinity with a jump, min > max for the empty
   /// range.
   T slope_min = infinity, slope_max = -infinity;
   T color_variation{};  ///< ∫ extinction · |color'| dv (the largest channel), jumps included
   T color_slope{};      ///< largest extinction · |color'|; infinite with a jump
-  /// The hull of the absorbing colors; crossed over where nothing absorbs.
+  /// The hull of the absorbing colors; min > max if nothing absorbs.
   Rgb<T> color_min{infinity, infinity, infinity}, color_max{-infinity, -infinity, -infinity};
-  /// The least and the largest absorbing value; crossed over where nothing absorbs.
+  /// The smallest and the largest absorbing value; min > max if nothing absorbs.
   T support_min = infinity, support_max = -infinity;
 
   static constexpr scalar_t<T> infinity = std::numeric_limits<scalar_t<T>>::infinity();
 
   PELLUCID_HD bool absorbs() const noexcept { return support_min <= support_max; }
 
-  /// The largest difference of two absorbing colors, over the channels; 0 where nothing absorbs.
+  /// Returns the largest difference of two absorbing colors in any channel; 0 if nothing absorbs.
   PELLUCID_HD T color_range() const noexcept {
     const Rgb<T> range = color_max - color_min;
     return max(max(range.r, T(0)), max(range.g, range.b));
@@ -62,8 +61,8 @@ struct RangeSummary {
   }
 };
 
-/// The integrals alone over a stretch of one interval of a transfer function, from its materials at
-/// both ends: extinction and color are linear between them. Every term is >= 0 where colors are.
+/// Adds the integrals over a part of one interval of a transfer function, from the materials at
+/// both ends; extinction and color are linear between them. Every term is >= 0 if colors are.
 template <class T>
 PELLUCID_HD void add_stretch(RangeIntegrals<T>& sum, T width, const Material<T>& a,
                              const Material<T>& b) noexcept {
@@ -78,9 +77,9 @@ PELLUCID_HD T largest_difference(const Rgb<T>& a, const Rgb<T>& b) noexcept {
   return max(abs(d.r), max(abs(d.g), abs(d.b)));
 }
 
-/// Everything over [lower, upper], lower <= upper, which lie in one interval between two control
-/// points (or on its closure), where the materials are a and b. The slopes are those of the whole
-/// interval: extinction' and the largest of extinction · |color'|.
+/// Returns the summary of [lower, upper], lower <= upper, inside one interval between two control
+/// points (or its closure), with the materials a and b at the ends. The slopes are those of the
+/// whole interval: extinction', and the largest of extinction · |color'|.
 template <class T>
 PELLUCID_HD RangeSummary<T> stretch_summary(T lower, T upper, const Material<T>& a,
                                             const Material<T>& b, T slope, T color_slope) noexcept {
@@ -100,20 +99,22 @@ PELLUCID_HD RangeSummary<T> stretch_summary(T lower, T upper, const Material<T>&
   return s;
 }
 
-/// The antiderivatives of a transfer function and what bounds need of it (J. Kniss et al. 2003,
-/// equation 5, after N. Max 1990; here summed by intervals). A binary tree of summaries: leaf
-/// node[leaves + i] is the interval between control points i and i+1, and node[k] merges node[2 k]
-/// and node[2 k + 1]. Any run of intervals is the merger of at most 2 log2(leaves) nodes; sums have
-/// terms of one sign, so that none cancels however small the run is beside the whole table.
-/// A view: it owns nothing. Built by scene/antiderivative_storage.h.
+/// The antiderivatives of a transfer function, with the summaries that error bounds need (J. Kniss
+/// et al. 2003, equation 5, after N. Max 1990; here summed by intervals).
+///
+/// A binary tree of summaries: leaf node[leaves + i] is the interval between control points i and
+/// i+1, and node[k] merges node[2 k] and node[2 k + 1]. Any run of intervals is the union of at
+/// most 2 log2(leaves) nodes. All terms of a sum have the same sign, so that nothing cancels,
+/// however short the run is compared to the table. A view; owns nothing. Built by
+/// scene/antiderivative_storage.h.
 template <class T>
 struct PiecewiseLinearAntiderivative {
   const RangeSummary<T>* node = nullptr;  ///< 2 · leaves summaries, node[0] unused
   int leaves = 0;                         ///< control points - 1
   T rounding{};                           ///< relative error of any sum of nodes
 
-  /// Calls visit(node) for nodes that tile the table's intervals first … last - 1, first >= 1,
-  /// last <= leaves + 1 (those of PiecewiseLinear::interval(), the outsides never).
+  /// Calls visit(node) for nodes that tile the table's intervals first … last - 1, first >= 1, last
+  /// <= leaves + 1 (as in PiecewiseLinear::interval(), never the two outer ones).
   template <class Visit>
   PELLUCID_HD void for_each_node(int first, int last, Visit&& visit) const noexcept {
     for (int l = first - 1 + leaves, r = last - 1 + leaves; l < r; l /= 2, r /= 2) {
@@ -123,8 +124,9 @@ struct PiecewiseLinearAntiderivative {
   }
 };
 
-/// The interval that holds [first's lower end, v] from below: the number of control points with
-/// value < v, but `first` at least. Counts up from `first`, then halves: ranges are mostly short.
+/// Returns the interval that contains the values just below v: the number of control points with
+/// value < v, but at least `first`. Counts up from `first`, then bisects, because ranges are mostly
+/// short.
 template <class T>
 PELLUCID_HD int interval_below(const PiecewiseLinear<T>& table, T v, int first) noexcept {
   int lo = first, hi = table.count;
@@ -142,7 +144,7 @@ PELLUCID_HD int interval_below(const PiecewiseLinear<T>& table, T v, int first) 
   return lo;
 }
 
-/// table.interval(v), which is thought to be near `guess`.
+/// Returns table.interval(v), which is expected near `guess`.
 template <class T>
 PELLUCID_HD int interval_near(const PiecewiseLinear<T>& table, T v, int guess) noexcept {
   int i = guess;
@@ -158,8 +160,8 @@ PELLUCID_HD int interval_near(const PiecewiseLinear<T>& table, T v, int guess) n
   return table.interval(v);
 }
 
-/// A range of values that is not a single point, and the intervals of its ends: first =
-/// table.interval(lower), last = interval_below(table, upper, first).
+/// A range of more than one value, and the intervals of its ends: first = table.interval(lower),
+/// last = interval_below(table, upper, first).
 template <class T>
 struct ValueRange {
   T lower, upper;
@@ -170,7 +172,7 @@ struct ValueRange {
       : lower(lo), upper(hi), first(first_interval), last(last_interval) {}
 };
 
-/// Everything over a range. Largest relative error of the sums: antiderivative.rounding.
+/// Returns the summary of a range. Largest relative error of the sums: antiderivative.rounding.
 template <class T>
 PELLUCID_HD RangeSummary<T> range_summary(const PiecewiseLinear<T>& table,
                                           const PiecewiseLinearAntiderivative<T>& antiderivative,
@@ -195,7 +197,7 @@ PELLUCID_HD RangeSummary<T> range_summary(const PiecewiseLinear<T>& table,
   return sum;
 }
 
-/// The integrals alone over a range, with the same error.
+/// Returns the integrals of a range only, with the same error.
 template <class T>
 PELLUCID_HD RangeIntegrals<T> range_integrals(
     const PiecewiseLinear<T>& table, const PiecewiseLinearAntiderivative<T>& antiderivative,

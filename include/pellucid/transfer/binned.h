@@ -8,72 +8,71 @@
 
 namespace pellucid {
 
-/// A piecewise-linear transfer function for many rays at once: extinction and color in tables of
-/// their own, so that a segment is cut only where the extinction has a corner, and uniform bins
-/// over the data values that lead to them. A view of plain arrays, the same in every instruction
-/// set; owns nothing. Made by scene/binned_transfer_storage.h.
+/// A piecewise-linear transfer function for packets of rays. Extinction and color have separate
+/// tables, so that a segment is cut only at kinks of the extinction. Uniform bins over the data
+/// values lead to the table entries. A view of plain arrays, the same for every instruction set;
+/// owns nothing. Made by scene/binned_transfer_storage.h.
 ///
-/// Bin 0 holds everything below the table, the last one everything above. Which bin a value falls
-/// into is rounded, but rises with the value; what is said of a bin holds for all values that can
-/// fall into it.
+/// Bin 0 holds all values below the table, the last bin all values above. The bin of a value is
+/// rounded, but monotone in the value; bounds of a bin hold for all values that can fall into it.
 struct BinnedTransfer {
   /// Per interval of the extinction: lower, upper, extinction at the lower end, slope, then bounds
-  /// over the interval: the largest extinction, the steepest |slope| of it and of its neighbours,
-  /// the range of the absorbing colors, the largest |slope| of these, and of its neighbours'. The
-  /// outsides, whose slope is 0, reach to ∓far.
+  /// over the interval: the largest extinction, the largest |slope| of it and of its neighbors, the
+  /// range of the absorbing colors, the largest |slope| of these and of its neighbors' colors. The
+  /// outer intervals have slope 0 and extend to ∓far.
   const float* extinction = nullptr;
-  /// The first four of these in double, where binary32 is not good enough.
+  /// The first four of these in double, for spans that need binary64.
   const double* wide_extinction = nullptr;
-  /// Per interval of the extinction: the largest extinction on either side of jumps at its ends; 0:
-  /// there are none. Jumps are intervals of no width.
+  /// Per interval of the extinction: the largest extinction on either side of jumps at its ends; 0
+  /// if there are none. Jumps are intervals of width 0.
   const float* jump = nullptr;
   /// Per interval of the color: lower, upper, color at the lower end, its slope.
   const float* color = nullptr;
-  /// The lower end of each of these in double, and the upper end of the last one.
+  /// The lower end of each color interval in double, followed by the upper end of the last one.
   const double* wide_color_end = nullptr;
   const std::int32_t* first_extinction = nullptr;  ///< per bin: the interval of its lower edge
   const std::int32_t* first_color = nullptr;       ///< likewise
   const float* color_split = nullptr;              ///< per bin: the upper end of that interval
-  bool has_full_bins = false;  ///< whether any bin holds two corners of the color
-  /// Sums over the bins in front of each, bins + 1 of them: how many absorb, plus 2^16 times how
-  /// many hold a jump or what binary32 cannot tell apart.
+  bool has_full_bins = false;                      ///< whether any bin holds two kinks of the color
+  /// Prefix sums over the bins, bins + 1 of them: the number of absorbing bins, plus 2^16 times the
+  /// number of bins with a jump or with values that binary32 cannot distinguish.
   const std::int32_t* marks = nullptr;
-  /// The same, of bins that hold control points which are not equal and yet too close even for data
-  /// in binary64, whatever is between them.
-  const std::int32_t* hard_jumps = nullptr;
-  /// Sums over the bins in front of each of how much the slope of the color changes, in all,
-  /// largest channel, where the extinction has no corner.
-  const float* color_bend = nullptr;
+  /// Prefix sums over the bins: the number of bins with different control points that are too close
+  /// even for data in binary64, whatever is between them.
+  const std::int32_t* unresolved_jumps = nullptr;
+  /// Prefix sums over the bins: the total change of the color's slope, largest channel, at values
+  /// where the extinction has no kink.
+  const float* color_slope_change = nullptr;
   float origin = 0, bins_per_value = 0;
   std::int32_t bins = 0;
-  float bend_rounding = 0;  ///< of a difference of two of color_bend
-  bool bends = false;       ///< whether any of them is not 0
-  /// Whether marks say more than support_min and support_max do: there are jumps, or gaps.
+  float color_slope_change_rounding = 0;  ///< of a difference of two such sums
+  bool bends = false;                     ///< whether any of them is not 0
+  /// Whether `marks` says more than support_min and support_max: there are jumps or gaps.
   bool has_marks = false;
-  float support_min = 0, support_max = 0;  ///< nothing absorbs outside; crossed over: nowhere
-  /// Where marks hold no jump and there are few gaps: the ranges of values that absorb, lower and
-  /// upper ends, in ascending order, which take less than looking up marks. 0: see the marks.
-  static constexpr int most_supports = 4;
+  float support_min = 0, support_max = 0;  ///< nothing absorbs outside; min > max: nothing absorbs
+  /// Ranges of absorbing values, lower and upper ends in ascending order, if there are no jumps and
+  /// few gaps; faster than `marks`. 0 ranges: use `marks`.
+  static constexpr int max_supports = 4;
   int supports = 0;
-  float support[2 * most_supports] = {};
-  /// The width of the narrowest interval of the extinction that is no jump: what is said of an
-  /// interval and its neighbours holds for data that are off by less. Infinite: there is none.
+  float support[2 * max_supports] = {};
+  /// Width of the narrowest interval of the extinction that is no jump. Bounds of an interval and
+  /// its neighbors hold for data errors below it. Infinite if there is none.
   float narrowest = 0;
   float largest_extinction = 0;
   float largest_color = 0;
 
   static constexpr int extinction_fields = 8, wide_extinction_fields = 4, color_fields = 8;
-  /// The same records field by field, where there are few of them: looked up in registers. What is
-  /// behind the last one is never met.
+  /// The same records field by field, if there are at most this many, for look-up in registers.
+  /// Entries behind the last one are never used.
   static constexpr int few = 16;
   bool few_extinctions = false, few_colors = false;
   float few_extinction[extinction_fields][few] = {}, few_color[color_fields][few] = {};
   static constexpr std::int32_t one_jump = 1 << 16;
-  /// Beyond every value, and its differences to them are finite.
+  /// A number beyond every value, with finite differences to all of them.
   static constexpr float far = 1.7e38f;
 };
 
-/// The bins of values in lanes F; no NaN.
+/// Returns the bins of values in lanes F; no NaN.
 template <class F>
 auto bin_of(const BinnedTransfer& t, F value) noexcept {
   // Bounded as a float: a conversion that overflows has no value.
@@ -81,7 +80,7 @@ auto bin_of(const BinnedTransfer& t, F value) noexcept {
   return convert<std::int32_t>(clamp(place, F(0), F(static_cast<float>(t.bins - 1))));
 }
 
-/// Whether any of the ranges `support` meets that between `least` and `most`, in lanes.
+/// Returns in which lanes a range of `support` overlaps [least, most].
 template <class F>
 mask_t<F> meets_support(const BinnedTransfer& t, F least, F most) noexcept {
   mask_t<F> found(false);
@@ -91,15 +90,15 @@ mask_t<F> meets_support(const BinnedTransfer& t, F least, F most) noexcept {
   return found;
 }
 
-/// The marks between `least` and `most`, in lanes.
+/// Returns the difference of `marks` over [least, most], in lanes.
 template <class F>
 auto marks_between(const BinnedTransfer& t, F least, F most) noexcept {
   using Index = index_t<F>;
   return gather(t.marks, bin_of(t, most) + Index(1)) - gather(t.marks, bin_of(t, least));
 }
 
-/// Those of the lanes of which something between `least` and `most` may absorb; of these, `jumps`:
-/// whether one may lie there.
+/// Returns the lanes in which some value of [least, most] may absorb. `jumps` receives those of
+/// them in which a jump may be there.
 template <class F>
 mask_t<F> may_absorb(const BinnedTransfer& t, mask_t<F> lanes, F least, F most,
                      mask_t<F>& jumps) noexcept {
@@ -112,22 +111,22 @@ mask_t<F> may_absorb(const BinnedTransfer& t, mask_t<F> lanes, F least, F most,
   return lanes & (marks > index_t<F>(0));
 }
 
-/// Whether there is something between `least` and `most` that binary64 is not good enough for, in
-/// lanes.
+/// Returns in which lanes [least, most] contains a jump that binary64 cannot resolve.
 template <class F>
-mask_t<F> has_hard_jump(const BinnedTransfer& t, F least, F most) noexcept {
+mask_t<F> has_unresolved_jump(const BinnedTransfer& t, F least, F most) noexcept {
   using Index = index_t<F>;
-  return gather(t.hard_jumps, bin_of(t, most) + Index(1)) - gather(t.hard_jumps, bin_of(t, least)) >
+  return gather(t.unresolved_jumps, bin_of(t, most) + Index(1)) -
+             gather(t.unresolved_jumps, bin_of(t, least)) >
          Index(0);
 }
 
-/// One interval of the extinction, in lanes.
+/// One interval of the extinction per lane.
 template <class F>
 struct ExtinctionInterval {
   F lower, upper, at_lower, slope, largest, steepest, color_range, color_slope;
 };
 
-/// The records of intervals, from tables of few of them or of many.
+/// Loads the records of intervals, from the small tables if `are_few`, else from the large ones.
 template <int Fields, class F, class Index>
 void load_interval(const float* records, bool are_few,
                    const float (&by_field)[Fields][BinnedTransfer::few], Index interval,
@@ -141,7 +140,8 @@ void load_interval(const float* records, bool are_few,
   load_records<Fields>(records, interval, fields);
 }
 
-/// In double only what is rounded to nearest is known better than in float.
+/// Loads intervals of the extinction. In double only the fields that are rounded to nearest are
+/// more accurate than in float.
 template <class F, class Index>
 ExtinctionInterval<F> load_extinction(const BinnedTransfer& t, Index interval) noexcept {
   in_float_t<F> r[BinnedTransfer::extinction_fields];
@@ -156,9 +156,9 @@ ExtinctionInterval<F> load_extinction(const BinnedTransfer& t, Index interval) n
   }
 }
 
-/// The interval of the extinction that holds `value` where `mask`, and its index; elsewhere
-/// `index` is kept. A bin begins with an interval that holds its lower edge or lies below, however
-/// a double is rounded.
+/// Returns the interval of the extinction that contains `value` in the lanes of `mask`, and its
+/// index; in other lanes `index` is unchanged. The first interval of a bin contains the bin's lower
+/// edge or lies below, however a double is rounded.
 template <class F, class Index, class Mask>
 ExtinctionInterval<F> find_extinction(const BinnedTransfer& t, F value, const Mask& mask,
                                       Index& index) noexcept {
@@ -172,7 +172,7 @@ ExtinctionInterval<F> find_extinction(const BinnedTransfer& t, F value, const Ma
   return found;
 }
 
-/// One interval of the color, in lanes: of values in float or in double. Colors are floats.
+/// One interval of the color per lane, for values in float or in double. Colors are floats.
 template <class F>
 struct ColorInterval {
   using Single = in_float_t<F>;
@@ -180,7 +180,8 @@ struct ColorInterval {
   F lower = F(0), upper = F(0);  ///< equal: no interval yet
   Rgb<Single> at_lower{}, slope{};
 
-  /// Largest error: 4 u of the largest color beside that of the value's own.
+  /// Returns the color at a value. Largest error: 4 u of the largest color, in addition to that of
+  /// the value.
   Rgb<Single> at(F value) const noexcept {
     const Single offset = convert<float>(value - lower);
     return {at_lower.r + offset * slope.r, at_lower.g + offset * slope.g,
@@ -188,8 +189,8 @@ struct ColorInterval {
   }
 };
 
-/// The index of the interval of the color that holds `value`, of no more than far/2, by the floats
-/// that its ends are rounded to.
+/// Returns the index of the color interval that contains `value`, |value| <= far/2, judged by the
+/// interval's ends rounded to float.
 template <class F>
 index_t<F> find_color_index(const BinnedTransfer& t, F value) noexcept {
   using Index = index_t<F>;
@@ -216,7 +217,7 @@ index_t<F> find_color_index(const BinnedTransfer& t, F value) noexcept {
   return index;
 }
 
-/// The interval of the color that holds `value`, of no more than far/2.
+/// Returns the color interval that contains `value`, |value| <= far/2.
 template <class F>
 ColorInterval<F> find_color(const BinnedTransfer& t, F value) noexcept {
   using Index = index_t<F>;
@@ -240,9 +241,9 @@ ColorInterval<F> find_color(const BinnedTransfer& t, F value) noexcept {
   return {lower, upper, {r[2], r[3], r[4]}, {r[5], r[6], r[7]}};
 }
 
-/// The color at a value, where `known` holds the interval of a value before it, which mostly holds
-/// this one too; where not in all of the lanes of `wanted`, all are found anew. In other lanes: any
-/// color. Largest error: as ColorInterval::at().
+/// Returns the color at a value in the lanes of `wanted`; any color in other lanes. `known` is the
+/// interval of an earlier value, which is often the same; if it does not match in all wanted lanes,
+/// all intervals are searched again. Largest error: as ColorInterval::at().
 template <class F>
 Rgb<in_float_t<F>> color_at(const BinnedTransfer& t, F value, const mask_t<F>& wanted,
                             ColorInterval<F>& known) noexcept {
@@ -252,21 +253,21 @@ Rgb<in_float_t<F>> color_at(const BinnedTransfer& t, F value, const mask_t<F>& w
   }
   return known.at(value);
 }
-/// The same with nothing known.
+/// Returns the same without a known interval.
 template <class F>
 Rgb<in_float_t<F>> color_at(const BinnedTransfer& t, F value) noexcept {
   ColorInterval<F> nothing;
   return color_at(t, value, mask_t<F>(true), nothing);
 }
 
-/// A bound on how much the slope of the color changes between two values, in all, largest channel,
-/// where the extinction has no corner.
+/// Returns an upper bound on the total change of the color's slope between two values, largest
+/// channel, at values where the extinction has no kink.
 template <class F>
-F color_bend(const BinnedTransfer& t, F least, F most) noexcept {
+F color_slope_change(const BinnedTransfer& t, F least, F most) noexcept {
   using Index = index_t<F>;
-  return (gather(t.color_bend, bin_of(t, most) + Index(1)) -
-          gather(t.color_bend, bin_of(t, least))) +
-         F(t.bend_rounding);
+  return (gather(t.color_slope_change, bin_of(t, most) + Index(1)) -
+          gather(t.color_slope_change, bin_of(t, least))) +
+         F(t.color_slope_change_rounding);
 }
 
 }  // namespace pellucid

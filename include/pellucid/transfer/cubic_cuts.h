@@ -6,13 +6,13 @@
 
 namespace pellucid {
 
-/// Calls visit(interval, t_begin, t_end, value_begin, value_end) for the stretches of [0,1], front
-/// to back, on which the data stay in one interval of the transfer function. They tile [0,1]: each
-/// begins with the number at which the last one ended, and with the control value that was crossed
-/// there, exactly. A stretch may hold turning points of the data.
+/// Calls visit(interval, t_begin, t_end, value_begin, value_end), front to back, for the parts of
+/// [0,1] in which the data stay in one interval of the transfer function. The parts tile [0,1]:
+/// each begins with the same number at which the previous one ended, and with exactly the control
+/// value that was crossed there. A part may contain extrema of the data.
 ///
-/// Specification, 3.8: on each monotone piece the control values between the values of its ends are
-/// crossed in order, so that none is searched for in the table. A jump (two equal control values)
+/// On each monotone piece the control values between the values of its ends are crossed in order,
+/// so that no search in the table is needed (specification, 3.8). A jump (two equal control values)
 /// is one crossing. Data that only touch a control value do not cross it.
 template <class T, class Visit>
 PELLUCID_HD void for_each_interval(const CubicBernstein<T>& data, const PiecewiseLinear<T>& table,

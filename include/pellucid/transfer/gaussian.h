@@ -8,23 +8,24 @@ namespace pellucid {
 
 /// A Gaussian primitive over the n channels of the data, 1 <= n <= 8:
 ///
-///   extinction(v) = peak · e^(-|K (v - c)|²),   K of r rows and n columns, 1 <= r <= 8,
+///   extinction(v) = peak · e^(-|K (v - c)|²),   K with r rows and n columns, 1 <= r <= 8,
 ///
-/// and one color. There is no factor 1/2: a covariance Σ is K^T K = Σ^-1 / 2. K may have any rank:
-/// what K maps to zero the primitive does not look at. Plain numbers of the scalar type S, the same
-/// for every lane of a packet; the owner has checked that they are finite and no extinction
+/// and one color. There is no factor 1/2: for a covariance Σ, K^T K = Σ^-1 / 2. K may have any
+/// rank; the primitive ignores its null space. Plain numbers of the scalar type S, the same for
+/// every lane of a packet. The owner has checked that they are finite and the extinction is not
 /// negative.
 template <class S>
 struct Gaussian {
-  S center[most_channels]{};
-  S matrix[most_channels][most_channels]{};  ///< K, by rows: rows × channels are used
+  S center[max_channels]{};
+  S matrix[max_channels][max_channels]{};  ///< K by rows; rows × channels entries are used
   int channels = 1, rows = 1;
   S peak{};  ///< the largest extinction, 1/length
   Rgb<S> color{};
 
-  /// p = K (v - c), `rows` numbers; v has `channels`. The differences are taken first.
+  /// Computes p = K (v - c): `rows` numbers from `channels` numbers. The differences are taken
+  /// first.
   template <class T>
-  PELLUCID_HD void place(const T* v, T* p) const noexcept {
+  PELLUCID_HD void transform(const T* v, T* p) const noexcept {
     for (int i = 0; i < rows; ++i) {
       p[i] = T(0);
       for (int k = 0; k < channels; ++k) {
@@ -33,7 +34,8 @@ struct Gaussian {
     }
   }
 
-  /// d = K (v2 - v1): from the data, because places far from the center have lost it.
+  /// Computes d = K (v2 - v1) from the data, because the difference of two distant transformed
+  /// positions has lost its digits.
   template <class T>
   PELLUCID_HD void displacement(const T* v1, const T* v2, T* d) const noexcept {
     for (int i = 0; i < rows; ++i) {
@@ -44,34 +46,34 @@ struct Gaussian {
     }
   }
 
-  /// e^(-|K (v - c)|²), in [0, 1].
+  /// Returns e^(-|K (v - c)|²), in [0, 1].
   template <class T>
   PELLUCID_HD T density(const T* v) const noexcept {
-    T p[most_channels];
-    place(v, p);
+    T p[max_channels];
+    transform(v, p);
     T square = T(0);
     for (int i = 0; i < rows; ++i) square = multiply_add(p[i], p[i], square);
     return exp(-square);
   }
 };
 
-/// Which of a sum's primitives may matter somewhere: bit i mod 64 stands for primitive i.
+/// A set of the primitives of a mixture that may matter; bit i mod 64 represents primitive i.
 struct PrimitiveSet {
   unsigned long long bits = ~0ULL;
 
-  PELLUCID_HD constexpr bool holds(int primitive) const noexcept {
+  PELLUCID_HD constexpr bool contains(int primitive) const noexcept {
     return ((bits >> (primitive & 63)) & 1) != 0;
   }
 };
 
-/// A sum of Gaussian primitives: a view, it owns nothing. All look at the same channels.
+/// A sum of Gaussian primitives with the same channels. A view; owns nothing.
 template <class S>
 struct GaussianMixture {
   const Gaussian<S>* primitive = nullptr;
   int count = 0;
 
-  /// Σ extinction_i, and the color that makes color · extinction the sum of theirs; no color where
-  /// nothing absorbs.
+  /// Returns Σ extinction_i, and the color whose product with it is the sum of color_i ·
+  /// extinction_i; black if nothing absorbs.
   template <class T>
   PELLUCID_HD Material<T> evaluate(const T* v) const noexcept {
     T extinction = T(0);

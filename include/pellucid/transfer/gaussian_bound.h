@@ -5,23 +5,24 @@
 
 namespace pellucid {
 
-/// A lower bound on the exponent |K (v - c)|² of a primitive over the box lower <= v <= upper, both
-/// of `channels` numbers: how large the primitive can be anywhere in the box is peak · e^(-bound).
+/// Returns a lower bound on the exponent |K (v - c)|² of a primitive over the box lower <= v <=
+/// upper, both of `channels` numbers. The primitive's extinction in the box is at most peak ·
+/// e^(-bound).
 ///
-/// f(v) = |K (v - c)|² is convex, so that from any v of the box, with g = ∇f(v),
+/// f(v) = |K (v - c)|² is convex, so that for any v of the box, with g = ∇f(v),
 ///
-///   f >= f(v) + Σ_k min(g_k (lower_k - v_k), g_k (upper_k - v_k))   all over the box:
+///   f >= f(v) + Σ_k min(g_k (lower_k - v_k), g_k (upper_k - v_k))   everywhere in the box:
 ///
-/// a proof wherever v stands, and tight where it is the minimum. v is found by descent along one
-/// axis after the other, which for a K of orthogonal columns ends after one round. It stops when
-/// the bound is within a hundredth of f(v), or above `enough`, or after 32 rounds. Never more than
-/// f at any corner, up to 64 u of the largest terms, which is taken off. For blocks; cells, of
-/// which there are many, have least_exponent_by_rows().
+/// a proof for every v, and tight at the minimum. v is found by coordinate descent, which ends
+/// after one round if the columns of K are orthogonal. It stops when the bound is within a
+/// hundredth of f(v), or above `enough`, or after 32 rounds. The result is never more than f at any
+/// corner: 64 u of the largest terms are subtracted. For blocks; least_exponent_by_rows() is
+/// faster, for cells.
 template <class T>
 PELLUCID_HD T least_exponent(const Gaussian<T>& g, const T* lower, const T* upper,
                              T enough) noexcept {
-  T gram[most_channels][most_channels];  // K^T K
-  T v[most_channels];                    // measured from the center
+  T gram[max_channels][max_channels];  // K^T K
+  T v[max_channels];                   // measured from the center
   T scale = T(0);
   for (int k = 0; k < g.channels; ++k) {
     for (int l = 0; l <= k; ++l) {

@@ -6,25 +6,26 @@
 
 namespace pellucid {
 
-/// A piecewise-linear function of one channel alone.
+/// A piecewise-linear function of one channel.
 template <class S>
 struct ChannelTable {
   int channel = 0;
   PiecewiseLinear<S> table;
 };
 
-/// A transfer function of several variables: Gaussian primitives and piecewise-linear functions of
-/// single channels, summed. Each is a kind of particles of its own: extinctions add, and so do
-/// color · extinction. A view, it owns nothing; all terms see the same channels.
+/// A transfer function of several variables: the sum of Gaussian primitives and of piecewise-linear
+/// functions of single channels. Each term is a kind of particles of its own: extinctions add, and
+/// so do color · extinction. A view; owns nothing; all terms have the same channels.
 template <class S>
-struct Multivariate {
+struct MultivariateTransfer {
   GaussianMixture<S> gaussians;
   const ChannelTable<S>* table = nullptr;
   int tables = 0;
-  int channels = 1;  ///< 1 … most_channels
+  int channels = 1;  ///< 1 … max_channels
 
-  /// The extinction, and the color that makes color · extinction the sum of all. Nothing where the
-  /// extinction is no normal number: its quotients could overflow. v has `channels` numbers.
+  /// Returns the extinction at v (`channels` numbers), and the color whose product with it is the
+  /// sum of color · extinction. Returns vacuum if the extinction is below the smallest normal
+  /// number, because its quotients could overflow.
   PELLUCID_HD Material<S> evaluate(const S* v) const noexcept {
     S extinction = S(0);
     Rgb<S> emission{};

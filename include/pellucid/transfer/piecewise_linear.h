@@ -5,25 +5,27 @@
 
 namespace pellucid {
 
-/// What a transfer function says at one data value.
+/// Extinction and color of a transfer function at one data value.
 template <class T>
 struct Material {
   T extinction{};  ///< 1/length, >= 0
-  Rgb<T> color{};  ///< of the particles, straight, linear; the source is color · extinction
+  Rgb<T> color{};  ///< of the particles, linear, not premultiplied; the source is color ·
+                   ///< extinction
 };
 
 /// A one-dimensional transfer function, linear between control points and constant outside of them.
-/// A view: it owns nothing, so that a device can hold it too. The owner has checked that count >=
-/// 1, that the values ascend, that at most two are equal (a jump; the right one holds at the value
-/// itself), and that everything is finite and no extinction negative.
-/// Interval i, 0 <= i <= count, lies between point i-1 and point i; 0 and count are the outsides.
+/// A view; owns nothing, so that a device can hold it too.
+///
+/// The owner has checked that count >= 1, values ascend, at most two are equal (a jump; the right
+/// one holds at the value itself), all numbers are finite and no extinction is negative. Interval
+/// i, 0 <= i <= count, lies between point i-1 and point i; 0 and count are the outer intervals.
 template <class T>
 struct PiecewiseLinear {
   const T* value = nullptr;               ///< count data values, ascending
   const Material<T>* material = nullptr;  ///< count materials
   int count = 0;
 
-  /// The interval that holds v: the number of control points with value <= v.
+  /// Returns the interval that contains v: the number of control points with value <= v.
   PELLUCID_HD int interval(scalar_t<T> v) const noexcept {
     int lo = 0, hi = count;
     while (lo < hi) {
@@ -37,9 +39,9 @@ struct PiecewiseLinear {
     return lo;
   }
 
-  /// The material at v, which lies in the given interval (or on its closure: the limit from
-  /// inside). Interpolated from the nearer control point: what vanishes there keeps its relative
-  /// precision close to it, and control points give their material exactly.
+  /// Returns the material at v, which lies in interval i or on its closure (the limit from inside).
+  /// Interpolates from the nearer control point: numbers that vanish there keep their relative
+  /// precision nearby, and control points give their material exactly.
   PELLUCID_HD Material<T> evaluate_in(int i, T v) const noexcept {
     if (i == 0) return material[0];
     if (i == count) return material[count - 1];
@@ -53,7 +55,8 @@ struct PiecewiseLinear {
 
   PELLUCID_HD Material<T> evaluate(T v) const noexcept { return evaluate_in(interval(v), v); }
 
-  /// What interval i begins and ends with, coming from inside; the same twice outside of the table.
+  /// Return the materials at the ends of interval i, as limits from inside; equal for an outer
+  /// interval.
   PELLUCID_HD const Material<T>& lower_material(int i) const noexcept {
     return material[max(i - 1, 0)];
   }
@@ -61,8 +64,8 @@ struct PiecewiseLinear {
     return material[min(i, count - 1)];
   }
 
-  /// Whether extinction and color are the same everywhere in the intervals first … last (0 <= first
-  /// <= last <= count).
+  /// Returns whether extinction and color are constant in the intervals first … last (0 <= first <=
+  /// last <= count).
   bool is_constant(int first, int last) const noexcept {
     const int end = min(last, count - 1);
     const Material<T>& m = material[max(first - 1, 0)];
@@ -76,7 +79,7 @@ struct PiecewiseLinear {
     return true;
   }
 
-  /// Whether anything absorbs in the intervals first … last (0 <= first <= last <= count).
+  /// Returns whether anything absorbs in the intervals first … last (0 <= first <= last <= count).
   PELLUCID_HD bool has_extinction(int first, int last) const noexcept {
     const int end = min(last, count - 1);
     for (int j = max(first - 1, 0); j <= end; ++j) {

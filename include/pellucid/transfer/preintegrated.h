@@ -5,14 +5,14 @@
 
 namespace pellucid {
 
-/// Opacity and radiance of a step of one length, by the data at its front and at its back, between
-/// which they are taken for linear (Engel, Kraus and Ertl 2001). A view; owns nothing. Between the
-/// table's nodes the four around are interpolated.
+/// Opacity and radiance of a step of fixed length, as functions of the data at its front and at its
+/// back, with linear data in between (Engel, Kraus and Ertl 2001). Bilinear between the table's
+/// nodes. A view; owns nothing.
 struct PreintegratedTable {
   const float* entry = nullptr;  ///< opacity, radiance; nodes² of them, the back value fastest
   int nodes = 0;                 ///< along each axis, >= 2
   float origin = 0, nodes_per_value = 0;
-  float support_min = 0, support_max = 0;  ///< nothing absorbs outside; crossed over: nowhere
+  float support_min = 0, support_max = 0;  ///< nothing absorbs outside; min > max: nothing absorbs
 
   static constexpr int fields = 4;
 };
@@ -23,7 +23,7 @@ struct PreintegratedStep {
   Rgb<T> radiance{};
 };
 
-/// The table's step from front to back; nothing where either is NaN.
+/// Returns the step from front to back; vacuum if either is NaN.
 template <class T>
 PELLUCID_HD PreintegratedStep<T> preintegrated_step(const PreintegratedTable& table, T front,
                                                     T back) noexcept {

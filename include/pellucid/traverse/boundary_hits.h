@@ -56,7 +56,7 @@ class LineInBoxes {
 /// visit(MeshHit) for every boundary face that the line goes through, in the tree's order.
 template <class Visit>
 PELLUCID_HD void for_each_boundary_hit(const Tetrahedra& mesh, const Ray<double>& ray,
-                                       const RayView<double>& view, Visit&& visit) noexcept {
+                                       const RayFrame<double>& view, Visit&& visit) noexcept {
   const LineInBoxes boxes({view.origin, ray.direction});
   // Halves of a list of less than 2^31 faces.
   std::int32_t stack[64];

@@ -2,14 +2,14 @@
 #pragma once
 
 #include "pellucid/field/tetrahedra.h"
-#include "pellucid/geometry/ray_view.h"
+#include "pellucid/geometry/ray_frame.h"
 
 namespace pellucid {
 
 /// What a number is off by at most that is interpolated between three seen points, as a share of
-/// their numbers' range, or 1: where places across the ray are off by `blur`, and they and the
-/// numbers are rounded to T. `inverse`: of the three areas' sum; `size`: of their products, all in
-/// all; `across`: the sum of |x| + |y|.
+/// their numbers' range, or 1: where places across the ray are off by `position_error`, and they
+/// and the numbers are rounded to T. `inverse`: of the three areas' sum; `size`: of their products,
+/// all in all; `across`: the sum of |x| + |y|.
 ///
 /// Areas that are off by e_i move a value v by Σ e_i (v_i - v) / Σ area_i; products are off by 3 u
 /// of their size, what blur does aside, and areas are rounded: r = Σ |e_i| / Σ area_i. The true
@@ -30,7 +30,7 @@ PELLUCID_HD F interpolation_error(F size, F across, F blur, F inverse) noexcept 
 template <class T>
 struct SeenFace {
   index_t<T> point[3];
-  SeenPoint<T> seen[3];
+  ProjectedPoint<T> seen[3];
   T area[3];     ///< |twice the area| between the ray and the edge opposite to the point
   T size[3];     ///< of the products that it is the difference of (Side)
   T carried[3];  ///< what else is wanted of the points
@@ -39,7 +39,7 @@ struct SeenFace {
   /// interpolation_error() with weights().
   PELLUCID_HD T error(T blur) const noexcept {
     T across = T(0);
-    for (const SeenPoint<T>& p : seen) across += abs(p.x) + abs(p.y);
+    for (const ProjectedPoint<T>& p : seen) across += abs(p.x) + abs(p.y);
     const T sum = area[0] + area[1] + area[2];
     const auto flat = !(sum > T(0));
     return select(flat, T(1),
@@ -74,7 +74,7 @@ PELLUCID_HD mask_t<T> turn_around_ray(SeenFace<T>& face) noexcept {
   }
   face.left = left[0];
   // Three points in one place are on no side of each other.
-  const SeenPoint<T>* p = face.seen;
+  const ProjectedPoint<T>* p = face.seen;
   const auto one_place =
       (p[0].x == p[1].x) & (p[0].y == p[1].y) & (p[0].x == p[2].x) & (p[0].y == p[2].y);
   return (left[0] == left[1]) & (left[1] == left[2]) & !one_place;
@@ -94,10 +94,11 @@ PELLUCID_HD bool see_face(const Tetrahedra& mesh, std::int32_t code, See&& see,
   }
   return turn_around_ray(face);
 }
-PELLUCID_HD inline bool see_face(const Tetrahedra& mesh, const RayView<double>& view,
+PELLUCID_HD inline bool see_face(const Tetrahedra& mesh, const RayFrame<double>& view,
                                  std::int32_t code, SeenFace<double>& face) noexcept {
   return see_face(
-      mesh, code, [&](std::int32_t point) noexcept { return view.see(mesh.point[point]); }, face);
+      mesh, code, [&](std::int32_t point) noexcept { return view.project(mesh.point[point]); },
+      face);
 }
 
 }  // namespace pellucid

@@ -10,18 +10,18 @@ namespace pellucid {
 struct MeshPlace {
   double t = 0;
   double t_error = 0;  ///< how far t may be off
-  double value[most_channels];
-  double value_error[most_channels];  ///< beside the rounding of the values themselves
+  double value[max_channels];
+  double value_error[max_channels];  ///< beside the rounding of the values themselves
 };
 
 /// A stretch of a ray in one tetrahedron: every channel is linear, or constant, along it.
 struct MeshSpan {
   double begin = 0, end = 0;  ///< world arc length
-  double front[most_channels], back[most_channels];
-  double value_error[most_channels];
+  double front[max_channels], back[max_channels];
+  double value_error[max_channels];
   /// How far begin and end may be off, together, where the data go on behind them as they are at
   /// the ends: what one span has too much, its neighbour has too little.
-  double place_error = 0;
+  double position_error = 0;
   double end_error = 0;  ///< and where they do not
   bool vacuum = false;   ///< some channel has no value
   /// The mesh overlaps itself here: what is in it is not known.
@@ -43,7 +43,7 @@ PELLUCID_HD inline MeshPlace place_on(const SeenFace<double>& face, const MeshFi
     return max(a, max(b, c)) - min(a, min(b, c));
   };
   MeshPlace place;
-  const SeenPoint<double>* p = face.seen;
+  const ProjectedPoint<double>* p = face.seen;
   place.t = interpolate(p[0].t, p[1].t, p[2].t);
   place.t_error = off * range(p[0].t, p[1].t, p[2].t) + blur;
   for (int c = 0; c < fields.channels; ++c) {
@@ -83,7 +83,7 @@ PELLUCID_HD inline void improve(const Tetrahedra& mesh, const MeshFields& fields
     y += weight[i] * face.seen[i].y;
   }
   const double away = 2 * blur + abs(x) + abs(y);
-  double error[most_channels];
+  double error[max_channels];
   for (int c = 0; c < fields.channels; ++c) {
     if (fields.channel[c].per_cell) return;
     const double* value = fields.channel[c].value;
@@ -117,18 +117,18 @@ PELLUCID_HD inline MeshSpan span_between(const MeshPlace& from, const MeshPlace&
     }
     span.vacuum = span.vacuum | is_nan(span.front[c] + span.back[c]);
   }
-  (steps ? span.end_error : span.place_error) = from.t_error + to.t_error;
+  (steps ? span.end_error : span.position_error) = from.t_error + to.t_error;
   return span;
 }
 
 /// Whether a place is behind the boundary at a hit, by more than rounding.
 PELLUCID_HD inline bool is_beyond(const Tetrahedra& mesh, const MeshFields& fields,
-                                  const RayView<double>& view, const MeshHit& hit,
+                                  const RayFrame<double>& view, const MeshHit& hit,
                                   const MeshPlace& place) noexcept {
   if (!(place.t - place.t_error > hit.t)) return false;
   SeenFace<double> face;
   see_face(mesh, view, hit.code, face);
-  return place.t - place.t_error > hit.t + place_on(face, fields, view.blur).t_error;
+  return place.t - place.t_error > hit.t + place_on(face, fields, view.position_error).t_error;
 }
 
 }  // namespace detail
@@ -143,7 +143,7 @@ PELLUCID_HD inline bool is_beyond(const Tetrahedra& mesh, const MeshFields& fiel
 /// goes past a hit that is not its own, tetrahedra overlap: the span says so.
 template <class Visit>
 PELLUCID_HD void for_each_mesh_span(const Tetrahedra& mesh, const MeshFields& fields,
-                                    const RayView<double>& view, MeshHit* hits, int count,
+                                    const RayFrame<double>& view, MeshHit* hits, int count,
                                     Visit&& visit) noexcept {
   double front = 0, front_error = 0;
   for (int i = 0; i < count; ++i) {
@@ -151,20 +151,21 @@ PELLUCID_HD void for_each_mesh_span(const Tetrahedra& mesh, const MeshFields& fi
     SeenFace<double> face;
     see_face(mesh, view, hits[i].code, face);
     MeshWalk<double> walk(mesh);
-    const auto load = [&](int point, SeenPoint<double>& seen, double&) noexcept {
-      seen = view.see(mesh.point[point]);
+    const auto load = [&](int point, ProjectedPoint<double>& seen, double&) noexcept {
+      seen = view.project(mesh.point[point]);
     };
     walk.enter(true, face, hits[i].code, load);
-    MeshPlace from = detail::place_on(face, fields, view.blur);
+    MeshPlace from = detail::place_on(face, fields, view.position_error);
     bool was_vacuum = false;
     int next = i + 1;
     while (next < count && hits[next].code == Tetrahedron::outside) ++next;
     for (std::int32_t steps = 0; walk.ahead() != Tetrahedron::outside; ++steps) {
       const std::int32_t tetrahedron = walk.ahead() >> 2;
       walk.step(true, load);
-      MeshPlace to = detail::place_on(walk.face(), fields, view.blur);
-      if (to.t_error > 1e4 * view.blur && walk.ahead() != Tetrahedron::outside) {
-        detail::improve(mesh, fields, walk.face(), view.blur, tetrahedron, walk.ahead() >> 2, to);
+      MeshPlace to = detail::place_on(walk.face(), fields, view.position_error);
+      if (to.t_error > 1e4 * view.position_error && walk.ahead() != Tetrahedron::outside) {
+        detail::improve(mesh, fields, walk.face(), view.position_error, tetrahedron,
+                        walk.ahead() >> 2, to);
       }
       MeshSpan span = detail::span_between(from, to, fields, tetrahedron, front);
       // Where the ray comes in and goes out, and beside vacuum, nothing makes good for it.
@@ -172,7 +173,7 @@ PELLUCID_HD void for_each_mesh_span(const Tetrahedra& mesh, const MeshFields& fi
       if (walk.ahead() == Tetrahedron::outside) span.end_error += to.t_error;
       // Of vacuum only where it begins matters, behind data.
       if (span.vacuum) {
-        span.place_error = 0;
+        span.position_error = 0;
         span.end_error = steps == 0 || was_vacuum ? 0 : from.t_error;
       }
       was_vacuum = span.vacuum;
@@ -183,7 +184,7 @@ PELLUCID_HD void for_each_mesh_span(const Tetrahedra& mesh, const MeshFields& fi
       if (to.t > 0 || span.overlaps) {
         if (!(span.begin < span.end)) {
           span.end = span.begin;
-          span.end_error += span.place_error;
+          span.end_error += span.position_error;
         }
         if (!visit(span)) return;
         front = span.end;

@@ -64,9 +64,9 @@ class MeshWalk {
   /// Finds the face by which the ray leaves the tetrahedron ahead, and which one lies behind it.
   PELLUCID_HD void cross(Mask on) noexcept {
     const Index point = point_;
-    const SeenPoint<T> seen = seen_;
+    const ProjectedPoint<T> seen = seen_;
     const T carried = carried_;
-    const SeenPoint<T>* corner = face_.seen;
+    const ProjectedPoint<T>* corner = face_.seen;
     Side<T> side[3];
     Mask certain = Mask(true);
     for (int i = 0; i < 3; ++i) {
@@ -138,7 +138,7 @@ class MeshWalk {
   Mask drop_[3]{Mask(false), Mask(false), Mask(false)};
   Index words_[8];  ///< the tetrahedron ahead
   Index point_{};   ///< that is not on the face
-  SeenPoint<T> seen_;
+  ProjectedPoint<T> seen_;
   T carried_{};
 };
 

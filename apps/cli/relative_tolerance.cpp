@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "relative_tolerance.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace pellucid::cli {
+
+double largest_channel(const Image& image) {
+  float largest = 0;
+  for (const auto& pixel : image.pixels) {
+    for (const float channel : pixel) largest = std::max(largest, channel);
+  }
+  return static_cast<double>(largest);
+}
+
+double estimate_range(const Scene& scene, const RenderOptions& options) {
+  constexpr int longest_side = 96;
+  Scene small = scene;
+  small.samples = 1;
+  const int longest = std::max(scene.size.width, scene.size.height);
+  if (longest > longest_side) {
+    const auto scaled = [&](int side) {
+      const double length = static_cast<double>(side) * longest_side / longest;
+      return std::max(1, static_cast<int>(std::lround(length)));
+    };
+    small.size = {scaled(scene.size.width), scaled(scene.size.height)};
+  }
+  RenderOptions plain;
+  plain.threads = options.threads;
+  plain.progress = options.progress;
+  // The range is known to an eighth.
+  constexpr double sharper = 8, next = 1.0 / 64;
+  small.integration.tolerance = default_tolerance;
+  for (;;) {
+    const double largest = largest_channel(render(small, plain));
+    const double tolerance = small.integration.tolerance;
+    if (largest >= sharper * tolerance || tolerance <= smallest_tolerance) return largest;
+    small.integration.set_tolerance(std::max(tolerance * next, smallest_tolerance));
+  }
+}
+
+RelativePicture render_relative(
+    double share, double estimated_range,
+    const std::function<Image(double tolerance, RenderReport& report)>& render_at) {
+  // The range is not known before the picture is; a little less makes a second rendering rare.
+  constexpr double margin = 0.9;
+  constexpr int most_renderings = 6;
+  RelativePicture picture;
+  double range = estimated_range, seconds = 0;
+  for (int i = 0; i < most_renderings; ++i) {
+    picture.tolerance = std::clamp(margin * share * range, 1e-30, largest_tolerance);
+    picture.report = {};
+    picture.image = render_at(picture.tolerance, picture.report);
+    seconds += picture.report.seconds;
+    picture.largest = largest_channel(picture.image);
+    const double wanted = share * picture.largest;
+    // The picture may be better than the smallest tolerance.
+    picture.over.reset();
+    if (std::max(picture.tolerance, smallest_tolerance) <= wanted ||
+        picture.report.largest_error <= wanted) {
+      break;
+    }
+    picture.over = fmt::format(
+        "pixels may be off by up to {:.3g}, more than {} of the largest channel, {:.3g}{}",
+        picture.report.largest_error, percent_text(share), picture.largest,
+        wanted < smallest_tolerance
+            ? fmt::format("; the smallest tolerance is {:g}", smallest_tolerance)
+            : "");
+    if (picture.tolerance <= smallest_tolerance) break;
+    range = picture.largest;
+  }
+  picture.report.seconds = seconds;
+  return picture;
+}
+
+std::string percent_text(double share) {
+  return fmt::format("{:.6g} %", 100 * share);
+}
+
+std::optional<std::string> black_picture_text(double largest, double tolerance, double error) {
+  // 5 of 255: what looks black. A picture at a coarse tolerance may be bright.
+  constexpr double black = 0.02, rounding = 1e-12;
+  if (largest > std::min(tolerance, black)) return std::nullopt;
+  if (largest == 0 && error <= rounding) {
+    return "the picture is empty: no ray meets anything that absorbs; look at the camera and the "
+           "transfer function";
+  }
+  return fmt::format(
+      "no channel of any pixel is above the tolerance, {:.3g}: the picture may be black though the "
+      "scene is not; --tolerance 1% asks for 1 % of the largest channel",
+      tolerance);
+}
+
+}  // namespace pellucid::cli

@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <span>
+
+#include "mesh_blocks.h"
+
+namespace pellucid {
+
+/// Writes a mesh as a process hands it to another. Returns false where there is no room for it.
+bool write_mesh_blocks(const MeshBlocks& mesh, std::span<std::byte> to);
+/// Reads what that wrote; nothing where it is damaged.
+std::optional<MeshBlocks> read_mesh_blocks(std::span<const std::byte> from);
+
+}  // namespace pellucid
