@@ -9,7 +9,12 @@ endif()
 # The manual page is made from the texts of --help. Building the program alone does not make it.
 find_package(Python3 3.9 QUIET COMPONENTS Interpreter)
 set(manual "${PROJECT_BINARY_DIR}/share/man/man1/pellucid.1")
-if(TARGET Python3::Interpreter)
+if(TARGET Python3::Interpreter AND NOT CMAKE_CROSSCOMPILING)
+  # A program with sanitizers need not run while it is built.
+  set(all "")
+  if(CMAKE_BUILD_TYPE STREQUAL "Release")
+    set(all ALL)
+  endif()
   add_custom_command(
     OUTPUT "${manual}"
     COMMAND Python3::Interpreter -B "${PROJECT_SOURCE_DIR}/tools/man_page.py"
@@ -17,7 +22,7 @@ if(TARGET Python3::Interpreter)
     DEPENDS pellucid_cli "${PROJECT_SOURCE_DIR}/tools/man_page.py"
     COMMENT "Making the manual page from --help"
     VERBATIM)
-  add_custom_target(pellucid_manual ALL DEPENDS "${manual}")
+  add_custom_target(pellucid_manual ${all} DEPENDS "${manual}")
 endif()
 install(FILES "${manual}" DESTINATION "${CMAKE_INSTALL_MANDIR}/man1" OPTIONAL)
 install(FILES share/bash-completion/completions/pellucid
@@ -35,6 +40,9 @@ foreach(scene IN LISTS scenes)
 endforeach()
 install(FILES ${examples} DESTINATION "${CMAKE_INSTALL_DATADIR}/doc/pellucid/examples")
 
+if(NOT PROJECT_IS_TOP_LEVEL)
+  return()
+endif()
 set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_NAME pellucid)
 set(CPACK_PACKAGE_CONTACT "The Pellucid authors <pellucid@localhost>")
@@ -50,8 +58,6 @@ modules, whose libraries are recommended: without them those files alone are
 not read.")
 set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
 set(CPACK_STRIP_FILES ON)
-set(CPACK_INSTALL_DEFAULT_DIRECTORY_PERMISSIONS
-  OWNER_READ OWNER_WRITE OWNER_EXECUTE GROUP_READ GROUP_EXECUTE WORLD_READ WORLD_EXECUTE)
 set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
 set(CPACK_DEBIAN_PACKAGE_SECTION science)
 set(CPACK_DEBIAN_PACKAGE_PRIORITY optional)

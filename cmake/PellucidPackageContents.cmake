@@ -56,6 +56,10 @@ compress("${doc}/changelog")
 compress("${doc}/NEWS")
 compress("${usr}/share/man/man1/pellucid.1")
 
+# Whatever the umask is.
+file(CHMOD_RECURSE "${usr}" DIRECTORY_PERMISSIONS
+  OWNER_READ OWNER_WRITE OWNER_EXECUTE GROUP_READ GROUP_EXECUTE WORLD_READ WORLD_EXECUTE)
+
 # What the program needs stands in Depends; what its modules need beside, in Recommends.
 file(GLOB modules "${usr}/${CPACK_PELLUCID_LIBDIR}/pellucid/*.so")
 list(TRANSFORM modules PREPEND -e OUTPUT_VARIABLE module_arguments)

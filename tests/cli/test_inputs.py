@@ -62,8 +62,8 @@ class BadInput(ProgramTest):
                                   env={**os.environ, "PELLUCID_MODULES": self.path("modules")})
         self.assertEqual(result.returncode, 1)
         self.assertRegex(result.stderr.decode(),
-                         r"\A[^\n]*cells\.vtu: the module pellucid_vtk\.so, which reads [^\n]*, does "
-                         r"not load: [^\n]*; install VTK \(Debian: libvtk9-dev\)\n\Z")
+                         r"\A[^\n]*cells\.vtu: the module pellucid_vtk\.so, which reads [^\n]*, "
+                         r"does not load: [^\n]*; install VTK \(Debian: libvtk9-dev\)\n\Z")
 
     def test_not_a_file(self):
         os.mkdir(self.path("folder.npy"))

@@ -16,6 +16,7 @@ SOURCE = os.environ["PELLUCID_SOURCE_DIR"]
 BUILD = os.environ["PELLUCID_BINARY_DIR"]
 FOLDER = os.environ["PELLUCID_PACKAGE_FOLDER"]
 VERSION = os.environ["PELLUCID_VERSION"]
+LIBDIR = os.environ["PELLUCID_LIBDIR"]
 
 # Where Debian has the packages that the installed CMake package looks for.
 DEBIAN_PACKAGES = {"TBB": "libtbb-dev", "PNG": "libpng-dev", "OpenEXR": "libopenexr-dev",
@@ -46,7 +47,7 @@ def pack():
     # With a folder for temporary files of its own, for scripts/package may pack at the same time.
     with tempfile.TemporaryDirectory(prefix="pack_", dir=FOLDER) as work:
         run(os.environ["PELLUCID_CPACK"], "--config", os.path.join(BUILD, "CPackConfig.cmake"),
-            "-B", work)
+            "-B", work, umask=0o077)  # which must not show in the package
         debs = [name for name in os.listdir(work) if name.endswith(".deb")]
         assert len(debs) == 1, debs
         deb = os.path.join(FOLDER, debs[0])
@@ -104,10 +105,10 @@ class Contents(unittest.TestCase):
                       gzip.decompress(self.content("usr/share/doc/pellucid/changelog.gz")))
 
     def test_modules_lie_where_the_program_looks(self):
-        modules = os.path.join(BUILD, "lib", "pellucid")
+        modules = os.path.join(BUILD, LIBDIR, "pellucid")
         for name in sorted(os.listdir(modules)) if os.path.isdir(modules) else []:
             if name.endswith(".so"):
-                self.assertIn(f"usr/lib/pellucid/{name}", self.members)
+                self.assertIn(f"usr/{LIBDIR}/pellucid/{name}", self.members)
 
     def test_examples_run_as_they_are(self):
         for name in self.members:
@@ -165,6 +166,12 @@ class Contents(unittest.TestCase):
                 with open(path, "wb") as file:
                     file.write(self.content(name))
                 self.assertNotIn(".symtab", run("readelf", "--wide", "--sections", path), name)
+
+    def test_packing_again_gives_the_same_package(self):
+        with open(self.deb, "rb") as file:
+            first = hashlib.sha256(file.read()).hexdigest()
+        with open(pack(), "rb") as file:
+            self.assertEqual(hashlib.sha256(file.read()).hexdigest(), first)
 
     def test_lintian(self):
         if not shutil.which("lintian"):
