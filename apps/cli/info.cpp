@@ -12,6 +12,7 @@
 
 #include "commands.h"
 #include "info_arrays.h"
+#include "info_levels.h"
 #include "info_mesh.h"
 #include "info_series.h"
 #include "input.h"
@@ -285,8 +286,10 @@ int run_info(const InfoArguments& arguments) {
   set_notes(source, false);
   std::vector<Volume> components;
   std::vector<VolumeArray> arrays;
+  std::optional<Pyramid> pyramid;
   std::string chosen;
   if (source.builtin.empty()) {
+    pyramid = describe_pyramid(source.file, source.options);
     arrays = list_arrays(source.file, source.options);
     choose_shown(arrays, source.options);
     NamedComponents read = read_named_components(source.file, source.options);
@@ -305,9 +308,11 @@ int run_info(const InfoArguments& arguments) {
       json["array"] = chosen;
       json["arrays"] = arrays_json(arrays);
     }
+    if (pyramid) json["pyramid"] = pyramid_json(*pyramid);
     print_json(json);
   } else {
-    print_text(text_report(components, facts, name) + arrays_text(arrays, chosen));
+    print_text(text_report(components, facts, name) + (pyramid ? pyramid_text(*pyramid) : "") +
+               arrays_text(arrays, chosen));
   }
   return 0;
 }

@@ -57,6 +57,11 @@ void VolumeOptions::add_to(CommandLine& command, bool with_array, bool with_axes
                       "components. Default: zyx; of four zyxc or czyx, as a note says")
           ->option_text("LETTERS"));
   add(command
+          .add_option("--level", level,
+                      "Of an image of OME-Zarr: the resolution, 0 (default) the finest")
+          ->option_text("N")
+          ->in_range(0, 1000));
+  add(command
           .add_option("--series", series,
                       "Read this DICOM series of a folder: its number in the list of 'pellucid "
                       "info', its UID, or a unique ending of it")
@@ -93,6 +98,7 @@ ReadOptions VolumeOptions::read_options() const {
   read.skip_bytes = skip_bytes;
   read.components = components;
   read.component = component;
+  read.level = level;
   if (!series.empty()) read.series = series;
   if (!axes.empty()) {
     if (!is_array_axes(axes)) {

@@ -15,8 +15,8 @@ namespace pellucid::cli {
 inline constexpr const char* input_help =
     "Volume file (.nii, .nii.gz, .hdr, .img, .nrrd, .nhdr, .mha, .mhd, .npy, .npz, .vti, .pvti, "
     ".pvtr, .vtk, .slc, .h5, .hdf5, .he5, .nc, .nc4, .cdf, .vdb, .mrc, .map, .rec, .st, .ccp4, "
-    ".ivf, "
-    ".raw), "
+    ".ivf, .vvd, .raw), store of Zarr or OME-Zarr (its folder, .zarr), data set of vtk.js (its "
+    "folder or index.json), "
     "DICOM series (its folder or one of its files), stack of images (a .tif, .tiff or .png of it, "
     "NAME%03d.tif, its folder)";
 
@@ -25,7 +25,7 @@ struct VolumeOptions {
   std::string dimensions, type, axes, spacing, origin, centering, array, series;
   bool big_endian = false;
   std::size_t skip_bytes = 0;
-  std::optional<int> components, component;
+  std::optional<int> components, component, level;
   std::vector<Option*> given;  ///< all of them, to ask which were used
 
   /// `--array` and `--axes` where no other option of the command has this name.

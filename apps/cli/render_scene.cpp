@@ -212,7 +212,7 @@ SceneDescription describe(const RenderArguments& arguments,
                           std::vector<std::string>& import_notes) {
   SceneDescription description;
   const std::filesystem::path input = arguments.input;
-  const bool is_scene = extension_of(input) == ".json";
+  const bool is_scene = extension_of(input) == ".json" && !is_volume_json(input);
   if (is_scene) {
     arguments.volume.refuse("a scene; write it into the scene's field");
     arguments.mesh.refuse("a scene; write it into the scene's mesh");

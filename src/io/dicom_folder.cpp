@@ -12,6 +12,7 @@
 #include "input_file.h"
 #include "numbered_files.h"
 #include "pellucid/scene/error.h"
+#include "zarr.h"
 
 namespace pellucid {
 
@@ -240,7 +241,8 @@ DicomGroup choose_dicom_series(const DicomFolder& folder, const fs::path& path,
 bool is_dicom(const fs::path& path) {
   std::error_code error;
   if (fs::is_regular_file(path, error)) return is_dicom(file_source(path));
-  if (!fs::is_directory(path, error)) return false;
+  // Stores of Zarr may have a million files, whose bytes may be any.
+  if (!fs::is_directory(path, error) || is_zarr(path)) return false;
   return std::ranges::any_of(files_of(path), [](const fs::path& file) {
     try {
       return is_dicom(file_source(file));

@@ -19,7 +19,7 @@ struct StoredType {
   int components = 1;
 };
 
-// "Vec2FLOAT32": two at each point.
+// "Vec2FLOAT32" of Inviwo, "Vector2(float)" of Voreen: two at each point.
 StoredType type_of(const std::string& format, const std::string& name) {
   static constexpr std::pair<std::string_view, const char*> types[] = {
       {"uchar", "u8"},   {"uint8", "u8"},    {"char", "i8"},    {"int8", "i8"},
@@ -32,6 +32,12 @@ StoredType type_of(const std::string& format, const std::string& name) {
   if (word.starts_with("vec") && word.size() > 4 && word[3] >= '2' && word[3] <= '4') {
     type.components = word[3] - '0';
     word.erase(0, 4);
+  }
+  constexpr std::string_view vector_word = "vector";  // Voreen's "Vector3(float)"
+  if (word.starts_with(vector_word) && word.size() > vector_word.size() + 3 &&
+      word.ends_with(')') && word[6] >= '2' && word[6] <= '4' && word[7] == '(') {
+    type.components = word[6] - '0';
+    word = word.substr(8, word.size() - 9);
   }
   for (const auto& [known, stored] : types) {
     if (word == known) type.name = stored;

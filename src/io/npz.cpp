@@ -146,10 +146,11 @@ std::vector<VolumeArray> list_npz_arrays(const std::filesystem::path& path,
         about.type = type_name(values);
         about.components.push_back(component_statistics(values, 1).front());
       }
-      about.shown = !std::exchange(shown, true);
+      about.is_default = !std::exchange(shown, true);
     } catch (const Error& error) {
       const std::string message = error.what(), prefix = path.string() + ": ";
-      about.not_read = message.starts_with(prefix) ? message.substr(prefix.size()) : message;
+      about.unreadable_reason =
+          message.starts_with(prefix) ? message.substr(prefix.size()) : message;
       about.components.clear();
     }
     list.push_back(std::move(about));

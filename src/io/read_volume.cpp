@@ -25,10 +25,14 @@
 #include "pellucid/io/dicom_series.h"
 #include "pellucid/io/read_mesh.h"
 #include "pellucid/scene/error.h"
+#include "text.h"
 #include "vtk_collection.h"
 #include "vtk_file_kind.h"
 #include "vtk_hdf.h"
+#include "vtk_js.h"
 #include "vtk_volume.h"
+#include "vvd_header.h"
+#include "zarr.h"
 
 namespace pellucid {
 
@@ -94,6 +98,8 @@ constexpr std::array formats{Format{".nii", open_nifti},
                              Format{".cdf", open_net_cdf},
                              Format{".vdb", open_vdb},
                              Format{".ivf", open_ivf},
+                             Format{".vvd", open_vvd},
+                             Format{".zarr", open_zarr},
                              Format{".mrc.gz", open_mrc_file},
                              Format{".map.gz", open_mrc_file},
                              Format{".rec.gz", open_mrc_file},
@@ -116,6 +122,8 @@ Lister lister_of(Opener open) {
          : open == open_net_cdf          ? without_options<list_net_cdf_arrays>
          : open == open_vdb              ? without_options<list_vdb_arrays>
          : open == open_image_collection ? without_options<list_collection_arrays>
+         : open == open_zarr             ? without_options<list_zarr_arrays>
+         : open == open_vtk_js           ? without_options<list_vtk_js_arrays>
                                          : nullptr;
 }
 
@@ -148,8 +156,18 @@ Opener opener_of(const std::filesystem::path& path) {
   return format->open == open_vtk_volume && is_mesh_file(path) ? nullptr : format->open;
 }
 
+/// Stores of Zarr in one file are folders to be.
+void refuse_zipped_zarr(const std::filesystem::path& path) {
+  const std::string name = in_small_letters(path.filename().string());
+  if (!name.ends_with(".zarr.zip") && !name.ends_with(".ozx")) return;
+  throw Error(path.string() +
+              ": is a store of Zarr in a zip archive; unpack it, and give the folder");
+}
+
 Opener find_opener(const std::filesystem::path& path, const ReadOptions& options) {
   std::error_code error;
+  if (is_zarr(path)) return open_zarr;
+  if (is_vtk_js(path)) return open_vtk_js;
   if (std::filesystem::is_directory(path, error)) return is_dicom(path) ? open_dicom : open_stack;
   if (is_stack_pattern(path)) return open_stack;
   check_input_file(path);
@@ -158,6 +176,7 @@ Opener find_opener(const std::filesystem::path& path, const ReadOptions& options
   if (open == nullptr && options.dimensions && options.type) open = open_raw_file;
   if (open == nullptr && is_dat_header(path)) open = open_dat;
   if (open == nullptr && is_dicom(path)) open = open_dicom;
+  refuse_zipped_zarr(path);
   if (open == nullptr && is_mesh_file(path)) {
     throw Error(path.string() +
                 ": is a mesh, and here a volume is needed; 'render' and 'info' take meshes");
@@ -183,7 +202,10 @@ VolumeFile open_file(const std::filesystem::path& path, const ReadOptions& optio
     throw Error(path.string() + ": the file's format says which axes are x, y and z; leave the " +
                 "axes out (they are for .npy, .npz and HDF5)");
   }
-  if (options.time && open != open_net_cdf) {
+  if (options.level && open != open_zarr) {
+    throw Error(path.string() + ": has no levels of resolution; leave the level out");
+  }
+  if (options.time && open != open_net_cdf && open != open_zarr) {
     throw Error(path.string() + ": the file has no steps in time; leave the time out");
   }
   return open(path, options);
@@ -253,6 +275,10 @@ std::vector<VolumeArray> list_arrays(const std::filesystem::path& path,
 bool has_volume_header(std::string_view file_name) {
   const Format* const format = format_of(file_name);
   return format != nullptr && format->open != open_raw_file && format->open != open_raw_gzip;
+}
+
+bool is_volume_json(const std::filesystem::path& path) {
+  return is_vtk_js(path);
 }
 
 std::string volume_extensions() {

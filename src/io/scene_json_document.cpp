@@ -15,8 +15,6 @@ namespace {
 
 using nlohmann::json;
 
-constexpr std::size_t deepest_nesting = 16;
-
 std::string number_text(double number) {
   char text[32];
   std::snprintf(text, sizeof text, "%.15g", number);
@@ -36,7 +34,8 @@ std::string pointer_token(std::string_view key) {
 /// and recurses over any depth when the document is destroyed.
 class Builder : public nlohmann::json_sax<json> {
  public:
-  Builder(std::string_view text, const std::string& name) : text_(text), name_(name) {}
+  Builder(std::string_view text, const std::string& name, std::size_t deepest)
+      : text_(text), name_(name), deepest_(deepest) {}
 
   json take() { return std::move(root_); }
 
@@ -101,9 +100,10 @@ class Builder : public nlohmann::json_sax<json> {
     return true;
   }
   bool open(json&& value) {
-    if (open_.size() == deepest_nesting) {
-      throw Error(name_ + ": " + pointer() + ": nested deeper than " +
-                  std::to_string(deepest_nesting) + " levels; a scene needs 8");
+    if (open_.size() == deepest_) {
+      throw Error(name_ + ": " + printable(pointer()) + ": nested deeper than " +
+                  std::to_string(deepest_) + " levels" +
+                  (deepest_ == deepest_scene ? "; a scene needs 8" : ""));
     }
     const bool in_array = !open_.empty() && open_.back()->is_array();
     const std::string token = in_array ? std::to_string(open_.back()->size()) : pointer_token(key_);
@@ -125,6 +125,7 @@ class Builder : public nlohmann::json_sax<json> {
 
   std::string_view text_;
   const std::string& name_;
+  std::size_t deepest_;
   json root_;
   std::vector<json*> open_;
   std::vector<std::string> tokens_;
@@ -159,8 +160,8 @@ std::string list(const std::vector<std::string_view>& words) {
 
 }  // namespace
 
-json parse_document(std::string_view text, const std::string& name) {
-  Builder builder(text, name);
+json parse_document(std::string_view text, const std::string& name, std::size_t deepest) {
+  Builder builder(text, name, deepest);
   json::sax_parse(text.begin(), text.end(), &builder);
   return builder.take();
 }

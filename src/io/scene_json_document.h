@@ -17,9 +17,13 @@ constexpr double largest_number = 1e30;
 /// Data values, and what is compared with them, lie in ±largest_value: what a Volume takes.
 constexpr double largest_value = 2.1e37;
 
-/// Parses strict JSON. Beyond what the grammar asks: no key twice in one object, no more than 16
-/// levels of nesting, no number beyond double's range. Throws Error with line and column.
-nlohmann::json parse_document(std::string_view text, const std::string& name);
+/// Levels of nesting that a scene may have.
+constexpr std::size_t deepest_scene = 16;
+
+/// Parses strict JSON. Beyond what the grammar asks: no key twice in one object, no more than
+/// `deepest` levels of nesting, no number beyond double's range. Throws Error with line and column.
+nlohmann::json parse_document(std::string_view text, const std::string& name,
+                              std::size_t deepest = deepest_scene);
 
 /// Text from a file as it may stand in a one-line message: control characters escaped, long text
 /// cut.
@@ -42,6 +46,10 @@ class Node {
   void expect_object(const std::vector<std::string_view>& known_keys) const;
   bool is_object() const noexcept { return value_->is_object(); }
   bool is_array() const noexcept { return value_->is_array(); }
+  bool is_string() const noexcept { return value_->is_string(); }
+  bool is_number() const noexcept { return value_->is_number(); }
+  bool is_null() const noexcept { return value_->is_null(); }
+  const nlohmann::json& value() const noexcept { return *value_; }
   /// true, or a number that is not 0, as other programs write it.
   bool is_true() const;
   bool has(std::string_view key) const;

@@ -22,9 +22,10 @@ bool is_raw(std::string file) {
   return file.ends_with(".raw") || file.ends_with(".raw.gz");
 }
 
-const std::vector<std::string_view> file_keys{
-    "file",       "array",      "time",    "component", "dimensions", "type",   "components",
-    "byte_order", "skip_bytes", "spacing", "origin",    "centering",  "series", "axes"};
+const std::vector<std::string_view> file_keys{"file",       "array",   "time",       "component",
+                                              "dimensions", "type",    "components", "byte_order",
+                                              "skip_bytes", "spacing", "origin",     "centering",
+                                              "series",     "axes",    "level"};
 const std::vector<std::string_view> builtin_keys{"builtin", "points"};
 const std::vector<std::string_view> channel_keys{"name", "unit"};
 
@@ -90,6 +91,9 @@ FieldSource file_source(const Node& field, const std::filesystem::path& folder) 
   if (const auto time = field.find("time")) source.options.time = time->number();
   if (const auto component = field.find("component")) {
     source.options.component = static_cast<int>(component->integer(0, largest_grid));
+  }
+  if (const auto level = field.find("level")) {
+    source.options.level = static_cast<int>(level->integer(0, largest_grid));
   }
   if (const auto series = field.find("series")) {
     if (series->string().empty()) series->fail("is empty; give the series' number or its UID");

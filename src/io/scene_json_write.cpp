@@ -234,6 +234,7 @@ void add_field(const FieldSource& field, Members& members) {
   if (options.axes) members.add("axes", quoted(*options.axes, "the axes"));
   if (options.time) members.add("time", number(*options.time, "the time"));
   if (options.component) members.add("component", std::to_string(*options.component));
+  if (options.level) members.add("level", std::to_string(*options.level));
   if (options.series) members.add("series", quoted(*options.series, "a series"));
   if (options.big_endian) members.add("byte_order", *options.big_endian ? "\"big\"" : "\"little\"");
   if (options.skip_bytes != 0) members.add("skip_bytes", std::to_string(options.skip_bytes));

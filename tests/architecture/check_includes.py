@@ -56,6 +56,9 @@ OTHER_PROJECTS = [
     (re.compile(r"^netcdf\.h$"), "netcdf"),
     (re.compile(r"^openvdb/"), "openvdb"),
     (re.compile(r"^bzlib\.h$"), "BZip2::BZip2"),
+    (re.compile(r"^blosc\.h$"), "blosc"),
+    (re.compile(r"^zstd\.h$"), "zstd"),
+    (re.compile(r"^lz4\.h$"), "lz4"),
 ]
 
 INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]')

@@ -176,12 +176,12 @@ TEST_F(NpzFiles, ListsItsArrays) {
   ASSERT_EQ(arrays.size(), 3u);
   EXPECT_EQ(arrays[0].name, "a");
   EXPECT_EQ(arrays[0].type, "u8");
-  EXPECT_TRUE(arrays[0].shown);
+  EXPECT_TRUE(arrays[0].is_default);
   EXPECT_EQ(arrays[0].components.front().maximum, 59);
-  EXPECT_TRUE(contains(arrays[1].not_read, "3 axes"));
+  EXPECT_TRUE(contains(arrays[1].unreadable_reason, "3 axes"));
   EXPECT_EQ(arrays[2].name, "group/b");
   EXPECT_EQ(arrays[2].dimensions, (std::vector<int>{5, 4, 3}));
-  EXPECT_FALSE(arrays[2].shown);
+  EXPECT_FALSE(arrays[2].is_default);
   expect_counting(read_volume(file, with_array("group/b")), "f32");
 }
 

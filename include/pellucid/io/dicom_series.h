@@ -24,13 +24,14 @@ struct DicomSeries {
 bool is_dicom(const std::filesystem::path& path);
 
 /// Returns the series of a folder, or of the folder around a file, sorted by SeriesNumber, then by
-/// UID. ReadOptions::series counts them in this order from 1. Subfolders are not searched. Files
-/// that cannot be read are left out, and `note` is told. Throws Error if `path` is such a file.
+/// UID. ReadOptions::series counts them in this order from 1. Subfolders are not searched. Leaves
+/// out unreadable files and passes a message about them to `note`. Throws Error if `path` is such a
+/// file.
 std::vector<DicomSeries> list_dicom_series(
     const std::filesystem::path& path, const std::function<void(const std::string&)>& note = {});
 
-/// Returns the unit of the values of the series that ReadOptions::series chooses: "Gy" of a dose,
-/// "HU" and others where the files name it; else empty. Throws Error like read_volume.
+/// Returns the unit of the values of a series: "Gy" for a dose, "HU" and others if the files name
+/// it, else an empty text. `series` is as in ReadOptions. Throws Error like read_volume().
 std::string dicom_unit(const std::filesystem::path& path,
                        const std::optional<std::string>& series = {});
 

@@ -36,8 +36,8 @@ struct LoadedMesh {
   std::vector<MeshArrayChoice> channels;  ///< those of the source, or the default array
 };
 
-/// What to tell where cells are inverted or overlap: how many, the first of them, and the likely
-/// cause; empty where none do.
+/// Returns a message about overlapping cells: their number, the first of them, and the likely
+/// cause. Returns an empty text if no cells overlap.
 std::string overlap_note(const MeshStatistics& statistics);
 
 /// Reads the file and cuts its cells into tetrahedra. Throws Error.

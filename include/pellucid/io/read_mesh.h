@@ -17,10 +17,10 @@ namespace pellucid {
 struct MeshReadOptions {
   /// Reads the time step nearest to this time; none: the first.
   std::optional<double> time;
-  /// PLOT3D: the solution that belongs to the grid. Makes the grid's file one of PLOT3D, whatever
-  /// its name.
+  /// PLOT3D: path of the solution (Q) file of the grid. If it is given, the grid's file is read as
+  /// PLOT3D, whatever its name.
   std::filesystem::path q{};
-  /// Is told what a reader of the picture should know: MeshFile::notes, and of cells that overlap.
+  /// Receives MeshFile::notes and the message about overlapping cells; may be empty.
   std::function<void(const std::string&)> note{};
 };
 
@@ -33,15 +33,16 @@ struct MeshFile {
   std::vector<double> times;   ///< of the time steps, ascending; empty: the file has no time
   std::optional<double> time;  ///< of the step that was read
   int blocks = 1;
-  std::size_t flat_cells = 0;   ///< of two dimensions and less: left out
-  std::size_t ghost_cells = 0;  ///< of other pieces, or hidden: left out
-  /// Cells that list more points than their shape has, the last of which are left out.
+  std::size_t flat_cells = 0;   ///< cells of dimension two and less, left out
+  std::size_t ghost_cells = 0;  ///< ghost cells and hidden cells, left out
+  /// Cells that list more points than their shape has; the last points are ignored.
   std::size_t trimmed_cells = 0;
-  std::int64_t first_trimmed_cell = -1;  ///< its number in the file
-  std::vector<std::string> notes;        ///< what was done about the file's faults, in a line each
-  /// Points of different blocks at exactly the same place, with the same values: made one.
+  std::int64_t first_trimmed_cell = -1;  ///< its number in the file; -1: none
+  std::vector<std::string> notes;        ///< how faults of the file were handled, one line each
+  /// Merged points: points of different blocks with exactly the same position and values.
   std::size_t merged_points = 0;
-  /// The same with different values, where the data jump from block to block: kept apart.
+  /// Points of different blocks with the same position and different values. They are kept apart;
+  /// the data are discontinuous there.
   std::size_t discontinuous_points = 0;
 };
 
@@ -51,16 +52,12 @@ bool is_mesh_file(const std::filesystem::path& path);
 /// Returns the extensions of mesh files for messages and help: ".vtu .pvtu …".
 std::string mesh_extensions();
 
-/// Reads VTK's XML files (.vtu, .pvtu, .vts, .pvts, .vtm, .vtmb, and .pvd, which lists files by
-/// time), its legacy ones (.vtk, unstructured or structured grid) and Exodus II (.ex2, .e, .exo,
-/// .g), where the build has VTK; unstructured grids of VTKHDF (.vtkhdf, or any name), where it has
-/// HDF5; and PLOT3D grids (.xyz, .p3d, .x, or any name with `q` given),
-/// whole grids of one or several blocks, of 32 or 64 bits, of either byte order, with and without
-/// record marks and blanking.
+/// Reads a mesh file:
 ///
 /// - if the build has VTK, its XML files (.vtu, .pvtu, .vts, .pvts, .vtm, .vtmb, and .pvd, which
 ///   lists files by time), its legacy files (.vtk with an unstructured or structured grid) and
 ///   Exodus II (.ex2, .e, .exo, .g);
+/// - if the build has HDF5, unstructured grids of VTKHDF (.vtkhdf, or any name);
 /// - PLOT3D grids (.xyz, .p3d, .x, or any name if `q` is given): whole grids of one or several
 ///   blocks, of 32 or 64 bits, in either byte order, with and without record marks and blanking.
 ///
@@ -69,11 +66,11 @@ std::string mesh_extensions();
 /// Temperature, in its own dimensionless units (P. P. Walatka et al.: PLOT3D User's Manual, NASA TM
 /// 101067, 1990).
 ///
-/// Lagrange cells of order 1 and 2 become linear and quadratic ones, prisms of five and six sides
-/// polyhedra. Cells that list more points than their shape has lose those behind.
+/// Lagrange cells of order 1 and 2 become linear and quadratic cells; prisms of five and six sides
+/// become polyhedra. If a cell lists more points than its shape has, the last ones are ignored.
 ///
-/// Whole numbers of 64 bits become double, bits u8. What a file marks as numbers of points or cells
-/// (global ids, pedigree ids) is left out.
+/// 64-bit integers become double, bits become u8. Arrays that the file marks as numbers of points
+/// or cells (global ids, pedigree ids) are left out.
 ///
 /// Throws Error if the file is no mesh (the message says what it is), is truncated or inconsistent,
 /// has cells of a shape that CellShape lacks, has no volume cell, or does not fit into memory.

@@ -24,12 +24,13 @@ struct ReadOptions {
   std::optional<Centering> centering;   ///< replaces the file's
   std::optional<int> components;        ///< raw: numbers at each point, side by side
   std::optional<int> component;         ///< component to read, from 0
-  std::optional<double> time;        ///< NetCDF: reads the nearest time step instead of a component
+  std::optional<double> time;  ///< NetCDF, OME-Zarr: reads the nearest time step, not a component
   std::optional<std::string> array;  ///< name of the array to read; none: see VolumeArray
   /// .npy, .npz and HDF5: a letter for each axis of the array, in the order of its indices: x, y
   /// and z, and c for components ("xyz", "czyx"). None: "zyx"; of four axes c is the first or the
   /// last, whichever is short, and `note` is told which was taken.
   std::optional<std::string> axes;
+  std::optional<int> level;  ///< OME-Zarr: level of resolution, 0 is the finest; none: 0
   /// DICOM: series to read from a folder: its number as in list_dicom_series(), from 1, its UID, or
   /// a unique end of the UID.
   std::optional<std::string> series;
@@ -42,7 +43,9 @@ struct ReadOptions {
 ///
 /// - .nii .nii.gz .hdr/.img(.gz); .nrrd .nhdr .mha .mhd through ITK, if the build has it;
 /// - .npy, .npz, .slc, .raw, .mrc .map .rec .st .ccp4 (each also .gz);
-/// - a .dat or .ivf header of Inviwo or Voreen;
+/// - a .dat, .ivf or .vvd header of Inviwo or Voreen;
+/// - stores of Zarr and OME-Zarr, by their folder;
+/// - data sets of vtk.js, by their folder or its index.json;
 /// - DICOM (.dcm .ima): a series by its folder or any of its files, whatever their names;
 /// - a stack of images (.tif .tiff .png): any of its files, a pattern ("slice%03d.tif") or the
 ///   folder;
@@ -98,6 +101,8 @@ std::vector<VolumeArray> list_arrays(const std::filesystem::path& path,
 /// Returns whether files of this name are volumes with a header, which provides what headerless
 /// data need as options.
 bool has_volume_header(std::string_view file_name);
+/// Returns whether a .json file is a volume, such as an index.json of vtk.js, and not a scene.
+bool is_volume_json(const std::filesystem::path& path);
 /// Returns the extensions of volume files for messages and help: ".nii .nii.gz …".
 std::string volume_extensions();
 

@@ -26,9 +26,9 @@ struct SceneDescription {
   ImageSize size;
   int samples = 1;
   Integration integration;
-  /// The tolerance as a share of the picture's largest channel, in (0, 1], in place of
-  /// integration.tolerance. The program `pellucid` looks for it; make_scene() does not, for the
-  /// picture must be known first.
+  /// Tolerance as a share of the picture's largest channel, in (0, 1], in place of
+  /// integration.tolerance. The program `pellucid` renders to find it. make_scene() ignores it,
+  /// because the tolerance depends on the picture.
   std::optional<double> relative_tolerance;
   std::optional<Rgb<double>> background;
 };

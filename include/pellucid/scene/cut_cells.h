@@ -32,26 +32,26 @@ struct MeshArrayChoice {
 /// Limitation: collapsed quadrilaterals of quadratic cells do not match the triangles of
 /// neighboring quadratic cells.
 ///
-/// Lagrange cells of any order are cut at their nodes in the same way. A polyhedron becomes a
-/// tetrahedron for each triangle of its faces, with the mean of its points, or with one of these
-/// where the mean does not see all faces; faces of more than four points are cut by their shape,
-/// whatever cell they are a face of.
+/// Lagrange cells of any order are cut at their nodes in the same way. The faces of a polyhedron
+/// are cut into triangles; each triangle and the mean of the cell's points make a tetrahedron. If
+/// the mean does not see all faces, one of the points that does takes its place. The cut of a face
+/// of more than four points depends on its shape alone, so two neighbors cut it the same way.
 ///
-/// That the data are linear in each of these tetrahedra is the reconstruction that the tolerance
-/// speaks of.
+/// The reconstruction that the tolerance refers to is linear in each of these tetrahedra.
 ///
 /// Points and tetrahedra are sorted along a Morton curve, so that neighbors in space are neighbors
 /// in memory. TetrahedralMesh::point_number() returns the grid's own indices; new points continue
 /// the numbering.
 ///
-/// Throws Error where an array is not there (naming those that are), or has no such component, the
-/// sizes do not agree, a point's index is out of range, the faces of a polyhedron do not close,
-/// there is no cell, or as TetrahedralMesh and MeshChannels do.
+/// Throws Error if an array does not exist (the message names those that do) or lacks the
+/// component, sizes do not agree, a point index is out of range, the faces of a polyhedron do not
+/// close, there is no cell, or as TetrahedralMesh and MeshChannels do.
 std::shared_ptr<const MeshChannels> cut_into_tetrahedra(const UnstructuredGrid& grid,
                                                         std::span<const MeshArrayChoice> choices,
                                                         const ParallelFor& parallel = {});
 
-/// The same tetrahedra as a grid, with all its arrays and all their components.
+/// Returns the same tetrahedra as a grid, with all arrays and all their components. Throws Error
+/// like cut_into_tetrahedra().
 UnstructuredGrid tetrahedralize(const UnstructuredGrid& grid, const ParallelFor& parallel = {});
 
 /// Returns the cells of a volume's grid as hexahedra with corners in world space and the values in

@@ -8,11 +8,10 @@
 
 namespace pellucid {
 
-/// Returns how many different values the volume has if it looks like labels (a segmentation, an
-/// atlas, a mask): whole numbers, few of them, each filling regions, with jumps between regions
-/// that skip the values in between. Returns nothing for other volumes, as for smooth data of 8
-/// bits and for noise. A heuristic over up to 2^19 voxels; only where they look like labels, all
-/// voxels are counted.
+/// Returns the number of different values if the volume looks like labels (a segmentation, an
+/// atlas, a mask); none for other volumes, such as smooth data of 8 bits or noise. Labels are few
+/// integers that fill regions, with jumps between regions that skip the integers in between. This
+/// is a heuristic over up to 2^19 voxels; if they look like labels, it counts all voxels.
 std::optional<std::size_t> label_count(const Volume& volume);
 
 }  // namespace pellucid

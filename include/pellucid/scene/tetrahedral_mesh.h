@@ -22,9 +22,9 @@ struct MeshStatistics {
   /// Pairs of tetrahedra on the same side of their shared face.
   std::size_t folded_faces = 0;
   std::size_t cells = 0;  ///< cells of the source that the tetrahedra were cut from
-  /// Cells with a tetrahedron at such a face: they overlap themselves or a neighbor.
+  /// Cells that overlap themselves or a neighbor: cells with a tetrahedron at such a face.
   std::size_t overlapping_cells = 0;
-  std::int32_t first_overlapping_cell = -1;  ///< its number; -1: none
+  std::int32_t first_overlapping_cell = -1;  ///< number of the first of them; -1: none
   double volume = 0;                         ///< sum over all tetrahedra, world units cubed
   double mean_edge = 0;                      ///< mean edge length over the tetrahedra
 };
@@ -46,10 +46,10 @@ class TetrahedralMesh {
     std::string name;                                     ///< for messages
     /// Numbers by which messages and point_number() refer to the points; empty: their indices.
     std::vector<std::int32_t> point_numbers{};
-    /// The cell that each tetrahedron was cut from, from 0 on, for the statistics; empty: each is
-    /// one itself.
+    /// Cell that each tetrahedron was cut from, counted from 0, for the statistics; empty: each
+    /// tetrahedron is a cell.
     std::vector<std::int32_t> cells{};
-    /// The numbers of these cells; empty: as they are counted.
+    /// Numbers by which messages refer to the cells; empty: their indices.
     std::vector<std::int32_t> cell_numbers{};
   };
 

@@ -24,20 +24,21 @@ enum class CellShape : std::uint8_t {
   quadratic_pyramid,        ///< 13
   quadratic_wedge,          ///< 15
   quadratic_hexahedron,     ///< 20
-  biquadratic_wedge,        ///< 18: and the middles of the quadrilaterals
-  triquadratic_hexahedron,  ///< 27: and the middles of the faces and of the cell
-  // Those whose layout says how many points they have (UnstructuredGrid::layouts):
-  lagrange_tetrahedron,  ///< of any order, in the order of nodes of VTK 9
+  biquadratic_wedge,        ///< 18: with the centers of the quadrilaterals
+  triquadratic_hexahedron,  ///< 27: with the centers of the faces and of the cell
+  // Shapes with a number of points in UnstructuredGrid::layouts:
+  lagrange_tetrahedron,  ///< any order; nodes in the order of VTK 9
   lagrange_wedge,
   lagrange_hexahedron,
-  polyhedron,  ///< the points of its faces, one face after the other, each in a circle
+  polyhedron,  ///< points of its faces, face after face, each in order around the face
 };
 
-/// How many points a cell of this shape has; 0 where its layout says it.
+/// Returns the number of points of a cell of this shape, or 0 if the layout of the cell gives it.
 int point_count(CellShape shape) noexcept;
 
-/// How many nodes a Lagrange cell has: of a tetrahedron `orders[0]` counts, of a wedge that and
-/// `orders[2]`, along it. 0 where an order is below 1 or the nodes are more than an int counts.
+/// Returns the number of nodes of a Lagrange cell with these orders along its axes, or 0 if an
+/// order is below 1 or the number exceeds an int. A tetrahedron uses `orders[0]` only; a wedge uses
+/// `orders[0]` in its triangles and `orders[2]` along its axis.
 int lagrange_points(CellShape shape, const std::array<int, 3>& orders) noexcept;
 
 /// A variable of a mesh, as read from a file.
@@ -54,38 +55,38 @@ struct MeshArray {
 struct UnstructuredGrid {
   std::vector<Vec3<double>> points;   ///< world
   std::vector<CellShape> shapes;      ///< per cell
-  std::vector<std::int32_t> corners;  ///< points of the cells, one cell after the other
-  /// What some shapes do not say, one such cell after the other. Each begins with its number of
-  /// points. Behind it Lagrange cells have their order along three axes; polyhedra the number of
-  /// their faces, and of each face its number of points. Quadratic tetrahedra of 15 nodes and
-  /// wedges of 21, which have further ones in the middle of triangles and of the cell, are Lagrange
-  /// cells of order 2.
+  std::vector<std::int32_t> corners;  ///< points of the cells, cell after cell
+  /// Layouts of Lagrange cells and polyhedra, cell after cell. A layout begins with the number of
+  /// points. It continues with the orders along three axes (Lagrange cells), or with the number of
+  /// faces and the number of points of each face (polyhedra). Quadratic tetrahedra of 15 nodes and
+  /// wedges of 21, with nodes in the middle of triangles and of the cell, are Lagrange cells of
+  /// order 2.
   std::vector<std::int32_t> layouts{};
-  /// The numbers by which messages call the cells; empty: as they stand.
+  /// Numbers by which messages refer to the cells; empty: their indices.
   std::vector<std::int32_t> cell_numbers{};
   std::vector<MeshArray> arrays;
   std::string name;  ///< used in messages
 };
 
-/// A cell of a grid. Views into it.
+/// A cell of a grid, as views into the grid.
 struct GridCell {
   CellShape shape;
   std::span<const std::int32_t> points;
-  std::span<const std::int32_t> layout;  ///< empty where the shape says all
+  std::span<const std::int32_t> layout;  ///< empty for shapes with a fixed number of points
 };
 
-/// Goes through the cells of a grid in their order. The grid agrees with itself, and outlives this.
+/// Iterates over the cells of a grid in order. The grid must be consistent and outlive this object.
 class CellWalk {
  public:
   explicit CellWalk(const UnstructuredGrid& grid) noexcept : grid_(&grid) {}
-  /// From a place in the middle: the numbers that places() gave there.
+  /// Starts at a cell for which places() returned these numbers.
   CellWalk(const UnstructuredGrid& grid, const std::array<std::size_t, 3>& places) noexcept
       : grid_(&grid), cell_(places[0]), point_(places[1]), layout_(places[2]) {}
 
   bool done() const noexcept { return cell_ == grid_->shapes.size(); }
-  /// Where the next cell begins: among the shapes, the corners and the layouts.
+  /// Returns the indices of the next cell's first entries in shapes, corners and layouts.
   std::array<std::size_t, 3> places() const noexcept { return {cell_, point_, layout_}; }
-  /// The next cell, while not done().
+  /// Returns the next cell. Requires !done().
   GridCell next() noexcept;
 
  private:
@@ -93,9 +94,9 @@ class CellWalk {
   std::size_t cell_ = 0, point_ = 0, layout_ = 0;
 };
 
-/// The corners of the hexahedra of a curvilinear grid with so many points along each axis, which
-/// are numbered x fastest; cells are too. Throws Error where an axis has fewer than two points, or
-/// they are more than an index can count.
+/// Returns the corners of the hexahedra of a curvilinear grid with `points` points along each axis.
+/// Points and cells are numbered x fastest. Throws Error if an axis has fewer than two points, or
+/// there are more points than an index can count.
 std::vector<std::int32_t> grid_hexahedra(const std::array<int, 3>& points);
 
 }  // namespace pellucid

@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+
+#include "output.h"
+#include "pellucid/io/pyramid.h"
+
+namespace pellucid::cli {
+
+/// What an image of OME-Zarr says of its levels, axes, unit, channels and labels, a line each.
+std::string pyramid_text(const Pyramid& pyramid);
+Json pyramid_json(const Pyramid& pyramid);
+
+}  // namespace pellucid::cli
