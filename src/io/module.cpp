@@ -21,15 +21,16 @@ namespace {
 #ifndef PELLUCID_MODULES_INSTALLED
 #define PELLUCID_MODULES_FROM_PROGRAM ""
 #define PELLUCID_MODULES_INSTALLED ""
+#define PELLUCID_MODULES_PACKAGED ""
 #endif
 
-std::array<fs::path, 3> folders() {
+std::array<fs::path, 4> folders() {
   const char* const named = std::getenv("PELLUCID_MODULES");
   std::error_code error;
   const fs::path program = fs::read_symlink("/proc/self/exe", error);
   return {named == nullptr ? fs::path() : fs::path(named),
           program.empty() ? fs::path() : program.parent_path() / PELLUCID_MODULES_FROM_PROGRAM,
-          PELLUCID_MODULES_INSTALLED};
+          PELLUCID_MODULES_INSTALLED, PELLUCID_MODULES_PACKAGED};
 }
 
 }  // namespace
@@ -55,7 +56,8 @@ void* module_function(const Module& module, const char* name) {
   const std::lock_guard lock(loading_modules());
   void* const library = dlopen(file.c_str(), RTLD_NOW | RTLD_LOCAL);
   if (library == nullptr) {
-    throw Error(std::string("the module ") + module.file + " does not load: " + dlerror());
+    throw Error(std::string("the module ") + module.file + ", which reads " + module.reads +
+                ", does not load: " + dlerror() + "; install " + module.needs);
   }
   void* const function = dlsym(library, name);
   if (function == nullptr) {

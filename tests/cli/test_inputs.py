@@ -54,6 +54,17 @@ class BadInput(ProgramTest):
         self.refuse("nothing.json", "good.npy", "--tf", "nothing.json")
         self.refuse("nothing.json", "good.npy", "--camera", "nothing.json")
 
+    def test_module_that_does_not_load(self):
+        self.succeed("convert", "builtin:shells:4", "-o", "cells.vtu", "-q")
+        os.mkdir(self.path("modules"))
+        self.write("modules/pellucid_vtk.so", "no library")
+        result = self.run_program("info", "cells.vtu",
+                                  env={**os.environ, "PELLUCID_MODULES": self.path("modules")})
+        self.assertEqual(result.returncode, 1)
+        self.assertRegex(result.stderr.decode(),
+                         r"\A[^\n]*cells\.vtu: the module pellucid_vtk\.so, which reads [^\n]*, "
+                         r"does not load: [^\n]*; install VTK \(Debian: libvtk9-dev\)\n\Z")
+
     def test_not_a_file(self):
         os.mkdir(self.path("folder.npy"))
         self.refuse("folder.npy", "folder.npy", also_info=True)

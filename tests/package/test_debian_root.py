@@ -1,0 +1,320 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Installs the package into an empty Debian and renders there.
+
+The package is the one that test_contents.py left in PELLUCID_PACKAGE_FOLDER. The Debian is made by
+debootstrap from the mirror that this machine uses, once: it is kept there as an archive, and so are
+the packages that were fetched. Each command runs in mount and process namespaces of its own, so
+that nothing stays mounted or runs on, whatever happens.
+
+Skipped (exit status 77) without root, debootstrap, namespaces or a mirror.
+"""
+import fcntl
+import gzip
+import os
+import re
+import shutil
+import signal
+import struct
+import subprocess
+import sys
+import tempfile
+import urllib.error
+import urllib.request
+import zlib
+
+FOLDER = os.environ["PELLUCID_PACKAGE_FOLDER"]
+VERSION = os.environ["PELLUCID_VERSION"]
+NAMESPACES = ["unshare", "--mount", "--pid", "--fork", "--kill-child", "--propagation", "private"]
+
+
+class Skip(Exception):
+    pass
+
+
+def output_of(*command):
+    return subprocess.run(command, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True,
+                          check=True).stdout
+
+
+def expect(condition, message):
+    if not condition:
+        raise AssertionError(message)
+
+
+# ----- the empty Debian -------------------------------------------------------------------------
+
+def check_machine():
+    if os.geteuid() != 0:
+        raise Skip("a Debian root can only be made as root")
+    for tool in ("debootstrap", "unshare", "apt-get", "dpkg-deb"):
+        if not shutil.which(tool):
+            raise Skip(f"{tool} is not installed (scripts/install-packages package)")
+    if subprocess.run([*NAMESPACES, "true"], stderr=subprocess.DEVNULL, check=False).returncode:
+        raise Skip("this machine allows no mount namespaces (unshare)")
+
+
+def suite_of_host():
+    with open("/etc/os-release", encoding="utf-8") as file:
+        found = re.search(r'(?m)^VERSION_CODENAME="?(\w+)', file.read())
+    if not found:
+        raise Skip("/etc/os-release names no release of Debian")
+    return found.group(1)
+
+
+def sources_of_host():
+    """The host's (address, suite, component) of Debian itself."""
+    lines = output_of("apt-get", "indextargets", "--format",
+                      "$(REPO_URI)|$(RELEASE)|$(COMPONENT)|$(ORIGIN)", "Created-By: Packages")
+    sources = []
+    for line in lines.splitlines():
+        address, suite, component, origin = line.split("|")
+        if origin == "Debian" and (address, suite, component) not in sources:
+            sources.append((address, suite, component))
+    return sources
+
+
+def check_mirror(mirror, suite):
+    try:
+        with urllib.request.urlopen(f"{mirror}/dists/{suite}/InRelease", timeout=60) as answer:
+            answer.read(1)
+    except (urllib.error.URLError, OSError, ValueError):
+        raise Skip("the mirror of this machine does not answer") from None
+
+
+def mounted_under(folder):
+    with open("/proc/self/mounts", encoding="utf-8") as file:
+        return [line.split()[1] for line in file
+                if line.split()[1].startswith(os.path.join(folder, ""))]
+
+
+def remove(root):
+    """Deletes a root; never what is mounted in it."""
+    mounts = mounted_under(os.path.realpath(root))
+    expect(not mounts, f"not deleted, for something is mounted in it: {mounts}")
+    shutil.rmtree(root)
+
+
+def make_root(suite, mirror):
+    """A new folder with a Debian that was just installed."""
+    archive = os.path.join(FOLDER, f"debian_{suite}.tar")
+    root = tempfile.mkdtemp(prefix="root_", dir=FOLDER)
+    os.chmod(root, 0o755)
+    if os.path.exists(archive):
+        subprocess.run(["tar", "--numeric-owner", "-xpf", archive, "-C", root], check=True)
+        return root
+    print("making an empty Debian with debootstrap", flush=True)
+    result = subprocess.run([*NAMESPACES, "debootstrap", "--variant=minbase", suite, root, mirror],
+                            stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
+                            check=False)
+    if result.returncode:
+        remove(root)
+        raise AssertionError(f"debootstrap failed:\n{result.stdout[-2000:]}")
+    subprocess.run(["tar", "--numeric-owner", "-cf", archive + ".new", "-C", root, "."], check=True)
+    os.replace(archive + ".new", archive)
+    return root
+
+
+def set_up_apt(root, sources):
+    with open(f"{root}/etc/apt/sources.list", "w", encoding="utf-8") as file:
+        file.writelines(f"deb {address} {suite} {component}\n"
+                        for address, suite, component in sources)
+    # How this machine reaches its mirror.
+    dump = output_of("apt-config", "dump", "Acquire")
+    with open(f"{root}/etc/apt/apt.conf.d/90host", "w", encoding="utf-8") as file:
+        file.writelines(line + "\n" for line in dump.splitlines()
+                        if re.match(r"Acquire::(https?::Proxy|Check-|ForceIPv)", line))
+    with open(f"{root}/etc/dpkg/dpkg.cfg.d/fast", "w", encoding="utf-8") as file:
+        file.write("force-unsafe-io\n")
+    for name in ("resolv.conf", "hosts"):
+        if os.path.exists(f"/etc/{name}"):
+            shutil.copyfile(f"/etc/{name}", f"{root}/etc/{name}")
+
+
+# ----- commands in it ---------------------------------------------------------------------------
+
+class Root:
+    def __init__(self, folder):
+        self.folder = folder
+
+    def path(self, name):
+        return os.path.join(self.folder, name.lstrip("/"))
+
+    def run(self, *command, status=0):
+        """Runs a command in the root, with /proc, and gives stdout and stderr."""
+        script = 'mount -t proc proc "$0/proc" && exec chroot "$0" "$@"'
+        result = subprocess.run(
+            [*NAMESPACES, "sh", "-c", script, self.folder, *command],
+            stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
+            check=False, env={"PATH": "/usr/sbin:/usr/bin:/sbin:/bin", "HOME": "/root",
+                              "DEBIAN_FRONTEND": "noninteractive", "LC_ALL": "C.UTF-8",
+                              **{name: value for name, value in os.environ.items()
+                                 if name.lower().endswith("_proxy")}})
+        expect(result.returncode == status,
+               f"{' '.join(command)}: exit status {result.returncode}, not {status}\n"
+               f"{result.stdout[-3000:]}")
+        return result.stdout
+
+    def write(self, name, data):
+        with open(self.path(name), "wb") as file:
+            file.write(data)
+
+    def files(self):
+        """The paths of all files and folders on disk."""
+        found = set()
+        for folder, folders, files in os.walk(self.folder):
+            where = os.path.relpath(folder, self.folder)
+            if where in ("proc", "sys", "dev", "tmp"):
+                folders.clear()
+                continue
+            found.update(os.path.normpath(os.path.join(where, name)) for name in folders + files)
+        return found
+
+
+def small_npy():
+    header = b"{'descr': '<f4', 'fortran_order': False, 'shape': (5, 6, 7), }"
+    header += b" " * (64 - (len(header) + 11) % 64) + b"\n"
+    values = [i % 11 / 10 for i in range(5 * 6 * 7)]
+    return (b"\x93NUMPY\x01\x00" + struct.pack("<H", len(header)) + header +
+            struct.pack(f"<{len(values)}f", *values))
+
+
+def small_nifti():
+    values = [i % 13 for i in range(6 * 5 * 4)]
+    header = bytearray(352)
+    struct.pack_into("<i", header, 0, 348)
+    struct.pack_into("<8h", header, 40, 3, 6, 5, 4, 1, 1, 1, 1)
+    struct.pack_into("<hh", header, 70, 4, 16)  # int16
+    struct.pack_into("<8f", header, 76, 1, 1.5, 1, 1, 0, 0, 0, 0)
+    struct.pack_into("<f", header, 108, 352)
+    header[344:348] = b"n+1\0"
+    return bytes(header) + struct.pack(f"<{len(values)}h", *values)
+
+
+def check_png(data, width, height):
+    """Follows the chunks of a PNG, and unpacks its pixels."""
+    expect(data[:8] == b"\x89PNG\r\n\x1a\n", "the picture does not begin as a PNG")
+    at, packed, kinds = 8, b"", []
+    while at < len(data):
+        length, kind = struct.unpack_from(">I4s", data, at)
+        body = data[at + 8:at + 8 + length]
+        expect(zlib.crc32(kind + body) == struct.unpack_from(">I", data, at + 8 + length)[0],
+               f"the checksum of {kind} is wrong")
+        kinds.append(kind)
+        if kind == b"IHDR":
+            expect(struct.unpack_from(">II", body) == (width, height), "the picture's size")
+        packed += body if kind == b"IDAT" else b""
+        at += 12 + length
+    expect(kinds[0] == b"IHDR" and kinds[-1] == b"IEND", "the picture is cut off")
+    expect(len(set(zlib.decompress(packed))) > 8, "the picture is empty")
+
+
+# ----- the test ---------------------------------------------------------------------------------
+
+def check_program(root):
+    expect(VERSION in root.run("pellucid", "--version"), "pellucid --version")
+    root.write("/tmp/small.npy", small_npy())
+    root.write("/tmp/small.nii", small_nifti())
+    for source in ("builtin:shells:32", "/tmp/small.npy", "/tmp/small.nii",
+                   "/usr/share/doc/pellucid/examples/shells.json"):
+        root.run("pellucid", "render", source, "--size", "40x30", "-o", "/tmp/picture.png")
+        with open(root.path("/tmp/picture.png"), "rb") as file:
+            check_png(file.read(), 40, 30)
+        os.remove(root.path("/tmp/picture.png"))
+
+
+def check_missing_library(root):
+    """Without the recommended packages: what needs a module says so in one line."""
+    if os.environ["PELLUCID_HAS_VTK"] != "1":
+        return
+    root.run("pellucid", "convert", "builtin:shells:8", "-q", "-o", "/tmp/cells.vtu")
+    said = root.run("pellucid", "info", "/tmp/cells.vtu", status=1)
+    expect(re.fullmatch(r"pellucid: error: [^\n]*pellucid_vtk\.so[^\n]* libvtk[^\n]*: "
+                        r"[^\n]*libvtk9-dev[^\n]*\n", said), f"not a clear line: {said}")
+
+
+def check_files(root):
+    with gzip.open(root.path("/usr/share/man/man1/pellucid.1.gz"), "rt") as page:
+        expect(".SH NAME" in page.read(), "the manual page")
+    found = [path for path in root.files() if path.endswith("cmake/pellucid/pellucidConfig.cmake")]
+    expect(len(found) == 1, f"the CMake package: {found}")
+    package = os.path.dirname(root.path(found[0]))
+    prefix = os.path.normpath(os.path.join(package, *([".."] * (found[0].count("/") - 1))))
+    expect(prefix == root.path("/usr"), f"the CMake package is at {found[0]}")
+    with open(os.path.join(package, "pellucidTargets-release.cmake"), encoding="utf-8") as file:
+        libraries = set(re.findall(r"\$\{_IMPORT_PREFIX\}/([^\"; ]+\.a)", file.read()))
+    expect(len(libraries) >= 4, f"the libraries of the CMake package: {libraries}")
+    for library in libraries:
+        expect(os.path.exists(os.path.join(prefix, library)), f"{library} is not there")
+    answer = root.run("bash", "-c", ". /usr/share/bash-completion/completions/pellucid; "
+                      "COMP_WORDS=(pellucid ren) COMP_CWORD=1; _pellucid; echo ${COMPREPLY[@]}")
+    expect(answer == "render\n", f"bash completion: {answer}")
+    expect(root.run("dpkg", "--verify", "pellucid") == "", "dpkg --verify")
+
+
+def check_removal(root):
+    root.run("dpkg", "--purge", "pellucid")
+    left = [path for path in root.files() if "pellucid" in path]
+    expect(not left, f"left behind: {left[:10]}")
+
+
+def test(root_folder, deb, sources):
+    root = Root(root_folder)
+    archives = os.path.join(FOLDER, "archives")
+    os.makedirs(archives, exist_ok=True)
+    of_apt = root.path("/var/cache/apt/archives")
+    set_up_apt(root_folder, sources)
+    for name in os.listdir(archives):
+        shutil.copy(os.path.join(archives, name), of_apt)
+    root.run("apt-get", "update", "-q")
+    os.makedirs(root.path("/tmp/package"))
+    shutil.copy(deb, root.path("/tmp/package/pellucid.deb"))
+    said = root.run("apt-get", "install", "-q", "-y", "--no-install-recommends",
+                    "-o", "Dpkg::Use-Pty=0", "/tmp/package/pellucid.deb")
+    for line in re.findall(r"(?m)^.*(?:newly installed|disk space will be used).*$", said):
+        print(line)
+    for name in os.listdir(of_apt):
+        if name.endswith(".deb"):
+            shutil.copy(os.path.join(of_apt, name), archives)
+    check_program(root)
+    check_missing_library(root)
+    check_files(root)
+    check_removal(root)
+
+
+def main():
+    check_machine()
+    debs = [name for name in os.listdir(FOLDER) if name.endswith(".deb")]
+    if not debs:
+        raise Skip("there is no package: package.contents makes it")
+    expect(len(debs) == 1, f"one package is expected in {FOLDER}: {debs}")
+    suite, sources = suite_of_host(), sources_of_host()
+    mirrors = [address for address, of_suite, _ in sources if of_suite == suite]
+    if not mirrors:
+        raise Skip("apt has no sources of Debian, or no lists of them (apt-get update)")
+    check_mirror(mirrors[0].rstrip("/"), suite)
+    with open(os.path.join(FOLDER, "lock"), "w", encoding="utf-8") as lock:
+        fcntl.flock(lock, fcntl.LOCK_EX)
+        for name in os.listdir(FOLDER):  # of a run that was killed
+            if name.startswith("root_"):
+                remove(os.path.join(FOLDER, name))
+        root = None
+        try:
+            root = make_root(suite, mirrors[0])
+            test(root, os.path.join(FOLDER, debs[0]), sources)
+        finally:
+            if root:
+                remove(root)
+    print("installed, rendered and removed")
+
+
+def stop(number, _frame):
+    sys.exit(128 + number)
+
+
+if __name__ == "__main__":
+    signal.signal(signal.SIGTERM, stop)
+    try:
+        main()
+    except Skip as reason:
+        print(f"skipped: {reason}")
+        sys.exit(77)
