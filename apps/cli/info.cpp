@@ -267,7 +267,7 @@ Json json_report(const std::vector<Volume>& components, const Facts& facts, cons
 /// Chooses the array that the list marks, if its name is that of no other: a file of several arrays
 /// may have none that is read by default.
 void choose_shown(const std::vector<VolumeArray>& arrays, ReadOptions& options) {
-  const auto is_default = std::ranges::find_if(arrays, &VolumeArray::shown);
+  const auto shown = std::ranges::find_if(arrays, &VolumeArray::is_default);
   if (options.array || shown == arrays.end()) return;
   if (std::ranges::count(arrays, shown->name, &VolumeArray::name) == 1) options.array = shown->name;
 }
