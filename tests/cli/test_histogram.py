@@ -116,7 +116,7 @@ class Histogram(ProgramTest):
         self.fail_with("'value' is given twice", "histogram", "a.npy", "--axes", "value,value",
                        "--json", code=2)
         self.fail_with("3 channels are too many, at most 2 can be used; choose by --axes from a, "
-                       "c", "histogram", "a.npy", "b.npy", "c.npy", "--json", code=2)
+                       "b, c", "histogram", "a.npy", "b.npy", "c.npy", "--json", code=2)
         for bins in ("0", "x", "4097", "3x4x5", "-1", "2x", "1.5"):
             self.fail_with(rf"--bins '{bins}': expected a number of bins from 1 to 4096",
                            "histogram", "a.npy", "--json", f"--bins={bins}", code=2)
