@@ -53,7 +53,7 @@ void VolumeOptions::add_to(CommandLine& command, bool with_array, bool with_axes
   }
   add(command
           .add_option(with_axes ? "--array-axes,--axes" : "--array-axes", axes,
-                      "NumPy and HDF5: axes of the array in the order of its indices, c for "
+                      "NumPy, HDF5 and Zarr: axes of the array in the order of its indices, c for "
                       "components. Default: zyx; of four zyxc or czyx, as a note says")
           ->option_text("LETTERS"));
   add(command

@@ -10,7 +10,6 @@
 
 #include "memory_limit.h"
 #include "pellucid/scene/error.h"
-#include "stored_numbers.h"
 
 namespace pellucid {
 
@@ -145,17 +144,19 @@ std::vector<Collector> collect_components(const ReadOn& read, const ValueLayout&
   return collectors;
 }
 
-/// Halves are of one type as they are.
-void unify(std::span<Halves>) {}
-
-std::string rounding_of(const std::vector<WholeNumbers>& components, std::size_t points) {
-  Rounding rounding;
-  for (const WholeNumbers& component : components) rounding.merge(component.rounding());
-  return rounding.count == 0 ? std::string() : rounding.text(points * components.size());
+template <class Collector>
+std::vector<VolumeData> take_each(std::vector<Collector>& components) {
+  std::vector<VolumeData> list;
+  list.reserve(components.size());
+  for (Collector& component : components) list.push_back(component.take());
+  return list;
 }
 
-std::string rounding_of(const std::vector<Halves>&, std::size_t) {
-  return {};
+/// Halves are of one type as they are.
+std::vector<VolumeData> take_components(std::vector<Halves>& components, std::size_t,
+                                        const std::string&,
+                                        const std::function<void(const std::string&)>&) {
+  return take_each(components);
 }
 
 template <class Stored, class Collector>
@@ -163,14 +164,7 @@ std::vector<VolumeData> read_as(const ReadOn& read, const ValueLayout& layout, s
                                 ComponentRange range, const std::string& name) {
   const auto make = [&](const std::string& type) { return make_values(type, points, name); };
   auto components = collect_components<Stored, Collector>(read, layout, points, range, make, name);
-  unify(std::span(components));
-  if (const std::string rounding = rounding_of(components, points);
-      layout.note && !rounding.empty()) {
-    layout.note(name + ": " + rounding);
-  }
-  std::vector<VolumeData> list;
-  for (Collector& component : components) list.push_back(component.take());
-  return list;
+  return take_components(components, points, name, layout.note);
 }
 
 /// `read` stands at the first value of all, or of the first component of the range where they lie
@@ -209,6 +203,18 @@ std::vector<Volume> read_all(const VolumeFile& file, const ReadOptions& options)
     volumes.push_back(make_volume(file, component++, std::move(data)));
   }
   return volumes;
+}
+
+std::vector<VolumeData> take_components(std::vector<WholeNumbers>& components, std::size_t points,
+                                        const std::string& name,
+                                        const std::function<void(const std::string&)>& note) {
+  Rounding rounding;
+  for (const WholeNumbers& component : components) rounding.merge(component.rounding());
+  unify(components);
+  if (rounding.count > 0 && note) {
+    note(name + ": " + rounding.text(points * components.size()));
+  }
+  return take_each(components);
 }
 
 ReadOn read_on(const ByteSource& source, std::uintmax_t from) {

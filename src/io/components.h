@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "data_stream.h"
+#include "stored_numbers.h"
 #include "volume_source.h"
 
 namespace pellucid {
@@ -57,6 +58,12 @@ std::vector<VolumeData> read_components(DataStream& stream, const ValueLayout& l
 /// Error where there is no memory for them.
 std::vector<VolumeData> split_components(const VolumeData& values, int components,
                                          ComponentRange range, const std::string& name);
+
+/// Gives whole numbers of components, each of `points` values, one type and takes them out. `note`
+/// is told after `name` how many were rounded; it may be missing.
+std::vector<VolumeData> take_components(std::vector<WholeNumbers>& components, std::size_t points,
+                                        const std::string& name,
+                                        const std::function<void(const std::string&)>& note);
 
 /// Headers of other formats.
 VolumeFile open_npy(const ByteSource& source, const ReadOptions& options);

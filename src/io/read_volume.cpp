@@ -122,7 +122,7 @@ Lister lister_of(Opener open) {
          : open == open_net_cdf          ? without_options<list_net_cdf_arrays>
          : open == open_vdb              ? without_options<list_vdb_arrays>
          : open == open_image_collection ? without_options<list_collection_arrays>
-         : open == open_zarr             ? without_options<list_zarr_arrays>
+         : open == open_zarr             ? list_zarr_arrays
          : open == open_vtk_js           ? without_options<list_vtk_js_arrays>
                                          : nullptr;
 }
@@ -198,9 +198,11 @@ VolumeFile open_file(const std::filesystem::path& path, const ReadOptions& optio
   if (options.array && lister_of(open) == nullptr) {
     throw Error(path.string() + ": has no arrays with names; leave the array out");
   }
-  if (options.axes && open != open_npy_file && open != open_npz_file && open != open_hdf5) {
+  constexpr std::array of_plain_arrays{open_npy_file, open_npz_file, Opener{open_hdf5},
+                                       Opener{open_zarr}};
+  if (options.axes && std::ranges::find(of_plain_arrays, open) == of_plain_arrays.end()) {
     throw Error(path.string() + ": the file's format says which axes are x, y and z; leave the " +
-                "axes out (they are for .npy, .npz and HDF5)");
+                "axes out (they are for .npy, .npz, HDF5 and Zarr)");
   }
   if (options.level && open != open_zarr) {
     throw Error(path.string() + ": has no levels of resolution; leave the level out");

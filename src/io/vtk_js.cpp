@@ -8,7 +8,6 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <cmath>
 #include <cstdint>
 #include <limits>
@@ -22,7 +21,6 @@
 #include "gzip_source.h"
 #include "json_file.h"
 #include "pellucid/scene/error.h"
-#include "whole_numbers.h"
 
 namespace pellucid {
 
@@ -244,29 +242,6 @@ const Array& choose(const Image& image, const ReadOptions& options, const std::s
               printable(list));
 }
 
-template <class Number>
-std::vector<VolumeData> read_wide(const ByteSource& source, const Array& array, std::size_t points,
-                                  ComponentRange range,
-                                  const std::function<void(const std::string&)>& note) {
-  // As double first, whose bytes are as many.
-  const auto components = static_cast<std::size_t>(array.components);
-  VolumeData raw = make_values("f64", points * components, source.name);
-  const std::span<double> all = std::get<DataArray<double>>(raw).writable();
-  source.read(0, std::as_writable_bytes(all));
-  to_native_order(raw, array.big_endian);
-  std::vector<std::vector<Number>> lists;
-  std::vector<std::span<const Number>> views;
-  for (int c = range.first; c < range.first + range.number; ++c) {
-    std::vector<Number> list(points);
-    for (std::size_t i = 0; i < points; ++i) {
-      list[i] = std::bit_cast<Number>(all[i * components + static_cast<std::size_t>(c)]);
-    }
-    lists.push_back(std::move(list));
-  }
-  for (const std::vector<Number>& list : lists) views.emplace_back(list);
-  return kept_whole_numbers(views, source.name, note);
-}
-
 VolumeFile open_array(const Image& image, const Array& array, const ReadOptions& options,
                       const std::string& name) {
   VolumeFile file;
@@ -297,18 +272,15 @@ VolumeFile open_array(const Image& image, const Array& array, const ReadOptions&
   file.array = array.name;
   file.read = [array, points, note = options.note](ComponentRange range) {
     const ByteSource source = plain_or_gzip_source(array.file);
-    const bool is_wide = array.type == "i64" || array.type == "u64";
-    const std::size_t size = is_wide ? 8 : value_size(array.type, source.name);
-    const std::uintmax_t needed =
-        std::uintmax_t{points} * static_cast<std::uintmax_t>(array.components) * size;
+    const std::uintmax_t needed = std::uintmax_t{points} *
+                                  static_cast<std::uintmax_t>(array.components) *
+                                  value_size(array.type, source.name);
     if (source.size != needed) {
       throw Error(source.name + ": holds " + std::to_string(source.size) +
                   " bytes of values, but the image needs " + std::to_string(needed) +
                   "; it is cut off or of another image");
     }
-    if (array.type == "i64") return read_wide<std::int64_t>(source, array, points, range, note);
-    if (array.type == "u64") return read_wide<std::uint64_t>(source, array, points, range, note);
-    const ValueLayout layout{array.type, array.big_endian, 0, array.components, true};
+    const ValueLayout layout{array.type, array.big_endian, 0, array.components, true, note};
     return read_components(source, layout, points, range);
   };
   return file;

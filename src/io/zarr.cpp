@@ -10,6 +10,7 @@
 #include <system_error>
 #include <utility>
 
+#include "array_axes.h"
 #include "array_statistics.h"
 #include "ome_zarr.h"
 #include "pellucid/io/pyramid.h"
@@ -288,14 +289,6 @@ char letter_of(const std::string& axis_name, const std::string& type) {
   return '\0';
 }
 
-std::string shape_text(const ZarrArray& array) {
-  std::string text;
-  for (const std::int64_t side : array.shape) {
-    text += (text.empty() ? "" : ", ") + std::to_string(side);
-  }
-  return "(" + text + ")";
-}
-
 /// What the axes of an array are: those of space, of components and of time.
 struct Axes {
   ZarrView view;
@@ -330,51 +323,45 @@ std::optional<Axes> named_axes(const std::vector<char>& letters) {
   return axes;
 }
 
-/// Of an array whose axes have no names: z, y, x, and components in front or behind.
-Axes plain_axes(const ZarrArray& array, const std::string& name,
-                const std::function<void(const std::string&)>& note) {
-  std::size_t begin = 0, end = array.shape.size();
-  while (end - begin > 3 && array.shape[begin] == 1) ++begin;
-  while (end - begin > 3 && array.shape[end - 1] == 1) --end;
-  if (end - begin != 3 && end - begin != 4) {
-    throw Error(name + ": an array of shape " + shape_text(array) +
-                " is no volume; it must have 3 axes, and may have a fourth for components");
-  }
+/// Of an array whose axes have no names that say it: as the options do, or guessed.
+Axes plain_axes(const ZarrArray& array, const std::string& name, const ReadOptions& options) {
+  const ArrayAxes found = array_axes(
+      array.shape, options.axes, name + ": an array of shape (" + shape_text(array.shape) + ")");
   Axes axes;
   axes.view.at.assign(array.shape.size(), 0);
-  if (end - begin == 4) {
-    constexpr std::int64_t most = 8;
-    const std::int64_t front = array.shape[begin], back = array.shape[end - 1];
-    const bool behind = back <= most && (front > most || back <= front);
-    axes.view.components = {behind ? end - 1 : begin};
-    if (note) {
-      note(name + ": of the axes " + shape_text(array) + " the " + (behind ? "last" : "first") +
-           " is taken for components, the others for z, y, x");
-    }
-    if (!behind) ++begin;
+  for (std::size_t place = 0; place < 3; ++place) axes.view.space[place] = found.space[place];
+  if (found.components) axes.view.components = {*found.components};
+  if (options.note && !found.guess.empty()) {
+    options.note(name + ": " + axes_note(array.shape, found));
   }
-  for (std::size_t place = 0; place < 3; ++place) axes.view.space[place] = begin + 2 - place;
   return axes;
 }
 
-Axes axes_of(const Choice& choice, const std::string& name,
-             const std::function<void(const std::string&)>& note) {
+Axes axes_of(const Choice& choice, const std::string& name, const ReadOptions& options) {
   const ZarrArray& array = choice.array;
   std::vector<char> letters;
+  std::optional<Axes> named;
   if (choice.image) {
     for (const OmeAxis& axis : choice.image->axes) {
       letters.push_back(letter_of(axis.name, axis.type));
     }
-    if (auto axes = named_axes(letters)) return *std::move(axes);
-    throw Error(name + ": its axes are not x, y and z with t and c; name a level's array, as in " +
-                "--array " + printable(choice.image->levels[choice.level].path));
+    named = named_axes(letters);
+  } else {
+    for (const std::string& axis : array.dimension_names) letters.push_back(letter_of(axis, {}));
+    const bool any_named = std::ranges::any_of(letters, [](char letter) { return letter != 0; });
+    if (any_named) named = named_axes(letters);
+    if (named && !named->view.space[2]) named.reset();
   }
-  for (const std::string& axis : array.dimension_names) letters.push_back(letter_of(axis, {}));
-  const bool any_named = std::ranges::any_of(letters, [](char letter) { return letter != 0; });
-  if (any_named) {
-    if (auto axes = named_axes(letters); axes && axes->view.space[2]) return *std::move(axes);
+  if (named && options.axes) {
+    throw Error(name + ": the store says which axes are x, y and z; leave the axes out");
   }
-  return plain_axes(array, name, note);
+  if (named) return *std::move(named);
+  if (choice.image && !options.axes) {
+    throw Error(name +
+                ": its axes are not x, y and z with t and c; say which they are, as in "
+                "--array-axes czyx");
+  }
+  return plain_axes(array, name, options);
 }
 
 // ------------------------------------------------------------------------------------- placement
@@ -566,7 +553,7 @@ VolumeFile open_zarr(const fs::path& path, const ReadOptions& options) {
   const std::string name = path.string();
   refuse_raw_options(options, name);
   Choice choice = choose(path, options);
-  Axes axes = axes_of(choice, name, options.note);
+  Axes axes = axes_of(choice, name, options);
   if (options.time) {
     if (!axes.time) throw Error(name + ": has no steps in time; leave the time out");
     axes.view.at[*axes.time] = step_at(choice, *axes.time, *options.time);
@@ -598,7 +585,7 @@ VolumeFile open_zarr(const fs::path& path, const ReadOptions& options) {
   return file;
 }
 
-std::vector<VolumeArray> list_zarr_arrays(const fs::path& path) {
+std::vector<VolumeArray> list_zarr_arrays(const fs::path& path, const ReadOptions& given) {
   const fs::path folder = folder_of(path);
   const ZarrNode node = node_at(folder);
   if (node.is_array || is_image(node)) return {};
@@ -613,6 +600,7 @@ std::vector<VolumeArray> list_zarr_arrays(const fs::path& path) {
     try {
       ReadOptions options;
       options.array = entry.path;
+      options.axes = given.axes;
       const VolumeFile file = open_zarr(folder, options);
       const auto& sides = file.description.dimensions;
       about.dimensions.assign(sides.begin(), sides.end());
@@ -642,7 +630,7 @@ std::optional<Pyramid> describe_pyramid(const fs::path& path, const ReadOptions&
   Choice choice = choose(path, quiet);
   if (!choice.image) return std::nullopt;
   const std::string name = path.string();
-  const Axes axes = axes_of(choice, name, {});
+  const Axes axes = axes_of(choice, name, quiet);
   OmeImage& image = *choice.image;
   const Units units = units_of(image, axes.view);
   Pyramid pyramid;

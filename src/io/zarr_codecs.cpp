@@ -29,8 +29,8 @@
 
 #include "inflater.h"
 #include "pellucid/scene/error.h"
+#include "stored_numbers.h"
 #include "text.h"
-#include "whole_numbers.h"
 
 namespace pellucid {
 
@@ -243,7 +243,7 @@ double real_at(const std::array<std::byte, 8>& bytes, const ZarrType& type) {
   if (type.name == "f64") return number_at<double>(bytes);
   if (type.name == "f32") return static_cast<double>(number_at<float>(bytes));
   if (type.name == "f16")
-    return static_cast<double>(float_of_half(number_at<std::uint16_t>(bytes)));
+    return static_cast<double>(half_to_float(number_at<std::uint16_t>(bytes)));
   const std::uint64_t whole = whole_at(bytes, type);
   return type.name[0] == 'i' ? static_cast<double>(static_cast<std::int64_t>(whole))
                              : static_cast<double>(whole);

@@ -15,7 +15,7 @@
 #include <utility>
 
 #include "pellucid/scene/error.h"
-#include "whole_numbers.h"
+#include "stored_numbers.h"
 
 namespace pellucid {
 
@@ -142,7 +142,7 @@ void read_fill(const Node& node, ZarrArray& array) {
     return;
   }
   if (const auto bits = bits_of(node); bits && type[0] == 'f') {
-    if (type == "f16") put(float_of_half(static_cast<std::uint16_t>(*bits)), array.fill);
+    if (type == "f16") put(half_to_float(static_cast<std::uint16_t>(*bits)), array.fill);
     if (type == "f32") put(static_cast<std::uint32_t>(*bits), array.fill);
     if (type == "f64") put(*bits, array.fill);
   } else if (node.value().is_boolean() || type == "b1") {

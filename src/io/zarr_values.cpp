@@ -15,7 +15,7 @@
 
 #include "memory_limit.h"
 #include "pellucid/scene/error.h"
-#include "whole_numbers.h"
+#include "stored_numbers.h"
 #include "zarr_codecs.h"
 
 namespace pellucid {
@@ -121,7 +121,7 @@ struct Truth {
 };
 struct Half {
   using Stored = std::uint16_t;
-  static float keep(Stored bits) { return float_of_half(bits); }
+  static float keep(Stored bits) { return half_to_float(bits); }
 };
 template <class Number>
 struct Same {
@@ -453,15 +453,24 @@ std::vector<VolumeData> read_wide(const fs::path& folder, const ZarrArray& array
                                   const Selection& selection, std::size_t points,
                                   const std::function<void(const std::string&)>& note) {
   const auto number = static_cast<std::size_t>(selection.range().number);
-  const auto all = std::make_unique_for_overwrite<Number[]>(points * number);
+  const std::string name = folder.string();
+  // Chunks come in no order of the points; the type is known when all are read.
+  std::vector<std::unique_ptr<Number[]>> stored;
   std::vector<std::span<Number>> to;
-  std::vector<std::span<const Number>> from;
   for (std::size_t c = 0; c < number; ++c) {
-    to.push_back({all.get() + c * points, points});
-    from.push_back(to.back());
+    stored.push_back(std::make_unique_for_overwrite<Number[]>(points));
+    to.emplace_back(stored.back().get(), points);
   }
   read_into<Same<Number>>(folder, array, selection, std::move(to), note);
-  return kept_whole_numbers(from, folder.string(), note);
+  const auto make = [&](const std::string& type) { return make_values(type, points, name); };
+  std::vector<WholeNumbers> components;
+  components.reserve(number);
+  for (std::unique_ptr<Number[]>& numbers : stored) {
+    components.emplace_back(make);
+    components.back().add(std::span<const Number>(numbers.get(), points));
+    numbers.reset();
+  }
+  return take_components(components, points, name, note);
 }
 
 }  // namespace

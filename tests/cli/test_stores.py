@@ -76,6 +76,12 @@ class Stores(ProgramTest):
         self.assertEqual((report["array"], report["range"]), ("b", [10, 17]))
         self.assertEqual([array["name"] for array in report["arrays"]], ["a", "b"])
 
+    def test_axes_of_an_array(self):
+        self.array("a.zarr", [2, 3, 4], range(24))
+        report = self.report("info", "a.zarr", "--axes", "xyz")
+        self.assertEqual(report["dimensions"], [2, 3, 4])
+        self.fail_with("leave the axes out", "info", self.image(), "--array-axes", "zyx")
+
     def test_data_set_of_vtk_js(self):
         data = {"data": {"name": "f", "dataType": "Float32Array", "numberOfComponents": 1,
                          "size": 8, "ref": {"encode": "LittleEndian", "basepath": "data",

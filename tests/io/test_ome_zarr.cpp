@@ -278,6 +278,21 @@ TEST_F(OmeZarrTest, RefusesMetadataThatLie) {
   EXPECT_TRUE(contains(error("a.zarr"), "is a plate of many images"));
 }
 
+TEST_F(OmeZarrTest, AxesAreGivenWhereItsOwnSayNothing) {
+  array("a.zarr/0");
+  ReadOptions options;
+  options.axes = "zyx";
+  image("a.zarr", micrometer_axes, dataset("0", "[3, 2, 1]"));
+  EXPECT_TRUE(contains(error_of([&] { read_volume(path("a.zarr"), options); }),
+                       "the store says which axes are x, y and z; leave the axes out"));
+  image("a.zarr", "[{\"name\": \"i\"}, {\"name\": \"x\"}, {\"name\": \"x\"}]",
+        dataset("0", "[3, 2, 1]"));
+  EXPECT_TRUE(contains(error("a.zarr"), "say which they are, as in --array-axes czyx"));
+  const Volume volume = read_volume(path("a.zarr"), options);
+  EXPECT_EQ(value_at(volume, 4, 3, 2), 59);
+  EXPECT_EQ(volume.description().placement.spacing.z, 3);
+}
+
 TEST_F(OmeZarrTest, TooLargeForTheMachine) {
   image("a.zarr", micrometer_axes, dataset("0", "[1, 1, 1]") + ", " + dataset("1", "[2, 2, 2]"));
   ZarrStore store;

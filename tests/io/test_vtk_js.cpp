@@ -82,6 +82,32 @@ TEST_F(VtkJsTest, CompressedValuesAndOtherTypes) {
   EXPECT_EQ(value_at(both[1], 4, 3, 2), 159);
 }
 
+TEST_F(VtkJsTest, WholeNumbersOf64Bits) {
+  index(array_text("w", "BigInt64Array", "w", 2, 120));
+  const auto write_pairs = [&](std::int64_t last) {
+    std::vector<std::int64_t> pairs;
+    for (int i = 0; i < 60; ++i) {
+      pairs.push_back(i);
+      pairs.push_back(-i);
+    }
+    pairs.back() = last;
+    write("head.vti/data/w", bytes_of(pairs));
+  };
+  std::string notes;
+  ReadOptions options;
+  options.note = [&](const std::string& line) { notes += line; };
+  write_pairs(-300);
+  const std::vector<Volume> both = read_components(path("head.vti"), options);
+  ASSERT_EQ(both.size(), 2u);
+  expect_counting(both[0], "i16");
+  EXPECT_EQ(type_name(both[1].data()), "i16");
+  EXPECT_EQ(value_at(both[1], 4, 3, 2), -300);
+  EXPECT_EQ(notes, "");
+  write_pairs((std::int64_t{1} << 53) + 1);
+  expect_counting(read_components(path("head.vti"), options).at(0), "f64");
+  EXPECT_TRUE(contains(notes, "1 of 120 whole numbers of 64 bits does not fit double")) << notes;
+}
+
 // Axis by axis, as the matrices of WebGL; the origin is that of index 0.
 TEST_F(VtkJsTest, DirectionAndExtent) {
   index(array_text("f", "Float32Array", "f"), ", \"direction\": [0, 1, 0, -1, 0, 0, 0, 0, 1]",

@@ -138,7 +138,10 @@ TEST_F(ZarrTest, TypesThatVolumesHaveNot) {
   EXPECT_EQ(notes_, "");
   numbers[1] = (std::int64_t{1} << 53) + 1;
   EXPECT_EQ(type_name(read_2(store, bytes_of(numbers), 8).data()), "f64");
-  EXPECT_TRUE(contains(notes_, "1 of 60 whole numbers of 64 bits do not fit double")) << notes_;
+  EXPECT_TRUE(contains(notes_,
+                       "1 of 60 whole numbers of 64 bits does not fit double and is "
+                       "rounded, by at most 1"))
+      << notes_;
   store.type = ">u8";
   EXPECT_EQ(value_at(read_2(store, swapped_bytes_of(counting<std::uint64_t>()), 8), 4, 3, 2), 59);
 }
@@ -458,7 +461,7 @@ TEST_F(ZarrTest, FourAxesAreComponents) {
   ASSERT_EQ(both.size(), 2u);
   expect_counting(both[0], "u8");
   EXPECT_EQ(value_at(both[1], 4, 3, 2), 159);
-  EXPECT_TRUE(contains(notes_, "the first is taken for components")) << notes_;
+  EXPECT_TRUE(contains(notes_, "the first is taken for 2 components, axes czyx")) << notes_;
   options.component = 1;
   EXPECT_EQ(value_at(read_volume(path("a.zarr"), options), 0, 0, 0), 100);
   EXPECT_TRUE(contains(error_of([&] { read_volume(path("a.zarr")); }), "choose a component"));
@@ -474,7 +477,103 @@ TEST_F(ZarrTest, FourAxesAreComponents) {
   ASSERT_EQ(colors.size(), 2u);
   expect_counting(colors[0], "u8");
   EXPECT_EQ(value_at(colors[1], 4, 3, 2), 159);
-  EXPECT_TRUE(contains(notes_, "the last is taken for components")) << notes_;
+  EXPECT_TRUE(contains(notes_, "the fourth is taken for 2 components, axes zyxc")) << notes_;
+}
+
+TEST_F(ZarrTest, WholeNumbersOfComponentsAreOfOneType) {
+  std::vector<std::int64_t> numbers(120);
+  for (std::size_t i = 0; i < 60; ++i) {
+    numbers[i] = static_cast<std::int64_t>(i);
+    numbers[i + 60] = static_cast<std::int64_t>(i) * 100 - 10;
+  }
+  ZarrStore store;
+  store.type = "<i8";
+  store.shape = {2, 3, 4, 5};
+  store.chunk = {1, 2, 4, 3};
+  store.write_2(path("a.zarr"), bytes_of(numbers), 8);
+  const std::vector<Volume> both = read_components(path("a.zarr"));
+  ASSERT_EQ(both.size(), 2u);
+  expect_counting(both[0], "i16");
+  EXPECT_EQ(type_name(both[1].data()), "i16");
+  EXPECT_EQ(value_at(both[1], 0, 0, 0), -10);
+  EXPECT_EQ(value_at(both[1], 4, 3, 2), 5890);
+}
+
+// The rule is that of NumPy and HDF5: what one of them reads as slices no other reads as channels.
+TEST_F(ZarrTest, FourAxesAreGuessedAsElsewhere) {
+  const auto guess = [&](const std::vector<int>& shape) {
+    fs::remove_all(path("a.zarr"));
+    ZarrStore store;
+    store.type = "|u1";
+    store.shape = store.chunk = shape;
+    write_text("a.zarr/.zarray", store.array_2());
+    notes_.clear();
+    component_count(path("a.zarr"), noting());
+    const std::string before = "components, axes ";
+    return notes_.substr(notes_.find(before) + before.size(), 4);
+  };
+  EXPECT_EQ(guess({20, 10, 10, 6}), "zyxc");
+  EXPECT_EQ(guess({3, 10, 10, 4}), "zyxc");
+  EXPECT_EQ(guess({4, 10, 10, 6}), "czyx");
+  EXPECT_EQ(guess({20, 3, 10, 12}), "zcyx");
+  EXPECT_EQ(guess({20, 30, 40, 50}), "czyx");
+}
+
+TEST_F(ZarrTest, AxesThatAreGiven) {
+  ReadOptions options = noting();
+  const auto write_store = [&](const std::vector<int>& shape, const std::string& values) {
+    fs::remove_all(path("a.zarr"));
+    ZarrStore store;
+    store.type = "|u1";
+    store.shape = shape;
+    store.chunk = {2, 3, 2, 2};
+    store.chunk.resize(shape.size());
+    store.write_2(path("a.zarr"), values, 1);
+  };
+  // a[x, y, z]
+  std::string values, both;
+  for (int x = 0; x < 5; ++x) {
+    for (int y = 0; y < 4; ++y) {
+      for (int z = 0; z < 3; ++z) values += static_cast<char>(x + 5 * (y + 4 * z));
+    }
+  }
+  write_store({5, 4, 3}, values);
+  options.axes = "xyz";
+  expect_counting(read_volume(path("a.zarr"), options), "u8");
+  options.axes = "czyx";
+  EXPECT_TRUE(contains(error_of([&] { read_volume(path("a.zarr"), options); }),
+                       "of shape (5, 4, 3) has 3 axes, but the axes \"czyx\" are given"));
+  // a[z, c, y, x], which nobody would guess.
+  for (int z = 0; z < 3; ++z) {
+    for (int c = 0; c < 2; ++c) {
+      for (int i = 0; i < 20; ++i) both += static_cast<char>(i + 20 * z + 60 * c);
+    }
+  }
+  write_store({3, 2, 4, 5}, both);
+  options.axes = "zcyx";
+  const std::vector<Volume> components = read_components(path("a.zarr"), options);
+  ASSERT_EQ(components.size(), 2u);
+  expect_counting(components[0], "u8");
+  EXPECT_EQ(value_at(components[1], 0, 0, 0), 60);
+  EXPECT_EQ(value_at(components[1], 4, 3, 2), 119);
+  EXPECT_EQ(notes_, "");
+  // Names that say nothing of the axes do not stand in the way, others do.
+  write_text("a.zarr/.zattrs", "{\"_ARRAY_DIMENSIONS\": [\"i\", \"j\", \"k\", \"l\"]}");
+  expect_counting(read_components(path("a.zarr"), options).at(0), "u8");
+  write_text("a.zarr/.zattrs", "{\"_ARRAY_DIMENSIONS\": [\"c\", \"z\", \"y\", \"x\"]}");
+  EXPECT_TRUE(
+      contains(error_of([&] { read_components(path("a.zarr"), options); }), "leave the axes out"));
+}
+
+TEST_F(ZarrTest, AxesThatAreGivenCountInListings) {
+  write_text("a.zarr/.zgroup", "{\"zarr_format\": 2}");
+  ZarrStore store;
+  store.write_2(path("a.zarr/a"), bytes_of(counting()), 4);
+  ReadOptions options;
+  options.axes = "xyz";
+  const std::vector<VolumeArray> arrays = list_arrays(path("a.zarr"), options);
+  ASSERT_EQ(arrays.size(), 1u);
+  EXPECT_EQ(arrays[0].dimensions, (std::vector<int>{3, 4, 5}));
 }
 
 // As xarray writes them: names of axes, and arrays of positions beside the values.
@@ -568,7 +667,7 @@ TEST_F(ZarrTest, RefusesMetadataThatLie) {
                          s.shape = {4, 5};
                          s.chunk = {1, 1};
                        }),
-                       "an array of shape (4, 5) is no volume"));
+                       "an array of shape (4, 5) is an image of 2 axes and no volume"));
   EXPECT_TRUE(contains(error([](ZarrStore& s) { s.type = "<c8"; }), "\"<c8\" is not read"));
   EXPECT_TRUE(contains(error([](ZarrStore& s) { s.order = "A"; }), "/order"));
   EXPECT_TRUE(contains(error([](ZarrStore& s) { s.compressor = "{\"id\": \"zfpy\"}"; }),

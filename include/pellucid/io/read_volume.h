@@ -26,9 +26,9 @@ struct ReadOptions {
   std::optional<int> component;         ///< component to read, from 0
   std::optional<double> time;  ///< NetCDF, OME-Zarr: reads the nearest time step, not a component
   std::optional<std::string> array;  ///< name of the array to read; none: see VolumeArray
-  /// .npy, .npz and HDF5: a letter for each axis of the array, in the order of its indices: x, y
-  /// and z, and c for components ("xyz", "czyx"). None: "zyx"; of four axes c is the first or the
-  /// last, whichever is short, and `note` is told which was taken.
+  /// .npy, .npz, HDF5 and Zarr that does not name its axes: a letter for each axis of the array, in
+  /// the order of its indices: x, y and z, and c for components ("xyz", "czyx"). None: "zyx"; of
+  /// four axes c is the first or the last, whichever is short, and `note` is told which was taken.
   std::optional<std::string> axes;
   std::optional<int> level;  ///< OME-Zarr: level of resolution, 0 is the finest; none: 0
   /// DICOM: series to read from a folder: its number as in list_dicom_series(), from 1, its UID, or
