@@ -124,7 +124,7 @@ class Series(ProgramTest):
         self.assertRegex(result.stderr.decode(),
                          r"\Apellucid: ct: 3 files are left out; the first: "
                          r"ct/9: has 11 bytes of pixels[^\n]*\n\Z")
-        self.assertIn(b"one to be chosen by --series", result.stdout)
+        self.assertIn(b"choose one by --series", result.stdout)
         self.fail_with("2 DICOM series[^\n]*; 3 files are left out; the first: ct/9: ", "render",
                        "ct", "-o", "o.png")
 

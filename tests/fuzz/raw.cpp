@@ -28,14 +28,23 @@ struct Options {
   double spacing[3], origin[3];
 };
 
+struct Type {
+  const char* name;
+  std::size_t bytes;  ///< of a value as it is stored
+};
+constexpr Type types[] = {{"u8", 1},  {"i8", 1},  {"u16", 2}, {"i16", 2}, {"u32", 4}, {"i32", 4},
+                          {"f32", 4}, {"f64", 8}, {"f16", 2}, {"", 0},    {"i64", 8}, {"u64", 8}};
+
+const Type& type_of(const Options& given) {
+  return types[given.type % std::size(types)];
+}
+
 pellucid::ReadOptions read_options(const Options& given) {
-  static constexpr const char* types[] = {"u8",  "i8",  "u16", "i16", "u32",
-                                          "i32", "f32", "f64", "f16", ""};
   pellucid::ReadOptions options;
   if ((given.flags & 1) == 0) {
     options.dimensions = {given.dimensions[0], given.dimensions[1], given.dimensions[2]};
   }
-  if ((given.flags & 2) == 0) options.type = types[given.type % std::size(types)];
+  if ((given.flags & 2) == 0) options.type = type_of(given).name;
   if ((given.flags & 4) != 0) options.big_endian = (given.flags & 8) != 0;
   options.skip_bytes = given.skip;
   if (given.components % 16 != 0) {
@@ -65,10 +74,10 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   for (std::size_t i = 0; i < bytes.size(); ++i) bytes[i] = std::byte{data[sizeof(given) + i]};
   try {
     const pellucid::Volume volume = pellucid::parse_raw(bytes, "fuzz", read_options(given));
-    const std::size_t held = std::visit(
-        [](const auto& values) { return values.size() * sizeof(values[0]); }, volume.data());
+    const std::size_t count =
+        std::visit([](const auto& values) { return values.size(); }, volume.data());
     const std::size_t components = given.components % 16 == 0 ? 1 : given.components % 16;
-    require(held * components + given.skip == bytes.size());
+    require(count * type_of(given).bytes * components + given.skip == bytes.size());
     require(volume.statistics().infinite == 0 && volume.voxel_size() > 0);
   } catch (const pellucid::Error& error) {
     const std::string_view message = error.what();
