@@ -80,9 +80,18 @@ std::string percent_text(double share) {
   return fmt::format("{:.6g} %", 100 * share);
 }
 
-std::optional<std::string> black_picture_text(double largest, double tolerance, double error) {
+std::optional<std::string> black_picture_text(double largest, double tolerance, double error,
+                                              bool png) {
+  // Half of the first step of 8-bit sRGB: a .png shows 0.
+  constexpr double darkest = 0.5 / 255 / 12.92;
   // 5 of 255: what looks black. A picture at a coarse tolerance may be bright.
   constexpr double black = 0.02, rounding = 1e-12;
+  if (png && largest > tolerance && largest < darkest) {
+    return fmt::format(
+        "the largest channel is {:.3g}, which is 0 in a .png: write an .exr, or raise the "
+        "extinctions",
+        largest);
+  }
   if (largest > std::min(tolerance, black)) return std::nullopt;
   if (largest == 0 && error <= rounding) {
     return "the picture is empty: no ray meets anything that absorbs; look at the camera and the "

@@ -37,8 +37,9 @@ RelativePicture render_relative(
 /// "1 %"
 std::string percent_text(double share);
 
-/// What is to be said where nothing in a picture is above the tolerance. `error` is the largest of
-/// any pixel.
-std::optional<std::string> black_picture_text(double largest, double tolerance, double error);
+/// Returns the note on a picture that looks black: nothing in it is above the tolerance, or with
+/// `png` its largest channel is 0 in 8 bits. `error` is the largest of any pixel.
+std::optional<std::string> black_picture_text(double largest, double tolerance, double error,
+                                              bool png);
 
 }  // namespace pellucid::cli

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <memory>
 #include <optional>
 #include <string>
@@ -168,8 +169,10 @@ int run_render(const RenderArguments& arguments) {
   // Last, so that a failure is one line.
   print_notes(arguments, prepared);
   if (arguments.renders() && !arguments.quiet && prepared.knows_its_error(arguments)) {
-    const auto text =
-        black_picture_text(largest, prepared.scene.integration.tolerance, report.largest_error);
+    const bool png = std::ranges::any_of(
+        arguments.outputs, [](const std::string& path) { return extension_of(path) != ".exr"; });
+    const auto text = black_picture_text(largest, prepared.scene.integration.tolerance,
+                                         report.largest_error, png);
     if (text) print_note(*text);
   }
   if (arguments.renders() && !arguments.json && !arguments.quiet) {

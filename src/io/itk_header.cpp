@@ -4,6 +4,8 @@
 #include <bit>
 #include <memory>
 #include <span>
+#include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -106,7 +108,15 @@ MetaImageHeader read_meta_image_header(const std::filesystem::path& path) {
 VolumeFile open_nrrd_file(const std::filesystem::path& path, const std::string& name,
                           const NrrdText& text, const ReadOptions& options) {
   NrrdHeader header;
-  call<ReadNrrdHeader>(name, read_nrrd_header_name, path, name, header);
+  try {
+    call<ReadNrrdHeader>(name, read_nrrd_header_name, path, name, header);
+  } catch (const Error& error) {
+    // NrrdIO seeks to the first value while it reads the header.
+    if (std::string_view(error.what()).find("fseek") == std::string_view::npos) throw;
+    throw Error(name +
+                ": the file of its values ends before the first of them; it is cut off, or "
+                "the byte skip is wrong");
+  }
   Volume::Description description = describe(header, name);
   const std::string& type = header.type;
   std::size_t points = 1;

@@ -123,6 +123,8 @@ VtkHdfContents read_contents(std::span<const std::byte> from) {
 /// near the beginning of nearly all files, near the end of those whose group came last.
 bool looks_like_vtk_hdf(const std::filesystem::path& path) {
   constexpr std::string_view signature = "\x89HDF\r\n\x1a\n", group = "VTKHDF";
+  std::error_code error;
+  if (!std::filesystem::is_regular_file(path, error)) return false;  // opening a pipe would wait
   std::ifstream stream(path, std::ios::binary);
   const auto bytes_from = [&](std::uintmax_t from, std::size_t most) {
     std::string bytes(most, '\0');

@@ -157,6 +157,10 @@ class Tolerance(ProgramTest):
                          r"of the largest channel, 0\.00[0-9]+$")
         texts = exr_texts(self.read("a.exr"))
         self.assertEqual(float(texts["pellucid.relative_tolerance"]), 0.01)
+        # What 8 bits show as 0 is told beside a .png.
+        dark = self.run_program(*self.faint(1e-5), "-o", "a.png", "--tolerance", "10%")
+        self.assertRegex(dark.stderr.decode(), r"(?m)^pellucid: the largest channel is [0-9.e-]+, "
+                         r"which is 0 in a \.png: write an \.exr")
 
     def test_ranges_below_the_smallest_tolerance(self):
         # 1e-9 of opacity cannot be told from nothing at 1e-7.

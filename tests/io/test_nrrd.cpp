@@ -134,6 +134,10 @@ TEST_F(NrrdTest, BytesThatAreLeftOverAreTold) {
   EXPECT_EQ(note_of("byte skip: -1\n"), "");
   expect_counting(read_volume(path("n.nhdr"), options), "f32");
   EXPECT_EQ(note_of("byte skip: 352\n"), "");
+  // NrrdIO would tell of a seek that failed.
+  write("short.raw", "1234");
+  write("short.nhdr", header("data file: short.raw\nbyte skip: -1\n", "float"));
+  EXPECT_TRUE(contains(error_of([&] { read_volume(path("short.nhdr")); }), "cut off"));
   EXPECT_TRUE(contains(note_of("byte skip: 300\n"), "52 bytes more")) << notes;
   for (const char* type : {"unsigned int", "int32_t", "uint", "signed int"}) {
     EXPECT_TRUE(contains(note_of("", type), "352 bytes more")) << type << notes;
