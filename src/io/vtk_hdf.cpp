@@ -142,7 +142,6 @@ bool looks_like_vtk_hdf(const std::filesystem::path& path) {
   if (extension == ".vtkhdf" || extension == ".hdf") return true;
   constexpr std::size_t most = std::size_t{1} << 20;
   if (bytes_from(0, most).find(group) != std::string::npos) return true;
-  std::error_code error;
   const std::uintmax_t size = std::filesystem::file_size(path, error);
   return !error && size > most && bytes_from(size - most, most).find(group) != std::string::npos;
 }
