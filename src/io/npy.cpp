@@ -376,14 +376,16 @@ VolumeFile open_npy(const ByteSource& source, const ReadOptions& options) {
   const std::uintmax_t expected = std::uintmax_t{value_count(points, lie.components, source.name)} *
                                   value_size(array.type, source.name);
   const std::uintmax_t present = source.size - array.offset;
-  if (present != expected) {
+  if (present < expected) {
     throw Error(source.name + ": holds " + std::to_string(present) + " bytes of values, but " +
                 std::to_string(sides[0]) + " x " + std::to_string(sides[1]) + " x " +
                 std::to_string(sides[2]) + " of " +
                 (lie.components > 1 ? std::to_string(lie.components) + " x " : "") + array.type +
-                " are " + std::to_string(expected) +
-                (present < expected ? "; the file is cut off" : "; it holds more than one array"));
+                " are " + std::to_string(expected) + "; the file is cut off");
   }
+  // numpy.load reads the first of several arrays, too.
+  note_bytes_left_over(source, array.offset + expected, options.note,
+                       "numpy.savez keeps several arrays in one file");
   VolumeFile file;
   for (std::size_t a = 0; a < 3; ++a) file.description.dimensions[a] = static_cast<int>(sides[a]);
   file.description.name = source.name;

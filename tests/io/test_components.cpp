@@ -113,10 +113,20 @@ TEST_F(ComponentsTest, OfNpyThatCannotBe) {
   EXPECT_TRUE(contains(error("a.npy"), "too large"));
   write("a.npy", npy("<f4", "False", "(3, 4, 5, 3)", data));
   EXPECT_TRUE(contains(error("a.npy"), "cut off"));
-  write("a.npy", npy("<f4", "False", "(3, 4, 5, 1)", data));
-  EXPECT_TRUE(contains(error("a.npy"), "more than one array"));
   write("a.npy", npy("<f4", "False", "(3, 4, 5, 2, 2)", data));
   EXPECT_TRUE(contains(error("a.npy"), "no volume"));
+}
+
+TEST_F(ComponentsTest, OfNpyAreThoseOfTheFirstArray) {
+  write("a.npy", npy("<f4", "False", "(3, 4, 5, 2)",
+                     bytes_of(values(2, Lie::side_by_side)) + "\x93NUMPY and more"));
+  expect_components("a.npy", 2, "f32");
+  std::string told;
+  ReadOptions options;
+  options.component = 0;
+  options.note = [&](const std::string& note) { told += note; };
+  read_volume(path("a.npy"), options);
+  EXPECT_TRUE(contains(told, "15 bytes more")) << told;
 }
 
 TEST_F(ComponentsTest, OfHeaderlessDataLieSideBySide) {
