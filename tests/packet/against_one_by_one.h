@@ -110,7 +110,7 @@ template <class Make>
 void expect_honest_scenes(int count, const Make& make,
                           const std::vector<double>& tolerances = {1e-2, 1.0 / 512, 2e-4}) {
   const Seen seen = compare_random_scenes(count, tolerances, make, Promise::honest);
-  EXPECT_GT(seen.pixels, 20000U);
+  EXPECT_GT(seen.pixels, 6000U * static_cast<unsigned>(set_count()));
   EXPECT_LT(seen.over, seen.pixels / 100);
 }
 

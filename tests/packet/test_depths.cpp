@@ -162,9 +162,10 @@ class Depths : public RandomFrames {
       }
     }
   }
+  /// `pixels`: to be seen with three instruction sets.
   void report(int pixels) {
     std::printf("%d pixels, at most %.3f of what they say\n", seen_, worst_);
-    EXPECT_GE(seen_, pixels);
+    EXPECT_GE(3 * seen_, pixels * set_count());
   }
 
  private:
