@@ -364,7 +364,12 @@ NpyArray read_npy_header(const ByteSource& source) {
   return array;
 }
 
-VolumeFile open_npy(const ByteSource& source, const ReadOptions& options) {
+namespace {
+
+/// Whether bytes may lie behind the array.
+enum class Behind { noted, refused };
+
+VolumeFile open_array(const ByteSource& source, const ReadOptions& options, Behind behind) {
   refuse_raw_options(options, source.name);
   const NpyArray array = read_npy_header(source);
   const ArrayAxes axes =
@@ -376,12 +381,13 @@ VolumeFile open_npy(const ByteSource& source, const ReadOptions& options) {
   const std::uintmax_t expected = std::uintmax_t{value_count(points, lie.components, source.name)} *
                                   value_size(array.type, source.name);
   const std::uintmax_t present = source.size - array.offset;
-  if (present < expected) {
+  if (present < expected || (present > expected && behind == Behind::refused)) {
     throw Error(source.name + ": holds " + std::to_string(present) + " bytes of values, but " +
                 std::to_string(sides[0]) + " x " + std::to_string(sides[1]) + " x " +
                 std::to_string(sides[2]) + " of " +
                 (lie.components > 1 ? std::to_string(lie.components) + " x " : "") + array.type +
-                " are " + std::to_string(expected) + "; the file is cut off");
+                " are " + std::to_string(expected) +
+                (present < expected ? "; the file is cut off" : "; it holds more than one array"));
   }
   // numpy.load reads the first of several arrays, too.
   note_bytes_left_over(source, array.offset + expected, options.note,
@@ -408,9 +414,19 @@ VolumeFile open_npy(const ByteSource& source, const ReadOptions& options) {
   return file;
 }
 
+}  // namespace
+
+VolumeFile open_npy(const ByteSource& source, const ReadOptions& options) {
+  return open_array(source, options, Behind::noted);
+}
+
+VolumeFile open_npy_alone(const ByteSource& source, const ReadOptions& options) {
+  return open_array(source, options, Behind::refused);
+}
+
 Volume parse_npy(const std::vector<std::byte>& bytes, const std::string& name,
                  const ReadOptions& options) {
-  return read_chosen(open_npy(memory_source(bytes, name), options), options);
+  return read_chosen(open_npy_alone(memory_source(bytes, name), options), options);
 }
 
 }  // namespace pellucid

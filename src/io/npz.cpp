@@ -67,7 +67,7 @@ std::string list_of(const ByteSource& archive, const std::vector<NpzArray>& arra
 
 VolumeFile open_array(const ByteSource& archive, const NpzArray& array,
                       const ReadOptions& options) {
-  VolumeFile file = open_npy(zip_entry_source(archive, array.entry), options);
+  VolumeFile file = open_npy_alone(zip_entry_source(archive, array.entry), options);
   file.description.name = archive.name;
   file.array = printable(array.name);
   return file;
