@@ -12,7 +12,7 @@ namespace pellucid::cli {
 inline std::string labels_text(std::size_t count) {
   return fmt::format(
       "looks like labels: {} whole numbers that fill regions; interpolating between them shows "
-      "values that no voxel has",
+      "values that no voxel has; 'pellucid render --labels FILE' shows each label as it is",
       count);
 }
 

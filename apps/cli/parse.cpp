@@ -133,6 +133,39 @@ PictureTolerance parse_picture_tolerance(const std::string& option, const std::s
   return {n[0] / 100, true};
 }
 
+Clip parse_clip(const std::string& option, const std::string& text) {
+  constexpr std::string_view expected =
+      "plane:X,Y,Z,NX,NY,NZ, box:X0,Y0,Z0,X1,Y1,Z1, sphere:X,Y,Z,R or "
+      "cylinder:X0,Y0,Z0,X1,Y1,Z1,R, with '-' in front to cut the shape away";
+  const auto fail = [&]() -> Clip {
+    throw UsageError(fmt::format("{} '{}': expected {}", option, text, expected));
+  };
+  Clip clip;
+  clip.keep_inside = !text.starts_with('-');
+  const std::string shape = clip.keep_inside ? text : text.substr(1);
+  const std::size_t colon = shape.find(':');
+  if (colon == std::string::npos) return fail();
+  const std::string name = shape.substr(0, colon);
+  const std::size_t count = name == "sphere"                   ? 4
+                            : name == "plane" || name == "box" ? 6
+                            : name == "cylinder"               ? 7
+                                                               : 0;
+  if (count == 0) return fail();
+  const std::vector<double> n = parse_list<double>(option, shape.substr(colon + 1), ',', expected);
+  if (n.size() != count) return fail();
+  const auto point = [&](std::size_t i) { return Vec3<double>{n[i], n[i + 1], n[i + 2]}; };
+  if (name == "plane") clip.shape = ClipPlane{point(0), point(3)};
+  if (name == "box") clip.shape = ClipBox{point(0), point(3)};
+  if (name == "sphere") clip.shape = ClipSphere{point(0), n[3]};
+  if (name == "cylinder") clip.shape = ClipCylinder{point(0), point(3), n[6]};
+  try {
+    check_clip(clip, fmt::format("{} '{}'", option, text));
+  } catch (const Error& error) {
+    throw UsageError(error.what());
+  }
+  return clip;
+}
+
 Rgb<double> parse_color(const std::string& option, const std::string& text) {
   if (text == "white") return {1, 1, 1};
   if (text == "black") return {0, 0, 0};

@@ -45,6 +45,9 @@ struct PictureTolerance {
 };
 /// A tolerance as above; or percent, "1%" up to "100%", which is a share.
 PictureTolerance parse_picture_tolerance(const std::string& option, const std::string& text);
+/// "plane:X,Y,Z,NX,NY,NZ", "box:X0,Y0,Z0,X1,Y1,Z1", "sphere:X,Y,Z,R" or
+/// "cylinder:X0,Y0,Z0,X1,Y1,Z1,R"; "-" in front cuts the shape away.
+Clip parse_clip(const std::string& option, const std::string& text);
 /// "white", "black" or linear "R,G,B", each >= 0.
 Rgb<double> parse_color(const std::string& option, const std::string& text);
 

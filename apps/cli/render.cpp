@@ -36,7 +36,7 @@ void print_notes(const RenderArguments& arguments, const PreparedScene& prepared
   if (prepared.array_chosen) {
     print_note(fmt::format(
         "no array given: showing \"{}\" (choose another by --array; 'pellucid info' lists them)",
-        prepared.description.mesh->channels.front().array));
+        prepared.description.layers.front().mesh->channels.front().array));
   }
   for (const auto& [channel, count] : prepared.labels) {
     print_note((channel == field_channel ? "" : "channel " + channel + ": ") + labels_text(count));
@@ -126,8 +126,14 @@ Image render_at_share(const RenderArguments& arguments, PreparedScene& prepared,
 int run_render(const RenderArguments& arguments) {
   check_arguments(arguments);
   PreparedScene prepared = prepare(arguments);
-  const std::string transfer_function =
-      transfer_function_to_json(*prepared.description.transfer_function);
+  const auto& function = prepared.description.layers.front().transfer_function;
+  const bool wants_function = arguments.print_tf || !arguments.save_tf.empty();
+  if (!function && wants_function) {
+    throw UsageError(arguments.print_tf
+                         ? "--print-tf: labels have colors, but no transfer function"
+                         : "--save-tf: labels have colors, but no transfer function");
+  }
+  const std::string transfer_function = wants_function ? transfer_function_to_json(*function) : "";
 
   const InterruptGuard guard;
   RenderReport report;

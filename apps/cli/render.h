@@ -19,7 +19,7 @@ struct RenderArguments {
   std::string input;
   std::vector<std::string> outputs;
   std::string depth_picture, error_map, save_tf, save_scene;
-  std::vector<std::string> channels, gaussians;
+  std::vector<std::string> channels, gaussians, layers, labels, clips;
   std::string transfer_function, preset, camera, view, size, background;
   ImportArguments import;
   std::string method, precision, grade;
@@ -31,6 +31,10 @@ struct RenderArguments {
   VolumeOptions volume;
   MeshOptions mesh;
 
+  /// Whether there is no layer but those of --layer and --labels.
+  bool has_only_added_layers() const {
+    return input.empty() && channels.empty() && !(layers.empty() && labels.empty());
+  }
   bool renders() const { return !outputs.empty() || !depth_picture.empty() || !error_map.empty(); }
 };
 

@@ -40,18 +40,18 @@ void set_transfer_function(const RenderArguments& arguments, SceneDescription& d
     if (!arguments.import.range.empty()) {
       preset.range = parse_range("--range", arguments.import.range);
     }
-    if (!description.channels.empty()) {
+    if (!description.layers.front().channels.empty()) {
       throw UsageError(
           "--preset: presets are for one variable, but there are channels; drop one of the two");
     }
-    description.transfer_function = preset;
+    description.layers.front().transfer_function = preset;
     return;
   }
   const std::string text = file.empty() ? "" : read_text_file(file);
   if (!file.empty() && is_foreign_transfer_function(text)) {
     const ImportedTransferFunction imported = import_transfer_function(
         text, file, arguments.import.options(import_share(arguments, description)));
-    description.transfer_function = imported.table;
+    description.layers.front().transfer_function = imported.table;
     import_notes = import_lines(imported, file);
     return;
   }
@@ -61,7 +61,9 @@ void set_transfer_function(const RenderArguments& arguments, SceneDescription& d
   if (!arguments.import.range.empty()) {
     throw UsageError(fmt::format("--range does not apply to {}; drop it", what));
   }
-  if (!file.empty()) description.transfer_function = parse_transfer_function(text, file);
+  if (!file.empty()) {
+    description.layers.front().transfer_function = parse_transfer_function(text, file);
+  }
 }
 
 }  // namespace pellucid::cli

@@ -50,6 +50,25 @@ void add_scene_options(CommandLine& command, RenderArguments& arguments) {
                   "smoothed:CHANNEL:SIGMA. INPUT, if given, is the channel 'value'")
       ->option_text("NAME=SOURCE")
       ->allow_extra_args(false);
+  command
+      .add_option("--layer", arguments.layers,
+                  "Add a volume or a mesh as a layer of its own, with the transfer function of its "
+                  "histogram; may be repeated")
+      ->option_text("FILE")
+      ->allow_extra_args(false);
+  command
+      .add_option(
+          "--labels", arguments.labels,
+          "Add a segmentation as a layer: each label in a color of its own; may be repeated")
+      ->option_text("FILE")
+      ->allow_extra_args(false);
+  command
+      .add_option("--clip", arguments.clips,
+                  "Show only what is inside of a shape, in world coordinates; may be repeated. "
+                  "SHAPE is plane:X,Y,Z,NX,NY,NZ, box:X0,Y0,Z0,X1,Y1,Z1, sphere:X,Y,Z,R or "
+                  "cylinder:X0,Y0,Z0,X1,Y1,Z1,R; with a '-' in front it is cut away")
+      ->option_text("SHAPE")
+      ->allow_extra_args(false);
   auto* transfer_function =
       command
           .add_option(

@@ -24,7 +24,8 @@ std::string method_text(const RenderArguments& arguments, const Integration& int
 /// double alone.
 std::string precision_text(const RenderArguments& arguments, const Scene& scene) {
   const Integration& integration = scene.integration;
-  const bool always_double = scene.mesh && integration.method != Method::exact;
+  const bool always_double =
+      only_content<MeshContent>(scene) != nullptr && integration.method != Method::exact;
   if (arguments.reference || always_double || integration.precision == Precision::float64) {
     return "double";
   }
@@ -45,11 +46,18 @@ struct NamedCount {
   std::uint64_t count;
 };
 
-/// What a pixel can be off by where points stand for an opacity table; 0 for points as given.
+/// What a pixel can be off by where points stand for opacity tables; 0 for points as given. Errors
+/// of layers add, and double beside others, as the renderer counts them.
 double transfer_function_error(const Scene& scene) {
-  if (!scene.transfer_function) return 0;
   const Rgb<double> behind = scene.background.value_or(Rgb<double>{});
-  return scene.transfer_function->approximation_error(std::max({behind.r, behind.g, behind.b}));
+  double sum = 0;
+  int layers = 0;
+  for (const Layer& layer : scene.layers) {
+    if (!layer.visible) continue;
+    ++layers;
+    sum += approximation_error(layer, std::max({behind.r, behind.g, behind.b}));
+  }
+  return layers > 1 ? 2 * sum : sum;
 }
 
 std::vector<NamedCount> by_rule(const RuleCounts& spans) {
@@ -58,7 +66,8 @@ std::vector<NamedCount> by_rule(const RuleCounts& spans) {
 }
 
 bool has_step(const RenderArguments& arguments, const Scene& scene) {
-  return !arguments.reference && !scene.mesh && scene.integration.method != Method::exact;
+  return !arguments.reference && only_content<MeshContent>(scene) == nullptr &&
+         scene.integration.method != Method::exact;
 }
 
 Json channel_json(const std::string& name, const std::string& unit, const VolumeData& values,
@@ -95,6 +104,18 @@ Json mesh_json(const MeshChannels& mesh, const MeshSource& source) {
           {"arrays", arrays}};
 }
 
+std::size_t nan_values(const Layer& layer) {
+  std::size_t count = 0;
+  if (const auto* mesh = std::get_if<MeshContent>(&layer.content)) {
+    for (int c = 0; c < mesh->mesh->count(); ++c) count += mesh->mesh->statistics(c).nan;
+  } else if (const auto* channels = std::get_if<ChannelsContent>(&layer.content)) {
+    for (const Channel& channel : *channels->channels) count += channel.volume->statistics().nan;
+  } else {
+    count = grid_of(layer)->statistics().nan;
+  }
+  return count;
+}
+
 Json channels_json(const Channels& channels) {
   Json list = Json::array();
   for (const Channel& channel : channels) {
@@ -104,17 +125,40 @@ Json channels_json(const Channels& channels) {
   return list;
 }
 
+const char* kind_of(const Layer& layer) {
+  if (std::holds_alternative<MeshContent>(layer.content)) return "mesh";
+  if (std::holds_alternative<ChannelsContent>(layer.content)) return "channels";
+  return std::holds_alternative<LabelContent>(layer.content) ? "labels" : "field";
+}
+
+Json layer_json(const Layer& layer, const LayerDescription& description) {
+  const Volume* const grid = grid_of(layer);
+  const auto* const mesh = std::get_if<MeshContent>(&layer.content);
+  const auto* const channels = std::get_if<ChannelsContent>(&layer.content);
+  Json json;
+  json["name"] = layer.name;
+  json["kind"] = kind_of(layer);
+  json["visible"] = layer.visible;
+  json["dimensions"] = grid != nullptr ? dimensions_json(*grid) : Json();
+  json["type"] = type_name(grid != nullptr ? grid->data() : (*mesh->mesh)[0].values);
+  json["mesh"] = mesh != nullptr ? mesh_json(*mesh->mesh, *description.mesh) : Json();
+  json["channels"] = mesh != nullptr       ? channels_json(*mesh->mesh)
+                     : channels != nullptr ? channels_json(*channels->channels)
+                                           : Json();
+  json["nan"] = nan_values(layer);
+  json["clips"] = layer.clips.size();
+  json["transfer_function"] =
+      description.transfer_function
+          ? Json::parse(transfer_function_to_json(*description.transfer_function))
+          : Json();
+  return json;
+}
+
 }  // namespace
 
 std::size_t nan_values(const Scene& scene) {
-  if (scene.mesh) {
-    std::size_t count = 0;
-    for (int c = 0; c < scene.mesh->count(); ++c) count += scene.mesh->statistics(c).nan;
-    return count;
-  }
-  if (!scene.channels) return scene.volume->statistics().nan;
   std::size_t count = 0;
-  for (const Channel& channel : *scene.channels) count += channel.volume->statistics().nan;
+  for (const Layer& layer : scene.layers) count += nan_values(layer);
   return count;
 }
 
@@ -143,8 +187,14 @@ void add_metadata(const RenderArguments& arguments, const PreparedScene& prepare
     metadata["pellucid.pixels_proved"] = fmt::format("{}", report.pixels_proved);
     metadata["pellucid.pixels_over"] = fmt::format("{}", report.pixels_over_tolerance);
   }
-  metadata["pellucid.transfer_function"] =
-      transfer_function_to_json(*prepared.description.transfer_function);
+  // Of the first layer, and of each other one with its number behind.
+  const std::vector<LayerDescription>& layers = prepared.description.layers;
+  for (std::size_t i = 0; i < layers.size(); ++i) {
+    if (!layers[i].transfer_function) continue;
+    metadata[i == 0 ? "pellucid.transfer_function"
+                    : fmt::format("pellucid.transfer_function.{}", i + 1)] =
+        transfer_function_to_json(*layers[i].transfer_function);
+  }
   metadata["pellucid.camera"] = camera_to_json(prepared.scene.camera);
 }
 
@@ -219,13 +269,16 @@ Json report_json(const RenderArguments& arguments, const PreparedScene& prepared
   Json json;
   json["pellucid"] = PELLUCID_VERSION_STRING;
   json["input"] = source_text(arguments);
-  json["dimensions"] = scene.mesh ? Json() : dimensions_json(grid_volume(scene));
-  json["type"] = type_name(scene.mesh ? (*scene.mesh)[0].values : grid_volume(scene).data());
-  json["mesh"] = scene.mesh ? mesh_json(*scene.mesh, *prepared.description.mesh) : Json();
+  json["layers"] = Json::array();
+  for (std::size_t i = 0; i < scene.layers.size(); ++i) {
+    json["layers"].push_back(layer_json(scene.layers[i], prepared.description.layers[i]));
+  }
+  // Of a single layer the program has always told here.
+  const bool one = scene.layers.size() == 1;
+  for (const char* const key : {"dimensions", "type", "mesh", "channels", "transfer_function"}) {
+    json[key] = one ? json["layers"][0][key] : Json();
+  }
   json["nan"] = nan_values(scene);
-  json["channels"] = scene.mesh       ? channels_json(*scene.mesh)
-                     : scene.channels ? channels_json(*scene.channels)
-                                      : Json();
   json["labels"] = Json::object();
   for (const auto& [channel, count] : prepared.labels) json["labels"][channel] = count;
   json["size"] = {scene.size.width, scene.size.height};
@@ -259,8 +312,6 @@ Json report_json(const RenderArguments& arguments, const PreparedScene& prepared
   json["spans"] = of_exact(spans);
   json["transfer_function_from"] = prepared.transfer_function_from;
   json["transfer_function_error"] = transfer_function_error(scene);
-  json["transfer_function"] =
-      Json::parse(transfer_function_to_json(*prepared.description.transfer_function));
   json["camera"] = Json::parse(camera_to_json(scene.camera));
   json["outputs"] = written;
   return json;

@@ -51,15 +51,16 @@ std::vector<NamedFile> output_files(const RenderArguments& arguments) {
 std::string source_text(const RenderArguments& arguments) {
   std::string text = arguments.input;
   if (!arguments.mesh.q.empty()) text += ", " + arguments.mesh.q;
-  for (const std::string& channel : arguments.channels) {
-    text += (text.empty() ? "" : ", ") + channel;
+  for (const auto* list : {&arguments.channels, &arguments.layers, &arguments.labels}) {
+    for (const std::string& more : *list) text += (text.empty() ? "" : ", ") + more;
   }
   return text;
 }
 
 void check_arguments(const RenderArguments& arguments) {
-  if (arguments.input.empty() && arguments.channels.empty()) {
-    throw UsageError("no input; give INPUT or --channel (see 'pellucid render --help')");
+  if (arguments.input.empty() && arguments.channels.empty() && arguments.layers.empty() &&
+      arguments.labels.empty()) {
+    throw UsageError("no input; give INPUT, --channel or --labels (see 'pellucid render --help')");
   }
   if (!arguments.renders() && !arguments.print_tf && arguments.save_tf.empty() &&
       arguments.save_scene.empty()) {
@@ -146,12 +147,12 @@ auto parse_argument(const char* argument, Parse&& parse) {
 }
 
 /// Behind the channels of the input, or alone.
-void add_channels(const RenderArguments& arguments, SceneDescription& description) {
+void add_channels(const RenderArguments& arguments, LayerDescription& description) {
   if (arguments.channels.empty()) return;
   if (description.mesh) {
     throw UsageError("--channel: the channels of a mesh are its arrays; give --array NAME=ARRAY");
   }
-  if (!arguments.input.empty()) description.channels = scene_channels(description);
+  if (!arguments.input.empty()) description.channels = layer_channels(description);
   if (description.channels.empty() && !arguments.input.empty()) {
     description.channels = {{std::string(field_channel), "", description.field}};
   }
@@ -175,7 +176,7 @@ MultivariateDescription gaussians(const RenderArguments& arguments) {
 }
 
 /// One array is the field, unless it is given a name as a channel; several are channels.
-void set_volume(const RenderArguments& arguments, SceneDescription& description) {
+void set_volume(const RenderArguments& arguments, LayerDescription& description) {
   arguments.mesh.refuse_q("a volume");
   FieldSource field = field_source(arguments.input, arguments.volume);
   if (!field.builtin.empty()) arguments.mesh.refuse("a built-in field");
@@ -208,26 +209,84 @@ void set_volume(const RenderArguments& arguments, SceneDescription& description)
   description.channels.clear();
 }
 
+/// Throws UsageError where an argument is about the one layer of a scene that has several.
+void refuse_options_of_one_layer(const RenderArguments& arguments,
+                                 const SceneDescription& description) {
+  if (description.layers.size() == 1) return;
+  const std::pair<const char*, bool> given[] = {{"--tf", !arguments.transfer_function.empty()},
+                                                {"--preset", !arguments.preset.empty()},
+                                                {"--gaussian", !arguments.gaussians.empty()},
+                                                {"--channel", !arguments.channels.empty()},
+                                                {"--print-tf", arguments.print_tf},
+                                                {"--save-tf", !arguments.save_tf.empty()}};
+  for (const auto& [argument, is_given] : given) {
+    if (!is_given) continue;
+    throw UsageError(fmt::format("{}: the scene has {} layers; edit the layer in the scene",
+                                 argument, description.layers.size()));
+  }
+}
+
+/// The layers of --layer and --labels, and the clips of --clip.
+void add_layers(const RenderArguments& arguments, SceneDescription& description) {
+  const VolumeOptions no_options;
+  for (const std::string& file : arguments.layers) {
+    LayerDescription layer;
+    layer.name = std::filesystem::path(file).filename().string();
+    parse_argument("--layer", [&] {
+      if (is_mesh(file, {})) {
+        layer.mesh = mesh_source(file, {});
+      } else {
+        layer.field = field_source(file, no_options);
+      }
+      return 0;
+    });
+    description.layers.push_back(std::move(layer));
+  }
+  for (const std::string& file : arguments.labels) {
+    LayerDescription layer;
+    layer.name = std::filesystem::path(file).filename().string();
+    parse_argument("--labels", [&] {
+      layer.labels = LabelSource{field_source(file, no_options), {}, {}, {}};
+      return 0;
+    });
+    description.layers.push_back(std::move(layer));
+  }
+  for (const std::string& text : arguments.clips) {
+    description.clips.push_back(parse_clip("--clip", text));
+  }
+}
+
 SceneDescription describe(const RenderArguments& arguments,
                           std::vector<std::string>& import_notes) {
   SceneDescription description;
+  LayerDescription layer;
   const std::filesystem::path input = arguments.input;
   const bool is_scene = extension_of(input) == ".json" && !is_volume_json(input);
   if (is_scene) {
     arguments.volume.refuse("a scene; write it into the scene's field");
     arguments.mesh.refuse("a scene; write it into the scene's mesh");
     description = parse_scene(read_text_file(input), arguments.input, input.parent_path());
+    layer = description.layers.front();
   } else if (is_mesh(arguments.input, arguments.mesh)) {
     arguments.volume.refuse("a mesh");
-    description.mesh = mesh_source(arguments.input, arguments.mesh);
+    layer.mesh = mesh_source(arguments.input, arguments.mesh);
   } else if (!arguments.input.empty()) {
-    set_volume(arguments, description);
+    set_volume(arguments, layer);
   } else {
     arguments.mesh.refuse("channels of volumes");
   }
-  if (!arguments.gaussians.empty()) description.transfer_function = gaussians(arguments);
-  add_channels(arguments, description);
-  set_transfer_function(arguments, description, import_notes);
+  if (arguments.has_only_added_layers()) {
+    description.layers.clear();
+  } else {
+    refuse_options_of_one_layer(arguments, description);
+  }
+  if (!arguments.gaussians.empty()) layer.transfer_function = gaussians(arguments);
+  add_channels(arguments, layer);
+  if (!description.layers.empty()) {
+    description.layers.front() = layer;
+    set_transfer_function(arguments, description, import_notes);
+  }
+  add_layers(arguments, description);
   if (!arguments.camera.empty()) {
     description.camera = parse_camera(read_text_file(arguments.camera), arguments.camera);
   }
@@ -236,16 +295,21 @@ SceneDescription describe(const RenderArguments& arguments,
     description.background = parse_color("--background", arguments.background);
   }
   if (arguments.samples) description.samples = *arguments.samples;
-  if (arguments.step && description.mesh) {
+  if (arguments.step && layer.mesh) {
     throw UsageError("--step: a mesh is rendered cell by cell, without steps; drop it");
   }
   set_integration(arguments, description.integration);
   return description;
 }
 
-std::vector<NamedFile> data_files(const SceneDescription& description) {
+std::vector<NamedFile> data_files(const LayerDescription& description) {
   if (description.mesh) return cli::data_files(*description.mesh);
+  if (description.labels) {
+    return {{"labels", description.labels->field.file.string()},
+            {"table", description.labels->table.string()}};
+  }
   std::vector<NamedFile> files{{"volume", description.field.file.string()}};
+  if (description.mask) files.push_back({"mask", description.mask->field.file.string()});
   for (const ChannelSource& channel : description.channels) {
     if (const auto* field = std::get_if<FieldSource>(&channel.source)) {
       files.push_back({"channel " + channel.name, field->file.string()});
@@ -254,24 +318,85 @@ std::vector<NamedFile> data_files(const SceneDescription& description) {
   return files;
 }
 
-/// Of the volumes that come from files.
-void find_labels(PreparedScene& prepared) {
-  const Scene& scene = prepared.scene;
-  const SceneDescription& description = prepared.description;
+std::vector<NamedFile> data_files(const SceneDescription& description) {
+  std::vector<NamedFile> files;
+  for (const LayerDescription& layer : description.layers) {
+    for (NamedFile& file : data_files(layer)) files.push_back(std::move(file));
+  }
+  return files;
+}
+
+/// Of the volumes of a layer that come from files and are shown as fields.
+void find_labels(const Layer& layer, const LayerDescription& description, const std::string& prefix,
+                 PreparedScene& prepared) {
   const auto is_file = [](const FieldSource& field) { return field.builtin.empty(); };
   const auto add = [&](const std::string& name, const Volume& volume) {
-    if (const auto count = label_count(volume)) prepared.labels.emplace_back(name, *count);
+    if (const auto count = label_count(volume)) prepared.labels.emplace_back(prefix + name, *count);
   };
-  if (!scene.channels) {
-    if (is_file(description.field)) add(std::string(field_channel), *scene.volume);
+  if (const auto* volume = std::get_if<VolumeContent>(&layer.content)) {
+    if (is_file(description.field)) add(std::string(field_channel), *volume->volume);
     return;
   }
-  const std::vector<ChannelSource> sources = scene_channels(description);
-  for (const Channel& channel : *scene.channels) {
+  const auto* channels = std::get_if<ChannelsContent>(&layer.content);
+  if (channels == nullptr) return;
+  const std::vector<ChannelSource> sources = layer_channels(description);
+  for (const Channel& channel : *channels->channels) {
     const auto source = std::ranges::find(sources, channel.name, &ChannelSource::name);
     if (source == sources.end()) continue;
     const auto* field = std::get_if<FieldSource>(&source->source);
     if (field != nullptr && is_file(*field)) add(channel.name, *channel.volume);
+  }
+}
+
+/// Makes the points that stand for opacity tables again, for the tolerance of the scene.
+void approximate_anew(const LayerDescription& description, const Scene& scene, Layer& layer) {
+  const auto made = [&](const TransferFunctionDescription& function) {
+    return std::make_shared<const TransferFunction>(
+        make_transfer_function(function, scene.integration.tolerance, scene.background));
+  };
+  const auto is_table = [](const TransferFunctionDescription& function) {
+    return std::holds_alternative<OpacityTable>(function);
+  };
+  auto* const volume = std::get_if<VolumeContent>(&layer.content);
+  if (description.transfer_function && is_table(*description.transfer_function)) {
+    if (volume != nullptr) volume->transfer_function = made(*description.transfer_function);
+    if (auto* mesh = std::get_if<MeshContent>(&layer.content)) {
+      mesh->transfer_function = made(*description.transfer_function);
+    }
+  }
+  if (volume == nullptr || !volume->mask) return;
+  std::vector<LabelMask::Choice> choices = volume->mask->choices();
+  for (std::size_t i = 0; i < choices.size(); ++i) {
+    const TransferFunctionDescription& function = description.mask->choices[i].transfer_function;
+    if (is_table(function)) choices[i].transfer_function = made(function);
+  }
+  volume->mask = std::make_shared<const LabelMask>(volume->mask->shared_labels(), choices);
+}
+
+/// Writes what defaults and presets made of a layer into its description.
+void complete(const Layer& layer, LayerDescription& description) {
+  const auto is_open = [](const std::optional<TransferFunctionDescription>& function) {
+    return !function || std::holds_alternative<PresetDescription>(*function);
+  };
+  if (auto* labels = std::get_if<LabelContent>(&layer.content)) {
+    description.labels->styles = labels->table->styles();
+    description.labels->table.clear();
+    description.labels->extinction.reset();
+  }
+  if (auto* mesh = std::get_if<MeshContent>(&layer.content)) {
+    if (is_open(description.transfer_function) && mesh->univariate() != nullptr) {
+      description.transfer_function = mesh->univariate()->points();
+    }
+  }
+  const auto* const volume = std::get_if<VolumeContent>(&layer.content);
+  if (volume == nullptr) return;
+  if (is_open(description.transfer_function)) {
+    description.transfer_function = volume->transfer_function->points();
+  }
+  if (!volume->mask) return;
+  for (std::size_t i = 0; i < volume->mask->choices().size(); ++i) {
+    TransferFunctionDescription& function = description.mask->choices[i].transfer_function;
+    if (is_open(function)) function = volume->mask->choices()[i].transfer_function->points();
   }
 }
 
@@ -285,10 +410,8 @@ void set_scene_tolerance(PreparedScene& prepared, double tolerance) {
   // With the tolerance that was used, a saved scene gives this picture.
   description.integration.tolerance = scene.integration.tolerance;
   description.relative_tolerance.reset();
-  if (description.transfer_function &&
-      std::holds_alternative<OpacityTable>(*description.transfer_function)) {
-    scene.transfer_function = std::make_shared<const TransferFunction>(make_transfer_function(
-        *description.transfer_function, scene.integration.tolerance, scene.background));
+  for (std::size_t i = 0; i < scene.layers.size(); ++i) {
+    approximate_anew(description.layers[i], scene, scene.layers[i]);
   }
 }
 
@@ -315,37 +438,51 @@ PreparedScene prepare(const RenderArguments& arguments) {
   refuse_overwriting(output_files(arguments), data_files(description));
   prepared.transfer_function_from = !arguments.transfer_function.empty()
                                         ? arguments.transfer_function
-                                    : !arguments.preset.empty()     ? "--preset " + arguments.preset
-                                    : !arguments.gaussians.empty()  ? "--gaussian"
-                                    : description.transfer_function ? arguments.input
-                                                                    : "default";
+                                    : !arguments.preset.empty()    ? "--preset " + arguments.preset
+                                    : !arguments.gaussians.empty() ? "--gaussian"
+                                    : description.layers.front().transfer_function ? arguments.input
+                                                                                   : "default";
   SceneDescription rendered = description;
   if (arguments.reference && integration.tolerance > reference_tolerance) {
     rendered.integration.tolerance = reference_tolerance;
   }
-  set_notes(rendered.field, arguments.quiet);
-  set_notes(rendered.channels, arguments.quiet);
-  if (rendered.mesh) {  // printed last, so that a failure is one line
-    rendered.mesh->options.note = [&notes = prepared.import_notes](const std::string& note) {
-      notes.push_back(note);
-    };
+  for (LayerDescription& layer : rendered.layers) {
+    set_notes(layer.field, arguments.quiet);
+    set_notes(layer.channels, arguments.quiet);
+    if (layer.labels) set_notes(layer.labels->field, arguments.quiet);
+    if (layer.mask) set_notes(layer.mask->field, arguments.quiet);
+    if (layer.mesh) {  // printed last, so that a failure is one line
+      layer.mesh->options.note = [&notes = prepared.import_notes](const std::string& note) {
+        notes.push_back(note);
+      };
+    }
   }
   const int threads = arguments.threads > 0 ? arguments.threads : default_thread_count();
-  prepared.array_chosen = description.mesh && description.mesh->channels.empty();
-  prepared.scene =
-      make_scene(rendered, parallel_for(threads), description.mesh ? &*description.mesh : nullptr);
-  if (description.mesh) description.mesh->options.note = {};
+  const auto& first_mesh = description.layers.front().mesh;
+  prepared.array_chosen = first_mesh && first_mesh->channels.empty();
+  std::vector<MeshSource> meshes;
+  prepared.scene = make_scene(rendered, parallel_for(threads), &meshes);
   Scene& scene = prepared.scene;
+  for (std::size_t i = 0; i < scene.layers.size(); ++i) {
+    LayerDescription& layer = description.layers[i];
+    if (layer.mesh) {
+      layer.mesh = meshes[i];
+      layer.mesh->options.note = {};
+    }
+    complete(scene.layers[i], layer);
+    const std::string& name = layer.name;
+    find_labels(scene.layers[i], layer,
+                scene.layers.size() == 1 ? ""
+                : name.empty()           ? "layer " + std::to_string(i + 1) + ", "
+                                         : name + ", ",
+                prepared);
+  }
   scene.integration = integration;
   if (!arguments.view.empty()) {
-    scene.camera = view_camera(world_corners(scene), arguments.view, scene.size);
-  }
-  if (!description.transfer_function ||
-      std::holds_alternative<PresetDescription>(*description.transfer_function)) {
-    description.transfer_function = scene.transfer_function->points();
+    scene.camera =
+        view_camera(visible_corners(scene, parallel_for(threads)), arguments.view, scene.size);
   }
   description.camera = scene.camera;
-  if (!scene.mesh) find_labels(prepared);
   make_camera_frame(scene.camera, scene.size);  // throws before anything is written
   return prepared;
 }

@@ -13,13 +13,20 @@ std::string scene_text(SceneDescription description, const std::filesystem::path
     const auto relative = file.lexically_relative(folder.lexically_normal());
     if (!relative.empty()) file = relative;
   };
-  relocate(description.field.file);
-  if (description.mesh) {
-    relocate(description.mesh->file);
-    relocate(description.mesh->options.q);
-  }
-  for (ChannelSource& channel : description.channels) {
-    if (auto* field = std::get_if<FieldSource>(&channel.source)) relocate(field->file);
+  for (LayerDescription& layer : description.layers) {
+    relocate(layer.field.file);
+    if (layer.mesh) {
+      relocate(layer.mesh->file);
+      relocate(layer.mesh->options.q);
+    }
+    for (ChannelSource& channel : layer.channels) {
+      if (auto* field = std::get_if<FieldSource>(&channel.source)) relocate(field->file);
+    }
+    if (layer.labels) {
+      relocate(layer.labels->field.file);
+      relocate(layer.labels->table);
+    }
+    if (layer.mask) relocate(layer.mask->field.file);
   }
   return scene_to_json(description);
 }

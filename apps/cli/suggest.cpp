@@ -91,17 +91,18 @@ int run_suggest(const SuggestArguments& arguments) {
                                    parallel_for(threads));
 
   SceneDescription scene;
+  LayerDescription& layer = scene.layers.front();
   if (arguments.channels.is_one_volume()) {
-    scene.field = field_source(arguments.channels.inputs[0], arguments.channels.volume);
+    layer.field = field_source(arguments.channels.inputs[0], arguments.channels.volume);
   } else {
-    scene.channels = selection.sources;
+    layer.channels = selection.sources;
   }
-  scene.transfer_function = described(primitives, selection.axes);
+  layer.transfer_function = described(primitives, selection.axes);
   if (!arguments.output.empty()) {
     write_text_file(arguments.output, scene_text(scene, arguments.output));
   }
   if (!arguments.save_tf.empty()) {
-    write_text_file(arguments.save_tf, transfer_function_to_json(*scene.transfer_function));
+    write_text_file(arguments.save_tf, transfer_function_to_json(*layer.transfer_function));
   }
   if (arguments.output.empty() && arguments.save_tf.empty()) {
     print_text(scene_text(scene, "scene.json"));

@@ -40,17 +40,23 @@ TransferFunctionDescription read(const TransferFunctionArguments& arguments, dou
   if (!arguments.import.range.empty()) {
     throw UsageError("--range does not apply to a transfer function of our own; drop it");
   }
-  if (text.find("\"volumes\"") == std::string::npos) {
+  if (text.find("\"volumes\"") == std::string::npos &&
+      text.find("\"layers\"") == std::string::npos) {
     return parse_transfer_function(text, arguments.input);
   }
   const SceneDescription scene = parse_scene(text, arguments.input);
-  if (!scene.transfer_function) {
+  if (scene.layers.size() > 1) {
+    throw Error(arguments.input + ": the scene has " + std::to_string(scene.layers.size()) +
+                " layers; put the transfer function of one of them into a file of its own");
+  }
+  const auto& function = scene.layers.front().transfer_function;
+  if (!function) {
     throw Error(
         arguments.input +
         ": the scene has no transfer function; 'pellucid render --save-tf FILE.json' writes "
         "the one that it is rendered with");
   }
-  return *scene.transfer_function;
+  return *function;
 }
 
 int convert(const TransferFunctionArguments& arguments) {

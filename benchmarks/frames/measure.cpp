@@ -13,12 +13,13 @@ namespace pellucid::bench {
 namespace {
 
 std::string data_of(const Scene& scene) {
-  const auto& n =
-      (scene.channels ? scene.channels->grid() : *scene.volume).description().dimensions;
+  const Volume& grid = *grid_of(scene.layers.front());
+  const auto& n = grid.description().dimensions;
   std::string text = format("%d×%d×%d", n[0], n[1], n[2]);
-  if (!scene.channels) return text + " " + std::string(type_name(scene.volume->data()));
-  for (const Channel& channel : *scene.channels) {
-    text += (&channel == &*scene.channels->begin() ? " " : ", ") +
+  const auto* const content = only_content<ChannelsContent>(scene);
+  if (content == nullptr) return text + " " + std::string(type_name(grid.data()));
+  for (const Channel& channel : *content->channels) {
+    text += (&channel == &*content->channels->begin() ? " " : ", ") +
             std::string(type_name(channel.volume->data()));
   }
   return text;

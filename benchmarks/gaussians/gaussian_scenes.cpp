@@ -10,6 +10,7 @@
 #include "pellucid/scene/defaults.h"
 #include "pellucid/scene/derived_channels.h"
 #include "tests/scenes/real.h"
+#include "tests/support/one_layer.h"
 #include "tests/support/test_data.h"
 
 namespace pellucid::bench {
@@ -25,8 +26,8 @@ Scene scene_of(std::vector<VolumePointer> volumes, Primitives primitives, ImageS
     channels.push_back({format("channel %zu", channels.size()), "", std::move(volume)});
   }
   const int count = static_cast<int>(channels.size());
-  scene.channels = std::make_shared<const Channels>(std::move(channels));
-  scene.multivariate =
+  test::channels_of(scene).channels = std::make_shared<const Channels>(std::move(channels));
+  test::channels_of(scene).transfer_function =
       std::make_shared<const MultivariateTransferFunction>(count, std::move(primitives));
   scene.size = size;
   return scene;
@@ -56,7 +57,7 @@ Scene oblique(std::vector<VolumePointer> volumes, Primitives primitives, ImageSi
 
 Scene from_outside(std::vector<VolumePointer> volumes, Primitives primitives, ImageSize size) {
   Scene scene = scene_of(std::move(volumes), std::move(primitives), size);
-  scene.camera = default_camera(scene.channels->grid(), size);
+  scene.camera = default_camera(test::channels_of(scene).channels->grid(), size);
   return scene;
 }
 

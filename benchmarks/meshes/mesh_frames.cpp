@@ -10,6 +10,7 @@
 #include "pellucid/cpu/render.h"
 #include "pellucid/cpu/threads.h"
 #include "pellucid/scene/cut_cells.h"
+#include "tests/support/one_layer.h"
 
 namespace pellucid::bench {
 namespace {
@@ -126,7 +127,7 @@ std::vector<MeshResult> measure_mesh_frames(const MeshFrameOptions& options) {
         if (options.vtk) vtk = vtk_mesh(tetrahedralize(grid), mesh->mesh().bounds());
       }
       MeshScene shown = named;
-      shown.scene.mesh = mesh;
+      test::mesh_of(shown.scene).mesh = mesh;
       results.push_back(
           SceneRun(shown, vtk, options).measure(name, mesh->mesh().tetrahedra().size()));
     }

@@ -11,6 +11,7 @@
 #include "pellucid/scene/builtin_fields.h"
 #include "pellucid/scene/cut_cells.h"
 #include "tests/scenes/peers.h"
+#include "tests/support/one_layer.h"
 
 namespace pellucid::bench {
 namespace {
@@ -108,8 +109,8 @@ std::vector<MeshScene> mesh_scenes(const MeshSource& source,
     for (const Shown& one : shown) {
       if (source.large && !one.also_of_large) continue;
       Scene scene;
-      scene.mesh = mesh;
-      scene.transfer_function = one.transfer_function;
+      test::mesh_of(scene).mesh = mesh;
+      test::mesh_of(scene).transfer_function = one.transfer_function;
       scene.camera = scenes::view_camera(view);
       scene.size = size;
       list.push_back({std::string(one.name) + ", " + scenes::view_name(view), std::move(scene),

@@ -12,6 +12,7 @@
 #include "pellucid/scene/cut_cells.h"
 #include "tests/scenes/cameras.h"
 #include "tests/scenes/real.h"
+#include "tests/support/one_layer.h"
 
 namespace pellucid::bench {
 namespace {
@@ -115,14 +116,13 @@ std::vector<ReconstructionResult> study_reconstruction(const ReconstructionOptio
                                           parallel_for(default_thread_count()));
     for (const bool narrow : {false, true}) {
       Scene grid;
-      grid.volume = data.volume;
-      grid.transfer_function = table(*data.volume, narrow);
+      test::volume_of(grid).volume = data.volume;
+      test::volume_of(grid).transfer_function = table(*data.volume, narrow);
       grid.camera = scenes::three_cameras(*data.volume).front().camera;
       grid.size = {options.size, options.size};
       grid.integration.tolerance = tolerance;
       Scene cut = grid;
-      cut.volume = nullptr;
-      cut.mesh = mesh;
+      cut.layers = {{MeshContent{mesh, test::volume_of(grid).transfer_function}}};
       ReconstructionResult result = difference(render(grid), render(cut));
       result.data = data.name;
       result.transfer_function = narrow ? "peak, half width 1/200" : "ramp";

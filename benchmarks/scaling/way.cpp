@@ -5,6 +5,8 @@
 #include <cmath>
 #include <limits>
 
+#include "tests/support/one_layer.h"
+
 namespace pellucid::bench {
 namespace {
 
@@ -60,11 +62,13 @@ bool instruction_set_is_a_choice() {
 
 std::uint64_t cells_crossed(const Scene& scene) {
   const CameraFrame<double> camera = make_camera_frame(scene.camera, scene.size);
-  const Vec3<double> lower = scene.volume->grid_lower(), upper = scene.volume->grid_upper();
+  const Vec3<double> lower = test::volume_of(scene).volume->grid_lower(),
+                     upper = test::volume_of(scene).volume->grid_upper();
   std::uint64_t cells = 0;
   for (int row = 0; row < scene.size.height; ++row) {
     for (int column = 0; column < scene.size.width; ++column) {
-      const Ray<double> ray = scene.volume->grid_from_world().ray(camera.ray(column, row));
+      const Ray<double> ray =
+          test::volume_of(scene).volume->grid_from_world().ray(camera.ray(column, row));
       double begin = 0, end = std::numeric_limits<double>::infinity();
       for (int a = 0; a < 3; ++a) {
         const double d = component(ray.direction, a), o = component(ray.origin, a);

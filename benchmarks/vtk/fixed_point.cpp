@@ -10,6 +10,7 @@
 #include <memory>
 
 #include "benchmarks/vtk/vtk_scene.h"
+#include "tests/support/one_layer.h"
 
 namespace pellucid::bench {
 namespace {
@@ -70,7 +71,8 @@ Contender fixed_point_contender(const Scene& scene, vtkRenderer* renderer, vtkIm
       caster->mapper->SetInputData(data);
       caster->mapper->AutoAdjustSampleDistancesOff();
       caster->mapper->SetImageSampleDistance(1);
-      caster->mapper->SetSampleDistance(static_cast<float>(step * scene.volume->voxel_size()));
+      caster->mapper->SetSampleDistance(
+          static_cast<float>(step * test::volume_of(scene).volume->voxel_size()));
       caster->mapper->IntermixIntersectingGeometryOff();
       caster->mapper->SetNumberOfThreads(threads);
       caster->volume = vtk_volume(scene, caster->mapper);

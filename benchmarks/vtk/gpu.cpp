@@ -15,6 +15,7 @@
 #include <stdexcept>
 
 #include "benchmarks/vtk/vtk_scene.h"
+#include "tests/support/one_layer.h"
 
 namespace pellucid::bench {
 namespace {
@@ -155,7 +156,7 @@ std::vector<Contender> gpu_contenders(const Scene& scene, vtkImageData* image) {
   gpu->UseJitteringOff();
   gpu->SetImageSampleDistance(1);
   const auto gpu_stage = std::make_shared<Stage>(scene, image, gpu);
-  const double voxel = scene.volume->voxel_size();
+  const double voxel = test::volume_of(scene).volume->voxel_size();
   list.push_back({"VTK GPU mapper", Knob::step, {}, [=](double step) {
                     gpu->SetSampleDistance(static_cast<float>(step * voxel));
                     return gpu_stage->frame();

@@ -30,6 +30,7 @@
 #include <limits>
 
 #include "benchmarks/vtk/vtk_scene.h"
+#include "tests/support/one_layer.h"
 
 namespace pellucid::bench {
 namespace {
@@ -161,7 +162,7 @@ struct Stage {
   Stage(const MeshScene& shown, const Box<double>& bounds) : size(shown.scene.size) {
     vtkNew<vtkPiecewiseFunction> opacity;
     vtkNew<vtkColorTransferFunction> color;
-    const auto& points = shown.scene.transfer_function->points();
+    const auto& points = test::mesh_of(shown.scene).univariate()->points();
     for (std::size_t i = 0; i < points.size(); ++i) {
       const auto& p = points[i];
       opacity->AddPoint(p.value, p.extinction);

@@ -14,6 +14,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "tests/support/one_layer.h"
+
 namespace pellucid::bench {
 namespace {
 
@@ -48,7 +50,7 @@ void set_opacity(const TransferFunction& transfer_function, double unit,
 }  // namespace
 
 std::string not_for_vtk(const Scene& scene) {
-  const Volume::Description& d = scene.volume->description();
+  const Volume::Description& d = test::volume_of(scene).volume->description();
   for (const auto& axis : d.coordinates) {
     if (!axis.empty()) return "its volume mappers take no rectilinear grid";
   }
@@ -58,7 +60,7 @@ std::string not_for_vtk(const Scene& scene) {
 }
 
 vtkSmartPointer<vtkImageData> vtk_image(const Scene& scene) {
-  const Volume::Description& d = scene.volume->description();
+  const Volume::Description& d = test::volume_of(scene).volume->description();
   const auto image = vtkSmartPointer<vtkImageData>::New();
   image->SetDimensions(d.dimensions.data());
   image->SetSpacing(d.placement.spacing.x, d.placement.spacing.y, d.placement.spacing.z);
@@ -71,19 +73,19 @@ vtkSmartPointer<vtkImageData> vtk_image(const Scene& scene) {
                         1);
         image->GetPointData()->SetScalars(array);
       },
-      scene.volume->data());
+      test::volume_of(scene).volume->data());
   return image;
 }
 
 vtkSmartPointer<vtkVolume> vtk_volume(const Scene& scene, vtkVolumeMapper* mapper) {
-  const double unit = scene.volume->voxel_size();
+  const double unit = test::volume_of(scene).volume->voxel_size();
   vtkNew<vtkPiecewiseFunction> opacity;
-  set_opacity(*scene.transfer_function, unit, opacity);
+  set_opacity(*test::volume_of(scene).transfer_function, unit, opacity);
   vtkNew<vtkColorTransferFunction> color;
-  const auto& points = scene.transfer_function->points();
+  const auto& points = test::volume_of(scene).transfer_function->points();
   for (std::size_t i = 0; i < points.size(); ++i) {
     const Rgb<double>& c = points[i].color;
-    color->AddRGBPoint(apart(*scene.transfer_function, i), c.r, c.g, c.b);
+    color->AddRGBPoint(apart(*test::volume_of(scene).transfer_function, i), c.r, c.g, c.b);
   }
 
   const auto volume = vtkSmartPointer<vtkVolume>::New();
@@ -94,7 +96,7 @@ vtkSmartPointer<vtkVolume> vtk_volume(const Scene& scene, vtkVolumeMapper* mappe
   property->SetInterpolationTypeToLinear();
   property->ShadeOff();
 
-  const GridPlacement& placement = scene.volume->description().placement;
+  const GridPlacement& placement = test::volume_of(scene).volume->description().placement;
   vtkNew<vtkMatrix4x4> matrix;
   for (int c = 0; c < 3; ++c) {
     const Vec3<double>& column = placement.direction.column[c];

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <vector>
 
 #include "pellucid/cpu/render.h"
 #include "pellucid/scene/scene.h"
@@ -16,6 +17,7 @@ struct Frame {
   Frame(const Scene& scene, const RenderOptions& options, int threads);
 
   const Scene& scene;
+  std::vector<Layer> layers;  ///< the visible ones, in their places
   CameraFrame<double> camera;
   double tolerance;  ///< what rays may be off by
   double reserved;   ///< of the tolerance: what the transfer function is off by

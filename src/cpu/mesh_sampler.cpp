@@ -16,6 +16,14 @@
 namespace pellucid {
 namespace {
 
+const MeshContent& content_of(const TracerTask& task) {
+  return std::get<MeshContent>(task.layer.content);
+}
+
+const MeshChannels& mesh_of(const TracerTask& task) {
+  return *content_of(task).mesh;
+}
+
 CellModel cell_model(Method method) noexcept {
   switch (method) {
     case Method::homogeneous:
@@ -36,9 +44,9 @@ PsiTable psi_table_for(CellModel model) {
 class MeshSampler : public RayTracer {
  public:
   explicit MeshSampler(const TracerTask& task)
-      : mesh_(task.scene.mesh->mesh().view()),
-        fields_(*task.scene.mesh),
-        stop_(stop_tolerance<double>() / std::max(largest_color(task.scene), 1.0)),
+      : mesh_(mesh_of(task).mesh().view()),
+        fields_(mesh_of(task)),
+        stop_(stop_tolerance<double>() / std::max(largest_color(task.layer), 1.0)),
         depth_(task.options.depth) {}
 
   std::vector<RayResult> trace(const std::vector<Ray<double>>& world,
@@ -74,7 +82,7 @@ class UnivariateMeshSampler : public MeshSampler {
  public:
   explicit UnivariateMeshSampler(const TracerTask& task)
       : MeshSampler(task),
-        transfer_(*task.scene.transfer_function),
+        transfer_(*content_of(task).univariate()),
         model_(cell_model(task.scene.integration.method)),
         psi_(psi_table_for(model_)) {}
 
@@ -94,7 +102,7 @@ class MultivariateMeshSampler : public MeshSampler {
  public:
   explicit MultivariateMeshSampler(const TracerTask& task)
       : MeshSampler(task),
-        transfer_(task.scene.multivariate->view()),
+        transfer_(content_of(task).multivariate()->view()),
         method_(task.scene.integration.method),
         psi_(psi_table_for(cell_model(method_))) {}
 
@@ -117,7 +125,8 @@ class MultivariateMeshSampler : public MeshSampler {
 }  // namespace
 
 std::unique_ptr<const RayTracer> make_mesh_sampler(const TracerTask& task) {
-  if (task.scene.multivariate) return std::make_unique<MultivariateMeshSampler>(task);
+  if (content_of(task).multivariate() != nullptr)
+    return std::make_unique<MultivariateMeshSampler>(task);
   return std::make_unique<UnivariateMeshSampler>(task);
 }
 

@@ -20,6 +20,14 @@
 namespace pellucid {
 namespace {
 
+const MeshContent& content_of(const TracerTask& task) {
+  return std::get<MeshContent>(task.layer.content);
+}
+
+const MeshChannels& mesh_of(const TracerTask& task) {
+  return *content_of(task).mesh;
+}
+
 using Kernel = void (*)(const PellucidMeshJob*);
 
 /// Null: rays go one by one.
@@ -40,8 +48,8 @@ Kernel kernel_for([[maybe_unused]] InstructionSet set, [[maybe_unused]] bool sev
 class MeshTracer : public RayTracer {
  public:
   explicit MeshTracer(const TracerTask& task)
-      : mesh_(task.scene.mesh->mesh().view()),
-        fields_(*task.scene.mesh),
+      : mesh_(mesh_of(task).mesh().view()),
+        fields_(mesh_of(task)),
         wanted_(task.wanted),
         depth_(task.options.depth) {}
 
@@ -67,7 +75,7 @@ class MeshTracer : public RayTracer {
   /// Sets up packets, where the mesh and what is wanted suit them.
   void prepare(const TracerTask& task, double largest_extinction, bool several) {
     const InstructionSet set = packet_instruction_set(task.options.instruction_set);
-    const MeshChannels& channels = *task.scene.mesh;
+    const MeshChannels& channels = mesh_of(task);
     if (wanted_.precision != Precision::automatic || wanted_.tolerance < least_packet_tolerance ||
         !is_moderate(channels.mesh().statistics().mean_edge) || largest_extinction > 1e12) {
       return;
@@ -86,7 +94,7 @@ class MeshTracer : public RayTracer {
     job_.proved = wanted_.grade == Grade::proved ? 1 : 0;
     job_.depth = depth_ ? 1 : 0;
     job_.context = this;
-    points_ = fields_.points(task.scene.mesh->mesh().points());
+    points_ = fields_.points(mesh_of(task).mesh().points());
     job_.points = points_.data();
   }
 
@@ -129,11 +137,11 @@ class MeshTracer : public RayTracer {
 class UnivariateMeshTracer : public MeshTracer {
  public:
   explicit UnivariateMeshTracer(const TracerTask& task)
-      : MeshTracer(task), transfer_(*task.scene.transfer_function) {
+      : MeshTracer(task), transfer_(*content_of(task).univariate()) {
     const TransferTables& tables = transfer_.tables();
     prepare(task, tables.largest_extinction, false);
     if (kernel_ == nullptr) return;
-    binned_.emplace(tables.wide, largest_value(task.scene.mesh->statistics(0)));
+    binned_.emplace(tables.wide, largest_value(mesh_of(task).statistics(0)));
     job_.transfer = &binned_->view();
     job_.integrate_span = &UnivariateMeshTracer::integrate_span;
   }
@@ -193,14 +201,14 @@ class MultivariateMeshTracer : public MeshTracer {
  public:
   explicit MultivariateMeshTracer(const TracerTask& task)
       : MeshTracer(task),
-        transfer_function_(*task.scene.multivariate),
+        transfer_function_(*content_of(task).multivariate()),
         transfer_(transfer_function_.view()) {
     prepare(task, transfer_function_.largest_extinction(), true);
     if (kernel_ == nullptr) return;
     // Half of what is left out is for Gaussians, half for what errors of the data change there.
     double largest[max_channels] = {};
     for (int c = 0; c < transfer_.channels; ++c) {
-      largest[c] = largest_value(task.scene.mesh->statistics(c));
+      largest[c] = largest_value(mesh_of(task).statistics(c));
     }
     mixture_ = NearMixtureStorage(largest, true, transfer_,
                                   0.5 * left_out_share * job_.tolerance / job_.largest_color,
@@ -211,7 +219,7 @@ class MultivariateMeshTracer : public MeshTracer {
     }
     job_.tolerance *= 1 - left_out_share;
     job_.transfer = &mixture_.view();
-    const std::size_t points = task.scene.mesh->mesh().points().size();
+    const std::size_t points = mesh_of(task).mesh().points().size();
     values_ = fields_.values_by_point(points);
     job_.values = values_.data();
     job_.value_points = static_cast<std::int32_t>(points);
@@ -253,7 +261,8 @@ class MultivariateMeshTracer : public MeshTracer {
 
 std::unique_ptr<const RayTracer> make_mesh_tracer(const TracerTask& task) {
   if (task.scene.integration.method != Method::exact) return make_mesh_sampler(task);
-  if (task.scene.multivariate) return std::make_unique<MultivariateMeshTracer>(task);
+  if (content_of(task).multivariate() != nullptr)
+    return std::make_unique<MultivariateMeshTracer>(task);
   return std::make_unique<UnivariateMeshTracer>(task);
 }
 

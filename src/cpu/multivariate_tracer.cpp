@@ -27,7 +27,7 @@ constexpr double left_out_share = 1.0 / 32;
 /// Which extinction may be left out all along a ray for that.
 double negligible_extinction(const TracerTask& task) {
   return left_out_share * task.wanted.tolerance /
-         (diagonal(grid_volume(task.scene)) * std::max(task.wanted.largest_color, 1.0));
+         (diagonal(*grid_of(task.layer)) * std::max(task.wanted.largest_color, 1.0));
 }
 
 using Kernel = void (*)(const PellucidMultivariateJob*);
@@ -46,8 +46,8 @@ class MultivariateTracer : public RayTracer {
  public:
   explicit MultivariateTracer(const TracerTask& task)
       : integration_(task.scene.integration),
-        channels_(*task.scene.channels),
-        transfer_function_(*task.scene.multivariate),
+        channels_(*std::get<ChannelsContent>(task.layer.content).channels),
+        transfer_function_(*std::get<ChannelsContent>(task.layer.content).transfer_function),
         wanted_(task.wanted),
         depth_(task.options.depth),
         grid_(multichannel_grid(channels_)),

@@ -103,20 +103,34 @@ PacketTracer::PacketTracer(const Volume& volume, const ClassifiedBlocks& blocks,
   job_.integrate_cell = &PacketTracer::integrate_cell;
 }
 
+std::vector<PellucidRayResult> PacketTracer::integrate(const std::vector<PellucidRay>& rays,
+                                                       double share, bool depth) const {
+  std::vector<PellucidRayResult> found(rays.size());
+  PellucidPacketJob job = job_;
+  job.tolerance *= share;
+  const CellContext context{this, rays.data()};
+  job.rays = rays.data();
+  job.results = found.data();
+  job.count = static_cast<std::int32_t>(rays.size());
+  job.depth = depth ? 1 : 0;
+  job.context = &context;
+  kernel_(&job);
+  return found;
+}
+
+std::vector<RayResult> PacketTracer::trace_parts(const std::vector<PellucidRay>& parts,
+                                                 double share) const {
+  std::vector<RayResult> results(parts.size());
+  const std::vector<PellucidRayResult> found = integrate(parts, share, false);
+  for (std::size_t i = 0; i < found.size(); ++i) read_result(found[i], results[i]);
+  return results;
+}
+
 void PacketTracer::trace(const Ray<double>* rays, int count, double share, bool depth,
                          RayResult* results) const {
   std::fill(results, results + count, missing_ray());
   const PacketRays inside(volume_, rays, count);
-  std::vector<PellucidRayResult> found(inside.ray.size());
-  PellucidPacketJob job = job_;
-  job.tolerance *= share;
-  const CellContext context{this, inside.ray.data()};
-  job.rays = inside.ray.data();
-  job.results = found.data();
-  job.count = static_cast<std::int32_t>(inside.ray.size());
-  job.depth = depth ? 1 : 0;
-  job.context = &context;
-  kernel_(&job);
+  const std::vector<PellucidRayResult> found = integrate(inside.ray, share, depth);
   for (std::size_t i = 0; i < found.size(); ++i) {
     RayResult& to = results[inside.of[i]];
     read_result(found[i], to);

@@ -3,6 +3,7 @@
 
 #include <memory>
 #include <optional>
+#include <vector>
 
 #include "pellucid/packet/interface.h"
 #include "pellucid/render/integrate_cell.h"
@@ -42,6 +43,8 @@ class PacketTracer {
   /// the rays may be off by. `depth`: whether half_opacity_depth is asked for.
   void trace(const Ray<double>* rays, int count, double share, bool depth,
              RayResult* results) const;
+  /// The same for parts of rays, each by itself; without half_opacity_depth.
+  std::vector<RayResult> trace_parts(const std::vector<PellucidRay>& parts, double share) const;
   /// Whether smooth blocks are sampled.
   bool goes_in_steps() const noexcept { return smooth_.longest_step > 0; }
   /// RayResult::longest_step of no ray is longer.
@@ -52,6 +55,9 @@ class PacketTracer {
 
   PacketTracer(const Volume& volume, const ClassifiedBlocks& blocks, const SmoothBlocks& smooth,
                const TransferTables& transfer, const RayTolerance& wanted, Kernel kernel);
+  /// Integrates rays that meet the grid's box between their ends.
+  std::vector<PellucidRayResult> integrate(const std::vector<PellucidRay>& rays, double share,
+                                           bool depth) const;
   static void integrate_cell(const void* context, std::int32_t ray, const PellucidCell* cell,
                              PellucidCellResult* result);
 

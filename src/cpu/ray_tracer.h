@@ -38,16 +38,21 @@ class RayTracer {
   virtual std::optional<Surroundings> surroundings() const { return std::nullopt; }
 };
 
-/// What is to be followed: a scene that check_method() accepts. It must outlive the tracer; what is
-/// needed of the data's blocks is made on so many threads.
+/// What is to be followed: a layer of a scene that check_method() accepts. Both must outlive the
+/// tracer; what is needed of the data's blocks is made on so many threads.
 struct TracerTask {
   const Scene& scene;
+  const Layer& layer;  ///< the one that is followed, in its place (moved_into_place())
   const RenderOptions& options;
   RayTolerance wanted;
   int threads = 1;
 };
 
-/// Of a volume with a transfer function.
+/// Of any number of layers, of any kind, with clips: the general path. The layers must outlive it.
+std::unique_ptr<const RayTracer> make_layered_tracer(const TracerTask& task,
+                                                     const std::vector<Layer>& layers);
+/// Of a volume with a transfer function. Null where the layer or the scene has clips and packets do
+/// not suit the rays.
 std::unique_ptr<const RayTracer> make_univariate_tracer(const TracerTask& task);
 /// Of channels with a multivariate transfer function.
 std::unique_ptr<const RayTracer> make_multivariate_tracer(const TracerTask& task);

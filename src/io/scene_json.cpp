@@ -13,16 +13,18 @@ using scene_json::linear_rgb;
 using scene_json::Node;
 using scene_json::vector;
 
-constexpr int newest_version = 1;
+constexpr int newest_version = 2;
 
-void check_version(const Node& document) {
-  if (const auto version = document.find("pellucid")) {
-    const long long number = version->integer(1, 1'000'000);
-    if (number != newest_version) {
-      version->fail("is version " + std::to_string(number) +
-                    ", but this program reads version 1; take a newer pellucid");
-    }
+/// Returns the version of a document; none if it does not say.
+std::optional<int> checked_version(const Node& document) {
+  const auto version = document.find("pellucid");
+  if (!version) return std::nullopt;
+  const long long number = version->integer(1, 1'000'000);
+  if (number > newest_version) {
+    version->fail("is version " + std::to_string(number) +
+                  ", but this program reads versions 1 and 2; take a newer pellucid");
   }
+  return static_cast<int>(number);
 }
 
 Camera camera_from(const Node& node, ImageSize size) {
@@ -87,42 +89,105 @@ void read_integration(const Node& node, SceneDescription& scene) {
 }
 
 /// Channels are looked up here, where all names are known.
-void read_data(const Node& volume, const std::filesystem::path& folder, SceneDescription& scene) {
-  for (const auto& [one, other] :
-       {std::pair{"field", "channels"}, {"field", "mesh"}, {"channels", "mesh"}}) {
-    if (!volume.has(one) || !volume.has(other)) continue;
-    volume.fail(std::string("has both \"") + one + "\" and \"" + other + "\"; keep one of them");
+void read_data(const Node& node, const std::filesystem::path& folder, LayerDescription& layer) {
+  constexpr std::array kinds{"field", "channels", "mesh", "labels"};
+  for (std::size_t i = 0; i < kinds.size(); ++i) {
+    for (std::size_t j = i + 1; j < kinds.size(); ++j) {
+      if (!node.has(kinds[i]) || !node.has(kinds[j])) continue;
+      node.fail(std::string("has both \"") + kinds[i] + "\" and \"" + kinds[j] +
+                "\"; keep one of them");
+    }
   }
-  if (const auto mesh = volume.find("mesh")) {
-    scene.mesh = scene_json::mesh_source(*mesh, folder);
-  } else if (const auto channels = volume.find("channels")) {
-    scene.channels = scene_json::channel_sources(*channels, folder);
+  if (const auto labels = node.find("labels")) {
+    layer.labels = scene_json::label_source(*labels, folder);
+    if (node.has("transfer_function")) {
+      node.fail_at("transfer_function", "makes no sense for labels; give \"colors\" in \"labels\"");
+    }
+    return;
+  }
+  if (const auto mesh = node.find("mesh")) {
+    layer.mesh = scene_json::mesh_source(*mesh, folder);
+  } else if (const auto channels = node.find("channels")) {
+    layer.channels = scene_json::channel_sources(*channels, folder);
   } else {
-    scene.field = scene_json::field_source(
-        volume.at("field", "give {\"file\": ...} or {\"builtin\": ...}, or a \"mesh\""), folder);
+    layer.field = scene_json::field_source(
+        node.at("field", "give {\"file\": ...} or {\"builtin\": ...}, or a \"mesh\""), folder);
   }
-  const auto function = volume.find("transfer_function");
+  const auto function = node.find("transfer_function");
   if (!function) return;
-  scene.transfer_function = scene_json::transfer_function(*function);
-  const auto* multivariate = std::get_if<MultivariateDescription>(&*scene.transfer_function);
+  layer.transfer_function = scene_json::transfer_function(*function);
+  const auto* multivariate = std::get_if<MultivariateDescription>(&*layer.transfer_function);
   if (multivariate == nullptr) {
-    if (scene.channels.empty() && !(scene.mesh && scene.mesh->channels.size() > 1)) return;
+    if (layer.channels.empty() && !(layer.mesh && layer.mesh->channels.size() > 1)) return;
     function->fail(
         "is of one variable, but here are channels; give \"gaussians\", or put the points "
         "into \"tables\": [{\"channel\": ..., \"points\": ...}]");
   }
   try {
-    make_multivariate(*multivariate, function_channels(scene), known_channels(scene));
+    make_multivariate(*multivariate, function_channels(layer), known_channels(layer));
   } catch (const Error& error) {
     function->fail(error.what());
   }
+}
+
+/// A layer of version 2. A mask needs a field with a function of one variable.
+LayerDescription read_layer(const Node& node, const std::filesystem::path& folder) {
+  node.expect_object({"name", "visible", "field", "channels", "mesh", "labels", "transfer_function",
+                      "mask", "transform", "clip"});
+  LayerDescription layer;
+  if (const auto name = node.find("name")) layer.name = name->string();
+  if (const auto visible = node.find("visible")) layer.visible = visible->boolean();
+  read_data(node, folder, layer);
+  if (const auto mask = node.find("mask")) {
+    const bool multivariate =
+        layer.transfer_function &&
+        std::holds_alternative<MultivariateDescription>(*layer.transfer_function);
+    if (!node.has("field") || multivariate) {
+      node.fail_at("mask", "needs a \"field\" with a function of one variable");
+    }
+    layer.mask = scene_json::mask_source(*mask, folder);
+  }
+  if (const auto transform = node.find("transform")) {
+    layer.transform = scene_json::affine_map(*transform);
+  }
+  if (const auto clip = node.find("clip")) layer.clips = scene_json::clips(*clip);
+  return layer;
+}
+
+/// The list of layers; in version 1 the one volume.
+std::vector<LayerDescription> read_layers(const Node& document,
+                                          const std::filesystem::path& folder) {
+  const std::optional<int> version = checked_version(document);
+  const bool old = version ? *version == 1 : document.has("volumes") && !document.has("layers");
+  if (old) {
+    document.expect_object({"pellucid", "volumes", "camera", "image", "integration"});
+    const Node volumes = document.at("volumes", "give one volume: [{\"field\": {\"file\": ...}}]");
+    if (volumes.array_size() != 1) {
+      volumes.fail("has " + std::to_string(volumes.array_size()) +
+                   " volumes, but version 1 has exactly one; give \"layers\" in version 2");
+    }
+    const Node volume = volumes.element(0);
+    volume.expect_object({"field", "channels", "mesh", "transfer_function"});
+    LayerDescription layer;
+    read_data(volume, folder, layer);
+    return {layer};
+  }
+  if (document.has("volumes")) document.fail_at("volumes", "is \"layers\" in version 2");
+  document.expect_object({"pellucid", "layers", "clip", "camera", "image", "integration"});
+  const Node list = document.at("layers", "give one at least: [{\"field\": {\"file\": ...}}]");
+  if (list.array_size() == 0) list.fail("is empty; give one layer at least");
+  std::vector<LayerDescription> layers;
+  for (std::size_t i = 0; i < list.array_size(); ++i) {
+    layers.push_back(read_layer(list.element(i), folder));
+  }
+  return layers;
 }
 
 /// The object that stands alone, or under its name in a document of its own.
 Node unwrap(const Node& document, std::string_view key) {
   if (!document.is_object() || !document.has(key)) return document;
   document.expect_object({"pellucid", key});
-  check_version(document);
+  checked_version(document);
   return document.at(key, "");
 }
 
@@ -132,19 +197,9 @@ SceneDescription parse_scene(std::string_view json, const std::string& name,
                              const std::filesystem::path& folder) {
   const nlohmann::json parsed = scene_json::parse_document(json, name);
   const Node document(parsed, name);
-  document.expect_object({"pellucid", "volumes", "camera", "image", "integration"});
-  check_version(document);
-
-  const Node volumes = document.at("volumes", "give one volume: [{\"field\": {\"file\": ...}}]");
-  if (volumes.array_size() != 1) {
-    volumes.fail("has " + std::to_string(volumes.array_size()) +
-                 " volumes, but this version renders exactly one");
-  }
-  const Node volume = volumes.element(0);
-  volume.expect_object({"field", "channels", "mesh", "transfer_function"});
-
   SceneDescription scene;
-  read_data(volume, folder, scene);
+  scene.layers = read_layers(document, folder);
+  if (const auto clip = document.find("clip")) scene.clips = scene_json::clips(*clip);
   if (const auto image = document.find("image")) {
     image->expect_object({"width", "height", "samples", "background"});
     constexpr int largest_size = 65536;

@@ -103,7 +103,7 @@ class Builder : public nlohmann::json_sax<json> {
     if (open_.size() == deepest_) {
       throw Error(name_ + ": " + printable(pointer()) + ": nested deeper than " +
                   std::to_string(deepest_) + " levels" +
-                  (deepest_ == deepest_scene ? "; a scene needs 8" : ""));
+                  (deepest_ == deepest_scene ? "; a scene needs 10" : ""));
     }
     const bool in_array = !open_.empty() && open_.back()->is_array();
     const std::string token = in_array ? std::to_string(open_.back()->size()) : pointer_token(key_);
@@ -304,6 +304,11 @@ long long Node::integer(long long lower, long long upper) const {
   }
   // The bounds are far below 2⁵³, so the comparison in double is exact.
   return static_cast<long long>(number(static_cast<double>(lower), static_cast<double>(upper)));
+}
+
+bool Node::boolean() const {
+  if (!value_->is_boolean()) fail("must be true or false, but is " + found());
+  return value_->get<bool>();
 }
 
 const std::string& Node::string() const {

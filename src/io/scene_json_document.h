@@ -70,6 +70,7 @@ class Node {
   double number_between(double lower, double upper) const;
   /// Fails unless this is a number without a fraction (2 or 2.0) in [lower, upper].
   long long integer(long long lower, long long upper) const;
+  bool boolean() const;
   const std::string& string() const;
   /// The index of the string among the words; fails for another.
   std::size_t one_of(const std::vector<std::string_view>& words) const;

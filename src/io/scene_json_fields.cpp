@@ -174,12 +174,17 @@ std::filesystem::path file_path(const Node& file, const std::filesystem::path& f
 }
 
 FieldSource field_source(const Node& field, const std::filesystem::path& folder) {
-  field.expect_object(both(file_keys, builtin_keys));
+  return field_source_beside(field, folder, {});
+}
+
+FieldSource field_source_beside(const Node& field, const std::filesystem::path& folder,
+                                const std::vector<std::string_view>& more) {
+  field.expect_object(both(both(file_keys, builtin_keys), more));
   if (field.has("file") == field.has("builtin")) {
     field.fail(field.has("file") ? "has both \"file\" and \"builtin\"; keep one of them"
                                  : "needs \"file\" or \"builtin\"");
   }
-  return field_among(field, folder, {});
+  return field_among(field, folder, more);
 }
 
 std::vector<ChannelSource> channel_sources(const Node& list, const std::filesystem::path& folder) {

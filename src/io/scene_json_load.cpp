@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "pellucid/io/label_table.h"
 #include "pellucid/io/scene_json.h"
 #include "pellucid/scene/defaults.h"
 #include "pellucid/scene/error.h"
@@ -28,25 +29,32 @@ bool names(const MultivariateDescription& function, std::string_view channel) {
                      [&](const auto& table) { return table.channel == channel; });
 }
 
+/// What the functions of all layers have in common.
+struct Wanted {
+  double tolerance;
+  std::optional<Rgb<double>> background;
+};
+
 /// Of a volume or a mesh.
 template <class Data>
-TransferFunction function_of(const SceneDescription& description, const Data& data) {
-  if (!description.transfer_function) return default_transfer_function(data);
-  if (const auto* preset = std::get_if<PresetDescription>(&*description.transfer_function)) {
+TransferFunction function_of(const std::optional<TransferFunctionDescription>& description,
+                             const Wanted& wanted, const Data& data) {
+  if (!description) return default_transfer_function(data);
+  if (const auto* preset = std::get_if<PresetDescription>(&*description)) {
     return make_preset(preset->name, data, preset->range);
   }
-  return make_transfer_function(*description.transfer_function, description.integration.tolerance,
-                                description.background);
+  return make_transfer_function(*description, wanted.tolerance, wanted.background);
 }
 
-const MultivariateDescription* multivariate(const SceneDescription& description) {
+const MultivariateDescription* multivariate(const LayerDescription& description) {
   return description.transfer_function
              ? std::get_if<MultivariateDescription>(&*description.transfer_function)
              : nullptr;
 }
 
-void fill_channels(const SceneDescription& description, const std::vector<ChannelSource>& sources,
-                   const ParallelFor& parallel, Scene& scene) {
+ChannelsContent load_channels_content(const LayerDescription& description,
+                                      const std::vector<ChannelSource>& sources,
+                                      const ParallelFor& parallel) {
   const MultivariateDescription* const function = multivariate(description);
   if (function == nullptr) {
     throw Error(description.transfer_function
@@ -55,37 +63,96 @@ void fill_channels(const SceneDescription& description, const std::vector<Channe
                     : "scene: channels need a transfer function; give "
                       "\"gaussians\" or \"tables\" ('pellucid suggest' makes a first one)");
   }
-  scene.multivariate =
+  ChannelsContent content;
+  content.transfer_function =
       make_multivariate(*function, channel_names(sources), known_channels(description));
-  scene.channels = std::make_shared<const Channels>(load_channels(sources, parallel));
+  content.channels = std::make_shared<const Channels>(load_channels(sources, parallel));
+  return content;
 }
 
 /// Whose function is of one variable or of several.
-void fill_mesh(const SceneDescription& description, const ParallelFor& parallel, Scene& scene,
-               MeshSource* mesh_used) {
+MeshContent load_mesh_content(const LayerDescription& description, const Wanted& wanted,
+                              const ParallelFor& parallel, MeshSource& mesh_used) {
+  MeshContent content;
   const std::vector<std::string> names = function_channels(description);
   if (const MultivariateDescription* const function = multivariate(description)) {
-    scene.multivariate = make_multivariate(*function, names, names);
+    content.transfer_function = make_multivariate(*function, names, names);
   } else if (names.size() > 1) {
     throw Error(
         "scene: several arrays of a mesh need a function of them all; give \"gaussians\" or "
         "\"tables\", or leave one array");
   }
   const LoadedMesh loaded = load_mesh(*description.mesh, parallel);
-  scene.mesh = loaded.mesh;
-  if (mesh_used != nullptr) {
-    *mesh_used = *description.mesh;
-    mesh_used->channels = loaded.channels;
+  content.mesh = loaded.mesh;
+  mesh_used = *description.mesh;
+  mesh_used.channels = loaded.channels;
+  if (content.multivariate() == nullptr) {
+    content.transfer_function = std::make_shared<const TransferFunction>(
+        function_of(description.transfer_function, wanted, *content.mesh));
   }
-  if (scene.multivariate) return;
-  scene.transfer_function =
-      std::make_shared<const TransferFunction>(function_of(description, *scene.mesh));
+  return content;
+}
+
+VolumeContent load_volume_content(const LayerDescription& description, const Wanted& wanted) {
+  VolumeContent content;
+  content.volume = std::make_shared<const Volume>(load_field(description.field));
+  content.transfer_function = std::make_shared<const TransferFunction>(
+      function_of(description.transfer_function, wanted, *content.volume));
+  if (!description.mask) return content;
+  auto labels = std::make_shared<const LabelVolume>(
+      std::make_shared<const Volume>(load_field(description.mask->field)));
+  std::vector<LabelMask::Choice> choices;
+  for (const MaskSource::Choice& choice : description.mask->choices) {
+    choices.push_back(
+        {choice.label, std::make_shared<const TransferFunction>(function_of(
+                           std::optional(choice.transfer_function), wanted, *content.volume))});
+  }
+  content.mask = std::make_shared<const LabelMask>(std::move(labels), std::move(choices));
+  return content;
+}
+
+LabelContent load_label_content(const LabelSource& source) {
+  LabelContent content;
+  content.labels =
+      std::make_shared<const LabelVolume>(std::make_shared<const Volume>(load_field(source.field)));
+  std::vector<LabelStyle> styles = source.styles;
+  if (!source.table.empty()) {
+    const double extinction =
+        source.extinction.value_or(default_label_extinction(content.labels->volume()));
+    for (LabelStyle& style : read_label_table(source.table, extinction)) {
+      const auto is_same = [&](const LabelStyle& own) { return own.label == style.label; };
+      if (std::ranges::none_of(source.styles, is_same)) styles.push_back(std::move(style));
+    }
+  }
+  content.table = std::make_shared<const LabelTable>(
+      styles.empty() ? default_label_table(*content.labels, source.extinction)
+                     : LabelTable(std::move(styles)));
+  return content;
+}
+
+Layer load_layer(const LayerDescription& description, const Wanted& wanted,
+                 const ParallelFor& parallel, MeshSource& mesh_used) {
+  Layer layer;
+  layer.name = description.name;
+  layer.visible = description.visible;
+  layer.transform = description.transform;
+  layer.clips = description.clips;
+  if (description.labels) {
+    layer.content = load_label_content(*description.labels);
+  } else if (description.mesh) {
+    layer.content = load_mesh_content(description, wanted, parallel, mesh_used);
+  } else if (const auto sources = layer_channels(description); !sources.empty()) {
+    layer.content = load_channels_content(description, sources, parallel);
+  } else {
+    layer.content = load_volume_content(description, wanted);
+  }
+  return layer;
 }
 
 }  // namespace
 
-std::vector<ChannelSource> scene_channels(const SceneDescription& description) {
-  if (description.mesh) return {};
+std::vector<ChannelSource> layer_channels(const LayerDescription& description) {
+  if (description.mesh || description.labels) return {};
   if (!description.channels.empty()) return description.channels;
   const MultivariateDescription* const function = multivariate(description);
   if (function == nullptr) return {};
@@ -98,12 +165,12 @@ std::vector<ChannelSource> scene_channels(const SceneDescription& description) {
   return channels;
 }
 
-std::vector<std::string> function_channels(const SceneDescription& description) {
+std::vector<std::string> function_channels(const LayerDescription& description) {
   return description.mesh ? channel_names(*description.mesh)
-                          : channel_names(scene_channels(description));
+                          : channel_names(layer_channels(description));
 }
 
-std::vector<std::string> known_channels(const SceneDescription& description) {
+std::vector<std::string> known_channels(const LayerDescription& description) {
   if (description.mesh) return channel_names(*description.mesh);
   if (!description.channels.empty()) return channel_names(description.channels);
   std::vector<std::string> names{std::string(field_channel)};
@@ -112,21 +179,20 @@ std::vector<std::string> known_channels(const SceneDescription& description) {
 }
 
 Scene make_scene(const SceneDescription& description, const ParallelFor& parallel,
-                 MeshSource* mesh_used) {
+                 std::vector<MeshSource>* meshes_used) {
   Scene scene;
-  if (description.mesh) {
-    fill_mesh(description, parallel, scene, mesh_used);
-  } else if (const auto sources = scene_channels(description); !sources.empty()) {
-    fill_channels(description, sources, parallel, scene);
-  } else {
-    scene.volume = std::make_shared<const Volume>(load_field(description.field));
-    scene.transfer_function =
-        std::make_shared<const TransferFunction>(function_of(description, *scene.volume));
+  const Wanted wanted{description.integration.tolerance, description.background};
+  std::vector<MeshSource> meshes(description.layers.size());
+  for (std::size_t i = 0; i < description.layers.size(); ++i) {
+    scene.layers.push_back(load_layer(description.layers[i], wanted, parallel, meshes[i]));
   }
+  if (meshes_used != nullptr) *meshes_used = std::move(meshes);
+  scene.clips = description.clips;
   scene.size = description.size;
   scene.samples = description.samples;
-  scene.camera = description.camera ? *description.camera
-                                    : default_camera(world_corners(scene), description.size);
+  scene.camera = description.camera
+                     ? *description.camera
+                     : default_camera(visible_corners(scene, parallel), description.size);
   scene.integration = description.integration;
   scene.background = description.background;
   return scene;

@@ -25,7 +25,15 @@ std::vector<std::vector<double>> matrix(const Node& rows, std::size_t columns);
 std::string channel_name(const Node& node);
 
 FieldSource field_source(const Node& field, const std::filesystem::path& folder);
+/// The same, beside other keys.
+FieldSource field_source_beside(const Node& field, const std::filesystem::path& folder,
+                                const std::vector<std::string_view>& more);
 std::vector<ChannelSource> channel_sources(const Node& list, const std::filesystem::path& folder);
+LabelSource label_source(const Node& labels, const std::filesystem::path& folder);
+MaskSource mask_source(const Node& mask, const std::filesystem::path& folder);
+std::vector<Clip> clips(const Node& list);
+/// Three rows of an affine map.
+Affine<double> affine_map(const Node& rows);
 MeshSource mesh_source(const Node& mesh, const std::filesystem::path& folder);
 /// A path that is not empty.
 std::filesystem::path file_path(const Node& file, const std::filesystem::path& folder);

@@ -298,19 +298,113 @@ std::string mesh_text(const MeshSource& mesh, const std::string& indent) {
   return members.object();
 }
 
+/// One label per line.
+std::string labels_text(const LabelSource& labels, const std::string& indent) {
+  Members members(indent);
+  add_field(labels.field, members);
+  if (!labels.table.empty()) members.add("table", path_text(labels.table, "the path of a table"));
+  if (labels.extinction) members.add("extinction", number(*labels.extinction, "an extinction"));
+  if (!labels.styles.empty()) {
+    std::string list;
+    for (const LabelStyle& style : labels.styles) {
+      list += joined({list.empty() ? "[" : ",", "\n", indent,
+                      "    {\"label\": ", std::to_string(style.label),
+                      style.name.empty() ? std::string()
+                                         : joined({", \"name\": ", quoted(style.name, "a name")}),
+                      ", \"color\": ", array(style.color, "a color"),
+                      ", \"extinction\": ", number(style.extinction, "an extinction"), "}"});
+    }
+    members.add("colors", joined({list, "\n", indent, "  ]"}));
+  }
+  return members.object();
+}
+
+std::string mask_text(const MaskSource& mask, const std::string& indent) {
+  Members members(indent);
+  add_field(mask.field, members);
+  std::string list;
+  for (const MaskSource::Choice& choice : mask.choices) {
+    Members one(indent + "  ");
+    one.add("label", std::to_string(choice.label));
+    one.add("transfer_function", transfer_function_text(choice.transfer_function, indent + "    "));
+    list += joined({list.empty() ? "[" : ", ", one.object()});
+  }
+  members.add("functions", list + "]");
+  return members.object();
+}
+
+std::string shape_text(const ClipPlane& plane) {
+  return joined({"\"plane\": {\"point\": ", array(plane.point, "a point"),
+                 ", \"normal\": ", array(plane.normal, "a normal"), "}"});
+}
+std::string shape_text(const ClipBox& box) {
+  return joined({"\"box\": {\"lower\": ", array(box.lower, "a corner"),
+                 ", \"upper\": ", array(box.upper, "a corner"), "}"});
+}
+std::string shape_text(const ClipSphere& sphere) {
+  return joined({"\"sphere\": {\"center\": ", array(sphere.center, "a center"),
+                 ", \"radius\": ", number(sphere.radius, "a radius"), "}"});
+}
+std::string shape_text(const ClipCylinder& cylinder) {
+  return joined({"\"cylinder\": {\"start\": ", array(cylinder.start, "an end"),
+                 ", \"end\": ", array(cylinder.end, "an end"),
+                 ", \"radius\": ", number(cylinder.radius, "a radius"), "}"});
+}
+
+/// One clip per line.
+std::string clips_text(const std::vector<Clip>& clips, const std::string& indent) {
+  std::string list;
+  for (const Clip& clip : clips) {
+    list += joined({list.empty() ? "[" : ",", "\n", indent, "    {",
+                    std::visit([](const auto& shape) { return shape_text(shape); }, clip.shape),
+                    clip.keep_inside ? "" : ", \"keep\": \"outside\"", "}"});
+  }
+  return joined({list, "\n", indent, "  ]"});
+}
+
+std::string transform_text(const Affine<double>& map) {
+  std::string rows;
+  for (int r = 0; r < 3; ++r) {
+    rows += rows.empty() ? "[[" : "], [";
+    for (int c = 0; c < 3; ++c) {
+      rows += joined({number(map.matrix.column[c][r], "the transform"), ", "});
+    }
+    rows += number(map.translation[r], "the transform");
+  }
+  return rows + "]]";
+}
+
+std::string layer_text(const LayerDescription& layer) {
+  Members members("    ");
+  const std::string indent = "      ";
+  if (!layer.name.empty()) members.add("name", quoted(layer.name, "the name of a layer"));
+  if (!layer.visible) members.add("visible", "false");
+  if (layer.labels) {
+    members.add("labels", labels_text(*layer.labels, indent));
+  } else if (layer.mesh) {
+    members.add("mesh", mesh_text(*layer.mesh, indent));
+  } else if (layer.channels.empty()) {
+    members.add("field", field_text(layer.field, indent));
+  } else {
+    members.add("channels", channels_text(layer.channels, indent));
+  }
+  if (layer.transfer_function) {
+    members.add("transfer_function", transfer_function_text(*layer.transfer_function, indent));
+  }
+  if (layer.mask) members.add("mask", mask_text(*layer.mask, indent));
+  Layer place;
+  place.transform = layer.transform;
+  if (!is_in_place(place)) members.add("transform", transform_text(layer.transform));
+  if (!layer.clips.empty()) members.add("clip", clips_text(layer.clips, "    "));
+  return members.object();
+}
+
 }  // namespace
 
 std::string scene_to_json(const SceneDescription& scene) {
-  Members volume("    ");
-  if (scene.mesh) {
-    volume.add("mesh", mesh_text(*scene.mesh, "      "));
-  } else if (scene.channels.empty()) {
-    volume.add("field", field_text(scene.field, "      "));
-  } else {
-    volume.add("channels", channels_text(scene.channels, "      "));
-  }
-  if (scene.transfer_function) {
-    volume.add("transfer_function", transfer_function_text(*scene.transfer_function, "      "));
+  std::string layers;
+  for (const LayerDescription& layer : scene.layers) {
+    layers += joined({layers.empty() ? "[\n    " : ", ", layer_text(layer)});
   }
   Members image("  ");
   image.add("width", std::to_string(scene.size.width));
@@ -330,8 +424,9 @@ std::string scene_to_json(const SceneDescription& scene) {
   integration.add("step", number(scene.integration.step, "the step"));
 
   Members document("");
-  document.add("pellucid", "1");
-  document.add("volumes", joined({"[\n    ", volume.object(), "\n  ]"}));
+  document.add("pellucid", "2");
+  document.add("layers", joined({layers, "\n  ]"}));
+  if (!scene.clips.empty()) document.add("clip", clips_text(scene.clips, ""));
   if (scene.camera) document.add("camera", camera_text(*scene.camera, "  "));
   document.add("image", image.object());
   document.add("integration", integration.object());

@@ -50,6 +50,15 @@ Chord Chord::linear(Real at_entry, Real at_exit) {
   return {corner, {0, 0, 0}, {1, 0, 0}};
 }
 
+Chord Chord::part(Real u_begin, Real u_end) const {
+  const auto at = [&](Real u) {
+    Real3 place;
+    for (std::size_t a = 0; a < 3; ++a) place[a] = entry_[a] + u * (exit_[a] - entry_[a]);
+    return place;
+  };
+  return {corner_, at(u_begin), at(u_end)};
+}
+
 Real Chord::operator()(Real u) const {
   Real sum = 0;
   for (std::size_t k = 0; k < 8; ++k) {

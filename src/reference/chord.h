@@ -16,6 +16,9 @@ class Chord {
 
   static Chord linear(Real at_entry, Real at_exit);
 
+  /// The part [u_begin, u_end], as a chord of its own.
+  Chord part(Real u_begin, Real u_end) const;
+
   /// The sum of the eight corners, each times the product of its three weights.
   Real operator()(Real u) const;
 

@@ -90,6 +90,44 @@ Grid::Grid(const Volume& volume) : volume_(volume) {
   inverse_ = inverted(matrix);
 }
 
+Grid Grid::around_values(const Volume& volume) {
+  Grid grid(volume);
+  const Volume::Description& d = volume.description();
+  for (std::size_t a = 0; a < 3; ++a) {
+    const auto values = static_cast<std::size_t>(d.dimensions[a]);
+    const std::vector<double>& at = d.coordinates[a];
+    std::vector<Real> planes{grid.planes_[a].front()};
+    for (std::size_t i = 1; i < values; ++i) {
+      if (at.empty()) {
+        planes.push_back(static_cast<Real>(i) - Real(0.5));
+      } else if (d.centering == Centering::cell) {
+        planes.push_back(at[i]);  // coordinates are the faces
+      } else {
+        planes.push_back((Real(at[i - 1]) + Real(at[i])) / 2);
+      }
+    }
+    planes.push_back(grid.planes_[a].back());
+    grid.planes_[a] = std::move(planes);
+    grid.shown_[a].clear();
+    for (std::size_t i = 0; i <= values; ++i) grid.shown_[a].push_back(std::min(i, values - 1));
+  }
+  return grid;
+}
+
+Real Grid::value(const Crossing& crossing) const {
+  const std::array<int, 3>& n = volume_.description().dimensions;
+  const auto nx = static_cast<std::size_t>(n[0]), ny = static_cast<std::size_t>(n[1]);
+  std::array<std::size_t, 3> index;
+  for (std::size_t a = 0; a < 3; ++a) {
+    index[a] = shown_[a][static_cast<std::size_t>(crossing.cell[a])];
+  }
+  return std::visit(
+      [&](const auto& values) {
+        return static_cast<Real>(values[index[0] + nx * (index[1] + ny * index[2])]);
+      },
+      volume_.data());
+}
+
 RealRay Grid::to_grid(const RealRay& ray_world) const {
   Real3 offset;
   for (std::size_t a = 0; a < 3; ++a) offset[a] = ray_world.origin[a] - origin_[a];

@@ -20,6 +20,9 @@ struct Crossing {
 class Grid {
  public:
   explicit Grid(const Volume& volume);
+  /// The cells around the values, one for each, bounded half-way to the next one and by the
+  /// volume's box: those of labels.
+  static Grid around_values(const Volume& volume);
 
   /// Every cell that the ray (direction of length 1) crosses at t >= 0, front to back: the
   /// parameters of all planes of all axes, sorted.
@@ -27,6 +30,8 @@ class Grid {
 
   /// The data along a crossing; nothing where a corner of the cell is NaN.
   std::optional<Chord> chord(const Crossing& crossing) const;
+  /// The data value at a crossing's lower corner: of cells around values the value of the cell.
+  Real value(const Crossing& crossing) const;
 
  private:
   RealRay to_grid(const RealRay& ray_world) const;

@@ -6,10 +6,16 @@
 namespace pellucid::reference {
 
 Mixture::Mixture(const MultivariateTransferFunction& function)
-    : primitives_(function.primitives()) {
+    : primitives_(&function.primitives()) {
   for (const ChannelTransferFunction& term : function.tables()) {
     tables_.push_back({static_cast<std::size_t>(term.channel), Table(term.function.points())});
   }
+}
+
+Mixture::Mixture(const std::vector<TransferFunction::Point>& points) {
+  static const std::vector<GaussianPrimitive> none;
+  primitives_ = &none;
+  tables_.push_back({0, Table(points)});
 }
 
 std::vector<Real> Mixture::cuts(const std::vector<Chord>& chords) const {

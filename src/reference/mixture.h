@@ -13,12 +13,14 @@ namespace pellucid::reference {
 class Mixture {
  public:
   explicit Mixture(const MultivariateTransferFunction& function);
+  /// Of a function of the first channel.
+  explicit Mixture(const std::vector<TransferFunction::Point>& points);
 
   struct ChannelTable {
     std::size_t channel;
     Table table;
   };
-  const std::vector<GaussianPrimitive>& primitives() const { return primitives_; }
+  const std::vector<GaussianPrimitive>& primitives() const { return *primitives_; }
   const std::vector<ChannelTable>& tables() const { return tables_; }
 
   /// The parameters in (0, 1), ascending, at which a table's channel passes through one of its
@@ -26,7 +28,7 @@ class Mixture {
   std::vector<Real> cuts(const std::vector<Chord>& chords) const;
 
  private:
-  const std::vector<GaussianPrimitive>& primitives_;
+  const std::vector<GaussianPrimitive>* primitives_;
   std::vector<ChannelTable> tables_;
 };
 

@@ -61,6 +61,11 @@ MixturePart::MixturePart(const Mixture& mixture, const std::vector<Chord>& chord
   }
 }
 
+void MixturePart::add(MixturePart other) {
+  for (GaussianTerm& term : other.gaussians_) gaussians_.push_back(std::move(term));
+  for (TablePart& part : other.tables_) tables_.push_back(std::move(part));
+}
+
 void MixturePart::add(GaussianTerm term) {
   if (term.log_peak() + std::log(length_) - term.exponent().lower < invisible) return;
   gaussians_.push_back(std::move(term));

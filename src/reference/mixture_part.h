@@ -37,6 +37,11 @@ class MixturePart {
   MixturePart(const Mixture& mixture, const std::vector<Chord>& chords, Real u_begin, Real u_end,
               Real t_begin, Real length);
 
+  /// Nothing, along [t_begin, t_begin + length].
+  MixturePart(Real t_begin, Real length) : t_begin_(t_begin), length_(length) {}
+
+  /// Adds the terms of another part along the same stretch of the ray.
+  void add(MixturePart other);
   std::pair<MixturePart, MixturePart> halves() const;
 
   Real t_begin() const { return t_begin_; }
@@ -53,7 +58,6 @@ class MixturePart {
     double w_begin, w_end;  ///< the part of the piece
   };
 
-  MixturePart(Real t_begin, Real length) : t_begin_(t_begin), length_(length) {}
   void add(GaussianTerm term);
 
   Real t_begin_, length_;

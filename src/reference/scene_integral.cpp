@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "grid_field.h"
+#include "layered_ray.h"
 #include "mesh_field.h"
 #include "multivariate_ray.h"
 #include "pellucid/scene/error.h"
@@ -20,19 +21,48 @@ std::unique_ptr<const Field> field_of(const Channels& channels) {
   return std::make_unique<GridField>(volumes);
 }
 
-std::unique_ptr<const Field> field_of(const Scene& scene) {
-  if (scene.mesh) return std::make_unique<MeshField>(*scene.mesh);
-  if (scene.channels) return field_of(*scene.channels);
-  return std::make_unique<GridField>(std::vector{scene.volume.get()});
+/// Whether the scene is one field or mesh, shown by its function and nothing else.
+bool is_plain(const Scene& scene) {
+  if (scene.layers.size() != 1 || !scene.clips.empty()) return false;
+  const Layer& layer = scene.layers.front();
+  const auto* const volume = std::get_if<VolumeContent>(&layer.content);
+  return layer.visible && layer.clips.empty() && is_in_place(layer) &&
+         !std::holds_alternative<LabelContent>(layer.content) &&
+         (volume == nullptr || !volume->mask);
+}
+
+std::unique_ptr<const Field> field_of(const Layer& layer) {
+  if (const auto* mesh = std::get_if<MeshContent>(&layer.content)) {
+    return std::make_unique<MeshField>(*mesh->mesh);
+  }
+  if (const auto* channels = std::get_if<ChannelsContent>(&layer.content)) {
+    return field_of(*channels->channels);
+  }
+  return std::make_unique<GridField>(
+      std::vector{std::get<VolumeContent>(layer.content).volume.get()});
 }
 
 }  // namespace
 
-SceneIntegral::SceneIntegral(const Scene& scene) : field_(field_of(scene)) {
-  if (scene.multivariate) {
-    mixture_.emplace(*scene.multivariate);
+SceneIntegral::SceneIntegral(const Scene& scene) {
+  if (!is_plain(scene)) {
+    for (const Layer& layer : scene.layers) {
+      if (!layer.visible) continue;
+      layers_.push_back(std::make_unique<const Layer>(moved_into_place(layer)));
+      data_.push_back(std::make_unique<const LayerData>(*layers_.back(), scene.clips));
+    }
+    return;
+  }
+  const LayerContent& content = scene.layers.front().content;
+  field_ = field_of(scene.layers.front());
+  const auto* const mesh = std::get_if<MeshContent>(&content);
+  if (const auto* channels = std::get_if<ChannelsContent>(&content)) {
+    mixture_.emplace(*channels->transfer_function);
+  } else if (mesh != nullptr && mesh->multivariate() != nullptr) {
+    mixture_.emplace(*mesh->multivariate());
   } else {
-    table_.emplace(scene.transfer_function->points());
+    table_.emplace(mesh != nullptr ? mesh->univariate()->points()
+                                   : std::get<VolumeContent>(content).transfer_function->points());
   }
 }
 
@@ -46,6 +76,7 @@ SceneIntegral::SceneIntegral(const Channels& channels,
 
 ReferencePixel SceneIntegral::operator()(const RealRay& ray, bool with_depth,
                                          std::uint64_t& cells) const {
+  if (!field_) return integrate(data_, ray, with_depth, cells);
   return mixture_ ? integrate(*field_, *mixture_, ray, with_depth, cells)
                   : integrate(*field_, *table_, ray, with_depth, cells);
 }

@@ -3,8 +3,10 @@
 
 #include <memory>
 #include <optional>
+#include <vector>
 
 #include "field.h"
+#include "layer_data.h"
 #include "mixture.h"
 #include "pellucid/reference/render.h"
 #include "table.h"
@@ -25,9 +27,13 @@ class SceneIntegral {
   ReferencePixel operator()(const Vec3<double>& origin, const Vec3<double>& direction) const;
 
  private:
+  /// Of one field without clips.
   std::unique_ptr<const Field> field_;
   std::optional<Table> table_;  ///< or
   std::optional<Mixture> mixture_;
+  /// Of everything else: the layers in their places.
+  std::vector<std::unique_ptr<const Layer>> layers_;
+  std::vector<std::unique_ptr<const LayerData>> data_;
 };
 
 }  // namespace pellucid::reference

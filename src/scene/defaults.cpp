@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "distinct_colors.h"
 #include "mean_chord.h"
 #include "readable_numbers.h"
 #include "value_sample.h"
@@ -144,6 +145,27 @@ TransferFunction default_transfer_function(const MeshChannels& mesh) {
   const Vec3<double> size = box.upper - box.lower;
   const double filled = mesh.mesh().statistics().volume / (size.x * size.y * size.z);
   return make_default(value_sample(mesh), mean_chord(box), std::min(filled, 1.0));
+}
+
+LabelTable default_label_table(const LabelVolume& labels, std::optional<double> extinction) {
+  std::vector<LabelStyle> styles;
+  const double each = extinction.value_or(default_label_extinction(labels.volume()));
+  for (const std::int32_t label : labels.labels()) {
+    if (label != 0) styles.push_back({label, "", {}, each});
+  }
+  if (styles.empty()) styles.push_back({0, "", {}, each});
+  const std::vector<Rgb<double>> colors = distinct_colors(std::vector<double>(styles.size(), 0.75));
+  for (std::size_t i = 0; i < styles.size(); ++i) styles[i].color = colors[i];
+  return LabelTable(std::move(styles));
+}
+
+double default_label_extinction(const Volume& volume) {
+  const auto corners = volume.world_corners();
+  double longest = 0;
+  for (std::size_t i = 0; i < 4; ++i) {
+    longest = std::max(longest, length(corners[7 - i] - corners[i]));
+  }
+  return two_digits(40 * std::numbers::ln2 / longest);
 }
 
 Camera default_camera(const Volume& volume, ImageSize size) {

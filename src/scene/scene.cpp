@@ -129,49 +129,70 @@ double Integration::set_tolerance(double wanted) {
 }
 
 void check_data(const Scene& scene) {
-  const int data = (scene.volume ? 1 : 0) + (scene.channels ? 1 : 0) + (scene.mesh ? 1 : 0);
-  const int functions = (scene.transfer_function ? 1 : 0) + (scene.multivariate ? 1 : 0);
-  if (data == 0 || functions == 0) {
-    throw Error("scene: a volume and a transfer function are needed; set both before rendering");
+  if (scene.layers.empty()) throw Error("scene: there is no layer; give at least one");
+  for (std::size_t i = 0; i < scene.layers.size(); ++i) {
+    const std::string& name = scene.layers[i].name;
+    const bool one = scene.layers.size() == 1 && name.empty();
+    check_layer(scene.layers[i], one            ? "scene"
+                                 : name.empty() ? "layer " + std::to_string(i + 1)
+                                                : "layer \"" + name + "\"");
   }
-  if (data > 1 || functions > 1 || (scene.volume && scene.multivariate) ||
-      (scene.channels && scene.transfer_function)) {
-    throw Error(
-        "scene: either a volume with a transfer function or channels with a multivariate one are "
-        "needed, or a mesh with either; set one pair of them");
-  }
-  if (!scene.multivariate) {
-    if (scene.mesh && scene.mesh->count() != 1) {
-      throw Error("scene: the transfer function sees one variable, but the mesh has " +
-                  std::to_string(scene.mesh->count()) + " channels; leave one of them");
-    }
-    return;
-  }
-  const int channels = scene.mesh ? scene.mesh->count() : scene.channels->count();
-  if (channels != scene.multivariate->channels()) {
-    throw Error("scene: the transfer function sees " +
-                std::to_string(scene.multivariate->channels()) + " channels, but there are " +
-                std::to_string(channels) + "; make it for as many");
+  for (std::size_t i = 0; i < scene.clips.size(); ++i) {
+    check_clip(scene.clips[i], "scene: clip " + std::to_string(i + 1));
   }
 }
 
-std::array<Vec3<double>, 8> world_corners(const Scene& scene) noexcept {
-  if (!scene.mesh) return grid_volume(scene).world_corners();
-  const Box<double>& box = scene.mesh->mesh().bounds();
+namespace {
+
+/// A box around the boxes of the visible layers, or of all if none is visible.
+template <class CornersOf>
+std::array<Vec3<double>, 8> corners_of_all(const Scene& scene, const CornersOf& corners_of) {
+  const auto visible = [](const Layer& layer) { return layer.visible; };
+  const bool all = std::ranges::none_of(scene.layers, visible);
+  const Layer* only = nullptr;
+  int count = 0;
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  Vec3<double> lower{infinity, infinity, infinity}, upper{-infinity, -infinity, -infinity};
+  for (const Layer& layer : scene.layers) {
+    if (!all && !layer.visible) continue;
+    only = &layer;
+    ++count;
+    for (const Vec3<double>& corner : corners_of(layer)) {
+      for (int a = 0; a < 3; ++a) {
+        lower[a] = min(lower[a], corner[a]);
+        upper[a] = max(upper[a], corner[a]);
+      }
+    }
+  }
+  if (count == 1) return corners_of(*only);
   std::array<Vec3<double>, 8> corners{};
   for (std::size_t i = 0; i < corners.size(); ++i) {
-    for (int a = 0; a < 3; ++a) corners[i][a] = (i >> a & 1) != 0 ? box.upper[a] : box.lower[a];
+    for (int a = 0; a < 3; ++a) corners[i][a] = (i >> a & 1) != 0 ? upper[a] : lower[a];
   }
   return corners;
 }
 
-const Volume& grid_volume(const Scene& scene) noexcept {
-  return scene.channels ? scene.channels->grid() : *scene.volume;
+}  // namespace
+
+std::array<Vec3<double>, 8> world_corners(const Scene& scene) noexcept {
+  return corners_of_all(scene, [](const Layer& layer) { return world_corners(layer); });
+}
+
+std::array<Vec3<double>, 8> visible_corners(const Scene& scene, const ParallelFor& parallel) {
+  return corners_of_all(scene,
+                        [&](const Layer& layer) { return visible_corners(layer, parallel); });
 }
 
 double largest_color(const Scene& scene) noexcept {
-  return scene.multivariate ? scene.multivariate->largest_color()
-                            : scene.transfer_function->largest_color();
+  double largest = 0;
+  for (const Layer& layer : scene.layers) {
+    if (layer.visible) largest = std::max(largest, largest_color(layer));
+  }
+  return largest;
+}
+
+const Layer* only_layer(const Scene& scene) noexcept {
+  return scene.layers.size() == 1 ? scene.layers.data() : nullptr;
 }
 
 void check_integration(const Scene& scene) {
@@ -199,6 +220,23 @@ void check_method(const Scene& scene) {
     throw Error("integration: the method " + std::string(method_name(method)) + " " +
                 std::string(why));
   };
+  if (method == Method::exact) return;
+  const Layer* const layer = only_layer(scene);
+  if (layer == nullptr) {
+    refuse("is for scenes of one layer, but there are " + std::to_string(scene.layers.size()) +
+           "; take exact");
+  }
+  const auto* const mesh = std::get_if<MeshContent>(&layer->content);
+  const auto* const volume = std::get_if<VolumeContent>(&layer->content);
+  if (std::holds_alternative<LabelContent>(layer->content)) {
+    refuse("is for fields, but the scene has labels; take exact");
+  }
+  if (!scene.clips.empty() || !layer->clips.empty()) {
+    refuse("has no clips, but the scene has; take exact");
+  }
+  if (!layer->visible) refuse("needs a visible layer; take exact");
+  if (volume != nullptr && volume->mask) refuse("has no masks, but the scene has; take exact");
+  const bool multivariate = mesh != nullptr ? mesh->multivariate() != nullptr : volume == nullptr;
   switch (method) {
     case Method::exact:
     case Method::linear:
@@ -206,19 +244,19 @@ void check_method(const Scene& scene) {
     case Method::homogeneous:
     case Method::average:
     case Method::partial:
-      if (scene.mesh) return;
+      if (mesh != nullptr) return;
       refuse(
           "is for the cells of a mesh, but the scene has a grid; take midpoint, trapezoid or "
           "linear there");
       return;
     case Method::preintegrated:
-      if (scene.mesh) break;
-      if (!scene.multivariate) return;
+      if (mesh != nullptr) break;
+      if (!multivariate) return;
       refuse("looks up a table of one variable, but the scene has channels; take another method");
       return;
     case Method::kniss:
     case Method::gaussian:
-      if (scene.multivariate) return;
+      if (multivariate) return;
       refuse(
           "is for Gaussians of channels, but the scene has a transfer function of one variable; "
           "take another method");
@@ -230,7 +268,7 @@ void check_method(const Scene& scene) {
     case Method::simpson:
       break;
   }
-  if (!scene.mesh) return;
+  if (mesh == nullptr) return;
   refuse(
       "goes in steps through a grid, but the scene has a mesh; take homogeneous, average, "
       "partial, linear or exact there");

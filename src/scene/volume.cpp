@@ -89,8 +89,25 @@ Volume::Volume(Description description, VolumeData data)
       blocks_(std::make_shared<VolumeBlocks>()) {
   const VolumeCheck check(description_);
   check.dimensions(data_size(data_));
-  check.placement();
+  place(check);
+  const VolumeScan s =
+      std::visit([](const auto& values) { return scan(std::span(values)); }, data_);
+  statistics_ = s.statistics;
+  if (statistics_.infinite > 0) {
+    check.fail(std::to_string(statistics_.infinite) + " infinite value" +
+               (statistics_.infinite == 1 ? "" : "s") + ", the first at index " +
+               check.position_text(s.first_infinite) +
+               "; replace by finite numbers, or by NaN for empty space");
+  }
+  if (s.large) {
+    check.fail("the value at index " + check.position_text(s.first_large) + " is beyond " +
+               number(largest_value) + " in magnitude, more than float arithmetic carries; " +
+               "rescale the data, or replace by NaN where it marks empty space");
+  }
+}
 
+void Volume::place(const VolumeCheck& check) {
+  check.placement();
   const GridPlacement& placement = description_.placement;
   world_from_grid_.translation = placement.origin;
   double shortest[3];
@@ -134,21 +151,15 @@ Volume::Volume(Description description, VolumeData data)
     check.fail("origin, spacing and direction place the box beyond the range of double; " +
                std::string("use another unit of length"));
   }
+}
 
-  const VolumeScan s =
-      std::visit([](const auto& values) { return scan(std::span(values)); }, data_);
-  statistics_ = s.statistics;
-  if (statistics_.infinite > 0) {
-    check.fail(std::to_string(statistics_.infinite) + " infinite value" +
-               (statistics_.infinite == 1 ? "" : "s") + ", the first at index " +
-               check.position_text(s.first_infinite) +
-               "; replace by finite numbers, or by NaN for empty space");
-  }
-  if (s.large) {
-    check.fail("the value at index " + check.position_text(s.first_large) + " is beyond " +
-               number(largest_value) + " in magnitude, more than float arithmetic carries; " +
-               "rescale the data, or replace by NaN where it marks empty space");
-  }
+Volume Volume::moved(const Affine<double>& transform) const {
+  Volume result = *this;
+  GridPlacement& placement = result.description_.placement;
+  placement.origin = transform.point(placement.origin);
+  for (Vec3<double>& column : placement.direction.column) column = transform.vector(column);
+  result.place(VolumeCheck(result.description_));
+  return result;
 }
 
 Histogram Volume::histogram(int bins) const {

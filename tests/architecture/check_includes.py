@@ -146,7 +146,10 @@ def check_file(root, path, modules):
                 yield (f"{where}: {module} includes {name}, but CMake does not say that it depends "
                        f"on {target}")
         elif quoted:
-            if relative.parts[0] == "include" or ".." in name or not (path.parent / name).is_file():
+            # Beside this one, or in the module's folder, whose sub-folders find its headers.
+            folders = (path.parent, root.joinpath(*relative.parts[:2]))
+            if (relative.parts[0] == "include" or ".." in name
+                    or not any((folder / name).is_file() for folder in folders)):
                 yield f'{where}: "{name}" is neither "pellucid/..." nor a file beside this one'
         elif SIMD_LIBRARY.match(name):
             if module != "simd":

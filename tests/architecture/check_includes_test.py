@@ -30,6 +30,8 @@ PLANTS = [
     ("src/reference/planted.h", '#include "pellucid/segment/linear.h"', "never sees segment"),
     ("src/scene/planted.h", '#include "pellucid/reference/render.h"', "to the right of scene"),
     ("src/scene/planted.h", '#include "../../apps/cli/csv.h"', "neither"),
+    ("src/cpu/layers/planted.h", '#include "csv.h"', "neither"),
+    ("src/cpu/layers/planted.h", '#include "../ray_tracer.h"', "neither"),
     ("src/scene/planted.h", '#include "pellucid/scene/nowhere.h"', "does not exist"),
     ("src/scene/planted.h", "#include <tbb/parallel_for.h>", "does not declare"),
     ("src/scene/planted.h", "#include <unheard/of.h>", "knows"),

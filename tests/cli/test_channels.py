@@ -29,7 +29,7 @@ class Channels(ProgramTest):
     def saved(self, *arguments):
         """The complete scene that these arguments make; nothing is rendered."""
         self.succeed("render", *arguments, "--save-scene", "saved.json")
-        return json.loads(self.read("saved.json"))["volumes"][0]
+        return json.loads(self.read("saved.json"))["layers"][0]
 
     def refuse(self, pattern, *arguments, code=1):
         self.fail_with(pattern, "render", *arguments, "-o", "o.png", "-o", "o.exr", "--size", "8",
@@ -106,7 +106,7 @@ class Channels(ProgramTest):
     def test_wrong_arguments(self):
         def refuse(pattern, *arguments):
             self.refuse(pattern, *arguments, code=2)
-        refuse("no input; give INPUT or --channel")
+        refuse("no input; give INPUT, --channel or --labels")
         refuse("--channel.*expected NAME=SOURCE", "a.npy", "--channel", "b.npy")
         refuse('--channel.*"value" stands twice', "a.npy", "--channel", "value=b.npy")
         refuse("--channel.*not before it", "--channel", "e=gradient_magnitude:x",

@@ -212,7 +212,7 @@ class Arrays(ProgramTest):
         self.write("tf.json", json.dumps(HAZE))
         self.succeed("render", "a.vtk", "--array", "v:2", "--tf", "tf.json", "-o", "v.exr",
                      "--size", "16", "--save-scene", "scene.json")
-        field = json.loads(self.read("scene.json"))["volumes"][0]["field"]
+        field = json.loads(self.read("scene.json"))["layers"][0]["field"]
         self.assertEqual((field["array"], field["component"]), ("v", 2))
         self.succeed("render", "scene.json", "-o", "w.exr")
         self.assertTrue(self.report("compare", "v.exr", "w.exr")["identical"])
@@ -224,7 +224,7 @@ class Arrays(ProgramTest):
         gaussian = "up=30~10, a=9~4; extinction 0.5; color #ffcc99"
         self.succeed("render", "a.vtk", "--array", "up=v:2", "--array", "a", "--gaussian", gaussian,
                      "-o", "v.exr", "--size", "16", "--save-scene", "scene.json")
-        channels = json.loads(self.read("scene.json"))["volumes"][0]["channels"]
+        channels = json.loads(self.read("scene.json"))["layers"][0]["channels"]
         self.assertEqual([c["name"] for c in channels], ["up", "a"])
         self.assertEqual([c["array"] for c in channels], ["v", "a"])
 
@@ -263,7 +263,7 @@ class NetCdf(ProgramTest):
     def test_a_time_is_kept_in_the_scene(self):
         self.succeed("render", "a.nc", "--time", "5", "-o", "a.exr", "--size", "16",
                      "--save-scene", "scene.json")
-        field = json.loads(self.read("scene.json"))["volumes"][0]["field"]
+        field = json.loads(self.read("scene.json"))["layers"][0]["field"]
         self.assertEqual(field["time"], 5)
         self.succeed("render", "scene.json", "-o", "b.exr")
         self.assertTrue(self.report("compare", "a.exr", "b.exr")["identical"])
@@ -368,12 +368,12 @@ class NumpyArrays(ProgramTest):
         self.write("a.npy", array([3, 4, 5]))
         self.succeed("render", "a.npy", "--axes", "xyz", "-o", "a.exr", "--size", "8",
                      "--save-scene", "scene.json")
-        self.assertEqual(json.loads(self.read("scene.json"))["volumes"][0]["field"]["axes"],
+        self.assertEqual(json.loads(self.read("scene.json"))["layers"][0]["field"]["axes"],
                          "xyz")
         self.succeed("render", "scene.json", "-o", "b.exr")
         self.assertTrue(self.report("compare", "a.exr", "b.exr")["identical"])
         scene = json.loads(self.read("scene.json"))
-        scene["volumes"][0]["field"]["axes"] = "abc"
+        scene["layers"][0]["field"]["axes"] = "abc"
         self.write("scene.json", json.dumps(scene))
         self.fail_with("axes", "render", "scene.json", "-o", "b.exr")
 

@@ -70,7 +70,7 @@ class BadInput(ProgramTest):
         self.refuse("folder.npy", "folder.npy", also_info=True)
         self.write("a.jpeg", "what is this")
         self.refuse("a.jpeg", "a.jpeg", also_info=True)
-        self.refuse("no input; give INPUT or --channel", "", code=2)
+        self.refuse("no input; give INPUT, --channel or --labels", "", code=2)
         self.fail_with("is empty", "info", "")
 
     def test_pipes_and_devices(self):
@@ -182,7 +182,7 @@ class BadInput(ProgramTest):
         self.refuse_scene("scene.json", "")
         self.refuse_scene("scene.json", "{\n\n")
         self.refuse_scene("scene.json", "\x00\x01\xff")
-        self.refuse_scene("volumes", {})
+        self.refuse_scene("layers", {})
         self.refuse_scene("/light", {"volumes": volumes, "light": 1})
         self.refuse_scene("/image/width", {"volumes": volumes, "image": {"width": 0}})
         self.refuse_scene("/integration/method", {"volumes": volumes,

@@ -101,7 +101,7 @@ class Plot3d(ProgramTest):
                      "Momentum:0", *gaussian, "-o", "a.exr", "--size", "16", "--save-scene",
                      "s.json")
         with open(self.path("s.json"), encoding="utf-8") as file:
-            mesh = json.load(file)["volumes"][0]["mesh"]
+            mesh = json.load(file)["layers"][0]["mesh"]
         self.assertEqual(mesh["channels"][1],
                          {"name": "Momentum_0", "array": "Momentum", "component": 0})
         self.succeed("render", "s.json", "-o", "b.exr")

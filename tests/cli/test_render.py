@@ -239,11 +239,11 @@ class Render(ProgramTest):
         self.succeed("render", "ramp.npy", "-o", "a.exr", "--size", "12x10", "--view", "left",
                      "--spacing", "1,1,2", "--save-scene", os.path.join("scenes", "s.json"))
         saved = json.loads(self.read(os.path.join("scenes", "s.json")))
-        self.assertEqual(saved["volumes"][0]["field"]["file"], os.path.join("..", "ramp.npy"))
+        self.assertEqual(saved["layers"][0]["field"]["file"], os.path.join("..", "ramp.npy"))
         self.succeed("render", os.path.join("scenes", "s.json"), "-o", "b.exr")
         self.assertEqual(self.largest_difference("a.exr", "b.exr"), 0)
         self.succeed("render", "builtin:shells:8", "--save-scene", "t.json")
-        self.assertEqual(json.loads(self.read("t.json"))["volumes"][0]["field"],
+        self.assertEqual(json.loads(self.read("t.json"))["layers"][0]["field"],
                          {"builtin": "shells", "points": 8})
 
     def test_views_show_their_side(self):

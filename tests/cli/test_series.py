@@ -77,10 +77,10 @@ class Series(ProgramTest):
         self.succeed("render", "ct", "--series", "99", "--save-scene", "s.json", "-o", "a.exr",
                      "--size", "8")
         scene = json.loads(self.read("s.json"))
-        self.assertEqual(scene["volumes"][0]["field"]["series"], "99")
+        self.assertEqual(scene["layers"][0]["field"]["series"], "99")
         self.succeed("render", "s.json", "-o", "b.exr")
         self.succeed("compare", "a.exr", "b.exr")
-        scene["volumes"][0]["field"]["series"] = "7"
+        scene["layers"][0]["field"]["series"] = "7"
         self.write("s.json", json.dumps(scene))
         self.fail_with("none of its series", "render", "s.json", "-o", "c.png")
 

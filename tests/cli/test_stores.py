@@ -58,7 +58,7 @@ class Stores(ProgramTest):
         self.succeed("render", name, "--level", "1", "--save-scene", "s.json", "--size", "8x8",
                      "-q", "-o", "a.exr")
         scene = json.loads(self.read("s.json"))
-        self.assertEqual(scene["volumes"][0]["field"]["level"], 1)
+        self.assertEqual(scene["layers"][0]["field"]["level"], 1)
         self.succeed("render", "s.json", "-q", "-o", "b.exr")
         # Headers name the input; the pixels stand behind them.
         self.assertEqual(self.read("a.exr")[-1000:], self.read("b.exr")[-1000:])

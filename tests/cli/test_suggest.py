@@ -29,7 +29,7 @@ class Suggest(ProgramTest):
         self.assertEqual(note.stdout, b"")
         self.assertIn(b"'pellucid render scene.json -o picture.png' shows them", note.stderr)
         scene = json.loads(self.read("scene.json"))
-        gaussians = scene["volumes"][0]["transfer_function"]["gaussians"]
+        gaussians = scene["layers"][0]["transfer_function"]["gaussians"]
         self.assertEqual([g["channels"] for g in gaussians],
                          [["value", "gradient_magnitude"]] * len(gaussians))
         # The boundary and the inside. The gradient of the edge is 100 over three values.
@@ -60,9 +60,9 @@ class Suggest(ProgramTest):
         self.write("other.npy", npy(ball(24, 20, 60), (24, 24, 24)))
         self.succeed("suggest", "ball.npy", "other.npy", "-o", "scene.json", "--primitives", "2")
         scene = json.loads(self.read("scene.json"))
-        self.assertIn('"ball"', json.dumps(scene["volumes"]))
-        self.assertIn('"other"', json.dumps(scene["volumes"]))
-        gaussians = scene["volumes"][0]["transfer_function"]["gaussians"]
+        self.assertIn('"ball"', json.dumps(scene["layers"]))
+        self.assertIn('"other"', json.dumps(scene["layers"]))
+        gaussians = scene["layers"][0]["transfer_function"]["gaussians"]
         self.assertEqual(len(gaussians), 2)
         self.assertEqual(gaussians[0]["channels"], ["ball", "other"])
         self.succeed("render", "scene.json", "-o", "a.png", "--size", "32")

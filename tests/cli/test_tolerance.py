@@ -407,7 +407,7 @@ class Tolerance(ProgramTest):
             self.assertEqual(report["transfer_function"], table)
             self.assertEqual(json.loads(self.read("saved.json")), table)
             scene = json.loads(self.read("s.json"))
-            self.assertEqual(scene["volumes"][0]["transfer_function"], table)
+            self.assertEqual(scene["layers"][0]["transfer_function"], table)
             # The reference is more exact than the scene, and says how exact.
             made = self.report("render", "s.json", "-o", "truth.exr", "--reference")
             self.assertLess(made["transfer_function_error"], 1.3e-6)

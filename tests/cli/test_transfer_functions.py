@@ -114,7 +114,7 @@ class TransferFunctions(ProgramTest):
             if name.startswith("simulation") or name == "x-ray":
                 self.assertEqual([values[0], values[-1]], [0, 7])
             # The scene that is saved has the numbers.
-            saved = json.loads(self.read("scene.json"))["volumes"][0]["transfer_function"]
+            saved = json.loads(self.read("scene.json"))["layers"][0]["transfer_function"]
             self.assertEqual(saved["points"], points)
             ranged = json.loads(self.succeed("render", "ramp.npy", "--preset", name,
                                              "--range", "2,5", "--print-tf"))

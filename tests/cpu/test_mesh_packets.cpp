@@ -15,6 +15,7 @@
 #include "pellucid/cpu/render.h"
 #include "pellucid/scene/defaults.h"
 #include "tests/scene/lattice_mesh.h"
+#include "tests/support/one_layer.h"
 
 namespace pellucid {
 namespace {
@@ -92,10 +93,10 @@ std::shared_ptr<const TransferFunction> ramps(bool jump) {
 
 Scene scene_of(std::shared_ptr<const MeshChannels> mesh, bool jump = false) {
   Scene scene;
-  scene.mesh = std::move(mesh);
-  scene.transfer_function = ramps(jump);
+  test::mesh_of(scene).mesh = std::move(mesh);
+  test::mesh_of(scene).transfer_function = ramps(jump);
   scene.size = {29, 23};
-  const Box<double>& box = scene.mesh->mesh().bounds();
+  const Box<double>& box = test::mesh_of(scene).mesh->mesh().bounds();
   scene.camera.focal_point = 0.5 * (box.lower + box.upper);
   scene.camera.position =
       scene.camera.focal_point + Place{1.1, -1.9, 1.3} * length(box.upper - box.lower);
@@ -217,7 +218,7 @@ TEST(MeshPackets, SayWhereComponentsAreInsideOfOthers) {
     both.tetrahedra.push_back(t);
   }
   Scene scene = scene_of(at_points(std::make_shared<const TetrahedralMesh>(std::move(both))));
-  scene.transfer_function = std::make_shared<const TransferFunction>(
+  test::mesh_of(scene).transfer_function = std::make_shared<const TransferFunction>(
       std::vector<TransferFunction::Point>{{0, 0.01, {1, 1, 1}}, {1, 0.02, {1, 1, 1}}});
   scene.camera.position = Place{3.1, 3.2, -20};
   scene.camera.focal_point = Place{3.1, 3.2, 2.9};
@@ -246,9 +247,10 @@ TEST(MeshPackets, TakeTinyMeshes) {
   const auto pointer = std::make_shared<const TetrahedralMesh>(std::move(mesh));
   Scene scene = scene_of(std::make_shared<const MeshChannels>(
       pointer, std::vector<MeshChannel>{{"f", "", Centering::point, std::move(values)}}));
-  std::vector<TransferFunction::Point> points = scene.transfer_function->points();
+  std::vector<TransferFunction::Point> points = test::mesh_of(scene).univariate()->points();
   for (TransferFunction::Point& p : points) p.extinction /= small;
-  scene.transfer_function = std::make_shared<const TransferFunction>(std::move(points));
+  test::mesh_of(scene).transfer_function =
+      std::make_shared<const TransferFunction>(std::move(points));
   expect_same(scene, "a billionth");
 }
 

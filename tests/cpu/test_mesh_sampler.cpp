@@ -13,6 +13,7 @@
 #include "pellucid/cpu/render.h"
 #include "pellucid/scene/defaults.h"
 #include "tests/scenes/meshes.h"
+#include "tests/support/one_layer.h"
 
 namespace pellucid {
 namespace {
@@ -25,7 +26,7 @@ constexpr Method models[] = {Method::homogeneous, Method::average, Method::linea
 
 Scene scene_of(MeshChannelsPointer mesh) {
   Scene scene;
-  scene.mesh = std::move(mesh);
+  test::mesh_of(scene).mesh = std::move(mesh);
   scene.size = {31, 29};
   scene.camera = default_camera(world_corners(scene), scene.size);
   scene.integration.tolerance = smallest_tolerance;
@@ -102,7 +103,7 @@ std::shared_ptr<const TransferFunction> points_at_layers() {
 
 TEST(MeshSampler, LinearIsExactWhereNoControlPointIsInsideOfACell) {
   Scene scene = scene_of(in_layers());
-  scene.transfer_function = points_at_layers();
+  test::mesh_of(scene).transfer_function = points_at_layers();
   const Image exact = image_of(scene, Method::exact);
   EXPECT_LE(difference(image_of(scene, Method::linear), exact).largest, 3e-7);
   EXPECT_LE(difference(image_of(scene, Method::partial), exact).largest, 1e-4);
@@ -112,8 +113,9 @@ TEST(MeshSampler, LinearIsExactWhereNoControlPointIsInsideOfACell) {
 
 TEST(MeshSampler, LinearMissesWhatIsBetweenTheEnds) {
   Scene scene = scene_of(in_layers());
-  scene.transfer_function = std::make_shared<TransferFunction>(std::vector<TransferFunction::Point>{
-      {0.55, 0, {1, 1, 1}}, {0.6, 20, {1, 1, 1}}, {0.65, 0, {1, 1, 1}}});
+  test::mesh_of(scene).transfer_function =
+      std::make_shared<TransferFunction>(std::vector<TransferFunction::Point>{
+          {0.55, 0, {1, 1, 1}}, {0.6, 20, {1, 1, 1}}, {0.65, 0, {1, 1, 1}}});
   EXPECT_GE(difference(image_of(scene, Method::linear), image_of(scene, Method::exact)).largest,
             0.3);
 }
@@ -121,7 +123,7 @@ TEST(MeshSampler, LinearMissesWhatIsBetweenTheEnds) {
 TEST(MeshSampler, AllAreExactWhereCellsAreConstant) {
   const MeshPointer mesh = scenes::make_mesh(scenes::box_of_cubes(5));
   Scene scene = scene_of(scenes::on_mesh(mesh, {scenes::at_cells(*mesh, "wave", wave)}));
-  scene.transfer_function = points_at_layers();
+  test::mesh_of(scene).transfer_function = points_at_layers();
   const Image exact = image_of(scene, Method::exact);
   for (const Method method : models) {
     // Equal colors leave nothing of the table's error.
@@ -152,7 +154,7 @@ TEST(MeshSampler, AllComeNearTheExactOneInSecondOrder) {
       points.push_back(
           {v, 1 + std::sin(5 * v), {0.5 + 0.5 * std::cos(4 * v), v, 0.5 - 0.5 * std::cos(6 * v)}});
     }
-    scene.transfer_function = std::make_shared<TransferFunction>(std::move(points));
+    test::mesh_of(scene).transfer_function = std::make_shared<TransferFunction>(std::move(points));
     return scene;
   };
   for (const Method method : models) {
@@ -168,7 +170,8 @@ TEST(MeshSampler, AllComeNearTheExactOneInSecondOrder) {
 Scene gaussian_scene(const MeshPointer& mesh, std::vector<GaussianPrimitive> primitives) {
   Scene scene = scene_of(scenes::on_mesh(mesh, {scenes::at_points(*mesh, "wave", wave),
                                                 scenes::at_points(*mesh, "other", other_wave)}));
-  scene.multivariate = std::make_shared<MultivariateTransferFunction>(2, std::move(primitives));
+  test::mesh_of(scene).transfer_function =
+      std::make_shared<MultivariateTransferFunction>(2, std::move(primitives));
   return scene;
 }
 
@@ -209,7 +212,7 @@ TEST(MeshSampler, TheDepthIsWhereHalfOfTheOpacityIsReached) {
   constexpr double extinction = 1.5;
   const MeshPointer mesh = scenes::make_mesh(scenes::box_of_cubes(3));
   Scene scene = scene_of(scenes::on_mesh(mesh, {scenes::at_points(*mesh, "wave", wave)}));
-  scene.transfer_function = std::make_shared<TransferFunction>(
+  test::mesh_of(scene).transfer_function = std::make_shared<TransferFunction>(
       std::vector<TransferFunction::Point>{{0, extinction, {1, 1, 1}}});
   scene.camera = {};
   scene.camera.projection = Projection::orthographic;
@@ -230,7 +233,7 @@ TEST(MeshSampler, TheDepthIsWhereHalfOfTheOpacityIsReached) {
 
 TEST(MeshSampler, NothingIsSaidOfTheError) {
   Scene scene = scene_of(in_layers());
-  scene.transfer_function = points_at_layers();
+  test::mesh_of(scene).transfer_function = points_at_layers();
   scene.integration.method = Method::linear;
   RenderOptions options;
   options.error = true;

@@ -10,6 +10,7 @@
 
 #include "pellucid/cpu/render.h"
 #include "pellucid/scene/defaults.h"
+#include "tests/support/one_layer.h"
 
 namespace pellucid {
 namespace {
@@ -62,11 +63,11 @@ Scene scene_of(std::vector<Channel> channels, std::vector<GaussianPrimitive> pri
                std::vector<ChannelTransferFunction> tables = {}) {
   Scene scene;
   const int count = static_cast<int>(channels.size());
-  scene.channels = std::make_shared<Channels>(std::move(channels));
-  scene.multivariate = std::make_shared<MultivariateTransferFunction>(count, std::move(primitives),
-                                                                      std::move(tables));
+  test::channels_of(scene).channels = std::make_shared<Channels>(std::move(channels));
+  test::channels_of(scene).transfer_function = std::make_shared<MultivariateTransferFunction>(
+      count, std::move(primitives), std::move(tables));
   scene.size = {37, 30};
-  scene.camera = default_camera(scene.channels->grid(), scene.size);
+  scene.camera = default_camera(test::channels_of(scene).channels->grid(), scene.size);
   scene.integration.method = Method::midpoint;
   return scene;
 }

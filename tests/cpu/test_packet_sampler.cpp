@@ -10,6 +10,7 @@
 
 #include "pellucid/cpu/render.h"
 #include "pellucid/scene/defaults.h"
+#include "tests/support/one_layer.h"
 
 namespace pellucid {
 namespace {
@@ -45,14 +46,14 @@ double ball(double x, double y, double z) {
 
 Scene scene_of(std::shared_ptr<const Volume> volume, double scale) {
   Scene scene;
-  scene.volume = std::move(volume);
-  scene.transfer_function = std::make_shared<TransferFunction>(
+  test::volume_of(scene).volume = std::move(volume);
+  test::volume_of(scene).transfer_function = std::make_shared<TransferFunction>(
       std::vector<TransferFunction::Point>{{0.15 * scale, 0, {1, 0.2, 0.1}},
                                            {0.3 * scale, 4, {0.9, 0.8, 0.1}},
                                            {0.5 * scale, 1, {0.1, 0.3, 1}},
                                            {0.9 * scale, 30, {0.2, 0.9, 0.4}}});
   scene.size = {45, 38};
-  scene.camera = default_camera(*scene.volume, scene.size);
+  scene.camera = default_camera(*test::volume_of(scene).volume, scene.size);
   return scene;
 }
 
@@ -110,7 +111,7 @@ TEST(PacketSampler, GivesTheSameWhereNothingCanBeSkipped) {
   Scene scene = scene_of(sampled<float>({20, 33, 2}, Centering::point, 1,
                                         [](double x, double y, double) { return x * y; }),
                          1);
-  scene.transfer_function = std::make_shared<TransferFunction>(
+  test::volume_of(scene).transfer_function = std::make_shared<TransferFunction>(
       std::vector<TransferFunction::Point>{{0.0, 0.1, {1, 0.2, 0.1}},
                                            {0.5, 8, {0.9, 0.8, 0.1}},
                                            {0.5, 2, {0.1, 0.8, 0.1}},
@@ -131,8 +132,9 @@ TEST(Preintegrated, IsExactOnLinearDataUpToItsTable) {
   Scene scene = scene_of(
       sampled<float>({33, 33, 33}, Centering::point, 1, [](double x, double, double) { return x; }),
       1);
-  scene.transfer_function = std::make_shared<TransferFunction>(std::vector<TransferFunction::Point>{
-      {0.4, 0, {1, 0.5, 0.25}}, {0.43, 60, {1, 0.5, 0.25}}, {0.46, 0, {1, 0.5, 0.25}}});
+  test::volume_of(scene).transfer_function =
+      std::make_shared<TransferFunction>(std::vector<TransferFunction::Point>{
+          {0.4, 0, {1, 0.5, 0.25}}, {0.43, 60, {1, 0.5, 0.25}}, {0.46, 0, {1, 0.5, 0.25}}});
   scene.integration.tolerance = 1e-6;
   const Image exact = render(scene);
   scene.integration.step = 4;
@@ -151,7 +153,7 @@ TEST(Preintegrated, SeesTheAbsorptionInsideOfAStep) {
   Scene scene = scene_of(
       sampled<float>({33, 33, 33}, Centering::point, 1, [](double x, double, double) { return x; }),
       1);
-  scene.transfer_function = std::make_shared<TransferFunction>(
+  test::volume_of(scene).transfer_function = std::make_shared<TransferFunction>(
       std::vector<TransferFunction::Point>{{0.0, 20, {1, 0, 0}}, {1.0, 20, {0, 0, 1}}});
   scene.integration.tolerance = 1e-6;
   const Image exact = render(scene);

@@ -12,6 +12,7 @@
 #include "pellucid/scene/builtin_fields.h"
 #include "pellucid/scene/defaults.h"
 #include "pellucid/scene/error.h"
+#include "tests/support/one_layer.h"
 
 namespace pellucid {
 namespace {
@@ -19,11 +20,13 @@ namespace {
 /// Of several tiles, with edges that no tile fits.
 Scene scene_of_tiles() {
   Scene scene;
-  scene.volume = std::make_shared<Volume>(make_builtin_field("marschner_lobb", 16));
-  scene.transfer_function = std::make_shared<TransferFunction>(std::vector<TransferFunction::Point>{
-      {0.3, 0, {1, 0.2, 0.1}}, {0.5, 2, {0.9, 0.8, 0.1}}, {1, 1, {0.2, 0.9, 0.4}}});
+  test::volume_of(scene).volume =
+      std::make_shared<Volume>(make_builtin_field("marschner_lobb", 16));
+  test::volume_of(scene).transfer_function =
+      std::make_shared<TransferFunction>(std::vector<TransferFunction::Point>{
+          {0.3, 0, {1, 0.2, 0.1}}, {0.5, 2, {0.9, 0.8, 0.1}}, {1, 1, {0.2, 0.9, 0.4}}});
   scene.size = {83, 61};
-  scene.camera = default_camera(*scene.volume, scene.size);
+  scene.camera = default_camera(*test::volume_of(scene).volume, scene.size);
   return scene;
 }
 

@@ -9,20 +9,22 @@
 #include "pellucid/scene/builtin_fields.h"
 #include "pellucid/scene/defaults.h"
 #include "pellucid/scene/error.h"
+#include "tests/support/one_layer.h"
 
 namespace pellucid {
 namespace {
 
 Scene small_scene() {
   Scene scene;
-  scene.volume = std::make_shared<Volume>(make_builtin_field("marschner_lobb", 24));
-  scene.transfer_function = std::make_shared<TransferFunction>(
+  test::volume_of(scene).volume =
+      std::make_shared<Volume>(make_builtin_field("marschner_lobb", 24));
+  test::volume_of(scene).transfer_function = std::make_shared<TransferFunction>(
       std::vector<TransferFunction::Point>{{0.3, 0, {1, 0.2, 0.1}},
                                            {0.5, 8, {0.9, 0.8, 0.1}},
                                            {0.55, 0, {0.1, 0.3, 1}},
                                            {1, 2, {0.2, 0.9, 0.4}}});
   scene.size = {37, 29};
-  scene.camera = default_camera(*scene.volume, scene.size);
+  scene.camera = default_camera(*test::volume_of(scene).volume, scene.size);
   return scene;
 }
 
@@ -87,10 +89,10 @@ TEST(Render, RefusesWhatItCannotRender) {
   scene.size.width = 0;
   EXPECT_THROW(render(scene), Error);
   scene = small_scene();
-  scene.volume.reset();
+  test::volume_of(scene).volume.reset();
   EXPECT_THROW(render(scene), Error);
   scene = small_scene();
-  scene.transfer_function.reset();
+  test::volume_of(scene).transfer_function.reset();
   EXPECT_THROW(render(scene), Error);
   RenderOptions options;
   options.threads = -1;
@@ -104,8 +106,9 @@ Scene slab(Centering centering) {
   d.dimensions = {8, 8, 8};
   d.centering = centering;
   d.placement.spacing = {0.25, 0.25, centering == Centering::cell ? 0.25 : 2.0 / 7};
-  scene.volume = std::make_shared<Volume>(d, VolumeData(std::vector<float>(512, 1.0f)));
-  scene.transfer_function = std::make_shared<TransferFunction>(
+  test::volume_of(scene).volume =
+      std::make_shared<Volume>(d, VolumeData(std::vector<float>(512, 1.0f)));
+  test::volume_of(scene).transfer_function = std::make_shared<TransferFunction>(
       std::vector<TransferFunction::Point>{{0, 2, {0.5, 0.25, 0.125}}});
   scene.camera.projection = Projection::orthographic;
   scene.camera.position = {0.85, 0.85, 10};

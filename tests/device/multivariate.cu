@@ -75,6 +75,17 @@ __global__ void render_multivariate(MultichannelGrid grid, MultivariateBlocks bl
                                                 1.0, stop_tolerance<double>(), true);
 }
 
+/// A ray whose function changes on its way, as where layers begin.
+__global__ void change_function(MultivariateTransfer<double> first,
+                                MultivariateTransfer<double> second, MultivariateSpan<double> span,
+                                RayTolerance wanted, RayResult* result) {
+  MultivariateRayIntegrator integrator(first, 1.0, wanted, 2 * span.length);
+  integrator.add_stretch(span, {0, span.length}, PrimitiveSet{}, 0, 0);
+  integrator.set_transfer(second);
+  integrator.add_stretch(span, {span.length, 2 * span.length}, PrimitiveSet{}, 0, 0);
+  *result = integrator.result();
+}
+
 __global__ void render_linear_steps(MultichannelGrid grid, MultivariateTransfer<double> transfer,
                                     CameraFrame<double> camera, GaussianRule rule, double step,
                                     RayResult* pixels) {

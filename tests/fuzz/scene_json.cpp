@@ -52,12 +52,14 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     const std::string written = pellucid::scene_to_json(scene);
     require(pellucid::scene_to_json(pellucid::parse_scene(written, "again")) == written);
     // What is parsed can be made: every term finds its channels.
-    if (!scene.transfer_function) return;
-    const auto* function =
-        std::get_if<pellucid::MultivariateDescription>(&*scene.transfer_function);
-    if (function == nullptr) return;
-    pellucid::make_multivariate(*function,
-                                pellucid::channel_names(pellucid::scene_channels(scene)));
+    for (const pellucid::LayerDescription& layer : scene.layers) {
+      if (!layer.transfer_function) continue;
+      const auto* function =
+          std::get_if<pellucid::MultivariateDescription>(&*layer.transfer_function);
+      if (function == nullptr) continue;
+      pellucid::make_multivariate(*function,
+                                  pellucid::channel_names(pellucid::layer_channels(layer)));
+    }
   });
   attempt_text([&] { pellucid::parse_gaussian(text); });
   attempt_text([&] { pellucid::parse_channel_source(text); });

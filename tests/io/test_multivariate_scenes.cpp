@@ -10,6 +10,7 @@
 
 #include "pellucid/io/scene_json.h"
 #include "tests/scene/expect_error.h"
+#include "tests/support/one_layer.h"
 
 namespace pellucid {
 namespace {
@@ -26,13 +27,13 @@ SceneDescription valid(const char* name) {
 }
 
 const MultivariateDescription& function_of(const SceneDescription& scene) {
-  return std::get<MultivariateDescription>(*scene.transfer_function);
+  return std::get<MultivariateDescription>(*scene.layers[0].transfer_function);
 }
 
 SceneDescription sphere(MultivariateDescription function) {
   SceneDescription scene;
-  scene.field = parse_field_source("builtin:sphere:12");
-  scene.transfer_function = std::move(function);
+  scene.layers[0].field = parse_field_source("builtin:sphere:12");
+  scene.layers[0].transfer_function = std::move(function);
   return scene;
 }
 
@@ -48,22 +49,22 @@ GaussianDescription gaussian(Names channels, std::vector<double> center) {
 
 TEST(MultivariateScene, IsReadAsWritten) {
   const SceneDescription scene = valid("channels");
-  ASSERT_EQ(scene.channels.size(), 6U);
-  EXPECT_EQ(channel_names(scene.channels), (Names{"t1",
-                                                  "Gr\xc3\xb6\xc3\x9f"
-                                                  "e",
-                                                  "b", "edge", "bend", "soft"}));
-  EXPECT_EQ(scene.channels[0].unit, "a.u.");
-  const auto& file = std::get<FieldSource>(scene.channels[0].source);
+  ASSERT_EQ(scene.layers[0].channels.size(), 6U);
+  EXPECT_EQ(channel_names(scene.layers[0].channels), (Names{"t1",
+                                                            "Gr\xc3\xb6\xc3\x9f"
+                                                            "e",
+                                                            "b", "edge", "bend", "soft"}));
+  EXPECT_EQ(scene.layers[0].channels[0].unit, "a.u.");
+  const auto& file = std::get<FieldSource>(scene.layers[0].channels[0].source);
   EXPECT_EQ(file.file, "/scans/patient/T1.vti");
   EXPECT_EQ(file.options.spacing, (Vec3<double>{1, 1, 2}));
-  EXPECT_EQ(std::get<FieldSource>(scene.channels[1].source).options.type, "u16");
-  EXPECT_EQ(std::get<FieldSource>(scene.channels[2].source).points, 16);
-  const auto& soft = std::get<DerivedSource>(scene.channels[5].source);
+  EXPECT_EQ(std::get<FieldSource>(scene.layers[0].channels[1].source).options.type, "u16");
+  EXPECT_EQ(std::get<FieldSource>(scene.layers[0].channels[2].source).points, 16);
+  const auto& soft = std::get<DerivedSource>(scene.layers[0].channels[5].source);
   EXPECT_EQ(soft.kind, DerivedSource::Kind::smoothed);
   EXPECT_EQ(soft.channel, "t1");
   EXPECT_EQ(soft.sigma, 0.1);
-  EXPECT_EQ(std::get<DerivedSource>(scene.channels[4].source).channel, "edge");
+  EXPECT_EQ(std::get<DerivedSource>(scene.layers[0].channels[4].source).channel, "edge");
 
   const MultivariateDescription& function = function_of(scene);
   EXPECT_EQ(function.channels, (Names{"t1", "edge"}));
@@ -83,7 +84,7 @@ TEST(MultivariateScene, IsReadAsWritten) {
 
 TEST(MultivariateScene, TermsFindTheirChannels) {
   const SceneDescription scene = valid("channels");
-  const auto made = make_multivariate(function_of(scene), channel_names(scene.channels));
+  const auto made = make_multivariate(function_of(scene), channel_names(scene.layers[0].channels));
   EXPECT_EQ(made->channels(), 6);
   EXPECT_EQ(made->primitives()[0].channels, (std::vector<int>{0, 3}));
   EXPECT_EQ(made->primitives()[1].channels, (std::vector<int>{5, 2}));
@@ -100,19 +101,17 @@ TEST(MultivariateScene, AFieldIsTheChannelValue) {
   MultivariateDescription function;
   function.gaussians = {gaussian({}, {0.5})};
   const Scene scene = make_scene(sphere(function));
-  EXPECT_FALSE(scene.volume);
-  EXPECT_FALSE(scene.transfer_function);
-  ASSERT_TRUE(scene.channels && scene.multivariate);
   EXPECT_NO_THROW(check_data(scene));
-  EXPECT_EQ(scene.channels->count(), 1);
-  EXPECT_EQ((*scene.channels)[0].name, "value");
-  EXPECT_EQ(grid_volume(scene).description().dimensions, (std::array<int, 3>{12, 12, 12}));
+  const Channels& channels = *test::channels_of(scene).channels;
+  EXPECT_EQ(channels.count(), 1);
+  EXPECT_EQ(channels[0].name, "value");
+  EXPECT_EQ(test::grid_volume(scene).description().dimensions, (std::array<int, 3>{12, 12, 12}));
   EXPECT_NO_THROW(make_camera_frame(scene.camera, scene.size));
 }
 
 TEST(MultivariateScene, WhatIsMadeOfAFieldIsMadeWhereItIsNamed) {
   const auto channels = [](MultivariateDescription function) {
-    return channel_names(scene_channels(sphere(std::move(function))));
+    return channel_names(layer_channels(sphere(std::move(function)).layers[0]));
   };
   const Names both{"value", "gradient_magnitude"};
   MultivariateDescription f;
@@ -126,23 +125,24 @@ TEST(MultivariateScene, WhatIsMadeOfAFieldIsMadeWhereItIsNamed) {
   EXPECT_EQ(channels(f), (Names{"value", "second_derivative"}));
   f.gaussians = {gaussian({"gradient_magnitude"}, {1})};
   EXPECT_EQ(channels(f), (Names{"value", "gradient_magnitude", "second_derivative"}));
-  EXPECT_TRUE(scene_channels(SceneDescription{}).empty());
+  EXPECT_TRUE(layer_channels(LayerDescription{}).empty());
 
   f.gaussians = {gaussian(both, {0.5, 1})};
   f.tables.clear();
   const Scene scene = make_scene(sphere(f));
-  ASSERT_EQ(scene.channels->count(), 2);
+  const Channels& made = *test::channels_of(scene).channels;
+  ASSERT_EQ(made.count(), 2);
   // The field is the distance from the middle: its gradient is 1 where nothing bends.
-  const auto& slope = std::get<DataArray<float>>((*scene.channels)[1].volume->data());
+  const auto& slope = std::get<DataArray<float>>(made[1].volume->data());
   EXPECT_NEAR(static_cast<double>(slope[6 + 12 * (6 + 12 * std::size_t{10})]), 1, 0.02);
 }
 
 TEST(MultivariateScene, ChannelsNeedAFunctionOfTheirOwn) {
   SceneDescription scene;
-  scene.channels = {{"a", "", parse_field_source("builtin:ramp:4")}};
+  scene.layers[0].channels = {{"a", "", parse_field_source("builtin:ramp:4")}};
   expect_error([&] { make_scene(scene); },
                {"channels need a transfer function", "pellucid suggest"});
-  scene.transfer_function = std::vector<TransferFunction::Point>{{0, 1, {1, 1, 1}}};
+  scene.layers[0].transfer_function = std::vector<TransferFunction::Point>{{0, 1, {1, 1, 1}}};
   expect_error([&] { make_scene(scene); }, {"points in one variable", "\"tables\""});
   expect_error(
       [] {
@@ -157,12 +157,12 @@ TEST(MultivariateScene, UnknownChannelsAreFoundBeforeAnythingIsRead) {
   MultivariateDescription f;
   f.gaussians = {gaussian({"value"}, {1}), gaussian({"gradient_magnitud"}, {1})};
   SceneDescription scene = sphere(f);
-  scene.field = parse_field_source("/nowhere/a.nii.gz");
+  scene.layers[0].field = parse_field_source("/nowhere/a.nii.gz");
   expect_error(
       [&] { make_scene(scene); },
       {"Gaussian 1 looks at a channel \"gradient_magnitud\", which is not there (did you mean "
        "\"gradient_magnitude\"?); there are: value, gradient_magnitude, second_derivative"});
-  scene.channels = {{"a", "", scene.field}};
+  scene.layers[0].channels = {{"a", "", scene.layers[0].field}};
   expect_error([&] { make_scene(scene); }, {"\"value\", which is not there; there are: a"});
 }
 

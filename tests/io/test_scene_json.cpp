@@ -17,6 +17,7 @@
 #include "pellucid/io/scene_json.h"
 #include "pellucid/scene/builtin_fields.h"
 #include "pellucid/scene/error.h"
+#include "tests/support/one_layer.h"
 
 namespace pellucid {
 namespace {
@@ -84,6 +85,7 @@ bool same(const std::vector<double>& a, const std::vector<double>& b);
 bool same(const GaussianDescription& a, const GaussianDescription& b);
 bool same(const ChannelTableDescription& a, const ChannelTableDescription& b);
 bool same(const ChannelSource& a, const ChannelSource& b);
+bool same(const LayerDescription& a, const LayerDescription& b);
 template <class T>
 bool same_lists(const std::vector<T>& a, const std::vector<T>& b) {
   return std::equal(a.begin(), a.end(), b.begin(), b.end(),
@@ -145,9 +147,18 @@ bool same(const ChannelSource& a, const ChannelSource& b) {
   const auto &p = std::get<1>(a.source), &q = std::get<1>(b.source);
   return p.kind == q.kind && p.channel == q.channel && same(p.sigma, q.sigma);
 }
+bool same(const Affine<double>& a, const Affine<double>& b) {
+  return same(a.matrix.column[0], b.matrix.column[0]) &&
+         same(a.matrix.column[1], b.matrix.column[1]) &&
+         same(a.matrix.column[2], b.matrix.column[2]) && same(a.translation, b.translation);
+}
+bool same(const LayerDescription& a, const LayerDescription& b) {
+  return a.name == b.name && a.visible == b.visible && same(a.field, b.field) &&
+         same_lists(a.channels, b.channels) && same(a.transfer_function, b.transfer_function) &&
+         same(a.transform, b.transform);
+}
 bool same(const SceneDescription& a, const SceneDescription& b) {
-  return same(a.field, b.field) && same_lists(a.channels, b.channels) &&
-         same(a.transfer_function, b.transfer_function) && same(a.camera, b.camera) &&
+  return same_lists(a.layers, b.layers) && same(a.camera, b.camera) &&
          a.size.width == b.size.width && a.size.height == b.size.height && a.samples == b.samples &&
          a.integration.method == b.integration.method &&
          same(a.integration.tolerance, b.integration.tolerance) &&
@@ -189,10 +200,11 @@ TEST(SceneJson, EveryInvalidFileGetsItsOneLine) {
 
 TEST(SceneJson, ReadsWhatIsWritten) {
   const SceneDescription scene = parse_scene(read(scenes / "valid" / "perspective.json"), "s");
-  EXPECT_EQ(scene.field.builtin, "hydrogen");
-  EXPECT_EQ(scene.field.points, 64);
-  ASSERT_TRUE(scene.transfer_function);
-  const auto& points = std::get<std::vector<TransferFunction::Point>>(*scene.transfer_function);
+  EXPECT_EQ(scene.layers[0].field.builtin, "hydrogen");
+  EXPECT_EQ(scene.layers[0].field.points, 64);
+  ASSERT_TRUE(scene.layers[0].transfer_function);
+  const auto& points =
+      std::get<std::vector<TransferFunction::Point>>(*scene.layers[0].transfer_function);
   ASSERT_EQ(points.size(), 3U);
   EXPECT_EQ(points[1].value, 0.1);
   EXPECT_EQ(points[1].extinction, 3.7);
@@ -213,15 +225,15 @@ TEST(SceneJson, ReadsWhatIsWritten) {
   EXPECT_EQ(scene.integration.step, 0.25);
 
   const SceneDescription raw = parse_scene(read(scenes / "valid" / "raw.json"), "s", "/scans");
-  EXPECT_EQ(raw.field.file, "/scans/data/male.RAW");
-  EXPECT_EQ(raw.field.options.dimensions, (std::array<int, 3>{128, 256, 256}));
-  EXPECT_EQ(raw.field.options.type, "u8");
-  EXPECT_EQ(raw.field.options.big_endian, true);
-  EXPECT_EQ(raw.field.options.skip_bytes, 12U);
-  EXPECT_EQ(raw.field.options.spacing, (Vec3<double>{1.5, 1, 1}));
-  EXPECT_EQ(raw.field.options.origin, (Vec3<double>{-96, 0, 1e-300}));
-  EXPECT_EQ(raw.field.options.centering, Centering::cell);
-  EXPECT_FALSE(raw.transfer_function);
+  EXPECT_EQ(raw.layers[0].field.file, "/scans/data/male.RAW");
+  EXPECT_EQ(raw.layers[0].field.options.dimensions, (std::array<int, 3>{128, 256, 256}));
+  EXPECT_EQ(raw.layers[0].field.options.type, "u8");
+  EXPECT_EQ(raw.layers[0].field.options.big_endian, true);
+  EXPECT_EQ(raw.layers[0].field.options.skip_bytes, 12U);
+  EXPECT_EQ(raw.layers[0].field.options.spacing, (Vec3<double>{1.5, 1, 1}));
+  EXPECT_EQ(raw.layers[0].field.options.origin, (Vec3<double>{-96, 0, 1e-300}));
+  EXPECT_EQ(raw.layers[0].field.options.centering, Centering::cell);
+  EXPECT_FALSE(raw.layers[0].transfer_function);
   EXPECT_FALSE(raw.camera);
   EXPECT_FALSE(raw.background);
   EXPECT_EQ(raw.size.width, 512);
@@ -232,8 +244,8 @@ TEST(SceneJson, ReadsWhatIsWritten) {
   EXPECT_EQ(raw.integration.precision, Precision::automatic);
 
   const SceneDescription opacity = parse_scene(read(scenes / "valid" / "opacity.json"), "s");
-  ASSERT_TRUE(opacity.transfer_function);
-  const auto& table = std::get<OpacityTable>(*opacity.transfer_function);
+  ASSERT_TRUE(opacity.layers[0].transfer_function);
+  const auto& table = std::get<OpacityTable>(*opacity.layers[0].transfer_function);
   EXPECT_EQ(table.unit_distance, 0.1);
   ASSERT_EQ(table.points.size(), 4U);
   EXPECT_EQ(table.points[1].value, 0.3);
@@ -261,7 +273,8 @@ TEST(SceneJson, ExamplesAndTheDocumentedSceneAreValid) {
   EXPECT_EQ(
       error_of([&] { parse_scene(page.substr(begin, end - begin), "docs/reference/scene.md"); }),
       "");
-  // Behind it stand a volume with a mesh, one with channels, and two transfer functions.
+  // Behind it stand a layer with a mesh, three scenes, a layer with channels, and two transfer
+  // functions.
   std::vector<std::string> blocks;
   for (std::size_t at = end + 3; (at = page.find("```json\n", at)) != std::string::npos;) {
     const std::size_t from = at + 8;
@@ -270,23 +283,27 @@ TEST(SceneJson, ExamplesAndTheDocumentedSceneAreValid) {
     blocks.push_back(page.substr(from, at - from));
     at += 3;
   }
-  ASSERT_EQ(blocks.size(), 4U);
-  for (const std::string& volume : {blocks[0], blocks[1]}) {
-    EXPECT_EQ(error_of([&] { parse_scene("{\"volumes\": [" + volume + "]}", "scene.md"); }), "");
+  ASSERT_EQ(blocks.size(), 7U);
+  for (const std::string& layer : {blocks[0], blocks[4]}) {
+    EXPECT_EQ(error_of([&] { parse_scene("{\"layers\": [" + layer + "]}", "scene.md"); }), "");
+  }
+  for (const std::string& scene : {blocks[1], blocks[2], blocks[3]}) {
+    EXPECT_EQ(error_of([&] { parse_scene(scene, "scene.md"); }), "");
   }
   const auto function = [&](const std::string& text) {
     TransferFunctionDescription description;
     EXPECT_EQ(error_of([&] { description = parse_transfer_function(text, "scene.md"); }), "");
     return description;
   };
-  EXPECT_TRUE(std::holds_alternative<OpacityTable>(function(blocks[2])));
-  EXPECT_TRUE(std::holds_alternative<MultivariateDescription>(function(blocks[3])));
+  EXPECT_TRUE(std::holds_alternative<OpacityTable>(function(blocks[5])));
+  EXPECT_TRUE(std::holds_alternative<MultivariateDescription>(function(blocks[6])));
 }
 
 TEST(SceneJson, AbsoluteFilesStayAndRelativeOnesStartAtTheFolder) {
   const auto file = [](const char* path, const char* folder) {
     return parse_scene("{\"volumes\": [{\"field\": {\"file\": \"" + std::string(path) + "\"}}]}",
                        "s", folder)
+        .layers[0]
         .field.file;
   };
   EXPECT_EQ(file("a.nii", ""), "a.nii");
@@ -322,14 +339,14 @@ TEST(SceneJson, LongAndStrangeTextStaysOneShortLine) {
 
 TEST(SceneJson, WritingRefusesWhatJsonCannotHold) {
   SceneDescription scene;
-  scene.field.builtin = "ramp";
+  scene.layers[0].field.builtin = "ramp";
   scene.camera = Camera{};
   scene.camera->position.x = std::numeric_limits<double>::infinity();
   EXPECT_NE(error_of([&] { scene_to_json(scene); }).find("the camera's position is not a finite"),
             std::string::npos);
   scene.camera.reset();
-  scene.field.builtin.clear();
-  scene.field.file = "\xff.nii";
+  scene.layers[0].field.builtin.clear();
+  scene.layers[0].field.file = "\xff.nii";
   EXPECT_NE(error_of([&] { scene_to_json(scene); }).find("not UTF-8"), std::string::npos);
 }
 
@@ -356,7 +373,7 @@ TEST(TransferFunctionJson, StandsAloneBareOrUnderItsName) {
             "t.json: /points: is empty; give at least one point {value, extinction, color}");
   EXPECT_NE(error("{\"transfer_function\": {\"points\": []}}").find("/transfer_function/points: "),
             std::string::npos);
-  EXPECT_NE(error("{\"pellucid\": 2, \"transfer_function\": {}}").find("/pellucid: is version 2"),
+  EXPECT_NE(error("{\"pellucid\": 3, \"transfer_function\": {}}").find("/pellucid: is version 3"),
             std::string::npos);
   EXPECT_NE(error("[]").find("must be an object"), std::string::npos);
 }
@@ -446,13 +463,14 @@ TEST(FieldSource, NamesBuiltinFieldsAndFiles) {
 
 TEST(MakeScene, FillsDefaults) {
   SceneDescription description;
-  description.field = parse_field_source("builtin:sphere:17");
+  description.layers[0].field = parse_field_source("builtin:sphere:17");
   description.size = {64, 48};
   const Scene scene = make_scene(description);
-  ASSERT_TRUE(scene.volume);
-  EXPECT_EQ(scene.volume->description().dimensions, (std::array<int, 3>{17, 17, 17}));
-  ASSERT_TRUE(scene.transfer_function);
-  EXPECT_GE(scene.transfer_function->points().size(), 2U);
+  const VolumeContent& content = test::volume_of(scene);
+  ASSERT_TRUE(content.volume);
+  EXPECT_EQ(content.volume->description().dimensions, (std::array<int, 3>{17, 17, 17}));
+  ASSERT_TRUE(content.transfer_function);
+  EXPECT_GE(content.transfer_function->points().size(), 2U);
   EXPECT_EQ(scene.size.width, 64);
   EXPECT_NO_THROW(make_camera_frame(scene.camera, scene.size));
   EXPECT_FALSE(scene.background);
@@ -460,16 +478,16 @@ TEST(MakeScene, FillsDefaults) {
 
 TEST(MakeScene, KeepsWhatIsGiven) {
   SceneDescription description;
-  description.field = parse_field_source("builtin:ramp:3");
+  description.layers[0].field = parse_field_source("builtin:ramp:3");
   const std::vector<TransferFunction::Point> points{{0.5, 2, {1, 0, 0}}};
-  description.transfer_function = points;
+  description.layers[0].transfer_function = points;
   description.samples = 4;
   description.camera = Camera{};
   description.camera->vertical_angle = 12;
   description.integration.method = Method::simpson;
   description.background = Rgb<double>{1, 1, 1};
   const Scene scene = make_scene(description);
-  EXPECT_TRUE(same(scene.transfer_function->points(), points));
+  EXPECT_TRUE(same(test::volume_of(scene).transfer_function->points(), points));
   EXPECT_EQ(scene.samples, 4);
   EXPECT_TRUE(same(scene.camera, *description.camera));
   EXPECT_EQ(scene.integration.method, Method::simpson);
@@ -478,20 +496,21 @@ TEST(MakeScene, KeepsWhatIsGiven) {
 
 TEST(MakeScene, SaysWhichFileIsMissing) {
   SceneDescription description;
-  description.field = parse_field_source("/nowhere/at-all.nii.gz");
+  description.layers[0].field = parse_field_source("/nowhere/at-all.nii.gz");
   EXPECT_NE(error_of([&] { make_scene(description); }).find("/nowhere/at-all.nii.gz"),
             std::string::npos);
 }
 
 TEST(MakeScene, TakesTheToleranceForOpacityTables) {
   SceneDescription description;
-  description.field = parse_field_source("builtin:ramp:3");
-  description.transfer_function = OpacityTable{{{0, 0, {1, 1, 1}}, {1, 0.99, {1, 1, 1}}}, 0.5};
+  description.layers[0].field = parse_field_source("builtin:ramp:3");
+  description.layers[0].transfer_function =
+      OpacityTable{{{0, 0, {1, 1, 1}}, {1, 0.99, {1, 1, 1}}}, 0.5};
   description.background = Rgb<double>{4, 0, 0};
   description.integration.tolerance = 1e-5;
   const Scene scene = make_scene(description);
-  EXPECT_LE(scene.transfer_function->approximation_error(4), 1e-5 / 8);
-  EXPECT_GE(scene.transfer_function->approximation_error(4), 1e-5 / 16);
+  EXPECT_LE(test::volume_of(scene).transfer_function->approximation_error(4), 1e-5 / 8);
+  EXPECT_GE(test::volume_of(scene).transfer_function->approximation_error(4), 1e-5 / 16);
   EXPECT_EQ(scene.integration.tolerance, 1e-5);
 }
 

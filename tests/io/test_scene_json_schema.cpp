@@ -35,7 +35,10 @@ constexpr const char* beyond_schema[] = {"is below the value of the point before
                                          "transfer function: ",
                                          "channels: ",
                                          "one for each channel",
-                                         "but here are channels"};
+                                         "but here are channels",
+                                         ": clip: ",
+                                         "is there twice",
+                                         "stands twice"};
 
 /// Every document that differs from the whole one in one place: a value replaced, a key left out,
 /// or a key too many.
@@ -168,7 +171,7 @@ TEST(SceneJsonSchema, AgreesWithTheParser) {
     std::ofstream out(verdicts);
     for (const char* name : {"perspective", "orthographic", "raw", "header_replaced", "opacity",
                              "channels", "gaussians", "one_channel", "mesh", "mesh_one_array",
-                             "preset", "deviation", "gaussians_srgb"}) {
+                             "preset", "deviation", "gaussians_srgb", "layers"}) {
       std::ifstream file(source / "tests" / "io" / "scenes" / "valid" /
                          (std::string(name) + ".json"));
       ASSERT_TRUE(file) << name;

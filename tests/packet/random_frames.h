@@ -17,12 +17,13 @@
 #include "pellucid/scene/scene.h"
 #include "pellucid/scene/transfer_function.h"
 #include "tests/packet/instruction_sets.h"
+#include "tests/support/one_layer.h"
 
 namespace pellucid {
 
 /// Has an orthographic camera look along x, with this scale.
 inline void look_along_x(Scene& scene, double parallel_scale, double distance = 100) {
-  scene.camera = default_camera(scene.channels->grid(), scene.size);
+  scene.camera = default_camera(test::channels_of(scene).channels->grid(), scene.size);
   scene.camera.position = scene.camera.focal_point - Vec3<double>{distance, 0, 0};
   scene.camera.up = {0, 0, 1};
   scene.camera.projection = Projection::orthographic;
@@ -40,7 +41,7 @@ inline Scene ramp_seen_in_faces(int points, int empty) {
   Volume::Description description;
   description.dimensions = {along, points, points};
   Scene scene;
-  scene.channels = std::make_shared<const Channels>(std::vector<Channel>{
+  test::channels_of(scene).channels = std::make_shared<const Channels>(std::vector<Channel>{
       {"ramp", "", std::make_shared<Volume>(description, DataArray<float>(std::move(data)))}});
   scene.size = {2, 2};
   look_along_x(scene, points - 1);

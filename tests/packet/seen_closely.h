@@ -11,6 +11,7 @@
 
 #include "tests/packet/against_one_by_one.h"
 #include "tests/packet/smooth_frames.h"
+#include "tests/support/one_layer.h"
 
 namespace pellucid {
 
@@ -22,7 +23,7 @@ class SeenClosely : public SmoothFrames {
     scene.size = {44 + static_cast<int>(random_() % 9), 44 + static_cast<int>(random_() % 9)};
     Camera& camera = scene.camera;
     const double far = length(camera.position - camera.focal_point),
-                 half = 0.5 * voxels * scene.size.height * grid_volume(scene).voxel_size();
+                 half = 0.5 * voxels * scene.size.height * test::grid_volume(scene).voxel_size();
     if (camera.projection == Projection::orthographic) {
       camera.parallel_scale = half;
     } else {

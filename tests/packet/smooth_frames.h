@@ -12,6 +12,7 @@
 #include "pellucid/scene/defaults.h"
 #include "tests/packet/random_frames.h"
 #include "tests/scenes/makers.h"
+#include "tests/support/one_layer.h"
 
 namespace pellucid {
 
@@ -89,10 +90,11 @@ class SmoothFrames : public RandomFrames {
   static Scene make_scene(std::shared_ptr<const Volume> volume, Points points,
                           Vec3<double> direction, bool orthographic) {
     Scene scene;
-    scene.volume = std::move(volume);
-    scene.transfer_function = std::make_shared<TransferFunction>(std::move(points));
+    test::volume_of(scene).volume = std::move(volume);
+    test::volume_of(scene).transfer_function =
+        std::make_shared<TransferFunction>(std::move(points));
     scene.size = {20, 20};
-    scene.camera = default_camera(*scene.volume, scene.size);
+    scene.camera = default_camera(*test::volume_of(scene).volume, scene.size);
     const double far = length(scene.camera.position - scene.camera.focal_point);
     scene.camera.position = scene.camera.focal_point + direction * (far / length(direction));
     scene.camera.up = std::fabs(direction.z) > 0.9 * length(direction) ? Vec3<double>{0, 1, 0}

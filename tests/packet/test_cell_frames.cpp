@@ -15,6 +15,7 @@
 #include "pellucid/scene/defaults.h"
 #include "tests/packet/against_one_by_one.h"
 #include "tests/packet/random_frames.h"
+#include "tests/support/one_layer.h"
 
 namespace pellucid {
 namespace {
@@ -165,11 +166,14 @@ class CellFrames : public RandomFrames {
     }
     Scene scene;
     const auto volume = std::make_shared<const Volume>(description, std::move(data));
-    scene.volume = volume;
+    test::volume_of(scene).volume = volume;
     const int most =
         *std::max_element(description.dimensions.begin(), description.dimensions.end());
-    scene.transfer_function = table(unit * most, offset, width);
-    if (one_of(3)) scene.transfer_function = with_many_colors(*scene.transfer_function);
+    test::volume_of(scene).transfer_function = table(unit * most, offset, width);
+    if (one_of(3)) {
+      test::volume_of(scene).transfer_function =
+          with_many_colors(*test::volume_of(scene).transfer_function);
+    }
     scene.size = {12, 9};
     scene.camera = default_camera(*volume, scene.size);
     const Vec3<double> middle = scene.camera.focal_point;
@@ -216,14 +220,14 @@ TEST_F(CellFrames, BesideAPointThatStandsTwiceAreWithinWhatTheySay) {
     for (const double steep : {2.0, 50.0, 1e4}) {
       SCOPED_TRACE(testing::Message() << along << ", " << steep);
       Scene one;
-      one.volume = of_two(999.99994f, 1000.0f, along);
-      one.transfer_function =
+      test::volume_of(one).volume = of_two(999.99994f, 1000.0f, along);
+      test::volume_of(one).transfer_function =
           std::make_shared<const TransferFunction>(Points{{999, steep, {1, 0, 0}},
                                                           {1000, 0, {1, 0, 0}},
                                                           {1000, 0, {0, 0, 1}},
                                                           {1001, 0, {0, 0, 1}}});
       one.size = {12, 9};
-      one.camera = default_camera(*one.volume, one.size);
+      one.camera = default_camera(*test::volume_of(one).volume, one.size);
       one.camera.projection = Projection::orthographic;
       one.camera.focal_point = {8.15, 8.3, 8};
       one.camera.position = {8.15, 8.3, -30};
@@ -231,7 +235,7 @@ TEST_F(CellFrames, BesideAPointThatStandsTwiceAreWithinWhatTheySay) {
       one.camera.parallel_scale = 3.3;
       compare(one, {1e-2, 2e-4}, seen, Promise::honest);
       if (HasFatalFailure()) return;
-      one.volume = of_two(999.9999f, 1000.00006f, along);
+      test::volume_of(one).volume = of_two(999.9999f, 1000.00006f, along);
       compare(one, {1e-2, 2e-4}, seen, Promise::honest);
       if (HasFatalFailure()) return;
     }
@@ -244,9 +248,11 @@ TEST_F(CellFrames, BehindNarrowIntervalsAreWithinWhatTheySay) {
   expect_honest_scenes(100,
                        [&](unsigned seed) {
                          Scene one = scene(seed);
-                         one.transfer_function = with_narrow_intervals(*one.transfer_function);
+                         test::volume_of(one).transfer_function =
+                             with_narrow_intervals(*test::volume_of(one).transfer_function);
                          if (one_of(3)) {  // some of them closer than values in binary32
-                           one.transfer_function = with_many_colors(*one.transfer_function);
+                           test::volume_of(one).transfer_function =
+                               with_many_colors(*test::volume_of(one).transfer_function);
                          }
                          return one;
                        },
@@ -263,14 +269,15 @@ TEST_F(CellFrames, AtAJumpAmongValuesAlikeInFloatAreWithinWhatTheySay) {
     Volume::Description description;
     description.dimensions = {12, 12, 12};
     Scene one;
-    one.volume = std::make_shared<const Volume>(description, DataArray<double>(std::move(data)));
-    one.transfer_function = std::make_shared<const TransferFunction>(
+    test::volume_of(one).volume =
+        std::make_shared<const Volume>(description, DataArray<double>(std::move(data)));
+    test::volume_of(one).transfer_function = std::make_shared<const TransferFunction>(
         std::vector<TransferFunction::Point>{{0, 0.1, {1, 0, 0}},
                                              {0.5, 0.1, {1, 0, 0}},
                                              {0.5, 0.1, {0, 0, 1}},
                                              {1, 0.1, {0, 0, 1}}});
     one.size = {12, 9};
-    one.camera = default_camera(*one.volume, one.size);
+    one.camera = default_camera(*test::volume_of(one).volume, one.size);
     compare(one, {1e-2, 2e-4}, seen, Promise::honest);
     if (HasFatalFailure()) return;
   }
@@ -299,9 +306,9 @@ TEST_F(CellFrames, OfRaysAlongVacuumAreWithinWhatTheySay) {
     SCOPED_TRACE(testing::Message() << "scene " << seed);
     random_.seed(seed);
     Scene one;
-    one.volume = volume;
+    test::volume_of(one).volume = volume;
     const double dense = power(0.1, 10);
-    one.transfer_function = std::make_shared<const TransferFunction>(
+    test::volume_of(one).transfer_function = std::make_shared<const TransferFunction>(
         std::vector<TransferFunction::Point>{{0, 0, {1, 1, 1}}, {1, dense, {1, 0.5, 0}}});
     one.size = {12, 9};
     one.camera = default_camera(*volume, one.size);

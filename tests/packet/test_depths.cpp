@@ -20,6 +20,7 @@
 #include "pellucid/scene/defaults.h"
 #include "tests/packet/random_frames.h"
 #include "tests/scene/lattice_mesh.h"
+#include "tests/support/one_layer.h"
 
 namespace pellucid {
 namespace {
@@ -53,24 +54,26 @@ class Depths : public RandomFrames {
 
   Scene of_volume(double longest, double noise, bool peaks) {
     Scene scene;
-    scene.volume = volume(longest, noise, false, some_values());
+    test::volume_of(scene).volume = volume(longest, noise, false, some_values());
     const double e = power(0.05, 20) / 27;
-    scene.transfer_function =
+    test::volume_of(scene).transfer_function =
         peaks ? table(27, 0, 1)
               : std::make_shared<const TransferFunction>(TransferFunction(
                     {{-0.1, 0.4 * e, {1, 0.2, 0.1}}, {1.1, 1.6 * e, {0.1, 0.7, 0.9}}}));
-    return seen(std::move(scene), *scene.volume);
+    const auto data = test::volume_of(scene).volume;
+    return seen(std::move(scene), *data);
   }
   Scene of_channels(double longest, bool rectilinear, bool with_table) {
     Scene scene;
     std::vector<Channel> channels;
     const auto first = volume(longest, 0, rectilinear, some_values());
     channels.push_back({"0", "", first});
-    scene.channels = std::make_shared<const Channels>(std::move(channels));
+    test::channels_of(scene).channels = std::make_shared<const Channels>(std::move(channels));
     std::vector<ChannelTransferFunction> tables;
     if (with_table) tables.push_back({0, *table(27, 0, 1)});
-    scene.multivariate = std::make_shared<const MultivariateTransferFunction>(
-        1, primitives(1, 0, 1, 27), std::move(tables));
+    test::channels_of(scene).transfer_function =
+        std::make_shared<const MultivariateTransferFunction>(1, primitives(1, 0, 1, 27),
+                                                             std::move(tables));
     return seen(std::move(scene), *first);
   }
   /// Rays along so many cells, in each of which something absorbs.
@@ -79,17 +82,19 @@ class Depths : public RandomFrames {
     Scene scene;
     scene.size = {8, 8};
     if (gaussians) {
-      scene.channels = std::make_shared<const Channels>(std::vector<Channel>{{"0", "", data}});
+      test::channels_of(scene).channels =
+          std::make_shared<const Channels>(std::vector<Channel>{{"0", "", data}});
       std::vector<GaussianPrimitive> one(1);
       one[0].channels = {0};
       one[0].center = {0.5};
       one[0].matrix = matrix_from_widths({0.2});
       one[0].extinction = 3.0 / cells;
-      scene.multivariate = std::make_shared<const MultivariateTransferFunction>(1, std::move(one));
+      test::channels_of(scene).transfer_function =
+          std::make_shared<const MultivariateTransferFunction>(1, std::move(one));
     } else {
-      scene.volume = data;
+      test::volume_of(scene).volume = data;
       const double e = 3.0 / cells;
-      scene.transfer_function =
+      test::volume_of(scene).transfer_function =
           std::make_shared<const TransferFunction>(std::vector<TransferFunction::Point>{
               {-0.1, 0, {1, 1, 1}}, {0.5, e, {1, 0, 0}}, {1.1, 0.2 * e, {0, 0, 1}}});
     }
@@ -112,12 +117,12 @@ class Depths : public RandomFrames {
       channels.push_back({std::to_string(c), "", Centering::point, std::move(values)});
     }
     Scene scene;
-    scene.mesh = std::make_shared<const MeshChannels>(mesh, std::move(channels));
+    test::mesh_of(scene).mesh = std::make_shared<const MeshChannels>(mesh, std::move(channels));
     if (several) {
-      scene.multivariate =
+      test::mesh_of(scene).transfer_function =
           std::make_shared<const MultivariateTransferFunction>(2, primitives(2, 0, 1, 1));
     } else {
-      scene.transfer_function = table(1, 0, 1);
+      test::mesh_of(scene).transfer_function = table(1, 0, 1);
     }
     scene.size = {8, 8};
     const auto& box = mesh->bounds();

@@ -12,6 +12,7 @@
 
 #include "pellucid/cpu/render.h"
 #include "pellucid/scene/defaults.h"
+#include "tests/support/one_layer.h"
 
 namespace pellucid {
 namespace {
@@ -52,19 +53,19 @@ Points teeth(const std::vector<double>& values, double extinction) {
 /// and has nothing that is no number. What would not end is stopped by the time limit of the test.
 void renders(std::shared_ptr<Volume> volume, Points points, int* handed_back = nullptr) {
   Scene scene;
-  scene.volume = std::move(volume);
-  scene.transfer_function = std::make_shared<TransferFunction>(std::move(points));
+  test::volume_of(scene).volume = std::move(volume);
+  test::volume_of(scene).transfer_function = std::make_shared<TransferFunction>(std::move(points));
   scene.size = {32, 32};
   RenderOptions options;
   options.threads = 1;
   options.error = true;
-  const Camera aslant = default_camera(*scene.volume, scene.size);
+  const Camera aslant = default_camera(*test::volume_of(scene).volume, scene.size);
   Camera along = aslant;
   const double far = length(aslant.position - aslant.focal_point);
   along.position = along.focal_point + Vec3<double>{0, 0, far};
   along.up = {0, 1, 0};
   along.projection = Projection::orthographic;
-  along.parallel_scale = scene.volume->voxel_size() * width / 2;
+  along.parallel_scale = test::volume_of(scene).volume->voxel_size() * width / 2;
   for (const InstructionSet set : sets) {
     if (!is_supported(set)) continue;
     options.instruction_set = set;

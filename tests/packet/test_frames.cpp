@@ -13,6 +13,7 @@
 #include "pellucid/cpu/render.h"
 #include "pellucid/scene/defaults.h"
 #include "tests/packet/instruction_sets.h"
+#include "tests/support/one_layer.h"
 
 namespace pellucid {
 namespace {
@@ -73,11 +74,12 @@ Scene make_scene(const Wanted& wanted, unsigned seed) {
   description.placement.spacing = {1, 0.75, 1.25};
   description.placement.origin = {wanted.origin, wanted.origin, wanted.origin};
   description.name = "waves";
-  scene.volume =
+  test::volume_of(scene).volume =
       std::make_shared<Volume>(description, waves<Value>(wanted.values, wanted.vacuum, seed));
-  scene.transfer_function = table_over(scene.volume->statistics(), wanted.jump);
+  test::volume_of(scene).transfer_function =
+      table_over(test::volume_of(scene).volume->statistics(), wanted.jump);
   scene.size = {23, 18};
-  scene.camera = default_camera(*scene.volume, scene.size);
+  scene.camera = default_camera(*test::volume_of(scene).volume, scene.size);
   if (wanted.inside) {
     scene.camera.position =
         scene.camera.focal_point + (scene.camera.position - scene.camera.focal_point) * 0.02;
@@ -200,11 +202,11 @@ TEST(PacketFrame, BordersBesideVacuum) {
   description.centering = Centering::cell;
   description.name = "hole";
   Scene scene;
-  scene.volume = std::make_shared<Volume>(description, DataArray<float>(values));
-  scene.transfer_function = std::make_shared<TransferFunction>(
+  test::volume_of(scene).volume = std::make_shared<Volume>(description, DataArray<float>(values));
+  test::volume_of(scene).transfer_function = std::make_shared<TransferFunction>(
       std::vector<TransferFunction::Point>{{0, 0.5, {1, 1, 1}}, {1, 0.6, {1, 1, 1}}});
   scene.size = {16, 16};
-  scene.camera = default_camera(*scene.volume, scene.size);
+  scene.camera = default_camera(*test::volume_of(scene).volume, scene.size);
   Seen seen;
   compare(scene, seen);
 }
@@ -226,7 +228,8 @@ TEST(PacketFrame, ColorsThatEndSteeplyBesideACorner) {
         description.dimensions = {8, 8, 8};
         description.name = "edge";
         Scene scene;
-        scene.volume = std::make_shared<Volume>(description, DataArray<float>(values));
+        test::volume_of(scene).volume =
+            std::make_shared<Volume>(description, DataArray<float>(values));
         using Points = std::vector<TransferFunction::Point>;
         const Points rises{{0, 1, {0, 0, 0}},
                            {end - width * u, 1, {0, 0, 0}},
@@ -237,9 +240,9 @@ TEST(PacketFrame, ColorsThatEndSteeplyBesideACorner) {
                            {end + width * u, 1, {0, 0, 0}},
                            {1.001, 1, {0, 0, 0}}};
         for (const Points& points : {rises, falls}) {
-          scene.transfer_function = std::make_shared<TransferFunction>(points);
+          test::volume_of(scene).transfer_function = std::make_shared<TransferFunction>(points);
           scene.size = {8, 8};
-          scene.camera = default_camera(*scene.volume, scene.size);
+          scene.camera = default_camera(*test::volume_of(scene).volume, scene.size);
           compare(scene, seen);
           if (HasFatalFailure()) return;
         }

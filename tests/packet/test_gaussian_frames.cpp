@@ -19,6 +19,7 @@
 #include "pellucid/scene/defaults.h"
 #include "tests/packet/against_one_by_one.h"
 #include "tests/packet/random_frames.h"
+#include "tests/support/one_layer.h"
 
 namespace pellucid {
 namespace {
@@ -133,11 +134,12 @@ class GaussianFrames : public RandomFrames, public testing::WithParamInterface<G
       all.push_back({std::to_string(c), "", volume(values, spacing, centering, offset, size)});
     }
     Scene scene;
-    scene.channels = std::make_shared<const Channels>(std::move(all));
-    scene.multivariate = std::make_shared<const MultivariateTransferFunction>(
-        channels, primitives(channels, offset, size, 40));
+    test::channels_of(scene).channels = std::make_shared<const Channels>(std::move(all));
+    test::channels_of(scene).transfer_function =
+        std::make_shared<const MultivariateTransferFunction>(
+            channels, primitives(channels, offset, size, 40));
     scene.size = {12, 12};
-    scene.camera = default_camera(scene.channels->grid(), scene.size);
+    scene.camera = default_camera(test::channels_of(scene).channels->grid(), scene.size);
     const Vec3<double> axis[] = {{1, 0, 0}, {0, 1, 1}, {1, 1, 1}, {1, 0.01, 0}};
     Vec3<double> direction{uniform(-1, 1), uniform(-1, 1), uniform(-1, 1)};
     if (random_() % 3 == 0) direction = axis[random_() % 4];
@@ -164,7 +166,7 @@ Scene ramp_scene(int cells, float least, float off = 0) {
   Volume::Description description;
   description.dimensions = {cells + 1, 2, 2};
   Scene scene;
-  scene.channels = std::make_shared<const Channels>(std::vector<Channel>{
+  test::channels_of(scene).channels = std::make_shared<const Channels>(std::vector<Channel>{
       {"ramp", "", std::make_shared<Volume>(description, DataArray<float>(std::move(data)))}});
   scene.size = {4, 4};
   look_along_x(scene, 0.3);
@@ -189,7 +191,7 @@ TEST(GaussianMarchOfAFrame, IsTheOneThatIsLikelyToBeFaster) {
   if (no_packets()) GTEST_SKIP() << "this machine has no instruction set for packets";
   Scene scene = ramp_scene(48, 0, 0.005f);
   const auto in_steps = [&](double width, double tolerance) {
-    scene.multivariate = one_on_ramp(0.4, width, 1, 48);
+    test::channels_of(scene).transfer_function = one_on_ramp(0.4, width, 1, 48);
     scene.integration.tolerance = tolerance;
     RenderReport report;
     render(scene, {}, &report);
@@ -217,7 +219,7 @@ TEST_P(GaussianFrames, DoNotPassANarrowOneUnseen) {
     options.instruction_set = set;
     for (double center = 0.1; center < 0.9; center += 0.0137) {
       for (const double width : {0.03, 0.004, 0.0006}) {
-        scene.multivariate = one_on_ramp(center, width, 1, cells);
+        test::channels_of(scene).transfer_function = one_on_ramp(center, width, 1, cells);
         for (const double tolerance : {1e-2, 1.0 / 512, 1e-4}) {
           scene.integration.tolerance = tolerance;
           RenderReport report;
@@ -245,7 +247,7 @@ TEST_P(GaussianFrames, LargeValuesCostNoDigits) {
   Seen seen;
   Scene scene = ramp_scene(48, 1000);
   for (const double center : {1000.21, 1000.4, 1000.77}) {
-    scene.multivariate = one_on_ramp(center, 0.03, 1, 48);
+    test::channels_of(scene).transfer_function = one_on_ramp(center, 0.03, 1, 48);
     compare(scene, {1e-4}, seen);
     if (HasFatalFailure()) return;
   }
@@ -265,9 +267,9 @@ TEST_P(GaussianFrames, SeeWhatTurnsBetweenBlocks) {
       description.dimensions = {48, 8, 8};
       description.centering = centering;
       Scene scene = ramp_scene(47, 0);
-      scene.channels = std::make_shared<const Channels>(std::vector<Channel>{
+      test::channels_of(scene).channels = std::make_shared<const Channels>(std::vector<Channel>{
           {"turn", "", std::make_shared<Volume>(description, DataArray<float>(std::move(data)))}});
-      scene.multivariate = one_on_ramp(0, 0.1, 40, 48);
+      test::channels_of(scene).transfer_function = one_on_ramp(0, 0.1, 40, 48);
       look_along_x(scene, 3);
       compare(scene, {1e-2, 1e-4}, seen);
       if (HasFatalFailure()) return;
@@ -293,11 +295,11 @@ TEST_P(GaussianFrames, DoNotStepOverVacuum) {
   Volume::Description description;
   description.dimensions = {n, n, n};
   Scene scene = ramp_scene(n, 0);
-  scene.channels = std::make_shared<const Channels>(std::vector<Channel>{
+  test::channels_of(scene).channels = std::make_shared<const Channels>(std::vector<Channel>{
       {"wall", "", std::make_shared<Volume>(description, DataArray<float>(std::move(data)))}});
-  scene.multivariate = one_on_ramp(0.4815, 0.0003, 3, 1);
+  test::channels_of(scene).transfer_function = one_on_ramp(0.4815, 0.0003, 3, 1);
   scene.size = {16, 16};
-  scene.camera = default_camera(scene.channels->grid(), scene.size);
+  scene.camera = default_camera(test::channels_of(scene).channels->grid(), scene.size);
   const double far = length(scene.camera.position - scene.camera.focal_point);
   scene.camera.position = scene.camera.focal_point - Vec3<double>{1, 1, 1} * (far / std::sqrt(3));
   scene.camera.up = {0, 0, 1};
@@ -311,7 +313,7 @@ TEST_P(GaussianFrames, KeepRaysInTheFacesBehindWhatIsSkipped) {
   for (const int points : {17, 20, 21, 25, 33}) {
     SCOPED_TRACE(points);
     Scene scene = ramp_seen_in_faces(points, 18);
-    scene.multivariate = one_on_ramp(0.5, 0.1, 1, 30);
+    test::channels_of(scene).transfer_function = one_on_ramp(0.5, 0.1, 1, 30);
     RenderOptions options = GaussianFrames::options();
     const Image image = render(scene, options);
     for (const auto& pixel : image.pixels) EXPECT_NEAR(pixel[3], 1 - std::exp(-1.0), 3e-3);
@@ -330,9 +332,9 @@ TEST_P(GaussianFrames, LiveWithOutliers) {
     Volume::Description description;
     description.dimensions = {41, 9, 9};
     Scene scene = ramp_scene(40, 0);
-    scene.channels = std::make_shared<const Channels>(std::vector<Channel>{
+    test::channels_of(scene).channels = std::make_shared<const Channels>(std::vector<Channel>{
         {"ramp", "", std::make_shared<Volume>(description, DataArray<double>(std::move(data)))}});
-    scene.multivariate = one_on_ramp(0.05, 0.02, 2, 1);
+    test::channels_of(scene).transfer_function = one_on_ramp(0.05, 0.02, 2, 1);
     Seen seen;
     pellucid::compare(scene, {1e-2, 1e-4}, seen, Promise::honest, options());
     EXPECT_GT(seen.pixels, 0u);
@@ -348,7 +350,7 @@ TEST_P(GaussianFrames, DoNotTrustWhatCancels) {
                                           DataArray<float>(std::vector<float>(9 * 9 * 9, value)));
   };
   Scene scene = ramp_scene(9, 0);
-  scene.channels = std::make_shared<const Channels>(
+  test::channels_of(scene).channels = std::make_shared<const Channels>(
       std::vector<Channel>{{"a", "", constant(1.4e7f)}, {"b", "", constant(6000001.0f)}});
   GaussianPrimitive p;
   p.channels = {0, 1};
@@ -356,9 +358,9 @@ TEST_P(GaussianFrames, DoNotTrustWhatCancels) {
   p.matrix = {{0.3, -0.7}};
   p.extinction = 0.1;
   p.color = {1, 0.5, 0.25};
-  scene.multivariate =
+  test::channels_of(scene).transfer_function =
       std::make_shared<const MultivariateTransferFunction>(2, std::vector<GaussianPrimitive>{p});
-  scene.camera = default_camera(scene.channels->grid(), scene.size);
+  scene.camera = default_camera(test::channels_of(scene).channels->grid(), scene.size);
   Seen seen;
   compare(scene, {1e-2, 1e-4}, seen);
 }
@@ -376,10 +378,10 @@ TEST_P(GaussianFrames, DoNotKeepInStepWithTheCells) {
     Volume::Description description;
     description.dimensions = {cells + 1, 2, 2};
     Scene scene = ramp_scene(cells, 0);
-    scene.channels = std::make_shared<const Channels>(std::vector<Channel>{
+    test::channels_of(scene).channels = std::make_shared<const Channels>(std::vector<Channel>{
         {"wave", "", std::make_shared<Volume>(description, DataArray<float>(std::move(data)))}});
     const double depth = 4 * 0.6 * std::sqrt(std::numbers::pi);
-    scene.multivariate = one_on_ramp(0, 0.6, depth, cells);
+    test::channels_of(scene).transfer_function = one_on_ramp(0, 0.6, depth, cells);
     look_along_x(scene, 0.3, 2.0 * cells);
     compare(scene, {1e-2, 7e-3, 4e-3, 1.0 / 512, 1.4e-3, 1e-3}, seen);
     if (HasFatalFailure()) return;
@@ -407,7 +409,7 @@ TEST_P(GaussianFrames, AreTheSameForAnyNumberOfThreads) {
 /// The smallest tolerance for steps is one for them.
 TEST_P(GaussianFrames, GoDownToTheirSmallestTolerance) {
   Scene scene = ramp_scene(48, 0);
-  scene.multivariate = one_on_ramp(0.4, 0.1, 0.5, 48);
+  test::channels_of(scene).transfer_function = one_on_ramp(0.4, 0.1, 0.5, 48);
   for (const auto& [tolerance, steps] : {std::pair{1e-5, true}, {0.9e-5, false}}) {
     scene.integration.tolerance = tolerance;
     RenderReport report;

@@ -12,6 +12,7 @@
 
 #include "pellucid/cpu/render.h"
 #include "tests/packet/seen_closely.h"
+#include "tests/support/one_layer.h"
 
 namespace pellucid {
 namespace {
@@ -45,11 +46,10 @@ class GaussianPixelsBetween : public SeenClosely {
     for (const auto& volume : volumes) {
       channels.push_back({std::to_string(channels.size()), "", volume});
     }
-    scene.multivariate = std::make_shared<const MultivariateTransferFunction>(
-        static_cast<int>(channels.size()), std::move(primitives));
-    scene.channels = std::make_shared<const Channels>(std::move(channels));
-    scene.volume.reset();
-    scene.transfer_function.reset();
+    test::channels_of(scene).transfer_function =
+        std::make_shared<const MultivariateTransferFunction>(static_cast<int>(channels.size()),
+                                                             std::move(primitives));
+    test::channels_of(scene).channels = std::make_shared<const Channels>(std::move(channels));
     return scene;
   }
 

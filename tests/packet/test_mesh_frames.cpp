@@ -16,6 +16,7 @@
 #include "tests/packet/against_one_by_one.h"
 #include "tests/packet/random_frames.h"
 #include "tests/scene/lattice_mesh.h"
+#include "tests/support/one_layer.h"
 
 namespace pellucid {
 namespace {
@@ -92,8 +93,8 @@ class MeshFrames : public RandomFrames {
 
   virtual void set_data(Scene& scene, const std::shared_ptr<const TetrahedralMesh>& bodies,
                         double scale, double offset, double width) {
-    scene.mesh = channels(bodies, 1, scale, offset, width);
-    scene.transfer_function = table(scale, offset, width);
+    test::mesh_of(scene).mesh = channels(bodies, 1, scale, offset, width);
+    test::mesh_of(scene).transfer_function = table(scale, offset, width);
   }
 
   void expect_to_be_the_same_in_other_packets() {
@@ -127,7 +128,7 @@ class MultivariateMeshFrames : public MeshFrames {
   void set_data(Scene& scene, const std::shared_ptr<const TetrahedralMesh>& bodies, double scale,
                 double offset, double width) override {
     const int count = std::array<int, 6>{1, 1, 2, 3, 5, 8}[random_() % 6];
-    scene.mesh = channels(bodies, count, scale, offset, width);
+    test::mesh_of(scene).mesh = channels(bodies, count, scale, offset, width);
     std::vector<ChannelTransferFunction> tables;
     std::vector<GaussianPrimitive> gaussians;
     if (!one_of(8)) gaussians = primitives(count, offset, width, scale);
@@ -135,7 +136,7 @@ class MultivariateMeshFrames : public MeshFrames {
       const int channel = static_cast<int>(random_() % static_cast<unsigned>(count));
       tables.push_back({channel, *table(scale, offset, width)});
     }
-    scene.multivariate = std::make_shared<const MultivariateTransferFunction>(
+    test::mesh_of(scene).transfer_function = std::make_shared<const MultivariateTransferFunction>(
         count, std::move(gaussians), std::move(tables));
   }
 };

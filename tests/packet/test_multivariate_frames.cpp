@@ -14,6 +14,7 @@
 #include "pellucid/cpu/render.h"
 #include "pellucid/reference/render.h"
 #include "pellucid/scene/defaults.h"
+#include "tests/support/one_layer.h"
 
 namespace pellucid {
 namespace {
@@ -77,11 +78,11 @@ Scene make_scene(const Kind& kind, bool rectilinear) {
     tables.push_back(
         {0, TransferFunction({{0.2, 0, {1, 1, 1}}, {0.3, 0.2, {1, 0, 1}}, {0.4, 0, {}}})});
   }
-  scene.channels = std::make_shared<Channels>(channels);
-  scene.multivariate =
+  test::channels_of(scene).channels = std::make_shared<Channels>(channels);
+  test::channels_of(scene).transfer_function =
       std::make_shared<MultivariateTransferFunction>(kind.channels, primitives, tables);
   scene.size = {20, 20};
-  scene.camera = default_camera(scene.channels->grid(), scene.size);
+  scene.camera = default_camera(test::channels_of(scene).channels->grid(), scene.size);
   return scene;
 }
 
@@ -136,10 +137,11 @@ TEST(MultivariateFrame, ColorOfATableIsChargedWithTheRoundingOfTheData) {
   for (int i = 0; i < 125; ++i) values.push_back(1e6 + 2e-8 * unit(random));
   const auto volume = std::make_shared<Volume>(description, VolumeData(DataArray<double>(values)));
   Scene scene;
-  scene.channels = std::make_shared<Channels>(std::vector<Channel>{{"value", "", volume}});
+  test::channels_of(scene).channels =
+      std::make_shared<Channels>(std::vector<Channel>{{"value", "", volume}});
   std::vector<ChannelTransferFunction> tables{
       {0, TransferFunction({{1e6 - 1e-8, 0.4, {0, 0, 0}}, {1e6 + 1e-8, 0.4, {1, 1, 1}}})}};
-  scene.multivariate = std::make_shared<MultivariateTransferFunction>(
+  test::channels_of(scene).transfer_function = std::make_shared<MultivariateTransferFunction>(
       1, std::vector<GaussianPrimitive>{}, std::move(tables));
   scene.size = {12, 12};
   scene.camera = default_camera(*volume, scene.size);

@@ -235,7 +235,7 @@ TEST_F(PixelsBetween, AreNoneWhereTheyAreNotWanted) {
   far.camera.parallel_scale *= 10;  // many voxels from pixel to pixel
   EXPECT_EQ(between(far), 0u);
   Scene hole = scene;
-  hole.volume = make_volume({40, 36, 40}, [&](double x, double y, double z) {
+  test::volume_of(hole).volume = make_volume({40, 36, 40}, [&](double x, double y, double z) {
     return x + y + z > 0 ? field(x, y, z) : std::numeric_limits<double>::quiet_NaN();
   });
   EXPECT_EQ(between(hole), 0u);

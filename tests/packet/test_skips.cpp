@@ -12,6 +12,7 @@
 #include "pellucid/cpu/render.h"
 #include "pellucid/scene/defaults.h"
 #include "tests/packet/random_frames.h"
+#include "tests/support/one_layer.h"
 
 namespace pellucid {
 namespace {
@@ -73,10 +74,12 @@ class PacketSkips : public testing::TestWithParam<unsigned> {
     }
     Scene scene;
     description.name = "waves";
-    scene.volume = std::make_shared<Volume>(description, DataArray<float>(std::move(data)));
-    scene.transfer_function = std::make_shared<TransferFunction>(std::move(points));
+    test::volume_of(scene).volume =
+        std::make_shared<Volume>(description, DataArray<float>(std::move(data)));
+    test::volume_of(scene).transfer_function =
+        std::make_shared<TransferFunction>(std::move(points));
     scene.size = {20, 20};
-    scene.camera = default_camera(*scene.volume, scene.size);
+    scene.camera = default_camera(*test::volume_of(scene).volume, scene.size);
     if (one_in(2)) {
       scene.camera.projection = Projection::orthographic;
       scene.camera.parallel_scale =
@@ -122,9 +125,9 @@ TEST_P(PacketSkips, LoseNothing) {
 TEST(PacketSkip, KeepsRaysInTheFaces) {
   for (const int points : {17, 20, 21, 25, 33}) {
     Scene scene = ramp_seen_in_faces(points, 18);
-    scene.volume = scene.channels->begin()->volume;
-    scene.channels = nullptr;
-    scene.transfer_function =
+    const auto data = test::channels_of(scene).channels->begin()->volume;
+    test::volume_of(scene).volume = data;
+    test::volume_of(scene).transfer_function =
         std::make_shared<const TransferFunction>(std::vector<TransferFunction::Point>{
             {0.1, 0, {1, 1, 1}}, {0.2, 0.5, {1, 1, 1}}, {0.3, 0, {1, 1, 1}}});
     // 30 cells by unit, a triangle of width 0.2.
@@ -154,16 +157,17 @@ Scene ramp_behind(const std::vector<double>& peaks) {
     }
   }
   Scene scene;
-  scene.volume = std::make_shared<Volume>(description, DataArray<float>(std::move(data)));
+  test::volume_of(scene).volume =
+      std::make_shared<Volume>(description, DataArray<float>(std::move(data)));
   std::vector<TransferFunction::Point> points;
   for (const double peak : peaks) {
     points.push_back({peak, 0, {1, 1, 1}});
     points.push_back({peak + 0.01, 5, {1, 1, 1}});
     points.push_back({peak + 0.02, 0, {1, 1, 1}});
   }
-  scene.transfer_function = std::make_shared<TransferFunction>(std::move(points));
+  test::volume_of(scene).transfer_function = std::make_shared<TransferFunction>(std::move(points));
   scene.size = {32, 32};
-  scene.camera = default_camera(*scene.volume, scene.size);
+  scene.camera = default_camera(*test::volume_of(scene).volume, scene.size);
   return scene;
 }
 

@@ -11,6 +11,7 @@
 #include "src/reference/mesh.h"
 #include "tests/scenes/makers.h"
 #include "tests/scenes/meshes.h"
+#include "tests/support/one_layer.h"
 
 namespace pellucid {
 namespace {
@@ -26,8 +27,8 @@ constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 Scene scene_of(const MeshPointer& mesh, MeshChannel channel, scenes::Points points) {
   Scene scene;
-  scene.mesh = on_mesh(mesh, {std::move(channel)});
-  scene.transfer_function = scenes::transfer(std::move(points));
+  test::mesh_of(scene).mesh = on_mesh(mesh, {std::move(channel)});
+  test::mesh_of(scene).transfer_function = scenes::transfer(std::move(points));
   return scene;
 }
 
@@ -88,7 +89,8 @@ TEST(ReferenceMesh, ConstantDataInACubeAreASlab) {
   const Scene points = scene_of(mesh, at_points(*mesh, "one", [](const Place&) { return 1.0; }),
                                 {{0, 0, {0, 0, 0}}, {2, 1, {1, 2, 3}}});
   Scene cells = points;
-  cells.mesh = on_mesh(mesh, {at_cells(*mesh, "one", [](const Place&) { return 1.0; })});
+  test::mesh_of(cells).mesh =
+      on_mesh(mesh, {at_cells(*mesh, "one", [](const Place&) { return 1.0; })});
   const struct {
     Place origin, direction;
     double length;
@@ -124,26 +126,26 @@ TEST(ReferenceMesh, LinearDataOnAGridAreThoseOfItsTetrahedra) {
                                           return Place{1.0 * i, 1.0 * j, 1.0 * k};
                                         }}));
   Scene grid;
-  grid.volume = volume;
-  grid.transfer_function = scenes::transfer({{0, 0, {1, 0, 0}},
-                                             {2, 0.3, {0.2, 1, 0}},
-                                             {2, 0.1, {0, 0.2, 1}},
-                                             {4.001, 0.1, {1, 1, 1}},
-                                             {4.003, 90, {1, 0, 1}},
-                                             {4.005, 0.2, {0.5, 1, 1}},
-                                             {7, 2, {3, 1, 0}}});
+  test::volume_of(grid).volume = volume;
+  test::volume_of(grid).transfer_function = scenes::transfer({{0, 0, {1, 0, 0}},
+                                                              {2, 0.3, {0.2, 1, 0}},
+                                                              {2, 0.1, {0, 0.2, 1}},
+                                                              {4.001, 0.1, {1, 1, 1}},
+                                                              {4.003, 90, {1, 0, 1}},
+                                                              {4.005, 0.2, {0.5, 1, 1}},
+                                                              {7, 2, {3, 1, 0}}});
   Scene tetrahedra;
-  tetrahedra.mesh =
+  test::mesh_of(tetrahedra).mesh =
       on_mesh(mesh, {at_points(*mesh, "f", [&](const Place& p) { return field(p.x, p.y, p.z); })});
-  tetrahedra.transfer_function = grid.transfer_function;
+  test::mesh_of(tetrahedra).transfer_function = test::volume_of(grid).transfer_function;
 
   Scene grid_of_two, mesh_of_two;
-  grid_of_two.channels = std::make_shared<const Channels>(std::vector<Channel>{
+  test::channels_of(grid_of_two).channels = std::make_shared<const Channels>(std::vector<Channel>{
       {"f", "", volume},
       {"g", "",
        scenes::make_volume<double>(scenes::grid_description({n + 1, n + 1, n + 1}),
                                    [&](int i, int j, int k) { return field(k, i, j); })}});
-  mesh_of_two.mesh =
+  test::mesh_of(mesh_of_two).mesh =
       on_mesh(mesh, {at_points(*mesh, "f", [&](const Place& p) { return field(p.x, p.y, p.z); }),
                      at_points(*mesh, "g", [&](const Place& p) { return field(p.z, p.x, p.y); })});
   GaussianPrimitive gaussian;
@@ -152,10 +154,11 @@ TEST(ReferenceMesh, LinearDataOnAGridAreThoseOfItsTetrahedra) {
   gaussian.matrix = {{9, -5}, {0.5, 0.5}};
   gaussian.extinction = 3;
   gaussian.color = {1, 0.5, 0.2};
-  grid_of_two.multivariate = mesh_of_two.multivariate =
-      std::make_shared<const MultivariateTransferFunction>(
-          2, std::vector{gaussian},
-          std::vector<ChannelTransferFunction>{{1, *grid.transfer_function}});
+  const auto both = std::make_shared<const MultivariateTransferFunction>(
+      2, std::vector{gaussian},
+      std::vector<ChannelTransferFunction>{{1, *test::volume_of(grid).transfer_function}});
+  test::channels_of(grid_of_two).transfer_function = both;
+  test::mesh_of(mesh_of_two).transfer_function = both;
 
   std::mt19937 random(3);
   const auto draw = [&] { return static_cast<double>(random()) / 4294967296.0 * n; };

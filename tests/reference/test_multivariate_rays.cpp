@@ -8,6 +8,7 @@
 #include "tests/reference/multivariate.h"
 #include "tests/scenes/analytic.h"
 #include "tests/support/accuracy.h"
+#include "tests/support/one_layer.h"
 #include "tests/support/wide_functions.h"
 
 namespace pellucid {
@@ -240,8 +241,8 @@ TEST(ReferenceMultivariateRay, TablesAloneAreTheUnivariateScene) {
 /// The image against single rays, and the scene's overload against that of its parts.
 TEST(ReferenceMultivariateRay, PixelsOfASceneAreItsRays) {
   Scene scene;
-  scene.channels = std::make_shared<const Channels>(coordinates({5, 4, 3}));
-  scene.multivariate = std::make_shared<const MultivariateTransferFunction>(
+  test::channels_of(scene).channels = std::make_shared<const Channels>(coordinates({5, 4, 3}));
+  test::channels_of(scene).transfer_function = std::make_shared<const MultivariateTransferFunction>(
       3, std::vector<GaussianPrimitive>{make_gaussian({2, 1.5, 1}, {0.8, 0.7, 0.6}, 3, orange)});
   scene.camera.position = {9, 4, 5};
   scene.camera.focal_point = {2, 1.5, 1};

@@ -9,6 +9,7 @@
 #include "pellucid/scene/error.h"
 #include "src/reference/camera.h"
 #include "tests/scenes/peers.h"
+#include "tests/support/one_layer.h"
 
 namespace pellucid {
 namespace {
@@ -25,8 +26,8 @@ Scene corner_scene(Projection projection) {
   std::vector<float> values;
   for (int i = 0; i < 27; ++i) values.push_back(static_cast<float>((i % 3) + (i / 3) % 3) / 4);
   Scene scene;
-  scene.volume = std::make_shared<const Volume>(d, VolumeData(values));
-  scene.transfer_function = std::make_shared<const TransferFunction>(
+  test::volume_of(scene).volume = std::make_shared<const Volume>(d, VolumeData(values));
+  test::volume_of(scene).transfer_function = std::make_shared<const TransferFunction>(
       std::vector<TransferFunction::Point>{{0, 0, {1, 1, 1}}, {1, 4, {1, 1, 1}}});
   scene.camera.projection = projection;
   scene.camera.position = {0, 0, 6};
@@ -51,7 +52,8 @@ TEST(ReferenceRender, PixelsAreTheRaysOfTheCamera) {
       for (int column = 0; column < image.width; ++column) {
         const Ray<double> ray = frame.ray(column, row);
         const ReferencePixel pixel =
-            reference_ray(*scene.volume, *scene.transfer_function, ray.origin, ray.direction);
+            reference_ray(*test::volume_of(scene).volume, *test::volume_of(scene).transfer_function,
+                          ray.origin, ray.direction);
         EXPECT_NEAR(static_cast<double>(image.at(column, row)[0]), pixel.radiance.r, 1e-7);
         EXPECT_NEAR(static_cast<double>(image.at(column, row)[3]), pixel.opacity, 1e-7);
         const float depth = image.depth[static_cast<std::size_t>(row * image.width + column)];

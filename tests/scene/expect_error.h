@@ -24,3 +24,14 @@ void expect_error(Call&& call, std::initializer_list<const char*> parts) {
   }
   ADD_FAILURE() << "no error was thrown; expected one with \"" << *parts.begin() << "\"";
 }
+
+/// Returns the message of the pellucid::Error that the call throws; empty if it throws none.
+template <class Call>
+std::string error_message(Call&& call) {
+  try {
+    call();
+  } catch (const pellucid::Error& error) {
+    return error.what();
+  }
+  return {};
+}

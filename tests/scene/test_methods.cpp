@@ -32,19 +32,19 @@ std::shared_ptr<const MeshChannels> mesh() {
 
 Scene scene_of(bool of_mesh, bool of_gaussians) {
   Scene scene;
+  const auto gaussians = std::make_shared<const MultivariateTransferFunction>(
+      1, std::vector<GaussianPrimitive>{{{0}, {0.5}, {{4}}, 1, {1, 1, 1}}});
+  const auto table = std::make_shared<const TransferFunction>(
+      std::vector<TransferFunction::Point>{{0, 1, {1, 1, 1}}});
   if (of_mesh) {
-    scene.mesh = mesh();
+    MeshContent content{mesh(), table};
+    if (of_gaussians) content.transfer_function = gaussians;
+    scene.layers = {{content}};
   } else if (of_gaussians) {
-    scene.channels = std::make_shared<Channels>(std::vector<Channel>{{"a", "", grid()}});
+    scene.layers = {{ChannelsContent{
+        std::make_shared<Channels>(std::vector<Channel>{{"a", "", grid()}}), gaussians}}};
   } else {
-    scene.volume = grid();
-  }
-  if (of_gaussians) {
-    scene.multivariate = std::make_shared<MultivariateTransferFunction>(
-        1, std::vector<GaussianPrimitive>{{{0}, {0.5}, {{4}}, 1, {1, 1, 1}}});
-  } else {
-    scene.transfer_function =
-        std::make_shared<TransferFunction>(std::vector<TransferFunction::Point>{{0, 1, {1, 1, 1}}});
+    scene.layers = {{VolumeContent{grid(), table, nullptr}}};
   }
   check_data(scene);
   return scene;

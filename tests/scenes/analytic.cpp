@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "tests/scenes/makers.h"
+#include "tests/support/one_layer.h"
 
 namespace pellucid::scenes {
 namespace {
@@ -445,8 +446,8 @@ std::vector<AnalyticRay> analytic_rays() {
 
 Scene one_pixel_scene(const AnalyticRay& ray) {
   Scene scene;
-  scene.volume = ray.volume;
-  scene.transfer_function = ray.transfer_function;
+  test::volume_of(scene).volume = ray.volume;
+  test::volume_of(scene).transfer_function = ray.transfer_function;
   scene.camera.projection = Projection::orthographic;
   scene.camera.position = ray.origin;
   scene.camera.focal_point = ray.origin + ray.direction;

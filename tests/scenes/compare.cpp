@@ -14,6 +14,7 @@
 #include "pellucid/scene/transfer_tables_storage.h"
 #include "tests/scenes/difference.h"
 #include "tests/support/accuracy.h"
+#include "tests/support/one_layer.h"
 
 namespace pellucid::scenes {
 namespace {
@@ -22,16 +23,18 @@ namespace {
 void expect_exact_rays(const NamedScene& named) {
   const Scene& scene = named.scene;
   const CameraFrame<double> camera = make_camera_frame(scene.camera, scene.size);
-  const TransferTablesStorage transfer(*scene.transfer_function);
-  const RayTolerance wanted{ray_bound, Grade::estimated, Precision::float64,
-                            std::max(1.0, scene.transfer_function->largest_color())};
+  const TransferTablesStorage transfer(*test::volume_of(scene).transfer_function);
+  const RayTolerance wanted{
+      ray_bound, Grade::estimated, Precision::float64,
+      std::max(1.0, test::volume_of(scene).transfer_function->largest_color())};
   test::ErrorRecord light(named.name + ", rays", ""), depth("  half-opacity depth", "");
   for (int pixel = 3; pixel < scene.size.width * scene.size.height; pixel += 7) {
     const Ray<double> ray = camera.ray(pixel % scene.size.width, pixel / scene.size.width);
     const ReferencePixel truth =
-        reference_ray(*scene.volume, *scene.transfer_function, ray.origin, ray.direction);
-    const RayResult result = scene.volume->visit([&](const auto& grid) {
-      return integrate_ray(grid, nullptr, scene.volume->grid_from_world().ray(ray),
+        reference_ray(*test::volume_of(scene).volume, *test::volume_of(scene).transfer_function,
+                      ray.origin, ray.direction);
+    const RayResult result = test::volume_of(scene).volume->visit([&](const auto& grid) {
+      return integrate_ray(grid, nullptr, test::volume_of(scene).volume->grid_from_world().ray(ray),
                            transfer.tables(), wanted, true);
     });
     const std::string where = "pixel " + std::to_string(pixel);
@@ -49,8 +52,8 @@ void expect_exact_rays(const NamedScene& named) {
   EXPECT_LE(light.largest(), ray_bound) << named.name;
   // What is looked for inside of a cell (pellucid/render/integrate_ray.h); all grids here are
   // uniform.
-  const long double cell_diagonal =
-      static_cast<long double>(length(scene.volume->description().placement.spacing));
+  const long double cell_diagonal = static_cast<long double>(
+      length(test::volume_of(scene).volume->description().placement.spacing));
   EXPECT_LE(depth.largest(), cell_diagonal * 0x1p-23L) << named.name;
 }
 

@@ -5,8 +5,9 @@ namespace pellucid::scenes {
 
 Gallery gallery() {
   Gallery all;
-  for (const auto group : {marschner_lobb_gallery, scan_gallery, cell_gallery, table_gallery,
-                           grid_gallery, stride_gallery, gaussian_gallery, mesh_gallery}) {
+  for (const auto group :
+       {marschner_lobb_gallery, scan_gallery, cell_gallery, table_gallery, grid_gallery,
+        stride_gallery, gaussian_gallery, mesh_gallery, layer_gallery}) {
     for (GalleryEntry& entry : group()) all.push_back(std::move(entry));
   }
   return all;
@@ -15,9 +16,16 @@ Gallery gallery() {
 Scene scene_of(const Exhibit& exhibit, std::size_t camera, int size) {
   Scene scene = make_scene(exhibit.volume, exhibit.transfer_function,
                            exhibit.cameras.at(camera).camera, {size, size});
-  scene.channels = exhibit.channels;
-  scene.multivariate = exhibit.multivariate;
-  scene.mesh = exhibit.mesh;
+  if (!exhibit.layers.empty()) {
+    scene.layers = exhibit.layers;
+    scene.clips = exhibit.clips;
+  } else if (exhibit.mesh && exhibit.multivariate) {
+    scene.layers = {{MeshContent{exhibit.mesh, exhibit.multivariate}}};
+  } else if (exhibit.mesh) {
+    scene.layers = {{MeshContent{exhibit.mesh, exhibit.transfer_function}}};
+  } else if (exhibit.channels) {
+    scene.layers = {{ChannelsContent{exhibit.channels, exhibit.multivariate}}};
+  }
   scene.samples = exhibit.samples;
   return scene;
 }

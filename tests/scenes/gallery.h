@@ -21,6 +21,9 @@ struct Exhibit {
   std::shared_ptr<const MultivariateTransferFunction> multivariate{};
   /// In place of `volume` or `channels`.
   std::shared_ptr<const MeshChannels> mesh{};
+  /// In place of all of these.
+  std::vector<Layer> layers{};
+  std::vector<Clip> clips{};
 };
 
 /// Makes an exhibit for images of size × size pixels. Only cameras depend on the size: those that
@@ -49,6 +52,7 @@ Gallery grid_gallery();            ///< placements, types and values of the data
 Gallery stride_gallery();          ///< what estimates over several cells can miss
 Gallery gaussian_gallery();        ///< Gaussians over several channels
 Gallery mesh_gallery();            ///< tetrahedra
+Gallery layer_gallery();           ///< several layers, clips, labels and masks
 
 /// One of the exhibit's cameras, with the integration that a scene has by default.
 Scene scene_of(const Exhibit& exhibit, std::size_t camera, int size);

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "pellucid/scene/builtin_fields.h"
+#include "tests/support/one_layer.h"
 
 namespace pellucid::scenes {
 
@@ -68,8 +69,8 @@ TransferPointer with_tabulated_color(const std::function<double(double)>& extinc
 Scene make_scene(VolumePointer volume, TransferPointer transfer_function, const Camera& camera,
                  ImageSize size) {
   Scene scene;
-  scene.volume = std::move(volume);
-  scene.transfer_function = std::move(transfer_function);
+  test::volume_of(scene).volume = std::move(volume);
+  test::volume_of(scene).transfer_function = std::move(transfer_function);
   scene.camera = camera;
   scene.size = size;
   return scene;

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "pellucid/io/read_volume.h"
+#include "tests/support/one_layer.h"
 #include "tests/support/test_data.h"
 
 namespace pellucid::scenes {
@@ -67,11 +68,11 @@ VolumePointer read(const RealData& data) {
 
 std::vector<NamedScene> real_scenes(const RealData& data, ImageSize size) {
   Scene scene;
-  scene.volume = read(data);
-  scene.transfer_function = std::make_shared<const TransferFunction>(data.points);
+  test::volume_of(scene).volume = read(data);
+  test::volume_of(scene).transfer_function = std::make_shared<const TransferFunction>(data.points);
   scene.size = size;
 
-  const auto corners = scene.volume->world_corners();
+  const auto corners = test::volume_of(scene).volume->world_corners();
   Vec3<double> centre{};
   for (const Vec3<double>& corner : corners) centre = centre + corner * 0.125;
   const double radius = length(corners[7] - centre);

@@ -39,9 +39,13 @@ std::array<double, 4> reference_pixel(const ReferenceRays& rays, int samples,
 ReferenceFrame reference_frame(const Scene& scene, int threads) {
   const CameraFrame<double> camera = make_camera_frame(scene.camera, scene.size);
   const ReferenceRays rays(scene);
-  const double size =
-      scene.mesh ? length(scene.mesh->mesh().bounds().upper - scene.mesh->mesh().bounds().lower)
-                 : 0;
+  double size = 0;
+  for (const Layer& layer : scene.layers) {
+    const auto* const content = std::get_if<MeshContent>(&layer.content);
+    if (content == nullptr) continue;
+    const Box<double>& box = content->mesh->mesh().bounds();
+    size = std::max(size, length(box.upper - box.lower));
+  }
   ReferenceFrame frame{scene.size.width, scene.size.height, {}};
   const auto width = static_cast<std::size_t>(frame.width);
   frame.pixels.resize(width * static_cast<std::size_t>(frame.height));

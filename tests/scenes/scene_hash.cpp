@@ -67,22 +67,66 @@ void add_terms(Hash& hash, const MultivariateTransferFunction& function) {
   }
 }
 
+void add_clips(Hash& hash, const std::vector<Clip>& clips) {
+  for (const Clip& clip : clips) {
+    hash.add_numbers(clip.shape.index(), clip.keep_inside);
+    if (const auto* plane = std::get_if<ClipPlane>(&clip.shape)) {
+      hash.add_vector(plane->point);
+      hash.add_vector(plane->normal);
+    } else if (const auto* box = std::get_if<ClipBox>(&clip.shape)) {
+      hash.add_vector(box->lower);
+      hash.add_vector(box->upper);
+    } else if (const auto* sphere = std::get_if<ClipSphere>(&clip.shape)) {
+      hash.add_vector(sphere->center);
+      hash.add_numbers(sphere->radius);
+    } else if (const auto* cylinder = std::get_if<ClipCylinder>(&clip.shape)) {
+      hash.add_vector(cylinder->start);
+      hash.add_vector(cylinder->end);
+      hash.add_numbers(cylinder->radius);
+    }
+  }
+}
+
+/// A layer in its place, whose transform is the identity, has the hash of its data and function.
+void add_layer(Hash& hash, const Layer& layer) {
+  if (const auto* mesh = std::get_if<MeshContent>(&layer.content)) {
+    add_mesh(hash, *mesh->mesh);
+    if (mesh->multivariate() != nullptr) {
+      add_terms(hash, *mesh->multivariate());
+    } else {
+      add_points(hash, *mesh->univariate());
+    }
+  } else if (const auto* channels = std::get_if<ChannelsContent>(&layer.content)) {
+    for (const Channel& channel : *channels->channels) add_volume(hash, *channel.volume);
+    add_terms(hash, *channels->transfer_function);
+  } else if (const auto* labels = std::get_if<LabelContent>(&layer.content)) {
+    add_volume(hash, labels->labels->volume());
+    add_points(hash, labels->table->function());
+  } else {
+    const auto& volume = std::get<VolumeContent>(layer.content);
+    add_volume(hash, *volume.volume);
+    add_points(hash, *volume.transfer_function);
+    if (volume.mask) {
+      add_volume(hash, volume.mask->labels().volume());
+      for (const LabelMask::Choice& choice : volume.mask->choices()) {
+        hash.add_numbers(choice.label);
+        add_points(hash, *choice.transfer_function);
+      }
+    }
+  }
+  add_clips(hash, layer.clips);
+  if (!layer.visible) hash.add_numbers(1);
+  if (is_in_place(layer)) return;
+  for (const Vec3<double>& column : layer.transform.matrix.column) hash.add_vector(column);
+  hash.add_vector(layer.transform.translation);
+}
+
 }  // namespace
 
 std::uint64_t scene_hash(const Scene& scene) {
   Hash hash;
-  if (scene.mesh) {
-    add_mesh(hash, *scene.mesh);
-  } else if (scene.channels) {
-    for (const Channel& channel : *scene.channels) add_volume(hash, *channel.volume);
-  } else {
-    add_volume(hash, *scene.volume);
-  }
-  if (scene.multivariate) {
-    add_terms(hash, *scene.multivariate);
-  } else {
-    add_points(hash, *scene.transfer_function);
-  }
+  for (const Layer& layer : scene.layers) add_layer(hash, layer);
+  add_clips(hash, scene.clips);
   const Camera& c = scene.camera;
   hash.add_vector(c.position);
   hash.add_vector(c.focal_point);

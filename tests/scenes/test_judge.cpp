@@ -8,6 +8,7 @@
 #include "tests/scenes/reference_frame.h"
 #include "tests/scenes/scene_hash.h"
 #include "tests/scenes/tolerance_matrix.h"
+#include "tests/support/one_layer.h"
 
 /// The judge of the tolerance, judged.
 namespace pellucid::scenes {
@@ -162,10 +163,11 @@ TEST(SceneHash, SeesWhatThePictureDependsOnAndNothingElse) {
   other.size.width += 1;
   EXPECT_NE(scene_hash(other), hash);
   other = scene;
-  other.transfer_function = transfer({{0, 0.5, {0, 0, 1}}, {1, 2, {1, 0.5, 1e-3}}});
+  test::volume_of(other).transfer_function =
+      transfer({{0, 0.5, {0, 0, 1}}, {1, 2, {1, 0.5, 1e-3}}});
   EXPECT_NE(scene_hash(other), hash);
   other = scene;
-  other.volume = builtin("marschner_lobb", 18);
+  test::volume_of(other).volume = builtin("marschner_lobb", 18);
   EXPECT_NE(scene_hash(other), hash);
 }
 
@@ -178,11 +180,12 @@ TEST(SceneHash, SeesEveryChannelAndEveryTerm) {
   const TransferFunction table({{0, 1, {1, 1, 1}}});
   const auto scene = [&](int points, const GaussianPrimitive& primitive, int channel) {
     Scene result;
-    result.channels = std::make_shared<const Channels>(std::vector<Channel>{
+    test::channels_of(result).channels = std::make_shared<const Channels>(std::vector<Channel>{
         {"a", "", builtin("marschner_lobb", points)}, {"b", "", builtin("sphere", points)}});
-    result.multivariate = std::make_shared<const MultivariateTransferFunction>(
-        2, std::vector<GaussianPrimitive>{primitive},
-        std::vector<ChannelTransferFunction>{{channel, table}});
+    test::channels_of(result).transfer_function =
+        std::make_shared<const MultivariateTransferFunction>(
+            2, std::vector<GaussianPrimitive>{primitive},
+            std::vector<ChannelTransferFunction>{{channel, table}});
     return scene_hash(result);
   };
   const auto hash = scene(9, gaussian, 0);

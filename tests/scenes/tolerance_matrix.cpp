@@ -9,7 +9,7 @@ namespace {
 void measure_sampling(Scene scene, const ReferenceFrame& reference, const MatrixOptions& options,
                       MatrixRow& row) {
   scene.integration = {};
-  if (scene.mesh) {
+  if (only_content<MeshContent>(scene) != nullptr) {
     scene.integration.method = Method::average;
   } else {
     scene.integration.method = Method::midpoint;

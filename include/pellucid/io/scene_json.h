@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -15,13 +16,45 @@
 
 namespace pellucid {
 
-/// A scene as written in a file; no data are read or rendered yet. Absent keys have their defaults.
-/// docs/reference/scene.md describes every key; scene.schema.json beside it is the JSON Schema.
-struct SceneDescription {
+/// A segmentation as named in a scene, with the look of its labels.
+struct LabelSource {
+  FieldSource field;
+  /// Looks by label; they replace those of the table. Both empty: default_label_table().
+  std::vector<LabelStyle> styles;
+  std::filesystem::path table;  ///< of ITK-SNAP or 3D Slicer (read_label_table()); may be empty
+  /// Extinction of labels that the table shows as opaque; none: that of default_label_table().
+  std::optional<double> extinction;
+};
+
+/// Labels that choose the transfer function of a layer's field (LabelMask).
+struct MaskSource {
+  struct Choice {
+    std::int32_t label = 0;
+    TransferFunctionDescription transfer_function;
+  };
+  FieldSource field;
+  std::vector<Choice> choices;
+};
+
+/// A layer as written in a file. Absent keys have their defaults.
+struct LayerDescription {
+  std::string name;
+  bool visible = true;
   FieldSource field;
   std::vector<ChannelSource> channels;  ///< replaces `field` unless empty
   std::optional<MeshSource> mesh;       ///< replaces `field` and `channels`
+  std::optional<LabelSource> labels;    ///< replaces all of these
   std::optional<TransferFunctionDescription> transfer_function;
+  std::optional<MaskSource> mask;
+  Affine<double> transform;
+  std::vector<Clip> clips;
+};
+
+/// A scene as written in a file; no data are read or rendered yet. Absent keys have their defaults.
+/// docs/reference/scene.md describes every key; scene.schema.json beside it is the JSON Schema.
+struct SceneDescription {
+  std::vector<LayerDescription> layers{LayerDescription{}};
+  std::vector<Clip> clips;
   std::optional<Camera> camera;
   ImageSize size;
   int samples = 1;
@@ -59,19 +92,21 @@ Camera parse_camera(std::string_view json, const std::string& name);
 /// Returns the bare object. Throws Error if a number is not finite.
 std::string camera_to_json(const Camera& camera);
 
-/// Returns the channels that the scene's function uses: the scene's own channels, or its field as
+/// Returns the channels that the layer's function uses: the layer's own channels, or its field as
 /// "value", followed by the field's "gradient_magnitude" and "second_derivative" if a Gaussian or a
-/// table names them. Empty for a field with a function of one variable, and for a mesh.
-std::vector<ChannelSource> scene_channels(const SceneDescription& description);
-/// Returns the names of the channels that a multivariate function of this scene would use.
-std::vector<std::string> function_channels(const SceneDescription& description);
-/// Returns the names that a term of the scene's function may refer to; for a field all three.
-std::vector<std::string> known_channels(const SceneDescription& description);
+/// table names them. Empty for a field with a function of one variable, for a mesh and for labels.
+std::vector<ChannelSource> layer_channels(const LayerDescription& layer);
+/// Returns the names of the channels that a multivariate function of this layer would use.
+std::vector<std::string> function_channels(const LayerDescription& layer);
+/// Returns the names that a term of the layer's function may refer to; for a field all three.
+std::vector<std::string> known_channels(const LayerDescription& layer);
 
-/// Reads the data, and adds the defaults for the camera and for the transfer function of a field or
-/// of one array of a mesh. `mesh_used` receives the scene's mesh, with the default array if the
-/// scene selects none. Throws Error, also if there are several channels and no function of them.
+/// Reads the data, and adds the defaults for the camera (default_camera() of visible_corners()),
+/// for the transfer function of a field or of one array of a mesh, and for the look of labels.
+/// `meshes_used` receives the mesh of each layer, with the default array if the layer selects none;
+/// without a file for other layers. Throws Error, also if there are several channels and no
+/// function of them.
 Scene make_scene(const SceneDescription& description, const ParallelFor& parallel = {},
-                 MeshSource* mesh_used = nullptr);
+                 std::vector<MeshSource>* meshes_used = nullptr);
 
 }  // namespace pellucid

@@ -19,13 +19,19 @@ class MultivariateRayIntegrator {
   PELLUCID_HD MultivariateRayIntegrator(const MultivariateTransfer<double>& transfer,
                                         double largest_extinction, const RayTolerance& wanted,
                                         double length) noexcept
-      : transfer_(transfer),
+      : transfer_(&transfer),
         largest_extinction_(largest_extinction),
         tolerance_(wanted.tolerance),
         length_(length),
         budget_(wanted.tolerance, length) {
     demand_.grade = wanted.grade;
     demand_.largest_color = max(wanted.largest_color, 1.0);
+  }
+
+  /// Uses another function for the spans from here on. `largest_extinction` of the constructor must
+  /// bound all of them.
+  PELLUCID_HD void set_transfer(const MultivariateTransfer<double>& transfer) noexcept {
+    transfer_ = &transfer;
   }
 
   /// Requests the position at which the optical depth reaches `depth`; the ray ends there.
@@ -123,13 +129,16 @@ class MultivariateRayIntegrator {
   template <class Span>
   PELLUCID_HD PanelSegment<double> integrate(const Span& whole, double begin, double end,
                                              double left_out) noexcept {
-    const Span span = begin == 0 && end == 1 ? whole : whole.part(transfer_.channels, begin, end);
+    Span part;
+    const bool cut = begin > 0 || end < 1;
+    if (cut) part = whole.part(transfer_->channels, begin, end);
+    const Span& span = cut ? part : whole;
     const auto allowance = [&](double opacity) noexcept {
       return max(budget_.allowance(span.length, opacity, fold_.transparency()),
                  RayBudget<double>::minimum_allowance(tolerance_, span.length / length_));
     };
     const PanelSegment<double> panel =
-        integrate_multivariate_panel(transfer_, span, demand_, allowance);
+        integrate_multivariate_panel(*transfer_, span, demand_, allowance);
     if (!panel.done) return panel;
     ++panels_;
     const double error = panel.error(demand_.largest_color) +
@@ -156,7 +165,7 @@ class MultivariateRayIntegrator {
     demand.grade = Grade::proved;
     const auto nothing = [](double) noexcept { return 0.0; };
     const auto inside = [&](double to) noexcept {
-      return integrate_multivariate_panel(transfer_, span.part(transfer_.channels, begin, to),
+      return integrate_multivariate_panel(*transfer_, span.part(transfer_->channels, begin, to),
                                           demand, nothing)
           .found.segment.optical_depth;
     };
@@ -165,7 +174,7 @@ class MultivariateRayIntegrator {
     found_ = range.begin + at * (range.end - range.begin);
   }
 
-  const MultivariateTransfer<double>& transfer_;
+  const MultivariateTransfer<double>* transfer_;
   double largest_extinction_;
   double tolerance_, length_;
   PanelDemand<double> demand_;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <optional>
 
 #include "pellucid/scene/scene.h"
 
@@ -26,6 +27,14 @@ TransferFunction default_transfer_function(const Volume& volume);
 /// a boundary layer has many points and little volume. A class is assumed to have the shape of the
 /// box around the mesh, scaled to the fraction of the box that the class fills.
 TransferFunction default_transfer_function(const MeshChannels& mesh);
+
+/// Returns a look for every label of a segmentation but 0: distinct colors, in the order of the
+/// labels, and one extinction; default_label_extinction() if none is given. A segmentation without
+/// other labels shows 0.
+LabelTable default_label_table(const LabelVolume& labels, std::optional<double> extinction = {});
+/// Returns the extinction that makes a label opaque to one half on a fortieth of the longest way
+/// through the volume.
+double default_label_extinction(const Volume& volume);
 
 /// Returns a perspective camera of 30° that shows the whole box of the volume with a margin of 5 %,
 /// from the direction (½ cos 20°, -cos 30° cos 20°, sin 20°) with +z up. Medical data (LPS) are

@@ -2,19 +2,16 @@
 #pragma once
 
 #include <array>
-#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "pellucid/error/grade.h"
 #include "pellucid/error/precision.h"
 #include "pellucid/render/camera.h"
-#include "pellucid/scene/channels.h"
-#include "pellucid/scene/mesh_channels.h"
-#include "pellucid/scene/multivariate_transfer_function.h"
-#include "pellucid/scene/transfer_function.h"
-#include "pellucid/scene/volume.h"
+#include "pellucid/scene/clip.h"
+#include "pellucid/scene/layer.h"
 
 namespace pellucid {
 
@@ -94,16 +91,12 @@ struct Integration {
   double set_tolerance(double wanted);
 };
 
-/// A volume with its transfer function, several channels with a multivariate one, or a mesh with
-/// either, as seen by a camera.
+/// What is seen, by which camera, and how accurately. Where layers overlap, their extinctions add,
+/// and so do extinction · color: a mixture of particles (Max 1995). The order of the layers does
+/// not matter.
 struct Scene {
-  std::shared_ptr<const Volume> volume;
-  std::shared_ptr<const TransferFunction> transfer_function;
-  /// Replaces `volume` and `transfer_function`.
-  std::shared_ptr<const Channels> channels;
-  std::shared_ptr<const MultivariateTransferFunction> multivariate;
-  /// Replaces `volume` or `channels`.
-  std::shared_ptr<const MeshChannels> mesh;
+  std::vector<Layer> layers;
+  std::vector<Clip> clips;  ///< of all layers; what all of them keep is shown
   Camera camera;
   ImageSize size;
   /// A pixel is the mean of samples × samples rays through the centres of its equal parts.
@@ -112,25 +105,32 @@ struct Scene {
   std::optional<Rgb<double>> background;  ///< linear; none: the image stays transparent
 };
 
-/// Throws Error unless the scene has exactly one of: a volume with a transfer function, channels
-/// with a multivariate one, a mesh with either. Also throws if the function expects another number
-/// of channels.
+/// Throws Error unless there is a layer and every layer passes check_layer().
 void check_data(const Scene& scene);
-/// Returns the volume whose grid the rays cross. The scene must have passed check_data() and have
-/// no mesh.
-const Volume& grid_volume(const Scene& scene) noexcept;
-/// Returns the corners of a box around the data: the grid's own box, or for a mesh a box along the
-/// world's axes. The scene must have passed check_data().
+/// Returns the corners of a box around the data: of a single visible layer its world_corners(), of
+/// several a box along the world's axes; of all layers if none is visible. The scene must have
+/// passed check_data().
 std::array<Vec3<double>, 8> world_corners(const Scene& scene) noexcept;
-/// Returns the largest color component of the transfer function. The scene must have passed
+/// Returns the same around what absorbs (visible_corners() of the layers).
+std::array<Vec3<double>, 8> visible_corners(const Scene& scene, const ParallelFor& parallel = {});
+/// Returns the largest color component of the visible layers' functions. The scene must have passed
 /// check_data().
 double largest_color(const Scene& scene) noexcept;
+/// Returns the scene's only layer; null if there are none or several.
+const Layer* only_layer(const Scene& scene) noexcept;
+/// Returns the content of that kind of the scene's only layer; null if there is none.
+template <class Content>
+const Content* only_content(const Scene& scene) noexcept {
+  const Layer* const layer = only_layer(scene);
+  return layer != nullptr ? std::get_if<Content>(&layer->content) : nullptr;
+}
 
 /// Throws Error if the number of samples per pixel, the tolerance of the exact method, or the step
 /// of another method is outside of its limits.
 void check_integration(const Scene& scene);
-/// Throws Error if the method does not support the scene's data or transfer function. The scene
-/// must have passed check_data().
+/// Throws Error if the method does not support the scene's data or transfer function: methods other
+/// than exact need a single layer of a grid or a mesh without clips. The scene must have passed
+/// check_data().
 void check_method(const Scene& scene);
 
 }  // namespace pellucid

@@ -30,6 +30,7 @@ inline ParallelFor parallel_or_serial(const ParallelFor& parallel) {
 }
 
 class VolumeBlocks;
+class VolumeCheck;
 
 /// The data in their own type. A std::vector of such a type converts without a copy.
 using VolumeData =
@@ -85,6 +86,10 @@ class Volume {
   /// float).
   Volume(Description description, VolumeData data);
 
+  /// Returns the volume at another place in the world, with the same data and block records. Throws
+  /// Error if the transform is singular or moves the box beyond the range of double.
+  Volume moved(const Affine<double>& transform) const;
+
   const Description& description() const noexcept { return description_; }
   const VolumeData& data() const noexcept { return data_; }
   const VolumeStatistics& statistics() const noexcept { return statistics_; }
@@ -121,6 +126,8 @@ class Volume {
 
  private:
   GridAxis<double> axis(int a) const noexcept;
+  /// Makes the planes, the maps and the voxel size from the description.
+  void place(const VolumeCheck& check);
 
   Description description_;
   VolumeData data_;

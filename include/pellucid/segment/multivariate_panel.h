@@ -71,15 +71,15 @@ struct PanelWorkspace {
 namespace detail {
 
 /// Integrates one panel: computes all terms, then uses the cheapest rule that is accurate enough.
-template <class T, class Data, class Set, class Allowance>
+template <class T, class Data, int Capacity, class Set, class Allowance>
 class PanelIntegrator {
   using S = scalar_t<T>;
+  using Span = MultivariateSpan<T, Data, Capacity>;
   /// Whether lines replace data that are not linear.
   static constexpr bool bent = std::is_same_v<Data, CubicBernstein<T>>;
 
  public:
-  PELLUCID_HD PanelIntegrator(const MultivariateTransfer<S>& transfer,
-                              const MultivariateSpan<T, Data>& span,
+  PELLUCID_HD PanelIntegrator(const MultivariateTransfer<S>& transfer, const Span& span,
                               const PanelDemand<T, Set>& demand, const Allowance& allowance,
                               PanelWorkspace<T>& room) noexcept
       : transfer_(transfer),
@@ -121,7 +121,7 @@ class PanelIntegrator {
       const mask_t<T> held(demand_.primitives.contains(i));
       if (none(held)) continue;
       const Gaussian<S>& g = all.primitive[i];
-      const auto along = gaussian_along(g, span_.data);
+      const auto along = gaussian_along(g, span_.data + g.first);
       const T peak = T(g.peak) * span_.length;
       const T bound = peak * exp(-along.lower());
       const auto matters = held & (bound > negligible);
@@ -166,7 +166,7 @@ class PanelIntegrator {
       T sum = T(0);
       for (int c = 0; c < g.channels; ++c) {
         if (g.matrix[i][c] == S(0)) continue;
-        const Data& f = span_.data[c];
+        const Data& f = span_.data[g.first + c];
         const T away = max(abs(f.hull_min()), abs(f.hull_max())) + T(abs(g.center[c]));
         sum += T(abs(g.matrix[i][c])) * away;
       }
@@ -188,14 +188,14 @@ class PanelIntegrator {
   }
 
   PELLUCID_HD Material<T> material(T u) const noexcept {
-    T v[max_channels];
+    T v[Capacity];
     for (int c = 0; c < transfer_.channels; ++c) v[c] = evaluate(span_.data[c], u);
     T extinction = T(0);
     Rgb<T> emission{};
     for (int n = 0; n < count_; ++n) {
       const Gaussian<S>& g = gaussian(term_[n]);
       // Terms of other lanes do not count.
-      const T here = select(term_[n].mass > T(0), T(g.peak) * g.density(v), T(0));
+      const T here = select(term_[n].mass > T(0), T(g.peak) * g.density(v + g.first), T(0));
       extinction += here;
       emission += here * color_of(g);
     }
@@ -327,7 +327,7 @@ class PanelIntegrator {
   }
 
   const MultivariateTransfer<S>& transfer_;
-  const MultivariateSpan<T, Data>& span_;
+  const Span& span_;
   const PanelDemand<T, Set>& demand_;
   const Allowance& allowance_;
   T largest_color_;
@@ -367,19 +367,19 @@ class PanelIntegrator {
 ///
 /// T: double, or a batch of doubles, one panel per lane. `room` is memory for the function's own
 /// use.
-template <class T, class Data, class Set, class Allowance>
+template <class T, class Data, int Capacity, class Set, class Allowance>
 PELLUCID_HD PanelSegment<T> integrate_multivariate_panel(
-    const MultivariateTransfer<scalar_t<T>>& transfer, const MultivariateSpan<T, Data>& span,
-    const PanelDemand<T, Set>& demand, const Allowance& allowance,
-    PanelWorkspace<T>& room) noexcept {
-  return detail::PanelIntegrator<T, Data, Set, Allowance>(transfer, span, demand, allowance, room)
+    const MultivariateTransfer<scalar_t<T>>& transfer,
+    const MultivariateSpan<T, Data, Capacity>& span, const PanelDemand<T, Set>& demand,
+    const Allowance& allowance, PanelWorkspace<T>& room) noexcept {
+  return detail::PanelIntegrator<T, Data, Capacity, Set, Allowance>(transfer, span, demand,
+                                                                    allowance, room)
       .run();
 }
-template <class T, class Data, class Set, class Allowance>
-PELLUCID_HD PanelSegment<T> integrate_multivariate_panel(const MultivariateTransfer<T>& transfer,
-                                                         const MultivariateSpan<T, Data>& span,
-                                                         const PanelDemand<T, Set>& demand,
-                                                         const Allowance& allowance) noexcept {
+template <class T, class Data, int Capacity, class Set, class Allowance>
+PELLUCID_HD PanelSegment<T> integrate_multivariate_panel(
+    const MultivariateTransfer<T>& transfer, const MultivariateSpan<T, Data, Capacity>& span,
+    const PanelDemand<T, Set>& demand, const Allowance& allowance) noexcept {
   PanelWorkspace<T> room;
   return integrate_multivariate_panel(transfer, span, demand, allowance, room);
 }

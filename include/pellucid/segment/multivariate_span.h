@@ -6,10 +6,13 @@
 
 namespace pellucid {
 
-/// A span of a ray on which every channel is Data of u in [0, 1]: a cubic, or linear.
-template <class T, class Data = CubicBernstein<T>>
+/// A span of a ray on which every channel is Data of u in [0, 1]: a cubic, or linear. It has room
+/// for Capacity channels.
+template <class T, class Data = CubicBernstein<T>, int Capacity = max_channels>
 struct MultivariateSpan {
-  Data data[max_channels];
+  static constexpr int capacity = Capacity;
+
+  Data data[Capacity];
   T length{};  ///< world units
 
   /// Returns the part from u = begin to u = end.

@@ -29,9 +29,9 @@ struct PanelTables {
   TopTwo<T> changes;  ///< largest changes of the logarithms of their extinctions
 };
 
-template <class S, class Data>
+template <class S, class Data, int Capacity>
 PELLUCID_HD PanelTables<S> measure_tables_of_one(const MultivariateTransfer<S>& transfer,
-                                                 const MultivariateSpan<S, Data>& span,
+                                                 const MultivariateSpan<S, Data, Capacity>& span,
                                                  S largest_color) noexcept {
   PanelTables<S> result;
   for (int i = 0; i < transfer.tables; ++i) {
@@ -62,22 +62,22 @@ PELLUCID_HD PanelTables<S> measure_tables_of_one(const MultivariateTransfer<S>& 
 }
 
 /// Computes the tables lane by lane if T is a batch: tables are looked up one number at a time.
-template <class T, template <class> class Data>
+template <class T, template <class> class Data, int Capacity>
 PELLUCID_HD PanelTables<T> measure_tables(const MultivariateTransfer<scalar_t<T>>& transfer,
-                                          const MultivariateSpan<T, Data<T>>& span,
+                                          const MultivariateSpan<T, Data<T>, Capacity>& span,
                                           scalar_t<T> largest_color) noexcept {
   if constexpr (lanes<T> == 1) {
     return measure_tables_of_one(transfer, span, largest_color);
   } else {
     using S = scalar_t<T>;
     constexpr int n = lanes<T>, fields = 15, numbers = sizeof(Data<S>) / sizeof(S);
-    S in[numbers][max_channels][n], lengths[n], out[fields][n];
+    S in[numbers][Capacity][n], lengths[n], out[fields][n];
     for (int c = 0; c < transfer.channels; ++c) {
       for (int k = 0; k < numbers; ++k) span.data[c].b[k].store(in[k][c]);
     }
     span.length.store(lengths);
     for (int l = 0; l < n; ++l) {
-      MultivariateSpan<S, Data<S>> one;
+      MultivariateSpan<S, Data<S>, Capacity> one;
       for (int c = 0; c < transfer.channels; ++c) {
         for (int k = 0; k < numbers; ++k) one.data[c].b[k] = in[k][c][l];
       }

@@ -19,7 +19,8 @@ struct Gaussian {
   S center[max_channels]{};
   S matrix[max_channels][max_channels]{};  ///< K by rows; rows × channels entries are used
   int channels = 1, rows = 1;
-  S peak{};  ///< the largest extinction, 1/length
+  int first = 0;  ///< its first channel among those of a span (segment/multivariate_span.h)
+  S peak{};       ///< the largest extinction, 1/length
   Rgb<S> color{};
 
   /// Computes p = K (v - c): `rows` numbers from `channels` numbers. The differences are taken

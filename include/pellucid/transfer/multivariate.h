@@ -15,13 +15,13 @@ struct ChannelTable {
 
 /// A transfer function of several variables: the sum of Gaussian primitives and of piecewise-linear
 /// functions of single channels. Each term is a kind of particles of its own: extinctions add, and
-/// so do color · extinction. A view; owns nothing; all terms have the same channels.
+/// so do color · extinction. A view; owns nothing. Gaussians see consecutive channels.
 template <class S>
 struct MultivariateTransfer {
   GaussianMixture<S> gaussians;
   const ChannelTable<S>* table = nullptr;
   int tables = 0;
-  int channels = 1;  ///< 1 … max_channels
+  int channels = 1;  ///< 1 … max_channels, of layers together max_bundle_channels
 
   /// Returns the extinction at v (`channels` numbers), and the color whose product with it is the
   /// sum of color · extinction. Returns vacuum if the extinction is below the smallest normal
@@ -31,7 +31,7 @@ struct MultivariateTransfer {
     Rgb<S> emission{};
     for (int i = 0; i < gaussians.count; ++i) {
       const Gaussian<S>& g = gaussians.primitive[i];
-      const S here = g.peak * g.density(v);
+      const S here = g.peak * g.density(v + g.first);
       extinction += here;
       emission += here * g.color;
     }

@@ -10,10 +10,11 @@
 int main(int argc, char** argv) try {
   if (argc != 3) return 2;
   pellucid::Scene scene;
-  scene.volume = std::make_shared<pellucid::Volume>(pellucid::read_volume(argv[1]));
-  scene.transfer_function = std::make_shared<pellucid::TransferFunction>(
-      pellucid::default_transfer_function(*scene.volume));
-  scene.camera = pellucid::default_camera(*scene.volume, scene.size);
+  const auto data = std::make_shared<pellucid::Volume>(pellucid::read_volume(argv[1]));
+  const auto function =
+      std::make_shared<pellucid::TransferFunction>(pellucid::default_transfer_function(*data));
+  scene.layers = {{pellucid::VolumeContent{data, function}}};
+  scene.camera = pellucid::default_camera(*data, scene.size);
   scene.integration.set_tolerance(1e-3);
   pellucid::write_png(pellucid::render(scene), argv[2]);
 } catch (const std::exception& error) {

@@ -13,11 +13,12 @@
 // A scene with nothing left to choose: the transfer function and the camera follow from the data.
 pellucid::Scene scene_of(pellucid::Volume volume) {
   pellucid::Scene scene;
-  scene.volume = std::make_shared<pellucid::Volume>(std::move(volume));
-  scene.transfer_function = std::make_shared<pellucid::TransferFunction>(
-      pellucid::default_transfer_function(*scene.volume));
+  const auto data = std::make_shared<pellucid::Volume>(std::move(volume));
+  const auto function =
+      std::make_shared<pellucid::TransferFunction>(pellucid::default_transfer_function(*data));
+  scene.layers = {{pellucid::VolumeContent{data, function}}};
   scene.size = {96, 72};
-  scene.camera = pellucid::default_camera(*scene.volume, scene.size);
+  scene.camera = pellucid::default_camera(*data, scene.size);
   scene.integration.set_tolerance(1e-3);
   return scene;
 }

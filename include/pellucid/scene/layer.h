@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <memory>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "pellucid/geometry/affine.h"
+#include "pellucid/scene/channels.h"
+#include "pellucid/scene/clip.h"
+#include "pellucid/scene/label_volume.h"
+#include "pellucid/scene/mesh_channels.h"
+#include "pellucid/scene/multivariate_transfer_function.h"
+#include "pellucid/scene/transfer_function.h"
+#include "pellucid/scene/volume.h"
+
+namespace pellucid {
+
+/// A scalar field with a transfer function.
+struct VolumeContent {
+  std::shared_ptr<const Volume> volume;
+  std::shared_ptr<const TransferFunction> transfer_function;
+  /// Labels on the same grid that choose another function; may be null.
+  std::shared_ptr<const LabelMask> mask{};
+};
+
+/// Several fields on one grid with a function of all of them.
+struct ChannelsContent {
+  std::shared_ptr<const Channels> channels;
+  std::shared_ptr<const MultivariateTransferFunction> transfer_function;
+};
+
+/// One or several variables on a mesh, with a function of one or of all of them.
+struct MeshContent {
+  std::shared_ptr<const MeshChannels> mesh;
+  std::variant<std::shared_ptr<const TransferFunction>,
+               std::shared_ptr<const MultivariateTransferFunction>>
+      transfer_function;
+
+  /// Returns the function of one variable; null if it is of several, or missing.
+  const TransferFunction* univariate() const noexcept;
+  /// Returns the function of several variables; null if it is of one, or missing.
+  const MultivariateTransferFunction* multivariate() const noexcept;
+};
+
+/// A segmentation with the look of its labels.
+struct LabelContent {
+  std::shared_ptr<const LabelVolume> labels;
+  std::shared_ptr<const LabelTable> table;
+};
+
+using LayerContent = std::variant<VolumeContent, ChannelsContent, MeshContent, LabelContent>;
+
+/// One kind of data with its look and its place in a scene.
+struct Layer {
+  LayerContent content;
+  std::string name{};
+  bool visible = true;
+  Affine<double> transform{};  ///< to the scene's world from the world of the data
+  std::vector<Clip> clips{};   ///< in the scene's world; what all of them keep is shown
+};
+
+/// Returns whether the layer's transform is the identity.
+bool is_in_place(const Layer& layer) noexcept;
+/// Returns the layer with its transform applied to the data, which are shared where that is
+/// possible: grids are moved, the points of meshes are copied and rounded to double. Throws Error
+/// if the transform is singular or moves the data beyond the range of numbers.
+Layer moved_into_place(const Layer& layer);
+
+/// Throws Error unless the layer has data and a function for as many variables, and its clips and
+/// its transform pass their checks. `where` begins the message, e.g. "layer 2".
+void check_layer(const Layer& layer, const std::string& where);
+
+/// Returns the volume whose grid the rays cross; null for a mesh.
+const Volume* grid_of(const Layer& layer) noexcept;
+/// Returns the corners of a box around the data in the scene's world: the grid's own box, or for a
+/// mesh a box along the axes of its world.
+std::array<Vec3<double>, 8> world_corners(const Layer& layer) noexcept;
+/// Returns the corners of a box around what absorbs, for a camera that looks at it: of grids the
+/// blocks of 8³ cells in which the function absorbs at some value that occurs; of channels, meshes
+/// and grids without such a block those of world_corners(). Computes the block records of grids, in
+/// parallel if `parallel` is given.
+std::array<Vec3<double>, 8> visible_corners(const Layer& layer, const ParallelFor& parallel = {});
+/// Returns the largest color component of the layer's functions.
+double largest_color(const Layer& layer) noexcept;
+/// Returns the largest extinction of the layer's functions.
+double largest_extinction(const Layer& layer) noexcept;
+/// Returns an upper bound on the error of a pixel because the layer's functions approximate others
+/// (TransferFunction::approximation_error()).
+double approximation_error(const Layer& layer, double behind);
+
+}  // namespace pellucid

@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+
+#include "layer_stream.h"
+#include "pellucid/traverse/block_walk.h"
+#include "pellucid/traverse/structured_walk.h"
+
+namespace pellucid {
+
+/// The rounding of the positions at which a ray meets a plane of a grid, world length.
+inline double grid_position_error(double t) {
+  return 8 * rounding_unit<double> * t;
+}
+
+/// Walks through the blocks of a grid, and through the cells of those that are not skipped.
+class GridStream : public LayerStream {
+ public:
+  /// All must outlive the stream. `axis`: of the cells to walk through, in the grid's coordinates.
+  GridStream(const Volume& volume, const GridAxis<double> (&axis)[3], const BlockRecords& records,
+             const BlockClass* classes)
+      : volume_(volume), axis_(axis), records_(records), classes_(classes) {}
+
+  Interval<double> start(const Ray<double>& ray) override {
+    ray_ = volume_.grid_from_world().ray(ray);
+    blocks_.reset();
+    cells_.reset();
+    return grid_interval(axis_, ray_);
+  }
+  void restrict_to_range(Interval<double> range) override {
+    blocks_.emplace(records_, ray_, range);
+    cells_.reset();
+  }
+
+ protected:
+  /// Finds the next cell, or skipped blocks. Returns false behind the last one.
+  bool next_cell(StructuredWalk<double>::Step& step, int& block, bool& skipped) {
+    for (;;) {
+      if (cells_ && cells_->next(step)) {
+        block = block_.block;
+        skipped = false;
+        return true;
+      }
+      cells_.reset();
+      if (!blocks_ || !blocks_->next(classes_, block_)) return false;
+      if (classes_ != nullptr && classes_[block_.block].kind == BlockKind::skip) {
+        step.t_begin = block_.t_begin;
+        step.t_end = block_.t_end;
+        block = block_.block;
+        skipped = true;
+        return true;
+      }
+      cells_.emplace(axis_, ray_, Interval<double>{block_.t_begin, block_.t_end});
+    }
+  }
+  const Ray<double>& ray() const { return ray_; }
+
+ private:
+  const Volume& volume_;
+  const GridAxis<double> (&axis_)[3];
+  const BlockRecords& records_;
+  const BlockClass* classes_;  ///< null: none is skipped
+  Ray<double> ray_{};
+  std::optional<BlockWalk> blocks_;
+  std::optional<StructuredWalk<double>> cells_;
+  BlockStep block_{};
+};
+
+}  // namespace pellucid

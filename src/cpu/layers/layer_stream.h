@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "pellucid/geometry/ray.h"
+#include "pellucid/math/bernstein.h"
+#include "pellucid/render/integrate_cell.h"
+#include "pellucid/scene/layer.h"
+#include "pellucid/transfer/multivariate.h"
+
+namespace pellucid {
+
+/// A stretch of a ray on which all channels of a layer are cubics, or the layer is absent.
+struct LayerStretch {
+  double begin = 0, end = 0;  ///< world arc length
+  int function = -1;          ///< index of LayerSource::functions(); -1: absent
+  PrimitiveSet primitives;    ///< of the function: those that may matter
+  double left_out = 0;        ///< upper bound on the extinction of what is ignored here
+  double position_error = 0;  ///< largest error of begin and end together, world length
+  double unknown = 0;         ///< upper bound on an opacity in front of it that is not known
+  CubicBernstein<double> data[max_channels];
+};
+
+/// The stretches of one layer along rays, one ray after the other. Used by one thread.
+class LayerStream {
+ public:
+  LayerStream() = default;
+  LayerStream(const LayerStream&) = delete;
+  LayerStream& operator=(const LayerStream&) = delete;
+  virtual ~LayerStream() = default;
+
+  /// Returns the interval of a ray outside of which the layer is absent; empty if it misses. The
+  /// ray is in the world, with a direction of length 1, and begins at 0.
+  virtual Interval<double> start(const Ray<double>& ray) = 0;
+  /// Restricts the ray to a range, which lies behind all former ones.
+  virtual void restrict_to_range(Interval<double> range) = 0;
+  /// Finds the next stretch of the range, front to back. Between stretches the layer is absent.
+  /// Returns false behind the last one.
+  virtual bool next(LayerStretch& stretch) = 0;
+};
+
+/// A layer as rays need it: its functions and, for each thread, a stream.
+class LayerSource {
+ public:
+  LayerSource() = default;
+  LayerSource(const LayerSource&) = delete;
+  LayerSource& operator=(const LayerSource&) = delete;
+  virtual ~LayerSource() = default;
+
+  /// Returns the functions that its stretches refer to.
+  const std::vector<MultivariateTransfer<double>>& functions() const noexcept { return functions_; }
+  virtual std::unique_ptr<LayerStream> stream() const = 0;
+
+ protected:
+  std::vector<MultivariateTransfer<double>> functions_;
+};
+
+/// Parameters of a layer's source.
+struct LayerTask {
+  const Layer& layer;  ///< in its place; must outlive the source
+  RayTolerance wanted;
+  /// Extinction that the layer may ignore all along a ray.
+  double negligible_extinction = 0;
+  ParallelFor parallel;
+};
+
+/// Makes the source of a layer of any kind.
+std::unique_ptr<const LayerSource> make_layer_source(const LayerTask& task);
+
+// By kind of data:
+std::unique_ptr<const LayerSource> make_volume_source(const LayerTask& task);
+std::unique_ptr<const LayerSource> make_channels_source(const LayerTask& task);
+std::unique_ptr<const LayerSource> make_mesh_source(const LayerTask& task);
+std::unique_ptr<const LayerSource> make_label_source(const LayerTask& task);
+
+/// A table as a function of one channel.
+inline MultivariateTransfer<double> transfer_of(const ChannelTable<double>& table) {
+  MultivariateTransfer<double> transfer;
+  transfer.table = &table;
+  transfer.tables = 1;
+  return transfer;
+}
+
+}  // namespace pellucid

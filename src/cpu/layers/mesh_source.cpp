@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <memory>
+#include <vector>
+
+#include "layers/layer_stream.h"
+#include "mesh_field_storage.h"
+#include "mesh_hits.h"
+#include "pellucid/render/integrate_mesh_ray.h"
+
+namespace pellucid {
+namespace {
+
+/// A mesh with a function of one or of several variables.
+class MeshSource : public LayerSource {
+ public:
+  explicit MeshSource(const LayerTask& task)
+      : content_(std::get<MeshContent>(task.layer.content)),
+        mesh_(content_.mesh->mesh().view()),
+        fields_(*content_.mesh),
+        largest_extinction_(largest_extinction(task.layer)) {
+    if (content_.multivariate() != nullptr) {
+      functions_.push_back(content_.multivariate()->view());
+    } else {
+      table_ = {0, content_.univariate()->view<double>()};
+      functions_.push_back(transfer_of(table_));
+    }
+  }
+
+  std::unique_ptr<LayerStream> stream() const override;
+
+  const Tetrahedra& mesh() const { return mesh_; }
+  const MeshFields& fields() const { return fields_.view(); }
+  double most_extinction() const { return largest_extinction_; }
+
+ private:
+  const MeshContent& content_;
+  Tetrahedra mesh_;
+  MeshFieldStorage fields_;
+  double largest_extinction_;
+  ChannelTable<double> table_;
+};
+
+/// The tetrahedra that a ray crosses. It finds all of them before the first is asked for.
+class MeshStream : public LayerStream {
+ public:
+  explicit MeshStream(const MeshSource& source) : source_(source) {}
+
+  Interval<double> start(const Ray<double>& ray) override {
+    spans_.clear();
+    next_ = 0;
+    const MeshRay hits = hits_.find(source_.mesh(), ray);
+    const Interval<double> extent = hits.extent();
+    for_each_mesh_span(source_.mesh(), source_.fields(), hits.view, hits.hits, hits.count,
+                       [&](const MeshSpan& span) {
+                         spans_.push_back(span);
+                         return true;
+                       });
+    if (spans_.empty()) return extent;
+    return {std::min(extent.begin, spans_.front().begin), std::max(extent.end, spans_.back().end)};
+  }
+  void restrict_to_range(Interval<double> range) override {
+    range_ = range;
+    // The last span of the former range may reach into this one.
+    if (next_ > 0) --next_;
+  }
+
+  bool next(LayerStretch& stretch) override {
+    while (next_ < spans_.size()) {
+      const MeshSpan& span = spans_[next_];
+      if (span.begin >= range_.end) return false;
+      ++next_;
+      const bool has_length = span.begin < span.end;
+      if (span.end < range_.begin || (has_length && span.end <= range_.begin)) continue;
+      fill(span, has_length, stretch);
+      return true;
+    }
+    return false;
+  }
+
+ private:
+  void fill(const MeshSpan& span, bool has_length, LayerStretch& stretch) const {
+    stretch.begin = std::max(span.begin, range_.begin);
+    stretch.end = std::min(span.end, range_.end);
+    stretch.function = -1;
+    if (span.overlaps || span.vacuum || !has_length) {
+      // Overlapping cells make the rest of the ray unknown. Cells next to vacuum, or of length 0,
+      // may begin and end elsewhere.
+      const double off = span.position_error + span.end_error;
+      stretch.unknown = span.overlaps ? 1 : std::min(source_.most_extinction() * off, 1.0);
+      return;
+    }
+    const MultivariateTransfer<double>& transfer = source_.functions().front();
+    stretch.function = 0;
+    stretch.position_error = span.position_error + span.end_error;
+    stretch.left_out =
+        std::min(detail::extinction_error(transfer, span), source_.most_extinction());
+    const double length = span.end - span.begin;
+    const double from = (stretch.begin - span.begin) / length;
+    const double to = (stretch.end - span.begin) / length;
+    for (int c = 0; c < transfer.channels; ++c) {
+      const LinearBernstein<double> whole{{span.front[c], span.back[c]}};
+      const bool cut = from > 0 || to < 1;
+      stretch.data[c] = as_cubic(cut ? restrict_to(whole, from, to) : whole);
+    }
+  }
+
+  const MeshSource& source_;
+  MeshHits hits_;
+  std::vector<MeshSpan> spans_;
+  std::size_t next_ = 0;
+  Interval<double> range_{0, 0};
+};
+
+std::unique_ptr<LayerStream> MeshSource::stream() const {
+  return std::make_unique<MeshStream>(*this);
+}
+
+}  // namespace
+
+std::unique_ptr<const LayerSource> make_mesh_source(const LayerTask& task) {
+  return std::make_unique<MeshSource>(task);
+}
+
+}  // namespace pellucid

@@ -1,0 +1,212 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <cmath>
+#include <deque>
+#include <optional>
+
+#include "grid_stream.h"
+#include "label_axes.h"
+#include "pellucid/render/integrate_multivariate_ray.h"
+#include "pellucid/scene/block_classes_storage.h"
+#include "pellucid/scene/multivariate_blocks_storage.h"
+#include "pellucid/scene/transfer_tables_storage.h"
+
+namespace pellucid {
+namespace {
+
+/// Blocks that all functions skip, where labels choose among several.
+void skip_only_where_both_do(std::vector<BlockClass>& classes, const BlockClasses& other) {
+  for (std::size_t i = 0; i < classes.size(); ++i) {
+    const BlockClass& second = other[static_cast<int>(i)];
+    if (classes[i].kind != BlockKind::skip) continue;
+    if (second.kind != BlockKind::skip) {
+      classes[i] = second;
+    } else {
+      classes[i].level = std::min(classes[i].level, second.level);
+    }
+  }
+}
+
+/// A volume with one function, or with a mask that chooses among several.
+class VolumeSource : public LayerSource {
+ public:
+  explicit VolumeSource(const LayerTask& task)
+      : content_(std::get<VolumeContent>(task.layer.content)),
+        channels_({{"value", "", content_.volume}}),
+        grid_(multichannel_grid(channels_)),
+        records_(content_.volume->block_records(task.parallel)) {
+    add(*content_.transfer_function, task);
+    if (!content_.mask) return;
+    labels_.emplace(content_.mask->labels().volume());
+    for (const LabelMask::Choice& choice : content_.mask->choices()) {
+      add(*choice.transfer_function, task);
+    }
+  }
+
+  std::unique_ptr<LayerStream> stream() const override;
+
+  /// Returns the function of the label cell.
+  int function_at(const int (&cell)[3]) const {
+    const double label = labels_->value(cell);
+    return std::isnan(label) ? 0 : content_.mask->choice_of(static_cast<std::int32_t>(label)) + 1;
+  }
+  const LabelAxes* labels() const { return labels_ ? &*labels_ : nullptr; }
+  const MultichannelGrid& grid() const { return grid_; }
+
+ private:
+  void add(const TransferFunction& function, const LayerTask& task) {
+    const TransferTablesStorage tables(function);
+    const BlockClassesStorage classes(records_, tables.tables(),
+                                      std::max(task.wanted.largest_color, 1.0), task.parallel);
+    const auto count = static_cast<std::size_t>(records_.count());
+    if (functions_.empty()) {
+      classes_.assign(classes.view().block, classes.view().block + count);
+    } else {
+      skip_only_where_both_do(classes_, classes.view());
+    }
+    tables_.push_back({0, function.view<double>()});
+    functions_.push_back(transfer_of(tables_.back()));
+  }
+
+  const VolumeContent& content_;
+  Channels channels_;
+  MultichannelGrid grid_;
+  const BlockRecords& records_;
+  std::vector<BlockClass> classes_;
+  std::deque<ChannelTable<double>> tables_;  ///< addresses stay
+  std::optional<LabelAxes> labels_;
+};
+
+/// The cells of a grid as stretches, cut at the cells of a mask.
+class VolumeStream : public GridStream {
+ public:
+  VolumeStream(const VolumeSource& source, const Volume& volume, const BlockRecords& records,
+               const BlockClass* classes)
+      : GridStream(volume, source.grid().axis, records, classes), source_(source) {}
+
+  void restrict_to_range(Interval<double> range) override {
+    GridStream::restrict_to_range(range);
+    labels_.reset();
+  }
+
+  bool next(LayerStretch& stretch) override {
+    for (;;) {
+      if (labels_) {
+        StructuredWalk<double>::Step part;
+        if (labels_->next(part)) {
+          cut(part, stretch);
+          return true;
+        }
+        labels_.reset();
+      }
+      StructuredWalk<double>::Step step;
+      int block = 0;
+      bool skipped = false;
+      if (!next_cell(step, block, skipped)) return false;
+      if (skipped || !make_multivariate_span(source_.grid(), step, span_)) continue;
+      stretch.begin = begin_ = step.t_begin;
+      stretch.end = end_ = step.t_end;
+      stretch.position_error = grid_position_error(step.t_end);
+      if (source_.labels() == nullptr) {
+        stretch.function = 0;
+        stretch.data[0] = span_.data[0];
+        return true;
+      }
+      labels_.emplace(source_.labels()->axis(), ray(), Interval<double>{begin_, end_});
+    }
+  }
+
+ private:
+  void cut(const StructuredWalk<double>::Step& part, LayerStretch& stretch) {
+    const double length = end_ - begin_;
+    stretch.begin = part.t_begin;
+    stretch.end = part.t_end;
+    stretch.function = source_.function_at(part.cell);
+    stretch.position_error = 2 * grid_position_error(part.t_end);
+    const double from = (part.t_begin - begin_) / length, to = (part.t_end - begin_) / length;
+    stretch.data[0] = restrict_to(span_.data[0], from, to);
+  }
+
+  const VolumeSource& source_;
+  MultivariateSpan<double> span_;
+  double begin_ = 0, end_ = 0;  ///< of the cell
+  std::optional<StructuredWalk<double>> labels_;
+};
+
+std::unique_ptr<LayerStream> VolumeSource::stream() const {
+  return std::make_unique<VolumeStream>(*this, *content_.volume, records_, classes_.data());
+}
+
+/// Several channels with a function of all of them.
+class ChannelsSource : public LayerSource {
+ public:
+  explicit ChannelsSource(const LayerTask& task)
+      : channels_(*std::get<ChannelsContent>(task.layer.content).channels),
+        grid_(multichannel_grid(channels_)),
+        storage_(channels_, *std::get<ChannelsContent>(task.layer.content).transfer_function,
+                 task.negligible_extinction, task.parallel),
+        blocks_(storage_.view()) {
+    functions_.push_back(std::get<ChannelsContent>(task.layer.content).transfer_function->view());
+  }
+
+  std::unique_ptr<LayerStream> stream() const override;
+
+  const MultichannelGrid& grid() const { return grid_; }
+  const MultivariateBlocks& blocks() const { return blocks_; }
+
+ private:
+  const Channels& channels_;
+  MultichannelGrid grid_;
+  MultivariateBlocksStorage storage_;
+  MultivariateBlocks blocks_;
+};
+
+class ChannelsStream : public GridStream {
+ public:
+  ChannelsStream(const ChannelsSource& source, const Volume& volume)
+      : GridStream(volume, source.grid().axis, source.blocks().records,
+                   source.blocks().classes.block),
+        source_(source) {}
+
+  bool next(LayerStretch& stretch) override {
+    StructuredWalk<double>::Step step;
+    int block = 0;
+    bool skipped = false;
+    while (next_cell(step, block, skipped)) {
+      stretch.begin = step.t_begin;
+      stretch.end = step.t_end;
+      stretch.left_out = source_.blocks().left_out;
+      stretch.position_error = grid_position_error(step.t_end);
+      if (skipped) {
+        stretch.function = -1;
+        return true;
+      }
+      MultivariateSpan<double> span;
+      if (!make_multivariate_span(source_.grid(), step, span)) continue;
+      stretch.function = 0;
+      stretch.primitives = source_.blocks().primitives[block];
+      std::copy_n(span.data, source_.grid().channels, stretch.data);
+      return true;
+    }
+    return false;
+  }
+
+ private:
+  const ChannelsSource& source_;
+};
+
+std::unique_ptr<LayerStream> ChannelsSource::stream() const {
+  return std::make_unique<ChannelsStream>(*this, channels_.grid());
+}
+
+}  // namespace
+
+std::unique_ptr<const LayerSource> make_volume_source(const LayerTask& task) {
+  return std::make_unique<VolumeSource>(task);
+}
+
+std::unique_ptr<const LayerSource> make_channels_source(const LayerTask& task) {
+  return std::make_unique<ChannelsSource>(task);
+}
+
+}  // namespace pellucid

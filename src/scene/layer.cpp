@@ -1,0 +1,304 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pellucid/scene/layer.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "message.h"
+#include "pellucid/scene/error.h"
+
+namespace pellucid {
+namespace {
+
+template <class... Bodies>
+struct Overloaded : Bodies... {
+  using Bodies::operator()...;
+};
+template <class... Bodies>
+Overloaded(Bodies...) -> Overloaded<Bodies...>;
+
+/// Calls body(function) for each piecewise-linear function that the layer's data are shown by.
+template <class Body>
+void for_each_table(const Layer& layer, const Body& body) {
+  std::visit(Overloaded{[&](const VolumeContent& content) {
+                          body(*content.transfer_function);
+                          if (!content.mask) return;
+                          for (const LabelMask::Choice& choice : content.mask->choices()) {
+                            body(*choice.transfer_function);
+                          }
+                        },
+                        [](const ChannelsContent&) {},
+                        [&](const MeshContent& content) {
+                          if (content.univariate() != nullptr) body(*content.univariate());
+                        },
+                        [&](const LabelContent& content) { body(content.table->function()); }},
+             layer.content);
+}
+
+const MultivariateTransferFunction* multivariate_of(const Layer& layer) noexcept {
+  if (const auto* channels = std::get_if<ChannelsContent>(&layer.content)) {
+    return channels->transfer_function.get();
+  }
+  const auto* mesh = std::get_if<MeshContent>(&layer.content);
+  return mesh != nullptr ? mesh->multivariate() : nullptr;
+}
+
+/// Checks a layer; messages begin with its place in the scene.
+class LayerCheck {
+ public:
+  explicit LayerCheck(const std::string& where) : where_(where) {}
+
+  void operator()(const VolumeContent& content) const {
+    require(content.volume, content.transfer_function, "a volume", "a transfer function");
+    if (!content.mask) return;
+    try {
+      Channels(
+          {{"data", "", content.volume}, {"mask", "", content.mask->labels().shared_volume()}});
+    } catch (const Error& error) {
+      fail("the mask is not on the grid of the data: " + std::string(error.what()));
+    }
+  }
+  void operator()(const ChannelsContent& content) const {
+    require(content.channels, content.transfer_function, "channels", "a multivariate function");
+    count(*content.transfer_function, content.channels->count());
+  }
+  void operator()(const MeshContent& content) const {
+    if (!content.mesh || (content.univariate() == nullptr && content.multivariate() == nullptr)) {
+      require(content.mesh, nullptr, "a mesh", "a transfer function");
+    }
+    if (content.multivariate() != nullptr) {
+      count(*content.multivariate(), content.mesh->count());
+    } else if (content.mesh->count() != 1) {
+      fail("the transfer function sees one variable, but the mesh has " +
+           std::to_string(content.mesh->count()) + " channels; leave one of them");
+    }
+  }
+  void operator()(const LabelContent& content) const {
+    require(content.labels, content.table, "labels", "a table of colors");
+  }
+
+ private:
+  [[noreturn]] void fail(const std::string& what) const { throw Error(where_ + ": " + what); }
+
+  template <class Data, class Function>
+  void require(const Data& data, const Function& function, const char* name,
+               const char* function_name) const {
+    if (data && function) return;
+    fail(std::string(name) + " and " + function_name + " are needed; set both before rendering");
+  }
+  void count(const MultivariateTransferFunction& function, int channels) const {
+    if (function.channels() == channels) return;
+    fail("the transfer function sees " + std::to_string(function.channels()) +
+         " channels, but there are " + std::to_string(channels) + "; make it for as many");
+  }
+
+  const std::string& where_;
+};
+
+void check_transform(const Layer& layer, const std::string& where) {
+  const Mat3<double>& m = layer.transform.matrix;
+  const auto refuse = [&](const Vec3<double>& v) {
+    throw Error(where + ": transform has the column " + tuple(v) +
+                ", but all of its numbers must be finite");
+  };
+  for (const Vec3<double>& v :
+       {m.column[0], m.column[1], m.column[2], layer.transform.translation}) {
+    if (!std::isfinite(v.x) || !std::isfinite(v.y) || !std::isfinite(v.z)) refuse(v);
+  }
+  // As for the direction of a grid, in any unit of length: below it, positions keep fewer than half
+  // of a double's digits.
+  Mat3<double> unit;
+  for (int a = 0; a < 3; ++a) {
+    const Vec3<double>& v = m.column[a];
+    const double length = std::hypot(v.x, v.y, v.z);
+    unit.column[a] = {v.x / length, v.y / length, v.z / length};
+  }
+  if (!(std::abs(determinant(unit)) > std::sqrt(std::numeric_limits<double>::epsilon()))) {
+    throw Error(where + ": transform is singular; its columns must be three independent axes");
+  }
+}
+
+std::shared_ptr<const Volume> moved(const Volume& volume, const Affine<double>& transform) {
+  return std::make_shared<const Volume>(volume.moved(transform));
+}
+
+std::shared_ptr<const LabelVolume> moved(const LabelVolume& labels,
+                                         const Affine<double>& transform) {
+  return std::make_shared<const LabelVolume>(labels.moved(transform));
+}
+
+std::shared_ptr<const MeshChannels> moved(const MeshChannels& channels,
+                                          const Affine<double>& transform) {
+  const TetrahedralMesh& mesh = channels.mesh();
+  TetrahedralMesh::Description description;
+  description.name = mesh.name();
+  description.points.reserve(mesh.points().size());
+  for (const Vec3<double>& point : mesh.points()) {
+    description.points.push_back(transform.point(point));
+  }
+  description.tetrahedra.reserve(mesh.tetrahedra().size());
+  for (const Tetrahedron& t : mesh.tetrahedra()) {
+    description.tetrahedra.push_back({t[0], t[1], t[2], t[3]});
+  }
+  for (std::size_t i = 0; i < mesh.points().size(); ++i) {
+    description.point_numbers.push_back(mesh.point_number(i));
+  }
+  return std::make_shared<const MeshChannels>(
+      std::make_shared<const TetrahedralMesh>(std::move(description)),
+      std::vector<MeshChannel>(channels.begin(), channels.end()));
+}
+
+}  // namespace
+
+const TransferFunction* MeshContent::univariate() const noexcept {
+  const auto* function = std::get_if<std::shared_ptr<const TransferFunction>>(&transfer_function);
+  return function != nullptr ? function->get() : nullptr;
+}
+
+const MultivariateTransferFunction* MeshContent::multivariate() const noexcept {
+  const auto* function =
+      std::get_if<std::shared_ptr<const MultivariateTransferFunction>>(&transfer_function);
+  return function != nullptr ? function->get() : nullptr;
+}
+
+bool is_in_place(const Layer& layer) noexcept {
+  const Affine<double> identity;
+  for (int a = 0; a < 3; ++a) {
+    if (layer.transform.matrix.column[a] != identity.matrix.column[a]) return false;
+  }
+  return layer.transform.translation == Vec3<double>{};
+}
+
+Layer moved_into_place(const Layer& layer) {
+  if (is_in_place(layer)) return layer;
+  check_transform(layer, layer.name.empty() ? "layer" : "layer \"" + layer.name + "\"");
+  Layer result = layer;
+  result.transform = {};
+  const Affine<double>& to = layer.transform;
+  std::visit(
+      Overloaded{[&](VolumeContent& content) {
+                   content.volume = moved(*content.volume, to);
+                   if (!content.mask) return;
+                   content.mask = std::make_shared<const LabelMask>(
+                       moved(content.mask->labels(), to), content.mask->choices());
+                 },
+                 [&](ChannelsContent& content) {
+                   std::vector<Channel> channels(content.channels->begin(),
+                                                 content.channels->end());
+                   for (Channel& channel : channels) channel.volume = moved(*channel.volume, to);
+                   content.channels = std::make_shared<const Channels>(std::move(channels));
+                 },
+                 [&](MeshContent& content) { content.mesh = moved(*content.mesh, to); },
+                 [&](LabelContent& content) { content.labels = moved(*content.labels, to); }},
+      result.content);
+  return result;
+}
+
+void check_layer(const Layer& layer, const std::string& where) {
+  std::visit(LayerCheck(where), layer.content);
+  check_transform(layer, where);
+  for (std::size_t i = 0; i < layer.clips.size(); ++i) {
+    check_clip(layer.clips[i], where + ": clip " + std::to_string(i + 1));
+  }
+}
+
+const Volume* grid_of(const Layer& layer) noexcept {
+  return std::visit(
+      Overloaded{[](const VolumeContent& content) { return content.volume.get(); },
+                 [](const ChannelsContent& content) { return &content.channels->grid(); },
+                 [](const MeshContent&) -> const Volume* { return nullptr; },
+                 [](const LabelContent& content) { return &content.labels->volume(); }},
+      layer.content);
+}
+
+std::array<Vec3<double>, 8> world_corners(const Layer& layer) noexcept {
+  std::array<Vec3<double>, 8> corners{};
+  if (const Volume* const grid = grid_of(layer)) {
+    corners = grid->world_corners();
+  } else {
+    const Box<double>& box = std::get<MeshContent>(layer.content).mesh->mesh().bounds();
+    for (std::size_t i = 0; i < corners.size(); ++i) {
+      for (int a = 0; a < 3; ++a) corners[i][a] = (i >> a & 1) != 0 ? box.upper[a] : box.lower[a];
+    }
+  }
+  for (Vec3<double>& corner : corners) corner = layer.transform.point(corner);
+  return corners;
+}
+
+namespace {
+
+/// Whether a function of the layer absorbs at some value from `lower` to `upper`.
+bool absorbs_between(const Layer& layer, double lower, double upper) {
+  bool absorbs = false;
+  for_each_table(layer, [&](const TransferFunction& function) {
+    const PiecewiseLinear<double> table = function.view<double>();
+    absorbs = absorbs || table.has_extinction(table.interval(lower), table.interval(upper));
+  });
+  return absorbs;
+}
+
+}  // namespace
+
+std::array<Vec3<double>, 8> visible_corners(const Layer& layer, const ParallelFor& parallel) {
+  const Volume* const grid = grid_of(layer);
+  if (grid == nullptr || multivariate_of(layer) != nullptr) return world_corners(layer);
+  const BlockRecords& records = grid->block_records(parallel);
+  std::array<int, 3> first{}, last{-1, -1, -1};
+  for (int k = 0; k < records.axis[2].cells(); ++k) {
+    for (int j = 0; j < records.axis[1].cells(); ++j) {
+      for (int i = 0; i < records.axis[0].cells(); ++i) {
+        const BlockRange range = records.range(records.index(i, j, k));
+        if (range.vacuum == BlockVacuum::all || !absorbs_between(layer, range.min, range.max)) {
+          continue;
+        }
+        const std::array<int, 3> block{i, j, k};
+        const bool is_first = last[0] < 0;
+        for (std::size_t a = 0; a < 3; ++a) {
+          first[a] = is_first ? block[a] : std::min(first[a], block[a]);
+          last[a] = std::max(last[a], block[a]);
+        }
+      }
+    }
+  }
+  if (last[0] < 0) return world_corners(layer);
+  std::array<Vec3<double>, 8> corners{};
+  for (std::size_t n = 0; n < corners.size(); ++n) {
+    Vec3<double> place;
+    for (int a = 0; a < 3; ++a) {
+      const auto axis = static_cast<std::size_t>(a);
+      place[a] = records.axis[a].plane((n >> axis & 1) != 0 ? last[axis] + 1 : first[axis]);
+    }
+    corners[n] = layer.transform.point(grid->world_from_grid().point(place));
+  }
+  return corners;
+}
+
+double largest_color(const Layer& layer) noexcept {
+  const MultivariateTransferFunction* const multivariate = multivariate_of(layer);
+  double largest = multivariate != nullptr ? multivariate->largest_color() : 0;
+  for_each_table(layer, [&](const TransferFunction& function) {
+    largest = std::max(largest, function.largest_color());
+  });
+  return largest;
+}
+
+double largest_extinction(const Layer& layer) noexcept {
+  const MultivariateTransferFunction* const multivariate = multivariate_of(layer);
+  double largest = multivariate != nullptr ? multivariate->largest_extinction() : 0;
+  for_each_table(layer, [&](const TransferFunction& function) {
+    for (const auto& point : function.points()) largest = std::max(largest, point.extinction);
+  });
+  return largest;
+}
+
+double approximation_error(const Layer& layer, double behind) {
+  double largest = 0;
+  for_each_table(layer, [&](const TransferFunction& function) {
+    largest = std::max(largest, function.approximation_error(behind));
+  });
+  return largest;
+}
+
+}  // namespace pellucid
