@@ -151,7 +151,7 @@ BetweenPixels::BetweenPixels(const Frame& frame, const ImageView& image, int str
       image_(image),
       stride_(stride),
       voxels_(voxels),
-      rounding_(rounding_of_cubic * std::max(largest_color(frame.scene), 1.0)),
+      rounding_(rounding_of_cubic * std::max(frame.largest_color, 1.0)),
       mask_(std::move(mask)),
       columns_(static_cast<std::size_t>((frame.scene.size.width + 1) / 2)),
       known_(columns_ * static_cast<std::size_t>((frame.scene.size.height + 1) / 2)) {}

@@ -101,9 +101,11 @@ std::unique_ptr<const CellPackets> CellPackets::make(
   return packets;
 }
 
-void CellPackets::trace(const std::vector<PellucidRay>& rays, bool depth,
+void CellPackets::trace(const std::vector<PellucidRay>& rays, double share, bool depth,
                         PellucidRayResult* results) const {
-  pellucid::trace(kernel_, job_, rays, depth, results);
+  PellucidGaussianPacketJob job = job_;
+  job.grid_and_rays.tolerance *= share;
+  pellucid::trace(kernel_, job, rays, depth, results);
 }
 
 }  // namespace pellucid

@@ -33,7 +33,8 @@ class CellPackets {
       const MultivariateBlocks& blocks, const MultichannelGrid& grid, const RayTolerance& wanted,
       InstructionSet instruction_set);
 
-  void trace(const std::vector<PellucidRay>& rays, bool depth, PellucidRayResult* results) const;
+  void trace(const std::vector<PellucidRay>& rays, double share, bool depth,
+             PellucidRayResult* results) const;
 
  private:
   CellPackets() = default;

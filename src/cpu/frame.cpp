@@ -2,10 +2,18 @@
 #include "frame.h"
 
 #include <algorithm>
+#include <limits>
 #include <optional>
+#include <utility>
+#include <vector>
+
+#include "layers/scene_tracer.h"
 
 namespace pellucid {
 namespace {
+
+/// Of the tolerance, for what layers leave out.
+constexpr double left_out_share = 1.0 / 32;
 
 /// The largest component of what lies behind the data.
 double brightest(const std::optional<Rgb<double>>& background) {
@@ -17,59 +25,65 @@ double storage_error(double value) {
   return std::max(value, 1.0) * 0x1p-24;
 }
 
-std::vector<Layer> visible_layers(const Scene& scene) {
-  std::vector<Layer> layers;
+std::vector<const Layer*> visible_layers(const Scene& scene) {
+  std::vector<const Layer*> layers;
   for (const Layer& layer : scene.layers) {
-    if (layer.visible) layers.push_back(moved_into_place(layer));
+    if (layer.visible) layers.push_back(&layer);
   }
   return layers;
 }
 
-/// A tracer of one kind of data; null where it takes the general path.
-std::unique_ptr<const RayTracer> make_fast_tracer(const TracerTask& task) {
-  const Layer& layer = task.layer;
-  if (const auto* volume = std::get_if<VolumeContent>(&layer.content)) {
-    return volume->mask ? nullptr : make_univariate_tracer(task);
+/// Length of a ray that no data are longer than.
+double reach(const std::vector<const Layer*>& layers) {
+  double longest = 0;
+  for (const Layer* layer : layers) {
+    const std::array<Vec3<double>, 8> corners = world_corners(*layer);
+    for (std::size_t i = 0; i < 4; ++i) {
+      longest = std::max(longest, length(corners[7 - i] - corners[i]));
+    }
   }
-  if (!layer.clips.empty() || !task.scene.clips.empty()) return nullptr;
-  if (std::holds_alternative<MeshContent>(layer.content)) return make_mesh_tracer(task);
-  if (std::holds_alternative<ChannelsContent>(layer.content)) return make_multivariate_tracer(task);
-  return nullptr;
+  return longest;
 }
 
-std::unique_ptr<const RayTracer> make_tracer(const TracerTask& task,
-                                             const std::vector<Layer>& layers) {
-  if (layers.size() == 1) {
-    if (auto tracer = make_fast_tracer(task)) return tracer;
-  }
-  return make_layered_tracer(task, layers);
+/// Extinction that each layer may leave out all along a ray.
+double negligible_extinction(const std::vector<const Layer*>& layers, const RayTolerance& wanted) {
+  return left_out_share * wanted.tolerance /
+         (std::max(reach(layers), std::numeric_limits<double>::min()) *
+          std::max(wanted.largest_color, 1.0) * std::max(static_cast<double>(layers.size()), 1.0));
 }
 
 }  // namespace
 
-Frame::Frame(const Scene& described, const RenderOptions& options, int threads)
+Frame::Frame(const Scene& described, const RenderOptions& options, int threads, LayerSetups& kept)
     : scene(described),
-      layers(visible_layers(described)),
       camera(make_camera_frame(described.camera, described.size)),
       tolerance(0),
-      reserved(0) {
-  for (const Layer& layer : layers) {
+      reserved(0),
+      largest_color(pellucid::largest_color(described)) {
+  const std::vector<const Layer*> layers = visible_layers(scene);
+  for (const Layer* layer : layers) {
     // Beside other layers, whose colors differ, the bound of a single function doubles: the change
     // of the extinction is seen in its own color, not in that of the mixture.
     reserved +=
-        (layers.size() > 1 ? 2 : 1) * approximation_error(layer, brightest(described.background));
+        (layers.size() > 1 ? 2 : 1) * approximation_error(*layer, brightest(scene.background));
   }
   const Integration& integration = scene.integration;
-  static const Layer nothing;
-  TracerTask task{scene, layers.empty() ? nothing : layers.front(), options, {}, threads};
-  task.wanted.tolerance =
-      std::max(integration.tolerance - reserved - storage_error(largest_color(scene)),
-               0.25 * integration.tolerance);
-  tolerance = task.wanted.tolerance;
-  task.wanted.grade = integration.grade;
-  task.wanted.precision = integration.precision;
-  task.wanted.largest_color = std::max(largest_color(scene), brightest(scene.background));
-  tracer = make_tracer(task, layers);
+  RayTolerance wanted;
+  wanted.tolerance = std::max(integration.tolerance - reserved - storage_error(largest_color),
+                              0.25 * integration.tolerance);
+  tolerance = wanted.tolerance;
+  wanted.grade = integration.grade;
+  wanted.precision = integration.precision;
+  wanted.largest_color = std::max(largest_color, brightest(scene.background));
+  const LayerSetting setting(integration, wanted, negligible_extinction(layers, wanted), options);
+  std::vector<ClippedLayer> clipped;
+  for (const Layer* layer : layers) {
+    std::vector<Clip> clips = layer->clips;
+    clips.insert(clips.end(), scene.clips.begin(), scene.clips.end());
+    clipped.push_back({kept.find(*layer, setting, threads), std::move(clips)});
+  }
+  kept.keep_only(scene);
+  tracer = make_scene_tracer(std::move(clipped), wanted, options.depth);
 }
 
 }  // namespace pellucid

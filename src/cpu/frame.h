@@ -2,8 +2,8 @@
 #pragma once
 
 #include <memory>
-#include <vector>
 
+#include "layers/layer_setups.h"
 #include "pellucid/cpu/render.h"
 #include "pellucid/scene/scene.h"
 #include "ray_tracer.h"
@@ -12,15 +12,15 @@ namespace pellucid {
 
 /// What every pixel of the frame shares.
 struct Frame {
-  /// `scene` must outlive the frame. The blocks of its data are made on so many threads where the
-  /// method needs them.
-  Frame(const Scene& scene, const RenderOptions& options, int threads);
+  /// `scene` must outlive the frame. Set-ups of layers come from `kept`, and those that are missing
+  /// are made on so many threads.
+  Frame(const Scene& scene, const RenderOptions& options, int threads, LayerSetups& kept);
 
   const Scene& scene;
-  std::vector<Layer> layers;  ///< the visible ones, in their places
   CameraFrame<double> camera;
-  double tolerance;  ///< what rays may be off by
-  double reserved;   ///< of the tolerance: what the transfer function is off by
+  double tolerance;      ///< what rays may be off by
+  double reserved;       ///< of the tolerance: what the transfer function is off by
+  double largest_color;  ///< of the visible layers' functions
   std::unique_ptr<const RayTracer> tracer;
 };
 

@@ -49,12 +49,14 @@ class MeshSampler : public RayTracer {
         stop_(stop_tolerance<double>() / std::max(largest_color(task.layer), 1.0)),
         depth_(task.options.depth) {}
 
-  std::vector<RayResult> trace(const std::vector<Ray<double>>& world,
-                               double /*share*/) const override {
+  std::vector<RayResult> trace(const std::vector<RayPart>& parts,
+                               const TraceOptions& options) const override {
     std::vector<RayResult> results;
-    results.reserve(world.size());
+    results.reserve(parts.size());
     MeshHits hits;
-    for (const Ray<double>& ray : world) {
+    for (const RayPart& part : parts) {
+      if (options.stop.stop_requested()) break;
+      const Ray<double>& ray = part.ray;
       RayResult result = sample(hits.find(mesh_, ray), std::numeric_limits<double>::infinity());
       if (depth_ && result.opacity > 0) {
         // There exp(-a) = 1 - opacity/2.
@@ -63,6 +65,7 @@ class MeshSampler : public RayTracer {
       }
       results.push_back(result);
     }
+    results.resize(parts.size());
     return results;
   }
 
@@ -83,7 +86,7 @@ class UnivariateMeshSampler : public MeshSampler {
   explicit UnivariateMeshSampler(const TracerTask& task)
       : MeshSampler(task),
         transfer_(*content_of(task).univariate()),
-        model_(cell_model(task.scene.integration.method)),
+        model_(cell_model(task.integration.method)),
         psi_(psi_table_for(model_)) {}
 
  protected:
@@ -103,7 +106,7 @@ class MultivariateMeshSampler : public MeshSampler {
   explicit MultivariateMeshSampler(const TracerTask& task)
       : MeshSampler(task),
         transfer_(content_of(task).multivariate()->view()),
-        method_(task.scene.integration.method),
+        method_(task.integration.method),
         psi_(psi_table_for(cell_model(method_))) {}
 
  protected:

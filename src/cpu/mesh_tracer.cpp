@@ -53,21 +53,21 @@ class MeshTracer : public RayTracer {
         wanted_(task.wanted),
         depth_(task.options.depth) {}
 
-  std::vector<RayResult> trace(const std::vector<Ray<double>>& world,
-                               double /*share*/) const override {
-    std::vector<RayResult> results(world.size());
-    integrate(world, results);
+  std::vector<RayResult> trace(const std::vector<RayPart>& parts,
+                               const TraceOptions& options) const override {
+    std::vector<RayResult> results(parts.size());
+    integrate(parts, options, results);
     if (!depth_) return results;
     MeshHits hits;
-    for (std::size_t i = 0; i < world.size(); ++i) {
+    for (std::size_t i = 0; i < parts.size(); ++i) {
       if (!(results[i].opacity > 0)) continue;
-      results[i].half_opacity_depth = find_half_opacity(hits.find(mesh_, world[i]), results[i]);
+      results[i].half_opacity_depth = find_half_opacity(hits.find(mesh_, parts[i].ray), results[i]);
     }
     return results;
   }
 
  protected:
-  virtual void integrate(const std::vector<Ray<double>>& rays,
+  virtual void integrate(const std::vector<RayPart>& rays, const TraceOptions& options,
                          std::vector<RayResult>& results) const = 0;
   /// Of a ray of which this is known.
   virtual double find_half_opacity(const MeshRay& ray, const RayResult& known) const = 0;
@@ -99,17 +99,18 @@ class MeshTracer : public RayTracer {
   }
 
   /// Follows the rays of `left` in packets, and leaves those there that are beyond the tolerance.
-  void follow(const std::vector<Ray<double>>& rays, bool in_double, std::vector<std::size_t>& left,
-              std::vector<RayResult>& results) const {
+  void follow(const std::vector<RayPart>& rays, double share, bool in_double,
+              std::vector<std::size_t>& left, std::vector<RayResult>& results) const {
     std::vector<PellucidMeshRay> of_job;
     of_job.reserve(left.size());
     for (const std::size_t i : left) {
-      const Vec3<double>&o = rays[i].origin, &d = rays[i].direction;
+      const Vec3<double>&o = rays[i].ray.origin, &d = rays[i].ray.direction;
       of_job.push_back({{o.x, o.y, o.z}, {d.x, d.y, d.z}});
     }
     std::vector<PellucidRayResult> found(left.size());
     PellucidMeshJob job = job_;
     job.in_double = in_double ? 1 : 0;
+    job.tolerance *= share;
     job.rays = of_job.data();
     job.results = found.data();
     job.count = static_cast<std::int32_t>(left.size());
@@ -118,7 +119,7 @@ class MeshTracer : public RayTracer {
     beyond.reserve(left.size());
     for (std::size_t n = 0; n < left.size(); ++n) {
       read_result(found[n], results[left[n]]);
-      if (!(results[left[n]].error <= wanted_.tolerance)) beyond.push_back(left[n]);
+      if (!(results[left[n]].error <= share * wanted_.tolerance)) beyond.push_back(left[n]);
     }
     left = std::move(beyond);
   }
@@ -147,22 +148,22 @@ class UnivariateMeshTracer : public MeshTracer {
   }
 
  protected:
-  void integrate(const std::vector<Ray<double>>& rays,
+  void integrate(const std::vector<RayPart>& rays, const TraceOptions& options,
                  std::vector<RayResult>& results) const override {
     std::vector<std::size_t> left(rays.size());
     std::iota(left.begin(), left.end(), std::size_t{0});
     if (kernel_ != nullptr) {
       if (wanted_.tolerance >= least_tolerance_in_float) {
-        follow(rays, false, left, results);
+        follow(rays, options.share, false, left, results);
       }
-      if (!left.empty()) follow(rays, true, left, results);
+      if (!left.empty()) follow(rays, options.share, true, left, results);
       // What is left has more hits than a lane has room for, or runs along faces, of which a ray by
       // itself knows more.
     }
     MeshHits hits;
     for (const std::size_t i : left) {
       results[i] = integrate_mesh_ray(mesh_, fields_.view(), transfer_.tables(),
-                                      hits.find(mesh_, rays[i]), wanted_);
+                                      hits.find(mesh_, rays[i].ray), wanted_);
     }
   }
   double find_half_opacity(const MeshRay& ray, const RayResult& known) const override {
@@ -225,21 +226,17 @@ class MultivariateMeshTracer : public MeshTracer {
     job_.value_points = static_cast<std::int32_t>(points);
   }
 
+  bool goes_in_packets() const { return kernel_ != nullptr; }
+
  protected:
-  void integrate(const std::vector<Ray<double>>& rays,
+  void integrate(const std::vector<RayPart>& rays, const TraceOptions& options,
                  std::vector<RayResult>& results) const override {
     std::vector<std::size_t> left(rays.size());
     std::iota(left.begin(), left.end(), std::size_t{0});
-    if (kernel_ != nullptr) {
-      follow(rays, true, left, results);
-      for (RayResult& result : results) std::swap(result.spans.closed, result.spans.lines);
-    }
-    MeshHits hits;
-    for (const std::size_t i : left) {
-      results[i] = integrate_multivariate_mesh_ray(mesh_, fields_.view(), transfer_,
-                                                   transfer_function_.largest_extinction(),
-                                                   hits.find(mesh_, rays[i]), wanted_);
-    }
+    follow(rays, options.share, true, left, results);
+    for (RayResult& result : results) std::swap(result.spans.closed, result.spans.lines);
+    // What is left has more hits than a lane has room for, or is beyond what packets can do.
+    for (const std::size_t i : left) results[i] = left_to_general_path();
   }
   double find_half_opacity(const MeshRay& ray, const RayResult& known) const override {
     return find_multivariate_mesh_half_opacity(mesh_, fields_.view(), transfer_,
@@ -260,10 +257,13 @@ class MultivariateMeshTracer : public MeshTracer {
 }  // namespace
 
 std::unique_ptr<const RayTracer> make_mesh_tracer(const TracerTask& task) {
-  if (task.scene.integration.method != Method::exact) return make_mesh_sampler(task);
-  if (content_of(task).multivariate() != nullptr)
-    return std::make_unique<MultivariateMeshTracer>(task);
-  return std::make_unique<UnivariateMeshTracer>(task);
+  if (task.integration.method != Method::exact) return make_mesh_sampler(task);
+  if (content_of(task).multivariate() == nullptr) {
+    return std::make_unique<UnivariateMeshTracer>(task);
+  }
+  auto tracer = std::make_unique<MultivariateMeshTracer>(task);
+  if (!tracer->goes_in_packets()) return nullptr;
+  return tracer;
 }
 
 }  // namespace pellucid

@@ -79,9 +79,8 @@ MultivariatePacketSampler::MultivariatePacketSampler(
   job_.stop = stop;
 }
 
-void MultivariatePacketSampler::trace(const Ray<double>* rays, int count,
-                                      RayResult* results) const {
-  trace_samples(volume_, job_, kernel_, rays, count, results);
+std::vector<RayResult> MultivariatePacketSampler::trace(const std::vector<RayPart>& in_grid) const {
+  return trace_samples(volume_, job_, kernel_, in_grid);
 }
 
 }  // namespace pellucid

@@ -8,6 +8,7 @@
 #include "pellucid/render/ray_result.h"
 #include "pellucid/scene/multivariate_blocks_storage.h"
 #include "pellucid/simd/instruction_set.h"
+#include "ray_tracer.h"
 #include "sampled_multivariate_storage.h"
 
 namespace pellucid {
@@ -25,7 +26,7 @@ class MultivariatePacketSampler {
       double stop, std::optional<InstructionSet> instruction_set, const ParallelFor& parallel);
 
   /// Rays in grid coordinates, their parameter the world arc length. Without half_opacity_depth.
-  void trace(const Ray<double>* rays, int count, RayResult* results) const;
+  std::vector<RayResult> trace(const std::vector<RayPart>& in_grid) const;
 
  private:
   using Kernel = void (*)(const PellucidMultivariateSamplerJob*);

@@ -45,7 +45,7 @@ Kernel kernel_for([[maybe_unused]] InstructionSet set) {
 class MultivariateTracer : public RayTracer {
  public:
   explicit MultivariateTracer(const TracerTask& task)
-      : integration_(task.scene.integration),
+      : integration_(task.integration),
         channels_(*std::get<ChannelsContent>(task.layer.content).channels),
         transfer_function_(*std::get<ChannelsContent>(task.layer.content).transfer_function),
         wanted_(task.wanted),
@@ -79,21 +79,22 @@ class MultivariateTracer : public RayTracer {
     }
   }
 
-  std::vector<RayResult> trace(const std::vector<Ray<double>>& world, double share) const override {
-    std::vector<Ray<double>> rays;
-    rays.reserve(world.size());
-    for (const Ray<double>& ray : world) {
-      rays.push_back(channels_.grid().grid_from_world().ray(ray));
-    }
-    if (kernel_ != nullptr) return trace_in_lanes(rays, share);
+  /// Whether there is code for the method `exact`.
+  bool is_able() const { return integration_.method != Method::exact || kernel_ != nullptr; }
+
+  bool keeps_to_ranges() const override { return integration_.method == Method::exact; }
+  std::vector<RayResult> trace(const std::vector<RayPart>& parts,
+                               const TraceOptions& options) const override {
+    const std::vector<RayPart> in_grid = parts_in_grid(channels_.grid(), parts);
+    if (kernel_ != nullptr) return trace_in_lanes(in_grid, options);
+    if (sampler_) return sampler_->trace(in_grid);
     std::vector<RayResult> results;
-    if (sampler_) {
-      results.resize(rays.size());
-      sampler_->trace(rays.data(), static_cast<int>(rays.size()), results.data());
-      return results;
+    results.reserve(parts.size());
+    for (const RayPart& part : in_grid) {
+      if (options.stop.stop_requested()) break;
+      results.push_back(sample(part.ray));
     }
-    results.reserve(rays.size());
-    for (const Ray<double>& ray : rays) results.push_back(trace_one(ray));
+    results.resize(parts.size());
     return results;
   }
 
@@ -120,20 +121,21 @@ class MultivariateTracer : public RayTracer {
                : GaussianMarch::cells;
   }
 
-  std::vector<RayResult> trace_in_lanes(const std::vector<Ray<double>>& rays, double share) const {
-    std::vector<RayResult> results(rays.size(), missing_ray());
-    const PacketRays inside(channels_.grid(), rays.data(), static_cast<int>(rays.size()));
+  std::vector<RayResult> trace_in_lanes(const std::vector<RayPart>& in_grid,
+                                        const TraceOptions& options) const {
+    std::vector<RayResult> results(in_grid.size(), missing_ray());
+    const PacketRays inside(channels_.grid(), in_grid);
     std::vector<PellucidRayResult> found(inside.ray.size());
     // Nothing is taken from rays that spend all of their tolerance.
-    const float* const waves = share < 1 ? storage_.smooth().waves : nullptr;
+    const float* const waves = options.share_of_rays < 1 ? storage_.smooth().waves : nullptr;
     if (steps_) {
-      steps_->trace(inside.ray, share, waves, depth_, found.data());
-      integrate_what_is_left(inside.ray, found);
+      steps_->trace(inside.ray, options.share * options.share_of_rays, waves, depth_, found.data());
+      integrate_what_is_left(inside.ray, options.share, found);
     } else {
-      integrate(inside.ray, found);
+      integrate(inside.ray, options.share, found);
     }
     for (std::size_t i = 0; i < found.size(); ++i) {
-      const auto n = static_cast<std::size_t>(inside.of[i]);
+      const std::size_t n = inside.of[i];
       read_result(found[i], results[n]);
       std::swap(results[n].spans.closed, results[n].spans.lines);
       const RayResult unknown;
@@ -144,7 +146,7 @@ class MultivariateTracer : public RayTracer {
                                     : unknown.longest_step;
       if (depth_) {
         results[n].half_opacity_depth = find_multivariate_half_opacity(
-            grid_, &*blocks_, rays[n], transfer_, transfer_function_.largest_extinction(), wanted_,
+            grid_, &*blocks_, in_grid[n].ray, transfer_, transfer_function_.largest_extinction(), wanted_,
             results[n].opacity, results[n].half);
       }
     }
@@ -152,10 +154,10 @@ class MultivariateTracer : public RayTracer {
   }
 
   /// Cell by cell.
-  void integrate(const std::vector<PellucidRay>& rays,
+  void integrate(const std::vector<PellucidRay>& rays, double share,
                  std::vector<PellucidRayResult>& found) const {
     if (cells_) {
-      cells_->trace(rays, depth_, found.data());
+      cells_->trace(rays, share, depth_, found.data());
       return;
     }
     // One ray after the other.
@@ -164,7 +166,7 @@ class MultivariateTracer : public RayTracer {
     job.blocks = &*blocks_;
     job.transfer = &transfer_;
     job.largest_extinction = transfer_function_.largest_extinction();
-    job.tolerance = wanted_.tolerance;
+    job.tolerance = share * wanted_.tolerance;
     job.largest_color = wanted_.largest_color;
     job.proved = wanted_.grade == Grade::proved ? 1 : 0;
     job.rays = rays.data();
@@ -174,7 +176,7 @@ class MultivariateTracer : public RayTracer {
   }
 
   /// Those of the rays that steps gave up, of which nothing is known for others beside them.
-  void integrate_what_is_left(const std::vector<PellucidRay>& rays,
+  void integrate_what_is_left(const std::vector<PellucidRay>& rays, double share,
                               std::vector<PellucidRayResult>& found) const {
     std::vector<PellucidRay> left;
     for (std::size_t i = 0; i < rays.size(); ++i) {
@@ -182,7 +184,7 @@ class MultivariateTracer : public RayTracer {
     }
     if (left.empty()) return;
     std::vector<PellucidRayResult> alone(left.size());
-    integrate(left, alone);
+    integrate(left, share, alone);
     auto next = alone.begin();
     for (PellucidRayResult& result : found) {
       if (!std::isinf(result.error)) continue;
@@ -191,11 +193,7 @@ class MultivariateTracer : public RayTracer {
     }
   }
 
-  RayResult trace_one(const Ray<double>& ray) const {
-    if (integration_.method == Method::exact) {
-      return integrate_multivariate_ray(grid_, &*blocks_, ray, transfer_,
-                                        transfer_function_.largest_extinction(), wanted_, depth_);
-    }
+  RayResult sample(const Ray<double>& ray) const {
     const double largest_color = transfer_function_.largest_color();
     constexpr double stop = stop_tolerance<double>();
     if (integration_.method == Method::kniss || integration_.method == Method::gaussian) {
@@ -207,7 +205,7 @@ class MultivariateTracer : public RayTracer {
                                    largest_color, stop, depth_);
   }
 
-  const Integration& integration_;
+  const Integration integration_;
   const Channels& channels_;
   const MultivariateTransferFunction& transfer_function_;
   RayTolerance wanted_;
@@ -227,7 +225,9 @@ class MultivariateTracer : public RayTracer {
 }  // namespace
 
 std::unique_ptr<const RayTracer> make_multivariate_tracer(const TracerTask& task) {
-  return std::make_unique<MultivariateTracer>(task);
+  auto tracer = std::make_unique<MultivariateTracer>(task);
+  if (!tracer->is_able()) return nullptr;
+  return tracer;
 }
 
 }  // namespace pellucid

@@ -57,8 +57,8 @@ PacketSamplerTracer::PacketSamplerTracer(const Volume& volume, const BlockClasse
   job_.stop = stop;
 }
 
-void PacketSamplerTracer::trace(const Ray<double>* rays, int count, RayResult* results) const {
-  trace_samples(volume_, job_, kernel_, rays, count, results);
+std::vector<RayResult> PacketSamplerTracer::trace(const std::vector<RayPart>& in_grid) const {
+  return trace_samples(volume_, job_, kernel_, in_grid);
 }
 
 }  // namespace pellucid

@@ -10,6 +10,7 @@
 #include "pellucid/simd/instruction_set.h"
 #include "pellucid/transfer/preintegrated.h"
 #include "pellucid/traverse/block_classes.h"
+#include "ray_tracer.h"
 #include "sampler_records.h"
 
 namespace pellucid {
@@ -28,7 +29,7 @@ class PacketSamplerTracer {
       std::optional<InstructionSet> instruction_set);
 
   /// Rays in grid coordinates, their parameter the world arc length. Without half_opacity_depth.
-  void trace(const Ray<double>* rays, int count, RayResult* results) const;
+  std::vector<RayResult> trace(const std::vector<RayPart>& in_grid) const;
 
  private:
   using Kernel = void (*)(const PellucidSamplerJob*);

@@ -120,12 +120,21 @@ RayResult missing_ray() {
   return missing;
 }
 
-PacketRays::PacketRays(const Volume& volume, const Ray<double>* rays, int count) {
+std::vector<RayPart> parts_in_grid(const Volume& volume, const std::vector<RayPart>& world) {
+  std::vector<RayPart> parts;
+  parts.reserve(world.size());
+  for (const RayPart& part : world) {
+    parts.push_back({volume.grid_from_world().ray(part.ray), part.range});
+  }
+  return parts;
+}
+
+PacketRays::PacketRays(const Volume& volume, const std::vector<RayPart>& in_grid) {
   volume.visit([&](const auto& grid) {
-    for (int i = 0; i < count; ++i) {
-      const Interval<double> t = grid_interval(grid.axis, rays[i]);
+    for (std::size_t i = 0; i < in_grid.size(); ++i) {
+      const Interval<double> t = grid_interval(grid.axis, in_grid[i].ray, in_grid[i].range);
       if (t.empty()) continue;
-      const Vec3<double>&o = rays[i].origin, &d = rays[i].direction;
+      const Vec3<double>&o = in_grid[i].ray.origin, &d = in_grid[i].ray.direction;
       ray.push_back({{o.x, o.y, o.z}, {d.x, d.y, d.z}, t.begin, t.end});
       of.push_back(i);
     }

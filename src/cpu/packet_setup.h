@@ -10,6 +10,7 @@
 #include "pellucid/render/ray_result.h"
 #include "pellucid/scene/volume.h"
 #include "pellucid/simd/instruction_set.h"
+#include "ray_tracer.h"
 
 namespace pellucid {
 
@@ -65,12 +66,16 @@ void read_result(const PellucidRayResult& from, RayResult& to);
 /// beside these is no pixel to interpolate (ScreenMask).
 RayResult missing_ray();
 
-/// Those of the rays that meet the grid's box, and which of them they are.
+/// Parts of rays in the grid's coordinates instead of the world's; their parameter stays the world
+/// arc length.
+std::vector<RayPart> parts_in_grid(const Volume& volume, const std::vector<RayPart>& world);
+
+/// Those of the parts that meet the grid's box, and which of them they are.
 struct PacketRays {
   std::vector<PellucidRay> ray;
-  std::vector<int> of;
+  std::vector<std::size_t> of;
 
-  PacketRays(const Volume& volume, const Ray<double>* rays, int count);
+  PacketRays(const Volume& volume, const std::vector<RayPart>& in_grid);
 };
 
 /// What packets of rays that sample found.
@@ -80,16 +85,17 @@ void read_sampled(const std::vector<PellucidRayResult>& found, const PacketRays&
 /// Samples along the rays (grid coordinates). Of the job, all but the rays is set; those of them
 /// that miss the volume gather nothing.
 template <class Job>
-void trace_samples(const Volume& volume, Job job, void (*kernel)(const Job*),
-                   const Ray<double>* rays, int count, RayResult* results) {
-  std::fill(results, results + count, RayResult{});
-  const PacketRays inside(volume, rays, count);
+std::vector<RayResult> trace_samples(const Volume& volume, Job job, void (*kernel)(const Job*),
+                                     const std::vector<RayPart>& in_grid) {
+  std::vector<RayResult> results(in_grid.size());
+  const PacketRays inside(volume, in_grid);
   std::vector<PellucidRayResult> found(inside.ray.size());
   job.grid_and_rays.rays = inside.ray.data();
   job.grid_and_rays.results = found.data();
   job.grid_and_rays.count = static_cast<std::int32_t>(inside.ray.size());
   kernel(&job);
-  read_sampled(found, inside, results);
+  read_sampled(found, inside, results.data());
+  return results;
 }
 
 }  // namespace pellucid

@@ -118,18 +118,10 @@ std::vector<PellucidRayResult> PacketTracer::integrate(const std::vector<Pelluci
   return found;
 }
 
-std::vector<RayResult> PacketTracer::trace_parts(const std::vector<PellucidRay>& parts,
-                                                 double share) const {
-  std::vector<RayResult> results(parts.size());
-  const std::vector<PellucidRayResult> found = integrate(parts, share, false);
-  for (std::size_t i = 0; i < found.size(); ++i) read_result(found[i], results[i]);
-  return results;
-}
-
-void PacketTracer::trace(const Ray<double>* rays, int count, double share, bool depth,
-                         RayResult* results) const {
-  std::fill(results, results + count, missing_ray());
-  const PacketRays inside(volume_, rays, count);
+std::vector<RayResult> PacketTracer::trace(const std::vector<RayPart>& in_grid, double share,
+                                           bool depth) const {
+  std::vector<RayResult> results(in_grid.size(), missing_ray());
+  const PacketRays inside(volume_, in_grid);
   const std::vector<PellucidRayResult> found = integrate(inside.ray, share, depth);
   for (std::size_t i = 0; i < found.size(); ++i) {
     RayResult& to = results[inside.of[i]];
@@ -137,14 +129,15 @@ void PacketTracer::trace(const Ray<double>* rays, int count, double share, bool 
     to.neighbor_deviation = found[i].neighbor_deviation;
     to.longest_step = found[i].longest_step * rays_apart_(inside.ray[i]);
   }
-  if (!depth) return;
+  if (!depth) return results;
   volume_.visit([&](const auto& grid) {
-    for (std::size_t i = 0; i < found.size(); ++i) {
-      const int n = inside.of[i];
-      results[n].half_opacity_depth = find_half_opacity(grid, rays[n], transfer_, wanted_.precision,
-                                                        results[n].opacity, results[n].half);
+    for (const std::size_t n : inside.of) {
+      results[n].half_opacity_depth =
+          find_half_opacity(grid, in_grid[n].ray, transfer_, wanted_.precision, results[n].opacity,
+                            results[n].half);
     }
   });
+  return results;
 }
 
 void PacketTracer::integrate_cell(const void* context, std::int32_t ray, const PellucidCell* cell,

@@ -12,6 +12,7 @@
 #include "pellucid/scene/volume.h"
 #include "pellucid/simd/instruction_set.h"
 #include "pellucid/traverse/block_classes.h"
+#include "ray_tracer.h"
 #include "rays_apart.h"
 #include "sampler_records.h"
 
@@ -38,13 +39,10 @@ class PacketTracer {
                                                   const RayTolerance& wanted,
                                                   std::optional<InstructionSet> instruction_set);
 
-  /// Rays in grid coordinates, their parameter the world arc length; neighbours are packed
+  /// Parts of rays in grid coordinates, their parameter the world arc length; neighbours are packed
   /// together, and what becomes of a ray does not depend on them. `share`: of the tolerance, what
-  /// the rays may be off by. `depth`: whether half_opacity_depth is asked for.
-  void trace(const Ray<double>* rays, int count, double share, bool depth,
-             RayResult* results) const;
-  /// The same for parts of rays, each by itself; without half_opacity_depth.
-  std::vector<RayResult> trace_parts(const std::vector<PellucidRay>& parts, double share) const;
+  /// the parts may be off by. `depth`: whether half_opacity_depth is asked for.
+  std::vector<RayResult> trace(const std::vector<RayPart>& in_grid, double share, bool depth) const;
   /// Whether smooth blocks are sampled.
   bool goes_in_steps() const noexcept { return smooth_.longest_step > 0; }
   /// RayResult::longest_step of no ray is longer.

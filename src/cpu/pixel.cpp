@@ -28,7 +28,7 @@ void store_pixel(const Frame& frame, const RayResult& result, std::size_t pixel,
   // A clear pixel is clear whatever the transfer function is off by where it is not zero.
   const double approximation = result.opacity > 0 ? frame.reserved : 0;
   // Both the pixel and the exact one lie between zero and the largest color.
-  const double most = std::max(largest_color(frame.scene), 1.0);
+  const double most = std::max(frame.largest_color, 1.0);
   const double error = std::min(result.error + approximation, most) + brightest * 0x1p-24;
   if (image.error != nullptr) {
     image.error[pixel] = float_above(error);

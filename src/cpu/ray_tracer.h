@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <limits>
 #include <memory>
 #include <optional>
+#include <stop_token>
 #include <vector>
 
 #include "pellucid/cpu/render.h"
@@ -14,7 +16,25 @@
 
 namespace pellucid {
 
-/// What follows the rays of a frame, made for its data, transfer function and method.
+/// A part of a ray in the world, whose direction has length 1.
+struct RayPart {
+  Ray<double> ray;
+  Interval<double> range{0, std::numeric_limits<double>::infinity()};  ///< world arc length
+};
+
+/// How rays are followed.
+struct TraceOptions {
+  /// Of the tolerance, what is the part's: less than 1 where a ray has others.
+  double share = 1;
+  /// Of that, what the part may be off by: less than 1 where pixels are to be interpolated from it,
+  /// by what RayTracer::surroundings() tell.
+  double share_of_rays = 1;
+  /// Once it is requested, what a tracer returns does not matter.
+  std::stop_token stop{};
+};
+
+/// What follows the rays of a frame, made for its data, transfer function and method. It owns or
+/// shares all that it refers to but its layer.
 class RayTracer {
  public:
   RayTracer() = default;
@@ -22,11 +42,13 @@ class RayTracer {
   RayTracer& operator=(const RayTracer&) = delete;
   virtual ~RayTracer() = default;
 
-  /// What the rays (in the world, directions of length 1) gather. Safe to call from any thread.
-  /// `share`: of the tolerance, what they may be off by; less than 1 where others are to be taken
-  /// from them, by what surroundings() tell.
-  virtual std::vector<RayResult> trace(const std::vector<Ray<double>>& world,
-                                       double share) const = 0;
+  /// Returns what the parts gather, each by itself. With the method `exact`, an infinite error
+  /// leaves a part to the general path (left_to_general_path()). Safe to call from any thread.
+  virtual std::vector<RayResult> trace(const std::vector<RayPart>& parts,
+                                       const TraceOptions& options) const = 0;
+
+  /// Returns whether it keeps to the ranges of the parts; if not, it follows the whole rays.
+  virtual bool keeps_to_ranges() const { return false; }
 
   /// What there is to find out between rays.
   struct Surroundings {
@@ -38,25 +60,29 @@ class RayTracer {
   virtual std::optional<Surroundings> surroundings() const { return std::nullopt; }
 };
 
-/// What is to be followed: a layer of a scene that check_method() accepts. Both must outlive the
-/// tracer; what is needed of the data's blocks is made on so many threads.
+/// A part that a tracer cannot follow within the tolerance.
+inline RayResult left_to_general_path() {
+  return {};
+}
+
+/// What is to be followed.
 struct TracerTask {
-  const Scene& scene;
-  const Layer& layer;  ///< the one that is followed, in its place (moved_into_place())
+  /// In its place (moved_into_place()), of a scene that check_method() accepts. Its clips are not
+  /// the tracer's concern. It must outlive the tracer.
+  const Layer& layer;
+  const Integration& integration;
   const RenderOptions& options;
   RayTolerance wanted;
-  int threads = 1;
+  int threads = 1;  ///< on which what is needed of the data's blocks is made
 };
 
-/// Of any number of layers, of any kind, with clips: the general path. The layers must outlive it.
-std::unique_ptr<const RayTracer> make_layered_tracer(const TracerTask& task,
-                                                     const std::vector<Layer>& layers);
-/// Of a volume with a transfer function. Null where the layer or the scene has clips and packets do
-/// not suit the rays.
+/// Of a volume with a transfer function.
 std::unique_ptr<const RayTracer> make_univariate_tracer(const TracerTask& task);
-/// Of channels with a multivariate transfer function.
+/// Of channels with a multivariate transfer function. Null for the method `exact` where packets do
+/// not suit the rays.
 std::unique_ptr<const RayTracer> make_multivariate_tracer(const TracerTask& task);
-/// Of a mesh with either function.
+/// Of a mesh with either function. Null for the method `exact` and a function of several variables
+/// where packets do not suit the rays.
 std::unique_ptr<const RayTracer> make_mesh_tracer(const TracerTask& task);
 /// The same, by one of the methods for comparison.
 std::unique_ptr<const RayTracer> make_mesh_sampler(const TracerTask& task);

@@ -61,10 +61,36 @@ std::vector<Place> places_of(const Tile& tile) {
   return places;
 }
 
+/// Traces the rays; so few at once that the threads can stop soon.
+std::vector<RayResult> trace(const Frame& frame, const std::vector<RayPart>& rays,
+                             double share_of_rays, const TileTask& task) {
+  const TraceOptions options{1, share_of_rays, task.stop};
+  std::vector<RayResult> results;
+  for (std::size_t first = 0; first < rays.size() && !task.stop.stop_requested();) {
+    const std::size_t left = rays.size() - first;
+    const std::size_t count =
+        task.stop.stop_possible() ? std::min(task.speed->rays_at_once(), left) : left;
+    const auto start = std::chrono::steady_clock::now();
+    if (count == rays.size()) {
+      results = frame.tracer->trace(rays, options);
+    } else {
+      const auto begin = rays.begin() + static_cast<std::ptrdiff_t>(first);
+      const std::vector<RayResult> some = frame.tracer->trace(
+          std::vector<RayPart>(begin, begin + static_cast<std::ptrdiff_t>(count)), options);
+      results.insert(results.end(), some.begin(), some.end());
+    }
+    task.speed->tell(count, std::chrono::steady_clock::now() - start);
+    first += count;
+  }
+  return results;
+}
+
 }  // namespace
 
-std::size_t render_tile(const Frame& frame, const Tile& tile, int level, BetweenPixels* between,
+std::size_t render_tile(const Frame& frame, const Tile& tile, const TileTask& task,
                         const ImageView& image, RenderReport& report) {
+  const int level = task.level;
+  BetweenPixels* const between = task.between;
   const int samples = frame.scene.samples, rays_of_pixel = samples * samples;
   const auto finish = [&](const Place& place, const RayResult& result) {
     store_pixel(frame, result, image.index(place.column, place.row), image, report);
@@ -85,19 +111,20 @@ std::size_t render_tile(const Frame& frame, const Tile& tile, int level, Between
       return true;
     });
   }
-  std::vector<Ray<double>> rays;
+  std::vector<RayPart> rays;
   rays.reserve(places.size() * static_cast<std::size_t>(rays_of_pixel));
   for (const Place& place : places) {
     if (samples == 1) {
-      rays.push_back(frame.camera.ray(place.column, place.row));
+      rays.push_back({frame.camera.ray(place.column, place.row)});
     } else {
       for (int n = 0; n < rays_of_pixel; ++n) {
-        rays.push_back(frame.camera.ray(place.column, place.row, n, samples));
+        rays.push_back({frame.camera.ray(place.column, place.row, n, samples)});
       }
     }
   }
   const std::vector<RayResult> results =
-      frame.tracer->trace(rays, between != nullptr ? between->share_of_rays(level) : 1);
+      trace(frame, rays, between != nullptr ? between->share_of_rays(level) : 1, task);
+  if (task.stop.stop_requested()) return 0;
   report.rays += rays.size();
   const RayResult* of_pixel = results.data();
   for (const Place& place : places) {

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <atomic>
+#include <chrono>
 #include <cstddef>
+#include <stop_token>
 
 #include "between_pixels.h"
 #include "frame.h"
@@ -9,12 +12,35 @@
 
 namespace pellucid {
 
+/// How fast rays are, for those that may have to stop soon. Shared by the threads of a frame.
+class TileSpeed {
+ public:
+  /// Returns how many rays, a multiple of 16, are done in some 2 ms.
+  std::size_t rays_at_once() const noexcept {
+    const double one = seconds_per_ray_.load(std::memory_order_relaxed);
+    const double rays = one > 0 ? 2e-3 / one : 64;
+    return rays < 32 ? 16 : rays > 4096 ? 4096 : static_cast<std::size_t>(rays) / 16 * 16;
+  }
+  void tell(std::size_t rays, std::chrono::duration<double> taken) noexcept {
+    seconds_per_ray_.store(taken.count() / static_cast<double>(rays), std::memory_order_relaxed);
+  }
+
+ private:
+  std::atomic<double> seconds_per_ray_{0};
+};
+
+/// How a tile is rendered.
+struct TileTask {
+  int level;               ///< of `between`, whose coarser levels are done
+  BetweenPixels* between;  ///< null: all pixels are traced
+  std::stop_token stop;    ///< once it is requested, what becomes of the tile does not matter
+  TileSpeed* speed;
+};
+
 /// Renders the pixels of the tile into the image, and adds them to the report. What a pixel becomes
-/// depends on nothing but the frame and its place: neither on the tile nor on the thread.
-///
-/// With `between` these are pixels of its level `level`: all of the coarser ones must be done.
-/// Null: all are traced. Gives how many of them were not final before.
-std::size_t render_tile(const Frame& frame, const Tile& tile, int level, BetweenPixels* between,
+/// depends on nothing but the frame and its place: neither on the tile nor on the thread. Gives how
+/// many of them were not final before.
+std::size_t render_tile(const Frame& frame, const Tile& tile, const TileTask& task,
                         const ImageView& image, RenderReport& report);
 
 }  // namespace pellucid

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <functional>
 #include <optional>
+#include <stop_token>
 
 #include "pellucid/render/ray_result.h"
 #include "pellucid/scene/image.h"
@@ -50,6 +51,9 @@ struct RenderOptions {
   /// Called occasionally with the finished fraction in [0, 1], by one thread at a time. If it
   /// returns false, the frame is cancelled and render() throws Cancelled.
   std::function<bool(double)> progress;
+  /// Cancels the frame, from any thread: threads stop within some 5 ms of work, and render() throws
+  /// Cancelled.
+  std::stop_token stop{};
 
   // The following options apply to render() only.
 
@@ -65,6 +69,7 @@ struct RenderOptions {
 /// Statistics of a rendered frame.
 struct RenderReport {
   double seconds = 0;
+  double setup_seconds = 0;  ///< of `seconds`: until the first ray
   int threads = 0;
   std::uint64_t rays = 0;   ///< traced rays
   std::uint64_t cells = 0;  ///< cells visited (exact) or samples taken (the others)
@@ -79,15 +84,15 @@ struct RenderReport {
   RuleCounts spans;                         ///< number of spans by rule
 };
 
-/// Thrown by render() if a callback returned false.
+/// Thrown by render() if a callback returned false or RenderOptions::stop was requested.
 class Cancelled : public std::runtime_error {
  public:
   Cancelled() : std::runtime_error("rendering was cancelled") {}
 };
 
-/// Renders the scene with its own method and precision. The image is bitwise the same for any
-/// number of threads. Throws Error if `scene` fails its checks (camera, sizes, step), and
-/// Cancelled.
+/// Renders the scene with its own method and precision: one frame of a new Renderer
+/// (pellucid/cpu/renderer.h). The image is bitwise the same for any number of threads. Throws Error
+/// if `scene` fails its checks (camera, sizes, step), and Cancelled.
 Image render(const Scene& scene, const RenderOptions& options = {}, RenderReport* report = nullptr);
 
 }  // namespace pellucid

@@ -13,6 +13,7 @@ struct Mat3 {
   PELLUCID_HD friend constexpr Vec3<T> operator*(const Mat3& m, Vec3<T> v) noexcept {
     return m.column[0] * v.x + m.column[1] * v.y + m.column[2] * v.z;
   }
+  friend constexpr bool operator==(const Mat3&, const Mat3&) noexcept = default;
 };
 
 template <class T>
@@ -46,6 +47,7 @@ struct Affine {
   PELLUCID_HD constexpr Ray<T> ray(const Ray<T>& r) const noexcept {
     return {point(r.origin), vector(r.direction)};
   }
+  friend constexpr bool operator==(const Affine&, const Affine&) noexcept = default;
 };
 
 template <class T>

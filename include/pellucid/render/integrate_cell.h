@@ -19,6 +19,8 @@ struct RayTolerance {
   /// C_max of theorem (3): an upper bound on the colors of the transfer function and of the
   /// background.
   double largest_color = 1;
+
+  friend bool operator==(const RayTolerance&, const RayTolerance&) noexcept = default;
 };
 
 /// A cell's segment by the cheapest rule within budget, with its error.

@@ -92,7 +92,8 @@ PELLUCID_HD void integrate_blocks(const ClassifiedBlocks& blocks, const Ray<doub
 }
 
 /// Integrates a ray (in grid coordinates, its parameter the world arc length) through trilinear
-/// data, within a tolerance. `blocks` belong to the same grid; null: none.
+/// data, within a tolerance; of the ray, the part in `part`. `blocks` belong to the same grid; null:
+/// none.
 ///
 /// RayResult::error is at most the tolerance, unless binary32 is forced and cannot keep it, or even
 /// binary64 cannot resolve on which side of a discontinuity of the transfer function the data lie.
@@ -100,8 +101,9 @@ template <class Value>
 PELLUCID_HD RayResult integrate_ray(const StructuredGrid<Value, double>& grid,
                                     const ClassifiedBlocks* blocks, const Ray<double>& ray_grid,
                                     const TransferTables& transfer, const RayTolerance& wanted,
-                                    bool with_depth) noexcept {
-  const Interval<double> inside = grid_interval(grid.axis, ray_grid);
+                                    bool with_depth,
+                                    Interval<double> part = HalfOpacity{}.range) noexcept {
+  const Interval<double> inside = grid_interval(grid.axis, ray_grid, part);
   if (inside.empty()) return missed_ray_result();
 
   RayIntegrator<Value> integrator(grid, ray_grid, transfer, wanted, inside.end - inside.begin);
@@ -122,8 +124,8 @@ PELLUCID_HD RayResult integrate_ray(const StructuredGrid<Value, double>& grid,
   RayResult result = integrator.result();
   result.cells = cells;
   if (with_depth) {
-    result.half_opacity_depth =
-        find_half_opacity(grid, ray_grid, transfer, wanted.precision, result.opacity);
+    result.half_opacity_depth = find_half_opacity(grid, ray_grid, transfer, wanted.precision,
+                                                  result.opacity, HalfOpacity{part});
   }
   return result;
 }

@@ -24,12 +24,16 @@ struct VolumeContent {
   std::shared_ptr<const TransferFunction> transfer_function;
   /// Labels on the same grid that choose another function; may be null.
   std::shared_ptr<const LabelMask> mask{};
+
+  bool operator==(const VolumeContent&) const = default;  ///< whether it is the same objects
 };
 
 /// Several fields on one grid with a function of all of them.
 struct ChannelsContent {
   std::shared_ptr<const Channels> channels;
   std::shared_ptr<const MultivariateTransferFunction> transfer_function;
+
+  bool operator==(const ChannelsContent&) const = default;  ///< whether it is the same objects
 };
 
 /// One or several variables on a mesh, with a function of one or of all of them.
@@ -43,12 +47,16 @@ struct MeshContent {
   const TransferFunction* univariate() const noexcept;
   /// Returns the function of several variables; null if it is of one, or missing.
   const MultivariateTransferFunction* multivariate() const noexcept;
+
+  bool operator==(const MeshContent&) const = default;  ///< whether it is the same objects
 };
 
 /// A segmentation with the look of its labels.
 struct LabelContent {
   std::shared_ptr<const LabelVolume> labels;
   std::shared_ptr<const LabelTable> table;
+
+  bool operator==(const LabelContent&) const = default;  ///< whether it is the same objects
 };
 
 using LayerContent = std::variant<VolumeContent, ChannelsContent, MeshContent, LabelContent>;

@@ -86,6 +86,7 @@ struct Integration {
   double tolerance = default_tolerance;
   Grade grade = Grade::estimated;
 
+  bool operator==(const Integration&) const = default;
   /// Sets the tolerance to `wanted`, clamped to the limits, and returns it. Throws Error if
   /// `wanted` is not a positive number.
   double set_tolerance(double wanted);

@@ -7,7 +7,7 @@
 
 namespace pellucid {
 
-Bundle::Bundle(const std::vector<std::unique_ptr<const LayerSource>>& sources, std::vector<int> key)
+Bundle::Bundle(const std::vector<const LayerSource*>& sources, std::vector<int> key)
     : key_(std::move(key)), first_channel_(key_.size()), primitives_(key_.size()) {
   int channels = 0;
   for (std::size_t layer = 0; layer < key_.size(); ++layer) {

@@ -16,7 +16,7 @@ class Bundle {
   using Span = MultivariateSpan<double, CubicBernstein<double>, max_bundle_channels>;
 
   /// `key`: for each layer the function of its source, or -1 where it is absent.
-  Bundle(const std::vector<std::unique_ptr<const LayerSource>>& sources, std::vector<int> key);
+  Bundle(const std::vector<const LayerSource*>& sources, std::vector<int> key);
   // The function points into the object.
   Bundle(const Bundle&) = delete;
   Bundle& operator=(const Bundle&) = delete;
@@ -47,14 +47,14 @@ class Bundle {
 /// The bundles that rays have met so far. Used by one thread.
 class Bundles {
  public:
-  explicit Bundles(const std::vector<std::unique_ptr<const LayerSource>>& sources)
+  explicit Bundles(const std::vector<const LayerSource*>& sources)
       : sources_(sources) {}
 
   /// Returns the bundle of a key, valid while this object lives.
   const Bundle& find(const std::vector<int>& key);
 
  private:
-  const std::vector<std::unique_ptr<const LayerSource>>& sources_;
+  const std::vector<const LayerSource*>& sources_;
   std::vector<std::unique_ptr<const Bundle>> bundles_;
 };
 

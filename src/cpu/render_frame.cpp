@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "pellucid/cpu/render.h"
+#include "render_frame.h"
 
 #include <chrono>
 #include <memory>
@@ -58,11 +58,13 @@ void render_tiles(const Frame& frame, const RenderOptions& options, Image& image
   const ImageView view(image);
   std::mutex report_mutex;
   Progress progress(options, image, tiles);
+  TileSpeed speed;
   const std::unique_ptr<BetweenPixels> between = BetweenPixels::make(frame, view);
   const auto render_level = [&](std::span<const Tile> some, int level, const auto& finish) {
     take_in_turn(some.size(), report.threads, [&](std::size_t i) {
       RenderReport part;
-      const std::size_t pixels = render_tile(frame, some[i], level, between.get(), view, part);
+      const std::size_t pixels = render_tile(frame, some[i], {level, between.get(), options.stop, &speed}, view, part);
+      if (options.stop.stop_requested()) return false;
       {
         const std::lock_guard lock(report_mutex);
         add(report, part);
@@ -70,7 +72,7 @@ void render_tiles(const Frame& frame, const RenderOptions& options, Image& image
       finish(some[i], pixels);
       return !progress.cancelled();
     });
-    if (progress.cancelled()) throw Cancelled();
+    if (options.stop.stop_requested() || progress.cancelled()) throw Cancelled();
   };
   const auto finish_tile = [&](const Tile& tile, std::size_t pixels) {
     progress.finish_tile(tile, pixels);
@@ -96,16 +98,21 @@ void render_tiles(const Frame& frame, const RenderOptions& options, Image& image
 
 }  // namespace
 
-Image render(const Scene& scene, const RenderOptions& options, RenderReport* report) {
+Image render_frame(const Scene& scene, const RenderOptions& options, int threads,
+                   LayerSetups& kept, RenderReport* report) {
   check(scene, options);
   RenderReport local;
-  local.threads = options.threads > 0 ? options.threads : default_thread_count();
+  local.threads = threads;
   const auto start = std::chrono::steady_clock::now();
-  const Frame frame(scene, options, local.threads);
+  const auto seconds = [&] {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  };
+  const Frame frame(scene, options, threads, kept);
   Image image = make_image(scene.size, options);
   local.pixels = image.pixels.size();
+  local.setup_seconds = seconds();
   render_tiles(frame, options, image, local);
-  local.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  local.seconds = seconds();
   if (report != nullptr) *report = local;
   return image;
 }

@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <memory>
+
+#include "pellucid/cpu/render.h"
+
+namespace pellucid {
+
+class KeptFrames;
+
+/// A frame that is being rendered by threads of its own. The handle can be moved; its destructor
+/// cancels the frame and waits for its threads. All members are safe to call from any thread, but
+/// for wait(), moves and the destructor, which are for the owner.
+class RunningFrame {
+ public:
+  RunningFrame(RunningFrame&&) noexcept;
+  RunningFrame& operator=(RunningFrame&&) noexcept;
+  ~RunningFrame();
+
+  /// Asks the threads to stop, and returns at once. They stop within some 5 ms of work.
+  void cancel() noexcept;
+  /// Returns whether the threads are done: with the image, or because of an error or cancel().
+  bool finished() const noexcept;
+
+  /// How far the frame is.
+  struct State {
+    double fraction = 0;  ///< of the pixels that are final
+    /// The finest level of RenderOptions::preview that is complete; -1: none is yet. Level n has
+    /// every 2ⁿ-th pixel along each axis; 0 is the image.
+    int level = -1;
+    bool finished = false;
+  };
+  State state() const;
+  /// Returns what is known of the image: a pixel that is not rendered yet has the color of its
+  /// nearest coarser one, or nothing. Without depth, error and metadata.
+  Image look() const;
+
+  /// Waits for the threads and returns the image; `report` may be null. Throws Error if the scene
+  /// failed its checks, and Cancelled. Only the first call returns the image; look() has none then.
+  Image wait(RenderReport* report = nullptr);
+
+ private:
+  friend class Renderer;
+  struct Job;
+  explicit RunningFrame(std::unique_ptr<Job> job);
+
+  std::unique_ptr<Job> job_;
+};
+
+/// Renders frame after frame, and keeps what they share: the blocks' classes, tables and packets'
+/// set-up of each layer, found by the identity of its data and functions (the shared objects, not
+/// their contents). A camera that moves costs no set-up; a new transfer function costs its own. What
+/// a frame's scene does not have is let go of. The records of blocks stay with the volumes.
+///
+/// Nothing is global: renderers do not know of each other. Safe to use from any thread; frames that
+/// run at the same time share the cores.
+class Renderer {
+ public:
+  /// `threads`: of frames whose options name none; 0: one per core. Throws Error if it is negative.
+  explicit Renderer(int threads = 0);
+  Renderer(Renderer&&) noexcept;
+  Renderer& operator=(Renderer&&) noexcept;
+  ~Renderer();
+
+  /// Renders a frame on this thread and others, as pellucid::render() does.
+  Image render(const Scene& scene, const RenderOptions& options = {},
+               RenderReport* report = nullptr);
+  /// Starts a frame and returns at once. The frame may outlive the renderer. Callbacks of the
+  /// options are called by the frame's threads.
+  RunningFrame start(Scene scene, RenderOptions options = {});
+  /// Lets go of all that is kept.
+  void clear();
+
+ private:
+  std::shared_ptr<KeptFrames> kept_;
+};
+
+}  // namespace pellucid

@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "clip_intervals.h"
+#include "layer_setup.h"
+
+namespace pellucid {
+
+/// A visible layer of a frame, with the clips of its own and of the scene.
+struct ClippedLayer {
+  std::shared_ptr<const LayerSetup> setup;
+  std::vector<Clip> clips;
+
+  /// Returns what the clips keep of an interval of the ray, which is in the world.
+  ClipIntervals cut(const Ray<double>& ray, Interval<double> inside) const {
+    ClipIntervals intervals(inside);
+    for (const Clip& clip : clips) intervals.cut(clip, ray);
+    return intervals;
+  }
+};
+
+}  // namespace pellucid

@@ -1,0 +1,199 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "general_path.h"
+
+#include <algorithm>
+#include <limits>
+#include <utility>
+
+#include "bundle.h"
+#include "pellucid/render/multivariate_integrator.h"
+
+namespace pellucid {
+
+namespace {
+
+/// The part [begin, end] of a stretch.
+void take(const LayerStretch& stretch, const MultivariateTransfer<double>& transfer,
+                 double begin, double end, CubicBernstein<double>* to) {
+  if (begin <= stretch.begin && stretch.end <= end) {
+    std::copy_n(stretch.data, transfer.channels, to);
+    return;
+  }
+  const double length = stretch.end - stretch.begin;
+  const double first = (begin - stretch.begin) / length, last = (end - stretch.begin) / length;
+  for (int c = 0; c < transfer.channels; ++c) {
+    to[c] = restrict_to(stretch.data[c], first, last);
+  }
+}
+
+}  // namespace
+
+/// One layer along a ray, cut by its clips.
+class GeneralPath::ClippedStream {
+ public:
+  ClippedStream(const LayerSource& source, const ClippedLayer& layer)
+      : stream_(source.stream()), layer_(layer) {}
+
+  /// Returns the interval of the part in which the layer may be present.
+  Interval<double> start(const RayPart& part) {
+    stretch_ = absent();
+    Interval<double> inside = stream_->start(part.ray);
+    inside.begin = std::max(inside.begin, part.range.begin);
+    inside.end = std::min(inside.end, part.range.end);
+    ranges_ = layer_.cut(part.ray, inside).kept;
+    range_ = 0;
+    if (ranges_.empty()) return {1, 0};
+    const Interval<double> all{ranges_.front().begin, ranges_.back().end};
+    stream_->restrict_to_range(ranges_[range_++]);
+    advance();
+    return all;
+  }
+  /// Goes on to the stretch that ends behind t; returns an opacity met on the way that is not
+  /// known.
+  double advance_to(double t) {
+    double unknown = 0;
+    while (stretch_.end <= t) {
+      unknown += stretch_.unknown;
+      advance();
+    }
+    return unknown;
+  }
+  /// The current stretch, or the next one; at infinity behind the last.
+  const LayerStretch& stretch() const { return stretch_; }
+  /// Returns its unknown opacity, once.
+  double take_unknown() { return std::exchange(stretch_.unknown, 0); }
+
+ private:
+  static LayerStretch absent() {
+    LayerStretch nothing;
+    nothing.begin = nothing.end = std::numeric_limits<double>::infinity();
+    return nothing;
+  }
+  void advance() {
+    for (;;) {
+      stretch_.function = -1;
+      stretch_.primitives = {};
+      stretch_.left_out = stretch_.position_error = stretch_.unknown = 0;
+      if (stream_->next(stretch_)) return;
+      if (range_ == ranges_.size()) {
+        stretch_ = absent();
+        return;
+      }
+      stream_->restrict_to_range(ranges_[range_++]);
+    }
+  }
+
+  std::unique_ptr<LayerStream> stream_;
+  const ClippedLayer& layer_;
+  std::vector<Interval<double>> ranges_;
+  std::size_t range_ = 0;
+  LayerStretch stretch_;
+};
+
+GeneralPath::GeneralPath(const std::vector<ClippedLayer>& layers, const RayTolerance& wanted)
+    : wanted_(wanted), bundles_(sources_) {
+  for (const ClippedLayer& layer : layers) {
+    sources_.push_back(&layer.setup->source());
+    streams_.emplace_back(*sources_.back(), layer);
+    largest_extinction_ += layer.setup->largest_extinction();
+  }
+  key_.resize(layers.size());
+}
+
+GeneralPath::~GeneralPath() = default;
+
+RayResult GeneralPath::integrate(const RayPart& part, double tolerance) {
+  return follow(part, tolerance, std::numeric_limits<double>::infinity(), nullptr);
+}
+
+double GeneralPath::find_depth(const RayPart& part, double depth) {
+  double position = part.range.end;
+  follow(part, wanted_.tolerance, depth, &position);
+  return position;
+}
+
+/// Integrates up to this optical depth; the position at which it is reached goes to `position`.
+RayResult GeneralPath::follow(const RayPart& part, double tolerance, double target,
+                              double* position) {
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  Interval<double> inside{infinity, -infinity};
+  for (ClippedStream& stream : streams_) {
+    const Interval<double> own = stream.start(part);
+    if (own.empty()) continue;
+    inside.begin = std::min(inside.begin, own.begin);
+    inside.end = std::max(inside.end, own.end);
+  }
+  if (inside.empty()) return missed_ray_result();
+  RayTolerance wanted = wanted_;
+  wanted.tolerance = tolerance;
+  MultivariateRayIntegrator integrator(nothing_, largest_extinction_, wanted,
+                                       inside.end - inside.begin);
+  if (target < infinity) integrator.set_target_depth(target);
+  const long cells = merge(inside, integrator);
+  RayResult result = integrator.result();
+  result.cells = cells;
+  if (position != nullptr) *position = std::min(integrator.target_position(), inside.end);
+  return result;
+}
+
+/// Integrates from end to end of the streams' stretches. Returns the number of parts.
+long GeneralPath::merge(Interval<double> inside, MultivariateRayIntegrator& integrator) {
+  std::fill(key_.begin(), key_.end(), -1);
+  const Bundle* bundle = nullptr;
+  Bundle::Span span;
+  long parts = 0;
+  for (double t = inside.begin; t < inside.end && !integrator.done();) {
+    double next = inside.end, unknown = 0, left_out = 0, position_error = 0;
+    bool changed = bundle == nullptr, present = false;
+    for (std::size_t i = 0; i < streams_.size(); ++i) {
+      unknown += streams_[i].advance_to(t);
+      const LayerStretch& stretch = streams_[i].stretch();
+      const bool here = stretch.begin <= t;
+      next = std::min(next, here ? stretch.end : stretch.begin);
+      const int function = here ? stretch.function : -1;
+      changed = changed || key_[i] != function;
+      key_[i] = function;
+      present = present || function >= 0;
+      if (!here) continue;
+      unknown += streams_[i].take_unknown();
+      left_out += stretch.left_out;
+      if (function >= 0) position_error += stretch.position_error;
+    }
+    if (unknown > 0) integrator.charge_opacity(unknown);
+    if (!present) {
+      integrator.skip(next - t, left_out);
+      t = next;
+      continue;
+    }
+    if (changed) bundle = &bundles_.find(key_);
+    ++parts;
+    if (!bundle->fits()) {
+      integrator.charge_opacity(1);
+      return parts;
+    }
+    PrimitiveSet primitives{0};
+    for (std::size_t i = 0; i < streams_.size(); ++i) {
+      if (key_[i] < 0) continue;
+      take(streams_[i].stretch(), sources_[i]->functions()[static_cast<std::size_t>(key_[i])], t,
+           next, span.data + bundle->first_channel(i));
+      primitives.bits |= bundle->primitives(i, streams_[i].stretch().primitives).bits;
+    }
+    span.length = next - t;
+    integrator.set_transfer(bundle->transfer());
+    integrator.add_stretch(span, {t, next}, primitives, left_out,
+                           position_error + 8 * rounding_unit<double> * next);
+    t = next;
+  }
+  return parts;
+}
+
+std::unique_ptr<const LayerSource> make_layer_source(const LayerTask& task) {
+  if (std::holds_alternative<VolumeContent>(task.layer.content)) return make_volume_source(task);
+  if (std::holds_alternative<ChannelsContent>(task.layer.content)) {
+    return make_channels_source(task);
+  }
+  if (std::holds_alternative<MeshContent>(task.layer.content)) return make_mesh_source(task);
+  return make_label_source(task);
+}
+
+}  // namespace pellucid

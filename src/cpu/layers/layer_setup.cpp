@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "layer_setup.h"
+
+#include "threads.h"
+
+namespace pellucid {
+namespace {
+
+/// Null where the layer takes the general path.
+std::unique_ptr<const RayTracer> make_fast_tracer(const TracerTask& task) {
+  const LayerContent& content = task.layer.content;
+  if (const auto* volume = std::get_if<VolumeContent>(&content)) {
+    return volume->mask ? nullptr : make_univariate_tracer(task);
+  }
+  if (std::holds_alternative<MeshContent>(content)) return make_mesh_tracer(task);
+  if (std::holds_alternative<ChannelsContent>(content)) return make_multivariate_tracer(task);
+  return nullptr;
+}
+
+}  // namespace
+
+LayerSetting::LayerSetting(const Integration& of_scene, const RayTolerance& of_rays,
+                           double negligible, const RenderOptions& options)
+    : integration(of_scene),
+      wanted(of_rays),
+      negligible_extinction(negligible),
+      depth(options.depth),
+      instruction_set(options.instruction_set),
+      gaussian_march(options.gaussian_march) {}
+
+LayerSetup::LayerSetup(const Layer& layer, const LayerSetting& setting, int threads)
+    : content_(layer.content),
+      transform_(layer.transform),
+      setting_(setting),
+      layer_(moved_into_place(layer)),
+      largest_extinction_(pellucid::largest_extinction(layer_)) {
+  RenderOptions options;
+  options.depth = setting_.depth;
+  options.instruction_set = setting_.instruction_set;
+  options.gaussian_march = setting_.gaussian_march;
+  fast_ = make_fast_tracer({layer_, setting_.integration, options, setting_.wanted, threads});
+  if (!fast_) make_source(parallel_for(threads));
+}
+
+bool LayerSetup::shows(const Layer& layer) const {
+  return layer.content == content_ && layer.transform == transform_;
+}
+
+const LayerSource& LayerSetup::source() const {
+  // By the thread that asks alone: others may wait for it, and must not be needed by it.
+  make_source({});
+  return *source_;
+}
+
+void LayerSetup::make_source(const ParallelFor& parallel) const {
+  std::call_once(source_made_, [&] {
+    source_ =
+        make_layer_source({layer_, setting_.wanted, setting_.negligible_extinction, parallel});
+  });
+}
+
+}  // namespace pellucid

@@ -1,0 +1,323 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "scene_tracer.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <optional>
+#include <utility>
+
+#include "general_path.h"
+#include "pellucid/geometry/box.h"
+#include "pellucid/traverse/structured_walk.h"
+
+namespace pellucid {
+namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+/// Of the tolerance of a ray, for what layers leave out (LayerSetting::negligible_extinction).
+constexpr double left_out_share = 1.0 / 32;
+/// A stretch of one layer goes with its neighbors on the general path if it is shorter than this
+/// share of them: what it saves is not worth a share of the tolerance.
+constexpr double short_share = 1.0 / 8;
+
+/// Of a ray, a stretch that one tracer follows.
+struct Piece {
+  static constexpr int general = -1;
+  int tracer;  ///< index of the layer that is alone, or `general`
+  Interval<double> range;
+  double share = 1;  ///< of the tolerance
+};
+
+/// A ray on its way, composited front to back.
+struct Journey {
+  std::vector<Piece> pieces;
+  RayResult found = missed_ray_result();
+  bool done = false;         ///< what is left cannot matter
+  bool depth_known = false;  ///< whether the depth is that of the only piece
+
+  double transparency() const { return 1 - found.opacity; }
+  /// The error of a part bounds what it does to everything behind it (RayResult::error), so that
+  /// errors add up behind transparencies.
+  void add_behind(const RayResult& part) {
+    const double before = transparency();
+    found.radiance += before * part.radiance;
+    found.error += before * part.error;
+    found.opacity += before * part.opacity;
+    found.optical_depth += part.optical_depth;
+    found.proved = found.proved && part.proved;
+    found.cells += part.cells;
+    found.evaluations += part.evaluations;
+    found.spans += part.spans;
+  }
+};
+
+class SceneTracer : public RayTracer {
+ public:
+  SceneTracer(std::vector<ClippedLayer> layers, const RayTolerance& wanted, bool depth)
+      : layers_(std::move(layers)),
+        wanted_(wanted),
+        depth_(depth),
+        only_(layers_.size() == 1 && layers_[0].clips.empty() ? layers_[0].setup->fast()
+                                                              : nullptr) {}
+
+  std::optional<Surroundings> surroundings() const override {
+    return only_ != nullptr ? only_->surroundings() : std::nullopt;
+  }
+  bool keeps_to_ranges() const override { return true; }
+
+  std::vector<RayResult> trace(const std::vector<RayPart>& parts,
+                               const TraceOptions& options) const override {
+    std::optional<GeneralPath> general;
+    if (only_ != nullptr && (only_->keeps_to_ranges() || std::ranges::all_of(parts, is_whole))) {
+      std::vector<RayResult> results = only_->trace(parts, options);
+      if (is_sampled()) return results;
+      for (std::size_t i = 0; i < parts.size() && !options.stop.stop_requested(); ++i) {
+        if (std::isinf(results[i].error)) {
+          results[i] = integrate(general, parts[i], wanted_.tolerance * options.share);
+          if (depth_) find_depth(general, parts[i], results[i]);
+        }
+      }
+      return results;
+    }
+    std::vector<Journey> journeys(parts.size());
+    std::size_t most = 0;
+    for (std::size_t i = 0; i < parts.size(); ++i) {
+      plan(parts[i], journeys[i]);
+      most = std::max(most, journeys[i].pieces.size());
+    }
+    for (std::size_t n = 0; n < most && !options.stop.stop_requested(); ++n) {
+      follow_alone(n, parts, options, journeys, general);
+      follow_together(n, parts, options, journeys, general);
+    }
+    std::vector<RayResult> results;
+    results.reserve(parts.size());
+    for (std::size_t i = 0; i < parts.size(); ++i) {
+      Journey& journey = journeys[i];
+      if (depth_ && !journey.depth_known && !options.stop.stop_requested()) {
+        find_depth(general, parts[i], journey.found);
+      }
+      results.push_back(journey.found);
+    }
+    return results;
+  }
+
+ private:
+  static bool is_whole(const RayPart& part) {
+    return part.range.begin <= 0 && part.range.end == infinity;
+  }
+  bool is_sampled() const { return layers_[0].setup->setting().integration.method != Method::exact; }
+  double largest_color() const { return std::max(wanted_.largest_color, 1.0); }
+
+  /// Returns the interval of a ray outside of which a layer is absent.
+  static Interval<double> extent(const Layer& layer, const Ray<double>& ray) {
+    if (const Volume* volume = grid_of(layer)) {
+      const Ray<double> in_grid = volume->grid_from_world().ray(ray);
+      return volume->visit([&](const auto& grid) { return grid_interval(grid.axis, in_grid); });
+    }
+    const Tetrahedra mesh = std::get<MeshContent>(layer.content).mesh->mesh().view();
+    // Far beyond what rounding moves its boundary by.
+    const double beside = 1e-9 * (mesh.coordinate_bound + length(mesh.upper - mesh.lower));
+    const Vec3<double> wider{beside, beside, beside};
+    const Interval<double> inside =
+        intersect(Box<double>{mesh.lower - wider, mesh.upper + wider}, ray);
+    return {std::max(inside.begin, 0.0), inside.end};
+  }
+
+  /// Cuts a part of a ray where layers begin and end.
+  void plan(const RayPart& part, Journey& journey) const {
+    struct Stretch {
+      int layer;
+      Interval<double> range;
+      bool whole;  ///< all that the ray has of the layer
+    };
+    std::vector<Stretch> stretches;
+    std::vector<double> ends;
+    double unknown = 0;
+    for (std::size_t i = 0; i < layers_.size(); ++i) {
+      const LayerSetup& setup = *layers_[i].setup;
+      const Interval<double> all = extent(setup.layer(), part.ray);
+      const Interval<double> inside{std::max(all.begin, part.range.begin),
+                                    std::min(all.end, part.range.end)};
+      if (!(inside.begin < inside.end)) continue;
+      const ClipIntervals intervals = layers_[i].cut(part.ray, inside);
+      if (!intervals.uncertain.empty()) {
+        unknown += std::min(setup.largest_extinction() * intervals.error_in(inside), 1.0);
+      }
+      for (const Interval<double>& kept : intervals.kept) {
+        const bool whole = kept.begin == all.begin && kept.end == all.end;
+        stretches.push_back({static_cast<int>(i), kept, whole});
+        ends.push_back(kept.begin);
+        ends.push_back(kept.end);
+      }
+    }
+    journey.found.error = largest_color() * std::min(unknown, 1.0);
+    std::ranges::sort(ends);
+    std::vector<Piece>& pieces = journey.pieces;
+    for (std::size_t n = 0; n + 1 < ends.size(); ++n) {
+      const Interval<double> range{ends[n], ends[n + 1]};
+      if (!(range.begin < range.end)) continue;
+      const Stretch* first = nullptr;
+      int present = 0;
+      for (const Stretch& stretch : stretches) {
+        if (stretch.range.begin > range.begin || stretch.range.end < range.end) continue;
+        if (first == nullptr) first = &stretch;
+        ++present;
+      }
+      if (present == 0) continue;
+      const RayTracer* const fast =
+          layers_[static_cast<std::size_t>(first->layer)].setup->fast();
+      const bool uncut = first->whole && first->range.begin == range.begin &&
+                         first->range.end == range.end;
+      const bool alone = present == 1 && fast != nullptr && (fast->keeps_to_ranges() || uncut);
+      add({alone ? first->layer : Piece::general, range}, pieces);
+    }
+    leave_short_ones(pieces);
+    share_tolerance(pieces);
+  }
+
+  /// Adds a piece, or makes the last one longer.
+  static void add(const Piece& piece, std::vector<Piece>& pieces) {
+    if (!pieces.empty() && pieces.back().tracer == piece.tracer &&
+        (piece.tracer == Piece::general || pieces.back().range.end == piece.range.begin)) {
+      pieces.back().range.end = piece.range.end;
+    } else {
+      pieces.push_back(piece);
+    }
+  }
+
+  /// Gives short pieces beside the general path to it.
+  static void leave_short_ones(std::vector<Piece>& pieces) {
+    const auto length = [](const Piece& piece) { return piece.range.end - piece.range.begin; };
+    for (std::size_t n = 0; n < pieces.size(); ++n) {
+      if (pieces[n].tracer == Piece::general) continue;
+      for (const std::size_t beside : {n - 1, n + 1}) {
+        if (beside < pieces.size() && pieces[beside].tracer == Piece::general &&
+            length(pieces[n]) < short_share * length(pieces[beside])) {
+          pieces[n].tracer = Piece::general;
+        }
+      }
+    }
+    std::vector<Piece> joined;
+    for (const Piece& piece : pieces) add(piece, joined);
+    pieces = std::move(joined);
+  }
+
+  /// Half of the tolerance is for the general path, where what others have not spent is added.
+  static void share_tolerance(std::vector<Piece>& pieces) {
+    const auto general = static_cast<double>(std::ranges::count_if(
+        pieces, [](const Piece& piece) { return piece.tracer == Piece::general; }));
+    const double alone = static_cast<double>(pieces.size()) - general;
+    for (Piece& piece : pieces) {
+      const double half = general > 0 && alone > 0 ? 0.5 : 1;
+      piece.share = half / (piece.tracer == Piece::general ? general : alone);
+    }
+  }
+
+  /// Returns whether the n-th piece is to be followed; ends rays that nothing more matters of.
+  bool goes_on(Journey& journey, std::size_t n, const TraceOptions& options) const {
+    if (journey.done || n >= journey.pieces.size()) return false;
+    const double rest = journey.transparency() * largest_color();
+    const double left = wanted_.tolerance * options.share - journey.found.error;
+    if (rest > 0.25 * left) return true;
+    journey.found.error += rest;
+    journey.done = true;
+    return false;
+  }
+
+  /// The n-th pieces on which one layer is alone.
+  void follow_alone(std::size_t n, const std::vector<RayPart>& parts, const TraceOptions& options,
+                    std::vector<Journey>& journeys, std::optional<GeneralPath>& general) const {
+    struct Group {
+      int tracer;
+      double share;
+      std::vector<RayPart> parts;
+      std::vector<std::size_t> of;
+    };
+    std::vector<Group> groups;
+    for (std::size_t i = 0; i < journeys.size(); ++i) {
+      if (!goes_on(journeys[i], n, options)) continue;
+      const Piece& piece = journeys[i].pieces[n];
+      if (piece.tracer == Piece::general) continue;
+      auto group = std::ranges::find_if(groups, [&](const Group& one) {
+        return one.tracer == piece.tracer && one.share == piece.share;
+      });
+      if (group == groups.end()) {
+        groups.push_back({piece.tracer, piece.share, {}, {}});
+        group = groups.end() - 1;
+      }
+      group->parts.push_back({parts[i].ray, piece.range});
+      group->of.push_back(i);
+    }
+    for (const Group& group : groups) {
+      if (options.stop.stop_requested()) return;
+      TraceOptions own = options;
+      own.share *= group.share;
+      const LayerSetup& setup = *layers_[static_cast<std::size_t>(group.tracer)].setup;
+      const std::vector<RayResult> found = setup.fast()->trace(group.parts, own);
+      for (std::size_t k = 0; k < found.size(); ++k) {
+        Journey& journey = journeys[group.of[k]];
+        if (std::isinf(found[k].error)) {
+          journey.add_behind(integrate(general, group.parts[k], wanted_.tolerance * own.share));
+        } else {
+          journey.add_behind(found[k]);
+          journey.found.half_opacity_depth = found[k].half_opacity_depth;
+          journey.depth_known = journey.pieces.size() == 1;
+        }
+      }
+    }
+  }
+
+  /// The n-th pieces of the general path.
+  void follow_together(std::size_t n, const std::vector<RayPart>& parts,
+                       const TraceOptions& options, std::vector<Journey>& journeys,
+                       std::optional<GeneralPath>& general) const {
+    for (std::size_t i = 0; i < journeys.size() && !options.stop.stop_requested(); ++i) {
+      Journey& journey = journeys[i];
+      if (!goes_on(journey, n, options)) continue;
+      const Piece& piece = journey.pieces[n];
+      if (piece.tracer != Piece::general) continue;
+      // What is not spent, nor for pieces behind.
+      const double tolerance = wanted_.tolerance * options.share;
+      double left = tolerance - journey.found.error;
+      for (std::size_t k = n + 1; k < journey.pieces.size(); ++k) {
+        left -= journey.pieces[k].share * tolerance;
+      }
+      const double own = std::max(left, 0.5 * piece.share * tolerance) /
+                         std::max(journey.transparency(), 1.0 / 64);
+      journey.add_behind(
+          integrate(general, {parts[i].ray, piece.range}, std::min(own, largest_tolerance)));
+    }
+  }
+
+  GeneralPath& made(std::optional<GeneralPath>& general) const {
+    if (!general) general.emplace(layers_, wanted_);
+    return *general;
+  }
+  RayResult integrate(std::optional<GeneralPath>& general, const RayPart& part,
+                      double tolerance) const {
+    return made(general).integrate(part, (1 - left_out_share) * tolerance);
+  }
+  void find_depth(std::optional<GeneralPath>& general, const RayPart& part,
+                  RayResult& result) const {
+    result.half_opacity_depth = infinity;
+    if (!(result.opacity > 0)) return;
+    result.half_opacity_depth =
+        made(general).find_depth(part, HalfOpacity{}.depth_to_half(result.opacity));
+  }
+
+  const std::vector<ClippedLayer> layers_;
+  const RayTolerance wanted_;
+  const bool depth_;
+  const RayTracer* const only_;  ///< of the only layer, which has no clips; null otherwise
+};
+
+}  // namespace
+
+std::unique_ptr<const RayTracer> make_scene_tracer(std::vector<ClippedLayer> layers,
+                                                   const RayTolerance& wanted, bool depth) {
+  return std::make_unique<SceneTracer>(std::move(layers), wanted, depth);
+}
+
+}  // namespace pellucid

@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "layers/layer_setups.h"
+#include "pellucid/cpu/render.h"
+
+namespace pellucid {
+
+/// Renders a frame with what is kept of others. `threads` > 0. As pellucid::render().
+Image render_frame(const Scene& scene, const RenderOptions& options, int threads,
+                   LayerSetups& kept, RenderReport* report);
+
+}  // namespace pellucid

@@ -1,0 +1,198 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pellucid/cpu/renderer.h"
+
+#include <algorithm>
+#include <atomic>
+#include <cstddef>
+#include <exception>
+#include <mutex>
+#include <thread>
+#include <utility>
+
+#include "layers/layer_setups.h"
+#include "pellucid/scene/error.h"
+#include "render_frame.h"
+#include "threads.h"
+
+namespace pellucid {
+namespace {
+
+/// Stops one request when another is made.
+std::stop_callback<std::function<void()>> forward(std::stop_token from, std::stop_source to) {
+  return std::stop_callback<std::function<void()>>(
+      std::move(from), [to]() mutable { to.request_stop(); });
+}
+
+}  // namespace
+
+class KeptFrames {
+ public:
+  explicit KeptFrames(int of_frames) : threads(of_frames) {
+    if (threads < 0) throw Error("threads: must not be negative; 0 takes one per core");
+  }
+
+  const int threads;
+  LayerSetups setups;
+
+  Image render(const Scene& scene, const RenderOptions& options, RenderReport* report) {
+    if (options.threads < 0) throw Error("threads: must not be negative; 0 takes one per core");
+    int count = options.threads > 0 ? options.threads : threads;
+    if (count == 0) count = default_thread_count();
+    return render_frame(scene, options, count, setups, report);
+  }
+};
+
+Renderer::Renderer(int threads) : kept_(std::make_shared<KeptFrames>(threads)) {}
+Renderer::Renderer(Renderer&&) noexcept = default;
+Renderer& Renderer::operator=(Renderer&&) noexcept = default;
+Renderer::~Renderer() = default;
+
+Image Renderer::render(const Scene& scene, const RenderOptions& options, RenderReport* report) {
+  return kept_->render(scene, options, report);
+}
+
+void Renderer::clear() {
+  kept_->setups.clear();
+}
+
+/// The thread that renders, and what it tells.
+struct RunningFrame::Job {
+  Job(std::shared_ptr<KeptFrames> with, Scene of, RenderOptions how)
+      : kept(std::move(with)),
+        scene(std::move(of)),
+        options(std::move(how)),
+        outside(forward(options.stop, stop)) {
+    options.stop = stop.get_token();
+    report_progress = std::exchange(options.progress, [this](double done) {
+      fraction.store(done, std::memory_order_relaxed);
+      return !report_progress || report_progress(done);
+    });
+    report_tile = std::exchange(options.tile, [this](const TileResult& tile) {
+      show(tile);
+      return !report_tile || report_tile(tile);
+    });
+    thread = std::thread([this] { run(); });
+  }
+  ~Job() {
+    stop.request_stop();
+    if (thread.joinable()) thread.join();
+  }
+  Job(const Job&) = delete;
+  Job& operator=(const Job&) = delete;
+
+  void run() {
+    try {
+      image = kept->render(scene, options, &report);
+      const std::lock_guard lock(showing);
+      level = 0;
+      shown.width = 0;  // the image itself is shown from here on
+      shown.pixels.clear();
+      fraction = 1;
+    } catch (...) {
+      error = std::current_exception();
+    }
+    finished.store(true, std::memory_order_release);
+  }
+
+  /// Copies a tile to what is shown; each pixel stands for those that are not rendered yet.
+  void show(const TileResult& result) {
+    const auto& [tile, whole] = result;
+    const std::lock_guard lock(showing);
+    if (shown.width == 0) {
+      shown.width = whole.width;
+      shown.height = whole.height;
+      shown.pixels.resize(whole.pixels.size());
+      level = options.preview + 1;
+    }
+    // Tiles of a level follow all tiles of the coarser one.
+    if (tile.level < level) level = tile.level + 1;
+    const int edge = 1 << tile.level;
+    for (int j = 0; j < tile.rows; ++j) {
+      for (int i = 0; i < tile.columns; ++i) {
+        const int column = tile.column + i * tile.stride, row = tile.row + j * tile.stride;
+        const std::array<float, 4>& pixel = whole.at(column, row);
+        const int right = std::min(column + edge, whole.width);
+        const int below = std::min(row + edge, whole.height);
+        for (int y = row; y < below; ++y) {
+          std::fill(&shown.at(column, y), &shown.at(column, y) + (right - column), pixel);
+        }
+      }
+    }
+  }
+
+  const std::shared_ptr<KeptFrames> kept;
+  const Scene scene;
+  RenderOptions options;
+  std::function<bool(double)> report_progress;
+  std::function<bool(const TileResult&)> report_tile;
+  std::stop_source stop;
+  std::stop_callback<std::function<void()>> outside;
+  std::atomic<double> fraction{0};
+  std::atomic<bool> finished{false};
+  Image image;
+  RenderReport report;
+  std::exception_ptr error;
+  mutable std::mutex showing;
+  Image shown;     ///< of no width: nothing is shown yet, or the image is
+  int level = -1;  ///< the finest level that is complete; preview + 1: none
+  std::thread thread;
+};
+
+RunningFrame::RunningFrame(std::unique_ptr<Job> job) : job_(std::move(job)) {}
+RunningFrame::RunningFrame(RunningFrame&&) noexcept = default;
+RunningFrame& RunningFrame::operator=(RunningFrame&&) noexcept = default;
+RunningFrame::~RunningFrame() = default;
+
+void RunningFrame::cancel() noexcept {
+  job_->stop.request_stop();
+}
+
+bool RunningFrame::finished() const noexcept {
+  return job_->finished.load(std::memory_order_acquire);
+}
+
+RunningFrame::State RunningFrame::state() const {
+  State state;
+  state.finished = finished();
+  state.fraction = job_->fraction;
+  const std::lock_guard lock(job_->showing);
+  state.level = job_->level > job_->options.preview ? -1 : job_->level;
+  return state;
+}
+
+Image RunningFrame::look() const {
+  const std::lock_guard lock(job_->showing);
+  if (job_->level == 0) {
+    Image copy;
+    copy.width = job_->image.width;
+    copy.height = job_->image.height;
+    copy.pixels = job_->image.pixels;
+    return copy;
+  }
+  if (job_->shown.width > 0) return job_->shown;
+  Image nothing;
+  nothing.width = job_->scene.size.width;
+  nothing.height = job_->scene.size.height;
+  nothing.pixels.resize(static_cast<std::size_t>(nothing.width) *
+                        static_cast<std::size_t>(nothing.height));
+  return nothing;
+}
+
+Image RunningFrame::wait(RenderReport* report) {
+  if (job_->thread.joinable()) job_->thread.join();
+  if (job_->error) std::rethrow_exception(job_->error);
+  if (report != nullptr) *report = job_->report;
+  const std::lock_guard lock(job_->showing);
+  return std::exchange(job_->image, {});
+}
+
+RunningFrame Renderer::start(Scene scene, RenderOptions options) {
+  return RunningFrame(
+      std::make_unique<RunningFrame::Job>(kept_, std::move(scene), std::move(options)));
+}
+
+Image render(const Scene& scene, const RenderOptions& options, RenderReport* report) {
+  return Renderer().render(scene, options, report);
+}
+
+}  // namespace pellucid
