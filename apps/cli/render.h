@@ -20,7 +20,7 @@ struct RenderArguments {
   std::vector<std::string> outputs;
   std::string depth_picture, error_map, save_tf, save_scene;
   std::vector<std::string> channels, gaussians, layers, labels, clips;
-  std::string transfer_function, preset, camera, view, size, background;
+  std::string transfer_function, preset, camera, view, size, background, backdrop;
   ImportArguments import;
   std::string method, precision, grade;
   std::optional<std::string> tolerance;

@@ -112,6 +112,12 @@ void add_scene_options(CommandLine& command, RenderArguments& arguments) {
                   "Color behind a .png: white, black or linear R,G,B. Default: the scene's, else "
                   "transparent. An .exr always stays transparent")
       ->option_text("R,G,B");
+  command
+      .add_option("--backdrop", arguments.backdrop,
+                  "Put this picture of geometry among the data: rays end at its depth (channel Z), "
+                  "and its colors are behind them. Default: the scene's. Without a scene and "
+                  "--size, the image is as large")
+      ->option_text("FILE.exr");
 }
 
 void add_integration_options(CommandLine& command, RenderArguments& arguments) {

@@ -294,6 +294,13 @@ SceneDescription describe(const RenderArguments& arguments,
   if (!arguments.background.empty()) {
     description.background = parse_color("--background", arguments.background);
   }
+  if (!arguments.backdrop.empty()) {
+    description.backdrop = arguments.backdrop;
+    if (arguments.size.empty() && !is_scene) {
+      const Image image = read_exr(arguments.backdrop);
+      description.size = {image.width, image.height};
+    }
+  }
   if (arguments.samples) description.samples = *arguments.samples;
   if (arguments.step && layer.mesh) {
     throw UsageError("--step: a mesh is rendered cell by cell, without steps; drop it");
@@ -322,6 +329,9 @@ std::vector<NamedFile> data_files(const SceneDescription& description) {
   std::vector<NamedFile> files;
   for (const LayerDescription& layer : description.layers) {
     for (NamedFile& file : data_files(layer)) files.push_back(std::move(file));
+  }
+  if (!description.backdrop.empty()) {
+    files.push_back({"--backdrop", description.backdrop.string()});
   }
   return files;
 }

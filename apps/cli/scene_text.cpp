@@ -28,6 +28,7 @@ std::string scene_text(SceneDescription description, const std::filesystem::path
     }
     if (layer.mask) relocate(layer.mask->field.file);
   }
+  relocate(description.backdrop);
   return scene_to_json(description);
 }
 

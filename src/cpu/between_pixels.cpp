@@ -128,7 +128,7 @@ double voxels_between_pixels(const CameraFrame<double>& camera, const Volume& vo
 
 std::unique_ptr<BetweenPixels> BetweenPixels::make(const Frame& frame, const ImageView& image) {
   const auto around = frame.tracer->surroundings();
-  if (!around || frame.tolerance < least_tolerance) return nullptr;
+  if (!around || frame.scene.backdrop || frame.tolerance < least_tolerance) return nullptr;
   const BlockRecords& records = around->blocks.records;
   const double voxels = voxels_between_pixels(
       frame.camera, around->volume, records, farthest_depth(frame.camera, around->volume, records));

@@ -16,8 +16,14 @@ namespace {
 constexpr double left_out_share = 1.0 / 32;
 
 /// The largest component of what lies behind the data.
-double brightest(const std::optional<Rgb<double>>& background) {
-  return background ? std::max({background->r, background->g, background->b}) : 0;
+double brightest(const Scene& scene) {
+  const std::optional<Rgb<double>>& color = scene.background;
+  double most = color ? std::max({color->r, color->g, color->b}) : 0;
+  if (!scene.backdrop) return most;
+  for (const std::array<float, 4>& pixel : scene.backdrop->pixels) {
+    most = std::max(most, double{std::max({pixel[0], pixel[1], pixel[2]})});
+  }
+  return most;
 }
 
 /// Rounding a pixel to binary32 costs at most half a unit in its last place.
@@ -60,12 +66,13 @@ Frame::Frame(const Scene& described, const RenderOptions& options, int threads, 
       tolerance(0),
       reserved(0),
       largest_color(pellucid::largest_color(described)) {
+  const double behind = brightest(scene);
+  if (scene.backdrop) largest_color = std::max(largest_color, behind);
   const std::vector<const Layer*> layers = visible_layers(scene);
   for (const Layer* layer : layers) {
     // Beside other layers, whose colors differ, the bound of a single function doubles: the change
     // of the extinction is seen in its own color, not in that of the mixture.
-    reserved +=
-        (layers.size() > 1 ? 2 : 1) * approximation_error(*layer, brightest(scene.background));
+    reserved += (layers.size() > 1 ? 2 : 1) * approximation_error(*layer, behind);
   }
   const Integration& integration = scene.integration;
   RayTolerance wanted;
@@ -74,7 +81,7 @@ Frame::Frame(const Scene& described, const RenderOptions& options, int threads, 
   tolerance = wanted.tolerance;
   wanted.grade = integration.grade;
   wanted.precision = integration.precision;
-  wanted.largest_color = std::max(largest_color, brightest(scene.background));
+  wanted.largest_color = std::max(largest_color, behind);
   const LayerSetting setting(integration, wanted, negligible_extinction(layers, wanted), options);
   std::vector<ClippedLayer> clipped;
   for (const Layer* layer : layers) {

@@ -20,7 +20,7 @@ struct Frame {
   CameraFrame<double> camera;
   double tolerance;      ///< what rays may be off by
   double reserved;       ///< of the tolerance: what the transfer function is off by
-  double largest_color;  ///< of the visible layers' functions
+  double largest_color;  ///< of the visible layers' functions and the backdrop
   std::unique_ptr<const RayTracer> tracer;
 };
 

@@ -61,6 +61,28 @@ std::vector<Place> places_of(const Tile& tile) {
   return places;
 }
 
+std::size_t index_in(const Image& image, const Place& place) {
+  return static_cast<std::size_t>(place.row) * static_cast<std::size_t>(image.width) +
+         static_cast<std::size_t>(place.column);
+}
+
+/// Where the rays of a pixel end.
+Interval<double> range_of_rays(const Scene& scene, const Place& place) {
+  if (!scene.backdrop) return RayPart{}.range;
+  return {0, double{scene.backdrop->depth[index_in(*scene.backdrop, place)]}};
+}
+
+/// Composites a pixel over the backdrop, which is where the pixel is if it gathered nothing.
+void put_over(const Image& backdrop, const Place& place, RayResult& pixel) {
+  const std::size_t index = index_in(backdrop, place);
+  const std::array<float, 4>& behind = backdrop.pixels[index];
+  const double transparency = 1 - pixel.opacity;
+  if (!(pixel.opacity > 0)) pixel.half_opacity_depth = double{backdrop.depth[index]};
+  pixel.radiance +=
+      transparency * Rgb<double>{double{behind[0]}, double{behind[1]}, double{behind[2]}};
+  pixel.opacity += transparency * double{behind[3]};
+}
+
 /// Traces the rays; so few at once that the threads can stop soon.
 std::vector<RayResult> trace(const Frame& frame, const std::vector<RayPart>& rays,
                              double share_of_rays, const TileTask& task) {
@@ -114,11 +136,12 @@ std::size_t render_tile(const Frame& frame, const Tile& tile, const TileTask& ta
   std::vector<RayPart> rays;
   rays.reserve(places.size() * static_cast<std::size_t>(rays_of_pixel));
   for (const Place& place : places) {
+    const Interval<double> range = range_of_rays(frame.scene, place);
     if (samples == 1) {
-      rays.push_back({frame.camera.ray(place.column, place.row)});
+      rays.push_back({frame.camera.ray(place.column, place.row), range});
     } else {
       for (int n = 0; n < rays_of_pixel; ++n) {
-        rays.push_back({frame.camera.ray(place.column, place.row, n, samples)});
+        rays.push_back({frame.camera.ray(place.column, place.row, n, samples), range});
       }
     }
   }
@@ -128,7 +151,8 @@ std::size_t render_tile(const Frame& frame, const Tile& tile, const TileTask& ta
   report.rays += rays.size();
   const RayResult* of_pixel = results.data();
   for (const Place& place : places) {
-    const RayResult pixel = mean_of(of_pixel, rays_of_pixel);
+    RayResult pixel = mean_of(of_pixel, rays_of_pixel);
+    if (frame.scene.backdrop) put_over(*frame.scene.backdrop, place, pixel);
     finish(place, pixel);
     add_work(report, pixel);
     of_pixel += rays_of_pixel;

@@ -201,7 +201,7 @@ SceneDescription parse_scene(std::string_view json, const std::string& name,
   scene.layers = read_layers(document, folder);
   if (const auto clip = document.find("clip")) scene.clips = scene_json::clips(*clip);
   if (const auto image = document.find("image")) {
-    image->expect_object({"width", "height", "samples", "background"});
+    image->expect_object({"width", "height", "samples", "background", "backdrop"});
     constexpr int largest_size = 65536;
     if (const auto width = image->find("width")) {
       scene.size.width = static_cast<int>(width->integer(1, largest_size));
@@ -214,6 +214,9 @@ SceneDescription parse_scene(std::string_view json, const std::string& name,
     }
     if (const auto background = image->find("background")) {
       scene.background = linear_rgb(*background);
+    }
+    if (const auto backdrop = image->find("backdrop")) {
+      scene.backdrop = scene_json::file_path(*backdrop, folder);
     }
   }
   if (const auto camera = document.find("camera")) {

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "pellucid/io/image_files.h"
 #include "pellucid/io/label_table.h"
 #include "pellucid/io/scene_json.h"
 #include "pellucid/scene/defaults.h"
@@ -195,6 +196,9 @@ Scene make_scene(const SceneDescription& description, const ParallelFor& paralle
                      : default_camera(visible_corners(scene, parallel), description.size);
   scene.integration = description.integration;
   scene.background = description.background;
+  if (!description.backdrop.empty()) {
+    scene.backdrop = std::make_shared<const Image>(read_exr(description.backdrop));
+  }
   return scene;
 }
 

@@ -411,6 +411,9 @@ std::string scene_to_json(const SceneDescription& scene) {
   image.add("height", std::to_string(scene.size.height));
   image.add("samples", std::to_string(scene.samples));
   if (scene.background) image.add("background", array(*scene.background, "the background"));
+  if (!scene.backdrop.empty()) {
+    image.add("backdrop", path_text(scene.backdrop, "the path of the backdrop"));
+  }
   Members integration("  ");
   integration.add("method", joined({"\"", method_name(scene.integration.method), "\""}));
   if (scene.relative_tolerance) {

@@ -30,11 +30,15 @@ std::vector<Real> ends_of(const std::vector<std::vector<LayerStretch>>& layers) 
 }  // namespace
 
 ReferencePixel integrate(const std::vector<std::unique_ptr<const LayerData>>& layers,
-                         const RealRay& ray, bool with_depth, std::uint64_t& cells) {
+                         const RealRay& ray, bool with_depth, std::uint64_t& cells, Real last) {
   Real overlap = 0;
   std::vector<std::vector<LayerStretch>> lists;
   for (const auto& layer : layers) lists.push_back(layer->stretches(ray, cells, overlap));
-  const std::vector<Real> ends = ends_of(lists);
+  std::vector<Real> ends = ends_of(lists);
+  if (!ends.empty() && last < ends.back()) {
+    ends.erase(std::lower_bound(ends.begin(), ends.end(), last), ends.end());
+    ends.push_back(last);
+  }
   std::vector<std::size_t> at(lists.size(), 0);
   MixtureGatherer gatherer(with_depth);
   for (std::size_t i = 0; i + 1 < ends.size() && !gatherer.done(); ++i) {

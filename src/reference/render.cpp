@@ -9,8 +9,10 @@
 #include <tbb/task_group.h>
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <chrono>
+#include <limits>
 #include <mutex>
 #include <optional>
 #include <vector>
@@ -35,23 +37,38 @@ ReferencePixel mean_of(const std::vector<ReferencePixel>& rays) {
   return mean;
 }
 
+/// Puts a pixel over that of the backdrop.
+void put_over(const std::array<float, 4>& behind, float depth, ReferencePixel& pixel) {
+  const double left = 1 - pixel.opacity;
+  if (pixel.opacity == 0) pixel.half_opacity_depth = static_cast<double>(depth);
+  pixel.radiance.r += left * static_cast<double>(behind[0]);
+  pixel.radiance.g += left * static_cast<double>(behind[1]);
+  pixel.radiance.b += left * static_cast<double>(behind[2]);
+  pixel.opacity += left * static_cast<double>(behind[3]);
+}
+
 void render_row(const reference::CameraRays& camera, int samples,
-                const reference::SceneIntegral& integral, int row, Image& image,
-                std::uint64_t& cells) {
+                const reference::SceneIntegral& integral, const Image* backdrop, int row,
+                Image& image, std::uint64_t& cells) {
   const bool with_depth = !image.depth.empty();
   std::vector<ReferencePixel> rays(static_cast<std::size_t>(samples * samples));
   for (int column = 0; column < image.width; ++column) {
+    const std::size_t index = static_cast<std::size_t>(row) * static_cast<std::size_t>(image.width) +
+                              static_cast<std::size_t>(column);
+    const reference::Real end = backdrop != nullptr
+                                    ? reference::Real{backdrop->depth[index]}
+                                    : std::numeric_limits<reference::Real>::infinity();
     for (int n = 0; n < samples * samples; ++n) {
       rays[static_cast<std::size_t>(n)] =
-          integral(camera.ray(column, row, n, samples), with_depth, cells);
+          integral(camera.ray(column, row, n, samples), with_depth, cells, end);
     }
-    const ReferencePixel pixel = mean_of(rays);
+    ReferencePixel pixel = mean_of(rays);
+    if (backdrop != nullptr) put_over(backdrop->pixels[index], backdrop->depth[index], pixel);
     image.at(column, row) = {
         static_cast<float>(pixel.radiance.r), static_cast<float>(pixel.radiance.g),
         static_cast<float>(pixel.radiance.b), static_cast<float>(pixel.opacity)};
     if (with_depth) {
-      image.depth[static_cast<std::size_t>(row) * static_cast<std::size_t>(image.width) +
-                  static_cast<std::size_t>(column)] = static_cast<float>(pixel.half_opacity_depth);
+      image.depth[index] = static_cast<float>(pixel.half_opacity_depth);
     }
   }
 }
@@ -97,7 +114,7 @@ Image render_reference(const Scene& scene, const RenderOptions& options, RenderR
         [&](const tbb::blocked_range<int>& rows) {
           for (int row = rows.begin(); row != rows.end(); ++row) {
             std::uint64_t row_cells = 0;
-            render_row(camera, scene.samples, integral, row, image, row_cells);
+            render_row(camera, scene.samples, integral, scene.backdrop.get(), row, image, row_cells);
             cells += row_cells;
             const std::lock_guard lock(progress_mutex);
             ++rows_done;

@@ -23,7 +23,7 @@ std::unique_ptr<const Field> field_of(const Channels& channels) {
 
 /// Whether the scene is one field or mesh, shown by its function and nothing else.
 bool is_plain(const Scene& scene) {
-  if (scene.layers.size() != 1 || !scene.clips.empty()) return false;
+  if (scene.layers.size() != 1 || !scene.clips.empty() || scene.backdrop) return false;
   const Layer& layer = scene.layers.front();
   const auto* const volume = std::get_if<VolumeContent>(&layer.content);
   return layer.visible && layer.clips.empty() && is_in_place(layer) &&
@@ -75,20 +75,23 @@ SceneIntegral::SceneIntegral(const Channels& channels,
     : field_(field_of(channels)), mixture_(std::in_place, transfer_function) {}
 
 ReferencePixel SceneIntegral::operator()(const RealRay& ray, bool with_depth,
-                                         std::uint64_t& cells) const {
-  if (!field_) return integrate(data_, ray, with_depth, cells);
+                                         std::uint64_t& cells, Real end) const {
+  if (!field_) return integrate(data_, ray, with_depth, cells, end);
+  if (end < std::numeric_limits<Real>::infinity()) {
+    throw Error("reference ray: ends are for scenes with a backdrop; add one");
+  }
   return mixture_ ? integrate(*field_, *mixture_, ray, with_depth, cells)
                   : integrate(*field_, *table_, ray, with_depth, cells);
 }
 
 ReferencePixel SceneIntegral::operator()(const Vec3<double>& origin,
-                                         const Vec3<double>& direction) const {
+                                         const Vec3<double>& direction, Real end) const {
   const Real length = std::hypot(Real(direction.x), Real(direction.y), Real(direction.z));
   if (!(length > 0)) throw Error("reference ray: the direction has length 0; give another");
   std::uint64_t cells = 0;
   return (*this)({{origin.x, origin.y, origin.z},
                   {direction.x / length, direction.y / length, direction.z / length}},
-                 true, cells);
+                 true, cells, end);
 }
 
 }  // namespace pellucid::reference

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <limits>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -21,10 +22,14 @@ class SceneIntegral {
   SceneIntegral(const Volume& volume, const TransferFunction& transfer_function);
   SceneIntegral(const Channels& channels, const MultivariateTransferFunction& transfer_function);
 
-  /// Along a ray with a direction of length 1. Adds the number of cells crossed to `cells`.
-  ReferencePixel operator()(const RealRay& ray, bool with_depth, std::uint64_t& cells) const;
-  /// The same with its half-opacity depth. Throws Error for a direction of length 0.
-  ReferencePixel operator()(const Vec3<double>& origin, const Vec3<double>& direction) const;
+  /// Along a ray with a direction of length 1, up to `end` if the scene has a backdrop. Adds the
+  /// number of cells crossed to `cells`.
+  ReferencePixel operator()(const RealRay& ray, bool with_depth, std::uint64_t& cells,
+                            Real end = std::numeric_limits<Real>::infinity()) const;
+  /// The same with its half-opacity depth. Throws Error for a direction of length 0,
+  /// and for an end without a backdrop.
+  ReferencePixel operator()(const Vec3<double>& origin, const Vec3<double>& direction,
+                            Real end = std::numeric_limits<Real>::infinity()) const;
 
  private:
   /// Of one field without clips.

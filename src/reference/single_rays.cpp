@@ -22,8 +22,8 @@ ReferenceRays::ReferenceRays(const Scene& scene) {
 }
 
 ReferencePixel ReferenceRays::operator()(const Vec3<double>& origin,
-                                         const Vec3<double>& direction) const {
-  return parts_->integral(origin, direction);
+                                         const Vec3<double>& direction, double end) const {
+  return parts_->integral(origin, direction, end);
 }
 
 ReferencePixel reference_ray(const Volume& volume, const TransferFunction& transfer_function,

@@ -195,7 +195,46 @@ const Layer* only_layer(const Scene& scene) noexcept {
   return scene.layers.size() == 1 ? scene.layers.data() : nullptr;
 }
 
+namespace {
+
+void check_backdrop(const Scene& scene) {
+  const Image& image = *scene.backdrop;
+  const auto size = [](int width, int height) {
+    return std::to_string(width) + " x " + std::to_string(height);
+  };
+  const auto fail = [](const std::string& what) { throw Error("backdrop: " + what); };
+  if (image.width != scene.size.width || image.height != scene.size.height) {
+    fail("has " + size(image.width, image.height) + " pixels, but the image has " +
+         size(scene.size.width, scene.size.height) + "; make both the same");
+  }
+  const std::size_t pixels =
+      static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height);
+  if (image.pixels.size() != pixels) fail("has no color for each pixel");
+  if (image.depth.size() != pixels) {
+    fail("has no depth (in an .exr, channel Z); add the distance at which each ray ends");
+  }
+  for (std::size_t i = 0; i < pixels; ++i) {
+    const auto refuse = [&](const char* what, float value, const char* must) {
+      const auto width = static_cast<std::size_t>(image.width);
+      fail(std::string(what) + " is " + number(double{value}) + " in column " +
+           std::to_string(i % width) + ", row " + std::to_string(i / width) + ", but must be " +
+           must);
+    };
+    if (!(image.depth[i] >= 0)) refuse("depth", image.depth[i], "0 or more");
+    const std::array<float, 4>& color = image.pixels[i];
+    for (const float channel : color) {
+      if (!(channel >= 0 && std::isfinite(channel))) {
+        refuse("a color", channel, "finite and not negative");
+      }
+    }
+    if (color[3] > 1) refuse("alpha", color[3], "at most 1");
+  }
+}
+
+}  // namespace
+
 void check_integration(const Scene& scene) {
+  if (scene.backdrop) check_backdrop(scene);
   if (scene.samples < 1 || scene.samples > largest_samples) {
     throw Error("scene: samples is " + std::to_string(scene.samples) + ", but must be from 1 to " +
                 std::to_string(largest_samples) + "; a pixel takes samples x samples rays");
@@ -234,6 +273,7 @@ void check_method(const Scene& scene) {
   if (!scene.clips.empty() || !layer->clips.empty()) {
     refuse("has no clips, but the scene has; take exact");
   }
+  if (scene.backdrop) refuse("has no backdrop, but the scene has; take exact");
   if (!layer->visible) refuse("needs a visible layer; take exact");
   if (volume != nullptr && volume->mask) refuse("has no masks, but the scene has; take exact");
   const bool multivariate = mesh != nullptr ? mesh->multivariate() != nullptr : volume == nullptr;

@@ -1,7 +1,36 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tests/scenes/gallery.h"
 
+#include <cmath>
+#include <limits>
+
 namespace pellucid::scenes {
+namespace {
+
+/// A wavy sheet through the focal point with a hole in it, translucent on one side, and nearer than
+/// all data, on the camera, in one corner.
+std::shared_ptr<const Image> make_backdrop(const Camera& camera, ImageSize size) {
+  auto image = std::make_shared<Image>();
+  image->width = size.width;
+  image->height = size.height;
+  const double middle = length(camera.focal_point - camera.position);
+  for (int row = 0; row < size.height; ++row) {
+    for (int column = 0; column < size.width; ++column) {
+      const double x = (column + 0.5) / size.width, y = (row + 0.5) / size.height;
+      const bool hole = std::hypot(x - 0.6, y - 0.45) < 0.17;
+      const bool corner = x + y < 0.5;
+      const double depth = middle + 0.5 * std::sin(7 * x) * std::cos(5 * y + 1);
+      const float alpha = hole ? 0.0f : x < 0.3 ? 0.5f : 1.0f;
+      image->pixels.push_back({alpha, 0.5f * alpha, 0.25f * alpha, alpha});
+      image->depth.push_back(hole     ? std::numeric_limits<float>::infinity()
+                             : corner ? 0.0f
+                                      : static_cast<float>(depth));
+    }
+  }
+  return image;
+}
+
+}  // namespace
 
 Gallery gallery() {
   Gallery all;
@@ -27,6 +56,7 @@ Scene scene_of(const Exhibit& exhibit, std::size_t camera, int size) {
     scene.layers = {{ChannelsContent{exhibit.channels, exhibit.multivariate}}};
   }
   scene.samples = exhibit.samples;
+  if (exhibit.backdrop) scene.backdrop = make_backdrop(scene.camera, scene.size);
   return scene;
 }
 

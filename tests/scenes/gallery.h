@@ -24,6 +24,7 @@ struct Exhibit {
   /// In place of all of these.
   std::vector<Layer> layers{};
   std::vector<Clip> clips{};
+  bool backdrop = false;  ///< geometry among the data
 };
 
 /// Makes an exhibit for images of size × size pixels. Only cameras depend on the size: those that

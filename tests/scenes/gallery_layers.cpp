@@ -190,6 +190,53 @@ Gallery layer_gallery() {
          organ.clips = {cut_away(plane)};
          return exhibit({organ, mesh(3, cold)}, {sphere});
        })},
+      {"layers: side by side, a grid, Gaussians and a mesh", made([=] {
+         Affine<double> left, right;
+         for (Affine<double>* map : {&left, &right}) {
+           for (Vec3<double>& column : map->matrix.column) column = 0.4 * column;
+         }
+         left.translation = {-0.7, 0.1, -0.2};
+         right.translation = {0.6, -0.3, 0.4};
+         return exhibit({moved(grid({12, 13, 11}, jumps(3)), left), moved(gaussians(), right),
+                         moved(mesh(3, ramp(4, {0, 0.1, 0.3}, {0.3, 0.7, 1})), {left.matrix, {}})});
+       })},
+      {"layers: grids that overlap in part", made([=] {
+         Affine<double> aside;
+         aside.translation = {0.9, 0.4, -0.7};
+         return exhibit({grid({12, 13, 11}, warm), moved(grid({11, 12, 12}, jumps(1)), aside)});
+       })},
+      {"layers: clipped Gaussians", made([=] {
+         Layer layer = gaussians();
+         layer.clips = {cut_away({ClipSphere{{0.1, -0.05, 0.2}, 0.5}})};
+         return exhibit({layer}, {plane});
+       })},
+      {"layers: a clipped mesh", made([=] {
+         Layer layer = mesh(4, jumps(1));
+         layer.clips = {cut_away(box)};
+         return exhibit({layer});
+       })},
+      {"backdrop: in a grid", made([=] {
+         Exhibit result = exhibit({grid({15, 14, 13}, jumps(1.5))});
+         result.backdrop = true;
+         return result;
+       })},
+      {"backdrop: in Gaussians, four samples a pixel", made([=] {
+         Exhibit result = exhibit({gaussians()});
+         result.backdrop = true;
+         result.samples = 2;
+         return result;
+       })},
+      {"backdrop: in a mesh", made([=] {
+         Exhibit result = exhibit({mesh(4, warm)});
+         result.backdrop = true;
+         return result;
+       })},
+      {"backdrop: in labels and a clipped grid", made([=] {
+         Exhibit result =
+             exhibit({labels(), grid({12, 11, 13}, ramp(0.4, {0.5, 0.5, 0.5}, {1, 1, 1}))}, {plane});
+         result.backdrop = true;
+         return result;
+       })},
       {"layers: one of each kind", made([=] {
          Layer hidden = grid({5, 5, 5}, jumps(9));
          hidden.visible = false;

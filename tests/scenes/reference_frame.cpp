@@ -19,17 +19,28 @@ constexpr unsigned version = 1;
 /// Of the size of a mesh: what overlaps by less does so by rounding.
 constexpr double least_overlap = 1e-12;
 
-std::array<double, 4> reference_pixel(const ReferenceRays& rays, int samples,
+std::array<double, 4> reference_pixel(const ReferenceRays& rays, const Scene& scene,
                                       const CameraFrame<double>& camera, int column, int row,
                                       double size) {
+  const int samples = scene.samples;
+  const std::size_t index =
+      static_cast<std::size_t>(row) * static_cast<std::size_t>(scene.size.width) +
+      static_cast<std::size_t>(column);
+  const double end = scene.backdrop ? double{scene.backdrop->depth[index]}
+                                    : std::numeric_limits<double>::infinity();
   std::array<double, 4> sum{};
   const int count = samples * samples;
   for (int n = 0; n < count; ++n) {
     const Ray<double> ray = camera.ray(column, row, n, samples);
-    const ReferencePixel pixel = rays(ray.origin, ray.direction);
+    const ReferencePixel pixel = rays(ray.origin, ray.direction, end);
     if (pixel.overlap > least_overlap * size) sum.fill(std::numeric_limits<double>::quiet_NaN());
     const double channel[4] = {pixel.radiance.r, pixel.radiance.g, pixel.radiance.b, pixel.opacity};
     for (std::size_t c = 0; c < 4; ++c) sum[c] += channel[c] / count;
+  }
+  if (scene.backdrop) {
+    const double transparency = 1 - sum[3];
+    const std::array<float, 4>& behind = scene.backdrop->pixels[index];
+    for (std::size_t c = 0; c < 4; ++c) sum[c] += transparency * static_cast<double>(behind[c]);
   }
   return sum;
 }
@@ -54,7 +65,7 @@ ReferenceFrame reference_frame(const Scene& scene, int threads) {
     for (int row = next_row++; row < frame.height; row = next_row++) {
       for (int column = 0; column < frame.width; ++column) {
         frame.pixels[static_cast<std::size_t>(row) * width + static_cast<std::size_t>(column)] =
-            reference_pixel(rays, scene.samples, camera, column, row, size);
+            reference_pixel(rays, scene, camera, column, row, size);
       }
     }
   };

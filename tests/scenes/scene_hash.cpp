@@ -133,6 +133,11 @@ std::uint64_t scene_hash(const Scene& scene) {
   hash.add_vector(c.up);
   hash.add_numbers(c.projection, c.vertical_angle, c.parallel_scale, scene.size.width,
                    scene.size.height, scene.samples);
+  if (scene.backdrop) {
+    const Image& image = *scene.backdrop;
+    hash.add(image.pixels.data(), image.pixels.size() * sizeof(image.pixels[0]));
+    hash.add(image.depth.data(), image.depth.size() * sizeof(float));
+  }
   return hash.value();
 }
 

@@ -64,6 +64,7 @@ struct SceneDescription {
   /// because the tolerance depends on the picture.
   std::optional<double> relative_tolerance;
   std::optional<Rgb<double>> background;
+  std::filesystem::path backdrop;  ///< an .exr with depth (Scene::backdrop); may be empty
 };
 
 /// Parses and validates a scene; reads no other file. Relative paths are resolved against `folder`.

@@ -43,9 +43,12 @@ class ReferenceRays {
   /// Throws Error if check_data() does.
   explicit ReferenceRays(const Scene& scene);
 
-  /// Traces a ray that begins at `origin` along `direction` (world space, any length but 0). Throws
-  /// Error if the direction has length 0. Safe to call from any thread.
-  ReferencePixel operator()(const Vec3<double>& origin, const Vec3<double>& direction) const;
+  /// Traces a ray that begins at `origin` along `direction` (world space, any length but 0), up to
+  /// the distance `end`, in world units. Ignores the pixels of a backdrop. Throws Error if the
+  /// direction has length 0, or `end` is finite and the scene has no backdrop. Safe to call from any
+  /// thread.
+  ReferencePixel operator()(const Vec3<double>& origin, const Vec3<double>& direction,
+                            double end = std::numeric_limits<double>::infinity()) const;
 
  private:
   struct Parts;

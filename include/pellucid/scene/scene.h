@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -11,6 +12,7 @@
 #include "pellucid/error/precision.h"
 #include "pellucid/render/camera.h"
 #include "pellucid/scene/clip.h"
+#include "pellucid/scene/image.h"
 #include "pellucid/scene/layer.h"
 
 namespace pellucid {
@@ -104,6 +106,10 @@ struct Scene {
   int samples = 1;
   Integration integration;
   std::optional<Rgb<double>> background;  ///< linear; none: the image stays transparent
+  /// A picture of geometry among the data, for example of a host program: as large as `size`, with
+  /// a depth per pixel (Image::depth, a distance from the ray's origin; infinite where there is
+  /// nothing). Rays end there, and its pixels are behind what they gather. May be null.
+  std::shared_ptr<const Image> backdrop{};
 };
 
 /// Throws Error unless there is a layer and every layer passes check_layer().
@@ -127,10 +133,11 @@ const Content* only_content(const Scene& scene) noexcept {
 }
 
 /// Throws Error if the number of samples per pixel, the tolerance of the exact method, or the step
-/// of another method is outside of its limits.
+/// of another method is outside of its limits, or the backdrop has another size, no depth, or
+/// numbers out of range.
 void check_integration(const Scene& scene);
 /// Throws Error if the method does not support the scene's data or transfer function: methods other
-/// than exact need a single layer of a grid or a mesh without clips. The scene must have passed
+/// than exact need a single layer of a grid or a mesh, without clips and backdrop. The scene must have passed
 /// check_data().
 void check_method(const Scene& scene);
 
