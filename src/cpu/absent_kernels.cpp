@@ -5,7 +5,6 @@
 #include "pellucid/packet/gaussian_packet_interface.h"
 #include "pellucid/packet/interface.h"
 #include "pellucid/packet/mesh_interface.h"
-#include "pellucid/packet/multivariate_interface.h"
 #include "pellucid/packet/multivariate_sampler_interface.h"
 #include "pellucid/packet/sampler_interface.h"
 #include "pellucid/simd/instruction_set.h"
@@ -19,7 +18,6 @@ PELLUCID_ABSENT(pellucid_integrate_packets, PellucidPacketJob)
 PELLUCID_ABSENT(pellucid_sample_packets, PellucidSamplerJob)
 PELLUCID_ABSENT(pellucid_integrate_gaussian_packets, PellucidGaussianPacketJob)
 PELLUCID_ABSENT(pellucid_integrate_multivariate_cells, PellucidGaussianPacketJob)
-PELLUCID_ABSENT(pellucid_integrate_multivariate, PellucidMultivariateJob)
 PELLUCID_ABSENT(pellucid_sample_multivariate, PellucidMultivariateSamplerJob)
 PELLUCID_ABSENT(pellucid_integrate_mesh, PellucidMeshJob)
 PELLUCID_ABSENT(pellucid_integrate_multivariate_mesh, PellucidMeshJob)

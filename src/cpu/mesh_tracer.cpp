@@ -57,20 +57,16 @@ class MeshTracer : public RayTracer {
                                const TraceOptions& options) const override {
     std::vector<RayResult> results(parts.size());
     integrate(parts, options, results);
-    if (!depth_) return results;
-    MeshHits hits;
-    for (std::size_t i = 0; i < parts.size(); ++i) {
-      if (!(results[i].opacity > 0)) continue;
-      results[i].half_opacity_depth = find_half_opacity(hits.find(mesh_, parts[i].ray), results[i]);
-    }
+    if (depth_) find_half_opacity(parts, results);
     return results;
   }
 
  protected:
   virtual void integrate(const std::vector<RayPart>& rays, const TraceOptions& options,
                          std::vector<RayResult>& results) const = 0;
-  /// Of a ray of which this is known.
-  virtual double find_half_opacity(const MeshRay& ray, const RayResult& known) const = 0;
+  /// Of rays of which this is known; where it does not, the general path does.
+  virtual void find_half_opacity(const std::vector<RayPart>& /*rays*/,
+                                 std::vector<RayResult>& /*results*/) const {}
 
   /// Sets up packets, where the mesh and what is wanted suit them.
   void prepare(const TracerTask& task, double largest_extinction, bool several) {
@@ -166,9 +162,15 @@ class UnivariateMeshTracer : public MeshTracer {
                                       hits.find(mesh_, rays[i].ray), wanted_);
     }
   }
-  double find_half_opacity(const MeshRay& ray, const RayResult& known) const override {
-    return find_mesh_half_opacity(mesh_, fields_.view(), transfer_.tables(), ray, wanted_,
-                                  known.opacity, known.half);
+  void find_half_opacity(const std::vector<RayPart>& rays,
+                         std::vector<RayResult>& results) const override {
+    MeshHits hits;
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+      RayResult& known = results[i];
+      known.half_opacity_depth =
+          find_mesh_half_opacity(mesh_, fields_.view(), transfer_.tables(),
+                                 hits.find(mesh_, rays[i].ray), wanted_, known.opacity, known.half);
+    }
   }
 
  private:
@@ -237,11 +239,6 @@ class MultivariateMeshTracer : public MeshTracer {
     for (RayResult& result : results) std::swap(result.spans.closed, result.spans.lines);
     // What is left has more hits than a lane has room for, or is beyond what packets can do.
     for (const std::size_t i : left) results[i] = left_to_general_path();
-  }
-  double find_half_opacity(const MeshRay& ray, const RayResult& known) const override {
-    return find_multivariate_mesh_half_opacity(mesh_, fields_.view(), transfer_,
-                                               transfer_function_.largest_extinction(), ray,
-                                               wanted_, known.opacity, known.half);
   }
 
  private:

@@ -9,7 +9,6 @@
 #include "gaussian_packets.h"
 #include "multivariate_sampler.h"
 #include "packet_setup.h"
-#include "pellucid/packet/multivariate_interface.h"
 #include "pellucid/render/integrate_multivariate_ray.h"
 #include "pellucid/render/sample_ray.h"
 #include "pellucid/scene/multivariate_blocks_storage.h"
@@ -28,18 +27,6 @@ constexpr double left_out_share = 1.0 / 32;
 double negligible_extinction(const TracerTask& task) {
   return left_out_share * task.wanted.tolerance /
          (diagonal(*grid_of(task.layer)) * std::max(task.wanted.largest_color, 1.0));
-}
-
-using Kernel = void (*)(const PellucidMultivariateJob*);
-
-/// Null: rays go one by one.
-Kernel kernel_for([[maybe_unused]] InstructionSet set) {
-#if PELLUCID_HAS_PACKETS
-  return kernel_of(set, pellucid_integrate_multivariate_sse4, pellucid_integrate_multivariate_avx2,
-                   pellucid_integrate_multivariate_avx512);
-#else
-  return nullptr;
-#endif
 }
 
 class MultivariateTracer : public RayTracer {
@@ -66,8 +53,7 @@ class MultivariateTracer : public RayTracer {
     blocks_ = storage_.view();
     wanted_.tolerance *= 1 - left_out_share;
     const InstructionSet set = packet_instruction_set(task.options.instruction_set);
-    kernel_ = kernel_for(set);
-    if (kernel_ == nullptr || integration_.precision != Precision::automatic) return;
+    if (set == InstructionSet::scalar || integration_.precision != Precision::automatic) return;
     cells_ = CellPackets::make(channels_, transfer_function_, *blocks_, grid_, wanted_, set);
     if (!cells_ || task.options.gaussian_march.value_or(faster_march()) == GaussianMarch::steps) {
       steps_ = GaussianPackets::make(channels_, transfer_function_, *blocks_, grid_, wanted_,
@@ -80,13 +66,13 @@ class MultivariateTracer : public RayTracer {
   }
 
   /// Whether there is code for the method `exact`.
-  bool is_able() const { return integration_.method != Method::exact || kernel_ != nullptr; }
+  bool is_able() const { return integration_.method != Method::exact || steps_ || cells_; }
 
   bool keeps_to_ranges() const override { return integration_.method == Method::exact; }
   std::vector<RayResult> trace(const std::vector<RayPart>& parts,
                                const TraceOptions& options) const override {
     const std::vector<RayPart> in_grid = parts_in_grid(channels_.grid(), parts);
-    if (kernel_ != nullptr) return trace_in_lanes(in_grid, options);
+    if (integration_.method == Method::exact) return trace_in_lanes(in_grid, options);
     if (sampler_) return sampler_->trace(in_grid);
     std::vector<RayResult> results;
     results.reserve(parts.size());
@@ -144,35 +130,18 @@ class MultivariateTracer : public RayTracer {
       results[n].longest_step = waves != nullptr
                                     ? found[i].longest_step * (*rays_apart_)(inside.ray[i])
                                     : unknown.longest_step;
-      if (depth_) {
-        results[n].half_opacity_depth = find_multivariate_half_opacity(
-            grid_, &*blocks_, in_grid[n].ray, transfer_, transfer_function_.largest_extinction(), wanted_,
-            results[n].opacity, results[n].half);
-      }
     }
     return results;
   }
 
-  /// Cell by cell.
+  /// Cell by cell, or not at all.
   void integrate(const std::vector<PellucidRay>& rays, double share,
                  std::vector<PellucidRayResult>& found) const {
     if (cells_) {
       cells_->trace(rays, share, depth_, found.data());
-      return;
+    } else {
+      for (PellucidRayResult& result : found) result.error = left_to_general_path().error;
     }
-    // One ray after the other.
-    PellucidMultivariateJob job{};
-    job.grid = &grid_;
-    job.blocks = &*blocks_;
-    job.transfer = &transfer_;
-    job.largest_extinction = transfer_function_.largest_extinction();
-    job.tolerance = share * wanted_.tolerance;
-    job.largest_color = wanted_.largest_color;
-    job.proved = wanted_.grade == Grade::proved ? 1 : 0;
-    job.rays = rays.data();
-    job.count = static_cast<std::int32_t>(rays.size());
-    job.results = found.data();
-    kernel_(&job);
   }
 
   /// Those of the rays that steps gave up, of which nothing is known for others beside them.
@@ -215,8 +184,7 @@ class MultivariateTracer : public RayTracer {
   double step_;  ///< of the sampling methods, world length
   MultivariateBlocksStorage storage_;
   std::optional<MultivariateBlocks> blocks_;      ///< of the exact method
-  Kernel kernel_ = nullptr;                       ///< null: rays go one by one
-  std::unique_ptr<const CellPackets> cells_;      ///< null: what it does the kernel does
+  std::unique_ptr<const CellPackets> cells_;      ///< null: what it does goes the general path
   std::unique_ptr<const GaussianPackets> steps_;  ///< null: all rays go cell by cell
   std::optional<RaysApart> rays_apart_;           ///< none: pixels are not interpolated
   std::unique_ptr<const MultivariatePacketSampler> sampler_;  ///< null: another method, or that

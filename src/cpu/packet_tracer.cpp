@@ -132,9 +132,8 @@ std::vector<RayResult> PacketTracer::trace(const std::vector<RayPart>& in_grid, 
   if (!depth) return results;
   volume_.visit([&](const auto& grid) {
     for (const std::size_t n : inside.of) {
-      results[n].half_opacity_depth =
-          find_half_opacity(grid, in_grid[n].ray, transfer_, wanted_.precision, results[n].opacity,
-                            results[n].half);
+      results[n].half_opacity_depth = find_half_opacity(
+          grid, in_grid[n].ray, transfer_, wanted_.precision, results[n].opacity, results[n].half);
     }
   });
   return results;

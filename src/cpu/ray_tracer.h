@@ -43,7 +43,8 @@ class RayTracer {
   virtual ~RayTracer() = default;
 
   /// Returns what the parts gather, each by itself. With the method `exact`, an infinite error
-  /// leaves a part to the general path (left_to_general_path()). Safe to call from any thread.
+  /// leaves a part to the general path (left_to_general_path()), and so does an infinite
+  /// half_opacity_depth with that depth, within RayResult::half. Safe to call from any thread.
   virtual std::vector<RayResult> trace(const std::vector<RayPart>& parts,
                                        const TraceOptions& options) const = 0;
 

@@ -63,7 +63,8 @@ void render_tiles(const Frame& frame, const RenderOptions& options, Image& image
   const auto render_level = [&](std::span<const Tile> some, int level, const auto& finish) {
     take_in_turn(some.size(), report.threads, [&](std::size_t i) {
       RenderReport part;
-      const std::size_t pixels = render_tile(frame, some[i], {level, between.get(), options.stop, &speed}, view, part);
+      const std::size_t pixels =
+          render_tile(frame, some[i], {level, between.get(), options.stop, &speed}, view, part);
       if (options.stop.stop_requested()) return false;
       {
         const std::lock_guard lock(report_mutex);
@@ -98,8 +99,8 @@ void render_tiles(const Frame& frame, const RenderOptions& options, Image& image
 
 }  // namespace
 
-Image render_frame(const Scene& scene, const RenderOptions& options, int threads,
-                   LayerSetups& kept, RenderReport* report) {
+Image render_frame(const Scene& scene, const RenderOptions& options, int threads, LayerSetups& kept,
+                   RenderReport* report) {
   check(scene, options);
   RenderReport local;
   local.threads = threads;

@@ -7,7 +7,7 @@
 namespace pellucid {
 
 /// Renders a frame with what is kept of others. `threads` > 0. As pellucid::render().
-Image render_frame(const Scene& scene, const RenderOptions& options, int threads,
-                   LayerSetups& kept, RenderReport* report);
+Image render_frame(const Scene& scene, const RenderOptions& options, int threads, LayerSetups& kept,
+                   RenderReport* report);
 
 }  // namespace pellucid

@@ -19,8 +19,8 @@ namespace {
 
 /// Stops one request when another is made.
 std::stop_callback<std::function<void()>> forward(std::stop_token from, std::stop_source to) {
-  return std::stop_callback<std::function<void()>>(
-      std::move(from), [to]() mutable { to.request_stop(); });
+  return std::stop_callback<std::function<void()>>(std::move(from),
+                                                   [to]() mutable { to.request_stop(); });
 }
 
 }  // namespace

@@ -100,8 +100,7 @@ UnivariateTracer::UnivariateTracer(const TracerTask& task)
 
 std::optional<RayTracer::Surroundings> UnivariateTracer::surroundings() const {
   // Vacuum ends anywhere between rays; and where half of the opacity is reached goes in leaps.
-  if (!packets_ || !packets_->goes_in_steps() || depth_ ||
-      volume_.statistics().nan > 0) {
+  if (!packets_ || !packets_->goes_in_steps() || depth_ || volume_.statistics().nan > 0) {
     return std::nullopt;
   }
   return Surroundings{volume_, *blocks_, packets_->most_between_rays()};

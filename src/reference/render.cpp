@@ -53,8 +53,9 @@ void render_row(const reference::CameraRays& camera, int samples,
   const bool with_depth = !image.depth.empty();
   std::vector<ReferencePixel> rays(static_cast<std::size_t>(samples * samples));
   for (int column = 0; column < image.width; ++column) {
-    const std::size_t index = static_cast<std::size_t>(row) * static_cast<std::size_t>(image.width) +
-                              static_cast<std::size_t>(column);
+    const std::size_t index =
+        static_cast<std::size_t>(row) * static_cast<std::size_t>(image.width) +
+        static_cast<std::size_t>(column);
     const reference::Real end = backdrop != nullptr
                                     ? reference::Real{backdrop->depth[index]}
                                     : std::numeric_limits<reference::Real>::infinity();
@@ -114,7 +115,8 @@ Image render_reference(const Scene& scene, const RenderOptions& options, RenderR
         [&](const tbb::blocked_range<int>& rows) {
           for (int row = rows.begin(); row != rows.end(); ++row) {
             std::uint64_t row_cells = 0;
-            render_row(camera, scene.samples, integral, scene.backdrop.get(), row, image, row_cells);
+            render_row(camera, scene.samples, integral, scene.backdrop.get(), row, image,
+                       row_cells);
             cells += row_cells;
             const std::lock_guard lock(progress_mutex);
             ++rows_done;

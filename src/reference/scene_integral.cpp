@@ -74,8 +74,8 @@ SceneIntegral::SceneIntegral(const Channels& channels,
                              const MultivariateTransferFunction& transfer_function)
     : field_(field_of(channels)), mixture_(std::in_place, transfer_function) {}
 
-ReferencePixel SceneIntegral::operator()(const RealRay& ray, bool with_depth,
-                                         std::uint64_t& cells, Real end) const {
+ReferencePixel SceneIntegral::operator()(const RealRay& ray, bool with_depth, std::uint64_t& cells,
+                                         Real end) const {
   if (!field_) return integrate(data_, ray, with_depth, cells, end);
   if (end < std::numeric_limits<Real>::infinity()) {
     throw Error("reference ray: ends are for scenes with a backdrop; add one");
@@ -84,8 +84,8 @@ ReferencePixel SceneIntegral::operator()(const RealRay& ray, bool with_depth,
                   : integrate(*field_, *table_, ray, with_depth, cells);
 }
 
-ReferencePixel SceneIntegral::operator()(const Vec3<double>& origin,
-                                         const Vec3<double>& direction, Real end) const {
+ReferencePixel SceneIntegral::operator()(const Vec3<double>& origin, const Vec3<double>& direction,
+                                         Real end) const {
   const Real length = std::hypot(Real(direction.x), Real(direction.y), Real(direction.z));
   if (!(length > 0)) throw Error("reference ray: the direction has length 0; give another");
   std::uint64_t cells = 0;

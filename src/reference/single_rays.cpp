@@ -21,8 +21,8 @@ ReferenceRays::ReferenceRays(const Scene& scene) {
   parts_ = std::make_shared<const Parts>(scene);
 }
 
-ReferencePixel ReferenceRays::operator()(const Vec3<double>& origin,
-                                         const Vec3<double>& direction, double end) const {
+ReferencePixel ReferenceRays::operator()(const Vec3<double>& origin, const Vec3<double>& direction,
+                                         double end) const {
   return parts_->integral(origin, direction, end);
 }
 

@@ -135,6 +135,35 @@ class Layers(ProgramTest):
         self.write("scene.json", json.dumps(scene))
         self.assertGreater(self.report("render", "scene.json", "-o", "o.exr")["largest_channel"], 0)
 
+    def test_a_backdrop_ends_rays(self):
+        size = ("--size", "12x10")
+        self.succeed("render", "builtin:sphere:8", *size, "-o", "wall.exr")
+        plain = self.report("render", "a.npy", "--tf", "tf.json", *size, "-o", "plain.exr")
+        # As large as the backdrop, whose depth is where the sphere is half seen.
+        report = self.report("render", "builtin:sphere:8", "--tf", "tf.json", "--backdrop",
+                             "wall.exr", "-o", "both.exr", "--save-scene", "s.json")
+        self.assertEqual(report["size"], [12, 10])
+        self.assertLessEqual(report["largest_error"], report["tolerance"])
+        self.assertGreater(plain["largest_channel"], 0)
+        self.assertEqual(json.loads(self.read("s.json"))["image"]["backdrop"], "wall.exr")
+        self.succeed("render", "s.json", "-o", "again.exr")
+        again = json.loads(self.succeed("compare", "both.exr", "again.exr", "--json"))
+        self.assertEqual(again["largest"], 0, again)
+        self.succeed("render", "s.json", "--reference", "-o", "truth.exr")
+        truth = json.loads(self.succeed("compare", "both.exr", "truth.exr", "--json"))
+        self.assertLessEqual(truth["largest"], report["tolerance"], truth)
+
+    def test_a_backdrop_that_does_not_fit_is_refused(self):
+        self.succeed("render", "a.npy", "--size", "12", "-o", "wall.exr")
+        self.refuse("backdrop: has 12 x 12 pixels, but the image has 8 x 8", "a.npy", "--backdrop",
+                    "wall.exr")
+        self.refuse("none.exr: ", "a.npy", "--backdrop", "none.exr")
+        self.refuse("tf.json: ", "a.npy", "--backdrop", "tf.json")
+        self.fail_with("midpoint has no backdrop", "render", "a.npy", "--method", "midpoint",
+                       "--backdrop", "wall.exr", "-o", "o.png")
+        self.fail_with("would overwrite the input", "render", "a.npy", "--backdrop", "wall.exr",
+                       "-o", "wall.exr", code=2)
+
     def test_hidden_layers_are_not_seen(self):
         scene = {"layers": [{"visible": False, "field": {"file": "a.npy"}}],
                  "image": {"width": 8, "height": 8}}

@@ -206,9 +206,7 @@ TEST(Renderer, CancelsFromAnyThread) {
     other.join();
     EXPECT_TRUE(frame.finished());
   }
-  {
-    const RunningFrame forgotten = renderer.start(scene);
-  }  // Cancelled and waited for.
+  { const RunningFrame forgotten = renderer.start(scene); }  // Cancelled and waited for.
   EXPECT_FALSE(renderer.render(scene_of({layer_of("shells")})).pixels.empty());
 }
 
@@ -278,7 +276,7 @@ TEST(Backdrop, BehindAllDataIsUnderThem) {
   const Image image = render(scene);
   for (std::size_t i = 0; i < data.pixels.size(); ++i) {
     for (std::size_t c = 0; c < 4; ++c) {
-      const double behind = scene.backdrop->pixels[i][c];
+      const float behind = scene.backdrop->pixels[i][c];
       EXPECT_NEAR(image.pixels[i][c], data.pixels[i][c] + (1 - data.pixels[i][3]) * behind,
                   2 * scene.integration.tolerance);
     }

@@ -165,7 +165,8 @@ bool same(const SceneDescription& a, const SceneDescription& b) {
          a.relative_tolerance == b.relative_tolerance &&
          a.integration.grade == b.integration.grade &&
          a.integration.precision == b.integration.precision &&
-         same(a.integration.step, b.integration.step) && same(a.background, b.background);
+         same(a.integration.step, b.integration.step) && same(a.background, b.background) &&
+         a.backdrop == b.backdrop;
 }
 
 TEST(SceneJson, EveryValidFileIsReadAndRoundTripsBitForBit) {

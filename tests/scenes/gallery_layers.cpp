@@ -232,8 +232,8 @@ Gallery layer_gallery() {
          return result;
        })},
       {"backdrop: in labels and a clipped grid", made([=] {
-         Exhibit result =
-             exhibit({labels(), grid({12, 11, 13}, ramp(0.4, {0.5, 0.5, 0.5}, {1, 1, 1}))}, {plane});
+         Exhibit result = exhibit(
+             {labels(), grid({12, 11, 13}, ramp(0.4, {0.5, 0.5, 0.5}, {1, 1, 1}))}, {plane});
          result.backdrop = true;
          return result;
        })},

@@ -50,8 +50,8 @@ class RunningFrame {
 
 /// Renders frame after frame, and keeps what they share: the blocks' classes, tables and packets'
 /// set-up of each layer, found by the identity of its data and functions (the shared objects, not
-/// their contents). A camera that moves costs no set-up; a new transfer function costs its own. What
-/// a frame's scene does not have is let go of. The records of blocks stay with the volumes.
+/// their contents). A camera that moves costs no set-up; a new transfer function costs its own.
+/// What a frame's scene does not have is let go of. The records of blocks stay with the volumes.
 ///
 /// Nothing is global: renderers do not know of each other. Safe to use from any thread; frames that
 /// run at the same time share the cores.

@@ -45,8 +45,8 @@ class ReferenceRays {
 
   /// Traces a ray that begins at `origin` along `direction` (world space, any length but 0), up to
   /// the distance `end`, in world units. Ignores the pixels of a backdrop. Throws Error if the
-  /// direction has length 0, or `end` is finite and the scene has no backdrop. Safe to call from any
-  /// thread.
+  /// direction has length 0, or `end` is finite and the scene has no backdrop. Safe to call from
+  /// any thread.
   ReferencePixel operator()(const Vec3<double>& origin, const Vec3<double>& direction,
                             double end = std::numeric_limits<double>::infinity()) const;
 

@@ -92,8 +92,8 @@ PELLUCID_HD void integrate_blocks(const ClassifiedBlocks& blocks, const Ray<doub
 }
 
 /// Integrates a ray (in grid coordinates, its parameter the world arc length) through trilinear
-/// data, within a tolerance; of the ray, the part in `part`. `blocks` belong to the same grid; null:
-/// none.
+/// data, within a tolerance; of the ray, the part in `part`. `blocks` belong to the same grid;
+/// null: none.
 ///
 /// RayResult::error is at most the tolerance, unless binary32 is forced and cannot keep it, or even
 /// binary64 cannot resolve on which side of a discontinuity of the transfer function the data lie.

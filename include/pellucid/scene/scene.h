@@ -137,8 +137,8 @@ const Content* only_content(const Scene& scene) noexcept {
 /// numbers out of range.
 void check_integration(const Scene& scene);
 /// Throws Error if the method does not support the scene's data or transfer function: methods other
-/// than exact need a single layer of a grid or a mesh, without clips and backdrop. The scene must have passed
-/// check_data().
+/// than exact need a single layer of a grid or a mesh, without clips and backdrop. The scene must
+/// have passed check_data().
 void check_method(const Scene& scene);
 
 }  // namespace pellucid

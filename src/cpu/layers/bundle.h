@@ -47,8 +47,7 @@ class Bundle {
 /// The bundles that rays have met so far. Used by one thread.
 class Bundles {
  public:
-  explicit Bundles(const std::vector<const LayerSource*>& sources)
-      : sources_(sources) {}
+  explicit Bundles(const std::vector<const LayerSource*>& sources) : sources_(sources) {}
 
   /// Returns the bundle of a key, valid while this object lives.
   const Bundle& find(const std::vector<int>& key);

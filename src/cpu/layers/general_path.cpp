@@ -13,8 +13,8 @@ namespace pellucid {
 namespace {
 
 /// The part [begin, end] of a stretch.
-void take(const LayerStretch& stretch, const MultivariateTransfer<double>& transfer,
-                 double begin, double end, CubicBernstein<double>* to) {
+void take(const LayerStretch& stretch, const MultivariateTransfer<double>& transfer, double begin,
+          double end, CubicBernstein<double>* to) {
   if (begin <= stretch.begin && stretch.end <= end) {
     std::copy_n(stretch.data, transfer.channels, to);
     return;

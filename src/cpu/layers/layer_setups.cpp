@@ -6,8 +6,8 @@
 
 namespace pellucid {
 
-std::shared_ptr<const LayerSetup> LayerSetups::find(const Layer& layer,
-                                                    const LayerSetting& setting, int threads) {
+std::shared_ptr<const LayerSetup> LayerSetups::find(const Layer& layer, const LayerSetting& setting,
+                                                    int threads) {
   {
     const std::lock_guard lock(mutex_);
     const auto found = std::ranges::find_if(kept_, [&](const auto& setup) {

@@ -34,8 +34,7 @@ struct Piece {
 struct Journey {
   std::vector<Piece> pieces;
   RayResult found = missed_ray_result();
-  bool done = false;         ///< what is left cannot matter
-  bool depth_known = false;  ///< whether the depth is that of the only piece
+  bool done = false;  ///< what is left cannot matter
 
   double transparency() const { return 1 - found.opacity; }
   /// The error of a part bounds what it does to everything behind it (RayResult::error), so that
@@ -76,8 +75,8 @@ class SceneTracer : public RayTracer {
       for (std::size_t i = 0; i < parts.size() && !options.stop.stop_requested(); ++i) {
         if (std::isinf(results[i].error)) {
           results[i] = integrate(general, parts[i], wanted_.tolerance * options.share);
-          if (depth_) find_depth(general, parts[i], results[i]);
         }
+        if (depth_) find_depth(general, parts[i], results[i]);
       }
       return results;
     }
@@ -95,9 +94,7 @@ class SceneTracer : public RayTracer {
     results.reserve(parts.size());
     for (std::size_t i = 0; i < parts.size(); ++i) {
       Journey& journey = journeys[i];
-      if (depth_ && !journey.depth_known && !options.stop.stop_requested()) {
-        find_depth(general, parts[i], journey.found);
-      }
+      if (depth_ && !options.stop.stop_requested()) find_depth(general, parts[i], journey.found);
       results.push_back(journey.found);
     }
     return results;
@@ -107,7 +104,9 @@ class SceneTracer : public RayTracer {
   static bool is_whole(const RayPart& part) {
     return part.range.begin <= 0 && part.range.end == infinity;
   }
-  bool is_sampled() const { return layers_[0].setup->setting().integration.method != Method::exact; }
+  bool is_sampled() const {
+    return layers_[0].setup->setting().integration.method != Method::exact;
+  }
   double largest_color() const { return std::max(wanted_.largest_color, 1.0); }
 
   /// Returns the interval of a ray outside of which a layer is absent.
@@ -166,10 +165,9 @@ class SceneTracer : public RayTracer {
         ++present;
       }
       if (present == 0) continue;
-      const RayTracer* const fast =
-          layers_[static_cast<std::size_t>(first->layer)].setup->fast();
-      const bool uncut = first->whole && first->range.begin == range.begin &&
-                         first->range.end == range.end;
+      const RayTracer* const fast = layers_[static_cast<std::size_t>(first->layer)].setup->fast();
+      const bool uncut =
+          first->whole && first->range.begin == range.begin && first->range.end == range.end;
       const bool alone = present == 1 && fast != nullptr && (fast->keeps_to_ranges() || uncut);
       add({alone ? first->layer : Piece::general, range}, pieces);
     }
@@ -262,8 +260,10 @@ class SceneTracer : public RayTracer {
           journey.add_behind(integrate(general, group.parts[k], wanted_.tolerance * own.share));
         } else {
           journey.add_behind(found[k]);
-          journey.found.half_opacity_depth = found[k].half_opacity_depth;
-          journey.depth_known = journey.pieces.size() == 1;
+          if (journey.pieces.size() == 1) {
+            journey.found.half_opacity_depth = found[k].half_opacity_depth;
+            journey.found.half = found[k].half;
+          }
         }
       }
     }
@@ -299,12 +299,15 @@ class SceneTracer : public RayTracer {
                       double tolerance) const {
     return made(general).integrate(part, (1 - left_out_share) * tolerance);
   }
+  /// Finds where half of the opacity is reached, if that is not known yet.
   void find_depth(std::optional<GeneralPath>& general, const RayPart& part,
                   RayResult& result) const {
-    result.half_opacity_depth = infinity;
-    if (!(result.opacity > 0)) return;
+    if (!(result.opacity > 0) || result.half_opacity_depth < infinity) return;
+    const HalfOpacity& half = result.half;
+    const Interval<double> range{std::max(part.range.begin, half.range.begin),
+                                 std::min(part.range.end, half.range.end)};
     result.half_opacity_depth =
-        made(general).find_depth(part, HalfOpacity{}.depth_to_half(result.opacity));
+        made(general).find_depth({part.ray, range}, half.depth_to_half(result.opacity));
   }
 
   const std::vector<ClippedLayer> layers_;

@@ -25,8 +25,7 @@ void orbit(pellucid::Camera& camera, double degrees) {
   const pellucid::Vec3<double> up = (1 / length(camera.up)) * camera.up;
   const double angle = degrees * 3.14159265358979 / 180;
   camera.position = camera.focal_point + std::cos(angle) * from +
-                    std::sin(angle) * cross(up, from) +
-                    (1 - std::cos(angle)) * dot(up, from) * up;
+                    std::sin(angle) * cross(up, from) + (1 - std::cos(angle)) * dot(up, from) * up;
 }
 
 // turn [FILE [SECONDS [PIXELS]]]

@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "pellucid/cpu/render.h"
+#include "tests/scenes/gallery.h"
+#include "tests/scenes/reference_frame.h"
+#include "tests/scenes/verdict.h"
+
+/// Frames of several layers, beside what the tolerance matrix asks of all scenes.
+namespace pellucid::scenes {
+namespace {
+
+Image rendered(const Scene& scene, RenderReport* report = nullptr) {
+  RenderOptions options;
+  options.threads = 2;
+  options.error = options.depth = true;
+  return render(scene, options, report);
+}
+
+/// Pixels of a and b differ by no more than both say.
+void expect_agree(const Image& a, const Image& b) {
+  for (std::size_t i = 0; i < a.pixels.size(); ++i) {
+    for (std::size_t c = 0; c < 4; ++c) {
+      ASSERT_LE(std::abs(a.pixels[i][c] - b.pixels[i][c]), a.error[i] + b.error[i])
+          << "pixel " << i;
+    }
+  }
+}
+
+TEST(LayerFrames, DoNotDependOnTheOrderOfTheLayers) {
+  int scenes = 0;
+  for (const GalleryEntry& entry : layer_gallery()) {
+    const Exhibit exhibit = entry.make(24);
+    if (exhibit.layers.size() < 2) continue;
+    SCOPED_TRACE(entry.name);
+    ++scenes;
+    Scene scene = scene_of(exhibit, 0, 24);
+    for (const Grade grade : {Grade::estimated, Grade::proved}) {
+      scene.integration.grade = grade;
+      const Image as_listed = rendered(scene);
+      std::reverse(scene.layers.begin(), scene.layers.end());
+      const Image reversed = rendered(scene);
+      expect_agree(as_listed, reversed);
+    }
+  }
+  EXPECT_GE(scenes, 10);
+}
+
+/// A plane that cuts data with a jump obliquely, at the finest sampling there is: where others
+/// sample along rays, such an edge is a staircase.
+TEST(LayerFrames, AClippedEdgeHasNoStaircase) {
+  for (const GalleryEntry& entry : layer_gallery()) {
+    if (entry.name != "layers: clipped by a plane through jumps") continue;
+    Scene scene = scene_of(entry.make(2), 1, 2);
+    scene.samples = largest_samples;
+    scene.integration.tolerance = 1e-4;
+    const Verdict verdict =
+        judge(rendered(scene), reference_frame(scene, 2), scene.integration.tolerance);
+    EXPECT_TRUE(verdict.kept()) << verdict.text();
+    EXPECT_EQ(verdict.said_over, 0);
+    EXPECT_GT(verdict.brightest, 0.05);
+    return;
+  }
+  FAIL() << "the gallery has no such scene";
+}
+
+/// Where a ray meets one layer only, the others cost it nothing: it is what that layer's own
+/// tracer finds.
+TEST(LayerFrames, SideBySideAreAsEachByItself) {
+  for (const GalleryEntry& entry : layer_gallery()) {
+    if (entry.name != "layers: side by side, a grid, Gaussians and a mesh") continue;
+    const Scene all = scene_of(entry.make(32), 0, 32);
+    RenderReport together;
+    const Image image = rendered(all, &together);
+    std::uint64_t cells = 0;
+    std::vector<Image> alone;
+    for (const Layer& layer : all.layers) {
+      Scene scene = all;
+      scene.layers = {layer};
+      RenderReport report;
+      alone.push_back(rendered(scene, &report));
+      cells += report.cells;
+    }
+    int seen = 0;
+    for (std::size_t i = 0; i < image.pixels.size(); ++i) {
+      int present = 0;
+      const Image* one = nullptr;
+      for (const Image& of_layer : alone) {
+        if (of_layer.pixels[i][3] == 0) continue;
+        ++present;
+        one = &of_layer;
+      }
+      if (present != 1) continue;
+      ++seen;
+      for (std::size_t c = 0; c < 4; ++c) {
+        EXPECT_NEAR(image.pixels[i][c], one->pixels[i][c], 2 * all.integration.tolerance);
+      }
+      EXPECT_NEAR(image.depth[i], one->depth[i], 0.05);
+    }
+    EXPECT_GT(seen, 60);
+    // No more cells are looked at than by all of them together.
+    EXPECT_LE(static_cast<double>(together.cells), 1.05 * static_cast<double>(cells));
+    return;
+  }
+  FAIL() << "the gallery has no such scene";
+}
+
+}  // namespace
+}  // namespace pellucid::scenes
