@@ -47,9 +47,11 @@ void print_notes(const RenderArguments& arguments, const PreparedScene& prepared
   }
   if (prepared.transfer_function_from == "default" && !arguments.print_tf &&
       arguments.save_tf.empty()) {
-    print_note(
-        "no transfer function given: using one made from the histogram (--save-tf FILE.json writes "
-        "it for editing, --tf FILE.json reads it)");
+    print_note(fmt::format(
+        "no transfer function given: using {} (--save-tf FILE.json writes it for editing, --tf "
+        "FILE.json reads it)",
+        prepared.scene.layers.front().projection ? "greys over the range of the values"
+                                                 : "one made from the histogram"));
   }
 }
 
@@ -60,6 +62,7 @@ Image render_image(const RenderArguments& arguments, const PreparedScene& prepar
   options.threads = arguments.threads;
   options.depth = !arguments.depth_picture.empty();
   options.error = !arguments.error_map.empty();
+  options.values = !arguments.values.empty();
   for (const std::string& path : arguments.outputs) {
     if (extension_of(path) != ".exr") continue;
     options.depth = true;
@@ -167,6 +170,13 @@ int run_render(const RenderArguments& arguments) {
   write(arguments.depth_picture, [&] { write_png(depth_picture(image), arguments.depth_picture); });
   write(arguments.error_map,
         [&] { write_error_map(image, prepared.scene.integration.tolerance, arguments.error_map); });
+  write(arguments.values, [&] {
+    if (extension_of(arguments.values) == ".exr") {
+      write_values_exr(image, arguments.values);
+    } else {
+      write_values_npy(image, arguments.values);
+    }
+  });
   write(arguments.save_tf, [&] { write_text_file(arguments.save_tf, transfer_function); });
   write(arguments.save_scene, [&] {
     write_text_file(arguments.save_scene, scene_text(prepared.description, arguments.save_scene));
@@ -211,6 +221,7 @@ Command add_render(CommandLine& app) {
       "  pellucid render head.nrrd --preset ct-bone -o bone.png\n"
       "  pellucid render head.nrrd --tf CT-AAA.vp.json -o slicer.png\n"
       "  pellucid render scene.json -o scene.exr --size 1920x1080 --samples 2 --json\n"
+      "  pellucid render cta.nrrd --projection maximum -o mip.png --values mip.npy\n"
       "  pellucid render scene.json -o scene.exr --tolerance 1/4096 --grade proved --error-map "
       "e.png\n"
       "  pellucid render brain.nii.gz -o edges.png\n"

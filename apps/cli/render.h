@@ -18,9 +18,9 @@ namespace pellucid::cli {
 struct RenderArguments {
   std::string input;
   std::vector<std::string> outputs;
-  std::string depth_picture, error_map, save_tf, save_scene;
+  std::string depth_picture, error_map, values, save_tf, save_scene;
   std::vector<std::string> channels, gaussians, layers, labels, clips;
-  std::string transfer_function, preset, camera, view, size, background, backdrop;
+  std::string transfer_function, preset, projection, camera, view, size, background, backdrop;
   ImportArguments import;
   std::string method, precision, grade;
   std::optional<std::string> tolerance;
@@ -35,7 +35,9 @@ struct RenderArguments {
   bool has_only_added_layers() const {
     return input.empty() && channels.empty() && !(layers.empty() && labels.empty());
   }
-  bool renders() const { return !outputs.empty() || !depth_picture.empty() || !error_map.empty(); }
+  bool renders() const {
+    return !outputs.empty() || !depth_picture.empty() || !error_map.empty() || !values.empty();
+  }
 };
 
 /// The scene, and what is told of how it came about.

@@ -28,6 +28,10 @@ void add_output_options(CommandLine& command, RenderArguments& arguments) {
                   "proved, grey if estimated, red if over. .exr: numbers")
       ->option_text("FILE");
   command
+      .add_option("--values", arguments.values,
+                  "Also write the value of the projected layer for each pixel, as numbers")
+      ->option_text("FILE.npy|FILE.exr");
+  command
       .add_option("--save-tf", arguments.save_tf, "Write the transfer function used, for editing")
       ->option_text("FILE.json");
   auto* print_tf =
@@ -91,6 +95,12 @@ void add_scene_options(CommandLine& command, RenderArguments& arguments) {
       ->excludes(transfer_function)
       ->excludes("--gaussian");
   arguments.import.add_to(command);
+  command
+      .add_option("--projection", arguments.projection,
+                  "Show one value per ray of INPUT instead of the integral: maximum, minimum, mean "
+                  "or sum. Default: the scene's, else none. Without --tf in greys over its range")
+      ->option_text("NAME")
+      ->one_of({"maximum", "minimum", "mean", "sum"});
   auto* camera =
       command
           .add_option("--camera", arguments.camera,

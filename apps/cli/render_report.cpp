@@ -55,7 +55,9 @@ double transfer_function_error(const Scene& scene) {
   for (const Layer& layer : scene.layers) {
     if (!layer.visible) continue;
     ++layers;
-    sum += approximation_error(layer, std::max({behind.r, behind.g, behind.b}));
+    double brightest = std::max({behind.r, behind.g, behind.b});
+    if (layer.projection) brightest = std::max(brightest, largest_color(scene));
+    sum += approximation_error(layer, brightest);
   }
   return layers > 1 ? 2 * sum : sum;
 }
@@ -147,6 +149,8 @@ Json layer_json(const Layer& layer, const LayerDescription& description) {
                                            : Json();
   json["nan"] = nan_values(layer);
   json["clips"] = layer.clips.size();
+  json["projection"] =
+      layer.projection ? Json(std::string(projection_name(*layer.projection))) : Json();
   json["transfer_function"] =
       description.transfer_function
           ? Json::parse(transfer_function_to_json(*description.transfer_function))
@@ -190,6 +194,10 @@ void add_metadata(const RenderArguments& arguments, const PreparedScene& prepare
   // Of the first layer, and of each other one with its number behind.
   const std::vector<LayerDescription>& layers = prepared.description.layers;
   for (std::size_t i = 0; i < layers.size(); ++i) {
+    if (layers[i].projection) {
+      metadata[i == 0 ? "pellucid.projection" : fmt::format("pellucid.projection.{}", i + 1)] =
+          projection_name(*layers[i].projection);
+    }
     if (!layers[i].transfer_function) continue;
     metadata[i == 0 ? "pellucid.transfer_function"
                     : fmt::format("pellucid.transfer_function.{}", i + 1)] =

@@ -38,6 +38,7 @@ std::vector<NamedFile> output_files(const RenderArguments& arguments) {
   for (const std::string& path : arguments.outputs) files.push_back({"-o", path});
   const NamedFile others[] = {{"--depth", arguments.depth_picture},
                               {"--error-map", arguments.error_map},
+                              {"--values", arguments.values},
                               {"--save-tf", arguments.save_tf},
                               {"--save-scene", arguments.save_scene}};
   for (const NamedFile& file : others) {
@@ -93,6 +94,14 @@ void check_arguments(const RenderArguments& arguments) {
         fmt::format("--depth {}: expected a name that ends in .png (an .exr of -o has "
                     "the depth in its channel Z)",
                     arguments.depth_picture));
+  }
+  if (const std::string extension = extension_of(arguments.values);
+      !arguments.values.empty() && extension != ".npy" && extension != ".exr") {
+    throw UsageError(
+        fmt::format("--values {}: expected a name that ends in .npy or .exr", arguments.values));
+  }
+  if (!arguments.projection.empty() && arguments.has_only_added_layers()) {
+    throw UsageError("--projection: is for INPUT; give one, or write it into a layer of a scene");
   }
   const std::vector<NamedFile> outputs = output_files(arguments);
   const NamedFile inputs[] = {{"INPUT", arguments.input},
@@ -213,12 +222,11 @@ void set_volume(const RenderArguments& arguments, LayerDescription& description)
 void refuse_options_of_one_layer(const RenderArguments& arguments,
                                  const SceneDescription& description) {
   if (description.layers.size() == 1) return;
-  const std::pair<const char*, bool> given[] = {{"--tf", !arguments.transfer_function.empty()},
-                                                {"--preset", !arguments.preset.empty()},
-                                                {"--gaussian", !arguments.gaussians.empty()},
-                                                {"--channel", !arguments.channels.empty()},
-                                                {"--print-tf", arguments.print_tf},
-                                                {"--save-tf", !arguments.save_tf.empty()}};
+  const std::pair<const char*, bool> given[] = {
+      {"--tf", !arguments.transfer_function.empty()},  {"--preset", !arguments.preset.empty()},
+      {"--gaussian", !arguments.gaussians.empty()},    {"--channel", !arguments.channels.empty()},
+      {"--projection", !arguments.projection.empty()}, {"--print-tf", arguments.print_tf},
+      {"--save-tf", !arguments.save_tf.empty()}};
   for (const auto& [argument, is_given] : given) {
     if (!is_given) continue;
     throw UsageError(fmt::format("{}: the scene has {} layers; edit the layer in the scene",
@@ -282,6 +290,9 @@ SceneDescription describe(const RenderArguments& arguments,
   }
   if (!arguments.gaussians.empty()) layer.transfer_function = gaussians(arguments);
   add_channels(arguments, layer);
+  if (!arguments.projection.empty()) {
+    layer.projection = *projection_from_name(arguments.projection);
+  }
   if (!description.layers.empty()) {
     description.layers.front() = layer;
     set_transfer_function(arguments, description, import_notes);

@@ -75,6 +75,9 @@ Contender fixed_point_contender(const Scene& scene, vtkRenderer* renderer, vtkIm
           static_cast<float>(step * test::volume_of(scene).volume->voxel_size()));
       caster->mapper->IntermixIntersectingGeometryOff();
       caster->mapper->SetNumberOfThreads(threads);
+      if (scene.layers.front().projection == LayerProjection::maximum) {
+        caster->mapper->SetBlendModeToMaximumIntensity();
+      }
       caster->volume = vtk_volume(scene, caster->mapper);
       cast(*caster, view);
     }

@@ -8,6 +8,8 @@
 #include <vector>
 
 #include "layers/scene_tracer.h"
+#include "projection/projected_tracer.h"
+#include "threads.h"
 
 namespace pellucid {
 namespace {
@@ -31,10 +33,10 @@ double storage_error(double value) {
   return std::max(value, 1.0) * 0x1p-24;
 }
 
-std::vector<const Layer*> visible_layers(const Scene& scene) {
+std::vector<const Layer*> visible_layers(const Scene& scene, bool projected) {
   std::vector<const Layer*> layers;
   for (const Layer& layer : scene.layers) {
-    if (layer.visible) layers.push_back(&layer);
+    if (layer.visible && layer.projection.has_value() == projected) layers.push_back(&layer);
   }
   return layers;
 }
@@ -68,11 +70,15 @@ Frame::Frame(const Scene& described, const RenderOptions& options, int threads, 
       largest_color(pellucid::largest_color(described)) {
   const double behind = brightest(scene);
   if (scene.backdrop) largest_color = std::max(largest_color, behind);
-  const std::vector<const Layer*> layers = visible_layers(scene);
+  const std::vector<const Layer*> layers = visible_layers(scene, false);
+  const std::vector<const Layer*> projections = visible_layers(scene, true);
   for (const Layer* layer : layers) {
     // Beside other layers, whose colors differ, the bound of a single function doubles: the change
     // of the extinction is seen in its own color, not in that of the mixture.
     reserved += (layers.size() > 1 ? 2 : 1) * approximation_error(*layer, behind);
+  }
+  for (const Layer* layer : projections) {
+    reserved += approximation_error(*layer, std::max(largest_color, behind));
   }
   const Integration& integration = scene.integration;
   RayTolerance wanted;
@@ -90,7 +96,17 @@ Frame::Frame(const Scene& described, const RenderOptions& options, int threads, 
     clipped.push_back({kept.find(*layer, setting, threads), std::move(clips)});
   }
   kept.keep_only(scene);
-  tracer = make_scene_tracer(std::move(clipped), wanted, options.depth);
+  if (!layers.empty() || projections.empty()) {
+    tracer = make_scene_tracer(std::move(clipped), wanted, options.depth);
+  }
+  if (projections.empty()) return;
+  std::vector<Layer> in_place;
+  for (const Layer* layer : projections) in_place.push_back(moved_into_place(*layer));
+  auto projecting =
+      std::make_unique<const ProjectedTracer>(std::move(in_place), std::move(tracer), scene.clips,
+                                              wanted.largest_color, parallel_for(threads));
+  projected = projecting.get();
+  tracer = std::move(projecting);
 }
 
 }  // namespace pellucid

@@ -10,6 +10,8 @@
 
 namespace pellucid {
 
+class ProjectedTracer;
+
 /// What every pixel of the frame shares.
 struct Frame {
   /// `scene` must outlive the frame. Set-ups of layers come from `kept`, and those that are missing
@@ -22,6 +24,7 @@ struct Frame {
   double reserved;       ///< of the tolerance: what the transfer function is off by
   double largest_color;  ///< of the visible layers' functions and the backdrop
   std::unique_ptr<const RayTracer> tracer;
+  const ProjectedTracer* projected = nullptr;  ///< the tracer, if there are projected layers
 };
 
 }  // namespace pellucid

@@ -18,6 +18,7 @@ struct ImageView {
   float* depth;          ///< null: not asked for
   float* error;          ///< null: not asked for
   std::uint8_t* proved;  ///< of the presence of `error`
+  float* values;         ///< null: not asked for
 
   explicit ImageView(Image& image);
   std::size_t index(int column, int row) const noexcept {

@@ -23,6 +23,7 @@ void check(const Scene& scene, const RenderOptions& options) {
   check_data(scene);
   check_integration(scene);
   check_method(scene);
+  if (options.values) check_values(scene);
   if (options.threads < 0) throw Error("threads: must not be negative; 0 takes one per core");
   if (options.preview < 0 || options.preview > largest_preview) {
     throw Error("preview: " + std::to_string(options.preview) + " levels, but must be from 0 to " +
@@ -38,6 +39,7 @@ Image make_image(ImageSize size, const RenderOptions& options) {
       static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height);
   image.pixels.resize(pixels);
   if (options.depth) image.depth.resize(pixels);
+  if (options.values) image.values.resize(pixels);
   if (options.error) {
     image.error.resize(pixels);
     image.proved.resize(pixels);

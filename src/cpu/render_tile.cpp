@@ -6,6 +6,7 @@
 #include <limits>
 #include <vector>
 
+#include "projection/projected_tracer.h"
 #include "tiles.h"
 
 namespace pellucid {
@@ -83,9 +84,11 @@ void put_over(const Image& backdrop, const Place& place, RayResult& pixel) {
   pixel.opacity += transparency * double{behind[3]};
 }
 
-/// Traces the rays; so few at once that the threads can stop soon.
+/// Traces the rays; so few at once that the threads can stop soon. `values`, unless null, receives
+/// what the projected layer has along each.
 std::vector<RayResult> trace(const Frame& frame, const std::vector<RayPart>& rays,
-                             double share_of_rays, const TileTask& task) {
+                             double share_of_rays, const TileTask& task,
+                             std::vector<double>* values) {
   const TraceOptions options{1, share_of_rays, task.stop};
   std::vector<RayResult> results;
   for (std::size_t first = 0; first < rays.size() && !task.stop.stop_requested();) {
@@ -93,14 +96,14 @@ std::vector<RayResult> trace(const Frame& frame, const std::vector<RayPart>& ray
     const std::size_t count =
         task.stop.stop_possible() ? std::min(task.speed->rays_at_once(), left) : left;
     const auto start = std::chrono::steady_clock::now();
-    if (count == rays.size()) {
-      results = frame.tracer->trace(rays, options);
-    } else {
-      const auto begin = rays.begin() + static_cast<std::ptrdiff_t>(first);
-      const std::vector<RayResult> some = frame.tracer->trace(
-          std::vector<RayPart>(begin, begin + static_cast<std::ptrdiff_t>(count)), options);
-      results.insert(results.end(), some.begin(), some.end());
-    }
+    const auto begin = rays.begin() + static_cast<std::ptrdiff_t>(first);
+    const std::vector<RayPart> some(begin, begin + static_cast<std::ptrdiff_t>(count));
+    std::vector<double> own;
+    const std::vector<RayResult> found = values != nullptr
+                                             ? frame.projected->trace(some, options, &own)
+                                             : frame.tracer->trace(some, options);
+    results.insert(results.end(), found.begin(), found.end());
+    if (values != nullptr) values->insert(values->end(), own.begin(), own.end());
     task.speed->tell(count, std::chrono::steady_clock::now() - start);
     first += count;
   }
@@ -145,9 +148,14 @@ std::size_t render_tile(const Frame& frame, const Tile& tile, const TileTask& ta
       }
     }
   }
+  std::vector<double> values;  // of pixels with one ray
   const std::vector<RayResult> results =
-      trace(frame, rays, between != nullptr ? between->share_of_rays(level) : 1, task);
+      trace(frame, rays, between != nullptr ? between->share_of_rays(level) : 1, task,
+            image.values != nullptr ? &values : nullptr);
   if (task.stop.stop_requested()) return 0;
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    image.values[image.index(places[i].column, places[i].row)] = static_cast<float>(values[i]);
+  }
   report.rays += rays.size();
   const RayResult* of_pixel = results.data();
   for (const Place& place : places) {

@@ -198,6 +198,10 @@ void write_exr(const Image& image, const std::filesystem::path& path) {
     channels.add(color_channels[c], Imf::FLOAT, &image.pixels[0][c], sizeof(image.pixels[0]));
   }
   if (!image.depth.empty()) channels.add("Z", Imf::FLOAT, image.depth.data());
+  if (!image.values.empty()) {
+    check_values(image, path);
+    channels.add("value", Imf::FLOAT, image.values.data());
+  }
   std::vector<Imath::half> proved;
   if (!image.error.empty() || !image.proved.empty()) {
     check_error(image, path);
@@ -224,6 +228,14 @@ void write_error_exr(const Image& image, double tolerance, const std::filesystem
   channels.add("Y", Imf::FLOAT, scaled.data());
   channels.add("error", Imf::FLOAT, image.error.data());
   channels.add("error.proved", Imf::HALF, proved.data());
+  channels.write(path);
+}
+
+void write_values_exr(const Image& image, const std::filesystem::path& path) {
+  check_image(image, path);
+  check_values(image, path);
+  ChannelList channels(image);
+  channels.add("Y", Imf::FLOAT, image.values.data());
   channels.write(path);
 }
 

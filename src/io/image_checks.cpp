@@ -25,6 +25,13 @@ void check_image(const Image& image, const std::filesystem::path& path) {
   }
 }
 
+void check_values(const Image& image, const std::filesystem::path& path) {
+  if (image.values.size() == image.pixels.size()) return;
+  throw Error(path.string() + ": cannot write: the image has " +
+              std::to_string(image.values.size()) + " values and " +
+              std::to_string(image.pixels.size()) + " pixels");
+}
+
 void check_finite(const Image& image, const std::filesystem::path& path) {
   for (int row = 0; row < image.height; ++row) {
     for (int column = 0; column < image.width; ++column) {

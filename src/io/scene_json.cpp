@@ -130,10 +130,25 @@ void read_data(const Node& node, const std::filesystem::path& folder, LayerDescr
   }
 }
 
+LayerProjection read_projection(const Node& node, const LayerDescription& layer) {
+  const std::array kinds{LayerProjection::maximum, LayerProjection::minimum, LayerProjection::mean,
+                         LayerProjection::sum};
+  const LayerProjection projection = kinds[node.one_of({"maximum", "minimum", "mean", "sum"})];
+  const bool multivariate =
+      layer.transfer_function &&
+      std::holds_alternative<MultivariateDescription>(*layer.transfer_function);
+  if (multivariate || !layer.channels.empty() || (layer.mesh && layer.mesh->channels.size() > 1)) {
+    node.fail("is of one variable; give a \"field\" or one array with a function of one");
+  }
+  if (layer.labels) node.fail("makes no sense for labels; leave it out");
+  if (layer.mask) node.fail("stands beside a \"mask\"; leave one of the two out");
+  return projection;
+}
+
 /// A layer of version 2. A mask needs a field with a function of one variable.
 LayerDescription read_layer(const Node& node, const std::filesystem::path& folder) {
   node.expect_object({"name", "visible", "field", "channels", "mesh", "labels", "transfer_function",
-                      "mask", "transform", "clip"});
+                      "mask", "transform", "clip", "projection"});
   LayerDescription layer;
   if (const auto name = node.find("name")) layer.name = name->string();
   if (const auto visible = node.find("visible")) layer.visible = visible->boolean();
@@ -151,6 +166,9 @@ LayerDescription read_layer(const Node& node, const std::filesystem::path& folde
     layer.transform = scene_json::affine_map(*transform);
   }
   if (const auto clip = node.find("clip")) layer.clips = scene_json::clips(*clip);
+  if (const auto projection = node.find("projection")) {
+    layer.projection = read_projection(*projection, layer);
+  }
   return layer;
 }
 

@@ -39,8 +39,12 @@ struct Wanted {
 /// Of a volume or a mesh.
 template <class Data>
 TransferFunction function_of(const std::optional<TransferFunctionDescription>& description,
-                             const Wanted& wanted, const Data& data) {
-  if (!description) return default_transfer_function(data);
+                             const Wanted& wanted, const Data& data,
+                             std::optional<LayerProjection> projection = {}) {
+  if (!description) {
+    return projection ? projection_transfer_function(data, *projection)
+                      : default_transfer_function(data);
+  }
   if (const auto* preset = std::get_if<PresetDescription>(&*description)) {
     return make_preset(preset->name, data, preset->range);
   }
@@ -89,7 +93,7 @@ MeshContent load_mesh_content(const LayerDescription& description, const Wanted&
   mesh_used.channels = loaded.channels;
   if (content.multivariate() == nullptr) {
     content.transfer_function = std::make_shared<const TransferFunction>(
-        function_of(description.transfer_function, wanted, *content.mesh));
+        function_of(description.transfer_function, wanted, *content.mesh, description.projection));
   }
   return content;
 }
@@ -98,7 +102,7 @@ VolumeContent load_volume_content(const LayerDescription& description, const Wan
   VolumeContent content;
   content.volume = std::make_shared<const Volume>(load_field(description.field));
   content.transfer_function = std::make_shared<const TransferFunction>(
-      function_of(description.transfer_function, wanted, *content.volume));
+      function_of(description.transfer_function, wanted, *content.volume, description.projection));
   if (!description.mask) return content;
   auto labels = std::make_shared<const LabelVolume>(
       std::make_shared<const Volume>(load_field(description.mask->field)));
@@ -138,6 +142,7 @@ Layer load_layer(const LayerDescription& description, const Wanted& wanted,
   layer.visible = description.visible;
   layer.transform = description.transform;
   layer.clips = description.clips;
+  layer.projection = description.projection;
   if (description.labels) {
     layer.content = load_label_content(*description.labels);
   } else if (description.mesh) {

@@ -396,6 +396,9 @@ std::string layer_text(const LayerDescription& layer) {
   place.transform = layer.transform;
   if (!is_in_place(place)) members.add("transform", transform_text(layer.transform));
   if (!layer.clips.empty()) members.add("clip", clips_text(layer.clips, "    "));
+  if (layer.projection) {
+    members.add("projection", joined({"\"", projection_name(*layer.projection), "\""}));
+  }
   return members.object();
 }
 

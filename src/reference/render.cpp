@@ -65,6 +65,7 @@ void render_row(const reference::CameraRays& camera, int samples,
     }
     ReferencePixel pixel = mean_of(rays);
     if (backdrop != nullptr) put_over(backdrop->pixels[index], backdrop->depth[index], pixel);
+    if (!image.values.empty()) image.values[index] = static_cast<float>(rays.front().value);
     image.at(column, row) = {
         static_cast<float>(pixel.radiance.r), static_cast<float>(pixel.radiance.g),
         static_cast<float>(pixel.radiance.b), static_cast<float>(pixel.opacity)};
@@ -80,6 +81,7 @@ Image render_reference(const Scene& scene, const RenderOptions& options, RenderR
   check_data(scene);
   if (options.threads < 0) throw Error("threads: must not be negative; 0 takes one per core");
   check_integration(scene);
+  if (options.values) check_values(scene);
   make_camera_frame(scene.camera, scene.size);  // For its checks; the rays are made here.
 
   const reference::CameraRays camera(scene.camera, scene.size);
@@ -92,6 +94,7 @@ Image render_reference(const Scene& scene, const RenderOptions& options, RenderR
       static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height);
   image.pixels.resize(pixels);
   if (options.depth) image.depth.resize(pixels);
+  if (options.values) image.values.resize(pixels);
 
   RenderReport local;
   local.threads = options.threads > 0 ? options.threads : tbb::info::default_concurrency();

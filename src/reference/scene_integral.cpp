@@ -26,7 +26,7 @@ bool is_plain(const Scene& scene) {
   if (scene.layers.size() != 1 || !scene.clips.empty() || scene.backdrop) return false;
   const Layer& layer = scene.layers.front();
   const auto* const volume = std::get_if<VolumeContent>(&layer.content);
-  return layer.visible && layer.clips.empty() && is_in_place(layer) &&
+  return layer.visible && !layer.projection && layer.clips.empty() && is_in_place(layer) &&
          !std::holds_alternative<LabelContent>(layer.content) &&
          (volume == nullptr || !volume->mask);
 }
@@ -49,7 +49,11 @@ SceneIntegral::SceneIntegral(const Scene& scene) {
     for (const Layer& layer : scene.layers) {
       if (!layer.visible) continue;
       layers_.push_back(std::make_unique<const Layer>(moved_into_place(layer)));
-      data_.push_back(std::make_unique<const LayerData>(*layers_.back(), scene.clips));
+      if (layer.projection) {
+        projections_.push_back(std::make_unique<const Projection>(*layers_.back(), scene.clips));
+      } else {
+        data_.push_back(std::make_unique<const LayerData>(*layers_.back(), scene.clips));
+      }
     }
     return;
   }
@@ -76,7 +80,11 @@ SceneIntegral::SceneIntegral(const Channels& channels,
 
 ReferencePixel SceneIntegral::operator()(const RealRay& ray, bool with_depth, std::uint64_t& cells,
                                          Real end) const {
-  if (!field_) return integrate(data_, ray, with_depth, cells, end);
+  if (!field_) {
+    ReferencePixel pixel = integrate(data_, ray, with_depth, cells, end);
+    for (const auto& projection : projections_) projection->put_over(ray, end, cells, pixel);
+    return pixel;
+  }
   if (end < std::numeric_limits<Real>::infinity()) {
     throw Error("reference ray: ends are for scenes with a backdrop; add one");
   }

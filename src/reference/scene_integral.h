@@ -10,6 +10,7 @@
 #include "layer_data.h"
 #include "mixture.h"
 #include "pellucid/reference/render.h"
+#include "projection.h"
 #include "table.h"
 
 namespace pellucid::reference {
@@ -39,6 +40,8 @@ class SceneIntegral {
   /// Of everything else: the layers in their places.
   std::vector<std::unique_ptr<const Layer>> layers_;
   std::vector<std::unique_ptr<const LayerData>> data_;
+  /// Over the others, in the order of the list.
+  std::vector<std::unique_ptr<const Projection>> projections_;
 };
 
 }  // namespace pellucid::reference

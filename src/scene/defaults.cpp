@@ -147,6 +147,39 @@ TransferFunction default_transfer_function(const MeshChannels& mesh) {
   return make_default(value_sample(mesh), mean_chord(box), std::min(filled, 1.0));
 }
 
+namespace {
+
+/// `longest`: of a ray, in the world.
+TransferFunction grey_ramp(const VolumeStatistics& data, LayerProjection projection,
+                           double longest) {
+  double lower = data.minimum, upper = data.maximum;
+  if (projection == LayerProjection::sum) {
+    // Within what TransferFunction accepts.
+    lower = std::max(std::min(lower, 0.0) * longest, -2e37);
+    upper = std::min(std::max(upper, 0.0) * longest, 2e37);
+  }
+  constexpr Rgb<double> black{0, 0, 0}, white{1, 1, 1};
+  if (!(lower < upper)) return TransferFunction({{lower, 1, white}});
+  return TransferFunction({{lower, 1, black}, {upper, 1, white}});
+}
+
+}  // namespace
+
+TransferFunction projection_transfer_function(const Volume& volume, LayerProjection projection) {
+  const Vec3<double> size = volume.grid_upper() - volume.grid_lower();
+  double longest = 0;
+  for (int a = 0; a < 3; ++a) {
+    longest = std::max(longest, size[a] * length(volume.world_from_grid().matrix.column[a]));
+  }
+  return grey_ramp(volume.statistics(), projection, longest);
+}
+
+TransferFunction projection_transfer_function(const MeshChannels& mesh,
+                                              LayerProjection projection) {
+  const Vec3<double> size = mesh.mesh().bounds().upper - mesh.mesh().bounds().lower;
+  return grey_ramp(mesh.statistics(0), projection, std::max({size.x, size.y, size.z}));
+}
+
 LabelTable default_label_table(const LabelVolume& labels, std::optional<double> extinction) {
   std::vector<LabelStyle> styles;
   const double each = extinction.value_or(default_label_extinction(labels.volume()));

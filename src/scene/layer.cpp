@@ -12,6 +12,13 @@
 namespace pellucid {
 namespace {
 
+constexpr std::array<std::pair<LayerProjection, std::string_view>, 4> projections{{
+    {LayerProjection::maximum, "maximum"},
+    {LayerProjection::minimum, "minimum"},
+    {LayerProjection::mean, "mean"},
+    {LayerProjection::sum, "sum"},
+}};
+
 template <class... Bodies>
 struct Overloaded : Bodies... {
   using Bodies::operator()...;
@@ -97,6 +104,20 @@ class LayerCheck {
   const std::string& where_;
 };
 
+void check_projection(const Layer& layer, const std::string& where) {
+  if (!layer.projection) return;
+  const auto refuse = [&](const char* why) {
+    throw Error(where + ": the projection " + std::string(projection_name(*layer.projection)) +
+                " is of one variable, but the layer has " + why);
+  };
+  if (std::holds_alternative<LabelContent>(layer.content)) refuse("labels; leave it out");
+  if (multivariate_of(layer) != nullptr) {
+    refuse("a function of several; give a field or one array with a function of one");
+  }
+  const auto* const volume = std::get_if<VolumeContent>(&layer.content);
+  if (volume != nullptr && volume->mask) refuse("a mask; leave one of the two out");
+}
+
 void check_transform(const Layer& layer, const std::string& where) {
   const Mat3<double>& m = layer.transform.matrix;
   const auto refuse = [&](const Vec3<double>& v) {
@@ -152,6 +173,20 @@ std::shared_ptr<const MeshChannels> moved(const MeshChannels& channels,
 
 }  // namespace
 
+std::string_view projection_name(LayerProjection projection) noexcept {
+  for (const auto& [value, name] : projections) {
+    if (value == projection) return name;
+  }
+  return "unknown";
+}
+
+std::optional<LayerProjection> projection_from_name(std::string_view name) noexcept {
+  for (const auto& [value, known] : projections) {
+    if (known == name) return value;
+  }
+  return std::nullopt;
+}
+
 const TransferFunction* MeshContent::univariate() const noexcept {
   const auto* function = std::get_if<std::shared_ptr<const TransferFunction>>(&transfer_function);
   return function != nullptr ? function->get() : nullptr;
@@ -199,6 +234,7 @@ Layer moved_into_place(const Layer& layer) {
 void check_layer(const Layer& layer, const std::string& where) {
   std::visit(LayerCheck(where), layer.content);
   check_transform(layer, where);
+  check_projection(layer, where);
   for (std::size_t i = 0; i < layer.clips.size(); ++i) {
     check_clip(layer.clips[i], where + ": clip " + std::to_string(i + 1));
   }
@@ -243,7 +279,9 @@ bool absorbs_between(const Layer& layer, double lower, double upper) {
 
 std::array<Vec3<double>, 8> visible_corners(const Layer& layer, const ParallelFor& parallel) {
   const Volume* const grid = grid_of(layer);
-  if (grid == nullptr || multivariate_of(layer) != nullptr) return world_corners(layer);
+  if (grid == nullptr || layer.projection || multivariate_of(layer) != nullptr) {
+    return world_corners(layer);
+  }
   const BlockRecords& records = grid->block_records(parallel);
   std::array<int, 3> first{}, last{-1, -1, -1};
   for (int k = 0; k < records.axis[2].cells(); ++k) {
@@ -296,6 +334,12 @@ double largest_extinction(const Layer& layer) noexcept {
 double approximation_error(const Layer& layer, double behind) {
   double largest = 0;
   for_each_table(layer, [&](const TransferFunction& function) {
+    if (layer.projection) {
+      const double opacity = std::min(std::expm1(2 * function.relative_error()), 1.0);
+      largest =
+          opacity * (function.largest_color() + std::max(behind, 1.0)) + function.color_error();
+      return;
+    }
     largest = std::max(largest, function.approximation_error(behind));
   });
   return largest;

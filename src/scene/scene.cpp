@@ -274,6 +274,7 @@ void check_method(const Scene& scene) {
     refuse("has no clips, but the scene has; take exact");
   }
   if (scene.backdrop) refuse("has no backdrop, but the scene has; take exact");
+  if (layer->projection) refuse("has no projections, but the scene has; take exact");
   if (!layer->visible) refuse("needs a visible layer; take exact");
   if (volume != nullptr && volume->mask) refuse("has no masks, but the scene has; take exact");
   const bool multivariate = mesh != nullptr ? mesh->multivariate() != nullptr : volume == nullptr;
@@ -312,6 +313,20 @@ void check_method(const Scene& scene) {
   refuse(
       "goes in steps through a grid, but the scene has a mesh; take homogeneous, average, "
       "partial, linear or exact there");
+}
+
+void check_values(const Scene& scene) {
+  const auto projected = std::ranges::count_if(scene.layers, [](const Layer& layer) {
+    return layer.visible && layer.projection.has_value();
+  });
+  if (projected != 1) {
+    throw Error("values: they are those of one projected layer, but " + std::to_string(projected) +
+                " visible layers are projected; leave one");
+  }
+  if (scene.samples != 1) {
+    throw Error("values: a pixel has the value of one ray, but samples is " +
+                std::to_string(scene.samples) + "; make it 1");
+  }
 }
 
 }  // namespace pellucid

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "pellucid/math/bernstein.h"
+#include "pellucid/math/cubic_extremes.h"
 #include "pellucid/math/cubic_roots.h"
 #include "pellucid/math/dawson.h"
 #include "pellucid/math/erf_over_x.h"
@@ -44,6 +45,7 @@ PELLUCID_HD void cubics(const T* in, T* out) noexcept {
   const CriticalPoints<T> turns = critical_points(f);
   out[2] = static_cast<T>(turns.count);
   out[3] = find_crossing(f, in[4], in[5], in[6], in[5] < in[6]);
+  out[4] = largest_value(f) - smallest_value(f);
 }
 PELLUCID_DEVICE_KERNEL(cubics)
 

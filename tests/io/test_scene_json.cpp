@@ -155,7 +155,7 @@ bool same(const Affine<double>& a, const Affine<double>& b) {
 bool same(const LayerDescription& a, const LayerDescription& b) {
   return a.name == b.name && a.visible == b.visible && same(a.field, b.field) &&
          same_lists(a.channels, b.channels) && same(a.transfer_function, b.transfer_function) &&
-         same(a.transform, b.transform);
+         same(a.transform, b.transform) && a.projection == b.projection;
 }
 bool same(const SceneDescription& a, const SceneDescription& b) {
   return same_lists(a.layers, b.layers) && same(a.camera, b.camera) &&

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <cmath>
+#include <cstdint>
+#include <limits>
 #include <memory>
 #include <utility>
 
@@ -113,6 +115,47 @@ Affine<double> oblique() {
 Layer moved(Layer layer, const Affine<double>& map) {
   layer.transform = map;
   return layer;
+}
+
+Layer projected(Layer layer, LayerProjection projection) {
+  layer.projection = projection;
+  return layer;
+}
+
+/// A line of one voxel, oblique to all axes, in noise.
+Layer vessel() {
+  const auto value = [](int i, int j, int k) {
+    const int along = (i + j) / 2;
+    if (std::abs(i - j) <= 1 && k == along) return 200;
+    return (7 * i + 13 * j + 29 * k) % 23;
+  };
+  return {VolumeContent{
+      make_volume<std::uint8_t>(
+          grid_description({19, 19, 19}, {-1, -1, -1}, {1.0 / 9, 1.0 / 9, 1.0 / 9}), value),
+      transfer({{0, 1, {0, 0, 0}}, {200, 1, {1, 1, 1}}}), nullptr}};
+}
+
+/// A wave with vacuum around an oblique plane, and in one corner.
+Layer with_vacuum(Points points) {
+  const auto holes = [](double x, double y, double z) {
+    return std::fabs(x + 0.7 * y - 0.4 * z) < 0.2 || (x < -0.4 && z > 0.5)
+               ? std::numeric_limits<double>::quiet_NaN()
+               : wave(x, y, z);
+  };
+  return {
+      VolumeContent{sampled({14, 15, 13}, holes, "holes"), transfer(std::move(points)), nullptr}};
+}
+
+/// A sheared grid of three spacings with oblique axes, of cells.
+Layer oblique_cells(Points points) {
+  Volume::Description description =
+      grid_description({11, 8, 6}, {-0.9, -0.8, -0.7}, {0.16, 0.2, 0.31});
+  description.placement.direction = {{{0.8, 0.6, 0}, {-0.6, 0.8, 0.1}, {0, 0.2, 1}}};
+  description.centering = Centering::cell;
+  return {VolumeContent{
+      make_volume<std::int16_t>(
+          description, [](int i, int j, int k) { return 100 * i - 37 * j * k + 11 * i * k; }),
+      transfer(std::move(points)), nullptr}};
 }
 
 Clip cut_away(Clip clip) {
@@ -243,6 +286,47 @@ Gallery layer_gallery() {
          return exhibit({grid({12, 13, 11}, warm), gaussians(), mesh(3, jumps(1)), labels(),
                          moved(masked(), oblique()), hidden},
                         {cut_away(box)});
+       })},
+      {"projections: maximum of a line of one voxel",
+       made([=] { return exhibit({projected(vessel(), LayerProjection::maximum)}); })},
+      {"projections: maximum through jumps, of a rectilinear grid in a cylinder", made([=] {
+         Volume::Description description = grid_description({9, 10, 8}, {-1, -1, -1});
+         description.coordinates[0] = {-1, -0.9, -0.5, -0.45, 0, 0.1, 0.4, 0.8, 1.1};
+         description.placement.spacing = {1, 0.21, 0.27};
+         Layer layer{VolumeContent{
+             make_volume<float>(
+                 description, [](int i, int j, int k) { return wave(0.4 * i, 0.3 * j, 0.5 * k); }),
+             transfer(jumps(1)), nullptr}};
+         layer.clips = {cylinder};
+         return exhibit({projected(layer, LayerProjection::maximum)});
+       })},
+      {"projections: minimum with clips and vacuum", made([=] {
+         Layer layer = moved(with_vacuum(ramp(1, {0.2, 0.1, 0.9}, {1, 0.8, 0.1})), oblique());
+         layer.clips = {cut_away(box)};
+         return exhibit({projected(layer, LayerProjection::minimum)}, {sphere});
+       })},
+      {"projections: sum of an anisotropic oblique grid", made([=] {
+         return exhibit({projected(oblique_cells({{-500, 0.2, {0.1, 0.3, 0.9}},
+                                                  {300, 0.9, {0.9, 0.9, 0.2}},
+                                                  {900, 1.7, {1, 0.5, 0.2}}}),
+                                   LayerProjection::sum)});
+       })},
+      {"projections: mean of a mesh", made([=] {
+         return exhibit({projected(mesh(4, warm), LayerProjection::mean)}, {cut_away(cylinder)});
+       })},
+      {"projections: extremes of meshes", made([=] {
+         return exhibit({projected(mesh(3, warm), LayerProjection::minimum),
+                         projected(moved(mesh(4, ramp(2, {0, 0, 1}, {1, 1, 0})), oblique()),
+                                   LayerProjection::maximum)},
+                        {plane});
+       })},
+      {"projections: mean and sum with vacuum over a grid and labels", made([=] {
+         const Points pale = {{0, 0.3, {0.9, 0.1, 0.1}}, {1.5, 1, {0.4, 0.9, 1}}};
+         Layer hidden = projected(vessel(), LayerProjection::sum);
+         hidden.visible = false;
+         return exhibit({projected(with_vacuum(pale), LayerProjection::mean),
+                         grid({13, 11, 12}, jumps(1)), labels(),
+                         projected(with_vacuum(pale), LayerProjection::sum), hidden});
        })},
   };
 }

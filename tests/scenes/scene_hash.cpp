@@ -116,6 +116,7 @@ void add_layer(Hash& hash, const Layer& layer) {
   }
   add_clips(hash, layer.clips);
   if (!layer.visible) hash.add_numbers(1);
+  if (layer.projection) hash.add_numbers(2, static_cast<int>(*layer.projection));
   if (is_in_place(layer)) return;
   for (const Vec3<double>& column : layer.transform.matrix.column) hash.add_vector(column);
   hash.add_vector(layer.transform.translation);

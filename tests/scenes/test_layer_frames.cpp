@@ -34,7 +34,10 @@ TEST(LayerFrames, DoNotDependOnTheOrderOfTheLayers) {
   int scenes = 0;
   for (const GalleryEntry& entry : layer_gallery()) {
     const Exhibit exhibit = entry.make(24);
-    if (exhibit.layers.size() < 2) continue;
+    // Later projections lie over earlier ones.
+    const bool has_order = std::ranges::any_of(
+        exhibit.layers, [](const Layer& layer) { return layer.projection.has_value(); });
+    if (exhibit.layers.size() < 2 || has_order) continue;
     SCOPED_TRACE(entry.name);
     ++scenes;
     Scene scene = scene_of(exhibit, 0, 24);

@@ -40,8 +40,11 @@ inline constexpr int largest_preview = 8;
 /// on the number of threads.
 struct RenderOptions {
   int threads = 0;     ///< 0: one per core
-  bool depth = false;  ///< fill Image::depth
+  bool depth = false;  ///< fill Image::depth; projections have none
   bool error = false;  ///< fill Image::error and Image::proved
+  /// Fill Image::values. render() throws Error unless exactly one visible layer is projected and a
+  /// pixel has one ray.
+  bool values = false;
   /// Instruction set for packets of rays; none: the fastest that the machine has. render() throws
   /// Error if the machine lacks it.
   std::optional<InstructionSet> instruction_set;

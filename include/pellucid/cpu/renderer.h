@@ -18,7 +18,8 @@ class RunningFrame {
   RunningFrame& operator=(RunningFrame&&) noexcept;
   ~RunningFrame();
 
-  /// Asks the threads to stop, and returns at once. They stop within some 5 ms of work.
+  /// Asks the threads to stop, and returns at once. They stop within some 5 ms of work; a set-up
+  /// that has begun (RenderReport::setup_seconds) is finished first.
   void cancel() noexcept;
   /// Returns whether the threads are done: with the image, or because of an error or cancel().
   bool finished() const noexcept;

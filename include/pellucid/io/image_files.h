@@ -17,7 +17,8 @@ namespace pellucid {
 void write_png(const Image& image, const std::filesystem::path& path,
                const std::optional<Rgb<double>>& background = std::nullopt);
 /// Writes linear premultiplied float R, G, B, A. Adds Z if the image has depth, `error` (float) and
-/// `error.proved` (half, 0 or 1) if it has an error, and the metadata as string attributes.
+/// `error.proved` (half, 0 or 1) if it has an error, `value` if it has values, and the metadata as
+/// string attributes.
 void write_exr(const Image& image, const std::filesystem::path& path);
 /// Reads EXR files of write_exr() and of other programs; R, G and B are required. An `error`
 /// without `error.proved` is an estimate. Throws Error.
@@ -26,6 +27,13 @@ Image read_exr(const std::filesystem::path& path);
 /// for viewers that show nothing else. Throws Error if the image has no error or the tolerance is
 /// not positive.
 void write_error_exr(const Image& image, double tolerance, const std::filesystem::path& path);
+
+/// Writes the values of a projection (Image::values) as float channel Y, which viewers show. Throws
+/// Error if the image has none.
+void write_values_exr(const Image& image, const std::filesystem::path& path);
+/// Writes them as a NumPy array of float32 of the shape (height, width), little endian, in C order.
+/// Throws Error if the image has none.
+void write_values_npy(const Image& image, const std::filesystem::path& path);
 
 /// Throws Error if a file cannot be written to this path later: the folder is missing, permission
 /// is denied, or the path is a folder. To be called before a long computation.

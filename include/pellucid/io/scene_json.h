@@ -48,6 +48,7 @@ struct LayerDescription {
   std::optional<MaskSource> mask;
   Affine<double> transform;
   std::vector<Clip> clips;
+  std::optional<LayerProjection> projection;
 };
 
 /// A scene as written in a file; no data are read or rendered yet. Absent keys have their defaults.
@@ -103,7 +104,8 @@ std::vector<std::string> function_channels(const LayerDescription& layer);
 std::vector<std::string> known_channels(const LayerDescription& layer);
 
 /// Reads the data, and adds the defaults for the camera (default_camera() of visible_corners()),
-/// for the transfer function of a field or of one array of a mesh, and for the look of labels.
+/// for the transfer function of a field or of one array of a mesh (of a projected layer:
+/// projection_transfer_function()), and for the look of labels.
 /// `meshes_used` receives the mesh of each layer, with the default array if the layer selects none;
 /// without a file for other layers. Throws Error, also if there are several channels and no
 /// function of them.

@@ -15,7 +15,8 @@ namespace pellucid {
 ///
 /// It shares no kernel with the fast path: ray-plane sorting, search of tetrahedra (each is
 /// intersected on its own), interpolation, transfer-function look-up, crossings and quadrature are
-/// its own. Only RenderOptions and the report are shared with cpu/.
+/// its own, and so are the extremes and means of projections. Only RenderOptions and the report are
+/// shared with cpu/.
 ///
 /// Method, precision, step, tolerance and grade of the scene are ignored, but refused if render()
 /// refuses them. A pixel is the mean of its samples. Throws whatever pellucid::render() throws.
@@ -31,6 +32,8 @@ struct ReferencePixel {
   /// Distance from the origin, in world units, at which half of the opacity is reached; infinite
   /// for a transparent ray.
   double half_opacity_depth = std::numeric_limits<double>::infinity();
+  /// Value of the last projected layer (Layer::projection); NaN without one.
+  double value = std::numeric_limits<double>::quiet_NaN();
   /// Length of the ray, in world units, inside two tetrahedra at once. The data have two values
   /// there, and no integral is correct.
   double overlap = 0;

@@ -20,7 +20,7 @@ struct RayTolerance {
   /// background.
   double largest_color = 1;
 
-  friend bool operator==(const RayTolerance&, const RayTolerance&) noexcept = default;
+  friend bool operator==(const RayTolerance&, const RayTolerance&) = default;
 };
 
 /// A cell's segment by the cheapest rule within budget, with its error.

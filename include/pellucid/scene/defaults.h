@@ -28,6 +28,13 @@ TransferFunction default_transfer_function(const Volume& volume);
 /// box around the mesh, scaled to the fraction of the box that the class fills.
 TransferFunction default_transfer_function(const MeshChannels& mesh);
 
+/// Returns a transfer function for a projection of the data: a ramp of grey from black to white in
+/// linear light, opaque everywhere. It spans the range of the data; for a sum the range of sums
+/// along a ray as long as the longest edge of the box around the data, with 0.
+TransferFunction projection_transfer_function(const Volume& volume, LayerProjection projection);
+/// Returns the same for a mesh's first channel.
+TransferFunction projection_transfer_function(const MeshChannels& mesh, LayerProjection projection);
+
 /// Returns a look for every label of a segmentation but 0: distinct colors, in the order of the
 /// labels, and one extinction; default_label_extinction() if none is given. A segmentation without
 /// other labels shows 0.

@@ -23,6 +23,9 @@ struct Image {
   std::vector<float> error;
   /// 1 if `error` is a proved bound, 0 if it is an estimate. As many elements as `error`.
   std::vector<std::uint8_t> proved;
+  /// Value of the projected layer along the pixel's ray (Layer::projection), rounded to float. NaN
+  /// where the ray meets no data, but 0 for a sum. Empty vector: not requested.
+  std::vector<float> values;
   /// Attributes that are written into the file's header: version, transfer function, camera,
   /// method.
   std::map<std::string, std::string> metadata;

@@ -3,7 +3,9 @@
 
 #include <array>
 #include <memory>
+#include <optional>
 #include <string>
+#include <string_view>
 #include <variant>
 #include <vector>
 
@@ -61,6 +63,15 @@ struct LabelContent {
 
 using LayerContent = std::variant<VolumeContent, ChannelsContent, MeshContent, LabelContent>;
 
+/// What one number a projected layer is along a ray: of the reconstructed field where the layer has
+/// data and its clips keep them. `mean` and `sum` are ∫ v ds by world length; mean divides it by
+/// the length of these parts.
+enum class LayerProjection { maximum, minimum, mean, sum };
+/// Returns the name of a projection as in scene files.
+std::string_view projection_name(LayerProjection projection) noexcept;
+/// Returns the projection of this name, or none.
+std::optional<LayerProjection> projection_from_name(std::string_view name) noexcept;
+
 /// One kind of data with its look and its place in a scene.
 struct Layer {
   LayerContent content;
@@ -68,6 +79,11 @@ struct Layer {
   bool visible = true;
   Affine<double> transform{};  ///< to the scene's world from the world of the data
   std::vector<Clip> clips{};   ///< in the scene's world; what all of them keep is shown
+  /// Shows one number per ray through the transfer function, instead of the integral: its color at
+  /// that number, with the opacity extinction / largest extinction. A ray without data is
+  /// transparent. Such layers have no depth: they lie over the integral of all other layers, later
+  /// ones of the list over earlier ones. For one variable without a mask.
+  std::optional<LayerProjection> projection{};
 };
 
 /// Returns whether the layer's transform is the identity.
@@ -77,8 +93,9 @@ bool is_in_place(const Layer& layer) noexcept;
 /// if the transform is singular or moves the data beyond the range of numbers.
 Layer moved_into_place(const Layer& layer);
 
-/// Throws Error unless the layer has data and a function for as many variables, and its clips and
-/// its transform pass their checks. `where` begins the message, e.g. "layer 2".
+/// Throws Error unless the layer has data and a function for as many variables, its clips and its
+/// transform pass their checks, and a projection suits its data. `where` begins the message, e.g.
+/// "layer 2".
 void check_layer(const Layer& layer, const std::string& where);
 
 /// Returns the volume whose grid the rays cross; null for a mesh.
@@ -88,15 +105,17 @@ const Volume* grid_of(const Layer& layer) noexcept;
 std::array<Vec3<double>, 8> world_corners(const Layer& layer) noexcept;
 /// Returns the corners of a box around what absorbs, for a camera that looks at it: of grids the
 /// blocks of 8³ cells in which the function absorbs at some value that occurs; of channels, meshes
-/// and grids without such a block those of world_corners(). Computes the block records of grids, in
-/// parallel if `parallel` is given.
+/// grids without such a block and projected layers those of world_corners(). Computes the block
+/// records of grids, in parallel if `parallel` is given.
 std::array<Vec3<double>, 8> visible_corners(const Layer& layer, const ParallelFor& parallel = {});
 /// Returns the largest color component of the layer's functions.
 double largest_color(const Layer& layer) noexcept;
 /// Returns the largest extinction of the layer's functions.
 double largest_extinction(const Layer& layer) noexcept;
 /// Returns an upper bound on the error of a pixel because the layer's functions approximate others
-/// (TransferFunction::approximation_error()).
+/// (TransferFunction::approximation_error()). `behind`: the largest component of the color behind
+/// the layer. With |ln(τ̂/τ)| <= ρ everywhere, the opacity τ / max τ of a projected layer is off by
+/// at most the factor e^(2ρ).
 double approximation_error(const Layer& layer, double behind);
 
 }  // namespace pellucid

@@ -96,7 +96,7 @@ struct Integration {
 
 /// What is seen, by which camera, and how accurately. Where layers overlap, their extinctions add,
 /// and so do extinction · color: a mixture of particles (Max 1995). The order of the layers does
-/// not matter.
+/// not matter, except among projected ones (Layer::projection).
 struct Scene {
   std::vector<Layer> layers;
   std::vector<Clip> clips;  ///< of all layers; what all of them keep is shown
@@ -137,8 +137,11 @@ const Content* only_content(const Scene& scene) noexcept {
 /// numbers out of range.
 void check_integration(const Scene& scene);
 /// Throws Error if the method does not support the scene's data or transfer function: methods other
-/// than exact need a single layer of a grid or a mesh, without clips and backdrop. The scene must
-/// have passed check_data().
+/// than exact need a single layer of a grid or a mesh, without clips, projection and backdrop. The
+/// scene must have passed check_data().
 void check_method(const Scene& scene);
+/// Throws Error unless a pixel has one value: exactly one visible layer is projected, and samples
+/// is 1.
+void check_values(const Scene& scene);
 
 }  // namespace pellucid

@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <limits>
+#include <memory>
+#include <vector>
+
+#include "pellucid/geometry/ray.h"
+#include "pellucid/scene/layer.h"
+
+namespace pellucid {
+
+/// The value of a projected layer along one ray.
+struct RayValue {
+  /// NaN where the ray meets no data; of a sum 0.
+  double value = std::numeric_limits<double>::quiet_NaN();
+  double lower = 0, upper = 0;  ///< proved bounds on the exact value
+  bool has_data = false;
+  /// Whether rounding decides if the ray meets data, or the data have two values: nothing is known.
+  bool is_unknown = false;
+  long cells = 0;  ///< visited
+};
+
+/// What one call keeps from ray to ray. Used by one thread.
+struct ProjectionWorkspace {
+  ProjectionWorkspace() = default;
+  ProjectionWorkspace(const ProjectionWorkspace&) = delete;
+  ProjectionWorkspace& operator=(const ProjectionWorkspace&) = delete;
+  virtual ~ProjectionWorkspace() = default;
+};
+
+/// Projects one layer along rays.
+class LayerProjector {
+ public:
+  LayerProjector() = default;
+  LayerProjector(const LayerProjector&) = delete;
+  LayerProjector& operator=(const LayerProjector&) = delete;
+  virtual ~LayerProjector() = default;
+
+  virtual std::unique_ptr<ProjectionWorkspace> workspace() const = 0;
+  /// Returns the value along a ray (world, direction of length 1) from 0 to `end`. The workspace is
+  /// one of workspace().
+  virtual RayValue project(const Ray<double>& ray, double end,
+                           ProjectionWorkspace& workspace) const = 0;
+};
+
+/// Parameters of a layer's projector.
+struct ProjectorTask {
+  const Layer& layer;       ///< in its place; must outlive the projector
+  std::vector<Clip> clips;  ///< of the layer and of the scene
+  ParallelFor parallel;
+};
+
+/// Makes the projector of a layer that check_layer() accepts.
+std::unique_ptr<const LayerProjector> make_layer_projector(const ProjectorTask& task);
+
+// By kind of data:
+std::unique_ptr<const LayerProjector> make_grid_projector(const ProjectorTask& task);
+std::unique_ptr<const LayerProjector> make_mesh_projector(const ProjectorTask& task);
+
+}  // namespace pellucid
