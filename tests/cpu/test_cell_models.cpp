@@ -11,7 +11,7 @@
 #include "pellucid/scene/multivariate_transfer_function.h"
 #include "pellucid/segment/cell_model.h"
 #include "segment_quadrature.h"
-#include "src/cpu/psi_table_storage.h"
+#include "src/cpu/sample/psi_table_storage.h"
 
 namespace pellucid {
 namespace {

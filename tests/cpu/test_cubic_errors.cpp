@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "src/cpu/cubic_errors.h"
+#include "src/cpu/frame/cubic_errors.h"
 
 #include <gtest/gtest.h>
 

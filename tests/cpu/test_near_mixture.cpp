@@ -11,7 +11,7 @@
 
 #include "pellucid/scene/multivariate_transfer_function.h"
 #include "pellucid/segment/gaussian_linear.h"
-#include "src/cpu/near_mixture_storage.h"
+#include "src/cpu/gaussians/near_mixture_storage.h"
 #include "tests/segment/line_exponent.h"
 
 namespace pellucid {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "src/cpu/packet_tracer.h"
+#include "src/cpu/grid/packet_tracer.h"
 
 #include <gtest/gtest.h>
 

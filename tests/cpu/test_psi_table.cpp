@@ -6,7 +6,7 @@
 #include <random>
 
 #include "segment_quadrature.h"
-#include "src/cpu/psi_table_storage.h"
+#include "src/cpu/sample/psi_table_storage.h"
 
 namespace pellucid {
 namespace {

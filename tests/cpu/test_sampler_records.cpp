@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "src/cpu/sampler_records.h"
+#include "src/cpu/sample/sampler_records.h"
 
 #include <gtest/gtest.h>
 

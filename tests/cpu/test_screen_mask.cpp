@@ -2,7 +2,7 @@
 //
 // Rays through squares that are not marked against the box, and with those around them against its
 // blocks, ray by ray.
-#include "src/cpu/screen_mask.h"
+#include "src/cpu/frame/screen_mask.h"
 
 #include <gtest/gtest.h>
 

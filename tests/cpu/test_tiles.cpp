@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "src/cpu/tiles.h"
+#include "src/cpu/frame/tiles.h"
 
 #include <gtest/gtest.h>
 
@@ -14,7 +14,7 @@
 #include <thread>
 #include <vector>
 
-#include "src/cpu/progress.h"
+#include "src/cpu/frame/progress.h"
 #include "src/cpu/threads.h"
 
 namespace pellucid {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tests/packet/packet_parts.h"
 
+#include "pellucid/packet/bundle/near_mixture.h"
 #include "pellucid/packet/lane_spans.h"
-#include "pellucid/packet/near_mixture.h"
 #include "pellucid/packet/packet_fold.h"
 #include "pellucid/segment/constant.h"
 #include "pellucid/simd/instruction_set.h"

@@ -3,7 +3,7 @@
 
 #include <cstdint>
 
-#include "pellucid/packet/span_piece.h"
+#include "pellucid/packet/cells/span_piece.h"
 #include "pellucid/simd/instruction_set.h"
 
 namespace pellucid {

@@ -4,8 +4,8 @@
 #include <vector>
 
 #include "layers/layer_stream.h"
-#include "mesh_field_storage.h"
-#include "mesh_hits.h"
+#include "mesh/mesh_field_storage.h"
+#include "mesh/mesh_hits.h"
 #include "pellucid/render/integrate_mesh_ray.h"
 
 namespace pellucid {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "layers/clip_intervals.h"
-#include "mesh_field_storage.h"
-#include "mesh_hits.h"
+#include "mesh/mesh_field_storage.h"
+#include "mesh/mesh_hits.h"
 #include "projection/kept_parts.h"
 #include "projection/layer_projector.h"
 #include "projection/value_gatherer.h"

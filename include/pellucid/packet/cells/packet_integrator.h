@@ -1,0 +1,435 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "pellucid/error/random_errors.h"
+#include "pellucid/packet/cells/cell_places.h"
+#include "pellucid/packet/cells/cells_in_double.h"
+#include "pellucid/packet/cells/span_finder.h"
+#include "pellucid/packet/cells/span_piece.h"
+#include "pellucid/packet/opacity_trace.h"
+#include "pellucid/packet/packet_fold.h"
+#include "pellucid/packet/steps/smooth_march.h"
+
+#if PELLUCID_HAS_BATCH_4  // in sources compiled per instruction set
+namespace pellucid {
+
+/// Integrates N rays at once, each in a lane of its own and within its own tolerance. What a ray
+/// becomes depends on no other lane; on N within its tolerance only, for 4 lanes do not fuse.
+///
+/// What lies ahead of all of them is found first: their stretches in blocks (BlockMarch), and the
+/// spans that absorb in these (SpanFinder), whose lanes are any stretches. Then each lane takes the
+/// spans of its ray, piece by piece: each is cut where the extinction has a corner
+/// (segment/extinction_piece.h), and halved where the budget cannot pay for its color. What
+/// binary32 is not good enough for is begun anew in double, when enough lanes have waited for that;
+/// what that is not good enough for is handed back, cell by cell.
+template <class Value, int N>
+class PacketIntegrator {
+ public:
+  using F = Batch<float, N>;
+  using D = Batch<double, N>;
+  using I = Batch<std::int32_t, N>;
+  using M = BatchMask<N>;
+
+  /// What many packets have one after the other.
+  struct Room {
+    Stretches<Value, N> stretches;
+    Walks<Value, N> walks;
+    SpanRows<Value, N> rows;
+    StepLengths<N> step_lengths;
+  };
+
+  /// Of rays first … first + count - 1 of the job, count <= N.
+  PacketIntegrator(const PellucidPacketJob& job, const PacketGrid<Value>& grid, Room& room,
+                   int first, int count) noexcept
+      : job_(job),
+        grid_(grid),
+        transfer_(*static_cast<const BinnedTransfer*>(job.transfer)),
+        room_(room),
+        first_(first),
+        count_(count),
+        blocks_(grid, job.rays + first, count),
+        finder_(grid, blocks_, transfer_),
+        smooth_(job, grid, blocks_.origin, blocks_.direction, room.step_lengths),
+        fold_(job.tolerance, transfer_.largest_extinction, job.largest_color,
+              convert<float>(D::load(blocks_.end))),
+        trace_(job.depth != 0),
+        largest_color_(static_cast<float>(job.largest_color)),
+        double_will_do_(job.tolerance >
+                        64 * static_cast<double>(rounding_unit<float>) * job.largest_color) {
+    float far[N];
+    for (int l = 0; l < N; ++l) {
+      // Where the ray meets the planes is known to a few units of its arc length.
+      const PellucidRay& ray = job.rays[first + (l < count ? l : 0)];
+      far[l] = static_cast<float>(8 * rounding_unit<double> * ray.end);
+    }
+    place_error_ = F::load(far);
+    if (!(static_cast<const SmoothBlocks*>(job.smooth)->longest_step > 0)) {
+      blocks_.in_cells_until = D(std::numeric_limits<double>::infinity());
+    }
+  }
+
+  void run() noexcept {
+    while (any(blocks_.alive)) {
+      find_spans();
+      begin_spans();
+      for (take_spans(); any(pending_); take_spans()) integrate_spans();
+      sample_smooth();
+    }
+  }
+
+  void store(PellucidRayResult* results) const noexcept {
+    const SegmentResult<D> all = fold_.result();
+    const D error = fold_.error(convert<double>(pieces_ + strides_));
+    const F neighbor_deviation = smooth_.neighbor_deviation();
+    const F longest_step = smooth_.longest_step();
+    for (int l = 0; l < count_; ++l) {
+      PellucidRayResult& r = results[first_ + l];
+      r = {{all.radiance.r[l], all.radiance.g[l], all.radiance.b[l]},
+           all.opacity[l],
+           all.optical_depth[l],
+           error[l],
+           {},
+           cells_seen_[l],
+           cells_seen_[l] + samples_taken_[l],
+           skipped_[l],
+           constant_[l],
+           pieces_[l] - panels_[l],
+           panels_[l],
+           in_double_[l],
+           strides_[l],
+           neighbor_deviation[l],
+           longest_step[l],
+           static_cast<std::uint8_t>(bits(proved_) >> l & 1)};
+      const PellucidRay& ray = job_.rays[first_ + l];
+      trace_.find_half(l, ray.begin, ray.end, r);
+    }
+  }
+
+ private:
+  static I lane_numbers() noexcept {
+    std::int32_t lane[N];
+    for (int l = 0; l < N; ++l) lane[l] = l;
+    return I::load(lane);
+  }
+
+  /// How narrow a part of a cell may get before it is handed back.
+  static constexpr float narrowest = 1.0f / 16;
+  /// Of the difference of two rules what counts as the standard deviation of the better one.
+  static constexpr float share_of_difference = 0.4f;
+  /// After so many pieces and halvings what is left of a cell is handed back if it is not taken.
+  static constexpr int most_pieces = 64;
+
+  void find_spans() noexcept {
+    blocks_.find(room_.stretches, skipped_);
+    finder_(room_.stretches, room_.walks, room_.rows, cells_seen_);
+  }
+
+  void begin_spans() noexcept {
+    stretches_ = I::load(room_.rows.stretches);
+    stretch_of_ray_ = row_ = end_row_ = I(0);
+  }
+
+  /// Gives the lanes without a span the next one of their ray, if there is any.
+  [[gnu::flatten]] void take_spans() noexcept {
+    using Rows = SpanRows<Value, N>;
+    const M wanted = !pending_;
+    const M over = wanted & (row_ >= end_row_) & (stretch_of_ray_ < stretches_);
+    if (any(over)) {
+      const I at = select(over, lane_ * I(Stretches<Value, N>::of_a_ray) + stretch_of_ray_, I(0));
+      row_ = select(over, gather(room_.rows.first[0], at), row_);
+      end_row_ = select(over, gather(room_.rows.end[0], at), end_row_);
+      stretch_of_ray_ += select(over, I(1), I(0));
+    }
+    const M lanes = wanted & (row_ < end_row_);
+    if (none(lanes)) return;
+    F row[Rows::fields];
+    load_records<Rows::fields>(room_.rows.row, select(lanes, row_, I(0)), row);
+    row_ += select(lanes, I(1), I(0));
+    const I code = convert<std::int32_t>(row[7]);
+    const auto has = [&](int flag) noexcept { return (code & I(flag)) > I(0); };
+    pending_ = pending_ | lanes;
+    in_double_now_ = in_double_now_ & !lanes;
+    for (int k = 0; k < 4; ++k) single_.data.b[k] = select(lanes, row[k], single_.data.b[k]);
+    single_.rounding = select(lanes, row[4], single_.rounding);
+    single_.length = select(lanes, row[5], single_.length);
+    single_.from = select(lanes, F(0), single_.from);
+    single_.begin(lanes);
+    span_length_ = select(lanes, row[5], span_length_);
+    left_ = select(lanes, row[6], left_);
+    code_ = select(lanes, code, code_);
+    whole_block_ = select(lanes, has(SpanCode::whole_block), whole_block_);
+    handed_back_ = handed_back_ | (lanes & has(SpanCode::handed_back));
+    const M in_double = lanes & has(SpanCode::in_double);
+    if (any(in_double)) wait_for_double(in_double);
+    constant_ += select(lanes & whole_block_, I(1), I(0));
+  }
+
+  /// Gives up what was found of the lanes' rays.
+  void drop_spans(M lanes) noexcept {
+    pending_ = pending_ & !lanes;
+    not_begun_ = not_begun_ & !lanes;
+    row_ = select(lanes, end_row_, row_);
+    stretches_ = select(lanes, I(0), stretches_);
+  }
+
+  /// Goes through blocks that were taken for one span after all.
+  void go_back(M lanes) noexcept {
+    drop_spans(lanes);
+    for (unsigned left = bits(lanes); left != 0; left &= left - 1) {
+      const int l = __builtin_ctz(left);
+      blocks_.go_back(l, room_.stretches, SpanCode::stretch_of(code_[l]));
+    }
+  }
+
+  /// Goes through the smooth stretches that come behind the spans that were found.
+  void sample_smooth() noexcept {
+    const M lanes = blocks_.smooth & blocks_.alive;
+    if (none(lanes)) return;
+    smooth_.enter(lanes, blocks_.smooth_begin, blocks_.smooth_end);
+    while (any(smooth_.walking)) step_smooth();
+  }
+
+  /// Four steps through smooth blocks, where the budget can pay for their error.
+  [[gnu::flatten]] void step_smooth() noexcept {
+    const M on = smooth_.walking;
+    const D from = smooth_.at;
+    const typename SmoothMarch<Value, N>::Steps steps = smooth_.look();
+    samples_taken_ += select(on, I(4), I(0));
+    const SegmentResult<F>& s = steps.found.segment;
+    const F left = convert<float>(D::load(blocks_.end) - from);
+    const F transparency = fold_.transparency();
+    const F deviation = F(share_of_difference) * steps.found.difference;
+    const F variance = transparency * transparency * (deviation * deviation + steps.least_variance);
+    const F rounding = transparency * (F(32 * rounding_unit<float>) * s.opacity * largest_color_ +
+                                       F(static_cast<float>(job_.sample_rounding)) * steps.length);
+    const F largest =
+        sampled_.largest_variance(fold_.budget, rounding, s.opacity, steps.length, left);
+    const M take =
+        on & steps.valid & (variance <= largest) & (rounding <= fold_.budget.remaining());
+    const M refused = smooth_.finer(on & !take);
+    if (any(refused)) {
+      blocks_.go_in_cells(refused, from, smooth_.end);
+      smooth_.refuse(refused, transparency);
+    }
+    if (none(take)) return;
+    fold_.add(take, s);
+    sampled_.charge(take, fold_.budget, variance, rounding, s.opacity, steps.length, left,
+                    transparency);
+    smooth_.take(take, steps, transparency, variance <= F(0.2f) * largest);
+    strides_ += select(take, I(1), I(0));
+    proved_ = proved_ & !take;
+    retire(take);
+  }
+
+  void integrate_spans() noexcept {
+    if (any(handed_back_)) {
+      hand_back(handed_back_);
+      handed_back_ = M(false);
+    }
+    const M single = pending_ & !in_double_now_, wide = pending_ & in_double_now_;
+    // What becomes of a lane does not depend on when it is its turn. Lanes wait until that has cost
+    // half as much as the others then lose, and no longer: who waits alone may be all there is.
+    const int waiting = count(wide);
+    if (any(single) && (waiting == 0 || 2 * waited_ < N - waiting)) {
+      waited_ += waiting;
+      integrate_pieces(single_, single);
+    } else if (waiting > 0) {
+      waited_ = 0;
+      begin_in_double();
+      integrate_pieces(double_, wide);
+    }
+  }
+
+  template <class T>
+  [[gnu::flatten]] void integrate_pieces(SpanLanes<T, N>& span, M on) noexcept {
+    using Place = Batch<T, N>;
+    constexpr bool wide = !is_single<T>;
+    SpanPiece<T, N> piece = next_piece(span, transfer_, on, place_error_, largest_color_);
+    const SegmentResult<F>& s = piece.found.segment;
+    const F length = convert<float>(piece.length);
+    fold_.budget.set_remaining_length(
+        select(on, left_behind(convert<float>(span.from)), fold_.budget.remaining_length()));
+    const F transparency = fold_.transparency();
+    const typename RayBudget<F>::SpanShare shares = fold_.budget.span_share(length, s.opacity);
+    const F allowed = shares.sum(), cost_of_rounding = transparency * piece.rounding;
+    const auto fits = [&] {
+      return on & piece.end.found &
+             (transparency * piece.found.color_error + cost_of_rounding <= allowed);
+    };
+    M take = fits();
+    const M restart = on & !take & whole_block_;
+    if (any(restart)) go_back(restart);
+    M rest = on & !take & !restart;
+    const M room_for_color = rest & piece.end.found & (cost_of_rounding <= F(0.6f) * allowed);
+    if (any(room_for_color)) {
+      // Panels are worth their price where they will do: where they look up many colors, only for
+      // pieces that are dear, in double or halved again and again.
+      const bool proved = job_.proved != 0;
+      const F in_panel_cost =
+          transparency * s.opacity * panel_piece_error(piece.seen, piece.spread, proved);
+      const F halved_in_vain = wide || !transfer_.bends ? F(0) : F(8) * allowed;
+      const M in_panel = room_for_color & (s.optical_depth <= F(largest_panel_depth<float>)) &
+                         (in_panel_cost + cost_of_rounding <= allowed) &
+                         (transparency * piece.found.color_error > halved_in_vain);
+      if (any(in_panel)) {
+        color_in_panel(span, proved, transfer_, in_panel, piece);
+        take = fits();
+        rest = rest & !take;
+      }
+    }
+    if (any(rest)) {
+      const Place half = Place(0.5f) * piece.place;
+      const F part = convert<float>((Place(1) - span.from) * half);  // of the cell
+      // Halving makes the color at most four times better, and the half of a half sixteen times,
+      // and of rounding nothing: that has to leave some room.
+      const M halve = rest & room_for_color & (span.pieces < I(most_pieces)) &
+                      (part >= F(narrowest)) &
+                      (transparency * piece.found.color_error <= F(64) * allowed);
+      span.cap = select(halve, half, span.cap);
+      const M give_up = rest & !halve;
+      if (any(give_up)) {
+        if constexpr (wide) {
+          hand_back(give_up);
+        } else {
+          wait_for_double(give_up);
+        }
+      }
+    }
+    if (none(take)) return;
+    const F cost = transparency * piece.found.color_error + cost_of_rounding;
+    fold_.add(take, s);
+    fold_.budget.spend(select(take, length, F(0)), shares, select(take, cost, F(0)));
+    pieces_ += select(take, I(1), I(0));
+    panels_ += select(take & piece.found.panels, I(1), I(0));
+    proved_ = proved_ & !(take & !piece.found.proved);
+
+    span.go_past(take, piece, transfer_);
+    const CubicBernstein<Place>& back = piece.parts.back;
+    const M clear = (convert<float>(back.hull_max() + span.rounding) < F(transfer_.support_min)) |
+                    (convert<float>(back.hull_min() - span.rounding) > F(transfer_.support_max));
+    pending_ = pending_ & !(take & ((piece.place >= Place(1)) | clear));
+    retire(take);
+  }
+
+  /// Of the rays, from this share of the lanes' cells on.
+  F left_behind(F from) const noexcept { return left_ - from * span_length_; }
+
+  /// Lanes whose span is to be gone on with in double.
+  void wait_for_double(M lanes) noexcept {
+    if (!double_will_do_) {
+      // Not yet: a span that is being taken is not complete.
+      handed_back_ = handed_back_ | lanes;
+      return;
+    }
+    in_double_now_ = in_double_now_ | lanes;
+    not_begun_ = not_begun_ | lanes;
+    in_double_ += select(lanes, I(1), I(0));
+  }
+
+  void begin_in_double() noexcept {
+    if (none(not_begun_)) return;
+    const I code = select(not_begun_, code_, I(0));
+    I in_block[3];
+    for (int a = 0; a < 3; ++a) in_block[a] = SpanCode::place_in_block(code, a);
+    begin_spans_in_double(
+        grid_, not_begun_,
+        cell_places(grid_, blocks_, room_.stretches, SpanCode::stretch_of(code), in_block),
+        convert<double>(single_.from), double_);
+    not_begun_ = M(false);
+  }
+
+  /// Something was added to the lanes' rays: ends those that no longer matter.
+  void retire(M lanes) noexcept {
+    trace_.note(lanes, fold_);
+    const M done = fold_.cut_off(lanes);
+    blocks_.alive = blocks_.alive & !done;
+    drop_spans(done);
+    smooth_.walking = smooth_.walking & !done;
+  }
+
+  /// Has what is left of the lanes' spans integrated by other means.
+  void hand_back(M lanes) noexcept {
+    lanes = lanes & pending_;
+    const F transparency = fold_.transparency();
+    const M wide = in_double_now_ & !not_begun_;
+    const D from = select(wide, double_.from, convert<double>(single_.from));
+    const F length = select(wide, convert<float>(double_.length), single_.length);
+    fold_.budget.set_remaining_length(
+        select(lanes, left_behind(convert<float>(from)), fold_.budget.remaining_length()));
+    const F flat = fold_.budget.allowance(length, F(0), transparency),
+            all = fold_.budget.allowance(length, F(1), transparency);
+    HandedBack<N> handed_back;
+    unsigned not_proved = 0, with_panels = 0;
+    for (int l = 0; l < N; ++l) {
+      if ((bits(lanes) >> l & 1) == 0) continue;
+      PellucidCell cell;
+      const int code = code_[l], stretch = SpanCode::stretch_of(code);
+      for (int a = 0; a < 3; ++a) {
+        cell.cell[a] =
+            room_.stretches.block[a][stretch] * block_width + SpanCode::place_in_block(code, a);
+      }
+      cell.begin = room_.stretches.begin[stretch];
+      cell.from = from[l];
+      cell.position_error = static_cast<double>(place_error_[l]);
+      cell.allowance_flat = static_cast<double>(flat[l]);
+      cell.allowance_per_opacity = static_cast<double>(all[l] - flat[l]);
+      PellucidCellResult result;
+      job_.integrate_cell(job_.context, first_ + l, &cell, &result);
+      handed_back.set(l, result);
+      if (result.proved == 0) not_proved |= 1u << l;
+      if (result.panels != 0) with_panels |= 1u << l;
+    }
+    fold_.add(handed_back, select(lanes, length, F(0)));
+    proved_ = proved_ & !M::from_bits(not_proved);
+    pieces_ += select(lanes, I(1), I(0));
+    in_double_ += select(lanes & !in_double_now_, I(1), I(0));
+    panels_ += select(M::from_bits(with_panels), I(1), I(0));
+    pending_ = pending_ & !lanes;
+    retire(lanes);
+  }
+
+  const PellucidPacketJob& job_;
+  const PacketGrid<Value>& grid_;
+  const BinnedTransfer& transfer_;
+  Room& room_;
+  int first_, count_;
+  BlockMarch<Value, N> blocks_;
+  SpanFinder<Value, N> finder_;
+  SmoothMarch<Value, N> smooth_;
+
+  const I lane_ = lane_numbers();
+
+  // What was found of the lanes' rays and is not taken yet.
+  I stretch_of_ray_, stretches_;  ///< with spans: the next one, and how many there are
+  I row_, end_row_;               ///< of the stretch in front of it
+
+  // The span that a lane works on.
+  M pending_{false};
+  M handed_back_{false};    ///< those of them that are not for the rule here
+  M in_double_now_{false};  ///< those that binary32 is not good enough for
+  M not_begun_{false};      ///< and of which double_ does not hold anything yet
+  M whole_block_{false};    ///< of one material
+  SpanLanes<float, N> single_;
+  SpanLanes<double, N> double_;
+  int waited_ = 0;  ///< pieces that lanes which wait for double could have integrated
+  F left_;          ///< of the ray, from the span's begin on, world length
+  F span_length_;   ///< of all of it
+  F place_error_;   ///< how far spans' ends may be from where they are thought to be,
+                    ///< world length
+  I code_;
+
+  SampledErrors<F> sampled_;
+  PacketFold<N> fold_;
+  OpacityTrace<N> trace_;
+  F largest_color_;
+  bool double_will_do_;  ///< with colors in float
+  M proved_{true};
+  std::int32_t cells_seen_[N] = {};
+  I skipped_, constant_;
+  I pieces_;  ///< all of them
+  I in_double_, panels_;
+  I strides_, samples_taken_;
+};
+
+}  // namespace pellucid
+#endif

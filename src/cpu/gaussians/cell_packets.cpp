@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "cell_packets.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <numeric>
+
+#include "grid/packet_tracer.h"
+#include "packet_setup.h"
+#include "sample/sampled_multivariate_storage.h"
+
+namespace pellucid {
+namespace {
+
+/// Of the tolerance, for what is not looked at.
+constexpr double left_out_share = 1.0 / 16;
+
+/// Below, what budgets in binary32 lose and what folding in double does would be most of it.
+constexpr double least_tolerance = 1e-11;
+
+GaussianPacketKernel kernel_for([[maybe_unused]] InstructionSet set) {
+#if PELLUCID_HAS_PACKETS
+  return kernel_of<GaussianPacketKernel>(set, pellucid_integrate_multivariate_cells_sse4,
+                                         pellucid_integrate_multivariate_cells_avx2,
+                                         pellucid_integrate_multivariate_cells_avx512);
+#else
+  return nullptr;
+#endif
+}
+
+}  // namespace
+
+Movement movement_in_cells(const Channels& channels, const GaussianMixture<double>& mixture,
+                           const MultivariateBlocks& blocks) {
+  const auto count = static_cast<std::size_t>(channels.count());
+  std::vector<BlockRecords> records;
+  for (const Channel& channel : channels) records.push_back(channel.volume->block_records());
+  std::vector<double> squared_norm;  // of column c of primitive i
+  for (int i = 0; i < mixture.count; ++i) {
+    for (int c = 0; c < channels.count(); ++c) {
+      squared_norm.push_back(std::pow(column_norm(mixture.primitive[i], c), 2));
+    }
+  }
+  constexpr int most_blocks = 4096;
+  const int stride = (blocks.records.count() + most_blocks - 1) / most_blocks;
+  Movement sum;
+  int found = 0;
+  for (int block = 0; block < blocks.records.count(); block += stride) {
+    if (blocks.classes[block].kind == BlockKind::skip) continue;
+    double squared_range[max_channels] = {}, squared_bend[max_channels] = {};
+    bool vacuum = false;
+    for (std::size_t c = 0; c < count; ++c) {
+      const BlockRange range = records[c].range(block);
+      vacuum = vacuum || range.vacuum != BlockVacuum::none;
+      squared_range[c] = std::pow(range.max - range.min, 2);
+      for (const float bend : records[c].bends(block).bend) {
+        squared_bend[c] += double{bend} * double{bend};
+      }
+    }
+    if (vacuum) continue;
+    double most = 0, bend = 0;
+    for (int i = 0; i < mixture.count; ++i) {
+      if (!blocks.primitives[block].contains(i)) continue;
+      const double* of = &squared_norm[static_cast<std::size_t>(i) * count];
+      most = std::max(most, std::inner_product(of, of + count, squared_range, 0.0));
+      bend = std::max(bend, std::inner_product(of, of + count, squared_bend, 0.0));
+    }
+    sum.in_cell += std::sqrt(most) / block_width;
+    sum.bend += std::sqrt(bend);
+    ++found;
+  }
+  if (found == 0) return {};
+  return {sum.in_cell / found, sum.bend / found};
+}
+
+std::unique_ptr<const CellPackets> CellPackets::make(
+    const Channels& channels, const MultivariateTransferFunction& transfer_function,
+    const MultivariateBlocks& blocks, const MultichannelGrid& grid, const RayTolerance& wanted,
+    InstructionSet instruction_set) {
+  const GaussianPacketKernel kernel = kernel_for(instruction_set);
+  const double largest_extinction = transfer_function.largest_extinction();
+  if (kernel == nullptr || !suits_packets(channels, largest_extinction) ||
+      !(wanted.tolerance >= least_tolerance)) {
+    return nullptr;
+  }
+  std::unique_ptr<CellPackets> packets(new CellPackets());
+  packets->kernel_ = kernel;
+  PellucidGaussianPacketJob& job = packets->job_;
+  job = gaussian_packet_job(channels, blocks, grid, largest_extinction, wanted.largest_color);
+  job.grid_and_rays.tolerance = (1 - left_out_share) * wanted.tolerance;
+  job.proved = wanted.grade == Grade::proved ? 1 : 0;
+  const MultivariateTransfer<double> transfer = transfer_function.view();
+  double largest[max_channels] = {};
+  for (int c = 0; c < transfer.channels; ++c) largest[c] = largest_value(*channels[c].volume);
+  packets->mixture_ = NearMixtureStorage(
+      largest, false, transfer, left_out_share * wanted.tolerance / job.grid_and_rays.largest_color,
+      diagonal(channels.grid()));
+  if (!packets->mixture_.suits_packets()) return nullptr;
+  job.mixture = &packets->mixture_.view();
+  return packets;
+}
+
+void CellPackets::trace(const std::vector<PellucidRay>& rays, double share, bool depth,
+                        PellucidRayResult* results) const {
+  PellucidGaussianPacketJob job = job_;
+  job.grid_and_rays.tolerance *= share;
+  pellucid::trace(kernel_, job, rays, depth, results);
+}
+
+}  // namespace pellucid

@@ -1,0 +1,201 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <utility>
+
+#include "cell_packets.h"
+#include "frame/rays_apart.h"
+#include "gaussian_packets.h"
+#include "packet_setup.h"
+#include "pellucid/render/integrate_multivariate_ray.h"
+#include "pellucid/render/sample_ray.h"
+#include "pellucid/scene/multivariate_blocks_storage.h"
+#include "ray_tracer.h"
+#include "sample/multivariate_sampler.h"
+#include "sample/sampling_rule.h"
+#include "threads.h"
+
+namespace pellucid {
+namespace {
+
+/// How much of the tolerance goes for primitives that are left out of blocks.
+constexpr double left_out_share = 1.0 / 32;
+
+/// Which extinction may be left out all along a ray for that.
+double negligible_extinction(const TracerTask& task) {
+  return left_out_share * task.wanted.tolerance /
+         (diagonal(*grid_of(task.layer)) * std::max(task.wanted.largest_color, 1.0));
+}
+
+class MultivariateTracer : public RayTracer {
+ public:
+  explicit MultivariateTracer(const TracerTask& task)
+      : integration_(task.integration),
+        channels_(*std::get<ChannelsContent>(task.layer.content).channels),
+        transfer_function_(*std::get<ChannelsContent>(task.layer.content).transfer_function),
+        wanted_(task.wanted),
+        depth_(task.options.depth),
+        grid_(multichannel_grid(channels_)),
+        transfer_(transfer_function_.view()),
+        step_(integration_.step * channels_.grid().voxel_size()) {
+    if (integration_.method == Method::midpoint && !depth_ &&
+        integration_.precision != Precision::float64) {
+      sampler_ = MultivariatePacketSampler::make(
+          channels_, transfer_function_, step_,
+          stop_tolerance<float>() / std::max(transfer_function_.largest_color(), 1.0),
+          task.options.instruction_set, parallel_for(task.threads));
+    }
+    if (integration_.method != Method::exact) return;
+    storage_ = MultivariateBlocksStorage(channels_, transfer_function_, negligible_extinction(task),
+                                         parallel_for(task.threads));
+    blocks_ = storage_.view();
+    wanted_.tolerance *= 1 - left_out_share;
+    const InstructionSet set = packet_instruction_set(task.options.instruction_set);
+    if (set == InstructionSet::scalar || integration_.precision != Precision::automatic) return;
+    cells_ = CellPackets::make(channels_, transfer_function_, *blocks_, grid_, wanted_, set);
+    if (!cells_ || task.options.gaussian_march.value_or(faster_march()) == GaussianMarch::steps) {
+      steps_ = GaussianPackets::make(channels_, transfer_function_, *blocks_, grid_, wanted_,
+                                     negligible_extinction(task), set, parallel_for(task.threads));
+    }
+    if (steps_ && !depth_ && !has_vacuum()) {
+      storage_.find_smooth(channels_, transfer_function_, parallel_for(task.threads));
+      rays_apart_.emplace(blocks_->records);
+    }
+  }
+
+  /// Whether there is code for the method `exact`.
+  bool is_able() const { return integration_.method != Method::exact || steps_ || cells_; }
+
+  bool keeps_to_ranges() const override { return integration_.method == Method::exact; }
+  std::vector<RayResult> trace(const std::vector<RayPart>& parts,
+                               const TraceOptions& options) const override {
+    const std::vector<RayPart> in_grid = parts_in_grid(channels_.grid(), parts);
+    if (integration_.method == Method::exact) return trace_in_lanes(in_grid, options);
+    if (sampler_) return sampler_->trace(in_grid);
+    std::vector<RayResult> results;
+    results.reserve(parts.size());
+    for (const RayPart& part : in_grid) {
+      if (options.stop.stop_requested()) break;
+      results.push_back(sample(part.ray));
+    }
+    results.resize(parts.size());
+    return results;
+  }
+
+  std::optional<Surroundings> surroundings() const override {
+    const double longest_step = storage_.smooth().longest_step;
+    if (!(longest_step > 0)) return std::nullopt;
+    return Surroundings{
+        channels_.grid(), {blocks_->records, blocks_->classes}, RaysApart::most * longest_step};
+  }
+
+ private:
+  bool has_vacuum() const {
+    return std::any_of(channels_.begin(), channels_.end(),
+                       [](const Channel& channel) { return channel.volume->statistics().nan > 0; });
+  }
+
+  /// Steps cost less the further they may go: as far as primitives stand still, and as the error
+  /// lets them that the data's bends make. Cells cost the same. Where both take as long was
+  /// measured (docs/notes/2026-11-performance.md).
+  GaussianMarch faster_march() const {
+    const Movement movement = movement_in_cells(channels_, transfer_.gaussians, *blocks_);
+    return movement.in_cell <= 0.6 && movement.bend <= 620 * wanted_.tolerance
+               ? GaussianMarch::steps
+               : GaussianMarch::cells;
+  }
+
+  std::vector<RayResult> trace_in_lanes(const std::vector<RayPart>& in_grid,
+                                        const TraceOptions& options) const {
+    std::vector<RayResult> results(in_grid.size(), missing_ray());
+    const PacketRays inside(channels_.grid(), in_grid);
+    std::vector<PellucidRayResult> found(inside.ray.size());
+    // Nothing is taken from rays that spend all of their tolerance.
+    const float* const waves = options.share_of_rays < 1 ? storage_.smooth().waves : nullptr;
+    if (steps_) {
+      steps_->trace(inside.ray, options.share * options.share_of_rays, waves, depth_, found.data());
+      integrate_what_is_left(inside.ray, options.share, found);
+    } else {
+      integrate(inside.ray, options.share, found);
+    }
+    for (std::size_t i = 0; i < found.size(); ++i) {
+      const std::size_t n = inside.of[i];
+      read_result(found[i], results[n]);
+      std::swap(results[n].spans.closed, results[n].spans.lines);
+      const RayResult unknown;
+      results[n].neighbor_deviation =
+          waves != nullptr ? found[i].neighbor_deviation : unknown.neighbor_deviation;
+      results[n].longest_step = waves != nullptr
+                                    ? found[i].longest_step * (*rays_apart_)(inside.ray[i])
+                                    : unknown.longest_step;
+    }
+    return results;
+  }
+
+  /// Cell by cell, or not at all.
+  void integrate(const std::vector<PellucidRay>& rays, double share,
+                 std::vector<PellucidRayResult>& found) const {
+    if (cells_) {
+      cells_->trace(rays, share, depth_, found.data());
+    } else {
+      for (PellucidRayResult& result : found) result.error = left_to_general_path().error;
+    }
+  }
+
+  /// Those of the rays that steps gave up, of which nothing is known for others beside them.
+  void integrate_what_is_left(const std::vector<PellucidRay>& rays, double share,
+                              std::vector<PellucidRayResult>& found) const {
+    std::vector<PellucidRay> left;
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+      if (std::isinf(found[i].error)) left.push_back(rays[i]);
+    }
+    if (left.empty()) return;
+    std::vector<PellucidRayResult> alone(left.size());
+    integrate(left, share, alone);
+    auto next = alone.begin();
+    for (PellucidRayResult& result : found) {
+      if (!std::isinf(result.error)) continue;
+      result = *next++;
+      result.neighbor_deviation = std::numeric_limits<float>::infinity();
+    }
+  }
+
+  RayResult sample(const Ray<double>& ray) const {
+    const double largest_color = transfer_function_.largest_color();
+    constexpr double stop = stop_tolerance<double>();
+    if (integration_.method == Method::kniss || integration_.method == Method::gaussian) {
+      const auto rule =
+          integration_.method == Method::kniss ? GaussianRule::kniss : GaussianRule::closed_form;
+      return sample_linear_steps(grid_, ray, transfer_, rule, step_, largest_color, stop, depth_);
+    }
+    return sample_multivariate_ray(grid_, ray, transfer_, sampling_rule(integration_.method), step_,
+                                   largest_color, stop, depth_);
+  }
+
+  const Integration integration_;
+  const Channels& channels_;
+  const MultivariateTransferFunction& transfer_function_;
+  RayTolerance wanted_;
+  bool depth_;
+  MultichannelGrid grid_;
+  MultivariateTransfer<double> transfer_;
+  double step_;  ///< of the sampling methods, world length
+  MultivariateBlocksStorage storage_;
+  std::optional<MultivariateBlocks> blocks_;      ///< of the exact method
+  std::unique_ptr<const CellPackets> cells_;      ///< null: what it does goes the general path
+  std::unique_ptr<const GaussianPackets> steps_;  ///< null: all rays go cell by cell
+  std::optional<RaysApart> rays_apart_;           ///< none: pixels are not interpolated
+  std::unique_ptr<const MultivariatePacketSampler> sampler_;  ///< null: another method, or that
+};
+
+}  // namespace
+
+std::unique_ptr<const RayTracer> make_multivariate_tracer(const TracerTask& task) {
+  auto tracer = std::make_unique<MultivariateTracer>(task);
+  if (!tracer->is_able()) return nullptr;
+  return tracer;
+}
+
+}  // namespace pellucid

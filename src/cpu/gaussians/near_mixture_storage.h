@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <vector>
+
+#include "pellucid/packet/bundle/near_mixture.h"
+
+namespace pellucid {
+
+/// What rays in lanes look at of a transfer function before they integrate.
+class NearMixtureStorage {
+ public:
+  NearMixtureStorage() = default;
+  /// `opacity`: how much of Gaussians may be passed over on a ray, of which none is longer in the
+  /// mesh than the diagonal.
+  /// `largest`: magnitude of each channel's data. `off`: as much may be what errors of the data
+  /// make of the extinction, where they make any.
+  NearMixtureStorage(const double* largest, bool off, const MultivariateTransfer<double>& transfer,
+                     double opacity, double diagonal);
+
+  /// Whether binary32 has its numbers.
+  bool suits_packets() const noexcept { return suits_packets_; }
+
+  /// Of this object while it stays where it is.
+  const NearMixture& view() noexcept {
+    mixture_.primitive = near_.data();
+    return mixture_;
+  }
+
+ private:
+  NearMixture mixture_;
+  std::vector<NearGaussian> near_;
+  bool suits_packets_ = true;
+};
+
+}  // namespace pellucid

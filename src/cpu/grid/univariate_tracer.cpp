@@ -1,0 +1,149 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <functional>
+#include <optional>
+#include <vector>
+
+#include "packet_setup.h"
+#include "packet_tracer.h"
+#include "pellucid/render/integrate_ray.h"
+#include "pellucid/render/sample_preintegrated.h"
+#include "pellucid/scene/block_classes_storage.h"
+#include "pellucid/scene/transfer_tables_storage.h"
+#include "ray_tracer.h"
+#include "sample/packet_sampler.h"
+#include "sample/preintegrated_storage.h"
+#include "sample/sampling_rule.h"
+#include "threads.h"
+
+namespace pellucid {
+namespace {
+
+/// Whether the method has a sampler in packets.
+bool goes_in_packets(const Integration& integration) {
+  return (integration.method == Method::midpoint || integration.method == Method::preintegrated) &&
+         integration.precision != Precision::float64;
+}
+
+class UnivariateTracer : public RayTracer {
+ public:
+  explicit UnivariateTracer(const TracerTask& task);
+
+  std::optional<Surroundings> surroundings() const override;
+  bool keeps_to_ranges() const override { return integration_.method == Method::exact; }
+  std::vector<RayResult> trace(const std::vector<RayPart>& parts,
+                               const TraceOptions& options) const override {
+    const std::vector<RayPart> in_grid = parts_in_grid(volume_, parts);
+    if (sampler_) return sampler_->trace(in_grid);
+    if (packets_) return packets_->trace(in_grid, options.share * options.share_of_rays, depth_);
+    return trace_one_by_one(in_grid, options);
+  }
+
+ private:
+  std::vector<RayResult> trace_one_by_one(const std::vector<RayPart>& in_grid,
+                                          const TraceOptions& options) const;
+  template <class Value>
+  RayResult trace_one(const StructuredGrid<Value, double>& grid, const RayPart& part,
+                      const RayTolerance& wanted) const;
+
+  const Integration integration_;
+  const Volume& volume_;
+  const TransferFunction& transfer_function_;
+  RayTolerance wanted_;
+  bool depth_;   ///< whether the depth of half opacity is asked for
+  double step_;  ///< of the sampling methods, world length
+  TransferTablesStorage transfer_;
+  BlockClassesStorage block_classes_;
+  std::optional<ClassifiedBlocks> blocks_;       ///< none: the method has no use for them
+  std::unique_ptr<const PacketTracer> packets_;  ///< null: rays go one by one, or are sampled
+  std::unique_ptr<const PreintegratedStorage> preintegrated_;  ///< null: another method
+  std::unique_ptr<const PacketSamplerTracer> sampler_;         ///< null: rays go one by one
+};
+
+UnivariateTracer::UnivariateTracer(const TracerTask& task)
+    : integration_(task.integration),
+      volume_(*std::get<VolumeContent>(task.layer.content).volume),
+      transfer_function_(*std::get<VolumeContent>(task.layer.content).transfer_function),
+      wanted_(task.wanted),
+      depth_(task.options.depth),
+      step_(integration_.step * volume_.voxel_size()),
+      transfer_(transfer_function_) {
+  const ParallelFor parallel = parallel_for(task.threads);
+  if (integration_.method == Method::preintegrated) {
+    const VolumeStatistics& data = volume_.statistics();
+    preintegrated_ = std::make_unique<PreintegratedStorage>(transfer_.tables().wide, data.minimum,
+                                                            data.maximum, step_, parallel);
+  }
+  const bool samples = goes_in_packets(integration_) && !depth_;
+  if (integration_.method != Method::exact && !samples) return;
+  const BlockRecords& records = volume_.block_records(parallel);
+  std::function<StepLimits(double)> limits;
+  if (!samples && wanted_.grade != Grade::proved) {
+    limits = [this](double share_throughout) {
+      return PacketTracer::step_limits(volume_, transfer_.tables(), wanted_, share_throughout);
+    };
+  }
+  block_classes_ =
+      BlockClassesStorage(records, transfer_.tables(), wanted_.largest_color, parallel, limits);
+  blocks_ = ClassifiedBlocks{records, block_classes_.view()};
+  if (samples) {
+    sampler_ = PacketSamplerTracer::make(
+        volume_, blocks_->classes, transfer_.tables().single,
+        preintegrated_ ? &preintegrated_->view() : nullptr, step_,
+        stop_tolerance<float>() / std::max(transfer_function_.largest_color(), 1.0),
+        task.options.instruction_set);
+  } else {
+    packets_ = PacketTracer::make(volume_, *blocks_, block_classes_.smooth(), transfer_.tables(),
+                                  wanted_, task.options.instruction_set);
+  }
+}
+
+std::optional<RayTracer::Surroundings> UnivariateTracer::surroundings() const {
+  // Vacuum ends anywhere between rays; and where half of the opacity is reached goes in leaps.
+  if (!packets_ || !packets_->goes_in_steps() || depth_ || volume_.statistics().nan > 0) {
+    return std::nullopt;
+  }
+  return Surroundings{volume_, *blocks_, packets_->most_between_rays()};
+}
+
+std::vector<RayResult> UnivariateTracer::trace_one_by_one(const std::vector<RayPart>& in_grid,
+                                                          const TraceOptions& options) const {
+  std::vector<RayResult> results(in_grid.size());
+  RayTolerance wanted = wanted_;
+  wanted.tolerance *= options.share;
+  volume_.visit([&](const auto& grid) {
+    for (std::size_t i = 0; i < in_grid.size() && !options.stop.stop_requested(); ++i) {
+      results[i] = trace_one(grid, in_grid[i], wanted);
+    }
+  });
+  return results;
+}
+
+template <class Value>
+RayResult UnivariateTracer::trace_one(const StructuredGrid<Value, double>& grid,
+                                      const RayPart& part, const RayTolerance& wanted) const {
+  if (integration_.method == Method::exact) {
+    return integrate_ray(grid, blocks_ ? &*blocks_ : nullptr, part.ray, transfer_.tables(), wanted,
+                         depth_, part.range);
+  }
+  const double largest_color = transfer_function_.largest_color();
+  const SamplingRule rule = sampling_rule(integration_.method);
+  const auto sample = [&]<class T>(const PiecewiseLinear<T>& transfer) {
+    if (preintegrated_) {
+      return sample_preintegrated<T>(grid, part.ray, preintegrated_->view(), step_, largest_color,
+                                     stop_tolerance<T>(), depth_);
+    }
+    return sample_ray<T>(grid, part.ray, transfer, rule, step_, largest_color, stop_tolerance<T>(),
+                         depth_);
+  };
+  return integration_.precision == Precision::float64 ? sample(transfer_.tables().wide)
+                                                      : sample(transfer_.tables().single);
+}
+
+}  // namespace
+
+std::unique_ptr<const RayTracer> make_univariate_tracer(const TracerTask& task) {
+  return std::make_unique<UnivariateTracer>(task);
+}
+
+}  // namespace pellucid

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// Compiled once per instruction set, with namespace pellucid under a name of its own
+// (cmake/PellucidInstructionSets.cmake).
+#include "pellucid/packet/mesh/mesh_packet.h"
+#include "pellucid/simd/flush_to_zero.h"
+#include "pellucid/simd/instruction_set.h"
+
+namespace {
+
+template <class S>
+void run(const PellucidMeshJob& job) {
+  constexpr int lanes = PELLUCID_LANES;
+  using Packet = pellucid::MeshPacket<S, lanes>;
+  typename Packet::Room room[2];
+  for (int first = 0; first < job.count;) {
+    const auto next = [&](typename Packet::Room& of_packet) {
+      const int begin = first;
+      first = pellucid::min(begin + lanes, job.count);
+      return Packet(job, of_packet, begin, first - begin);
+    };
+    Packet one = next(room[0]);
+    if (first == job.count) {
+      Packet::run({&one});
+    } else {
+      Packet other = next(room[1]);
+      Packet::run({&one, &other});
+      other.store(job.results);
+    }
+    one.store(job.results);
+  }
+}
+
+}  // namespace
+
+extern "C" void PELLUCID_ENTRY(pellucid_integrate_mesh)(const PellucidMeshJob* job) {
+  const pellucid::FlushToZero mode;
+  job->in_double != 0 ? run<double>(*job) : run<float>(*job);
+}

@@ -1,0 +1,266 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <optional>
+#include <vector>
+
+#include "gaussians/near_mixture_storage.h"
+#include "grid/packet_tracer.h"
+#include "mesh_field_storage.h"
+#include "mesh_hits.h"
+#include "packet_setup.h"
+#include "pellucid/packet/mesh_interface.h"
+#include "pellucid/render/integrate_mesh_ray.h"
+#include "pellucid/scene/binned_transfer_storage.h"
+#include "pellucid/scene/transfer_tables_storage.h"
+#include "ray_tracer.h"
+
+namespace pellucid {
+namespace {
+
+const MeshContent& content_of(const TracerTask& task) {
+  return std::get<MeshContent>(task.layer.content);
+}
+
+const MeshChannels& mesh_of(const TracerTask& task) {
+  return *content_of(task).mesh;
+}
+
+using Kernel = void (*)(const PellucidMeshJob*);
+
+/// Null: rays go one by one.
+Kernel kernel_for([[maybe_unused]] InstructionSet set, [[maybe_unused]] bool several) {
+#if PELLUCID_HAS_PACKETS
+  if (several) {
+    return kernel_of(set, pellucid_integrate_multivariate_mesh_sse4,
+                     pellucid_integrate_multivariate_mesh_avx2,
+                     pellucid_integrate_multivariate_mesh_avx512);
+  }
+  return kernel_of(set, pellucid_integrate_mesh_sse4, pellucid_integrate_mesh_avx2,
+                   pellucid_integrate_mesh_avx512);
+#else
+  return nullptr;
+#endif
+}
+
+class MeshTracer : public RayTracer {
+ public:
+  explicit MeshTracer(const TracerTask& task)
+      : mesh_(mesh_of(task).mesh().view()),
+        fields_(mesh_of(task)),
+        wanted_(task.wanted),
+        depth_(task.options.depth) {}
+
+  std::vector<RayResult> trace(const std::vector<RayPart>& parts,
+                               const TraceOptions& options) const override {
+    std::vector<RayResult> results(parts.size());
+    integrate(parts, options, results);
+    if (depth_) find_half_opacity(parts, results);
+    return results;
+  }
+
+ protected:
+  virtual void integrate(const std::vector<RayPart>& rays, const TraceOptions& options,
+                         std::vector<RayResult>& results) const = 0;
+  /// Of rays of which this is known; where it does not, the general path does.
+  virtual void find_half_opacity(const std::vector<RayPart>& /*rays*/,
+                                 std::vector<RayResult>& /*results*/) const {}
+
+  /// Sets up packets, where the mesh and what is wanted suit them.
+  void prepare(const TracerTask& task, double largest_extinction, bool several) {
+    const InstructionSet set = packet_instruction_set(task.options.instruction_set);
+    const MeshChannels& channels = mesh_of(task);
+    if (wanted_.precision != Precision::automatic || wanted_.tolerance < least_packet_tolerance ||
+        !is_moderate(channels.mesh().statistics().mean_edge) || largest_extinction > 1e12) {
+      return;
+    }
+    for (int c = 0; c < channels.count(); ++c) {
+      const double largest = largest_value(channels.statistics(c));
+      if (!is_moderate(largest) && !(several && largest == 0)) return;
+    }
+    kernel_ = kernel_for(set, several);
+    if (kernel_ == nullptr) return;
+    job_.mesh = &mesh_;
+    job_.fields = &fields_.view();
+    job_.tolerance = wanted_.tolerance;
+    job_.largest_color = std::max(wanted_.largest_color, 1.0);
+    job_.largest_extinction = largest_extinction;
+    job_.proved = wanted_.grade == Grade::proved ? 1 : 0;
+    job_.depth = depth_ ? 1 : 0;
+    job_.context = this;
+    points_ = fields_.points(mesh_of(task).mesh().points());
+    job_.points = points_.data();
+  }
+
+  /// Follows the rays of `left` in packets, and leaves those there that are beyond the tolerance.
+  void follow(const std::vector<RayPart>& rays, double share, bool in_double,
+              std::vector<std::size_t>& left, std::vector<RayResult>& results) const {
+    std::vector<PellucidMeshRay> of_job;
+    of_job.reserve(left.size());
+    for (const std::size_t i : left) {
+      const Vec3<double>&o = rays[i].ray.origin, &d = rays[i].ray.direction;
+      of_job.push_back({{o.x, o.y, o.z}, {d.x, d.y, d.z}});
+    }
+    std::vector<PellucidRayResult> found(left.size());
+    PellucidMeshJob job = job_;
+    job.in_double = in_double ? 1 : 0;
+    job.tolerance *= share;
+    job.rays = of_job.data();
+    job.results = found.data();
+    job.count = static_cast<std::int32_t>(left.size());
+    kernel_(&job);
+    std::vector<std::size_t> beyond;
+    beyond.reserve(left.size());
+    for (std::size_t n = 0; n < left.size(); ++n) {
+      read_result(found[n], results[left[n]]);
+      if (!(results[left[n]].error <= share * wanted_.tolerance)) beyond.push_back(left[n]);
+    }
+    left = std::move(beyond);
+  }
+
+  const Tetrahedra mesh_;
+  const MeshFieldStorage fields_;
+  const RayTolerance wanted_;
+  PellucidMeshJob job_{};
+  Kernel kernel_ = nullptr;  ///< null: rays go one by one
+
+ private:
+  const bool depth_;
+  std::vector<MeshPoint> points_;
+};
+
+class UnivariateMeshTracer : public MeshTracer {
+ public:
+  explicit UnivariateMeshTracer(const TracerTask& task)
+      : MeshTracer(task), transfer_(*content_of(task).univariate()) {
+    const TransferTables& tables = transfer_.tables();
+    prepare(task, tables.largest_extinction, false);
+    if (kernel_ == nullptr) return;
+    binned_.emplace(tables.wide, largest_value(mesh_of(task).statistics(0)));
+    job_.transfer = &binned_->view();
+    job_.integrate_span = &UnivariateMeshTracer::integrate_span;
+  }
+
+ protected:
+  void integrate(const std::vector<RayPart>& rays, const TraceOptions& options,
+                 std::vector<RayResult>& results) const override {
+    std::vector<std::size_t> left(rays.size());
+    std::iota(left.begin(), left.end(), std::size_t{0});
+    if (kernel_ != nullptr) {
+      if (wanted_.tolerance >= least_tolerance_in_float) {
+        follow(rays, options.share, false, left, results);
+      }
+      if (!left.empty()) follow(rays, options.share, true, left, results);
+      // What is left has more hits than a lane has room for, or runs along faces, of which a ray by
+      // itself knows more.
+    }
+    MeshHits hits;
+    for (const std::size_t i : left) {
+      results[i] = integrate_mesh_ray(mesh_, fields_.view(), transfer_.tables(),
+                                      hits.find(mesh_, rays[i].ray), wanted_);
+    }
+  }
+  void find_half_opacity(const std::vector<RayPart>& rays,
+                         std::vector<RayResult>& results) const override {
+    MeshHits hits;
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+      RayResult& known = results[i];
+      known.half_opacity_depth =
+          find_mesh_half_opacity(mesh_, fields_.view(), transfer_.tables(),
+                                 hits.find(mesh_, rays[i].ray), wanted_, known.opacity, known.half);
+    }
+  }
+
+ private:
+  /// Below it most rays would be followed twice.
+  static constexpr double least_tolerance_in_float = 2e-4;
+
+  static void integrate_span(const void* context, const PellucidLinearSpan* span,
+                             PellucidCellResult* result) {
+    const auto& tracer = *static_cast<const UnivariateMeshTracer*>(context);
+    CellSegment<double> found;
+    integrate_linear_span(
+        {span->front, span->back, span->error, span->length, span->position_error, span->end_error},
+        tracer.transfer_.tables(), tracer.job_.largest_color, true,
+        [](double) noexcept { return 0.0; }, found);
+    const SegmentResult<double>& s = found.found.segment;
+    *result = {s.optical_depth,
+               s.opacity,
+               s.transparency,
+               {s.radiance.r, s.radiance.g, s.radiance.b},
+               found.clear ? 0 : found.error(tracer.job_.largest_color),
+               found.opacity,
+               1,
+               0};
+  }
+
+  TransferTablesStorage transfer_;
+  std::optional<BinnedTransferStorage> binned_;
+};
+
+class MultivariateMeshTracer : public MeshTracer {
+ public:
+  explicit MultivariateMeshTracer(const TracerTask& task)
+      : MeshTracer(task),
+        transfer_function_(*content_of(task).multivariate()),
+        transfer_(transfer_function_.view()) {
+    prepare(task, transfer_function_.largest_extinction(), true);
+    if (kernel_ == nullptr) return;
+    // Half of what is left out is for Gaussians, half for what errors of the data change there.
+    double largest[max_channels] = {};
+    for (int c = 0; c < transfer_.channels; ++c) {
+      largest[c] = largest_value(mesh_of(task).statistics(c));
+    }
+    mixture_ = NearMixtureStorage(largest, true, transfer_,
+                                  0.5 * left_out_share * job_.tolerance / job_.largest_color,
+                                  length(mesh_.upper - mesh_.lower));
+    if (!mixture_.suits_packets()) {
+      kernel_ = nullptr;
+      return;
+    }
+    job_.tolerance *= 1 - left_out_share;
+    job_.transfer = &mixture_.view();
+    const std::size_t points = mesh_of(task).mesh().points().size();
+    values_ = fields_.values_by_point(points);
+    job_.values = values_.data();
+    job_.value_points = static_cast<std::int32_t>(points);
+  }
+
+  bool goes_in_packets() const { return kernel_ != nullptr; }
+
+ protected:
+  void integrate(const std::vector<RayPart>& rays, const TraceOptions& options,
+                 std::vector<RayResult>& results) const override {
+    std::vector<std::size_t> left(rays.size());
+    std::iota(left.begin(), left.end(), std::size_t{0});
+    follow(rays, options.share, true, left, results);
+    for (RayResult& result : results) std::swap(result.spans.closed, result.spans.lines);
+    // What is left has more hits than a lane has room for, or is beyond what packets can do.
+    for (const std::size_t i : left) results[i] = left_to_general_path();
+  }
+
+ private:
+  /// Of the tolerance, for what is not looked at.
+  static constexpr double left_out_share = 1.0 / 16;
+
+  const MultivariateTransferFunction& transfer_function_;
+  MultivariateTransfer<double> transfer_;
+  NearMixtureStorage mixture_;
+  std::vector<double> values_;
+};
+
+}  // namespace
+
+std::unique_ptr<const RayTracer> make_mesh_tracer(const TracerTask& task) {
+  if (task.integration.method != Method::exact) return make_mesh_sampler(task);
+  if (content_of(task).multivariate() == nullptr) {
+    return std::make_unique<UnivariateMeshTracer>(task);
+  }
+  auto tracer = std::make_unique<MultivariateMeshTracer>(task);
+  if (!tracer->goes_in_packets()) return nullptr;
+  return tracer;
+}
+
+}  // namespace pellucid

@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// Compiled once per instruction set, with namespace pellucid under a name of its own
+// (cmake/PellucidInstructionSets.cmake).
+#include "pellucid/packet/mesh/multivariate_mesh_packet.h"
+#include "pellucid/simd/instruction_set.h"
+
+extern "C" void PELLUCID_ENTRY(pellucid_integrate_multivariate_mesh)(const PellucidMeshJob* job) {
+  constexpr int lanes = PELLUCID_LANES;
+  using Packet = pellucid::MultivariateMeshPacket<lanes>;
+  typename Packet::Room room;
+  for (int first = 0; first < job->count; first += lanes) {
+    Packet packet(*job, room, first, pellucid::min(lanes, job->count - first));
+    packet.run();
+    packet.store(job->results);
+  }
+}
