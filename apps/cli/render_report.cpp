@@ -46,22 +46,6 @@ struct NamedCount {
   std::uint64_t count;
 };
 
-/// What a pixel can be off by where points stand for opacity tables; 0 for points as given. Errors
-/// of layers add, and double beside others, as the renderer counts them.
-double transfer_function_error(const Scene& scene) {
-  const Rgb<double> behind = scene.background.value_or(Rgb<double>{});
-  double sum = 0;
-  int layers = 0;
-  for (const Layer& layer : scene.layers) {
-    if (!layer.visible) continue;
-    ++layers;
-    double brightest = std::max({behind.r, behind.g, behind.b});
-    if (layer.projection) brightest = std::max(brightest, largest_color(scene));
-    sum += approximation_error(layer, brightest);
-  }
-  return layers > 1 ? 2 * sum : sum;
-}
-
 std::vector<NamedCount> by_rule(const RuleCounts& spans) {
   return {{"skipped", spans.skipped}, {"constant", spans.constant}, {"strides", spans.strides},
           {"lines", spans.lines},     {"closed", spans.closed},     {"panels", spans.panels}};
@@ -174,7 +158,7 @@ void add_metadata(const RenderArguments& arguments, const PreparedScene& prepare
   metadata["pellucid.source"] = source_text(arguments);
   metadata["pellucid.method"] = method_text(arguments, integration);
   metadata["pellucid.precision"] = precision_text(arguments, prepared.scene);
-  if (const double error = transfer_function_error(prepared.scene); error > 0) {
+  if (const double error = approximation_error(prepared.scene); error > 0) {
     metadata["pellucid.transfer_function_error"] = fmt::format("{}", error);
   }
   metadata["pellucid.samples"] = fmt::format("{}", prepared.scene.samples);
@@ -230,7 +214,7 @@ std::vector<std::string> report_lines(const RenderArguments& arguments,
                                       const PreparedScene& prepared, const RenderReport& report) {
   const Scene& scene = prepared.scene;
   const std::string time = fmt::format("{:.3g} s", report.seconds);
-  const double table = transfer_function_error(scene);
+  const double table = approximation_error(scene);
   const std::string table_text =
       table > 0 ? fmt::format(" (opacity table: within {:.2g})", table) : "";
   if (arguments.reference) {
@@ -319,7 +303,7 @@ Json report_json(const RenderArguments& arguments, const PreparedScene& prepared
   spans["in_double"] = report.spans.in_double;
   json["spans"] = of_exact(spans);
   json["transfer_function_from"] = prepared.transfer_function_from;
-  json["transfer_function_error"] = transfer_function_error(scene);
+  json["transfer_function_error"] = approximation_error(scene);
   json["camera"] = Json::parse(camera_to_json(scene.camera));
   json["outputs"] = written;
   return json;

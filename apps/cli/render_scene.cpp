@@ -369,31 +369,6 @@ void find_labels(const Layer& layer, const LayerDescription& description, const 
   }
 }
 
-/// Makes the points that stand for opacity tables again, for the tolerance of the scene.
-void approximate_anew(const LayerDescription& description, const Scene& scene, Layer& layer) {
-  const auto made = [&](const TransferFunctionDescription& function) {
-    return std::make_shared<const TransferFunction>(
-        make_transfer_function(function, scene.integration.tolerance, scene.background));
-  };
-  const auto is_table = [](const TransferFunctionDescription& function) {
-    return std::holds_alternative<OpacityTable>(function);
-  };
-  auto* const volume = std::get_if<VolumeContent>(&layer.content);
-  if (description.transfer_function && is_table(*description.transfer_function)) {
-    if (volume != nullptr) volume->transfer_function = made(*description.transfer_function);
-    if (auto* mesh = std::get_if<MeshContent>(&layer.content)) {
-      mesh->transfer_function = made(*description.transfer_function);
-    }
-  }
-  if (volume == nullptr || !volume->mask) return;
-  std::vector<LabelMask::Choice> choices = volume->mask->choices();
-  for (std::size_t i = 0; i < choices.size(); ++i) {
-    const TransferFunctionDescription& function = description.mask->choices[i].transfer_function;
-    if (is_table(function)) choices[i].transfer_function = made(function);
-  }
-  volume->mask = std::make_shared<const LabelMask>(volume->mask->shared_labels(), choices);
-}
-
 /// Writes what defaults and presets made of a layer into its description.
 void complete(const Layer& layer, LayerDescription& description) {
   const auto is_open = [](const std::optional<TransferFunctionDescription>& function) {
@@ -431,9 +406,7 @@ void set_scene_tolerance(PreparedScene& prepared, double tolerance) {
   // With the tolerance that was used, a saved scene gives this picture.
   description.integration.tolerance = scene.integration.tolerance;
   description.relative_tolerance.reset();
-  for (std::size_t i = 0; i < scene.layers.size(); ++i) {
-    approximate_anew(description.layers[i], scene, scene.layers[i]);
-  }
+  fit_opacity_tables(description, scene);
 }
 
 PreparedScene prepare(const RenderArguments& arguments) {

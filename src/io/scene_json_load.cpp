@@ -204,7 +204,46 @@ Scene make_scene(const SceneDescription& description, const ParallelFor& paralle
   if (!description.backdrop.empty()) {
     scene.backdrop = std::make_shared<const Image>(read_exr(description.backdrop));
   }
+  fit_opacity_tables(description, scene);
   return scene;
+}
+
+void fit_opacity_tables(const SceneDescription& description, Scene& scene) {
+  const auto visible = std::ranges::count_if(scene.layers, &Layer::visible);
+  // As approximation_error() counts them.
+  const double tolerance =
+      scene.integration.tolerance / (visible > 1 ? 2 * static_cast<double>(visible) : 1);
+  const auto is_table = [](const TransferFunctionDescription& function) {
+    return std::holds_alternative<OpacityTable>(function);
+  };
+  for (std::size_t i = 0; i < scene.layers.size(); ++i) {
+    Layer& layer = scene.layers[i];
+    auto* const volume = std::get_if<VolumeContent>(&layer.content);
+    const bool masked = volume != nullptr && volume->mask;
+    const double behind =
+        std::max(brightest_behind(scene), masked || layer.projection ? largest_color(layer) : 0);
+    const auto made = [&](const TransferFunctionDescription& function) {
+      // A projection shows an error of the opacity as it is (approximation_error()).
+      return std::make_shared<const TransferFunction>(
+          make_transfer_function(function, layer.projection ? tolerance / 8 : tolerance,
+                                 Rgb<double>{behind, behind, behind}));
+    };
+    const auto& function = description.layers[i].transfer_function;
+    if (function && is_table(*function)) {
+      if (volume != nullptr) volume->transfer_function = made(*function);
+      if (auto* mesh = std::get_if<MeshContent>(&layer.content)) {
+        mesh->transfer_function = made(*function);
+      }
+    }
+    if (!masked) continue;
+    std::vector<LabelMask::Choice> choices = volume->mask->choices();
+    for (std::size_t k = 0; k < choices.size(); ++k) {
+      const TransferFunctionDescription& chosen =
+          description.layers[i].mask->choices[k].transfer_function;
+      if (is_table(chosen)) choices[k].transfer_function = made(chosen);
+    }
+    volume->mask = std::make_shared<const LabelMask>(volume->mask->shared_labels(), choices);
+  }
 }
 
 }  // namespace pellucid

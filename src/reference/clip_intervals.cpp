@@ -36,15 +36,28 @@ RayPart not_negative(Real a, Real b) {
   return a >= 0 ? RayPart{-infinity, infinity} : RayPart{infinity, -infinity};
 }
 
-/// Where a t² + 2 b t + c <= 0, a >= 0. The root of larger magnitude first, the other from their
-/// product.
-RayPart not_positive(Real a, Real b, Real c) {
-  if (a == 0) return not_negative(-c, -2 * b);
-  const Real discriminant = b * b - a * c;
-  if (discriminant < 0) return {infinity, -infinity};
-  const Real q = -(b + std::copysign(std::sqrt(discriminant), b));
-  const Real first = q / a, second = q != 0 ? c / q : first;
-  return {std::min(first, second), std::max(first, second)};
+/// Where |from + t · along| <= radius. By bisection from the place nearest to the origin, for the
+/// roots of a quadratic equation lose all digits where `from` is far.
+RayPart within(const Real3& from, const Real3& along, Real radius) {
+  const Real square = dot(along, along);
+  const auto distance = [](const Real3& p) { return std::hypot(p[0], p[1], p[2]); };
+  if (square == 0) {
+    return distance(from) <= radius ? RayPart{-infinity, infinity} : RayPart{infinity, -infinity};
+  }
+  const Real nearest = -dot(from, along) / square;
+  const Real3 place{from[0] + nearest * along[0], from[1] + nearest * along[1],
+                    from[2] + nearest * along[2]};
+  if (distance(place) > radius) return {infinity, -infinity};
+  Real inside = 0, outside = 2 * (radius + distance(place)) / std::sqrt(square);
+  for (int i = 0; i < 140; ++i) {
+    const Real middle = (inside + outside) / 2;
+    const Real3 p{place[0] + middle * along[0], place[1] + middle * along[1],
+                  place[2] + middle * along[2]};
+    (distance(p) <= radius ? inside : outside) = middle;
+  }
+  // The other end is as far: but for rounding, `place` is perpendicular to the ray.
+  const Real lean = dot(place, along) / square;
+  return {nearest - 2 * lean - inside, nearest + inside};
 }
 
 /// The part of a ray inside of a shape.
@@ -68,16 +81,15 @@ struct Inside {
   RayPart operator()(const ClipSphere& sphere) const {
     const Real3 from = difference(ray.origin, real(sphere.center));
     const Real radius = sphere.radius;
-    return not_positive(dot(ray.direction, ray.direction), dot(from, ray.direction),
-                        dot(from, from) - radius * radius);
+    return within(from, ray.direction, radius);
   }
   /// |(p - start) × axis| <= radius |axis|, between the planes of the ends.
   RayPart operator()(const ClipCylinder& cylinder) const {
     const Real3 start = real(cylinder.start), axis = difference(real(cylinder.end), start);
     const Real3 from = difference(ray.origin, start);
-    const Real3 a = cross(ray.direction, axis), b = cross(from, axis);
-    const Real radius = cylinder.radius, square = dot(axis, axis);
-    RayPart part = not_positive(dot(a, a), dot(a, b), dot(b, b) - radius * radius * square);
+    const Real square = dot(axis, axis);
+    RayPart part = within(cross(from, axis), cross(ray.direction, axis),
+                          Real(cylinder.radius) * std::sqrt(square));
     const Real height = dot(from, axis), slope = dot(ray.direction, axis);
     part = both(part, not_negative(height, slope));
     return both(part, not_negative(square - height, -slope));

@@ -12,6 +12,7 @@
 #include <array>
 #include <atomic>
 #include <chrono>
+#include <cmath>
 #include <limits>
 #include <mutex>
 #include <optional>
@@ -40,11 +41,14 @@ ReferencePixel mean_of(const std::vector<ReferencePixel>& rays) {
 /// Puts a pixel over that of the backdrop.
 void put_over(const std::array<float, 4>& behind, float depth, ReferencePixel& pixel) {
   const double left = 1 - pixel.opacity;
-  if (pixel.opacity == 0) pixel.half_opacity_depth = static_cast<double>(depth);
+  const double own = pixel.opacity;
   pixel.radiance.r += left * static_cast<double>(behind[0]);
   pixel.radiance.g += left * static_cast<double>(behind[1]);
   pixel.radiance.b += left * static_cast<double>(behind[2]);
   pixel.opacity += left * static_cast<double>(behind[3]);
+  if (!(own > 0.5 * pixel.opacity) || std::isinf(pixel.half_opacity_depth)) {
+    pixel.half_opacity_depth = static_cast<double>(depth);
+  }
 }
 
 void render_row(const reference::CameraRays& camera, int samples,

@@ -333,6 +333,10 @@ double largest_extinction(const Layer& layer) noexcept {
 
 double approximation_error(const Layer& layer, double behind) {
   double largest = 0;
+  // Where a mask chooses, the functions lie one behind the other.
+  const auto* const volume = std::get_if<VolumeContent>(&layer.content);
+  const double brightest =
+      volume != nullptr && volume->mask ? std::max(behind, largest_color(layer)) : behind;
   for_each_table(layer, [&](const TransferFunction& function) {
     if (layer.projection) {
       const double opacity = std::min(std::expm1(2 * function.relative_error()), 1.0);
@@ -340,7 +344,7 @@ double approximation_error(const Layer& layer, double behind) {
           opacity * (function.largest_color() + std::max(behind, 1.0)) + function.color_error();
       return;
     }
-    largest = std::max(largest, function.approximation_error(behind));
+    largest = std::max(largest, function.approximation_error(brightest));
   });
   return largest;
 }

@@ -191,6 +191,32 @@ double largest_color(const Scene& scene) noexcept {
   return largest;
 }
 
+double brightest_behind(const Scene& scene) noexcept {
+  double most = 0;
+  if (scene.background) {
+    most = std::max({scene.background->r, scene.background->g, scene.background->b});
+  }
+  if (scene.backdrop) {
+    for (const std::array<float, 4>& pixel : scene.backdrop->pixels) {
+      most = std::max(most, double{std::max({pixel[0], pixel[1], pixel[2]})});
+    }
+  }
+  const auto visible = std::ranges::count_if(scene.layers, &Layer::visible);
+  return visible > 1 ? std::max(most, largest_color(scene)) : most;
+}
+
+double approximation_error(const Scene& scene) {
+  const double behind = brightest_behind(scene);
+  double sum = 0;
+  int layers = 0;
+  for (const Layer& layer : scene.layers) {
+    if (!layer.visible) continue;
+    ++layers;
+    sum += approximation_error(layer, behind);
+  }
+  return layers > 1 ? 2 * sum : sum;
+}
+
 const Layer* only_layer(const Scene& scene) noexcept {
   return scene.layers.size() == 1 ? scene.layers.data() : nullptr;
 }

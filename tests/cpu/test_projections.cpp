@@ -109,7 +109,7 @@ TEST(Projections, SumThroughAConstantBoxIsValueTimesLength) {
   EXPECT_NEAR(value_of(scene), 7 * 14.5, 1e-5);
   // Moved and turned a quarter about z, the ray goes along y through 19 cells of 1/4.
   scene.layers[0].transform.matrix = {{{0, 1, 0}, {-1, 0, 0}, {0, 0, 1}}};
-  scene.layers[0].transform.translation = {-4, -4, 0};
+  scene.layers[0].transform.translation = {-4, -4.5, 0};
   EXPECT_NEAR(value_of(scene), 7 * 4.75, 1e-5);
   scene.layers[0].projection = LayerProjection::mean;
   EXPECT_EQ(value_of(scene), 7);

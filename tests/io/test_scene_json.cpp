@@ -284,11 +284,11 @@ TEST(SceneJson, ExamplesAndTheDocumentedSceneAreValid) {
     blocks.push_back(page.substr(from, at - from));
     at += 3;
   }
-  ASSERT_EQ(blocks.size(), 7U);
-  for (const std::string& layer : {blocks[0], blocks[4]}) {
+  ASSERT_EQ(blocks.size(), 8U);
+  for (const std::string& layer : {blocks[0], blocks[5]}) {
     EXPECT_EQ(error_of([&] { parse_scene("{\"layers\": [" + layer + "]}", "scene.md"); }), "");
   }
-  for (const std::string& scene : {blocks[1], blocks[2], blocks[3]}) {
+  for (const std::string& scene : {blocks[1], blocks[2], blocks[3], blocks[4]}) {
     EXPECT_EQ(error_of([&] { parse_scene(scene, "scene.md"); }), "");
   }
   const auto function = [&](const std::string& text) {
@@ -296,8 +296,8 @@ TEST(SceneJson, ExamplesAndTheDocumentedSceneAreValid) {
     EXPECT_EQ(error_of([&] { description = parse_transfer_function(text, "scene.md"); }), "");
     return description;
   };
-  EXPECT_TRUE(std::holds_alternative<OpacityTable>(function(blocks[5])));
-  EXPECT_TRUE(std::holds_alternative<MultivariateDescription>(function(blocks[6])));
+  EXPECT_TRUE(std::holds_alternative<OpacityTable>(function(blocks[6])));
+  EXPECT_TRUE(std::holds_alternative<MultivariateDescription>(function(blocks[7])));
 }
 
 TEST(SceneJson, AbsoluteFilesStayAndRelativeOnesStartAtTheFolder) {

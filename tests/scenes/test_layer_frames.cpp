@@ -6,6 +6,7 @@
 
 #include "pellucid/cpu/render.h"
 #include "tests/scenes/gallery.h"
+#include "tests/scenes/makers.h"
 #include "tests/scenes/reference_frame.h"
 #include "tests/scenes/verdict.h"
 
@@ -109,6 +110,57 @@ TEST(LayerFrames, SideBySideAreAsEachByItself) {
     return;
   }
   FAIL() << "the gallery has no such scene";
+}
+
+/// A ray along the surface of a clip is inside of it or not, as rounding has it: then the pixel
+/// says that it is not known. The others are not affected.
+TEST(LayerFrames, ARayAlongAClipSaysThatItIsNotKnown) {
+  Layer layer{VolumeContent{make_volume<float>(grid_description({3, 3, 3}, {-1, -1, -1}),
+                                               [](int, int, int) { return 1; }),
+                            transfer({{0, 5, {1, 0.5, 0.2}}})}};
+  Scene scene;
+  scene.layers = {layer};
+  scene.size = {25, 25};
+  scene.camera.projection = Projection::orthographic;
+  scene.camera.position = {0, 0, -5};
+  scene.camera.parallel_scale = 1.5;
+  Clip box{ClipBox{{-0.48, -2, -2}, {2, 2, 2}}}, cylinder{ClipCylinder{{0, 0, -2}, {0, 0, 2}, 0.6}};
+  for (const Clip& clip : {Clip{ClipPlane{{0, 0, 0}, {0.6, 0.8, 0}}}, box, cylinder}) {
+    for (const bool inside : {true, false}) {
+      scene.clips = {clip};
+      scene.clips[0].keep_inside = inside;
+      const Image image = rendered(scene);
+      const ReferenceFrame truth = reference_frame(scene, 2);
+      int unknown = 0;
+      for (std::size_t i = 0; i < image.pixels.size(); ++i) {
+        if (image.error[i] > static_cast<float>(scene.integration.tolerance)) ++unknown;
+        for (std::size_t c = 0; c < 4; ++c) {
+          ASSERT_LE(std::abs(static_cast<double>(image.pixels[i][c]) - truth.pixels[i][c]),
+                    static_cast<double>(image.error[i]))
+              << "pixel " << i << ", clip " << clip.shape.index();
+        }
+      }
+      EXPECT_LE(unknown, 25) << "clip " << clip.shape.index();
+    }
+  }
+}
+
+/// What a table is off by is seen in the color of the layer behind it.
+TEST(LayerFrames, ReserveForTablesWhatIsSeenBehindThem) {
+  const double error = 0.01;
+  const VolumePointer data =
+      make_volume<float>(grid_description({3, 3, 3}), [](int i, int, int) { return i; });
+  const auto table = std::make_shared<const TransferFunction>(
+      Points{{0, 0.1, {0, 0, 0}}, {2, 2, {0, 0, 0}}}, error);
+  Scene scene;
+  scene.layers = {{VolumeContent{data, table}}};
+  EXPECT_LE(approximation_error(scene), error);
+  scene.layers.push_back({VolumeContent{data, transfer({{0, 1, {100, 0, 0}}})}});
+  EXPECT_GE(approximation_error(scene), 100 * error / std::exp(1.0));
+  scene.layers[1].visible = false;
+  EXPECT_LE(approximation_error(scene), error);
+  scene.background = Rgb<double>{0, 50, 0};
+  EXPECT_GE(approximation_error(scene), 50 * error / std::exp(1.0));
 }
 
 }  // namespace

@@ -11,7 +11,8 @@ class KeptFrames;
 
 /// A frame that is being rendered by threads of its own. The handle can be moved; its destructor
 /// cancels the frame and waits for its threads. All members are safe to call from any thread, but
-/// for wait(), moves and the destructor, which are for the owner.
+/// for wait(), moves and the destructor, which are for the owner, and not for callbacks of the
+/// frame itself. A handle that was moved from may only be assigned to or destroyed.
 class RunningFrame {
  public:
   RunningFrame(RunningFrame&&) noexcept;

@@ -109,7 +109,13 @@ std::vector<std::string> known_channels(const LayerDescription& layer);
 /// `meshes_used` receives the mesh of each layer, with the default array if the layer selects none;
 /// without a file for other layers. Throws Error, also if there are several channels and no
 /// function of them.
+///
+/// Opacity tables are fitted as by fit_opacity_tables().
 Scene make_scene(const SceneDescription& description, const ParallelFor& parallel = {},
                  std::vector<MeshSource>* meshes_used = nullptr);
+
+/// Makes the points that stand for opacity tables again, for the tolerance of the scene and for
+/// what is seen behind each: background, backdrop and, if there are several, the other layers.
+void fit_opacity_tables(const SceneDescription& description, Scene& scene);
 
 }  // namespace pellucid

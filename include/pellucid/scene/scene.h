@@ -123,6 +123,14 @@ std::array<Vec3<double>, 8> visible_corners(const Scene& scene, const ParallelFo
 /// Returns the largest color component of the visible layers' functions. The scene must have passed
 /// check_data().
 double largest_color(const Scene& scene) noexcept;
+/// Returns the largest color component that may be seen behind a part of a layer: of the background
+/// and of the backdrop, and if several layers are visible also of their functions. The scene must
+/// have passed check_data().
+double brightest_behind(const Scene& scene) noexcept;
+/// Returns an upper bound on the error of a pixel because the visible layers' functions approximate
+/// others. Errors of layers add; beside other layers they double, because the change of the
+/// extinction is seen in a layer's own color, not in that of the mixture.
+double approximation_error(const Scene& scene);
 /// Returns the scene's only layer; null if there are none or several.
 const Layer* only_layer(const Scene& scene) noexcept;
 /// Returns the content of that kind of the scene's only layer; null if there is none.

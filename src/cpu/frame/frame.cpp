@@ -17,17 +17,6 @@ namespace {
 /// Of the tolerance, for what layers leave out.
 constexpr double left_out_share = 1.0 / 32;
 
-/// The largest component of what lies behind the data.
-double brightest(const Scene& scene) {
-  const std::optional<Rgb<double>>& color = scene.background;
-  double most = color ? std::max({color->r, color->g, color->b}) : 0;
-  if (!scene.backdrop) return most;
-  for (const std::array<float, 4>& pixel : scene.backdrop->pixels) {
-    most = std::max(most, double{std::max({pixel[0], pixel[1], pixel[2]})});
-  }
-  return most;
-}
-
 /// Rounding a pixel to binary32 costs at most half a unit in its last place.
 double storage_error(double value) {
   return std::max(value, 1.0) * 0x1p-24;
@@ -66,20 +55,12 @@ Frame::Frame(const Scene& described, const RenderOptions& options, int threads, 
     : scene(described),
       camera(make_camera_frame(described.camera, described.size)),
       tolerance(0),
-      reserved(0),
+      reserved(approximation_error(described)),
       largest_color(pellucid::largest_color(described)) {
-  const double behind = brightest(scene);
+  const double behind = brightest_behind(scene);
   if (scene.backdrop) largest_color = std::max(largest_color, behind);
   const std::vector<const Layer*> layers = visible_layers(scene, false);
   const std::vector<const Layer*> projections = visible_layers(scene, true);
-  for (const Layer* layer : layers) {
-    // Beside other layers, whose colors differ, the bound of a single function doubles: the change
-    // of the extinction is seen in its own color, not in that of the mixture.
-    reserved += (layers.size() > 1 ? 2 : 1) * approximation_error(*layer, behind);
-  }
-  for (const Layer* layer : projections) {
-    reserved += approximation_error(*layer, std::max(largest_color, behind));
-  }
   const Integration& integration = scene.integration;
   RayTolerance wanted;
   wanted.tolerance = std::max(integration.tolerance - reserved - storage_error(largest_color),

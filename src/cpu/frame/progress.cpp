@@ -32,7 +32,12 @@ void Progress::tell_what_is_new() {
   while (!cancelled_ && told_ < finished_) {
     const std::unique_lock lock(calling_, std::try_to_lock);
     if (!lock.owns_lock()) return;
-    tell();
+    try {
+      tell();
+    } catch (...) {
+      cancelled_ = true;  // Nobody calls again.
+      throw;
+    }
   }
 }
 

@@ -2,6 +2,7 @@
 #include "render_tile.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <limits>
 #include <vector>
@@ -12,7 +13,8 @@
 namespace pellucid {
 namespace {
 
-/// The mean of a pixel's rays. Its depth is that of the nearest.
+/// The mean of a pixel's rays. Its depth is that of the nearest whose opacity is more than its
+/// error.
 RayResult mean_of(const RayResult* rays, int count) {
   if (count == 1) return rays[0];
   RayResult mean;
@@ -24,7 +26,9 @@ RayResult mean_of(const RayResult* rays, int count) {
     mean.radiance = mean.radiance + one.radiance;
     mean.opacity += one.opacity;
     mean.optical_depth += one.optical_depth;
-    mean.half_opacity_depth = std::min(mean.half_opacity_depth, one.half_opacity_depth);
+    if (one.opacity > one.error || !std::isfinite(one.error)) {
+      mean.half_opacity_depth = std::min(mean.half_opacity_depth, one.half_opacity_depth);
+    }
     mean.cells += one.cells;
     mean.neighbor_deviation = std::max(mean.neighbor_deviation, one.neighbor_deviation);
     mean.longest_step = std::min(mean.longest_step, one.longest_step);
@@ -73,15 +77,18 @@ Interval<double> range_of_rays(const Scene& scene, const Place& place) {
   return {0, double{scene.backdrop->depth[index_in(*scene.backdrop, place)]}};
 }
 
-/// Composites a pixel over the backdrop, which is where the pixel is if it gathered nothing.
+/// Composites a pixel over the backdrop, whose depth the pixel has if most of its opacity is there.
 void put_over(const Image& backdrop, const Place& place, RayResult& pixel) {
   const std::size_t index = index_in(backdrop, place);
   const std::array<float, 4>& behind = backdrop.pixels[index];
   const double transparency = 1 - pixel.opacity;
-  if (!(pixel.opacity > 0)) pixel.half_opacity_depth = double{backdrop.depth[index]};
+  const double own = pixel.opacity;
   pixel.radiance +=
       transparency * Rgb<double>{double{behind[0]}, double{behind[1]}, double{behind[2]}};
   pixel.opacity += transparency * double{behind[3]};
+  if (!(own > 0.5 * pixel.opacity) || std::isinf(pixel.half_opacity_depth)) {
+    pixel.half_opacity_depth = double{backdrop.depth[index]};
+  }
 }
 
 /// Traces the rays; so few at once that the threads can stop soon. `values`, unless null, receives

@@ -28,6 +28,9 @@ Real size(const Vector& v) {
 struct Chord {
   Real begin = -infinity, end = infinity;
   Real begin_error = 0, end_error = 0;
+  /// Rounding decides whether the line is inside at all, and whether it seems to be: of a line
+  /// along a surface.
+  bool unknown = false, outside = false;
 
   bool empty() const { return !(begin < end); }
 
@@ -37,12 +40,22 @@ struct Chord {
   void cut_back(Real t, Real error) {
     if (t < end) end = t, end_error = error;
   }
-  void clear() { *this = {infinity, -infinity, 0, 0}; }
+  void clear() {
+    begin = infinity;
+    end = -infinity;
+    begin_error = end_error = 0;
+  }
 
-  /// Cuts at a plane: keeps where height + t · slope >= 0. Both have these errors.
-  void cut_at_plane(Real height, Real slope, Real height_error, Real slope_error) {
+  /// Cuts at a plane: keeps where height + t · slope >= 0. Both have these errors. A line along the
+  /// plane is of use up to t = reach.
+  void cut_at_plane(Real height, Real slope, Real height_error, Real slope_error, Real reach) {
     if (slope == 0) {
-      if (height < 0) clear();
+      if (std::abs(height) <= height_error + reach * slope_error) {
+        unknown = true;
+        outside = outside || height < 0;
+      } else if (height < 0) {
+        clear();
+      }
       return;
     }
     const Real t = -height / slope;
@@ -59,11 +72,18 @@ struct Chord {
 /// coordinates: a sphere, or, across its axis, a cylinder. From the point nearest to the center,
 /// whose distance loses no digits to that of the eye.
 Chord chord_of_circle(const Vector& origin, const Vector& direction, Real radius, Real origin_size,
-                      Real direction_error) {
+                      Real direction_error, Real reach) {
   Chord chord;
   const Real square = dot(direction, direction);
   if (square == 0) {
-    if (dot(origin, origin) > radius * radius) chord.clear();
+    const Real distance = std::sqrt(dot(origin, origin));
+    chord.unknown = std::abs(distance - radius) <=
+                    16 * epsilon * (origin_size + radius) + reach * direction_error;
+    if (chord.unknown) {
+      chord.outside = distance > radius;
+    } else if (distance > radius) {
+      chord.clear();
+    }
     return chord;
   }
   const Real nearest = -dot(origin, direction) / square;
@@ -86,44 +106,44 @@ Chord chord_of_circle(const Vector& origin, const Vector& direction, Real radius
   return chord;
 }
 
-Chord chord_of(const ClipPlane& plane, const Ray<double>& ray) {
+Chord chord_of(const ClipPlane& plane, const Ray<double>& ray, Real reach) {
   const Vector normal = wide(plane.normal), origin = wide(ray.origin), d = wide(ray.direction);
   const Real slope = dot(normal, d), height = dot(normal, origin - wide(plane.point));
   const Real unit = 8 * epsilon * size(normal);
   Chord chord;
-  chord.cut_at_plane(height, slope, unit * (size(origin) + size(wide(plane.point))), unit);
+  chord.cut_at_plane(height, slope, unit * (size(origin) + size(wide(plane.point))), unit, reach);
   return chord;
 }
 
-Chord chord_of(const ClipBox& box, const Ray<double>& ray) {
+Chord chord_of(const ClipBox& box, const Ray<double>& ray, Real reach) {
   Chord chord;
   for (int a = 0; a < 3; ++a) {
     const Real o = ray.origin[a], d = ray.direction[a], lower = box.lower[a], upper = box.upper[a];
     const auto error = [&](Real plane) { return 4 * epsilon * (std::abs(o) + std::abs(plane)); };
-    chord.cut_at_plane(o - lower, d, error(lower), 0);
-    chord.cut_at_plane(upper - o, -d, error(upper), 0);
+    chord.cut_at_plane(o - lower, d, error(lower), epsilon, reach);
+    chord.cut_at_plane(upper - o, -d, error(upper), epsilon, reach);
   }
   return chord;
 }
 
-Chord chord_of(const ClipSphere& sphere, const Ray<double>& ray) {
+Chord chord_of(const ClipSphere& sphere, const Ray<double>& ray, Real reach) {
   const Vector origin = wide(ray.origin), center = wide(sphere.center);
   return chord_of_circle(origin - center, wide(ray.direction), sphere.radius,
-                         size(origin) + size(center), 0);
+                         size(origin) + size(center), 0, reach);
 }
 
-Chord chord_of(const ClipCylinder& cylinder, const Ray<double>& ray) {
+Chord chord_of(const ClipCylinder& cylinder, const Ray<double>& ray, Real reach) {
   const Vector start = wide(cylinder.start), origin = wide(ray.origin), d = wide(ray.direction);
   const Vector along = wide(cylinder.end) - start;
   const Real length = std::sqrt(dot(along, along));
   const Vector axis = along * (1 / length), from = origin - start;
   const Real height = dot(from, axis), slope = dot(d, axis);
-  const Real reach = size(origin) + size(start);
-  Chord chord = chord_of_circle(from - axis * height, d - axis * slope, cylinder.radius, 4 * reach,
-                                16 * epsilon);
-  const Real error = 16 * epsilon * (reach + length);
-  chord.cut_at_plane(height, slope, error, 16 * epsilon);
-  chord.cut_at_plane(length - height, -slope, error, 16 * epsilon);
+  const Real far = size(origin) + size(start);
+  Chord chord = chord_of_circle(from - axis * height, d - axis * slope, cylinder.radius, 4 * far,
+                                16 * epsilon, reach);
+  const Real error = 16 * epsilon * (far + length);
+  chord.cut_at_plane(height, slope, error, 16 * epsilon, reach);
+  chord.cut_at_plane(length - height, -slope, error, 16 * epsilon, reach);
   return chord;
 }
 
@@ -140,8 +160,15 @@ ClipIntervals::ClipIntervals(Interval<double> range) {
 }
 
 void ClipIntervals::cut(const Clip& clip, const Ray<double>& ray) {
-  const Chord chord =
-      std::visit([&](const auto& shape) { return chord_of(shape, ray); }, clip.shape);
+  if (kept.empty()) return;
+  const Real reach = kept.back().end;
+  Chord chord =
+      std::visit([&](const auto& shape) { return chord_of(shape, ray, reach); }, clip.shape);
+  if (chord.unknown && !chord.empty()) {
+    const Real begin = std::max(chord.begin, Real(0)), end = std::min(chord.end, Real(reach));
+    if (begin < end) uncertain.push_back(rounded((begin + end) / 2, (end - begin) / 2));
+    if (chord.outside) chord.clear();
+  }
   // The ends of an empty chord count where errors could fill it.
   const auto matters = [](Real t) { return std::abs(t) < infinity; };
   const bool grazes =

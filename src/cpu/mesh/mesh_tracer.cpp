@@ -157,9 +157,11 @@ class UnivariateMeshTracer : public MeshTracer {
       // itself knows more.
     }
     MeshHits hits;
+    RayTolerance wanted = wanted_;
+    wanted.tolerance *= options.share;
     for (const std::size_t i : left) {
       results[i] = integrate_mesh_ray(mesh_, fields_.view(), transfer_.tables(),
-                                      hits.find(mesh_, rays[i].ray), wanted_);
+                                      hits.find(mesh_, rays[i].ray), wanted);
     }
   }
   void find_half_opacity(const std::vector<RayPart>& rays,

@@ -25,13 +25,12 @@ namespace {
 /// A block that a ray crosses.
 struct CrossedBlock {
   double begin, end;  ///< world arc length
-  double bound;       ///< no value in it is better
   int block;
-  int cell[3];  ///< of the block
 };
 
 struct GridWorkspace : ProjectionWorkspace {
   std::vector<CrossedBlock> blocks;
+  std::vector<float> bounds;  ///< no value in the block is better
 };
 
 /// The part of a ray inside of the grid, and what rounding makes of it.
@@ -45,6 +44,7 @@ struct InsideGrid {
 struct GridRay {
   WalkRay walk;
   double error[3];  ///< of positions, in the axes' coordinates
+  double rest = 0;  ///< length of which a walk by steps may be off in a block
   /// Sums over the axes, in cells: of the errors, and of the ways along the ray by world length.
   double cells_off = 0, cells_by_length = 0;
 };
@@ -58,24 +58,36 @@ class GridProjector : public LayerProjector {
         projection_(*task.layer.projection),
         grid_(grid),
         records_(volume.block_records(task.parallel)),
+        planes_(grid.axis),
+        block_planes_(records_.axis, block_width),
         clips_(task.clips),
         has_vacuum_(volume.statistics().nan > 0) {
     for (std::size_t a = 0; a < 3; ++a) {
       const GridAxis<double>& axis = grid_.axis[a];
-      const std::ptrdiff_t stride = a == 0   ? 1
-                                    : a == 1 ? axis_values(0)
-                                             : axis_values(0) * axis_values(1);
+      const std::ptrdiff_t stride = stride_[a] = a == 0   ? 1
+                                                 : a == 1 ? axis_values(0)
+                                                          : axis_values(0) * axis_values(1);
       least_width_[a] = std::numeric_limits<double>::infinity();
       for (int i = 0; i <= axis.cells(); ++i) {
         offset_[a].push_back(stride * axis.value_index(i));
         if (i == 0) continue;
+        inverse_width_[a].push_back(1 / (axis.plane(i) - axis.plane(i - 1)));
         const bool constant = axis.value_index(i) == axis.value_index(i - 1);
         if (!constant) {
           least_width_[a] = std::min(least_width_[a], axis.plane(i) - axis.plane(i - 1));
         }
       }
+      for (int first = 0; first < axis.cells(); first += block_width) {
+        bool regular = true;
+        for (int i = first; i < std::min(first + block_width, axis.cells()); ++i) {
+          regular = regular && axis.plane(i + 1) - axis.plane(i) == 1 &&
+                    axis.value_index(i + 1) == axis.value_index(i) + 1;
+        }
+        regular_[a].push_back(regular);
+      }
       reach_[a] = std::max(std::abs(axis.plane(0)), std::abs(axis.plane(axis.cells())));
     }
+    for (int a = 0; a < 3; ++a) last_block_[a] = records_.axis[a].cells() - 1;
     const int count = records_.count();
     bounds_.reserve(static_cast<std::size_t>(count));
     for (int i = 0; i < count; ++i) {
@@ -94,7 +106,7 @@ class GridProjector : public LayerProjector {
                    ProjectionWorkspace& workspace) const override {
     const VolumeStatistics& data = volume_.statistics();
     ValueGatherer gatherer(projection_, data.minimum, data.maximum);
-    const GridRay grid_ray = to_grid(ray, end);
+    GridRay grid_ray = to_grid(ray, end);
     const InsideGrid inside = find_inside(grid_ray, end);
     if (inside.is_doubtful || !(inside.range.begin < inside.range.end)) {
       RayValue missed = gatherer.result({});
@@ -106,22 +118,31 @@ class GridProjector : public LayerProjector {
     ValueGatherer::Errors errors;
     errors.data = data_range * grid_ray.cells_off;
     errors.slope = data_range * grid_ray.cells_by_length;
-    errors.position = inside.position_error + parts.position_error();
+    grid_ray.rest = 64 * rounding_unit<double> * inside.range.end;
+    errors.position = inside.position_error + parts.position_error() + grid_ray.rest;
     Cells cells{gatherer};
     if (gatherer.is_extreme() && !has_vacuum_) {
-      visit_best(grid_ray, parts.kept(), static_cast<GridWorkspace&>(workspace), cells);
+      auto& own = static_cast<GridWorkspace&>(workspace);
+      if (gatherer.sign() > 0) {
+        visit_best<true>(grid_ray, parts.kept(), own, cells);
+      } else {
+        visit_best<false>(grid_ray, parts.kept(), own, cells);
+      }
     } else {
       for (const Interval<double>& part : parts.kept()) {
         visit_all(grid_ray, part, cells, errors);
       }
     }
     RayValue result = gatherer.result(errors);
-    result.is_unknown = result.is_unknown || cells.is_unknown || parts.is_doubtful();
+    result.is_unknown =
+        result.is_unknown || cells.is_unknown || (gatherer.is_extreme() && parts.is_doubtful());
     result.cells = cells.count;
     return result;
   }
 
  private:
+  /// Largest error of positions, in cells, at which walks by steps are safe.
+  static constexpr double tame = 1e-3;
   /// Below all floats: the bound of a block without data.
   static constexpr float nothing = -std::numeric_limits<float>::infinity();
 
@@ -150,7 +171,7 @@ class GridProjector : public LayerProjector {
   GridRay to_grid(const Ray<double>& ray, double end) const {
     const Affine<double>& map = volume_.grid_from_world();
     const Ray<double> in_grid = map.ray(ray);
-    GridRay result{WalkRay(in_grid), {}, 0, 0};
+    GridRay result{WalkRay(in_grid), {}, 0, 0, 0};
     // The ray's length inside of the grid is not known yet; it ends at the box's far side.
     double far = 0;
     for (int a = 0; a < 3; ++a) {
@@ -177,9 +198,8 @@ class GridProjector : public LayerProjector {
   InsideGrid find_inside(const GridRay& ray, double end) const {
     Interval<double> nominal{0, end}, outer{0, end}, inner{0, end};
     for (int a = 0; a < 3; ++a) {
-      const GridAxis<double>& axis = grid_.axis[a];
       const double origin = ray.walk.origin[a], error = ray.error[a];
-      const double lower = axis.plane(0), upper = axis.plane(axis.cells());
+      const double lower = planes_[a][0], upper = planes_[a][planes_.cells(a)];
       if (ray.walk.direction[a] == 0) {
         const auto stay = [&](double off, Interval<double>& t) {
           if (!(origin >= lower - off && origin <= upper + off)) t.end = -HUGE_VAL;
@@ -238,9 +258,9 @@ class GridProjector : public LayerProjector {
     for (int n = 0; n < 8; ++n) corners.value[n] = static_cast<double>(corner[n]);
     Vec3<double> entry, exit;
     for (int a = 0; a < 3; ++a) {
-      const double lower = grid_.axis[a].plane(cell[a]), upper = grid_.axis[a].plane(cell[a] + 1);
-      const double inverse = 1 / (upper - lower);
-      const double origin = ray.walk.origin[a] - lower, direction = ray.walk.direction[a];
+      const auto i = static_cast<std::size_t>(cell[a]);
+      const double inverse = inverse_width_[static_cast<std::size_t>(a)][i];
+      const double origin = ray.walk.origin[a] - planes_[a][i], direction = ray.walk.direction[a];
       entry[a] = clamp((origin + begin * direction) * inverse, 0.0, 1.0);
       exit[a] = clamp((origin + end * direction) * inverse, 0.0, 1.0);
     }
@@ -249,78 +269,202 @@ class GridProjector : public LayerProjector {
 
   // Extremes of data without vacuum.
 
+  template <bool Largest>
   void visit_best(const GridRay& ray, const std::vector<Interval<double>>& parts,
                   GridWorkspace& workspace, Cells& cells) const {
-    std::vector<CrossedBlock>& blocks = workspace.blocks;
-    blocks.clear();
+    const std::size_t count = list_blocks(ray, parts, workspace);
+    const std::vector<CrossedBlock>& blocks = workspace.blocks;
+    float* const bounds = workspace.bounds.data();
+    if (count == 0) return;
+    // A few of the best bounds make most others not better; the rest is visited as it comes.
+    constexpr int best_ones = 3;
+    for (int n = 0; n < best_ones; ++n) {
+      float* const best = std::max_element(bounds, bounds + count);
+      if (!(static_cast<double>(*best) > cells.gatherer.best())) break;
+      visit_block<Largest>(ray, blocks[static_cast<std::size_t>(best - bounds)],
+                           static_cast<double>(*best), cells);
+      *best = nothing;
+    }
+    for (std::size_t i = 0; i < count; ++i) {
+      const auto bound = static_cast<double>(bounds[i]);
+      if (bound > cells.gatherer.best()) visit_block<Largest>(ray, blocks[i], bound, cells);
+    }
+    for (std::size_t i = 0; i < count && !cells.gatherer.is_at_floor(); ++i) {
+      find_floor<Largest>(ray, blocks[i], cells);
+    }
+  }
+
+  /// Lists the blocks that the parts of a ray cross, and their bounds. Returns their number.
+  std::size_t list_blocks(const GridRay& ray, const std::vector<Interval<double>>& parts,
+                          GridWorkspace& workspace) const {
+    const auto most = static_cast<std::size_t>(block_planes_.cells(0) + block_planes_.cells(1) +
+                                               block_planes_.cells(2) + 3);
+    if (workspace.blocks.size() < most * parts.size()) {
+      workspace.blocks.resize(most * parts.size());
+      workspace.bounds.resize(most * parts.size());
+    }
+    std::size_t count = 0;
     for (const Interval<double>& part : parts) {
-      AxisWalk walk(records_.axis, ray.walk, part, nullptr);
+      AxisWalk walk(block_planes_, ray.walk, part, first_block_, last_block_);
       AxisWalk::Step step;
       while (walk.next(step)) {
-        const int block = records_.index(step.cell[0], step.cell[1], step.cell[2]);
-        blocks.push_back({step.begin,
-                          step.end,
-                          static_cast<double>(bounds_[static_cast<std::size_t>(block)]),
-                          block,
-                          {step.cell[0], step.cell[1], step.cell[2]}});
+        const std::size_t block = block_index(step.cell);
+        workspace.bounds[count] = bounds_[block];
+        workspace.blocks[count++] = {step.begin, step.end, static_cast<int>(block)};
       }
     }
-    if (blocks.empty()) return;
-    for (std::size_t at = best_block(blocks); blocks[at].bound > cells.gatherer.best();
-         at = best_block(blocks)) {
-      visit_block(ray, blocks[at], cells);
-      blocks[at].bound = -HUGE_VAL;
+    return count;
+  }
+
+  /// Looks for a cell whose corners are all the extreme, where that is the block's bound: the value
+  /// of saturated data has no rounding, and does not leave the place of a jump.
+  template <bool Largest>
+  void find_floor(const GridRay& ray, const CrossedBlock& block, Cells& cells) const {
+    const double best = cells.gatherer.best();
+    if (static_cast<double>(bounds_[static_cast<std::size_t>(block.block)]) != best) return;
+    int place[3];
+    place_of(block.block, place);
+    AxisWalk walk = walk_block(ray, {block.begin, block.end}, place);
+    AxisWalk::Step step;
+    while (walk.next(step)) {
+      Value corner[8];
+      load(step.cell, corner);
+      const double worst = (Largest ? 1 : -1) * static_cast<double>(best_of<!Largest>(corner));
+      if (worst != best) continue;
+      cells.gatherer.set_floor(worst);
+      return;
     }
   }
 
-  static std::size_t best_block(const std::vector<CrossedBlock>& blocks) {
-    std::size_t best = 0;
-    for (std::size_t i = 1; i < blocks.size(); ++i) {
-      if (blocks[i].bound > blocks[best].bound) best = i;
+  void place_of(int block, int (&place)[3]) const {
+    const int x = block_planes_.cells(0), y = block_planes_.cells(1);
+    place[0] = block % x;
+    place[1] = block / x % y;
+    place[2] = block / x / y;
+  }
+  std::size_t block_index(const int (&block)[3]) const {
+    return static_cast<std::size_t>(records_.index(block[0], block[1], block[2]));
+  }
+  /// Returns a walk through the cells of a block.
+  AxisWalk walk_block(const GridRay& ray, Interval<double> range, const int (&block)[3]) const {
+    int first[3], last[3];
+    for (int a = 0; a < 3; ++a) {
+      first[a] = block[a] * block_width;
+      last[a] = std::min(first[a] + block_width, planes_.cells(a)) - 1;
     }
-    return best;
+    return {planes_, ray.walk, range, first, last};
   }
 
-  void visit_block(const GridRay& ray, const CrossedBlock& block, Cells& cells) const {
-    const double sign = cells.gatherer.sign();
-    AxisWalk walk(grid_.axis, ray.walk, {block.begin, block.end}, block.cell);
+  /// Returns the best corner.
+  template <bool Largest>
+  static Value best_of(const Value (&corner)[8]) {
+    const auto better = [](Value a, Value b) { return (Largest ? a > b : a < b) ? a : b; };
+    return better(better(better(corner[0], corner[1]), better(corner[2], corner[3])),
+                  better(better(corner[4], corner[5]), better(corner[6], corner[7])));
+  }
+
+  template <bool Largest>
+  void visit_block(const GridRay& ray, const CrossedBlock& block, double bound,
+                   Cells& cells) const {
+    int place[3];
+    place_of(block.block, place);
+    if (ray.cells_off < tame && regular_[0][static_cast<std::size_t>(place[0])] &&
+        regular_[1][static_cast<std::size_t>(place[1])] &&
+        regular_[2][static_cast<std::size_t>(place[2])]) {
+      visit_regular_block<Largest>(ray, block, place, bound, cells);
+      return;
+    }
+    AxisWalk walk = walk_block(ray, {block.begin, block.end}, place);
     AxisWalk::Step step;
     while (walk.next(step)) {
       ++cells.count;
       Value corner[8];
       load(step.cell, corner);
-      const Value most =
-          sign > 0 ? *std::max_element(corner, corner + 8) : *std::min_element(corner, corner + 8);
-      if (!(sign * static_cast<double>(most) > cells.gatherer.best())) continue;
-      const CubicBernstein<double> data = cubic(ray, step.cell, corner, step.begin, step.end);
-      if (!(std::max(sign * data.hull_min(), sign * data.hull_max()) > cells.gatherer.best())) {
-        continue;
-      }
-      cells.gatherer.add(data, step.end - step.begin);
-      add_floor(corner, cells.gatherer);
-      if (cells.gatherer.best() >= block.bound) return;
+      if (visit_corners<Largest>(ray, step, corner, cells.gatherer.best(), cells) >= bound) return;
     }
   }
 
-  /// No value in a cell is worse than all of its corners.
-  static void add_floor(const Value (&corner)[8], ValueGatherer& gatherer) {
-    gatherer.set_floor(gatherer.sign() > 0
-                           ? static_cast<double>(*std::min_element(corner, corner + 8))
-                           : -static_cast<double>(*std::max_element(corner, corner + 8)));
+  /// Visits a cell by its corners. Returns the best value so far.
+  template <bool Largest>
+  double visit_corners(const GridRay& ray, const AxisWalk::Step& step, const Value (&corner)[8],
+                       double best, Cells& cells) const {
+    constexpr double sign = Largest ? 1 : -1;
+    if (!(sign * static_cast<double>(best_of<Largest>(corner)) > best)) return best;
+    const CubicBernstein<double> data = cubic(ray, step.cell, corner, step.begin, step.end);
+    if (!((Largest ? data.hull_max() : -data.hull_min()) > best)) return best;
+    cells.gatherer.add(data, step.end - step.begin);
+    return cells.gatherer.best();
+  }
+
+  /// The same for blocks of cells of width 1 whose values lie side by side, without branches from
+  /// cell to cell. Positions of planes are sums of steps, off by 16 u, and a rest of the block that
+  /// is shorter than GridRay::rest is left out: its data are continuous with those before.
+  template <bool Largest>
+  void visit_regular_block(const GridRay& ray, const CrossedBlock& block, const int (&place)[3],
+                           double bound, Cells& cells) const {
+    double next[3];
+    std::ptrdiff_t move[3];
+    int cell[3], turn[3];
+    const Value* corner = grid_.data;
+    for (int a = 0; a < 3; ++a) {
+      const int first = place[a] * block_width,
+                last = std::min(first + block_width, planes_.cells(a)) - 1;
+      const double direction = ray.walk.direction[a];
+      const double position = ray.walk.origin[a] + block.begin * direction;
+      cell[a] = planes_.find(a, position, first, last);
+      turn[a] = direction > 0 ? 1 : -1;
+      const double plane = planes_[a][cell[a] + (direction > 0 ? 1 : 0)];
+      next[a] = direction == 0 ? std::numeric_limits<double>::infinity()
+                               : (plane - ray.walk.origin[a]) * ray.walk.inverse[a];
+      move[a] = turn[a] * stride_[a];
+      corner += offset_[static_cast<std::size_t>(a)][static_cast<std::size_t>(cell[a])];
+    }
+    const double step[3] = {std::abs(ray.walk.inverse[0]), std::abs(ray.walk.inverse[1]),
+                            std::abs(ray.walk.inverse[2])};
+    const double last = block.end - ray.rest;
+    const std::ptrdiff_t y = stride_[1], z = stride_[2];
+    double best = cells.gatherer.best(), t = block.begin;
+    const auto advance = [&] {
+      for (int a = 0; a < 3; ++a) {
+        const bool reached = next[a] <= t;
+        corner += reached ? move[a] : 0;
+        cell[a] += reached ? turn[a] : 0;
+        next[a] += reached ? step[a] : 0;
+      }
+    };
+    const auto ahead = [&] { return std::min(next[0], std::min(next[1], next[2])); };
+    if (ahead() <= t && ahead() < last) advance();
+    for (;;) {
+      const double until = ahead();
+      const bool is_last = !(until < last);
+      ++cells.count;
+      const Value values[8] = {corner[0], corner[1],     corner[y],     corner[y + 1],
+                               corner[z], corner[z + 1], corner[y + z], corner[y + z + 1]};
+      if ((Largest ? 1 : -1) * static_cast<double>(best_of<Largest>(values)) > best) {
+        best = visit_corners<Largest>(ray,
+                                      {{cell[0], cell[1], cell[2]}, t, is_last ? block.end : until},
+                                      values, best, cells);
+        if (best >= bound) return;
+      }
+      if (is_last) return;
+      t = until;
+      advance();
+    }
   }
 
   // All cells in order.
 
   void visit_all(const GridRay& ray, Interval<double> part, Cells& cells,
                  ValueGatherer::Errors& errors) const {
-    AxisWalk blocks(records_.axis, ray.walk, part, nullptr);
+    AxisWalk blocks(block_planes_, ray.walk, part, first_block_, last_block_);
     AxisWalk::Step block;
     bool was_vacuum = true;
     while (blocks.next(block)) {
-      AxisWalk walk(grid_.axis, ray.walk, {block.begin, block.end}, block.cell);
+      AxisWalk walk = walk_block(ray, {block.begin, block.end}, block.cell);
       AxisWalk::Step step;
-      const int index = records_.index(block.cell[0], block.cell[1], block.cell[2]);
-      if (!has_vacuum_ && records_[index].constant() && walk.next(step)) {
+      const bool constant =
+          !has_vacuum_ && records_[static_cast<int>(block_index(block.cell))].constant();
+      if (constant && walk.next(step)) {
         ++cells.count;
         Value corner[8];
         load(step.cell, corner);
@@ -358,7 +502,10 @@ class GridProjector : public LayerProjector {
       return;
     }
     cells.gatherer.add(data, step.end - step.begin);
-    if (cells.gatherer.is_extreme()) add_floor(corner, cells.gatherer);
+    if (!cells.gatherer.is_extreme()) return;
+    cells.gatherer.set_floor(cells.gatherer.sign() > 0
+                                 ? static_cast<double>(best_of<false>(corner))
+                                 : -static_cast<double>(best_of<true>(corner)));
   }
 
   /// Planes of a cell that a ray's step touches, within the error of positions.
@@ -378,7 +525,7 @@ class GridProjector : public LayerProjector {
       for (int e = 0; e < 2; ++e) {
         const double position = ray.walk.origin[a] + t[e] * ray.walk.direction[a];
         for (int p = 0; p < 2; ++p) {
-          at[e][p] = std::abs(position - grid_.axis[a].plane(step.cell[a] + p)) <= error;
+          at[e][p] = std::abs(position - planes_[a][step.cell[a] + p]) <= error;
           touched.plane[a][p] = touched.plane[a][p] || at[e][p];
         }
         if (at[e][0] || at[e][1]) {
@@ -403,7 +550,7 @@ class GridProjector : public LayerProjector {
       bool is_there = true;
       for (int a = 0; a < 3; ++a) {
         neighbor[a] = cell[a] + step[a];
-        is_there = is_there && neighbor[a] >= 0 && neighbor[a] < grid_.axis[a].cells() &&
+        is_there = is_there && neighbor[a] >= 0 && neighbor[a] < planes_.cells(a) &&
                    (step[a] == 0 || touched.plane[a][step[a] > 0 ? 1 : 0]);
       }
       Value corner[8];
@@ -416,9 +563,14 @@ class GridProjector : public LayerProjector {
   LayerProjection projection_;
   StructuredGrid<Value, double> grid_;
   const BlockRecords& records_;
+  WalkPlanes planes_, block_planes_;
+  int first_block_[3]{}, last_block_[3]{};
   std::vector<Clip> clips_;
   bool has_vacuum_;
   std::array<std::vector<std::ptrdiff_t>, 3> offset_;  ///< of the values on planes, by axis
+  std::array<std::vector<double>, 3> inverse_width_;   ///< of cells, by axis
+  std::ptrdiff_t stride_[3]{};                         ///< from value to value, by axis
+  std::array<std::vector<bool>, 3> regular_;           ///< blocks of cells of width 1, by axis
   std::array<double, 3> least_width_{};                ///< of cells whose values differ along it
   std::array<double, 3> reach_{};                      ///< largest |coordinate| of the box
   std::vector<float> bounds_;                          ///< of blocks, times sign

@@ -24,7 +24,8 @@ class KeptParts {
   const std::vector<Interval<double>>& kept() const { return intervals_.kept; }
   /// Returns the total error of the positions at which clips cut the range, world length.
   double position_error() const { return position_error_; }
-  /// Returns whether rounding decides if a part is there.
+  /// Returns whether rounding decides if a part is there, which matters for extremes; of a sum,
+  /// position_error() has it.
   bool is_doubtful() const { return is_doubtful_; }
 
  private:

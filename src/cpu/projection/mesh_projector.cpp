@@ -48,7 +48,7 @@ class MeshProjector : public LayerProjector {
     const KeptParts parts(inside, clips_, ray);
     ValueGatherer::Errors errors;
     errors.position = parts.position_error();
-    bool is_unknown = parts.is_doubtful();
+    bool is_unknown = gatherer.is_extreme() && parts.is_doubtful();
     for (const MeshSpan& span : spans) {
       ++result.cells;
       if (!(span.begin <= inside.end)) break;

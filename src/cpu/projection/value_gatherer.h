@@ -68,6 +68,8 @@ class ValueGatherer {
   /// Tells that the extreme is, times sign(), at least this one.
   void set_floor(double value) { floor_ = std::max(floor_, value); }
 
+  bool is_at_floor() const { return floor_ >= best_; }
+
   RayValue result(const Errors& errors) const {
     RayValue result;
     result.has_data = has_data_;
