@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tests/scenes/tolerance_matrix.h"
 
+#include "pellucid/scene/error.h"
+
 namespace pellucid::scenes {
 namespace {
 
 /// Evaluations per ray and error of what a sampler does by default: a sample per voxel, and in
-/// meshes the mean of both ends of each tetrahedron.
+/// meshes the mean of both ends of each tetrahedron. Nothing where there is no sampler.
 void measure_sampling(Scene scene, const ReferenceFrame& reference, const MatrixOptions& options,
                       MatrixRow& row) {
   scene.integration = {};
@@ -15,6 +17,11 @@ void measure_sampling(Scene scene, const ReferenceFrame& reference, const Matrix
     scene.integration.method = Method::midpoint;
     scene.integration.precision = Precision::float32;
     scene.integration.step = 1;
+  }
+  try {
+    check_method(scene);
+  } catch (const Error&) {
+    return;
   }
   RenderOptions render_options;
   render_options.threads = options.threads;
