@@ -16,6 +16,9 @@
 
 namespace pellucid {
 
+/// Of the tolerance of a ray, for what grids' blocks and layers leave out.
+inline constexpr double ray_left_out_share = 1.0 / 32;
+
 /// A part of a ray in the world, whose direction has length 1.
 struct RayPart {
   Ray<double> ray;

@@ -216,12 +216,13 @@ void fit_opacity_tables(const SceneDescription& description, Scene& scene) {
   const auto is_table = [](const TransferFunctionDescription& function) {
     return std::holds_alternative<OpacityTable>(function);
   };
+  const double behind_all = brightest_behind(scene);
   for (std::size_t i = 0; i < scene.layers.size(); ++i) {
     Layer& layer = scene.layers[i];
     auto* const volume = std::get_if<VolumeContent>(&layer.content);
     const bool masked = volume != nullptr && volume->mask;
     const double behind =
-        std::max(brightest_behind(scene), masked || layer.projection ? largest_color(layer) : 0);
+        std::max(behind_all, masked || layer.projection ? largest_color(layer) : 0);
     const auto made = [&](const TransferFunctionDescription& function) {
       // A projection shows an error of the opacity as it is (approximation_error()).
       return std::make_shared<const TransferFunction>(

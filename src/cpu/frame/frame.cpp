@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <limits>
-#include <optional>
 #include <utility>
 #include <vector>
 
@@ -13,9 +12,6 @@
 
 namespace pellucid {
 namespace {
-
-/// Of the tolerance, for what layers leave out.
-constexpr double left_out_share = 1.0 / 32;
 
 /// Rounding a pixel to binary32 costs at most half a unit in its last place.
 double storage_error(double value) {
@@ -44,7 +40,7 @@ double reach(const std::vector<const Layer*>& layers) {
 
 /// Extinction that each layer may leave out all along a ray.
 double negligible_extinction(const std::vector<const Layer*>& layers, const RayTolerance& wanted) {
-  return left_out_share * wanted.tolerance /
+  return ray_left_out_share * wanted.tolerance /
          (std::max(reach(layers), std::numeric_limits<double>::min()) *
           std::max(wanted.largest_color, 1.0) * std::max(static_cast<double>(layers.size()), 1.0));
 }
@@ -72,9 +68,7 @@ Frame::Frame(const Scene& described, const RenderOptions& options, int threads, 
   const LayerSetting setting(integration, wanted, negligible_extinction(layers, wanted), options);
   std::vector<ClippedLayer> clipped;
   for (const Layer* layer : layers) {
-    std::vector<Clip> clips = layer->clips;
-    clips.insert(clips.end(), scene.clips.begin(), scene.clips.end());
-    clipped.push_back({kept.find(*layer, setting, threads), std::move(clips)});
+    clipped.push_back({kept.find(*layer, setting, threads), clips_of(*layer, scene.clips)});
   }
   kept.keep_only(scene);
   if (!layers.empty() || projections.empty()) {

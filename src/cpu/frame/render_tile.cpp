@@ -66,20 +66,14 @@ std::vector<Place> places_of(const Tile& tile) {
   return places;
 }
 
-std::size_t index_in(const Image& image, const Place& place) {
-  return static_cast<std::size_t>(place.row) * static_cast<std::size_t>(image.width) +
-         static_cast<std::size_t>(place.column);
-}
-
 /// Where the rays of a pixel end.
-Interval<double> range_of_rays(const Scene& scene, const Place& place) {
+Interval<double> range_of_rays(const Scene& scene, std::size_t pixel) {
   if (!scene.backdrop) return RayPart{}.range;
-  return {0, double{scene.backdrop->depth[index_in(*scene.backdrop, place)]}};
+  return {0, double{scene.backdrop->depth[pixel]}};
 }
 
 /// Composites a pixel over the backdrop, whose depth the pixel has if most of its opacity is there.
-void put_over(const Image& backdrop, const Place& place, RayResult& pixel) {
-  const std::size_t index = index_in(backdrop, place);
+void put_over(const Image& backdrop, std::size_t index, RayResult& pixel) {
   const std::array<float, 4>& behind = backdrop.pixels[index];
   const double transparency = 1 - pixel.opacity;
   const double own = pixel.opacity;
@@ -146,7 +140,7 @@ std::size_t render_tile(const Frame& frame, const Tile& tile, const TileTask& ta
   std::vector<RayPart> rays;
   rays.reserve(places.size() * static_cast<std::size_t>(rays_of_pixel));
   for (const Place& place : places) {
-    const Interval<double> range = range_of_rays(frame.scene, place);
+    const Interval<double> range = range_of_rays(frame.scene, image.index(place.column, place.row));
     if (samples == 1) {
       rays.push_back({frame.camera.ray(place.column, place.row), range});
     } else {
@@ -167,7 +161,9 @@ std::size_t render_tile(const Frame& frame, const Tile& tile, const TileTask& ta
   const RayResult* of_pixel = results.data();
   for (const Place& place : places) {
     RayResult pixel = mean_of(of_pixel, rays_of_pixel);
-    if (frame.scene.backdrop) put_over(*frame.scene.backdrop, place, pixel);
+    if (frame.scene.backdrop) {
+      put_over(*frame.scene.backdrop, image.index(place.column, place.row), pixel);
+    }
     finish(place, pixel);
     add_work(report, pixel);
     of_pixel += rays_of_pixel;

@@ -15,15 +15,6 @@
 #include "threads.h"
 
 namespace pellucid {
-namespace {
-
-/// Stops one request when another is made.
-std::stop_callback<std::function<void()>> forward(std::stop_token from, std::stop_source to) {
-  return std::stop_callback<std::function<void()>>(std::move(from),
-                                                   [to]() mutable { to.request_stop(); });
-}
-
-}  // namespace
 
 class KeptFrames {
  public:
@@ -35,7 +26,6 @@ class KeptFrames {
   LayerSetups setups;
 
   Image render(const Scene& scene, const RenderOptions& options, RenderReport* report) {
-    if (options.threads < 0) throw Error("threads: must not be negative; 0 takes one per core");
     int count = options.threads > 0 ? options.threads : threads;
     if (count == 0) count = default_thread_count();
     return render_frame(scene, options, count, setups, report);
@@ -61,7 +51,7 @@ struct RunningFrame::Job {
       : kept(std::move(with)),
         scene(std::move(of)),
         options(std::move(how)),
-        outside(forward(options.stop, stop)) {
+        outside(options.stop, [this] { stop.request_stop(); }) {
     options.stop = stop.get_token();
     report_progress = std::exchange(options.progress, [this](double done) {
       fraction.store(done, std::memory_order_relaxed);

@@ -9,7 +9,6 @@
 #include "frame/rays_apart.h"
 #include "gaussian_packets.h"
 #include "packet_setup.h"
-#include "pellucid/render/integrate_multivariate_ray.h"
 #include "pellucid/render/sample_ray.h"
 #include "pellucid/scene/multivariate_blocks_storage.h"
 #include "ray_tracer.h"
@@ -20,12 +19,9 @@
 namespace pellucid {
 namespace {
 
-/// How much of the tolerance goes for primitives that are left out of blocks.
-constexpr double left_out_share = 1.0 / 32;
-
 /// Which extinction may be left out all along a ray for that.
 double negligible_extinction(const TracerTask& task) {
-  return left_out_share * task.wanted.tolerance /
+  return ray_left_out_share * task.wanted.tolerance /
          (diagonal(*grid_of(task.layer)) * std::max(task.wanted.largest_color, 1.0));
 }
 
@@ -51,7 +47,7 @@ class MultivariateTracer : public RayTracer {
     storage_ = MultivariateBlocksStorage(channels_, transfer_function_, negligible_extinction(task),
                                          parallel_for(task.threads));
     blocks_ = storage_.view();
-    wanted_.tolerance *= 1 - left_out_share;
+    wanted_.tolerance *= 1 - ray_left_out_share;
     const InstructionSet set = packet_instruction_set(task.options.instruction_set);
     if (set == InstructionSet::scalar || integration_.precision != Precision::automatic) return;
     cells_ = CellPackets::make(channels_, transfer_function_, *blocks_, grid_, wanted_, set);

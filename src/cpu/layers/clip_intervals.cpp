@@ -155,8 +155,10 @@ ClipIntervals::Uncertain rounded(Real t, Real error) {
 
 }  // namespace
 
-ClipIntervals::ClipIntervals(Interval<double> range) {
+ClipIntervals::ClipIntervals(Interval<double> range, const std::vector<Clip>& clips,
+                             const Ray<double>& ray) {
   if (range.begin < range.end) kept.push_back(range);
+  for (const Clip& clip : clips) cut(clip, ray);
 }
 
 void ClipIntervals::cut(const Clip& clip, const Ray<double>& ray) {
@@ -196,6 +198,12 @@ void ClipIntervals::cut(const Clip& clip, const Ray<double>& ray) {
     }
   }
   kept = std::move(left);
+}
+
+std::vector<Clip> clips_of(const Layer& layer, const std::vector<Clip>& of_scene) {
+  std::vector<Clip> clips = layer.clips;
+  clips.insert(clips.end(), of_scene.begin(), of_scene.end());
+  return clips;
 }
 
 double ClipIntervals::error_in(Interval<double> range) const noexcept {

@@ -5,6 +5,7 @@
 
 #include "pellucid/geometry/ray.h"
 #include "pellucid/scene/clip.h"
+#include "pellucid/scene/layer.h"
 
 namespace pellucid {
 
@@ -20,13 +21,17 @@ struct ClipIntervals {
   std::vector<Interval<double>> kept;  ///< disjoint, front to back, within `range`
   std::vector<Uncertain> uncertain;
 
-  /// Keeps all of the range.
-  explicit ClipIntervals(Interval<double> range);
-  /// Leaves only what the clip keeps of the ray, whose direction has length 1.
-  void cut(const Clip& clip, const Ray<double>& ray);
+  /// Leaves of the range of the ray, whose direction has length 1, what all of the clips keep.
+  ClipIntervals(Interval<double> range, const std::vector<Clip>& clips, const Ray<double>& ray);
 
   /// Returns the total error of the positions in the range, each at most the range's length.
   double error_in(Interval<double> range) const noexcept;
+
+ private:
+  void cut(const Clip& clip, const Ray<double>& ray);
 };
+
+/// Returns the clips of a layer and of its scene.
+std::vector<Clip> clips_of(const Layer& layer, const std::vector<Clip>& of_scene);
 
 }  // namespace pellucid

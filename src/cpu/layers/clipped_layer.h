@@ -13,13 +13,6 @@ namespace pellucid {
 struct ClippedLayer {
   std::shared_ptr<const LayerSetup> setup;
   std::vector<Clip> clips;
-
-  /// Returns what the clips keep of an interval of the ray, which is in the world.
-  ClipIntervals cut(const Ray<double>& ray, Interval<double> inside) const {
-    ClipIntervals intervals(inside);
-    for (const Clip& clip : clips) intervals.cut(clip, ray);
-    return intervals;
-  }
 };
 
 }  // namespace pellucid

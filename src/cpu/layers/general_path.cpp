@@ -40,7 +40,7 @@ class GeneralPath::ClippedStream {
     Interval<double> inside = stream_->start(part.ray);
     inside.begin = std::max(inside.begin, part.range.begin);
     inside.end = std::min(inside.end, part.range.end);
-    ranges_ = layer_.cut(part.ray, inside).kept;
+    ranges_ = ClipIntervals(inside, layer_.clips, part.ray).kept;
     range_ = 0;
     if (ranges_.empty()) return {1, 0};
     const Interval<double> all{ranges_.front().begin, ranges_.back().end};

@@ -16,8 +16,6 @@ namespace pellucid {
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
-/// Of the tolerance of a ray, for what layers leave out (LayerSetting::negligible_extinction).
-constexpr double left_out_share = 1.0 / 32;
 /// A stretch of one layer goes with its neighbors on the general path if it is shorter than this
 /// share of them: what it saves is not worth a share of the tolerance.
 constexpr double short_share = 1.0 / 8;
@@ -140,7 +138,7 @@ class SceneTracer : public RayTracer {
       const Interval<double> inside{std::max(all.begin, part.range.begin),
                                     std::min(all.end, part.range.end)};
       if (!(inside.begin < inside.end)) continue;
-      const ClipIntervals intervals = layers_[i].cut(part.ray, inside);
+      const ClipIntervals intervals(inside, layers_[i].clips, part.ray);
       if (!intervals.uncertain.empty()) {
         unknown += std::min(setup.largest_extinction() * intervals.error_in(inside), 1.0);
       }
@@ -297,7 +295,7 @@ class SceneTracer : public RayTracer {
   }
   RayResult integrate(std::optional<GeneralPath>& general, const RayPart& part,
                       double tolerance) const {
-    return made(general).integrate(part, (1 - left_out_share) * tolerance);
+    return made(general).integrate(part, (1 - ray_left_out_share) * tolerance);
   }
   /// Finds where half of the opacity is reached, if that is not known yet.
   void find_depth(std::optional<GeneralPath>& general, const RayPart& part,

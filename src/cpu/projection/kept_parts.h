@@ -14,9 +14,7 @@ class KeptParts {
  public:
   /// `range`: of the ray inside of the data. `ray` has a direction of length 1.
   KeptParts(Interval<double> range, const std::vector<Clip>& clips, const Ray<double>& ray)
-      : intervals_(range) {
-    if (clips.empty()) return;
-    for (const Clip& clip : clips) intervals_.cut(clip, ray);
+      : intervals_(range, clips, ray) {
     position_error_ = intervals_.error_in(range);
     if (position_error_ > 0) find_doubts(range);
   }

@@ -5,6 +5,8 @@
 #include <limits>
 #include <utility>
 
+#include "layers/clip_intervals.h"
+
 namespace pellucid {
 namespace {
 
@@ -30,9 +32,7 @@ ProjectedTracer::ProjectedTracer(std::vector<Layer> layers, std::unique_ptr<cons
       others_(std::move(others)),
       largest_color_(std::max(largest_color, 1.0)) {
   for (const Layer& layer : layers_) {
-    std::vector<Clip> all = layer.clips;
-    all.insert(all.end(), clips.begin(), clips.end());
-    projectors_.push_back(make_layer_projector({layer, std::move(all), parallel}));
+    projectors_.push_back(make_layer_projector({layer, clips_of(layer, clips), parallel}));
     colors_.emplace_back(function_of(layer));
   }
 }
