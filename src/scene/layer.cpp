@@ -6,6 +6,7 @@
 #include <limits>
 #include <utility>
 
+#include "layer_light.h"
 #include "message.h"
 #include "pellucid/scene/error.h"
 
@@ -235,6 +236,7 @@ void check_layer(const Layer& layer, const std::string& where) {
   std::visit(LayerCheck(where), layer.content);
   check_transform(layer, where);
   check_projection(layer, where);
+  check_light_of(layer, where);
   for (std::size_t i = 0; i < layer.clips.size(); ++i) {
     check_clip(layer.clips[i], where + ": clip " + std::to_string(i + 1));
   }
@@ -265,9 +267,12 @@ std::array<Vec3<double>, 8> world_corners(const Layer& layer) noexcept {
 
 namespace {
 
-/// Whether a function of the layer absorbs at some value from `lower` to `upper`.
+/// Whether a function of the layer absorbs at some value from `lower` to `upper`, or an isosurface
+/// has one.
 bool absorbs_between(const Layer& layer, double lower, double upper) {
-  bool absorbs = false;
+  bool absorbs = std::ranges::any_of(layer.isosurfaces, [&](const Isosurface& surface) {
+    return lower <= surface.value && surface.value <= upper;
+  });
   for_each_table(layer, [&](const TransferFunction& function) {
     const PiecewiseLinear<double> table = function.view<double>();
     absorbs = absorbs || table.has_extinction(table.interval(lower), table.interval(upper));
@@ -279,7 +284,8 @@ bool absorbs_between(const Layer& layer, double lower, double upper) {
 
 std::array<Vec3<double>, 8> visible_corners(const Layer& layer, const ParallelFor& parallel) {
   const Volume* const grid = grid_of(layer);
-  if (grid == nullptr || layer.projection || multivariate_of(layer) != nullptr) {
+  if (grid == nullptr || layer.projection || multivariate_of(layer) != nullptr ||
+      !layer.slices.empty()) {
     return world_corners(layer);
   }
   const BlockRecords& records = grid->block_records(parallel);
@@ -315,7 +321,8 @@ std::array<Vec3<double>, 8> visible_corners(const Layer& layer, const ParallelFo
 
 double largest_color(const Layer& layer) noexcept {
   const MultivariateTransferFunction* const multivariate = multivariate_of(layer);
-  double largest = multivariate != nullptr ? multivariate->largest_color() : 0;
+  double largest = largest_surface_color(layer);
+  if (multivariate != nullptr) largest = std::max(largest, multivariate->largest_color());
   for_each_table(layer, [&](const TransferFunction& function) {
     largest = std::max(largest, function.largest_color());
   });
@@ -328,15 +335,17 @@ double largest_extinction(const Layer& layer) noexcept {
   for_each_table(layer, [&](const TransferFunction& function) {
     for (const auto& point : function.points()) largest = std::max(largest, point.extinction);
   });
-  return largest;
+  return layer.gradient_opacity ? largest * layer.gradient_opacity->largest_factor() : largest;
 }
 
-double approximation_error(const Layer& layer, double behind) {
+double approximation_error(const Layer& layer, double behind, const std::vector<Light>& lights) {
   double largest = 0;
-  // Where a mask chooses, the functions lie one behind the other.
+  // Where a mask chooses, the functions lie one behind the other; so do a medium and its surfaces.
   const auto* const volume = std::get_if<VolumeContent>(&layer.content);
+  const bool several = (volume != nullptr && volume->mask) || has_surfaces(layer);
   const double brightest =
-      volume != nullptr && volume->mask ? std::max(behind, largest_color(layer)) : behind;
+      several || layer.shading ? std::max(behind, largest_color(layer, lights)) : behind;
+  const double factor = brightest_factor(layer, lights);
   for_each_table(layer, [&](const TransferFunction& function) {
     if (layer.projection) {
       const double opacity = std::min(std::expm1(2 * function.relative_error()), 1.0);
@@ -344,9 +353,9 @@ double approximation_error(const Layer& layer, double behind) {
           opacity * (function.largest_color() + std::max(behind, 1.0)) + function.color_error();
       return;
     }
-    largest = std::max(largest, function.approximation_error(brightest));
+    largest = std::max(largest, factor * function.approximation_error(brightest));
   });
-  return largest;
+  return largest + (has_surfaces(layer) ? surface_color_error(layer, lights) : 0);
 }
 
 }  // namespace pellucid

@@ -140,6 +140,9 @@ void check_data(const Scene& scene) {
   for (std::size_t i = 0; i < scene.clips.size(); ++i) {
     check_clip(scene.clips[i], "scene: clip " + std::to_string(i + 1));
   }
+  for (std::size_t i = 0; i < scene.lights.size(); ++i) {
+    check_light(scene.lights[i], "light " + std::to_string(i + 1));
+  }
 }
 
 namespace {
@@ -186,7 +189,7 @@ std::array<Vec3<double>, 8> visible_corners(const Scene& scene, const ParallelFo
 double largest_color(const Scene& scene) noexcept {
   double largest = 0;
   for (const Layer& layer : scene.layers) {
-    if (layer.visible) largest = std::max(largest, largest_color(layer));
+    if (layer.visible) largest = std::max(largest, largest_color(layer, scene.lights));
   }
   return largest;
 }
@@ -212,7 +215,7 @@ double approximation_error(const Scene& scene) {
   for (const Layer& layer : scene.layers) {
     if (!layer.visible) continue;
     ++layers;
-    sum += approximation_error(layer, behind);
+    sum += approximation_error(layer, behind, scene.lights);
   }
   return layers > 1 ? 2 * sum : sum;
 }
@@ -301,6 +304,9 @@ void check_method(const Scene& scene) {
   }
   if (scene.backdrop) refuse("has no backdrop, but the scene has; take exact");
   if (layer->projection) refuse("has no projections, but the scene has; take exact");
+  if (is_lit(*layer)) {
+    refuse("has no light, gradient opacity, isosurfaces and slices, but the scene has; take exact");
+  }
   if (!layer->visible) refuse("needs a visible layer; take exact");
   if (volume != nullptr && volume->mask) refuse("has no masks, but the scene has; take exact");
   const bool multivariate = mesh != nullptr ? mesh->multivariate() != nullptr : volume == nullptr;

@@ -13,8 +13,10 @@
 #include "pellucid/scene/channels.h"
 #include "pellucid/scene/clip.h"
 #include "pellucid/scene/label_volume.h"
+#include "pellucid/scene/light.h"
 #include "pellucid/scene/mesh_channels.h"
 #include "pellucid/scene/multivariate_transfer_function.h"
+#include "pellucid/scene/surfaces.h"
 #include "pellucid/scene/transfer_function.h"
 #include "pellucid/scene/volume.h"
 
@@ -84,6 +86,13 @@ struct Layer {
   /// transparent. Such layers have no depth: they lie over the integral of all other layers, later
   /// ones of the list over earlier ones. For one variable without a mask.
   std::optional<LayerProjection> projection{};
+  /// How the layer and its surfaces reflect the scene's lights; none: they glow in their own colors.
+  /// Not for labels.
+  std::optional<Shading> shading{};
+  /// Multiplies the extinction of the layer's functions; may be null. Not for labels.
+  std::shared_ptr<const GradientOpacity> gradient_opacity{};
+  std::vector<Isosurface> isosurfaces{};  ///< not of labels
+  std::vector<Slice> slices{};            ///< not of labels
 };
 
 /// Returns whether the layer's transform is the identity.
@@ -98,6 +107,20 @@ Layer moved_into_place(const Layer& layer);
 /// "layer 2".
 void check_layer(const Layer& layer, const std::string& where);
 
+/// Returns whether the layer has light, gradient opacity, isosurfaces or slices: what only the
+/// general path does.
+bool is_lit(const Layer& layer) noexcept;
+/// Returns whether the layer has isosurfaces or slices.
+bool has_surfaces(const Layer& layer) noexcept;
+/// Returns the number of variables per point.
+int channels_of(const Layer& layer) noexcept;
+/// Returns the size of a voxel of a layer in its place, in world units: the mean of the three edges
+/// of a mean cell of the grid; of a mesh the edge of a cube of six mean tetrahedra.
+double voxel_of(const Layer& layer) noexcept;
+/// Returns the gradient at which the squared normal of the layer's light is a half: g0 of Shading,
+/// in data units per world length. The layer is in its place and has a shading.
+double flat_gradient(const Layer& layer) noexcept;
+
 /// Returns the volume whose grid the rays cross; null for a mesh.
 const Volume* grid_of(const Layer& layer) noexcept;
 /// Returns the corners of a box around the data in the scene's world: the grid's own box, or for a
@@ -108,14 +131,17 @@ std::array<Vec3<double>, 8> world_corners(const Layer& layer) noexcept;
 /// grids without such a block and projected layers those of world_corners(). Computes the block
 /// records of grids, in parallel if `parallel` is given.
 std::array<Vec3<double>, 8> visible_corners(const Layer& layer, const ParallelFor& parallel = {});
-/// Returns the largest color component of the layer's functions.
+/// Returns the largest color component of the layer's functions and surfaces, without light.
 double largest_color(const Layer& layer) noexcept;
-/// Returns the largest extinction of the layer's functions.
+/// Returns the same in the light of `lights`.
+double largest_color(const Layer& layer, const std::vector<Light>& lights) noexcept;
+/// Returns the largest extinction of the layer's functions, with its gradient opacity.
 double largest_extinction(const Layer& layer) noexcept;
 /// Returns an upper bound on the error of a pixel because the layer's functions approximate others
 /// (TransferFunction::approximation_error()). `behind`: the largest component of the color behind
 /// the layer. With |ln(τ̂/τ)| <= ρ everywhere, the opacity τ / max τ of a projected layer is off by
-/// at most the factor e^(2ρ).
-double approximation_error(const Layer& layer, double behind);
+/// at most the factor e^(2ρ). Light makes colors brighter, and their errors.
+double approximation_error(const Layer& layer, double behind,
+                           const std::vector<Light>& lights = {});
 
 }  // namespace pellucid

@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+#include "pellucid/geometry/vec3.h"
+#include "pellucid/math/rgb.h"
+#include "pellucid/scene/transfer_function.h"
+
+namespace pellucid {
+
+/// A light at the eye: it shines along each ray.
+struct HeadLight {
+  bool operator==(const HeadLight&) const = default;
+};
+/// A light from far away. World coordinates.
+struct DirectionalLight {
+  Vec3<double> direction{0, 0, -1};  ///< in which it shines; any length but 0
+  bool operator==(const DirectionalLight&) const = default;
+};
+/// A light at a point, equally bright at any distance. World coordinates.
+struct PointLight {
+  Vec3<double> position{};
+  bool operator==(const PointLight&) const = default;
+};
+
+/// A light of a scene. It casts no shadows.
+struct Light {
+  std::variant<HeadLight, DirectionalLight, PointLight> kind{};
+  Rgb<double> color{1, 1, 1};  ///< linear, >= 0
+};
+
+/// Throws Error if a number is not finite, a direction has no length, or a color is negative.
+/// `where` begins the message, e.g. "light 1".
+void check_light(const Light& light, const std::string& where);
+
+/// How the gradient of data is reconstructed, in the scene's world.
+///
+/// - `smooth`: at the data values the derivative of the parabola through a value and its two
+///   neighbors along each axis of the grid (on a uniform axis the central difference); one-sided at
+///   the border and beside vacuum; 0 where a value has no neighbor. Trilinear between, as the data
+///   are; half cells at the border repeat the gradient of the border value. On meshes each point has
+///   the mean of its tetrahedra's gradients, weighted by their volumes; linear between.
+/// - `field`: the gradient of the reconstructed data themselves, which jumps between cells.
+enum class GradientKind { smooth, field };
+/// Returns the name of a kind as in scene files.
+std::string_view gradient_kind_name(GradientKind kind) noexcept;
+
+/// How a layer or its surfaces reflect light (Blinn 1977), on both sides.
+///
+///   shaded color = color ∘ (ambient + Σ diffuse |n·l| L) + Σ specular |n·h|^power L
+///
+/// with the lights' colors L, their directions l, the half vectors h = (l + v) / |l + v| and the
+/// direction v to the eye. The sum of a light's specular part is 0 where l = -v. The normal is
+///
+///   n = g / √(|g|² + g0²),   g0 = flatness · (range of the data) / (size of a voxel),
+///
+/// so that light fades where the data are flat, and noise of the last bit makes no highlights.
+struct Shading {
+  double ambient = 0.2, diffuse = 0.7, specular = 0.2;  ///< >= 0
+  double power = 20;                                    ///< from 1 to 1000
+  GradientKind gradient = GradientKind::smooth;
+  double flatness = 0.02;  ///< >= 0; see flat_gradient() (scene/layer.h)
+  int channel = 0;         ///< of several variables, the one whose gradient it is
+
+  bool operator==(const Shading&) const = default;
+};
+
+/// A factor of the extinction as a function of the gradient's magnitude: what VTK calls gradient
+/// opacity. Linear between its points, constant outside of them.
+///
+/// The magnitude is that of the `smooth` gradient at the data values, trilinear between (linear in
+/// tetrahedra).
+class GradientOpacity {
+ public:
+  struct Point {
+    double gradient = 0;  ///< magnitude
+    double factor = 1;    ///< >= 0
+  };
+  /// Unit of length of the magnitudes: of the world, or a voxel (voxel_of(), scene/layer.h).
+  enum class Unit { world, voxel };
+
+  /// Throws Error as TransferFunction does, and if a magnitude is negative.
+  explicit GradientOpacity(std::vector<Point> points, Unit unit = Unit::world, int channel = 0);
+
+  const std::vector<Point>& points() const noexcept { return points_; }
+  Unit unit() const noexcept { return unit_; }
+  int channel() const noexcept { return channel_; }
+  double largest_factor() const noexcept { return largest_; }
+  /// Returns the same function of the magnitude per world length, with factors in the place of
+  /// extinctions. `voxel`: the size of a voxel in world units.
+  TransferFunction per_world(double voxel) const;
+
+ private:
+  std::vector<Point> points_;
+  Unit unit_;
+  int channel_;
+  double largest_ = 0;
+};
+
+}  // namespace pellucid

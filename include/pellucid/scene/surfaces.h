@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "pellucid/geometry/vec3.h"
+#include "pellucid/math/rgb.h"
+#include "pellucid/scene/transfer_function.h"
+
+namespace pellucid {
+
+/// Where the reconstructed data of a layer have a value. Rays are cut there, and the surface is put
+/// over what is behind it. Lit as the layer's shading says.
+struct Isosurface {
+  double value = 0;
+  double opacity = 1;  ///< in [0, 1]
+  Rgb<double> color{1, 1, 1};
+  /// Gives the color by a variable of the layer in place of `color`; may be null.
+  std::shared_ptr<const TransferFunction> colors{};
+  int channel = 0;        ///< of several variables, the one that has the value
+  int color_channel = 0;  ///< and the one that `colors` sees
+
+  bool operator==(const Isosurface&) const = default;
+};
+
+/// A plane that shows the data of a layer in colors, put over what is behind it. Unlit. It is
+/// absent where the layer is: outside of the data, in vacuum, and where clips cut it away.
+struct Slice {
+  Vec3<double> point{};          ///< in the scene's world
+  Vec3<double> normal{0, 0, 1};  ///< any length but 0
+  double opacity = 1;            ///< in [0, 1]
+  /// The color of each value; null: that of the layer's function of one variable.
+  std::shared_ptr<const TransferFunction> colors{};
+  int channel = 0;  ///< of several variables, the one that is shown
+
+  bool operator==(const Slice&) const = default;
+};
+
+}  // namespace pellucid

@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pellucid/scene/light.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "message.h"
+#include "pellucid/scene/error.h"
+
+namespace pellucid {
+namespace {
+
+bool is_finite(const Vec3<double>& v) {
+  return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
+}
+
+TransferFunction factors(const std::vector<GradientOpacity::Point>& points, double unit) {
+  std::vector<TransferFunction::Point> result;
+  result.reserve(points.size());
+  for (const GradientOpacity::Point& point : points) {
+    result.push_back({point.gradient / unit, point.factor, {}});
+  }
+  return TransferFunction(std::move(result));
+}
+
+}  // namespace
+
+void check_light(const Light& light, const std::string& where) {
+  if (const auto* directional = std::get_if<DirectionalLight>(&light.kind)) {
+    const Vec3<double>& d = directional->direction;
+    if (!is_finite(d) || !(std::hypot(d.x, d.y, d.z) > 0) ||
+        !std::isfinite(std::hypot(d.x, d.y, d.z))) {
+      throw Error(where + ": direction is " + tuple(d) + ", but must be finite and not zero");
+    }
+  }
+  if (const auto* point = std::get_if<PointLight>(&light.kind)) {
+    if (!is_finite(point->position)) {
+      throw Error(where + ": position is " + tuple(point->position) + ", but must be finite");
+    }
+  }
+  for (const double channel : {light.color.r, light.color.g, light.color.b}) {
+    if (!(channel >= 0 && channel <= 1e6)) {
+      throw Error(where + ": a color is " + number(channel) + ", but must be from 0 to 1e6");
+    }
+  }
+}
+
+std::string_view gradient_kind_name(GradientKind kind) noexcept {
+  return kind == GradientKind::smooth ? "smooth" : "field";
+}
+
+GradientOpacity::GradientOpacity(std::vector<Point> points, Unit unit, int channel)
+    : points_(std::move(points)), unit_(unit), channel_(channel) {
+  try {
+    factors(points_, 1);
+  } catch (const Error& error) {
+    throw Error("gradient opacity: " + std::string(error.what()));
+  }
+  for (const Point& point : points_) {
+    if (!(point.gradient >= 0)) {
+      throw Error("gradient opacity: a point is at gradient " + number(point.gradient) +
+                  ", but magnitudes are 0 or more");
+    }
+    largest_ = std::max(largest_, point.factor);
+  }
+}
+
+TransferFunction GradientOpacity::per_world(double voxel) const {
+  return factors(points_, unit_ == Unit::voxel ? voxel : 1);
+}
+
+}  // namespace pellucid
