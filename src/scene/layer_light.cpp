@@ -21,8 +21,9 @@ class LightCheck {
   void operator()() const {
     if (!is_lit(layer_)) return;
     if (std::holds_alternative<LabelContent>(layer_.content)) {
-      fail("labels have no gradient and no surfaces; leave shading, gradient opacity, isosurfaces "
-           "and slices out");
+      fail(
+          "labels have no gradient and no surfaces; leave shading, gradient opacity, isosurfaces "
+          "and slices out");
     }
     if (layer_.projection) {
       fail("a projected layer has no light and no surfaces; leave one of the two out");
@@ -94,7 +95,8 @@ class LightCheck {
     require(what + ": opacity", slice.opacity, 0, 1);
     check_channel(slice.channel, what);
     if (!slice.colors && table_of(layer_) == nullptr) {
-      fail(what + " needs colors, for the layer's function is of several variables; give it colors");
+      fail(what +
+           " needs colors, for the layer's function is of several variables; give it colors");
     }
   }
 
@@ -117,8 +119,8 @@ struct MostLight {
     }
   }
   double of(double color) const {
-    return std::max({factor.r * color + added.r, factor.g * color + added.g,
-                     factor.b * color + added.b});
+    return std::max(
+        {factor.r * color + added.r, factor.g * color + added.g, factor.b * color + added.b});
   }
 };
 

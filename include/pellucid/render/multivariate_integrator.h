@@ -70,8 +70,16 @@ class MultivariateRayIntegrator {
   template <class Span>
   PELLUCID_HD void add_stretch(const Span& span, Interval<double> range, PrimitiveSet primitives,
                                double left_out, double position_error) noexcept {
-    ++evaluations_;
     demand_.primitives = primitives;
+    add_panels(SpanPanels<Span>{*transfer_, span}, range, left_out, position_error);
+  }
+
+  /// The same for any stretch. It has a `length` in world units, and panel(begin, end, demand,
+  /// allowance): the PanelSegment of a part, or where to cut it.
+  template <class Stretch>
+  PELLUCID_HD void add_panels(const Stretch& stretch, Interval<double> range, double left_out,
+                              double position_error) noexcept {
+    ++evaluations_;
     // The parts still to do, by their ends, the nearest last.
     double ends[most_cuts + 1];
     int open = 1;
@@ -83,7 +91,7 @@ class MultivariateRayIntegrator {
       demand_.position_error =
           begin > 0 && end < 1 ? (end - begin) * position_error : position_error;
       demand_.last_resort = open > most_cuts || !(end - begin > 1e-9);
-      const PanelSegment<double> panel = integrate(span, begin, end, left_out);
+      const PanelSegment<double> panel = integrate(stretch, begin, end, left_out);
       if (!panel.done) {
         const double cut = begin + panel.cut * (end - begin);
         if (cut > begin && cut < end) {
@@ -93,11 +101,34 @@ class MultivariateRayIntegrator {
         }
         continue;
       }
-      if (fold_.optical_depth() >= target_) find(span, begin, end, range);
+      if (fold_.optical_depth() >= target_) find(stretch, begin, end, range);
       begin = end;
       --open;
       if (done()) return;
     }
+  }
+
+  /// Puts a surface over what is behind it, at the position t. `color`: its radiance if it were
+  /// opaque. `error`: of its opacity, and of opacity · color, together relative to the largest
+  /// color.
+  PELLUCID_HD void add_surface(double opacity, const Rgb<double>& color, double error,
+                               double t) noexcept {
+    budget_.spend(0, opacity, fold_.transparency(), demand_.largest_color * min(error, 1.0));
+    SegmentResult<double> surface;
+    surface.opacity = opacity;
+    surface.transparency = 1 - opacity;
+    surface.optical_depth = opacity < 1 ? -log1p(-opacity) : infinity;
+    surface.radiance = opacity * color;
+    fold_.add(surface);
+    ++panels_;
+    if (fold_.optical_depth() >= target_ && found_ == infinity) found_ = t;
+  }
+
+  /// Returns the transparency in front of what comes next.
+  PELLUCID_HD double transparency() const noexcept { return fold_.transparency(); }
+  /// Charges the budget for an unknown opacity that is seen through `transparency`.
+  PELLUCID_HD void charge_opacity_behind(double transparency, double opacity) noexcept {
+    budget_.spend(0, 0, transparency, demand_.largest_color * min(opacity, 1.0));
   }
 
   /// Returns the result up to the last span.
@@ -126,24 +157,40 @@ class MultivariateRayIntegrator {
                                    demand_.largest_color);
   }
 
+  /// Panels of several variables along a span.
   template <class Span>
-  PELLUCID_HD PanelSegment<double> integrate(const Span& whole, double begin, double end,
+  struct SpanPanels {
+    const MultivariateTransfer<double>& transfer;
+    const Span& span;
+
+    PELLUCID_HD double length() const noexcept { return span.length; }
+    template <class Allowance>
+    PELLUCID_HD PanelSegment<double> panel(double begin, double end,
+                                           const PanelDemand<double>& demand,
+                                           const Allowance& allowance) const noexcept {
+      if (!(begin > 0 || end < 1)) {
+        return integrate_multivariate_panel(transfer, span, demand, allowance);
+      }
+      return integrate_multivariate_panel(transfer, span.part(transfer.channels, begin, end),
+                                          demand, allowance);
+    }
+  };
+
+  template <class Stretch>
+  PELLUCID_HD PanelSegment<double> integrate(const Stretch& stretch, double begin, double end,
                                              double left_out) noexcept {
-    Span part;
-    const bool cut = begin > 0 || end < 1;
-    if (cut) part = whole.part(transfer_->channels, begin, end);
-    const Span& span = cut ? part : whole;
+    const double length =
+        begin > 0 || end < 1 ? (end - begin) * stretch.length() : stretch.length();
     const auto allowance = [&](double opacity) noexcept {
-      return max(budget_.allowance(span.length, opacity, fold_.transparency()),
-                 RayBudget<double>::minimum_allowance(tolerance_, span.length / length_));
+      return max(budget_.allowance(length, opacity, fold_.transparency()),
+                 RayBudget<double>::minimum_allowance(tolerance_, length / length_));
     };
-    const PanelSegment<double> panel =
-        integrate_multivariate_panel(*transfer_, span, demand_, allowance);
+    const PanelSegment<double> panel = stretch.panel(begin, end, demand_, allowance);
     if (!panel.done) return panel;
     ++panels_;
-    const double error = panel.error(demand_.largest_color) +
-                         demand_.largest_color * min(left_out * span.length, 1.0);
-    budget_.spend(span.length, panel.opacity, fold_.transparency(), error);
+    const double error =
+        panel.error(demand_.largest_color) + demand_.largest_color * min(left_out * length, 1.0);
+    budget_.spend(length, panel.opacity, fold_.transparency(), error);
     before_ = fold_.optical_depth();
     if (!(panel.found.segment.optical_depth > 0)) {
       ++counts_.skipped;
@@ -155,19 +202,17 @@ class MultivariateRayIntegrator {
     return panel;
   }
 
-  /// Finds the position in the part [begin, end] of a cell at which the depth reaches the target.
-  /// It uses the depths of lines, which are within the tolerance there.
-  template <class Span>
-  PELLUCID_HD void find(const Span& span, double begin, double end,
+  /// Finds the position in the part [begin, end] of a stretch at which the depth reaches the
+  /// target. It uses the depths of lines, which are within the tolerance there.
+  template <class Stretch>
+  PELLUCID_HD void find(const Stretch& stretch, double begin, double end,
                         Interval<double> range) noexcept {
     PanelDemand<double> demand = demand_;
     demand.last_resort = true;
     demand.grade = Grade::proved;
     const auto nothing = [](double) noexcept { return 0.0; };
     const auto inside = [&](double to) noexcept {
-      return integrate_multivariate_panel(*transfer_, span.part(transfer_->channels, begin, to),
-                                          demand, nothing)
-          .found.segment.optical_depth;
+      return stretch.panel(begin, to, demand, nothing).found.segment.optical_depth;
     };
     const double at =
         solve_monotone(inside, target_ - before_, begin, end, 0.0, fold_.optical_depth() - before_);

@@ -86,8 +86,8 @@ struct Layer {
   /// transparent. Such layers have no depth: they lie over the integral of all other layers, later
   /// ones of the list over earlier ones. For one variable without a mask.
   std::optional<LayerProjection> projection{};
-  /// How the layer and its surfaces reflect the scene's lights; none: they glow in their own colors.
-  /// Not for labels.
+  /// How the layer and its surfaces reflect the scene's lights; none: they glow in their own
+  /// colors. Not for labels.
   std::optional<Shading> shading{};
   /// Multiplies the extinction of the layer's functions; may be null. Not for labels.
   std::shared_ptr<const GradientOpacity> gradient_opacity{};

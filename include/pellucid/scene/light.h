@@ -42,8 +42,8 @@ void check_light(const Light& light, const std::string& where);
 /// - `smooth`: at the data values the derivative of the parabola through a value and its two
 ///   neighbors along each axis of the grid (on a uniform axis the central difference); one-sided at
 ///   the border and beside vacuum; 0 where a value has no neighbor. Trilinear between, as the data
-///   are; half cells at the border repeat the gradient of the border value. On meshes each point has
-///   the mean of its tetrahedra's gradients, weighted by their volumes; linear between.
+///   are; half cells at the border repeat the gradient of the border value. On meshes each point
+///   has the mean of its tetrahedra's gradients, weighted by their volumes; linear between.
 /// - `field`: the gradient of the reconstructed data themselves, which jumps between cells.
 enum class GradientKind { smooth, field };
 /// Returns the name of a kind as in scene files.
@@ -54,7 +54,8 @@ std::string_view gradient_kind_name(GradientKind kind) noexcept;
 ///   shaded color = color ∘ (ambient + Σ diffuse |n·l| L) + Σ specular |n·h|^power L
 ///
 /// with the lights' colors L, their directions l, the half vectors h = (l + v) / |l + v| and the
-/// direction v to the eye. The sum of a light's specular part is 0 where l = -v. The normal is
+/// direction v to the eye. A light has no specular part
+/// where |l + v| <= 1e-6. The normal is
 ///
 ///   n = g / √(|g|² + g0²),   g0 = flatness · (range of the data) / (size of a voxel),
 ///

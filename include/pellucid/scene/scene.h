@@ -99,7 +99,7 @@ struct Integration {
 /// not matter, except among projected ones (Layer::projection).
 struct Scene {
   std::vector<Layer> layers;
-  std::vector<Clip> clips;  ///< of all layers; what all of them keep is shown
+  std::vector<Clip> clips;             ///< of all layers; what all of them keep is shown
   std::vector<Light> lights{Light{}};  ///< of all layers that have a shading
   Camera camera;
   ImageSize size;
@@ -121,8 +121,8 @@ void check_data(const Scene& scene);
 std::array<Vec3<double>, 8> world_corners(const Scene& scene) noexcept;
 /// Returns the same around what absorbs (visible_corners() of the layers).
 std::array<Vec3<double>, 8> visible_corners(const Scene& scene, const ParallelFor& parallel = {});
-/// Returns the largest color component of the visible layers' functions and surfaces, in the light of
-/// the scene. The scene must have passed check_data().
+/// Returns the largest color component of the visible layers' functions and surfaces, in the light
+/// of the scene. The scene must have passed check_data().
 double largest_color(const Scene& scene) noexcept;
 /// Returns the largest color component that may be seen behind a part of a layer: of the background
 /// and of the backdrop, and if several layers are visible also of their functions. The scene must

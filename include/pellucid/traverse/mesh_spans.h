@@ -23,7 +23,8 @@ struct MeshSpan {
   /// the ends: what one span has too much, its neighbour has too little.
   double position_error = 0;
   double end_error = 0;  ///< and where they do not
-  bool vacuum = false;   ///< some channel has no value
+  std::int32_t tetrahedron = 0;
+  bool vacuum = false;  ///< some channel has no value
   /// The mesh overlaps itself here: what is in it is not known.
   bool overlaps = false;
 };
@@ -100,6 +101,7 @@ PELLUCID_HD inline MeshSpan span_between(const MeshPlace& from, const MeshPlace&
                                          const MeshFields& fields, std::int32_t tetrahedron,
                                          double front) noexcept {
   MeshSpan span;
+  span.tetrahedron = tetrahedron;
   span.begin = max(from.t, front);
   span.end = to.t;
   const double length = to.t - from.t;

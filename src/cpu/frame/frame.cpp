@@ -72,7 +72,7 @@ Frame::Frame(const Scene& described, const RenderOptions& options, int threads, 
   }
   kept.keep_only(scene);
   if (!layers.empty() || projections.empty()) {
-    tracer = make_scene_tracer(std::move(clipped), wanted, options.depth);
+    tracer = make_scene_tracer(std::move(clipped), scene.lights, wanted, options.depth);
   }
   if (projections.empty()) return;
   std::vector<Layer> in_place;

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <optional>
+#include <vector>
 
 #include "layer_stream.h"
 #include "pellucid/traverse/block_walk.h"
@@ -18,12 +20,19 @@ inline double grid_position_error(double t) {
 class GridStream : public LayerStream {
  public:
   /// All must outlive the stream. `axis`: of the cells to walk through, in the grid's coordinates.
+  /// Skipped blocks are visited where a slice is; `wholly`: from end to end.
   GridStream(const Volume& volume, const GridAxis<double> (&axis)[3], const BlockRecords& records,
-             const BlockClass* classes)
-      : volume_(volume), axis_(axis), records_(records), classes_(classes) {}
+             const BlockClass* classes, const std::vector<Slice>& slices, bool wholly)
+      : volume_(volume),
+        axis_(axis),
+        records_(records),
+        classes_(classes),
+        slices_(slices),
+        wholly_(wholly) {}
 
   Interval<double> start(const Ray<double>& ray) override {
     ray_ = volume_.grid_from_world().ray(ray);
+    if (!slices_.empty()) positions_ = slice_positions(slices_, ray);
     blocks_.reset();
     cells_.reset();
     return grid_interval(axis_, ray_);
@@ -44,23 +53,42 @@ class GridStream : public LayerStream {
       }
       cells_.reset();
       if (!blocks_ || !blocks_->next(classes_, block_)) return false;
-      if (classes_ != nullptr && classes_[block_.block].kind == BlockKind::skip) {
+      Interval<double> visited{block_.t_begin, block_.t_end};
+      if (classes_ != nullptr && classes_[block_.block].kind == BlockKind::skip &&
+          !has_slice(visited)) {
         step.t_begin = block_.t_begin;
         step.t_end = block_.t_end;
         block = block_.block;
         skipped = true;
         return true;
       }
-      cells_.emplace(axis_, ray_, Interval<double>{block_.t_begin, block_.t_end});
+      cells_.emplace(axis_, ray_, visited);
     }
   }
   const Ray<double>& ray() const { return ray_; }
 
  private:
+  /// Returns whether a slice is in the range, which becomes what is to be visited of it.
+  bool has_slice(Interval<double>& range) const {
+    Interval<double> visited{range.end, range.begin};
+    for (const SlicePosition& slice : positions_) {
+      const double off = 64 * (slice.error + grid_position_error(slice.t));
+      if (!(slice.t + off >= range.begin && slice.t - off <= range.end)) continue;
+      visited.begin = std::max(range.begin, std::min(visited.begin, slice.t - off));
+      visited.end = std::min(range.end, std::max(visited.end, slice.t + off));
+    }
+    if (!(visited.begin <= visited.end)) return false;
+    if (!wholly_ && visited.begin < visited.end) range = visited;
+    return true;
+  }
+
   const Volume& volume_;
   const GridAxis<double> (&axis_)[3];
   const BlockRecords& records_;
   const BlockClass* classes_;  ///< null: none is skipped
+  const std::vector<Slice>& slices_;
+  bool wholly_;
+  std::vector<SlicePosition> positions_;
   Ray<double> ray_{};
   std::optional<BlockWalk> blocks_;
   std::optional<StructuredWalk<double>> cells_;

@@ -18,7 +18,8 @@ namespace {
 class LabelSource : public LayerSource {
  public:
   explicit LabelSource(const LayerTask& task)
-      : content_(std::get<LabelContent>(task.layer.content)),
+      : LayerSource(task.layer),
+        content_(std::get<LabelContent>(task.layer.content)),
         axes_(content_.labels->volume()),
         records_(content_.labels->volume().block_records(task.parallel)) {
     const TransferTablesStorage tables(content_.table->function());
@@ -55,7 +56,8 @@ class LabelStream : public GridStream {
  public:
   LabelStream(const LabelSource& source, const Volume& volume, const BlockRecords& records,
               const BlockClass* classes)
-      : GridStream(volume, source.axes().axis(), records, classes), source_(source) {}
+      : GridStream(volume, source.axes().axis(), records, classes, source.look().slices(), false),
+        source_(source) {}
 
   void restrict_to_range(Interval<double> range) override {
     GridStream::restrict_to_range(range);

@@ -9,6 +9,7 @@ namespace {
 /// Null where the layer takes the general path.
 std::unique_ptr<const RayTracer> make_fast_tracer(const TracerTask& task) {
   const LayerContent& content = task.layer.content;
+  if (is_lit(task.layer)) return nullptr;
   if (const auto* volume = std::get_if<VolumeContent>(&content)) {
     return volume->mask ? nullptr : make_univariate_tracer(task);
   }
@@ -43,7 +44,9 @@ LayerSetup::LayerSetup(const Layer& layer, const LayerSetting& setting, int thre
 }
 
 bool LayerSetup::shows(const Layer& layer) const {
-  return layer.content == content_ && layer.transform == transform_;
+  return layer.content == content_ && layer.transform == transform_ &&
+         layer.shading == layer_.shading && layer.gradient_opacity == layer_.gradient_opacity &&
+         layer.isosurfaces == layer_.isosurfaces && layer.slices == layer_.slices;
 }
 
 const LayerSource& LayerSetup::source() const {

@@ -4,6 +4,7 @@
 #include <memory>
 #include <vector>
 
+#include "layer_look.h"
 #include "pellucid/geometry/ray.h"
 #include "pellucid/math/bernstein.h"
 #include "pellucid/render/integrate_cell.h"
@@ -20,7 +21,11 @@ struct LayerStretch {
   double left_out = 0;        ///< upper bound on the extinction of what is ignored here
   double position_error = 0;  ///< largest error of begin and end together, world length
   double unknown = 0;         ///< upper bound on an opacity in front of it that is not known
+  double value_error = 0;     ///< of the data, beside their rounding
   CubicBernstein<double> data[max_channels];
+  // Of layers that need them (LayerLook):
+  CubicBernstein<double> gradient[3];  ///< in the world, for light
+  CubicBernstein<double> magnitude;    ///< for gradient opacity
 };
 
 /// The stretches of one layer along rays, one ray after the other. Used by one thread.
@@ -44,7 +49,9 @@ class LayerStream {
 /// A layer as rays need it: its functions and, for each thread, a stream.
 class LayerSource {
  public:
-  LayerSource() = default;
+  /// The layer must outlive the source.
+  explicit LayerSource(const Layer& layer)
+      : look_(layer), most_extinction_(largest_extinction(layer)) {}
   LayerSource(const LayerSource&) = delete;
   LayerSource& operator=(const LayerSource&) = delete;
   virtual ~LayerSource() = default;
@@ -52,9 +59,15 @@ class LayerSource {
   /// Returns the functions that its stretches refer to.
   const std::vector<MultivariateTransfer<double>>& functions() const noexcept { return functions_; }
   virtual std::unique_ptr<LayerStream> stream() const = 0;
+  const LayerLook& look() const noexcept { return look_; }
+  double most_extinction() const noexcept { return most_extinction_; }
 
  protected:
   std::vector<MultivariateTransfer<double>> functions_;
+
+ private:
+  LayerLook look_;
+  double most_extinction_;
 };
 
 /// Parameters of a layer's source.

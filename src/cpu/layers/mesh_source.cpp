@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "layers/layer_stream.h"
+#include "layers/mesh_gradient.h"
 #include "mesh/mesh_field_storage.h"
 #include "mesh/mesh_hits.h"
 #include "pellucid/render/integrate_mesh_ray.h"
@@ -15,10 +17,18 @@ namespace {
 class MeshSource : public LayerSource {
  public:
   explicit MeshSource(const LayerTask& task)
-      : content_(std::get<MeshContent>(task.layer.content)),
+      : LayerSource(task.layer),
+        content_(std::get<MeshContent>(task.layer.content)),
         mesh_(content_.mesh->mesh().view()),
-        fields_(*content_.mesh),
-        largest_extinction_(largest_extinction(task.layer)) {
+        fields_(*content_.mesh) {
+    if (look().reflection() != nullptr) {
+      const Shading& shading = *task.layer.shading;
+      gradient_.emplace(mesh_, fields_.view().channel[shading.channel], points(), shading.gradient);
+    }
+    if (look().gradient_opacity() != nullptr) {
+      magnitude_.emplace(mesh_, fields_.view().channel[task.layer.gradient_opacity->channel()],
+                         points(), GradientKind::smooth);
+    }
     if (content_.multivariate() != nullptr) {
       functions_.push_back(content_.multivariate()->view());
     } else {
@@ -31,14 +41,18 @@ class MeshSource : public LayerSource {
 
   const Tetrahedra& mesh() const { return mesh_; }
   const MeshFields& fields() const { return fields_.view(); }
-  double most_extinction() const { return largest_extinction_; }
+  /// Null where nothing needs them.
+  const MeshGradient* gradient() const { return gradient_ ? &*gradient_ : nullptr; }
+  const MeshGradient* magnitude() const { return magnitude_ ? &*magnitude_ : nullptr; }
 
  private:
+  std::size_t points() const { return content_.mesh->mesh().points().size(); }
+
   const MeshContent& content_;
   Tetrahedra mesh_;
   MeshFieldStorage fields_;
-  double largest_extinction_;
   ChannelTable<double> table_;
+  std::optional<MeshGradient> gradient_, magnitude_;
 };
 
 /// The tetrahedra that a ray crosses. It finds all of them before the first is asked for.
@@ -47,6 +61,7 @@ class MeshStream : public LayerStream {
   explicit MeshStream(const MeshSource& source) : source_(source) {}
 
   Interval<double> start(const Ray<double>& ray) override {
+    ray_ = ray;
     spans_.clear();
     next_ = 0;
     const MeshRay hits = hits_.find(source_.mesh(), ray);
@@ -102,10 +117,19 @@ class MeshStream : public LayerStream {
       const LinearBernstein<double> whole{{span.front[c], span.back[c]}};
       const bool cut = from > 0 || to < 1;
       stretch.data[c] = as_cubic(cut ? restrict_to(whole, from, to) : whole);
+      stretch.value_error = std::max(stretch.value_error, span.value_error[c]);
+    }
+    const Interval<double> range{stretch.begin, stretch.end};
+    if (source_.gradient() != nullptr) {
+      source_.gradient()->along(span.tetrahedron, ray_, range, stretch.gradient);
+    }
+    if (source_.magnitude() != nullptr) {
+      stretch.magnitude = source_.magnitude()->magnitude_along(span.tetrahedron, ray_, range);
     }
   }
 
   const MeshSource& source_;
+  Ray<double> ray_{};
   MeshHits hits_;
   std::vector<MeshSpan> spans_;
   std::size_t next_ = 0;

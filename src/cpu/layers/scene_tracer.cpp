@@ -52,8 +52,10 @@ struct Journey {
 
 class SceneTracer : public RayTracer {
  public:
-  SceneTracer(std::vector<ClippedLayer> layers, const RayTolerance& wanted, bool depth)
+  SceneTracer(std::vector<ClippedLayer> layers, const std::vector<Light>& lights,
+              const RayTolerance& wanted, bool depth)
       : layers_(std::move(layers)),
+        lights_(light_sources(lights)),
         wanted_(wanted),
         depth_(depth),
         only_(layers_.size() == 1 && layers_[0].clips.empty() ? layers_[0].setup->fast()
@@ -290,7 +292,7 @@ class SceneTracer : public RayTracer {
   }
 
   GeneralPath& made(std::optional<GeneralPath>& general) const {
-    if (!general) general.emplace(layers_, wanted_);
+    if (!general) general.emplace(layers_, lights_, wanted_);
     return *general;
   }
   RayResult integrate(std::optional<GeneralPath>& general, const RayPart& part,
@@ -309,6 +311,7 @@ class SceneTracer : public RayTracer {
   }
 
   const std::vector<ClippedLayer> layers_;
+  const std::vector<LightSource<double>> lights_;
   const RayTolerance wanted_;
   const bool depth_;
   const RayTracer* const only_;  ///< of the only layer, which has no clips; null otherwise
@@ -317,8 +320,9 @@ class SceneTracer : public RayTracer {
 }  // namespace
 
 std::unique_ptr<const RayTracer> make_scene_tracer(std::vector<ClippedLayer> layers,
+                                                   const std::vector<Light>& lights,
                                                    const RayTolerance& wanted, bool depth) {
-  return std::make_unique<SceneTracer>(std::move(layers), wanted, depth);
+  return std::make_unique<SceneTracer>(std::move(layers), lights, wanted, depth);
 }
 
 }  // namespace pellucid

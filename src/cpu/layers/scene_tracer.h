@@ -17,6 +17,7 @@ namespace pellucid {
 ///
 /// With a method other than `exact` there is one layer, without clips, and its sampler follows it.
 std::unique_ptr<const RayTracer> make_scene_tracer(std::vector<ClippedLayer> layers,
+                                                   const std::vector<Light>& lights,
                                                    const RayTolerance& wanted, bool depth);
 
 }  // namespace pellucid

@@ -3,7 +3,9 @@
 #include <cmath>
 #include <deque>
 #include <optional>
+#include <utility>
 
+#include "grid_gradient.h"
 #include "grid_stream.h"
 #include "label_axes.h"
 #include "pellucid/render/integrate_multivariate_ray.h"
@@ -27,20 +29,73 @@ void skip_only_where_both_do(std::vector<BlockClass>& classes, const BlockClasse
   }
 }
 
+/// Lets the blocks be visited in which a channel has the value of an isosurface.
+void visit_isosurfaces(std::vector<BlockClass>& classes, const BlockRecords& records, int channel,
+                       const LayerLook& look, const LayerTask& task) {
+  std::vector<double> values;
+  for (const Isosurface& surface : look.isosurfaces()) {
+    if (surface.channel == channel) values.push_back(surface.value);
+  }
+  if (values.empty()) return;
+  std::ranges::sort(values);
+  std::vector<TransferFunction::Point> points;
+  for (const double value : values) {
+    // Far more than what rounding may make of data, and a triangle to be told from nothing.
+    const double off = std::max(std::abs(value), 1e-30) * 0x1p-20;
+    if (points.empty() || points.back().value < value - off) {
+      points.push_back({value - off, 0, {}});
+    } else {
+      points.pop_back();
+    }
+    if (points.empty() || points.back().value < value) points.push_back({value, 1, {}});
+    points.push_back({value + off, 0, {}});
+  }
+  const TransferFunction function(std::move(points));
+  const TransferTablesStorage tables(function);
+  const BlockClassesStorage found(records, tables.tables(), 1, task.parallel);
+  skip_only_where_both_do(classes, found.view());
+}
+
+/// The gradients of a grid that a layer's light and gradient opacity need.
+class GridGradients {
+ public:
+  /// `volume_of(channel)` returns a volume.
+  template <class VolumeOf>
+  GridGradients(const LayerLook& look, const VolumeOf& volume_of) {
+    if (const auto& shading = look.layer().shading) {
+      gradient_.emplace(volume_of(shading->channel), shading->gradient);
+    }
+    if (const auto& factors = look.layer().gradient_opacity) {
+      magnitude_.emplace(volume_of(factors->channel()), GradientKind::smooth);
+    }
+  }
+  void fill(const StructuredWalk<double>::Step& step, LayerStretch& stretch) const {
+    if (gradient_) gradient_->along(step, stretch.gradient);
+    if (magnitude_) stretch.magnitude = magnitude_->magnitude_along(step);
+  }
+
+ private:
+  std::optional<GridGradient> gradient_, magnitude_;
+};
+
 /// A volume with one function, or with a mask that chooses among several.
 class VolumeSource : public LayerSource {
  public:
   explicit VolumeSource(const LayerTask& task)
-      : content_(std::get<VolumeContent>(task.layer.content)),
+      : LayerSource(task.layer),
+        content_(std::get<VolumeContent>(task.layer.content)),
         channels_({{"value", "", content_.volume}}),
         grid_(multichannel_grid(channels_)),
-        records_(content_.volume->block_records(task.parallel)) {
+        records_(content_.volume->block_records(task.parallel)),
+        gradients_(look(), [&](int) -> const Volume& { return *content_.volume; }) {
     add(*content_.transfer_function, task);
-    if (!content_.mask) return;
-    labels_.emplace(content_.mask->labels().volume());
-    for (const LabelMask::Choice& choice : content_.mask->choices()) {
-      add(*choice.transfer_function, task);
+    if (content_.mask) {
+      labels_.emplace(content_.mask->labels().volume());
+      for (const LabelMask::Choice& choice : content_.mask->choices()) {
+        add(*choice.transfer_function, task);
+      }
     }
+    visit_isosurfaces(classes_, records_, 0, look(), task);
   }
 
   std::unique_ptr<LayerStream> stream() const override;
@@ -52,6 +107,7 @@ class VolumeSource : public LayerSource {
   }
   const LabelAxes* labels() const { return labels_ ? &*labels_ : nullptr; }
   const MultichannelGrid& grid() const { return grid_; }
+  const GridGradients& gradients() const { return gradients_; }
 
  private:
   void add(const TransferFunction& function, const LayerTask& task) {
@@ -72,6 +128,7 @@ class VolumeSource : public LayerSource {
   Channels channels_;
   MultichannelGrid grid_;
   const BlockRecords& records_;
+  GridGradients gradients_;
   std::vector<BlockClass> classes_;
   std::deque<ChannelTable<double>> tables_;  ///< addresses stay
   std::optional<LabelAxes> labels_;
@@ -82,7 +139,8 @@ class VolumeStream : public GridStream {
  public:
   VolumeStream(const VolumeSource& source, const Volume& volume, const BlockRecords& records,
                const BlockClass* classes)
-      : GridStream(volume, source.grid().axis, records, classes), source_(source) {}
+      : GridStream(volume, source.grid().axis, records, classes, source.look().slices(), false),
+        source_(source) {}
 
   void restrict_to_range(Interval<double> range) override {
     GridStream::restrict_to_range(range);
@@ -107,6 +165,7 @@ class VolumeStream : public GridStream {
       stretch.begin = begin_ = step.t_begin;
       stretch.end = end_ = step.t_end;
       stretch.position_error = grid_position_error(step.t_end);
+      source_.gradients().fill(step, source_.labels() == nullptr ? stretch : whole_);
       if (source_.labels() == nullptr) {
         stretch.function = 0;
         stretch.data[0] = span_.data[0];
@@ -125,11 +184,14 @@ class VolumeStream : public GridStream {
     stretch.position_error = 2 * grid_position_error(part.t_end);
     const double from = (part.t_begin - begin_) / length, to = (part.t_end - begin_) / length;
     stretch.data[0] = restrict_to(span_.data[0], from, to);
+    for (int a = 0; a < 3; ++a) stretch.gradient[a] = restrict_to(whole_.gradient[a], from, to);
+    stretch.magnitude = restrict_to(whole_.magnitude, from, to);
   }
 
   const VolumeSource& source_;
   MultivariateSpan<double> span_;
   double begin_ = 0, end_ = 0;  ///< of the cell
+  LayerStretch whole_;          ///< the gradients in it
   std::optional<StructuredWalk<double>> labels_;
 };
 
@@ -141,31 +203,46 @@ std::unique_ptr<LayerStream> VolumeSource::stream() const {
 class ChannelsSource : public LayerSource {
  public:
   explicit ChannelsSource(const LayerTask& task)
-      : channels_(*std::get<ChannelsContent>(task.layer.content).channels),
+      : LayerSource(task.layer),
+        channels_(*std::get<ChannelsContent>(task.layer.content).channels),
         grid_(multichannel_grid(channels_)),
         storage_(channels_, *std::get<ChannelsContent>(task.layer.content).transfer_function,
                  task.negligible_extinction, task.parallel),
-        blocks_(storage_.view()) {
+        blocks_(storage_.view()),
+        gradients_(look(), [&](int c) -> const Volume& { return *channels_[c].volume; }) {
     functions_.push_back(std::get<ChannelsContent>(task.layer.content).transfer_function->view());
+    if (look().isosurfaces().empty()) return;
+    const auto count = static_cast<std::size_t>(blocks_.records.count());
+    classes_.assign(blocks_.classes.block, blocks_.classes.block + count);
+    for (int c = 0; c < channels_.count(); ++c) {
+      visit_isosurfaces(classes_, channels_[c].volume->block_records(task.parallel), c, look(),
+                        task);
+    }
   }
 
   std::unique_ptr<LayerStream> stream() const override;
 
   const MultichannelGrid& grid() const { return grid_; }
   const MultivariateBlocks& blocks() const { return blocks_; }
+  const BlockClass* classes() const {
+    return classes_.empty() ? blocks_.classes.block : classes_.data();
+  }
+  const GridGradients& gradients() const { return gradients_; }
 
  private:
   const Channels& channels_;
   MultichannelGrid grid_;
   MultivariateBlocksStorage storage_;
   MultivariateBlocks blocks_;
+  std::vector<BlockClass> classes_;  ///< with those of isosurfaces; empty: those of blocks_
+  GridGradients gradients_;
 };
 
 class ChannelsStream : public GridStream {
  public:
   ChannelsStream(const ChannelsSource& source, const Volume& volume)
-      : GridStream(volume, source.grid().axis, source.blocks().records,
-                   source.blocks().classes.block),
+      : GridStream(volume, source.grid().axis, source.blocks().records, source.classes(),
+                   source.look().slices(), true),
         source_(source) {}
 
   bool next(LayerStretch& stretch) override {
@@ -186,6 +263,7 @@ class ChannelsStream : public GridStream {
       stretch.function = 0;
       stretch.primitives = source_.blocks().primitives[block];
       std::copy_n(span.data, source_.grid().channels, stretch.data);
+      source_.gradients().fill(step, stretch);
       return true;
     }
     return false;

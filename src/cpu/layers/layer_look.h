@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "pellucid/scene/layer.h"
+#include "pellucid/segment/shading.h"
+
+namespace pellucid {
+
+/// What a layer shows beside its functions, as rays need it: light, gradient opacity and surfaces.
+class LayerLook {
+ public:
+  /// The layer is in its place and must outlive the object.
+  explicit LayerLook(const Layer& layer);
+  LayerLook(const LayerLook&) = delete;
+  LayerLook& operator=(const LayerLook&) = delete;
+
+  const Layer& layer() const noexcept { return layer_; }
+  /// Return null where the layer has none.
+  const Reflection<double>* reflection() const noexcept {
+    return reflection_ ? &*reflection_ : nullptr;
+  }
+  const PiecewiseLinear<double>* gradient_opacity() const noexcept {
+    return factors_ ? &factor_view_ : nullptr;
+  }
+  /// Returns whether its panels need light or gradient opacity.
+  bool is_lit() const noexcept { return reflection_ || factors_; }
+  /// Returns whether its medium absorbs anywhere.
+  bool has_medium() const noexcept { return has_medium_; }
+  bool has_surfaces() const noexcept { return pellucid::has_surfaces(layer_); }
+  const std::vector<Isosurface>& isosurfaces() const noexcept { return layer_.isosurfaces; }
+  const std::vector<Slice>& slices() const noexcept { return layer_.slices; }
+
+ private:
+  const Layer& layer_;
+  std::optional<Reflection<double>> reflection_;
+  std::optional<TransferFunction> factors_;
+  PiecewiseLinear<double> factor_view_{};
+  bool has_medium_;
+};
+
+/// Where a ray meets the plane of a slice.
+struct SlicePosition {
+  double t;      ///< world arc length; infinite where it does not
+  double error;  ///< largest error of t
+};
+std::vector<SlicePosition> slice_positions(const std::vector<Slice>& slices,
+                                           const Ray<double>& ray);
+
+/// Returns the scene's lights as rays see them.
+std::vector<LightSource<double>> light_sources(const std::vector<Light>& lights);
+
+}  // namespace pellucid

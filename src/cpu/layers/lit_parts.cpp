@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "lit_parts.h"
+
+#include <algorithm>
+
+#include "pellucid/math/bernstein_roots.h"
+#include "pellucid/transfer/cubic_cuts.h"
+
+namespace pellucid {
+namespace {
+
+/// Cuts closer to the end of a part are none.
+constexpr double shortest = 1e-12;
+
+/// f (1 - u) a + f u b, of degree 4.
+void add_product(const CubicBernstein<double>& f, double a, double b,
+                 BernsteinPolynomial<double, 4>& sum) {
+  for (int k = 0; k <= 4; ++k) {
+    if (k < 4) sum.b[k] += f.b[k] * a * ((4 - k) / 4.0);
+    if (k > 0) sum.b[k] += f.b[k - 1] * b * (k / 4.0);
+  }
+}
+
+}  // namespace
+
+void LitParts::start(const Ray<double>& ray, Interval<double> range) {
+  ray_ = ray;
+  range_ = range;
+  layers_.clear();
+  cuts_.clear();
+}
+
+void LitParts::add(const LayerStretch& stretch, const LayerSource& source) {
+  layers_.emplace_back();
+  LitLayer<double>& layer = layers_.back();
+  const LayerLook& look = source.look();
+  layer.transfer = &source.functions()[static_cast<std::size_t>(stretch.function)];
+  layer.gradient_opacity = look.gradient_opacity();
+  layer.reflection = look.reflection();
+  layer.primitives = stretch.primitives;
+  std::copy_n(stretch.data, layer.transfer->channels, layer.span.data);
+  std::copy_n(stretch.gradient, 3, layer.gradient);
+  layer.magnitude = stretch.magnitude;
+  layer.span.length = stretch.end - stretch.begin;
+  if (range_.begin <= stretch.begin && stretch.end <= range_.end) return;
+  const double first = (range_.begin - stretch.begin) / layer.span.length;
+  const double last = (range_.end - stretch.begin) / layer.span.length;
+  layer = layer.part(std::max(first, 0.0), std::min(last, 1.0));
+}
+
+void LitParts::finish() {
+  const auto add_ends = [&](const CubicBernstein<double>& data,
+                            const PiecewiseLinear<double>& table) {
+    for_each_interval(data, table, [&](int, double, double end, double, double) noexcept {
+      if (end < 1) cuts_.push_back(end);
+    });
+  };
+  const Vec3<double> begin = ray_.origin + ray_.direction * range_.begin;
+  const Vec3<double> end = ray_.origin + ray_.direction * range_.end;
+  for (const LitLayer<double>& layer : layers_) {
+    for (int i = 0; i < layer.transfer->tables; ++i) {
+      const ChannelTable<double>& table = layer.transfer->table[i];
+      add_ends(layer.span.data[table.channel], table.table);
+    }
+    if (layer.gradient_opacity != nullptr) add_ends(layer.magnitude, *layer.gradient_opacity);
+    if (layer.reflection == nullptr) continue;
+    for (const LightSource<double>& light : lights_) {
+      // g·l, or for a point light g·(P - x).
+      Vec3<double> first = light.place, last = light.place;
+      if (light.kind == LightSource<double>::Kind::head) first = last = ray_.direction;
+      if (light.kind == LightSource<double>::Kind::point) {
+        first = light.place - begin;
+        last = light.place - end;
+      }
+      BernsteinPolynomial<double, 4> along;
+      for (int a = 0; a < 3; ++a) add_product(layer.gradient[a], first[a], last[a], along);
+      double position[4];
+      const int count = sign_change_positions(along, position);
+      cuts_.insert(cuts_.end(), position, position + count);
+    }
+  }
+  std::ranges::sort(cuts_);
+  part_.resize(layers_.size());
+}
+
+bool LitParts::find_cut(double begin, double end, double& cut) const noexcept {
+  const double near = std::max(shortest, 1e-6 * (end - begin));
+  const auto first = std::ranges::upper_bound(cuts_, begin + near);
+  const auto last = std::ranges::lower_bound(cuts_, end - near);
+  if (first >= last) return false;
+  cut = (*(first + (last - first) / 2) - begin) / (end - begin);
+  return true;
+}
+
+LitStretch<double> LitParts::view() const noexcept {
+  LitStretch<double> stretch;
+  stretch.layer = layers_.data();
+  stretch.layers = static_cast<int>(layers_.size());
+  stretch.light = lights_.data();
+  stretch.lights = static_cast<int>(lights_.size());
+  stretch.begin = ray_.origin + ray_.direction * range_.begin;
+  stretch.direction = ray_.direction;
+  stretch.length = length();
+  stretch.gradient_error = gradient_rounding;
+  return stretch;
+}
+
+}  // namespace pellucid
