@@ -37,18 +37,54 @@ PELLUCID_HD constexpr int sign_changes(const BernsteinPolynomial<T, N>& f) noexc
   return changes;
 }
 
+/// Returns f(t) by de Casteljau.
+template <class T, int N>
+PELLUCID_HD constexpr T evaluate(BernsteinPolynomial<T, N> f, T t) noexcept {
+  for (int k = N; k > 0; --k) {
+    for (int i = 0; i < k; ++i) f.b[i] += t * (f.b[i + 1] - f.b[i]);
+  }
+  return f.b[0];
+}
+
+/// Narrows an interval in which f changes its sign once, by the Illinois method (Dowell and Jarratt
+/// 1971) and halving in turn; returns a position within 2^-44 of the change.
+template <class T, int N>
+PELLUCID_HD T narrow_down(const BernsteinPolynomial<T, N>& f, T lower, T upper) noexcept {
+  T at_lower = evaluate(f, lower), at_upper = evaluate(f, upper);
+  if (at_lower == T(0)) return lower;
+  for (int i = 0; i < 100 && upper - lower > T(0x1p-44); ++i) {
+    const T share = at_lower / (at_lower - at_upper);
+    const bool usable = share > T(0) && share < T(1) && i % 3 != 2;
+    const T t = lower + (usable ? share : T(0.5)) * (upper - lower);
+    const T value = evaluate(f, t);
+    if (value == T(0)) return t;
+    if ((value > T(0)) == (at_lower > T(0))) {
+      lower = t;
+      at_lower = value;
+      at_upper *= T(0.5);
+    } else {
+      upper = t;
+      at_upper = value;
+      at_lower *= T(0.5);
+    }
+  }
+  return lower + T(0.5) * (upper - lower);
+}
+
 }  // namespace detail
 
 /// Finds where a polynomial changes its sign inside (0, 1), ascending; returns how many places
-/// there are, at most N. By halving, with the sign changes of the coefficients as an upper bound
-/// (Descartes' rule; G. Farin, Curves and Surfaces for CAGD, 5th ed., section 6.4). Each place is
-/// within 2^-44 of a zero of a polynomial whose coefficients differ by (2 N + 2) u max|b_k|; two
-/// that are closer together may be left out. Asserted in tests/math.
+/// there are, at most N. By halving, until the coefficients change their sign once, as f then does
+/// (Descartes' rule; G. Farin, Curves and Surfaces for CAGD, 5th ed., section 6.4).
+///
+/// Each place is within 2^-43 of a zero of a polynomial whose coefficients differ by at most
+/// 8 N u max|b_k|; two that are closer together than 2^-44 may be left out. Asserted in tests/math.
 template <class T, int N>
 PELLUCID_HD int sign_change_positions(const BernsteinPolynomial<T, N>& f, T* position) noexcept {
   constexpr int deepest = 44;
-  BernsteinPolynomial<T, N> open[deepest + 1];
-  T begin[deepest + 1], width[deepest + 1];
+  if (detail::sign_changes(f) == 0) return 0;
+  BernsteinPolynomial<T, N> open[deepest + 2];
+  T begin[deepest + 2], width[deepest + 2];
   open[0] = f;
   begin[0] = T(0);
   width[0] = T(1);
@@ -60,7 +96,12 @@ PELLUCID_HD int sign_change_positions(const BernsteinPolynomial<T, N>& f, T* pos
       --left;
       continue;
     }
-    if (width[top] <= T(1) / T(1LL << deepest) || left > deepest) {
+    if (changes == 1) {
+      position[count++] = begin[top] + width[top] * detail::narrow_down(open[top], T(0), T(1));
+      --left;
+      continue;
+    }
+    if (left > deepest) {
       // An even number of changes so close together is none.
       if (changes % 2 == 1) position[count++] = begin[top] + T(0.5) * width[top];
       --left;
@@ -73,17 +114,13 @@ PELLUCID_HD int sign_change_positions(const BernsteinPolynomial<T, N>& f, T* pos
     begin[top + 1] = begin[top];
     begin[top] += width[top];
     width[top + 1] = width[top];
-    open[top + 1] = front;
-    // Where the two meet at a zero, neither half has the change.
+    // Where both halves end at a zero, the change between them belongs to the back.
     if (front.b[N] == T(0)) {
-      T before = T(0), behind = T(0);
+      T before = T(0);
       for (int i = N; i >= 0 && before == T(0); --i) before = front.b[i];
-      for (int i = 0; i <= N && behind == T(0); ++i) behind = open[top].b[i];
-      if (before != T(0) && behind != T(0) && (before > T(0)) != (behind > T(0))) {
-        // Moved by less than a rounding of the coefficients.
-        open[top].b[0] = before * T(1e-300);
-      }
+      open[top].b[0] = before * T(1e-300);
     }
+    open[top + 1] = front;
     ++left;
   }
   return count;

@@ -42,6 +42,24 @@ struct LitStretch {
 
 namespace detail {
 
+/// Returns the mean color of seven Gauss nodes by every other of them: a rule of degree 3, whose
+/// difference from panel_color() tells of what both miss.
+template <class T>
+PELLUCID_HD Rgb<T> color_of_every_other(const PanelNodes<7, T>& nodes) noexcept {
+  // Interpolatory on the nodes 0, 2, 4, 6: (1/3 - b²)/(a² - b²) of the half for the outer ones,
+  // with the nodes ±a, ±b on [-1, 1].
+  constexpr T outer = T(0.11453883139457109), inner = T(0.3854611686054289);
+  T sum = T(0);
+  Rgb<T> color{};
+  for (int j = 0; j < 7; j += 2) {
+    const T weight =
+        (j == 0 || j == 6 ? outer : inner) * nodes.rate[j] * exp(-max(nodes.depth[j], T(0)));
+    sum += weight;
+    color += weight * nodes.material[j].color;
+  }
+  return (T(1) / (sum > T(0) ? sum : T(1))) * color;
+}
+
 /// Integrates the layers on a panel; each of them is a part of its own stretch.
 template <class T>
 class LitPanel {
@@ -77,7 +95,7 @@ class LitPanel {
       found.segment = segment;
       found.color_error = color_error + segment.opacity * color_rounding_;
       found.opacity_error = min(fixed + depth_error, T(1));
-      return color_error + largest_color * depth_error <= payable;
+      return found.color_error + largest_color * depth_error <= payable;
     };
     const bool proved = demand_.grade == Grade::proved;
     const auto material = [&](T u) noexcept { return this->material(u); };
@@ -91,14 +109,17 @@ class LitPanel {
       result.done = true;
       return result;
     }
-    const bool smooth = few.total <= T(4) && turns_ <= T(16) && exponents_ <= T(2);
+    const bool dull = sharpness_ <= T(4) || coarse.opacity * shine_ <= T(0.25) * payable;
+    const bool smooth = few.total <= T(4) && turns_ <= T(16) && exponents_ <= T(2) && dull;
     if (!proved && smooth) {
       const PanelNodes<7, T> many(length_, material);
-      const SegmentResult<T> fine = segment_of_depth(many.total, range_.clamped(panel_color(many)));
-      const Rgb<T> change = panel_color(few) - panel_color(many);
+      const Rgb<T> color = panel_color(many);
+      const SegmentResult<T> fine = segment_of_depth(many.total, range_.clamped(color));
+      const T change = max(largest_component(panel_color(few) - color),
+                           largest_component(color_of_every_other(many) - color));
       const T depth_error = exponential_ ? min(bent, abs(few.total - many.total)) : T(0);
       found.proved = false;
-      if (finish(fine, fine.opacity * min(span, largest_component(change)), depth_error)) {
+      if (finish(fine, fine.opacity * min(span, T(2) * change), depth_error)) {
         result.done = true;
         return result;
       }
@@ -154,6 +175,8 @@ class LitPanel {
       const Rgb<T> upper = bounds.upper.apply(colors.upper);
       range_.add(true, lower);
       range_.add(true, upper);
+      sharpness_ = max(sharpness_, bounds.sharpness);
+      shine_ = max(shine_, largest_component(bounds.upper.added - bounds.lower.added));
       const Bounds<T> squares = along.square();
       const T least = squares.lower + layer.reflection->flat_square;
       if (!(least > T(0)) || squares.upper + layer.reflection->flat_square > T(1e30) * least) {
@@ -277,11 +300,12 @@ class LitPanel {
   const LitLayer<T>* layer_;
   T begin_, length_;
   const PanelDemand<T>& demand_;
-  T most_{};             ///< upper bound on the depth
-  T rounding_{};         ///< of the depth
-  T color_rounding_{};   ///< of the color
-  ColorRange<T> range_;  ///< contains all shaded colors
-  T turns_ = T(1);       ///< largest |g|² + g0² over the smallest, of any layer
+  T most_{};                 ///< upper bound on the depth
+  T rounding_{};             ///< of the depth
+  T color_rounding_{};       ///< of the color
+  ColorRange<T> range_;      ///< contains all shaded colors
+  T sharpness_{}, shine_{};  ///< of specular parts: how fast and by how much they change
+  T turns_ = T(1);           ///< largest |g|² + g0² over the smallest, of any layer
   bool exponential_ = false;
   T exponents_{};        ///< largest change of an exponent
   Bounds<T> gaussians_;  ///< on the depth of all Gaussians

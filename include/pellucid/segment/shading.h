@@ -184,6 +184,9 @@ PELLUCID_HD T color_rounding(const Reflection<T>& reflection, const LightSource<
 template <class T>
 struct LitBounds {
   Lit<T> lower, upper;
+  /// Largest change of the logarithm of a specular part where it is brightest: power (1 - least
+  /// |n·h| / largest |n·h|).
+  T sharpness{};
 };
 
 /// Returns bounds on light_up() over a stretch: |n·d| between the hull of g·d over those of
@@ -213,6 +216,9 @@ PELLUCID_HD LitBounds<T> light_bounds(const Reflection<T>& reflection, const Lig
     if (!(reflection.specular > T(0))) continue;
     const Bounds<T> toward = detail::cosine_bounds(stretch, lengths, to.half, half_turn);
     const T power = reflection.power;
+    if (toward.upper > T(0)) {
+      result.sharpness = max(result.sharpness, power * (T(1) - toward.lower / toward.upper));
+    }
     result.lower.added +=
         (reflection.specular * detail::power_of(toward.lower, power)) * light.color;
     result.upper.added +=
