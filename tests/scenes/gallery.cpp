@@ -36,7 +36,7 @@ Gallery gallery() {
   Gallery all;
   for (const auto group :
        {marschner_lobb_gallery, scan_gallery, cell_gallery, table_gallery, grid_gallery,
-        stride_gallery, gaussian_gallery, mesh_gallery, layer_gallery}) {
+        stride_gallery, gaussian_gallery, mesh_gallery, layer_gallery, light_gallery}) {
     for (GalleryEntry& entry : group()) all.push_back(std::move(entry));
   }
   return all;
@@ -55,6 +55,7 @@ Scene scene_of(const Exhibit& exhibit, std::size_t camera, int size) {
   } else if (exhibit.channels) {
     scene.layers = {{ChannelsContent{exhibit.channels, exhibit.multivariate}}};
   }
+  scene.lights = exhibit.lights;
   scene.samples = exhibit.samples;
   if (exhibit.backdrop) scene.backdrop = make_backdrop(scene.camera, scene.size);
   return scene;

@@ -24,6 +24,7 @@ struct Exhibit {
   /// In place of all of these.
   std::vector<Layer> layers{};
   std::vector<Clip> clips{};
+  std::vector<Light> lights{Light{}};
   bool backdrop = false;  ///< geometry among the data
 };
 
@@ -54,6 +55,7 @@ Gallery stride_gallery();          ///< what estimates over several cells can mi
 Gallery gaussian_gallery();        ///< Gaussians over several channels
 Gallery mesh_gallery();            ///< tetrahedra
 Gallery layer_gallery();           ///< several layers, clips, labels and masks
+Gallery light_gallery();           ///< shading, gradient opacity, isosurfaces and slices
 
 /// One of the exhibit's cameras, with the integration that a scene has by default.
 Scene scene_of(const Exhibit& exhibit, std::size_t camera, int size);

@@ -87,6 +87,52 @@ void add_clips(Hash& hash, const std::vector<Clip>& clips) {
   }
 }
 
+void add_color(Hash& hash, const Rgb<double>& color) {
+  hash.add_numbers(color.r, color.g, color.b);
+}
+
+void add_light(Hash& hash, const Layer& layer) {
+  if (layer.shading) {
+    const Shading& s = *layer.shading;
+    hash.add_numbers(3, s.ambient, s.diffuse, s.specular, s.power, static_cast<int>(s.gradient),
+                     s.flatness, s.channel);
+  }
+  if (layer.gradient_opacity) {
+    const GradientOpacity& factors = *layer.gradient_opacity;
+    hash.add_numbers(4, static_cast<int>(factors.unit()), factors.channel());
+    for (const GradientOpacity::Point& p : factors.points()) {
+      hash.add_numbers(p.gradient, p.factor);
+    }
+  }
+  for (const Isosurface& surface : layer.isosurfaces) {
+    hash.add_numbers(5, surface.value, surface.opacity, surface.channel, surface.color_channel);
+    add_color(hash, surface.color);
+    if (surface.colors) add_points(hash, *surface.colors);
+  }
+  for (const Slice& slice : layer.slices) {
+    hash.add_numbers(6, slice.opacity, slice.channel);
+    hash.add_vector(slice.point);
+    hash.add_vector(slice.normal);
+    if (slice.colors) add_points(hash, *slice.colors);
+  }
+}
+
+/// The lights of a scene, of which one white head light is the default.
+void add_lights(Hash& hash, const std::vector<Light>& lights) {
+  const auto plain = [](const Light& light) {
+    return std::holds_alternative<HeadLight>(light.kind) && light.color == Rgb<double>{1, 1, 1};
+  };
+  if (lights.size() == 1 && plain(lights.front())) return;
+  hash.add_numbers(7, static_cast<double>(lights.size()));
+  for (const Light& light : lights) {
+    hash.add_numbers(static_cast<double>(light.kind.index()));
+    add_color(hash, light.color);
+    if (const auto* far = std::get_if<DirectionalLight>(&light.kind))
+      hash.add_vector(far->direction);
+    if (const auto* near = std::get_if<PointLight>(&light.kind)) hash.add_vector(near->position);
+  }
+}
+
 /// A layer in its place, whose transform is the identity, has the hash of its data and function.
 void add_layer(Hash& hash, const Layer& layer) {
   if (const auto* mesh = std::get_if<MeshContent>(&layer.content)) {
@@ -115,6 +161,7 @@ void add_layer(Hash& hash, const Layer& layer) {
     }
   }
   add_clips(hash, layer.clips);
+  add_light(hash, layer);
   if (!layer.visible) hash.add_numbers(1);
   if (layer.projection) hash.add_numbers(2, static_cast<int>(*layer.projection));
   if (is_in_place(layer)) return;
@@ -128,6 +175,7 @@ std::uint64_t scene_hash(const Scene& scene) {
   Hash hash;
   for (const Layer& layer : scene.layers) add_layer(hash, layer);
   add_clips(hash, scene.clips);
+  add_lights(hash, scene.lights);
   const Camera& c = scene.camera;
   hash.add_vector(c.position);
   hash.add_vector(c.focal_point);

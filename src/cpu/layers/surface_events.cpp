@@ -92,6 +92,9 @@ void SurfaceEvents::follow(std::size_t isosurface, const LayerStretch& stretch) 
     const double u = n == 0 ? 0 : n == turns.count + 1 ? 1 : turns.t[n - 1];
     const double above = evaluate(data, u) - surface.value;
     const double t = stretch.begin + u * length;
+    // At a face of equal values the data are exact (trilinear_cubic()): they are at the value, on
+    // neither side of it.
+    if (above == 0 && (u == 0 || u == 1)) continue;
     if (!(std::abs(above) > off)) {
       if (!side.pending) {
         SurfaceEvent event;

@@ -29,7 +29,8 @@ struct SurfaceEvent {
 /// An isosurface is crossed where the data change from one side of its value to the other. Sides
 /// are told only where the data are farther from the value than their rounding, and remembered from
 /// stretch to stretch: so a crossing at the face between two cells counts once, and data that come
-/// as close as rounding without changing sides are charged for instead.
+/// as close as rounding without changing sides are charged for instead. Data exactly at the value
+/// are on neither side: they make a surface where they leave it for the other one.
 class SurfaceEvents {
  public:
   /// All must outlive the object. `largest_color`: of the frame, at least 1.
