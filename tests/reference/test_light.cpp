@@ -3,9 +3,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <cstdio>
 #include <functional>
 #include <limits>
 #include <memory>
+#include <random>
 #include <utility>
 #include <vector>
 
@@ -385,6 +388,60 @@ TEST(ReferenceLight, NormalsTurnAroundACentre) {
       }
     }
   }
+}
+
+/// Noise in every kind of light: a layer is the sum of slabs of it, however the parts of the rays
+/// come to lie.
+TEST(ReferenceLight, ALayerIsTheSumOfItsSlabs) {
+  std::mt19937 random(11);
+  const auto uniform = [&](double a, double b) {
+    return std::uniform_real_distribution<double>(a, b)(random);
+  };
+  double largest = 0;
+  int seen = 0;
+  for (int trial = 0; trial < 60; ++trial) {
+    Volume::Description description = grid_description({6, 6, 6});
+    description.centering = trial % 2 == 0 ? Centering::point : Centering::cell;
+    const auto volume = make_volume<std::int8_t>(
+        description, [&](int, int, int) { return std::floor(uniform(-4, 9)); });
+    Layer layer = layer_of(volume, {{-3, 0, {1, 0, 0}}, {2, 1, {0, 1, 0}}, {7, 0.5, {0, 0, 1}}});
+    const double powers[] = {1, 2, 7.5, 50, 1000};
+    layer.shading = Shading{uniform(0, 1),
+                            trial % 3 == 0 ? 0 : uniform(0, 1),
+                            uniform(0, 1),
+                            powers[trial % 5],
+                            trial % 7 < 5 ? GradientKind::smooth : GradientKind::field,
+                            trial % 4 == 0 ? 0 : uniform(0, 0.05)};
+    if (trial % 3 == 1) {
+      layer.gradient_opacity = std::make_shared<const GradientOpacity>(
+          std::vector<GradientOpacity::Point>{{1, 0.1}, {4, 1}, {6, 0.3}});
+    }
+    layer.isosurfaces = {{1.5, 0.3, {1, 1, 1}}};
+    const std::vector<Light> lights{
+        {HeadLight{}, {1, 0.5, 0}},
+        {DirectionalLight{{uniform(-1, 1), uniform(-1, 1), uniform(-1, 1)}}, {0, 0.5, 0}},
+        {PointLight{{uniform(0, 5), uniform(0, 5), uniform(0, 5)}}, {0, 0, 1}}};
+    const Place normal = unit({uniform(-1, 1), uniform(-1, 1), uniform(-1, 1)});
+    std::vector<Layer> slabs;
+    for (double height = -9.1; height < 9.1; height += 0.37) {
+      Layer slab = layer;
+      slab.clips = {{ClipPlane{normal * height, normal}},
+                    {ClipPlane{normal * (height + 0.37), normal}, false}};
+      slabs.push_back(slab);
+    }
+    const Place from{uniform(-9, 9), uniform(-9, 9), -7};
+    const Place v = unit(Place{uniform(1, 4), uniform(1, 4), uniform(1, 4)} - from);
+    const ReferencePixel whole = reference_ray(of({layer}, lights), from, v);
+    const ReferencePixel parts = reference_ray(of(slabs, lights), from, v);
+    seen += whole.opacity > 0.5 ? 1 : 0;
+    EXPECT_NEAR(whole.optical_depth, parts.optical_depth, 1e-11) << trial;
+    largest = std::max({largest, std::abs(whole.radiance.r - parts.radiance.r),
+                        std::abs(whole.radiance.g - parts.radiance.g),
+                        std::abs(whole.radiance.b - parts.radiance.b)});
+  }
+  std::printf("[ accuracy ] lit noise, whole and in slabs: %.1e apart\n", largest);
+  EXPECT_GT(seen, 30);
+  EXPECT_LT(largest, 1e-11);
 }
 
 /// Light along a normal to the ray: a narrow highlight where the normal passes half-way.
