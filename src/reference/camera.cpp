@@ -4,20 +4,9 @@
 #include <cmath>
 #include <numbers>
 
+#include "vectors.h"
+
 namespace pellucid::reference {
-namespace {
-
-Real3 cross(const Real3& p, const Real3& q) {
-  return {p[1] * q[2] - p[2] * q[1], p[2] * q[0] - p[0] * q[2], p[0] * q[1] - p[1] * q[0]};
-}
-
-Real3 unit(const Real3& p) {
-  const Real length = std::hypot(p[0], p[1], p[2]);
-  return {p[0] / length, p[1] / length, p[2] / length};
-}
-
-}  // namespace
-
 CameraRays::CameraRays(const Camera& camera, ImageSize size)
     : position_{camera.position.x, camera.position.y, camera.position.z},
       forward_(unit({camera.focal_point.x - position_[0], camera.focal_point.y - position_[1],

@@ -7,23 +7,12 @@
 #include <limits>
 #include <variant>
 
+#include "vectors.h"
+
 namespace pellucid::reference {
 namespace {
 
 constexpr Real infinity = std::numeric_limits<Real>::infinity();
-
-Real3 real(const Vec3<double>& v) {
-  return {v.x, v.y, v.z};
-}
-Real dot(const Real3& a, const Real3& b) {
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-Real3 difference(const Real3& a, const Real3& b) {
-  return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
-}
-Real3 cross(const Real3& a, const Real3& b) {
-  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
-}
 
 RayPart both(const RayPart& a, const RayPart& b) {
   return {std::max(a.begin, b.begin), std::min(a.end, b.end)};

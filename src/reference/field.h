@@ -11,7 +11,7 @@ namespace pellucid::reference {
 /// A stretch of a ray on which every channel of the data is one polynomial.
 struct Stretch {
   Real t_begin, t_end;        ///< world arc length
-  std::vector<Chord> chords;  ///< one for each channel; none: vacuum
+  std::vector<Chord> chords;  ///< one for each channel, then DerivedChannels; none: vacuum
 };
 
 /// What rays see of data.

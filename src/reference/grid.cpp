@@ -82,6 +82,8 @@ Grid::Grid(const Volume& volume) : volume_(volume) {
     origin_[axis] = d.placement.origin[a];
     const auto values = static_cast<std::size_t>(d.dimensions[axis]);
     planes_[axis] = plane_positions(values, d.centering, d.coordinates[axis]);
+    const std::size_t first = d.centering == Centering::cell ? 1 : 0;
+    for (std::size_t i = 0; i < values; ++i) positions_[axis].push_back(planes_[axis][first + i]);
     for (std::size_t i = 0; i < planes_[axis].size(); ++i) {
       const std::size_t shifted = d.centering == Centering::cell && i > 0 ? i - 1 : i;
       shown_[axis].push_back(std::min(shifted, values - 1));
@@ -115,12 +117,20 @@ Grid Grid::around_values(const Volume& volume) {
 }
 
 Real Grid::value(const Crossing& crossing) const {
+  return value_at(shown_at(crossing, 0));
+}
+
+Grid::Index Grid::shown_at(const Crossing& crossing, std::size_t k) const {
+  Index index;
+  for (std::size_t a = 0; a < 3; ++a) {
+    index[a] = shown_[a][static_cast<std::size_t>(crossing.cell[a]) + ((k >> a) & 1)];
+  }
+  return index;
+}
+
+Real Grid::value_at(const Index& index) const {
   const std::array<int, 3>& n = volume_.description().dimensions;
   const auto nx = static_cast<std::size_t>(n[0]), ny = static_cast<std::size_t>(n[1]);
-  std::array<std::size_t, 3> index;
-  for (std::size_t a = 0; a < 3; ++a) {
-    index[a] = shown_[a][static_cast<std::size_t>(crossing.cell[a])];
-  }
   return std::visit(
       [&](const auto& values) {
         return static_cast<Real>(values[index[0] + nx * (index[1] + ny * index[2])]);
@@ -180,22 +190,10 @@ std::vector<Crossing> Grid::crossings(const RealRay& ray_world) const {
 }
 
 std::optional<Chord> Grid::chord(const Crossing& crossing) const {
-  const std::array<int, 3>& n = volume_.description().dimensions;
-  const auto nx = static_cast<std::size_t>(n[0]), ny = static_cast<std::size_t>(n[1]);
-  std::array<Real, 8> corner{};
-  std::visit(
-      [&](const auto& values) {
-        for (std::size_t k = 0; k < 8; ++k) {
-          std::array<std::size_t, 3> index;
-          for (std::size_t a = 0; a < 3; ++a) {
-            index[a] = shown_[a][static_cast<std::size_t>(crossing.cell[a]) + ((k >> a) & 1)];
-          }
-          corner[k] = static_cast<Real>(values[index[0] + nx * (index[1] + ny * index[2])]);
-        }
-      },
-      volume_.data());
-  for (const Real value : corner) {
-    if (std::isnan(value)) return std::nullopt;
+  std::array<Real, 8> corner;
+  for (std::size_t k = 0; k < 8; ++k) {
+    corner[k] = value_at(shown_at(crossing, k));
+    if (std::isnan(corner[k])) return std::nullopt;
   }
   return Chord(corner, crossing.entry, crossing.exit);
 }

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "chord.h"
+#include "pellucid/scene/light.h"
 #include "pellucid/scene/volume.h"
 
 namespace pellucid::reference {
@@ -33,14 +34,30 @@ class Grid {
   /// The data value at a crossing's lower corner: of cells around values the value of the cell.
   Real value(const Crossing& crossing) const;
 
+  /// The gradient of the data along a crossing without NaN corners: x, y and z of the world.
+  std::array<Chord, 3> gradient(const Crossing& crossing, GradientKind kind) const;
+  /// The magnitudes of the smooth gradient at the corners, interpolated like the data.
+  Chord gradient_magnitude(const Crossing& crossing) const;
+
  private:
+  using Index = std::array<std::size_t, 3>;
+
   RealRay to_grid(const RealRay& ray_world) const;
+  /// The data value that corner k of a crossing's cell shows.
+  Index shown_at(const Crossing& crossing, std::size_t k) const;
+  Real value_at(const Index& index) const;
+  /// World gradient at a data value; NaN neighbours are left out.
+  Real3 smooth_gradient(const Index& index) const;
+  /// World gradient of the trilinear data at corner k.
+  Real3 cell_gradient(const Crossing& crossing, std::size_t k) const;
+  Real3 gradient_in_world(const Real3& in_grid) const;
 
   const Volume& volume_;
   std::array<Real3, 3> inverse_;  ///< rows of the inverse of direction · spacing
   Real3 origin_;
   std::array<std::vector<Real>, 3> planes_;        ///< ascending, in grid coordinates
   std::array<std::vector<std::size_t>, 3> shown_;  ///< index of the data value at each plane
+  std::array<std::vector<Real>, 3> positions_;     ///< of the data values
 };
 
 }  // namespace pellucid::reference

@@ -3,7 +3,8 @@
 
 namespace pellucid::reference {
 
-GridField::GridField(const std::vector<const Volume*>& volumes) {
+GridField::GridField(const std::vector<const Volume*>& volumes, const DerivedChannels& derived)
+    : derived_(derived) {
   grids_.reserve(volumes.size());
   for (const Volume* volume : volumes) grids_.emplace_back(*volume);
 }
@@ -22,6 +23,17 @@ std::vector<Chord> GridField::chords(const Crossing& crossing) const {
     const std::optional<Chord> chord = grid.chord(crossing);
     if (!chord) return {};
     result.push_back(*chord);
+  }
+  const auto grid = [&](int channel) -> const Grid& {
+    return grids_[static_cast<std::size_t>(channel)];
+  };
+  if (derived_.gradient_of) {
+    for (const Chord& component : grid(*derived_.gradient_of).gradient(crossing, derived_.kind)) {
+      result.push_back(component);
+    }
+  }
+  if (derived_.magnitude_of) {
+    result.push_back(grid(*derived_.magnitude_of).gradient_magnitude(crossing));
   }
   return result;
 }

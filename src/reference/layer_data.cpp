@@ -24,7 +24,7 @@ LayerData::LayerData(const Layer& layer, const std::vector<Clip>& of_scene) {
     return;
   }
   if (const auto* mesh = std::get_if<MeshContent>(&layer.content)) {
-    field_ = std::make_unique<MeshField>(*mesh->mesh);
+    field_ = std::make_unique<MeshField>(*mesh->mesh, DerivedChannels(layer));
     if (mesh->multivariate() != nullptr) {
       functions_.emplace_back(*mesh->multivariate());
     } else {
@@ -48,7 +48,7 @@ LayerData::LayerData(const Layer& layer, const std::vector<Clip>& of_scene) {
       }
     }
   }
-  field_ = std::make_unique<GridField>(volumes);
+  field_ = std::make_unique<GridField>(volumes, DerivedChannels(layer));
 }
 
 const Mixture* LayerData::function_of(Real label) const {

@@ -17,7 +17,7 @@ namespace pellucid::reference {
 /// A stretch of a ray on which the data of a layer are polynomials of one function.
 struct LayerStretch {
   Real t_begin, t_end;
-  std::vector<Chord> chords;
+  std::vector<Chord> chords;  ///< as Stretch has them
   const Mixture* function;
 };
 

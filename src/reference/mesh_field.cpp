@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "vectors.h"
+
 namespace pellucid::reference {
 namespace {
 
@@ -17,7 +19,13 @@ Real mean(const std::array<Real, 4>& values, const std::array<Real, 4>& weights)
 
 }  // namespace
 
-MeshField::MeshField(const MeshChannels& channels) : channels_(channels), mesh_(channels.mesh()) {}
+MeshField::MeshField(const MeshChannels& channels, const DerivedChannels& derived)
+    : channels_(channels), mesh_(channels.mesh()), derived_(derived) {
+  if (derived.gradient_of) gradient_.emplace(channels, *derived.gradient_of, derived.kind);
+  if (derived.magnitude_of) {
+    for_magnitude_.emplace(channels, *derived.magnitude_of, GradientKind::smooth);
+  }
+}
 
 Real MeshField::visit(const RealRay& ray, const Visit& visit) const {
   const std::vector<TetrahedronCrossing> crossings = mesh_.crossings(ray);
@@ -40,6 +48,22 @@ std::vector<Chord> MeshField::chords(const TetrahedronCrossing& crossing) const 
       if (std::isnan(values[i])) return {};
     }
     result.push_back(Chord::linear(mean(values, crossing.entry), mean(values, crossing.exit)));
+  }
+  const auto add = [&](const std::array<Real, 4>& values) {
+    result.push_back(Chord::linear(mean(values, crossing.entry), mean(values, crossing.exit)));
+  };
+  if (gradient_) {
+    const std::array<Real3, 4> at_points = gradient_->at_points_of(crossing.tetrahedron);
+    for (std::size_t a = 0; a < 3; ++a) {
+      add({at_points[0][a], at_points[1][a], at_points[2][a], at_points[3][a]});
+    }
+  }
+  if (for_magnitude_) {
+    std::array<Real, 4> magnitudes;
+    for (std::size_t i = 0; i < 4; ++i) {
+      magnitudes[i] = length(for_magnitude_->at_points_of(crossing.tetrahedron)[i]);
+    }
+    add(magnitudes);
   }
   return result;
 }

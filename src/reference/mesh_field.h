@@ -1,8 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <optional>
+
+#include "derived_channels.h"
 #include "field.h"
 #include "mesh.h"
+#include "mesh_gradient.h"
 #include "pellucid/scene/mesh_channels.h"
 
 namespace pellucid::reference {
@@ -11,16 +15,18 @@ namespace pellucid::reference {
 /// them.
 class MeshField : public Field {
  public:
-  explicit MeshField(const MeshChannels& channels);
+  explicit MeshField(const MeshChannels& channels, const DerivedChannels& derived = {});
 
   Real visit(const RealRay& ray, const Visit& visit) const override;
 
  private:
-  /// A chord for each channel; none where a value is NaN in any of them.
+  /// A chord for each channel, then those derived; none where a value is NaN in any channel.
   std::vector<Chord> chords(const TetrahedronCrossing& crossing) const;
 
   const MeshChannels& channels_;
   Mesh mesh_;
+  DerivedChannels derived_;
+  std::optional<MeshGradient> gradient_, for_magnitude_;
 };
 
 }  // namespace pellucid::reference

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "mixture_gatherer.h"
 
-#include <boost/math/tools/toms748_solve.hpp>
 #include <cmath>
 
 namespace pellucid::reference {
@@ -15,20 +14,6 @@ constexpr Real smooth = 1e-3L;
 constexpr double deepest = 1;
 
 }  // namespace
-
-double MixtureGatherer::position_of_depth(const Mark& mark, double target) {
-  const auto excess = [&](double s) { return mark.before + mark.samples.depth_to(s) - target; };
-  double s = 0;
-  if (!(excess(1) > 0)) {
-    s = 1;
-  } else if (excess(0) < 0) {
-    std::uintmax_t iterations = 200;
-    const auto [left, right] = boost::math::tools::toms748_solve(
-        excess, 0.0, 1.0, boost::math::tools::eps_tolerance<double>(50), iterations);
-    s = 0.5 * (left + right);
-  }
-  return static_cast<double>(mark.t_begin + s * mark.length);
-}
 
 void MixtureGatherer::add(const MixturePart& part) {
   if (part.is_clear() || gatherer_.done()) return;
@@ -45,7 +30,8 @@ ReferencePixel MixtureGatherer::result() const {
     const double target = -std::log1p(-0.5 * pixel.opacity);
     auto mark = marks_.begin();
     while (mark + 1 != marks_.end() && (mark + 1)->before < target) ++mark;
-    pixel.half_opacity_depth = position_of_depth(*mark, target);
+    const double share = mark->samples.share_at_depth(mark->before, target);
+    pixel.half_opacity_depth = static_cast<double>(mark->t_begin + share * mark->length);
   }
   return pixel;
 }

@@ -27,8 +27,6 @@ class MixtureGatherer {
 
   /// By the rule; false where it does not see enough.
   bool add_whole(const MixturePart& part, bool is_smooth);
-  /// World arc length where the depth reaches `target` inside.
-  static double position_of_depth(const Mark& mark, double target);
 
   bool with_depth_;
   Gatherer gatherer_;

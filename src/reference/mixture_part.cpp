@@ -2,6 +2,7 @@
 #include "mixture_part.h"
 
 #include <algorithm>
+#include <boost/math/tools/toms748_solve.hpp>
 #include <cmath>
 
 namespace pellucid::reference {
@@ -27,6 +28,16 @@ double MixtureSamples::gaussian_depth() const {
 
 double MixtureSamples::depth_to(double s) const {
   return 0.5 * Collocation::rule().running_integral(rate, 2 * s - 1);
+}
+
+double MixtureSamples::share_at_depth(double before, double target) const {
+  const auto excess = [&](double s) { return before + depth_to(s) - target; };
+  if (!(excess(1) > 0)) return 1;
+  if (!(excess(0) < 0)) return 0;
+  std::uintmax_t iterations = 200;
+  const auto [left, right] = boost::math::tools::toms748_solve(
+      excess, 0.0, 1.0, boost::math::tools::eps_tolerance<double>(50), iterations);
+  return 0.5 * (left + right);
 }
 
 std::array<Real, 3> MixtureSamples::radiance() const {

@@ -23,6 +23,8 @@ struct MixtureSamples {
   double gaussian_depth() const;
   /// Of the share s of the part, from its front.
   double depth_to(double s) const;
+  /// The share of the part in front of which the depth grows from `before` to `target`.
+  double share_at_depth(double before, double target) const;
   /// ∫ e^(-depth from the front) · Σ rate · color.
   std::array<Real, 3> radiance() const;
 };

@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "scene_integral.h"
 
+#include <algorithm>
 #include <cmath>
 #include <vector>
 
 #include "grid_field.h"
 #include "layered_ray.h"
+#include "lit_ray.h"
 #include "mesh_field.h"
 #include "multivariate_ray.h"
 #include "pellucid/scene/error.h"
@@ -26,8 +28,8 @@ bool is_plain(const Scene& scene) {
   if (scene.layers.size() != 1 || !scene.clips.empty() || scene.backdrop) return false;
   const Layer& layer = scene.layers.front();
   const auto* const volume = std::get_if<VolumeContent>(&layer.content);
-  return layer.visible && !layer.projection && layer.clips.empty() && is_in_place(layer) &&
-         !std::holds_alternative<LabelContent>(layer.content) &&
+  return layer.visible && !layer.projection && !is_lit(layer) && layer.clips.empty() &&
+         is_in_place(layer) && !std::holds_alternative<LabelContent>(layer.content) &&
          (volume == nullptr || !volume->mask);
 }
 
@@ -46,11 +48,16 @@ std::unique_ptr<const Field> field_of(const Layer& layer) {
 
 SceneIntegral::SceneIntegral(const Scene& scene) {
   if (!is_plain(scene)) {
+    const bool lit = std::ranges::any_of(
+        scene.layers, [](const Layer& layer) { return layer.visible && is_lit(layer); });
+    lights_ = scene.lights;
     for (const Layer& layer : scene.layers) {
       if (!layer.visible) continue;
       layers_.push_back(std::make_unique<const Layer>(moved_into_place(layer)));
       if (layer.projection) {
         projections_.push_back(std::make_unique<const Projection>(*layers_.back(), scene.clips));
+      } else if (lit) {
+        lit_.push_back(std::make_unique<const LitLayer>(*layers_.back(), scene.clips));
       } else {
         data_.push_back(std::make_unique<const LayerData>(*layers_.back(), scene.clips));
       }
@@ -81,7 +88,8 @@ SceneIntegral::SceneIntegral(const Channels& channels,
 ReferencePixel SceneIntegral::operator()(const RealRay& ray, bool with_depth, std::uint64_t& cells,
                                          Real end) const {
   if (!field_) {
-    ReferencePixel pixel = integrate(data_, ray, with_depth, cells, end);
+    ReferencePixel pixel = lit_.empty() ? integrate(data_, ray, with_depth, cells, end)
+                                        : integrate(lit_, lights_, ray, with_depth, cells, end);
     for (const auto& projection : projections_) projection->put_over(ray, end, cells, pixel);
     return pixel;
   }

@@ -8,6 +8,7 @@
 
 #include "field.h"
 #include "layer_data.h"
+#include "lit_layer.h"
 #include "mixture.h"
 #include "pellucid/reference/render.h"
 #include "projection.h"
@@ -39,7 +40,9 @@ class SceneIntegral {
   std::optional<Mixture> mixture_;
   /// Of everything else: the layers in their places.
   std::vector<std::unique_ptr<const Layer>> layers_;
-  std::vector<std::unique_ptr<const LayerData>> data_;
+  std::vector<std::unique_ptr<const LayerData>> data_;  ///< or
+  std::vector<std::unique_ptr<const LitLayer>> lit_;    ///< if any of them is_lit()
+  std::vector<Light> lights_;
   /// Over the others, in the order of the list.
   std::vector<std::unique_ptr<const Projection>> projections_;
 };

@@ -13,10 +13,14 @@ namespace pellucid {
 /// nodes on parts that are halved until no Gaussian can be missed between them
 /// (src/reference/multivariate_ray.cpp).
 ///
+/// A scene with shading, gradient opacity, isosurfaces or slices is integrated to 1e-12 per part of
+/// a ray: parts end where the light has a kink, and are halved until the halves agree with the
+/// whole (src/reference/lit_gatherer.h).
+///
 /// It shares no kernel with the fast path: ray-plane sorting, search of tetrahedra (each is
-/// intersected on its own), interpolation, transfer-function look-up, crossings and quadrature are
-/// its own, and so are the extremes and means of projections. Only RenderOptions and the report are
-/// shared with cpu/.
+/// intersected on its own), interpolation, gradients, transfer-function look-up, crossings, light
+/// and quadrature are its own, and so are the extremes and means of projections. Only RenderOptions
+/// and the report are shared with cpu/, and voxel_of() and flat_gradient() with scene/.
 ///
 /// Method, precision, step, tolerance and grade of the scene are ignored, but refused if render()
 /// refuses them. A pixel is the mean of its samples. Throws whatever pellucid::render() throws.
