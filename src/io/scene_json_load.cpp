@@ -326,6 +326,20 @@ Scene make_scene(const SceneDescription& description, const ParallelFor& paralle
   return scene;
 }
 
+namespace {
+
+/// Returns the most by which light multiplies the error of a color, as approximation_error() counts
+/// it.
+double light_factor(const Layer& layer, const std::vector<Light>& lights) {
+  if (!layer.shading) return 1;
+  const double ambient = layer.shading->ambient;
+  Rgb<double> sum{ambient, ambient, ambient};
+  for (const Light& light : lights) sum += layer.shading->diffuse * light.color;
+  return std::max(largest_component(sum), 1.0);
+}
+
+}  // namespace
+
 void fit_opacity_tables(const SceneDescription& description, Scene& scene) {
   const auto visible = std::ranges::count_if(scene.layers, &Layer::visible);
   // As approximation_error() counts them.
@@ -339,13 +353,14 @@ void fit_opacity_tables(const SceneDescription& description, Scene& scene) {
     Layer& layer = scene.layers[i];
     auto* const volume = std::get_if<VolumeContent>(&layer.content);
     const bool masked = volume != nullptr && volume->mask;
-    const double behind =
-        std::max(behind_all, masked || layer.projection ? largest_color(layer) : 0);
+    const double behind = std::max(behind_all, masked || layer.projection || is_lit(layer)
+                                                   ? largest_color(layer, scene.lights)
+                                                   : 0);
+    const double budget = tolerance / light_factor(layer, scene.lights);
     const auto made = [&](const TransferFunctionDescription& function) {
       // A projection shows an error of the opacity as it is (approximation_error()).
-      return std::make_shared<const TransferFunction>(
-          make_transfer_function(function, layer.projection ? tolerance / 8 : tolerance,
-                                 Rgb<double>{behind, behind, behind}));
+      return std::make_shared<const TransferFunction>(make_transfer_function(
+          function, layer.projection ? budget / 8 : budget, Rgb<double>{behind, behind, behind}));
     };
     const auto& function = description.layers[i].transfer_function;
     if (function && is_table(*function)) {

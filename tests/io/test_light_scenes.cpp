@@ -198,6 +198,18 @@ TEST(LightScene, AValueIsOnceInEachVariable) {
       std::string::npos);
 }
 
+TEST(LightScene, LightCountsForOpacityTables) {
+  SceneDescription description =
+      layer(ramp + R"(, "transfer_function": {"unit_distance": 0.5, "points": [
+        {"value": 0, "opacity": 0, "color": [1, 1, 1]},
+        {"value": 1, "opacity": 0.99, "color": [1, 1, 1]}]},
+        "shading": {"ambient": 1, "diffuse": 3, "specular": 5},
+        "isosurfaces": [{"value": 0.5, "color": [20, 0, 0]}])");
+  description.lights.push_back({DirectionalLight{}, {0, 2, 0}});
+  description.integration.tolerance = 1e-3;
+  EXPECT_LE(approximation_error(make_scene(description)), 1e-3 / 8);
+}
+
 TEST(LookFile, HasShadingAndGradientOpacityBesideTheFunction) {
   const std::string function = R"({"points": [{"value": 0, "extinction": 1, "color": [1, 1, 1]}]})";
   const LookDescription bare = parse_look(function, "f");
