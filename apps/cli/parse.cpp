@@ -5,9 +5,12 @@
 
 #include <charconv>
 #include <cmath>
+#include <cstdint>
 #include <optional>
 #include <string_view>
 #include <vector>
+
+#include "pellucid/scene/srgb.h"
 
 namespace pellucid::cli {
 
@@ -170,7 +173,18 @@ Rgb<double> parse_color(const std::string& option, const std::string& text) {
   if (text == "white") return {1, 1, 1};
   if (text == "black") return {0, 0, 0};
   constexpr std::string_view expected =
-      "white, black or three linear numbers R,G,B of at least 0, as in 0.2,0.2,0.2";
+      "white, black, #RRGGBB in sRGB, or three linear numbers R,G,B of at least 0, as in "
+      "0.2,0.2,0.2";
+  if (text.starts_with('#')) {
+    std::uint32_t rgb = 0;
+    const char* const end = text.data() + text.size();
+    const auto [stop, error] = std::from_chars(text.data() + 1, end, rgb, 16);
+    if (text.size() != 7 || error != std::errc() || stop != end) {
+      throw UsageError(fmt::format("{} '{}': expected {}", option, text, expected));
+    }
+    const auto part = [&](int shift) { return srgb_to_linear((rgb >> shift & 0xff) / 255.0); };
+    return {part(16), part(8), part(0)};
+  }
   const auto [r, g, b] = parse_three<double>(option, text, expected);
   for (const double x : {r, g, b}) {
     if (!std::isfinite(x) || x < 0) {
@@ -178,6 +192,120 @@ Rgb<double> parse_color(const std::string& option, const std::string& text) {
     }
   }
   return {r, g, b};
+}
+
+namespace {
+
+/// The parts of a text between colons.
+std::vector<std::string> parts_of(const std::string& text) {
+  std::vector<std::string> parts(1);
+  for (const char c : text) {
+    if (c == ':') {
+      parts.emplace_back();
+    } else {
+      parts.back() += c;
+    }
+  }
+  return parts;
+}
+
+}  // namespace
+
+Shading parse_shading(const std::string& option, const std::string& text) {
+  constexpr std::string_view expected =
+      "on, off, or numbers AMBIENT,DIFFUSE,SPECULAR from 0 to 1000, and perhaps a POWER from 1 to "
+      "1000, as in 0.2,0.7,0.2,20";
+  const std::vector<double> n = parse_list<double>(option, text, ',', expected);
+  bool good = n.size() == 3 || n.size() == 4;
+  for (std::size_t i = 0; i < n.size(); ++i) good = good && n[i] >= (i < 3 ? 0 : 1) && n[i] <= 1e3;
+  if (!good) throw UsageError(fmt::format("{} '{}': expected {}", option, text, expected));
+  Shading shading;
+  shading.ambient = n[0];
+  shading.diffuse = n[1];
+  shading.specular = n[2];
+  if (n.size() == 4) shading.power = n[3];
+  return shading;
+}
+
+Light parse_light(const std::string& option, const std::string& text) {
+  constexpr std::string_view expected =
+      "head, directional:X,Y,Z or point:X,Y,Z, and perhaps :COLOR behind it";
+  const std::vector<std::string> parts = parts_of(text);
+  const bool head = parts[0] == "head";
+  const std::size_t color_at = head ? 1 : 2;
+  const bool known = head || parts[0] == "directional" || parts[0] == "point";
+  if (!known || parts.size() < color_at || parts.size() > color_at + 1) {
+    throw UsageError(fmt::format("{} '{}': expected {}", option, text, expected));
+  }
+  Light light;
+  if (!head) {
+    const auto [x, y, z] = parse_triple(option, parts[1]);
+    if (parts[0] == "point") {
+      light.kind = PointLight{{x, y, z}};
+    } else {
+      light.kind = DirectionalLight{{x, y, z}};
+    }
+  }
+  if (parts.size() > color_at) light.color = parse_color(option, parts[color_at]);
+  try {
+    check_light(light, fmt::format("{} '{}'", option, text));
+  } catch (const Error& error) {
+    throw UsageError(error.what());
+  }
+  return light;
+}
+
+Isosurface parse_isosurface(const std::string& option, const std::string& text) {
+  constexpr std::string_view expected =
+      "VALUE, VALUE:COLOR or VALUE:COLOR:OPACITY with an opacity from 0 to 1, as in "
+      "300:#ffe6cc:0.5";
+  const auto fail = [&] {
+    throw UsageError(fmt::format("{} '{}': expected {}", option, text, expected));
+  };
+  const std::vector<std::string> parts = parts_of(text);
+  const std::optional<double> value = parse_number<double>(parts[0]);
+  if (parts.size() > 3 || !value || !(std::abs(*value) <= 2.1e37)) fail();
+  Isosurface surface;
+  surface.value = *value;
+  if (parts.size() > 1 && !parts[1].empty()) surface.color = parse_color(option, parts[1]);
+  if (parts.size() < 3) return surface;
+  const std::optional<double> opacity = parse_number<double>(parts[2]);
+  if (!opacity || !(*opacity >= 0 && *opacity <= 1)) fail();
+  surface.opacity = *opacity;
+  return surface;
+}
+
+Slice parse_slice(const std::string& option, const std::string& text) {
+  constexpr std::string_view expected =
+      "x=VALUE, y=VALUE, z=VALUE or X,Y,Z,NX,NY,NZ with a normal that is not 0, and perhaps "
+      ":OPACITY from 0 to 1 behind it, as in z=12.5:0.8";
+  const auto fail = [&] {
+    throw UsageError(fmt::format("{} '{}': expected {}", option, text, expected));
+  };
+  const std::vector<std::string> parts = parts_of(text);
+  if (parts.size() > 2) fail();
+  Slice slice;
+  const std::string& plane = parts[0];
+  if (plane.size() > 2 && plane[1] == '=' && plane[0] >= 'x' && plane[0] <= 'z') {
+    const std::optional<double> value = parse_number<double>(std::string_view(plane).substr(2));
+    if (!value || !(std::abs(*value) <= 1e30)) fail();
+    const int axis = plane[0] - 'x';
+    slice.normal = {0, 0, 0};
+    slice.normal[axis] = 1;
+    slice.point[axis] = *value;
+  } else {
+    const std::vector<double> n = parse_list<double>(option, plane, ',', expected);
+    bool good = n.size() == 6;
+    for (const double x : n) good = good && std::abs(x) <= 1e30;
+    if (!good || !(std::hypot(n[3], n[4], n[5]) > 0)) fail();
+    slice.point = {n[0], n[1], n[2]};
+    slice.normal = {n[3], n[4], n[5]};
+  }
+  if (parts.size() < 2) return slice;
+  const std::optional<double> opacity = parse_number<double>(parts[1]);
+  if (!opacity || !(*opacity >= 0 && *opacity <= 1)) fail();
+  slice.opacity = *opacity;
+  return slice;
 }
 
 }  // namespace pellucid::cli

@@ -48,7 +48,15 @@ PictureTolerance parse_picture_tolerance(const std::string& option, const std::s
 /// "plane:X,Y,Z,NX,NY,NZ", "box:X0,Y0,Z0,X1,Y1,Z1", "sphere:X,Y,Z,R" or
 /// "cylinder:X0,Y0,Z0,X1,Y1,Z1,R"; "-" in front cuts the shape away.
 Clip parse_clip(const std::string& option, const std::string& text);
-/// "white", "black" or linear "R,G,B", each >= 0.
+/// "white", "black", "#RRGGBB" in sRGB or linear "R,G,B", each >= 0.
 Rgb<double> parse_color(const std::string& option, const std::string& text);
+/// "AMBIENT,DIFFUSE,SPECULAR" or "AMBIENT,DIFFUSE,SPECULAR,POWER".
+Shading parse_shading(const std::string& option, const std::string& text);
+/// "head", "directional:X,Y,Z" or "point:X,Y,Z"; a color may follow behind a colon.
+Light parse_light(const std::string& option, const std::string& text);
+/// "VALUE", "VALUE:COLOR" or "VALUE:COLOR:OPACITY"; an empty color is white.
+Isosurface parse_isosurface(const std::string& option, const std::string& text);
+/// "x=VALUE", "y=VALUE", "z=VALUE" or "X,Y,Z,NX,NY,NZ"; an opacity may follow behind a colon.
+Slice parse_slice(const std::string& option, const std::string& text);
 
 }  // namespace pellucid::cli

@@ -45,6 +45,11 @@ void print_notes(const RenderArguments& arguments, const PreparedScene& prepared
     print_note(fmt::format("tolerance {} is outside the limits: using {}", prepared.tolerance_asked,
                            used));
   }
+  if (prepared.transfer_function_from == "none") {
+    print_note(
+        "no transfer function given: only isosurfaces and slices are shown (--tf FILE.json "
+        "adds the volume)");
+  }
   if (prepared.transfer_function_from == "default" && !arguments.print_tf &&
       arguments.save_tf.empty()) {
     print_note(fmt::format(
@@ -136,7 +141,9 @@ int run_render(const RenderArguments& arguments) {
                          ? "--print-tf: labels have colors, but no transfer function"
                          : "--save-tf: labels have colors, but no transfer function");
   }
-  const std::string transfer_function = wants_function ? transfer_function_to_json(*function) : "";
+  const LayerDescription& first = prepared.description.layers.front();
+  const std::string transfer_function =
+      wants_function ? look_to_json({*function, first.shading, first.gradient_opacity}) : "";
 
   const InterruptGuard guard;
   RenderReport report;
@@ -222,6 +229,8 @@ Command add_render(CommandLine& app) {
       "  pellucid render head.nrrd --tf CT-AAA.vp.json -o slicer.png\n"
       "  pellucid render scene.json -o scene.exr --size 1920x1080 --samples 2 --json\n"
       "  pellucid render cta.nrrd --projection maximum -o mip.png --values mip.npy\n"
+      "  pellucid render head.nrrd --iso 300:#ffe6cc --slice z=40 -o skull.png\n"
+      "  pellucid render brain.nii.gz --shading on --light directional:0,1,-1 -o lit.png\n"
       "  pellucid render scene.json -o scene.exr --tolerance 1/4096 --grade proved --error-map "
       "e.png\n"
       "  pellucid render brain.nii.gz -o edges.png\n"

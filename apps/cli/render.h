@@ -8,6 +8,7 @@
 
 #include "import_arguments.h"
 #include "input.h"
+#include "light_arguments.h"
 #include "mesh_input.h"
 #include "output.h"
 #include "pellucid/cpu/render.h"
@@ -22,6 +23,7 @@ struct RenderArguments {
   std::vector<std::string> channels, gaussians, layers, labels, clips;
   std::string transfer_function, preset, projection, camera, view, size, background, backdrop;
   ImportArguments import;
+  LightArguments light;
   std::string method, precision, grade;
   std::optional<std::string> tolerance;
   std::optional<double> step;

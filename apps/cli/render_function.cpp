@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "parse.h"
@@ -51,8 +52,10 @@ void set_transfer_function(const RenderArguments& arguments, SceneDescription& d
   if (!file.empty() && is_foreign_transfer_function(text)) {
     const ImportedTransferFunction imported = import_transfer_function(
         text, file, arguments.import.options(import_share(arguments, description)));
-    description.layers.front().transfer_function = imported.table;
+    LayerDescription& layer = description.layers.front();
+    layer.transfer_function = imported.table;
     import_notes = import_lines(imported, file);
+    take_look(imported.shading, imported.gradient_opacity, file, layer, import_notes);
     return;
   }
   const char* const what =
@@ -62,7 +65,10 @@ void set_transfer_function(const RenderArguments& arguments, SceneDescription& d
     throw UsageError(fmt::format("--range does not apply to {}; drop it", what));
   }
   if (!file.empty()) {
-    description.layers.front().transfer_function = parse_transfer_function(text, file);
+    LookDescription look = parse_look(text, file);
+    LayerDescription& layer = description.layers.front();
+    layer.transfer_function = std::move(look.transfer_function);
+    take_look(look.shading, look.gradient_opacity, file, layer, import_notes);
   }
 }
 

@@ -101,6 +101,7 @@ void add_scene_options(CommandLine& command, RenderArguments& arguments) {
                   "or sum. Default: the scene's, else none. Without --tf in greys over its range")
       ->option_text("NAME")
       ->one_of({"maximum", "minimum", "mean", "sum"});
+  arguments.light.add_to(command);
   auto* camera =
       command
           .add_option("--camera", arguments.camera,
@@ -118,10 +119,11 @@ void add_scene_options(CommandLine& command, RenderArguments& arguments) {
                   "scene's, else 512x512")
       ->option_text("WxH");
   command
-      .add_option("--background", arguments.background,
-                  "Color behind a .png: white, black or linear R,G,B. Default: the scene's, else "
-                  "transparent. An .exr always stays transparent")
-      ->option_text("R,G,B");
+      .add_option(
+          "--background", arguments.background,
+          "Color behind a .png: white, black, #RRGGBB or linear R,G,B. Default: the scene's, "
+          "else transparent. An .exr always stays transparent")
+      ->option_text("COLOR");
   command
       .add_option("--backdrop", arguments.backdrop,
                   "Put this picture of geometry among the data: rays end at its depth (channel Z), "

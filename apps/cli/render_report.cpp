@@ -135,6 +135,13 @@ Json layer_json(const Layer& layer, const LayerDescription& description) {
   json["clips"] = layer.clips.size();
   json["projection"] =
       layer.projection ? Json(std::string(projection_name(*layer.projection))) : Json();
+  Json look = Json::parse(layer_look_to_json(description));
+  for (const char* const key : {"shading", "gradient_opacity"}) {
+    json[key] = look.contains(key) ? look[key] : Json();
+  }
+  for (const char* const key : {"isosurfaces", "slices"}) {
+    json[key] = look.contains(key) ? look[key] : Json::array();
+  }
   json["transfer_function"] =
       description.transfer_function
           ? Json::parse(transfer_function_to_json(*description.transfer_function))
@@ -182,10 +189,17 @@ void add_metadata(const RenderArguments& arguments, const PreparedScene& prepare
       metadata[i == 0 ? "pellucid.projection" : fmt::format("pellucid.projection.{}", i + 1)] =
           projection_name(*layers[i].projection);
     }
+    const Json look = Json::parse(layer_look_to_json(layers[i]));
+    for (const auto& [key, value] : look.items()) {
+      metadata["pellucid." + key + (i == 0 ? "" : fmt::format(".{}", i + 1))] = value.dump();
+    }
     if (!layers[i].transfer_function) continue;
     metadata[i == 0 ? "pellucid.transfer_function"
                     : fmt::format("pellucid.transfer_function.{}", i + 1)] =
         transfer_function_to_json(*layers[i].transfer_function);
+  }
+  if (std::ranges::any_of(layers, [](const auto& layer) { return layer.shading.has_value(); })) {
+    metadata["pellucid.lights"] = lights_to_json(prepared.description.lights);
   }
   metadata["pellucid.camera"] = camera_to_json(prepared.scene.camera);
 }
@@ -270,6 +284,7 @@ Json report_json(const RenderArguments& arguments, const PreparedScene& prepared
   for (const char* const key : {"dimensions", "type", "mesh", "channels", "transfer_function"}) {
     json[key] = one ? json["layers"][0][key] : Json();
   }
+  json["lights"] = Json::parse(lights_to_json(prepared.description.lights));
   json["nan"] = nan_values(scene);
   json["labels"] = Json::object();
   for (const auto& [channel, count] : prepared.labels) json["labels"][channel] = count;

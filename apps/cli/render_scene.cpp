@@ -103,6 +103,10 @@ void check_arguments(const RenderArguments& arguments) {
   if (!arguments.projection.empty() && arguments.has_only_added_layers()) {
     throw UsageError("--projection: is for INPUT; give one, or write it into a layer of a scene");
   }
+  if (const std::string option = arguments.light.option_of_a_layer();
+      !option.empty() && arguments.has_only_added_layers()) {
+    throw UsageError(option + ": is for INPUT; give one, or write it into a layer of a scene");
+  }
   const std::vector<NamedFile> outputs = output_files(arguments);
   const NamedFile inputs[] = {{"INPUT", arguments.input},
                               {"--q", arguments.mesh.q},
@@ -222,11 +226,16 @@ void set_volume(const RenderArguments& arguments, LayerDescription& description)
 void refuse_options_of_one_layer(const RenderArguments& arguments,
                                  const SceneDescription& description) {
   if (description.layers.size() == 1) return;
-  const std::pair<const char*, bool> given[] = {
-      {"--tf", !arguments.transfer_function.empty()},  {"--preset", !arguments.preset.empty()},
-      {"--gaussian", !arguments.gaussians.empty()},    {"--channel", !arguments.channels.empty()},
-      {"--projection", !arguments.projection.empty()}, {"--print-tf", arguments.print_tf},
-      {"--save-tf", !arguments.save_tf.empty()}};
+  const std::pair<const char*, bool> given[] = {{"--tf", !arguments.transfer_function.empty()},
+                                                {"--preset", !arguments.preset.empty()},
+                                                {"--gaussian", !arguments.gaussians.empty()},
+                                                {"--channel", !arguments.channels.empty()},
+                                                {"--projection", !arguments.projection.empty()},
+                                                {"--iso", !arguments.light.isosurfaces.empty()},
+                                                {"--slice", !arguments.light.slices.empty()},
+                                                {"--shading", !arguments.light.shading.empty()},
+                                                {"--print-tf", arguments.print_tf},
+                                                {"--save-tf", !arguments.save_tf.empty()}};
   for (const auto& [argument, is_given] : given) {
     if (!is_given) continue;
     throw UsageError(fmt::format("{}: the scene has {} layers; edit the layer in the scene",
@@ -296,7 +305,9 @@ SceneDescription describe(const RenderArguments& arguments,
   if (!description.layers.empty()) {
     description.layers.front() = layer;
     set_transfer_function(arguments, description, import_notes);
+    arguments.light.apply(description.layers.front());
   }
+  arguments.light.apply(description);
   add_layers(arguments, description);
   if (!arguments.camera.empty()) {
     description.camera = parse_camera(read_text_file(arguments.camera), arguments.camera);
@@ -347,6 +358,10 @@ std::vector<NamedFile> data_files(const SceneDescription& description) {
   return files;
 }
 
+bool shows_surfaces(const LayerDescription& layer) {
+  return !layer.isosurfaces.empty() || !layer.slices.empty();
+}
+
 /// Of the volumes of a layer that come from files and are shown as fields.
 void find_labels(const Layer& layer, const LayerDescription& description, const std::string& prefix,
                  PreparedScene& prepared) {
@@ -382,6 +397,18 @@ void complete(const Layer& layer, LayerDescription& description) {
   if (auto* mesh = std::get_if<MeshContent>(&layer.content)) {
     if (is_open(description.transfer_function) && mesh->univariate() != nullptr) {
       description.transfer_function = mesh->univariate()->points();
+    }
+  }
+  for (std::size_t i = 0; i < layer.isosurfaces.size(); ++i) {
+    const auto& made = layer.isosurfaces[i].colors;
+    if (made && is_open(description.isosurfaces[i].colors)) {
+      description.isosurfaces[i].colors = made->points();
+    }
+  }
+  for (std::size_t i = 0; i < layer.slices.size(); ++i) {
+    const auto& made = layer.slices[i].colors;
+    if (made && is_open(description.slices[i].colors)) {
+      description.slices[i].colors = made->points();
     }
   }
   const auto* const volume = std::get_if<VolumeContent>(&layer.content);
@@ -435,6 +462,7 @@ PreparedScene prepare(const RenderArguments& arguments) {
                                     : !arguments.preset.empty()    ? "--preset " + arguments.preset
                                     : !arguments.gaussians.empty() ? "--gaussian"
                                     : description.layers.front().transfer_function ? arguments.input
+                                    : shows_surfaces(description.layers.front())   ? "none"
                                                                                    : "default";
   SceneDescription rendered = description;
   if (arguments.reference && integration.tolerance > reference_tolerance) {
@@ -472,6 +500,7 @@ PreparedScene prepare(const RenderArguments& arguments) {
                 prepared);
   }
   scene.integration = integration;
+  check_data(scene);
   if (!arguments.view.empty()) {
     scene.camera =
         view_camera(visible_corners(scene, parallel_for(threads)), arguments.view, scene.size);

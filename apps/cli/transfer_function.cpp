@@ -27,14 +27,14 @@ struct TransferFunctionArguments {
 };
 
 /// What the input is, and what is told of it.
-TransferFunctionDescription read(const TransferFunctionArguments& arguments, double deviation,
-                                 std::vector<std::string>& notes) {
+LookDescription read(const TransferFunctionArguments& arguments, double deviation,
+                     std::vector<std::string>& notes) {
   const std::string text = read_text_file(arguments.input);
   if (is_foreign_transfer_function(text)) {
     const ImportedTransferFunction imported =
         import_transfer_function(text, arguments.input, arguments.import.options(deviation));
     notes = import_lines(imported, arguments.input);
-    return imported.table;
+    return {imported.table, imported.shading, imported.gradient_opacity};
   }
   arguments.import.refuse("a transfer function of our own");
   if (!arguments.import.range.empty()) {
@@ -42,21 +42,21 @@ TransferFunctionDescription read(const TransferFunctionArguments& arguments, dou
   }
   if (text.find("\"volumes\"") == std::string::npos &&
       text.find("\"layers\"") == std::string::npos) {
-    return parse_transfer_function(text, arguments.input);
+    return parse_look(text, arguments.input);
   }
   const SceneDescription scene = parse_scene(text, arguments.input);
   if (scene.layers.size() > 1) {
     throw Error(arguments.input + ": the scene has " + std::to_string(scene.layers.size()) +
                 " layers; put the transfer function of one of them into a file of its own");
   }
-  const auto& function = scene.layers.front().transfer_function;
-  if (!function) {
+  const LayerDescription& layer = scene.layers.front();
+  if (!layer.transfer_function) {
     throw Error(
         arguments.input +
         ": the scene has no transfer function; 'pellucid render --save-tf FILE.json' writes "
         "the one that it is rendered with");
   }
-  return *function;
+  return {*layer.transfer_function, layer.shading, layer.gradient_opacity};
 }
 
 int convert(const TransferFunctionArguments& arguments) {
@@ -72,15 +72,15 @@ int convert(const TransferFunctionArguments& arguments) {
     check_writable(arguments.output);
   }
   std::vector<std::string> notes;
-  const TransferFunctionDescription function = read(arguments, deviation, notes);
+  const LookDescription look = read(arguments, deviation, notes);
   std::string text;
   if (arguments.format == "pellucid") {
-    text = transfer_function_to_json(function) + "\n";
+    text = look_to_json(look) + "\n";
   } else {
     ExportOptions options;
     options.format = *export_format_from_name(arguments.format);
     options.deviation = deviation;
-    const ExportedTransferFunction exported = export_transfer_function(function, options);
+    const ExportedTransferFunction exported = export_transfer_function(look, options);
     text = exported.text;
     for (const std::string& note : exported.notes) {
       notes.push_back(fmt::format("{}: {}", arguments.format, note));

@@ -93,7 +93,25 @@ std::vector<OwnCurves::Node> nodes(const std::vector<Point>& points, double Poin
   return list;
 }
 
-nlohmann::ordered_json slicer(const std::vector<OpacityPoint>& points, double unit_distance) {
+/// What stands beside the function in a volume property; null: nothing.
+struct HeldLight {
+  const Shading* shading = nullptr;
+  const std::vector<GradientOpacity::Point>* gradient_opacity = nullptr;
+};
+
+nlohmann::ordered_json lighting(const Shading* shading) {
+  Shading glow;
+  glow.ambient = glow.specular = 0;
+  glow.diffuse = glow.power = 1;
+  const Shading& s = shading != nullptr ? *shading : glow;
+  return {{"diffuse", s.diffuse},
+          {"ambient", s.ambient},
+          {"specular", s.specular},
+          {"specularPower", s.power}};
+}
+
+nlohmann::ordered_json slicer(const std::vector<OpacityPoint>& points, double unit_distance,
+                              const HeldLight& light) {
   using Json = nlohmann::ordered_json;
   Json colors = Json::array(), opacities = Json::array();
   for (const OpacityPoint& p : points) {
@@ -103,14 +121,21 @@ nlohmann::ordered_json slicer(const std::vector<OpacityPoint>& points, double un
                       {"sharpness", 0.0}});
     opacities.push_back({{"x", p.value}, {"y", p.opacity}, {"midpoint", 0.5}, {"sharpness", 0.0}});
   }
-  const Json component{
-      {"componentWeight", 1.0},
-      {"shade", false},
-      {"lighting", {{"diffuse", 1.0}, {"ambient", 0.0}, {"specular", 0.0}, {"specularPower", 1.0}}},
-      {"disableGradientOpacity", true},
-      {"scalarOpacityUnitDistance", unit_distance},
-      {"rgbTransferFunction", {{"type", "colorTransferFunction"}, {"points", colors}}},
-      {"scalarOpacity", {{"type", "piecewiseFunction"}, {"points", opacities}}}};
+  Json component{{"componentWeight", 1.0},
+                 {"shade", light.shading != nullptr},
+                 {"lighting", lighting(light.shading)},
+                 {"disableGradientOpacity", light.gradient_opacity == nullptr},
+                 {"scalarOpacityUnitDistance", unit_distance},
+                 {"rgbTransferFunction", {{"type", "colorTransferFunction"}, {"points", colors}}},
+                 {"scalarOpacity", {{"type", "piecewiseFunction"}, {"points", opacities}}}};
+  if (light.gradient_opacity != nullptr) {
+    Json factors = Json::array();
+    for (const GradientOpacity::Point& p : *light.gradient_opacity) {
+      factors.push_back(
+          {{"x", p.gradient}, {"y", p.factor}, {"midpoint", 0.5}, {"sharpness", 0.0}});
+    }
+    component["gradientOpacity"] = {{"type", "piecewiseFunction"}, {"points", factors}};
+  }
   return {{"@schema",
            "https://raw.githubusercontent.com/slicer/slicer/main/Modules/Loadable/VolumeRendering/"
            "Resources/Schema/volume-property-schema-v1.0.0.json#"},
@@ -166,6 +191,31 @@ void add_notes(const ExportOptions& options, double unit_distance, std::size_t p
                                : unit + ", which the file cannot say: set it where it is read");
 }
 
+/// What of the look the format can hold; notes say what is left out.
+HeldLight held_light(const LookDescription& look, const ExportOptions& options,
+                     std::vector<std::string>& notes) {
+  HeldLight light;
+  const bool slicer = options.format == ExportFormat::slicer;
+  if (look.shading) {
+    if (slicer) light.shading = &look.shading->values;
+    notes.emplace_back(slicer ? "shading: exact, but for flatness and the kind of gradient, which "
+                                "are left out"
+                              : "the shading is left out: the file cannot say it");
+  }
+  if (!look.gradient_opacity) return light;
+  const GradientOpacityDescription& opacity = *look.gradient_opacity;
+  const auto is_above = [](const GradientOpacity::Point& p) { return p.factor > 1; };
+  const bool above = std::ranges::any_of(opacity.points, is_above);
+  const bool world = opacity.unit == GradientOpacity::Unit::world;
+  if (slicer && !above && !world) light.gradient_opacity = &opacity.points;
+  notes.emplace_back(
+      !slicer ? "the gradient opacity is left out: the file cannot say it"
+      : world ? "the gradient opacity is left out: it is per world length, the file's per voxel"
+      : above ? "the gradient opacity is left out: it has factors above 1"
+              : "gradient opacity: exact");
+  return light;
+}
+
 }  // namespace
 
 std::optional<ExportFormat> export_format_from_name(std::string_view name) noexcept {
@@ -177,6 +227,12 @@ std::optional<ExportFormat> export_format_from_name(std::string_view name) noexc
 
 ExportedTransferFunction export_transfer_function(const TransferFunctionDescription& function,
                                                   const ExportOptions& options) {
+  return export_transfer_function(LookDescription{function, {}, {}}, options);
+}
+
+ExportedTransferFunction export_transfer_function(const LookDescription& look,
+                                                  const ExportOptions& options) {
+  const TransferFunctionDescription& function = look.transfer_function;
   if (std::holds_alternative<MultivariateDescription>(function)) {
     throw Error("export: functions of several channels have no counterpart in other programs");
   }
@@ -201,11 +257,14 @@ ExportedTransferFunction export_transfer_function(const TransferFunctionDescript
     exported.color_deviation = chords.color_deviation() * steepest_light + branch_step;
   }
   exported.extinction_deviation = chords.depth_deviation();
+  std::vector<std::string> light_notes;
+  const HeldLight light = held_light(look, options, light_notes);
   exported.text = options.format == ExportFormat::slicer
-                      ? slicer(points, unit_distance).dump(4) + "\n"
+                      ? slicer(points, unit_distance, light).dump(4) + "\n"
                   : options.format == ExportFormat::paraview ? paraview(points).dump(1) + "\n"
                                                              : table(points);
   add_notes(options, unit_distance, points.size(), exported);
+  exported.notes.insert(exported.notes.end(), light_notes.begin(), light_notes.end());
   return exported;
 }
 

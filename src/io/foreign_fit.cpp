@@ -42,6 +42,7 @@ void move_to(Function& function, const std::array<double, 2>& range) {
     node.width = node.width / span * length;
     node.x_bias = node.x_bias / span * length;
   }
+  for (OpacityNode& node : function.gradient_opacity) node.x = node.x / span * length;
   function.lower = moved(function.lower);
   function.upper = moved(function.upper);
 }
@@ -59,6 +60,7 @@ void add_notes(const Function& function, ImportedTransferFunction& imported) {
                                : "opacities: exact, per unit distance of " +
                                      text_of(table.unit_distance));
   imported.notes.push_back(points);
+  fit_light(function, imported);
   imported.notes.insert(imported.notes.end(), function.notes.begin(), function.notes.end());
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -51,8 +52,17 @@ struct Function {
   std::vector<GaussianNode> gaussians;
   double lower = 0, upper = 1;
   double unit_distance = 1;
-  std::vector<std::string> notes;  ///< what was left out or supposed
+  std::optional<ShadingDescription> shading;
+  std::vector<OpacityNode> gradient_opacity;  ///< by the gradient per mean spacing; empty: 1
+  std::vector<std::string> notes;             ///< what was left out or supposed
 };
+
+/// Sets a gradient opacity, unless it is 1 everywhere.
+void set_gradient_opacity(std::vector<OpacityNode> nodes, Function& function);
+/// Sets a shading, its power moved into what is admitted; a note says so.
+void set_shading(const Shading& shading, Function& function);
+/// Fits shading and gradient opacity. Throws Error.
+void fit_light(const Function& function, ImportedTransferFunction& imported);
 
 /// The function as an opacity table within the deviations asked for.
 ImportedTransferFunction fit(const Function& function, const ImportOptions& options);

@@ -41,12 +41,31 @@ std::vector<ColorNode> colors(const Node& function) {
   return nodes;
 }
 
-/// Its steps in VTK are those of rays, by which the opacity of a sample is multiplied: there is no
-/// extinction that would be the same for any step.
-void note_gradient_opacity(const std::vector<OpacityNode>& nodes, Function& function) {
-  const bool changes = std::any_of(nodes.begin(), nodes.end(),
-                                   [](const OpacityNode& node) { return node.opacity != 1; });
-  if (changes) function.notes.emplace_back("the gradient opacity is left out");
+constexpr double largest_strength = 1e3;
+constexpr double largest_power = 1e6;
+
+/// vtkVolumeProperty's defaults.
+Shading vtk_shading() {
+  Shading shading;
+  shading.ambient = 0.1;
+  shading.diffuse = 0.7;
+  shading.specular = 0.2;
+  shading.power = 10;
+  return shading;
+}
+
+Shading lighting(const Node& component) {
+  Shading shading = vtk_shading();
+  const auto node = component.find("lighting");
+  if (!node) return shading;
+  const auto read = [&](const char* key, double largest, double& value) {
+    if (const auto number = node->find(key)) value = number->number(0, largest);
+  };
+  read("ambient", largest_strength, shading.ambient);
+  read("diffuse", largest_strength, shading.diffuse);
+  read("specular", largest_strength, shading.specular);
+  read("specularPower", largest_power, shading.power);
+  return shading;
 }
 
 Node first(const Node& parent, const char* key, Function& function) {
@@ -71,7 +90,7 @@ Function read_slicer(const Node& document) {
                              scene_json::printable(kind->string()) + "\"");
   }
   if (const auto shade = component.find("shade"); shade && shade->is_true()) {
-    function.notes.emplace_back("shading is left out");
+    set_shading(lighting(component), function);
   }
   if (const auto unit = component.find("scalarOpacityUnitDistance")) {
     function.unit_distance = unit->number(smallest_unit_distance, largest_unit_distance);
@@ -83,7 +102,7 @@ Function read_slicer(const Node& document) {
   const auto disabled = component.find("disableGradientOpacity");
   if (const auto gradient = component.find("gradientOpacity");
       gradient && !(disabled && disabled->is_true())) {
-    note_gradient_opacity(piecewise(*gradient), function);
+    set_gradient_opacity(piecewise(*gradient), function);
   }
   complete(function, component.where());
   return function;
@@ -135,10 +154,22 @@ Function read_slicer_text(std::string_view text, const std::string& name) {
     function.notes.emplace_back("data are trilinear here");
   }
   if (words(lines[1], " \t\r") != std::vector<std::string_view>{"0"}) {
-    function.notes.emplace_back("shading is left out");
+    const auto number = [&](std::size_t line, double largest) {
+      const std::vector<std::string_view> list = words(lines[line], " \t\r");
+      const double x = list.size() == 1 ? number_of(list.front(), where(line)) : -1;
+      if (x >= 0 && x <= largest) return x;
+      throw Error(where(line) + ": must be a number from 0 to " +
+                  std::to_string(static_cast<int>(largest)) + ", a part of the shading");
+    };
+    Shading shading;
+    shading.diffuse = number(2, largest_strength);
+    shading.ambient = number(3, largest_strength);
+    shading.specular = number(4, largest_strength);
+    shading.power = number(5, largest_power);
+    set_shading(shading, function);
   }
   function.opacities = legacy_opacities(lines[6], where(6));
-  note_gradient_opacity(legacy_opacities(lines[7], where(7)), function);
+  set_gradient_opacity(legacy_opacities(lines[7], where(7)), function);
   const std::vector<double> numbers = counted(lines[8], where(8), 4);
   for (std::size_t i = 0; i < numbers.size(); i += 4) {
     const auto part = [&](std::size_t j) { return checked_share(numbers[i + j], where(8)); };

@@ -148,7 +148,8 @@ LayerProjection read_projection(const Node& node, const LayerDescription& layer)
 /// A layer of version 2. A mask needs a field with a function of one variable.
 LayerDescription read_layer(const Node& node, const std::filesystem::path& folder) {
   node.expect_object({"name", "visible", "field", "channels", "mesh", "labels", "transfer_function",
-                      "mask", "transform", "clip", "projection"});
+                      "mask", "transform", "clip", "projection", "shading", "gradient_opacity",
+                      "isosurfaces", "slices"});
   LayerDescription layer;
   if (const auto name = node.find("name")) layer.name = name->string();
   if (const auto visible = node.find("visible")) layer.visible = visible->boolean();
@@ -169,6 +170,7 @@ LayerDescription read_layer(const Node& node, const std::filesystem::path& folde
   if (const auto projection = node.find("projection")) {
     layer.projection = read_projection(*projection, layer);
   }
+  scene_json::read_look(node, layer);
   return layer;
 }
 
@@ -191,7 +193,8 @@ std::vector<LayerDescription> read_layers(const Node& document,
     return {layer};
   }
   if (document.has("volumes")) document.fail_at("volumes", "is \"layers\" in version 2");
-  document.expect_object({"pellucid", "layers", "clip", "camera", "image", "integration"});
+  document.expect_object(
+      {"pellucid", "layers", "clip", "lights", "camera", "image", "integration"});
   const Node list = document.at("layers", "give one at least: [{\"field\": {\"file\": ...}}]");
   if (list.array_size() == 0) list.fail("is empty; give one layer at least");
   std::vector<LayerDescription> layers;
@@ -201,10 +204,13 @@ std::vector<LayerDescription> read_layers(const Node& document,
   return layers;
 }
 
-/// The object that stands alone, or under its name in a document of its own.
-Node unwrap(const Node& document, std::string_view key) {
+/// The object that stands alone, or under its name in a document of its own with `others`.
+Node unwrap(const Node& document, std::string_view key,
+            const std::vector<std::string_view>& others = {}) {
   if (!document.is_object() || !document.has(key)) return document;
-  document.expect_object({"pellucid", key});
+  std::vector<std::string_view> keys{"pellucid", key};
+  keys.insert(keys.end(), others.begin(), others.end());
+  document.expect_object(keys);
   checked_version(document);
   return document.at(key, "");
 }
@@ -218,6 +224,7 @@ SceneDescription parse_scene(std::string_view json, const std::string& name,
   SceneDescription scene;
   scene.layers = read_layers(document, folder);
   if (const auto clip = document.find("clip")) scene.clips = scene_json::clips(*clip);
+  if (const auto lights = document.find("lights")) scene.lights = scene_json::lights(*lights);
   if (const auto image = document.find("image")) {
     image->expect_object({"width", "height", "samples", "background", "backdrop"});
     constexpr int largest_size = 65536;
@@ -246,10 +253,23 @@ SceneDescription parse_scene(std::string_view json, const std::string& name,
   return scene;
 }
 
+LookDescription parse_look(std::string_view json, const std::string& name) {
+  const nlohmann::json parsed = scene_json::parse_document(json, name);
+  const Node document(parsed, name);
+  LookDescription look;
+  const Node function = unwrap(document, "transfer_function", {"shading", "gradient_opacity"});
+  look.transfer_function = scene_json::transfer_function(function);
+  if (!document.is_object() || !document.has("transfer_function")) return look;
+  if (const auto node = document.find("shading")) look.shading = scene_json::shading(*node);
+  if (const auto node = document.find("gradient_opacity")) {
+    look.gradient_opacity = scene_json::gradient_opacity(*node);
+  }
+  return look;
+}
+
 TransferFunctionDescription parse_transfer_function(std::string_view json,
                                                     const std::string& name) {
-  const nlohmann::json parsed = scene_json::parse_document(json, name);
-  return scene_json::transfer_function(unwrap(Node(parsed, name), "transfer_function"));
+  return parse_look(json, name).transfer_function;
 }
 
 Camera parse_camera(std::string_view json, const std::string& name) {

@@ -51,6 +51,39 @@ TransferFunction function_of(const std::optional<TransferFunctionDescription>& d
   return make_transfer_function(*description, wanted.tolerance, wanted.background);
 }
 
+bool shows_surfaces(const LayerDescription& description) {
+  return !description.isosurfaces.empty() || !description.slices.empty();
+}
+
+/// Grey from black at the least value to white at the largest, and transparent.
+template <class Data>
+TransferFunction grey_colors(const Data& data) {
+  std::vector<TransferFunction::Point> points =
+      projection_transfer_function(data, LayerProjection::maximum).points();
+  for (TransferFunction::Point& point : points) point.extinction = 0;
+  return TransferFunction(std::move(points));
+}
+
+/// Of a layer of one variable. Without a function between surfaces it is transparent; slices
+/// without colors take its own.
+template <class Data>
+TransferFunction medium_function(const LayerDescription& description, const Wanted& wanted,
+                                 const Data& data) {
+  if (description.transfer_function || !shows_surfaces(description)) {
+    return function_of(description.transfer_function, wanted, data, description.projection);
+  }
+  const auto has_no_colors = [](const SliceDescription& slice) { return !slice.colors; };
+  if (std::ranges::any_of(description.slices, has_no_colors)) return grey_colors(data);
+  return TransferFunction({{0, 0, {0, 0, 0}}});
+}
+
+/// Of several variables.
+std::shared_ptr<const MultivariateTransferFunction> transparent_function(std::size_t channels) {
+  return std::make_shared<const MultivariateTransferFunction>(
+      static_cast<int>(channels), std::vector<GaussianPrimitive>(),
+      std::vector<ChannelTransferFunction>{{0, TransferFunction({{0, 0, {0, 0, 0}}})}});
+}
+
 const MultivariateDescription* multivariate(const LayerDescription& description) {
   return description.transfer_function
              ? std::get_if<MultivariateDescription>(&*description.transfer_function)
@@ -61,7 +94,8 @@ ChannelsContent load_channels_content(const LayerDescription& description,
                                       const std::vector<ChannelSource>& sources,
                                       const ParallelFor& parallel) {
   const MultivariateDescription* const function = multivariate(description);
-  if (function == nullptr) {
+  const bool transparent = !description.transfer_function && shows_surfaces(description);
+  if (function == nullptr && !transparent) {
     throw Error(description.transfer_function
                     ? "scene: points in one variable are the function of a field, but here are "
                       "channels; give them as one of the \"tables\" with its \"channel\""
@@ -69,8 +103,9 @@ ChannelsContent load_channels_content(const LayerDescription& description,
                       "\"gaussians\" or \"tables\" ('pellucid suggest' makes a first one)");
   }
   ChannelsContent content;
-  content.transfer_function =
-      make_multivariate(*function, channel_names(sources), known_channels(description));
+  content.transfer_function = transparent ? transparent_function(sources.size())
+                                          : make_multivariate(*function, channel_names(sources),
+                                                              known_channels(description));
   content.channels = std::make_shared<const Channels>(load_channels(sources, parallel));
   return content;
 }
@@ -82,6 +117,8 @@ MeshContent load_mesh_content(const LayerDescription& description, const Wanted&
   const std::vector<std::string> names = function_channels(description);
   if (const MultivariateDescription* const function = multivariate(description)) {
     content.transfer_function = make_multivariate(*function, names, names);
+  } else if (names.size() > 1 && !description.transfer_function && shows_surfaces(description)) {
+    content.transfer_function = transparent_function(names.size());
   } else if (names.size() > 1) {
     throw Error(
         "scene: several arrays of a mesh need a function of them all; give \"gaussians\" or "
@@ -93,7 +130,7 @@ MeshContent load_mesh_content(const LayerDescription& description, const Wanted&
   mesh_used.channels = loaded.channels;
   if (content.multivariate() == nullptr) {
     content.transfer_function = std::make_shared<const TransferFunction>(
-        function_of(description.transfer_function, wanted, *content.mesh, description.projection));
+        medium_function(description, wanted, *content.mesh));
   }
   return content;
 }
@@ -102,7 +139,7 @@ VolumeContent load_volume_content(const LayerDescription& description, const Wan
   VolumeContent content;
   content.volume = std::make_shared<const Volume>(load_field(description.field));
   content.transfer_function = std::make_shared<const TransferFunction>(
-      function_of(description.transfer_function, wanted, *content.volume, description.projection));
+      medium_function(description, wanted, *content.volume));
   if (!description.mask) return content;
   auto labels = std::make_shared<const LabelVolume>(
       std::make_shared<const Volume>(load_field(description.mask->field)));
@@ -135,6 +172,85 @@ LabelContent load_label_content(const LabelSource& source) {
   return content;
 }
 
+/// The colors of a surface: a function of one variable, whose extinctions do not count.
+/// `description` none: grey over the range of the data.
+template <class Data>
+std::shared_ptr<const TransferFunction> surface_colors(
+    const std::optional<TransferFunctionDescription>& description, const Data& data) {
+  if (!description) return std::make_shared<const TransferFunction>(grey_colors(data));
+  const auto* const table = std::get_if<OpacityTable>(&*description);
+  if (table == nullptr) {
+    return std::make_shared<const TransferFunction>(function_of(description, Wanted{}, data));
+  }
+  std::vector<TransferFunction::Point> points;
+  for (const OpacityPoint& point : table->points) points.push_back({point.value, 0, point.color});
+  return std::make_shared<const TransferFunction>(std::move(points), 0.0, table->color_deviation);
+}
+
+/// Puts shading, gradient opacity, isosurfaces and slices into a layer that has its data.
+class LookLoader {
+ public:
+  LookLoader(const LayerDescription& description, Layer& layer)
+      : description_(description), layer_(layer), names_(function_channels(description)) {
+    if (names_.empty()) names_.emplace_back(field_channel);
+  }
+
+  void operator()() const {
+    if (description_.shading) {
+      layer_.shading = description_.shading->values;
+      layer_.shading->channel = index(description_.shading->channel, "shading");
+    }
+    if (const auto& opacity = description_.gradient_opacity) {
+      layer_.gradient_opacity = std::make_shared<const GradientOpacity>(
+          opacity->points, opacity->unit, index(opacity->channel, "gradient opacity"));
+    }
+    for (const IsosurfaceDescription& surface : description_.isosurfaces) {
+      const int color_channel = index(surface.color_channel, "an isosurface");
+      layer_.isosurfaces.push_back(
+          {surface.value, surface.opacity, surface.color,
+           surface.colors ? colors(surface.colors, color_channel) : nullptr,
+           index(surface.channel, "an isosurface"), color_channel});
+    }
+    for (const SliceDescription& slice : description_.slices) {
+      const int channel = index(slice.channel, "a slice");
+      const bool own = slice.colors || !std::holds_alternative<VolumeContent>(layer_.content);
+      layer_.slices.push_back({slice.point, slice.normal, slice.opacity,
+                               own ? colors(slice.colors, channel) : nullptr, channel});
+    }
+  }
+
+ private:
+  int index(const std::string& channel, const char* what) const {
+    if (channel.empty()) return 0;
+    const auto found = std::ranges::find(names_, channel);
+    if (found != names_.end()) return static_cast<int>(found - names_.begin());
+    std::string list;
+    for (const std::string& name : names_) list += (list.empty() ? "" : ", ") + name;
+    throw Error(std::string("scene: ") + what + " looks at a channel \"" + channel +
+                "\", which is not there; there are: " + list);
+  }
+
+  /// Null for a slice of a mesh with a function of one variable, which has that function's.
+  std::shared_ptr<const TransferFunction> colors(
+      const std::optional<TransferFunctionDescription>& description, int channel) const {
+    if (const auto* volume = std::get_if<VolumeContent>(&layer_.content)) {
+      return surface_colors(description, *volume->volume);
+    }
+    if (const auto* channels = std::get_if<ChannelsContent>(&layer_.content)) {
+      return surface_colors(description, *(*channels->channels)[channel].volume);
+    }
+    const auto* const mesh = std::get_if<MeshContent>(&layer_.content);
+    if (mesh == nullptr || (!description && mesh->univariate() != nullptr)) return nullptr;
+    return surface_colors(description, channel == 0 ? *mesh->mesh
+                                                    : MeshChannels(mesh->mesh->shared_mesh(),
+                                                                   {(*mesh->mesh)[channel]}));
+  }
+
+  const LayerDescription& description_;
+  Layer& layer_;
+  std::vector<std::string> names_;
+};
+
 Layer load_layer(const LayerDescription& description, const Wanted& wanted,
                  const ParallelFor& parallel, MeshSource& mesh_used) {
   Layer layer;
@@ -152,6 +268,7 @@ Layer load_layer(const LayerDescription& description, const Wanted& wanted,
   } else {
     layer.content = load_volume_content(description, wanted);
   }
+  LookLoader(description, layer)();
   return layer;
 }
 
@@ -194,6 +311,7 @@ Scene make_scene(const SceneDescription& description, const ParallelFor& paralle
   }
   if (meshes_used != nullptr) *meshes_used = std::move(meshes);
   scene.clips = description.clips;
+  scene.lights = description.lights;
   scene.size = description.size;
   scene.samples = description.samples;
   scene.camera = description.camera
@@ -208,6 +326,20 @@ Scene make_scene(const SceneDescription& description, const ParallelFor& paralle
   return scene;
 }
 
+namespace {
+
+/// Returns the most by which light multiplies the error of a color, as approximation_error() counts
+/// it.
+double light_factor(const Layer& layer, const std::vector<Light>& lights) {
+  if (!layer.shading) return 1;
+  const double ambient = layer.shading->ambient;
+  Rgb<double> sum{ambient, ambient, ambient};
+  for (const Light& light : lights) sum += layer.shading->diffuse * light.color;
+  return std::max(largest_component(sum), 1.0);
+}
+
+}  // namespace
+
 void fit_opacity_tables(const SceneDescription& description, Scene& scene) {
   const auto visible = std::ranges::count_if(scene.layers, &Layer::visible);
   // As approximation_error() counts them.
@@ -221,13 +353,14 @@ void fit_opacity_tables(const SceneDescription& description, Scene& scene) {
     Layer& layer = scene.layers[i];
     auto* const volume = std::get_if<VolumeContent>(&layer.content);
     const bool masked = volume != nullptr && volume->mask;
-    const double behind =
-        std::max(behind_all, masked || layer.projection ? largest_color(layer) : 0);
+    const double behind = std::max(behind_all, masked || layer.projection || is_lit(layer)
+                                                   ? largest_color(layer, scene.lights)
+                                                   : 0);
+    const double budget = tolerance / light_factor(layer, scene.lights);
     const auto made = [&](const TransferFunctionDescription& function) {
       // A projection shows an error of the opacity as it is (approximation_error()).
-      return std::make_shared<const TransferFunction>(
-          make_transfer_function(function, layer.projection ? tolerance / 8 : tolerance,
-                                 Rgb<double>{behind, behind, behind}));
+      return std::make_shared<const TransferFunction>(make_transfer_function(
+          function, layer.projection ? budget / 8 : budget, Rgb<double>{behind, behind, behind}));
     };
     const auto& function = description.layers[i].transfer_function;
     if (function && is_table(*function)) {

@@ -48,4 +48,11 @@ TransferFunctionDescription transfer_function(const Node& function);
 /// The names of channels that it uses are not looked up.
 MultivariateDescription multivariate(const Node& function);
 
+std::vector<Light> lights(const Node& list);
+/// The names of channels that these use are not looked up.
+ShadingDescription shading(const Node& node);
+GradientOpacityDescription gradient_opacity(const Node& node);
+/// Shading, gradient opacity, isosurfaces and slices of a layer that has all its other members.
+void read_look(const Node& node, LayerDescription& layer);
+
 }  // namespace pellucid::scene_json

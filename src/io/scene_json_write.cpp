@@ -374,6 +374,107 @@ std::string transform_text(const Affine<double>& map) {
   return rows + "]]";
 }
 
+std::string light_text(const Light& light) {
+  std::string text = "{\"type\": \"head\"";
+  if (const auto* directional = std::get_if<DirectionalLight>(&light.kind)) {
+    text = joined({"{\"type\": \"directional\", \"direction\": ",
+                   array(directional->direction, "a direction")});
+  } else if (const auto* point = std::get_if<PointLight>(&light.kind)) {
+    text = joined({"{\"type\": \"point\", \"position\": ", array(point->position, "a position")});
+  }
+  return joined({text, ", \"color\": ", array(light.color, "the color of a light"), "}"});
+}
+
+/// One light per line.
+std::string lights_text(const std::vector<Light>& lights) {
+  std::string list;
+  for (const Light& light : lights) {
+    list += joined({list.empty() ? "[" : ",", "\n    ", light_text(light)});
+  }
+  return list.empty() ? "[]" : list + "\n  ]";
+}
+
+void add_channel(std::string_view key, const std::string& channel, Members& members) {
+  if (!channel.empty()) members.add(key, quoted(channel, "the name of a channel"));
+}
+
+std::string shading_text(const ShadingDescription& shading, const std::string& indent) {
+  const Shading& values = shading.values;
+  Members members(indent);
+  members.add("ambient", number(values.ambient, "a part of the shading"));
+  members.add("diffuse", number(values.diffuse, "a part of the shading"));
+  members.add("specular", number(values.specular, "a part of the shading"));
+  members.add("power", number(values.power, "the power of the shading"));
+  members.add("gradient", joined({"\"", gradient_kind_name(values.gradient), "\""}));
+  members.add("flatness", number(values.flatness, "the flatness of the shading"));
+  add_channel("channel", shading.channel, members);
+  return members.object();
+}
+
+/// One point per line.
+std::string gradient_opacity_text(const GradientOpacityDescription& opacity,
+                                  const std::string& indent) {
+  Members members(indent);
+  std::string list;
+  for (const GradientOpacity::Point& point : opacity.points) {
+    list += joined({list.empty() ? "[" : ",", "\n", indent,
+                    "    {\"gradient\": ", number(point.gradient, "a gradient"),
+                    ", \"factor\": ", number(point.factor, "a factor"), "}"});
+  }
+  members.add("points", joined({list, "\n", indent, "  ]"}));
+  members.add("unit", opacity.unit == GradientOpacity::Unit::voxel ? "\"voxel\"" : "\"world\"");
+  add_channel("channel", opacity.channel, members);
+  return members.object();
+}
+
+std::string isosurface_text(const IsosurfaceDescription& surface, const std::string& indent) {
+  Members members(indent);
+  members.add("value", number(surface.value, "the value of an isosurface"));
+  if (surface.colors) {
+    members.add("colors", transfer_function_text(*surface.colors, indent + "  "));
+    add_channel("color_channel", surface.color_channel, members);
+  } else {
+    members.add("color", array(surface.color, "the color of an isosurface"));
+  }
+  members.add("opacity", number(surface.opacity, "the opacity of an isosurface"));
+  add_channel("channel", surface.channel, members);
+  return members.object();
+}
+
+std::string slice_text(const SliceDescription& slice, const std::string& indent) {
+  Members members(indent);
+  members.add("point", array(slice.point, "the point of a slice"));
+  members.add("normal", array(slice.normal, "the normal of a slice"));
+  members.add("opacity", number(slice.opacity, "the opacity of a slice"));
+  if (slice.colors) members.add("colors", transfer_function_text(*slice.colors, indent + "  "));
+  add_channel("channel", slice.channel, members);
+  return members.object();
+}
+
+/// `indent` is that of the keys.
+void add_look(const LayerDescription& layer, const std::string& indent, Members& members) {
+  if (layer.shading) members.add("shading", shading_text(*layer.shading, indent));
+  if (layer.gradient_opacity) {
+    members.add("gradient_opacity", gradient_opacity_text(*layer.gradient_opacity, indent));
+  }
+  const auto add_list = [&](const char* key, const auto& elements, auto&& text) {
+    if (elements.empty()) return;
+    std::string list;
+    for (const auto& element : elements) {
+      list += joined({list.empty() ? "[" : ", ", text(element, indent)});
+    }
+    members.add(key, list + "]");
+  };
+  add_list("isosurfaces", layer.isosurfaces, isosurface_text);
+  add_list("slices", layer.slices, slice_text);
+}
+
+/// Whether it is a white head light alone, the default.
+bool are_default(const std::vector<Light>& lights) {
+  return lights.size() == 1 && std::holds_alternative<HeadLight>(lights.front().kind) &&
+         lights.front().color == Rgb<double>{1, 1, 1};
+}
+
 std::string layer_text(const LayerDescription& layer) {
   Members members("    ");
   const std::string indent = "      ";
@@ -399,6 +500,7 @@ std::string layer_text(const LayerDescription& layer) {
   if (layer.projection) {
     members.add("projection", joined({"\"", projection_name(*layer.projection), "\""}));
   }
+  add_look(layer, indent, members);
   return members.object();
 }
 
@@ -433,6 +535,7 @@ std::string scene_to_json(const SceneDescription& scene) {
   document.add("pellucid", "2");
   document.add("layers", joined({layers, "\n  ]"}));
   if (!scene.clips.empty()) document.add("clip", clips_text(scene.clips, ""));
+  if (!are_default(scene.lights)) document.add("lights", lights_text(scene.lights));
   if (scene.camera) document.add("camera", camera_text(*scene.camera, "  "));
   document.add("image", image.object());
   document.add("integration", integration.object());
@@ -445,6 +548,31 @@ std::string transfer_function_to_json(const TransferFunctionDescription& descrip
 
 std::string transfer_function_to_json(const TransferFunction& transfer_function) {
   return transfer_function_text(transfer_function.points(), "");
+}
+
+std::string layer_look_to_json(const LayerDescription& layer) {
+  Members members("");
+  add_look(layer, "  ", members);
+  const std::string text = members.object();
+  return text == "\n}" ? "{}" : text;
+}
+
+std::string lights_to_json(const std::vector<Light>& lights) {
+  return lights_text(lights);
+}
+
+std::string look_to_json(const LookDescription& look) {
+  if (!look.shading && !look.gradient_opacity) {
+    return transfer_function_to_json(look.transfer_function);
+  }
+  const std::string indent = "  ";
+  Members members("");
+  members.add("transfer_function", transfer_function_text(look.transfer_function, indent));
+  if (look.shading) members.add("shading", shading_text(*look.shading, indent));
+  if (look.gradient_opacity) {
+    members.add("gradient_opacity", gradient_opacity_text(*look.gradient_opacity, indent));
+  }
+  return members.object();
 }
 
 std::string camera_to_json(const Camera& camera) {

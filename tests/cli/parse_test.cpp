@@ -5,7 +5,15 @@
 
 namespace {
 
+using pellucid::DirectionalLight;
+using pellucid::HeadLight;
+using pellucid::Isosurface;
+using pellucid::Light;
+using pellucid::PointLight;
 using pellucid::Rgb;
+using pellucid::Shading;
+using pellucid::Slice;
+using pellucid::Vec3;
 using namespace pellucid::cli;
 
 TEST(Parse, Size) {
@@ -38,8 +46,60 @@ TEST(Parse, Color) {
   EXPECT_EQ(parse_color("--background", "white"), (Rgb<double>{1, 1, 1}));
   EXPECT_EQ(parse_color("--background", "black"), (Rgb<double>{0, 0, 0}));
   EXPECT_EQ(parse_color("--background", "0.25,0,2"), (Rgb<double>{0.25, 0, 2}));
-  for (const char* bad : {"grey", "1,1", "-0.1,0,0", "0,0,inf", "#fff"}) {
+  EXPECT_EQ(parse_color("--background", "#ff00FF"), (Rgb<double>{1, 0, 1}));
+  for (const char* bad : {"grey", "1,1", "-0.1,0,0", "0,0,inf", "#fff", "#12345g", "#-12345"}) {
     EXPECT_THROW(parse_color("--background", bad), UsageError) << bad;
+  }
+}
+
+TEST(Parse, Shading) {
+  const Shading shading = parse_shading("--shading", "0.1,0.5,0.25");
+  EXPECT_EQ(shading.ambient, 0.1);
+  EXPECT_EQ(shading.diffuse, 0.5);
+  EXPECT_EQ(shading.specular, 0.25);
+  EXPECT_EQ(shading.power, Shading{}.power);
+  EXPECT_EQ(parse_shading("--shading", "0,0,0,50").power, 50);
+  for (const char* bad : {"yes", "", "1", "1,1", "1,1,1,0.5", "-1,1,1", "1,1,1,1,1", "1,nan,1"}) {
+    EXPECT_THROW(parse_shading("--shading", bad), UsageError) << bad;
+  }
+}
+
+TEST(Parse, Light) {
+  EXPECT_TRUE(std::holds_alternative<HeadLight>(parse_light("--light", "head").kind));
+  EXPECT_EQ(parse_light("--light", "head:0,0.5,2").color, (Rgb<double>{0, 0.5, 2}));
+  const Light sun = parse_light("--light", "directional:0,1,-1:black");
+  EXPECT_EQ(std::get<DirectionalLight>(sun.kind).direction, (Vec3<double>{0, 1, -1}));
+  EXPECT_EQ(sun.color, (Rgb<double>{0, 0, 0}));
+  EXPECT_EQ(std::get<PointLight>(parse_light("--light", "point:1,2,3").kind).position,
+            (Vec3<double>{1, 2, 3}));
+  for (const char* bad : {"", "spot", "spot:1,2,3", "directional", "directional:0,0,0", "point:1,2",
+                          "point:1,2,3:pink", "head:white:1", "point:1,2,3:white:1"}) {
+    EXPECT_THROW(parse_light("--light", bad), UsageError) << bad;
+  }
+}
+
+TEST(Parse, Isosurface) {
+  EXPECT_EQ(parse_isosurface("--iso", "-300"), (Isosurface{-300}));
+  EXPECT_EQ(parse_isosurface("--iso", "0.5:1,0,0:0.25"), (Isosurface{0.5, 0.25, {1, 0, 0}}));
+  EXPECT_EQ(parse_isosurface("--iso", "0.5::0.25"), (Isosurface{0.5, 0.25}));
+  for (const char* bad : {"", "bone", "1:pink", "1:white:2", "1:white:-1", "1:white:0.5:1", "inf",
+                          "nan", "1:white:"}) {
+    EXPECT_THROW(parse_isosurface("--iso", bad), UsageError) << bad;
+  }
+}
+
+TEST(Parse, Slice) {
+  const Slice y = parse_slice("--slice", "y=-2.5:0.5");
+  EXPECT_EQ(y.point, (Vec3<double>{0, -2.5, 0}));
+  EXPECT_EQ(y.normal, (Vec3<double>{0, 1, 0}));
+  EXPECT_EQ(y.opacity, 0.5);
+  const Slice oblique = parse_slice("--slice", "1,2,3,0,-1,1");
+  EXPECT_EQ(oblique.point, (Vec3<double>{1, 2, 3}));
+  EXPECT_EQ(oblique.normal, (Vec3<double>{0, -1, 1}));
+  EXPECT_EQ(oblique.opacity, 1);
+  for (const char* bad : {"", "z", "w=1", "z=", "z=a", "z=1:2", "z=1:", "z=1:1:1", "1,2,3",
+                          "1,2,3,0,0,0", "1,2,3,0,0,inf", "x=nan"}) {
+    EXPECT_THROW(parse_slice("--slice", bad), UsageError) << bad;
   }
 }
 

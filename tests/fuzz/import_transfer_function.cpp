@@ -42,7 +42,13 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     require(pellucid::transfer_function_to_json(again) == written);
     pellucid::transfer_function_from_opacity_table(table.points, table.unit_distance,
                                                    pellucid::largest_relative_error);
-    pellucid::export_transfer_function(table, {pellucid::ExportFormat::table, 0.05});
+    const pellucid::LookDescription look{table, imported.shading, imported.gradient_opacity};
+    const std::string with_light = pellucid::look_to_json(look);
+    require(pellucid::look_to_json(pellucid::parse_look(with_light, "again")) == with_light);
+    if (look.gradient_opacity) {
+      const pellucid::GradientOpacity made(look.gradient_opacity->points);
+    }
+    pellucid::export_transfer_function(look, {pellucid::ExportFormat::table, 0.05});
   } catch (const pellucid::Error& error) {
     const std::string_view message = error.what();
     require(message.size() > 10 && message.size() < 2000);

@@ -76,6 +76,10 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     }
   });
   attempt([&] {
+    const std::string written = pellucid::look_to_json(pellucid::parse_look(text, "fuzz"));
+    require(pellucid::look_to_json(pellucid::parse_look(written, "again")) == written);
+  });
+  attempt([&] {
     const std::string written = pellucid::camera_to_json(pellucid::parse_camera(text, "fuzz"));
     require(pellucid::camera_to_json(pellucid::parse_camera(written, "again")) == written);
   });

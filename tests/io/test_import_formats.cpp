@@ -251,11 +251,101 @@ TEST(ImportSlicer, ReadsTheLegacyText) {
   ASSERT_EQ(f.table.points.size(), 3u);
   EXPECT_EQ(f.table.points[1].opacity, 0.25);
   EXPECT_DOUBLE_EQ(f.table.points[1].color.r, 0.375);
-  EXPECT_TRUE(has_note(f, "shading is left out"));
-  EXPECT_FALSE(has_note(f, "gradient"));
+  ASSERT_TRUE(f.shading);
+  EXPECT_EQ(f.shading->values.diffuse, 0.9);
+  EXPECT_EQ(f.shading->values.ambient, 0.1);
+  EXPECT_EQ(f.shading->values.specular, 0.2);
+  EXPECT_EQ(f.shading->values.power, 10);
+  EXPECT_FALSE(f.gradient_opacity);
+  EXPECT_FALSE(has_note(f, "left out"));
   std::string dented = text;
   dented.replace(dented.find("255 1"), 5, "255 0");
-  EXPECT_TRUE(has_note(read(dented, options), "the gradient opacity is left out"));
+  const ImportedTransferFunction g = read(dented, options);
+  ASSERT_TRUE(g.gradient_opacity);
+  EXPECT_EQ(g.gradient_opacity->unit, GradientOpacity::Unit::voxel);
+  ASSERT_EQ(g.gradient_opacity->points.size(), 2u);
+  EXPECT_EQ(g.gradient_opacity->points[0].factor, 1);
+  EXPECT_EQ(g.gradient_opacity->points[1].gradient, 255);
+  EXPECT_EQ(g.gradient_opacity->points[1].factor, 0);
+  EXPECT_TRUE(has_note(g, "gradient opacity: a factor of the extinction"));
+
+  std::string unlit = text;
+  unlit.replace(0, 4, "1\n0\n");
+  EXPECT_FALSE(read(unlit, options).shading);
+  std::string dull = text;
+  dull.replace(dull.find("\n10\n"), 4, "\n0\n");
+  EXPECT_EQ(read(dull, options).shading->values.power, 1);
+  EXPECT_TRUE(has_note(read(dull, options), "the specular power, 0, is 1 here"));
+  std::string broken = text;
+  broken.replace(broken.find("0.9"), 3, "-1");
+  EXPECT_TRUE(contains(test::error_of([&] { read(broken, options); }),
+                       "line 3: must be a number from 0 to 1000, a part of the shading"));
+}
+
+/// A volume property with these keys in its component.
+std::string slicer(const std::string& keys) {
+  return R"({"volumeProperties": [{"components": [{
+              "rgbTransferFunction": {"points": [{"x": 0, "color": [1, 1, 1]}]},
+              "scalarOpacity": {"points": [{"x": 0, "y": 0.5}]}, )" +
+         keys + "}]}]}";
+}
+
+TEST(ImportSlicer, ReadsShading) {
+  const ImportedTransferFunction f =
+      read(slicer(R"("shade": true, "lighting": {"diffuse": 0.9, "ambient": 0.15, "specular": 0.4,
+                                                 "specularPower": 30})"));
+  ASSERT_TRUE(f.shading);
+  EXPECT_EQ(f.shading->values.ambient, 0.15);
+  EXPECT_EQ(f.shading->values.diffuse, 0.9);
+  EXPECT_EQ(f.shading->values.specular, 0.4);
+  EXPECT_EQ(f.shading->values.power, 30);
+  EXPECT_TRUE(has_note(f, "shading: ambient 0.15, diffuse 0.9, specular 0.4 with power 30"));
+  // As vtkVolumeProperty.
+  EXPECT_EQ(read(slicer(R"("shade": 1)")).shading->values.power, 10);
+  EXPECT_FALSE(read(slicer(R"("shade": false, "lighting": {"diffuse": 0.9})")).shading);
+  EXPECT_TRUE(contains(
+      test::error_of([] { read(slicer(R"("shade": true, "lighting": {"diffuse": -1})")); }),
+      "/lighting/diffuse: is -1"));
+}
+
+TEST(ImportSlicer, ReadsGradientOpacity) {
+  const auto points = [](const std::string& nodes, const ImportOptions& options = {}) {
+    const auto f = read(slicer("\"gradientOpacity\": {\"points\": [" + nodes + "]}"), options);
+    return f.gradient_opacity ? f.gradient_opacity->points : std::vector<GradientOpacity::Point>();
+  };
+  EXPECT_TRUE(points(R"({"x": 0, "y": 1}, {"x": 255, "y": 1})").empty());
+  // A midpoint is a corner, a sharpness of 1 a jump; what is below 0 never occurs.
+  const auto corner = points(
+      R"({"x": -10, "y": 0}, {"x": 10, "y": 0.5, "midpoint": 0.25}, {"x": 50, "y": 1,
+          "midpoint": 0.5, "sharpness": 1}, {"x": 70, "y": 0.5})");
+  const double expected[][2] = {{0, 0.25}, {10, 0.5}, {20, 0.75}, {50, 1},
+                                {60, 1},   {60, 0.5}, {70, 0.5}};
+  ASSERT_EQ(corner.size(), 7u);
+  for (std::size_t i = 0; i < 7; ++i) {
+    EXPECT_DOUBLE_EQ(corner[i].gradient, expected[i][0]) << i;
+    EXPECT_DOUBLE_EQ(corner[i].factor, expected[i][1]) << i;
+  }
+  // Three nodes at one gradient are a jump from the first to the last.
+  EXPECT_EQ(points(R"({"x": 5, "y": 0}, {"x": 5, "y": 0.5}, {"x": 5, "y": 1})").size(), 2u);
+  const auto curve = points(R"({"x": 0, "y": 0, "sharpness": 0.5}, {"x": 8, "y": 1})");
+  ASSERT_GT(curve.size(), 100u);
+  EXPECT_NEAR(curve[curve.size() / 2].factor, 0.5, 1e-12);
+
+  EXPECT_FALSE(read(slicer(R"("disableGradientOpacity": true,
+                              "gradientOpacity": {"points": [{"x": 0, "y": 0}]})"))
+                   .gradient_opacity);
+  EXPECT_TRUE(contains(test::error_of([&] { points(R"({"x": 9, "y": 0}, {"x": 1, "y": 1})"); }),
+                       "lies at a smaller gradient than the one before it"));
+}
+
+TEST(ImportSlicer, ARangeMovesGradientsInProportion) {
+  ImportOptions options;
+  options.range = {{-10, 30}};
+  const auto f = read(R"({"volumeProperties": [{"components": [{
+      "scalarOpacity": {"points": [{"x": 0, "y": 0}, {"x": 10, "y": 1}]},
+      "gradientOpacity": {"points": [{"x": 0, "y": 0}, {"x": 3, "y": 1}]}}]}]})",
+                      options);
+  EXPECT_EQ(f.gradient_opacity.value().points[1].gradient, 12);
 }
 
 TEST(Import, MovesAFunctionToARange) {

@@ -86,6 +86,12 @@ bool same(const GaussianDescription& a, const GaussianDescription& b);
 bool same(const ChannelTableDescription& a, const ChannelTableDescription& b);
 bool same(const ChannelSource& a, const ChannelSource& b);
 bool same(const LayerDescription& a, const LayerDescription& b);
+bool same(const ShadingDescription& a, const ShadingDescription& b);
+bool same(const GradientOpacity::Point& a, const GradientOpacity::Point& b);
+bool same(const GradientOpacityDescription& a, const GradientOpacityDescription& b);
+bool same(const IsosurfaceDescription& a, const IsosurfaceDescription& b);
+bool same(const SliceDescription& a, const SliceDescription& b);
+bool same(const Light& a, const Light& b);
 template <class T>
 bool same_lists(const std::vector<T>& a, const std::vector<T>& b) {
   return std::equal(a.begin(), a.end(), b.begin(), b.end(),
@@ -152,14 +158,37 @@ bool same(const Affine<double>& a, const Affine<double>& b) {
          same(a.matrix.column[1], b.matrix.column[1]) &&
          same(a.matrix.column[2], b.matrix.column[2]) && same(a.translation, b.translation);
 }
+bool same(const ShadingDescription& a, const ShadingDescription& b) {
+  return a.values == b.values && a.channel == b.channel;
+}
+bool same(const GradientOpacity::Point& a, const GradientOpacity::Point& b) {
+  return same(a.gradient, b.gradient) && same(a.factor, b.factor);
+}
+bool same(const GradientOpacityDescription& a, const GradientOpacityDescription& b) {
+  return same_lists(a.points, b.points) && a.unit == b.unit && a.channel == b.channel;
+}
+bool same(const IsosurfaceDescription& a, const IsosurfaceDescription& b) {
+  return same(a.value, b.value) && same(a.opacity, b.opacity) && same(a.color, b.color) &&
+         same(a.colors, b.colors) && a.channel == b.channel && a.color_channel == b.color_channel;
+}
+bool same(const SliceDescription& a, const SliceDescription& b) {
+  return same(a.point, b.point) && same(a.normal, b.normal) && same(a.opacity, b.opacity) &&
+         same(a.colors, b.colors) && a.channel == b.channel;
+}
+bool same(const Light& a, const Light& b) {
+  return a.kind == b.kind && same(a.color, b.color);
+}
 bool same(const LayerDescription& a, const LayerDescription& b) {
   return a.name == b.name && a.visible == b.visible && same(a.field, b.field) &&
          same_lists(a.channels, b.channels) && same(a.transfer_function, b.transfer_function) &&
-         same(a.transform, b.transform) && a.projection == b.projection;
+         same(a.transform, b.transform) && a.projection == b.projection &&
+         same(a.shading, b.shading) && same(a.gradient_opacity, b.gradient_opacity) &&
+         same_lists(a.isosurfaces, b.isosurfaces) && same_lists(a.slices, b.slices);
 }
 bool same(const SceneDescription& a, const SceneDescription& b) {
-  return same_lists(a.layers, b.layers) && same(a.camera, b.camera) &&
-         a.size.width == b.size.width && a.size.height == b.size.height && a.samples == b.samples &&
+  return same_lists(a.layers, b.layers) && same_lists(a.lights, b.lights) &&
+         same(a.camera, b.camera) && a.size.width == b.size.width &&
+         a.size.height == b.size.height && a.samples == b.samples &&
          a.integration.method == b.integration.method &&
          same(a.integration.tolerance, b.integration.tolerance) &&
          a.relative_tolerance == b.relative_tolerance &&
@@ -274,7 +303,7 @@ TEST(SceneJson, ExamplesAndTheDocumentedSceneAreValid) {
   EXPECT_EQ(
       error_of([&] { parse_scene(page.substr(begin, end - begin), "docs/reference/scene.md"); }),
       "");
-  // Behind it stand a layer with a mesh, three scenes, a layer with channels, and two transfer
+  // Behind it stand a layer with a mesh, six scenes, a layer with channels, and two transfer
   // functions.
   std::vector<std::string> blocks;
   for (std::size_t at = end + 3; (at = page.find("```json\n", at)) != std::string::npos;) {
@@ -284,11 +313,12 @@ TEST(SceneJson, ExamplesAndTheDocumentedSceneAreValid) {
     blocks.push_back(page.substr(from, at - from));
     at += 3;
   }
-  ASSERT_EQ(blocks.size(), 8U);
-  for (const std::string& layer : {blocks[0], blocks[5]}) {
+  ASSERT_EQ(blocks.size(), 10U);
+  for (const std::string& layer : {blocks[0], blocks[7]}) {
     EXPECT_EQ(error_of([&] { parse_scene("{\"layers\": [" + layer + "]}", "scene.md"); }), "");
   }
-  for (const std::string& scene : {blocks[1], blocks[2], blocks[3], blocks[4]}) {
+  for (const std::string& scene :
+       {blocks[1], blocks[2], blocks[3], blocks[4], blocks[5], blocks[6]}) {
     EXPECT_EQ(error_of([&] { parse_scene(scene, "scene.md"); }), "");
   }
   const auto function = [&](const std::string& text) {
@@ -296,8 +326,8 @@ TEST(SceneJson, ExamplesAndTheDocumentedSceneAreValid) {
     EXPECT_EQ(error_of([&] { description = parse_transfer_function(text, "scene.md"); }), "");
     return description;
   };
-  EXPECT_TRUE(std::holds_alternative<OpacityTable>(function(blocks[6])));
-  EXPECT_TRUE(std::holds_alternative<MultivariateDescription>(function(blocks[7])));
+  EXPECT_TRUE(std::holds_alternative<OpacityTable>(function(blocks[8])));
+  EXPECT_TRUE(std::holds_alternative<MultivariateDescription>(function(blocks[9])));
 }
 
 TEST(SceneJson, AbsoluteFilesStayAndRelativeOnesStartAtTheFolder) {

@@ -29,7 +29,12 @@ const std::filesystem::path source = PELLUCID_SOURCE_DIR;
 
 /// Reasons for which the parser refuses what JSON Schema cannot tell.
 constexpr const char* beyond_schema[] = {"is below the value of the point before it",
+                                         "is below the gradient of the point before it",
                                          "is the third equal value",
+                                         "is the third equal gradient",
+                                         "which is not there",
+                                         "has no length",
+                                         "gradient opacity: ",
                                          "must be two ascending values",
                                          "/camera: camera: ",
                                          "transfer function: ",
@@ -138,7 +143,18 @@ std::vector<json> mutants(const json& whole) {
                               "color_space",
                               "deviation",
                               "preset",
-                              "range"}) {
+                              "range",
+                              "direction",
+                              "position",
+                              "color",
+                              "colors",
+                              "color_channel",
+                              "shading",
+                              "gradient_opacity",
+                              "isosurfaces",
+                              "slices",
+                              "lights",
+                              "projection"}) {
         if (whole[place].contains(key)) continue;
         list.push_back(whole);
         list.back()[place][key] = 1;
@@ -169,9 +185,10 @@ TEST(SceneJsonSchema, AgreesWithTheParser) {
   std::size_t accepted_count = 0, refused_count = 0;
   {
     std::ofstream out(verdicts);
-    for (const char* name : {"perspective", "orthographic", "raw", "header_replaced", "opacity",
-                             "channels", "gaussians", "one_channel", "mesh", "mesh_one_array",
-                             "preset", "deviation", "gaussians_srgb", "layers"}) {
+    for (const char* name :
+         {"perspective", "orthographic", "raw", "header_replaced", "opacity", "channels",
+          "gaussians", "one_channel", "mesh", "mesh_one_array", "preset", "deviation",
+          "gaussians_srgb", "layers", "light", "surfaces"}) {
       std::ifstream file(source / "tests" / "io" / "scenes" / "valid" /
                          (std::string(name) + ".json"));
       ASSERT_TRUE(file) << name;

@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-#include "pellucid/io/transfer_function_description.h"
+#include "pellucid/io/look_description.h"
 
 namespace pellucid {
 
@@ -38,6 +38,10 @@ struct ExportedTransferFunction {
 /// the nodes. Throws Error for a function of several channels, for a preset, if a color is above 1,
 /// or if too many nodes would be needed.
 ExportedTransferFunction export_transfer_function(const TransferFunctionDescription& function,
+                                                  const ExportOptions& options);
+/// Converts a function with its shading and gradient opacity. A volume property of 3D Slicer holds
+/// them; of other formats, and what a volume property cannot hold, a note says that it is left out.
+ExportedTransferFunction export_transfer_function(const LookDescription& look,
                                                   const ExportOptions& options);
 
 }  // namespace pellucid

@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-#include "pellucid/io/transfer_function_description.h"
+#include "pellucid/io/look_description.h"
 
 namespace pellucid {
 
@@ -21,7 +21,8 @@ struct ImportOptions {
   double deviation = 1e-4;
   /// Name of the color map to read from a file with several; empty: the first.
   std::string name;
-  /// New values of the first and the last node; all others are moved in proportion.
+  /// New values of the first and the last node; all others are moved in proportion, and so are the
+  /// magnitudes of a gradient opacity.
   std::optional<std::array<double, 2>> range;
   /// Replaces the file's unit distance, or 1 if the file has none; in world units.
   std::optional<double> unit_distance;
@@ -37,6 +38,10 @@ inline constexpr double largest_deviation = 0.1;
 /// A transfer function of another program as an opacity table.
 struct ImportedTransferFunction {
   OpacityTable table;  ///< its deviations are upper bounds
+  std::optional<ShadingDescription> shading;
+  /// Its unit is the voxel: VTK's magnitudes are per mean spacing. It multiplies the extinction:
+  /// VTK multiplies the opacity of a sample, which is the same in the limit of short steps.
+  std::optional<GradientOpacityDescription> gradient_opacity;
   std::string format;  ///< shown to the user, such as "ParaView color map"
   std::string name;    ///< in the file; may be empty
   /// Messages for the user, one line each: what is exact, what is fitted and with which deviation,

@@ -10,6 +10,7 @@
 
 #include "pellucid/io/channel_source.h"
 #include "pellucid/io/field_source.h"
+#include "pellucid/io/look_description.h"
 #include "pellucid/io/mesh_source.h"
 #include "pellucid/io/transfer_function_description.h"
 #include "pellucid/scene/scene.h"
@@ -44,11 +45,16 @@ struct LayerDescription {
   std::vector<ChannelSource> channels;  ///< replaces `field` unless empty
   std::optional<MeshSource> mesh;       ///< replaces `field` and `channels`
   std::optional<LabelSource> labels;    ///< replaces all of these
+  /// None: nothing but the surfaces is visible if there are any, else made from the data.
   std::optional<TransferFunctionDescription> transfer_function;
   std::optional<MaskSource> mask;
   Affine<double> transform;
   std::vector<Clip> clips;
   std::optional<LayerProjection> projection;
+  std::optional<ShadingDescription> shading;
+  std::optional<GradientOpacityDescription> gradient_opacity;
+  std::vector<IsosurfaceDescription> isosurfaces;
+  std::vector<SliceDescription> slices;
 };
 
 /// A scene as written in a file; no data are read or rendered yet. Absent keys have their defaults.
@@ -56,6 +62,7 @@ struct LayerDescription {
 struct SceneDescription {
   std::vector<LayerDescription> layers{LayerDescription{}};
   std::vector<Clip> clips;
+  std::vector<Light> lights{Light{}};
   std::optional<Camera> camera;
   ImageSize size;
   int samples = 1;
@@ -78,8 +85,20 @@ SceneDescription parse_scene(std::string_view json, const std::string& name,
 /// Error if a path is not UTF-8 or a number is not finite.
 std::string scene_to_json(const SceneDescription& description);
 
+/// Returns the keys "shading", "gradient_opacity", "isosurfaces" and "slices" of a layer as an
+/// object, in JSON: those that the layer has. Throws Error if a number is not finite.
+std::string layer_look_to_json(const LayerDescription& layer);
+/// Returns the array under "lights" of a scene. Throws Error if a number is not finite.
+std::string lights_to_json(const std::vector<Light>& lights);
+
 /// Parses a transfer function: the object under "transfer_function" of a scene, or a document
-/// {"transfer_function": object}. Throws Error like parse_scene().
+/// {"transfer_function": object, "shading": object, "gradient_opacity": object}, of which the last
+/// two may be absent. Throws Error like parse_scene().
+LookDescription parse_look(std::string_view json, const std::string& name);
+/// Returns such a document, or the bare object if there is nothing beside it; without a line end.
+/// Throws Error if a number is not finite.
+std::string look_to_json(const LookDescription& look);
+/// Parses the same and returns the transfer function alone.
 TransferFunctionDescription parse_transfer_function(std::string_view json, const std::string& name);
 /// Returns the bare object without a line end, which parse_transfer_function() reads back; an
 /// opacity table stays one. Throws Error if a number is not finite.
@@ -105,10 +124,11 @@ std::vector<std::string> known_channels(const LayerDescription& layer);
 
 /// Reads the data, and adds the defaults for the camera (default_camera() of visible_corners()),
 /// for the transfer function of a field or of one array of a mesh (of a projected layer:
-/// projection_transfer_function()), and for the look of labels.
+/// projection_transfer_function()), and for the look of labels. A layer with isosurfaces or slices
+/// and without a function is transparent between them.
 /// `meshes_used` receives the mesh of each layer, with the default array if the layer selects none;
-/// without a file for other layers. Throws Error, also if there are several channels and no
-/// function of them.
+/// without a file for other layers. Throws Error, also if there are several channels and neither a
+/// function of them nor a surface, or if a name of a channel is not there.
 ///
 /// Opacity tables are fitted as by fit_opacity_tables().
 Scene make_scene(const SceneDescription& description, const ParallelFor& parallel = {},
