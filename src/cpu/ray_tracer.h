@@ -76,11 +76,12 @@ struct TracerTask {
   const Layer& layer;
   const Integration& integration;
   const RenderOptions& options;
+  const std::vector<Light>& lights;
   RayTolerance wanted;
   int threads = 1;  ///< on which what is needed of the data's blocks is made
 };
 
-/// Of a volume with a transfer function.
+/// Of a volume with a transfer function. Null where packets have no light for it.
 std::unique_ptr<const RayTracer> make_univariate_tracer(const TracerTask& task);
 /// Of channels with a multivariate transfer function. Null for the method `exact` where packets do
 /// not suit the rays.

@@ -10,7 +10,7 @@ namespace pellucid::reference {
 namespace {
 
 /// A sum of two unit vectors below it is rounding: they are opposite.
-constexpr Real opposite = 1e-12L;
+constexpr Real opposite = 1e-6L;
 /// From this power on, |n·h|^power is smooth at 0 to more than any quadrature sees.
 constexpr double smooth_power = 12;
 

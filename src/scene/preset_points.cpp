@@ -98,11 +98,11 @@ constexpr std::array<NamedPreset, 7> every_preset{
      {"simulation-diverging",
       "any scalar, relative to its range: low blue, high red, the middle "
       "clear",
-      PresetScale::range, simulation_diverging},
+      PresetScale::range, simulation_diverging, false},
      {"simulation-isosurfaces", "any scalar, relative to its range: six thin shells",
-      PresetScale::range, simulation_isosurfaces},
+      PresetScale::range, simulation_isosurfaces, false},
      {"x-ray", "any scalar, relative to its range: density along the ray, as on a film",
-      PresetScale::range, x_ray}}};
+      PresetScale::range, x_ray, false}}};
 
 }  // namespace
 

@@ -23,6 +23,7 @@ struct NamedPreset {
   std::string_view name, description;
   PresetScale scale;
   std::vector<PresetPoint> (*points)();
+  bool lit = true;  ///< whether light helps
 };
 
 std::span<const NamedPreset> named_presets() noexcept;

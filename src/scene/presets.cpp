@@ -99,7 +99,8 @@ std::span<const Preset> presets() noexcept {
   static const std::vector<Preset> list = [] {
     std::vector<Preset> made;
     for (const NamedPreset& preset : named_presets()) {
-      made.push_back({preset.name, preset.description, preset.scale == PresetScale::hounsfield});
+      made.push_back(
+          {preset.name, preset.description, preset.scale == PresetScale::hounsfield, preset.lit});
     }
     return made;
   }();

@@ -51,7 +51,7 @@ Scene slow_scene() {
 LayerSetting setting_of(double tolerance) {
   RayTolerance wanted;
   wanted.tolerance = tolerance;
-  return {Integration{}, wanted, 0, RenderOptions{}};
+  return {Integration{}, wanted, 0, {}, RenderOptions{}};
 }
 
 TEST(LayerSetups, AreFoundByTheIdentityOfTheirObjects) {

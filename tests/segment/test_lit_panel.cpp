@@ -349,8 +349,8 @@ TEST(Shading, BoundsContainWhatIsAnywhereOnTheStretch) {
         c.stretch.begin + c.stretch.direction * half,
         half,
         -c.stretch.direction};
-    const LitBounds<double> bounds =
-        light_bounds(c.reflection, c.lights.data(), static_cast<int>(c.lights.size()), along);
+    const LitBounds<double> bounds = light_bounds(
+        c.reflection, c.lights.data(), static_cast<int>(c.lights.size()), along, along.square());
     for (int i = 0; i < 20; ++i) {
       const double u = unit(random);
       const Lit<double> lit = light_up(
@@ -360,6 +360,132 @@ TEST(Shading, BoundsContainWhatIsAnywhereOnTheStretch) {
       ASSERT_LE(lit.factor.r, bounds.upper.factor.r) << n;
       ASSERT_GE(lit.added.g, bounds.lower.added.g) << n;
       ASSERT_LE(lit.added.g, bounds.upper.added.g) << n;
+    }
+  }
+}
+
+/// A cell as packets shade it, at random: gradients that turn a little or a lot.
+struct ShadedCell {
+  GradientStretch<double> along;
+  Reflection<double> reflection;
+  std::vector<LightSource<double>> lights;
+  double length, first, change;
+  CubicBernstein<double> data;
+
+  Material<double> at(double u) const {
+    const Lit<double> lit = light_up(reflection, lights.data(), static_cast<int>(lights.size()),
+                                     along.at(u), Vec3<double>{}, along.to_eye);
+    return {first + change * evaluate(data, u), lit.apply({0.5, 1, 0})};
+  }
+  bool has_kink() const {
+    for (const LightSource<double>& light : lights) {
+      const CubicBernstein<double> f =
+          along.along(directions(light, Vec3<double>{}, along.to_eye).light);
+      for (int i = 1; i <= 40; ++i) {
+        if (evaluate(f, i / 40.0) * f.b[0] < 0) return true;
+      }
+    }
+    return false;
+  }
+  template <int Nodes>
+  Rgb<double> color() const {
+    return detail::panel_color(
+        detail::PanelNodes<Nodes, double>(length, [&](double u) { return at(u); }));
+  }
+  /// Ten nodes on each of sixteen parts.
+  Rgb<double> true_color() const {
+    Rgb<double> sum{};
+    double depth = 0, weight = 0;
+    for (int i = 0; i < 16; ++i) {
+      const detail::PanelNodes<10, double> part(length / 16,
+                                                [&](double u) { return at((i + u) / 16); });
+      const double opacity = std::exp(-depth) * -std::expm1(-part.total);
+      sum += opacity * detail::panel_color(part);
+      weight += opacity;
+      depth += part.total;
+    }
+    return (1 / weight) * sum;
+  }
+};
+
+ShadedCell random_cell(std::mt19937& random) {
+  std::uniform_real_distribution<double> unit(0, 1), both(-1, 1);
+  const auto direction = [&] {
+    for (;;) {
+      const Vec3<double> d{both(random), both(random), both(random)};
+      if (length(d) > 0.1) return normalized(d);
+    }
+  };
+  ShadedCell cell;
+  const double size = std::pow(10, -2 + 2.3 * unit(random));
+  const Vec3<double> base = direction();
+  const bool straight = unit(random) < 0.5;
+  for (int a = 0; a < 3; ++a) {
+    const double slope = size * both(random);
+    for (int k = 0; k < 4; ++k) {
+      cell.along.component[a].b[k] =
+          base[a] + (straight ? slope * k / 3 + 0.3 * size * both(random) : size * both(random));
+    }
+  }
+  cell.along.to_eye = direction();
+  const double flat = unit(random) < 0.3 ? 0 : std::pow(10, -2 + 2 * unit(random));
+  cell.reflection = {0.1 * unit(random), unit(random), unit(random) < 0.7 ? unit(random) : 0,
+                     1 + std::pow(10, 2 * unit(random)), flat * flat};
+  for (int i = 0; i < (unit(random) < 0.3 ? 2 : 1); ++i) {
+    LightSource<double> light;
+    if (unit(random) < 0.5) {
+      light.kind = LightSource<double>::Kind::directional;
+      light.place = direction();
+    }
+    cell.lights.push_back(light);
+  }
+  cell.length = std::pow(10, -1 + 1.7 * unit(random));
+  cell.first = unit(random);
+  cell.change = unit(random) - cell.first;
+  for (double& b : cell.data.b) b = unit(random);
+  return cell;
+}
+
+TEST(Shading, ErrorsOfNodesAreAtLeastWhatRandomCellsHave) {
+  std::mt19937 random(11);
+  double of_three = 0, of_six = 0;
+  int seen = 0;
+  for (int n = 0; n < 60000; ++n) {
+    const ShadedCell cell = random_cell(random);
+    const Bounds<double> squares = cell.along.square();
+    const double flat = cell.reflection.flat_square;
+    const double turns = (squares.upper + flat) / (squares.lower + flat);
+    if (!(turns <= 100) || cell.has_kink()) continue;
+    const LitBounds<double> bounds =
+        light_bounds(cell.reflection, cell.lights.data(), static_cast<int>(cell.lights.size()),
+                     cell.along, squares);
+    const double sharpness = cell.reflection.specular > 0 ? bounds.sharpness : 0;
+    if (sharpness > 8 || cell.length * (cell.first + cell.change * cell.data.mean()) > 8) continue;
+    const double range = largest_component(bounds.upper.factor - bounds.lower.factor) +
+                         largest_component(bounds.upper.added - bounds.lower.added);
+    if (!(range > 1e-9)) continue;
+    ++seen;
+    const Rgb<double> truth = cell.true_color();
+    const double three = largest_component(cell.color<3>() - truth) / range;
+    const double six = largest_component(cell.color<6>() - truth) / range;
+    ASSERT_LE(three, error_of_three_nodes(turns, sharpness)) << turns << ' ' << sharpness;
+    ASSERT_LE(six, error_of_six_nodes(turns, sharpness)) << turns << ' ' << sharpness;
+    of_three = std::max(of_three, three / error_of_three_nodes(turns, sharpness));
+    of_six = std::max(of_six, six / error_of_six_nodes(turns, sharpness));
+  }
+  EXPECT_GT(seen, 30000);
+  EXPECT_GT(of_three, 0.3);
+  EXPECT_GT(of_six, 0.3);
+}
+
+TEST(Shading, PowersAreThoseOfTheLibrary) {
+  EXPECT_EQ(raised(0.0, 20.0), 0);
+  EXPECT_EQ(raised(0.0, 1.5), 0);
+  for (const double power : {1.0, 2.0, 20.0, 33.0, 1000.0, 1.5, 77.25}) {
+    for (const double x : {1e-3, 0.3, 0.9, 0.999, 1.0}) {
+      const double truth = std::pow(x, power);
+      EXPECT_NEAR(raised(x, power), truth,
+                  2 * rounding_unit<double> * power * (1 + std::abs(std::log(x))) * truth + 1e-300);
     }
   }
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "pellucid/simd/scalar.h"
+#include "pellucid/math/constants.h"
 
 namespace pellucid {
 
@@ -118,7 +118,7 @@ PELLUCID_HD int sign_change_positions(const BernsteinPolynomial<T, N>& f, T* pos
     if (front.b[N] == T(0)) {
       T before = T(0);
       for (int i = N; i >= 0 && before == T(0); --i) before = front.b[i];
-      open[top].b[0] = before * T(1e-300);
+      open[top].b[0] = copysign(T(smallest_normal<T>), before);
     }
     open[top + 1] = front;
     ++left;

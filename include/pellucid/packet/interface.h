@@ -87,9 +87,15 @@ struct PellucidPacketJob {
                          PellucidCellResult* result);
   const void* context;
   const void* records;  ///< BlockRecord per block, in the order of the classes
+  const void* light;    ///< PacketLight; null: unlit
 };
 
 void pellucid_integrate_packets_sse4(const PellucidPacketJob* job);
 void pellucid_integrate_packets_avx2(const PellucidPacketJob* job);
 void pellucid_integrate_packets_avx512(const PellucidPacketJob* job);
+
+/// With light, data of types that binary32 holds, estimates.
+void pellucid_integrate_lit_packets_sse4(const PellucidPacketJob* job);
+void pellucid_integrate_lit_packets_avx2(const PellucidPacketJob* job);
+void pellucid_integrate_lit_packets_avx512(const PellucidPacketJob* job);
 }

@@ -74,8 +74,9 @@ class MultivariateRayIntegrator {
     add_panels(SpanPanels<Span>{*transfer_, span}, range, left_out, position_error);
   }
 
-  /// The same for any stretch. It has a `length` in world units, and panel(begin, end, demand,
-  /// allowance): the PanelSegment of a part, or where to cut it.
+  /// The same for any stretch. It has a length() in world units, panel(begin, end, demand,
+  /// allowance): the PanelSegment of a part, or where to cut it, and most_panels(): of a ray, after
+  /// which parts are taken as they come, whatever their error.
   template <class Stretch>
   PELLUCID_HD void add_panels(const Stretch& stretch, Interval<double> range, double left_out,
                               double position_error) noexcept {
@@ -90,7 +91,8 @@ class MultivariateRayIntegrator {
       // If the span's length changes, inner cuts move in proportion.
       demand_.position_error =
           begin > 0 && end < 1 ? (end - begin) * position_error : position_error;
-      demand_.last_resort = open > most_cuts || !(end - begin > 1e-9);
+      demand_.last_resort =
+          open > most_cuts || !(end - begin > 1e-9) || panels_ > stretch.most_panels();
       const PanelSegment<double> panel = integrate(stretch, begin, end, left_out);
       if (!panel.done) {
         const double cut = begin + panel.cut * (end - begin);
@@ -164,6 +166,7 @@ class MultivariateRayIntegrator {
     const Span& span;
 
     PELLUCID_HD double length() const noexcept { return span.length; }
+    PELLUCID_HD static long most_panels() noexcept { return std::numeric_limits<long>::max(); }
     template <class Allowance>
     PELLUCID_HD PanelSegment<double> panel(double begin, double end,
                                            const PanelDemand<double>& demand,

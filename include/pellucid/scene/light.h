@@ -31,6 +31,8 @@ struct PointLight {
 struct Light {
   std::variant<HeadLight, DirectionalLight, PointLight> kind{};
   Rgb<double> color{1, 1, 1};  ///< linear, >= 0
+
+  bool operator==(const Light&) const = default;
 };
 
 /// Throws Error if a number is not finite, a direction has no length, or a color is negative.

@@ -109,6 +109,13 @@ class LitPanel {
       result.done = true;
       return result;
     }
+    if (proved) {
+      const T error = min(coarse.opacity * span, error_by_terms(coarse.radiance));
+      if (finish(coarse, error, bent)) {
+        result.done = true;
+        return result;
+      }
+    }
     const bool dull = sharpness_ <= T(4) || coarse.opacity * shine_ <= T(0.25) * payable;
     const bool smooth = few.total <= T(4) && turns_ <= T(16) && exponents_ <= T(2) && dull;
     if (!proved && smooth) {
@@ -169,15 +176,15 @@ class LitPanel {
         continue;
       }
       const GradientStretch<T> along = gradients(layer);
+      const Bounds<T> squares = along.square();
       const LitBounds<T> bounds =
-          light_bounds(*layer.reflection, stretch_.light, stretch_.lights, along);
+          light_bounds(*layer.reflection, stretch_.light, stretch_.lights, along, squares);
       const Rgb<T> lower = bounds.lower.apply(colors.lower);
       const Rgb<T> upper = bounds.upper.apply(colors.upper);
       range_.add(true, lower);
       range_.add(true, upper);
       sharpness_ = max(sharpness_, bounds.sharpness);
       shine_ = max(shine_, largest_component(bounds.upper.added - bounds.lower.added));
-      const Bounds<T> squares = along.square();
       const T least = squares.lower + layer.reflection->flat_square;
       if (!(least > T(0)) || squares.upper + layer.reflection->flat_square > T(1e30) * least) {
         turns_ = squares.upper > T(0) ? T(largest<T>) : turns_;
@@ -251,6 +258,68 @@ class LitPanel {
     return min(gaussians_.upper - gaussians_.lower, T(1));
   }
 
+  /// Returns how far the radiance may be from `found`, term by term. A term of depth d and colors
+  /// in [lower, upper] radiates between d e^(-a) lower and d upper, with the depth a of all of
+  /// them. Unlike the range of all colors, that comes together when a panel is halved in which
+  /// several terms of different colors shine.
+  PELLUCID_HD T error_by_terms(const Rgb<T>& found) const noexcept {
+    Rgb<T> lower{}, upper{};
+    T depth = T(0);
+    for (int i = 0; i < stretch_.layers; ++i) {
+      const LitLayer<T>& layer = layer_[i];
+      LitBounds<T> light;
+      light.lower.factor = light.upper.factor = {T(1), T(1), T(1)};
+      if (layer.reflection != nullptr) {
+        const GradientStretch<T> along = gradients(layer);
+        light =
+            light_bounds(*layer.reflection, stretch_.light, stretch_.lights, along, along.square());
+      }
+      const Bounds<T> factor = factors(layer);
+      const auto add = [&](T least, T most, const ColorRange<T>& colors) noexcept {
+        if (!(most > T(0))) return;
+        lower += least * factor.lower * light.lower.apply(colors.lower);
+        upper += most * factor.upper * light.upper.apply(colors.upper);
+        depth += most * factor.upper;
+      };
+      for (int k = 0; k < layer.transfer->tables; ++k) {
+        const ChannelTable<T>& table = layer.transfer->table[k];
+        const TableMass<T> mass = table_mass(layer.span.data[table.channel], table.table, length_);
+        add(mass.depth, mass.depth, mass.range);
+      }
+      for (int k = 0; k < layer.transfer->gaussians.count; ++k) {
+        if (!layer.primitives.contains(k)) continue;
+        const Gaussian<T>& g = layer.transfer->gaussians.primitive[k];
+        const auto along = gaussian_along(g, layer.span.data + g.first);
+        ColorRange<T> color;
+        color.add(true, {T(g.color.r), T(g.color.g), T(g.color.b)});
+        const T peak = T(g.peak) * length_;
+        add(peak * exp(-along.upper()), peak * exp(-along.lower()), color);
+      }
+    }
+    const Rgb<T> least = exp(-depth) * lower;
+    const auto off = [](T found_one, T below, T above) noexcept {
+      return max(max(above - found_one, found_one - below), T(0));
+    };
+    return max(off(found.r, least.r, upper.r),
+               max(off(found.g, least.g, upper.g), off(found.b, least.b, upper.b)));
+  }
+
+  /// Returns the range of the factors of the gradient opacity.
+  PELLUCID_HD static Bounds<T> factors(const LitLayer<T>& layer) noexcept {
+    if (layer.gradient_opacity == nullptr) return {T(1), T(1)};
+    const PiecewiseLinear<T>& factor = *layer.gradient_opacity;
+    const T from = layer.magnitude.hull_min(), to = layer.magnitude.hull_max();
+    const int first = factor.interval(from), last = factor.interval(to);
+    const T a = factor.evaluate_in(first, from).extinction;
+    const T b = factor.evaluate_in(last, to).extinction;
+    Bounds<T> range{min(a, b), max(a, b)};
+    for (int i = first; i < last; ++i) {
+      range.lower = min(range.lower, factor.material[i].extinction);
+      range.upper = max(range.upper, factor.material[i].extinction);
+    }
+    return range;
+  }
+
   /// The extinction of all layers, and the color whose product with it is the sum of sources.
   PELLUCID_HD Material<T> material(T u) const noexcept {
     T extinction = T(0);
@@ -322,11 +391,12 @@ class LitPanel {
 /// nodes'.
 ///
 /// Error of the color: at most the opacity times the range of all shaded colors, which the hulls of
-/// the gradient bound (light_bounds()). That is proved. Estimated: the difference of the colors by
-/// 4 and by 7 nodes, where the length of g within √(|g|² + g0²) does not change by more than a
-/// factor of 4 and no exponent of a Gaussian by more than 2: where g comes close to 0, the normal
-/// turns faster than nodes see. The depth of Gaussians is treated alike. Asserted in
-/// tests/segment/test_lit_panel.cpp: no panel is off by more than it says.
+/// the gradient bound (light_bounds()), and what bounds term by term leave open. That is proved.
+/// Estimated: the difference of the colors by 4 and by 7 nodes, where the length of g within √(|g|²
+/// + g0²) does not change by more than a factor of 4 and no exponent of a Gaussian by more than 2:
+/// where g comes close to 0, the normal turns faster than nodes see. The depth of Gaussians is
+/// treated alike. Asserted in tests/segment/test_lit_panel.cpp: no panel is off by more than it
+/// says.
 template <class T, class Allowance>
 PELLUCID_HD PanelSegment<T> integrate_lit_panel(const LitStretch<T>& stretch,
                                                 const LitLayer<T>* layers_of_part, T begin, T end,

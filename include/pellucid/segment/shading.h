@@ -42,19 +42,41 @@ struct LightDirections {
 
 /// Returns the directions of a light at a position, seen from the direction `to_eye` (length 1).
 template <class T>
-PELLUCID_HD LightDirections<T> directions(const LightSource<T>& light, const Vec3<T>& position,
-                                          const Vec3<T>& to_eye) noexcept {
-  if (light.kind == LightSource<T>::Kind::head) return {to_eye, to_eye};
+PELLUCID_HD LightDirections<T> directions(const LightSource<scalar_t<T>>& light,
+                                          const Vec3<T>& position, const Vec3<T>& to_eye) noexcept {
+  using Kind = typename LightSource<scalar_t<T>>::Kind;
+  if (light.kind == Kind::head) return {to_eye, to_eye};
   LightDirections<T> result;
-  result.light = light.place;
-  if (light.kind == LightSource<T>::Kind::point) {
-    const Vec3<T> away = light.place - position;
+  result.light = {T(light.place.x), T(light.place.y), T(light.place.z)};
+  if (light.kind == Kind::point) {
+    const Vec3<T> away = result.light - position;
     const T far = length(away);
-    result.light = far > T(0) ? away * (T(1) / far) : to_eye;
+    const auto apart = far > T(0);
+    const T inverse = T(1) / select(apart, far, T(1));
+    for (int a = 0; a < 3; ++a) result.light[a] = select(apart, away[a] * inverse, to_eye[a]);
   }
   const Vec3<T> sum = result.light + to_eye;
   const T size = length(sum);
-  result.half = size > T(1e-6) ? sum * (T(1) / size) : Vec3<T>{};
+  const auto before = size > T(1e-6);
+  result.half = sum * (select(before, T(1), T(0)) / select(before, size, T(1)));
+  return result;
+}
+
+/// Returns x^power for x in [0, 1], by multiplication where the power is a whole number. Largest
+/// error: 2 u power (1 + |ln x|) x^power, asserted in tests/segment.
+template <class T>
+PELLUCID_HD T raised(T x, scalar_t<T> power) noexcept {
+  using S = scalar_t<T>;
+  const int whole = static_cast<int>(power);
+  if (S(whole) != power) {
+    const auto any_left = x > T(0);
+    return select(any_left, exp(T(power) * log(select(any_left, x, T(1)))), T(0));
+  }
+  T result = T(1), square = x;
+  for (int left = whole; left > 0; left >>= 1) {
+    if ((left & 1) != 0) result = result * square;
+    square = square * square;
+  }
   return result;
 }
 
@@ -63,30 +85,33 @@ PELLUCID_HD LightDirections<T> directions(const LightSource<T>& light, const Vec
 ///   factor = ambient + Σ diffuse |n·l| L,   added = Σ specular |n·h|^power L   (Blinn 1977)
 ///
 /// Nothing cancels but in the products with n, whose errors are a few u. Largest error of a factor
-/// 8 u (ambient + Σ diffuse L), of an addend 8 u power Σ specular L, asserted in tests/segment.
+/// 8 u (ambient + Σ diffuse L), of an addend 16 u power Σ specular L, asserted in tests/segment.
 template <class T>
-PELLUCID_HD Lit<T> light_up(const Reflection<T>& reflection, const LightSource<T>* lights,
-                            int count, const Vec3<T>& g, const Vec3<T>& position,
-                            const Vec3<T>& to_eye) noexcept {
-  const T square = dot(g, g) + reflection.flat_square;
-  const Vec3<T> normal = square > T(0) ? g * (T(1) / sqrt(square)) : Vec3<T>{};
+PELLUCID_HD Lit<T> light_up(const Reflection<scalar_t<T>>& reflection,
+                            const LightSource<scalar_t<T>>* lights, int count, const Vec3<T>& g,
+                            const Vec3<T>& position, const Vec3<T>& to_eye) noexcept {
+  using S = scalar_t<T>;
+  const T square = dot(g, g) + T(reflection.flat_square);
+  const auto steep = square > T(0);
+  const Vec3<T> normal = g * (select(steep, T(1), T(0)) / sqrt(select(steep, square, T(1))));
   Lit<T> lit;
-  lit.factor = {reflection.ambient, reflection.ambient, reflection.ambient};
+  lit.factor = {T(reflection.ambient), T(reflection.ambient), T(reflection.ambient)};
   for (int i = 0; i < count; ++i) {
+    const Rgb<S>& c = lights[i].color;
+    const Rgb<T> color{T(c.r), T(c.g), T(c.b)};
     const LightDirections<T> to = directions(lights[i], position, to_eye);
-    lit.factor += (reflection.diffuse * abs(dot(normal, to.light))) * lights[i].color;
-    if (!(reflection.specular > T(0))) continue;
+    lit.factor += (T(reflection.diffuse) * abs(dot(normal, to.light))) * color;
+    if (!(reflection.specular > S(0))) continue;
     const T toward = min(abs(dot(normal, to.half)), T(1));
-    if (toward > T(0)) {
-      lit.added += (reflection.specular * exp(reflection.power * log(toward))) * lights[i].color;
-    }
+    lit.added += (T(reflection.specular) * raised(toward, reflection.power)) * color;
   }
   return lit;
 }
 
-/// The rounding of gradients in double along a ray through a cell, relative to the largest one
+/// The rounding of gradients along a ray through a cell, relative to the largest one
 /// there: that of trilinear_cubic() and of the map to the world.
-inline constexpr double gradient_rounding = 64 * rounding_unit<double>;
+template <class S>
+inline constexpr S gradient_rounding = S(64) * rounding_unit<S>;
 
 /// An interval of a number.
 template <class T>
@@ -151,15 +176,12 @@ PELLUCID_HD Bounds<T> cosine_bounds(const GradientStretch<T>& stretch, const Bou
   const T lower = along.hull_min(), upper = along.hull_max();
   const T least = max(max(lower, -upper), T(0)), most = max(abs(lower), abs(upper));
   const T slack = off + T(32) * T(rounding_unit<T>);
+  const auto known = lengths.lower > T(0);
   Bounds<T> result;
-  result.lower = lengths.upper > T(0) ? max(least / lengths.upper - slack, T(0)) : T(0);
-  result.upper = lengths.lower > T(0) ? min(most / lengths.lower + slack, T(1)) : T(1);
+  result.lower = select(known, max(least / select(known, lengths.upper, T(1)) - slack, T(0)), T(0));
+  result.upper = select(known, min(most / select(known, lengths.lower, T(1)) + slack, T(1)),
+                        select(lengths.upper > T(0), T(1), T(0)));  // none at all: no normal
   return result;
-}
-
-template <class T>
-PELLUCID_HD T power_of(T x, T power) noexcept {
-  return x > T(0) ? exp(power * log(x)) : T(0);
 }
 
 }  // namespace detail
@@ -167,17 +189,19 @@ PELLUCID_HD T power_of(T x, T power) noexcept {
 /// Returns how far a color may be off where gradients are, relative to the largest one on the
 /// stretch: the normal turns by the error of g over √(|g|² + g0²). `squares`: of |g|².
 template <class T>
-PELLUCID_HD T color_rounding(const Reflection<T>& reflection, const LightSource<T>* lights,
-                             int count, const Bounds<T>& squares, T largest_color,
-                             T gradient_error) noexcept {
-  if (!(squares.upper > T(0))) return T(0);
-  const T least = squares.lower + reflection.flat_square;
-  const T turn =
-      least > T(0) ? min(T(2) * gradient_error * sqrt(squares.upper / least), T(1)) : T(1);
-  T brightest = T(0);
+PELLUCID_HD T color_rounding(const Reflection<scalar_t<T>>& reflection,
+                             const LightSource<scalar_t<T>>* lights, int count,
+                             const Bounds<T>& squares, T largest_color, T gradient_error) noexcept {
+  using S = scalar_t<T>;
+  const T least = squares.lower + T(reflection.flat_square);
+  const auto known = least > T(0);
+  const T turn = select(
+      known, min(T(2) * gradient_error * sqrt(squares.upper / select(known, least, T(1))), T(1)),
+      select(squares.upper > T(0), T(1), T(0)));
+  S brightest = S(0);
   for (int i = 0; i < count; ++i) brightest += largest_component(lights[i].color);
-  return brightest * (reflection.diffuse * largest_color * turn +
-                      reflection.specular * min(reflection.power * turn, T(1)));
+  return T(brightest) * (T(reflection.diffuse) * largest_color * turn +
+                         T(reflection.specular) * min(T(reflection.power) * turn, T(1)));
 }
 
 /// What light makes of colors anywhere on a stretch.
@@ -190,41 +214,69 @@ struct LitBounds {
 };
 
 /// Returns bounds on light_up() over a stretch: |n·d| between the hull of g·d over those of
-/// √(|g|² + g0²). The direction to a point light turns by at most half_length / distance.
+/// √(|g|² + g0²), `squares` those of |g|². The direction to a point light turns by at most
+/// half_length / distance.
 template <class T>
-PELLUCID_HD LitBounds<T> light_bounds(const Reflection<T>& reflection, const LightSource<T>* lights,
-                                      int count, const GradientStretch<T>& stretch) noexcept {
-  const Bounds<T> squares = stretch.square();
-  const Bounds<T> lengths{sqrt(squares.lower + reflection.flat_square),
-                          sqrt(squares.upper + reflection.flat_square)};
+PELLUCID_HD LitBounds<T> light_bounds(const Reflection<scalar_t<T>>& reflection,
+                                      const LightSource<scalar_t<T>>* lights, int count,
+                                      const GradientStretch<T>& stretch,
+                                      const Bounds<T>& squares) noexcept {
+  using S = scalar_t<T>;
+  const Bounds<T> lengths{sqrt(squares.lower + T(reflection.flat_square)),
+                          sqrt(squares.upper + T(reflection.flat_square))};
   LitBounds<T> result;
   result.lower.factor =
-      result.upper.factor = {reflection.ambient, reflection.ambient, reflection.ambient};
+      result.upper.factor = {T(reflection.ambient), T(reflection.ambient), T(reflection.ambient)};
   for (int i = 0; i < count; ++i) {
-    const LightSource<T>& light = lights[i];
+    const LightSource<S>& light = lights[i];
+    const Rgb<T> color{T(light.color.r), T(light.color.g), T(light.color.b)};
     const LightDirections<T> to = directions(light, stretch.middle, stretch.to_eye);
     T turn = T(0), half_turn = T(0);
-    if (light.kind == LightSource<T>::Kind::point) {
-      const T away = length(light.place - stretch.middle) - stretch.half_length;
-      turn = away > T(0) ? min(T(2) * stretch.half_length / away, T(2)) : T(2);
+    if (light.kind == LightSource<S>::Kind::point) {
+      const Vec3<T> place{T(light.place.x), T(light.place.y), T(light.place.z)};
+      const T away = length(place - stretch.middle) - stretch.half_length;
+      const auto outside = away > T(0);
+      turn = select(outside, min(T(2) * stretch.half_length / select(outside, away, T(1)), T(2)),
+                    T(2));
       const T apart = length(to.light + stretch.to_eye) - turn;
-      half_turn = apart > T(1e-6) ? min(T(2) * turn / apart, T(2)) : T(2);
+      const auto before = apart > T(1e-6);
+      half_turn = select(before, min(T(2) * turn / select(before, apart, T(1)), T(2)), T(2));
     }
     const Bounds<T> diffuse = detail::cosine_bounds(stretch, lengths, to.light, turn);
-    result.lower.factor += (reflection.diffuse * diffuse.lower) * light.color;
-    result.upper.factor += (reflection.diffuse * diffuse.upper) * light.color;
-    if (!(reflection.specular > T(0))) continue;
+    result.lower.factor += (T(reflection.diffuse) * diffuse.lower) * color;
+    result.upper.factor += (T(reflection.diffuse) * diffuse.upper) * color;
+    if (!(reflection.specular > S(0))) continue;
     const Bounds<T> toward = detail::cosine_bounds(stretch, lengths, to.half, half_turn);
-    const T power = reflection.power;
-    if (toward.upper > T(0)) {
-      result.sharpness = max(result.sharpness, power * (T(1) - toward.lower / toward.upper));
-    }
-    result.lower.added +=
-        (reflection.specular * detail::power_of(toward.lower, power)) * light.color;
-    result.upper.added +=
-        (reflection.specular * detail::power_of(toward.upper, power)) * light.color;
+    const auto shines = toward.upper > T(0);
+    result.sharpness =
+        max(result.sharpness,
+            select(shines,
+                   T(reflection.power) * (T(1) - toward.lower / select(shines, toward.upper, T(1))),
+                   T(0)));
+    result.lower.added += (T(reflection.specular) * raised(toward.lower, reflection.power)) * color;
+    result.upper.added += (T(reflection.specular) * raised(toward.upper, reflection.power)) * color;
   }
   return result;
+}
+
+/// Return the largest error of the color of a panel by three and by six Gauss nodes, relative to
+/// the range of its colors by light_bounds(): where |g|² + g0² changes by at most the factor
+/// `turns`, the specular part as `sharpness` says, |n·l| has no kink, and the depth is at most 8.
+/// Estimates: at least the largest that search found, asserted in tests/segment; 1/2 outside of
+/// what was searched.
+template <class T>
+PELLUCID_HD T error_of_three_nodes(T turns, T sharpness) noexcept {
+  const T dull = select(turns <= T(1.5), T(0.08), select(turns <= T(4), T(0.1), T(0.18)));
+  const T error = select(sharpness <= T(4), dull, T(2) * dull);
+  return select((turns <= T(100)) & (sharpness <= T(8)), error, T(0.5));
+}
+template <class T>
+PELLUCID_HD T error_of_six_nodes(T turns, T sharpness) noexcept {
+  const T low = select(turns <= T(1.2), T(6e-4), T(1.5e-3));
+  const T high = select(turns <= T(16), T(0.015), T(0.04));
+  const T dull = select(turns <= T(1.5), low, select(turns <= T(4), T(4e-3), high));
+  const T error = select(sharpness <= T(4), dull, T(2) * max(dull, T(0.01)));
+  return select((turns <= T(100)) & (sharpness <= T(8)), error, T(0.5));
 }
 
 }  // namespace pellucid

@@ -65,7 +65,11 @@ Frame::Frame(const Scene& described, const RenderOptions& options, int threads, 
   wanted.grade = integration.grade;
   wanted.precision = integration.precision;
   wanted.largest_color = std::max(largest_color, behind);
-  const LayerSetting setting(integration, wanted, negligible_extinction(layers, wanted), options);
+  // Where nothing is lit, other lights are no other setting.
+  const bool lit =
+      std::ranges::any_of(layers, [](const Layer* layer) { return layer->shading.has_value(); });
+  const LayerSetting setting(integration, wanted, negligible_extinction(layers, wanted),
+                             lit ? scene.lights : std::vector<Light>{}, options);
   std::vector<ClippedLayer> clipped;
   for (const Layer* layer : layers) {
     clipped.push_back({kept.find(*layer, setting, threads), clips_of(*layer, scene.clips)});

@@ -16,8 +16,13 @@ namespace {
 
 using Kernel = void (*)(const PellucidPacketJob*);
 
-Kernel integrator_of([[maybe_unused]] InstructionSet set) {
+Kernel integrator_of([[maybe_unused]] InstructionSet set, [[maybe_unused]] bool lit) {
 #if PELLUCID_HAS_PACKETS
+  if (lit) {
+    return kernel_of<Kernel>(set, pellucid_integrate_lit_packets_sse4,
+                             pellucid_integrate_lit_packets_avx2,
+                             pellucid_integrate_lit_packets_avx512);
+  }
   return kernel_of<Kernel>(set, pellucid_integrate_packets_sse4, pellucid_integrate_packets_avx2,
                            pellucid_integrate_packets_avx512);
 #else
@@ -59,8 +64,8 @@ StepLimits PacketTracer::step_limits(const Volume& volume, const TransferTables&
 std::unique_ptr<const PacketTracer> PacketTracer::make(
     const Volume& volume, const ClassifiedBlocks& blocks, const SmoothBlocks& smooth,
     const TransferTables& transfer, const RayTolerance& wanted,
-    std::optional<InstructionSet> instruction_set) {
-  const Kernel kernel = integrator_of(packet_instruction_set(instruction_set));
+    std::optional<InstructionSet> instruction_set, const GridLight* light) {
+  const Kernel kernel = integrator_of(packet_instruction_set(instruction_set), light != nullptr);
   if (kernel == nullptr || wanted.precision != Precision::automatic ||
       wanted.tolerance < least_packet_tolerance ||
       blocks.records.count() > std::numeric_limits<std::int32_t>::max() / words_of_a_record ||
@@ -68,20 +73,22 @@ std::unique_ptr<const PacketTracer> PacketTracer::make(
     return nullptr;
   }
   return std::unique_ptr<const PacketTracer>(
-      new PacketTracer(volume, blocks, smooth, transfer, wanted, kernel));
+      new PacketTracer(volume, blocks, smooth, transfer, wanted, kernel, light));
 }
 
 PacketTracer::PacketTracer(const Volume& volume, const ClassifiedBlocks& blocks,
                            const SmoothBlocks& smooth, const TransferTables& transfer,
-                           const RayTolerance& wanted, Kernel kernel)
+                           const RayTolerance& wanted, Kernel kernel, const GridLight* light)
     : volume_(volume),
       rays_apart_(blocks.records),
       transfer_(transfer),
       wanted_(wanted),
       binned_(transfer.wide, largest_value(volume)),
       samples_(transfer.single),
-      kernel_(kernel) {
+      kernel_(kernel),
+      light_(light) {
   set_grid(volume, job_);
+  job_.light = light != nullptr ? &light->view() : nullptr;
   job_.classes = blocks.classes.block;
   job_.records = blocks.records.record;
   job_.transfer = &binned_.view();
@@ -166,6 +173,16 @@ void PacketTracer::integrate_cell(const void* context, std::int32_t ray, const P
       };
       entry[a] = local(begin);
       exit[a] = local(end);
+    }
+    if (tracer.light_ != nullptr) {
+      const StructuredWalk<double>::Step step{
+          {cell->cell[0], cell->cell[1], cell->cell[2]}, begin, end, entry, exit};
+      const Affine<double>& map = tracer.volume_.world_from_grid();
+      const Ray<double> world{
+          map.point({from.origin[0], from.origin[1], from.origin[2]}),
+          map.matrix * Vec3<double>{from.direction[0], from.direction[1], from.direction[2]}};
+      tracer.light_->integrate(step, world, *cell, tracer.transfer_, *result);
+      return;
     }
     CubicBernstein<double> data = trilinear_cubic(
         grid.template corners<double>(cell->cell[0], cell->cell[1], cell->cell[2]), entry, exit);

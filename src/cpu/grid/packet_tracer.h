@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "frame/rays_apart.h"
+#include "grid_light.h"
 #include "pellucid/packet/interface.h"
 #include "pellucid/render/integrate_cell.h"
 #include "pellucid/scene/binned_transfer_storage.h"
@@ -30,14 +31,13 @@ class PacketTracer {
 
   /// Null where rays have to go one by one: no such instructions, a rectilinear grid, a single
   /// layer of values, one precision wanted, a very small tolerance, or numbers
-  /// whose squares binary32 has not. All that is given is referred to.
+  /// whose squares binary32 has not. All that is given is referred to. `light`: null if unlit; with
+  /// it `smooth` is none.
   /// Throws Error where the machine has not the instruction set that is asked for.
-  static std::unique_ptr<const PacketTracer> make(const Volume& volume,
-                                                  const ClassifiedBlocks& blocks,
-                                                  const SmoothBlocks& smooth,
-                                                  const TransferTables& transfer,
-                                                  const RayTolerance& wanted,
-                                                  std::optional<InstructionSet> instruction_set);
+  static std::unique_ptr<const PacketTracer> make(
+      const Volume& volume, const ClassifiedBlocks& blocks, const SmoothBlocks& smooth,
+      const TransferTables& transfer, const RayTolerance& wanted,
+      std::optional<InstructionSet> instruction_set, const GridLight* light = nullptr);
 
   /// Parts of rays in grid coordinates, their parameter the world arc length; neighbours are packed
   /// together, and what becomes of a ray does not depend on them. `share`: of the tolerance, what
@@ -52,7 +52,8 @@ class PacketTracer {
   using Kernel = void (*)(const PellucidPacketJob*);
 
   PacketTracer(const Volume& volume, const ClassifiedBlocks& blocks, const SmoothBlocks& smooth,
-               const TransferTables& transfer, const RayTolerance& wanted, Kernel kernel);
+               const TransferTables& transfer, const RayTolerance& wanted, Kernel kernel,
+               const GridLight* light);
   /// Integrates rays that meet the grid's box between their ends.
   std::vector<PellucidRayResult> integrate(const std::vector<PellucidRay>& rays, double share,
                                            bool depth) const;
@@ -68,6 +69,7 @@ class PacketTracer {
   SmoothBlocks smooth_;
   PellucidPacketJob job_{};
   Kernel kernel_;
+  const GridLight* light_;
 };
 
 }  // namespace pellucid

@@ -29,6 +29,8 @@ class UnivariateTracer : public RayTracer {
  public:
   explicit UnivariateTracer(const TracerTask& task);
 
+  /// Returns whether it has what the layer's light needs.
+  bool suits_light() const { return packets_ != nullptr; }
   std::optional<Surroundings> surroundings() const override;
   bool keeps_to_ranges() const override { return integration_.method == Method::exact; }
   std::vector<RayResult> trace(const std::vector<RayPart>& parts,
@@ -55,6 +57,7 @@ class UnivariateTracer : public RayTracer {
   TransferTablesStorage transfer_;
   BlockClassesStorage block_classes_;
   std::optional<ClassifiedBlocks> blocks_;       ///< none: the method has no use for them
+  std::unique_ptr<const GridLight> light_;       ///< null: unlit
   std::unique_ptr<const PacketTracer> packets_;  ///< null: rays go one by one, or are sampled
   std::unique_ptr<const PreintegratedStorage> preintegrated_;  ///< null: another method
   std::unique_ptr<const PacketSamplerTracer> sampler_;         ///< null: rays go one by one
@@ -68,6 +71,10 @@ UnivariateTracer::UnivariateTracer(const TracerTask& task)
       depth_(task.options.depth),
       step_(integration_.step * volume_.voxel_size()),
       transfer_(transfer_function_) {
+  if (task.layer.shading) {
+    light_ = GridLight::make(task.layer, task.lights, wanted_);
+    if (!light_) return;
+  }
   const ParallelFor parallel = parallel_for(task.threads);
   if (integration_.method == Method::preintegrated) {
     const VolumeStatistics& data = volume_.statistics();
@@ -78,7 +85,7 @@ UnivariateTracer::UnivariateTracer(const TracerTask& task)
   if (integration_.method != Method::exact && !samples) return;
   const BlockRecords& records = volume_.block_records(parallel);
   std::function<StepLimits(double)> limits;
-  if (!samples && wanted_.grade != Grade::proved) {
+  if (!samples && wanted_.grade != Grade::proved && !light_) {
     limits = [this](double share_throughout) {
       return PacketTracer::step_limits(volume_, transfer_.tables(), wanted_, share_throughout);
     };
@@ -93,8 +100,9 @@ UnivariateTracer::UnivariateTracer(const TracerTask& task)
         stop_tolerance<float>() / std::max(transfer_function_.largest_color(), 1.0),
         task.options.instruction_set);
   } else {
-    packets_ = PacketTracer::make(volume_, *blocks_, block_classes_.smooth(), transfer_.tables(),
-                                  wanted_, task.options.instruction_set);
+    packets_ =
+        PacketTracer::make(volume_, *blocks_, light_ ? SmoothBlocks{} : block_classes_.smooth(),
+                           transfer_.tables(), wanted_, task.options.instruction_set, light_.get());
   }
 }
 
@@ -143,7 +151,9 @@ RayResult UnivariateTracer::trace_one(const StructuredGrid<Value, double>& grid,
 }  // namespace
 
 std::unique_ptr<const RayTracer> make_univariate_tracer(const TracerTask& task) {
-  return std::make_unique<UnivariateTracer>(task);
+  auto tracer = std::make_unique<UnivariateTracer>(task);
+  if (task.layer.shading && !tracer->suits_light()) return nullptr;
+  return tracer;
 }
 
 }  // namespace pellucid

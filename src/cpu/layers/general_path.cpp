@@ -110,7 +110,7 @@ class GeneralPath::ClippedStream {
     for (;;) {
       stretch_.function = -1;
       stretch_.primitives = {};
-      stretch_.left_out = stretch_.position_error = stretch_.unknown = stretch_.value_error = 0;
+      stretch_.left_out = stretch_.position_error = stretch_.unknown = 0;
       if (stream_->next(stretch_)) {
         if (surfaces_) surfaces_->take(stretch_);
         return;
@@ -172,8 +172,10 @@ RayResult GeneralPath::follow(const RayPart& part, double tolerance, double targ
   if (inside.empty()) return missed_ray_result();
   RayTolerance wanted = wanted_;
   wanted.tolerance = tolerance;
-  MultivariateRayIntegrator integrator(nothing_, largest_extinction_, wanted,
-                                       inside.end - inside.begin);
+  // A little longer where there are surfaces: one may be at the very end, and lengths of parts add
+  // up to all but their roundings.
+  const double length = (inside.end - inside.begin) * (surfaces_ ? 1 + 1e-9 : 1);
+  MultivariateRayIntegrator integrator(nothing_, largest_extinction_, wanted, length);
   if (target < infinity) integrator.set_target_depth(target);
   const long cells = merge(part.ray, inside, integrator);
   RayResult result = integrator.result();
@@ -257,10 +259,17 @@ void GeneralPath::add_lit(const Ray<double>& ray, Interval<double> range, double
                           double position_error, MultivariateRayIntegrator& integrator) {
   parts_.start(ray, range);
   for (std::size_t i = 0; i < streams_.size(); ++i) {
-    if (key_[i] >= 0) parts_.add(streams_[i].stretch(), *sources_[i]);
+    if (key_[i] < 0) continue;
+    parts_.add(streams_[i].stretch(), sources_[i]->functions()[static_cast<std::size_t>(key_[i])],
+               sources_[i]->look());
   }
   parts_.finish();
-  integrator.add_panels(parts_, range, left_out, position_error);
+  parts_.for_each_piece([&](const LitParts::Piece& piece, Interval<double> part, bool is_at_end) {
+    // If the stretch's length changes, inner cuts move in proportion.
+    const double share = is_at_end ? 1 : piece.last - piece.first;
+    integrator.add_panels(piece, part, left_out, share * position_error);
+    return !integrator.done();
+  });
 }
 
 /// Meets all surfaces at positions up to t. Returns the position of the next one that is known, or

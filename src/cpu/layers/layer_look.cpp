@@ -1,10 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "layer_look.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
 namespace pellucid {
+namespace {
+
+/// v / |v|, also where squares and inverses would overflow or underflow.
+Vec3<double> unit(const Vec3<double>& v) {
+  const double largest = std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)});
+  return normalized(Vec3<double>{v.x / largest, v.y / largest, v.z / largest});
+}
+
+}  // namespace
 
 LayerLook::LayerLook(const Layer& layer)
     : layer_(layer), has_medium_(largest_extinction(layer) > 0) {
@@ -23,22 +33,24 @@ std::vector<SlicePosition> slice_positions(const std::vector<Slice>& slices,
                                            const Ray<double>& ray) {
   std::vector<SlicePosition> result;
   for (const Slice& slice : slices) {
-    // Scaled, so that products neither overflow nor underflow.
-    const Vec3<double> n =
-        slice.normal * (1 / std::hypot(slice.normal.x, slice.normal.y, slice.normal.z));
+    const Vec3<double> n = unit(slice.normal);
     const auto toward = [&](const auto& of) {
       return static_cast<long double>(n.x) * of.x + static_cast<long double>(n.y) * of.y +
              static_cast<long double>(n.z) * of.z;
     };
     const long double slope = toward(ray.direction);
-    const long double t = (toward(slice.point) - toward(ray.origin)) / slope;
-    if (!std::isfinite(t) || t < 0) {
-      result.push_back({std::numeric_limits<double>::infinity(), 0});
-      continue;
+    const long double away = toward(slice.point) - toward(ray.origin);
+    const long double t = away / slope;
+    const double sizes = length(slice.point) + length(ray.origin);
+    SlicePosition position{std::numeric_limits<double>::infinity(), 0};
+    if (std::abs(slope) < 1e-9L) {
+      position.along = std::abs(away) <= 1e-8L * sizes;
+    } else if (std::isfinite(t) && t >= 0) {
+      position.t = static_cast<double>(t);
+      position.error =
+          8 * rounding_unit<double> * (sizes + position.t) / static_cast<double>(std::abs(slope));
     }
-    const double sizes = length(slice.point) + length(ray.origin) + static_cast<double>(t);
-    result.push_back({static_cast<double>(t),
-                      8 * rounding_unit<double> * sizes / static_cast<double>(std::abs(slope))});
+    result.push_back(position);
   }
   return result;
 }
@@ -49,9 +61,8 @@ std::vector<LightSource<double>> light_sources(const std::vector<Light>& lights)
     LightSource<double> source;
     source.color = light.color;
     if (const auto* directional = std::get_if<DirectionalLight>(&light.kind)) {
-      const Vec3<double>& d = directional->direction;
       source.kind = LightSource<double>::Kind::directional;
-      source.place = d * (-1 / std::hypot(d.x, d.y, d.z));
+      source.place = -unit(directional->direction);
     } else if (const auto* point = std::get_if<PointLight>(&light.kind)) {
       source.kind = LightSource<double>::Kind::point;
       source.place = point->position;

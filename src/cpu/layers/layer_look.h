@@ -43,8 +43,9 @@ class LayerLook {
 
 /// Where a ray meets the plane of a slice.
 struct SlicePosition {
-  double t;      ///< world arc length; infinite where it does not
-  double error;  ///< largest error of t
+  double t;            ///< world arc length; infinite where it does not
+  double error;        ///< largest error of t
+  bool along = false;  ///< whether the ray runs in the plane: nobody knows what it sees of it
 };
 std::vector<SlicePosition> slice_positions(const std::vector<Slice>& slices,
                                            const Ray<double>& ray);

@@ -9,7 +9,8 @@ namespace {
 /// Null where the layer takes the general path.
 std::unique_ptr<const RayTracer> make_fast_tracer(const TracerTask& task) {
   const LayerContent& content = task.layer.content;
-  if (is_lit(task.layer)) return nullptr;
+  if (task.layer.gradient_opacity || has_surfaces(task.layer)) return nullptr;
+  if (task.layer.shading && !std::holds_alternative<VolumeContent>(content)) return nullptr;
   if (const auto* volume = std::get_if<VolumeContent>(&content)) {
     return volume->mask ? nullptr : make_univariate_tracer(task);
   }
@@ -21,8 +22,10 @@ std::unique_ptr<const RayTracer> make_fast_tracer(const TracerTask& task) {
 }  // namespace
 
 LayerSetting::LayerSetting(const Integration& of_scene, const RayTolerance& of_rays,
-                           double negligible, const RenderOptions& options)
+                           double negligible, const std::vector<Light>& of_lights,
+                           const RenderOptions& options)
     : integration(of_scene),
+      lights(of_lights),
       wanted(of_rays),
       negligible_extinction(negligible),
       depth(options.depth),
@@ -39,7 +42,8 @@ LayerSetup::LayerSetup(const Layer& layer, const LayerSetting& setting, int thre
   options.depth = setting_.depth;
   options.instruction_set = setting_.instruction_set;
   options.gaussian_march = setting_.gaussian_march;
-  fast_ = make_fast_tracer({layer_, setting_.integration, options, setting_.wanted, threads});
+  fast_ = make_fast_tracer(
+      {layer_, setting_.integration, options, setting_.lights, setting_.wanted, threads});
   if (!fast_) make_source(parallel_for(threads));
 }
 

@@ -4,6 +4,7 @@
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <vector>
 
 #include "layer_stream.h"
 #include "ray_tracer.h"
@@ -13,6 +14,7 @@ namespace pellucid {
 /// How a frame shows its layers: all that a layer's set-up depends on beside the layer.
 struct LayerSetting {
   Integration integration;
+  std::vector<Light> lights;
   RayTolerance wanted;
   double negligible_extinction = 0;  ///< that a layer may ignore all along a ray
   bool depth = false;
@@ -20,7 +22,8 @@ struct LayerSetting {
   std::optional<GaussianMarch> gaussian_march;
 
   LayerSetting(const Integration& integration, const RayTolerance& wanted,
-               double negligible_extinction, const RenderOptions& options);
+               double negligible_extinction, const std::vector<Light>& lights,
+               const RenderOptions& options);
   bool operator==(const LayerSetting&) const = default;
 };
 

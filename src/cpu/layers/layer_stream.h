@@ -21,8 +21,8 @@ struct LayerStretch {
   double left_out = 0;        ///< upper bound on the extinction of what is ignored here
   double position_error = 0;  ///< largest error of begin and end together, world length
   double unknown = 0;         ///< upper bound on an opacity in front of it that is not known
-  double value_error = 0;     ///< of the data, beside their rounding
   CubicBernstein<double> data[max_channels];
+  double value_error[max_channels]{};  ///< of the data, beside their rounding
   // Of layers that need them (LayerLook):
   CubicBernstein<double> gradient[3];  ///< in the world, for light
   CubicBernstein<double> magnitude;    ///< for gradient opacity

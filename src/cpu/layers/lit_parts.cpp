@@ -9,7 +9,7 @@
 namespace pellucid {
 namespace {
 
-/// Cuts closer to the end of a part are none.
+/// Share of a stretch between two cuts, at least.
 constexpr double shortest = 1e-12;
 
 /// f (1 - u) a + f u b, of degree 4.
@@ -30,11 +30,11 @@ void LitParts::start(const Ray<double>& ray, Interval<double> range) {
   cuts_.clear();
 }
 
-void LitParts::add(const LayerStretch& stretch, const LayerSource& source) {
+void LitParts::add(const LayerStretch& stretch, const MultivariateTransfer<double>& function,
+                   const LayerLook& look) {
   layers_.emplace_back();
   LitLayer<double>& layer = layers_.back();
-  const LayerLook& look = source.look();
-  layer.transfer = &source.functions()[static_cast<std::size_t>(stretch.function)];
+  layer.transfer = &function;
   layer.gradient_opacity = look.gradient_opacity();
   layer.reflection = look.reflection();
   layer.primitives = stretch.primitives;
@@ -79,17 +79,14 @@ void LitParts::finish() {
       cuts_.insert(cuts_.end(), position, position + count);
     }
   }
+  cuts_.push_back(0);
+  cuts_.push_back(1);
   std::ranges::sort(cuts_);
+  // Those that are closer together than that are one.
+  const auto close = [](double a, double b) { return b - a < shortest; };
+  cuts_.erase(std::unique(cuts_.begin(), cuts_.end(), close), cuts_.end());
+  cuts_.back() = 1;
   part_.resize(layers_.size());
-}
-
-bool LitParts::find_cut(double begin, double end, double& cut) const noexcept {
-  const double near = std::max(shortest, 1e-6 * (end - begin));
-  const auto first = std::ranges::upper_bound(cuts_, begin + near);
-  const auto last = std::ranges::lower_bound(cuts_, end - near);
-  if (first >= last) return false;
-  cut = (*(first + (last - first) / 2) - begin) / (end - begin);
-  return true;
 }
 
 LitStretch<double> LitParts::view() const noexcept {
@@ -101,7 +98,7 @@ LitStretch<double> LitParts::view() const noexcept {
   stretch.begin = ray_.origin + ray_.direction * range_.begin;
   stretch.direction = ray_.direction;
   stretch.length = length();
-  stretch.gradient_error = gradient_rounding;
+  stretch.gradient_error = gradient_rounding<double>;
   return stretch;
 }
 

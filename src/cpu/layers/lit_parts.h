@@ -17,25 +17,50 @@ class LitParts {
 
   /// Begins a stretch. The ray's direction has length 1.
   void start(const Ray<double>& ray, Interval<double> range);
-  /// Adds the part of a layer's stretch in that range.
-  void add(const LayerStretch& stretch, const LayerSource& source);
+  /// Adds the part of a layer's stretch in that range. The layer's function and look must outlive
+  /// the stretch.
+  void add(const LayerStretch& stretch, const MultivariateTransfer<double>& function,
+           const LayerLook& look);
   /// Finds the cuts; call it behind the last layer.
   void finish();
 
+  /// A part of the stretch between two cuts, for MultivariateRayIntegrator::add_panels().
+  struct Piece {
+    const LitParts& parts;
+    double first, last;  ///< shares of the stretch
+
+    double length() const noexcept { return (last - first) * parts.length(); }
+    /// Bounds that are proved come together as slowly as panels get short: a ray takes some 10 ms
+    /// then.
+    static long most_panels() noexcept { return 4096; }
+    template <class Allowance>
+    PanelSegment<double> panel(double begin, double end, const PanelDemand<double>& demand,
+                               const Allowance& allowance) const noexcept {
+      const double width = last - first;
+      return parts.panel(first + begin * width, end < 1 ? first + end * width : last, demand,
+                         allowance);
+    }
+  };
+  /// Calls visit(piece, range, is_at_end) for each piece, front to back, while it returns true.
+  template <class Visit>
+  void for_each_piece(const Visit& visit) const {
+    for (std::size_t i = 0; i + 1 < cuts_.size(); ++i) {
+      const Interval<double> range{range_.begin + cuts_[i] * length(),
+                                   range_.begin + cuts_[i + 1] * length()};
+      const bool is_at_end = i == 0 || i + 2 == cuts_.size();
+      if (!visit(Piece{*this, cuts_[i], cuts_[i + 1]}, range, is_at_end)) return;
+    }
+  }
+
   double length() const noexcept { return range_.end - range_.begin; }
-  /// Returns the part [begin, end] integrated, or where to cut it.
+
+ private:
   template <class Allowance>
   PanelSegment<double> panel(double begin, double end, const PanelDemand<double>& demand,
                              const Allowance& allowance) const noexcept {
-    PanelSegment<double> result;
-    if (!demand.last_resort && find_cut(begin, end, result.cut)) return result;
     for (std::size_t i = 0; i < layers_.size(); ++i) part_[i] = layers_[i].part(begin, end);
-    const LitStretch<double> stretch = view();
-    return integrate_lit_panel(stretch, part_.data(), begin, end, demand, allowance);
+    return integrate_lit_panel(view(), part_.data(), begin, end, demand, allowance);
   }
-
- private:
-  bool find_cut(double begin, double end, double& cut) const noexcept;
   LitStretch<double> view() const noexcept;
 
   const std::vector<LightSource<double>>& lights_;
@@ -43,7 +68,7 @@ class LitParts {
   Interval<double> range_{0, 0};
   std::vector<LitLayer<double>> layers_;
   mutable std::vector<LitLayer<double>> part_;
-  std::vector<double> cuts_;  ///< ascending
+  std::vector<double> cuts_;  ///< ascending, from 0 to 1
 };
 
 }  // namespace pellucid

@@ -117,7 +117,7 @@ class MeshStream : public LayerStream {
       const LinearBernstein<double> whole{{span.front[c], span.back[c]}};
       const bool cut = from > 0 || to < 1;
       stretch.data[c] = as_cubic(cut ? restrict_to(whole, from, to) : whole);
-      stretch.value_error = std::max(stretch.value_error, span.value_error[c]);
+      stretch.value_error[c] = span.value_error[c];
     }
     const Interval<double> range{stretch.begin, stretch.end};
     if (source_.gradient() != nullptr) {

@@ -55,10 +55,22 @@ void SurfaceEvents::start(const Ray<double>& ray) {
 void SurfaceEvents::take(const LayerStretch& stretch) {
   events_.clear();
   next_ = 0;
-  if (stretch.function < 0 || !(stretch.begin < stretch.end)) return;
-  if (stretch.begin > end_ + 4 * stretch.position_error) {
-    std::fill(sides_.begin(), sides_.end(), Side{});
+  const bool is_last = std::isinf(stretch.begin);
+  const bool has_data = stretch.function >= 0 && stretch.begin < stretch.end;
+  if (!is_last && !has_data) return;
+  if (is_last || stretch.begin > end_ + 4 * stretch.position_error) {
+    for (std::size_t i = 0; i < sides_.size(); ++i) {
+      if (sides_[i].pending) charge(i, end_);
+      sides_[i].side = 0;
+      sides_[i].pending = false;
+    }
   }
+  if (is_last) {
+    for (std::size_t i = 0; i < slices_.size(); ++i) {
+      if (slices_[i].along) lie_in(i, end_);
+    }
+  }
+  if (!has_data) return;
   end_ = stretch.end;
   for (std::size_t i = 0; i < sides_.size(); ++i) follow(i, stretch);
   for (std::size_t i = 0; i < slices_.size(); ++i) meet(i, stretch);
@@ -77,7 +89,7 @@ void SurfaceEvents::follow(std::size_t isosurface, const LayerStretch& stretch) 
   const Isosurface& surface = source_.look().isosurfaces()[isosurface];
   const CubicBernstein<double>& data = stretch.data[surface.channel];
   const double length = stretch.end - stretch.begin;
-  const double off = data_rounding(data) + stretch.value_error +
+  const double off = data_rounding(data) + stretch.value_error[surface.channel] +
                      slope_bound(data) * std::min(stretch.position_error / length, 1.0);
   Side& side = sides_[isosurface];
   const bool apart = data.hull_min() - surface.value > off || surface.value - data.hull_max() > off;
@@ -112,18 +124,23 @@ void SurfaceEvents::follow(std::size_t isosurface, const LayerStretch& stretch) 
       const double crossing = u > 0 ? find_crossing(data, surface.value, last, u, now > 0) : 0.0;
       add_crossing(surface, stretch, crossing, off);
     } else if (side.pending) {
-      SurfaceEvent event;
-      event.t = t;
-      event.kind = SurfaceEvent::Kind::charge;
-      event.isosurface = isosurface;
-      const double left = 1 - surface.opacity;
-      event.opacity = side.side == 0 ? surface.opacity : 1 - left * left;
-      events_.push_back(event);
+      charge(isosurface, t);
     }
     side.side = now;
     side.pending = false;
     last = u;
   }
+}
+
+/// It is not known whether a surface was met since the mark, once or twice.
+void SurfaceEvents::charge(std::size_t isosurface, double t) {
+  SurfaceEvent event;
+  event.t = t;
+  event.kind = SurfaceEvent::Kind::charge;
+  event.isosurface = isosurface;
+  const double left = 1 - source_.look().isosurfaces()[isosurface].opacity;
+  event.opacity = 1 - left * left;
+  events_.push_back(event);
 }
 
 void SurfaceEvents::add_crossing(const Isosurface& surface, const LayerStretch& stretch, double u,
@@ -148,9 +165,10 @@ void SurfaceEvents::add_crossing(const Isosurface& surface, const LayerStretch& 
   Rgb<double> color = surface.color;
   if (surface.colors) {
     const CubicBernstein<double>& of = stretch.data[surface.color_channel];
-    color =
-        color_at(surface.colors->view<double>(), evaluate(of, u),
-                 data_rounding(of) + stretch.value_error + u_error * slope_bound(of), color_error);
+    color = color_at(
+        surface.colors->view<double>(), evaluate(of, u),
+        data_rounding(of) + stretch.value_error[surface.color_channel] + u_error * slope_bound(of),
+        color_error);
   }
   event.color = lit(color, stretch, u, u_error, color_error);
   // The medium between where the surface is and where it was found.
@@ -181,23 +199,34 @@ Rgb<double> SurfaceEvents::lit(const Rgb<double>& color, const LayerStretch& str
     component = restrict_to(component, begin, end);
   }
   whole.half_length = 0.5 * (end - begin) * length;
-  const LitBounds<double> bounds = light_bounds(*reflection, lights_.data(), count, whole);
+  const Bounds<double> squares = whole.square();
+  const LitBounds<double> bounds = light_bounds(*reflection, lights_.data(), count, whole, squares);
   Rgb<double> less = color, more = color;
   for (double Rgb<double>::*c : {&Rgb<double>::r, &Rgb<double>::g, &Rgb<double>::b}) {
     less.*c = std::max(color.*c - error, 0.0);
     more.*c = color.*c + error;
   }
   const Rgb<double> lower = bounds.lower.apply(less), upper = bounds.upper.apply(more);
-  const Bounds<double> squares = whole.square();
   error = std::max(largest_component(upper - result), largest_component(result - lower)) +
           color_rounding(*reflection, lights_.data(), count, squares, largest_color_,
-                         gradient_rounding);
+                         gradient_rounding<double>);
   return result;
+}
+
+/// The ray runs in the plane of a slice: all that it shows is in doubt.
+void SurfaceEvents::lie_in(std::size_t slice, double t) {
+  if (met_[slice]) return;
+  met_[slice] = true;
+  SurfaceEvent event;
+  event.t = t;
+  event.error = source_.look().slices()[slice].opacity;
+  events_.push_back(event);
 }
 
 void SurfaceEvents::meet(std::size_t slice, const LayerStretch& stretch) {
   if (met_[slice]) return;
-  const auto [t, t_error] = slices_[slice];
+  const auto [t, t_error, lies_in_it] = slices_[slice];
+  if (lies_in_it) return lie_in(slice, stretch.begin);
   const double off = t_error + stretch.position_error;
   if (!(t >= stretch.begin - off && t <= stretch.end + off)) return;
   met_[slice] = true;
@@ -212,10 +241,10 @@ void SurfaceEvents::meet(std::size_t slice, const LayerStretch& stretch) {
       plane.colors ? plane.colors->view<double>()
                    : source_.functions()[static_cast<std::size_t>(stretch.function)].table[0].table;
   double color_error = 0;
-  event.color = color_at(
-      table, evaluate(data, u),
-      data_rounding(data) + stretch.value_error + slope_bound(data) * std::min(off / length, 1.0),
-      color_error);
+  event.color = color_at(table, evaluate(data, u),
+                         data_rounding(data) + stretch.value_error[plane.channel] +
+                             slope_bound(data) * std::min(off / length, 1.0),
+                         color_error);
   const double depth = source_.most_extinction() * off;
   event.error = plane.opacity * (color_error / largest_color_ + std::min(depth, 1.0));
   events_.push_back(event);

@@ -57,6 +57,8 @@ class SurfaceEvents {
   };
 
   void follow(std::size_t isosurface, const LayerStretch& stretch);
+  void charge(std::size_t isosurface, double t);
+  void lie_in(std::size_t slice, double t);
   void meet(std::size_t slice, const LayerStretch& stretch);
   void add_crossing(const Isosurface& surface, const LayerStretch& stretch, double u,
                     double value_error);

@@ -4,6 +4,7 @@
 #include "pellucid/error/random_errors.h"
 #include "pellucid/packet/cells/cell_places.h"
 #include "pellucid/packet/cells/cells_in_double.h"
+#include "pellucid/packet/cells/light_lanes.h"
 #include "pellucid/packet/cells/span_finder.h"
 #include "pellucid/packet/cells/span_piece.h"
 #include "pellucid/packet/opacity_trace.h"
@@ -22,7 +23,10 @@ namespace pellucid {
 /// (segment/extinction_piece.h), and halved where the budget cannot pay for its color. What
 /// binary32 is not good enough for is begun anew in double, when enough lanes have waited for that;
 /// what that is not good enough for is handed back, cell by cell.
-template <class Value, int N>
+///
+/// If `is_lit`, each piece is shaded in binary32 (light_lanes.h); there are no smooth steps, and
+/// what binary32 is not good enough for is handed back at once.
+template <class Value, int N, bool is_lit = false>
 class PacketIntegrator {
  public:
   using F = Batch<float, N>;
@@ -48,7 +52,8 @@ class PacketIntegrator {
         first_(first),
         count_(count),
         blocks_(grid, job.rays + first, count),
-        finder_(grid, blocks_, transfer_),
+        finder_(grid, blocks_, transfer_, is_lit),
+        light_(make_light(job, grid, blocks_)),
         smooth_(job, grid, blocks_.origin, blocks_.direction, room.step_lengths),
         fold_(job.tolerance, transfer_.largest_extinction, job.largest_color,
               convert<float>(D::load(blocks_.end))),
@@ -106,6 +111,18 @@ class PacketIntegrator {
   }
 
  private:
+  struct Unlit {};
+  using Light = std::conditional_t<is_lit, LightLanes<Value, N>, Unlit>;
+
+  static Light make_light(const PellucidPacketJob& job, const PacketGrid<Value>& grid,
+                          const BlockMarch<Value, N>& rays) noexcept {
+    if constexpr (is_lit) {
+      return Light(grid, *static_cast<const PacketLight*>(job.light), rays);
+    } else {
+      return {};
+    }
+  }
+
   static I lane_numbers() noexcept {
     std::int32_t lane[N];
     for (int l = 0; l < N; ++l) lane[l] = l;
@@ -114,6 +131,8 @@ class PacketIntegrator {
 
   /// How narrow a part of a cell may get before it is handed back.
   static constexpr float narrowest = 1.0f / 16;
+  static constexpr float narrowest_lit = 1.0f / 512;
+  static constexpr int most_lit_pieces = 40;
   /// Of the difference of two rules what counts as the standard deviation of the better one.
   static constexpr float share_of_difference = 0.4f;
   /// After so many pieces and halvings what is left of a cell is handed back if it is not taken.
@@ -161,7 +180,19 @@ class PacketIntegrator {
     handed_back_ = handed_back_ | (lanes & has(SpanCode::handed_back));
     const M in_double = lanes & has(SpanCode::in_double);
     if (any(in_double)) wait_for_double(in_double);
+    if constexpr (is_lit) {
+      const M begun = lanes & !handed_back_;
+      if (any(begun)) light_.begin(begun, places_of(begun, code_));
+    }
     constant_ += select(lanes & whole_block_, I(1), I(0));
+  }
+
+  /// Where the lanes' rays go through the cells of these spans.
+  CellPlaces<N> places_of(M lanes, I of) const noexcept {
+    const I code = select(lanes, of, I(0));
+    I in_block[3];
+    for (int a = 0; a < 3; ++a) in_block[a] = SpanCode::place_in_block(code, a);
+    return cell_places(grid_, blocks_, room_.stretches, SpanCode::stretch_of(code), in_block);
   }
 
   /// Gives up what was found of the lanes' rays.
@@ -227,6 +258,10 @@ class PacketIntegrator {
       handed_back_ = M(false);
     }
     const M single = pending_ & !in_double_now_, wide = pending_ & in_double_now_;
+    if constexpr (is_lit) {
+      if (any(single)) integrate_lit_pieces(single);
+      return;
+    }
     // What becomes of a lane does not depend on when it is its turn. Lanes wait until that has cost
     // half as much as the others then lose, and no longer: who waits alone may be all there is.
     const int waiting = count(wide);
@@ -311,12 +346,76 @@ class PacketIntegrator {
     retire(take);
   }
 
+  /// The next pieces in light. The errors of their colors are random ones: of signs and sizes that
+  /// differ from cell to cell.
+  [[gnu::flatten]] void integrate_lit_pieces(M on) noexcept {
+    const F from = single_.from, ahead = F(1) - from;
+    const F kink = light_.kink();
+    const M before = on & (kink > from) & (kink < F(1));
+    const F up_to_kink = (kink - from) / select(before, ahead, F(1));
+    const M to_kink = before & (up_to_kink < single_.cap);
+    single_.cap = select(to_kink, up_to_kink, single_.cap);
+    SpanPiece<float, N> piece = next_piece(single_, transfer_, on, place_error_, largest_color_);
+    SegmentResult<F>& s = piece.found.segment;
+    const F to = min(from + ahead * piece.place, F(1));
+    const LightOfPiece<N> lit = light_.measure(piece, from, to, transfer_);
+    const F length = piece.length, left = left_behind(from);
+    fold_.budget.set_remaining_length(select(on, left, fold_.budget.remaining_length()));
+    const F transparency = fold_.transparency(), seen = transparency * s.opacity;
+    const F linear = transparency * piece.rounding + seen * lit.color_error;
+    const typename RayBudget<F>::SpanShare shares = fold_.budget.span_share(length, s.opacity);
+    const M affordable = linear <= F(0.6f) * shares.sum();
+    const F largest = sampled_.largest_variance(fold_.budget, linear, s.opacity, length, left);
+    const auto square = [](F x) noexcept { return x * x; };
+    const F variance = square(seen * lit.by_six);
+    const M by_three = square(seen * lit.by_three) <= largest;
+    const M take = on & piece.end.found & affordable & (variance <= largest);
+    const M rest = on & !take;
+    if (any(rest)) {
+      const F half = F(0.5f) * piece.place;
+      // Light may turn in a small part of a cell, and a table be narrow.
+      const M halve = rest & piece.end.found & affordable & (single_.pieces < I(most_lit_pieces)) &
+                      (ahead * half >= F(narrowest_lit)) & (variance <= F(1e6f) * largest);
+      single_.cap = select(halve, half, single_.cap);
+      handed_back_ = handed_back_ | (rest & !halve);
+    }
+    if (none(take)) return;
+    // What becomes of a lane must not depend on the others: each has its own rule.
+    const M more = take & !by_three;
+    Rgb<F> color{};
+    if (any(take & by_three)) {
+      color = light_.template color<3>(lit, piece, single_, take, transfer_, single_.color);
+    }
+    if (any(more)) {
+      const Rgb<F> better =
+          light_.template color<6>(lit, piece, single_, take, transfer_, single_.color);
+      color = {select(more, better.r, color.r), select(more, better.g, color.g),
+               select(more, better.b, color.b)};
+    }
+    s.radiance = s.opacity * color;
+    fold_.add(take, s);
+    sampled_.charge(take, fold_.budget, select(more, variance, square(seen * lit.by_three)), linear,
+                    s.opacity, length, left, transparency);
+    pieces_ += select(take, I(1), I(0));
+    panels_ += select(take, I(1), I(0));
+    proved_ = proved_ & !take;
+    single_.go_past(take, piece, transfer_);
+    // Behind a kink there is no other half.
+    single_.cap = select(take & to_kink, F(1), single_.cap);
+    light_.go_past(take, to);
+    const CubicBernstein<F>& back = piece.parts.back;
+    const M clear = (back.hull_max() + single_.rounding < F(transfer_.support_min)) |
+                    (back.hull_min() - single_.rounding > F(transfer_.support_max));
+    pending_ = pending_ & !(take & ((piece.place >= F(1)) | clear));
+    retire(take);
+  }
+
   /// Of the rays, from this share of the lanes' cells on.
   F left_behind(F from) const noexcept { return left_ - from * span_length_; }
 
   /// Lanes whose span is to be gone on with in double.
   void wait_for_double(M lanes) noexcept {
-    if (!double_will_do_) {
+    if (is_lit || !double_will_do_) {
       // Not yet: a span that is being taken is not complete.
       handed_back_ = handed_back_ | lanes;
       return;
@@ -328,13 +427,8 @@ class PacketIntegrator {
 
   void begin_in_double() noexcept {
     if (none(not_begun_)) return;
-    const I code = select(not_begun_, code_, I(0));
-    I in_block[3];
-    for (int a = 0; a < 3; ++a) in_block[a] = SpanCode::place_in_block(code, a);
-    begin_spans_in_double(
-        grid_, not_begun_,
-        cell_places(grid_, blocks_, room_.stretches, SpanCode::stretch_of(code), in_block),
-        convert<double>(single_.from), double_);
+    begin_spans_in_double(grid_, not_begun_, places_of(not_begun_, code_),
+                          convert<double>(single_.from), double_);
     not_begun_ = M(false);
   }
 
@@ -395,6 +489,7 @@ class PacketIntegrator {
   int first_, count_;
   BlockMarch<Value, N> blocks_;
   SpanFinder<Value, N> finder_;
+  Light light_;
   SmoothMarch<Value, N> smooth_;
 
   const I lane_ = lane_numbers();

@@ -54,9 +54,10 @@ class SpanFinder {
   using All = Stretches<Value, N>;
   using Rows = SpanRows<Value, N>;
 
+  /// `lit`: blocks of one material are gone through cell by cell, for light changes in them.
   SpanFinder(const PacketGrid<Value>& grid, const BlockMarch<Value, N>& rays,
-             const BinnedTransfer& transfer) noexcept
-      : transfer_(transfer), list_(grid, rays), cells_(grid, rays) {}
+             const BinnedTransfer& transfer, bool lit = false) noexcept
+      : transfer_(transfer), list_(grid, rays), cells_(grid, rays), lit_(lit) {}
 
   /// Adds to `cells` those looked at, per ray.
   void operator()(All& stretches, Walks<Value, N>& walks, Rows& rows,
@@ -93,7 +94,7 @@ class SpanFinder {
   /// rounding, and not of types that binary32 rounds: the function may be steep there.
   M is_constant(M lanes, F value) const noexcept {
     constexpr bool exact = std::is_same_v<Value, float> || sizeof(Value) < sizeof(float);
-    if (!exact) return M(false);
+    if (!exact || lit_) return M(false);
     if (!transfer_.has_marks) return lanes;
     const F rounding = F(2 * rounding_unit<float>) * abs(value);
     return lanes & (marks_between(transfer_, value - rounding, value + rounding) <
@@ -258,6 +259,7 @@ class SpanFinder {
   const BinnedTransfer& transfer_;
   WalkList<Value, N> list_;
   CellMarch<Value, N> cells_;
+  bool lit_;
   typename CellMarch<Value, N>::Step step_;
   I row_;   ///< that each lane's next span goes to
   I seen_;  ///< cells of the lane's stretch

@@ -1,0 +1,244 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "pellucid/packet/cells/cell_places.h"
+#include "pellucid/packet/cells/span_piece.h"
+#include "pellucid/packet/light.h"
+#include "pellucid/segment/gauss_panel.h"
+
+#if PELLUCID_HAS_BATCH_4  // in sources compiled per instruction set
+namespace pellucid {
+
+/// Loads the gradients of cells, one in each lane, from the data in their own type.
+template <class Value, int N>
+class GradientLoads {
+ public:
+  using F = Batch<float, N>;
+  using M = BatchMask<N>;
+
+  GradientLoads(const PacketGrid<Value>& grid, const PacketLight& light) noexcept
+      : grid_(grid), light_(light) {}
+
+  /// The gradient's components in the world, along the lanes' ways through their cells.
+  void operator()(M lanes, const CellPlaces<N>& places,
+                  CubicBernstein<F> (&gradient)[3]) const noexcept {
+    load(lanes, places);
+    const Vec3<F> entry{convert<float>(places.entry.x), convert<float>(places.entry.y),
+                        convert<float>(places.entry.z)};
+    const Vec3<F> exit{convert<float>(places.exit.x), convert<float>(places.exit.y),
+                       convert<float>(places.exit.z)};
+    CubicBernstein<F> of_axis[3];
+    for (int a = 0; a < 3; ++a) of_axis[a] = trilinear_cubic(derivative(a), entry, exit);
+    for (int c = 0; c < 3; ++c) {
+      const float* const w = light_.world_gradient[c];
+      for (int k = 0; k < 4; ++k) {
+        const F component =
+            F(w[0]) * of_axis[0].b[k] + F(w[1]) * of_axis[1].b[k] + F(w[2]) * of_axis[2].b[k];
+        gradient[c].b[k] = select(lanes, component, gradient[c].b[k]);
+      }
+    }
+  }
+
+ private:
+  /// Loads corners and what is beyond them along each axis.
+  void load(M lanes, const CellPlaces<N>& places) const noexcept {
+    std::int32_t cell[3][N];
+    for (int a = 0; a < 3; ++a) places.cell[a].store(cell[a]);
+    for (unsigned left = bits(lanes); left != 0; left &= left - 1) {
+      const int l = __builtin_ctz(left);
+      const std::ptrdiff_t stride[3] = {1, grid_.row, grid_.slice};
+      std::ptrdiff_t at[3][4];  // before, lower, upper, behind
+      for (int a = 0; a < 3; ++a) {
+        const int last = grid_.values[a] - 1, place = cell[a][l] - grid_.padding[a];
+        const int lower = clamp(place, 0, last), upper = clamp(place + 1, 0, last);
+        const int before = max(lower - 1, 0), behind = min(upper + 1, last);
+        at[a][0] = before * stride[a];
+        at[a][1] = lower * stride[a];
+        at[a][2] = upper * stride[a];
+        at[a][3] = behind * stride[a];
+        // Of border cells both values are the same.
+        has_before_[a][l] = lower > 0 ? 1.0f : 0.0f;
+        has_behind_[a][l] = upper < last ? 1.0f : 0.0f;
+        flat_[a][l] = lower == upper ? 1.0f : 0.0f;
+      }
+      const Value* const data = grid_.data;
+      for (int n = 0; n < 8; ++n) {
+        const int i = 1 + (n & 1), j = 1 + (n >> 1 & 1), k = 1 + (n >> 2);
+        corner_[n][l] = static_cast<float>(data[at[0][i] + at[1][j] + at[2][k]]);
+        if (light_.of_field != 0) continue;
+        outside_[0][n][l] = static_cast<float>(data[at[0][i == 1 ? 0 : 3] + at[1][j] + at[2][k]]);
+        outside_[1][n][l] = static_cast<float>(data[at[0][i] + at[1][j == 1 ? 0 : 3] + at[2][k]]);
+        outside_[2][n][l] = static_cast<float>(data[at[0][i] + at[1][j] + at[2][k == 1 ? 0 : 3]]);
+      }
+    }
+  }
+
+  /// The derivative along an axis at the corners, by the distance of two values (GradientKind).
+  CellCorners<F> derivative(int a) const noexcept {
+    CellCorners<F> result;
+    const M flat = F::load(flat_[a]) > F(0);
+    for (int n = 0; n < 8; ++n) {
+      const bool is_upper = (n >> a & 1) != 0;
+      const F here = F::load(corner_[n]), other = F::load(corner_[n ^ 1 << a]);
+      const F step = is_upper ? here - other : other - here;
+      if (light_.of_field != 0) {
+        result.value[n] = step;
+        continue;
+      }
+      // What is beyond, on the side of this corner; where the cell is flat, on both sides.
+      const F own = F::load(outside_[a][n]), across = F::load(outside_[a][n ^ 1 << a]);
+      const F own_step = is_upper ? own - here : here - own;
+      const F across_step = is_upper ? here - across : across - here;
+      const F in_cell = select(flat, across_step, step);
+      M has_own = F::load(is_upper ? has_behind_[a] : has_before_[a]) > F(0);
+      M has_cell = (!flat) | (F::load(is_upper ? has_before_[a] : has_behind_[a]) > F(0));
+      if constexpr (!std::is_integral_v<Value>) {
+        has_own = has_own & !is_nan(own);
+        has_cell = has_cell & !is_nan(in_cell);
+      }
+      const F sum = select(has_own, own_step, F(0)) + select(has_cell, in_cell, F(0));
+      result.value[n] = select(has_own & has_cell, F(0.5f) * sum, sum);
+    }
+    return result;
+  }
+
+  const PacketGrid<Value>& grid_;
+  const PacketLight& light_;
+  mutable float corner_[8][N] = {}, outside_[3][8][N] = {};
+  mutable float has_before_[3][N] = {}, has_behind_[3][N] = {}, flat_[3][N] = {};
+};
+
+/// What is known of the light on a piece of a span before any node is shaded.
+template <int N>
+struct LightOfPiece {
+  using F = Batch<float, N>;
+  GradientStretch<F> along;
+  /// Standard deviations of the color by three and by six nodes: half of error_of_three_nodes() and
+  /// error_of_six_nodes() times the range of the colors.
+  F by_three, by_six;
+  F color_error;  ///< what the color may be off by beside: tables' kinks and rounding
+};
+
+/// The light of the spans that lanes work on.
+template <class Value, int N>
+class LightLanes {
+ public:
+  using F = Batch<float, N>;
+  using D = Batch<double, N>;
+  using M = BatchMask<N>;
+
+  LightLanes(const PacketGrid<Value>& grid, const PacketLight& light,
+             const BlockMarch<Value, N>& rays) noexcept
+      : light_(light), loads_(grid, light) {
+    for (int c = 0; c < 3; ++c) {
+      D sum(0);
+      for (int a = 0; a < 3; ++a) {
+        sum += D(light.world_direction[c][a]) * D::load(rays.direction[a]);
+      }
+      to_eye_[c] = -convert<float>(sum);
+    }
+  }
+
+  /// Begins spans.
+  [[gnu::noinline]] void begin(M lanes, const CellPlaces<N>& places) noexcept {
+    loads_(lanes, places, gradient_);
+    kink_ = select(lanes, next_kink(lanes, F(0)), kink_);
+  }
+
+  /// Where the next piece has to end, as a share of the cell: where g·l changes its sign.
+  F kink() const noexcept { return kink_; }
+  /// The lanes have gone past this share of their cells.
+  void go_past(M lanes, F to) noexcept {
+    const M past = lanes & (to >= kink_ - F(1e-5f)) & (to < F(1));
+    if (any(past)) kink_ = select(past, next_kink(past, to + F(2e-3f)), kink_);
+  }
+
+  /// Bounds the light on a piece, the share [from, to] of its cell.
+  [[gnu::noinline]] LightOfPiece<N> measure(const SpanPiece<float, N>& piece, F from, F to,
+                                            const BinnedTransfer& transfer) const noexcept {
+    LightOfPiece<N> result;
+    result.along = {{restrict_to(gradient_[0], from, to), restrict_to(gradient_[1], from, to),
+                     restrict_to(gradient_[2], from, to)},
+                    {},
+                    F(0),
+                    to_eye_};
+    const Bounds<F> squares = result.along.square();
+    const LitBounds<F> bounds =
+        light_bounds(light_.reflection, light_.light, light_.lights, result.along, squares);
+    // The range of the colors: of the table's within the piece, of light's factors and addends.
+    const F change = min(piece.spread.range, piece.spread.slope * range_of(piece.seen));
+    const F largest = F(transfer.largest_color);
+    const F brightest = largest_component(bounds.upper.factor);
+    const F range = brightest * change +
+                    largest * largest_component(bounds.upper.factor - bounds.lower.factor) +
+                    largest_component(bounds.upper.added - bounds.lower.added);
+    const F flat = F(light_.reflection.flat_square);
+    const F turns = (squares.upper + flat) / max(squares.lower + flat, F(smallest_normal<float>));
+    const M deep = piece.seen.depth > F(8);
+    result.by_three =
+        F(0.5f) * range * select(deep, F(0.5f), error_of_three_nodes(turns, bounds.sharpness));
+    result.by_six =
+        F(0.5f) * range * select(deep, F(0.5f), error_of_six_nodes(turns, bounds.sharpness));
+    result.color_error = brightest * piece.spread.kinks +
+                         color_rounding(light_.reflection, light_.light, light_.lights, squares,
+                                        largest, F(gradient_rounding<float>));
+    return result;
+  }
+
+  /// Returns the color of a piece by Nodes Gauss nodes.
+  template <int Nodes>
+  [[gnu::noinline]] Rgb<F> color(const LightOfPiece<N>& of, const SpanPiece<float, N>& piece,
+                                 const SpanLanes<float, N>& span, M lanes,
+                                 const BinnedTransfer& transfer,
+                                 ColorInterval<F>& known) const noexcept {
+    const ExtinctionInterval<F>& interval = span.extinction;
+    const CubicBernstein<F>& data = piece.parts.front;
+    const detail::PanelNodes<Nodes, F> nodes(piece.length, [&](F u) noexcept {
+      const F value = evaluate(data, u);
+      const Rgb<F> unlit = color_at(
+          transfer, clamp(value, piece.seen.color_lower, piece.seen.color_upper), lanes, known);
+      const Lit<F> lit = light_up(light_.reflection, light_.light, light_.lights, of.along.at(u),
+                                  Vec3<F>{}, to_eye_);
+      const F extinction = max(interval.at_lower + interval.slope * (value - interval.lower), F(0));
+      return Material<F>{extinction, lit.apply(unlit)};
+    });
+    return detail::panel_color(nodes);
+  }
+
+ private:
+  /// Where g·l of any light changes its sign first behind `from`; 2: nowhere.
+  [[gnu::noinline]] F next_kink(M lanes, F from) const noexcept {
+    F nearest(2);
+    from = min(from, F(1));
+    const GradientStretch<F> along{
+        {restrict_to(gradient_[0], from, F(1)), restrict_to(gradient_[1], from, F(1)),
+         restrict_to(gradient_[2], from, F(1))},
+        {},
+        F(0),
+        to_eye_};
+    for (int i = 0; i < light_.lights; ++i) {
+      const CubicBernstein<F> f =
+          along.along(directions(light_.light[i], Vec3<F>{}, to_eye_).light);
+      const F size = max(abs(f.hull_min()), abs(f.hull_max()));
+      const M straddles = lanes & (f.hull_min() < F(0)) & (f.hull_max() > F(0));
+      if (none(straddles)) continue;
+      const M rises = f.b[0] < F(0);
+      const F far = F(4) * size;
+      const PieceEnd<F> end = piece_end(f, select(rises, -far, F(0)), select(rises, F(0), far),
+                                        F(1e-6f) * size, straddles);
+      // An extremum ends a piece too, and the next one begins there.
+      const M ends = straddles & (end.place < F(1));
+      nearest = select(ends, min(nearest, from + (F(1) - from) * end.place), nearest);
+    }
+    return nearest;
+  }
+
+  const PacketLight& light_;
+  GradientLoads<Value, N> loads_;
+  Vec3<F> to_eye_;
+  CubicBernstein<F> gradient_[3];
+  F kink_{2};
+};
+
+}  // namespace pellucid
+#endif

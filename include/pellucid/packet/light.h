@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "pellucid/segment/shading.h"
+
+namespace pellucid {
+
+/// The light of one variable on a grid as packets see it. Plain numbers, the same for every
+/// instruction set.
+struct PacketLight {
+  static constexpr int most_lights = 8;
+
+  Reflection<float> reflection;
+  LightSource<float> light[most_lights];  ///< none is a point light
+  int lights = 0;
+  int of_field = 0;                ///< 1: the gradient of the field itself, else `smooth`
+  float world_gradient[3][3]{};    ///< [c][a]: world component c by grid component a
+  double world_direction[3][3]{};  ///< the same for directions
+};
+
+}  // namespace pellucid

@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "grid_light.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "layers/lit_parts.h"
+#include "pellucid/field/trilinear.h"
+#include "pellucid/render/multivariate_integrator.h"
+
+namespace pellucid {
+namespace {
+
+LightSource<float> in_float(const LightSource<double>& light) {
+  const auto single = [](double x) { return static_cast<float>(x); };
+  LightSource<float> result;
+  result.kind = static_cast<LightSource<float>::Kind>(light.kind);
+  result.place = {single(light.place.x), single(light.place.y), single(light.place.z)};
+  result.color = {single(light.color.r), single(light.color.g), single(light.color.b)};
+  return result;
+}
+
+bool is_moderate_gradient(double x) {
+  return x == 0 || (x > 1e-12 && x < 1e12);
+}
+
+}  // namespace
+
+std::unique_ptr<const GridLight> GridLight::make(const Layer& layer,
+                                                 const std::vector<Light>& lights,
+                                                 const RayTolerance& wanted) {
+  const auto* const content = std::get_if<VolumeContent>(&layer.content);
+  if (content == nullptr || content->mask || !layer.shading || layer.gradient_opacity ||
+      has_surfaces(layer) || wanted.grade == Grade::proved || lights.empty() ||
+      lights.size() > std::size_t{PacketLight::most_lights} ||
+      std::ranges::any_of(lights, [](const Light& light) {
+        return std::holds_alternative<PointLight>(light.kind);
+      })) {
+    return nullptr;
+  }
+  const std::string_view type = type_name(content->volume->data());
+  if (type == "u32" || type == "i32" || type == "f64") return nullptr;
+  const VolumeStatistics& data = content->volume->statistics();
+  const double steepest = (data.maximum - data.minimum) / voxel_of(layer);
+  if (!is_moderate_gradient(steepest) || !is_moderate_gradient(flat_gradient(layer))) {
+    return nullptr;
+  }
+  return std::unique_ptr<const GridLight>(new GridLight(layer, lights, wanted));
+}
+
+GridLight::GridLight(const Layer& layer, const std::vector<Light>& lights,
+                     const RayTolerance& wanted)
+    : volume_(*std::get<VolumeContent>(layer.content).volume),
+      wanted_(wanted),
+      look_(layer),
+      lights_(light_sources(lights)),
+      gradient_(volume_, layer.shading->gradient) {
+  const Reflection<double>& r = *look_.reflection();
+  const auto single = [](double x) { return static_cast<float>(x); };
+  light_.reflection = {single(r.ambient), single(r.diffuse), single(r.specular), single(r.power),
+                       single(r.flat_square)};
+  for (const LightSource<double>& light : lights_) {
+    light_.light[light_.lights++] = in_float(light);
+  }
+  light_.of_field = layer.shading->gradient == GradientKind::field ? 1 : 0;
+  for (int c = 0; c < 3; ++c) {
+    for (int a = 0; a < 3; ++a) {
+      light_.world_gradient[c][a] = single(volume_.grid_from_world().matrix.column[c][a]);
+      light_.world_direction[c][a] = volume_.world_from_grid().matrix.column[a][c];
+    }
+  }
+}
+
+void GridLight::integrate(const StructuredWalk<double>::Step& step, const Ray<double>& world,
+                          const PellucidCell& cell, const TransferTables& transfer,
+                          PellucidCellResult& result) const {
+  const Interval<double> whole{step.t_begin, step.t_end};
+  const double length = whole.end - whole.begin;
+  const Interval<double> range{whole.begin + cell.from * length, whole.end};
+  LayerStretch stretch;
+  stretch.begin = whole.begin;
+  stretch.end = whole.end;
+  stretch.function = 0;
+  stretch.data[0] = volume_.visit([&](const auto& grid) {
+    return trilinear_cubic(grid.template corners<double>(step.cell[0], step.cell[1], step.cell[2]),
+                           step.entry, step.exit);
+  });
+  gradient_.along(step, stretch.gradient);
+  const ChannelTable<double> table{0, transfer.wide};
+  const MultivariateTransfer<double> function = transfer_of(table);
+  LitParts parts(lights_);
+  parts.start(world, range);
+  parts.add(stretch, function, look_);
+  parts.finish();
+  // A bound on the opacity, for which there is an allowance.
+  const CubicBernstein<double>& data = stretch.data[0];
+  const double off = data_rounding(data);
+  const int first = transfer.wide.interval(data.hull_min() - off);
+  const int last = transfer.wide.interval(data.hull_max() + off);
+  const double most = sensitivity(transfer.wide, first, last, off).largest_extinction;
+  const double opacity = std::min(most * (range.end - range.begin), 1.0);
+  RayTolerance wanted = wanted_;
+  wanted.tolerance = std::max(cell.allowance_per_opacity * opacity + cell.allowance_flat, 1e-12);
+  MultivariateRayIntegrator integrator(function, most, wanted, range.end - range.begin);
+  parts.for_each_piece([&](const LitParts::Piece& piece, Interval<double> part, bool is_at_end) {
+    const double share = is_at_end ? 1 : piece.last - piece.first;
+    integrator.add_panels(piece, part, 0, share * cell.position_error);
+    return !integrator.done();
+  });
+  const RayResult found = integrator.result();
+  result = {found.optical_depth,
+            found.opacity,
+            std::exp(-found.optical_depth),
+            {found.radiance.r, found.radiance.g, found.radiance.b},
+            found.error,
+            opacity,
+            static_cast<std::uint8_t>(found.proved),
+            1};
+}
+
+}  // namespace pellucid

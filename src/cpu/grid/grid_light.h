@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <vector>
+
+#include "layers/grid_gradient.h"
+#include "layers/layer_look.h"
+#include "pellucid/packet/interface.h"
+#include "pellucid/packet/light.h"
+#include "pellucid/render/integrate_cell.h"
+#include "pellucid/scene/scene.h"
+
+namespace pellucid {
+
+/// The light of a volume as packets see it, and cells that packets hand back.
+class GridLight {
+ public:
+  /// Null where packets have no light for the layer: gradient opacity, surfaces, point lights, more
+  /// lights than they hold, data that binary32 does not hold, proofs. All that is given must
+  /// outlive the object.
+  static std::unique_ptr<const GridLight> make(const Layer& layer, const std::vector<Light>& lights,
+                                               const RayTolerance& wanted);
+
+  const PacketLight& view() const noexcept { return light_; }
+  /// Integrates a part of a cell. `step`: the ray's way through it; `world`: the ray.
+  void integrate(const StructuredWalk<double>::Step& step, const Ray<double>& world,
+                 const PellucidCell& cell, const TransferTables& transfer,
+                 PellucidCellResult& result) const;
+
+ private:
+  GridLight(const Layer& layer, const std::vector<Light>& lights, const RayTolerance& wanted);
+
+  const Volume& volume_;
+  RayTolerance wanted_;
+  LayerLook look_;
+  std::vector<LightSource<double>> lights_;
+  GridGradient gradient_;
+  PacketLight light_;
+};
+
+}  // namespace pellucid
