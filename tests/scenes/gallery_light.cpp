@@ -217,6 +217,7 @@ Gallery light_gallery() {
     if (n == 3) break;
     entries.push_back(scan(data, values[n++]));
   }
+  for (GalleryEntry& entry : entries) entry.least_proved = 1e-3;
   return entries;
 }
 

@@ -29,7 +29,7 @@ std::string test_name(const std::string& name) {
 
 class ToleranceMatrix : public testing::TestWithParam<GalleryEntry> {};
 
-void expect_kept(const MatrixRow& row, double least_tolerance) {
+void expect_kept(const MatrixRow& row, double least_tolerance, double least_proved) {
   EXPECT_GT(row.brightest, 0) << row.camera << ": there is nothing to see, so nothing is tested";
   for (const MatrixCell& cell : row.cells) {
     const Verdict& verdict = cell.verdict;
@@ -39,7 +39,9 @@ void expect_kept(const MatrixRow& row, double least_tolerance) {
                 cell.evaluations_per_ray());
     EXPECT_TRUE(verdict.kept()) << where << ", tolerance " << cell.tolerance << ": "
                                 << verdict.text();
-    if (cell.tolerance >= least_tolerance) {
+    // Where proofs are of the first order, a ray may give up.
+    const bool may_give_up = cell.grade == Grade::proved && least_proved > 0;
+    if (cell.tolerance >= least_tolerance && !may_give_up) {
       EXPECT_EQ(verdict.said_over, 0)
           << where << ", tolerance " << cell.tolerance << ": " << verdict.text();
     }
@@ -64,10 +66,12 @@ TEST_P(ToleranceMatrix, NoPixelIsOver) {
   options.tolerances.assign(std::begin(quick_tolerances), std::end(quick_tolerances));
   options.size = 16;
   options.sampling = false;
+  options.least_proved = entry.least_proved;
   const Exhibit exhibit = entry.make(options.size);
   ASSERT_EQ(exhibit.cameras.size(), 3u);
   for (std::size_t camera = 0; camera < 3; ++camera) {
-    expect_kept(measure_row(entry.name, exhibit, camera, options), entry.least_tolerance);
+    expect_kept(measure_row(entry.name, exhibit, camera, options), entry.least_tolerance,
+                entry.least_proved);
   }
 }
 

@@ -54,6 +54,7 @@ MatrixRow measure_row(const std::string& name, const Exhibit& exhibit, std::size
   render_options.error = true;
   for (const double tolerance : options.tolerances) {
     for (const Grade grade : {Grade::estimated, Grade::proved}) {
+      if (grade == Grade::proved && tolerance < options.least_proved) continue;
       scene.integration = {};
       scene.integration.tolerance = tolerance;
       scene.integration.grade = grade;

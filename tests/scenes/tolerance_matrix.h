@@ -37,6 +37,7 @@ struct MatrixOptions {
   int threads = 1;
   bool sampling = true;         ///< fill MatrixRow::sampling_…
   std::filesystem::path cache;  ///< of reference frames; empty: none
+  double least_proved = 0;      ///< tolerance of the grade `proved`
 };
 
 /// Renders an exhibit from one of its cameras to every tolerance in both grades, and judges.
