@@ -19,7 +19,8 @@ int list_presets(bool json) {
     for (const Preset& preset : presets()) {
       list.push_back({{"name", preset.name},
                       {"description", preset.description},
-                      {"hounsfield", preset.hounsfield}});
+                      {"hounsfield", preset.hounsfield},
+                      {"lit", preset.lit}});
     }
     print_json(list);
     return 0;

@@ -45,7 +45,12 @@ void set_transfer_function(const RenderArguments& arguments, SceneDescription& d
       throw UsageError(
           "--preset: presets are for one variable, but there are channels; drop one of the two");
     }
-    description.layers.front().transfer_function = preset;
+    LayerDescription& layer = description.layers.front();
+    layer.transfer_function = preset;
+    const bool exact = description.integration.method == Method::exact &&
+                       (arguments.method.empty() || arguments.method == "exact");
+    const bool may_be_lit = exact && !layer.projection && arguments.projection.empty();
+    if (find_preset(arguments.preset)->lit && may_be_lit && !layer.shading) layer.shading.emplace();
     return;
   }
   const std::string text = file.empty() ? "" : read_text_file(file);
