@@ -69,9 +69,11 @@ std::vector<scenes::MatrixRow> measure(const Arguments& arguments,
       continue;
     }
     const scenes::Exhibit exhibit = entry.make(arguments.matrix.size);
+    scenes::MatrixOptions matrix = arguments.matrix;
+    matrix.least_proved = entry.least_proved;
     for (std::size_t c = 0; c < exhibit.cameras.size(); ++c) {
       std::fprintf(stderr, "%s, %s\n", entry.name.c_str(), exhibit.cameras[c].name.c_str());
-      rows.push_back(scenes::measure_row(entry.name, exhibit, c, arguments.matrix));
+      rows.push_back(scenes::measure_row(entry.name, exhibit, c, matrix));
       std::fprintf(stderr, "%s", bench::violations({rows.back()}).c_str());
     }
   }

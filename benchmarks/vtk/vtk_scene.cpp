@@ -13,6 +13,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "tests/support/one_layer.h"
 
@@ -95,6 +96,13 @@ vtkSmartPointer<vtkVolume> vtk_volume(const Scene& scene, vtkVolumeMapper* mappe
   property->SetScalarOpacityUnitDistance(unit);
   property->SetInterpolationTypeToLinear();
   property->ShadeOff();
+  if (const std::optional<Shading>& shading = scene.layers.front().shading) {
+    property->ShadeOn();
+    property->SetAmbient(shading->ambient);
+    property->SetDiffuse(shading->diffuse);
+    property->SetSpecular(shading->specular);
+    property->SetSpecularPower(shading->power);
+  }
 
   const GridPlacement& placement = test::volume_of(scene).volume->description().placement;
   vtkNew<vtkMatrix4x4> matrix;
