@@ -15,8 +15,8 @@
 #include "pellucid/io/atomic_file.h"
 #include "pellucid/io/image_files.h"
 #include "pellucid/scene/labels.h"
+#include "pellucid/scene/view_camera.h"
 #include "render.h"
-#include "view.h"
 
 namespace pellucid::cli {
 
