@@ -55,15 +55,6 @@ bool shows_surfaces(const LayerDescription& description) {
   return !description.isosurfaces.empty() || !description.slices.empty();
 }
 
-/// Grey from black at the least value to white at the largest, and transparent.
-template <class Data>
-TransferFunction grey_colors(const Data& data) {
-  std::vector<TransferFunction::Point> points =
-      projection_transfer_function(data, LayerProjection::maximum).points();
-  for (TransferFunction::Point& point : points) point.extinction = 0;
-  return TransferFunction(std::move(points));
-}
-
 /// Of a layer of one variable. Without a function between surfaces it is transparent; slices
 /// without colors take its own.
 template <class Data>
