@@ -8,6 +8,7 @@
 #include <string_view>
 #include <utility>
 
+#include "components.h"
 #include "volume_source.h"
 
 namespace pellucid::python {
@@ -107,7 +108,7 @@ VolumeData copied_values(const py::array& array, const StoredType& stored, const
       stored.type, stored.big_endian, 0, 1, false, [&notes](const std::string& t) { notes(t); }};
   const auto count = static_cast<std::size_t>(dense.size());
   const py::gil_scoped_release released;
-  return read_values(memory_source(bytes, name), layout, count);
+  return std::move(read_components(memory_source(bytes, name), layout, count, {0, 1}).front());
 }
 
 /// Whether the axes, the fastest first, lie in memory without gaps. Axes of one entry do not count.

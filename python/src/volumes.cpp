@@ -11,6 +11,7 @@
 #include "pellucid/io/write_volume.h"
 #include "pellucid/scene/builtin_fields.h"
 #include "pellucid/scene/derived_channels.h"
+#include "volume_axes.h"
 
 namespace pellucid::python {
 
@@ -53,15 +54,20 @@ VolumeHandle make_volume(const py::object& data, const py::object& spacing,
     *spacing_of_grid[g] = step[a];
     const auto row = [&](py::ssize_t r) { return directions.at(r, static_cast<py::ssize_t>(a)); };
     description.placement.direction.column[g] = {row(2), row(1), row(0)};
-    if (const py::object positions = axes[a]; !positions.is_none()) {
-      const auto list = doubles_of(positions, 0, "coordinates");
-      description.coordinates[g].assign(list.data(), list.data() + list.size());
-    }
   }
   description.placement.origin = from_zyx(placed.attr("origin"), "origin");
   description.centering = py::cast<std::string>(placed.attr("centering")) == "cell"
                               ? Centering::cell
                               : Centering::point;
+  for (std::size_t g = 0; g < 3; ++g) {
+    const py::object positions = axes[values.axes[g]];
+    if (positions.is_none()) continue;
+    const bool is_single = py::isinstance<py::array_t<float>>(positions);
+    const auto list = doubles_of(positions, 0, "coordinates");
+    place_axis(description, static_cast<int>(g),
+               std::vector<double>(list.data(), list.data() + list.size()),
+               is_single ? 0x1p-24 : 0x1p-53);
+  }
   notes.warn();
   VolumeHandle handle;
   handle.axes = values.axes;

@@ -27,7 +27,7 @@ class Program:
     def render(self, *arguments):
         """Returns its picture of SIZE pixels, with error and depth."""
         path = self.folder / "program.exr"
-        self("render", *arguments, "--size", f"{SIZE},{SIZE}", "-o", path, "--quiet")
+        self("render", *arguments, "--size", f"{SIZE}x{SIZE}", "-o", path, "--quiet")
         return pellucid.read_image(path)
 
 

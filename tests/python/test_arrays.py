@@ -189,7 +189,7 @@ def test_rectilinear_axes():
     volume = pellucid.Volume(smooth(), coordinates=(z, None, None), spacing=None)
     assert numpy.array_equal(volume.coordinates[0], z)
     assert volume.coordinates[1] is None
-    uniform = pellucid.Volume(smooth(), coordinates=(z[:0].tolist() or list(range(7)), None, None))
+    uniform = pellucid.Volume(smooth(), coordinates=(list(range(7)), None, None))
     assert uniform.coordinates == (None, None, None) and uniform.spacing == (1, 1, 1)
     descending = pellucid.Volume(smooth(), coordinates=(-z, None, None))
     assert numpy.array(descending.corners)[:, 2].min() == -9
