@@ -132,7 +132,7 @@ class ClipBox:
 
 @dataclass
 class ClipSphere:
-    """A ball."""
+    """A ball, kept or cut away."""
 
     center: Vector = (0.0, 0.0, 0.0)
     radius: float = 1.0

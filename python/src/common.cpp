@@ -84,7 +84,7 @@ void Notes::warn() {
   const py::object category = py::module_::import("pellucid._notes").attr("Note");
   const std::vector<std::string> texts = std::move(texts_);
   for (const std::string& text : texts) {
-    if (PyErr_WarnEx(category.ptr(), text.c_str(), 2) != 0) throw py::error_already_set();
+    if (PyErr_WarnEx(category.ptr(), text.c_str(), 1) != 0) throw py::error_already_set();
   }
 }
 

@@ -84,11 +84,12 @@ MeshHandle read_mesh_source(MeshSource source) {
 
 MeshHandle read_mesh_file(const std::filesystem::path& path,
                           const std::vector<std::string>& channels,
-                          const std::optional<double>& time, const std::filesystem::path& q) {
+                          const std::optional<double>& time,
+                          const std::optional<std::filesystem::path>& q) {
   MeshSource source;
   source.file = path;
   source.options.time = time;
-  source.options.q = q;
+  if (q) source.options.q = *q;
   for (const std::string& text : channels) source.channels.push_back(parse_mesh_array(text));
   return read_mesh_source(std::move(source));
 }
@@ -225,7 +226,7 @@ for raw data. spacing and origin (z, y, x) and centering replace the file's. War
 assumed. Raises Error: what, where, what to do.)");
   module.def("read_mesh", &read_mesh_file, py::arg("path"), py::kw_only(),
              py::arg("channels") = std::vector<std::string>(), py::arg("time") = py::none(),
-             py::arg("q") = std::filesystem::path(), R"(
+             py::arg("q") = py::none(), R"(
 Reads a mesh file: VTK (.vtu, .pvtu, .vts, .vtm, .vtk, .pvd, .vtkhdf), Exodus, PLOT3D.
 
 channels are the arrays to show, "ARRAY", "ARRAY:C" or "NAME=ARRAY"; default: the active scalars.

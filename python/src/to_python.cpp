@@ -25,19 +25,20 @@ class Maker {
   }
 
   py::object clip(const Clip& clip) const {
-    const py::arg_v keep = py::arg("keep") = clip.keep_inside ? "inside" : "outside";
+    const std::string keep = clip.keep_inside ? "inside" : "outside";
     if (const auto* const plane = std::get_if<ClipPlane>(&clip.shape)) {
-      return of("ClipPlane")(to_tuple(plane->point), to_tuple(plane->normal), keep);
+      return of("ClipPlane")(to_tuple(plane->point), to_tuple(plane->normal),
+                             py::arg("keep") = keep);
     }
     if (const auto* const box = std::get_if<ClipBox>(&clip.shape)) {
-      return of("ClipBox")(to_tuple(box->lower), to_tuple(box->upper), keep);
+      return of("ClipBox")(to_tuple(box->lower), to_tuple(box->upper), py::arg("keep") = keep);
     }
     if (const auto* const sphere = std::get_if<ClipSphere>(&clip.shape)) {
-      return of("ClipSphere")(to_tuple(sphere->center), sphere->radius, keep);
+      return of("ClipSphere")(to_tuple(sphere->center), sphere->radius, py::arg("keep") = keep);
     }
     const auto& cylinder = std::get<ClipCylinder>(clip.shape);
     return of("ClipCylinder")(to_tuple(cylinder.start), to_tuple(cylinder.end), cylinder.radius,
-                              keep);
+                              py::arg("keep") = keep);
   }
 
   py::object integration(const Integration& integration) const {
