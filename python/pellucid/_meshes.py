@@ -159,7 +159,8 @@ def _vtk_cells(grid: Any) -> tuple[numpy.ndarray, numpy.ndarray, numpy.ndarray]:
     if grid.IsA("vtkStructuredGrid"):
         x, y, z = grid.GetDimensions()
         if min(x, y, z) < 2:
-            raise Error("vtkStructuredGrid: an axis has a single point, so that no cell has a volume")
+            raise Error("vtkStructuredGrid: an axis has a single point, so that no cell has a "
+                        "volume")
         index = numpy.arange(x * y * z, dtype=numpy.int64).reshape(z, y, x)
         corner = index[:-1, :-1, :-1].ravel()[:, numpy.newaxis]
         square = numpy.array([0, 1, 1 + x, x])

@@ -108,7 +108,7 @@ def _linear(extinction_f, extinction_b, color_f, color_b, length, independent) -
 
 def piecewise_linear_segment(transfer_function: TransferFunction, value_f, value_b,
                              length) -> Segments:
-    """Returns segments of data that are linear from value_f to value_b, through a transfer function.
+    """Returns segments of data that are linear from value_f to value_b.
 
     Exact at every control point between the two. Largest error: 16 u * opacity for at most 16
     control points between the values.

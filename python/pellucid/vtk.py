@@ -233,7 +233,8 @@ def _curve_of(function: Any) -> Curve:
 
 def _color_curve(look: Any) -> Curve:
     if look.GetColorChannels(0) == 1:
-        return [(x, numpy.repeat(grey, 3)) for x, grey in _curve_of(look.GetGrayTransferFunction(0))]
+        grey = _curve_of(look.GetGrayTransferFunction(0))
+        return [(x, numpy.repeat(value, 3)) for x, value in grey]
     function = look.GetRGBTransferFunction(0)
     nodes = []
     for i in range(function.GetSize()):
@@ -341,7 +342,8 @@ def _picture(window: Any, renderer: Any) -> numpy.ndarray:
                     "vtkmodules.vtkRenderingOpenGL2 before it is made")
     hidden = [prop for prop in _items(renderer.GetViewProps())
               if not _is_a(prop, "vtkVolume") and prop.GetVisibility()]
-    colors = renderer.GetBackground(), renderer.GetBackgroundAlpha(), renderer.GetGradientBackground()
+    colors = (renderer.GetBackground(), renderer.GetBackgroundAlpha(),
+              renderer.GetGradientBackground())
     for prop in hidden:
         prop.SetVisibility(False)
     renderer.SetBackground(0, 0, 0)
