@@ -12,6 +12,14 @@ from conftest import assert_same_bits, render, smooth
 BRAIN = "/usr/share/mricron/templates/ch2.nii.gz"
 
 
+def assert_same_place(data, path):
+    """A camera that shows everything moves with the data: pictures do not tell where they are."""
+    volume, expected = pellucid.Volume(data), pellucid.read(path)
+    assert volume.shape == expected.shape and volume.centering == expected.centering
+    assert volume.origin == expected.origin and volume.spacing == expected.spacing
+    assert numpy.array_equal(volume.direction, expected.direction)
+
+
 def oblique():
     """RAS, with spacings 1, 2, 3, turned about two axes."""
     c, s = numpy.cos(0.3), numpy.sin(0.3)
@@ -37,6 +45,7 @@ def test_nibabel(program, tmp_path, kind, slope):
         path.write_bytes(bytes(content))
     loaded = nibabel.load(path)
     assert_same_bits(render(loaded), program.render(path))
+    assert_same_place(loaded, path)
     assert_same_bits(render(pellucid.read(path)), program.render(path))
 
 
@@ -93,6 +102,7 @@ def test_itk(program, tmp_path, monkeypatch):
     path = tmp_path / "a.nrrd"
     volume.write(path)
     assert_same_bits(render(volume), program.render(path))
+    assert_same_place(FakeITK(values), path)
     # Index x goes along world y: column 0 of the direction, read as (x, y, z), is (0, 1, 0).
     assert numpy.array_equal(volume.direction[:, 2], (0, 1, 0))
 
@@ -159,6 +169,7 @@ def test_vtk_images(vtk, program, tmp_path, cells):
     scalars(vtk, image, values, cells)
     path = write(vtk.vtkXMLImageDataWriter(), image, tmp_path / "a.vti")
     assert_same_bits(render(image), program.render(path))
+    assert_same_place(image, path)
 
 
 def test_vtk_images_are_not_copied(vtk):
@@ -183,6 +194,7 @@ def test_vtk_rectilinear_grids(vtk, program, tmp_path):
         getattr(grid, f"Set{name}Coordinates")(numpy_to_vtk(numpy.arange(side) ** 1.5, deep=True))
     scalars(vtk, grid, values)
     path = write(vtk.vtkXMLRectilinearGridWriter(), grid, tmp_path / "a.vtr")
+    assert_same_place(grid, path)
     assert_same_bits(render(grid), program.render(path))
 
 

@@ -29,6 +29,23 @@ def test_all_forms_of_cells_are_one():
     assert same(pellucid.Mesh(POINTS.astype("f4"), CELLS, {"v": VALUES.astype(">f4")}), expected)
 
 
+@pytest.mark.parametrize("kind, points, volume", [
+    ("tetra", [(0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, 1)], 1 / 6),
+    ("pyramid", [(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0), (0.5, 0.5, 1)], 1 / 3),
+    ("wedge", [(0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, 1), (1, 0, 1), (0, 1, 1)], 1 / 2),
+    ("hexahedron", [(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0),
+                    (0, 0, 1), (1, 0, 1), (1, 1, 1), (0, 1, 1)], 1),
+    ("voxel", [(x, y, z) for z in (0, 1) for y in (0, 1) for x in (0, 1)], 1),
+])
+def test_names_of_cells(kind, points, volume):
+    cells = numpy.arange(len(points))[numpy.newaxis]
+    mesh = pellucid.Mesh(points, {kind: cells}, {"v": numpy.arange(len(points))})
+    assert mesh.statistics["volume"] == pytest.approx(volume, rel=1e-14)
+    assert mesh.statistics["overlapping_cells"] == 0
+    if kind != "voxel":  # which a bare array of 8 columns is not
+        assert same(pellucid.Mesh(points, cells, {"v": numpy.arange(len(points))}), mesh)
+
+
 def test_meshio_by_what_it_offers():
     blocks = [types.SimpleNamespace(type="tetra", data=CELLS)]
     mesh = types.SimpleNamespace(points=POINTS, cells=blocks, point_data={"v": VALUES},
