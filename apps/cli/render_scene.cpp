@@ -358,10 +358,6 @@ std::vector<NamedFile> data_files(const SceneDescription& description) {
   return files;
 }
 
-bool shows_surfaces(const LayerDescription& layer) {
-  return !layer.isosurfaces.empty() || !layer.slices.empty();
-}
-
 /// Of the volumes of a layer that come from files and are shown as fields.
 void find_labels(const Layer& layer, const LayerDescription& description, const std::string& prefix,
                  PreparedScene& prepared) {
@@ -462,7 +458,7 @@ PreparedScene prepare(const RenderArguments& arguments) {
                                     : !arguments.preset.empty()    ? "--preset " + arguments.preset
                                     : !arguments.gaussians.empty() ? "--gaussian"
                                     : description.layers.front().transfer_function ? arguments.input
-                                    : shows_surfaces(description.layers.front())   ? "none"
+                                    : description.layers.front().shows_surfaces()  ? "none"
                                                                                    : "default";
   SceneDescription rendered = description;
   if (arguments.reference && integration.tolerance > reference_tolerance) {

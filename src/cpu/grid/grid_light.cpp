@@ -102,11 +102,7 @@ void GridLight::integrate(const StructuredWalk<double>::Step& step, const Ray<do
   RayTolerance wanted = wanted_;
   wanted.tolerance = std::max(cell.allowance_per_opacity * opacity + cell.allowance_flat, 1e-12);
   MultivariateRayIntegrator integrator(function, most, wanted, range.end - range.begin);
-  parts.for_each_piece([&](const LitParts::Piece& piece, Interval<double> part, bool is_at_end) {
-    const double share = is_at_end ? 1 : piece.last - piece.first;
-    integrator.add_panels(piece, part, 0, share * cell.position_error);
-    return !integrator.done();
-  });
+  parts.integrate(0, cell.position_error, integrator);
   const RayResult found = integrator.result();
   result = {found.optical_depth,
             found.opacity,

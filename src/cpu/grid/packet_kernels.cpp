@@ -6,24 +6,9 @@
 #include "pellucid/simd/flush_to_zero.h"
 #include "pellucid/simd/instruction_set.h"
 
-namespace {
-
-template <class Value>
-void run(const PellucidPacketJob& job) {
-  constexpr int lanes = PELLUCID_LANES;
-  using Integrator = pellucid::PacketIntegrator<Value, lanes>;
-  const pellucid::PacketGrid<Value> grid(job);
-  typename Integrator::Room room;
-  for (int first = 0; first < job.count; first += lanes) {
-    Integrator packet(job, grid, room, first, pellucid::min(lanes, job.count - first));
-    packet.run();
-    packet.store(job.results);
-  }
-}
-
-}  // namespace
-
 extern "C" void PELLUCID_ENTRY(pellucid_integrate_packets)(const PellucidPacketJob* job) {
   const pellucid::FlushToZero mode;
-  pellucid::with_value_type(job->type, [job](auto value) { run<decltype(value)>(*job); });
+  pellucid::with_value_type(job->type, [job](auto value) {
+    pellucid::integrate_packets<decltype(value), PELLUCID_LANES, false>(*job);
+  });
 }

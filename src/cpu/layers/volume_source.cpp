@@ -184,6 +184,7 @@ class VolumeStream : public GridStream {
     stretch.position_error = 2 * grid_position_error(part.t_end);
     const double from = (part.t_begin - begin_) / length, to = (part.t_end - begin_) / length;
     stretch.data[0] = restrict_to(span_.data[0], from, to);
+    if (!source_.look().is_lit()) return;
     for (int a = 0; a < 3; ++a) stretch.gradient[a] = restrict_to(whole_.gradient[a], from, to);
     stretch.magnitude = restrict_to(whole_.magnitude, from, to);
   }

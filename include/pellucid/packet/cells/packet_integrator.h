@@ -526,5 +526,18 @@ class PacketIntegrator {
   I strides_, samples_taken_;
 };
 
+/// Integrates the rays of a job, packet after packet.
+template <class Value, int N, bool is_lit>
+void integrate_packets(const PellucidPacketJob& job) noexcept {
+  using Integrator = PacketIntegrator<Value, N, is_lit>;
+  const PacketGrid<Value> grid(job);
+  typename Integrator::Room room;
+  for (int first = 0; first < job.count; first += N) {
+    Integrator packet(job, grid, room, first, min(N, job.count - first));
+    packet.run();
+    packet.store(job.results);
+  }
+}
+
 }  // namespace pellucid
 #endif
