@@ -3,6 +3,7 @@
 // Compiled once per instruction set, with namespace pellucid under a name of its own
 // (cmake/PellucidInstructionSets.cmake).
 #include "pellucid/packet/cells/packet_integrator.h"
+#include "pellucid/packet/cells/run_packets.h"
 #include "pellucid/simd/flush_to_zero.h"
 #include "pellucid/simd/instruction_set.h"
 
@@ -11,7 +12,7 @@ extern "C" void PELLUCID_ENTRY(pellucid_integrate_lit_packets)(const PellucidPac
   pellucid::with_value_type(job->type, [job](auto value) {
     using Value = decltype(value);
     if constexpr (std::is_same_v<Value, float> || sizeof(Value) <= 2) {
-      pellucid::integrate_packets<Value, PELLUCID_LANES, true>(*job);
+      pellucid::run_packets<pellucid::PacketIntegrator<Value, PELLUCID_LANES, true>>(*job);
     }
   });
 }

@@ -3,12 +3,13 @@
 // Compiled once per instruction set, with namespace pellucid under a name of its own
 // (cmake/PellucidInstructionSets.cmake).
 #include "pellucid/packet/cells/packet_integrator.h"
+#include "pellucid/packet/cells/run_packets.h"
 #include "pellucid/simd/flush_to_zero.h"
 #include "pellucid/simd/instruction_set.h"
 
 extern "C" void PELLUCID_ENTRY(pellucid_integrate_packets)(const PellucidPacketJob* job) {
   const pellucid::FlushToZero mode;
   pellucid::with_value_type(job->type, [job](auto value) {
-    pellucid::integrate_packets<decltype(value), PELLUCID_LANES, false>(*job);
+    pellucid::run_packets<pellucid::PacketIntegrator<decltype(value), PELLUCID_LANES>>(*job);
   });
 }
