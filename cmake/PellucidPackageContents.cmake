@@ -61,7 +61,8 @@ file(CHMOD_RECURSE "${usr}" DIRECTORY_PERMISSIONS
   OWNER_READ OWNER_WRITE OWNER_EXECUTE GROUP_READ GROUP_EXECUTE WORLD_READ WORLD_EXECUTE)
 
 # What the program needs stands in Depends; what its modules need beside, in Recommends.
-file(GLOB modules "${usr}/${CPACK_PELLUCID_LIBDIR}/pellucid/*.so")
+file(GLOB modules "${usr}/${CPACK_PELLUCID_LIBDIR}/pellucid/*.so"
+  "${usr}/lib/python3/dist-packages/pellucid/*.so")
 list(TRANSFORM modules PREPEND -e OUTPUT_VARIABLE module_arguments)
 file(WRITE "${work}/debian/control" "Source: pellucid\n\nPackage: pellucid\nArchitecture: any\n")
 execute_process(
@@ -81,6 +82,9 @@ foreach(field IN ITEMS Depends Recommends)
   string(TOUPPER "${field}" upper)
   set(CPACK_DEBIAN_PACKAGE_${upper} "${packages}")
 endforeach()
+if(EXISTS "${usr}/lib/python3/dist-packages/pellucid")
+  string(APPEND CPACK_DEBIAN_PACKAGE_RECOMMENDS ", python3-numpy")
+endif()
 
 # What a program needs that links the static libraries, from the one list of packages.
 file(READ "${CPACK_PELLUCID_SOURCE_DIR}/scripts/install-packages" lists)

@@ -6,12 +6,12 @@
 #include <string>
 
 #include "commands.h"
-#include "difference.h"
 #include "output.h"
 #include "overwriting.h"
 #include "parse.h"
 #include "pellucid/base/version.h"
 #include "pellucid/io/image_files.h"
+#include "pellucid/scene/image_difference.h"
 
 namespace pellucid::cli {
 

@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
+#include "pellucid/scene/view_camera.h"
 #include "render.h"
-#include "view.h"
 
 namespace pellucid::cli {
 

@@ -16,8 +16,8 @@
 #include "pellucid/io/image_files.h"
 #include "pellucid/scene/defaults.h"
 #include "pellucid/scene/labels.h"
+#include "pellucid/scene/view_camera.h"
 #include "render.h"
-#include "view.h"
 
 namespace pellucid::cli {
 

@@ -24,13 +24,28 @@ namespace {
 #define PELLUCID_MODULES_PACKAGED ""
 #endif
 
-std::array<fs::path, 4> folders() {
+/// Returns the folder of the shared object that holds this code; empty if it is the program.
+fs::path folder_of_object(const fs::path& program) {
+  Dl_info info{};
+  std::error_code error;
+  if (dladdr(reinterpret_cast<const void*>(&loading_modules), &info) == 0) return {};
+  const fs::path object = fs::canonical(info.dli_fname, error);
+  return error || object == program ? fs::path() : object.parent_path();
+}
+
+std::array<fs::path, 6> folders() {
   const char* const named = std::getenv("PELLUCID_MODULES");
   std::error_code error;
   const fs::path program = fs::read_symlink("/proc/self/exe", error);
+  const fs::path object = folder_of_object(program);
+  // The Python module is lib/python3.N/dist-packages/pellucid/_pellucid.so of an installation, or
+  // has the modules below it in a wheel.
   return {named == nullptr ? fs::path() : fs::path(named),
+          object.empty() ? fs::path() : object / "modules",
+          object.empty() ? fs::path() : object / "../../../pellucid",
           program.empty() ? fs::path() : program.parent_path() / PELLUCID_MODULES_FROM_PROGRAM,
-          PELLUCID_MODULES_INSTALLED, PELLUCID_MODULES_PACKAGED};
+          PELLUCID_MODULES_INSTALLED,
+          PELLUCID_MODULES_PACKAGED};
 }
 
 }  // namespace

@@ -15,8 +15,9 @@ struct Module {
 };
 
 /// Finds the module's file: in the folder that the environment variable PELLUCID_MODULES names,
-/// then where an installation has it as seen from the program, then where this library was to be
-/// installed, then where the Debian package has it. Throws Error where it is in none of them.
+/// then where an installation has it as seen from the shared object that holds this code, and from
+/// the program, then where this library was to be installed, then where the Debian package has it.
+/// Throws Error where it is in none of them.
 std::filesystem::path module_file(const Module& module);
 
 /// A function of the module, loaded by the first call and kept, never unloaded: what it read is

@@ -7,7 +7,10 @@
 #include <csetjmp>
 #include <cstdint>
 #include <cstdio>
+#include <cstdlib>
 #include <map>
+#include <memory>
+#include <new>
 #include <string>
 #include <vector>
 
@@ -20,9 +23,14 @@ namespace pellucid {
 
 namespace {
 
+// Returns 0 for NaN.
+double in_unit_range(double x) {
+  return x > 0 ? std::min(x, 1.0) : 0;
+}
+
 // IEC 61966-2-1: linear light to the sRGB signal, 8 bits, rounded to nearest.
-std::uint8_t to_srgb8(double linear) {
-  const double x = std::clamp(linear, 0.0, 1.0);
+std::uint8_t signal8(double linear) {
+  const double x = in_unit_range(linear);
   const double signal = x <= 0.0031308 ? 12.92 * x : 1.055 * std::pow(x, 1 / 2.4) - 0.055;
   return static_cast<std::uint8_t>(std::lround(255 * signal));
 }
@@ -30,19 +38,19 @@ std::uint8_t to_srgb8(double linear) {
 // Straight alpha: the signal is of color, not of premultiplied radiance. Without opacity there is
 // no color to speak of.
 void encode_transparent(const std::array<float, 4>& pixel, std::uint8_t* out) {
-  const double alpha = std::clamp(static_cast<double>(pixel[3]), 0.0, 1.0);
+  const double alpha = in_unit_range(static_cast<double>(pixel[3]));
   for (std::size_t c = 0; c < 3; ++c) {
-    out[c] = alpha > 0 ? to_srgb8(static_cast<double>(pixel[c]) / alpha) : std::uint8_t{0};
+    out[c] = alpha > 0 ? signal8(static_cast<double>(pixel[c]) / alpha) : std::uint8_t{0};
   }
   out[3] = static_cast<std::uint8_t>(std::lround(255 * alpha));
 }
 
 void encode_over(const std::array<float, 4>& pixel, const Rgb<double>& background,
                  std::uint8_t* out) {
-  const double transparency = 1 - std::clamp(static_cast<double>(pixel[3]), 0.0, 1.0);
-  out[0] = to_srgb8(static_cast<double>(pixel[0]) + transparency * background.r);
-  out[1] = to_srgb8(static_cast<double>(pixel[1]) + transparency * background.g);
-  out[2] = to_srgb8(static_cast<double>(pixel[2]) + transparency * background.b);
+  const double transparency = 1 - in_unit_range(static_cast<double>(pixel[3]));
+  out[0] = signal8(static_cast<double>(pixel[0]) + transparency * background.r);
+  out[1] = signal8(static_cast<double>(pixel[1]) + transparency * background.g);
+  out[2] = signal8(static_cast<double>(pixel[2]) + transparency * background.b);
 }
 
 // What libpng is given, with nothing in it that it could not be torn away from.
@@ -88,28 +96,24 @@ bool write_with_libpng(std::FILE* file, const PngContent& content, Failure& fail
   return true;
 }
 
-}  // namespace
-
-void write_png(const Image& image, const std::filesystem::path& path,
-               const std::optional<Rgb<double>>& background) {
+/// Throws Error where the image or the background cannot be written.
+void check_picture(const Image& image, const std::filesystem::path& path,
+                   const std::optional<Rgb<double>>& background) {
   check_image(image, path);
   check_finite(image, path);
   if (background && !(std::isfinite(background->r) && std::isfinite(background->g) &&
                       std::isfinite(background->b))) {
     throw Error(path.string() + ": cannot write: the background is not a finite color");
   }
-  AtomicFile file(path);
+}
+
+/// Writes a checked picture. Returns false where libpng fails.
+bool write_stream(std::FILE* stream, const Image& image,
+                  const std::optional<Rgb<double>>& background, Failure& failure) {
+  std::vector<std::uint8_t> bytes = to_srgb8(image, background);
   const std::size_t width = static_cast<std::size_t>(image.width);
   const std::size_t height = static_cast<std::size_t>(image.height);
   const std::size_t channels = background ? 3 : 4;
-  std::vector<std::uint8_t> bytes(width * height * channels);
-  for (std::size_t i = 0; i < width * height; ++i) {
-    if (background) {
-      encode_over(image.pixels[i], *background, &bytes[i * channels]);
-    } else {
-      encode_transparent(image.pixels[i], &bytes[i * channels]);
-    }
-  }
   std::vector<png_bytep> rows(height);
   for (std::size_t y = 0; y < height; ++y) rows[y] = &bytes[y * width * channels];
 
@@ -123,20 +127,57 @@ void write_png(const Image& image, const std::filesystem::path& path,
     entry.itxt_length = value.size();
     text.push_back(entry);
   }
-
-  Failure failure;
-  std::FILE* stream = std::fopen(file.temporary_path().c_str(), "wb");
-  if (stream == nullptr) throw Error(path.string() + ": cannot write the file");
-  const bool written = write_with_libpng(
+  return write_with_libpng(
       stream,
       {static_cast<png_uint_32>(image.width), static_cast<png_uint_32>(image.height),
        background ? PNG_COLOR_TYPE_RGB : PNG_COLOR_TYPE_RGB_ALPHA, rows.data(), text.data(),
        static_cast<int>(text.size())},
       failure);
+}
+
+}  // namespace
+
+std::vector<std::uint8_t> to_srgb8(const Image& image,
+                                   const std::optional<Rgb<double>>& background) {
+  const std::size_t channels = background ? 3 : 4;
+  std::vector<std::uint8_t> bytes(image.pixels.size() * channels);
+  for (std::size_t i = 0; i < image.pixels.size(); ++i) {
+    if (background) {
+      encode_over(image.pixels[i], *background, &bytes[i * channels]);
+    } else {
+      encode_transparent(image.pixels[i], &bytes[i * channels]);
+    }
+  }
+  return bytes;
+}
+
+void write_png(const Image& image, const std::filesystem::path& path,
+               const std::optional<Rgb<double>>& background) {
+  check_picture(image, path, background);
+  AtomicFile file(path);
+  std::FILE* stream = std::fopen(file.temporary_path().c_str(), "wb");
+  if (stream == nullptr) throw Error(path.string() + ": cannot write the file");
+  Failure failure;
+  const bool written = write_stream(stream, image, background, failure);
   const bool closed = std::fclose(stream) == 0;
   if (!written) throw Error(path.string() + ": cannot write: " + failure.text);
   if (!closed) throw Error(path.string() + ": cannot write: is the disk full?");
   file.commit();
+}
+
+std::string encode_png(const Image& image, const std::optional<Rgb<double>>& background) {
+  const char* const name = "PNG";
+  check_picture(image, name, background);
+  char* bytes = nullptr;
+  std::size_t size = 0;
+  std::FILE* const stream = open_memstream(&bytes, &size);
+  if (stream == nullptr) throw std::bad_alloc();
+  Failure failure;
+  const bool written = write_stream(stream, image, background, failure);
+  const bool closed = std::fclose(stream) == 0;
+  const std::unique_ptr<char, void (*)(void*)> owner(bytes, std::free);
+  if (!written || !closed) throw Error(std::string(name) + ": cannot encode: " + failure.text);
+  return {bytes, size};
 }
 
 }  // namespace pellucid

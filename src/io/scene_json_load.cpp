@@ -51,15 +51,6 @@ TransferFunction function_of(const std::optional<TransferFunctionDescription>& d
   return make_transfer_function(*description, wanted.tolerance, wanted.background);
 }
 
-/// Grey from black at the least value to white at the largest, and transparent.
-template <class Data>
-TransferFunction grey_colors(const Data& data) {
-  std::vector<TransferFunction::Point> points =
-      projection_transfer_function(data, LayerProjection::maximum).points();
-  for (TransferFunction::Point& point : points) point.extinction = 0;
-  return TransferFunction(std::move(points));
-}
-
 /// Of a layer of one variable. Without a function between surfaces it is transparent; slices
 /// without colors take its own.
 template <class Data>

@@ -234,6 +234,15 @@ TransferFunction grey_ramp(const VolumeStatistics& data, LayerProjection project
   return TransferFunction({{lower, 1, black}, {upper, 1, white}});
 }
 
+/// Of a volume or a mesh.
+template <class Data>
+TransferFunction transparent_ramp(const Data& data) {
+  std::vector<TransferFunction::Point> points =
+      projection_transfer_function(data, LayerProjection::maximum).points();
+  for (TransferFunction::Point& point : points) point.extinction = 0;
+  return TransferFunction(std::move(points));
+}
+
 }  // namespace
 
 TransferFunction projection_transfer_function(const Volume& volume, LayerProjection projection) {
@@ -249,6 +258,14 @@ TransferFunction projection_transfer_function(const MeshChannels& mesh,
                                               LayerProjection projection) {
   const Vec3<double> size = mesh.mesh().bounds().upper - mesh.mesh().bounds().lower;
   return grey_ramp(mesh.statistics(0), projection, std::max({size.x, size.y, size.z}));
+}
+
+TransferFunction grey_colors(const Volume& volume) {
+  return transparent_ramp(volume);
+}
+
+TransferFunction grey_colors(const MeshChannels& mesh) {
+  return transparent_ramp(mesh);
 }
 
 LabelTable default_label_table(const LabelVolume& labels, std::optional<double> extinction) {

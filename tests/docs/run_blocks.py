@@ -69,6 +69,10 @@ class MissingFiles:
             self.names |= {name for name in named if not pathlib.Path(name).is_absolute()}
         return missing
 
+    def names_in(self, text):
+        """The missing files that code names; what else it names may be no file."""
+        return {name for name in self.names if name in text}
+
     def add(self, text):
         self.names |= set(FILE_NAME.findall(text))
 
@@ -98,9 +102,12 @@ def script_of(page, name):
         elif block.language == "python":
             lacking = [module for module in sorted(python_modules(block.text))
                        if importlib.util.find_spec(module) is None]
+            files = sorted(missing.names_in(block.text))
             if lacking:
                 leave_out(place, f"no module {', '.join(lacking)} here")
                 missing.add(block.text)
+            elif files:
+                leave_out(place, f"no {', '.join(files)} here")
             else:
                 script.append(f"echo {shlex.quote(place)}\n{shlex.quote(sys.executable)} - "
                               f"<<'end of file'\n{block.text}end of file")

@@ -4,12 +4,16 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <fstream>
+#include <iterator>
 #include <limits>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "pellucid/io/image_files.h"
+#include "pellucid/scene/error.h"
 #include "scratch_folder.h"
 
 namespace pellucid {
@@ -105,6 +109,24 @@ TEST_F(PngTest, ClampsWhatIsOutOfRange) {
             (std::vector<int>{255, 0, 188, 255, 0, 0, 0, 0}));
   // Radiance without opacity: over a background it is seen, straight it cannot be said.
   EXPECT_EQ(bytes(image_of(1, 1, {{0.5F, 0, 0, 0}})), (std::vector<int>{0, 0, 0, 0}));
+}
+
+// encode_png() is the file of write_png(), and to_srgb8() what is in it.
+TEST_F(PngTest, InMemoryIsTheSame) {
+  const Image image = image_of(2, 1, {{0.1F, 0.2F, 0.3F, 0.5F}, {1, 0.5F, 0, 1}});
+  for (const std::optional<Rgb<double>>& background :
+       {std::optional<Rgb<double>>(), std::optional(Rgb<double>{0.2, 0.4, 0.6})}) {
+    const std::vector<int> file = bytes(image, background);
+    const std::vector<std::uint8_t> memory = to_srgb8(image, background);
+    EXPECT_EQ(file, std::vector<int>(memory.begin(), memory.end()));
+    const std::string encoded = encode_png(image, background);
+    std::ifstream written(path("a.png"), std::ios::binary);
+    EXPECT_EQ(encoded, std::string(std::istreambuf_iterator<char>(written), {}));
+  }
+  const float nan = std::numeric_limits<float>::quiet_NaN();
+  EXPECT_EQ(to_srgb8(image_of(1, 1, {{nan, 1, 1, 1}})),
+            (std::vector<std::uint8_t>{0, 255, 255, 255}));
+  EXPECT_THROW(encode_png(image_of(1, 1, {{nan, 1, 1, 1}})), Error);
 }
 
 TEST_F(PngTest, SmallestOpacityKeepsItsColor) {

@@ -110,6 +110,15 @@ class Contents(unittest.TestCase):
             if name.endswith(".so"):
                 self.assertIn(f"usr/{LIBDIR}/pellucid/{name}", self.members)
 
+    def test_the_python_module_lies_where_debians_python3_looks(self):
+        if os.environ["PELLUCID_PYTHON_MODULE"] == "":
+            self.skipTest("the Python module is not built")
+        folder = "usr/lib/python3/dist-packages/pellucid"
+        name = os.path.basename(os.environ["PELLUCID_PYTHON_MODULE"])
+        for path in ("__init__.py", "vtk.py", "_pellucid.pyi", "py.typed", name):
+            self.assertIn(f"{folder}/{path}", self.members)
+        self.assertIn("python3-numpy", self.packages("Recommends"))
+
     def test_examples_run_as_they_are(self):
         for name in self.members:
             if name.endswith(".json"):

@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <optional>
+#include <string>
+#include <vector>
 
 #include "pellucid/scene/image.h"
 #include "pellucid/scene/scene.h"
@@ -16,6 +19,13 @@ namespace pellucid {
 /// composites over it and writes no alpha.
 void write_png(const Image& image, const std::filesystem::path& path,
                const std::optional<Rgb<double>>& background = std::nullopt);
+/// Returns the file that write_png() writes.
+std::string encode_png(const Image& image,
+                       const std::optional<Rgb<double>>& background = std::nullopt);
+/// Returns its bytes before compression, row by row from the top: four per pixel, or with a
+/// background three. Numbers beyond [0, 1] are clamped; NaN counts as 0.
+std::vector<std::uint8_t> to_srgb8(const Image& image,
+                                   const std::optional<Rgb<double>>& background = std::nullopt);
 /// Writes linear premultiplied float R, G, B, A. Adds Z if the image has depth, `error` (float) and
 /// `error.proved` (half, 0 or 1) if it has an error, `value` if it has values, and the metadata as
 /// string attributes.

@@ -50,6 +50,12 @@ TransferFunction projection_transfer_function(const Volume& volume, LayerProject
 /// Returns the same for a mesh's first channel.
 TransferFunction projection_transfer_function(const MeshChannels& mesh, LayerProjection projection);
 
+/// Returns the colors of a slice that has none: a transparent ramp of grey, from black at the least
+/// value to white at the largest.
+TransferFunction grey_colors(const Volume& volume);
+/// Returns the same for a mesh's first channel.
+TransferFunction grey_colors(const MeshChannels& mesh);
+
 /// Returns a look for every label of a segmentation but 0: distinct colors, in the order of the
 /// labels, and one extinction; default_label_extinction() if none is given. A segmentation without
 /// other labels shows 0.

@@ -1,16 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "difference.h"
-
-#include <fmt/format.h>
+#include "pellucid/scene/image_difference.h"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <string>
 #include <vector>
 
 #include "pellucid/scene/error.h"
 
-namespace pellucid::cli {
+namespace pellucid {
 
 namespace {
 
@@ -47,11 +46,14 @@ DifferenceStatistics statistics_of(std::vector<double>& differences) {
   return s;
 }
 
+std::string size_text(const Image& image) {
+  return std::to_string(image.width) + "x" + std::to_string(image.height);
+}
+
 void check_sizes(const Image& a, const Image& b) {
   if (a.width != b.width || a.height != b.height) {
-    throw Error(
-        fmt::format("the images differ in size, {}x{} and {}x{}; compare pictures of one size",
-                    a.width, a.height, b.width, b.height));
+    throw Error("the images differ in size, " + size_text(a) + " and " + size_text(b) +
+                "; compare pictures of one size");
   }
 }
 
@@ -183,4 +185,4 @@ Image difference_picture(const Image& a, const Image& b, double scale) {
   return picture;
 }
 
-}  // namespace pellucid::cli
+}  // namespace pellucid

@@ -1,18 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "view.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <vector>
 
+#include "pellucid/scene/view_camera.h"
 #include "pellucid/scene/volume.h"
 
 namespace {
 
 using namespace pellucid;
-using pellucid::cli::view_camera;
-using pellucid::cli::view_names;
 
 Volume box_volume() {
   Volume::Description description;

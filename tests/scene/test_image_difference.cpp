@@ -1,21 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "difference.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <limits>
 
 #include "pellucid/scene/error.h"
+#include "pellucid/scene/image_difference.h"
 
 namespace {
 
+using pellucid::check_errors;
+using pellucid::compare_images;
+using pellucid::difference_image;
+using pellucid::difference_picture;
 using pellucid::Image;
-using pellucid::cli::check_errors;
-using pellucid::cli::compare_images;
-using pellucid::cli::difference_image;
-using pellucid::cli::difference_picture;
-using pellucid::cli::pixels_over;
+using pellucid::pixels_over;
 
 Image grey(int width, int height, float value) {
   Image image;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "view.h"
+#include "pellucid/scene/view_camera.h"
 
 #include <algorithm>
 #include <cmath>
@@ -7,7 +7,7 @@
 
 #include "pellucid/scene/defaults.h"
 
-namespace pellucid::cli {
+namespace pellucid {
 
 namespace {
 
@@ -59,4 +59,4 @@ Camera view_camera(const std::array<Vec3<double>, 8>& corners, std::string_view 
   return camera;
 }
 
-}  // namespace pellucid::cli
+}  // namespace pellucid

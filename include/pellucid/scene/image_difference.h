@@ -7,7 +7,7 @@
 
 #include "pellucid/scene/image.h"
 
-namespace pellucid::cli {
+namespace pellucid {
 
 /// What |a − b| looks like over a set of numbers. Numbers of which one or both are not finite, and
 /// that are not the same, are counted and left out of the rest.
@@ -58,4 +58,4 @@ Image difference_image(const Image& a, const Image& b);
 /// 1 where it is not finite.
 Image difference_picture(const Image& a, const Image& b, double scale);
 
-}  // namespace pellucid::cli
+}  // namespace pellucid

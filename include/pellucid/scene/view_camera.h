@@ -8,7 +8,7 @@
 
 #include "pellucid/scene/scene.h"
 
-namespace pellucid::cli {
+namespace pellucid {
 
 /// Names of the views along the axes of an LPS world, and "oblique".
 const std::vector<std::string>& view_names();
@@ -19,4 +19,4 @@ const std::vector<std::string>& view_names();
 Camera view_camera(const std::array<Vec3<double>, 8>& corners, std::string_view name,
                    ImageSize size);
 
-}  // namespace pellucid::cli
+}  // namespace pellucid

@@ -1,0 +1,35 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Small types that the compiled part of the package fills in."""
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, NamedTuple
+
+if TYPE_CHECKING:
+    from ._pellucid import GradientOpacity, OpacityTable
+    from .scene import Shading
+
+
+class Note(UserWarning):
+    """What a reader or a converter assumed, rounded or left out."""
+
+
+class Preset(NamedTuple):
+    """A transfer function for one kind of data."""
+
+    name: str
+    description: str
+    hounsfield: bool
+    """Whether values are Hounsfield units and lengths millimetres."""
+    lit: bool
+    """Whether it is made for data in light: render() adds a Shading."""
+
+
+class ImportedTransferFunction(NamedTuple):
+    """A transfer function of another program."""
+
+    transfer_function: OpacityTable
+    shading: Shading | None
+    gradient_opacity: GradientOpacity | None
+    format: str
+    name: str
+    notes: list[str]

@@ -1,0 +1,102 @@
+# SPDX-License-Identifier: Apache-2.0
+"""One call from data to a picture."""
+from __future__ import annotations
+
+import dataclasses
+import os
+from typing import Any, Callable, Optional
+
+from . import _pellucid
+from ._pellucid import Error, Image, Renderer, Volume
+from .scene import Camera, Color, Layer, Scene, Shading, _data_of
+
+_LAYER_NAMES = {f.name for f in dataclasses.fields(Layer)} - {"data", "transfer_function"}
+
+
+def _layer_of(data: Any, transfer_function: Any, attributes: dict[str, Any]) -> Layer:
+    """Returns the layer of data alone: in light where they have surfaces, if nobody says how."""
+    shown = {"shading", "projection", "isosurfaces", "slices", "mask", "gradient_opacity"}
+    if transfer_function is None and not shown & set(attributes):
+        data = _data_of(data)
+        if isinstance(data, Volume):
+            transfer_function, shading = _pellucid.default_look(data)
+            return Layer(data, transfer_function, shading=shading, **attributes)
+    return Layer(data, transfer_function, **attributes)
+
+
+def scene_of(data: Any, transfer_function: Any = None, *, preset: Optional[str] = None,
+             tolerance: Optional[float] = None, size: Any = None, camera: Optional[Camera] = None,
+             view: Optional[str] = None, background: Optional[Color] = None,
+             **layer: Any) -> Scene:
+    """Returns the scene that render() renders; it takes the same arguments."""
+    if isinstance(data, (str, os.PathLike)):
+        data = _pellucid.read(data)
+    if preset is not None:
+        if transfer_function is not None:
+            raise Error(f"preset {preset}: a transfer function is given too; drop one of the two")
+        transfer_function = preset
+    for name in layer:
+        if name not in _LAYER_NAMES:
+            raise TypeError(f"render() got an unexpected keyword argument '{name}'")
+    if isinstance(data, (Scene, Layer)) and (layer or transfer_function is not None):
+        raise Error("render: the scene has its layers; set transfer functions, presets and "
+                    f"{', '.join(layer) or 'looks'} there")
+    if isinstance(data, Scene):
+        scene = dataclasses.replace(data)
+    else:
+        if not isinstance(data, Layer):
+            data = _layer_of(data, transfer_function, layer)
+            lit = {each.name for each in _pellucid.presets() if each.lit}
+            if preset in lit and data.projection is None and data.shading is None:
+                data.shading = Shading()
+        scene = Scene([data])
+    if tolerance is not None:
+        scene.integration = dataclasses.replace(scene.integration, tolerance=tolerance)
+    if size is not None:
+        scene.size = (size, size) if isinstance(size, int) else size
+    if background is not None:
+        scene.background = background
+    if camera is not None:
+        scene.camera = camera
+    if view is not None:
+        if camera is not None:
+            raise Error(f"view {view}: a camera is given too; drop one of the two")
+        scene.camera = _pellucid.view_camera(scene, view)
+    return scene
+
+
+def render(data: Any, transfer_function: Any = None, *, preset: Optional[str] = None,
+           tolerance: Optional[float] = None, size: Any = None, camera: Optional[Camera] = None,
+           view: Optional[str] = None, background: Optional[Color] = None, depth: bool = False,
+           error: bool = True, values: bool = False, threads: int = 0,
+           progress: Optional[Callable[[float], Any]] = None,
+           renderer: Optional[Renderer] = None, **layer: Any) -> Image:
+    """Renders data to a tolerance and returns the Image.
+
+    data               a Scene, a Layer, a Volume, Channels, a Mesh, a LabelVolume; what Volume()
+                       takes (an array, an image of nibabel, ITK, xarray, VTK); a VTK or meshio
+                       mesh; or the path of a file that read() reads
+    transfer_function  a TransferFunction, an OpacityTable, Gaussians or a list of points; without
+                       one it is made from the data, and a volume with surfaces is put in light;
+                       shading=None leaves that out
+    preset             the name of one of presets(), in its place
+    tolerance          largest error of any channel of a pixel, in premultiplied linear light; from
+                       1e-7 to 1, default 1/512
+    size               (width, height) or one number, in pixels; default 512
+    camera, view       a Camera; or "front", "back", "left", "right", "top", "bottom", "oblique".
+                       Default: one that shows all that is visible
+    background         a color; default: the picture stays transparent
+    depth, values      also fill Image.depth, Image.values (of a projection)
+    threads            0: one per core
+    progress           called with the finished fraction every 20 ms; what it raises cancels the
+                       picture and is raised here, and so is Ctrl-C
+    renderer           a Renderer, which keeps what frames share
+    **layer            further attributes of the Layer: shading, isosurfaces, slices, clips,
+                       projection, gradient_opacity, transform, mask, labels, name
+
+    Raises Error: one line that says what is wrong, where, and what to do.
+    """
+    scene = scene_of(data, transfer_function, preset=preset, tolerance=tolerance, size=size,
+                     camera=camera, view=view, background=background, **layer)
+    return (renderer or Renderer()).render(scene, depth=depth, error=error, values=values,
+                                           threads=threads, progress=progress)

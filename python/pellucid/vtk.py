@@ -1,0 +1,387 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Scenes of live VTK renderers, and how far VTK's own pictures of them are off.
+
+    audit = pellucid.vtk.audit(render_window)
+    print(audit)
+
+VTK composites the numbers of its functions, whatever display they are meant for. So do scenes made
+here: their "linear" colors are those numbers. VTK is not imported; the objects bring it with them.
+"""
+from __future__ import annotations
+
+import math
+import sys
+from dataclasses import dataclass, field
+from typing import Any, List, Sequence, Tuple
+
+import numpy
+
+from . import _arrays, _meshes
+from ._pellucid import (Error, GradientOpacity, Image, OpacityTable, Renderer, TransferFunction,
+                        Volume)
+from .scene import (Camera, ClipPlane, DirectionalLight, HeadLight, Integration, Layer, PointLight,
+                    Scene, Shading)
+
+# Points that stand for a curve of VTK that is not straight, between two of its nodes.
+_POINTS_PER_CURVE = 64
+# vtkVolumeMapper's VTK_CROP_SUBVOLUME: the middle one of 27 regions is kept.
+_CROP_SUBVOLUME = 0x0002000
+
+Curve = List[Tuple[float, numpy.ndarray]]
+
+
+@dataclass
+class Audit:
+    """How far VTK's picture is from the volume rendering integral of what it shows."""
+
+    ours: Image
+    """Within its tolerance of the integral; premultiplied numbers of VTK's functions."""
+    theirs: Image
+    """VTK's picture, premultiplied, in the same numbers."""
+    scene: Scene
+    largest: float
+    """Largest difference of any channel of any pixel (red, green, blue, opacity)."""
+    rms: float
+    share_over_255: float
+    """Share of pixels with a channel that is off by more than 1/255."""
+    at: Tuple[int, int]
+    """(row, column) of the largest difference."""
+    difference: numpy.ndarray = field(repr=False)
+    """float32 (height, width, 4), |ours - theirs|."""
+    notes: List[str] = field(default_factory=list)
+    """What was left out, or is known to differ."""
+
+    def picture(self, scale: float = 1.0) -> Image:
+        """Returns a grey picture of the largest difference of each pixel, times `scale`."""
+        grey = numpy.clip(self.difference.max(axis=2) * scale, 0, 1)
+        return Image(numpy.stack([grey, grey, grey, numpy.ones_like(grey)], axis=2))
+
+    def __str__(self) -> str:
+        row, column = self.at
+        lines = [f"largest difference {self.largest:.3g} (row {row}, column {column}), RMS "
+                 f"{self.rms:.3g}",
+                 f"{100 * self.share_over_255:.2f} % of the pixels are off by more than 1/255",
+                 f"the truth is known to within {self.ours.report['largest_error']:.2g}"]
+        return "\n".join(lines + self.notes)
+
+
+def scene_of(renderer: Any, notes: Any = None) -> Scene:
+    """Returns the Scene that a vtkRenderer shows: volumes, properties, camera, lights, clipping.
+
+    renderer  a vtkRenderer, or a plotter of PyVista
+    notes     a list that receives lines on what is left out; else these are warnings
+
+    Volumes of vtkImageData or vtkRectilinearGrid take their opacities per unit distance, those of
+    unstructured grids as extinctions. Clipping and cropping planes become clips. Other props are
+    left out. Raises Error for what has no counterpart: interpolation to the nearest value, several
+    components, blend modes other than composite.
+    """
+    renderer = getattr(renderer, "renderer", renderer)
+    if not _is_a(renderer, "vtkRenderer"):
+        raise Error(f"renderer: expected a vtkRenderer, got {renderer!r:.60}")
+    told: List[str] = []
+    layers = [_layer(prop, f"volume {i + 1}", told)
+              for i, prop in enumerate(_items(renderer.GetVolumes()))]
+    if not layers:
+        raise Error("renderer: has no vtkVolume; add one before its scene is asked for")
+    if len(layers) > 1:
+        told.append("VTK draws volumes one over the other; here overlapping ones mix")
+    others = sum(1 for prop in _items(renderer.GetViewProps())
+                 if not _is_a(prop, "vtkVolume") and prop.GetVisibility())
+    if others:
+        told.append(f"{others} props that are no volumes are left out")
+    width, height = renderer.GetSize()
+    if width < 1 or height < 1:
+        raise Error("renderer: has no size; add it to a window")
+    scene = Scene(layers, size=(width, height), lights=_lights(renderer, told))
+    scene.camera = _camera(renderer.GetActiveCamera(), width / height)
+    if notes is None:
+        _warn(told)
+    else:
+        notes.extend(told)
+    return scene
+
+
+def audit(render_window: Any, tolerance: float = 1 / 4096, progress: Any = None) -> Audit:
+    """Renders what a vtkRenderWindow shows to a tolerance, and compares VTK's own picture with it.
+
+    render_window  a vtkRenderWindow whose first renderer with volumes is taken, or a plotter of
+                   PyVista
+    tolerance      of the picture that VTK's is held against
+
+    VTK draws into a buffer of floats, without other props and without its background; the window is
+    left as it was. Raises Error as scene_of() does.
+    """
+    window = getattr(render_window, "render_window", getattr(render_window, "ren_win",
+                                                             render_window))
+    if not _is_a(window, "vtkRenderWindow"):
+        raise Error(f"render_window: expected a vtkRenderWindow, got {window!r:.60}")
+    renderers = [each for each in _items(window.GetRenderers())
+                 if each.GetVolumes().GetNumberOfItems() > 0]
+    if not renderers:
+        raise Error("render_window: none of its renderers has a volume")
+    renderer = renderers[0]
+    notes: List[str] = []
+    theirs = Image(_picture(window, renderer))
+    scene = scene_of(renderer, notes)
+    scene.integration = Integration(tolerance=tolerance)
+    ours = Renderer().render(scene, progress=progress)
+    found = ours.compare(theirs)
+    if found.not_finite:
+        notes.append(f"{found.not_finite} numbers of VTK's picture are not finite")
+    return Audit(ours, theirs, scene, found.largest, found.rms, found.share_over_255, found.at,
+                 found.difference, notes)
+
+
+def _is_a(data: Any, name: str) -> bool:
+    return callable(getattr(data, "IsA", None)) and bool(data.IsA(name))
+
+
+def _items(collection: Any) -> List[Any]:
+    return [collection.GetItemAsObject(i) for i in range(collection.GetNumberOfItems())]
+
+
+def _warn(lines: Sequence[str]) -> None:
+    import warnings
+
+    from ._notes import Note
+
+    for line in lines:
+        warnings.warn(line, Note, stacklevel=3)
+
+
+def _layer(volume: Any, what: str, notes: List[str]) -> Layer:
+    mapper, look = volume.GetMapper(), volume.GetProperty()
+    if mapper is None:
+        raise Error(f"{what}: has no mapper")
+    mapper.Update()
+    data = mapper.GetDataSetInput() if hasattr(mapper, "GetDataSetInput") else mapper.GetInput()
+    if data is None:
+        raise Error(f"{what}: its mapper has no input")
+    if look.GetInterpolationType() != 1:
+        raise Error(f"{what}: shows the nearest value; set its property's "
+                    "SetInterpolationTypeToLinear()")
+    is_grid = not _meshes.is_mesh(data)
+    if is_grid and mapper.GetBlendMode() != 0:
+        raise Error(f"{what}: its mapper blends by mode {mapper.GetBlendMode()}; only composite "
+                    "(0) is an integral with absorption")
+    colors, opacities = _color_curve(look), _curve_of(look.GetScalarOpacity(0))
+    unit = look.GetScalarOpacityUnitDistance(0)
+    if is_grid:
+        shown = Volume(data, name=what)
+        function = OpacityTable([(x, a[0], tuple(c)) for x, a, c in _joined(opacities, colors)],
+                                unit)
+    else:
+        # Unstructured mappers take opacity / unit distance for the extinction itself.
+        shown = _meshes.mesh_of(data)
+        function = TransferFunction([(x, a[0] / unit, tuple(c))
+                                     for x, a, c in _joined(opacities, colors)])
+    layer = Layer(shown, function, name=what, visible=bool(volume.GetVisibility()))
+    matrix = _matrix(volume.GetMatrix())
+    layer.transform = matrix[:3].tolist()
+    layer.clips = _clips(mapper, matrix, what, is_grid)
+    if is_grid and mapper.GetCropping():
+        notes.append(f"{what}: the GPU mapper of VTK 9.1 crops up to half a voxel outside of its "
+                     "planes")
+    if look.GetShade(0) and is_grid:
+        # VTK's normals have length 1 wherever the gradient is not 0.
+        layer.shading = Shading(look.GetAmbient(0), look.GetDiffuse(0), look.GetSpecular(0),
+                                min(max(look.GetSpecularPower(0), 1.0), 1000.0), flatness=0.0)
+    if is_grid and not look.GetDisableGradientOpacity(0) and look.HasGradientOpacity(0):
+        points = [(x, y[0]) for x, y in _curve_of(look.GetGradientOpacity(0)) if x >= 0]
+        layer.gradient_opacity = GradientOpacity(points, unit="voxel")
+        notes.append(f"{what}: gradient opacities multiply the extinction here, in VTK the opacity "
+                     "of a sample")
+    return layer
+
+
+def _matrix(matrix: Any) -> numpy.ndarray:
+    return numpy.array([[matrix.GetElement(row, column) for column in range(4)]
+                        for row in range(4)])
+
+
+def _curve(nodes: List[Sequence[float]], values: int, straight: bool, evaluate: Any,
+           clamped: bool) -> Curve:
+    """Points of a function with nodes (x, values, midpoint, sharpness): exact where it is straight
+    between two nodes, else a chain of chords. Two points at one x are a jump."""
+    zero = numpy.zeros(values)
+    if not nodes:
+        return [(0.0, zero)]
+    points: Curve = []
+    for i, node in enumerate(nodes):
+        x, midpoint, sharpness = node[0], node[-2], node[-1]
+        points.append((x, numpy.array(node[1:1 + values])))
+        if i + 1 == len(nodes) or (straight and midpoint == 0.5 and sharpness == 0):
+            continue
+        for share in numpy.linspace(0, 1, _POINTS_PER_CURVE + 1)[1:-1]:
+            between = x + share * (nodes[i + 1][0] - x)
+            points.append((between, numpy.array(evaluate(between), dtype=float)))
+    if not clamped:
+        points = [(points[0][0], zero), *points, (points[-1][0], zero)]
+    return points
+
+
+def _curve_of(function: Any) -> Curve:
+    """A vtkPiecewiseFunction."""
+    nodes = []
+    for i in range(function.GetSize()):
+        node = [0.0] * 4
+        function.GetNodeValue(i, node)
+        nodes.append(node)
+    return _curve(nodes, 1, True, lambda x: [function.GetValue(x)], bool(function.GetClamping()))
+
+
+def _color_curve(look: Any) -> Curve:
+    if look.GetColorChannels(0) == 1:
+        grey = _curve_of(look.GetGrayTransferFunction(0))
+        return [(x, numpy.repeat(value, 3)) for x, value in grey]
+    function = look.GetRGBTransferFunction(0)
+    nodes = []
+    for i in range(function.GetSize()):
+        node = [0.0] * 6
+        function.GetNodeValue(i, node)
+        nodes.append(node)
+    rgb, linear = 0, 0
+    straight = function.GetColorSpace() == rgb and function.GetScale() == linear
+    return _curve(nodes, 3, straight, function.GetColor, bool(function.GetClamping()))
+
+
+def _limits(curve: Curve, x: float) -> Tuple[numpy.ndarray, numpy.ndarray]:
+    """The values of a curve just below and just above x."""
+    places = numpy.array([point[0] for point in curve])
+    values = numpy.array([point[1] for point in curve])
+
+    def between(index: int) -> numpy.ndarray:
+        """On the stretch in front of point `index`."""
+        if index == 0:
+            return values[0]
+        if index == len(places):
+            return values[-1]
+        width = places[index] - places[index - 1]
+        share = (x - places[index - 1]) / width
+        return values[index - 1] + share * (values[index] - values[index - 1])
+
+    first, end = numpy.searchsorted(places, x, "left"), numpy.searchsorted(places, x, "right")
+    if first == end:  # between two points
+        value = between(int(first))
+        return value, value
+    return values[first], values[end - 1]
+
+
+def _joined(opacities: Curve, colors: Curve) -> List[Tuple[float, numpy.ndarray, numpy.ndarray]]:
+    """Both curves at the points of each, where one of them jumps twice."""
+    joined = []
+    for x in sorted({point[0] for point in opacities} | {point[0] for point in colors}):
+        below = (_limits(opacities, x)[0], _limits(colors, x)[0])
+        above = (_limits(opacities, x)[1], _limits(colors, x)[1])
+        joined.append((x, *below))
+        if not (numpy.array_equal(below[0], above[0]) and numpy.array_equal(below[1], above[1])):
+            joined.append((x, *above))
+    return joined
+
+
+def _clips(mapper: Any, matrix: numpy.ndarray, what: str, is_grid: bool) -> List[ClipPlane]:
+    clips = []
+    planes = mapper.GetClippingPlanes()
+    for plane in _items(planes) if planes is not None else []:
+        clips.append(ClipPlane(tuple(plane.GetOrigin()), tuple(plane.GetNormal())))
+    if not (is_grid and mapper.GetCropping()):
+        return clips
+    if mapper.GetCroppingRegionFlags() != _CROP_SUBVOLUME:
+        raise Error(f"{what}: is cropped to other regions than the middle one; use "
+                    "SetCroppingRegionFlagsToSubVolume() or clipping planes")
+    bounds = mapper.GetCroppingRegionPlanes()
+    # Normals go to the world by the inverse transpose of what brings points there.
+    normals = numpy.linalg.inv(matrix[:3, :3]).T
+    for axis in range(3):
+        for side, sign in ((2 * axis, 1.0), (2 * axis + 1, -1.0)):
+            point = numpy.zeros(3)
+            point[axis] = bounds[side]
+            clips.append(ClipPlane(tuple(matrix[:3, :3] @ point + matrix[:3, 3]),
+                                   tuple(sign * normals[:, axis])))
+    return clips
+
+
+def _camera(camera: Any, aspect: float) -> Camera:
+    for name, default in (("GetWindowCenter", (0.0, 0.0)), ("GetViewShear", (0.0, 0.0, 1.0))):
+        if tuple(getattr(camera, name)()) != default:
+            raise Error(f"camera: its {name[3:]} is {getattr(camera, name)()}; set {default}")
+    angle = camera.GetViewAngle()
+    if camera.GetUseHorizontalViewAngle():
+        angle = math.degrees(2 * math.atan(math.tan(math.radians(angle) / 2) / aspect))
+    return Camera(tuple(camera.GetPosition()), tuple(camera.GetFocalPoint()),
+                  tuple(camera.GetViewUp()), angle, camera.GetParallelScale(),
+                  "orthographic" if camera.GetParallelProjection() else "perspective")
+
+
+def _lights(renderer: Any, notes: List[str]) -> List[Any]:
+    lights = []
+    for light in _items(renderer.GetLights()):
+        if not light.GetSwitch():
+            continue
+        color = tuple(light.GetIntensity() * c for c in light.GetDiffuseColor())
+        if light.LightTypeIsHeadlight():
+            lights.append(HeadLight(color))
+        elif light.GetPositional():
+            if tuple(light.GetAttenuationValues()) != (1.0, 0.0, 0.0) or light.GetConeAngle() < 90:
+                notes.append("a light has a cone or an attenuation, which is left out")
+            lights.append(PointLight(tuple(light.GetTransformedPosition()), color))
+        else:
+            lights.append(DirectionalLight(
+                tuple(numpy.subtract(light.GetTransformedFocalPoint(),
+                                     light.GetTransformedPosition()).tolist()), color))
+    # VTK makes a head light of its own if there is none.
+    return lights or [HeadLight()]
+
+
+def _picture(window: Any, renderer: Any) -> numpy.ndarray:
+    """VTK's own picture of the volumes: float32 (height, width, 4), premultiplied, row 0 on top."""
+    library = sys.modules.get("vtkmodules.vtkRenderingOpenGL2")
+    if library is None or not _is_a(window, "vtkOpenGLRenderWindow"):
+        raise Error("render_window: is no window of VTK's OpenGL; import "
+                    "vtkmodules.vtkRenderingOpenGL2 before it is made")
+    hidden = [prop for prop in _items(renderer.GetViewProps())
+              if not _is_a(prop, "vtkVolume") and prop.GetVisibility()]
+    colors = (renderer.GetBackground(), renderer.GetBackgroundAlpha(),
+              renderer.GetGradientBackground())
+    for prop in hidden:
+        prop.SetVisibility(False)
+    renderer.SetBackground(0, 0, 0)
+    renderer.SetBackgroundAlpha(0)
+    renderer.SetGradientBackground(False)
+    try:
+        window.Render()  # with its data and programs on the device, and its size known
+        return _floats(window, renderer, library)
+    finally:
+        for prop in hidden:
+            prop.SetVisibility(True)
+        renderer.SetBackground(colors[0])
+        renderer.SetBackgroundAlpha(colors[1])
+        renderer.SetGradientBackground(colors[2])
+        window.Render()
+
+
+def _floats(window: Any, renderer: Any, library: Any) -> numpy.ndarray:
+    float_type = 10  # VTK_FLOAT
+    width, height = window.GetSize()
+    buffer = library.vtkOpenGLFramebufferObject()
+    buffer.SetContext(window)
+    state = window.GetState()
+    state.PushFramebufferBindings()
+    try:
+        if not buffer.PopulateFramebuffer(width, height, True, 1, float_type, True, 32, 0):
+            raise Error("render_window: OpenGL gives no framebuffer of floats")
+        buffer.Bind()
+        buffer.ActivateDrawBuffer(0)
+        renderer.Render()
+        window.WaitForCompletion()
+        buffer.ActivateReadBuffer(0)
+        pixels = buffer.DownloadColor4([0, width - 1, 0, height - 1], float_type)
+        picture = numpy.empty((height, width, 4), dtype=numpy.float32)
+        pixels.Download2D(float_type, picture, [width, height], 4, [0, 0])
+    finally:
+        state.PopFramebufferBindings()
+        buffer.ReleaseGraphicsResources(window)
+    columns, rows = renderer.GetSize()
+    left, bottom = renderer.GetOrigin()
+    return numpy.ascontiguousarray(picture[bottom:bottom + rows, left:left + columns][::-1])

@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <pybind11/numpy.h>
+#include <pybind11/pybind11.h>
+#include <pybind11/stl.h>
+#include <pybind11/stl/filesystem.h>
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "pellucid/geometry/vec3.h"
+#include "pellucid/math/rgb.h"
+#include "pellucid/scene/error.h"
+#include "pellucid/scene/volume.h"
+
+namespace py = pybind11;
+
+namespace pellucid::python {
+
+/// Each adds its classes and functions to the compiled part of the package, `pellucid._pellucid`.
+void bind_volumes(py::module_& module);
+void bind_labels(py::module_& module);
+void bind_meshes(py::module_& module);
+void bind_transfer_functions(py::module_& module);
+void bind_gaussians(py::module_& module);
+void bind_foreign_functions(py::module_& module);
+void bind_histograms(py::module_& module);
+void bind_scenes(py::module_& module);
+void bind_files(py::module_& module);
+void bind_images(py::module_& module);
+void bind_renderers(py::module_& module);
+void bind_segments(py::module_& module);
+
+/// Returns the text that Python shows of an object, at most 60 characters.
+std::string short_repr(const py::handle& object);
+/// Return a number, and three numbers (x, y, z) of any sequence. Throw Error that begins with
+/// `what`.
+double number_of(const py::handle& object, const std::string& what);
+Vec3<double> vector_of(const py::handle& object, const std::string& what);
+/// Returns a linear color: three linear numbers, or "#rrggbb" in sRGB. Throws Error that begins
+/// with `what`.
+Rgb<double> color_of(const py::handle& object, const std::string& what);
+py::tuple to_tuple(const Vec3<double>& v);
+py::tuple to_tuple(const Rgb<double>& color);
+
+/// Returns an array that views `count` values of `owner`, read only; the array keeps it alive.
+template <class T>
+py::array view_of(const T* values, std::vector<py::ssize_t> shape, const py::handle& owner) {
+  py::array_t<T> array(std::move(shape), values, owner);
+  py::detail::array_proxy(array.ptr())->flags &= ~py::detail::npy_api::NPY_ARRAY_WRITEABLE_;
+  return array;
+}
+
+/// Collects what readers and converters tell, and passes it to Python's warnings.
+class Notes {
+ public:
+  void operator()(const std::string& text) { texts_.push_back(text); }
+  /// Warns of each note once, as pellucid.Note. Throws what a warning turned into an error throws.
+  void warn();
+
+ private:
+  std::vector<std::string> texts_;
+};
+
+/// Returns the shared pointer that pybind11 holds for objects that never change.
+template <class T>
+std::shared_ptr<T> held(std::shared_ptr<const T> object) {
+  return std::const_pointer_cast<T>(std::move(object));
+}
+
+/// Returns a function that splits work among all cores.
+ParallelFor all_cores();
+
+}  // namespace pellucid::python

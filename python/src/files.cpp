@@ -1,0 +1,263 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <string>
+#include <utility>
+
+#include "common.h"
+#include "handles.h"
+#include "pellucid/io/atomic_file.h"
+#include "pellucid/io/dicom_series.h"
+#include "scenes.h"
+
+namespace pellucid::python {
+
+namespace {
+
+/// Calls body(sink), which tells notes to `sink` without the interpreter's lock, and then warns.
+template <class Body>
+auto with_notes(Body&& body) {
+  Notes notes;
+  auto result = [&] {
+    const py::gil_scoped_release released;
+    return body([&notes](const std::string& text) { notes(text); });
+  }();
+  notes.warn();
+  return result;
+}
+
+VolumeHandle read_source(FieldSource source) {
+  return with_notes([&](const auto& sink) {
+    FieldSource reading = source;
+    reading.options.note = sink;
+    source.file = source.file.empty() ? source.file : std::filesystem::absolute(source.file);
+    return VolumeHandle{std::make_shared<const Volume>(load_field(reading)), {2, 1, 0}, source};
+  });
+}
+
+std::optional<Vec3<double>> from_zyx(const py::object& object, const char* what) {
+  if (object.is_none()) return std::nullopt;
+  const Vec3<double> v = vector_of(object, what);
+  return Vec3<double>{v.z, v.y, v.x};
+}
+
+VolumeHandle read_volume_file(
+    const std::filesystem::path& path, const std::optional<std::string>& array,
+    const std::optional<int>& component, const std::optional<double>& time,
+    const std::optional<std::string>& series, const std::optional<int>& level,
+    const std::optional<std::string>& axes, const std::optional<std::array<int, 3>>& shape,
+    const std::optional<std::string>& type, const std::optional<bool>& big_endian,
+    std::size_t skip_bytes, const py::object& spacing, const py::object& origin,
+    const std::optional<std::string>& centering) {
+  FieldSource source;
+  source.file = path;
+  ReadOptions& options = source.options;
+  options.array = array;
+  options.component = component;
+  options.time = time;
+  options.series = series;
+  options.level = level;
+  options.axes = axes;
+  if (shape) options.dimensions = {(*shape)[2], (*shape)[1], (*shape)[0]};
+  options.type = type;
+  options.big_endian = big_endian;
+  options.skip_bytes = skip_bytes;
+  options.spacing = from_zyx(spacing, "spacing");
+  options.origin = from_zyx(origin, "origin");
+  if (centering) {
+    if (*centering != "point" && *centering != "cell") {
+      throw Error("centering: expected \"point\" or \"cell\", got \"" + *centering + "\"");
+    }
+    options.centering = *centering == "cell" ? Centering::cell : Centering::point;
+  }
+  return read_source(std::move(source));
+}
+
+MeshHandle read_mesh_source(MeshSource source) {
+  return with_notes([&](const auto& sink) {
+    MeshSource reading = source;
+    reading.options.note = sink;
+    const LoadedMesh loaded = load_mesh(reading, all_cores());
+    source.file = std::filesystem::absolute(source.file);
+    source.channels = loaded.channels;
+    return MeshHandle{loaded.mesh, source};
+  });
+}
+
+MeshHandle read_mesh_file(const std::filesystem::path& path,
+                          const std::vector<std::string>& channels,
+                          const std::optional<double>& time,
+                          const std::optional<std::filesystem::path>& q) {
+  MeshSource source;
+  source.file = path;
+  source.options.time = time;
+  if (q) source.options.q = *q;
+  for (const std::string& text : channels) source.channels.push_back(parse_mesh_array(text));
+  return read_mesh_source(std::move(source));
+}
+
+py::object load_scene_file(const std::filesystem::path& path) {
+  const SceneDescription description = parse_scene(read_text_file(path), path.string(),
+                                                   std::filesystem::absolute(path).parent_path());
+  Notes notes;
+  SceneDescription complete = description, reading = description;
+  if (description.relative_tolerance) {
+    notes(path.string() +
+          ": a tolerance that is a share of the picture is left out; the scene has "
+          "the absolute tolerance " +
+          std::to_string(description.integration.tolerance));
+  }
+  const auto sink = [&notes](const std::string& text) { notes(text); };
+  for (LayerDescription& layer : reading.layers) {
+    layer.field.options.note = sink;
+    for (ChannelSource& channel : layer.channels) {
+      if (auto* field = std::get_if<FieldSource>(&channel.source)) field->options.note = sink;
+    }
+    if (layer.labels) layer.labels->field.options.note = sink;
+    if (layer.mask) layer.mask->field.options.note = sink;
+    if (layer.mesh) layer.mesh->options.note = sink;
+  }
+  Scene scene;
+  {
+    const py::gil_scoped_release released;
+    std::vector<MeshSource> meshes;
+    scene = make_scene(reading, all_cores(), &meshes);
+    for (std::size_t i = 0; i < complete.layers.size(); ++i) {
+      if (!complete.layers[i].mesh) continue;
+      complete.layers[i].mesh->channels = meshes[i].channels;
+    }
+  }
+  notes.warn();
+  return to_python(scene, complete);
+}
+
+/// Returns a Volume, a Mesh or a Scene, whichever the path leads to.
+py::object read_any(const std::string& text) {
+  const std::filesystem::path path = text;
+  if (path.extension() == ".json" && !is_volume_json(path)) return load_scene_file(path);
+  if (!text.starts_with("builtin:") && is_mesh_file(path)) {
+    MeshSource source;
+    source.file = path;
+    return py::cast(read_mesh_source(std::move(source)));
+  }
+  return py::cast(read_source(parse_field_source(text)));
+}
+
+/// Throws Error if a layer's data are arrays.
+void check_sources(const SceneDescription& description) {
+  for (std::size_t i = 0; i < description.layers.size(); ++i) {
+    const LayerDescription& layer = description.layers[i];
+    const auto known = [](const FieldSource& f) { return !f.file.empty() || !f.builtin.empty(); };
+    const bool has_data = layer.labels             ? known(layer.labels->field)
+                          : layer.mesh             ? !layer.mesh->file.empty()
+                          : layer.channels.empty() ? known(layer.field)
+                                                   : true;
+    if (has_data && (!layer.mask || known(layer.mask->field))) continue;
+    throw Error("layer " + std::to_string(i + 1) +
+                ": its data are arrays, which a scene file cannot hold; write them to a file "
+                "(Volume.write) and use what read() returns");
+  }
+}
+
+void save_scene_file(const py::object& object, const std::filesystem::path& path) {
+  PythonScene made = read_scene(object);
+  SceneDescription& description = made.description;
+  const Scene& scene = made.scene;
+  check_sources(description);
+  for (std::size_t i = 0; i < scene.layers.size(); ++i) {
+    const Layer& layer = scene.layers[i];
+    LayerDescription& to = description.layers[i];
+    to.name = layer.name;
+    to.visible = layer.visible;
+    to.transform = layer.transform;
+    to.clips = layer.clips;
+    to.projection = layer.projection;
+    const std::vector<std::string> names = function_channels(to);
+    const auto name_of = [&](int channel) {
+      return names.empty() || channel == 0 ? std::string()
+                                           : names.at(static_cast<std::size_t>(channel));
+    };
+    const auto points_of = [](const std::shared_ptr<const TransferFunction>& colors) {
+      return colors ? std::optional<TransferFunctionDescription>(colors->points()) : std::nullopt;
+    };
+    if (layer.shading)
+      to.shading = ShadingDescription{*layer.shading, name_of(layer.shading->channel)};
+    if (const auto& opacity = layer.gradient_opacity) {
+      to.gradient_opacity = GradientOpacityDescription{opacity->points(), opacity->unit(),
+                                                       name_of(opacity->channel())};
+    }
+    for (const Isosurface& s : layer.isosurfaces) {
+      to.isosurfaces.push_back({s.value, s.opacity, s.color, points_of(s.colors),
+                                name_of(s.channel), name_of(s.color_channel)});
+    }
+    for (const Slice& s : layer.slices) {
+      to.slices.push_back({s.point, s.normal, s.opacity, points_of(s.colors), name_of(s.channel)});
+    }
+  }
+  description.clips = scene.clips;
+  description.lights = scene.lights;
+  if (made.has_camera) description.camera = scene.camera;
+  description.size = scene.size;
+  description.samples = scene.samples;
+  description.integration = scene.integration;
+  description.background = scene.background;
+  if (scene.backdrop) {
+    throw Error("backdrop: a scene file names a file; save the backdrop as .exr and add it there");
+  }
+  write_text_file(path, scene_to_json(description));
+}
+
+}  // namespace
+
+void bind_files(py::module_& module) {
+  module.def("read_volume", &read_volume_file, py::arg("path"), py::kw_only(),
+             py::arg("array") = py::none(), py::arg("component") = py::none(),
+             py::arg("time") = py::none(), py::arg("series") = py::none(),
+             py::arg("level") = py::none(), py::arg("axes") = py::none(),
+             py::arg("shape") = py::none(), py::arg("type") = py::none(),
+             py::arg("big_endian") = py::none(), py::arg("skip_bytes") = 0,
+             py::arg("spacing") = py::none(), py::arg("origin") = py::none(),
+             py::arg("centering") = py::none(), R"(
+Reads a volume file: NIfTI, NRRD, MetaImage, DICOM, NumPy, HDF5, NetCDF, OME-Zarr, MRC, OpenVDB,
+VTK images, stacks of TIFF, raw data, … (docs/reference/formats.md).
+
+array names an array of the file, component one of its components (from 0), time a time step;
+series is a DICOM series (number or UID), level a resolution of OME-Zarr, axes the letters of an
+array's axes ("zyx", "czyx"). shape (z, y, x), type ("u8" … "f64"), big_endian and skip_bytes are
+for raw data. spacing and origin (z, y, x) and centering replace the file's. Warns of what is
+assumed. Raises Error: what, where, what to do.)");
+  module.def("read_mesh", &read_mesh_file, py::arg("path"), py::kw_only(),
+             py::arg("channels") = std::vector<std::string>(), py::arg("time") = py::none(),
+             py::arg("q") = py::none(), R"(
+Reads a mesh file: VTK (.vtu, .pvtu, .vts, .vtm, .vtk, .pvd, .vtkhdf), Exodus, PLOT3D.
+
+channels are the arrays to show, "ARRAY", "ARRAY:C" or "NAME=ARRAY"; default: the active scalars.
+time chooses the nearest time step; q is the solution file of a PLOT3D grid. Raises Error.)");
+  module.def(
+      "read",
+      [](const py::object& path) {
+        return read_any(py::cast<std::string>(py::module_::import("os").attr("fspath")(path)));
+      },
+      py::arg("path"), R"(
+Reads any file: returns a Volume, a Mesh, or of a scene file (.json) a Scene. Takes
+"builtin:NAME[:POINTS]" too. Raises Error.)");
+  module.def("load_scene", &load_scene_file, py::arg("path"),
+             "Reads a scene file and its data. Raises Error with the place in the file.");
+  module.def("save_scene", &save_scene_file, py::arg("scene"), py::arg("path"));
+  module.def(
+      "dicom_series",
+      [](const std::filesystem::path& path) {
+        py::list list;
+        for (const DicomSeries& s : list_dicom_series(path)) {
+          py::dict series;
+          series["uid"] = s.uid;
+          series["description"] = s.description;
+          series["modality"] = s.modality;
+          series["shape"] = py::make_tuple(s.slices, s.rows, s.columns);
+          series["unreadable_reason"] = s.unreadable_reason;
+          list.append(series);
+        }
+        return list;
+      },
+      py::arg("path"), "Lists the DICOM series of a folder, as dicts.");
+}
+
+}  // namespace pellucid::python

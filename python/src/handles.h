@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "pellucid/io/channel_source.h"
+#include "pellucid/io/field_source.h"
+#include "pellucid/io/mesh_source.h"
+#include "pellucid/io/transfer_function_description.h"
+#include "pellucid/scene/channels.h"
+#include "pellucid/scene/label_volume.h"
+#include "pellucid/scene/mesh_channels.h"
+
+/// What the Python classes of data and functions hold: the library's shared objects, and what a
+/// saved scene says about them.
+namespace pellucid::python {
+
+/// Python's Volume.
+struct VolumeHandle {
+  std::shared_ptr<const Volume> volume;
+  /// The axes of the array that are the volume's x, y and z (GridValues::axes).
+  std::array<std::size_t, 3> axes{2, 1, 0};
+  std::optional<FieldSource> source{};  ///< none: an array
+};
+
+/// Python's Channels.
+struct ChannelsHandle {
+  std::shared_ptr<const Channels> channels;
+  std::vector<ChannelSource> sources{};  ///< empty: arrays
+};
+
+/// Python's Mesh.
+struct MeshHandle {
+  std::shared_ptr<const MeshChannels> mesh;
+  std::optional<MeshSource> source{};  ///< none: arrays
+};
+
+/// Python's LabelVolume.
+struct LabelHandle {
+  std::shared_ptr<const LabelVolume> labels;
+  std::optional<FieldSource> source{};  ///< none: an array
+};
+
+/// Python's LabelMask. The functions of the choices are those of the mask.
+struct MaskHandle {
+  std::shared_ptr<const LabelMask> mask;
+  std::optional<FieldSource> source{};
+};
+
+/// Python's Gaussians: a function of several variables as written and as made.
+struct GaussiansHandle {
+  std::shared_ptr<const MultivariateTransferFunction> function;
+  MultivariateDescription description;
+  std::vector<std::string> channels;
+};
+
+/// Python's OpacityTable. It becomes points when the tolerance of a scene is known; `fitted` keeps
+/// the last ones, so that frames with the same points share them.
+struct OpacityTableHandle {
+  OpacityTable table;
+  mutable std::shared_ptr<const TransferFunction> fitted{};
+};
+
+}  // namespace pellucid::python

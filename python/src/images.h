@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <memory>
+#include <optional>
+
+#include "common.h"
+#include "pellucid/cpu/render.h"
+#include "pellucid/scene/image.h"
+
+namespace pellucid::python {
+
+/// Python's Image.
+struct ImageHandle {
+  std::shared_ptr<const Image> image;
+  std::optional<Rgb<double>> background{};  ///< of the scene
+  double tolerance = 0;                     ///< 0: no error is known
+  RenderReport report{};
+};
+
+}  // namespace pellucid::python

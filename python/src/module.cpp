@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "common.h"
+#include "pellucid/base/version.h"
+#include "pellucid/cpu/render.h"
+
+PYBIND11_MODULE(_pellucid, module) {
+  using namespace pellucid::python;
+  module.doc() = "The compiled part of the package pellucid; import pellucid.";
+  module.attr("__version__") = PELLUCID_VERSION_STRING;
+  py::register_exception<pellucid::Error>(module, "Error", PyExc_ValueError).attr("__doc__") =
+      "A fault that the caller can mend: one line says what, where, and what to do.";
+  py::register_exception<pellucid::Cancelled>(module, "Cancelled", PyExc_RuntimeError)
+      .attr("__doc__") = "A frame was cancelled.";
+  // In the order in which signatures name each other.
+  bind_volumes(module);
+  bind_transfer_functions(module);
+  bind_labels(module);
+  bind_meshes(module);
+  bind_gaussians(module);
+  bind_foreign_functions(module);
+  bind_histograms(module);
+  bind_images(module);
+  bind_scenes(module);
+  bind_renderers(module);
+  bind_files(module);
+  bind_segments(module);
+}

@@ -1,0 +1,440 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "scenes.h"
+
+#include <string>
+#include <utility>
+
+#include "handles.h"
+#include "images.h"
+#include "pellucid/scene/defaults.h"
+#include "pellucid/scene/view_camera.h"
+
+namespace pellucid::python {
+
+namespace {
+
+std::string text_of(const py::object& object, const std::string& what) {
+  if (!py::isinstance<py::str>(object)) {
+    throw Error(what + ": expected a text, got " + short_repr(object));
+  }
+  return py::cast<std::string>(object);
+}
+
+/// Returns what `from_name` finds for a text. Throws Error that lists `names`.
+template <class FromName>
+auto named(const py::object& object, const std::string& what, const char* names,
+           FromName&& from_name) {
+  const auto found = from_name(text_of(object, what));
+  if (!found) throw Error(what + ": expected " + names + ", got " + short_repr(object));
+  return *found;
+}
+
+/// Returns the index of a text in a list of texts.
+template <std::size_t n>
+std::size_t choice(const py::object& object, const std::string& what,
+                   const char* const (&names)[n]) {
+  const std::string text = text_of(object, what);
+  std::string list;
+  for (std::size_t i = 0; i < n; ++i) {
+    if (text == names[i]) return i;
+    list += (i == 0 ? "\"" : ", \"") + std::string(names[i]) + "\"";
+  }
+  throw Error(what + ": expected one of " + list + ", got " + short_repr(object));
+}
+
+int integer_of(const py::object& object, const std::string& what) {
+  const int number = py::isinstance<py::bool_>(object) ? -1
+                     : PyLong_Check(object.ptr()) != 0 || PyIndex_Check(object.ptr()) != 0
+                         ? static_cast<int>(PyNumber_AsSsize_t(object.ptr(), nullptr))
+                         : -1;
+  if (PyErr_Occurred() != nullptr || number < 0) {
+    PyErr_Clear();
+    throw Error(what + ": expected a whole number from 0, got " + short_repr(object));
+  }
+  return number;
+}
+
+Camera camera_of(const py::object& object) {
+  static constexpr const char* const projections[] = {"perspective", "orthographic"};
+  Camera camera;
+  camera.projection = choice(object.attr("projection"), "camera.projection", projections) == 0
+                          ? Projection::perspective
+                          : Projection::orthographic;
+  camera.position = vector_of(object.attr("position"), "camera.position");
+  camera.focal_point = vector_of(object.attr("focal_point"), "camera.focal_point");
+  camera.up = vector_of(object.attr("up"), "camera.up");
+  camera.vertical_angle = number_of(object.attr("vertical_angle"), "camera.vertical_angle");
+  camera.parallel_scale = number_of(object.attr("parallel_scale"), "camera.parallel_scale");
+  return camera;
+}
+
+/// Returns the kind of a light or a clip. Throws Error for other objects.
+std::string kind_of(const py::handle& object, const std::string& what, const char* expected) {
+  if (!py::hasattr(object, "_kind")) {
+    throw Error(what + ": expected " + expected + ", got " + short_repr(object));
+  }
+  return py::cast<std::string>(object.attr("_kind"));
+}
+
+Light light_of(const py::handle& object, const std::string& what) {
+  const std::string kind = kind_of(object, what, "HeadLight, DirectionalLight or PointLight");
+  Light light;
+  light.color = color_of(object.attr("color"), what + ".color");
+  if (kind == "directional") {
+    light.kind = DirectionalLight{vector_of(object.attr("direction"), what + ".direction")};
+  } else if (kind == "point") {
+    light.kind = PointLight{vector_of(object.attr("position"), what + ".position")};
+  }
+  return light;
+}
+
+Clip clip_of(const py::handle& object, const std::string& what) {
+  static constexpr const char* const sides[] = {"inside", "outside"};
+  const std::string kind = kind_of(object, what, "ClipPlane, ClipBox, ClipSphere or ClipCylinder");
+  const auto vector = [&](const char* name) {
+    return vector_of(object.attr(name), what + "." + name);
+  };
+  const auto radius = [&] { return number_of(object.attr("radius"), what + ".radius"); };
+  Clip clip;
+  clip.keep_inside = choice(object.attr("keep"), what + ".keep", sides) == 0;
+  if (kind == "plane") {
+    clip.shape = ClipPlane{vector("point"), vector("normal")};
+  } else if (kind == "box") {
+    clip.shape = ClipBox{vector("lower"), vector("upper")};
+  } else if (kind == "sphere") {
+    clip.shape = ClipSphere{vector("center"), radius()};
+  } else {
+    clip.shape = ClipCylinder{vector("start"), vector("end"), radius()};
+  }
+  return clip;
+}
+
+template <class Read>
+auto list_of(const py::object& list, const std::string& what, Read&& read) {
+  std::vector<decltype(read(list, what))> result;
+  if (!py::isinstance<py::iterable>(list)) {
+    throw Error(what + ": expected a list, got " + short_repr(list));
+  }
+  for (const py::handle entry : list) {
+    result.push_back(read(entry, what + " " + std::to_string(result.size() + 1)));
+  }
+  return result;
+}
+
+Shading shading_of(const py::object& object, const std::string& what) {
+  static constexpr const char* const gradients[] = {"smooth", "field"};
+  const auto number = [&](const char* name) {
+    return number_of(object.attr(name), what + "." + name);
+  };
+  Shading shading;
+  shading.ambient = number("ambient");
+  shading.diffuse = number("diffuse");
+  shading.specular = number("specular");
+  shading.power = number("power");
+  shading.gradient = choice(object.attr("gradient"), what + ".gradient", gradients) == 0
+                         ? GradientKind::smooth
+                         : GradientKind::field;
+  shading.flatness = number("flatness");
+  shading.channel = integer_of(object.attr("channel"), what + ".channel");
+  return shading;
+}
+
+std::shared_ptr<const TransferFunction> colors_of(const py::object& object,
+                                                  const std::string& what) {
+  if (object.is_none()) return nullptr;
+  if (!py::isinstance<TransferFunction>(object)) {
+    throw Error(what + ": expected a TransferFunction or None, got " + short_repr(object));
+  }
+  return py::cast<std::shared_ptr<TransferFunction>>(object);
+}
+
+Isosurface isosurface_of(const py::handle& object, const std::string& what) {
+  Isosurface surface;
+  surface.value = number_of(object.attr("value"), what + ".value");
+  surface.opacity = number_of(object.attr("opacity"), what + ".opacity");
+  surface.color = color_of(object.attr("color"), what + ".color");
+  surface.colors = colors_of(object.attr("colors"), what + ".colors");
+  surface.channel = integer_of(object.attr("channel"), what + ".channel");
+  surface.color_channel = integer_of(object.attr("color_channel"), what + ".color_channel");
+  return surface;
+}
+
+Slice slice_of(const py::handle& object, const std::string& what) {
+  Slice slice;
+  slice.point = vector_of(object.attr("point"), what + ".point");
+  slice.normal = vector_of(object.attr("normal"), what + ".normal");
+  slice.opacity = number_of(object.attr("opacity"), what + ".opacity");
+  slice.colors = colors_of(object.attr("colors"), what + ".colors");
+  slice.channel = integer_of(object.attr("channel"), what + ".channel");
+  return slice;
+}
+
+/// Three rows of four numbers, or four as of a 4 x 4 matrix.
+Affine<double> transform_of(const py::object& object, const std::string& what) {
+  const auto rows = py::array_t<double, py::array::c_style | py::array::forcecast>::ensure(object);
+  if (!rows) PyErr_Clear();
+  if (!rows || rows.ndim() != 2 || rows.shape(1) != 4 || rows.shape(0) < 3 || rows.shape(0) > 4) {
+    throw Error(what + ": expected three rows of four numbers, got " + short_repr(object));
+  }
+  const bool is_affine = rows.shape(0) == 3 || (rows.at(3, 0) == 0 && rows.at(3, 1) == 0 &&
+                                                rows.at(3, 2) == 0 && rows.at(3, 3) == 1);
+  if (!is_affine) throw Error(what + ": the last row of an affine map is 0, 0, 0, 1");
+  Affine<double> map;
+  for (py::ssize_t c = 0; c < 3; ++c) {
+    map.matrix.column[c] = {rows.at(0, c), rows.at(1, c), rows.at(2, c)};
+  }
+  map.translation = {rows.at(0, 3), rows.at(1, 3), rows.at(2, 3)};
+  return map;
+}
+
+/// Puts a layer's function into its content and its description. Opacity tables get points for the
+/// default tolerance; complete_scene() makes them again.
+class FunctionReader {
+ public:
+  FunctionReader(const py::object& function, const std::string& what)
+      : object_(function), what_(what) {}
+
+  std::shared_ptr<const TransferFunction> univariate(LayerDescription& description) const {
+    if (py::isinstance<TransferFunction>(object_)) {
+      auto function = py::cast<std::shared_ptr<TransferFunction>>(object_);
+      description.transfer_function = function->points();
+      return function;
+    }
+    if (py::isinstance<OpacityTableHandle>(object_)) {
+      const auto& handle = py::cast<const OpacityTableHandle&>(object_);
+      description.transfer_function = handle.table;
+      if (!handle.fitted) {
+        handle.fitted = std::make_shared<const TransferFunction>(
+            make_transfer_function(handle.table, default_tolerance));
+      }
+      return handle.fitted;
+    }
+    throw Error(what_ + ": expected a TransferFunction or an OpacityTable, got " +
+                short_repr(object_));
+  }
+
+  std::shared_ptr<const MultivariateTransferFunction> multivariate(
+      LayerDescription& description) const {
+    if (!is_multivariate()) {
+      throw Error(what_ + ": several variables need Gaussians, got " + short_repr(object_));
+    }
+    const auto& handle = py::cast<const GaussiansHandle&>(object_);
+    description.transfer_function = handle.description;
+    return handle.function;
+  }
+
+  bool is_multivariate() const { return py::isinstance<GaussiansHandle>(object_); }
+
+ private:
+  const py::object& object_;
+  const std::string& what_;
+};
+
+LayerContent content_of(const py::object& layer, const std::string& what,
+                        LayerDescription& description) {
+  const py::object data = layer.attr("data");
+  const std::string function_name = what + ": transfer_function";
+  const py::object function_object = layer.attr("transfer_function");
+  const FunctionReader function(function_object, function_name);
+  const py::object mask = layer.attr("mask");
+  if (py::isinstance<VolumeHandle>(data)) {
+    const auto& handle = py::cast<const VolumeHandle&>(data);
+    if (handle.source) description.field = *handle.source;
+    VolumeContent content{handle.volume, function.univariate(description)};
+    if (!mask.is_none()) {
+      const auto& masking = py::cast<const MaskHandle&>(mask);
+      content.mask = masking.mask;
+      description.mask.emplace();
+      if (masking.source) description.mask->field = *masking.source;
+      for (const LabelMask::Choice& c : masking.mask->choices()) {
+        description.mask->choices.push_back({c.label, c.transfer_function->points()});
+      }
+    }
+    return content;
+  }
+  if (py::isinstance<ChannelsHandle>(data)) {
+    const auto& handle = py::cast<const ChannelsHandle&>(data);
+    description.channels = handle.sources;
+    return ChannelsContent{handle.channels, function.multivariate(description)};
+  }
+  if (py::isinstance<MeshHandle>(data)) {
+    const auto& handle = py::cast<const MeshHandle&>(data);
+    description.mesh = handle.source.value_or(MeshSource{});
+    MeshContent content{handle.mesh, {}};
+    if (function.is_multivariate()) {
+      content.transfer_function = function.multivariate(description);
+    } else {
+      content.transfer_function = function.univariate(description);
+    }
+    return content;
+  }
+  if (py::isinstance<LabelHandle>(data)) {
+    const auto& handle = py::cast<const LabelHandle&>(data);
+    const py::object table = layer.attr("labels");
+    if (!py::isinstance<LabelTable>(table)) {
+      throw Error(what + ": labels: expected a LabelTable, got " + short_repr(table));
+    }
+    LabelContent content{handle.labels, py::cast<std::shared_ptr<LabelTable>>(table)};
+    description.labels =
+        LabelSource{handle.source.value_or(FieldSource{}), content.table->styles(), {}, {}};
+    return content;
+  }
+  throw Error(what + ": data: expected a Volume, Channels, a Mesh or a LabelVolume, got " +
+              short_repr(data));
+}
+
+Layer layer_of(const py::object& object, const std::string& what, LayerDescription& description) {
+  Layer layer;
+  layer.content = content_of(object, what, description);
+  layer.name = text_of(object.attr("name"), what + ": name");
+  layer.visible = py::cast<bool>(py::bool_(object.attr("visible")));
+  layer.transform = transform_of(object.attr("transform"), what + ": transform");
+  layer.clips = list_of(object.attr("clips"), what + ": clip", clip_of);
+  if (const py::object projection = object.attr("projection"); !projection.is_none()) {
+    layer.projection =
+        named(projection, what + ": projection", "\"maximum\", \"minimum\", \"mean\" or \"sum\"",
+              [](const std::string& name) { return projection_from_name(name); });
+  }
+  if (const py::object shading = object.attr("shading"); !shading.is_none()) {
+    layer.shading = shading_of(shading, what + ": shading");
+  }
+  if (const py::object opacity = object.attr("gradient_opacity"); !opacity.is_none()) {
+    if (!py::isinstance<GradientOpacity>(opacity)) {
+      throw Error(what + ": gradient_opacity: expected a GradientOpacity, got " +
+                  short_repr(opacity));
+    }
+    layer.gradient_opacity = py::cast<std::shared_ptr<GradientOpacity>>(opacity);
+  }
+  layer.isosurfaces = list_of(object.attr("isosurfaces"), what + ": isosurface", isosurface_of);
+  layer.slices = list_of(object.attr("slices"), what + ": slice", slice_of);
+  return layer;
+}
+
+Integration integration_of(const py::object& object) {
+  static constexpr const char* const grades[] = {"estimated", "proved"};
+  static constexpr const char* const precisions[] = {"automatic", "float32", "float64"};
+  Integration integration;
+  integration.tolerance = number_of(object.attr("tolerance"), "tolerance");
+  integration.grade =
+      choice(object.attr("grade"), "grade", grades) == 0 ? Grade::estimated : Grade::proved;
+  integration.method = named(object.attr("method"), "method", "\"exact\" or a sampling method",
+                             [](const std::string& name) { return method_from_name(name); });
+  integration.precision =
+      static_cast<Precision>(choice(object.attr("precision"), "precision", precisions));
+  integration.step = number_of(object.attr("step"), "step");
+  return integration;
+}
+
+/// Gives each opacity table the points that the scene's tolerance wants, or the last ones if they
+/// are the same.
+void fit_tables(PythonScene& made, const py::object& layers) {
+  fit_opacity_tables(made.description, made.scene);
+  std::size_t i = 0;
+  for (const py::handle object : layers) {
+    Layer& layer = made.scene.layers[i++];
+    const py::object function = object.attr("transfer_function");
+    if (!py::isinstance<OpacityTableHandle>(function)) continue;
+    const auto& handle = py::cast<const OpacityTableHandle&>(function);
+    const auto share = [&](std::shared_ptr<const TransferFunction>& fitted) {
+      const auto same = [](const TransferFunction::Point& a, const TransferFunction::Point& b) {
+        return a.value == b.value && a.extinction == b.extinction && a.color == b.color;
+      };
+      if (handle.fitted && handle.fitted->relative_error() == fitted->relative_error() &&
+          std::ranges::equal(handle.fitted->points(), fitted->points(), same)) {
+        fitted = handle.fitted;
+      } else {
+        handle.fitted = fitted;
+      }
+    };
+    if (auto* volume = std::get_if<VolumeContent>(&layer.content)) share(volume->transfer_function);
+    if (auto* mesh = std::get_if<MeshContent>(&layer.content)) {
+      share(std::get<std::shared_ptr<const TransferFunction>>(mesh->transfer_function));
+    }
+  }
+}
+
+}  // namespace
+
+PythonScene read_scene(const py::object& object) {
+  PythonScene made;
+  Scene& scene = made.scene;
+  made.description.layers.clear();
+  for (const py::handle layer : object.attr("layers")) {
+    const std::string what = "layer " + std::to_string(scene.layers.size() + 1);
+    if (!py::hasattr(layer, "transfer_function")) {
+      throw Error(what + ": expected a pellucid.Layer, got " + short_repr(layer));
+    }
+    LayerDescription& description = made.description.layers.emplace_back();
+    scene.layers.push_back(layer_of(py::reinterpret_borrow<py::object>(layer), what, description));
+  }
+  const py::object size = object.attr("size");
+  if (!py::isinstance<py::sequence>(size) || py::len(size) != 2) {
+    throw Error("size: expected (width, height) in pixels, got " + short_repr(size));
+  }
+  scene.size = {integer_of(size[py::int_(0)], "size: width"),
+                integer_of(size[py::int_(1)], "size: height")};
+  scene.lights = list_of(object.attr("lights"), "light", light_of);
+  scene.clips = list_of(object.attr("clips"), "clip", clip_of);
+  if (const py::object background = object.attr("background"); !background.is_none()) {
+    scene.background = color_of(background, "background");
+  }
+  scene.samples = integer_of(object.attr("samples"), "samples");
+  scene.integration = integration_of(object.attr("integration"));
+  if (const py::object backdrop = object.attr("backdrop"); !backdrop.is_none()) {
+    scene.backdrop = py::cast<const ImageHandle&>(backdrop).image;
+  }
+  if (const py::object camera = object.attr("camera"); !camera.is_none()) {
+    scene.camera = camera_of(camera);
+    made.has_camera = true;
+  }
+  check_data(scene);
+  return made;
+}
+
+Scene complete_scene(const py::object& object) {
+  PythonScene made = read_scene(object);
+  check_integration(made.scene);
+  fit_tables(made, object.attr("layers"));
+  if (!made.has_camera) {
+    const py::gil_scoped_release released;
+    made.scene.camera = default_camera(visible_corners(made.scene, all_cores()), made.scene.size);
+  }
+  return std::move(made.scene);
+}
+
+py::object to_python(const Camera& camera) {
+  return py::module_::import("pellucid.scene")
+      .attr("Camera")(
+          to_tuple(camera.position), to_tuple(camera.focal_point), to_tuple(camera.up),
+          camera.vertical_angle, camera.parallel_scale,
+          camera.projection == Projection::perspective ? "perspective" : "orthographic");
+}
+
+void bind_scenes(py::module_& module) {
+  module.def(
+      "default_camera",
+      [](const py::object& object) { return to_python(complete_scene(object).camera); },
+      py::arg("scene"), R"(
+Returns the scene's camera; if it has none, the one that shows all that is visible.)");
+  module.def(
+      "view_camera",
+      [](const py::object& object, const std::string& view) {
+        const auto& names = view_names();
+        if (std::ranges::find(names, view) == names.end()) {
+          throw Error(
+              "view: expected front, back, left, right, top, bottom or oblique, "
+              "got \"" +
+              view + "\"");
+        }
+        const Scene scene = complete_scene(object);
+        const py::gil_scoped_release released;
+        const Camera camera = view_camera(visible_corners(scene, all_cores()), view, scene.size);
+        const py::gil_scoped_acquire acquired;
+        return to_python(camera);
+      },
+      py::arg("scene"), py::arg("view"), R"(
+Returns a camera that looks at the scene from a side: "front", "back", "left", "right", "top",
+"bottom" of a patient in an LPS world, or "oblique".)");
+}
+
+}  // namespace pellucid::python

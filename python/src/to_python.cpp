@@ -1,0 +1,177 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <string>
+#include <utility>
+
+#include "handles.h"
+#include "images.h"
+#include "scenes.h"
+
+namespace pellucid::python {
+
+namespace {
+
+/// Makes Python's objects of the parts of a scene.
+class Maker {
+ public:
+  py::object light(const Light& light) const {
+    const py::tuple color = to_tuple(light.color);
+    if (const auto* const far = std::get_if<DirectionalLight>(&light.kind)) {
+      return of("DirectionalLight")(to_tuple(far->direction), color);
+    }
+    if (const auto* const point = std::get_if<PointLight>(&light.kind)) {
+      return of("PointLight")(to_tuple(point->position), color);
+    }
+    return of("HeadLight")(color);
+  }
+
+  py::object clip(const Clip& clip) const {
+    const std::string keep = clip.keep_inside ? "inside" : "outside";
+    if (const auto* const plane = std::get_if<ClipPlane>(&clip.shape)) {
+      return of("ClipPlane")(to_tuple(plane->point), to_tuple(plane->normal),
+                             py::arg("keep") = keep);
+    }
+    if (const auto* const box = std::get_if<ClipBox>(&clip.shape)) {
+      return of("ClipBox")(to_tuple(box->lower), to_tuple(box->upper), py::arg("keep") = keep);
+    }
+    if (const auto* const sphere = std::get_if<ClipSphere>(&clip.shape)) {
+      return of("ClipSphere")(to_tuple(sphere->center), sphere->radius, py::arg("keep") = keep);
+    }
+    const auto& cylinder = std::get<ClipCylinder>(clip.shape);
+    return of("ClipCylinder")(to_tuple(cylinder.start), to_tuple(cylinder.end), cylinder.radius,
+                              py::arg("keep") = keep);
+  }
+
+  py::object integration(const Integration& integration) const {
+    static constexpr const char* const precisions[] = {"automatic", "float32", "float64"};
+    return of("Integration")(
+        integration.tolerance, integration.grade == Grade::proved ? "proved" : "estimated",
+        std::string(method_name(integration.method)),
+        precisions[static_cast<std::size_t>(integration.precision)], integration.step);
+  }
+
+  py::object layer(const Layer& layer, const LayerDescription& description) const {
+    py::dict parts;
+    parts["data"] = data(layer, description);
+    const py::object function = this->function(layer, description);
+    if (!function.is_none()) parts["transfer_function"] = function;
+    parts["name"] = layer.name;
+    parts["visible"] = layer.visible;
+    const auto& map = layer.transform;
+    const auto row = [&](int r) {
+      return py::make_tuple(map.matrix.column[0][r], map.matrix.column[1][r],
+                            map.matrix.column[2][r], map.translation[r]);
+    };
+    parts["transform"] = py::make_tuple(row(0), row(1), row(2));
+    py::list clips, isosurfaces, slices;
+    for (const Clip& each : layer.clips) clips.append(clip(each));
+    for (const Isosurface& s : layer.isosurfaces) {
+      isosurfaces.append(of("Isosurface")(s.value, to_tuple(s.color), s.opacity, colors(s.colors),
+                                          s.channel, s.color_channel));
+    }
+    for (const Slice& s : layer.slices) {
+      slices.append(of("Slice")(to_tuple(s.point), to_tuple(s.normal), s.opacity, colors(s.colors),
+                                s.channel));
+    }
+    parts["clips"] = clips;
+    parts["isosurfaces"] = isosurfaces;
+    parts["slices"] = slices;
+    if (layer.projection) parts["projection"] = std::string(projection_name(*layer.projection));
+    if (layer.shading) parts["shading"] = shading(*layer.shading);
+    if (layer.gradient_opacity) {
+      parts["gradient_opacity"] = std::const_pointer_cast<GradientOpacity>(layer.gradient_opacity);
+    }
+    if (const auto* const labels = std::get_if<LabelContent>(&layer.content)) {
+      parts["labels"] = held(labels->table);
+    }
+    const auto* const volume = std::get_if<VolumeContent>(&layer.content);
+    if (volume != nullptr && volume->mask) {
+      parts["mask"] = MaskHandle{volume->mask, description.mask->field};
+    }
+    return of("Layer")(**parts);
+  }
+
+  py::object of(const char* name) const { return scene_.attr(name); }
+
+ private:
+  static py::object data(const Layer& layer, const LayerDescription& description) {
+    if (const auto* const volume = std::get_if<VolumeContent>(&layer.content)) {
+      return py::cast(VolumeHandle{volume->volume, {2, 1, 0}, description.field});
+    }
+    if (const auto* const channels = std::get_if<ChannelsContent>(&layer.content)) {
+      return py::cast(ChannelsHandle{channels->channels, layer_channels(description)});
+    }
+    if (const auto* const mesh = std::get_if<MeshContent>(&layer.content)) {
+      return py::cast(MeshHandle{mesh->mesh, description.mesh});
+    }
+    return py::cast(
+        LabelHandle{std::get<LabelContent>(layer.content).labels, description.labels->field});
+  }
+
+  static py::object function(const Layer& layer, const LayerDescription& description) {
+    const auto& described = description.transfer_function;
+    if (described) {
+      if (const auto* const table = std::get_if<OpacityTable>(&*described)) {
+        return py::cast(OpacityTableHandle{*table});
+      }
+    }
+    const auto gaussians = [&](const std::shared_ptr<const MultivariateTransferFunction>& made) {
+      GaussiansHandle handle{made, {}, function_channels(description)};
+      if (described) {
+        handle.description = std::get<MultivariateDescription>(*described);
+      } else {
+        handle.description.tables.push_back(
+            {handle.channels.front(), made->tables().front().function.points()});
+      }
+      return py::cast(std::move(handle));
+    };
+    if (const auto* const volume = std::get_if<VolumeContent>(&layer.content)) {
+      return py::cast(held(volume->transfer_function));
+    }
+    if (const auto* const channels = std::get_if<ChannelsContent>(&layer.content)) {
+      return gaussians(channels->transfer_function);
+    }
+    const auto* const mesh = std::get_if<MeshContent>(&layer.content);
+    if (mesh == nullptr) return py::none();
+    const auto* const one =
+        std::get_if<std::shared_ptr<const TransferFunction>>(&mesh->transfer_function);
+    if (one != nullptr) return py::cast(held(*one));
+    return gaussians(
+        std::get<std::shared_ptr<const MultivariateTransferFunction>>(mesh->transfer_function));
+  }
+
+  static py::object colors(const std::shared_ptr<const TransferFunction>& function) {
+    return function ? py::cast(held(function)) : py::object(py::none());
+  }
+
+  py::object shading(const Shading& s) const {
+    return of("Shading")(s.ambient, s.diffuse, s.specular, s.power,
+                         std::string(gradient_kind_name(s.gradient)), s.flatness, s.channel);
+  }
+
+  py::module_ scene_ = py::module_::import("pellucid.scene");
+};
+
+}  // namespace
+
+py::object to_python(const Scene& scene, const SceneDescription& description) {
+  const Maker make;
+  py::list layers, lights, clips;
+  for (std::size_t i = 0; i < scene.layers.size(); ++i) {
+    layers.append(make.layer(scene.layers[i], description.layers[i]));
+  }
+  for (const Light& light : scene.lights) lights.append(make.light(light));
+  for (const Clip& clip : scene.clips) clips.append(make.clip(clip));
+  py::dict parts;
+  parts["layers"] = layers;
+  parts["lights"] = lights;
+  parts["clips"] = clips;
+  if (description.camera) parts["camera"] = to_python(*description.camera);
+  parts["size"] = py::make_tuple(scene.size.width, scene.size.height);
+  parts["samples"] = scene.samples;
+  parts["integration"] = make.integration(scene.integration);
+  if (scene.background) parts["background"] = to_tuple(*scene.background);
+  if (scene.backdrop) parts["backdrop"] = ImageHandle{scene.backdrop};
+  return make.of("Scene")(**parts);
+}
+
+}  // namespace pellucid::python
