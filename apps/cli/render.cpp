@@ -57,6 +57,9 @@ void print_notes(const RenderArguments& arguments, const PreparedScene& prepared
         "FILE.json reads it)",
         prepared.scene.layers.front().projection ? "greys over the range of the values"
                                                  : "one made from the histogram"));
+    if (prepared.scene.layers.front().shading && arguments.light.shading.empty()) {
+      print_note("the data have surfaces: shown in light (--shading off leaves it out)");
+    }
   }
 }
 

@@ -33,6 +33,7 @@ struct RenderArguments {
   VolumeOptions volume;
   MeshOptions mesh;
 
+  bool is_scene() const;
   /// Whether there is no layer but those of --layer and --labels.
   bool has_only_added_layers() const {
     return input.empty() && channels.empty() && !(layers.empty() && labels.empty());

@@ -14,6 +14,7 @@
 #include "pellucid/cpu/threads.h"
 #include "pellucid/io/atomic_file.h"
 #include "pellucid/io/image_files.h"
+#include "pellucid/scene/defaults.h"
 #include "pellucid/scene/labels.h"
 #include "pellucid/scene/view_camera.h"
 #include "render.h"
@@ -48,6 +49,10 @@ std::vector<NamedFile> output_files(const RenderArguments& arguments) {
 }
 
 }  // namespace
+
+bool RenderArguments::is_scene() const {
+  return extension_of(input) == ".json" && !is_volume_json(input);
+}
 
 std::string source_text(const RenderArguments& arguments) {
   std::string text = arguments.input;
@@ -278,8 +283,7 @@ SceneDescription describe(const RenderArguments& arguments,
   SceneDescription description;
   LayerDescription layer;
   const std::filesystem::path input = arguments.input;
-  const bool is_scene = extension_of(input) == ".json" && !is_volume_json(input);
-  if (is_scene) {
+  if (arguments.is_scene()) {
     arguments.volume.refuse("a scene; write it into the scene's field");
     arguments.mesh.refuse("a scene; write it into the scene's mesh");
     description = parse_scene(read_text_file(input), arguments.input, input.parent_path());
@@ -318,7 +322,7 @@ SceneDescription describe(const RenderArguments& arguments,
   }
   if (!arguments.backdrop.empty()) {
     description.backdrop = arguments.backdrop;
-    if (arguments.size.empty() && !is_scene) {
+    if (arguments.size.empty() && !arguments.is_scene()) {
       const Image image = read_exr(arguments.backdrop);
       description.size = {image.width, image.height};
     }
@@ -356,10 +360,6 @@ std::vector<NamedFile> data_files(const SceneDescription& description) {
     files.push_back({"--backdrop", description.backdrop.string()});
   }
   return files;
-}
-
-bool shows_surfaces(const LayerDescription& layer) {
-  return !layer.isosurfaces.empty() || !layer.slices.empty();
 }
 
 /// Of the volumes of a layer that come from files and are shown as fields.
@@ -423,6 +423,25 @@ void complete(const Layer& layer, LayerDescription& description) {
   }
 }
 
+/// Shows the data of a file alone in light where they have surfaces.
+void take_default_look(const RenderArguments& arguments, PreparedScene& prepared) {
+  if (prepared.transfer_function_from != "default" || !arguments.light.shading.empty() ||
+      arguments.is_scene() || prepared.scene.integration.method != Method::exact) {
+    return;
+  }
+  Layer& layer = prepared.scene.layers.front();
+  auto* const content = std::get_if<VolumeContent>(&layer.content);
+  if (content == nullptr || content->mask || layer.projection || layer.shading) return;
+  DefaultLook look = default_look(*content->volume);
+  if (!look.shading) return;
+  LayerDescription& description = prepared.description.layers.front();
+  layer.shading = look.shading;
+  description.shading.emplace().values = *look.shading;
+  description.transfer_function = look.transfer_function.points();
+  content->transfer_function =
+      std::make_shared<const TransferFunction>(std::move(look.transfer_function));
+}
+
 }  // namespace
 
 void set_scene_tolerance(PreparedScene& prepared, double tolerance) {
@@ -462,7 +481,7 @@ PreparedScene prepare(const RenderArguments& arguments) {
                                     : !arguments.preset.empty()    ? "--preset " + arguments.preset
                                     : !arguments.gaussians.empty() ? "--gaussian"
                                     : description.layers.front().transfer_function ? arguments.input
-                                    : shows_surfaces(description.layers.front())   ? "none"
+                                    : description.layers.front().shows_surfaces()  ? "none"
                                                                                    : "default";
   SceneDescription rendered = description;
   if (arguments.reference && integration.tolerance > reference_tolerance) {
@@ -500,6 +519,7 @@ PreparedScene prepare(const RenderArguments& arguments) {
                 prepared);
   }
   scene.integration = integration;
+  take_default_look(arguments, prepared);
   check_data(scene);
   if (!arguments.view.empty()) {
     scene.camera =

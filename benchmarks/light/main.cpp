@@ -3,7 +3,6 @@
 // What light and surfaces cost: frames in light beside the same unlit ones, and isosurfaces; and
 // how far VTK's picture in the same light is from the exact one at finer and finer steps.
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -16,6 +15,7 @@
 
 #include "benchmarks/support/document.h"
 #include "benchmarks/support/environment.h"
+#include "benchmarks/support/frame_arguments.h"
 #include "benchmarks/support/interleave.h"
 #include "benchmarks/vtk/vtk_contenders.h"
 #include "pellucid/cpu/render.h"
@@ -27,10 +27,7 @@ namespace {
 
 using namespace pellucid;
 
-struct Arguments {
-  int size = 512, points = 256, threads = 2, rounds = 5;
-  bool tiny = false;
-};
+using Arguments = bench::FrameArguments;
 
 struct Subject {
   std::string name;
@@ -159,12 +156,7 @@ void compare_with_vtk(const Subject& subject, const Arguments& arguments) {
   }
 }
 
-void run(Arguments arguments) {
-  if (arguments.tiny) {
-    arguments.size = std::min(arguments.size, 24);
-    arguments.points = 24;
-    arguments.rounds = 1;
-  }
+void run(const Arguments& arguments) {
   std::printf("%s", bench::to_markdown(bench::environment("")).c_str());
   measure({"spike", scenes::builtin("marschner_lobb", arguments.points),
            scenes::transfer(
@@ -187,25 +179,6 @@ void run(Arguments arguments) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  Arguments arguments;
-  CLI::App app("Frames in light beside unlit ones, and isosurfaces");
-  app.add_option("--size", arguments.size, "width and height of the images")
-      ->capture_default_str()
-      ->check(CLI::Range(4, 4096));
-  app.add_option("--points", arguments.points, "data values per axis of the built-in field")
-      ->capture_default_str()
-      ->check(CLI::Range(16, 1024));
-  app.add_option("--threads", arguments.threads, "threads")->capture_default_str();
-  app.add_option("--repeats", arguments.rounds, "rounds of which the median is taken")
-      ->capture_default_str()
-      ->check(CLI::Range(1, 100));
-  app.add_flag("--tiny", arguments.tiny, "small data: to try this program");
-  CLI11_PARSE(app, argc, argv);
-  try {
-    run(arguments);
-  } catch (const std::exception& error) {
-    std::fprintf(stderr, "bench_light: %s\n", error.what());
-    return 1;
-  }
-  return 0;
+  return bench::time_frames(argc, argv, "bench_light",
+                            "Frames in light beside unlit ones, and isosurfaces", 24, 24, run);
 }

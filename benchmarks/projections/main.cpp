@@ -3,7 +3,6 @@
 // The maximum projection beside that of VTK's fixed-point mapper: time, and how far VTK's picture
 // is from the exact one at finer and finer steps.
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
@@ -17,6 +16,7 @@
 
 #include "benchmarks/support/document.h"
 #include "benchmarks/support/environment.h"
+#include "benchmarks/support/frame_arguments.h"
 #include "benchmarks/support/interleave.h"
 #include "benchmarks/vtk/vtk_contenders.h"
 #include "pellucid/cpu/render.h"
@@ -28,10 +28,7 @@ namespace {
 
 using namespace pellucid;
 
-struct Arguments {
-  int size = 512, points = 256, threads = 2, rounds = 5;
-  bool tiny = false;
-};
+using Arguments = bench::FrameArguments;
 
 /// Thin vessels in noise, of bytes: helices one voxel thick, whose brightness varies.
 scenes::VolumePointer vessels(int points) {
@@ -146,12 +143,7 @@ void compare(const std::string& name, const scenes::VolumePointer& volume,
   }
 }
 
-void run(Arguments arguments) {
-  if (arguments.tiny) {
-    arguments.size = std::min(arguments.size, 32);
-    arguments.points = 32;
-    arguments.rounds = 1;
-  }
+void run(const Arguments& arguments) {
   std::printf("%s", bench::to_markdown(bench::environment("")).c_str());
   compare("vessels", vessels(arguments.points), arguments);
   if (arguments.tiny) return;
@@ -163,25 +155,6 @@ void run(Arguments arguments) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  Arguments arguments;
-  CLI::App app("The maximum projection beside VTK's");
-  app.add_option("--size", arguments.size, "width and height of the images")
-      ->capture_default_str()
-      ->check(CLI::Range(4, 4096));
-  app.add_option("--points", arguments.points, "data values per axis of the made volume")
-      ->capture_default_str()
-      ->check(CLI::Range(16, 1024));
-  app.add_option("--threads", arguments.threads, "threads of both")->capture_default_str();
-  app.add_option("--repeats", arguments.rounds, "rounds of which the median is taken")
-      ->capture_default_str()
-      ->check(CLI::Range(1, 100));
-  app.add_flag("--tiny", arguments.tiny, "small data: to try this program");
-  CLI11_PARSE(app, argc, argv);
-  try {
-    run(arguments);
-  } catch (const std::exception& error) {
-    std::fprintf(stderr, "bench_projections: %s\n", error.what());
-    return 1;
-  }
-  return 0;
+  return bench::time_frames(argc, argv, "bench_projections", "The maximum projection beside VTK's",
+                            32, 32, run);
 }

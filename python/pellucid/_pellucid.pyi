@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from ._image import Comparison
 from ._notes import ImportedTransferFunction, Preset
-from .scene import Camera, Color, Gaussian, Scene
+from .scene import Camera, Color, Gaussian, Scene, Shading
 
 __version__: str
 
@@ -180,6 +180,7 @@ class Renderer:
 
 def builtin_field(name: str, points: int = 128) -> Volume: ...
 def label_count(volume: Volume) -> Optional[int]: ...
+def default_look(volume: Volume) -> Tuple[TransferFunction, Optional[Shading]]: ...
 def default_transfer_function(data: Union[Volume, Mesh]) -> TransferFunction: ...
 def projection_transfer_function(data: Union[Volume, Mesh], projection: str) -> TransferFunction: ...
 def make_preset(name: str, data: Union[Volume, Mesh],

@@ -8,10 +8,21 @@ from typing import Any, Callable, Optional
 
 from . import _pellucid
 from ._pellucid import Channels, Error, Image, LabelVolume, Mesh, Renderer, Volume
-from .scene import Camera, Color, Layer, Scene, Shading
+from .scene import Camera, Color, Layer, Scene, Shading, _data_of
 
 _PLACE_NAMES = ("spacing", "origin", "direction", "coordinates", "centering")
 _LAYER_NAMES = {f.name for f in dataclasses.fields(Layer)} - {"data", "transfer_function"}
+
+
+def _layer_of(data: Any, transfer_function: Any, attributes: dict[str, Any]) -> Layer:
+    """Returns the layer of data alone: in light where they have surfaces, if nobody says how."""
+    shown = {"shading", "projection", "isosurfaces", "slices", "mask", "gradient_opacity"}
+    if transfer_function is None and not shown & set(attributes):
+        data = _data_of(data)
+        if isinstance(data, Volume):
+            transfer_function, shading = _pellucid.default_look(data)
+            return Layer(data, transfer_function, shading=shading, **attributes)
+    return Layer(data, transfer_function, **attributes)
 
 
 def scene_of(data: Any, transfer_function: Any = None, *, preset: Optional[str] = None,
@@ -41,7 +52,7 @@ def scene_of(data: Any, transfer_function: Any = None, *, preset: Optional[str] 
         scene = dataclasses.replace(data)
     else:
         if not isinstance(data, Layer):
-            data = Layer(data, transfer_function, **layer)
+            data = _layer_of(data, transfer_function, layer)
             lit = {each.name for each in _pellucid.presets() if each.lit}
             if preset in lit and data.projection is None and data.shading is None:
                 data.shading = Shading()
@@ -73,7 +84,8 @@ def render(data: Any, transfer_function: Any = None, *, preset: Optional[str] = 
                        takes (an array, an image of nibabel, ITK, xarray, VTK); a VTK or meshio
                        mesh; or the path of a file that read() reads
     transfer_function  a TransferFunction, an OpacityTable, Gaussians or a list of points; without
-                       one it is made from the data
+                       one it is made from the data, and a volume with surfaces is put in light;
+                       shading=None leaves that out
     preset             the name of one of presets(), in its place
     tolerance          largest error of any channel of a pixel, in premultiplied linear light; from
                        1e-7 to 1, default 1/512

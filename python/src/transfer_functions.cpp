@@ -82,6 +82,22 @@ Function default_function(const py::object& data) {
   });
 }
 
+py::tuple look_of(const VolumeHandle& volume) {
+  std::optional<DefaultLook> look;
+  {
+    const py::gil_scoped_release released;
+    look = default_look(*volume.volume);
+  }
+  py::object shading = py::none();
+  if (look->shading) {
+    const Shading& s = *look->shading;
+    shading = py::module_::import("pellucid.scene")
+                  .attr("Shading")(s.ambient, s.diffuse, s.specular, s.power);
+  }
+  return py::make_tuple(std::make_shared<TransferFunction>(std::move(look->transfer_function)),
+                        shading);
+}
+
 Function projection_function(const py::object& data, const std::string& projection) {
   const auto kind = projection_from_name(projection);
   if (!kind) {
@@ -214,6 +230,9 @@ void bind_transfer_functions(py::module_& module) {
   bind_functions(module);
   module.def("default_transfer_function", &default_function, py::arg("data"), R"(
 Returns a transfer function for a good first picture of a Volume or a Mesh.)");
+  module.def("default_look", &look_of, py::arg("volume"), R"(
+Returns (TransferFunction, Shading or None) for a good first picture of a Volume: in light and dense
+where the data have surfaces, as render() shows data alone.)");
   module.def("projection_transfer_function", &projection_function, py::arg("data"),
              py::arg("projection"), R"(
 Returns an opaque ramp from black to white over the range of a projection: "maximum", "minimum",

@@ -16,6 +16,7 @@
 
 PELLUCID_ABSENT(pellucid_integrate_packets, PellucidPacketJob)
 PELLUCID_ABSENT(pellucid_integrate_lit_packets, PellucidPacketJob)
+PELLUCID_ABSENT(pellucid_meet_surfaces, PellucidPacketJob)
 PELLUCID_ABSENT(pellucid_sample_packets, PellucidSamplerJob)
 PELLUCID_ABSENT(pellucid_integrate_gaussian_packets, PellucidGaussianPacketJob)
 PELLUCID_ABSENT(pellucid_integrate_multivariate_cells, PellucidGaussianPacketJob)

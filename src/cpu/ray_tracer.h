@@ -83,6 +83,8 @@ struct TracerTask {
 
 /// Of a volume with a transfer function. Null where packets have no light for it.
 std::unique_ptr<const RayTracer> make_univariate_tracer(const TracerTask& task);
+/// Of a volume's isosurfaces. Null where packets do not suit them, or there is more to be seen.
+std::unique_ptr<const RayTracer> make_surface_tracer(const TracerTask& task);
 /// Of channels with a multivariate transfer function. Null for the method `exact` where packets do
 /// not suit the rays.
 std::unique_ptr<const RayTracer> make_multivariate_tracer(const TracerTask& task);

@@ -51,16 +51,12 @@ TransferFunction function_of(const std::optional<TransferFunctionDescription>& d
   return make_transfer_function(*description, wanted.tolerance, wanted.background);
 }
 
-bool shows_surfaces(const LayerDescription& description) {
-  return !description.isosurfaces.empty() || !description.slices.empty();
-}
-
 /// Of a layer of one variable. Without a function between surfaces it is transparent; slices
 /// without colors take its own.
 template <class Data>
 TransferFunction medium_function(const LayerDescription& description, const Wanted& wanted,
                                  const Data& data) {
-  if (description.transfer_function || !shows_surfaces(description)) {
+  if (description.transfer_function || !description.shows_surfaces()) {
     return function_of(description.transfer_function, wanted, data, description.projection);
   }
   const auto has_no_colors = [](const SliceDescription& slice) { return !slice.colors; };
@@ -85,7 +81,7 @@ ChannelsContent load_channels_content(const LayerDescription& description,
                                       const std::vector<ChannelSource>& sources,
                                       const ParallelFor& parallel) {
   const MultivariateDescription* const function = multivariate(description);
-  const bool transparent = !description.transfer_function && shows_surfaces(description);
+  const bool transparent = !description.transfer_function && description.shows_surfaces();
   if (function == nullptr && !transparent) {
     throw Error(description.transfer_function
                     ? "scene: points in one variable are the function of a field, but here are "
@@ -108,7 +104,7 @@ MeshContent load_mesh_content(const LayerDescription& description, const Wanted&
   const std::vector<std::string> names = function_channels(description);
   if (const MultivariateDescription* const function = multivariate(description)) {
     content.transfer_function = make_multivariate(*function, names, names);
-  } else if (names.size() > 1 && !description.transfer_function && shows_surfaces(description)) {
+  } else if (names.size() > 1 && !description.transfer_function && description.shows_surfaces()) {
     content.transfer_function = transparent_function(names.size());
   } else if (names.size() > 1) {
     throw Error(

@@ -99,8 +99,10 @@ class PointList {
   std::vector<Point> points_;
 };
 
-/// `v` are even in a body that fills a share of a box whose chords have this mean.
-TransferFunction make_default(const std::vector<double>& v, double chord, double filled) {
+/// `v` are even in a body that fills a share of a box whose chords have this mean. `density`
+/// multiplies the extinctions.
+TransferFunction make_default(const std::vector<double>& v, double chord, double filled,
+                              double density = 1) {
   const std::size_t n = v.size();
 
   // The extinction that gives a typical path through all values from index `first` on the optical
@@ -108,7 +110,7 @@ TransferFunction make_default(const std::vector<double>& v, double chord, double
   // wide.
   const auto extinction = [&](double depth, std::size_t first) {
     const double share = filled * static_cast<double>(n - first) / static_cast<double>(n);
-    const double e = depth / (std::cbrt(share) * chord);
+    const double e = density * depth / (std::cbrt(share) * chord);
     return std::isfinite(e) ? two_digits(std::clamp(e, 1 / largest_number, largest_number)) : 1;
   };
   // Dark low values draw an outline where a ray grazes a surface; bright high values shine through.
@@ -138,6 +140,75 @@ TransferFunction make_default(const std::vector<double>& v, double chord, double
 
 TransferFunction default_transfer_function(const Volume& volume) {
   return make_default(value_sample(volume), mean_chord(volume), 1);
+}
+
+namespace {
+
+/// Calls visit(a, b) with values that are neighbors along an axis, at up to 2^18 places that are
+/// even in the volume. None of them is NaN.
+template <class Visit>
+void visit_neighbors(const Volume& volume, const Visit& visit) {
+  constexpr std::size_t most = std::size_t{1} << 18;
+  std::visit(
+      [&](const auto& data) {
+        const auto& n = volume.description().dimensions;
+        const std::size_t row = static_cast<std::size_t>(n[0]),
+                          slice = row * static_cast<std::size_t>(n[1]);
+        const auto look = [&](std::size_t i) {
+          const auto here = static_cast<double>(data[i]);
+          const auto beside = [&](bool inside, std::size_t step) {
+            if (!inside) return;
+            const auto there = static_cast<double>(data[i + step]);
+            if (!std::isnan(here) && !std::isnan(there)) visit(here, there);
+          };
+          beside(i % row + 1 < row, 1);
+          beside(i % slice + row < slice, row);
+          beside(i + slice < data.size(), slice);
+        };
+        if (data.size() <= most) {
+          for (std::size_t i = 0; i < data.size(); ++i) look(i);
+          return;
+        }
+        // As value_sample() takes them.
+        const auto size = static_cast<double>(data.size());
+        for (std::size_t k = 0; k < most; ++k) {
+          const double s = static_cast<double>(k) / std::numbers::phi;
+          look(std::min(static_cast<std::size_t>((s - std::floor(s)) * size), data.size() - 1));
+        }
+      },
+      volume.data());
+}
+
+/// Whether the background ends at surfaces (default_look()). `v`: of value_sample().
+bool has_surfaces(const Volume& volume, const std::vector<double>& v) {
+  if (v.empty() || v.front() == v.back()) return false;
+  const std::size_t foreground = otsu_classes(v).foreground;
+  const double threshold = v[foreground - 1] / 2 + v[foreground] / 2;
+  const double apart = mean(v, foreground, v.size()) / 2 - mean(v, 0, foreground) / 2;
+  std::vector<double> steps;
+  std::size_t pairs = 0;
+  visit_neighbors(volume, [&](double a, double b) {
+    ++pairs;
+    if ((a < threshold) != (b < threshold)) steps.push_back(std::abs(b / 2 - a / 2));
+  });
+  // Noise goes through the threshold everywhere.
+  if (steps.empty() || 8 * steps.size() > pairs) return false;
+  const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
+  std::nth_element(steps.begin(), middle, steps.end());
+  return 6 * *middle >= apart;
+}
+
+}  // namespace
+
+DefaultLook default_look(const Volume& volume) {
+  const std::vector<double> v = value_sample(volume);
+  if (!has_surfaces(volume, v)) return {make_default(v, mean_chord(volume), 1), std::nullopt};
+  constexpr double density = 8;
+  Shading shading;
+  shading.ambient = 0.3;
+  shading.diffuse = 0.8;
+  shading.specular = 0.15;
+  return {make_default(v, mean_chord(volume), 1, density), shading};
 }
 
 TransferFunction default_transfer_function(const MeshChannels& mesh) {

@@ -70,7 +70,7 @@ class Light(ProgramTest):
             self.assertEqual(len(layer["isosurfaces"]), 1)
 
     def test_shading(self):
-        self.assertNotIn("shading", self.scene("a.npy")[1])
+        self.assertNotIn("shading", self.scene("a.npy", "--shading", "off")[1])
         self.assertEqual(self.scene("a.npy", "--shading", "on")[1]["shading"],
                          {"ambient": 0.2, "diffuse": 0.7, "specular": 0.2, "power": 20,
                           "gradient": "smooth", "flatness": 0.02})
@@ -108,9 +108,26 @@ class Light(ProgramTest):
         result = self.run_program("render", "a.npy", "--slice", "z=0", "--size", "4", "-o", "b.png")
         self.assertEqual(result.returncode, 0, result.stderr)
         self.assertIn(b"only isosurfaces and slices are shown", result.stderr)
-        plain = self.report("render", "a.npy", "--size", "4", "-o", "c.png")
+        plain = self.report("render", "a.npy", "--shading", "off", "--size", "4", "-o", "c.png")
         self.assertIsNone(plain["layers"][0]["shading"])
         self.assertEqual(plain["layers"][0]["isosurfaces"], [])
+
+    def test_a_file_alone_with_surfaces_is_lit(self):
+        lit, layer = self.scene("a.npy")
+        self.assertEqual(layer["shading"]["diffuse"], 0.8)
+        _, unlit = self.scene("a.npy", "--shading", "off")
+        self.assertLess(4 * unlit["transfer_function"]["points"][-1]["extinction"],
+                        layer["transfer_function"]["points"][-1]["extinction"])
+        result = self.run_program("render", "a.npy", "--size", "4", "-o", "s.png")
+        self.assertIn(b"the data have surfaces", result.stderr)
+        # What was saved gives the same picture.
+        self.write("saved.json", json.dumps(lit))
+        self.succeed("render", "a.npy", "--size", "4", "-o", "1.exr")
+        self.succeed("render", "saved.json", "--size", "4", "-o", "2.exr")
+        self.succeed("compare", "1.exr", "2.exr", "--largest", "0")
+        for other in (["builtin:ramp:16"], ["a.npy", "--projection", "maximum"],
+                      ["a.npy", "--method", "midpoint"], ["a.npy", "--preset", "x-ray"]):
+            self.assertNotIn("shading", self.scene(*other)[1], other)
 
     def test_functions_bring_light(self):
         self.write("look.vp", LEGACY)

@@ -35,7 +35,7 @@ class Render(ProgramTest):
         self.assertEqual(result.stdout, b"")
         self.assertRegex(result.stderr.decode(),
                          r"\Apellucid: no transfer function given: using one made from the "
-                         r"histogram [^\n]*--save-tf[^\n]*\n(pellucid: [^\n]+\n){2}\Z")
+                         r"histogram [^\n]*--save-tf[^\n]*\n(pellucid: [^\n]+\n){3}\Z")
         width, height, channels, rows = png(self.read("a.png"))
         self.assertEqual((width, height, channels), (512, 512, 4))
         self.assertGreater(max(max(row[3::4]) for row in rows), 10)
@@ -151,8 +151,10 @@ class Render(ProgramTest):
                     report = render(scale, offset, "scaled.exr", "--save-scene", "scene.json",
                                     *preset)
                     self.assertEqual(report["pixels_over"], 0)
-                    # Values of the transfer function are rounded to a thousandth of the range.
-                    self.report("compare", "plain.exr", "scaled.exr", "--tolerance", "0.02")
+                    # Values of the transfer function are rounded to a thousandth of the range. A
+                    # file alone is in light, with a steeper function.
+                    self.report("compare", "plain.exr", "scaled.exr", "--tolerance",
+                                "0.02" if preset else "0.08")
                     self.succeed("render", "scene.json", "-o", "again.exr", "--size", "32")
                     self.assertTrue(
                         self.report("compare", "scaled.exr", "again.exr")["identical"])
@@ -201,7 +203,7 @@ class Render(ProgramTest):
 
     def test_transfer_function_is_printed_saved_and_taken_back(self):
         printed = json.loads(self.succeed("render", "ramp.npy", "--print-tf"))
-        self.assertGreater(len(printed["points"]), 1)
+        self.assertGreater(len(printed["transfer_function"]["points"]), 1)
         self.succeed("render", "ramp.npy", "--save-tf", "saved.json")
         self.assertEqual(json.loads(self.read("saved.json")), printed)
         self.succeed("render", "ramp.npy", "-o", "a.exr", "--size", "16", "--quiet")

@@ -2,6 +2,7 @@
 #include "pellucid/math/bernstein_roots.h"
 #include "pellucid/render/multivariate_integrator.h"
 #include "pellucid/segment/lit_panel.h"
+#include "pellucid/segment/surface.h"
 #include "tests/device/kernel.h"
 
 namespace pellucid {
@@ -53,6 +54,16 @@ PELLUCID_HD void surfaces(const T* in, T* out) noexcept {
   integrator.add_surface(static_cast<double>(in[1]), {1, 0, 0}, 0, static_cast<double>(in[2]));
   integrator.charge_opacity_behind(integrator.transparency(), static_cast<double>(in[3]));
   out[0] = static_cast<T>(integrator.result().error);
+  const Reflection<T> reflection{in[4], in[5], in[6], in[7], in[8]};
+  const LightSource<T> head;
+  GradientStretch<T> along;
+  along.component[0] = {{in[9], in[10], in[11], in[12]}};
+  T error = in[13];
+  const T off = crossing_error(along.component[0], in[14], error);
+  out[1] = light_surface(reflection, &head, 1, along, in[14], off, in[15], {in[0], in[1], in[2]},
+                         T(1), error)
+               .r +
+           error;
 }
 PELLUCID_DEVICE_KERNEL(surfaces)
 

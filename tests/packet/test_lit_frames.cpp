@@ -3,55 +3,19 @@
 // Packets in light against the general path, which is in double and one ray at a time.
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <cmath>
-#include <limits>
+#include <optional>
 #include <random>
 
-#include "pellucid/cpu/render.h"
 #include "tests/packet/instruction_sets.h"
-#include "tests/scenes/makers.h"
+#include "tests/packet/lit_scenes.h"
 
 namespace pellucid {
 namespace {
 
-template <class Value>
-scenes::VolumePointer random_volume(std::mt19937& random) {
-  std::uniform_real_distribution<double> unit(0, 1);
-  const auto count = [&] { return 2 + static_cast<int>(20 * unit(random)); };
-  Volume::Description description =
-      scenes::grid_description({count(), count(), count()}, {-1, -1, -1});
-  description.placement.spacing = {0.1 + 0.1 * unit(random), 0.1 + 0.1 * unit(random),
-                                   0.1 + 0.1 * unit(random)};
-  description.placement.direction = {
-      {{0.8, 0.6, 0.1}, {-0.6, 0.8, 0.2 * unit(random)}, {0, 0.1, 1}}};
-  if (unit(random) < 0.5) description.centering = Centering::cell;
-  const double a = unit(random), b = 2 * unit(random), noise = unit(random) < 0.5 ? 0.3 : 0.01;
-  return scenes::make_volume<Value>(description, [&](int i, int j, int k) {
-    const double wave = 0.5 + 0.3 * std::sin(a * i + b * j) * std::cos(0.5 * k + a);
-    if (!std::is_integral_v<Value> && unit(random) < 0.01) {
-      return std::numeric_limits<double>::quiet_NaN();
-    }
-    return 200 * std::clamp(wave + noise * (unit(random) - 0.5), 0.0, 1.0);
-  });
-}
-
-scenes::VolumePointer any_volume(std::mt19937& random, int kind) {
-  switch (kind) {
-    case 0:
-      return random_volume<std::uint8_t>(random);
-    case 1:
-      return random_volume<std::int16_t>(random);
-    case 2:
-      return random_volume<std::uint16_t>(random);
-    default:
-      return random_volume<float>(random);
-  }
-}
-
 Scene random_scene(std::mt19937& random, int kind) {
-  std::uniform_real_distribution<double> unit(0, 1), both(-1, 1);
-  const auto color = [&] { return Rgb<double>{unit(random), unit(random), unit(random)}; };
+  std::uniform_real_distribution<double> unit(0, 1);
+  const auto color = [&] { return random_color(random); };
   scenes::Points points{{60, 0, color()}, {100, 4 * unit(random), color()}};
   if (unit(random) < 0.5) {
     points.push_back({110, 0, color()});
@@ -59,33 +23,12 @@ Scene random_scene(std::mt19937& random, int kind) {
     points.push_back({150, 2, color()});
   }
   points.push_back({200, 3 * unit(random), color()});
-  Layer layer{VolumeContent{any_volume(random, kind), scenes::transfer(points), nullptr}};
-  layer.shading = Shading{0.3 * unit(random),
-                          unit(random),
-                          0.5 * unit(random),
-                          1 + std::floor(40 * unit(random)),
-                          unit(random) < 0.5 ? GradientKind::smooth : GradientKind::field,
-                          unit(random) < 0.2 ? 0.0 : 0.05 * unit(random)};
+  Layer layer{VolumeContent{any_volume(random, kind, 0.01), scenes::transfer(points), nullptr}};
+  layer.shading = random_shading(random);
   Scene scene;
   scene.layers = {layer};
-  if (unit(random) < 0.5) {
-    scene.lights = {{HeadLight{}, color()},
-                    {DirectionalLight{{both(random), both(random), both(random)}}, color()}};
-  }
-  scene.camera.position = {3 * both(random), 3 * both(random), 4};
-  scene.camera.focal_point = {0.3, 0.2, 0.1};
-  scene.camera.vertical_angle = 35;
-  scene.size = {12, 12};
+  look_at_data(scene, random);
   return scene;
-}
-
-Image frame(const Scene& scene, std::optional<InstructionSet> set, RenderReport* report = nullptr,
-            int threads = 1) {
-  RenderOptions options;
-  options.error = true;
-  options.threads = threads;
-  options.instruction_set = set;
-  return render(scene, options, report);
 }
 
 TEST(LitFrames, AreWithinWhatTheySayOfTheGeneralPath) {

@@ -55,6 +55,8 @@ struct LayerDescription {
   std::optional<GradientOpacityDescription> gradient_opacity;
   std::vector<IsosurfaceDescription> isosurfaces;
   std::vector<SliceDescription> slices;
+
+  bool shows_surfaces() const noexcept { return !isosurfaces.empty() || !slices.empty(); }
 };
 
 /// A scene as written in a file; no data are read or rendered yet. Absent keys have their defaults.

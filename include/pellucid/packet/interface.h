@@ -86,8 +86,9 @@ struct PellucidPacketJob {
   void (*integrate_cell)(const void* context, std::int32_t ray, const PellucidCell* cell,
                          PellucidCellResult* result);
   const void* context;
-  const void* records;  ///< BlockRecord per block, in the order of the classes
-  const void* light;    ///< PacketLight; null: unlit
+  const void* records;   ///< BlockRecord per block, in the order of the classes
+  const void* light;     ///< PacketLight; null: unlit
+  const void* surfaces;  ///< PacketSurfaces; only for those
 };
 
 void pellucid_integrate_packets_sse4(const PellucidPacketJob* job);
@@ -98,4 +99,9 @@ void pellucid_integrate_packets_avx512(const PellucidPacketJob* job);
 void pellucid_integrate_lit_packets_sse4(const PellucidPacketJob* job);
 void pellucid_integrate_lit_packets_avx2(const PellucidPacketJob* job);
 void pellucid_integrate_lit_packets_avx512(const PellucidPacketJob* job);
+
+/// Isosurfaces and nothing else, of such data without vacuum.
+void pellucid_meet_surfaces_sse4(const PellucidPacketJob* job);
+void pellucid_meet_surfaces_avx2(const PellucidPacketJob* job);
+void pellucid_meet_surfaces_avx512(const PellucidPacketJob* job);
 }

@@ -39,53 +39,83 @@ F first_turn(F c1, F c2, F c3, F close) noexcept {
 
 }  // namespace detail
 
-/// Returns the end of the first piece. f(0) lies in [lower, upper] to within `close`, which is also
-/// the distance outside that does not yet count as left, and the accuracy of crossings.
+/// The first monotone piece of a cubic: f(0) + t (c1 + t (c2 + t c3)), in differences of
+/// neighboring coefficients.
+template <class F>
+struct MonotonePiece {
+  F c1, c2, c3;
+  F place;  ///< where it ends: at an extremum, or at 1
+  F reach;  ///< f there
+};
+
+/// Returns the first monotone piece in the lanes of `wanted`. An extremum that is not further than
+/// `close` from f(0) does not count as one.
+template <class F>
+MonotonePiece<F> monotone_piece(const CubicBernstein<F>& f, F close,
+                                const mask_t<F>& wanted) noexcept {
+  const F d0 = f.b[1] - f.b[0], d1 = f.b[2] - f.b[1], d2 = f.b[3] - f.b[2];
+  const auto turns = wanted & !(((d0 >= F(0)) & (d1 >= F(0)) & (d2 >= F(0))) |
+                                ((d0 <= F(0)) & (d1 <= F(0)) & (d2 <= F(0))));
+  MonotonePiece<F> piece{F(3) * d0, F(3) * (d1 - d0), (d2 - d1) - (d1 - d0), F(1), f.b[3]};
+  if (!any(turns)) return piece;
+  const F c1 = piece.c1, c2 = piece.c2, c3 = piece.c3;
+  const F t = detail::first_turn(c1, c2, c3, close);
+  piece.place = select(turns, t, F(1));
+  piece.reach = select(turns, f.b[0] + t * (c1 + t * (c2 + t * c3)), piece.reach);
+  return piece;
+}
+
+/// Returns where the piece crosses `value`, to within `close` of it, in the lanes of `crosses`:
+/// those where it reaches beyond. `open`: the lanes where it was not found so well.
 ///
 /// Halley's method from the secant of a monotone stretch, in a bracket that always contains the
 /// crossing; a step out of the bracket becomes a bisection. Finished lanes wait for the others.
+template <class F>
+F find_crossing(const CubicBernstein<F>& f, const MonotonePiece<F>& piece, F value,
+                const mask_t<F>& rising, F close, const mask_t<F>& crosses,
+                mask_t<F>& open) noexcept {
+  const F sign = select(rising, F(1), F(-1));
+  const F g0 = sign * (f.b[0] - value), g1 = sign * piece.c1, g2 = sign * piece.c2,
+          g3 = sign * piece.c3;
+  // Rises from g0 <= 0.
+  const F rise = sign * (piece.reach - f.b[0]);
+  F lo = F(0), hi = piece.place;
+  F place = hi * clamp(-g0 / rise, F(0), F(1));
+  open = crosses & (g0 < F(0));
+  place = select(crosses & !open, F(0), place);
+  for (int i = 0; i < 32; ++i) {
+    const F here = g0 + place * (g1 + place * (g2 + place * g3));
+    open = open & (abs(here) > close);
+    if (!any(open)) break;
+    const F bend = g2 + place * (F(3) * g3);  // half of the second derivative
+    const F slope = g1 + place * (g2 + bend);
+    const auto below = here < F(0);
+    lo = select(open & below, place, lo);
+    hi = select(open & !below, place, hi);
+    const F next = place - here * slope / (slope * slope - here * bend);
+    const auto kept = (next > lo) & (next < hi);
+    place = select(open, select(kept, next, F(0.5f) * (lo + hi)), place);
+  }
+  return place;
+}
+
+/// Returns the end of the first piece. f(0) lies in [lower, upper] to within `close`, which is also
+/// the distance outside that does not yet count as left, and the accuracy of crossings.
 template <class F>
 PieceEnd<F> piece_end(const CubicBernstein<F>& f, F lower, F upper, F close,
                       const mask_t<F>& wanted) noexcept {
   PieceEnd<F> end{F(1), mask_t<F>(false), mask_t<F>(false), mask_t<F>(true)};
   const auto leaves = wanted & ((f.hull_min() < lower - close) | (f.hull_max() > upper + close));
   if (!any(leaves)) return end;
-  const F d0 = f.b[1] - f.b[0], d1 = f.b[2] - f.b[1], d2 = f.b[3] - f.b[2];
-  const auto turns = leaves & !(((d0 >= F(0)) & (d1 >= F(0)) & (d2 >= F(0))) |
-                                ((d0 <= F(0)) & (d1 <= F(0)) & (d2 <= F(0))));
-  // In powers of the position, from differences of neighboring coefficients.
-  const F c1 = F(3) * d0, c2 = F(3) * (d1 - d0), c3 = (d2 - d1) - (d1 - d0);
-  F last = f.b[3];
-  if (any(turns)) {
-    end.place = select(turns, detail::first_turn(c1, c2, c3, close), F(1));
-    last = select(turns, f.b[0] + end.place * (c1 + end.place * (c2 + end.place * c3)), last);
-  }
-  end.rising = last > f.b[0];
-  end.crosses = leaves & select(end.rising, last > upper + close, last < lower - close);
+  const MonotonePiece<F> piece = monotone_piece(f, close, leaves);
+  end.place = piece.place;
+  end.rising = piece.reach > f.b[0];
+  end.crosses =
+      leaves & select(end.rising, piece.reach > upper + close, piece.reach < lower - close);
   if (!any(end.crosses)) return end;
-
-  const F sign = select(end.rising, F(1), F(-1));
-  const F g0 = sign * (f.b[0] - select(end.rising, upper, lower)), g1 = sign * c1, g2 = sign * c2,
-          g3 = sign * c3;
-  // Rises from g0 <= 0.
-  const F rise = sign * (last - f.b[0]);
-  F lo = F(0), hi = end.place;
-  F place = hi * clamp(-g0 / rise, F(0), F(1));
-  auto open = end.crosses & (g0 < F(0));
-  place = select(end.crosses & !open, F(0), place);
-  for (int i = 0; i < 32; ++i) {
-    const F value = g0 + place * (g1 + place * (g2 + place * g3));
-    open = open & (abs(value) > close);
-    if (!any(open)) break;
-    const F bend = g2 + place * (F(3) * g3);  // half of the second derivative
-    const F slope = g1 + place * (g2 + bend);
-    const auto below = value < F(0);
-    lo = select(open & below, place, lo);
-    hi = select(open & !below, place, hi);
-    const F next = place - value * slope / (slope * slope - value * bend);
-    const auto kept = (next > lo) & (next < hi);
-    place = select(open, select(kept, next, F(0.5f) * (lo + hi)), place);
-  }
+  mask_t<F> open;
+  const F place = find_crossing(f, piece, select(end.rising, upper, lower), end.rising, close,
+                                end.crosses, open);
   end.found = !open;
   end.place = select(end.crosses, place, end.place);
   return end;

@@ -240,10 +240,7 @@ class LitPanel {
     const int first = factor.interval(layer.magnitude.hull_min() - error);
     const int last = factor.interval(layer.magnitude.hull_max() + error);
     const Sensitivity<T> slopes = sensitivity(factor, first, last, error);
-    T largest = max(factor.evaluate_in(first, layer.magnitude.hull_min()).extinction,
-                    factor.evaluate_in(last, layer.magnitude.hull_max()).extinction);
-    for (int i = first; i < last; ++i) largest = max(largest, factor.material[i].extinction);
-    largest += error * slopes.extinction_slope;
+    const T largest = factors(layer, first, last).upper + error * slopes.extinction_slope;
     off = off * largest + most * error * slopes.extinction_slope;
     if (slopes.jump && error > T(0)) {
       off += most * jump_rounding(layer.magnitude, factor, first, last, error);
@@ -304,20 +301,24 @@ class LitPanel {
                max(off(found.g, least.g, upper.g), off(found.b, least.b, upper.b)));
   }
 
-  /// Returns the range of the factors of the gradient opacity.
-  PELLUCID_HD static Bounds<T> factors(const LitLayer<T>& layer) noexcept {
-    if (layer.gradient_opacity == nullptr) return {T(1), T(1)};
+  /// Returns the range of the factors of the gradient opacity, whose magnitudes lie in these
+  /// intervals.
+  PELLUCID_HD static Bounds<T> factors(const LitLayer<T>& layer, int first, int last) noexcept {
     const PiecewiseLinear<T>& factor = *layer.gradient_opacity;
-    const T from = layer.magnitude.hull_min(), to = layer.magnitude.hull_max();
-    const int first = factor.interval(from), last = factor.interval(to);
-    const T a = factor.evaluate_in(first, from).extinction;
-    const T b = factor.evaluate_in(last, to).extinction;
+    const T a = factor.evaluate_in(first, layer.magnitude.hull_min()).extinction;
+    const T b = factor.evaluate_in(last, layer.magnitude.hull_max()).extinction;
     Bounds<T> range{min(a, b), max(a, b)};
     for (int i = first; i < last; ++i) {
       range.lower = min(range.lower, factor.material[i].extinction);
       range.upper = max(range.upper, factor.material[i].extinction);
     }
     return range;
+  }
+  /// Returns the same; 1 without a gradient opacity.
+  PELLUCID_HD static Bounds<T> factors(const LitLayer<T>& layer) noexcept {
+    if (layer.gradient_opacity == nullptr) return {T(1), T(1)};
+    return factors(layer, layer.gradient_opacity->interval(layer.magnitude.hull_min()),
+                   layer.gradient_opacity->interval(layer.magnitude.hull_max()));
   }
 
   /// The extinction of all layers, and the color whose product with it is the sum of sources.
@@ -328,7 +329,7 @@ class LitPanel {
       const LitLayer<T>& layer = layer_[i];
       T v[max_channels];
       for (int c = 0; c < layer.transfer->channels; ++c) v[c] = evaluate(layer.span.data[c], u);
-      Material<T> own = evaluate_set(*layer.transfer, layer.primitives, v);
+      Material<T> own = layer.transfer->evaluate(v, layer.primitives);
       if (!(own.extinction > T(0))) continue;
       if (layer.gradient_opacity != nullptr) {
         own.extinction *= layer.gradient_opacity->evaluate(evaluate(layer.magnitude, u)).extinction;
@@ -340,26 +341,6 @@ class LitPanel {
       }
       extinction += own.extinction;
       emission += own.extinction * own.color;
-    }
-    const bool absorbs = extinction >= tiny;
-    return {absorbs ? extinction : T(0), (absorbs ? T(1) / extinction : T(0)) * emission};
-  }
-
-  PELLUCID_HD static Material<T> evaluate_set(const MultivariateTransfer<T>& transfer,
-                                              PrimitiveSet set, const T* v) noexcept {
-    T extinction = T(0);
-    Rgb<T> emission{};
-    for (int i = 0; i < transfer.gaussians.count; ++i) {
-      if (!set.contains(i)) continue;
-      const Gaussian<T>& g = transfer.gaussians.primitive[i];
-      const T here = g.peak * g.density(v + g.first);
-      extinction += here;
-      emission += here * g.color;
-    }
-    for (int i = 0; i < transfer.tables; ++i) {
-      const Material<T> here = transfer.table[i].table.evaluate(v[transfer.table[i].channel]);
-      extinction += here.extinction;
-      emission += here.extinction * here.color;
     }
     const bool absorbs = extinction >= tiny;
     return {absorbs ? extinction : T(0), (absorbs ? T(1) / extinction : T(0)) * emission};
@@ -392,11 +373,12 @@ class LitPanel {
 ///
 /// Error of the color: at most the opacity times the range of all shaded colors, which the hulls of
 /// the gradient bound (light_bounds()), and what bounds term by term leave open. That is proved.
-/// Estimated: the difference of the colors by 4 and by 7 nodes, where the length of g within √(|g|²
-/// + g0²) does not change by more than a factor of 4 and no exponent of a Gaussian by more than 2:
-/// where g comes close to 0, the normal turns faster than nodes see. The depth of Gaussians is
-/// treated alike. Asserted in tests/segment/test_lit_panel.cpp: no panel is off by more than it
-/// says.
+/// Estimated: twice the larger difference of the color by 7 nodes from those by 4 and by every
+/// other of the 7, for a depth of at most 4, where the length √(|g|² + g0²) changes by at most a
+/// factor of 4, the logarithm of a highlight by at most 4, or by too little light to matter, and no
+/// exponent of a Gaussian by more than 2: where g comes close to 0, the normal turns faster than
+/// nodes see. The depth of Gaussians is charged with the difference of 4 and 7 nodes. Asserted in
+/// tests/segment/test_lit_panel.cpp: no panel is off by more than it says.
 template <class T, class Allowance>
 PELLUCID_HD PanelSegment<T> integrate_lit_panel(const LitStretch<T>& stretch,
                                                 const LitLayer<T>* layers_of_part, T begin, T end,

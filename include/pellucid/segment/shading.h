@@ -100,9 +100,11 @@ PELLUCID_HD Lit<T> light_up(const Reflection<scalar_t<T>>& reflection,
     const Rgb<S>& c = lights[i].color;
     const Rgb<T> color{T(c.r), T(c.g), T(c.b)};
     const LightDirections<T> to = directions(lights[i], position, to_eye);
-    lit.factor += (T(reflection.diffuse) * abs(dot(normal, to.light))) * color;
+    const T facing = abs(dot(normal, to.light));
+    lit.factor += (T(reflection.diffuse) * facing) * color;
     if (!(reflection.specular > S(0))) continue;
-    const T toward = min(abs(dot(normal, to.half)), T(1));
+    const bool is_head = lights[i].kind == LightSource<S>::Kind::head;
+    const T toward = min(is_head ? facing : abs(dot(normal, to.half)), T(1));
     lit.added += (T(reflection.specular) * raised(toward, reflection.power)) * color;
   }
   return lit;
@@ -246,7 +248,9 @@ PELLUCID_HD LitBounds<T> light_bounds(const Reflection<scalar_t<T>>& reflection,
     result.lower.factor += (T(reflection.diffuse) * diffuse.lower) * color;
     result.upper.factor += (T(reflection.diffuse) * diffuse.upper) * color;
     if (!(reflection.specular > S(0))) continue;
-    const Bounds<T> toward = detail::cosine_bounds(stretch, lengths, to.half, half_turn);
+    const Bounds<T> toward = light.kind == LightSource<S>::Kind::head
+                                 ? diffuse
+                                 : detail::cosine_bounds(stretch, lengths, to.half, half_turn);
     const auto shines = toward.upper > T(0);
     result.sharpness =
         max(result.sharpness,

@@ -25,11 +25,12 @@ struct MultivariateTransfer {
 
   /// Returns the extinction at v (`channels` numbers), and the color whose product with it is the
   /// sum of color · extinction. Returns vacuum if the extinction is below the smallest normal
-  /// number, because its quotients could overflow.
-  PELLUCID_HD Material<S> evaluate(const S* v) const noexcept {
+  /// number, because its quotients could overflow. Of the primitives, only those in the set count.
+  PELLUCID_HD Material<S> evaluate(const S* v, PrimitiveSet set = {}) const noexcept {
     S extinction = S(0);
     Rgb<S> emission{};
     for (int i = 0; i < gaussians.count; ++i) {
+      if (!set.contains(i)) continue;
       const Gaussian<S>& g = gaussians.primitive[i];
       const S here = g.peak * g.density(v + g.first);
       extinction += here;

@@ -26,26 +26,57 @@ bool is_moderate_gradient(double x) {
 
 }  // namespace
 
+std::optional<PacketLight> packet_light(const LayerLook& look, const Volume& volume,
+                                        const std::vector<LightSource<double>>& lights) {
+  PacketLight result;
+  const Reflection<double>* const r = look.reflection();
+  if (r != nullptr) {
+    const VolumeStatistics& data = volume.statistics();
+    const double steepest = (data.maximum - data.minimum) / voxel_of(look.layer());
+    if (!is_moderate_gradient(steepest) || !is_moderate_gradient(flat_gradient(look.layer())) ||
+        lights.size() > std::size_t{PacketLight::most_lights} ||
+        std::ranges::any_of(lights, [](const LightSource<double>& light) {
+          return light.kind == LightSource<double>::Kind::point;
+        })) {
+      return std::nullopt;
+    }
+    const auto single = [](double x) { return static_cast<float>(x); };
+    result.reflection = {single(r->ambient), single(r->diffuse), single(r->specular),
+                         single(r->power), single(r->flat_square)};
+    for (const LightSource<double>& light : lights) {
+      result.light[result.lights++] = in_float(light);
+    }
+    result.of_field = look.layer().shading->gradient == GradientKind::field ? 1 : 0;
+  }
+  for (int c = 0; c < 3; ++c) {
+    for (int a = 0; a < 3; ++a) {
+      result.world_gradient[c][a] =
+          static_cast<float>(volume.grid_from_world().matrix.column[c][a]);
+      result.world_direction[c][a] = volume.world_from_grid().matrix.column[a][c];
+    }
+  }
+  return result;
+}
+
+bool fits_single(const Volume& volume) {
+  const std::string_view type = type_name(volume.data());
+  return type != "u32" && type != "i32" && type != "f64";
+}
+
 std::unique_ptr<const GridLight> GridLight::make(const Layer& layer,
                                                  const std::vector<Light>& lights,
                                                  const RayTolerance& wanted) {
   const auto* const content = std::get_if<VolumeContent>(&layer.content);
   if (content == nullptr || content->mask || !layer.shading || layer.gradient_opacity ||
       has_surfaces(layer) || wanted.grade == Grade::proved || lights.empty() ||
-      lights.size() > std::size_t{PacketLight::most_lights} ||
-      std::ranges::any_of(lights, [](const Light& light) {
-        return std::holds_alternative<PointLight>(light.kind);
-      })) {
+      !fits_single(*content->volume)) {
     return nullptr;
   }
-  const std::string_view type = type_name(content->volume->data());
-  if (type == "u32" || type == "i32" || type == "f64") return nullptr;
-  const VolumeStatistics& data = content->volume->statistics();
-  const double steepest = (data.maximum - data.minimum) / voxel_of(layer);
-  if (!is_moderate_gradient(steepest) || !is_moderate_gradient(flat_gradient(layer))) {
-    return nullptr;
-  }
-  return std::unique_ptr<const GridLight>(new GridLight(layer, lights, wanted));
+  auto result = std::unique_ptr<GridLight>(new GridLight(layer, lights, wanted));
+  const auto light = packet_light(result->look_, result->volume_, result->lights_);
+  if (!light) return nullptr;
+  result->light_ = *light;
+  return result;
 }
 
 GridLight::GridLight(const Layer& layer, const std::vector<Light>& lights,
@@ -54,22 +85,7 @@ GridLight::GridLight(const Layer& layer, const std::vector<Light>& lights,
       wanted_(wanted),
       look_(layer),
       lights_(light_sources(lights)),
-      gradient_(volume_, layer.shading->gradient) {
-  const Reflection<double>& r = *look_.reflection();
-  const auto single = [](double x) { return static_cast<float>(x); };
-  light_.reflection = {single(r.ambient), single(r.diffuse), single(r.specular), single(r.power),
-                       single(r.flat_square)};
-  for (const LightSource<double>& light : lights_) {
-    light_.light[light_.lights++] = in_float(light);
-  }
-  light_.of_field = layer.shading->gradient == GradientKind::field ? 1 : 0;
-  for (int c = 0; c < 3; ++c) {
-    for (int a = 0; a < 3; ++a) {
-      light_.world_gradient[c][a] = single(volume_.grid_from_world().matrix.column[c][a]);
-      light_.world_direction[c][a] = volume_.world_from_grid().matrix.column[a][c];
-    }
-  }
-}
+      gradient_(volume_, layer.shading->gradient) {}
 
 void GridLight::integrate(const StructuredWalk<double>::Step& step, const Ray<double>& world,
                           const PellucidCell& cell, const TransferTables& transfer,
@@ -102,11 +118,7 @@ void GridLight::integrate(const StructuredWalk<double>::Step& step, const Ray<do
   RayTolerance wanted = wanted_;
   wanted.tolerance = std::max(cell.allowance_per_opacity * opacity + cell.allowance_flat, 1e-12);
   MultivariateRayIntegrator integrator(function, most, wanted, range.end - range.begin);
-  parts.for_each_piece([&](const LitParts::Piece& piece, Interval<double> part, bool is_at_end) {
-    const double share = is_at_end ? 1 : piece.last - piece.first;
-    integrator.add_panels(piece, part, 0, share * cell.position_error);
-    return !integrator.done();
-  });
+  parts.integrate(0, cell.position_error, integrator);
   const RayResult found = integrator.result();
   result = {found.optical_depth,
             found.opacity,

@@ -3,6 +3,7 @@
 
 #include <functional>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "layers/grid_gradient.h"
@@ -14,12 +15,19 @@
 
 namespace pellucid {
 
+/// Returns a layer's light as packets see it; of an unlit layer, the world alone. None: packets
+/// have no such light: point lights, more than they hold, numbers whose squares binary32 has not.
+std::optional<PacketLight> packet_light(const LayerLook& look, const Volume& volume,
+                                        const std::vector<LightSource<double>>& lights);
+/// Returns whether binary32 holds all values of the data's type.
+bool fits_single(const Volume& volume);
+
 /// The light of a volume as packets see it, and cells that packets hand back.
 class GridLight {
  public:
-  /// Null where packets have no light for the layer: gradient opacity, surfaces, point lights, more
-  /// lights than they hold, data that binary32 does not hold, proofs. All that is given must
-  /// outlive the object.
+  /// Null where packets have no light for the layer: gradient opacity, surfaces, proofs, data that
+  /// binary32 does not hold, and what packet_light() has not. All that is given must outlive the
+  /// object.
   static std::unique_ptr<const GridLight> make(const Layer& layer, const std::vector<Light>& lights,
                                                const RayTolerance& wanted);
 

@@ -194,7 +194,7 @@ long GeneralPath::merge(const Ray<double>& ray, Interval<double> inside,
   long parts = 0;
   for (double t = inside.begin; t < inside.end && !integrator.done();) {
     double next = inside.end, unknown = 0, left_out = 0, position_error = 0;
-    bool changed = bundle == nullptr, present = false, lit = false;
+    bool present = false, lit = false;
     if (surfaces_) meet_surfaces(t, integrator);
     for (std::size_t i = 0; i < streams_.size(); ++i) {
       unknown += streams_[i].advance_to(t);
@@ -203,7 +203,6 @@ long GeneralPath::merge(const Ray<double>& ray, Interval<double> inside,
       const bool here = stretch.begin <= t;
       next = std::min(next, here ? stretch.end : stretch.begin);
       const int function = here && look.has_medium() ? stretch.function : -1;
-      changed = changed || key_[i] != function;
       key_[i] = function;
       present = present || function >= 0;
       lit = lit || (function >= 0 && look.is_lit());
@@ -229,7 +228,7 @@ long GeneralPath::merge(const Ray<double>& ray, Interval<double> inside,
       t = next;
       continue;
     }
-    if (changed || bundle == nullptr || bundle->key() != key_) bundle = &bundles_.find(key_);
+    if (bundle == nullptr || bundle->key() != key_) bundle = &bundles_.find(key_);
     if (!bundle->fits()) {
       integrator.charge_opacity(1);
       return parts;
@@ -264,12 +263,7 @@ void GeneralPath::add_lit(const Ray<double>& ray, Interval<double> range, double
                sources_[i]->look());
   }
   parts_.finish();
-  parts_.for_each_piece([&](const LitParts::Piece& piece, Interval<double> part, bool is_at_end) {
-    // If the stretch's length changes, inner cuts move in proportion.
-    const double share = is_at_end ? 1 : piece.last - piece.first;
-    integrator.add_panels(piece, part, left_out, share * position_error);
-    return !integrator.done();
-  });
+  parts_.integrate(left_out, position_error, integrator);
 }
 
 /// Meets all surfaces at positions up to t. Returns the position of the next one that is known, or

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 namespace pellucid {
 namespace {
@@ -27,6 +28,28 @@ LayerLook::LayerLook(const Layer& layer)
     factors_ = layer.gradient_opacity->per_world(voxel_of(layer));
     factor_view_ = factors_->view<double>();
   }
+}
+
+std::optional<TransferFunction> isosurface_support(const LayerLook& look, int channel, double off) {
+  std::vector<double> values;
+  for (const Isosurface& surface : look.isosurfaces()) {
+    if (surface.channel == channel) values.push_back(surface.value);
+  }
+  if (values.empty()) return std::nullopt;
+  std::ranges::sort(values);
+  std::vector<TransferFunction::Point> points;
+  for (const double value : values) {
+    // Far more than what rounding may make of data, and a triangle to be told from nothing.
+    const double beside = std::max({off, std::abs(value) * 0x1p-20, 0x1p-120});
+    if (points.empty() || points.back().value < value - beside) {
+      points.push_back({value - beside, 0, {}});
+    } else {
+      points.pop_back();
+    }
+    if (points.empty() || points.back().value < value) points.push_back({value, 1, {}});
+    points.push_back({value + beside, 0, {}});
+  }
+  return TransferFunction(std::move(points));
 }
 
 std::vector<SlicePosition> slice_positions(const std::vector<Slice>& slices,

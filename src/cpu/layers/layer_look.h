@@ -41,6 +41,10 @@ class LayerLook {
   bool has_medium_;
 };
 
+/// Returns a function that absorbs at the values of the layer's isosurfaces in a channel and no
+/// farther from them than rounding moves data, or by `off`. None: the channel has no isosurfaces.
+std::optional<TransferFunction> isosurface_support(const LayerLook& look, int channel, double off);
+
 /// Where a ray meets the plane of a slice.
 struct SlicePosition {
   double t;            ///< world arc length; infinite where it does not

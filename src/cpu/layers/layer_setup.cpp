@@ -9,7 +9,8 @@ namespace {
 /// Null where the layer takes the general path.
 std::unique_ptr<const RayTracer> make_fast_tracer(const TracerTask& task) {
   const LayerContent& content = task.layer.content;
-  if (task.layer.gradient_opacity || has_surfaces(task.layer)) return nullptr;
+  if (has_surfaces(task.layer)) return make_surface_tracer(task);
+  if (task.layer.gradient_opacity) return nullptr;
   if (task.layer.shading && !std::holds_alternative<VolumeContent>(content)) return nullptr;
   if (const auto* volume = std::get_if<VolumeContent>(&content)) {
     return volume->mask ? nullptr : make_univariate_tracer(task);

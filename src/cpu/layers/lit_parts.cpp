@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "pellucid/math/bernstein_roots.h"
+#include "pellucid/render/multivariate_integrator.h"
 #include "pellucid/transfer/cubic_cuts.h"
 
 namespace pellucid {
@@ -87,6 +88,20 @@ void LitParts::finish() {
   cuts_.erase(std::unique(cuts_.begin(), cuts_.end(), close), cuts_.end());
   cuts_.back() = 1;
   part_.resize(layers_.size());
+}
+
+void LitParts::integrate(double left_out, double position_error,
+                         MultivariateRayIntegrator& integrator) const {
+  const std::size_t pieces = cuts_.size() - 1;
+  for (std::size_t i = 0; i < pieces && !integrator.done(); ++i) {
+    const Piece piece{*this, cuts_[i], cuts_[i + 1]};
+    // If the stretch's length changes, inner cuts move in proportion.
+    const bool is_at_end = i == 0 || i + 1 == pieces;
+    const double share = is_at_end ? 1 : piece.last - piece.first;
+    integrator.add_panels(
+        piece, {range_.begin + piece.first * length(), range_.begin + piece.last * length()},
+        left_out, share * position_error);
+  }
 }
 
 LitStretch<double> LitParts::view() const noexcept {

@@ -8,6 +8,8 @@
 
 namespace pellucid {
 
+class MultivariateRayIntegrator;
+
 /// A stretch of a ray through layers in light, as MultivariateRayIntegrator integrates it: cut
 /// where tables have control points and where a normal turns its edge to a light. Made anew for
 /// each stretch; used by one thread.
@@ -24,6 +26,12 @@ class LitParts {
   /// Finds the cuts; call it behind the last layer.
   void finish();
 
+  /// Integrates the stretch, until nothing more matters. `left_out` and `position_error`: as of
+  /// MultivariateRayIntegrator::add_stretch().
+  void integrate(double left_out, double position_error,
+                 MultivariateRayIntegrator& integrator) const;
+
+ private:
   /// A part of the stretch between two cuts, for MultivariateRayIntegrator::add_panels().
   struct Piece {
     const LitParts& parts;
@@ -41,26 +49,14 @@ class LitParts {
                          allowance);
     }
   };
-  /// Calls visit(piece, range, is_at_end) for each piece, front to back, while it returns true.
-  template <class Visit>
-  void for_each_piece(const Visit& visit) const {
-    for (std::size_t i = 0; i + 1 < cuts_.size(); ++i) {
-      const Interval<double> range{range_.begin + cuts_[i] * length(),
-                                   range_.begin + cuts_[i + 1] * length()};
-      const bool is_at_end = i == 0 || i + 2 == cuts_.size();
-      if (!visit(Piece{*this, cuts_[i], cuts_[i + 1]}, range, is_at_end)) return;
-    }
-  }
 
-  double length() const noexcept { return range_.end - range_.begin; }
-
- private:
   template <class Allowance>
   PanelSegment<double> panel(double begin, double end, const PanelDemand<double>& demand,
                              const Allowance& allowance) const noexcept {
     for (std::size_t i = 0; i < layers_.size(); ++i) part_[i] = layers_[i].part(begin, end);
     return integrate_lit_panel(view(), part_.data(), begin, end, demand, allowance);
   }
+  double length() const noexcept { return range_.end - range_.begin; }
   LitStretch<double> view() const noexcept;
 
   const std::vector<LightSource<double>>& lights_;

@@ -6,7 +6,7 @@
 #include <limits>
 
 #include "pellucid/math/cubic_roots.h"
-#include "pellucid/segment/rounding.h"
+#include "pellucid/segment/surface.h"
 
 namespace pellucid {
 namespace {
@@ -147,17 +147,7 @@ void SurfaceEvents::add_crossing(const Isosurface& surface, const LayerStretch& 
                                  double value_error) {
   const CubicBernstein<double>& data = stretch.data[surface.channel];
   const double length = stretch.end - stretch.begin;
-  // Where the data are steep, the position is off by as much as the value over the slope; at an
-  // extremum by its square root.
-  constexpr double step = 1e-4;
-  const double near = std::max(u - step, 0.0), far = std::min(u + step, 1.0);
-  const double slope = std::abs(evaluate(data, far) - evaluate(data, near)) / (far - near);
-  const double curvature = 6 * std::max(std::abs(data.b[2] - 2 * data.b[1] + data.b[0]),
-                                        std::abs(data.b[3] - 2 * data.b[2] + data.b[1]));
-  const double error = value_error + 8 * rounding_unit<double> * slope;
-  double u_error = slope > 0 ? 2 * error / slope : 1.0;
-  if (curvature > 0) u_error = std::min(u_error, 4 * std::sqrt(error / curvature));
-  u_error = std::min(u_error, 1.0);
+  const double u_error = crossing_error(data, u, value_error);
   SurfaceEvent event;
   event.t = stretch.begin + u * length;
   event.opacity = surface.opacity;
@@ -181,36 +171,12 @@ Rgb<double> SurfaceEvents::lit(const Rgb<double>& color, const LayerStretch& str
                                double u_error, double& error) const {
   const Reflection<double>* const reflection = source_.look().reflection();
   if (reflection == nullptr) return color;
+  GradientStretch<double> along{
+      {stretch.gradient[0], stretch.gradient[1], stretch.gradient[2]}, {}, 0, -ray_.direction};
   const double length = stretch.end - stretch.begin;
-  const auto place = [&](double at) {
-    return ray_.origin + ray_.direction * (stretch.begin + at * length);
-  };
-  GradientStretch<double> whole{{stretch.gradient[0], stretch.gradient[1], stretch.gradient[2]},
-                                place(u),
-                                0,
-                                -ray_.direction};
-  const Vec3<double> g = whole.at(u);
-  const int count = static_cast<int>(lights_.size());
-  const Rgb<double> result =
-      light_up(*reflection, lights_.data(), count, g, place(u), -ray_.direction).apply(color);
-  // What it may be anywhere near, and what the rounding of the gradient does.
-  const double begin = std::max(u - u_error, 0.0), end = std::min(u + u_error, 1.0);
-  for (CubicBernstein<double>& component : whole.component) {
-    component = restrict_to(component, begin, end);
-  }
-  whole.half_length = 0.5 * (end - begin) * length;
-  const Bounds<double> squares = whole.square();
-  const LitBounds<double> bounds = light_bounds(*reflection, lights_.data(), count, whole, squares);
-  Rgb<double> less = color, more = color;
-  for (double Rgb<double>::*c : {&Rgb<double>::r, &Rgb<double>::g, &Rgb<double>::b}) {
-    less.*c = std::max(color.*c - error, 0.0);
-    more.*c = color.*c + error;
-  }
-  const Rgb<double> lower = bounds.lower.apply(less), upper = bounds.upper.apply(more);
-  error = std::max(largest_component(upper - result), largest_component(result - lower)) +
-          color_rounding(*reflection, lights_.data(), count, squares, largest_color_,
-                         gradient_rounding<double>);
-  return result;
+  along.middle = ray_.origin + ray_.direction * (stretch.begin + u * length);
+  return light_surface(*reflection, lights_.data(), static_cast<int>(lights_.size()), along, u,
+                       u_error, length, color, largest_color_, error);
 }
 
 /// The ray runs in the plane of a slice: all that it shows is in doubt.

@@ -32,26 +32,9 @@ void skip_only_where_both_do(std::vector<BlockClass>& classes, const BlockClasse
 /// Lets the blocks be visited in which a channel has the value of an isosurface.
 void visit_isosurfaces(std::vector<BlockClass>& classes, const BlockRecords& records, int channel,
                        const LayerLook& look, const LayerTask& task) {
-  std::vector<double> values;
-  for (const Isosurface& surface : look.isosurfaces()) {
-    if (surface.channel == channel) values.push_back(surface.value);
-  }
-  if (values.empty()) return;
-  std::ranges::sort(values);
-  std::vector<TransferFunction::Point> points;
-  for (const double value : values) {
-    // Far more than what rounding may make of data, and a triangle to be told from nothing.
-    const double off = std::max(std::abs(value), 1e-30) * 0x1p-20;
-    if (points.empty() || points.back().value < value - off) {
-      points.push_back({value - off, 0, {}});
-    } else {
-      points.pop_back();
-    }
-    if (points.empty() || points.back().value < value) points.push_back({value, 1, {}});
-    points.push_back({value + off, 0, {}});
-  }
-  const TransferFunction function(std::move(points));
-  const TransferTablesStorage tables(function);
+  const auto function = isosurface_support(look, channel, 0);
+  if (!function) return;
+  const TransferTablesStorage tables(*function);
   const BlockClassesStorage found(records, tables.tables(), 1, task.parallel);
   skip_only_where_both_do(classes, found.view());
 }
@@ -184,6 +167,7 @@ class VolumeStream : public GridStream {
     stretch.position_error = 2 * grid_position_error(part.t_end);
     const double from = (part.t_begin - begin_) / length, to = (part.t_end - begin_) / length;
     stretch.data[0] = restrict_to(span_.data[0], from, to);
+    if (!source_.look().is_lit()) return;
     for (int a = 0; a < 3; ++a) stretch.gradient[a] = restrict_to(whole_.gradient[a], from, to);
     stretch.magnitude = restrict_to(whole_.magnitude, from, to);
   }

@@ -43,8 +43,10 @@ class BlockMarch {
   D smooth_begin, smooth_end;  ///< of it
 
   /// Finds the next stretches of the rays, until they are through, or come to a smooth one, or each
-  /// has as many as may be. Adds 1 to `skipped` for each step over what is to be skipped.
-  [[gnu::flatten]] void find(Stretches<Value, N>& stretches, I& skipped) noexcept {
+  /// has `most`, which is not more than may be. Adds 1 to `skipped` for each step over what is to
+  /// be skipped.
+  [[gnu::flatten]] void find(Stretches<Value, N>& stretches, I& skipped,
+                             int most = Stretches<Value, N>::of_a_ray) noexcept {
     stretches.count = 0;
     smooth = M(false);
     I found(0);
@@ -93,7 +95,7 @@ class BlockMarch {
       store_packed(stretch, next_, stretches.end + at);
       stretches.count += count(stretch);
       found += select(stretch, I(1), I(0));
-      lanes = lanes & (found < I(Stretches<Value, N>::of_a_ray));
+      lanes = lanes & (found < I(most));
     }
   }
 

@@ -11,6 +11,7 @@ template <int N>
 struct CellPlaces {
   Batch<std::int32_t, N> cell[3];      ///< in plane coordinates
   Vec3<Batch<double, N>> entry, exit;  ///< places in the cell, [0,1]³
+  Batch<double, N> begin;              ///< world length from the ray's entry into the grid
   Batch<double, N> length;             ///< world length between them
 };
 
@@ -46,6 +47,7 @@ CellPlaces<N> cell_places(const PacketGrid<Value>& grid, const BlockMarch<Value,
     places.entry[a] = clamp(multiply_add(begin, direction[a], from_corner), D(0), D(1));
     places.exit[a] = clamp(multiply_add(end, direction[a], from_corner), D(0), D(1));
   }
+  places.begin = from + begin;
   places.length = end - begin;
   return places;
 }

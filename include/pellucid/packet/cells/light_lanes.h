@@ -108,6 +108,20 @@ class GradientLoads {
   mutable float has_before_[3][N] = {}, has_behind_[3][N] = {}, flat_[3][N] = {};
 };
 
+/// Returns the directions in the world from which the lanes' rays come, of length 1.
+template <class Value, int N>
+Vec3<Batch<float, N>> direction_to_eye(const PacketLight& light,
+                                       const BlockMarch<Value, N>& rays) noexcept {
+  using D = Batch<double, N>;
+  Vec3<Batch<float, N>> result;
+  for (int c = 0; c < 3; ++c) {
+    D sum(0);
+    for (int a = 0; a < 3; ++a) sum += D(light.world_direction[c][a]) * D::load(rays.direction[a]);
+    result[c] = -convert<float>(sum);
+  }
+  return result;
+}
+
 /// What is known of the light on a piece of a span before any node is shaded.
 template <int N>
 struct LightOfPiece {
@@ -129,15 +143,7 @@ class LightLanes {
 
   LightLanes(const PacketGrid<Value>& grid, const PacketLight& light,
              const BlockMarch<Value, N>& rays) noexcept
-      : light_(light), loads_(grid, light) {
-    for (int c = 0; c < 3; ++c) {
-      D sum(0);
-      for (int a = 0; a < 3; ++a) {
-        sum += D(light.world_direction[c][a]) * D::load(rays.direction[a]);
-      }
-      to_eye_[c] = -convert<float>(sum);
-    }
-  }
+      : light_(light), loads_(grid, light), to_eye_(direction_to_eye(light, rays)) {}
 
   /// Begins spans.
   [[gnu::noinline]] void begin(M lanes, const CellPlaces<N>& places) noexcept {

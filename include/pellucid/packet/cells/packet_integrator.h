@@ -7,6 +7,7 @@
 #include "pellucid/packet/cells/light_lanes.h"
 #include "pellucid/packet/cells/span_finder.h"
 #include "pellucid/packet/cells/span_piece.h"
+#include "pellucid/packet/cells/span_queue.h"
 #include "pellucid/packet/opacity_trace.h"
 #include "pellucid/packet/packet_fold.h"
 #include "pellucid/packet/steps/smooth_march.h"
@@ -29,6 +30,8 @@ namespace pellucid {
 template <class Value, int N, bool is_lit = false>
 class PacketIntegrator {
  public:
+  using Data = Value;
+  static constexpr int lane_count = N;
   using F = Batch<float, N>;
   using D = Batch<double, N>;
   using I = Batch<std::int32_t, N>;
@@ -76,7 +79,7 @@ class PacketIntegrator {
   void run() noexcept {
     while (any(blocks_.alive)) {
       find_spans();
-      begin_spans();
+      queue_.begin(room_.rows);
       for (take_spans(); any(pending_); take_spans()) integrate_spans();
       sample_smooth();
     }
@@ -123,12 +126,6 @@ class PacketIntegrator {
     }
   }
 
-  static I lane_numbers() noexcept {
-    std::int32_t lane[N];
-    for (int l = 0; l < N; ++l) lane[l] = l;
-    return I::load(lane);
-  }
-
   /// How narrow a part of a cell may get before it is handed back.
   static constexpr float narrowest = 1.0f / 16;
   static constexpr float narrowest_lit = 1.0f / 512;
@@ -143,27 +140,12 @@ class PacketIntegrator {
     finder_(room_.stretches, room_.walks, room_.rows, cells_seen_);
   }
 
-  void begin_spans() noexcept {
-    stretches_ = I::load(room_.rows.stretches);
-    stretch_of_ray_ = row_ = end_row_ = I(0);
-  }
-
   /// Gives the lanes without a span the next one of their ray, if there is any.
   [[gnu::flatten]] void take_spans() noexcept {
     using Rows = SpanRows<Value, N>;
-    const M wanted = !pending_;
-    const M over = wanted & (row_ >= end_row_) & (stretch_of_ray_ < stretches_);
-    if (any(over)) {
-      const I at = select(over, lane_ * I(Stretches<Value, N>::of_a_ray) + stretch_of_ray_, I(0));
-      row_ = select(over, gather(room_.rows.first[0], at), row_);
-      end_row_ = select(over, gather(room_.rows.end[0], at), end_row_);
-      stretch_of_ray_ += select(over, I(1), I(0));
-    }
-    const M lanes = wanted & (row_ < end_row_);
-    if (none(lanes)) return;
     F row[Rows::fields];
-    load_records<Rows::fields>(room_.rows.row, select(lanes, row_, I(0)), row);
-    row_ += select(lanes, I(1), I(0));
+    const M lanes = queue_.take(!pending_, room_.rows, row);
+    if (none(lanes)) return;
     const I code = convert<std::int32_t>(row[7]);
     const auto has = [&](int flag) noexcept { return (code & I(flag)) > I(0); };
     pending_ = pending_ | lanes;
@@ -199,8 +181,7 @@ class PacketIntegrator {
   void drop_spans(M lanes) noexcept {
     pending_ = pending_ & !lanes;
     not_begun_ = not_begun_ & !lanes;
-    row_ = select(lanes, end_row_, row_);
-    stretches_ = select(lanes, I(0), stretches_);
+    queue_.drop(lanes);
   }
 
   /// Goes through blocks that were taken for one span after all.
@@ -492,11 +473,7 @@ class PacketIntegrator {
   Light light_;
   SmoothMarch<Value, N> smooth_;
 
-  const I lane_ = lane_numbers();
-
-  // What was found of the lanes' rays and is not taken yet.
-  I stretch_of_ray_, stretches_;  ///< with spans: the next one, and how many there are
-  I row_, end_row_;               ///< of the stretch in front of it
+  SpanQueue<Value, N> queue_;
 
   // The span that a lane works on.
   M pending_{false};

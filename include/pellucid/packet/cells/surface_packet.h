@@ -1,0 +1,252 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "pellucid/packet/cells/cell_places.h"
+#include "pellucid/packet/cells/light_lanes.h"
+#include "pellucid/packet/cells/span_queue.h"
+#include "pellucid/packet/packet_fold.h"
+#include "pellucid/packet/surfaces.h"
+#include "pellucid/segment/extinction_piece.h"
+#include "pellucid/segment/surface.h"
+
+#if PELLUCID_HAS_BATCH_4  // in sources compiled per instruction set
+namespace pellucid {
+
+/// N rays at once, each in a lane of its own, from isosurface to isosurface of data without medium.
+///
+/// A ray knows between which values its data are; where they leave that range is a surface. The
+/// data are continuous and vacuum nowhere, so that it knows that across what is skipped, too. Where
+/// binary32 cannot tell on which side of a value the data are, or what a surface costs is more than
+/// the tolerance, the ray's error is infinite: it is for the general path.
+template <class Value, int N>
+class SurfacePacket {
+ public:
+  using Data = Value;
+  static constexpr int lane_count = N;
+  using F = Batch<float, N>;
+  using D = Batch<double, N>;
+  using I = Batch<std::int32_t, N>;
+  using M = BatchMask<N>;
+
+  /// What many packets have one after the other.
+  struct Room {
+    Stretches<Value, N> stretches;
+    Walks<Value, N> walks;
+    SpanRows<Value, N> rows;
+  };
+
+  /// Of rays first … first + count - 1 of the job, count <= N.
+  SurfacePacket(const PellucidPacketJob& job, const PacketGrid<Value>& grid, Room& room, int first,
+                int count) noexcept
+      : job_(job),
+        grid_(grid),
+        surfaces_(*static_cast<const PacketSurfaces*>(job.surfaces)),
+        light_(*static_cast<const PacketLight*>(job.light)),
+        room_(room),
+        first_(first),
+        count_(count),
+        blocks_(grid, job.rays + first, count),
+        finder_(grid, blocks_, *static_cast<const BinnedTransfer*>(job.transfer), true),
+        gradients_(grid, light_),
+        to_eye_(direction_to_eye(light_, blocks_)) {
+    float place_error[N];
+    for (int l = 0; l < N; ++l) {
+      // As of PacketIntegrator.
+      const PellucidRay& ray = job.rays[first + (l < count ? l : 0)];
+      place_error[l] = static_cast<float>(8 * rounding_unit<double> * ray.end);
+      half_[l] = {0, std::numeric_limits<double>::infinity(), 0};
+    }
+    place_error_ = F::load(place_error);
+  }
+
+  void run() noexcept {
+    while (any(blocks_.alive)) {
+      blocks_.find(room_.stretches, skipped_, stretches_ahead);
+      finder_(room_.stretches, room_.walks, room_.rows, cells_seen_);
+      queue_.begin(room_.rows);
+      for (take_spans(); any(pending_); take_spans()) follow(pending_);
+    }
+  }
+
+  void store(PellucidRayResult* results) const noexcept {
+    const SegmentResult<D> all = fold_.result();
+    for (int l = 0; l < count_; ++l) {
+      PellucidRayResult& r = results[first_ + l];
+      r = light_of_lane(all, l);
+      r.cells = r.evaluations = cells_seen_[l];
+      r.skipped = skipped_[l];
+      r.closed = met_[l];
+      r.half = half_[l];
+      r.optical_depth = -__builtin_log1p(-r.opacity);
+      // Costs are added in float; folding in double costs next to nothing.
+      r.error = static_cast<double>(error_[l]) * (1 + 1e-5) + 1e-12 * job_.largest_color;
+      if (!(r.error <= job_.tolerance)) r.error = std::numeric_limits<double>::infinity();
+    }
+  }
+
+ private:
+  /// How many stretches of a ray are gone through at a time: behind an opaque surface all is
+  /// wasted.
+  static constexpr int stretches_ahead = 1;
+  /// How far from a value the data have to be, in what they may be off by, for their side to count.
+  static constexpr float margin = 3;
+
+  [[gnu::flatten]] void take_spans() noexcept {
+    using Rows = SpanRows<Value, N>;
+    F row[Rows::fields];
+    const M lanes = queue_.take(!pending_, room_.rows, row);
+    if (none(lanes)) return;
+    pending_ = pending_ | lanes;
+    for (int k = 0; k < 4; ++k) data_.b[k] = select(lanes, row[k], data_.b[k]);
+    length_ = select(lanes, row[5], length_);
+    code_ = select(lanes, convert<std::int32_t>(row[7]), code_);
+    from_ = select(lanes, F(0), from_);
+    const F rise = max(max(abs(data_.b[1] - data_.b[0]), abs(data_.b[2] - data_.b[1])),
+                       abs(data_.b[3] - data_.b[2]));
+    const F off = (row[4] + F(surfaces_.value_error)) +
+                  F(3) * rise * min(place_error_ / max(row[5], F(1e-30f)), F(1));
+    close_ = select(lanes, off, close_);
+    const M first = lanes & (range_ < I(0));
+    if (any(first)) {
+      I range(0);
+      for (int i = 1; i <= surfaces_.count; ++i) {
+        range += select(data_.b[0] > F(surfaces_.bound[i]), I(1), I(0));
+      }
+      range_ = select(first, range, range_);
+    }
+    fail(lanes & !is_inside(data_.b[0], data_.b[0]));
+  }
+
+  F lower() const noexcept { return lookup(surfaces_.bound, max(range_, I(0))); }
+  F upper() const noexcept { return lookup(surfaces_.bound, max(range_, I(0)) + I(1)); }
+  /// Whether these data are in the ray's range, and known to be.
+  M is_inside(F least, F most) const noexcept {
+    return (least > lower() + F(margin) * close_) & (most < upper() - F(margin) * close_);
+  }
+
+  /// Follows the data to where they leave their range, or turn, or the cell ends.
+  [[gnu::flatten]] void follow(M on) noexcept {
+    const F lower = this->lower(), upper = this->upper();
+    const MonotonePiece<F> piece = monotone_piece(data_, close_, on);
+    const M rising = piece.reach > data_.b[0];
+    const F beyond = select(rising, piece.reach - upper, lower - piece.reach);
+    const M stays = on & is_inside(piece.reach, piece.reach);
+    M crosses = on & (beyond > F(margin) * close_) & (upper - lower > F(4 * margin) * close_);
+    F place = piece.place;
+    if (any(crosses)) {
+      M open;
+      const F at =
+          find_crossing(data_, piece, select(rising, upper, lower), rising, close_, crosses, open);
+      crosses = crosses & !open;
+      place = select(crosses, at, place);
+    }
+    fail(on & !(crosses | stays));
+    if (any(crosses)) {
+      meet(crosses, rising, place);
+      range_ += select(crosses, select(rising, I(1), I(-1)), I(0));
+    }
+    const CubicBernstein<F> rest = cut(data_, place).back;
+    for (int k = 0; k < 4; ++k) data_.b[k] = select(on, rest.b[k], data_.b[k]);
+    from_ = select(on, from_ + (F(1) - from_) * place, from_);
+    const M over = on & ((place >= F(1)) | is_inside(rest.hull_min(), rest.hull_max()));
+    pending_ = pending_ & !over;
+  }
+
+  /// Puts the surfaces that the lanes have come to behind what is in front of them.
+  [[gnu::noinline]] void meet(M lanes, M rising, F place) noexcept {
+    const I surface = max(range_, I(0)) + select(rising, I(1), I(0));
+    const F opacity = lookup(surfaces_.opacity, surface);
+    Rgb<F> color{lookup(surfaces_.color[0], surface), lookup(surfaces_.color[1], surface),
+                 lookup(surfaces_.color[2], surface)};
+    F error(4 * rounding_unit<float> * static_cast<float>(job_.largest_color));
+    const F ahead = F(1) - from_;
+    const F u = min(from_ + ahead * place, F(1));
+    const F u_error = min(ahead * crossing_error(data_, place, F(2) * close_) + F(1e-6f), F(1));
+    CellPlaces<N> places;
+    if (surfaces_.is_lit != 0 || job_.depth != 0) places = places_of(lanes);
+    if (surfaces_.is_lit != 0) {
+      GradientStretch<F> along;
+      along.to_eye = to_eye_;
+      gradients_(lanes, places, along.component);
+      color = light_surface(light_.reflection, light_.light, light_.lights, along, u, u_error,
+                            length_, color, F(static_cast<float>(job_.largest_color)), error);
+      error += F(surfaces_.color_rounding);
+    }
+    if (job_.depth != 0) {
+      note_depth(lanes & (opacity >= F(1)) & (u_error < F(1e-3f)),
+                 places.begin + convert<double>(u) * places.length);
+    }
+    const F before = convert<float>(fold_.transparency());
+    error_ += select(lanes, before * opacity * error, F(0));
+    const D a = select(lanes, convert<double>(opacity), D(0));
+    const auto masked = [&](F x) noexcept { return select(lanes, convert<double>(x), D(0)); };
+    fold_.add(SegmentResult<D>{
+        D(0), a, D(1) - a, {a * masked(color.r), a * masked(color.g), a * masked(color.b)}});
+    met_ += select(lanes, I(1), I(0));
+    // What is behind them no longer matters.
+    const F rest = convert<float>(fold_.transparency()) * F(static_cast<float>(job_.largest_color));
+    const M done = lanes & (rest <= F(0.125f) * F(static_cast<float>(job_.tolerance)));
+    error_ += select(done, rest, F(0));
+    end_rays(done);
+  }
+
+  /// Where the lanes' rays go through their cells.
+  CellPlaces<N> places_of(M lanes) const noexcept {
+    I in_block[3];
+    const I code = select(lanes, code_, I(0));
+    for (int a = 0; a < 3; ++a) in_block[a] = SpanCode::place_in_block(code, a);
+    return cell_places(grid_, blocks_, room_.stretches, SpanCode::stretch_of(code), in_block);
+  }
+
+  /// An opaque surface in front of all others is where half of the opacity is reached.
+  void note_depth(M lanes, D at) noexcept {
+    for (unsigned left = bits(lanes & (met_ < I(1))); left != 0; left &= left - 1) {
+      const int l = __builtin_ctz(left);
+      half_[l].begin = half_[l].end = job_.rays[first_ + l].begin + at[l];
+    }
+  }
+
+  /// The lanes' rays are not for binary32.
+  void fail(M lanes) noexcept {
+    if (none(lanes)) return;
+    error_ = select(lanes, F(std::numeric_limits<float>::infinity()), error_);
+    end_rays(lanes);
+  }
+  void end_rays(M lanes) noexcept {
+    pending_ = pending_ & !lanes;
+    queue_.drop(lanes);
+    blocks_.alive = blocks_.alive & !lanes;
+  }
+
+  const PellucidPacketJob& job_;
+  const PacketGrid<Value>& grid_;
+  const PacketSurfaces& surfaces_;
+  const PacketLight& light_;
+  Room& room_;
+  int first_, count_;
+  BlockMarch<Value, N> blocks_;
+  SpanFinder<Value, N> finder_;
+  GradientLoads<Value, N> gradients_;
+  SpanQueue<Value, N> queue_;
+  Vec3<F> to_eye_;
+  F place_error_;  ///< how far spans' ends may be from where they are thought to be, world length
+
+  M pending_{false};
+  I range_{-1};  ///< how many values are below the ray's data; -1: not known yet
+
+  // The span that a lane works on.
+  CubicBernstein<F> data_;  ///< of what is left of it
+  F close_;                 ///< what the data may be off by
+  F from_;                  ///< the share of the cell that is done
+  F length_;                ///< of the cell, world length
+  I code_;
+
+  FrontToBackCompositor<D> fold_;
+  F error_{0};
+  PellucidHalfOpacity half_[N];
+  std::int32_t cells_seen_[N] = {};
+  I skipped_{0}, met_{0};
+};
+
+}  // namespace pellucid
+#endif

@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// Compiled once per instruction set, with namespace pellucid under a name of its own
+// (cmake/PellucidInstructionSets.cmake).
+#include "pellucid/packet/cells/run_packets.h"
+#include "pellucid/packet/cells/surface_packet.h"
+#include "pellucid/simd/flush_to_zero.h"
+#include "pellucid/simd/instruction_set.h"
+
+extern "C" void PELLUCID_ENTRY(pellucid_meet_surfaces)(const PellucidPacketJob* job) {
+  const pellucid::FlushToZero mode;
+  pellucid::with_value_type(job->type, [job](auto value) {
+    using Value = decltype(value);
+    if constexpr (std::is_same_v<Value, float> || sizeof(Value) <= 2) {
+      pellucid::run_packets<pellucid::SurfacePacket<Value, PELLUCID_LANES>>(*job);
+    }
+  });
+}

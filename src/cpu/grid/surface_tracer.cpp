@@ -1,0 +1,162 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <vector>
+
+#include "grid_light.h"
+#include "packet_setup.h"
+#include "packet_tracer.h"
+#include "pellucid/packet/surfaces.h"
+#include "pellucid/scene/binned_transfer_storage.h"
+#include "pellucid/scene/block_classes_storage.h"
+#include "pellucid/scene/transfer_tables_storage.h"
+#include "ray_tracer.h"
+#include "threads.h"
+
+namespace pellucid {
+namespace {
+
+using Kernel = void (*)(const PellucidPacketJob*);
+
+Kernel kernel_for([[maybe_unused]] const TracerTask& task) {
+#if PELLUCID_HAS_PACKETS
+  return kernel_of<Kernel>(packet_instruction_set(task.options.instruction_set),
+                           pellucid_meet_surfaces_sse4, pellucid_meet_surfaces_avx2,
+                           pellucid_meet_surfaces_avx512);
+#else
+  return nullptr;
+#endif
+}
+
+/// Whether a layer is isosurfaces in one color each, of data that are continuous.
+bool shows_plain_isosurfaces(const Layer& layer) {
+  const auto* const content = std::get_if<VolumeContent>(&layer.content);
+  return content != nullptr && !content->mask && layer.slices.empty() &&
+         !(largest_extinction(layer) > 0) &&
+         layer.isosurfaces.size() <= std::size_t{PacketSurfaces::most} &&
+         std::ranges::none_of(
+             layer.isosurfaces,
+             [](const Isosurface& surface) { return surface.colors != nullptr; }) &&
+         fits_single(*content->volume) && content->volume->statistics().nan == 0;
+}
+
+/// How much wider than its value a surface's support is, in largest values of the data: what is
+/// narrower is a jump for BinnedTransfer.
+constexpr double support_width = 0x1p-14;
+
+constexpr double unit = static_cast<double>(rounding_unit<float>);
+
+PacketSurfaces packet_surfaces(const LayerLook& look,
+                               const std::vector<LightSource<double>>& lights,
+                               double largest_color) {
+  PacketSurfaces result;
+  std::vector<Isosurface> surfaces = look.isosurfaces();
+  std::ranges::sort(surfaces, {}, &Isosurface::value);
+  result.bound[0] = -BinnedTransfer::far;
+  for (const Isosurface& surface : surfaces) {
+    const int i = ++result.count;
+    result.bound[i] = static_cast<float>(surface.value);
+    result.value_error =
+        std::max(result.value_error, static_cast<float>(2 * unit * std::abs(surface.value)));
+    result.opacity[i] = static_cast<float>(surface.opacity);
+    result.color[0][i] = static_cast<float>(surface.color.r);
+    result.color[1][i] = static_cast<float>(surface.color.g);
+    result.color[2][i] = static_cast<float>(surface.color.b);
+  }
+  result.bound[result.count + 1] = BinnedTransfer::far;
+  if (const Reflection<double>* const r = look.reflection()) {
+    result.is_lit = 1;
+    // As light_up() says of its errors.
+    double brightest = 0;
+    for (const LightSource<double>& light : lights) brightest += largest_component(light.color);
+    result.color_rounding =
+        static_cast<float>(unit * (8 * (r->ambient + r->diffuse * brightest) * largest_color +
+                                   16 * std::max(r->power, 1.0) * r->specular * brightest));
+  }
+  return result;
+}
+
+class SurfaceTracer : public RayTracer {
+ public:
+  SurfaceTracer(const TracerTask& task, Kernel kernel, const PacketLight& light,
+                const LayerLook& look, const std::vector<LightSource<double>>& lights)
+      : volume_(*std::get<VolumeContent>(task.layer.content).volume),
+        support_(*isosurface_support(look, 0, largest_value(volume_) * support_width)),
+        tables_(support_),
+        binned_(tables_.tables().wide, largest_value(volume_)),
+        classes_(volume_.block_records(parallel_for(task.threads)), tables_.tables(), 1,
+                 parallel_for(task.threads)),
+        light_(light),
+        kernel_(kernel) {
+    const double largest_color = std::max(task.wanted.largest_color, 1.0);
+    surfaces_ = packet_surfaces(look, lights, largest_color);
+    set_grid(volume_, job_);
+    job_.light = &light_;
+    job_.surfaces = &surfaces_;
+    job_.classes = classes_.view().block;
+    job_.records = volume_.block_records(parallel_for(task.threads)).record;
+    job_.transfer = &binned_.view();
+    job_.tolerance = task.wanted.tolerance;
+    job_.largest_color = largest_color;
+    job_.depth = task.options.depth ? 1 : 0;
+  }
+
+  bool keeps_to_ranges() const override { return true; }
+
+  std::vector<RayResult> trace(const std::vector<RayPart>& parts,
+                               const TraceOptions& options) const override {
+    std::vector<RayResult> results(parts.size(), missing_ray());
+    const PacketRays inside(volume_, parts_in_grid(volume_, parts));
+    std::vector<PellucidRayResult> found(inside.ray.size());
+    PellucidPacketJob job = job_;
+    job.tolerance *= options.share;
+    job.rays = inside.ray.data();
+    job.results = found.data();
+    job.count = static_cast<std::int32_t>(found.size());
+    kernel_(&job);
+    for (std::size_t i = 0; i < found.size(); ++i) {
+      RayResult& to = results[inside.of[i]];
+      if (std::isinf(found[i].error)) {
+        to = left_to_general_path();
+      } else {
+        to = {};
+        read_result(found[i], to);
+        // Of rays that end at an opaque surface it is known.
+        if (to.half.range.begin == to.half.range.end) to.half_opacity_depth = to.half.range.end;
+      }
+    }
+    return results;
+  }
+
+ private:
+  const Volume& volume_;
+  const TransferFunction support_;
+  const TransferTablesStorage tables_;
+  const BinnedTransferStorage binned_;
+  const BlockClassesStorage classes_;
+  const PacketLight light_;
+  PacketSurfaces surfaces_;
+  PellucidPacketJob job_{};
+  const Kernel kernel_;
+};
+
+}  // namespace
+
+std::unique_ptr<const RayTracer> make_surface_tracer(const TracerTask& task) {
+  if (!shows_plain_isosurfaces(task.layer) || task.integration.method != Method::exact ||
+      task.wanted.grade == Grade::proved || task.wanted.precision != Precision::automatic ||
+      task.wanted.tolerance < least_packet_tolerance) {
+    return nullptr;
+  }
+  const Volume& volume = *std::get<VolumeContent>(task.layer.content).volume;
+  const Kernel kernel = kernel_for(task);
+  if (kernel == nullptr || !suits_packets(volume, 1)) return nullptr;
+  const LayerLook look(task.layer);
+  const std::vector<LightSource<double>> lights = light_sources(task.lights);
+  const auto light = packet_light(look, volume, lights);
+  if (!light) return nullptr;
+  return std::make_unique<SurfaceTracer>(task, kernel, *light, look, lights);
+}
+
+}  // namespace pellucid

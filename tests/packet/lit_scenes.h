@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <random>
+#include <type_traits>
+
+#include "pellucid/cpu/render.h"
+#include "tests/scenes/makers.h"
+
+namespace pellucid {
+
+inline Rgb<double> random_color(std::mt19937& random) {
+  std::uniform_real_distribution<double> unit(0, 1);
+  return {unit(random), unit(random), unit(random)};
+}
+
+inline Shading random_shading(std::mt19937& random) {
+  std::uniform_real_distribution<double> unit(0, 1);
+  return {0.3 * unit(random),
+          unit(random),
+          0.5 * unit(random),
+          1 + std::floor(40 * unit(random)),
+          unit(random) < 0.5 ? GradientKind::smooth : GradientKind::field,
+          unit(random) < 0.2 ? 0.0 : 0.05 * unit(random)};
+}
+
+template <class Value>
+scenes::VolumePointer random_volume(std::mt19937& random, double vacuum) {
+  std::uniform_real_distribution<double> unit(0, 1);
+  const auto count = [&] { return 2 + static_cast<int>(20 * unit(random)); };
+  Volume::Description description =
+      scenes::grid_description({count(), count(), count()}, {-1, -1, -1});
+  description.placement.spacing = {0.1 + 0.1 * unit(random), 0.1 + 0.1 * unit(random),
+                                   0.1 + 0.1 * unit(random)};
+  description.placement.direction = {
+      {{0.8, 0.6, 0.1}, {-0.6, 0.8, 0.2 * unit(random)}, {0, 0.1, 1}}};
+  if (unit(random) < 0.5) description.centering = Centering::cell;
+  const double a = unit(random), b = 2 * unit(random), noise = unit(random) < 0.5 ? 0.3 : 0.01;
+  return scenes::make_volume<Value>(description, [&](int i, int j, int k) {
+    const double wave = 0.5 + 0.3 * std::sin(a * i + b * j) * std::cos(0.5 * k + a);
+    if (!std::is_integral_v<Value> && unit(random) < vacuum) {
+      return std::numeric_limits<double>::quiet_NaN();
+    }
+    return 200 * std::clamp(wave + noise * (unit(random) - 0.5), 0.0, 1.0);
+  });
+}
+
+/// Of one of four types, in a random place. `vacuum`: the share of values that are NaN.
+inline scenes::VolumePointer any_volume(std::mt19937& random, int kind, double vacuum) {
+  switch (kind) {
+    case 0:
+      return random_volume<std::uint8_t>(random, vacuum);
+    case 1:
+      return random_volume<std::int16_t>(random, vacuum);
+    case 2:
+      return random_volume<std::uint16_t>(random, vacuum);
+    default:
+      return random_volume<float>(random, vacuum);
+  }
+}
+
+/// From a random place, in random lights.
+inline void look_at_data(Scene& scene, std::mt19937& random) {
+  std::uniform_real_distribution<double> unit(0, 1), both(-1, 1);
+  if (unit(random) < 0.5) {
+    scene.lights = {
+        {HeadLight{}, random_color(random)},
+        {DirectionalLight{{both(random), both(random), both(random)}}, random_color(random)}};
+  }
+  scene.camera.position = {3 * both(random), 3 * both(random), 4};
+  scene.camera.focal_point = {0.3, 0.2, 0.1};
+  scene.camera.vertical_angle = 35;
+  scene.size = {12, 12};
+}
+
+inline Image frame(const Scene& scene, std::optional<InstructionSet> set,
+                   RenderReport* report = nullptr, int threads = 1) {
+  RenderOptions options;
+  options.error = true;
+  options.threads = threads;
+  options.instruction_set = set;
+  return render(scene, options, report);
+}
+
+}  // namespace pellucid
