@@ -7,9 +7,10 @@ import os
 from typing import Any, Callable, Optional
 
 from . import _pellucid
-from ._pellucid import Error, Image, Renderer, Volume
+from ._pellucid import Channels, Error, Image, LabelVolume, Mesh, Renderer, Volume
 from .scene import Camera, Color, Layer, Scene, Shading, _data_of
 
+_PLACE_NAMES = ("spacing", "origin", "direction", "coordinates", "centering")
 _LAYER_NAMES = {f.name for f in dataclasses.fields(Layer)} - {"data", "transfer_function"}
 
 
@@ -31,6 +32,12 @@ def scene_of(data: Any, transfer_function: Any = None, *, preset: Optional[str] 
     """Returns the scene that render() renders; it takes the same arguments."""
     if isinstance(data, (str, os.PathLike)):
         data = _pellucid.read(data)
+    place = {name: layer.pop(name) for name in _PLACE_NAMES if name in layer}
+    if place:
+        if isinstance(data, (Scene, Layer, Volume, Channels, Mesh, LabelVolume)):
+            raise Error(f"render: {', '.join(place)} are for arrays; the {type(data).__name__} has "
+                        "its place")
+        data = Volume(data, **place)
     if preset is not None:
         if transfer_function is not None:
             raise Error(f"preset {preset}: a transfer function is given too; drop one of the two")
@@ -53,7 +60,7 @@ def scene_of(data: Any, transfer_function: Any = None, *, preset: Optional[str] 
     if tolerance is not None:
         scene.integration = dataclasses.replace(scene.integration, tolerance=tolerance)
     if size is not None:
-        scene.size = (size, size) if isinstance(size, int) else size
+        scene.size = (size, size) if hasattr(size, "__index__") else size
     if background is not None:
         scene.background = background
     if camera is not None:
@@ -92,7 +99,8 @@ def render(data: Any, transfer_function: Any = None, *, preset: Optional[str] = 
                        picture and is raised here, and so is Ctrl-C
     renderer           a Renderer, which keeps what frames share
     **layer            further attributes of the Layer: shading, isosurfaces, slices, clips,
-                       projection, gradient_opacity, transform, mask, labels, name
+                       projection, gradient_opacity, transform, mask, labels, name; and of an
+                       array spacing, origin, direction, coordinates and centering, as Volume()
 
     Raises Error: one line that says what is wrong, where, and what to do.
     """

@@ -247,7 +247,7 @@ class Layer:
             if several:
                 names = data.names if isinstance(data, Channels) else data.channels
                 return Gaussians([], channels=names, tables={names[0]: transparent})
-            if any(each.colors is None for each in self.slices):
+            if any(getattr(each, "colors", None) is None for each in self.slices):
                 return _pellucid.grey_colors(data)
             return transparent
         if several:

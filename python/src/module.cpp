@@ -28,4 +28,14 @@ PYBIND11_MODULE(_pellucid, module) {
   for (const auto& [name, object] : py::dict(module.attr("__dict__"))) {
     if (PyType_Check(object.ptr()) != 0) object.attr("__module__") = "pellucid";
   }
+  // Objects that never change are their own copies, so that scenes can be copied.
+  for (const char* const name :
+       {"Volume", "Channels", "LabelVolume", "LabelTable", "LabelMask", "Mesh", "TransferFunction",
+        "OpacityTable", "GradientOpacity", "Gaussians", "Image"}) {
+    const py::object type = module.attr(name);
+    type.attr("__copy__") =
+        py::cpp_function([](const py::object& self) { return self; }, py::is_method(type));
+    type.attr("__deepcopy__") = py::cpp_function(
+        [](const py::object& self, const py::object&) { return self; }, py::is_method(type));
+  }
 }

@@ -54,7 +54,15 @@ int integer_of(const py::object& object, const std::string& what) {
   return number;
 }
 
+/// Throws Error unless the object has what only objects of this class have.
+void check_kind(const py::handle& object, const char* attribute, const std::string& what,
+                const char* expected) {
+  if (py::hasattr(object, attribute)) return;
+  throw Error(what + ": expected a " + expected + ", got " + short_repr(object));
+}
+
 Camera camera_of(const py::object& object) {
+  check_kind(object, "focal_point", "camera", "pellucid.Camera");
   static constexpr const char* const projections[] = {"perspective", "orthographic"};
   Camera camera;
   camera.projection = choice(object.attr("projection"), "camera.projection", projections) == 0
@@ -123,6 +131,7 @@ auto list_of(const py::object& list, const std::string& what, Read&& read) {
 
 Shading shading_of(const py::object& object, const std::string& what) {
   static constexpr const char* const gradients[] = {"smooth", "field"};
+  check_kind(object, "flatness", what, "pellucid.Shading");
   const auto number = [&](const char* name) {
     return number_of(object.attr(name), what + "." + name);
   };
@@ -149,6 +158,7 @@ std::shared_ptr<const TransferFunction> colors_of(const py::object& object,
 }
 
 Isosurface isosurface_of(const py::handle& object, const std::string& what) {
+  check_kind(object, "color_channel", what, "pellucid.Isosurface");
   Isosurface surface;
   surface.value = number_of(object.attr("value"), what + ".value");
   surface.opacity = number_of(object.attr("opacity"), what + ".opacity");
@@ -160,6 +170,7 @@ Isosurface isosurface_of(const py::handle& object, const std::string& what) {
 }
 
 Slice slice_of(const py::handle& object, const std::string& what) {
+  check_kind(object, "normal", what, "pellucid.Slice");
   Slice slice;
   slice.point = vector_of(object.attr("point"), what + ".point");
   slice.normal = vector_of(object.attr("normal"), what + ".normal");
@@ -313,6 +324,7 @@ Layer layer_of(const py::object& object, const std::string& what, LayerDescripti
 Integration integration_of(const py::object& object) {
   static constexpr const char* const grades[] = {"estimated", "proved"};
   static constexpr const char* const precisions[] = {"automatic", "float32", "float64"};
+  check_kind(object, "grade", "integration", "pellucid.Integration");
   Integration integration;
   integration.tolerance = number_of(object.attr("tolerance"), "tolerance");
   integration.grade =
@@ -359,6 +371,10 @@ PythonScene read_scene(const py::object& object) {
   PythonScene made;
   Scene& scene = made.scene;
   made.description.layers.clear();
+  if (!py::hasattr(object, "layers") || !py::hasattr(object, "integration")) {
+    throw Error("scene: expected a pellucid.Scene, got " + short_repr(object) +
+                "; pellucid.scene_of() makes one of data");
+  }
   for (const py::handle layer : object.attr("layers")) {
     const std::string what = "layer " + std::to_string(scene.layers.size() + 1);
     if (!py::hasattr(layer, "transfer_function")) {

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """Scenes of all kinds beside the program, scene files, transfer functions and messages."""
+import copy
 import json
 import os
 import warnings
@@ -324,6 +325,12 @@ def test_what_is_refused_is_refused_in_one_line(change, words):
     (lambda: pellucid.LabelTable({1: "#ffffff"}), "label 1: has no extinction"),
     (lambda: pellucid.builtin_field("cube"), "cube"),
     (lambda: pellucid.Renderer(-1), "threads"),
+    (lambda: pellucid.render(smooth(), camera={}), "camera: expected a pellucid.Camera, got {}"),
+    (lambda: pellucid.render(smooth(), isosurfaces=[0.5]), "isosurface 1: expected a"),
+    (lambda: pellucid.render(smooth(), slices=[3]), "expected a pellucid.Slice"),
+    (lambda: pellucid.render(smooth(), shading=True), "shading: expected a pellucid.Shading"),
+    (lambda: pellucid.render(pellucid.Volume(smooth()), spacing=2), "spacing are for arrays"),
+    (lambda: pellucid.Renderer().render(smooth()), "scene: expected a pellucid.Scene"),
     (lambda: pellucid.Renderer().start(pellucid.scene_of(smooth()), preview=99), "preview"),
 ])
 def test_wrong_arguments_are_refused_in_one_line(call, words):
@@ -331,6 +338,30 @@ def test_wrong_arguments_are_refused_in_one_line(call, words):
         call()
     assert "\n" not in str(error.value)
     assert isinstance(error.value, ValueError)
+
+
+def test_places_of_arrays():
+    placed = pellucid.Volume(smooth(), spacing=(1, 2, 3), centering="cell")
+    image = pellucid.render(smooth(), size=SIZE, depth=True, spacing=(1, 2, 3), centering="cell")
+    assert_same_bits(image, render(placed))
+
+
+def test_scenes_are_copied_without_their_data():
+    scene = pellucid.scene_of(smooth(), POINTS, size=SIZE)
+    other = copy.deepcopy(scene)
+    other.layers[0].visible = False
+    assert other.layers[0].data is scene.layers[0].data and scene.layers[0].visible
+    assert other.layers[0].transfer_function is scene.layers[0].transfer_function
+
+
+def test_numbers_of_numpy_are_numbers():
+    image = pellucid.render(smooth(), size=numpy.int64(8), tolerance=numpy.float32(0.01),
+                            background=numpy.array([0, 0.5, 1]))
+    assert image.width == 8
+    scene = pellucid.scene_of(smooth(), camera=pellucid.Camera(
+        position=numpy.array([30, 0, 0]), focal_point=[4, 4, 4], up=numpy.eye(3)[2]))
+    scene.size = numpy.array([8, 6])
+    assert pellucid.Renderer().render(scene).height == 6
 
 
 def test_unknown_keywords():
