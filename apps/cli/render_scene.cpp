@@ -17,6 +17,7 @@
 #include "pellucid/scene/labels.h"
 #include "pellucid/scene/view_camera.h"
 #include "render.h"
+#include "view/suggestions.h"
 
 namespace pellucid::cli {
 
@@ -401,6 +402,10 @@ PreparedScene prepare(const RenderArguments& arguments) {
   PreparedScene prepared;
   prepared.description = describe(arguments, prepared.import_notes);
   SceneDescription& description = prepared.description;
+  const int threads = arguments.threads > 0 ? arguments.threads : default_thread_count();
+  if (arguments.suggests_functions) {
+    view::suggest_missing_functions(description, parallel_for(threads));
+  }
   Integration& integration = description.integration;
   prepared.tolerance_asked = integration.tolerance;
   if (arguments.tolerance) {
@@ -440,7 +445,7 @@ PreparedScene prepare(const RenderArguments& arguments) {
       };
     }
   }
-  const int threads = arguments.threads > 0 ? arguments.threads : default_thread_count();
+  prepared.has_own_camera = description.camera.has_value();
   const auto& first_mesh = description.layers.front().mesh;
   prepared.array_chosen = first_mesh && first_mesh->channels.empty();
   std::vector<MeshSource> meshes;

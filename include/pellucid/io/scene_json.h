@@ -137,8 +137,8 @@ Scene make_scene(const SceneDescription& description, const ParallelFor& paralle
 
 /// Returns layer number `layer` of the description with the data of `loaded`, which was made from
 /// the same data with another look. Reads nothing, unless the look needs channels that `loaded`
-/// lacks. Opacity tables are fitted by fit_opacity_tables() afterwards. Throws Error as make_scene()
-/// does.
+/// lacks. Opacity tables are fitted by fit_opacity_tables() afterwards. Throws Error as
+/// make_scene() does.
 Layer remake_layer(const SceneDescription& description, std::size_t layer, const Layer& loaded,
                    const ParallelFor& parallel = {});
 
