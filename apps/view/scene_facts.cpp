@@ -103,7 +103,10 @@ Json scene_json(const SceneState& state, const std::vector<FileChoices>& choices
   }
   Json names = Json::array();
   for (const Preset& preset : presets()) {
-    names.push_back({{"name", preset.name}, {"description", preset.description}});
+    names.push_back({{"name", preset.name},
+                     {"description", preset.description},
+                     {"hounsfield", preset.hounsfield},
+                     {"lit", preset.lit}});
   }
   return {{"type", "scene"},
           {"scene", Json::parse(scene_to_json(state.description()))},

@@ -2,7 +2,7 @@
 import {CurveEditor} from './curve_editor.js';
 import {GaussianEditor} from './gaussian_editor.js';
 import {button, choice, colorInput, gestureIsActive, labelled, make, newGesture, numberInput,
-  replaceKeepingFocus} from './elements.js';
+  replaceKeepingFocus, shortNumber} from './elements.js';
 
 /** The transfer function of the selected layer, with what it can be replaced by. */
 export class FunctionPanel {
@@ -81,9 +81,8 @@ export class FunctionPanel {
     const isField = Boolean(layer.field), isMesh = Boolean(layer.mesh);
     if (isField || (isMesh && facts.channels.length === 1)) {
       const presets = viewer.presets.map(({name, description}) => [name, `${name}: ${description}`]);
-      const select = choice('', [['', 'Preset…'], ...presets], 'Use a preset', (name) => {
-        if (name) viewer.editLayer('transfer_function', {preset: name}, newGesture());
-      });
+      const select = choice('', [['', 'Preset…'], ...presets], 'Use a preset',
+        (name) => { if (name) this.usePreset(name); });
       select.style.maxWidth = '15ch';
       row.append(select, button('Curve from the data', suggest('curve')));
     }
@@ -92,6 +91,24 @@ export class FunctionPanel {
         suggest('gaussians')));
     }
     return row;
+  }
+
+  usePreset(name) {
+    const {viewer} = this;
+    const {hounsfield, lit} = viewer.presets.find((preset) => preset.name === name);
+    const [lower, upper] = viewer.facts().range;
+    const gesture = newGesture();
+    const value = {preset: name};
+    // Scans are also kept as numbers from 0 to 1, in which such a preset shows nothing.
+    const stretched = hounsfield && upper > lower && upper - lower < 100;
+    if (stretched) value.range = [lower, upper];
+    viewer.editLayer('transfer_function', value, gesture);
+    // As on the command line, what is made for light gets some.
+    if (lit && !viewer.layer().shading) viewer.editLayer('shading', {}, gesture);
+    if (stretched) {
+      viewer.showMessage(`${name} is in Hounsfield units, and the data go from ` +
+        `${shortNumber(lower)} to ${shortNumber(upper)}: its points were moved to that range.`);
+    }
   }
 
   exchange(transferFunction) {

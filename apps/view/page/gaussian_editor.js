@@ -149,7 +149,7 @@ export class GaussianEditor {
   }
 
   seenMarks() {
-    if (!this.seen || !this.shown.every((name) => name in this.seen)) return [];
+    if (!this.seen || !this.shown?.every((name) => name in this.seen)) return [];
     const [x, y] = this.toPlot(this.shown.map((name) => this.seen[name]));
     return [makeSvg('path', {class: 'seen', d: `M${x - 7} ${y}h14M${x} ${y - 7}v14`})];
   }

@@ -30,7 +30,8 @@ export class Viewer {
   facts(i = this.selected) { return this.layerFacts[i]; }
   nameOf(i) {
     const layer = this.scene.layers[i];
-    const source = layer.field ?? layer.mesh ?? layer.labels ?? layer.channels?.[0] ?? {};
+    if (!layer.name && layer.channels) return layer.channels.map(({name}) => name).join(' + ');
+    const source = layer.field ?? layer.mesh ?? layer.labels ?? {};
     return layer.name ?? (source.file ?? source.builtin ?? `layer ${i + 1}`).split('/').pop();
   }
   select(i) {
@@ -123,8 +124,10 @@ export class Viewer {
   }
 
   showProbe(probe) {
-    document.getElementById('probe').textContent =
-      probeText(probe, this.unit, (i) => this.nameOf(i));
+    const nameOf = this.scene.layers.length > 1 ? (i) => this.nameOf(i) : null;
+    const text = document.getElementById('probe');
+    text.textContent = probeText(probe, this.unit, nameOf);
+    text.title = text.textContent;
     this.picture.markProbe(probe.position ? {x: probe.x, y: probe.y} : null);
     this.functionPanel.markSeen(probe);
   }

@@ -26,6 +26,11 @@ export class Plot {
 
   /** Clears the canvas; one unit of its context is one of the SVG. */
   begin() {
+    const width = this.element.clientWidth || this.width;
+    if (width !== this.width) {
+      this.width = width;
+      this.setSize();
+    }
     const context = this.canvas.getContext('2d');
     context.setTransform(2, 0, 0, 2, 0, 0);
     context.clearRect(0, 0, this.width, this.height + this.below);

@@ -96,8 +96,11 @@ export class SurfacesPanel extends Panel {
       const taken = new Set(surfaces.map((surface) => surface.value));
       let value = (least + most) / 2;
       while (taken.has(value)) value = (value + most) / 2;
+      const gesture = newGesture();
       viewer.editLayer('isosurfaces', [...surfaces, {value, color: [1, 0.8, 0.6], opacity: 1}],
-        newGesture());
+        gesture);
+      // As on the command line: without light a surface is flat.
+      if (surfaces.length === 0 && !layer.shading) viewer.editLayer('shading', {}, gesture);
     };
     return [
       ...surfaces.map((surface, i) => this.surface(surfaces, surface, i, least, most)),
@@ -278,14 +281,18 @@ export class LightPanel extends Panel {
   }
 }
 
-/** @param {?Object} probe a message "probe" @param {string} unit @returns {string} */
+/**
+ * @param {Object} probe a message "probe"
+ * @param {string} unit of length
+ * @param {?function(number): string} nameOf a layer; null if there is only one
+ * @returns {string}
+ */
 export function probeText(probe, unit, nameOf) {
-  if (!probe) return '';
   const depth = probe.optical_depth === null ? '∞' : shortNumber(probe.optical_depth);
   if (!probe.position) return `nothing in front · optical depth ${depth}`;
   const position = probe.position.map(shortNumber).join(', ');
   const values = probe.values.map(({channel, value}) => `${channel} ${shortNumber(value)}`);
-  const layer = probe.layer === undefined ? '' : ` · ${nameOf(probe.layer)}`;
+  const layer = probe.layer === undefined || !nameOf ? '' : ` · ${nameOf(probe.layer)}`;
   return `(${position})${unit ? ' ' + unit : ''} · ${values.join(', ')} · ` +
     `optical depth ${depth}${layer}`;
 }
