@@ -211,6 +211,11 @@ constexpr Kind kinds[] = {
      [](Members& m) -> Command {
        return ChooseArray{m.layer(), m.text("array", {1, 1024})};
      }},
+    {"time",
+     [](Members& m) -> Command {
+       return ChooseTime{m.layer(), m.number("time", -1e30, 1e30)};
+     }},
+    {"list_mesh", [](Members& m) -> Command { return ListMesh{m.layer()}; }},
     {"save",
      [](Members& m) -> Command {
        constexpr std::array kinds_of_files{Save::Kind::png, Save::Kind::exr, Save::Kind::scene};

@@ -104,10 +104,19 @@ struct ChooseComponent {
   std::size_t layer;
   int component;
 };
-/// Shows another array of a layer's file.
+/// Shows another array of a layer's file, with the function that is made from it.
 struct ChooseArray {
   std::size_t layer;
   std::string array;
+};
+/// Shows the step of a mesh that is nearest to a time.
+struct ChooseTime {
+  std::size_t layer;
+  double time;
+};
+/// Asks for the arrays and times of a mesh, for which its file is read.
+struct ListMesh {
+  std::size_t layer;
 };
 /// Asks for a file.
 struct Save {
@@ -115,10 +124,10 @@ struct Save {
   Kind kind;
 };
 
-using Command =
-    std::variant<Resize, Turn, Pan, Zoom, Roll, Center, ResetCamera, LookFrom, SetProjection,
-                 SetTolerance, Edit, Undo, Redo, Suggest, ImportFunction, ExportFunction,
-                 AskHistogram, Probe, DragHandle, ShowErrorMap, ChooseComponent, ChooseArray, Save>;
+using Command = std::variant<Resize, Turn, Pan, Zoom, Roll, Center, ResetCamera, LookFrom,
+                             SetProjection, SetTolerance, Edit, Undo, Redo, Suggest, ImportFunction,
+                             ExportFunction, AskHistogram, Probe, DragHandle, ShowErrorMap,
+                             ChooseComponent, ChooseArray, ChooseTime, ListMesh, Save>;
 
 /// Largest message of a page, in bytes: an imported color map with some ten thousand nodes.
 inline constexpr std::size_t largest_message = std::size_t(2) << 20;

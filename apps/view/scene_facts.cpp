@@ -86,6 +86,16 @@ std::vector<FileChoices> file_choices(const SceneDescription& description) {
   return result;
 }
 
+FileChoices mesh_choices(const MeshSource& source) {
+  MeshReadOptions options = source.options;
+  options.note = {};
+  const MeshFile file = read_mesh(source.file, options);
+  FileChoices choices;
+  for (const MeshArray& array : file.grid.arrays) choices.arrays.push_back(array.name);
+  choices.times = file.times;
+  return choices;
+}
+
 Lettering lettering_of(const SceneDescription& description) {
   const bool anatomical = std::ranges::all_of(description.layers, is_anatomical);
   return {anatomical, anatomical ? "mm" : ""};
@@ -99,7 +109,8 @@ Json scene_json(const SceneState& state, const std::vector<FileChoices>& choices
                       {"channels", channel_names_of(layer)},
                       {"range", range_of(layer)},
                       {"components", choices[i].components},
-                      {"arrays", choices[i].arrays}});
+                      {"arrays", choices[i].arrays},
+                      {"times", choices[i].times}});
   }
   Json names = Json::array();
   for (const Preset& preset : presets()) {

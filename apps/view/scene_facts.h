@@ -15,19 +15,22 @@ namespace pellucid::view {
 struct FileChoices {
   int components = 1;  ///< steps of time, colors
   std::vector<std::string> arrays{};
+  std::vector<double> times{};  ///< of a mesh
 };
 
 /// Returns the choices of each layer. Reads the headers of files of one field, and of files with
 /// named arrays their values.
 std::vector<FileChoices> file_choices(const SceneDescription& description);
+/// Returns those of a mesh. Reads its file. Throws Error.
+FileChoices mesh_choices(const MeshSource& source);
 /// Returns letters and unit: those of a patient if all layers come from medical files.
 Lettering lettering_of(const SceneDescription& description);
 
 /// Returns the message that tells pages what is shown:
 ///
 ///   {"type": "scene", "scene": (scene file), "layers": [{"kind", "channels", "range",
-///    "components", "arrays"}], "box": {"lower", "upper"}, "presets": [...], "sides": [...],
-///    "can_undo", "can_redo"}
+///    "components", "arrays", "times"}], "box": {"lower", "upper"}, "presets": [...], "sides":
+///    [...], "can_undo", "can_redo"}
 Json scene_json(const SceneState& state, const std::vector<FileChoices>& choices);
 
 }  // namespace pellucid::view

@@ -143,9 +143,20 @@ void SceneState::set_look(std::size_t layer, const LookDescription& look) {
   take_step(std::move(next), layer, 1, no_gesture);
 }
 
+std::optional<TransferFunctionDescription> SceneState::default_function(std::size_t layer) const {
+  SceneDescription without = description_;
+  LayerDescription& bare = without.layers[layer];
+  // Beside surfaces a layer without a function would be transparent.
+  bare.transfer_function.reset();
+  bare.isosurfaces.clear();
+  bare.slices.clear();
+  complete_description(remake_layer(without, layer, scene_.layers[layer], parallel_), bare);
+  return bare.transfer_function;
+}
+
 void SceneState::set_default_function(std::size_t layer) {
   SceneDescription next = description_;
-  next.layers[checked_layer(layer)].transfer_function.reset();
+  next.layers[checked_layer(layer)].transfer_function = default_function(layer);
   take_step(std::move(next), layer, 1, no_gesture);
 }
 
@@ -155,19 +166,26 @@ void SceneState::set_clips(std::vector<Clip> clips, int gesture) {
   take_step(std::move(next), 0, 0, gesture);
 }
 
-void SceneState::set_field(std::size_t layer, const FieldSource& field) {
-  SceneDescription next = description_;
-  next.layers[checked_layer(layer)].field = field;
-  Scene scene = make_scene(next, parallel_);
-  scene.camera = scene_.camera;
-  check_data(scene);
-  description_ = std::move(next);
-  scene_ = std::move(scene);
-  complete_description(scene_.layers[layer], description_.layers[layer]);
+void SceneState::set_source(std::size_t layer, const std::function<void(LayerDescription&)>& change,
+                            bool keeps_function) {
+  SceneState next = *this;
+  LayerDescription& target = next.description_.layers[checked_layer(layer)];
+  change(target);
+  if (!keeps_function) {
+    target.transfer_function.reset();
+    target.isosurfaces.clear();
+    target.slices.clear();
+  }
+  std::vector<MeshSource> meshes;
+  next.scene_ = make_scene(next.description_, parallel_, &meshes);
+  check_data(next.scene_);
+  if (target.mesh) target.mesh->channels = meshes[layer].channels;
+  complete_description(next.scene_.layers[layer], target);
   // Steps back would show the other data again, without reading them.
-  undone_by_.clear();
-  redone_by_.clear();
-  last_gesture_ = no_gesture;
+  next.undone_by_.clear();
+  next.redone_by_.clear();
+  next.last_gesture_ = no_gesture;
+  *this = std::move(next);
 }
 
 void SceneState::become(SceneDescription next, std::size_t first, std::size_t count) {

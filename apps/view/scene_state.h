@@ -2,6 +2,8 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -39,8 +41,10 @@ class SceneState {
   void set_default_function(std::size_t layer);
   /// Replaces the scene's clips. Drags of one gesture are undone together.
   void set_clips(std::vector<Clip> clips, int gesture);
-  /// Replaces the data source of a layer and reads it.
-  void set_field(std::size_t layer, const FieldSource& field);
+  /// Changes what is read for a layer, reads it, and forgets the history. `keeps_function`: whether
+  /// the values mean the same as before; else the function is made anew, and isosurfaces go.
+  void set_source(std::size_t layer, const std::function<void(LayerDescription&)>& change,
+                  bool keeps_function);
 
   bool can_undo() const noexcept { return !undone_by_.empty(); }
   bool can_redo() const noexcept { return !redone_by_.empty(); }
@@ -54,6 +58,8 @@ class SceneState {
   std::size_t checked_layer(std::size_t layer) const;
 
  private:
+  /// Returns the function that is made from the data of a layer, whatever surfaces it has.
+  std::optional<TransferFunctionDescription> default_function(std::size_t layer) const;
   /// Makes the scene of another description, with the data of this one and new looks of some
   /// layers.
   void become(SceneDescription next, std::size_t first, std::size_t count);

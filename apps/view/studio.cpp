@@ -28,7 +28,8 @@ constexpr std::size_t most_waiting = 4096;
 bool only_asks(const Command& command) {
   return std::holds_alternative<Probe>(command) || std::holds_alternative<Save>(command) ||
          std::holds_alternative<AskHistogram>(command) ||
-         std::holds_alternative<ExportFunction>(command);
+         std::holds_alternative<ExportFunction>(command) ||
+         std::holds_alternative<ListMesh>(command);
 }
 
 /// Whether a command changes what pages are told of the scene besides the camera.
@@ -38,7 +39,8 @@ bool is_edit(const Command& command) {
         return std::is_same_v<Kind, Edit> || std::is_same_v<Kind, Undo> ||
                std::is_same_v<Kind, Redo> || std::is_same_v<Kind, Suggest> ||
                std::is_same_v<Kind, ImportFunction> || std::is_same_v<Kind, DragHandle> ||
-               std::is_same_v<Kind, ChooseComponent> || std::is_same_v<Kind, ChooseArray>;
+               std::is_same_v<Kind, ChooseComponent> || std::is_same_v<Kind, ChooseArray> ||
+               std::is_same_v<Kind, ChooseTime>;
       },
       command);
 }
@@ -144,17 +146,44 @@ struct Studio::Visitor {
   }
   void operator()(const ShowErrorMap& c) const { studio.with_error_map_ = c.shown; }
   void operator()(const ChooseComponent& c) const {
-    FieldSource field = field_of(c.layer);
-    field.options.component = c.component;
-    field.options.time.reset();
-    studio.state_.set_field(c.layer, field);
+    studio.state_.set_source(
+        c.layer,
+        [&](LayerDescription& layer) {
+          FieldSource& field = field_of(layer);
+          field.options.component = c.component;
+          field.options.time.reset();
+        },
+        true);
   }
   void operator()(const ChooseArray& c) const {
-    FieldSource field = field_of(c.layer);
-    field.options.array = c.array;
-    field.options.component.reset();
-    studio.state_.set_field(c.layer, field);
-    studio.choices_ = file_choices(studio.state_.description());
+    studio.state_.set_source(
+        c.layer,
+        [&](LayerDescription& layer) {
+          if (layer.mesh) {
+            layer.mesh->channels = {MeshArrayChoice{c.array, {}, std::string(field_channel)}};
+            return;
+          }
+          FieldSource& field = field_of(layer);
+          field.options.array = c.array;
+          field.options.component.reset();
+        },
+        false);
+  }
+  void operator()(const ChooseTime& c) const {
+    studio.state_.set_source(
+        c.layer,
+        [&](LayerDescription& layer) {
+          if (!layer.mesh) throw Error("this layer is no mesh with steps of time");
+          layer.mesh->options.time = c.time;
+        },
+        true);
+  }
+  void operator()(const ListMesh& c) const {
+    const std::size_t layer = studio.state_.checked_layer(c.layer);
+    const auto& mesh = studio.state_.description().layers[layer].mesh;
+    if (!mesh) throw Error("this layer is no mesh");
+    studio.choices_[layer] = mesh_choices(*mesh);
+    studio.send_scene();
   }
   void operator()(const Save& c) const { studio.save(page, c.kind); }
 
@@ -163,13 +192,11 @@ struct Studio::Visitor {
   void move(const Move& how) const {
     studio.move_camera(how);
   }
-  FieldSource field_of(std::size_t layer) const {
-    const LayerDescription& description =
-        studio.state_.description().layers[studio.state_.checked_layer(layer)];
-    if (description.mesh || description.labels || !description.channels.empty()) {
+  static FieldSource& field_of(LayerDescription& layer) {
+    if (layer.mesh || layer.labels || !layer.channels.empty()) {
       throw Error("this layer has no file of which a part could be chosen");
     }
-    return description.field;
+    return layer.field;
   }
 };
 

@@ -135,6 +135,40 @@ TEST(SceneState, GaussiansBecomeMatricesOfTheSameFunction) {
             render(state.scene()).pixels);
 }
 
+TEST(SceneState, TheFunctionFromTheDataIsSeenBesideSurfaces) {
+  SceneState state = sphere();
+  const auto function_of = [&] {
+    return std::get<VolumeContent>(state.scene().layers[0].content).transfer_function->points();
+  };
+  const std::size_t count = function_of().size();
+  state.edit(edit_of(0, "isosurfaces", R"([{"value": 0.5}])", 1));
+  state.edit(edit_of(0, "transfer_function", red, 2));
+  state.set_default_function(0);
+  EXPECT_EQ(function_of().size(), count);
+  EXPECT_EQ(state.scene().layers[0].isosurfaces.size(), 1U);
+  state.undo();
+  EXPECT_EQ(function_of().size(), 1U);
+}
+
+TEST(SceneState, ReadsAnotherSource) {
+  SceneState state = sphere();
+  state.edit(edit_of(0, "transfer_function", red, 1));
+  const auto volume_of = [&] { return std::get<VolumeContent>(state.scene().layers[0].content); };
+  state.set_source(
+      0, [](LayerDescription& layer) { layer.field.builtin = "shells"; }, true);
+  EXPECT_EQ(volume_of().transfer_function->points().size(), 1U);
+  EXPECT_FALSE(state.can_undo());
+  const std::string before = state.saved();
+  const auto wrong = [](LayerDescription& layer) { layer.field = {"no_such_file.npy", {}, {}, 4}; };
+  EXPECT_THROW(state.set_source(0, wrong, true), Error);
+  EXPECT_EQ(state.saved(), before);
+  state.set_source(
+      0, [](LayerDescription& layer) { layer.field.builtin = "ramp"; }, false);
+  EXPECT_GT(volume_of().transfer_function->points().size(), 1U);
+  EXPECT_EQ(render(make_scene(parse_scene(state.saved(), "saved"))).pixels,
+            render(state.scene()).pixels);
+}
+
 TEST(SceneState, IgnoresCamerasWithoutRays) {
   SceneState state = sphere();
   Camera camera = state.scene().camera;

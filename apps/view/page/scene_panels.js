@@ -61,10 +61,23 @@ export class LayersPanel extends Panel {
   }
 
   fileRows(layer, i, name) {
-    const {components, arrays} = this.viewer.facts(i);
+    const {components, arrays, times} = this.viewer.facts(i);
     const rows = [];
+    if (layer.mesh && arrays.length === 0) {
+      rows.push(make('div', {class: 'row'}, button('Other arrays and times…',
+        () => this.viewer.connection.send({type: 'list_mesh', layer: i}),
+        {title: 'Reads the file for a list of them'})));
+    }
+    if (times.length > 1) {
+      const shown = layer.mesh.time ?? times[0];
+      const nearest = times.reduce((a, b) => (Math.abs(b - shown) < Math.abs(a - shown) ? b : a));
+      rows.push(labelled('Time', choice(String(nearest),
+        times.map((time) => [String(time), shortNumber(time)]), `Time of ${name}`,
+        (time) => this.viewer.choose({type: 'time', layer: i, time: Number(time)}))));
+    }
     if (arrays.length > 1) {
-      rows.push(labelled('Array', choice(layer.field?.array ?? arrays[0],
+      const shown = layer.mesh?.channels?.[0]?.array ?? layer.mesh?.array ?? layer.field?.array;
+      rows.push(labelled('Array', choice(shown ?? arrays[0],
         arrays.map((array) => [array, array]), `Array of ${name}`,
         (array) => this.viewer.choose({type: 'array', layer: i, array}))));
     }
