@@ -259,8 +259,9 @@ target.setPointerCapture = () => {};
 document.querySelectorAll('.plot svg').forEach((svg) => { svg.setPointerCapture = () => {}; });
 let i = 0, shown = 0, last = document.body.dataset.frame;
 const start = performance.now();
+// The points are drawn anew while they move; their plot stays.
+const mover = target.closest('.plot svg') ?? target;
 event('pointerdown', 0);
-const mover = target.matches('.plot *') ? target.closest('svg') : target;
 const step = () => {
   if (document.body.dataset.frame !== last) { ++shown; last = document.body.dataset.frame; }
   const now = performance.now();
@@ -293,7 +294,7 @@ requestAnimationFrame(step);
             _, _, width, height = page.box("#stage")
             view = page.run("return [innerWidth, innerHeight]")
             before = page.frame()
-            if (width, height) == (640, 640):
+            if (round(width), round(height)) == (640, 640):
                 break
             page.resize(round(view[0] + 640 - width), round(view[1] + 640 - height))
             page.wait_exact(before)
