@@ -215,7 +215,7 @@ constexpr Kind kinds[] = {
      [](Members& m) -> Command {
        return ChooseTime{m.layer(), m.number("time", -1e30, 1e30)};
      }},
-    {"list_mesh", [](Members& m) -> Command { return ListMesh{m.layer()}; }},
+    {"list_file", [](Members& m) -> Command { return ListFile{m.layer()}; }},
     {"save",
      [](Members& m) -> Command {
        constexpr std::array kinds_of_files{Save::Kind::png, Save::Kind::exr, Save::Kind::scene};

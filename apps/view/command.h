@@ -114,8 +114,8 @@ struct ChooseTime {
   std::size_t layer;
   double time;
 };
-/// Asks for the arrays and times of a mesh, for which its file is read.
-struct ListMesh {
+/// Asks for the arrays of a layer's file, and the times of a mesh. All of the file is read for it.
+struct ListFile {
   std::size_t layer;
 };
 /// Asks for a file.
@@ -127,7 +127,7 @@ struct Save {
 using Command = std::variant<Resize, Turn, Pan, Zoom, Roll, Center, ResetCamera, LookFrom,
                              SetProjection, SetTolerance, Edit, Undo, Redo, Suggest, ImportFunction,
                              ExportFunction, AskHistogram, Probe, DragHandle, ShowErrorMap,
-                             ChooseComponent, ChooseArray, ChooseTime, ListMesh, Save>;
+                             ChooseComponent, ChooseArray, ChooseTime, ListFile, Save>;
 
 /// Largest message of a page, in bytes: an imported color map with some ten thousand nodes.
 inline constexpr std::size_t largest_message = std::size_t(2) << 20;

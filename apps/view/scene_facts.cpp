@@ -63,36 +63,55 @@ Json box_of(const Scene& scene) {
 
 }  // namespace
 
+namespace {
+
+/// Whether a part of the layer's file can be chosen: it is one field of a file.
+bool is_one_field(const LayerDescription& layer) {
+  return !layer.mesh && !layer.labels && !layer.mask && layer.channels.empty() &&
+         layer.field.builtin.empty();
+}
+
+int components_of(const LayerDescription& layer) {
+  if (!is_one_field(layer)) return 1;
+  ReadOptions options = layer.field.options;
+  options.note = {};
+  options.component.reset();
+  options.time.reset();
+  try {
+    return component_count(layer.field.file, options);
+  } catch (const Error&) {
+    return 1;  // The file was read as the options say; there is nothing to choose.
+  }
+}
+
+}  // namespace
+
 std::vector<FileChoices> file_choices(const SceneDescription& description) {
   std::vector<FileChoices> result;
   for (const LayerDescription& layer : description.layers) {
-    FileChoices& choices = result.emplace_back();
-    const bool is_file = !layer.mesh && !layer.labels && !layer.mask && layer.channels.empty() &&
-                         layer.field.builtin.empty();
-    if (!is_file) continue;
-    ReadOptions options = layer.field.options;
-    options.note = {};
-    try {
-      for (const VolumeArray& array : list_arrays(layer.field.file, options)) {
-        if (array.unreadable_reason.empty()) choices.arrays.push_back(array.name);
-      }
-      options.component.reset();
-      options.time.reset();
-      choices.components = component_count(layer.field.file, options);
-    } catch (const Error&) {
-      // There is nothing to choose then: the file was read as the options say.
-    }
+    result.push_back({components_of(layer)});
   }
   return result;
 }
 
-FileChoices mesh_choices(const MeshSource& source) {
-  MeshReadOptions options = source.options;
-  options.note = {};
-  const MeshFile file = read_mesh(source.file, options);
-  FileChoices choices;
-  for (const MeshArray& array : file.grid.arrays) choices.arrays.push_back(array.name);
-  choices.times = file.times;
+FileChoices all_choices(const LayerDescription& layer) {
+  FileChoices choices{components_of(layer)};
+  if (layer.mesh) {
+    MeshReadOptions options = layer.mesh->options;
+    options.note = {};
+    const MeshFile file = read_mesh(layer.mesh->file, options);
+    for (const MeshArray& array : file.grid.arrays) choices.arrays.push_back(array.name);
+    choices.times = file.times;
+  } else if (is_one_field(layer)) {
+    ReadOptions options = layer.field.options;
+    options.note = {};
+    for (const VolumeArray& array : list_arrays(layer.field.file, options)) {
+      if (array.unreadable_reason.empty()) choices.arrays.push_back(array.name);
+    }
+  }
+  if (choices.arrays.size() < 2 && choices.times.size() < 2) {
+    throw Error("the file has no other arrays and no steps of time");
+  }
   return choices;
 }
 

@@ -18,11 +18,10 @@ struct FileChoices {
   std::vector<double> times{};  ///< of a mesh
 };
 
-/// Returns the choices of each layer. Reads the headers of files of one field, and of files with
-/// named arrays their values.
+/// Returns the choices of each layer that are known without a look at the values: components.
 std::vector<FileChoices> file_choices(const SceneDescription& description);
-/// Returns those of a mesh. Reads its file. Throws Error.
-FileChoices mesh_choices(const MeshSource& source);
+/// Returns all choices of a layer of a field or a mesh. Reads all of its file. Throws Error.
+FileChoices all_choices(const LayerDescription& layer);
 /// Returns letters and unit: those of a patient if all layers come from medical files.
 Lettering lettering_of(const SceneDescription& description);
 

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <exception>
 #include <new>
 #include <type_traits>
 #include <utility>
@@ -24,12 +25,14 @@ namespace {
 /// A page that sends faster than commands are carried out, for minutes, is not ours.
 constexpr std::size_t most_waiting = 4096;
 
+constexpr const char* defect = "; this is a defect of pellucid, please report it";
+
 /// Whether a command only asks, so that the frame that is being rendered stays right.
 bool only_asks(const Command& command) {
   return std::holds_alternative<Probe>(command) || std::holds_alternative<Save>(command) ||
          std::holds_alternative<AskHistogram>(command) ||
          std::holds_alternative<ExportFunction>(command) ||
-         std::holds_alternative<ListMesh>(command);
+         std::holds_alternative<ListFile>(command);
 }
 
 /// Whether a command changes what pages are told of the scene besides the camera.
@@ -178,11 +181,9 @@ struct Studio::Visitor {
         },
         true);
   }
-  void operator()(const ListMesh& c) const {
+  void operator()(const ListFile& c) const {
     const std::size_t layer = studio.state_.checked_layer(c.layer);
-    const auto& mesh = studio.state_.description().layers[layer].mesh;
-    if (!mesh) throw Error("this layer is no mesh");
-    studio.choices_[layer] = mesh_choices(*mesh);
+    studio.choices_[layer] = all_choices(studio.state_.description().layers[layer]);
     studio.send_scene();
   }
   void operator()(const Save& c) const { studio.save(page, c.kind); }
@@ -295,6 +296,8 @@ void Studio::carry_out(const Asked& asked) {
     send_(asked.page, error_message(error.what()));
   } catch (const std::bad_alloc&) {
     send_(asked.page, error_message("there is not enough memory for this"));
+  } catch (const std::exception& error) {
+    send_(asked.page, error_message(std::string(error.what()) + defect));
   }
 }
 
@@ -312,6 +315,9 @@ void Studio::render() {
   } catch (const std::bad_alloc&) {
     stale_ = false;
     send_({}, error_message("there is not enough memory for a picture of this size"));
+  } catch (const std::exception& error) {
+    stale_ = false;
+    send_({}, error_message(std::string(error.what()) + defect));
   }
 }
 

@@ -4,6 +4,8 @@ import {button, choice, colorInput, gestureIsActive, labelled, make, newGesture,
 
 const axisNames = ['x', 'y', 'z'];
 const white = [1, 1, 1];
+/** Volume files whose arrays have names. */
+const namesArrays = /\.(p?vt[ikr]|h5|hdf5?|he5|vtkhdf|nc4?|cdf|npz|vdb|zarr)$/i;
 
 /** A panel that is made anew from the scene. */
 class Panel {
@@ -63,10 +65,10 @@ export class LayersPanel extends Panel {
   fileRows(layer, i, name) {
     const {components, arrays, times} = this.viewer.facts(i);
     const rows = [];
-    if (layer.mesh && arrays.length === 0) {
+    if (arrays.length === 0 && (layer.mesh || namesArrays.test(layer.field?.file ?? ''))) {
       rows.push(make('div', {class: 'row'}, button('Other arrays and times…',
-        () => this.viewer.connection.send({type: 'list_mesh', layer: i}),
-        {title: 'Reads the file for a list of them'})));
+        () => this.viewer.connection.send({type: 'list_file', layer: i}),
+        {title: 'Reads all of the file for a list of them'})));
     }
     if (times.length > 1) {
       const shown = layer.mesh.time ?? times[0];
