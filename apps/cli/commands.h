@@ -14,6 +14,7 @@ struct Command {
 };
 
 Command add_render(CommandLine& app);
+Command add_view(CommandLine& app);
 Command add_info(CommandLine& app);
 Command add_evaluate(CommandLine& app);
 Command add_compare(CommandLine& app);

@@ -46,17 +46,6 @@ struct Facts {
   std::vector<std::optional<std::size_t>> labels;  ///< label_count of each component
 };
 
-/// The formats that are placed in LPS by what they say themselves.
-bool is_medical(const std::filesystem::path& file) {
-  if (is_dicom(file)) return true;
-  const std::string name = lower_case(file.filename().string());
-  for (const char* end : {".nii", ".nii.gz", ".hdr", ".img", ".hdr.gz", ".img.gz", ".nrrd", ".nhdr",
-                          ".mha", ".mhd"}) {
-    if (name.ends_with(end)) return true;
-  }
-  return false;
-}
-
 double mean_of(const Volume& volume) {
   // Scaled before it is summed, so that finite values have a finite mean.
   const double count = static_cast<double>(volume.statistics().finite);
@@ -89,7 +78,7 @@ Facts facts_of(const std::vector<Volume>& components, const FieldSource& source)
       facts.world_upper[axis] = std::max(facts.world_upper[axis], corner[axis]);
     }
   }
-  facts.anatomical = source.builtin.empty() && is_medical(source.file);
+  facts.anatomical = source.builtin.empty() && is_placed_in_lps(source.file);
   if (facts.anatomical) {
     facts.orientation = anatomical_orientation(volume.description().placement.direction);
   }

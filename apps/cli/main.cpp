@@ -29,6 +29,7 @@ int run(int argc, char** argv) {
       "Examples:\n"
       "  pellucid render brain.nii.gz -o brain.png\n"
       "  pellucid render builtin:marschner_lobb -o ml.exr --size 1024x768\n"
+      "  pellucid view brain.nii.gz\n"
       "  pellucid info brain.nii.gz\n"
       "  pellucid suggest brain.nii.gz -o brain.json\n"
       "  pellucid compare exact.exr midpoint.exr\n"
@@ -37,9 +38,10 @@ int run(int argc, char** argv) {
       "Exit status: 0 success, 1 failure, 2 wrong arguments, 3 over the tolerance, 130 "
       "interrupted.\n"
       "A failure prints one line on stderr and leaves no partial file.");
-  const Command commands[] = {add_render(app),  add_info(app),    add_histogram(app),
-                              add_suggest(app), add_convert(app), add_evaluate(app),
-                              add_compare(app), add_presets(app), add_transfer_function(app)};
+  const Command commands[] = {add_render(app),           add_view(app),    add_info(app),
+                              add_histogram(app),        add_suggest(app), add_convert(app),
+                              add_evaluate(app),         add_compare(app), add_presets(app),
+                              add_transfer_function(app)};
 
   if (!app.parse(argc, argv, "pellucid " PELLUCID_VERSION_STRING)) return 0;
   for (const Command& command : commands) {

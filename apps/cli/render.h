@@ -30,6 +30,8 @@ struct RenderArguments {
   std::optional<int> samples;
   int threads = 0;
   bool print_tf = false, reference = false, strict = false, json = false, quiet = false;
+  /// Several channels without a function get suggested Gaussians, in place of an error.
+  bool suggests_functions = false;
   VolumeOptions volume;
   MeshOptions mesh;
 
@@ -50,6 +52,7 @@ struct PreparedScene {
   std::string transfer_function_from;
   std::vector<std::string> import_notes;  ///< of a transfer function of another program
   bool array_chosen = false;              ///< of a mesh, for want of a name
+  bool has_own_camera = false;            ///< the input has a camera
   double tolerance_asked = 0;             ///< Integration::tolerance is the one used
   /// Share of the picture's largest channel that the tolerance is to be; nothing: it is absolute.
   std::optional<double> relative_tolerance;
@@ -66,6 +69,8 @@ struct PreparedScene {
 std::string source_text(const RenderArguments& arguments);
 
 void add_render_options(CommandLine& command, RenderArguments& arguments);
+/// The part of them that says what is seen, and from where.
+void add_scene_options(CommandLine& command, RenderArguments& arguments);
 
 /// Throws UsageError for what cannot be done, and Error where a file could not be written later.
 void check_arguments(const RenderArguments& arguments);

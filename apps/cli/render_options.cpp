@@ -46,73 +46,7 @@ void add_output_options(CommandLine& command, RenderArguments& arguments) {
                    "Print no progress, report or notes, only errors");
 }
 
-void add_scene_options(CommandLine& command, RenderArguments& arguments) {
-  command
-      .add_option("--channel", arguments.channels,
-                  "Add a variable; may be repeated. SOURCE is a file, FILE[C], builtin:NAME, "
-                  "gradient_magnitude:CHANNEL, second_derivative:CHANNEL or "
-                  "smoothed:CHANNEL:SIGMA. INPUT, if given, is the channel 'value'")
-      ->option_text("NAME=SOURCE")
-      ->allow_extra_args(false);
-  command
-      .add_option("--layer", arguments.layers,
-                  "Add a volume or a mesh as a layer of its own, with the transfer function of its "
-                  "histogram; may be repeated")
-      ->option_text("FILE")
-      ->allow_extra_args(false);
-  command
-      .add_option(
-          "--labels", arguments.labels,
-          "Add a segmentation as a layer: each label in a color of its own; may be repeated")
-      ->option_text("FILE")
-      ->allow_extra_args(false);
-  command
-      .add_option("--clip", arguments.clips,
-                  "Show only what is inside of a shape, in world coordinates; may be repeated. "
-                  "SHAPE is plane:X,Y,Z,NX,NY,NZ, box:X0,Y0,Z0,X1,Y1,Z1, sphere:X,Y,Z,R or "
-                  "cylinder:X0,Y0,Z0,X1,Y1,Z1,R; with a '-' in front it is cut away")
-      ->option_text("SHAPE")
-      ->allow_extra_args(false);
-  auto* transfer_function =
-      command
-          .add_option(
-              "--tf,--transfer-function", arguments.transfer_function,
-              "Use this transfer function, of Pellucid, ParaView, 3D Slicer, VisIt, vtk.js, ANARI, "
-              "or a color table. Default: the scene's, else made from the histogram")
-          ->option_text("FILE");
-  command
-      .add_option("--gaussian", arguments.gaussians,
-                  "Add a Gaussian to the transfer function; may be repeated. TEXT is "
-                  "'CHANNEL=CENTER~WIDTH, ...; extinction E; color #RRGGBB'. A single volume has "
-                  "the channels value, gradient_magnitude and second_derivative")
-      ->option_text("TEXT")
-      ->allow_extra_args(false)
-      ->excludes(transfer_function);
-  command
-      .add_option("--preset", arguments.preset,
-                  "Use a transfer function for this kind of data; 'pellucid presets' lists them")
-      ->option_text("NAME")
-      ->excludes(transfer_function)
-      ->excludes("--gaussian");
-  arguments.import.add_to(command);
-  command
-      .add_option("--projection", arguments.projection,
-                  "Show one value per ray of INPUT instead of the integral: maximum, minimum, mean "
-                  "or sum. Default: the scene's, else none. Without --tf in greys over its range")
-      ->option_text("NAME")
-      ->one_of({"maximum", "minimum", "mean", "sum"});
-  arguments.light.add_to(command);
-  auto* camera =
-      command
-          .add_option("--camera", arguments.camera,
-                      "Use this camera. Default: the scene's, else obliquely from the front")
-          ->option_text("FILE.json");
-  command
-      .add_option("--view", arguments.view,
-                  "Look from this side: front, back, left, right, top, bottom or oblique")
-      ->option_text("NAME")
-      ->one_of(view_names())
-      ->excludes(camera);
+void add_picture_options(CommandLine& command, RenderArguments& arguments) {
   command
       .add_option("--size", arguments.size,
                   "Size of the image in pixels, 1 to 65536 each; N for a square. Default: the "
@@ -199,9 +133,79 @@ void add_integration_options(CommandLine& command, RenderArguments& arguments) {
 
 }  // namespace
 
+void add_scene_options(CommandLine& command, RenderArguments& arguments) {
+  command
+      .add_option("--channel", arguments.channels,
+                  "Add a variable; may be repeated. SOURCE is a file, FILE[C], builtin:NAME, "
+                  "gradient_magnitude:CHANNEL, second_derivative:CHANNEL or "
+                  "smoothed:CHANNEL:SIGMA. INPUT, if given, is the channel 'value'")
+      ->option_text("NAME=SOURCE")
+      ->allow_extra_args(false);
+  command
+      .add_option("--layer", arguments.layers,
+                  "Add a volume or a mesh as a layer of its own, with the transfer function of its "
+                  "histogram; may be repeated")
+      ->option_text("FILE")
+      ->allow_extra_args(false);
+  command
+      .add_option(
+          "--labels", arguments.labels,
+          "Add a segmentation as a layer: each label in a color of its own; may be repeated")
+      ->option_text("FILE")
+      ->allow_extra_args(false);
+  command
+      .add_option("--clip", arguments.clips,
+                  "Show only what is inside of a shape, in world coordinates; may be repeated. "
+                  "SHAPE is plane:X,Y,Z,NX,NY,NZ, box:X0,Y0,Z0,X1,Y1,Z1, sphere:X,Y,Z,R or "
+                  "cylinder:X0,Y0,Z0,X1,Y1,Z1,R; with a '-' in front it is cut away")
+      ->option_text("SHAPE")
+      ->allow_extra_args(false);
+  auto* transfer_function =
+      command
+          .add_option(
+              "--tf,--transfer-function", arguments.transfer_function,
+              "Use this transfer function, of Pellucid, ParaView, 3D Slicer, VisIt, vtk.js, ANARI, "
+              "or a color table. Default: the scene's, else made from the histogram")
+          ->option_text("FILE");
+  command
+      .add_option("--gaussian", arguments.gaussians,
+                  "Add a Gaussian to the transfer function; may be repeated. TEXT is "
+                  "'CHANNEL=CENTER~WIDTH, ...; extinction E; color #RRGGBB'. A single volume has "
+                  "the channels value, gradient_magnitude and second_derivative")
+      ->option_text("TEXT")
+      ->allow_extra_args(false)
+      ->excludes(transfer_function);
+  command
+      .add_option("--preset", arguments.preset,
+                  "Use a transfer function for this kind of data; 'pellucid presets' lists them")
+      ->option_text("NAME")
+      ->excludes(transfer_function)
+      ->excludes("--gaussian");
+  arguments.import.add_to(command);
+  command
+      .add_option("--projection", arguments.projection,
+                  "Show one value per ray of INPUT instead of the integral: maximum, minimum, mean "
+                  "or sum. Default: the scene's, else none. Without --tf in greys over its range")
+      ->option_text("NAME")
+      ->one_of({"maximum", "minimum", "mean", "sum"});
+  arguments.light.add_to(command);
+  auto* camera =
+      command
+          .add_option("--camera", arguments.camera,
+                      "Use this camera. Default: the scene's, else obliquely from the front")
+          ->option_text("FILE.json");
+  command
+      .add_option("--view", arguments.view,
+                  "Look from this side: front, back, left, right, top, bottom or oblique")
+      ->option_text("NAME")
+      ->one_of(view_names())
+      ->excludes(camera);
+}
+
 void add_render_options(CommandLine& command, RenderArguments& arguments) {
   add_output_options(command, arguments);
   add_scene_options(command, arguments);
+  add_picture_options(command, arguments);
   add_integration_options(command, arguments);
   arguments.volume.add_to(command, false);
   arguments.mesh.add_to(command, true);

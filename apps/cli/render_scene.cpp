@@ -18,6 +18,7 @@
 #include "pellucid/scene/labels.h"
 #include "pellucid/scene/view_camera.h"
 #include "render.h"
+#include "view/suggestions.h"
 
 namespace pellucid::cli {
 
@@ -384,45 +385,6 @@ void find_labels(const Layer& layer, const LayerDescription& description, const 
   }
 }
 
-/// Writes what defaults and presets made of a layer into its description.
-void complete(const Layer& layer, LayerDescription& description) {
-  const auto is_open = [](const std::optional<TransferFunctionDescription>& function) {
-    return !function || std::holds_alternative<PresetDescription>(*function);
-  };
-  if (auto* labels = std::get_if<LabelContent>(&layer.content)) {
-    description.labels->styles = labels->table->styles();
-    description.labels->table.clear();
-    description.labels->extinction.reset();
-  }
-  if (auto* mesh = std::get_if<MeshContent>(&layer.content)) {
-    if (is_open(description.transfer_function) && mesh->univariate() != nullptr) {
-      description.transfer_function = mesh->univariate()->points();
-    }
-  }
-  for (std::size_t i = 0; i < layer.isosurfaces.size(); ++i) {
-    const auto& made = layer.isosurfaces[i].colors;
-    if (made && is_open(description.isosurfaces[i].colors)) {
-      description.isosurfaces[i].colors = made->points();
-    }
-  }
-  for (std::size_t i = 0; i < layer.slices.size(); ++i) {
-    const auto& made = layer.slices[i].colors;
-    if (made && is_open(description.slices[i].colors)) {
-      description.slices[i].colors = made->points();
-    }
-  }
-  const auto* const volume = std::get_if<VolumeContent>(&layer.content);
-  if (volume == nullptr) return;
-  if (is_open(description.transfer_function)) {
-    description.transfer_function = volume->transfer_function->points();
-  }
-  if (!volume->mask) return;
-  for (std::size_t i = 0; i < volume->mask->choices().size(); ++i) {
-    TransferFunctionDescription& function = description.mask->choices[i].transfer_function;
-    if (is_open(function)) function = volume->mask->choices()[i].transfer_function->points();
-  }
-}
-
 /// Shows the data of a file alone in light where they have surfaces.
 void take_default_look(const RenderArguments& arguments, PreparedScene& prepared) {
   if (prepared.transfer_function_from != "default" || !arguments.light.shading.empty() ||
@@ -459,6 +421,10 @@ PreparedScene prepare(const RenderArguments& arguments) {
   PreparedScene prepared;
   prepared.description = describe(arguments, prepared.import_notes);
   SceneDescription& description = prepared.description;
+  const int threads = arguments.threads > 0 ? arguments.threads : default_thread_count();
+  if (arguments.suggests_functions) {
+    view::suggest_missing_functions(description, parallel_for(threads));
+  }
   Integration& integration = description.integration;
   prepared.tolerance_asked = integration.tolerance;
   if (arguments.tolerance) {
@@ -498,7 +464,7 @@ PreparedScene prepare(const RenderArguments& arguments) {
       };
     }
   }
-  const int threads = arguments.threads > 0 ? arguments.threads : default_thread_count();
+  prepared.has_own_camera = description.camera.has_value();
   const auto& first_mesh = description.layers.front().mesh;
   prepared.array_chosen = first_mesh && first_mesh->channels.empty();
   std::vector<MeshSource> meshes;
@@ -510,7 +476,7 @@ PreparedScene prepare(const RenderArguments& arguments) {
       layer.mesh = meshes[i];
       layer.mesh->options.note = {};
     }
-    complete(scene.layers[i], layer);
+    complete_description(scene.layers[i], layer);
     const std::string& name = layer.name;
     find_labels(scene.layers[i], layer,
                 scene.layers.size() == 1 ? ""

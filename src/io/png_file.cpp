@@ -16,42 +16,13 @@
 
 #include "image_checks.h"
 #include "pellucid/io/atomic_file.h"
+#include "pellucid/io/display_bytes.h"
 #include "pellucid/io/image_files.h"
 #include "pellucid/scene/error.h"
 
 namespace pellucid {
 
 namespace {
-
-// Returns 0 for NaN.
-double in_unit_range(double x) {
-  return x > 0 ? std::min(x, 1.0) : 0;
-}
-
-// IEC 61966-2-1: linear light to the sRGB signal, 8 bits, rounded to nearest.
-std::uint8_t signal8(double linear) {
-  const double x = in_unit_range(linear);
-  const double signal = x <= 0.0031308 ? 12.92 * x : 1.055 * std::pow(x, 1 / 2.4) - 0.055;
-  return static_cast<std::uint8_t>(std::lround(255 * signal));
-}
-
-// Straight alpha: the signal is of color, not of premultiplied radiance. Without opacity there is
-// no color to speak of.
-void encode_transparent(const std::array<float, 4>& pixel, std::uint8_t* out) {
-  const double alpha = in_unit_range(static_cast<double>(pixel[3]));
-  for (std::size_t c = 0; c < 3; ++c) {
-    out[c] = alpha > 0 ? signal8(static_cast<double>(pixel[c]) / alpha) : std::uint8_t{0};
-  }
-  out[3] = static_cast<std::uint8_t>(std::lround(255 * alpha));
-}
-
-void encode_over(const std::array<float, 4>& pixel, const Rgb<double>& background,
-                 std::uint8_t* out) {
-  const double transparency = 1 - in_unit_range(static_cast<double>(pixel[3]));
-  out[0] = signal8(static_cast<double>(pixel[0]) + transparency * background.r);
-  out[1] = signal8(static_cast<double>(pixel[1]) + transparency * background.g);
-  out[2] = signal8(static_cast<double>(pixel[2]) + transparency * background.b);
-}
 
 // What libpng is given, with nothing in it that it could not be torn away from.
 struct PngContent {
@@ -139,16 +110,7 @@ bool write_stream(std::FILE* stream, const Image& image,
 
 std::vector<std::uint8_t> to_srgb8(const Image& image,
                                    const std::optional<Rgb<double>>& background) {
-  const std::size_t channels = background ? 3 : 4;
-  std::vector<std::uint8_t> bytes(image.pixels.size() * channels);
-  for (std::size_t i = 0; i < image.pixels.size(); ++i) {
-    if (background) {
-      encode_over(image.pixels[i], *background, &bytes[i * channels]);
-    } else {
-      encode_transparent(image.pixels[i], &bytes[i * channels]);
-    }
-  }
-  return bytes;
+  return background ? display_bytes(image, *background) : transparent_display_bytes(image);
 }
 
 void write_png(const Image& image, const std::filesystem::path& path,

@@ -279,6 +279,15 @@ bool has_volume_header(std::string_view file_name) {
   return format != nullptr && format->open != open_raw_file && format->open != open_raw_gzip;
 }
 
+bool is_placed_in_lps(const std::filesystem::path& file) {
+  constexpr std::string_view ends[] = {".nii",    ".nii.gz", ".hdr",  ".img", ".hdr.gz",
+                                       ".img.gz", ".nrrd",   ".nhdr", ".mha", ".mhd"};
+  std::string name = file.filename().string();
+  for (char& c : name) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+  return std::ranges::any_of(ends, [&](std::string_view end) { return name.ends_with(end); }) ||
+         is_dicom(file);
+}
+
 bool is_volume_json(const std::filesystem::path& path) {
   return is_vtk_js(path);
 }

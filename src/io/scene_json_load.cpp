@@ -77,9 +77,26 @@ const MultivariateDescription* multivariate(const LayerDescription& description)
              : nullptr;
 }
 
+/// Returns the content of a loaded layer; null if there is no layer or it has other content.
+template <class Content>
+const Content* content_of(const Layer* loaded) {
+  return loaded != nullptr ? std::get_if<Content>(&loaded->content) : nullptr;
+}
+
+/// Returns the channels of a loaded layer if they have the names of `sources`, else reads them.
+std::shared_ptr<const Channels> channels_from(const std::vector<ChannelSource>& sources,
+                                              const Layer* loaded, const ParallelFor& parallel) {
+  const auto* const content = content_of<ChannelsContent>(loaded);
+  if (content != nullptr &&
+      std::ranges::equal(*content->channels, sources, {}, &Channel::name, &ChannelSource::name)) {
+    return content->channels;
+  }
+  return std::make_shared<const Channels>(load_channels(sources, parallel));
+}
+
 ChannelsContent load_channels_content(const LayerDescription& description,
                                       const std::vector<ChannelSource>& sources,
-                                      const ParallelFor& parallel) {
+                                      const Layer* loaded, const ParallelFor& parallel) {
   const MultivariateDescription* const function = multivariate(description);
   const bool transparent = !description.transfer_function && description.shows_surfaces();
   if (function == nullptr && !transparent) {
@@ -93,13 +110,14 @@ ChannelsContent load_channels_content(const LayerDescription& description,
   content.transfer_function = transparent ? transparent_function(sources.size())
                                           : make_multivariate(*function, channel_names(sources),
                                                               known_channels(description));
-  content.channels = std::make_shared<const Channels>(load_channels(sources, parallel));
+  content.channels = channels_from(sources, loaded, parallel);
   return content;
 }
 
 /// Whose function is of one variable or of several.
 MeshContent load_mesh_content(const LayerDescription& description, const Wanted& wanted,
-                              const ParallelFor& parallel, MeshSource& mesh_used) {
+                              const Layer* loaded, const ParallelFor& parallel,
+                              MeshSource& mesh_used) {
   MeshContent content;
   const std::vector<std::string> names = function_channels(description);
   if (const MultivariateDescription* const function = multivariate(description)) {
@@ -111,10 +129,14 @@ MeshContent load_mesh_content(const LayerDescription& description, const Wanted&
         "scene: several arrays of a mesh need a function of them all; give \"gaussians\" or "
         "\"tables\", or leave one array");
   }
-  const LoadedMesh loaded = load_mesh(*description.mesh, parallel);
-  content.mesh = loaded.mesh;
   mesh_used = *description.mesh;
-  mesh_used.channels = loaded.channels;
+  if (const auto* const kept = content_of<MeshContent>(loaded)) {
+    content.mesh = kept->mesh;
+  } else {
+    LoadedMesh mesh = load_mesh(*description.mesh, parallel);
+    content.mesh = std::move(mesh.mesh);
+    mesh_used.channels = std::move(mesh.channels);
+  }
   if (content.multivariate() == nullptr) {
     content.transfer_function = std::make_shared<const TransferFunction>(
         medium_function(description, wanted, *content.mesh));
@@ -122,14 +144,19 @@ MeshContent load_mesh_content(const LayerDescription& description, const Wanted&
   return content;
 }
 
-VolumeContent load_volume_content(const LayerDescription& description, const Wanted& wanted) {
+VolumeContent load_volume_content(const LayerDescription& description, const Wanted& wanted,
+                                  const Layer* loaded) {
   VolumeContent content;
-  content.volume = std::make_shared<const Volume>(load_field(description.field));
+  const auto* const kept = content_of<VolumeContent>(loaded);
+  content.volume = kept != nullptr ? kept->volume
+                                   : std::make_shared<const Volume>(load_field(description.field));
   content.transfer_function = std::make_shared<const TransferFunction>(
       medium_function(description, wanted, *content.volume));
   if (!description.mask) return content;
-  auto labels = std::make_shared<const LabelVolume>(
-      std::make_shared<const Volume>(load_field(description.mask->field)));
+  auto labels = kept != nullptr && kept->mask
+                    ? kept->mask->shared_labels()
+                    : std::make_shared<const LabelVolume>(
+                          std::make_shared<const Volume>(load_field(description.mask->field)));
   std::vector<LabelMask::Choice> choices;
   for (const MaskSource::Choice& choice : description.mask->choices) {
     choices.push_back(
@@ -140,10 +167,12 @@ VolumeContent load_volume_content(const LayerDescription& description, const Wan
   return content;
 }
 
-LabelContent load_label_content(const LabelSource& source) {
+LabelContent load_label_content(const LabelSource& source, const Layer* loaded) {
   LabelContent content;
-  content.labels =
-      std::make_shared<const LabelVolume>(std::make_shared<const Volume>(load_field(source.field)));
+  const auto* const kept = content_of<LabelContent>(loaded);
+  content.labels = kept != nullptr ? kept->labels
+                                   : std::make_shared<const LabelVolume>(
+                                         std::make_shared<const Volume>(load_field(source.field)));
   std::vector<LabelStyle> styles = source.styles;
   if (!source.table.empty()) {
     const double extinction =
@@ -238,7 +267,8 @@ class LookLoader {
   std::vector<std::string> names_;
 };
 
-Layer load_layer(const LayerDescription& description, const Wanted& wanted,
+/// Takes the data of `loaded` unless it is null.
+Layer load_layer(const LayerDescription& description, const Wanted& wanted, const Layer* loaded,
                  const ParallelFor& parallel, MeshSource& mesh_used) {
   Layer layer;
   layer.name = description.name;
@@ -247,13 +277,13 @@ Layer load_layer(const LayerDescription& description, const Wanted& wanted,
   layer.clips = description.clips;
   layer.projection = description.projection;
   if (description.labels) {
-    layer.content = load_label_content(*description.labels);
+    layer.content = load_label_content(*description.labels, loaded);
   } else if (description.mesh) {
-    layer.content = load_mesh_content(description, wanted, parallel, mesh_used);
+    layer.content = load_mesh_content(description, wanted, loaded, parallel, mesh_used);
   } else if (const auto sources = layer_channels(description); !sources.empty()) {
-    layer.content = load_channels_content(description, sources, parallel);
+    layer.content = load_channels_content(description, sources, loaded, parallel);
   } else {
-    layer.content = load_volume_content(description, wanted);
+    layer.content = load_volume_content(description, wanted, loaded);
   }
   LookLoader(description, layer)();
   return layer;
@@ -294,7 +324,7 @@ Scene make_scene(const SceneDescription& description, const ParallelFor& paralle
   const Wanted wanted{description.integration.tolerance, description.background};
   std::vector<MeshSource> meshes(description.layers.size());
   for (std::size_t i = 0; i < description.layers.size(); ++i) {
-    scene.layers.push_back(load_layer(description.layers[i], wanted, parallel, meshes[i]));
+    scene.layers.push_back(load_layer(description.layers[i], wanted, nullptr, parallel, meshes[i]));
   }
   if (meshes_used != nullptr) *meshes_used = std::move(meshes);
   scene.clips = description.clips;
@@ -313,58 +343,12 @@ Scene make_scene(const SceneDescription& description, const ParallelFor& paralle
   return scene;
 }
 
-namespace {
-
-/// Returns the most by which light multiplies the error of a color, as approximation_error() counts
-/// it.
-double light_factor(const Layer& layer, const std::vector<Light>& lights) {
-  if (!layer.shading) return 1;
-  const double ambient = layer.shading->ambient;
-  Rgb<double> sum{ambient, ambient, ambient};
-  for (const Light& light : lights) sum += layer.shading->diffuse * light.color;
-  return std::max(largest_component(sum), 1.0);
-}
-
-}  // namespace
-
-void fit_opacity_tables(const SceneDescription& description, Scene& scene) {
-  const auto visible = std::ranges::count_if(scene.layers, &Layer::visible);
-  // As approximation_error() counts them.
-  const double tolerance =
-      scene.integration.tolerance / (visible > 1 ? 2 * static_cast<double>(visible) : 1);
-  const auto is_table = [](const TransferFunctionDescription& function) {
-    return std::holds_alternative<OpacityTable>(function);
-  };
-  const double behind_all = brightest_behind(scene);
-  for (std::size_t i = 0; i < scene.layers.size(); ++i) {
-    Layer& layer = scene.layers[i];
-    auto* const volume = std::get_if<VolumeContent>(&layer.content);
-    const bool masked = volume != nullptr && volume->mask;
-    const double behind = std::max(behind_all, masked || layer.projection || is_lit(layer)
-                                                   ? largest_color(layer, scene.lights)
-                                                   : 0);
-    const double budget = tolerance / light_factor(layer, scene.lights);
-    const auto made = [&](const TransferFunctionDescription& function) {
-      // A projection shows an error of the opacity as it is (approximation_error()).
-      return std::make_shared<const TransferFunction>(make_transfer_function(
-          function, layer.projection ? budget / 8 : budget, Rgb<double>{behind, behind, behind}));
-    };
-    const auto& function = description.layers[i].transfer_function;
-    if (function && is_table(*function)) {
-      if (volume != nullptr) volume->transfer_function = made(*function);
-      if (auto* mesh = std::get_if<MeshContent>(&layer.content)) {
-        mesh->transfer_function = made(*function);
-      }
-    }
-    if (!masked) continue;
-    std::vector<LabelMask::Choice> choices = volume->mask->choices();
-    for (std::size_t k = 0; k < choices.size(); ++k) {
-      const TransferFunctionDescription& chosen =
-          description.layers[i].mask->choices[k].transfer_function;
-      if (is_table(chosen)) choices[k].transfer_function = made(chosen);
-    }
-    volume->mask = std::make_shared<const LabelMask>(volume->mask->shared_labels(), choices);
-  }
+Layer remake_layer(const SceneDescription& description, std::size_t layer, const Layer& loaded,
+                   const ParallelFor& parallel) {
+  MeshSource mesh;
+  return load_layer(description.layers[layer],
+                    {description.integration.tolerance, description.background}, &loaded, parallel,
+                    mesh);
 }
 
 }  // namespace pellucid

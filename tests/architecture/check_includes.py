@@ -63,7 +63,7 @@ OTHER_PROJECTS = [
 
 INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]')
 # A header of the standard library, of C or of POSIX: no folder and no suffix, or one of these.
-PLAIN = re.compile(r"^([a-z_0-9]+|(fcntl|unistd|errno|dlfcn|sys/[a-z]+)\.h)$")
+PLAIN = re.compile(r"^([a-z_0-9]+|(fcntl|unistd|errno|dlfcn|spawn|sys/[a-z]+)\.h)$")
 
 
 def read_modules(path):
@@ -147,7 +147,9 @@ def check_file(root, path, modules):
                        f"on {target}")
         elif quoted:
             # Beside this one, or in the module's folder, whose sub-folders find its headers.
-            folders = (path.parent, root.joinpath(*relative.parts[:2]))
+            folders = [path.parent, root.joinpath(*relative.parts[:2])]
+            if relative.parts[0] == "apps":  # one program includes parts of another: "cli/parse.h"
+                folders.append(root / "apps")
             if (relative.parts[0] == "include" or ".." in name
                     or not any((folder / name).is_file() for folder in folders)):
                 yield f'{where}: "{name}" is neither "pellucid/..." nor a file beside this one'

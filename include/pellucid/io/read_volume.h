@@ -101,6 +101,9 @@ std::vector<VolumeArray> list_arrays(const std::filesystem::path& path,
 /// Returns whether files of this name are volumes with a header, which provides what headerless
 /// data need as options.
 bool has_volume_header(std::string_view file_name);
+/// Returns whether the format places volumes in a patient, in LPS (x towards left, y towards
+/// posterior, z towards superior, in mm).
+bool is_placed_in_lps(const std::filesystem::path& file);
 /// Returns whether a .json file is a volume, such as an index.json of vtk.js, and not a scene.
 bool is_volume_json(const std::filesystem::path& path);
 /// Returns the extensions of volume files for messages and help: ".nii .nii.gz …".

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <optional>
@@ -135,6 +136,17 @@ std::vector<std::string> known_channels(const LayerDescription& layer);
 /// Opacity tables are fitted as by fit_opacity_tables().
 Scene make_scene(const SceneDescription& description, const ParallelFor& parallel = {},
                  std::vector<MeshSource>* meshes_used = nullptr);
+
+/// Returns layer number `layer` of the description with the data of `loaded`, which was made from
+/// the same data with another look. Reads nothing, unless the look needs channels that `loaded`
+/// lacks. Opacity tables are fitted by fit_opacity_tables() afterwards. Throws Error as
+/// make_scene() does.
+Layer remake_layer(const SceneDescription& description, std::size_t layer, const Layer& loaded,
+                   const ParallelFor& parallel = {});
+
+/// Writes what defaults and presets made of a layer into its description, so that the description
+/// leaves nothing open.
+void complete_description(const Layer& layer, LayerDescription& description);
 
 /// Makes the points that stand for opacity tables again, for the tolerance of the scene and for
 /// what is seen behind each: background, backdrop and, if there are several, the other layers.

@@ -1,0 +1,140 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+#include "pellucid/scene/scene.h"
+
+namespace pellucid::view {
+
+using Json = nlohmann::ordered_json;
+
+// What a page asks for. Distances on the picture are fractions of its height, x to the right and y
+// downwards. Positions on the picture are fractions of its width and height. `layer` counts from 0.
+
+/// Renders pictures of this size, which is that of the page in device pixels.
+struct Resize {
+  int width, height;
+};
+/// Turns the camera around its focal point.
+struct Turn {
+  double x, y;
+};
+/// Moves the camera along with the picture.
+struct Pan {
+  double x, y;
+};
+/// Enlarges the picture by a factor.
+struct Zoom {
+  double factor;
+};
+/// Turns the picture counterclockwise.
+struct Roll {
+  double degrees;
+};
+/// Moves the focal point to what is seen at a position.
+struct Center {
+  double x, y;
+};
+/// Takes the camera of the start.
+struct ResetCamera {};
+/// Looks from a side, one of view_names().
+struct LookFrom {
+  std::string side;
+};
+struct SetProjection {
+  Projection projection;
+};
+struct SetTolerance {
+  double tolerance;
+};
+/// Replaces a part of a layer, or of the scene if there is no layer: an editable key (scene_edit.h)
+/// of a scene file with its value; null removes it. Edits of one gesture are undone together.
+struct Edit {
+  std::optional<std::size_t> layer;
+  std::string key;
+  Json value;
+  int gesture;
+};
+struct Undo {};
+struct Redo {};
+/// Replaces the transfer function of a layer by one that is made from the data.
+struct Suggest {
+  enum class Kind { curve, gaussians };
+  std::size_t layer;
+  Kind kind;
+};
+/// Replaces the transfer function of a layer by that of a file.
+struct ImportFunction {
+  std::size_t layer;
+  std::string name, text;
+};
+/// Asks for the transfer function of a layer in a format: "pellucid" or one of ExportFormat.
+struct ExportFunction {
+  std::size_t layer;
+  std::string format;
+};
+/// Asks for counts of the values of one or two channels.
+struct AskHistogram {
+  std::size_t layer;
+  std::vector<std::string> channels;
+};
+/// Asks what is seen at a position.
+struct Probe {
+  double x, y;
+};
+/// Moves the handle of a clip of the scene (overlay.h).
+struct DragHandle {
+  std::size_t clip;
+  std::string handle;
+  double x, y;
+  int gesture;
+};
+struct ShowErrorMap {
+  bool shown;
+};
+/// Shows another component of a layer's file: a step of time, a channel of color.
+struct ChooseComponent {
+  std::size_t layer;
+  int component;
+};
+/// Shows another array of a layer's file, with the function that is made from it.
+struct ChooseArray {
+  std::size_t layer;
+  std::string array;
+};
+/// Shows the step of a mesh that is nearest to a time.
+struct ChooseTime {
+  std::size_t layer;
+  double time;
+};
+/// Asks for the arrays of a layer's file, and the times of a mesh. All of the file is read for it.
+struct ListFile {
+  std::size_t layer;
+};
+/// Asks for a file.
+struct Save {
+  enum class Kind { png, exr, scene };
+  Kind kind;
+};
+
+using Command = std::variant<Resize, Turn, Pan, Zoom, Roll, Center, ResetCamera, LookFrom,
+                             SetProjection, SetTolerance, Edit, Undo, Redo, Suggest, ImportFunction,
+                             ExportFunction, AskHistogram, Probe, DragHandle, ShowErrorMap,
+                             ChooseComponent, ChooseArray, ChooseTime, ListFile, Save>;
+
+/// Largest message of a page, in bytes: an imported color map with some ten thousand nodes.
+inline constexpr std::size_t largest_message = std::size_t(2) << 20;
+/// Largest edges of a picture, in pixels.
+inline constexpr int largest_edge = 8192;
+
+/// Parses a message. Throws Error with one line that names what is wrong. Any bytes are safe.
+Command parse_command(std::string_view message);
+
+}  // namespace pellucid::view

@@ -1,0 +1,161 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "frame_maker.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+#include <vector>
+
+#include "cli/error_map.h"
+#include "page_messages.h"
+#include "pellucid/io/display_bytes.h"
+
+namespace pellucid::view {
+
+namespace {
+
+/// A picture while the mouse moves may take this long: some 15 of them fit into a second.
+constexpr double moving_seconds = 0.06;
+/// Each level has four times the pixels of the coarser one. It takes less than four times as long,
+/// because rays side by side share work; at least this much more.
+constexpr double level_ratio = 4, least_level_ratio = 2;
+/// Pixels along the longer edge of the coarsest picture.
+constexpr int coarsest_edge = 64;
+
+int preview_levels(ImageSize size) {
+  const int edge = std::max(size.width, size.height);
+  int levels = 0;
+  while (levels < largest_preview && (edge >> (levels + 1)) >= coarsest_edge) ++levels;
+  return levels;
+}
+
+PageMessage as_frame(PageMessage message) {
+  message.is_frame = true;
+  return message;
+}
+
+}  // namespace
+
+bool FrameMaker::render(const Scene& scene, const Lettering& lettering, bool with_error_map,
+                        std::function<bool()> is_overtaken) {
+  const bool is_exact = scene.integration.method == Method::exact;
+  RenderOptions options;
+  options.preview = preview_levels(scene.size);
+  options.error = with_error_map && is_exact;
+  options.tile = [this](const TileResult& result) { return tile_is_done(result); };
+  {
+    const std::lock_guard lock(mutex_);
+    stop_ = {};
+    shown_ = false;
+    options.stop = stop_.get_token();
+  }
+  scene_ = &scene;
+  lettering_ = &lettering;
+  is_overtaken_ = std::move(is_overtaken);
+  start_ = Clock::now();
+  level_ = levels_ = options.preview;
+  shown_in_time_ = false;
+  ++number_;
+  exact_.reset();
+  RenderReport report;
+  try {
+    Image image = renderer_.render(scene, options, &report);
+    level_seconds_[0] = seconds();
+    publish_exact(image, report);
+    exact_ = std::move(image);
+    return true;
+  } catch (const Cancelled&) {
+    return false;
+  }
+}
+
+void FrameMaker::interrupt() {
+  const std::lock_guard lock(mutex_);
+  if (shown_) stop_.request_stop();
+}
+
+bool FrameMaker::tile_is_done(const TileResult& result) {
+  // Tiles of a level follow all tiles of the coarser one.
+  if (result.tile.level >= level_) {
+    // A level that was expected in time and is not shows the one before it, if somebody waits.
+    const bool is_late = !shown_in_time_ && level_ < levels_ && seconds() > 2 * moving_seconds;
+    return !is_late || !is_overtaken_() || show(level_ + 1, result.image);
+  }
+  const int complete = result.tile.level + 1;
+  level_ = result.tile.level;
+  return level_is_done(complete, result.image);
+}
+
+bool FrameMaker::level_is_done(int level, const Image& image) {
+  const double now = seconds();
+  const auto l = static_cast<std::size_t>(level);
+  const double last = level_seconds_[l], last_finer = level_seconds_[l - 1];
+  const bool is_known = last > 0 && last_finer > 0;
+  const double ratio = is_known ? std::max(last_finer / last, least_level_ratio) : level_ratio;
+  level_seconds_[l] = now;
+  // A finer picture that is there in time is better.
+  if (now * ratio <= moving_seconds) return true;
+  return show(level, image);
+}
+
+bool FrameMaker::show(int level, const Image& image) {
+  publish_coarse(level, image);
+  {
+    const std::lock_guard lock(mutex_);
+    shown_ = true;
+  }
+  shown_in_time_ = true;
+  // What came before this is seen here, what comes later by interrupt().
+  return !is_overtaken_();
+}
+
+void FrameMaker::publish_coarse(int level, const Image& image) {
+  const int stride = 1 << level;
+  const std::vector<std::uint8_t> bytes =
+      display_bytes(image, scene_->background.value_or(Rgb<double>{}), DisplayLayout::rgba, stride);
+  publish_(as_frame(binary_message(header("coarse", stride), {as_text(bytes)})));
+}
+
+void FrameMaker::publish_exact(const Image& image, const RenderReport& report) {
+  const bool is_exact = scene_->integration.method == Method::exact;
+  Json json = header(is_exact ? "exact" : "sampled", 1);
+  if (is_exact) {
+    json["over"] = report.pixels_over_tolerance;
+    json["pixels"] = report.pixels;
+    json["proved"] = report.pixels_proved;
+    json["largest_error"] =
+        std::isfinite(report.largest_error) ? Json(report.largest_error) : Json();
+  }
+  json["error_map"] = !image.error.empty();
+  const std::vector<std::uint8_t> bytes =
+      display_bytes(image, scene_->background.value_or(Rgb<double>{}), DisplayLayout::rgba);
+  std::vector<std::uint8_t> errors;
+  if (!image.error.empty()) {
+    errors = display_bytes(cli::error_picture(image, scene_->integration.tolerance), {},
+                           DisplayLayout::rgba);
+  }
+  publish_(as_frame(binary_message(json, {as_text(bytes), as_text(errors)})));
+}
+
+Json FrameMaker::header(const char* state, int stride) const {
+  const ImageSize size = scene_->size;
+  return {{"type", "frame"},
+          {"number", number_},
+          {"state", state},
+          {"stride", stride},
+          {"width", size.width},
+          {"height", size.height},
+          {"columns", (size.width + stride - 1) / stride},
+          {"rows", (size.height + stride - 1) / stride},
+          {"tolerance", scene_->integration.tolerance},
+          {"seconds", seconds()},
+          {"projection",
+           scene_->camera.projection == Projection::perspective ? "perspective" : "orthographic"},
+          {"overlay", overlay_json(*scene_, *lettering_)}};
+}
+
+double FrameMaker::seconds() const {
+  return std::chrono::duration<double>(Clock::now() - start_).count();
+}
+
+}  // namespace pellucid::view

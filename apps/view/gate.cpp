@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "gate.h"
+
+#include <unistd.h>
+
+#include <array>
+#include <utility>
+
+#include "pellucid/scene/error.h"
+
+namespace pellucid::view {
+
+Gate::Gate(std::string token, std::uint16_t port)
+    : token_(std::move(token)),
+      local_name_("localhost:" + std::to_string(port)),
+      local_number_("127.0.0.1:" + std::to_string(port)) {}
+
+std::optional<std::string_view> Gate::admit(const Caller& caller) const noexcept {
+  if (!caller.host || (*caller.host != local_name_ && *caller.host != local_number_)) return {};
+  constexpr std::string_view scheme = "http://";
+  if (caller.origin) {
+    if (!caller.origin->starts_with(scheme) ||
+        caller.origin->substr(scheme.size()) != *caller.host) {
+      return {};
+    }
+  } else if (caller.upgrades) {
+    return {};
+  }
+  const std::string_view target = caller.target;
+  const std::size_t path = 1 + token_.size();
+  if (target.size() <= path || target[0] != '/' || target[path] != '/') return {};
+  if (!equal_in_constant_time(target.substr(1, token_.size()), token_)) return {};
+  return target.substr(path);
+}
+
+std::string Gate::address() const {
+  return "http://" + local_number_ + "/" + token_ + "/";
+}
+
+std::string make_token() {
+  std::array<unsigned char, 32> random{};
+  if (getentropy(random.data(), random.size()) != 0) {
+    throw Error("the operating system gives no random numbers, so the page would not be safe");
+  }
+  constexpr char digits[] = "0123456789abcdef";
+  std::string token;
+  for (const unsigned char byte : random) {
+    token += digits[byte >> 4];
+    token += digits[byte & 15];
+  }
+  return token;
+}
+
+bool equal_in_constant_time(std::string_view a, std::string_view b) noexcept {
+  if (a.size() != b.size()) return false;
+  unsigned char different = 0;
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    different = static_cast<unsigned char>(different | (a[i] ^ b[i]));
+  }
+  return different == 0;
+}
+
+}  // namespace pellucid::view

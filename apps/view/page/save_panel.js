@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: Apache-2.0
+import {button, make} from './elements.js';
+
+const commandLine = 'pellucid render scene.json -o picture.png';
+const pythonLines = `import pellucid
+scene = pellucid.load_scene("scene.json")
+pellucid.render(scene).save("picture.png")`;
+
+/** Files to save, and the lines that make the same picture from the scene. */
+export class SavePanel {
+  /** @param {import('./main.js').Viewer} viewer */
+  constructor(viewer) {
+    const {connection} = viewer;
+    const save = (what) => () => connection.send({type: 'save', what});
+    const copy = (text, name) => button('Copy', () => navigator.clipboard.writeText(text),
+      {'aria-label': `Copy ${name}`});
+    document.querySelector('#save-panel .content').append(
+      make('div', {class: 'row'}, button('Picture, PNG', save('png')),
+        button('Numbers, EXR', save('exr')), button('Scene, JSON', save('scene'))),
+      make('p', {class: 'hint'},
+        'The picture is saved exact, at the size of the window. The EXR has depth and error too.'),
+      make('p', {class: 'hint'}, 'With scene.json, the same picture to the bit from a terminal:'),
+      make('pre', {}, commandLine), copy(commandLine, 'the command'),
+      make('p', {class: 'hint'}, 'and from Python:'),
+      make('pre', {}, pythonLines), copy(pythonLines, 'the lines of Python'));
+    connection.on('file', ({name, content_type: type, bytes}) => {
+      const address = URL.createObjectURL(new Blob([bytes], {type}));
+      make('a', {href: address, download: name}).click();
+      setTimeout(() => URL.revokeObjectURL(address), 10000);
+    });
+  }
+}

@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <boost/beast/core/flat_buffer.hpp>
+#include <boost/beast/http/parser.hpp>
+#include <boost/beast/http/read.hpp>
+#include <boost/beast/http/string_body.hpp>
+#include <boost/beast/http/write.hpp>
+#include <boost/beast/websocket/rfc6455.hpp>
+#include <chrono>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include "page_files.h"
+#include "server_state.h"
+
+namespace pellucid::view {
+
+namespace {
+
+using Response = http::response<http::string_body>;
+
+std::optional<std::string_view> header_of(const Request& request, http::field field) {
+  const auto [first, last] = request.equal_range(field);
+  if (first == last) return {};
+  if (std::next(first) != last) return std::string_view();
+  return std::string_view(first->value().data(), first->value().size());
+}
+
+std::string_view target_of(const Request& request) {
+  return {request.target().data(), request.target().size()};
+}
+
+/// The page may load what comes from here, and nothing else. It may not be shown in a frame of
+/// others, nor tell others its address, which has the token.
+void add_policies(Response& response, std::string_view host) {
+  const std::string socket = "ws://" + std::string(host);
+  response.set("Content-Security-Policy",
+               "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' blob:; "
+               "connect-src 'self' " +
+                   socket + "; base-uri 'none'; form-action 'none'; frame-ancestors 'none'");
+  response.set("X-Content-Type-Options", "nosniff");
+  response.set("Referrer-Policy", "no-referrer");
+  response.set("Cross-Origin-Opener-Policy", "same-origin");
+  response.set("Cross-Origin-Resource-Policy", "same-origin");
+  response.set(http::field::cache_control, "no-store");
+}
+
+class RequestReader : public std::enable_shared_from_this<RequestReader> {
+ public:
+  RequestReader(net::ip::tcp::socket socket, std::shared_ptr<ConnectionCount> count)
+      : stream_(std::move(socket)), count_(std::move(count)) {}
+
+  void read() {
+    parser_.emplace();
+    parser_->header_limit(static_cast<std::uint32_t>(limits().header_bytes));
+    parser_->body_limit(0);
+    stream_.expires_after(std::chrono::seconds(limits().request_seconds));
+    http::async_read(stream_, buffer_, *parser_,
+                     [self = shared_from_this()](beast::error_code error, std::size_t) {
+                       // A request that is wrong or too long is not worth an answer.
+                       if (!error) self->answer();
+                     });
+  }
+
+ private:
+  const ServerLimits& limits() const { return count_->state().limits; }
+
+  void answer() {
+    Request request = parser_->release();
+    const bool upgrades = beast::websocket::is_upgrade(request);
+    const std::optional<std::string_view> host = header_of(request, http::field::host);
+    const auto path = count_->state().gate->admit(
+        {target_of(request), host, header_of(request, http::field::origin), upgrades});
+    if (!path) return respond({http::status::forbidden, request.version()}, false);
+    if (upgrades) {
+      if (*path != "/socket") return respond({http::status::not_found, request.version()}, false);
+      stream_.expires_never();
+      return serve_socket(std::move(stream_), std::move(request), std::move(count_));
+    }
+    const PageFile* const file = find_page_file(*path);
+    if (request.method() != http::verb::get) {
+      return respond({http::status::method_not_allowed, request.version()}, false);
+    }
+    if (file == nullptr) return respond({http::status::not_found, request.version()}, false);
+    Response response{http::status::ok, request.version()};
+    add_policies(response, *host);
+    response.set(http::field::content_type,
+                 boost::string_view(file->content_type.data(), file->content_type.size()));
+    response.body() = file->content;
+    respond(std::move(response), request.keep_alive());
+  }
+
+  void respond(Response response, bool keep_alive) {
+    response.keep_alive(keep_alive);
+    response.prepare_payload();
+    const auto sent = std::make_shared<Response>(std::move(response));
+    stream_.expires_after(std::chrono::seconds(limits().request_seconds));
+    http::async_write(
+        stream_, *sent, [self = shared_from_this(), sent](beast::error_code error, std::size_t) {
+          if (error) return;
+          if (sent->keep_alive()) return self->read();
+          beast::error_code ignored;
+          self->stream_.socket().shutdown(net::ip::tcp::socket::shutdown_send, ignored);
+        });
+  }
+
+  beast::tcp_stream stream_;
+  std::shared_ptr<ConnectionCount> count_;
+  beast::flat_buffer buffer_;
+  std::optional<http::request_parser<http::empty_body>> parser_;
+};
+
+}  // namespace
+
+void serve_requests(net::ip::tcp::socket socket, std::shared_ptr<ConnectionCount> count) {
+  std::make_shared<RequestReader>(std::move(socket), std::move(count))->read();
+}
+
+}  // namespace pellucid::view

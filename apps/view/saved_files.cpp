@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "saved_files.h"
+
+#include <unistd.h>
+
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <system_error>
+
+#include "pellucid/io/export_transfer_function.h"
+#include "pellucid/io/image_files.h"
+#include "pellucid/io/import_transfer_function.h"
+#include "pellucid/scene/error.h"
+
+namespace pellucid::view {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+/// A folder that nobody else can read, and that goes with this object.
+class PrivateFolder {
+ public:
+  PrivateFolder() {
+    std::string name = (fs::temp_directory_path() / "pellucid-XXXXXX").string();
+    if (mkdtemp(name.data()) == nullptr) {
+      throw Error(name +
+                  ": cannot make a folder for temporary files; set TMPDIR to one that is "
+                  "writable");
+    }
+    path_ = name;
+  }
+  ~PrivateFolder() {
+    std::error_code ignored;
+    fs::remove_all(path_, ignored);
+  }
+  PrivateFolder(const PrivateFolder&) = delete;
+  PrivateFolder& operator=(const PrivateFolder&) = delete;
+
+  const fs::path& path() const { return path_; }
+
+ private:
+  fs::path path_;
+};
+
+template <class Write>
+std::string bytes_of(const std::string& name, const Write& write) {
+  const PrivateFolder folder;
+  const fs::path path = folder.path() / name;
+  write(path);
+  std::ifstream file(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+}  // namespace
+
+SavedFile png_file(const Image& image, const std::optional<Rgb<double>>& background) {
+  return {"picture.png", "image/png", encode_png(image, background)};
+}
+
+SavedFile exr_file(const Image& image) {
+  return {"picture.exr", "image/x-exr",
+          bytes_of("picture.exr", [&](const fs::path& path) { write_exr(image, path); })};
+}
+
+SavedFile function_file(const LayerDescription& layer, const std::string& format,
+                        std::vector<std::string>& notes) {
+  if (!layer.transfer_function) throw Error("the layer has no transfer function to export");
+  const LookDescription look{*layer.transfer_function, layer.shading, layer.gradient_opacity};
+  const std::string json = "application/json";
+  if (format == "pellucid") {
+    return {"transfer_function.json", json, look_to_json(look) + "\n"};
+  }
+  const ExportOptions options{*export_format_from_name(format)};
+  ExportedTransferFunction exported = export_transfer_function(look, options);
+  notes = std::move(exported.notes);
+  switch (options.format) {
+    case ExportFormat::slicer:
+      return {"transfer_function.vp.json", json, exported.text};
+    case ExportFormat::paraview:
+      return {"color_map.json", json, exported.text};
+    case ExportFormat::table:
+      return {"color_table.csv", "text/csv", exported.text};
+  }
+  return {};
+}
+
+LookDescription read_function(const ImportFunction& import, std::vector<std::string>& notes) {
+  if (!is_foreign_transfer_function(import.text)) return parse_look(import.text, import.name);
+  const ImportedTransferFunction imported = import_transfer_function(import.text, import.name);
+  notes = imported.notes;
+  return {imported.table, imported.shading, imported.gradient_opacity};
+}
+
+}  // namespace pellucid::view

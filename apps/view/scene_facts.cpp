@@ -1,0 +1,151 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "scene_facts.h"
+
+#include <algorithm>
+#include <array>
+#include <utility>
+
+#include "histograms.h"
+#include "pellucid/io/read_volume.h"
+#include "pellucid/scene/error.h"
+#include "pellucid/scene/presets.h"
+#include "pellucid/scene/view_camera.h"
+
+namespace pellucid::view {
+
+namespace {
+
+bool is_anatomical(const LayerDescription& layer) {
+  const auto is_patient = [](const FieldSource& field) {
+    return field.builtin.empty() && is_placed_in_lps(field.file);
+  };
+  if (layer.mesh) return false;
+  if (layer.labels) return is_patient(layer.labels->field);
+  if (layer.channels.empty()) return is_patient(layer.field);
+  return std::ranges::all_of(layer.channels, [&](const ChannelSource& channel) {
+    const auto* const field = std::get_if<FieldSource>(&channel.source);
+    return field == nullptr || is_patient(*field);
+  });
+}
+
+const char* kind_of(const Layer& layer) {
+  constexpr const char* names[] = {"volume", "channels", "mesh", "labels"};
+  return names[layer.content.index()];
+}
+
+Json range_of(const Layer& layer) {
+  if (const auto* volume = std::get_if<VolumeContent>(&layer.content)) {
+    const VolumeStatistics& statistics = volume->volume->statistics();
+    return {statistics.minimum, statistics.maximum};
+  }
+  if (const auto* mesh = std::get_if<MeshContent>(&layer.content)) {
+    const VolumeStatistics& statistics = mesh->mesh->statistics(0);
+    return {statistics.minimum, statistics.maximum};
+  }
+  if (const auto* channels = std::get_if<ChannelsContent>(&layer.content)) {
+    const VolumeStatistics& statistics = channels->channels->grid().statistics();
+    return {statistics.minimum, statistics.maximum};
+  }
+  return {0, 1};
+}
+
+Json box_of(const Scene& scene) {
+  const std::array<Vec3<double>, 8> corners = world_corners(scene);
+  Vec3<double> lower = corners[0], upper = corners[0];
+  for (const Vec3<double>& corner : corners) {
+    for (int a = 0; a < 3; ++a) {
+      lower[a] = std::min(lower[a], corner[a]);
+      upper[a] = std::max(upper[a], corner[a]);
+    }
+  }
+  return {{"lower", {lower.x, lower.y, lower.z}}, {"upper", {upper.x, upper.y, upper.z}}};
+}
+
+}  // namespace
+
+namespace {
+
+/// Whether a part of the layer's file can be chosen: it is one field of a file.
+bool is_one_field(const LayerDescription& layer) {
+  return !layer.mesh && !layer.labels && !layer.mask && layer.channels.empty() &&
+         layer.field.builtin.empty();
+}
+
+int components_of(const LayerDescription& layer) {
+  if (!is_one_field(layer)) return 1;
+  ReadOptions options = layer.field.options;
+  options.note = {};
+  options.component.reset();
+  options.time.reset();
+  try {
+    return component_count(layer.field.file, options);
+  } catch (const Error&) {
+    return 1;  // The file was read as the options say; there is nothing to choose.
+  }
+}
+
+}  // namespace
+
+std::vector<FileChoices> file_choices(const SceneDescription& description) {
+  std::vector<FileChoices> result;
+  for (const LayerDescription& layer : description.layers) {
+    result.push_back({components_of(layer)});
+  }
+  return result;
+}
+
+FileChoices all_choices(const LayerDescription& layer) {
+  FileChoices choices{components_of(layer)};
+  if (layer.mesh) {
+    MeshReadOptions options = layer.mesh->options;
+    options.note = {};
+    const MeshFile file = read_mesh(layer.mesh->file, options);
+    for (const MeshArray& array : file.grid.arrays) choices.arrays.push_back(array.name);
+    choices.times = file.times;
+  } else if (is_one_field(layer)) {
+    ReadOptions options = layer.field.options;
+    options.note = {};
+    for (const VolumeArray& array : list_arrays(layer.field.file, options)) {
+      if (array.unreadable_reason.empty()) choices.arrays.push_back(array.name);
+    }
+  }
+  if (choices.arrays.size() < 2 && choices.times.size() < 2) {
+    throw Error("the file has no other arrays and no steps of time");
+  }
+  return choices;
+}
+
+Lettering lettering_of(const SceneDescription& description) {
+  const bool anatomical = std::ranges::all_of(description.layers, is_anatomical);
+  return {anatomical, anatomical ? "mm" : ""};
+}
+
+Json scene_json(const SceneState& state, const std::vector<FileChoices>& choices) {
+  Json layers = Json::array();
+  for (std::size_t i = 0; i < choices.size(); ++i) {
+    const Layer& layer = state.scene().layers[i];
+    layers.push_back({{"kind", kind_of(layer)},
+                      {"channels", channel_names_of(layer)},
+                      {"range", range_of(layer)},
+                      {"components", choices[i].components},
+                      {"arrays", choices[i].arrays},
+                      {"times", choices[i].times}});
+  }
+  Json names = Json::array();
+  for (const Preset& preset : presets()) {
+    names.push_back({{"name", preset.name},
+                     {"description", preset.description},
+                     {"hounsfield", preset.hounsfield},
+                     {"lit", preset.lit}});
+  }
+  return {{"type", "scene"},
+          {"scene", Json::parse(scene_to_json(state.description()))},
+          {"layers", std::move(layers)},
+          {"box", box_of(state.scene())},
+          {"presets", std::move(names)},
+          {"sides", view_names()},
+          {"can_undo", state.can_undo()},
+          {"can_redo", state.can_redo()}};
+}
+
+}  // namespace pellucid::view

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "command.h"
+#include "overlay.h"
+#include "scene_state.h"
+
+namespace pellucid::view {
+
+/// What may be chosen of the file of a layer.
+struct FileChoices {
+  int components = 1;  ///< steps of time, colors
+  std::vector<std::string> arrays{};
+  std::vector<double> times{};  ///< of a mesh
+};
+
+/// Returns the choices of each layer that are known without a look at the values: components.
+std::vector<FileChoices> file_choices(const SceneDescription& description);
+/// Returns all choices of a layer of a field or a mesh. Reads all of its file. Throws Error.
+FileChoices all_choices(const LayerDescription& layer);
+/// Returns letters and unit: those of a patient if all layers come from medical files.
+Lettering lettering_of(const SceneDescription& description);
+
+/// Returns the message that tells pages what is shown:
+///
+///   {"type": "scene", "scene": (scene file), "layers": [{"kind", "channels", "range",
+///    "components", "arrays", "times"}], "box": {"lower", "upper"}, "presets": [...], "sides":
+///    [...], "can_undo", "can_redo"}
+Json scene_json(const SceneState& state, const std::vector<FileChoices>& choices);
+
+}  // namespace pellucid::view

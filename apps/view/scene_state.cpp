@@ -1,0 +1,263 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "scene_state.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <filesystem>
+#include <string_view>
+#include <utility>
+
+#include "cli/parse.h"
+#include "pellucid/scene/error.h"
+
+namespace pellucid::view {
+
+namespace {
+
+constexpr std::size_t longest_history = 100;
+constexpr int no_gesture = -1;
+
+constexpr std::array<std::string_view, 2> scene_keys{"clip", "lights"};
+constexpr std::array<std::string_view, 8> layer_keys{
+    "visible", "transfer_function", "shading",     "gradient_opacity",
+    "clip",    "projection",        "isosurfaces", "slices"};
+
+/// Turns a text "#rrggbb" into linear numbers.
+void convert_color(Json& value) {
+  if (!value.is_string()) return;
+  const Rgb<double> color = cli::parse_color("color", value.get<std::string>());
+  value = {color.r, color.g, color.b};
+}
+
+/// Turns every "color": "#rrggbb" into linear numbers.
+void convert_colors(Json& value) {
+  if (value.is_array()) {
+    for (Json& element : value) convert_colors(element);
+  } else if (value.is_object()) {
+    for (auto& [key, member] : value.items()) {
+      if (key == "color") {
+        convert_color(member);
+      } else {
+        convert_colors(member);
+      }
+    }
+  }
+}
+
+void put(Json& object, const std::string& key, Json value) {
+  if (value.is_null()) {
+    object.erase(key);
+  } else {
+    object[key] = std::move(value);
+  }
+}
+
+/// Puts the value of an edit into the document of a scene.
+void apply(const Edit& edit, Json& document) {
+  const auto refuse = [&] { throw Error(fmt::format("edit: \"{}\" cannot be edited", edit.key)); };
+  Json value = edit.value;
+  convert_colors(value);
+  if (!edit.layer) {
+    if (edit.key == "background") {
+      convert_color(value);
+      return put(document["image"], "background", std::move(value));
+    }
+    if (std::ranges::find(scene_keys, edit.key) == scene_keys.end()) refuse();
+    return put(document, edit.key, std::move(value));
+  }
+  Json& layer = document["layers"][*edit.layer];
+  if (edit.key == "colors" && layer.contains("labels")) {
+    return put(layer["labels"], "colors", std::move(value));
+  }
+  if (std::ranges::find(layer_keys, edit.key) == layer_keys.end()) refuse();
+  put(layer, edit.key, std::move(value));
+}
+
+/// Gaussians as matrices, so that a page edits one form. Their functions stay the same to the bit.
+void use_matrices(LayerDescription& layer) {
+  if (!layer.transfer_function) return;
+  auto* const function = std::get_if<MultivariateDescription>(&*layer.transfer_function);
+  if (function == nullptr) return;
+  for (GaussianDescription& gaussian : function->gaussians) {
+    gaussian.shape = GaussianMatrix{gaussian_matrix(gaussian.shape)};
+    if (!gaussian.channels.empty()) continue;
+    gaussian.channels = function->channels.empty() ? function_channels(layer) : function->channels;
+  }
+}
+
+}  // namespace
+
+SceneState::SceneState(SceneDescription description, Scene scene, ParallelFor parallel)
+    : description_(std::move(description)),
+      scene_(std::move(scene)),
+      parallel_(std::move(parallel)) {
+  for (LayerDescription& layer : description_.layers) use_matrices(layer);
+}
+
+void SceneState::set_camera(const Camera& camera) {
+  try {
+    make_camera_frame(camera, scene_.size);
+  } catch (const Error&) {
+    return;  // A drag that leads nowhere, such as into the focal point.
+  }
+  description_.camera = camera;
+  scene_.camera = camera;
+}
+
+void SceneState::set_size(ImageSize size) {
+  if (scene_.backdrop) return;  // whose size it is
+  description_.size = size;
+  scene_.size = size;
+}
+
+void SceneState::set_tolerance(double tolerance) {
+  scene_.integration.set_tolerance(tolerance);
+  description_.integration.tolerance = scene_.integration.tolerance;
+  fit_opacity_tables(description_, scene_);
+}
+
+std::size_t SceneState::checked_layer(std::size_t layer) const {
+  if (layer < description_.layers.size()) return layer;
+  throw Error(
+      fmt::format("layer {}: there are {} layers only", layer + 1, description_.layers.size()));
+}
+
+void SceneState::edit(const Edit& edit) {
+  if (edit.layer) checked_layer(*edit.layer);
+  Json document = Json::parse(scene_to_json(description_));
+  apply(edit, document);
+  SceneDescription next = parse_scene(document.dump(), "scene");
+  if (edit.layer) use_matrices(next.layers[*edit.layer]);
+  take_step(std::move(next), edit.layer.value_or(0), edit.layer ? 1 : 0, edit.gesture);
+}
+
+void SceneState::set_look(std::size_t layer, const LookDescription& look) {
+  SceneDescription next = description_;
+  LayerDescription& target = next.layers[checked_layer(layer)];
+  target.transfer_function = look.transfer_function;
+  if (look.shading) target.shading = look.shading;
+  if (look.gradient_opacity) target.gradient_opacity = look.gradient_opacity;
+  use_matrices(target);
+  take_step(std::move(next), layer, 1, no_gesture);
+}
+
+std::optional<TransferFunctionDescription> SceneState::default_function(std::size_t layer) const {
+  SceneDescription without = description_;
+  LayerDescription& bare = without.layers[layer];
+  // Beside surfaces a layer without a function would be transparent.
+  bare.transfer_function.reset();
+  bare.isosurfaces.clear();
+  bare.slices.clear();
+  complete_description(remake_layer(without, layer, scene_.layers[layer], parallel_), bare);
+  return bare.transfer_function;
+}
+
+void SceneState::set_default_function(std::size_t layer) {
+  SceneDescription next = description_;
+  next.layers[checked_layer(layer)].transfer_function = default_function(layer);
+  take_step(std::move(next), layer, 1, no_gesture);
+}
+
+void SceneState::set_clips(std::vector<Clip> clips, int gesture) {
+  SceneDescription next = description_;
+  next.clips = std::move(clips);
+  take_step(std::move(next), 0, 0, gesture);
+}
+
+void SceneState::set_source(std::size_t layer, const std::function<void(LayerDescription&)>& change,
+                            bool keeps_function) {
+  SceneState next = *this;
+  LayerDescription& target = next.description_.layers[checked_layer(layer)];
+  change(target);
+  if (!keeps_function) {
+    target.transfer_function.reset();
+    target.isosurfaces.clear();
+    target.slices.clear();
+  }
+  std::vector<MeshSource> meshes;
+  next.scene_ = make_scene(next.description_, parallel_, &meshes);
+  check_data(next.scene_);
+  if (target.mesh) target.mesh->channels = meshes[layer].channels;
+  complete_description(next.scene_.layers[layer], target);
+  // Steps back would show the other data again, without reading them.
+  next.undone_by_.clear();
+  next.redone_by_.clear();
+  next.last_gesture_ = no_gesture;
+  *this = std::move(next);
+}
+
+void SceneState::become(SceneDescription next, std::size_t first, std::size_t count) {
+  Scene scene = scene_;
+  scene.clips = next.clips;
+  scene.lights = next.lights;
+  scene.background = next.background;
+  for (std::size_t i = first; i < first + count; ++i) {
+    scene.layers[i] = remake_layer(next, i, scene_.layers[i], parallel_);
+    complete_description(scene.layers[i], next.layers[i]);
+  }
+  check_data(scene);
+  check_method(scene);
+  fit_opacity_tables(next, scene);
+  next.camera = scene_.camera;
+  description_ = std::move(next);
+  scene_ = std::move(scene);
+}
+
+void SceneState::take_step(SceneDescription next, std::size_t first, std::size_t count,
+                           int gesture) {
+  SceneDescription before = description_;
+  become(std::move(next), first, count);
+  redone_by_.clear();
+  if (gesture != no_gesture && gesture == last_gesture_) return;
+  last_gesture_ = gesture;
+  undone_by_.push_back(std::move(before));
+  if (undone_by_.size() > longest_history) undone_by_.erase(undone_by_.begin());
+}
+
+void SceneState::step(std::vector<SceneDescription>& from, std::vector<SceneDescription>& to) {
+  if (from.empty()) return;
+  SceneDescription next = from.back();
+  next.size = description_.size;
+  next.integration = description_.integration;
+  SceneDescription before = description_;
+  become(std::move(next), 0, scene_.layers.size());
+  from.pop_back();
+  to.push_back(std::move(before));
+  last_gesture_ = no_gesture;
+}
+
+void SceneState::undo() {
+  step(undone_by_, redone_by_);
+}
+
+void SceneState::redo() {
+  step(redone_by_, undone_by_);
+}
+
+std::string SceneState::saved() const {
+  SceneDescription description = description_;
+  const auto make_absolute = [](std::filesystem::path& path) {
+    if (!path.empty()) path = std::filesystem::absolute(path).lexically_normal();
+  };
+  for (LayerDescription& layer : description.layers) {
+    make_absolute(layer.field.file);
+    if (layer.mesh) {
+      make_absolute(layer.mesh->file);
+      make_absolute(layer.mesh->options.q);
+    }
+    for (ChannelSource& channel : layer.channels) {
+      if (auto* field = std::get_if<FieldSource>(&channel.source)) make_absolute(field->file);
+    }
+    if (layer.labels) {
+      make_absolute(layer.labels->field.file);
+      make_absolute(layer.labels->table);
+    }
+    if (layer.mask) make_absolute(layer.mask->field.file);
+  }
+  make_absolute(description.backdrop);
+  return scene_to_json(description);
+}
+
+}  // namespace pellucid::view

@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/ip/tcp.hpp>
+#include <boost/asio/steady_timer.hpp>
+#include <boost/beast/core/tcp_stream.hpp>
+#include <boost/beast/http/empty_body.hpp>
+#include <boost/beast/http/message.hpp>
+#include <map>
+#include <memory>
+
+#include "gate.h"
+#include "page_server.h"
+
+namespace pellucid::view {
+
+namespace net = boost::asio;
+namespace beast = boost::beast;
+namespace http = beast::http;
+
+using Request = http::request<http::empty_body>;
+
+/// A WebSocket of a page (page_socket.cpp).
+class PageSocket {
+ public:
+  virtual ~PageSocket() = default;
+  virtual void send(PageMessage message) = 0;
+  virtual void close() = 0;
+};
+
+/// What the connections of a server share. All of it belongs to the thread that runs `context`.
+struct PageServer::State : std::enable_shared_from_this<PageServer::State> {
+  State(net::io_context& on, PageEvents of_pages, ServerLimits to_keep)
+      : context(on), events(std::move(of_pages)), limits(to_keep), acceptor(on), timer(on) {}
+
+  net::io_context& context;
+  PageEvents events;
+  ServerLimits limits;
+  std::unique_ptr<Gate> gate;
+  std::string address;
+  net::ip::tcp::acceptor acceptor;
+  net::steady_timer timer;
+  std::size_t connections = 0;  ///< of any kind
+  PageId next_page = 1;
+  std::map<PageId, std::shared_ptr<PageSocket>> pages;
+
+  void accept();
+};
+
+/// Handlers that wait in the context own the state, so that the context is the last to go.
+struct PageServer::Parts {
+  net::io_context context{1};
+  std::shared_ptr<State> state;
+};
+
+/// Counts a connection for as long as it lives.
+class ConnectionCount {
+ public:
+  explicit ConnectionCount(std::shared_ptr<PageServer::State> state);
+  ~ConnectionCount();
+  ConnectionCount(const ConnectionCount&) = delete;
+  ConnectionCount& operator=(const ConnectionCount&) = delete;
+
+  PageServer::State& state() const noexcept { return *state_; }
+
+ private:
+  std::shared_ptr<PageServer::State> state_;
+};
+
+/// Reads requests, answers them with files of the page, and turns into a WebSocket if asked to.
+void serve_requests(net::ip::tcp::socket socket, std::shared_ptr<ConnectionCount> count);
+/// Completes the handshake of a WebSocket, and serves it until it is closed.
+void serve_socket(beast::tcp_stream stream, Request request,
+                  std::shared_ptr<ConnectionCount> count);
+
+}  // namespace pellucid::view

@@ -1,0 +1,368 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "studio.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <exception>
+#include <new>
+#include <type_traits>
+#include <utility>
+
+#include "camera_moves.h"
+#include "histograms.h"
+#include "page_messages.h"
+#include "pellucid/cpu/threads.h"
+#include "pellucid/scene/error.h"
+#include "pellucid/scene/view_camera.h"
+#include "probe.h"
+#include "suggestions.h"
+
+namespace pellucid::view {
+
+namespace {
+
+/// A page that sends faster than commands are carried out, for minutes, is not ours.
+constexpr std::size_t most_waiting = 4096;
+
+constexpr const char* defect = "; this is a defect of pellucid, please report it";
+
+/// Whether a command only asks, so that the frame that is being rendered stays right.
+bool only_asks(const Command& command) {
+  return std::holds_alternative<Probe>(command) || std::holds_alternative<Save>(command) ||
+         std::holds_alternative<AskHistogram>(command) ||
+         std::holds_alternative<ExportFunction>(command) ||
+         std::holds_alternative<ListFile>(command);
+}
+
+/// Whether a command changes what pages are told of the scene besides the camera.
+bool is_edit(const Command& command) {
+  return std::visit(
+      []<class Kind>(const Kind&) {
+        return std::is_same_v<Kind, Edit> || std::is_same_v<Kind, Undo> ||
+               std::is_same_v<Kind, Redo> || std::is_same_v<Kind, Suggest> ||
+               std::is_same_v<Kind, ImportFunction> || std::is_same_v<Kind, DragHandle> ||
+               std::is_same_v<Kind, ChooseComponent> || std::is_same_v<Kind, ChooseArray> ||
+               std::is_same_v<Kind, ChooseTime>;
+      },
+      command);
+}
+
+/// Whether a later command makes an earlier one of the same page needless.
+bool replaces(const Command& later, const Command& earlier) {
+  if (std::holds_alternative<Probe>(later)) return std::holds_alternative<Probe>(earlier);
+  const Edit *const newer = std::get_if<Edit>(&later), *const older = std::get_if<Edit>(&earlier);
+  return newer != nullptr && older != nullptr && newer->gesture == older->gesture &&
+         newer->layer == older->layer && newer->key == older->key;
+}
+
+/// Half of the diagonal of a box around the data, and how far away its far side may be.
+double reach_of(const Scene& scene) {
+  const std::array<Vec3<double>, 8> corners = world_corners(scene);
+  double reach = 0;
+  for (const Vec3<double>& corner : corners) {
+    reach = std::max(reach, 2 * length(corner - scene.camera.focal_point));
+  }
+  return reach;
+}
+
+}  // namespace
+
+/// Carries out one command of a page.
+struct Studio::Visitor {
+  Studio& studio;
+  PageId page;
+
+  void operator()(const Resize& c) const {
+    studio.state_.set_size({c.width, c.height});
+    // A camera that nobody has moved shows all of the data in any window.
+    if (!studio.is_fitted_ && !studio.first_camera_) studio.fit_camera("oblique");
+    studio.is_fitted_ = true;
+  }
+  void operator()(const Turn& c) const {
+    move([&](Camera& camera) { turn(camera, c.x, c.y); });
+  }
+  void operator()(const Pan& c) const {
+    move([&](Camera& camera) { pan(camera, c.x, c.y); });
+  }
+  void operator()(const Zoom& c) const {
+    move([&](Camera& camera) { zoom(camera, c.factor); });
+  }
+  void operator()(const Roll& c) const {
+    move([&](Camera& camera) { roll(camera, c.degrees); });
+  }
+  void operator()(const Center& c) const {
+    const ProbeResult result =
+        probe(studio.frames_.renderer(), studio.state_.scene(), Probe{c.x, c.y});
+    if (result.position) move([&](Camera& camera) { center(camera, *result.position); });
+  }
+  void operator()(const ResetCamera&) const {
+    if (studio.first_camera_) {
+      move([&](Camera& camera) { camera = *studio.first_camera_; });
+    } else {
+      studio.fit_camera("oblique");
+    }
+  }
+  void operator()(const LookFrom& c) const { studio.fit_camera(c.side); }
+  void operator()(const SetProjection& c) const {
+    const double reach = reach_of(studio.state_.scene());
+    move([&](Camera& camera) { set_projection(camera, c.projection, reach); });
+  }
+  void operator()(const SetTolerance& c) const { studio.state_.set_tolerance(c.tolerance); }
+  void operator()(const Edit& c) const { studio.state_.edit(c); }
+  void operator()(const Undo&) const { studio.state_.undo(); }
+  void operator()(const Redo&) const { studio.state_.redo(); }
+  void operator()(const Suggest& c) const {
+    const std::size_t layer = studio.state_.checked_layer(c.layer);
+    if (c.kind == Suggest::Kind::gaussians) {
+      const LayerDescription& description = studio.state_.description().layers[layer];
+      studio.state_.set_look(layer, {suggest_gaussians(description, studio.parallel_), {}, {}});
+    } else {
+      studio.state_.set_default_function(layer);
+    }
+  }
+  void operator()(const ImportFunction& c) const {
+    std::vector<std::string> notes;
+    const LookDescription look = read_function(c, notes);
+    studio.state_.set_look(c.layer, look);
+    studio.send_notes(page, notes);
+  }
+  void operator()(const ExportFunction& c) const {
+    std::vector<std::string> notes;
+    const std::size_t layer = studio.state_.checked_layer(c.layer);
+    studio.send_file(page,
+                     function_file(studio.state_.description().layers[layer], c.format, notes));
+    studio.send_notes(page, notes);
+  }
+  void operator()(const AskHistogram& c) const {
+    const std::size_t layer = studio.state_.checked_layer(c.layer);
+    const JointHistogram histogram =
+        count_values(studio.state_.scene().layers[layer], c.channels, studio.parallel_);
+    studio.send_(page, text_message(histogram_json(histogram, c)));
+  }
+  void operator()(const Probe& c) const {
+    const ProbeResult result = probe(studio.frames_.renderer(), studio.state_.scene(), c);
+    studio.send_(page, text_message(probe_json(result, c)));
+  }
+  void operator()(const DragHandle& c) const {
+    studio.state_.set_clips(with_handle_dragged(studio.state_.scene(), c), c.gesture);
+  }
+  void operator()(const ShowErrorMap& c) const { studio.with_error_map_ = c.shown; }
+  void operator()(const ChooseComponent& c) const {
+    studio.state_.set_source(
+        c.layer,
+        [&](LayerDescription& layer) {
+          FieldSource& field = field_of(layer);
+          field.options.component = c.component;
+          field.options.time.reset();
+        },
+        true);
+  }
+  void operator()(const ChooseArray& c) const {
+    studio.state_.set_source(
+        c.layer,
+        [&](LayerDescription& layer) {
+          if (layer.mesh) {
+            layer.mesh->channels = {MeshArrayChoice{c.array, {}, std::string(field_channel)}};
+            return;
+          }
+          FieldSource& field = field_of(layer);
+          field.options.array = c.array;
+          field.options.component.reset();
+        },
+        false);
+  }
+  void operator()(const ChooseTime& c) const {
+    studio.state_.set_source(
+        c.layer,
+        [&](LayerDescription& layer) {
+          if (!layer.mesh) throw Error("this layer is no mesh with steps of time");
+          layer.mesh->options.time = c.time;
+        },
+        true);
+  }
+  void operator()(const ListFile& c) const {
+    const std::size_t layer = studio.state_.checked_layer(c.layer);
+    studio.choices_[layer] = all_choices(studio.state_.description().layers[layer]);
+    studio.send_scene();
+  }
+  void operator()(const Save& c) const { studio.save(page, c.kind); }
+
+ private:
+  template <class Move>
+  void move(const Move& how) const {
+    studio.move_camera(how);
+  }
+  static FieldSource& field_of(LayerDescription& layer) {
+    if (layer.mesh || layer.labels || !layer.channels.empty()) {
+      throw Error("this layer has no file of which a part could be chosen");
+    }
+    return layer.field;
+  }
+};
+
+Studio::Studio(SceneState state, bool keeps_camera, int threads, Send send)
+    : state_(std::move(state)),
+      parallel_(parallel_for(threads)),
+      send_(std::move(send)),
+      lettering_(lettering_of(state_.description())),
+      choices_(file_choices(state_.description())),
+      frames_(threads, [this](PageMessage message) { send_({}, std::move(message)); }) {
+  if (keeps_camera) first_camera_ = state_.scene().camera;
+  thread_ = std::thread([this] { run(); });
+}
+
+Studio::~Studio() {
+  {
+    const std::lock_guard lock(mutex_);
+    ended_ = true;
+  }
+  wakes_.notify_one();
+  frames_.interrupt();
+  thread_.join();
+}
+
+void Studio::page_opened(PageId page) {
+  {
+    const std::lock_guard lock(mutex_);
+    opened_.push_back(page);
+    ++pages_;
+  }
+  wakes_.notify_one();
+}
+
+void Studio::pages_left(std::size_t count) {
+  const std::lock_guard lock(mutex_);
+  pages_ = count;
+}
+
+void Studio::receive(PageId page, Command command) {
+  const bool changes = !only_asks(command);
+  {
+    const std::lock_guard lock(mutex_);
+    if (asked_.size() >= most_waiting) {
+      return send_(page, error_message("too many commands wait; this one is left out"));
+    }
+    if (!asked_.empty() && asked_.back().page == page && replaces(command, asked_.back().command)) {
+      asked_.pop_back();
+    }
+    asked_.push_back({page, std::move(command)});
+  }
+  wakes_.notify_one();
+  if (changes) frames_.interrupt();
+}
+
+void Studio::run() {
+  std::deque<Asked> asked;
+  std::vector<PageId> opened;
+  while (take_asked(asked, opened)) {
+    carry_out(std::exchange(asked, {}));
+    if (!std::exchange(opened, {}).empty()) {
+      stale_ = true;  // a new page has no picture yet
+      send_scene();
+    }
+    if (stale_) render();
+  }
+}
+
+bool Studio::take_asked(std::deque<Asked>& asked, std::vector<PageId>& opened) {
+  std::unique_lock lock(mutex_);
+  wakes_.wait(lock, [&] {
+    return ended_ || !asked_.empty() || !opened_.empty() || (stale_ && pages_ > 0);
+  });
+  asked = std::exchange(asked_, {});
+  opened = std::exchange(opened_, {});
+  return !ended_;
+}
+
+void Studio::carry_out(std::deque<Asked> asked) {
+  // A drag sends edits faster than frames are rendered: scenes are told once, after all of them.
+  bool edited = false;
+  for (const Asked& one : asked) {
+    carry_out(one);
+    edited = edited || is_edit(one.command);
+  }
+  if (edited) send_scene();
+}
+
+void Studio::carry_out(const Asked& asked) {
+  if (!only_asks(asked.command)) {
+    stale_ = true;
+    frames_.forget_image();
+  }
+  try {
+    std::visit(Visitor{*this, asked.page}, asked.command);
+  } catch (const Error& error) {
+    send_(asked.page, error_message(error.what()));
+  } catch (const std::bad_alloc&) {
+    send_(asked.page, error_message("there is not enough memory for this"));
+  } catch (const std::exception& error) {
+    send_(asked.page, error_message(std::string(error.what()) + defect));
+  }
+}
+
+void Studio::render() {
+  try {
+    const auto is_overtaken = [this] {
+      const std::lock_guard lock(mutex_);
+      return ended_ || std::ranges::any_of(
+                           asked_, [](const Asked& asked) { return !only_asks(asked.command); });
+    };
+    stale_ = !frames_.render(state_.scene(), lettering_, with_error_map_, is_overtaken);
+  } catch (const Error& error) {
+    stale_ = false;
+    send_({}, error_message(error.what()));
+  } catch (const std::bad_alloc&) {
+    stale_ = false;
+    send_({}, error_message("there is not enough memory for a picture of this size"));
+  } catch (const std::exception& error) {
+    stale_ = false;
+    send_({}, error_message(std::string(error.what()) + defect));
+  }
+}
+
+void Studio::send_scene() {
+  send_({}, text_message(scene_json(state_, choices_)));
+}
+
+void Studio::send_notes(PageId page, const std::vector<std::string>& notes) {
+  if (!notes.empty()) send_(page, text_message({{"type", "notes"}, {"notes", notes}}));
+}
+
+void Studio::send_file(PageId page, SavedFile file) {
+  const Json header{{"type", "file"}, {"name", file.name}, {"content_type", file.content_type}};
+  send_(page, binary_message(header, {file.bytes}));
+}
+
+void Studio::move_camera(const std::function<void(Camera&)>& move) {
+  Camera camera = state_.scene().camera;
+  move(camera);
+  state_.set_camera(camera);
+  is_fitted_ = true;
+}
+
+void Studio::fit_camera(const std::string& side) {
+  const Scene& scene = state_.scene();
+  Camera camera = view_camera(visible_corners(scene, parallel_), side, scene.size);
+  if (scene.camera.projection == Projection::orthographic) {
+    set_projection(camera, Projection::orthographic, reach_of(scene));
+  }
+  state_.set_camera(camera);
+}
+
+void Studio::save(PageId page, Save::Kind kind) {
+  if (kind == Save::Kind::scene) {
+    return send_file(page, {"scene.json", "application/json", state_.saved()});
+  }
+  if (kind == Save::Kind::png) {
+    const std::optional<Image>& shown = frames_.exact_image();
+    const Image image = shown ? *shown : frames_.renderer().render(state_.scene());
+    return send_file(page, png_file(image, state_.scene().background));
+  }
+  RenderOptions options;
+  options.depth = true;
+  options.error = state_.scene().integration.method == Method::exact;
+  send_file(page, exr_file(frames_.renderer().render(state_.scene(), options)));
+}
+
+}  // namespace pellucid::view

@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <condition_variable>
+#include <deque>
+#include <functional>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "command.h"
+#include "frame_maker.h"
+#include "page_server.h"
+#include "saved_files.h"
+#include "scene_facts.h"
+#include "scene_state.h"
+
+namespace pellucid::view {
+
+/// Where a studio's messages go: to one page, or to all if there is none.
+using Send = std::function<void(std::optional<PageId>, PageMessage)>;
+
+/// Owns the scene and renders it, on a thread of its own, for all pages together. Commands are
+/// carried out in the order in which they come; one that changes the picture ends the frame that is
+/// being rendered.
+class Studio {
+ public:
+  /// `keeps_camera`: whether the camera was chosen by the user, and not fitted to the data.
+  Studio(SceneState state, bool keeps_camera, int threads, Send send);
+  ~Studio();
+  Studio(const Studio&) = delete;
+  Studio& operator=(const Studio&) = delete;
+
+  // Safe to call from any thread:
+
+  void page_opened(PageId page);
+  void pages_left(std::size_t count);
+  void receive(PageId page, Command command);
+
+ private:
+  struct Asked {
+    PageId page;
+    Command command;
+  };
+  struct Visitor;
+
+  void run();
+  /// Returns false when the studio is to end.
+  bool take_asked(std::deque<Asked>& asked, std::vector<PageId>& opened);
+  void carry_out(std::deque<Asked> asked);
+  void carry_out(const Asked& asked);
+  void render();
+  void send_scene();
+  void send_file(PageId page, SavedFile file);
+  void send_notes(PageId page, const std::vector<std::string>& notes);
+  void move_camera(const std::function<void(Camera&)>& move);
+  void fit_camera(const std::string& side);
+  void save(PageId page, Save::Kind kind);
+
+  SceneState state_;
+  ParallelFor parallel_;
+  Send send_;
+  Lettering lettering_;
+  std::vector<FileChoices> choices_;
+  std::optional<Camera> first_camera_;  ///< none: fitted to the data
+  FrameMaker frames_;
+  bool with_error_map_ = false, is_fitted_ = false;
+  bool stale_ = true;  ///< whether the picture is not that of the scene
+
+  std::mutex mutex_;  ///< of the following
+  std::condition_variable wakes_;
+  std::deque<Asked> asked_;
+  std::vector<PageId> opened_;
+  std::size_t pages_ = 0;
+  bool ended_ = false;
+  std::thread thread_;
+};
+
+}  // namespace pellucid::view

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <optional>
+#include <variant>
+
+#include "pellucid/io/scene_json.h"
+
+namespace pellucid {
+
+void complete_description(const Layer& layer, LayerDescription& description) {
+  const auto is_open = [](const std::optional<TransferFunctionDescription>& function) {
+    return !function || std::holds_alternative<PresetDescription>(*function);
+  };
+  if (auto* labels = std::get_if<LabelContent>(&layer.content)) {
+    description.labels->styles = labels->table->styles();
+    description.labels->table.clear();
+    description.labels->extinction.reset();
+  }
+  if (auto* mesh = std::get_if<MeshContent>(&layer.content)) {
+    if (is_open(description.transfer_function) && mesh->univariate() != nullptr) {
+      description.transfer_function = mesh->univariate()->points();
+    }
+  }
+  for (std::size_t i = 0; i < layer.isosurfaces.size(); ++i) {
+    const auto& made = layer.isosurfaces[i].colors;
+    if (made && is_open(description.isosurfaces[i].colors)) {
+      description.isosurfaces[i].colors = made->points();
+    }
+  }
+  for (std::size_t i = 0; i < layer.slices.size(); ++i) {
+    const auto& made = layer.slices[i].colors;
+    if (made && is_open(description.slices[i].colors)) {
+      description.slices[i].colors = made->points();
+    }
+  }
+  const auto* const volume = std::get_if<VolumeContent>(&layer.content);
+  if (volume == nullptr) return;
+  if (is_open(description.transfer_function)) {
+    description.transfer_function = volume->transfer_function->points();
+  }
+  if (!volume->mask) return;
+  for (std::size_t i = 0; i < volume->mask->choices().size(); ++i) {
+    TransferFunctionDescription& function = description.mask->choices[i].transfer_function;
+    if (is_open(function)) function = volume->mask->choices()[i].transfer_function->points();
+  }
+}
+
+}  // namespace pellucid

@@ -1,0 +1,320 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The viewer in a real browser: what a user does with the mouse, and what comes of it."""
+
+import json
+import os
+import subprocess
+import sys
+import tempfile
+import time
+import unittest
+
+from page_driver import Page, why_not
+from viewer_process import PROGRAM, Viewer
+
+SOURCE_DIR = os.environ.get("PELLUCID_SOURCE_DIR", os.path.join(os.path.dirname(__file__), "../.."))
+sys.path.insert(0, os.path.join(SOURCE_DIR, "tests", "cli"))
+from program import png  # noqa: E402
+
+BRAIN = "/usr/share/mricron/templates/ch2.nii.gz"
+GAUSSIANS = {"layers": [{"field": {"builtin": "sphere", "points": 40}, "transfer_function": {
+    "gaussians": [{"channels": ["value", "gradient_magnitude"], "center": [0.4, 0.9],
+                   "width": [0.1, 0.3], "extinction": 4, "color": [0.9, 0.6, 0.3]}]}}]}
+
+
+class BrowserTest(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory(prefix="pellucid_view_", ignore_cleanup_errors=True)
+        self.addCleanup(folder.cleanup)
+        self.folder = folder.name
+
+    def open(self, *arguments, **options):
+        viewer = Viewer(*arguments, folder=self.folder)
+        self.addCleanup(viewer.stop)
+        page = Page(viewer, self.folder, **options)
+        self.addCleanup(page.browser.quit)
+        return page
+
+    def scene(self, page):
+        return json.loads(page.saved("Scene, JSON", "scene.json"))
+
+    def check_saved_scene_is_the_frame(self, page):
+        """The command line makes the frame of the saved scene, bit by bit."""
+        scene = self.scene(page)
+        subprocess.run([PROGRAM, "render", "scene.json", "-o", "again.png", "-q",
+                        *([] if "background" in scene["image"] else ["--background", "black"])],
+                       cwd=self.folder, check=True, timeout=900)
+        with open(os.path.join(self.folder, "again.png"), "rb") as file:
+            self.assertEqual(png(file.read()), page.picture())
+        return scene
+
+
+class Curves(BrowserTest):
+    def test_a_session(self):
+        page = self.open("builtin:shells:40", window=(960, 620))
+        self.assertIn("every pixel within", page.text("#state"))
+        scene = self.check_saved_scene_is_the_frame(page)
+
+        # Turn: the camera moves around the focal point.
+        x, y = page.center("#picture")
+        page.wait_exact(page.drag((x, y), (x + 150, y + 60)))
+        turned = self.check_saved_scene_is_the_frame(page)
+        self.assertNotEqual(turned["camera"]["position"], scene["camera"]["position"])
+        self.assertEqual(turned["camera"]["focal_point"], scene["camera"]["focal_point"])
+
+        # Edit a point.
+        page.show(".plot")
+        point = page.center('[data-point="1"]')
+        before = turned["layers"][0]["transfer_function"]["points"]
+        page.wait_exact(page.drag(point, (point[0] + 12, point[1] - 30)))
+        edited = self.check_saved_scene_is_the_frame(page)
+        points = edited["layers"][0]["transfer_function"]["points"]
+        self.assertEqual(len(points), len(before))
+        self.assertGreater(points[1]["value"], before[1]["value"])
+        self.assertGreater(points[1]["extinction"], before[1]["extinction"])
+        self.assertEqual(points[2:], before[2:])
+
+        # Add one, and remove it with the right button.
+        page.show(".plot")
+        left, top, width, height = page.box(".plot svg")
+        page.wait_exact(page.click(left + 0.9 * width, top + 0.6 * height))
+        added = self.scene(page)["layers"][0]["transfer_function"]["points"]
+        self.assertEqual(len(added), len(points) + 1)
+        page.show(".plot")
+        new = page.run("return document.querySelector('.plot .point.selected').dataset.point")
+        page.wait_exact(page.click(*page.center(f'[data-point="{new}"]'), button="right"))
+        self.assertEqual(self.scene(page)["layers"][0]["transfer_function"]["points"], points)
+
+        # Undo the three edits, one after the other.
+        for _ in range(3):
+            page.wait_exact(page.press("#undo"))
+        self.assertEqual(self.scene(page)["layers"][0]["transfer_function"]["points"], before)
+        self.assertTrue(page.run("return document.getElementById('undo').disabled"))
+
+        # Clip by a box, and drag a face of it.
+        page.open_panel("clip-panel")
+        page.wait_exact(page.press_button("Add a box"))
+        handle = page.center('[data-handle="z1"]')
+        page.wait_exact(page.drag(handle, (handle[0], handle[1] + 70)))
+        clipped = self.check_saved_scene_is_the_frame(page)
+        box = clipped["clip"][0]["box"]
+        self.assertLess(box["upper"][2], 0.9)
+        self.assertEqual(box["lower"], [-1, -1, -1])
+
+        # An isosurface is dragged along the histogram.
+        page.open_panel("surfaces-panel")
+        page.wait_exact(page.press_button("Add an isosurface"))
+        page.show(".plot")
+        hit = page.center("[data-surface]")
+        page.wait_exact(page.drag(hit, (hit[0] + 40, hit[1])))
+        with_surface = self.check_saved_scene_is_the_frame(page)
+        self.assertGreater(with_surface["layers"][0]["isosurfaces"][0]["value"], 0.5)
+
+        # The picture that is saved is the one that the command line writes.
+        picture = page.saved("Picture, PNG", "picture.png")
+        subprocess.run([PROGRAM, "render", "scene.json", "-o", "again.png", "-q"], cwd=self.folder,
+                       check=True, timeout=900)
+        with open(os.path.join(self.folder, "again.png"), "rb") as file:
+            self.assertEqual(png(file.read()), png(picture))
+        self.assertEqual(page.complaints(), [])
+
+    def test_keys_and_sides(self):
+        page = self.open("builtin:sphere:24", window=(900, 600))
+        first = self.scene(page)["camera"]
+        page.run("document.getElementById('picture').focus()")
+        from selenium.webdriver.common.keys import Keys
+        canvas = page.browser.find_element("id", "picture")
+
+        def type_keys(*keys):
+            before = page.frame()
+            canvas.send_keys(*keys)
+            page.wait_exact(before)
+            return self.scene(page)["camera"]
+
+        self.assertNotEqual(type_keys(Keys.ARROW_LEFT)["position"], first["position"])
+        self.assertEqual(type_keys("r"), first)
+        self.assertNotEqual(type_keys("+")["position"], first["position"])
+        self.assertEqual(type_keys("o")["projection"], "orthographic")
+        type_keys("o")
+        self.assertEqual(type_keys("1")["up"], [0, 0, 1])
+
+    def test_the_probe_says_what_is_under_the_mouse(self):
+        page = self.open("builtin:sphere:40")
+        page.mouse("mouseMoved", *page.center("#picture"), button="none", count=0)
+        page.wait_for(lambda: "optical depth" in page.text("#probe"), "the probe")
+        self.assertRegex(page.text("#probe"), r"value 0\.\d+")
+        self.assertEqual(page.run("return document.querySelectorAll('.plot .seen').length"), 1)
+
+    def test_the_error_map_and_the_tolerance(self):
+        page = self.open("builtin:marschner_lobb:40", window=(800, 500))
+        page.wait_exact(page.press("#error-map"))
+        self.assertFalse(page.run("return document.getElementById('errors').hidden"))
+        before = page.frame()
+        page.run("const slider = document.getElementById('tolerance'); slider.value = 30;"
+                 "slider.dispatchEvent(new Event('input'))")
+        page.wait_exact(before)
+        self.assertIn("0.0001", page.text("#state"))
+
+    def test_names_contrast_and_sizes(self):
+        page = self.open("builtin:sphere:16", window=(1280, 900))
+        for panel in ("surfaces-panel", "clip-panel", "light-panel", "save-panel"):
+            page.open_panel(panel)
+        page.wait_exact(page.press_button("Add a box"))
+        for dark in ("light", "dark"):
+            page.browser.execute_cdp_cmd("Emulation.setEmulatedMedia", {"features": [
+                {"name": "prefers-color-scheme", "value": dark}]})
+            self.assertEqual(page.run(ACCESS), [], dark)
+
+
+# What of the page lacks a name, is smaller than 12 px, or has less contrast than 4.5.
+ACCESS = """
+const problems = [];
+const luminance = (text) => {
+  const [r, g, b] = text.match(/[\\d.]+/g).slice(0, 3).map((c) => {
+    const s = c / 255;
+    return s <= 0.04045 ? s / 12.92 : ((s + 0.055) / 1.055) ** 2.4;
+  });
+  return 0.2126 * r + 0.7152 * g + 0.0722 * b;
+};
+const behind = (element) => {
+  for (let e = element; e; e = e.parentElement) {
+    const color = getComputedStyle(e).backgroundColor;
+    if (!/, 0\\)$|transparent/.test(color)) return color;
+  }
+  return 'rgb(255, 255, 255)';
+};
+for (const element of document.querySelectorAll('body *')) {
+  if (!element.checkVisibility?.()) continue;
+  const style = getComputedStyle(element);
+  const own = [...element.childNodes].some((n) => n.nodeType === 3 && n.textContent.trim());
+  if (own && parseFloat(style.fontSize) < 12) problems.push(`small: ${element.textContent}`);
+  if (own && !element.closest('svg') && !element.disabled && element.tagName !== 'OPTION') {
+    const [a, b] = [luminance(style.color), luminance(behind(element))].sort((x, y) => y - x);
+    const contrast = (a + 0.05) / (b + 0.05);
+    if (contrast < 4.5) problems.push(`contrast ${contrast.toFixed(2)}: ${element.textContent}`);
+  }
+  if (element.matches('button, input, select, [tabindex], [role="button"]')) {
+    const name = element.getAttribute('aria-label') || element.textContent.trim() ||
+      [...(element.labels ?? [])].map((label) => label.textContent.trim()).join('');
+    if (!name) problems.push(`no name: ${element.outerHTML.slice(0, 80)}`);
+  }
+}
+return problems;
+"""
+
+
+class Gaussians(BrowserTest):
+    def test_a_gaussian_is_moved_stretched_turned_and_made(self):
+        with open(os.path.join(self.folder, "start.json"), "w", encoding="utf-8") as file:
+            json.dump(GAUSSIANS, file)
+        page = self.open("start.json", window=(1100, 800))
+        before = self.check_saved_scene_is_the_frame(page)["layers"][0]["transfer_function"]
+        first = before["gaussians"][0]
+
+        page.wait_for(lambda: page.run("return Boolean(document.querySelector('[data-gaussian]'))"),
+                      "the Gaussian")
+        page.show(".plot")
+        body = page.center('[data-gaussian="0"]')
+        page.wait_exact(page.drag(body, (body[0] + 25, body[1] - 20)))
+        moved = self.check_saved_scene_is_the_frame(page)["layers"][0]["transfer_function"]
+        self.assertGreater(moved["gaussians"][0]["center"][0], first["center"][0])
+        self.assertGreater(moved["gaussians"][0]["center"][1], first["center"][1])
+        self.assertEqual(moved["gaussians"][0]["matrix"], first["matrix"])
+
+        def drag_grip(name, dx, dy):
+            page.show(".plot")
+            grip = page.center(f'[data-grip="{name}"]')
+            page.wait_exact(page.drag(grip, (grip[0] + dx, grip[1] + dy)))
+            return self.check_saved_scene_is_the_frame(page)["layers"][0]["transfer_function"]
+
+        stretched = drag_grip("short", 15, -10)
+        self.assertNotEqual(stretched["gaussians"][0]["matrix"], first["matrix"])
+        turned = drag_grip("turn", 20, 15)
+        self.assertNotEqual(turned["gaussians"][0]["matrix"][0][1], 0)
+
+        page.show(".plot")
+        left, top, width, height = page.box(".plot svg")
+        page.wait_exact(page.click(left + 0.85 * width, top + 0.2 * height, count=2))
+        made = self.check_saved_scene_is_the_frame(page)["layers"][0]["transfer_function"]
+        self.assertEqual(len(made["gaussians"]), 2)
+        page.wait_exact(page.press("#undo"))
+        undone = self.scene(page)["layers"][0]["transfer_function"]
+        self.assertEqual(undone, turned)
+        self.assertEqual(page.complaints(), [])
+
+
+class Speed(BrowserTest):
+    """Prints how fast the page is. A busy machine makes it slower: only very slow is an error."""
+
+    # Moves the pointer with each picture of the screen, and notes when frames are shown.
+    DRAG = """
+const [selector, seconds, done] = arguments;
+const target = document.querySelector(selector);
+const box = target.getBoundingClientRect();
+const x = box.left + box.width / 2, y = box.top + box.height / 2;
+const event = (type, i) => target.dispatchEvent(new PointerEvent(type, {bubbles: true,
+  pointerId: 1, button: type === 'pointermove' ? -1 : 0, buttons: type === 'pointerup' ? 0 : 1,
+  clientX: x + 60 * Math.sin(i / 12), clientY: y + 20 * Math.cos(i / 17), cancelable: true}));
+target.setPointerCapture = () => {};
+document.querySelectorAll('.plot svg').forEach((svg) => { svg.setPointerCapture = () => {}; });
+let i = 0, shown = 0, last = document.body.dataset.frame;
+const start = performance.now();
+// The points are drawn anew while they move; their plot stays.
+const mover = target.closest('.plot svg') ?? target;
+event('pointerdown', 0);
+const step = () => {
+  if (document.body.dataset.frame !== last) { ++shown; last = document.body.dataset.frame; }
+  const now = performance.now();
+  if (now - start < seconds * 1000) {
+    mover.dispatchEvent(new PointerEvent('pointermove', {bubbles: true, pointerId: 1, button: -1,
+      buttons: 1, clientX: x + 60 * Math.sin(++i / 12), clientY: y + 20 * Math.cos(i / 17)}));
+    requestAnimationFrame(step);
+    return;
+  }
+  mover.dispatchEvent(new PointerEvent('pointerup', {bubbles: true, pointerId: 1, button: 0}));
+  const rest = performance.now();
+  const wait = () => {
+    if (document.body.dataset.state === 'exact') {
+      done([shown / seconds, performance.now() - rest]);
+    } else {
+      setTimeout(wait, 2);
+    }
+  };
+  // The state is still that of a frame before the last move where it is exact at once.
+  setTimeout(wait, 60);
+};
+requestAnimationFrame(step);
+"""
+
+    def test_the_brain(self):
+        if not os.path.exists(BRAIN):
+            self.skipTest(f"{BRAIN} is not there")
+        page = self.open(BRAIN)
+        for _ in range(3):  # a stage of 640 x 640 pixels
+            _, _, width, height = page.box("#stage")
+            view = page.run("return [innerWidth, innerHeight]")
+            before = page.frame()
+            if (round(width), round(height)) == (640, 640):
+                break
+            page.resize(round(view[0] + 640 - width), round(view[1] + 640 - height))
+            page.wait_exact(before)
+        self.assertEqual(page.picture()[:2], (640, 640))
+        for what, selector in (("camera", "#picture"), ("function", '[data-point="3"]')):
+            results = []
+            for _ in range(3):
+                results.append(page.browser.execute_async_script(self.DRAG, selector, 3))
+                time.sleep(0.5)
+            rate = max(result[0] for result in results)
+            rest = min(result[1] for result in results)
+            print(f"brain, 640 x 640, drag of the {what}: {rate:.1f} frames/s, "
+                  f"exact {rest:.0f} ms after the mouse rests", flush=True)
+            self.assertGreater(rate, 2)
+            self.assertLess(rest, 10000)
+
+
+if __name__ == "__main__":
+    reason = why_not()
+    if reason:
+        print(f"skipped: {reason} (scripts/install-packages browser)")
+        sys.exit(77)
+    unittest.main(verbosity=2)
