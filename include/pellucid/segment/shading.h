@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <limits>
+
 #include "pellucid/geometry/vec3.h"
 #include "pellucid/math/bernstein.h"
 #include "pellucid/math/rgb.h"
@@ -169,20 +171,65 @@ struct GradientStretch {
 
 namespace detail {
 
-/// |n·d| on a stretch: d of length 1, off by at most `off`; the normal's denominator within
-/// `lengths`.
+/// The directions of a stretch's Bernstein coefficients: all gradients lie in the convex cone that
+/// these span, for they are sums of them with weights >= 0.
 template <class T>
-PELLUCID_HD Bounds<T> cosine_bounds(const GradientStretch<T>& stretch, const Bounds<T>& lengths,
+struct GradientCone {
+  Vec3<T> direction[4];
+  /// With directions within an angle whose cosine is c > 0, |Σ w_i d_i| >= √c Σ w_i: 1/√c. Infinite
+  /// where that is not so.
+  T widening{};
+
+  PELLUCID_HD explicit GradientCone(const GradientStretch<T>& stretch) noexcept {
+    auto known = T(0) <= T(0);
+    for (int i = 0; i < 4; ++i) {
+      const Vec3<T> g{stretch.component[0].b[i], stretch.component[1].b[i],
+                      stretch.component[2].b[i]};
+      const T square = dot(g, g);
+      const auto steep = square > T(std::numeric_limits<scalar_t<T>>::min());
+      known = known & steep;
+      direction[i] = g * (T(1) / sqrt(select(steep, square, T(1))));
+    }
+    T least = T(1);
+    for (int i = 0; i < 4; ++i) {
+      for (int j = 0; j < i; ++j) least = min(least, dot(direction[i], direction[j]));
+    }
+    known = known & (least > T(0.01));
+    widening = select(known, T(1) / sqrt(select(known, least, T(1))),
+                      T(std::numeric_limits<scalar_t<T>>::infinity()));
+  }
+};
+
+/// |n·d| on a stretch: d of length 1, off by at most `off`; the normal's denominator within
+/// `lengths`, |g| over that within `shares`. Within both of these:
+///
+/// - g·d within its hull, over the denominator;
+/// - the share times the cosine of an angle between d and a direction of the cone, m_i = d_i·d: of
+///   v = Σ w_i d_i it is at least min m_i, where all are >= 0, and at most `widening` max m_i.
+///
+/// Where the gradient grows along the stretch but does not turn, only the latter says so.
+template <class T>
+PELLUCID_HD Bounds<T> cosine_bounds(const GradientStretch<T>& stretch, const GradientCone<T>& cone,
+                                    const Bounds<T>& lengths, const Bounds<T>& shares,
                                     const Vec3<T>& d, T off) noexcept {
   const CubicBernstein<T> along = stretch.along(d);
   const T lower = along.hull_min(), upper = along.hull_max();
   const T least = max(max(lower, -upper), T(0)), most = max(abs(lower), abs(upper));
   const T slack = off + T(32) * T(rounding_unit<T>);
   const auto known = lengths.lower > T(0);
+  const T m0 = dot(cone.direction[0], d), m1 = dot(cone.direction[1], d),
+          m2 = dot(cone.direction[2], d), m3 = dot(cone.direction[3], d);
+  const T first = min(min(m0, m1), min(m2, m3)), last = max(max(m0, m1), max(m2, m3));
+  const T nearest = max(max(first, -last), T(0)), farthest = max(abs(first), abs(last));
+  const auto narrow = cone.widening < T(100);
+  const T at_least = select(narrow, shares.lower * nearest, T(0));
+  const T at_most = select(narrow, shares.upper * (cone.widening * farthest), T(1));
   Bounds<T> result;
-  result.lower = select(known, max(least / select(known, lengths.upper, T(1)) - slack, T(0)), T(0));
-  result.upper = select(known, min(most / select(known, lengths.lower, T(1)) + slack, T(1)),
-                        select(lengths.upper > T(0), T(1), T(0)));  // none at all: no normal
+  result.lower = select(
+      known, max(max(least / select(known, lengths.upper, T(1)), at_least) - slack, T(0)), T(0));
+  result.upper =
+      select(known, min(min(most / select(known, lengths.lower, T(1)), at_most) + slack, T(1)),
+             select(lengths.upper > T(0), T(1), T(0)));  // none at all: no normal
   return result;
 }
 
@@ -215,9 +262,8 @@ struct LitBounds {
   T sharpness{};
 };
 
-/// Returns bounds on light_up() over a stretch: |n·d| between the hull of g·d over those of
-/// √(|g|² + g0²), `squares` those of |g|². The direction to a point light turns by at most
-/// half_length / distance.
+/// Returns bounds on light_up() over a stretch by those of |n·d| (detail::cosine_bounds());
+/// `squares`: of |g|². The direction to a point light turns by at most half_length / distance.
 template <class T>
 PELLUCID_HD LitBounds<T> light_bounds(const Reflection<scalar_t<T>>& reflection,
                                       const LightSource<scalar_t<T>>* lights, int count,
@@ -226,6 +272,12 @@ PELLUCID_HD LitBounds<T> light_bounds(const Reflection<scalar_t<T>>& reflection,
   using S = scalar_t<T>;
   const Bounds<T> lengths{sqrt(squares.lower + T(reflection.flat_square)),
                           sqrt(squares.upper + T(reflection.flat_square))};
+  const auto share = [](T square, T size) noexcept {
+    const auto any = size > T(0);
+    return select(any, sqrt(square) / select(any, size, T(1)), T(1));
+  };
+  const Bounds<T> shares{share(squares.lower, lengths.lower), share(squares.upper, lengths.upper)};
+  const detail::GradientCone<T> cone(stretch);
   LitBounds<T> result;
   result.lower.factor =
       result.upper.factor = {T(reflection.ambient), T(reflection.ambient), T(reflection.ambient)};
@@ -244,13 +296,14 @@ PELLUCID_HD LitBounds<T> light_bounds(const Reflection<scalar_t<T>>& reflection,
       const auto before = apart > T(1e-6);
       half_turn = select(before, min(T(2) * turn / select(before, apart, T(1)), T(2)), T(2));
     }
-    const Bounds<T> diffuse = detail::cosine_bounds(stretch, lengths, to.light, turn);
+    const Bounds<T> diffuse = detail::cosine_bounds(stretch, cone, lengths, shares, to.light, turn);
     result.lower.factor += (T(reflection.diffuse) * diffuse.lower) * color;
     result.upper.factor += (T(reflection.diffuse) * diffuse.upper) * color;
     if (!(reflection.specular > S(0))) continue;
-    const Bounds<T> toward = light.kind == LightSource<S>::Kind::head
-                                 ? diffuse
-                                 : detail::cosine_bounds(stretch, lengths, to.half, half_turn);
+    const Bounds<T> toward =
+        light.kind == LightSource<S>::Kind::head
+            ? diffuse
+            : detail::cosine_bounds(stretch, cone, lengths, shares, to.half, half_turn);
     const auto shines = toward.upper > T(0);
     result.sharpness =
         max(result.sharpness,
@@ -270,17 +323,19 @@ PELLUCID_HD LitBounds<T> light_bounds(const Reflection<scalar_t<T>>& reflection,
 /// what was searched.
 template <class T>
 PELLUCID_HD T error_of_three_nodes(T turns, T sharpness) noexcept {
-  const T dull = select(turns <= T(1.5), T(0.08), select(turns <= T(4), T(0.1), T(0.18)));
+  const T low = select(turns <= T(1.05), T(0.03), T(0.09));
+  const T dull = select(turns <= T(1.5), low, select(turns <= T(4), T(0.12), T(0.2)));
   const T error = select(sharpness <= T(4), dull, T(2) * dull);
   return select((turns <= T(100)) & (sharpness <= T(8)), error, T(0.5));
 }
 template <class T>
 PELLUCID_HD T error_of_six_nodes(T turns, T sharpness) noexcept {
-  const T low = select(turns <= T(1.2), T(6e-4), T(1.5e-3));
-  const T high = select(turns <= T(16), T(0.015), T(0.04));
-  const T dull = select(turns <= T(1.5), low, select(turns <= T(4), T(4e-3), high));
-  const T error = select(sharpness <= T(4), dull, T(2) * max(dull, T(0.01)));
-  return select((turns <= T(100)) & (sharpness <= T(8)), error, T(0.5));
+  const T low = select(turns <= T(1.2), T(6e-4), T(2e-3));
+  const T high = select(turns <= T(16), T(0.015), T(0.05));
+  const T dull = select(turns <= T(1.5), low, select(turns <= T(4), T(8e-3), high));
+  const T sharp = select(turns <= T(1.5), T(4e-3), select(turns <= T(4), T(0.025), T(0.06)));
+  return select((turns <= T(100)) & (sharpness <= T(8)), select(sharpness <= T(4), dull, sharp),
+                T(0.5));
 }
 
 }  // namespace pellucid
