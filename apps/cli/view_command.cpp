@@ -84,6 +84,7 @@ int run_view(const ViewArguments& arguments) {
   }
   PreparedScene prepared = prepare(input);
   for (const std::string& note : prepared.import_notes) print_note(note);
+  scene_to_json(prepared.description);  // throws what cannot be told to a page, as a name's bytes
   prepared.description.relative_tolerance.reset();  // the page has a tolerance of its own
   view::ViewerOptions options;
   options.port = static_cast<std::uint16_t>(arguments.port);

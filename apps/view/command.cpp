@@ -18,6 +18,7 @@ namespace pellucid::view {
 namespace {
 
 constexpr int deepest_nesting = 16;
+constexpr int most_members = 1024;
 /// Drags across several pictures make no sense, nor do wheels that turn as fast.
 constexpr double farthest_drag = 10, largest_zoom = 100;
 
@@ -225,10 +226,17 @@ constexpr Kind kinds[] = {
 
 Json parse_json(std::string_view message) {
   if (message.size() > largest_message) throw Error("message: is too long");
-  const auto shallow = [](int depth, Json::parse_event_t event, Json&) {
+  // Members of an object are looked up one after the other.
+  std::array<int, deepest_nesting + 3> members{};
+  const auto shallow = [&](int depth, Json::parse_event_t event, Json&) {
     using Event = Json::parse_event_t;
     if (depth > deepest_nesting && (event == Event::object_start || event == Event::array_start)) {
       throw Error(fmt::format("message: is nested more than {} deep", deepest_nesting));
+    }
+    const auto level = static_cast<std::size_t>(depth);
+    if (event == Event::object_start) members[level + 1] = 0;
+    if (event == Event::key && ++members[level] > most_members) {
+      throw Error(fmt::format("message: an object has more than {} members", most_members));
     }
     return true;
   };

@@ -10,10 +10,12 @@
 
 namespace pellucid::view {
 
-Gate::Gate(std::string token, std::uint16_t port)
-    : token_(std::move(token)),
-      local_name_("localhost:" + std::to_string(port)),
-      local_number_("127.0.0.1:" + std::to_string(port)) {}
+Gate::Gate(std::string token, std::uint16_t port) : token_(std::move(token)) {
+  // Browsers leave out the port that they take for HTTP anyway.
+  const std::string suffix = port == 80 ? "" : ":" + std::to_string(port);
+  local_name_ = "localhost" + suffix;
+  local_number_ = "127.0.0.1" + suffix;
+}
 
 std::optional<std::string_view> Gate::admit(const Caller& caller) const noexcept {
   if (!caller.host || (*caller.host != local_name_ && *caller.host != local_number_)) return {};

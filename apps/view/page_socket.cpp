@@ -49,9 +49,10 @@ class Socket : public PageSocket, public std::enable_shared_from_this<Socket> {
         waiting_.erase(older);
       }
     }
+    // What waits already: a single message may be larger.
+    if (waiting_bytes_ > state().limits.waiting_bytes) return close();
     waiting_bytes_ += message.bytes->size();
     waiting_.push_back(std::move(message));
-    if (waiting_bytes_ > state().limits.waiting_bytes) return close();
     if (!writing_) write();
   }
 

@@ -24,6 +24,8 @@ namespace {
 
 /// A page that sends faster than commands are carried out, for minutes, is not ours.
 constexpr std::size_t most_waiting = 4096;
+/// Of messages. Commands take some twenty times as much memory at worst.
+constexpr std::size_t most_waiting_bytes = std::size_t{16} << 20;
 
 constexpr const char* defect = "; this is a defect of pellucid, please report it";
 
@@ -236,17 +238,19 @@ void Studio::pages_left(std::size_t count) {
   pages_ = count;
 }
 
-void Studio::receive(PageId page, Command command) {
+void Studio::receive(PageId page, Command command, std::size_t bytes) {
   const bool changes = !only_asks(command);
   {
     const std::lock_guard lock(mutex_);
-    if (asked_.size() >= most_waiting) {
-      return send_(page, error_message("too many commands wait; this one is left out"));
-    }
     if (!asked_.empty() && asked_.back().page == page && replaces(command, asked_.back().command)) {
+      asked_bytes_ -= asked_.back().bytes;
       asked_.pop_back();
     }
-    asked_.push_back({page, std::move(command)});
+    if (asked_.size() >= most_waiting || asked_bytes_ + bytes > most_waiting_bytes) {
+      return send_(page, error_message("too many commands wait; this one is left out"));
+    }
+    asked_bytes_ += bytes;
+    asked_.push_back({page, std::move(command), bytes});
   }
   wakes_.notify_one();
   if (changes) frames_.interrupt();
@@ -256,13 +260,24 @@ void Studio::run() {
   std::deque<Asked> asked;
   std::vector<PageId> opened;
   while (take_asked(asked, opened)) {
-    carry_out(std::exchange(asked, {}));
-    if (!std::exchange(opened, {}).empty()) {
-      stale_ = true;  // a new page has no picture yet
-      send_scene();
+    try {
+      carry_out(std::exchange(asked, {}));
+      if (!std::exchange(opened, {}).empty()) {
+        stale_ = true;  // a new page has no picture yet
+        send_scene();
+      }
+      if (stale_) render();
+    } catch (const std::exception& error) {
+      // What telling the scene throws ends neither the program nor the page.
+      stale_ = false;
+      send_({}, error_message(error.what()));
     }
-    if (stale_) render();
   }
+}
+
+bool Studio::has_ended() {
+  const std::lock_guard lock(mutex_);
+  return ended_;
 }
 
 bool Studio::take_asked(std::deque<Asked>& asked, std::vector<PageId>& opened) {
@@ -271,6 +286,7 @@ bool Studio::take_asked(std::deque<Asked>& asked, std::vector<PageId>& opened) {
     return ended_ || !asked_.empty() || !opened_.empty() || (stale_ && pages_ > 0);
   });
   asked = std::exchange(asked_, {});
+  asked_bytes_ = 0;
   opened = std::exchange(opened_, {});
   return !ended_;
 }
@@ -279,6 +295,7 @@ void Studio::carry_out(std::deque<Asked> asked) {
   // A drag sends edits faster than frames are rendered: scenes are told once, after all of them.
   bool edited = false;
   for (const Asked& one : asked) {
+    if (has_ended()) return;
     carry_out(one);
     edited = edited || is_edit(one.command);
   }
@@ -294,6 +311,8 @@ void Studio::carry_out(const Asked& asked) {
     std::visit(Visitor{*this, asked.page}, asked.command);
   } catch (const Error& error) {
     send_(asked.page, error_message(error.what()));
+  } catch (const Cancelled&) {
+    // The program ends.
   } catch (const std::bad_alloc&) {
     send_(asked.page, error_message("there is not enough memory for this"));
   } catch (const std::exception& error) {
@@ -354,12 +373,13 @@ void Studio::save(PageId page, Save::Kind kind) {
   if (kind == Save::Kind::scene) {
     return send_file(page, {"scene.json", "application/json", state_.saved()});
   }
+  RenderOptions options;
+  options.progress = [this](double) { return !has_ended(); };
   if (kind == Save::Kind::png) {
     const std::optional<Image>& shown = frames_.exact_image();
-    const Image image = shown ? *shown : frames_.renderer().render(state_.scene());
+    const Image image = shown ? *shown : frames_.renderer().render(state_.scene(), options);
     return send_file(page, png_file(image, state_.scene().background));
   }
-  RenderOptions options;
   options.depth = true;
   options.error = state_.scene().integration.method == Method::exact;
   send_file(page, exr_file(frames_.renderer().render(state_.scene(), options)));

@@ -37,17 +37,20 @@ class Studio {
 
   void page_opened(PageId page);
   void pages_left(std::size_t count);
-  void receive(PageId page, Command command);
+  /// `bytes`: of the message that holds it.
+  void receive(PageId page, Command command, std::size_t bytes);
 
  private:
   struct Asked {
     PageId page;
     Command command;
+    std::size_t bytes;
   };
   struct Visitor;
 
   void run();
   /// Returns false when the studio is to end.
+  bool has_ended();
   bool take_asked(std::deque<Asked>& asked, std::vector<PageId>& opened);
   void carry_out(std::deque<Asked> asked);
   void carry_out(const Asked& asked);
@@ -72,6 +75,7 @@ class Studio {
   std::mutex mutex_;  ///< of the following
   std::condition_variable wakes_;
   std::deque<Asked> asked_;
+  std::size_t asked_bytes_ = 0;  ///< of their messages
   std::vector<PageId> opened_;
   std::size_t pages_ = 0;
   bool ended_ = false;

@@ -2,6 +2,7 @@
 #include "viewer.h"
 
 #include <chrono>
+#include <new>
 #include <optional>
 #include <utility>
 
@@ -37,9 +38,11 @@ void run_viewer(SceneDescription description, Scene scene, const ViewerOptions& 
   };
   events.received = [&](PageId page, std::string_view message) {
     try {
-      receiver->receive(page, parse_command(message));
+      receiver->receive(page, parse_command(message), message.size());
     } catch (const Error& error) {
       server_of_pages->send(page, error_message(error.what()));
+    } catch (const std::bad_alloc&) {
+      server_of_pages->send(page, error_message("there is not enough memory for this message"));
     }
   };
   events.closed = [&](PageId, std::size_t pages) {

@@ -53,6 +53,7 @@ GaussiansHandle make_gaussians(
     handle.description.gaussians.push_back(gaussian_of(gaussian));
   }
   for (const auto& [channel, function] : tables) {
+    if (!function) throw Error("tables: " + channel + ": expected a TransferFunction, got None");
     handle.description.tables.push_back({channel, function->points()});
   }
   handle.function = make_multivariate(handle.description, channels);

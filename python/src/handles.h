@@ -29,7 +29,8 @@ struct VolumeHandle {
 /// Python's Channels.
 struct ChannelsHandle {
   std::shared_ptr<const Channels> channels;
-  std::vector<ChannelSource> sources{};  ///< empty: arrays
+  std::vector<std::array<std::size_t, 3>> axes;  ///< of each channel (VolumeHandle::axes)
+  std::vector<ChannelSource> sources{};          ///< empty: arrays
 };
 
 /// Python's Mesh.
@@ -41,7 +42,8 @@ struct MeshHandle {
 /// Python's LabelVolume.
 struct LabelHandle {
   std::shared_ptr<const LabelVolume> labels;
-  std::optional<FieldSource> source{};  ///< none: an array
+  std::array<std::size_t, 3> axes{2, 1, 0};  ///< VolumeHandle::axes
+  std::optional<FieldSource> source{};       ///< none: an array
 };
 
 /// Python's LabelMask. The functions of the choices are those of the mask.

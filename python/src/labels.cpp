@@ -60,7 +60,8 @@ whole number within +-2^24.)")
       .def(py::init([](const py::object& data) {
              VolumeHandle volume = volume_of(data);
              const py::gil_scoped_release released;
-             return LabelHandle{std::make_shared<const LabelVolume>(volume.volume), volume.source};
+             return LabelHandle{std::make_shared<const LabelVolume>(volume.volume), volume.axes,
+                                volume.source};
            }),
            py::arg("data"))
       .def_property_readonly(
@@ -68,7 +69,7 @@ whole number within +-2^24.)")
           "The labels that occur, ascending.")
       .def_property_readonly("volume",
                              [](const LabelHandle& h) {
-                               return VolumeHandle{h.labels->shared_volume(), {2, 1, 0}, h.source};
+                               return VolumeHandle{h.labels->shared_volume(), h.axes, h.source};
                              })
       .def("__repr__", [](const LabelHandle& h) {
         return "<pellucid.LabelVolume of " + std::to_string(h.labels->labels().size()) + " labels>";

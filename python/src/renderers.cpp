@@ -26,6 +26,20 @@ void attend(const py::object& progress, double fraction) {
   if (!progress.is_none()) progress(fraction);
 }
 
+/// A thread that asks for the interpreter's lock while the interpreter ends would be ended by it,
+/// which C++ does not survive. It waits for the end of the process here instead.
+void wait_for_the_end_if_it_has_come() {
+  while (_Py_IsFinalizing() != 0) std::this_thread::sleep_for(std::chrono::seconds(1));
+}
+
+/// Throws Error unless it is 0, one per core, or a number of threads that a machine can have.
+int checked_threads(int threads) {
+  constexpr int most = 1024;
+  if (threads >= 0 && threads <= most) return threads;
+  throw Error("threads: expected 0 (one per core) to " + std::to_string(most) + ", got " +
+              std::to_string(threads));
+}
+
 /// Waits until `finished` returns true, without the interpreter's lock. Takes it every 20 ms for
 /// signals and `progress`. Throws what these raise.
 template <class Finished, class Fraction>
@@ -39,12 +53,14 @@ void wait_until(Finished&& finished, Fraction&& fraction, const py::object& prog
     if (now - attended >= 20ms) {
       attended = now;
       const double done = fraction();
+      wait_for_the_end_if_it_has_come();
       const py::gil_scoped_acquire acquired;
       attend(progress, done);
     }
     // A tenth of the time that it took so far: short frames end at once, long ones cost no time.
     std::this_thread::sleep_for(std::clamp<Clock::duration>((now - begin) / 10, 20us, 1ms));
   }
+  wait_for_the_end_if_it_has_come();
 }
 
 /// Python's Frame: a frame that is being rendered.
@@ -109,7 +125,8 @@ class FrameHandle {
 
 /// Lets go of what it kept without the interpreter's lock, as its threads may need it.
 struct RendererHandle {
-  explicit RendererHandle(int threads) : renderer(std::make_unique<Renderer>(threads)) {}
+  explicit RendererHandle(int threads)
+      : renderer(std::make_unique<Renderer>(checked_threads(threads))) {}
   ~RendererHandle() {
     const py::gil_scoped_release released;
     renderer.reset();
@@ -123,7 +140,7 @@ RenderOptions options_of(const Scene& scene, bool depth, bool error, bool values
   options.depth = depth;
   options.error = error && scene.integration.method == Method::exact;
   options.values = values;
-  options.threads = threads;
+  options.threads = checked_threads(threads);
   options.preview = preview;
   return options;
 }
@@ -151,7 +168,7 @@ ImageHandle reference_image(const py::object& object, bool depth, int threads,
   const Scene scene = complete_scene(object);
   RenderOptions options;
   options.depth = depth;
-  options.threads = threads;
+  options.threads = checked_threads(threads);
   std::atomic<double> fraction = 0;
   std::stop_source stop;
   options.stop = stop.get_token();

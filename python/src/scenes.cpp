@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "scenes.h"
 
+#include <limits>
 #include <string>
 #include <utility>
 
@@ -43,15 +44,15 @@ std::size_t choice(const py::object& object, const std::string& what,
 }
 
 int integer_of(const py::object& object, const std::string& what) {
-  const int number = py::isinstance<py::bool_>(object) ? -1
-                     : PyLong_Check(object.ptr()) != 0 || PyIndex_Check(object.ptr()) != 0
-                         ? static_cast<int>(PyNumber_AsSsize_t(object.ptr(), nullptr))
-                         : -1;
-  if (PyErr_Occurred() != nullptr || number < 0) {
+  const Py_ssize_t number = py::isinstance<py::bool_>(object) ? -1
+                            : PyLong_Check(object.ptr()) != 0 || PyIndex_Check(object.ptr()) != 0
+                                ? PyNumber_AsSsize_t(object.ptr(), nullptr)
+                                : -1;
+  if (PyErr_Occurred() != nullptr || number < 0 || number > std::numeric_limits<int>::max()) {
     PyErr_Clear();
     throw Error(what + ": expected a whole number from 0, got " + short_repr(object));
   }
-  return number;
+  return static_cast<int>(number);
 }
 
 /// Throws Error unless the object has what only objects of this class have.
@@ -224,12 +225,25 @@ class FunctionReader {
                 short_repr(object_));
   }
 
+  /// `channels`: those of the data.
+  template <class Data>
   std::shared_ptr<const MultivariateTransferFunction> multivariate(
-      LayerDescription& description) const {
+      const Data& channels, LayerDescription& description) const {
     if (!is_multivariate()) {
       throw Error(what_ + ": several variables need Gaussians, got " + short_repr(object_));
     }
     const auto& handle = py::cast<const GaussiansHandle&>(object_);
+    std::vector<std::string> names;
+    for (int i = 0; i < channels.count(); ++i) names.push_back(channels[i].name);
+    if (handle.channels != names) {
+      const auto list = [](const std::vector<std::string>& of) {
+        std::string text;
+        for (const std::string& name : of) text += (text.empty() ? "" : ", ") + name;
+        return text;
+      };
+      throw Error(what_ + ": the Gaussians are of the channels " + list(handle.channels) +
+                  ", but the data have " + list(names) + "; make them for these, in this order");
+    }
     description.transfer_function = handle.description;
     return handle.function;
   }
@@ -266,14 +280,14 @@ LayerContent content_of(const py::object& layer, const std::string& what,
   if (py::isinstance<ChannelsHandle>(data)) {
     const auto& handle = py::cast<const ChannelsHandle&>(data);
     description.channels = handle.sources;
-    return ChannelsContent{handle.channels, function.multivariate(description)};
+    return ChannelsContent{handle.channels, function.multivariate(*handle.channels, description)};
   }
   if (py::isinstance<MeshHandle>(data)) {
     const auto& handle = py::cast<const MeshHandle&>(data);
     description.mesh = handle.source.value_or(MeshSource{});
     MeshContent content{handle.mesh, {}};
     if (function.is_multivariate()) {
-      content.transfer_function = function.multivariate(description);
+      content.transfer_function = function.multivariate(*handle.mesh, description);
     } else {
       content.transfer_function = function.univariate(description);
     }

@@ -66,6 +66,7 @@ py::tuple linear(const Numbers& extinction_f, const Numbers& extinction_b, const
 
 py::tuple piecewise_linear(const std::shared_ptr<TransferFunction>& function,
                            const Numbers& value_f, const Numbers& value_b, const Numbers& length) {
+  if (!function) throw Error("piecewise_linear_segment: expected a TransferFunction, got None");
   const py::ssize_t n = length.size();
   Results results(n);
   const double *v_f = value_f.data(), *v_b = value_b.data(), *lengths = length.data();

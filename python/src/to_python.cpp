@@ -98,13 +98,17 @@ class Maker {
       return py::cast(VolumeHandle{volume->volume, {2, 1, 0}, description.field});
     }
     if (const auto* const channels = std::get_if<ChannelsContent>(&layer.content)) {
-      return py::cast(ChannelsHandle{channels->channels, layer_channels(description)});
+      return py::cast(
+          ChannelsHandle{channels->channels,
+                         std::vector<std::array<std::size_t, 3>>(
+                             static_cast<std::size_t>(channels->channels->count()), {2, 1, 0}),
+                         layer_channels(description)});
     }
     if (const auto* const mesh = std::get_if<MeshContent>(&layer.content)) {
       return py::cast(MeshHandle{mesh->mesh, description.mesh});
     }
-    return py::cast(
-        LabelHandle{std::get<LabelContent>(layer.content).labels, description.labels->field});
+    return py::cast(LabelHandle{
+        std::get<LabelContent>(layer.content).labels, {2, 1, 0}, description.labels->field});
   }
 
   static py::object function(const Layer& layer, const LayerDescription& description) {

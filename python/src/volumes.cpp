@@ -286,6 +286,7 @@ Raises Error if the grids differ.)")
       .def(py::init([](const py::dict& volumes, const py::dict& units, const py::kwargs& more) {
              std::vector<Channel> channels;
              std::vector<ChannelSource> sources;
+             std::vector<std::array<std::size_t, 3>> axes;
              const py::object make = py::type::of<VolumeHandle>();
              for (const py::dict* part : {&volumes, static_cast<const py::dict*>(&more)}) {
                for (const auto& [name, data] : *part) {
@@ -296,12 +297,13 @@ Raises Error if the grids differ.)")
                  if (units.contains(name)) unit = py::cast<std::string>(units[name]);
                  const auto& handle = py::cast<const VolumeHandle&>(volume);
                  channels.push_back({py::cast<std::string>(name), unit, handle.volume});
+                 axes.push_back(handle.axes);
                  if (handle.source) sources.push_back({channels.back().name, unit, *handle.source});
                }
              }
              if (sources.size() < channels.size()) sources.clear();
              return ChannelsHandle{std::make_shared<const Channels>(std::move(channels)),
-                                   std::move(sources)};
+                                   std::move(axes), std::move(sources)};
            }),
            py::arg("volumes") = py::dict(), py::arg("units") = py::dict())
       .def_property_readonly("names",
@@ -315,7 +317,8 @@ Raises Error if the grids differ.)")
            [](const ChannelsHandle& h, const std::string& name) {
              const auto index = h.channels->find(name);
              if (!index) throw py::key_error(name);
-             return VolumeHandle{(*h.channels)[*index].volume, {2, 1, 0}, {}};
+             return VolumeHandle{
+                 (*h.channels)[*index].volume, h.axes[static_cast<std::size_t>(*index)], {}};
            })
       .def("__repr__", [](const ChannelsHandle& h) {
         std::string text = "<pellucid.Channels";

@@ -35,8 +35,9 @@ void check_light(const Light& light, const std::string& where) {
     }
   }
   if (const auto* point = std::get_if<PointLight>(&light.kind)) {
-    if (!is_finite(point->position)) {
-      throw Error(where + ": position is " + tuple(point->position) + ", but must be finite");
+    const Vec3<double>& p = point->position;
+    if (!is_finite(p) || std::max({std::abs(p.x), std::abs(p.y), std::abs(p.z)}) > 1e30) {
+      throw Error(where + ": position is " + tuple(p) + ", but must be within 1e30 of the origin");
     }
   }
   for (const double channel : {light.color.r, light.color.g, light.color.b}) {

@@ -266,3 +266,13 @@ def test_an_array_is_not_written_to():
     render(values)
     gc.collect()
     assert numpy.array_equal(values, before)
+
+
+def test_channels_and_labels_keep_the_order_of_an_array():
+    values = numpy.asfortranarray(numpy.random.default_rng(3).random((3, 4, 5)))
+    channels = pellucid.Channels(v=pellucid.Volume(values, spacing=(3, 2, 1)))
+    assert channels["v"].shape == (3, 4, 5)
+    assert tuple(channels["v"].spacing) == (3, 2, 1)
+    assert numpy.array_equal(channels["v"].array, values)
+    labels = numpy.asfortranarray(numpy.arange(60, dtype="u1").reshape(3, 4, 5))
+    assert numpy.array_equal(pellucid.LabelVolume(labels).volume.array, labels)

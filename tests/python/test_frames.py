@@ -237,3 +237,13 @@ def test_signals_are_handled_while_waiting():
     finally:
         signal.signal(signal.SIGALRM, before)
     assert len(seen) == 1 and seen[0] - begin < 1
+
+
+def test_a_daemon_thread_that_renders_does_not_hinder_the_exit():
+    code = ("import sys, threading, time, numpy, pellucid\n"
+            "scene = pellucid.scene_of(numpy.random.rand(24, 24, 24), size=400, tolerance=1e-6)\n"
+            "threading.Thread(target=pellucid.render, args=(scene,), daemon=True).start()\n"
+            "time.sleep(0.3)\n"
+            "sys.exit(3)\n")
+    result = subprocess.run([sys.executable, "-B", "-c", code], capture_output=True, timeout=60)
+    assert result.returncode == 3, result.stderr

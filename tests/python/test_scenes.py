@@ -367,3 +367,30 @@ def test_numbers_of_numpy_are_numbers():
 def test_unknown_keywords():
     with pytest.raises(TypeError, match="tolerence"):
         pellucid.render(smooth(), tolerence=1)
+
+
+def test_gaussians_are_of_the_channels_of_the_data():
+    data = pellucid.Channels(x=pellucid.builtin_field("sphere", 12),
+                             y=pellucid.builtin_field("ramp", 12))
+    gaussian = pellucid.Gaussian((0.5,), 5.0, widths=(0.2,), channels=["x"])
+    pellucid.render(data, pellucid.Gaussians([gaussian], channels=["x", "y"]), size=4)
+    for others in (["y", "x"], ["x", "z"]):
+        with pytest.raises(pellucid.Error, match="but the data have x, y"):
+            pellucid.render(data, pellucid.Gaussians([gaussian], channels=others), size=4)
+
+
+def test_numbers_do_not_wrap_round():
+    volume = pellucid.builtin_field("sphere", 8)
+    for size in ((2**32 + 16, 8), (-2**32 + 5, 8), (2**70, 8)):
+        with pytest.raises(pellucid.Error):
+            pellucid.render(volume, size=size)
+    for threads in (-1, 100000):
+        with pytest.raises(pellucid.Error, match="threads"):
+            pellucid.render(volume, size=4, threads=threads)
+
+
+def test_none_is_no_function():
+    with pytest.raises(pellucid.Error):
+        pellucid.Gaussians([], channels=["x"], tables={"x": None})
+    with pytest.raises((pellucid.Error, TypeError)):
+        pellucid.segments.piecewise_linear_segment(None, 0, 1, 1)

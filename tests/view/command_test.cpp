@@ -92,6 +92,13 @@ TEST(ParseCommand, RefusesWhatIsTooDeepOrTooLong) {
   expect_refused(nested(20), "nested");
   expect_refused(nested(100000), "nested");
   expect_refused(std::string(largest_message + 1, ' '), "too long");
+  const auto with_members = [](int count) {
+    std::string text = R"({"type": "undo")";
+    for (int i = 0; i < count; ++i) text += ", \"" + std::to_string(i) + "\": 0";
+    return text + "}";
+  };
+  expect_refused(with_members(10), "0 is not a member");
+  expect_refused(with_members(150000), "more than 1024 members");
 }
 
 }  // namespace

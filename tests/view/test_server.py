@@ -379,6 +379,32 @@ class Ending(unittest.TestCase):
         self.assertEqual(status, 0, errors)
         self.assertLess(time.monotonic() - start, 20)
 
+    def test_a_signal_while_saves_wait(self):
+        viewer = Viewer("builtin:marschner_lobb:32")
+        with viewer.open_socket() as page:
+            page.receive_type("scene")
+            page.send(type="size", width=1400, height=1400)
+            page.send(type="tolerance", value=1e-6)
+            for _ in range(200):
+                page.send(type="save", what="exr")
+            time.sleep(0.5)
+            start = time.monotonic()
+            status, errors = viewer.stop(signal.SIGINT)
+        self.assertEqual(status, 0, errors)
+        self.assertLess(time.monotonic() - start, 20)
+
+    def test_a_name_that_no_page_can_be_told(self):
+        with tempfile.TemporaryDirectory() as folder:
+            name = os.path.join(os.fsencode(folder), b"caf\xe9.nrrd")
+            with open(name, "wb") as file:
+                file.write(b"NRRD0004\ntype: uint8\ndimension: 3\nsizes: 2 2 2\n"
+                           b"encoding: raw\n\n" + bytes(range(8)))
+            result = subprocess.run([os.fsencode(PROGRAM), b"view", name, b"--no-open"],
+                                    capture_output=True, timeout=60)
+        self.assertEqual(result.returncode, 1)
+        self.assertRegex(result.stderr.decode(errors="replace"),
+                         r"\Apellucid: error: [^\n]*UTF-8[^\n]*\n\Z")
+
     def test_with_the_last_page(self):
         with Viewer(FIELD, "--end-with-page") as viewer:
             for _ in range(2):  # a page that is loaded again goes and comes
