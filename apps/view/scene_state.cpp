@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "cli/parse.h"
+#include "pellucid/scene/defaults.h"
 #include "pellucid/scene/error.h"
 
 namespace pellucid::view {
@@ -143,6 +144,15 @@ void SceneState::set_look(std::size_t layer, const LookDescription& look) {
   take_step(std::move(next), layer, 1, no_gesture);
 }
 
+void SceneState::set_gaussians(std::size_t layer, MultivariateDescription gaussians) {
+  SceneDescription next = description_;
+  LayerDescription& target = next.layers[checked_layer(layer)];
+  target.transfer_function = std::move(gaussians);
+  target.shading.reset();
+  use_matrices(target);
+  take_step(std::move(next), layer, 1, no_gesture);
+}
+
 std::optional<TransferFunctionDescription> SceneState::default_function(std::size_t layer) const {
   SceneDescription without = description_;
   LayerDescription& bare = without.layers[layer];
@@ -156,7 +166,18 @@ std::optional<TransferFunctionDescription> SceneState::default_function(std::siz
 
 void SceneState::set_default_function(std::size_t layer) {
   SceneDescription next = description_;
-  next.layers[checked_layer(layer)].transfer_function = default_function(layer);
+  LayerDescription& target = next.layers[checked_layer(layer)];
+  const auto* const volume = std::get_if<VolumeContent>(&scene_.layers[layer].content);
+  if (volume != nullptr && !volume->mask && !target.projection && target.isosurfaces.empty() &&
+      target.slices.empty()) {
+    // As the program shows a file alone.
+    const DefaultLook look = default_look(*volume->volume);
+    target.transfer_function = look.transfer_function.points();
+    target.shading.reset();
+    if (look.shading) target.shading.emplace().values = *look.shading;
+  } else {
+    target.transfer_function = default_function(layer);
+  }
   take_step(std::move(next), layer, 1, no_gesture);
 }
 

@@ -37,6 +37,9 @@ class SceneState {
   void edit(const Edit& edit);
   /// Replaces a layer's function and look, as a step of the history.
   void set_look(std::size_t layer, const LookDescription& look);
+  /// Replaces a layer's function by Gaussians, unlit: of several variables light takes many times
+  /// as long.
+  void set_gaussians(std::size_t layer, MultivariateDescription gaussians);
   /// Replaces a layer's function by the one that is made from its data, as a step of the history.
   void set_default_function(std::size_t layer);
   /// Replaces the scene's clips. Drags of one gesture are undone together.

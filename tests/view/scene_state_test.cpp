@@ -54,6 +54,23 @@ TEST(SceneState, WhatIsSavedRendersToTheSameBits) {
   EXPECT_EQ(again.integration.tolerance, 1e-3);
 }
 
+TEST(SceneState, SuggestionsSayWhetherThereIsLight) {
+  SceneState state = sphere();
+  const auto is_lit = [&] { return state.description().layers[0].shading.has_value(); };
+  state.edit(edit_of(0, "shading", "{}", 1));
+  ASSERT_TRUE(is_lit());
+  MultivariateDescription gaussians;
+  gaussians.channels = {"value"};
+  gaussians.gaussians.push_back(
+      {gaussians.channels, {0.5}, GaussianWidths{{0.1}, {}}, 1, {1, 1, 1}});
+  state.set_gaussians(0, gaussians);
+  EXPECT_FALSE(is_lit());
+  state.undo();
+  EXPECT_TRUE(is_lit());
+  state.set_default_function(0);  // a sphere of smooth data has no surfaces
+  EXPECT_FALSE(is_lit());
+}
+
 TEST(SceneState, UndoesGesturesAsAWhole) {
   SceneState state = sphere();
   const std::string first = state.saved();
