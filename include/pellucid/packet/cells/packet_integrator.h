@@ -38,10 +38,7 @@ class PacketIntegrator {
   using M = BatchMask<N>;
 
   /// What many packets have one after the other.
-  struct Room {
-    Stretches<Value, N> stretches;
-    Walks<Value, N> walks;
-    SpanRows<Value, N> rows;
+  struct Room : SpanRoom<Value, N> {
     StepLengths<N> step_lengths;
   };
 
@@ -58,19 +55,13 @@ class PacketIntegrator {
         finder_(grid, blocks_, transfer_, is_lit),
         light_(make_light(job, grid, blocks_)),
         smooth_(job, grid, blocks_.origin, blocks_.direction, room.step_lengths),
+        place_error_(span_end_errors<N>(job, first, count)),
         fold_(job.tolerance, transfer_.largest_extinction, job.largest_color,
               convert<float>(D::load(blocks_.end))),
         trace_(job.depth != 0),
         largest_color_(static_cast<float>(job.largest_color)),
         double_will_do_(job.tolerance >
                         64 * static_cast<double>(rounding_unit<float>) * job.largest_color) {
-    float far[N];
-    for (int l = 0; l < N; ++l) {
-      // Where the ray meets the planes is known to a few units of its arc length.
-      const PellucidRay& ray = job.rays[first + (l < count ? l : 0)];
-      far[l] = static_cast<float>(8 * rounding_unit<double> * ray.end);
-    }
-    place_error_ = F::load(far);
     if (!(static_cast<const SmoothBlocks*>(job.smooth)->longest_step > 0)) {
       blocks_.in_cells_until = D(std::numeric_limits<double>::infinity());
     }
@@ -171,10 +162,7 @@ class PacketIntegrator {
 
   /// Where the lanes' rays go through the cells of these spans.
   CellPlaces<N> places_of(M lanes, I of) const noexcept {
-    const I code = select(lanes, of, I(0));
-    I in_block[3];
-    for (int a = 0; a < 3; ++a) in_block[a] = SpanCode::place_in_block(code, a);
-    return cell_places(grid_, blocks_, room_.stretches, SpanCode::stretch_of(code), in_block);
+    return span_places(grid_, blocks_, room_.stretches, lanes, of);
   }
 
   /// Gives up what was found of the lanes' rays.

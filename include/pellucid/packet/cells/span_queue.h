@@ -1,10 +1,43 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "pellucid/packet/cells/cell_places.h"
 #include "pellucid/packet/cells/span_finder.h"
 
 #if PELLUCID_HAS_BATCH_4  // in sources compiled per instruction set
 namespace pellucid {
+
+/// Where the spans of packets are found, one packet after the other.
+template <class Value, int N>
+struct SpanRoom {
+  Stretches<Value, N> stretches;
+  Walks<Value, N> walks;
+  SpanRows<Value, N> rows;
+};
+
+/// How far spans' ends of rays first … first + count - 1 may be from where they are thought to be:
+/// where a ray meets the planes is known to a few units of its arc length.
+template <int N>
+Batch<float, N> span_end_errors(const PellucidPacketJob& job, int first, int count) noexcept {
+  float far[N];
+  for (int l = 0; l < N; ++l) {
+    const PellucidRay& ray = job.rays[first + (l < count ? l : 0)];
+    far[l] = static_cast<float>(8 * rounding_unit<double> * ray.end);
+  }
+  return Batch<float, N>::load(far);
+}
+
+/// Where the lanes' own rays go through the cells of spans.
+template <class Value, int N>
+CellPlaces<N> span_places(const PacketGrid<Value>& grid, const BlockMarch<Value, N>& rays,
+                          const Stretches<Value, N>& stretches, BatchMask<N> lanes,
+                          Batch<std::int32_t, N> code) noexcept {
+  using I = Batch<std::int32_t, N>;
+  code = select(lanes, code, I(0));
+  I in_block[3];
+  for (int a = 0; a < 3; ++a) in_block[a] = SpanCode::place_in_block(code, a);
+  return cell_places(grid, rays, stretches, SpanCode::stretch_of(code), in_block);
+}
 
 /// The spans that were found of rays and are not taken yet, for each lane those of its own ray.
 template <class Value, int N>

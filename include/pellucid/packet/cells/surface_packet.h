@@ -28,12 +28,7 @@ class SurfacePacket {
   using I = Batch<std::int32_t, N>;
   using M = BatchMask<N>;
 
-  /// What many packets have one after the other.
-  struct Room {
-    Stretches<Value, N> stretches;
-    Walks<Value, N> walks;
-    SpanRows<Value, N> rows;
-  };
+  using Room = SpanRoom<Value, N>;
 
   /// Of rays first … first + count - 1 of the job, count <= N.
   SurfacePacket(const PellucidPacketJob& job, const PacketGrid<Value>& grid, Room& room, int first,
@@ -48,15 +43,11 @@ class SurfacePacket {
         blocks_(grid, job.rays + first, count),
         finder_(grid, blocks_, *static_cast<const BinnedTransfer*>(job.transfer), true),
         gradients_(grid, light_),
-        to_eye_(direction_to_eye(light_, blocks_)) {
-    float place_error[N];
-    for (int l = 0; l < N; ++l) {
-      // As of PacketIntegrator.
-      const PellucidRay& ray = job.rays[first + (l < count ? l : 0)];
-      place_error[l] = static_cast<float>(8 * rounding_unit<double> * ray.end);
-      half_[l] = {0, std::numeric_limits<double>::infinity(), 0};
+        to_eye_(direction_to_eye(light_, blocks_)),
+        place_error_(span_end_errors<N>(job, first, count)) {
+    for (PellucidHalfOpacity& half : half_) {
+      half = {0, std::numeric_limits<double>::infinity(), 0};
     }
-    place_error_ = F::load(place_error);
   }
 
   void run() noexcept {
@@ -163,7 +154,9 @@ class SurfacePacket {
     const F u = min(from_ + ahead * place, F(1));
     const F u_error = min(ahead * crossing_error(data_, place, F(2) * close_) + F(1e-6f), F(1));
     CellPlaces<N> places;
-    if (surfaces_.is_lit != 0 || job_.depth != 0) places = places_of(lanes);
+    if (surfaces_.is_lit != 0 || job_.depth != 0) {
+      places = span_places(grid_, blocks_, room_.stretches, lanes, code_);
+    }
     if (surfaces_.is_lit != 0) {
       GradientStretch<F> along;
       along.to_eye = to_eye_;
@@ -188,14 +181,6 @@ class SurfacePacket {
     const M done = lanes & (rest <= F(0.125f) * F(static_cast<float>(job_.tolerance)));
     error_ += select(done, rest, F(0));
     end_rays(done);
-  }
-
-  /// Where the lanes' rays go through their cells.
-  CellPlaces<N> places_of(M lanes) const noexcept {
-    I in_block[3];
-    const I code = select(lanes, code_, I(0));
-    for (int a = 0; a < 3; ++a) in_block[a] = SpanCode::place_in_block(code, a);
-    return cell_places(grid_, blocks_, room_.stretches, SpanCode::stretch_of(code), in_block);
   }
 
   /// An opaque surface in front of all others is where half of the opacity is reached.
