@@ -99,10 +99,27 @@ class PointList {
   std::vector<Point> points_;
 };
 
-/// `v` are even in a body that fills a share of a box whose chords have this mean. `density`
+/// Values of value_sample(), and their classes where there are two different ones.
+struct ClassedValues {
+  explicit ClassedValues(std::vector<double> of)
+      : values(std::move(of)), differ(!values.empty() && values.front() != values.back()) {
+    if (differ) classes = otsu_classes(values);
+  }
+  /// Between the background and the rest.
+  double threshold() const {
+    return values[classes.foreground - 1] / 2 + values[classes.foreground] / 2;
+  }
+
+  std::vector<double> values;
+  bool differ;
+  Classes classes{};
+};
+
+/// The values are even in a body that fills a share of a box whose chords have this mean. `density`
 /// multiplies the extinctions.
-TransferFunction make_default(const std::vector<double>& v, double chord, double filled,
+TransferFunction make_default(const ClassedValues& of, double chord, double filled,
                               double density = 1) {
+  const std::vector<double>& v = of.values;
   const std::size_t n = v.size();
 
   // The extinction that gives a typical path through all values from index `first` on the optical
@@ -118,11 +135,10 @@ TransferFunction make_default(const std::vector<double>& v, double chord, double
       orange{0.95, 0.5, 0.2}, white{1, 0.95, 0.82};
 
   if (n == 0) return TransferFunction({{0, 0, orange}});
-  if (v.front() == v.back()) return TransferFunction({{v.front(), extinction(1, 0), orange}});
+  if (!of.differ) return TransferFunction({{v.front(), extinction(1, 0), orange}});
 
-  const Classes classes = otsu_classes(v);
-  const std::size_t foreground = classes.foreground, bright = classes.bright;
-  const double threshold = v[foreground - 1] / 2 + v[foreground] / 2;
+  const std::size_t foreground = of.classes.foreground, bright = of.classes.bright;
+  const double threshold = of.threshold();
   PointList points(v.back() - v.front());
   points.add(mean(v, 0, foreground) / 2 + threshold / 2, 0, faint);
   points.add(threshold, extinction(0.5, foreground), dark);
@@ -139,7 +155,7 @@ TransferFunction make_default(const std::vector<double>& v, double chord, double
 }  // namespace
 
 TransferFunction default_transfer_function(const Volume& volume) {
-  return make_default(value_sample(volume), mean_chord(volume), 1);
+  return make_default(ClassedValues(value_sample(volume)), mean_chord(volume), 1);
 }
 
 namespace {
@@ -148,7 +164,6 @@ namespace {
 /// even in the volume. None of them is NaN.
 template <class Visit>
 void visit_neighbors(const Volume& volume, const Visit& visit) {
-  constexpr std::size_t most = std::size_t{1} << 18;
   std::visit(
       [&](const auto& data) {
         const auto& n = volume.description().dimensions;
@@ -165,25 +180,17 @@ void visit_neighbors(const Volume& volume, const Visit& visit) {
           beside(i % slice + row < slice, row);
           beside(i + slice < data.size(), slice);
         };
-        if (data.size() <= most) {
-          for (std::size_t i = 0; i < data.size(); ++i) look(i);
-          return;
-        }
-        // As value_sample() takes them.
-        const auto size = static_cast<double>(data.size());
-        for (std::size_t k = 0; k < most; ++k) {
-          const double s = static_cast<double>(k) / std::numbers::phi;
-          look(std::min(static_cast<std::size_t>((s - std::floor(s)) * size), data.size() - 1));
-        }
+        visit_even_places(data.size(), look);
       },
       volume.data());
 }
 
-/// Whether the background ends at surfaces (default_look()). `v`: of value_sample().
-bool has_surfaces(const Volume& volume, const std::vector<double>& v) {
-  if (v.empty() || v.front() == v.back()) return false;
-  const std::size_t foreground = otsu_classes(v).foreground;
-  const double threshold = v[foreground - 1] / 2 + v[foreground] / 2;
+/// Whether the background ends at surfaces (default_look()). `of`: its values.
+bool has_surfaces(const Volume& volume, const ClassedValues& of) {
+  if (!of.differ) return false;
+  const std::vector<double>& v = of.values;
+  const std::size_t foreground = of.classes.foreground;
+  const double threshold = of.threshold();
   const double apart = mean(v, foreground, v.size()) / 2 - mean(v, 0, foreground) / 2;
   std::vector<double> steps;
   std::size_t pairs = 0;
@@ -201,21 +208,22 @@ bool has_surfaces(const Volume& volume, const std::vector<double>& v) {
 }  // namespace
 
 DefaultLook default_look(const Volume& volume) {
-  const std::vector<double> v = value_sample(volume);
-  if (!has_surfaces(volume, v)) return {make_default(v, mean_chord(volume), 1), std::nullopt};
+  const ClassedValues values(value_sample(volume));
+  const double chord = mean_chord(volume);
+  if (!has_surfaces(volume, values)) return {make_default(values, chord, 1), std::nullopt};
   constexpr double density = 8;
   Shading shading;
   shading.ambient = 0.3;
   shading.diffuse = 0.8;
   shading.specular = 0.15;
-  return {make_default(v, mean_chord(volume), 1, density), shading};
+  return {make_default(values, chord, 1, density), shading};
 }
 
 TransferFunction default_transfer_function(const MeshChannels& mesh) {
   const Box<double>& box = mesh.mesh().bounds();
   const Vec3<double> size = box.upper - box.lower;
   const double filled = mesh.mesh().statistics().volume / (size.x * size.y * size.z);
-  return make_default(value_sample(mesh), mean_chord(box), std::min(filled, 1.0));
+  return make_default(ClassedValues(value_sample(mesh)), mean_chord(box), std::min(filled, 1.0));
 }
 
 namespace {

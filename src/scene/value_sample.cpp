@@ -30,27 +30,15 @@ std::vector<double> sorted(std::vector<double> sample) {
 
 }  // namespace
 
-// Taken at the fractional parts of n/golden ratio, which are even at every scale: a fixed stride
-// would see single columns of the grid.
 std::vector<double> value_sample(const Volume& volume) {
-  constexpr std::size_t largest = std::size_t{1} << 18;
   std::vector<double> sample;
   std::visit(
       [&](const auto& data) {
-        const auto take = [&](std::size_t index) {
+        visit_even_places(data.size(), [&](std::size_t index) {
           const auto value = static_cast<double>(data[index]);
           if (!std::isnan(value))
             sample.push_back(std::clamp(value, -largest_data_value, largest_data_value));
-        };
-        if (data.size() <= largest) {
-          for (std::size_t i = 0; i < data.size(); ++i) take(i);
-          return;
-        }
-        const auto size = static_cast<double>(data.size());
-        for (std::size_t n = 0; n < largest; ++n) {
-          const double s = static_cast<double>(n) / std::numbers::phi;
-          take(std::min(static_cast<std::size_t>((s - std::floor(s)) * size), data.size() - 1));
-        }
+        });
       },
       volume.data());
   return sorted(std::move(sample));
@@ -81,16 +69,15 @@ double volume_of(const TetrahedralMesh& mesh, const Tetrahedron& tetrahedron) {
 }  // namespace
 
 std::vector<double> value_sample(const MeshChannels& channels) {
-  constexpr std::size_t largest = std::size_t{1} << 18;
   const TetrahedralMesh& mesh = channels.mesh();
   std::vector<double> sample;
-  sample.reserve(largest);
-  const double every = mesh.statistics().volume / static_cast<double>(largest);
+  sample.reserve(most_places);
+  const double every = mesh.statistics().volume / static_cast<double>(most_places);
   double next = every / 2, passed = 0;
   for (std::size_t t = 0; t < mesh.tetrahedra().size() && every > 0; ++t) {
     const Tetrahedron& tetrahedron = mesh.tetrahedra()[t];
     passed += volume_of(mesh, tetrahedron);
-    for (; next < passed && sample.size() < largest; next += every) {
+    for (; next < passed && sample.size() < most_places; next += every) {
       double value = 0;
       if (channels[0].centering == Centering::cell) {
         value = channels.value(0, t);
