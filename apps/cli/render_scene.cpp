@@ -14,7 +14,6 @@
 #include "pellucid/cpu/threads.h"
 #include "pellucid/io/atomic_file.h"
 #include "pellucid/io/image_files.h"
-#include "pellucid/scene/defaults.h"
 #include "pellucid/scene/labels.h"
 #include "pellucid/scene/view_camera.h"
 #include "render.h"
@@ -385,25 +384,6 @@ void find_labels(const Layer& layer, const LayerDescription& description, const 
   }
 }
 
-/// Shows the data of a file alone in light where they have surfaces.
-void take_default_look(const RenderArguments& arguments, PreparedScene& prepared) {
-  if (prepared.transfer_function_from != "default" || !arguments.light.shading.empty() ||
-      arguments.is_scene() || prepared.scene.integration.method != Method::exact) {
-    return;
-  }
-  Layer& layer = prepared.scene.layers.front();
-  auto* const content = std::get_if<VolumeContent>(&layer.content);
-  if (content == nullptr || content->mask || layer.projection || layer.shading) return;
-  DefaultLook look = default_look(*content->volume);
-  if (!look.shading) return;
-  LayerDescription& description = prepared.description.layers.front();
-  layer.shading = look.shading;
-  description.shading.emplace().values = *look.shading;
-  description.transfer_function = look.transfer_function.points();
-  content->transfer_function =
-      std::make_shared<const TransferFunction>(std::move(look.transfer_function));
-}
-
 }  // namespace
 
 void set_scene_tolerance(PreparedScene& prepared, double tolerance) {
@@ -449,6 +429,10 @@ PreparedScene prepare(const RenderArguments& arguments) {
                                     : description.layers.front().transfer_function ? arguments.input
                                     : description.layers.front().shows_surfaces()  ? "none"
                                                                                    : "default";
+  // A file alone.
+  description.layers.front().takes_default_look =
+      prepared.transfer_function_from == "default" && arguments.light.shading.empty() &&
+      !arguments.is_scene() && integration.method == Method::exact;
   SceneDescription rendered = description;
   if (arguments.reference && integration.tolerance > reference_tolerance) {
     rendered.integration.tolerance = reference_tolerance;
@@ -485,7 +469,6 @@ PreparedScene prepare(const RenderArguments& arguments) {
                 prepared);
   }
   scene.integration = integration;
-  take_default_look(arguments, prepared);
   check_data(scene);
   if (!arguments.view.empty()) {
     scene.camera =

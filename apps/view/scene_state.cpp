@@ -10,7 +10,6 @@
 #include <utility>
 
 #include "cli/parse.h"
-#include "pellucid/scene/defaults.h"
 #include "pellucid/scene/error.h"
 
 namespace pellucid::view {
@@ -153,31 +152,21 @@ void SceneState::set_gaussians(std::size_t layer, MultivariateDescription gaussi
   take_step(std::move(next), layer, 1, no_gesture);
 }
 
-std::optional<TransferFunctionDescription> SceneState::default_function(std::size_t layer) const {
-  SceneDescription without = description_;
-  LayerDescription& bare = without.layers[layer];
-  // Beside surfaces a layer without a function would be transparent.
-  bare.transfer_function.reset();
-  bare.isosurfaces.clear();
-  bare.slices.clear();
-  complete_description(remake_layer(without, layer, scene_.layers[layer], parallel_), bare);
-  return bare.transfer_function;
-}
-
 void SceneState::set_default_function(std::size_t layer) {
   SceneDescription next = description_;
   LayerDescription& target = next.layers[checked_layer(layer)];
-  const auto* const volume = std::get_if<VolumeContent>(&scene_.layers[layer].content);
-  if (volume != nullptr && !volume->mask && !target.projection && target.isosurfaces.empty() &&
-      target.slices.empty()) {
-    // As the program shows a file alone.
-    const DefaultLook look = default_look(*volume->volume);
-    target.transfer_function = look.transfer_function.points();
-    target.shading.reset();
-    if (look.shading) target.shading.emplace().values = *look.shading;
-  } else {
-    target.transfer_function = default_function(layer);
-  }
+  SceneDescription without = description_;
+  LayerDescription& bare = without.layers[layer];
+  bare.transfer_function.reset();
+  // A volume as the program shows a file alone. Beside surfaces the light is theirs, too, and a
+  // layer without a function would be transparent.
+  bare.takes_default_look =
+      !bare.shows_surfaces() && std::holds_alternative<VolumeContent>(scene_.layers[layer].content);
+  bare.isosurfaces.clear();
+  bare.slices.clear();
+  complete_description(remake_layer(without, layer, scene_.layers[layer], parallel_), bare);
+  target.transfer_function = bare.transfer_function;
+  target.shading = bare.shading;
   take_step(std::move(next), layer, 1, no_gesture);
 }
 
@@ -259,25 +248,9 @@ void SceneState::redo() {
 
 std::string SceneState::saved() const {
   SceneDescription description = description_;
-  const auto make_absolute = [](std::filesystem::path& path) {
+  visit_paths(description, [](std::filesystem::path& path) {
     if (!path.empty()) path = std::filesystem::absolute(path).lexically_normal();
-  };
-  for (LayerDescription& layer : description.layers) {
-    make_absolute(layer.field.file);
-    if (layer.mesh) {
-      make_absolute(layer.mesh->file);
-      make_absolute(layer.mesh->options.q);
-    }
-    for (ChannelSource& channel : layer.channels) {
-      if (auto* field = std::get_if<FieldSource>(&channel.source)) make_absolute(field->file);
-    }
-    if (layer.labels) {
-      make_absolute(layer.labels->field.file);
-      make_absolute(layer.labels->table);
-    }
-    if (layer.mask) make_absolute(layer.mask->field.file);
-  }
-  make_absolute(description.backdrop);
+  });
   return scene_to_json(description);
 }
 

@@ -61,8 +61,6 @@ class SceneState {
   std::size_t checked_layer(std::size_t layer) const;
 
  private:
-  /// Returns the function that is made from the data of a layer, whatever surfaces it has.
-  std::optional<TransferFunctionDescription> default_function(std::size_t layer) const;
   /// Makes the scene of another description, with the data of this one and new looks of some
   /// layers.
   void become(SceneDescription next, std::size_t first, std::size_t count);

@@ -20,6 +20,15 @@ void complete_description(const Layer& layer, LayerDescription& description) {
       description.transfer_function = mesh->univariate()->points();
     }
   }
+  if (description.takes_default_look) {
+    description.takes_default_look = false;
+    if (!layer.shading) {
+      description.shading.reset();
+    } else {
+      if (!description.shading) description.shading.emplace();
+      description.shading->values = *layer.shading;
+    }
+  }
   for (std::size_t i = 0; i < layer.isosurfaces.size(); ++i) {
     const auto& made = layer.isosurfaces[i].colors;
     if (made && is_open(description.isosurfaces[i].colors)) {
@@ -42,6 +51,26 @@ void complete_description(const Layer& layer, LayerDescription& description) {
     TransferFunctionDescription& function = description.mask->choices[i].transfer_function;
     if (is_open(function)) function = volume->mask->choices()[i].transfer_function->points();
   }
+}
+
+void visit_paths(SceneDescription& description,
+                 const std::function<void(std::filesystem::path&)>& visit) {
+  for (LayerDescription& layer : description.layers) {
+    visit(layer.field.file);
+    if (layer.mesh) {
+      visit(layer.mesh->file);
+      visit(layer.mesh->options.q);
+    }
+    for (ChannelSource& channel : layer.channels) {
+      if (auto* field = std::get_if<FieldSource>(&channel.source)) visit(field->file);
+    }
+    if (layer.labels) {
+      visit(layer.labels->field.file);
+      visit(layer.labels->table);
+    }
+    if (layer.mask) visit(layer.mask->field.file);
+  }
+  visit(description.backdrop);
 }
 
 }  // namespace pellucid

@@ -144,12 +144,19 @@ MeshContent load_mesh_content(const LayerDescription& description, const Wanted&
   return content;
 }
 
+/// `look` becomes the default look, if the layer takes it.
 VolumeContent load_volume_content(const LayerDescription& description, const Wanted& wanted,
-                                  const Layer* loaded) {
+                                  const Layer* loaded, std::optional<DefaultLook>& look) {
   VolumeContent content;
   const auto* const kept = content_of<VolumeContent>(loaded);
   content.volume = kept != nullptr ? kept->volume
                                    : std::make_shared<const Volume>(load_field(description.field));
+  if (description.takes_default_look && !description.transfer_function && !description.projection &&
+      !description.mask && !description.shows_surfaces()) {
+    look = default_look(*content.volume);
+    content.transfer_function = std::make_shared<const TransferFunction>(look->transfer_function);
+    return content;
+  }
   content.transfer_function = std::make_shared<const TransferFunction>(
       medium_function(description, wanted, *content.volume));
   if (!description.mask) return content;
@@ -276,6 +283,7 @@ Layer load_layer(const LayerDescription& description, const Wanted& wanted, cons
   layer.transform = description.transform;
   layer.clips = description.clips;
   layer.projection = description.projection;
+  std::optional<DefaultLook> look;
   if (description.labels) {
     layer.content = load_label_content(*description.labels, loaded);
   } else if (description.mesh) {
@@ -283,9 +291,10 @@ Layer load_layer(const LayerDescription& description, const Wanted& wanted, cons
   } else if (const auto sources = layer_channels(description); !sources.empty()) {
     layer.content = load_channels_content(description, sources, loaded, parallel);
   } else {
-    layer.content = load_volume_content(description, wanted, loaded);
+    layer.content = load_volume_content(description, wanted, loaded, look);
   }
   LookLoader(description, layer)();
+  if (look) layer.shading = look->shading;
   return layer;
 }
 

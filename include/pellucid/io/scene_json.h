@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -56,6 +57,9 @@ struct LayerDescription {
   std::optional<GradientOpacityDescription> gradient_opacity;
   std::vector<IsosurfaceDescription> isosurfaces;
   std::vector<SliceDescription> slices;
+  /// Whether a volume without function, projection, mask and surfaces is shown by default_look(),
+  /// which decides on its shading too. Not for other data. Scene files do not have it.
+  bool takes_default_look = false;
 
   bool shows_surfaces() const noexcept { return !isosurfaces.empty() || !slices.empty(); }
 };
@@ -136,6 +140,11 @@ std::vector<std::string> known_channels(const LayerDescription& layer);
 /// Opacity tables are fitted as by fit_opacity_tables().
 Scene make_scene(const SceneDescription& description, const ParallelFor& parallel = {},
                  std::vector<MeshSource>* meshes_used = nullptr);
+
+/// Calls visit(path) with every path of the description, empty ones too, to be looked at or
+/// changed.
+void visit_paths(SceneDescription& description,
+                 const std::function<void(std::filesystem::path&)>& visit);
 
 /// Returns layer number `layer` of the description with the data of `loaded`, which was made from
 /// the same data with another look. Reads nothing, unless the look needs channels that `loaded`
