@@ -6,7 +6,9 @@
 #include <cstddef>
 #include <cstdio>
 #include <functional>
+#include <memory>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "benchmarks/support/interleave.h"
@@ -43,14 +45,25 @@ Difference difference(const Image& image, const Image& exact) {
   return found;
 }
 
+/// The same with values as floats: Mesa filters textures of bytes in some 8 bits, which shows in
+/// gradients.
+Subject with_floats(Subject subject) {
+  std::visit(
+      [&](const auto& values) {
+        std::vector<float> floats(values.begin(), values.end());
+        subject.volume = std::make_shared<const Volume>(subject.volume->description(),
+                                                        VolumeData(std::move(floats)));
+      },
+      subject.volume->data());
+  return subject;
+}
+
 Scene scene_of(const Layer& layer, const Volume& volume, int size) {
   Scene scene;
   scene.layers = {layer};
   if (scene.layers[0].shading) scene.layers[0].shading->flatness = 0;
   scene.size = {size, size};
   scene.camera = default_camera(volume, scene.size);
-  scene.camera.projection = Projection::orthographic;
-  scene.camera.parallel_scale = 0.27 * length(scene.camera.position - scene.camera.focal_point);
   return scene;
 }
 
@@ -102,12 +115,14 @@ void compare_light(const Subject& subject, const scenes::TransferPointer& functi
 
 }  // namespace
 
-void compare_light_with_vtk(const Subject& subject, const FrameArguments& arguments) {
+void compare_light_with_vtk(const Subject& given, const FrameArguments& arguments) {
+  const Subject subject = with_floats(given);
   compare_light(subject, subject.function, "its function", arguments);
   compare_light(subject, even_function(*subject.volume), "an even ramp", arguments);
 }
 
-void compare_surface_with_vtk(const Subject& subject, const FrameArguments& arguments) {
+void compare_surface_with_vtk(const Subject& given, const FrameArguments& arguments) {
+  const Subject subject = with_floats(given);
   const Scene scene = scene_of(in_light(surface_of(subject), GradientKind::smooth), *subject.volume,
                                arguments.size);
   std::printf("\n%s, opaque isosurface %g, beside VTK's blend mode, image %d x %d\n\n",

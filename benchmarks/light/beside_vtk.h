@@ -5,8 +5,8 @@
 #include "benchmarks/support/frame_arguments.h"
 
 /// VTK's GPU mapper in the same light as ours, at finer and finer steps. Its normal has length 1
-/// wherever there is a gradient, so flatness is 0. Its light shines along the camera, so the camera
-/// is parallel.
+/// wherever there is a gradient, so flatness is 0. Its light is at the position of the camera, so
+/// the camera is in perspective: along each ray the light comes from the eye, as ours does.
 namespace pellucid::bench {
 
 /// How far VTK is from the exact picture, in light and without: with the subject's function, and

@@ -2,15 +2,17 @@
 # SPDX-License-Identifier: Apache-2.0
 """Measures how far VTK's pictures are from ours with a volume property of 3D Slicer.
 
-This is the table in docs/reference/formats.md.
+This is the table in docs/notes/2026-11-26-light.md.
 
 usage: xvfb-run -a python3 vtk_presets.py VOLUME PROPERTY.vp.json [FOLDER]
 
 Reads the property twice: by VTK's own classes, and by pellucid's importer. Draws the volume with
 vtkOpenGLGPUVolumeRayCastMapper at smaller and smaller steps into a buffer of floats, and once with
-pellucid to 1e-4, with an orthographic camera and VTK's head light. Prints the largest and the root
-mean square difference of the channels, and writes both pictures and their difference into FOLDER.
-VTK's normals have length 1 wherever the gradient is not 0, so flatness is 0. `python3` must find
+pellucid to 1e-4, with a camera in perspective and VTK's head light, which is at its position.
+Prints the largest and the root mean square difference of the channels and the share of pixels that
+are off by more than 1/255, and writes both pictures and their difference into FOLDER.
+VTK's normals have length 1 wherever the gradient is not 0, so flatness is 0. VTK gets the values as
+floats, because Mesa filters textures of integers in some 8 bits. `python3` must find
 the package pellucid and VTK (Debian: python3-vtk9).
 """
 
@@ -68,7 +70,7 @@ def stage(volume, look, camera):
     image.SetDimensions(volume.shape[::-1])
     image.SetSpacing(volume.spacing[::-1])
     image.SetOrigin(volume.origin[::-1])
-    image.GetPointData().SetScalars(numpy_to_vtk(volume.array.ravel()))
+    image.GetPointData().SetScalars(numpy_to_vtk(volume.array.astype(numpy.float32).ravel()))
     mapper = vtkOpenGLGPUVolumeRayCastMapper()
     mapper.SetInputData(image)
     mapper.AutoAdjustSampleDistancesOff()
@@ -84,11 +86,10 @@ def stage(volume, look, camera):
     window.SetSize(SIZE, SIZE)
     window.AddRenderer(renderer)
     eye = renderer.GetActiveCamera()
-    eye.ParallelProjectionOn()
     eye.SetPosition(camera.position)
     eye.SetFocalPoint(camera.focal_point)
     eye.SetViewUp(camera.up)
-    eye.SetParallelScale(camera.parallel_scale)
+    eye.SetViewAngle(camera.vertical_angle)
     renderer.ResetCameraClippingRange()
     return window, renderer, mapper
 
@@ -102,9 +103,6 @@ def our_scene(volume, path):
         layer.shading.flatness = 0
     scene = pellucid.Scene([layer], size=(SIZE, SIZE))
     scene.camera = pellucid.default_camera(scene)
-    scene.camera.projection = "orthographic"
-    distance = numpy.linalg.norm(numpy.subtract(scene.camera.position, scene.camera.focal_point))
-    scene.camera.parallel_scale = 0.27 * float(distance)
     scene.integration = pellucid.Integration(tolerance=1e-4)
     return scene
 
