@@ -51,9 +51,9 @@ class LitCell {
 
   PELLUCID_HD double length() const noexcept { return length_; }
   template <class Allowance>
-  PELLUCID_HD PanelSegment<double> panel(double begin, double end,
-                                         const PanelDemand<double>& demand,
-                                         const Allowance& allowance) const noexcept {
+  PELLUCID_HD PELLUCID_DEVICE_CALL PanelSegment<double> panel(
+      double begin, double end, const PanelDemand<double>& demand,
+      const Allowance& allowance) const noexcept {
     const LitLayer<double> part = layer_.part(begin, end);
     return integrate_lit_panel(stretch_, &part, begin, end, demand, allowance);
   }
@@ -122,10 +122,10 @@ PELLUCID_HD PELLUCID_DEVICE_CALL inline bool make_lit_layer(
 }
 
 /// Moves the integrator along the ray; returns the number of cells that are not vacuum.
-PELLUCID_HD inline long follow_lit_ray(const LitGrid& lit, const MultivariateTransfer<double>& all,
-                                       const Ray<double>& world, const Ray<double>& ray_grid,
-                                       Interval<double> inside,
-                                       MultivariateRayIntegrator& integrator) noexcept {
+PELLUCID_HD PELLUCID_DEVICE_CALL inline long follow_lit_ray(
+    const LitGrid& lit, const MultivariateTransfer<double>& all, const Ray<double>& world,
+    const Ray<double>& ray_grid, Interval<double> inside,
+    MultivariateRayIntegrator& integrator) noexcept {
   LitLayer<double> layer;
   layer.transfer = &all;
   layer.reflection = lit.is_lit ? &lit.reflection : nullptr;
