@@ -63,11 +63,17 @@ void print_notes(const RenderArguments& arguments, const PreparedScene& prepared
   }
 }
 
+Device device_of(const RenderArguments& arguments) {
+  if (arguments.device == "cuda") return Device::cuda;
+  return arguments.device == "emulated" ? Device::emulated : Device::cpu;
+}
+
 Image render_image(const RenderArguments& arguments, const PreparedScene& prepared,
                    RenderReport& report) {
   const Scene& scene = prepared.scene;
   RenderOptions options;
   options.threads = arguments.threads;
+  options.device = device_of(arguments);
   options.depth = !arguments.depth_picture.empty();
   options.error = !arguments.error_map.empty();
   options.values = !arguments.values.empty();

@@ -24,7 +24,7 @@ struct RenderArguments {
   std::string transfer_function, preset, projection, camera, view, size, background, backdrop;
   ImportArguments import;
   LightArguments light;
-  std::string method, precision, grade;
+  std::string method, precision, grade, device;
   std::optional<std::string> tolerance;
   std::optional<double> step;
   std::optional<int> samples;

@@ -129,6 +129,14 @@ void add_integration_options(CommandLine& command, RenderArguments& arguments) {
       .add_option("--threads", arguments.threads, "Number of threads; 0 (default): one per core")
       ->option_text("N")
       ->in_range(0, 4096);
+  command
+      .add_option(
+          "--device", arguments.device,
+          "Follow rays on the CPU (default), on a card of NVIDIA, or, for tests, on the CPU "
+          "by the card's functions; what a card cannot do yet the CPU does")
+      ->option_text("DEVICE")
+      ->one_of({"cpu", "cuda", "emulated"})
+      ->excludes("--reference");
 }
 
 }  // namespace

@@ -236,10 +236,12 @@ std::vector<std::string> report_lines(const RenderArguments& arguments,
                         per_ray(report.cells, report), time)};
   }
   if (!prepared.knows_its_error(arguments)) {
-    return {fmt::format(
+    std::vector<std::string> lines{fmt::format(
         "method {}, {:.1f} samples per ray, {}; its error is not known ('pellucid compare' "
         "measures it)",
         method_name(scene.integration.method), per_ray(report.cells, report), time)};
+    if (!report.device.empty()) lines.push_back(report.device);
+    return lines;
   }
   std::vector<std::string> lines;
   lines.push_back(fmt::format(
@@ -265,6 +267,7 @@ std::vector<std::string> report_lines(const RenderArguments& arguments,
     line += fmt::format(" ({} in double)", share_text(report.spans.in_double, spans));
   }
   lines.push_back(line);
+  if (!report.device.empty()) lines.push_back(report.device);
   return lines;
 }
 
@@ -308,6 +311,7 @@ Json report_json(const RenderArguments& arguments, const PreparedScene& prepared
   json["pixels_over"] = of_exact(report.pixels_over_tolerance);
   json["pixels_between"] = of_exact(report.pixels_interpolated);
   json["threads"] = report.threads;
+  json["device"] = report.device.empty() ? Json("rendered by the CPU") : Json(report.device);
   json["seconds"] = report.seconds;
   json["rays"] = report.rays;
   json["cells"] = report.cells;

@@ -5,6 +5,7 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdio>
+#include <map>
 #include <string>
 #include <thread>
 #include <vector>
@@ -136,6 +137,9 @@ int main(int argc, char** argv) {
   app.add_option("--scenes", arguments.parts, "only those whose name contains one of these");
   app.add_option("--threads", arguments.matrix.threads, "0: one per core")
       ->check(CLI::NonNegativeNumber);
+  app.add_option("--device", arguments.matrix.device, "cpu, cuda, or emulated: a card's functions")
+      ->transform(CLI::CheckedTransformer(std::map<std::string, Device>{
+          {"cpu", Device::cpu}, {"cuda", Device::cuda}, {"emulated", Device::emulated}}));
   app.add_option("--cache", arguments.matrix.cache, "folder that keeps reference frames");
   app.add_option("--markdown", arguments.markdown, "file to put the tables into; default: print")
       ->check(CLI::ExistingFile);

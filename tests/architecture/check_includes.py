@@ -17,13 +17,14 @@ import sys
 # see each other.
 RANK = {
     "base": 0, "simd": 1, "math": 2, "geometry": 3, "field": 4, "transfer": 4, "error": 4,
-    "segment": 5, "traverse": 6, "render": 7, "packet": 8, "scene": 9, "cpu": 10, "io": 10,
-    "reference": 11, "apps": 12,
+    "segment": 5, "traverse": 6, "render": 7, "packet": 8, "scene": 9, "cuda": 10, "cpu": 11,
+    "io": 11, "reference": 12, "apps": 13,
 }
 CORE = {name for name, rank in RANK.items() if rank <= RANK["packet"]}
 # Further pairs that the ranks would allow: the closed forms of segment/ are tested without any
 # grid, and the judge in reference/ shares no kernel with what it judges.
-FORBIDDEN = {("segment", "field")} | {("reference", name) for name in CORE - {"base", "geometry"}}
+FORBIDDEN = {("segment", "field")} | {
+    ("reference", name) for name in CORE - {"base", "geometry"} | {"cuda"}}
 
 # The core is free of the standard library but for these; what computes is wrapped by simd/scalar.h.
 ORDER = "docs/explanation/architecture.md"
@@ -38,6 +39,7 @@ CUDA_NAME = re.compile(r"__(CUDACC|CUDA_ARCH|NVCC|host|device|global|constant|sh
 # Headers of other projects, and the target that a module must declare to include them.
 OTHER_PROJECTS = [
     (re.compile(r"^(oneapi/)?tbb/"), "TBB::tbb"),
+    (re.compile(r"^cuda_runtime\.h$"), "CUDA::cudart_static"),
     (re.compile(r"^boost/"), "Boost::headers"),
     (re.compile(r"^png\.h$"), "PNG::PNG"),
     (re.compile(r"^tiffio\.h$"), "TIFF::TIFF"),
@@ -124,8 +126,8 @@ def check_file(root, path, modules):
         yield f"{relative}:1: no #pragma once"
     for number, line in enumerate(without_comments(text).splitlines(), 1):
         where = f"{relative}:{number}"
-        if CUDA_NAME.search(line) and str(relative) != "include/pellucid/base/config.h":
-            yield f"{where}: names CUDA; only include/pellucid/base/config.h may"
+        if CUDA_NAME.search(line) and module != "base" and relative.parts[:2] != ("src", "cuda"):
+            yield f"{where}: names CUDA; only include/pellucid/base and src/cuda may"
         match = INCLUDE.match(line)
         if not match:
             continue

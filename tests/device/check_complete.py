@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Every function of the core that is marked PELLUCID_HD is called by another one or by a device
-test, so that nvcc really compiles it: a template that nothing calls compiles everywhere.
+"""Every function of the core that is marked PELLUCID_HD is called by another one, by a device test
+or by what src/cuda compiles, so that nvcc really compiles it: a template that nothing calls
+compiles everywhere.
 
   check_complete.py ROOT
 """
@@ -29,7 +30,8 @@ def main():
     for path in headers:
         words.update(re.findall(r"\w+", code(path)))
         words.subtract(MARKED.findall(code(path)))
-    for path in (root / "tests/device").glob("*.cu"):
+    callers = [*(root / "tests/device").glob("*.cu"), *(root / "include/pellucid/cuda").glob("*.h")]
+    for path in callers:
         words.update(re.findall(r"\w+", code(path)))
     missing = [f"{path.relative_to(root)}: {name}() is called by no kernel "
                "and by no file of tests/device"

@@ -52,6 +52,7 @@ MatrixRow measure_row(const std::string& name, const Exhibit& exhibit, std::size
   RenderOptions render_options;
   render_options.threads = options.threads;
   render_options.error = true;
+  render_options.device = options.device;
   for (const double tolerance : options.tolerances) {
     for (const Grade grade : {Grade::estimated, Grade::proved}) {
       if (grade == Grade::proved && tolerance < options.least_proved) continue;

@@ -35,6 +35,7 @@ struct MatrixOptions {
   std::vector<double> tolerances{std::begin(matrix_tolerances), std::end(matrix_tolerances)};
   int size = 48;
   int threads = 1;
+  Device device = Device::cpu;
   bool sampling = true;         ///< fill MatrixRow::sampling_…
   std::filesystem::path cache;  ///< of reference frames; empty: none
   double least_proved = 0;      ///< tolerance of the grade `proved`

@@ -5,6 +5,8 @@
 #include <functional>
 #include <optional>
 #include <stop_token>
+#include <string>
+#include <string_view>
 
 #include "pellucid/render/ray_result.h"
 #include "pellucid/scene/image.h"
@@ -16,6 +18,15 @@ namespace pellucid {
 /// How packets of rays traverse Gaussians: in steps that resolve their variation along the ray, or
 /// cell by cell.
 enum class GaussianMarch { steps, cells };
+
+/// Where rays are followed.
+enum class Device {
+  cpu,
+  cuda,     ///< a card of NVIDIA
+  emulated  ///< the card's functions, ray by ray, on this machine's threads: for tests
+};
+/// Returns "cpu", "cuda" or "emulated".
+std::string_view device_name(Device device) noexcept;
 
 /// Pixels of a frame that are rendered together: (column + i·stride, row + j·stride) for 0 <= i <
 /// columns, 0 <= j < rows.
@@ -45,6 +56,9 @@ struct RenderOptions {
   /// Fill Image::values. render() throws Error unless exactly one visible layer is projected and a
   /// pixel has one ray.
   bool values = false;
+  /// Where rays are followed. What a card cannot do yet is done by the CPU (RenderReport::device).
+  /// render() throws Error if there is no card, no driver, or no part of the library for it.
+  Device device = Device::cpu;
   /// Instruction set for packets of rays; none: the fastest that the machine has. render() throws
   /// Error if the machine lacks it.
   std::optional<InstructionSet> instruction_set;
@@ -74,6 +88,8 @@ struct RenderReport {
   double seconds = 0;
   double setup_seconds = 0;  ///< of `seconds`: until the first ray
   int threads = 0;
+  /// What was done where, in words, if RenderOptions::device is not the CPU; else empty.
+  std::string device;
   std::uint64_t rays = 0;   ///< traced rays
   std::uint64_t cells = 0;  ///< cells visited (exact) or samples taken (the others)
 
@@ -85,6 +101,9 @@ struct RenderReport {
   std::uint64_t pixels_over_tolerance = 0;  ///< with an error above the tolerance
   std::uint64_t evaluations = 0;            ///< of the field: cells gathered and points sampled
   RuleCounts spans;                         ///< number of spans by rule
+  // And by devices only:
+  std::uint64_t pixels_in_double = 0;  ///< that were followed again, for want of digits in binary32
+  std::uint64_t pixels_left = 0;       ///< that the device left to the CPU
 };
 
 /// Thrown by render() if a callback returned false or RenderOptions::stop was requested.

@@ -57,9 +57,9 @@ PELLUCID_HD double find_half_opacity(const StructuredGrid<Value, double>& grid,
 
 /// Integrates the blocks of a ray: uniform blocks at once, smooth blocks together with smooth
 /// neighbors, and all others cell by cell.
-template <class Value, class EachCell>
+template <class Integrator, class EachCell>
 PELLUCID_HD void integrate_blocks(const ClassifiedBlocks& blocks, const Ray<double>& ray_grid,
-                                  Interval<double> inside, RayIntegrator<Value>& integrator,
+                                  Interval<double> inside, Integrator& integrator,
                                   EachCell&& each_cell) noexcept {
   const BlockRecords& records = blocks.records;
   StrideMarch march(ray_grid.direction, records.least_width, records.mean_width);
@@ -97,7 +97,8 @@ PELLUCID_HD void integrate_blocks(const ClassifiedBlocks& blocks, const Ray<doub
 ///
 /// RayResult::error is at most the tolerance, unless binary32 is forced and cannot keep it, or even
 /// binary64 cannot resolve on which side of a discontinuity of the transfer function the data lie.
-template <class Value>
+/// With SingleOnly it is infinite where a cell needs binary64: the ray is given up.
+template <bool SingleOnly = false, class Value>
 PELLUCID_HD RayResult integrate_ray(const StructuredGrid<Value, double>& grid,
                                     const ClassifiedBlocks* blocks, const Ray<double>& ray_grid,
                                     const TransferTables& transfer, const RayTolerance& wanted,
@@ -106,7 +107,8 @@ PELLUCID_HD RayResult integrate_ray(const StructuredGrid<Value, double>& grid,
   const Interval<double> inside = grid_interval(grid.axis, ray_grid, part);
   if (inside.empty()) return missed_ray_result();
 
-  RayIntegrator<Value> integrator(grid, ray_grid, transfer, wanted, inside.end - inside.begin);
+  RayIntegrator<Value, SingleOnly> integrator(grid, ray_grid, transfer, wanted,
+                                              inside.end - inside.begin);
   long cells = 0;
   const auto each_cell = [&](Interval<double> range) {
     StructuredWalk<double> walk(grid.axis, ray_grid, range);
@@ -121,6 +123,7 @@ PELLUCID_HD RayResult integrate_ray(const StructuredGrid<Value, double>& grid,
   } else {
     integrate_blocks(*blocks, ray_grid, inside, integrator, each_cell);
   }
+  if (integrator.needs_double()) return {};
   RayResult result = integrator.result();
   result.cells = cells;
   if (with_depth) {

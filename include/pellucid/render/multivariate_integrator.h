@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "pellucid/base/device_call.h"
 #include "pellucid/error/budget.h"
 #include "pellucid/geometry/ray.h"
 #include "pellucid/math/solve_monotone.h"
@@ -78,8 +79,9 @@ class MultivariateRayIntegrator {
   /// allowance): the PanelSegment of a part, or where to cut it, and most_panels(): of a ray, after
   /// which parts are taken as they come, whatever their error.
   template <class Stretch>
-  PELLUCID_HD void add_panels(const Stretch& stretch, Interval<double> range, double left_out,
-                              double position_error) noexcept {
+  PELLUCID_HD PELLUCID_DEVICE_CALL void add_panels(const Stretch& stretch, Interval<double> range,
+                                                   double left_out,
+                                                   double position_error) noexcept {
     ++evaluations_;
     // The parts still to do, by their ends, the nearest last.
     double ends[most_cuts + 1];
@@ -168,9 +170,9 @@ class MultivariateRayIntegrator {
     PELLUCID_HD double length() const noexcept { return span.length; }
     PELLUCID_HD static long most_panels() noexcept { return std::numeric_limits<long>::max(); }
     template <class Allowance>
-    PELLUCID_HD PanelSegment<double> panel(double begin, double end,
-                                           const PanelDemand<double>& demand,
-                                           const Allowance& allowance) const noexcept {
+    PELLUCID_HD PELLUCID_DEVICE_CALL PanelSegment<double> panel(
+        double begin, double end, const PanelDemand<double>& demand,
+        const Allowance& allowance) const noexcept {
       if (!(begin > 0 || end < 1)) {
         return integrate_multivariate_panel(transfer, span, demand, allowance);
       }

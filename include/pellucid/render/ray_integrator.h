@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "pellucid/base/device_call.h"
 #include "pellucid/error/budget.h"
 #include "pellucid/field/sample.h"
 #include "pellucid/render/integrate_cell.h"
@@ -14,7 +15,11 @@ namespace pellucid {
 
 /// Integrates one ray within a tolerance: it uses, for each span, the cheapest rule whose error is
 /// within budget, and accounts for the errors.
-template <class Value>
+///
+/// With SingleOnly it gives up a ray at the first cell for which binary32 is not accurate enough:
+/// needs_double(). Until then it does what it does without, so that a ray that is not given up has
+/// the very same result.
+template <class Value, bool SingleOnly = false>
 class RayIntegrator {
  public:
   /// Keeps references to its arguments, which must outlive the integrator. `length` is the length
@@ -31,8 +36,10 @@ class RayIntegrator {
 
   /// Returns whether the remainder of the ray cannot matter.
   PELLUCID_HD bool done() const noexcept {
-    return budget_.allows_termination(rest(), wanted_.tolerance);
+    return needs_double_ || budget_.allows_termination(rest(), wanted_.tolerance);
   }
+  /// Returns whether the ray was given up: its result says nothing.
+  PELLUCID_HD bool needs_double() const noexcept { return needs_double_; }
 
   /// Skips a transparent span.
   PELLUCID_HD void skip(double length) noexcept {
@@ -64,12 +71,12 @@ class RayIntegrator {
     ++evaluations_;
     if (wanted_.precision == Precision::float64 ||
         (wanted_.grade == Grade::proved && wanted_.precision == Precision::automatic)) {
-      cell_in<double>(step, true);
+      in_double(step);
       return;
     }
     if (cell_in<float>(step, wanted_.precision == Precision::float32)) return;
     ++counts_.in_double;
-    cell_in<double>(step, true);
+    in_double(step);
   }
 
   /// Returns whether strides through a block may be within tolerance, assuming that the transfer
@@ -98,8 +105,8 @@ class RayIntegrator {
   /// Integrates a stride from t_begin, where the data are `front`, through blocks whose derivative
   /// varies by at most `variation` on either half. Returns false if it is not within budget. `back`
   /// receives the data at its end.
-  PELLUCID_HD bool try_stride(double t_begin, double length, double variation, double front,
-                              double& back) noexcept {
+  PELLUCID_HD PELLUCID_DEVICE_CALL bool try_stride(double t_begin, double length, double variation,
+                                                   double front, double& back) noexcept {
     const double middle = sample(t_begin + 0.5 * length);
     back = sample(t_begin + length);  // NaN on a plane that vacuum begins at: no stride
     // The samples themselves are rounded.
@@ -120,7 +127,7 @@ class RayIntegrator {
   }
 
   /// Returns the data at a position of the ray.
-  PELLUCID_HD double sample(double t) noexcept {
+  PELLUCID_HD PELLUCID_DEVICE_CALL double sample(double t) noexcept {
     ++evaluations_;
     return sample_value<double>(grid_, ray_.at(t));
   }
@@ -160,10 +167,20 @@ class RayIntegrator {
     proved_ = proved_ && span.proved;
   }
 
+  /// Integrates the cell in double, or gives up the ray.
+  PELLUCID_HD void in_double(const StructuredWalk<double>::Step& step) noexcept {
+    if constexpr (SingleOnly) {
+      needs_double_ = true;
+    } else {
+      cell_in<double>(step, true);
+    }
+  }
+
   /// Integrates the cell in T. Unless `forced`, returns false if T's rounding would take more than
   /// a quarter of the span's allowance.
   template <class T>
-  PELLUCID_HD bool cell_in(const StructuredWalk<double>::Step& step, bool forced) noexcept {
+  PELLUCID_HD PELLUCID_DEVICE_CALL bool cell_in(const StructuredWalk<double>::Step& step,
+                                                bool forced) noexcept {
     const double world_length = step.t_end - step.t_begin;
     CubicSpan<T> span;
     if (!make_span(grid_, step, span)) {  // vacuum
@@ -199,7 +216,7 @@ class RayIntegrator {
   FrontToBackCompositor<double> fold_{0.0};
   RuleCounts counts_;
   long evaluations_ = 0;
-  bool proved_ = true;
+  bool proved_ = true, needs_double_ = false;
 };
 
 }  // namespace pellucid

@@ -41,9 +41,9 @@ class StrideMarch {
   }
 
   /// Integrates from t.begin to t.end; each_cell(Interval) integrates an interval cell by cell.
-  template <class Value, class EachCell>
-  PELLUCID_HD void run(RayIntegrator<Value>& integrator, Interval<double> t,
-                       const BlockBends& bends, EachCell&& each_cell) noexcept {
+  template <class Integrator, class EachCell>
+  PELLUCID_HD void run(Integrator& integrator, Interval<double> t, const BlockBends& bends,
+                       EachCell&& each_cell) noexcept {
     double here = t.begin, value = 0;
     bool known = false;
     while (here < t.end && !integrator.done()) {

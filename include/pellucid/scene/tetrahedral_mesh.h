@@ -80,6 +80,9 @@ class TetrahedralMesh {
 
   /// Returns the view that rays walk through. Valid while this object lives.
   Tetrahedra view() const noexcept;
+  /// Return the numbers of nodes and faces that the view's tree and boundary have.
+  std::size_t tree_size() const noexcept { return tree_.size(); }
+  std::size_t boundary_size() const noexcept { return boundary_.size(); }
 
  private:
   void measure(const ParallelFor& parallel);

@@ -74,6 +74,9 @@ Frame::Frame(const Scene& described, const RenderOptions& options, int threads, 
   for (const Layer* layer : layers) {
     clipped.push_back({kept.find(*layer, setting, threads), clips_of(*layer, scene.clips)});
   }
+  if (clipped.size() == 1 && projections.empty() && clipped[0].clips.empty()) {
+    only_layer = clipped[0].setup;
+  }
   kept.keep_only(scene);
   if (!layers.empty() || projections.empty()) {
     tracer = make_scene_tracer(std::move(clipped), scene.lights, wanted, options.depth);

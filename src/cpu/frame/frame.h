@@ -24,6 +24,8 @@ struct Frame {
   double reserved;       ///< of the tolerance: what the transfer function is off by
   double largest_color;  ///< of the visible layers' functions and the backdrop
   std::unique_ptr<const RayTracer> tracer;
+  /// The set-up of the only visible layer, unless it has clips or is projected; null otherwise.
+  std::shared_ptr<const LayerSetup> only_layer;
   const ProjectedTracer* projected = nullptr;  ///< the tracer, if there are projected layers
 };
 

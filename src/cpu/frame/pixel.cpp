@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "pellucid/traverse/block_code.h"
+#include "pellucid/render/pixel.h"
 
 namespace pellucid {
 
@@ -17,28 +17,18 @@ ImageView::ImageView(Image& image)
 
 void store_pixel(const Frame& frame, const RayResult& result, std::size_t pixel,
                  const ImageView& image, RenderReport& report) {
-  const std::array<double, 4> exact{result.radiance.r, result.radiance.g, result.radiance.b,
-                                    result.opacity};
-  double brightest = 0;
-  for (std::size_t c = 0; c < 4; ++c) {
-    image.pixels[pixel][c] = static_cast<float>(exact[c]);
-    brightest = std::max(brightest, exact[c]);
-  }
-  if (image.depth != nullptr) image.depth[pixel] = static_cast<float>(result.half_opacity_depth);
-
-  // A clear pixel is clear whatever the transfer function is off by where it is not zero.
-  const double approximation = result.opacity > 0 ? frame.reserved : 0;
-  // Both the pixel and the exact one lie between zero and the largest color.
-  const double most = std::max(frame.largest_color, 1.0);
-  const double error = std::min(result.error + approximation, most) + brightest * 0x1p-24;
+  const StoredPixel stored = stored_pixel(
+      result, {frame.reserved, frame.largest_color, frame.scene.integration.tolerance});
+  std::copy_n(stored.color, 4, image.pixels[pixel].begin());
+  if (image.depth != nullptr) image.depth[pixel] = stored.depth;
   if (image.error != nullptr) {
-    image.error[pixel] = float_above(error);
-    image.proved[pixel] = result.proved ? 1 : 0;
+    image.error[pixel] = stored.stored_error();
+    image.proved[pixel] = stored.proved ? 1 : 0;
   }
   if (frame.scene.integration.method != Method::exact) return;
-  report.largest_error = std::max(report.largest_error, error);
-  if (result.proved) ++report.pixels_proved;
-  if (!(error <= frame.scene.integration.tolerance)) ++report.pixels_over_tolerance;
+  report.largest_error = std::max(report.largest_error, stored.error);
+  if (stored.proved) ++report.pixels_proved;
+  if (!(stored.error <= frame.scene.integration.tolerance)) ++report.pixels_over_tolerance;
 }
 
 void add_work(RenderReport& sum, const RayResult& result) {

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "between_pixels.h"
+#include "device/device_frame.h"
 #include "frame.h"
 #include "pellucid/scene/error.h"
 #include "progress.h"
@@ -101,8 +102,13 @@ void render_tiles(const Frame& frame, const RenderOptions& options, Image& image
 
 }  // namespace
 
+std::string_view device_name(Device device) noexcept {
+  if (device == Device::cuda) return "cuda";
+  return device == Device::cpu ? "cpu" : "emulated";
+}
+
 Image render_frame(const Scene& scene, const RenderOptions& options, int threads, LayerSetups& kept,
-                   RenderReport* report) {
+                   KeptDevices& devices, RenderReport* report) {
   check(scene, options);
   RenderReport local;
   local.threads = threads;
@@ -110,11 +116,19 @@ Image render_frame(const Scene& scene, const RenderOptions& options, int threads
   const auto seconds = [&] {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   };
+  const std::shared_ptr<KeptDevice> device =
+      options.device == Device::cpu ? nullptr : devices.find(options.device);
   const Frame frame(scene, options, threads, kept);
   Image image = make_image(scene.size, options);
   local.pixels = image.pixels.size();
   local.setup_seconds = seconds();
-  render_tiles(frame, options, image, local);
+  const std::string reason = device ? reason_for_cpu(frame, options) : "";
+  if (device && reason.empty()) {
+    render_on_device(frame, options, *device, image, local);
+  } else {
+    render_tiles(frame, options, image, local);
+    if (device) local.device = "rendered by the CPU: devices cannot do " + reason + " yet";
+  }
   local.seconds = seconds();
   if (report != nullptr) *report = local;
   return image;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "device/kept_devices.h"
 #include "layers/layer_setups.h"
 #include "pellucid/cpu/render.h"
 
@@ -8,6 +9,6 @@ namespace pellucid {
 
 /// Renders a frame with what is kept of others. `threads` > 0. As pellucid::render().
 Image render_frame(const Scene& scene, const RenderOptions& options, int threads, LayerSetups& kept,
-                   RenderReport* report);
+                   KeptDevices& devices, RenderReport* report);
 
 }  // namespace pellucid

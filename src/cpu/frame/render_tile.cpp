@@ -7,42 +7,18 @@
 #include <limits>
 #include <vector>
 
+#include "pellucid/render/pixel.h"
 #include "projection/projected_tracer.h"
 #include "tiles.h"
 
 namespace pellucid {
 namespace {
 
-/// The mean of a pixel's rays. Its depth is that of the nearest whose opacity is more than its
-/// error.
+/// The mean of a pixel's rays.
 RayResult mean_of(const RayResult* rays, int count) {
-  if (count == 1) return rays[0];
-  RayResult mean;
-  mean.error = mean.neighbor_deviation = 0;
-  mean.longest_step = std::numeric_limits<float>::infinity();
-  mean.proved = true;
-  for (int n = 0; n < count; ++n) {
-    const RayResult& one = rays[n];
-    mean.radiance = mean.radiance + one.radiance;
-    mean.opacity += one.opacity;
-    mean.optical_depth += one.optical_depth;
-    if (one.opacity > one.error || !std::isfinite(one.error)) {
-      mean.half_opacity_depth = std::min(mean.half_opacity_depth, one.half_opacity_depth);
-    }
-    mean.cells += one.cells;
-    mean.neighbor_deviation = std::max(mean.neighbor_deviation, one.neighbor_deviation);
-    mean.longest_step = std::min(mean.longest_step, one.longest_step);
-    mean.error += one.error;
-    mean.proved = mean.proved && one.proved;
-    mean.evaluations += one.evaluations;
-    mean.spans += one.spans;
-  }
-  const double share = 1.0 / count;
-  mean.radiance = mean.radiance * share;
-  mean.opacity *= share;
-  mean.optical_depth *= share;
-  mean.error *= share;
-  return mean;
+  PixelMean mean;
+  for (int n = 0; n < count; ++n) mean.add(rays[n]);
+  return mean.mean();
 }
 
 struct Place {

@@ -9,6 +9,7 @@
 #include <thread>
 #include <utility>
 
+#include "device/kept_devices.h"
 #include "layers/layer_setups.h"
 #include "pellucid/scene/error.h"
 #include "render_frame.h"
@@ -24,11 +25,12 @@ class KeptFrames {
 
   const int threads;
   LayerSetups setups;
+  KeptDevices devices;
 
   Image render(const Scene& scene, const RenderOptions& options, RenderReport* report) {
     int count = options.threads > 0 ? options.threads : threads;
     if (count == 0) count = default_thread_count();
-    return render_frame(scene, options, count, setups, report);
+    return render_frame(scene, options, count, setups, devices, report);
   }
 };
 
@@ -42,6 +44,7 @@ Image Renderer::render(const Scene& scene, const RenderOptions& options, RenderR
 }
 
 void Renderer::clear() {
+  kept_->devices.clear();
   kept_->setups.clear();
 }
 

@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "pellucid/field/trilinear.h"
+#include "pellucid/field/grid_gradient.h"
 #include "pellucid/scene/light.h"
 #include "pellucid/scene/volume.h"
 #include "pellucid/traverse/structured_walk.h"
@@ -22,24 +22,11 @@ class GridGradient {
   CubicBernstein<double> magnitude_along(const StructuredWalk<double>::Step& step) const;
 
  private:
-  /// Gradients at the corners of a cell, in the world.
-  struct Corners {
-    Vec3<double> at[8];
-  };
-  Corners smooth_corners(const int (&cell)[3]) const;
-  Corners field_corners(const int (&cell)[3]) const;
-  Vec3<double> to_world(const Vec3<double>& gradient_grid) const;
-
-  /// Distances from a data value to its neighbors; 0 where there is none.
-  struct Neighbors {
-    double before, behind;
-  };
-  /// The derivative along an axis at a value with what is before and behind it, which may be NaN.
-  static double derivative(const Neighbors& apart, double before, double value, double behind);
+  CornerGradients smooth_corners(const int (&cell)[3]) const;
 
   const Volume& volume_;
   GradientKind kind_;
-  std::vector<Neighbors> neighbors_[3];
+  std::vector<NeighborDistances> neighbors_[3];
 };
 
 }  // namespace pellucid

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "layer_setup.h"
 
+#include "device/device_layer.h"
 #include "threads.h"
 
 namespace pellucid {
@@ -48,6 +49,8 @@ LayerSetup::LayerSetup(const Layer& layer, const LayerSetting& setting, int thre
   if (!fast_) make_source(parallel_for(threads));
 }
 
+LayerSetup::~LayerSetup() = default;
+
 bool LayerSetup::shows(const Layer& layer) const {
   return layer.content == content_ && layer.transform == transform_ &&
          layer.shading == layer_.shading && layer.gradient_opacity == layer_.gradient_opacity &&
@@ -58,6 +61,13 @@ const LayerSource& LayerSetup::source() const {
   // By the thread that asks alone: others may wait for it, and must not be needed by it.
   make_source({});
   return *source_;
+}
+
+const DeviceLayer& LayerSetup::device(const ParallelFor& parallel) const {
+  std::call_once(device_made_, [&] {
+    device_ = std::make_unique<const DeviceLayer>(layer_, setting_, parallel);
+  });
+  return *device_;
 }
 
 void LayerSetup::make_source(const ParallelFor& parallel) const {

@@ -11,6 +11,8 @@
 
 namespace pellucid {
 
+class DeviceLayer;
+
 /// How a frame shows its layers: all that a layer's set-up depends on beside the layer.
 struct LayerSetting {
   Integration integration;
@@ -32,6 +34,7 @@ class LayerSetup {
  public:
   /// `layer`: as the scene has it. What is needed of its data's blocks is made on so many threads.
   LayerSetup(const Layer& layer, const LayerSetting& setting, int threads);
+  ~LayerSetup();
   LayerSetup(const LayerSetup&) = delete;
   LayerSetup& operator=(const LayerSetup&) = delete;
 
@@ -47,6 +50,9 @@ class LayerSetup {
   const RayTracer* fast() const noexcept { return fast_.get(); }
   /// Returns the layer for the general path. The first call makes it; safe from any thread.
   const LayerSource& source() const;
+  /// Returns what a device needs of the layer, for which DeviceLayer::cannot_follow() is empty. The
+  /// first call makes it; safe from any thread.
+  const DeviceLayer& device(const ParallelFor& parallel) const;
 
  private:
   void make_source(const ParallelFor& parallel) const;
@@ -59,6 +65,8 @@ class LayerSetup {
   std::unique_ptr<const RayTracer> fast_;
   mutable std::once_flag source_made_;
   mutable std::unique_ptr<const LayerSource> source_;
+  mutable std::once_flag device_made_;
+  mutable std::unique_ptr<const DeviceLayer> device_;
 };
 
 }  // namespace pellucid

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "layer_stream.h"
-#include "pellucid/segment/lit_panel.h"
+#include "pellucid/segment/lit_cuts.h"
 
 namespace pellucid {
 
@@ -32,23 +32,7 @@ class LitParts {
                  MultivariateRayIntegrator& integrator) const;
 
  private:
-  /// A part of the stretch between two cuts, for MultivariateRayIntegrator::add_panels().
-  struct Piece {
-    const LitParts& parts;
-    double first, last;  ///< shares of the stretch
-
-    double length() const noexcept { return (last - first) * parts.length(); }
-    /// Bounds that are proved come together as slowly as panels get short: a ray takes some 10 ms
-    /// then.
-    static long most_panels() noexcept { return 4096; }
-    template <class Allowance>
-    PanelSegment<double> panel(double begin, double end, const PanelDemand<double>& demand,
-                               const Allowance& allowance) const noexcept {
-      const double width = last - first;
-      return parts.panel(first + begin * width, end < 1 ? first + end * width : last, demand,
-                         allowance);
-    }
-  };
+  friend struct LitPiece<LitParts>;
 
   template <class Allowance>
   PanelSegment<double> panel(double begin, double end, const PanelDemand<double>& demand,
