@@ -144,7 +144,7 @@ void MapperCore::draw_layers(vtkAbstractVolumeMapper& mapper, vtkRenderer& rende
   outcome = {};
   outcome.largest_error = std::numeric_limits<double>::infinity();
   try {
-    Notes notes;
+    Notes notes = left_out;
     std::vector<Layer> layers = make_layers(notes);
     if (layers.empty()) return;
     const View view = view_of(renderer);

@@ -57,6 +57,8 @@ class MapperCore {
 
   Settings settings;
   Outcome outcome;
+  /// What a mapper knows to be left out, beside what draw() finds.
+  Notes left_out;
 
   /// Draws a volume of a grid or of a mesh. What fails is told by the mapper's error event, what is
   /// left out by its warnings; each once.

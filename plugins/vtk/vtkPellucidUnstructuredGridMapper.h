@@ -21,9 +21,8 @@ class PELLUCID_VTK_EXPORT vtkPellucidUnstructuredGridMapper
     : public vtkUnstructuredGridVolumeMapper {
  public:
   static vtkPellucidUnstructuredGridMapper* New();
-  vtkTypeMacro(vtkPellucidUnstructuredGridMapper,
-               vtkUnstructuredGridVolumeMapper) void PrintSelf(ostream& os,
-                                                               vtkIndent indent) override;
+  vtkTypeMacro(vtkPellucidUnstructuredGridMapper, vtkUnstructuredGridVolumeMapper)
+  void PrintSelf(ostream& os, vtkIndent indent) override;
 
   ///@{
   /**

@@ -23,8 +23,8 @@ class MapperCore;
 class PELLUCID_VTK_EXPORT vtkPellucidVolumeMapper : public vtkVolumeMapper {
  public:
   static vtkPellucidVolumeMapper* New();
-  vtkTypeMacro(vtkPellucidVolumeMapper, vtkVolumeMapper) void PrintSelf(ostream& os,
-                                                                        vtkIndent indent) override;
+  vtkTypeMacro(vtkPellucidVolumeMapper, vtkVolumeMapper)
+  void PrintSelf(ostream& os, vtkIndent indent) override;
 
   ///@{
   /**

@@ -56,9 +56,8 @@ vtkSmartPointer<vtkVolumeProperty> soft_property(double unit) {
 class Messages::Window : public vtkOutputWindow {
  public:
   static Window* New();
-  vtkTypeMacro(Window, vtkOutputWindow) void DisplayText(const char* text) override {
-    said += text;
-  }
+  vtkTypeMacro(Window, vtkOutputWindow)
+  void DisplayText(const char* text) override { said += text; }
   std::string said;
 };
 vtkStandardNewMacro(Messages::Window);
