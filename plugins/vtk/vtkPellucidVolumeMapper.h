@@ -7,9 +7,12 @@
 
 #include "pellucid_vtk_export.h"
 
-namespace pellucid::plugin {
+// Nested as the wrapper of VTK 9.1 reads it.
+namespace pellucid {
+namespace plugin {
 class MapperCore;
 }
+}  // namespace pellucid
 
 /**
  * @class   vtkPellucidVolumeMapper

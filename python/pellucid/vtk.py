@@ -6,6 +6,12 @@
 
 VTK composites the numbers of its functions, whatever display they are meant for. So do scenes made
 here: their "linear" colors are those numbers. VTK is not imported; the objects bring it with them.
+
+    pellucid.vtk.use()                       # VTK's mappers that are made from here on draw by us
+    mapper = vtkSmartVolumeMapper()
+    pellucid.vtk.settings(mapper).tolerance = 1e-3
+
+use() needs the plug-in for VTK (plugins/vtk), which imports VTK.
 """
 from __future__ import annotations
 
@@ -63,6 +69,96 @@ class Audit:
                  f"{100 * self.share_over_255:.2f} % of the pixels are off by more than 1/255",
                  f"the truth is known to within {self.ours.report['largest_error']:.2g}"]
         return "\n".join(lines + self.notes)
+
+
+def _plugin() -> Any:
+    try:
+        from . import vtkPellucid
+    except ImportError as error:
+        raise Error("pellucid.vtk: the plug-in for VTK is not there; build Pellucid with VTK 9.1 "
+                    f"for this Python (Debian: libvtk9-dev, python3-vtk9; {error})") from None
+    return vtkPellucid
+
+
+def use(on: bool = True) -> None:
+    """Begins to draw volumes by Pellucid where a program asks for VTK's mappers; use(False) ends it.
+
+    These are vtkGPUVolumeRayCastMapper, vtkSmartVolumeMapper and vtkProjectedTetrahedraMapper that
+    are made after the call. For vtkFixedPointVolumeRayCastMapper,
+    vtkUnstructuredGridVolumeRayCastMapper and vtkUnstructuredGridVolumeZSweepMapper VTK 9.1 asks
+    nobody: preload libvtkPellucidPreload.so. Raises Error if the plug-in is not there.
+    """
+    _plugin().vtkPellucidFactory.Use(on)
+
+
+class MapperSettings:
+    """Settings of a mapper that draws by Pellucid, and what is known of its last picture."""
+
+    def __init__(self, mapper: Any) -> None:
+        self._mapper = mapper
+        self._factory = _plugin().vtkPellucidFactory
+
+    def _set(self, name: str, value: float) -> None:
+        if not self._factory.Set(self._mapper, name, value):
+            raise Error(f"{name}: {value!r} is not taken")
+
+    @property
+    def tolerance(self) -> float:
+        """The largest error that a pixel may have; limited to 1e-7 to 1."""
+        return float(self._factory.Get(self._mapper, "Tolerance"))
+
+    @tolerance.setter
+    def tolerance(self, value: float) -> None:
+        self._set("Tolerance", value)
+
+    @property
+    def grade(self) -> str:
+        """What errors may rest on: "estimated" or "proved"."""
+        return "proved" if self._factory.Get(self._mapper, "Grade") == 1 else "estimated"
+
+    @grade.setter
+    def grade(self, value: str) -> None:
+        if value not in ("estimated", "proved"):
+            raise Error(f"grade: {value!r} is neither \"estimated\" nor \"proved\"")
+        self._set("Grade", 1 if value == "proved" else 0)
+
+    @property
+    def threads(self) -> int:
+        """The number of threads; 0: one per core."""
+        return int(self._factory.Get(self._mapper, "NumberOfThreads"))
+
+    @threads.setter
+    def threads(self, value: int) -> None:
+        self._set("NumberOfThreads", value)
+
+    @property
+    def exact(self) -> bool:
+        """Whether all pixels of the last picture were rendered; not so while the user interacts."""
+        return bool(self._factory.Get(self._mapper, "Exact"))
+
+    @property
+    def largest_error(self) -> float:
+        """The largest error of a pixel of the last picture; infinite if it is not exact."""
+        return float(self._factory.Get(self._mapper, "LargestError"))
+
+    @property
+    def pixels_over(self) -> int:
+        """How many pixels of the last picture may be over the tolerance."""
+        return int(self._factory.Get(self._mapper, "PixelsOver"))
+
+    @property
+    def seconds(self) -> float:
+        """How long the last picture took."""
+        return float(self._factory.Get(self._mapper, "Seconds"))
+
+
+def settings(mapper: Any) -> MapperSettings:
+    """Returns the settings of a mapper that draws by Pellucid. Raises Error for others."""
+    if not (_is_a(mapper, "vtkAbstractVolumeMapper")
+            and _plugin().vtkPellucidFactory.Has(mapper)):
+        raise Error(f"mapper: {mapper!r:.60} does not draw by Pellucid; make it after "
+                    "pellucid.vtk.use()")
+    return MapperSettings(mapper)
 
 
 def scene_of(renderer: Any, notes: Any = None) -> Scene:
