@@ -13,6 +13,8 @@
 #include <vtkVolumeProperty.h>
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 #include <optional>
 #include <string>
 
@@ -27,12 +29,13 @@ namespace {
 class GridTranslator {
  public:
   GridTranslator(vtkVolumeMapper& mapper, vtkVolume& volume, const Mask& mask, double tolerance,
-                 KeptOfGrids& kept, Notes& notes)
+                 bool has_ambient_light, KeptOfGrids& kept, Notes& notes)
       : mapper_(mapper),
         volume_(volume),
         property_(*volume.GetProperty()),
         mask_(mask),
         tolerance_(tolerance),
+        has_ambient_light_(has_ambient_light),
         kept_(kept),
         notes_(notes) {}
 
@@ -40,6 +43,8 @@ class GridTranslator {
 
  private:
   std::optional<LayerProjection> projection() const;
+  double scale();
+  LookRecipe recipe_of(int component, const Volume& data);
   Layer component_layer(int component);
   std::shared_ptr<const LabelMask> label_mask(const LookRecipe& base, int component);
   void add_surfaces(Layer& layer, const Curve& opacities, const Curve& colors);
@@ -51,12 +56,14 @@ class GridTranslator {
   vtkVolumeProperty& property_;
   const Mask& mask_;
   const double tolerance_;
+  const bool has_ambient_light_;
   KeptOfGrids& kept_;
   Notes& notes_;
   vtkDataSet* data_ = nullptr;
   vtkDataArray* array_ = nullptr;
   int of_cells_ = 0;
   Affine<double> world_from_data_;
+  std::size_t layers_ = 1;  ///< how many there will be
 };
 
 std::optional<LayerProjection> GridTranslator::projection() const {
@@ -105,12 +112,52 @@ std::vector<Layer> GridTranslator::layers() {
         "functions of two variables (SetTransferFunction2D) are not read; take "
         "SetTransferFunctionModeTo1D()");
   }
-  std::vector<Layer> made;
+  std::vector<int> shown;
   for (int c = 0; c < components; ++c) {
-    if (components == 1 || property_.GetComponentWeight(c) > 0) made.push_back(component_layer(c));
+    if (components == 1 || property_.GetComponentWeight(c) > 0) shown.push_back(c);
   }
+  layers_ = shown.size();
+  if (mapper_.GetCropping() != 0) layers_ *= boxes_of(mapper_.GetCroppingRegionFlags()).size();
+  std::vector<Layer> made;
+  for (const int component : shown) made.push_back(component_layer(component));
   if (made.size() > 1) notes_.add("components mix as particles do; VTK adds their colors");
   return cropped(made);
+}
+
+/// VTK's mappers measure the unit distance in the volume's own world, before its matrix.
+double GridTranslator::scale() {
+  double shortest = std::numeric_limits<double>::infinity(), longest = 0;
+  for (const Vec3<double>& column : world_from_data_.matrix.column) {
+    const double length = std::sqrt(dot(column, column));
+    shortest = std::min(shortest, length);
+    longest = std::max(longest, length);
+  }
+  if (longest > 1.000001 * shortest) {
+    notes_.add("a volume that is scaled unevenly has opacities by the mean of its scales");
+  }
+  return std::cbrt(std::abs(determinant(world_from_data_.matrix)));
+}
+
+LookRecipe GridTranslator::recipe_of(int component, const Volume& data) {
+  const std::optional<LayerProjection> shown = projection();
+  OpacityMeaning meaning = OpacityMeaning::per_unit_distance;
+  if (shown) meaning = OpacityMeaning::projected;
+  if (shown == LayerProjection::mean) meaning = OpacityMeaning::averaged;
+  // The errors of layers' functions add, and double beside other layers.
+  const double share = layers_ > 1 ? 0.5 / static_cast<double>(layers_) : 1;
+  LookRecipe recipe = look_recipe(property_, component, meaning, share * tolerance_);
+  if (!shown) recipe.unit_distance *= scale();
+  if (meaning == OpacityMeaning::averaged) {
+    recipe.range = {data.statistics().minimum, data.statistics().maximum};
+    const double* const range = mapper_.GetAverageIPScalarRange();
+    if (range[0] > recipe.range[0] || range[1] < recipe.range[1]) {
+      notes_.add("averages are of all values: AverageIPScalarRange is left out");
+    }
+  }
+  if (array_->GetNumberOfComponents() > 1) {
+    recipe.weight = property_.GetComponentWeight(component);
+  }
+  return recipe;
 }
 
 Layer GridTranslator::component_layer(int component) {
@@ -119,12 +166,7 @@ Layer GridTranslator::component_layer(int component) {
   layer.clips = clips_of(mapper_.GetClippingPlanes());
   layer.projection = projection();
   const auto data = kept_.volumes.find(*data_, *array_, of_cells_ != 0, component);
-  LookRecipe recipe = look_recipe(
-      property_, component,
-      layer.projection ? OpacityMeaning::projected : OpacityMeaning::per_unit_distance, tolerance_);
-  if (array_->GetNumberOfComponents() > 1) {
-    recipe.weight = property_.GetComponentWeight(component);
-  }
+  LookRecipe recipe = recipe_of(component, *data);
   const int mode = mapper_.GetBlendMode();
   const bool is_surface =
       mode == vtkVolumeMapper::ISOSURFACE_BLEND || mode == vtkVolumeMapper::SLICE_BLEND;
@@ -139,6 +181,7 @@ Layer GridTranslator::component_layer(int component) {
     return layer;
   }
   layer.shading = shading_of(property_, component);
+  if (layer.shading && !has_ambient_light_) layer.shading->ambient = 0;
   if (const Curve curve = gradient_curve(property_, component); !curve.empty() && !is_surface) {
     layer.gradient_opacity = kept_.gradients.find(curve, gradient_opacity_of);
     notes_.add("gradient opacities multiply the extinction here, in VTK the opacity of a sample");
@@ -253,8 +296,9 @@ void KeptOfGrids::keep_used() {
 }
 
 std::vector<Layer> layers_of(vtkVolumeMapper& mapper, vtkVolume& volume, const Mask& mask,
-                             double tolerance, KeptOfGrids& kept, Notes& notes) {
-  return GridTranslator(mapper, volume, mask, tolerance, kept, notes).layers();
+                             double tolerance, bool has_ambient_light, KeptOfGrids& kept,
+                             Notes& notes) {
+  return GridTranslator(mapper, volume, mask, tolerance, has_ambient_light, kept, notes).layers();
 }
 
 }  // namespace pellucid::plugin

@@ -40,7 +40,9 @@ struct KeptOfGrids {
 /// Returns the layers of a volume: one for each component and each box of its cropping. A mapper
 /// without input, or a component of weight 0, gives none. Throws Error for what has no counterpart:
 /// interpolation to the nearest value, dependent components, additive blending.
+/// `has_ambient_light`: whether a property's ambient part is seen (has_ambient_light()).
 std::vector<Layer> layers_of(vtkVolumeMapper& mapper, vtkVolume& volume, const Mask& mask,
-                             double tolerance, KeptOfGrids& kept, Notes& notes);
+                             double tolerance, bool has_ambient_light, KeptOfGrids& kept,
+                             Notes& notes);
 
 }  // namespace pellucid::plugin

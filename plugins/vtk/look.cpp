@@ -5,6 +5,7 @@
 #include <vtkVolumeProperty.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "pellucid/io/transfer_function_description.h"
 #include "pellucid/scene/opacity_table.h"
@@ -27,10 +28,31 @@ TransferFunction table(const LookRecipe& recipe) {
       required_relative_error(opacity_table_tolerance(recipe.tolerance), largest_color));
 }
 
+/// Chords that stand for the product of two lines.
+constexpr int chords = 64;
+
+/// Opaque grey, as VTK shows averages: exact where the opacity is constant.
+TransferFunction averages(const LookRecipe& recipe) {
+  const double low = recipe.range[0], high = std::max(recipe.range[1], std::nextafter(low, 1e300));
+  Curve opacities;
+  for (const JoinedPoint& p : recipe.points) opacities.push_back({p.x, {p.a, p.a, p.a}});
+  Curve places{{low, {}}, {high, {}}};
+  for (int k = 1; k < chords; ++k) places.push_back({low + k * (high - low) / chords, {}});
+  std::ranges::sort(places, {}, &CurvePoint::x);
+  std::vector<TransferFunction::Point> points;
+  for (const JoinedPoint& p : joined(opacities, places)) {
+    const double grey =
+        std::clamp(p.a, 0.0, 1.0) * std::clamp((p.x - low) / (high - low), 0.0, 1.0);
+    points.push_back({p.x, 1, {grey, grey, grey}});
+  }
+  return TransferFunction(std::move(points));
+}
+
 }  // namespace
 
 TransferFunction function_of(const LookRecipe& recipe) {
   if (recipe.meaning == OpacityMeaning::per_unit_distance) return table(recipe);
+  if (recipe.meaning == OpacityMeaning::averaged) return averages(recipe);
   std::vector<TransferFunction::Point> points;
   const bool projected = recipe.meaning == OpacityMeaning::projected;
   const double scale = projected ? 1 : recipe.weight / recipe.unit_distance;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <optional>
 #include <vector>
 
@@ -17,7 +18,8 @@ namespace pellucid::plugin {
 enum class OpacityMeaning {
   per_unit_distance,  ///< of a layer as thick as the unit distance: images and rectilinear grids
   extinction,         ///< opacity / unit distance is the extinction: unstructured grids
-  projected           ///< of a ray, at the one number that it shows
+  projected,          ///< of a ray, at the one number that it shows
+  averaged            ///< of a ray; its color is grey: opacity times the place in the data's range
 };
 
 /// What a transfer function is made of. Functions of equal recipes are equal.
@@ -25,8 +27,9 @@ struct LookRecipe {
   std::vector<JoinedPoint> points;  ///< opacity and color
   OpacityMeaning meaning = OpacityMeaning::per_unit_distance;
   double unit_distance = 1;
-  double weight = 1;     ///< multiplies the extinction
-  double tolerance = 0;  ///< that opacities are converted for
+  double weight = 1;              ///< multiplies the extinction
+  double tolerance = 0;           ///< that opacities are converted for
+  std::array<double, 2> range{};  ///< of the data, where they are averaged
 
   bool operator==(const LookRecipe&) const = default;
 };

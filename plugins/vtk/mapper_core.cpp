@@ -111,8 +111,9 @@ Scene MapperCore::scene_with(std::vector<Layer> layers, vtkRenderer& renderer, v
 Scene MapperCore::scene_of(vtkVolumeMapper& mapper, const Mask& mask, vtkRenderer& renderer,
                            vtkVolume& volume) {
   Notes notes;
-  return scene_with(layers_of(mapper, volume, mask, settings.tolerance, grids_, notes), renderer,
-                    volume, view_of(renderer), notes);
+  return scene_with(layers_of(mapper, volume, mask, settings.tolerance, has_ambient_light(renderer),
+                              grids_, notes),
+                    renderer, volume, view_of(renderer), notes);
 }
 
 Scene MapperCore::scene_of(vtkUnstructuredGridVolumeMapper& mapper, vtkRenderer& renderer,
@@ -125,7 +126,8 @@ Scene MapperCore::scene_of(vtkUnstructuredGridVolumeMapper& mapper, vtkRenderer&
 void MapperCore::draw(vtkVolumeMapper& mapper, const Mask& mask, vtkRenderer& renderer,
                       vtkVolume& volume) {
   draw_layers(mapper, renderer, volume, [&](Notes& notes) {
-    return layers_of(mapper, volume, mask, settings.tolerance, grids_, notes);
+    return layers_of(mapper, volume, mask, settings.tolerance, has_ambient_light(renderer), grids_,
+                     notes);
   });
   grids_.keep_used();
 }

@@ -102,6 +102,10 @@ std::vector<Light> lights_of(vtkRenderer& renderer, Notes& notes) {
     vtkLight& light = *vtkLight::SafeDownCast(all->GetItemAsObject(i));
     if (light.GetSwitch() == 0) continue;
     const double* const color = light.GetDiffuseColor();
+    const double* const ambient = light.GetAmbientColor();
+    if ((ambient[0] > 0 || ambient[1] > 0 || ambient[2] > 0) && !has_ambient_light(renderer)) {
+      notes.add("the ambient color of lights is left out");
+    }
     Light made;
     const double intensity = std::max(light.GetIntensity(), 0.0);
     made.color = {intensity * color[0], intensity * color[1], intensity * color[2]};
@@ -125,6 +129,19 @@ std::vector<Light> lights_of(vtkRenderer& renderer, Notes& notes) {
   return lights;
 }
 
+bool has_ambient_light(vtkRenderer& renderer) {
+  vtkLightCollection* const all = renderer.GetLights();
+  int on = 0;
+  bool plain = true;
+  for (int i = 0; i < all->GetNumberOfItems(); ++i) {
+    vtkLight& light = *vtkLight::SafeDownCast(all->GetItemAsObject(i));
+    if (light.GetSwitch() == 0) continue;
+    ++on;
+    plain = plain && light.LightTypeIsHeadlight() != 0 && light.GetIntensity() == 1;
+  }
+  return on == 0 || (on == 1 && plain);
+}
+
 Affine<double> affine_of(vtkMatrix4x4& matrix, const char* what) {
   Affine<double> affine;
   for (int c = 0; c < 3; ++c) {
@@ -138,6 +155,9 @@ Affine<double> affine_of(vtkMatrix4x4& matrix, const char* what) {
                   ": its matrix is not affine; take one whose last row is "
                   "0 0 0 1");
     }
+  }
+  if (!(std::abs(determinant(affine.matrix)) > 0)) {
+    throw Error(std::string(what) + ": its matrix is singular; take one that can be inverted");
   }
   return affine;
 }

@@ -31,6 +31,10 @@ struct View {
 View view_of(vtkRenderer& renderer);
 /// Returns the lights that are on. A renderer without lights has a head light, as VTK makes one.
 std::vector<Light> lights_of(vtkRenderer& renderer, Notes& notes);
+/// Returns whether a property's ambient part is seen. VTK gives its color to it under one head
+/// light of intensity 1; under other lights it has the lights' own ambient colors, which are black
+/// unless a program sets them.
+bool has_ambient_light(vtkRenderer& renderer);
 /// Returns an affine matrix of VTK. Throws Error for others. `what` begins the message.
 Affine<double> affine_of(vtkMatrix4x4& matrix, const char* what);
 

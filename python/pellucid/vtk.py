@@ -81,7 +81,7 @@ def _plugin() -> Any:
 
 
 def use(on: bool = True) -> None:
-    """Begins to draw volumes by Pellucid where a program asks for VTK's mappers; use(False) ends it.
+    """Begins to draw by Pellucid where a program asks for VTK's mappers; use(False) ends it.
 
     These are vtkGPUVolumeRayCastMapper, vtkSmartVolumeMapper and vtkProjectedTetrahedraMapper that
     are made after the call. For vtkFixedPointVolumeRayCastMapper,
@@ -176,7 +176,8 @@ def scene_of(renderer: Any, notes: Any = None) -> Scene:
     if not _is_a(renderer, "vtkRenderer"):
         raise Error(f"renderer: expected a vtkRenderer, got {renderer!r:.60}")
     told: List[str] = []
-    layers = [_layer(prop, f"volume {i + 1}", told)
+    ambient = _has_ambient_light(renderer)
+    layers = [_layer(prop, f"volume {i + 1}", ambient, told)
               for i, prop in enumerate(_items(renderer.GetVolumes()))]
     if not layers:
         raise Error("renderer: has no vtkVolume; add one before its scene is asked for")
@@ -246,7 +247,7 @@ def _warn(lines: Sequence[str]) -> None:
         warnings.warn(line, Note, stacklevel=3)
 
 
-def _layer(volume: Any, what: str, notes: List[str]) -> Layer:
+def _layer(volume: Any, what: str, ambient: bool, notes: List[str]) -> Layer:
     mapper, look = volume.GetMapper(), volume.GetProperty()
     if mapper is None:
         raise Error(f"{what}: has no mapper")
@@ -263,7 +264,13 @@ def _layer(volume: Any, what: str, notes: List[str]) -> Layer:
                     "(0) is an integral with absorption")
     colors, opacities = _color_curve(look), _curve_of(look.GetScalarOpacity(0))
     unit = look.GetScalarOpacityUnitDistance(0)
+    matrix = _matrix(volume.GetMatrix())
     if is_grid:
+        # VTK's mappers measure the unit distance in the volume's own world, before its matrix.
+        unit *= abs(numpy.linalg.det(matrix[:3, :3])) ** (1 / 3)
+        scales = numpy.linalg.norm(matrix[:3, :3], axis=0)
+        if scales.max() > 1.000001 * scales.min():
+            notes.append(f"{what}: is scaled unevenly, and has opacities by the mean of its scales")
         shown = Volume(data, name=what)
         function = OpacityTable([(x, a[0], tuple(c)) for x, a, c in _joined(opacities, colors)],
                                 unit)
@@ -273,7 +280,6 @@ def _layer(volume: Any, what: str, notes: List[str]) -> Layer:
         function = TransferFunction([(x, a[0] / unit, tuple(c))
                                      for x, a, c in _joined(opacities, colors)])
     layer = Layer(shown, function, name=what, visible=bool(volume.GetVisibility()))
-    matrix = _matrix(volume.GetMatrix())
     layer.transform = matrix[:3].tolist()
     layer.clips = _clips(mapper, matrix, what, is_grid)
     if is_grid and mapper.GetCropping():
@@ -281,8 +287,8 @@ def _layer(volume: Any, what: str, notes: List[str]) -> Layer:
                      "planes")
     if look.GetShade(0) and is_grid:
         # VTK's normals have length 1 wherever the gradient is not 0.
-        layer.shading = Shading(look.GetAmbient(0), look.GetDiffuse(0), look.GetSpecular(0),
-                                min(max(look.GetSpecularPower(0), 1.0), 1000.0), flatness=0.0)
+        layer.shading = Shading(look.GetAmbient(0) if ambient else 0.0, look.GetDiffuse(0),
+                                look.GetSpecular(0), min(max(look.GetSpecularPower(0), 1.0), 1000.0), flatness=0.0)
     if is_grid and not look.GetDisableGradientOpacity(0) and look.HasGradientOpacity(0):
         points = [(x, y[0]) for x, y in _curve_of(look.GetGradientOpacity(0)) if x >= 0]
         layer.gradient_opacity = GradientOpacity(points, unit="voxel")
@@ -410,12 +416,22 @@ def _camera(camera: Any, aspect: float) -> Camera:
                   "orthographic" if camera.GetParallelProjection() else "perspective")
 
 
+def _has_ambient_light(renderer: Any) -> bool:
+    """Whether a property's ambient part is seen: VTK gives its color to it under one head light of
+    intensity 1; under other lights it has their own ambient colors, black unless they are set."""
+    lights = [light for light in _items(renderer.GetLights()) if light.GetSwitch()]
+    return not lights or (len(lights) == 1 and bool(lights[0].LightTypeIsHeadlight())
+                          and lights[0].GetIntensity() == 1)
+
+
 def _lights(renderer: Any, notes: List[str]) -> List[Any]:
     lights = []
     for light in _items(renderer.GetLights()):
         if not light.GetSwitch():
             continue
         color = tuple(light.GetIntensity() * c for c in light.GetDiffuseColor())
+        if any(light.GetAmbientColor()) and not _has_ambient_light(renderer):
+            notes.append("the ambient color of lights is left out")
         if light.LightTypeIsHeadlight():
             lights.append(HeadLight(color))
         elif light.GetPositional():

@@ -76,6 +76,7 @@ struct Shown {
     stage.look();
     const Image picture = stage.picture();
     EXPECT_EQ(stage.gl_errors(), "");
+    EXPECT_EQ(mapper->GetPixelsOver(), 0);
     const Image truth = render(scene_on(stage, std::move(layers)));
     EXPECT_LE(largest_difference(picture, truth),
               half_a_step + rounding + mapper->GetTolerance() + 2e-5);
