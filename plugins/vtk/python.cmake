@@ -58,8 +58,9 @@ foreach(file IN LISTS hierarchies ITEMS "${hierarchy}")
 endforeach()
 file(CONFIGURE OUTPUT "${folder}/types" CONTENT "${types}" @ONLY)
 string(REPLACE ";" "\n" classes "${wrapped}")
+set(depends "vtkmodules.vtkCommonCore\nvtkmodules.vtkRenderingVolume")
 file(CONFIGURE OUTPUT "${folder}/module"
-  CONTENT "vtkPellucid\n${classes}\nDEPENDS\nvtkmodules.vtkCommonCore\nvtkmodules.vtkRenderingVolume\n" @ONLY)
+  CONTENT "vtkPellucid\n${classes}\nDEPENDS\n${depends}\n" @ONLY)
 
 add_custom_command(OUTPUT "${hierarchy}"
   COMMAND "${PELLUCID_VTK_WrapHierarchy}" "@${folder}/flags" -o "${hierarchy}"
@@ -81,7 +82,8 @@ add_library(pellucid_vtk_python MODULE
   ${sources} "${folder}/init.cpp" "${folder}/init_parts.cpp")
 set_target_properties(pellucid_vtk_python PROPERTIES
   PREFIX "" OUTPUT_NAME vtkPellucid CXX_EXTENSIONS OFF
-  LIBRARY_OUTPUT_DIRECTORY "${PELLUCID_PYTHON_PATH}/pellucid")
+  LIBRARY_OUTPUT_DIRECTORY "${PELLUCID_PYTHON_PATH}/pellucid"
+  INSTALL_RPATH "$ORIGIN/../../../pellucid/vtk;${CMAKE_INSTALL_FULL_LIBDIR}/pellucid/vtk")
 target_include_directories(pellucid_vtk_python SYSTEM PRIVATE ${Python_INCLUDE_DIRS})
 # Generated: not to our warnings.
 target_compile_options(pellucid_vtk_python PRIVATE -w $<$<CONFIG:Release>:-O1>)

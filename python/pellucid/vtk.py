@@ -288,7 +288,8 @@ def _layer(volume: Any, what: str, ambient: bool, notes: List[str]) -> Layer:
     if look.GetShade(0) and is_grid:
         # VTK's normals have length 1 wherever the gradient is not 0.
         layer.shading = Shading(look.GetAmbient(0) if ambient else 0.0, look.GetDiffuse(0),
-                                look.GetSpecular(0), min(max(look.GetSpecularPower(0), 1.0), 1000.0), flatness=0.0)
+                                look.GetSpecular(0),
+                                min(max(look.GetSpecularPower(0), 1.0), 1000.0), flatness=0.0)
     if is_grid and not look.GetDisableGradientOpacity(0) and look.HasGradientOpacity(0):
         points = [(x, y[0]) for x, y in _curve_of(look.GetGradientOpacity(0)) if x >= 0]
         layer.gradient_opacity = GradientOpacity(points, unit="voxel")
