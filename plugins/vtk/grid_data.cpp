@@ -144,6 +144,13 @@ Volume::Description grid_of(vtkDataSet& data, bool of_cells, const std::string& 
     grid.coordinates = {coordinates_of(rectilinear->GetXCoordinates()),
                         coordinates_of(rectilinear->GetYCoordinates()),
                         coordinates_of(rectilinear->GetZCoordinates())};
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      if (grid.coordinates[axis].size() != static_cast<std::size_t>(grid.dimensions[axis])) {
+        throw Error(name + ": has " + std::to_string(grid.coordinates[axis].size()) +
+                    " coordinates for " + std::to_string(grid.dimensions[axis]) +
+                    " points along an axis; give it as many");
+      }
+    }
   } else {
     throw Error(name + ": is a " + data.GetClassName() +
                 "; the mapper takes a vtkImageData or a vtkRectilinearGrid");

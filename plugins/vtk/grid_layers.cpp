@@ -28,9 +28,10 @@ namespace {
 /// One volume on its way to layers.
 class GridTranslator {
  public:
-  GridTranslator(vtkVolumeMapper& mapper, vtkVolume& volume, const Mask& mask, double tolerance,
-                 bool has_ambient_light, KeptOfGrids& kept, Notes& notes)
+  GridTranslator(vtkVolumeMapper& mapper, vtkDataSet* data, vtkVolume& volume, const Mask& mask,
+                 double tolerance, bool has_ambient_light, KeptOfGrids& kept, Notes& notes)
       : mapper_(mapper),
+        data_(data),
         volume_(volume),
         property_(*volume.GetProperty()),
         mask_(mask),
@@ -52,6 +53,7 @@ class GridTranslator {
   std::vector<Layer> cropped(const std::vector<Layer>& layers);
 
   vtkVolumeMapper& mapper_;
+  vtkDataSet* const data_;
   vtkVolume& volume_;
   vtkVolumeProperty& property_;
   const Mask& mask_;
@@ -59,7 +61,6 @@ class GridTranslator {
   const bool has_ambient_light_;
   KeptOfGrids& kept_;
   Notes& notes_;
-  vtkDataSet* data_ = nullptr;
   vtkDataArray* array_ = nullptr;
   int of_cells_ = 0;
   Affine<double> world_from_data_;
@@ -84,7 +85,6 @@ std::optional<LayerProjection> GridTranslator::projection() const {
 }
 
 std::vector<Layer> GridTranslator::layers() {
-  data_ = mapper_.GetDataSetInput();
   if (data_ == nullptr) return {};
   array_ =
       vtkAbstractMapper::GetScalars(data_, mapper_.GetScalarMode(), mapper_.GetArrayAccessMode(),
@@ -295,10 +295,11 @@ void KeptOfGrids::keep_used() {
   masks.keep_used();
 }
 
-std::vector<Layer> layers_of(vtkVolumeMapper& mapper, vtkVolume& volume, const Mask& mask,
-                             double tolerance, bool has_ambient_light, KeptOfGrids& kept,
-                             Notes& notes) {
-  return GridTranslator(mapper, volume, mask, tolerance, has_ambient_light, kept, notes).layers();
+std::vector<Layer> layers_of(vtkVolumeMapper& mapper, vtkDataSet* data, vtkVolume& volume,
+                             const Mask& mask, double tolerance, bool has_ambient_light,
+                             KeptOfGrids& kept, Notes& notes) {
+  return GridTranslator(mapper, data, volume, mask, tolerance, has_ambient_light, kept, notes)
+      .layers();
 }
 
 }  // namespace pellucid::plugin

@@ -10,6 +10,7 @@
 #include "notes.h"
 #include "pellucid/scene/layer.h"
 
+class vtkDataSet;
 class vtkImageData;
 class vtkVolume;
 class vtkVolumeMapper;
@@ -37,12 +38,12 @@ struct KeptOfGrids {
   void keep_used();
 };
 
-/// Returns the layers of a volume: one for each component and each box of its cropping. A mapper
-/// without input, or a component of weight 0, gives none. Throws Error for what has no counterpart:
+/// Returns the layers of a volume: one for each component and each box of the mapper's cropping. No
+/// data, or a component of weight 0, gives none. Throws Error for what has no counterpart:
 /// interpolation to the nearest value, dependent components, additive blending.
 /// `has_ambient_light`: whether a property's ambient part is seen (has_ambient_light()).
-std::vector<Layer> layers_of(vtkVolumeMapper& mapper, vtkVolume& volume, const Mask& mask,
-                             double tolerance, bool has_ambient_light, KeptOfGrids& kept,
-                             Notes& notes);
+std::vector<Layer> layers_of(vtkVolumeMapper& mapper, vtkDataSet* data, vtkVolume& volume,
+                             const Mask& mask, double tolerance, bool has_ambient_light,
+                             KeptOfGrids& kept, Notes& notes);
 
 }  // namespace pellucid::plugin

@@ -2,6 +2,7 @@
 #include "mapper_core.h"
 
 #include <vtkAbstractVolumeMapper.h>
+#include <vtkAlgorithm.h>
 #include <vtkCommand.h>
 #include <vtkPropCollection.h>
 #include <vtkRayCastImageDisplayHelper.h>
@@ -75,6 +76,16 @@ void to_display(const Image& image, const View& view, std::vector<unsigned short
 
 }  // namespace
 
+void update_inputs(vtkAlgorithm& mapper) {
+  for (int port = 0; port < mapper.GetNumberOfInputPorts(); ++port) {
+    if (mapper.GetNumberOfInputConnections(port) == 0) continue;
+    int output = 0;
+    if (vtkAlgorithm* const source = mapper.GetInputAlgorithm(port, 0, output)) {
+      source->UpdateWholeExtent();
+    }
+  }
+}
+
 bool set_tolerance(Settings& settings, double tolerance) {
   if (!(tolerance > 0)) return false;
   const double within = std::clamp(tolerance, smallest_tolerance, largest_tolerance);
@@ -111,8 +122,8 @@ Scene MapperCore::scene_with(std::vector<Layer> layers, vtkRenderer& renderer, v
 Scene MapperCore::scene_of(vtkVolumeMapper& mapper, const Mask& mask, vtkRenderer& renderer,
                            vtkVolume& volume) {
   Notes notes;
-  return scene_with(layers_of(mapper, volume, mask, settings.tolerance, has_ambient_light(renderer),
-                              grids_, notes),
+  return scene_with(layers_of(mapper, mapper.GetDataSetInput(), volume, mask, settings.tolerance,
+                              has_ambient_light(renderer), grids_, notes),
                     renderer, volume, view_of(renderer), notes);
 }
 
@@ -125,9 +136,22 @@ Scene MapperCore::scene_of(vtkUnstructuredGridVolumeMapper& mapper, vtkRenderer&
 
 void MapperCore::draw(vtkVolumeMapper& mapper, const Mask& mask, vtkRenderer& renderer,
                       vtkVolume& volume) {
+  draw(mapper, {{mapper.GetDataSetInput(), &volume}}, mask, renderer, volume);
+}
+
+void MapperCore::draw(vtkVolumeMapper& mapper,
+                      const std::vector<std::pair<vtkDataSet*, vtkVolume*>>& parts,
+                      const Mask& mask, vtkRenderer& renderer, vtkVolume& volume) {
   draw_layers(mapper, renderer, volume, [&](Notes& notes) {
-    return layers_of(mapper, volume, mask, settings.tolerance, has_ambient_light(renderer), grids_,
-                     notes);
+    const double share = parts.size() > 1 ? 0.5 / static_cast<double>(parts.size()) : 1;
+    std::vector<Layer> layers;
+    for (const auto& [data, part] : parts) {
+      for (Layer& layer : layers_of(mapper, data, *part, mask, share * settings.tolerance,
+                                    has_ambient_light(renderer), grids_, notes)) {
+        layers.push_back(std::move(layer));
+      }
+    }
+    return layers;
   });
   grids_.keep_used();
 }

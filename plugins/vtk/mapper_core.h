@@ -7,6 +7,7 @@
 #include <memory>
 #include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "grid_layers.h"
@@ -17,6 +18,8 @@
 #include "view.h"
 
 class vtkAbstractVolumeMapper;
+class vtkAlgorithm;
+class vtkDataSet;
 class vtkRayCastImageDisplayHelper;
 class vtkRenderer;
 class vtkUnstructuredGridVolumeMapper;
@@ -46,6 +49,9 @@ struct Outcome {
   double seconds = 0;
 };
 
+/// Brings the data of a mapper up to date, as far as it has any.
+void update_inputs(vtkAlgorithm& mapper);
+
 /// What all mappers of this plug-in do: make a scene of a volume, render it, and put the picture
 /// into the window's framebuffer, over what is there and under geometry in front of it.
 class MapperCore {
@@ -63,6 +69,9 @@ class MapperCore {
   /// Draws a volume of a grid or of a mesh. What fails is told by the mapper's error event, what is
   /// left out by its warnings; each once.
   void draw(vtkVolumeMapper& mapper, const Mask& mask, vtkRenderer& renderer, vtkVolume& volume);
+  /// Draws several volumes with their data as one: where they overlap, they mix.
+  void draw(vtkVolumeMapper& mapper, const std::vector<std::pair<vtkDataSet*, vtkVolume*>>& parts,
+            const Mask& mask, vtkRenderer& renderer, vtkVolume& volume);
   void draw(vtkUnstructuredGridVolumeMapper& mapper, vtkRenderer& renderer, vtkVolume& volume);
   /// Returns the scene that draw() renders, without geometry. Throws Error.
   Scene scene_of(vtkVolumeMapper& mapper, const Mask& mask, vtkRenderer& renderer,

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "stand_ins.h"
 
-#include <vtkAlgorithm.h>
 #include <vtkContourValues.h>
 #include <vtkFixedPointVolumeRayCastMapper.h>
 #include <vtkGPUVolumeRayCastMapper.h>
@@ -38,14 +37,24 @@ class GpuStandIn final : public vtkGPUVolumeRayCastMapper, public HasCore {
 
   int IsRenderSupported(vtkRenderWindow*, vtkVolumeProperty*) override { return 1; }
   void Render(vtkRenderer* renderer, vtkVolume* volume) override {
-    this->GetInputAlgorithm()->Update();
+    update_inputs(*this);
     const Mask mask{this->GetMaskInput(), this->GetMaskType() == BinaryMaskType,
                     double{this->GetMaskBlendFactor()}};
     if (this->GetFinalColorWindow() != 1 || this->GetFinalColorLevel() != 0.5F) {
       this->core.left_out.add("the window and level of the final color are left out");
     }
     if (this->GetRenderToImage() != 0) this->core.left_out.add("RenderToImage is left out");
-    this->core.draw(*this, mask, *renderer, *volume);
+    if (auto* const several = vtkMultiVolume::SafeDownCast(volume)) {
+      std::vector<std::pair<vtkDataSet*, vtkVolume*>> parts;
+      for (int port = 0; port < this->GetInputCount(); ++port) {
+        if (vtkVolume* const part = several->GetVolume(port)) {
+          parts.emplace_back(this->GetInput(port), part);
+        }
+      }
+      this->core.draw(*this, parts, mask, *renderer, *volume);
+    } else {
+      this->core.draw(*this, mask, *renderer, *volume);
+    }
     this->TimeToDraw = this->core.outcome.seconds;
   }
   void ReleaseGraphicsResources(vtkWindow* window) override { this->core.release(window); }
@@ -69,7 +78,7 @@ vtkStandardNewMacro(GpuStandIn)
   void operator=(const FixedPointStandIn&) = delete;
 
   void Render(vtkRenderer* renderer, vtkVolume* volume) override {
-    this->GetInputAlgorithm()->Update();
+    update_inputs(*this);
     this->core.draw(*this, {}, *renderer, *volume);
     this->TimeToDraw = this->core.outcome.seconds;
   }
@@ -93,7 +102,7 @@ vtkStandardNewMacro(FixedPointStandIn)
   void operator=(const RayCastStandIn&) = delete;
 
   void Render(vtkRenderer* renderer, vtkVolume* volume) override {
-    this->GetInputAlgorithm()->Update();
+    update_inputs(*this);
     this->core.draw(*this, *renderer, *volume);
     this->TimeToDraw = this->core.outcome.seconds;
   }
@@ -117,7 +126,7 @@ vtkStandardNewMacro(RayCastStandIn)
   void operator=(const ZSweepStandIn&) = delete;
 
   void Render(vtkRenderer* renderer, vtkVolume* volume) override {
-    this->GetInputAlgorithm()->Update();
+    update_inputs(*this);
     this->core.draw(*this, *renderer, *volume);
     this->TimeToDraw = this->core.outcome.seconds;
   }
@@ -142,7 +151,7 @@ vtkStandardNewMacro(ZSweepStandIn)
 
   bool IsSupported(vtkRenderWindow*) override { return true; }
   void Render(vtkRenderer* renderer, vtkVolume* volume) override {
-    this->GetInputAlgorithm()->Update();
+    update_inputs(*this);
     this->core.draw(*this, *renderer, *volume);
     this->TimeToDraw = this->core.outcome.seconds;
   }

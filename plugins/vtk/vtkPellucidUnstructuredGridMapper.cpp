@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "vtkPellucidUnstructuredGridMapper.h"
 
-#include <vtkAlgorithm.h>
 #include <vtkObjectFactory.h>
 #include <vtkRenderer.h>
 #include <vtkVolume.h>
@@ -20,7 +19,7 @@ vtkPellucidUnstructuredGridMapper::~vtkPellucidUnstructuredGridMapper() {
 }
 
 void vtkPellucidUnstructuredGridMapper::Render(vtkRenderer* renderer, vtkVolume* volume) {
-  this->GetInputAlgorithm()->Update();
+  pellucid::plugin::update_inputs(*this);
   this->Core->draw(*this, *renderer, *volume);
   this->TimeToDraw = this->Core->outcome.seconds;
 }

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "vtkPellucidVolumeMapper.h"
 
-#include <vtkAlgorithm.h>
 #include <vtkObjectFactory.h>
 #include <vtkRenderer.h>
 #include <vtkVolume.h>
@@ -28,7 +27,7 @@ vtkPellucidVolumeMapper::~vtkPellucidVolumeMapper() {
 }
 
 void vtkPellucidVolumeMapper::Render(vtkRenderer* renderer, vtkVolume* volume) {
-  this->GetInputAlgorithm()->Update();
+  pellucid::plugin::update_inputs(*this);
   this->Core->draw(*this, mask_of(*this), *renderer, *volume);
   this->TimeToDraw = this->Core->outcome.seconds;
 }

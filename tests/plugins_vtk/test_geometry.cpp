@@ -3,6 +3,8 @@
 // Volumes among geometry, in parts of windows, and several of them.
 #include <gtest/gtest.h>
 #include <vtkActor.h>
+#include <vtkGPUVolumeRayCastMapper.h>
+#include <vtkMultiVolume.h>
 #include <vtkPolyDataMapper.h>
 #include <vtkProperty.h>
 #include <vtkSphereSource.h>
@@ -15,6 +17,7 @@
 #include "mapper_core.h"
 #include "pellucid/cpu/render.h"
 #include "tests/plugins_vtk/stage.h"
+#include "vtkPellucidFactory.h"
 #include "vtkPellucidVolumeMapper.h"
 
 namespace pellucid::test {
@@ -222,6 +225,42 @@ TEST(VtkGeometry, VolumesAreDrawnOneOverTheOther) {
   }
   // Two pictures are rounded to 8 bits.
   EXPECT_LE(largest_difference(shown, truth), 2 * (half_a_step + first->GetTolerance() + rounding));
+}
+
+TEST(VtkGeometry, TheVolumesOfAMultiVolumeMix) {
+  vtkPellucidFactory::Use();
+  vtkNew<vtkGPUVolumeRayCastMapper> mapper;
+  vtkPellucidFactory::Use(false);
+  Stage stage;
+  vtkNew<vtkMultiVolume> several;
+  several->SetMapper(mapper);
+  vtkNew<vtkVolume> parts[2];
+  for (int i = 0; i < 2; ++i) {
+    mapper->SetInputDataObject(i, ball_image());
+    parts[i]->SetProperty(soft_property(i + 2));
+    parts[i]->SetPosition(8 * i, 0, 0);
+    several->SetVolume(parts[i], i);
+  }
+  stage.renderer->AddVolume(several);
+  stage.look();
+  const Messages messages;
+  const Image shown = stage.picture();
+  EXPECT_EQ(messages.text(), "");
+  // The two layers as a scene of their own.
+  Scene scene;
+  for (int i = 0; i < 2; ++i) {
+    vtkNew<vtkPellucidVolumeMapper> one;
+    one->SetInputData(ball_image());
+    parts[i]->SetMapper(one);
+    const Scene made = one->GetCore().scene_of(*one, {}, *stage.renderer, *parts[i]);
+    std::vector<Layer> layers = scene.layers;
+    layers.push_back(made.layers.at(0));
+    scene = made;
+    scene.layers = layers;
+  }
+  scene.integration.set_tolerance(2e-4);
+  EXPECT_LE(largest_difference(shown, render(scene)),
+            half_a_step + default_tolerance + rounding + 2 * default_tolerance / 8 + 2e-4);
 }
 
 /// Tiles of a picture twice and three times as large make the picture of a larger window.

@@ -293,6 +293,25 @@ INSTANTIATE_TEST_SUITE_P(
             "dependent components"}),
     [](const auto& made) { return std::string(made.param.name); });
 
+TEST(VtkLife, AMapperWithoutDataDrawsNothing) {
+  Stage stage;
+  vtkNew<vtkPellucidVolumeMapper> mapper;
+  vtkVolume* const volume = stage.add(mapper, soft_property());
+  const Messages messages;
+  EXPECT_EQ(brightness(stage.picture()), 0);
+  mapper->Render(stage.renderer, volume);
+  vtkNew<vtkRectilinearGrid> grid;
+  grid->SetDimensions(3, 3, 3);
+  vtkNew<vtkFloatArray> values;
+  values->SetNumberOfTuples(27);
+  values->Fill(50);
+  grid->GetPointData()->SetScalars(values);
+  mapper->SetInputData(grid);
+  EXPECT_EQ(messages.text().find("Pellucid draws"), std::string::npos) << messages.text();
+  mapper->Render(stage.renderer, volume);
+  EXPECT_NE(messages.text().find("coordinates for 3 points"), std::string::npos) << messages.text();
+}
+
 TEST(VtkLife, ValuesThatAreNotNumbersAreVacuum) {
   Stage stage;
   vtkNew<vtkPellucidVolumeMapper> mapper;
