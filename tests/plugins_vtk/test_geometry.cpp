@@ -79,6 +79,7 @@ struct BallCase {
   const char* name;
   double azimuth, elevation;
   bool parallel;
+  double view_angle = 30;
 };
 
 void PrintTo(const BallCase& ball, std::ostream* to) {
@@ -96,6 +97,7 @@ TEST_P(VtkDepth, ABallHalfInTheVolumeIsSeenThroughIt) {
   const double radius = 9;
   stage.renderer->AddActor(red_ball(center, radius));
   stage.camera->SetParallelProjection(GetParam().parallel ? 1 : 0);
+  stage.camera->SetViewAngle(GetParam().view_angle);
   stage.look(GetParam().azimuth, GetParam().elevation);
   const Image shown = stage.picture();
   EXPECT_EQ(stage.gl_errors(), "");
@@ -115,6 +117,20 @@ TEST_P(VtkDepth, ABallHalfInTheVolumeIsSeenThroughIt) {
   const double facets = 2e-3;
   EXPECT_LE(largest_difference(shown, truth, apart),
             half_a_step + mapper->GetTolerance() + rounding + facets);
+  // Rays end at the ball, measured along them.
+  const auto geometry = plugin::geometry_of(*stage.renderer, plugin::view_of(*stage.renderer));
+  ASSERT_NE(geometry, nullptr);
+  for (int y = 0; y < 96; ++y) {
+    for (int x = 0; x < 128; ++x) {
+      const double end = double{geometry->depth[static_cast<std::size_t>(128 * y + x)]};
+      const double wanted = distance_to_ball(frame.ray(x, y), middle, radius);
+      if (!apart(x, y)) continue;
+      EXPECT_EQ(std::isinf(end), std::isinf(wanted)) << x << ' ' << y;
+      if (std::isfinite(end) && std::isfinite(wanted)) {
+        EXPECT_NEAR(end, wanted, 0.01) << x << ' ' << y;
+      }
+    }
+  }
   // It is no test if the ball is not seen, or the volume is not in front of it.
   double most_red = 0, hidden_red = 1;
   for (int y = 0; y < 96; ++y) {
@@ -133,7 +149,8 @@ INSTANTIATE_TEST_SUITE_P(Sides, VtkDepth,
                          testing::Values(BallCase{"front", 60, 20, false},
                                          BallCase{"back", -75, 10, false},
                                          BallCase{"parallel_front", 60, 20, true},
-                                         BallCase{"parallel_back", -75, 10, true}),
+                                         BallCase{"parallel_back", -75, 10, true},
+                                         BallCase{"wide", -20, -15, false, 110}),
                          [](const auto& made) { return std::string(made.param.name); });
 
 TEST(VtkGeometry, AMultisampledWindowHasTheSamePicture) {
