@@ -123,10 +123,14 @@ Curve curve_of(vtkColorTransferFunction& function) {
 }
 
 Curve color_curve(vtkVolumeProperty& property, int component) {
-  if (property.GetColorChannels(component) == 1) {
-    return curve_of(*property.GetGrayTransferFunction(component));
+  Curve curve = property.GetColorChannels(component) == 1
+                    ? curve_of(*property.GetGrayTransferFunction(component))
+                    : curve_of(*property.GetRGBTransferFunction(component));
+  // A window shows what is below 0 as 0.
+  for (CurvePoint& point : curve) {
+    point.y = {std::max(point.y.r, 0.0), std::max(point.y.g, 0.0), std::max(point.y.b, 0.0)};
   }
-  return curve_of(*property.GetRGBTransferFunction(component));
+  return curve;
 }
 
 Rgb<double> value_at(const Curve& curve, double x) {

@@ -21,6 +21,8 @@ namespace {
 
 /// Of the window of a camera, in pixels.
 constexpr int largest_shift = 16384;
+/// Of the picture that a window of a camera is a part of: it is kept whole.
+constexpr double largest_picture = 1e8;
 
 Vec3<double> vector_of(const double v[3]) {
   return {v[0], v[1], v[2]};
@@ -79,6 +81,11 @@ View view_of(vtkRenderer& renderer) {
   camera.GetWindowCenter(center);
   const int across = pixels_off(center[0], view.width), up = pixels_off(center[1], view.height);
   view.size = {view.width + 2 * std::abs(across), view.height + 2 * std::abs(up)};
+  if (1.0 * view.size.width * view.size.height > largest_picture) {
+    throw Error("camera: its WindowCenter makes it a part of a picture of " +
+                std::to_string(view.size.width) + " x " + std::to_string(view.size.height) +
+                " pixels; take fewer tiles");
+  }
   view.column = std::max(2 * across, 0);
   view.row = std::max(-2 * up, 0);
 

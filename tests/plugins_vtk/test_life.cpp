@@ -5,6 +5,7 @@
 #include <vtkCallbackCommand.h>
 #include <vtkCellArray.h>
 #include <vtkCommand.h>
+#include <vtkCullerCollection.h>
 #include <vtkDoubleArray.h>
 #include <vtkFloatArray.h>
 #include <vtkGPUVolumeRayCastMapper.h>
@@ -280,6 +281,12 @@ INSTANTIATE_TEST_SUITE_P(
                   stage.camera->SetViewShear(0.5, 0, 1);
                 },
                 "ViewShear"},
+        BadCase{"far_window",
+                [](Stage& stage, vtkImageData*, vtkVolumeProperty*, vtkPellucidVolumeMapper*) {
+                  stage.camera->SetWindowCenter(300, 300);
+                  stage.renderer->GetCullers()->RemoveAllItems();  // they see that nothing is seen
+                },
+                "take fewer tiles"},
         BadCase{
             "dependent_components",
             [](Stage&, vtkImageData* image, vtkVolumeProperty* property, vtkPellucidVolumeMapper*) {
