@@ -284,7 +284,7 @@ INSTANTIATE_TEST_SUITE_P(
         BadCase{"far_window",
                 [](Stage& stage, vtkImageData*, vtkVolumeProperty*, vtkPellucidVolumeMapper*) {
                   stage.camera->SetWindowCenter(300, 300);
-                  stage.renderer->GetCullers()->RemoveAllItems();  // they see that nothing is seen
+                  stage.renderer->GetCullers()->RemoveAllItems();
                 },
                 "take fewer tiles"},
         BadCase{
