@@ -30,14 +30,15 @@ std::string_view target_of(const Request& request) {
   return {request.target().data(), request.target().size()};
 }
 
-/// The page may load what comes from here, and nothing else. It may not be shown in a frame of
-/// others, nor tell others its address, which has the token.
-void add_policies(Response& response, std::string_view host) {
+/// The page may load what comes from here, and nothing else. Only those who are named may show it
+/// in a frame. It may not tell others its address, which has the token.
+void add_policies(Response& response, std::string_view host, const std::string& frame_ancestors) {
   const std::string socket = "ws://" + std::string(host);
   response.set("Content-Security-Policy",
                "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' blob:; "
                "connect-src 'self' " +
-                   socket + "; base-uri 'none'; form-action 'none'; frame-ancestors 'none'");
+                   socket + "; base-uri 'none'; form-action 'none'; frame-ancestors " +
+                   frame_ancestors);
   response.set("X-Content-Type-Options", "nosniff");
   response.set("Referrer-Policy", "no-referrer");
   response.set("Cross-Origin-Opener-Policy", "same-origin");
@@ -83,7 +84,7 @@ class RequestReader : public std::enable_shared_from_this<RequestReader> {
     }
     if (file == nullptr) return respond({http::status::not_found, request.version()}, false);
     Response response{http::status::ok, request.version()};
-    add_policies(response, *host);
+    add_policies(response, *host, count_->state().frame_ancestors);
     response.set(http::field::content_type,
                  boost::string_view(file->content_type.data(), file->content_type.size()));
     response.body() = file->content;

@@ -38,10 +38,12 @@ void PageServer::State::accept() {
   });
 }
 
-PageServer::PageServer(std::uint16_t port, PageEvents events, ServerLimits limits)
+PageServer::PageServer(std::uint16_t port, PageEvents events, ServerLimits limits,
+                       const std::string& frame_ancestors)
     : parts_(std::make_unique<Parts>()) {
   parts_->state = std::make_shared<State>(parts_->context, std::move(events), limits);
   State& state = *parts_->state;
+  if (!frame_ancestors.empty()) state.frame_ancestors = frame_ancestors;
   const tcp::endpoint endpoint(net::ip::address_v4::loopback(), port);
   try {
     state.acceptor.open(endpoint.protocol());

@@ -46,8 +46,10 @@ struct ServerLimits {
 /// Others are answered 403 without a word. One thread runs it.
 class PageServer {
  public:
-  /// Binds the port; 0: any that is free. Throws Error if that fails.
-  PageServer(std::uint16_t port, PageEvents events, ServerLimits limits = {});
+  /// Binds the port; 0: any that is free. Throws Error if that fails. `frame_ancestors`: who may
+  /// show the page in a frame (ViewerOptions).
+  PageServer(std::uint16_t port, PageEvents events, ServerLimits limits = {},
+             const std::string& frame_ancestors = {});
   ~PageServer();
   PageServer(const PageServer&) = delete;
   PageServer& operator=(const PageServer&) = delete;

@@ -68,7 +68,12 @@ namespace {
 /// Whether a part of the layer's file can be chosen: it is one field of a file.
 bool is_one_field(const LayerDescription& layer) {
   return !layer.mesh && !layer.labels && !layer.mask && layer.channels.empty() &&
-         layer.field.builtin.empty();
+         layer.field.builtin.empty() && has_source(layer.field);
+}
+
+/// Whether there is a file that could hold other arrays or times.
+bool has_file(const LayerDescription& layer) {
+  return layer.mesh ? layer.mesh->file != array_in_memory : is_one_field(layer);
 }
 
 int components_of(const LayerDescription& layer) {
@@ -96,7 +101,7 @@ std::vector<FileChoices> file_choices(const SceneDescription& description) {
 
 FileChoices all_choices(const LayerDescription& layer) {
   FileChoices choices{components_of(layer)};
-  if (layer.mesh) {
+  if (layer.mesh && has_file(layer)) {
     MeshReadOptions options = layer.mesh->options;
     options.note = {};
     const MeshFile file = read_mesh(layer.mesh->file, options);
@@ -127,6 +132,7 @@ Json scene_json(const SceneState& state, const std::vector<FileChoices>& choices
     layers.push_back({{"kind", kind_of(layer)},
                       {"channels", channel_names_of(layer)},
                       {"range", range_of(layer)},
+                      {"file", has_file(state.description().layers[i])},
                       {"components", choices[i].components},
                       {"arrays", choices[i].arrays},
                       {"times", choices[i].times}});

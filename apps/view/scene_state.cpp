@@ -247,6 +247,7 @@ void SceneState::redo() {
 }
 
 std::string SceneState::saved() const {
+  check_has_sources(description_);
   SceneDescription description = description_;
   visit_paths(description, [](std::filesystem::path& path) {
     if (!path.empty()) path = std::filesystem::absolute(path).lexically_normal();

@@ -55,7 +55,7 @@ class SceneState {
   void undo();
   void redo();
 
-  /// Returns the description as a scene file, with absolute paths.
+  /// Returns the description as a scene file, with absolute paths. Throws Error if data are arrays.
   std::string saved() const;
   /// Returns the number of the layer, or throws Error if there is none.
   std::size_t checked_layer(std::size_t layer) const;

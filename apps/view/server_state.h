@@ -39,6 +39,7 @@ struct PageServer::State : std::enable_shared_from_this<PageServer::State> {
   ServerLimits limits;
   std::unique_ptr<Gate> gate;
   std::string address;
+  std::string frame_ancestors = "'none'";  ///< for the Content Security Policy
   net::ip::tcp::acceptor acceptor;
   net::steady_timer timer;
   std::size_t connections = 0;  ///< of any kind

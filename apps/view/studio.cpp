@@ -203,9 +203,10 @@ struct Studio::Visitor {
   }
 };
 
-Studio::Studio(SceneState state, bool keeps_camera, int threads, Send send)
+Studio::Studio(SceneState state, bool keeps_camera, int threads, SceneChanged changed, Send send)
     : state_(std::move(state)),
       parallel_(parallel_for(threads)),
+      changed_(std::move(changed)),
       send_(std::move(send)),
       lettering_(lettering_of(state_.description())),
       choices_(file_choices(state_.description())),
@@ -293,12 +294,14 @@ bool Studio::take_asked(std::deque<Asked>& asked, std::vector<PageId>& opened) {
 
 void Studio::carry_out(std::deque<Asked> asked) {
   // A drag sends edits faster than frames are rendered: scenes are told once, after all of them.
-  bool edited = false;
+  bool edited = false, changed = false;
   for (const Asked& one : asked) {
     if (has_ended()) return;
     carry_out(one);
     edited = edited || is_edit(one.command);
+    changed = changed || !only_asks(one.command);
   }
+  if (changed && changed_) changed_(state_.description(), state_.scene());
   if (edited) send_scene();
 }
 

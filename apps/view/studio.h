@@ -19,6 +19,8 @@
 
 namespace pellucid::view {
 
+/// Told of the scene after each change.
+using SceneChanged = std::function<void(const SceneDescription&, const Scene&)>;
 /// Where a studio's messages go: to one page, or to all if there is none.
 using Send = std::function<void(std::optional<PageId>, PageMessage)>;
 
@@ -28,7 +30,8 @@ using Send = std::function<void(std::optional<PageId>, PageMessage)>;
 class Studio {
  public:
   /// `keeps_camera`: whether the camera was chosen by the user, and not fitted to the data.
-  Studio(SceneState state, bool keeps_camera, int threads, Send send);
+  /// `changed` may be empty.
+  Studio(SceneState state, bool keeps_camera, int threads, SceneChanged changed, Send send);
   ~Studio();
   Studio(const Studio&) = delete;
   Studio& operator=(const Studio&) = delete;
@@ -64,6 +67,7 @@ class Studio {
 
   SceneState state_;
   ParallelFor parallel_;
+  SceneChanged changed_;
   Send send_;
   Lettering lettering_;
   std::vector<FileChoices> choices_;

@@ -49,10 +49,10 @@ void run_viewer(SceneDescription description, Scene scene, const ViewerOptions& 
     receiver->pages_left(pages);
     if (pages == 0) left = Clock::now();
   };
-  PageServer server(options.port, std::move(events));
+  PageServer server(options.port, std::move(events), {}, options.frame_ancestors);
   server_of_pages = &server;
   Studio studio(SceneState(std::move(description), std::move(scene), parallel_for(threads)),
-                options.keeps_camera, threads,
+                options.keeps_camera, threads, options.changed,
                 [&server](std::optional<PageId> page, PageMessage message) {
                   if (page) {
                     server.send(*page, std::move(message));

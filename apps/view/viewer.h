@@ -15,6 +15,11 @@ struct ViewerOptions {
   int threads = 0;              ///< 0: one per core
   bool keeps_camera =
       false;  ///< whether the user chose the camera; else it is fitted to the window
+  /// Pages of others that may show this one in a frame: sources of a Content Security Policy, such
+  /// as "http://localhost:*". Empty: none may.
+  std::string frame_ancestors{};
+  /// Called with the scene after each change of a page, by a thread of the viewer; may be empty.
+  std::function<void(const SceneDescription&, const Scene&)> changed{};
 };
 
 /// Serves the page of a scene until `ended`, which is asked ten times a second, is true, or the

@@ -1,10 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 
 // What light and surfaces cost: frames in light beside the same unlit ones, and isosurfaces; and
-// how far VTK's picture in the same light is from the exact one at finer and finer steps.
+// how far VTK's pictures of the same are from the exact ones at finer and finer steps.
 
-#include <algorithm>
-#include <cmath>
 #include <cstdio>
 #include <filesystem>
 #include <functional>
@@ -13,11 +11,12 @@
 #include <utility>
 #include <vector>
 
+#include "benchmarks/light/beside_vtk.h"
+#include "benchmarks/light/subject.h"
 #include "benchmarks/support/document.h"
 #include "benchmarks/support/environment.h"
 #include "benchmarks/support/frame_arguments.h"
 #include "benchmarks/support/interleave.h"
-#include "benchmarks/vtk/vtk_contenders.h"
 #include "pellucid/cpu/render.h"
 #include "pellucid/scene/defaults.h"
 #include "tests/scenes/makers.h"
@@ -28,24 +27,12 @@ namespace {
 using namespace pellucid;
 
 using Arguments = bench::FrameArguments;
-
-struct Subject {
-  std::string name;
-  scenes::VolumePointer volume;
-  scenes::TransferPointer function;
-  double surface;  ///< value of an isosurface
-};
+using bench::Subject;
 
 struct Variant {
   std::string name;
   Layer layer;
 };
-
-Layer lit(Layer layer, GradientKind gradient) {
-  layer.shading = Shading{};
-  layer.shading->gradient = gradient;
-  return layer;
-}
 
 std::vector<Variant> variants(const Subject& subject) {
   const Layer plain{VolumeContent{subject.volume, subject.function, nullptr}};
@@ -54,34 +41,15 @@ std::vector<Variant> variants(const Subject& subject) {
   weakened.gradient_opacity = std::make_shared<const GradientOpacity>(
       std::vector<GradientOpacity::Point>{{0.01 * range, 0}, {0.05 * range, 1}},
       GradientOpacity::Unit::voxel);
-  Layer surface{VolumeContent{subject.volume, scenes::transfer({{0, 0, {0, 0, 0}}}), nullptr}};
-  surface.isosurfaces = {{subject.surface, 1, {0.9, 0.8, 0.7}}};
-  Layer both = lit(plain, GradientKind::smooth);
+  Layer both = bench::in_light(plain, GradientKind::smooth);
   both.isosurfaces = {{subject.surface, 0.5, {0.9, 0.8, 0.7}}};
   return {{"unlit", plain},
-          {"in light, smooth gradients", lit(plain, GradientKind::smooth)},
-          {"in light, gradients of the field", lit(plain, GradientKind::field)},
+          {"in light, smooth gradients", bench::in_light(plain, GradientKind::smooth)},
+          {"in light, gradients of the field", bench::in_light(plain, GradientKind::field)},
           {"gradient opacity, unlit", weakened},
-          {"opaque isosurface alone, in light", lit(surface, GradientKind::smooth)},
+          {"opaque isosurface alone, in light",
+           bench::in_light(bench::surface_of(subject), GradientKind::smooth)},
           {"in light, with a translucent isosurface", both}};
-}
-
-struct Difference {
-  double largest = 0, rms = 0;
-};
-
-Difference difference(const Image& image, const Image& exact) {
-  Difference found;
-  for (std::size_t p = 0; p < exact.pixels.size(); ++p) {
-    for (std::size_t c = 0; c < 4; ++c) {
-      const double off = std::fabs(static_cast<double>(image.pixels[p][c]) -
-                                   static_cast<double>(exact.pixels[p][c]));
-      found.largest = std::max(found.largest, off);
-      found.rms += off * off;
-    }
-  }
-  found.rms = std::sqrt(found.rms / (4.0 * static_cast<double>(exact.pixels.size())));
-  return found;
 }
 
 void measure(const Subject& subject, const Arguments& arguments) {
@@ -115,47 +83,6 @@ void measure(const Subject& subject, const Arguments& arguments) {
   }
 }
 
-/// VTK's GPU mapper in the same light at finer and finer steps. Its normal has length 1 wherever
-/// there is a gradient, and its light shines along the camera, so that the camera is parallel.
-void compare_with_vtk(const Subject& subject, const Arguments& arguments) {
-  Scene scene;
-  scene.layers = {
-      lit({VolumeContent{subject.volume, subject.function, nullptr}}, GradientKind::smooth)};
-  scene.layers[0].shading->flatness = 0;
-  scene.size = {arguments.size / 2, arguments.size / 2};
-  scene.camera = default_camera(*subject.volume, scene.size);
-  scene.camera.projection = Projection::orthographic;
-  scene.camera.parallel_scale = 0.27 * length(scene.camera.position - scene.camera.focal_point);
-  scene.integration.tolerance = 1e-4;
-  RenderOptions options;
-  options.threads = arguments.threads;
-  const Image exact = render(scene, options);
-  Scene unlit = scene;
-  unlit.layers[0].shading.reset();
-  const Image exact_unlit = render(unlit, options);
-  const std::vector<double> steps{1, 0.5, 0.25, 0.1, 0.05, 0.02};
-  std::printf("\n%s beside VTK's GPU mapper, image %d x %d\n\n", subject.name.c_str(),
-              scene.size.width, scene.size.height);
-  const bench::VtkContenders vtk = bench::vtk_contenders(scene, steps, arguments.threads);
-  const bench::VtkContenders vtk_unlit = bench::vtk_contenders(unlit, steps, arguments.threads);
-  const auto gpu_of = [](const bench::VtkContenders& from) {
-    return std::ranges::find(from.list, "VTK GPU mapper", &bench::Contender::name);
-  };
-  const auto gpu = gpu_of(vtk), gpu_unlit = gpu_of(vtk_unlit);
-  if (gpu == vtk.list.end() || gpu_unlit == vtk_unlit.list.end()) {
-    std::printf("%s\n", vtk.left_out.c_str());
-    return;
-  }
-  std::printf("| step, voxels | in light: largest | RMS | unlit: largest | RMS |\n");
-  std::printf("|---|---|---|---|---|\n");
-  for (const double step : steps) {
-    const Difference in_light = difference(gpu->render(step).image, exact);
-    const Difference without = difference(gpu_unlit->render(step).image, exact_unlit);
-    std::printf("| %g | %.4f | %.5f | %.4f | %.5f |\n", step, in_light.largest, in_light.rms,
-                without.largest, without.rms);
-  }
-}
-
 void run(const Arguments& arguments) {
   std::printf("%s", bench::to_markdown(bench::environment("")).c_str());
   measure({"spike", scenes::builtin("marschner_lobb", arguments.points),
@@ -172,7 +99,8 @@ void run(const Arguments& arguments) {
     if (!std::filesystem::exists(data.file)) continue;
     const Subject subject{data.name, scenes::read(data), scenes::transfer(data.points), surface};
     measure(subject, arguments);
-    compare_with_vtk(subject, arguments);
+    bench::compare_light_with_vtk(subject, arguments);
+    bench::compare_surface_with_vtk(subject, arguments);
   }
 }
 

@@ -4,6 +4,7 @@
 #include <vtkAOSDataArrayTemplate.h>
 #include <vtkCamera.h>
 #include <vtkColorTransferFunction.h>
+#include <vtkContourValues.h>
 #include <vtkImageData.h>
 #include <vtkMatrix4x4.h>
 #include <vtkNew.h>
@@ -46,6 +47,22 @@ void set_opacity(const TransferFunction& transfer_function, double unit,
                         -std::expm1(-extinction * unit));
     }
   }
+}
+
+/// VTK's isosurfaces, in place of the medium. Each has the color and the opacity of its value.
+void show_surfaces(const std::vector<Isosurface>& surfaces, vtkVolumeMapper* mapper,
+                   vtkVolumeProperty* property) {
+  vtkNew<vtkPiecewiseFunction> opacity;
+  vtkNew<vtkColorTransferFunction> color;
+  mapper->SetBlendModeToIsoSurface();
+  for (std::size_t i = 0; i < surfaces.size(); ++i) {
+    const Isosurface& surface = surfaces[i];
+    property->GetIsoSurfaceValues()->SetValue(static_cast<int>(i), surface.value);
+    opacity->AddPoint(surface.value, surface.opacity);
+    color->AddRGBPoint(surface.value, surface.color.r, surface.color.g, surface.color.b);
+  }
+  property->SetScalarOpacity(opacity);
+  property->SetColor(color);
 }
 
 }  // namespace
@@ -103,6 +120,9 @@ vtkSmartPointer<vtkVolume> vtk_volume(const Scene& scene, vtkVolumeMapper* mappe
     property->SetSpecular(shading->specular);
     property->SetSpecularPower(shading->power);
   }
+
+  const std::vector<Isosurface>& surfaces = scene.layers.front().isosurfaces;
+  if (!surfaces.empty()) show_surfaces(surfaces, mapper, property);
 
   const GridPlacement& placement = test::volume_of(scene).volume->description().placement;
   vtkNew<vtkMatrix4x4> matrix;

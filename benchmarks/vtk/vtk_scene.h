@@ -21,7 +21,8 @@ std::string not_for_vtk(const Scene& scene);
 /// between its points, so that an extinction τ is O = 1 - exp(-τ u). Each stretch of the scene's
 /// transfer function gets further points, for O is not linear where τ is; u is one voxel. Grid
 /// directions become the volume's matrix, for the mappers do not look at those of vtkImageData. A
-/// shading becomes VTK's, whose only light is at the camera.
+/// shading becomes VTK's, whose only light is at the camera. Isosurfaces become the mapper's blend
+/// mode of that name, which shows no medium.
 vtkSmartPointer<vtkVolume> vtk_volume(const Scene& scene, vtkVolumeMapper* mapper);
 
 /// The scene's values, not copied: the scene must outlive them.

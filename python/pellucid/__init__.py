@@ -32,6 +32,7 @@ from ._render import render, scene_of
 from .scene import (Camera, Clip, ClipBox, ClipCylinder, ClipPlane, ClipSphere, DirectionalLight,
                     Gaussian, HeadLight, Integration, Isosurface, Layer, Light, PointLight, Scene,
                     Shading, Slice)
+from ._view import Viewer, view
 from .segments import integrate
 
 __all__ = [
@@ -39,11 +40,12 @@ __all__ = [
     "Comparison", "DirectionalLight", "Error", "Frame", "Gaussian", "Gaussians", "GradientOpacity",
     "HeadLight", "Image", "ImportedTransferFunction", "Integration", "Isosurface", "LabelMask",
     "LabelTable", "LabelVolume", "Layer", "Light", "Mesh", "Note", "OpacityTable", "PointLight",
-    "Preset", "Renderer", "Scene", "Shading", "Slice", "TransferFunction", "Volume", "__version__",
+    "Preset", "Renderer", "Scene", "Shading", "Slice", "TransferFunction", "Viewer", "Volume",
+    "__version__",
     "builtin_field", "default_camera", "default_look", "default_transfer_function", "dicom_series",
     "export_transfer_function", "from_colormap", "histogram", "import_transfer_function",
     "integrate", "label_count", "linear_to_srgb", "load_scene", "make_preset", "mesh_of", "presets",
     "projection_transfer_function", "read", "read_image", "read_mesh", "read_volume", "render",
     "render_reference", "scene_of", "srgb_to_linear", "suggest", "suggest_boundaries",
-    "view_camera",
+    "view", "view_camera",
 ]

@@ -8,10 +8,12 @@ from __future__ import annotations
 
 import math
 import sys
+import warnings
 from typing import Any, NamedTuple, Optional
 
 import numpy
 
+from ._notes import Note
 from ._pellucid import Error
 
 
@@ -90,6 +92,9 @@ def _unmasked(data: numpy.ma.MaskedArray) -> numpy.ndarray:
     if values.dtype.kind not in "biuf":
         return values  # refused by its type
     if values.dtype.kind != "f":
+        exact = 2 ** 53
+        if values.dtype.itemsize == 8 and (values.max() > exact or values.min() < -exact):
+            warnings.warn("masked integers beyond 2^53 are rounded to f64", Note, stacklevel=4)
         values = values.astype(numpy.float32 if values.dtype.itemsize <= 2 else numpy.float64)
     return numpy.where(mask, values.dtype.type(numpy.nan), values)
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import os
-from typing import Any, Callable, Optional
+from typing import Any, Callable, Optional, Union
 
 from . import _pellucid
 from ._pellucid import Channels, Error, Image, LabelVolume, Mesh, Renderer, Volume
@@ -23,6 +23,20 @@ def _layer_of(data: Any, transfer_function: Any, attributes: dict[str, Any]) -> 
             transfer_function, shading = _pellucid.default_look(data)
             return Layer(data, transfer_function, shading=shading, **attributes)
     return Layer(data, transfer_function, **attributes)
+
+
+def _share_of(tolerance: Any) -> Optional[float]:
+    """0.01 of "1%", None of a number."""
+    if not isinstance(tolerance, str):
+        return None
+    number = tolerance.strip()
+    try:
+        if not number.endswith("%"):
+            raise ValueError
+        return float(number[:-1]) / 100
+    except ValueError:
+        raise Error(f"tolerance: expected a number or a text as \"1%\", got {tolerance!r:.60}"
+                    ) from None
 
 
 def scene_of(data: Any, transfer_function: Any = None, *, preset: Optional[str] = None,
@@ -73,8 +87,9 @@ def scene_of(data: Any, transfer_function: Any = None, *, preset: Optional[str] 
 
 
 def render(data: Any, transfer_function: Any = None, *, preset: Optional[str] = None,
-           tolerance: Optional[float] = None, size: Any = None, camera: Optional[Camera] = None,
-           view: Optional[str] = None, background: Optional[Color] = None, depth: bool = False,
+           tolerance: Union[float, str, None] = None, size: Any = None,
+           camera: Optional[Camera] = None, view: Optional[str] = None,
+           background: Optional[Color] = None, depth: bool = False,
            error: bool = True, values: bool = False, threads: int = 0,
            progress: Optional[Callable[[float], Any]] = None,
            renderer: Optional[Renderer] = None, **layer: Any) -> Image:
@@ -88,7 +103,7 @@ def render(data: Any, transfer_function: Any = None, *, preset: Optional[str] = 
                        shading=None leaves that out
     preset             the name of one of presets(), in its place
     tolerance          largest error of any channel of a pixel, in premultiplied linear light; from
-                       1e-7 to 1, default 1/512
+                       1e-7 to 1, default 1/512. A text "1%": that share of the largest channel
     size               (width, height) or one number, in pixels; default 512
     camera, view       a Camera; or "front", "back", "left", "right", "top", "bottom", "oblique".
                        Default: one that shows all that is visible
@@ -104,7 +119,13 @@ def render(data: Any, transfer_function: Any = None, *, preset: Optional[str] = 
 
     Raises Error: one line that says what is wrong, where, and what to do.
     """
-    scene = scene_of(data, transfer_function, preset=preset, tolerance=tolerance, size=size,
-                     camera=camera, view=view, background=background, **layer)
-    return (renderer or Renderer()).render(scene, depth=depth, error=error, values=values,
-                                           threads=threads, progress=progress)
+    share = _share_of(tolerance)
+    scene = scene_of(data, transfer_function, preset=preset,
+                     tolerance=None if share is not None else tolerance, size=size, camera=camera,
+                     view=view, background=background, **layer)
+    renderer = renderer or Renderer()
+    if share is not None:
+        return renderer.render_to_share(scene, share, depth=depth, error=error, values=values,
+                                        threads=threads, progress=progress)
+    return renderer.render(scene, depth=depth, error=error, values=values, threads=threads,
+                           progress=progress)

@@ -141,68 +141,13 @@ py::object read_any(const std::string& text) {
   return py::cast(read_source(parse_field_source(text)));
 }
 
-/// Throws Error if a layer's data are arrays.
-void check_sources(const SceneDescription& description) {
-  for (std::size_t i = 0; i < description.layers.size(); ++i) {
-    const LayerDescription& layer = description.layers[i];
-    const auto known = [](const FieldSource& f) { return !f.file.empty() || !f.builtin.empty(); };
-    const bool has_data = layer.labels             ? known(layer.labels->field)
-                          : layer.mesh             ? !layer.mesh->file.empty()
-                          : layer.channels.empty() ? known(layer.field)
-                                                   : true;
-    if (has_data && (!layer.mask || known(layer.mask->field))) continue;
-    throw Error("layer " + std::to_string(i + 1) +
-                ": its data are arrays, which a scene file cannot hold; write them to a file "
-                "(Volume.write) and use what read() returns");
-  }
-}
-
 void save_scene_file(const py::object& object, const std::filesystem::path& path) {
-  PythonScene made = read_scene(object);
-  SceneDescription& description = made.description;
-  const Scene& scene = made.scene;
-  check_sources(description);
-  for (std::size_t i = 0; i < scene.layers.size(); ++i) {
-    const Layer& layer = scene.layers[i];
-    LayerDescription& to = description.layers[i];
-    to.name = layer.name;
-    to.visible = layer.visible;
-    to.transform = layer.transform;
-    to.clips = layer.clips;
-    to.projection = layer.projection;
-    const std::vector<std::string> names = function_channels(to);
-    const auto name_of = [&](int channel) {
-      return names.empty() || channel == 0 ? std::string()
-                                           : names.at(static_cast<std::size_t>(channel));
-    };
-    const auto points_of = [](const std::shared_ptr<const TransferFunction>& colors) {
-      return colors ? std::optional<TransferFunctionDescription>(colors->points()) : std::nullopt;
-    };
-    if (layer.shading)
-      to.shading = ShadingDescription{*layer.shading, name_of(layer.shading->channel)};
-    if (const auto& opacity = layer.gradient_opacity) {
-      to.gradient_opacity = GradientOpacityDescription{opacity->points(), opacity->unit(),
-                                                       name_of(opacity->channel())};
-    }
-    for (const Isosurface& s : layer.isosurfaces) {
-      to.isosurfaces.push_back({s.value, s.opacity, s.color, points_of(s.colors),
-                                name_of(s.channel), name_of(s.color_channel)});
-    }
-    for (const Slice& s : layer.slices) {
-      to.slices.push_back({s.point, s.normal, s.opacity, points_of(s.colors), name_of(s.channel)});
-    }
-  }
-  description.clips = scene.clips;
-  description.lights = scene.lights;
-  if (made.has_camera) description.camera = scene.camera;
-  description.size = scene.size;
-  description.samples = scene.samples;
-  description.integration = scene.integration;
-  description.background = scene.background;
-  if (scene.backdrop) {
+  const PythonScene made = read_scene(object);
+  check_has_sources(made.description);
+  if (made.scene.backdrop) {
     throw Error("backdrop: a scene file names a file; save the backdrop as .exr and add it there");
   }
-  write_text_file(path, scene_to_json(description));
+  write_text_file(path, scene_to_json(described(made)));
 }
 
 }  // namespace

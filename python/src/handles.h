@@ -26,6 +26,10 @@ struct VolumeHandle {
   std::optional<FieldSource> source{};  ///< none: an array
 };
 
+/// Returns the volume with the memory order of another one: itself, or a copy whose x, y and z are
+/// the same axes of its array. Volumes of several memory orders have one grid then.
+VolumeHandle in_order_of(const VolumeHandle& like, const VolumeHandle& volume);
+
 /// Python's Channels.
 struct ChannelsHandle {
   std::shared_ptr<const Channels> channels;
@@ -49,7 +53,11 @@ struct LabelHandle {
 /// Python's LabelMask. The functions of the choices are those of the mask.
 struct MaskHandle {
   std::shared_ptr<const LabelMask> mask;
+  std::array<std::size_t, 3> axes{2, 1, 0};  ///< VolumeHandle::axes
   std::optional<FieldSource> source{};
+  /// In the order of the last volume whose order was another one.
+  mutable std::shared_ptr<const LabelMask> reordered{};
+  mutable std::array<std::size_t, 3> reordered_axes{};
 };
 
 /// Python's Gaussians: a function of several variables as written and as made.

@@ -117,7 +117,7 @@ Other labels keep the layer's function.)")
              std::vector<LabelMask::Choice> list;
              for (const auto& [label, function] : choices) list.push_back({label, function});
              return MaskHandle{std::make_shared<const LabelMask>(labels.labels, std::move(list)),
-                               labels.source};
+                               labels.axes, labels.source};
            }),
            py::arg("labels"), py::arg("choices"));
 

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <exception>
@@ -12,27 +11,12 @@
 #include "images.h"
 #include "pellucid/cpu/renderer.h"
 #include "pellucid/reference/render.h"
+#include "relative_tolerance.h"
 #include "scenes.h"
+#include "waiting.h"
 
 namespace pellucid::python {
 
-namespace {
-
-using Clock = std::chrono::steady_clock;
-
-/// Lets Python handle Ctrl-C, and tells `progress` how far a frame is. Throws what either raises.
-void attend(const py::object& progress, double fraction) {
-  if (PyErr_CheckSignals() != 0) throw py::error_already_set();
-  if (!progress.is_none()) progress(fraction);
-}
-
-/// A thread that asks for the interpreter's lock while the interpreter ends would be ended by it,
-/// which C++ does not survive. It waits for the end of the process here instead.
-void wait_for_the_end_if_it_has_come() {
-  while (_Py_IsFinalizing() != 0) std::this_thread::sleep_for(std::chrono::seconds(1));
-}
-
-/// Throws Error unless it is 0, one per core, or a number of threads that a machine can have.
 int checked_threads(int threads) {
   constexpr int most = 1024;
   if (threads >= 0 && threads <= most) return threads;
@@ -40,28 +24,7 @@ int checked_threads(int threads) {
               std::to_string(threads));
 }
 
-/// Waits until `finished` returns true, without the interpreter's lock. Takes it every 20 ms for
-/// signals and `progress`. Throws what these raise.
-template <class Finished, class Fraction>
-void wait_until(Finished&& finished, Fraction&& fraction, const py::object& progress) {
-  using namespace std::chrono_literals;
-  const Clock::time_point begin = Clock::now();
-  Clock::time_point attended = begin;
-  const py::gil_scoped_release released;
-  while (!finished()) {
-    const Clock::time_point now = Clock::now();
-    if (now - attended >= 20ms) {
-      attended = now;
-      const double done = fraction();
-      wait_for_the_end_if_it_has_come();
-      const py::gil_scoped_acquire acquired;
-      attend(progress, done);
-    }
-    // A tenth of the time that it took so far: short frames end at once, long ones cost no time.
-    std::this_thread::sleep_for(std::clamp<Clock::duration>((now - begin) / 10, 20us, 1ms));
-  }
-  wait_for_the_end_if_it_has_come();
-}
+namespace {
 
 /// Python's Frame: a frame that is being rendered.
 class FrameHandle {
@@ -162,6 +125,80 @@ ImageHandle render(RendererHandle& handle, const py::object& scene, bool depth, 
   return start(handle, scene, depth, error, values, threads, 0).wait(progress);
 }
 
+/// Runs body() in a thread, without the interpreter's lock, and waits for it. Throws what it
+/// throws, and what `progress` and signals raise, once `stop` has ended it.
+template <class Body, class Fraction>
+void in_a_thread(Body&& body, std::stop_source& stop, Fraction&& fraction,
+                 const py::object& progress) {
+  std::exception_ptr failure;
+  std::atomic<bool> finished = false;
+  std::jthread worker([&] {
+    try {
+      body();
+    } catch (...) {
+      failure = std::current_exception();
+    }
+    finished = true;
+  });
+  const auto join = [&] {
+    const py::gil_scoped_release released;
+    worker.join();
+  };
+  try {
+    wait_until([&] { return finished.load(); }, fraction, progress);
+  } catch (...) {
+    stop.request_stop();
+    join();
+    throw;
+  }
+  join();
+  if (failure) std::rethrow_exception(failure);
+}
+
+/// At the tolerance that is `share` of the picture's largest channel. Several frames are rendered:
+/// a thread does it, and asks between them and within whether to stop.
+ImageHandle render_share(RendererHandle& handle, const py::object& object, double share, bool depth,
+                         bool error, bool values, int threads, const py::object& progress) {
+  PythonScene made = complete_python_scene(object);
+  if (!(share > 0 && share <= 1))
+    throw Error("tolerance: a share must be above 0 % and at most 100 %");
+  if (made.scene.integration.method != Method::exact) {
+    throw Error("tolerance: a share is for the method exact, not for " +
+                std::string(method_name(made.scene.integration.method)));
+  }
+  RenderOptions options = options_of(made.scene, depth, error, values, threads, 0);
+  std::stop_source stop;
+  options.stop = stop.get_token();
+  std::atomic<double> fraction = 0;
+  options.progress = [&](double done) {
+    fraction = done;
+    return !stop.stop_requested();
+  };
+  ImageHandle result{nullptr, made.scene.background};
+  std::optional<std::string> over;
+  in_a_thread(
+      [&] {
+        const double range = cli::estimate_range(made.scene, options);
+        cli::RelativePicture picture =
+            cli::render_relative(share, range, [&](double tolerance, RenderReport& report) {
+              made.scene.integration.set_tolerance(tolerance);
+              fit_opacity_tables(made.description, made.scene);
+              return handle.renderer->render(made.scene, options, &report);
+            });
+        result.image = std::make_shared<const Image>(std::move(picture.image));
+        result.report = picture.report;
+        result.tolerance = made.scene.integration.tolerance;
+        over = picture.over;
+      },
+      stop, [&] { return fraction.load(); }, progress);
+  if (over) {
+    Notes notes;
+    notes(*over);
+    notes.warn();
+  }
+  return result;
+}
+
 /// The reference has no frame to watch: it asks Python itself, from one of its threads.
 ImageHandle reference_image(const py::object& object, bool depth, int threads,
                             const py::object& progress) {
@@ -177,30 +214,12 @@ ImageHandle reference_image(const py::object& object, bool depth, int threads,
     return !stop.stop_requested();
   };
   ImageHandle handle{nullptr, scene.background};
-  std::exception_ptr failure;
-  std::atomic<bool> finished = false;
-  std::jthread worker([&] {
-    try {
-      handle.image =
-          std::make_shared<const Image>(render_reference(scene, options, &handle.report));
-    } catch (...) {
-      failure = std::current_exception();
-    }
-    finished = true;
-  });
-  const auto join = [&] {
-    const py::gil_scoped_release released;
-    worker.join();
-  };
-  try {
-    wait_until([&] { return finished.load(); }, [&] { return fraction.load(); }, progress);
-  } catch (...) {
-    stop.request_stop();
-    join();
-    throw;
-  }
-  join();
-  if (failure) std::rethrow_exception(failure);
+  in_a_thread(
+      [&] {
+        handle.image =
+            std::make_shared<const Image>(render_reference(scene, options, &handle.report));
+      },
+      stop, [&] { return fraction.load(); }, progress);
   return handle;
 }
 
@@ -258,6 +277,12 @@ Renders a Scene and returns its Image.
 depth, error and values fill the image's maps; values need one projected layer. `progress` is
 called with the finished fraction, every 20 ms; what it raises cancels the frame and is raised
 here, and so is Ctrl-C. Raises Error: one line that says what is wrong, where, and what to do.)")
+      .def("render_to_share", &render_share, py::arg("scene"), py::arg("share"), py::kw_only(),
+           py::arg("depth") = false, py::arg("error") = true, py::arg("values") = false,
+           py::arg("threads") = 0, py::arg("progress") = py::none(), R"(
+Renders a Scene at the tolerance that is `share` (in (0, 1]) of the picture's largest channel, and
+returns its Image, whose tolerance that is. Renders small pictures first, to find the channel. Else
+as render(). Warns if the picture may be off by more than the share.)")
       .def("start", &start, py::arg("scene"), py::kw_only(), py::arg("depth") = false,
            py::arg("error") = true, py::arg("values") = false, py::arg("threads") = 0,
            py::arg("preview") = 0, R"(

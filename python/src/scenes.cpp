@@ -255,6 +255,26 @@ class FunctionReader {
   const std::string& what_;
 };
 
+FieldSource in_memory() {
+  FieldSource source;
+  source.file = array_in_memory;
+  return source;
+}
+
+/// Returns the mask with the memory order of a volume (in_order_of()).
+std::shared_ptr<const LabelMask> in_order_of(const VolumeHandle& like, const MaskHandle& masking) {
+  if (masking.axes == like.axes) return masking.mask;
+  if (!masking.reordered || masking.reordered_axes != like.axes) {
+    const VolumeHandle labels =
+        in_order_of(like, VolumeHandle{masking.mask->labels().shared_volume(), masking.axes});
+    const py::gil_scoped_release released;
+    masking.reordered = std::make_shared<const LabelMask>(
+        std::make_shared<const LabelVolume>(labels.volume), masking.mask->choices());
+    masking.reordered_axes = like.axes;
+  }
+  return masking.reordered;
+}
+
 LayerContent content_of(const py::object& layer, const std::string& what,
                         LayerDescription& description) {
   const py::object data = layer.attr("data");
@@ -264,13 +284,13 @@ LayerContent content_of(const py::object& layer, const std::string& what,
   const py::object mask = layer.attr("mask");
   if (py::isinstance<VolumeHandle>(data)) {
     const auto& handle = py::cast<const VolumeHandle&>(data);
-    if (handle.source) description.field = *handle.source;
+    description.field = handle.source.value_or(in_memory());
     VolumeContent content{handle.volume, function.univariate(description)};
     if (!mask.is_none()) {
       const auto& masking = py::cast<const MaskHandle&>(mask);
-      content.mask = masking.mask;
+      content.mask = in_order_of(handle, masking);
       description.mask.emplace();
-      if (masking.source) description.mask->field = *masking.source;
+      description.mask->field = masking.source.value_or(in_memory());
       for (const LabelMask::Choice& c : masking.mask->choices()) {
         description.mask->choices.push_back({c.label, c.transfer_function->points()});
       }
@@ -280,11 +300,19 @@ LayerContent content_of(const py::object& layer, const std::string& what,
   if (py::isinstance<ChannelsHandle>(data)) {
     const auto& handle = py::cast<const ChannelsHandle&>(data);
     description.channels = handle.sources;
+    for (int i = 0; handle.sources.empty() && i < handle.channels->count(); ++i) {
+      const Channel& channel = (*handle.channels)[i];
+      description.channels.push_back({channel.name, channel.unit, in_memory()});
+    }
     return ChannelsContent{handle.channels, function.multivariate(*handle.channels, description)};
   }
   if (py::isinstance<MeshHandle>(data)) {
     const auto& handle = py::cast<const MeshHandle&>(data);
-    description.mesh = handle.source.value_or(MeshSource{});
+    description.mesh = handle.source.value_or(MeshSource{array_in_memory, {}, {}});
+    for (int i = 0; !handle.source && i < handle.mesh->count(); ++i) {
+      const std::string& name = (*handle.mesh)[i].name;
+      description.mesh->channels.push_back({name, {}, name});
+    }
     MeshContent content{handle.mesh, {}};
     if (function.is_multivariate()) {
       content.transfer_function = function.multivariate(*handle.mesh, description);
@@ -301,7 +329,7 @@ LayerContent content_of(const py::object& layer, const std::string& what,
     }
     LabelContent content{handle.labels, py::cast<std::shared_ptr<LabelTable>>(table)};
     description.labels =
-        LabelSource{handle.source.value_or(FieldSource{}), content.table->styles(), {}, {}};
+        LabelSource{handle.source.value_or(in_memory()), content.table->styles(), {}, {}};
     return content;
   }
   throw Error(what + ": data: expected a Volume, Channels, a Mesh or a LabelVolume, got " +
@@ -357,6 +385,7 @@ void fit_tables(PythonScene& made, const py::object& layers) {
   fit_opacity_tables(made.description, made.scene);
   std::size_t i = 0;
   for (const py::handle object : layers) {
+    if (i == made.scene.layers.size()) break;  // another thread added one
     Layer& layer = made.scene.layers[i++];
     const py::object function = object.attr("transfer_function");
     if (!py::isinstance<OpacityTableHandle>(function)) continue;
@@ -379,7 +408,53 @@ void fit_tables(PythonScene& made, const py::object& layers) {
   }
 }
 
+/// Writes into the description how a layer looks.
+void describe_look(const Layer& layer, LayerDescription& to) {
+  to.name = layer.name;
+  to.visible = layer.visible;
+  to.transform = layer.transform;
+  to.clips = layer.clips;
+  to.projection = layer.projection;
+  const std::vector<std::string> names = function_channels(to);
+  const auto name_of = [&](int channel) {
+    return names.empty() || channel == 0 ? std::string()
+                                         : names.at(static_cast<std::size_t>(channel));
+  };
+  const auto points_of = [](const std::shared_ptr<const TransferFunction>& colors) {
+    return colors ? std::optional<TransferFunctionDescription>(colors->points()) : std::nullopt;
+  };
+  if (layer.shading)
+    to.shading = ShadingDescription{*layer.shading, name_of(layer.shading->channel)};
+  if (const auto& opacity = layer.gradient_opacity) {
+    to.gradient_opacity =
+        GradientOpacityDescription{opacity->points(), opacity->unit(), name_of(opacity->channel())};
+  }
+  for (const Isosurface& s : layer.isosurfaces) {
+    to.isosurfaces.push_back({s.value, s.opacity, s.color, points_of(s.colors), name_of(s.channel),
+                              name_of(s.color_channel)});
+  }
+  for (const Slice& s : layer.slices) {
+    to.slices.push_back({s.point, s.normal, s.opacity, points_of(s.colors), name_of(s.channel)});
+  }
+}
+
 }  // namespace
+
+SceneDescription described(const PythonScene& made) {
+  const Scene& scene = made.scene;
+  SceneDescription description = made.description;
+  for (std::size_t i = 0; i < scene.layers.size(); ++i) {
+    describe_look(scene.layers[i], description.layers[i]);
+  }
+  description.clips = scene.clips;
+  description.lights = scene.lights;
+  if (made.has_camera) description.camera = scene.camera;
+  description.size = scene.size;
+  description.samples = scene.samples;
+  description.integration = scene.integration;
+  description.background = scene.background;
+  return description;
+}
 
 PythonScene read_scene(const py::object& object) {
   PythonScene made;
@@ -411,6 +486,9 @@ PythonScene read_scene(const py::object& object) {
   scene.samples = integer_of(object.attr("samples"), "samples");
   scene.integration = integration_of(object.attr("integration"));
   if (const py::object backdrop = object.attr("backdrop"); !backdrop.is_none()) {
+    if (!py::isinstance<ImageHandle>(backdrop)) {
+      throw Error("backdrop: expected an Image with depth, got " + short_repr(backdrop));
+    }
     scene.backdrop = py::cast<const ImageHandle&>(backdrop).image;
   }
   if (const py::object camera = object.attr("camera"); !camera.is_none()) {
@@ -421,7 +499,7 @@ PythonScene read_scene(const py::object& object) {
   return made;
 }
 
-Scene complete_scene(const py::object& object) {
+PythonScene complete_python_scene(const py::object& object) {
   PythonScene made = read_scene(object);
   check_integration(made.scene);
   fit_tables(made, object.attr("layers"));
@@ -429,7 +507,11 @@ Scene complete_scene(const py::object& object) {
     const py::gil_scoped_release released;
     made.scene.camera = default_camera(visible_corners(made.scene, all_cores()), made.scene.size);
   }
-  return std::move(made.scene);
+  return made;
+}
+
+Scene complete_scene(const py::object& object) {
+  return std::move(complete_python_scene(object).scene);
 }
 
 py::object to_python(const Camera& camera) {

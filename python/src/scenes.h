@@ -20,6 +20,10 @@ PythonScene read_scene(const py::object& scene);
 /// Reads pellucid.Scene, and completes it for rendering: the camera, if it has none, and opacity
 /// tables for its tolerance. Lets go of the interpreter's lock for that.
 Scene complete_scene(const py::object& scene);
+PythonScene complete_python_scene(const py::object& scene);
+/// Returns the description of all that the scene says, with its camera if it has one. Data that are
+/// arrays have sources without a file.
+SceneDescription described(const PythonScene& scene);
 /// Returns the Python object of a scene that make_scene() made from a description.
 py::object to_python(const Scene& scene, const SceneDescription& description);
 /// Returns pellucid.Camera.

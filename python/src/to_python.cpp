@@ -85,7 +85,7 @@ class Maker {
     }
     const auto* const volume = std::get_if<VolumeContent>(&layer.content);
     if (volume != nullptr && volume->mask) {
-      parts["mask"] = MaskHandle{volume->mask, description.mask->field};
+      parts["mask"] = MaskHandle{volume->mask, {2, 1, 0}, description.mask->field};
     }
     return of("Layer")(**parts);
   }

@@ -6,6 +6,7 @@
 #include <string>
 #include <utility>
 
+#include "array_axes.h"
 #include "arrays.h"
 #include "handles.h"
 #include "pellucid/io/write_volume.h"
@@ -80,6 +81,45 @@ VolumeHandle make_volume(const py::object& data, const py::object& spacing,
 std::size_t grid_axis(const VolumeHandle& handle, std::size_t a) {
   return static_cast<std::size_t>(std::ranges::find(handle.axes, a) - handle.axes.begin());
 }
+
+}  // namespace
+
+VolumeHandle in_order_of(const VolumeHandle& like, const VolumeHandle& volume) {
+  if (volume.axes == like.axes) return volume;
+  const Volume::Description& from = volume.volume->description();
+  const double* const spacing[3] = {&from.placement.spacing.x, &from.placement.spacing.y,
+                                    &from.placement.spacing.z};
+  Volume::Description to = from;
+  double* const new_spacing[3] = {&to.placement.spacing.x, &to.placement.spacing.y,
+                                  &to.placement.spacing.z};
+  const std::array<std::size_t, 3> steps{
+      1, static_cast<std::size_t>(from.dimensions[0]),
+      static_cast<std::size_t>(from.dimensions[0]) * static_cast<std::size_t>(from.dimensions[1])};
+  std::array<std::int64_t, 3> sides{};
+  std::array<std::size_t, 3> strides{};
+  for (std::size_t g = 0; g < 3; ++g) {
+    const std::size_t old = grid_axis(volume, like.axes[g]);
+    to.dimensions[g] = from.dimensions[old];
+    to.coordinates[g] = from.coordinates[old];
+    to.placement.direction.column[g] = from.placement.direction.column[old];
+    *new_spacing[g] = *spacing[old];
+    sides[g] = from.dimensions[old];
+    strides[g] = steps[old];
+  }
+  const py::gil_scoped_release released;
+  VolumeData data = std::visit(
+      [&](const auto& values) {
+        using Value = typename std::decay_t<decltype(values)>::value_type;
+        std::vector<Value> copy(values.size());
+        copy_permuted(reinterpret_cast<const std::byte*>(values.data()),
+                      reinterpret_cast<std::byte*>(copy.data()), sizeof(Value), sides, strides);
+        return VolumeData(DataArray<Value>(std::move(copy)));
+      },
+      volume.volume->data());
+  return {std::make_shared<const Volume>(std::move(to), std::move(data)), like.axes, volume.source};
+}
+
+namespace {
 
 py::tuple shape_of(const VolumeHandle& handle) {
   const auto& sides = handle.volume->description().dimensions;
@@ -209,8 +249,10 @@ singular direction, infinite values and values beyond 2.1e37.)")
           "World position of the first value, as (z, y, x).")
       .def_property_readonly("direction", &direction_of,
                              "Directions of the axes (z, y, x) in columns, as (z, y, x).")
-      .def_property_readonly("coordinates", &coordinates_of,
-                             "Positions along (z, y, x); None for axes with a spacing.")
+      .def_property_readonly(
+          "coordinates", &coordinates_of,
+          "Positions along the directions of the axes (z, y, x); None for axes with a "
+          "spacing. Descending ones come back negated, their direction turned.")
       .def_property_readonly(
           "centering",
           [](const VolumeHandle& handle) {
@@ -282,7 +324,7 @@ One to eight variables on one grid. Immutable.
     Channels({"t1": volume_or_array, ...}, units={"t1": "ms"})
 
 Values are volumes or what Volume() takes. A cell with a NaN corner in any channel is vacuum.
-Raises Error if the grids differ.)")
+Those in another memory order than the first are copied. Raises Error if the grids differ.)")
       .def(py::init([](const py::dict& volumes, const py::dict& units, const py::kwargs& more) {
              std::vector<Channel> channels;
              std::vector<ChannelSource> sources;
@@ -295,7 +337,10 @@ Raises Error if the grids differ.)")
                                                : make(data, py::arg("name") = name);
                  std::string unit;
                  if (units.contains(name)) unit = py::cast<std::string>(units[name]);
-                 const auto& handle = py::cast<const VolumeHandle&>(volume);
+                 const VolumeHandle handle =
+                     channels.empty() ? py::cast<VolumeHandle>(volume)
+                                      : in_order_of({nullptr, axes.front()},
+                                                    py::cast<const VolumeHandle&>(volume));
                  channels.push_back({py::cast<std::string>(name), unit, handle.volume});
                  axes.push_back(handle.axes);
                  if (handle.source) sources.push_back({channels.back().name, unit, *handle.source});

@@ -506,6 +506,29 @@ std::string layer_text(const LayerDescription& layer) {
 
 }  // namespace
 
+bool has_source(const FieldSource& field) {
+  return !field.builtin.empty() || (!field.file.empty() && field.file != array_in_memory);
+}
+
+void check_has_sources(const SceneDescription& description) {
+  for (std::size_t i = 0; i < description.layers.size(); ++i) {
+    const LayerDescription& layer = description.layers[i];
+    const auto is_readable = [&](const ChannelSource& channel) {
+      const auto* const field = std::get_if<FieldSource>(&channel.source);
+      return field == nullptr || has_source(*field);
+    };
+    const bool has_data = layer.labels ? has_source(layer.labels->field)
+                          : layer.mesh ? layer.mesh->file != array_in_memory
+                          : layer.channels.empty()
+                              ? has_source(layer.field)
+                              : std::ranges::all_of(layer.channels, is_readable);
+    if (has_data && (!layer.mask || has_source(layer.mask->field))) continue;
+    throw Error("layer " + std::to_string(i + 1) +
+                ": its data are arrays, which a scene file cannot hold; write them to a file "
+                "(Volume.write) and use what read() returns");
+  }
+}
+
 std::string scene_to_json(const SceneDescription& scene) {
   std::string layers;
   for (const LayerDescription& layer : scene.layers) {

@@ -5,6 +5,8 @@
 #include <boost/math/quadrature/gauss_kronrod.hpp>
 #include <cmath>
 
+#include "pellucid/scene/error.h"
+
 namespace pellucid::reference {
 namespace {
 
@@ -73,6 +75,11 @@ double Piece::weight_of_right(double w_begin, double w_end) const {
 void Gatherer::add(const Piece& piece, double w_begin, double w_end) {
   const double depth = piece.depth(w_begin, w_end);
   if (depth == 0 || done()) return;
+  if (!std::isfinite(depth)) {
+    throw Error(
+        "reference: the optical depth of a ray overflows; lengths and extinctions are too "
+        "large together");
+  }
   if (depth > 2) {
     const double middle = 0.5 * (w_begin + w_end);
     add(piece, w_begin, middle);

@@ -15,6 +15,8 @@ namespace pellucid {
 namespace {
 
 constexpr int largest_size = 65536;
+/// Of a background, as in scene files.
+constexpr double largest_light = 1e30;
 
 constexpr std::array<std::pair<Method, std::string_view>, 13> methods{{
     {Method::exact, "exact"},
@@ -267,6 +269,13 @@ void check_integration(const Scene& scene) {
   if (scene.samples < 1 || scene.samples > largest_samples) {
     throw Error("scene: samples is " + std::to_string(scene.samples) + ", but must be from 1 to " +
                 std::to_string(largest_samples) + "; a pixel takes samples x samples rays");
+  }
+  if (const auto& background = scene.background) {
+    for (const double channel : {background->r, background->g, background->b}) {
+      if (channel >= 0 && channel <= largest_light) continue;
+      throw Error("background: a color is " + number(channel) +
+                  ", but must be linear light from 0 to " + number(largest_light));
+    }
   }
   const Integration& integration = scene.integration;
   const auto require = [](const char* what, double value, const char* unit, double smallest,

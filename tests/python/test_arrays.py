@@ -276,3 +276,15 @@ def test_channels_and_labels_keep_the_order_of_an_array():
     assert numpy.array_equal(channels["v"].array, values)
     labels = numpy.asfortranarray(numpy.arange(60, dtype="u1").reshape(3, 4, 5))
     assert numpy.array_equal(pellucid.LabelVolume(labels).volume.array, labels)
+
+
+def test_masked_integers_that_are_rounded_are_told():
+    values = numpy.arange(27, dtype=numpy.int64).reshape(3, 3, 3)
+    values[0, 0, 0] = 2 ** 60 + 1
+    masked = numpy.ma.masked_equal(values, 5)
+    with pytest.warns(pellucid.Note, match="2\\^53"):
+        pellucid.Volume(masked)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        values[0, 0, 0] = 2 ** 53
+        pellucid.Volume(numpy.ma.masked_equal(values, 5))

@@ -394,3 +394,74 @@ def test_none_is_no_function():
         pellucid.Gaussians([], channels=["x"], tables={"x": None})
     with pytest.raises((pellucid.Error, TypeError)):
         pellucid.segments.piecewise_linear_segment(None, 0, 1, 1)
+
+
+def test_one_grid_in_several_memory_orders():
+    a, b = smooth(numpy.float32), smooth(numpy.uint8, (7, 9, 11))
+    place = {"spacing": (2, 3, 4), "origin": (1, 2, 3),
+             "direction": [[0, 0, 1], [1, 0, 0], [0, 1, 0]]}
+    gaussians = [pellucid.Gaussian((50, 50), 0.3, widths=(20, 20), channels=("a", "b"))]
+    one = pellucid.Volume(a, **place)
+    pictures = []
+    for order in (lambda x: x, numpy.asfortranarray,
+                  lambda x: numpy.ascontiguousarray(x.transpose(1, 0, 2)).transpose(1, 0, 2)):
+        other = pellucid.Volume(order(b), **place)
+        assert numpy.array_equal(other.array, b)
+        channels = pellucid.Channels({"a": one, "b": other})
+        assert numpy.array_equal(channels["b"].array, b)
+        pictures.append(pellucid.render(pellucid.Layer(channels, gaussians), size=24))
+        mask = pellucid.LabelMask(
+            pellucid.LabelVolume(pellucid.Volume(order((b > 50).astype(numpy.uint8)), **place)),
+            {1: pellucid.TransferFunction([(0, 1, (0, 0, 1)), (100, 2, (0, 1, 0))])})
+        for data in (one, pellucid.Volume(numpy.asfortranarray(a), **place)):
+            pictures.append(pellucid.render(data, [(0, 0, (1, 0, 0)), (100, 1, (1, 1, 1))],
+                                            mask=mask, size=24))
+    assert all(pictures[0].compare(each).largest == 0 for each in pictures[::3])
+    # The memory order changes how rays are cut, and so the last bits.
+    for each in pictures[1::3] + pictures[2::3]:
+        assert pictures[1].compare(each).largest < 1 / 512
+    assert pictures[1].rgba[..., 2].max() > 0.1
+
+
+def test_a_tolerance_as_a_share():
+    haze = pellucid.scene_of("builtin:shells:24", [(0.2, 0, "#ffffff"), (1, 0.01, "#ffffff")],
+                             size=32)
+    image = pellucid.render(haze, tolerance="1%")
+    largest = image.rgba.max()
+    assert 0.002 < largest < 0.1
+    assert 0.003 * largest < image.tolerance <= 0.01 * largest * 1.0001
+    haze.integration.tolerance = 1e-7
+    assert image.compare(pellucid.render(haze)).largest <= 0.01 * largest
+    for wrong in ("1", "x%", "0%", "200%", "nan%", ""):
+        with pytest.raises(pellucid.Error, match="tolerance: "):
+            pellucid.render(haze, tolerance=wrong)
+
+    class Stop(Exception):
+        pass
+
+    def stop(_done):
+        raise Stop
+
+    big = pellucid.scene_of("builtin:shells:90", size=700)
+    with pytest.raises(Stop):
+        pellucid.render(big, tolerance="0.01%", progress=stop)
+
+
+def test_bad_backgrounds_and_backdrops():
+    scene = pellucid.scene_of("builtin:sphere:8", size=8)
+    for wrong in ((0, -1, 0), (float("nan"), 0, 0), (0, 0, float("inf"))):
+        scene.background = wrong
+        with pytest.raises(pellucid.Error, match="background: "):
+            pellucid.render(scene)
+    scene.background, scene.backdrop = None, "picture.exr"
+    with pytest.raises(pellucid.Error, match="backdrop: expected an Image"):
+        pellucid.render(scene)
+
+
+def test_lengths_that_overflow_end():
+    huge = pellucid.Volume(numpy.ones((3, 3, 3), numpy.float32), spacing=1e37)
+    scene = pellucid.scene_of(huge, [(0, 1e8, (1, 1, 1)), (2, 1e9, (1, 1, 1))], size=2)
+    try:
+        pellucid.render_reference(scene)
+    except pellucid.Error as error:
+        assert "\n" not in str(error)

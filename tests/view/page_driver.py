@@ -23,24 +23,28 @@ def why_not():
     return None
 
 
+def make_browser(folder):
+    """Chromium without a window, with a profile of its own in the folder."""
+    from selenium import webdriver
+    from selenium.webdriver.chrome.options import Options
+    from selenium.webdriver.chrome.service import Service
+    options = Options()
+    options.binary_location = shutil.which("chromium")
+    for argument in ("--headless=new", "--disable-gpu", "--hide-scrollbars",
+                     "--disable-background-networking", "--no-first-run",
+                     f"--user-data-dir={os.path.join(folder, 'profile')}"):
+        options.add_argument(argument)
+    if os.geteuid() == 0:
+        options.add_argument("--no-sandbox")
+    options.set_capability("goog:loggingPrefs", {"browser": "ALL"})
+    return webdriver.Chrome(service=Service(shutil.which("chromedriver")), options=options)
+
+
 class Page:
     """A browser with the page of a viewer, until the end of a with statement."""
 
     def __init__(self, viewer: Viewer, folder, window=(1280, 800), dark=False, scale=1):
-        from selenium import webdriver
-        from selenium.webdriver.chrome.options import Options
-        from selenium.webdriver.chrome.service import Service
-        options = Options()
-        options.binary_location = shutil.which("chromium")
-        for argument in ("--headless=new", "--disable-gpu", "--hide-scrollbars",
-                         "--disable-background-networking", "--no-first-run",
-                         f"--user-data-dir={os.path.join(folder, 'profile')}"):
-            options.add_argument(argument)
-        if os.geteuid() == 0:
-            options.add_argument("--no-sandbox")
-        options.set_capability("goog:loggingPrefs", {"browser": "ALL"})
-        self.browser = webdriver.Chrome(service=Service(shutil.which("chromedriver")),
-                                        options=options)
+        self.browser = make_browser(folder)
         self.browser.set_script_timeout(SECONDS)
         self.folder = folder
         command = self.browser.execute_cdp_cmd

@@ -63,9 +63,9 @@ export class LayersPanel extends Panel {
   }
 
   fileRows(layer, i, name) {
-    const {components, arrays, times} = this.viewer.facts(i);
+    const {file, components, arrays, times} = this.viewer.facts(i);
     const rows = [];
-    if (arrays.length === 0 && (layer.mesh || namesArrays.test(layer.field?.file ?? ''))) {
+    if (file && arrays.length === 0 && (layer.mesh || namesArrays.test(layer.field?.file ?? ''))) {
       rows.push(make('div', {class: 'row'}, button('Other arrays and times…',
         () => this.viewer.connection.send({type: 'list_file', layer: i}),
         {title: 'Reads all of the file for a list of them'})));

@@ -92,6 +92,14 @@ SceneDescription parse_scene(std::string_view json, const std::string& name,
 /// Error if a path is not UTF-8 or a number is not finite.
 std::string scene_to_json(const SceneDescription& description);
 
+/// A path that no file can have. In a description it stands for an array in memory.
+inline constexpr const char* array_in_memory = "/dev/null/array";
+/// Returns whether the data come from a file or are built in, so that they can be read again.
+bool has_source(const FieldSource& field);
+/// Throws Error, which names the layer, if data of the description are arrays in memory, which a
+/// scene file cannot hold.
+void check_has_sources(const SceneDescription& description);
+
 /// Returns the keys "shading", "gradient_opacity", "isosurfaces" and "slices" of a layer as an
 /// object, in JSON: those that the layer has. Throws Error if a number is not finite.
 std::string layer_look_to_json(const LayerDescription& layer);

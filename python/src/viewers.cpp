@@ -1,0 +1,164 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <condition_variable>
+#include <exception>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <thread>
+#include <utility>
+
+#include "scenes.h"
+#include "view/viewer.h"
+#include "waiting.h"
+
+namespace pellucid::python {
+
+namespace {
+
+/// Gives volumes in memory that have no name one that the page can show.
+void name_arrays(PythonScene& made) {
+  for (std::size_t i = 0; i < made.scene.layers.size(); ++i) {
+    Layer& layer = made.scene.layers[i];
+    const auto* const volume = std::get_if<VolumeContent>(&layer.content);
+    if (volume == nullptr || !layer.name.empty()) continue;
+    if (!has_source(made.description.layers[i].field)) {
+      layer.name = volume->volume->description().name;
+    }
+  }
+}
+
+/// Python's viewer of a scene: a server, and a thread that renders for its pages.
+class ViewerHandle {
+ public:
+  ViewerHandle(const py::object& object, int port, int threads, const std::string& frame_ancestors)
+      : shared_(std::make_shared<Shared>()) {
+    if (port < 0 || port > 65535) {
+      throw Error("port: expected 0 (any free one) to 65535, got " + std::to_string(port));
+    }
+    PythonScene made = complete_python_scene(object);
+    if (made.scene.backdrop) {
+      throw Error("backdrop: the viewer shows scenes without one; remove it");
+    }
+    name_arrays(made);
+    SceneDescription description = described(made);
+    description.camera = made.scene.camera;
+    scene_to_json(description);  // throws what cannot be told to a page
+    shared_->description = description;
+    shared_->scene = made.scene;
+    view::ViewerOptions options;
+    options.port = static_cast<std::uint16_t>(port);
+    options.threads = checked_threads(threads);
+    options.keeps_camera = made.has_camera;
+    options.frame_ancestors = frame_ancestors;
+    options.changed = [shared = shared_](const SceneDescription& changed, const Scene& scene) {
+      SceneDescription new_description = changed;
+      Scene new_scene = scene;
+      const std::lock_guard lock(shared->mutex);
+      std::swap(shared->description, new_description);
+      std::swap(shared->scene, new_scene);
+    };
+    const py::gil_scoped_release released;
+    thread_ = std::thread(
+        [shared = shared_, description = std::move(description), scene = std::move(made.scene),
+         options]() mutable { serve(*shared, std::move(description), std::move(scene), options); });
+    std::unique_lock lock(shared_->mutex);
+    shared_->wakes.wait(lock, [&] { return shared_->ended || !shared_->address.empty(); });
+    if (!shared_->failure) return;
+    lock.unlock();
+    thread_.join();
+    std::rethrow_exception(shared_->failure);
+  }
+  ViewerHandle(const ViewerHandle&) = delete;
+  ViewerHandle& operator=(const ViewerHandle&) = delete;
+  ~ViewerHandle() { stop(); }
+
+  std::string address() const {
+    const std::lock_guard lock(shared_->mutex);
+    return shared_->address;
+  }
+
+  bool is_running() const {
+    const std::lock_guard lock(shared_->mutex);
+    return !shared_->ended;
+  }
+
+  void wait() const {
+    wait_until([&] { return !is_running(); }, [] { return 0.0; }, py::none());
+  }
+
+  /// Its threads may let go of arrays, for which they need the interpreter's lock.
+  void stop() {
+    const py::gil_scoped_release released;
+    {
+      const std::lock_guard lock(shared_->mutex);
+      shared_->stops = true;
+    }
+    const std::lock_guard lock(joins_);
+    if (thread_.joinable()) thread_.join();
+  }
+
+  py::object scene() const {
+    SceneDescription description;
+    Scene scene;
+    {
+      const std::lock_guard lock(shared_->mutex);
+      description = shared_->description;
+      scene = shared_->scene;
+    }
+    return to_python(scene, description);
+  }
+
+ private:
+  struct Shared {
+    mutable std::mutex mutex;  ///< of all
+    std::condition_variable wakes;
+    std::string address;
+    SceneDescription description;
+    Scene scene;
+    std::exception_ptr failure;
+    bool stops = false, ended = false;
+  };
+
+  static void serve(Shared& shared, SceneDescription description, Scene scene,
+                    const view::ViewerOptions& options) {
+    std::exception_ptr failure;
+    try {
+      view::run_viewer(
+          std::move(description), std::move(scene), options,
+          [&](const std::string& address) {
+            const std::lock_guard lock(shared.mutex);
+            shared.address = address;
+            shared.wakes.notify_all();
+          },
+          [&] {
+            const std::lock_guard lock(shared.mutex);
+            return shared.stops;
+          });
+    } catch (...) {
+      failure = std::current_exception();
+    }
+    const std::lock_guard lock(shared.mutex);
+    shared.failure = failure;
+    shared.ended = true;
+    shared.wakes.notify_all();
+  }
+
+  std::shared_ptr<Shared> shared_;
+  std::thread thread_;
+  std::mutex joins_;
+};
+
+}  // namespace
+
+void bind_viewers(py::module_& module) {
+  py::class_<ViewerHandle>(module, "ViewerServer", "What pellucid.Viewer is made of.")
+      .def(py::init<const py::object&, int, int, const std::string&>(), py::arg("scene"),
+           py::arg("port"), py::arg("threads"), py::arg("frame_ancestors"))
+      .def_property_readonly("address", &ViewerHandle::address)
+      .def_property_readonly("running", &ViewerHandle::is_running)
+      .def("scene", &ViewerHandle::scene)
+      .def("wait", &ViewerHandle::wait)
+      .def("stop", &ViewerHandle::stop);
+}
+
+}  // namespace pellucid::python
