@@ -56,6 +56,19 @@ void refuse_others(vtkRenderer& renderer, vtkCamera& camera) {
   if (camera.GetUserViewTransform() != nullptr || camera.GetUserTransform() != nullptr) {
     throw Error("camera: has a transform of the view; move the camera instead");
   }
+  vtkMatrix4x4* const model = camera.GetModelTransformMatrix();
+  for (int i = 0; model != nullptr && i < 16; ++i) {
+    if (model->GetElement(i / 4, i % 4) != (i % 5 == 0 ? 1 : 0)) {
+      throw Error("camera: has a transform of the model; move the volumes instead");
+    }
+  }
+  vtkRenderWindow* const window = renderer.GetRenderWindow();
+  if (window != nullptr && window->GetStereoRender() != 0) {
+    throw Error("window: shows two eyes; call StereoRenderOff()");
+  }
+  if (renderer.GetUseDepthPeeling() != 0 && renderer.GetUseDepthPeelingForVolumes()) {
+    throw Error("renderer: peels volumes; call UseDepthPeelingForVolumesOff()");
+  }
   double pixel[2];
   renderer.GetPixelAspect(pixel);
   if (pixel[0] != pixel[1]) throw Error("renderer: its pixels are not square; set PixelAspect 1 1");

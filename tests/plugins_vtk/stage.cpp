@@ -76,14 +76,13 @@ const std::string& Messages::text() const noexcept {
 
 Stage::Stage(int width, int height) {
   // A display whose last window closes ends.
-  static vtkRenderWindow* const kept = [] {
-    vtkRenderWindow* const open = vtkRenderWindow::New();
+  static const vtkSmartPointer<vtkRenderWindow> kept = [] {
+    auto open = vtkSmartPointer<vtkRenderWindow>::New();
     open->SetOffScreenRendering(1);
     open->SetSize(8, 8);
     open->Render();
     return open;
   }();
-  static_cast<void>(kept);
   window->SetOffScreenRendering(1);
   window->SetMultiSamples(0);
   window->SetSize(width, height);

@@ -281,6 +281,18 @@ INSTANTIATE_TEST_SUITE_P(
                   stage.camera->SetViewShear(0.5, 0, 1);
                 },
                 "ViewShear"},
+        BadCase{"two_eyes",
+                [](Stage& stage, vtkImageData*, vtkVolumeProperty*, vtkPellucidVolumeMapper*) {
+                  stage.window->SetStereoTypeToAnaglyph();
+                  stage.window->StereoRenderOn();
+                },
+                "StereoRenderOff"},
+        BadCase{"peeled_volumes",
+                [](Stage& stage, vtkImageData*, vtkVolumeProperty*, vtkPellucidVolumeMapper*) {
+                  stage.renderer->UseDepthPeelingOn();
+                  stage.renderer->UseDepthPeelingForVolumesOn();
+                },
+                "UseDepthPeelingForVolumesOff"},
         BadCase{"far_window",
                 [](Stage& stage, vtkImageData*, vtkVolumeProperty*, vtkPellucidVolumeMapper*) {
                   stage.camera->SetWindowCenter(300, 300);
