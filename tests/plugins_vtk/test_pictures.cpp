@@ -33,7 +33,6 @@ TEST(VtkPictures, PerspectiveIsTheIntegral) {
   EXPECT_EQ(stage.gl_errors(), "");
   const Image truth = truth_of(stage, mapper, volume);
   const double off = largest_difference(shown, truth);
-  std::printf("largest difference %g\n", off);
   EXPECT_LE(off, half_a_step + mapper->GetTolerance() + rounding);
   EXPECT_TRUE(mapper->GetExact());
   EXPECT_LE(mapper->GetLargestError(), mapper->GetTolerance());
