@@ -6,6 +6,12 @@
 
 VTK composites the numbers of its functions, whatever display they are meant for. So do scenes made
 here: their "linear" colors are those numbers. VTK is not imported; the objects bring it with them.
+
+    pellucid.vtk.use()                       # VTK's mappers that are made from here on draw by us
+    mapper = vtkSmartVolumeMapper()
+    pellucid.vtk.settings(mapper).tolerance = 1e-3
+
+use() needs the plug-in for VTK (plugins/vtk), which imports VTK.
 """
 from __future__ import annotations
 
@@ -65,6 +71,96 @@ class Audit:
         return "\n".join(lines + self.notes)
 
 
+def _plugin() -> Any:
+    try:
+        from . import vtkPellucid
+    except ImportError as error:
+        raise Error("pellucid.vtk: the plug-in for VTK is not there; build Pellucid with VTK 9.1 "
+                    f"for this Python (Debian: libvtk9-dev, python3-vtk9; {error})") from None
+    return vtkPellucid
+
+
+def use(on: bool = True) -> None:
+    """Begins to draw by Pellucid where a program asks for VTK's mappers; use(False) ends it.
+
+    These are vtkGPUVolumeRayCastMapper, vtkSmartVolumeMapper and vtkProjectedTetrahedraMapper that
+    are made after the call. For vtkFixedPointVolumeRayCastMapper,
+    vtkUnstructuredGridVolumeRayCastMapper and vtkUnstructuredGridVolumeZSweepMapper VTK 9.1 asks
+    nobody: preload libvtkPellucidPreload.so. Raises Error if the plug-in is not there.
+    """
+    _plugin().vtkPellucidFactory.Use(on)
+
+
+class MapperSettings:
+    """Settings of a mapper that draws by Pellucid, and what is known of its last picture."""
+
+    def __init__(self, mapper: Any) -> None:
+        self._mapper = mapper
+        self._factory = _plugin().vtkPellucidFactory
+
+    def _set(self, name: str, value: float) -> None:
+        if not self._factory.Set(self._mapper, name, value):
+            raise Error(f"{name}: {value!r} is not taken")
+
+    @property
+    def tolerance(self) -> float:
+        """The largest error that a pixel may have; limited to 1e-7 to 1."""
+        return float(self._factory.Get(self._mapper, "Tolerance"))
+
+    @tolerance.setter
+    def tolerance(self, value: float) -> None:
+        self._set("Tolerance", value)
+
+    @property
+    def grade(self) -> str:
+        """What errors may rest on: "estimated" or "proved"."""
+        return "proved" if self._factory.Get(self._mapper, "Grade") == 1 else "estimated"
+
+    @grade.setter
+    def grade(self, value: str) -> None:
+        if value not in ("estimated", "proved"):
+            raise Error(f"grade: {value!r} is neither \"estimated\" nor \"proved\"")
+        self._set("Grade", 1 if value == "proved" else 0)
+
+    @property
+    def threads(self) -> int:
+        """The number of threads; 0: one per core."""
+        return int(self._factory.Get(self._mapper, "NumberOfThreads"))
+
+    @threads.setter
+    def threads(self, value: int) -> None:
+        self._set("NumberOfThreads", value)
+
+    @property
+    def exact(self) -> bool:
+        """Whether all pixels of the last picture were rendered; not so while the user interacts."""
+        return bool(self._factory.Get(self._mapper, "Exact"))
+
+    @property
+    def largest_error(self) -> float:
+        """The largest error of a pixel of the last picture; infinite if it is not exact."""
+        return float(self._factory.Get(self._mapper, "LargestError"))
+
+    @property
+    def pixels_over(self) -> int:
+        """How many pixels of the last picture may be over the tolerance."""
+        return int(self._factory.Get(self._mapper, "PixelsOver"))
+
+    @property
+    def seconds(self) -> float:
+        """How long the last picture took."""
+        return float(self._factory.Get(self._mapper, "Seconds"))
+
+
+def settings(mapper: Any) -> MapperSettings:
+    """Returns the settings of a mapper that draws by Pellucid. Raises Error for others."""
+    if not (_is_a(mapper, "vtkAbstractVolumeMapper")
+            and _plugin().vtkPellucidFactory.Has(mapper)):
+        raise Error(f"mapper: {mapper!r:.60} does not draw by Pellucid; make it after "
+                    "pellucid.vtk.use()")
+    return MapperSettings(mapper)
+
+
 def scene_of(renderer: Any, notes: Any = None) -> Scene:
     """Returns the Scene that a vtkRenderer shows: volumes, properties, camera, lights, clipping.
 
@@ -80,7 +176,8 @@ def scene_of(renderer: Any, notes: Any = None) -> Scene:
     if not _is_a(renderer, "vtkRenderer"):
         raise Error(f"renderer: expected a vtkRenderer, got {renderer!r:.60}")
     told: List[str] = []
-    layers = [_layer(prop, f"volume {i + 1}", told)
+    ambient = _has_ambient_light(renderer)
+    layers = [_layer(prop, f"volume {i + 1}", ambient, told)
               for i, prop in enumerate(_items(renderer.GetVolumes()))]
     if not layers:
         raise Error("renderer: has no vtkVolume; add one before its scene is asked for")
@@ -150,7 +247,7 @@ def _warn(lines: Sequence[str]) -> None:
         warnings.warn(line, Note, stacklevel=3)
 
 
-def _layer(volume: Any, what: str, notes: List[str]) -> Layer:
+def _layer(volume: Any, what: str, ambient: bool, notes: List[str]) -> Layer:
     mapper, look = volume.GetMapper(), volume.GetProperty()
     if mapper is None:
         raise Error(f"{what}: has no mapper")
@@ -167,7 +264,13 @@ def _layer(volume: Any, what: str, notes: List[str]) -> Layer:
                     "(0) is an integral with absorption")
     colors, opacities = _color_curve(look), _curve_of(look.GetScalarOpacity(0))
     unit = look.GetScalarOpacityUnitDistance(0)
+    matrix = _matrix(volume.GetMatrix())
     if is_grid:
+        # VTK's mappers measure the unit distance in the volume's own world, before its matrix.
+        unit *= abs(numpy.linalg.det(matrix[:3, :3])) ** (1 / 3)
+        scales = numpy.linalg.norm(matrix[:3, :3], axis=0)
+        if scales.max() > 1.000001 * scales.min():
+            notes.append(f"{what}: is scaled unevenly, and has opacities by the mean of its scales")
         shown = Volume(data, name=what)
         function = OpacityTable([(x, a[0], tuple(c)) for x, a, c in _joined(opacities, colors)],
                                 unit)
@@ -177,7 +280,6 @@ def _layer(volume: Any, what: str, notes: List[str]) -> Layer:
         function = TransferFunction([(x, a[0] / unit, tuple(c))
                                      for x, a, c in _joined(opacities, colors)])
     layer = Layer(shown, function, name=what, visible=bool(volume.GetVisibility()))
-    matrix = _matrix(volume.GetMatrix())
     layer.transform = matrix[:3].tolist()
     layer.clips = _clips(mapper, matrix, what, is_grid)
     if is_grid and mapper.GetCropping():
@@ -185,7 +287,8 @@ def _layer(volume: Any, what: str, notes: List[str]) -> Layer:
                      "planes")
     if look.GetShade(0) and is_grid:
         # VTK's normals have length 1 wherever the gradient is not 0.
-        layer.shading = Shading(look.GetAmbient(0), look.GetDiffuse(0), look.GetSpecular(0),
+        layer.shading = Shading(look.GetAmbient(0) if ambient else 0.0, look.GetDiffuse(0),
+                                look.GetSpecular(0),
                                 min(max(look.GetSpecularPower(0), 1.0), 1000.0), flatness=0.0)
     if is_grid and not look.GetDisableGradientOpacity(0) and look.HasGradientOpacity(0):
         points = [(x, y[0]) for x, y in _curve_of(look.GetGradientOpacity(0)) if x >= 0]
@@ -315,6 +418,14 @@ def _camera(camera: Any, aspect: float) -> Camera:
                   "orthographic" if camera.GetParallelProjection() else "perspective")
 
 
+def _has_ambient_light(renderer: Any) -> bool:
+    """Whether a property's ambient part is seen: VTK gives its color to it under one head light of
+    intensity 1; under other lights it has their own ambient colors, black unless they are set."""
+    lights = [light for light in _items(renderer.GetLights()) if light.GetSwitch()]
+    return not lights or (len(lights) == 1 and bool(lights[0].LightTypeIsHeadlight())
+                          and lights[0].GetIntensity() == 1)
+
+
 def _lights(renderer: Any, notes: List[str]) -> List[Any]:
     """Lights as the GPU mapper has them. A head light alone is at the camera, also of parallel
     rays; beside others it shines along the camera's axis."""
@@ -323,6 +434,8 @@ def _lights(renderer: Any, notes: List[str]) -> List[Any]:
     lights: List[Any] = []
     for light in shining:
         color = tuple(light.GetIntensity() * c for c in light.GetDiffuseColor())
+        if any(light.GetAmbientColor()) and not _has_ambient_light(renderer):
+            notes.append("the ambient color of lights is left out")
         if light.LightTypeIsHeadlight():
             if len(shining) > 1:
                 lights.append(DirectionalLight(tuple(camera.GetDirectionOfProjection()), color))

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Compares every #include with the order of docs/explanation/architecture.md.
 
-The includes are those of include/, src/ and apps/.
+The includes are those of include/, src/, apps/ and plugins/.
 
   check_includes.py ROOT MODULES
 
@@ -18,7 +18,7 @@ import sys
 RANK = {
     "base": 0, "simd": 1, "math": 2, "geometry": 3, "field": 4, "transfer": 4, "error": 4,
     "segment": 5, "traverse": 6, "render": 7, "packet": 8, "scene": 9, "cuda": 10, "cpu": 11,
-    "io": 11, "reference": 12, "apps": 13,
+    "io": 11, "reference": 12, "apps": 13, "plugins": 13,
 }
 CORE = {name for name, rank in RANK.items() if rank <= RANK["packet"]}
 # Further pairs that the ranks would allow: the closed forms of segment/ are tested without any
@@ -91,7 +91,7 @@ def module_of(path):
     parts = path.parts
     if parts[0] == "include":
         return parts[2] if len(parts) > 3 else None
-    return "apps" if parts[0] == "apps" else parts[1]
+    return parts[0] if parts[0] in ("apps", "plugins") else parts[1]
 
 
 def without_comments(text):
@@ -152,6 +152,9 @@ def check_file(root, path, modules):
             folders = [path.parent, root.joinpath(*relative.parts[:2])]
             if relative.parts[0] == "apps":  # one program includes parts of another: "cli/parse.h"
                 folders.append(root / "apps")
+            # A plug-in takes arrays and cells of its host as the readers of files do.
+            if relative.parts[0] == "plugins":
+                folders.append(root / "src" / "io")
             if (relative.parts[0] == "include" or ".." in name
                     or not any((folder / name).is_file() for folder in folders)):
                 yield f'{where}: "{name}" is neither "pellucid/..." nor a file beside this one'
@@ -179,7 +182,7 @@ def check(root, modules):
             reason = check_arrow(name, target)
             if reason:
                 yield f"CMake: {name} depends on {target}, but {reason}"
-    for folder in ("include", "src", "apps"):
+    for folder in ("include", "src", "apps", "plugins"):
         for path in sorted((root / folder).rglob("*")):
             if path.suffix in (".h", ".cpp", ".cu"):
                 yield from check_file(root, path, modules)

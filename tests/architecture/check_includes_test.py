@@ -47,7 +47,7 @@ PLANTS = [
 def violations(root, modules, plant=None):
     with tempfile.TemporaryDirectory() as folder:
         copy = pathlib.Path(folder)
-        for name in ("include", "src", "apps"):
+        for name in ("include", "src", "apps", "plugins"):
             shutil.copytree(root / name, copy / name)
         if plant:
             path = copy / plant[0]

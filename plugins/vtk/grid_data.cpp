@@ -1,0 +1,212 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "grid_data.h"
+
+#include <vtkAOSDataArrayTemplate.h>
+#include <vtkArrayDispatch.h>
+#include <vtkDataArray.h>
+#include <vtkDataSet.h>
+#include <vtkImageData.h>
+#include <vtkMatrix3x3.h>
+#include <vtkRectilinearGrid.h>
+#include <vtkSOADataArrayTemplate.h>
+
+#include <algorithm>
+#include <string>
+#include <utility>
+
+#include "pellucid/scene/error.h"
+#include "vtk_values.h"
+
+namespace pellucid::plugin {
+namespace {
+
+GridPlacement placement_of(vtkImageData& image, bool of_cells) {
+  GridPlacement placement;
+  double origin[3], spacing[3];
+  int extent[6];
+  image.GetOrigin(origin);
+  image.GetSpacing(spacing);
+  image.GetExtent(extent);
+  placement.origin = {origin[0], origin[1], origin[2]};
+  vtkMatrix3x3* const matrix = image.GetDirectionMatrix();
+  for (int axis = 0; axis < 3; ++axis) {
+    Vec3<double>& direction = placement.direction.column[axis];
+    direction = {matrix->GetElement(0, axis), matrix->GetElement(1, axis),
+                 matrix->GetElement(2, axis)};
+    placement.origin = placement.origin + direction * (spacing[axis] * extent[2 * axis]);
+    if (spacing[axis] < 0) {
+      spacing[axis] = -spacing[axis];
+      direction = -direction;
+    }
+    if (of_cells) placement.origin = placement.origin + direction * (spacing[axis] / 2);
+  }
+  placement.spacing = {spacing[0], spacing[1], spacing[2]};
+  return placement;
+}
+
+std::vector<double> coordinates_of(vtkDataArray* array) {
+  std::vector<double> values;
+  if (array == nullptr) return values;
+  for (vtkIdType i = 0; i < array->GetNumberOfTuples(); ++i) {
+    values.push_back(array->GetComponent(i, 0));
+  }
+  return values;
+}
+
+bool same_grid(const Volume::Description& a, const Volume::Description& b) {
+  const auto same_placement = [](const GridPlacement& p, const GridPlacement& q) {
+    return p.origin == q.origin && p.spacing == q.spacing && p.direction == q.direction;
+  };
+  return a.dimensions == b.dimensions && a.centering == b.centering &&
+         a.coordinates == b.coordinates && same_placement(a.placement, b.placement);
+}
+
+/// Copies a component, or shares it where it lies alone.
+struct Component {
+  int index = 0;
+  VolumeData values{};
+  vtkDataArray* owner = nullptr;
+
+  template <class Value>
+  static constexpr bool is_ours() {
+    return std::is_same_v<Value, float> || std::is_same_v<Value, double> ||
+           (std::is_integral_v<Value> && sizeof(Value) <= 4);
+  }
+  /// The type of the scene's values: char and long have another name than the type of their size.
+  template <class Value>
+  static auto kept_type() {
+    if constexpr (std::is_floating_point_v<Value>) {
+      return Value{};
+    } else if constexpr (sizeof(Value) == 1) {
+      return std::conditional_t<std::is_signed_v<Value>, std::int8_t, std::uint8_t>{};
+    } else if constexpr (sizeof(Value) == 2) {
+      return std::conditional_t<std::is_signed_v<Value>, std::int16_t, std::uint16_t>{};
+    } else {
+      return std::conditional_t<std::is_signed_v<Value>, std::int32_t, std::uint32_t>{};
+    }
+  }
+
+  template <class Value>
+  void operator()(vtkSOADataArrayTemplate<Value>* array) {
+    if constexpr (is_ours<Value>()) {
+      using Kept = decltype(kept_type<Value>());
+      const vtkSmartPointer<vtkDataArray> kept(array);
+      const auto* const first =
+          reinterpret_cast<const Kept*>(array->GetComponentArrayPointer(index));
+      values = DataArray<Kept>(std::shared_ptr<const Kept>(first, [kept](const Kept*) {}),
+                               static_cast<std::size_t>(array->GetNumberOfTuples()));
+    } else {
+      copy<double>(*array);
+    }
+  }
+  template <class Value>
+  void operator()(vtkAOSDataArrayTemplate<Value>* array) {
+    if constexpr (is_ours<Value>()) {
+      copy<decltype(kept_type<Value>())>(*array);
+    } else {
+      copy<double>(*array);
+    }
+  }
+  template <class Kept, class Array>
+  void copy(Array& array) {
+    DataArray<Kept> copied(static_cast<std::size_t>(array.GetNumberOfTuples()));
+    vtkIdType tuple = 0;
+    for (Kept& value : copied.writable()) {
+      value = static_cast<Kept>(array.GetTypedComponent(tuple++, index));
+    }
+    values = std::move(copied);
+  }
+  /// Whatever other array it is.
+  void copy_slowly(vtkDataArray& array) {
+    DataArray<double> copied(static_cast<std::size_t>(array.GetNumberOfTuples()));
+    vtkIdType tuple = 0;
+    for (double& value : copied.writable()) value = array.GetComponent(tuple++, index);
+    values = std::move(copied);
+  }
+};
+
+/// The memory by which a changed array is known: of other layouts none.
+const void* memory_of(vtkDataArray& array) {
+  return array.HasStandardMemoryLayout() ? array.GetVoidPointer(0) : nullptr;
+}
+
+}  // namespace
+
+Volume::Description grid_of(vtkDataSet& data, bool of_cells, const std::string& name) {
+  Volume::Description grid;
+  grid.name = name;
+  grid.centering = of_cells ? Centering::cell : Centering::point;
+  if (auto* const image = vtkImageData::SafeDownCast(&data)) {
+    image->GetDimensions(grid.dimensions.data());
+    grid.placement = placement_of(*image, of_cells);
+  } else if (auto* const rectilinear = vtkRectilinearGrid::SafeDownCast(&data)) {
+    rectilinear->GetDimensions(grid.dimensions.data());
+    grid.coordinates = {coordinates_of(rectilinear->GetXCoordinates()),
+                        coordinates_of(rectilinear->GetYCoordinates()),
+                        coordinates_of(rectilinear->GetZCoordinates())};
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      if (grid.coordinates[axis].size() != static_cast<std::size_t>(grid.dimensions[axis])) {
+        throw Error(name + ": has " + std::to_string(grid.coordinates[axis].size()) +
+                    " coordinates for " + std::to_string(grid.dimensions[axis]) +
+                    " points along an axis; give it as many");
+      }
+    }
+  } else {
+    throw Error(name + ": is a " + data.GetClassName() +
+                "; the mapper takes a vtkImageData or a vtkRectilinearGrid");
+  }
+  for (int& side : grid.dimensions) {
+    if (side < 2) {
+      throw Error(name + ": has a single point along an axis; a volume needs two or more");
+    }
+    if (of_cells) --side;
+  }
+  return grid;
+}
+
+VolumeData component_of(vtkDataArray& array, int component) {
+  if (array.GetNumberOfComponents() == 1 && array.HasStandardMemoryLayout()) {
+    return values_in_place(array);
+  }
+  Component chosen{component};
+  using Layouts = vtkArrayDispatch::DispatchByArray<vtkTypeList::Create<
+      vtkAOSDataArrayTemplate<float>, vtkAOSDataArrayTemplate<double>,
+      vtkAOSDataArrayTemplate<char>, vtkAOSDataArrayTemplate<signed char>,
+      vtkAOSDataArrayTemplate<unsigned char>, vtkAOSDataArrayTemplate<short>,
+      vtkAOSDataArrayTemplate<unsigned short>, vtkAOSDataArrayTemplate<int>,
+      vtkAOSDataArrayTemplate<unsigned int>, vtkSOADataArrayTemplate<float>,
+      vtkSOADataArrayTemplate<double>, vtkSOADataArrayTemplate<char>,
+      vtkSOADataArrayTemplate<signed char>, vtkSOADataArrayTemplate<unsigned char>,
+      vtkSOADataArrayTemplate<short>, vtkSOADataArrayTemplate<unsigned short>,
+      vtkSOADataArrayTemplate<int>, vtkSOADataArrayTemplate<unsigned int>>>;
+  if (!Layouts::Execute(&array, chosen)) chosen.copy_slowly(array);
+  return std::move(chosen.values);
+}
+
+std::shared_ptr<const Volume> KeptGrids::find(vtkDataSet& data, vtkDataArray& array, bool of_cells,
+                                              int component) {
+  const char* const name = array.GetName();
+  Volume::Description grid =
+      grid_of(data, of_cells, name != nullptr && *name != '\0' ? name : data.GetClassName());
+  const void* const memory = memory_of(array);
+  for (Kept& kept : kept_) {
+    if (kept.array == &array && kept.memory == memory && kept.time == array.GetMTime() &&
+        kept.values == array.GetNumberOfValues() && kept.component == component &&
+        same_grid(kept.volume->description(), grid)) {
+      kept.used = true;
+      return kept.volume;
+    }
+  }
+  ++made_;
+  auto volume = std::make_shared<const Volume>(std::move(grid), component_of(array, component));
+  kept_.push_back(
+      {&array, memory, array.GetMTime(), array.GetNumberOfValues(), component, std::move(volume)});
+  return kept_.back().volume;
+}
+
+void KeptGrids::keep_used() {
+  std::erase_if(kept_, [](const Kept& kept) { return !kept.used; });
+  for (Kept& kept : kept_) kept.used = false;
+}
+
+}  // namespace pellucid::plugin

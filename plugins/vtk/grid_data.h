@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <vtkSmartPointer.h>
+#include <vtkType.h>
+
+#include <memory>
+#include <vector>
+
+#include "pellucid/scene/volume.h"
+
+class vtkDataArray;
+class vtkDataSet;
+
+namespace pellucid::plugin {
+
+/// Returns the grid of a vtkImageData or a vtkRectilinearGrid in the world of its data. Values of
+/// cells lie in the middle of the cells. Throws Error for other data sets.
+Volume::Description grid_of(vtkDataSet& data, bool of_cells, const std::string& name);
+
+/// Returns one component of an array. It is used where it lies, and owned together with VTK, if the
+/// array's layout has the component's values side by side: one component, or a layout of arrays.
+/// Otherwise, and for bits and whole numbers of 64 bits, it is copied. Throws Error.
+VolumeData component_of(vtkDataArray& array, int component);
+
+/// Keeps the volumes of the last picture. A volume is made again if its array or its grid changed,
+/// as the array's time of modification, its memory and the numbers of the grid say.
+class KeptGrids {
+ public:
+  /// Returns the volume of a component. Throws Error as Volume does.
+  std::shared_ptr<const Volume> find(vtkDataSet& data, vtkDataArray& array, bool of_cells,
+                                     int component);
+  /// Forgets what was not asked for since the last call.
+  void keep_used();
+  /// Returns how many volumes were made so far.
+  int made() const noexcept { return made_; }
+
+ private:
+  struct Kept {
+    vtkSmartPointer<vtkDataArray> array;
+    const void* memory = nullptr;
+    vtkMTimeType time = 0;
+    vtkIdType values = 0;
+    int component = 0;
+    std::shared_ptr<const Volume> volume;
+    bool used = true;
+  };
+  std::vector<Kept> kept_;
+  int made_ = 0;
+};
+
+}  // namespace pellucid::plugin

@@ -1,0 +1,260 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "mapper_core.h"
+
+#include <vtkAbstractVolumeMapper.h>
+#include <vtkAlgorithm.h>
+#include <vtkCommand.h>
+#include <vtkPropCollection.h>
+#include <vtkRayCastImageDisplayHelper.h>
+#include <vtkRenderWindow.h>
+#include <vtkRenderer.h>
+#include <vtkUnstructuredGridVolumeMapper.h>
+#include <vtkVolume.h>
+#include <vtkVolumeMapper.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <thread>
+#include <utility>
+
+#include "pellucid/scene/error.h"
+
+namespace pellucid::plugin {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+/// A renderer that allows a volume so much time wants it still, and exact.
+constexpr double still_seconds = 10;
+/// Of that time, for the rays; the rest is for the display.
+constexpr double share_for_rays = 0.85;
+/// Every 8th pixel along each axis comes first.
+constexpr int preview_levels = 3;
+/// The display takes 15 bits.
+constexpr float one = 32767;
+
+double seconds_since(Clock::time_point start) {
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+bool shows_translucent_geometry(vtkRenderer& renderer) {
+  vtkPropCollection* const props = renderer.GetViewProps();
+  for (int i = 0; i < props->GetNumberOfItems(); ++i) {
+    auto* const prop = vtkProp::SafeDownCast(props->GetItemAsObject(i));
+    if (prop->GetVisibility() != 0 && prop->HasTranslucentPolygonalGeometry() != 0) return true;
+  }
+  return false;
+}
+
+/// The picture as the display takes it: premultiplied 15 bits, row 0 at the bottom, each pixel
+/// twice along each axis.
+///
+/// The display stretches a picture of n texels so that the middles of the outermost texels lie at
+/// the edges of the viewport, and filters it: pixels of one texel each would be moved by up to half
+/// of a pixel. Of n = 2 w + 1 texels over w pixels, the middle of pixel i is the middle of texel
+/// 2 i + 1.
+void to_display(const Image& image, const View& view, std::vector<unsigned short>& pixels) {
+  const auto line = 8 * static_cast<std::size_t>(view.width);
+  pixels.resize(2 * line * static_cast<std::size_t>(view.height));
+  unsigned short* to = pixels.data();
+  for (int y = view.height - 1; y >= 0; --y) {
+    const std::array<float, 4>* const from = &image.at(view.column, view.row + y);
+    for (int x = 0; x < view.width; ++x) {
+      for (std::size_t c = 0; c < 4; ++c) {
+        const float channel = std::clamp(from[x][c], 0.0F, 1.0F);
+        to[8 * x + static_cast<int>(c)] = to[8 * x + 4 + static_cast<int>(c)] =
+            static_cast<unsigned short>(channel * one + 0.5F);
+      }
+    }
+    std::copy_n(to, line, to + line);
+    to += 2 * line;
+  }
+}
+
+}  // namespace
+
+void update_inputs(vtkAlgorithm& mapper) {
+  for (int port = 0; port < mapper.GetNumberOfInputPorts(); ++port) {
+    if (mapper.GetNumberOfInputConnections(port) == 0) continue;
+    int output = 0;
+    if (vtkAlgorithm* const source = mapper.GetInputAlgorithm(port, 0, output)) {
+      source->UpdateWholeExtent();
+    }
+  }
+}
+
+bool set_tolerance(Settings& settings, double tolerance) {
+  if (!(tolerance > 0)) return false;
+  const double within = std::clamp(tolerance, smallest_tolerance, largest_tolerance);
+  return std::exchange(settings.tolerance, within) != within;
+}
+
+bool set_grade(Settings& settings, int grade) {
+  const Grade wanted = grade == 1 ? Grade::proved : Grade::estimated;
+  return std::exchange(settings.grade, wanted) != wanted;
+}
+
+MapperCore::MapperCore() = default;
+MapperCore::~MapperCore() = default;
+
+void MapperCore::release(vtkWindow* window) {
+  if (display_ != nullptr) display_->ReleaseGraphicsResources(window);
+}
+
+Scene MapperCore::scene_with(std::vector<Layer> layers, vtkRenderer& renderer, vtkVolume& volume,
+                             const View& view, Notes& notes) const {
+  Scene scene;
+  scene.layers = std::move(layers);
+  scene.camera = view.camera;
+  scene.size = view.size;
+  scene.lights = lights_of(renderer, notes);
+  scene.integration.set_tolerance(settings.tolerance);
+  scene.integration.grade = settings.grade;
+  if (const double* const bounds = volume.GetBounds()) {
+    scene.clips = depth_clips(renderer, bounds);
+  }
+  return scene;
+}
+
+Scene MapperCore::scene_of(vtkVolumeMapper& mapper, const Mask& mask, vtkRenderer& renderer,
+                           vtkVolume& volume) {
+  Notes notes;
+  return scene_with(layers_of(mapper, mapper.GetDataSetInput(), volume, mask, settings.tolerance,
+                              has_ambient_light(renderer), grids_, notes),
+                    renderer, volume, view_of(renderer), notes);
+}
+
+Scene MapperCore::scene_of(vtkUnstructuredGridVolumeMapper& mapper, vtkRenderer& renderer,
+                           vtkVolume& volume) {
+  Notes notes;
+  return scene_with(layers_of(mapper, volume, settings.tolerance, meshes_, notes), renderer, volume,
+                    view_of(renderer), notes);
+}
+
+void MapperCore::draw(vtkVolumeMapper& mapper, const Mask& mask, vtkRenderer& renderer,
+                      vtkVolume& volume) {
+  draw(mapper, {{mapper.GetDataSetInput(), &volume}}, mask, renderer, volume);
+}
+
+void MapperCore::draw(vtkVolumeMapper& mapper,
+                      const std::vector<std::pair<vtkDataSet*, vtkVolume*>>& parts,
+                      const Mask& mask, vtkRenderer& renderer, vtkVolume& volume) {
+  draw_layers(mapper, renderer, volume, [&](Notes& notes) {
+    const double share = parts.size() > 1 ? 0.5 / static_cast<double>(parts.size()) : 1;
+    std::vector<Layer> layers;
+    for (const auto& [data, part] : parts) {
+      for (Layer& layer : layers_of(mapper, data, *part, mask, share * settings.tolerance,
+                                    has_ambient_light(renderer), grids_, notes)) {
+        layers.push_back(std::move(layer));
+      }
+    }
+    return layers;
+  });
+  grids_.keep_used();
+}
+
+void MapperCore::draw(vtkUnstructuredGridVolumeMapper& mapper, vtkRenderer& renderer,
+                      vtkVolume& volume) {
+  draw_layers(mapper, renderer, volume, [&](Notes& notes) {
+    return layers_of(mapper, volume, settings.tolerance, meshes_, notes);
+  });
+  meshes_.functions.keep_used();
+}
+
+void MapperCore::draw_layers(vtkAbstractVolumeMapper& mapper, vtkRenderer& renderer,
+                             vtkVolume& volume, const MakeLayers& make_layers) {
+  const Clock::time_point start = Clock::now();
+  outcome = {};
+  outcome.largest_error = std::numeric_limits<double>::infinity();
+  try {
+    Notes notes = left_out;
+    std::vector<Layer> layers = make_layers(notes);
+    if (layers.empty()) return;
+    const View view = view_of(renderer);
+    Scene scene = scene_with(std::move(layers), renderer, volume, view, notes);
+    scene.backdrop = geometry_of(renderer, view);
+    if (shows_translucent_geometry(renderer)) {
+      notes.add("translucent geometry lies behind volumes, wherever it is");
+    }
+    tell(mapper, notes);
+    show(picture(scene, renderer, volume.GetAllocatedRenderTime()), view, renderer, volume);
+  } catch (const Cancelled&) {
+  } catch (const std::exception& error) {
+    if (told_.insert(error.what()).second) {
+      vtkErrorWithObjectMacro(&mapper, << "Pellucid draws nothing: " << error.what());
+    }
+  }
+  outcome.seconds = seconds_since(start);
+}
+
+Image MapperCore::picture(const Scene& scene, vtkRenderer& renderer, double seconds) {
+  const bool may_be_aborted =
+      renderer.GetRenderWindow()->HasObserver(vtkCommand::AbortCheckEvent) != 0;
+  if (seconds < still_seconds || may_be_aborted) {
+    return picture_in_time(scene, renderer, seconds);
+  }
+  RenderOptions options;
+  options.threads = settings.threads;
+  RenderReport report;
+  Image image = renderer_.render(scene, options, &report);
+  outcome.exact = true;
+  outcome.largest_error = report.largest_error;
+  outcome.pixels_over = static_cast<long long>(report.pixels_over_tolerance);
+  return image;
+}
+
+Image MapperCore::picture_in_time(const Scene& scene, vtkRenderer& renderer, double seconds) {
+  const Clock::time_point start = Clock::now();
+  const bool is_still = seconds >= still_seconds;
+  RenderOptions options;
+  options.threads = settings.threads;
+  options.preview = preview_levels;
+  RunningFrame frame = renderer_.start(scene, options);
+  const auto is_over = [&] {
+    if (is_still) return renderer.GetRenderWindow()->CheckAbortStatus() != 0;
+    return seconds_since(start) > seconds * share_for_rays;
+  };
+  while (!frame.finished()) {
+    if (is_over() && frame.state().level >= 0) return frame.look();
+    std::this_thread::sleep_for(std::chrono::microseconds(300));
+  }
+  RenderReport report;
+  Image image = frame.wait(&report);
+  outcome.exact = true;
+  outcome.largest_error = report.largest_error;
+  outcome.pixels_over = static_cast<long long>(report.pixels_over_tolerance);
+  return image;
+}
+
+void MapperCore::show(const Image& image, const View& view, vtkRenderer& renderer,
+                      vtkVolume& volume) {
+  if (display_ == nullptr) {
+    display_.TakeReference(vtkRayCastImageDisplayHelper::New());
+    if (display_ == nullptr) {
+      throw Error(
+          "VTK has no display for pictures; link and initialize "
+          "VTK::RenderingVolumeOpenGL2");
+    }
+    display_->PreMultipliedColorsOn();
+    display_->SetPixelScale(2);  // of 15 bits
+  }
+  to_display(image, view, pixels_);
+  int memory[2] = {2 * view.width, 2 * view.height}, origin[2] = {0, 0};
+  int texels[2] = {memory[0] + 1, memory[1] + 1};
+  // In front of all geometry: the rays know where it is.
+  constexpr float at_the_front = 1e-7F;
+  display_->RenderTexture(&volume, &renderer, memory, texels, texels, origin, at_the_front,
+                          pixels_.data());
+}
+
+void MapperCore::tell(vtkAbstractVolumeMapper& mapper, const Notes& notes) {
+  for (const std::string& line : notes.lines()) {
+    if (!told_.insert(line).second) continue;
+    vtkWarningWithObjectMacro(&mapper, << "Pellucid: " << line);
+  }
+}
+
+}  // namespace pellucid::plugin

@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <vtkSmartPointer.h>
+
+#include <functional>
+#include <memory>
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "grid_layers.h"
+#include "mesh_layers.h"
+#include "notes.h"
+#include "pellucid/cpu/renderer.h"
+#include "pellucid/scene/scene.h"
+#include "view.h"
+
+class vtkAbstractVolumeMapper;
+class vtkAlgorithm;
+class vtkDataSet;
+class vtkRayCastImageDisplayHelper;
+class vtkRenderer;
+class vtkUnstructuredGridVolumeMapper;
+class vtkVolume;
+class vtkVolumeMapper;
+class vtkWindow;
+
+namespace pellucid::plugin {
+
+/// What a mapper can be told beside what VTK's own can.
+struct Settings {
+  double tolerance = default_tolerance;
+  Grade grade = Grade::estimated;
+  int threads = 0;  ///< 0: one per core
+};
+
+/// Set a number, and return whether it is another one than before. The tolerance is brought into
+/// its limits; what is not a positive number is not taken.
+bool set_tolerance(Settings& settings, double tolerance);
+bool set_grade(Settings& settings, int grade);
+
+/// What is known of the last picture.
+struct Outcome {
+  bool exact = false;         ///< whether all of its pixels were rendered
+  double largest_error = 0;   ///< of any pixel; infinite if it is not exact
+  long long pixels_over = 0;  ///< pixels whose error is over the tolerance
+  double seconds = 0;
+};
+
+/// Brings the data of a mapper up to date, as far as it has any.
+void update_inputs(vtkAlgorithm& mapper);
+
+/// What all mappers of this plug-in do: make a scene of a volume, render it, and put the picture
+/// into the window's framebuffer, over what is there and under geometry in front of it.
+class MapperCore {
+ public:
+  MapperCore();
+  ~MapperCore();
+  MapperCore(const MapperCore&) = delete;
+  MapperCore& operator=(const MapperCore&) = delete;
+
+  Settings settings;
+  Outcome outcome;
+  /// What a mapper knows to be left out, beside what draw() finds.
+  Notes left_out;
+
+  /// Draws a volume of a grid or of a mesh. What fails is told by the mapper's error event, what is
+  /// left out by its warnings; each once.
+  void draw(vtkVolumeMapper& mapper, const Mask& mask, vtkRenderer& renderer, vtkVolume& volume);
+  /// Draws several volumes with their data as one: where they overlap, they mix.
+  void draw(vtkVolumeMapper& mapper, const std::vector<std::pair<vtkDataSet*, vtkVolume*>>& parts,
+            const Mask& mask, vtkRenderer& renderer, vtkVolume& volume);
+  void draw(vtkUnstructuredGridVolumeMapper& mapper, vtkRenderer& renderer, vtkVolume& volume);
+  /// Returns the scene that draw() renders, without geometry. Throws Error.
+  Scene scene_of(vtkVolumeMapper& mapper, const Mask& mask, vtkRenderer& renderer,
+                 vtkVolume& volume);
+  Scene scene_of(vtkUnstructuredGridVolumeMapper& mapper, vtkRenderer& renderer, vtkVolume& volume);
+  /// Lets go of what the display holds in a window.
+  void release(vtkWindow* window);
+  /// Returns how often data were read anew.
+  int data_made() const noexcept { return grids_.volumes.made() + meshes_.made; }
+
+ private:
+  using MakeLayers = std::function<std::vector<Layer>(Notes&)>;
+
+  Scene scene_with(std::vector<Layer> layers, vtkRenderer& renderer, vtkVolume& volume,
+                   const View& view, Notes& notes) const;
+  void draw_layers(vtkAbstractVolumeMapper& mapper, vtkRenderer& renderer, vtkVolume& volume,
+                   const MakeLayers& make_layers);
+  Image picture(const Scene& scene, vtkRenderer& renderer, double seconds);
+  Image picture_in_time(const Scene& scene, vtkRenderer& renderer, double seconds);
+  void show(const Image& image, const View& view, vtkRenderer& renderer, vtkVolume& volume);
+  void tell(vtkAbstractVolumeMapper& mapper, const Notes& notes);
+
+  KeptOfGrids grids_;
+  KeptOfMeshes meshes_;
+  Renderer renderer_;
+  vtkSmartPointer<vtkRayCastImageDisplayHelper> display_;
+  std::vector<unsigned short> pixels_;
+  std::set<std::string> told_;
+};
+
+}  // namespace pellucid::plugin

@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "mesh_layers.h"
+
+#include <vtkCellData.h>
+#include <vtkDataArray.h>
+#include <vtkNew.h>
+#include <vtkPointData.h>
+#include <vtkUnstructuredGrid.h>
+#include <vtkUnstructuredGridVolumeMapper.h>
+#include <vtkVolume.h>
+#include <vtkVolumeProperty.h>
+
+#include <algorithm>
+#include <string>
+
+#include "cropping.h"
+#include "pellucid/scene/cut_cells.h"
+#include "pellucid/scene/error.h"
+#include "view.h"
+#include "vtk_gather.h"
+
+namespace pellucid::plugin {
+namespace {
+
+/// The grid's cells with these values alone: arrays that are not shown need not be copied.
+vtkSmartPointer<vtkUnstructuredGrid> with_values(vtkUnstructuredGrid& grid, vtkDataArray& array,
+                                                 bool of_cells) {
+  auto bare = vtkSmartPointer<vtkUnstructuredGrid>::New();
+  bare->CopyStructure(&grid);
+  for (const char* const name :
+       {vtkDataSetAttributes::GhostArrayName(), "HIGHER_ORDER_DEGREES", "HigherOrderDegrees"}) {
+    if (vtkDataArray* const about = grid.GetCellData()->GetArray(name)) {
+      bare->GetCellData()->AddArray(about);
+    }
+  }
+  bare->GetCellData()->SetHigherOrderDegrees(grid.GetCellData()->GetHigherOrderDegrees());
+  vtkSmartPointer<vtkDataArray> values(&array);
+  if (array.GetName() == nullptr || *array.GetName() == '\0') {
+    values.TakeReference(array.NewInstance());
+    values->ShallowCopy(&array);
+    values->SetName("values");
+  }
+  if (of_cells) {
+    bare->GetCellData()->SetScalars(values);
+  } else {
+    bare->GetPointData()->SetScalars(values);
+  }
+  return bare;
+}
+
+std::shared_ptr<const MeshChannels> mesh_of(vtkUnstructuredGrid& grid, vtkDataArray& array,
+                                            bool of_cells) {
+  MeshBlocks blocks;
+  gather(*with_values(grid, array, of_cells), blocks);
+  UnstructuredGrid& cells = blocks.blocks.at(0);
+  cells.name = grid.GetClassName();
+  const MeshArrayChoice choice{cells.arrays.at(0).name, std::nullopt, "value"};
+  std::erase_if(cells.arrays, [&](const MeshArray& one) { return one.name != choice.array; });
+  return cut_into_tetrahedra(cells, std::span(&choice, 1));
+}
+
+}  // namespace
+
+std::vector<Layer> layers_of(vtkUnstructuredGridVolumeMapper& mapper, vtkVolume& volume,
+                             double tolerance, KeptOfMeshes& kept, Notes& notes) {
+  auto* const grid = vtkUnstructuredGrid::SafeDownCast(mapper.GetDataSetInput());
+  if (grid == nullptr) {
+    if (mapper.GetDataSetInput() == nullptr) return {};
+    throw Error(std::string(mapper.GetDataSetInput()->GetClassName()) +
+                ": the mapper takes a vtkUnstructuredGrid");
+  }
+  int of_cells = 0;
+  vtkDataArray* const array =
+      vtkAbstractMapper::GetScalars(grid, mapper.GetScalarMode(), mapper.GetArrayAccessMode(),
+                                    mapper.GetArrayId(), mapper.GetArrayName(), of_cells);
+  if (array == nullptr) {
+    throw Error(
+        "vtkUnstructuredGrid: has no values to show; give it scalars, or select one of "
+        "its arrays");
+  }
+  if (array->GetNumberOfComponents() != 1) {
+    throw Error("the array has " + std::to_string(array->GetNumberOfComponents()) +
+                " components; one is shown, extract it");
+  }
+  const vtkMTimeType time = std::max(grid->GetMTime(), array->GetMTime());
+  if (kept.mesh == nullptr || kept.array != array || kept.time != time) {
+    kept.mesh = mesh_of(*grid, *array, of_cells != 0);
+    kept.array = array;
+    kept.time = time;
+    ++kept.made;
+  }
+  vtkVolumeProperty& property = *volume.GetProperty();
+  Layer layer;
+  layer.transform = affine_of(*volume.GetMatrix(), "volume");
+  layer.clips = clips_of(mapper.GetClippingPlanes());
+  if (mapper.GetBlendMode() == vtkUnstructuredGridVolumeMapper::MAXIMUM_INTENSITY_BLEND) {
+    layer.projection = LayerProjection::maximum;
+  }
+  const auto meaning = layer.projection ? OpacityMeaning::projected : OpacityMeaning::extinction;
+  layer.content = MeshContent{
+      kept.mesh, kept.functions.find(look_recipe(property, 0, meaning, tolerance), function_of)};
+  if (property.GetShade(0) != 0) notes.add("volumes of unstructured grids have no light");
+  return {layer};
+}
+
+}  // namespace pellucid::plugin

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <vtkSmartPointer.h>
+#include <vtkType.h>
+
+#include <memory>
+#include <vector>
+
+#include "look.h"
+#include "notes.h"
+#include "pellucid/scene/layer.h"
+
+class vtkDataArray;
+class vtkUnstructuredGridVolumeMapper;
+class vtkVolume;
+
+namespace pellucid::plugin {
+
+/// What pictures of a mesh share: its tetrahedra are cut again if the grid or its values changed.
+struct KeptOfMeshes {
+  std::shared_ptr<const MeshChannels> mesh;
+  vtkSmartPointer<vtkDataArray> array;
+  vtkMTimeType time = 0;
+  int made = 0;  ///< how often it was cut
+  KeptFunctions functions;
+};
+
+/// Returns the layer of a volume; none if the mapper has no input. Opacity / unit distance is the
+/// extinction, as VTK's mappers of unstructured grids take it. Throws Error.
+std::vector<Layer> layers_of(vtkUnstructuredGridVolumeMapper& mapper, vtkVolume& volume,
+                             double tolerance, KeptOfMeshes& kept, Notes& notes);
+
+}  // namespace pellucid::plugin

@@ -1,0 +1,204 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "stand_ins.h"
+
+#include <vtkContourValues.h>
+#include <vtkFixedPointVolumeRayCastMapper.h>
+#include <vtkGPUVolumeRayCastMapper.h>
+#include <vtkImageData.h>
+#include <vtkMultiVolume.h>
+#include <vtkObjectFactory.h>
+#include <vtkProjectedTetrahedraMapper.h>
+#include <vtkRenderer.h>
+#include <vtkSmartVolumeMapper.h>
+#include <vtkUnstructuredGridVolumeRayCastMapper.h>
+#include <vtkUnstructuredGridVolumeZSweepMapper.h>
+#include <vtkVolume.h>
+
+#include "mapper_core.h"
+#include "vtkPellucidUnstructuredGridMapper.h"
+#include "vtkPellucidVolumeMapper.h"
+
+namespace pellucid::plugin {
+namespace {
+
+/// What each of the classes below has.
+class HasCore {
+ public:
+  virtual ~HasCore() = default;
+  MapperCore core;
+};
+
+class GpuStandIn final : public vtkGPUVolumeRayCastMapper, public HasCore {
+ public:
+  static GpuStandIn* New();
+  vtkTypeMacro(GpuStandIn, vtkGPUVolumeRayCastMapper)
+  GpuStandIn(const GpuStandIn&) = delete;
+  void operator=(const GpuStandIn&) = delete;
+
+  int IsRenderSupported(vtkRenderWindow*, vtkVolumeProperty*) override { return 1; }
+  void Render(vtkRenderer* renderer, vtkVolume* volume) override {
+    update_inputs(*this);
+    const Mask mask{this->GetMaskInput(), this->GetMaskType() == BinaryMaskType,
+                    double{this->GetMaskBlendFactor()}};
+    if (this->GetFinalColorWindow() != 1 || this->GetFinalColorLevel() != 0.5F) {
+      this->core.left_out.add("the window and level of the final color are left out");
+    }
+    if (this->GetRenderToImage() != 0) this->core.left_out.add("RenderToImage is left out");
+    if (auto* const several = vtkMultiVolume::SafeDownCast(volume)) {
+      std::vector<std::pair<vtkDataSet*, vtkVolume*>> parts;
+      for (int port = 0; port < this->GetInputCount(); ++port) {
+        if (vtkVolume* const part = several->GetVolume(port)) {
+          parts.emplace_back(this->GetInput(port), part);
+        }
+      }
+      this->core.draw(*this, parts, mask, *renderer, *volume);
+    } else {
+      this->core.draw(*this, mask, *renderer, *volume);
+    }
+    this->TimeToDraw = this->core.outcome.seconds;
+  }
+  void ReleaseGraphicsResources(vtkWindow* window) override { this->core.release(window); }
+  void GetReductionRatio(double ratio[3]) override { ratio[0] = ratio[1] = ratio[2] = 1; }
+
+ protected:
+  GpuStandIn() = default;
+  ~GpuStandIn() override = default;
+  void PreRender(vtkRenderer*, vtkVolume*, double*, double*, int, unsigned int) override {}
+  void RenderBlock(vtkRenderer*, vtkVolume*, unsigned int) override {}
+  void PostRender(vtkRenderer*, int) override {}
+};
+vtkStandardNewMacro(GpuStandIn)
+
+    class FixedPointStandIn final : public vtkFixedPointVolumeRayCastMapper,
+                                    public HasCore {
+ public:
+  static FixedPointStandIn* New();
+  vtkTypeMacro(FixedPointStandIn, vtkFixedPointVolumeRayCastMapper)
+  FixedPointStandIn(const FixedPointStandIn&) = delete;
+  void operator=(const FixedPointStandIn&) = delete;
+
+  void Render(vtkRenderer* renderer, vtkVolume* volume) override {
+    update_inputs(*this);
+    this->core.draw(*this, {}, *renderer, *volume);
+    this->TimeToDraw = this->core.outcome.seconds;
+  }
+  void ReleaseGraphicsResources(vtkWindow* window) override {
+    this->core.release(window);
+    this->Superclass::ReleaseGraphicsResources(window);
+  }
+
+ protected:
+  FixedPointStandIn() = default;
+  ~FixedPointStandIn() override = default;
+};
+vtkStandardNewMacro(FixedPointStandIn)
+
+    class RayCastStandIn final : public vtkUnstructuredGridVolumeRayCastMapper,
+                                 public HasCore {
+ public:
+  static RayCastStandIn* New();
+  vtkTypeMacro(RayCastStandIn, vtkUnstructuredGridVolumeRayCastMapper)
+  RayCastStandIn(const RayCastStandIn&) = delete;
+  void operator=(const RayCastStandIn&) = delete;
+
+  void Render(vtkRenderer* renderer, vtkVolume* volume) override {
+    update_inputs(*this);
+    this->core.draw(*this, *renderer, *volume);
+    this->TimeToDraw = this->core.outcome.seconds;
+  }
+  void ReleaseGraphicsResources(vtkWindow* window) override {
+    this->core.release(window);
+    this->Superclass::ReleaseGraphicsResources(window);
+  }
+
+ protected:
+  RayCastStandIn() = default;
+  ~RayCastStandIn() override = default;
+};
+vtkStandardNewMacro(RayCastStandIn)
+
+    class ZSweepStandIn final : public vtkUnstructuredGridVolumeZSweepMapper,
+                                public HasCore {
+ public:
+  static ZSweepStandIn* New();
+  vtkTypeMacro(ZSweepStandIn, vtkUnstructuredGridVolumeZSweepMapper)
+  ZSweepStandIn(const ZSweepStandIn&) = delete;
+  void operator=(const ZSweepStandIn&) = delete;
+
+  void Render(vtkRenderer* renderer, vtkVolume* volume) override {
+    update_inputs(*this);
+    this->core.draw(*this, *renderer, *volume);
+    this->TimeToDraw = this->core.outcome.seconds;
+  }
+  void ReleaseGraphicsResources(vtkWindow* window) override {
+    this->core.release(window);
+    this->Superclass::ReleaseGraphicsResources(window);
+  }
+
+ protected:
+  ZSweepStandIn() = default;
+  ~ZSweepStandIn() override = default;
+};
+vtkStandardNewMacro(ZSweepStandIn)
+
+    class TetrahedraStandIn final : public vtkProjectedTetrahedraMapper,
+                                    public HasCore {
+ public:
+  static TetrahedraStandIn* New();
+  vtkTypeMacro(TetrahedraStandIn, vtkProjectedTetrahedraMapper)
+  TetrahedraStandIn(const TetrahedraStandIn&) = delete;
+  void operator=(const TetrahedraStandIn&) = delete;
+
+  bool IsSupported(vtkRenderWindow*) override { return true; }
+  void Render(vtkRenderer* renderer, vtkVolume* volume) override {
+    update_inputs(*this);
+    this->core.draw(*this, *renderer, *volume);
+    this->TimeToDraw = this->core.outcome.seconds;
+  }
+  void ReleaseGraphicsResources(vtkWindow* window) override { this->core.release(window); }
+
+ protected:
+  TetrahedraStandIn() = default;
+  ~TetrahedraStandIn() override = default;
+};
+vtkStandardNewMacro(TetrahedraStandIn)
+
+    /// Reads the protected member of a smart mapper that draws for it.
+    struct SmartMapper : vtkSmartVolumeMapper {
+  static vtkGPUVolumeRayCastMapper* gpu_mapper_of(vtkSmartVolumeMapper& mapper) {
+    return mapper.*(&SmartMapper::GPUMapper);
+  }
+};
+
+}  // namespace
+
+vtkGPUVolumeRayCastMapper* new_gpu_stand_in() {
+  return GpuStandIn::New();
+}
+vtkFixedPointVolumeRayCastMapper* new_fixed_point_stand_in() {
+  return FixedPointStandIn::New();
+}
+vtkUnstructuredGridVolumeRayCastMapper* new_ray_cast_stand_in() {
+  return RayCastStandIn::New();
+}
+vtkUnstructuredGridVolumeZSweepMapper* new_z_sweep_stand_in() {
+  return ZSweepStandIn::New();
+}
+vtkProjectedTetrahedraMapper* new_projected_tetrahedra_stand_in() {
+  return TetrahedraStandIn::New();
+}
+
+MapperCore* core_of(vtkAbstractVolumeMapper* mapper) {
+  if (mapper == nullptr) return nullptr;
+  if (auto* const stand_in = dynamic_cast<HasCore*>(mapper)) return &stand_in->core;
+  if (auto* const ours = vtkPellucidVolumeMapper::SafeDownCast(mapper)) return &ours->GetCore();
+  if (auto* const ours = vtkPellucidUnstructuredGridMapper::SafeDownCast(mapper)) {
+    return &ours->GetCore();
+  }
+  if (auto* const smart = vtkSmartVolumeMapper::SafeDownCast(mapper)) {
+    return core_of(SmartMapper::gpu_mapper_of(*smart));
+  }
+  return nullptr;
+}
+
+}  // namespace pellucid::plugin

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+class vtkAbstractVolumeMapper;
+class vtkFixedPointVolumeRayCastMapper;
+class vtkGPUVolumeRayCastMapper;
+class vtkProjectedTetrahedraMapper;
+class vtkUnstructuredGridVolumeRayCastMapper;
+class vtkUnstructuredGridVolumeZSweepMapper;
+
+namespace pellucid::plugin {
+
+class MapperCore;
+
+/// Mappers of this plug-in that are mappers of VTK's classes, for programs that ask for these: they
+/// have all of their functions, and draw as vtkPellucidVolumeMapper and
+/// vtkPellucidUnstructuredGridMapper do. What says how VTK's own sample has no effect. The caller
+/// owns what is returned.
+vtkGPUVolumeRayCastMapper* new_gpu_stand_in();
+vtkFixedPointVolumeRayCastMapper* new_fixed_point_stand_in();
+vtkUnstructuredGridVolumeRayCastMapper* new_ray_cast_stand_in();
+vtkUnstructuredGridVolumeZSweepMapper* new_z_sweep_stand_in();
+vtkProjectedTetrahedraMapper* new_projected_tetrahedra_stand_in();
+
+/// Returns what draws for a mapper of this plug-in, or for a vtkSmartVolumeMapper whose mapper for
+/// GPUs is one; null for others.
+MapperCore* core_of(vtkAbstractVolumeMapper* mapper);
+
+}  // namespace pellucid::plugin

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "notes.h"
+#include "pellucid/geometry/affine.h"
+#include "pellucid/scene/scene.h"
+
+class vtkMatrix4x4;
+class vtkRenderer;
+
+namespace pellucid::plugin {
+
+/// What of a scene's picture a renderer's part of the window shows.
+struct View {
+  Camera camera;
+  ImageSize size;             ///< of the scene's picture
+  int width = 0, height = 0;  ///< of the window's part
+  int column = 0, row = 0;    ///< of the window's upper left pixel in the scene's picture
+  int left = 0, bottom = 0;   ///< of the renderer's part in the window
+
+  /// Whether the picture is larger than the window's part.
+  bool is_cut() const noexcept { return size.width != width || size.height != height; }
+};
+
+/// Returns the camera of a renderer. A window of the camera that is not in its middle, as of tiles,
+/// is a part of a larger picture. Throws Error for what has no counterpart: shear, a transform of
+/// the view, pixels that are not square, parts of pixels.
+View view_of(vtkRenderer& renderer);
+/// Returns the lights that are on. A renderer without lights has a head light, as VTK makes one.
+std::vector<Light> lights_of(vtkRenderer& renderer, Notes& notes);
+/// Returns whether a property's ambient part is seen. VTK gives its color to it under one head
+/// light of intensity 1; under other lights it has the lights' own ambient colors, which are black
+/// unless a program sets them.
+bool has_ambient_light(vtkRenderer& renderer);
+/// Returns an affine matrix of VTK. Throws Error for others. `what` begins the message.
+Affine<double> affine_of(vtkMatrix4x4& matrix, const char* what);
+
+/// Returns where rays end because of what is in the window already: a clear picture with the
+/// distances of its depth buffer. Outside of the window's part rays end at once. Null: nothing is
+/// there, and the picture is not cut. Throws Error if the window has no depths.
+std::shared_ptr<const Image> geometry_of(vtkRenderer& renderer, const View& view);
+
+/// Returns the camera's planes that cut a box off, of the two that VTK draws between. `bounds`:
+/// xmin, xmax, ymin, ... in the world.
+std::vector<Clip> depth_clips(vtkRenderer& renderer, const double bounds[6]);
+
+}  // namespace pellucid::plugin

@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "vtkPellucidVolumeMapper.h"
+
+#include <vtkObjectFactory.h>
+#include <vtkRenderer.h>
+#include <vtkVolume.h>
+
+#include <algorithm>
+
+#include "mapper_core.h"
+
+namespace {
+
+pellucid::plugin::Mask mask_of(vtkPellucidVolumeMapper& mapper) {
+  return {mapper.GetMaskInput(), mapper.GetMaskType() == vtkPellucidVolumeMapper::BinaryMaskType,
+          double{mapper.GetMaskBlendFactor()}};
+}
+
+}  // namespace
+
+vtkStandardNewMacro(vtkPellucidVolumeMapper);
+
+vtkPellucidVolumeMapper::vtkPellucidVolumeMapper() : Core(new pellucid::plugin::MapperCore) {}
+
+vtkPellucidVolumeMapper::~vtkPellucidVolumeMapper() {
+  delete this->Core;
+}
+
+void vtkPellucidVolumeMapper::Render(vtkRenderer* renderer, vtkVolume* volume) {
+  pellucid::plugin::update_inputs(*this);
+  this->Core->draw(*this, mask_of(*this), *renderer, *volume);
+  this->TimeToDraw = this->Core->outcome.seconds;
+}
+
+void vtkPellucidVolumeMapper::ReleaseGraphicsResources(vtkWindow* window) {
+  this->Core->release(window);
+}
+
+void vtkPellucidVolumeMapper::SetTolerance(double tolerance) {
+  if (pellucid::plugin::set_tolerance(this->Core->settings, tolerance)) this->Modified();
+}
+
+double vtkPellucidVolumeMapper::GetTolerance() {
+  return this->Core->settings.tolerance;
+}
+
+void vtkPellucidVolumeMapper::SetGrade(int grade) {
+  if (pellucid::plugin::set_grade(this->Core->settings, grade)) this->Modified();
+}
+
+int vtkPellucidVolumeMapper::GetGrade() {
+  return this->Core->settings.grade == pellucid::Grade::proved ? 1 : 0;
+}
+
+void vtkPellucidVolumeMapper::SetNumberOfThreads(int threads) {
+  this->Core->settings.threads = std::max(threads, 0);
+}
+
+int vtkPellucidVolumeMapper::GetNumberOfThreads() {
+  return this->Core->settings.threads;
+}
+
+bool vtkPellucidVolumeMapper::GetExact() {
+  return this->Core->outcome.exact;
+}
+
+double vtkPellucidVolumeMapper::GetLargestError() {
+  return this->Core->outcome.largest_error;
+}
+
+vtkIdType vtkPellucidVolumeMapper::GetPixelsOver() {
+  return this->Core->outcome.pixels_over;
+}
+
+void vtkPellucidVolumeMapper::SetMaskInput(vtkImageData* mask) {
+  if (this->MaskInput == mask) return;
+  this->MaskInput = mask;
+  this->Modified();
+}
+
+vtkImageData* vtkPellucidVolumeMapper::GetMaskInput() {
+  return this->MaskInput;
+}
+
+void vtkPellucidVolumeMapper::PrintSelf(ostream& os, vtkIndent indent) {
+  this->Superclass::PrintSelf(os, indent);
+  os << indent << "Tolerance: " << this->GetTolerance() << "\n";
+  os << indent << "Grade: " << (this->GetGrade() == 1 ? "proved" : "estimated") << "\n";
+  os << indent << "NumberOfThreads: " << this->GetNumberOfThreads() << "\n";
+  os << indent << "Exact: " << this->GetExact() << "\n";
+  os << indent << "LargestError: " << this->GetLargestError() << "\n";
+  os << indent << "PixelsOver: " << this->GetPixelsOver() << "\n";
+}

@@ -1,0 +1,326 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// Volumes among geometry, in parts of windows, and several of them.
+#include <gtest/gtest.h>
+#include <vtkActor.h>
+#include <vtkGPUVolumeRayCastMapper.h>
+#include <vtkMultiVolume.h>
+#include <vtkPolyDataMapper.h>
+#include <vtkProperty.h>
+#include <vtkSphereSource.h>
+#include <vtkUnsignedCharArray.h>
+#include <vtkWindowToImageFilter.h>
+
+#include <array>
+#include <limits>
+
+#include "mapper_core.h"
+#include "pellucid/cpu/render.h"
+#include "tests/plugins_vtk/stage.h"
+#include "vtkPellucidFactory.h"
+#include "vtkPellucidVolumeMapper.h"
+
+namespace pellucid::test {
+namespace {
+
+constexpr double half_a_step = 0.5 / 255;
+constexpr double rounding = 1.0 / 32767;
+
+std::array<double, 3> beside_middle(vtkVolume& volume, double along_x) {
+  const double* const middle = volume.GetCenter();
+  return {middle[0] + along_x, middle[1], middle[2]};
+}
+
+/// A red ball without light.
+vtkSmartPointer<vtkActor> red_ball(const std::array<double, 3>& center, double radius) {
+  vtkNew<vtkSphereSource> source;
+  source->SetCenter(center[0], center[1], center[2]);
+  source->SetRadius(radius);
+  source->SetThetaResolution(200);
+  source->SetPhiResolution(200);
+  vtkNew<vtkPolyDataMapper> mapper;
+  mapper->SetInputConnection(source->GetOutputPort());
+  auto actor = vtkSmartPointer<vtkActor>::New();
+  actor->SetMapper(mapper);
+  actor->GetProperty()->LightingOff();
+  actor->GetProperty()->SetColor(1, 0, 0);
+  return actor;
+}
+
+/// Where the ray meets the ball first; infinite: nowhere.
+double distance_to_ball(const Ray<double>& ray, const Vec3<double>& center, double radius) {
+  const Vec3<double> offset = ray.origin - center;
+  const double b = dot(offset, ray.direction), c = dot(offset, offset) - radius * radius;
+  const double root = b * b - c;
+  if (root < 0) return std::numeric_limits<double>::infinity();
+  return -b - std::sqrt(root);
+}
+
+/// The scene with a ball that no depth buffer has seen: its depths are those of a true ball.
+Image truth_with_ball(Scene scene, const Vec3<double>& center, double radius) {
+  scene.integration.set_tolerance(1e-5);
+  auto geometry = std::make_shared<Image>();
+  geometry->width = scene.size.width;
+  geometry->height = scene.size.height;
+  const CameraFrame<double> frame = make_camera_frame(scene.camera, scene.size);
+  for (int y = 0; y < scene.size.height; ++y) {
+    for (int x = 0; x < scene.size.width; ++x) {
+      const double t = distance_to_ball(frame.ray(x, y), center, radius);
+      const bool hit = std::isfinite(t);
+      geometry->pixels.push_back({hit ? 1.0F : 0.0F, 0, 0, hit ? 1.0F : 0.0F});
+      geometry->depth.push_back(static_cast<float>(t));
+    }
+  }
+  scene.backdrop = geometry;
+  return render(scene);
+}
+
+struct BallCase {
+  const char* name;
+  double azimuth, elevation;
+  bool parallel;
+  double view_angle = 30;
+};
+
+void PrintTo(const BallCase& ball, std::ostream* to) {
+  *to << ball.name;
+}
+
+class VtkDepth : public testing::TestWithParam<BallCase> {};
+
+TEST_P(VtkDepth, ABallHalfInTheVolumeIsSeenThroughIt) {
+  Stage stage(128, 96);
+  vtkNew<vtkPellucidVolumeMapper> mapper;
+  mapper->SetInputData(ball_image());
+  vtkVolume* const volume = stage.add(mapper, soft_property(4));
+  const std::array<double, 3> center = beside_middle(*volume, 10);
+  const double radius = 9;
+  stage.renderer->AddActor(red_ball(center, radius));
+  stage.camera->SetParallelProjection(GetParam().parallel ? 1 : 0);
+  stage.camera->SetViewAngle(GetParam().view_angle);
+  stage.look(GetParam().azimuth, GetParam().elevation);
+  const Image shown = stage.picture();
+  EXPECT_EQ(stage.gl_errors(), "");
+  const Scene scene = mapper->GetCore().scene_of(*mapper, {}, *stage.renderer, *volume);
+  const Vec3<double> middle{center[0], center[1], center[2]};
+  const Image truth = truth_with_ball(scene, middle, radius);
+  // Pixels at the silhouette see the facets, not the ball.
+  const CameraFrame<double> frame = make_camera_frame(scene.camera, scene.size);
+  const auto apart = [&](int x, int y) {
+    const Ray<double> ray = frame.ray(x, y);
+    const Vec3<double> to = middle - ray.origin;
+    const double along = dot(to, ray.direction);
+    const double across = std::sqrt(dot(to, to) - along * along);
+    return std::abs(across / radius - 1) > 0.1;
+  };
+  // The ball is one of facets, up to 1.2e-4 of its radius inside; depths have 24 bits.
+  const double facets = 2e-3;
+  EXPECT_LE(largest_difference(shown, truth, apart),
+            half_a_step + mapper->GetTolerance() + rounding + facets);
+  // Rays end at the ball, measured along them.
+  const auto geometry = plugin::geometry_of(*stage.renderer, plugin::view_of(*stage.renderer));
+  ASSERT_NE(geometry, nullptr);
+  for (int y = 0; y < 96; ++y) {
+    for (int x = 0; x < 128; ++x) {
+      const double end = double{geometry->depth[static_cast<std::size_t>(128 * y + x)]};
+      const double wanted = distance_to_ball(frame.ray(x, y), middle, radius);
+      if (!apart(x, y)) continue;
+      EXPECT_EQ(std::isinf(end), std::isinf(wanted)) << x << ' ' << y;
+      if (std::isfinite(end) && std::isfinite(wanted)) {
+        EXPECT_NEAR(end, wanted, 0.01) << x << ' ' << y;
+      }
+    }
+  }
+  // It is no test if the ball is not seen, or the volume is not in front of it.
+  double most_red = 0, hidden_red = 1;
+  for (int y = 0; y < 96; ++y) {
+    for (int x = 0; x < 128; ++x) {
+      const double t = distance_to_ball(frame.ray(x, y), middle, radius);
+      if (std::isinf(t)) continue;
+      most_red = std::max(most_red, double{shown.at(x, y)[0]} - double{shown.at(x, y)[1]});
+      hidden_red = std::min(hidden_red, double{shown.at(x, y)[0]} - double{shown.at(x, y)[1]});
+    }
+  }
+  EXPECT_GT(most_red, 0.5);
+  EXPECT_LT(hidden_red, GetParam().azimuth < 0 ? 0.75 : 0.99);
+}
+
+INSTANTIATE_TEST_SUITE_P(Sides, VtkDepth,
+                         testing::Values(BallCase{"front", 60, 20, false},
+                                         BallCase{"back", -75, 10, false},
+                                         BallCase{"parallel_front", 60, 20, true},
+                                         BallCase{"parallel_back", -75, 10, true},
+                                         BallCase{"wide", -20, -15, false, 110}),
+                         [](const auto& made) { return std::string(made.param.name); });
+
+TEST(VtkGeometry, AMultisampledWindowHasTheSamePicture) {
+  Image pictures[2];
+  for (const int samples : {0, 8}) {
+    Stage stage;
+    stage.window->SetMultiSamples(samples);
+    vtkNew<vtkPellucidVolumeMapper> mapper;
+    mapper->SetInputData(ball_image());
+    const auto center = beside_middle(*stage.add(mapper, soft_property(4)), 10);
+    stage.renderer->AddActor(red_ball(center, 9));
+    stage.look();
+    pictures[samples / 8] = stage.picture();
+    EXPECT_EQ(stage.gl_errors(), "");
+  }
+  // But for the silhouette of the ball.
+  int differ = 0;
+  for (std::size_t i = 0; i < pictures[0].pixels.size(); ++i) {
+    double off = 0;
+    for (std::size_t c = 0; c < 3; ++c) {
+      off = std::max(off,
+                     std::abs(double{pictures[0].pixels[i][c]} - double{pictures[1].pixels[i][c]}));
+    }
+    if (off > 2.1 / 255) ++differ;
+  }
+  EXPECT_LE(differ, 200);
+}
+
+TEST(VtkGeometry, TranslucentGeometryIsSaidToLieBehind) {
+  Stage stage;
+  vtkNew<vtkPellucidVolumeMapper> mapper;
+  mapper->SetInputData(ball_image());
+  const auto center = beside_middle(*stage.add(mapper, soft_property()), 0);
+  const auto ball = red_ball(center, 9);
+  ball->GetProperty()->SetOpacity(0.5);
+  stage.renderer->AddActor(ball);
+  stage.look();
+  const Messages messages;
+  stage.picture();
+  stage.picture();
+  const std::string said = messages.text();
+  const auto at = said.find("translucent geometry lies behind");
+  ASSERT_NE(at, std::string::npos) << said;
+  EXPECT_EQ(said.find("translucent geometry lies behind", at + 1), std::string::npos);
+}
+
+TEST(VtkGeometry, ARendererFillsItsHalfOfTheWindow) {
+  Stage stage(120, 64);
+  vtkNew<vtkPellucidVolumeMapper> mapper;
+  mapper->SetInputData(ball_image());
+  vtkVolume* const volume = stage.add(mapper, soft_property());
+  stage.renderer->SetViewport(0.5, 0.25, 1, 1);
+  stage.look();
+  const Image shown = stage.picture();
+  Scene scene = mapper->GetCore().scene_of(*mapper, {}, *stage.renderer, *volume);
+  ASSERT_EQ(scene.size.width, 60);
+  ASSERT_EQ(scene.size.height, 48);
+  scene.integration.set_tolerance(1e-5);
+  const Image part = render(scene);
+  Image truth;
+  truth.width = 120;
+  truth.height = 64;
+  truth.pixels.resize(120 * 64);
+  for (int y = 0; y < 48; ++y) {
+    for (int x = 0; x < 60; ++x) truth.at(60 + x, y) = part.at(x, y);
+  }
+  EXPECT_LE(largest_difference(shown, truth), half_a_step + mapper->GetTolerance() + rounding);
+}
+
+TEST(VtkGeometry, VolumesAreDrawnOneOverTheOther) {
+  Stage stage;
+  vtkNew<vtkPellucidVolumeMapper> first, second;
+  first->SetInputData(ball_image());
+  second->SetInputData(ball_image());
+  vtkVolume* const one = stage.add(first, soft_property());
+  vtkVolume* const two = stage.add(second, soft_property(5));
+  two->SetPosition(30, 0, 0);
+  stage.look();
+  const Image shown = stage.picture();
+  Scene scene = first->GetCore().scene_of(*first, {}, *stage.renderer, *one);
+  scene.integration.set_tolerance(1e-5);
+  const Image below = render(scene);
+  scene = second->GetCore().scene_of(*second, {}, *stage.renderer, *two);
+  scene.integration.set_tolerance(1e-5);
+  Image truth = render(scene);
+  for (std::size_t i = 0; i < truth.pixels.size(); ++i) {
+    const float clear = 1 - truth.pixels[i][3];
+    for (std::size_t c = 0; c < 4; ++c) truth.pixels[i][c] += clear * below.pixels[i][c];
+  }
+  // Two pictures are rounded to 8 bits.
+  EXPECT_LE(largest_difference(shown, truth), 2 * (half_a_step + first->GetTolerance() + rounding));
+}
+
+TEST(VtkGeometry, TheVolumesOfAMultiVolumeMix) {
+  vtkPellucidFactory::Use();
+  vtkNew<vtkGPUVolumeRayCastMapper> mapper;
+  vtkPellucidFactory::Use(false);
+  Stage stage;
+  vtkNew<vtkMultiVolume> several;
+  several->SetMapper(mapper);
+  vtkNew<vtkVolume> parts[2];
+  for (int i = 0; i < 2; ++i) {
+    mapper->SetInputDataObject(i, ball_image());
+    parts[i]->SetProperty(soft_property(i + 2));
+    parts[i]->SetPosition(8 * i, 0, 0);
+    several->SetVolume(parts[i], i);
+  }
+  stage.renderer->AddVolume(several);
+  stage.look();
+  const Messages messages;
+  const Image shown = stage.picture();
+  EXPECT_EQ(messages.text(), "");
+  // The two layers as a scene of their own.
+  Scene scene;
+  for (int i = 0; i < 2; ++i) {
+    vtkNew<vtkPellucidVolumeMapper> one;
+    one->SetInputData(ball_image());
+    parts[i]->SetMapper(one);
+    const Scene made = one->GetCore().scene_of(*one, {}, *stage.renderer, *parts[i]);
+    std::vector<Layer> layers = scene.layers;
+    layers.push_back(made.layers.at(0));
+    scene = made;
+    scene.layers = layers;
+  }
+  scene.integration.set_tolerance(2e-4);
+  EXPECT_LE(largest_difference(shown, render(scene)),
+            half_a_step + default_tolerance + rounding + 2 * default_tolerance / 8 + 2e-4);
+}
+
+/// Tiles of a picture twice and three times as large make the picture of a larger window.
+TEST(VtkGeometry, TilesMakeALargePicture) {
+  for (const int scale : {2, 3}) {
+    for (const bool with_ball : {false, true}) {
+      Stage stage(48, 40), large(48 * scale, 40 * scale);
+      Image truth;
+      for (Stage* const each : {&stage, &large}) {
+        vtkNew<vtkPellucidVolumeMapper> mapper;
+        mapper->SetInputData(ball_image());
+        const auto center = beside_middle(*each->add(mapper, soft_property(4)), 10);
+        if (with_ball) each->renderer->AddActor(red_ball(center, 9));
+        each->look();
+      }
+      truth = large.picture();
+      stage.window->Render();
+      vtkNew<vtkWindowToImageFilter> filter;
+      filter->SetInput(stage.window);
+      filter->SetScale(scale);
+      filter->ReadFrontBufferOff();
+      const Messages messages;
+      filter->Update();
+      EXPECT_EQ(messages.text(), "");
+      vtkImageData* const made = filter->GetOutput();
+      ASSERT_EQ(made->GetDimensions()[0], 48 * scale);
+      int differ = 0;
+      for (int y = 0; y < truth.height; ++y) {
+        for (int x = 0; x < truth.width; ++x) {
+          double off = 0;
+          for (int c = 0; c < 3; ++c) {
+            const double value = made->GetScalarComponentAsDouble(x, truth.height - 1 - y, 0, c);
+            off = std::max(
+                off, std::abs(value / 255 - double{truth.at(x, y)[static_cast<std::size_t>(c)]}));
+          }
+          if (off > 2.1 / 255) ++differ;
+        }
+      }
+      // Pixels at the ball's silhouette may differ.
+      EXPECT_LE(differ, with_ball ? 40 * scale : 0) << scale;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace pellucid::test
