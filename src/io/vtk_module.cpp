@@ -7,7 +7,7 @@ namespace pellucid {
 
 namespace {
 
-constexpr Module vtk{"pellucid_vtk.so", "VTK's and Exodus files", "VTK (Debian: libvtk9-dev)"};
+constexpr Module vtk{"pellucid_vtk.so", "reads VTK's and Exodus files", "VTK (Debian: libvtk9-dev)"};
 
 }  // namespace
 

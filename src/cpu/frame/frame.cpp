@@ -49,9 +49,10 @@ double negligible_extinction(const std::vector<const Layer*>& layers, const RayT
 
 Frame::Frame(const Scene& described, const RenderOptions& options, int threads, LayerSetups& kept)
     : scene(described),
+      region(options.region),
       camera(make_camera_frame(described.camera, described.size)),
       tolerance(0),
-      reserved(approximation_error(described)),
+      reserved(options.region ? 0 : approximation_error(described)),
       largest_color(pellucid::largest_color(described)) {
   const double behind = brightest_behind(scene);
   if (scene.backdrop) largest_color = std::max(largest_color, behind);

@@ -19,6 +19,7 @@ struct Frame {
   Frame(const Scene& scene, const RenderOptions& options, int threads, LayerSetups& kept);
 
   const Scene& scene;
+  std::shared_ptr<const RayRegion> region;  ///< null: everything
   CameraFrame<double> camera;
   double tolerance;      ///< what rays may be off by
   double reserved;       ///< of the tolerance: what the transfer function is off by

@@ -1,0 +1,176 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pellucid/cluster/render.h"
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <charconv>
+#include <string>
+
+#include "final_image.h"
+#include "frame_watch.h"
+#include "pellucid/base/version.h"
+#include "pellucid/cluster/sub_scene.h"
+#include "pellucid/scene/error.h"
+#include "rank_work.h"
+
+namespace pellucid {
+namespace {
+
+class Stopwatch {
+ public:
+  double seconds() const {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+  }
+
+ private:
+  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+};
+
+std::string text(double number) {
+  std::array<char, 32> room;
+  return {room.data(), std::to_chars(room.data(), room.data() + room.size(), number).ptr};
+}
+
+/// What must be the same on all ranks for a frame to be one.
+std::string frame_text(const BrickTree& tree, const Scene& scene, const RenderOptions& options) {
+  const Camera& camera = scene.camera;
+  std::string all = std::to_string(scene.size.width) + "x" + std::to_string(scene.size.height) +
+                    " samples " + std::to_string(scene.samples) + " layers " +
+                    std::to_string(scene.layers.size()) + " tolerance " +
+                    text(scene.integration.tolerance) + " depth " + (options.depth ? "1" : "0") +
+                    " camera";
+  for (const Vec3<double>& v : {camera.position, camera.focal_point, camera.up}) {
+    for (int a = 0; a < 3; ++a) all += " " + text(v[a]);
+  }
+  all += " " + text(camera.vertical_angle) + " " + text(camera.parallel_scale) + " color " +
+         text(largest_color(scene)) + " bricks";
+  for (int brick = 0; brick < tree.count(); ++brick) {
+    for (int a = 0; a < 3; ++a) {
+      all += " " + text(tree.box(brick).lower[a]) + " " + text(tree.box(brick).upper[a]);
+    }
+  }
+  return all;
+}
+
+/// The most bricks that any ray of the frame meets; at least 1.
+int most_bricks(const BrickTree& tree, const Scene& rays) {
+  const CameraFrame<double> camera = make_camera_frame(rays.camera, rays.size);
+  int most = 1;
+  for (int row = 0; row < rays.size.height && most < tree.count(); ++row) {
+    for (int column = 0; column < rays.size.width; ++column) {
+      most = std::max(most, tree.bricks_on(camera.ray(column, row)));
+    }
+  }
+  return most;
+}
+
+/// The counts of reports add up over the ranks; seconds are those of the slowest.
+void add_up(Communicator& ranks, RenderReport& report) {
+  RuleCounts& spans = report.spans;
+  std::uint64_t* const counts[] = {&report.rays,    &report.cells,     &report.pixels_interpolated,
+                                   &report.evaluations, &spans.skipped, &spans.constant,
+                                   &spans.strides,  &spans.lines,      &spans.closed,
+                                   &spans.panels,   &spans.in_double};
+  std::array<double, std::size(counts)> values;
+  for (std::size_t i = 0; i < values.size(); ++i) values[i] = static_cast<double>(*counts[i]);
+  ranks.reduce_all(values, Communicator::Reduction::sum);
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    *counts[i] = static_cast<std::uint64_t>(values[i]);
+  }
+  std::array<double, 2> seconds{report.seconds, report.setup_seconds};
+  ranks.reduce_all(seconds, Communicator::Reduction::maximum);
+  report.seconds = seconds[0];
+  report.setup_seconds = seconds[1];
+}
+
+std::vector<double> gather_numbers(Communicator& ranks, double own) {
+  std::vector<double> numbers(static_cast<std::size_t>(ranks.size()), 0);
+  numbers[static_cast<std::size_t>(ranks.rank())] = own;
+  ranks.reduce_all(numbers, Communicator::Reduction::sum);
+  return numbers;
+}
+
+/// The own part of the frame.
+Image render_part(const BrickTree& tree, const Scene& rays, const RenderOptions& options, int most,
+                  int rank, FrameWatch& watch, RenderReport& report) {
+  RayRegion region = tree.region(rank);
+  region.allowance = [&tree, most](const Ray<double>& ray) {
+    return static_cast<double>(most) / std::clamp(tree.bricks_on(ray), 1, most);
+  };
+  if (!tree.is_on_grid()) region.corners.reset();
+  RenderOptions own = options;
+  own.region = std::make_shared<const RayRegion>(std::move(region));
+  own.error = true;
+  own.depth = false;
+  own.preview = 0;
+  own.tile = nullptr;
+  own.progress = [&](double fraction) { return watch.tell(fraction); };
+  return pellucid::render(rays, own, &report);
+}
+
+}  // namespace
+
+Image render(Communicator& ranks, const BrickTree& tree, const Scene& own,
+             const RenderOptions& options, RankReport* report) {
+  const Stopwatch whole;
+  const int rank = ranks.rank();
+  check_equal(ranks, "the version", PELLUCID_VERSION_STRING);
+  agreed(ranks, [&] {
+    check_data(own);
+    check_integration(own);
+    if (tree.count() != ranks.size()) {
+      throw Error("bricks: there are " + std::to_string(tree.count()) + " for " +
+                  std::to_string(ranks.size()) + " ranks; give one for each");
+    }
+  });
+  check_equal(ranks, "the frame", frame_text(tree, own, options));
+
+  RankReport told;
+  FrameWatch watch(ranks, options.progress);
+  Scene rays;
+  std::vector<RayPixel> pixels;
+  double render_seconds = 0;
+  const std::string outcome = outcome_of([&] {
+    const Stopwatch watch_of_part;
+    rays = scene_of_rays(own, 1);
+    told.most_bricks = most_bricks(tree, rays);
+    rays = scene_of_rays(own, told.most_bricks);
+    const Image part =
+        render_part(tree, rays, options, told.most_bricks, rank, watch, told.frame);
+    pixels = to_ray_pixels(part);
+    render_seconds = watch_of_part.seconds();
+  });
+  if (!is_done(outcome)) watch.stop_others();
+  throw_unless_done(ranks.gather_all(outcome, [&] { watch.wait(); }));
+  agreed(ranks, [&] {
+    if (watch.stopped()) throw Cancelled();
+  });
+
+  const Stopwatch compositing;
+  const std::vector<int> order = tree.front_to_back(make_camera_frame(rays.camera, rays.size));
+  const auto place = static_cast<int>(std::ranges::find(order, rank) - order.begin());
+  ranks.composite(pixels, place);
+  const double composite_seconds = compositing.seconds();
+  add_up(ranks, told.frame);
+  told.render_seconds = gather_numbers(ranks, render_seconds);
+  told.composite_seconds = gather_numbers(ranks, composite_seconds);
+  Image image;
+  agreed(ranks, [&] {
+    if (rank == 0) image = final_image(own, options, pixels, {}, told.frame);
+  });
+  told.frame.seconds = whole.seconds();
+  if (report != nullptr) *report = std::move(told);
+  return image;
+}
+
+Image render(Communicator& ranks, const Scene& whole, const RenderOptions& options,
+             RankReport* report) {
+  agreed(ranks, [&] { check_data(whole); });
+  const SceneFrame frame = frame_of(whole);
+  const BrickTree tree = BrickTree::split(frame.world_from_frame, frame.bounds, ranks.size(), {},
+                                          frame.on_grid);
+  return render(ranks, tree, whole, options, report);
+}
+
+}  // namespace pellucid
