@@ -13,6 +13,8 @@ namespace {
 /// Where faces are between the whole numbers of a grid: the golden section, far from halves, thirds
 /// and quarters.
 constexpr double between = 0.38196601125010515;
+/// How far faces are from equal shares elsewhere, of the side that is cut.
+constexpr double beside = between / 64;
 /// The thinnest brick, of the side that is cut: data are read in bricks, whatever they weigh.
 constexpr double thinnest = 1.0 / 16;
 
@@ -56,7 +58,8 @@ BrickCuts::Cut BrickCuts::find(const Box<double>& box, int below, int count) con
 }
 
 double BrickCuts::snapped(const Box<double>& box, int axis, double position) const {
-  if (!on_grid_) return position;
+  // Faces of cells lie at fractions of the sides with small denominators.
+  if (!on_grid_) return position + beside * (box.upper[axis] - box.lower[axis]);
   const double at = std::round(position - between) + between;
   return at > box.lower[axis] && at < box.upper[axis] ? at : position;
 }

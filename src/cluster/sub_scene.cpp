@@ -52,10 +52,18 @@ LayerContent changed(const LayerContent& content, const Change& change) {
   return content;
 }
 
+/// The size of a voxel of a grid's layer in its place.
+double placed_voxel(const Layer& layer) {
+  Layer placed;
+  const Volume moved = grid_of(layer)->moved(layer.transform);
+  placed.content = VolumeContent{std::make_shared<const Volume>(moved), nullptr};
+  return voxel_of(placed);
+}
+
 /// Gives light and gradient opacity the voxel of the whole, if that of the part has another size,
 /// as on rectilinear grids.
 void keep_voxel(double whole, Layer& layer) {
-  const double own = voxel_of(layer);
+  const double own = placed_voxel(layer);
   if (!(whole > 0) || whole == own) return;
   if (layer.shading) layer.shading->flatness *= own / whole;
   const auto& opacity = layer.gradient_opacity;
@@ -148,7 +156,7 @@ Layer sub_layer(const Layer& whole, const BrickTree& tree, int brick) {
     return std::make_shared<const Volume>(sub_volume(
         volume, indices_of_brick(volume.description(), whole.transform, tree, brick)));
   });
-  if (grid_of(whole) != nullptr) keep_voxel(voxel_of(whole), part);
+  if (grid_of(whole) != nullptr) keep_voxel(placed_voxel(whole), part);
   return part;
 }
 

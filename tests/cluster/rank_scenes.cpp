@@ -23,7 +23,7 @@ NamedScene jump_on_a_face(int size) {
                                              {255, 0.8, {0.2, 0.4, 1}}});
   Scene scene = make_scene(volume, function, perspective_camera({30, 20, 40}, {8, 6, 6}, 30),
                            {size, size});
-  return {"a jump on a brick's face", scene};
+  return {"a jump on a brick's face", scene, false, true};
 }
 
 /// Rays in the planes of values, and of the faces of bricks.
@@ -36,7 +36,7 @@ NamedScene along_faces(int size) {
   Scene scene = make_scene(volume, function,
                            parallel_camera({8, 8, 60}, {0, 0, -1}, 8.0 * size / (size - 1)),
                            {size, size});
-  return {"a view along the faces of bricks", scene};
+  return {"a view along the faces of bricks", scene, false, true};
 }
 
 NamedScene camera_inside(int size) {

@@ -9,6 +9,7 @@
 #include <cstdlib>
 #include <exception>
 #include <string>
+#include <vector>
 
 #include "pellucid/cluster/communicator.h"
 #include "pellucid/cluster/render.h"
@@ -64,7 +65,7 @@ bool is_right(const Scene& scene, const Image& image, const RankReport& report) 
   const double margin = 1.02 * scene.integration.tolerance;
   if (over > 2 * alone_report.pixels_over_tolerance) {
     std::printf("    %zu pixels are over the tolerance, and %zu with one process\n", over,
-                static_cast<std::size_t>(alone_report.pixels_over_tolerance));
+                std::size_t{alone_report.pixels_over_tolerance});
     ++wrong;
   }
   if (over == 0 && pixels_over(image, truth, margin) > 0) {
@@ -75,9 +76,23 @@ bool is_right(const Scene& scene, const Image& image, const RankReport& report) 
   return wrong == 0;
 }
 
+/// The same bricks, moved so that they meet at values of the grid.
+BrickTree with_faces_on_values(const BrickTree& tree) {
+  std::vector<Box<double>> boxes;
+  for (int brick = 0; brick < tree.count(); ++brick) {
+    Box<double> box = tree.box(brick);
+    for (int a = 0; a < 3; ++a) {
+      box.lower[a] = std::round(box.lower[a]);
+      box.upper[a] = std::round(box.upper[a]);
+    }
+    boxes.push_back(box);
+  }
+  return BrickTree::of_boxes(tree.world_from_frame(), boxes);
+}
+
 int run(Communicator& ranks, const Wanted& wanted) {
   int failed = 0, done = 0;
-  for (const auto& [name, made, slow] : cluster_tests::rank_scenes(wanted.size)) {
+  for (const auto& [name, made, slow, faces] : cluster_tests::rank_scenes(wanted.size)) {
     if (slow && !wanted.all) continue;
     if (name.find(wanted.only) == std::string::npos) continue;
     bool projects = false;
@@ -89,8 +104,9 @@ int run(Communicator& ranks, const Wanted& wanted) {
     options.error = true;
     options.threads = 1;
     const SceneFrame frame = frame_of(scene);
-    const BrickTree tree = BrickTree::split(frame.world_from_frame, frame.bounds, ranks.size(), {},
-                                            frame.on_grid);
+    BrickTree tree = BrickTree::split(frame.world_from_frame, frame.bounds, ranks.size(), {},
+                                      frame.on_grid);
+    if (faces) tree = with_faces_on_values(tree);
     RankReport report;
     const Image image =
         render(ranks, tree, sub_scene(scene, tree, ranks.rank()), options, &report);

@@ -47,8 +47,8 @@ Layer sub_layer(const Layer& whole, const BrickTree& tree, int brick);
 Scene sub_scene(const Scene& whole, const BrickTree& tree, int brick);
 
 /// Gives the data of each rank's bricks the range that they have on all ranks together, from which
-/// light takes its scale. `whole_voxels`: for each layer the size of a voxel of the whole
-/// (voxel_of()); 0: that of the part. For scenes whose data were read in parts.
+/// light takes its scale. `whole_voxels`: for each layer the size of a voxel of the whole,
+/// in its place (voxel_of()); 0: that of the part. For scenes whose data were read in parts.
 void agree_on_ranges(Communicator& ranks, const std::vector<double>& whole_voxels, Scene& own);
 
 }  // namespace pellucid
