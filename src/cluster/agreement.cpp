@@ -36,7 +36,7 @@ void throw_unless_done(const std::vector<std::string>& outcomes) {
   for (std::size_t i = 0; i < outcomes.size(); ++i) {
     if (outcomes[i].empty() || outcomes[i][0] != failed) continue;
     const std::string rank = outcomes.size() > 1 ? "rank " + std::to_string(i) + ": " : "";
-    throw Error(rank + outcomes[i].substr(1));
+    throw AgreedError(rank + outcomes[i].substr(1));
   }
   for (const std::string& outcome : outcomes) {
     if (!is_done(outcome)) throw Cancelled();
@@ -51,8 +51,8 @@ void check_equal(Communicator& ranks, const std::string& what, const std::string
   const std::vector<std::string> all = ranks.gather_all(own);
   for (std::size_t i = 1; i < all.size(); ++i) {
     if (all[i] == all[0]) continue;
-    throw Error("rank " + std::to_string(i) + ": " + what + " is " + all[i] + ", but that of rank 0 is " +
-                all[0] + "; start all ranks with the same");
+    throw AgreedError("rank " + std::to_string(i) + ": " + what + " is " + all[i] +
+                      ", but that of rank 0 is " + all[0] + "; start all ranks with the same");
   }
 }
 

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <cstdlib>
 #include <string>
 
 #include "module.h"
@@ -46,6 +47,10 @@ class MpiCommunicator : public Communicator {
   }
   void composite_in_front(std::span<RayPixel> pixels, int place) override {
     composite(pixels, place, true);
+  }
+  [[noreturn]] void abort(int status) noexcept override {
+    mpi_.abort(link_, status);
+    std::_Exit(status);
   }
   void send(int to, const RankSignal& signal) override {
     std::string error;

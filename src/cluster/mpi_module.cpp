@@ -49,6 +49,9 @@ void composite(void* link, RayPixel* pixels, std::size_t count, int place, bool 
                std::string& error) {
   answer(error, [&] { of(link).composite({pixels, count}, place, in_front); });
 }
+void abort(void* link, int status) {
+  of(link).abort(status);
+}
 void send(void* link, int to, const RankSignal& signal, std::string& error) {
   answer(error, [&] { of(link).send(to, signal); });
 }
@@ -58,8 +61,8 @@ bool receive(void* link, RankSignal& signal, std::string& error) {
   return came;
 }
 
-constexpr MpiModule functions{open,      close,     rank, size,   gather_all,
-                              reduce_all, composite, send, receive};
+constexpr MpiModule functions{open,       close,     rank,  size, gather_all,
+                              reduce_all, composite, abort, send, receive};
 
 }  // namespace
 }  // namespace pellucid

@@ -24,6 +24,7 @@ struct MpiModule {
                      Communicator::Reduction reduction, std::string& error);
   void (*composite)(void* link, RayPixel* pixels, std::size_t count, int place, bool in_front,
                     std::string& error);
+  void (*abort)(void* link, int status);
   void (*send)(void* link, int to, const RankSignal& signal, std::string& error);
   bool (*receive)(void* link, RankSignal& signal, std::string& error);
 };

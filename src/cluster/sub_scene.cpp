@@ -92,9 +92,16 @@ DataExtent extent_of(const Layer& layer) {
             {volume->grid_lower(), volume->grid_upper()},
             std::ranges::all_of(coordinates, [](const auto& c) { return c.empty(); })};
   }
-  // The corners are along the axes of the world.
+  // A box along the axes of the mesh's own world, moved.
   const std::array<Vec3<double>, 8> corners = world_corners(layer);
-  return {{}, {corners.front(), corners.back()}, false};
+  DataExtent extent{{}, {corners[0], corners[0]}, false};
+  for (const Vec3<double>& corner : corners) {
+    for (int a = 0; a < 3; ++a) {
+      extent.box.lower[a] = std::min(extent.box.lower[a], corner[a]);
+      extent.box.upper[a] = std::max(extent.box.upper[a], corner[a]);
+    }
+  }
+  return extent;
 }
 
 DataExtent extent_of(const Volume::Description& description, const Affine<double>& transform) {

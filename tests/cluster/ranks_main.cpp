@@ -64,7 +64,8 @@ bool is_right(const Scene& scene, const Image& image, const RankReport& report) 
   const std::size_t over = report.frame.pixels_over_tolerance;
   const double margin = 1.02 * scene.integration.tolerance;
   if (over > 2 * alone_report.pixels_over_tolerance) {
-    std::printf("    %zu pixels are over the tolerance, and %zu with one process\n", over,
+    std::printf("    %zu pixels are over the tolerance (%.6g), and %zu with one process\n", over,
+                report.frame.largest_error,
                 std::size_t{alone_report.pixels_over_tolerance});
     ++wrong;
   }

@@ -51,6 +51,9 @@ class Communicator {
 
   /// Returns the number of the next frame, from 0. Signals of frames that are past are ignored.
   long next_frame() noexcept { return frame_++; }
+  /// Ends the programs of all ranks at once, with this exit status, where they cannot agree.
+  [[noreturn]] virtual void abort(int status) noexcept = 0;
+
   /// Sends a signal and returns at once.
   virtual void send(int to, const RankSignal& signal) = 0;
   /// Returns a signal that has come, if there is one, and at once.

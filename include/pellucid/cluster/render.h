@@ -6,6 +6,7 @@
 #include "pellucid/cluster/brick_tree.h"
 #include "pellucid/cluster/communicator.h"
 #include "pellucid/cpu/render.h"
+#include "pellucid/scene/error.h"
 #include "pellucid/scene/scene.h"
 
 namespace pellucid {
@@ -38,11 +39,17 @@ Image render(Communicator& ranks, const BrickTree& tree, const Scene& own,
 Image render(Communicator& ranks, const Scene& whole, const RenderOptions& options = {},
              RankReport* report = nullptr);
 
+/// An error that all ranks know of: each throws the same.
+class AgreedError : public Error {
+ public:
+  using Error::Error;
+};
+
 /// Does work on each rank, and throws on all of them if it throws on any: Cancelled if it was
-/// cancelled, else Error with the messages' first rank and its message.
+/// cancelled, else AgreedError with the first rank that failed and its message.
 void agreed(Communicator& ranks, const std::function<void()>& work);
 
-/// Throws Error on all ranks unless the texts of all are equal; `what` names what they are of:
+/// Throws AgreedError on all ranks unless the texts of all are equal; `what` names what they are of:
 /// "the version". A difference is reported with both.
 void check_equal(Communicator& ranks, const std::string& what, const std::string& own);
 
