@@ -87,9 +87,12 @@ class BrickLoader {
     check_equal(ranks_, "the size of the data", sizes());
     agreed(ranks_, [&] { load_whole(); });
     survey();
-    BrickedScene result{{}, make_tree(balance), visible_, std::move(meshes_), std::move(notes_)};
+    BrickedScene result{{}, make_tree(balance), {}, {}, {}};
     agreed(ranks_, [&] { load_parts(result.tree); });
     result.scene = make();
+    result.visible = visible_;
+    result.meshes = std::move(meshes_);
+    result.notes = std::move(notes_);
     agree_on_ranges(ranks_, {}, result.scene);
     agreed(ranks_, [&] { check_data(result.scene); });
     return result;
