@@ -16,6 +16,10 @@
 namespace pellucid {
 namespace {
 
+constexpr double infinity = std::numeric_limits<double>::infinity();
+/// Values of a grid that the first pass reads at once.
+constexpr std::size_t values_at_once = std::size_t{1} << 24;
+
 /// Calls visit(field) for each field of a layer of grids that is read from a file or built in.
 template <class Visit>
 void visit_fields(LayerDescription& layer, const Visit& visit) {
@@ -86,7 +90,10 @@ class BrickLoader {
     agreed(ranks_, [&] { plan(); });
     check_equal(ranks_, "the size of the data", sizes());
     agreed(ranks_, [&] { load_whole(); });
-    survey();
+    find_frame();
+    // Where the camera is given and bricks are equal, nobody asks where the data absorb.
+    surveys_.resize(plans_.size());
+    if (balance == BrickBalance::work || !description_.camera) survey();
     BrickedScene result{{}, make_tree(balance), {}, {}, {}};
     agreed(ranks_, [&] { load_parts(result.tree); });
     result.scene = make();
@@ -145,37 +152,82 @@ class BrickLoader {
                                   : extent_of(*layers_[index]);
   }
 
-  /// Reads a slab of each grid that tells by its blocks where it absorbs.
-  void survey() {
-    surveys_.resize(plans_.size());
+  /// The layers that are seen; all if none is.
+  std::vector<std::size_t> seen_layers() const {
+    const bool any = std::ranges::any_of(description_.layers, &LayerDescription::visible);
+    std::vector<std::size_t> seen;
     for (std::size_t i = 0; i < plans_.size(); ++i) {
-      if (!plans_[i].in_parts || !description_.layers[i].visible) continue;
-      const Volume::Description& grid = plans_[i].description;
-      const SurveySlab slab = slab_of(grid, ranks_.rank(), ranks_.size());
-      std::vector<double> range{1, std::numeric_limits<double>::infinity(),
-                                std::numeric_limits<double>::infinity()};
-      std::optional<Layer> part;
-      agreed(ranks_, [&] {
-        if (slab.empty()) return;
-        part = read(i, [&](const Volume::Description&) { return slab.values; });
-        range[0] = tells_by_blocks(*part) ? 1 : 0;
-        const VolumeStatistics& s = grid_of(*part)->statistics();
-        if (s.finite > 0) range = {range[0], s.minimum, -s.maximum};
-      });
-      ranks_.reduce_all(range, Communicator::Reduction::minimum);
-      if (range[0] == 0) continue;
-      AbsorbingBlocks blocks;
-      agreed(ranks_, [&] {
-        if (part) blocks = absorbing_blocks(in_range(*part, range[1], -range[2]), parallel_);
-      });
-      surveys_[i] = join(ranks_, grid, slab, blocks);
+      if (!any || description_.layers[i].visible) seen.push_back(i);
     }
+    return seen;
+  }
+
+  void find_frame() {
+    std::vector<DataExtent> extents;
+    for (const std::size_t i : seen_layers()) extents.push_back(extent(i));
+    frame_ = frame_of(extents);
+    const bool alone = extents.size() == 1 && plans_[seen_layers()[0]].in_parts;
+    constexpr int most_cells = 64;
+    for (std::size_t a = 0; a < 3; ++a) {
+      cells_[a] = alone ? std::min(Survey::blocks_of(plans_[seen_layers()[0]].description)[a],
+                                   most_cells)
+                        : most_cells / 2;
+    }
+  }
+
+  /// Reads slabs of each grid that tells by its blocks where it absorbs.
+  void survey() {
+    for (const std::size_t i : seen_layers()) {
+      if (!plans_[i].in_parts) continue;
+      const Volume::Description& grid = plans_[i].description;
+      const std::vector<SurveySlab> slabs =
+          slabs_of(grid, ranks_.rank(), ranks_.size(), values_at_once);
+      // Whether blocks tell, and the range of the values.
+      std::vector<double> facts{1, infinity, infinity};
+      agreed(ranks_, [&] {
+        for (const SurveySlab& slab : slabs) {
+          const Layer part = read_slab(i, slab);
+          const VolumeStatistics& s = grid_of(part)->statistics();
+          if (!tells_by_blocks(part)) facts[0] = 0;
+          if (s.finite > 0) {
+            facts[1] = std::min(facts[1], s.minimum);
+            facts[2] = std::min(facts[2], -s.maximum);
+          }
+          // Where blocks have the values themselves, the range does not matter.
+          if (facts[0] == 0 || has_short_values(*grid_of(part))) break;
+        }
+      });
+      ranks_.reduce_all(facts, Communicator::Reduction::minimum);
+      if (facts[0] == 0) continue;
+      Survey found(grid, frame_from(i), frame_.bounds, cells_);
+      agreed(ranks_, [&] {
+        for (const SurveySlab& slab : slabs) {
+          const Layer part = in_range(read_slab(i, slab), facts[1], -facts[2]);
+          found.add(slab, absorbing_blocks(part, parallel_));
+        }
+      });
+      found.join(ranks_);
+      surveys_[i] = std::move(found);
+    }
+  }
+
+  Layer read_slab(std::size_t index, const SurveySlab& slab) {
+    return read(index, [&](const Volume::Description&) { return slab.values; });
+  }
+
+  static bool has_short_values(const Volume& volume) {
+    return std::visit(
+        [](const auto& values) {
+          using Value = typename std::decay_t<decltype(values)>::value_type;
+          return sizeof(Value) <= 2;
+        },
+        volume.data());
   }
 
   /// Blocks have the codes that they have in the whole.
   static Layer in_range(const Layer& layer, double minimum, double maximum) {
     Layer result = layer;
-    if (!(minimum <= maximum)) return result;
+    if (!(minimum <= maximum) || has_short_values(*grid_of(layer))) return result;
     const auto whole = std::make_shared<const Volume>(grid_of(layer)->as_part_of(minimum, maximum));
     if (auto* const volume = std::get_if<VolumeContent>(&result.content)) volume->volume = whole;
     if (auto* const labels = std::get_if<LabelContent>(&result.content)) {
@@ -184,29 +236,33 @@ class BrickLoader {
     return result;
   }
 
-  BrickTree make_tree(BrickBalance balance) {
-    std::vector<DataExtent> extents;
-    std::vector<std::array<Vec3<double>, 8>> seen;
-    const bool any = std::ranges::any_of(description_.layers, &LayerDescription::visible);
-    for (std::size_t i = 0; i < plans_.size(); ++i) {
-      if (any && !description_.layers[i].visible) continue;
-      extents.push_back(extent(i));
-      seen.push_back(seen_corners(i));
+  /// The map to the frame from a grid.
+  Affine<double> frame_from(std::size_t index) const {
+    const Affine<double> frame_from_world = inverse(frame_.world_from_frame);
+    const Affine<double> map = extent(index).world_from_data;
+    Affine<double> frame_from_grid;
+    for (int a = 0; a < 3; ++a) {
+      frame_from_grid.matrix.column[a] = frame_from_world.vector(map.matrix.column[a]);
     }
+    frame_from_grid.translation = frame_from_world.point(map.translation);
+    return frame_from_grid;
+  }
+
+  BrickTree make_tree(BrickBalance balance) {
+    std::vector<std::array<Vec3<double>, 8>> seen;
+    for (const std::size_t i : seen_layers()) seen.push_back(seen_corners(i));
     visible_ = around(seen);
-    const SceneFrame frame = frame_of(extents);
     BrickWeights weights;
-    if (balance == BrickBalance::work) weights = weights_in(frame);
-    return BrickTree::split(frame.world_from_frame, frame.bounds, ranks_.size(), weights,
-                            frame.on_grid);
+    if (balance == BrickBalance::work) weights = weights_in_frame();
+    return BrickTree::split(frame_.world_from_frame, frame_.bounds, ranks_.size(), weights,
+                            frame_.on_grid);
   }
 
   std::array<Vec3<double>, 8> seen_corners(std::size_t index) const {
     if (!plans_[index].in_parts) return visible_corners(*layers_[index], parallel_);
     const DataExtent data = extent(index);
     if (surveys_[index]) {
-      const auto corners =
-          corners_of(*surveys_[index], plans_[index].description, data.world_from_data);
+      const auto corners = surveys_[index]->corners(data.world_from_data);
       if (corners) return *corners;
     }
     std::array<Vec3<double>, 8> corners;
@@ -238,31 +294,18 @@ class BrickLoader {
     return corners;
   }
 
-  BrickWeights weights_in(const SceneFrame& frame) const {
-    constexpr int most_cells = 64;
-    BrickWeights weights{{most_cells / 2, most_cells / 2, most_cells / 2}, {}};
-    const bool alone = surveys_.size() == 1 && surveys_[0].has_value();
-    for (std::size_t a = 0; a < 3; ++a) {
-      if (alone) weights.cells[a] = std::min(surveys_[0]->count[a], most_cells);
+  BrickWeights weights_in_frame() const {
+    BrickWeights weights{cells_, {}};
+    if (std::ranges::none_of(surveys_, [](const auto& survey) { return survey.has_value(); })) {
+      return {};
     }
-    weights.weight.assign(static_cast<std::size_t>(weights.cells[0]) *
-                              static_cast<std::size_t>(weights.cells[1]) *
-                              static_cast<std::size_t>(weights.cells[2]),
+    weights.weight.assign(static_cast<std::size_t>(cells_[0]) * static_cast<std::size_t>(cells_[1]) *
+                              static_cast<std::size_t>(cells_[2]),
                           0);
-    bool any = false;
-    const Affine<double> frame_from_world = inverse(frame.world_from_frame);
-    for (std::size_t i = 0; i < surveys_.size(); ++i) {
-      if (!surveys_[i]) continue;
-      any = true;
-      const Affine<double> map = extent(i).world_from_data;
-      Affine<double> frame_from_grid;
-      for (int a = 0; a < 3; ++a) {
-        frame_from_grid.matrix.column[a] = frame_from_world.vector(map.matrix.column[a]);
-      }
-      frame_from_grid.translation = frame_from_world.point(map.translation);
-      add_weights(*surveys_[i], plans_[i].description, frame_from_grid, frame.bounds, weights);
+    for (const std::optional<Survey>& survey : surveys_) {
+      if (survey) survey->add_to(weights);
     }
-    return any ? weights : BrickWeights{};
+    return weights;
   }
 
   void load_parts(const BrickTree& tree) {
@@ -307,6 +350,8 @@ class BrickLoader {
   std::vector<std::optional<Survey>> surveys_;
   std::vector<MeshSource> meshes_;
   std::vector<std::string> notes_;
+  SceneFrame frame_;
+  std::array<int, 3> cells_{};  ///< of weights
   std::array<Vec3<double>, 8> visible_{};
 };
 

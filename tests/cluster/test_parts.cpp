@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <numeric>
 #include <random>
 
 #include "pellucid/cluster/ray_pixel.h"
@@ -116,28 +117,28 @@ TEST(SubVolume, BricksHoldTheirCellsAndALayerMore) {
   }
 }
 
-TEST(Survey, SlabsFindTheBlocksOfTheWhole) {
+TEST(Survey, SlabsFindWhatIsSeenOfTheWhole) {
   for (const Centering centering : {Centering::point, Centering::cell}) {
     const auto whole = some_volume(description({20, 17, 45}, centering));
-    const auto function = transfer({{500, 0, {1, 1, 1}}, {600, 1, {1, 1, 1}}, {700, 0, {1, 1, 1}}});
-    Layer layer{VolumeContent{whole, function}};
-    const AbsorbingBlocks expected = absorbing_blocks(layer);
+    const auto function = transfer({{500, 0, {1, 1, 1}}, {950, 1, {1, 1, 1}}, {999, 0, {1, 1, 1}}});
+    const Layer layer{VolumeContent{whole, function}};
+    const DataExtent extent = extent_of(layer);
+    const std::array<Vec3<double>, 8> expected = visible_corners(layer);
     for (const int ranks : {1, 2, 3, 8}) {
-      std::vector<std::uint8_t> found;
+      Survey survey(whole->description(), {}, extent.box, {3, 3, 4});
       for (int rank = 0; rank < ranks; ++rank) {
-        const SurveySlab slab = slab_of(whole->description(), rank, ranks);
-        if (slab.empty()) continue;
-        Layer part{VolumeContent{
-            std::make_shared<const Volume>(sub_volume(*whole, slab.values)), function}};
-        const AbsorbingBlocks blocks = absorbing_blocks(part);
-        const std::size_t row = static_cast<std::size_t>(expected.count[0] * expected.count[1]);
-        const auto begin = blocks.absorbs.begin() +
-                           static_cast<std::ptrdiff_t>(row * static_cast<std::size_t>(slab.skipped));
-        found.insert(found.end(), begin,
-                     begin + static_cast<std::ptrdiff_t>(
-                                 row * static_cast<std::size_t>(slab.end - slab.first)));
+        for (const SurveySlab& slab : slabs_of(whole->description(), rank, ranks, 6000)) {
+          const Layer part{VolumeContent{
+              std::make_shared<const Volume>(sub_volume(*whole, slab.values)), function}};
+          survey.add(slab, absorbing_blocks(part));
+        }
       }
-      EXPECT_EQ(found, expected.absorbs) << ranks;
+      const auto found = survey.corners(extent.world_from_data);
+      ASSERT_TRUE(found.has_value());
+      for (std::size_t n = 0; n < 8; ++n) EXPECT_LT(length((*found)[n] - expected[n]), 1e-12);
+      BrickWeights weights{{3, 3, 4}, std::vector<double>(36, 0)};
+      survey.add_to(weights);
+      EXPECT_NEAR(std::accumulate(weights.weight.begin(), weights.weight.end(), 0.0), 1, 1e-12);
     }
   }
 }
