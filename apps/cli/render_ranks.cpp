@@ -53,11 +53,10 @@ std::vector<double> gather(Communicator& ranks, double own) {
 
 std::string ranks_json(Communicator& ranks, const RankReport& report) {
   const std::vector<double> memory = gather(ranks, most_memory());
-  return fmt::format(
-      R"({{"count": {}, "most_bricks_on_a_ray": {}, "render_seconds": [{}], )"
-      R"("composite_seconds": [{}], "memory_mib": [{:.1f}]}})",
-      ranks.size(), report.most_bricks, fmt::join(report.render_seconds, ", "),
-      fmt::join(report.composite_seconds, ", "), fmt::join(memory, ", "));
+  return fmt::format(R"({{"count": {}, "most_bricks_on_a_ray": {}, "render_seconds": [{}], )"
+                     R"("composite_seconds": [{}], "memory_mib": [{:.1f}]}})",
+                     ranks.size(), report.most_bricks, fmt::join(report.render_seconds, ", "),
+                     fmt::join(report.composite_seconds, ", "), fmt::join(memory, ", "));
 }
 
 /// The work of one rank, on which all agree.
@@ -78,8 +77,9 @@ class RankRun {
     agreed_on_arguments([&] {
       request = request_scene(arguments_);
       if (!request.prepared.relative_tolerance) return;
-      throw UsageError("--tolerance: a share of the picture's range is not found by --ranks; give " +
-                       std::string("a number"));
+      throw UsageError(
+          "--tolerance: a share of the picture's range is not found by --ranks; give " +
+          std::string("a number"));
     });
     const BrickBalance balance =
         arguments_.balance == "data" ? BrickBalance::data : BrickBalance::work;

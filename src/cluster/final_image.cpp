@@ -25,9 +25,9 @@ std::shared_ptr<const Image> backdrop_of_rays(const Image& backdrop, int samples
   rays.height = backdrop.height * samples;
   for (int row = 0; row < rays.height; ++row) {
     for (int column = 0; column < rays.width; ++column) {
-      const std::size_t pixel = static_cast<std::size_t>(row / samples) *
-                                    static_cast<std::size_t>(backdrop.width) +
-                                static_cast<std::size_t>(column / samples);
+      const std::size_t pixel =
+          static_cast<std::size_t>(row / samples) * static_cast<std::size_t>(backdrop.width) +
+          static_cast<std::size_t>(column / samples);
       rays.pixels.push_back(backdrop.pixels[pixel]);
       rays.depth.push_back(backdrop.depth[pixel]);
     }
@@ -77,9 +77,9 @@ Scene scene_of_rays(const Scene& scene, int bricks) {
   const double most = std::max(largest_color(scene), 1.0);
   // What over() and the image's numbers round off.
   const double rounding = most * 0x1p-23 * bricks;
-  const double left = std::max(
-      scene.integration.tolerance - approximation_error(scene) - rounding - most * 0x1p-24,
-      0.25 * scene.integration.tolerance);
+  const double left =
+      std::max(scene.integration.tolerance - approximation_error(scene) - rounding - most * 0x1p-24,
+               0.25 * scene.integration.tolerance);
   rays.integration.tolerance = std::max(left / std::max(bricks, 1), smallest_tolerance);
   return rays;
 }

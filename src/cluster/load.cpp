@@ -71,8 +71,9 @@ LayerPlan plan_of(LayerDescription layer) {
 void check_functions(const SceneDescription& scene) {
   for (std::size_t i = 0; i < scene.layers.size(); ++i) {
     const LayerDescription& layer = scene.layers[i];
-    const bool has_look = layer.labels ? !layer.labels->styles.empty() || !layer.labels->table.empty()
-                                       : layer.transfer_function || layer.shows_surfaces();
+    const bool has_look = layer.labels
+                              ? !layer.labels->styles.empty() || !layer.labels->table.empty()
+                              : layer.transfer_function || layer.shows_surfaces();
     if (has_look) continue;
     throw Error("ranks: layer " + std::to_string(i + 1) + " has no " +
                 (layer.labels ? "looks of its labels" : "transfer function") +
@@ -141,8 +142,8 @@ class BrickLoader {
       if (plans_[i].in_parts) continue;
       layers_[i] = read(i, {});
       if (plans_[i].whole_because.empty() || ranks_.size() == 1) continue;
-      notes_.push_back("each rank reads layer " + std::to_string(i + 1) + " whole: " +
-                       plans_[i].whole_because);
+      notes_.push_back("each rank reads layer " + std::to_string(i + 1) +
+                       " whole: " + plans_[i].whole_because);
     }
   }
 
@@ -169,9 +170,9 @@ class BrickLoader {
     const bool alone = extents.size() == 1 && plans_[seen_layers()[0]].in_parts;
     constexpr int most_cells = 64;
     for (std::size_t a = 0; a < 3; ++a) {
-      cells_[a] = alone ? std::min(Survey::blocks_of(plans_[seen_layers()[0]].description)[a],
-                                   most_cells)
-                        : most_cells / 2;
+      cells_[a] =
+          alone ? std::min(Survey::blocks_of(plans_[seen_layers()[0]].description)[a], most_cells)
+                : most_cells / 2;
     }
   }
 
@@ -267,10 +268,9 @@ class BrickLoader {
     }
     std::array<Vec3<double>, 8> corners;
     for (unsigned n = 0; n < 8; ++n) {
-      corners[n] = data.world_from_data.point(
-          {(n & 1) != 0 ? data.box.upper.x : data.box.lower.x,
-           (n & 2) != 0 ? data.box.upper.y : data.box.lower.y,
-           (n & 4) != 0 ? data.box.upper.z : data.box.lower.z});
+      corners[n] = data.world_from_data.point({(n & 1) != 0 ? data.box.upper.x : data.box.lower.x,
+                                               (n & 2) != 0 ? data.box.upper.y : data.box.lower.y,
+                                               (n & 4) != 0 ? data.box.upper.z : data.box.lower.z});
     }
     return corners;
   }
@@ -299,7 +299,8 @@ class BrickLoader {
     if (std::ranges::none_of(surveys_, [](const auto& survey) { return survey.has_value(); })) {
       return {};
     }
-    weights.weight.assign(static_cast<std::size_t>(cells_[0]) * static_cast<std::size_t>(cells_[1]) *
+    weights.weight.assign(static_cast<std::size_t>(cells_[0]) *
+                              static_cast<std::size_t>(cells_[1]) *
                               static_cast<std::size_t>(cells_[2]),
                           0);
     for (const std::optional<Survey>& survey : surveys_) {

@@ -2,9 +2,9 @@
 #include <cstdlib>
 #include <string>
 
-#include "module.h"
 #include "mpi_module.h"
 #include "pellucid/cluster/communicator.h"
+#include "pellucid/io/module.h"
 #include "pellucid/scene/error.h"
 
 namespace pellucid {
@@ -40,6 +40,11 @@ class MpiCommunicator : public Communicator {
   void reduce_all(std::span<double> values, Reduction reduction) override {
     std::string error;
     mpi_.reduce_all(link_, values.data(), values.size(), reduction, error);
+    check(error);
+  }
+  void broadcast(std::span<float> values) override {
+    std::string error;
+    mpi_.broadcast(link_, values.data(), values.size(), error);
     check(error);
   }
   void composite(std::span<RayPixel> pixels, int place) override {

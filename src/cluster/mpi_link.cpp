@@ -119,8 +119,8 @@ std::vector<std::string> MpiLink::gather_all(const std::string& own,
                        MPI_CHAR, ranks_));
   std::vector<std::string> texts;
   for (std::size_t i = 0; i < lengths.size(); ++i) {
-    texts.push_back(all.substr(static_cast<std::size_t>(begins[i]),
-                               static_cast<std::size_t>(lengths[i])));
+    texts.push_back(
+        all.substr(static_cast<std::size_t>(begins[i]), static_cast<std::size_t>(lengths[i])));
   }
   return texts;
 }
@@ -133,6 +133,13 @@ void MpiLink::reduce_all(std::span<double> values, Communicator::Reduction reduc
     const std::size_t count = std::min(most_at_once, values.size() - first);
     check(MPI_Allreduce(MPI_IN_PLACE, values.data() + first, static_cast<int>(count), MPI_DOUBLE,
                         op, ranks_));
+  }
+}
+
+void MpiLink::broadcast(std::span<float> values) {
+  for (std::size_t first = 0; first < values.size(); first += most_at_once) {
+    const std::size_t count = std::min(most_at_once, values.size() - first);
+    check(MPI_Bcast(values.data() + first, static_cast<int>(count), MPI_FLOAT, 0, ranks_));
   }
 }
 
@@ -185,8 +192,8 @@ void MpiLink::send(int to, const RankSignal& signal) {
   forget_sent();
   sent_.push_back({signal, MPI_REQUEST_NULL});
   Sent& sent = sent_.back();
-  check(MPI_Isend(&sent.signal, sizeof(RankSignal), MPI_BYTE, to, signal_tag, ranks_,
-                  &sent.request));
+  check(
+      MPI_Isend(&sent.signal, sizeof(RankSignal), MPI_BYTE, to, signal_tag, ranks_, &sent.request));
 }
 
 bool MpiLink::receive(RankSignal& signal) {

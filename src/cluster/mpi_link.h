@@ -27,7 +27,9 @@ class MpiLink {
   int size() const noexcept { return size_; }
   std::vector<std::string> gather_all(const std::string& own, const std::function<void()>& waiting);
   void reduce_all(std::span<double> values, Communicator::Reduction reduction);
-  /// `in_front`: each rank gets the composite of those in front of it; else rank 0 gets that of all.
+  void broadcast(std::span<float> values);
+  /// `in_front`: each rank gets the composite of those in front of it; else rank 0 gets that of
+  /// all.
   void composite(std::span<RayPixel> pixels, int place, bool in_front);
   void abort(int status) noexcept { MPI_Abort(ranks_, status); }
   void send(int to, const RankSignal& signal);

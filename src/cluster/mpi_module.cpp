@@ -45,6 +45,9 @@ void reduce_all(void* link, double* values, std::size_t count, Communicator::Red
                 std::string& error) {
   answer(error, [&] { of(link).reduce_all({values, count}, reduction); });
 }
+void broadcast(void* link, float* values, std::size_t count, std::string& error) {
+  answer(error, [&] { of(link).broadcast({values, count}); });
+}
 void composite(void* link, RayPixel* pixels, std::size_t count, int place, bool in_front,
                std::string& error) {
   answer(error, [&] { of(link).composite({pixels, count}, place, in_front); });
@@ -61,8 +64,8 @@ bool receive(void* link, RankSignal& signal, std::string& error) {
   return came;
 }
 
-constexpr MpiModule functions{open,       close,     rank,  size, gather_all,
-                              reduce_all, composite, abort, send, receive};
+constexpr MpiModule functions{open,      close,     rank,  size, gather_all, reduce_all,
+                              broadcast, composite, abort, send, receive};
 
 }  // namespace
 }  // namespace pellucid

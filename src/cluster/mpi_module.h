@@ -22,6 +22,7 @@ struct MpiModule {
                      std::vector<std::string>& all, std::string& error);
   void (*reduce_all)(void* link, double* values, std::size_t count,
                      Communicator::Reduction reduction, std::string& error);
+  void (*broadcast)(void* link, float* values, std::size_t count, std::string& error);
   void (*composite)(void* link, RayPixel* pixels, std::size_t count, int place, bool in_front,
                     std::string& error);
   void (*abort)(void* link, int status);

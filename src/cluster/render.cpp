@@ -3,12 +3,13 @@
 
 #include <algorithm>
 #include <array>
-#include <chrono>
 #include <charconv>
+#include <chrono>
 #include <string>
 
 #include "final_image.h"
 #include "frame_watch.h"
+#include "half_depths.h"
 #include "pellucid/base/version.h"
 #include "pellucid/cluster/sub_scene.h"
 #include "pellucid/scene/error.h"
@@ -68,10 +69,11 @@ int most_bricks(const BrickTree& tree, const Scene& rays) {
 /// The counts of reports add up over the ranks; seconds are those of the slowest.
 void add_up(Communicator& ranks, RenderReport& report) {
   RuleCounts& spans = report.spans;
-  std::uint64_t* const counts[] = {&report.rays,    &report.cells,     &report.pixels_interpolated,
-                                   &report.evaluations, &spans.skipped, &spans.constant,
-                                   &spans.strides,  &spans.lines,      &spans.closed,
-                                   &spans.panels,   &spans.in_double};
+  std::uint64_t* const counts[] = {
+      &report.rays,        &report.cells,   &report.pixels_interpolated,
+      &report.evaluations, &spans.skipped,  &spans.constant,
+      &spans.strides,      &spans.lines,    &spans.closed,
+      &spans.panels,       &spans.in_double};
   std::array<double, std::size(counts)> values;
   for (std::size_t i = 0; i < values.size(); ++i) values[i] = static_cast<double>(*counts[i]);
   ranks.reduce_all(values, Communicator::Reduction::sum);
@@ -91,9 +93,9 @@ std::vector<double> gather_numbers(Communicator& ranks, double own) {
   return numbers;
 }
 
-/// The own part of the frame.
-Image render_part(const BrickTree& tree, const Scene& rays, const RenderOptions& options, int most,
-                  int rank, FrameWatch& watch, RenderReport& report) {
+/// The options of the own part of the frame.
+RenderOptions options_of_part(const BrickTree& tree, const RenderOptions& options, int most,
+                              int rank, FrameWatch& watch) {
   RayRegion region = tree.region(rank);
   region.allowance = [&tree, most](const Ray<double>& ray) {
     return static_cast<double>(most) / std::clamp(tree.bricks_on(ray), 1, most);
@@ -106,7 +108,7 @@ Image render_part(const BrickTree& tree, const Scene& rays, const RenderOptions&
   own.preview = 0;
   own.tile = nullptr;
   own.progress = [&](double fraction) { return watch.tell(fraction); };
-  return pellucid::render(rays, own, &report);
+  return own;
 }
 
 }  // namespace
@@ -129,16 +131,16 @@ Image render(Communicator& ranks, const BrickTree& tree, const Scene& own,
   RankReport told;
   FrameWatch watch(ranks, options.progress);
   Scene rays;
-  std::vector<RayPixel> pixels;
+  std::vector<RayPixel> pixels, own_pixels;
+  RenderOptions part_options;
   double render_seconds = 0;
   const std::string outcome = outcome_of([&] {
     const Stopwatch watch_of_part;
     rays = scene_of_rays(own, 1);
     told.most_bricks = most_bricks(tree, rays);
     rays = scene_of_rays(own, told.most_bricks);
-    const Image part =
-        render_part(tree, rays, options, told.most_bricks, rank, watch, told.frame);
-    pixels = to_ray_pixels(part);
+    part_options = options_of_part(tree, options, told.most_bricks, rank, watch);
+    pixels = to_ray_pixels(pellucid::render(rays, part_options, &told.frame));
     render_seconds = watch_of_part.seconds();
   });
   if (!is_done(outcome)) watch.stop_others();
@@ -150,14 +152,17 @@ Image render(Communicator& ranks, const BrickTree& tree, const Scene& own,
   const Stopwatch compositing;
   const std::vector<int> order = tree.front_to_back(make_camera_frame(rays.camera, rays.size));
   const auto place = static_cast<int>(std::ranges::find(order, rank) - order.begin());
+  if (options.depth) own_pixels = pixels;
   ranks.composite(pixels, place);
   const double composite_seconds = compositing.seconds();
+  std::vector<float> depth;
+  if (options.depth) depth = half_depths(ranks, place, rays, part_options, pixels, own_pixels);
   add_up(ranks, told.frame);
   told.render_seconds = gather_numbers(ranks, render_seconds);
   told.composite_seconds = gather_numbers(ranks, composite_seconds);
   Image image;
   agreed(ranks, [&] {
-    if (rank == 0) image = final_image(own, options, pixels, {}, told.frame);
+    if (rank == 0) image = final_image(own, options, pixels, depth, told.frame);
   });
   told.frame.seconds = whole.seconds();
   if (report != nullptr) *report = std::move(told);
@@ -168,8 +173,8 @@ Image render(Communicator& ranks, const Scene& whole, const RenderOptions& optio
              RankReport* report) {
   agreed(ranks, [&] { check_data(whole); });
   const SceneFrame frame = frame_of(whole);
-  const BrickTree tree = BrickTree::split(frame.world_from_frame, frame.bounds, ranks.size(), {},
-                                          frame.on_grid);
+  const BrickTree tree =
+      BrickTree::split(frame.world_from_frame, frame.bounds, ranks.size(), {}, frame.on_grid);
   return render(ranks, tree, whole, options, report);
 }
 

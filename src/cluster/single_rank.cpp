@@ -16,6 +16,7 @@ class SingleRank : public Communicator {
     return {own};
   }
   void reduce_all(std::span<double> /*values*/, Reduction /*reduction*/) override {}
+  void broadcast(std::span<float> /*values*/) override {}
   void composite(std::span<RayPixel> /*pixels*/, int /*place*/) override {}
   void composite_in_front(std::span<RayPixel> pixels, int /*place*/) override {
     std::ranges::fill(pixels, RayPixel{});
@@ -33,7 +34,8 @@ std::unique_ptr<Communicator> single_rank() {
 
 bool is_under_mpi() noexcept {
   // As Open MPI, MPICH and its kin, and Slurm's PMI set it.
-  for (const char* const name : {"OMPI_COMM_WORLD_SIZE", "PMI_SIZE", "PMIX_RANK", "MPI_LOCALNRANKS"}) {
+  for (const char* const name :
+       {"OMPI_COMM_WORLD_SIZE", "PMI_SIZE", "PMIX_RANK", "MPI_LOCALNRANKS"}) {
     if (std::getenv(name) != nullptr) return true;
   }
   return false;

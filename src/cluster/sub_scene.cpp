@@ -111,8 +111,8 @@ DataExtent extent_of(const Volume::Description& description, const Affine<double
     const auto axis = static_cast<std::size_t>(a);
     const std::vector<double>& coordinates = description.coordinates[axis];
     extent.box.lower[a] = coordinates.empty() ? -half : coordinates.front();
-    extent.box.upper[a] = coordinates.empty() ? description.dimensions[axis] - 1 + half
-                                              : coordinates.back();
+    extent.box.upper[a] =
+        coordinates.empty() ? description.dimensions[axis] - 1 + half : coordinates.back();
     extent.is_uniform_grid = extent.is_uniform_grid && coordinates.empty();
   }
   return extent;
@@ -160,8 +160,8 @@ IndexBox indices_of_brick(const Volume::Description& description, const Affine<d
 Layer sub_layer(const Layer& whole, const BrickTree& tree, int brick) {
   Layer part = whole;
   part.content = changed(whole.content, [&](const Volume& volume) {
-    return std::make_shared<const Volume>(sub_volume(
-        volume, indices_of_brick(volume.description(), whole.transform, tree, brick)));
+    return std::make_shared<const Volume>(
+        sub_volume(volume, indices_of_brick(volume.description(), whole.transform, tree, brick)));
   });
   if (grid_of(whole) != nullptr) keep_voxel(placed_voxel(whole), part);
   return part;

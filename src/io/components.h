@@ -33,8 +33,8 @@ struct ComponentRange {
 struct VolumeFile {
   Volume::Description description;
   int components = 1;
-  std::string holds;        ///< what several components are: "3 time steps (axis 4)"
-  std::optional<int> step;  ///< the component that a time chose
+  std::string holds;         ///< what several components are: "3 time steps (axis 4)"
+  std::optional<int> step;   ///< the component that a time chose
   bool reads_parts = false;  ///< whether `read` reads a part of the grid without the rest
   std::string array;  ///< the one of the file's arrays that this is; empty: they have no names
   /// The values of each component by itself. Throws Error.

@@ -11,7 +11,7 @@
 
 #include "input_file.h"
 #include "memory_limit.h"
-#include "module.h"
+#include "pellucid/io/module.h"
 #include "pellucid/scene/error.h"
 #include "stored_numbers.h"
 

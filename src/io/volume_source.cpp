@@ -146,8 +146,8 @@ VolumeData read_part(const ByteSource& source, const ValueLayout& layout, const 
   const std::size_t bytes = value_size(layout.type, source.name);
   const std::size_t row = size(part.box.count[0]) * bytes, rows = size(part.box.count[1]);
   const std::size_t whole_row = size(part.dimensions[0]) * bytes;
-  VolumeData data = make_values(layout.type, size(part.box.count[0]) * rows * size(part.box.count[2]),
-                                source.name);
+  VolumeData data = make_values(
+      layout.type, size(part.box.count[0]) * rows * size(part.box.count[2]), source.name);
   std::visit(
       [&](auto& values) {
         std::span<std::byte> to = std::as_writable_bytes(values.writable());

@@ -12,7 +12,7 @@
 #include "contained.h"
 #include "input_file.h"
 #include "memory_limit.h"
-#include "module.h"
+#include "pellucid/io/module.h"
 #include "pellucid/scene/error.h"
 
 namespace pellucid {

@@ -74,8 +74,9 @@ IndexBox indices_around(const Volume::Description& description,
     }
     const std::vector<double> places =
         positions(description.coordinates[axis], description.centering);
-    const double size =
-        places.size() > 1 ? (places.back() - places.front()) / static_cast<double>(places.size()) : 1;
+    const double size = places.size() > 1
+                            ? (places.back() - places.front()) / static_cast<double>(places.size())
+                            : 1;
     const auto [before, behind] = around(lower - beside * size, upper + beside * size, places);
     const int last = description.dimensions[axis] - 1;
     const double first = std::clamp(before - more, 0.0, std::max(last - 1.0, 0.0));
@@ -94,8 +95,9 @@ Volume::Description sub_description(const Volume::Description& description, cons
     const auto axis = static_cast<std::size_t>(a);
     const std::vector<double>& all = description.coordinates[axis];
     if (all.empty()) {
-      part.placement.origin = part.placement.origin + description.placement.direction.column[a] *
-                               (description.placement.spacing[a] * box.first[axis]);
+      part.placement.origin =
+          part.placement.origin + description.placement.direction.column[a] *
+                                      (description.placement.spacing[a] * box.first[axis]);
       continue;
     }
     const int faces = description.centering == Centering::cell ? 1 : 0;

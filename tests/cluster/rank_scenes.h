@@ -11,7 +11,7 @@ namespace pellucid::cluster_tests {
 struct NamedScene {
   std::string name;
   Scene scene;
-  bool slow = false;           ///< left out of the short run
+  bool slow = false;             ///< left out of the short run
   bool faces_on_values = false;  ///< bricks meet at values of the grid, not between them
 };
 

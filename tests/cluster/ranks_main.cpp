@@ -51,22 +51,46 @@ std::size_t wrong_pixels(const Image& a, const Image& b, const char* what) {
   return check->over;
 }
 
+/// Returns the number of pixels whose depth is far from that of the picture of one process. Half of
+/// the opacity is reached within the tolerance of it; where little absorbs, that is a wide range,
+/// so a few may differ.
+std::size_t far_depths(const Image& a, const Image& b) {
+  std::size_t far = 0, seen = 0;
+  float nearest = INFINITY, farthest = 0;
+  for (const float depth : b.depth) {
+    if (!std::isfinite(depth)) continue;
+    nearest = std::min(nearest, depth);
+    farthest = std::max(farthest, depth);
+  }
+  for (std::size_t i = 0; i < a.depth.size(); ++i) {
+    if (b.pixels[i][3] < 0.05f) continue;
+    ++seen;
+    const bool same = std::isinf(a.depth[i]) && std::isinf(b.depth[i]);
+    if (!same && !(std::abs(a.depth[i] - b.depth[i]) <= 0.02f * (farthest - nearest) + 1e-4f)) {
+      ++far;
+    }
+  }
+  if (20 * far <= seen) return 0;
+  std::printf("    %zu of %zu depths are far from those of one process\n", far, seen);
+  return far;
+}
+
 /// Returns whether the ranks' picture is right.
 bool is_right(const Scene& scene, const Image& image, const RankReport& report) {
   RenderOptions options;
-  options.error = true;
+  options.error = options.depth = true;
   RenderReport alone_report;
   const Image alone = render(scene, options, &alone_report);
   const Image truth = render_reference(scene);
   std::size_t wrong = wrong_pixels(image, truth, "the reference");
   wrong += wrong_pixels(image, alone, "the picture of one process");
+  wrong += far_depths(image, alone);
   // What one process cannot do within the tolerance, ranks need not do either.
   const std::size_t over = report.frame.pixels_over_tolerance;
   const double margin = 1.02 * scene.integration.tolerance;
   if (over > 2 * alone_report.pixels_over_tolerance) {
     std::printf("    %zu pixels are over the tolerance (%.6g), and %zu with one process\n", over,
-                report.frame.largest_error,
-                std::size_t{alone_report.pixels_over_tolerance});
+                report.frame.largest_error, std::size_t{alone_report.pixels_over_tolerance});
     ++wrong;
   }
   if (over == 0 && pixels_over(image, truth, margin) > 0) {
@@ -102,15 +126,14 @@ int run(Communicator& ranks, const Wanted& wanted) {
     Scene scene = made;
     scene.integration.tolerance = wanted.tolerance;
     RenderOptions options;
-    options.error = true;
+    options.error = options.depth = true;
     options.threads = 1;
     const SceneFrame frame = frame_of(scene);
-    BrickTree tree = BrickTree::split(frame.world_from_frame, frame.bounds, ranks.size(), {},
-                                      frame.on_grid);
+    BrickTree tree =
+        BrickTree::split(frame.world_from_frame, frame.bounds, ranks.size(), {}, frame.on_grid);
     if (faces) tree = with_faces_on_values(tree);
     RankReport report;
-    const Image image =
-        render(ranks, tree, sub_scene(scene, tree, ranks.rank()), options, &report);
+    const Image image = render(ranks, tree, sub_scene(scene, tree, ranks.rank()), options, &report);
     bool right = true;
     if (ranks.rank() == 0) {
       right = is_right(scene, image, report);
@@ -129,8 +152,8 @@ int run(Communicator& ranks, const Wanted& wanted) {
 
 int main(int argc, char** argv) {
   try {
-    const auto ranks = pellucid::is_under_mpi() ? pellucid::mpi_communicator()
-                                                : pellucid::single_rank();
+    const auto ranks =
+        pellucid::is_under_mpi() ? pellucid::mpi_communicator() : pellucid::single_rank();
     return run(*ranks, parse(argc, argv));
   } catch (const std::exception& e) {
     std::fprintf(stderr, "%s\n", e.what());

@@ -40,7 +40,8 @@ std::vector<BrickTree> trees() {
 
 Ray<double> any_ray(Random& random) {
   const Vec3<double> origin{in(random, -60, 60), in(random, -60, 60), in(random, -60, 60)};
-  const Vec3<double> to = oblique().point({in(random, 0, 40), in(random, 0, 30), in(random, 0, 20)});
+  const Vec3<double> to =
+      oblique().point({in(random, 0, 40), in(random, 0, 30), in(random, 0, 20)});
   return {origin, normalized(to - origin)};
 }
 
@@ -68,8 +69,7 @@ TEST(BrickTree, RaysArePartitioned) {
 }
 
 TEST(BrickTree, ARayInAFaceIsInOneBrick) {
-  const BrickTree tree = BrickTree::of_boxes(
-      {}, {{{0, 0, 0}, {4, 8, 8}}, {{4, 0, 0}, {8, 8, 8}}});
+  const BrickTree tree = BrickTree::of_boxes({}, {{{0, 0, 0}, {4, 8, 8}}, {{4, 0, 0}, {8, 8, 8}}});
   const Ray<double> ray{{4, 3, -10}, {0, 0, 1}};
   int met = 0;
   for (int brick = 0; brick < 2; ++brick) {
@@ -87,7 +87,8 @@ TEST(BrickTree, RaysMeetBricksInTheOrderOfTheCamera) {
       Camera camera;
       camera.projection = n % 2 == 0 ? Projection::perspective : Projection::orthographic;
       camera.position = {in(random, -40, 60), in(random, -40, 60), in(random, -40, 60)};
-      camera.focal_point = oblique().point({in(random, 0, 40), in(random, 0, 30), in(random, 0, 20)});
+      camera.focal_point =
+          oblique().point({in(random, 0, 40), in(random, 0, 30), in(random, 0, 20)});
       camera.up = {in(random, -1, 1), in(random, -1, 1), in(random, -1, 1)};
       camera.vertical_angle = 70;
       camera.parallel_scale = 20;

@@ -21,8 +21,9 @@ using scenes::transfer;
 RayPixel any_pixel(std::mt19937& random) {
   std::uniform_real_distribution<float> part(0, 1);
   const float opacity = part(random);
-  return {opacity * part(random), opacity * part(random), opacity * part(random), opacity,
-          1e-3f * part(random), 0};
+  return {opacity * part(random), opacity * part(random),
+          opacity * part(random), opacity,
+          1e-3f * part(random),   0};
 }
 
 TEST(RayPixel, OverIsAssociativeWithinItsError) {
@@ -76,10 +77,8 @@ TEST(SubVolume, KeepsItsPlaceAndItsValues) {
     for (int k = 0; k < 4; ++k) {
       for (int j = 0; j < 17; ++j) {
         for (int i = 0; i < 7; ++i) {
-          const Vec3<double> a =
-              part.world_from_grid().point({1.0 * i, 1.0 * j, 1.0 * k});
-          const Vec3<double> b =
-              whole->world_from_grid().point({3.0 + i, 1.0 * j, 5.0 + k});
+          const Vec3<double> a = part.world_from_grid().point({1.0 * i, 1.0 * j, 1.0 * k});
+          const Vec3<double> b = whole->world_from_grid().point({3.0 + i, 1.0 * j, 5.0 + k});
           EXPECT_LT(length(a - b), 1e-12);
           EXPECT_EQ(some[static_cast<std::size_t>(i + 7 * (j + 17 * k))],
                     all[static_cast<std::size_t>(i + 3 + 20 * (j + 17 * (k + 5)))]);

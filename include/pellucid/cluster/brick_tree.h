@@ -22,11 +22,11 @@ struct BrickWeights {
 /// infinity.
 class BrickTree {
  public:
-  /// Splits the bounds of the data, in the frame, into so many bricks of nearly equal weight, across
-  /// their longest side. Without weights each part weighs as much as its volume. If `on_grid`,
-  /// faces are between the whole numbers of the frame, nowhere near the values or the middles of
-  /// a grid's cells, where surfaces of stored data lie; else a little beside equal parts. Throws
-  /// Error unless 1 <= bricks <= 65536.
+  /// Splits the bounds of the data, in the frame, into so many bricks of nearly equal weight,
+  /// across their longest side. Without weights each part weighs as much as its volume. If
+  /// `on_grid`, faces are between the whole numbers of the frame, nowhere near the values or the
+  /// middles of a grid's cells, where surfaces of stored data lie; else a little beside equal
+  /// parts. Throws Error unless 1 <= bricks <= 65536.
   static BrickTree split(const Affine<double>& world_from_frame, const Box<double>& bounds,
                          int bricks, const BrickWeights& weights = {}, bool on_grid = false);
   /// Makes the tree of boxes that fill a box, as a simulation has them; brick i is boxes[i]. Throws

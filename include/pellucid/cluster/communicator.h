@@ -43,6 +43,9 @@ class Communicator {
   /// Reduces each of the numbers over the ranks; all get the results.
   virtual void reduce_all(std::span<double> values, Reduction reduction) = 0;
 
+  /// Gives all ranks the numbers of rank 0.
+  virtual void broadcast(std::span<float> values) = 0;
+
   /// Composites the ranks' pixels in the order of their places, 0 in front; each rank has another
   /// place. Rank 0 gets the result; on other ranks the pixels have no meaning afterwards.
   virtual void composite(std::span<RayPixel> pixels, int place) = 0;

@@ -31,8 +31,8 @@ struct BrickedScene {
 /// files no more than that (VolumeOutline::reads_parts). Other files, and fields of which channels
 /// are derived, are read whole by each rank, which keeps its brick. Meshes are kept whole. A first
 /// pass reads a slab of each grid on each rank, to find what absorbs: for the default camera, and
-/// the balance. Throws Error on all ranks if one fails; and if a layer has no transfer function, for
-/// a default one needs all of the data.
+/// the balance. Throws Error on all ranks if one fails; and if a layer has no transfer function,
+/// for a default one needs all of the data.
 BrickedScene load_bricks(Communicator& ranks, const SceneDescription& description,
                          BrickBalance balance, const ParallelFor& parallel = {});
 

@@ -16,9 +16,9 @@ struct RankReport {
   /// Sums over the ranks, but for the seconds, which are those of the slowest, and the threads,
   /// which are those of one rank.
   RenderReport frame;
-  std::vector<double> render_seconds;   ///< of each rank, without waiting
+  std::vector<double> render_seconds;     ///< of each rank, without waiting
   std::vector<double> composite_seconds;  ///< of each rank, from the moment that all have rendered
-  int most_bricks = 0;                  ///< that any ray meets
+  int most_bricks = 0;                    ///< that any ray meets
 };
 
 /// Renders a frame of a scene whose data lie on several ranks: on rank n in brick n of the tree,
@@ -49,8 +49,8 @@ class AgreedError : public Error {
 /// cancelled, else AgreedError with the first rank that failed and its message.
 void agreed(Communicator& ranks, const std::function<void()>& work);
 
-/// Throws AgreedError on all ranks unless the texts of all are equal; `what` names what they are of:
-/// "the version". A difference is reported with both.
+/// Throws AgreedError on all ranks unless the texts of all are equal; `what` names what they are
+/// of: "the version". A difference is reported with both.
 void check_equal(Communicator& ranks, const std::string& what, const std::string& own);
 
 }  // namespace pellucid

@@ -35,9 +35,9 @@ struct ReadOptions {
   /// DICOM: series to read from a folder: its number as in list_dicom_series(), from 1, its UID, or
   /// a unique end of the UID.
   std::optional<std::string> series;
-  /// Called with the description of the whole; returns the part that is wanted, which is read in its
-  /// place. Uncompressed files are read there alone (VolumeOutline::reads_parts); of others the rest
-  /// is let go of. Empty: all of it.
+  /// Called with the description of the whole; returns the part that is wanted, which is read in
+  /// its place. Uncompressed files are read there alone (VolumeOutline::reads_parts); of others the
+  /// rest is let go of. Empty: all of it.
   std::function<IndexBox(const Volume::Description&)> part;
   /// Called with one line for each assumption about what the files do not say, and for each part
   /// that is left out.

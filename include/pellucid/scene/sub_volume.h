@@ -24,8 +24,8 @@ Affine<double> world_from_grid(const Volume::Description& description) noexcept;
 IndexBox indices_around(const Volume::Description& description,
                         const std::array<Vec3<double>, 8>& corners, int more);
 
-/// Returns the description of a part of the grid, at its place in the world. The outer half cells of
-/// cell-centred data stay half cells: nearer than one value to a face of the part, its data are
+/// Returns the description of a part of the grid, at its place in the world. The outer half cells
+/// of cell-centred data stay half cells: nearer than one value to a face of the part, its data are
 /// those of the whole at faces of the whole only. Throws Error if the box is not inside.
 Volume::Description sub_description(const Volume::Description& description, const IndexBox& box);
 /// Returns a copy of the values in the box, of a grid of these dimensions. Throws Error if the box
