@@ -26,7 +26,6 @@ namespace {
 void refuse_arguments(const RenderArguments& arguments) {
   const std::pair<const char*, bool> given[] = {
       {"--reference", arguments.reference},
-      {"--values", !arguments.values.empty()},
       {"--print-tf", arguments.print_tf},
       {"--save-tf", !arguments.save_tf.empty()},
       {"--method", !arguments.method.empty() && arguments.method != "exact"}};

@@ -5,6 +5,7 @@
 #include <array>
 #include <charconv>
 #include <chrono>
+#include <cmath>
 #include <string>
 
 #include "final_image.h"
@@ -13,6 +14,7 @@
 #include "pellucid/base/version.h"
 #include "pellucid/cluster/sub_scene.h"
 #include "pellucid/scene/error.h"
+#include "rank_projections.h"
 #include "rank_work.h"
 
 namespace pellucid {
@@ -121,6 +123,7 @@ Image render(Communicator& ranks, const BrickTree& tree, const Scene& own,
   agreed(ranks, [&] {
     check_data(own);
     check_integration(own);
+    if (options.values) check_values(own);
     if (tree.count() != ranks.size()) {
       throw Error("bricks: there are " + std::to_string(tree.count()) + " for " +
                   std::to_string(ranks.size()) + " ranks; give one for each");
@@ -132,6 +135,7 @@ Image render(Communicator& ranks, const BrickTree& tree, const Scene& own,
   FrameWatch watch(ranks, options.progress);
   Scene rays;
   std::vector<RayPixel> pixels, own_pixels;
+  std::vector<ProjectedRays> values;  // of projected layers
   RenderOptions part_options;
   double render_seconds = 0;
   const std::string outcome = outcome_of([&] {
@@ -140,7 +144,16 @@ Image render(Communicator& ranks, const BrickTree& tree, const Scene& own,
     told.most_bricks = most_bricks(tree, rays);
     rays = scene_of_rays(own, told.most_bricks);
     part_options = options_of_part(tree, options, told.most_bricks, rank, watch);
-    pixels = to_ray_pixels(pellucid::render(rays, part_options, &told.frame));
+    const std::size_t count =
+        static_cast<std::size_t>(rays.size.width) * static_cast<std::size_t>(rays.size.height);
+    const Scene all = rays;
+    std::erase_if(rays.layers, [](const Layer& layer) { return layer.projection.has_value(); });
+    pixels = rays.layers.empty() ? std::vector<RayPixel>(count)
+                                 : to_ray_pixels(pellucid::render(rays, part_options, &told.frame));
+    for (std::size_t i = 0; i < all.layers.size(); ++i) {
+      if (!all.layers[i].visible || !all.layers[i].projection) continue;
+      values.push_back(project_layer(all, i, part_options));
+    }
     render_seconds = watch_of_part.seconds();
   });
   if (!is_done(outcome)) watch.stop_others();
@@ -156,13 +169,22 @@ Image render(Communicator& ranks, const BrickTree& tree, const Scene& own,
   ranks.composite(pixels, place);
   const double composite_seconds = compositing.seconds();
   std::vector<float> depth;
-  if (options.depth) depth = half_depths(ranks, place, rays, part_options, pixels, own_pixels);
+  if (options.depth && rays.layers.empty()) depth.assign(pixels.size(), INFINITY);
+  if (options.depth && !rays.layers.empty())
+    depth = half_depths(ranks, place, rays, part_options, pixels, own_pixels);
   add_up(ranks, told.frame);
   told.render_seconds = gather_numbers(ranks, render_seconds);
   told.composite_seconds = gather_numbers(ranks, composite_seconds);
+  for (ProjectedRays& of_layer : values) join(ranks, of_layer);
   Image image;
   agreed(ranks, [&] {
-    if (rank == 0) image = final_image(own, options, pixels, depth, told.frame);
+    if (rank != 0) return;
+    if (!values.empty()) put_projections_over(own, values, pixels);
+    image = final_image(own, options, pixels, depth, told.frame);
+    if (!options.values) return;
+    for (std::size_t i = 0; i < pixels.size(); ++i) {
+      image.values.push_back(static_cast<float>(values.back().at(i).value));
+    }
   });
   told.frame.seconds = whole.seconds();
   if (report != nullptr) *report = std::move(told);

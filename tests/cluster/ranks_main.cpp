@@ -120,9 +120,6 @@ int run(Communicator& ranks, const Wanted& wanted) {
   for (const auto& [name, made, slow, faces] : cluster_tests::rank_scenes(wanted.size)) {
     if (slow && !wanted.all) continue;
     if (name.find(wanted.only) == std::string::npos) continue;
-    bool projects = false;
-    for (const Layer& layer : made.layers) projects = projects || layer.projection;
-    if (projects) continue;
     Scene scene = made;
     scene.integration.tolerance = wanted.tolerance;
     RenderOptions options;
