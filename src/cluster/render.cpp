@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <charconv>
 #include <chrono>
 #include <cmath>
@@ -35,25 +36,33 @@ std::string text(double number) {
   return {room.data(), std::to_chars(room.data(), room.data() + room.size(), number).ptr};
 }
 
-/// What must be the same on all ranks for a frame to be one.
-std::string frame_text(const BrickTree& tree, const Scene& scene, const RenderOptions& options) {
+/// Throws AgreedError unless all that makes a frame one is the same on all ranks.
+void check_frame(Communicator& ranks, const BrickTree& tree, const Scene& scene,
+                 const RenderOptions& options) {
   const Camera& camera = scene.camera;
-  std::string all = std::to_string(scene.size.width) + "x" + std::to_string(scene.size.height) +
-                    " samples " + std::to_string(scene.samples) + " layers " +
-                    std::to_string(scene.layers.size()) + " tolerance " +
-                    text(scene.integration.tolerance) + " depth " + (options.depth ? "1" : "0") +
-                    " camera";
+  check_equal(ranks, "the size of the picture",
+              std::to_string(scene.size.width) + "x" + std::to_string(scene.size.height) + ", " +
+                  std::to_string(scene.samples) + " samples");
+  check_equal(ranks, "the tolerance", text(scene.integration.tolerance));
+  std::string view;
   for (const Vec3<double>& v : {camera.position, camera.focal_point, camera.up}) {
-    for (int a = 0; a < 3; ++a) all += " " + text(v[a]);
+    for (int a = 0; a < 3; ++a) view += text(v[a]) + " ";
   }
-  all += " " + text(camera.vertical_angle) + " " + text(camera.parallel_scale) + " color " +
-         text(largest_color(scene)) + " bricks";
+  check_equal(ranks, "the camera",
+              view + text(camera.vertical_angle) + " " + text(camera.parallel_scale));
+  check_equal(ranks, "the number of layers and the largest color",
+              std::to_string(scene.layers.size()) + ", " + text(largest_color(scene)) +
+                  (options.depth ? ", with depth" : "") + (options.values ? ", with values" : ""));
+  // A checksum (FNV-1a) of all boxes.
+  std::uint64_t sum = 14695981039346656037u;
   for (int brick = 0; brick < tree.count(); ++brick) {
-    for (int a = 0; a < 3; ++a) {
-      all += " " + text(tree.box(brick).lower[a]) + " " + text(tree.box(brick).upper[a]);
+    for (const Vec3<double>& corner : tree.corners(brick)) {
+      for (int a = 0; a < 3; ++a) {
+        sum = (sum ^ std::bit_cast<std::uint64_t>(corner[a])) * 1099511628211u;
+      }
     }
   }
-  return all;
+  check_equal(ranks, "the bricks' checksum", std::to_string(sum));
 }
 
 /// The most bricks that any ray of the frame meets; at least 1.
@@ -129,7 +138,7 @@ Image render(Communicator& ranks, const BrickTree& tree, const Scene& own,
                   std::to_string(ranks.size()) + " ranks; give one for each");
     }
   });
-  check_equal(ranks, "the frame", frame_text(tree, own, options));
+  check_frame(ranks, tree, own, options);
 
   RankReport told;
   FrameWatch watch(ranks, options.progress);
