@@ -37,8 +37,8 @@ of_parts = pellucid.render_on_ranks(own, comm, box)
 if rank == 0:
     alone = pellucid.render(everything)
     for image in (of_whole, of_parts):
-        off = numpy.abs(image.pixels - alone.pixels).max(axis=-1)
-        if not (off <= image.error + alone.error).all() or image.pixels[..., 3].max() < 0.5:
+        off = numpy.abs(image.rgba - alone.rgba).max(axis=-1)
+        if not (off <= image.error + alone.error).all() or image.rgba[..., 3].max() < 0.5:
             sys.exit(f"differs by {off.max()}")
     print("the same")
 else:
