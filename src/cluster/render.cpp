@@ -65,12 +65,14 @@ void check_frame(Communicator& ranks, const BrickTree& tree, const Scene& scene,
   check_equal(ranks, "the bricks' checksum", std::to_string(sum));
 }
 
-/// The most bricks that any ray of the frame meets; at least 1.
+/// The most bricks that rays of the frame meet, as every fourth tells; at least 1. What a ray may
+/// be off by does not rest on it (RayRegion::allowance).
 int most_bricks(const BrickTree& tree, const Scene& rays) {
+  constexpr int apart = 4;
   const CameraFrame<double> camera = make_camera_frame(rays.camera, rays.size);
   int most = 1;
-  for (int row = 0; row < rays.size.height && most < tree.count(); ++row) {
-    for (int column = 0; column < rays.size.width; ++column) {
+  for (int row = 0; row < rays.size.height && most < tree.count(); row += apart) {
+    for (int column = 0; column < rays.size.width; column += apart) {
       most = std::max(most, tree.bricks_on(camera.ray(column, row)));
     }
   }
@@ -109,7 +111,7 @@ RenderOptions options_of_part(const BrickTree& tree, const RenderOptions& option
                               int rank, FrameWatch& watch) {
   RayRegion region = tree.region(rank);
   region.allowance = [&tree, most](const Ray<double>& ray) {
-    return static_cast<double>(most) / std::clamp(tree.bricks_on(ray), 1, most);
+    return static_cast<double>(most) / std::max(tree.bricks_on(ray), 1);
   };
   if (!tree.is_on_grid()) region.corners.reset();
   RenderOptions own = options;

@@ -110,6 +110,14 @@ std::vector<RayResult> trace(const Frame& frame, const std::vector<RayPart>& ray
   return results;
 }
 
+/// Of a ray that passes a region by, and so do those beside it.
+RayResult nothing_of_region() {
+  RayResult nothing = missed_ray_result();
+  nothing.neighbor_deviation = 0;
+  nothing.longest_step = std::numeric_limits<float>::infinity();
+  return nothing;
+}
+
 /// Traces the parts of rays that lie in a region. Those that may be off by the same go together.
 std::vector<RayResult> trace_region(const Frame& frame, const std::vector<RayPart>& rays,
                                     double share_of_rays, const TileTask& task) {
@@ -125,18 +133,14 @@ std::vector<RayResult> trace_region(const Frame& frame, const std::vector<RayPar
     const Interval<double> range{std::max(own.begin, rays[i].range.begin),
                                  std::min(own.end, rays[i].range.end)};
     if (!(range.begin < range.end)) continue;
-    const double allowance =
-        region.allowance && task.between == nullptr ? region.allowance(rays[i].ray) : 1;
+    double allowance = region.allowance ? region.allowance(rays[i].ray) : 1;
+    if (task.between != nullptr) allowance = std::min(allowance, 1.0);
     auto group = std::ranges::find(groups, allowance, &Group::allowance);
     if (group == groups.end()) group = groups.insert(group, {allowance});
     group->rays.push_back({rays[i].ray, range});
     group->of.push_back(i);
   }
-  std::vector<RayResult> results(rays.size(), missed_ray_result());
-  for (RayResult& result : results) {  // and so are those beside them
-    result.neighbor_deviation = 0;
-    result.longest_step = std::numeric_limits<float>::infinity();
-  }
+  std::vector<RayResult> results(rays.size(), nothing_of_region());
   for (const Group& group : groups) {
     const std::vector<RayResult> found =
         trace(frame, group.rays, {group.allowance, share_of_rays, task.stop}, task, nullptr);
@@ -162,6 +166,13 @@ std::size_t render_tile(const Frame& frame, const Tile& tile, const TileTask& ta
                   [&](const Place& place) { return between->is_done(place.column, place.row); });
   }
   const std::size_t not_final_before = places.size();
+  if (frame.region) {
+    std::erase_if(places, [&](const Place& place) {
+      if (frame.seen.contains(place.column, place.row)) return false;
+      finish(place, nothing_of_region());
+      return true;
+    });
+  }
   if (between != nullptr && level < between->stride()) {
     std::erase_if(places, [&](const Place& place) {
       RayResult result;
