@@ -30,7 +30,7 @@ namespace {
 void print_notes(const RenderArguments& arguments, const PreparedScene& prepared) {
   if (arguments.quiet) return;
   for (const std::string& note : prepared.import_notes) print_note(note);
-  if (const std::size_t nan = nan_values(prepared.scene); nan > 0) {
+  if (const std::size_t nan = nan_values(prepared.scene); nan > 0 && !arguments.ranks) {
     print_note(fmt::format("{} values are NaN: rendered as vacuum", nan));
   }
   if (prepared.array_chosen) {
@@ -71,17 +71,8 @@ Device device_of(const RenderArguments& arguments) {
 Image render_image(const RenderArguments& arguments, const PreparedScene& prepared,
                    RenderReport& report) {
   const Scene& scene = prepared.scene;
-  RenderOptions options;
-  options.threads = arguments.threads;
+  RenderOptions options = options_of(arguments, prepared);
   options.device = device_of(arguments);
-  options.depth = !arguments.depth_picture.empty();
-  options.error = !arguments.error_map.empty();
-  options.values = !arguments.values.empty();
-  for (const std::string& path : arguments.outputs) {
-    if (extension_of(path) != ".exr") continue;
-    options.depth = true;
-    options.error = prepared.knows_its_error(arguments);
-  }
   ProgressLine progress(!arguments.quiet);
   options.progress = [&](double share_done) {
     progress.show(share_done);
@@ -141,6 +132,7 @@ Image render_at_share(const RenderArguments& arguments, PreparedScene& prepared,
 }
 
 int run_render(const RenderArguments& arguments) {
+  if (arguments.ranks) return run_on_ranks(arguments);
   check_arguments(arguments);
   PreparedScene prepared = prepare(arguments);
   const auto& function = prepared.description.layers.front().transfer_function;
@@ -155,15 +147,41 @@ int run_render(const RenderArguments& arguments) {
       wants_function ? look_to_json({*function, first.shading, first.gradient_opacity}) : "";
 
   const InterruptGuard guard;
-  RenderReport report;
-  Image image;
-  std::optional<std::string> over;
+  RenderedPicture picture;
   if (arguments.renders()) {
-    image = prepared.relative_tolerance ? render_at_share(arguments, prepared, report, over)
-                                        : render_image(arguments, prepared, report);
-    add_metadata(arguments, prepared, report, image);
-    if (!over) over = over_tolerance(report, prepared.scene.integration);
+    picture.image = prepared.relative_tolerance
+                        ? render_at_share(arguments, prepared, picture.report, picture.over)
+                        : render_image(arguments, prepared, picture.report);
+    if (!picture.over) {
+      picture.over = over_tolerance(picture.report, prepared.scene.integration);
+    }
   }
+  write_picture(arguments, prepared, transfer_function, picture);
+  return 0;
+}
+
+}  // namespace
+
+RenderOptions options_of(const RenderArguments& arguments, const PreparedScene& prepared) {
+  RenderOptions options;
+  options.threads = arguments.threads;
+  options.depth = !arguments.depth_picture.empty();
+  options.error = !arguments.error_map.empty();
+  options.values = !arguments.values.empty();
+  for (const std::string& path : arguments.outputs) {
+    if (extension_of(path) != ".exr") continue;
+    options.depth = true;
+    options.error = prepared.knows_its_error(arguments);
+  }
+  return options;
+}
+
+void write_picture(const RenderArguments& arguments, const PreparedScene& prepared,
+                   const std::string& transfer_function, RenderedPicture& picture) {
+  Image& image = picture.image;
+  const RenderReport& report = picture.report;
+  const std::optional<std::string>& over = picture.over;
+  if (arguments.renders()) add_metadata(arguments, prepared, report, image);
   const double largest = largest_channel(image);
   if (over && arguments.strict) throw OverTolerance(*over + " (--strict: nothing is written)");
   if (arguments.print_tf) print_text(transfer_function);
@@ -197,9 +215,12 @@ int run_render(const RenderArguments& arguments) {
   write(arguments.save_scene, [&] {
     write_text_file(arguments.save_scene, scene_text(prepared.description, arguments.save_scene));
   });
-  if (arguments.json) print_json(report_json(arguments, prepared, report, largest, written));
+  if (arguments.json) print_json(report_json(arguments, prepared, picture, largest, written));
   // Last, so that a failure is one line.
   print_notes(arguments, prepared);
+  if (!arguments.quiet) {
+    for (const std::string& note : picture.notes) print_note(note);
+  }
   if (arguments.renders() && !arguments.quiet && prepared.knows_its_error(arguments)) {
     const bool png = std::ranges::any_of(
         arguments.outputs, [](const std::string& path) { return extension_of(path) != ".exr"; });
@@ -211,10 +232,7 @@ int run_render(const RenderArguments& arguments) {
     for (const std::string& line : report_lines(arguments, prepared, report)) print_note(line);
   }
   if (over) throw OverTolerance(*over);
-  return 0;
 }
-
-}  // namespace
 
 Command add_render(CommandLine& app) {
   CommandLine& command =

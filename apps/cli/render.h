@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
+#include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
@@ -29,6 +32,8 @@ struct RenderArguments {
   std::optional<double> step;
   std::optional<int> samples;
   int threads = 0;
+  std::string balance;  ///< of the bricks of ranks
+  bool ranks = false;
   bool print_tf = false, reference = false, strict = false, json = false, quiet = false;
   /// Several channels without a function get suggested Gaussians, in place of an error.
   bool suggests_functions = false;
@@ -81,8 +86,39 @@ inline constexpr double reference_tolerance = 1e-5;
 /// of another program. Throws Error.
 void set_transfer_function(const RenderArguments& arguments, SceneDescription& description,
                            std::vector<std::string>& import_notes);
+/// A scene that is described, and whose data are not read yet.
+struct SceneRequest {
+  PreparedScene prepared;        ///< without the scene
+  SceneDescription description;  ///< what is to be read
+  std::shared_ptr<std::vector<std::string>> mesh_notes;
+};
+/// Puts the arguments over what the input says. Throws Error.
+SceneRequest request_scene(const RenderArguments& arguments);
+/// Returns visible_corners() of a scene.
+using VisibleCorners = std::function<std::array<Vec3<double>, 8>(const Scene&)>;
+/// Completes the request with the scene that was read. Throws Error.
+PreparedScene complete_scene(const RenderArguments& arguments, SceneRequest request, Scene loaded,
+                             const std::vector<MeshSource>& meshes, const VisibleCorners& visible);
 /// Reads the input and puts the arguments over what it says. Throws Error.
 PreparedScene prepare(const RenderArguments& arguments);
+
+/// A picture and what is told of it.
+struct RenderedPicture {
+  Image image;
+  RenderReport report;
+  std::optional<std::string> over;  ///< why it is over the tolerance
+  std::string ranks_json;           ///< an object of --json; empty: one process
+  std::vector<std::string> notes{};
+};
+/// The options of a frame.
+RenderOptions options_of(const RenderArguments& arguments, const PreparedScene& prepared);
+/// Writes the pictures and other files, the report and the notes. Throws Error, and OverTolerance
+/// if the picture is over the tolerance.
+void write_picture(const RenderArguments& arguments, const PreparedScene& prepared,
+                   const std::string& transfer_function, RenderedPicture& picture);
+/// Renders on the ranks that this process is one of, and writes on the first. Returns the exit
+/// status.
+int run_on_ranks(const RenderArguments& arguments);
 
 /// Makes `tolerance` that of the scene, or the nearest one within the limits; opacity tables are
 /// approximated anew. Throws Error.
@@ -101,7 +137,7 @@ std::vector<std::string> report_lines(const RenderArguments& arguments,
                                       const PreparedScene& prepared, const RenderReport& report);
 /// `largest` is the largest channel of any pixel.
 Json report_json(const RenderArguments& arguments, const PreparedScene& prepared,
-                 const RenderReport& report, double largest,
+                 const RenderedPicture& picture, double largest,
                  const std::vector<std::string>& written);
 
 }  // namespace pellucid::cli

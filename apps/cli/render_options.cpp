@@ -137,6 +137,16 @@ void add_integration_options(CommandLine& command, RenderArguments& arguments) {
       ->option_text("DEVICE")
       ->one_of({"cpu", "cuda", "emulated"})
       ->excludes("--reference");
+  command.add_flag(
+      "--ranks", arguments.ranks,
+      "Render on all ranks of MPI that this program is started on, each with its part of the data: "
+      "mpirun -n 8 pellucid render SCENE.json --ranks -o o.png. Give --threads, too");
+  command
+      .add_option("--balance", arguments.balance,
+                  "What the parts of the ranks have alike. work: what absorbs; data: the size of "
+                  "the data. Default: work")
+      ->option_text("WHAT")
+      ->one_of({"work", "data"});
 }
 
 }  // namespace

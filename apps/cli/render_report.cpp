@@ -272,9 +272,10 @@ std::vector<std::string> report_lines(const RenderArguments& arguments,
 }
 
 Json report_json(const RenderArguments& arguments, const PreparedScene& prepared,
-                 const RenderReport& report, double largest,
+                 const RenderedPicture& picture, double largest,
                  const std::vector<std::string>& written) {
   const Scene& scene = prepared.scene;
+  const RenderReport& report = picture.report;
   Json json;
   json["pellucid"] = PELLUCID_VERSION_STRING;
   json["input"] = source_text(arguments);
@@ -324,6 +325,12 @@ Json report_json(const RenderArguments& arguments, const PreparedScene& prepared
   json["transfer_function_from"] = prepared.transfer_function_from;
   json["transfer_function_error"] = approximation_error(scene);
   json["camera"] = Json::parse(camera_to_json(scene.camera));
+  if (!picture.ranks_json.empty()) {
+    json["ranks"] = Json::parse(picture.ranks_json);
+    // No rank has all of the data.
+    json["nan"] = json["dimensions"] = Json();
+    for (Json& layer : json["layers"]) layer["nan"] = layer["dimensions"] = Json();
+  }
   json["outputs"] = written;
   return json;
 }

@@ -73,6 +73,9 @@ void check_arguments(const RenderArguments& arguments) {
     throw UsageError(
         "nothing to write; give -o FILE.png or FILE.exr (see 'pellucid render --help')");
   }
+  if (!arguments.balance.empty() && !arguments.ranks) {
+    throw UsageError("--balance: is of the parts of --ranks; give that too, or drop it");
+  }
   if (arguments.json && !arguments.renders()) {
     throw UsageError("--json reports on a rendering; give -o FILE.png or FILE.exr");
   }
@@ -397,8 +400,9 @@ void set_scene_tolerance(PreparedScene& prepared, double tolerance) {
   fit_opacity_tables(description, scene);
 }
 
-PreparedScene prepare(const RenderArguments& arguments) {
-  PreparedScene prepared;
+SceneRequest request_scene(const RenderArguments& arguments) {
+  SceneRequest request;
+  PreparedScene& prepared = request.prepared;
   prepared.description = describe(arguments, prepared.import_notes);
   SceneDescription& description = prepared.description;
   const int threads = arguments.threads > 0 ? arguments.threads : default_thread_count();
@@ -433,26 +437,35 @@ PreparedScene prepare(const RenderArguments& arguments) {
   description.layers.front().takes_default_look =
       prepared.transfer_function_from == "default" && arguments.light.shading.empty() &&
       !arguments.is_scene() && integration.method == Method::exact;
-  SceneDescription rendered = description;
+  SceneDescription& rendered = request.description;
+  rendered = description;
   if (arguments.reference && integration.tolerance > reference_tolerance) {
     rendered.integration.tolerance = reference_tolerance;
   }
+  request.mesh_notes = std::make_shared<std::vector<std::string>>();
   for (LayerDescription& layer : rendered.layers) {
     set_notes(layer.field, arguments.quiet);
     set_notes(layer.channels, arguments.quiet);
     if (layer.labels) set_notes(layer.labels->field, arguments.quiet);
     if (layer.mask) set_notes(layer.mask->field, arguments.quiet);
     if (layer.mesh) {  // printed last, so that a failure is one line
-      layer.mesh->options.note = [&notes = prepared.import_notes](const std::string& note) {
-        notes.push_back(note);
+      layer.mesh->options.note = [notes = request.mesh_notes](const std::string& note) {
+        notes->push_back(note);
       };
     }
   }
   prepared.has_own_camera = description.camera.has_value();
   const auto& first_mesh = description.layers.front().mesh;
   prepared.array_chosen = first_mesh && first_mesh->channels.empty();
-  std::vector<MeshSource> meshes;
-  prepared.scene = make_scene(rendered, parallel_for(threads), &meshes);
+  return request;
+}
+
+PreparedScene complete_scene(const RenderArguments& arguments, SceneRequest request, Scene loaded,
+                             const std::vector<MeshSource>& meshes, const VisibleCorners& visible) {
+  PreparedScene prepared = std::move(request.prepared);
+  for (std::string& note : *request.mesh_notes) prepared.import_notes.push_back(std::move(note));
+  SceneDescription& description = prepared.description;
+  prepared.scene = std::move(loaded);
   Scene& scene = prepared.scene;
   for (std::size_t i = 0; i < scene.layers.size(); ++i) {
     LayerDescription& layer = description.layers[i];
@@ -461,6 +474,7 @@ PreparedScene prepare(const RenderArguments& arguments) {
       layer.mesh->options.note = {};
     }
     complete_description(scene.layers[i], layer);
+    if (arguments.ranks) continue;  // no rank has all labels
     const std::string& name = layer.name;
     find_labels(scene.layers[i], layer,
                 scene.layers.size() == 1 ? ""
@@ -468,15 +482,24 @@ PreparedScene prepare(const RenderArguments& arguments) {
                                          : name + ", ",
                 prepared);
   }
-  scene.integration = integration;
+  scene.integration = description.integration;
   check_data(scene);
   if (!arguments.view.empty()) {
-    scene.camera =
-        view_camera(visible_corners(scene, parallel_for(threads)), arguments.view, scene.size);
+    scene.camera = view_camera(visible(scene), arguments.view, scene.size);
   }
   description.camera = scene.camera;
   make_camera_frame(scene.camera, scene.size);  // throws before anything is written
   return prepared;
+}
+
+PreparedScene prepare(const RenderArguments& arguments) {
+  SceneRequest request = request_scene(arguments);
+  const ParallelFor parallel =
+      parallel_for(arguments.threads > 0 ? arguments.threads : default_thread_count());
+  std::vector<MeshSource> meshes;
+  Scene scene = make_scene(request.description, parallel, &meshes);
+  return complete_scene(arguments, std::move(request), std::move(scene), meshes,
+                        [&](const Scene& whole) { return visible_corners(whole, parallel); });
 }
 
 }  // namespace pellucid::cli

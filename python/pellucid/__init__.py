@@ -28,6 +28,7 @@ from ._pellucid import (Cancelled, Channels, Error, Frame, Gaussians, GradientOp
 from ._colormaps import from_colormap
 from ._image import Comparison
 from ._meshes import mesh_of
+from ._ranks import render_on_ranks
 from ._render import render, scene_of
 from .scene import (Camera, Clip, ClipBox, ClipCylinder, ClipPlane, ClipSphere, DirectionalLight,
                     Gaussian, HeadLight, Integration, Isosurface, Layer, Light, PointLight, Scene,
@@ -46,6 +47,6 @@ __all__ = [
     "export_transfer_function", "from_colormap", "histogram", "import_transfer_function",
     "integrate", "label_count", "linear_to_srgb", "load_scene", "make_preset", "mesh_of", "presets",
     "projection_transfer_function", "read", "read_image", "read_mesh", "read_volume", "render",
-    "render_reference", "scene_of", "srgb_to_linear", "suggest", "suggest_boundaries",
-    "view", "view_camera",
+    "render_on_ranks", "render_reference", "scene_of", "srgb_to_linear", "suggest",
+    "suggest_boundaries", "view", "view_camera",
 ]

@@ -31,6 +31,7 @@ void bind_scenes(py::module_& module);
 void bind_files(py::module_& module);
 void bind_images(py::module_& module);
 void bind_renderers(py::module_& module);
+void bind_ranks(py::module_& module);
 void bind_segments(py::module_& module);
 void bind_viewers(py::module_& module);
 

@@ -22,6 +22,7 @@ PYBIND11_MODULE(_pellucid, module) {
   bind_images(module);
   bind_scenes(module);
   bind_renderers(module);
+  bind_ranks(module);
   bind_files(module);
   bind_segments(module);
   bind_viewers(module);

@@ -54,6 +54,14 @@ class RayTracer {
   /// Returns whether it keeps to the ranges of the parts; if not, it follows the whole rays.
   virtual bool keeps_to_ranges() const { return false; }
 
+  /// Returns the position on each part at which the optical depth, counted from its begin, reaches
+  /// the number beside it; where the part's data end if it never does. Safe to call from any
+  /// thread.
+  virtual std::vector<double> find_depths(const std::vector<RayPart>& parts,
+                                          const std::vector<double>& /*depths*/) const {
+    return std::vector<double>(parts.size(), std::numeric_limits<double>::infinity());
+  }
+
   /// What there is to find out between rays.
   struct Surroundings {
     const Volume& volume;  ///< whose grid it is

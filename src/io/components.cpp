@@ -15,8 +15,33 @@ namespace pellucid {
 
 namespace {
 
-Volume make_volume(const VolumeFile& file, int component, VolumeData data) {
+std::size_t size_of(const VolumeData& data) {
+  return std::visit([](const auto& values) { return values.size(); }, data);
+}
+
+std::size_t count_of(const IndexBox& box) {
+  std::size_t count = 1;
+  for (const int side : box.count) count *= static_cast<std::size_t>(side);
+  return count;
+}
+
+/// The part of the file that the options want, if it is not all.
+std::optional<GridPart> wanted_part(const VolumeFile& file, const ReadOptions& options) {
+  if (!options.part) return std::nullopt;
+  const GridPart part{file.description.dimensions, options.part(file.description)};
+  static_cast<void>(sub_description(file.description, part.box));  // throws if it is not inside
+  return part.box.count == part.dimensions ? std::nullopt : std::optional(part);
+}
+
+Volume make_volume(const VolumeFile& file, int component, VolumeData data,
+                   const std::optional<GridPart>& part) {
   Volume::Description description = file.description;
+  if (part) {
+    description = sub_description(description, part->box);
+    if (size_of(data) != count_of(part->box)) {
+      data = sub_values(data, part->dimensions, part->box);
+    }
+  }
   if (file.components > 1) description.name += ", component " + std::to_string(component);
   return Volume(std::move(description), std::move(data));
 }
@@ -190,17 +215,22 @@ Volume read_chosen(const VolumeFile& file, const ReadOptions& options) {
                 ", or save one of them as a file of its own");
   }
   const int component = chosen.value_or(0);
-  std::vector<VolumeData> data = file.read({component, 1});
-  return make_volume(file, component, std::move(data.front()));
+  const std::optional<GridPart> part = wanted_part(file, options);
+  std::vector<VolumeData> data = file.read({component, 1, part ? &*part : nullptr});
+  return make_volume(file, component, std::move(data.front()), part);
 }
 
 std::vector<Volume> read_all(const VolumeFile& file, const ReadOptions& options) {
-  ComponentRange range{0, file.components};
-  if (const std::optional<int> chosen = chosen_component(file, options)) range = {*chosen, 1};
+  const std::optional<GridPart> part = wanted_part(file, options);
+  ComponentRange range{0, file.components, part ? &*part : nullptr};
+  if (const std::optional<int> chosen = chosen_component(file, options)) {
+    range.first = *chosen;
+    range.number = 1;
+  }
   std::vector<Volume> volumes;
   int component = range.first;
   for (VolumeData& data : file.read(range)) {
-    volumes.push_back(make_volume(file, component++, std::move(data)));
+    volumes.push_back(make_volume(file, component++, std::move(data), part));
   }
   return volumes;
 }
@@ -260,6 +290,10 @@ std::vector<VolumeData> split_components(const VolumeData& values, int component
       values);
 }
 
+bool reads_parts(const ValueLayout& layout) {
+  return !is_stored_only(layout.type) && !(layout.interleaved && layout.components > 1);
+}
+
 std::vector<VolumeData> read_components(const ByteSource& source, const ValueLayout& layout,
                                         std::size_t points, ComponentRange range) {
   const bool interleaved = layout.interleaved && layout.components > 1;
@@ -276,7 +310,9 @@ std::vector<VolumeData> read_components(const ByteSource& source, const ValueLay
   std::vector<VolumeData> list;
   for (int c = range.first; c < range.first + range.number; ++c) {
     const std::uintmax_t offset = layout.offset + bytes * static_cast<std::uintmax_t>(c);
-    list.push_back(read_values(source, {layout.type, layout.big_endian, offset}, points));
+    const ValueLayout own{layout.type, layout.big_endian, offset};
+    list.push_back(range.part != nullptr ? read_part(source, own, *range.part)
+                                         : read_values(source, own, points));
   }
   return list;
 }

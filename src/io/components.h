@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <filesystem>
 #include <functional>
@@ -15,17 +16,26 @@
 
 namespace pellucid {
 
+/// A part of a grid with so many values along its axes.
+struct GridPart {
+  std::array<int, 3> dimensions;
+  IndexBox box;
+};
+
 /// Components first … first + number - 1 of a file.
 struct ComponentRange {
   int first = 0, number = 1;
+  /// The part of the grid that is wanted; null: all. Whoever can reads no more; others read all.
+  const GridPart* part = nullptr;
 };
 
 /// A file whose header has been read: its grid, and its values when they are asked for.
 struct VolumeFile {
   Volume::Description description;
   int components = 1;
-  std::string holds;        ///< what several components are: "3 time steps (axis 4)"
-  std::optional<int> step;  ///< the component that a time chose
+  std::string holds;         ///< what several components are: "3 time steps (axis 4)"
+  std::optional<int> step;   ///< the component that a time chose
+  bool reads_parts = false;  ///< whether `read` reads a part of the grid without the rest
   std::string array;  ///< the one of the file's arrays that this is; empty: they have no names
   /// The values of each component by itself. Throws Error.
   std::function<std::vector<VolumeData>(ComponentRange)> read;
@@ -45,6 +55,8 @@ ReadOn read_on(const ByteSource& source, std::uintmax_t from);
 /// The number of values of all components. Throws Error where no machine holds so many.
 std::size_t value_count(std::size_t points, int components, const std::string& name);
 
+/// Whether the next function reads a part of a grid without the rest.
+bool reads_parts(const ValueLayout& layout);
 /// Each component of `points` values, as ValueLayout says how they lie; those that lie as in memory
 /// in place. The source must hold all components.
 std::vector<VolumeData> read_components(const ByteSource& source, const ValueLayout& layout,

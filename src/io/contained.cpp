@@ -18,7 +18,7 @@
 #include <new>
 #include <string_view>
 
-#include "module.h"
+#include "pellucid/io/module.h"
 #include "pellucid/scene/error.h"
 
 namespace pellucid {

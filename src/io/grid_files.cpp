@@ -18,8 +18,8 @@
 #include "input_file.h"
 #include "memory_limit.h"
 #include "mesh_blocks.h"
-#include "module.h"
 #include "net_cdf_size.h"
+#include "pellucid/io/module.h"
 #include "pellucid/scene/error.h"
 #include "vdb_size.h"
 #include "volume_axes.h"
@@ -34,11 +34,13 @@ struct Format {
 };
 
 constexpr const char* three_axes = "array of three or four axes of numbers";
-constexpr Format hdf5{{"pellucid_hdf5.so", "HDF5 files", "HDF5 (Debian: libhdf5-dev)"}, three_axes};
-constexpr Format net_cdf{{"pellucid_netcdf.so", "NetCDF files", "NetCDF (Debian: libnetcdf-dev)"},
-                         three_axes};
-constexpr Format vdb{{"pellucid_openvdb.so", "OpenVDB files", "OpenVDB (Debian: libopenvdb-dev)"},
-                     "fog volume"};
+constexpr Format hdf5{{"pellucid_hdf5.so", "reads HDF5 files", "HDF5 (Debian: libhdf5-dev)"},
+                      three_axes};
+constexpr Format net_cdf{
+    {"pellucid_netcdf.so", "reads NetCDF files", "NetCDF (Debian: libnetcdf-dev)"}, three_axes};
+constexpr Format vdb{
+    {"pellucid_openvdb.so", "reads OpenVDB files", "OpenVDB (Debian: libopenvdb-dev)"},
+    "fog volume"};
 
 /// Names and messages of libraries may hold anything.
 std::string one_line(std::string text) {
@@ -67,7 +69,7 @@ std::shared_ptr<std::byte> contained(
     throw Error(path.string() + ": " + one_line(error.what()));
   }
   if (answer) return answer;
-  throw Error(path.string() + ": the library that reads " + format.module.reads +
+  throw Error(path.string() + ": the library that " + format.module.does +
               " fails on it, or takes far more memory or time than its size lets expect; it is "
               "damaged");
 }

@@ -11,7 +11,7 @@
 
 #include "input_file.h"
 #include "memory_limit.h"
-#include "module.h"
+#include "pellucid/io/module.h"
 #include "pellucid/scene/error.h"
 #include "stored_numbers.h"
 
@@ -19,7 +19,7 @@ namespace pellucid {
 
 namespace {
 
-constexpr Module itk{"pellucid_itk.so", "NRRD and MetaImage",
+constexpr Module itk{"pellucid_itk.so", "reads NRRD and MetaImage",
                      "ITK (Debian: libinsighttoolkit5-dev)"};
 
 /// Calls a function of the module and throws what it says.
@@ -148,6 +148,9 @@ VolumeFile open_nrrd_file(const std::filesystem::path& path, const std::string& 
   apply_overrides(options, file.description);
   file.components = header.components;
   file.holds = header.holds;
+  file.reads_parts = text.values && !text.values->compression &&
+                     (text.values->big_endian || value_size(type, name) == 1) &&
+                     reads_parts({type, false, 0, header.components, header.interleaved});
   file.read = [path, type, header, text, points, name, note = options.note](ComponentRange range) {
     ValueLayout layout{type, false, 0, header.components, header.interleaved, note};
     const bool order_is_known =

@@ -196,6 +196,8 @@ VolumeFile open_meta_image(const fs::path& path, const ReadOptions& options) {
   apply_overrides(options, file.description);
   file.components = header.components;
   file.holds = header.holds;
+  file.reads_parts = !header.compressed && reads_parts({header.type, header.big_endian, 0,
+                                                        header.components, header.interleaved});
   file.read = [header, points, name, note = options.note,
                files = find_files(path, header, bytes)](ComponentRange range) {
     return read_files(files, header, points, range, note, name);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "module.h"
+#include "pellucid/io/module.h"
 
 #include <dlfcn.h>
 
@@ -61,7 +61,7 @@ fs::path module_file(const Module& module) {
     fs::path file = folder / module.file;
     if (folder.is_absolute() && fs::exists(file, error)) return file;
   }
-  throw Error(std::string("the module ") + module.file + ", which reads " + module.reads +
+  throw Error(std::string("the module ") + module.file + ", which " + module.does +
               ", is not there; build it, which needs " + module.needs +
               ", or name its folder in the environment variable PELLUCID_MODULES");
 }
@@ -71,7 +71,7 @@ void* module_function(const Module& module, const char* name) {
   const std::lock_guard lock(loading_modules());
   void* const library = dlopen(file.c_str(), RTLD_NOW | RTLD_LOCAL);
   if (library == nullptr) {
-    throw Error(std::string("the module ") + module.file + ", which reads " + module.reads +
+    throw Error(std::string("the module ") + module.file + ", which " + module.does +
                 ", does not load: " + dlerror() + "; install " + module.needs);
   }
   void* const function = dlsym(library, name);

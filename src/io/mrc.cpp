@@ -208,6 +208,7 @@ VolumeFile open_mrc(const ByteSource& source, const ReadOptions& options) {
   apply_overrides(options, file.description);
   file.components = layout.components;
   file.holds = std::to_string(layout.components) + " volumes (space group 401)";
+  file.reads_parts = source.map && reads_parts(layout);  // not of gzip
   file.read = [source, layout, points](ComponentRange range) {
     return read_components(source, layout, points, range);
   };

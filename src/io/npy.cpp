@@ -407,6 +407,7 @@ VolumeFile open_array(const ByteSource& source, const ReadOptions& options, Behi
   }
   const ValueLayout layout{array.type,     array.big_endian,     array.offset,
                            lie.components, lie.is_interleaved(), options.note};
+  file.reads_parts = source.map && (lie.is_planar() || lie.is_interleaved()) && reads_parts(layout);
   file.read = [source, layout, lie, points](ComponentRange range) {
     return lie.is_planar() || lie.is_interleaved() ? read_components(source, layout, points, range)
                                                    : read_permuted(source, layout, lie, range);

@@ -57,6 +57,7 @@ VolumeFile open_raw(const ByteSource& source, const ReadOptions& options) {
                 "; check dimensions, type" + (raw.file.components > 1 ? ", components" : "") +
                 " and bytes to skip");
   }
+  raw.file.reads_parts = source.map && reads_parts(raw.layout);
   raw.file.read = [source, layout = raw.layout, count = raw.count](ComponentRange range) {
     return read_components(source, layout, count, range);
   };

@@ -246,6 +246,12 @@ auto open_and(const std::filesystem::path& path, const ReadOptions& options, con
 
 }  // namespace
 
+VolumeOutline outline_volume(const std::filesystem::path& path, const ReadOptions& options) {
+  return open_and(path, options, [](const VolumeFile& file) {
+    return VolumeOutline{file.description, file.reads_parts};
+  });
+}
+
 Volume read_volume(const std::filesystem::path& path, const ReadOptions& options) {
   return open_and(path, options,
                   [&](const VolumeFile& file) { return read_chosen(file, options); });

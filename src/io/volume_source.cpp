@@ -12,6 +12,7 @@
 #include <optional>
 #include <utility>
 
+#include "components.h"
 #include "input_file.h"
 #include "mapped_file.h"
 #include "memory_limit.h"
@@ -135,6 +136,42 @@ VolumeData read_values(const ByteSource& source, const ValueLayout& layout, std:
   VolumeData data = make_values(layout.type, count, source.name);
   std::visit(
       [&](auto& values) { source.read(layout.offset, std::as_writable_bytes(values.writable())); },
+      data);
+  to_native_order(data, layout.big_endian);
+  return data;
+}
+
+VolumeData read_part(const ByteSource& source, const ValueLayout& layout, const GridPart& part) {
+  const auto size = [](int n) { return static_cast<std::size_t>(n); };
+  const std::size_t bytes = value_size(layout.type, source.name);
+  const std::size_t row = size(part.box.count[0]) * bytes, rows = size(part.box.count[1]);
+  const std::size_t whole_row = size(part.dimensions[0]) * bytes;
+  VolumeData data = make_values(
+      layout.type, size(part.box.count[0]) * rows * size(part.box.count[2]), source.name);
+  std::visit(
+      [&](auto& values) {
+        std::span<std::byte> to = std::as_writable_bytes(values.writable());
+        // Whole rows at once, of which the part is a good share; else row after row.
+        const bool together = 8 * row > whole_row;
+        std::vector<std::byte> slice(together ? (rows - 1) * whole_row + row : 0);
+        for (int k = 0; k < part.box.count[2]; ++k) {
+          const std::uintmax_t begin =
+              layout.offset + size(part.box.first[0]) * bytes +
+              std::uintmax_t{whole_row} *
+                  (size(part.box.first[1]) +
+                   std::uintmax_t{size(part.dimensions[1])} * size(part.box.first[2] + k));
+          if (together) source.read(begin, slice);
+          for (std::size_t j = 0; j < rows; ++j) {
+            const std::span<std::byte> one = to.first(row);
+            if (together) {
+              std::memcpy(one.data(), slice.data() + j * whole_row, row);
+            } else {
+              source.read(begin + j * whole_row, one);
+            }
+            to = to.subspan(row);
+          }
+        }
+      },
       data);
   to_native_order(data, layout.big_endian);
   return data;

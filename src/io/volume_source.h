@@ -63,6 +63,9 @@ VolumeData make_values(const std::string& type, std::size_t count, const std::st
 /// The values, of one component, in their own type: in place where they lie there as in memory,
 /// else read. The source must hold them all.
 VolumeData read_values(const ByteSource& source, const ValueLayout& layout, std::size_t count);
+/// The values of a part of a grid, read row by row.
+struct GridPart;
+VolumeData read_part(const ByteSource& source, const ValueLayout& layout, const GridPart& part);
 /// The same from a stream that stands at the first of them.
 VolumeData read_values(DataStream& stream, const ValueLayout& layout, std::size_t count);
 /// Turns the bytes of each value where `big_endian` is not this machine's order.

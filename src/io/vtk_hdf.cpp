@@ -12,7 +12,7 @@
 #include "contained.h"
 #include "input_file.h"
 #include "memory_limit.h"
-#include "module.h"
+#include "pellucid/io/module.h"
 #include "pellucid/scene/error.h"
 
 namespace pellucid {
@@ -21,7 +21,7 @@ namespace {
 
 using nlohmann::json;
 
-constexpr Module module{"pellucid_hdf5.so", "HDF5 files", "HDF5 (Debian: libhdf5-dev)"};
+constexpr Module module{"pellucid_hdf5.so", "reads HDF5 files", "HDF5 (Debian: libhdf5-dev)"};
 
 /// Names and messages may hold anything.
 std::string one_line(std::string text) {

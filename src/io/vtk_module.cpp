@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "vtk_module.h"
 
-#include "module.h"
+#include "pellucid/io/module.h"
 
 namespace pellucid {
 
 namespace {
 
-constexpr Module vtk{"pellucid_vtk.so", "VTK's and Exodus files", "VTK (Debian: libvtk9-dev)"};
+constexpr Module vtk{"pellucid_vtk.so", "reads VTK's and Exodus files",
+                     "VTK (Debian: libvtk9-dev)"};
 
 }  // namespace
 

@@ -8,6 +8,7 @@
 
 #include "layer_light.h"
 #include "message.h"
+#include "pellucid/scene/absorbing_blocks.h"
 #include "pellucid/scene/error.h"
 
 namespace pellucid {
@@ -282,21 +283,35 @@ bool absorbs_between(const Layer& layer, double lower, double upper) {
 
 }  // namespace
 
-std::array<Vec3<double>, 8> visible_corners(const Layer& layer, const ParallelFor& parallel) {
-  const Volume* const grid = grid_of(layer);
-  if (grid == nullptr || layer.projection || multivariate_of(layer) != nullptr ||
-      !layer.slices.empty()) {
-    return world_corners(layer);
+bool tells_by_blocks(const Layer& layer) noexcept {
+  return grid_of(layer) != nullptr && !layer.projection && multivariate_of(layer) == nullptr &&
+         layer.slices.empty();
+}
+
+AbsorbingBlocks absorbing_blocks(const Layer& layer, const ParallelFor& parallel) {
+  const BlockRecords& records = grid_of(layer)->block_records(parallel);
+  AbsorbingBlocks blocks{
+      {records.axis[0].cells(), records.axis[1].cells(), records.axis[2].cells()}, {}};
+  blocks.absorbs.reserve(static_cast<std::size_t>(records.count()));
+  for (int block = 0; block < records.count(); ++block) {
+    const BlockRange range = records.range(block);
+    const bool absorbs =
+        range.vacuum != BlockVacuum::all && absorbs_between(layer, range.min, range.max);
+    blocks.absorbs.push_back(absorbs ? 1 : 0);
   }
+  return blocks;
+}
+
+std::array<Vec3<double>, 8> visible_corners(const Layer& layer, const ParallelFor& parallel) {
+  if (!tells_by_blocks(layer)) return world_corners(layer);
+  const Volume* const grid = grid_of(layer);
   const BlockRecords& records = grid->block_records(parallel);
+  const AbsorbingBlocks blocks = absorbing_blocks(layer, parallel);
   std::array<int, 3> first{}, last{-1, -1, -1};
-  for (int k = 0; k < records.axis[2].cells(); ++k) {
-    for (int j = 0; j < records.axis[1].cells(); ++j) {
-      for (int i = 0; i < records.axis[0].cells(); ++i) {
-        const BlockRange range = records.range(records.index(i, j, k));
-        if (range.vacuum == BlockVacuum::all || !absorbs_between(layer, range.min, range.max)) {
-          continue;
-        }
+  for (int k = 0; k < blocks.count[2]; ++k) {
+    for (int j = 0; j < blocks.count[1]; ++j) {
+      for (int i = 0; i < blocks.count[0]; ++i) {
+        if (blocks.absorbs[static_cast<std::size_t>(records.index(i, j, k))] == 0) continue;
         const std::array<int, 3> block{i, j, k};
         const bool is_first = last[0] < 0;
         for (std::size_t a = 0; a < 3; ++a) {

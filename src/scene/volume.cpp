@@ -162,6 +162,18 @@ Volume Volume::moved(const Affine<double>& transform) const {
   return result;
 }
 
+Volume Volume::as_part_of(double minimum, double maximum) const {
+  if (statistics_.finite > 0 && (minimum > statistics_.minimum || maximum < statistics_.maximum)) {
+    VolumeCheck(description_)
+        .fail("values from " + number(statistics_.minimum) + " to " + number(statistics_.maximum) +
+              " are no part of data from " + number(minimum) + " to " + number(maximum));
+  }
+  Volume result = *this;
+  result.statistics_.minimum = minimum;
+  result.statistics_.maximum = maximum;
+  return result;
+}
+
 Histogram Volume::histogram(int bins) const {
   if (bins < 1) {
     throw Error("histogram: bins is " + std::to_string(bins) + ", but must be at least 1");

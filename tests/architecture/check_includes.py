@@ -18,7 +18,7 @@ import sys
 RANK = {
     "base": 0, "simd": 1, "math": 2, "geometry": 3, "field": 4, "transfer": 4, "error": 4,
     "segment": 5, "traverse": 6, "render": 7, "packet": 8, "scene": 9, "cuda": 10, "cpu": 11,
-    "io": 11, "reference": 12, "apps": 13, "plugins": 13,
+    "io": 11, "cluster": 12, "reference": 12, "apps": 13, "plugins": 13,
 }
 CORE = {name for name, rank in RANK.items() if rank <= RANK["packet"]}
 # Further pairs that the ranks would allow: the closed forms of segment/ are tested without any
@@ -57,6 +57,7 @@ OTHER_PROJECTS = [
     (re.compile(r"^hdf5\.h$"), "hdf5"),
     (re.compile(r"^netcdf\.h$"), "netcdf"),
     (re.compile(r"^openvdb/"), "openvdb"),
+    (re.compile(r"^mpi\.h$"), "MPI"),
     (re.compile(r"^bzlib\.h$"), "BZip2::BZip2"),
     (re.compile(r"^blosc\.h$"), "blosc"),
     (re.compile(r"^zstd\.h$"), "zstd"),

@@ -3,11 +3,13 @@
 
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <stop_token>
 #include <string>
 #include <string_view>
 
+#include "pellucid/cpu/ray_region.h"
 #include "pellucid/render/ray_result.h"
 #include "pellucid/scene/image.h"
 #include "pellucid/scene/scene.h"
@@ -65,6 +67,11 @@ struct RenderOptions {
   /// Method for packets through Gaussians where both are possible; none: the one expected to be
   /// faster.
   std::optional<GaussianMarch> gaussian_march;
+  /// Keeps to a part of the world; none: all of it. The image then has what the rays gather there,
+  /// to be composited with the other parts: nothing of the backdrop but the ends of rays, no error
+  /// of the functions' approximation, and the depth of half of the part's own opacity. render()
+  /// throws Error if a pixel has several rays, a layer is projected, or the method is not `exact`.
+  std::shared_ptr<const RayRegion> region{};
   /// Called occasionally with the finished fraction in [0, 1], by one thread at a time. If it
   /// returns false, the frame is cancelled and render() throws Cancelled.
   std::function<bool(double)> progress;

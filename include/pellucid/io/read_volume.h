@@ -9,6 +9,7 @@
 #include <string_view>
 #include <vector>
 
+#include "pellucid/scene/sub_volume.h"
 #include "pellucid/scene/volume.h"
 
 namespace pellucid {
@@ -34,10 +35,22 @@ struct ReadOptions {
   /// DICOM: series to read from a folder: its number as in list_dicom_series(), from 1, its UID, or
   /// a unique end of the UID.
   std::optional<std::string> series;
+  /// Called with the description of the whole; returns the part that is wanted, which is read in
+  /// its place. Uncompressed files are read there alone (VolumeOutline::reads_parts); of others the
+  /// rest is let go of. Empty: all of it.
+  std::function<IndexBox(const Volume::Description&)> part;
   /// Called with one line for each assumption about what the files do not say, and for each part
   /// that is left out.
   std::function<void(const std::string&)> note;
 };
+
+/// What a file's header says of a volume.
+struct VolumeOutline {
+  Volume::Description description;
+  bool reads_parts = false;  ///< whether a part is read without the rest (ReadOptions::part)
+};
+/// Reads the header that read_volume() reads, and no values. Throws Error as it does.
+VolumeOutline outline_volume(const std::filesystem::path& path, const ReadOptions& options = {});
 
 /// Reads a volume. The format follows from the extension, for VTK files from the first bytes:
 ///

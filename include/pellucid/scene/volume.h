@@ -90,6 +90,11 @@ class Volume {
   /// Error if the transform is singular or moves the box beyond the range of double.
   Volume moved(const Affine<double>& transform) const;
 
+  /// Returns the volume as a part of a larger one, whose values have this range: so do the
+  /// statistics, from which light and default looks take their scale. Shares the data and the block
+  /// records. Throws Error if a value of this part is outside.
+  Volume as_part_of(double minimum, double maximum) const;
+
   const Description& description() const noexcept { return description_; }
   const VolumeData& data() const noexcept { return data_; }
   const VolumeStatistics& statistics() const noexcept { return statistics_; }

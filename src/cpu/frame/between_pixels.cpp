@@ -129,6 +129,7 @@ double voxels_between_pixels(const CameraFrame<double>& camera, const Volume& vo
 std::unique_ptr<BetweenPixels> BetweenPixels::make(const Frame& frame, const ImageView& image) {
   const auto around = frame.tracer->surroundings();
   if (!around || frame.scene.backdrop || frame.tolerance < least_tolerance) return nullptr;
+  if (frame.region && !frame.region->corners) return nullptr;
   const BlockRecords& records = around->blocks.records;
   const double voxels = voxels_between_pixels(
       frame.camera, around->volume, records, farthest_depth(frame.camera, around->volume, records));
@@ -139,7 +140,8 @@ std::unique_ptr<BetweenPixels> BetweenPixels::make(const Frame& frame, const Ima
     stride *= 2;
   }
   if (stride < 2) return nullptr;
-  ScreenMask mask(frame.camera, around->volume, around->blocks, stride);
+  ScreenMask mask(frame.camera, around->volume, around->blocks, stride,
+                  frame.region ? &*frame.region->corners : nullptr);
   if (mask.clear_share() < least_clear_share) return nullptr;
   return std::unique_ptr<BetweenPixels>(
       new BetweenPixels(frame, image, stride, voxels, std::move(mask)));
@@ -174,7 +176,8 @@ void BetweenPixels::finish_level(int stride, int threads) {
   cubic_errors_.emplace(image_, frame_.scene.size, stride, threads);
   if (stride < stride_) {
     const auto around = frame_.tracer->surroundings();
-    mask_ = ScreenMask(frame_.camera, around->volume, around->blocks, stride);
+    mask_ = ScreenMask(frame_.camera, around->volume, around->blocks, stride,
+                       frame_.region ? &*frame_.region->corners : nullptr);
   }
   const int next = stride / 2, apart = apart_of_tried * stride;
   int tried = 0, found = 0;

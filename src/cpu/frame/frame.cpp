@@ -2,6 +2,7 @@
 #include "frame.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <utility>
 #include <vector>
@@ -45,14 +46,46 @@ double negligible_extinction(const std::vector<const Layer*>& layers, const RayT
           std::max(wanted.largest_color, 1.0) * std::max(static_cast<double>(layers.size()), 1.0));
 }
 
+/// The pixels that may see a box, given by its corners.
+PixelBox pixels_of(const CameraFrame<double>& camera, const std::array<Vec3<double>, 8>& corners) {
+  const PixelBox all{0, camera.width, 0, camera.height};
+  const double right = dot(camera.right, camera.right), up = dot(camera.up, camera.up);
+  double left = camera.width, last_column = 0, top = camera.height, last_row = 0, farthest = 0;
+  for (const Vec3<double>& corner : corners) {
+    farthest = std::max(farthest, length(corner - camera.position));
+  }
+  for (const Vec3<double>& corner : corners) {
+    const Vec3<double> to = corner - camera.position;
+    const double depth = camera.perspective ? dot(to, camera.forward) : 1;
+    // From inside, or nearly so, all pixels may.
+    if (!(depth > 1e-3 * (camera.perspective ? farthest : 1))) return all;
+    const double x = (dot(to, camera.right) / (right * depth) + 1) * 0.5 * camera.width;
+    const double y = (1 - dot(to, camera.up) / (up * depth)) * 0.5 * camera.height;
+    left = std::min(left, x);
+    last_column = std::max(last_column, x);
+    top = std::min(top, y);
+    last_row = std::max(last_row, y);
+  }
+  // A pixel more on each side: rays go through their centers.
+  const auto before = [](double at) { return static_cast<int>(std::max(std::floor(at) - 1, 0.0)); };
+  const auto behind = [](double at, int count) {
+    return static_cast<int>(std::clamp(std::ceil(at) + 1, 0.0, 1.0 * count));
+  };
+  return {before(left), behind(last_column, camera.width), before(top),
+          behind(last_row, camera.height)};
+}
+
 }  // namespace
 
 Frame::Frame(const Scene& described, const RenderOptions& options, int threads, LayerSetups& kept)
     : scene(described),
+      region(options.region),
       camera(make_camera_frame(described.camera, described.size)),
       tolerance(0),
-      reserved(approximation_error(described)),
+      reserved(options.region ? 0 : approximation_error(described)),
       largest_color(pellucid::largest_color(described)) {
+  seen = {0, camera.width, 0, camera.height};
+  if (region && region->corners) seen = pixels_of(camera, *region->corners);
   const double behind = brightest_behind(scene);
   if (scene.backdrop) largest_color = std::max(largest_color, behind);
   const std::vector<const Layer*> layers = visible_layers(scene, false);

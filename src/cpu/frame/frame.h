@@ -12,6 +12,15 @@ namespace pellucid {
 
 class ProjectedTracer;
 
+/// Pixels first … end - 1 along each side.
+struct PixelBox {
+  int first_column = 0, end_column = 0, first_row = 0, end_row = 0;
+
+  bool contains(int column, int row) const noexcept {
+    return column >= first_column && column < end_column && row >= first_row && row < end_row;
+  }
+};
+
 /// What every pixel of the frame shares.
 struct Frame {
   /// `scene` must outlive the frame. Set-ups of layers come from `kept`, and those that are missing
@@ -19,7 +28,9 @@ struct Frame {
   Frame(const Scene& scene, const RenderOptions& options, int threads, LayerSetups& kept);
 
   const Scene& scene;
+  std::shared_ptr<const RayRegion> region;  ///< null: everything
   CameraFrame<double> camera;
+  PixelBox seen;         ///< pixels outside of it have nothing of the region
   double tolerance;      ///< what rays may be off by
   double reserved;       ///< of the tolerance: what the transfer function is off by
   double largest_color;  ///< of the visible layers' functions and the backdrop

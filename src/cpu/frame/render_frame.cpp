@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "render_frame.h"
 
+#include <algorithm>
 #include <chrono>
 #include <memory>
 #include <mutex>
@@ -20,11 +21,23 @@
 namespace pellucid {
 namespace {
 
+/// A part of a pixel is composited ray by ray, and a projection is no composite.
+void check_region(const Scene& scene) {
+  const bool projects = std::ranges::any_of(
+      scene.layers, [](const Layer& layer) { return layer.visible && layer.projection; });
+  if (projects || scene.samples != 1 || scene.integration.method != Method::exact) {
+    throw Error(
+        "region: needs the method exact, one sample per pixel, and no projected layer; leave the "
+        "region out");
+  }
+}
+
 void check(const Scene& scene, const RenderOptions& options) {
   check_data(scene);
   check_integration(scene);
   check_method(scene);
   if (options.values) check_values(scene);
+  if (options.region) check_region(scene);
   if (options.threads < 0) throw Error("threads: must not be negative; 0 takes one per core");
   if (options.preview < 0 || options.preview > largest_preview) {
     throw Error("preview: " + std::to_string(options.preview) + " levels, but must be from 0 to " +

@@ -64,9 +64,8 @@ void put_over(const Image& backdrop, std::size_t index, RayResult& pixel) {
 /// Traces the rays; so few at once that the threads can stop soon. `values`, unless null, receives
 /// what the projected layer has along each.
 std::vector<RayResult> trace(const Frame& frame, const std::vector<RayPart>& rays,
-                             double share_of_rays, const TileTask& task,
+                             const TraceOptions& options, const TileTask& task,
                              std::vector<double>* values) {
-  const TraceOptions options{1, share_of_rays, task.stop};
   std::vector<RayResult> results;
   for (std::size_t first = 0; first < rays.size() && !task.stop.stop_requested();) {
     const std::size_t left = rays.size() - first;
@@ -83,6 +82,45 @@ std::vector<RayResult> trace(const Frame& frame, const std::vector<RayPart>& ray
     if (values != nullptr) values->insert(values->end(), own.begin(), own.end());
     task.speed->tell(count, std::chrono::steady_clock::now() - start);
     first += count;
+  }
+  return results;
+}
+
+/// Of a ray that passes a region by, and so do those beside it.
+RayResult nothing_of_region() {
+  RayResult nothing = missed_ray_result();
+  nothing.neighbor_deviation = 0;
+  nothing.longest_step = std::numeric_limits<float>::infinity();
+  return nothing;
+}
+
+/// Traces the parts of rays that lie in a region. Those that may be off by the same go together.
+std::vector<RayResult> trace_region(const Frame& frame, const std::vector<RayPart>& rays,
+                                    double share_of_rays, const TileTask& task) {
+  struct Group {
+    double allowance;
+    std::vector<RayPart> rays{};
+    std::vector<std::size_t> of{};
+  };
+  const RayRegion& region = *frame.region;
+  std::vector<Group> groups;
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    const Interval<double> own = region.range(rays[i].ray);
+    const Interval<double> range{std::max(own.begin, rays[i].range.begin),
+                                 std::min(own.end, rays[i].range.end)};
+    if (!(range.begin < range.end)) continue;
+    double allowance = region.allowance ? region.allowance(rays[i].ray) : 1;
+    if (task.between != nullptr) allowance = std::min(allowance, 1.0);
+    auto group = std::ranges::find(groups, allowance, &Group::allowance);
+    if (group == groups.end()) group = groups.insert(group, {allowance});
+    group->rays.push_back({rays[i].ray, range});
+    group->of.push_back(i);
+  }
+  std::vector<RayResult> results(rays.size(), nothing_of_region());
+  for (const Group& group : groups) {
+    const std::vector<RayResult> found =
+        trace(frame, group.rays, {group.allowance, share_of_rays, task.stop}, task, nullptr);
+    for (std::size_t i = 0; i < found.size(); ++i) results[group.of[i]] = found[i];
   }
   return results;
 }
@@ -104,6 +142,13 @@ std::size_t render_tile(const Frame& frame, const Tile& tile, const TileTask& ta
                   [&](const Place& place) { return between->is_done(place.column, place.row); });
   }
   const std::size_t not_final_before = places.size();
+  if (frame.region) {
+    std::erase_if(places, [&](const Place& place) {
+      if (frame.seen.contains(place.column, place.row)) return false;
+      finish(place, nothing_of_region());
+      return true;
+    });
+  }
   if (between != nullptr && level < between->stride()) {
     std::erase_if(places, [&](const Place& place) {
       RayResult result;
@@ -126,9 +171,11 @@ std::size_t render_tile(const Frame& frame, const Tile& tile, const TileTask& ta
     }
   }
   std::vector<double> values;  // of pixels with one ray
+  const double share_of_rays = between != nullptr ? between->share_of_rays(level) : 1;
   const std::vector<RayResult> results =
-      trace(frame, rays, between != nullptr ? between->share_of_rays(level) : 1, task,
-            image.values != nullptr ? &values : nullptr);
+      frame.region ? trace_region(frame, rays, share_of_rays, task)
+                   : trace(frame, rays, {1, share_of_rays, task.stop}, task,
+                           image.values != nullptr ? &values : nullptr);
   if (task.stop.stop_requested()) return 0;
   for (std::size_t i = 0; i < values.size(); ++i) {
     image.values[image.index(places[i].column, places[i].row)] = static_cast<float>(values[i]);
@@ -137,7 +184,7 @@ std::size_t render_tile(const Frame& frame, const Tile& tile, const TileTask& ta
   const RayResult* of_pixel = results.data();
   for (const Place& place : places) {
     RayResult pixel = mean_of(of_pixel, rays_of_pixel);
-    if (frame.scene.backdrop) {
+    if (frame.scene.backdrop && !frame.region) {
       put_over(*frame.scene.backdrop, image.index(place.column, place.row), pixel);
     }
     finish(place, pixel);

@@ -59,13 +59,15 @@ double farthest_depth(const CameraFrame<double>& camera, const Volume& volume,
 }
 
 ScreenMask::ScreenMask(const CameraFrame<double>& camera, const Volume& volume,
-                       const ClassifiedBlocks& blocks, int square)
+                       const ClassifiedBlocks& blocks, int square,
+                       const std::array<Vec3<double>, 8>* box)
     : square_(square),
       log2_of_square_(std::countr_zero(static_cast<unsigned>(square))),
       columns_((camera.width + square - 1) / square),
       rows_((camera.height + square - 1) / square),
       marked_(static_cast<std::size_t>(columns_) * static_cast<std::size_t>(rows_), 0) {
-  const std::array<Vec3<double>, 8> corner = corners_of(volume, blocks.records);
+  const std::array<Vec3<double>, 8> corner =
+      box != nullptr ? *box : corners_of(volume, blocks.records);
   const double farthest = farthest_depth(camera, volume, blocks.records);
   for (const Vec3<double>& c : corner) {
     // From inside, or nearly so, there is no saying what is beside what.

@@ -24,9 +24,11 @@ double farthest_depth(const CameraFrame<double>& camera, const Volume& volume,
 /// or a step, as CubicErrors hold for.
 class ScreenMask {
  public:
-  /// `square`: pixels, a power of two.
+  /// `square`: pixels, a power of two. `box`: the corners of the only part of the volume that is
+  /// shown, a box as well; null: all of it is.
   ScreenMask(const CameraFrame<double>& camera, const Volume& volume,
-             const ClassifiedBlocks& blocks, int square);
+             const ClassifiedBlocks& blocks, int square,
+             const std::array<Vec3<double>, 8>* box = nullptr);
 
   bool marked(int column, int row) const noexcept {
     return marked_[index(column >> log2_of_square_, row >> log2_of_square_)] != 0;

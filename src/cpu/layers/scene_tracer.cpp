@@ -66,6 +66,16 @@ class SceneTracer : public RayTracer {
   }
   bool keeps_to_ranges() const override { return true; }
 
+  std::vector<double> find_depths(const std::vector<RayPart>& parts,
+                                  const std::vector<double>& depths) const override {
+    std::optional<GeneralPath> general;
+    std::vector<double> positions;
+    for (std::size_t i = 0; i < parts.size(); ++i) {
+      positions.push_back(made(general).find_depth(parts[i], depths[i]));
+    }
+    return positions;
+  }
+
   std::vector<RayResult> trace(const std::vector<RayPart>& parts,
                                const TraceOptions& options) const override {
     std::optional<GeneralPath> general;

@@ -5,21 +5,11 @@
 #include <memory>
 #include <vector>
 
+#include "pellucid/cpu/projected_rays.h"
 #include "pellucid/geometry/ray.h"
 #include "pellucid/scene/layer.h"
 
 namespace pellucid {
-
-/// The value of a projected layer along one ray.
-struct RayValue {
-  /// NaN where the ray meets no data; of a sum 0.
-  double value = std::numeric_limits<double>::quiet_NaN();
-  double lower = 0, upper = 0;  ///< proved bounds on the exact value
-  bool has_data = false;
-  /// Whether rounding decides if the ray meets data, or the data have two values: nothing is known.
-  bool is_unknown = false;
-  long cells = 0;  ///< visited
-};
 
 /// What one call keeps from ray to ray. Used by one thread.
 struct ProjectionWorkspace {

@@ -8,22 +8,6 @@
 #include "layers/clip_intervals.h"
 
 namespace pellucid {
-namespace {
-
-/// Puts `over` in front of `behind`. An error of the opacity costs as much of what is seen behind.
-ShownValue composite(const ShownValue& over, const ShownValue& behind) {
-  const double transparency = 1 - over.opacity;
-  const double left = std::min(transparency + over.opacity_error, 1.0);
-  const double seen = std::max({behind.radiance.r, behind.radiance.g, behind.radiance.b});
-  ShownValue both;
-  both.radiance = over.radiance + transparency * behind.radiance;
-  both.opacity = over.opacity + transparency * behind.opacity;
-  both.color_error = over.color_error + over.opacity_error * seen + left * behind.color_error;
-  both.opacity_error = over.opacity_error + left * behind.opacity_error;
-  return both;
-}
-
-}  // namespace
 
 ProjectedTracer::ProjectedTracer(std::vector<Layer> layers, std::unique_ptr<const RayTracer> others,
                                  const std::vector<Clip>& clips, double largest_color,
@@ -76,12 +60,7 @@ std::vector<RayResult> ProjectedTracer::trace(const std::vector<RayPart>& parts,
   }
   for (std::size_t i = 0; i < parts.size(); ++i) {
     RayResult& result = results[i];
-    const ShownValue& shown = fronts[i].shown;
-    const double transparency = 1 - shown.opacity;
-    result.radiance = shown.radiance + transparency * result.radiance;
-    result.opacity = shown.opacity + transparency * result.opacity;
-    result.error = shown.color_error + shown.opacity_error * largest_color_ +
-                   std::min(transparency + shown.opacity_error, 1.0) * result.error;
+    put_over(fronts[i].shown, largest_color_, result);
     result.cells += fronts[i].cells;
     result.evaluations += fronts[i].cells;
     ++result.spans.closed;

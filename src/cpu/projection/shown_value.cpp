@@ -63,4 +63,24 @@ ShownValue ValueColors::show(const RayValue& value) const {
   return shown;
 }
 
+ShownValue composite(const ShownValue& over, const ShownValue& behind) {
+  const double transparency = 1 - over.opacity;
+  const double left = std::min(transparency + over.opacity_error, 1.0);
+  const double seen = std::max({behind.radiance.r, behind.radiance.g, behind.radiance.b});
+  ShownValue both;
+  both.radiance = over.radiance + transparency * behind.radiance;
+  both.opacity = over.opacity + transparency * behind.opacity;
+  both.color_error = over.color_error + over.opacity_error * seen + left * behind.color_error;
+  both.opacity_error = over.opacity_error + left * behind.opacity_error;
+  return both;
+}
+
+void put_over(const ShownValue& shown, double largest_color, RayResult& ray) {
+  const double transparency = 1 - shown.opacity;
+  ray.radiance = shown.radiance + transparency * ray.radiance;
+  ray.opacity = shown.opacity + transparency * ray.opacity;
+  ray.error = shown.color_error + shown.opacity_error * largest_color +
+              std::min(transparency + shown.opacity_error, 1.0) * ray.error;
+}
+
 }  // namespace pellucid

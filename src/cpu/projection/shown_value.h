@@ -3,6 +3,7 @@
 
 #include "layer_projector.h"
 #include "pellucid/math/rgb.h"
+#include "pellucid/render/ray_result.h"
 #include "pellucid/scene/transfer_function.h"
 
 namespace pellucid {
@@ -36,5 +37,11 @@ class ValueColors {
   PiecewiseLinear<double> table_;
   double largest_extinction_ = 0, largest_color_ = 0;
 };
+
+/// Puts `over` in front of `behind`. An error of the opacity costs as much of what is seen behind.
+ShownValue composite(const ShownValue& over, const ShownValue& behind);
+/// Puts a value over what a ray gathers of layers that are not projected. `largest_color`: of all
+/// layers and of the background, at least 1.
+void put_over(const ShownValue& shown, double largest_color, RayResult& ray);
 
 }  // namespace pellucid

@@ -76,6 +76,7 @@ class ValueGatherer {
     result.is_unknown = has_doubtful_ && !has_data_;
     if (!has_data_) {
       if (projection_ == LayerProjection::sum) result.value = 0;
+      if (result.is_unknown) result.lower = result.upper = sign_ * highest_;
       return result;
     }
     if (is_extreme()) {
@@ -92,6 +93,8 @@ class ValueGatherer {
     const double off_sum = errors.data * length_ + errors.position * size_ + error_ +
                            rounding * magnitude_ + std::abs(sum_) * rounding;
     if (projection_ == LayerProjection::sum) {
+      result.length = length_;
+      result.length_error = errors.position + rounding * length_;
       result.value = sum_;
       bound(sum_ - off_sum, sum_ + off_sum, -HUGE_VAL, HUGE_VAL, result);
       return result;

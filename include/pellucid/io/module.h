@@ -10,7 +10,7 @@ namespace pellucid {
 /// that it is linked to would otherwise multiply the time that every start of a program takes.
 struct Module {
   const char* file;   ///< "pellucid_vtk.so"
-  const char* reads;  ///< "VTK's and Exodus files"
+  const char* does;   ///< "reads VTK's and Exodus files"
   const char* needs;  ///< the library that it is built with: "VTK (Debian: libvtk9-dev)"
 };
 

@@ -1,0 +1,179 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+#include <sys/resource.h>
+
+#include <cstdio>
+#include <exception>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "parse.h"
+#include "pellucid/cluster/communicator.h"
+#include "pellucid/cluster/load.h"
+#include "pellucid/cluster/render.h"
+#include "pellucid/cpu/threads.h"
+#include "progress.h"
+#include "render.h"
+#include "tolerance.h"
+
+namespace pellucid::cli {
+
+namespace {
+
+/// What one process does with all of the data.
+void refuse_arguments(const RenderArguments& arguments) {
+  const std::pair<const char*, bool> given[] = {
+      {"--reference", arguments.reference},
+      {"--print-tf", arguments.print_tf},
+      {"--save-tf", !arguments.save_tf.empty()},
+      {"--method", !arguments.method.empty() && arguments.method != "exact"}};
+  for (const auto& [argument, is_given] : given) {
+    if (!is_given) continue;
+    throw UsageError(fmt::format("{}: is not done by --ranks; drop one of the two", argument));
+  }
+  if (!arguments.renders()) throw UsageError("--ranks: nothing to render; give -o FILE.png");
+}
+
+/// The largest part of the memory that this process has had at any time, in MiB.
+double most_memory() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return static_cast<double>(usage.ru_maxrss) / 1024;
+}
+
+std::vector<double> gather(Communicator& ranks, double own) {
+  std::vector<double> numbers(static_cast<std::size_t>(ranks.size()), 0);
+  numbers[static_cast<std::size_t>(ranks.rank())] = own;
+  ranks.reduce_all(numbers, Communicator::Reduction::sum);
+  return numbers;
+}
+
+std::string ranks_json(Communicator& ranks, const RankReport& report) {
+  const std::vector<double> memory = gather(ranks, most_memory());
+  return fmt::format(R"({{"count": {}, "most_bricks_on_a_ray": {}, "render_seconds": [{}], )"
+                     R"("composite_seconds": [{}], "memory_mib": [{:.1f}]}})",
+                     ranks.size(), report.most_bricks, fmt::join(report.render_seconds, ", "),
+                     fmt::join(report.composite_seconds, ", "), fmt::join(memory, ", "));
+}
+
+/// The work of one rank, on which all agree.
+class RankRun {
+ public:
+  RankRun(RenderArguments arguments, Communicator& ranks)
+      : arguments_(std::move(arguments)), ranks_(ranks) {
+    // The first rank speaks for all.
+    if (ranks_.rank() != 0) arguments_.quiet = true;
+  }
+
+  void operator()() {
+    agreed_on_arguments([&] {
+      refuse_arguments(arguments_);
+      if (ranks_.rank() == 0) check_arguments(arguments_);
+    });
+    SceneRequest request;
+    agreed_on_arguments([&] {
+      request = request_scene(arguments_);
+      if (!request.prepared.relative_tolerance) return;
+      throw UsageError(
+          "--tolerance: a share of the picture's range is not found by --ranks; give " +
+          std::string("a number"));
+    });
+    const BrickBalance balance =
+        arguments_.balance == "data" ? BrickBalance::data : BrickBalance::work;
+    const ParallelFor parallel =
+        parallel_for(arguments_.threads > 0 ? arguments_.threads : default_thread_count());
+    BrickedScene bricks = load_bricks(ranks_, request.description, balance, parallel);
+    PreparedScene prepared;
+    agreed(ranks_, [&] {
+      prepared = complete_scene(arguments_, std::move(request), std::move(bricks.scene),
+                                bricks.meshes, [&](const Scene&) { return bricks.visible; });
+    });
+    RenderedPicture picture;
+    RankReport report;
+    picture.image = render_frame(bricks.tree, prepared, report);
+    picture.report = report.frame;
+    picture.ranks_json = ranks_json(ranks_, report);
+    picture.notes = std::move(bricks.notes);
+    picture.over = over_tolerance(picture.report, prepared.scene.integration);
+    over_ = picture.over.has_value();
+    std::optional<std::string> over;
+    agreed(ranks_, [&] {
+      if (ranks_.rank() != 0) return;
+      try {
+        write_picture(arguments_, prepared, "", picture);
+      } catch (const OverTolerance& error) {
+        over = error.what();
+      }
+    });
+    if (over) throw OverTolerance(*over);
+  }
+  bool is_over() const noexcept { return over_; }
+  /// Returns whether this rank found its arguments wrong.
+  bool is_wrong_use() const noexcept { return wrong_use_; }
+
+ private:
+  void agreed_on_arguments(const std::function<void()>& work) {
+    agreed(ranks_, [&] {
+      try {
+        work();
+      } catch (const UsageError&) {
+        wrong_use_ = true;
+        throw;
+      }
+    });
+  }
+  Image render_frame(const BrickTree& tree, const PreparedScene& prepared, RankReport& report) {
+    RenderOptions options = options_of(arguments_, prepared);
+    ProgressLine progress(!arguments_.quiet);
+    options.progress = [&](double share_done) {
+      progress.show(share_done);
+      return !InterruptGuard::interrupted();
+    };
+    return render(ranks_, tree, prepared.scene, options, &report);
+  }
+
+  RenderArguments arguments_;
+  Communicator& ranks_;
+  bool over_ = false, wrong_use_ = false;
+};
+
+}  // namespace
+
+int run_on_ranks(const RenderArguments& arguments) {
+  const std::unique_ptr<Communicator> ranks = is_under_mpi() ? mpi_communicator() : single_rank();
+  const InterruptGuard guard;
+  const bool speaks = ranks->rank() == 0;
+  int status = 0;
+  std::string message;
+  RankRun run(arguments, *ranks);
+  try {
+    run();
+    if (run.is_over()) status = 3;
+  } catch (const OverTolerance& error) {
+    status = 3;
+    message = error.what();
+  } catch (const AgreedError& error) {
+    status = run.is_wrong_use() ? 2 : 1;
+    message = error.what();
+  } catch (const Cancelled&) {
+    status = 130;
+    message = "interrupted; nothing more was written";
+  } catch (const std::exception& error) {
+    // The others do not know of it, and may wait for this rank.
+    std::fputs(fmt::format("pellucid: error: rank {}: {}\n", ranks->rank(), error.what()).c_str(),
+               stderr);
+    std::fflush(stderr);
+    ranks->abort(1);
+  }
+  if (speaks && !message.empty()) {
+    std::fputs(fmt::format("pellucid: error: {}\n", message).c_str(), stderr);
+    std::fflush(stderr);
+  }
+  // A launcher ends all ranks when one ends with a failure: not before the message is out.
+  static_cast<void>(ranks->gather_all(""));
+  return status;
+}
+
+}  // namespace pellucid::cli

@@ -1,0 +1,214 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pellucid/cluster/render.h"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <charconv>
+#include <chrono>
+#include <cmath>
+#include <string>
+
+#include "final_image.h"
+#include "frame_watch.h"
+#include "half_depths.h"
+#include "pellucid/base/version.h"
+#include "pellucid/cluster/sub_scene.h"
+#include "pellucid/scene/error.h"
+#include "rank_projections.h"
+#include "rank_work.h"
+
+namespace pellucid {
+namespace {
+
+class Stopwatch {
+ public:
+  double seconds() const {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+  }
+
+ private:
+  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+};
+
+std::string text(double number) {
+  std::array<char, 32> room;
+  return {room.data(), std::to_chars(room.data(), room.data() + room.size(), number).ptr};
+}
+
+/// Throws AgreedError unless all that makes a frame one is the same on all ranks.
+void check_frame(Communicator& ranks, const BrickTree& tree, const Scene& scene,
+                 const RenderOptions& options) {
+  const Camera& camera = scene.camera;
+  check_equal(ranks, "the size of the picture",
+              std::to_string(scene.size.width) + "x" + std::to_string(scene.size.height) + ", " +
+                  std::to_string(scene.samples) + " samples");
+  check_equal(ranks, "the tolerance", text(scene.integration.tolerance));
+  std::string view;
+  for (const Vec3<double>& v : {camera.position, camera.focal_point, camera.up}) {
+    for (int a = 0; a < 3; ++a) view += text(v[a]) + " ";
+  }
+  check_equal(ranks, "the camera",
+              view + text(camera.vertical_angle) + " " + text(camera.parallel_scale));
+  check_equal(ranks, "the number of layers and the largest color",
+              std::to_string(scene.layers.size()) + ", " + text(largest_color(scene)) +
+                  (options.depth ? ", with depth" : "") + (options.values ? ", with values" : ""));
+  // A checksum (FNV-1a) of all boxes.
+  std::uint64_t sum = 14695981039346656037u;
+  for (int brick = 0; brick < tree.count(); ++brick) {
+    for (const Vec3<double>& corner : tree.corners(brick)) {
+      for (int a = 0; a < 3; ++a) {
+        sum = (sum ^ std::bit_cast<std::uint64_t>(corner[a])) * 1099511628211u;
+      }
+    }
+  }
+  check_equal(ranks, "the bricks' checksum", std::to_string(sum));
+}
+
+/// The most bricks that rays of the frame meet, as every fourth tells; at least 1. What a ray may
+/// be off by does not rest on it (RayRegion::allowance).
+int most_bricks(const BrickTree& tree, const Scene& rays) {
+  constexpr int apart = 4;
+  const CameraFrame<double> camera = make_camera_frame(rays.camera, rays.size);
+  int most = 1;
+  for (int row = 0; row < rays.size.height && most < tree.count(); row += apart) {
+    for (int column = 0; column < rays.size.width; column += apart) {
+      most = std::max(most, tree.bricks_on(camera.ray(column, row)));
+    }
+  }
+  return most;
+}
+
+/// The counts of reports add up over the ranks; seconds are those of the slowest.
+void add_up(Communicator& ranks, RenderReport& report) {
+  RuleCounts& spans = report.spans;
+  std::uint64_t* const counts[] = {
+      &report.rays,        &report.cells,   &report.pixels_interpolated,
+      &report.evaluations, &spans.skipped,  &spans.constant,
+      &spans.strides,      &spans.lines,    &spans.closed,
+      &spans.panels,       &spans.in_double};
+  std::array<double, std::size(counts)> values;
+  for (std::size_t i = 0; i < values.size(); ++i) values[i] = static_cast<double>(*counts[i]);
+  ranks.reduce_all(values, Communicator::Reduction::sum);
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    *counts[i] = static_cast<std::uint64_t>(values[i]);
+  }
+  std::array<double, 2> seconds{report.seconds, report.setup_seconds};
+  ranks.reduce_all(seconds, Communicator::Reduction::maximum);
+  report.seconds = seconds[0];
+  report.setup_seconds = seconds[1];
+}
+
+std::vector<double> gather_numbers(Communicator& ranks, double own) {
+  std::vector<double> numbers(static_cast<std::size_t>(ranks.size()), 0);
+  numbers[static_cast<std::size_t>(ranks.rank())] = own;
+  ranks.reduce_all(numbers, Communicator::Reduction::sum);
+  return numbers;
+}
+
+/// The options of the own part of the frame.
+RenderOptions options_of_part(const BrickTree& tree, const RenderOptions& options, int most,
+                              int rank, FrameWatch& watch) {
+  RayRegion region = tree.region(rank);
+  region.allowance = [&tree, most](const Ray<double>& ray) {
+    return static_cast<double>(most) / std::max(tree.bricks_on(ray), 1);
+  };
+  if (!tree.is_on_grid()) region.corners.reset();
+  RenderOptions own = options;
+  own.region = std::make_shared<const RayRegion>(std::move(region));
+  own.error = true;
+  own.depth = false;
+  own.preview = 0;
+  own.tile = nullptr;
+  own.progress = [&](double fraction) { return watch.tell(fraction); };
+  return own;
+}
+
+}  // namespace
+
+Image render(Communicator& ranks, const BrickTree& tree, const Scene& own,
+             const RenderOptions& options, RankReport* report) {
+  const Stopwatch whole;
+  const int rank = ranks.rank();
+  check_equal(ranks, "the version", PELLUCID_VERSION_STRING);
+  agreed(ranks, [&] {
+    check_data(own);
+    check_integration(own);
+    if (options.values) check_values(own);
+    if (tree.count() != ranks.size()) {
+      throw Error("bricks: there are " + std::to_string(tree.count()) + " for " +
+                  std::to_string(ranks.size()) + " ranks; give one for each");
+    }
+  });
+  check_frame(ranks, tree, own, options);
+
+  RankReport told;
+  FrameWatch watch(ranks, options.progress);
+  Scene rays;
+  std::vector<RayPixel> pixels, own_pixels;
+  std::vector<ProjectedRays> values;  // of projected layers
+  RenderOptions part_options;
+  double render_seconds = 0;
+  const std::string outcome = outcome_of([&] {
+    const Stopwatch watch_of_part;
+    rays = scene_of_rays(own, 1);
+    told.most_bricks = most_bricks(tree, rays);
+    rays = scene_of_rays(own, told.most_bricks);
+    part_options = options_of_part(tree, options, told.most_bricks, rank, watch);
+    const std::size_t count =
+        static_cast<std::size_t>(rays.size.width) * static_cast<std::size_t>(rays.size.height);
+    const Scene all = rays;
+    std::erase_if(rays.layers, [](const Layer& layer) { return layer.projection.has_value(); });
+    pixels = rays.layers.empty() ? std::vector<RayPixel>(count)
+                                 : to_ray_pixels(pellucid::render(rays, part_options, &told.frame));
+    for (std::size_t i = 0; i < all.layers.size(); ++i) {
+      if (!all.layers[i].visible || !all.layers[i].projection) continue;
+      values.push_back(project_layer(all, i, part_options));
+    }
+    render_seconds = watch_of_part.seconds();
+  });
+  if (!is_done(outcome)) watch.stop_others();
+  throw_unless_done(ranks.gather_all(outcome, [&] { watch.wait(); }));
+  agreed(ranks, [&] {
+    if (watch.stopped()) throw Cancelled();
+  });
+
+  const Stopwatch compositing;
+  const std::vector<int> order = tree.front_to_back(make_camera_frame(rays.camera, rays.size));
+  const auto place = static_cast<int>(std::ranges::find(order, rank) - order.begin());
+  if (options.depth) own_pixels = pixels;
+  ranks.composite(pixels, place);
+  const double composite_seconds = compositing.seconds();
+  std::vector<float> depth;
+  if (options.depth && rays.layers.empty()) depth.assign(pixels.size(), INFINITY);
+  if (options.depth && !rays.layers.empty())
+    depth = half_depths(ranks, place, rays, part_options, pixels, own_pixels);
+  add_up(ranks, told.frame);
+  told.render_seconds = gather_numbers(ranks, render_seconds);
+  told.composite_seconds = gather_numbers(ranks, composite_seconds);
+  for (ProjectedRays& of_layer : values) join(ranks, of_layer);
+  Image image;
+  agreed(ranks, [&] {
+    if (rank != 0) return;
+    if (!values.empty()) put_projections_over(own, values, pixels);
+    image = final_image(own, options, pixels, depth, told.frame);
+    if (!options.values) return;
+    for (std::size_t i = 0; i < pixels.size(); ++i) {
+      image.values.push_back(static_cast<float>(values.back().at(i).value));
+    }
+  });
+  told.frame.seconds = whole.seconds();
+  if (report != nullptr) *report = std::move(told);
+  return image;
+}
+
+Image render(Communicator& ranks, const Scene& whole, const RenderOptions& options,
+             RankReport* report) {
+  agreed(ranks, [&] { check_data(whole); });
+  const SceneFrame frame = frame_of(whole);
+  const BrickTree tree =
+      BrickTree::split(frame.world_from_frame, frame.bounds, ranks.size(), {}, frame.on_grid);
+  return render(ranks, tree, whole, options, report);
+}
+
+}  // namespace pellucid

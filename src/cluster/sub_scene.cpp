@@ -1,0 +1,201 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pellucid/cluster/sub_scene.h"
+
+#include <algorithm>
+#include <limits>
+#include <utility>
+
+#include "pellucid/scene/error.h"
+
+namespace pellucid {
+namespace {
+
+/// The map that does `first`, then `then`.
+Affine<double> composed(const Affine<double>& then, const Affine<double>& first) {
+  Affine<double> both;
+  for (int a = 0; a < 3; ++a) both.matrix.column[a] = then.vector(first.matrix.column[a]);
+  both.translation = then.point(first.translation);
+  return both;
+}
+
+using VolumeHandle = std::shared_ptr<const Volume>;
+/// Makes another volume of one of a layer.
+using Change = std::function<VolumeHandle(const Volume&)>;
+
+std::shared_ptr<const LabelVolume> changed(const LabelVolume& labels, const Change& change) {
+  return std::make_shared<const LabelVolume>(change(labels.volume()));
+}
+
+/// Returns the content with every volume changed. Meshes are shared.
+LayerContent changed(const LayerContent& content, const Change& change) {
+  if (const auto* volume = std::get_if<VolumeContent>(&content)) {
+    VolumeContent result = *volume;
+    result.volume = change(*volume->volume);
+    if (volume->mask) {
+      result.mask = std::make_shared<const LabelMask>(changed(volume->mask->labels(), change),
+                                                      volume->mask->choices());
+    }
+    return result;
+  }
+  if (const auto* channels = std::get_if<ChannelsContent>(&content)) {
+    std::vector<Channel> list(channels->channels->begin(), channels->channels->end());
+    for (Channel& channel : list) channel.volume = change(*channel.volume);
+    ChannelsContent result = *channels;
+    result.channels = std::make_shared<const Channels>(std::move(list));
+    return result;
+  }
+  if (const auto* labels = std::get_if<LabelContent>(&content)) {
+    LabelContent result = *labels;
+    result.labels = changed(*labels->labels, change);
+    return result;
+  }
+  return content;
+}
+
+/// The size of a voxel of a grid's layer in its place.
+double placed_voxel(const Layer& layer) {
+  Layer placed;
+  const Volume moved = grid_of(layer)->moved(layer.transform);
+  placed.content = VolumeContent{std::make_shared<const Volume>(moved), nullptr};
+  return voxel_of(placed);
+}
+
+/// Gives light and gradient opacity the voxel of the whole, if that of the part has another size,
+/// as on rectilinear grids.
+void keep_voxel(double whole, Layer& layer) {
+  const double own = placed_voxel(layer);
+  if (!(whole > 0) || whole == own) return;
+  if (layer.shading) layer.shading->flatness *= own / whole;
+  const auto& opacity = layer.gradient_opacity;
+  if (!opacity || opacity->unit() != GradientOpacity::Unit::voxel) return;
+  std::vector<GradientOpacity::Point> points = opacity->points();
+  for (GradientOpacity::Point& point : points) point.gradient /= whole;
+  layer.gradient_opacity = std::make_shared<const GradientOpacity>(
+      std::move(points), GradientOpacity::Unit::world, opacity->channel());
+}
+
+/// Calls visit(volume) for every volume of the layer whose range matters.
+template <class Visit>
+void visit_volumes(const Layer& layer, const Visit& visit) {
+  static_cast<void>(changed(layer.content, [&](const Volume& volume) {
+    visit(volume);
+    return std::make_shared<const Volume>(volume);
+  }));
+}
+
+}  // namespace
+
+DataExtent extent_of(const Layer& layer) {
+  if (const Volume* const volume = grid_of(layer)) {
+    const auto& coordinates = volume->description().coordinates;
+    return {composed(layer.transform, volume->world_from_grid()),
+            {volume->grid_lower(), volume->grid_upper()},
+            std::ranges::all_of(coordinates, [](const auto& c) { return c.empty(); })};
+  }
+  // A box along the axes of the mesh's own world, moved.
+  const std::array<Vec3<double>, 8> corners = world_corners(layer);
+  DataExtent extent{{}, {corners[0], corners[0]}, false};
+  for (const Vec3<double>& corner : corners) {
+    for (int a = 0; a < 3; ++a) {
+      extent.box.lower[a] = std::min(extent.box.lower[a], corner[a]);
+      extent.box.upper[a] = std::max(extent.box.upper[a], corner[a]);
+    }
+  }
+  return extent;
+}
+
+DataExtent extent_of(const Volume::Description& description, const Affine<double>& transform) {
+  DataExtent extent{composed(transform, world_from_grid(description)), {}, true};
+  const double half = description.centering == Centering::cell ? 0.5 : 0;
+  for (int a = 0; a < 3; ++a) {
+    const auto axis = static_cast<std::size_t>(a);
+    const std::vector<double>& coordinates = description.coordinates[axis];
+    extent.box.lower[a] = coordinates.empty() ? -half : coordinates.front();
+    extent.box.upper[a] =
+        coordinates.empty() ? description.dimensions[axis] - 1 + half : coordinates.back();
+    extent.is_uniform_grid = extent.is_uniform_grid && coordinates.empty();
+  }
+  return extent;
+}
+
+SceneFrame frame_of(const std::vector<DataExtent>& extents) {
+  if (extents.empty()) throw Error("bricks: the scene has no data");
+  if (extents.size() == 1) {
+    return {extents[0].world_from_data, extents[0].box, extents[0].is_uniform_grid};
+  }
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  SceneFrame frame{{}, {{infinity, infinity, infinity}, {-infinity, -infinity, -infinity}}, false};
+  for (const DataExtent& extent : extents) {
+    for (unsigned n = 0; n < 8; ++n) {
+      const Box<double>& box = extent.box;
+      const Vec3<double> corner = extent.world_from_data.point(
+          {(n & 1) != 0 ? box.upper.x : box.lower.x, (n & 2) != 0 ? box.upper.y : box.lower.y,
+           (n & 4) != 0 ? box.upper.z : box.lower.z});
+      for (int a = 0; a < 3; ++a) {
+        frame.bounds.lower[a] = std::min(frame.bounds.lower[a], corner[a]);
+        frame.bounds.upper[a] = std::max(frame.bounds.upper[a], corner[a]);
+      }
+    }
+  }
+  return frame;
+}
+
+SceneFrame frame_of(const Scene& scene) {
+  const bool any = std::ranges::any_of(scene.layers, &Layer::visible);
+  std::vector<DataExtent> extents;
+  for (const Layer& layer : scene.layers) {
+    if (layer.visible || !any) extents.push_back(extent_of(layer));
+  }
+  return frame_of(extents);
+}
+
+IndexBox indices_of_brick(const Volume::Description& description, const Affine<double>& transform,
+                          const BrickTree& tree, int brick) {
+  std::array<Vec3<double>, 8> corners = tree.corners(brick);
+  const Affine<double> data_from_world = inverse(transform);
+  for (Vec3<double>& corner : corners) corner = data_from_world.point(corner);
+  return indices_around(description, corners, gradient_layers);
+}
+
+Layer sub_layer(const Layer& whole, const BrickTree& tree, int brick) {
+  Layer part = whole;
+  part.content = changed(whole.content, [&](const Volume& volume) {
+    return std::make_shared<const Volume>(
+        sub_volume(volume, indices_of_brick(volume.description(), whole.transform, tree, brick)));
+  });
+  if (grid_of(whole) != nullptr) keep_voxel(placed_voxel(whole), part);
+  return part;
+}
+
+Scene sub_scene(const Scene& whole, const BrickTree& tree, int brick) {
+  Scene part = whole;
+  for (Layer& layer : part.layers) layer = sub_layer(layer, tree, brick);
+  return part;
+}
+
+void agree_on_ranges(Communicator& ranks, const std::vector<double>& whole_voxels, Scene& own) {
+  std::vector<double> least, most;
+  for (const Layer& layer : own.layers) {
+    visit_volumes(layer, [&](const Volume& volume) {
+      const VolumeStatistics& s = volume.statistics();
+      constexpr double infinity = std::numeric_limits<double>::infinity();
+      least.push_back(s.finite > 0 ? s.minimum : infinity);
+      most.push_back(s.finite > 0 ? s.maximum : -infinity);
+    });
+  }
+  ranks.reduce_all(least, Communicator::Reduction::minimum);
+  ranks.reduce_all(most, Communicator::Reduction::maximum);
+  std::size_t next = 0;
+  for (std::size_t i = 0; i < own.layers.size(); ++i) {
+    Layer& layer = own.layers[i];
+    layer.content = changed(layer.content, [&](const Volume& volume) {
+      const bool any = least[next] <= most[next];
+      const double minimum = any ? least[next] : 0, maximum = any ? most[next] : 0;
+      ++next;
+      return std::make_shared<const Volume>(volume.as_part_of(minimum, maximum));
+    });
+    if (i < whole_voxels.size() && grid_of(layer) != nullptr) keep_voxel(whole_voxels[i], layer);
+  }
+}
+
+}  // namespace pellucid

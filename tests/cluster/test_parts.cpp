@@ -1,0 +1,146 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numeric>
+#include <random>
+
+#include "pellucid/cluster/ray_pixel.h"
+#include "pellucid/cluster/sub_scene.h"
+#include "pellucid/scene/absorbing_blocks.h"
+#include "pellucid/scene/error.h"
+#include "survey.h"
+#include "tests/scenes/makers.h"
+
+namespace pellucid {
+namespace {
+
+using scenes::make_volume;
+using scenes::transfer;
+
+RayPixel any_pixel(std::mt19937& random) {
+  std::uniform_real_distribution<float> part(0, 1);
+  const float opacity = part(random);
+  return {opacity * part(random), opacity * part(random),
+          opacity * part(random), opacity,
+          1e-3f * part(random),   0};
+}
+
+TEST(RayPixel, OverIsAssociativeWithinItsError) {
+  std::mt19937 random(1);
+  for (int n = 0; n < 10000; ++n) {
+    const RayPixel a = any_pixel(random), b = any_pixel(random), c = any_pixel(random);
+    const RayPixel left = over(over(a, b), c), right = over(a, over(b, c));
+    EXPECT_NEAR(left.red, right.red, 2e-7);
+    EXPECT_NEAR(left.opacity, right.opacity, 2e-7);
+    EXPECT_NEAR(left.error, right.error, 1e-6);
+    // e = e1 + (1 - a1) e2, and never less.
+    const double exact = double{a.error} + (1 - double{a.opacity}) * double{b.error};
+    EXPECT_GE(double{over(a, b).error}, exact);
+    EXPECT_LT(double{over(a, b).error}, exact + 3e-7);
+  }
+}
+
+TEST(RayPixel, WhatIsUnknownBehindOpaqueIsKnown) {
+  const RayPixel opaque{1, 1, 1, 1, 0, 0};
+  RayPixel unknown;
+  unknown.error = std::numeric_limits<float>::infinity();
+  EXPECT_TRUE(std::isfinite(over(opaque, unknown).error));
+  EXPECT_TRUE(std::isinf(over(RayPixel{}, unknown).error));
+}
+
+Volume::Description description(std::array<int, 3> dimensions, Centering centering) {
+  Volume::Description result;
+  result.dimensions = dimensions;
+  result.centering = centering;
+  result.placement.origin = {3, 4, 5};
+  result.placement.spacing = {1, 2, 0.5};
+  result.placement.direction.column[0] = {0.8, 0.6, 0};
+  result.placement.direction.column[1] = {-0.6, 0.8, 0};
+  return result;
+}
+
+std::shared_ptr<const Volume> some_volume(const Volume::Description& of) {
+  return make_volume<std::int16_t>(of, [](int i, int j, int k) {
+    return std::lround(1000 * std::sin(0.3 * i) * std::cos(0.2 * j + 0.1 * k));
+  });
+}
+
+TEST(SubVolume, KeepsItsPlaceAndItsValues) {
+  for (const Centering centering : {Centering::point, Centering::cell}) {
+    const auto whole = some_volume(description({20, 17, 13}, centering));
+    const IndexBox box{{3, 0, 5}, {7, 17, 4}};
+    const Volume part = sub_volume(*whole, box);
+    EXPECT_EQ(part.statistics().minimum, whole->statistics().minimum);
+    const auto& all = std::get<DataArray<std::int16_t>>(whole->data());
+    const auto& some = std::get<DataArray<std::int16_t>>(part.data());
+    for (int k = 0; k < 4; ++k) {
+      for (int j = 0; j < 17; ++j) {
+        for (int i = 0; i < 7; ++i) {
+          const Vec3<double> a = part.world_from_grid().point({1.0 * i, 1.0 * j, 1.0 * k});
+          const Vec3<double> b = whole->world_from_grid().point({3.0 + i, 1.0 * j, 5.0 + k});
+          EXPECT_LT(length(a - b), 1e-12);
+          EXPECT_EQ(some[static_cast<std::size_t>(i + 7 * (j + 17 * k))],
+                    all[static_cast<std::size_t>(i + 3 + 20 * (j + 17 * (k + 5)))]);
+        }
+      }
+    }
+  }
+}
+
+TEST(SubVolume, RefusesWhatIsOutside) {
+  const auto whole = some_volume(description({8, 8, 8}, Centering::point));
+  EXPECT_THROW(sub_volume(*whole, {{0, 0, 1}, {8, 8, 8}}), Error);
+  EXPECT_THROW(sub_volume(*whole, {{-1, 0, 0}, {8, 8, 8}}), Error);
+  EXPECT_THROW(sub_volume(*whole, {{0, 0, 0}, {8, 0, 8}}), Error);
+  EXPECT_THROW(whole->as_part_of(0, 1), Error);
+}
+
+TEST(SubVolume, BricksHoldTheirCellsAndALayerMore) {
+  const Volume::Description of = description({40, 30, 20}, Centering::point);
+  const DataExtent extent = extent_of(of, {});
+  const BrickTree tree =
+      BrickTree::split(extent.world_from_data, extent.box, 7, {}, extent.is_uniform_grid);
+  for (int brick = 0; brick < 7; ++brick) {
+    const IndexBox box = indices_of_brick(of, {}, tree, brick);
+    for (int a = 0; a < 3; ++a) {
+      const auto axis = static_cast<std::size_t>(a);
+      const double lower = tree.box(brick).lower[a], upper = tree.box(brick).upper[a];
+      const int first = std::max(static_cast<int>(std::floor(lower)) - 1, 0);
+      const int last = std::min(static_cast<int>(std::ceil(upper)) + 1, of.dimensions[axis] - 1);
+      EXPECT_LE(box.first[axis], first);
+      EXPECT_GE(box.first[axis], first - 1);
+      EXPECT_GE(box.first[axis] + box.count[axis] - 1, last);
+      EXPECT_LE(box.first[axis] + box.count[axis] - 1, last + 1);
+    }
+  }
+}
+
+TEST(Survey, SlabsFindWhatIsSeenOfTheWhole) {
+  for (const Centering centering : {Centering::point, Centering::cell}) {
+    const auto whole = some_volume(description({20, 17, 45}, centering));
+    const auto function = transfer({{500, 0, {1, 1, 1}}, {950, 1, {1, 1, 1}}, {999, 0, {1, 1, 1}}});
+    const Layer layer{VolumeContent{whole, function}};
+    const DataExtent extent = extent_of(layer);
+    const std::array<Vec3<double>, 8> expected = visible_corners(layer);
+    for (const int ranks : {1, 2, 3, 8}) {
+      Survey survey(whole->description(), {}, extent.box, {3, 3, 4});
+      for (int rank = 0; rank < ranks; ++rank) {
+        for (const SurveySlab& slab : slabs_of(whole->description(), rank, ranks, 6000)) {
+          const Layer part{VolumeContent{
+              std::make_shared<const Volume>(sub_volume(*whole, slab.values)), function}};
+          survey.add(slab, absorbing_blocks(part));
+        }
+      }
+      const auto found = survey.corners(extent.world_from_data);
+      ASSERT_TRUE(found.has_value());
+      for (std::size_t n = 0; n < 8; ++n) EXPECT_LT(length((*found)[n] - expected[n]), 1e-12);
+      BrickWeights weights{{3, 3, 4}, std::vector<double>(36, 0)};
+      survey.add_to(weights);
+      EXPECT_NEAR(std::accumulate(weights.weight.begin(), weights.weight.end(), 0.0), 1, 1e-12);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace pellucid
