@@ -5,6 +5,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <memory>
 
 namespace pellucid::cli {
 
@@ -15,6 +17,29 @@ double largest_channel(const Image& image) {
   }
   return static_cast<double>(largest);
 }
+
+namespace {
+
+/// The nearest pixels of a backdrop.
+std::shared_ptr<const Image> shrunk(const Image& backdrop, ImageSize size) {
+  auto small = std::make_shared<Image>();
+  small->width = size.width;
+  small->height = size.height;
+  for (int row = 0; row < size.height; ++row) {
+    for (int column = 0; column < size.width; ++column) {
+      const std::size_t from =
+          static_cast<std::size_t>(row) * static_cast<std::size_t>(backdrop.height) /
+              static_cast<std::size_t>(size.height) * static_cast<std::size_t>(backdrop.width) +
+          static_cast<std::size_t>(column) * static_cast<std::size_t>(backdrop.width) /
+              static_cast<std::size_t>(size.width);
+      small->pixels.push_back(backdrop.pixels.at(from));
+      small->depth.push_back(backdrop.depth.at(from));
+    }
+  }
+  return small;
+}
+
+}  // namespace
 
 double estimate_range(const Scene& scene, const RenderOptions& options) {
   constexpr int longest_side = 96;
@@ -27,6 +52,10 @@ double estimate_range(const Scene& scene, const RenderOptions& options) {
       return std::max(1, static_cast<int>(std::lround(length)));
     };
     small.size = {scaled(scene.size.width), scaled(scene.size.height)};
+    if (scene.backdrop) {
+      check_integration(scene);
+      small.backdrop = shrunk(*scene.backdrop, small.size);
+    }
   }
   RenderOptions plain;
   plain.threads = options.threads;
@@ -59,16 +88,15 @@ RelativePicture render_relative(
     const double wanted = share * picture.largest;
     // The picture may be better than the smallest tolerance.
     picture.over.reset();
-    if (std::max(picture.tolerance, smallest_tolerance) <= wanted ||
-        picture.report.largest_error <= wanted) {
-      break;
-    }
+    if (picture.report.largest_error <= wanted) break;
     picture.over = fmt::format(
         "pixels may be off by up to {:.3g}, more than {} of the largest channel, {:.3g}{}",
         picture.report.largest_error, percent_text(share), picture.largest,
         wanted < smallest_tolerance
             ? fmt::format("; the smallest tolerance is {:g}", smallest_tolerance)
             : "");
+    // Where pixels miss their tolerance, a smaller one does not help.
+    if (std::max(picture.tolerance, smallest_tolerance) <= wanted) break;
     if (picture.tolerance <= smallest_tolerance) break;
     range = picture.largest;
   }

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "page_server.h"
 
+#include <fcntl.h>
+#include <sys/socket.h>
+
 #include <boost/asio/post.hpp>
 #include <chrono>
 #include <utility>
@@ -22,9 +25,19 @@ ConnectionCount::~ConnectionCount() {
   --state_->connections;
 }
 
+namespace {
+
+/// Programs that this one starts do not keep the socket.
+void close_on_exec(int descriptor) {
+  fcntl(descriptor, F_SETFD, FD_CLOEXEC);
+}
+
+}  // namespace
+
 void PageServer::State::accept() {
   acceptor.async_accept([self = shared_from_this()](beast::error_code error, tcp::socket socket) {
     if (error == net::error::operation_aborted) return;
+    if (!error) close_on_exec(socket.native_handle());
     if (!error && self->connections < self->limits.connections) {
       serve_requests(std::move(socket), std::make_shared<ConnectionCount>(self));
     }
@@ -47,6 +60,7 @@ PageServer::PageServer(std::uint16_t port, PageEvents events, ServerLimits limit
   const tcp::endpoint endpoint(net::ip::address_v4::loopback(), port);
   try {
     state.acceptor.open(endpoint.protocol());
+    close_on_exec(state.acceptor.native_handle());
     state.acceptor.set_option(net::socket_base::reuse_address(true));
     state.acceptor.bind(endpoint);
     state.acceptor.listen();
@@ -60,6 +74,8 @@ PageServer::PageServer(std::uint16_t port, PageEvents events, ServerLimits limit
 
 PageServer::~PageServer() {
   parts_->state->events.closed = [](PageId, std::size_t) {};
+  // A child of this process may hold the socket, too.
+  ::shutdown(parts_->state->acceptor.native_handle(), SHUT_RDWR);
   // A page that is closed leaves the list.
   while (!parts_->state->pages.empty()) {
     const std::shared_ptr<PageSocket> socket = parts_->state->pages.begin()->second;

@@ -58,6 +58,9 @@ class Socket : public PageSocket, public std::enable_shared_from_this<Socket> {
 
   void close() override {
     if (std::exchange(closed_, true)) return;
+    // A child of this process may hold the socket, too.
+    beast::error_code ignored;
+    beast::get_lowest_layer(stream_).socket().shutdown(net::socket_base::shutdown_both, ignored);
     beast::get_lowest_layer(stream_).close();
     if (state().pages.erase(id_) > 0) state().events.closed(id_, state().pages.size());
   }

@@ -186,10 +186,15 @@ void SceneState::set_source(std::size_t layer, const std::function<void(LayerDes
     target.isosurfaces.clear();
     target.slices.clear();
   }
+  // The others keep their data, which may be arrays in memory.
+  SceneDescription alone = next.description_;
+  alone.layers = {target};
+  check_has_sources(alone);
   std::vector<MeshSource> meshes;
-  next.scene_ = make_scene(next.description_, parallel_, &meshes);
+  next.scene_.layers[layer] = make_scene(alone, parallel_, &meshes).layers.front();
   check_data(next.scene_);
-  if (target.mesh) target.mesh->channels = meshes[layer].channels;
+  if (target.mesh) target.mesh->channels = meshes.front().channels;
+  fit_opacity_tables(next.description_, next.scene_);
   complete_description(next.scene_.layers[layer], target);
   // Steps back would show the other data again, without reading them.
   next.undone_by_.clear();

@@ -118,7 +118,8 @@ struct Studio::Visitor {
     const std::size_t layer = studio.state_.checked_layer(c.layer);
     if (c.kind == Suggest::Kind::gaussians) {
       const LayerDescription& description = studio.state_.description().layers[layer];
-      studio.state_.set_gaussians(layer, suggest_gaussians(description, studio.parallel_));
+      studio.state_.set_gaussians(layer, suggest_gaussians(description, studio.parallel_,
+                                                           &studio.state_.scene().layers[layer]));
     } else {
       studio.state_.set_default_function(layer);
     }

@@ -12,7 +12,7 @@
 namespace pellucid::view {
 
 MultivariateDescription suggest_gaussians(const LayerDescription& layer,
-                                          const ParallelFor& parallel) {
+                                          const ParallelFor& parallel, const Layer* loaded) {
   if (layer.mesh || layer.labels) {
     throw Error(
         "Gaussians are suggested for volumes; give a mesh a function of its arrays by --tf");
@@ -25,7 +25,8 @@ MultivariateDescription suggest_gaussians(const LayerDescription& layer,
     sources = {{value, "", layer.field},
                {std::string(derived_name(kind)), "", DerivedSource{kind, value, 0}}};
   }
-  const Channels channels = load_channels(sources, parallel);
+  const Channels channels = load_channels(
+      sources, parallel, loaded != nullptr ? loaded_channels(*loaded) : std::vector<Channel>());
   std::vector<int> which(
       static_cast<std::size_t>(std::min(channels.count(), max_suggested_channels)));
   std::iota(which.begin(), which.end(), 0);

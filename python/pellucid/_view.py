@@ -3,15 +3,15 @@
 from __future__ import annotations
 
 import atexit
-import dataclasses
+import copy
 import os
 import sys
 import weakref
 from typing import Any, Optional
 
-from ._pellucid import Volume, ViewerServer
+from ._pellucid import Error, ViewerServer
 from ._render import scene_of
-from .scene import Layer, Scene
+from .scene import Scene
 
 # Notebooks are served to a browser of this machine from any port.
 _NOTEBOOKS = "http://localhost:* http://127.0.0.1:*"
@@ -26,10 +26,13 @@ class Viewer:
     """
 
     def __init__(self, scene: Scene, port: int = 0, threads: int = 0, height: int = 600) -> None:
-        self._given = scene
+        if not 50 <= height <= 10000:
+            raise Error(f"height: expected 50 to 10000 pixels, got {height!r:.60}")
+        self._given = [copy.copy(layer) for layer in scene.layers]
         self._height = int(height)
         self._server = ViewerServer(scene, port, threads, _NOTEBOOKS)
         self._file: Optional[str] = None
+        self._process = os.getpid()
         _running.add(self)
 
     @property
@@ -46,14 +49,16 @@ class Viewer:
     def scene(self) -> Scene:
         """The scene as it is now, with the camera and what was edited in the page."""
         scene = self._server.scene()
-        for layer, given in zip(scene.layers, self._given.layers):
-            # Arrays come back as they were given: the same object, with its order of axes.
-            if _is_same(layer, given):
+        # Arrays come back as they were given: the same object, with its order of axes.
+        for layer, given, is_same in zip(scene.layers, self._given, self._server.same_data()):
+            if is_same:
                 layer.data, layer.mask = given.data, given.mask
         return scene
 
     def open(self) -> bool:
         """Opens the page in the browser. Returns whether one was found."""
+        if not self.running:
+            return False
         import tempfile
         import webbrowser
 
@@ -73,6 +78,8 @@ class Viewer:
 
     def stop(self) -> None:
         """Ends the page. The scene can still be read."""
+        if self._process != os.getpid():
+            return  # a child has neither the threads nor the file
         self._server.stop()
         if self._file is not None:
             try:
@@ -102,26 +109,12 @@ class Viewer:
         return f"<pellucid.Viewer {'of a page' if self.running else 'that was stopped'}>"
 
 
-def _is_same(layer: Layer, given: Layer) -> bool:
-    if type(layer.data) is not type(given.data):
-        return False
-    if not isinstance(layer.data, Volume):
-        return True
-    # The page can choose another array of a file; then the values lie elsewhere.
-    ours, theirs = (_address(each.data) for each in (layer, given))
-    return ours == theirs
-
-
-def _address(volume: Volume) -> int:
-    return int(volume.array.__array_interface__["data"][0])
-
-
 def view(data: Any, transfer_function: Any = None, *, open: Optional[bool] = None, port: int = 0,
          threads: int = 0, height: int = 600, **how: Any) -> Viewer:
     """Shows data in a page where they are turned and edited, as `pellucid view` does.
 
     data, transfer_function, **how  as render() takes them, except depth, error, values, progress
-                                    and renderer; size is that of the page
+                                    and renderer; size is that of the page, tolerance a number
     open      whether to open the browser of this machine; None: unless this is a notebook
     port      of the loopback interface; 0: any that is free
     threads   0: one per core
@@ -132,8 +125,10 @@ def view(data: Any, transfer_function: Any = None, *, open: Optional[bool] = Non
     cannot write them. The page is at the loopback interface: where the notebook runs on another
     machine, forward the port and open the address. Raises Error as render() does.
     """
-    scene = scene_of(data, transfer_function, **how)
-    viewer = Viewer(dataclasses.replace(scene), port, threads, height)
+    if isinstance(how.get("tolerance"), str):
+        raise Error(f"tolerance: expected a number, got {how['tolerance']!r:.60}; shares are for "
+                    "render(), and the page has a slider")
+    viewer = Viewer(scene_of(data, transfer_function, **how), port, threads, height)
     if open or (open is None and "ipykernel" not in sys.modules):
         viewer.open()
     return viewer

@@ -107,7 +107,7 @@ VolumeData copied_values(const py::array& array, const StoredType& stored, const
   const ValueLayout layout{
       stored.type, stored.big_endian, 0, 1, false, [&notes](const std::string& t) { notes(t); }};
   const auto count = static_cast<std::size_t>(dense.size());
-  const py::gil_scoped_release released;
+  const ReleasedLock released;
   return std::move(read_components(memory_source(bytes, name), layout, count, {0, 1}).front());
 }
 

@@ -19,6 +19,20 @@ namespace py = pybind11;
 
 namespace pellucid::python {
 
+/// Lets go of the interpreter's lock for as long as it lives. The interpreter ends threads that ask
+/// for the lock while it ends itself: it unwinds them, for which the destructor must be left by an
+/// exception. py::gil_scoped_release would end the program.
+class ReleasedLock {
+ public:
+  ReleasedLock() : state_(PyEval_SaveThread()) {}
+  ReleasedLock(const ReleasedLock&) = delete;
+  ReleasedLock& operator=(const ReleasedLock&) = delete;
+  ~ReleasedLock() noexcept(false) { PyEval_RestoreThread(state_); }
+
+ private:
+  PyThreadState* state_;
+};
+
 /// Each adds its classes and functions to the compiled part of the package, `pellucid._pellucid`.
 void bind_volumes(py::module_& module);
 void bind_labels(py::module_& module);

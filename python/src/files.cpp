@@ -17,7 +17,7 @@ template <class Body>
 auto with_notes(Body&& body) {
   Notes notes;
   auto result = [&] {
-    const py::gil_scoped_release released;
+    const ReleasedLock released;
     return body([&notes](const std::string& text) { notes(text); });
   }();
   notes.warn();
@@ -117,7 +117,7 @@ py::object load_scene_file(const std::filesystem::path& path) {
   }
   Scene scene;
   {
-    const py::gil_scoped_release released;
+    const ReleasedLock released;
     std::vector<MeshSource> meshes;
     scene = make_scene(reading, all_cores(), &meshes);
     for (std::size_t i = 0; i < complete.layers.size(); ++i) {

@@ -107,7 +107,7 @@ GaussiansHandle suggested_mixture(const ChannelsHandle& handle,
   }
   std::vector<GaussianPrimitive> found;
   {
-    const py::gil_scoped_release released;
+    const ReleasedLock released;
     found = suggest_mixture(channels, indices, primitives, all_cores());
   }
   return from_primitives(found, names_of(channels));
@@ -119,7 +119,7 @@ GaussiansHandle suggested_boundaries(const ChannelsHandle& handle, const std::st
   const int v = index_of(channels, value), g = index_of(channels, gradient_magnitude);
   std::vector<GaussianPrimitive> found;
   {
-    const py::gil_scoped_release released;
+    const ReleasedLock released;
     found = suggest_boundaries(channels, v, g, all_cores());
   }
   return from_primitives(found, names_of(channels));

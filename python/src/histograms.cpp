@@ -40,7 +40,7 @@ py::tuple histogram(const py::object& data, const std::optional<std::vector<std:
   }
   JointHistogram result;
   {
-    const py::gil_scoped_release released;
+    const ReleasedLock released;
     std::vector<HistogramAxis> axes;
     for (const int c : indices) axes.push_back(histogram_axis(*channels[c].volume, bins));
     result = joint_histogram(channels, indices, axes, all_cores());

@@ -51,7 +51,7 @@ py::array srgb8(const ImageHandle& handle, const py::object& background) {
   const auto color = background_of(handle, background);
   std::vector<std::uint8_t> bytes;
   {
-    const py::gil_scoped_release released;
+    const ReleasedLock released;
     bytes = to_srgb8(*handle.image, color);
   }
   return py::array_t<std::uint8_t>(
@@ -66,7 +66,7 @@ void save(const ImageHandle& handle, const std::filesystem::path& path,
   if (extension != ".png" && extension != ".exr") {
     throw Error(path.string() + ": expected a name that ends in .png or .exr");
   }
-  const py::gil_scoped_release released;
+  const ReleasedLock released;
   if (extension == ".exr") {
     write_exr(*handle.image, path);
   } else {

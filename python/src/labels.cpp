@@ -59,7 +59,7 @@ Each place has the label of the nearest value. NaN is vacuum. Raises Error if a 
 whole number within +-2^24.)")
       .def(py::init([](const py::object& data) {
              VolumeHandle volume = volume_of(data);
-             const py::gil_scoped_release released;
+             const ReleasedLock released;
              return LabelHandle{std::make_shared<const LabelVolume>(volume.volume), volume.axes,
                                 volume.source};
            }),

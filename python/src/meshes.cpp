@@ -133,7 +133,7 @@ MeshHandle make_mesh(const py::object& points, const py::object& cells, const py
   MeshHandle handle;
   std::string overlap;
   {
-    const py::gil_scoped_release released;
+    const ReleasedLock released;
     handle.mesh = cut_into_tetrahedra(grid, choices, all_cores());
     overlap = overlap_note(handle.mesh->mesh().statistics());
   }

@@ -68,7 +68,7 @@ py::object render_on_ranks(const py::object& object, std::optional<int> handle,
   ImageHandle image{nullptr, scene.background, scene.integration.tolerance, {}};
   bool is_first = true;
   try {
-    const py::gil_scoped_release released;
+    const ReleasedLock released;
     const auto ranks = handle ? mpi_communicator(handle) : single_rank();
     is_first = ranks->rank() == 0;
     RankReport report;

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <exception>
@@ -35,17 +36,17 @@ class FrameHandle {
         tolerance_(scene.integration.method == Method::exact ? scene.integration.tolerance : 0) {}
   FrameHandle(FrameHandle&&) = default;
   FrameHandle& operator=(FrameHandle&&) = default;
-  ~FrameHandle() {
+  ~FrameHandle() noexcept(false) {
     if (!frame_) return;
     // The frame's threads may let go of arrays, for which they need the interpreter's lock.
-    const py::gil_scoped_release released;
+    const ReleasedLock released;
     frame_.reset();
   }
 
   /// Calls body(frame) without the interpreter's lock.
   template <class Body>
   auto with_frame(Body&& body) const {
-    const py::gil_scoped_release released;
+    const ReleasedLock released;
     return body(*frame_);
   }
 
@@ -57,14 +58,14 @@ class FrameHandle {
       wait_until([&] { return frame_->finished(); }, [&] { return frame_->state().fraction; },
                  progress);
     } catch (...) {
-      const py::gil_scoped_release released;
+      const ReleasedLock released;
       frame_->cancel();
       while (!frame_->finished()) std::this_thread::sleep_for(std::chrono::milliseconds(1));
       throw;
     }
     ImageHandle handle{nullptr, background_, tolerance_, {}};
     {
-      const py::gil_scoped_release released;
+      const ReleasedLock released;
       handle.image = std::make_shared<const Image>(frame_->wait(&handle.report));
     }
     image_ = handle;
@@ -74,7 +75,7 @@ class FrameHandle {
 
   ImageHandle look() const {
     if (image_) return *image_;
-    const py::gil_scoped_release released;
+    const ReleasedLock released;
     return {std::make_shared<const Image>(frame_->look()), background_};
   }
 
@@ -90,8 +91,8 @@ class FrameHandle {
 struct RendererHandle {
   explicit RendererHandle(int threads)
       : renderer(std::make_unique<Renderer>(checked_threads(threads))) {}
-  ~RendererHandle() {
-    const py::gil_scoped_release released;
+  ~RendererHandle() noexcept(false) {
+    const ReleasedLock released;
     renderer.reset();
   }
   std::unique_ptr<Renderer> renderer;
@@ -116,7 +117,7 @@ FrameHandle start(RendererHandle& handle, const py::object& object, bool depth, 
   }
   Scene scene = complete_scene(object);
   RenderOptions options = options_of(scene, depth, error, values, threads, preview);
-  const py::gil_scoped_release released;
+  const ReleasedLock released;
   return {handle.renderer->start(scene, std::move(options)), scene};
 }
 
@@ -141,7 +142,7 @@ void in_a_thread(Body&& body, std::stop_source& stop, Fraction&& fraction,
     finished = true;
   });
   const auto join = [&] {
-    const py::gil_scoped_release released;
+    const ReleasedLock released;
     worker.join();
   };
   try {
@@ -170,8 +171,10 @@ ImageHandle render_share(RendererHandle& handle, const py::object& object, doubl
   std::stop_source stop;
   options.stop = stop.get_token();
   std::atomic<double> fraction = 0;
+  bool estimates = true;
+  // How many frames it takes is not known: the last tenth waits for the last one.
   options.progress = [&](double done) {
-    fraction = done;
+    if (!estimates) fraction = std::max(fraction.load(), 0.9 * done);
     return !stop.stop_requested();
   };
   ImageHandle result{nullptr, made.scene.background};
@@ -179,6 +182,7 @@ ImageHandle render_share(RendererHandle& handle, const py::object& object, doubl
   in_a_thread(
       [&] {
         const double range = cli::estimate_range(made.scene, options);
+        estimates = false;
         cli::RelativePicture picture =
             cli::render_relative(share, range, [&](double tolerance, RenderReport& report) {
               made.scene.integration.set_tolerance(tolerance);
@@ -191,6 +195,7 @@ ImageHandle render_share(RendererHandle& handle, const py::object& object, doubl
         over = picture.over;
       },
       stop, [&] { return fraction.load(); }, progress);
+  if (!progress.is_none()) progress(1.0);
   if (over) {
     Notes notes;
     notes(*over);
@@ -291,7 +296,7 @@ first, then those half-way between; the image is the same.)")
       .def(
           "clear",
           [](RendererHandle& handle) {
-            const py::gil_scoped_release released;
+            const ReleasedLock released;
             handle.renderer->clear();
           },
           "Lets go of all that is kept.");

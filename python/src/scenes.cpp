@@ -267,7 +267,7 @@ std::shared_ptr<const LabelMask> in_order_of(const VolumeHandle& like, const Mas
   if (!masking.reordered || masking.reordered_axes != like.axes) {
     const VolumeHandle labels =
         in_order_of(like, VolumeHandle{masking.mask->labels().shared_volume(), masking.axes});
-    const py::gil_scoped_release released;
+    const ReleasedLock released;
     masking.reordered = std::make_shared<const LabelMask>(
         std::make_shared<const LabelVolume>(labels.volume), masking.mask->choices());
     masking.reordered_axes = like.axes;
@@ -504,7 +504,7 @@ PythonScene complete_python_scene(const py::object& object) {
   check_integration(made.scene);
   fit_tables(made, object.attr("layers"));
   if (!made.has_camera) {
-    const py::gil_scoped_release released;
+    const ReleasedLock released;
     made.scene.camera = default_camera(visible_corners(made.scene, all_cores()), made.scene.size);
   }
   return made;
@@ -539,7 +539,7 @@ Returns the scene's camera; if it has none, the one that shows all that is visib
               view + "\"");
         }
         const Scene scene = complete_scene(object);
-        const py::gil_scoped_release released;
+        const ReleasedLock released;
         const Camera camera = view_camera(visible_corners(scene, all_cores()), view, scene.size);
         const py::gil_scoped_acquire acquired;
         return to_python(camera);

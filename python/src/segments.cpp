@@ -54,7 +54,7 @@ py::tuple linear(const Numbers& extinction_f, const Numbers& extinction_b, const
   const double *tau_f = extinction_f.data(), *tau_b = extinction_b.data(), *c_f = color_f.data(),
                *c_b = color_b.data(), *lengths = length.data();
   {
-    const py::gil_scoped_release released;
+    const ReleasedLock released;
     for (py::ssize_t i = 0; i < n; ++i) {
       const Rgb<double> f = color_at(c_f, i), b = color_at(c_b, i);
       results.set(i, independent ? linear_segment_independent(tau_f[i], tau_b[i], f, b, lengths[i])
@@ -71,7 +71,7 @@ py::tuple piecewise_linear(const std::shared_ptr<TransferFunction>& function,
   Results results(n);
   const double *v_f = value_f.data(), *v_b = value_b.data(), *lengths = length.data();
   {
-    const py::gil_scoped_release released;
+    const ReleasedLock released;
     const PiecewiseLinear<double> table = function->view<double>();
     for (py::ssize_t i = 0; i < n; ++i) {
       results.set(i, piecewise_linear_segment(table, v_f[i], v_b[i], lengths[i]));
@@ -90,7 +90,7 @@ py::tuple gaussian(const GaussiansHandle& handle, const Numbers& values_f, const
   Results results(n);
   const double *v_f = values_f.data(), *v_b = values_b.data(), *lengths = length.data();
   {
-    const py::gil_scoped_release released;
+    const ReleasedLock released;
     const Gaussian<double>& primitive = transfer.gaussians.primitive[0];
     for (py::ssize_t i = 0; i < n; ++i) {
       results.set(i, gaussian_segment(primitive, v_f + i * channels + primitive.first,
@@ -109,7 +109,7 @@ py::tuple integrate(const py::object& scene, const Numbers& origins, const Numbe
                 *const colors = radiance.mutable_data(), *const halves = depth.mutable_data();
   const double *const from = origins.data(), *const along = directions.data();
   {
-    const py::gil_scoped_release released;
+    const ReleasedLock released;
     const ReferenceRays rays(made);
     all_cores()(static_cast<int>(n), [&](int first, int last) {
       for (int i = first; i < last; ++i) {

@@ -77,7 +77,7 @@ using Function = std::shared_ptr<TransferFunction>;
 
 Function default_function(const py::object& data) {
   return with_data(data, [](const auto& of) {
-    const py::gil_scoped_release released;
+    const ReleasedLock released;
     return std::make_shared<TransferFunction>(default_transfer_function(of));
   });
 }
@@ -85,7 +85,7 @@ Function default_function(const py::object& data) {
 py::tuple look_of(const VolumeHandle& volume) {
   std::optional<DefaultLook> look;
   {
-    const py::gil_scoped_release released;
+    const ReleasedLock released;
     look = default_look(*volume.volume);
   }
   py::object shading = py::none();

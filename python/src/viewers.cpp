@@ -5,7 +5,9 @@
 #include <mutex>
 #include <string>
 #include <thread>
+#include <type_traits>
 #include <utility>
+#include <vector>
 
 #include "scenes.h"
 #include "view/viewer.h"
@@ -31,7 +33,7 @@ void name_arrays(PythonScene& made) {
 class ViewerHandle {
  public:
   ViewerHandle(const py::object& object, int port, int threads, const std::string& frame_ancestors)
-      : shared_(std::make_shared<Shared>()) {
+      : shared_(std::make_shared<Shared>()), server_(shared_) {
     if (port < 0 || port > 65535) {
       throw Error("port: expected 0 (any free one) to 65535, got " + std::to_string(port));
     }
@@ -45,6 +47,7 @@ class ViewerHandle {
     scene_to_json(description);  // throws what cannot be told to a page
     shared_->description = description;
     shared_->scene = made.scene;
+    given_ = made.scene.layers;
     view::ViewerOptions options;
     options.port = static_cast<std::uint16_t>(port);
     options.threads = checked_threads(threads);
@@ -57,20 +60,20 @@ class ViewerHandle {
       std::swap(shared->description, new_description);
       std::swap(shared->scene, new_scene);
     };
-    const py::gil_scoped_release released;
-    thread_ = std::thread(
+    const ReleasedLock released;
+    server_.thread = std::thread(
         [shared = shared_, description = std::move(description), scene = std::move(made.scene),
          options]() mutable { serve(*shared, std::move(description), std::move(scene), options); });
     std::unique_lock lock(shared_->mutex);
     shared_->wakes.wait(lock, [&] { return shared_->ended || !shared_->address.empty(); });
     if (!shared_->failure) return;
     lock.unlock();
-    thread_.join();
+    server_.end();
     std::rethrow_exception(shared_->failure);
   }
   ViewerHandle(const ViewerHandle&) = delete;
   ViewerHandle& operator=(const ViewerHandle&) = delete;
-  ~ViewerHandle() { stop(); }
+  ~ViewerHandle() noexcept(false) { stop(); }
 
   std::string address() const {
     const std::lock_guard lock(shared_->mutex);
@@ -88,13 +91,18 @@ class ViewerHandle {
 
   /// Its threads may let go of arrays, for which they need the interpreter's lock.
   void stop() {
-    const py::gil_scoped_release released;
-    {
-      const std::lock_guard lock(shared_->mutex);
-      shared_->stops = true;
+    const ReleasedLock released;
+    server_.end();
+  }
+
+  /// Whether each layer still has the data that it was given.
+  std::vector<bool> same_data() const {
+    const std::lock_guard lock(shared_->mutex);
+    std::vector<bool> same;
+    for (std::size_t i = 0; i < given_.size(); ++i) {
+      same.push_back(data_of(given_[i]) == data_of(shared_->scene.layers[i]));
     }
-    const std::lock_guard lock(joins_);
-    if (thread_.joinable()) thread_.join();
+    return same;
   }
 
   py::object scene() const {
@@ -118,6 +126,36 @@ class ViewerHandle {
     std::exception_ptr failure;
     bool stops = false, ended = false;
   };
+
+  /// Ends its thread, also where a constructor is left.
+  struct Server {
+    explicit Server(std::shared_ptr<Shared> with) : shared(std::move(with)) {}
+    ~Server() { end(); }
+    void end() {
+      {
+        const std::lock_guard lock(shared->mutex);
+        shared->stops = true;
+      }
+      const std::lock_guard lock(joins);
+      if (thread.joinable()) thread.join();
+    }
+    std::shared_ptr<Shared> shared;
+    std::thread thread{};
+    std::mutex joins{};
+  };
+
+  /// What tells a layer's data from others.
+  static const void* data_of(const Layer& layer) {
+    return std::visit(
+        [](const auto& content) -> const void* {
+          using Content = std::decay_t<decltype(content)>;
+          if constexpr (std::is_same_v<Content, VolumeContent>) return content.volume.get();
+          if constexpr (std::is_same_v<Content, ChannelsContent>) return content.channels.get();
+          if constexpr (std::is_same_v<Content, MeshContent>) return content.mesh.get();
+          if constexpr (std::is_same_v<Content, LabelContent>) return content.labels.get();
+        },
+        layer.content);
+  }
 
   static void serve(Shared& shared, SceneDescription description, Scene scene,
                     const view::ViewerOptions& options) {
@@ -144,8 +182,8 @@ class ViewerHandle {
   }
 
   std::shared_ptr<Shared> shared_;
-  std::thread thread_;
-  std::mutex joins_;
+  std::vector<Layer> given_;
+  Server server_;
 };
 
 }  // namespace
@@ -157,6 +195,7 @@ void bind_viewers(py::module_& module) {
       .def_property_readonly("address", &ViewerHandle::address)
       .def_property_readonly("running", &ViewerHandle::is_running)
       .def("scene", &ViewerHandle::scene)
+      .def("same_data", &ViewerHandle::same_data)
       .def("wait", &ViewerHandle::wait)
       .def("stop", &ViewerHandle::stop);
 }

@@ -72,7 +72,7 @@ VolumeHandle make_volume(const py::object& data, const py::object& spacing,
   notes.warn();
   VolumeHandle handle;
   handle.axes = values.axes;
-  const py::gil_scoped_release released;
+  const ReleasedLock released;
   handle.volume = std::make_shared<const Volume>(std::move(description), std::move(values.data));
   return handle;
 }
@@ -106,7 +106,7 @@ VolumeHandle in_order_of(const VolumeHandle& like, const VolumeHandle& volume) {
     sides[g] = from.dimensions[old];
     strides[g] = steps[old];
   }
-  const py::gil_scoped_release released;
+  const ReleasedLock released;
   VolumeData data = std::visit(
       [&](const auto& values) {
         using Value = typename std::decay_t<decltype(values)>::value_type;
@@ -179,7 +179,7 @@ py::dict statistics_of(const VolumeStatistics& s) {
 
 template <class Derive>
 VolumeHandle derived(const VolumeHandle& handle, Derive&& derive) {
-  const py::gil_scoped_release released;
+  const ReleasedLock released;
   return {std::make_shared<const Volume>(derive(*handle.volume)), handle.axes, {}};
 }
 
@@ -305,7 +305,7 @@ singular direction, infinite values and values beyond 2.1e37.)")
           [](const VolumeHandle& h, const std::filesystem::path& path, const std::string& array) {
             std::vector<std::string> texts;
             {
-              const py::gil_scoped_release released;
+              const ReleasedLock released;
               texts = write_volume(std::span(h.volume.get(), 1), path, array);
             }
             Notes notes;
@@ -377,7 +377,7 @@ Those in another memory order than the first are copied. Raises Error if the gri
         FieldSource source;
         source.builtin = name;
         source.points = points;
-        const py::gil_scoped_release released;
+        const ReleasedLock released;
         return VolumeHandle{
             std::make_shared<const Volume>(make_builtin_field(name, points)), {2, 1, 0}, source};
       },

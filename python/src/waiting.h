@@ -29,7 +29,7 @@ void wait_until(Finished&& finished, Fraction&& fraction, const py::object& prog
   using Clock = std::chrono::steady_clock;
   const Clock::time_point begin = Clock::now();
   Clock::time_point attended = begin;
-  const py::gil_scoped_release released;
+  const ReleasedLock released;
   while (!finished()) {
     const Clock::time_point now = Clock::now();
     if (now - attended >= 20ms) {

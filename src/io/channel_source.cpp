@@ -176,10 +176,16 @@ void check_channel_sources(const std::vector<ChannelSource>& sources) {
   }
 }
 
-Channels load_channels(const std::vector<ChannelSource>& sources, const ParallelFor& parallel) {
+Channels load_channels(const std::vector<ChannelSource>& sources, const ParallelFor& parallel,
+                       const std::vector<Channel>& kept) {
   check_channel_sources(sources);
   std::vector<Channel> channels;
   for (const ChannelSource& source : sources) {
+    const auto known = std::ranges::find(kept, source.name, &Channel::name);
+    if (known != kept.end()) {
+      channels.push_back({source.name, source.unit, known->volume});
+      continue;
+    }
     if (const auto* field = std::get_if<FieldSource>(&source.source)) {
       channels.push_back(
           {source.name, source.unit, std::make_shared<const Volume>(load_field(*field))});

@@ -83,7 +83,17 @@ const Content* content_of(const Layer* loaded) {
   return loaded != nullptr ? std::get_if<Content>(&loaded->content) : nullptr;
 }
 
-/// Returns the channels of a loaded layer if they have the names of `sources`, else reads them.
+/// Returns the field of a loaded layer; null if it has none.
+std::shared_ptr<const Volume> kept_field(const Layer* loaded) {
+  if (loaded == nullptr) return nullptr;
+  for (const Channel& channel : loaded_channels(*loaded)) {
+    if (channel.name == field_channel) return channel.volume;
+  }
+  return nullptr;
+}
+
+/// Returns the channels of a loaded layer if they have the names of `sources`, else reads those
+/// that it lacks.
 std::shared_ptr<const Channels> channels_from(const std::vector<ChannelSource>& sources,
                                               const Layer* loaded, const ParallelFor& parallel) {
   const auto* const content = content_of<ChannelsContent>(loaded);
@@ -91,7 +101,8 @@ std::shared_ptr<const Channels> channels_from(const std::vector<ChannelSource>& 
       std::ranges::equal(*content->channels, sources, {}, &Channel::name, &ChannelSource::name)) {
     return content->channels;
   }
-  return std::make_shared<const Channels>(load_channels(sources, parallel));
+  return std::make_shared<const Channels>(load_channels(
+      sources, parallel, loaded != nullptr ? loaded_channels(*loaded) : std::vector<Channel>()));
 }
 
 ChannelsContent load_channels_content(const LayerDescription& description,
@@ -149,8 +160,10 @@ VolumeContent load_volume_content(const LayerDescription& description, const Wan
                                   const Layer* loaded, std::optional<DefaultLook>& look) {
   VolumeContent content;
   const auto* const kept = content_of<VolumeContent>(loaded);
-  content.volume = kept != nullptr ? kept->volume
-                                   : std::make_shared<const Volume>(load_field(description.field));
+  content.volume = kept_field(loaded);
+  if (!content.volume) {
+    content.volume = std::make_shared<const Volume>(load_field(description.field));
+  }
   if (description.takes_default_look && !description.transfer_function && !description.projection &&
       !description.mask && !description.shows_surfaces()) {
     look = default_look(*content.volume);
@@ -350,6 +363,15 @@ Scene make_scene(const SceneDescription& description, const ParallelFor& paralle
   }
   fit_opacity_tables(description, scene);
   return scene;
+}
+
+std::vector<Channel> loaded_channels(const Layer& layer) {
+  if (const auto* const channels = std::get_if<ChannelsContent>(&layer.content)) {
+    return {channels->channels->begin(), channels->channels->end()};
+  }
+  const auto* const field = std::get_if<VolumeContent>(&layer.content);
+  if (field == nullptr) return {};
+  return {{std::string(field_channel), "", field->volume}};
 }
 
 Layer remake_layer(const SceneDescription& description, std::size_t layer, const Layer& loaded,

@@ -50,7 +50,9 @@ std::vector<std::string> channel_names(const std::vector<ChannelSource>& sources
 /// derived channel refers to one that is not before it.
 void check_channel_sources(const std::vector<ChannelSource>& sources);
 
-/// Reads each field once and computes the derived channels. Throws Error.
-Channels load_channels(const std::vector<ChannelSource>& sources, const ParallelFor& parallel = {});
+/// Reads each field once and computes the derived channels. A channel of `kept` with the name of a
+/// source takes its place. Throws Error.
+Channels load_channels(const std::vector<ChannelSource>& sources, const ParallelFor& parallel = {},
+                       const std::vector<Channel>& kept = {});
 
 }  // namespace pellucid

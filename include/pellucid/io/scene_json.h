@@ -154,9 +154,12 @@ Scene make_scene(const SceneDescription& description, const ParallelFor& paralle
 void visit_paths(SceneDescription& description,
                  const std::function<void(std::filesystem::path&)>& visit);
 
+/// Returns the channels that a layer has, its field as "value"; none of meshes and labels.
+std::vector<Channel> loaded_channels(const Layer& layer);
+
 /// Returns layer number `layer` of the description with the data of `loaded`, which was made from
 /// the same data with another look. Reads nothing, unless the look needs channels that `loaded`
-/// lacks. Opacity tables are fitted by fit_opacity_tables() afterwards. Throws Error as
+/// lacks and that cannot be computed from its own. Opacity tables are fitted by fit_opacity_tables() afterwards. Throws Error as
 /// make_scene() does.
 Layer remake_layer(const SceneDescription& description, std::size_t layer, const Layer& loaded,
                    const ParallelFor& parallel = {});
