@@ -45,6 +45,7 @@ __all__ = [
     "export_transfer_function", "from_colormap", "histogram", "import_transfer_function",
     "integrate", "label_count", "linear_to_srgb", "load_scene", "make_preset", "mesh_of", "presets",
     "projection_transfer_function", "read", "read_image", "read_mesh", "read_volume", "render",
-    "render_on_ranks", "render_reference", "scene_of", "srgb_to_linear", "suggest", "suggest_boundaries",
+    "render_on_ranks", "render_reference", "scene_of", "srgb_to_linear", "suggest",
+    "suggest_boundaries",
     "view_camera",
 ]
