@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Renders by mpi4py on all ranks, twice: of whole data, and of arrays of which each rank has a part.
+"""Renders by mpi4py on all ranks, twice: whole data, and arrays of which each rank has a part.
 
 Prints "the same" on rank 0 if both pictures are those of one process within their errors.
 """

@@ -24,8 +24,8 @@ struct RayRegion {
   /// Corners of the region within the data, if it is a box there: bit a of the index tells the side
   /// along axis a. Without them no pixel is interpolated between rays.
   std::optional<std::array<Vec3<double>, 8>> corners{};
-  /// Returns how many times the scene's tolerance a ray may be off by: more than 1 where fewer other
-  /// regions share it than the scene's tolerance allows for, less where more do. If it is empty, 1.
+  /// Returns how many times the scene's tolerance a ray may be off by: more than 1 where fewer
+  /// other regions share it than the tolerance allows for, less where more do. If it is empty, 1.
   /// Where pixels are interpolated between rays, no ray has more than 1. Called by any thread.
   std::function<double(const Ray<double>&)> allowance{};
 
