@@ -159,8 +159,8 @@ std::vector<Channel> loaded_channels(const Layer& layer);
 
 /// Returns layer number `layer` of the description with the data of `loaded`, which was made from
 /// the same data with another look. Reads nothing, unless the look needs channels that `loaded`
-/// lacks and that cannot be computed from its own. Opacity tables are fitted by fit_opacity_tables() afterwards. Throws Error as
-/// make_scene() does.
+/// lacks and that cannot be computed from its own. Opacity tables are fitted by
+/// fit_opacity_tables() afterwards. Throws Error as make_scene() does.
 Layer remake_layer(const SceneDescription& description, std::size_t layer, const Layer& loaded,
                    const ParallelFor& parallel = {});
 
