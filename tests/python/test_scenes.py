@@ -436,6 +436,15 @@ def test_a_tolerance_as_a_share():
         with pytest.raises(pellucid.Error, match="tolerance: "):
             pellucid.render(haze, tolerance=wrong)
 
+    # A backdrop larger than the small pictures by which the largest channel is found.
+    wide = pellucid.scene_of("builtin:shells:24", size=(120, 100))
+    backdrop = pellucid.render(wide, depth=True)
+    wide.backdrop = backdrop
+    told = []
+    image = pellucid.render(wide, tolerance="2%", progress=told.append)
+    assert image.report["largest_error"] <= 0.02 * image.rgba.max()
+    assert told == sorted(told) and told[-1] == 1
+
     class Stop(Exception):
         pass
 

@@ -96,6 +96,57 @@ def test_all_kinds_of_arrays_are_shown():
             pellucid.render(again, size=20)
 
 
+def test_arrays_take_gaussians_and_curves(ball):
+    """The page computes the channels of a function from the values in memory."""
+    with pellucid.view(ball, open=False) as viewer:
+        with Client(viewer).open_socket() as page:
+            exact(page)
+            for kind, channels in (("gaussians", ["value", "gradient_magnitude"]), ("curve", None)):
+                page.send(type="suggest", layer=0, kind=kind)
+                message = page.receive_until(lambda m: m["type"] in ("error", "scene"))
+                assert message["type"] == "scene", message
+                data = viewer.scene.layers[0].data
+                assert getattr(data, "names", None) == channels
+                pellucid.render(viewer.scene, size=16)
+        assert isinstance(data, pellucid.Volume)
+
+
+def test_a_file_beside_an_array_changes_alone(ball, tmp_path):
+    pellucid.Volume(ball).write(tmp_path / "ball.nii")
+    scene = pellucid.Scene([pellucid.Layer(pellucid.read(tmp_path / "ball.nii")),
+                            pellucid.Layer(ball)])
+    with pellucid.view(scene, open=False) as viewer:
+        with Client(viewer).open_socket() as page:
+            exact(page)
+            page.send(type="component", layer=0, component=0)
+            message = page.receive_until(lambda m: m["type"] in ("error", "scene"))
+            assert message["type"] == "scene", message
+            page.send(type="component", layer=1, component=0)
+            message = page.receive_until(lambda m: m["type"] in ("error", "scene"))
+            assert "its data are arrays" in message["message"]
+        assert viewer.scene.layers[1].data is scene.layers[1].data
+        assert viewer.scene.layers[0].data is not scene.layers[0].data
+
+
+def test_what_the_caller_changes_later_is_not_shown(ball):
+    layer = pellucid.Layer(ball)
+    with pellucid.view(layer, open=False) as viewer:
+        data, layer.data, layer.mask = layer.data, None, "nonsense"
+        assert viewer.scene.layers[0].data is data and viewer.scene.layers[0].mask is None
+
+
+def test_programs_that_are_started_do_not_keep_the_port(ball):
+    viewer = pellucid.view(ball, open=False)
+    port = urllib.parse.urlsplit(viewer.address).port
+    child = subprocess.Popen(["sleep", "60"], close_fds=False)
+    try:
+        viewer.stop()
+        pellucid.view(ball, open=False, port=port).stop()
+    finally:
+        child.kill()
+        child.wait()
+
+
 def test_only_notebooks_of_this_machine_may_frame_it(ball):
     with pellucid.view(ball, open=False) as viewer:
         client = Client(viewer)
@@ -141,6 +192,10 @@ def test_bad_arguments(ball):
         port = urllib.parse.urlsplit(viewer.address).port
         with pytest.raises(pellucid.Error, match=f"port {port}: "):
             pellucid.view(ball, open=False, port=port)
+    with pytest.raises(pellucid.Error, match="tolerance: expected a number"):
+        pellucid.view(ball, open=False, tolerance="1%")
+    with pytest.raises(pellucid.Error, match="height: "):
+        pellucid.view(ball, open=False, height=-5)
     with pytest.raises(pellucid.Error, match="layer 1"):
         pellucid.view(pellucid.Layer(ball, [(0, 1, (0, 0, 0))], isosurfaces=[3]), open=False)
 
@@ -152,6 +207,20 @@ def test_a_program_that_ends_with_one_ends_quietly():
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=120,
                           check=False)
     assert (done.returncode, done.stdout, done.stderr) == (0, "", "")
+
+
+def test_a_program_that_ends_beside_a_busy_thread_ends_quietly():
+    code = ("import numpy, pellucid, threading, time\n"
+            "layer = pellucid.Layer(numpy.random.rand(9, 9, 9))\n"
+            "def work():\n"
+            "    while True:\n"
+            "        pellucid.view(layer, open=False, size=8).stop()\n"
+            "threading.Thread(target=work, daemon=True).start()\n"
+            "time.sleep(0.5)\n")
+    for _ in range(3):
+        done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True,
+                              timeout=120, check=False)
+        assert (done.returncode, done.stderr) == (0, "")
 
 
 def test_a_notebook_shows_it(ball, tmp_path):
