@@ -293,8 +293,9 @@ def _layer(volume: Any, what: str, ambient: bool, notes: List[str]) -> Layer:
     if is_grid and not look.GetDisableGradientOpacity(0) and look.HasGradientOpacity(0):
         points = [(x, y[0]) for x, y in _curve_of(look.GetGradientOpacity(0)) if x >= 0]
         layer.gradient_opacity = GradientOpacity(points, unit="voxel")
-        notes.append(f"{what}: gradient opacities multiply the extinction here, in VTK the opacity "
-                     "of a sample")
+        notes.append(f"{what}: gradients are measured at the data values here, and their "
+                     "magnitudes interpolated; in VTK they are those of interpolated gradients, "
+                     "which are smaller in sheets of one or two voxels")
     return layer
 
 
@@ -426,15 +427,20 @@ def _has_ambient_light(renderer: Any) -> bool:
 
 
 def _lights(renderer: Any, notes: List[str]) -> List[Any]:
-    lights = []
-    for light in _items(renderer.GetLights()):
-        if not light.GetSwitch():
-            continue
+    """Lights as the GPU mapper has them. A head light alone is at the camera, also of parallel
+    rays; beside others it shines along the camera's axis."""
+    camera = renderer.GetActiveCamera()
+    shining = [light for light in _items(renderer.GetLights()) if light.GetSwitch()]
+    lights: List[Any] = []
+    for light in shining:
         color = tuple(light.GetIntensity() * c for c in light.GetDiffuseColor())
         if any(light.GetAmbientColor()) and not _has_ambient_light(renderer):
             notes.append("the ambient color of lights is left out")
         if light.LightTypeIsHeadlight():
-            lights.append(HeadLight(color))
+            if len(shining) > 1:
+                lights.append(DirectionalLight(tuple(camera.GetDirectionOfProjection()), color))
+            else:
+                lights.append(_head_light(camera, color, notes))
         elif light.GetPositional():
             if tuple(light.GetAttenuationValues()) != (1.0, 0.0, 0.0) or light.GetConeAngle() < 90:
                 notes.append("a light has a cone or an attenuation, which is left out")
@@ -444,7 +450,15 @@ def _lights(renderer: Any, notes: List[str]) -> List[Any]:
                 tuple(numpy.subtract(light.GetTransformedFocalPoint(),
                                      light.GetTransformedPosition()).tolist()), color))
     # VTK makes a head light of its own if there is none.
-    return lights or [HeadLight()]
+    return lights or [_head_light(camera, (1.0, 1.0, 1.0), notes)]
+
+
+def _head_light(camera: Any, color: Any, notes: List[str]) -> Any:
+    if not camera.GetParallelProjection():
+        return HeadLight(color)
+    notes.append("VTK sees its head light from where a ray enters the data, here it is seen from "
+                 "each point")
+    return PointLight(tuple(camera.GetPosition()), color)
 
 
 def _picture(window: Any, renderer: Any) -> numpy.ndarray:

@@ -161,14 +161,42 @@ def test_cropping(stage):
 
 
 def test_light(stage):
-    stage.camera.ParallelProjectionOn()
     stage.volume.GetProperty().ShadeOn()
     stage.volume.GetProperty().SetAmbient(0.3)
     stage.volume.GetProperty().SetDiffuse(0.6)
     stage.volume.GetProperty().SetSpecular(0)
     scene = pellucid.vtk.scene_of(stage.renderer)
     assert scene.layers[0].shading.ambient == 0.3 and scene.layers[0].shading.flatness == 0
-    close(pellucid.vtk.audit(stage.window), 0.1, 0.02)
+    close(pellucid.vtk.audit(stage.window), 0.03, 2e-3)
+
+
+def test_the_head_light_of_parallel_rays(stage):
+    """VTK's mapper has it at the position of the camera, near which rays enter the data."""
+    stage.camera.ParallelProjectionOn()
+    stage.camera.SetPosition(*(numpy.array(stage.camera.GetFocalPoint()) + (60, 0, 0)))
+    stage.renderer.ResetCameraClippingRange()
+    stage.volume.GetProperty().ShadeOn()
+    notes = []
+    (light,) = pellucid.vtk.scene_of(stage.renderer, notes).lights
+    assert tuple(light.position) == stage.camera.GetPosition() and "head light" in notes[-1]
+    audit = pellucid.vtk.audit(stage.window)
+    close(audit, 0.1, 0.01)
+    audit.scene.lights = [pellucid.HeadLight()]
+    assert pellucid.render(audit.scene).compare(audit.theirs).rms > 2 * audit.rms
+
+
+def test_a_head_light_beside_another(stage):
+    head, other = vtk.vtkLight(), vtk.vtkLight()
+    head.SetLightTypeToHeadlight()
+    head.SetIntensity(0.5)
+    other.SetLightTypeToSceneLight()
+    other.SetPosition(30, 0, 0)
+    other.SetFocalPoint(0, 0, 0)
+    for light in (head, other):
+        stage.renderer.AddLight(light)
+    lights = pellucid.vtk.scene_of(stage.renderer).lights
+    assert [type(each) for each in lights] == [pellucid.DirectionalLight] * 2
+    assert tuple(lights[0].direction) == stage.camera.GetDirectionOfProjection()
 
 
 def test_lights_of_ones_own(stage):
