@@ -110,7 +110,9 @@ Scene MapperCore::scene_with(std::vector<Layer> layers, vtkRenderer& renderer, v
   scene.layers = std::move(layers);
   scene.camera = view.camera;
   scene.size = view.size;
-  scene.lights = lights_of(renderer, notes);
+  const bool is_lit = std::ranges::any_of(
+      scene.layers, [](const Layer& layer) { return layer.shading.has_value(); });
+  scene.lights = lights_of(renderer, is_lit, notes);
   scene.integration.set_tolerance(settings.tolerance);
   scene.integration.grade = settings.grade;
   if (const double* const bounds = volume.GetBounds()) {

@@ -12,6 +12,7 @@
 #include <cmath>
 #include <limits>
 #include <string>
+#include <variant>
 
 #include "pellucid/math/constants.h"
 #include "pellucid/scene/error.h"
@@ -74,6 +75,20 @@ void refuse_others(vtkRenderer& renderer, vtkCamera& camera) {
   if (pixel[0] != pixel[1]) throw Error("renderer: its pixels are not square; set PixelAspect 1 1");
 }
 
+/// A head light as the GPU mapper has it: alone it is at the camera, also of parallel rays; beside
+/// others it shines along the camera's axis.
+std::variant<HeadLight, DirectionalLight, PointLight> head_light(vtkCamera& camera, int shining,
+                                                                 bool is_lit, Notes& notes) {
+  if (shining > 1) return DirectionalLight{vector_of(camera.GetDirectionOfProjection())};
+  if (camera.GetParallelProjection() == 0) return HeadLight{};
+  if (is_lit) {
+    notes.add(
+        "VTK sees its head light from where a ray enters the data, here it is seen from each "
+        "point");
+  }
+  return PointLight{vector_of(camera.GetPosition())};
+}
+
 /// Where a depth of the window's buffer is, along the view direction from the camera.
 double along_view(vtkCamera& camera, double depth) {
   double near, far;
@@ -115,9 +130,15 @@ View view_of(vtkRenderer& renderer) {
   return view;
 }
 
-std::vector<Light> lights_of(vtkRenderer& renderer, Notes& notes) {
+std::vector<Light> lights_of(vtkRenderer& renderer, bool is_lit, Notes& notes) {
   std::vector<Light> lights;
   vtkLightCollection* const all = renderer.GetLights();
+  int shining = 0;
+  for (int i = 0; i < all->GetNumberOfItems(); ++i) {
+    shining += vtkLight::SafeDownCast(all->GetItemAsObject(i))->GetSwitch() != 0 ? 1 : 0;
+  }
+  const std::variant<HeadLight, DirectionalLight, PointLight> head =
+      head_light(*renderer.GetActiveCamera(), shining, is_lit, notes);
   for (int i = 0; i < all->GetNumberOfItems(); ++i) {
     vtkLight& light = *vtkLight::SafeDownCast(all->GetItemAsObject(i));
     if (light.GetSwitch() == 0) continue;
@@ -130,7 +151,7 @@ std::vector<Light> lights_of(vtkRenderer& renderer, Notes& notes) {
     const double intensity = std::max(light.GetIntensity(), 0.0);
     made.color = {intensity * color[0], intensity * color[1], intensity * color[2]};
     if (light.LightTypeIsHeadlight() != 0) {
-      made.kind = HeadLight{};
+      made.kind = head;
     } else if (light.GetPositional() != 0) {
       const double* const fade = light.GetAttenuationValues();
       if (fade[0] != 1 || fade[1] != 0 || fade[2] != 0 || light.GetConeAngle() < 90) {
@@ -145,7 +166,7 @@ std::vector<Light> lights_of(vtkRenderer& renderer, Notes& notes) {
     }
     lights.push_back(made);
   }
-  if (lights.empty()) lights.emplace_back();
+  if (lights.empty()) lights.push_back({head, {1, 1, 1}});
   return lights;
 }
 

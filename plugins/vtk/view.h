@@ -30,7 +30,8 @@ struct View {
 /// the view, pixels that are not square, parts of pixels.
 View view_of(vtkRenderer& renderer);
 /// Returns the lights that are on. A renderer without lights has a head light, as VTK makes one.
-std::vector<Light> lights_of(vtkRenderer& renderer, Notes& notes);
+/// `is_lit`: whether anything is seen in them.
+std::vector<Light> lights_of(vtkRenderer& renderer, bool is_lit, Notes& notes);
 /// Returns whether a property's ambient part is seen. VTK gives its color to it under one head
 /// light of intensity 1; under other lights it has the lights' own ambient colors, which are black
 /// unless a program sets them.

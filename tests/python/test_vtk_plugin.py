@@ -106,7 +106,9 @@ def stages():
     yield "parallel", lambda stage: stage.camera.ParallelProjectionOn()
     yield "unit distance", lambda stage: stage.volume.SetProperty(soft(2.5))
     yield "lit", lambda stage: stage.volume.GetProperty().ShadeOn()
+    yield "lit, parallel", lit_parallel
     yield "lamp", lamp
+    yield "lamp and head light", lamp_and_head_light
     yield "moved", moved
     yield "clipped", clipped
     yield "cropped", cropped
@@ -127,6 +129,18 @@ def lamp(stage):
     light.SetFocalPoint(0, 0, 0)
     light.SetDiffuseColor(1, 0.5, 0.25)
     light.SetIntensity(0.8)
+    stage.renderer.AddLight(light)
+
+
+def lit_parallel(stage):
+    stage.volume.GetProperty().ShadeOn()
+    stage.camera.ParallelProjectionOn()
+
+
+def lamp_and_head_light(stage):
+    lamp(stage)
+    light = vtk.vtkLight()
+    light.SetLightTypeToHeadlight()
     stage.renderer.AddLight(light)
 
 
