@@ -28,6 +28,7 @@ void refuse_arguments(const RenderArguments& arguments) {
       {"--reference", arguments.reference},
       {"--print-tf", arguments.print_tf},
       {"--save-tf", !arguments.save_tf.empty()},
+      {"--device", !arguments.device.empty() && arguments.device != "cpu"},
       {"--method", !arguments.method.empty() && arguments.method != "exact"}};
   for (const auto& [argument, is_given] : given) {
     if (!is_given) continue;
@@ -97,7 +98,10 @@ class RankRun {
     picture.ranks_json = ranks_json(ranks_, report);
     picture.notes = std::move(bricks.notes);
     picture.over = over_tolerance(picture.report, prepared.scene.integration);
-    over_ = picture.over.has_value();
+    // The first rank alone has the report of the whole picture.
+    std::vector<double> is_over{ranks_.rank() == 0 && picture.over ? 1.0 : 0.0};
+    ranks_.reduce_all(is_over, Communicator::Reduction::maximum);
+    over_ = is_over[0] > 0;
     std::optional<std::string> over;
     agreed(ranks_, [&] {
       if (ranks_.rank() != 0) return;

@@ -29,11 +29,13 @@ class vtkWindow;
 
 namespace pellucid::plugin {
 
+inline constexpr int most_threads = 1024;
+
 /// What a mapper can be told beside what VTK's own can.
 struct Settings {
   double tolerance = default_tolerance;
   Grade grade = Grade::estimated;
-  int threads = 0;  ///< 0: one per core
+  int threads = 0;  ///< up to most_threads; 0: one per core
 };
 
 /// Set a number, and return whether it is another one than before. The tolerance is brought into

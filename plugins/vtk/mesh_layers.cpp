@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "mesh_layers.h"
 
+#include <vtkCellArray.h>
 #include <vtkCellData.h>
 #include <vtkDataArray.h>
 #include <vtkNew.h>
 #include <vtkPointData.h>
+#include <vtkUnsignedCharArray.h>
 #include <vtkUnstructuredGrid.h>
 #include <vtkUnstructuredGridVolumeMapper.h>
 #include <vtkVolume.h>
@@ -48,6 +50,19 @@ vtkSmartPointer<vtkUnstructuredGrid> with_values(vtkUnstructuredGrid& grid, vtkD
   return bare;
 }
 
+/// When what a mesh is made of changed last. The time of a grid leaves out that of its cells.
+vtkMTimeType time_of(vtkUnstructuredGrid& grid, vtkDataArray& array) {
+  vtkMTimeType time = std::max(grid.GetMTime(), array.GetMTime());
+  if (vtkCellArray* const cells = grid.GetCells()) {
+    time = std::max({time, cells->GetMTime(), cells->GetConnectivityArray()->GetMTime(),
+                     cells->GetOffsetsArray()->GetMTime()});
+  }
+  if (vtkUnsignedCharArray* const types = grid.GetCellTypesArray()) {
+    time = std::max(time, types->GetMTime());
+  }
+  return time;
+}
+
 std::shared_ptr<const MeshChannels> mesh_of(vtkUnstructuredGrid& grid, vtkDataArray& array,
                                             bool of_cells) {
   MeshBlocks blocks;
@@ -82,11 +97,16 @@ std::vector<Layer> layers_of(vtkUnstructuredGridVolumeMapper& mapper, vtkVolume&
     throw Error("the array has " + std::to_string(array->GetNumberOfComponents()) +
                 " components; one is shown, extract it");
   }
-  const vtkMTimeType time = std::max(grid->GetMTime(), array->GetMTime());
-  if (kept.mesh == nullptr || kept.array != array || kept.time != time) {
+  const vtkMTimeType time = time_of(*grid, *array);
+  // Cells that are inserted change no time.
+  const std::array<vtkIdType, 2> counts{grid->GetNumberOfPoints(), grid->GetNumberOfCells()};
+  if (kept.mesh == nullptr || kept.array != array || kept.time != time || kept.counts != counts ||
+      kept.cells != grid->GetCells()) {
     kept.mesh = mesh_of(*grid, *array, of_cells != 0);
     kept.array = array;
     kept.time = time;
+    kept.counts = counts;
+    kept.cells = grid->GetCells();
     ++kept.made;
   }
   vtkVolumeProperty& property = *volume.GetProperty();

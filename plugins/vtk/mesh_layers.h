@@ -4,6 +4,7 @@
 #include <vtkSmartPointer.h>
 #include <vtkType.h>
 
+#include <array>
 #include <memory>
 #include <vector>
 
@@ -11,6 +12,7 @@
 #include "notes.h"
 #include "pellucid/scene/layer.h"
 
+class vtkCellArray;
 class vtkDataArray;
 class vtkUnstructuredGridVolumeMapper;
 class vtkVolume;
@@ -22,6 +24,8 @@ struct KeptOfMeshes {
   std::shared_ptr<const MeshChannels> mesh;
   vtkSmartPointer<vtkDataArray> array;
   vtkMTimeType time = 0;
+  std::array<vtkIdType, 2> counts{};  ///< of points and cells
+  vtkSmartPointer<vtkCellArray> cells;
   int made = 0;  ///< how often it was cut
   KeptFunctions functions;
 };

@@ -54,6 +54,11 @@ void refuse_others(vtkRenderer& renderer, vtkCamera& camera) {
   if (camera.GetUseOffAxisProjection() != 0) {
     throw Error("camera: its projection is off-axis by a screen; set UseOffAxisProjectionOff()");
   }
+  if (camera.GetUseExplicitProjectionTransformMatrix() || camera.GetUseExplicitAspectRatio()) {
+    throw Error(
+        "camera: has an explicit projection or aspect ratio; set "
+        "UseExplicitProjectionTransformMatrixOff() and UseExplicitAspectRatioOff()");
+  }
   if (camera.GetUserViewTransform() != nullptr || camera.GetUserTransform() != nullptr) {
     throw Error("camera: has a transform of the view; move the camera instead");
   }
@@ -166,7 +171,10 @@ std::vector<Light> lights_of(vtkRenderer& renderer, bool is_lit, Notes& notes) {
     }
     lights.push_back(made);
   }
-  if (lights.empty()) lights.push_back({head, {1, 1, 1}});
+  // VTK makes a head light of its own if none shines.
+  if (lights.empty() && renderer.GetAutomaticLightCreation() != 0) {
+    lights.push_back({head, {1, 1, 1}});
+  }
   return lights;
 }
 

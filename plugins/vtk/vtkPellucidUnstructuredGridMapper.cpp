@@ -45,7 +45,7 @@ int vtkPellucidUnstructuredGridMapper::GetGrade() {
 }
 
 void vtkPellucidUnstructuredGridMapper::SetNumberOfThreads(int threads) {
-  this->Core->settings.threads = std::max(threads, 0);
+  this->Core->settings.threads = std::clamp(threads, 0, pellucid::plugin::most_threads);
 }
 
 int vtkPellucidUnstructuredGridMapper::GetNumberOfThreads() {

@@ -53,7 +53,7 @@ int vtkPellucidVolumeMapper::GetGrade() {
 }
 
 void vtkPellucidVolumeMapper::SetNumberOfThreads(int threads) {
-  this->Core->settings.threads = std::max(threads, 0);
+  this->Core->settings.threads = std::clamp(threads, 0, pellucid::plugin::most_threads);
 }
 
 int vtkPellucidVolumeMapper::GetNumberOfThreads() {

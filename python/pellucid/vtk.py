@@ -332,7 +332,8 @@ def _curve_of(function: Any) -> Curve:
         node = [0.0] * 4
         function.GetNodeValue(i, node)
         nodes.append(node)
-    return _curve(nodes, 1, True, lambda x: [function.GetValue(x)], bool(function.GetClamping()))
+    straight = not function.GetUseLogScale()
+    return _curve(nodes, 1, straight, lambda x: [function.GetValue(x)], bool(function.GetClamping()))
 
 
 def _color_curve(look: Any) -> Curve:
@@ -407,6 +408,8 @@ def _clips(mapper: Any, matrix: numpy.ndarray, what: str, is_grid: bool) -> List
 
 
 def _camera(camera: Any, aspect: float) -> Camera:
+    if camera.GetUseExplicitProjectionTransformMatrix() or camera.GetUseExplicitAspectRatio():
+        raise Error("camera: has an explicit projection or aspect ratio; switch them off")
     for name, default in (("GetWindowCenter", (0.0, 0.0)), ("GetViewShear", (0.0, 0.0, 1.0))):
         if tuple(getattr(camera, name)()) != default:
             raise Error(f"camera: its {name[3:]} is {getattr(camera, name)()}; set {default}")
@@ -449,8 +452,10 @@ def _lights(renderer: Any, notes: List[str]) -> List[Any]:
             lights.append(DirectionalLight(
                 tuple(numpy.subtract(light.GetTransformedFocalPoint(),
                                      light.GetTransformedPosition()).tolist()), color))
-    # VTK makes a head light of its own if there is none.
-    return lights or [_head_light(camera, (1.0, 1.0, 1.0), notes)]
+    # VTK makes a head light of its own if none shines.
+    if lights or not renderer.GetAutomaticLightCreation():
+        return lights
+    return [_head_light(camera, (1.0, 1.0, 1.0), notes)]
 
 
 def _head_light(camera: Any, color: Any, notes: List[str]) -> Any:

@@ -2,8 +2,11 @@
 #include "pellucid/cluster/load.h"
 
 #include <algorithm>
+#include <cstdint>
+#include <filesystem>
 #include <limits>
 #include <optional>
+#include <string>
 #include <utility>
 
 #include "pellucid/cluster/render.h"
@@ -82,6 +85,25 @@ void check_functions(const SceneDescription& scene) {
   }
 }
 
+/// A checksum (FNV-1a) of what ranks must have alike before they work together, without what
+/// render() compares by name, and without paths, which may differ from machine to machine.
+std::string checksum(SceneDescription scene, BrickBalance balance) {
+  const bool has_camera = scene.camera.has_value();
+  scene.camera.reset();
+  scene.size = ImageSize{};
+  scene.samples = 1;
+  scene.integration.tolerance = default_tolerance;
+  visit_paths(scene, [](std::filesystem::path& path) {
+    if (!path.empty()) path = "file";
+  });
+  std::uint64_t sum = 14695981039346656037u;
+  for (const char c : scene_to_json(scene)) {
+    sum = (sum ^ static_cast<unsigned char>(c)) * 1099511628211u;
+  }
+  return std::to_string(sum) + (has_camera ? " with" : " without") + " a camera" +
+         (balance == BrickBalance::data ? ", balanced by data" : ", balanced by work");
+}
+
 class BrickLoader {
  public:
   BrickLoader(Communicator& ranks, const SceneDescription& description, const ParallelFor& parallel)
@@ -89,13 +111,18 @@ class BrickLoader {
 
   BrickedScene load(BrickBalance balance) {
     agreed(ranks_, [&] { plan(); });
+    std::string own;
+    agreed(ranks_, [&] { own = checksum(description_, balance); });
+    check_equal(ranks_, "the scene's checksum", own);
     check_equal(ranks_, "the size of the data", sizes());
     agreed(ranks_, [&] { load_whole(); });
-    find_frame();
+    agreed(ranks_, [&] { find_frame(); });
     // Where the camera is given and bricks are equal, nobody asks where the data absorb.
     surveys_.resize(plans_.size());
     if (balance == BrickBalance::work || !description_.camera) survey();
-    BrickedScene result{{}, make_tree(balance), {}, {}, {}};
+    std::optional<BrickTree> tree;
+    agreed(ranks_, [&] { tree.emplace(make_tree(balance)); });
+    BrickedScene result{{}, *std::move(tree), {}, {}, {}};
     agreed(ranks_, [&] { load_parts(result.tree); });
     result.scene = make();
     result.visible = visible_;

@@ -284,3 +284,58 @@ def test_environment_variables():
     assert run(VTK_AUTOLOAD_PATH=os.path.join(folder, "vtk")) == ["True"] * 2 + ["False"] * 3
     preload = os.path.join(folder, "vtk-preload", "libvtkPellucidPreload.so")
     assert run(LD_PRELOAD=preload) == ["True"] * 5
+
+
+def test_cells_that_change_are_read_anew():
+    """The time of a grid leaves out that of its cells."""
+    threshold = vtk.vtkThreshold()
+    threshold.SetInputData(image_of(smooth(shape=(9, 9, 9))))
+    threshold.SetLowerThreshold(-1e9)
+    threshold.SetUpperThreshold(1e9)
+    threshold.Update()
+    grid = threshold.GetOutput()
+    stage = Stage(plugin.vtkPellucidUnstructuredGridMapper(), grid)
+    whole = stage.picture()
+    ids = numpy.array(grid.GetCells().GetConnectivityArray())
+    assert len(ids) == 8 * grid.GetNumberOfCells()
+    few = vtk.vtkCellArray()
+    for cell in ids.reshape(-1, 8)[:256]:
+        few.InsertNextCell(8, [int(i) for i in cell])
+    grid.SetCells(vtk.VTK_VOXEL, few)
+    assert abs(stage.picture() - whole).max() > 0.05
+    assert stage.off() <= tolerance_of(stage)
+
+
+def test_a_window_without_light_is_dark():
+    stage = Stage(plugin.vtkPellucidVolumeMapper())
+    stage.volume.GetProperty().ShadeOn()
+    stage.volume.GetProperty().SetAmbient(0)
+    stage.renderer.AutomaticLightCreationOff()
+    assert pellucid.vtk.scene_of(stage.renderer, []).lights == []
+    assert stage.picture().max() == 0
+
+
+def test_opacities_on_a_logarithmic_scale_agree():
+    stage = Stage(plugin.vtkPellucidVolumeMapper())
+    opacity = vtk.vtkPiecewiseFunction()
+    for point in ((1, 0.001), (60, 0.02), (120, 0.3)):
+        opacity.AddPoint(*point)
+    opacity.SetUseLogScale(True)
+    stage.volume.GetProperty().SetScalarOpacity(opacity)
+    assert stage.off() <= tolerance_of(stage)
+
+
+def test_cameras_that_have_no_counterpart_are_refused():
+    stage = Stage(plugin.vtkPellucidVolumeMapper())
+    stage.camera.SetExplicitAspectRatio(0.5)
+    stage.camera.UseExplicitAspectRatioOn()
+    with pytest.raises(pellucid.Error, match="explicit"):
+        pellucid.vtk.scene_of(stage.renderer, [])
+
+
+def test_threads_have_a_limit():
+    mapper = plugin.vtkPellucidVolumeMapper()
+    mapper.SetNumberOfThreads(100000)
+    assert mapper.GetNumberOfThreads() == 1024
+    mapper.SetNumberOfThreads(-3)
+    assert mapper.GetNumberOfThreads() == 0
