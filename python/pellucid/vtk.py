@@ -333,7 +333,8 @@ def _curve_of(function: Any) -> Curve:
         function.GetNodeValue(i, node)
         nodes.append(node)
     straight = not function.GetUseLogScale()
-    return _curve(nodes, 1, straight, lambda x: [function.GetValue(x)], bool(function.GetClamping()))
+    return _curve(nodes, 1, straight, lambda x: [function.GetValue(x)],
+                  bool(function.GetClamping()))
 
 
 def _color_curve(look: Any) -> Curve:

@@ -221,7 +221,9 @@ def test_frames_do_not_grow_memory():
     frames(100)
     before = frames(100)
     after = frames(1000)
-    assert after - before < 8 << 20, f"{(after - before) / 1e6} MB"
+    # oneTBB keeps arenas that busy cores have not left: 12 MB under a load of 14. A volume that is
+    # kept for each frame takes 32 MB.
+    assert after - before < 20 << 20, f"{(after - before) / 1e6} MB"
 
 
 def test_signals_are_handled_while_waiting():
