@@ -171,6 +171,9 @@ std::vector<Light> lights_of(vtkRenderer& renderer, bool is_lit, Notes& notes) {
     }
     lights.push_back(made);
   }
+  if (is_lit && renderer.GetTwoSidedLighting() == 0) {
+    notes.add("both sides reflect light here, whatever TwoSidedLighting says");
+  }
   // VTK makes a head light of its own if none shines.
   if (lights.empty() && renderer.GetAutomaticLightCreation() != 0) {
     lights.push_back({head, {1, 1, 1}});

@@ -453,6 +453,8 @@ def _lights(renderer: Any, notes: List[str]) -> List[Any]:
             lights.append(DirectionalLight(
                 tuple(numpy.subtract(light.GetTransformedFocalPoint(),
                                      light.GetTransformedPosition()).tolist()), color))
+    if not renderer.GetTwoSidedLighting():
+        notes.append("both sides reflect light here, whatever TwoSidedLighting says")
     # VTK makes a head light of its own if none shines.
     if lights or not renderer.GetAutomaticLightCreation():
         return lights
