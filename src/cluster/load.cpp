@@ -2,13 +2,13 @@
 #include "pellucid/cluster/load.h"
 
 #include <algorithm>
-#include <cstdint>
 #include <filesystem>
 #include <limits>
 #include <optional>
 #include <string>
 #include <utility>
 
+#include "checksum.h"
 #include "pellucid/cluster/render.h"
 #include "pellucid/cluster/sub_scene.h"
 #include "pellucid/io/image_files.h"
@@ -85,7 +85,7 @@ void check_functions(const SceneDescription& scene) {
   }
 }
 
-/// A checksum (FNV-1a) of what ranks must have alike before they work together, without what
+/// A checksum of what ranks must have alike before they work together, without what
 /// render() compares by name, and without paths, which may differ from machine to machine.
 std::string checksum(SceneDescription scene, BrickBalance balance) {
   const bool has_camera = scene.camera.has_value();
@@ -96,11 +96,9 @@ std::string checksum(SceneDescription scene, BrickBalance balance) {
   visit_paths(scene, [](std::filesystem::path& path) {
     if (!path.empty()) path = "file";
   });
-  std::uint64_t sum = 14695981039346656037u;
-  for (const char c : scene_to_json(scene)) {
-    sum = (sum ^ static_cast<unsigned char>(c)) * 1099511628211u;
-  }
-  return std::to_string(sum) + (has_camera ? " with" : " without") + " a camera" +
+  Checksum sum;
+  sum.add(scene_to_json(scene));
+  return std::to_string(sum.value()) + (has_camera ? " with" : " without") + " a camera" +
          (balance == BrickBalance::data ? ", balanced by data" : ", balanced by work");
 }
 

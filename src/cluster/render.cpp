@@ -3,12 +3,13 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <charconv>
 #include <chrono>
 #include <cmath>
+#include <cstdint>
 #include <string>
 
+#include "checksum.h"
 #include "final_image.h"
 #include "frame_watch.h"
 #include "half_depths.h"
@@ -53,16 +54,13 @@ void check_frame(Communicator& ranks, const BrickTree& tree, const Scene& scene,
   check_equal(ranks, "the number of layers and the largest color",
               std::to_string(scene.layers.size()) + ", " + text(largest_color(scene)) +
                   (options.depth ? ", with depth" : "") + (options.values ? ", with values" : ""));
-  // A checksum (FNV-1a) of all boxes.
-  std::uint64_t sum = 14695981039346656037u;
+  Checksum sum;
   for (int brick = 0; brick < tree.count(); ++brick) {
     for (const Vec3<double>& corner : tree.corners(brick)) {
-      for (int a = 0; a < 3; ++a) {
-        sum = (sum ^ std::bit_cast<std::uint64_t>(corner[a])) * 1099511628211u;
-      }
+      for (int a = 0; a < 3; ++a) sum.add(corner[a]);
     }
   }
-  check_equal(ranks, "the bricks' checksum", std::to_string(sum));
+  check_equal(ranks, "the bricks' checksum", std::to_string(sum.value()));
 }
 
 /// The most bricks that rays of the frame meet, as every fourth tells; at least 1. What a ray may
