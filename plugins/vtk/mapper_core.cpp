@@ -97,6 +97,20 @@ bool set_grade(Settings& settings, int grade) {
   return std::exchange(settings.grade, wanted) != wanted;
 }
 
+void set_threads(Settings& settings, int threads) {
+  settings.threads = std::clamp(threads, 0, most_threads);
+}
+
+void print_state(std::ostream& out, vtkIndent indent, const MapperCore& core) {
+  out << indent << "Tolerance: " << core.settings.tolerance << "\n";
+  out << indent << "Grade: " << (core.settings.grade == Grade::proved ? "proved" : "estimated")
+      << "\n";
+  out << indent << "NumberOfThreads: " << core.settings.threads << "\n";
+  out << indent << "Exact: " << core.outcome.exact << "\n";
+  out << indent << "LargestError: " << core.outcome.largest_error << "\n";
+  out << indent << "PixelsOver: " << core.outcome.pixels_over << "\n";
+}
+
 MapperCore::MapperCore() = default;
 MapperCore::~MapperCore() = default;
 

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <vtkIndent.h>
 #include <vtkSmartPointer.h>
 
 #include <functional>
 #include <memory>
+#include <ostream>
 #include <set>
 #include <string>
 #include <utility>
@@ -42,6 +44,7 @@ struct Settings {
 /// its limits; what is not a positive number is not taken.
 bool set_tolerance(Settings& settings, double tolerance);
 bool set_grade(Settings& settings, int grade);
+void set_threads(Settings& settings, int threads);
 
 /// What is known of the last picture.
 struct Outcome {
@@ -103,5 +106,8 @@ class MapperCore {
   std::vector<unsigned short> pixels_;
   std::set<std::string> told_;
 };
+
+/// Prints what a mapper was told and what its last picture came to, as PrintSelf() does.
+void print_state(std::ostream& out, vtkIndent indent, const MapperCore& core);
 
 }  // namespace pellucid::plugin

@@ -82,7 +82,7 @@ bool vtkPellucidFactory::Set(vtkAbstractVolumeMapper* mapper, const char* name, 
     if (pellucid::plugin::set_grade(core->settings, static_cast<int>(value))) mapper->Modified();
   } else if (wanted == "NumberOfThreads") {
     if (!(value >= 0 && value <= pellucid::plugin::most_threads)) return false;
-    core->settings.threads = static_cast<int>(value);
+    pellucid::plugin::set_threads(core->settings, static_cast<int>(value));
   } else {
     return false;
   }

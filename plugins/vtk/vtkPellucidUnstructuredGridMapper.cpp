@@ -5,8 +5,6 @@
 #include <vtkRenderer.h>
 #include <vtkVolume.h>
 
-#include <algorithm>
-
 #include "mapper_core.h"
 
 vtkStandardNewMacro(vtkPellucidUnstructuredGridMapper);
@@ -45,7 +43,7 @@ int vtkPellucidUnstructuredGridMapper::GetGrade() {
 }
 
 void vtkPellucidUnstructuredGridMapper::SetNumberOfThreads(int threads) {
-  this->Core->settings.threads = std::clamp(threads, 0, pellucid::plugin::most_threads);
+  pellucid::plugin::set_threads(this->Core->settings, threads);
 }
 
 int vtkPellucidUnstructuredGridMapper::GetNumberOfThreads() {
@@ -66,10 +64,5 @@ vtkIdType vtkPellucidUnstructuredGridMapper::GetPixelsOver() {
 
 void vtkPellucidUnstructuredGridMapper::PrintSelf(ostream& os, vtkIndent indent) {
   this->Superclass::PrintSelf(os, indent);
-  os << indent << "Tolerance: " << this->GetTolerance() << "\n";
-  os << indent << "Grade: " << (this->GetGrade() == 1 ? "proved" : "estimated") << "\n";
-  os << indent << "NumberOfThreads: " << this->GetNumberOfThreads() << "\n";
-  os << indent << "Exact: " << this->GetExact() << "\n";
-  os << indent << "LargestError: " << this->GetLargestError() << "\n";
-  os << indent << "PixelsOver: " << this->GetPixelsOver() << "\n";
+  pellucid::plugin::print_state(os, indent, *this->Core);
 }
