@@ -11,6 +11,7 @@
 #include "pellucid/cluster/render.h"
 #include "pellucid/cluster/sub_scene.h"
 #include "scenes.h"
+#include "waiting.h"
 
 namespace pellucid::python {
 
@@ -51,7 +52,7 @@ py::object render_on_ranks(const py::object& object, std::optional<int> handle,
   options.depth = depth;
   options.error = true;
   options.values = values;
-  options.threads = threads;
+  options.threads = checked_threads(threads);
   std::exception_ptr raised;
   if (!progress.is_none()) {
     options.progress = [&](double fraction) {
