@@ -1,32 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 
-#include <cctype>
 #include <cstdio>
-#include <ostream>
 #include <string>
 
 #include "pellucid/scene/error.h"
 #include "tests/cuda/card.h"
+#include "tests/scenes/test_names.h"
 #include "tests/scenes/tolerance_matrix.h"
 
 /// The scenes of the tolerance matrix by the functions of a card: no pixel is over what it says.
 namespace pellucid::scenes {
 
-void PrintTo(const GalleryEntry& entry, std::ostream* stream) {
-  *stream << entry.name;
-}
-
 namespace {
-
-std::string test_name(const std::string& name) {
-  std::string word;
-  for (const char c : name) {
-    const bool plain = std::isalnum(static_cast<unsigned char>(c)) != 0;
-    if (plain || (!word.empty() && word.back() != '_')) word += plain ? c : '_';
-  }
-  return word;
-}
 
 /// Returns whether the rays of a scene are left to the CPU, which says so.
 bool goes_to_cpu(const RenderReport& report) {

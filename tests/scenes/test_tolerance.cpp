@@ -1,31 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 
-#include <cctype>
 #include <cstdio>
-#include <ostream>
 
+#include "tests/scenes/test_names.h"
 #include "tests/scenes/tolerance_matrix.h"
 
 /// A small part of the matrix that scripts/matrix runs in full: every scene, from one of its
 /// cameras in turn.
 namespace pellucid::scenes {
 
-void PrintTo(const GalleryEntry& entry, std::ostream* stream) {
-  *stream << entry.name;
-}
-
 namespace {
-
-/// Letters and digits, in words.
-std::string test_name(const std::string& name) {
-  std::string word;
-  for (const char c : name) {
-    const bool plain = std::isalnum(static_cast<unsigned char>(c)) != 0;
-    if (plain || (!word.empty() && word.back() != '_')) word += plain ? c : '_';
-  }
-  return word;
-}
 
 class ToleranceMatrix : public testing::TestWithParam<GalleryEntry> {};
 
