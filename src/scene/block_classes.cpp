@@ -3,6 +3,8 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <mutex>
+#include <utility>
 #include <vector>
 
 #include "block_levels.h"
@@ -101,9 +103,19 @@ class CodeTable {
   std::vector<Sums> sums_;
 };
 
+/// Blocks that may be sampled, and those of them in which all values absorb.
+struct SampledCounts {
+  int all = 0, throughout = 0;
+
+  double share_throughout() const noexcept {
+    return all > 0 ? static_cast<double>(throughout) / static_cast<double>(all) : 0;
+  }
+};
+
 /// `sampled`: as find_smooth_blocks() wants it.
 BlockClass classify(const BlockRecord& record, const CodeTable& codes,
-                    const BlockRoughness& roughness, SampledBlock& sampled) noexcept {
+                    const BlockRoughness& roughness, SampledBlock& sampled,
+                    SampledCounts& counts) noexcept {
   sampled = {};
   const BlockVacuum vacuum = record.vacuum();
   if (vacuum == BlockVacuum::all || codes.is_clear(record.lower, record.upper)) {
@@ -116,20 +128,12 @@ BlockClass classify(const BlockRecord& record, const CodeTable& codes,
   }
   if (codes.has_jump(record.lower, record.upper)) return {infinite, BlockKind::cells, 0};
   const BlockRoughness::Range range = roughness(record.lower, record.upper);
-  sampled = {float_above(range.of_sample), static_cast<float>(range.steps),
-             codes.absorbs_throughout(record.lower, record.upper)};
-  return {range.roughness, BlockKind::cells, 0};
-}
-
-/// Of the blocks that may be sampled.
-double share_throughout(const std::vector<SampledBlock>& sampled) {
-  std::ptrdiff_t all = 0, throughout = 0;
-  for (const SampledBlock& block : sampled) {
-    if (block.roughness < 0) continue;
-    ++all;
-    if (block.absorbs_throughout) ++throughout;
+  sampled = {float_above(range.of_sample), static_cast<float>(range.steps)};
+  if (!(sampled.roughness < 0)) {
+    ++counts.all;
+    if (codes.absorbs_throughout(record.lower, record.upper)) ++counts.throughout;
   }
-  return all > 0 ? static_cast<double>(throughout) / static_cast<double>(all) : 0;
+  return {range.roughness, BlockKind::cells, 0};
 }
 
 }  // namespace
@@ -143,19 +147,26 @@ BlockClassesStorage::BlockClassesStorage(const BlockRecords& records,
   const CodeTable codes(records.code, transfer);
   const BlockRoughness roughness(records.code, transfer, largest_color, run);
   std::vector<SampledBlock> sampled(limits ? classes_.size() : 0);
+  SampledCounts counts;
+  std::mutex mutex;
   run(records.count(), [&](int first, int last) {
     SampledBlock unused;
+    SampledCounts own;
     for (int i = first; i < last; ++i) {
       const auto b = static_cast<std::size_t>(i);
-      classes_[b] = classify(records[i], codes, roughness, sampled.empty() ? unused : sampled[b]);
+      classes_[b] =
+          classify(records[i], codes, roughness, sampled.empty() ? unused : sampled[b], own);
     }
+    const std::lock_guard lock(mutex);
+    counts.all += own.all;
+    counts.throughout += own.throughout;
   });
   const std::array<int, 3> count{records.axis[0].cells(), records.axis[1].cells(),
                                  records.axis[2].cells()};
   find_block_levels(count, BlockKind::skip, run, classes_.data());
   if (!limits) return;
-  smooth_ = find_smooth_blocks(records, sampled, limits(share_throughout(sampled)), run,
-                               classes_.data(), local_);
+  const StepLimits of_steps = limits(counts.share_throughout());
+  smooth_ = find_smooth_blocks(records, std::move(sampled), of_steps, run, classes_.data(), local_);
   if (!(smooth_.longest_step > 0)) return;
   find_block_levels(count, BlockKind::smooth, run, classes_.data());
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <vector>
@@ -10,28 +11,34 @@
 namespace pellucid {
 
 /// Of each block and those that touch it what join(all, other) makes of their records, `fields` of
-/// each block, one behind the other, field by field. Along one axis after the other.
+/// each block, one behind the other, field by field. Along one axis after the other, in place.
 template <class Record, class Join>
 void join_with_neighbours(const BlockRecords& blocks, const ParallelFor& parallel,
                           std::size_t fields, std::vector<Record>& records, const Join& join) {
-  std::vector<Record>& from = records;
-  std::vector<Record> to(records.size());
-  int stride = 1;
+  // Records that lie side by side and have the same place along the axis, at most so many at once.
+  constexpr std::size_t most_at_once = 1024;
+  std::size_t stride = fields;
   for (const GridAxis<double>& axis : blocks.axis) {
-    const int along = axis.cells();
-    parallel(blocks.count(), [&](int first, int last) {
-      for (int b = first; b < last; ++b) {
-        const int place = b / stride % along;
-        for (std::size_t n = 0; n < fields; ++n) {
-          const auto at = [&](int block) { return fields * static_cast<std::size_t>(block) + n; };
-          Record all = from[at(b)];
-          if (place > 0) join(all, from[at(b - stride)]);
-          if (place + 1 < along) join(all, from[at(b + stride)]);
-          to[at(b)] = all;
+    const auto along = static_cast<std::size_t>(axis.cells());
+    const std::size_t width = std::min(stride, most_at_once), parts = (stride + width - 1) / width,
+                      lines = records.size() / (stride * along);
+    parallel(static_cast<int>(lines * parts), [&](int first, int last) {
+      std::vector<Record> before(width);  // as they were
+      for (auto task = static_cast<std::size_t>(first); task < static_cast<std::size_t>(last);
+           ++task) {
+        const std::size_t part = task % parts * width, count = std::min(width, stride - part);
+        Record* const begin = records.data() + task / parts * stride * along + part;
+        for (std::size_t place = 0; place < along; ++place) {
+          Record* const own = begin + place * stride;
+          for (std::size_t n = 0; n < count; ++n) {
+            const Record was = own[n];
+            if (place > 0) join(own[n], before[n]);
+            if (place + 1 < along) join(own[n], own[n + stride]);
+            before[n] = was;
+          }
         }
       }
     });
-    from.swap(to);
     stride *= along;
   }
 }

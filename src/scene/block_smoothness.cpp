@@ -35,10 +35,9 @@ struct Candidates {
 
 }  // namespace
 
-SmoothBlocks find_smooth_blocks(const BlockRecords& records,
-                                const std::vector<SampledBlock>& sampled, const StepLimits& limits,
-                                const ParallelFor& parallel, BlockClass* classes,
-                                std::vector<float>& local) {
+SmoothBlocks find_smooth_blocks(const BlockRecords& records, std::vector<SampledBlock> sampled,
+                                const StepLimits& limits, const ParallelFor& parallel,
+                                BlockClass* classes, std::vector<float>& local) {
   local.assign(fields * sampled.size(), 0);
   const BlockGroups groups(records);
   std::vector<SmoothBlocks> of_slab(static_cast<std::size_t>(groups.slabs()));
@@ -90,9 +89,12 @@ SmoothBlocks find_smooth_blocks(const BlockRecords& records,
       all.bend[a] = std::max(all.bend[a], slab.bend[a]);
     }
   }
+  sampled = {};
   if (all.longest_step > 0) {
     join_with_neighbours(records, parallel, fields, local,
                          [](float& most, float other) { most = std::max(most, other); });
+  } else {
+    local = {};
   }
   return all;
 }

@@ -12,15 +12,13 @@ namespace pellucid {
 struct SampledBlock {
   float roughness = -1;  ///< SmoothBlocks::roughness; negative: it may not
   float steps = std::numeric_limits<float>::infinity();  ///< BlockRoughness::Range
-  bool absorbs_throughout = false;                       ///< at all values of the block
 };
 
 /// Makes those blocks smooth (BlockKind, SmoothBlocks) that are: of those that may be sampled,
 /// those that are so together with the others of their group of 4³ blocks. `local` is made what
-/// SmoothBlocks::local is to refer to.
-SmoothBlocks find_smooth_blocks(const BlockRecords& records,
-                                const std::vector<SampledBlock>& sampled, const StepLimits& limits,
-                                const ParallelFor& parallel, BlockClass* classes,
-                                std::vector<float>& local);
+/// SmoothBlocks::local is to refer to; empty if no block is smooth. Lets go of `sampled`.
+SmoothBlocks find_smooth_blocks(const BlockRecords& records, std::vector<SampledBlock> sampled,
+                                const StepLimits& limits, const ParallelFor& parallel,
+                                BlockClass* classes, std::vector<float>& local);
 
 }  // namespace pellucid
