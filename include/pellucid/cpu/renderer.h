@@ -2,12 +2,19 @@
 #pragma once
 
 #include <memory>
+#include <vector>
 
 #include "pellucid/cpu/render.h"
 
 namespace pellucid {
 
 class KeptFrames;
+
+/// A pixel of a region's frame, and how many times the scene's tolerance it may be off by.
+struct PixelRequest {
+  int column = 0, row = 0;
+  double allowance = 1;
+};
 
 /// A frame that is being rendered by threads of its own. The handle can be moved; its destructor
 /// cancels the frame and waits for its threads. All members are safe to call from any thread, but
@@ -68,6 +75,13 @@ class Renderer {
   /// Renders a frame on this thread and others, as pellucid::render() does.
   Image render(const Scene& scene, const RenderOptions& options = {},
                RenderReport* report = nullptr);
+  /// Renders some pixels of a frame of a region (RenderOptions::region) again, each to a tolerance
+  /// of its own in place of the region's allowance. Returns an image of one row with a pixel for
+  /// each request, with errors. Uses of the options the threads, the region, the progress and the
+  /// stop token. `report`, unless null, receives the work. Throws Error unless there is a region,
+  /// and as render() does.
+  Image render_pixels(const Scene& scene, const RenderOptions& options,
+                      const std::vector<PixelRequest>& requests, RenderReport* report = nullptr);
   /// Starts a frame and returns at once. The frame may outlive the renderer. Callbacks of the
   /// options are called by the frame's threads.
   RunningFrame start(Scene scene, RenderOptions options = {});

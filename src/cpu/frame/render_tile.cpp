@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <functional>
 #include <limits>
 #include <vector>
 
@@ -40,12 +41,6 @@ std::vector<Place> places_of(const Tile& tile) {
     }
   }
   return places;
-}
-
-/// Where the rays of a pixel end.
-Interval<double> range_of_rays(const Scene& scene, std::size_t pixel) {
-  if (!scene.backdrop) return RayPart{}.range;
-  return {0, double{scene.backdrop->depth[pixel]}};
 }
 
 /// Composites a pixel over the backdrop, whose depth the pixel has if most of its opacity is there.
@@ -94,8 +89,15 @@ RayResult nothing_of_region() {
   return nothing;
 }
 
-/// Traces the parts of rays that lie in a region. Those that may be off by the same go together.
+}  // namespace
+
+Interval<double> range_of_rays(const Scene& scene, std::size_t pixel) {
+  if (!scene.backdrop) return RayPart{}.range;
+  return {0, double{scene.backdrop->depth[pixel]}};
+}
+
 std::vector<RayResult> trace_region(const Frame& frame, const std::vector<RayPart>& rays,
+                                    const std::function<double(std::size_t)>& allowance_of,
                                     double share_of_rays, const TileTask& task) {
   struct Group {
     double allowance;
@@ -109,8 +111,7 @@ std::vector<RayResult> trace_region(const Frame& frame, const std::vector<RayPar
     const Interval<double> range{std::max(own.begin, rays[i].range.begin),
                                  std::min(own.end, rays[i].range.end)};
     if (!(range.begin < range.end)) continue;
-    double allowance = region.allowance ? region.allowance(rays[i].ray) : 1;
-    if (task.between != nullptr) allowance = std::min(allowance, 1.0);
+    const double allowance = allowance_of(i);
     auto group = std::ranges::find(groups, allowance, &Group::allowance);
     if (group == groups.end()) group = groups.insert(group, {allowance});
     group->rays.push_back({rays[i].ray, range});
@@ -124,8 +125,6 @@ std::vector<RayResult> trace_region(const Frame& frame, const std::vector<RayPar
   }
   return results;
 }
-
-}  // namespace
 
 std::size_t render_tile(const Frame& frame, const Tile& tile, const TileTask& task,
                         const ImageView& image, RenderReport& report) {
@@ -172,8 +171,12 @@ std::size_t render_tile(const Frame& frame, const Tile& tile, const TileTask& ta
   }
   std::vector<double> values;  // of pixels with one ray
   const double share_of_rays = between != nullptr ? between->share_of_rays(level) : 1;
+  const auto allowance = [&](std::size_t ray) {
+    const double most = frame.region->allowance ? frame.region->allowance(rays[ray].ray) : 1;
+    return between != nullptr ? std::min(most, 1.0) : most;
+  };
   const std::vector<RayResult> results =
-      frame.region ? trace_region(frame, rays, share_of_rays, task)
+      frame.region ? trace_region(frame, rays, allowance, share_of_rays, task)
                    : trace(frame, rays, {1, share_of_rays, task.stop}, task,
                            image.values != nullptr ? &values : nullptr);
   if (task.stop.stop_requested()) return 0;

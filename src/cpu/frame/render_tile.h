@@ -4,7 +4,9 @@
 #include <atomic>
 #include <chrono>
 #include <cstddef>
+#include <functional>
 #include <stop_token>
+#include <vector>
 
 #include "between_pixels.h"
 #include "frame.h"
@@ -36,6 +38,15 @@ struct TileTask {
   std::stop_token stop;    ///< once it is requested, what becomes of the tile does not matter
   TileSpeed* speed;
 };
+
+/// Returns where the rays of a pixel end: at the backdrop, if there is one.
+Interval<double> range_of_rays(const Scene& scene, std::size_t pixel);
+
+/// Traces the parts of rays that lie in the frame's region. Ray n may be off by `allowance(n)`
+/// times the tolerance; those that may be off by the same go together.
+std::vector<RayResult> trace_region(const Frame& frame, const std::vector<RayPart>& rays,
+                                    const std::function<double(std::size_t)>& allowance,
+                                    double share_of_rays, const TileTask& task);
 
 /// Renders the pixels of the tile into the image, and adds them to the report. What a pixel becomes
 /// depends on nothing but the frame and its place: neither on the tile nor on the thread. Gives how

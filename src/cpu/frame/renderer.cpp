@@ -28,9 +28,11 @@ class KeptFrames {
   KeptDevices devices;
 
   Image render(const Scene& scene, const RenderOptions& options, RenderReport* report) {
-    int count = options.threads > 0 ? options.threads : threads;
-    if (count == 0) count = default_thread_count();
-    return render_frame(scene, options, count, setups, devices, report);
+    return render_frame(scene, options, count_for(options), setups, devices, report);
+  }
+  int count_for(const RenderOptions& options) const {
+    const int count = options.threads > 0 ? options.threads : threads;
+    return count > 0 ? count : default_thread_count();
   }
 };
 
@@ -41,6 +43,12 @@ Renderer::~Renderer() = default;
 
 Image Renderer::render(const Scene& scene, const RenderOptions& options, RenderReport* report) {
   return kept_->render(scene, options, report);
+}
+
+Image Renderer::render_pixels(const Scene& scene, const RenderOptions& options,
+                              const std::vector<PixelRequest>& requests, RenderReport* report) {
+  return pellucid::render_pixels(scene, options, requests, kept_->count_for(options), kept_->setups,
+                                 report);
 }
 
 void Renderer::clear() {
