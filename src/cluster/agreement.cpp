@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <exception>
 #include <new>
+#include <sstream>
 
 #include "pellucid/cluster/render.h"
 #include "pellucid/scene/error.h"
@@ -48,11 +49,24 @@ void agreed(Communicator& ranks, const std::function<void()>& work) {
 }
 
 void check_equal(Communicator& ranks, const std::string& what, const std::string& own) {
-  const std::vector<std::string> all = ranks.gather_all(own);
-  for (std::size_t i = 1; i < all.size(); ++i) {
-    if (all[i] == all[0]) continue;
-    throw AgreedError("rank " + std::to_string(i) + ": " + what + " is " + all[i] +
-                      ", but that of rank 0 is " + all[0] + "; start all ranks with the same");
+  check_equal(ranks, {{what, own}});
+}
+
+void check_equal(Communicator& ranks, const std::vector<std::pair<std::string, std::string>>& own) {
+  std::string lines;
+  for (const auto& [what, text] : own) lines += text + '\n';
+  const std::vector<std::string> all = ranks.gather_all(lines);
+  std::vector<std::istringstream> of_rank(all.begin(), all.end());
+  for (const auto& [what, text] : own) {
+    std::string first, line;
+    std::getline(of_rank[0], first);
+    for (std::size_t i = 1; i < all.size(); ++i) {
+      line.clear();
+      std::getline(of_rank[i], line);
+      if (line == first) continue;
+      throw AgreedError("rank " + std::to_string(i) + ": " + what + " is " + line +
+                        ", but that of rank 0 is " + first + "; start all ranks with the same");
+    }
   }
 }
 

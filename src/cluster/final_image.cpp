@@ -39,6 +39,7 @@ std::shared_ptr<const Image> backdrop_of_rays(const Image& backdrop, int samples
 struct Pixel {
   std::array<double, 4> color{};
   double error = 0, depth = infinity;
+  double brightest = 0;  ///< of the colors
   bool proved = true;
 
   void add(const RayPixel& ray, double ray_depth) {
@@ -60,6 +61,58 @@ struct Pixel {
     for (std::size_t c = 0; c < 4; ++c) color[c] += transparency * double{behind[c]};
     if (!(own > 0.5 * color[3]) || std::isinf(depth)) depth = behind_depth;
   }
+};
+
+/// The pixels of a scene, of composited rays.
+class Pixels {
+ public:
+  /// `depth`: of the rays; empty: not asked for.
+  Pixels(const Scene& scene, const std::vector<RayPixel>& rays, const std::vector<float>& depth)
+      : scene_(scene),
+        rays_(rays),
+        depth_(depth),
+        width_(static_cast<std::size_t>(scene.size.width)),
+        samples_(static_cast<std::size_t>(scene.samples)),
+        reserved_(approximation_error(scene)),
+        most_(
+            std::max({largest_color(scene), 1.0, scene.backdrop ? brightest_behind(scene) : 0.0})) {
+  }
+
+  /// Calls visit(index) for each ray of a pixel.
+  template <class Visit>
+  void visit_rays(std::size_t pixel, const Visit& visit) const {
+    const std::size_t row = pixel / width_, column = pixel % width_;
+    for (std::size_t n = 0; n < samples_ * samples_; ++n) {
+      visit((row * samples_ + n / samples_) * width_ * samples_ + column * samples_ + n % samples_);
+    }
+  }
+
+  /// What a pixel may be off by if none of its rays is off by more.
+  double most_error(double of_ray) const noexcept {
+    return of_ray + reserved_ + 2 * most_ * 0x1p-24;
+  }
+  /// The pixel over the backdrop, with all that it may be off by.
+  Pixel at(std::size_t index) const {
+    Pixel pixel;
+    visit_rays(index, [&](std::size_t ray) {
+      pixel.add(rays_[ray], depth_.empty() ? infinity : double{depth_[ray]});
+    });
+    pixel.divide(static_cast<double>(samples_ * samples_));
+    const double approximation = pixel.color[3] > 0 ? reserved_ : 0;
+    if (scene_.backdrop) {
+      pixel.put_over(scene_.backdrop->pixels[index], double{scene_.backdrop->depth[index]});
+    }
+    for (const double color : pixel.color) pixel.brightest = std::max(pixel.brightest, color);
+    pixel.error = std::min(pixel.error + approximation, most_) + pixel.brightest * 0x1p-24;
+    return pixel;
+  }
+
+ private:
+  const Scene& scene_;
+  const std::vector<RayPixel>& rays_;
+  const std::vector<float>& depth_;
+  std::size_t width_, samples_;
+  double reserved_, most_;
 };
 
 }  // namespace
@@ -94,6 +147,25 @@ std::vector<RayPixel> to_ray_pixels(const Image& image) {
   return rays;
 }
 
+std::vector<std::size_t> rays_over_tolerance(const Scene& scene,
+                                             const std::vector<RayPixel>& rays) {
+  const std::vector<float> no_depth;
+  const Pixels all(scene, rays, no_depth);
+  std::vector<std::size_t> over;
+  float largest = 0;
+  bool known = true;
+  for (const RayPixel& ray : rays) {
+    largest = std::max(largest, ray.error);
+    known = known && ray.error >= 0;  // and no NaN
+  }
+  if (known && all.most_error(double{largest}) <= scene.integration.tolerance) return over;
+  for (std::size_t pixel = 0; pixel < count_of(scene.size); ++pixel) {
+    if (all.at(pixel).error <= scene.integration.tolerance) continue;
+    all.visit_rays(pixel, [&](std::size_t ray) { over.push_back(ray); });
+  }
+  return over;
+}
+
 Image final_image(const Scene& scene, const RenderOptions& options,
                   const std::vector<RayPixel>& rays, const std::vector<float>& depth,
                   RenderReport& report) {
@@ -110,42 +182,20 @@ Image final_image(const Scene& scene, const RenderOptions& options,
   report.largest_error = 0;
   report.pixels = pixels;
   report.pixels_proved = report.pixels_over_tolerance = 0;
-  const int samples = scene.samples;
-  const double most = std::max(largest_color(scene), 1.0);
-  const double brightest_backdrop = scene.backdrop ? brightest_behind(scene) : 0;
-  const double reserved = approximation_error(scene);
-  const std::size_t row_of_rays = static_cast<std::size_t>(image.width * samples);
+  const Pixels all(scene, rays, depth);
   for (std::size_t index = 0; index < pixels; ++index) {
-    const std::size_t row = index / static_cast<std::size_t>(image.width),
-                      column = index % static_cast<std::size_t>(image.width);
-    Pixel pixel;
-    for (int n = 0; n < samples * samples; ++n) {
-      const std::size_t ray =
-          (row * static_cast<std::size_t>(samples) + static_cast<std::size_t>(n / samples)) *
-              row_of_rays +
-          column * static_cast<std::size_t>(samples) + static_cast<std::size_t>(n % samples);
-      pixel.add(rays[ray], depth.empty() ? infinity : double{depth[ray]});
-    }
-    pixel.divide(samples * samples);
-    const double approximation = pixel.color[3] > 0 ? reserved : 0;
-    if (scene.backdrop) {
-      pixel.put_over(scene.backdrop->pixels[index], double{scene.backdrop->depth[index]});
-    }
-    double brightest = 0;
+    const Pixel pixel = all.at(index);
     for (std::size_t c = 0; c < 4; ++c) {
       image.pixels[index][c] = static_cast<float>(pixel.color[c]);
-      brightest = std::max(brightest, pixel.color[c]);
     }
-    const double error = std::min(pixel.error + approximation, std::max(most, brightest_backdrop)) +
-                         brightest * 0x1p-24;
     if (options.depth) image.depth[index] = static_cast<float>(pixel.depth);
     if (options.error) {
-      image.error[index] = float_above(error);
+      image.error[index] = float_above(pixel.error);
       image.proved[index] = pixel.proved ? 1 : 0;
     }
-    report.largest_error = std::max(report.largest_error, error);
+    report.largest_error = std::max(report.largest_error, pixel.error);
     if (pixel.proved) ++report.pixels_proved;
-    if (!(error <= scene.integration.tolerance)) ++report.pixels_over_tolerance;
+    if (!(pixel.error <= scene.integration.tolerance)) ++report.pixels_over_tolerance;
   }
   return image;
 }

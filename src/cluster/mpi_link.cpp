@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <chrono>
 #include <cstddef>
+#include <cstdint>
+#include <cstring>
 #include <stdexcept>
 #include <thread>
 
@@ -13,7 +15,7 @@ namespace pellucid {
 namespace {
 
 constexpr int signal_tag = 7;
-/// Pixels that are composited at once: 24 MiB. MPI needs as much again.
+/// Pixels that are composited at once: 24 MiB, and as much again as they are sent.
 constexpr std::size_t most_at_once = std::size_t{1} << 20;
 
 void check(int code) {
@@ -37,6 +39,86 @@ void composite_over(void* from, void* to, int* count, MPI_Datatype* /*type*/) {
   const auto* const front = static_cast<const RayPixel*>(from);
   auto* const behind = static_cast<RayPixel*>(to);
   for (int i = 0; i < *count; ++i) behind[i] = over(front[i], behind[i]);
+}
+
+/// The pixels that are not empty: the number of runs of them, the first pixel and the length of
+/// each run, and the pixels.
+std::vector<std::byte> packed(std::span<const RayPixel> pixels) {
+  std::vector<std::int32_t> runs{0};
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < pixels.size();) {
+    if (is_empty(pixels[i])) {
+      ++i;
+      continue;
+    }
+    const std::size_t first = i;
+    while (i < pixels.size() && !is_empty(pixels[i])) ++i;
+    runs.push_back(static_cast<std::int32_t>(first));
+    runs.push_back(static_cast<std::int32_t>(i - first));
+    count += i - first;
+    ++runs[0];
+  }
+  std::vector<std::byte> bytes(runs.size() * sizeof(std::int32_t) + count * sizeof(RayPixel));
+  std::memcpy(bytes.data(), runs.data(), runs.size() * sizeof(std::int32_t));
+  std::byte* to = bytes.data() + runs.size() * sizeof(std::int32_t);
+  for (std::size_t run = 1; run < runs.size(); run += 2) {
+    const std::size_t length = static_cast<std::size_t>(runs[run + 1]) * sizeof(RayPixel);
+    std::memcpy(to, pixels.data() + runs[run], length);
+    to += length;
+  }
+  return bytes;
+}
+
+/// Composites packed pixels, which are behind the others or in front of them.
+void composite_packed(const std::vector<std::byte>& bytes, bool behind,
+                      std::span<RayPixel> pixels) {
+  std::int32_t count = 0;
+  std::memcpy(&count, bytes.data(), sizeof(count));
+  std::vector<std::int32_t> runs(2 * static_cast<std::size_t>(count));
+  std::memcpy(runs.data(), bytes.data() + sizeof(count), runs.size() * sizeof(std::int32_t));
+  const std::byte* from = bytes.data() + (1 + runs.size()) * sizeof(std::int32_t);
+  for (std::size_t run = 0; run < runs.size(); run += 2) {
+    RayPixel* const first = pixels.data() + runs[run];
+    for (RayPixel* own = first; own != first + runs[run + 1]; ++own, from += sizeof(RayPixel)) {
+      RayPixel other;
+      std::memcpy(&other, from, sizeof(other));
+      *own = behind ? over(*own, other) : over(other, *own);
+    }
+  }
+}
+
+/// Composites the pixels of places 0 … size - 1 for the place `root`, two neighboring groups at a
+/// time. The one of a group that has its composite is `root`, or the first.
+void composite_for(MPI_Comm ranks, int place, int size, int root, std::span<RayPixel> pixels) {
+  const auto holder = [&](int first, int count) {
+    return root >= first && root < first + count ? root : first;
+  };
+  std::vector<RayPixel> copy;
+  std::span<RayPixel> all = pixels;
+  for (int half = 1; half < size; half *= 2) {
+    const int first = place / (2 * half) * (2 * half);
+    if (first + half >= size) continue;
+    const int front = holder(first, half), behind = holder(first + half, half),
+              both = holder(first, 2 * half);
+    if (place != front && place != behind) continue;
+    if (place != both) {
+      const std::vector<std::byte> bytes = packed(all);
+      check(MPI_Send(bytes.data(), static_cast<int>(bytes.size()), MPI_BYTE, both, 0, ranks));
+      continue;
+    }
+    MPI_Status status;
+    const int other = place == front ? behind : front;
+    check(MPI_Probe(other, 0, ranks, &status));
+    int length = 0;
+    check(MPI_Get_count(&status, MPI_BYTE, &length));
+    std::vector<std::byte> bytes(static_cast<std::size_t>(length));
+    check(MPI_Recv(bytes.data(), length, MPI_BYTE, other, 0, ranks, MPI_STATUS_IGNORE));
+    if (place != root && copy.empty()) {
+      copy.assign(pixels.begin(), pixels.end());
+      all = copy;
+    }
+    composite_packed(bytes, place == front, all);
+  }
 }
 
 }  // namespace
@@ -157,16 +239,13 @@ void MpiLink::composite(std::span<RayPixel> pixels, int place, bool in_front) {
   for (std::size_t first = 0; first < pixels.size(); first += most_at_once) {
     const std::size_t count = std::min(most_at_once, pixels.size() - first);
     RayPixel* const some = pixels.data() + first;
-    const auto number = static_cast<int>(count);
     if (in_front) {
       result.assign(count, RayPixel{});
-      check(MPI_Exscan(some, result.data(), number, pixel_, over_, ordered));
+      check(MPI_Exscan(some, result.data(), static_cast<int>(count), pixel_, over_, ordered));
       if (own == 0) result.assign(count, RayPixel{});
       std::copy(result.begin(), result.end(), some);
     } else {
-      const bool is_root = own == root;
-      check(MPI_Reduce(is_root ? MPI_IN_PLACE : some, is_root ? some : nullptr, number, pixel_,
-                       over_, root, ordered));
+      composite_for(ordered, own, size_, root, {some, count});
     }
   }
 }

@@ -18,6 +18,7 @@
 #include "pellucid/scene/error.h"
 #include "rank_projections.h"
 #include "rank_work.h"
+#include "second_look.h"
 
 namespace pellucid {
 namespace {
@@ -41,26 +42,27 @@ std::string text(double number) {
 void check_frame(Communicator& ranks, const BrickTree& tree, const Scene& scene,
                  const RenderOptions& options) {
   const Camera& camera = scene.camera;
-  check_equal(ranks, "the size of the picture",
-              std::to_string(scene.size.width) + "x" + std::to_string(scene.size.height) + ", " +
-                  std::to_string(scene.samples) + " samples");
-  check_equal(ranks, "the tolerance", text(scene.integration.tolerance));
   std::string view;
   for (const Vec3<double>& v : {camera.position, camera.focal_point, camera.up}) {
     for (int a = 0; a < 3; ++a) view += text(v[a]) + " ";
   }
-  check_equal(ranks, "the camera",
-              view + text(camera.vertical_angle) + " " + text(camera.parallel_scale));
-  check_equal(ranks, "the number of layers and the largest color",
-              std::to_string(scene.layers.size()) + ", " + text(largest_color(scene)) +
-                  (options.depth ? ", with depth" : "") + (options.values ? ", with values" : ""));
   Checksum sum;
   for (int brick = 0; brick < tree.count(); ++brick) {
     for (const Vec3<double>& corner : tree.corners(brick)) {
       for (int a = 0; a < 3; ++a) sum.add(corner[a]);
     }
   }
-  check_equal(ranks, "the bricks' checksum", std::to_string(sum.value()));
+  check_equal(
+      ranks,
+      {{"the size of the picture", std::to_string(scene.size.width) + "x" +
+                                       std::to_string(scene.size.height) + ", " +
+                                       std::to_string(scene.samples) + " samples"},
+       {"the tolerance", text(scene.integration.tolerance)},
+       {"the camera", view + text(camera.vertical_angle) + " " + text(camera.parallel_scale)},
+       {"the number of layers and the largest color",
+        std::to_string(scene.layers.size()) + ", " + text(largest_color(scene)) +
+            (options.depth ? ", with depth" : "") + (options.values ? ", with values" : "")},
+       {"the bricks' checksum", std::to_string(sum.value())}});
 }
 
 /// The most bricks that rays of the frame meet, as every fourth tells; at least 1. What a ray may
@@ -104,6 +106,16 @@ std::vector<double> gather_numbers(Communicator& ranks, double own) {
   return numbers;
 }
 
+/// Waits until all ranks are done with a part of the frame, of which this one ended so. Throws on
+/// all of them if one failed or was cancelled.
+void finish_together(Communicator& ranks, FrameWatch& watch, const std::string& outcome) {
+  if (!is_done(outcome)) watch.stop_others();
+  throw_unless_done(ranks.gather_all(outcome, [&] { watch.wait(); }));
+  agreed(ranks, [&] {
+    if (watch.stopped()) throw Cancelled();
+  });
+}
+
 /// The options of the own part of the frame.
 RenderOptions options_of_part(const BrickTree& tree, const RenderOptions& options, int most,
                               int rank, FrameWatch& watch) {
@@ -145,6 +157,7 @@ Image render(Communicator& ranks, const BrickTree& tree, const Scene& own,
   Scene rays;
   std::vector<RayPixel> pixels, own_pixels;
   std::vector<ProjectedRays> values;  // of projected layers
+  Renderer renderer;
   RenderOptions part_options;
   double render_seconds = 0;
   const std::string outcome = outcome_of([&] {
@@ -158,29 +171,40 @@ Image render(Communicator& ranks, const BrickTree& tree, const Scene& own,
     const Scene all = rays;
     std::erase_if(rays.layers, [](const Layer& layer) { return layer.projection.has_value(); });
     pixels = rays.layers.empty() ? std::vector<RayPixel>(count)
-                                 : to_ray_pixels(pellucid::render(rays, part_options, &told.frame));
+                                 : to_ray_pixels(renderer.render(rays, part_options, &told.frame));
     for (std::size_t i = 0; i < all.layers.size(); ++i) {
       if (!all.layers[i].visible || !all.layers[i].projection) continue;
       values.push_back(project_layer(all, i, part_options));
     }
     render_seconds = watch_of_part.seconds();
   });
-  if (!is_done(outcome)) watch.stop_others();
-  throw_unless_done(ranks.gather_all(outcome, [&] { watch.wait(); }));
-  agreed(ranks, [&] {
-    if (watch.stopped()) throw Cancelled();
-  });
+  finish_together(ranks, watch, outcome);
 
   const Stopwatch compositing;
   const std::vector<int> order = tree.front_to_back(make_camera_frame(rays.camera, rays.size));
   const auto place = static_cast<int>(std::ranges::find(order, rank) - order.begin());
-  if (options.depth) own_pixels = pixels;
+  // Of other ranks the pixels stay their own.
+  if (rank == 0 && ranks.size() > 1) own_pixels = pixels;
   ranks.composite(pixels, place);
   const double composite_seconds = compositing.seconds();
+  std::vector<RayPixel>& own_part = rank == 0 && ranks.size() > 1 ? own_pixels : pixels;
+  if (ranks.size() > 1 && !rays.layers.empty()) {
+    std::vector<std::size_t> over;
+    agreed(ranks, [&] {
+      if (rank == 0) over = rays_over_tolerance(own, pixels);
+    });
+    part_options.progress = [&](double) { return watch.tell(1); };
+    told.parts_again = look_again(
+        ranks, {tree, renderer, rays, part_options, place, told.most_bricks, own_part, pixels},
+        over, [&](const std::function<void()>& work) {
+          const std::string end = outcome_of(work);
+          finish_together(ranks, watch, end);
+        });
+  }
   std::vector<float> depth;
   if (options.depth && rays.layers.empty()) depth.assign(pixels.size(), INFINITY);
   if (options.depth && !rays.layers.empty())
-    depth = half_depths(ranks, place, rays, part_options, pixels, own_pixels);
+    depth = half_depths(ranks, place, rays, part_options, pixels, own_part);
   add_up(ranks, told.frame);
   told.render_seconds = gather_numbers(ranks, render_seconds);
   told.composite_seconds = gather_numbers(ranks, composite_seconds);

@@ -2,11 +2,13 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdlib>
 #include <numeric>
 #include <random>
 
 #include "pellucid/cluster/ray_pixel.h"
 #include "pellucid/cluster/sub_scene.h"
+#include "pellucid/cpu/renderer.h"
 #include "pellucid/scene/absorbing_blocks.h"
 #include "pellucid/scene/error.h"
 #include "survey.h"
@@ -47,6 +49,114 @@ TEST(RayPixel, WhatIsUnknownBehindOpaqueIsKnown) {
   unknown.error = std::numeric_limits<float>::infinity();
   EXPECT_TRUE(std::isfinite(over(opaque, unknown).error));
   EXPECT_TRUE(std::isinf(over(RayPixel{}, unknown).error));
+}
+
+TEST(RayPixel, NothingIsRoundedWithAnEmptyPart) {
+  std::mt19937 random(2);
+  for (int n = 0; n < 100; ++n) {
+    const RayPixel pixel = any_pixel(random);
+    for (const RayPixel& both : {over(RayPixel{}, pixel), over(pixel, RayPixel{})}) {
+      EXPECT_EQ(both.red, pixel.red);
+      EXPECT_EQ(both.opacity, pixel.opacity);
+      EXPECT_EQ(both.error, pixel.error);
+    }
+  }
+  EXPECT_FALSE(is_empty({0, 0, 0, 0, 1e-6f, 0}));
+  EXPECT_FALSE(is_empty({0, 0, 0, 0, 0, 1}));
+}
+
+TEST(RenderPixels, AreThoseOfTheFrame) {
+  Volume::Description of;
+  of.dimensions = {24, 20, 22};
+  const auto volume = make_volume<std::uint8_t>(of, [](int i, int j, int k) {
+    return 128 + 60 * std::sin(0.7 * i + 0.4 * j) * std::cos(0.5 * k);
+  });
+  Scene scene;
+  scene.layers.push_back(Layer{VolumeContent{
+      volume,
+      transfer({{0, 0, {1, 1, 1}}, {128, 0.02, {1, 0.4, 0.1}}, {255, 0.3, {0.1, 0.6, 1}}})}});
+  scene.camera = Camera{};
+  scene.camera.position = {60, 50, 70};
+  scene.camera.focal_point = {12, 10, 11};
+  scene.size = {30, 26};
+  scene.integration.tolerance = 1e-4;
+  const BrickTree tree = BrickTree::split({}, {{0, 0, 0}, {23, 19, 21}}, 3, {}, true);
+  Renderer renderer;
+  for (int brick = 0; brick < 3; ++brick) {
+    RayRegion region = tree.region(brick);
+    region.allowance = [](const Ray<double>&) { return 0.5; };
+    RenderOptions options;
+    options.error = true;
+    options.region = std::make_shared<const RayRegion>(region);
+    const Image frame = renderer.render(scene, options);
+    std::vector<PixelRequest> same, finer;
+    for (int row = 0; row < 26; row += 3) {
+      for (int column = 0; column < 30; column += 2) {
+        same.push_back({column, row, 0.5});
+        finer.push_back({column, row, 0.02});
+      }
+    }
+    const Image again = renderer.render_pixels(scene, options, same);
+    const Image better = renderer.render_pixels(scene, options, finer);
+    std::size_t seen = 0;
+    for (std::size_t i = 0; i < same.size(); ++i) {
+      const auto at = static_cast<std::size_t>(same[i].row * 30 + same[i].column);
+      EXPECT_EQ(again.pixels[i], frame.pixels[at]);
+      EXPECT_EQ(again.error[i], frame.error[at]);
+      EXPECT_LE(better.error[i], 0.02 * scene.integration.tolerance + 1e-6);
+      EXPECT_NEAR(better.pixels[i][0], frame.pixels[at][0], frame.error[at] + better.error[i]);
+      seen += frame.pixels[at][3] > 0 ? 1 : 0;
+    }
+    EXPECT_GT(seen, 10u);
+  }
+  EXPECT_THROW(renderer.render_pixels(scene, {}, {{0, 0, 1}}), Error);
+}
+
+TEST(NanValues, AreCountedOnce) {
+  Volume::Description of;
+  of.dimensions = {16, 12, 14};
+  of.centering = Centering::cell;
+  of.placement.spacing = {0.5, 1, 2};
+  const auto volume = make_volume<float>(of, [](int i, int j, int k) {
+    return (i * 7 + j * 3 + k) % 5 == 0 ? NAN : static_cast<float>(i);
+  });
+  Scene scene;
+  Layer layer{VolumeContent{volume, transfer({{0, 0, {1, 1, 1}}, {9, 1, {1, 1, 1}}})}};
+  layer.transform.translation = {3, 4, 5};
+  scene.layers.push_back(layer);
+  const SceneFrame frame = frame_of(scene);
+  const BrickTree tree =
+      BrickTree::split(frame.world_from_frame, frame.bounds, 7, {}, frame.on_grid);
+  /// One of seven ranks, each of which looks at its own part.
+  class OneOfSeven : public Communicator {
+   public:
+    explicit OneOfSeven(int of) : rank_(of) {}
+    int rank() const noexcept override { return rank_; }
+    int size() const noexcept override { return 7; }
+    std::vector<std::string> gather_all(const std::string& own,
+                                        const std::function<void()>&) override {
+      return {own};
+    }
+    void reduce_all(std::span<double>, Reduction) override {}
+    void broadcast(std::span<float>) override {}
+    void composite(std::span<RayPixel>, int) override {}
+    void composite_in_front(std::span<RayPixel>, int) override {}
+    [[noreturn]] void abort(int status) noexcept override { std::_Exit(status); }
+    void send(int, const RankSignal&) override {}
+    std::optional<RankSignal> receive() override { return {}; }
+
+   private:
+    int rank_;
+  };
+  std::size_t all = 0, parts = 0;
+  for (int rank = 0; rank < 7; ++rank) {
+    OneOfSeven own(rank);
+    const Scene part = sub_scene(scene, tree, rank);
+    all += nan_values(own, tree, part).at(0);
+    parts += grid_of(part.layers[0])->statistics().nan;
+  }
+  EXPECT_EQ(all, volume->statistics().nan);
+  EXPECT_GT(parts, all);  // of the layers around bricks, too
 }
 
 Volume::Description description(std::array<int, 3> dimensions, Centering centering) {

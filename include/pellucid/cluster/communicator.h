@@ -47,7 +47,7 @@ class Communicator {
   virtual void broadcast(std::span<float> values) = 0;
 
   /// Composites the ranks' pixels in the order of their places, 0 in front; each rank has another
-  /// place. Rank 0 gets the result; on other ranks the pixels have no meaning afterwards.
+  /// place. Rank 0 gets the result; the pixels of other ranks stay as they are.
   virtual void composite(std::span<RayPixel> pixels, int place) = 0;
   /// Replaces the pixels of each rank by the composite of all that are in front of it.
   virtual void composite_in_front(std::span<RayPixel> pixels, int place) = 0;

@@ -12,11 +12,19 @@ struct RayPixel {
   float error = 0, estimated = 0;
 };
 
+/// Returns whether nothing was gathered, and that is known.
+inline bool is_empty(const RayPixel& pixel) noexcept {
+  return pixel.red == 0 && pixel.green == 0 && pixel.blue == 0 && pixel.opacity == 0 &&
+         pixel.error == 0 && pixel.estimated == 0;
+}
+
 /// Composites a part over the one behind it. Associative, but not commutative. An error is
 /// composited as a premultiplied color is, e = e1 + (1 - a1) e2, because the error of a part bounds
 /// what it does to everything behind it. The roundings of this function are added to it: at most
-/// 2^-23 of the result.
+/// 2^-23 of the result. With an empty part nothing is rounded.
 inline RayPixel over(const RayPixel& front, const RayPixel& behind) noexcept {
+  if (is_empty(front)) return behind;
+  if (is_empty(behind)) return front;
   const float transparency = 1 - front.opacity;
   RayPixel both;
   both.red = front.red + transparency * behind.red;
@@ -26,9 +34,7 @@ inline RayPixel over(const RayPixel& front, const RayPixel& behind) noexcept {
   const float brightest = std::max({both.red, both.green, both.blue, both.opacity, 0.0f});
   // An unknown error behind what is opaque is none.
   const float seen = transparency > 0 ? transparency * behind.error : 0.0f;
-  const bool empty = behind.red == 0 && behind.green == 0 && behind.blue == 0 &&
-                     behind.opacity == 0 && behind.error == 0;
-  both.error = front.error + (empty ? 0.0f : seen * (1 + 0x1p-21f) + 0x1p-23f * brightest);
+  both.error = front.error + (seen * (1 + 0x1p-21f) + 0x1p-23f * brightest);
   both.estimated = std::max(front.estimated, behind.estimated);
   return both;
 }

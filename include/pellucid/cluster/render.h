@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include "pellucid/cluster/brick_tree.h"
@@ -19,6 +23,9 @@ struct RankReport {
   std::vector<double> render_seconds;     ///< of each rank, without waiting
   std::vector<double> composite_seconds;  ///< of each rank, from the moment that all have rendered
   int most_bricks = 0;                    ///< that any ray meets
+  /// Parts of rays that were rendered again, because all parts of a ray reported more than the
+  /// tolerance together.
+  std::uint64_t parts_again = 0;
 };
 
 /// Renders a frame of a scene whose data lie on several ranks: on rank n in brick n of the tree,
@@ -52,5 +59,7 @@ void agreed(Communicator& ranks, const std::function<void()>& work);
 /// Throws AgreedError on all ranks unless the texts of all are equal; `what` names what they are
 /// of: "the version". A difference is reported with both.
 void check_equal(Communicator& ranks, const std::string& what, const std::string& own);
+/// The same of several texts, each behind what it is of, in one exchange.
+void check_equal(Communicator& ranks, const std::vector<std::pair<std::string, std::string>>& own);
 
 }  // namespace pellucid

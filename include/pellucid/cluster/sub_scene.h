@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
+#include <vector>
+
 #include "pellucid/cluster/brick_tree.h"
 #include "pellucid/cluster/communicator.h"
 #include "pellucid/scene/scene.h"
@@ -45,6 +48,10 @@ IndexBox indices_of_brick(const Volume::Description& description, const Affine<d
 Layer sub_layer(const Layer& whole, const BrickTree& tree, int brick);
 /// Returns the scene with the sub_layer() of each layer.
 Scene sub_scene(const Scene& whole, const BrickTree& tree, int brick);
+
+/// Returns for each layer how many of its values are NaN, those of all ranks, each counted where
+/// its place is in the rank's brick. Meshes are whole on each rank. All ranks call it.
+std::vector<std::size_t> nan_values(Communicator& ranks, const BrickTree& tree, const Scene& own);
 
 /// Gives the data of each rank's bricks the range that they have on all ranks together, from which
 /// light takes its scale. `whole_voxels`: for each layer the size of a voxel of the whole,
