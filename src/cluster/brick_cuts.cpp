@@ -17,14 +17,22 @@ constexpr double between = 0.38196601125010515;
 constexpr double beside = between / 64;
 /// The thinnest brick, of the side that is cut: data are read in bricks, whatever they weigh.
 constexpr double thinnest = 1.0 / 16;
+/// How much longer than others a side must be to be cut where all rays cross the cut: 1 / this.
+constexpr double least_preference = 0.4;
 
 }  // namespace
 
 BrickCuts::BrickCuts(const Affine<double>& world_from_frame, const Box<double>& bounds,
-                     const BrickWeights& weights, bool on_grid)
+                     const BrickWeights& weights, bool on_grid, const Vec3<double>& view)
     : bounds_(bounds), weights_(weights), on_grid_(on_grid) {
+  const Mat3<double> frame_from_world = inverse(world_from_frame).matrix;
+  const double ray = length(view);
   for (int a = 0; a < 3; ++a) {
     world_length_[a] = length(world_from_frame.matrix.column[a]);
+    const Vec3<double> normal{frame_from_world.column[0][a], frame_from_world.column[1][a],
+                              frame_from_world.column[2][a]};
+    const double across = ray > 0 ? std::abs(dot(normal, view)) / (length(normal) * ray) : 0;
+    preference_[a] = 1 - (1 - least_preference) * across;
     if (!(bounds.lower[a] < bounds.upper[a])) {
       throw Error("bricks: the bounds of the data are empty along axis " + std::to_string(a));
     }
@@ -35,7 +43,7 @@ BrickCuts::Cut BrickCuts::find(const Box<double>& box, int below, int count) con
   int axis = 0;
   double longest = 0;
   for (int a = 0; a < 3; ++a) {
-    const double side = (box.upper[a] - box.lower[a]) * world_length_[a];
+    const double side = (box.upper[a] - box.lower[a]) * world_length_[a] * preference_[a];
     if (side > longest) {
       longest = side;
       axis = a;

@@ -15,7 +15,7 @@ class BrickCuts {
 
   /// As BrickTree::split(). `weights` must outlive the object.
   BrickCuts(const Affine<double>& world_from_frame, const Box<double>& bounds,
-            const BrickWeights& weights, bool on_grid);
+            const BrickWeights& weights, bool on_grid, const Vec3<double>& view);
 
   /// Returns the cut that leaves `below` / `count` of the weight of a box below it.
   Cut find(const Box<double>& box, int below, int count) const;
@@ -26,6 +26,7 @@ class BrickCuts {
   double snapped(const Box<double>& box, int axis, double position) const;
 
   Vec3<double> world_length_;  ///< of a unit of the frame
+  Vec3<double> preference_;    ///< for cuts across each axis: 1, less where rays cross them
   Box<double> bounds_;
   const BrickWeights& weights_;
   bool on_grid_;

@@ -108,7 +108,8 @@ BrickTree::BrickTree(const Affine<double>& world_from_frame, const Box<double>& 
       bounds_(bounds) {}
 
 BrickTree BrickTree::split(const Affine<double>& world_from_frame, const Box<double>& bounds,
-                           int bricks, const BrickWeights& weights, bool on_grid) {
+                           int bricks, const BrickWeights& weights, bool on_grid,
+                           const Vec3<double>& view) {
   constexpr int most = 65536;
   if (bricks < 1 || bricks > most) {
     throw Error("bricks: " + std::to_string(bricks) + " are asked for, but must be from 1 to " +
@@ -117,7 +118,7 @@ BrickTree BrickTree::split(const Affine<double>& world_from_frame, const Box<dou
   BrickTree tree(world_from_frame, bounds);
   tree.box_.resize(static_cast<std::size_t>(bricks));
   tree.on_grid_ = on_grid;
-  const BrickCuts cuts(world_from_frame, bounds, weights, on_grid);
+  const BrickCuts cuts(world_from_frame, bounds, weights, on_grid, view);
   Splitter(tree, cuts).add(bounds, 0, bricks);
   return tree;
 }

@@ -62,6 +62,11 @@ LayerPlan plan_of(LayerDescription layer) {
     }
     const VolumeOutline outline = outline_volume(field.file, field.options);
     if (first) plan.description = outline.description;
+    // Read whole, they are refused by what they are, and not by the part of a rank.
+    if (outline.description.dimensions != plan.description.dimensions) {
+      plan.in_parts = false;
+      plan.whole_because = "its fields are not on one grid";
+    }
     first = false;
     if (outline.reads_parts) return;
     plan.in_parts = false;
@@ -120,7 +125,8 @@ class BrickLoader {
     if (balance == BrickBalance::work || !description_.camera) survey();
     std::optional<BrickTree> tree;
     agreed(ranks_, [&] { tree.emplace(make_tree(balance)); });
-    BrickedScene result{{}, *std::move(tree), {}, {}, {}};
+    BrickedScene result{{}, *std::move(tree), {}, {}, {}, {}, {}};
+    result.dimensions = dimensions();
     agreed(ranks_, [&] { load_parts(result.tree); });
     result.scene = make();
     result.visible = visible_;
@@ -128,6 +134,7 @@ class BrickLoader {
     result.notes = std::move(notes_);
     agree_on_ranges(ranks_, {}, result.scene);
     agreed(ranks_, [&] { check_data(result.scene); });
+    result.nan = nan_values(ranks_, result.tree, result.scene);
     return result;
   }
 
@@ -137,6 +144,16 @@ class BrickLoader {
     layers_.resize(description_.layers.size());
     meshes_.resize(description_.layers.size());
     for (const LayerDescription& layer : description_.layers) plans_.push_back(plan_of(layer));
+  }
+
+  std::vector<std::array<int, 3>> dimensions() const {
+    std::vector<std::array<int, 3>> list;
+    for (std::size_t i = 0; i < plans_.size(); ++i) {
+      const Volume* const grid = plans_[i].in_parts ? nullptr : grid_of(*layers_[i]);
+      list.push_back(grid != nullptr ? grid->description().dimensions
+                                     : plans_[i].description.dimensions);
+    }
+    return list;
   }
 
   std::string sizes() const {
@@ -279,9 +296,14 @@ class BrickLoader {
     for (const std::size_t i : seen_layers()) seen.push_back(seen_corners(i));
     visible_ = around(seen);
     BrickWeights weights;
-    if (balance == BrickBalance::work) weights = weights_in_frame();
+    Vec3<double> view{0, 0, 0};
+    if (balance == BrickBalance::work) {
+      weights = weights_in_frame();
+      const Camera seen_by = camera();
+      view = seen_by.focal_point - seen_by.position;
+    }
     return BrickTree::split(frame_.world_from_frame, frame_.bounds, ranks_.size(), weights,
-                            frame_.on_grid);
+                            frame_.on_grid, view);
   }
 
   std::array<Vec3<double>, 8> seen_corners(std::size_t index) const {
@@ -348,6 +370,10 @@ class BrickLoader {
     }
   }
 
+  Camera camera() const {
+    return description_.camera ? *description_.camera : default_camera(visible_, description_.size);
+  }
+
   Scene make() {
     Scene scene;
     for (std::optional<Layer>& layer : layers_) scene.layers.push_back(*std::move(layer));
@@ -355,8 +381,7 @@ class BrickLoader {
     scene.lights = description_.lights;
     scene.size = description_.size;
     scene.samples = description_.samples;
-    scene.camera =
-        description_.camera ? *description_.camera : default_camera(visible_, description_.size);
+    scene.camera = camera();
     scene.integration = description_.integration;
     scene.background = description_.background;
     agreed(ranks_, [&] {

@@ -145,6 +145,27 @@ TEST(BrickTree, BricksHaveEqualWeights) {
   }
 }
 
+TEST(BrickTree, BricksLieBesideEachOtherOnTheScreen) {
+  constexpr Box<double> cube{{0, 0, 0}, {20, 20, 20}};
+  Random random(3);
+  for (int axis = 0; axis < 3; ++axis) {
+    for (const int bricks : {2, 4, 8}) {
+      Vec3<double> view{0, 0, 0};
+      view[axis] = axis == 1 ? -2 : 2;
+      const BrickTree tree = BrickTree::split({}, cube, bricks, {}, false, view);
+      for (int n = 0; n < 50; ++n) {
+        Vec3<double> origin{in(random, 1, 19), in(random, 1, 19), in(random, 1, 19)};
+        origin[axis] = axis == 1 ? 30 : -10;
+        EXPECT_EQ(tree.bricks_on({origin, normalized(view)}), 1);
+      }
+    }
+  }
+  // But not at any price: bricks stay compact.
+  const Box<double> slab{{0, 0, 0}, {4, 4, 20}};
+  const BrickTree tree = BrickTree::split({}, slab, 2, {}, false, {0, 0, 1});
+  EXPECT_EQ(tree.bricks_on({{1, 1, -5}, {0, 0, 1}}), 2);
+}
+
 TEST(BrickTree, BoxesThatNoPlaneSeparatesAreRefused) {
   // A pinwheel.
   const std::vector<Box<double>> boxes{{{0, 0, 0}, {2, 1, 1}},

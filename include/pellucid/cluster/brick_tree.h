@@ -26,9 +26,12 @@ class BrickTree {
   /// across their longest side. Without weights each part weighs as much as its volume. If
   /// `on_grid`, faces are between the whole numbers of the frame, nowhere near the values or the
   /// middles of a grid's cells, where surfaces of stored data lie; else a little beside equal
-  /// parts. Throws Error unless 1 <= bricks <= 65536.
+  /// parts. `view`: the direction of a camera's rays in the world, if it is known: of sides of
+  /// like length that is cut which puts bricks beside each other on the screen, so that few rays
+  /// meet several. Throws Error unless 1 <= bricks <= 65536.
   static BrickTree split(const Affine<double>& world_from_frame, const Box<double>& bounds,
-                         int bricks, const BrickWeights& weights = {}, bool on_grid = false);
+                         int bricks, const BrickWeights& weights = {}, bool on_grid = false,
+                         const Vec3<double>& view = {0, 0, 0});
   /// Makes the tree of boxes that fill a box, as a simulation has them; brick i is boxes[i]. Throws
   /// Error if no plane along an axis separates some of them from the others.
   static BrickTree of_boxes(const Affine<double>& world_from_frame,

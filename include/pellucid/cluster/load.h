@@ -23,6 +23,9 @@ struct BrickedScene {
   BrickTree tree;
   std::array<Vec3<double>, 8> visible{};  ///< visible_corners() of the whole scene
   std::vector<MeshSource> meshes;         ///< as make_scene() tells them
+  /// Data values along the axes of each layer's whole grid; 0 for meshes.
+  std::vector<std::array<int, 3>> dimensions;
+  std::vector<std::size_t> nan;  ///< nan_values()
   /// Lines that a user should know, on rank 0: of files that every rank read whole.
   std::vector<std::string> notes;
 };
