@@ -1,16 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <exception>
 #include <new>
 #include <string>
+#include <string_view>
 
 #include "commands.h"
 #include "output.h"
 #include "parse.h"
 #include "pellucid/base/version.h"
+#include "pellucid/cluster/communicator.h"
 #include "progress.h"
+#include "render.h"
 
 namespace pellucid::cli {
 
@@ -20,6 +24,18 @@ int fail(int exit_code, const std::string& message) {
   // Nothing is left to be done where stderr itself cannot be written.
   std::fputs(("pellucid: error: " + one_line(message) + '\n').c_str(), stderr);
   return exit_code;
+}
+
+/// Wrong arguments of ranks are told once.
+int wrong_use(int argc, char** argv, const std::string& message) {
+  const bool of_ranks =
+      is_under_mpi() && std::find(argv, argv + argc, std::string_view("--ranks")) != argv + argc;
+  if (!of_ranks) return fail(2, message);
+  try {
+    return fail_on_ranks(message);
+  } catch (const Error&) {
+    return fail(2, message);
+  }
 }
 
 int run(int argc, char** argv) {
@@ -59,7 +75,7 @@ int main(int argc, char** argv) {
   try {
     return run(argc, argv);
   } catch (const UsageError& error) {
-    return fail(2, error.what());
+    return wrong_use(argc, argv, error.what());
   } catch (const OverTolerance& error) {
     return fail(3, error.what());
   } catch (const Interrupted& interrupted) {

@@ -30,7 +30,7 @@ namespace {
 void print_notes(const RenderArguments& arguments, const PreparedScene& prepared) {
   if (arguments.quiet) return;
   for (const std::string& note : prepared.import_notes) print_note(note);
-  if (const std::size_t nan = nan_values(prepared.scene); nan > 0 && !arguments.ranks) {
+  if (const std::size_t nan = nan_values(prepared); nan > 0) {
     print_note(fmt::format("{} values are NaN: rendered as vacuum", nan));
   }
   if (prepared.array_chosen) {

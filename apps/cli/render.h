@@ -61,6 +61,12 @@ struct PreparedScene {
   double tolerance_asked = 0;             ///< Integration::tolerance is the one used
   /// Share of the picture's largest channel that the tolerance is to be; nothing: it is absolute.
   std::optional<double> relative_tolerance;
+  /// What ranks have of each layer together, where `scene` has the part of one of them; else empty.
+  struct WholeLayer {
+    std::array<int, 3> dimensions{};
+    std::size_t nan = 0;
+  };
+  std::vector<WholeLayer> whole_layers;
   /// The number of different values of each channel that looks like labels, by its name.
   std::vector<std::pair<std::string, std::size_t>> labels;
 
@@ -119,13 +125,21 @@ void write_picture(const RenderArguments& arguments, const PreparedScene& prepar
 /// Renders on the ranks that this process is one of, and writes on the first. Returns the exit
 /// status.
 int run_on_ranks(const RenderArguments& arguments);
+/// Ends the program on all of its ranks, of which this one has wrong arguments, with one line in
+/// all. Returns the exit status. Throws Error if messages cannot be passed.
+int fail_on_ranks(const std::string& wrong_use);
 
 /// Makes `tolerance` that of the scene, or the nearest one within the limits; opacity tables are
 /// approximated anew. Throws Error.
 void set_scene_tolerance(PreparedScene& prepared, double tolerance);
 
 /// In all channels together; of a mesh over the points or cells that are used.
-std::size_t nan_values(const Scene& scene);
+std::size_t nan_values(const PreparedScene& prepared);
+/// Calls visit(name, volume) for each volume of a layer that comes from a file and is shown as a
+/// field. `index` and `layers`: of the layer among so many, for the name.
+void visit_fields_of_files(const Layer& layer, const LayerDescription& description,
+                           std::size_t index, std::size_t layers,
+                           const std::function<void(const std::string&, const Volume&)>& visit);
 /// What makes the picture, and its error, and nothing else: no time, no thread count, so that the
 /// same scene gives the same file.
 void add_metadata(const RenderArguments& arguments, const PreparedScene& prepared,

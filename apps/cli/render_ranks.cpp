@@ -5,6 +5,8 @@
 #include <cstdio>
 #include <exception>
 #include <memory>
+#include <set>
+#include <sstream>
 #include <string>
 #include <utility>
 #include <vector>
@@ -14,6 +16,7 @@
 #include "pellucid/cluster/load.h"
 #include "pellucid/cluster/render.h"
 #include "pellucid/cpu/threads.h"
+#include "pellucid/scene/label_values.h"
 #include "progress.h"
 #include "render.h"
 #include "tolerance.h"
@@ -21,6 +24,11 @@
 namespace pellucid::cli {
 
 namespace {
+
+void print_error(const std::string& message) {
+  std::fputs(fmt::format("pellucid: error: {}\n", one_line(message)).c_str(), stderr);
+  std::fflush(stderr);
+}
 
 /// What one process does with all of the data.
 void refuse_arguments(const RenderArguments& arguments) {
@@ -54,9 +62,11 @@ std::vector<double> gather(Communicator& ranks, double own) {
 std::string ranks_json(Communicator& ranks, const RankReport& report) {
   const std::vector<double> memory = gather(ranks, most_memory());
   return fmt::format(R"({{"count": {}, "most_bricks_on_a_ray": {}, "render_seconds": [{}], )"
-                     R"("composite_seconds": [{}], "memory_mib": [{:.1f}]}})",
+                     R"("composite_seconds": [{}], "memory_mib": [{:.1f}], )"
+                     R"("parts_rendered_again": {}}})",
                      ranks.size(), report.most_bricks, fmt::join(report.render_seconds, ", "),
-                     fmt::join(report.composite_seconds, ", "), fmt::join(memory, ", "));
+                     fmt::join(report.composite_seconds, ", "), fmt::join(memory, ", "),
+                     report.parts_again);
 }
 
 /// The work of one rank, on which all agree.
@@ -91,6 +101,10 @@ class RankRun {
       prepared = complete_scene(arguments_, std::move(request), std::move(bricks.scene),
                                 bricks.meshes, [&](const Scene&) { return bricks.visible; });
     });
+    for (std::size_t i = 0; i < bricks.dimensions.size(); ++i) {
+      prepared.whole_layers.push_back({bricks.dimensions[i], bricks.nan[i]});
+    }
+    find_labels(prepared);
     RenderedPicture picture;
     RankReport report;
     picture.image = render_frame(bricks.tree, prepared, report);
@@ -128,6 +142,38 @@ class RankRun {
       }
     });
   }
+  /// What looks like labels on every rank does so as a whole.
+  void find_labels(PreparedScene& prepared) {
+    // A line for each volume: its name, and its values, or "no".
+    std::string own;
+    std::vector<std::string> names;
+    agreed(ranks_, [&] {
+      const std::vector<Layer>& layers = prepared.scene.layers;
+      for (std::size_t i = 0; i < layers.size(); ++i) {
+        visit_fields_of_files(layers[i], prepared.description.layers[i], i, layers.size(),
+                              [&](const std::string& name, const Volume& volume) {
+                                names.push_back(name);
+                                const auto values = label_values_of_part(volume);
+                                own +=
+                                    values ? fmt::format("{}\n", fmt::join(*values, " ")) : "no\n";
+                              });
+      }
+    });
+    std::vector<std::set<std::string>> values(names.size());
+    for (const std::string& rank : ranks_.gather_all(own)) {
+      std::istringstream lines(rank);
+      std::string line, value;
+      for (std::size_t n = 0; n < names.size() && std::getline(lines, line); ++n) {
+        std::istringstream words(line);
+        while (words >> value) values[n].insert(value);
+      }
+    }
+    for (std::size_t n = 0; n < names.size(); ++n) {
+      if (values[n].size() < 2 || values[n].contains("no")) continue;
+      prepared.labels.emplace_back(names[n], values[n].size());
+    }
+  }
+
   Image render_frame(const BrickTree& tree, const PreparedScene& prepared, RankReport& report) {
     RenderOptions options = options_of(arguments_, prepared);
     ProgressLine progress(!arguments_.quiet);
@@ -144,6 +190,18 @@ class RankRun {
 };
 
 }  // namespace
+
+int fail_on_ranks(const std::string& wrong_use) {
+  const std::unique_ptr<Communicator> ranks = mpi_communicator();
+  try {
+    // The first that ranks whose arguments are right agree on, too.
+    agreed(*ranks, [&] { throw UsageError(wrong_use); });
+  } catch (const AgreedError& error) {
+    if (ranks->rank() == 0) print_error(error.what());
+  }
+  static_cast<void>(ranks->gather_all(""));
+  return 2;
+}
 
 int run_on_ranks(const RenderArguments& arguments) {
   const std::unique_ptr<Communicator> ranks = is_under_mpi() ? mpi_communicator() : single_rank();
@@ -166,15 +224,10 @@ int run_on_ranks(const RenderArguments& arguments) {
     message = "interrupted; nothing more was written";
   } catch (const std::exception& error) {
     // The others do not know of it, and may wait for this rank.
-    std::fputs(fmt::format("pellucid: error: rank {}: {}\n", ranks->rank(), error.what()).c_str(),
-               stderr);
-    std::fflush(stderr);
+    print_error(fmt::format("rank {}: {}", ranks->rank(), error.what()));
     ranks->abort(1);
   }
-  if (speaks && !message.empty()) {
-    std::fputs(fmt::format("pellucid: error: {}\n", message).c_str(), stderr);
-    std::fflush(stderr);
-  }
+  if (speaks && !message.empty()) print_error(message);
   // A launcher ends all ranks when one ends with a failure: not before the message is out.
   static_cast<void>(ranks->gather_all(""));
   return status;

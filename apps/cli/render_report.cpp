@@ -151,9 +151,12 @@ Json layer_json(const Layer& layer, const LayerDescription& description) {
 
 }  // namespace
 
-std::size_t nan_values(const Scene& scene) {
+std::size_t nan_values(const PreparedScene& prepared) {
   std::size_t count = 0;
-  for (const Layer& layer : scene.layers) count += nan_values(layer);
+  for (const Layer& layer : prepared.scene.layers) count += nan_values(layer);
+  if (prepared.whole_layers.empty()) return count;
+  count = 0;
+  for (const PreparedScene::WholeLayer& layer : prepared.whole_layers) count += layer.nan;
   return count;
 }
 
@@ -281,7 +284,13 @@ Json report_json(const RenderArguments& arguments, const PreparedScene& prepared
   json["input"] = source_text(arguments);
   json["layers"] = Json::array();
   for (std::size_t i = 0; i < scene.layers.size(); ++i) {
-    json["layers"].push_back(layer_json(scene.layers[i], prepared.description.layers[i]));
+    Json layer = layer_json(scene.layers[i], prepared.description.layers[i]);
+    if (!prepared.whole_layers.empty()) {
+      const PreparedScene::WholeLayer& whole = prepared.whole_layers[i];
+      if (!layer["dimensions"].is_null()) layer["dimensions"] = whole.dimensions;
+      layer["nan"] = whole.nan;
+    }
+    json["layers"].push_back(std::move(layer));
   }
   // Of a single layer the program has always told here.
   const bool one = scene.layers.size() == 1;
@@ -289,7 +298,7 @@ Json report_json(const RenderArguments& arguments, const PreparedScene& prepared
     json[key] = one ? json["layers"][0][key] : Json();
   }
   json["lights"] = Json::parse(lights_to_json(prepared.description.lights));
-  json["nan"] = nan_values(scene);
+  json["nan"] = nan_values(prepared);
   json["labels"] = Json::object();
   for (const auto& [channel, count] : prepared.labels) json["labels"][channel] = count;
   json["size"] = {scene.size.width, scene.size.height};
@@ -325,12 +334,7 @@ Json report_json(const RenderArguments& arguments, const PreparedScene& prepared
   json["transfer_function_from"] = prepared.transfer_function_from;
   json["transfer_function_error"] = approximation_error(scene);
   json["camera"] = Json::parse(camera_to_json(scene.camera));
-  if (!picture.ranks_json.empty()) {
-    json["ranks"] = Json::parse(picture.ranks_json);
-    // No rank has all of the data.
-    json["nan"] = json["dimensions"] = Json();
-    for (Json& layer : json["layers"]) layer["nan"] = layer["dimensions"] = Json();
-  }
+  if (!picture.ranks_json.empty()) json["ranks"] = Json::parse(picture.ranks_json);
   json["outputs"] = written;
   return json;
 }

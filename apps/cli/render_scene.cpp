@@ -365,15 +365,18 @@ std::vector<NamedFile> data_files(const SceneDescription& description) {
   return files;
 }
 
-/// Of the volumes of a layer that come from files and are shown as fields.
-void find_labels(const Layer& layer, const LayerDescription& description, const std::string& prefix,
-                 PreparedScene& prepared) {
+}  // namespace
+
+void visit_fields_of_files(const Layer& layer, const LayerDescription& description,
+                           std::size_t index, std::size_t layers,
+                           const std::function<void(const std::string&, const Volume&)>& visit) {
+  const std::string prefix = layers == 1 ? ""
+                             : description.name.empty()
+                                 ? "layer " + std::to_string(index + 1) + ", "
+                                 : description.name + ", ";
   const auto is_file = [](const FieldSource& field) { return field.builtin.empty(); };
-  const auto add = [&](const std::string& name, const Volume& volume) {
-    if (const auto count = label_count(volume)) prepared.labels.emplace_back(prefix + name, *count);
-  };
   if (const auto* volume = std::get_if<VolumeContent>(&layer.content)) {
-    if (is_file(description.field)) add(std::string(field_channel), *volume->volume);
+    if (is_file(description.field)) visit(prefix + std::string(field_channel), *volume->volume);
     return;
   }
   const auto* channels = std::get_if<ChannelsContent>(&layer.content);
@@ -383,11 +386,9 @@ void find_labels(const Layer& layer, const LayerDescription& description, const 
     const auto source = std::ranges::find(sources, channel.name, &ChannelSource::name);
     if (source == sources.end()) continue;
     const auto* field = std::get_if<FieldSource>(&source->source);
-    if (field != nullptr && is_file(*field)) add(channel.name, *channel.volume);
+    if (field != nullptr && is_file(*field)) visit(prefix + channel.name, *channel.volume);
   }
 }
-
-}  // namespace
 
 void set_scene_tolerance(PreparedScene& prepared, double tolerance) {
   SceneDescription& description = prepared.description;
@@ -475,12 +476,12 @@ PreparedScene complete_scene(const RenderArguments& arguments, SceneRequest requ
     }
     complete_description(scene.layers[i], layer);
     if (arguments.ranks) continue;  // no rank has all labels
-    const std::string& name = layer.name;
-    find_labels(scene.layers[i], layer,
-                scene.layers.size() == 1 ? ""
-                : name.empty()           ? "layer " + std::to_string(i + 1) + ", "
-                                         : name + ", ",
-                prepared);
+    visit_fields_of_files(scene.layers[i], layer, i, scene.layers.size(),
+                          [&](const std::string& name, const Volume& volume) {
+                            if (const auto count = label_count(volume)) {
+                              prepared.labels.emplace_back(name, *count);
+                            }
+                          });
   }
   scene.integration = description.integration;
   check_data(scene);

@@ -10,6 +10,8 @@
 #include <variant>
 #include <vector>
 
+#include "pellucid/scene/label_values.h"
+
 namespace pellucid {
 namespace {
 
@@ -46,6 +48,7 @@ class DistinctValues {
     return true;
   }
   std::size_t size() const { return list_.size(); }
+  std::vector<double> list() const { return {list_.begin(), list_.end()}; }
   std::size_t rank(Value value) const {
     return static_cast<std::size_t>(std::ranges::lower_bound(list_, value) - list_.begin());
   }
@@ -134,8 +137,10 @@ class SampledRows {
   std::size_t nx_, ny_, rows_, taken_;
 };
 
+/// All values of data that look like labels, or that are alike as far as rows tell.
 template <class Value>
-std::optional<std::size_t> count_labels(std::span<const Value> data, const SampledRows& rows) {
+std::optional<DistinctValues<Value>> find_labels(std::span<const Value> data,
+                                                 const SampledRows& rows) {
   const auto row_at = [&](std::size_t row) {
     return data.subspan(row * rows.length(), rows.length());
   };
@@ -146,7 +151,11 @@ std::optional<std::size_t> count_labels(std::span<const Value> data, const Sampl
       if (!sampled.add(row_at(at))) return std::nullopt;
     }
   }
-  if (sampled.size() < 2) return std::nullopt;
+  DistinctValues<Value> all;
+  if (sampled.size() < 2) {
+    if (!all.add(data) || all.size() > 1) return std::nullopt;
+    return all;
+  }
 
   NeighbourCounts counts(sampled.size());
   constexpr std::size_t none = most_labels + 1;
@@ -174,20 +183,25 @@ std::optional<std::size_t> count_labels(std::span<const Value> data, const Sampl
   }
   if (!counts.look_like_labels()) return std::nullopt;
 
-  DistinctValues<Value> all;
   if (!all.add(data)) return std::nullopt;
-  return all.size();
+  return all;
 }
 
 }  // namespace
 
-std::optional<std::size_t> label_count(const Volume& volume) {
-  const SampledRows rows(volume.description().dimensions);
+std::optional<std::vector<double>> label_values_of_part(const Volume& part) {
+  const SampledRows rows(part.description().dimensions);
   return std::visit(
-      [&](const auto& values) {
-        return count_labels(std::span(values.data(), values.size()), rows);
+      [&](const auto& values) -> std::optional<std::vector<double>> {
+        const auto found = find_labels(std::span(values.data(), values.size()), rows);
+        return found ? std::optional(found->list()) : std::nullopt;
       },
-      volume.data());
+      part.data());
+}
+
+std::optional<std::size_t> label_count(const Volume& volume) {
+  const auto values = label_values_of_part(volume);
+  return values && values->size() > 1 ? std::optional(values->size()) : std::nullopt;
 }
 
 }  // namespace pellucid

@@ -13,6 +13,8 @@
 #include <variant>
 #include <vector>
 
+#include "pellucid/scene/label_values.h"
+
 namespace pellucid {
 namespace {
 
@@ -98,6 +100,18 @@ TEST(Labels, SegmentationsLookLikeLabels) {
                                               : inner(i, j, k);
                 }),
                 9);
+}
+
+TEST(Labels, PartsTellTheirValues) {
+  const auto part = volume<float>([](int i, int, int) { return i < 20 ? -1 : 3; });
+  EXPECT_EQ(label_values_of_part(part), (std::vector<double>{-1, 3}));
+  // One value says nothing of the whole, but is there.
+  EXPECT_EQ(label_values_of_part(volume<std::uint8_t>([](int, int, int) { return 7; })),
+            std::vector<double>{7});
+  EXPECT_FALSE(label_count(volume<std::uint8_t>([](int, int, int) { return 7; })));
+  Noise noise;
+  EXPECT_FALSE(
+      label_values_of_part(volume<std::uint8_t>([&](int, int, int) { return noise.next(256); })));
 }
 
 TEST(Labels, MasksLookLikeLabels) {
