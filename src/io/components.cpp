@@ -19,12 +19,6 @@ std::size_t size_of(const VolumeData& data) {
   return std::visit([](const auto& values) { return values.size(); }, data);
 }
 
-std::size_t count_of(const IndexBox& box) {
-  std::size_t count = 1;
-  for (const int side : box.count) count *= static_cast<std::size_t>(side);
-  return count;
-}
-
 /// The part of the file that the options want, if it is not all.
 std::optional<GridPart> wanted_part(const VolumeFile& file, const ReadOptions& options) {
   if (!options.part) return std::nullopt;
@@ -38,7 +32,7 @@ Volume make_volume(const VolumeFile& file, int component, VolumeData data,
   Volume::Description description = file.description;
   if (part) {
     description = sub_description(description, part->box);
-    if (size_of(data) != count_of(part->box)) {
+    if (size_of(data) != value_count(*part)) {
       data = sub_values(data, part->dimensions, part->box);
     }
   }

@@ -22,6 +22,13 @@ struct GridPart {
   IndexBox box;
 };
 
+/// The number of values of the part.
+inline std::size_t value_count(const GridPart& part) noexcept {
+  std::size_t count = 1;
+  for (const int side : part.box.count) count *= static_cast<std::size_t>(side);
+  return count;
+}
+
 /// Components first … first + number - 1 of a file.
 struct ComponentRange {
   int first = 0, number = 1;

@@ -41,7 +41,8 @@ json of_array(const GridArray& array) {
          {"times", array.times},
          {"positions", array.positions},
          {"rounding", array.rounding},
-         {"note", of_text(array.note)}};
+         {"note", of_text(array.note)},
+         {"reads_parts", array.reads_parts}};
   if (array.placement) {
     const GridPlacement& p = *array.placement;
     j["placement"] = {of_vector(p.origin), of_vector(p.spacing), of_vector(p.direction.column[0]),
@@ -62,6 +63,7 @@ GridArray array_of(const json& j) {
   j.at("positions").get_to(array.positions);
   j.at("rounding").get_to(array.rounding);
   array.note = text_of(j.at("note"));
+  j.at("reads_parts").get_to(array.reads_parts);
   if (j.contains("placement")) {
     const json& p = j.at("placement");
     array.placement = GridPlacement{vector_of(p.at(0)), vector_of(p.at(1)), {}};

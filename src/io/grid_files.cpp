@@ -205,7 +205,9 @@ std::vector<VolumeData> read_values(const std::filesystem::path& path, const For
                                     const GridArray& array, const ReadOptions& options,
                                     ComponentRange range) {
   const std::string name = path.string();
-  const std::size_t points = value_count(array.sides, name);
+  if (!array.reads_parts) range.part = nullptr;
+  const std::size_t points =
+      range.part != nullptr ? value_count(*range.part) : value_count(array.sides, name);
   const std::size_t count = value_count(points, range.number, name);
   // Each component begins where any type may.
   const std::size_t largest =
@@ -259,6 +261,7 @@ VolumeFile open_grid(const std::filesystem::path& path, const ReadOptions& optio
   file.components = array.components;
   file.holds = one_line(array.holds + " in \"" + array.name + "\"");
   file.array = array.name;
+  file.reads_parts = array.reads_parts;
   if (options.time) {
     if (array.times.empty()) {
       throw Error(name + ": \"" + one_line(array.name) +

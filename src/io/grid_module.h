@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "components.h"
+#include "pellucid/scene/error.h"
 
 namespace pellucid {
 
@@ -30,6 +31,8 @@ struct GridArray {
   std::array<double, 3> rounding{};
   std::optional<GridPlacement> placement;  ///< in place of positions
   std::string note;  ///< what is assumed where the file does not say it; may be empty
+  /// Whether a part is read without the rest (ComponentRange::part), in the type of the whole.
+  bool reads_parts = false;
 };
 
 /// What is no volume of numbers.
@@ -45,7 +48,7 @@ struct GridContents {
   std::string error;
 };
 struct GridValues {
-  /// Room for all values of one component, the next, of this type.
+  /// Room for all values that are wanted of one component, the next, of this type.
   std::function<std::span<std::byte>(const std::string& type)> next;
   std::string error;
   std::string note;  ///< what a user should know of the values; may be empty
@@ -59,8 +62,21 @@ using ListGrids = void(const std::filesystem::path& path, const AxisLetters& axe
                        GridContents& answer);
 using ReadGrid = void(const std::filesystem::path& path, const std::string& array,
                       const AxisLetters& axes, ComponentRange range, GridValues& answer);
-inline constexpr const char* list_grids_name = "pellucid_list_grids_2";
-inline constexpr const char* read_grid_name = "pellucid_read_grid_2";
+inline constexpr const char* list_grids_name = "pellucid_list_grids_3";
+inline constexpr const char* read_grid_name = "pellucid_read_grid_3";
+
+/// The part of a grid with these sides that is wanted; all of it where none is. Throws Error where
+/// the part is one of another grid.
+inline GridPart wanted_part(const std::array<std::int64_t, 3>& sides, ComponentRange range) {
+  GridPart part{};
+  for (std::size_t a = 0; a < 3; ++a) part.dimensions[a] = static_cast<int>(sides[a]);
+  part.box.count = part.dimensions;
+  if (range.part == nullptr) return part;
+  if (range.part->dimensions != part.dimensions) {
+    throw Error("the file was changed while it was read");
+  }
+  return *range.part;
+}
 
 /// What each module has of its own, behind these names. They throw.
 void list_grids(const std::filesystem::path& path, const AxisLetters& axes, GridContents& contents);

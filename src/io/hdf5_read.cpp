@@ -68,6 +68,8 @@ std::optional<Dataset> describe(hid_t id, const std::string& name, const AxisLet
   GridArray& array = dataset.about;
   array.name = name;
   array.type = is_stored_only(*number) ? "f64" : *number;
+  // The type of whole numbers of 64 bits is that of the largest.
+  array.reads_parts = !is_stored_only(*number);
   for (std::size_t a = 0; a < 3; ++a) array.sides[a] = (*shape)[axes->space[a]];
   if (axes->components) {
     const auto count = static_cast<int>((*shape)[*axes->components]);
@@ -79,13 +81,16 @@ std::optional<Dataset> describe(hid_t id, const std::string& name, const AxisLet
   return dataset;
 }
 
-/// Reads values of one component in the order of the file.
-void read_component(hid_t id, const Dataset& dataset, int component, void* to) {
+/// Reads values of a part of one component in the order of the file.
+void read_component(hid_t id, const Dataset& dataset, int component, const IndexBox& part,
+                    void* to) {
   const Id space(H5Dget_space(id), H5Sclose, "the axes of a dataset");
   std::vector<hsize_t> start(dataset.shape.size(), 0), count(dataset.shape.size(), 1);
   hsize_t points = 1;
-  for (const std::size_t axis : dataset.axes.space) {
-    count[axis] = static_cast<hsize_t>(dataset.shape[axis]);
+  for (std::size_t a = 0; a < 3; ++a) {
+    const std::size_t axis = dataset.axes.space[a];
+    start[axis] = static_cast<hsize_t>(part.first[a]);
+    count[axis] = static_cast<hsize_t>(part.count[a]);
     points *= count[axis];
   }
   if (dataset.axes.components) start[*dataset.axes.components] = static_cast<hsize_t>(component);
@@ -100,40 +105,43 @@ void read_component(hid_t id, const Dataset& dataset, int component, void* to) {
   }
 }
 
-/// In values, of x, y and z in the order of the file, without the axis of components.
-std::array<std::size_t, 3> strides_of(const Dataset& dataset) {
+/// In values, of x, y and z of a part in the order of the file, without the axis of components.
+std::array<std::size_t, 3> strides_of(const Dataset& dataset, const IndexBox& part) {
   std::array<std::size_t, 3> strides{};
   for (std::size_t a = 0; a < 3; ++a) {
     strides[a] = 1;
-    for (const std::size_t other : dataset.axes.space) {
-      if (other > dataset.axes.space[a]) {
-        strides[a] *= static_cast<std::size_t>(dataset.shape[other]);
+    for (std::size_t b = 0; b < 3; ++b) {
+      if (dataset.axes.space[b] > dataset.axes.space[a]) {
+        strides[a] *= static_cast<std::size_t>(part.count[b]);
       }
     }
   }
   return strides;
 }
 
-/// Reads values of one component, x fastest.
-void read_ordered(hid_t id, const Dataset& dataset, int component, std::span<std::byte> to,
-                  std::size_t size) {
+/// Reads values of a part of one component, x fastest.
+void read_ordered(hid_t id, const Dataset& dataset, int component, const IndexBox& part,
+                  std::span<std::byte> to, std::size_t size) {
   if (std::ranges::is_sorted(dataset.axes.space, std::greater<>())) {
-    read_component(id, dataset, component, to.data());
+    read_component(id, dataset, component, part, to.data());
     return;
   }
   std::vector<std::byte> stored(to.size());
-  read_component(id, dataset, component, stored.data());
-  copy_permuted(stored.data(), to.data(), size, dataset.about.sides, strides_of(dataset));
+  read_component(id, dataset, component, part, stored.data());
+  copy_permuted(stored.data(), to.data(), size, {part.count[0], part.count[1], part.count[2]},
+                strides_of(dataset, part));
 }
 
 template <class Number>
-void read_whole_numbers(hid_t id, const Dataset& dataset, std::size_t points, ComponentRange range,
+void read_whole_numbers(hid_t id, const Dataset& dataset, const GridPart& part, ComponentRange range,
                         GridValues& values) {
+  const std::size_t points = value_count(part);
   std::vector<WholeNumbers> components;
   std::vector<Number> numbers(points);
   Rounding rounding;
   for (int c = range.first; c < range.first + range.number; ++c) {
-    read_ordered(id, dataset, c, std::as_writable_bytes(std::span(numbers)), sizeof(Number));
+    read_ordered(id, dataset, c, part.box, std::as_writable_bytes(std::span(numbers)),
+                 sizeof(Number));
     components.emplace_back(
         [&](const std::string& type) { return make_volume_data(type, points); });
     components.back().add(std::span<const Number>(numbers));
@@ -188,19 +196,19 @@ void read_grid(const std::filesystem::path& path, const std::string& name, const
   const Id id(H5Dopen2(file.get(), name.c_str(), H5P_DEFAULT), H5Dclose, name.c_str());
   const auto dataset = describe(id.get(), name, axes);
   if (!dataset) throw Error("the file was changed while it was read");
-  std::size_t points = 1;
-  for (const std::int64_t side : dataset->about.sides) points *= static_cast<std::size_t>(side);
+  const GridPart part = wanted_part(dataset->about.sides, range);
   if (dataset->type == "i64") {
-    return read_whole_numbers<std::int64_t>(id.get(), *dataset, points, range, values);
+    return read_whole_numbers<std::int64_t>(id.get(), *dataset, part, range, values);
   }
   if (dataset->type == "u64") {
-    return read_whole_numbers<std::uint64_t>(id.get(), *dataset, points, range, values);
+    return read_whole_numbers<std::uint64_t>(id.get(), *dataset, part, range, values);
   }
   const std::size_t size = H5Tget_size(memory_type(dataset->type));
   for (int c = range.first; c < range.first + range.number; ++c) {
     const std::span<std::byte> to = values.next(dataset->about.type);
-    if (to.size() != points * size) throw Error("the file was changed while it was read");
-    read_ordered(id.get(), *dataset, c, to, size);
+    if (to.size() != value_count(part) * size)
+      throw Error("the file was changed while it was read");
+    read_ordered(id.get(), *dataset, c, part.box, to, size);
   }
 }
 

@@ -53,6 +53,15 @@ std::optional<Axes> axes_of(const NetCdfVariable& variable) {
   return end - begin == 3 ? Axes{begin, std::nullopt} : Axes{begin + 1, begin};
 }
 
+/// Whether the type of the values does not depend on which of them are read.
+bool has_one_type(const NetCdfVariable& variable, const GridArray& array) {
+  if (variable.type == NC_INT64 || variable.type == NC_UINT64) {
+    const NetCdfMeaning meaning = meaning_of(variable);
+    return !meaning.is_plain() || !meaning.missing.empty();
+  }
+  return array.type_with_missing.empty() || array.type_with_missing == array.type;
+}
+
 std::optional<GridArray> describe(const NetCdfVariable& variable) {
   const std::optional<Axes> axes = axes_of(variable);
   if (!axes || !stored_type(variable)) return std::nullopt;
@@ -61,6 +70,7 @@ std::optional<GridArray> describe(const NetCdfVariable& variable) {
   array.type = kept_type(variable);
   if (!meaning_of(variable).missing.empty())
     array.type_with_missing = fits_float(array.type) ? "f32" : "f64";
+  array.reads_parts = has_one_type(variable, array);
   for (std::size_t a = 0; a < 3; ++a) {
     const std::size_t axis = axes->first + 2 - a;
     array.sides[a] = static_cast<std::int64_t>(variable.sides[axis]);
@@ -189,10 +199,15 @@ void read_grid(const std::filesystem::path& path, const std::string& name, const
   const std::optional<Axes> axes = variable == variables.end() ? std::nullopt : axes_of(*variable);
   if (!axes) throw Error("the file was changed while it was read");
   std::vector<std::size_t> start(variable->sides.size(), 0), count(variable->sides.size(), 1);
-  std::size_t points = 1;
-  for (std::size_t a = axes->first; a < axes->first + 3; ++a) {
-    count[a] = variable->sides[a];
-    points *= count[a];
+  std::array<std::int64_t, 3> sides{};
+  for (std::size_t a = 0; a < 3; ++a) {
+    sides[a] = static_cast<std::int64_t>(variable->sides[axes->first + 2 - a]);
+  }
+  const GridPart part = wanted_part(sides, range);
+  const std::size_t points = value_count(part);
+  for (std::size_t a = 0; a < 3; ++a) {
+    start[axes->first + 2 - a] = static_cast<std::size_t>(part.box.first[a]);
+    count[axes->first + 2 - a] = static_cast<std::size_t>(part.box.count[a]);
   }
   const NetCdfMeaning meaning = meaning_of(*variable);
   for (int c = range.first; c < range.first + range.number; ++c) {

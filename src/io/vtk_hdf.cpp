@@ -215,14 +215,17 @@ std::string vtk_hdf_type(const std::filesystem::path& path) {
   }
 }
 
-std::size_t VtkHdfValues::want(const VtkHdfArray& array, std::optional<std::int64_t> component) {
+std::size_t VtkHdfValues::want(const VtkHdfArray& array, std::optional<std::int64_t> component,
+                               const std::optional<GridPart>& part) {
   const std::string name = path_.string();
   if (!array.fault.empty()) {
     throw Error(name + ": the array \"" + one_line(array.name) + "\" is " + one_line(array.fault));
   }
-  const std::size_t count = count_of(array, component.has_value(), name);
+  const std::size_t all = count_of(array, component.has_value(), name);
+  const std::size_t count = part ? value_count(*part) : all;
+  const std::optional<IndexBox> box = part ? std::optional(part->box) : std::nullopt;
   const std::size_t bytes = count * value_size(array.type, name);
-  entries_.push_back({array, component, count, bytes_});
+  entries_.push_back({array, component, box, count, bytes_});
   constexpr std::size_t alignment = 8, most = std::size_t{1} << 61;
   if (bytes > most - bytes_) throw Error(name + ": its arrays are too large");
   bytes_ += (bytes + alignment - 1) / alignment * alignment;
@@ -238,7 +241,8 @@ void VtkHdfValues::read() {
         wanted.reserve(entries_.size());
         for (const Entry& entry : entries_) {
           const std::size_t bytes = entry.count * value_size(entry.array.type, "");
-          wanted.push_back({entry.array, entry.component, to.subspan(entry.offset, bytes)});
+          wanted.push_back(
+              {entry.array, entry.component, entry.box, to.subspan(entry.offset, bytes)});
         }
         std::string error;
         read(path_, wanted, error);

@@ -41,6 +41,7 @@ struct VtkHdfContents {
 struct VtkHdfWanted {
   VtkHdfArray array;
   std::optional<std::int64_t> component;  ///< of the last axis; none: all values
+  std::optional<IndexBox> box;            ///< of the three axes in front, x first; none: all
   std::span<std::byte> to;
 };
 
@@ -50,7 +51,7 @@ using ListVtkHdf = void(const std::filesystem::path& path, VtkHdfContents& answe
 using ReadVtkHdf = void(const std::filesystem::path& path, std::span<const VtkHdfWanted> wanted,
                         std::string& error);
 inline constexpr const char* list_vtk_hdf_name = "pellucid_list_vtk_hdf_1";
-inline constexpr const char* read_vtk_hdf_name = "pellucid_read_vtk_hdf_1";
+inline constexpr const char* read_vtk_hdf_name = "pellucid_read_vtk_hdf_2";
 
 /// What a file holds; nothing where it is no VTKHDF file. Asks HDF5 only where the first bytes, or
 /// the name, are of that kind. Throws Error where HDF5 cannot read it, or the build has none.
@@ -66,7 +67,8 @@ class VtkHdfValues {
   /// Without the values.
   explicit VtkHdfValues(std::filesystem::path path) : path_(std::move(path)) {}
   /// Returns the number by which its values are asked for.
-  std::size_t want(const VtkHdfArray& array, std::optional<std::int64_t> component = {});
+  std::size_t want(const VtkHdfArray& array, std::optional<std::int64_t> component = {},
+                   const std::optional<GridPart>& part = {});
   /// Reads all that is wanted. Throws Error, also where memory does not hold it.
   void read();
   /// The values, in the array's type, in place: they live as long as anyone has them.
@@ -76,6 +78,7 @@ class VtkHdfValues {
   struct Entry {
     VtkHdfArray array;
     std::optional<std::int64_t> component;
+    std::optional<IndexBox> box;
     std::size_t count, offset;
   };
   std::filesystem::path path_;

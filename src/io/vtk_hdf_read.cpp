@@ -169,6 +169,12 @@ void read_one(hid_t file, const VtkHdfWanted& wanted) {
     start.back() = static_cast<hsize_t>(*wanted.component);
     count.back() = 1;
   }
+  if (wanted.box) {
+    for (std::size_t a = 0; a < 3; ++a) {
+      start.at(2 - a) = static_cast<hsize_t>(wanted.box->first[a]);
+      count.at(2 - a) = static_cast<hsize_t>(wanted.box->count[a]);
+    }
+  }
   hsize_t values = 1;
   for (const hsize_t side : count) values *= side;
   if (wanted.to.size() != values * H5Tget_size(memory_type(now.type))) {
@@ -194,7 +200,7 @@ extern "C" __attribute__((visibility("default"))) void pellucid_list_vtk_hdf_1(
   pellucid::answer(contents.error, "split the file", [&] { pellucid::list(path, contents); });
 }
 
-extern "C" __attribute__((visibility("default"))) void pellucid_read_vtk_hdf_1(
+extern "C" __attribute__((visibility("default"))) void pellucid_read_vtk_hdf_2(
     const std::filesystem::path& path, std::span<const pellucid::VtkHdfWanted> wanted,
     std::string& error) {
   pellucid::answer(error, "split the file", [&] {

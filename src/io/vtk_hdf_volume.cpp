@@ -164,11 +164,13 @@ Volume::Description describe(const Image& image, const Named& named, const std::
 std::vector<VolumeData> read_values(const std::filesystem::path& path, const Named& named,
                                     ComponentRange range) {
   VtkHdfValues values(path);
+  const std::optional<GridPart> part =
+      range.part != nullptr ? std::optional(*range.part) : std::nullopt;
   for (int c = range.first; c < range.first + range.number; ++c) {
     if (named.array.sides.size() == 4) {
-      values.want(named.array, c);
+      values.want(named.array, c, part);
     } else {
-      values.want(named.array);
+      values.want(named.array, {}, part);
     }
   }
   values.read();
@@ -196,6 +198,7 @@ VolumeFile open_vtk_hdf(const std::filesystem::path& path, const ReadOptions& op
   file.components = named.components;
   file.holds = std::to_string(named.components) + " components of \"" + named.name + "\"";
   file.array = named.name;
+  file.reads_parts = true;
   file.read = [path, named](ComponentRange range) { return read_values(path, named, range); };
   return file;
 }

@@ -17,11 +17,21 @@ std::mutex& one_at_a_time() {
   return mutex;
 }
 
+/// Leaves out the addresses of objects: "vtkReader(0x5)".
+void erase_addresses(std::string& text) {
+  for (std::size_t at = 0; (at = text.find("(0x", at)) != std::string::npos;) {
+    const std::size_t end = text.find(')', at);
+    if (end == std::string::npos) return;
+    text.erase(at, end - at + 1);
+  }
+}
+
 /// "ERROR: In FILE, line 9\nvtkReader (0x5): what is wrong\n\n": what is wrong.
 std::string what_is_wrong(std::string text) {
   if (const std::size_t object = text.find("): "); object != std::string::npos) {
     text.erase(0, object + 3);
   }
+  erase_addresses(text);
   std::string line;
   for (const char c : text) {
     const bool space = static_cast<unsigned char>(c) <= ' ' || c == '\x7f';

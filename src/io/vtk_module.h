@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "mesh_blocks.h"
+#include "pellucid/scene/sub_volume.h"
 
 namespace pellucid {
 
@@ -34,6 +35,8 @@ struct VtkVolumeRequest {
   std::string data;                  ///< as VtkFileKind has it
   std::optional<std::string> array;  ///< none: the one to show by itself
   bool all = false;                  ///< every array instead
+  bool outline = false;              ///< VtkVolume::read in place of values, where there is one
+  bool hides_nothing = false;        ///< ghosts are not looked at
   /// Throws Error where there is no room for so many bytes; asked before they are read.
   std::function<void(std::uintmax_t bytes)> check_memory;
 };
@@ -52,12 +55,16 @@ struct VtkVolume {
   std::string shown;               ///< the array that is shown where none is named
   /// Flags of vtkGhostType, one for each point or cell; empty: there are none.
   std::vector<std::uint8_t> point_ghosts, cell_ghosts;
+  /// Reads the values of a part of the points, or of the cells between them: `arrays` has none. Of
+  /// images in XML without ghosts, in types that do not depend on the values. Else empty.
+  std::function<void(const IndexBox& points, VtkVolume& answer)> read;
+  int type = 0;  ///< the number that VTK has for the type of the array, if `read` is there
   std::string error;
 };
 
 using ReadVolumeWithVtk = void(const std::filesystem::path& path, const VtkVolumeRequest& request,
                                VtkVolume& answer);
-inline constexpr const char* read_volume_with_vtk_name = "pellucid_read_volume_with_vtk_1";
+inline constexpr const char* read_volume_with_vtk_name = "pellucid_read_volume_with_vtk_2";
 
 /// Loaded by the first call. Throw Error where the build has no such module or it does not load.
 ReadWithVtk& vtk_module();

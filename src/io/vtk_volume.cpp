@@ -12,6 +12,7 @@
 #include "pellucid/scene/error.h"
 #include "volume_axes.h"
 #include "vtk_file_kind.h"
+#include "vtk_image_pieces.h"
 #include "vtk_module.h"
 #include "vtk_xml_end.h"
 
@@ -34,8 +35,17 @@ void check_points(const VtkFileKind& kind, std::uintmax_t bytes, const std::stri
               " bytes cannot hold; it is cut off or its header is wrong");
 }
 
+/// Throws Error with what the module says went wrong.
+void check_answer(const VtkVolume& volume, const std::string& name) {
+  // Of memory it speaks with the file's name.
+  if (volume.error.starts_with(name)) throw Error(volume.error);
+  if (!volume.error.empty()) throw Error(name + ": " + volume.error);
+}
+
+/// All arrays, or the one of this name, or to show; the latter without values where a part of them
+/// can be read (VtkVolume::read).
 VtkVolume read_grid(const std::filesystem::path& path, const std::optional<std::string>& array,
-                    bool all) {
+                    bool all, bool hides_nothing = false) {
   const std::string name = path.string();
   const std::uintmax_t bytes = check_input_file(path);
   const std::optional<VtkFileKind> kind = vtk_file_kind(path);
@@ -44,7 +54,7 @@ VtkVolume read_grid(const std::filesystem::path& path, const std::optional<std::
     throw Error(name + ": holds " + kind->data.substr(0, 40) + ", which is no volume");
   }
   check_points(*kind, bytes, name);
-  const auto check = [&](std::uintmax_t needed) { check_memory(needed, name + ": its values"); };
+  const auto check = [name](std::uintmax_t needed) { check_memory(needed, name + ": its values"); };
   if (kind->xml) {
     check_vtk_xml_end(path);
   } else {
@@ -52,15 +62,14 @@ VtkVolume read_grid(const std::filesystem::path& path, const std::optional<std::
   }
   VtkVolume volume;
   try {
-    vtk_volume_module()(
-        path, {kind->xml ? VtkFormat::xml : VtkFormat::legacy, kind->data, array, all, check},
-        volume);
+    vtk_volume_module()(path,
+                        {kind->xml ? VtkFormat::xml : VtkFormat::legacy, kind->data, array, all,
+                         !all, hides_nothing, check},
+                        volume);
   } catch (const Error& error) {
     throw Error(name + ": " + error.what());
   }
-  // Of memory it speaks with the file's name.
-  if (volume.error.starts_with(name)) throw Error(volume.error);
-  if (!volume.error.empty()) throw Error(name + ": " + volume.error);
+  check_answer(volume, name);
   return volume;
 }
 
@@ -167,25 +176,96 @@ void hide(VolumeData& data, int components, const std::vector<bool>& hidden) {
       data);
 }
 
+/// The pieces of an image, with the places of an array's values, which stand at points or in cells.
+std::vector<ImagePiece> pieces_of(const std::filesystem::path& path, Centering centering) {
+  const std::optional<VtkFileKind> kind = vtk_file_kind(path);
+  if (!kind || kind->data != "PImageData") return {};
+  std::vector<ImagePiece> pieces = image_pieces(path);
+  if (pieces.empty()) throw Error(path.string() + ": its list has no piece");
+  if (centering == Centering::point) return pieces;
+  for (ImagePiece& piece : pieces) {
+    for (int& side : piece.box.count) --side;
+  }
+  return pieces;
+}
+
+/// Reads the values of a box by the reader of a grid's head.
+VolumeData read_box(const VtkVolume& grid, IndexBox box, const std::string& name) {
+  if (grid.arrays.front().centering == Centering::cell) {
+    for (int& side : box.count) ++side;
+  }
+  VtkVolume part;
+  grid.read(box, part);
+  check_answer(part, name);
+  return std::move(part.arrays.front().values);
+}
+
+/// The same of a piece, whose file must have what the list says.
+VolumeData read_piece(const VtkVolume& grid, const ImagePiece& piece, IndexBox box) {
+  const std::string name = piece.file.string();
+  const MeshArray& array = grid.arrays.front();
+  const VtkVolume own = read_grid(piece.file, array.name, false, true);
+  IndexBox points = piece.box;
+  if (array.centering == Centering::cell) {
+    for (int& side : points.count) ++side;
+  }
+  const MeshArray& its = own.arrays.front();
+  if (own.points != points.count || !own.read || own.type != grid.type ||
+      its.components != array.components || its.centering != array.centering) {
+    throw Error(name + ": has another extent, or another type of \"" + array.name +
+                "\", than the list of pieces says; write the list anew");
+  }
+  for (std::size_t a = 0; a < 3; ++a) box.first[a] -= piece.box.first[a];
+  return read_box(own, box, name);
+}
+
+/// Reads the components of the wanted part of an image whose head has been read.
+std::vector<VolumeData> read_part(const VtkVolume& grid, const std::vector<ImagePiece>& pieces,
+                                  const Volume::Description& description, ComponentRange range) {
+  const std::string& name = description.name;
+  const int components = grid.arrays.front().components;
+  const IndexBox box =
+      range.part != nullptr ? range.part->box : IndexBox{{0, 0, 0}, description.dimensions};
+  if (pieces.empty()) return split_components(read_box(grid, box, name), components, range, name);
+  const VolumeData values = join_pieces(
+      pieces, box, components,
+      [&](const ImagePiece& piece, const IndexBox& some) {
+        try {
+          return read_piece(grid, piece, some);
+        } catch (const Error& error) {
+          throw Error(name + ": a piece cannot be read: " + error.what());
+        }
+      },
+      name);
+  return split_components(values, components, range, name);
+}
+
 }  // namespace
 
 VolumeFile open_vtk_volume(const std::filesystem::path& path, const ReadOptions& options) {
   const std::string name = path.string();
   refuse_raw_options(options, name);
   VtkVolume grid = read_grid(path, options.array, false);
-  MeshArray array = std::move(grid.arrays.front());
   VolumeFile file;
-  file.description = describe(grid, array.centering, name);
+  file.description = describe(grid, grid.arrays.front().centering, name);
   override_placement(options, file.description);
+  file.components = grid.arrays.front().components;
+  file.array = grid.arrays.front().name;
+  file.holds = std::to_string(file.components) + " components (array \"" + file.array + "\")";
+  if (grid.read) {
+    file.reads_parts = true;
+    const std::vector<ImagePiece> pieces = pieces_of(path, grid.arrays.front().centering);
+    file.read = [grid = std::move(grid), description = file.description, pieces](
+                    ComponentRange range) { return read_part(grid, pieces, description, range); };
+    return file;
+  }
+  MeshArray array = std::move(grid.arrays.front());
   const std::size_t places = std::visit([](const auto& v) { return v.size(); }, array.values) /
                              static_cast<std::size_t>(array.components);
   if (!grid.point_ghosts.empty() || !grid.cell_ghosts.empty()) {
     const std::vector<bool> hidden = hidden_places(grid, array.centering, places, name);
     if (!hidden.empty()) hide(array.values, array.components, hidden);
   }
-  file.components = array.components;
-  file.array = array.name;
-  file.holds = std::to_string(array.components) + " components (array \"" + array.name + "\")";
   file.read = [values = std::move(array.values), components = array.components,
                name](ComponentRange range) {
     return split_components(values, components, range, name);

@@ -22,6 +22,7 @@
 
 #include <algorithm>
 #include <string>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -37,6 +38,7 @@ namespace pellucid {
 namespace {
 
 constexpr const char* damaged = "; the file is cut off or damaged";
+constexpr const char* remedy = "crop or reduce the volume";
 
 /// An array of the file, by the name that it is called by here.
 struct Entry {
@@ -157,18 +159,17 @@ void take_values(vtkDataSet& set, const std::vector<Entry>& entries, VtkVolume& 
   volume.cell_ghosts = ghosts_of(set.GetCellGhostArray(), set.GetNumberOfCells());
 }
 
-void take_grid(vtkImageData& image, VtkVolume& volume) {
-  int extent[6];
-  image.GetExtent(extent);
+/// `direction`: row after row.
+void take_place(const int* extent, const double* origin, const double* spacing,
+                const double* direction, VtkVolume& volume) {
   GridPlacement& placement = volume.placement;
-  vtkMatrix3x3* const direction = image.GetDirectionMatrix();
   for (int a = 0; a < 3; ++a) {
     volume.points[static_cast<std::size_t>(a)] = extent[2 * a + 1] - extent[2 * a] + 1;
     for (int row = 0; row < 3; ++row) {
-      placement.direction.column[a][row] = direction->GetElement(row, a);
+      placement.direction.column[a][row] = direction[3 * row + a];
     }
-    placement.origin[a] = image.GetOrigin()[a];
-    placement.spacing[a] = image.GetSpacing()[a];
+    placement.origin[a] = origin[a];
+    placement.spacing[a] = spacing[a];
   }
   for (int a = 0; a < 3; ++a) {
     placement.origin =
@@ -178,6 +179,11 @@ void take_grid(vtkImageData& image, VtkVolume& volume) {
       placement.direction.column[a] = placement.direction.column[a] * -1.0;
     }
   }
+}
+
+void take_grid(vtkImageData& image, VtkVolume& volume) {
+  take_place(image.GetExtent(), image.GetOrigin(), image.GetSpacing(),
+             image.GetDirectionMatrix()->GetData(), volume);
 }
 
 void take_grid(vtkRectilinearGrid& grid, VtkVolume& volume) {
@@ -212,10 +218,18 @@ void check(vtkAlgorithm& reader, const VtkMessages& messages) {
   if (reader.GetErrorCode() != 0) throw Error("the file is cut off or damaged");
 }
 
+using Extent = std::array<int, 6>;
+
+/// The first and last points along the axes.
+Extent whole_extent(vtkInformation& about) {
+  Extent extent{0, -1, 0, -1, 0, -1};
+  about.Get(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT(), extent.data());
+  return extent;
+}
+
 /// What the entries take, as they are read and as they are kept.
-std::uintmax_t bytes_of(const std::vector<Entry>& entries, vtkInformation& about) {
-  int extent[6] = {0, -1, 0, -1, 0, -1};
-  about.Get(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT(), extent);
+std::uintmax_t bytes_of(const std::vector<Entry>& entries, const Extent& of) {
+  const int* const extent = of.data();
   double points = 1, bytes = 0;
   for (int a = 0; a < 3; ++a) {
     const double side = static_cast<double>(extent[2 * a + 1]) - extent[2 * a] + 1;
@@ -230,6 +244,65 @@ std::uintmax_t bytes_of(const std::vector<Entry>& entries, vtkInformation& about
   return static_cast<std::uintmax_t>(bytes);
 }
 
+/// Whether the entries' values have one type, whichever part is read, and none is hidden.
+bool reads_parts(const std::vector<Entry>& entries, vtkDataArraySelection& points,
+                 vtkDataArraySelection& cells, bool hides_nothing) {
+  const std::string ghosts = ghost_name();
+  if (hides_nothing) {
+    points.DisableArray(ghosts.c_str());
+    cells.DisableArray(ghosts.c_str());
+  } else if (points.ArrayExists(ghosts.c_str()) != 0 || cells.ArrayExists(ghosts.c_str()) != 0) {
+    return false;
+  }
+  // Whole numbers of 64 bits have the type of the largest.
+  return std::ranges::all_of(entries, [](const Entry& entry) {
+    return entry.type == VTK_FLOAT || entry.type == VTK_DOUBLE ||
+           (entry.type != VTK_BIT && vtkDataArray::GetDataTypeSize(entry.type) <= 4);
+  });
+}
+
+/// The points of the whole extent that are in the box.
+Extent extent_of(const Extent& whole, const IndexBox& box) {
+  Extent extent{};
+  for (std::size_t a = 0; a < 3; ++a) {
+    extent[2 * a] = whole[2 * a] + box.first[a];
+    extent[2 * a + 1] = extent[2 * a] + box.count[a] - 1;
+  }
+  return extent;
+}
+
+/// Reads the entries of a part of an image, by a reader that has read the head.
+template <class Reader>
+void read_part(Reader& reader, const std::vector<Entry>& entries, const Extent& extent,
+               const VtkMessages& messages, VtkVolume& volume) {
+  // The readers have a member of this name.
+  static_cast<vtkAlgorithm&>(reader).UpdateExtent(extent.data());
+  check(reader, messages);
+  vtkImageData* const image = vtkImageData::SafeDownCast(reader.GetOutput());
+  if (image == nullptr || !std::equal(extent.begin(), extent.end(), image->GetExtent())) {
+    throw Error("VTK does not give the part that is asked for" + std::string(damaged));
+  }
+  take_grid(*image, volume);
+  take_values(*image, entries, volume);
+  // The values belong to whoever has them.
+  image->ReleaseData();
+}
+
+/// What the head says of an image, without values.
+void take_outline(vtkInformation& about, const std::vector<Entry>& entries, VtkVolume& volume) {
+  double origin[] = {0, 0, 0}, spacing[] = {1, 1, 1};
+  double direction[] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
+  if (about.Has(vtkDataObject::ORIGIN()) != 0) about.Get(vtkDataObject::ORIGIN(), origin);
+  if (about.Has(vtkDataObject::SPACING()) != 0) about.Get(vtkDataObject::SPACING(), spacing);
+  if (about.Has(vtkDataObject::DIRECTION()) != 0) {
+    about.Get(vtkDataObject::DIRECTION(), direction);
+  }
+  take_place(whole_extent(about).data(), origin, spacing, direction, volume);
+  for (const Entry& entry : entries) {
+    volume.arrays.push_back({entry.name, entry.centering, entry.components, {}});
+  }
+}
+
 template <class Reader, class Grid>
 void read_xml_grid(const std::filesystem::path& path, const VtkVolumeRequest& request,
                    const VtkMessages& messages, VtkVolume& volume) {
@@ -240,7 +313,7 @@ void read_xml_grid(const std::filesystem::path& path, const VtkVolumeRequest& re
   vtkInformation* const about = reader->GetOutputInformation(0);
   if (about == nullptr) throw Error("the file is cut off or damaged");
   const std::vector<Entry> entries = choose(entries_of(*about), request, volume);
-  request.check_memory(bytes_of(entries, *about));
+  const Extent whole = whole_extent(*about);
   vtkDataArraySelection* const points = reader->GetPointDataArraySelection();
   vtkDataArraySelection* const cells = reader->GetCellDataArraySelection();
   for (vtkDataArraySelection* const selection : {points, cells}) {
@@ -252,6 +325,24 @@ void read_xml_grid(const std::filesystem::path& path, const VtkVolumeRequest& re
   for (const Entry& entry : entries) {
     (entry.centering == Centering::point ? points : cells)->EnableArray(entry.in_file.c_str());
   }
+  const std::uintmax_t bytes = bytes_of(entries, whole);
+  if constexpr (std::is_same_v<Grid, vtkImageData>) {
+    if (request.outline && reads_parts(entries, *points, *cells, request.hides_nothing)) {
+      volume.type = entries.front().type;
+      take_outline(*about, entries, volume);
+      volume.read = [reader, entries, whole, check_memory = request.check_memory](
+                        const IndexBox& box, VtkVolume& part) {
+        answer(part.error, remedy, [&] {
+          const Extent extent = extent_of(whole, box);
+          check_memory(bytes_of(entries, extent));
+          const VtkMessages own;
+          read_part(*reader, entries, extent, own, part);
+        });
+      };
+      return;
+    }
+  }
+  request.check_memory(bytes);
   reader->Update();
   check(*reader, messages);
   take_all<Grid>(reader->GetOutput(), volume);
@@ -291,9 +382,9 @@ void read_volume(const std::filesystem::path& path, const VtkVolumeRequest& requ
 
 }  // namespace pellucid
 
-extern "C" __attribute__((visibility("default"))) void pellucid_read_volume_with_vtk_1(
+extern "C" __attribute__((visibility("default"))) void pellucid_read_volume_with_vtk_2(
     const std::filesystem::path& path, const pellucid::VtkVolumeRequest& request,
     pellucid::VtkVolume& answer) {
-  pellucid::answer(answer.error, "crop or reduce the volume",
+  pellucid::answer(answer.error, pellucid::remedy,
                    [&] { pellucid::read_volume(path, request, answer); });
 }
