@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tests/cluster/rank_scenes.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "tests/scenes/cameras.h"
@@ -42,6 +43,27 @@ NamedScene along_faces(int size) {
   return {"a view along the faces of bricks", scene, false, true};
 }
 
+/// Proved bounds of gradient opacity, which fail to keep to small shares of a tolerance.
+NamedScene gradient_opacity(int size) {
+  const VolumePointer volume =
+      make_volume<std::uint8_t>(grid_description({96, 96, 96}), [](int i, int j, int k) {
+        const double x = i / 47.5 - 1, y = j / 47.5 - 1, z = k / 47.5 - 1;
+        const double r = std::sqrt(x * x + y * y + z * z);
+        return std::clamp(128 + 90 * std::cos(14 * r) * (1 - r / 2) + 25 * std::sin(9 * x + 5 * z),
+                          0.0, 255.0);
+      });
+  const TransferPointer function =
+      transfer({{120, 0, {0.1, 0.3, 1}}, {180, 0.06, {1, 0.6, 0.2}}, {255, 0.25, {1, 1, 0.9}}});
+  Scene scene =
+      make_scene(volume, function, perspective_camera({200, 153, 230}, {47.5, 47.5, 47.5}, 30),
+                 {size / 2 + 4, size / 2});
+  scene.layers[0].gradient_opacity = std::make_shared<const GradientOpacity>(
+      std::vector<GradientOpacity::Point>{{0, 0.1}, {6, 1}});
+  scene.integration.grade = Grade::proved;
+  scene.integration.tolerance = 1e-3;
+  return {"gradient opacity, proved", scene, false, false, true};
+}
+
 NamedScene camera_inside(int size) {
   NamedScene named = along_faces(size);
   named.name = "a camera inside of a brick";
@@ -60,7 +82,7 @@ NamedScene camera_on_a_face(int size) {
 
 std::vector<NamedScene> rank_scenes(int size) {
   std::vector<NamedScene> list{jump_on_a_face(size), along_faces(size), camera_inside(size),
-                               camera_on_a_face(size)};
+                               camera_on_a_face(size), gradient_opacity(size)};
   std::size_t n = 0;
   for (const auto group : {layer_gallery, light_gallery}) {
     for (const GalleryEntry& entry : group()) {

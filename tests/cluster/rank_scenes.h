@@ -13,6 +13,9 @@ struct NamedScene {
   Scene scene;
   bool slow = false;             ///< left out of the short run
   bool faces_on_values = false;  ///< bricks meet at values of the grid, not between them
+  /// To the scene's own tolerance, which one process does not meet everywhere: ranks must not have
+  /// more pixels over it.
+  bool is_hard = false;
 };
 
 /// Scenes of all kinds of layers, looks and cameras, that are rendered in bricks.
