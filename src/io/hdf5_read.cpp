@@ -133,8 +133,8 @@ void read_ordered(hid_t id, const Dataset& dataset, int component, const IndexBo
 }
 
 template <class Number>
-void read_whole_numbers(hid_t id, const Dataset& dataset, const GridPart& part, ComponentRange range,
-                        GridValues& values) {
+void read_whole_numbers(hid_t id, const Dataset& dataset, const GridPart& part,
+                        ComponentRange range, GridValues& values) {
   const std::size_t points = value_count(part);
   std::vector<WholeNumbers> components;
   std::vector<Number> numbers(points);
