@@ -36,7 +36,7 @@ def frame(view):
 
 def stage(source, kind, mapper=None):
     view = simple.CreateView("RenderView")
-    view.ViewSize = [512, 512]
+    view.ViewSize = [256, 256]
     view.OrientationAxesVisibility = view.UseFXAA = 0
     view.UseColorPaletteForBackground = 0
     view.Background = [0, 0, 0]
@@ -78,13 +78,13 @@ def main():
     simple.LoadPlugin(os.path.realpath(ARGUMENTS.plugin), remote=False, ns=globals())
     print("| data | ParaView's | ParaView | ours | ratio | ParaView off by | ours off by |")
     print("|---|---|---|---|---|---|---|")
-    image = simple.Wavelet(WholeExtent=[-64, 63, -64, 63, -64, 63])
+    image = simple.Wavelet(WholeExtent=[-32, 31, -32, 31, -32, 31])
     image.UpdatePipeline()
-    rows(image, "Wavelet, 128³")
-    small = simple.Wavelet(WholeExtent=[-16, 16, -16, 16, -16, 16])
+    rows(image, "Wavelet, 64³")
+    small = simple.Wavelet(WholeExtent=[-8, 8, -8, 8, -8, 8])
     cells = simple.AppendDatasets(Input=[small])
     cells.UpdatePipeline()
-    rows(cells, "cells of Wavelet, 32³")
+    rows(cells, "cells of Wavelet, 16³")
     for path in ARGUMENTS.files:
         source = simple.OpenDataFile(path)
         source.UpdatePipeline()
