@@ -116,8 +116,9 @@ Curve curve_of(vtkColorTransferFunction& function) {
       function.GetColorSpace() == VTK_CTF_RGB && function.GetScale() == VTK_CTF_LINEAR;
   return with_jumps_of_two(
       curve_through(nodes, straight, function.GetClamping() != 0, [&](double x) {
+        // As VTK's mappers do: GetColor() of a discretized function, as ParaView's are, has steps.
         double color[3];
-        function.GetColor(x, color);
+        function.GetTable(x, x, 1, color);
         return Rgb<double>{color[0], color[1], color[2]};
       }));
 }

@@ -182,6 +182,8 @@ void MapperCore::draw(vtkUnstructuredGridVolumeMapper& mapper, vtkRenderer& rend
 
 void MapperCore::draw_layers(vtkAbstractVolumeMapper& mapper, vtkRenderer& renderer,
                              vtkVolume& volume, const MakeLayers& make_layers) {
+  // The colors of a selection's passes are numbers of what is selected.
+  if (renderer.GetSelector() != nullptr) return;
   const Clock::time_point start = Clock::now();
   outcome = {};
   outcome.largest_error = std::numeric_limits<double>::infinity();

@@ -153,9 +153,10 @@ def check_file(root, path, modules):
             folders = [path.parent, root.joinpath(*relative.parts[:2])]
             if relative.parts[0] == "apps":  # one program includes parts of another: "cli/parse.h"
                 folders.append(root / "apps")
-            # A plug-in takes arrays and cells of its host as the readers of files do.
+            # A plug-in takes arrays and cells of its host as the readers of files do. That for
+            # ParaView draws by the mappers of that for VTK.
             if relative.parts[0] == "plugins":
-                folders.append(root / "src" / "io")
+                folders += [root / "src" / "io", root / "plugins" / "vtk"]
             if (relative.parts[0] == "include" or ".." in name
                     or not any((folder / name).is_file() for folder in folders)):
                 yield f'{where}: "{name}" is neither "pellucid/..." nor a file beside this one'

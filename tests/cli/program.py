@@ -94,14 +94,17 @@ def ramp(n):
     return [i / (n - 1) for _ in range(n) for _ in range(n) for i in range(n)]
 
 
-def exr(pixels, error=None, proved=None):
+def exr(pixels, error=None, proved=None, depth=None):
     """An uncompressed OpenEXR file of float RGBA; `pixels` is a list of rows of (r, g, b, a).
 
-    `error` and `proved` are rows of numbers for the channels error (float) and error.proved (half).
+    `error`, `proved` and `depth` are rows of numbers for the channels error (float), error.proved
+    (half) and Z (float).
     """
     height, width = len(pixels), len(pixels[0])
     planes = {name: (2, [[pixel[c] for pixel in row] for row in pixels])
               for name, c in ((b"A", 3), (b"B", 2), (b"G", 1), (b"R", 0))}
+    if depth is not None:
+        planes[b"Z"] = (2, depth)
     if error is not None:
         planes[b"error"] = (2, error)
     if proved is not None:

@@ -18,83 +18,16 @@ import struct
 import subprocess
 import sys
 import tempfile
-import urllib.error
-import urllib.request
 import zlib
 
 FOLDER = os.environ["PELLUCID_PACKAGE_FOLDER"]
 VERSION = os.environ["PELLUCID_VERSION"]
-NAMESPACES = ["unshare", "--mount", "--pid", "--fork", "--kill-child", "--propagation", "private"]
+sys.path.insert(0, os.path.join(os.environ["PELLUCID_SOURCE_DIR"], "tools"))
+from debian_root import (Root, Skip, check_machine, expect, install_debian, remove, set_up_apt,
+                         source_of_host, stop)
 
 
-class Skip(Exception):
-    pass
-
-
-def output_of(*command):
-    return subprocess.run(command, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True,
-                          check=True).stdout
-
-
-def expect(condition, message):
-    if not condition:
-        raise AssertionError(message)
-
-
-# ----- the empty Debian -------------------------------------------------------------------------
-
-def check_machine():
-    if os.geteuid() != 0:
-        raise Skip("a Debian root can only be made as root")
-    for tool in ("debootstrap", "unshare", "apt-get", "dpkg-deb"):
-        if not shutil.which(tool):
-            raise Skip(f"{tool} is not installed (scripts/install-packages package)")
-    if subprocess.run([*NAMESPACES, "true"], stderr=subprocess.DEVNULL, check=False).returncode:
-        raise Skip("this machine allows no mount namespaces (unshare)")
-
-
-def suite_of_host():
-    with open("/etc/os-release", encoding="utf-8") as file:
-        found = re.search(r'(?m)^VERSION_CODENAME="?(\w+)', file.read())
-    if not found:
-        raise Skip("/etc/os-release names no release of Debian")
-    return found.group(1)
-
-
-def sources_of_host():
-    """The host's (address, suite, component) of Debian itself."""
-    lines = output_of("apt-get", "indextargets", "--format",
-                      "$(REPO_URI)|$(RELEASE)|$(COMPONENT)|$(ORIGIN)", "Created-By: Packages")
-    sources = []
-    for line in lines.splitlines():
-        address, suite, component, origin = line.split("|")
-        if origin == "Debian" and (address, suite, component) not in sources:
-            sources.append((address, suite, component))
-    return sources
-
-
-def check_mirror(mirror, suite):
-    try:
-        with urllib.request.urlopen(f"{mirror}/dists/{suite}/InRelease", timeout=60) as answer:
-            answer.read(1)
-    except (urllib.error.URLError, OSError, ValueError):
-        raise Skip("the mirror of this machine does not answer") from None
-
-
-def mounted_under(folder):
-    with open("/proc/self/mounts", encoding="utf-8") as file:
-        return [line.split()[1] for line in file
-                if line.split()[1].startswith(os.path.join(folder, ""))]
-
-
-def remove(root):
-    """Deletes a root; never what is mounted in it."""
-    mounts = mounted_under(os.path.realpath(root))
-    expect(not mounts, f"not deleted, for something is mounted in it: {mounts}")
-    shutil.rmtree(root)
-
-
-def make_root(suite, mirror):
+def unpack_root(suite, mirror):
     """A new folder with a Debian that was just installed."""
     archive = os.path.join(FOLDER, f"debian_{suite}.tar")
     root = tempfile.mkdtemp(prefix="root_", dir=FOLDER)
@@ -102,72 +35,10 @@ def make_root(suite, mirror):
     if os.path.exists(archive):
         subprocess.run(["tar", "--numeric-owner", "-xpf", archive, "-C", root], check=True)
         return root
-    print("making an empty Debian with debootstrap", flush=True)
-    result = subprocess.run([*NAMESPACES, "debootstrap", "--variant=minbase", suite, root, mirror],
-                            stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
-                            check=False)
-    if result.returncode:
-        remove(root)
-        raise AssertionError(f"debootstrap failed:\n{result.stdout[-2000:]}")
+    install_debian(root, suite, mirror)
     subprocess.run(["tar", "--numeric-owner", "-cf", archive + ".new", "-C", root, "."], check=True)
     os.replace(archive + ".new", archive)
     return root
-
-
-def set_up_apt(root, sources):
-    with open(f"{root}/etc/apt/sources.list", "w", encoding="utf-8") as file:
-        file.writelines(f"deb {address} {suite} {component}\n"
-                        for address, suite, component in sources)
-    # How this machine reaches its mirror.
-    dump = output_of("apt-config", "dump", "Acquire")
-    with open(f"{root}/etc/apt/apt.conf.d/90host", "w", encoding="utf-8") as file:
-        file.writelines(line + "\n" for line in dump.splitlines()
-                        if re.match(r"Acquire::(https?::Proxy|Check-|ForceIPv)", line))
-    with open(f"{root}/etc/dpkg/dpkg.cfg.d/fast", "w", encoding="utf-8") as file:
-        file.write("force-unsafe-io\n")
-    for name in ("resolv.conf", "hosts"):
-        if os.path.exists(f"/etc/{name}"):
-            shutil.copyfile(f"/etc/{name}", f"{root}/etc/{name}")
-
-
-# ----- commands in it ---------------------------------------------------------------------------
-
-class Root:
-    def __init__(self, folder):
-        self.folder = folder
-
-    def path(self, name):
-        return os.path.join(self.folder, name.lstrip("/"))
-
-    def run(self, *command, status=0):
-        """Runs a command in the root, with /proc, and gives stdout and stderr."""
-        script = 'mount -t proc proc "$0/proc" && exec chroot "$0" "$@"'
-        result = subprocess.run(
-            [*NAMESPACES, "sh", "-c", script, self.folder, *command],
-            stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
-            check=False, env={"PATH": "/usr/sbin:/usr/bin:/sbin:/bin", "HOME": "/root",
-                              "DEBIAN_FRONTEND": "noninteractive", "LC_ALL": "C.UTF-8",
-                              **{name: value for name, value in os.environ.items()
-                                 if name.lower().endswith("_proxy")}})
-        expect(result.returncode == status,
-               f"{' '.join(command)}: exit status {result.returncode}, not {status}\n"
-               f"{result.stdout[-3000:]}")
-        return result.stdout
-
-    def write(self, name, data):
-        with open(self.path(name), "wb") as file:
-            file.write(data)
-
-    def files(self):
-        """The paths of all files and folders on disk."""
-        found = set()
-        for folder, folders, files in os.walk(self.folder):
-            where = os.path.relpath(folder, self.folder)
-            if where in ("proc", "sys", "dev", "tmp"):
-                folders.clear()
-                continue
-            found.update(os.path.normpath(os.path.join(where, name)) for name in folders + files)
-        return found
 
 
 def small_npy():
@@ -287,11 +158,7 @@ def main():
     if not debs:
         raise Skip("there is no package: package.contents makes it")
     expect(len(debs) == 1, f"one package is expected in {FOLDER}: {debs}")
-    suite, sources = suite_of_host(), sources_of_host()
-    mirrors = [address for address, of_suite, _ in sources if of_suite == suite]
-    if not mirrors:
-        raise Skip("apt has no sources of Debian, or no lists of them (apt-get update)")
-    check_mirror(mirrors[0].rstrip("/"), suite)
+    suite, sources, mirror = source_of_host()
     with open(os.path.join(FOLDER, "lock"), "w", encoding="utf-8") as lock:
         fcntl.flock(lock, fcntl.LOCK_EX)
         for name in os.listdir(FOLDER):  # of a run that was killed
@@ -299,16 +166,12 @@ def main():
                 remove(os.path.join(FOLDER, name))
         root = None
         try:
-            root = make_root(suite, mirrors[0])
+            root = unpack_root(suite, mirror)
             test(root, os.path.join(FOLDER, debs[0]), sources)
         finally:
             if root:
                 remove(root)
     print("installed, rendered and removed")
-
-
-def stop(number, _frame):
-    sys.exit(128 + number)
 
 
 if __name__ == "__main__":
