@@ -38,6 +38,8 @@ class Crossings {
   /// Calls hit(u) for each crossing in the next stretch.
   template <class Hit>
   void follow(const LayerStretch& stretch, const Hit& hit) {
+    // A tetrahedron that the ray only touches may come behind the one that it goes on in.
+    if (stretch.t_end - reached_ <= same_position(ray_, stretch.t_end)) return;
     const Chord& chord = stretch.chords[channel_];
     if (!(stretch.t_begin - reached_ <= same_position(ray_, stretch.t_begin))) sign_ = 0;
     reached_ = stretch.t_end;

@@ -145,6 +145,68 @@ TEST(LayerFrames, ARayAlongAClipSaysThatItIsNotKnown) {
   }
 }
 
+/// The same between labels: a ray along their border shows one or the other, as rounding has it.
+TEST(LayerFrames, ARayAlongABorderOfLabelsSaysThatItIsNotKnown) {
+  // Borders of values at 0 and ±0.6, where the rays of columns and rows 7, 12 and 17 run.
+  const auto description = grid_description({4, 4, 4}, {-0.9, -0.9, -0.9}, {0.6, 0.6, 0.6});
+  const auto labels = std::make_shared<const LabelVolume>(make_volume<std::uint8_t>(
+      description, [](int i, int j, int k) { return (i + 2 * j + k) % 3; }));
+  const Layer segmentation{
+      LabelContent{labels, std::make_shared<const LabelTable>(std::vector<LabelStyle>{
+                               {1, "", {1, 0.2, 0.1}, 0.5}, {2, "", {0.1, 0.4, 1}, 3}})}};
+  const Layer masked{VolumeContent{
+      make_volume<float>(description, [](int i, int, int) { return i; }),
+      transfer({{0, 0.5, {1, 0.2, 0.1}}}),
+      std::make_shared<const LabelMask>(
+          labels, std::vector<LabelMask::Choice>{{1, transfer({{0, 3, {0.1, 0.4, 1}}})}})}};
+  Scene scene;
+  scene.size = {25, 25};
+  scene.camera.projection = Projection::orthographic;
+  scene.camera.parallel_scale = 1.5;
+  for (const Layer& layer : {segmentation, masked}) {
+    scene.layers = {layer};
+    for (const Vec3<double> from : {Vec3<double>{0, 0, -5}, {0, 0, 7.3}, {1e-15, 1e-15, -5}}) {
+      scene.camera.position = from;
+      scene.camera.focal_point = {from.x, from.y, 0};
+      const Image image = rendered(scene);
+      const ReferenceFrame truth = reference_frame(scene, 2);
+      int unknown = 0;
+      for (std::size_t i = 0; i < image.pixels.size(); ++i) {
+        const std::size_t column = i % 25, row = i / 25;
+        const auto runs_along = [](std::size_t n) { return n == 7 || n == 12 || n == 17; };
+        if (image.error[i] > static_cast<float>(scene.integration.tolerance)) {
+          ++unknown;
+          EXPECT_TRUE(runs_along(column) || runs_along(row))
+              << "pixel " << column << ", " << row << " from " << from.x << ", " << from.z << ": "
+              << image.error[i];
+        }
+        for (std::size_t c = 0; c < 4; ++c) {
+          ASSERT_LE(std::abs(static_cast<double>(image.pixels[i][c]) - truth.pixels[i][c]),
+                    static_cast<double>(image.error[i]))
+              << "pixel " << column << ", " << row << " from " << from.z;
+        }
+      }
+      EXPECT_GT(unknown, 20);
+    }
+  }
+}
+
+/// One of these rays touches a tetrahedron in a point, within rounding, and goes on in another.
+TEST(LayerFrames, ARayThroughAPointOfAMeshMeetsASurfaceOnce) {
+  for (const GalleryEntry& entry : light_gallery()) {
+    if (entry.name != "isosurfaces: in tetrahedra, beside a grid, and labels") continue;
+    Scene scene = scene_of(entry.make(25), 0, 25);
+    scene.layers.resize(1);
+    scene.integration.tolerance = 1e-5;
+    const Verdict verdict =
+        judge(rendered(scene), reference_frame(scene, 2), scene.integration.tolerance);
+    EXPECT_TRUE(verdict.kept()) << verdict.text();
+    EXPECT_EQ(verdict.said_over, 0);
+    return;
+  }
+  FAIL() << "the gallery has no such scene";
+}
+
 /// What a table is off by is seen in the color of the layer behind it.
 TEST(LayerFrames, ReserveForTablesWhatIsSeenBehindThem) {
   const double error = 0.01;

@@ -3,12 +3,13 @@
 #include <cmath>
 #include <cstdint>
 #include <memory>
-#include <unordered_set>
+#include <unordered_map>
 
 #include "grid_stream.h"
 #include "label_axes.h"
 #include "pellucid/scene/block_classes_storage.h"
 #include "pellucid/scene/transfer_tables_storage.h"
+#include "plane_doubt.h"
 
 namespace pellucid {
 namespace {
@@ -30,16 +31,21 @@ class LabelSource : public LayerSource {
     table_ = {0, content_.table->function().view<double>()};
     functions_.push_back(transfer_of(table_));
     for (const LabelStyle& style : content_.table->styles()) {
-      if (style.extinction > 0) visible_.insert(style.label);
+      if (style.extinction > 0) extinction_.emplace(style.label, style.extinction);
     }
   }
 
   std::unique_ptr<LayerStream> stream() const override;
 
   const LabelAxes& axes() const { return axes_; }
-  /// Returns whether the label absorbs.
-  bool is_visible(double label) const {
-    return !std::isnan(label) && visible_.contains(static_cast<std::int32_t>(label));
+  const Affine<double>& grid_from_world() const {
+    return content_.labels->volume().grid_from_world();
+  }
+  /// Returns a label's extinction; NaN is vacuum.
+  double extinction(double label) const {
+    if (std::isnan(label)) return 0;
+    const auto found = extinction_.find(static_cast<std::int32_t>(label));
+    return found == extinction_.end() ? 0 : found->second;
   }
 
  private:
@@ -48,7 +54,7 @@ class LabelSource : public LayerSource {
   const BlockRecords& records_;
   BlockClassesStorage classes_;
   ChannelTable<double> table_;
-  std::unordered_set<std::int32_t> visible_;
+  std::unordered_map<std::int32_t, double> extinction_;  ///< of labels that absorb
 };
 
 /// Runs of cells of one label.
@@ -59,6 +65,10 @@ class LabelStream : public GridStream {
       : GridStream(volume, source.axes().axis(), records, classes, source.look().slices(), false),
         source_(source) {}
 
+  Interval<double> start(const Ray<double>& ray) override {
+    sides_.start(source_.grid_from_world(), ray);
+    return GridStream::start(ray);
+  }
   void restrict_to_range(Interval<double> range) override {
     GridStream::restrict_to_range(range);
     has_ahead_ = false;
@@ -67,35 +77,51 @@ class LabelStream : public GridStream {
   bool next(LayerStretch& stretch) override {
     if (!has_ahead_ && !find()) return false;
     stretch.begin = ahead_.t_begin;
-    stretch.function = 0;
-    const double label = label_;
+    const double label = label_, doubt = doubt_;
+    stretch.function = source_.extinction(label) > 0 ? 0 : -1;
+    stretch.left_out = doubt;
+    double position_error = 0;
     do {
+      position_error = std::max(position_error, sides_.position_error(ahead_));
       stretch.end = ahead_.t_end;
       has_ahead_ = false;
-    } while (find() && label_ == label && ahead_.t_begin == stretch.end);
-    stretch.position_error = grid_position_error(stretch.end);
+    } while (find() && label_ == label && doubt_ == doubt && ahead_.t_begin == stretch.end);
+    stretch.position_error = std::max(grid_position_error(stretch.end), position_error);
     for (double& b : stretch.data[0].b) b = label;
     return true;
   }
 
  private:
-  /// Finds the next visible cell.
+  /// Finds the next cell that is visible, or whose ray may be in one.
   bool find() {
     int block = 0;
     bool skipped = false;
     while (next_cell(ahead_, block, skipped)) {
       if (skipped) continue;
       label_ = source_.axes().value(ahead_.cell);
-      if (!source_.is_visible(label_)) continue;
+      doubt_ = doubt_in(ahead_);
+      if (!(source_.extinction(label_) > 0 || doubt_ > 0)) continue;
       has_ahead_ = true;
       return true;
     }
     return false;
   }
 
+  /// The extinction of what the ray shows of a cell, and may show of another one in its place.
+  double doubt_in(const StructuredWalk<double>::Step& step) const {
+    double doubt = 0;
+    sides_.for_each_other_cell(source_.axes().axis(), step, [&](const int(&cell)[3]) {
+      const double other = source_.axes().value(cell);
+      if (other == label_) return;
+      doubt = std::max(doubt, source_.extinction(label_) + source_.extinction(other));
+    });
+    return doubt;
+  }
+
   const LabelSource& source_;
+  PlaneDoubt sides_;
   StructuredWalk<double>::Step ahead_{};
-  double label_ = 0;
+  double label_ = 0, doubt_ = 0;
   bool has_ahead_ = false;
 };
 

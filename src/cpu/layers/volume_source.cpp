@@ -12,6 +12,7 @@
 #include "pellucid/scene/block_classes_storage.h"
 #include "pellucid/scene/multivariate_blocks_storage.h"
 #include "pellucid/scene/transfer_tables_storage.h"
+#include "plane_doubt.h"
 
 namespace pellucid {
 namespace {
@@ -123,8 +124,13 @@ class VolumeStream : public GridStream {
   VolumeStream(const VolumeSource& source, const Volume& volume, const BlockRecords& records,
                const BlockClass* classes)
       : GridStream(volume, source.grid().axis, records, classes, source.look().slices(), false),
-        source_(source) {}
+        source_(source),
+        grid_from_world_(volume.grid_from_world()) {}
 
+  Interval<double> start(const Ray<double>& ray) override {
+    sides_.start(grid_from_world_, ray);
+    return GridStream::start(ray);
+  }
   void restrict_to_range(Interval<double> range) override {
     GridStream::restrict_to_range(range);
     labels_.reset();
@@ -164,7 +170,13 @@ class VolumeStream : public GridStream {
     stretch.begin = part.t_begin;
     stretch.end = part.t_end;
     stretch.function = source_.function_at(part.cell);
-    stretch.position_error = 2 * grid_position_error(part.t_end);
+    stretch.position_error =
+        std::max(2 * grid_position_error(part.t_end), sides_.position_error(part));
+    sides_.for_each_other_cell(source_.labels()->axis(), part, [&](const int(&cell)[3]) {
+      if (source_.function_at(cell) != stretch.function) {
+        stretch.left_out = source_.most_extinction();
+      }
+    });
     const double from = (part.t_begin - begin_) / length, to = (part.t_end - begin_) / length;
     stretch.data[0] = restrict_to(span_.data[0], from, to);
     if (!source_.look().is_lit()) return;
@@ -173,6 +185,8 @@ class VolumeStream : public GridStream {
   }
 
   const VolumeSource& source_;
+  const Affine<double>& grid_from_world_;
+  PlaneDoubt sides_;
   MultivariateSpan<double> span_;
   double begin_ = 0, end_ = 0;  ///< of the cell
   LayerStretch whole_;          ///< the gradients in it
