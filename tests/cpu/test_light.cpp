@@ -207,5 +207,40 @@ TEST(Light, RefusesWhatItCannotMean) {
   EXPECT_THROW(GradientOpacity({{-1, 1}}), Error);
 }
 
+/// Red by one variable, opacity by another, both constant along the ray: a homogeneous slab.
+Layer of_two_variables(double color, double opacity) {
+  const auto constant = [](double value) {
+    return scenes::sampled(
+        {4, 4, 4}, [=](double, double, double) { return value; }, "constant");
+  };
+  return {ChannelsContent{
+      std::make_shared<const Channels>(
+          std::vector<Channel>{{"color", "", constant(color)}, {"opacity", "", constant(opacity)}}),
+      std::make_shared<const MultivariateTransferFunction>(
+          2, std::vector<GaussianPrimitive>(),
+          std::vector<ChannelTransferFunction>{
+              {0, TransferFunction({{0, 1, {0, 0, 1}}, {10, 1, {1, 0, 0}}})}},
+          ChannelTransferFunction{1, TransferFunction({{-8, 0, {}}, {8, 2, {}}})})}};
+}
+
+TEST(Light, AFactorGivesOneVariableTheOpacityAndAnotherTheColor) {
+  for (const double opacity : {-9.0, -8.0, -4.0, 0.0, 4.0, 20.0}) {
+    const double depth = 2 * std::clamp((opacity + 8) / 8, 0.0, 2.0), alpha = -std::expm1(-depth);
+    expect_near(pixel(seen(of_two_variables(2.5, opacity))), {0.25 * alpha, 0, 0.75 * alpha, alpha},
+                1e-7);
+  }
+}
+
+TEST(Light, AFactorIsRefusedWhereItHasNoMeaning) {
+  Scene scene = seen(of_two_variables(2, 1));
+  scene.layers[0].gradient_opacity =
+      std::make_shared<const GradientOpacity>(std::vector<GradientOpacity::Point>{{0, 1}});
+  EXPECT_THROW(render(scene), Error);
+  scene = seen(of_two_variables(2, 1));
+  EXPECT_NO_THROW(render(scene));
+  scene.integration.method = Method::midpoint;
+  EXPECT_THROW(render(scene), Error);
+}
+
 }  // namespace
 }  // namespace pellucid
