@@ -11,6 +11,7 @@
 
 #include "pellucid/cpu/render.h"
 #include "pellucid/scene/error.h"
+#include "src/cpu/layers/layer_look.h"
 #include "tests/scenes/makers.h"
 
 namespace pellucid {
@@ -228,6 +229,22 @@ TEST(Light, AFactorGivesOneVariableTheOpacityAndAnotherTheColor) {
     const double depth = 2 * std::clamp((opacity + 8) / 8, 0.0, 2.0), alpha = -std::expm1(-depth);
     expect_near(pixel(seen(of_two_variables(2.5, opacity))), {0.25 * alpha, 0, 0.75 * alpha, alpha},
                 1e-7);
+  }
+}
+
+/// Panels take the argument of a factor for a magnitude, whose errors grow with it.
+TEST(Light, AFactorOfNegativeValuesHasArgumentsNoSmallerThanThose) {
+  for (const double value : {-4.0, 4.0}) {
+    const Layer layer = of_two_variables(2, value);
+    const LayerLook look(layer);
+    const PiecewiseLinear<double> function = extinction_factor_of(layer)->function.view<double>();
+    for (const double v : {-4.0, -3.5, 0.25, 4.0}) {
+      if (v < value) continue;
+      const double argument = look.factor_argument({{v, v, v, v}}).b[2];
+      EXPECT_GE(argument, value < 0 ? 4 : v);
+      EXPECT_DOUBLE_EQ(look.extinction_factor()->evaluate(argument).extinction,
+                       function.evaluate(v).extinction);
+    }
   }
 }
 
