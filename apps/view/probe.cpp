@@ -110,15 +110,14 @@ Looked look_at(const Layer& layer, const Vec3<double>& world) {
     for (const Channel& channel : *channels->channels) {
       add(channel.name, value_at(*channel.volume, position));
     }
-    absorb(channels->transfer_function->view(),
-           static_cast<std::size_t>(channels->channels->count()));
+    absorb(*channels->transfer_function, static_cast<std::size_t>(channels->channels->count()));
   } else if (const auto* mesh = std::get_if<MeshContent>(&layer.content)) {
     const MeshChannels& data = *mesh->mesh;
     const auto inside = find_tetrahedron(data.mesh(), position);
     for (int c = 0; inside && c < data.count(); ++c) add(data[c].name, value_in(data, c, *inside));
     if (mesh->univariate() != nullptr) absorb(mesh->univariate()->view<double>(), 1);
     if (mesh->multivariate() != nullptr) {
-      absorb(mesh->multivariate()->view(), static_cast<std::size_t>(data.count()));
+      absorb(*mesh->multivariate(), static_cast<std::size_t>(data.count()));
     }
   } else if (const auto* labels = std::get_if<LabelContent>(&layer.content)) {
     add("label", label_at(labels->labels->volume(), position));

@@ -5,6 +5,9 @@
 #include <vtkPlaneCollection.h>
 
 #include <bitset>
+#include <string>
+
+#include "pellucid/scene/error.h"
 
 namespace pellucid::plugin {
 namespace {
@@ -89,13 +92,19 @@ ClipPlane placed_plane(Vec3<double> point, Vec3<double> normal,
           {dot(back.column[0], normal), dot(back.column[1], normal), dot(back.column[2], normal)}};
 }
 
-std::vector<Clip> clips_of(vtkPlaneCollection* planes) {
+std::vector<Clip> clips_of(vtkPlaneCollection* planes, Notes& notes) {
   std::vector<Clip> clips;
   for (int i = 0; planes != nullptr && i < planes->GetNumberOfItems(); ++i) {
     vtkPlane* const plane = planes->GetItem(i);
     const double *const origin = plane->GetOrigin(), *const normal = plane->GetNormal();
-    clips.push_back(
-        {ClipPlane{{origin[0], origin[1], origin[2]}, {normal[0], normal[1], normal[2]}}});
+    const Clip clip{
+        ClipPlane{{origin[0], origin[1], origin[2]}, {normal[0], normal[1], normal[2]}}};
+    try {
+      check_clip(clip, "clipping plane");
+      clips.push_back(clip);
+    } catch (const Error& error) {
+      notes.add(std::string(error.what()) + "; the plane is left out");
+    }
   }
   return clips;
 }

@@ -4,6 +4,7 @@
 #include <array>
 #include <vector>
 
+#include "notes.h"
 #include "pellucid/geometry/affine.h"
 #include "pellucid/scene/clip.h"
 
@@ -28,7 +29,8 @@ std::vector<Clip> clips_of(const CroppedBox& box, const double planes[6],
 ClipPlane placed_plane(Vec3<double> point, Vec3<double> normal,
                        const Affine<double>& world_from_data);
 
-/// Returns a mapper's clipping planes, which keep the side that their normals point to.
-std::vector<Clip> clips_of(vtkPlaneCollection* planes);
+/// Returns a mapper's clipping planes, which keep the side that their normals point to. A plane
+/// that is none is left out, and `notes` say so.
+std::vector<Clip> clips_of(vtkPlaneCollection* planes, Notes& notes);
 
 }  // namespace pellucid::plugin

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 
 namespace pellucid::plugin {
 namespace {
@@ -19,6 +20,26 @@ struct Node {
   Rgb<double> y{};
   double midpoint = 0.5, sharpness = 0;
 };
+
+/// Where data end, but for the last of them: places of nodes that are farther away are these.
+constexpr double farthest = 2e37;
+
+/// Of numbers as VTK has them: a place, one or three values, the midpoint and the sharpness.
+void add_node(std::span<const double> numbers, std::vector<Node>& nodes, Notes& notes) {
+  if (std::ranges::any_of(numbers, [](double x) { return std::isnan(x); })) {
+    notes.add("nodes of functions that are no numbers are left out");
+    return;
+  }
+  const std::size_t n = numbers.size();
+  Node node;
+  node.x = std::clamp(numbers[0], -farthest, farthest);
+  const auto value = [&](std::size_t i) { return std::clamp(numbers[i], -farthest, farthest); };
+  node.y = n == 4 ? Rgb<double>{value(1), value(1), value(1)}
+                  : Rgb<double>{value(1), value(2), value(3)};
+  node.midpoint = numbers[n - 2];
+  node.sharpness = numbers[n - 1];
+  nodes.push_back(node);
+}
 
 /// `straight`: nodes without midpoint and sharpness are joined by straight lines.
 template <class Evaluate>
@@ -34,7 +55,9 @@ Curve curve_through(const std::vector<Node>& nodes, bool straight, bool clamped,
     if (straight && node.midpoint == 0.5 && node.sharpness == 0) continue;
     for (int k = 1; k < points_per_curve; ++k) {
       const double x = node.x + k * (nodes[i + 1].x - node.x) / points_per_curve;
-      if (x > curve.back().x && x < nodes[i + 1].x) curve.push_back({x, evaluate(x)});
+      if (!(x > curve.back().x && x < nodes[i + 1].x)) continue;
+      const Rgb<double> y = evaluate(x);
+      if (!std::isnan(y.r + y.g + y.b)) curve.push_back({x, y});
     }
   }
   if (!clamped) curve.push_back({nodes.back().x, {0, 0, 0}});
@@ -91,12 +114,12 @@ Limits limits(const Curve& curve, double x) {
 
 }  // namespace
 
-Curve curve_of(vtkPiecewiseFunction& function) {
+Curve curve_of(vtkPiecewiseFunction& function, Notes& notes) {
   std::vector<Node> nodes;
   for (int i = 0; i < function.GetSize(); ++i) {
     double node[4];
     if (function.GetNodeValue(i, node) < 0) continue;
-    nodes.push_back({node[0], {node[1], node[1], node[1]}, node[2], node[3]});
+    add_node(node, nodes, notes);
   }
   return with_jumps_of_two(
       curve_through(nodes, !function.GetUseLogScale(), function.GetClamping() != 0, [&](double x) {
@@ -105,12 +128,12 @@ Curve curve_of(vtkPiecewiseFunction& function) {
       }));
 }
 
-Curve curve_of(vtkColorTransferFunction& function) {
+Curve curve_of(vtkColorTransferFunction& function, Notes& notes) {
   std::vector<Node> nodes;
   for (int i = 0; i < function.GetSize(); ++i) {
     double node[6];
     if (function.GetNodeValue(i, node) < 0) continue;
-    nodes.push_back({node[0], {node[1], node[2], node[3]}, node[4], node[5]});
+    add_node(node, nodes, notes);
   }
   const bool straight =
       function.GetColorSpace() == VTK_CTF_RGB && function.GetScale() == VTK_CTF_LINEAR;
@@ -123,10 +146,10 @@ Curve curve_of(vtkColorTransferFunction& function) {
       }));
 }
 
-Curve color_curve(vtkVolumeProperty& property, int component) {
+Curve color_curve(vtkVolumeProperty& property, int component, Notes& notes) {
   Curve curve = property.GetColorChannels(component) == 1
-                    ? curve_of(*property.GetGrayTransferFunction(component))
-                    : curve_of(*property.GetRGBTransferFunction(component));
+                    ? curve_of(*property.GetGrayTransferFunction(component), notes)
+                    : curve_of(*property.GetRGBTransferFunction(component), notes);
   // A window shows what is below 0 as 0.
   for (CurvePoint& point : curve) {
     point.y = {std::max(point.y.r, 0.0), std::max(point.y.g, 0.0), std::max(point.y.b, 0.0)};

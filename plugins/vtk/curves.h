@@ -4,6 +4,7 @@
 #include <array>
 #include <vector>
 
+#include "notes.h"
 #include "pellucid/math/rgb.h"
 
 class vtkColorTransferFunction;
@@ -24,10 +25,11 @@ using Curve = std::vector<CurvePoint>;
 
 /// Returns a function of VTK as a curve: exact where it is straight between two nodes, else a chain
 /// of 64 chords. A function that is not clamped is 0 outside of its nodes; one without nodes is 0.
-Curve curve_of(vtkPiecewiseFunction& function);
-Curve curve_of(vtkColorTransferFunction& function);
+/// Nodes with a number that is none are left out, and `notes` say so.
+Curve curve_of(vtkPiecewiseFunction& function, Notes& notes);
+Curve curve_of(vtkColorTransferFunction& function, Notes& notes);
 /// Returns the colors of a component: grey or RGB, as the property says.
-Curve color_curve(vtkVolumeProperty& property, int component);
+Curve color_curve(vtkVolumeProperty& property, int component, Notes& notes);
 
 /// Returns the value at x; at a jump the one above.
 Rgb<double> value_at(const Curve& curve, double x);

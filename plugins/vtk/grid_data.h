@@ -4,6 +4,7 @@
 #include <vtkSmartPointer.h>
 #include <vtkType.h>
 
+#include <cstdint>
 #include <memory>
 #include <vector>
 
@@ -23,8 +24,13 @@ Volume::Description grid_of(vtkDataSet& data, bool of_cells, const std::string& 
 /// Otherwise, and for bits and whole numbers of 64 bits, it is copied. Throws Error.
 VolumeData component_of(vtkDataArray& array, int component);
 
+/// Returns a number that another one takes the place of if values change: of some thousand values,
+/// evenly spread, so that a change of few values may be missed.
+std::uint64_t fingerprint_of(vtkDataArray& array);
+
 /// Keeps the volumes of the last picture. A volume is made again if its array or its grid changed,
-/// as the array's time of modification, its memory and the numbers of the grid say.
+/// as the array's time of modification, its memory, its fingerprint and the numbers of the grid
+/// say.
 class KeptGrids {
  public:
   /// Returns the volume of a component. Throws Error as Volume does.
@@ -40,6 +46,7 @@ class KeptGrids {
     vtkSmartPointer<vtkDataArray> array;
     const void* memory = nullptr;
     vtkMTimeType time = 0;
+    std::uint64_t fingerprint = 0;
     vtkIdType values = 0;
     int component = 0;
     std::shared_ptr<const Volume> volume;

@@ -13,6 +13,7 @@
 #include <vtkVolumeProperty.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <optional>
@@ -24,6 +25,10 @@
 
 namespace pellucid::plugin {
 namespace {
+
+TransferFunction as_function(const LookRecipe& recipe) {
+  return function_of(recipe);
+}
 
 /// One volume on its way to layers.
 class GridTranslator {
@@ -46,7 +51,14 @@ class GridTranslator {
   std::optional<LayerProjection> projection() const;
   double scale();
   LookRecipe recipe_of(int component, const Volume& data);
+  double longest_ray(const Volume& data) const;
+  Layer placed_layer();
   Layer component_layer(int component);
+  void refuse_dependent_components() const;
+  double color_scale() const;
+  bool shows_nearest(int component);
+  LabelContent nearest_content(const std::shared_ptr<const Volume>& data, const LookRecipe& recipe);
+  Layer dependent_layer();
   std::shared_ptr<const LabelMask> label_mask(const LookRecipe& base, int component);
   void add_surfaces(Layer& layer, const Curve& opacities, const Curve& colors);
   void add_slice(Layer& layer, const Curve& opacities);
@@ -75,10 +87,6 @@ std::optional<LayerProjection> GridTranslator::projection() const {
       return LayerProjection::minimum;
     case vtkVolumeMapper::AVERAGE_INTENSITY_BLEND:
       return LayerProjection::mean;
-    case vtkVolumeMapper::ADDITIVE_BLEND:
-      throw Error(
-          "additive blending: VTK's sum depends on the length of its steps; take average "
-          "(SetBlendModeToAverageIntensity())");
     default:
       return std::nullopt;
   }
@@ -93,19 +101,11 @@ std::vector<Layer> GridTranslator::layers() {
     throw Error(std::string(data_->GetClassName()) +
                 ": has no values to show; give it scalars, or select one of its arrays");
   }
-  if (property_.GetInterpolationType() != VTK_LINEAR_INTERPOLATION) {
-    throw Error("the property shows the nearest value; call SetInterpolationTypeToLinear()");
-  }
   world_from_data_ = affine_of(*volume_.GetMatrix(), "volume");
   const int components = array_->GetNumberOfComponents();
   if (components > VTK_MAX_VRCOMP) {
     throw Error("the array has " + std::to_string(components) +
                 " components; VTK shows up to 4, extract some");
-  }
-  if (components > 1 && property_.GetIndependentComponents() == 0) {
-    throw Error(
-        "dependent components: colors of one component and opacities of another are no "
-        "function of one value; extract one (vtkImageExtractComponents)");
   }
   if (property_.GetTransferFunctionMode() == vtkVolumeProperty::TF_2D) {
     throw Error(
@@ -116,9 +116,11 @@ std::vector<Layer> GridTranslator::layers() {
   for (int c = 0; c < components; ++c) {
     if (components == 1 || property_.GetComponentWeight(c) > 0) shown.push_back(c);
   }
-  layers_ = shown.size();
+  const bool is_dependent = components > 1 && property_.GetIndependentComponents() == 0;
+  layers_ = is_dependent ? 1 : shown.size();
   if (mapper_.GetCropping() != 0) layers_ *= boxes_of(mapper_.GetCroppingRegionFlags()).size();
   std::vector<Layer> made;
+  if (is_dependent) return cropped({dependent_layer()});
   for (const int component : shown) made.push_back(component_layer(component));
   if (made.size() > 1) notes_.add("components mix as particles do; VTK adds their colors");
   return cropped(made);
@@ -143,9 +145,12 @@ LookRecipe GridTranslator::recipe_of(int component, const Volume& data) {
   OpacityMeaning meaning = OpacityMeaning::per_unit_distance;
   if (shown) meaning = OpacityMeaning::projected;
   if (shown == LayerProjection::mean) meaning = OpacityMeaning::averaged;
+  const bool sums = mapper_.GetBlendMode() == vtkVolumeMapper::ADDITIVE_BLEND;
+  if (sums) meaning = OpacityMeaning::summed;
   // The errors of layers' functions add, and double beside other layers.
   const double share = layers_ > 1 ? 0.5 / static_cast<double>(layers_) : 1;
-  LookRecipe recipe = look_recipe(property_, component, meaning, share * tolerance_);
+  LookRecipe recipe =
+      look_recipe(property_, component, meaning, share * tolerance_, data.voxel_size(), notes_);
   if (!shown) recipe.unit_distance *= scale();
   if (meaning == OpacityMeaning::averaged) {
     recipe.range = {data.statistics().minimum, data.statistics().maximum};
@@ -154,16 +159,106 @@ LookRecipe GridTranslator::recipe_of(int component, const Volume& data) {
       notes_.add("averages are of all values: AverageIPScalarRange is left out");
     }
   }
+  if (sums) {
+    recipe.range = {data.statistics().minimum, data.statistics().maximum};
+    recipe.length = longest_ray(data);
+    recipe.tolerance = sum_tolerance(tolerance_) / static_cast<double>(layers_);
+  }
   if (array_->GetNumberOfComponents() > 1) {
     recipe.weight = property_.GetComponentWeight(component);
   }
   return recipe;
 }
 
-Layer GridTranslator::component_layer(int component) {
+/// In the scene's world.
+double GridTranslator::longest_ray(const Volume& data) const {
+  const std::array<Vec3<double>, 8> corners = data.world_corners();
+  double longest = 0;
+  for (std::size_t i = 0; i < 4; ++i) {
+    longest = std::max(longest, length(world_from_data_.vector(corners[7 - i] - corners[i])));
+  }
+  return longest;
+}
+
+Layer GridTranslator::placed_layer() {
   Layer layer;
   layer.transform = world_from_data_;
-  layer.clips = clips_of(mapper_.GetClippingPlanes());
+  layer.clips = clips_of(mapper_.GetClippingPlanes(), notes_);
+  return layer;
+}
+
+void GridTranslator::refuse_dependent_components() const {
+  const int components = array_->GetNumberOfComponents();
+  if (components == 3) {
+    throw Error("dependent components: the array has 3, but VTK shows 2 or 4; add opacities");
+  }
+  if (mapper_.GetBlendMode() != vtkVolumeMapper::COMPOSITE_BLEND) {
+    throw Error(
+        "dependent components: only SetBlendModeToComposite() shows the colors of some and the "
+        "opacities of another");
+  }
+  if (mask_.labels != nullptr) {
+    throw Error("dependent components: have no masks; make opacities 0 in place of one");
+  }
+}
+
+/// Of the values of components that are colors: what becomes 1.
+double GridTranslator::color_scale() const {
+  switch (array_->GetDataType()) {
+    case VTK_UNSIGNED_CHAR:
+      return std::numeric_limits<unsigned char>::max();
+    case VTK_UNSIGNED_SHORT:
+      return std::numeric_limits<unsigned short>::max();
+    case VTK_FLOAT:
+    case VTK_DOUBLE:
+      return 1;
+    default:
+      throw Error(std::string("dependent components: colors are ") + array_->GetDataTypeAsString() +
+                  "; give unsigned char, from 0 to 255");
+  }
+}
+
+/// The last component has the opacity. The first of two has the color, of four the first three are
+/// red, green and blue.
+Layer GridTranslator::dependent_layer() {
+  refuse_dependent_components();
+  Layer layer = placed_layer();
+  const int components = array_->GetNumberOfComponents();
+  std::vector<std::shared_ptr<const Volume>> data;
+  for (int c = 0; c < components; ++c) {
+    data.push_back(kept_.volumes.find(*data_, *array_, of_cells_ != 0, c));
+  }
+  DependentRecipe recipe{recipe_of(0, *data.back()), {}};
+  recipe.opacity.weight = 1;
+  if (components == 2) {
+    recipe.colors.push_back(color_curve(property_, 0, notes_));
+  } else {
+    const double one = color_scale();
+    for (const Rgb<double>& color : {Rgb<double>{3, 0, 0}, {0, 3, 0}, {0, 0, 3}}) {
+      recipe.colors.push_back(Curve{{0, {}}, {one, color}});
+    }
+  }
+  for (JoinedPoint& point : recipe.opacity.points) point.b = {};
+  const auto channels = kept_.channels.find(data, [](const auto& volumes) {
+    std::vector<Channel> list;
+    for (const auto& volume : volumes) list.push_back({std::to_string(list.size()), "", volume});
+    return Channels(std::move(list));
+  });
+  layer.content = ChannelsContent{
+      channels, kept_.dependent.find(recipe, [](const auto& made) { return function_of(made); })};
+  if (property_.GetInterpolationType() != VTK_LINEAR_INTERPOLATION) {
+    notes_.add("dependent components are trilinear (SetInterpolationTypeToLinear())");
+  }
+  layer.shading = shading_of(property_, 0, notes_);
+  if (layer.shading && !has_ambient_light_) layer.shading->ambient = 0;
+  if (!gradient_curve(property_, 0, notes_).empty()) {
+    notes_.add("gradient opacities of dependent components are left out");
+  }
+  return layer;
+}
+
+Layer GridTranslator::component_layer(int component) {
+  Layer layer = placed_layer();
   layer.projection = projection();
   const auto data = kept_.volumes.find(*data_, *array_, of_cells_ != 0, component);
   LookRecipe recipe = recipe_of(component, *data);
@@ -174,27 +269,58 @@ Layer GridTranslator::component_layer(int component) {
     // The medium is clear.
     for (JoinedPoint& point : recipe.points) point.a = 0;
   }
-  const auto function = kept_.functions.find(recipe, function_of);
+  if (shows_nearest(component)) {
+    layer.content = nearest_content(data, recipe);
+    return layer;
+  }
+  const auto function = kept_.functions.find(recipe, as_function);
   layer.content = VolumeContent{data, function, label_mask(recipe, component)};
   if (layer.projection) {
     if (property_.GetShade(component) != 0) notes_.add("projections have no light");
     return layer;
   }
-  layer.shading = shading_of(property_, component);
+  if (mode == vtkVolumeMapper::ADDITIVE_BLEND) {
+    if (property_.GetShade(component) != 0) notes_.add("sums have no light");
+    return layer;
+  }
+  layer.shading = shading_of(property_, component, notes_);
   if (layer.shading && !has_ambient_light_) layer.shading->ambient = 0;
-  if (const Curve curve = gradient_curve(property_, component); !curve.empty() && !is_surface) {
+  if (const Curve curve = gradient_curve(property_, component, notes_);
+      !curve.empty() && !is_surface) {
     layer.gradient_opacity = kept_.gradients.find(curve, gradient_opacity_of);
     notes_.add("gradient opacities multiply the extinction here, in VTK the opacity of a sample");
   }
   if (is_surface) {
-    const Curve opacities = curve_of(*property_.GetScalarOpacity(component));
+    const Curve opacities = curve_of(*property_.GetScalarOpacity(component), notes_);
     if (mode == vtkVolumeMapper::ISOSURFACE_BLEND) {
-      add_surfaces(layer, opacities, color_curve(property_, component));
+      add_surfaces(layer, opacities, color_curve(property_, component, notes_));
     } else {
       add_slice(layer, opacities);
     }
   }
   return layer;
+}
+
+/// Whether the property asks for it, and nothing else that needs a gradient or one number of a ray.
+bool GridTranslator::shows_nearest(int component) {
+  if (property_.GetInterpolationType() == VTK_LINEAR_INTERPOLATION) return false;
+  if (mapper_.GetBlendMode() == vtkVolumeMapper::COMPOSITE_BLEND && mask_.labels == nullptr &&
+      property_.GetShade(component) == 0 && gradient_curve(property_, component, notes_).empty()) {
+    return true;
+  }
+  notes_.add(
+      "nearest values are shown without light, gradient opacity and masks, by compositing; here "
+      "the data are trilinear (SetInterpolationTypeToLinear())");
+  return false;
+}
+
+LabelContent GridTranslator::nearest_content(const std::shared_ptr<const Volume>& data,
+                                             const LookRecipe& recipe) {
+  const auto nearest = kept_.nearest.find(data, [](const auto& of) { return nearest_values(*of); });
+  const auto table = kept_.label_tables.find({recipe, nearest}, [](const auto& made) {
+    return label_table(made.first, made.second->values);
+  });
+  return {nearest->labels, table};
 }
 
 std::shared_ptr<const LabelMask> GridTranslator::label_mask(const LookRecipe& base, int component) {
@@ -205,7 +331,7 @@ std::shared_ptr<const LabelMask> GridTranslator::label_mask(const LookRecipe& ba
   LookRecipe look = base;
   if (mask_.is_binary) {
     for (JoinedPoint& point : look.points) point.a = 0;
-    recipe.second.emplace_back(0, kept_.functions.find(look, function_of));
+    recipe.second.emplace_back(0, kept_.functions.find(look, as_function));
   } else {
     for (const int label : property_.GetLabelMapLabels()) {
       vtkColorTransferFunction* const color = property_.GetLabelColor(label);
@@ -213,15 +339,15 @@ std::shared_ptr<const LabelMask> GridTranslator::label_mask(const LookRecipe& ba
       if (property_.GetLabelGradientOpacity(label) != nullptr) {
         notes_.add("gradient opacities of labels are left out");
       }
-      const Curve own = color_curve(property_, component);
-      look.points = joined(opacity != nullptr ? curve_of(*opacity)
-                                              : curve_of(*property_.GetScalarOpacity(component)),
-                           color != nullptr ? blended(own, curve_of(*color), mask_.blend) : own);
+      const Curve own = color_curve(property_, component, notes_);
+      look.points = joined(
+          curve_of(opacity != nullptr ? *opacity : *property_.GetScalarOpacity(component), notes_),
+          color != nullptr ? blended(own, curve_of(*color, notes_), mask_.blend) : own);
       if (look.meaning == OpacityMeaning::per_unit_distance &&
           mapper_.GetBlendMode() != vtkVolumeMapper::COMPOSITE_BLEND) {
         continue;  // surfaces
       }
-      recipe.second.emplace_back(label, kept_.functions.find(look, function_of));
+      recipe.second.emplace_back(label, kept_.functions.find(look, as_function));
     }
   }
   return kept_.masks.find(recipe, [](const KeptOfGrids::MaskRecipe& made) {
@@ -235,6 +361,12 @@ void GridTranslator::add_surfaces(Layer& layer, const Curve& opacities, const Cu
   vtkContourValues* const values = property_.GetIsoSurfaceValues();
   for (int i = 0; i < values->GetNumberOfContours(); ++i) {
     const double value = values->GetValue(i);
+    const auto is_there = [&](const Isosurface& other) { return other.value == value; };
+    if (!std::isfinite(value)) {
+      notes_.add("isosurfaces at values that are no numbers are left out");
+      continue;
+    }
+    if (std::ranges::any_of(layer.isosurfaces, is_there)) continue;
     Isosurface surface;
     surface.value = value;
     surface.opacity = std::clamp(value_at(opacities, value).r, 0.0, 1.0);
@@ -287,10 +419,39 @@ std::vector<Layer> GridTranslator::cropped(const std::vector<Layer>& layers) {
 
 }  // namespace
 
+NearestValues nearest_values(const Volume& volume) {
+  constexpr std::size_t most = std::size_t{1} << 24;
+  std::vector<double> values, all;
+  std::visit([&](const auto& data) { all.assign(data.begin(), data.end()); }, volume.data());
+  values = all;
+  std::erase_if(values, [](double value) { return std::isnan(value); });
+  std::ranges::sort(values);
+  values.erase(std::unique(values.begin(), values.end()), values.end());
+  if (values.size() > most) {
+    throw Error("nearest values: there are " + std::to_string(values.size()) +
+                " different ones; call SetInterpolationTypeToLinear()");
+  }
+  DataArray<float> labels(all.size());
+  std::size_t i = 0;
+  for (float& label : labels.writable()) {
+    const double value = all[i++];
+    label = std::isnan(value)
+                ? std::numeric_limits<float>::quiet_NaN()
+                : static_cast<float>(std::ranges::lower_bound(values, value) - values.begin());
+  }
+  return {std::make_shared<const LabelVolume>(
+              std::make_shared<const Volume>(volume.description(), std::move(labels))),
+          std::move(values)};
+}
+
 void KeptOfGrids::keep_used() {
   volumes.keep_used();
   labels.keep_used();
+  channels.keep_used();
   functions.keep_used();
+  dependent.keep_used();
+  nearest.keep_used();
+  label_tables.keep_used();
   gradients.keep_used();
   masks.keep_used();
 }

@@ -8,6 +8,8 @@
 #include "grid_data.h"
 #include "look.h"
 #include "notes.h"
+#include "pellucid/scene/channels.h"
+#include "pellucid/scene/label_volume.h"
 #include "pellucid/scene/layer.h"
 
 class vtkDataSet;
@@ -24,6 +26,15 @@ struct Mask {
   double blend = 1;                ///< the share of a label's own color
 };
 
+/// A volume each place of which has the nearest value: as a segmentation, whose labels are the
+/// places of their values in ascending order.
+struct NearestValues {
+  std::shared_ptr<const LabelVolume> labels;
+  std::vector<double> values;  ///< of the labels 0, 1, ...
+};
+/// Throws Error for infinite values, or more than 2^24 different ones.
+NearestValues nearest_values(const Volume& volume);
+
 /// What pictures of a grid share.
 struct KeptOfGrids {
   using MaskRecipe =
@@ -31,7 +42,11 @@ struct KeptOfGrids {
                 std::vector<std::pair<std::int32_t, std::shared_ptr<const TransferFunction>>>>;
 
   KeptGrids volumes, labels;
+  Kept<std::vector<std::shared_ptr<const Volume>>, Channels> channels;
   KeptFunctions functions;
+  Kept<DependentRecipe, MultivariateTransferFunction> dependent;
+  Kept<std::shared_ptr<const Volume>, NearestValues> nearest;
+  Kept<std::pair<LookRecipe, std::shared_ptr<const NearestValues>>, LabelTable> label_tables;
   Kept<Curve, GradientOpacity> gradients;
   Kept<MaskRecipe, LabelMask> masks;
 
@@ -39,8 +54,8 @@ struct KeptOfGrids {
 };
 
 /// Returns the layers of a volume: one for each component and each box of the mapper's cropping. No
-/// data, or a component of weight 0, gives none. Throws Error for what has no counterpart:
-/// interpolation to the nearest value, dependent components, additive blending.
+/// data, or a component of weight 0, gives none. Dependent components are one layer. Throws Error
+/// for what has no counterpart: functions of two variables, say.
 /// `has_ambient_light`: whether a property's ambient part is seen (has_ambient_light()).
 std::vector<Layer> layers_of(vtkVolumeMapper& mapper, vtkDataSet* data, vtkVolume& volume,
                              const Mask& mask, double tolerance, bool has_ambient_light,

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -12,7 +13,7 @@ namespace pellucid::plugin {
 template <class Recipe, class Object>
 class Kept {
  public:
-  /// Returns the object of an equal recipe, or make() of this one.
+  /// Returns the object of an equal recipe, or make(recipe): an object, or a pointer to one.
   template <class Make>
   std::shared_ptr<const Object> find(const Recipe& recipe, const Make& make) {
     for (Entry& entry : entries_) {
@@ -21,7 +22,11 @@ class Kept {
         return entry.object;
       }
     }
-    entries_.push_back({recipe, std::make_shared<const Object>(make(recipe))});
+    if constexpr (std::is_convertible_v<decltype(make(recipe)), std::shared_ptr<const Object>>) {
+      entries_.push_back({recipe, make(recipe)});
+    } else {
+      entries_.push_back({recipe, std::make_shared<const Object>(make(recipe))});
+    }
     ++made_;
     return entries_.back().object;
   }

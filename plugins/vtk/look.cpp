@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "pellucid/io/transfer_function_description.h"
 #include "pellucid/scene/opacity_table.h"
@@ -24,7 +25,9 @@ TransferFunction table(const LookRecipe& recipe) {
     largest_color = std::max({largest_color, p.b.r, p.b.g, p.b.b});
   }
   return transfer_function_from_opacity_table(
-      points, recipe.unit_distance / recipe.weight,
+      points,
+      std::clamp(recipe.unit_distance / recipe.weight, smallest_unit_distance,
+                 largest_unit_distance),
       required_relative_error(opacity_table_tolerance(recipe.tolerance), largest_color));
 }
 
@@ -48,11 +51,63 @@ TransferFunction averages(const LookRecipe& recipe) {
   return TransferFunction(std::move(points));
 }
 
+/// The largest number of chords of a product between two of its corners.
+constexpr double most_chords = 4096;
+
+/// Extinctions whose depth is VTK's sum: a chain of chords of the product of opacity and place. The
+/// product of two lines is off a chord by a quarter of the product of their changes, at most.
+TransferFunction sums(const LookRecipe& recipe) {
+  const double low = recipe.range[0], high = std::max(recipe.range[1], std::nextafter(low, 1e300));
+  const double scale = recipe.weight / recipe.unit_distance;
+  const double wanted =
+      recipe.tolerance / std::max(scale * recipe.length, std::numeric_limits<double>::min());
+  Curve opacities;
+  for (const JoinedPoint& p : recipe.points) {
+    const double a = std::clamp(p.a, 0.0, 1.0);
+    opacities.push_back({p.x, {a, a, a}});
+  }
+  const auto joint = joined(opacities, {{low, {0, 0, 0}}, {high, {1, 1, 1}}});
+  std::vector<TransferFunction::Point> points;
+  for (std::size_t i = 0; i < joint.size(); ++i) {
+    const auto add = [&](double x, double a, double place) {
+      points.push_back({x, scale * a * place, {}});
+    };
+    if (i > 0 && joint[i - 1].x < joint[i].x) {
+      const JoinedPoint &from = joint[i - 1], &to = joint[i];
+      const double change = std::abs((to.a - from.a) * (to.b.r - from.b.r)) / 4;
+      const double count = std::ceil(std::min(std::sqrt(change / wanted), most_chords));
+      for (int k = 1; k < count; ++k) {
+        const double share = k / count, x = from.x + share * (to.x - from.x);
+        if (!(points.back().value < x && x < to.x)) continue;
+        add(x, from.a + share * (to.a - from.a), from.b.r + share * (to.b.r - from.b.r));
+      }
+    }
+    add(joint[i].x, joint[i].a, joint[i].b.r);
+  }
+  return TransferFunction(std::move(points));
+}
+
+/// Of a size: shorter than the data tell apart.
+constexpr double shortest_share = 1e-6;
+
+double unit_distance(double of_property, double size, Notes& notes) {
+  if (of_property > 0 && std::isfinite(of_property)) {
+    return std::clamp(of_property, smallest_unit_distance, largest_unit_distance);
+  }
+  if (of_property == 0) {
+    notes.add("a unit distance of 0 makes all opaque that absorbs; set a positive one");
+    return std::max(shortest_share * size, smallest_unit_distance);
+  }
+  notes.add("a unit distance is no positive number, and taken as 1; set a positive one");
+  return 1;
+}
+
 }  // namespace
 
 TransferFunction function_of(const LookRecipe& recipe) {
   if (recipe.meaning == OpacityMeaning::per_unit_distance) return table(recipe);
   if (recipe.meaning == OpacityMeaning::averaged) return averages(recipe);
+  if (recipe.meaning == OpacityMeaning::summed) return sums(recipe);
   std::vector<TransferFunction::Point> points;
   const bool projected = recipe.meaning == OpacityMeaning::projected;
   const double scale = projected ? 1 : recipe.weight / recipe.unit_distance;
@@ -67,34 +122,82 @@ TransferFunction function_of(const LookRecipe& recipe) {
   return TransferFunction(std::move(points));
 }
 
-LookRecipe look_recipe(vtkVolumeProperty& property, int component, OpacityMeaning meaning,
-                       double tolerance) {
-  return {joined(curve_of(*property.GetScalarOpacity(component)), color_curve(property, component)),
-          meaning, property.GetScalarOpacityUnitDistance(component), 1, tolerance};
+std::shared_ptr<const MultivariateTransferFunction> function_of(const DependentRecipe& recipe) {
+  const int channels = recipe.colors.size() == 1 ? 2 : 4;
+  const double share = 1.0 / static_cast<double>(recipe.colors.size());
+  std::vector<ChannelTransferFunction> tables;
+  for (std::size_t c = 0; c < recipe.colors.size(); ++c) {
+    std::vector<TransferFunction::Point> points;
+    for (const CurvePoint& p : recipe.colors[c]) points.push_back({p.x, share, p.y});
+    tables.push_back({static_cast<int>(c), TransferFunction(std::move(points))});
+  }
+  return std::make_shared<const MultivariateTransferFunction>(
+      channels, std::vector<GaussianPrimitive>(), std::move(tables),
+      ChannelTransferFunction{channels - 1, function_of(recipe.opacity)});
 }
 
-std::optional<Shading> shading_of(vtkVolumeProperty& property, int component) {
+LabelTable label_table(const LookRecipe& recipe, const std::vector<double>& values) {
+  Curve opacities, colors;
+  for (const JoinedPoint& p : recipe.points) {
+    opacities.push_back({p.x, {p.a, p.a, p.a}});
+    colors.push_back({p.x, p.b});
+  }
+  std::vector<LabelStyle> styles;
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    const double opacity = std::clamp(value_at(opacities, values[i]).r, 0.0, 1.0);
+    if (!(opacity > 0)) continue;
+    const double depth = opacity < 1 ? -std::log1p(-opacity) : opaque_extinction;
+    styles.push_back({static_cast<std::int32_t>(i),
+                      {},
+                      value_at(colors, values[i]),
+                      std::min(depth, opaque_extinction) * recipe.weight / recipe.unit_distance});
+  }
+  if (styles.empty()) styles.push_back({0, {}, {}, 0});
+  return LabelTable(std::move(styles));
+}
+
+LookRecipe look_recipe(vtkVolumeProperty& property, int component, OpacityMeaning meaning,
+                       double tolerance, double size, Notes& notes) {
+  return {joined(curve_of(*property.GetScalarOpacity(component), notes),
+                 color_curve(property, component, notes)),
+          meaning, unit_distance(property.GetScalarOpacityUnitDistance(component), size, notes), 1,
+          tolerance};
+}
+
+std::optional<Shading> shading_of(vtkVolumeProperty& property, int component, Notes& notes) {
   if (property.GetShade(component) == 0) return std::nullopt;
+  const auto number = [&](double value, double least, double most, double otherwise) {
+    if (value >= least && value <= most) return value;
+    notes.add("a number of the shading is beyond its range, and brought into it");
+    return std::isnan(value) ? otherwise : std::clamp(value, least, most);
+  };
   Shading shading;
-  shading.ambient = property.GetAmbient(component);
-  shading.diffuse = property.GetDiffuse(component);
-  shading.specular = property.GetSpecular(component);
-  shading.power = std::clamp(property.GetSpecularPower(component), 1.0, 1000.0);
+  shading.ambient = number(property.GetAmbient(component), 0, 1000, 0.1);
+  shading.diffuse = number(property.GetDiffuse(component), 0, 1000, 0.7);
+  shading.specular = number(property.GetSpecular(component), 0, 1000, 0.2);
+  const double power = property.GetSpecularPower(component);
+  // Below 1 highlights are as wide as at 1, but for VTK's own 0 to 1.
+  shading.power = power >= 0 && power < 1 ? 1 : number(power, 1, 1000, 10);
   shading.flatness = 0;
   return shading;
 }
 
-Curve gradient_curve(vtkVolumeProperty& property, int component) {
+Curve gradient_curve(vtkVolumeProperty& property, int component, Notes& notes) {
   if (property.GetDisableGradientOpacity(component) != 0) return {};
   if (!property.HasGradientOpacity(component)) return {};
-  return curve_of(*property.GetGradientOpacity(component));
+  const Curve curve = curve_of(*property.GetGradientOpacity(component), notes);
+  // Magnitudes begin at 0.
+  if (curve.front().x >= 0) return curve;
+  Curve from_zero{{0, value_at(curve, 0)}};
+  for (const CurvePoint& point : curve) {
+    if (point.x > 0) from_zero.push_back(point);
+  }
+  return from_zero;
 }
 
 GradientOpacity gradient_opacity_of(const Curve& curve) {
   std::vector<GradientOpacity::Point> points;
-  for (const CurvePoint& p : curve) {
-    if (p.x >= 0) points.push_back({p.x, std::max(p.y.r, 0.0)});
-  }
+  for (const CurvePoint& p : curve) points.push_back({p.x, std::max(p.y.r, 0.0)});
   return GradientOpacity(std::move(points), GradientOpacity::Unit::voxel);
 }
 

@@ -2,12 +2,16 @@
 #pragma once
 
 #include <array>
+#include <memory>
 #include <optional>
 #include <vector>
 
 #include "curves.h"
 #include "kept.h"
+#include "notes.h"
+#include "pellucid/scene/label_volume.h"
 #include "pellucid/scene/light.h"
+#include "pellucid/scene/multivariate_transfer_function.h"
 #include "pellucid/scene/transfer_function.h"
 
 class vtkVolumeProperty;
@@ -19,6 +23,7 @@ enum class OpacityMeaning {
   per_unit_distance,  ///< of a layer as thick as the unit distance: images and rectilinear grids
   extinction,         ///< opacity / unit distance is the extinction: unstructured grids
   projected,          ///< of a ray, at the one number that it shows
+  summed,             ///< opacity times the place in the data's range, per unit distance: a depth
   averaged            ///< of a ray; its color is grey: opacity times the place in the data's range
 };
 
@@ -28,27 +33,51 @@ struct LookRecipe {
   OpacityMeaning meaning = OpacityMeaning::per_unit_distance;
   double unit_distance = 1;
   double weight = 1;              ///< multiplies the extinction
-  double tolerance = 0;           ///< that opacities are converted for
-  std::array<double, 2> range{};  ///< of the data, where they are averaged
+  double tolerance = 0;           ///< that opacities are converted for; of sums, of a ray
+  std::array<double, 2> range{};  ///< of the data, where they are averaged or summed
+  double length = 0;              ///< of the longest ray in the unit distance's unit, for sums
 
   bool operator==(const LookRecipe&) const = default;
 };
+
+/// Returns the part of a tolerance that the functions of sums may take.
+constexpr double sum_tolerance(double tolerance) noexcept {
+  return tolerance / 8;
+}
 
 /// Returns the function. The opacity of a projected one is extinction / largest extinction: a point
 /// beyond all data makes the largest one 1. Throws Error as TransferFunction and
 /// transfer_function_from_opacity_table() do.
 TransferFunction function_of(const LookRecipe& recipe);
-/// Returns the recipe of a component's colors and opacities.
+/// Returns the recipe of a component's colors and opacities. A unit distance of 0 is one that is
+/// short beside the data, as in VTK, which shows what absorbs as opaque; one that is no positive
+/// number is 1, VTK's default. `notes` say so. `size`: of the data, in the unit distance's unit.
 LookRecipe look_recipe(vtkVolumeProperty& property, int component, OpacityMeaning meaning,
-                       double tolerance);
+                       double tolerance, double size, Notes& notes);
+
+/// What a function of dependent components is made of: the last component has the opacity. Colors
+/// are those of the first of two, or of each of the first three of four, of which each has a color
+/// three times as bright, for a third of the extinction.
+struct DependentRecipe {
+  LookRecipe opacity;
+  std::vector<Curve> colors;
+
+  bool operator==(const DependentRecipe&) const = default;
+};
+std::shared_ptr<const MultivariateTransferFunction> function_of(const DependentRecipe& recipe);
+
+/// Returns the looks of values, as labels 0, 1, ...: the function at each.
+LabelTable label_table(const LookRecipe& recipe, const std::vector<double>& values);
 
 using KeptFunctions = Kept<LookRecipe, TransferFunction>;
 
 /// Returns how a component reflects light; none where it is not shaded. VTK's normals have length 1
-/// wherever the gradient is not 0, so that the flatness is 0.
-std::optional<Shading> shading_of(vtkVolumeProperty& property, int component);
-/// Returns the gradient opacity of a component, by the change per voxel; empty where it has none.
-Curve gradient_curve(vtkVolumeProperty& property, int component);
+/// wherever the gradient is not 0, so that the flatness is 0. Numbers beyond what a Shading takes
+/// are brought into it; those that are none are VTK's defaults.
+std::optional<Shading> shading_of(vtkVolumeProperty& property, int component, Notes& notes);
+/// Returns the gradient opacity of a component, by the change per voxel, from 0 on; empty where it
+/// has none.
+Curve gradient_curve(vtkVolumeProperty& property, int component, Notes& notes);
 /// Returns it as the scene has it.
 GradientOpacity gradient_opacity_of(const Curve& curve);
 

@@ -4,6 +4,7 @@
 #include <vtkAbstractVolumeMapper.h>
 #include <vtkAlgorithm.h>
 #include <vtkCommand.h>
+#include <vtkNew.h>
 #include <vtkPropCollection.h>
 #include <vtkRayCastImageDisplayHelper.h>
 #include <vtkRenderWindow.h>
@@ -16,10 +17,11 @@
 #include <chrono>
 #include <cmath>
 #include <limits>
-#include <optional>
+#include <numbers>
 #include <thread>
 #include <utility>
 
+#include "pellucid/cpu/render.h"
 #include "pellucid/scene/error.h"
 
 namespace pellucid::plugin {
@@ -47,6 +49,73 @@ bool shows_translucent_geometry(vtkRenderer& renderer) {
     if (prop->GetVisibility() != 0 && prop->HasTranslucentPolygonalGeometry() != 0) return true;
   }
   return false;
+}
+
+/// Keeps what VTK touches once a mapper has drawn, until the renderer ends its frame: a callback of
+/// the check for an abort may take any of it from the scene. A volume that was given another mapper
+/// has its own again until then.
+class FrameKeeper : public vtkCommand {
+ public:
+  static FrameKeeper* New() { return new FrameKeeper; }
+  vtkTypeMacro(FrameKeeper, vtkCommand)
+
+  void begin(vtkRenderer& renderer, vtkVolume& volume, vtkAbstractVolumeMapper& mapper) {
+    volume_ = &volume;
+    mapper_ = volume.GetMapper();
+    kept_.emplace_back(&mapper);
+    kept_.emplace_back(&renderer);
+    vtkPropCollection* const props = renderer.GetViewProps();
+    for (int i = 0; i < props->GetNumberOfItems(); ++i) {
+      kept_.emplace_back(props->GetItemAsObject(i));
+    }
+    renderer.AddObserver(vtkCommand::EndEvent, this);
+  }
+  /// Gives the volume its mapper again where it goes out of scope.
+  struct Restorer {
+    FrameKeeper& keeper;
+    ~Restorer() { keeper.put_mapper_back(); }
+  };
+  void put_mapper_back() {
+    if (volume_ == nullptr || volume_->GetMapper() == mapper_) return;
+    wanted_ = volume_->GetMapper();
+    is_changed_ = true;
+    volume_->SetMapper(mapper_);
+  }
+  void Execute(vtkObject* renderer, unsigned long, void*) override {
+    const vtkSmartPointer<FrameKeeper> self(this);
+    renderer->RemoveObserver(this);
+    if (is_changed_) volume_->SetMapper(wanted_);
+    const std::vector<vtkSmartPointer<vtkObject>> end = std::move(kept_);
+  }
+
+ private:
+  vtkSmartPointer<vtkVolume> volume_;
+  vtkSmartPointer<vtkAbstractVolumeMapper> mapper_, wanted_;
+  bool is_changed_ = false;
+  std::vector<vtkSmartPointer<vtkObject>> kept_;
+};
+
+/// Of a picture of optical depths, in which nothing is brighter than 1.
+float depth_of(float opacity) {
+  constexpr double most = 1 - 1 / std::numbers::e;
+  if (!(double{opacity} < most)) return 1;
+  return static_cast<float>(-std::log1p(-std::max(double{opacity}, 0.0)));
+}
+
+/// The scene as an opaque shape: where rays meet its data.
+Scene shape_of(const Scene& scene) {
+  static const auto opaque = std::make_shared<const TransferFunction>(
+      std::vector<TransferFunction::Point>{{0, 1, {0, 0, 0}}});
+  Scene shape = scene;
+  for (Layer& layer : shape.layers) {
+    auto& content = std::get<VolumeContent>(layer.content);
+    content.transfer_function = opaque;
+    content.mask = nullptr;
+    layer.projection = LayerProjection::maximum;
+    layer.gradient_opacity = nullptr;
+  }
+  shape.integration.set_tolerance(largest_tolerance);
+  return shape;
 }
 
 /// The picture as the display takes it: premultiplied 15 bits, row 0 at the bottom, each pixel
@@ -97,6 +166,25 @@ bool set_grade(Settings& settings, int grade) {
   return std::exchange(settings.grade, wanted) != wanted;
 }
 
+double Finish::growth() const noexcept {
+  // Sums are opaque: what the bias adds is known.
+  const double of_colors =
+      shows_depths ? std::numbers::e * std::abs(scale) : std::abs(scale) + std::abs(bias);
+  return std::max(of_colors, 1.0);
+}
+
+void set_final_colors(Finish& finish, double window, double level, Notes& notes) {
+  const double scale = 1 / window, bias = 0.5 - level / window;
+  finish.scale = 1;
+  finish.bias = 0;
+  if (std::isfinite(scale) && std::isfinite(bias)) {
+    finish.scale = scale;
+    finish.bias = bias;
+  } else {
+    notes.add("the window of the final color is no width, and left out");
+  }
+}
+
 void set_threads(Settings& settings, int threads) {
   settings.threads = std::clamp(threads, 0, most_threads);
 }
@@ -140,14 +228,14 @@ Scene MapperCore::scene_of(vtkVolumeMapper& mapper, const Mask& mask, vtkRendere
   Notes notes;
   return scene_with(layers_of(mapper, mapper.GetDataSetInput(), volume, mask, settings.tolerance,
                               has_ambient_light(renderer), grids_, notes),
-                    renderer, volume, view_of(renderer), notes);
+                    renderer, volume, view_of(renderer, notes), notes);
 }
 
 Scene MapperCore::scene_of(vtkUnstructuredGridVolumeMapper& mapper, vtkRenderer& renderer,
                            vtkVolume& volume) {
   Notes notes;
   return scene_with(layers_of(mapper, volume, settings.tolerance, meshes_, notes), renderer, volume,
-                    view_of(renderer), notes);
+                    view_of(renderer, notes), notes);
 }
 
 void MapperCore::draw(vtkVolumeMapper& mapper, const Mask& mask, vtkRenderer& renderer,
@@ -158,11 +246,12 @@ void MapperCore::draw(vtkVolumeMapper& mapper, const Mask& mask, vtkRenderer& re
 void MapperCore::draw(vtkVolumeMapper& mapper,
                       const std::vector<std::pair<vtkDataSet*, vtkVolume*>>& parts,
                       const Mask& mask, vtkRenderer& renderer, vtkVolume& volume) {
+  finish.shows_depths = mapper.GetBlendMode() == vtkVolumeMapper::ADDITIVE_BLEND;
   draw_layers(mapper, renderer, volume, [&](Notes& notes) {
     const double share = parts.size() > 1 ? 0.5 / static_cast<double>(parts.size()) : 1;
     std::vector<Layer> layers;
     for (const auto& [data, part] : parts) {
-      for (Layer& layer : layers_of(mapper, data, *part, mask, share * settings.tolerance,
+      for (Layer& layer : layers_of(mapper, data, *part, mask, share * inner_tolerance(),
                                     has_ambient_light(renderer), grids_, notes)) {
         layers.push_back(std::move(layer));
       }
@@ -184,27 +273,45 @@ void MapperCore::draw_layers(vtkAbstractVolumeMapper& mapper, vtkRenderer& rende
                              vtkVolume& volume, const MakeLayers& make_layers) {
   // The colors of a selection's passes are numbers of what is selected.
   if (renderer.GetSelector() != nullptr) return;
+  if (is_drawing_) return;  // a callback of the check for an abort draws
+  // Of a picture in tiles, a tile may show nothing of the renderer.
+  int width = 0, height = 0, left = 0, bottom = 0;
+  renderer.GetTiledSizeAndOrigin(&width, &height, &left, &bottom);
+  if (width < 1 || height < 1) return;
   const Clock::time_point start = Clock::now();
   outcome = {};
   outcome.largest_error = std::numeric_limits<double>::infinity();
+  is_drawing_ = true;
   try {
     Notes notes = left_out;
     std::vector<Layer> layers = make_layers(notes);
-    if (layers.empty()) return;
-    const View view = view_of(renderer);
-    Scene scene = scene_with(std::move(layers), renderer, volume, view, notes);
-    scene.backdrop = geometry_of(renderer, view);
-    if (shows_translucent_geometry(renderer)) {
-      notes.add("translucent geometry lies behind volumes, wherever it is");
+    if (!layers.empty()) {
+      const View view = view_of(renderer, notes);
+      Scene scene = scene_with(std::move(layers), renderer, volume, view, notes);
+      const double of_functions = finish.shows_depths ? sum_tolerance(inner_tolerance()) : 0;
+      scene.integration.set_tolerance(inner_tolerance() - of_functions);
+      scene.backdrop = geometry_of(renderer, view);
+      if (shows_translucent_geometry(renderer)) {
+        notes.add("translucent geometry lies behind volumes, wherever it is");
+      }
+      tell(mapper, notes);
+      const vtkSmartPointer<vtkRenderWindow> window(renderer.GetRenderWindow());
+      vtkNew<FrameKeeper> keeper;
+      if (window->HasObserver(vtkCommand::AbortCheckEvent) != 0) {
+        keeper->begin(renderer, volume, mapper);
+      }
+      const FrameKeeper::Restorer restorer{*keeper};
+      Image image = picture(scene, renderer, volume.GetAllocatedRenderTime());
+      finish_picture(scene, image);
+      if (renderer.GetRenderWindow() == window) show(image, view, renderer, volume);
     }
-    tell(mapper, notes);
-    show(picture(scene, renderer, volume.GetAllocatedRenderTime()), view, renderer, volume);
   } catch (const Cancelled&) {
   } catch (const std::exception& error) {
     if (told_.insert(error.what()).second) {
       vtkErrorWithObjectMacro(&mapper, << "Pellucid draws nothing: " << error.what());
     }
   }
+  is_drawing_ = false;
   outcome.seconds = seconds_since(start);
 }
 
@@ -218,21 +325,20 @@ Image MapperCore::picture(const Scene& scene, vtkRenderer& renderer, double seco
   options.threads = settings.threads;
   RenderReport report;
   Image image = renderer_.render(scene, options, &report);
-  outcome.exact = true;
-  outcome.largest_error = report.largest_error;
-  outcome.pixels_over = static_cast<long long>(report.pixels_over_tolerance);
+  take(report);
   return image;
 }
 
 Image MapperCore::picture_in_time(const Scene& scene, vtkRenderer& renderer, double seconds) {
   const Clock::time_point start = Clock::now();
   const bool is_still = seconds >= still_seconds;
+  const vtkSmartPointer<vtkRenderWindow> window(renderer.GetRenderWindow());
   RenderOptions options;
   options.threads = settings.threads;
   options.preview = preview_levels;
   RunningFrame frame = renderer_.start(scene, options);
   const auto is_over = [&] {
-    if (is_still) return renderer.GetRenderWindow()->CheckAbortStatus() != 0;
+    if (is_still) return window->CheckAbortStatus() != 0;
     return seconds_since(start) > seconds * share_for_rays;
   };
   while (!frame.finished()) {
@@ -241,10 +347,33 @@ Image MapperCore::picture_in_time(const Scene& scene, vtkRenderer& renderer, dou
   }
   RenderReport report;
   Image image = frame.wait(&report);
-  outcome.exact = true;
-  outcome.largest_error = report.largest_error;
-  outcome.pixels_over = static_cast<long long>(report.pixels_over_tolerance);
+  take(report);
   return image;
+}
+
+void MapperCore::take(const RenderReport& report) {
+  outcome.exact = true;
+  outcome.largest_error = report.largest_error * finish.growth();
+  outcome.pixels_over = static_cast<long long>(report.pixels_over_tolerance);
+}
+
+void MapperCore::finish_picture(const Scene& scene, Image& image) {
+  if (finish.shows_depths) {
+    RenderOptions options;
+    options.threads = settings.threads;
+    const Image shape = pellucid::render(shape_of(scene), options);
+    for (std::size_t i = 0; i < image.pixels.size(); ++i) {
+      const float sum = depth_of(image.pixels[i][3]), covered = shape.pixels[i][3];
+      image.pixels[i] = {sum * covered, sum * covered, sum * covered, covered};
+    }
+    // The functions of which these are the depths are chords of products.
+    outcome.largest_error += sum_tolerance(inner_tolerance()) * std::abs(finish.scale);
+  }
+  if (finish.scale == 1 && finish.bias == 0) return;
+  const auto scale = static_cast<float>(finish.scale), bias = static_cast<float>(finish.bias);
+  for (std::array<float, 4>& pixel : image.pixels) {
+    for (std::size_t c = 0; c < 3; ++c) pixel[c] = scale * pixel[c] + bias * pixel[3];
+  }
 }
 
 void MapperCore::show(const Image& image, const View& view, vtkRenderer& renderer,

@@ -54,6 +54,22 @@ struct Outcome {
   double seconds = 0;
 };
 
+/// What becomes of the rays' colors before a window shows them.
+struct Finish {
+  /// Shows optical depths, up to 1, as a grey that hides what is behind it, wherever rays meet the
+  /// data: the sums of additive blending.
+  bool shows_depths = false;
+  double scale = 1, bias = 0;  ///< then a color becomes scale · color + bias · opacity
+
+  /// Returns by which factor errors of a picture grow, at most; 1 or more. The slope of -ln(1 -
+  /// opacity) is at most e, as long as that is at most 1.
+  double growth() const noexcept;
+};
+
+/// Sets scale and bias for VTK's window and level of the final color; what is no window is left
+/// out, and `notes` say so.
+void set_final_colors(Finish& finish, double window, double level, Notes& notes);
+
 /// Brings the data of a mapper up to date, as far as it has any.
 void update_inputs(vtkAlgorithm& mapper);
 
@@ -68,6 +84,7 @@ class MapperCore {
 
   Settings settings;
   Outcome outcome;
+  Finish finish;  ///< draw() sets whether it shows depths
   /// What a mapper knows to be left out, beside what draw() finds.
   Notes left_out;
 
@@ -96,6 +113,10 @@ class MapperCore {
                    const MakeLayers& make_layers);
   Image picture(const Scene& scene, vtkRenderer& renderer, double seconds);
   Image picture_in_time(const Scene& scene, vtkRenderer& renderer, double seconds);
+  /// The tolerance of what the finish is applied to.
+  double inner_tolerance() const noexcept { return settings.tolerance / finish.growth(); }
+  void take(const RenderReport& report);
+  void finish_picture(const Scene& scene, Image& image);
   void show(const Image& image, const View& view, vtkRenderer& renderer, vtkVolume& volume);
   void tell(vtkAbstractVolumeMapper& mapper, const Notes& notes);
 
@@ -105,6 +126,7 @@ class MapperCore {
   vtkSmartPointer<vtkRayCastImageDisplayHelper> display_;
   std::vector<unsigned short> pixels_;
   std::set<std::string> told_;
+  bool is_drawing_ = false;
 };
 
 /// Prints what a mapper was told and what its last picture came to, as PrintSelf() does.

@@ -16,6 +16,7 @@
 #include <string>
 
 #include "cropping.h"
+#include "grid_data.h"
 #include "pellucid/scene/cut_cells.h"
 #include "pellucid/scene/error.h"
 #include "view.h"
@@ -74,6 +75,11 @@ std::shared_ptr<const MeshChannels> mesh_of(vtkUnstructuredGrid& grid, vtkDataAr
   return cut_into_tetrahedra(cells, std::span(&choice, 1));
 }
 
+double size_of(const MeshChannels& mesh) {
+  const Vec3<double> size = mesh.mesh().bounds().upper - mesh.mesh().bounds().lower;
+  return std::max({size.x, size.y, size.z});
+}
+
 }  // namespace
 
 std::vector<Layer> layers_of(vtkUnstructuredGridVolumeMapper& mapper, vtkVolume& volume,
@@ -100,11 +106,13 @@ std::vector<Layer> layers_of(vtkUnstructuredGridVolumeMapper& mapper, vtkVolume&
   const vtkMTimeType time = time_of(*grid, *array);
   // Cells that are inserted change no time.
   const std::array<vtkIdType, 2> counts{grid->GetNumberOfPoints(), grid->GetNumberOfCells()};
+  const std::uint64_t fingerprint = fingerprint_of(*array);
   if (kept.mesh == nullptr || kept.array != array || kept.time != time || kept.counts != counts ||
-      kept.cells != grid->GetCells()) {
+      kept.fingerprint != fingerprint || kept.cells != grid->GetCells()) {
     kept.mesh = mesh_of(*grid, *array, of_cells != 0);
     kept.array = array;
     kept.time = time;
+    kept.fingerprint = fingerprint;
     kept.counts = counts;
     kept.cells = grid->GetCells();
     ++kept.made;
@@ -112,13 +120,15 @@ std::vector<Layer> layers_of(vtkUnstructuredGridVolumeMapper& mapper, vtkVolume&
   vtkVolumeProperty& property = *volume.GetProperty();
   Layer layer;
   layer.transform = affine_of(*volume.GetMatrix(), "volume");
-  layer.clips = clips_of(mapper.GetClippingPlanes());
+  layer.clips = clips_of(mapper.GetClippingPlanes(), notes);
   if (mapper.GetBlendMode() == vtkUnstructuredGridVolumeMapper::MAXIMUM_INTENSITY_BLEND) {
     layer.projection = LayerProjection::maximum;
   }
   const auto meaning = layer.projection ? OpacityMeaning::projected : OpacityMeaning::extinction;
   layer.content = MeshContent{
-      kept.mesh, kept.functions.find(look_recipe(property, 0, meaning, tolerance), function_of)};
+      kept.mesh,
+      kept.functions.find(look_recipe(property, 0, meaning, tolerance, size_of(*kept.mesh), notes),
+                          [](const LookRecipe& recipe) { return function_of(recipe); })};
   if (property.GetShade(0) != 0) notes.add("volumes of unstructured grids have no light");
   return {layer};
 }

@@ -5,6 +5,7 @@
 #include <vtkType.h>
 
 #include <array>
+#include <cstdint>
 #include <memory>
 #include <vector>
 
@@ -24,6 +25,7 @@ struct KeptOfMeshes {
   std::shared_ptr<const MeshChannels> mesh;
   vtkSmartPointer<vtkDataArray> array;
   vtkMTimeType time = 0;
+  std::uint64_t fingerprint = 0;      ///< of the values
   std::array<vtkIdType, 2> counts{};  ///< of points and cells
   vtkSmartPointer<vtkCellArray> cells;
   int made = 0;  ///< how often it was cut

@@ -40,9 +40,8 @@ class GpuStandIn final : public vtkGPUVolumeRayCastMapper, public HasCore {
     update_inputs(*this);
     const Mask mask{this->GetMaskInput(), this->GetMaskType() == BinaryMaskType,
                     double{this->GetMaskBlendFactor()}};
-    if (this->GetFinalColorWindow() != 1 || this->GetFinalColorLevel() != 0.5F) {
-      this->core.left_out.add("the window and level of the final color are left out");
-    }
+    set_final_colors(this->core.finish, double{this->GetFinalColorWindow()},
+                     double{this->GetFinalColorLevel()}, this->core.left_out);
     if (this->GetRenderToImage() != 0) this->core.left_out.add("RenderToImage is left out");
     if (auto* const several = vtkMultiVolume::SafeDownCast(volume)) {
       std::vector<std::pair<vtkDataSet*, vtkVolume*>> parts;
@@ -79,6 +78,8 @@ vtkStandardNewMacro(GpuStandIn)
 
   void Render(vtkRenderer* renderer, vtkVolume* volume) override {
     update_inputs(*this);
+    set_final_colors(this->core.finish, double{this->GetFinalColorWindow()},
+                     double{this->GetFinalColorLevel()}, this->core.left_out);
     this->core.draw(*this, {}, *renderer, *volume);
     this->TimeToDraw = this->core.outcome.seconds;
   }
@@ -163,10 +164,18 @@ vtkStandardNewMacro(ZSweepStandIn)
 };
 vtkStandardNewMacro(TetrahedraStandIn)
 
-    /// Reads the protected member of a smart mapper that draws for it.
+    /// Reads the protected members of a smart mapper of which one draws for it.
     struct SmartMapper : vtkSmartVolumeMapper {
-  static vtkGPUVolumeRayCastMapper* gpu_mapper_of(vtkSmartVolumeMapper& mapper) {
-    return mapper.*(&SmartMapper::GPUMapper);
+  static vtkAbstractVolumeMapper* drawing_for(vtkSmartVolumeMapper& mapper) {
+    switch (mapper.GetRequestedRenderMode()) {
+      case DefaultRenderMode:
+      case GPURenderMode:
+        return mapper.*(&SmartMapper::GPUMapper);
+      case RayCastRenderMode:
+        return mapper.*(&SmartMapper::RayCastMapper);
+      default:
+        return nullptr;
+    }
   }
 };
 
@@ -196,7 +205,7 @@ MapperCore* core_of(vtkAbstractVolumeMapper* mapper) {
     return &ours->GetCore();
   }
   if (auto* const smart = vtkSmartVolumeMapper::SafeDownCast(mapper)) {
-    return core_of(SmartMapper::gpu_mapper_of(*smart));
+    return core_of(SmartMapper::drawing_for(*smart));
   }
   return nullptr;
 }

@@ -23,7 +23,7 @@ vtkUnstructuredGridVolumeZSweepMapper* new_z_sweep_stand_in();
 vtkProjectedTetrahedraMapper* new_projected_tetrahedra_stand_in();
 
 /// Returns what draws for a mapper of this plug-in, or for a vtkSmartVolumeMapper whose mapper for
-/// GPUs is one; null for others.
+/// its render mode is one; null for others.
 MapperCore* core_of(vtkAbstractVolumeMapper* mapper);
 
 }  // namespace pellucid::plugin

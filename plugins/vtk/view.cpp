@@ -29,14 +29,18 @@ Vec3<double> vector_of(const double v[3]) {
   return {v[0], v[1], v[2]};
 }
 
-/// Half of what a window's center is away from the middle, in whole pixels.
-int pixels_off(double center, int side) {
-  const double pixels = center * side / 2;
+/// Twice what a window's center is away from the middle, in whole pixels: what the picture of which
+/// the window is a part is larger by. Where parts of a window begin and end between pixels, VTK
+/// rounds them to pixels, too.
+int pixels_off(double center, int side, Notes& notes) {
+  const double pixels = center * side;
   const double whole = std::round(pixels);
-  if (std::abs(pixels - whole) > 1e-3 || std::abs(whole) > largest_shift) {
-    throw Error("camera: its WindowCenter moves the picture by " + std::to_string(pixels) +
-                " pixels; set one that moves it by a whole number up to " +
-                std::to_string(largest_shift));
+  if (!(std::abs(whole) <= 2 * largest_shift)) {
+    throw Error("camera: its WindowCenter moves the picture by " + std::to_string(pixels / 2) +
+                " pixels; set one that moves it by up to " + std::to_string(largest_shift));
+  }
+  if (std::abs(pixels - whole) > 1e-3) {
+    notes.add("the camera's WindowCenter is taken to the nearest half of a pixel");
   }
   return static_cast<int>(whole);
 }
@@ -104,7 +108,7 @@ double along_view(vtkCamera& camera, double depth) {
 
 }  // namespace
 
-View view_of(vtkRenderer& renderer) {
+View view_of(vtkRenderer& renderer, Notes& notes) {
   vtkCamera& camera = *renderer.GetActiveCamera();
   refuse_others(renderer, camera);
   View view;
@@ -112,15 +116,16 @@ View view_of(vtkRenderer& renderer) {
   if (view.width < 1 || view.height < 1) throw Error("renderer: has no size");
   double center[2];
   camera.GetWindowCenter(center);
-  const int across = pixels_off(center[0], view.width), up = pixels_off(center[1], view.height);
-  view.size = {view.width + 2 * std::abs(across), view.height + 2 * std::abs(up)};
+  const int across = pixels_off(center[0], view.width, notes);
+  const int up = pixels_off(center[1], view.height, notes);
+  view.size = {view.width + std::abs(across), view.height + std::abs(up)};
   if (1.0 * view.size.width * view.size.height > largest_picture) {
     throw Error("camera: its WindowCenter makes it a part of a picture of " +
                 std::to_string(view.size.width) + " x " + std::to_string(view.size.height) +
                 " pixels; take fewer tiles");
   }
-  view.column = std::max(2 * across, 0);
-  view.row = std::max(-2 * up, 0);
+  view.column = std::max(across, 0);
+  view.row = std::max(-up, 0);
 
   double tangent = tangent_of_half(camera.GetViewAngle());
   if (camera.GetUseHorizontalViewAngle() != 0) tangent *= double(view.height) / view.width;
@@ -154,7 +159,8 @@ std::vector<Light> lights_of(vtkRenderer& renderer, bool is_lit, Notes& notes) {
     }
     Light made;
     const double intensity = std::max(light.GetIntensity(), 0.0);
-    made.color = {intensity * color[0], intensity * color[1], intensity * color[2]};
+    const auto part = [&](int c) { return std::max(intensity * color[c], 0.0); };
+    made.color = {part(0), part(1), part(2)};
     if (light.LightTypeIsHeadlight() != 0) {
       made.kind = head;
     } else if (light.GetPositional() != 0) {
@@ -169,7 +175,12 @@ std::vector<Light> lights_of(vtkRenderer& renderer, bool is_lit, Notes& notes) {
       light.GetTransformedFocalPoint(to);
       made.kind = DirectionalLight{vector_of(to) - vector_of(from)};
     }
-    lights.push_back(made);
+    try {
+      check_light(made, "light");
+      lights.push_back(made);
+    } catch (const Error& error) {
+      notes.add(std::string(error.what()) + "; it is left out");
+    }
   }
   if (is_lit && renderer.GetTwoSidedLighting() == 0) {
     notes.add("both sides reflect light here, whatever TwoSidedLighting says");

@@ -26,9 +26,9 @@ struct View {
 };
 
 /// Returns the camera of a renderer. A window of the camera that is not in its middle, as of tiles,
-/// is a part of a larger picture. Throws Error for what has no counterpart: shear, a transform of
-/// the view, pixels that are not square, parts of pixels.
-View view_of(vtkRenderer& renderer);
+/// is a part of a larger picture, which has whole pixels. Throws Error for what has no counterpart:
+/// shear, a transform of the view, pixels that are not square.
+View view_of(vtkRenderer& renderer, Notes& notes);
 /// Returns the lights that are on. A renderer without lights has a head light, as VTK makes one.
 /// `is_lit`: whether anything is seen in them.
 std::vector<Light> lights_of(vtkRenderer& renderer, bool is_lit, Notes& notes);

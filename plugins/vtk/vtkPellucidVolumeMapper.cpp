@@ -26,6 +26,8 @@ vtkPellucidVolumeMapper::~vtkPellucidVolumeMapper() {
 
 void vtkPellucidVolumeMapper::Render(vtkRenderer* renderer, vtkVolume* volume) {
   pellucid::plugin::update_inputs(*this);
+  pellucid::plugin::set_final_colors(this->Core->finish, double{this->FinalColorWindow},
+                                     double{this->FinalColorLevel}, this->Core->left_out);
   this->Core->draw(*this, mask_of(*this), *renderer, *volume);
   this->TimeToDraw = this->Core->outcome.seconds;
 }

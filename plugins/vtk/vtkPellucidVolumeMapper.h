@@ -18,7 +18,7 @@ class MapperCore;
  * @class   vtkPellucidVolumeMapper
  * @brief   Shows images and rectilinear grids within a tolerance of the volume rendering integral.
  *
- * Takes what vtkVolumeMapper takes: point and cell arrays, independent components, blend modes,
+ * Takes what vtkVolumeMapper takes: point and cell arrays of several components, blend modes,
  * cropping, clipping planes; and vtkVolumeProperty. The picture is made on the CPU and put into the
  * window's framebuffer: rays end at the geometry that the window's depth buffer has.
  * docs/how-to/vtk.md says what differs from VTK's own mappers, and why.
@@ -83,6 +83,17 @@ class PELLUCID_VTK_EXPORT vtkPellucidVolumeMapper : public vtkVolumeMapper {
   vtkGetMacro(MaskBlendFactor, float);
   ///@}
 
+  ///@{
+  /**
+   * A linear map of the picture's colors, as of vtkGPUVolumeRayCastMapper: those from level -
+   * window / 2 to level + window / 2 become 0 to 1. Default: 1 and 0.5, no change.
+   */
+  vtkSetMacro(FinalColorWindow, float);
+  vtkGetMacro(FinalColorWindow, float);
+  vtkSetMacro(FinalColorLevel, float);
+  vtkGetMacro(FinalColorLevel, float);
+  ///@}
+
   /**
    * Draws the volume. Called by vtkVolume.
    */
@@ -106,4 +117,5 @@ class PELLUCID_VTK_EXPORT vtkPellucidVolumeMapper : public vtkVolumeMapper {
   vtkSmartPointer<vtkImageData> MaskInput;
   int MaskType = LabelMapMaskType;
   float MaskBlendFactor = 1;
+  float FinalColorWindow = 1, FinalColorLevel = 0.5F;
 };

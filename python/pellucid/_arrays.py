@@ -9,7 +9,7 @@ from __future__ import annotations
 import math
 import sys
 import warnings
-from typing import Any, NamedTuple, Optional
+from typing import Any, List, NamedTuple, Optional
 
 import numpy
 
@@ -228,6 +228,15 @@ def vtk_values(array: Any, name: str) -> numpy.ndarray:
 
 
 def _of_vtk(data: Any) -> Placed:
+    components = vtk_components(data)
+    if len(components) != 1:
+        raise Error(f"{data.GetClassName()}: its array has {len(components)} components; extract "
+                    "one (vtkImageExtractComponents)")
+    return components[0]
+
+
+def vtk_components(data: Any) -> List[Placed]:
+    """Returns each component of a grid's array, and its place."""
     name = data.GetClassName()
     if not (data.IsA("vtkImageData") or data.IsA("vtkRectilinearGrid")):
         raise Error(f"{name}: expected a vtkImageData or a vtkRectilinearGrid (meshes: "
@@ -237,16 +246,18 @@ def _of_vtk(data: Any) -> Placed:
         array, centering = vtk_array(data.GetCellData(), None, name), "cell"
     if array is None:
         raise Error(f"{name}: has no values; give it scalars, or Update() its pipeline")
-    if array.GetNumberOfComponents() != 1:
-        raise Error(f"{name}: its array has {array.GetNumberOfComponents()} components; extract "
-                    "one (vtkImageExtractComponents)")
     cells = 1 if centering == "cell" else 0
     shape = tuple(side - cells for side in data.GetDimensions())[::-1]
-    values = vtk_values(array, name).reshape(shape)
+    count = array.GetNumberOfComponents()
+    if array.GetNumberOfTuples() != math.prod(shape):
+        raise Error(f"{name}: has {array.GetNumberOfTuples()} values for {math.prod(shape)} places")
+    all_values = vtk_values(array, name).reshape(*shape, count)
+    values = [all_values[..., c] for c in range(count)]
     if data.IsA("vtkRectilinearGrid"):
         axes = (data.GetZCoordinates(), data.GetYCoordinates(), data.GetXCoordinates())
-        return Placed(values, coordinates=tuple(vtk_values(axis, name) for axis in axes),
-                      centering=centering, name=name)
+        coordinates = tuple(vtk_values(axis, name) for axis in axes)
+        return [Placed(one, coordinates=coordinates, centering=centering, name=name)
+                for one in values]
     matrix = data.GetDirectionMatrix()
     direction = numpy.array([[matrix.GetElement(row, column) for column in range(3)]
                              for row in range(3)])
@@ -257,5 +268,5 @@ def _of_vtk(data: Any) -> Placed:
             spacing[axis], direction[:, axis] = -spacing[axis], -direction[:, axis]
     for axis in range(3 * cells):
         origin = origin + direction[:, axis] * (spacing[axis] / 2)
-    return Placed(values, tuple(spacing)[::-1], tuple(origin)[::-1], direction[::-1, ::-1],
-                  centering=centering, name=name)
+    return [Placed(one, tuple(spacing)[::-1], tuple(origin)[::-1], direction[::-1, ::-1],
+                   centering=centering, name=name) for one in values]

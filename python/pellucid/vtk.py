@@ -23,8 +23,8 @@ from typing import Any, List, Sequence, Tuple
 import numpy
 
 from . import _arrays, _meshes
-from ._pellucid import (Error, GradientOpacity, Image, OpacityTable, Renderer, TransferFunction,
-                        Volume)
+from ._pellucid import (Channels, Error, Gaussians, GradientOpacity, Image, LabelTable, LabelVolume,
+                        OpacityTable, Renderer, TransferFunction, Volume)
 from .scene import (Camera, ClipPlane, DirectionalLight, HeadLight, Integration, Layer, PointLight,
                     Scene, Shading)
 
@@ -156,6 +156,9 @@ def settings(mapper: Any) -> MapperSettings:
     """Returns the settings of a mapper that draws by Pellucid. Raises Error for others."""
     if not (_is_a(mapper, "vtkAbstractVolumeMapper")
             and _plugin().vtkPellucidFactory.Has(mapper)):
+        if _is_a(mapper, "vtkSmartVolumeMapper") and mapper.GetRequestedRenderMode() not in (0, 2):
+            raise Error(f"mapper: {mapper!r:.60} draws by another mapper in its render mode; call "
+                        "SetRequestedRenderModeToDefault()")
         raise Error(f"mapper: {mapper!r:.60} does not draw by Pellucid; make it after "
                     "pellucid.vtk.use()")
     return MapperSettings(mapper)
@@ -169,8 +172,11 @@ def scene_of(renderer: Any, notes: Any = None) -> Scene:
 
     Volumes of vtkImageData or vtkRectilinearGrid take their opacities per unit distance, those of
     unstructured grids as extinctions. Clipping and cropping planes become clips. Other props are
-    left out. Raises Error for what has no counterpart: interpolation to the nearest value, several
-    components, blend modes other than composite.
+    left out. Dependent components become Channels with a factor, and the nearest values of an unlit
+    volume a LabelVolume. Raises Error for what has no counterpart: independent components, blend
+    modes other than composite.
+
+    The window and level of the final color are those of a picture: finished() applies them.
     """
     renderer = getattr(renderer, "renderer", renderer)
     if not _is_a(renderer, "vtkRenderer"):
@@ -199,6 +205,26 @@ def scene_of(renderer: Any, notes: Any = None) -> Scene:
     return scene
 
 
+def finished(renderer: Any, image: Image) -> Image:
+    """Returns a picture of scene_of() with the window and level of the final color.
+
+    They are those of the mapper of the renderer's first volume: colors from level - window / 2 to
+    level + window / 2 become 0 to 1. Without them it is the image itself.
+    """
+    renderer = getattr(renderer, "renderer", renderer)
+    for volume in _items(renderer.GetVolumes()):
+        mapper = volume.GetMapper()
+        if not hasattr(mapper, "GetFinalColorWindow"):
+            break
+        window, level = mapper.GetFinalColorWindow(), mapper.GetFinalColorLevel()
+        if (window, level) == (1.0, 0.5) or not window or not math.isfinite(level / window):
+            break
+        rgba = numpy.array(image.rgba, dtype=numpy.float32)
+        rgba[..., :3] = rgba[..., :3] / window + (0.5 - level / window) * rgba[..., 3:]
+        return Image(rgba)
+    return image
+
+
 def audit(render_window: Any, tolerance: float = 1 / 4096, progress: Any = None) -> Audit:
     """Renders what a vtkRenderWindow shows to a tolerance, and compares VTK's own picture with it.
 
@@ -223,7 +249,10 @@ def audit(render_window: Any, tolerance: float = 1 / 4096, progress: Any = None)
     scene = scene_of(renderer, notes)
     scene.integration = Integration(tolerance=tolerance)
     ours = Renderer().render(scene, progress=progress)
-    found = ours.compare(theirs)
+    if finished(renderer, ours) is not ours:
+        notes.append("the final color has a window and a level; ours is without, for comparison "
+                     "with them")
+    found = finished(renderer, ours).compare(theirs)
     if found.not_finite:
         notes.append(f"{found.not_finite} numbers of VTK's picture are not finite")
     return Audit(ours, theirs, scene, found.largest, found.rms, found.share_over_255, found.at,
@@ -255,48 +284,157 @@ def _layer(volume: Any, what: str, ambient: bool, notes: List[str]) -> Layer:
     data = mapper.GetDataSetInput() if hasattr(mapper, "GetDataSetInput") else mapper.GetInput()
     if data is None:
         raise Error(f"{what}: its mapper has no input")
-    if look.GetInterpolationType() != 1:
-        raise Error(f"{what}: shows the nearest value; set its property's "
-                    "SetInterpolationTypeToLinear()")
     is_grid = not _meshes.is_mesh(data)
     if is_grid and mapper.GetBlendMode() != 0:
         raise Error(f"{what}: its mapper blends by mode {mapper.GetBlendMode()}; only composite "
                     "(0) is an integral with absorption")
-    colors, opacities = _color_curve(look), _curve_of(look.GetScalarOpacity(0))
-    unit = look.GetScalarOpacityUnitDistance(0)
     matrix = _matrix(volume.GetMatrix())
-    if is_grid:
-        # VTK's mappers measure the unit distance in the volume's own world, before its matrix.
-        unit *= abs(numpy.linalg.det(matrix[:3, :3])) ** (1 / 3)
-        scales = numpy.linalg.norm(matrix[:3, :3], axis=0)
-        if scales.max() > 1.000001 * scales.min():
-            notes.append(f"{what}: is scaled unevenly, and has opacities by the mean of its scales")
-        shown = Volume(data, name=what)
-        function = OpacityTable([(x, a[0], tuple(c)) for x, a, c in _joined(opacities, colors)],
-                                unit)
-    else:
-        # Unstructured mappers take opacity / unit distance for the extinction itself.
-        shown = _meshes.mesh_of(data)
-        function = TransferFunction([(x, a[0] / unit, tuple(c))
-                                     for x, a, c in _joined(opacities, colors)])
-    layer = Layer(shown, function, name=what, visible=bool(volume.GetVisibility()))
+    layer = (_grid_layer(data, look, matrix, what, notes) if is_grid
+             else _mesh_layer(data, look, what, notes))
+    layer.name, layer.visible = what, bool(volume.GetVisibility())
     layer.transform = matrix[:3].tolist()
     layer.clips = _clips(mapper, matrix, what, is_grid)
     if is_grid and mapper.GetCropping():
         notes.append(f"{what}: the GPU mapper of VTK 9.1 crops up to half a voxel outside of its "
                      "planes")
-    if look.GetShade(0) and is_grid:
-        # VTK's normals have length 1 wherever the gradient is not 0.
-        layer.shading = Shading(look.GetAmbient(0) if ambient else 0.0, look.GetDiffuse(0),
-                                look.GetSpecular(0),
-                                min(max(look.GetSpecularPower(0), 1.0), 1000.0), flatness=0.0)
-    if is_grid and not look.GetDisableGradientOpacity(0) and look.HasGradientOpacity(0):
-        points = [(x, y[0]) for x, y in _curve_of(look.GetGradientOpacity(0)) if x >= 0]
-        layer.gradient_opacity = GradientOpacity(points, unit="voxel")
-        notes.append(f"{what}: gradients are measured at the data values here, and their "
-                     "magnitudes interpolated; in VTK they are those of interpolated gradients, "
-                     "which are smaller in sheets of one or two voxels")
+    if layer.shading is not None and not ambient:
+        layer.shading.ambient = 0.0
     return layer
+
+
+def _mesh_layer(data: Any, look: Any, what: str, notes: List[str]) -> Layer:
+    """Unstructured mappers take opacity / unit distance for the extinction itself."""
+    bounds = data.GetBounds()
+    unit = _unit_distance(look, what, max(numpy.subtract(bounds[1::2], bounds[::2])), notes)
+    points = _joined(_opacity_curve(look, what, notes), _color_curve(look, what, notes))
+    return Layer(_meshes.mesh_of(data), TransferFunction(
+        [(x, max(a[0], 0.0) / unit, tuple(c)) for x, a, c in points]))
+
+
+def _grid_layer(data: Any, look: Any, matrix: numpy.ndarray, what: str,
+                notes: List[str]) -> Layer:
+    components = _arrays.vtk_components(data)
+    if len(components) > 1 and look.GetIndependentComponents():
+        raise Error(f"{what}: its array has {len(components)} independent components; extract one "
+                    "(vtkImageExtractComponents)")
+    volumes = [Volume(one.array, spacing=one.spacing, origin=one.origin, direction=one.direction,
+                      coordinates=one.coordinates, centering=one.centering, name=what)
+               for one in components]
+    unit = _unit_distance(look, what, volumes[0].voxel_size, notes)
+    # VTK's mappers measure the unit distance in the volume's own world, before its matrix.
+    unit *= abs(numpy.linalg.det(matrix[:3, :3])) ** (1 / 3)
+    scales = numpy.linalg.norm(matrix[:3, :3], axis=0)
+    if scales.max() > 1.000001 * scales.min():
+        notes.append(f"{what}: is scaled unevenly, and has opacities by the mean of its scales")
+    opacities = [(x, numpy.clip(a, 0, 1)) for x, a in _opacity_curve(look, what, notes)]
+    is_nearest = look.GetInterpolationType() != 1
+    gradients = ([] if look.GetDisableGradientOpacity(0) or not look.HasGradientOpacity(0)
+                 else _from_zero(_curve_of(look.GetGradientOpacity(0), what, notes)))
+    if len(components) > 1:
+        layer = _dependent_layer(volumes, look, opacities, unit, what, notes)
+        if gradients:
+            notes.append(f"{what}: gradient opacities of dependent components are left out")
+        if is_nearest:
+            notes.append(f"{what}: dependent components are trilinear")
+    else:
+        points = _joined(opacities, _color_curve(look, what, notes))
+        if is_nearest and not (look.GetShade(0) or gradients):
+            return _nearest_layer(components[0].array, volumes[0], opacities,
+                                  _color_curve(look, what, []), unit)
+        if is_nearest:
+            notes.append(f"{what}: nearest values are shown without light and gradient opacity; "
+                         "here the data are trilinear (SetInterpolationTypeToLinear())")
+        layer = Layer(volumes[0], OpacityTable([(x, a[0], tuple(c)) for x, a, c in points], unit))
+        if gradients:
+            layer.gradient_opacity = GradientOpacity([(x, max(y[0], 0.0)) for x, y in gradients],
+                                                     unit="voxel")
+            notes.append(f"{what}: gradients are measured at the data values here, and their "
+                         "magnitudes interpolated; in VTK they are those of interpolated "
+                         "gradients, which are smaller in sheets of one or two voxels")
+    if look.GetShade(0):
+        layer.shading = _shading(look, what, notes)
+    return layer
+
+
+def _dependent_layer(volumes: List[Volume], look: Any, opacities: Curve, unit: float, what: str,
+                     notes: List[str]) -> Layer:
+    """The last component has the opacity. The first of two has the color, of four the first three
+    are red, green and blue: each of them a third of the particles, three times as bright."""
+    if len(volumes) == 3:
+        raise Error(f"{what}: has 3 dependent components, but VTK shows 2 or 4; add opacities")
+    names = [str(c) for c in range(len(volumes))]
+    if len(volumes) == 2:
+        tables = {"0": TransferFunction([(x, 1.0, tuple(c))
+                                         for x, c in _color_curve(look, what, notes)])}
+    else:
+        largest = {"u8": 255.0, "u16": 65535.0, "f32": 1.0, "f64": 1.0}.get(volumes[0].type)
+        if largest is None:
+            raise Error(f"{what}: has colors of the type {volumes[0].type}; give unsigned char, "
+                        "from 0 to 255")
+        tables = {names[c]: TransferFunction([(0, 1 / 3, (0, 0, 0)),
+                                              (largest, 1 / 3, tuple(3.0 * (c == k)
+                                                                     for k in range(3)))])
+                  for c in range(3)}
+    # Far within any tolerance that is asked for later.
+    factors = OpacityTable([(x, a[0], (0, 0, 0)) for x, a in opacities],
+                           unit).transfer_function(1e-6)
+    factor = (names[-1], [(x, extinction) for x, extinction, _ in factors.points])
+    return Layer(Channels(dict(zip(names, volumes))),
+                 Gaussians([], channels=names, tables=tables, factor=factor))
+
+
+def _nearest_layer(values: numpy.ndarray, volume: Volume, opacities: Curve, colors: Curve,
+                   unit: float) -> Layer:
+    """Each place has the nearest value: a segmentation, whose labels are the values' places in
+    ascending order."""
+    different, labels = numpy.unique(values, return_inverse=True)
+    numbers = labels.reshape(values.shape).astype(numpy.float32)
+    if values.dtype.kind == "f":
+        numbers[numpy.isnan(values)] = numpy.nan
+    looks = {}
+    for label, value in enumerate(different.tolist()):
+        opacity = _limits(opacities, value)[1][0]
+        if not opacity > 0:
+            continue
+        depth = -math.log1p(-opacity) if opacity < 1 else 1e6
+        looks[label] = (tuple(_limits(colors, value)[1]), min(depth, 1e6) / unit)
+    place = Volume(numbers, spacing=volume.spacing, origin=volume.origin,
+                   direction=volume.direction, coordinates=volume.coordinates,
+                   centering=volume.centering)
+    return Layer(LabelVolume(place), labels=LabelTable(looks or {0: ((0, 0, 0), 0.0)}))
+
+
+def _unit_distance(look: Any, what: str, size: float, notes: List[str]) -> float:
+    unit = look.GetScalarOpacityUnitDistance(0)
+    if unit > 0 and math.isfinite(unit):
+        return unit
+    if unit == 0:
+        notes.append(f"{what}: a unit distance of 0 makes all opaque that absorbs")
+        return 1e-6 * size
+    notes.append(f"{what}: a unit distance is no positive number, and taken as 1")
+    return 1.0
+
+
+def _shading(look: Any, what: str, notes: List[str]) -> Shading:
+    """VTK's normals have length 1 wherever the gradient is not 0."""
+    def number(value: float, least: float, most: float, otherwise: float) -> float:
+        if least <= value <= most:
+            return value
+        notes.append(f"{what}: a number of the shading is beyond its range, and brought into it")
+        return otherwise if math.isnan(value) else min(max(value, least), most)
+
+    power = look.GetSpecularPower(0)
+    return Shading(number(look.GetAmbient(0), 0, 1000, 0.1),
+                   number(look.GetDiffuse(0), 0, 1000, 0.7),
+                   number(look.GetSpecular(0), 0, 1000, 0.2),
+                   1.0 if 0 <= power < 1 else number(power, 1, 1000, 10.0), flatness=0.0)
+
+
+def _from_zero(curve: Curve) -> Curve:
+    """Magnitudes begin at 0."""
+    if curve[0][0] >= 0:
+        return curve
+    return [(0.0, _limits(curve, 0.0)[1]), *((x, y) for x, y in curve if x > 0)]
 
 
 def _matrix(matrix: Any) -> numpy.ndarray:
@@ -325,31 +463,48 @@ def _curve(nodes: List[Sequence[float]], values: int, straight: bool, evaluate: 
     return points
 
 
-def _curve_of(function: Any) -> Curve:
+def _are_numbers(node: List[float], what: str, notes: List[str]) -> bool:
+    if not any(math.isnan(each) for each in node):
+        return True
+    line = f"{what}: nodes of functions that are no numbers are left out"
+    if line not in notes:
+        notes.append(line)
+    return False
+
+
+def _curve_of(function: Any, what: str, notes: List[str]) -> Curve:
     """A vtkPiecewiseFunction."""
     nodes = []
     for i in range(function.GetSize()):
         node = [0.0] * 4
         function.GetNodeValue(i, node)
-        nodes.append(node)
+        if _are_numbers(node, what, notes):
+            nodes.append(node)
     straight = not function.GetUseLogScale()
     return _curve(nodes, 1, straight, lambda x: [function.GetValue(x)],
                   bool(function.GetClamping()))
 
 
-def _color_curve(look: Any) -> Curve:
+def _opacity_curve(look: Any, what: str, notes: List[str]) -> Curve:
+    return _curve_of(look.GetScalarOpacity(0), what, notes)
+
+
+def _color_curve(look: Any, what: str, notes: List[str]) -> Curve:
+    """Colors of the first component. A window shows what is below 0 as 0."""
     if look.GetColorChannels(0) == 1:
-        grey = _curve_of(look.GetGrayTransferFunction(0))
-        return [(x, numpy.repeat(value, 3)) for x, value in grey]
+        grey = _curve_of(look.GetGrayTransferFunction(0), what, notes)
+        return [(x, numpy.maximum(numpy.repeat(value, 3), 0)) for x, value in grey]
     function = look.GetRGBTransferFunction(0)
     nodes = []
     for i in range(function.GetSize()):
         node = [0.0] * 6
         function.GetNodeValue(i, node)
-        nodes.append(node)
+        if _are_numbers(node, what, notes):
+            nodes.append(node)
     rgb, linear = 0, 0
     straight = function.GetColorSpace() == rgb and function.GetScale() == linear
-    return _curve(nodes, 3, straight, function.GetColor, bool(function.GetClamping()))
+    curve = _curve(nodes, 3, straight, function.GetColor, bool(function.GetClamping()))
+    return [(x, numpy.maximum(value, 0)) for x, value in curve]
 
 
 def _limits(curve: Curve, x: float) -> Tuple[numpy.ndarray, numpy.ndarray]:

@@ -45,9 +45,12 @@ GaussianDescription gaussian_of(const py::handle& object) {
   return gaussian;
 }
 
+using FactorArgument = std::pair<std::string, std::vector<std::array<double, 2>>>;
+
 GaussiansHandle make_gaussians(
     const py::iterable& gaussians, std::vector<std::string> channels,
-    const std::map<std::string, std::shared_ptr<TransferFunction>>& tables) {
+    const std::map<std::string, std::shared_ptr<TransferFunction>>& tables,
+    const std::optional<FactorArgument>& factor) {
   GaussiansHandle handle;
   for (const py::handle gaussian : gaussians) {
     handle.description.gaussians.push_back(gaussian_of(gaussian));
@@ -55,6 +58,11 @@ GaussiansHandle make_gaussians(
   for (const auto& [channel, function] : tables) {
     if (!function) throw Error("tables: " + channel + ": expected a TransferFunction, got None");
     handle.description.tables.push_back({channel, function->points()});
+  }
+  if (factor) {
+    ChannelFactorDescription& by = handle.description.factor.emplace();
+    by.channel = factor->first;
+    for (const auto& [value, number] : factor->second) by.points.push_back({value, number});
   }
   handle.function = make_multivariate(handle.description, channels);
   handle.channels = std::move(channels);
@@ -145,6 +153,16 @@ py::list gaussian_list(const GaussiansHandle& handle) {
   return list;
 }
 
+py::object factor_of(const GaussiansHandle& handle) {
+  const auto& factor = handle.description.factor;
+  if (!factor) return py::none();
+  py::list points;
+  for (const ChannelFactorDescription::Point& point : factor->points) {
+    points.append(py::make_tuple(point.value, point.factor));
+  }
+  return py::make_tuple(factor->channel, points);
+}
+
 }  // namespace
 
 void bind_gaussians(py::module_& module) {
@@ -154,12 +172,15 @@ A transfer function of several variables: a sum of Gaussians and of tables of si
     Gaussians([Gaussian(...), "t1=80~10, t2=20~5; extinction 0.5; color #ffcc99", ...],
               channels=["t1", "t2"], tables={"t1": TransferFunction(...)})
 
-channels are the names of all channels of the data, in their order. Raises Error if there is no
-term, or a term names another channel.)")
+channels are the names of all channels of the data, in their order. factor is (channel, [(value,
+factor), ...]): it multiplies the extinctions of all terms, linear between its points, so that one
+channel can have the opacity and others the colors. Raises Error if there is no term, or a term
+names another channel.)")
       .def(py::init(&make_gaussians), py::arg("gaussians"), py::arg("channels"),
-           py::arg("tables") = py::dict())
+           py::arg("tables") = py::dict(), py::arg("factor") = py::none())
       .def_property_readonly("channels", [](const GaussiansHandle& h) { return h.channels; })
       .def_property_readonly("gaussians", &gaussian_list, "List of Gaussian.")
+      .def_property_readonly("factor", &factor_of, "(channel, [(value, factor), ...]), or None.")
       .def("__len__", [](const GaussiansHandle& h) { return h.description.gaussians.size(); })
       .def("__repr__", [](const GaussiansHandle& h) {
         return "<pellucid.Gaussians: " + std::to_string(h.description.gaussians.size()) +

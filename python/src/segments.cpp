@@ -83,7 +83,8 @@ py::tuple piecewise_linear(const std::shared_ptr<TransferFunction>& function,
 py::tuple gaussian(const GaussiansHandle& handle, const Numbers& values_f, const Numbers& values_b,
                    const Numbers& length) {
   const MultivariateTransfer<double> transfer = handle.function->view();
-  if (transfer.gaussians.count != 1 || transfer.tables != 0) {
+  if (transfer.gaussians.count != 1 || transfer.tables != 0 ||
+      handle.function->factor() != nullptr) {
     throw Error("gaussian_segment: expected Gaussians of a single primitive");
   }
   const py::ssize_t n = length.size(), channels = handle.function->channels();

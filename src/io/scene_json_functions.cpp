@@ -12,14 +12,8 @@ template <class Point>
 void read_place(const Node& node, bool srgb, std::vector<Point>& points) {
   const Node value = node.at("value", "give the data value of this point");
   const Rgb<double> color = color_of(node.at("color", "give [r, g, b]"), srgb);
-  const std::size_t i = points.size();
-  points.push_back({value.number(-scene_json::largest_value, scene_json::largest_value), 0, color});
-  if (i >= 1 && points[i].value < points[i - 1].value) {
-    value.fail("is below the value of the point before it; points must ascend");
-  }
-  if (i >= 2 && points[i].value == points[i - 2].value) {
-    value.fail("is the third equal value; two make a jump, remove the middle one");
-  }
+  add_value(value, points);
+  points.back().color = color;
 }
 
 void read_deviation(const Node& node, OpacityTable& table) {

@@ -75,6 +75,30 @@ ChannelTableDescription table(const Node& node, bool srgb) {
   return t;
 }
 
+ChannelFactorDescription factor(const Node& node) {
+  node.expect_object({"channel", "points"});
+  ChannelFactorDescription description;
+  if (const auto channel = node.find("channel")) description.channel = channel_name(*channel);
+  const Node list = node.at("points", "give an array of {value, factor}");
+  if (list.array_size() == 0) list.fail("is empty; give at least one point {value, factor}");
+  std::vector<TransferFunction::Point> points;
+  for (std::size_t i = 0; i < list.array_size(); ++i) {
+    const Node point = list.element(i);
+    point.expect_object({"value", "factor"});
+    add_value(point.at("value", "give the data value of this point"), points);
+    points.back().extinction =
+        point.at("factor", "give the factor of the extinction").number(0, largest_number);
+    description.points.push_back({points.back().value, points.back().extinction});
+  }
+  // What floats hold may be narrower than what is checked here.
+  try {
+    const TransferFunction checked(points);
+  } catch (const Error& error) {
+    list.fail(error.what());
+  }
+  return description;
+}
+
 /// What the numbers cannot be, seen from the Gaussian alone.
 void check(const Node& node, const GaussianDescription& description) {
   GaussianDescription alone = description;
@@ -91,7 +115,7 @@ void check(const Node& node, const GaussianDescription& description) {
 }  // namespace
 
 MultivariateDescription multivariate(const Node& function) {
-  function.expect_object({"color_space", "channels", "gaussians", "tables"});
+  function.expect_object({"color_space", "channels", "gaussians", "tables", "factor"});
   const bool srgb = is_srgb(function);
   MultivariateDescription description;
   if (const auto channels = function.find("channels")) {
@@ -108,6 +132,7 @@ MultivariateDescription multivariate(const Node& function) {
     check(node, description.gaussians.back());
   });
   elements("tables", [&](const Node& node) { description.tables.push_back(table(node, srgb)); });
+  if (const auto node = function.find("factor")) description.factor = factor(*node);
   return description;
 }
 

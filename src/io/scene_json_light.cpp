@@ -195,6 +195,13 @@ void read_look(const Node& node, LayerDescription& layer) {
   if (const auto found = node.find("gradient_opacity")) {
     layer.gradient_opacity = gradient_opacity(*found);
     check(*found);
+    const auto* const function =
+        layer.transfer_function ? std::get_if<MultivariateDescription>(&*layer.transfer_function)
+                                : nullptr;
+    if (function != nullptr && function->factor) {
+      node.fail_at("gradient_opacity",
+                   "stands beside a \"factor\" of the function; leave one of the two out");
+    }
   }
   if (const auto list = node.find("isosurfaces")) {
     for (std::size_t i = 0; i < list->array_size(); ++i) {

@@ -27,7 +27,8 @@ bool names(const MultivariateDescription& function, std::string_view channel) {
          std::any_of(function.gaussians.begin(), function.gaussians.end(),
                      [&](const auto& gaussian) { return in(gaussian.channels); }) ||
          std::any_of(function.tables.begin(), function.tables.end(),
-                     [&](const auto& table) { return table.channel == channel; });
+                     [&](const auto& table) { return table.channel == channel; }) ||
+         (function.factor && function.factor->channel == channel);
 }
 
 /// What the functions of all layers have in common.

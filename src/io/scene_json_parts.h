@@ -44,6 +44,18 @@ bool is_srgb(const Node& function);
 Rgb<double> color_of(const Node& node, bool srgb);
 /// The points of a piecewise-linear function; at least one.
 std::vector<TransferFunction::Point> extinction_points(const Node& list, bool srgb);
+/// Adds a point at the value, which does not descend; two equal ones make a jump.
+template <class Point>
+void add_value(const Node& value, std::vector<Point>& points) {
+  const std::size_t i = points.size();
+  points.push_back({value.number(-largest_value, largest_value), 0, {}});
+  if (i >= 1 && points[i].value < points[i - 1].value) {
+    value.fail("is below the value of the point before it; points must ascend");
+  }
+  if (i >= 2 && points[i].value == points[i - 2].value) {
+    value.fail("is the third equal value; two make a jump, remove the middle one");
+  }
+}
 TransferFunctionDescription transfer_function(const Node& function);
 /// The names of channels that it uses are not looked up.
 MultivariateDescription multivariate(const Node& function);

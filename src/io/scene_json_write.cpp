@@ -160,6 +160,22 @@ std::string table_text(const ChannelTableDescription& table, const std::string& 
   return members.object();
 }
 
+/// One point per line.
+std::string factor_text(const ChannelFactorDescription& factor, const std::string& indent) {
+  Members members(indent);
+  if (!factor.channel.empty()) {
+    members.add("channel", quoted(factor.channel, "the name of a channel"));
+  }
+  std::string list;
+  for (const ChannelFactorDescription::Point& point : factor.points) {
+    list += joined({list.empty() ? "[" : ",", "\n", indent,
+                    "    {\"value\": ", number(point.value, "a value"),
+                    ", \"factor\": ", number(point.factor, "a factor"), "}"});
+  }
+  members.add("points", joined({list, "\n", indent, "  ]"}));
+  return members.object();
+}
+
 /// One Gaussian per line.
 std::string transfer_function_text(const MultivariateDescription& function,
                                    const std::string& indent) {
@@ -179,6 +195,7 @@ std::string transfer_function_text(const MultivariateDescription& function,
     }
     members.add("tables", text + "]");
   }
+  if (function.factor) members.add("factor", factor_text(*function.factor, indent + "  "));
   return members.object();
 }
 

@@ -95,18 +95,30 @@ std::shared_ptr<const MultivariateTransferFunction> make_multivariate(
     primitives.push_back({index.of(g.channels.empty() ? common : g.channels, term), g.center,
                           gaussian_matrix(g.shape), g.extinction, g.color});
   }
-  std::vector<ChannelTransferFunction> tables;
-  for (const ChannelTableDescription& table : description.tables) {
-    const std::string term = "table " + std::to_string(tables.size());
-    if (table.channel.empty() && channels.size() != 1) {
+  const auto channel_of = [&](const std::string& name, const std::string& term) {
+    if (name.empty() && channels.size() != 1) {
       throw Error("transfer function: " + term + " does not say at which channel it looks, but " +
                   "there are " + std::to_string(channels.size()) + "; give its \"channel\"");
     }
-    const int channel = table.channel.empty() ? 0 : index.of(table.channel, term);
-    tables.push_back({channel, TransferFunction(table.points)});
+    return name.empty() ? 0 : index.of(name, term);
+  };
+  std::vector<ChannelTransferFunction> tables;
+  for (const ChannelTableDescription& table : description.tables) {
+    const std::string term = "table " + std::to_string(tables.size());
+    tables.push_back({channel_of(table.channel, term), TransferFunction(table.points)});
   }
-  return std::make_shared<const MultivariateTransferFunction>(
-      static_cast<int>(channels.size()), std::move(primitives), std::move(tables));
+  std::optional<ChannelTransferFunction> factor;
+  if (description.factor) {
+    std::vector<TransferFunction::Point> points;
+    for (const ChannelFactorDescription::Point& point : description.factor->points) {
+      points.push_back({point.value, point.factor, {}});
+    }
+    factor = {channel_of(description.factor->channel, "its factor"),
+              TransferFunction(std::move(points))};
+  }
+  return std::make_shared<const MultivariateTransferFunction>(static_cast<int>(channels.size()),
+                                                              std::move(primitives),
+                                                              std::move(tables), std::move(factor));
 }
 
 }  // namespace pellucid

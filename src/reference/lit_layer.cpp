@@ -30,21 +30,25 @@ LitLayer::LitLayer(const Layer& layer, const std::vector<Clip>& of_scene)
   const auto channels = static_cast<std::size_t>(channels_of(layer));
   const DerivedChannels derived(layer);
   gradient_ = derived.gradient(channels);
-  magnitude_ = derived.magnitude(channels);
+  argument_ = derived.magnitude(channels);
   if (layer.shading) flat_ = flat_gradient(layer);
   if (layer.gradient_opacity) {
     factor_ = layer.gradient_opacity->per_world(voxel_of(layer));
     factor_table_.emplace(factor_->points());
   }
+  if (const ChannelTransferFunction* const factor = extinction_factor_of(layer)) {
+    argument_ = static_cast<std::size_t>(factor->channel);
+    factor_table_.emplace(factor->function.points());
+  }
 }
 
-const Chord& LitLayer::magnitude(const LayerStretch& stretch) const {
-  return stretch.chords[magnitude_];
+const Chord& LitLayer::argument(const LayerStretch& stretch) const {
+  return stretch.chords[argument_];
 }
 
 bool LitLayer::is_clear(const LayerStretch& stretch) const {
   if (factor_table_) {
-    const Chord& m = magnitude(stretch);
+    const Chord& m = argument(stretch);
     if (factor_table_->is_clear(m.lower(), m.upper())) return true;
   }
   if (!stretch.function->primitives().empty()) return false;
@@ -59,7 +63,7 @@ LitStretch LitLayer::prepared(LayerStretch stretch, const RayLights& lights) con
   if (is_clear(result.data)) return result;
   result.cuts = result.data.function->cuts(result.data.chords);
   if (factor_table_) {
-    const std::vector<Real> cuts = magnitude(result.data).cuts(factor_table_->values());
+    const std::vector<Real> cuts = argument(result.data).cuts(factor_table_->values());
     result.cuts.insert(result.cuts.end(), cuts.begin(), cuts.end());
   }
   if (layer_.shading) add_shading_cuts(lights, result);
@@ -98,7 +102,7 @@ LitPart LitLayer::part(const LitStretch& stretch, Real begin, Real end,
   const Real u_end = std::min((end - data.t_begin) / whole, Real(1));
   PieceLight light{begin, end - begin, std::nullopt, layer_.shading ? &*layer_.shading : nullptr};
   if (factor_table_) {
-    const Chord& m = magnitude(data);
+    const Chord& m = argument(data);
     const TableInterval interval = factor_table_->interval(m((u_begin + u_end) / 2));
     if (interval.left->extinction == 0 && interval.right->extinction == 0) {
       light.shading = nullptr;

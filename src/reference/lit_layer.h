@@ -43,12 +43,13 @@ class LitLayer {
   /// Whether the medium absorbs nowhere.
   bool is_clear(const LayerStretch& stretch) const;
   void add_shading_cuts(const RayLights& lights, LitStretch& stretch) const;
-  const Chord& magnitude(const LayerStretch& stretch) const;
+  /// What a factor of the extinction is a function of: the magnitude of a gradient, or a channel.
+  const Chord& argument(const LayerStretch& stretch) const;
 
   const Layer& layer_;
   LayerData data_;
-  std::size_t gradient_, magnitude_;  ///< indices of chords
-  Real flat_ = 0;                     ///< g0
+  std::size_t gradient_, argument_;  ///< indices of chords
+  Real flat_ = 0;                    ///< g0
   std::optional<TransferFunction> factor_;
   std::optional<Table> factor_table_;
 };

@@ -10,6 +10,10 @@ Mixture::Mixture(const MultivariateTransferFunction& function)
   for (const ChannelTransferFunction& term : function.tables()) {
     tables_.push_back({static_cast<std::size_t>(term.channel), Table(term.function.points())});
   }
+  if (const ChannelTransferFunction* const factor = function.factor()) {
+    factor_.emplace(
+        ChannelTable{static_cast<std::size_t>(factor->channel), Table(factor->function.points())});
+  }
 }
 
 Mixture::Mixture(const std::vector<TransferFunction::Point>& points) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "chord.h"
@@ -22,6 +23,8 @@ class Mixture {
   };
   const std::vector<GaussianPrimitive>& primitives() const { return *primitives_; }
   const std::vector<ChannelTable>& tables() const { return tables_; }
+  /// By which the extinctions of all terms are multiplied; null: nothing. LitLayer does it.
+  const ChannelTable* factor() const { return factor_ ? &*factor_ : nullptr; }
 
   /// The parameters in (0, 1), ascending, at which a table's channel passes through one of its
   /// control values or turns; a chord for each channel.
@@ -30,6 +33,7 @@ class Mixture {
  private:
   const std::vector<GaussianPrimitive>* primitives_;
   std::vector<ChannelTable> tables_;
+  std::optional<ChannelTable> factor_;
 };
 
 }  // namespace pellucid::reference

@@ -175,6 +175,11 @@ std::shared_ptr<const MeshChannels> moved(const MeshChannels& channels,
 
 }  // namespace
 
+const ChannelTransferFunction* extinction_factor_of(const Layer& layer) noexcept {
+  const MultivariateTransferFunction* const function = multivariate_of(layer);
+  return function != nullptr ? function->factor() : nullptr;
+}
+
 std::string_view projection_name(LayerProjection projection) noexcept {
   for (const auto& [value, name] : projections) {
     if (value == projection) return name;
@@ -370,6 +375,13 @@ double approximation_error(const Layer& layer, double behind, const std::vector<
     }
     largest = std::max(largest, factor * function.approximation_error(brightest));
   });
+  if (const ChannelTransferFunction* const by = extinction_factor_of(layer)) {
+    // What bounds the logarithm of the factor's ratio bounds that of the extinction's.
+    const double off = by->function.relative_error();
+    const TransferFunction whole({{0, 1, {1, 1, 1}}}, off);
+    const double colors = std::max({largest_color(layer), brightest, 1.0});
+    largest = std::max(largest, factor * whole.approximation_error(colors));
+  }
   return largest + (has_surfaces(layer) ? surface_color_error(layer, lights) : 0);
 }
 

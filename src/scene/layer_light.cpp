@@ -31,6 +31,9 @@ class LightCheck {
     if (layer_.shading) check(*layer_.shading);
     if (layer_.gradient_opacity) {
       check_channel(layer_.gradient_opacity->channel(), "gradient opacity");
+      if (extinction_factor_of(layer_) != nullptr) {
+        fail("has a gradient opacity, and its function a factor; leave one of the two out");
+      }
     }
     for (std::size_t i = 0; i < layer_.isosurfaces.size(); ++i) check_isosurface(i);
     for (std::size_t i = 0; i < layer_.slices.size(); ++i) check_slice(i);
@@ -153,7 +156,8 @@ bool has_surfaces(const Layer& layer) noexcept {
 }
 
 bool is_lit(const Layer& layer) noexcept {
-  return layer.shading || layer.gradient_opacity || has_surfaces(layer);
+  return layer.shading || layer.gradient_opacity || extinction_factor_of(layer) != nullptr ||
+         has_surfaces(layer);
 }
 
 int channels_of(const Layer& layer) noexcept {

@@ -33,11 +33,11 @@ DataBox data_box(const std::vector<const BlockRecords*>& records, int block) {
 
 class BlockClassifier {
  public:
-  BlockClassifier(const MultivariateTransfer<double>& transfer, double negligible)
-      : transfer_(transfer) {
-    const int count = transfer.gaussians.count;
+  BlockClassifier(const MultivariateTransferFunction& function, double negligible)
+      : transfer_(function.view()), factor_(function.factor()) {
+    const int count = transfer_.gaussians.count;
     for (int i = 0; i < count; ++i) {
-      const double peak = transfer.gaussians.primitive[i].peak;
+      const double peak = transfer_.gaussians.primitive[i].peak * function.largest_factor();
       enough_.push_back(peak > 0 ? std::log(peak * count / negligible) : 0);
     }
   }
@@ -46,6 +46,9 @@ class BlockClassifier {
   bool classify(const DataBox& box, PrimitiveSet& set) const {
     set = {0};
     if (box.vacuum) return false;
+    if (factor_ != nullptr && !absorbs(factor_->function.view<double>(), factor_->channel, box)) {
+      return false;
+    }
     for (std::size_t i = 0; i < enough_.size(); ++i) {
       const Gaussian<double>& g = transfer_.gaussians.primitive[i];
       // As if it were alone, each may have an equal share.
@@ -57,14 +60,19 @@ class BlockClassifier {
     bool tables = false;
     for (int t = 0; t < transfer_.tables; ++t) {
       const ChannelTable<double>& table = transfer_.table[t];
-      tables = tables || table.table.has_extinction(table.table.interval(box.lower[table.channel]),
-                                                    table.table.interval(box.upper[table.channel]));
+      tables = tables || absorbs(table.table, table.channel, box);
     }
     return set.bits != 0 || tables;
   }
 
  private:
-  const MultivariateTransfer<double>& transfer_;
+  static bool absorbs(const PiecewiseLinear<double>& table, int channel, const DataBox& box) {
+    return table.has_extinction(table.interval(box.lower[channel]),
+                                table.interval(box.upper[channel]));
+  }
+
+  const MultivariateTransfer<double> transfer_;
+  const ChannelTransferFunction* factor_;
   std::vector<double> enough_;  ///< the exponent from which on a primitive is left out
 };
 
@@ -93,8 +101,7 @@ MultivariateBlocksStorage::MultivariateBlocksStorage(
   const auto count = static_cast<std::size_t>(records_.count());
   classes_.resize(count);
   primitives_.resize(count);
-  const MultivariateTransfer<double> transfer = transfer_function.view();
-  const BlockClassifier classifier(transfer, negligible);
+  const BlockClassifier classifier(transfer_function, negligible);
   const ParallelFor run = parallel_or_serial(parallel);
   run(records_.count(), [&](int first, int last) {
     for (int i = first; i < last; ++i) {

@@ -107,6 +107,29 @@ double largest_extinction_of(const TransferFunction& function) {
   return largest;
 }
 
+/// The largest component of the mean color of tables whose extinctions are constant, at most; none
+/// if another term is there.
+std::optional<double> largest_mean_color(const std::vector<ChannelTransferFunction>& tables) {
+  double extinction = 0;
+  Rgb<double> emission{};
+  for (const ChannelTransferFunction& t : tables) {
+    const std::vector<TransferFunction::Point>& points = t.function.points();
+    const double own = points.front().extinction;
+    Rgb<double> largest{};
+    for (const TransferFunction::Point& p : points) {
+      if (p.extinction != own) return std::nullopt;
+      largest = {std::max(largest.r, p.color.r), std::max(largest.g, p.color.g),
+                 std::max(largest.b, p.color.b)};
+    }
+    extinction += own;
+    emission += own * largest;
+  }
+  if (!(extinction > 0)) return std::nullopt;
+  // Far more than rounding makes of the mean.
+  constexpr double beyond_rounding = 1 + 1e-12;
+  return std::max({emission.r, emission.g, emission.b}) / extinction * beyond_rounding;
+}
+
 /// L of Σ = L L^T, rows; fails where Σ is not positive definite.
 Matrix cholesky(const Matrix& a) {
   const std::size_t n = a.size();
@@ -187,8 +210,11 @@ Matrix matrix_from_covariance(const Matrix& covariance) {
 
 MultivariateTransferFunction::MultivariateTransferFunction(
     int channels, std::vector<GaussianPrimitive> primitives,
-    std::vector<ChannelTransferFunction> tables)
-    : channels_(channels), primitives_(std::move(primitives)), tables_(std::move(tables)) {
+    std::vector<ChannelTransferFunction> tables, std::optional<ChannelTransferFunction> factor)
+    : channels_(channels),
+      primitives_(std::move(primitives)),
+      tables_(std::move(tables)),
+      factor_(std::move(factor)) {
   if (channels < 1 || channels > max_channels) {
     fail("it sees " + std::to_string(channels) + " channels, but must see from 1 to 8");
   }
@@ -206,11 +232,13 @@ MultivariateTransferFunction::MultivariateTransferFunction(
     largest_color_ = std::max({largest_color_, p.color.r, p.color.g, p.color.b});
     largest_extinction_ += p.extinction;
   }
+  const auto check_channel = [&](const std::string& what, int channel) {
+    if (channel >= 0 && channel < channels) return;
+    fail(what + " looks at channel " + std::to_string(channel) + ", but there are " +
+         std::to_string(channels) + ", counted from 0");
+  };
   for (const ChannelTransferFunction& t : tables_) {
-    if (t.channel < 0 || t.channel >= channels) {
-      fail("a piecewise-linear term looks at channel " + std::to_string(t.channel) +
-           ", but there are " + std::to_string(channels) + ", counted from 0");
-    }
+    check_channel("a piecewise-linear term", t.channel);
     if (t.function.relative_error() > 0) {
       fail(
           "a piecewise-linear term stands for an opacity table, which sums cannot hold; give "
@@ -220,6 +248,22 @@ MultivariateTransferFunction::MultivariateTransferFunction(
     largest_color_ = std::max(largest_color_, t.function.largest_color());
     largest_extinction_ += largest_extinction_of(t.function);
   }
+  if (primitives_.empty()) {
+    largest_color_ = std::min(largest_color_, largest_mean_color(tables_).value_or(largest_color_));
+  }
+  if (!factor_) return;
+  check_channel("the factor", factor_->channel);
+  largest_factor_ = largest_extinction_of(factor_->function);
+  largest_extinction_ *= largest_factor_;
+}
+
+Material<double> MultivariateTransferFunction::evaluate(const double* v) const noexcept {
+  Material<double> material = view().evaluate(v);
+  if (factor_) {
+    material.extinction *=
+        factor_->function.view<double>().evaluate(v[factor_->channel]).extinction;
+  }
+  return material;
 }
 
 MultivariateTransfer<double> MultivariateTransferFunction::view() const noexcept {

@@ -314,7 +314,9 @@ void check_method(const Scene& scene) {
   if (scene.backdrop) refuse("has no backdrop, but the scene has; take exact");
   if (layer->projection) refuse("has no projections, but the scene has; take exact");
   if (is_lit(*layer)) {
-    refuse("has no light, gradient opacity, isosurfaces and slices, but the scene has; take exact");
+    refuse(
+        "has no light, gradient opacity, factors, isosurfaces and slices, but the scene has; take "
+        "exact");
   }
   if (!layer->visible) refuse("needs a visible layer; take exact");
   if (volume != nullptr && volume->mask) refuse("has no masks, but the scene has; take exact");

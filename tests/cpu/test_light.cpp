@@ -11,6 +11,7 @@
 
 #include "pellucid/cpu/render.h"
 #include "pellucid/scene/error.h"
+#include "src/cpu/layers/layer_look.h"
 #include "tests/scenes/makers.h"
 
 namespace pellucid {
@@ -205,6 +206,57 @@ TEST(Light, RefusesWhatItCannotMean) {
     scene.integration.method = Method::midpoint;
   });
   EXPECT_THROW(GradientOpacity({{-1, 1}}), Error);
+}
+
+/// Red by one variable, opacity by another, both constant along the ray: a homogeneous slab.
+Layer of_two_variables(double color, double opacity) {
+  const auto constant = [](double value) {
+    return scenes::sampled(
+        {4, 4, 4}, [=](double, double, double) { return value; }, "constant");
+  };
+  return {ChannelsContent{
+      std::make_shared<const Channels>(
+          std::vector<Channel>{{"color", "", constant(color)}, {"opacity", "", constant(opacity)}}),
+      std::make_shared<const MultivariateTransferFunction>(
+          2, std::vector<GaussianPrimitive>(),
+          std::vector<ChannelTransferFunction>{
+              {0, TransferFunction({{0, 1, {0, 0, 1}}, {10, 1, {1, 0, 0}}})}},
+          ChannelTransferFunction{1, TransferFunction({{-8, 0, {}}, {8, 2, {}}})})}};
+}
+
+TEST(Light, AFactorGivesOneVariableTheOpacityAndAnotherTheColor) {
+  for (const double opacity : {-9.0, -8.0, -4.0, 0.0, 4.0, 20.0}) {
+    const double depth = 2 * std::clamp((opacity + 8) / 8, 0.0, 2.0), alpha = -std::expm1(-depth);
+    expect_near(pixel(seen(of_two_variables(2.5, opacity))), {0.25 * alpha, 0, 0.75 * alpha, alpha},
+                1e-7);
+  }
+}
+
+/// Panels take the argument of a factor for a magnitude, whose errors grow with it.
+TEST(Light, AFactorOfNegativeValuesHasArgumentsNoSmallerThanThose) {
+  for (const double value : {-4.0, 4.0}) {
+    const Layer layer = of_two_variables(2, value);
+    const LayerLook look(layer);
+    const PiecewiseLinear<double> function = extinction_factor_of(layer)->function.view<double>();
+    for (const double v : {-4.0, -3.5, 0.25, 4.0}) {
+      if (v < value) continue;
+      const double argument = look.factor_argument({{v, v, v, v}}).b[2];
+      EXPECT_GE(argument, value < 0 ? 4 : v);
+      EXPECT_DOUBLE_EQ(look.extinction_factor()->evaluate(argument).extinction,
+                       function.evaluate(v).extinction);
+    }
+  }
+}
+
+TEST(Light, AFactorIsRefusedWhereItHasNoMeaning) {
+  Scene scene = seen(of_two_variables(2, 1));
+  scene.layers[0].gradient_opacity =
+      std::make_shared<const GradientOpacity>(std::vector<GradientOpacity::Point>{{0, 1}});
+  EXPECT_THROW(render(scene), Error);
+  scene = seen(of_two_variables(2, 1));
+  EXPECT_NO_THROW(render(scene));
+  scene.integration.method = Method::midpoint;
+  EXPECT_THROW(render(scene), Error);
 }
 
 }  // namespace

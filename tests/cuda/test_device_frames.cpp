@@ -184,6 +184,12 @@ TEST(DeviceFrames, GoToTheCpuAndSaySo) {
   scene.layers = {gaussians()};
   scene.layers[0].shading = Shading{};
   expect_told("light on other data than one volume", scene);
+  scene.layers = {gaussians()};
+  auto& content = std::get<ChannelsContent>(scene.layers[0].content);
+  content.transfer_function = std::make_shared<const MultivariateTransferFunction>(
+      2, content.transfer_function->primitives(), content.transfer_function->tables(),
+      ChannelTransferFunction{0, TransferFunction({{0, 1, {}}})});
+  expect_told("factors of the extinction", scene);
   scene = plain;
   scene.layers[0].projection = LayerProjection::maximum;
   expect_told("projections", scene);

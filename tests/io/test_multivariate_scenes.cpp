@@ -137,6 +137,26 @@ TEST(MultivariateScene, WhatIsMadeOfAFieldIsMadeWhereItIsNamed) {
   EXPECT_NEAR(static_cast<double>(slope[6 + 12 * (6 + 12 * std::size_t{10})]), 1, 0.02);
 }
 
+TEST(MultivariateScene, AFactorFindsItsChannelAndIsWrittenBack) {
+  const SceneDescription scene = valid("factor");
+  const auto& factor = function_of(scene).factor;
+  ASSERT_TRUE(factor);
+  EXPECT_EQ(factor->channel, "w");
+  using Point = ChannelFactorDescription::Point;
+  EXPECT_EQ(factor->points, (std::vector<Point>{{-0.5, 0}, {0.5, 2}, {0.5, 0.25}}));
+  const Scene made = make_scene(scene);
+  const MultivariateTransferFunction& function = *test::channels_of(made).transfer_function;
+  ASSERT_NE(function.factor(), nullptr);
+  EXPECT_EQ(function.factor()->channel, 1);
+  EXPECT_EQ(function.factor()->function.points().at(1).extinction, 2);
+  EXPECT_EQ(function.largest_extinction(), 2);
+  // The second layer's channel is made because the factor names it.
+  EXPECT_EQ(std::get<ChannelsContent>(made.layers.at(1).content).channels->count(), 2);
+  const SceneDescription again = parse_scene(scene_to_json(scene), "again");
+  EXPECT_EQ(function_of(again).factor->channel, "w");
+  EXPECT_EQ(function_of(again).factor->points, factor->points);
+}
+
 TEST(MultivariateScene, ChannelsNeedAFunctionOfTheirOwn) {
   SceneDescription scene;
   scene.layers[0].channels = {{"a", "", parse_field_source("builtin:ramp:4")}};

@@ -151,6 +151,7 @@ std::vector<json> mutants(const json& whole) {
                               "color_channel",
                               "shading",
                               "gradient_opacity",
+                              "factor",
                               "isosurfaces",
                               "slices",
                               "lights",

@@ -118,7 +118,10 @@ TEST_P(VtkDepth, ABallHalfInTheVolumeIsSeenThroughIt) {
   EXPECT_LE(largest_difference(shown, truth, apart),
             half_a_step + mapper->GetTolerance() + rounding + facets);
   // Rays end at the ball, measured along them.
-  const auto geometry = plugin::geometry_of(*stage.renderer, plugin::view_of(*stage.renderer));
+  plugin::Notes notes;
+  const auto geometry =
+      plugin::geometry_of(*stage.renderer, plugin::view_of(*stage.renderer, notes));
+  EXPECT_TRUE(notes.lines().empty());
   ASSERT_NE(geometry, nullptr);
   for (int y = 0; y < 96; ++y) {
     for (int x = 0; x < 128; ++x) {
@@ -280,46 +283,97 @@ TEST(VtkGeometry, TheVolumesOfAMultiVolumeMix) {
             half_a_step + default_tolerance + rounding + 2 * default_tolerance / 8 + 2e-4);
 }
 
+struct TileCase {
+  const char* name;
+  int width, height;
+  double viewport[4];
+  bool with_ball = false;
+  int most = 3;  ///< tiles along each axis
+};
+
+void PrintTo(const TileCase& tiles, std::ostream* to) {
+  *to << tiles.name;
+}
+
+class VtkTiles : public testing::TestWithParam<TileCase> {};
+
 /// Tiles of a picture twice and three times as large make the picture of a larger window.
-TEST(VtkGeometry, TilesMakeALargePicture) {
-  for (const int scale : {2, 3}) {
-    for (const bool with_ball : {false, true}) {
-      Stage stage(48, 40), large(48 * scale, 40 * scale);
-      Image truth;
-      for (Stage* const each : {&stage, &large}) {
-        vtkNew<vtkPellucidVolumeMapper> mapper;
-        mapper->SetInputData(ball_image());
-        const auto center = beside_middle(*each->add(mapper, soft_property(4)), 10);
-        if (with_ball) each->renderer->AddActor(red_ball(center, 9));
-        each->look();
-      }
-      truth = large.picture();
-      stage.window->Render();
-      vtkNew<vtkWindowToImageFilter> filter;
-      filter->SetInput(stage.window);
-      filter->SetScale(scale);
-      filter->ReadFrontBufferOff();
-      const Messages messages;
-      filter->Update();
-      EXPECT_EQ(messages.text(), "");
-      vtkImageData* const made = filter->GetOutput();
-      ASSERT_EQ(made->GetDimensions()[0], 48 * scale);
-      int differ = 0;
-      for (int y = 0; y < truth.height; ++y) {
-        for (int x = 0; x < truth.width; ++x) {
-          double off = 0;
-          for (int c = 0; c < 3; ++c) {
-            const double value = made->GetScalarComponentAsDouble(x, truth.height - 1 - y, 0, c);
-            off = std::max(
-                off, std::abs(value / 255 - double{truth.at(x, y)[static_cast<std::size_t>(c)]}));
-          }
-          if (off > 2.1 / 255) ++differ;
-        }
-      }
-      // Pixels at the ball's silhouette may differ.
-      EXPECT_LE(differ, with_ball ? 40 * scale : 0) << scale;
+TEST_P(VtkTiles, MakeALargePicture) {
+  const TileCase& tiles = GetParam();
+  for (int scale = 2; scale <= tiles.most; ++scale) {
+    Stage stage(tiles.width, tiles.height), large(tiles.width * scale, tiles.height * scale);
+    for (Stage* const each : {&stage, &large}) {
+      vtkNew<vtkPellucidVolumeMapper> mapper;
+      mapper->SetInputData(ball_image());
+      const auto center = beside_middle(*each->add(mapper, soft_property(4)), 10);
+      if (tiles.with_ball) each->renderer->AddActor(red_ball(center, 9));
+      const double* const v = tiles.viewport;
+      each->renderer->SetViewport(v[0], v[1], v[2], v[3]);
+      each->look();
     }
+    const Image truth = large.picture();
+    stage.window->Render();
+    vtkNew<vtkWindowToImageFilter> filter;
+    filter->SetInput(stage.window);
+    filter->SetScale(scale);
+    filter->ReadFrontBufferOff();
+    const Messages messages;
+    filter->Update();
+    EXPECT_EQ(messages.text(), "");
+    vtkImageData* const made = filter->GetOutput();
+    ASSERT_EQ(made->GetDimensions()[0], tiles.width * scale);
+    // Outside of the renderer VTK leaves what former tiles have drawn.
+    const int* const origin = large.renderer->GetOrigin();
+    const int* const size = large.renderer->GetSize();
+    int differ = 0, seen = 0;
+    for (int y = truth.height - origin[1] - size[1]; y < truth.height - origin[1]; ++y) {
+      for (int x = origin[0]; x < origin[0] + size[0]; ++x) {
+        double off = 0;
+        for (int c = 0; c < 3; ++c) {
+          const double value = made->GetScalarComponentAsDouble(x, truth.height - 1 - y, 0, c);
+          off = std::max(
+              off, std::abs(value / 255 - double{truth.at(x, y)[static_cast<std::size_t>(c)]}));
+        }
+        if (off > 2.1 / 255) ++differ;
+        if (truth.at(x, y)[0] > 0.1F) ++seen;
+      }
+    }
+    // Pixels at the ball's silhouette may differ.
+    EXPECT_LE(differ, tiles.with_ball ? 40 * scale : 0) << scale;
+    EXPECT_GT(seen, 100 * scale);
   }
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Parts, VtkTiles,
+    testing::Values(TileCase{"whole", 48, 40, {0, 0, 1, 1}},
+                    TileCase{"with_a_ball", 48, 40, {0, 0, 1, 1}, true},
+                    TileCase{"quarter", 80, 64, {0.5, 0.25, 1, 1}},
+                    // Parts of 39 rows of 78: half a pixel from the middle of a pixel.
+                    TileCase{"odd", 50, 52, {0.1, 0.125, 0.9, 0.875}, false, 2},
+                    TileCase{"odd_with_a_ball", 50, 52, {0.1, 0.125, 0.9, 0.875}, true, 2},
+                    TileCase{"odd_columns", 50, 40, {0.1, 0, 0.9, 1}}),
+    [](const auto& made) { return std::string(made.param.name); });
+
+TEST(VtkGeometry, AWindowCenterBetweenPixelsIsTakenToHalfOfOneAndSaid) {
+  Stage stage;
+  vtkNew<vtkPellucidVolumeMapper> mapper;
+  mapper->SetInputData(ball_image());
+  stage.add(mapper, soft_property(4));
+  stage.look();
+  stage.camera->SetWindowCenter(5.0 / 96, 3.0 / 64);
+  Image half;
+  {
+    const Messages messages;
+    half = stage.picture();
+    EXPECT_EQ(messages.text(), "");
+  }
+  stage.camera->SetWindowCenter(5.2 / 96, 2.9 / 64);
+  const Messages messages;
+  EXPECT_EQ(largest_difference(stage.picture(), half), 0);
+  EXPECT_NE(messages.text().find("nearest half of a pixel"), std::string::npos);
+  stage.camera->SetWindowCenter(0, 0);
+  EXPECT_GT(largest_difference(stage.picture(), half), 0.01);
 }
 
 }  // namespace

@@ -5,10 +5,13 @@
 #include <vtkCallbackCommand.h>
 #include <vtkCellArray.h>
 #include <vtkCommand.h>
+#include <vtkContourValues.h>
 #include <vtkCullerCollection.h>
 #include <vtkDoubleArray.h>
 #include <vtkFloatArray.h>
 #include <vtkGPUVolumeRayCastMapper.h>
+#include <vtkLight.h>
+#include <vtkPlane.h>
 #include <vtkPointData.h>
 #include <vtkPoints.h>
 #include <vtkRectilinearGrid.h>
@@ -18,6 +21,8 @@
 #include <vtkUnstructuredGrid.h>
 #include <vtkWeakPointer.h>
 
+#include <algorithm>
+#include <array>
 #include <chrono>
 #include <limits>
 
@@ -226,11 +231,6 @@ TEST_P(VtkBad, IsSaidOnceAndDrawsNothing) {
 INSTANTIATE_TEST_SUITE_P(
     Input, VtkBad,
     testing::Values(
-        BadCase{"nearest",
-                [](Stage&, vtkImageData*, vtkVolumeProperty* property, vtkPellucidVolumeMapper*) {
-                  property->SetInterpolationTypeToNearest();
-                },
-                "SetInterpolationTypeToLinear"},
         BadCase{"no_values",
                 [](Stage&, vtkImageData* image, vtkVolumeProperty*, vtkPellucidVolumeMapper*) {
                   image->GetPointData()->Initialize();
@@ -259,11 +259,6 @@ INSTANTIATE_TEST_SUITE_P(
                       ->SetUserTransform(transform);
                 },
                 "singular"},
-        BadCase{"additive",
-                [](Stage&, vtkImageData*, vtkVolumeProperty*, vtkPellucidVolumeMapper* mapper) {
-                  mapper->SetBlendModeToAdditive();
-                },
-                "additive"},
         BadCase{"slice_without_plane",
                 [](Stage&, vtkImageData*, vtkVolumeProperty*, vtkPellucidVolumeMapper* mapper) {
                   mapper->SetBlendModeToSlice();
@@ -303,13 +298,240 @@ INSTANTIATE_TEST_SUITE_P(
             "dependent_components",
             [](Stage&, vtkImageData* image, vtkVolumeProperty* property, vtkPellucidVolumeMapper*) {
               vtkNew<vtkFloatArray> both;
-              both->SetNumberOfComponents(2);
+              both->SetNumberOfComponents(3);
               both->SetNumberOfTuples(image->GetNumberOfPoints());
               both->Fill(50);
               image->GetPointData()->SetScalars(both);
               property->IndependentComponentsOff();
             },
-            "dependent components"}),
+            "dependent components: the array has 3"}),
+    [](const auto& made) { return std::string(made.param.name); });
+
+/// A setting that is none, beside which the rest can be drawn: it is said once.
+class VtkOdd : public testing::TestWithParam<BadCase> {};
+
+TEST_P(VtkOdd, IsSaidOnceAndTheRestIsDrawn) {
+  Stage stage;
+  vtkNew<vtkPellucidVolumeMapper> mapper;
+  const auto image = ball_image();
+  const auto property = soft_property();
+  mapper->SetInputData(image);
+  stage.add(mapper, property);
+  stage.look();
+  GetParam().spoil(stage, image, property, mapper);
+  const Messages messages;
+  for (int frame = 0; frame < 2; ++frame) {
+    const Image picture = stage.picture();
+    EXPECT_GT(std::ranges::count_if(
+                  picture.pixels,
+                  [](const auto& p) { return p[0] > 0.1F || p[1] > 0.1F || p[2] > 0.1F; }),
+              50);
+  }
+  const std::string said = messages.text();
+  const auto at = said.find(GetParam().says);
+  ASSERT_NE(at, std::string::npos) << said;
+  EXPECT_EQ(said.find(GetParam().says, at + 1), std::string::npos) << said;
+  EXPECT_EQ(said.find("draws nothing"), std::string::npos) << said;
+  EXPECT_TRUE(mapper->GetExact());
+  EXPECT_EQ(mapper->GetPixelsOver(), 0);
+}
+
+constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
+
+void set_node(vtkPiecewiseFunction* function, int index, std::array<double, 4> node) {
+  function->SetNodeValue(index, node.data());
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Settings, VtkOdd,
+    testing::Values(
+        BadCase{"opacity_nan",
+                [](Stage&, vtkImageData*, vtkVolumeProperty* property, vtkPellucidVolumeMapper*) {
+                  set_node(property->GetScalarOpacity(), 1, {50, not_a_number, 0.5, 0});
+                },
+                "nodes of functions that are no numbers"},
+        BadCase{"color_nan",
+                [](Stage&, vtkImageData*, vtkVolumeProperty* property, vtkPellucidVolumeMapper*) {
+                  double node[6] = {60, 1, not_a_number, 0, 0.5, 0};
+                  property->GetRGBTransferFunction()->SetNodeValue(1, node);
+                },
+                "nodes of functions that are no numbers"},
+        BadCase{"unit_distance_0",
+                [](Stage&, vtkImageData*, vtkVolumeProperty* property, vtkPellucidVolumeMapper*) {
+                  property->SetScalarOpacityUnitDistance(0);
+                },
+                "a unit distance of 0"},
+        BadCase{"unit_distance_nan",
+                [](Stage&, vtkImageData*, vtkVolumeProperty* property, vtkPellucidVolumeMapper*) {
+                  property->SetScalarOpacityUnitDistance(not_a_number);
+                },
+                "no positive number"},
+        BadCase{"unit_distance_negative",
+                [](Stage&, vtkImageData*, vtkVolumeProperty* property, vtkPellucidVolumeMapper*) {
+                  property->SetScalarOpacityUnitDistance(-2);
+                },
+                "no positive number"},
+        BadCase{"shading",
+                [](Stage&, vtkImageData*, vtkVolumeProperty* property, vtkPellucidVolumeMapper*) {
+                  property->ShadeOn();
+                  property->SetDiffuse(not_a_number);
+                  property->SetSpecular(-0.5);
+                },
+                "a number of the shading"},
+        BadCase{
+            "light",
+            [](Stage& stage, vtkImageData*, vtkVolumeProperty* property, vtkPellucidVolumeMapper*) {
+              property->ShadeOn();
+              vtkNew<vtkLight> light, head;
+              light->SetLightTypeToSceneLight();
+              light->SetIntensity(not_a_number);
+              head->SetLightTypeToHeadlight();
+              stage.renderer->AddLight(light);
+              stage.renderer->AddLight(head);
+            },
+            "light: a color is"},
+        BadCase{"clipping_plane",
+                [](Stage&, vtkImageData*, vtkVolumeProperty*, vtkPellucidVolumeMapper* mapper) {
+                  vtkNew<vtkPlane> plane;
+                  plane->SetNormal(0, 0, 0);
+                  mapper->AddClippingPlane(plane);
+                },
+                "the plane is left out"},
+        BadCase{"isovalue",
+                [](Stage&, vtkImageData*, vtkVolumeProperty* property,
+                   vtkPellucidVolumeMapper* mapper) {
+                  mapper->SetBlendModeToIsoSurface();
+                  property->GetIsoSurfaceValues()->SetValue(0, not_a_number);
+                  property->GetIsoSurfaceValues()->SetValue(1, 90);
+                  property->GetIsoSurfaceValues()->SetValue(2, 90);
+                },
+                "isosurfaces at values"},
+        BadCase{"final_window",
+                [](Stage&, vtkImageData*, vtkVolumeProperty*, vtkPellucidVolumeMapper* mapper) {
+                  mapper->SetFinalColorWindow(0);
+                },
+                "the window of the final color"},
+        BadCase{"nearest_in_light",
+                [](Stage&, vtkImageData*, vtkVolumeProperty* property, vtkPellucidVolumeMapper*) {
+                  property->SetInterpolationTypeToNearest();
+                  property->ShadeOn();
+                },
+                "nearest values are shown without light"}),
+    [](const auto& made) { return std::string(made.param.name); });
+
+TEST(VtkLife, AUnitDistanceOf0IsOpaqueAndOneThatIsNoNumberIsOne) {
+  const auto with_unit = [](double unit) {
+    Stage stage;
+    vtkNew<vtkPellucidVolumeMapper> mapper;
+    mapper->SetInputData(ball_image());
+    stage.add(mapper, soft_property(unit));
+    stage.look();
+    const Messages messages;
+    return stage.picture();
+  };
+  // Blue where the data are above 0, from the outermost value on.
+  const Image one = with_unit(1), close = with_unit(1e-6), zero = with_unit(0);
+  EXPECT_EQ(largest_difference(with_unit(not_a_number), one), 0);
+  EXPECT_EQ(largest_difference(with_unit(-3), one), 0);
+  EXPECT_GT(largest_difference(one, zero), 0.3);
+  EXPECT_EQ(largest_difference(close, zero), 0);
+  const auto is_blue = [](const auto& pixel) { return pixel[2] > 0.9F && pixel[0] < 0.1F; };
+  EXPECT_GT(std::ranges::count_if(zero.pixels, is_blue), 500);
+  EXPECT_EQ(std::ranges::count_if(one.pixels, is_blue), 0);
+}
+
+TEST(VtkLife, ValuesThatChangeInPlaceAreSeenWithoutModified) {
+  Stage stage;
+  vtkNew<vtkPellucidVolumeMapper> mapper;
+  const auto image = ball_image();
+  mapper->SetInputData(image);
+  stage.add(mapper, soft_property());
+  stage.look();
+  const double before = brightness(stage.picture());
+  EXPECT_EQ(mapper->GetCore().data_made(), 1);
+  vtkFloatArray* const values = values_of(image);
+  for (vtkIdType i = 0; i < values->GetNumberOfValues(); ++i) {
+    *values->GetPointer(i) *= 0.5F;
+  }
+  EXPECT_LT(brightness(stage.picture()), 0.8 * before);
+  EXPECT_EQ(mapper->GetCore().data_made(), 2);
+  stage.picture();
+  EXPECT_EQ(mapper->GetCore().data_made(), 2);
+}
+
+/// What a callback of the check for an abort may do to a scene that is being drawn.
+struct SceneChange {
+  const char* name;
+  void (*change)(Stage&, vtkVolume*, vtkPellucidVolumeMapper*);
+};
+
+void PrintTo(const SceneChange& change, std::ostream* to) {
+  *to << change.name;
+}
+
+class VtkAbort : public testing::TestWithParam<SceneChange> {};
+
+TEST_P(VtkAbort, MayChangeTheScene) {
+  Stage stage(300, 200);
+  auto mapper = vtkSmartPointer<vtkPellucidVolumeMapper>::New();
+  mapper->SetInputData(ball_image(48));
+  mapper->SetTolerance(1e-5);
+  stage.add(mapper, soft_property());
+  stage.look();
+  struct Context {
+    Stage& stage;
+    vtkWeakPointer<vtkPellucidVolumeMapper> mapper;
+    int asked = 0;
+  } context{stage, mapper.Get()};
+  mapper = nullptr;
+  vtkNew<vtkCallbackCommand> change;
+  change->SetClientData(&context);
+  change->SetCallback([](vtkObject*, unsigned long, void* client, void*) {
+    auto& c = *static_cast<Context*>(client);
+    if (++c.asked != 1) return;
+    GetParam().change(c.stage,
+                      vtkVolume::SafeDownCast(c.stage.renderer->GetVolumes()->GetItemAsObject(0)),
+                      c.mapper);
+  });
+  stage.window->AddObserver(vtkCommand::AbortCheckEvent, change);
+  stage.picture();
+  EXPECT_GE(context.asked, 1);
+  stage.window->RemoveAllObservers();
+  // What was taken from the scene is let go of.
+  stage.picture();
+  stage.renderer->RemoveAllViewProps();
+  stage.renderer->GetVolumes();  // which the renderer keeps a list of
+  EXPECT_EQ(context.mapper, nullptr);
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Changes, VtkAbort,
+    testing::Values(
+        SceneChange{"sets_no_mapper", [](Stage&, vtkVolume* volume,
+                                         vtkPellucidVolumeMapper*) { volume->SetMapper(nullptr); }},
+        SceneChange{"sets_another_mapper",
+                    [](Stage&, vtkVolume* volume, vtkPellucidVolumeMapper*) {
+                      vtkNew<vtkPellucidVolumeMapper> other;
+                      other->SetInputData(ball_image(8));
+                      volume->SetMapper(other);
+                    }},
+        SceneChange{"removes_the_volume",
+                    [](Stage& stage, vtkVolume* volume, vtkPellucidVolumeMapper*) {
+                      stage.renderer->RemoveVolume(volume);
+                    }},
+        SceneChange{"removes_all",
+                    [](Stage& stage, vtkVolume* volume, vtkPellucidVolumeMapper*) {
+                      volume->SetMapper(nullptr);
+                      stage.renderer->RemoveAllViewProps();
+                    }},
+        SceneChange{"takes_the_data",
+                    [](Stage&, vtkVolume*, vtkPellucidVolumeMapper* mapper) {
+                      mapper->SetInputData(static_cast<vtkImageData*>(nullptr));
+                    }},
+        SceneChange{"draws_again",
+                    [](Stage& stage, vtkVolume* volume, vtkPellucidVolumeMapper* mapper) {
+                      mapper->Render(stage.renderer, volume);
+                    }}),
     [](const auto& made) { return std::string(made.param.name); });
 
 TEST(VtkLife, AMapperWithoutDataDrawsNothing) {

@@ -9,6 +9,10 @@
 #include <vtkSOADataArrayTemplate.h>
 #include <vtkUnsignedCharArray.h>
 
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
 #include "mapper_core.h"
 #include "pellucid/cpu/render.h"
 #include "pellucid/scene/opacity_table.h"
@@ -215,6 +219,264 @@ TEST(VtkLooks, IndependentComponentsMix) {
          Layer{VolumeContent{volume_of(shown.image, 1),
                              std::make_shared<const TransferFunction>(
                                  transfer_function_from_opacity_table(points, 2, 1e-6))}}});
+  }
+}
+
+/// Arrays of several components; each has values by its number and those of the ball.
+template <class Array, class Value>
+void set_components(vtkImageData* image, int components, const Value& value) {
+  vtkNew<Array> array;
+  array->SetNumberOfComponents(components);
+  array->SetNumberOfTuples(image->GetNumberOfPoints());
+  vtkDataArray* const one = image->GetPointData()->GetScalars();
+  for (vtkIdType i = 0; i < image->GetNumberOfPoints(); ++i) {
+    for (int c = 0; c < components; ++c) {
+      array->SetComponent(i, c, value(static_cast<int>(i), c, one->GetComponent(i, 0)));
+    }
+  }
+  image->GetPointData()->SetScalars(array);
+}
+
+/// Two equal components are one, whichever has the color.
+TEST(VtkLooks, TwoEqualDependentComponentsAreOne) {
+  for (const bool lit : {false, true}) {
+    Shown shown;
+    set_components<vtkFloatArray>(shown.image, 2, [](int, int, double v) { return v; });
+    shown.property->IndependentComponentsOff();
+    if (lit) {
+      shown.property->ShadeOn();
+      shown.property->SetSpecular(0);
+    }
+    Layer layer{VolumeContent{volume_of(shown.image, 1), soft_function()}};
+    if (lit) layer.shading = Shading{0.1, 0.7, 0, 10, GradientKind::smooth, 0};
+    shown.expect({layer});
+  }
+}
+
+/// Where the color's component is 40 everywhere, colors are those at 40.
+TEST(VtkLooks, OfTwoDependentComponentsTheFirstHasTheColor) {
+  Shown shown;
+  shown.mapper->CroppingOn();
+  shown.mapper->SetCroppingRegionFlagsToFence();
+  const double planes[6] = {9.7, 19.4, 6.2, 24.9, 14.8, 33.1};
+  shown.mapper->SetCroppingRegionPlanes(planes);
+  set_components<vtkFloatArray>(shown.image, 2, [](int, int c, double v) {
+    return c == 0 ? 40 : -v;  // and opacities of negative values
+  });
+  vtkPiecewiseFunction* const opacity = shown.property->GetScalarOpacity();
+  opacity->RemoveAllPoints();
+  opacity->AddPoint(-100, 0.2);
+  opacity->AddPoint(-50, 0.02);
+  opacity->AddPoint(0, 0);
+  shown.property->IndependentComponentsOff();
+  const Rgb<double> color{2.0 / 3, 1.0 / 3, 1.0 / 3};
+  const auto function =
+      std::make_shared<const TransferFunction>(transfer_function_from_opacity_table(
+          {{-100, 0.2, color}, {-50, 0.02, color}, {0, 0, color}}, 1, 1e-6));
+  std::vector<Layer> layers;
+  for (int region = 0; region < 27; ++region) {
+    if ((VTK_CROP_FENCE >> region & 1) == 0) continue;
+    const int at[3] = {region % 3, region / 3 % 3, region / 9};
+    ClipBox box;
+    for (int axis = 0; axis < 3; ++axis) {
+      const double ends[4] = {-100, planes[2 * axis], planes[2 * axis + 1], 100};
+      box.lower[axis] = ends[at[axis]];
+      box.upper[axis] = ends[at[axis] + 1];
+    }
+    Layer layer{VolumeContent{volume_of(shown.image, 1), function}};
+    layer.clips.push_back({box});
+    layers.push_back(layer);
+  }
+  shown.expect(std::move(layers));
+}
+
+/// Bytes are colors; so are floats, as they are.
+TEST(VtkLooks, FourDependentComponentsAreColorsAndAnOpacity) {
+  for (const bool bytes : {true, false}) {
+    Shown shown;
+    const double one = bytes ? 255 : 1;
+    const Rgb<double> color{200 / 255.0, 100 / 255.0, 50 / 255.0};
+    const auto value = [&](int, int c, double v) {
+      return c == 3 ? std::floor(v) : one * (c == 0 ? color.r : c == 1 ? color.g : color.b);
+    };
+    if (bytes) {
+      set_components<vtkUnsignedCharArray>(shown.image, 4, value);
+    } else {
+      set_components<vtkFloatArray>(shown.image, 4, value);
+    }
+    shown.property->IndependentComponentsOff();
+    const std::vector<OpacityPoint> points{{0, 0, color}, {50, 0.02, color}, {100, 0.2, color}};
+    shown.expect({Layer{VolumeContent{
+        volume_of(shown.image, 3), std::make_shared<const TransferFunction>(
+                                       transfer_function_from_opacity_table(points, 1, 1e-6))}}});
+  }
+}
+
+/// Red rises along x, by a component of its own: the sum of all is no sum of pictures.
+TEST(VtkLooks, ColorsInComponentsMixInEachPlace) {
+  Shown shown;
+  set_components<vtkUnsignedCharArray>(shown.image, 4, [](int i, int c, double v) {
+    return c == 0 ? 10 * (i % 24) : c == 1 ? 230 - 10 * (i % 24) : c == 2 ? 60 : v;
+  });
+  shown.property->IndependentComponentsOff();
+  // Colors by a volume that is 0 to 1 along x: the red one.
+  std::vector<float> along;
+  for (vtkIdType i = 0; i < shown.image->GetNumberOfPoints(); ++i) {
+    along.push_back(static_cast<float>(i % 24));
+  }
+  const auto opacities = volume_of(shown.image, 3);
+  const auto x = std::make_shared<const Volume>(opacities->description(), std::move(along));
+  Layer layer{
+      ChannelsContent{std::make_shared<const Channels>(
+                          std::vector<Channel>{{"x", "", x}, {"opacity", "", opacities}}),
+                      std::make_shared<const MultivariateTransferFunction>(
+                          2, std::vector<GaussianPrimitive>(),
+                          std::vector<ChannelTransferFunction>{
+                              {0, TransferFunction({{0, 1, {0, 230 / 255.0, 60 / 255.0}},
+                                                    {23, 1, {230 / 255.0, 0, 60 / 255.0}}})}},
+                          ChannelTransferFunction{1, *soft_function()})}};
+  shown.expect({layer});
+}
+
+/// Each value fills the box that is nearer to it than to the others, half of one at the border.
+TEST(VtkLooks, NearestValuesFillBoxes) {
+  for (const bool bytes : {false, true}) {
+    Shown shown;
+    shown.image = ball_image(4);
+    if (bytes) {
+      set_components<vtkUnsignedCharArray>(shown.image, 1,
+                                           [](int i, int, double) { return 7 * i % 101; });
+    } else {
+      vtkDataArray* const values = shown.image->GetPointData()->GetScalars();
+      for (vtkIdType i = 0; i < 64; ++i) {
+        values->SetComponent(i, 0,
+                             static_cast<double>(7 * i % 101) + 0.37 * static_cast<double>(i % 5));
+      }
+    }
+    shown.mapper->SetInputData(shown.image);
+    shown.property->SetInterpolationTypeToNearest();
+    std::vector<Layer> layers;
+    for (vtkIdType i = 0; i < 64; ++i) {
+      double place[3];
+      shown.image->GetPoint(i, place);
+      const double value = shown.image->GetPointData()->GetScalars()->GetComponent(i, 0);
+      const double opacity = shown.property->GetScalarOpacity()->GetValue(value);
+      double color[3];
+      shown.property->GetRGBTransferFunction()->GetColor(value, color);
+      if (opacity == 0) continue;
+      Layer layer{VolumeContent{
+          volume_of(shown.image),
+          std::make_shared<const TransferFunction>(std::vector<TransferFunction::Point>{
+              {0, -std::log1p(-opacity), {color[0], color[1], color[2]}}})}};
+      ClipBox box;
+      const double spacing[3] = {1, 1.5, 2};
+      for (int a = 0; a < 3; ++a) {
+        box.lower[a] = place[a] - spacing[a] / 2;
+        box.upper[a] = place[a] + spacing[a] / 2;
+      }
+      layer.clips.push_back({box});
+      layers.push_back(layer);
+    }
+    shown.expect(std::move(layers));
+  }
+}
+
+/// Of a point in an image, by definition; none outside.
+std::optional<double> value_in(vtkImageData* image, const Vec3<double>& world) {
+  const double place[3] = {world.x - 3, (world.y + 2) / 1.5, (world.z - 1) / 2};
+  int cell[3];
+  double share[3];
+  for (int a = 0; a < 3; ++a) {
+    const int last = image->GetDimensions()[a] - 1;
+    if (!(place[a] >= 0 && place[a] <= last)) return std::nullopt;
+    cell[a] = std::min(static_cast<int>(place[a]), last - 1);
+    share[a] = place[a] - cell[a];
+  }
+  double sum = 0;
+  for (int corner = 0; corner < 8; ++corner) {
+    double weight = 1;
+    int at[3];
+    for (int a = 0; a < 3; ++a) {
+      const bool upper = (corner >> a & 1) != 0;
+      weight *= upper ? share[a] : 1 - share[a];
+      at[a] = cell[a] + (upper ? 1 : 0);
+    }
+    sum += weight * image->GetScalarComponentAsDouble(at[0], at[1], at[2], 0);
+  }
+  return sum;
+}
+
+/// VTK's sum is ∫ opacity · place in the range ds / unit distance, up to 1; where there are no data
+/// nothing is drawn.
+TEST(VtkLooks, SumsAreIntegralsThatEndAt1) {
+  for (const double unit : {1.0, 0.1}) {
+    Shown shown;
+    shown.mapper->SetBlendModeToAdditive();
+    shown.property->SetScalarOpacityUnitDistance(unit);
+    shown.property->GetScalarOpacity()->AddPoint(70, 0.01);
+    shown.property->GetScalarOpacity()->AddPoint(100, 0.05);
+    shown.stage.renderer->SetBackground(0, 0, 1);
+    shown.stage.look();
+    const Image picture = shown.stage.picture();
+    EXPECT_EQ(shown.stage.gl_errors(), "");
+    EXPECT_TRUE(shown.mapper->GetExact());
+    EXPECT_EQ(shown.mapper->GetPixelsOver(), 0);
+    EXPECT_LE(shown.mapper->GetLargestError(), shown.mapper->GetTolerance());
+    double range[2];
+    shown.image->GetScalarRange(range);
+    const Scene scene = scene_on(shown.stage, {});
+    const CameraFrame<double> frame = make_camera_frame(scene.camera, scene.size);
+    int dark = 0, grey = 0, full = 0, outside = 0, silhouette = 0;
+    for (int y = 0; y < scene.size.height; y += 3) {
+      for (int x = 0; x < scene.size.width; x += 3) {
+        const Ray<double> ray = frame.ray(x, y);
+        constexpr double step = 0.01;
+        double sum = 0, length = 0;
+        for (double t = step / 2; t < 300; t += step) {
+          const auto value = value_in(shown.image, ray.origin + ray.direction * t);
+          if (!value) continue;
+          length += step;
+          sum += shown.property->GetScalarOpacity()->GetValue(*value) * (*value - range[0]) /
+                 (range[1] - range[0]) * step / unit;
+        }
+        const double wanted = std::min(sum, 1.0);
+        const bool is_inside = length > 0;
+        if (length < 3 * step && (is_inside || picture.at(x, y)[2] < 1)) {
+          ++silhouette;
+          continue;
+        }
+        EXPECT_NEAR(picture.at(x, y)[0], is_inside ? wanted : 0, 0.006) << x << ' ' << y;
+        EXPECT_NEAR(picture.at(x, y)[2], is_inside ? wanted : 1, 0.006) << x << ' ' << y;
+        ++(!is_inside ? outside : sum >= 1 ? full : sum > 0.1 ? grey : dark);
+      }
+    }
+    EXPECT_LE(silhouette, 3);
+    EXPECT_GT(grey, 20);
+    EXPECT_GT(outside, 20);
+    EXPECT_GE(full, unit < 1 ? 20 : 0);
+  }
+}
+
+TEST(VtkLooks, TheFinalColorHasAWindowAndALevel) {
+  for (const auto& [window, level] : {std::pair{0.6F, 0.4F}, {-0.5F, 0.3F}, {4.0F, 0.1F}}) {
+    Shown shown;
+    shown.property->SetScalarOpacityUnitDistance(0.2);
+    shown.mapper->SetFinalColorWindow(window);
+    shown.mapper->SetFinalColorLevel(level);
+    shown.stage.look();
+    const Image picture = shown.stage.picture();
+    EXPECT_LE(shown.mapper->GetLargestError(), shown.mapper->GetTolerance());
+    Image truth = render(
+        scene_on(shown.stage, {Layer{VolumeContent{volume_of(shown.image), soft_function(0.2)}}}));
+    const double w = double{window}, l = double{level};
+    for (auto& pixel : truth.pixels) {
+      for (std::size_t c = 0; c < 3; ++c) {
+        pixel[c] = static_cast<float>((double{pixel[c]} - double{pixel[3]} * (l - w / 2)) / w);
+      }
+    }
+    EXPECT_LE(largest_difference(picture, truth),
+              half_a_step + rounding + shown.mapper->GetTolerance() + 1e-4)
+        << window;
   }
 }
 

@@ -379,6 +379,25 @@ def test_gaussians_are_of_the_channels_of_the_data():
             pellucid.render(data, pellucid.Gaussians([gaussian], channels=others), size=4)
 
 
+def test_a_factor_gives_one_channel_the_opacity(tmp_path):
+    """Two equal channels, one with the color and one with the opacity, are one variable."""
+    volume = pellucid.Volume(smooth(numpy.float32))
+    low, high = volume.statistics["minimum"], volume.statistics["maximum"]
+    colors = pellucid.TransferFunction([(low, 1, (0, 0, 1)), (high, 1, (1, 0.5, 0))])
+    function = pellucid.Gaussians([], ["color", "opacity"], {"color": colors},
+                                  ("opacity", [(low, 0), (high, 0.7)]))
+    assert function.factor == ("opacity", [(low, 0), (high, 0.7)])
+    assert pellucid.Gaussians([], ["color"], {"color": colors}).factor is None
+    several = pellucid.Channels(color=volume, opacity=volume)
+    one = pellucid.TransferFunction([(low, 0, (0, 0, 1)), (high, 0.7, (1, 0.5, 0))])
+    found = pellucid.render(several, function, size=16, tolerance=1e-5)
+    truth = pellucid.render(volume, one, size=16, tolerance=1e-5)
+    assert truth.rgba[..., 3].max() > 0.3
+    assert abs(found.rgba - truth.rgba).max() <= 2e-5
+    with pytest.raises(pellucid.Error, match="factor"):
+        pellucid.Gaussians([], ["color"], {"color": colors}, ("other", [(0, 1)]))
+
+
 def test_numbers_do_not_wrap_round():
     volume = pellucid.builtin_field("sphere", 8)
     for size in ((2**32 + 16, 8), (-2**32 + 5, 8), (2**70, 8)):

@@ -264,7 +264,6 @@ def test_plotters_have_windows_and_renderers(stage):
 
 def test_what_has_no_counterpart(stage):
     for change, words in [
-            (lambda s: s.volume.GetProperty().SetInterpolationTypeToNearest(), "nearest"),
             (lambda s: s.mapper.SetBlendModeToMaximumIntensity(), "blends"),
             (lambda s: s.camera.SetWindowCenter(0.5, 0), "WindowCenter")]:
         other = Stage(image_of(ball()))
@@ -277,6 +276,57 @@ def test_what_has_no_counterpart(stage):
         pellucid.vtk.scene_of(7)
     with pytest.raises(pellucid.Error, match="expected a vtkRenderWindow"):
         pellucid.vtk.audit(stage.renderer)
+
+
+def dependent(kind, values):
+    """A stage of dependent components: an array (z, y, x, component)."""
+    image = vtk.vtkImageData()
+    image.SetDimensions(*values.shape[2::-1])
+    image.AllocateScalars(kind, values.shape[-1])
+    memory = numpy.asarray(memoryview(image.GetPointData().GetScalars()))
+    memory.reshape(values.shape)[...] = values
+    stage = Stage(image)
+    stage.volume.GetProperty().IndependentComponentsOff()
+    return stage
+
+
+def test_dependent_components_are_those_of_vtk():
+    shift = numpy.roll(ball(), 5, axis=2)
+    close(pellucid.vtk.audit(dependent(vtk.VTK_FLOAT, numpy.stack([shift, ball()], -1)).window),
+          1e-2, 2e-3)
+    colors = [numpy.clip(each, 0, 255).astype(int) for each in (2 * shift, 200 - 2 * shift,
+                                                               0 * shift + 90, ball())]
+    # VTK 9.1 finds opacities right if their component spans 0 to 255.
+    colors[3][0, 0, 0] = 255
+    stage = dependent(vtk.VTK_UNSIGNED_CHAR, numpy.stack(colors, -1))
+    audit = pellucid.vtk.audit(stage.window)
+    close(audit, 1e-2, 2e-3)
+    function = audit.scene.layers[0].transfer_function
+    assert function.channels == ["0", "1", "2", "3"] and function.factor[0] == "3"
+    with pytest.raises(pellucid.Error, match="2 or 4"):
+        pellucid.vtk.scene_of(dependent(vtk.VTK_UNSIGNED_CHAR,
+                                        numpy.stack(colors[:3], -1)).renderer)
+
+
+def test_nearest_values_are_those_of_vtk():
+    stage = Stage(image_of(ball(8)))
+    stage.volume.GetProperty().SetInterpolationTypeToNearest()
+    audit = pellucid.vtk.audit(stage.window)
+    assert isinstance(audit.scene.layers[0].data, pellucid.LabelVolume)
+    # VTK steps across faces.
+    close(audit, 3e-2, 5e-3)
+    stage.volume.GetProperty().ShadeOn()
+    notes = []
+    scene = pellucid.vtk.scene_of(stage.renderer, notes)
+    assert isinstance(scene.layers[0].data, pellucid.Volume)
+    assert any("trilinear" in note for note in notes)
+
+
+def test_the_final_color_in_an_audit(stage):
+    stage.mapper.SetFinalColorWindow(0.7)
+    stage.mapper.SetFinalColorLevel(0.4)
+    audit = pellucid.vtk.audit(stage.window)
+    assert audit.largest < 1e-2 and any("window" in note for note in audit.notes)
 
 
 def test_importing_it_imports_no_vtk():

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """The plug-in for VTK from Python, and its translation of scenes beside scene_of(). Under Xvfb."""
+import math
 import os
 import subprocess
 import sys
@@ -118,7 +119,47 @@ def stages():
     yield "unclamped", lambda stage: stage.volume.GetProperty().GetScalarOpacity().ClampingOff()
     yield "hsv", lambda stage: (stage.volume.GetProperty().GetRGBTransferFunction()
                                 .SetColorSpaceToHSV())
+    yield "dependent components", dependent
+    yield "dependent colors", dependent_colors
+    yield "nearest values", (lambda stage: stage.volume.GetProperty()
+                             .SetInterpolationTypeToNearest())
+    yield "a negative gradient", negative_gradient
+    yield "an opacity that is none", no_number
+    yield "a unit distance of 0", lambda stage: stage.volume.SetProperty(soft(0.0))
     yield "horizontal angle", lambda stage: stage.camera.UseHorizontalViewAngleOn()
+
+
+def components(stage, kind, *parts):
+    """Gives the stage's image other components, made of its values."""
+    image = stage.mapper.GetInput()
+    values = numpy.array(image.GetPointData().GetScalars())
+    image.AllocateScalars(kind, len(parts))
+    memory = numpy.asarray(memoryview(image.GetPointData().GetScalars()))
+    for c, part in enumerate(parts):
+        memory.reshape(-1, len(parts))[:, c] = part(values)
+    image.GetPointData().GetScalars().Modified()
+    stage.volume.GetProperty().IndependentComponentsOff()
+
+
+def dependent(stage):
+    components(stage, vtk.VTK_FLOAT, lambda v: 100 - v, lambda v: v)
+
+
+def dependent_colors(stage):
+    components(stage, vtk.VTK_UNSIGNED_CHAR, lambda v: numpy.clip(2 * v, 0, 255),
+               lambda v: numpy.clip(200 - 2 * v, 0, 255), lambda v: 0 * v + 90,
+               lambda v: numpy.clip(v, 0, 255))
+
+
+def negative_gradient(stage):
+    function = vtk.vtkPiecewiseFunction()
+    function.AddPoint(-10, 0.2)
+    function.AddPoint(10, 1)
+    stage.volume.GetProperty().SetGradientOpacity(function)
+
+
+def no_number(stage):
+    stage.volume.GetProperty().GetScalarOpacity().SetNodeValue(1, [50, math.nan, 0.5, 0])
 
 
 def lamp(stage):
@@ -249,6 +290,53 @@ def test_vtk_draws_by_itself_when_not_used():
         pellucid.vtk.settings(mapper)
     with pytest.raises(pellucid.Error, match="does not draw by Pellucid"):
         pellucid.vtk.settings(3)
+
+
+def test_settings_are_of_the_mapper_that_draws(used):
+    """A smart mapper in its ray-cast mode draws by VTK's fixed-point mapper."""
+    mapper = vtk.vtkSmartVolumeMapper()
+    assert pellucid.vtk.settings(mapper).tolerance == 1 / 512
+    mapper.SetRequestedRenderModeToRayCast()
+    with pytest.raises(pellucid.Error, match="SetRequestedRenderModeToDefault"):
+        pellucid.vtk.settings(mapper)
+    mapper.SetRequestedRenderModeToGPU()
+    assert pellucid.vtk.settings(mapper).tolerance == 1 / 512
+
+
+def test_the_final_color_has_a_window_and_a_level(used):
+    stage = Stage(vtk.vtkSmartVolumeMapper())
+    stage.mapper.SetFinalColorWindow(0.5)
+    stage.mapper.SetFinalColorLevel(0.4)
+    shown = stage.picture()
+    scene = pellucid.vtk.scene_of(stage.renderer, [])
+    scene.integration.tolerance = 1e-5
+    plain = pellucid.render(scene)
+    truth = pellucid.vtk.finished(stage.renderer, plain)
+    by_hand = 2 * plain.rgba[..., :3] - 0.3 * plain.rgba[..., 3:]
+    assert abs(truth.rgba[..., :3] - by_hand).max() < 1e-6
+    assert abs(shown - numpy.clip(truth.rgba[..., :3], 0, 1)).max() <= tolerance_of(stage)
+    assert abs(truth.rgba - plain.rgba).max() > 0.05
+    stage.mapper.SetFinalColorWindow(1)
+    stage.mapper.SetFinalColorLevel(0.5)
+    assert pellucid.vtk.finished(stage.renderer, plain) is plain
+
+
+def test_an_abort_callback_may_take_the_mapper():
+    stage = Stage(plugin.vtkPellucidVolumeMapper(), image_of(smooth(shape=(48, 48, 48))),
+                  size=(300, 200))
+    stage.mapper.SetTolerance(1e-5)
+    asked = []
+
+    def take(window, event):
+        asked.append(event)
+        stage.volume.SetMapper(None)
+        stage.renderer.RemoveVolume(stage.volume)
+        stage.mapper = None
+
+    stage.window.AddObserver("AbortCheckEvent", take)
+    stage.window.Render()
+    assert asked and stage.volume.GetMapper() is None
+    stage.window.Render()
 
 
 def test_bad_settings(used):

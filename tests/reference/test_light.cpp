@@ -578,6 +578,77 @@ TEST(ReferenceLight, GradientOpacityIsAProductOfTables) {
   }
 }
 
+/// Along x: the first variable is 2x - 5, the second rises and falls, the third is squared.
+TEST(ReferenceLight, AFactorOfAChannelIsAProductOfTables) {
+  const std::vector<double> second{-3, 1, 2, -1, 4, 4, -2};
+  const auto grid = grid_description({7, 3, 3});
+  const Channels channels = test::make_channels(
+      grid, {[](int i, int, int) { return 2.0 * i - 5; },
+             [&](int i, int, int) { return second[static_cast<std::size_t>(i)]; },
+             [](int i, int, int) { return 1.0 * i * i; }});
+  const auto shown = [&](std::vector<ChannelTransferFunction> tables) {
+    Layer layer;
+    layer.content = ChannelsContent{
+        std::make_shared<const Channels>(channels),
+        std::make_shared<const MultivariateTransferFunction>(
+            3, std::vector<GaussianPrimitive>(), std::move(tables),
+            ChannelTransferFunction{
+                1, TransferFunction({{-2, 0.1, {}}, {0, 0.9, {}}, {0, 0.3, {}}, {3, 1.4, {}}})})};
+    return layer;
+  };
+  const auto linear = [](double x, auto&& f) {
+    const int i = std::clamp(static_cast<int>(x), 0, 5);
+    return f(i) + (x - i) * (f(i + 1) - f(i));
+  };
+  const auto w = [&](double x) {
+    return linear(x, [&](int i) { return second[static_cast<std::size_t>(i)]; });
+  };
+  const auto factor = [&](double x) {
+    const double v = w(x);
+    return v < -2 ? 0.1 : v < 0 ? 0.9 + v * 0.4 : v < 3 ? 0.3 + v * 1.1 / 3 : 1.4;
+  };
+  const auto first = [](double x) { return 2 * x - 5; };
+  const auto third = [&](double x) { return linear(x, [](int i) { return 1.0 * i * i; }); };
+  // Colors by the first variable: clear below -3.
+  const auto share = [&](double x) { return std::clamp((first(x) + 3) / 8, 0.0, 1.0); };
+  // Where a function has a corner or a jump.
+  std::vector<double> cuts{0,   0.25, 0.75, 1, 2,           2 + 2.0 / 3, 3,
+                           3.2, 3.8,  4,    5, 5 + 1.0 / 6, 5 + 4.0 / 6, 6};
+  const auto truth_of = [&](auto&& rate, auto&& red) {
+    double depth = 0, radiance = 0;
+    for (std::size_t i = 0; i + 1 < cuts.size(); ++i) {
+      const double a = cuts[i], b = cuts[i + 1], before = depth, inside = 1e-9 * (b - a);
+      const auto at = [&](double x) { return rate(std::clamp(x, a + inside, b - inside)); };
+      radiance += integral(a, b, 200, [&](double x) {
+        return at(x) * red(x) * std::exp(-before - (x > a ? integral(a, x, 4, at) : 0.0));
+      });
+      depth += integral(a, b, 4, at);
+    }
+    return std::pair{depth, radiance};
+  };
+  const auto check = [](const Layer& layer, double depth, double red) {
+    const ReferencePixel pixel = reference_ray(of({layer}), {-1, 0.7, 1.1}, {1, 0, 0});
+    EXPECT_NEAR(pixel.optical_depth, depth, 1e-8);
+    EXPECT_NEAR(pixel.radiance.r, red, 1e-8);
+    EXPECT_NEAR(reference_ray(of({layer}), {9, 0.7, 1.1}, {-1, 0, 0}).optical_depth, depth, 1e-8);
+  };
+  {
+    const auto rate = [&](double x) { return factor(x) * 0.4 * share(x); };
+    const auto [depth, red] = truth_of(rate, [&](double x) { return 1 - 0.5 * share(x); });
+    check(shown({{0, TransferFunction({{-3, 0, {1, 0, 0}}, {5, 0.4, {0.5, 1, 0}}})}}), depth, red);
+  }
+  {
+    // Red by the first variable, green by the third: all terms together are one kind of particles.
+    const auto rate = [&](double x) { return factor(x) * 0.6; };
+    const auto [depth, red] = truth_of(rate, share);
+    const Layer layer = shown({{0, TransferFunction({{-3, 0.3, {}}, {5, 0.3, {2, 0, 0}}})},
+                               {2, TransferFunction({{0, 0.3, {}}, {36, 0.3, {0, 2, 0}}})}});
+    check(layer, depth, red);
+    const auto green = truth_of(rate, [&](double x) { return third(x) / 36; }).second;
+    EXPECT_NEAR(reference_ray(of({layer}), {-1, 0.7, 1.1}, {1, 0, 0}).radiance.g, green, 1e-8);
+  }
+}
+
 /// Extinction = magnitude: the optical depth is the integral of a piecewise linear magnitude.
 double integral_of_magnitude(const scenes::VolumePointer& volume, Place from, Place direction) {
   Layer layer = layer_of(volume, {{0, 1, {1, 1, 1}}});

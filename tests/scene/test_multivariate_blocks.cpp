@@ -308,6 +308,44 @@ TEST(MultivariateBlocks, ABlockThatIsVacuumInOneChannelIsSkipped) {
   }
 }
 
+TEST(MultivariateBlocks, WhereTheFactorIsZeroNothingMatters) {
+  const Channels channels({channel<float>("a", [](int, int, int) { return 0.5; }),
+                           channel<float>("b", [](int i, int, int) { return 0.1 * i; })});
+  GaussianPrimitive p;
+  p.channels = {0};
+  p.center = {0.5};
+  p.matrix = {{1}};
+  p.extinction = 1;
+  for (const bool of_table : {false, true}) {
+    const auto kinds = [&](double largest, double extinction, double negligible) {
+      p.extinction = extinction;
+      std::vector<GaussianPrimitive> primitives;
+      std::vector<ChannelTransferFunction> tables;
+      if (of_table) {
+        tables.push_back({0, TransferFunction({{0, extinction, {1, 1, 1}}})});
+      } else {
+        primitives.push_back(p);
+      }
+      // 0 up to the value at i = 17, so in the first two blocks.
+      const MultivariateTransferFunction function(
+          2, std::move(primitives), std::move(tables),
+          ChannelTransferFunction{1, TransferFunction({{1.65, 0, {}}, {1.75, largest, {}}})});
+      const MultivariateBlocksStorage storage(channels, function, negligible);
+      std::vector<BlockKind> found;
+      for (int i = 0; i < 4; ++i) {
+        found.push_back(storage.view().classes[storage.view().records.index(i, 1, 1)].kind);
+      }
+      return found;
+    };
+    using enum BlockKind;
+    EXPECT_EQ(kinds(1, 1, 1e-3), (std::vector{skip, skip, cells, cells})) << of_table;
+    if (of_table) continue;
+    // What is negligible is so with the factor.
+    EXPECT_EQ(kinds(1, 1e-4, 1e-3), (std::vector{skip, skip, skip, skip}));
+    EXPECT_EQ(kinds(100, 1e-4, 1e-3), (std::vector{skip, skip, cells, cells}));
+  }
+}
+
 TEST(MultivariateBlocks, WhatIsFaintEverywhereIsSkippedEverywhere) {
   Maker maker(128);
   const Channels channels = some_channels(maker);

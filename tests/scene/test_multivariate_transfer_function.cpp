@@ -177,6 +177,58 @@ TEST(MultivariateTransferFunction, SumsItsTerms) {
   EXPECT_NEAR(view.evaluate(beside).color.b, gaussian / sum, 1e-15);
 }
 
+TEST(MultivariateTransferFunction, AFactorMultipliesTheExtinctionsOfAllTerms) {
+  const TransferFunction by({{0, 0, {}}, {4, 2, {}}, {4, 0.5, {}}});
+  const MultivariateTransferFunction plain(3, {primitive()}, {{1, table()}});
+  const MultivariateTransferFunction f(3, {primitive()}, {{1, table()}},
+                                       ChannelTransferFunction{0, by});
+  EXPECT_EQ(plain.factor(), nullptr);
+  EXPECT_EQ(plain.largest_factor(), 1);
+  ASSERT_NE(f.factor(), nullptr);
+  EXPECT_EQ(f.largest_factor(), 2);
+  EXPECT_EQ(f.largest_extinction(), 22);
+  EXPECT_EQ(f.largest_color(), 2);
+  for (const auto& [value, factor] : {std::pair{-1.0, 0.0}, {1.0, 0.5}, {3.0, 1.5}, {5.0, 0.5}}) {
+    const double v[] = {value, 2, -1.5};
+    const Material<double> without = plain.evaluate(v), with = f.evaluate(v);
+    EXPECT_DOUBLE_EQ(with.extinction, factor * without.extinction) << value;
+    EXPECT_EQ(with.color, without.color) << value;
+    EXPECT_EQ(f.view().evaluate(v).extinction, without.extinction);
+  }
+  for (const int channel : {-1, 3}) {
+    expect_error(
+        [&] {
+          MultivariateTransferFunction(3, {primitive()}, {}, ChannelTransferFunction{channel, by});
+        },
+        {"the factor looks at channel", "there are 3"});
+  }
+  // It may stand for an opacity table: the whole extinction is as far off.
+  EXPECT_NO_THROW(MultivariateTransferFunction(
+      3, {primitive()}, {},
+      ChannelTransferFunction{
+          0, transfer_function_from_opacity_table({{0, 0, {}}, {1, 0.5, {}}}, 1, 1e-3)}));
+}
+
+TEST(MultivariateTransferFunction, TheLargestColorIsThatOfAllTermsTogether) {
+  // Red, green and blue by three variables: no color has a component above 1.
+  const auto of = [](double extinction, Rgb<double> color) {
+    return TransferFunction({{0, extinction, {}}, {1, extinction, color}});
+  };
+  const MultivariateTransferFunction rgb(
+      3, {}, {{0, of(1, {3, 0, 0})}, {1, of(1, {0, 3, 0})}, {2, of(1, {0, 0, 3})}});
+  EXPECT_NEAR(rgb.largest_color(), 1, 1e-11);
+  EXPECT_GE(rgb.largest_color(), 1);
+  const MultivariateTransferFunction weighted(2, {},
+                                              {{0, of(3, {2, 0, 0})}, {1, of(1, {1, 6, 0})}});
+  EXPECT_NEAR(weighted.largest_color(), 1.75, 1e-11);
+  // Another extinction, or a Gaussian, can be alone.
+  const MultivariateTransferFunction bent(
+      2, {}, {{0, of(1, {3, 0, 0})}, {1, TransferFunction({{0, 0, {}}, {1, 1, {0, 3, 0}}})}});
+  EXPECT_EQ(bent.largest_color(), 3);
+  const MultivariateTransferFunction beside(3, {primitive()}, {{0, of(1, {3, 0, 0})}});
+  EXPECT_EQ(beside.largest_color(), 3);
+}
+
 TEST(MultivariateTransferFunction, PutsColumnsToTheChannelsNamed) {
   GaussianPrimitive p = primitive({2, 0});
   p.matrix = {{1, 10}, {0, 0.5}, {3, 0}};

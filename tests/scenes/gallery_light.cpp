@@ -2,7 +2,9 @@
 #include <cmath>
 #include <cstdint>
 #include <memory>
+#include <string>
 #include <utility>
+#include <vector>
 
 #include "pellucid/scene/scene.h"
 #include "tests/scenes/gallery.h"
@@ -28,6 +30,84 @@ Layer with_factors(Layer layer, std::vector<GradientOpacity::Point> points,
 Layer with_surfaces(Layer layer, std::vector<Isosurface> surfaces) {
   layer.isosurfaces = std::move(surfaces);
   return layer;
+}
+
+Points peak_of_factors(double at, double half, double factor) {
+  return {{at - half, 0, {}}, {at, factor, {}}, {at + half, 0, {}}};
+}
+
+/// Channels of waves, a function of all of them and a factor.
+Layer with_factor(std::vector<VolumePointer> volumes, std::vector<GaussianPrimitive> primitives,
+                  std::vector<ChannelTransferFunction> tables, int channel, Points factors) {
+  std::vector<Channel> channels;
+  for (VolumePointer& volume : volumes) {
+    channels.push_back({"channel " + std::to_string(channels.size()), "", std::move(volume)});
+  }
+  const int count = static_cast<int>(channels.size());
+  return {
+      ChannelsContent{std::make_shared<const Channels>(std::move(channels)),
+                      std::make_shared<const MultivariateTransferFunction>(
+                          count, std::move(primitives), std::move(tables),
+                          ChannelTransferFunction{channel, TransferFunction(std::move(factors))})}};
+}
+
+/// A wave of its own for each number, in [low, low + 1].
+VolumePointer numbered_wave(int number, double low = 0) {
+  const double n = number;
+  return sampled(
+      {13, 12, 14},
+      [=](double x, double y, double z) {
+        return low + wave(x * (1 - 0.2 * n) + 0.3 * n * z, y - 0.1 * n * x, z + 0.2 * n);
+      },
+      "numbered wave");
+}
+
+/// Colors of one variable, opacity of another, which has negative values, and a jump.
+Layer colored_by_another(double low) {
+  return with_factor(
+      {numbered_wave(1), numbered_wave(3, low)}, {},
+      {{0, TransferFunction({{0.2, 1, {0.1, 0.2, 1}},
+                             {0.5, 1, {0.2, 1, 0.4}},
+                             {0.5, 1, {1, 0.9, 0.1}},
+                             {0.8, 1, {1, 0.2, 0}}})}},
+      1, {{low + 0.35, 0, {}}, {low + 0.5, 1.5, {}}, {low + 0.5, 0.1, {}}, {low + 0.8, 4, {}}});
+}
+
+/// Red, green and blue of three variables, opacity of a fourth.
+Layer colors_as_data() {
+  std::vector<ChannelTransferFunction> tables;
+  for (int c = 0; c < 3; ++c) {
+    const Rgb<double> color{c == 0 ? 3.0 : 0, c == 1 ? 3.0 : 0, c == 2 ? 3.0 : 0};
+    tables.push_back({c, TransferFunction({{0, 1.0 / 3, {}}, {1, 1.0 / 3, color}})});
+  }
+  return with_factor({numbered_wave(0), numbered_wave(1), numbered_wave(2), numbered_wave(4)}, {},
+                     std::move(tables), 3, {{0.3, 0, {}}, {0.7, 3, {}}});
+}
+
+/// Gaussians times a peak of the other variable.
+Layer weighted_gaussians() {
+  const ChannelsContent content = std::get<ChannelsContent>(gaussians().content);
+  const MultivariateTransferFunction& f = *content.transfer_function;
+  return {ChannelsContent{
+      content.channels,
+      std::make_shared<const MultivariateTransferFunction>(
+          2, f.primitives(), f.tables(),
+          ChannelTransferFunction{1, TransferFunction(peak_of_factors(0.5, 0.15, 3))})}};
+}
+
+/// Two variables of a mesh; the second is negative.
+Layer mesh_colored_by_another() {
+  const MeshPointer pointer = make_mesh(box_of_cubes(4));
+  return {MeshContent{
+      on_mesh(pointer, {at_points(*pointer, "color",
+                                  [](const Vec3<double>& p) { return wave(p.z, p.x, -p.y); }),
+                        at_points(*pointer, "opacity",
+                                  [](const Vec3<double>& p) { return wave(-p.y, p.z, p.x) - 2; })}),
+      std::make_shared<const MultivariateTransferFunction>(
+          2, std::vector<GaussianPrimitive>(),
+          std::vector<ChannelTransferFunction>{
+              {0, TransferFunction(Points{{0.2, 1, {0, 0.3, 1}}, {0.8, 1, {1, 0.7, 0}}})}},
+          ChannelTransferFunction{1, TransferFunction(Points{{-1.7, 0, {}}, {-1.3, 3, {}}})})}};
 }
 
 Points clear() {
@@ -168,6 +248,17 @@ Gallery light_gallery() {
        })},
       {"gradient opacity: of Gaussians", made([=] {
          return exhibit({with_factors(gaussians(), {{0.1, 0}, {0.5, 1}})});
+       })},
+      {"factor: colors of one variable, opacity of another",
+       made([=] { return exhibit({colored_by_another(-0.4)}); })},
+      {"factor: red, green, blue, and opacity of a fourth, lit", made([=] {
+         return in_lights(
+             exhibit({lit(colors_as_data())}, {cut_away({ClipSphere{{0.2, 0.1, 0.3}, 0.4}})}),
+             three_lights());
+       })},
+      {"factor: of Gaussians, and on a mesh beside a medium", made([=] {
+         return exhibit({weighted_gaussians(), moved(mesh_colored_by_another(), oblique()),
+                         grid({8, 9, 7}, warm)});
        })},
       {"isosurfaces: of a ball, nested and translucent", made([=] {
          return exhibit({with_surfaces(lit(ball(clear())), {{0.9, 0.3, {1, 0.9, 0.6}},

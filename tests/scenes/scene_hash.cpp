@@ -65,6 +65,10 @@ void add_terms(Hash& hash, const MultivariateTransferFunction& function) {
     hash.add_numbers(term.channel);
     add_points(hash, term.function);
   }
+  if (const ChannelTransferFunction* const factor = function.factor()) {
+    hash.add_numbers(8, factor->channel);
+    for (const auto& p : factor->function.points()) hash.add_numbers(p.value, p.extinction);
+  }
 }
 
 void add_clips(Hash& hash, const std::vector<Clip>& clips) {

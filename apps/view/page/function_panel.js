@@ -65,6 +65,10 @@ export class FunctionPanel {
         parts.push(make('p', {class: 'hint'}, `The function also has ` +
           `${transferFunction.tables.length} tables of single channels, which stay as they are.`));
       }
+      if (transferFunction.factor) {
+        parts.push(make('p', {class: 'hint'},
+          'Its extinctions have a factor by a channel, which stays as it is.'));
+      }
     } else {
       parts.push(make('p', {class: 'empty'},
         'Only surfaces are shown. Make a function from the data to show the volume.'));

@@ -54,11 +54,23 @@ struct ChannelTableDescription {
   std::vector<TransferFunction::Point> points;
 };
 
-/// A function of several channels as written: the sum of its terms.
+/// A factor of the extinctions by the value of a channel.
+struct ChannelFactorDescription {
+  struct Point {
+    double value = 0, factor = 1;  ///< factor >= 0
+
+    bool operator==(const Point&) const = default;
+  };
+  std::string channel;  ///< empty: the only channel
+  std::vector<Point> points;
+};
+
+/// A function of several channels as written: the sum of its terms, times the factor.
 struct MultivariateDescription {
   std::vector<std::string> channels;  ///< for Gaussians that name none; empty: all, in order
   std::vector<GaussianDescription> gaussians;
   std::vector<ChannelTableDescription> tables;
+  std::optional<ChannelFactorDescription> factor{};
 };
 
 /// One of presets(); it becomes a function when the data are known.

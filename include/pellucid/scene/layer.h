@@ -89,7 +89,8 @@ struct Layer {
   /// How the layer and its surfaces reflect the scene's lights; none: they glow in their own
   /// colors. Not for labels.
   std::optional<Shading> shading{};
-  /// Multiplies the extinction of the layer's functions; may be null. Not for labels.
+  /// Multiplies the extinction of the layer's functions; may be null. Not for labels, nor beside
+  /// the factor of a function of several variables.
   std::shared_ptr<const GradientOpacity> gradient_opacity{};
   std::vector<Isosurface> isosurfaces{};  ///< not of labels
   std::vector<Slice> slices{};            ///< not of labels
@@ -107,8 +108,10 @@ Layer moved_into_place(const Layer& layer);
 /// "layer 2".
 void check_layer(const Layer& layer, const std::string& where);
 
-/// Returns whether the layer has light, gradient opacity, isosurfaces or slices: what only the
-/// general path does.
+/// Returns the factor of the layer's function of several variables; null: there is none.
+const ChannelTransferFunction* extinction_factor_of(const Layer& layer) noexcept;
+/// Returns whether the layer has light, gradient opacity, a factor of the extinction, isosurfaces
+/// or slices: what only the general path does.
 bool is_lit(const Layer& layer) noexcept;
 /// Returns whether the layer has isosurfaces or slices.
 bool has_surfaces(const Layer& layer) noexcept;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "pellucid/scene/transfer_function.h"
@@ -39,15 +40,24 @@ struct ChannelTransferFunction {
 };
 
 /// A transfer function of several variables. It owns its terms, Gaussian primitives and
-/// piecewise-linear functions of single channels, and is their sum (transfer/multivariate.h).
+/// piecewise-linear functions of single channels, and is their sum (transfer/multivariate.h). A
+/// factor, if there is one, is a function of a channel by which the extinctions of all terms are
+/// multiplied:
+///
+///   extinction = f(v_k) Σ τ_i(v),   source = f(v_k) Σ τ_i(v) c_i(v),
+///
+/// so that one variable can have the opacity, and others the colors. In
+/// ChannelTransferFunction::function of a factor the extinctions are its values; colors do not
+/// count.
 class MultivariateTransferFunction {
  public:
   /// Throws Error if there is no term, there are more than 256 primitives, the number of channels
   /// is not in [1, 8], a term refers to a missing channel or to one channel twice, sizes do not
   /// agree, a number is not finite or beyond ±2.1e37, an extinction or color is negative, or a
-  /// piecewise-linear term is an approximation (relative_error() > 0).
+  /// piecewise-linear term is an approximation (relative_error() > 0). The factor may be one.
   MultivariateTransferFunction(int channels, std::vector<GaussianPrimitive> primitives,
-                               std::vector<ChannelTransferFunction> tables = {});
+                               std::vector<ChannelTransferFunction> tables = {},
+                               std::optional<ChannelTransferFunction> factor = {});
   // The view points into the object.
   MultivariateTransferFunction(const MultivariateTransferFunction&) = delete;
   MultivariateTransferFunction& operator=(const MultivariateTransferFunction&) = delete;
@@ -55,20 +65,30 @@ class MultivariateTransferFunction {
   int channels() const noexcept { return channels_; }
   const std::vector<GaussianPrimitive>& primitives() const noexcept { return primitives_; }
   const std::vector<ChannelTransferFunction>& tables() const noexcept { return tables_; }
-  /// Returns the view that kernels use. Valid while this object lives.
+  /// Returns the factor; null: there is none.
+  const ChannelTransferFunction* factor() const noexcept { return factor_ ? &*factor_ : nullptr; }
+  /// Returns the sum of the terms as kernels use it, without the factor. Valid while this object
+  /// lives.
   MultivariateTransfer<double> view() const noexcept;
-  /// Returns the largest color component: an upper bound on the radiance along any ray.
+  /// Returns the extinction and the color at v (`channels` numbers), with the factor.
+  Material<double> evaluate(const double* v) const noexcept;
+  /// Returns an upper bound on the color of all terms together, and so on the radiance along any
+  /// ray: the largest color component of any term, or where the extinctions of all terms are
+  /// constant the largest component of the mean of their largest colors.
   double largest_color() const noexcept { return largest_color_; }
-  /// Returns the sum of the largest extinctions of all terms.
+  /// Returns the largest factor; 1: there is none.
+  double largest_factor() const noexcept { return largest_factor_; }
+  /// Returns the sum of the largest extinctions of all terms, times the largest factor.
   double largest_extinction() const noexcept { return largest_extinction_; }
 
  private:
   int channels_;
   std::vector<GaussianPrimitive> primitives_;
   std::vector<ChannelTransferFunction> tables_;
+  std::optional<ChannelTransferFunction> factor_;
   std::vector<Gaussian<double>> gaussian_view_;
   std::vector<ChannelTable<double>> table_view_;
-  double largest_color_ = 0, largest_extinction_ = 0;
+  double largest_color_ = 0, largest_factor_ = 1, largest_extinction_ = 0;
 };
 
 }  // namespace pellucid

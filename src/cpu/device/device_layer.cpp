@@ -16,6 +16,7 @@ std::string DeviceLayer::cannot_follow(const Layer& layer, const Integration& in
   if (volume == nullptr && layer.gradient_opacity) {
     return "gradient opacity of other data than one volume";
   }
+  if (extinction_factor_of(layer) != nullptr) return "factors of the extinction";
   if (integration.method == Method::exact) return "";
   const bool plain = volume != nullptr && !layer.shading && !layer.gradient_opacity;
   if (integration.method == Method::midpoint && plain &&
@@ -73,9 +74,9 @@ void DeviceLayer::set_light(const Layer& layer, const LayerSetting& setting) {
     lit.light = lights_.data();
     lit.lights = static_cast<int>(lights_.size());
   }
-  if (look_->gradient_opacity() != nullptr) {
+  if (look_->extinction_factor() != nullptr) {
     lit.has_gradient_opacity = true;
-    lit.gradient_opacity = *look_->gradient_opacity();
+    lit.gradient_opacity = *look_->extinction_factor();
   }
   scene_.look = DeviceLook::lit_grid;
   scene_.single_first = false;

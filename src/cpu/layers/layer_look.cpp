@@ -15,6 +15,27 @@ Vec3<double> unit(const Vec3<double>& v) {
   return normalized(Vec3<double>{v.x / largest, v.y / largest, v.z / largest});
 }
 
+/// Returns the largest |value| of a channel if one is negative, else 0.
+double largest_if_negative(const Layer& layer, int channel) {
+  const auto* const channels = std::get_if<ChannelsContent>(&layer.content);
+  const auto& data = channels != nullptr
+                         ? (*channels->channels)[channel].volume->statistics()
+                         : std::get<MeshContent>(layer.content).mesh->statistics(channel);
+  return data.minimum < 0 ? std::max(-data.minimum, data.maximum) : 0;
+}
+
+/// The function of v + shift. Of points that come to lie at one place, the first and the last stay.
+TransferFunction shifted(const TransferFunction& function, double shift) {
+  std::vector<TransferFunction::Point> points;
+  for (TransferFunction::Point point : function.points()) {
+    point.value += shift;
+    const std::size_t count = points.size();
+    if (count >= 2 && points[count - 2].value == point.value) points.pop_back();
+    points.push_back(point);
+  }
+  return TransferFunction(std::move(points));
+}
+
 }  // namespace
 
 LayerLook::LayerLook(const Layer& layer)
@@ -26,6 +47,14 @@ LayerLook::LayerLook(const Layer& layer)
   }
   if (layer.gradient_opacity) {
     factors_ = layer.gradient_opacity->per_world(voxel_of(layer));
+    factor_view_ = factors_->view<double>();
+  }
+  value_factor_ = extinction_factor_of(layer);
+  if (value_factor_ != nullptr) {
+    // Panels take magnitudes for their errors, which grow with them. Moved up that far, values are
+    // no smaller than the largest |value|.
+    factor_shift_ = 2 * largest_if_negative(layer, value_factor_->channel);
+    factors_ = shifted(value_factor_->function, factor_shift_);
     factor_view_ = factors_->view<double>();
   }
 }

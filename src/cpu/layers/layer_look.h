@@ -4,12 +4,14 @@
 #include <optional>
 #include <vector>
 
+#include "pellucid/math/bernstein.h"
 #include "pellucid/scene/layer.h"
 #include "pellucid/segment/shading.h"
 
 namespace pellucid {
 
-/// What a layer shows beside its functions, as rays need it: light, gradient opacity and surfaces.
+/// What a layer shows beside its functions, as rays need it: light, a factor of the extinction and
+/// surfaces.
 class LayerLook {
  public:
   /// The layer is in its place and must outlive the object.
@@ -22,10 +24,20 @@ class LayerLook {
   const Reflection<double>* reflection() const noexcept {
     return reflection_ ? &*reflection_ : nullptr;
   }
-  const PiecewiseLinear<double>* gradient_opacity() const noexcept {
+  /// Returns the factor of the extinction: of the magnitude of a gradient, or of a channel of
+  /// several (value_factor()), which factor_argument() makes a number from 0 on.
+  const PiecewiseLinear<double>* extinction_factor() const noexcept {
     return factors_ ? &factor_view_ : nullptr;
   }
-  /// Returns whether its panels need light or gradient opacity.
+  /// Returns the factor of a channel's value, where there is one; else null.
+  const ChannelTransferFunction* value_factor() const noexcept { return value_factor_; }
+  /// Returns the argument of extinction_factor() along data of value_factor()'s channel.
+  CubicBernstein<double> factor_argument(const CubicBernstein<double>& data) const noexcept {
+    CubicBernstein<double> argument = data;
+    for (double& b : argument.b) b += factor_shift_;
+    return argument;
+  }
+  /// Returns whether its panels need light or a factor.
   bool is_lit() const noexcept { return reflection_ || factors_; }
   /// Returns whether its medium absorbs anywhere.
   bool has_medium() const noexcept { return has_medium_; }
@@ -38,6 +50,8 @@ class LayerLook {
   std::optional<Reflection<double>> reflection_;
   std::optional<TransferFunction> factors_;
   PiecewiseLinear<double> factor_view_{};
+  const ChannelTransferFunction* value_factor_ = nullptr;
+  double factor_shift_ = 0;
   bool has_medium_;
 };
 

@@ -19,7 +19,7 @@ void LitParts::add(const LayerStretch& stretch, const MultivariateTransfer<doubl
   layers_.emplace_back();
   LitLayer<double>& layer = layers_.back();
   layer.transfer = &function;
-  layer.gradient_opacity = look.gradient_opacity();
+  layer.gradient_opacity = look.extinction_factor();
   layer.reflection = look.reflection();
   layer.primitives = stretch.primitives;
   std::copy_n(stretch.data, layer.transfer->channels, layer.span.data);

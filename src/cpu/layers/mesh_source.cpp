@@ -25,9 +25,12 @@ class MeshSource : public LayerSource {
       const Shading& shading = *task.layer.shading;
       gradient_.emplace(mesh_, fields_.view().channel[shading.channel], points(), shading.gradient);
     }
-    if (look().gradient_opacity() != nullptr) {
-      magnitude_.emplace(mesh_, fields_.view().channel[task.layer.gradient_opacity->channel()],
-                         points(), GradientKind::smooth);
+    if (const auto& factors = task.layer.gradient_opacity) {
+      magnitude_.emplace(mesh_, fields_.view().channel[factors->channel()], points(),
+                         GradientKind::smooth);
+    }
+    if (const ChannelTransferFunction* const factor = look().value_factor()) {
+      factor_ = {factor->channel, factor->function.view<double>()};
     }
     if (content_.multivariate() != nullptr) {
       functions_.push_back(content_.multivariate()->view());
@@ -45,6 +48,20 @@ class MeshSource : public LayerSource {
   const MeshGradient* gradient() const { return gradient_ ? &*gradient_ : nullptr; }
   const MeshGradient* magnitude() const { return magnitude_ ? &*magnitude_ : nullptr; }
 
+  /// Returns how far errors of the data may change the extinction on a span.
+  double extinction_error(const MeshSpan& span) const {
+    const MultivariateTransfer<double>& transfer = functions_.front();
+    const double of_terms = detail::extinction_error(transfer, span);
+    if (look().value_factor() == nullptr) return std::min(of_terms, most_extinction());
+    MultivariateTransfer<double> alone = transfer_of(factor_);
+    alone.channels = transfer.channels;
+    const MultivariateTransferFunction& function = *content_.multivariate();
+    const double largest = function.largest_factor();
+    const double of_factor = detail::extinction_error(alone, span);
+    const double terms = largest > 0 ? most_extinction() / largest : 0;
+    return std::min(of_terms * largest + of_factor * (terms + of_terms), most_extinction());
+  }
+
  private:
   std::size_t points() const { return content_.mesh->mesh().points().size(); }
 
@@ -52,6 +69,7 @@ class MeshSource : public LayerSource {
   Tetrahedra mesh_;
   MeshFieldStorage fields_;
   ChannelTable<double> table_;
+  ChannelTable<double> factor_;  ///< of a function of several variables that has one
   std::optional<MeshGradient> gradient_, magnitude_;
 };
 
@@ -108,8 +126,7 @@ class MeshStream : public LayerStream {
     const MultivariateTransfer<double>& transfer = source_.functions().front();
     stretch.function = 0;
     stretch.position_error = span.position_error + span.end_error;
-    stretch.left_out =
-        std::min(detail::extinction_error(transfer, span), source_.most_extinction());
+    stretch.left_out = source_.extinction_error(span);
     const double length = span.end - span.begin;
     const double from = (stretch.begin - span.begin) / length;
     const double to = (stretch.end - span.begin) / length;
@@ -125,6 +142,9 @@ class MeshStream : public LayerStream {
     }
     if (source_.magnitude() != nullptr) {
       stretch.magnitude = source_.magnitude()->magnitude_along(span.tetrahedron, ray_, range);
+    }
+    if (const ChannelTransferFunction* const factor = source_.look().value_factor()) {
+      stretch.magnitude = source_.look().factor_argument(stretch.data[factor->channel]);
     }
   }
 

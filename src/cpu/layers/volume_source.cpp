@@ -262,6 +262,9 @@ class ChannelsStream : public GridStream {
       stretch.primitives = source_.blocks().primitives[block];
       std::copy_n(span.data, source_.grid().channels, stretch.data);
       source_.gradients().fill(step, stretch);
+      if (const ChannelTransferFunction* const factor = source_.look().value_factor()) {
+        stretch.magnitude = source_.look().factor_argument(span.data[factor->channel]);
+      }
       return true;
     }
     return false;

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <array>
-
 #include "pellucid/error/random_errors.h"
 #include "pellucid/packet/cells/cell_places.h"
 #include "pellucid/packet/cells/span_piece.h"
@@ -70,7 +68,8 @@ class GradientLoads {
     }
     for (unsigned left = at_border; left != 0; left &= left - 1) {
       const int l = __builtin_ctz(left);
-      load_at_border(l, {cell[0][l], cell[1][l], cell[2][l]});
+      const std::int32_t of_lane[3] = {cell[0][l], cell[1][l], cell[2][l]};
+      load_at_border(l, of_lane);
     }
   }
 
@@ -95,10 +94,10 @@ class GradientLoads {
     }
   }
 
-  void load_at_border(int l, const std::array<std::int32_t, 3>& cell) const noexcept {
+  void load_at_border(int l, const std::int32_t (&cell)[3]) const noexcept {
     const std::ptrdiff_t stride[3] = {1, grid_.row, grid_.slice};
     std::ptrdiff_t at[3][4];  // before, lower, upper, behind
-    for (std::size_t a = 0; a < 3; ++a) {
+    for (int a = 0; a < 3; ++a) {
       const int last = grid_.values[a] - 1, place = cell[a] - grid_.padding[a];
       const int lower = clamp(place, 0, last), upper = clamp(place + 1, 0, last);
       const int before = max(lower - 1, 0), behind = min(upper + 1, last);
