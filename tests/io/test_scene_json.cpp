@@ -303,7 +303,7 @@ TEST(SceneJson, ExamplesAndTheDocumentedSceneAreValid) {
   EXPECT_EQ(
       error_of([&] { parse_scene(page.substr(begin, end - begin), "docs/reference/scene.md"); }),
       "");
-  // Behind it stand a layer with a mesh, six scenes, a layer with channels, and two transfer
+  // Behind it stand a layer with a mesh, six scenes, a layer with channels, and three transfer
   // functions.
   std::vector<std::string> blocks;
   for (std::size_t at = end + 3; (at = page.find("```json\n", at)) != std::string::npos;) {
@@ -313,7 +313,7 @@ TEST(SceneJson, ExamplesAndTheDocumentedSceneAreValid) {
     blocks.push_back(page.substr(from, at - from));
     at += 3;
   }
-  ASSERT_EQ(blocks.size(), 10U);
+  ASSERT_EQ(blocks.size(), 11U);
   for (const std::string& layer : {blocks[0], blocks[7]}) {
     EXPECT_EQ(error_of([&] { parse_scene("{\"layers\": [" + layer + "]}", "scene.md"); }), "");
   }
@@ -328,6 +328,7 @@ TEST(SceneJson, ExamplesAndTheDocumentedSceneAreValid) {
   };
   EXPECT_TRUE(std::holds_alternative<OpacityTable>(function(blocks[8])));
   EXPECT_TRUE(std::holds_alternative<MultivariateDescription>(function(blocks[9])));
+  EXPECT_TRUE(std::get<MultivariateDescription>(function(blocks[10])).factor);
 }
 
 TEST(SceneJson, AbsoluteFilesStayAndRelativeOnesStartAtTheFolder) {
