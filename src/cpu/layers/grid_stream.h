@@ -31,7 +31,7 @@ class GridStream : public LayerStream {
         wholly_(wholly) {}
 
   Interval<double> start(const Ray<double>& ray) override {
-    ray_ = volume_.grid_from_world().ray(ray);
+    ray_ = grid_from_world().ray(ray);
     if (!slices_.empty()) positions_ = slice_positions(slices_, ray);
     blocks_.reset();
     cells_.reset();
@@ -65,6 +65,7 @@ class GridStream : public LayerStream {
       cells_.emplace(axis_, ray_, visited);
     }
   }
+  const Affine<double>& grid_from_world() const { return volume_.grid_from_world(); }
   const Ray<double>& ray() const { return ray_; }
 
  private:

@@ -38,9 +38,6 @@ class LabelSource : public LayerSource {
   std::unique_ptr<LayerStream> stream() const override;
 
   const LabelAxes& axes() const { return axes_; }
-  const Affine<double>& grid_from_world() const {
-    return content_.labels->volume().grid_from_world();
-  }
   /// Returns a label's extinction; NaN is vacuum.
   double extinction(double label) const {
     if (std::isnan(label)) return 0;
@@ -66,7 +63,7 @@ class LabelStream : public GridStream {
         source_(source) {}
 
   Interval<double> start(const Ray<double>& ray) override {
-    sides_.start(source_.grid_from_world(), ray);
+    sides_.start(grid_from_world(), ray);
     return GridStream::start(ray);
   }
   void restrict_to_range(Interval<double> range) override {

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "pellucid/geometry/affine.h"
-#include "pellucid/math/constants.h"
+#include "pellucid/simd/scalar.h"
 #include "pellucid/traverse/structured_walk.h"
 
 namespace pellucid {

@@ -124,11 +124,10 @@ class VolumeStream : public GridStream {
   VolumeStream(const VolumeSource& source, const Volume& volume, const BlockRecords& records,
                const BlockClass* classes)
       : GridStream(volume, source.grid().axis, records, classes, source.look().slices(), false),
-        source_(source),
-        grid_from_world_(volume.grid_from_world()) {}
+        source_(source) {}
 
   Interval<double> start(const Ray<double>& ray) override {
-    sides_.start(grid_from_world_, ray);
+    if (source_.labels() != nullptr) sides_.start(grid_from_world(), ray);
     return GridStream::start(ray);
   }
   void restrict_to_range(Interval<double> range) override {
@@ -185,7 +184,6 @@ class VolumeStream : public GridStream {
   }
 
   const VolumeSource& source_;
-  const Affine<double>& grid_from_world_;
   PlaneDoubt sides_;
   MultivariateSpan<double> span_;
   double begin_ = 0, end_ = 0;  ///< of the cell
