@@ -32,7 +32,7 @@ Volume make_volume(const VolumeFile& file, int component, VolumeData data,
   Volume::Description description = file.description;
   if (part) {
     description = sub_description(description, part->box);
-    if (size_of(data) != value_count(*part)) {
+    if (size_of(data) != value_count(part->box)) {
       data = sub_values(data, part->dimensions, part->box);
     }
   }

@@ -22,10 +22,10 @@ struct GridPart {
   IndexBox box;
 };
 
-/// The number of values of the part.
-inline std::size_t value_count(const GridPart& part) noexcept {
+/// The number of values of a box.
+inline std::size_t value_count(const IndexBox& box) noexcept {
   std::size_t count = 1;
-  for (const int side : part.box.count) count *= static_cast<std::size_t>(side);
+  for (const int side : box.count) count *= static_cast<std::size_t>(side);
   return count;
 }
 

@@ -207,7 +207,7 @@ std::vector<VolumeData> read_values(const std::filesystem::path& path, const For
   const std::string name = path.string();
   if (!array.reads_parts) range.part = nullptr;
   const std::size_t points =
-      range.part != nullptr ? value_count(*range.part) : value_count(array.sides, name);
+      range.part != nullptr ? value_count(range.part->box) : value_count(array.sides, name);
   const std::size_t count = value_count(points, range.number, name);
   // Each component begins where any type may.
   const std::size_t largest =

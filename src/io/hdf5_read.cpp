@@ -135,7 +135,7 @@ void read_ordered(hid_t id, const Dataset& dataset, int component, const IndexBo
 template <class Number>
 void read_whole_numbers(hid_t id, const Dataset& dataset, const GridPart& part,
                         ComponentRange range, GridValues& values) {
-  const std::size_t points = value_count(part);
+  const std::size_t points = value_count(part.box);
   std::vector<WholeNumbers> components;
   std::vector<Number> numbers(points);
   Rounding rounding;
@@ -206,7 +206,7 @@ void read_grid(const std::filesystem::path& path, const std::string& name, const
   const std::size_t size = H5Tget_size(memory_type(dataset->type));
   for (int c = range.first; c < range.first + range.number; ++c) {
     const std::span<std::byte> to = values.next(dataset->about.type);
-    if (to.size() != value_count(part) * size)
+    if (to.size() != value_count(part.box) * size)
       throw Error("the file was changed while it was read");
     read_ordered(id.get(), *dataset, c, part.box, to, size);
   }

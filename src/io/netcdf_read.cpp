@@ -204,7 +204,7 @@ void read_grid(const std::filesystem::path& path, const std::string& name, const
     sides[a] = static_cast<std::int64_t>(variable->sides[axes->first + 2 - a]);
   }
   const GridPart part = wanted_part(sides, range);
-  const std::size_t points = value_count(part);
+  const std::size_t points = value_count(part.box);
   for (std::size_t a = 0; a < 3; ++a) {
     start[axes->first + 2 - a] = static_cast<std::size_t>(part.box.first[a]);
     count[axes->first + 2 - a] = static_cast<std::size_t>(part.box.count[a]);

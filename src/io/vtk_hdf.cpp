@@ -216,14 +216,13 @@ std::string vtk_hdf_type(const std::filesystem::path& path) {
 }
 
 std::size_t VtkHdfValues::want(const VtkHdfArray& array, std::optional<std::int64_t> component,
-                               const std::optional<GridPart>& part) {
+                               const std::optional<IndexBox>& box) {
   const std::string name = path_.string();
   if (!array.fault.empty()) {
     throw Error(name + ": the array \"" + one_line(array.name) + "\" is " + one_line(array.fault));
   }
   const std::size_t all = count_of(array, component.has_value(), name);
-  const std::size_t count = part ? value_count(*part) : all;
-  const std::optional<IndexBox> box = part ? std::optional(part->box) : std::nullopt;
+  const std::size_t count = box ? value_count(*box) : all;
   const std::size_t bytes = count * value_size(array.type, name);
   entries_.push_back({array, component, box, count, bytes_});
   constexpr std::size_t alignment = 8, most = std::size_t{1} << 61;

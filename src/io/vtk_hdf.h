@@ -68,7 +68,7 @@ class VtkHdfValues {
   explicit VtkHdfValues(std::filesystem::path path) : path_(std::move(path)) {}
   /// Returns the number by which its values are asked for.
   std::size_t want(const VtkHdfArray& array, std::optional<std::int64_t> component = {},
-                   const std::optional<GridPart>& part = {});
+                   const std::optional<IndexBox>& box = {});
   /// Reads all that is wanted. Throws Error, also where memory does not hold it.
   void read();
   /// The values, in the array's type, in place: they live as long as anyone has them.

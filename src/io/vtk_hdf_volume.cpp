@@ -164,13 +164,13 @@ Volume::Description describe(const Image& image, const Named& named, const std::
 std::vector<VolumeData> read_values(const std::filesystem::path& path, const Named& named,
                                     ComponentRange range) {
   VtkHdfValues values(path);
-  const std::optional<GridPart> part =
-      range.part != nullptr ? std::optional(*range.part) : std::nullopt;
+  const std::optional<IndexBox> box =
+      range.part != nullptr ? std::optional(range.part->box) : std::nullopt;
   for (int c = range.first; c < range.first + range.number; ++c) {
     if (named.array.sides.size() == 4) {
-      values.want(named.array, c, part);
+      values.want(named.array, c, box);
     } else {
-      values.want(named.array, {}, part);
+      values.want(named.array, {}, box);
     }
   }
   values.read();

@@ -176,6 +176,14 @@ void hide(VolumeData& data, int components, const std::vector<bool>& hidden) {
       data);
 }
 
+/// The box of points around values, which stand at points or in cells.
+IndexBox points_of(IndexBox values, Centering centering) {
+  if (centering == Centering::cell) {
+    for (int& side : values.count) ++side;
+  }
+  return values;
+}
+
 /// The pieces of an image, with the places of an array's values, which stand at points or in cells.
 std::vector<ImagePiece> pieces_of(const std::filesystem::path& path, Centering centering) {
   const std::optional<VtkFileKind> kind = vtk_file_kind(path);
@@ -190,12 +198,9 @@ std::vector<ImagePiece> pieces_of(const std::filesystem::path& path, Centering c
 }
 
 /// Reads the values of a box by the reader of a grid's head.
-VolumeData read_box(const VtkVolume& grid, IndexBox box, const std::string& name) {
-  if (grid.arrays.front().centering == Centering::cell) {
-    for (int& side : box.count) ++side;
-  }
+VolumeData read_box(const VtkVolume& grid, const IndexBox& box, const std::string& name) {
   VtkVolume part;
-  grid.read(box, part);
+  grid.read(points_of(box, grid.arrays.front().centering), part);
   check_answer(part, name);
   return std::move(part.arrays.front().values);
 }
@@ -205,13 +210,10 @@ VolumeData read_piece(const VtkVolume& grid, const ImagePiece& piece, IndexBox b
   const std::string name = piece.file.string();
   const MeshArray& array = grid.arrays.front();
   const VtkVolume own = read_grid(piece.file, array.name, false, true);
-  IndexBox points = piece.box;
-  if (array.centering == Centering::cell) {
-    for (int& side : points.count) ++side;
-  }
   const MeshArray& its = own.arrays.front();
-  if (own.points != points.count || !own.read || own.type != grid.type ||
-      its.components != array.components || its.centering != array.centering) {
+  if (own.points != points_of(piece.box, array.centering).count || !own.read ||
+      own.type != grid.type || its.components != array.components ||
+      its.centering != array.centering) {
     throw Error(name + ": has another extent, or another type of \"" + array.name +
                 "\", than the list of pieces says; write the list anew");
   }
