@@ -10,15 +10,13 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
-#include <fstream>
-#include <iterator>
 #include <optional>
 #include <string>
 #include <string_view>
 
 #include "foreign_text.h"
-#include "input_file.h"
 #include "inviwo_values.h"
+#include "pellucid/io/atomic_file.h"
 #include "pellucid/scene/error.h"
 #include "xml_scanner.h"
 
@@ -145,10 +143,8 @@ void place(const Document& document, InviwoHeader& header) {
 VolumeFile open_ivf(const std::filesystem::path& path, const ReadOptions& options) {
   const std::string name = path.string();
   refuse_raw_options(options, name);
-  constexpr std::uintmax_t largest = std::uintmax_t{1} << 24;
-  if (check_input_file(path) > largest) throw Error(name + ": is too large for a header");
-  std::ifstream file(path, std::ios::binary);
-  const std::string text{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+  constexpr std::size_t largest = std::size_t{1} << 24;
+  const std::string text = read_text_file(path, largest);
   const Document document = Reader(text, name).read();
   InviwoHeader header = document.header;
   header.values = path.parent_path() / header.values;

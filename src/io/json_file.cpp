@@ -2,11 +2,9 @@
 #include "json_file.h"
 
 #include <array>
-#include <fstream>
-#include <iterator>
 #include <utility>
 
-#include "input_file.h"
+#include "pellucid/io/atomic_file.h"
 #include "pellucid/scene/error.h"
 
 namespace pellucid {
@@ -51,12 +49,8 @@ JsonFile parse_data_json(std::string_view text, const std::string& name) {
 }
 
 JsonFile read_data_json(const std::filesystem::path& path) {
-  const std::string name = path.string();
-  constexpr std::uintmax_t largest = std::uintmax_t{1} << 28;
-  if (check_input_file(path) > largest) throw Error(name + ": is too large for a header");
-  std::ifstream file(path, std::ios::binary);
-  const std::string text{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
-  return parse_data_json(text, name);
+  constexpr std::size_t largest = std::size_t{1} << 28;
+  return parse_data_json(read_text_file(path, largest), path.string());
 }
 
 std::filesystem::path path_inside(const std::filesystem::path& folder, const std::string& relative,

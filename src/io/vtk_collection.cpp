@@ -3,13 +3,11 @@
 
 #include <algorithm>
 #include <array>
-#include <fstream>
-#include <iterator>
 #include <optional>
 #include <string>
 #include <string_view>
 
-#include "input_file.h"
+#include "pellucid/io/atomic_file.h"
 #include "pellucid/scene/error.h"
 #include "vtk_file_kind.h"
 #include "vtk_volume.h"
@@ -42,10 +40,8 @@ std::optional<std::string> collection_kind(const fs::path& path) {
 /// The files that the elements DataSet name, as they are named.
 std::vector<std::string> names_in(const fs::path& path) {
   const std::string name = path.string();
-  constexpr std::uintmax_t largest = std::uintmax_t{1} << 26;
-  if (check_input_file(path) > largest) throw Error(name + ": is too large for a list of files");
-  std::ifstream stream(path, std::ios::binary);
-  const std::string text{std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
+  constexpr std::size_t largest = std::size_t{1} << 26;
+  const std::string text = read_text_file(path, largest);
   XmlScanner scanner(text, name);
   std::vector<std::string> names;
   while (const std::optional<XmlTag> tag = scanner.next()) {

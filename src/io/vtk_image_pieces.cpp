@@ -3,15 +3,13 @@
 
 #include <algorithm>
 #include <array>
-#include <fstream>
-#include <iterator>
 #include <optional>
 #include <sstream>
 #include <string>
 #include <string_view>
 #include <utility>
 
-#include "input_file.h"
+#include "pellucid/io/atomic_file.h"
 #include "pellucid/scene/error.h"
 #include "xml_scanner.h"
 
@@ -73,10 +71,8 @@ void visit_rows(const IndexBox& part, const IndexBox& box, const Visit& visit) {
 
 std::vector<ImagePiece> image_pieces(const std::filesystem::path& path) {
   const std::string name = path.string();
-  constexpr std::uintmax_t largest = std::uintmax_t{1} << 26;
-  if (check_input_file(path) > largest) throw Error(name + ": is too large for a list of pieces");
-  std::ifstream stream(path, std::ios::binary);
-  const std::string text{std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
+  constexpr std::size_t largest = std::size_t{1} << 26;
+  const std::string text = read_text_file(path, largest);
   XmlScanner scanner(text, name);
   std::optional<Extent> whole;
   std::vector<ImagePiece> pieces;
@@ -112,8 +108,7 @@ VolumeData join_pieces(const std::vector<ImagePiece>& pieces, const IndexBox& bo
     if (is_new) parts.emplace_back(&piece, *part);
   }
   if (!parts.empty() && parts.front().second == box) return read(*parts.front().first, box);
-  std::size_t count = 1;
-  for (const int side : box.count) count *= size(side);
+  const std::size_t count = value_count(box);
   std::vector<bool> known(count);
   std::optional<VolumeData> joined;
   // The first piece has the last word.

@@ -9,8 +9,6 @@
 
 #include <array>
 #include <cmath>
-#include <fstream>
-#include <iterator>
 #include <limits>
 #include <optional>
 #include <string>
@@ -22,9 +20,9 @@
 #include <vector>
 
 #include "foreign_text.h"
-#include "input_file.h"
 #include "inviwo_values.h"
 #include "memory_limit.h"
+#include "pellucid/io/atomic_file.h"
 #include "pellucid/scene/error.h"
 #include "scene_json_document.h"
 #include "text.h"
@@ -202,10 +200,8 @@ VolumeFile open_vvd(const fs::path& path, const ReadOptions& options) {
   const std::string name = path.string();
   refuse_raw_options(options, name);
   // Previews and histograms stand in it, too.
-  constexpr std::uintmax_t largest = std::uintmax_t{1} << 26;
-  if (check_input_file(path) > largest) throw Error(name + ": is too large for a header");
-  std::ifstream stream(path, std::ios::binary);
-  const std::string text{std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
+  constexpr std::size_t largest = std::size_t{1} << 26;
+  const std::string text = read_text_file(path, largest);
   Document document = Reader(text, name).read();
   document.header.values = file_of(document, path.parent_path());
   ReadOptions rest = options;
