@@ -249,10 +249,11 @@ def audit(render_window: Any, tolerance: float = 1 / 4096, progress: Any = None)
     scene = scene_of(renderer, notes)
     scene.integration = Integration(tolerance=tolerance)
     ours = Renderer().render(scene, progress=progress)
-    if finished(renderer, ours) is not ours:
+    shown = finished(renderer, ours)
+    if shown is not ours:
         notes.append("the final color has a window and a level; ours is without, for comparison "
                      "with them")
-    found = finished(renderer, ours).compare(theirs)
+    found = shown.compare(theirs)
     if found.not_finite:
         notes.append(f"{found.not_finite} numbers of VTK's picture are not finite")
     return Audit(ours, theirs, scene, found.largest, found.rms, found.share_over_255, found.at,
@@ -337,13 +338,13 @@ def _grid_layer(data: Any, look: Any, matrix: numpy.ndarray, what: str,
         if is_nearest:
             notes.append(f"{what}: dependent components are trilinear")
     else:
-        points = _joined(opacities, _color_curve(look, what, notes))
+        colors = _color_curve(look, what, notes)
         if is_nearest and not (look.GetShade(0) or gradients):
-            return _nearest_layer(components[0].array, volumes[0], opacities,
-                                  _color_curve(look, what, []), unit)
+            return _nearest_layer(components[0].array, volumes[0], opacities, colors, unit)
         if is_nearest:
             notes.append(f"{what}: nearest values are shown without light and gradient opacity; "
                          "here the data are trilinear (SetInterpolationTypeToLinear())")
+        points = _joined(opacities, colors)
         layer = Layer(volumes[0], OpacityTable([(x, a[0], tuple(c)) for x, a, c in points], unit))
         if gradients:
             layer.gradient_opacity = GradientOpacity([(x, max(y[0], 0.0)) for x, y in gradients],
