@@ -184,20 +184,17 @@ VolumeData component_of(vtkDataArray& array, int component) {
   return std::move(chosen.values);
 }
 
-std::uint64_t fingerprint_of(vtkDataArray& array) {
+std::uint64_t fingerprint_of(vtkDataArray& array, int component) {
   constexpr vtkIdType looked_at = 4096;
-  const int components = array.GetNumberOfComponents();
   const vtkIdType count = array.GetNumberOfTuples();
   const vtkIdType step = std::max<vtkIdType>(count / looked_at, 1);
   std::uint64_t state = 0xcbf29ce484222325U;  // FNV-1a, of 64 bits at a time
   for (vtkIdType tuple = 0; tuple < count; tuple += step) {
     // Another place in its step each time: data repeat along their axes.
     const vtkIdType place = std::min(tuple + (tuple / step * 7919) % step, count - 1);
-    for (int c = 0; c < components; ++c) {
-      const auto bits = std::bit_cast<std::uint64_t>(array.GetComponent(place, c));
-      state = (state ^ bits) * 0x100000001b3U;
-      state ^= state >> 29;
-    }
+    const auto bits = std::bit_cast<std::uint64_t>(array.GetComponent(place, component));
+    state = (state ^ bits) * 0x100000001b3U;
+    state ^= state >> 29;
   }
   return state;
 }
@@ -208,7 +205,7 @@ std::shared_ptr<const Volume> KeptGrids::find(vtkDataSet& data, vtkDataArray& ar
   Volume::Description grid =
       grid_of(data, of_cells, name != nullptr && *name != '\0' ? name : data.GetClassName());
   const void* const memory = memory_of(array);
-  const std::uint64_t fingerprint = fingerprint_of(array);
+  const std::uint64_t fingerprint = fingerprint_of(array, component);
   for (Kept& kept : kept_) {
     if (kept.array == &array && kept.memory == memory && kept.time == array.GetMTime() &&
         kept.fingerprint == fingerprint && kept.values == array.GetNumberOfValues() &&

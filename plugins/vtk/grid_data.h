@@ -24,9 +24,9 @@ Volume::Description grid_of(vtkDataSet& data, bool of_cells, const std::string& 
 /// Otherwise, and for bits and whole numbers of 64 bits, it is copied. Throws Error.
 VolumeData component_of(vtkDataArray& array, int component);
 
-/// Returns a number that another one takes the place of if values change: of some thousand values,
-/// evenly spread, so that a change of few values may be missed.
-std::uint64_t fingerprint_of(vtkDataArray& array);
+/// Returns a number that another one takes the place of if values of a component change: of some
+/// thousand values, evenly spread, so that a change of few values may be missed.
+std::uint64_t fingerprint_of(vtkDataArray& array, int component);
 
 /// Keeps the volumes of the last picture. A volume is made again if its array or its grid changed,
 /// as the array's time of modification, its memory, its fingerprint and the numbers of the grid

@@ -26,10 +26,6 @@
 namespace pellucid::plugin {
 namespace {
 
-TransferFunction as_function(const LookRecipe& recipe) {
-  return function_of(recipe);
-}
-
 /// One volume on its way to layers.
 class GridTranslator {
  public:
@@ -244,8 +240,7 @@ Layer GridTranslator::dependent_layer() {
     for (const auto& volume : volumes) list.push_back({std::to_string(list.size()), "", volume});
     return Channels(std::move(list));
   });
-  layer.content = ChannelsContent{
-      channels, kept_.dependent.find(recipe, [](const auto& made) { return function_of(made); })};
+  layer.content = ChannelsContent{channels, kept_.dependent.find(recipe, dependent_function)};
   if (property_.GetInterpolationType() != VTK_LINEAR_INTERPOLATION) {
     notes_.add("dependent components are trilinear (SetInterpolationTypeToLinear())");
   }
@@ -273,7 +268,7 @@ Layer GridTranslator::component_layer(int component) {
     layer.content = nearest_content(data, recipe);
     return layer;
   }
-  const auto function = kept_.functions.find(recipe, as_function);
+  const auto function = kept_.functions.find(recipe, function_of);
   layer.content = VolumeContent{data, function, label_mask(recipe, component)};
   if (layer.projection) {
     if (property_.GetShade(component) != 0) notes_.add("projections have no light");
@@ -331,7 +326,7 @@ std::shared_ptr<const LabelMask> GridTranslator::label_mask(const LookRecipe& ba
   LookRecipe look = base;
   if (mask_.is_binary) {
     for (JoinedPoint& point : look.points) point.a = 0;
-    recipe.second.emplace_back(0, kept_.functions.find(look, as_function));
+    recipe.second.emplace_back(0, kept_.functions.find(look, function_of));
   } else {
     for (const int label : property_.GetLabelMapLabels()) {
       vtkColorTransferFunction* const color = property_.GetLabelColor(label);
@@ -347,7 +342,7 @@ std::shared_ptr<const LabelMask> GridTranslator::label_mask(const LookRecipe& ba
           mapper_.GetBlendMode() != vtkVolumeMapper::COMPOSITE_BLEND) {
         continue;  // surfaces
       }
-      recipe.second.emplace_back(label, kept_.functions.find(look, as_function));
+      recipe.second.emplace_back(label, kept_.functions.find(look, function_of));
     }
   }
   return kept_.masks.find(recipe, [](const KeptOfGrids::MaskRecipe& made) {

@@ -122,7 +122,8 @@ TransferFunction function_of(const LookRecipe& recipe) {
   return TransferFunction(std::move(points));
 }
 
-std::shared_ptr<const MultivariateTransferFunction> function_of(const DependentRecipe& recipe) {
+std::shared_ptr<const MultivariateTransferFunction> dependent_function(
+    const DependentRecipe& recipe) {
   const int channels = recipe.colors.size() == 1 ? 2 : 4;
   const double share = 1.0 / static_cast<double>(recipe.colors.size());
   std::vector<ChannelTransferFunction> tables;

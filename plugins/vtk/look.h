@@ -64,7 +64,8 @@ struct DependentRecipe {
 
   bool operator==(const DependentRecipe&) const = default;
 };
-std::shared_ptr<const MultivariateTransferFunction> function_of(const DependentRecipe& recipe);
+std::shared_ptr<const MultivariateTransferFunction> dependent_function(
+    const DependentRecipe& recipe);
 
 /// Returns the looks of values, as labels 0, 1, ...: the function at each.
 LabelTable label_table(const LookRecipe& recipe, const std::vector<double>& values);

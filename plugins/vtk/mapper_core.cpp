@@ -21,7 +21,6 @@
 #include <thread>
 #include <utility>
 
-#include "pellucid/cpu/render.h"
 #include "pellucid/scene/error.h"
 
 namespace pellucid::plugin {
@@ -361,13 +360,15 @@ void MapperCore::finish_picture(const Scene& scene, Image& image) {
   if (finish.shows_depths) {
     RenderOptions options;
     options.threads = settings.threads;
-    const Image shape = pellucid::render(shape_of(scene), options);
+    const Image shape = shape_renderer_.render(shape_of(scene), options);
     for (std::size_t i = 0; i < image.pixels.size(); ++i) {
       const float sum = depth_of(image.pixels[i][3]), covered = shape.pixels[i][3];
       image.pixels[i] = {sum * covered, sum * covered, sum * covered, covered};
     }
-    // The functions of which these are the depths are chords of products.
+    // The depths are of chords of the functions: what the chords are off by adds up.
     outcome.largest_error += sum_tolerance(inner_tolerance()) * std::abs(finish.scale);
+  } else {
+    shape_renderer_.clear();
   }
   if (finish.scale == 1 && finish.bias == 0) return;
   const auto scale = static_cast<float>(finish.scale), bias = static_cast<float>(finish.bias);

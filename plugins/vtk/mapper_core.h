@@ -122,7 +122,7 @@ class MapperCore {
 
   KeptOfGrids grids_;
   KeptOfMeshes meshes_;
-  Renderer renderer_;
+  Renderer renderer_, shape_renderer_;
   vtkSmartPointer<vtkRayCastImageDisplayHelper> display_;
   std::vector<unsigned short> pixels_;
   std::set<std::string> told_;

@@ -106,7 +106,7 @@ std::vector<Layer> layers_of(vtkUnstructuredGridVolumeMapper& mapper, vtkVolume&
   const vtkMTimeType time = time_of(*grid, *array);
   // Cells that are inserted change no time.
   const std::array<vtkIdType, 2> counts{grid->GetNumberOfPoints(), grid->GetNumberOfCells()};
-  const std::uint64_t fingerprint = fingerprint_of(*array);
+  const std::uint64_t fingerprint = fingerprint_of(*array, 0);
   if (kept.mesh == nullptr || kept.array != array || kept.time != time || kept.counts != counts ||
       kept.fingerprint != fingerprint || kept.cells != grid->GetCells()) {
     kept.mesh = mesh_of(*grid, *array, of_cells != 0);
@@ -128,7 +128,7 @@ std::vector<Layer> layers_of(vtkUnstructuredGridVolumeMapper& mapper, vtkVolume&
   layer.content = MeshContent{
       kept.mesh,
       kept.functions.find(look_recipe(property, 0, meaning, tolerance, size_of(*kept.mesh), notes),
-                          [](const LookRecipe& recipe) { return function_of(recipe); })};
+                          function_of)};
   if (property.GetShade(0) != 0) notes.add("volumes of unstructured grids have no light");
   return {layer};
 }
