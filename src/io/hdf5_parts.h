@@ -3,6 +3,7 @@
 
 #include <hdf5.h>
 
+#include <array>
 #include <cstddef>
 #include <filesystem>
 #include <optional>
@@ -84,6 +85,29 @@ inline void check_kind(hid_t dataset, hid_t type) {
   if (H5Tget_class(type) == H5T_BITFIELD) {
     throw Error("a dataset of bit fields, which are no numbers; save it as integers");
   }
+}
+
+/// Returns the error of values that HDF5 could not read. It names the first filter that they need
+/// and HDF5 has not.
+inline Error unreadable_values(hid_t dataset, const std::string& name) {
+  const std::string what = "HDF5 cannot read the values of \"" + name + "\"; ";
+  const Id how(H5Dget_create_plist(dataset), H5Pclose, "the layout of a dataset");
+  const int filters = H5Pget_nfilters(how.get());
+  for (int i = 0; i < filters; ++i) {
+    unsigned flags = 0;
+    std::size_t parameters = 0;
+    std::array<char, 80> text{};
+    const H5Z_filter_t filter =
+        H5Pget_filter2(how.get(), static_cast<unsigned>(i), &flags, &parameters, nullptr,
+                       text.size() - 1, text.data(), nullptr);
+    if (filter < 0 || H5Zfilter_avail(filter) > 0) continue;
+    std::string title = "filter " + std::to_string(filter);
+    if (text[0] != '\0') title += " (" + std::string(text.data()) + ")";
+    return Error(what + "they need " + title +
+                 ", which HDF5 lacks here; name the folder of its plug-in in HDF5_PLUGIN_PATH, or "
+                 "save them with gzip");
+  }
+  return Error(what + "the file is cut off or damaged");
 }
 
 }  // namespace pellucid

@@ -99,10 +99,7 @@ void read_component(hid_t id, const Dataset& dataset, int component, const Index
       H5Sselect_hyperslab(space.get(), H5S_SELECT_SET, start.data(), nullptr, count.data(),
                           nullptr) >= 0 &&
       H5Dread(id, memory_type(dataset.type), memory.get(), space.get(), H5P_DEFAULT, to) >= 0;
-  if (!done) {
-    throw Error("HDF5 cannot read the values of \"" + dataset.about.name +
-                "\"; the file is cut off or damaged, or compressed in a way that it lacks");
-  }
+  if (!done) throw unreadable_values(id, dataset.about.name);
 }
 
 /// In values, of x, y and z of a part in the order of the file, without the axis of components.

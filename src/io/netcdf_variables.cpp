@@ -11,6 +11,11 @@ namespace pellucid {
 
 void check_net_cdf(int status, const std::string& what) {
   if (status == NC_NOERR) return;
+  if (status == NC_ENOFILTER) {
+    throw Error("NetCDF cannot read " + what +
+                ", which needs a filter that HDF5 lacks here; name the folder of its plug-in in "
+                "HDF5_PLUGIN_PATH, or save it with deflate");
+  }
   throw Error("NetCDF cannot read " + what + " (" + nc_strerror(status) +
               "); the file is cut off or damaged");
 }

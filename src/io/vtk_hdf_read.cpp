@@ -186,9 +186,7 @@ void read_one(hid_t file, const VtkHdfWanted& wanted) {
                                         count.data(), nullptr) >= 0 &&
                     H5Dread(dataset.get(), memory_type(now.type), memory.get(), space.get(),
                             H5P_DEFAULT, wanted.to.data()) >= 0;
-  if (done) return;
-  throw Error("HDF5 cannot read the values of \"" + name +
-              "\"; the file is cut off or damaged, or compressed in a way that it lacks");
+  if (!done) throw unreadable_values(dataset.get(), name);
 }
 
 }  // namespace

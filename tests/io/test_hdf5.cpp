@@ -240,6 +240,53 @@ TEST_F(Hdf5, SizesBeyondMemoryAreRefused) {
   EXPECT_TRUE(contains(error_of([&] { read_volume(path("b.h5")); }), "its values"));
 }
 
+/// Turns all bits around, by a number of those that HDF5's authors leave for tests.
+constexpr H5Z_filter_t own_filter = 300;
+
+std::size_t turn_bits(unsigned, std::size_t, const unsigned[], std::size_t bytes, std::size_t*,
+                      void** buffer) {
+  auto* const at = static_cast<unsigned char*>(*buffer);
+  for (std::size_t i = 0; i < bytes; ++i) at[i] = static_cast<unsigned char>(~at[i]);
+  return bytes;
+}
+
+TEST_F(Hdf5, AFilterThatIsMissingIsNamed) {
+  const H5Z_class2_t filter{H5Z_CLASS_T_VERS, own_filter, 1,       1,
+                            "bits of tests",  nullptr,    nullptr, turn_bits};
+  ASSERT_GE(H5Zregister(&filter), 0);
+  const hsize_t sides[] = {3, 4, 5};
+  const hid_t how = H5Pcreate(H5P_DATASET_CREATE), space = H5Screate_simple(3, sides, nullptr);
+  H5Pset_chunk(how, 3, sides);
+  H5Pset_shuffle(how);
+  H5Pset_filter(how, own_filter, H5Z_FLAG_MANDATORY, 0, nullptr);
+  const hid_t file = H5Fcreate(path("b.h5").c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT);
+  const hid_t set = H5Dcreate2(file, "v", H5T_IEEE_F64LE, space, H5P_DEFAULT, how, H5P_DEFAULT);
+  const std::vector<double> values = counting<double>();
+  EXPECT_GE(H5Dwrite(set, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()), 0);
+  H5Dclose(set);
+  H5Sclose(space);
+  H5Pclose(how);
+  H5Fclose(file);
+  expect_counting(read_volume(path("b.h5")), "f64");
+  ASSERT_GE(H5Zunregister(own_filter), 0);
+  const std::string error = error_of([&] { read_volume(path("b.h5")); });
+  EXPECT_TRUE(contains(error, "filter 300 (bits of tests)")) << error;
+  EXPECT_TRUE(contains(error, "HDF5_PLUGIN_PATH")) << error;
+#ifdef PELLUCID_HAVE_NETCDF
+  write("b.nc", ScratchFolder::read(path("b.h5")));
+  const std::string by_net_cdf = error_of([&] { read_volume(path("b.nc")); });
+  EXPECT_TRUE(contains(by_net_cdf, "HDF5_PLUGIN_PATH")) << by_net_cdf;
+#endif
+  // A file that is damaged needs none.
+  add_counting<double>("packed", H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE, true);
+  close();
+  const std::string whole = ScratchFolder::read(path("a.h5"));
+  std::string damaged = whole;
+  for (std::size_t i = whole.size() / 2; i < whole.size(); ++i) damaged[i] = '\x5a';
+  write("c.h5", damaged);
+  EXPECT_FALSE(contains(error_of([&] { read_volume(path("c.h5")); }), "filter"));
+}
+
 TEST_F(Hdf5, CutOffIsAnError) {
   add_counting<double>("plain", H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE);
   add_counting<double>("packed", H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE, true);
