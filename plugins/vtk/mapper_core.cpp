@@ -217,7 +217,7 @@ Scene MapperCore::scene_with(std::vector<Layer> layers, vtkRenderer& renderer, v
   scene.integration.set_tolerance(settings.tolerance);
   scene.integration.grade = settings.grade;
   if (const double* const bounds = volume.GetBounds()) {
-    scene.clips = depth_clips(renderer, bounds);
+    scene.clips = depth_clips(view, bounds);
   }
   return scene;
 }

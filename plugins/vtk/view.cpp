@@ -45,8 +45,52 @@ int pixels_off(double center, int side, Notes& notes) {
   return static_cast<int>(whole);
 }
 
-double tangent_of_half(double degrees) {
-  return std::tan(degrees * pi<double> / 360);
+/// What a matrix of a projection says, of view coordinates to those from -1 to 1.
+struct Frustum {
+  double half_width = 0, half_height = 0;  ///< at distance 1, or anywhere if rays are parallel
+  double center[2] = {0, 0};               ///< as a camera's WindowCenter
+  Depths depths;
+};
+
+/// Throws Error for a projection by which pixels, which are `aspect` times as many across as up,
+/// are not square, or which is none of a pinhole or of parallel rays along the view direction.
+Frustum frustum_of(vtkCamera& camera, double aspect) {
+  const vtkMatrix4x4& matrix = *camera.GetProjectionTransformMatrix(aspect, -1, 1);
+  const auto p = [&](int row, int column) { return matrix.GetElement(row, column); };
+  Frustum made;
+  made.depths.is_parallel = p(3, 2) == 0;
+  const double divisor = made.depths.is_parallel ? p(3, 3) : -p(3, 2);
+  const double across = p(0, 0) / divisor, up = p(1, 1) / divisor;
+  // What a lens without shear leaves 0; c is the column of the window's center.
+  const int c = made.depths.is_parallel ? 3 : 2, other = 5 - c;
+  double rest = 0;
+  for (const double zero : {p(0, 1), p(1, 0), p(2, 0), p(2, 1), p(3, 0), p(3, 1), p(0, other),
+                            p(1, other), made.depths.is_parallel ? 0 : p(3, 3)}) {
+    rest = std::max(rest, std::abs(zero));
+  }
+  if (!(divisor > 0) || !(across > 0) || !(up > 0) || !(rest <= 1e-9 * divisor)) {
+    throw Error("camera: its projection is none of a pinhole or of parallel rays; take a frustum");
+  }
+  if (!(std::abs(across * aspect - up) <= 1e-6 * up)) {
+    throw Error("camera: by its projection pixels are not square; take one of the aspect ratio " +
+                std::to_string(aspect));
+  }
+  made.half_width = 1 / across;
+  made.half_height = 1 / up;
+  const double sign = made.depths.is_parallel ? -1 : 1;
+  made.center[0] = sign * p(0, c) / divisor;
+  made.center[1] = sign * p(1, c) / divisor;
+  const double slope = p(2, 2) / divisor, constant = p(2, 3) / divisor;
+  const auto distance = [&](double z) {
+    if (made.depths.is_parallel) return (constant - z) / slope;
+    return slope + z == 0 ? std::numeric_limits<double>::infinity() : constant / (slope + z);
+  };
+  made.depths.near = distance(-1);
+  made.depths.far = distance(1);
+  if (!(made.depths.near < made.depths.far)) {
+    throw Error("camera: its projection shows nothing from near to far; take a frustum");
+  }
+  return made;
 }
 
 void refuse_others(vtkRenderer& renderer, vtkCamera& camera) {
@@ -57,11 +101,6 @@ void refuse_others(vtkRenderer& renderer, vtkCamera& camera) {
   }
   if (camera.GetUseOffAxisProjection() != 0) {
     throw Error("camera: its projection is off-axis by a screen; set UseOffAxisProjectionOff()");
-  }
-  if (camera.GetUseExplicitProjectionTransformMatrix() || camera.GetUseExplicitAspectRatio()) {
-    throw Error(
-        "camera: has an explicit projection or aspect ratio; set "
-        "UseExplicitProjectionTransformMatrixOff() and UseExplicitAspectRatioOff()");
   }
   if (camera.GetUserViewTransform() != nullptr || camera.GetUserTransform() != nullptr) {
     throw Error("camera: has a transform of the view; move the camera instead");
@@ -98,15 +137,13 @@ std::variant<HeadLight, DirectionalLight, PointLight> head_light(vtkCamera& came
   return PointLight{vector_of(camera.GetPosition())};
 }
 
-/// Where a depth of the window's buffer is, along the view direction from the camera.
-double along_view(vtkCamera& camera, double depth) {
-  double near, far;
-  camera.GetClippingRange(near, far);
-  if (camera.GetParallelProjection() != 0) return near + depth * (far - near);
+}  // namespace
+
+double Depths::along_view(double depth) const noexcept {
+  if (is_parallel) return near + depth * (far - near);
+  if (std::isinf(far)) return near / (1 - depth);
   return near * far / (far - depth * (far - near));
 }
-
-}  // namespace
 
 View view_of(vtkRenderer& renderer, Notes& notes) {
   vtkCamera& camera = *renderer.GetActiveCamera();
@@ -114,10 +151,9 @@ View view_of(vtkRenderer& renderer, Notes& notes) {
   View view;
   renderer.GetTiledSizeAndOrigin(&view.width, &view.height, &view.left, &view.bottom);
   if (view.width < 1 || view.height < 1) throw Error("renderer: has no size");
-  double center[2];
-  camera.GetWindowCenter(center);
-  const int across = pixels_off(center[0], view.width, notes);
-  const int up = pixels_off(center[1], view.height, notes);
+  const Frustum frustum = frustum_of(camera, renderer.GetTiledAspectRatio());
+  const int across = pixels_off(frustum.center[0], view.width, notes);
+  const int up = pixels_off(frustum.center[1], view.height, notes);
   view.size = {view.width + std::abs(across), view.height + std::abs(up)};
   if (1.0 * view.size.width * view.size.height > largest_picture) {
     throw Error("camera: its WindowCenter makes it a part of a picture of " +
@@ -127,16 +163,18 @@ View view_of(vtkRenderer& renderer, Notes& notes) {
   view.column = std::max(across, 0);
   view.row = std::max(-up, 0);
 
-  double tangent = tangent_of_half(camera.GetViewAngle());
-  if (camera.GetUseHorizontalViewAngle() != 0) tangent *= double(view.height) / view.width;
-  const double larger = double(view.size.height) / view.height;
+  const double half = frustum.half_height * view.size.height / view.height;
+  view.depths = frustum.depths;
   view.camera.projection =
-      camera.GetParallelProjection() != 0 ? Projection::orthographic : Projection::perspective;
+      view.depths.is_parallel ? Projection::orthographic : Projection::perspective;
   view.camera.position = vector_of(camera.GetPosition());
   view.camera.focal_point = vector_of(camera.GetFocalPoint());
   view.camera.up = vector_of(camera.GetViewUp());
-  view.camera.vertical_angle = std::atan(tangent * larger) * 360 / pi<double>;
-  view.camera.parallel_scale = camera.GetParallelScale() * larger;
+  if (view.depths.is_parallel) {
+    view.camera.parallel_scale = half;
+  } else {
+    view.camera.vertical_angle = std::atan(half) * 360 / pi<double>;
+  }
   return view;
 }
 
@@ -245,7 +283,6 @@ std::shared_ptr<const Image> geometry_of(vtkRenderer& renderer, const View& view
   image->pixels.assign(count, {0, 0, 0, 0});
   image->depth.assign(count, 0.0F);
   const CameraFrame<double> frame = make_camera_frame(view.camera, view.size);
-  vtkCamera& camera = *renderer.GetActiveCamera();
   for (int y = 0; y < view.height; ++y) {
     const float* const line =
         depths.data() + static_cast<std::ptrdiff_t>(view.height - 1 - y) * view.width;
@@ -259,16 +296,16 @@ std::shared_ptr<const Image> geometry_of(vtkRenderer& renderer, const View& view
         continue;
       }
       const double slope = dot(frame.ray(column, row).direction, frame.forward);
-      end = static_cast<float>(along_view(camera, double{line[x]}) / slope);
+      end = static_cast<float>(view.depths.along_view(double{line[x]}) / slope);
     }
   }
   return image;
 }
 
-std::vector<Clip> depth_clips(vtkRenderer& renderer, const double bounds[6]) {
-  vtkCamera& camera = *renderer.GetActiveCamera();
-  const Vec3<double> position = vector_of(camera.GetPosition());
-  const Vec3<double> forward = vector_of(camera.GetDirectionOfProjection());
+std::vector<Clip> depth_clips(const View& view, const double bounds[6]) {
+  const Vec3<double> position = view.camera.position;
+  const Vec3<double> forward = make_camera_frame(view.camera, view.size).forward;
+  const auto [near, far, is_parallel] = view.depths;
   double first = std::numeric_limits<double>::infinity(), last = -first;
   for (int corner = 0; corner < 8; ++corner) {
     const Vec3<double> point{bounds[corner & 1], bounds[2 + (corner >> 1 & 1)],
@@ -277,8 +314,6 @@ std::vector<Clip> depth_clips(vtkRenderer& renderer, const double bounds[6]) {
     first = std::min(first, depth);
     last = std::max(last, depth);
   }
-  double near, far;
-  camera.GetClippingRange(near, far);
   std::vector<Clip> clips;
   if (first < near) clips.push_back({ClipPlane{position + forward * near, forward}});
   if (last > far) clips.push_back({ClipPlane{position + forward * far, -forward}});

@@ -13,9 +13,19 @@ class vtkRenderer;
 
 namespace pellucid::plugin {
 
+/// How depths of a window's buffer lie along the view direction.
+struct Depths {
+  double near = 0, far = 0;  ///< of depth 0 and depth 1; far may be infinite
+  bool is_parallel = false;
+
+  /// Returns how far a depth from 0 to 1 is from the camera, along the view direction.
+  double along_view(double depth) const noexcept;
+};
+
 /// What of a scene's picture a renderer's part of the window shows.
 struct View {
   Camera camera;
+  Depths depths;
   ImageSize size;             ///< of the scene's picture
   int width = 0, height = 0;  ///< of the window's part
   int column = 0, row = 0;    ///< of the window's upper left pixel in the scene's picture
@@ -25,9 +35,9 @@ struct View {
   bool is_cut() const noexcept { return size.width != width || size.height != height; }
 };
 
-/// Returns the camera of a renderer. A window of the camera that is not in its middle, as of tiles,
-/// is a part of a larger picture, which has whole pixels. Throws Error for what has no counterpart:
-/// shear, a transform of the view, pixels that are not square.
+/// Returns the camera of a renderer, also of an explicit projection. A window of the camera that is
+/// not in its middle, as of tiles, is a part of a larger picture, which has whole pixels. Throws
+/// Error for what has no counterpart: shear, a transform of the view, pixels that are not square.
 View view_of(vtkRenderer& renderer, Notes& notes);
 /// Returns the lights that are on. A renderer without lights has a head light, as VTK makes one.
 /// `is_lit`: whether anything is seen in them.
@@ -46,6 +56,6 @@ std::shared_ptr<const Image> geometry_of(vtkRenderer& renderer, const View& view
 
 /// Returns the camera's planes that cut a box off, of the two that VTK draws between. `bounds`:
 /// xmin, xmax, ymin, ... in the world.
-std::vector<Clip> depth_clips(vtkRenderer& renderer, const double bounds[6]);
+std::vector<Clip> depth_clips(const View& view, const double bounds[6]);
 
 }  // namespace pellucid::plugin

@@ -565,17 +565,33 @@ def _clips(mapper: Any, matrix: numpy.ndarray, what: str, is_grid: bool) -> List
 
 
 def _camera(camera: Any, aspect: float) -> Camera:
-    if camera.GetUseExplicitProjectionTransformMatrix() or camera.GetUseExplicitAspectRatio():
-        raise Error("camera: has an explicit projection or aspect ratio; switch them off")
     for name, default in (("GetWindowCenter", (0.0, 0.0)), ("GetViewShear", (0.0, 0.0, 1.0))):
         if tuple(getattr(camera, name)()) != default:
             raise Error(f"camera: its {name[3:]} is {getattr(camera, name)()}; set {default}")
-    angle = camera.GetViewAngle()
-    if camera.GetUseHorizontalViewAngle():
-        angle = math.degrees(2 * math.atan(math.tan(math.radians(angle) / 2) / aspect))
-    return Camera(tuple(camera.GetPosition()), tuple(camera.GetFocalPoint()),
-                  tuple(camera.GetViewUp()), angle, camera.GetParallelScale(),
-                  "orthographic" if camera.GetParallelProjection() else "perspective")
+    matrix = _matrix(camera.GetProjectionTransformMatrix(aspect, -1, 1))
+    is_parallel = matrix[3, 2] == 0
+    divisor = matrix[3, 3] if is_parallel else -matrix[3, 2]
+    column = 3 if is_parallel else 2
+    if divisor > 0:
+        matrix /= divisor
+    center = matrix[:2, column]
+    lens = numpy.zeros((4, 4))
+    lens[0, 0], lens[1, 1], lens[3, column] = matrix[0, 0], matrix[1, 1], matrix[3, column]
+    lens[2, 2:], lens[:2, column] = matrix[2, 2:], center
+    if not (divisor > 0 and numpy.abs(matrix - lens).max() <= 1e-9 and matrix[0, 0] > 0
+            and matrix[1, 1] > 0):
+        raise Error("camera: its projection is none of a pinhole or of parallel rays; take a "
+                    "frustum")
+    if center.any():
+        raise Error(f"camera: its projection has the center {center.tolist()}; set [0.0, 0.0]")
+    if abs(matrix[0, 0] * aspect / matrix[1, 1] - 1) > 1e-6:
+        raise Error(f"camera: by its projection pixels are not square; take one of the aspect "
+                    f"ratio {aspect:g}")
+    half = 1 / matrix[1, 1]
+    where = tuple(camera.GetPosition()), tuple(camera.GetFocalPoint()), tuple(camera.GetViewUp())
+    if is_parallel:
+        return Camera(*where, parallel_scale=half, projection="orthographic")
+    return Camera(*where, vertical_angle=math.degrees(2 * math.atan(half)))
 
 
 def _has_ambient_light(renderer: Any) -> bool:

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 #include <vtkActor.h>
 #include <vtkGPUVolumeRayCastMapper.h>
+#include <vtkMatrix4x4.h>
 #include <vtkMultiVolume.h>
 #include <vtkPolyDataMapper.h>
 #include <vtkProperty.h>
@@ -16,6 +17,7 @@
 
 #include "mapper_core.h"
 #include "pellucid/cpu/render.h"
+#include "pellucid/math/constants.h"
 #include "tests/plugins_vtk/stage.h"
 #include "vtkPellucidFactory.h"
 #include "vtkPellucidVolumeMapper.h"
@@ -375,6 +377,85 @@ TEST(VtkGeometry, AWindowCenterBetweenPixelsIsTakenToHalfOfOneAndSaid) {
   stage.camera->SetWindowCenter(0, 0);
   EXPECT_GT(largest_difference(stage.picture(), half), 0.01);
 }
+
+/// A camera of which an explicit matrix is known to be the same.
+struct LensCase {
+  const char* name;
+  bool parallel;
+  double center_x = 0, center_y = 0;
+  bool no_end = false;  ///< the far plane is infinitely far
+};
+
+void PrintTo(const LensCase& lens, std::ostream* to) {
+  *to << lens.name;
+}
+
+class VtkExplicitProjection : public testing::TestWithParam<LensCase> {};
+
+TEST_P(VtkExplicitProjection, ShowsWhatTheSameCameraShows) {
+  const LensCase& lens = GetParam();
+  Stage stage(96, 64);
+  vtkNew<vtkPellucidVolumeMapper> mapper;
+  mapper->SetInputData(ball_image());
+  vtkVolume* const volume = stage.add(mapper, soft_property(4));
+  stage.renderer->AddActor(red_ball(beside_middle(*volume, 10), 9));
+  stage.camera->SetParallelProjection(lens.parallel ? 1 : 0);
+  stage.look(40, 10);
+  // In whole pixels: 12 and 8.
+  stage.camera->SetWindowCenter(lens.center_x, lens.center_y);
+  const Image by_angle = stage.picture();
+
+  double near, far;
+  stage.camera->GetClippingRange(near, far);
+  const double aspect = 96.0 / 64;
+  const double half = std::tan(stage.camera->GetViewAngle() * pi<double> / 360);
+  const double scale = stage.camera->GetParallelScale();
+  vtkNew<vtkMatrix4x4> matrix;
+  matrix->Zero();
+  if (lens.parallel) {
+    // An orthographic frustum, whose matrix is written out.
+    matrix->SetElement(0, 0, 1 / (scale * aspect));
+    matrix->SetElement(1, 1, 1 / scale);
+    matrix->SetElement(0, 3, -lens.center_x);
+    matrix->SetElement(1, 3, -lens.center_y);
+    matrix->SetElement(2, 2, -2 / (far - near));
+    matrix->SetElement(2, 3, -(far + near) / (far - near));
+    matrix->SetElement(3, 3, 1);
+  } else {
+    matrix->SetElement(0, 0, 1 / (half * aspect));
+    matrix->SetElement(1, 1, 1 / half);
+    matrix->SetElement(0, 2, lens.center_x);
+    matrix->SetElement(1, 2, lens.center_y);
+    matrix->SetElement(2, 2, lens.no_end ? -1 : -(far + near) / (far - near));
+    matrix->SetElement(2, 3, lens.no_end ? -2 * near : -2 * far * near / (far - near));
+    matrix->SetElement(3, 2, -1);
+  }
+  stage.camera->SetExplicitProjectionTransformMatrix(matrix);
+  stage.camera->UseExplicitProjectionTransformMatrixOn();
+  // None of these counts now.
+  stage.camera->SetViewAngle(77);
+  stage.camera->SetParallelScale(123);
+  stage.camera->SetClippingRange(near + 0.4 * (far - near), near + 0.5 * (far - near));
+  stage.camera->SetWindowCenter(0.3, 0.3);
+  const Messages messages;
+  const Image by_matrix = stage.picture();
+  EXPECT_EQ(messages.text(), "");
+  EXPECT_EQ(stage.gl_errors(), "");
+  // Rays end at the red ball's facets by depths of 24 bits, which differ without a far plane.
+  EXPECT_LE(largest_difference(by_matrix, by_angle), 1.01 / 255);
+  double most = 0;
+  for (const std::array<float, 4>& pixel : by_matrix.pixels)
+    most = std::max(most, double{pixel[0]});
+  EXPECT_GT(most, 0.3);
+}
+
+INSTANTIATE_TEST_SUITE_P(Lenses, VtkExplicitProjection,
+                         testing::Values(LensCase{"perspective", false},
+                                         LensCase{"aside", false, 0.25, -0.25},
+                                         LensCase{"without_a_far_plane", false, 0, 0, true},
+                                         LensCase{"parallel", true},
+                                         LensCase{"parallel_aside", true, 0.25, -0.25}),
+                         [](const auto& made) { return std::string(made.param.name); });
 
 }  // namespace
 }  // namespace pellucid::test

@@ -276,6 +276,31 @@ INSTANTIATE_TEST_SUITE_P(
                   stage.camera->SetViewShear(0.5, 0, 1);
                 },
                 "ViewShear"},
+        BadCase{"pixels_that_are_not_square",
+                [](Stage& stage, vtkImageData*, vtkVolumeProperty*, vtkPellucidVolumeMapper*) {
+                  stage.camera->SetExplicitAspectRatio(0.5);
+                  stage.camera->UseExplicitAspectRatioOn();
+                },
+                "pixels are not square"},
+        BadCase{"no_frustum",
+                [](Stage& stage, vtkImageData*, vtkVolumeProperty*, vtkPellucidVolumeMapper*) {
+                  vtkNew<vtkMatrix4x4> matrix;
+                  matrix->SetElement(0, 1, 0.2);
+                  stage.camera->SetExplicitProjectionTransformMatrix(matrix);
+                  stage.camera->UseExplicitProjectionTransformMatrixOn();
+                  stage.renderer->GetCullers()->RemoveAllItems();
+                },
+                "take a frustum"},
+        BadCase{"near_behind_far",
+                [](Stage& stage, vtkImageData*, vtkVolumeProperty*, vtkPellucidVolumeMapper*) {
+                  vtkNew<vtkMatrix4x4> matrix;  // z is not turned around
+                  matrix->SetElement(0, 0, 0.02);
+                  matrix->SetElement(1, 1, 0.03);
+                  stage.camera->SetExplicitProjectionTransformMatrix(matrix);
+                  stage.camera->UseExplicitProjectionTransformMatrixOn();
+                  stage.renderer->GetCullers()->RemoveAllItems();
+                },
+                "nothing from near to far"},
         BadCase{"two_eyes",
                 [](Stage& stage, vtkImageData*, vtkVolumeProperty*, vtkPellucidVolumeMapper*) {
                   stage.window->SetStereoTypeToAnaglyph();

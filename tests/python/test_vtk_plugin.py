@@ -417,8 +417,33 @@ def test_cameras_that_have_no_counterpart_are_refused():
     stage = Stage(plugin.vtkPellucidVolumeMapper())
     stage.camera.SetExplicitAspectRatio(0.5)
     stage.camera.UseExplicitAspectRatioOn()
-    with pytest.raises(pellucid.Error, match="explicit"):
+    with pytest.raises(pellucid.Error, match="not square"):
         pellucid.vtk.scene_of(stage.renderer, [])
+    stage.camera.UseExplicitAspectRatioOff()
+    for element, words in (((0, 1), "frustum"), ((0, 2), "center"), ((3, 3), "frustum")):
+        matrix = vtk.vtkMatrix4x4()
+        matrix.DeepCopy(stage.camera.GetProjectionTransformMatrix(96 / 64, -1, 1))
+        matrix.SetElement(*element, 0.25)
+        stage.camera.SetExplicitProjectionTransformMatrix(matrix)
+        stage.camera.UseExplicitProjectionTransformMatrixOn()
+        with pytest.raises(pellucid.Error, match=words):
+            pellucid.vtk.scene_of(stage.renderer, [])
+        stage.camera.UseExplicitProjectionTransformMatrixOff()
+
+
+@pytest.mark.parametrize("parallel", (False, True))
+def test_explicit_projections_agree(parallel):
+    stage = Stage(plugin.vtkPellucidVolumeMapper())
+    stage.camera.SetParallelProjection(parallel)
+    before = stage.picture()
+    matrix = vtk.vtkMatrix4x4()
+    matrix.DeepCopy(stage.camera.GetProjectionTransformMatrix(96 / 64, -1, 1))
+    stage.camera.SetExplicitProjectionTransformMatrix(matrix)
+    stage.camera.UseExplicitProjectionTransformMatrixOn()
+    stage.camera.SetViewAngle(70)
+    stage.camera.SetParallelScale(200)
+    assert numpy.abs(stage.picture() - before).max() < 1e-3
+    assert stage.off() <= tolerance_of(stage)
 
 
 def test_threads_have_a_limit():
