@@ -20,6 +20,7 @@
 #include <string>
 
 #include "cropping.h"
+#include "ghost_cells.h"
 #include "pellucid/scene/error.h"
 #include "view.h"
 
@@ -89,7 +90,7 @@ std::optional<LayerProjection> GridTranslator::projection() const {
 }
 
 std::vector<Layer> GridTranslator::layers() {
-  if (data_ == nullptr) return {};
+  if (data_ == nullptr || is_all_ghosts(*data_)) return {};
   array_ =
       vtkAbstractMapper::GetScalars(data_, mapper_.GetScalarMode(), mapper_.GetArrayAccessMode(),
                                     mapper_.GetArrayId(), mapper_.GetArrayName(), of_cells_);
@@ -180,6 +181,7 @@ Layer GridTranslator::placed_layer() {
   Layer layer;
   layer.transform = world_from_data_;
   layer.clips = clips_of(mapper_.GetClippingPlanes(), notes_);
+  for (const Clip& clip : clips_at_ghosts(*data_, world_from_data_)) layer.clips.push_back(clip);
   return layer;
 }
 

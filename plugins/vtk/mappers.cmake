@@ -9,6 +9,7 @@ function(pellucid_vtk_mappers target)
   set(sources
     cropping.cpp
     curves.cpp
+    ghost_cells.cpp
     grid_data.cpp
     grid_layers.cpp
     look.cpp

@@ -3,9 +3,13 @@
 // Volumes among geometry, in parts of windows, and several of them.
 #include <gtest/gtest.h>
 #include <vtkActor.h>
+#include <vtkCellData.h>
+#include <vtkDataSetAttributes.h>
+#include <vtkFloatArray.h>
 #include <vtkGPUVolumeRayCastMapper.h>
 #include <vtkMatrix4x4.h>
 #include <vtkMultiVolume.h>
+#include <vtkPointData.h>
 #include <vtkPolyDataMapper.h>
 #include <vtkProperty.h>
 #include <vtkSphereSource.h>
@@ -376,6 +380,109 @@ TEST(VtkGeometry, AWindowCenterBetweenPixelsIsTakenToHalfOfOneAndSaid) {
   EXPECT_NE(messages.text().find("nearest half of a pixel"), std::string::npos);
   stage.camera->SetWindowCenter(0, 0);
   EXPECT_GT(largest_difference(stage.picture(), half), 0.01);
+}
+
+/// Part of an image, with ghost cells beyond the own ones, of indices along x.
+vtkSmartPointer<vtkImageData> part_of(vtkImageData* whole, int first, int last, int own_first,
+                                      int own_last) {
+  auto part = vtkSmartPointer<vtkImageData>::New();
+  part->DeepCopy(whole);
+  int extent[6];
+  part->GetExtent(extent);
+  extent[0] = first;
+  extent[1] = last;
+  part->Crop(extent);
+  extent[0] = own_first;
+  extent[1] = own_last;
+  part->GenerateGhostArray(extent);
+  return part;
+}
+
+/// Two parts of an image, each with a layer of ghosts of the other, as the volumes of one.
+class VtkGhosts : public testing::TestWithParam<bool> {};
+
+TEST_P(VtkGhosts, PartsWithGhostsAreTheWhole) {
+  const bool of_cells = GetParam();
+  const auto image = ball_image();
+  if (of_cells) {
+    vtkNew<vtkFloatArray> values;
+    for (vtkIdType i = 0; i < image->GetNumberOfCells(); ++i) {
+      values->InsertNextValue(static_cast<float>(20 + (i * 7919) % 80));
+    }
+    image->GetCellData()->SetScalars(values);
+    image->GetPointData()->SetScalars(nullptr);
+  }
+  const auto property = soft_property(4);
+  property->SetShade(of_cells ? 0 : 1);
+  const auto turn = [](vtkVolume& volume) {
+    volume.SetOrientation(20, 30, 40);
+    volume.SetScale(1.25);
+    volume.SetPosition(3, 4, 5);
+  };
+  Stage stage;
+  vtkNew<vtkPellucidVolumeMapper> mapper;
+  mapper->SetInputData(image);
+  if (of_cells) mapper->SetScalarModeToUseCellData();
+  vtkVolume* const volume = stage.add(mapper, property);
+  turn(*volume);
+  stage.look();
+  const Image whole = stage.picture();
+  const auto shown = [&](bool with_ghosts) {
+    const auto left = part_of(image, 0, 13, 0, 12), right = part_of(image, 11, 23, 12, 23);
+    vtkNew<vtkVolume> both[2];
+    vtkPellucidFactory::Use();
+    vtkNew<vtkGPUVolumeRayCastMapper> several_mapper;
+    vtkPellucidFactory::Use(false);
+    vtkNew<vtkMultiVolume> several;
+    several->SetMapper(several_mapper);
+    for (int i = 0; i < 2; ++i) {
+      const auto part = i == 0 ? left : right;
+      if (!with_ghosts) part->GetCellData()->RemoveArray("vtkGhostType");
+      several_mapper->SetInputDataObject(i, part);
+      both[i]->SetProperty(property);
+      turn(*both[i]);
+      several->SetVolume(both[i], i);
+    }
+    if (of_cells) several_mapper->SetScalarModeToUseCellData();
+    stage.renderer->RemoveAllViewProps();
+    stage.renderer->AddVolume(several);
+    const Image picture = stage.picture();
+    stage.renderer->RemoveAllViewProps();
+    return picture;
+  };
+  const Messages messages;
+  EXPECT_LE(largest_difference(shown(true), whole),
+            2 * (half_a_step + default_tolerance + rounding));
+  EXPECT_EQ(messages.text(), "");
+  EXPECT_GT(largest_difference(shown(false), whole), 0.03);
+}
+
+INSTANTIATE_TEST_SUITE_P(Data, VtkGhosts, testing::Bool(),
+                         [](const auto& made) { return made.param ? "cells" : "lit_points"; });
+
+TEST(VtkGhostCells, AGridOfGhostsAloneShowsNothing) {
+  Stage stage;
+  vtkNew<vtkPellucidVolumeMapper> mapper;
+  mapper->SetInputData(part_of(ball_image(), 0, 6, 6, 6));
+  stage.add(mapper, soft_property(4));
+  stage.look();
+  const Messages messages;
+  const Image picture = stage.picture();
+  EXPECT_EQ(messages.text(), "");
+  for (const std::array<float, 4>& pixel : picture.pixels) ASSERT_EQ(pixel[0], 0);
+}
+
+TEST(VtkGhostCells, OwnCellsThatFillNoBoxAreRefused) {
+  Stage stage;
+  vtkNew<vtkPellucidVolumeMapper> mapper;
+  const auto image = part_of(ball_image(), 0, 23, 0, 12);
+  image->GetCellGhostArray()->SetValue(5, vtkDataSetAttributes::DUPLICATECELL);
+  mapper->SetInputData(image);
+  stage.add(mapper, soft_property(4));
+  stage.look();
+  const Messages messages;
+  stage.picture();
+  EXPECT_NE(messages.text().find("do not fill a box"), std::string::npos) << messages.text();
 }
 
 /// A camera of which an explicit matrix is known to be the same.
