@@ -1,62 +1,86 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "vtkPellucidImageVolumeRepresentation.h"
 
+#include <vtkImageData.h>
+#include <vtkInformationVector.h>
+#include <vtkNew.h>
 #include <vtkObjectFactory.h>
+#include <vtkSmartPointer.h>
 
 #include "blocks_mapper.h"
-#include "preparation.h"
+#include "shared_picture.h"
 
-using pellucid::plugin::BlocksMapper;
-using pellucid::plugin::MapperCore;
-
-namespace {
-
-/// The mapper that the constructor sets.
-MapperCore& core_of(vtkVolumeMapper* mapper) {
-  return static_cast<BlocksMapper*>(mapper)->core;
-}
-
-}  // namespace
+struct vtkPellucidImageVolumeRepresentation::Parts {
+  vtkNew<pellucid::plugin::BlocksMapper> mapper;
+  pellucid::plugin::SharedPicture picture{mapper->core, *mapper};
+};
 
 vtkStandardNewMacro(vtkPellucidImageVolumeRepresentation);
 
-vtkPellucidImageVolumeRepresentation::vtkPellucidImageVolumeRepresentation() {
-  this->VolumeMapper.TakeReference(BlocksMapper::New());
+vtkPellucidImageVolumeRepresentation::vtkPellucidImageVolumeRepresentation() : Own(new Parts) {
+  this->VolumeMapper = this->Own->mapper;
 }
 
-vtkPellucidImageVolumeRepresentation::~vtkPellucidImageVolumeRepresentation() = default;
+vtkPellucidImageVolumeRepresentation::~vtkPellucidImageVolumeRepresentation() {
+  delete this->Own;
+}
 
 void vtkPellucidImageVolumeRepresentation::SetTolerance(double tolerance) {
-  if (set_tolerance(core_of(this->VolumeMapper).settings, tolerance))
-    this->VolumeMapper->Modified();
+  if (this->Own->picture.set_tolerance(tolerance)) this->VolumeMapper->Modified();
 }
 
 void vtkPellucidImageVolumeRepresentation::SetGrade(int grade) {
-  if (set_grade(core_of(this->VolumeMapper).settings, grade)) this->VolumeMapper->Modified();
+  if (this->Own->picture.set_grade(grade)) this->VolumeMapper->Modified();
 }
 
 void vtkPellucidImageVolumeRepresentation::SetNumberOfThreads(int threads) {
-  set_threads(core_of(this->VolumeMapper).settings, threads);
+  this->Own->picture.set_threads(threads);
 }
 
 int vtkPellucidImageVolumeRepresentation::GetExact() {
-  return core_of(this->VolumeMapper).outcome.exact ? 1 : 0;
+  return this->Own->picture.outcome().exact ? 1 : 0;
 }
 
 double vtkPellucidImageVolumeRepresentation::GetLargestError() {
-  return core_of(this->VolumeMapper).outcome.largest_error;
+  return this->Own->picture.outcome().largest_error;
 }
 
 vtkIdType vtkPellucidImageVolumeRepresentation::GetPixelsOver() {
-  return core_of(this->VolumeMapper).outcome.pixels_over;
+  return this->Own->picture.outcome().pixels_over;
+}
+
+int vtkPellucidImageVolumeRepresentation::RequestUpdateExtent(vtkInformation* request,
+                                                              vtkInformationVector** inputs,
+                                                              vtkInformationVector* outputs) {
+  if (this->Superclass::RequestUpdateExtent(request, inputs, outputs) == 0) return 0;
+  pellucid::plugin::request_ghosts(inputs);
+  return 1;
+}
+
+/// ParaView cuts ghost cells off. Here they stay, and the mapper shows what is between them; the
+/// order of the ranks is by the bounds without them.
+int vtkPellucidImageVolumeRepresentation::RequestData(vtkInformation* request,
+                                                      vtkInformationVector** inputs,
+                                                      vtkInformationVector* outputs) {
+  vtkSmartPointer<vtkImageData> whole;
+  vtkImageData* const image = inputs[0]->GetNumberOfInformationObjects() == 1
+                                  ? vtkImageData::GetData(inputs[0], 0)
+                                  : nullptr;
+  if (image != nullptr && image->HasAnyGhostCells()) {
+    whole = vtkSmartPointer<vtkImageData>::New();
+    whole->ShallowCopy(image);
+  }
+  if (this->Superclass::RequestData(request, inputs, outputs) == 0) return 0;
+  if (whole != nullptr && this->Cache != nullptr) this->Cache = whole;
+  return 1;
 }
 
 void vtkPellucidImageVolumeRepresentation::UpdateMapperParameters() {
   this->Superclass::UpdateMapperParameters();
-  pellucid::plugin::prepare_picture(*this, this->IsTold);
+  this->Own->picture.prepare(*this);
 }
 
 void vtkPellucidImageVolumeRepresentation::PrintSelf(ostream& os, vtkIndent indent) {
   this->Superclass::PrintSelf(os, indent);
-  print_state(os, indent, core_of(this->VolumeMapper));
+  print_state(os, indent, this->Own->mapper->core);
 }

@@ -31,7 +31,8 @@ class VTKPELLUCIDREPRESENTATIONS_EXPORT vtkPellucidImageVolumeRepresentation
   ///@{
   /**
    * Of the last picture: whether all of its pixels were rendered (1 or 0), the largest error of any
-   * pixel, and how many pixels may be over the tolerance.
+   * pixel, and how many pixels may be over the tolerance. If ranks share the data, errors are the
+   * sums of theirs.
    */
   int GetExact();
   double GetLargestError();
@@ -42,11 +43,16 @@ class VTKPELLUCIDREPRESENTATIONS_EXPORT vtkPellucidImageVolumeRepresentation
   vtkPellucidImageVolumeRepresentation();
   ~vtkPellucidImageVolumeRepresentation() override;
 
+  int RequestUpdateExtent(vtkInformation* request, vtkInformationVector** inputs,
+                          vtkInformationVector* outputs) override;
+  int RequestData(vtkInformation* request, vtkInformationVector** inputs,
+                  vtkInformationVector* outputs) override;
   void UpdateMapperParameters() override;
 
  private:
   vtkPellucidImageVolumeRepresentation(const vtkPellucidImageVolumeRepresentation&) = delete;
   void operator=(const vtkPellucidImageVolumeRepresentation&) = delete;
 
-  bool IsTold = false;
+  struct Parts;
+  Parts* Own;
 };

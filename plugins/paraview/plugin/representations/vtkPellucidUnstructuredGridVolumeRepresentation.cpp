@@ -15,7 +15,7 @@
 
 #include "mapper_core.h"
 #include "one_component.h"
-#include "preparation.h"
+#include "shared_picture.h"
 #include "vtkPellucidUnstructuredGridMapper.h"
 
 namespace {
@@ -27,7 +27,7 @@ constexpr const char* name_of_mapper = "Pellucid";
 struct vtkPellucidUnstructuredGridVolumeRepresentation::Parts {
   vtkNew<vtkPellucidUnstructuredGridMapper> mapper;
   pellucid::plugin::OneComponent component;
-  bool is_told = false;
+  pellucid::plugin::SharedPicture picture{mapper->GetCore(), *mapper};
 };
 
 vtkStandardNewMacro(vtkPellucidUnstructuredGridVolumeRepresentation);
@@ -36,6 +36,7 @@ vtkPellucidUnstructuredGridVolumeRepresentation::vtkPellucidUnstructuredGridVolu
     : Own(new Parts) {
   this->AddVolumeMapper(name_of_mapper, this->Own->mapper);
   this->Superclass::SetActiveVolumeMapper(name_of_mapper);
+  this->UseDataPartitions = true;
 }
 
 vtkPellucidUnstructuredGridVolumeRepresentation::
@@ -44,27 +45,27 @@ vtkPellucidUnstructuredGridVolumeRepresentation::
 }
 
 void vtkPellucidUnstructuredGridVolumeRepresentation::SetTolerance(double tolerance) {
-  this->Own->mapper->SetTolerance(tolerance);
+  if (this->Own->picture.set_tolerance(tolerance)) this->Own->mapper->Modified();
 }
 
 void vtkPellucidUnstructuredGridVolumeRepresentation::SetGrade(int grade) {
-  this->Own->mapper->SetGrade(grade);
+  if (this->Own->picture.set_grade(grade)) this->Own->mapper->Modified();
 }
 
 void vtkPellucidUnstructuredGridVolumeRepresentation::SetNumberOfThreads(int threads) {
-  this->Own->mapper->SetNumberOfThreads(threads);
+  this->Own->picture.set_threads(threads);
 }
 
 int vtkPellucidUnstructuredGridVolumeRepresentation::GetExact() {
-  return this->Own->mapper->GetExact() ? 1 : 0;
+  return this->Own->picture.outcome().exact ? 1 : 0;
 }
 
 double vtkPellucidUnstructuredGridVolumeRepresentation::GetLargestError() {
-  return this->Own->mapper->GetLargestError();
+  return this->Own->picture.outcome().largest_error;
 }
 
 vtkIdType vtkPellucidUnstructuredGridVolumeRepresentation::GetPixelsOver() {
-  return this->Own->mapper->GetPixelsOver();
+  return this->Own->picture.outcome().pixels_over;
 }
 
 /// ParaView cuts all cells into tetrahedra of its own before a mapper sees them. Here a grid goes
@@ -94,11 +95,14 @@ int vtkPellucidUnstructuredGridVolumeRepresentation::ProcessViewRequest(
     vtkInformationRequestKey* request, vtkInformation* in, vtkInformation* out) {
   if (this->Superclass::ProcessViewRequest(request, in, out) == 0) return 0;
   if (request != vtkPVView::REQUEST_RENDER()) return 1;
-  pellucid::plugin::prepare_picture(*this, this->Own->is_told);
+  this->Own->picture.prepare(*this);
   vtkPellucidUnstructuredGridMapper& mapper = *this->Own->mapper;
   vtkAlgorithmOutput* const port = vtkPVRenderView::GetPieceProducer(in, this);
   auto* const grid = vtkUnstructuredGrid::SafeDownCast(port->GetProducer()->GetOutputDataObject(0));
-  if (grid == nullptr) return 1;
+  if (grid == nullptr) {
+    this->Own->picture.check_order(*this);
+    return 1;
+  }
   int of_cells = 0;
   vtkDataArray* const array =
       vtkAbstractMapper::GetScalars(grid, mapper.GetScalarMode(), mapper.GetArrayAccessMode(),
@@ -112,6 +116,7 @@ int vtkPellucidUnstructuredGridVolumeRepresentation::ProcessViewRequest(
     mapper.SetInputDataObject(this->Own->component.of(*grid, *array, of_cells != 0, chosen));
   }
   this->Own->component.keep_used();
+  this->Own->picture.check_order(*this);
   return 1;
 }
 

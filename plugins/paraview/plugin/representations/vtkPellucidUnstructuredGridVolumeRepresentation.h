@@ -32,7 +32,8 @@ class VTKPELLUCIDREPRESENTATIONS_EXPORT vtkPellucidUnstructuredGridVolumeReprese
   ///@{
   /**
    * Of the last picture: whether all of its pixels were rendered (1 or 0), the largest error of any
-   * pixel, and how many pixels may be over the tolerance.
+   * pixel, and how many pixels may be over the tolerance. If ranks share the data, errors are the
+   * sums of theirs.
    */
   int GetExact();
   double GetLargestError();
@@ -43,6 +44,12 @@ class VTKPELLUCIDREPRESENTATIONS_EXPORT vtkPellucidUnstructuredGridVolumeReprese
    * Does nothing: the mapper is Pellucid's, whichever one ParaView's representation has.
    */
   void SetActiveVolumeMapper(const char*) override {}
+
+  /**
+   * Does nothing: each rank draws the cells that it has. ParaView would redistribute them, and
+   * Debian's loses some.
+   */
+  void SetUseDataPartitions(bool) override {}
 
   int ProcessViewRequest(vtkInformationRequestKey* request, vtkInformation* in,
                          vtkInformation* out) override;

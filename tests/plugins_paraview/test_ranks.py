@@ -1,0 +1,180 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Volumes of which each rank of pvbatch has a part, beside the program's pictures of the whole."""
+import math
+import os
+import sys
+import unittest
+
+import numpy
+
+sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+import test_meshes
+from stage import (BLENDED, COLORS, OF_WINDOW, OPACITIES, TOLERANCE, UNIT, StageTest,
+                   servermanager, simple, table_of)
+from vtkmodules.util import numpy_support
+from vtkmodules.vtkCommonDataModel import vtkImageData
+from vtkmodules.vtkIOXML import vtkXMLImageDataWriter
+
+RANKS = servermanager.vtkProcessModule.GetProcessModule().GetNumberOfLocalPartitions()
+SHAPE = (19, 15, 17)  # points along x, y, z
+ORIGIN, SPACING = (-8.0, -7.0, -6.0), (1.0, 1.0, 0.9)
+
+
+def bumps(x, y, z):
+    return 157 + 90 * numpy.sin(x / 2.1) * numpy.cos(y / 2.5 + 0.3) + 5 * z
+
+
+class Ranks(StageTest):
+    bent, bent_layer = test_meshes.Meshes.bent, test_meshes.Meshes.bent_layer
+    opened = test_meshes.Meshes.opened
+
+    # Each rank rounds its colors to 8 bits, and so does each step that puts two pictures over each
+    # other, which cuts off.
+    of_ranks = RANKS * OF_WINDOW + (RANKS - 1) / 255
+
+    def image(self, cells=False):
+        """An image in a file, which ranks read in parts, and the same as a field."""
+        sides = [n - 1 if cells else n for n in SHAPE]
+        first = [o + (s / 2 if cells else 0) for o, s in zip(ORIGIN, SPACING)]
+        x, y, z = (f + s * numpy.arange(n) for f, s, n in zip(first, SPACING, sides))
+        values = bumps(x, y[:, None], z[:, None, None]).astype("<f4")
+        data = vtkImageData()
+        data.SetDimensions(SHAPE)
+        data.SetOrigin(ORIGIN)
+        data.SetSpacing(SPACING)
+        array = numpy_support.numpy_to_vtk(values.ravel(), deep=1)
+        array.SetName("f")
+        (data.GetCellData() if cells else data.GetPointData()).AddArray(array)
+        writer = vtkXMLImageDataWriter()
+        writer.SetFileName(self.path("image.vti"))
+        writer.SetInputData(data)
+        writer.SetDataModeToBinary()
+        self.assertEqual(writer.Write(), 1)
+        self.write("field.raw", values.tobytes())
+        source = simple.OpenDataFile(self.path("image.vti"))
+        source.UpdatePipeline()
+        return source, {"file": "field.raw", "type": "f32", "spacing": list(SPACING),
+                        "origin": first, "dimensions": sides,
+                        "centering": "cell" if cells else "point"}
+
+    def assert_whole(self, layers, further=0.0, **more):
+        self.assert_same(layers, further=self.of_ranks - OF_WINDOW + further, **more)
+
+    def layer(self, field, **more):
+        return {"field": field, "transfer_function": table_of(COLORS, OPACITIES, UNIT), **more}
+
+    def test_ranks_share_the_data(self):
+        source, _ = self.image()
+        self.assertGreater(RANKS, 1)
+        information = source.GetDataInformation()
+        # Points between two parts belong to both.
+        self.assertGreater(information.GetNumberOfPoints(), numpy.prod(SHAPE))
+
+    def test_points(self):
+        source, field = self.image()
+        display = self.show(source, "f")
+        self.assert_whole([self.layer(field)])
+        exact, largest, over = self.results(display)
+        self.assertEqual((exact, over), (1, 0))
+        self.assertTrue(0 < largest <= TOLERANCE, largest)
+
+    def test_cells(self):
+        source, field = self.image(cells=True)
+        self.show(source, "f", "CELLS")
+        self.assert_whole([self.layer(field)])
+
+    def test_light_has_no_seams(self):
+        source, field = self.image()
+        display = self.show(source, "f")
+        display.Shade = 1
+        self.view.UseLight = 0
+        light = simple.AddLight(self.view)
+        light.Coords = "Headlight"
+        shading = {"ambient": 0, "diffuse": 1, "specular": 0, "flatness": 0}
+        self.assert_whole([self.layer(field, shading=shading)], lights=[{"type": "head"}])
+
+    def test_parallel_projection(self):
+        source, field = self.image()
+        self.show(source, "f")
+        self.view.CameraParallelProjection = 1
+        self.view.CameraParallelScale = 13
+        self.assert_whole([self.layer(field)])
+
+    def test_inside(self):
+        source, field = self.image()
+        self.show(source, "f")
+        self.view.CameraPosition = [1.2, 1.1, 0.3]
+        self.view.CameraFocalPoint = [4.0, 2.0, 6.0]
+        self.assert_whole([self.layer(field)])
+
+    def test_background(self):
+        source, field = self.image()
+        self.show(source, "f")
+        self.view.Background = [0.2, 0.3, 0.4]
+        self.assert_whole([self.layer(field)], further=BLENDED)
+
+    def test_moved(self):
+        source, field = self.image()
+        display = self.show(source, "f")
+        display.Position = [2, -1, 3]
+        display.Orientation = [0, 0, 90]
+        self.assert_whole([self.layer(
+            field, transform=[[0, -1, 0, 2], [1, 0, 0, -1], [0, 0, 1, 3]])])
+
+    def test_errors_are_of_all_ranks(self):
+        source, field = self.image()
+        display = self.show(source, "f")
+        for tolerance in (2e-2, 1e-4):
+            display.Tolerance = tolerance
+            self.assert_same([self.layer(field)], tolerance, self.of_ranks - OF_WINDOW)
+            exact, largest, over = self.results(display)
+            self.assertEqual((exact, over), (1, 0))
+            self.assertTrue(0.01 * tolerance < largest <= tolerance, largest)
+
+    def test_no_rank_but_one_has_data(self):
+        """ParaView reads a file of cells on the first rank."""
+        source = self.opened(self.bent())
+        display = self.show(source, "f")
+        self.assert_whole([self.bent_layer()])
+        exact, largest, over = self.results(display)
+        self.assertEqual((exact, over), (1, 0))
+        self.assertLessEqual(largest, TOLERANCE)
+
+    def pieces(self, first, second):
+        """The bent grid as a file of two pieces, of some hexahedra each."""
+        points = test_meshes.points_of_grid().reshape(-1, 3)
+        for number, cells in enumerate((first, second)):
+            used, places = numpy.unique(cells, return_inverse=True)
+            self.opened(test_meshes.grid_of(
+                points[used], [(test_meshes.VTK_HEXAHEDRON, cell)
+                               for cell in places.reshape(-1, 8).tolist()],
+                {"f": test_meshes.bumps(points[used])}))
+            os.replace(self.path("mesh.vtu"), self.path(f"piece{number}.vtu"))
+        self.write("mesh.pvtu", """<VTKFile type="PUnstructuredGrid" version="0.1">
+            <PUnstructuredGrid GhostLevel="0">
+            <PPointData><PDataArray type="Float64" Name="f"/></PPointData>
+            <PPoints><PDataArray type="Float64" NumberOfComponents="3"/></PPoints>
+            <Piece Source="piece0.vtu"/><Piece Source="piece1.vtu"/>
+            </PUnstructuredGrid></VTKFile>""")
+        source = simple.OpenDataFile(self.path("mesh.pvtu"))
+        source.UpdatePipeline()
+        return source
+
+    def test_pieces_of_cells(self):
+        cells = list(test_meshes.hexahedra())
+        half = len(cells) // 2  # z is not bent
+        display = self.show(self.pieces(cells[:half], cells[half:]), "f")
+        self.assert_whole([self.bent_layer()])
+        self.assertEqual(self.results(display)[0], 1)
+
+    def test_pieces_that_overlap_are_not_called_exact(self):
+        cells = list(test_meshes.hexahedra())
+        display = self.show(self.pieces(cells[::2], cells[1::2]), "f")
+        self.picture()
+        exact, largest, _ = self.results(display)
+        self.assertEqual((exact, largest), (0, math.inf))
+
+
+if __name__ == "__main__":
+    # Debian's pvpython crashes in sys.exit().
+    unittest.main(argv=["test_ranks"], exit=False)
