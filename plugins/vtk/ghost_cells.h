@@ -1,8 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <vtkSmartPointer.h>
+#include <vtkType.h>
+#include <vtkUnsignedCharArray.h>
+
+#include <array>
+#include <optional>
+#include <tuple>
 #include <vector>
 
+#include "kept.h"
 #include "pellucid/geometry/affine.h"
 #include "pellucid/scene/clip.h"
 
@@ -10,13 +18,22 @@ class vtkDataSet;
 
 namespace pellucid::plugin {
 
-/// Returns the planes around the cells of an image or a rectilinear grid that are its own, in the
-/// world. The ghost cells outside of them (vtkGhostType: DUPLICATECELL) are another block's or
-/// another process's; they are there for values and gradients at the border. Throws Error if the
-/// cells that are no ghosts do not fill a box.
-std::vector<Clip> clips_at_ghosts(vtkDataSet& data, const Affine<double>& world_from_data);
+/// The cells of a grid that are no ghosts.
+struct OwnCells {
+  std::array<int, 3> first{}, last{};  ///< of the box around them, in cells along each axis
+  vtkIdType count = 0;
+};
+/// Flags of ghosts, the time of their last change, and the sides of their grid in cells.
+using GhostRecipe =
+    std::tuple<vtkSmartPointer<vtkUnsignedCharArray>, vtkMTimeType, std::array<int, 3>>;
+using KeptOwnCells = Kept<GhostRecipe, OwnCells>;
 
-/// Returns whether all cells of such a grid are ghosts.
-bool is_all_ghosts(vtkDataSet& data);
+/// Returns the planes around the cells of an image or a rectilinear grid that are its own, in the
+/// world; nothing if all are ghosts. The ghost cells outside of the planes (vtkGhostType:
+/// DUPLICATECELL) are another block's or another process's; they are there for values and gradients
+/// at the border. Throws Error if the cells that are no ghosts do not fill a box.
+std::optional<std::vector<Clip>> clips_at_ghosts(vtkDataSet& data,
+                                                 const Affine<double>& world_from_data,
+                                                 KeptOwnCells& kept);
 
 }  // namespace pellucid::plugin

@@ -20,7 +20,6 @@
 #include <string>
 
 #include "cropping.h"
-#include "ghost_cells.h"
 #include "pellucid/scene/error.h"
 #include "view.h"
 
@@ -73,7 +72,8 @@ class GridTranslator {
   vtkDataArray* array_ = nullptr;
   int of_cells_ = 0;
   Affine<double> world_from_data_;
-  std::size_t layers_ = 1;  ///< how many there will be
+  std::vector<Clip> own_clips_;  ///< around the cells that are no ghosts
+  std::size_t layers_ = 1;       ///< how many there will be
 };
 
 std::optional<LayerProjection> GridTranslator::projection() const {
@@ -90,7 +90,7 @@ std::optional<LayerProjection> GridTranslator::projection() const {
 }
 
 std::vector<Layer> GridTranslator::layers() {
-  if (data_ == nullptr || is_all_ghosts(*data_)) return {};
+  if (data_ == nullptr) return {};
   array_ =
       vtkAbstractMapper::GetScalars(data_, mapper_.GetScalarMode(), mapper_.GetArrayAccessMode(),
                                     mapper_.GetArrayId(), mapper_.GetArrayName(), of_cells_);
@@ -99,6 +99,9 @@ std::vector<Layer> GridTranslator::layers() {
                 ": has no values to show; give it scalars, or select one of its arrays");
   }
   world_from_data_ = affine_of(*volume_.GetMatrix(), "volume");
+  const auto own = clips_at_ghosts(*data_, world_from_data_, kept_.own_cells);
+  if (!own) return {};
+  own_clips_ = *own;
   const int components = array_->GetNumberOfComponents();
   if (components > VTK_MAX_VRCOMP) {
     throw Error("the array has " + std::to_string(components) +
@@ -181,7 +184,7 @@ Layer GridTranslator::placed_layer() {
   Layer layer;
   layer.transform = world_from_data_;
   layer.clips = clips_of(mapper_.GetClippingPlanes(), notes_);
-  for (const Clip& clip : clips_at_ghosts(*data_, world_from_data_)) layer.clips.push_back(clip);
+  layer.clips.insert(layer.clips.end(), own_clips_.begin(), own_clips_.end());
   return layer;
 }
 
@@ -451,6 +454,7 @@ void KeptOfGrids::keep_used() {
   label_tables.keep_used();
   gradients.keep_used();
   masks.keep_used();
+  own_cells.keep_used();
 }
 
 std::vector<Layer> layers_of(vtkVolumeMapper& mapper, vtkDataSet* data, vtkVolume& volume,

@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include "ghost_cells.h"
 #include "grid_data.h"
 #include "look.h"
 #include "notes.h"
@@ -49,6 +50,7 @@ struct KeptOfGrids {
   Kept<std::pair<LookRecipe, std::shared_ptr<const NearestValues>>, LabelTable> label_tables;
   Kept<Curve, GradientOpacity> gradients;
   Kept<MaskRecipe, LabelMask> masks;
+  KeptOwnCells own_cells;
 
   void keep_used();
 };

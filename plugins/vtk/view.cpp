@@ -47,8 +47,8 @@ int pixels_off(double center, int side, Notes& notes) {
 
 /// What a matrix of a projection says, of view coordinates to those from -1 to 1.
 struct Frustum {
-  double half_width = 0, half_height = 0;  ///< at distance 1, or anywhere if rays are parallel
-  double center[2] = {0, 0};               ///< as a camera's WindowCenter
+  double half_height = 0;     ///< at distance 1, or anywhere if rays are parallel
+  double center[2] = {0, 0};  ///< as a camera's WindowCenter
   Depths depths;
 };
 
@@ -75,7 +75,6 @@ Frustum frustum_of(vtkCamera& camera, double aspect) {
     throw Error("camera: by its projection pixels are not square; take one of the aspect ratio " +
                 std::to_string(aspect));
   }
-  made.half_width = 1 / across;
   made.half_height = 1 / up;
   const double sign = made.depths.is_parallel ? -1 : 1;
   made.center[0] = sign * p(0, c) / divisor;

@@ -85,6 +85,13 @@ class StageTest(ProgramTest):
         display.ScalarOpacityUnitDistance = unit
         return display
 
+    def light(self, display):
+        """Puts the display in the light of a head light: the shading and the lights of a scene."""
+        display.Shade = 1
+        self.view.UseLight = 0
+        simple.AddLight(self.view).Coords = "Headlight"
+        return ({"ambient": 0, "diffuse": 1, "specular": 0, "flatness": 0}, [{"type": "head"}])
+
     def picture(self, name="shown.png"):
         """float (height, width, 3), row 0 at the top: the window as users save it."""
         simple.SaveScreenshot(self.path(name), self.view, ImageResolution=list(self.size))

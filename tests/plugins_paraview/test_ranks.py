@@ -89,12 +89,8 @@ class Ranks(StageTest):
     def test_light_has_no_seams(self):
         source, field = self.image()
         display = self.show(source, "f")
-        display.Shade = 1
-        self.view.UseLight = 0
-        light = simple.AddLight(self.view)
-        light.Coords = "Headlight"
-        shading = {"ambient": 0, "diffuse": 1, "specular": 0, "flatness": 0}
-        self.assert_whole([self.layer(field, shading=shading)], lights=[{"type": "head"}])
+        shading, lights = self.light(display)
+        self.assert_whole([self.layer(field, shading=shading)], lights=lights)
 
     def test_parallel_projection(self):
         source, field = self.image()

@@ -70,12 +70,8 @@ class Volumes(StageTest):
 
     def test_light(self):
         source, display = self.wavelet()
-        display.Shade = 1
-        self.view.UseLight = 0
-        light = simple.AddLight(self.view)
-        light.Coords = "Headlight"
-        shading = {"ambient": 0, "diffuse": 1, "specular": 0, "flatness": 0}
-        self.assert_same([self.layer(source, shading=shading)], lights=[{"type": "head"}])
+        shading, lights = self.light(display)
+        self.assert_same([self.layer(source, shading=shading)], lights=lights)
 
     def test_colors_of_a_map(self):
         """ParaView's maps of colors are curves with steps for surfaces; volumes have none."""

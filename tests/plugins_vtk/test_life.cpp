@@ -11,6 +11,7 @@
 #include <vtkFloatArray.h>
 #include <vtkGPUVolumeRayCastMapper.h>
 #include <vtkLight.h>
+#include <vtkMatrix4x4.h>
 #include <vtkPlane.h>
 #include <vtkPointData.h>
 #include <vtkPoints.h>
@@ -192,6 +193,13 @@ TEST(VtkLife, TheFactoryMakesOursAndLetsGoOfThem) {
 
 /// A volume that cannot be shown: one error, that says what, and a window that is as black as
 /// before.
+/// Sets an explicit projection, by which no volume is culled.
+void project(Stage& stage, vtkMatrix4x4* matrix) {
+  stage.camera->SetExplicitProjectionTransformMatrix(matrix);
+  stage.camera->UseExplicitProjectionTransformMatrixOn();
+  stage.renderer->GetCullers()->RemoveAllItems();
+}
+
 struct BadCase {
   const char* name;
   void (*spoil)(Stage&, vtkImageData*, vtkVolumeProperty*, vtkPellucidVolumeMapper*);
@@ -286,9 +294,7 @@ INSTANTIATE_TEST_SUITE_P(
                 [](Stage& stage, vtkImageData*, vtkVolumeProperty*, vtkPellucidVolumeMapper*) {
                   vtkNew<vtkMatrix4x4> matrix;
                   matrix->SetElement(0, 1, 0.2);
-                  stage.camera->SetExplicitProjectionTransformMatrix(matrix);
-                  stage.camera->UseExplicitProjectionTransformMatrixOn();
-                  stage.renderer->GetCullers()->RemoveAllItems();
+                  project(stage, matrix);
                 },
                 "take a frustum"},
         BadCase{"near_behind_far",
@@ -296,9 +302,7 @@ INSTANTIATE_TEST_SUITE_P(
                   vtkNew<vtkMatrix4x4> matrix;  // z is not turned around
                   matrix->SetElement(0, 0, 0.02);
                   matrix->SetElement(1, 1, 0.03);
-                  stage.camera->SetExplicitProjectionTransformMatrix(matrix);
-                  stage.camera->UseExplicitProjectionTransformMatrixOn();
-                  stage.renderer->GetCullers()->RemoveAllItems();
+                  project(stage, matrix);
                 },
                 "nothing from near to far"},
         BadCase{"two_eyes",

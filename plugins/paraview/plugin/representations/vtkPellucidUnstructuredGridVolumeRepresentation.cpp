@@ -96,13 +96,11 @@ int vtkPellucidUnstructuredGridVolumeRepresentation::ProcessViewRequest(
   if (this->Superclass::ProcessViewRequest(request, in, out) == 0) return 0;
   if (request != vtkPVView::REQUEST_RENDER()) return 1;
   this->Own->picture.prepare(*this);
+  this->Own->picture.check_order(*this);
   vtkPellucidUnstructuredGridMapper& mapper = *this->Own->mapper;
   vtkAlgorithmOutput* const port = vtkPVRenderView::GetPieceProducer(in, this);
   auto* const grid = vtkUnstructuredGrid::SafeDownCast(port->GetProducer()->GetOutputDataObject(0));
-  if (grid == nullptr) {
-    this->Own->picture.check_order(*this);
-    return 1;
-  }
+  if (grid == nullptr) return 1;
   int of_cells = 0;
   vtkDataArray* const array =
       vtkAbstractMapper::GetScalars(grid, mapper.GetScalarMode(), mapper.GetArrayAccessMode(),
@@ -116,7 +114,6 @@ int vtkPellucidUnstructuredGridVolumeRepresentation::ProcessViewRequest(
     mapper.SetInputDataObject(this->Own->component.of(*grid, *array, of_cells != 0, chosen));
   }
   this->Own->component.keep_used();
-  this->Own->picture.check_order(*this);
   return 1;
 }
 
