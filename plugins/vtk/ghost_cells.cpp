@@ -16,14 +16,6 @@
 namespace pellucid::plugin {
 namespace {
 
-std::array<int, 3> sides_of(vtkDataSet& data) {
-  std::array<int, 3> sides{};
-  if (auto* const image = vtkImageData::SafeDownCast(&data)) image->GetDimensions(sides.data());
-  if (auto* const grid = vtkRectilinearGrid::SafeDownCast(&data)) grid->GetDimensions(sides.data());
-  for (int& side : sides) --side;
-  return sides;
-}
-
 vtkUnsignedCharArray* ghosts_of(vtkDataSet& data) {
   vtkUnsignedCharArray* const ghosts = data.GetCellGhostArray();
   return ghosts != nullptr && ghosts->GetNumberOfValues() == data.GetNumberOfCells() ? ghosts
@@ -62,13 +54,21 @@ Vec3<double> point_of(vtkDataSet& data, const std::array<int, 3>& sides,
 
 }  // namespace
 
+std::array<int, 3> cells_along(vtkDataSet& data) {
+  std::array<int, 3> sides{};
+  if (auto* const image = vtkImageData::SafeDownCast(&data)) image->GetDimensions(sides.data());
+  if (auto* const grid = vtkRectilinearGrid::SafeDownCast(&data)) grid->GetDimensions(sides.data());
+  for (int& side : sides) --side;
+  return sides;
+}
+
 std::optional<std::vector<Clip>> clips_at_ghosts(vtkDataSet& data,
                                                  const Affine<double>& world_from_data,
                                                  KeptOwnCells& kept) {
   std::vector<Clip> clips;
   const vtkSmartPointer<vtkUnsignedCharArray> ghosts(ghosts_of(data));
   if (ghosts == nullptr) return clips;
-  const std::array<int, 3> sides = sides_of(data);
+  const std::array<int, 3> sides = cells_along(data);
   const OwnCells own = *kept.find({ghosts, ghosts->GetMTime(), sides}, own_cells);
   if (own.count == 0) return std::nullopt;
   vtkIdType filled = 1;

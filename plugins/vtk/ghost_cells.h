@@ -18,6 +18,9 @@ class vtkDataSet;
 
 namespace pellucid::plugin {
 
+/// Returns the number of cells along each axis of an image or a rectilinear grid.
+std::array<int, 3> cells_along(vtkDataSet& data);
+
 /// The cells of a grid that are no ghosts.
 struct OwnCells {
   std::array<int, 3> first{}, last{};  ///< of the box around them, in cells along each axis

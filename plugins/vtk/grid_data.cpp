@@ -16,6 +16,7 @@
 #include <utility>
 
 #include "pellucid/scene/error.h"
+#include "pellucid/scene/hidden_values.h"
 #include "vtk_values.h"
 
 namespace pellucid::plugin {
@@ -206,18 +207,24 @@ std::shared_ptr<const Volume> KeptGrids::find(vtkDataSet& data, vtkDataArray& ar
       grid_of(data, of_cells, name != nullptr && *name != '\0' ? name : data.GetClassName());
   const void* const memory = memory_of(array);
   const std::uint64_t fingerprint = fingerprint_of(array, component);
+  const GhostTimes ghosts = ghost_times(data);
   for (Kept& kept : kept_) {
     if (kept.array == &array && kept.memory == memory && kept.time == array.GetMTime() &&
         kept.fingerprint == fingerprint && kept.values == array.GetNumberOfValues() &&
-        kept.component == component && same_grid(kept.volume->description(), grid)) {
+        kept.component == component && kept.ghosts == ghosts &&
+        same_grid(kept.volume->description(), grid)) {
       kept.used = true;
       return kept.volume;
     }
   }
   ++made_;
-  auto volume = std::make_shared<const Volume>(std::move(grid), component_of(array, component));
+  VolumeData values = component_of(array, component);
+  if (const std::vector<bool> hidden = hidden_places(data, of_cells); !hidden.empty()) {
+    values = without_hidden(values, hidden);
+  }
+  auto volume = std::make_shared<const Volume>(std::move(grid), std::move(values));
   kept_.push_back({&array, memory, array.GetMTime(), fingerprint, array.GetNumberOfValues(),
-                   component, std::move(volume)});
+                   component, ghosts, std::move(volume)});
   return kept_.back().volume;
 }
 

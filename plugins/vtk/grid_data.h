@@ -8,6 +8,7 @@
 #include <memory>
 #include <vector>
 
+#include "hidden_places.h"
 #include "pellucid/scene/volume.h"
 
 class vtkDataArray;
@@ -28,12 +29,12 @@ VolumeData component_of(vtkDataArray& array, int component);
 /// thousand values, evenly spread, so that a change of few values may be missed.
 std::uint64_t fingerprint_of(vtkDataArray& array, int component);
 
-/// Keeps the volumes of the last picture. A volume is made again if its array or its grid changed,
-/// as the array's time of modification, its memory, its fingerprint and the numbers of the grid
-/// say.
+/// Keeps the volumes of the last picture. A volume is made again if its array, its grid or its
+/// ghosts changed, as times of modification, the array's memory and fingerprint and the numbers of
+/// the grid say. Hidden values are vacuum (hidden_places()).
 class KeptGrids {
  public:
-  /// Returns the volume of a component. Throws Error as Volume does.
+  /// Returns the volume of a component. Throws Error as Volume and hidden_places() do.
   std::shared_ptr<const Volume> find(vtkDataSet& data, vtkDataArray& array, bool of_cells,
                                      int component);
   /// Forgets what was not asked for since the last call.
@@ -49,6 +50,7 @@ class KeptGrids {
     std::uint64_t fingerprint = 0;
     vtkIdType values = 0;
     int component = 0;
+    GhostTimes ghosts;
     std::shared_ptr<const Volume> volume;
     bool used = true;
   };

@@ -12,6 +12,7 @@ function(pellucid_vtk_mappers target)
     ghost_cells.cpp
     grid_data.cpp
     grid_layers.cpp
+    hidden_places.cpp
     look.cpp
     mapper_core.cpp
     mesh_layers.cpp

@@ -13,6 +13,7 @@ from typing import Any, List, NamedTuple, Optional
 
 import numpy
 
+from . import _ghosts
 from ._notes import Note
 from ._pellucid import Error
 
@@ -210,7 +211,8 @@ def vtk_array(attributes: Any, wanted: Optional[str], name: str) -> Any:
     if attributes.GetScalars() is not None:
         return attributes.GetScalars()
     arrays = [attributes.GetArray(i) for i in range(attributes.GetNumberOfArrays())]
-    arrays = [array for array in arrays if array is not None]
+    arrays = [array for array in arrays
+              if array is not None and array.GetName() != "vtkGhostType"]
     single = [array for array in arrays if array.GetNumberOfComponents() == 1]
     return (single or arrays or [None])[0]
 
@@ -236,7 +238,7 @@ def _of_vtk(data: Any) -> Placed:
 
 
 def vtk_components(data: Any) -> List[Placed]:
-    """Returns each component of a grid's array, and its place."""
+    """Returns each component of a grid's array, and its place. What is hidden is NaN."""
     name = data.GetClassName()
     if not (data.IsA("vtkImageData") or data.IsA("vtkRectilinearGrid")):
         raise Error(f"{name}: expected a vtkImageData or a vtkRectilinearGrid (meshes: "
@@ -252,6 +254,11 @@ def vtk_components(data: Any) -> List[Placed]:
     if array.GetNumberOfTuples() != math.prod(shape):
         raise Error(f"{name}: has {array.GetNumberOfTuples()} values for {math.prod(shape)} places")
     all_values = vtk_values(array, name).reshape(*shape, count)
+    hidden = _ghosts.hidden_places(data, centering)
+    if hidden is not None:
+        wide = all_values.dtype.itemsize > 2 and all_values.dtype != numpy.float32
+        all_values = all_values.astype(numpy.float64 if wide else numpy.float32)
+        all_values[hidden] = numpy.nan
     values = [all_values[..., c] for c in range(count)]
     if data.IsA("vtkRectilinearGrid"):
         axes = (data.GetZCoordinates(), data.GetYCoordinates(), data.GetXCoordinates())

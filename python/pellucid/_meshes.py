@@ -6,7 +6,7 @@ from typing import Any, Optional, Sequence
 
 import numpy
 
-from . import _arrays
+from . import _arrays, _ghosts
 from ._pellucid import Error, Mesh
 
 # meshio's names of cells with a volume whose points VTK numbers alike, and VTK's numbers.
@@ -133,7 +133,7 @@ def _of_vtk(grid: Any, channels: Optional[Sequence[str]]) -> Mesh:
         active = grid.GetPointData().GetScalars() or grid.GetCellData().GetScalars()
         if active is not None and active.GetNumberOfComponents() == 1:
             channels = ["value=" + (active.GetName() or "values")]
-    blank = _ghosts(grid)
+    blank = _blank_cells(grid)
     kept = None if blank is None else numpy.flatnonzero(~blank)
     given = _vtk_cells(grid)
     if kept is not None:
@@ -145,13 +145,12 @@ def _of_vtk(grid: Any, channels: Optional[Sequence[str]]) -> Mesh:
     return Mesh(points, given, arrays[0], arrays[1], channels, name=name)
 
 
-def _ghosts(grid: Any) -> Optional[numpy.ndarray]:
+def _blank_cells(grid: Any) -> Optional[numpy.ndarray]:
     """Which cells are duplicates or hidden; None if none is."""
-    ghosts = grid.GetCellData().GetArray("vtkGhostType")
-    if ghosts is None:
+    flags = _ghosts.flags_of(grid.GetCellData())
+    if flags is None:
         return None
-    duplicate, hidden = 1, 32
-    blank = (_arrays.vtk_values(ghosts, "vtkGhostType") & (duplicate | hidden)) != 0
+    blank = (flags & (_ghosts.DUPLICATE_CELL | _ghosts.HIDDEN_CELL)) != 0
     return blank if blank.any() else None
 
 

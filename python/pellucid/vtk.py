@@ -22,7 +22,7 @@ from typing import Any, List, Sequence, Tuple
 
 import numpy
 
-from . import _arrays, _meshes
+from . import _arrays, _ghosts, _meshes
 from ._pellucid import (Channels, Error, Gaussians, GradientOpacity, Image, LabelTable, LabelVolume,
                         OpacityTable, Renderer, TransferFunction, Volume)
 from .scene import (Camera, ClipPlane, DirectionalLight, HeadLight, Integration, Layer, PointLight,
@@ -295,6 +295,8 @@ def _layer(volume: Any, what: str, ambient: bool, notes: List[str]) -> Layer:
     layer.name, layer.visible = what, bool(volume.GetVisibility())
     layer.transform = matrix[:3].tolist()
     layer.clips = _clips(mapper, matrix, what, is_grid)
+    if is_grid:
+        _leave_out_ghosts(layer, data, matrix)
     if is_grid and mapper.GetCropping():
         notes.append(f"{what}: the GPU mapper of VTK 9.1 crops up to half a voxel outside of its "
                      "planes")
@@ -562,6 +564,33 @@ def _clips(mapper: Any, matrix: numpy.ndarray, what: str, is_grid: bool) -> List
             clips.append(ClipPlane(tuple(matrix[:3, :3] @ point + matrix[:3, 3]),
                                    tuple(sign * normals[:, axis])))
     return clips
+
+
+def _leave_out_ghosts(layer: Layer, data: Any, matrix: numpy.ndarray) -> None:
+    """Clips a layer at the cells of its grid that are another block's."""
+    box = _ghosts.own_box(data)
+    if box is None:
+        return
+    first, end = box
+    if first == end:
+        layer.visible = False
+        return
+    sides = [side - 1 for side in data.GetDimensions()]
+
+    def place(i: int, j: int, k: int) -> numpy.ndarray:
+        point = numpy.array(data.GetPoint(i + (sides[0] + 1) * (j + (sides[1] + 1) * k)))
+        return matrix[:3, :3] @ point + matrix[:3, 3]
+
+    near, far = place(*first), place(*end)
+    edges = [place(*(end[a] if a == axis else first[a] for a in range(3))) - near
+             for axis in range(3)]
+    for axis in range(3):
+        normal = numpy.cross(edges[axis - 2], edges[axis - 1])
+        normal *= numpy.sign(normal @ edges[axis])
+        if first[axis] > 0:
+            layer.clips.append(ClipPlane(tuple(near), tuple(normal)))
+        if end[axis] < sides[axis]:
+            layer.clips.append(ClipPlane(tuple(far), tuple(-normal)))
 
 
 def _camera(camera: Any, aspect: float) -> Camera:

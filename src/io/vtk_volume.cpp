@@ -2,7 +2,6 @@
 #include "vtk_volume.h"
 
 #include <algorithm>
-#include <limits>
 #include <string>
 #include <utility>
 
@@ -10,6 +9,7 @@
 #include "input_file.h"
 #include "memory_limit.h"
 #include "pellucid/scene/error.h"
+#include "pellucid/scene/hidden_values.h"
 #include "volume_axes.h"
 #include "vtk_file_kind.h"
 #include "vtk_image_pieces.h"
@@ -157,25 +157,6 @@ std::vector<bool> hidden_places(const VtkVolume& grid, Centering centering, std:
   return hidden;
 }
 
-void hide(VolumeData& data, int components, const std::vector<bool>& hidden) {
-  data = std::visit(
-      [&](const auto& values) -> VolumeData {
-        using Value = typename std::decay_t<decltype(values)>::value_type;
-        // Whole numbers of up to 16 bits fit float.
-        using Number =
-            std::conditional_t<sizeof(Value) <= 2 || std::is_same_v<Value, float>, float, double>;
-        DataArray<Number> with_nan(values.size());
-        const std::span<Number> to = with_nan.writable();
-        for (std::size_t i = 0; i < values.size(); ++i) {
-          to[i] = hidden[i / static_cast<std::size_t>(components)]
-                      ? std::numeric_limits<Number>::quiet_NaN()
-                      : static_cast<Number>(values[i]);
-        }
-        return with_nan;
-      },
-      data);
-}
-
 /// The box of points around values, which stand at points or in cells.
 IndexBox points_of(IndexBox values, Centering centering) {
   if (centering == Centering::cell) {
@@ -266,7 +247,9 @@ VolumeFile open_vtk_volume(const std::filesystem::path& path, const ReadOptions&
                              static_cast<std::size_t>(array.components);
   if (!grid.point_ghosts.empty() || !grid.cell_ghosts.empty()) {
     const std::vector<bool> hidden = hidden_places(grid, array.centering, places, name);
-    if (!hidden.empty()) hide(array.values, array.components, hidden);
+    if (!hidden.empty()) {
+      array.values = without_hidden(array.values, hidden, array.components);
+    }
   }
   file.read = [values = std::move(array.values), components = array.components,
                name](ComponentRange range) {

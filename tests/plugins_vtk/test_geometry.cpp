@@ -9,15 +9,18 @@
 #include <vtkGPUVolumeRayCastMapper.h>
 #include <vtkMatrix4x4.h>
 #include <vtkMultiVolume.h>
+#include <vtkPlane.h>
 #include <vtkPointData.h>
 #include <vtkPolyDataMapper.h>
 #include <vtkProperty.h>
 #include <vtkSphereSource.h>
+#include <vtkUniformGrid.h>
 #include <vtkUnsignedCharArray.h>
 #include <vtkWindowToImageFilter.h>
 
 #include <array>
 #include <limits>
+#include <string>
 
 #include "mapper_core.h"
 #include "pellucid/cpu/render.h"
@@ -398,20 +401,23 @@ vtkSmartPointer<vtkImageData> part_of(vtkImageData* whole, int first, int last, 
   return part;
 }
 
+/// Gives an image rough values in its cells in place of those at points.
+void give_to_cells(vtkImageData& image) {
+  vtkNew<vtkFloatArray> values;
+  for (vtkIdType i = 0; i < image.GetNumberOfCells(); ++i) {
+    values->InsertNextValue(static_cast<float>(20 + (i * 7919) % 80));
+  }
+  image.GetCellData()->SetScalars(values);
+  image.GetPointData()->SetScalars(nullptr);
+}
+
 /// Two parts of an image, each with a layer of ghosts of the other, as the volumes of one.
 class VtkGhosts : public testing::TestWithParam<bool> {};
 
 TEST_P(VtkGhosts, PartsWithGhostsAreTheWhole) {
   const bool of_cells = GetParam();
   const auto image = ball_image();
-  if (of_cells) {
-    vtkNew<vtkFloatArray> values;
-    for (vtkIdType i = 0; i < image->GetNumberOfCells(); ++i) {
-      values->InsertNextValue(static_cast<float>(20 + (i * 7919) % 80));
-    }
-    image->GetCellData()->SetScalars(values);
-    image->GetPointData()->SetScalars(nullptr);
-  }
+  if (of_cells) give_to_cells(*image);
   const auto property = soft_property(4);
   property->SetShade(of_cells ? 0 : 1);
   const auto turn = [](vtkVolume& volume) {
@@ -483,6 +489,84 @@ TEST(VtkGhostCells, OwnCellsThatFillNoBoxAreRefused) {
   const Messages messages;
   stage.picture();
   EXPECT_NE(messages.text().find("do not fill a box"), std::string::npos) << messages.text();
+}
+
+/// Cells or points of an image that its flags hide, and what is then left of it.
+struct HiddenCase {
+  const char* name;
+  bool hides_points;
+  bool of_cells;
+};
+
+void PrintTo(const HiddenCase& shown, std::ostream* to) {
+  *to << shown.name;
+}
+
+class VtkHidden : public testing::TestWithParam<HiddenCase> {};
+
+/// Everything up to the sixth cell along x.
+TEST_P(VtkHidden, PlacesAreVacuum) {
+  const HiddenCase& shown = GetParam();
+  const auto image = ball_image();
+  if (shown.of_cells) give_to_cells(*image);
+  const auto hidden = vtkSmartPointer<vtkUniformGrid>::New();
+  hidden->DeepCopy(image);
+  int sides[3];
+  image->GetDimensions(sides);
+  const vtkIdType across = shown.hides_points ? sides[0] : sides[0] - 1;
+  const vtkIdType count =
+      shown.hides_points ? hidden->GetNumberOfPoints() : hidden->GetNumberOfCells();
+  for (vtkIdType i = 0; i < count; ++i) {
+    if (i % across > 5) continue;
+    if (shown.hides_points) hidden->BlankPoint(i);
+    if (!shown.hides_points) hidden->BlankCell(i);
+  }
+  // Point 5 hides the cells around it, the last of which is cell 5.
+  const double left = shown.of_cells ? 6.5 : 6;
+  Stage stage;
+  vtkNew<vtkPellucidVolumeMapper> mapper;
+  mapper->SetInputData(image);
+  if (shown.of_cells) mapper->SetScalarModeToUseCellData();
+  vtkNew<vtkPlane> plane;
+  plane->SetOrigin(3 + left, 0, 0);
+  plane->SetNormal(1, 0, 0);
+  mapper->AddClippingPlane(plane);
+  stage.add(mapper, soft_property(4));
+  stage.look();
+  const Image expected = stage.picture();
+  mapper->RemoveAllClippingPlanes();
+  const Messages messages;
+  EXPECT_GT(largest_difference(stage.picture(), expected), 0.03);
+  mapper->SetInputData(hidden);
+  EXPECT_LE(largest_difference(stage.picture(), expected), 2 * (half_a_step + default_tolerance));
+  vtkUnsignedCharArray* const flags =
+      shown.hides_points ? hidden->GetPointGhostArray() : hidden->GetCellGhostArray();
+  flags->FillValue(0);
+  flags->Modified();
+  EXPECT_GT(largest_difference(stage.picture(), expected), 0.03);
+  EXPECT_EQ(messages.text(), "");
+}
+
+INSTANTIATE_TEST_SUITE_P(Data, VtkHidden,
+                         testing::Values(HiddenCase{"points", true, false},
+                                         HiddenCase{"cells_of_points", false, false},
+                                         HiddenCase{"points_of_cells", true, true},
+                                         HiddenCase{"cells", false, true}),
+                         [](const auto& made) { return std::string(made.param.name); });
+
+TEST(VtkHiddenCells, BetweenOthersAreRefusedWithValuesAtPoints) {
+  Stage stage;
+  vtkNew<vtkPellucidVolumeMapper> mapper;
+  vtkNew<vtkUniformGrid> grid;
+  grid->DeepCopy(ball_image());
+  grid->BlankCell(grid->GetNumberOfCells() / 2);
+  mapper->SetInputData(grid);
+  stage.add(mapper, soft_property(4));
+  stage.look();
+  const Messages messages;
+  stage.picture();
+  EXPECT_NE(messages.text().find("hides cells between others"), std::string::npos)
+      << messages.text();
 }
 
 /// A camera of which an explicit matrix is known to be the same.

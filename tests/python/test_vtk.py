@@ -262,6 +262,72 @@ def test_plotters_have_windows_and_renderers(stage):
     assert len(pellucid.vtk.scene_of(Plotter()).layers) == 1
 
 
+def clipped_scene(data, along_x, cells):
+    """The scene of a grid of which a plane shows what lies beyond a place."""
+    stage = Stage(data)
+    if cells:
+        stage.mapper.SetScalarModeToUseCellData()
+    stage.volume.RotateZ(20)
+    stage.volume.SetScale(1.25)
+    if along_x is not None:
+        plane, matrix = vtk.vtkPlane(), stage.volume.GetMatrix()
+        plane.SetOrigin(*matrix.MultiplyPoint((along_x, 0, 0, 1))[:3])
+        plane.SetNormal(*matrix.MultiplyPoint((1, 0, 0, 0))[:3])
+        stage.mapper.AddClippingPlane(plane)
+    stage.camera.SetPosition(60, 40, 50)
+    stage.camera.SetFocalPoint(10, 20, 20)
+    return pellucid.vtk.scene_of(stage.renderer)
+
+
+@pytest.mark.parametrize("cells", [False, True])
+@pytest.mark.parametrize("kind", ["points", "cells", "duplicates"])
+def test_hidden_places_and_ghosts(kind, cells):
+    """Everything up to the sixth cell along x is marked."""
+    values = numpy.random.default_rng(5).uniform(20, 100, (12, 12, 12)).astype(numpy.float32)
+    whole, marked = vtk.vtkUniformGrid(), vtk.vtkUniformGrid()
+    for grid in (whole, marked):
+        grid.SetDimensions(*(side + cells for side in values.shape[::-1]))
+        grid.SetOrigin(3, -2, 1)
+        array = vtk.vtkFloatArray()
+        array.SetNumberOfTuples(values.size)
+        numpy.asarray(memoryview(array))[...] = values.ravel()
+        (grid.GetCellData() if cells else grid.GetPointData()).SetScalars(array)
+    across = marked.GetDimensions()[0] - (kind != "points")
+    count = marked.GetNumberOfPoints() if kind == "points" else marked.GetNumberOfCells()
+    if kind == "duplicates":
+        marked.AllocateCellGhostArray()
+    for i in range(count):
+        if i % across > 5:
+            continue
+        if kind == "points":
+            marked.BlankPoint(i)
+        elif kind == "cells":
+            marked.BlankCell(i)
+        else:
+            marked.GetCellGhostArray().SetValue(i, 1)
+    # What is hidden has no values to interpolate with: of cells that ends half a cell later.
+    left = 3 + (6.5 if cells and kind != "duplicates" else 6)
+    expected = pellucid.render(clipped_scene(whole, left, cells), tolerance=1e-4)
+    got = pellucid.render(clipped_scene(marked, None, cells), tolerance=1e-4)
+    assert got.compare(expected).largest < 2e-4
+    full = pellucid.render(clipped_scene(whole, None, cells), tolerance=1e-4)
+    assert full.compare(expected).largest > 0.05
+
+
+def test_marks_that_have_no_counterpart():
+    grid = vtk.vtkUniformGrid()
+    grid.DeepCopy(image_of(ball()))
+    grid.BlankCell(6000)
+    with pytest.raises(pellucid.Error, match="hides cells between others"):
+        pellucid.vtk.scene_of(Stage(grid).renderer)
+    grid.GetCellGhostArray().Fill(0)
+    grid.GetCellGhostArray().SetValue(6000, 1)
+    with pytest.raises(pellucid.Error, match="do not fill a box"):
+        pellucid.vtk.scene_of(Stage(grid).renderer)
+    grid.GetCellGhostArray().Fill(1)
+    assert not pellucid.vtk.scene_of(Stage(grid).renderer).layers[0].visible
+
+
 def test_what_has_no_counterpart(stage):
     for change, words in [
             (lambda s: s.mapper.SetBlendModeToMaximumIntensity(), "blends"),
