@@ -279,12 +279,13 @@ void MapperCore::draw_layers(vtkAbstractVolumeMapper& mapper, vtkRenderer& rende
   if (width < 1 || height < 1) return;
   const Clock::time_point start = Clock::now();
   outcome = {};
-  outcome.largest_error = std::numeric_limits<double>::infinity();
   is_drawing_ = true;
   try {
     Notes notes = left_out;
     std::vector<Layer> layers = make_layers(notes);
-    if (!layers.empty()) {
+    if (layers.empty()) {
+      outcome = {true, 0, 0};
+    } else {
       const View view = view_of(renderer, notes);
       Scene scene = scene_with(std::move(layers), renderer, volume, view, notes);
       const double of_functions = finish.shows_depths ? sum_tolerance(inner_tolerance()) : 0;
@@ -370,11 +371,29 @@ void MapperCore::finish_picture(const Scene& scene, Image& image) {
   } else {
     shape_renderer_.clear();
   }
-  if (finish.scale == 1 && finish.bias == 0) return;
-  const auto scale = static_cast<float>(finish.scale), bias = static_cast<float>(finish.bias);
-  for (std::array<float, 4>& pixel : image.pixels) {
-    for (std::size_t c = 0; c < 3; ++c) pixel[c] = scale * pixel[c] + bias * pixel[3];
+  if (finish.scale != 1 || finish.bias != 0) {
+    const auto scale = static_cast<float>(finish.scale), bias = static_cast<float>(finish.bias);
+    for (std::array<float, 4>& pixel : image.pixels) {
+      for (std::size_t c = 0; c < 3; ++c) pixel[c] = scale * pixel[c] + bias * pixel[3];
+    }
   }
+  if (finish.is_composited) raise_opacities(image);
+}
+
+/// What is behind a pixel is at most 1, so that it loses at most what the opacity is raised by. Of
+/// a color over 1, what is over is lost, too.
+void MapperCore::raise_opacities(Image& image) {
+  const double before = outcome.largest_error;
+  long long over = 0;
+  for (std::array<float, 4>& pixel : image.pixels) {
+    const float most = std::max({pixel[0], pixel[1], pixel[2]});
+    if (!(most > pixel[3])) continue;
+    const double lost = before + double{most} - double{pixel[3]};
+    if (lost > settings.tolerance) ++over;
+    outcome.largest_error = std::max(outcome.largest_error, lost);
+    pixel[3] = std::min(most, 1.0F);
+  }
+  outcome.pixels_over = std::max(outcome.pixels_over, over);
 }
 
 void MapperCore::show(const Image& image, const View& view, vtkRenderer& renderer,

@@ -5,6 +5,7 @@
 #include <vtkSmartPointer.h>
 
 #include <functional>
+#include <limits>
 #include <memory>
 #include <ostream>
 #include <set>
@@ -48,8 +49,9 @@ void set_threads(Settings& settings, int threads);
 
 /// What is known of the last picture.
 struct Outcome {
-  bool exact = false;         ///< whether all of its pixels were rendered
-  double largest_error = 0;   ///< of any pixel; infinite if it is not exact
+  bool exact = false;  ///< whether all of its pixels were rendered
+  /// Of any pixel; infinite if it is not exact.
+  double largest_error = std::numeric_limits<double>::infinity();
   long long pixels_over = 0;  ///< pixels whose error is over the tolerance
   double seconds = 0;
 };
@@ -60,6 +62,9 @@ struct Finish {
   /// data: the sums of additive blending.
   bool shows_depths = false;
   double scale = 1, bias = 0;  ///< then a color becomes scale · color + bias · opacity
+  /// Whether pictures are put over each other in whole numbers, which overflow where a color is
+  /// larger than its opacity, as bright lights make it: opacities are then raised to the color.
+  bool is_composited = false;
 
   /// Returns by which factor errors of a picture grow, at most; 1 or more. The slope of -ln(1 -
   /// opacity) is at most e, as long as that is at most 1.
@@ -117,6 +122,7 @@ class MapperCore {
   double inner_tolerance() const noexcept { return settings.tolerance / finish.growth(); }
   void take(const RenderReport& report);
   void finish_picture(const Scene& scene, Image& image);
+  void raise_opacities(Image& image);
   void show(const Image& image, const View& view, vtkRenderer& renderer, vtkVolume& volume);
   void tell(vtkAbstractVolumeMapper& mapper, const Notes& notes);
 

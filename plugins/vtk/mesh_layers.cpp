@@ -64,11 +64,13 @@ vtkMTimeType time_of(vtkUnstructuredGrid& grid, vtkDataArray& array) {
   return time;
 }
 
+/// Null if all cells are ghosts.
 std::shared_ptr<const MeshChannels> mesh_of(vtkUnstructuredGrid& grid, vtkDataArray& array,
                                             bool of_cells) {
   MeshBlocks blocks;
   gather(*with_values(grid, array, of_cells), blocks);
   UnstructuredGrid& cells = blocks.blocks.at(0);
+  if (cells.shapes.empty() && grid.GetNumberOfCells() > 0) return nullptr;
   cells.name = grid.GetClassName();
   const MeshArrayChoice choice{cells.arrays.at(0).name, std::nullopt, "value"};
   std::erase_if(cells.arrays, [&](const MeshArray& one) { return one.name != choice.array; });
@@ -117,6 +119,7 @@ std::vector<Layer> layers_of(vtkUnstructuredGridVolumeMapper& mapper, vtkVolume&
     kept.cells = grid->GetCells();
     ++kept.made;
   }
+  if (kept.mesh == nullptr) return {};
   vtkVolumeProperty& property = *volume.GetProperty();
   Layer layer;
   layer.transform = affine_of(*volume.GetMatrix(), "volume");

@@ -86,6 +86,9 @@ Frustum frustum_of(vtkCamera& camera, double aspect) {
   };
   made.depths.near = distance(-1);
   made.depths.far = distance(1);
+  if (!made.depths.is_parallel && !(made.depths.near > 0)) {
+    throw Error("camera: its projection begins behind the camera; take a frustum in front of it");
+  }
   if (!(made.depths.near < made.depths.far)) {
     throw Error("camera: its projection shows nothing from near to far; take a frustum");
   }

@@ -476,6 +476,8 @@ TEST(VtkGhostCells, AGridOfGhostsAloneShowsNothing) {
   const Image picture = stage.picture();
   EXPECT_EQ(messages.text(), "");
   for (const std::array<float, 4>& pixel : picture.pixels) ASSERT_EQ(pixel[0], 0);
+  EXPECT_TRUE(mapper->GetExact());
+  EXPECT_EQ(mapper->GetLargestError(), 0);
 }
 
 TEST(VtkGhostCells, OwnCellsThatFillNoBoxAreRefused) {

@@ -7,6 +7,7 @@
 #include <vtkCommand.h>
 #include <vtkContourValues.h>
 #include <vtkCullerCollection.h>
+#include <vtkDataSetAttributes.h>
 #include <vtkDoubleArray.h>
 #include <vtkFloatArray.h>
 #include <vtkGPUVolumeRayCastMapper.h>
@@ -19,6 +20,7 @@
 #include <vtkSmartVolumeMapper.h>
 #include <vtkStringArray.h>
 #include <vtkTransform.h>
+#include <vtkUnsignedCharArray.h>
 #include <vtkUnstructuredGrid.h>
 #include <vtkWeakPointer.h>
 
@@ -297,6 +299,19 @@ INSTANTIATE_TEST_SUITE_P(
                   project(stage, matrix);
                 },
                 "take a frustum"},
+        BadCase{"near_behind_the_camera",
+                [](Stage& stage, vtkImageData*, vtkVolumeProperty*, vtkPellucidVolumeMapper*) {
+                  const double near = -5, far = 60;
+                  vtkNew<vtkMatrix4x4> matrix;
+                  matrix->SetElement(0, 0, 2);
+                  matrix->SetElement(1, 1, 3);
+                  matrix->SetElement(2, 2, -(far + near) / (far - near));
+                  matrix->SetElement(2, 3, -2 * far * near / (far - near));
+                  matrix->SetElement(3, 2, -1);
+                  matrix->SetElement(3, 3, 0);
+                  project(stage, matrix);
+                },
+                "begins behind the camera"},
         BadCase{"near_behind_far",
                 [](Stage& stage, vtkImageData*, vtkVolumeProperty*, vtkPellucidVolumeMapper*) {
                   vtkNew<vtkMatrix4x4> matrix;  // z is not turned around
@@ -621,6 +636,11 @@ TEST(VtkLife, AMeshWithADamagedCellSaysSo) {
   EXPECT_EQ(mapper->GetCore().data_made(), 1);
   stage.picture();
   EXPECT_EQ(mapper->GetCore().data_made(), 1);
+  // Another process has it, and shows it.
+  grid->AllocateCellGhostArray()->SetValue(0, vtkDataSetAttributes::DUPLICATECELL);
+  EXPECT_EQ(brightness(stage.picture()), 0);
+  EXPECT_TRUE(mapper->GetExact());
+  EXPECT_EQ(messages.text(), "");
   values->SetNumberOfTuples(2);
   values->Modified();
   EXPECT_EQ(brightness(stage.picture()), 0);
