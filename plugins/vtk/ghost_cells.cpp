@@ -16,6 +16,9 @@
 namespace pellucid::plugin {
 namespace {
 
+/// How far planes lie below the faces of cells, of a cell.
+constexpr double below_face = 0x1p-20;
+
 vtkUnsignedCharArray* ghosts_of(vtkDataSet& data) {
   vtkUnsignedCharArray* const ghosts = data.GetCellGhostArray();
   return ghosts != nullptr && ghosts->GetNumberOfValues() == data.GetNumberOfCells() ? ghosts
@@ -54,6 +57,11 @@ Vec3<double> point_of(vtkDataSet& data, const std::array<int, 3>& sides,
 
 }  // namespace
 
+bool is_grid(vtkDataSet& data) {
+  return vtkImageData::SafeDownCast(&data) != nullptr ||
+         vtkRectilinearGrid::SafeDownCast(&data) != nullptr;
+}
+
 std::array<int, 3> cells_along(vtkDataSet& data) {
   std::array<int, 3> sides{};
   if (auto* const image = vtkImageData::SafeDownCast(&data)) image->GetDimensions(sides.data());
@@ -78,22 +86,46 @@ std::optional<std::vector<Clip>> clips_at_ghosts(vtkDataSet& data,
                 ": its cells that are no ghosts do not fill a box; remove vtkGhostType");
   }
   const Vec3<double> corner = point_of(data, sides, own.first);
-  std::array<Vec3<double>, 3> edge;
-  std::array<int, 3> end{};
-  for (std::size_t a = 0; a < 3; ++a) end[a] = own.last[a] + 1;
-  for (std::size_t a = 0; a < 3; ++a) {
+  // The corner moved along an axis.
+  const auto at = [&](std::size_t axis, int index) {
     std::array<int, 3> along = own.first;
-    along[a] = end[a];
-    edge[a] = world_from_data.vector(point_of(data, sides, along) - corner);
+    along[axis] = index;
+    return point_of(data, sides, along);
+  };
+  std::array<Vec3<double>, 3> edge;
+  for (std::size_t a = 0; a < 3; ++a) {
+    edge[a] = world_from_data.vector(at(a, own.last[a] + 1) - corner);
   }
   for (std::size_t a = 0; a < 3; ++a) {
     Vec3<double> normal = cross(edge[(a + 1) % 3], edge[(a + 2) % 3]);
     if (dot(normal, edge[a]) < 0) normal = -normal;
-    const Vec3<double> point = world_from_data.point(corner);
-    if (own.first[a] > 0) clips.push_back({ClipPlane{point, normal}});
-    if (end[a] < sides[a]) clips.push_back({ClipPlane{point + edge[a], -normal}});
+    const auto face = [&](int index) {
+      const Vec3<double> on = at(a, index);
+      return world_from_data.point(on + (at(a, index - 1) - on) * below_face);
+    };
+    const int end = own.last[a] + 1;
+    if (own.first[a] > 0) clips.push_back({ClipPlane{face(own.first[a]), normal}});
+    if (end < sides[a]) clips.push_back({ClipPlane{face(end), -normal}});
   }
   return clips;
+}
+
+vtkBoundingBox own_bounds(vtkDataSet& data, KeptOwnCells& kept) {
+  const vtkSmartPointer<vtkUnsignedCharArray> ghosts(ghosts_of(data));
+  if (ghosts == nullptr) return vtkBoundingBox(data.GetBounds());
+  vtkBoundingBox box;
+  const std::array<int, 3> sides = cells_along(data);
+  const OwnCells own = *kept.find({ghosts, ghosts->GetMTime(), sides}, own_cells);
+  if (own.count == 0) return box;
+  for (unsigned corner = 0; corner < 8; ++corner) {
+    std::array<int, 3> at{};
+    for (std::size_t a = 0; a < 3; ++a) {
+      at[a] = (corner >> a & 1U) != 0 ? own.last[a] + 1 : own.first[a];
+    }
+    const Vec3<double> point = point_of(data, sides, at);
+    box.AddPoint(point.x, point.y, point.z);
+  }
+  return box;
 }
 
 }  // namespace pellucid::plugin

@@ -132,6 +132,14 @@ class Meshes(StageTest):
                       "origin": list(low), "spacing": [17, 13, 13]},
             "transfer_function": extinctions_of(COLORS, OPACITIES, UNIT)}
 
+    def test_turned_about_a_place_far_off(self):
+        """The camera's range is that of the data where they are shown."""
+        display = self.show(self.opened(self.bent()), "f")
+        display.Orientation, display.Position = [0, 0, 180], [20, 30, 0]
+        self.view.CameraFocalPoint = [20, 30, 0]
+        self.assert_same([{**self.bent_layer(),
+                           "transform": [[-1, 0, 0, 20], [0, -1, 0, 30], [0, 0, 1, 0]]}])
+
     def test_mixed_cells(self):
         grid, layer = self.mixed("POINTS")
         self.show(self.opened(grid), "f")

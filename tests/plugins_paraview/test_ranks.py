@@ -12,8 +12,9 @@ import test_meshes
 from stage import (BLENDED, COLORS, OF_WINDOW, OPACITIES, TOLERANCE, UNIT, StageTest,
                    servermanager, simple, table_of)
 from vtkmodules.util import numpy_support
-from vtkmodules.vtkCommonDataModel import vtkImageData
-from vtkmodules.vtkIOXML import vtkXMLImageDataWriter
+from vtkmodules.vtkCommonDataModel import vtkImageData, vtkMultiBlockDataSet, vtkRectilinearGrid
+from vtkmodules.vtkIOXML import (vtkXMLImageDataWriter, vtkXMLMultiBlockDataWriter,
+                                 vtkXMLRectilinearGridWriter)
 
 RANKS = servermanager.vtkProcessModule.GetProcessModule().GetNumberOfLocalPartitions()
 SHAPE = (19, 15, 17)  # points along x, y, z
@@ -48,6 +49,7 @@ class Ranks(StageTest):
         array = numpy_support.numpy_to_vtk(values.ravel(), deep=1)
         array.SetName("f")
         (data.GetCellData() if cells else data.GetPointData()).AddArray(array)
+        self.whole = data
         writer = vtkXMLImageDataWriter()
         writer.SetFileName(self.path("image.vti"))
         writer.SetInputData(data)
@@ -119,6 +121,164 @@ class Ranks(StageTest):
         display.Orientation = [0, 0, 90]
         self.assert_whole([self.layer(
             field, transform=[[0, -1, 0, 2], [1, 0, 0, -1], [0, 0, 1, 3]])])
+
+    def turns(self):
+        """Quarter turns and a mirror: displays' settings, and transforms of the same."""
+        return [({"Orientation": [0, 0, -90]}, [[0, 1, 0, 0], [-1, 0, 0, 0], [0, 0, 1, 0]]),
+                ({"Orientation": [0, 180, 0]}, [[-1, 0, 0, 0], [0, 1, 0, 0], [0, 0, -1, 0]]),
+                ({"Scale": [-1, 1, 1]}, [[-1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, 0]])]
+
+    def test_turned_after_a_picture(self):
+        source, field = self.image()
+        display = self.show(source, "f")
+        self.picture()
+        for settings, transform in self.turns():
+            with self.subTest(settings):
+                display.Orientation, display.Scale = [0, 0, 0], [1, 1, 1]
+                for name, value in settings.items():
+                    setattr(display, name, value)
+                self.assert_whole([self.layer(field, transform=transform)])
+                self.assertEqual(self.results(display)[0], 1)
+
+    def test_turned_so_that_boxes_overlap_is_not_called_exact(self):
+        display = self.show(self.image()[0], "f")
+        display.Orientation = [0, 0, 30]
+        self.picture()
+        self.assertEqual(self.results(display)[:2], [0, math.inf])
+
+    def test_light_on_cells_has_no_seams(self):
+        source, field = self.image(cells=True)
+        display = self.show(source, "f", "CELLS")
+        shading, lights = self.light(display)
+        self.assert_whole([self.layer(field, shading=shading)], lights=lights)
+
+    def test_light_that_is_brighter_than_opacities(self):
+        """What 8 bits cannot hold is left out, and told."""
+        source, field = self.image()
+        display = self.show(source, "f")
+        shading, lights = self.light(display)
+        display.Specular, display.SpecularPower = 0.3, 4
+        shading.update(specular=0.3, power=4)
+        shown = self.picture()
+        exact, largest, over = self.results(display)
+        self.assertEqual(exact, 1)
+        self.assertGreater(over, 0)
+        self.assertTrue(0.01 < largest < 0.5, largest)
+        self.assertLess(self.off(shown, [self.layer(field, shading=shading)], lights=lights),
+                        largest + self.of_ranks)
+
+    def border(self):
+        """The middle of x, where two ranks meet."""
+        return ORIGIN[0] + SPACING[0] * (SHAPE[0] - 1) / 2
+
+    def test_a_slice_in_a_border_is_shown_once(self):
+        source, field = self.image()
+        display = self.show(source, "f", opacities=[37, 0.4, 0.5, 0, 277, 0.4, 0.5, 0])
+        display.BlendMode = "Slice"
+        point = [self.border(), 0, 0]
+        display.PellucidSliceFunction.Origin = point
+        display.PellucidSliceFunction.Normal = [1, 0, 0]
+        self.assert_whole([{"field": field, "slices": [
+            {"point": point, "normal": [1, 0, 0], "opacity": 0.4,
+             "colors": {"points": [{"value": v, "extinction": 0, "color": list(c)} for v, *c in
+                                   numpy.reshape(COLORS, (-1, 4))]}}]}])
+
+    def test_an_isosurface_in_a_border_is_shown_once(self):
+        source, field = self.image()
+        values = numpy.broadcast_to(ORIGIN[0] + SPACING[0] * numpy.arange(SHAPE[0]), SHAPE[::-1])
+        self.write("field.raw", numpy.ascontiguousarray(values, "<f4").tobytes())
+        along_x = simple.Calculator(source, Function="coordsX", ResultArrayName="x")
+        display = self.show(along_x, "x", colors=[-8, 1, 0.5, 0, 10, 1, 0.5, 0],
+                            opacities=[-8, 0.4, 0.5, 0, 10, 0.4, 0.5, 0])
+        display.BlendMode = "Isosurface"
+        display.IsosurfaceValues = [self.border()]
+        self.assert_whole([{"field": field, "isosurfaces": [
+            {"value": self.border(), "color": [1, 0.5, 0], "opacity": 0.4}]}])
+
+    def test_cropping_is_of_the_whole(self):
+        source, field = self.image()
+        display = self.show(source, "f")
+        display.UseCropping = 1
+        display.CroppingOrigin, display.CroppingScale = [1, 0, 0], [0.6, 0.7, 0.5]
+        lower = numpy.add([1, 0, 0], numpy.multiply(ORIGIN, [0.6, 0.7, 0.5]))
+        upper = numpy.add([1, 0, 0], numpy.multiply(
+            numpy.add(ORIGIN, numpy.multiply(SPACING, numpy.subtract(SHAPE, 1))), [0.6, 0.7, 0.5]))
+        self.assert_whole([self.layer(field, clip=[
+            {"box": {"lower": lower.tolist(), "upper": upper.tolist()}}])])
+
+    def blocks(self, order):
+        """The image in four slabs along z, which the ranks share in this order."""
+        field = self.image()[1]
+        blocks = vtkMultiBlockDataSet()
+        cuts = [0, 4, 8, 12, SHAPE[2] - 1]
+        for place, slab in enumerate(order):
+            block = vtkImageData()
+            block.DeepCopy(self.whole)
+            block.Crop([*self.whole.GetExtent()[:4], cuts[slab], cuts[slab + 1]])
+            blocks.SetBlock(place, block)
+        writer = vtkXMLMultiBlockDataWriter()
+        writer.SetFileName(self.path("blocks.vtm"))
+        writer.SetInputData(blocks)
+        writer.SetDataModeToBinary()
+        self.assertEqual(writer.Write(), 1)
+        return simple.OpenDataFile(self.path("blocks.vtm")), field
+
+    def test_blocks(self):
+        source, field = self.blocks((0, 1, 2, 3))
+        display = self.show(source, "f")
+        self.assert_whole([self.layer(field)])
+        self.assertEqual(self.results(display)[0], 1)
+
+    def test_blocks_out_of_order_are_not_called_exact(self):
+        display = self.show(self.blocks((0, 2, 1, 3))[0], "f")
+        self.picture()
+        self.assertEqual(self.results(display)[:2], [0, math.inf])
+
+    def test_volumes_that_are_cut_in_other_ways_are_not_called_exact(self):
+        first = self.show(self.image()[0], "f")
+        self.picture()
+        self.assertEqual(self.results(first)[0], 1)
+        second = self.show(simple.Wavelet(WholeExtent=[12, 14, -2, 2, -20, 20]), "RTData")
+        self.picture()
+        for display in (first, second):
+            self.assertEqual(self.results(display)[:2], [0, math.inf])
+
+    def test_rectilinear_grid(self):
+        """Of values that are linear, so that any grid of them has the same field."""
+        axes = [numpy.array(a, float) for a in
+                ([-8, -7.5, -5, -3, 0, 2, 4, 7, 9], [-6, 1, 2, 2.5, 7], [-7, -6, 5, 6])]
+        grid = vtkRectilinearGrid()
+        grid.SetDimensions([len(axis) for axis in axes])
+        for name, axis in zip("XYZ", axes):
+            getattr(grid, f"Set{name}Coordinates")(numpy_support.numpy_to_vtk(axis, deep=1))
+        z, y, x = numpy.meshgrid(*axes[::-1], indexing="ij")
+        values = numpy_support.numpy_to_vtk((157 + 9 * x + 4 * y - 2 * z).ravel(), deep=1)
+        values.SetName("f")
+        grid.GetPointData().AddArray(values)
+        writer = vtkXMLRectilinearGridWriter()
+        writer.SetFileName(self.path("grid.vtr"))
+        writer.SetInputData(grid)
+        writer.SetDataModeToBinary()
+        self.assertEqual(writer.Write(), 1)
+        display = self.show(simple.OpenDataFile(self.path("grid.vtr")), "f")
+        shading, lights = self.light(display)
+        corners = numpy.array([157 + 9 * x + 4 * y - 2 * z for z in (-7, 6) for y in (-6, 7)
+                               for x in (-8, 9)], "<f4")
+        self.write("field.raw", corners.tobytes())
+        self.assert_whole([self.layer({"file": "field.raw", "type": "f32", "dimensions": [2, 2, 2],
+                                       "origin": [-8, -6, -7], "spacing": [17, 13, 13]},
+                                      shading=shading)], lights=lights)
+        self.assertEqual(self.results(display)[0], 1)
+
+    def test_turned_cells(self):
+        cells = list(test_meshes.hexahedra())
+        half = len(cells) // 2
+        display = self.show(self.pieces(cells[:half], cells[half:]), "f")
+        self.picture()
+        display.Orientation = [180, 0, 0]
+        self.assert_whole([{**self.bent_layer(),
+                            "transform": [[1, 0, 0, 0], [0, -1, 0, 0], [0, 0, -1, 0]]}])
+        self.assertEqual(self.results(display)[0], 1)
 
     def test_errors_are_of_all_ranks(self):
         source, field = self.image()

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """Images and rectilinear grids in ParaView, beside the program's pictures of the same scene."""
+import math
 import os
 import sys
 import unittest
@@ -110,6 +111,13 @@ class Volumes(StageTest):
             {"point": [1, 0, 1], "normal": [1, 0.5, 0.25], "opacity": 0.7,
              "colors": {"points": [{"value": v, "extinction": 0, "color": list(c)} for v, *c in
                                    numpy.reshape(COLORS, (-1, 4))]}}]}])
+
+    def test_a_separate_array_of_opacities_is_refused(self):
+        source, display = self.wavelet()
+        self.picture()
+        display.UseSeparateOpacityArray = 1
+        self.assertEqual(self.picture().max(), 0)
+        self.assertEqual(self.results(display)[:2], [0, math.inf])
 
     def test_cropping(self):
         source, display = self.wavelet()

@@ -17,9 +17,7 @@
 #include <vector>
 
 namespace pellucid::plugin {
-namespace {
 
-/// The data sets with points of an input: itself, or its blocks.
 std::vector<vtkDataSet*> parts_of(vtkDataObject* input) {
   std::vector<vtkDataSet*> parts;
   const auto add = [&](vtkDataObject* object) {
@@ -36,8 +34,6 @@ std::vector<vtkDataSet*> parts_of(vtkDataObject* input) {
   }
   return parts;
 }
-
-}  // namespace
 
 vtkStandardNewMacro(BlocksMapper);
 

@@ -3,10 +3,15 @@
 
 #include <vtkMultiBlockVolumeMapper.h>
 
+#include <vector>
+
 #include "mapper_core.h"
 #include "one_component.h"
 
 namespace pellucid::plugin {
+
+/// Returns the data sets with points of an input: itself, or its blocks.
+std::vector<vtkDataSet*> parts_of(vtkDataObject* input);
 
 /// Draws an image, a rectilinear grid, or blocks of them as one volume. ParaView's representation
 /// of images asks for this class of mapper where the data may be blocks.

@@ -1,18 +1,39 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "vtkPellucidImageVolumeRepresentation.h"
 
+#include <vtkBoundingBox.h>
 #include <vtkImageData.h>
 #include <vtkInformationVector.h>
 #include <vtkNew.h>
 #include <vtkObjectFactory.h>
+#include <vtkPVLODVolume.h>
+#include <vtkPVView.h>
 #include <vtkSmartPointer.h>
 
+#include <utility>
+
 #include "blocks_mapper.h"
+#include "ghost_cells.h"
 #include "shared_picture.h"
 
 struct vtkPellucidImageVolumeRepresentation::Parts {
   vtkNew<pellucid::plugin::BlocksMapper> mapper;
   pellucid::plugin::SharedPicture picture{mapper->core, *mapper};
+  pellucid::plugin::Mover mover;
+  pellucid::plugin::KeptOwnCells own_cells;
+  bool is_opacity_told = false;
+
+  /// Returns the box around what a rank shows of its data, which its ghosts are not.
+  vtkBoundingBox bounds_of(vtkDataObject* data) {
+    vtkBoundingBox box;
+    for (vtkDataSet* const part : pellucid::plugin::parts_of(data)) {
+      if (pellucid::plugin::is_grid(*part)) {
+        box.AddBox(pellucid::plugin::own_bounds(*part, own_cells));
+      }
+    }
+    own_cells.keep_used();
+    return box;
+  }
 };
 
 vtkStandardNewMacro(vtkPellucidImageVolumeRepresentation);
@@ -75,9 +96,46 @@ int vtkPellucidImageVolumeRepresentation::RequestData(vtkInformation* request,
   return 1;
 }
 
+/// ParaView does not move the boxes of data with the volume, by which it sets the camera's range
+/// and orders ranks. For their order it takes new boxes with new data alone.
+int vtkPellucidImageVolumeRepresentation::ProcessViewRequest(vtkInformationRequestKey* request,
+                                                             vtkInformation* in,
+                                                             vtkInformation* out) {
+  const bool shares = pellucid::plugin::SharedPicture::ranks() > 1;
+  const bool is_update = request == vtkPVView::REQUEST_UPDATE();
+  if (shares && is_update && this->Own->mover.moved(*this->Actor)) this->MarkModified();
+  if (this->Superclass::ProcessViewRequest(request, in, out) == 0) return 0;
+  if (is_update) {
+    pellucid::plugin::set_bounds(*in, *this, this->Own->bounds_of(this->Cache), *this->Actor);
+  }
+  return 1;
+}
+
 void vtkPellucidImageVolumeRepresentation::UpdateMapperParameters() {
   this->Superclass::UpdateMapperParameters();
   this->Own->picture.prepare(*this);
+  if (this->UseSeparateOpacityArray) {
+    this->Actor->SetVisibility(0);
+    this->Own->picture.refuse();
+    if (!std::exchange(this->Own->is_opacity_told, true)) {
+      vtkErrorMacro(
+          "Pellucid draws nothing: a separate array of opacities is not read; turn "
+          "UseSeparateOpacityArray off");
+    }
+  }
+  if (pellucid::plugin::SharedPicture::ranks() < 2) return;
+  vtkVolumeMapper& mapper = *this->VolumeMapper;
+  vtkBoundingBox own = this->Own->bounds_of(mapper.GetDataObjectInput());
+  this->Own->picture.check_order(*this, pellucid::plugin::moved(own, *this->Actor));
+  // The superclass crops each part by its own box.
+  if (mapper.GetCropping() == 0) return;
+  const vtkBoundingBox whole = pellucid::plugin::joined_over_ranks(own);
+  double planes[6];
+  for (int side = 0; side < 6; ++side) {
+    planes[side] =
+        this->CroppingOrigin[side / 2] + whole.GetBound(side) * this->CroppingScale[side / 2];
+  }
+  mapper.SetCroppingRegionPlanes(planes);
 }
 
 void vtkPellucidImageVolumeRepresentation::PrintSelf(ostream& os, vtkIndent indent) {

@@ -39,6 +39,9 @@ class VTKPELLUCIDREPRESENTATIONS_EXPORT vtkPellucidImageVolumeRepresentation
   vtkIdType GetPixelsOver();
   ///@}
 
+  int ProcessViewRequest(vtkInformationRequestKey* request, vtkInformation* in,
+                         vtkInformation* out) override;
+
  protected:
   vtkPellucidImageVolumeRepresentation();
   ~vtkPellucidImageVolumeRepresentation() override;

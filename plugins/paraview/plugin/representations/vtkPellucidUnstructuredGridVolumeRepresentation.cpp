@@ -2,12 +2,14 @@
 #include "vtkPellucidUnstructuredGridVolumeRepresentation.h"
 
 #include <vtkAlgorithmOutput.h>
+#include <vtkBoundingBox.h>
 #include <vtkColorTransferFunction.h>
 #include <vtkDataArray.h>
 #include <vtkInformation.h>
 #include <vtkInformationVector.h>
 #include <vtkNew.h>
 #include <vtkObjectFactory.h>
+#include <vtkPVLODVolume.h>
 #include <vtkPVRenderView.h>
 #include <vtkUnstructuredGrid.h>
 #include <vtkVolumeProperty.h>
@@ -28,6 +30,7 @@ struct vtkPellucidUnstructuredGridVolumeRepresentation::Parts {
   vtkNew<vtkPellucidUnstructuredGridMapper> mapper;
   pellucid::plugin::OneComponent component;
   pellucid::plugin::SharedPicture picture{mapper->GetCore(), *mapper};
+  pellucid::plugin::Mover mover;
 };
 
 vtkStandardNewMacro(vtkPellucidUnstructuredGridVolumeRepresentation);
@@ -90,14 +93,23 @@ int vtkPellucidUnstructuredGridVolumeRepresentation::RequestData(vtkInformation*
   return vtkVolumeRepresentation::RequestData(request, inputs, outputs);
 }
 
-/// ParaView maps one component of a vector, or its length.
+/// ParaView does not move the boxes of data with the volume, by which it sets the camera's range
+/// and orders ranks. For their order it takes new boxes with new data alone. It maps one component
+/// of a vector, or its length.
 int vtkPellucidUnstructuredGridVolumeRepresentation::ProcessViewRequest(
     vtkInformationRequestKey* request, vtkInformation* in, vtkInformation* out) {
+  const bool shares = pellucid::plugin::SharedPicture::ranks() > 1;
+  const bool is_update = request == vtkPVView::REQUEST_UPDATE();
+  if (shares && is_update && this->Own->mover.moved(*this->Actor)) this->MarkModified();
   if (this->Superclass::ProcessViewRequest(request, in, out) == 0) return 0;
+  if (is_update) {
+    pellucid::plugin::set_bounds(*in, *this, vtkBoundingBox(this->DataBounds), *this->Actor);
+  }
   if (request != vtkPVView::REQUEST_RENDER()) return 1;
-  this->Own->picture.prepare(*this);
-  this->Own->picture.check_order(*this);
   vtkPellucidUnstructuredGridMapper& mapper = *this->Own->mapper;
+  this->Own->picture.prepare(*this);
+  this->Own->picture.check_order(
+      *this, pellucid::plugin::moved(vtkBoundingBox(mapper.GetBounds()), *this->Actor));
   vtkAlgorithmOutput* const port = vtkPVRenderView::GetPieceProducer(in, this);
   auto* const grid = vtkUnstructuredGrid::SafeDownCast(port->GetProducer()->GetOutputDataObject(0));
   if (grid == nullptr) return 1;
