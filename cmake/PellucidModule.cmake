@@ -25,15 +25,18 @@ target_compile_options(pellucid_build_flags INTERFACE
 option(PELLUCID_PRECOMPILE_HEADERS
        "Precompile what most sources of the libraries include" ${PROJECT_IS_TOP_LEVEL})
 
-# pellucid_precompiled_headers(TARGET [HEADERS header...]): sources of TARGET have the headers of
-# `scene`, which owns one file of them for all libraries, or HEADERS. They must still include what
-# they use: the presets of clang and the sanitizers compile without.
+# pellucid_precompiled_headers(TARGET [HEADERS header...] [OF target]): sources of TARGET have the
+# headers of `scene`, which owns one file of them for all libraries, or of the target OF, which is
+# compiled alike, or HEADERS as well, in a file of its own. They must still include what they use:
+# the presets of clang and the sanitizers compile without.
 function(pellucid_precompiled_headers target)
-  cmake_parse_arguments(arg "" "" "HEADERS" ${ARGN})
+  cmake_parse_arguments(arg "" "OF" "HEADERS" ${ARGN})
   if(NOT PELLUCID_PRECOMPILE_HEADERS)
     return()
   endif()
-  if(arg_HEADERS OR NOT TARGET pellucid_scene OR target STREQUAL "pellucid_scene")
+  if(arg_OF)
+    target_precompile_headers(${target} REUSE_FROM ${arg_OF})
+  elseif(arg_HEADERS OR NOT TARGET pellucid_scene OR target STREQUAL "pellucid_scene")
     target_precompile_headers(${target} PRIVATE
       <algorithm> <array> <cmath> <cstddef> <cstdint> <filesystem> <functional> <limits> <memory>
       <optional> <span> <string> <string_view> <utility> <variant> <vector>
