@@ -109,7 +109,7 @@ std::vector<Layer> layers_of(vtkUnstructuredGridVolumeMapper& mapper, vtkVolume&
   // Cells that are inserted change no time.
   const std::array<vtkIdType, 2> counts{grid->GetNumberOfPoints(), grid->GetNumberOfCells()};
   const std::uint64_t fingerprint = fingerprint_of(*array, 0);
-  if (kept.mesh == nullptr || kept.array != array || kept.time != time || kept.counts != counts ||
+  if (kept.array != array || kept.time != time || kept.counts != counts ||
       kept.fingerprint != fingerprint || kept.cells != grid->GetCells()) {
     kept.mesh = mesh_of(*grid, *array, of_cells != 0);
     kept.array = array;
