@@ -193,8 +193,6 @@ TEST(VtkLife, TheFactoryMakesOursAndLetsGoOfThem) {
   EXPECT_TRUE(std::isnan(vtkPellucidFactory::Get(nullptr, "Tolerance")));
 }
 
-/// A volume that cannot be shown: one error, that says what, and a window that is as black as
-/// before.
 /// Sets an explicit projection, by which no volume is culled.
 void project(Stage& stage, vtkMatrix4x4* matrix) {
   stage.camera->SetExplicitProjectionTransformMatrix(matrix);
@@ -202,6 +200,8 @@ void project(Stage& stage, vtkMatrix4x4* matrix) {
   stage.renderer->GetCullers()->RemoveAllItems();
 }
 
+/// A volume that cannot be shown: one error, that says what, and a window that is as black as
+/// before.
 struct BadCase {
   const char* name;
   void (*spoil)(Stage&, vtkImageData*, vtkVolumeProperty*, vtkPellucidVolumeMapper*);

@@ -17,9 +17,9 @@ class vtkProp3D;
 namespace pellucid::plugin {
 
 /// A representation's picture, which the ranks of a server, or of pvbatch, make together. Each rank
-/// draws its part of the data, and ParaView puts the parts over each other. Then errors add up, and
-/// those of the opacities count once more for what is behind them: C = C1 + (1 - a1) C2, where C2
-/// is at most 1. So each of n ranks has 1 / 2n of the tolerance.
+/// draws its part of the data, and ParaView puts the parts over each other: C = C1 + (1 - a1) C2.
+/// The errors of the colors add up. An error of an opacity changes how much of C2 is seen, and C2
+/// is at most 1, so it adds as much again. Each of n ranks has 1 / 2n of the tolerance.
 class SharedPicture {
  public:
   /// Both outlive it.
