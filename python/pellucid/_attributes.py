@@ -22,6 +22,11 @@ def scaled(stored: numpy.ndarray, slope: float, intercept: float) -> numpy.ndarr
         numpy.float32 if narrow else numpy.float64)
 
 
+# What NetCDF has where nothing was written, by type; bytes have no such value.
+_NEVER_WRITTEN = (9.969209968386869e36, -32767, 65535, -2147483647, 4294967295,
+                  -9223372036854775806, 18446744073709551614)
+
+
 class _Scale(NamedTuple):
     slope: float
     intercept: float
@@ -31,16 +36,18 @@ class _Scale(NamedTuple):
 
 def applied(stored: numpy.ndarray, data: Any, name: str) -> numpy.ndarray:
     """Returns stored values of `data` as its attributes mean them: scaled, and masked."""
-    attributes = _attributes_of(data)
-    if not attributes or stored.dtype.kind not in "iuf":
+    if stored.dtype.kind not in "iuf":
         return stored
+    attributes, fill = _attributes_of(data)
     told = []
     missing, values = numpy.ma.getmaskarray(stored), numpy.ma.getdata(stored)
     wrap = 0
-    if str(attributes.get("_Unsigned", "")).lower() == "true" and values.dtype.kind == "i":
-        wrap = 2 ** (8 * values.dtype.itemsize)
-        values = values.view(values.dtype.str.replace("i", "u"))
-        told.append("_Unsigned")
+    for said, kind, meant in (("true", "i", "u"), ("false", "u", "i")):
+        if str(attributes.get("_Unsigned", "")).lower() == said and values.dtype.kind == kind:
+            wrap = 2 ** (8 * values.dtype.itemsize)
+            values = values.view(values.dtype.str.replace(kind, meant))
+            told.append("_Unsigned")
+            break
     scale = _scale_of(attributes, getattr(data, "encoding", None) or {})
     masks = [(key, _equal(values, number, wrap)) for key in ("_FillValue", "missing_value")
              for number in _numbers(attributes, key)]
@@ -52,6 +59,9 @@ def applied(stored: numpy.ndarray, data: Any, name: str) -> numpy.ndarray:
     if not scale.is_applied and (scale.slope, scale.intercept) != (1, 0):
         values = scaled(values, scale.slope, scale.intercept)
         told.append("scale_factor and add_offset")
+    if fill is not None and (_equal(values, fill, 0) & ~missing).any():
+        tell(f"{name}: values that are its fill value, {fill}, are shown; mask them if they are "
+             "missing")
     if not told:
         return stored
     tell(f"{name}: its attributes say {', '.join(dict.fromkeys(told))}: applied; give its values "
@@ -59,14 +69,20 @@ def applied(stored: numpy.ndarray, data: Any, name: str) -> numpy.ndarray:
     return numpy.ma.MaskedArray(values, missing)
 
 
-def _attributes_of(data: Any) -> Mapping[str, Any]:
+def _attributes_of(data: Any) -> Tuple[Mapping[str, Any], Optional[Any]]:
+    """The attributes of data, and a fill value that need not mean missing values."""
     attributes = getattr(data, "attrs", None)
     if attributes is None or not hasattr(attributes, "keys"):
-        return {}
+        return {}, None
     found = dict(attributes)
-    if "_ARRAY_DIMENSIONS" in found and getattr(data, "fill_value", None) is not None:
-        found.setdefault("_FillValue", data.fill_value)  # of Zarr, as xarray writes it
-    return found
+    fill = getattr(data, "fillvalue", getattr(data, "fill_value", None))  # of h5py, of zarr
+    is_number = numpy.ndim(fill) == 0 and numpy.asarray(fill).dtype.kind in "iuf"
+    if not is_number or "_FillValue" in found:
+        return found, None
+    # xarray marks its stores of Zarr so, where the fill value is its _FillValue.
+    if "_ARRAY_DIMENSIONS" in found or fill in _NEVER_WRITTEN:
+        return {**found, "_FillValue": fill}, None
+    return found, fill if fill != 0 else None
 
 
 def _numbers(attributes: Mapping[str, Any], key: str) -> List[Any]:
@@ -85,17 +101,21 @@ def _scale_of(attributes: Mapping[str, Any], encoding: Mapping[str, Any]) -> _Sc
     return _Scale(float((slope or [1])[0]), float((intercept or [0])[0]), is_applied)
 
 
+def _wrapped(number: int, kind: numpy.dtype, wrap: int) -> int:
+    """A whole number with the sign that its type is meant to have: 255 of -1."""
+    least = int(numpy.iinfo(kind).min)
+    return (number - least) % wrap + least if wrap > 0 else number
+
+
 def _equal(values: numpy.ndarray, number: Any, wrap: int) -> numpy.ndarray:
     """Which values are a marker, which is written in their type or in a wider one."""
     if values.dtype.kind == "f":
         return values == values.dtype.type(number)
-    whole = int(number) if numpy.isfinite(number) and number == int(number) else None
-    if whole is not None and whole < 0:
-        whole += wrap
-    limits = numpy.iinfo(values.dtype)
-    if whole is None or not limits.min <= whole <= limits.max:
-        return numpy.zeros(values.shape, dtype=bool)
-    return values == values.dtype.type(whole)
+    if numpy.isfinite(number) and number == int(number):
+        whole, limits = _wrapped(int(number), values.dtype, wrap), numpy.iinfo(values.dtype)
+        if limits.min <= whole <= limits.max:
+            return values == values.dtype.type(whole)
+    return numpy.zeros(values.shape, dtype=bool)
 
 
 def _outside(values: numpy.ndarray, attributes: Mapping[str, Any], scale: _Scale,
@@ -108,18 +128,19 @@ def _outside(values: numpy.ndarray, attributes: Mapping[str, Any], scale: _Scale
     for bound, sign in ((lower, 1), (upper, -1)):
         if bound is None or scale.slope == 0:
             continue
-        number, slack, turn = _own_bound(bound, scale, wrap)
+        number, slack, turn = _own_bound(bound, scale, values.dtype, wrap)
         found.append(sign * turn * (values.astype(numpy.float64) - number) < -slack)
     return found
 
 
-def _own_bound(bound: Any, scale: _Scale, wrap: int) -> Tuple[float, float, int]:
+def _own_bound(bound: Any, scale: _Scale, kind: numpy.dtype,
+               wrap: int) -> Tuple[float, float, int]:
     """A bound among the values as they are, its rounding there, and -1 where scales turn it round.
 
     Bounds are whole numbers where they mean packed values, and else mean scaled ones.
     """
     is_packed = isinstance(bound, numpy.integer)
-    number = float(bound) + (wrap if is_packed and bound < 0 else 0)
+    number = float(_wrapped(int(bound), kind, wrap) if is_packed and kind.kind in "iu" else bound)
     slope, intercept, is_applied = scale
     if (slope, intercept) == (1, 0) or is_packed != is_applied:
         return number, 0.0, 1

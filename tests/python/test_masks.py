@@ -157,9 +157,12 @@ class WithAttributes(Asked):
     ("i2", {"valid_max": -20.0, "scale_factor": -0.5}, VALUES < 40, VALUES * -0.5),
     ("i1", {"_Unsigned": "true", "_FillValue": numpy.int8(-1)}, VALUES == 59,
      (VALUES + 196) % 256),
+    ("u1", {"_Unsigned": "false", "_FillValue": numpy.uint8(255)}, VALUES == 59, VALUES - 60),
+    ("u1", {"_Unsigned": "false", "valid_min": numpy.uint8(250)}, VALUES < 54, VALUES - 60),
 ])
 def test_attributes_are_applied_and_told(kind, attributes, hidden, values):
-    stored = (VALUES + 196).astype("u1").view("i1") if kind == "i1" else VALUES.astype(kind)
+    wraps = kind in ("i1", "u1")
+    stored = (VALUES + 196).astype("u1").view(kind) if wraps else VALUES.astype(kind)
     with pytest.warns(pellucid.Note, match="its attributes say"):
         assert_hides(WithAttributes(stored, **attributes), hidden, values)
 
@@ -182,6 +185,30 @@ def test_zarr_as_xarray_writes_it():
     data.attrs["_ARRAY_DIMENSIONS"] = ["z", "y", "x"]
     with pytest.warns(pellucid.Note, match="_FillValue"):
         assert_hides(data, VALUES == 0)
+
+
+@pytest.mark.parametrize("kind, fill", [("f4", 9.969209968386869e36), ("i2", -32767),
+                                        ("i4", -2147483647), ("u2", 65535)])
+@pytest.mark.parametrize("attribute", ["fillvalue", "fill_value"])
+def test_what_netcdf_never_wrote_is_missing(kind, fill, attribute):
+    """As h5py gives a file of NetCDF, whose variable has no attribute for it."""
+    values = VALUES.astype(kind)
+    values[1, 2, 3] = fill
+    data = WithAttributes(values)
+    setattr(data, attribute, values.dtype.type(fill))
+    with pytest.warns(pellucid.Note, match="_FillValue"):
+        assert_hides(data, values == values[1, 2, 3], values)
+
+
+def test_other_fill_values_are_told():
+    data = WithAttributes(VALUES.astype("f4"))
+    data.fillvalue = numpy.float32(7)
+    with pytest.warns(pellucid.Note, match="its fill value, 7.0, are shown"):
+        assert_hides(data, VALUES < 0)
+    data.fillvalue = numpy.float32(-5)  # is nowhere
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        assert_hides(data, VALUES < 0)
 
 
 def test_a_place_that_is_not_read_is_told():
