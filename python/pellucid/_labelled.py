@@ -91,6 +91,10 @@ def _placed(array: numpy.ndarray, axes: List[_Axis], name: str) -> Placed:
     elif not _is_known_order(names):
         tell(f"{name}: its axes {', '.join(names)} are taken as z, y and x; transpose it if they "
              "are others")
+    for axis in axes:
+        if str(axis.attributes.get("positive", "")).lower() == "down":
+            tell(f"{name}: its axis \"{axis.name}\" is positive down, and is taken as one that goes "
+                 "up; negate its coordinates to turn it")
     return Placed(array, coordinates=_positions(axes, name), name=name)
 
 

@@ -88,6 +88,14 @@ def test_coordinates_of_several_axes_are_told(xarray):
         pellucid.Volume(data)
 
 
+def test_depths_that_go_down_are_told(xarray):
+    depth = ("depth", Z, {"positive": "down"})
+    data = xarray.DataArray(VALUES, dims=("depth", "lat", "lon"), coords={"depth": depth})
+    with pytest.warns(pellucid.Note, match="\"depth\" is positive down"):
+        assert pellucid.Volume(data).coordinates[0][2] == 7
+    assert silent(data.assign_coords(depth=-Z)).direction[0, 0] == -1
+
+
 def test_xarray_decodes_or_we_do(xarray):
     attributes = {"_FillValue": numpy.int16(7), "scale_factor": 0.5, "add_offset": 100.0}
     stored = xarray.DataArray(VALUES.astype("i2"), dims=("z", "y", "x"), attrs=attributes)
