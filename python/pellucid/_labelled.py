@@ -93,8 +93,8 @@ def _placed(array: numpy.ndarray, axes: List[_Axis], name: str) -> Placed:
              "are others")
     for axis in axes:
         if str(axis.attributes.get("positive", "")).lower() == "down":
-            tell(f"{name}: its axis \"{axis.name}\" is positive down, and is taken as one that goes "
-                 "up; negate its coordinates to turn it")
+            tell(f"{name}: its axis \"{axis.name}\" is positive down, and is taken as one that "
+                 "goes up; negate its coordinates to turn it")
     return Placed(array, coordinates=_positions(axes, name), name=name)
 
 

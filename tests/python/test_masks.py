@@ -154,6 +154,7 @@ class WithAttributes(Asked):
     ("f4", {"valid_min": 3.5}, VALUES < 3.5, VALUES),
     ("i2", {"valid_max": numpy.int16(50), "scale_factor": 2.0}, VALUES > 50, VALUES * 2.0),
     ("i2", {"valid_max": 20.5, "scale_factor": 0.5}, VALUES > 41, VALUES * 0.5),
+    ("i2", {"valid_max": 4.1, "scale_factor": 0.1}, VALUES > 41, (VALUES * 0.1).astype("f4")),
     ("i2", {"valid_max": -20.0, "scale_factor": -0.5}, VALUES < 40, VALUES * -0.5),
     ("i1", {"_Unsigned": "true", "_FillValue": numpy.int8(-1)}, VALUES == 59,
      (VALUES + 196) % 256),
