@@ -8,26 +8,15 @@ from __future__ import annotations
 
 import math
 import sys
-import warnings
-from typing import Any, List, NamedTuple, Optional
+from typing import Any, List, Optional
 
 import numpy
 
-from . import _ghosts
-from ._notes import Note
+from . import _ghosts, _labelled, _nibabel
+from ._masks import as_array
+from ._notes import tell
 from ._pellucid import Error
-
-
-class Placed(NamedTuple):
-    """An array of three axes and its place, as Volume() takes them."""
-
-    array: numpy.ndarray
-    spacing: Any = (1.0, 1.0, 1.0)
-    origin: Any = (0.0, 0.0, 0.0)
-    direction: Any = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
-    coordinates: Any = (None, None, None)
-    centering: str = "point"
-    name: str = "array"
+from ._places import Placed, three_axes
 
 
 def placed(data: Any, spacing: Any, origin: Any, direction: Any, coordinates: Any,
@@ -47,7 +36,9 @@ def placed(data: Any, spacing: Any, origin: Any, direction: Any, coordinates: An
         if not isinstance(coordinates, (list, tuple)) or len(coordinates) != 3:
             raise Error(f"{name}: coordinates: expected a list of three arrays (z, y, x), each or "
                         "None for an axis with a spacing")
-        found = found._replace(coordinates=tuple(coordinates))
+        found = found._replace(coordinates=tuple(
+            None if each is None else as_array(each, f"{name}: coordinates along {axis}")
+            for axis, each in zip("zyx", coordinates)))
     if centering is not None:
         if centering not in ("point", "cell"):
             raise Error(f"{name}: centering: expected \"point\" or \"cell\", got {centering!r:.60}")
@@ -64,105 +55,22 @@ def placed(data: Any, spacing: Any, origin: Any, direction: Any, coordinates: An
     return found._replace(name=name)
 
 
-def as_array(data: Any, name: str) -> numpy.ndarray:
-    """Returns data as a numpy array, without a copy where that is possible. Masked is NaN."""
-    if isinstance(data, numpy.ma.MaskedArray):
-        return _unmasked(data)
-    if isinstance(data, numpy.ndarray):
-        return data
-    if data is None or isinstance(data, (str, dict, set)):
-        raise Error(f"{name}: expected an array, got {data!r:.60}")
-    if hasattr(data, "__dlpack__") and not (hasattr(data, "__array_interface__")
-                                            or hasattr(data, "__array__")):
-        try:
-            return numpy.from_dlpack(data)
-        except (RuntimeError, TypeError, BufferError) as failure:
-            raise Error(f"{name}: its DLPack memory cannot be read ({failure}); move it to the "
-                        "memory of the processor") from None
-    try:
-        return numpy.asanyarray(data)
-    except (TypeError, ValueError) as failure:
-        raise Error(f"{name}: expected an array, got {type(data).__name__} ({failure})") from None
-
-
-def _unmasked(data: numpy.ma.MaskedArray) -> numpy.ndarray:
-    mask = numpy.ma.getmaskarray(data)
-    if not mask.any():
-        return data.data
-    values = data.data
-    if values.dtype.kind not in "biuf":
-        return values  # refused by its type
-    if values.dtype.kind != "f":
-        exact = 2 ** 53
-        if values.dtype.itemsize == 8 and (values.max() > exact or values.min() < -exact):
-            warnings.warn("masked integers beyond 2^53 are rounded to f64", Note, stacklevel=4)
-        values = values.astype(numpy.float32 if values.dtype.itemsize <= 2 else numpy.float64)
-    return numpy.where(mask, values.dtype.type(numpy.nan), values)
-
-
-def three_axes(array: numpy.ndarray, name: str) -> numpy.ndarray:
-    """Returns the array without axes of one entry in front and behind. Throws for others."""
-    given = array.shape
-    while array.ndim > 3 and array.shape[0] == 1:
-        array = array[0]
-    while array.ndim > 3 and array.shape[-1] == 1:
-        array = array[..., 0]
-    if array.ndim != 3:
-        advice = ("choose one of its volumes, as in a[..., 0], or give several as Channels"
-                  if array.ndim > 3 else "give three axes (z, y, x), as in a[numpy.newaxis] with "
-                  "centering=\"cell\" for a single slice" if array.ndim == 2
-                  else "give an array with three axes (z, y, x)")
-        raise Error(f"{name}: an array of shape {given} has {len(given)} axes; {advice}")
-    return array
-
-
 def _found(data: Any, name: str) -> Placed:
-    if hasattr(data, "dataobj") and hasattr(data, "affine"):
-        return _of_nibabel(data)
+    if _nibabel.is_image(data):
+        return _nibabel.placed(data)
     if callable(getattr(data, "IsA", None)) and hasattr(data, "GetClassName"):
         return _of_vtk(data)
     if all(hasattr(data, each) for each in ("GetSpacing", "GetOrigin", "GetDirection")):
         return _of_itk(data)
     if all(hasattr(data, each) for each in ("dims", "coords", "values")):
-        return _of_xarray(data)
+        return _labelled.of_xarray(data)
+    if _labelled.is_netcdf4(data):
+        return _labelled.of_netcdf4(data)
+    places = [each for each in ("affine", "spacing", "origin", "direction") if hasattr(data, each)]
+    if places:
+        tell(f"{name}: the {places[0]} of a {type(data).__name__} is not read; give spacing, "
+             "origin and direction")
     return Placed(three_axes(as_array(data, name), name), name=name)
-
-
-def _of_columns(array: numpy.ndarray, columns: numpy.ndarray, origin: Any, name: str) -> Placed:
-    """An array (z, y, x) whose axes step by columns[a], all given as (x, y, z)."""
-    spacing, direction = [], numpy.empty((3, 3))
-    for axis, (x, y, z) in enumerate(columns):
-        length = math.sqrt(x * x + y * y + z * z)
-        spacing.append(length)
-        inverse = 1 / length if length > 0 else 0.0
-        direction[:, axis] = (z * inverse, y * inverse, x * inverse)
-    return Placed(array, tuple(spacing), tuple(origin)[::-1], direction, name=name)
-
-
-def _of_nibabel(image: Any) -> Placed:
-    """RAS becomes LPS, and the axes (i, j, k) of its array are x, y, z."""
-    file = image.get_filename() if hasattr(image, "get_filename") else None
-    name = str(file or "nibabel image")
-    if image.affine is None:
-        raise Error(f"{name}: its affine is None, so that its place is not known; give the image "
-                    "an affine")
-    array = three_axes(_nibabel_values(image.dataobj, name), name)
-    affine = numpy.array(image.affine, dtype=float)
-    affine[:2] *= -1
-    return _of_columns(array.T, affine[:3, 2::-1].T, affine[:3, 3], name)
-
-
-def _nibabel_values(dataobj: Any, name: str) -> numpy.ndarray:
-    """The values as our own reader scales them: in float from 16 bits and less."""
-    if not hasattr(dataobj, "get_unscaled"):
-        return as_array(dataobj, name)
-    stored = numpy.asanyarray(dataobj.get_unscaled())
-    slope, intercept = float(dataobj.slope), float(dataobj.inter)
-    if slope == 1 and intercept == 0:
-        return stored
-    narrow = stored.dtype.itemsize <= 2 or stored.dtype.name == "float32"
-    return (slope * stored.astype(numpy.float64) + intercept).astype(
-        numpy.float32 if narrow else numpy.float64)
 
 
 def _of_itk(image: Any) -> Placed:
@@ -176,32 +84,13 @@ def _of_itk(image: Any) -> Placed:
                     "array; convert it with GetArrayFromImage")
     name = "ITK image"
     array = three_axes(numpy.asarray(view(image)), name)
-    direction = image.GetDirection()
+    spacing, origin = tuple(image.GetSpacing()), tuple(image.GetOrigin())
+    direction, sides = image.GetDirection(), len(spacing)
     if hasattr(direction, "GetVnlMatrix"):
         matrix = direction.GetVnlMatrix()
-        direction = [matrix.get(row, column) for row in range(3) for column in range(3)]
-    direction = numpy.asarray(direction, dtype=float).reshape(3, 3)
-    return Placed(array, tuple(image.GetSpacing())[::-1], tuple(image.GetOrigin())[::-1],
-                  direction[::-1, ::-1], name=name)
-
-
-def _of_xarray(data: Any) -> Placed:
-    """Dimensions named x, y and z are taken by their names, others in their order."""
-    name = str(getattr(data, "name", None) or "xarray")
-    if hasattr(data, "data_vars"):
-        raise Error(f"{name}: is a Dataset; choose one variable, as in data[\"density\"], or give "
-                    "several as Channels")
-    if len(data.dims) > 3:
-        data = data.squeeze()
-    if set(data.dims) == {"x", "y", "z"}:
-        data = data.transpose("z", "y", "x")
-    array = three_axes(as_array(data.values, name), name)
-    coordinates = []
-    for dimension in data.dims:
-        positions = data.coords[dimension].values if dimension in data.coords else None
-        usable = positions is not None and positions.dtype.kind in "iuf" and positions.ndim == 1
-        coordinates.append(positions if usable else None)
-    return Placed(array, coordinates=tuple(coordinates), name=name)
+        direction = [matrix.get(row, column) for row in range(sides) for column in range(sides)]
+    direction = numpy.asarray(direction, dtype=float).reshape(sides, sides)[:3, :3]
+    return Placed(array, spacing[2::-1], origin[2::-1], direction[::-1, ::-1], name=name)
 
 
 def vtk_array(attributes: Any, wanted: Optional[str], name: str) -> Any:
@@ -212,19 +101,27 @@ def vtk_array(attributes: Any, wanted: Optional[str], name: str) -> Any:
         return attributes.GetScalars()
     arrays = [attributes.GetArray(i) for i in range(attributes.GetNumberOfArrays())]
     arrays = [array for array in arrays
-              if array is not None and array.GetName() != "vtkGhostType"]
+              if array is not None and array.GetName() not in _ghosts.NAMES]
     single = [array for array in arrays if array.GetNumberOfComponents() == 1]
     return (single or arrays or [None])[0]
 
 
 def vtk_values(array: Any, name: str) -> numpy.ndarray:
-    """The memory of a vtkDataArray: (n,), or (n, components)."""
+    """The memory of a vtkDataArray, or a copy: (n,), or (n, components)."""
     if array.GetClassName() == "vtkBitArray":
-        return numpy.array([array.GetValue(i) for i in range(array.GetNumberOfValues())],
-                           dtype=numpy.uint8).reshape(array.GetNumberOfTuples(), -1).squeeze()
+        bits = numpy.array([array.GetValue(i) for i in range(array.GetNumberOfValues())],
+                           dtype=numpy.uint8)
+        components = array.GetNumberOfComponents()
+        return bits if components == 1 else bits.reshape(-1, components)
     try:
         return numpy.asarray(memoryview(array))
     except TypeError:
+        pass  # its memory is in another order
+    try:
+        copy = array.CreateDataArray(array.GetDataType())
+        copy.DeepCopy(array)
+        return numpy.asarray(memoryview(copy))
+    except (AttributeError, TypeError):
         raise Error(f"{name}: its array is a {array.GetClassName()}, whose memory is not an "
                     "array; convert it (vtkImageCast)") from None
 
@@ -237,14 +134,24 @@ def _of_vtk(data: Any) -> Placed:
     return components[0]
 
 
+def means_cells(data: Any) -> bool:
+    """Whether data is PyVista's, and says that its active scalars are those of cells."""
+    association = getattr(getattr(data, "active_scalars_info", None), "association", None)
+    return getattr(association, "name", "") == "CELL"
+
+
 def vtk_components(data: Any) -> List[Placed]:
     """Returns each component of a grid's array, and its place. What is hidden is NaN."""
     name = data.GetClassName()
+    if data.IsA("vtkCompositeDataSet"):
+        raise Error(f"{name}: is a list of data; give one of its blocks")
+    if data.IsA("vtkPolyData"):
+        raise Error(f"{name}: is a surface, which has no volume; give the data that it is of")
     if not (data.IsA("vtkImageData") or data.IsA("vtkRectilinearGrid")):
         raise Error(f"{name}: expected a vtkImageData or a vtkRectilinearGrid (meshes: "
                     "pellucid.mesh_of); for a pipeline give its GetOutput() after Update()")
     array, centering = vtk_array(data.GetPointData(), None, name), "point"
-    if array is None:
+    if array is None or (means_cells(data) and data.GetCellData().GetScalars() is not None):
         array, centering = vtk_array(data.GetCellData(), None, name), "cell"
     if array is None:
         raise Error(f"{name}: has no values; give it scalars, or Update() its pipeline")

@@ -9,13 +9,23 @@ import numpy
 from ._pellucid import Error
 
 DUPLICATE_CELL, REFINED_CELL, HIDDEN_CELL = 1, 8, 32
-_HIDDEN_POINT = 2
+HIDDEN_POINT = 2
+_FLAGS, _LEVELS = "vtkGhostType", "vtkGhostLevels"
+NAMES = (_FLAGS, _LEVELS)
 
 
 def flags_of(attributes: Any) -> Optional[numpy.ndarray]:
-    """The flags of points or cells, one each; None if there are none."""
-    array = attributes.GetArray("vtkGhostType")
-    return None if array is None else numpy.asarray(memoryview(array)).ravel()
+    """The flags of points or cells, one each; None if there are none.
+
+    Files of VTK before 6.3 have levels in their place: above 0 is a duplicate.
+    """
+    array = attributes.GetArray(_FLAGS)
+    if array is not None:
+        return numpy.asarray(memoryview(array)).ravel().astype(numpy.int64)
+    array = attributes.GetArray(_LEVELS)
+    if array is None:
+        return None
+    return (numpy.asarray(memoryview(array)).ravel() > 0) * numpy.int64(DUPLICATE_CELL)
 
 
 def _marked(attributes: Any, shape: Tuple[int, ...], flags: int,
@@ -45,7 +55,7 @@ def hidden_places(data: Any, centering: str) -> Optional[numpy.ndarray]:
     name = data.GetClassName()
     at_points = tuple(data.GetDimensions())[::-1]
     in_cells = tuple(side - 1 for side in at_points)
-    points = _marked(data.GetPointData(), at_points, _HIDDEN_POINT, name)
+    points = _marked(data.GetPointData(), at_points, HIDDEN_POINT, name)
     cells = _marked(data.GetCellData(), in_cells, HIDDEN_CELL | REFINED_CELL, name)
     if centering == "cell":
         if points is None:

@@ -1,7 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Small types that the compiled part of the package fills in."""
+"""Small types that the compiled part of the package fills in, and how notes are told."""
 from __future__ import annotations
 
+import sys
+import warnings
 from typing import TYPE_CHECKING, NamedTuple
 
 if TYPE_CHECKING:
@@ -11,6 +13,14 @@ if TYPE_CHECKING:
 
 class Note(UserWarning):
     """What a reader or a converter assumed, rounded or left out."""
+
+
+def tell(text: str) -> None:
+    """Warns of `text`, as of the line that called the package."""
+    level, frame = 1, sys._getframe()
+    while frame is not None and frame.f_globals.get("__name__", "").startswith("pellucid."):
+        level, frame = level + 1, frame.f_back
+    warnings.warn(text, Note, stacklevel=level)
 
 
 class Preset(NamedTuple):

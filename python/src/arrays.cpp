@@ -42,7 +42,8 @@ const char* advice_for(char kind) {
     case 'm':
       return "times; convert with a.astype(numpy.int64)";
     case 'V':
-      return "records; give one field, as in a[\"density\"]";
+      return "no numbers that numpy knows; of records give one field, as in a[\"density\"], else "
+             "convert with a.astype(numpy.float32)";
     default:
       return "no numbers; convert with a.astype(numpy.float32)";
   }
@@ -157,7 +158,12 @@ py::array view_of(const VolumeData& data, std::vector<py::ssize_t> shape, const 
 py::array_t<double> doubles_of(const py::handle& object, py::ssize_t columns,
                                const std::string& what) {
   constexpr int flags = py::array::c_style | py::array::forcecast;
-  auto array = py::array_t<double, flags>::ensure(object);
+  // What another library returns may have a mask.
+  const bool is_plain = py::type::of(object).is(py::module_::import("numpy").attr("ndarray"));
+  const py::object plain =
+      is_plain ? py::reinterpret_borrow<py::object>(object)
+               : py::module_::import("pellucid._masks").attr("as_array")(object, what);
+  auto array = py::array_t<double, flags>::ensure(plain);
   if (!array) {
     PyErr_Clear();
     throw Error(what + ": expected an array of numbers, got " + short_repr(object));

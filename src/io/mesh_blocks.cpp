@@ -127,12 +127,7 @@ UnstructuredGrid concatenate(std::vector<UnstructuredGrid>&& blocks, const std::
       block = {};
     }
   }
-  for (MeshArray& array : grid.arrays) {
-    const bool twice = std::any_of(grid.arrays.begin(), grid.arrays.end(), [&](const auto& other) {
-      return other.centering == Centering::point && other.name == array.name;
-    });
-    if (array.centering == Centering::cell && twice) array.name += "_cell";
-  }
+  name_cells_apart(grid.arrays);
   grid.name = name;
   // Those that say nothing are not kept.
   std::int32_t number = 0;
@@ -249,6 +244,23 @@ void merge_points(const std::vector<std::size_t>& first, MeshFile& file) {
 
 }  // namespace
 
+void name_cells_apart(std::vector<MeshArray>& arrays) {
+  for (MeshArray& array : arrays) {
+    const bool twice = std::ranges::any_of(arrays, [&](const MeshArray& other) {
+      return other.centering == Centering::point && other.name == array.name;
+    });
+    if (array.centering == Centering::cell && twice) array.name += "_cell";
+  }
+}
+
+std::string trimmed_note(const MeshFile& file, std::size_t cells) {
+  if (file.trimmed_cells == 0) return "";
+  return std::to_string(file.trimmed_cells) + " of " + std::to_string(cells) +
+         " cells list more points than their shape has (the first is cell " +
+         std::to_string(file.first_trimmed_cell) +
+         ", counted from 0): the points that the shape needs are taken, those behind are left out";
+}
+
 MeshFile join_blocks(MeshBlocks&& mesh, const std::string& name) {
   MeshFile file = std::move(mesh.file);
   // Walls and the like, as blocks of their own.
@@ -268,12 +280,8 @@ MeshFile join_blocks(MeshBlocks&& mesh, const std::string& name) {
   }
   file.grid = concatenate(std::move(mesh.blocks), name);
   if (file.blocks > 1) merge_points(first, file);
-  if (file.trimmed_cells > 0) {
-    file.notes.push_back(
-        std::to_string(file.trimmed_cells) + " of " + std::to_string(file.grid.shapes.size()) +
-        " cells list more points than their shape has (the first is cell " +
-        std::to_string(file.first_trimmed_cell) +
-        ", counted from 0): the points that the shape needs are taken, those behind are left out");
+  if (const std::string note = trimmed_note(file, file.grid.shapes.size()); !note.empty()) {
+    file.notes.push_back(note);
   }
   return file;
 }

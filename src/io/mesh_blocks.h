@@ -27,6 +27,13 @@ struct MeshBlocks {
 /// or there is no cell.
 MeshFile join_blocks(MeshBlocks&& mesh, const std::string& name);
 
+/// Puts "_cell" behind the name of each array of cells that is named like one of points.
+void name_cells_apart(std::vector<MeshArray>& arrays);
+
+/// Returns a message about cells that list more points than their shape has: how many of `cells`,
+/// and the first of them. Returns an empty text if there are none.
+std::string trimmed_note(const MeshFile& file, std::size_t cells);
+
 /// The index of the step nearest to `wanted`, the earlier of two; the first where nothing is
 /// wanted. `times` is not empty.
 inline std::size_t nearest_step(const std::vector<double>& times,

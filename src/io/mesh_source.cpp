@@ -99,6 +99,18 @@ MeshArrayChoice parse_mesh_array(std::string_view text) {
   return choice;
 }
 
+void prefer_whole_names(const std::vector<MeshArray>& arrays,
+                        std::vector<MeshArrayChoice>& choices) {
+  for (MeshArrayChoice& choice : choices) {
+    if (!choice.component) continue;
+    const std::string whole = choice.array + ":" + std::to_string(*choice.component);
+    const auto is_whole = [&](const MeshArray& array) { return array.name == whole; };
+    if (std::ranges::none_of(arrays, is_whole)) continue;
+    choice.array = whole;
+    choice.component.reset();
+  }
+}
+
 std::string overlap_note(const MeshStatistics& s) {
   if (s.folded_faces == 0) return "";
   // Crushed cells are few; an exporter writes all of a kind in its own order.
@@ -135,6 +147,7 @@ LoadedMesh load_mesh(const MeshSource& source, const ParallelFor& parallel) {
     loaded.channels = {{default_array(file).name, std::nullopt, std::string(field_channel)}};
   }
   std::vector<MeshArray>& arrays = file.grid.arrays;
+  prefer_whole_names(arrays, loaded.channels);
   const auto is_chosen = [&](const MeshArray& array) {
     return std::ranges::any_of(loaded.channels,
                                [&](const auto& choice) { return choice.array == array.name; });

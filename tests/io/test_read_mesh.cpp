@@ -253,6 +253,18 @@ TEST_F(ReadMesh, MakesAMeshOfTheChosenArrays) {
   EXPECT_TRUE(contains(error_of([&] { load_mesh({file, {}, {parse_mesh_array("none")}}); }), "id"));
 }
 
+TEST_F(ReadMesh, TakesNamesWithAColonWhole) {
+  test::SmallVtu of;
+  of.more = test::xml_array("Float64", "v:1", "20 30 40");
+  const fs::path file = write("a.vtu", test::small_vtu(of));
+  const LoadedMesh whole = load_mesh({file, {}, {parse_mesh_array("w=v:1")}});
+  EXPECT_EQ(whole.mesh->value(0, 1), 30);
+  EXPECT_EQ(whole.channels[0].array, "v:1");
+  const LoadedMesh component = load_mesh({file, {}, {parse_mesh_array("w=v:0")}});
+  EXPECT_EQ(component.channels[0].component, 0);
+  EXPECT_EQ(component.mesh->value(0, 0), 3);
+}
+
 TEST_F(ReadMesh, LeavesGhostsOut) {
   test::SmallVtu of;
   of.more = test::xml_array("UInt8", "vtkGhostType", "0 1 0");

@@ -24,6 +24,10 @@ struct MeshSource {
 /// channel takes the array's name, followed by "_C" if there is a component. Throws Error.
 MeshArrayChoice parse_mesh_array(std::string_view text);
 
+/// Takes "a:0" for the array of this name where there is one, and not for component 0 of "a".
+void prefer_whole_names(const std::vector<MeshArray>& arrays,
+                        std::vector<MeshArrayChoice>& choices);
+
 /// Returns the names of the channels.
 std::vector<std::string> channel_names(const MeshSource& source);
 
