@@ -4,11 +4,11 @@
 #include <algorithm>
 #include <cstring>
 #include <fstream>
-#include <nlohmann/json.hpp>
 #include <string_view>
 #include <system_error>
 #include <utility>
 
+#include "answer_json.h"
 #include "contained.h"
 #include "input_file.h"
 #include "memory_limit.h"
@@ -19,7 +19,7 @@ namespace pellucid {
 
 namespace {
 
-using nlohmann::json;
+using namespace answer_json;
 
 constexpr Module module{"pellucid_hdf5.so", "reads HDF5 files", "HDF5 (Debian: libhdf5-dev)"};
 
@@ -52,16 +52,6 @@ std::shared_ptr<std::byte> contained(
   throw Error(path.string() +
               ": the library that reads HDF5 files fails on it, or takes far more memory or time "
               "than its size lets expect; it is damaged");
-}
-
-// Names need not be UTF-8, which CBOR's bytes do not mind and its text does.
-json of_text(const std::string& text) {
-  return json::binary(std::vector<std::uint8_t>(text.begin(), text.end()));
-}
-
-std::string text_of(const json& text) {
-  const auto& bytes = text.get_binary();
-  return {bytes.begin(), bytes.end()};
 }
 
 bool write(const VtkHdfContents& contents, std::span<std::byte> to) {
