@@ -29,7 +29,8 @@ std::string kind_of(const std::filesystem::path& path, const VtkMessages& messag
 }
 
 void read_data(const std::filesystem::path& path, const std::string& kind,
-               const MeshReadOptions& options, const VtkMessages& messages, MeshBlocks& mesh) {
+               const MeshReadOptions& options, const CheckVtkXml& check,
+               const VtkMessages& messages, MeshBlocks& mesh) {
   if (kind.ends_with("ImageData") || kind.ends_with("RectilinearGrid")) {
     throw Error("holds " + kind + ", a volume on a regular grid and no mesh; read it as one");
   }
@@ -41,6 +42,7 @@ void read_data(const std::filesystem::path& path, const std::string& kind,
     throw Error("holds " + kind.substr(0, 40) +
                 "; read are unstructured and structured grids and multiblock files of them");
   }
+  check(path);
   const auto reader = vtkSmartPointer<vtkXMLGenericDataObjectReader>::New();
   reader->SetFileName(path.c_str());
   update(*reader, options, messages, mesh.file);
@@ -83,7 +85,7 @@ std::vector<Step> steps_of(const std::filesystem::path& path, const VtkMessages&
 }
 
 void read_collection(const std::filesystem::path& path, const MeshReadOptions& options,
-                     const VtkMessages& messages, MeshBlocks& mesh) {
+                     const CheckVtkXml& check, const VtkMessages& messages, MeshBlocks& mesh) {
   const std::vector<Step> steps = steps_of(path, messages);
   std::vector<double> times;
   times.reserve(steps.size());
@@ -99,7 +101,7 @@ void read_collection(const std::filesystem::path& path, const MeshReadOptions& o
       throw Error("names " + name + ", which is not there; put it beside it");
     }
     try {
-      read_data(step.file, kind_of(step.file, messages), {}, messages, mesh);
+      read_data(step.file, kind_of(step.file, messages), {}, check, messages, mesh);
     } catch (const Error& part) {
       throw Error(name + " " + part.what());
     }
@@ -111,13 +113,13 @@ void read_collection(const std::filesystem::path& path, const MeshReadOptions& o
 }  // namespace
 
 void read_xml(const std::filesystem::path& path, const MeshReadOptions& options,
-              const VtkMessages& messages, MeshBlocks& mesh) {
+              const CheckVtkXml& check, const VtkMessages& messages, MeshBlocks& mesh) {
   const std::string kind = kind_of(path, messages);
   mesh.file.format = "VTK XML";
   if (kind == "Collection") {
-    read_collection(path, options, messages, mesh);
+    read_collection(path, options, check, messages, mesh);
   } else {
-    read_data(path, kind, options, messages, mesh);
+    read_data(path, kind, options, check, messages, mesh);
   }
 }
 
