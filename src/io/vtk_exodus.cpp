@@ -20,6 +20,10 @@ namespace pellucid {
 
 namespace {
 
+/// What readers need where places or values are in arrays of their own.
+constexpr const char* file_size_remedy =
+    "give it file_size = 1, which some writers forget (ncatted -a file_size,global,c,l,1)";
+
 /// A variable of nodes (EX_NODAL) or of elements (EX_ELEM_BLOCK), by the name that the file has.
 struct Variable {
   ex_entity_type of;
@@ -38,6 +42,17 @@ class ExodusFile {
   ~ExodusFile() { ex_close(file_); }
   ExodusFile(const ExodusFile&) = delete;
   ExodusFile& operator=(const ExodusFile&) = delete;
+
+  /// Throws Error where the library does not find the places of the nodes.
+  void check_places() const {
+    std::array<double, 3> place{};
+    if (count(EX_INQ_NODES) == 0) return;
+    if (ex_get_partial_coord(file_, 1, 1, place.data(), place.data() + 1, place.data() + 2) >= 0) {
+      return;
+    }
+    throw Error(std::string("Exodus does not find the places of its nodes; the file is damaged, ") +
+                "or lacks an attribute: " + file_size_remedy);
+  }
 
   /// Returns the variables whose first value of a step, from 1, the library does not find.
   std::vector<Variable> without_values(int step) const {
@@ -116,7 +131,7 @@ void leave_out(const std::vector<Variable>& variables, vtkExodusIIReader& reader
         variable.of == EX_NODAL ? vtkExodusIIReader::NODAL : vtkExodusIIReader::ELEM_BLOCK;
     for (int a = 0; a < reader.GetNumberOfObjectArrays(kind); ++a) {
       const char* const name = reader.GetObjectArrayName(kind, a);
-      if (name != nullptr && variable.name.starts_with(name)) {
+      if (name != nullptr && *name != '\0' && variable.name.starts_with(name)) {
         reader.SetObjectArrayStatus(kind, a, 0);
       }
     }
@@ -124,11 +139,10 @@ void leave_out(const std::vector<Variable>& variables, vtkExodusIIReader& reader
     if (list.size() < most) list += (list.empty() ? "\"" : ", \"") + variable.name + "\"";
   }
   if (variables.empty()) return;
-  file.notes.push_back(
-      std::to_string(variables.size()) +
-      " variables have names, but Exodus finds no values: " + list +
-      "; they are left out. Values in arrays of their own need the attribute file_size = 1, "
-      "which some writers forget (ncatted -a file_size,global,c,l,1)");
+  file.notes.push_back(std::to_string(variables.size()) +
+                       " variables have names, but Exodus finds no values: " + list +
+                       "; they are left out. If values are in arrays of their own, " +
+                       file_size_remedy);
 }
 
 /// NetCDF's fill of floats and doubles: 2^123 less 15 * 2^119.
@@ -200,21 +214,22 @@ void read_exodus(const std::filesystem::path& path, const MeshReadOptions& optio
     reader->SetObjectStatus(vtkExodusIIReader::ELEM_BLOCK, i, 1);
   }
   mesh.file.format = "Exodus II";
-  std::size_t without_time = 0;
   const std::vector<double> times = times_of(*reader);
   std::vector<double> known;
   std::ranges::copy_if(times, std::back_inserter(known), [](double t) { return t != fill; });
-  without_time = times.size() - known.size();
+  const std::size_t without_time = times.size() - known.size();
   if (without_time > 0) {
     mesh.file.notes.push_back(std::to_string(without_time) + " of " + std::to_string(times.size()) +
                               " steps have no time, as a run that was ended leaves them; they are "
                               "not read");
     if (known.empty()) throw Error("none of its steps has a time; the file is cut off");
   }
+  const ExodusFile file(path);
+  file.check_places();
   if (!times.empty()) {
     const double wanted = known[nearest_step(known, options.time)];
     const auto step = std::ranges::find(times, wanted) - times.begin();
-    leave_out(ExodusFile(path).without_values(static_cast<int>(step) + 1), *reader, mesh.file);
+    leave_out(file.without_values(static_cast<int>(step) + 1), *reader, mesh.file);
   }
   update(*reader, options, known, messages, mesh.file);
   gather(*reader->GetOutput(), mesh);

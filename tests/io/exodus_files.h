@@ -22,8 +22,9 @@ inline constexpr bool has_exodus = false;
 
 /// A unit cube of one hexahedron in Exodus II, by NetCDF and the document of its names.
 struct SmallExodus {
-  /// Values of nodes in arrays of their own, which readers expect where file_size is 1.
+  /// Whether readers are told to expect values of nodes in arrays of their own, as they are here.
   bool has_file_size = true;
+  bool has_axes = true;  ///< places of nodes in three arrays; else in one
   std::vector<std::string> nodal{"T"};
   std::vector<std::string> of_elements{};
   int steps = 1;
@@ -44,7 +45,7 @@ struct SmallExodus {
     const int string = dimension("len_string", 33), time = dimension("time_step", NC_UNLIMITED);
     const int nodes = dimension("num_nodes", 8), blocks = dimension("num_el_blk", 1);
     const int in_block = dimension("num_el_in_blk1", 1), per = dimension("num_nod_per_el1", 8);
-    dimension("num_dim", 3);
+    const int sides = dimension("num_dim", 3);
     dimension("num_elem", 1);
     const float version = 5.1F;
     nc_put_att_float(file, NC_GLOBAL, "api_version", NC_FLOAT, 1, &version);
@@ -63,8 +64,14 @@ struct SmallExodus {
     const int status = variable("eb_status", NC_INT, {blocks});
     const int ids = variable("eb_prop1", NC_INT, {blocks});
     nc_put_att_text(file, ids, "name", 2, "ID");
-    const std::array axes{variable("coordx", real, {nodes}), variable("coordy", real, {nodes}),
-                          variable("coordz", real, {nodes})};
+    std::vector<int> axes;
+    if (has_axes) {
+      for (const char* axis : {"coordx", "coordy", "coordz"}) {
+        axes.push_back(variable(axis, real, {nodes}));
+      }
+    } else {
+      axes.push_back(variable("coord", real, {sides, nodes}));
+    }
     const int connect = variable("connect1", NC_INT, {in_block, per});
     nc_put_att_text(file, connect, "elem_type", 3, "HEX");
     std::vector<int> names, values;
@@ -90,7 +97,9 @@ struct SmallExodus {
     nc_put_var_int(file, connect, corners.data());
     const std::array<std::array<double, 8>, 3> places{
         {{0, 1, 1, 0, 0, 1, 1, 0}, {0, 0, 1, 1, 0, 0, 1, 1}, {0, 0, 0, 0, 1, 1, 1, 1}}};
-    for (std::size_t a = 0; a < 3; ++a) nc_put_var_double(file, axes[a], places[a].data());
+    for (std::size_t a = 0; a < axes.size(); ++a) {
+      nc_put_var_double(file, axes[a], places[a].data());
+    }
     std::size_t list = 0;
     for (const auto* of : {&nodal, &of_elements}) {
       if (of->empty()) continue;

@@ -57,7 +57,7 @@ TEST_F(Exodus, ReadsValuesOfNodesAndElements) {
 // meshio writes such files: their values are in arrays that the library does not look for.
 TEST_F(Exodus, LeavesOutVariablesWithoutValuesAndSaysSo) {
   SmallExodus of;
-  of.has_file_size = false;
+  of.has_file_size = of.has_axes = false;
   of.of_elements = {"e"};
   const MeshFile file = read_mesh_of(of);
   EXPECT_TRUE(values(file, "T").empty());
@@ -74,6 +74,10 @@ TEST_F(Exodus, LeavesOutVariablesWithoutValuesAndSaysSo) {
   of.in_floats = true;
   of.steps = of.written_steps = 3;
   EXPECT_TRUE(values(read_mesh_of(of, 1.0), "T").empty());
+  // Nor are places found in arrays of their own.
+  of.has_axes = true;
+  const std::string error = test::error_of([&] { read_mesh_of(of); });
+  EXPECT_TRUE(contains(error, "places of its nodes") && contains(error, "file_size")) << error;
 }
 
 TEST_F(Exodus, ValuesThatWereNeverWrittenAreMissing) {

@@ -162,7 +162,7 @@ std::vector<std::string> notes_of(const test::SmallExodus& of, const std::filesy
 PELLUCID_DESCRIBED_KEY(exodus_file_size, "Exodus II", "file_size", told) {
   if (!test::has_exodus) GTEST_SKIP();
   test::SmallExodus of;
-  of.has_file_size = false;
+  of.has_file_size = of.has_axes = false;
   expect_told(notes_of(of, path("a.e")), "file_size");
 }
 
