@@ -22,6 +22,7 @@
 #include "net_cdf_size.h"
 #include "pellucid/io/module.h"
 #include "pellucid/scene/error.h"
+#include "text.h"
 #include "vdb_size.h"
 #include "volume_axes.h"
 
@@ -42,13 +43,6 @@ constexpr Format net_cdf{
 constexpr Format vdb{
     {"pellucid_openvdb.so", "reads OpenVDB files", "OpenVDB (Debian: libopenvdb-dev)"},
     "fog volume"};
-
-/// Names and messages of libraries may hold anything.
-std::string one_line(std::string text) {
-  std::ranges::replace_if(
-      text, [](char c) { return static_cast<unsigned char>(c) < ' ' || c == '\x7f'; }, ' ');
-  return text;
-}
 
 /// Calls a module's function in a process of its own: `work` says with what, where its answer goes,
 /// and whether that is well. The module is loaded there and nowhere else.

@@ -19,6 +19,7 @@
 #include "net_cdf_size.h"
 #include "pellucid/scene/error.h"
 #include "plot3d.h"
+#include "text.h"
 #include "vtk_collection.h"
 #include "vtk_file_kind.h"
 #include "vtk_files.h"
@@ -103,7 +104,7 @@ MeshBlocks read_by_vtk(const std::filesystem::path& path, Format format,
     if (bytes) mesh = read_mesh_blocks(bytes.span());
     if (!mesh) throw Error(vtk_fails);
   } catch (const Error& error) {
-    throw Error(path.string() + ": " + error.what());
+    throw Error(path.string() + ": " + one_line(error.what()));
   }
   return *std::move(mesh);
 }

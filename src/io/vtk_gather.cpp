@@ -126,11 +126,17 @@ void check_count(vtkDataArray* ghosts, vtkIdType count, const char* of) {
   throw Error(std::string("the number of ghost flags is not that of the ") + of + damaged);
 }
 
+/// Returns the array of flags; null: there is none. VTK's own pointer to it is not set where it
+/// has made it out of levels.
+vtkUnsignedCharArray* flags_of(vtkDataSetAttributes& data) {
+  return vtkUnsignedCharArray::SafeDownCast(data.GetArray(vtkDataSetAttributes::GhostArrayName()));
+}
+
 /// The cells that are ghosts, by either array.
 class Ghosts {
  public:
   explicit Ghosts(vtkDataSet& set)
-      : flags_(set.GetCellGhostArray()), levels_(set.GetCellData()->GetArray(ghost_levels)) {
+      : flags_(flags_of(*set.GetCellData())), levels_(set.GetCellData()->GetArray(ghost_levels)) {
     check_count(flags_, set.GetNumberOfCells(), "cells");
     check_count(levels_, set.GetNumberOfCells(), "cells");
   }
@@ -301,7 +307,7 @@ std::vector<vtkIdType> gather_cells(vtkStructuredGrid& grid, std::size_t first_n
   block.shapes.reserve(static_cast<std::size_t>(cells));
   block.corners.reserve(static_cast<std::size_t>(cells) * 8);
   const Ghosts ghosts(grid);
-  vtkUnsignedCharArray* const hidden = grid.GetPointGhostArray();
+  vtkUnsignedCharArray* const hidden = flags_of(*grid.GetPointData());
   check_count(hidden, grid.GetNumberOfPoints(), "points");
   const std::int32_t row = dimensions[0], layer = row * dimensions[1];
   vtkIdType cell = 0;

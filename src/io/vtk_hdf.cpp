@@ -14,6 +14,7 @@
 #include "memory_limit.h"
 #include "pellucid/io/module.h"
 #include "pellucid/scene/error.h"
+#include "text.h"
 
 namespace pellucid {
 
@@ -22,13 +23,6 @@ namespace {
 using namespace answer_json;
 
 constexpr Module module{"pellucid_hdf5.so", "reads HDF5 files", "HDF5 (Debian: libhdf5-dev)"};
-
-/// Names and messages may hold anything.
-std::string one_line(std::string text) {
-  std::ranges::replace_if(
-      text, [](char c) { return static_cast<unsigned char>(c) < ' ' || c == '\x7f'; }, ' ');
-  return text;
-}
 
 /// Calls a function of the module in a process of its own.
 template <class Function>

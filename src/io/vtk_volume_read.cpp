@@ -138,7 +138,8 @@ std::vector<Entry> choose(const std::vector<Entry>& entries, const VtkVolumeRequ
   throw Error("has no array \"" + wanted + "\"; its arrays are " + list);
 }
 
-std::vector<std::uint8_t> ghosts_of(vtkUnsignedCharArray* ghosts, vtkIdType count) {
+std::vector<std::uint8_t> ghosts_of(vtkDataSetAttributes& data, vtkIdType count) {
+  auto* const ghosts = vtkUnsignedCharArray::SafeDownCast(data.GetArray(ghost_name().c_str()));
   if (ghosts == nullptr) return {};
   if (ghosts->GetNumberOfValues() != count) {
     throw Error(std::string("the number of ghost flags is not that of the values") + damaged);
@@ -160,8 +161,8 @@ void take_values(vtkDataSet& set, const std::vector<Entry>& entries, VtkVolume& 
     volume.arrays.push_back(
         {entry.name, entry.centering, array->GetNumberOfComponents(), values_in_place(*array)});
   }
-  volume.point_ghosts = ghosts_of(set.GetPointGhostArray(), set.GetNumberOfPoints());
-  volume.cell_ghosts = ghosts_of(set.GetCellGhostArray(), set.GetNumberOfCells());
+  volume.point_ghosts = ghosts_of(*set.GetPointData(), set.GetNumberOfPoints());
+  volume.cell_ghosts = ghosts_of(*set.GetCellData(), set.GetNumberOfCells());
 }
 
 /// `direction`: row after row.

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 #include <string>
+#include <vector>
 
 #include "pellucid/scene/error.h"
 #include "vtk_gather.h"
@@ -28,6 +29,31 @@ std::string kind_of(const std::filesystem::path& path, const VtkMessages& messag
   return kind;
 }
 
+/// Returns the files of the pieces of a list that names levels of ghosts; none where it does not.
+/// VTK converts them in each piece, and then does not find them.
+std::vector<std::filesystem::path> pieces_with_ghost_levels(const std::filesystem::path& path,
+                                                            const std::string& kind) {
+  if (kind != "PUnstructuredGrid") return {};
+  const auto root =
+      vtkSmartPointer<vtkXMLDataElement>::Take(vtkXMLUtilities::ReadElementFromFile(path.c_str()));
+  vtkXMLDataElement* const list =
+      root == nullptr ? nullptr : root->FindNestedElementWithName(kind.c_str());
+  if (list == nullptr) return {};
+  bool has_levels = false;
+  std::vector<std::filesystem::path> files;
+  for (int i = 0; i < list->GetNumberOfNestedElements(); ++i) {
+    vtkXMLDataElement* const element = list->GetNestedElement(i);
+    const char* const source = element->GetAttribute("Source");
+    if (source != nullptr) files.push_back(path.parent_path() / source);
+    for (int a = 0; source == nullptr && a < element->GetNumberOfNestedElements(); ++a) {
+      const char* const name = element->GetNestedElement(a)->GetAttribute("Name");
+      has_levels = has_levels || (name != nullptr && std::string(name) == "vtkGhostLevels");
+    }
+  }
+  if (!has_levels) files.clear();
+  return files;
+}
+
 void read_data(const std::filesystem::path& path, const std::string& kind,
                const MeshReadOptions& options, const CheckVtkXml& check,
                const VtkMessages& messages, MeshBlocks& mesh) {
@@ -43,6 +69,15 @@ void read_data(const std::filesystem::path& path, const std::string& kind,
                 "; read are unstructured and structured grids and multiblock files of them");
   }
   check(path);
+  if (const auto pieces = pieces_with_ghost_levels(path, kind); !pieces.empty()) {
+    refuse_time(options);
+    for (const std::filesystem::path& piece : pieces) {
+      const std::string own = kind_of(piece, messages);
+      if (own != "UnstructuredGrid") throw Error("has a piece that holds " + own.substr(0, 40));
+      read_data(piece, own, {}, check, messages, mesh);
+    }
+    return;
+  }
   const auto reader = vtkSmartPointer<vtkXMLGenericDataObjectReader>::New();
   reader->SetFileName(path.c_str());
   update(*reader, options, messages, mesh.file);

@@ -11,12 +11,12 @@
 #include <cstddef>
 #include <map>
 #include <memory>
-#include <string_view>
 #include <system_error>
 
 #include "input_file.h"
 #include "mapped_file.h"
 #include "pellucid/scene/error.h"
+#include "text.h"
 #include "xml_scanner.h"
 
 namespace pellucid {
@@ -295,7 +295,7 @@ class FileReader {
     array.components = number_in<std::int64_t>(components).value_or(1);
     constexpr std::int64_t most = std::int64_t{1} << 20;
     if (array.components > most) {
-      throw Error("the array \"" + array.name.substr(0, 100) + "\" has " +
+      throw Error("the array \"" + one_line(array.name.substr(0, 100)) + "\" has " +
                   std::to_string(array.components) + " components; the file is damaged");
     }
     array.components = std::max(array.components, std::int64_t{1});
@@ -356,7 +356,11 @@ VtkXmlFile read_vtk_xml(const std::filesystem::path& path) {
   if (size == 0) return {};
   const std::shared_ptr<const std::byte> bytes = map_file(path, size);
   if (!bytes) throw Error("cannot be mapped into memory; copy it to a local disk");
-  return FileReader({reinterpret_cast<const char*>(bytes.get()), size}).read();
+  return parse_vtk_xml({reinterpret_cast<const char*>(bytes.get()), size});
+}
+
+VtkXmlFile parse_vtk_xml(std::string_view text) {
+  return FileReader(text).read();
 }
 
 }  // namespace pellucid

@@ -7,6 +7,7 @@
 
 #include "input_file.h"
 #include "pellucid/scene/error.h"
+#include "text.h"
 
 namespace pellucid {
 
@@ -20,7 +21,7 @@ bool is_data(VtkSection section) {
 
 std::string name_of(const VtkXmlArray& array) {
   constexpr std::size_t longest = 100;
-  const std::string name = "\"" + array.name.substr(0, longest) + "\"";
+  const std::string name = "\"" + one_line(array.name.substr(0, longest)) + "\"";
   switch (array.section) {
     case VtkSection::point_data:
       return "the array " + name + " of points";
@@ -85,11 +86,12 @@ void check_sizes(const VtkXmlPiece& piece, const IsVtkArrayWanted& is_wanted) {
     constexpr std::uint64_t bits = 8;
     if (array.is_bits && has > *needed && has - *needed < bits) continue;
     const bool short_of = has < *needed;
-    throw Error(name_of(array) + " has " + std::to_string(has) + " numbers" +
-                (array.stop.empty() || !short_of ? "" : " before \"" + array.stop + "\"") +
-                ", but needs " + std::to_string(*needed) +
-                (short_of ? "; the file is cut off or damaged"
-                          : "; the file is damaged, or its number of points or cells is wrong"));
+    throw Error(
+        name_of(array) + " has " + std::to_string(has) + " numbers" +
+        (array.stop.empty() || !short_of ? "" : " before \"" + one_line(array.stop) + "\"") +
+        ", but needs " + std::to_string(*needed) +
+        (short_of ? "; the file is cut off or damaged"
+                  : "; the file is damaged, or its number of points or cells is wrong"));
   }
 }
 
@@ -115,8 +117,8 @@ void check_has(const VtkXmlPiece& piece, const VtkXmlArray& like, const std::str
   }
   if (!is_same_type(*array, like)) {
     throw Error(name + " has " + name_of(like) + " as " + std::to_string(array->components) + " " +
-                array->type + " in place of " + std::to_string(like.components) + " " + like.type +
-                "; " + remedy);
+                one_line(array->type) + " in place of " + std::to_string(like.components) + " " +
+                one_line(like.type) + "; " + remedy);
   }
 }
 
@@ -245,7 +247,7 @@ void check_list(const fs::path& path, const VtkXmlFile& list, const IsVtkArrayWa
         }
       }
     } catch (const Error& error) {
-      throw Error("its piece " + piece.source.substr(0, 200) + ": " + error.what());
+      throw Error("its piece " + one_line(piece.source.substr(0, 200)) + ": " + error.what());
     }
   }
 }
@@ -268,7 +270,7 @@ void check_file(const fs::path& path, const IsVtkArrayWanted& is_wanted, int dep
     try {
       check_file(part, is_wanted, depth + 1);
     } catch (const Error& error) {
-      throw Error("its part " + name.substr(0, 200) + ": " + error.what());
+      throw Error("its part " + one_line(name.substr(0, 200)) + ": " + error.what());
     }
   }
 }

@@ -221,7 +221,8 @@ TEST_F(OpenVdb, ListsItsGrids) {
 
 TEST_F(OpenVdb, BoxesBeyondMemoryAreRefused) {
   auto large = openvdb::BoolGrid::create();
-  large->fill({{0, 0, 0}, {1 << 17, 1 << 17, 1 << 17}}, true, true);
+  const int last = (1 << 17) - 1;
+  large->fill({{0, 0, 0}, {last, last, last}}, true, true);
   EXPECT_TRUE(contains(error_of([&] { read_volume(save({large})); }), "its values"));
 }
 
