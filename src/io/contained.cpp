@@ -5,6 +5,7 @@
 #include <sys/mman.h>
 #include <sys/prctl.h>
 #include <sys/resource.h>
+#include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -96,27 +97,42 @@ void end_if_idle(int) {
   raise(SIGALRM);
 }
 
-void limit(std::size_t bytes, std::uintmax_t file_bytes) {
-  constexpr std::uintmax_t per_file_byte = 64, bytes_per_second = 10'000'000, most = 100'000;
-  const std::uintmax_t at_work =
-      std::min(3 + (bytes + per_file_byte * file_bytes) / bytes_per_second, most);
-  const rlimit processor{static_cast<rlim_t>(at_work), static_cast<rlim_t>(at_work)};
+/// What a child may take.
+struct Limits {
+  std::uintmax_t seconds;  ///< of a processor
+  std::uintmax_t memory;   ///< beyond what the program has taken
+};
+
+constexpr std::uintmax_t bytes_per_second = 10'000'000, per_file_byte = 64;
+
+std::uintmax_t seconds_for(std::uintmax_t bytes) {
+  constexpr std::uintmax_t most = 100'000;
+  return std::min(bytes / bytes_per_second, most);
+}
+
+/// The hard limit stays, so that an answer can ask for more.
+void limit_seconds(std::uintmax_t seconds) {
+  rlimit processor{};
+  getrlimit(RLIMIT_CPU, &processor);
+  processor.rlim_cur = std::min<rlim_t>(seconds, processor.rlim_max);
   setrlimit(RLIMIT_CPU, &processor);
+}
+
+void limit(const Limits& limits) {
+  limit_seconds(limits.seconds);
   // A file that does not come, from a slow disk or a pipe.
-  idle_limit = static_cast<unsigned>(patience + at_work);
+  idle_limit = static_cast<unsigned>(patience + limits.seconds);
   clock_gettime(CLOCK_MONOTONIC, &began);
   std::signal(SIGALRM, end_if_idle);
   alarm(idle_limit);
-  // What a decoder takes beside what it gives: trees of sparse data are far larger than their file.
-  constexpr std::uintmax_t room_for_any = std::uintmax_t{1} << 30;
-  const std::uintmax_t room = room_for_any + per_file_byte * file_bytes;
   std::uintmax_t pages = 0;
   std::ifstream("/proc/self/statm") >> pages;
   const auto taken = pages * static_cast<std::uintmax_t>(sysconf(_SC_PAGE_SIZE));
   rlimit memory{};
   getrlimit(RLIMIT_AS, &memory);
-  if (!is_sanitized && taken > 0 && taken + 2 * bytes + room < memory.rlim_cur) {
-    memory.rlim_cur = taken + 2 * bytes + room;
+  const rlim_t left = memory.rlim_cur - std::min<rlim_t>(taken, memory.rlim_cur);
+  if (!is_sanitized && taken > 0 && limits.memory < left) {
+    memory.rlim_cur = taken + limits.memory;
     setrlimit(RLIMIT_AS, &memory);
   }
   const rlimit no_core{0, 0};
@@ -138,8 +154,7 @@ void forget_what_the_program_does(pid_t program) {
 }
 
 /// Runs the work in a child, and gives how that ended, as of waitpid().
-int run_in_child(std::span<std::byte> target, const std::function<bool(std::span<std::byte>)>& work,
-                 std::uintmax_t file_bytes, Outcome& outcome) {
+int run_in_child(const std::function<bool()>& work, const Limits& limits, Outcome& outcome) {
   const pid_t program = getpid();
   // Unlocked in both.
   loading_modules().lock();
@@ -148,9 +163,9 @@ int run_in_child(std::span<std::byte> target, const std::function<bool(std::span
   if (child < 0) throw std::bad_alloc();
   if (child == 0) {
     forget_what_the_program_does(program);
-    limit(target.size(), file_bytes);
+    limit(limits);
     try {
-      if (work(target)) outcome.is = Outcome::filled;
+      if (work()) outcome.is = Outcome::filled;
     } catch (const Error& error) {
       const std::string_view message = error.what();
       std::memcpy(outcome.message, message.data(), std::min(message.size(), Outcome::longest));
@@ -167,23 +182,82 @@ int run_in_child(std::span<std::byte> target, const std::function<bool(std::span
   return status;
 }
 
-}  // namespace
-
-std::shared_ptr<std::byte> run_contained(std::size_t bytes,
-                                         const std::function<bool(std::span<std::byte>)>& work,
-                                         std::uintmax_t file_bytes) {
+/// Runs the work in a child, again where it was locked out of memory. Returns whether it came to
+/// its end. Throws its Error.
+bool come_to_an_end(const std::function<bool()>& work, const Limits& limits) {
   for (int n = 1;; ++n) {
-    std::shared_ptr<std::byte> shared = shared_memory(bytes + sizeof(Outcome));
+    const std::shared_ptr<std::byte> shared = shared_memory(sizeof(Outcome));
     static_assert(alignof(Outcome) == 1);
-    auto& outcome = *reinterpret_cast<Outcome*>(shared.get() + bytes);
-    const int status = run_in_child({shared.get(), bytes}, work, file_bytes, outcome);
+    auto& outcome = *reinterpret_cast<Outcome*>(shared.get());
+    const int status = run_in_child(work, limits, outcome);
     if (n < most_children && WIFSIGNALED(status) && WTERMSIG(status) == SIGALRM) continue;
     if (outcome.is == Outcome::error) {
       outcome.message[Outcome::longest] = '\0';
       throw Error(outcome.message);
     }
-    return outcome.is == Outcome::filled ? shared : nullptr;
+    return outcome.is == Outcome::filled;
   }
+}
+
+/// A file in memory, which has no name and grows; closed with its owner.
+class GrowingMemory {
+ public:
+  GrowingMemory() : file_(memfd_create("answer", MFD_CLOEXEC)) {
+    if (file_ < 0) throw std::bad_alloc();
+  }
+  ~GrowingMemory() { close(file_); }
+  GrowingMemory(const GrowingMemory&) = delete;
+  GrowingMemory& operator=(const GrowingMemory&) = delete;
+
+  /// For good: the child ends with it.
+  std::span<std::byte> make(std::size_t bytes) const {
+    if (ftruncate(file_, static_cast<off_t>(bytes)) != 0) throw std::bad_alloc();
+    if (bytes == 0) return {};
+    void* const at = mmap(nullptr, bytes, PROT_READ | PROT_WRITE, MAP_SHARED, file_, 0);
+    if (at == MAP_FAILED) throw std::bad_alloc();
+    return {static_cast<std::byte*>(at), bytes};
+  }
+
+  ContainedBytes map() const {
+    struct stat about {};
+    if (fstat(file_, &about) != 0 || about.st_size <= 0) return {};
+    const auto bytes = static_cast<std::size_t>(about.st_size);
+    void* const at = mmap(nullptr, bytes, PROT_READ | PROT_WRITE, MAP_SHARED, file_, 0);
+    if (at == MAP_FAILED) throw std::bad_alloc();
+    return {{static_cast<std::byte*>(at), [bytes](std::byte* p) { munmap(p, bytes); }}, bytes};
+  }
+
+ private:
+  int file_;
+};
+
+}  // namespace
+
+std::shared_ptr<std::byte> run_contained(std::size_t bytes,
+                                         const std::function<bool(std::span<std::byte>)>& work,
+                                         std::uintmax_t file_bytes) {
+  // What a decoder takes beside what it gives: trees of sparse data are far larger than their file.
+  constexpr std::uintmax_t room_for_any = std::uintmax_t{1} << 30;
+  std::shared_ptr<std::byte> shared = shared_memory(std::max<std::size_t>(bytes, 1));
+  const bool is_filled = come_to_an_end(
+      [&] {
+        return work({shared.get(), bytes});
+      },
+      {3 + seconds_for(bytes + per_file_byte * file_bytes),
+       2 * std::uintmax_t{bytes} + room_for_any + per_file_byte * file_bytes});
+  return is_filled ? shared : nullptr;
+}
+
+ContainedBytes run_contained_answer(const std::function<bool(const MakeAnswer&)>& work,
+                                    std::uintmax_t file_bytes, std::uintmax_t memory) {
+  const std::uintmax_t seconds = 3 + seconds_for(per_file_byte * file_bytes);
+  const GrowingMemory shared;
+  const MakeAnswer make = [&](std::size_t bytes) {
+    limit_seconds(seconds + seconds_for(bytes));
+    return shared.make(bytes);
+  };
+  if (!come_to_an_end([&] { return work(make); }, {seconds, memory})) return {};
+  return shared.map();
 }
 
 }  // namespace pellucid

@@ -26,4 +26,20 @@ std::shared_ptr<std::byte> run_contained(std::size_t bytes,
                                          const std::function<bool(std::span<std::byte>)>& work,
                                          std::uintmax_t file_bytes = 0);
 
+/// Bytes that another process wrote; none where it failed.
+struct ContainedBytes {
+  std::shared_ptr<std::byte> data;
+  std::size_t size = 0;
+  explicit operator bool() const noexcept { return data != nullptr; }
+  std::span<const std::byte> span() const noexcept { return {data.get(), size}; }
+};
+/// Makes room for the answer, once, in zeros. Throws std::bad_alloc.
+using MakeAnswer = std::function<std::span<std::byte>(std::size_t bytes)>;
+
+/// Runs `work` like run_contained() where it alone knows how long its answer is. It may take
+/// `memory` bytes, its answer among them; the seconds grow with the answer too. Returns no bytes
+/// where run_contained() returns null, or where the work makes no answer.
+ContainedBytes run_contained_answer(const std::function<bool(const MakeAnswer&)>& work,
+                                    std::uintmax_t file_bytes, std::uintmax_t memory);
+
 }  // namespace pellucid

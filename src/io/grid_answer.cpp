@@ -4,32 +4,15 @@
 #include <algorithm>
 #include <cstdint>
 #include <cstring>
-#include <nlohmann/json.hpp>
 #include <vector>
+
+#include "answer_json.h"
 
 namespace pellucid {
 
 namespace {
 
-using nlohmann::json;
-
-json of_vector(const Vec3<double>& v) {
-  return {v.x, v.y, v.z};
-}
-
-Vec3<double> vector_of(const json& v) {
-  return {v.at(0), v.at(1), v.at(2)};
-}
-
-// Names need not be UTF-8, which CBOR's bytes do not mind and its text does.
-json of_text(const std::string& text) {
-  return json::binary(std::vector<std::uint8_t>(text.begin(), text.end()));
-}
-
-std::string text_of(const json& text) {
-  const auto& bytes = text.get_binary();
-  return {bytes.begin(), bytes.end()};
-}
+using namespace answer_json;
 
 json of_array(const GridArray& array) {
   json j{{"name", of_text(array.name)},
@@ -43,11 +26,7 @@ json of_array(const GridArray& array) {
          {"rounding", array.rounding},
          {"note", of_text(array.note)},
          {"reads_parts", array.reads_parts}};
-  if (array.placement) {
-    const GridPlacement& p = *array.placement;
-    j["placement"] = {of_vector(p.origin), of_vector(p.spacing), of_vector(p.direction.column[0]),
-                      of_vector(p.direction.column[1]), of_vector(p.direction.column[2])};
-  }
+  if (array.placement) j["placement"] = of_placement(*array.placement);
   return j;
 }
 
@@ -64,13 +43,7 @@ GridArray array_of(const json& j) {
   j.at("rounding").get_to(array.rounding);
   array.note = text_of(j.at("note"));
   j.at("reads_parts").get_to(array.reads_parts);
-  if (j.contains("placement")) {
-    const json& p = j.at("placement");
-    array.placement = GridPlacement{vector_of(p.at(0)), vector_of(p.at(1)), {}};
-    for (int a = 0; a < 3; ++a) {
-      array.placement->direction.column[a] = vector_of(p.at(static_cast<std::size_t>(a) + 2));
-    }
-  }
+  if (j.contains("placement")) array.placement = placement_of(j.at("placement"));
   return array;
 }
 

@@ -14,6 +14,7 @@
 
 #include "array_statistics.h"
 #include "contained.h"
+#include "contained_values.h"
 #include "grid_answer.h"
 #include "input_file.h"
 #include "memory_limit.h"
@@ -21,6 +22,7 @@
 #include "net_cdf_size.h"
 #include "pellucid/io/module.h"
 #include "pellucid/scene/error.h"
+#include "text.h"
 #include "vdb_size.h"
 #include "volume_axes.h"
 
@@ -41,13 +43,6 @@ constexpr Format net_cdf{
 constexpr Format vdb{
     {"pellucid_openvdb.so", "reads OpenVDB files", "OpenVDB (Debian: libopenvdb-dev)"},
     "fog volume"};
-
-/// Names and messages of libraries may hold anything.
-std::string one_line(std::string text) {
-  std::ranges::replace_if(
-      text, [](char c) { return static_cast<unsigned char>(c) < ' ' || c == '\x7f'; }, ' ');
-  return text;
-}
 
 /// Calls a module's function in a process of its own: `work` says with what, where its answer goes,
 /// and whether that is well. The module is loaded there and nowhere else.
@@ -187,20 +182,6 @@ class Trailer {
   std::span<std::byte> error_, note_, types_;
 };
 
-/// The values in place: whoever has them keeps all that the process handed over.
-VolumeData values_at(const std::shared_ptr<std::byte>& all, std::size_t offset, std::size_t points,
-                     const std::string& type) {
-  VolumeData data = make_volume_data(type, 0);
-  std::visit(
-      [&](auto& values) {
-        using Value = typename std::decay_t<decltype(values)>::value_type;
-        const auto* const first = reinterpret_cast<const Value*>(all.get() + offset);
-        values = DataArray<Value>(std::shared_ptr<const Value>(all, first), points);
-      },
-      data);
-  return data;
-}
-
 std::vector<VolumeData> read_values(const std::filesystem::path& path, const Format& format,
                                     const GridArray& array, const ReadOptions& options,
                                     ComponentRange range) {
@@ -243,7 +224,7 @@ std::vector<VolumeData> read_values(const std::filesystem::path& path, const For
   for (std::size_t c = 0; c < static_cast<std::size_t>(range.number); ++c) {
     const std::string type = trailer.type(c, name);
     if (value_size(type, name) > largest) throw Error(name + ": cannot be read; it is damaged");
-    components.push_back(values_at(bytes, c * stride, points, type));
+    components.push_back(contained_values(bytes, c * stride, points, type));
   }
   return components;
 }

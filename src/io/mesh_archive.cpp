@@ -12,15 +12,16 @@ namespace pellucid {
 
 namespace {
 
+/// Counts the bytes where there is nowhere to write to.
 class Writer {
  public:
   static constexpr bool reads = false;
-  explicit Writer(std::span<std::byte> to) : to_(to) {}
+  explicit Writer(std::span<std::byte> to = {}) : to_(to) {}
 
-  bool good() const { return good_; }
+  std::size_t size() const { return size_; }
   void bytes(const void* data, std::size_t size) {
-    good_ = good_ && size <= to_.size();
-    if (!good_ || size == 0) return;
+    size_ += size;
+    if (to_.empty() || size == 0) return;
     std::memcpy(to_.data(), data, size);
     to_ = to_.subspan(size);
   }
@@ -33,7 +34,7 @@ class Writer {
 
  private:
   std::span<std::byte> to_;
-  bool good_ = true;
+  std::size_t size_ = 0;
 };
 
 class Reader {
@@ -118,6 +119,8 @@ void exchange(Archive& archive, Mesh& mesh) {
   plain(archive, file.ghost_cells);
   plain(archive, file.trimmed_cells);
   plain(archive, file.first_trimmed_cell);
+  sized(archive, file.notes);
+  for (auto& note : file.notes) archive.list(note);
   plain(archive, mesh.cells);
   sized(archive, mesh.blocks);
   for (auto& block : mesh.blocks) {
@@ -150,10 +153,11 @@ bool agrees_with_itself(const UnstructuredGrid& block) {
 
 }  // namespace
 
-bool write_mesh_blocks(const MeshBlocks& mesh, std::span<std::byte> to) {
-  Writer writer(to);
+void write_mesh_blocks(const MeshBlocks& mesh, const MakeAnswer& make) {
+  Writer counter;
+  exchange(counter, mesh);
+  Writer writer(make(counter.size()));
   exchange(writer, mesh);
-  return writer.good();
 }
 
 std::optional<MeshBlocks> read_mesh_blocks(std::span<const std::byte> from) {

@@ -5,12 +5,13 @@
 #include <optional>
 #include <span>
 
+#include "contained.h"
 #include "mesh_blocks.h"
 
 namespace pellucid {
 
-/// Writes a mesh as a process hands it to another. Returns false where there is no room for it.
-bool write_mesh_blocks(const MeshBlocks& mesh, std::span<std::byte> to);
+/// Writes a mesh as a process hands it to another.
+void write_mesh_blocks(const MeshBlocks& mesh, const MakeAnswer& make);
 /// Reads what that wrote; nothing where it is damaged.
 std::optional<MeshBlocks> read_mesh_blocks(std::span<const std::byte> from);
 

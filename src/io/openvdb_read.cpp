@@ -2,6 +2,7 @@
 #include <openvdb/openvdb.h>
 
 #include <algorithm>
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
@@ -94,6 +95,22 @@ GridPlacement placement_of(const openvdb::GridBase& grid, const Box& box) {
   return placement;
 }
 
+/// Why a box would be filled for nothing: of so many voxels nearly none is active, as where one
+/// stands far from the others in a damaged file. Empty where it would not.
+std::string why_too_sparse(const openvdb::GridBase& grid, const Box& box) {
+  constexpr double many = 0x1p28, most_per_active = 1000;
+  double voxels = 1;
+  std::string sides;
+  for (const std::int64_t side : box.sides) {
+    voxels *= static_cast<double>(side);
+    sides += (sides.empty() ? "" : " x ") + std::to_string(side);
+  }
+  const double active = static_cast<double>(grid.activeVoxelCount());
+  if (voxels <= many || voxels <= most_per_active * active) return {};
+  return "a box of " + sides + " voxels with " + std::to_string(grid.activeVoxelCount()) +
+         " active ones; cut off those that are far from the others, or split it";
+}
+
 /// Why a grid is no volume; empty where it is one.
 std::string refusal(const openvdb::GridBase& grid) {
   if (grid.getGridClass() == openvdb::GRID_LEVEL_SET) {
@@ -113,8 +130,9 @@ std::string refusal(const openvdb::GridBase& grid) {
   if (!grid.transform().isLinear()) {
     return "a frustum, which no affine map places; resample it to a box";
   }
-  if (!active_box(grid)) return "without an active voxel";
-  return {};
+  const std::optional<Box> box = active_box(grid);
+  if (!box) return "without an active voxel";
+  return why_too_sparse(grid, *box);
 }
 
 GridArray describe(const openvdb::GridBase& grid, const std::string& name) {
@@ -152,23 +170,53 @@ void list_grids(const std::filesystem::path& path, const AxisLetters&, GridConte
   }
 }
 
-/// The numbers `component` of all voxels of the box, x fastest.
+/// The last place of the cube of a leaf that a place is in, or that of the box.
+std::int64_t end_of_leaf(std::int64_t place, std::int64_t last, int side) {
+  return std::min(place | (side - 1), last);
+}
+
+/// The numbers `component` of all voxels of the box, x fastest. Where a tree has no leaf, its value
+/// is the same in all of a leaf's cube: boxes may be far larger than what is in them.
 template <class Grid>
 void copy_box(const Grid& grid, const Box& box, int component, std::span<std::byte> to) {
   using Number = typename openvdb::VecTraits<typename Grid::ValueType>::ElementType;
   using Value = Kept<Number>;
+  constexpr int side = Grid::TreeType::LeafNodeType::DIM;
+  const auto kept = [&](const auto& value) {
+    if constexpr (std::is_same_v<std::decay_t<decltype(value)>, Number>) {
+      return static_cast<Value>(value);
+    } else {
+      return static_cast<Value>(value[component]);
+    }
+  };
   const auto access = grid.getConstUnsafeAccessor();
-  auto* at = reinterpret_cast<Value*>(to.data());
-  for (std::int64_t z = 0; z < box.sides[2]; ++z) {
-    for (std::int64_t y = 0; y < box.sides[1]; ++y) {
-      for (std::int64_t x = 0; x < box.sides[0]; ++x) {
-        const auto value = access.getValue(
-            box.first.offsetBy(static_cast<int>(x), static_cast<int>(y), static_cast<int>(z)));
-        if constexpr (std::is_same_v<std::decay_t<decltype(value)>, Number>) {
-          *at++ = static_cast<Value>(value);
-        } else {
-          *at++ = static_cast<Value>(value[component]);
+  std::array<std::int64_t, 3> first{}, last{};
+  for (std::size_t a = 0; a < 3; ++a) {
+    first[a] = box.first[static_cast<unsigned>(a)];
+    last[a] = first[a] + box.sides[a] - 1;
+  }
+  auto* const begin = reinterpret_cast<Value*>(to.data());
+  const auto coord = [](std::int64_t x, std::int64_t y, std::int64_t z) {
+    return openvdb::Coord(static_cast<int>(x), static_cast<int>(y), static_cast<int>(z));
+  };
+  const auto copy_cube = [&](std::int64_t x, std::int64_t y, std::int64_t z) {
+    const auto* const leaf = access.probeConstLeaf(coord(x, y, z));
+    const Value tile = leaf == nullptr ? kept(access.getValue(coord(x, y, z))) : Value{};
+    const std::int64_t end = end_of_leaf(x, last[0], side);
+    for (std::int64_t k = z; k <= end_of_leaf(z, last[2], side); ++k) {
+      for (std::int64_t j = y; j <= end_of_leaf(y, last[1], side); ++j) {
+        Value* at = begin + (x - first[0]) +
+                    box.sides[0] * ((j - first[1]) + box.sides[1] * (k - first[2]));
+        for (std::int64_t i = x; i <= end; ++i) {
+          *at++ = leaf == nullptr ? tile : kept(leaf->getValue(coord(i, j, k)));
         }
+      }
+    }
+  };
+  for (std::int64_t z = first[2]; z <= last[2]; z = end_of_leaf(z, last[2], side) + 1) {
+    for (std::int64_t y = first[1]; y <= last[1]; y = end_of_leaf(y, last[1], side) + 1) {
+      for (std::int64_t x = first[0]; x <= last[0]; x = end_of_leaf(x, last[0], side) + 1) {
+        copy_cube(x, y, z);
       }
     }
   }

@@ -3,12 +3,9 @@
 
 #include <algorithm>
 #include <array>
-#include <cstring>
 #include <fstream>
 #include <new>
 #include <optional>
-#include <set>
-#include <span>
 #include <stdexcept>
 #include <string_view>
 #include <utility>
@@ -22,12 +19,13 @@
 #include "net_cdf_size.h"
 #include "pellucid/scene/error.h"
 #include "plot3d.h"
+#include "text.h"
 #include "vtk_collection.h"
 #include "vtk_file_kind.h"
+#include "vtk_files.h"
 #include "vtk_hdf.h"
 #include "vtk_module.h"
-#include "vtk_polyhedra.h"
-#include "vtk_xml_end.h"
+#include "vtk_xml_check.h"
 
 namespace pellucid {
 
@@ -82,57 +80,33 @@ Format format_of(const std::filesystem::path& path, const MeshReadOptions& optio
               mesh_extensions());
 }
 
-void call_vtk(const std::filesystem::path& path, Format format, const MeshReadOptions& options,
-              VtkAnswer& answer) {
-  ReadWithVtk& read = vtk_module();
-  read(path,
-       format == Format::xml      ? VtkFormat::xml
-       : format == Format::legacy ? VtkFormat::legacy
-                                  : VtkFormat::exodus,
-       options, answer);
-}
-
-/// The same in a process of its own, which may crash, and which hands over what it read.
-VtkAnswer call_vtk_contained(const std::filesystem::path& path, Format format,
-                             const MeshReadOptions& options) {
-  // What stays untouched is no memory. Compressed files may be far smaller than their mesh.
-  constexpr std::size_t least = std::size_t{64} << 20, per_file_byte = 64, longest = 1000;
-  const std::uintmax_t file_bytes = check_input_file(path);
-  const std::size_t room = least + per_file_byte * file_bytes;
-  const auto bytes = run_contained(
-      room,
-      [&](std::span<std::byte> to) {
-        VtkAnswer answer;
-        call_vtk(path, format, options, answer);
-        std::memcpy(to.data(), answer.error.data(), std::min(answer.error.size(), longest - 1));
-        return write_mesh_blocks(answer.mesh, to.subspan(longest));
-      },
-      file_bytes);
-  std::optional<MeshBlocks> mesh;
-  if (bytes) mesh = read_mesh_blocks({bytes.get() + longest, room - longest});
-  if (!mesh) {
-    throw Error(
-        "VTK fails on it, or takes far more memory or time than its size lets expect; it is "
-        "damaged");
-  }
-  const auto* const message = reinterpret_cast<const char*>(bytes.get());
-  return {*std::move(mesh), std::string(message, std::find(message, message + longest, '\0'))};
-}
-
+/// Reads it in a process of its own, which may crash, and which hands over what it read.
 MeshBlocks read_by_vtk(const std::filesystem::path& path, Format format,
-                       const MeshReadOptions& options, bool may_crash) {
-  VtkAnswer answer;
+                       const MeshReadOptions& options) {
+  const std::uintmax_t file_bytes = bytes_of_vtk_files(path);
+  std::optional<MeshBlocks> mesh;
   try {
-    if (may_crash) {
-      answer = call_vtk_contained(path, format, options);
-    } else {
-      call_vtk(path, format, options, answer);
-    }
+    check_vtk_module();
+    const ContainedBytes bytes = run_contained_answer(
+        [&](const MakeAnswer& make) {
+          VtkAnswer answer;
+          vtk_module()(
+              path,
+              format == Format::xml      ? VtkFormat::xml
+              : format == Format::legacy ? VtkFormat::legacy
+                                         : VtkFormat::exodus,
+              options, [](const std::filesystem::path& file) { check_vtk_xml(file); }, answer);
+          if (!answer.error.empty()) throw Error(answer.error);
+          write_mesh_blocks(answer.mesh, make);
+          return true;
+        },
+        file_bytes, memory_for_vtk(file_bytes));
+    if (bytes) mesh = read_mesh_blocks(bytes.span());
+    if (!mesh) throw Error(vtk_fails);
   } catch (const Error& error) {
-    throw Error(path.string() + ": " + error.what());
+    throw Error(path.string() + ": " + one_line(error.what()));
   }
-  if (!answer.error.empty()) throw Error(path.string() + ": " + answer.error);
-  return std::move(answer.mesh);
+  return *std::move(mesh);
 }
 
 MeshBlocks read_blocks(const std::filesystem::path& path, const MeshReadOptions& options) {
@@ -142,12 +116,9 @@ MeshBlocks read_blocks(const std::filesystem::path& path, const MeshReadOptions&
   const Format format = format_of(path, options);
   if (format == Format::exodus) check_net_cdf_size(path);
   if (format == Format::legacy) check_legacy_vtk_cells(path);
-  std::set<std::filesystem::path> files;
-  if (format == Format::legacy) files = {path};
-  if (format == Format::xml) files = check_vtk_xml_end(path);
   if (format == Format::vtk_hdf) return read_vtk_hdf(path, options);
   if (format != Format::plot3d) {
-    return read_by_vtk(path, format, options, has_vtk_polyhedra(files));
+    return read_by_vtk(path, format, options);
   }
   if (options.time) {
     throw Error(path.string() + ": the file has no steps in time; leave the time out");

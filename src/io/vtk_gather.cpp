@@ -17,6 +17,7 @@
 #include <vtkUnsignedCharArray.h>
 #include <vtkUnstructuredGrid.h>
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <limits>
@@ -33,6 +34,8 @@ namespace pellucid {
 namespace {
 
 constexpr const char* damaged = "; the file is cut off or damaged";
+/// Older files have numbers of layers in place of flags: 0 is no ghost.
+constexpr const char* ghost_levels = "vtkGhostLevels";
 
 template <class Value>
 VolumeData copied(vtkDataArray& array, std::span<const vtkIdType> tuples) {
@@ -91,7 +94,7 @@ void gather_arrays(vtkDataSetAttributes& data, Centering centering, vtkIdType co
     if (array == data.GetGlobalIds() || array == data.GetPedigreeIds()) continue;
     if (array == data.GetHigherOrderDegrees()) continue;
     std::string name = array->GetName() == nullptr ? "" : array->GetName();
-    if (name == vtkDataSetAttributes::GhostArrayName()) continue;
+    if (name == vtkDataSetAttributes::GhostArrayName() || name == ghost_levels) continue;
     if (name.empty()) name = "array_" + std::to_string(a);
     if (array->GetNumberOfTuples() != count) {
       throw Error("the array \"" + name + "\" has " + std::to_string(array->GetNumberOfTuples()) +
@@ -118,19 +121,36 @@ void gather_points(vtkPointSet& set, UnstructuredGrid& block) {
   }
 }
 
-bool is_ghost(vtkUnsignedCharArray* ghosts, vtkIdType cell) {
-  return ghosts != nullptr && (ghosts->GetValue(cell) & (vtkDataSetAttributes::DUPLICATECELL |
-                                                         vtkDataSetAttributes::HIDDENCELL)) != 0;
+void check_count(vtkDataArray* ghosts, vtkIdType count, const char* of) {
+  if (ghosts == nullptr || ghosts->GetNumberOfValues() == count) return;
+  throw Error(std::string("the number of ghost flags is not that of the ") + of + damaged);
 }
 
-/// Null: there are none.
-vtkUnsignedCharArray* ghosts_of(vtkDataSet& set) {
-  vtkUnsignedCharArray* const ghosts = set.GetCellGhostArray();
-  if (ghosts != nullptr && ghosts->GetNumberOfValues() != set.GetNumberOfCells()) {
-    throw Error(std::string("the number of ghost flags is not that of the cells") + damaged);
-  }
-  return ghosts;
+/// Returns the array of flags; null: there is none. VTK's own pointer to it is not set where it
+/// has made it out of levels.
+vtkUnsignedCharArray* flags_of(vtkDataSetAttributes& data) {
+  return vtkUnsignedCharArray::SafeDownCast(data.GetArray(vtkDataSetAttributes::GhostArrayName()));
 }
+
+/// The cells that are ghosts, by either array.
+class Ghosts {
+ public:
+  explicit Ghosts(vtkDataSet& set)
+      : flags_(flags_of(*set.GetCellData())), levels_(set.GetCellData()->GetArray(ghost_levels)) {
+    check_count(flags_, set.GetNumberOfCells(), "cells");
+    check_count(levels_, set.GetNumberOfCells(), "cells");
+  }
+
+  bool has(vtkIdType cell) const {
+    constexpr int ghost = vtkDataSetAttributes::DUPLICATECELL | vtkDataSetAttributes::HIDDENCELL;
+    return (flags_ != nullptr && (flags_->GetValue(cell) & ghost) != 0) ||
+           (levels_ != nullptr && levels_->GetComponent(cell, 0) > 0);
+  }
+
+ private:
+  vtkUnsignedCharArray* flags_;
+  vtkDataArray* levels_;
+};
 
 /// The cells of an unstructured grid as they lie in VTK's arrays, each index checked before it is
 /// followed.
@@ -238,14 +258,14 @@ std::optional<std::array<int, 3>> orders_of(vtkDataArray* orders, vtkIdType cell
 std::vector<vtkIdType> gather_cells(vtkUnstructuredGrid& grid, std::size_t first_number,
                                     MeshFile& file, UnstructuredGrid& block) {
   CellLists lists(grid);
-  vtkUnsignedCharArray* const ghosts = ghosts_of(grid);
+  const Ghosts ghosts(grid);
   vtkDataArray* const orders = orders_of_cells(grid);
   std::vector<vtkIdType> kept;
   kept.reserve(static_cast<std::size_t>(lists.count()));
   block.shapes.reserve(static_cast<std::size_t>(lists.count()));
   VtkCells cells(first_number, file, block);
   for (vtkIdType cell = 0; cell < lists.count(); ++cell) {
-    if (is_ghost(ghosts, cell)) {
+    if (ghosts.has(cell)) {
       cells.add_ghost();
       continue;
     }
@@ -286,18 +306,28 @@ std::vector<vtkIdType> gather_cells(vtkStructuredGrid& grid, std::size_t first_n
   kept.reserve(static_cast<std::size_t>(cells));
   block.shapes.reserve(static_cast<std::size_t>(cells));
   block.corners.reserve(static_cast<std::size_t>(cells) * 8);
-  const bool blanked = grid.HasAnyBlankCells() || grid.HasAnyBlankPoints();
-  vtkUnsignedCharArray* const ghosts = ghosts_of(grid);
+  const Ghosts ghosts(grid);
+  vtkUnsignedCharArray* const hidden = flags_of(*grid.GetPointData());
+  check_count(hidden, grid.GetNumberOfPoints(), "points");
   const std::int32_t row = dimensions[0], layer = row * dimensions[1];
   vtkIdType cell = 0;
   for (int z = 0; z + 1 < dimensions[2]; ++z) {
     for (int y = 0; y + 1 < dimensions[1]; ++y) {
       for (int x = 0; x + 1 < dimensions[0]; ++x, ++cell) {
-        if (is_ghost(ghosts, cell) || (blanked && grid.IsCellVisible(cell) == 0)) {
+        const std::int32_t p = x + row * y + layer * z;
+        const auto is_hidden = [&](std::int32_t point) {
+          return (hidden->GetValue(point) & vtkDataSetAttributes::HIDDENPOINT) != 0;
+        };
+        // A hidden point hides the cells around it.
+        const bool blanked =
+            hidden != nullptr &&
+            std::ranges::any_of(std::array{p, p + 1, p + row, p + row + 1}, [&](std::int32_t q) {
+              return is_hidden(q) || is_hidden(q + layer);
+            });
+        if (ghosts.has(cell) || blanked) {
           ++file.ghost_cells;
           continue;
         }
-        const std::int32_t p = x + row * y + layer * z;
         for (const std::int32_t bottom : {p, p + layer}) {
           block.corners.insert(block.corners.end(),
                                {bottom, bottom + 1, bottom + row + 1, bottom + row});

@@ -4,31 +4,25 @@
 #include <algorithm>
 #include <cstring>
 #include <fstream>
-#include <nlohmann/json.hpp>
 #include <string_view>
 #include <system_error>
 #include <utility>
 
+#include "answer_json.h"
 #include "contained.h"
 #include "input_file.h"
 #include "memory_limit.h"
 #include "pellucid/io/module.h"
 #include "pellucid/scene/error.h"
+#include "text.h"
 
 namespace pellucid {
 
 namespace {
 
-using nlohmann::json;
+using namespace answer_json;
 
 constexpr Module module{"pellucid_hdf5.so", "reads HDF5 files", "HDF5 (Debian: libhdf5-dev)"};
-
-/// Names and messages may hold anything.
-std::string one_line(std::string text) {
-  std::ranges::replace_if(
-      text, [](char c) { return static_cast<unsigned char>(c) < ' ' || c == '\x7f'; }, ' ');
-  return text;
-}
 
 /// Calls a function of the module in a process of its own.
 template <class Function>
@@ -52,16 +46,6 @@ std::shared_ptr<std::byte> contained(
   throw Error(path.string() +
               ": the library that reads HDF5 files fails on it, or takes far more memory or time "
               "than its size lets expect; it is damaged");
-}
-
-// Names need not be UTF-8, which CBOR's bytes do not mind and its text does.
-json of_text(const std::string& text) {
-  return json::binary(std::vector<std::uint8_t>(text.begin(), text.end()));
-}
-
-std::string text_of(const json& text) {
-  const auto& bytes = text.get_binary();
-  return {bytes.begin(), bytes.end()};
 }
 
 bool write(const VtkHdfContents& contents, std::span<std::byte> to) {

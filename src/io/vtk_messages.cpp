@@ -28,7 +28,9 @@ void erase_addresses(std::string& text) {
 
 /// "ERROR: In FILE, line 9\nvtkReader (0x5): what is wrong\n\n": what is wrong.
 std::string what_is_wrong(std::string text) {
-  if (const std::size_t object = text.find("): "); object != std::string::npos) {
+  if (text.starts_with("Generic Warning")) {
+    text.erase(0, text.find('\n'));
+  } else if (const std::size_t object = text.find("): "); object != std::string::npos) {
     text.erase(0, object + 3);
   }
   erase_addresses(text);
@@ -36,7 +38,7 @@ std::string what_is_wrong(std::string text) {
   for (const char c : text) {
     const bool space = static_cast<unsigned char>(c) <= ' ' || c == '\x7f';
     if (!space) {
-      line += c;
+      line += static_cast<unsigned char>(c) < 0x80 ? c : '?';  // bytes of a damaged file
     } else if (!line.empty() && line.back() != ' ') {
       line += ' ';
     }

@@ -25,9 +25,18 @@ struct VtkAnswer {
 };
 
 /// The module's functions, by these names.
+/// `check` is called with each file of XML before it is read, and throws Error.
+using CheckVtkXml = std::function<void(const std::filesystem::path& path)>;
 using ReadWithVtk = void(const std::filesystem::path& path, VtkFormat format,
-                         const MeshReadOptions& options, VtkAnswer& answer);
-inline constexpr const char* read_with_vtk_name = "pellucid_read_with_vtk_1";
+                         const MeshReadOptions& options, const CheckVtkXml& check,
+                         VtkAnswer& answer);
+inline constexpr const char* read_with_vtk_name = "pellucid_read_with_vtk_2";
+
+/// An array by its name in the file.
+struct VtkArrayName {
+  Centering centering;
+  std::string in_file;
+};
 
 /// What is wanted of an image or a rectilinear grid.
 struct VtkVolumeRequest {
@@ -39,11 +48,15 @@ struct VtkVolumeRequest {
   bool hides_nothing = false;        ///< ghosts are not looked at
   /// Throws Error where there is no room for so many bytes; asked before they are read.
   std::function<void(std::uintmax_t bytes)> check_memory;
+  /// Throws Error where the file of XML has not what it says of these arrays; asked before they are
+  /// read.
+  std::function<void(const std::vector<VtkArrayName>& arrays)> check_arrays;
 };
 
 /// A grid as VTK has it, with the arrays that were wanted, or what went wrong.
 struct VtkVolume {
   std::array<int, 3> points{};
+  std::array<int, 3> first{};  ///< of an image: the numbers of its first point along the axes
   /// Of an image: where its first point stands, the distances, and the axes.
   GridPlacement placement;
   /// Of a rectilinear grid: the positions of its points, and the largest relative error that their
@@ -59,15 +72,21 @@ struct VtkVolume {
   /// images in XML without ghosts, in types that do not depend on the values. Else empty.
   std::function<void(const IndexBox& points, VtkVolume& answer)> read;
   int type = 0;  ///< the number that VTK has for the type of the array, if `read` is there
+  std::string value_type;  ///< of its values as they are read, if `read` is there: "f32"
   std::string error;
 };
 
 using ReadVolumeWithVtk = void(const std::filesystem::path& path, const VtkVolumeRequest& request,
                                VtkVolume& answer);
-inline constexpr const char* read_volume_with_vtk_name = "pellucid_read_volume_with_vtk_2";
+inline constexpr const char* read_volume_with_vtk_name = "pellucid_read_volume_with_vtk_3";
 
 /// Loaded by the first call. Throw Error where the build has no such module or it does not load.
 ReadWithVtk& vtk_module();
 ReadVolumeWithVtk& vtk_volume_module();
+/// Throws Error where the build has no such module, and loads nothing.
+void check_vtk_module();
+
+/// The memory that VTK may take for files of so many bytes, which may be compressed.
+std::uintmax_t memory_for_vtk(std::uintmax_t file_bytes);
 
 }  // namespace pellucid

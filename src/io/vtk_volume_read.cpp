@@ -52,9 +52,14 @@ std::string ghost_name() {
   return vtkDataSetAttributes::GhostArrayName();
 }
 
+/// Returns whether an array has flags or, in old files, levels of ghosts.
+bool is_of_ghosts(const std::string& name) {
+  return name == ghost_name() || name == "vtkGhostLevels";
+}
+
 /// One of cells that is named like one of points gets "_cell" behind its name, as in meshes.
 void add_entry(Entry entry, std::vector<Entry>& entries) {
-  if (entry.in_file.empty() || entry.in_file == ghost_name() || entry.components < 1) return;
+  if (entry.in_file.empty() || is_of_ghosts(entry.in_file) || entry.components < 1) return;
   entry.name = entry.in_file;
   const bool is_taken =
       std::ranges::any_of(entries, [&](const Entry& other) { return other.name == entry.name; });
@@ -133,7 +138,8 @@ std::vector<Entry> choose(const std::vector<Entry>& entries, const VtkVolumeRequ
   throw Error("has no array \"" + wanted + "\"; its arrays are " + list);
 }
 
-std::vector<std::uint8_t> ghosts_of(vtkUnsignedCharArray* ghosts, vtkIdType count) {
+std::vector<std::uint8_t> ghosts_of(vtkDataSetAttributes& data, vtkIdType count) {
+  auto* const ghosts = vtkUnsignedCharArray::SafeDownCast(data.GetArray(ghost_name().c_str()));
   if (ghosts == nullptr) return {};
   if (ghosts->GetNumberOfValues() != count) {
     throw Error(std::string("the number of ghost flags is not that of the values") + damaged);
@@ -155,8 +161,8 @@ void take_values(vtkDataSet& set, const std::vector<Entry>& entries, VtkVolume& 
     volume.arrays.push_back(
         {entry.name, entry.centering, array->GetNumberOfComponents(), values_in_place(*array)});
   }
-  volume.point_ghosts = ghosts_of(set.GetPointGhostArray(), set.GetNumberOfPoints());
-  volume.cell_ghosts = ghosts_of(set.GetCellGhostArray(), set.GetNumberOfCells());
+  volume.point_ghosts = ghosts_of(*set.GetPointData(), set.GetNumberOfPoints());
+  volume.cell_ghosts = ghosts_of(*set.GetCellData(), set.GetNumberOfCells());
 }
 
 /// `direction`: row after row.
@@ -165,6 +171,7 @@ void take_place(const int* extent, const double* origin, const double* spacing,
   GridPlacement& placement = volume.placement;
   for (int a = 0; a < 3; ++a) {
     volume.points[static_cast<std::size_t>(a)] = extent[2 * a + 1] - extent[2 * a] + 1;
+    volume.first[static_cast<std::size_t>(a)] = extent[2 * a];
     for (int row = 0; row < 3; ++row) {
       placement.direction.column[a][row] = direction[3 * row + a];
     }
@@ -303,6 +310,22 @@ void take_outline(vtkInformation& about, const std::vector<Entry>& entries, VtkV
   }
 }
 
+/// Returns the type of values whose type does not depend on them: "f32".
+std::string value_type(const Entry& entry) {
+  const auto array = vtkSmartPointer<vtkDataArray>::Take(vtkDataArray::CreateDataArray(entry.type));
+  return std::string(type_name(values_in_place(*array)));
+}
+
+std::vector<VtkArrayName> names_of(const std::vector<Entry>& entries, bool with_ghosts) {
+  std::vector<VtkArrayName> names;
+  for (const Entry& entry : entries) names.push_back({entry.centering, entry.in_file});
+  if (with_ghosts) {
+    names.push_back({Centering::point, ghost_name()});
+    names.push_back({Centering::cell, ghost_name()});
+  }
+  return names;
+}
+
 template <class Reader, class Grid>
 void read_xml_grid(const std::filesystem::path& path, const VtkVolumeRequest& request,
                    const VtkMessages& messages, VtkVolume& volume) {
@@ -325,10 +348,12 @@ void read_xml_grid(const std::filesystem::path& path, const VtkVolumeRequest& re
   for (const Entry& entry : entries) {
     (entry.centering == Centering::point ? points : cells)->EnableArray(entry.in_file.c_str());
   }
+  request.check_arrays(names_of(entries, !request.hides_nothing));
   const std::uintmax_t bytes = bytes_of(entries, whole);
   if constexpr (std::is_same_v<Grid, vtkImageData>) {
     if (request.outline && reads_parts(entries, *points, *cells, request.hides_nothing)) {
       volume.type = entries.front().type;
+      volume.value_type = value_type(entries.front());
       take_outline(*about, entries, volume);
       volume.read = [reader, entries, whole, check_memory = request.check_memory](
                         const IndexBox& box, VtkVolume& part) {
@@ -382,7 +407,7 @@ void read_volume(const std::filesystem::path& path, const VtkVolumeRequest& requ
 
 }  // namespace pellucid
 
-extern "C" __attribute__((visibility("default"))) void pellucid_read_volume_with_vtk_2(
+extern "C" __attribute__((visibility("default"))) void pellucid_read_volume_with_vtk_3(
     const std::filesystem::path& path, const pellucid::VtkVolumeRequest& request,
     pellucid::VtkVolume& answer) {
   pellucid::answer(answer.error, pellucid::remedy,

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 #include <string>
+#include <vector>
 
 #include "pellucid/scene/error.h"
 #include "vtk_gather.h"
@@ -28,8 +29,34 @@ std::string kind_of(const std::filesystem::path& path, const VtkMessages& messag
   return kind;
 }
 
+/// Returns the files of the pieces of a list that names levels of ghosts; none where it does not.
+/// VTK converts them in each piece, and then does not find them.
+std::vector<std::filesystem::path> pieces_with_ghost_levels(const std::filesystem::path& path,
+                                                            const std::string& kind) {
+  if (kind != "PUnstructuredGrid") return {};
+  const auto root =
+      vtkSmartPointer<vtkXMLDataElement>::Take(vtkXMLUtilities::ReadElementFromFile(path.c_str()));
+  vtkXMLDataElement* const list =
+      root == nullptr ? nullptr : root->FindNestedElementWithName(kind.c_str());
+  if (list == nullptr) return {};
+  bool has_levels = false;
+  std::vector<std::filesystem::path> files;
+  for (int i = 0; i < list->GetNumberOfNestedElements(); ++i) {
+    vtkXMLDataElement* const element = list->GetNestedElement(i);
+    const char* const source = element->GetAttribute("Source");
+    if (source != nullptr) files.push_back(path.parent_path() / source);
+    for (int a = 0; source == nullptr && a < element->GetNumberOfNestedElements(); ++a) {
+      const char* const name = element->GetNestedElement(a)->GetAttribute("Name");
+      has_levels = has_levels || (name != nullptr && std::string(name) == "vtkGhostLevels");
+    }
+  }
+  if (!has_levels) files.clear();
+  return files;
+}
+
 void read_data(const std::filesystem::path& path, const std::string& kind,
-               const MeshReadOptions& options, const VtkMessages& messages, MeshBlocks& mesh) {
+               const MeshReadOptions& options, const CheckVtkXml& check,
+               const VtkMessages& messages, MeshBlocks& mesh) {
   if (kind.ends_with("ImageData") || kind.ends_with("RectilinearGrid")) {
     throw Error("holds " + kind + ", a volume on a regular grid and no mesh; read it as one");
   }
@@ -40,6 +67,16 @@ void read_data(const std::filesystem::path& path, const std::string& kind,
       kind != "PStructuredGrid" && kind != "vtkMultiBlockDataSet") {
     throw Error("holds " + kind.substr(0, 40) +
                 "; read are unstructured and structured grids and multiblock files of them");
+  }
+  check(path);
+  if (const auto pieces = pieces_with_ghost_levels(path, kind); !pieces.empty()) {
+    refuse_time(options);
+    for (const std::filesystem::path& piece : pieces) {
+      const std::string own = kind_of(piece, messages);
+      if (own != "UnstructuredGrid") throw Error("has a piece that holds " + own.substr(0, 40));
+      read_data(piece, own, {}, check, messages, mesh);
+    }
+    return;
   }
   const auto reader = vtkSmartPointer<vtkXMLGenericDataObjectReader>::New();
   reader->SetFileName(path.c_str());
@@ -83,7 +120,7 @@ std::vector<Step> steps_of(const std::filesystem::path& path, const VtkMessages&
 }
 
 void read_collection(const std::filesystem::path& path, const MeshReadOptions& options,
-                     const VtkMessages& messages, MeshBlocks& mesh) {
+                     const CheckVtkXml& check, const VtkMessages& messages, MeshBlocks& mesh) {
   const std::vector<Step> steps = steps_of(path, messages);
   std::vector<double> times;
   times.reserve(steps.size());
@@ -99,7 +136,7 @@ void read_collection(const std::filesystem::path& path, const MeshReadOptions& o
       throw Error("names " + name + ", which is not there; put it beside it");
     }
     try {
-      read_data(step.file, kind_of(step.file, messages), {}, messages, mesh);
+      read_data(step.file, kind_of(step.file, messages), {}, check, messages, mesh);
     } catch (const Error& part) {
       throw Error(name + " " + part.what());
     }
@@ -111,13 +148,13 @@ void read_collection(const std::filesystem::path& path, const MeshReadOptions& o
 }  // namespace
 
 void read_xml(const std::filesystem::path& path, const MeshReadOptions& options,
-              const VtkMessages& messages, MeshBlocks& mesh) {
+              const CheckVtkXml& check, const VtkMessages& messages, MeshBlocks& mesh) {
   const std::string kind = kind_of(path, messages);
   mesh.file.format = "VTK XML";
   if (kind == "Collection") {
-    read_collection(path, options, messages, mesh);
+    read_collection(path, options, check, messages, mesh);
   } else {
-    read_data(path, kind, options, messages, mesh);
+    read_data(path, kind, options, check, messages, mesh);
   }
 }
 

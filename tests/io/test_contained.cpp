@@ -5,8 +5,10 @@
 #include <algorithm>
 #include <csignal>
 #include <cstddef>
+#include <cstdint>
 #include <cstdio>
 #include <cstdlib>
+#include <span>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -96,7 +98,70 @@ TEST(Contained, TimeIsLimited) {
   EXPECT_LT(processor_seconds_of_children() - before, 20);
 }
 
+constexpr std::uintmax_t a_gibibyte = std::uintmax_t{1} << 30;
+
+TEST(Contained, AnAnswerIsAsLongAsTheWorkSays) {
+  for (const std::size_t bytes : {std::size_t{1}, std::size_t{5000}, std::size_t{1} << 24}) {
+    const ContainedBytes answer = run_contained_answer(
+        [&](const MakeAnswer& make) {
+          const std::span<std::byte> to = make(bytes);
+          to.front() = std::byte{7};
+          to.back() = std::byte{9};
+          return to.size() == bytes;
+        },
+        0, a_gibibyte);
+    ASSERT_TRUE(answer);
+    ASSERT_EQ(answer.size, bytes);
+    EXPECT_EQ(answer.span().front(), bytes == 1 ? std::byte{9} : std::byte{7});
+    EXPECT_EQ(answer.span().back(), std::byte{9});
+    // What is not written is 0.
+    EXPECT_EQ(std::count(answer.data.get(), answer.data.get() + bytes, std::byte{0}),
+              static_cast<std::ptrdiff_t>(bytes > 1 ? bytes - 2 : 0));
+  }
+}
+
+TEST(Contained, AFailureAnswersNothing) {
+  const auto answer = [](auto work) {
+    return run_contained_answer(
+        [&](const MakeAnswer& make) {
+          make(10).front() = std::byte{1};
+          work();
+          return false;
+        },
+        0, a_gibibyte);
+  };
+  EXPECT_FALSE(answer([] {}));
+  EXPECT_FALSE(answer([] { std::raise(SIGSEGV); }));
+  EXPECT_FALSE(answer([] { throw std::runtime_error("no"); }));
+  EXPECT_THROW(answer([] { throw Error("take another file"); }), Error);
+  EXPECT_FALSE(run_contained_answer([](const MakeAnswer&) { return true; }, 0, a_gibibyte));
+}
+
+TEST(Contained, TimeOfAnAnswerIsLimited) {
+  const double before = processor_seconds_of_children();
+  EXPECT_FALSE(run_contained_answer(
+      [](const MakeAnswer& make) -> bool {
+        const std::span<std::byte> to = make(1);
+        for (;;) to.front() = std::byte{2};
+      },
+      0, a_gibibyte));
+  EXPECT_LT(processor_seconds_of_children() - before, 20);
+}
+
 #ifndef PELLUCID_SANITIZED
+TEST(Contained, MemoryOfAnAnswerIsLimited) {
+  const auto take = [](std::size_t bytes) {
+    return run_contained_answer(
+        [&](const MakeAnswer& make) {
+          make(bytes).back() = std::byte{1};
+          return true;
+        },
+        0, a_gibibyte);
+  };
+  EXPECT_FALSE(take(std::size_t{2} << 30));
+  EXPECT_TRUE(take(std::size_t{1} << 29));
+}
+
 TEST(Contained, MemoryGrowsWithTheFile) {
   const auto take = [](std::span<std::byte> to) {
     std::vector<std::byte> much(std::size_t{2} << 30);

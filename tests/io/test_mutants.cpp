@@ -1,14 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <sys/mman.h>
-#include <sys/resource.h>
-#include <sys/time.h>
-#include <sys/wait.h>
-#include <unistd.h>
-
 #include <array>
 #include <cstdint>
-#include <cstdlib>
-#include <functional>
 #include <string>
 #include <vector>
 
@@ -24,85 +16,16 @@
 
 #include "dicom_files.h"
 #include "image_files.h"
-#include "mutants.h"
-#include "pellucid/io/read_volume.h"
+#include "mutants_test.h"
 #include "pellucid/io/write_volume.h"
-#include "sanitized.h"
 
-// Thousands of damaged files in a process of their own: each is read or refused by an Error, none
-// ends the process, takes longer than seconds or more memory than it is given.
 namespace pellucid {
 namespace {
 
-namespace fs = std::filesystem;
 using test::bytes_of;
 using test::counting;
 
-/// How many files of each kind; PELLUCID_TEST_MUTANTS sets another number.
-std::uint64_t mutant_count() {
-  const char* number = std::getenv("PELLUCID_TEST_MUTANTS");
-  return number == nullptr ? 1000 : std::strtoull(number, nullptr, 10);
-}
-
-class MutantsTest : public test::ScratchFolder {
- protected:
-  /// Writes each mutant as `file` and reads `input`.
-  /// Of one in `share` where each takes long.
-  void survive(std::vector<std::string> seeds, const std::string& file, const fs::path& input,
-               std::uint64_t share = 1) {
-    test::Mutants mutants(std::move(seeds));
-    auto* const at = static_cast<std::uint64_t*>(mmap(
-        nullptr, sizeof(std::uint64_t), PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0));
-    ASSERT_NE(at, MAP_FAILED);
-    const std::uint64_t count = mutant_count() / share;
-    for (std::uint64_t first = 0; first < count; first = *at + 1) {
-      const pid_t child = fork();
-      ASSERT_GE(child, 0);
-      if (child == 0) read_all(mutants, first, count, file, input, at);
-      int status = 0;
-      waitpid(child, &status, 0);
-      if (WIFEXITED(status) && WEXITSTATUS(status) == 0) break;
-      const std::string kept = "mutant-" + std::to_string(*at) + "-" + file;
-      std::ofstream(kept, std::ios::binary) << mutants(*at);
-      ADD_FAILURE() << "mutant " << *at << " (kept as " << kept << ") ended the process by "
-                    << (WIFSIGNALED(status) ? "signal " : "status ")
-                    << (WIFSIGNALED(status) ? WTERMSIG(status) : WEXITSTATUS(status));
-    }
-    munmap(at, sizeof(std::uint64_t));
-  }
-
- protected:
-  bool may_run_out_ = false;
-
- private:
-  [[noreturn]] void read_all(test::Mutants& mutants, std::uint64_t first, std::uint64_t count,
-                             const std::string& file, const fs::path& input, std::uint64_t* at) {
-#ifndef PELLUCID_SANITIZED
-    const rlimit memory{rlim_t{2} << 30, rlim_t{2} << 30};
-    setrlimit(RLIMIT_AS, &memory);
-#endif
-    const rlimit no_core{0, 0};
-    setrlimit(RLIMIT_CORE, &no_core);
-    // Of a processor: a sanitizer is slow, and so is a machine of many jobs.
-    const itimerval limit{{0, 0}, {120, 0}};
-    for (*at = first; *at < count; ++*at) {
-      write(file, mutants(*at));
-      setitimer(ITIMER_PROF, &limit, nullptr);
-      try {
-        const std::vector<Volume> volumes = read_components(input);
-        if (volumes.empty()) _exit(3);
-      } catch (const Error& error) {
-        // As it should be. Anything else ends the process. A few bytes may say that they are many
-        // (refused before), but what runs out of memory has taken what no header said.
-        if (std::string(error.what()).find("not enough memory") != std::string::npos &&
-            !may_run_out_) {
-          _exit(4);
-        }
-      }
-    }
-    _exit(0);
-  }
-};
+using test::MutantsTest;
 
 test::DicomSliceFile dicom_slice(int k) {
   test::DicomSliceFile file;
@@ -226,22 +149,6 @@ TEST_F(MutantsTest, Ivf) {
            "y=\"1\" z=\"0\" w=\"0\"/></BasisAndOffset></InviwoVolume>\n"},
           "a.ivf", path("a.ivf"));
 }
-
-#ifdef PELLUCID_HAVE_VTK
-TEST_F(MutantsTest, VtkImage) {
-  Volume::Description description;
-  description.dimensions = {5, 4, 3};
-  description.name = "counting";
-  const Volume volume(description, DataArray<float>(counting()));
-  write_volume({&volume, 1}, path("seed.vti"));
-  survive({read(path("seed.vti")),
-           "# vtk DataFile Version 3.0\ntitle\nBINARY\nDATASET STRUCTURED_POINTS\nDIMENSIONS 5 4 "
-           "3\nORIGIN 0 0 0\nSPACING 1 1 1\nPOINT_DATA 60\nSCALARS v float 1\nLOOKUP_TABLE "
-           "default\n" +
-               test::swapped_bytes_of(counting())},
-          "a.vti", path("a.vti"));
-}
-#endif
 
 #ifdef PELLUCID_HAVE_HDF5
 TEST_F(MutantsTest, Hdf5) {

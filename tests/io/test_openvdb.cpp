@@ -220,14 +220,45 @@ TEST_F(OpenVdb, ListsItsGrids) {
 }
 
 TEST_F(OpenVdb, BoxesBeyondMemoryAreRefused) {
-  auto grid = openvdb::FloatGrid::create();
-  grid->tree().setValueOn({-2147483647, -2147483647, -2147483647}, 1);
-  grid->tree().setValueOn({2147483647, 2147483647, 2147483647}, 1);
-  EXPECT_TRUE(contains(error_of([&] { read_volume(save({grid})); }), "cannot be"));
-  auto large = openvdb::FloatGrid::create();
-  large->tree().setValueOn({0, 0, 0}, 1);
-  large->tree().setValueOn({1 << 18, 1 << 18, 1 << 18}, 1);
+  auto large = openvdb::BoolGrid::create();
+  const int last = (1 << 17) - 1;
+  large->fill({{0, 0, 0}, {last, last, last}}, true, true);
   EXPECT_TRUE(contains(error_of([&] { read_volume(save({large})); }), "its values"));
+}
+
+// As where a damaged file has a voxel far from the others: gigabytes of nothing.
+TEST_F(OpenVdb, BoxesOfNearlyNothingAreRefused) {
+  for (const int far : {1 << 10, 1 << 18, 2147483647}) {
+    auto grid = openvdb::FloatGrid::create();
+    grid->setName("d");
+    grid->tree().setValueOn({-far, -far, -far}, 1);
+    grid->tree().setValueOn({far, far, far}, 1);
+    const std::string error = error_of([&] { read_volume(save({grid})); });
+    EXPECT_TRUE(contains(error, "with 2 active ones")) << error;
+  }
+  // A large one with enough of them: 2^28 voxels and more, of one byte.
+  auto full = openvdb::MaskGrid::create();
+  full->fill({{0, 0, 0}, {511, 511, 1023}}, true, true);
+  full->tree().setValueOn({511, 511, 1030});
+  EXPECT_EQ(outline_volume(save({full})).description.dimensions[2], 1031);
+}
+
+TEST_F(OpenVdb, LeavesAndTilesOnBothSidesOfZero) {
+  auto grid = openvdb::Int32Grid::create(-5);
+  grid->setName("v");
+  grid->fill({{-24, -9, -17}, {-9, 14, 6}}, 3, true);
+  for (int x = -30; x <= 30; ++x) grid->tree().setValueOn({x, x / 3, -x / 2}, 100 + x);
+  grid->pruneGrid();
+  const Volume volume = read_volume(save({grid}));
+  const openvdb::CoordBBox box = grid->evalActiveVoxelBoundingBox();
+  const auto dimensions = volume.description().dimensions;
+  for (int z = 0; z < dimensions[2]; ++z) {
+    for (int y = 0; y < dimensions[1]; ++y) {
+      for (int x = 0; x < dimensions[0]; ++x) {
+        ASSERT_EQ(value_at(volume, x, y, z), grid->tree().getValue(box.min().offsetBy(x, y, z)));
+      }
+    }
+  }
 }
 
 // Wherever it is cut off, the file's own list of grids shows it, before OpenVDB is asked and takes

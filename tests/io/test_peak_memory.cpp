@@ -112,6 +112,26 @@ TEST_F(PeakMemory, MappedOrReadTheDataIsThereOnce) {
   expect_once("a.npy");
 }
 
+#ifdef PELLUCID_HAVE_VTK
+
+// The process that calls VTK hands its values over in place.
+TEST_F(PeakMemory, VtkImages) {
+  const std::uint64_t bytes = megabytes_of_data * kibi * kibi;
+  const std::string extent = "\"0 511 0 511 0 255\"";
+  write_large("a.vti",
+              "<VTKFile type=\"ImageData\" version=\"1.0\" byte_order=\"LittleEndian\" "
+              "header_type=\"UInt64\"><ImageData WholeExtent=" +
+                  extent + " Origin=\"0 0 0\" Spacing=\"1 1 1\"><Piece Extent=" + extent +
+                  "><PointData><DataArray type=\"UInt8\" Name=\"v\" format=\"appended\" "
+                  "offset=\"0\"/></PointData></Piece></ImageData><AppendedData encoding=\"raw\">_" +
+                  test::bytes_of(std::vector{bytes}),
+              megabytes_of_data);
+  std::ofstream(path("a.vti"), std::ios::binary | std::ios::app) << "</AppendedData></VTKFile>";
+  expect_once("a.vti");
+}
+
+#endif
+
 #ifdef PELLUCID_HAVE_ITK
 
 TEST_F(PeakMemory, CompressedDataIsInflatedIntoItsPlace) {

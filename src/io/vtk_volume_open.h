@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "components.h"
+
+namespace pellucid {
+
+/// An image or a rectilinear grid of VTK's whose head has been read, in the process that calls VTK.
+struct OpenedVtkVolume {
+  Volume::Description description;
+  int components = 1;
+  std::string array;
+  std::string type;          ///< of its values
+  bool reads_parts = false;  ///< whether its values are still to be read, by read_part_here()
+  VolumeData values;         ///< else all of them, the components of a point side by side
+};
+
+/// These call VTK, which may crash. Throw Error.
+OpenedVtkVolume open_here(const std::filesystem::path& path, const ReadOptions& options);
+/// Reads the components of the range, one after the other.
+void read_part_here(const std::filesystem::path& path, const OpenedVtkVolume& opened,
+                    ComponentRange range, std::span<std::byte> to);
+std::vector<VolumeArray> list_here(const std::filesystem::path& path);
+
+}  // namespace pellucid

@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace pellucid {
+
+/// First and last point along each axis.
+using VtkExtent = std::array<std::int64_t, 6>;
+
+/// The element of a piece that an array stands in.
+enum class VtkSection { points, cells, coordinates, point_data, cell_data };
+
+/// An array of one of VTK's XML files, by what the file has of it.
+struct VtkXmlArray {
+  VtkSection section = VtkSection::point_data;
+  std::string name, type;
+  std::int64_t components = 1;
+  bool is_step = false;  ///< one of several of its name, each of a time step
+  bool is_bits = false;  ///< eight values in a byte, so `values` are up to seven too many
+  std::optional<std::uint64_t> values;  ///< numbers in the file; none: it does not say
+  std::string stop;                     ///< text: the first word that is no number; empty: none
+};
+
+/// A piece of a file or, in a list of pieces, of another file.
+struct VtkXmlPiece {
+  std::string source;  ///< the other file
+  VtkExtent extent{0, -1, 0, -1, 0, -1};
+  std::uint64_t points = 0, cells = 0;
+  std::vector<VtkXmlArray> arrays;
+};
+
+/// What one of VTK's XML files holds, without values.
+struct VtkXmlFile {
+  std::string kind;  ///< "ImageData", "PUnstructuredGrid" …
+  std::optional<VtkExtent> whole;
+  std::vector<VtkXmlPiece> pieces;
+  std::vector<VtkXmlArray> listed;  ///< of a list of pieces: the arrays that each piece has
+  std::vector<std::string> files;   ///< of a collection: its files
+};
+
+/// Reads it without VTK. Throws Error, without the file's name, where it is damaged.
+VtkXmlFile read_vtk_xml(const std::filesystem::path& path);
+/// The same of a file in memory.
+VtkXmlFile parse_vtk_xml(std::string_view text);
+
+}  // namespace pellucid

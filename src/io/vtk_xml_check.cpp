@@ -1,0 +1,301 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "vtk_xml_check.h"
+
+#include <algorithm>
+#include <string>
+#include <vector>
+
+#include "input_file.h"
+#include "pellucid/scene/error.h"
+#include "text.h"
+
+namespace pellucid {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+bool is_data(VtkSection section) {
+  return section == VtkSection::point_data || section == VtkSection::cell_data;
+}
+
+std::string name_of(const VtkXmlArray& array) {
+  constexpr std::size_t longest = 100;
+  const std::string name = "\"" + one_line(array.name.substr(0, longest)) + "\"";
+  switch (array.section) {
+    case VtkSection::point_data:
+      return "the array " + name + " of points";
+    case VtkSection::cell_data:
+      return "the array " + name + " of cells";
+    case VtkSection::points:
+      return "the list of points";
+    case VtkSection::cells:
+      return "the list " + name + " of cells";
+    case VtkSection::coordinates:
+      break;
+  }
+  return "the list of coordinates " + name;
+}
+
+bool is_wanted_here(const VtkXmlArray& array, const IsVtkArrayWanted& is_wanted) {
+  return !is_data(array.section) || !is_wanted || is_wanted(array.section, array.name);
+}
+
+/// Returns whether the piece has places for such an array.
+bool has_places(const VtkXmlPiece& piece, VtkSection section) {
+  return section == VtkSection::cell_data || section == VtkSection::cells ? piece.cells > 0
+                                                                          : piece.points > 0;
+}
+
+/// Returns how many numbers an array needs, if that is known; `axis` is that of coordinates.
+std::optional<std::uint64_t> needed_values(const VtkXmlArray& array, const VtkXmlPiece& piece,
+                                           std::size_t axis) {
+  const auto components = static_cast<std::uint64_t>(array.components);
+  switch (array.section) {
+    case VtkSection::point_data:
+      return piece.points * components;
+    case VtkSection::cell_data:
+      return piece.cells * components;
+    case VtkSection::points:
+      return piece.points * 3;
+    case VtkSection::cells:
+      if (array.name == "types" || array.name == "offsets") return piece.cells;
+      return std::nullopt;
+    case VtkSection::coordinates:
+      break;
+  }
+  if (axis > 2) return std::nullopt;
+  return static_cast<std::uint64_t>(piece.extent[2 * axis + 1] - piece.extent[2 * axis] + 1);
+}
+
+void check_sizes(const VtkXmlPiece& piece, const IsVtkArrayWanted& is_wanted) {
+  // Nothing is made of so many, and products of them hold.
+  constexpr std::uint64_t most = std::uint64_t{1} << 40;
+  if (piece.points > most || piece.cells > most) {
+    throw Error("a piece says that it has " + std::to_string(std::max(piece.points, piece.cells)) +
+                " points or cells; the file is damaged");
+  }
+  std::size_t axis = 0;
+  for (const VtkXmlArray& array : piece.arrays) {
+    const std::size_t at = array.section == VtkSection::coordinates ? axis++ : axis;
+    if (!array.values || !is_wanted_here(array, is_wanted)) continue;
+    if (!has_places(piece, array.section)) continue;
+    const auto needed = needed_values(array, piece, at);
+    const std::uint64_t has = *array.values;
+    if (!needed || has == *needed) continue;
+    constexpr std::uint64_t bits = 8;
+    if (array.is_bits && has > *needed && has - *needed < bits) continue;
+    const bool short_of = has < *needed;
+    throw Error(
+        name_of(array) + " has " + std::to_string(has) + " numbers" +
+        (array.stop.empty() || !short_of ? "" : " before \"" + one_line(array.stop) + "\"") +
+        ", but needs " + std::to_string(*needed) +
+        (short_of ? "; the file is cut off or damaged"
+                  : "; the file is damaged, or its number of points or cells is wrong"));
+  }
+}
+
+const VtkXmlArray* find(const VtkXmlPiece& piece, const VtkXmlArray& like) {
+  const auto found = std::ranges::find_if(piece.arrays, [&](const VtkXmlArray& array) {
+    return array.section == like.section && (!is_data(like.section) || array.name == like.name);
+  });
+  return found == piece.arrays.end() ? nullptr : &*found;
+}
+
+bool is_same_type(const VtkXmlArray& a, const VtkXmlArray& b) {
+  const auto plain = [](const std::string& type) { return type == "vtkIdType" ? "Int64" : type; };
+  return plain(a.type) == plain(b.type) && (!is_data(a.section) || a.components == b.components);
+}
+
+/// Throws Error where the piece, of this name, lacks an array or has it in another type.
+void check_has(const VtkXmlPiece& piece, const VtkXmlArray& like, const std::string& name,
+               const char* remedy) {
+  if (!has_places(piece, like.section)) return;
+  const VtkXmlArray* const array = find(piece, like);
+  if (array == nullptr) {
+    throw Error(name + " lacks " + name_of(like) + "; " + remedy);
+  }
+  if (!is_same_type(*array, like)) {
+    throw Error(name + " has " + name_of(like) + " as " + std::to_string(array->components) + " " +
+                one_line(array->type) + " in place of " + std::to_string(like.components) + " " +
+                one_line(like.type) + "; " + remedy);
+  }
+}
+
+/// Throws Error where pieces of one file differ in their arrays.
+void check_alike(const std::vector<VtkXmlPiece>& pieces, const IsVtkArrayWanted& is_wanted) {
+  for (const VtkSection section : {VtkSection::point_data, VtkSection::cell_data}) {
+    std::vector<const VtkXmlPiece*> filled;
+    for (const VtkXmlPiece& piece : pieces) {
+      if (has_places(piece, section)) filled.push_back(&piece);
+    }
+    const auto number = [&](const VtkXmlPiece* piece) {
+      return "piece " + std::to_string(piece - pieces.data() + 1);
+    };
+    const auto check = [&](const VtkXmlPiece* of, const VtkXmlPiece* in) {
+      for (const VtkXmlArray& array : of->arrays) {
+        if (array.section != section || array.is_step || array.type == "String") continue;
+        if (!is_wanted_here(array, is_wanted)) continue;
+        check_has(*in, array, number(in), "write the pieces alike");
+      }
+    };
+    for (std::size_t i = 1; i < filled.size(); ++i) {
+      check(filled.front(), filled[i]);
+      check(filled[i], filled.front());
+    }
+  }
+}
+
+using Boxes = std::vector<VtkExtent>;
+
+/// Adds what is left of a box without another to a list; the ends belong to the boxes.
+void subtract(VtkExtent box, const VtkExtent& other, Boxes& left) {
+  for (std::size_t a = 0; a < 6; a += 2) {
+    if (other[a] > box[a + 1] || other[a + 1] < box[a]) {
+      left.push_back(box);
+      return;
+    }
+  }
+  for (std::size_t a = 0; a < 6; a += 2) {
+    if (other[a] > box[a]) {
+      VtkExtent below = box;
+      below[a + 1] = other[a] - 1;
+      left.push_back(below);
+      box[a] = other[a];
+    }
+    if (other[a + 1] < box[a + 1]) {
+      VtkExtent above = box;
+      above[a] = other[a + 1] + 1;
+      left.push_back(above);
+      box[a + 1] = other[a + 1];
+    }
+  }
+}
+
+/// Cells in place of the points around them; an axis of one point has one.
+VtkExtent cells_of(VtkExtent points) {
+  for (std::size_t a = 0; a < 6; a += 2) {
+    points[a + 1] = std::max(points[a], points[a + 1] - 1);
+  }
+  return points;
+}
+
+bool is_empty(const VtkExtent& extent) {
+  return extent[1] < extent[0] || extent[3] < extent[2] || extent[5] < extent[4];
+}
+
+void check_cover(const std::vector<VtkXmlPiece>& pieces, const VtkExtent& needed, bool of_cells) {
+  if (is_empty(needed)) return;
+  Boxes left{of_cells ? cells_of(needed) : needed};
+  for (const VtkXmlPiece& piece : pieces) {
+    if (is_empty(piece.extent)) continue;
+    Boxes next;
+    for (const VtkExtent& box : left) {
+      subtract(box, of_cells ? cells_of(piece.extent) : piece.extent, next);
+    }
+    left = std::move(next);
+  }
+  if (left.empty()) return;
+  const VtkExtent& first = *std::ranges::min_element(left, [](const auto& a, const auto& b) {
+    return std::array{a[4], a[2], a[0]} < std::array{b[4], b[2], b[0]};
+  });
+  std::string extent;
+  for (const std::int64_t n : needed) extent += (extent.empty() ? "" : " ") + std::to_string(n);
+  throw Error("its pieces do not fill the extent " + extent + ": the " +
+              (of_cells ? "cell (" : "point (") + std::to_string(first[0]) + ", " +
+              std::to_string(first[2]) + ", " + std::to_string(first[4]) +
+              ") is in none; give the list of all pieces, or correct the extents");
+}
+
+fs::path beside(const fs::path& path, const std::string& name) {
+  return path.parent_path() / name;
+}
+
+/// Returns whether a file is there and is one of VTK's in XML. VTK says what is wrong with others.
+bool is_vtk_xml(const fs::path& path) {
+  constexpr std::size_t head = 4096;
+  const std::string begin = first_bytes(path, head);
+  return begin.starts_with('<') && begin.find("<VTKFile") != std::string::npos;
+}
+
+bool is_structured(std::string_view kind) {
+  return kind == "ImageData" || kind == "RectilinearGrid" || kind == "StructuredGrid";
+}
+
+void check_list(const fs::path& path, const VtkXmlFile& list, const IsVtkArrayWanted& is_wanted) {
+  const bool structured = is_structured(std::string_view(list.kind).substr(1));
+  if (structured && list.whole) {
+    check_cover(list.pieces, *list.whole, false);
+    check_cover(list.pieces, *list.whole, true);
+  }
+  for (const VtkXmlPiece& piece : list.pieces) {
+    const fs::path file = beside(path, piece.source);
+    if (!is_vtk_xml(file)) continue;
+    try {
+      const VtkXmlFile own = read_vtk_xml(file);
+      if (structured) {
+        check_vtk_pieces(own, piece.extent, is_wanted);
+      } else {
+        for (const VtkXmlPiece& part : own.pieces) check_sizes(part, is_wanted);
+        check_alike(own.pieces, is_wanted);
+      }
+      for (const VtkXmlArray& array : list.listed) {
+        if (array.type == "String" || !is_wanted_here(array, is_wanted)) continue;
+        if (array.section == VtkSection::cells) continue;
+        for (const VtkXmlPiece& part : own.pieces) {
+          check_has(part, array, "it", "write it as the list of pieces says");
+        }
+      }
+    } catch (const Error& error) {
+      throw Error("its piece " + one_line(piece.source.substr(0, 200)) + ": " + error.what());
+    }
+  }
+}
+
+void check_file(const fs::path& path, const IsVtkArrayWanted& is_wanted, int depth) {
+  const VtkXmlFile file = read_vtk_xml(path);
+  if (is_structured(file.kind)) {
+    if (file.whole) check_vtk_pieces(file, *file.whole, is_wanted);
+  } else if (file.kind == "UnstructuredGrid") {
+    for (const VtkXmlPiece& piece : file.pieces) check_sizes(piece, is_wanted);
+    check_alike(file.pieces, is_wanted);
+  } else if (file.kind == "PUnstructuredGrid" ||
+             (file.kind.starts_with('P') && is_structured(file.kind.substr(1)))) {
+    check_list(path, file, is_wanted);
+  }
+  constexpr int deepest = 4;
+  for (const std::string& name : file.files) {
+    const fs::path part = beside(path, name);
+    if (depth >= deepest || !is_vtk_xml(part)) continue;
+    try {
+      check_file(part, is_wanted, depth + 1);
+    } catch (const Error& error) {
+      throw Error("its part " + one_line(name.substr(0, 200)) + ": " + error.what());
+    }
+  }
+}
+
+}  // namespace
+
+void check_vtk_pieces(const VtkXmlFile& file, const VtkExtent& needed,
+                      const IsVtkArrayWanted& is_wanted) {
+  for (const VtkXmlPiece& piece : file.pieces) check_sizes(piece, is_wanted);
+  check_alike(file.pieces, is_wanted);
+  const auto has = [&](VtkSection section) {
+    return std::ranges::any_of(file.pieces, [&](const VtkXmlPiece& piece) {
+      return std::ranges::any_of(piece.arrays, [&](const VtkXmlArray& array) {
+        return array.section == section && is_wanted_here(array, is_wanted);
+      });
+    });
+  };
+  if (file.kind != "ImageData" || has(VtkSection::point_data)) {
+    check_cover(file.pieces, needed, false);
+  }
+  if (has(VtkSection::cell_data)) check_cover(file.pieces, needed, true);
+}
+
+void check_vtk_xml(const fs::path& path, const IsVtkArrayWanted& is_wanted) {
+  check_file(path, is_wanted, 0);
+}
+
+}  // namespace pellucid

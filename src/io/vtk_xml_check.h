@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <functional>
+
+#include "vtk_xml_arrays.h"
+
+namespace pellucid {
+
+/// Says whether an array of points or cells is going to be read; empty: each is.
+using IsVtkArrayWanted = std::function<bool(VtkSection section, const std::string& name)>;
+
+/// VTK leaves memory as it is where a piece lacks an array, where pieces do not cover the extent,
+/// and where types differ between a list and its pieces; an array that is too short may crash it,
+/// and the rest of one that is too long is cut. Throws Error, without the file's name, where one of
+/// VTK's XML files has such a fault, or a file that it names has it.
+void check_vtk_xml(const std::filesystem::path& path, const IsVtkArrayWanted& is_wanted = {});
+
+/// Throws Error where the pieces of a file do not cover these points, or the cells between them,
+/// with the wanted arrays.
+void check_vtk_pieces(const VtkXmlFile& file, const VtkExtent& needed,
+                      const IsVtkArrayWanted& is_wanted);
+
+}  // namespace pellucid

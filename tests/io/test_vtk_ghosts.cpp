@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <string>
+
+#include "mesh_files.h"
+#include "pellucid/io/read_mesh.h"
+#include "pellucid/io/read_volume.h"
+#include "volume_files.h"
+#include "vtk_pieces.h"
+
+#ifdef PELLUCID_HAVE_VTK
+
+namespace pellucid {
+namespace {
+
+using test::contains;
+using test::error_of;
+using test::vtk_grid;
+using test::vtk_values;
+using test::VtkPiece;
+using test::xml_array;
+using test::xml_file;
+
+class VtkGhosts : public test::ScratchFolder {};
+
+// Files of version 0.1 have numbers of layers where newer ones have flags.
+TEST_F(VtkGhosts, GhostLevelsAreGhosts) {
+  for (const char* version : {"0.1", "1.0", "2.2"}) {
+    SCOPED_TRACE(version);
+    test::SmallVtu of;
+    of.more = xml_array("UInt8", "vtkGhostLevels", "0 1 0");
+    std::string text = test::small_vtu(of);
+    text.replace(text.find("version=\"1.0\" byte"), 13, std::string("version=\"") + version + "\"");
+    const MeshFile file = read_mesh(write("a.vtu", text));
+    EXPECT_EQ(file.ghost_cells, 1U);
+    EXPECT_EQ(file.grid.shapes.size(), 1U);
+    for (const MeshArray& array : file.grid.arrays) {
+      EXPECT_FALSE(contains(array.name, "Ghost")) << array.name;
+    }
+    // Two pieces that overlap: the second has the tetrahedra of the first as its ghosts.
+    test::SmallVtu own, ghosts;
+    own.more = xml_array("UInt8", "vtkGhostLevels", "0 0 0");
+    ghosts.more = xml_array("UInt8", "vtkGhostLevels", "1 2 1");
+    const auto with_version = [&](std::string mesh) {
+      return mesh.replace(mesh.find("version=\"1.0\" byte"), 13,
+                          std::string("version=\"") + version + "\"");
+    };
+    write("l.vtu", with_version(test::small_vtu(own)));
+    write("r.vtu", with_version(test::small_vtu(ghosts)));
+    const std::string pieces = with_version(xml_file(
+        "PUnstructuredGrid",
+        "<PUnstructuredGrid GhostLevel=\"1\"><PCellData><PDataArray type=\"UInt8\" "
+        "Name=\"vtkGhostLevels\"/><PDataArray type=\"Int32\" Name=\"id\"/></PCellData><PPoints>"
+        "<PDataArray type=\"Float64\" NumberOfComponents=\"3\"/></PPoints><Piece "
+        "Source=\"l.vtu\"/><Piece Source=\"r.vtu\"/></PUnstructuredGrid>\n"));
+    EXPECT_EQ(read_mesh(write("a.pvtu", pieces)).grid.shapes.size(), 2U);
+    // Levels of points are no values to show, in images neither.
+    VtkPiece piece;
+    std::string levels;
+    for (int i = 0; i < 120; ++i) levels += "0 ";
+    piece.points = xml_array("UInt8", "vtkGhostLevels", levels) +
+                   xml_array("Int16", "v", vtk_values(piece.extent));
+    const Volume volume = read_volume(write("a.vti", with_version(vtk_grid("ImageData", {piece}))));
+    EXPECT_EQ(test::value_at(volume, 3, 4, 5), 543);
+    EXPECT_EQ(list_arrays(path("a.vti")).size(), 1U);
+  }
+}
+
+TEST_F(VtkGhosts, HiddenPointsHideTheCellsAround) {
+  const std::string legacy = test::small_structured_vtk();
+  const auto with = [&](const std::string& flags) {
+    return legacy + "POINT_DATA 12\nFIELD FieldData 1\nvtkGhostType 1 12 unsigned_char\n" + flags +
+           "\n";
+  };
+  EXPECT_EQ(read_mesh(write("a.vtk", with("2 0 0 0 0 0 0 0 0 0 0 0"))).ghost_cells, 1U);
+  EXPECT_EQ(read_mesh(write("a.vtk", with("0 0 0 0 0 0 0 0 0 0 0 2"))).grid.cell_numbers.size(),
+            0U);
+  EXPECT_EQ(read_mesh(write("a.vtk", with("0 0 0 0 0 0 0 0 1 0 0 0"))).grid.shapes.size(), 2U);
+  // One in the middle hides both.
+  write("a.vtk", with("0 2 0 0 0 0 0 0 0 0 0 0"));
+  EXPECT_TRUE(contains(error_of([&] { read_mesh(path("a.vtk")); }), "no cell"));
+}
+
+}  // namespace
+}  // namespace pellucid
+
+#endif
