@@ -81,6 +81,7 @@ VolumeFile open_dicom_without(const std::vector<DamagedDicomFile>& damaged,
   value_count(
       {image.format.columns, image.format.rows, static_cast<std::int64_t>(group.slices.size())},
       name);
+  if (group.slices.front().orientation) file.space = patient_space;
   apply_overrides(options, file.description);
   file.components = image.format.samples;
   file.holds = image.format.samples == 3 ? "colors (RGB)"
