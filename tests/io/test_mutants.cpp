@@ -212,7 +212,8 @@ TEST_F(MutantsTest, Slc) {
 TEST_F(MutantsTest, Dat) {
   write("v.raw", bytes_of(counting()));
   survive({"RawFile: v.raw\nResolution: 5 4 3\nFormat: FLOAT32\nByteOrder: BigEndian\n"
-           "BasisVector1: 1 0 0\nBasisVector2: 0 1 0\nBasisVector3: 0 0 1\nOffset: 1 2 3\n",
+           "BasisVector1: 1 0 0\nBasisVector2: 0 1 0\nBasisVector3: 0 0 1\nOffset: 1 2 3\n"
+           "WorldVector1: 1 0 0 7\nDataRange: 0 100\nValueRange: -1 1\nUnit: K\n",
            "ObjectFileName: v.raw\nResolution: 5 4 3\nFormat: Vec2FLOAT16\nSliceThickness: 1 2 3\n",
            "RawFile: v.raw\nResolution: 5 3 2\nFormat: UINT64\n"},
           "a.dat", path("a.dat"));
