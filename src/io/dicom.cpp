@@ -37,6 +37,7 @@ void tell(const DicomFolder& folder, const DicomGroup& group, const std::filesys
       told.push_back(text);
     }
   }
+  for (const std::string& text : group.notes) note(text);
   if (group.slices.front().image->photometric == "MONOCHROME1") {
     note("large values are meant to be dark (MONOCHROME1); they are read as they are");
   }
