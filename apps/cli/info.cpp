@@ -40,6 +40,7 @@ struct Facts {
   std::size_t bytes = 0;     ///< of all components
   std::vector<double> mean;  ///< of the finite values of each
   Vec3<double> world_lower, world_upper;
+  std::string space;  ///< of the world, as the file names it
   bool anatomical = false;
   Orientation orientation;
   std::string unit;                                ///< of the values; empty: the file names none
@@ -78,7 +79,8 @@ Facts facts_of(const std::vector<Volume>& components, const FieldSource& source)
       facts.world_upper[axis] = std::max(facts.world_upper[axis], corner[axis]);
     }
   }
-  facts.anatomical = source.builtin.empty() && is_placed_in_lps(source.file);
+  if (source.builtin.empty()) facts.space = world_space(source.file, source.options);
+  facts.anatomical = facts.space == "LPS";
   if (facts.anatomical) {
     facts.orientation = anatomical_orientation(volume.description().placement.direction);
   }
@@ -172,6 +174,8 @@ std::string text_report(const std::vector<Volume>& components, const Facts& fact
                   ? fmt::format(", oblique by {:.2f} degrees", facts.orientation.oblique_by)
                   : "") +
              " (directions of growing indices; the world is LPS)");
+  } else if (!facts.space.empty()) {
+    line("space", facts.space + " (the file's name for it, which is no patient's)");
   }
   line("world box", fmt::format("{} to {}", triple(facts.world_lower), triple(facts.world_upper)));
   if (components.size() > 1) {
@@ -240,6 +244,7 @@ Json json_report(const std::vector<Volume>& components, const Facts& facts, cons
                        to_json(d.placement.direction.column[2])};
   json["orientation"] = facts.anatomical ? Json(facts.orientation.code) : Json();
   json["oblique_degrees"] = facts.anatomical ? Json(facts.orientation.oblique_by) : Json();
+  json["space"] = facts.space.empty() ? Json() : Json(facts.space);
   json["world_box"] = {to_json(facts.world_lower), to_json(facts.world_upper)};
   json["unit"] = facts.unit.empty() ? Json() : Json(facts.unit);
   if (components.size() == 1) {

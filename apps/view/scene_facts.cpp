@@ -17,7 +17,7 @@ namespace {
 
 bool is_anatomical(const LayerDescription& layer) {
   const auto is_patient = [](const FieldSource& field) {
-    return field.builtin.empty() && is_placed_in_lps(field.file);
+    return field.builtin.empty() && is_placed_in_lps(field.file, field.options);
   };
   if (layer.mesh) return false;
   if (layer.labels) return is_patient(layer.labels->field);

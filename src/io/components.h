@@ -36,6 +36,9 @@ struct ComponentRange {
   const GridPart* part = nullptr;
 };
 
+/// The space of a patient that worlds are turned to, as world_space() names it.
+inline constexpr const char* patient_space = "LPS";
+
 /// A file whose header has been read: its grid, and its values when they are asked for.
 struct VolumeFile {
   Volume::Description description;
@@ -44,6 +47,7 @@ struct VolumeFile {
   std::optional<int> step;   ///< the component that a time chose
   bool reads_parts = false;  ///< whether `read` reads a part of the grid without the rest
   std::string array;  ///< the one of the file's arrays that this is; empty: they have no names
+  std::string space;  ///< that it is placed in, see world_space()
   /// The values of each component by itself. Throws Error.
   std::function<std::vector<VolumeData>(ComponentRange)> read;
 };

@@ -37,6 +37,7 @@ void tell(const DicomFolder& folder, const DicomGroup& group, const std::filesys
       told.push_back(text);
     }
   }
+  for (const std::string& text : group.notes) note(text);
   if (group.slices.front().image->photometric == "MONOCHROME1") {
     note("large values are meant to be dark (MONOCHROME1); they are read as they are");
   }
@@ -81,6 +82,7 @@ VolumeFile open_dicom_without(const std::vector<DamagedDicomFile>& damaged,
   value_count(
       {image.format.columns, image.format.rows, static_cast<std::int64_t>(group.slices.size())},
       name);
+  if (group.slices.front().orientation) file.space = patient_space;
   apply_overrides(options, file.description);
   file.components = image.format.samples;
   file.holds = image.format.samples == 3 ? "colors (RGB)"

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <array>
+#include <bit>
 #include <charconv>
 #include <cmath>
+#include <cstddef>
 #include <string_view>
 
 #include "dicom_elements.h"
@@ -43,6 +46,22 @@ std::vector<double> DicomDataSet::decimals(DicomTag tag) const {
       return {};
     }
     numbers.push_back(value);
+  }
+  return numbers;
+}
+
+std::vector<double> DicomDataSet::reals(DicomTag tag) const {
+  const auto found = values.find(tag);
+  if (found == values.end()) return {};
+  const std::string& raw = found->second;
+  constexpr std::size_t size = sizeof(double);
+  std::vector<double> numbers;
+  for (std::size_t i = 0; i + size <= raw.size(); i += size) {
+    std::array<char, size> bytes;
+    std::copy_n(raw.begin() + static_cast<std::ptrdiff_t>(i), size, bytes.begin());
+    if (big_endian == (std::endian::native == std::endian::little)) std::ranges::reverse(bytes);
+    numbers.push_back(std::bit_cast<double>(bytes));
+    if (!std::isfinite(numbers.back())) return {};
   }
   return numbers;
 }

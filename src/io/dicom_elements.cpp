@@ -31,16 +31,22 @@ constexpr std::array wanted_values = std::to_array<DicomTag>(
      0x00280009, 0x00280010, 0x00280011, 0x00280030, 0x00280100, 0x00280101, 0x00280102, 0x00280103,
      0x00281052, 0x00281053, 0x00281054, 0x0020000d, 0x00180081, 0x00200012, 0x00181063, 0x00181065,
      0x00182005, 0x00540010, 0x00540020, 0x00540030, 0x00540050, 0x00540060, 0x00540070, 0x00540080,
-     0x00540090, 0x00540100, 0x00541001, 0x30040002, 0x3004000a, 0x3004000c, 0x3004000e});
+     0x00540090, 0x00540100, 0x00541001, 0x30040002, 0x3004000a, 0x3004000c, 0x3004000e,
+     // What tells volumes of one series apart (dicom_marks.cpp).
+     0x00089007, 0x00080032, 0x00089208, 0x00209056, 0x00180086, 0x00189082, 0x00180082, 0x00189087,
+     0x00189089, 0x00209128, 0x00200100, 0x00181210, 0x00541300, 0x00209156, 0x00181060,
+     // What the values mean, and where slices stand without positions.
+     0x00201041, 0x00280120, 0x00280121, 0x00409224, 0x00409225, 0x20500020, 0x00281101, 0x60000010,
+     0x00281040, 0x00280034});
 // One number for each frame of a file.
 constexpr std::array wanted_vectors = std::to_array<DicomTag>(
     {0x00181065, 0x00182005, 0x00540010, 0x00540020, 0x00540030, 0x00540050, 0x00540060, 0x00540070,
      0x00540080, 0x00540090, 0x00540100, 0x3004000c});
 // Functional groups, shared and of each frame; what stands in them of place and value; the modality
-// lookup table; the detectors of nuclear medicine.
-constexpr std::array wanted_sequences =
-    std::to_array<DicomTag>({0x52009229, 0x52009230, 0x00209113, 0x00209116, 0x00289110, 0x00289145,
-                             0x00283000, 0x00540022});
+// lookup table; the detectors of nuclear medicine; the mapping to real values.
+constexpr std::array wanted_sequences = std::to_array<DicomTag>(
+    {0x52009229, 0x52009230, 0x00209113, 0x00209116, 0x00289110, 0x00289145, 0x00283000, 0x00540022,
+     0x00189226, 0x00209111, 0x00189114, 0x00189117, 0x00409096});
 
 constexpr std::string_view short_types =
     "AE AS AT CS DA DS DT FD FL IS LO LT PN SH SL SS ST TM UI UL US";

@@ -26,6 +26,8 @@ struct DicomDataSet {
   /// Numbers written as text (DS, IS), between backslashes; empty where there is none or one of
   /// them is no finite number.
   std::vector<double> decimals(DicomTag tag) const;
+  /// Numbers of eight bytes (FD); empty where there is none or one is not finite.
+  std::vector<double> reals(DicomTag tag) const;
   /// A number of two bytes (US).
   std::optional<int> number(DicomTag tag) const;
   /// All numbers of two bytes (US) of an element; empty where there is none.

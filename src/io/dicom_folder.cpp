@@ -2,6 +2,7 @@
 #include "dicom_folder.h"
 
 #include <algorithm>
+#include <array>
 #include <cctype>
 #include <charconv>
 #include <cmath>
@@ -9,6 +10,7 @@
 #include <tuple>
 
 #include "dicom_elements.h"
+#include "dicom_volumes.h"
 #include "input_file.h"
 #include "numbered_files.h"
 #include "pellucid/scene/error.h"
@@ -70,6 +72,7 @@ void add(DicomFolder& folder, DicomSlice slice) {
     const DicomImage& image = *slice.image;
     folder.series.push_back({{image.series, image.description, image.modality, 0,
                               image.format.columns, image.format.rows, image.refused},
+                             {},
                              {}});
     group = folder.series.end() - 1;
   }
@@ -119,6 +122,43 @@ void leave_out_damaged_groups(DicomFolder& folder, const AskedFor& is_asked_for)
   }
   std::erase_if(folder.series, [](const DicomGroup& group) { return group.slices.empty(); });
   std::ranges::stable_sort(folder.damaged, {}, &DamagedDicomFile::file);
+}
+
+// Where none of a series has a position, SliceLocation is the place along the normal.
+void place_by_location(DicomGroup& group) {
+  const bool has_places = std::ranges::any_of(
+      group.slices, [](const DicomSlice& slice) { return slice.position || !slice.location; });
+  if (has_places || group.slices.size() < 2) return;
+  const auto [least, most] = std::ranges::minmax(
+      group.slices, {}, [](const DicomSlice& slice) { return *slice.location; });
+  if (*least.location == *most.location) return;
+  const auto [row, column] = group.slices.front().orientation.value_or(
+      std::array{Vec3<double>{1, 0, 0}, Vec3<double>{0, 1, 0}});
+  const Vec3<double> normal = normalized(cross(row, column));
+  for (DicomSlice& slice : group.slices) slice.position = normal * *slice.location;
+  group.notes.emplace_back(
+      "no positions (ImagePositionPatient); the slices stand at their SliceLocation along the "
+      "normal");
+}
+
+// Makes series of their own of the volumes that one series holds.
+void split_volumes(DicomFolder& folder) {
+  std::vector<DicomGroup> series;
+  for (DicomGroup& group : folder.series) {
+    place_by_location(group);
+    const DicomGroup whole{group.about, {}, group.notes};
+    for (DicomStack& stack : split_dicom_volumes(std::move(group.slices))) {
+      DicomGroup& part = series.emplace_back(whole);
+      part.about.slices = static_cast<int>(stack.slices.size());
+      if (!stack.mark.empty()) {
+        std::string& description = part.about.description;
+        description += (description.empty() ? "" : ", ") + stack.mark;
+      }
+      if (!stack.note.empty()) part.notes.push_back(std::move(stack.note));
+      part.slices = std::move(stack.slices);
+    }
+  }
+  folder.series = std::move(series);
 }
 
 // "2: T1w (MR, 384 slices of 274 x 384)"
@@ -192,6 +232,7 @@ DicomFolder scan_dicom_folder(const fs::path& path, const std::vector<DamagedDic
     }
   }
   leave_out_damaged_groups(folder, is_asked_for);
+  split_volumes(folder);
   std::ranges::stable_sort(folder.series, {}, [](const DicomGroup& group) {
     return std::tuple(group.slices.front().image->series_number, group.about.uid);
   });

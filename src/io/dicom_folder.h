@@ -15,6 +15,7 @@ namespace pellucid {
 struct DicomGroup {
   DicomSeries about;
   std::vector<DicomSlice> slices;  ///< in the order of the files' names
+  std::vector<std::string> notes;  ///< what is assumed of them together, a line each
 };
 
 struct DicomFolder {

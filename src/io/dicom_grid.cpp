@@ -16,8 +16,7 @@ namespace pellucid {
 
 namespace {
 
-// Positions come with two digits behind the point and more: what they are off by is less than this
-// share of the distance of slices, or of pixels.
+// What exact positions are off by is less than this share of the distance of slices, or of pixels.
 constexpr double tolerance = 0.01;
 
 class SlicePlacement {
@@ -33,6 +32,7 @@ class SlicePlacement {
     d.dimensions = {any.image->format.columns, any.image->format.rows,
                     static_cast<int>(slices_.size())};
     find_pixels(d.placement);
+    find_rounding();
     const auto without = std::ranges::find_if(slices_, [](const auto& s) { return !s.position; });
     if (without == slices_.end()) {
       sort_by_position(d.placement);
@@ -76,6 +76,16 @@ class SlicePlacement {
     placement.spacing.x = x;
     placement.spacing.y = y;
   }
+
+  // Positions of one or some digits behind the point are rounded by up to half of the last one.
+  // Whole numbers may as well be exact.
+  void find_rounding() {
+    int decimals = 0;
+    for (const DicomSlice& slice : slices_) decimals = std::max(decimals, slice.decimals);
+    if (decimals > 0) rounding_ = 0.5 * std::pow(10, -decimals);
+  }
+  // How far rounding may move a slice off the line through the first and the last, each rounded.
+  double rounded_aside() const { return 2 * rounding_ * std::numbers::sqrt3; }
 
   double along(const DicomSlice& slice) const { return dot(*slice.position, normal_); }
 
@@ -129,15 +139,9 @@ class SlicePlacement {
     const Vec3<double> whole = *slices_.back().position - *slices_.front().position;
     const double height = dot(whole, normal_);
     const double pixel = std::min(placement.spacing.x, placement.spacing.y);
-    for (const DicomSlice& slice : slices_) {
-      const Vec3<double> offset = *slice.position - *slices_.front().position;
-      const double aside = length(offset - whole * (dot(offset, normal_) / height));
-      if (aside <= tolerance * pixel) continue;
-      fail(slice.name() + " is " + in_millimetres(aside) +
-           " beside the line of the slices; leave it out");
-    }
+    check_line(whole, height, pixel);
     // Rounded positions must not turn a grid whose slices stand straight.
-    if (length(whole - normal_ * height) > tolerance * pixel) {
+    if (length(whole - normal_ * height) > std::max(tolerance * pixel, rounded_aside())) {
       placement.direction.column[2] = normalized(whole);
       const double angle = std::acos(std::min(1.0, height / length(whole)));
       note("the slices are sheared by " + std::to_string(angle * 180 / std::numbers::pi) +
@@ -149,13 +153,47 @@ class SlicePlacement {
     if (!options_.spacing) find_uneven(d, height / steps, stretch);
   }
 
+  void check_line(const Vec3<double>& whole, double height, double pixel) {
+    double largest = 0;
+    std::size_t beside = 0;
+    const DicomSlice* farthest = nullptr;
+    for (const DicomSlice& slice : slices_) {
+      const Vec3<double> offset = *slice.position - *slices_.front().position;
+      const double aside = length(offset - whole * (dot(offset, normal_) / height));
+      if (aside > std::max(tolerance * pixel, rounded_aside())) ++beside;
+      if (aside <= largest) continue;
+      largest = aside;
+      farthest = &slice;
+    }
+    if (beside > 1) {
+      fail(std::to_string(beside) + " of " + std::to_string(slices_.size()) +
+           " slices are beside the line from the first to the last, " + farthest->name() + " by " +
+           in_millimetres(largest) +
+           "; they are no single stack, or their positions are too coarse: put one stack into a "
+           "folder of its own");
+    }
+    if (beside == 1) {
+      fail(farthest->name() + " is " + in_millimetres(largest) +
+           " beside the line of the slices; leave it out");
+    }
+    if (largest > tolerance * pixel) {
+      note("slices are up to " + in_millimetres(largest) +
+           " beside their line, which the rounding of their positions explains");
+    }
+  }
+
   void find_uneven(Volume::Description& d, double step, double stretch) {
     std::vector<double> heights;
     heights.reserve(slices_.size());
     for (const DicomSlice& slice : slices_) heights.push_back(along(slice) - along(slices_[0]));
     bool even = true;
+    // More than some of a step is a slice that is missing, however coarse the positions are.
+    constexpr double most = 0.4;
+    const double rounded =
+        2 * rounding_ * (std::abs(normal_.x) + std::abs(normal_.y) + std::abs(normal_.z));
+    const double allowed = std::max(tolerance * step, std::min(rounded, most * step));
     for (std::size_t i = 0; i < heights.size(); ++i) {
-      even = even && std::abs(heights[i] - static_cast<double>(i) * step) <= tolerance * step;
+      even = even && std::abs(heights[i] - static_cast<double>(i) * step) <= allowed;
     }
     if (even) return;
     std::vector<double> gaps;
@@ -185,6 +223,7 @@ class SlicePlacement {
   const std::string& name_;
   bool some_left_out_;
   Vec3<double> normal_{0, 0, 1};
+  double rounding_ = 0;  ///< largest, of a coordinate of a position, in mm
 };
 
 }  // namespace

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "dicom_slices.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <string_view>
@@ -8,6 +9,7 @@
 
 #include "dicom_elements.h"
 #include "dicom_frames.h"
+#include "dicom_marks.h"
 #include "dicom_text.h"
 #include "pellucid/scene/error.h"
 
@@ -30,7 +32,7 @@ constexpr DicomTag image_type = 0x00080008, modality = 0x00080060, series_descri
                    dose_units = 0x30040002, dose_summation = 0x3004000a, rescale_type = 0x00281054,
                    pet_units = 0x00541001, detectors = 0x00540022, plane_position = 0x00209113,
                    plane_orientation = 0x00209116, pixel_measures = 0x00289110,
-                   value_transformation = 0x00289145;
+                   value_transformation = 0x00289145, location = 0x00201041;
 }  // namespace tag
 
 std::optional<double> first_of(const std::vector<double>& numbers) {
@@ -108,6 +110,16 @@ class FrameFacts {
     return numbers.empty() && detector_ != nullptr ? detector_->decimals(element) : numbers;
   }
 
+  /// The text of the element of the frame, whatever it is.
+  std::string text(DicomTag group, DicomTag element) const {
+    for (const DicomDataSet* groups : {frame_, shared_}) {
+      const DicomDataSet* item = groups == nullptr ? nullptr : groups->item(group);
+      if (item != nullptr && !item->text(element).empty()) return item->text(element);
+    }
+    return file_.text(element);
+  }
+  std::vector<std::string> marks() const { return dicom_mark_values(file_, {frame_, shared_}); }
+
   bool is_dose() const { return file_.text(tag::modality) == "RTDOSE"; }
 
   /// What stands there and is no number; empty where nothing does.
@@ -155,10 +167,39 @@ std::string refusal(const FrameFacts& facts) {
   return {};
 }
 
+/// The most digits behind the point of numbers written as text, without zeros at their end.
+int dicom_decimals(const std::string& numbers) {
+  int most = 0, digits = 0, zeros = 0;
+  bool behind_point = false;
+  for (const char c : numbers + "\\") {
+    if (c == '\\') {
+      most = std::max(most, digits - zeros);
+      behind_point = false;
+      digits = zeros = 0;
+    } else if (c == '.') {
+      behind_point = true;
+    } else if (c == 'e' || c == 'E') {
+      return std::numeric_limits<double>::digits10;
+    } else if (behind_point && c >= '0' && c <= '9') {
+      ++digits;
+      zeros = c == '0' ? zeros + 1 : 0;
+    }
+  }
+  return most;
+}
+
 DicomSlice slice_of(const FrameFacts& facts) {
   DicomSlice slice;
   const std::vector<double> position = facts.decimals(tag::plane_position, tag::position);
-  if (position.size() == 3) slice.position = {position[0], position[1], position[2]};
+  if (position.size() == 3) {
+    slice.position = {position[0], position[1], position[2]};
+    slice.decimals = dicom_decimals(facts.text(tag::plane_position, tag::position));
+  }
+  slice.location = first_of(facts.decimals(tag::plane_position, tag::location));
+  if (!slice.position) {
+    slice.decimals = dicom_decimals(facts.text(tag::plane_position, tag::location));
+  }
+  slice.marks = facts.marks();
   slice.orientation = directions(facts.decimals(tag::plane_orientation, tag::orientation));
   const std::vector<double> spacing = facts.decimals(tag::pixel_measures, tag::pixel_spacing);
   // PS3.3, 10.7.1.3: first the distance of rows.
@@ -284,6 +325,7 @@ std::vector<DicomSlice> read_dicom_slices(const std::filesystem::path& path) {
   image->refused = refusal(*image, file);
 
   set_unit(data, *image);
+  for (std::string& text : dicom_value_notes(data)) image->notes.push_back(std::move(text));
 
   const double frames = first_of(data.decimals(tag::frames)).value_or(1);
   const auto groups = data.sequences.find(tag::frame_groups);

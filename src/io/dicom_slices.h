@@ -46,12 +46,15 @@ struct DicomSlice {
   int frame = 0;                         ///< from 0
   std::optional<double> number;          ///< InstanceNumber
   std::optional<Vec3<double>> position;  ///< of the centre of the first pixel, mm, LPS
+  int decimals = 0;                ///< most behind the point of the position, or of the location
+  std::optional<double> location;  ///< SliceLocation
   /// Unit vectors in which columns and rows are counted.
   std::optional<std::array<Vec3<double>, 2>> orientation;
   std::optional<std::array<double, 2>> spacing;  ///< from column to column, from row to row; mm
   std::optional<double> distance;                ///< SpacingBetweenSlices
   std::optional<double> thickness;               ///< SliceThickness
   double slope = 1, intercept = 0;
+  std::vector<std::string> marks;  ///< as dicom_mark_values() returns them
 
   /// For messages: the file, and the frame where there are several.
   std::string name() const;

@@ -7,6 +7,7 @@
 
 #include "ivf_header.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
@@ -31,8 +32,7 @@ constexpr Columns identity{Vec3<double>{1, 0, 0}, Vec3<double>{0, 1, 0}, Vec3<do
 
 struct Document {
   InviwoHeader header;
-  std::optional<Columns> basis;
-  Columns world = identity;
+  std::optional<Columns> basis, world;
   int files = 0;
 };
 
@@ -49,15 +49,15 @@ class Reader {
       if (tag->name == "BasisAndOffset" && !tag->closes) {
         columns = &document_.basis.emplace(identity);
       } else if (tag->name == "WorldTransform" && !tag->closes) {
-        columns = &document_.world;
+        columns = &document_.world.emplace(identity);
       } else if (tag->closes) {
         if (tag->name == "BasisAndOffset" || tag->name == "WorldTransform") columns = nullptr;
       } else if (columns != nullptr && tag->name.starts_with("col") && tag->name.size() == 4) {
         take_column(*tag, *columns);
       } else if (tag->name == "MetaDataItem") {
         key = attribute(*tag, "key");
-      } else if (tag->name == "MetaData" && key == "LittleEndian") {
-        little = number(*tag, "content") != 0;
+      } else if (tag->name == "MetaData") {
+        if (key == "LittleEndian") little = number(*tag, "content") != 0;
       } else {
         take(*tag);
       }
@@ -118,7 +118,33 @@ class Reader {
       header.big_endian = number(tag, "content") == 1;
     } else if (tag.name == "Compression") {
       header.compressed = number(tag, "content") != 0;
+    } else if (tag.name == "DataRange") {
+      header.data_range = {number(tag, "x"), number(tag, "y")};
+    } else if (tag.name == "ValueRange") {
+      header.value_range = {number(tag, "x"), number(tag, "y")};
+    } else if (tag.name == "Unit" || tag.name == "ValueUnit") {
+      const auto content = tag.attributes.find("content");
+      if (content != tag.attributes.end()) header.unit = std::string(content->second);
+    } else if (!is_harmless(tag)) {
+      header.ignored_keys.emplace_back(tag.name);
     }
+  }
+
+  /// Whether a tag leaves the picture as it is: a name, the document's own, or what is so without
+  /// it.
+  static bool is_harmless(const XmlTag& tag) {
+    constexpr std::array known = std::to_array<std::string_view>(
+        {"InviwoVolume", "InviwoTreeData", "InviwoWorkspace", "MetaDataMap", "MetaData", "Wrapping",
+         "RawFiles", "ValueName", "Axis1Name", "Axis2Name", "Axis3Name", "Axis1Unit", "Axis2Unit",
+         "Axis3Unit"});
+    if (tag.name.starts_with('?') || tag.name.starts_with('!') ||
+        std::ranges::find(known, tag.name) != known.end()) {
+      return true;
+    }
+    const auto content = tag.attributes.find("content");
+    if (content == tag.attributes.end()) return false;
+    return (tag.name == "SwizzleMask" && content->second == "rgba") ||
+           (tag.name == "Interpolation" && (content->second == "linear" || content->second == "1"));
   }
 
   XmlScanner scanner_;
@@ -126,17 +152,6 @@ class Reader {
   Document document_;
   bool has_sides_ = false;
 };
-
-/// The basis in the world.
-void place(const Document& document, InviwoHeader& header) {
-  if (!document.basis) return;
-  const auto turned = [&](const Vec3<double>& v) {
-    return document.world[0] * v.x + document.world[1] * v.y + document.world[2] * v.z;
-  };
-  const Columns& basis = *document.basis;
-  header.basis = {turned(basis[0]), turned(basis[1]), turned(basis[2])};
-  header.offset = turned(basis[3]) + document.world[3];
-}
 
 }  // namespace
 
@@ -148,7 +163,12 @@ VolumeFile open_ivf(const std::filesystem::path& path, const ReadOptions& option
   const Document document = Reader(text, name).read();
   InviwoHeader header = document.header;
   header.values = path.parent_path() / header.values;
-  place(document, header);
+  header.world = document.world;
+  if (document.basis || document.world) {
+    const auto& [x, y, z, offset] = document.basis ? *document.basis : identity;
+    header.basis = {x, y, z};
+    header.offset = offset;
+  }
   return open_inviwo_values(header, name, options);
 }
 

@@ -4,14 +4,18 @@
 // (behind that line), a file, a pattern ("slice%03d.raw 1 93 1") or LIST (a name per line).
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <fstream>
 #include <span>
 #include <sstream>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "components.h"
 #include "data_stream.h"
+#include "header_keys.h"
 #include "input_file.h"
 #include "itk_header.h"
 #include "medical_volumes.h"
@@ -166,15 +170,110 @@ std::vector<VolumeData> read_files(const std::vector<DataFile>& files,
                          points, range);
 }
 
-/// MetaIO reads as many numbers as the header says that there are axes, 2^32 - 3 for -3.
-void check_axes(const std::filesystem::path& path) {
+/// A line "key = value" of the header, both as written.
+struct Field {
+  std::string key, value;
+};
+
+/// The lines up to ElementDataFile.
+std::vector<Field> read_fields(const fs::path& path) {
   std::ifstream file(path, std::ios::binary);
+  std::vector<Field> fields;
   std::string line;
-  for (int lines = 0; lines < 100 && std::getline(file, line); ++lines) {
-    if (!line.starts_with("NDims")) continue;
-    if (line.find('-') == std::string::npos) continue;
-    throw Error(path.string() + ": the header says \"NDims\" below 0; mend the header");
+  for (int lines = 0; lines < 10000 && std::getline(file, line); ++lines) {
+    const std::size_t sign = line.find('=');
+    if (sign == std::string::npos) continue;
+    const std::string_view text = line;
+    fields.push_back(
+        {std::string(trimmed(text.substr(0, sign))), std::string(trimmed(text.substr(sign + 1)))});
+    if (fields.back().key == "ElementDataFile") break;
   }
+  return fields;
+}
+
+/// The value of a key; empty where the header has none.
+std::string value_of(const std::vector<Field>& fields, std::string_view key) {
+  const auto found = std::ranges::find(fields, key, &Field::key);
+  return found == fields.end() ? std::string() : found->value;
+}
+
+std::vector<double> numbers_of(const std::string& text) {
+  std::istringstream words(text);
+  std::vector<double> numbers;
+  for (double number = 0; words >> number;) numbers.push_back(number);
+  return numbers;
+}
+
+/// MetaIO reads as many numbers as the header says that there are axes, 2^32 - 3 for -3.
+void check_fields(const std::vector<Field>& fields, const std::string& name) {
+  if (value_of(fields, "NDims").find('-') != std::string::npos) {
+    throw Error(name + ": the header says \"NDims\" below 0; mend the header");
+  }
+  const std::string per_slice = value_of(fields, "HeaderSizePerSlice");
+  if (!per_slice.empty() && numbers_of(per_slice) != std::vector<double>{0}) {
+    throw Error(name +
+                ": the header says \"HeaderSizePerSlice\", which is not read; save the values "
+                "without headers between the slices");
+  }
+}
+
+/// Whether a key leaves the picture as it is: it is read, is a name, or says what is so without it.
+bool is_taken_into_account(const Field& field, const std::vector<Field>& fields) {
+  constexpr std::array known = std::to_array<std::string_view>(
+      {"ObjectType", "ObjectSubType", "NDims", "DimSize", "BinaryData", "BinaryDataByteOrderMSB",
+       "ElementByteOrderMSB", "CompressedData", "CompressedDataSize", "CompressionLevel",
+       "TransformMatrix", "Rotation", "Orientation", "Offset", "Position", "Origin",
+       "ElementSpacing", "ElementType", "ElementNumberOfChannels", "HeaderSize",
+       "HeaderSizePerSlice", "ElementDataFile", "AnatomicalOrientation",
+       // Names and the like; Kinds is that of a fourth axis.
+       "Name", "ID", "ParentID", "Comment", "AcquisitionDate", "Color", "Modality", "SequenceID",
+       "ElementMin", "ElementMax", "Kinds"});
+  if (std::ranges::find(known, field.key) != known.end()) return true;
+  if (field.key.starts_with("ITK_") || field.key.starts_with("Seq_Frame")) return true;
+  const std::vector<double> numbers = numbers_of(field.value);
+  const auto all_are = [&](double number) {
+    return !numbers.empty() && std::ranges::count(numbers, number) == std::ssize(numbers);
+  };
+  if (field.key == "CenterOfRotation" || field.key == "ElementToIntensityFunctionOffset") {
+    return all_are(0);
+  }
+  if (field.key == "ElementToIntensityFunctionSlope") return all_are(1);
+  if (field.key == "DistanceUnits") return in_small_letters(field.value) == "mm";
+  // MetaIO takes the size for the spacing where the header has no other.
+  if (field.key == "ElementSize") {
+    const std::string spacing = value_of(fields, "ElementSpacing");
+    return spacing.empty() || numbers_of(spacing) == numbers;
+  }
+  return false;
+}
+
+/// Where the axes begin, as MetaIO's letters have it: "RAI" grow to left, posterior and superior.
+std::string letters_of(const Mat3<double>& direction) {
+  std::string letters;
+  for (const Vec3<double>& axis : direction.column) {
+    int largest = 0;
+    for (int i = 1; i < 3; ++i) {
+      if (std::abs(axis[i]) > std::abs(axis[largest])) largest = i;
+    }
+    letters += (axis[largest] > 0 ? "RAI" : "LPS")[largest];
+  }
+  return letters;
+}
+
+void note_fields(const std::vector<Field>& fields, const MetaImageHeader& header,
+                 const std::string& name, const Note& note) {
+  if (!note) return;
+  const std::string said = value_of(fields, "AnatomicalOrientation");
+  const std::string lies = letters_of(header.placement.direction);
+  if (said.size() == 3 && said.find_first_not_of("RLAPIS") == std::string::npos && said != lies) {
+    note(name + ": says \"AnatomicalOrientation = " + said +
+         "\", but its TransformMatrix is that of " + lies + "; the matrix is used");
+  }
+  std::vector<std::string> ignored;
+  for (const Field& field : fields) {
+    if (!is_taken_into_account(field, fields)) ignored.push_back(field.key);
+  }
+  note_ignored_keys(note, name, ignored);
 }
 
 }  // namespace
@@ -182,7 +281,8 @@ void check_axes(const std::filesystem::path& path) {
 VolumeFile open_meta_image(const fs::path& path, const ReadOptions& options) {
   const std::string name = path.string();
   refuse_raw_options(options, name);
-  check_axes(path);
+  const std::vector<Field> fields = read_fields(path);
+  check_fields(fields, name);
   const MetaImageHeader header = read_meta_image_header(path);
   if (header.text) {
     throw Error(name + ": values written as text are not read; save the MetaImage as binary");
@@ -193,6 +293,8 @@ VolumeFile open_meta_image(const fs::path& path, const ReadOptions& options) {
   for (const int side : file.description.dimensions) points *= static_cast<std::size_t>(side);
   const std::uintmax_t bytes =
       std::uintmax_t{value_count(points, header.components, name)} * value_size(header.type, name);
+  note_fields(fields, header, name, options.note);
+  file.space = patient_space;
   apply_overrides(options, file.description);
   file.components = header.components;
   file.holds = header.holds;

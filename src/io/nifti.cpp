@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdint>
 #include <span>
+#include <system_error>
 #include <type_traits>
 #include <utility>
 #include <vector>
@@ -14,6 +15,7 @@
 #include "medical_volumes.h"
 #include "nifti_header.h"
 #include "pellucid/scene/error.h"
+#include "ras_affine.h"
 
 namespace pellucid {
 
@@ -136,23 +138,47 @@ bool is_orthogonal(const Mat3<double>& direction) {
   return true;
 }
 
+/// Returns where a header puts the grid that states no orientation, as nibabel and SPM do: x runs
+/// towards left, y towards anterior and z towards superior. The world's origin is the grid's
+/// middle, or the voxel that Analyze's header names, if it is near the grid. Lengths are in the
+/// file's unit.
+GridPlacement base_placement(const NiftiHeader& header, const Vec3<double>& spacing) {
+  bool has_origin = false, is_near = true;
+  for (std::size_t a = 0; a < 3; ++a) {
+    const std::int64_t origin = header.origin[a], side = header.dimensions[a];
+    has_origin = has_origin || origin != 0;
+    is_near = is_near && origin > -side && origin < 2 * side;
+  }
+  RasRows rows{};
+  for (std::size_t a = 0; a < 3; ++a) {
+    const double step = spacing[static_cast<int>(a)] * (a == 0 ? -1 : 1);
+    const double middle = static_cast<double>(header.dimensions[a] - 1) / 2;
+    rows[a][a] = step;
+    rows[a][3] = -step * (has_origin && is_near ? header.origin[a] - 1 : middle);
+  }
+  return placement_from_ras(rows);
+}
+
+bool states_orientation(const NiftiHeader& header) {
+  return header.sform || header.qform;
+}
+
 /// Chooses between the two maps as ITK 5.2 does: the sform where it is that of the scanner or
-/// stands alone, else the qform. A sheared sform yields to a qform. Without either the axes are
-/// those of the world. Lengths are in the file's unit.
-GridPlacement placement_of(const NiftiHeader& header) {
+/// stands alone, else the qform. A sheared sform yields to a qform. Lengths are in the file's unit.
+GridPlacement placement_of(const NiftiHeader& header, const ReadOptions& options) {
   const bool sform_first =
       header.sform && (!header.qform || (header.sform_code == scanner_coordinates &&
                                          is_orthogonal(header.sform->direction)));
   if (sform_first) return *header.sform;
   if (header.qform) return *header.qform;
-  GridPlacement placement;
-  placement.spacing = {header.spacing[0], header.spacing[1], header.spacing[2]};
-  return placement;
+  const Vec3<double> spacing{header.spacing[0], header.spacing[1], header.spacing[2]};
+  return base_placement(header, options.spacing ? *options.spacing * (1 / header.unit) : spacing);
 }
 
-Volume::Description describe(const NiftiHeader& header, const std::string& name) {
+Volume::Description describe(const NiftiHeader& header, const std::string& name,
+                             const ReadOptions& options) {
   Volume::Description description;
-  description.placement = placement_of(header);
+  description.placement = placement_of(header, options);
   for (int a = 0; a < 3; ++a) {
     const Vec3<double>& axis = description.placement.direction.column[a];
     if (length(axis) > 0) continue;  // not where the sform has no length along it
@@ -203,6 +229,29 @@ void note_maps(const NiftiHeader& header, const Volume::Description& description
                (is_sform ? "sform" : "qform") + " is used");
 }
 
+/// Tells what the header leaves open.
+void note_header(const NiftiHeader& header, const NiftiFiles& files, const std::string& name,
+                 const ReadOptions& options) {
+  if (!options.note) return;
+  for (const std::string& text : header.notes) options.note(text);
+  if (!states_orientation(header)) {
+    options.note(
+        name +
+        (header.version == NiftiVersion::analyze
+             ? ": Analyze 7.5 states no orientation"
+             : ": states no orientation (qform_code and sform_code are 0)") +
+        "; placed as nibabel and SPM do: x towards left, y anterior, z superior, about the "
+        "origin");
+  }
+  std::filesystem::path matrix = files.header;
+  std::error_code error;
+  if (header.version == NiftiVersion::analyze &&
+      std::filesystem::exists(matrix.replace_extension(".mat"), error)) {
+    options.note(name + ": " + matrix.filename().string() +
+                 " beside it, which may hold SPM's placement, is not read");
+  }
+}
+
 }  // namespace
 
 VolumeFile open_nifti(const std::filesystem::path& path, const ReadOptions& options) {
@@ -210,6 +259,14 @@ VolumeFile open_nifti(const std::filesystem::path& path, const ReadOptions& opti
   refuse_raw_options(options, name);
   const NiftiFiles files = find_nifti_files(path);
   NiftiHeader header = read_nifti_header(files.header);
+  if (!header.single_file && files.header == files.values) {
+    throw Error(name +
+                (header.version == NiftiVersion::analyze
+                     ? ": lacks the mark of NIfTI (\"n+1\"); if it is Analyze 7.5, name its "
+                       "two files .hdr and .img"
+                     : ": says that its values are in a file of their own; name it .hdr, and "
+                       "put the .img beside it"));
+  }
   header.layout.note = options.note;
   const std::size_t count = value_count(header.dimensions, name);
   for (std::size_t a = 0; a < 3 && !options.spacing; ++a) {
@@ -219,8 +276,10 @@ VolumeFile open_nifti(const std::filesystem::path& path, const ReadOptions& opti
   }
   value_count(count, header.layout.components, name);
   VolumeFile file;
-  file.description = describe(header, name);
+  file.description = describe(header, name, options);
+  if (states_orientation(header)) file.space = patient_space;
   note_maps(header, file.description, options);
+  note_header(header, files, name, options);
   apply_overrides(options, file.description);
   file.components = header.layout.components;
   file.holds = header.holds;

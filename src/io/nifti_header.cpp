@@ -2,29 +2,18 @@
 #include "nifti_header.h"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
-#include <cstring>
+#include <cstdint>
+#include <limits>
+#include <span>
 #include <string_view>
 
-#include "data_stream.h"
-#include "input_file.h"
 #include "pellucid/scene/error.h"
+#include "ras_affine.h"
 
 namespace pellucid {
 
 namespace {
-
-constexpr std::size_t header_size = 348;
-using HeaderBytes = std::array<std::byte, header_size>;
-
-template <class T>
-T number_at(const HeaderBytes& bytes, std::size_t offset, bool big_endian) {
-  std::array<std::byte, sizeof(T)> part;
-  std::copy_n(bytes.begin() + static_cast<std::ptrdiff_t>(offset), sizeof(T), part.begin());
-  if (big_endian == (std::endian::native == std::endian::little)) std::ranges::reverse(part);
-  return std::bit_cast<T>(part);
-}
 
 // Colors of three and four bytes.
 constexpr int rgb_code = 128, rgba_code = 2304;
@@ -63,89 +52,82 @@ std::string type_of(int code, const std::string& name) {
   }
 }
 
-std::array<std::int64_t, 3> dimensions_of(const HeaderBytes& bytes, bool big_endian,
-                                          const std::string& name) {
-  const auto dim = [&](std::size_t i) -> std::int64_t {
-    return number_at<std::int16_t>(bytes, 40 + 2 * i, big_endian);
-  };
-  if (dim(0) < 1 || dim(0) > 7) {
-    throw Error(name + ": the NIfTI header says " + std::to_string(dim(0)) +
-                " axes; it is damaged");
+std::array<std::int64_t, 3> dimensions_of(const NiftiFields& fields, const std::string& name) {
+  const std::int64_t axes = fields.dim[0];
+  if (axes < 1 || axes > 7) {
+    throw Error(name + ": the NIfTI header says " + std::to_string(axes) + " axes; it is damaged");
   }
-  if (dim(0) < 3) {
-    throw Error(name + ": an image of " + std::to_string(dim(0)) +
+  if (axes < 3) {
+    throw Error(name + ": an image of " + std::to_string(axes) +
                 " axes is not read; a volume has three");
   }
-  return {dim(1), dim(2), dim(3)};
+  return {fields.dim[1], fields.dim[2], fields.dim[3]};
+}
+
+// nifti1.h and the CIFTI-2 specification. Those of statistics say what the numbers mean.
+void check_intent(int intent, const std::string& name) {
+  if (intent >= 3000 && intent < 3100) {
+    throw Error(name + ": is CIFTI-2 (intent " + std::to_string(intent) +
+                "), a matrix over points of a surface and voxels, and no volume; convert it with "
+                "wb_command -cifti-separate");
+  }
+  constexpr int points = 1008, triangles = 1009, nodes = 2002;
+  if (intent == points || intent == triangles || intent == nodes) {
+    throw Error(name + ": holds points of a surface (intent " + std::to_string(intent) +
+                "), and no volume");
+  }
 }
 
 // Colors, or one of the axes behind the third.
-void find_components(const HeaderBytes& bytes, bool big_endian, const std::string& name,
-                     NiftiHeader& header) {
-  const int code = number_at<std::int16_t>(bytes, 70, big_endian);
-  if (code == rgb_code || code == rgba_code) {
-    header.layout.components = code == rgb_code ? 3 : 4;
+void find_components(const NiftiFields& fields, const std::string& name, NiftiHeader& header) {
+  if (fields.datatype == rgb_code || fields.datatype == rgba_code) {
+    header.layout.components = fields.datatype == rgb_code ? 3 : 4;
     header.layout.interleaved = true;
-    header.holds = code == rgb_code ? "colors (RGB)" : "colors (RGBA)";
+    header.holds = fields.datatype == rgb_code ? "colors (RGB)" : "colors (RGBA)";
   }
-  const int axes = number_at<std::int16_t>(bytes, 40, big_endian);
   // nifti1.h: matrices, vectors and the like, but for the series among them.
-  const int intent = number_at<std::int16_t>(bytes, 68, big_endian);
-  const bool vectors = intent > 1003 && intent != 2001;
-  for (int a = 4; a <= axes; ++a) {
-    const int n = number_at<std::int16_t>(bytes, 40 + 2 * static_cast<std::size_t>(a), big_endian);
-    if (n == 1) continue;
+  const bool vectors = fields.intent > 1003 && fields.intent != 2001;
+  for (std::size_t a = 4; a <= static_cast<std::size_t>(fields.dim[0]); ++a) {
+    const std::int64_t n = fields.dim[a];
+    // Old writers of Analyze leave 0 where an axis has one value.
+    if (n == 1 || (n == 0 && fields.version == NiftiVersion::analyze)) continue;
     const std::string holds = std::to_string(n) +
                               (a == 4 && !vectors ? " time steps" : " components") + " (axis " +
                               std::to_string(a) + ")";
-    if (n < 1) throw Error(name + ": the NIfTI header says " + holds + "; it is damaged");
+    if (n < 1 || n > std::numeric_limits<std::int32_t>::max()) {
+      throw Error(name + ": the NIfTI header says " + holds + "; it is damaged");
+    }
     if (header.layout.components > 1) {
       throw Error(name + ": holds " + header.holds + " and " + holds +
                   "; save one of these as a file of its own");
     }
-    header.layout.components = n;
+    header.layout.components = static_cast<int>(n);
     header.holds = holds;
   }
 }
 
-std::uintmax_t offset_of(float offset, bool single_file, const std::string& name) {
+std::uintmax_t offset_of(const NiftiFields& fields, const std::string& name) {
   // nifti1.h: in one file the values begin after the header and its four bytes of extension flag.
-  const float smallest = single_file ? 352 : 0;
-  if (single_file && offset == 0) return 352;
-  if (!(offset >= smallest) || !(offset < 0x1p53F) || offset != std::floor(offset)) {
+  const double smallest = !fields.single_file ? 0 : fields.version == NiftiVersion::two ? 544 : 352;
+  const double offset = fields.vox_offset == 0 ? smallest : fields.vox_offset;
+  if (!(offset >= smallest) || !(offset < 0x1p53) || offset != std::floor(offset)) {
     throw Error(name + ": the NIfTI header says that the values begin at byte " +
                 std::to_string(offset) + "; it is damaged");
   }
   return static_cast<std::uintmax_t>(offset);
 }
 
-std::optional<GridPlacement> sform_of(const HeaderBytes& bytes, bool big_endian) {
-  if (number_at<std::int16_t>(bytes, 254, big_endian) <= 0) return std::nullopt;
-  double m[3][4];
-  for (std::size_t row = 0; row < 3; ++row) {
-    for (std::size_t column = 0; column < 4; ++column) {
-      const double sign = row < 2 ? -1 : 1;  // left and posterior instead of right and anterior
-      m[row][column] = sign * static_cast<double>(
-                                  number_at<float>(bytes, 280 + 16 * row + 4 * column, big_endian));
-    }
-  }
-  GridPlacement placement;
-  placement.origin = {m[0][3], m[1][3], m[2][3]};
-  for (int a = 0; a < 3; ++a) {
-    const Vec3<double> axis{m[0][a], m[1][a], m[2][a]};
-    placement.spacing[a] = length(axis);
-    placement.direction.column[a] = axis * (1 / placement.spacing[a]);
-  }
-  return placement;
+std::optional<GridPlacement> sform_of(const NiftiFields& fields) {
+  if (fields.sform_code <= 0) return std::nullopt;
+  RasRows rows;
+  for (std::size_t i = 0; i < 12; ++i) rows[i / 4][i % 4] = fields.sform[i];
+  return placement_from_ras(rows);
 }
 
 // nifti1.h, method 2: a rotation as a quaternion of positive a, and a flip of z.
-std::optional<GridPlacement> qform_of(const HeaderBytes& bytes, bool big_endian) {
-  if (number_at<std::int16_t>(bytes, 252, big_endian) <= 0) return std::nullopt;
-  const auto number = [&](std::size_t offset) {
-    return static_cast<double>(number_at<float>(bytes, offset, big_endian));
-  };
-  double b = number(256), c = number(260), d = number(264);
+std::optional<GridPlacement> qform_of(const NiftiFields& fields) {
+  if (fields.qform_code <= 0) return std::nullopt;
+  auto [b, c, d, x, y, z] = fields.qform;
   // Rounding may leave (b, c, d) longer than 1: half a turn then, as nifti1_io.c has it.
   const double length = std::sqrt(b * b + c * c + d * d);
   const double a = std::sqrt(std::max(0.0, 1 - length * length));
@@ -154,11 +136,11 @@ std::optional<GridPlacement> qform_of(const HeaderBytes& bytes, bool big_endian)
     c /= length;
     d /= length;
   }
-  const double flip = number(76) < 0 ? -1 : 1;
+  const double flip = fields.pixdim[0] < 0 ? -1 : 1;
   GridPlacement placement;
   // Left and posterior instead of right and anterior.
-  placement.origin = {-number(268), -number(272), number(276)};
-  placement.spacing = {number(80), number(84), number(88)};
+  placement.origin = {-x, -y, z};
+  placement.spacing = {fields.pixdim[1], fields.pixdim[2], fields.pixdim[3]};
   placement.direction.column[0] = {-(a * a + b * b - c * c - d * d), -2 * (b * c + a * d),
                                    2 * (b * d - a * c)};
   placement.direction.column[1] = {-2 * (b * c - a * d), -(a * a + c * c - b * b - d * d),
@@ -169,64 +151,68 @@ std::optional<GridPlacement> qform_of(const HeaderBytes& bytes, bool big_endian)
   return placement;
 }
 
-void check_orientation(const HeaderBytes& bytes, bool big_endian, const std::string& name) {
-  const auto check = [&](std::size_t offset, std::size_t count, const char* what) {
-    for (std::size_t i = 0; i < count; ++i) {
-      if (std::isfinite(number_at<float>(bytes, offset + 4 * i, big_endian))) continue;
-      throw Error(name + ": the " + what + " of the NIfTI header is not finite; mend the header");
-    }
-  };
-  check(76, 4, "spacing (pixdim)");
-  if (number_at<std::int16_t>(bytes, 252, big_endian) > 0) check(256, 6, "qform");
-  if (number_at<std::int16_t>(bytes, 254, big_endian) > 0) check(280, 12, "sform");
+template <class Numbers>
+void check_finite(const Numbers& numbers, const std::string& name, const char* what) {
+  if (std::ranges::all_of(numbers, [](double x) { return std::isfinite(x); })) return;
+  throw Error(name + ": the " + what + " of the NIfTI header is not finite; mend the header");
+}
+
+// What a reader should know of the header that the picture does not show.
+void note_header(const NiftiFields& fields, const std::string& name, NiftiHeader& header) {
+  const auto note = [&](const std::string& text) { header.notes.push_back(name + ": " + text); };
+  constexpr int labels = 1002;
+  if (fields.intent == labels) {
+    note("its values are labels (intent_code 1002); between them nothing is meant, see --labels");
+  }
+  if (const int unit = fields.units & 7; unit > 3) {
+    note("the unit of lengths (xyzt_units " + std::to_string(unit) +
+         ") is not known; taken to be millimetres");
+  }
+  if (fields.version != NiftiVersion::analyze) return;
+  if (fields.orient != 0) {
+    note("says orient " + std::to_string(fields.orient) +
+         ", which is not taken into account: programs differ in what it means");
+  }
+  if (fields.has_ranges && header.slope == 1 && header.intercept == 0) {
+    note(
+        "glmax, glmin, cal_max and cal_min may mean a scale of the values, which is not taken into "
+        "account");
+  }
 }
 
 }  // namespace
 
 NiftiHeader read_nifti_header(const std::filesystem::path& path) {
   const std::string name = path.string();
-  HeaderBytes bytes;
-  DataStream(path, 0,
-             is_gzip(path) ? DataStream::Compression::deflate : DataStream::Compression::none)
-      .read(bytes);
-  const bool big_endian = number_at<std::int32_t>(bytes, 0, true) == header_size;
-  if (!big_endian && number_at<std::int32_t>(bytes, 0, false) != header_size) {
-    for (const bool order : {false, true}) {
-      if (number_at<std::int32_t>(bytes, 0, order) != 540) continue;
-      throw Error(name + ": NIfTI-2 is not read; convert the file to NIfTI-1");
-    }
-    throw Error(name + ": does not begin like a NIfTI file");
-  }
-  const std::string_view magic(reinterpret_cast<const char*>(bytes.data()) + 344, 3);
-  if (magic != "n+1" && magic != "ni1") {
-    throw Error(name +
-                ": an Analyze 7.5 file, which does not say how it lies in space; convert it "
-                "to NIfTI");
-  }
-  check_orientation(bytes, big_endian, name);
+  const NiftiFields fields = read_nifti_fields(path);
+  check_finite(std::span(fields.pixdim).first<4>(), name, "spacing (pixdim)");
+  if (fields.qform_code > 0) check_finite(fields.qform, name, "qform");
+  if (fields.sform_code > 0) check_finite(fields.sform, name, "sform");
+  check_intent(fields.intent, name);
   NiftiHeader header;
-  header.single_file = magic == "n+1";
-  header.dimensions = dimensions_of(bytes, big_endian, name);
-  header.layout = {type_of(number_at<std::int16_t>(bytes, 70, big_endian), name), big_endian,
-                   offset_of(number_at<float>(bytes, 108, big_endian), header.single_file, name)};
-  find_components(bytes, big_endian, name, header);
-  const double slope = static_cast<double>(number_at<float>(bytes, 112, big_endian));
-  const double intercept = static_cast<double>(number_at<float>(bytes, 116, big_endian));
+  header.version = fields.version;
+  header.single_file = fields.single_file;
+  header.dimensions = dimensions_of(fields, name);
+  header.layout = {type_of(fields.datatype, name), fields.big_endian, offset_of(fields, name)};
+  find_components(fields, name, header);
   // nifti1.h: a slope of 0 means none, and colors have none; writers leave NaN where they mean
   // none, too.
-  if (!header.layout.interleaved && std::isfinite(slope) && slope != 0 &&
-      std::isfinite(intercept)) {
-    header.slope = slope;
-    header.intercept = intercept;
+  if (!header.layout.interleaved && std::isfinite(fields.slope) && fields.slope != 0) {
+    if (std::isfinite(fields.intercept)) {
+      header.slope = fields.slope;
+      header.intercept = fields.intercept;
+    } else if (fields.version == NiftiVersion::analyze) {
+      header.slope = fields.slope;
+    }
   }
-  for (std::size_t a = 0; a < 3; ++a) {
-    header.spacing[a] = static_cast<double>(number_at<float>(bytes, 80 + 4 * a, big_endian));
-  }
-  const int unit_code = std::to_integer<int>(bytes[123]) & 7;
+  for (std::size_t a = 0; a < 3; ++a) header.spacing[a] = fields.pixdim[a + 1];
+  const int unit_code = fields.units & 7;
   header.unit = unit_code == 1 ? 1e3 : unit_code == 3 ? 1e-3 : 1;
-  header.sform = sform_of(bytes, big_endian);
-  header.sform_code = number_at<std::int16_t>(bytes, 254, big_endian);
-  header.qform = qform_of(bytes, big_endian);
+  header.sform = sform_of(fields);
+  header.sform_code = fields.sform_code;
+  header.qform = qform_of(fields);
+  header.origin = fields.origin;
+  note_header(fields, name, header);
   return header;
 }
 

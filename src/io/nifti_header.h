@@ -6,14 +6,17 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <vector>
 
+#include "nifti_fields.h"
 #include "pellucid/scene/volume.h"
 #include "volume_source.h"
 
 namespace pellucid {
 
-/// What a NIfTI-1 header says of the values. Source: nifti1.h, https://nifti.nimh.nih.gov.
+/// What a header of NIfTI or Analyze says of the values.
 struct NiftiHeader {
+  NiftiVersion version = NiftiVersion::one;
   bool single_file = true;  ///< header and values in one file
   std::array<std::int64_t, 3> dimensions{};
   ValueLayout layout;
@@ -26,6 +29,8 @@ struct NiftiHeader {
   std::optional<GridPlacement> sform;
   int sform_code = 0;                  ///< which coordinates the sform gives
   std::optional<GridPlacement> qform;  ///< as the sform
+  std::array<int, 3> origin{};         ///< of Analyze: the voxel at the world's origin, from 1
+  std::vector<std::string> notes;      ///< what a reader should know, a line each
 };
 
 /// The code of an sform whose coordinates are the scanner's (NIFTI_XFORM_SCANNER_ANAT).

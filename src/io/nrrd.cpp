@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
-#include <charconv>
 #include <cstdint>
 #include <cstdlib>
 #include <filesystem>
@@ -18,6 +17,8 @@
 #include "input_file.h"
 #include "itk_header.h"
 #include "medical_volumes.h"
+#include "nrrd_fields.h"
+#include "nrrd_space.h"
 #include "pellucid/scene/error.h"
 #include "text.h"
 
@@ -25,108 +26,21 @@ namespace pellucid {
 
 namespace fs = std::filesystem;
 
+using nrrd::axes_of;
+using nrrd::axis_count;
+using nrrd::find_field;
+using nrrd::Header;
+using nrrd::kind_of;
+using nrrd::Line;
+using nrrd::number_in;
+
 namespace {
 
-struct Line {
-  std::string text;
-  std::string field;  // in small letters and without blanks; empty where the line holds no field
-  std::string value;
-};
-
-struct Header {
-  std::vector<Line> lines;  // up to the empty line, which is not among them
-  std::size_t bytes = 0;    // with the empty line
-};
-
-constexpr const char* blanks = " \t";
-
-// NrrdIO takes a field's name in letters of either case, and "axis mins" for "axismins".
-Line parse_line(std::string text) {
-  Line line{std::move(text), {}, {}};
-  const std::size_t colon = line.text.find(':');
-  // "key:=value" is no field.
-  if (colon == std::string::npos || line.text.starts_with('#') ||
-      line.text.compare(colon, 2, ":=") == 0) {
-    return line;
-  }
-  line.field = in_small_letters(line.text.substr(0, colon));
-  std::erase(line.field, ' ');
-  const std::size_t begin = line.text.find_first_not_of(blanks, colon + 1);
-  if (begin == std::string::npos) return line;
-  line.value = line.text.substr(begin, line.text.find_last_not_of(blanks) - begin + 1);
-  return line;
-}
-
-Header read_header(const fs::path& path) {
-  std::ifstream file(path, std::ios::binary);
-  Header header;
-  std::string line;
-  // A header of more is not NRRD, whatever it begins with.
-  constexpr std::size_t largest = std::size_t{1} << 20;
-  while (std::getline(file, line)) {
-    header.bytes += line.size() + 1;
-    if (header.bytes > largest) throw Error(path.string() + ": the NRRD header does not end");
-    if (!line.empty() && line.back() == '\r') line.pop_back();
-    if (line.empty()) break;
-    header.lines.push_back(parse_line(std::move(line)));
-    // Names of files follow.
-    if (header.lines.back().field == "datafile" && header.lines.back().value.starts_with("LIST")) {
-      break;
-    }
-  }
-  return header;
-}
-
-// `field` as in Line.
-const Line* find_field(const Header& header, std::string_view field) {
-  for (const Line& line : header.lines) {
-    if (line.field == field && !line.value.empty()) return &line;
-  }
-  return nullptr;
-}
-
-// The values of a field axis by axis: words, or vectors in parentheses.
-std::vector<std::string> axes_of(const std::string& value) {
-  std::vector<std::string> axes;
-  std::size_t at = value.find_first_not_of(blanks);
-  while (at < value.size()) {
-    std::size_t end = value[at] == '(' ? value.find(')', at) : value.find_first_of(" \t(", at);
-    if (end != std::string::npos && value[end] == ')') ++end;
-    axes.push_back(in_small_letters(value.substr(at, end - at)));
-    at = end == std::string::npos ? end : value.find_first_not_of(blanks, end);
-  }
-  return axes;
-}
-
-bool is_unknown(const std::string& kind) {
-  return kind == "???" || kind == "none" || kind == "unknown";
-}
-
-// The kind of an axis, from 1; empty where it is not known.
-std::string kind_of(const Header& header, std::size_t axis) {
-  const Line* line = find_field(header, "kinds");
-  if (line == nullptr) return {};
-  const std::vector<std::string> kinds = axes_of(line->value);
-  return axis > kinds.size() || is_unknown(kinds[axis - 1]) ? std::string() : kinds[axis - 1];
-}
-
-// NrrdIO panics about some kinds, and ITK takes the mask out of others.
+// NrrdIO panics about some kinds, ITK takes the mask out of others, and time is no axis of
+// components to it.
 bool is_kind_of_itk(const std::string& kind) {
-  return !kind.empty() && kind != "3-gradient" && kind != "3-normal" &&
+  return !kind.empty() && kind != "time" && kind != "3-gradient" && kind != "3-normal" &&
          kind.find("masked") == std::string::npos;
-}
-
-std::size_t axis_count(const Header& header) {
-  const Line* sizes = find_field(header, "sizes");
-  return sizes == nullptr ? 0 : axes_of(sizes->value).size();
-}
-
-std::optional<std::uint64_t> number_in(const std::string& text) {
-  std::uint64_t number = 0;
-  const char* end = text.data() + text.size();
-  const auto [stop, error] = std::from_chars(text.data(), end, number);
-  if (error != std::errc{} || stop != end) return std::nullopt;
-  return number;
 }
 
 // Two kinds of file break the letter of the format and are common all the same: "space directions"
@@ -140,10 +54,12 @@ std::vector<std::string> mended_header(const Header& header, std::size_t compone
       find_field(header, "space") != nullptr || find_field(header, "spacedimension") != nullptr;
   const bool spacings = find_field(header, "spacings") != nullptr;
   const bool kinds = components_axis == 0 || is_kind_of_itk(kind_of(header, components_axis));
-  if (kinds && !(directions && !space) && !(spacings && space && !directions)) return {};
-
+  if (kinds && !header.is_changed && !(directions && !space) &&
+      !(spacings && space && !directions)) {
+    return {};
+  }
   const Line* file = find_field(header, "datafile");
-  if (file != nullptr && file->value.starts_with("LIST")) return {};
+  const bool is_list = file != nullptr && file->value.starts_with("LIST");
   const Line* skip = find_field(header, "lineskip");
   const std::optional<std::uint64_t> skipped = skip == nullptr ? 0 : number_in(skip->value);
   if (!skipped) return {};
@@ -163,9 +79,16 @@ std::vector<std::string> mended_header(const Header& header, std::size_t compone
     mended.push_back(line);
   }
   // What was attached stands behind the header, and the empty line at its end.
-  const std::uint64_t above = file == nullptr ? header.lines.size() + 1 : 0;
+  const std::uint64_t above = file == nullptr ? header.lines_in_file : 0;
   mended.push_back("line skip: " + std::to_string(*skipped + above));
   const fs::path whole = fs::absolute(path);
+  if (is_list) {
+    mended.push_back("data file: " + file->value);
+    for (const std::string& listed : nrrd::listed_files(header, path)) {
+      mended.push_back((whole.parent_path() / listed).string());
+    }
+    return mended;
+  }
   mended.push_back("data file: " +
                    (file == nullptr ? whole : whole.parent_path() / file->value).string());
   return mended;
@@ -277,14 +200,6 @@ void check_spacing(const Header& header, std::size_t components_axis, const Read
                 ": the NRRD header gives the range of the axes instead of a spacing; give the "
                 "spacing and the origin");
   }
-}
-
-bool is_left_anterior_superior(const Header& header) {
-  const Line* line = find_field(header, "space");
-  if (line == nullptr) return false;
-  std::string space = in_small_letters(line->value);
-  std::erase_if(space, [](char c) { return c == '-' || c == ' '; });
-  return space == "las" || space == "leftanteriorsuperior";
 }
 
 bool is_bzip2(const Header& header) {
@@ -401,12 +316,7 @@ void check_data_files(const Header& header, const fs::path& path) {
     check(field->value);
     return;
   }
-  std::ifstream file(path, std::ios::binary);
-  file.seekg(static_cast<std::streamoff>(header.bytes));
-  for (std::string line; std::getline(file, line);) {
-    const std::string_view listed = trimmed(line);
-    if (!listed.empty()) check(listed);
-  }
+  for (const std::string& listed : nrrd::listed_files(header, path)) check(listed);
 }
 
 std::string replaced(std::string text, const std::string& what, const std::string& with) {
@@ -422,12 +332,15 @@ VolumeFile open_nrrd(const fs::path& path, const ReadOptions& options) {
   const std::string name = path.string();
   refuse_raw_options(options, name);
   check_input_file(path);
-  const Header header = read_header(path);
+  Header header = nrrd::read_header(path);
+  const nrrd::Space space = nrrd::space_of(header);
+  nrrd::note_keys(header, space, name, options.note);
+  nrrd::drop_time(header, name);
   NrrdText text;
   text.count = header_count(header, name);
   text.components_axis = find_components_axis(header, name);
   check_spacing(header, text.components_axis, options, name);
-  text.left_anterior_superior = is_left_anterior_superior(header);
+  text.left_anterior_superior = space.is_left_anterior_superior;
   check_skips(header, name);
   check_data_files(header, path);
   text.values = raw_values(header, path);
@@ -438,7 +351,11 @@ VolumeFile open_nrrd(const fs::path& path, const ReadOptions& options) {
                 "skip; save it with gzip");
   }
   const std::vector<std::string> mended = mended_header(header, text.components_axis, path);
-  if (mended.empty()) return open_nrrd_file(path, name, text, options);
+  if (mended.empty()) {
+    VolumeFile file = open_nrrd_file(path, name, text, options);
+    file.space = space.name;
+    return file;
+  }
   // A space is kept beside directions alone.
   if (find_field(header, "spacedirections") == nullptr) text.left_anterior_superior = false;
 
@@ -456,6 +373,7 @@ VolumeFile open_nrrd(const fs::path& path, const ReadOptions& options) {
     }
   };
   VolumeFile file = with_own_name([&] { return open_nrrd_file(mended_path, name, text, options); });
+  file.space = space.name;
   file.read = [with_own_name, read = std::move(file.read)](ComponentRange range) {
     return with_own_name([&] { return read(range); });
   };

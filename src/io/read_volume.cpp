@@ -58,53 +58,31 @@ VolumeFile open_mrc_file(const std::filesystem::path& path, const ReadOptions& o
   return open_mrc(plain_or_gzip_source(path), options);
 }
 
-constexpr std::array formats{Format{".nii", open_nifti},
-                             Format{".nii.gz", open_nifti},
-                             Format{".hdr", open_nifti},
-                             Format{".hdr.gz", open_nifti},
-                             Format{".img", open_nifti},
-                             Format{".img.gz", open_nifti},
-                             Format{".nrrd", open_nrrd},
-                             Format{".nhdr", open_nrrd},
-                             Format{".mha", open_meta_image},
-                             Format{".mhd", open_meta_image},
-                             Format{".npy", open_npy_file},
-                             Format{".npz", open_npz_file},
-                             Format{".slc", open_bytes<open_slc>},
-                             Format{".vti", open_vtk_volume},
-                             Format{".pvti", open_vtk_volume},
-                             Format{".vtr", open_vtk_volume},
-                             Format{".pvtr", open_vtk_volume},
-                             Format{".vtk", open_vtk_volume},
-                             Format{".raw", open_raw_file},
-                             Format{".dcm", open_dicom},
-                             Format{".ima", open_dicom},
-                             Format{".tif", open_stack},
-                             Format{".tiff", open_stack},
-                             Format{".png", open_stack},
-                             Format{".mrc", open_mrc_file},
-                             Format{".map", open_mrc_file},
-                             Format{".rec", open_mrc_file},
-                             Format{".st", open_mrc_file},
-                             Format{".ccp4", open_mrc_file},
-                             Format{".raw.gz", open_raw_gzip},
-                             Format{".h5", open_hdf5},
-                             Format{".hdf5", open_hdf5},
-                             Format{".he5", open_hdf5},
-                             Format{".vtkhdf", open_vtk_hdf},
-                             Format{".hdf", open_vtk_hdf},
-                             Format{".nc", open_net_cdf},
-                             Format{".nc4", open_net_cdf},
-                             Format{".cdf", open_net_cdf},
-                             Format{".vdb", open_vdb},
-                             Format{".ivf", open_ivf},
-                             Format{".vvd", open_vvd},
-                             Format{".zarr", open_zarr},
-                             Format{".mrc.gz", open_mrc_file},
-                             Format{".map.gz", open_mrc_file},
-                             Format{".rec.gz", open_mrc_file},
-                             Format{".st.gz", open_mrc_file},
-                             Format{".ccp4.gz", open_mrc_file}};
+constexpr std::array formats{Format{".nii", open_nifti},       Format{".nii.gz", open_nifti},
+                             Format{".hdr", open_nifti},       Format{".hdr.gz", open_nifti},
+                             Format{".img", open_nifti},       Format{".img.gz", open_nifti},
+                             Format{".mgz", open_mgh},         Format{".mgh", open_mgh},
+                             Format{".mgh.gz", open_mgh},      Format{".nrrd", open_nrrd},
+                             Format{".nhdr", open_nrrd},       Format{".mha", open_meta_image},
+                             Format{".mhd", open_meta_image},  Format{".npy", open_npy_file},
+                             Format{".npz", open_npz_file},    Format{".slc", open_bytes<open_slc>},
+                             Format{".vti", open_vtk_volume},  Format{".pvti", open_vtk_volume},
+                             Format{".vtr", open_vtk_volume},  Format{".pvtr", open_vtk_volume},
+                             Format{".vtk", open_vtk_volume},  Format{".raw", open_raw_file},
+                             Format{".dcm", open_dicom},       Format{".ima", open_dicom},
+                             Format{".tif", open_stack},       Format{".tiff", open_stack},
+                             Format{".png", open_stack},       Format{".mrc", open_mrc_file},
+                             Format{".map", open_mrc_file},    Format{".rec", open_mrc_file},
+                             Format{".st", open_mrc_file},     Format{".ccp4", open_mrc_file},
+                             Format{".raw.gz", open_raw_gzip}, Format{".h5", open_hdf5},
+                             Format{".hdf5", open_hdf5},       Format{".he5", open_hdf5},
+                             Format{".vtkhdf", open_vtk_hdf},  Format{".hdf", open_vtk_hdf},
+                             Format{".nc", open_net_cdf},      Format{".nc4", open_net_cdf},
+                             Format{".cdf", open_net_cdf},     Format{".vdb", open_vdb},
+                             Format{".ivf", open_ivf},         Format{".vvd", open_vvd},
+                             Format{".zarr", open_zarr},       Format{".mrc.gz", open_mrc_file},
+                             Format{".map.gz", open_mrc_file}, Format{".rec.gz", open_mrc_file},
+                             Format{".st.gz", open_mrc_file},  Format{".ccp4.gz", open_mrc_file}};
 
 using Lister = std::vector<VolumeArray> (*)(const std::filesystem::path&, const ReadOptions&);
 
@@ -248,7 +226,7 @@ auto open_and(const std::filesystem::path& path, const ReadOptions& options, con
 
 VolumeOutline outline_volume(const std::filesystem::path& path, const ReadOptions& options) {
   return open_and(path, options, [](const VolumeFile& file) {
-    return VolumeOutline{file.description, file.reads_parts};
+    return VolumeOutline{file.description, file.reads_parts, file.space};
   });
 }
 
@@ -285,13 +263,22 @@ bool has_volume_header(std::string_view file_name) {
   return format != nullptr && format->open != open_raw_file && format->open != open_raw_gzip;
 }
 
-bool is_placed_in_lps(const std::filesystem::path& file) {
-  constexpr std::string_view ends[] = {".nii",    ".nii.gz", ".hdr",  ".img", ".hdr.gz",
-                                       ".img.gz", ".nrrd",   ".nhdr", ".mha", ".mhd"};
-  std::string name = file.filename().string();
-  for (char& c : name) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
-  return std::ranges::any_of(ends, [&](std::string_view end) { return name.ends_with(end); }) ||
-         is_dicom(file);
+std::string world_space(const std::filesystem::path& file, const ReadOptions& options) {
+  constexpr std::array of_patients{Opener{open_nifti}, Opener{open_nrrd}, Opener{open_meta_image},
+                                   Opener{open_mgh}, Opener{open_dicom}};
+  ReadOptions silent = options;
+  silent.note = {};
+  silent.part = {};
+  try {
+    if (std::ranges::find(of_patients, find_opener(file, silent)) == of_patients.end()) return {};
+    return outline_volume(file, silent).space;
+  } catch (const Error&) {
+    return {};
+  }
+}
+
+bool is_placed_in_lps(const std::filesystem::path& file, const ReadOptions& options) {
+  return world_space(file, options) == patient_space;
 }
 
 bool is_volume_json(const std::filesystem::path& path) {

@@ -7,6 +7,7 @@
 
 #include "vvd_header.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
@@ -68,6 +69,7 @@ class Reader {
       } else if (in_raw_ && tag->name == "item") {
         document_.paths.emplace_back(attribute(*tag, "value"));
       } else if (tag->name == "MetaItem" || tag->name == "MetaDataItem") {
+        note_item(attribute(*tag, "name"));
         item_ = tag->closed ? std::string() : in_small_letters(attribute(*tag, "name"));
       } else {
         take_value(*tag);
@@ -103,6 +105,20 @@ class Reader {
     if (const auto file = tag.attributes.find("filename"); file != tag.attributes.end()) {
       document_.paths.emplace_back(file->second);
     }
+  }
+
+  /// Keeps the name of an item that is neither read nor known to leave the picture as it is.
+  void note_item(std::string_view item) {
+    constexpr std::array known = std::to_array<std::string_view>(
+        {"spacing", "offset", "transformation", "realworldmapping", "modality", "timestep"});
+    constexpr std::array harmless = std::to_array<std::string_view>(
+        {"patient", "study", "series", "image", "name", "uid", "acquisition", "institution"});
+    const std::string small = in_small_letters(item);
+    const bool is_known = std::ranges::find(known, small) != known.end() ||
+                          std::ranges::any_of(harmless, [&](std::string_view word) {
+                            return small.starts_with(word);
+                          });
+    if (!is_known) document_.header.ignored_keys.emplace_back(item);
   }
 
   void take_value(const XmlTag& tag) {

@@ -146,6 +146,31 @@ class Info(ProgramTest):
         text = self.succeed("info", "b.mha")
         self.assertRegex(text, r"(?m)^orientation +RPS, oblique by 36\.87 degrees")
 
+    def test_files_of_no_patient_are_not_called_lps(self):
+        self.write("none.nii", nifti(0))
+        result = self.run_program("info", "none.nii")
+        self.assertRegex(result.stderr.decode(), r"states no orientation \(qform_code and sform")
+        self.assertNotRegex(result.stdout.decode(), r"orientation|LPS")
+        report = self.report("info", "none.nii")
+        self.assertIsNone(report["orientation"])
+        self.assertIsNone(report["space"])
+        self.assertEqual(report["origin"], [-0.5, 1, -1.5])
+        self.write("one.nii", nifti(1))
+        report = self.report("info", "one.nii")
+        self.assertEqual((report["orientation"], report["space"]), ("RAS", "LPS"))
+        header = ("NRRD0005\ntype: uchar\ndimension: 3\nsizes: 2 2 2\nencoding: raw\n"
+                  "space: %s\nspace directions: (1,0,0) (0,1,0) (0,0,1)\n\n")
+        for space in "3D-left-handed", "3D-right-handed", "scanner-xyz":
+            self.write("a.nrrd", (header % space).encode() + bytes(range(8)))
+            result = self.run_program("info", "a.nrrd")
+            if result.returncode != 0 and b"ITK" in result.stderr:
+                self.skipTest("built without ITK")
+            text = result.stdout.decode()
+            self.assertRegex(text, rf"(?m)^space +{space} \(the file's name for it")
+            self.assertNotIn("LPS", text)
+            report = self.report("info", "a.nrrd")
+            self.assertEqual((report["orientation"], report["space"]), (None, space))
+
     def test_stdout_that_cannot_be_written(self):
         self.write("a.npy", npy(ramp(2), (2, 2, 2)))
         with open("/dev/full", "wb") as full:
@@ -155,6 +180,20 @@ class Info(ProgramTest):
                                     stderr=subprocess.PIPE, check=False)
         self.assertEqual(result.returncode, 1)
         self.assertRegex(result.stderr.decode(), r"\Apellucid: error: stdout: [^\n]+\n\Z")
+
+
+def nifti(sform_code):
+    """2 x 2 x 2 bytes of spacing 1, 2, 3."""
+    header = bytearray(352)
+    struct.pack_into("<i", header, 0, 348)
+    struct.pack_into("<8h", header, 40, 3, 2, 2, 2, 1, 1, 1, 1)
+    struct.pack_into("<2h", header, 70, 2, 8)
+    struct.pack_into("<8f", header, 76, 1, 1, 2, 3, 0, 0, 0, 0)
+    struct.pack_into("<f", header, 108, 352)
+    struct.pack_into("<2h", header, 252, 0, sform_code)
+    struct.pack_into("<12f", header, 280, 1, 0, 0, 5, 0, 2, 0, 6, 0, 0, 3, 7)
+    header[344:348] = b"n+1\0"
+    return bytes(header) + bytes(range(8))
 
 
 # 3 x 3 x 2 points.

@@ -55,6 +55,19 @@ class Series(ProgramTest):
         self.succeed("render", "ct", "-o", "o.png", "--size", "8")
         self.succeed("convert", "ct", "-o", "o.vtu")
 
+    def test_acquisitions_between_each_other_are_series(self):
+        os.mkdir(self.path("two"))
+        for k in range(8):
+            more = {0x00200012: ("IS", b"%d" % (1 + k // 4)), 0x00200013: ("IS", b"%d" % (k + 1))}
+            self.write(f"two/{k}", dicom(30 + 4 * (k % 4) + 2 * (k // 4), 1000 + 6 * k, more=more))
+        report = self.report("info", "two")
+        self.assertEqual([s["slices"] for s in report["series"]], [4, 4])
+        self.assertEqual(report["series"][1]["description"], "head, AcquisitionNumber 2")
+        self.fail_with("2 DICOM series", "render", "two", "-o", "o.png")
+        report = self.report("info", "two", "--series", "2")
+        self.assertEqual(report["range"], [0, 23])
+        self.assertEqual(report["spacing"], [1, 2, 4])
+
     def test_several_series_are_listed_and_chosen(self):
         self.add_other()
         report = self.report("info", "ct")

@@ -53,17 +53,89 @@ TEST_F(DatTest, RefusesWordsThatItDoesNotKnow) {
   EXPECT_TRUE(contains(error(begin + " 2" + end), "are no three numbers"));
 }
 
-// The basis spans the cells: values are half a cell inside of it.
+// The basis spans the cells: values are half a cell inside of it. Inviwo writes the rows of a
+// matrix whose columns are the edges.
 TEST_F(DatTest, BasisVectorsSpanTheCells) {
   const std::string basis =
       "RawFile: v.raw\nResolution: 5 4 3\nFormat: FLOAT32\nBasisVector1: 10 0 0\n"
-      "BasisVector2: 0 0 4\nBasisVector3: 0 9 0\n";
+      "BasisVector2: 0 0 9\nBasisVector3: 0 4 0\n";
   const Volume placed = parse(basis + "Offset: 100 200 300\n");
   EXPECT_EQ(placed.description().centering, Centering::cell);
   expect_near(world_of(placed, 0, 0, 0), {101, 201.5, 300.5});
   expect_near(world_of(placed, 4, 3, 2), {109, 207.5, 303.5});
   expect_near(placed.world_corners()[0], {100, 200, 300});
   expect_near(parse(basis).world_corners()[7], {5, 4.5, 2});
+  const Volume sheared = parse(
+      "RawFile: v.raw\nResolution: 5 4 3\nFormat: FLOAT32\nOffset: 0 0 0\n"
+      "BasisVector1: 10 4 0\nBasisVector2: 0 8 0\nBasisVector3: 0 0 6\n");
+  expect_near(world_of(sheared, 1, 0, 0) - world_of(sheared, 0, 0, 0), {2, 0, 0});
+  expect_near(world_of(sheared, 0, 1, 0) - world_of(sheared, 0, 0, 0), {1, 2, 0});
+}
+
+TEST_F(DatTest, WorldVectorsAreRowsOfTheMapToTheWorld) {
+  const std::string begin = "RawFile: v.raw\nResolution: 5 4 3\nFormat: FLOAT32\n";
+  const std::string basis = "BasisVector1: 5 0 0\nBasisVector2: 0 4 0\nBasisVector3: 0 0 3\n";
+  // A quarter turn about z, twice the size along z, and a step of (100, 200, 300).
+  const std::string world =
+      "WorldVector1: 0 -1 0 100\nWorldVector2: 1 0 0 200\nWorldVector3: 0 0 2 300\n"
+      "WorldVector4: 0 0 0 1\n";
+  const Volume placed = parse(begin + basis + "Offset: 0 0 0\n" + world);
+  expect_near(placed.world_corners()[0], {100, 200, 300});
+  expect_near(placed.world_corners()[7], {96, 205, 306});
+  expect_near(world_of(placed, 1, 0, 0), {99.5, 201.5, 301});
+  // Without an offset about the origin; without a basis a cube of side 2.
+  expect_near(parse(begin + basis + world).world_corners()[7], {98, 202.5, 303});
+  expect_near(parse(begin + world).world_corners()[0], {101, 199, 298});
+  expect_near(parse(begin + "Offset: 7 8 9\n").world_corners()[0], {7, 8, 9});
+  EXPECT_TRUE(contains(error(begin + "WorldVector4: 0 0 1 1\n"), "affine"));
+  EXPECT_TRUE(contains(error(begin + "WorldVector1: 0 0 1\n"), "no four numbers"));
+  EXPECT_TRUE(contains(error(begin + "BasisVector1: 1 0 0\n"), "not all of BasisVector1"));
+}
+
+TEST_F(DatTest, SpacingOfInviwoSpansCellsAboutTheOrigin) {
+  for (const char* sides : {"Resolution", "Dimensions", "Dimension"}) {
+    const Volume volume = parse("RawFile: v.raw\n" + std::string(sides) +
+                                ": 5 4 3 # values\nFormat: FLOAT32\nSpacing: 1 2 3\n");
+    expect_near(volume.description().placement.spacing, {1, 2, 3});
+    EXPECT_EQ(volume.description().centering, Centering::cell);
+    expect_near(volume.world_corners()[0], {-2.5, -4, -4.5});
+    expect_near(volume.world_corners()[7], {2.5, 4, 4.5});
+  }
+  const Volume offset =
+      parse("RawFile: v.raw\nResolution: 5 4 3\nFormat: FLOAT32\nSpacing: 1 2 3\nOffset: 7 8 9\n");
+  expect_near(offset.world_corners()[0], {7, 8, 9});
+}
+
+TEST_F(DatTest, RangesMapTheValues) {
+  write("v.raw", bytes_of(counting<std::uint16_t>()));
+  const std::string begin = "RawFile: v.raw\nResolution: 5 4 3\n";
+  const Volume mapped = parse(begin + "Format: UINT16\nDataRange: 0 100\nValueRange: -1000 1000\n");
+  EXPECT_EQ(type_name(mapped.data()), "f32");
+  EXPECT_EQ(test::value_at(mapped, 4, 3, 2), -1000 + 20 * 59);
+  expect_counting(parse(begin + "Format: UINT16\nDataRange: 0 100\nValueRange: 0 100\n"), "u16");
+  expect_counting(parse(begin + "Format: USHORT_12\n"), "u16");
+  const Volume twelve = parse(begin + "Format: USHORT_12\nValueRange: 0 8190\n");
+  EXPECT_EQ(test::value_at(twelve, 4, 3, 2), 118);
+  EXPECT_TRUE(
+      contains(error(begin + "Format: UINT16\nDataRange: 1 1\nValueRange: 0 5\n"), "DataRange"));
+}
+
+TEST_F(DatTest, BytesAreSkippedAndStepsAreComponents) {
+  write("v.raw", "1234567" + bytes_of(counting()));
+  const std::string begin = "RawFile: v.raw\nResolution: 5 4 3\nFormat: FLOAT32\n";
+  expect_counting(parse(begin + "ByteOffset: 7\n"), "f32");
+  EXPECT_TRUE(contains(error(begin + "ByteOffset: -7\n"), "ByteOffset: -7"));
+  std::vector<float> two = counting();
+  for (int i = 0; i < 60; ++i) two.push_back(100 + static_cast<float>(i));
+  write("v.raw", bytes_of(two));
+  write("a.dat", begin + "Sequences: 2\n");
+  const std::vector<Volume> steps = read_components(path("a.dat"));
+  ASSERT_EQ(steps.size(), 2u);
+  expect_counting(steps[0], "f32");
+  EXPECT_EQ(test::value_at(steps[1], 4, 3, 2), 159);
+  EXPECT_TRUE(contains(error_of([&] { read_volume(path("a.dat")); }), "2 time steps"));
+  EXPECT_TRUE(contains(error(begin + "Sequences: 0\n"), "Sequences: 0"));
+  EXPECT_TRUE(contains(error("DatFile: a.dat\nDatFile: b.dat\n"), "lists headers of steps"));
 }
 
 TEST_F(DatTest, VectorsAreComponents) {

@@ -135,7 +135,8 @@ TEST_F(MutantsTest, Slc) {
 TEST_F(MutantsTest, Dat) {
   write("v.raw", bytes_of(counting()));
   survive({"RawFile: v.raw\nResolution: 5 4 3\nFormat: FLOAT32\nByteOrder: BigEndian\n"
-           "BasisVector1: 1 0 0\nBasisVector2: 0 1 0\nBasisVector3: 0 0 1\nOffset: 1 2 3\n",
+           "BasisVector1: 1 0 0\nBasisVector2: 0 1 0\nBasisVector3: 0 0 1\nOffset: 1 2 3\n"
+           "WorldVector1: 1 0 0 7\nDataRange: 0 100\nValueRange: -1 1\nUnit: K\n",
            "ObjectFileName: v.raw\nResolution: 5 4 3\nFormat: Vec2FLOAT16\nSliceThickness: 1 2 3\n",
            "RawFile: v.raw\nResolution: 5 3 2\nFormat: UINT64\n"},
           "a.dat", path("a.dat"));
@@ -224,6 +225,29 @@ TEST_F(MutantsTest, OpenVdb) {
 }
 #endif
 
+TEST_F(MutantsTest, Mgh) {
+  test::MghFile frames, coronal;
+  frames.dimensions[3] = 2;
+  coronal.good_ras = 0;
+  const std::string values = test::swapped_bytes_of(counting());
+  survive({frames.with(values + values), coronal.with(values)}, "a.mgh", path("a.mgh"));
+  survive({test::gzipped(frames.with(values + values))}, "a.mgz", path("a.mgz"));
+}
+
+TEST_F(MutantsTest, NiftiTwoAndAnalyze) {
+  test::NiftiTwoFile two, big;
+  two.sform_code = 1;
+  two.sform = {1, 0, 0, 10, 0, 2, 0, 20, 0, 0, 3, 30};
+  big.big_endian = true;
+  survive({two.with(bytes_of(counting())), big.with(test::swapped_bytes_of(counting()))}, "a.nii",
+          path("a.nii"));
+  test::NiftiFile analyze;
+  analyze.magic = std::string(4, '\0');
+  analyze.vox_offset = 0;
+  write("b.img", bytes_of(counting()));
+  survive({analyze.header()}, "b.hdr", path("b.hdr"));
+}
+
 #ifdef PELLUCID_HAVE_ITK
 TEST_F(MutantsTest, Nifti) {
   test::NiftiFile oblique;
@@ -240,7 +264,11 @@ TEST_F(MutantsTest, Nrrd) {
       "space directions: (1,0,0) (0,2,0) (0,0,3)\nspace origin: (1,2,3)\nencoding: ";
   survive({header + "raw\n\n" + bytes_of(counting()),
            header + "gzip\n\n" + test::gzipped(bytes_of(counting())),
-           header + "ascii\nkinds: domain domain domain\n\n1 2 3 4 5 6 7 8 9"},
+           header + "ascii\nkinds: domain domain domain\n\n1 2 3 4 5 6 7 8 9",
+           "NRRD0005\ntype: float\ndimension: 4\nsizes: 5 4 3 1\nendian: little\nencoding: raw\n"
+           "space: RAST\nspace directions: (1,0,0,0) (0,2,0,0) (0,0,3,0) (0,0,0,1)\n"
+           "space origin: (1,2,3,4)\n\n" +
+               bytes_of(counting())},
           "a.nrrd", path("a.nrrd"));
 }
 

@@ -101,6 +101,77 @@ struct NiftiFile {
   }
 };
 
+/// A NIfTI-2 header field by field; defaults are those of a plain float file.
+struct NiftiTwoFile {
+  std::array<std::int64_t, 8> dim{3, 5, 4, 3, 1, 1, 1, 1};
+  std::int16_t datatype = 16, bitpix = 32;
+  std::array<double, 8> pixdim{1, 1, 2, 3, 1, 1, 1, 1};
+  std::int64_t vox_offset = 544;
+  double slope = 0, intercept = 0;
+  std::int32_t units = 2, intent = 0;
+  std::int32_t qform_code = 0, sform_code = 0;
+  std::array<double, 6> qform{};
+  std::array<double, 12> sform{};
+  std::string magic{"n+2\0\r\n\x1a\n", 8};
+  bool big_endian = false;
+
+  template <class Value>
+  void put(std::string& bytes, std::size_t offset, Value value) const {
+    NiftiFile order;
+    order.big_endian = big_endian;
+    order.put(bytes, offset, value);
+  }
+  std::string header() const {
+    std::string bytes(540, '\0');
+    put(bytes, 0, std::int32_t{540});
+    bytes.replace(4, 8, magic);
+    put(bytes, 12, datatype);
+    put(bytes, 14, bitpix);
+    for (std::size_t i = 0; i < 8; ++i) put(bytes, 16 + 8 * i, dim[i]);
+    for (std::size_t i = 0; i < 8; ++i) put(bytes, 104 + 8 * i, pixdim[i]);
+    put(bytes, 168, vox_offset);
+    put(bytes, 176, slope);
+    put(bytes, 184, intercept);
+    put(bytes, 344, qform_code);
+    put(bytes, 348, sform_code);
+    for (std::size_t i = 0; i < 6; ++i) put(bytes, 352 + 8 * i, qform[i]);
+    for (std::size_t i = 0; i < 12; ++i) put(bytes, 400 + 8 * i, sform[i]);
+    put(bytes, 500, units);
+    put(bytes, 504, intent);
+    return bytes;
+  }
+  std::string with(const std::string& values) const {
+    return header() + std::string(4, '\0') + values;
+  }
+};
+
+/// A header of FreeSurfer's MGH field by field; defaults are those of a plain float file.
+struct MghFile {
+  std::int32_t version = 1;
+  std::array<std::int32_t, 4> dimensions{5, 4, 3, 1};  // and frames
+  std::int32_t type = 3, dof = 0;
+  std::int16_t good_ras = 1;
+  std::array<float, 3> delta{1, 2, 3};
+  std::array<float, 9> directions{1, 0, 0, 0, 1, 0, 0, 0, 1};  // of x, of y, of z, in RAS
+  std::array<float, 3> center{10, 20, 30};
+
+  /// The 284 bytes and the values, which must be big-endian.
+  std::string with(const std::string& values) const {
+    std::string bytes(284, '\0');
+    NiftiFile order;
+    order.big_endian = true;
+    order.put(bytes, 0, version);
+    for (std::size_t i = 0; i < 4; ++i) order.put(bytes, 4 + 4 * i, dimensions[i]);
+    order.put(bytes, 20, type);
+    order.put(bytes, 24, dof);
+    order.put(bytes, 28, good_ras);
+    for (std::size_t i = 0; i < 3; ++i) order.put(bytes, 30 + 4 * i, delta[i]);
+    for (std::size_t i = 0; i < 9; ++i) order.put(bytes, 42 + 4 * i, directions[i]);
+    for (std::size_t i = 0; i < 3; ++i) order.put(bytes, 78 + 4 * i, center[i]);
+    return bytes + values;
+  }
+};
+
 /// The world position of the data value at an index, by the description alone.
 inline Vec3<double> world_of(const Volume& volume, int i, int j, int k) {
   const GridPlacement& p = volume.description().placement;

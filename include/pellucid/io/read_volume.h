@@ -48,13 +48,15 @@ struct ReadOptions {
 struct VolumeOutline {
   Volume::Description description;
   bool reads_parts = false;  ///< whether a part is read without the rest (ReadOptions::part)
+  std::string space;         ///< as world_space() returns it
 };
 /// Reads the header that read_volume() reads, and no values. Throws Error as it does.
 VolumeOutline outline_volume(const std::filesystem::path& path, const ReadOptions& options = {});
 
 /// Reads a volume. The format follows from the extension, for VTK files from the first bytes:
 ///
-/// - .nii .nii.gz .hdr/.img(.gz); .nrrd .nhdr .mha .mhd through ITK, if the build has it;
+/// - .nii .nii.gz .hdr/.img(.gz), .mgz .mgh; .nrrd .nhdr .mha .mhd through ITK, if the build has
+///   it;
 /// - .npy, .npz, .slc, .raw, .mrc .map .rec .st .ccp4 (each also .gz);
 /// - a .dat, .ivf or .vvd header of Inviwo or Voreen;
 /// - stores of Zarr and OME-Zarr, by their folder;
@@ -114,9 +116,12 @@ std::vector<VolumeArray> list_arrays(const std::filesystem::path& path,
 /// Returns whether files of this name are volumes with a header, which provides what headerless
 /// data need as options.
 bool has_volume_header(std::string_view file_name);
-/// Returns whether the format places volumes in a patient, in LPS (x towards left, y towards
-/// posterior, z towards superior, in mm).
-bool is_placed_in_lps(const std::filesystem::path& file);
+/// Returns the name of the space that the file places its volume in. "LPS": in a patient, x towards
+/// left, y towards posterior, z towards superior, in mm; spaces of patients are turned to it. Other
+/// names are the file's own ("scanner-xyz"). Empty: the file names none, or cannot be read.
+std::string world_space(const std::filesystem::path& file, const ReadOptions& options = {});
+/// Returns whether that space is LPS.
+bool is_placed_in_lps(const std::filesystem::path& file, const ReadOptions& options = {});
 /// Returns whether a .json file is a volume, such as an index.json of vtk.js, and not a scene.
 bool is_volume_json(const std::filesystem::path& path);
 /// Returns the extensions of volume files for messages and help: ".nii .nii.gz …".
