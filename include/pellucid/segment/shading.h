@@ -25,6 +25,13 @@ struct Reflection {
   T flat_square{};  ///< g0², of the normal g / √(|g|² + g0²)
 };
 
+/// Returns whether |n·h|^power has a kink at n·h = 0, or bends there faster than Gauss nodes on
+/// both sides of it can tell: powers below 4 but for 2, whose highlight is a polynomial of n·h.
+template <class T>
+PELLUCID_HD constexpr bool has_kink_in_highlight(const Reflection<T>& reflection) noexcept {
+  return reflection.specular > T(0) && reflection.power < T(4) && reflection.power != T(2);
+}
+
 /// What light makes of a color: color ∘ factor + added.
 template <class T>
 struct Lit {

@@ -201,7 +201,8 @@ class LightLanes {
     kink_ = select(lanes, next_kink(lanes, F(0)), kink_);
   }
 
-  /// Where the next piece has to end, as a share of the cell: where g·l changes its sign.
+  /// Where the next piece has to end, as a share of the cell: where g·l changes its sign, or g·h if
+  /// highlights have a kink there.
   F kink() const noexcept { return kink_; }
   /// The lanes have gone past this share of their cells.
   void go_past(M lanes, F to) noexcept {
@@ -262,7 +263,7 @@ class LightLanes {
   }
 
  private:
-  /// Where g·l of any light changes its sign first behind `from`; 2: nowhere.
+  /// Where g·l of any light, or g·h, changes its sign first behind `from`; 2: nowhere.
   [[gnu::noinline]] F next_kink(M lanes, F from) const noexcept {
     F nearest(2);
     from = min(from, F(1));
@@ -272,12 +273,11 @@ class LightLanes {
         {},
         F(0),
         to_eye_};
-    for (int i = 0; i < light_.lights; ++i) {
-      const CubicBernstein<F> f =
-          along.along(directions(light_.light[i], Vec3<F>{}, to_eye_).light);
+    const auto look_at = [&](const Vec3<F>& direction) noexcept {
+      const CubicBernstein<F> f = along.along(direction);
       const F size = max(abs(f.hull_min()), abs(f.hull_max()));
       const M straddles = lanes & (f.hull_min() < F(0)) & (f.hull_max() > F(0));
-      if (none(straddles)) continue;
+      if (none(straddles)) return;
       const M rises = f.b[0] < F(0);
       const F far = F(4) * size;
       const PieceEnd<F> end = piece_end(f, select(rises, -far, F(0)), select(rises, F(0), far),
@@ -298,3 +298,9 @@ class LightLanes {
 
 }  // namespace pellucid
 #endif
+    };
+    const bool highlights = has_kink_in_highlight(light_.reflection);
+    for (int i = 0; i < light_.lights; ++i) {
+      const LightDirections<F> to = directions(light_.light[i], Vec3<F>{}, to_eye_);
+      look_at(to.light);
+      if (highlights && light_.light[i].kind != LightSource<float>::Kind::head) look_at(to.half);
