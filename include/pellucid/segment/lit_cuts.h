@@ -118,7 +118,7 @@ struct LitPiece {
 
   PELLUCID_HD double length() const noexcept { return (last - first) * parts.length(); }
   /// Bounds that are proved come together as slowly as panels get short: a ray takes some 10 ms
-  /// then.
+  /// until they are given up.
   PELLUCID_HD static long most_panels() noexcept { return 4096; }
   template <class Allowance>
   PELLUCID_HD PanelSegment<double> panel(double begin, double end,

@@ -118,17 +118,24 @@ class LitPanel {
     }
     const bool dull = sharpness_ <= T(4) || coarse.opacity * shine_ <= T(0.25) * payable;
     const bool smooth = few.total <= T(4) && turns_ <= T(16) && exponents_ <= T(2) && dull;
-    if (!proved && smooth) {
-      const PanelNodes<7, T> many(length_, material);
-      const Rgb<T> color = panel_color(many);
-      const SegmentResult<T> fine = segment_of_depth(many.total, range_.clamped(color));
-      const T change = max(largest_component(panel_color(few) - color),
-                           largest_component(color_of_every_other(many) - color));
-      const T depth_error = exponential_ ? min(bent, abs(few.total - many.total)) : T(0);
-      found.proved = false;
-      if (finish(fine, fine.opacity * min(span, T(2) * change), depth_error)) {
-        result.done = true;
-        return result;
+    if (!proved || demand_.estimate_suffices) {
+      if (smooth || (proved && demand_.last_resort)) {
+        const PanelNodes<7, T> many(length_, material);
+        const Rgb<T> color = panel_color(many);
+        const SegmentResult<T> fine = segment_of_depth(many.total, range_.clamped(color));
+        const T change = max(largest_component(panel_color(few) - color),
+                             largest_component(color_of_every_other(many) - color));
+        const T depth_error = exponential_ ? min(bent, abs(few.total - many.total)) : T(0);
+        found.proved = false;
+        const bool fits = finish(fine, fine.opacity * min(span, T(2) * change), depth_error);
+        if (proved) {
+          finish(fine, min(fine.opacity * span, error_by_terms(fine.radiance)), bent);
+          found.proved = true;
+        }
+        if (fits && smooth) {
+          result.done = true;
+          return result;
+        }
       }
     }
     result.done = demand_.last_resort;
@@ -377,7 +384,9 @@ class LitPanel {
 /// other of the 7, for a depth of at most 4, where the length √(|g|² + g0²) changes by at most a
 /// factor of 4, the logarithm of a highlight by at most 4, or by too little light to matter, and no
 /// exponent of a Gaussian by more than 2: where g comes close to 0, the normal turns faster than
-/// nodes see. The depth of Gaussians is charged with the difference of 4 and 7 nodes. Asserted in
+/// nodes see. The depth of Gaussians is charged with the difference of 4 and 7 nodes. Where proofs
+/// are given up (PanelDemand::estimate_suffices), the estimate decides which panels are accepted,
+/// and each is charged with its bound. Asserted in
 /// tests/segment/test_lit_panel.cpp: no panel is off by more than it says.
 template <class T, class Allowance>
 PELLUCID_HD PanelSegment<T> integrate_lit_panel(const LitStretch<T>& stretch,
