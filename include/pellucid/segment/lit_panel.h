@@ -16,6 +16,7 @@ struct LitLayer {
   PrimitiveSet primitives;
   MultivariateSpan<T> span;
   CubicBernstein<T> gradient[3];  ///< world components
+  T gradient_doubt{};             ///< by how much the gradient may be another one
   CubicBernstein<T> magnitude;    ///< of the gradient, for gradient_opacity
 
   PELLUCID_HD LitLayer part(T begin, T end) const noexcept {
@@ -93,9 +94,10 @@ class LitPanel {
     const auto finish = [&](const SegmentResult<T>& segment, T color_error,
                             T depth_error) noexcept {
       found.segment = segment;
-      found.color_error = color_error + segment.opacity * color_rounding_;
+      const T own_error = color_error + segment.opacity * color_rounding_;
+      found.color_error = own_error + segment.opacity * color_doubt_;
       found.opacity_error = min(fixed + depth_error, T(1));
-      return found.color_error + largest_color * depth_error <= payable;
+      return own_error + largest_color * depth_error <= payable;
     };
     const bool proved = demand_.grade == Grade::proved;
     const auto material = [&](T u) noexcept { return this->material(u); };
@@ -211,6 +213,13 @@ class LitPanel {
               min(color_rounding(*layer.reflection, stretch_.light, stretch_.lights, squares,
                                  largest_component(colors.upper), stretch_.gradient_error),
                   demand_.largest_color));
+      if (layer.gradient_doubt > T(0)) {
+        color_doubt_ =
+            max(color_doubt_,
+                min(color_doubt(*layer.reflection, stretch_.light, stretch_.lights, squares,
+                                largest_component(colors.upper), layer.gradient_doubt),
+                    demand_.largest_color));
+      }
     }
   }
 
@@ -360,6 +369,7 @@ class LitPanel {
   T most_{};                 ///< upper bound on the depth
   T rounding_{};             ///< of the depth
   T color_rounding_{};       ///< of the color
+  T color_doubt_{};          ///< of the color, because the gradient may be another one
   ColorRange<T> range_;      ///< contains all shaded colors
   T sharpness_{}, shine_{};  ///< of specular parts: how fast and by how much they change
   T turns_ = T(1);           ///< largest |g|² + g0² over the smallest, of any layer

@@ -242,22 +242,43 @@ PELLUCID_HD Bounds<T> cosine_bounds(const GradientStretch<T>& stretch, const Gra
 
 }  // namespace detail
 
+namespace detail {
+
+/// Returns how far a color may be off where the normal is off by at most `turn`.
+template <class T>
+PELLUCID_HD T color_change(const Reflection<scalar_t<T>>& reflection,
+                           const LightSource<scalar_t<T>>* lights, int count, T largest_color,
+                           T turn) noexcept {
+  using S = scalar_t<T>;
+  S brightest = S(0);
+  for (int i = 0; i < count; ++i) brightest += largest_component(lights[i].color);
+  return T(brightest) * (T(reflection.diffuse) * largest_color * turn +
+                         T(reflection.specular) * min(T(reflection.power) * turn, T(1)));
+}
+
+}  // namespace detail
+
 /// Returns how far a color may be off where gradients are, relative to the largest one on the
 /// stretch: the normal turns by the error of g over √(|g|² + g0²). `squares`: of |g|².
 template <class T>
 PELLUCID_HD T color_rounding(const Reflection<scalar_t<T>>& reflection,
                              const LightSource<scalar_t<T>>* lights, int count,
                              const Bounds<T>& squares, T largest_color, T gradient_error) noexcept {
-  using S = scalar_t<T>;
   const T least = squares.lower + T(reflection.flat_square);
   const auto known = least > T(0);
   const T turn = select(
       known, min(T(2) * gradient_error * sqrt(squares.upper / select(known, least, T(1))), T(1)),
       select(squares.upper > T(0), T(1), T(0)));
-  S brightest = S(0);
-  for (int i = 0; i < count; ++i) brightest += largest_component(lights[i].color);
-  return T(brightest) * (T(reflection.diffuse) * largest_color * turn +
-                         T(reflection.specular) * min(T(reflection.power) * turn, T(1)));
+  return detail::color_change(reflection, lights, count, largest_color, turn);
+}
+
+/// Returns how far a color may be off where gradients are, by at most `doubt` > 0.
+template <class T>
+PELLUCID_HD T color_doubt(const Reflection<T>& reflection, const LightSource<T>* lights, int count,
+                          const Bounds<T>& squares, T largest_color, T doubt) noexcept {
+  const T least = squares.lower + reflection.flat_square;
+  const T turn = least > T(0) ? min(T(2) * doubt / sqrt(least), T(1)) : T(1);
+  return detail::color_change(reflection, lights, count, largest_color, turn);
 }
 
 /// What light makes of colors anywhere on a stretch.
@@ -323,9 +344,35 @@ PELLUCID_HD LitBounds<T> light_bounds(const Reflection<scalar_t<T>>& reflection,
   return result;
 }
 
-/// Return the largest error of the color of a panel by three and by six Gauss nodes, relative to
-/// the range of its colors by light_bounds(): where |g|² + g0² changes by at most the factor
-/// `turns`, the specular part as `sharpness` says, |n·l| has no kink, and the depth is at most 8.
+namespace detail {
+
+/// Returns the entry of a table whose rows end at values of `turns`, and columns at values of
+/// `sharpness`.
+template <class T>
+PELLUCID_HD T error_of_nodes(const float (&table)[6][4], T turns, T sharpness) noexcept {
+  using S = scalar_t<T>;
+  constexpr float row_end[5] = {1.05f, 1.2f, 1.5f, 4, 16}, column_end[3] = {1, 4, 16};
+  T error{};
+  for (int column = 3; column >= 0; --column) {
+    T of_column = T(S(table[5][column]));
+    for (int row = 4; row >= 0; --row) {
+      of_column = select(turns <= T(S(row_end[row])), T(S(table[row][column])), of_column);
+    }
+    error =
+        column == 3 ? of_column : select(sharpness <= T(S(column_end[column])), of_column, error);
+  }
+  return error;
+}
+
+}  // namespace detail
+
+/// Largest error that a single panel may have, relative to the two functions below.
+inline constexpr double worst_of_nodes = 2.25;
+
+/// Return the error of the color of a panel by three and by six Gauss nodes, relative to the range
+/// of its colors by light_bounds(): where |g|² + g0² changes by at most the factor `turns`, the
+/// specular part as `sharpness` says, |n·l| has no kink, and the depth is at most 1; twice as much
+/// at depths up to 8.
 ///
 /// Estimates: at least the largest that a search of ten million random cells found, asserted in
 /// tests/segment. Large ones are rare: one cell in a thousand has a third of them, half of the
