@@ -374,28 +374,22 @@ inline constexpr double worst_of_nodes = 2.25;
 /// specular part as `sharpness` says, |n·l| has no kink, and the depth is at most 1; twice as much
 /// at depths up to 8.
 ///
-/// Estimates: at least the largest that a search of ten million random cells found, asserted in
-/// tests/segment. Large ones are rare: one cell in a thousand has a third of them, half of the
-/// cells a fiftieth.
+/// Estimates: hill climbing finds at most `worst_of_nodes` times these, asserted in tests/segment.
+/// Large ones are rare: of random cells one in a thousand has a third of them, half of the cells a
+/// fiftieth.
 template <class T>
 PELLUCID_HD T error_of_three_nodes(T turns, T sharpness) noexcept {
-  const auto dull = sharpness <= T(4);
-  const T rough = select(turns <= T(16), select(dull, T(0.17), T(0.31)),
-                         select(turns <= T(100), select(dull, T(0.2), T(0.33)), T(0.5)));
-  const T error = select(turns <= T(4), select(dull, T(0.13), T(0.27)), rough);
-  const T mild =
-      select(turns <= T(1.2), select(dull, T(0.06), T(0.09)), select(dull, T(0.1), T(0.17)));
-  return select(turns <= T(1.05), T(0.04), select(turns <= T(1.5), mild, error));
+  constexpr float table[6][4] = {{0.04f, 0.04f, 0.05f, 0.05f}, {0.06f, 0.06f, 0.145f, 0.24f},
+                                 {0.1f, 0.11f, 0.17f, 0.34f},  {0.13f, 0.17f, 0.27f, 0.4f},
+                                 {0.17f, 0.23f, 0.31f, 0.4f},  {0.35f, 0.36f, 0.4f, 0.42f}};
+  return detail::error_of_nodes(table, turns, sharpness);
 }
 template <class T>
 PELLUCID_HD T error_of_six_nodes(T turns, T sharpness) noexcept {
-  const auto dull = sharpness <= T(4);
-  const T rough = select(turns <= T(16), select(dull, T(0.02), T(0.09)),
-                         select(turns <= T(100), select(dull, T(0.05), T(0.14)), T(0.16)));
-  const T error = select(turns <= T(4), select(dull, T(0.012), T(0.09)), rough);
-  const T mild =
-      select(turns <= T(1.2), select(dull, T(2e-3), T(6e-3)), select(dull, T(3e-3), T(0.02)));
-  return select(turns <= T(1.05), T(6e-4), select(turns <= T(1.5), mild, error));
+  constexpr float table[6][4] = {{6e-4f, 2e-3f, 2e-3f, 0.067f},   {2e-3f, 6e-3f, 0.04f, 0.09f},
+                                 {3e-3f, 8e-3f, 0.045f, 0.155f},  {0.0125f, 0.041f, 0.11f, 0.155f},
+                                 {0.043f, 0.09f, 0.134f, 0.185f}, {0.185f, 0.185f, 0.185f, 0.185f}};
+  return detail::error_of_nodes(table, turns, sharpness);
 }
 
 }  // namespace pellucid

@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// Data that repeat along rays, against the reference: the errors of cells that are alike do not
+// cancel. PELLUCID_TEST_SCENES sets how many scenes there are, PELLUCID_TEST_SEED where they begin.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <functional>
+
+#include "pellucid/cpu/render.h"
+#include "tests/packet/instruction_sets.h"
+#include "tests/packet/repeating_scenes.h"
+#include "tests/scenes/reference_frame.h"
+
+namespace pellucid {
+namespace {
+
+/// Pixels that were compared.
+struct Compared {
+  std::size_t pixels = 0, over = 0;  ///< `over`: that report more than the tolerance
+  double largest_share = 0;          ///< of a difference in what is reported
+};
+
+void compare(Scene scene, std::initializer_list<double> tolerances, Compared& compared) {
+  const scenes::ReferenceFrame truth = scenes::reference_frame(scene, 1);
+  RenderOptions options;
+  options.error = true;
+  options.threads = 1;
+  for (const InstructionSet set : sets) {
+    if (!is_supported(set)) continue;
+    options.instruction_set = set;
+    for (const double tolerance : tolerances) {
+      scene.integration.tolerance = tolerance;
+      const Image image = render(scene, options);
+      for (std::size_t i = 0; i < image.pixels.size(); ++i) {
+        const auto said = static_cast<double>(image.error[i]);
+        double off = 0;
+        for (std::size_t c = 0; c < 4; ++c) {
+          off = std::max(off,
+                         std::fabs(static_cast<double>(image.pixels[i][c]) - truth.pixels[i][c]));
+        }
+        ASSERT_LE(off, said + scenes::reference_accuracy * (1 + off))
+            << "tolerance " << tolerance << ", pixel " << i;
+        ++compared.pixels;
+        if (said > tolerance) ++compared.over;
+        if (said > 1e-6) compared.largest_share = std::max(compared.largest_share, off / said);
+      }
+    }
+  }
+}
+
+void compare_many(unsigned count, std::initializer_list<double> tolerances,
+                  const std::function<Scene(unsigned)>& make) {
+  if (no_packets()) GTEST_SKIP() << "this machine has none of the instruction sets of packets";
+  const char* const wanted = std::getenv("PELLUCID_TEST_SCENES");
+  const char* const seed = std::getenv("PELLUCID_TEST_SEED");
+  if (wanted != nullptr) count = static_cast<unsigned>(std::atoi(wanted));
+  const unsigned first = seed != nullptr ? static_cast<unsigned>(std::atoi(seed)) : 1;
+  Compared compared;
+  for (unsigned n = first; n < first + count; ++n) {
+    SCOPED_TRACE(testing::Message() << "scene " << n);
+    compare(make(n), tolerances, compared);
+    if (testing::Test::HasFatalFailure()) return;
+  }
+  EXPECT_LT(compared.over, compared.pixels / 100);
+  testing::Test::RecordProperty("largest_share", std::to_string(compared.largest_share));
+  if (wanted != nullptr) {
+    std::printf(
+        "%zu pixels, %zu of them report more than the tolerance; largest error %.3g of it\n",
+        compared.pixels, compared.over, compared.largest_share);
+  }
+}
+
+TEST(RepeatingFrames, InLightAreWithinWhatTheySay) {
+  compare_many(20, {1.0 / 512, 2e-4}, [](unsigned seed) { return RepeatingScenes(seed).lit(); });
+}
+
+TEST(RepeatingFrames, OfSmoothDataAreWithinWhatTheySay) {
+  compare_many(12, {1e-2, 2e-4}, [](unsigned seed) { return RepeatingScenes(seed).smooth(); });
+}
+
+/// Scenes of the search that were further off than they said: by six nodes (206, 1066), data of two
+/// planes in turn (408, 501), narrow highlights (1384, 1623), and kinks in highlights (139, 628).
+TEST(RepeatingFrames, ThatWereOffAreNot) {
+  if (no_packets()) GTEST_SKIP() << "this machine has none of the instruction sets of packets";
+  Compared compared;
+  for (const unsigned seed : {139U, 206U, 408U, 501U, 628U, 1066U, 1384U, 1623U}) {
+    SCOPED_TRACE(testing::Message() << "scene " << seed);
+    compare(RepeatingScenes(seed).lit(), {1.0 / 512, 1e-3, 2e-4}, compared);
+  }
+}
+
+}  // namespace
+}  // namespace pellucid
