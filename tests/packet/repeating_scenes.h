@@ -47,7 +47,7 @@ class RepeatingScenes {
   /// Returns an unlit volume of smooth waves that repeat along one axis.
   Scene smooth() {
     const int length = one_of({65, 129, 241, 500});
-    return of_type<float>({length, whole(9, 17), whole(9, 17)}, 1, true);
+    return of_type<float>({length, whole(20, 33), whole(20, 33)}, 1, true);
   }
 
  private:
@@ -151,11 +151,22 @@ class RepeatingScenes {
         scenes::make_volume<Value>(scenes::grid_description(values, origin, spacing), value);
     const double longest = spacing[axis] * (along_x[0] - 1);
     Scene scene;
-    scene.layers = {{VolumeContent{volume, function(size, longest), nullptr}}};
+    scene.layers = {
+        {VolumeContent{volume, smooth ? line(longest) : function(size, longest), nullptr}}};
     look(scene, axis, longest, spacing);
     return scene;
   }
 
+  /// Returns a function that is linear over [0, 1], or has one corner.
+  std::shared_ptr<const TransferFunction> line(double length) {
+    const double extinction = power(0.3, 10) / length;
+    scenes::Points points{{-0.1, uniform(0, 1) * extinction, random_color(1)}};
+    if (happens(0.3)) {
+      points.push_back({uniform(0.1, 0.9), uniform(0, 1) * extinction, random_color(1)});
+    }
+    points.push_back({1.1, uniform(0.5, 2) * extinction, random_color(1)});
+    return scenes::transfer(std::move(points));
+  }
   /// Returns a function over [0, size] of the data with an optical depth of 0.3 to 10 in all.
   std::shared_ptr<const TransferFunction> function(double size, double length) {
     const double extinction = power(0.3, 10) / length;

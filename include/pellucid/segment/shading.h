@@ -351,7 +351,7 @@ namespace detail {
 template <class T>
 PELLUCID_HD T error_of_nodes(const float (&table)[6][4], T turns, T sharpness) noexcept {
   using S = scalar_t<T>;
-  constexpr float row_end[5] = {1.05f, 1.2f, 1.5f, 4, 16}, column_end[3] = {1, 4, 16};
+  constexpr float row_end[5] = {1.05f, 1.2f, 1.5f, 4, 16}, column_end[3] = {1, 4, 20};
   T error{};
   for (int column = 3; column >= 0; --column) {
     T of_column = T(S(table[5][column]));
@@ -380,15 +380,15 @@ inline constexpr double worst_of_nodes = 2.25;
 template <class T>
 PELLUCID_HD T error_of_three_nodes(T turns, T sharpness) noexcept {
   constexpr float table[6][4] = {{0.04f, 0.04f, 0.05f, 0.05f}, {0.06f, 0.06f, 0.145f, 0.24f},
-                                 {0.1f, 0.11f, 0.17f, 0.34f},  {0.13f, 0.17f, 0.27f, 0.4f},
-                                 {0.17f, 0.23f, 0.31f, 0.4f},  {0.35f, 0.36f, 0.4f, 0.42f}};
+                                 {0.1f, 0.11f, 0.215f, 0.34f}, {0.13f, 0.17f, 0.27f, 0.4f},
+                                 {0.17f, 0.23f, 0.32f, 0.4f},  {0.35f, 0.36f, 0.4f, 0.42f}};
   return detail::error_of_nodes(table, turns, sharpness);
 }
 template <class T>
 PELLUCID_HD T error_of_six_nodes(T turns, T sharpness) noexcept {
-  constexpr float table[6][4] = {{6e-4f, 2e-3f, 2e-3f, 0.067f},   {2e-3f, 6e-3f, 0.04f, 0.09f},
-                                 {3e-3f, 8e-3f, 0.045f, 0.155f},  {0.0125f, 0.041f, 0.11f, 0.155f},
-                                 {0.043f, 0.09f, 0.134f, 0.185f}, {0.185f, 0.185f, 0.185f, 0.185f}};
+  constexpr float table[6][4] = {{6e-4f, 2e-3f, 3e-3f, 0.067f},   {2e-3f, 6e-3f, 0.041f, 0.09f},
+                                 {3e-3f, 8e-3f, 0.055f, 0.155f},  {0.0125f, 0.041f, 0.111f, 0.155f},
+                                 {0.043f, 0.09f, 0.136f, 0.185f}, {0.185f, 0.185f, 0.185f, 0.185f}};
   return detail::error_of_nodes(table, turns, sharpness);
 }
 

@@ -340,8 +340,8 @@ class PacketIntegrator {
       return max(like_.variance_with(lit.signs, deviation) - sampled_.variance(), F(0));
     };
     const F of_three = seen * lit.by_three, of_six = seen * lit.by_six;
-    const F variance = growth(of_six);
-    const M by_three = growth(of_three) <= largest;
+    const F variance = growth(of_six), variance_by_three = growth(of_three);
+    const M by_three = variance_by_three <= largest;
     const M take = on & piece.end.found & affordable & (by_three | (variance <= largest));
     const M rest = on & !take;
     if (any(rest)) {
@@ -367,10 +367,9 @@ class PacketIntegrator {
     }
     s.radiance = s.opacity * color;
     fold_.add(take, s);
-    const F deviation = select(more, of_six, of_three);
-    sampled_.charge(take, fold_.budget, growth(deviation), linear, s.opacity, length, left,
-                    transparency);
-    like_.add(take, lit.signs, deviation);
+    sampled_.charge(take, fold_.budget, select(more, variance, variance_by_three), linear,
+                    s.opacity, length, left, transparency);
+    like_.add(take, lit.signs, select(more, of_six, of_three));
     pieces_ += select(take, I(1), I(0));
     panels_ += select(take, I(1), I(0));
     proved_ = proved_ & !take;
