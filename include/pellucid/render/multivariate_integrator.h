@@ -77,9 +77,9 @@ class MultivariateRayIntegrator {
 
   /// The same for any stretch. It has a length() in world units, panel(begin, end, demand,
   /// allowance): the PanelSegment of a part, or where to cut it, and most_panels(): of a ray, after
-  /// which no more is proved. Estimates then decide where to cut, and errors are still charged with
-  /// what is proved. After as many panels again, or at once in the grade `estimated`, parts are
-  /// taken as they come, whatever their error.
+  /// which the tolerance is not proved any more. Estimates then decide where to cut, and errors are
+  /// still charged with what is proved: to 1e-3, for half as many panels again. After twice as
+  /// many, or at once in the grade `estimated`, parts are taken as they come, whatever their error.
   template <class Stretch>
   PELLUCID_HD PELLUCID_DEVICE_CALL void add_panels(const Stretch& stretch, Interval<double> range,
                                                    double left_out,
@@ -157,6 +157,19 @@ class MultivariateRayIntegrator {
 
  private:
   static constexpr int most_cuts = 60;
+  /// What is proved of a ray whose tolerance cannot be.
+  static constexpr double coarse_tolerance = 1e-3;
+
+  /// What a panel may cost.
+  struct Allowance {
+    const RayBudget<double>& budget;
+    double length, transparency, least;
+    double proved;  ///< the largest bound, where estimates decide
+
+    PELLUCID_HD double operator()(double opacity) const noexcept {
+      return max(budget.allowance(length, opacity, transparency), least);
+    }
+  };
   static constexpr double infinity = std::numeric_limits<double>::infinity();
 
   /// Returns an upper bound on the radiance of the remainder.
@@ -191,12 +204,14 @@ class MultivariateRayIntegrator {
     const double length =
         begin > 0 || end < 1 ? (end - begin) * stretch.length() : stretch.length();
     // Errors that are proved may have used up the budget where estimates decide.
+    const double share = length / length_;
     const double least = demand_.estimate_suffices
-                             ? 0.5 * tolerance_ * (length / length_)
-                             : RayBudget<double>::minimum_allowance(tolerance_, length / length_);
-    const auto allowance = [&](double opacity) noexcept {
-      return max(budget_.allowance(length, opacity, fold_.transparency()), least);
-    };
+                             ? 0.5 * tolerance_ * share
+                             : RayBudget<double>::minimum_allowance(tolerance_, share);
+    const double proved = panels_ - stretch.most_panels() < stretch.most_panels() / 2
+                              ? coarse_tolerance * share
+                              : infinity;
+    const Allowance allowance{budget_, length, fold_.transparency(), least, proved};
     const PanelSegment<double> panel = stretch.panel(begin, end, demand_, allowance);
     if (!panel.done) return panel;
     ++panels_;

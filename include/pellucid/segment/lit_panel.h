@@ -129,12 +129,16 @@ class LitPanel {
                              largest_component(color_of_every_other(many) - color));
         const T depth_error = exponential_ ? min(bent, abs(few.total - many.total)) : T(0);
         found.proved = false;
+        bool is_proved = true;
         const bool fits = finish(fine, fine.opacity * min(span, T(2) * change), depth_error);
         if (proved) {
           finish(fine, min(fine.opacity * span, error_by_terms(fine.radiance)), bent);
           found.proved = true;
+          if constexpr (requires { allowance.proved; }) {
+            is_proved = found.color_error + largest_color * found.opacity_error <= allowance.proved;
+          }
         }
-        if (fits && smooth) {
+        if (fits && smooth && is_proved) {
           result.done = true;
           return result;
         }
@@ -396,8 +400,9 @@ class LitPanel {
 /// exponent of a Gaussian by more than 2: where g comes close to 0, the normal turns faster than
 /// nodes see. The depth of Gaussians is charged with the difference of 4 and 7 nodes. Where proofs
 /// are given up (PanelDemand::estimate_suffices), the estimate decides which panels are accepted,
-/// and each is charged with its bound. Asserted in
-/// tests/segment/test_lit_panel.cpp: no panel is off by more than it says.
+/// if their bounds are at most `allowance.proved`, where there is such a number. Each is charged
+/// with its bound. Asserted in tests/segment/test_lit_panel.cpp: no panel is off by more than it
+/// says.
 template <class T, class Allowance>
 PELLUCID_HD PanelSegment<T> integrate_lit_panel(const LitStretch<T>& stretch,
                                                 const LitLayer<T>* layers_of_part, T begin, T end,
