@@ -119,7 +119,7 @@ class RandomErrors {
 template <class T>
 class LikeErrors {
  public:
-  static constexpr int features = 4, waves = 6;
+  static constexpr int features = 4, waves = 8;
 
   /// The signs of a span.
   struct Signs {
@@ -129,8 +129,10 @@ class LikeErrors {
   /// Returns the signs of a span with these features.
   static Signs signs(const T (&feature)[features]) noexcept {
     // Periods per feature. Each direction has two waves, a quarter of a period apart.
-    constexpr float frequency[waves / 2][features] = {
-        {11.3f, 7.1f, -9.7f, 5.3f}, {-6.1f, 12.7f, 8.3f, -10.9f}, {9.1f, -8.9f, 6.7f, 12.1f}};
+    constexpr float frequency[waves / 2][features] = {{11.3f, 7.1f, -9.7f, 5.3f},
+                                                      {-6.1f, 12.7f, 8.3f, -10.9f},
+                                                      {9.1f, -8.9f, 6.7f, 12.1f},
+                                                      {-12.9f, -5.7f, 10.3f, 7.7f}};
     const auto wave = [](T at) noexcept { return T(4) * abs((at - floor(at)) - T(0.5f)) - T(1); };
     Signs result;
     for (int k = 0; k < waves / 2; ++k) {
