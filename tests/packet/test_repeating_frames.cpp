@@ -93,5 +93,63 @@ TEST(RepeatingFrames, ThatWereOffAreNot) {
   }
 }
 
+/// Gradients of the field jump at faces, and rays in planes of faces may have those of either side:
+/// along the axes and diagonals of a grid, in a medium and on isosurfaces.
+TEST(FieldGradients, AlongFacesAreWithinWhatTheySay) {
+  const auto volume = scenes::make_volume<float>(
+      scenes::grid_description({9, 9, 9}, {-1, -1, -1}, {0.25, 0.25, 0.25}),
+      [](int i, int j, int k) {
+        return 0.5 + 0.4 * std::sin(1.3 * i + 0.9 * j * k) * std::cos(0.7 * k + 1.1 * j);
+      });
+  int doubtful = 0;
+  for (const GradientKind kind : {GradientKind::field, GradientKind::smooth}) {
+    for (const bool surface : {false, true}) {
+      Layer layer{VolumeContent{volume,
+                                scenes::transfer({{0, surface ? 0.0 : 0.3, {0.2, 0.5, 1}},
+                                                  {1, surface ? 0.0 : 2, {1, 1, 0.3}}}),
+                                nullptr}};
+      layer.shading = Shading{};
+      layer.shading->gradient = kind;
+      if (surface) layer.isosurfaces = {{0.5, 0.7, {1, 0.8, 0.6}}};
+      for (const Vec3<double>& along : {Vec3<double>{0, 0, -1}, Vec3<double>{1, 0, 0},
+                                        Vec3<double>{0, 1, 0}, Vec3<double>{1, 1, 0}}) {
+        Scene scene;
+        scene.layers = {layer};
+        scene.lights = {{HeadLight{}, {1, 1, 1}},
+                        {DirectionalLight{{0.3, -0.6, 0.7}}, {0.5, 1, 0.8}}};
+        scene.camera.projection = Projection::orthographic;
+        scene.camera.focal_point = {0, 0, 0};
+        scene.camera.position = along * -4.0;
+        scene.camera.up = along.z == 0 ? Vec3<double>{0, 0, 1} : Vec3<double>{0, 1, 0};
+        // Rays a quarter apart, all but those along a diagonal in two planes of faces.
+        scene.size = {7, 7};
+        scene.camera.parallel_scale = 0.875;
+        scene.integration.tolerance = 1e-4;
+        const scenes::ReferenceFrame truth = scenes::reference_frame(scene, 1);
+        RenderOptions options;
+        options.error = true;
+        options.threads = 1;
+        for (const InstructionSet set : {InstructionSet::scalar, sets[0], sets[1], sets[2]}) {
+          if (!is_supported(set)) continue;
+          options.instruction_set = set;
+          const Image image = render(scene, options);
+          for (std::size_t i = 0; i < image.pixels.size(); ++i) {
+            const auto said = static_cast<double>(image.error[i]);
+            if (said > scene.integration.tolerance) ++doubtful;
+            if (kind == GradientKind::smooth) {
+              ASSERT_LE(said, scene.integration.tolerance);
+            }
+            for (std::size_t c = 0; c < 4; ++c) {
+              ASSERT_NEAR(image.pixels[i][c], truth.pixels[i][c], said + 1e-9)
+                  << "pixel " << i << ", along " << along.x << ", " << along.y << ", " << along.z;
+            }
+          }
+        }
+      }
+    }
+  }
+  EXPECT_GT(doubtful, 100);
+}
+
 }  // namespace
 }  // namespace pellucid
