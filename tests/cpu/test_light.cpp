@@ -100,6 +100,25 @@ TEST(Light, LightsAddAndHaveColors) {
   expect_near(pixel(scene), {0.2 * opacity, 0.2 * opacity, 0.2 * opacity, opacity});
 }
 
+/// Bounds that are proved come together slowly: a ray gives them up after some thousand panels.
+TEST(Light, WhereProofsAreGivenUpThePictureIsThatOfTheEstimate) {
+  const auto data = scenes::sampled(
+      {7, 6, 60},
+      [](double x, double y, double z) { return std::sin(40 * z) + x * y + std::cos(31 * z + x); },
+      "waves");
+  Layer layer{VolumeContent{
+      data, scenes::transfer({{-2, 0.2, {0.2, 0.5, 1}}, {2, 1.2, {1, 0.8, 0.3}}}), nullptr}};
+  layer.shading = Shading{};
+  layer.shading->flatness = 0;
+  Scene scene = seen(layer, 1e-5);
+  const auto estimated = pixel(scene);
+  scene.integration.grade = Grade::proved;
+  bool said = true;
+  const auto proved = pixel(scene, &said);
+  EXPECT_FALSE(said);
+  expect_near(proved, estimated, 3e-5);
+}
+
 TEST(Light, AnUnlitLayerIgnoresLights) {
   Scene scene = seen(Ramp{}.layer(0.7));
   const auto plain = pixel(scene);

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <random>
@@ -101,6 +102,78 @@ TEST(BendsOfTheData, AreAsQuadratureOverPlacesSays) {
   EXPECT_NEAR(simpson_error_mean_square(2.0), 16.0 / 720, 1e-5);
   EXPECT_LT(simpson_error_mean_square(2.25), 3e-4);
   EXPECT_NEAR(uncorrelated_error_mean_square(2.0), 38.0 / 9 / 720, 1e-6);
+}
+
+/// The root of the variance over that of random errors, for a ray of spans of these features.
+template <class Features>
+double growth_of_like_errors(int spans, Features&& features) {
+  LikeErrors<double> errors;
+  double random = 0;
+  for (int n = 0; n < spans; ++n) {
+    double feature[LikeErrors<double>::features];
+    features(n, feature);
+    if (n + 1 == spans) {
+      return std::sqrt(errors.variance_with(LikeErrors<double>::signs(feature), 1) / (random + 1));
+    }
+    errors.add(true, LikeErrors<double>::signs(feature), 1);
+    random += 1;
+  }
+  return 0;
+}
+
+TEST(LikeErrors, OfOneSpanAreOneAndAHalfTimesIt) {
+  std::mt19937 random(4);
+  std::uniform_real_distribution<double> unit(0, 1);
+  for (int n = 0; n < 100; ++n) {
+    const double growth = growth_of_like_errors(1, [&](int, double(&feature)[4]) {
+      for (double& f : feature) f = unit(random);
+    });
+    EXPECT_NEAR(growth, 1.5, 1e-12);
+  }
+}
+
+TEST(LikeErrors, AddUpLinearlyWhereSpansRepeat) {
+  std::mt19937 random(5);
+  std::uniform_real_distribution<double> unit(0, 1);
+  constexpr int spans = 400, rays = 400;
+  for (const int period : {1, 2, 3, 7, 16}) {
+    double mean = 0;
+    int small = 0;
+    for (int n = 0; n < rays; ++n) {
+      double of_period[16][4];
+      for (auto& feature : of_period) {
+        for (double& f : feature) f = unit(random);
+      }
+      const double growth = growth_of_like_errors(spans, [&](int k, double(&feature)[4]) {
+        // But for rounding, and a drift along the ray.
+        for (int i = 0; i < 4; ++i) {
+          feature[i] = of_period[k % period][i] + 1e-6 * unit(random) + 1e-5 * k;
+        }
+      });
+      // Of the sum of all errors, which is the root of `spans` times that of random ones, over the
+      // root of the period.
+      const double share = growth / std::sqrt(spans) * std::sqrt(period);
+      mean += share / rays;
+      if (share < 0.6) ++small;
+    }
+    EXPECT_GT(mean, 1.3) << period;
+    EXPECT_LE(small, rays / 40) << period;
+  }
+}
+
+TEST(LikeErrors, AreRandomWhereSpansDiffer) {
+  std::mt19937 random(6);
+  std::uniform_real_distribution<double> unit(0, 1);
+  double mean = 0, largest = 0;
+  for (int n = 0; n < 400; ++n) {
+    const double growth = growth_of_like_errors(200, [&](int, double(&feature)[4]) {
+      for (double& f : feature) f = unit(random);
+    });
+    mean += growth / 400;
+    largest = std::max(largest, growth);
+  }
+  EXPECT_LT(mean, 1.2);
+  EXPECT_LT(largest, 3);
 }
 
 }  // namespace

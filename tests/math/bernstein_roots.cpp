@@ -87,5 +87,11 @@ TEST(BernsteinRoots, AreFoundWhateverTheScale) {
   }
 }
 
+TEST(BernsteinRoots, OfAProductAreThoseOfBoth) {
+  const auto f = product(with_roots<2>({0.3, 0.6}, 2), with_roots<3>({-1, 0.1, 0.8}, 3));
+  const auto truth = with_roots<5>({0.3, 0.6, -1, 0.1, 0.8}, 6);
+  for (int k = 0; k <= 5; ++k) EXPECT_NEAR(f.b[k], truth.b[k], 1e-14) << k;
+}
+
 }  // namespace
 }  // namespace pellucid

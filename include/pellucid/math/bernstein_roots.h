@@ -11,6 +11,24 @@ struct BernsteinPolynomial {
   T b[N + 1]{};
 };
 
+/// Returns the product of two polynomials, c_k = Σ_{i+j=k} C(M,i) C(N,j) / C(M+N,k) a_i b_j.
+template <class T, int M, int N>
+PELLUCID_HD constexpr BernsteinPolynomial<T, M + N> product(
+    const BernsteinPolynomial<T, M>& a, const BernsteinPolynomial<T, N>& b) noexcept {
+  // C(M,i) C(N,j) / C(M+N,i+j) from one i to the next and from one j to the next.
+  BernsteinPolynomial<T, M + N> result;
+  T of_row = T(1);
+  for (int i = 0; i <= M; ++i) {
+    T weight = of_row;
+    for (int j = 0; j <= N; ++j) {
+      result.b[i + j] += weight * a.b[i] * b.b[j];
+      if (j < N) weight *= T((N - j) * (i + j + 1)) / T((j + 1) * (M + N - i - j));
+    }
+    of_row *= T((M - i) * (i + 1)) / T((i + 1) * (M + N - i));
+  }
+  return result;
+}
+
 namespace detail {
 
 /// Halves a polynomial at 1/2 by de Casteljau: `f` becomes the first half; returns the second.

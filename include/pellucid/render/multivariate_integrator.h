@@ -77,7 +77,9 @@ class MultivariateRayIntegrator {
 
   /// The same for any stretch. It has a length() in world units, panel(begin, end, demand,
   /// allowance): the PanelSegment of a part, or where to cut it, and most_panels(): of a ray, after
-  /// which parts are taken as they come, whatever their error.
+  /// which the tolerance is not proved any more. Estimates then decide where to cut, and errors are
+  /// still charged with what is proved: to 1e-3, for half as many panels again. After twice as
+  /// many, or at once in the grade `estimated`, parts are taken as they come, whatever their error.
   template <class Stretch>
   PELLUCID_HD PELLUCID_DEVICE_CALL void add_panels(const Stretch& stretch, Interval<double> range,
                                                    double left_out,
@@ -93,8 +95,10 @@ class MultivariateRayIntegrator {
       // If the span's length changes, inner cuts move in proportion.
       demand_.position_error =
           begin > 0 && end < 1 ? (end - begin) * position_error : position_error;
-      demand_.last_resort =
-          open > most_cuts || !(end - begin > 1e-9) || panels_ > stretch.most_panels();
+      const bool many = panels_ > stretch.most_panels(), proved = demand_.grade == Grade::proved;
+      demand_.estimate_suffices = proved && many;
+      demand_.last_resort = open > most_cuts || !(end - begin > 1e-9) || (!proved && many) ||
+                            panels_ / 2 > stretch.most_panels();
       const PanelSegment<double> panel = integrate(stretch, begin, end, left_out);
       if (!panel.done) {
         const double cut = begin + panel.cut * (end - begin);
@@ -153,6 +157,19 @@ class MultivariateRayIntegrator {
 
  private:
   static constexpr int most_cuts = 60;
+  /// What is proved of a ray whose tolerance cannot be.
+  static constexpr double coarse_tolerance = 1e-3;
+
+  /// What a panel may cost.
+  struct Allowance {
+    const RayBudget<double>& budget;
+    double length, transparency, least;
+    double proved;  ///< the largest bound, where estimates decide
+
+    PELLUCID_HD double operator()(double opacity) const noexcept {
+      return max(budget.allowance(length, opacity, transparency), least);
+    }
+  };
   static constexpr double infinity = std::numeric_limits<double>::infinity();
 
   /// Returns an upper bound on the radiance of the remainder.
@@ -186,10 +203,15 @@ class MultivariateRayIntegrator {
                                              double left_out) noexcept {
     const double length =
         begin > 0 || end < 1 ? (end - begin) * stretch.length() : stretch.length();
-    const auto allowance = [&](double opacity) noexcept {
-      return max(budget_.allowance(length, opacity, fold_.transparency()),
-                 RayBudget<double>::minimum_allowance(tolerance_, length / length_));
-    };
+    // Errors that are proved may have used up the budget where estimates decide.
+    const double share = length / length_;
+    const double least = demand_.estimate_suffices
+                             ? 0.5 * tolerance_ * share
+                             : RayBudget<double>::minimum_allowance(tolerance_, share);
+    const double proved = panels_ - stretch.most_panels() < stretch.most_panels() / 2
+                              ? coarse_tolerance * share
+                              : infinity;
+    const Allowance allowance{budget_, length, fold_.transparency(), least, proved};
     const PanelSegment<double> panel = stretch.panel(begin, end, demand_, allowance);
     if (!panel.done) return panel;
     ++panels_;
@@ -214,6 +236,7 @@ class MultivariateRayIntegrator {
                         Interval<double> range) noexcept {
     PanelDemand<double> demand = demand_;
     demand.last_resort = true;
+    demand.estimate_suffices = false;
     demand.grade = Grade::proved;
     const auto nothing = [](double) noexcept { return 0.0; };
     const auto inside = [&](double to) noexcept {

@@ -12,13 +12,51 @@ inline constexpr double shortest_lit_piece = 1e-12;
 
 namespace detail {
 
-/// Adds f (1 - u) a + f u b, of degree 4.
-PELLUCID_HD inline void add_linear_product(const CubicBernstein<double>& f, double a, double b,
-                                           BernsteinPolynomial<double, 4>& sum) noexcept {
-  for (int k = 0; k <= 4; ++k) {
-    if (k < 4) sum.b[k] += f.b[k] * a * ((4 - k) / 4.0);
-    if (k > 0) sum.b[k] += f.b[k - 1] * b * (k / 4.0);
+/// Returns g·v along a stretch, for a vector that goes from `first` to `last` as a line.
+PELLUCID_HD inline BernsteinPolynomial<double, 4> gradient_along(
+    const CubicBernstein<double> (&gradient)[3], const Vec3<double>& first,
+    const Vec3<double>& last) noexcept {
+  BernsteinPolynomial<double, 4> sum;
+  for (int a = 0; a < 3; ++a) {
+    const double* const b = gradient[a].b;
+    const BernsteinPolynomial<double, 3> component{{b[0], b[1], b[2], b[3]}};
+    const auto term = product(component, BernsteinPolynomial<double, 1>{{first[a], last[a]}});
+    for (int k = 0; k <= 4; ++k) sum.b[k] += term.b[k];
   }
+  return sum;
+}
+
+/// Calls visit(u) where a polynomial changes its sign.
+template <int N, class Visit>
+PELLUCID_HD void for_each_sign_change(const BernsteinPolynomial<double, N>& f,
+                                      Visit&& visit) noexcept {
+  double position[N];
+  const int count = sign_change_positions(f, position);
+  for (int k = 0; k < count; ++k) visit(position[k]);
+}
+
+/// Calls visit(u) where g·h changes its sign for a point light at `first` from the begin of a
+/// stretch, and at `last` from its end. With p = P - x and the direction v to the eye, g·h is
+/// proportional to g·p + |p| g·v: it vanishes at some of the zeros of (g·p)² - |p|² (g·v)².
+template <class Visit>
+PELLUCID_HD void for_each_point_highlight_cut(const CubicBernstein<double> (&gradient)[3],
+                                              const Vec3<double>& first, const Vec3<double>& last,
+                                              const Vec3<double>& to_eye, Visit&& visit) noexcept {
+  const BernsteinPolynomial<double, 4> to_light = gradient_along(gradient, first, last);
+  BernsteinPolynomial<double, 3> along_view;
+  for (int k = 0; k < 4; ++k) {
+    along_view.b[k] =
+        dot(to_eye, Vec3<double>{gradient[0].b[k], gradient[1].b[k], gradient[2].b[k]});
+  }
+  const BernsteinPolynomial<double, 2> square{
+      {dot(first, first), dot(first, last), dot(last, last)}};
+  BernsteinPolynomial<double, 8> difference = product(to_light, to_light);
+  const auto of_view = product(square, product(along_view, along_view));
+  for (int k = 0; k <= 8; ++k) difference.b[k] -= of_view.b[k];
+  for_each_sign_change(difference, [&](double u) noexcept {
+    // At the other zeros g·p = |p| g·v.
+    if (!(evaluate(to_light, u) * evaluate(along_view, u) > 0)) visit(u);
+  });
 }
 
 /// Calls visit(u) where the data of a stretch cross the control points of a table.
@@ -33,8 +71,9 @@ PELLUCID_HD void for_each_table_cut(const CubicBernstein<double>& data,
 }  // namespace detail
 
 /// Calls visit(u), 0 <= u < 1, in no order, where a layer's stretch has to be cut for its light:
-/// where tables have control points, and where a normal turns its edge to a light. `begin` and
-/// `end`: the ends of the stretch in the world; `direction`: the ray's, of length 1.
+/// where tables have control points, where a normal turns its edge to a light, and where it turns
+/// it to the direction of a highlight, if that has a kink there. `begin` and `end`: the ends of the
+/// stretch in the world; `direction`: the ray's, of length 1.
 template <class Visit>
 PELLUCID_HD void for_each_lit_cut(const LitLayer<double>& layer, const LightSource<double>* light,
                                   int lights, const Vec3<double>& begin, const Vec3<double>& end,
@@ -47,21 +86,26 @@ PELLUCID_HD void for_each_lit_cut(const LitLayer<double>& layer, const LightSour
     detail::for_each_table_cut(layer.magnitude, *layer.gradient_opacity, visit);
   }
   if (layer.reflection == nullptr) return;
+  const bool highlights = has_kink_in_highlight(*layer.reflection);
   for (int i = 0; i < lights; ++i) {
     // g·l, or for a point light g·(P - x).
+    using Kind = LightSource<double>::Kind;
+    const bool is_point = light[i].kind == Kind::point;
     Vec3<double> first = light[i].place, last = light[i].place;
-    if (light[i].kind == LightSource<double>::Kind::head) first = last = direction;
-    if (light[i].kind == LightSource<double>::Kind::point) {
+    if (light[i].kind == Kind::head) first = last = direction;
+    if (is_point) {
       first = light[i].place - begin;
       last = light[i].place - end;
     }
-    BernsteinPolynomial<double, 4> along;
-    for (int a = 0; a < 3; ++a) {
-      detail::add_linear_product(layer.gradient[a], first[a], last[a], along);
+    detail::for_each_sign_change(detail::gradient_along(layer.gradient, first, last), visit);
+    // Of a head light h is l.
+    if (!highlights || light[i].kind == Kind::head) continue;
+    if (is_point) {
+      detail::for_each_point_highlight_cut(layer.gradient, first, last, -direction, visit);
+    } else {
+      const Vec3<double> half = directions(light[i], begin, -direction).half;
+      detail::for_each_sign_change(detail::gradient_along(layer.gradient, half, half), visit);
     }
-    double position[4];
-    const int count = sign_change_positions(along, position);
-    for (int k = 0; k < count; ++k) visit(position[k]);
   }
 }
 
@@ -74,7 +118,7 @@ struct LitPiece {
 
   PELLUCID_HD double length() const noexcept { return (last - first) * parts.length(); }
   /// Bounds that are proved come together as slowly as panels get short: a ray takes some 10 ms
-  /// then.
+  /// until they are given up.
   PELLUCID_HD static long most_panels() noexcept { return 4096; }
   template <class Allowance>
   PELLUCID_HD PanelSegment<double> panel(double begin, double end,

@@ -16,6 +16,7 @@ struct LitLayer {
   PrimitiveSet primitives;
   MultivariateSpan<T> span;
   CubicBernstein<T> gradient[3];  ///< world components
+  T gradient_doubt{};             ///< by how much the gradient may be another one
   CubicBernstein<T> magnitude;    ///< of the gradient, for gradient_opacity
 
   PELLUCID_HD LitLayer part(T begin, T end) const noexcept {
@@ -93,9 +94,10 @@ class LitPanel {
     const auto finish = [&](const SegmentResult<T>& segment, T color_error,
                             T depth_error) noexcept {
       found.segment = segment;
-      found.color_error = color_error + segment.opacity * color_rounding_;
+      const T own_error = color_error + segment.opacity * color_rounding_;
+      found.color_error = own_error + segment.opacity * color_doubt_;
       found.opacity_error = min(fixed + depth_error, T(1));
-      return found.color_error + largest_color * depth_error <= payable;
+      return own_error + largest_color * depth_error <= payable;
     };
     const bool proved = demand_.grade == Grade::proved;
     const auto material = [&](T u) noexcept { return this->material(u); };
@@ -118,17 +120,28 @@ class LitPanel {
     }
     const bool dull = sharpness_ <= T(4) || coarse.opacity * shine_ <= T(0.25) * payable;
     const bool smooth = few.total <= T(4) && turns_ <= T(16) && exponents_ <= T(2) && dull;
-    if (!proved && smooth) {
-      const PanelNodes<7, T> many(length_, material);
-      const Rgb<T> color = panel_color(many);
-      const SegmentResult<T> fine = segment_of_depth(many.total, range_.clamped(color));
-      const T change = max(largest_component(panel_color(few) - color),
-                           largest_component(color_of_every_other(many) - color));
-      const T depth_error = exponential_ ? min(bent, abs(few.total - many.total)) : T(0);
-      found.proved = false;
-      if (finish(fine, fine.opacity * min(span, T(2) * change), depth_error)) {
-        result.done = true;
-        return result;
+    if (!proved || demand_.estimate_suffices) {
+      if (smooth || (proved && demand_.last_resort)) {
+        const PanelNodes<7, T> many(length_, material);
+        const Rgb<T> color = panel_color(many);
+        const SegmentResult<T> fine = segment_of_depth(many.total, range_.clamped(color));
+        const T change = max(largest_component(panel_color(few) - color),
+                             largest_component(color_of_every_other(many) - color));
+        const T depth_error = exponential_ ? min(bent, abs(few.total - many.total)) : T(0);
+        found.proved = false;
+        bool is_proved = true;
+        const bool fits = finish(fine, fine.opacity * min(span, T(2) * change), depth_error);
+        if (proved) {
+          finish(fine, min(fine.opacity * span, error_by_terms(fine.radiance)), bent);
+          found.proved = true;
+          if constexpr (requires { allowance.proved; }) {
+            is_proved = found.color_error + largest_color * found.opacity_error <= allowance.proved;
+          }
+        }
+        if (fits && smooth && is_proved) {
+          result.done = true;
+          return result;
+        }
       }
     }
     result.done = demand_.last_resort;
@@ -204,6 +217,13 @@ class LitPanel {
               min(color_rounding(*layer.reflection, stretch_.light, stretch_.lights, squares,
                                  largest_component(colors.upper), stretch_.gradient_error),
                   demand_.largest_color));
+      if (layer.gradient_doubt > T(0)) {
+        color_doubt_ =
+            max(color_doubt_,
+                min(color_doubt(*layer.reflection, stretch_.light, stretch_.lights, squares,
+                                largest_component(colors.upper), layer.gradient_doubt),
+                    demand_.largest_color));
+      }
     }
   }
 
@@ -353,6 +373,7 @@ class LitPanel {
   T most_{};                 ///< upper bound on the depth
   T rounding_{};             ///< of the depth
   T color_rounding_{};       ///< of the color
+  T color_doubt_{};          ///< of the color, because the gradient may be another one
   ColorRange<T> range_;      ///< contains all shaded colors
   T sharpness_{}, shine_{};  ///< of specular parts: how fast and by how much they change
   T turns_ = T(1);           ///< largest |g|² + g0² over the smallest, of any layer
@@ -377,8 +398,11 @@ class LitPanel {
 /// other of the 7, for a depth of at most 4, where the length √(|g|² + g0²) changes by at most a
 /// factor of 4, the logarithm of a highlight by at most 4, or by too little light to matter, and no
 /// exponent of a Gaussian by more than 2: where g comes close to 0, the normal turns faster than
-/// nodes see. The depth of Gaussians is charged with the difference of 4 and 7 nodes. Asserted in
-/// tests/segment/test_lit_panel.cpp: no panel is off by more than it says.
+/// nodes see. The depth of Gaussians is charged with the difference of 4 and 7 nodes. Where proofs
+/// are given up (PanelDemand::estimate_suffices), the estimate decides which panels are accepted,
+/// if their bounds are at most `allowance.proved`, where there is such a number. Each is charged
+/// with its bound. Asserted in tests/segment/test_lit_panel.cpp: no panel is off by more than it
+/// says.
 template <class T, class Allowance>
 PELLUCID_HD PanelSegment<T> integrate_lit_panel(const LitStretch<T>& stretch,
                                                 const LitLayer<T>* layers_of_part, T begin, T end,

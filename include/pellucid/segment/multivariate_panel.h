@@ -19,6 +19,9 @@ struct PanelDemand {
   scalar_t<T> largest_color = 1;             ///< C_max >= 1: a bound on every color on the ray
   T position_error{};                        ///< error of the positions of its ends, world units
   mask_t<T> last_resort = mask_t<T>(false);  ///< accept the result whatever its error
+  /// Of light with the grade `proved`: accept the result if its estimated error is allowed. It
+  /// still reports what is proved.
+  bool estimate_suffices = false;
 };
 
 /// The result of a panel, or where to cut it.

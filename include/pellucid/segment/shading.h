@@ -25,6 +25,13 @@ struct Reflection {
   T flat_square{};  ///< g0², of the normal g / √(|g|² + g0²)
 };
 
+/// Returns whether |n·h|^power has a kink at n·h = 0, or bends there faster than Gauss nodes on
+/// both sides of it can tell: powers below 4 but for 2, whose highlight is a polynomial of n·h.
+template <class T>
+PELLUCID_HD constexpr bool has_kink_in_highlight(const Reflection<T>& reflection) noexcept {
+  return reflection.specular > T(0) && reflection.power < T(4) && reflection.power != T(2);
+}
+
 /// What light makes of a color: color ∘ factor + added.
 template <class T>
 struct Lit {
@@ -235,22 +242,43 @@ PELLUCID_HD Bounds<T> cosine_bounds(const GradientStretch<T>& stretch, const Gra
 
 }  // namespace detail
 
+namespace detail {
+
+/// Returns how far a color may be off where the normal is off by at most `turn`.
+template <class T>
+PELLUCID_HD T color_change(const Reflection<scalar_t<T>>& reflection,
+                           const LightSource<scalar_t<T>>* lights, int count, T largest_color,
+                           T turn) noexcept {
+  using S = scalar_t<T>;
+  S brightest = S(0);
+  for (int i = 0; i < count; ++i) brightest += largest_component(lights[i].color);
+  return T(brightest) * (T(reflection.diffuse) * largest_color * turn +
+                         T(reflection.specular) * min(T(reflection.power) * turn, T(1)));
+}
+
+}  // namespace detail
+
 /// Returns how far a color may be off where gradients are, relative to the largest one on the
 /// stretch: the normal turns by the error of g over √(|g|² + g0²). `squares`: of |g|².
 template <class T>
 PELLUCID_HD T color_rounding(const Reflection<scalar_t<T>>& reflection,
                              const LightSource<scalar_t<T>>* lights, int count,
                              const Bounds<T>& squares, T largest_color, T gradient_error) noexcept {
-  using S = scalar_t<T>;
   const T least = squares.lower + T(reflection.flat_square);
   const auto known = least > T(0);
   const T turn = select(
       known, min(T(2) * gradient_error * sqrt(squares.upper / select(known, least, T(1))), T(1)),
       select(squares.upper > T(0), T(1), T(0)));
-  S brightest = S(0);
-  for (int i = 0; i < count; ++i) brightest += largest_component(lights[i].color);
-  return T(brightest) * (T(reflection.diffuse) * largest_color * turn +
-                         T(reflection.specular) * min(T(reflection.power) * turn, T(1)));
+  return detail::color_change(reflection, lights, count, largest_color, turn);
+}
+
+/// Returns how far a color may be off where gradients are, by at most `doubt` > 0.
+template <class T>
+PELLUCID_HD T color_doubt(const Reflection<T>& reflection, const LightSource<T>* lights, int count,
+                          const Bounds<T>& squares, T largest_color, T doubt) noexcept {
+  const T least = squares.lower + reflection.flat_square;
+  const T turn = least > T(0) ? min(T(2) * doubt / sqrt(least), T(1)) : T(1);
+  return detail::color_change(reflection, lights, count, largest_color, turn);
 }
 
 /// What light makes of colors anywhere on a stretch.
@@ -316,32 +344,52 @@ PELLUCID_HD LitBounds<T> light_bounds(const Reflection<scalar_t<T>>& reflection,
   return result;
 }
 
-/// Return the largest error of the color of a panel by three and by six Gauss nodes, relative to
-/// the range of its colors by light_bounds(): where |g|² + g0² changes by at most the factor
-/// `turns`, the specular part as `sharpness` says, |n·l| has no kink, and the depth is at most 8.
+namespace detail {
+
+/// Returns the entry of a table whose rows end at values of `turns`, and columns at values of
+/// `sharpness`.
+template <class T>
+PELLUCID_HD T error_of_nodes(const float (&table)[6][4], T turns, T sharpness) noexcept {
+  using S = scalar_t<T>;
+  constexpr float row_end[5] = {1.05f, 1.2f, 1.5f, 4, 16}, column_end[3] = {1, 4, 20};
+  T error{};
+  for (int column = 3; column >= 0; --column) {
+    T of_column = T(S(table[5][column]));
+    for (int row = 4; row >= 0; --row) {
+      of_column = select(turns <= T(S(row_end[row])), T(S(table[row][column])), of_column);
+    }
+    error =
+        column == 3 ? of_column : select(sharpness <= T(S(column_end[column])), of_column, error);
+  }
+  return error;
+}
+
+}  // namespace detail
+
+/// Largest error that a single panel may have, relative to the two functions below.
+inline constexpr double worst_of_nodes = 2.25;
+
+/// Return the error of the color of a panel by three and by six Gauss nodes, relative to the range
+/// of its colors by light_bounds(): where |g|² + g0² changes by at most the factor `turns`, the
+/// specular part as `sharpness` says, |n·l| has no kink, and the depth is at most 1; twice as much
+/// at depths up to 8.
 ///
-/// Estimates: at least the largest that a search of ten million random cells found, asserted in
-/// tests/segment. Large ones are rare: one cell in a thousand has a third of them, half of the
-/// cells a fiftieth.
+/// Estimates: hill climbing finds at most `worst_of_nodes` times these, asserted in tests/segment.
+/// Large ones are rare: of random cells one in a thousand has a third of them, half of the cells a
+/// fiftieth.
 template <class T>
 PELLUCID_HD T error_of_three_nodes(T turns, T sharpness) noexcept {
-  const auto dull = sharpness <= T(4);
-  const T rough = select(turns <= T(16), select(dull, T(0.17), T(0.31)),
-                         select(turns <= T(100), select(dull, T(0.2), T(0.33)), T(0.5)));
-  const T error = select(turns <= T(4), select(dull, T(0.13), T(0.27)), rough);
-  const T mild =
-      select(turns <= T(1.2), select(dull, T(0.06), T(0.09)), select(dull, T(0.1), T(0.17)));
-  return select(turns <= T(1.05), T(0.04), select(turns <= T(1.5), mild, error));
+  constexpr float table[6][4] = {{0.04f, 0.04f, 0.05f, 0.05f}, {0.06f, 0.06f, 0.145f, 0.24f},
+                                 {0.1f, 0.11f, 0.215f, 0.34f}, {0.13f, 0.17f, 0.27f, 0.4f},
+                                 {0.17f, 0.23f, 0.32f, 0.4f},  {0.35f, 0.36f, 0.4f, 0.42f}};
+  return detail::error_of_nodes(table, turns, sharpness);
 }
 template <class T>
 PELLUCID_HD T error_of_six_nodes(T turns, T sharpness) noexcept {
-  const auto dull = sharpness <= T(4);
-  const T rough = select(turns <= T(16), select(dull, T(0.02), T(0.09)),
-                         select(turns <= T(100), select(dull, T(0.05), T(0.14)), T(0.16)));
-  const T error = select(turns <= T(4), select(dull, T(0.012), T(0.09)), rough);
-  const T mild =
-      select(turns <= T(1.2), select(dull, T(2e-3), T(6e-3)), select(dull, T(3e-3), T(0.02)));
-  return select(turns <= T(1.05), T(6e-4), select(turns <= T(1.5), mild, error));
+  constexpr float table[6][4] = {{6e-4f, 2e-3f, 3e-3f, 0.067f},   {2e-3f, 6e-3f, 0.041f, 0.09f},
+                                 {3e-3f, 8e-3f, 0.055f, 0.155f},  {0.0125f, 0.041f, 0.111f, 0.155f},
+                                 {0.043f, 0.09f, 0.136f, 0.185f}, {0.185f, 0.185f, 0.185f, 0.185f}};
+  return detail::error_of_nodes(table, turns, sharpness);
 }
 
 }  // namespace pellucid

@@ -12,6 +12,7 @@
 #include "pellucid/scene/block_classes_storage.h"
 #include "pellucid/scene/transfer_tables_storage.h"
 #include "ray_tracer.h"
+#include "rays_in_planes.h"
 #include "threads.h"
 
 namespace pellucid {
@@ -125,6 +126,9 @@ class SurfaceTracer : public RayTracer {
         // Of rays that end at an opaque surface it is known.
         if (to.half.range.begin == to.half.range.end) to.half_opacity_depth = to.half.range.end;
       }
+    }
+    if (surfaces_.is_lit != 0 && light_.of_field != 0) {
+      leave_rays_in_planes(volume_, parts, results);
     }
     return results;
   }

@@ -11,6 +11,7 @@
 #include "pellucid/scene/block_classes_storage.h"
 #include "pellucid/scene/transfer_tables_storage.h"
 #include "ray_tracer.h"
+#include "rays_in_planes.h"
 #include "sample/packet_sampler.h"
 #include "sample/preintegrated_storage.h"
 #include "sample/sampling_rule.h"
@@ -37,8 +38,11 @@ class UnivariateTracer : public RayTracer {
                                const TraceOptions& options) const override {
     const std::vector<RayPart> in_grid = parts_in_grid(volume_, parts);
     if (sampler_) return sampler_->trace(in_grid);
-    if (packets_) return packets_->trace(in_grid, options.share * options.share_of_rays, depth_);
-    return trace_one_by_one(in_grid, options);
+    if (!packets_) return trace_one_by_one(in_grid, options);
+    std::vector<RayResult> results =
+        packets_->trace(in_grid, options.share * options.share_of_rays, depth_);
+    if (light_ && light_->view().of_field != 0) leave_rays_in_planes(volume_, parts, results);
+    return results;
   }
 
  private:

@@ -111,6 +111,7 @@ class GeneralPath::ClippedStream {
       stretch_.function = -1;
       stretch_.primitives = {};
       stretch_.left_out = stretch_.position_error = stretch_.unknown = 0;
+      stretch_.gradient_doubt = 0;
       if (stream_->next(stretch_)) {
         if (surfaces_) surfaces_->take(stretch_);
         return;

@@ -3,6 +3,8 @@
 
 #include <cstddef>
 
+#include "pellucid/geometry/vec3.h"
+
 namespace pellucid {
 
 GridGradient::GridGradient(const Volume& volume, GradientKind kind) : volume_(volume), kind_(kind) {
@@ -29,6 +31,30 @@ void GridGradient::along(const StructuredWalk<double>::Step& step,
           ? smooth_corners(step.cell)
           : volume_.visit([&](const auto& grid) { return field_gradients(grid, step.cell); });
   gradients_along(corners, volume_.grid_from_world().matrix, step.entry, step.exit, gradient);
+}
+
+double GridGradient::doubt(const StructuredWalk<double>::Step& step,
+                           const GridAxis<double> (&axis)[3], const PlaneDoubt& planes,
+                           const CubicBernstein<double> (&gradient)[3]) const {
+  if (kind_ == GradientKind::smooth) return 0;
+  double largest = 0;
+  planes.for_each_other_cell(axis, step, [&](const int(&cell)[3]) {
+    StructuredWalk<double>::Step other = step;
+    for (int a = 0; a < 3; ++a) {
+      other.cell[a] = cell[a];
+      // On the plane between both.
+      if (cell[a] != step.cell[a]) other.entry[a] = other.exit[a] = cell[a] < step.cell[a] ? 1 : 0;
+    }
+    CubicBernstein<double> there[3];
+    along(other, there);
+    for (int k = 0; k < 4; ++k) {
+      Vec3<double> jump;
+      for (int a = 0; a < 3; ++a) jump[a] = there[a].b[k] - gradient[a].b[k];
+      // NaN: vacuum.
+      if (const double size = length(jump); size > largest) largest = size;
+    }
+  });
+  return largest;
 }
 
 CubicBernstein<double> GridGradient::magnitude_along(

@@ -7,6 +7,7 @@
 #include "pellucid/scene/light.h"
 #include "pellucid/scene/volume.h"
 #include "pellucid/traverse/structured_walk.h"
+#include "plane_doubt.h"
 
 namespace pellucid {
 
@@ -18,6 +19,11 @@ class GridGradient {
 
   /// Computes the three components along a step through a cell, which has no NaN corner.
   void along(const StructuredWalk<double>::Step& step, CubicBernstein<double> (&gradient)[3]) const;
+  /// Returns by how much the coefficients of the gradient may differ, because the ray may be in a
+  /// neighbor of the step's cell: where rays run along planes, at which gradients `field` jump. Of
+  /// the others 0. `axis`: that of the walk; `gradient`: that of along().
+  double doubt(const StructuredWalk<double>::Step& step, const GridAxis<double> (&axis)[3],
+               const PlaneDoubt& planes, const CubicBernstein<double> (&gradient)[3]) const;
   /// Computes the magnitude of the `smooth` gradient at the data values, trilinear between.
   CubicBernstein<double> magnitude_along(const StructuredWalk<double>::Step& step) const;
 

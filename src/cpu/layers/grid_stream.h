@@ -8,6 +8,7 @@
 #include "layer_stream.h"
 #include "pellucid/traverse/block_walk.h"
 #include "pellucid/traverse/structured_walk.h"
+#include "plane_doubt.h"
 
 namespace pellucid {
 
@@ -32,6 +33,7 @@ class GridStream : public LayerStream {
 
   Interval<double> start(const Ray<double>& ray) override {
     ray_ = grid_from_world().ray(ray);
+    planes_.start(grid_from_world(), ray);
     if (!slices_.empty()) positions_ = slice_positions(slices_, ray);
     blocks_.reset();
     cells_.reset();
@@ -67,6 +69,7 @@ class GridStream : public LayerStream {
   }
   const Affine<double>& grid_from_world() const { return volume_.grid_from_world(); }
   const Ray<double>& ray() const { return ray_; }
+  const PlaneDoubt& planes() const { return planes_; }
 
  private:
   /// Returns whether a slice is in the range, which becomes what is to be visited of it.
@@ -91,6 +94,7 @@ class GridStream : public LayerStream {
   bool wholly_;
   std::vector<SlicePosition> positions_;
   Ray<double> ray_{};
+  PlaneDoubt planes_;
   std::optional<BlockWalk> blocks_;
   std::optional<StructuredWalk<double>> cells_;
   BlockStep block_{};

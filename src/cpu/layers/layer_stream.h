@@ -25,6 +25,7 @@ struct LayerStretch {
   double value_error[max_channels]{};  ///< of the data, beside their rounding
   // Of layers that need them (LayerLook):
   CubicBernstein<double> gradient[3];  ///< in the world, for light
+  double gradient_doubt = 0;           ///< by how much it may be another one, beside its rounding
   CubicBernstein<double> magnitude;    ///< for gradient opacity
 };
 

@@ -46,6 +46,20 @@ class PlaneDoubt {
     return std::min(entry + exit, step.t_end);
   }
 
+  /// Returns whether the ray, which is `ray` in the grid's coordinates, may be on either side of a
+  /// plane between cells for more than a thousandth of its way through `inside`. The planes are at
+  /// whole numbers.
+  bool runs_along_planes(const Ray<double>& ray, const Interval<double>& inside) const {
+    for (int a = 0; a < 3; ++a) {
+      const double begin = ray.origin[a] + inside.begin * ray.direction[a];
+      const double end = ray.origin[a] + inside.end * ray.direction[a];
+      const double off = origin_[a] + direction_[a] * inside.end;
+      const double least = std::min(begin, end) - off, most = std::max(begin, end) + off;
+      if (std::floor(most) >= least && std::abs(end - begin) <= 1000 * off) return true;
+    }
+    return false;
+  }
+
   /// Calls visit(cell) for each neighbor of the step's cell that its part of the ray may be in.
   /// `axis`: that of the walk.
   template <class Visit>

@@ -175,8 +175,14 @@ Rgb<double> SurfaceEvents::lit(const Rgb<double>& color, const LayerStretch& str
       {stretch.gradient[0], stretch.gradient[1], stretch.gradient[2]}, {}, 0, -ray_.direction};
   const double length = stretch.end - stretch.begin;
   along.middle = ray_.origin + ray_.direction * (stretch.begin + u * length);
-  return light_surface(*reflection, lights_.data(), static_cast<int>(lights_.size()), along, u,
-                       u_error, length, color, largest_color_, error);
+  const int lights = static_cast<int>(lights_.size());
+  const Rgb<double> result = light_surface(*reflection, lights_.data(), lights, along, u, u_error,
+                                           length, color, largest_color_, error);
+  if (stretch.gradient_doubt > 0) {
+    error += color_doubt(*reflection, lights_.data(), lights, along.square(), largest_color_,
+                         stretch.gradient_doubt);
+  }
+  return result;
 }
 
 /// The ray runs in the plane of a slice: all that it shows is in doubt.

@@ -53,8 +53,13 @@ class GridGradients {
       magnitude_.emplace(volume_of(factors->channel()), GradientKind::smooth);
     }
   }
-  void fill(const StructuredWalk<double>::Step& step, LayerStretch& stretch) const {
-    if (gradient_) gradient_->along(step, stretch.gradient);
+  /// `axis`: that of the walk.
+  void fill(const StructuredWalk<double>::Step& step, const GridAxis<double> (&axis)[3],
+            const PlaneDoubt& planes, LayerStretch& stretch) const {
+    if (gradient_) {
+      gradient_->along(step, stretch.gradient);
+      stretch.gradient_doubt = gradient_->doubt(step, axis, planes, stretch.gradient);
+    }
     if (magnitude_) stretch.magnitude = magnitude_->magnitude_along(step);
   }
 
@@ -153,7 +158,8 @@ class VolumeStream : public GridStream {
       stretch.begin = begin_ = step.t_begin;
       stretch.end = end_ = step.t_end;
       stretch.position_error = grid_position_error(step.t_end);
-      source_.gradients().fill(step, source_.labels() == nullptr ? stretch : whole_);
+      source_.gradients().fill(step, source_.grid().axis, planes(),
+                               source_.labels() == nullptr ? stretch : whole_);
       if (source_.labels() == nullptr) {
         stretch.function = 0;
         stretch.data[0] = span_.data[0];
@@ -179,6 +185,7 @@ class VolumeStream : public GridStream {
     const double from = (part.t_begin - begin_) / length, to = (part.t_end - begin_) / length;
     stretch.data[0] = restrict_to(span_.data[0], from, to);
     if (!source_.look().is_lit()) return;
+    stretch.gradient_doubt = whole_.gradient_doubt;
     for (int a = 0; a < 3; ++a) stretch.gradient[a] = restrict_to(whole_.gradient[a], from, to);
     stretch.magnitude = restrict_to(whole_.magnitude, from, to);
   }
@@ -259,7 +266,7 @@ class ChannelsStream : public GridStream {
       stretch.function = 0;
       stretch.primitives = source_.blocks().primitives[block];
       std::copy_n(span.data, source_.grid().channels, stretch.data);
-      source_.gradients().fill(step, stretch);
+      source_.gradients().fill(step, source_.grid().axis, planes(), stretch);
       if (const ChannelTransferFunction* const factor = source_.look().value_factor()) {
         stretch.magnitude = source_.look().factor_argument(span.data[factor->channel]);
       }

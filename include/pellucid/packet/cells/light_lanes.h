@@ -176,11 +176,11 @@ struct LightOfPiece {
   using F = Batch<float, N>;
   GradientStretch<F> along;
   /// Standard deviations of the color by three and by six nodes: error_of_three_nodes() and
-  /// error_of_six_nodes() times the range of the colors, of which four are charged to a piece
-  /// alone: one and a half times its largest error. (With the error itself one of 96000 pixels was
-  /// 7 % further off than it said: data that repeat from cell to cell have errors that add up.)
+  /// error_of_six_nodes() times the range of the colors, of which four are charged, or six to a
+  /// piece alone and to pieces that are alike (LikeErrors).
   F by_three, by_six;
   F color_error;  ///< what the color may be off by beside: tables' kinks and rounding
+  typename LikeErrors<F>::Signs signs;  ///< of the piece, for errors that repeat
 };
 
 /// The light of the spans that lanes work on.
@@ -193,7 +193,14 @@ class LightLanes {
 
   LightLanes(const PacketGrid<Value>& grid, const PacketLight& light,
              const BlockMarch<Value, N>& rays) noexcept
-      : light_(light), loads_(grid, light), to_eye_(direction_to_eye(light, rays)) {}
+      : light_(light), loads_(grid, light), to_eye_(direction_to_eye(light, rays)) {
+    const Reflection<float>& r = light.reflection;
+    float brightest = r.ambient;
+    for (int i = 0; i < light.lights; ++i) {
+      brightest += (r.diffuse + r.specular) * largest_component(light.light[i].color);
+    }
+    inverse_light_ = brightest > 0 ? 1 / brightest : 0;
+  }
 
   /// Begins spans.
   [[gnu::noinline]] void begin(M lanes, const CellPlaces<N>& places) noexcept {
@@ -201,7 +208,8 @@ class LightLanes {
     kink_ = select(lanes, next_kink(lanes, F(0)), kink_);
   }
 
-  /// Where the next piece has to end, as a share of the cell: where g·l changes its sign.
+  /// Where the next piece has to end, as a share of the cell: where g·l changes its sign, or g·h if
+  /// highlights have a kink there.
   F kink() const noexcept { return kink_; }
   /// The lanes have gone past this share of their cells.
   void go_past(M lanes, F to) noexcept {
@@ -230,14 +238,24 @@ class LightLanes {
                     largest_component(bounds.upper.added - bounds.lower.added);
     const F flat = F(light_.reflection.flat_square);
     const F turns = (squares.upper + flat) / max(squares.lower + flat, F(smallest_normal<float>));
-    const M deep = piece.seen.depth > F(8);
     const F one_deviation = F(1.5f / RandomErrors<F>::deviations) * range;
-    result.by_three =
-        one_deviation * select(deep, F(1), error_of_three_nodes(turns, bounds.sharpness));
-    result.by_six = one_deviation * select(deep, F(1), error_of_six_nodes(turns, bounds.sharpness));
+    const auto deviation = [&](F of_nodes) noexcept {
+      const F& depth = piece.seen.depth;
+      const F deep = select(depth <= F(8), min(F(2) * of_nodes, F(1)), F(1));
+      return one_deviation * select(depth <= F(1), of_nodes, deep);
+    };
+    result.by_three = deviation(error_of_three_nodes(turns, bounds.sharpness));
+    result.by_six = deviation(error_of_six_nodes(turns, bounds.sharpness));
     result.color_error = brightest * piece.spread.kinks +
                          color_rounding(light_.reflection, light_.light, light_.lights, squares,
                                         largest, F(gradient_rounding<float>));
+    // The same for pieces that mirror each other.
+    const F feature[LikeErrors<F>::features] = {
+        F(1) / turns, F(inverse_light_) * (brightest + largest_component(bounds.upper.added)),
+        F(inverse_light_) *
+            (largest_component(bounds.lower.factor) + largest_component(bounds.lower.added)),
+        F(inverse_light_) * range};
+    result.signs = LikeErrors<F>::signs(feature);
     return result;
   }
 
@@ -262,7 +280,7 @@ class LightLanes {
   }
 
  private:
-  /// Where g·l of any light changes its sign first behind `from`; 2: nowhere.
+  /// Where g·l of any light, or g·h, changes its sign first behind `from`; 2: nowhere.
   [[gnu::noinline]] F next_kink(M lanes, F from) const noexcept {
     F nearest(2);
     from = min(from, F(1));
@@ -272,12 +290,11 @@ class LightLanes {
         {},
         F(0),
         to_eye_};
-    for (int i = 0; i < light_.lights; ++i) {
-      const CubicBernstein<F> f =
-          along.along(directions(light_.light[i], Vec3<F>{}, to_eye_).light);
+    const auto look_at = [&](const Vec3<F>& direction) noexcept {
+      const CubicBernstein<F> f = along.along(direction);
       const F size = max(abs(f.hull_min()), abs(f.hull_max()));
       const M straddles = lanes & (f.hull_min() < F(0)) & (f.hull_max() > F(0));
-      if (none(straddles)) continue;
+      if (none(straddles)) return;
       const M rises = f.b[0] < F(0);
       const F far = F(4) * size;
       const PieceEnd<F> end = piece_end(f, select(rises, -far, F(0)), select(rises, F(0), far),
@@ -285,6 +302,12 @@ class LightLanes {
       // An extremum ends a piece too, and the next one begins there.
       const M ends = straddles & (end.place < F(1));
       nearest = select(ends, min(nearest, from + (F(1) - from) * end.place), nearest);
+    };
+    const bool highlights = has_kink_in_highlight(light_.reflection);
+    for (int i = 0; i < light_.lights; ++i) {
+      const LightDirections<F> to = directions(light_.light[i], Vec3<F>{}, to_eye_);
+      look_at(to.light);
+      if (highlights && light_.light[i].kind != LightSource<float>::Kind::head) look_at(to.half);
     }
     return nearest;
   }
@@ -292,6 +315,7 @@ class LightLanes {
   const PacketLight& light_;
   GradientLoads<Value, N> loads_;
   Vec3<F> to_eye_;
+  float inverse_light_;  ///< 1 / the brightest factor of a color
   CubicBernstein<F> gradient_[3];
   F kink_{2};
 };

@@ -107,6 +107,7 @@ class PacketIntegrator {
  private:
   struct Unlit {};
   using Light = std::conditional_t<is_lit, LightLanes<Value, N>, Unlit>;
+  using Like = std::conditional_t<is_lit, LikeErrors<F>, Unlit>;
 
   static Light make_light(const PellucidPacketJob& job, const PacketGrid<Value>& grid,
                           const BlockMarch<Value, N>& rays) noexcept {
@@ -315,8 +316,8 @@ class PacketIntegrator {
     retire(take);
   }
 
-  /// The next pieces in light. The errors of their colors are random ones: of signs and sizes that
-  /// differ from cell to cell.
+  /// The next pieces in light. The errors of their colors are random ones, of signs and sizes that
+  /// differ from cell to cell, but for those of pieces that are alike.
   [[gnu::flatten]] void integrate_lit_pieces(M on) noexcept {
     const F from = single_.from, ahead = F(1) - from;
     const F kink = light_.kink();
@@ -335,10 +336,13 @@ class PacketIntegrator {
     const typename RayBudget<F>::SpanShare shares = fold_.budget.span_share(length, s.opacity);
     const M affordable = linear <= F(0.6f) * shares.sum();
     const F largest = sampled_.largest_variance(fold_.budget, linear, s.opacity, length, left);
-    const auto square = [](F x) noexcept { return x * x; };
-    const F variance = square(seen * lit.by_six);
-    const M by_three = square(seen * lit.by_three) <= largest;
-    const M take = on & piece.end.found & affordable & (variance <= largest);
+    const auto growth = [&](F deviation) noexcept {
+      return max(like_.variance_with(lit.signs, deviation) - sampled_.variance(), F(0));
+    };
+    const F of_three = seen * lit.by_three, of_six = seen * lit.by_six;
+    const F variance = growth(of_six), variance_by_three = growth(of_three);
+    const M by_three = variance_by_three <= largest;
+    const M take = on & piece.end.found & affordable & (by_three | (variance <= largest));
     const M rest = on & !take;
     if (any(rest)) {
       const F half = F(0.5f) * piece.place;
@@ -363,8 +367,9 @@ class PacketIntegrator {
     }
     s.radiance = s.opacity * color;
     fold_.add(take, s);
-    sampled_.charge(take, fold_.budget, select(more, variance, square(seen * lit.by_three)), linear,
+    sampled_.charge(take, fold_.budget, select(more, variance, variance_by_three), linear,
                     s.opacity, length, left, transparency);
+    like_.add(take, lit.signs, select(more, of_six, of_three));
     pieces_ += select(take, I(1), I(0));
     panels_ += select(take, I(1), I(0));
     proved_ = proved_ & !take;
@@ -479,6 +484,7 @@ class PacketIntegrator {
   I code_;
 
   SampledErrors<F> sampled_;
+  Like like_;
   PacketFold<N> fold_;
   OpacityTrace<N> trace_;
   F largest_color_;
