@@ -266,6 +266,7 @@ void MapperCore::draw(vtkUnstructuredGridVolumeMapper& mapper, vtkRenderer& rend
     return layers_of(mapper, volume, settings.tolerance, meshes_, notes);
   });
   meshes_.functions.keep_used();
+  meshes_.curves.keep_used();
 }
 
 void MapperCore::draw_layers(vtkAbstractVolumeMapper& mapper, vtkRenderer& renderer,
