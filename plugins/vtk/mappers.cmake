@@ -18,6 +18,7 @@ function(pellucid_vtk_mappers target)
     mapper_core.cpp
     mesh_layers.cpp
     nearest_values.cpp
+    selection.cpp
     view.cpp
     vtkPellucidUnstructuredGridMapper.cpp
     ${arg_SOURCES})
