@@ -2,80 +2,98 @@
 #include "curves.h"
 
 #include <vtkColorTransferFunction.h>
+#include <vtkDiscretizableColorTransferFunction.h>
+#include <vtkNew.h>
 #include <vtkPiecewiseFunction.h>
 #include <vtkVolumeProperty.h>
 
 #include <algorithm>
 #include <cmath>
 #include <span>
+#include <string>
 
 namespace pellucid::plugin {
 namespace {
 
-/// Points that stand for a curve of VTK that is not straight, between two of its nodes.
-constexpr int points_per_curve = 64;
+using foreign::ShapedFunction;
 
-struct Node {
-  double x = 0;
-  Rgb<double> y{};
-  double midpoint = 0.5, sharpness = 0;
-};
+constexpr int default_space = VTK_CTF_RGB;
 
-/// Where data end, but for the last of them: places of nodes that are farther away are these.
-constexpr double farthest = 2e37;
-
-/// Of numbers as VTK has them: a place, one or three values, the midpoint and the sharpness.
-void add_node(std::span<const double> numbers, std::vector<Node>& nodes, Notes& notes) {
+/// Adds a node of numbers as VTK has them: a place, one or three values, midpoint and sharpness.
+void add_node(std::span<const double> numbers, ShapedFunction& function, Notes& notes) {
   if (std::ranges::any_of(numbers, [](double x) { return std::isnan(x); })) {
     notes.add("nodes of functions that are no numbers are left out");
     return;
   }
+  constexpr double most = 2e37;
   const std::size_t n = numbers.size();
-  Node node;
-  node.x = std::clamp(numbers[0], -farthest, farthest);
-  const auto value = [&](std::size_t i) { return std::clamp(numbers[i], -farthest, farthest); };
-  node.y = n == 4 ? Rgb<double>{value(1), value(1), value(1)}
-                  : Rgb<double>{value(1), value(2), value(3)};
-  node.midpoint = numbers[n - 2];
-  node.sharpness = numbers[n - 1];
-  nodes.push_back(node);
+  const auto value = [&](std::size_t i) { return std::clamp(numbers[i], -most, most); };
+  const Rgb<double> y = n == 4 ? Rgb<double>{value(1), value(1), value(1)}
+                               : Rgb<double>{value(1), value(2), value(3)};
+  function.nodes.push_back({value(0), y, numbers[n - 2], numbers[n - 1]});
 }
 
-/// `straight`: nodes without midpoint and sharpness are joined by straight lines.
-template <class Evaluate>
-Curve curve_through(const std::vector<Node>& nodes, bool straight, bool clamped,
-                    const Evaluate& evaluate) {
-  if (nodes.empty()) return {{0, {0, 0, 0}}};
-  Curve curve;
-  if (!clamped) curve.push_back({nodes.front().x, {0, 0, 0}});
-  for (std::size_t i = 0; i < nodes.size(); ++i) {
-    const Node& node = nodes[i];
-    curve.push_back({node.x, node.y});
-    if (i + 1 == nodes.size()) break;
-    if (straight && node.midpoint == 0.5 && node.sharpness == 0) continue;
-    for (int k = 1; k < points_per_curve; ++k) {
-      const double x = node.x + k * (nodes[i + 1].x - node.x) / points_per_curve;
-      if (!(x > curve.back().x && x < nodes[i + 1].x)) continue;
-      const Rgb<double> y = evaluate(x);
-      if (!std::isnan(y.r + y.g + y.b)) curve.push_back({x, y});
-    }
-  }
-  if (!clamped) curve.push_back({nodes.back().x, {0, 0, 0}});
-  return curve;
+void add_ramp(ShapedFunction& function, const RampRange& range) {
+  if (!function.nodes.empty() || !range) return;
+  function.nodes = foreign::ramp(*range, function.is_color);
 }
 
-/// Of several nodes at one place the first and the last are the two sides of a jump.
-Curve with_jumps_of_two(Curve curve) {
-  Curve kept;
-  for (const CurvePoint& point : curve) {
-    const std::size_t count = kept.size();
-    if (count >= 2 && kept[count - 1].x == point.x && kept[count - 2].x == point.x) {
-      kept.back() = point;
-    } else {
-      kept.push_back(point);
-    }
+ShapedFunction shape_of(vtkPiecewiseFunction& function, double largest, const RampRange& range,
+                        Notes& notes) {
+  ShapedFunction shape;
+  for (int i = 0; i < function.GetSize(); ++i) {
+    double node[4];
+    if (function.GetNodeValue(i, node) >= 0) add_node(node, shape, notes);
   }
-  return kept;
+  add_ramp(shape, range);
+  shape.is_logarithmic = function.GetUseLogScale();
+  shape.is_clamped = function.GetClamping() != 0;
+  shape.largest = largest;
+  return shape;
+}
+
+ShapedFunction shape_of(vtkColorTransferFunction& function, const RampRange& range, Notes& notes) {
+  ShapedFunction shape;
+  shape.is_color = true;
+  shape.space = default_space;
+  for (int i = 0; i < function.GetSize(); ++i) {
+    double node[6];
+    if (function.GetNodeValue(i, node) >= 0) add_node(node, shape, notes);
+  }
+  add_ramp(shape, range);
+  const auto color = [](const double c[3]) { return Rgb<double>{c[0], c[1], c[2]}; };
+  shape.space = function.GetColorSpace();
+  shape.wraps_hue = function.GetHSVWrap() != 0;
+  shape.is_logarithmic = function.GetScale() == VTK_CTF_LOG10;
+  shape.is_clamped = function.GetClamping() != 0;
+  if (function.GetUseBelowRangeColor() != 0) shape.below = color(function.GetBelowRangeColor());
+  if (function.GetUseAboveRangeColor() != 0) shape.above = color(function.GetAboveRangeColor());
+  return shape;
+}
+
+/// VTK's colors from one place to another, as its mappers take them: GetColor() of a discretized
+/// function, as ParaView's are, has steps.
+std::vector<Rgb<double>> colors_between(vtkColorTransferFunction& function, double first,
+                                        double last, int count) {
+  std::vector<double> numbers(3 * static_cast<std::size_t>(count));
+  function.GetTable(first, last, count, numbers.data());
+  std::vector<Rgb<double>> colors;
+  for (std::size_t i = 0; i < numbers.size(); i += 3) {
+    colors.push_back({numbers[i], numbers[i + 1], numbers[i + 2]});
+  }
+  return colors;
+}
+
+std::vector<Rgb<double>> way_of_vtk(const Rgb<double>& from, const Rgb<double>& to, int count) {
+  vtkNew<vtkColorTransferFunction> way;
+  way->SetColorSpaceToLabCIEDE2000();
+  way->AddRGBPoint(0, from.r, from.g, from.b);
+  way->AddRGBPoint(1, to.r, to.g, to.b);
+  return colors_between(*way, 0, 1, count);
+}
+
+bool is_number(const Rgb<double>& c) {
+  return !std::isnan(c.r + c.g + c.b);
 }
 
 std::vector<double> places_of(const Curve& a, const Curve& b) {
@@ -114,61 +132,109 @@ Limits limits(const Curve& curve, double x) {
 
 }  // namespace
 
-Curve curve_of(vtkPiecewiseFunction& function, Notes& notes) {
-  std::vector<Node> nodes;
-  for (int i = 0; i < function.GetSize(); ++i) {
-    double node[4];
-    if (function.GetNodeValue(i, node) < 0) continue;
-    add_node(node, nodes, notes);
+FittedCurve FunctionReader::fitted(const ShapedFunction& function, const char* what,
+                                   const foreign::SampleWay& sample_way,
+                                   const foreign::SampleFunction& own) {
+  const FittedCurve fitted =
+      *kept_->find({function, deviation_}, [&](const std::pair<ShapedFunction, double>& recipe) {
+        return foreign::fit(recipe.first, recipe.second, sample_way, own);
+      });
+  if (fitted.is_coarse) {
+    notes_->add(std::string(what) +
+                " of so many bends are fitted more coarsely than asked for, and the error says so");
   }
-  return with_jumps_of_two(
-      curve_through(nodes, !function.GetUseLogScale(), function.GetClamping() != 0, [&](double x) {
-        const double value = function.GetValue(x);
-        return Rgb<double>{value, value, value};
-      }));
+  if (fitted.has_no_number) {
+    notes_->add(std::string(what) +
+                " on a logarithmic scale begin at 0 or below, where VTK has no number: they are "
+                "linear up to the first node above 0");
+  }
+  return fitted;
 }
 
-Curve curve_of(vtkColorTransferFunction& function, Notes& notes) {
-  std::vector<Node> nodes;
-  for (int i = 0; i < function.GetSize(); ++i) {
-    double node[6];
-    if (function.GetNodeValue(i, node) < 0) continue;
-    add_node(node, nodes, notes);
-  }
-  const bool straight =
-      function.GetColorSpace() == VTK_CTF_RGB && function.GetScale() == VTK_CTF_LINEAR;
-  return with_jumps_of_two(
-      curve_through(nodes, straight, function.GetClamping() != 0, [&](double x) {
-        // As VTK's mappers do: GetColor() of a discretized function, as ParaView's are, has steps.
-        double color[3];
-        function.GetTable(x, x, 1, color);
-        return Rgb<double>{color[0], color[1], color[2]};
-      }));
+FittedCurve FunctionReader::opacities(vtkPiecewiseFunction& function, double largest,
+                                      const RampRange& ramp) {
+  return fitted(
+      shape_of(function, largest, ramp, *notes_), "opacities", {},
+      function.GetSize() == 0 ? foreign::SampleFunction()
+                              : [&](double first, double, int) -> std::vector<Rgb<double>> {
+        const double value = function.GetValue(first);
+        return {{value, value, value}};
+      });
 }
 
-Curve color_curve(vtkVolumeProperty& property, int component, Notes& notes) {
-  Curve curve = property.GetColorChannels(component) == 1
-                    ? curve_of(*property.GetGrayTransferFunction(component), notes)
-                    : curve_of(*property.GetRGBTransferFunction(component), notes);
-  // A window shows what is below 0 as 0.
-  for (CurvePoint& point : curve) {
-    point.y = {std::max(point.y.r, 0.0), std::max(point.y.g, 0.0), std::max(point.y.b, 0.0)};
+FittedCurve FunctionReader::colors(vtkColorTransferFunction& function, const RampRange& ramp) {
+  if (function.GetIndexedLookup() != 0) {
+    notes_->add("IndexedLookup of colors is left out, as VTK's mappers leave it out");
   }
-  return curve;
+  if (const auto* const steps = vtkDiscretizableColorTransferFunction::SafeDownCast(&function);
+      steps != nullptr && const_cast<vtkDiscretizableColorTransferFunction*>(steps)  // NOLINT
+                                  ->GetDiscretize() != 0) {
+    notes_->add("the steps of discretized colors are left out, as VTK's mappers leave them out");
+  }
+  // A way of CIEDE2000 takes VTK too long to ask for each place anew, and is measured.
+  const bool is_compared =
+      function.GetSize() > 0 && function.GetColorSpace() != VTK_CTF_LAB_CIEDE2000;
+  return fitted(shape_of(function, ramp, *notes_), "colors", way_of_vtk,
+                is_compared
+                    ? [&](double first, double last,
+                          int count) { return colors_between(function, first, last, count); }
+                    : foreign::SampleFunction());
+}
+
+FittedCurve FunctionReader::colors(vtkVolumeProperty& property, int component,
+                                   const RampRange& ramp) {
+  if (property.GetColorChannels(component) != 1) {
+    return colors(*property.GetRGBTransferFunction(component), ramp);
+  }
+  FittedCurve grey = opacities(*property.GetGrayTransferFunction(component),
+                               std::numeric_limits<double>::infinity(), {});
+  // A relative deviation becomes an absolute one.
+  double largest = 0;
+  for (const CurvePoint& point : grey.points) largest = std::max(largest, point.y.r);
+  grey.deviation = largest * std::expm1(grey.deviation);
+  return grey;
+}
+
+double opacity_at(vtkPiecewiseFunction& function, const RampRange& ramp, double x) {
+  double value = function.GetValue(x);
+  if (function.GetSize() == 0 || std::isnan(value)) {
+    Notes notes;
+    KeptCurves kept;
+    value = value_at(FunctionReader(1, kept, notes).opacities(function, 1, ramp).points, x).r;
+  }
+  return std::clamp(value, 0.0, 1.0);
+}
+
+Rgb<double> color_at(vtkVolumeProperty& property, int component, const RampRange& ramp, double x) {
+  Rgb<double> color{std::nan(""), 0, 0};
+  if (property.GetColorChannels(component) == 1) {
+    const double grey = property.GetGrayTransferFunction(component)->GetValue(x);
+    color = {grey, grey, grey};
+  } else if (vtkColorTransferFunction& function = *property.GetRGBTransferFunction(component);
+             function.GetSize() > 0) {
+    color = colors_between(function, x, x, 1).front();
+  }
+  if (!is_number(color)) {
+    Notes notes;
+    KeptCurves kept;
+    color = value_at(FunctionReader(1, kept, notes).colors(property, component, ramp).points, x);
+  }
+  return {std::max(color.r, 0.0), std::max(color.g, 0.0), std::max(color.b, 0.0)};
 }
 
 Rgb<double> value_at(const Curve& curve, double x) {
   return limits(curve, x).above;
 }
 
-Curve blended(const Curve& a, const Curve& b, double share) {
-  Curve mixed;
-  for (const double x : places_of(a, b)) {
-    const Limits of_a = limits(a, x), of_b = limits(b, x);
+FittedCurve blended(const FittedCurve& a, const FittedCurve& b, double share) {
+  FittedCurve mixed;
+  mixed.deviation = (1 - share) * a.deviation + share * b.deviation;
+  for (const double x : places_of(a.points, b.points)) {
+    const Limits of_a = limits(a.points, x), of_b = limits(b.points, x);
     const CurvePoint below{x, (1 - share) * of_a.below + share * of_b.below};
     const CurvePoint above{x, (1 - share) * of_a.above + share * of_b.above};
-    mixed.push_back(below);
-    if (!(below == above)) mixed.push_back(above);
+    mixed.points.push_back(below);
+    if (!(below == above)) mixed.points.push_back(above);
   }
   return mixed;
 }

@@ -2,8 +2,12 @@
 #pragma once
 
 #include <array>
+#include <optional>
+#include <utility>
 #include <vector>
 
+#include "foreign_shaped.h"
+#include "kept.h"
 #include "notes.h"
 #include "pellucid/math/rgb.h"
 
@@ -13,28 +17,48 @@ class vtkVolumeProperty;
 
 namespace pellucid::plugin {
 
-/// A point of a curve with one or three values. Two points at one place are a jump. Curves are
-/// linear between their points and constant outside of them.
-struct CurvePoint {
-  double x = 0;
-  Rgb<double> y{};  ///< of one value: all three are it
+using foreign::Curve;
+using foreign::CurvePoint;
+using foreign::FittedCurve;
 
-  bool operator==(const CurvePoint&) const = default;
+using KeptCurves = Kept<std::pair<foreign::ShapedFunction, double>, FittedCurve>;
+
+/// The range of data over which VTK's GPU mapper puts a ramp into a function without nodes; none
+/// where VTK shows such a function as 0.
+using RampRange = std::optional<std::array<double, 2>>;
+
+/// Reads functions of VTK as curves: exact where they are straight, else within
+/// foreign::function_deviation() of a tolerance. Nodes with a number that is none are left out, and
+/// the notes say so.
+class FunctionReader {
+ public:
+  FunctionReader(double tolerance, KeptCurves& kept, Notes& notes)
+      : deviation_(foreign::function_deviation(tolerance)), kept_(&kept), notes_(&notes) {}
+
+  /// Opacities above `largest` are cut; those below 0 always are.
+  FittedCurve opacities(vtkPiecewiseFunction& function, double largest, const RampRange& ramp);
+  FittedCurve colors(vtkColorTransferFunction& function, const RampRange& ramp);
+  /// Returns the colors of a component: grey or RGB, as the property says.
+  FittedCurve colors(vtkVolumeProperty& property, int component, const RampRange& ramp);
+
+ private:
+  FittedCurve fitted(const foreign::ShapedFunction& function, const char* what,
+                     const foreign::SampleWay& sample_way, const foreign::SampleFunction& own);
+
+  double deviation_;
+  KeptCurves* kept_;
+  Notes* notes_;
 };
-using Curve = std::vector<CurvePoint>;
 
-/// Returns a function of VTK as a curve: exact where it is straight between two nodes, else a chain
-/// of 64 chords. A function that is not clamped is 0 outside of its nodes; one without nodes is 0.
-/// Nodes with a number that is none are left out, and `notes` say so.
-Curve curve_of(vtkPiecewiseFunction& function, Notes& notes);
-Curve curve_of(vtkColorTransferFunction& function, Notes& notes);
-/// Returns the colors of a component: grey or RGB, as the property says.
-Curve color_curve(vtkVolumeProperty& property, int component, Notes& notes);
+/// Return VTK's own value at a place, opacities from 0 to 1, colors of 0 or more: at a jump the
+/// value of VTK's choice.
+double opacity_at(vtkPiecewiseFunction& function, const RampRange& ramp, double x);
+Rgb<double> color_at(vtkVolumeProperty& property, int component, const RampRange& ramp, double x);
 
 /// Returns the value at x; at a jump the one above.
 Rgb<double> value_at(const Curve& curve, double x);
 /// Returns (1 - share) a + share b.
-Curve blended(const Curve& a, const Curve& b, double share);
+FittedCurve blended(const FittedCurve& a, const FittedCurve& b, double share);
 
 /// Two curves at the points of each: `a` has one value, `b` three.
 struct JoinedPoint {

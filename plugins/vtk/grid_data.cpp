@@ -127,6 +127,47 @@ struct Component {
   }
 };
 
+/// Which axes of a rectilinear grid have coordinates that descend.
+std::array<bool, 3> descending_axes(const Volume::Description& grid) {
+  std::array<bool, 3> descends{};
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const std::vector<double>& places = grid.coordinates[axis];
+    descends[axis] = places.size() > 1 && places.front() > places.back();
+  }
+  return descends;
+}
+
+void turn_coordinates(Volume::Description& grid, const std::array<bool, 3>& descends) {
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    if (descends[axis]) std::ranges::reverse(grid.coordinates[axis]);
+  }
+}
+
+/// The values in the other order along some axes.
+VolumeData turned(const VolumeData& values, const std::array<int, 3>& sides,
+                  const std::array<bool, 3>& backwards) {
+  return std::visit(
+      [&](const auto& given) -> VolumeData {
+        using Value = std::decay_t<decltype(*given.begin())>;
+        const auto side = [&](std::size_t axis) { return static_cast<std::size_t>(sides[axis]); };
+        const auto place = [&](std::size_t axis, std::size_t i) {
+          return backwards[axis] ? side(axis) - 1 - i : i;
+        };
+        DataArray<Value> made(side(0) * side(1) * side(2));
+        auto to = made.writable().begin();
+        for (std::size_t z = 0; z < side(2); ++z) {
+          for (std::size_t y = 0; y < side(1); ++y) {
+            const std::size_t row = (place(2, z) * side(1) + place(1, y)) * side(0);
+            for (std::size_t x = 0; x < side(0); ++x, ++to) {
+              *to = *(given.begin() + static_cast<std::ptrdiff_t>(row + place(0, x)));
+            }
+          }
+        }
+        return made;
+      },
+      values);
+}
+
 /// The memory by which a changed array is known: of other layouts none.
 const void* memory_of(vtkDataArray& array) {
   return array.HasStandardMemoryLayout() ? array.GetVoidPointer(0) : nullptr;
@@ -208,6 +249,8 @@ std::shared_ptr<const Volume> KeptGrids::find(vtkDataSet& data, vtkDataArray& ar
   const void* const memory = memory_of(array);
   const std::uint64_t fingerprint = fingerprint_of(array, component);
   const GhostTimes ghosts = ghost_times(data);
+  const std::array<bool, 3> descends = descending_axes(grid);
+  turn_coordinates(grid, descends);
   for (Kept& kept : kept_) {
     if (kept.array == &array && kept.memory == memory && kept.time == array.GetMTime() &&
         kept.fingerprint == fingerprint && kept.values == array.GetNumberOfValues() &&
@@ -222,6 +265,7 @@ std::shared_ptr<const Volume> KeptGrids::find(vtkDataSet& data, vtkDataArray& ar
   if (const std::vector<bool> hidden = hidden_places(data, of_cells); !hidden.empty()) {
     values = without_hidden(values, hidden);
   }
+  if (descends != std::array<bool, 3>{}) values = turned(values, grid.dimensions, descends);
   auto volume = std::make_shared<const Volume>(std::move(grid), std::move(values));
   kept_.push_back({&array, memory, array.GetMTime(), fingerprint, array.GetNumberOfValues(),
                    component, ghosts, std::move(volume)});

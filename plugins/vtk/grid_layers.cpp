@@ -4,6 +4,7 @@
 #include <vtkColorTransferFunction.h>
 #include <vtkContourValues.h>
 #include <vtkDataArray.h>
+#include <vtkFixedPointVolumeRayCastMapper.h>
 #include <vtkImageData.h>
 #include <vtkPiecewiseFunction.h>
 #include <vtkPlane.h>
@@ -20,6 +21,7 @@
 #include <string>
 
 #include "cropping.h"
+#include "dependent_components.h"
 #include "pellucid/scene/error.h"
 #include "view.h"
 
@@ -39,24 +41,25 @@ class GridTranslator {
         tolerance_(tolerance),
         has_ambient_light_(has_ambient_light),
         kept_(kept),
-        notes_(notes) {}
+        notes_(notes),
+        reader_(tolerance, kept.curves, notes) {}
 
   std::vector<Layer> layers();
 
  private:
   std::optional<LayerProjection> projection() const;
   double scale();
-  LookRecipe recipe_of(int component, const Volume& data);
+  RampRange ramp_range(int component);
+  LookRecipe recipe_of(int component, const Volume& data, const LookRamps& ramps);
   double longest_ray(const Volume& data) const;
   Layer placed_layer();
   Layer component_layer(int component);
-  void refuse_dependent_components() const;
-  double color_scale() const;
   bool shows_nearest(int component);
-  LabelContent nearest_content(const std::shared_ptr<const Volume>& data, const LookRecipe& recipe);
+  LabelContent nearest_content(const std::shared_ptr<const Volume>& data, const LookRecipe& recipe,
+                               int component);
   Layer dependent_layer();
   std::shared_ptr<const LabelMask> label_mask(const LookRecipe& base, int component);
-  void add_surfaces(Layer& layer, const Curve& opacities, const Curve& colors);
+  void add_surfaces(Layer& layer, int component);
   void add_slice(Layer& layer, const Curve& opacities);
   std::vector<Layer> cropped(const std::vector<Layer>& layers);
 
@@ -69,6 +72,7 @@ class GridTranslator {
   const bool has_ambient_light_;
   KeptOfGrids& kept_;
   Notes& notes_;
+  FunctionReader reader_;
   vtkDataArray* array_ = nullptr;
   int of_cells_ = 0;
   Affine<double> world_from_data_;
@@ -140,7 +144,16 @@ double GridTranslator::scale() {
   return std::cbrt(std::abs(determinant(world_from_data_.matrix)));
 }
 
-LookRecipe GridTranslator::recipe_of(int component, const Volume& data) {
+/// The fixed-point mapper leaves functions without nodes as they are.
+RampRange GridTranslator::ramp_range(int component) {
+  if (vtkFixedPointVolumeRayCastMapper::SafeDownCast(&mapper_) != nullptr) return std::nullopt;
+  std::array<double, 2> range{};
+  array_->GetFiniteRange(range.data(), component);
+  if (!(range[0] <= range[1])) return std::nullopt;
+  return range;
+}
+
+LookRecipe GridTranslator::recipe_of(int component, const Volume& data, const LookRamps& ramps) {
   const std::optional<LayerProjection> shown = projection();
   OpacityMeaning meaning = OpacityMeaning::per_unit_distance;
   if (shown) meaning = OpacityMeaning::projected;
@@ -149,8 +162,9 @@ LookRecipe GridTranslator::recipe_of(int component, const Volume& data) {
   if (sums) meaning = OpacityMeaning::summed;
   // The errors of layers' functions add, and double beside other layers.
   const double share = layers_ > 1 ? 0.5 / static_cast<double>(layers_) : 1;
-  LookRecipe recipe =
-      look_recipe(property_, component, meaning, share * tolerance_, data.voxel_size(), notes_);
+  reader_ = FunctionReader(share * tolerance_, kept_.curves, notes_);
+  LookRecipe recipe = look_recipe(property_, component, meaning, share * tolerance_,
+                                  data.voxel_size(), ramps, reader_, notes_);
   if (!shown) recipe.unit_distance *= scale();
   if (meaning == OpacityMeaning::averaged) {
     recipe.range = {data.statistics().minimum, data.statistics().maximum};
@@ -188,55 +202,25 @@ Layer GridTranslator::placed_layer() {
   return layer;
 }
 
-void GridTranslator::refuse_dependent_components() const {
-  const int components = array_->GetNumberOfComponents();
-  if (components == 3) {
-    throw Error("dependent components: the array has 3, but VTK shows 2 or 4; add opacities");
-  }
-  if (mapper_.GetBlendMode() != vtkVolumeMapper::COMPOSITE_BLEND) {
-    throw Error(
-        "dependent components: only SetBlendModeToComposite() shows the colors of some and the "
-        "opacities of another");
-  }
-  if (mask_.labels != nullptr) {
-    throw Error("dependent components: have no masks; make opacities 0 in place of one");
-  }
-}
-
-/// Of the values of components that are colors: what becomes 1.
-double GridTranslator::color_scale() const {
-  switch (array_->GetDataType()) {
-    case VTK_UNSIGNED_CHAR:
-      return std::numeric_limits<unsigned char>::max();
-    case VTK_UNSIGNED_SHORT:
-      return std::numeric_limits<unsigned short>::max();
-    case VTK_FLOAT:
-    case VTK_DOUBLE:
-      return 1;
-    default:
-      throw Error(std::string("dependent components: colors are ") + array_->GetDataTypeAsString() +
-                  "; give unsigned char, from 0 to 255");
-  }
-}
-
 /// The last component has the opacity. The first of two has the color, of four the first three are
 /// red, green and blue.
 Layer GridTranslator::dependent_layer() {
-  refuse_dependent_components();
+  refuse_dependent_components(mapper_, *array_, mask_.labels != nullptr);
   Layer layer = placed_layer();
   const int components = array_->GetNumberOfComponents();
   std::vector<std::shared_ptr<const Volume>> data;
   for (int c = 0; c < components; ++c) {
     data.push_back(kept_.volumes.find(*data_, *array_, of_cells_ != 0, c));
   }
-  DependentRecipe recipe{recipe_of(0, *data.back()), {}};
+  const LookRamps ramps{ramp_range(components - 1), ramp_range(0)};
+  DependentRecipe recipe{recipe_of(0, *data.back(), ramps), {}};
   recipe.opacity.weight = 1;
   if (components == 2) {
-    recipe.colors.push_back(color_curve(property_, 0, notes_));
+    recipe.colors.push_back(reader_.colors(property_, 0, ramps.color));
   } else {
-    const double one = color_scale();
+    const double one = largest_color_value(*array_);
     for (const Rgb<double>& color : {Rgb<double>{3, 0, 0}, {0, 3, 0}, {0, 0, 3}}) {
-      recipe.colors.push_back(Curve{{0, {}}, {one, color}});
+      recipe.colors.push_back({Curve{{0, {}}, {one, color}}});
     }
   }
   for (JoinedPoint& point : recipe.opacity.points) point.b = {};
@@ -251,7 +235,7 @@ Layer GridTranslator::dependent_layer() {
   }
   layer.shading = shading_of(property_, 0, notes_);
   if (layer.shading && !has_ambient_light_) layer.shading->ambient = 0;
-  if (!gradient_curve(property_, 0, notes_).empty()) {
+  if (has_gradient_opacity(property_, 0)) {
     notes_.add("gradient opacities of dependent components are left out");
   }
   return layer;
@@ -261,17 +245,27 @@ Layer GridTranslator::component_layer(int component) {
   Layer layer = placed_layer();
   layer.projection = projection();
   const auto data = kept_.volumes.find(*data_, *array_, of_cells_ != 0, component);
-  LookRecipe recipe = recipe_of(component, *data);
+  const RampRange ramp = ramp_range(component);
+  LookRecipe recipe = recipe_of(component, *data, {ramp, ramp});
   const int mode = mapper_.GetBlendMode();
   const bool is_surface =
       mode == vtkVolumeMapper::ISOSURFACE_BLEND || mode == vtkVolumeMapper::SLICE_BLEND;
   if (is_surface) {
     // The medium is clear.
     for (JoinedPoint& point : recipe.points) point.a = 0;
+    recipe.opacity_deviation = 0;
   }
   if (shows_nearest(component)) {
-    layer.content = nearest_content(data, recipe);
+    layer.content = nearest_content(data, recipe, component);
     return layer;
+  }
+  const bool has_gradients = has_gradient_opacity(property_, component) && !is_surface &&
+                             mode == vtkVolumeMapper::COMPOSITE_BLEND;
+  FittedCurve gradients;
+  if (has_gradients) {
+    gradients = gradient_curve(property_, component, ramp, reader_);
+    // A factor's ratio is one of the extinction.
+    recipe.opacity_deviation += gradients.deviation;
   }
   const auto function = kept_.functions.find(recipe, function_of);
   layer.content = VolumeContent{data, function, label_mask(recipe, component)};
@@ -285,17 +279,15 @@ Layer GridTranslator::component_layer(int component) {
   }
   layer.shading = shading_of(property_, component, notes_);
   if (layer.shading && !has_ambient_light_) layer.shading->ambient = 0;
-  if (const Curve curve = gradient_curve(property_, component, notes_);
-      !curve.empty() && !is_surface) {
-    layer.gradient_opacity = kept_.gradients.find(curve, gradient_opacity_of);
+  if (has_gradients) {
+    layer.gradient_opacity = kept_.gradients.find(gradients.points, gradient_opacity_of);
     notes_.add("gradient opacities multiply the extinction here, in VTK the opacity of a sample");
   }
   if (is_surface) {
-    const Curve opacities = curve_of(*property_.GetScalarOpacity(component), notes_);
     if (mode == vtkVolumeMapper::ISOSURFACE_BLEND) {
-      add_surfaces(layer, opacities, color_curve(property_, component, notes_));
+      add_surfaces(layer, component);
     } else {
-      add_slice(layer, opacities);
+      add_slice(layer, reader_.opacities(*property_.GetScalarOpacity(component), 1, ramp).points);
     }
   }
   return layer;
@@ -305,7 +297,7 @@ Layer GridTranslator::component_layer(int component) {
 bool GridTranslator::shows_nearest(int component) {
   if (property_.GetInterpolationType() == VTK_LINEAR_INTERPOLATION) return false;
   if (mapper_.GetBlendMode() == vtkVolumeMapper::COMPOSITE_BLEND && mask_.labels == nullptr &&
-      property_.GetShade(component) == 0 && gradient_curve(property_, component, notes_).empty()) {
+      property_.GetShade(component) == 0 && !has_gradient_opacity(property_, component)) {
     return true;
   }
   notes_.add(
@@ -315,10 +307,12 @@ bool GridTranslator::shows_nearest(int component) {
 }
 
 LabelContent GridTranslator::nearest_content(const std::shared_ptr<const Volume>& data,
-                                             const LookRecipe& recipe) {
+                                             const LookRecipe& recipe, int component) {
   const auto nearest = kept_.nearest.find(data, [](const auto& of) { return nearest_values(*of); });
-  const auto table = kept_.label_tables.find({recipe, nearest}, [](const auto& made) {
-    return label_table(made.first, made.second->values);
+  std::vector<ValueLook> looks =
+      looks_of(nearest->values, property_, component, ramp_range(component));
+  const auto table = kept_.label_tables.find({recipe, std::move(looks)}, [](const auto& made) {
+    return label_table(made.first, made.second);
   });
   return {nearest->labels, table};
 }
@@ -339,10 +333,16 @@ std::shared_ptr<const LabelMask> GridTranslator::label_mask(const LookRecipe& ba
       if (property_.GetLabelGradientOpacity(label) != nullptr) {
         notes_.add("gradient opacities of labels are left out");
       }
-      const Curve own = color_curve(property_, component, notes_);
-      look.points = joined(
-          curve_of(opacity != nullptr ? *opacity : *property_.GetScalarOpacity(component), notes_),
-          color != nullptr ? blended(own, curve_of(*color, notes_), mask_.blend) : own);
+      const RampRange ramp = ramp_range(component);
+      const FittedCurve own = reader_.colors(property_, component, ramp);
+      const FittedCurve colors =
+          color != nullptr ? blended(own, reader_.colors(*color, {}), mask_.blend) : own;
+      const FittedCurve opacities =
+          opacity != nullptr ? reader_.opacities(*opacity, 1, {})
+                             : reader_.opacities(*property_.GetScalarOpacity(component), 1, ramp);
+      look.points = joined(opacities.points, colors.points);
+      look.opacity_deviation = opacities.deviation;
+      look.color_deviation = colors.deviation;
       if (look.meaning == OpacityMeaning::per_unit_distance &&
           mapper_.GetBlendMode() != vtkVolumeMapper::COMPOSITE_BLEND) {
         continue;  // surfaces
@@ -357,7 +357,8 @@ std::shared_ptr<const LabelMask> GridTranslator::label_mask(const LookRecipe& ba
   });
 }
 
-void GridTranslator::add_surfaces(Layer& layer, const Curve& opacities, const Curve& colors) {
+void GridTranslator::add_surfaces(Layer& layer, int component) {
+  const RampRange ramp = ramp_range(component);
   vtkContourValues* const values = property_.GetIsoSurfaceValues();
   for (int i = 0; i < values->GetNumberOfContours(); ++i) {
     const double value = values->GetValue(i);
@@ -369,8 +370,8 @@ void GridTranslator::add_surfaces(Layer& layer, const Curve& opacities, const Cu
     if (std::ranges::any_of(layer.isosurfaces, is_there)) continue;
     Isosurface surface;
     surface.value = value;
-    surface.opacity = std::clamp(value_at(opacities, value).r, 0.0, 1.0);
-    surface.color = value_at(colors, value);
+    surface.opacity = opacity_at(*property_.GetScalarOpacity(component), ramp, value);
+    surface.color = color_at(property_, component, ramp, value);
     layer.isosurfaces.push_back(surface);
   }
 }
@@ -419,31 +420,6 @@ std::vector<Layer> GridTranslator::cropped(const std::vector<Layer>& layers) {
 
 }  // namespace
 
-NearestValues nearest_values(const Volume& volume) {
-  constexpr std::size_t most = std::size_t{1} << 24;
-  std::vector<double> values, all;
-  std::visit([&](const auto& data) { all.assign(data.begin(), data.end()); }, volume.data());
-  values = all;
-  std::erase_if(values, [](double value) { return std::isnan(value); });
-  std::ranges::sort(values);
-  values.erase(std::unique(values.begin(), values.end()), values.end());
-  if (values.size() > most) {
-    throw Error("nearest values: there are " + std::to_string(values.size()) +
-                " different ones; call SetInterpolationTypeToLinear()");
-  }
-  DataArray<float> labels(all.size());
-  std::size_t i = 0;
-  for (float& label : labels.writable()) {
-    const double value = all[i++];
-    label = std::isnan(value)
-                ? std::numeric_limits<float>::quiet_NaN()
-                : static_cast<float>(std::ranges::lower_bound(values, value) - values.begin());
-  }
-  return {std::make_shared<const LabelVolume>(
-              std::make_shared<const Volume>(volume.description(), std::move(labels))),
-          std::move(values)};
-}
-
 void KeptOfGrids::keep_used() {
   volumes.keep_used();
   labels.keep_used();
@@ -452,6 +428,7 @@ void KeptOfGrids::keep_used() {
   dependent.keep_used();
   nearest.keep_used();
   label_tables.keep_used();
+  curves.keep_used();
   gradients.keep_used();
   masks.keep_used();
   own_cells.keep_used();

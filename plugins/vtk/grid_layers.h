@@ -8,6 +8,7 @@
 #include "ghost_cells.h"
 #include "grid_data.h"
 #include "look.h"
+#include "nearest_values.h"
 #include "notes.h"
 #include "pellucid/scene/channels.h"
 #include "pellucid/scene/label_volume.h"
@@ -27,15 +28,6 @@ struct Mask {
   double blend = 1;                ///< the share of a label's own color
 };
 
-/// A volume each place of which has the nearest value: as a segmentation, whose labels are the
-/// places of their values in ascending order.
-struct NearestValues {
-  std::shared_ptr<const LabelVolume> labels;
-  std::vector<double> values;  ///< of the labels 0, 1, ...
-};
-/// Throws Error for infinite values, or more than 2^24 different ones.
-NearestValues nearest_values(const Volume& volume);
-
 /// What pictures of a grid share.
 struct KeptOfGrids {
   using MaskRecipe =
@@ -47,7 +39,8 @@ struct KeptOfGrids {
   KeptFunctions functions;
   Kept<DependentRecipe, MultivariateTransferFunction> dependent;
   Kept<std::shared_ptr<const Volume>, NearestValues> nearest;
-  Kept<std::pair<LookRecipe, std::shared_ptr<const NearestValues>>, LabelTable> label_tables;
+  Kept<std::pair<LookRecipe, std::vector<ValueLook>>, LabelTable> label_tables;
+  KeptCurves curves;
   Kept<Curve, GradientOpacity> gradients;
   Kept<MaskRecipe, LabelMask> masks;
   KeptOwnCells own_cells;

@@ -24,11 +24,13 @@ TransferFunction table(const LookRecipe& recipe) {
     points.push_back({p.x, std::clamp(p.a, 0.0, 1.0), p.b});
     largest_color = std::max({largest_color, p.b.r, p.b.g, p.b.b});
   }
-  return transfer_function_from_opacity_table(
+  const TransferFunction function = transfer_function_from_opacity_table(
       points,
       std::clamp(recipe.unit_distance / recipe.weight, smallest_unit_distance,
                  largest_unit_distance),
       required_relative_error(opacity_table_tolerance(recipe.tolerance), largest_color));
+  return {function.points(), function.relative_error() + recipe.opacity_deviation,
+          recipe.color_deviation};
 }
 
 /// Chords that stand for the product of two lines.
@@ -48,7 +50,7 @@ TransferFunction averages(const LookRecipe& recipe) {
         std::clamp(p.a, 0.0, 1.0) * std::clamp((p.x - low) / (high - low), 0.0, 1.0);
     points.push_back({p.x, 1, {grey, grey, grey}});
   }
-  return TransferFunction(std::move(points));
+  return {std::move(points), 0, std::expm1(recipe.opacity_deviation)};
 }
 
 /// The largest number of chords of a product between two of its corners.
@@ -84,7 +86,7 @@ TransferFunction sums(const LookRecipe& recipe) {
     }
     add(joint[i].x, joint[i].a, joint[i].b.r);
   }
-  return TransferFunction(std::move(points));
+  return {std::move(points), recipe.opacity_deviation};
 }
 
 /// Of a size: shorter than the data tell apart.
@@ -119,7 +121,7 @@ TransferFunction function_of(const LookRecipe& recipe) {
     points.push_back({beyond_data, points.back().extinction, points.back().color});
     points.push_back({beyond_data, 1, points.back().color});
   }
-  return TransferFunction(std::move(points));
+  return {std::move(points), recipe.opacity_deviation, recipe.color_deviation};
 }
 
 std::shared_ptr<const MultivariateTransferFunction> dependent_function(
@@ -129,28 +131,24 @@ std::shared_ptr<const MultivariateTransferFunction> dependent_function(
   std::vector<ChannelTransferFunction> tables;
   for (std::size_t c = 0; c < recipe.colors.size(); ++c) {
     std::vector<TransferFunction::Point> points;
-    for (const CurvePoint& p : recipe.colors[c]) points.push_back({p.x, share, p.y});
-    tables.push_back({static_cast<int>(c), TransferFunction(std::move(points))});
+    for (const CurvePoint& p : recipe.colors[c].points) points.push_back({p.x, share, p.y});
+    tables.push_back(
+        {static_cast<int>(c), TransferFunction(std::move(points), 0, recipe.colors[c].deviation)});
   }
   return std::make_shared<const MultivariateTransferFunction>(
       channels, std::vector<GaussianPrimitive>(), std::move(tables),
       ChannelTransferFunction{channels - 1, function_of(recipe.opacity)});
 }
 
-LabelTable label_table(const LookRecipe& recipe, const std::vector<double>& values) {
-  Curve opacities, colors;
-  for (const JoinedPoint& p : recipe.points) {
-    opacities.push_back({p.x, {p.a, p.a, p.a}});
-    colors.push_back({p.x, p.b});
-  }
+LabelTable label_table(const LookRecipe& recipe, const std::vector<ValueLook>& looks) {
   std::vector<LabelStyle> styles;
-  for (std::size_t i = 0; i < values.size(); ++i) {
-    const double opacity = std::clamp(value_at(opacities, values[i]).r, 0.0, 1.0);
+  for (std::size_t i = 0; i < looks.size(); ++i) {
+    const double opacity = looks[i].opacity;
     if (!(opacity > 0)) continue;
     const double depth = opacity < 1 ? -std::log1p(-opacity) : opaque_extinction;
     styles.push_back({static_cast<std::int32_t>(i),
                       {},
-                      value_at(colors, values[i]),
+                      looks[i].color,
                       std::min(depth, opaque_extinction) * recipe.weight / recipe.unit_distance});
   }
   if (styles.empty()) styles.push_back({0, {}, {}, 0});
@@ -158,11 +156,22 @@ LabelTable label_table(const LookRecipe& recipe, const std::vector<double>& valu
 }
 
 LookRecipe look_recipe(vtkVolumeProperty& property, int component, OpacityMeaning meaning,
-                       double tolerance, double size, Notes& notes) {
-  return {joined(curve_of(*property.GetScalarOpacity(component), notes),
-                 color_curve(property, component, notes)),
-          meaning, unit_distance(property.GetScalarOpacityUnitDistance(component), size, notes), 1,
-          tolerance};
+                       double tolerance, double size, const LookRamps& ramps,
+                       FunctionReader& reader, Notes& notes) {
+  const bool is_extinction = meaning == OpacityMeaning::extinction;
+  const FittedCurve opacities =
+      reader.opacities(*property.GetScalarOpacity(component),
+                       is_extinction ? std::numeric_limits<double>::infinity() : 1, ramps.opacity);
+  const FittedCurve colors = reader.colors(property, component, ramps.color);
+  LookRecipe recipe;
+  recipe.points = joined(opacities.points, colors.points);
+  recipe.meaning = meaning;
+  recipe.unit_distance =
+      unit_distance(property.GetScalarOpacityUnitDistance(component), size, notes);
+  recipe.tolerance = tolerance;
+  recipe.opacity_deviation = opacities.deviation;
+  recipe.color_deviation = colors.deviation;
+  return recipe;
 }
 
 std::optional<Shading> shading_of(vtkVolumeProperty& property, int component, Notes& notes) {
@@ -183,17 +192,23 @@ std::optional<Shading> shading_of(vtkVolumeProperty& property, int component, No
   return shading;
 }
 
-Curve gradient_curve(vtkVolumeProperty& property, int component, Notes& notes) {
-  if (property.GetDisableGradientOpacity(component) != 0) return {};
-  if (!property.HasGradientOpacity(component)) return {};
-  const Curve curve = curve_of(*property.GetGradientOpacity(component), notes);
+bool has_gradient_opacity(vtkVolumeProperty& property, int component) {
+  return property.GetDisableGradientOpacity(component) == 0 &&
+         property.HasGradientOpacity(component);
+}
+
+FittedCurve gradient_curve(vtkVolumeProperty& property, int component, const RampRange& ramp,
+                           FunctionReader& reader) {
+  FittedCurve curve = reader.opacities(*property.GetGradientOpacity(component),
+                                       std::numeric_limits<double>::infinity(), ramp);
   // Magnitudes begin at 0.
-  if (curve.front().x >= 0) return curve;
-  Curve from_zero{{0, value_at(curve, 0)}};
-  for (const CurvePoint& point : curve) {
+  if (curve.points.front().x >= 0) return curve;
+  Curve from_zero{{0, value_at(curve.points, 0)}};
+  for (const CurvePoint& point : curve.points) {
     if (point.x > 0) from_zero.push_back(point);
   }
-  return from_zero;
+  curve.points = std::move(from_zero);
+  return curve;
 }
 
 GradientOpacity gradient_opacity_of(const Curve& curve) {

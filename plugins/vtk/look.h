@@ -36,6 +36,7 @@ struct LookRecipe {
   double tolerance = 0;           ///< that opacities are converted for; of sums, of a ray
   std::array<double, 2> range{};  ///< of the data, where they are averaged or summed
   double length = 0;              ///< of the longest ray in the unit distance's unit, for sums
+  double opacity_deviation = 0, color_deviation = 0;  ///< FittedCurve::deviation of the points
 
   bool operator==(const LookRecipe&) const = default;
 };
@@ -49,26 +50,39 @@ constexpr double sum_tolerance(double tolerance) noexcept {
 /// beyond all data makes the largest one 1. Throws Error as TransferFunction and
 /// transfer_function_from_opacity_table() do.
 TransferFunction function_of(const LookRecipe& recipe);
-/// Returns the recipe of a component's colors and opacities. A unit distance of 0 is one that is
-/// short beside the data, as in VTK, which shows what absorbs as opaque; one that is no positive
-/// number is 1, VTK's default. `notes` say so. `size`: of the data, in the unit distance's unit.
+/// Ranges for ramps in the place of functions without nodes.
+struct LookRamps {
+  RampRange opacity{}, color{};
+};
+/// Returns the recipe of a component's colors and opacities, as the reader reads them. A unit
+/// distance of 0 is one that is short beside the data, as in VTK, which shows what absorbs as
+/// opaque; one that is no positive number is 1, VTK's default. `notes` say so. `size`: of the data,
+/// in the unit distance's unit.
 LookRecipe look_recipe(vtkVolumeProperty& property, int component, OpacityMeaning meaning,
-                       double tolerance, double size, Notes& notes);
+                       double tolerance, double size, const LookRamps& ramps,
+                       FunctionReader& reader, Notes& notes);
 
 /// What a function of dependent components is made of: the last component has the opacity. Colors
 /// are those of the first of two, or of each of the first three of four, of which each has a color
 /// three times as bright, for a third of the extinction.
 struct DependentRecipe {
   LookRecipe opacity;
-  std::vector<Curve> colors;
+  std::vector<FittedCurve> colors;
 
   bool operator==(const DependentRecipe&) const = default;
 };
 std::shared_ptr<const MultivariateTransferFunction> dependent_function(
     const DependentRecipe& recipe);
 
-/// Returns the looks of values, as labels 0, 1, ...: the function at each.
-LabelTable label_table(const LookRecipe& recipe, const std::vector<double>& values);
+/// The opacity and the color of a value.
+struct ValueLook {
+  double opacity = 0;
+  Rgb<double> color{};
+
+  bool operator==(const ValueLook&) const = default;
+};
+/// Returns the looks of values, as labels 0, 1, ..., per unit distance of the recipe.
+LabelTable label_table(const LookRecipe& recipe, const std::vector<ValueLook>& looks);
 
 using KeptFunctions = Kept<LookRecipe, TransferFunction>;
 
@@ -76,9 +90,11 @@ using KeptFunctions = Kept<LookRecipe, TransferFunction>;
 /// wherever the gradient is not 0, so that the flatness is 0. Numbers beyond what a Shading takes
 /// are brought into it; those that are none are VTK's defaults.
 std::optional<Shading> shading_of(vtkVolumeProperty& property, int component, Notes& notes);
-/// Returns the gradient opacity of a component, by the change per voxel, from 0 on; empty where it
-/// has none.
-Curve gradient_curve(vtkVolumeProperty& property, int component, Notes& notes);
+/// Returns whether a component has a gradient opacity.
+bool has_gradient_opacity(vtkVolumeProperty& property, int component);
+/// Returns the gradient opacity of a component, by the change per voxel, from 0 on.
+FittedCurve gradient_curve(vtkVolumeProperty& property, int component, const RampRange& ramp,
+                           FunctionReader& reader);
 /// Returns it as the scene has it.
 GradientOpacity gradient_opacity_of(const Curve& curve);
 

@@ -22,6 +22,7 @@
 #include <utility>
 
 #include "pellucid/scene/error.h"
+#include "selection.h"
 
 namespace pellucid::plugin {
 namespace {
@@ -266,19 +267,20 @@ void MapperCore::draw(vtkUnstructuredGridVolumeMapper& mapper, vtkRenderer& rend
     return layers_of(mapper, volume, settings.tolerance, meshes_, notes);
   });
   meshes_.functions.keep_used();
+  meshes_.curves.keep_used();
 }
 
 void MapperCore::draw_layers(vtkAbstractVolumeMapper& mapper, vtkRenderer& renderer,
                              vtkVolume& volume, const MakeLayers& make_layers) {
-  // The colors of a selection's passes are numbers of what is selected.
-  if (renderer.GetSelector() != nullptr) return;
+  const bool selects = is_selecting(renderer);
+  if (selects && !is_selected_by_prop(renderer)) return;
   if (is_drawing_) return;  // a callback of the check for an abort draws
   // Of a picture in tiles, a tile may show nothing of the renderer.
   int width = 0, height = 0, left = 0, bottom = 0;
   renderer.GetTiledSizeAndOrigin(&width, &height, &left, &bottom);
   if (width < 1 || height < 1) return;
   const Clock::time_point start = Clock::now();
-  outcome = {};
+  const Outcome before = std::exchange(outcome, {});
   is_drawing_ = true;
   try {
     Notes notes = left_out;
@@ -303,6 +305,7 @@ void MapperCore::draw_layers(vtkAbstractVolumeMapper& mapper, vtkRenderer& rende
       const FrameKeeper::Restorer restorer{*keeper};
       Image image = picture(scene, renderer, volume.GetAllocatedRenderTime());
       finish_picture(scene, image);
+      if (selects) show_number_of_prop(renderer, image);
       if (renderer.GetRenderWindow() == window) show(image, view, renderer, volume);
     }
   } catch (const Cancelled&) {
@@ -313,6 +316,7 @@ void MapperCore::draw_layers(vtkAbstractVolumeMapper& mapper, vtkRenderer& rende
   }
   is_drawing_ = false;
   outcome.seconds = seconds_since(start);
+  if (selects) outcome = before;
 }
 
 Image MapperCore::picture(const Scene& scene, vtkRenderer& renderer, double seconds) {

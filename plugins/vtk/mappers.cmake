@@ -9,6 +9,7 @@ function(pellucid_vtk_mappers target)
   set(sources
     cropping.cpp
     curves.cpp
+    dependent_components.cpp
     ghost_cells.cpp
     grid_data.cpp
     grid_layers.cpp
@@ -16,6 +17,8 @@ function(pellucid_vtk_mappers target)
     look.cpp
     mapper_core.cpp
     mesh_layers.cpp
+    nearest_values.cpp
+    selection.cpp
     view.cpp
     vtkPellucidUnstructuredGridMapper.cpp
     ${arg_SOURCES})
@@ -33,8 +36,7 @@ function(pellucid_vtk_mappers target)
     VISIBILITY_INLINES_HIDDEN ON)
   target_compile_features(${target} PUBLIC cxx_std_20)
   target_include_directories(${target}
-    PUBLIC "${_pellucid_vtk_folder}"
-    PRIVATE "${PROJECT_SOURCE_DIR}/src/io")
+    PUBLIC "${_pellucid_vtk_folder}" "${PROJECT_SOURCE_DIR}/src/io")
   target_link_libraries(${target}
     PUBLIC pellucid::cpu pellucid::io ${arg_MODULES}
     PRIVATE pellucid_build_flags)

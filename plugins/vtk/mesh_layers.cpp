@@ -128,10 +128,10 @@ std::vector<Layer> layers_of(vtkUnstructuredGridVolumeMapper& mapper, vtkVolume&
     layer.projection = LayerProjection::maximum;
   }
   const auto meaning = layer.projection ? OpacityMeaning::projected : OpacityMeaning::extinction;
-  layer.content = MeshContent{
-      kept.mesh,
-      kept.functions.find(look_recipe(property, 0, meaning, tolerance, size_of(*kept.mesh), notes),
-                          function_of)};
+  FunctionReader reader(tolerance, kept.curves, notes);
+  const LookRecipe recipe =
+      look_recipe(property, 0, meaning, tolerance, size_of(*kept.mesh), {}, reader, notes);
+  layer.content = MeshContent{kept.mesh, kept.functions.find(recipe, function_of)};
   if (property.GetShade(0) != 0) notes.add("volumes of unstructured grids have no light");
   return {layer};
 }

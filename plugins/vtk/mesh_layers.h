@@ -30,6 +30,7 @@ struct KeptOfMeshes {
   vtkSmartPointer<vtkCellArray> cells;
   int made = 0;  ///< how often it was cut
   KeptFunctions functions;
+  KeptCurves curves;
 };
 
 /// Returns the layer of a volume; none if the mapper has no input. Opacity / unit distance is the

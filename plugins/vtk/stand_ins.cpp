@@ -45,7 +45,9 @@ class GpuStandIn final : public vtkGPUVolumeRayCastMapper, public HasCore {
     if (this->GetRenderToImage() != 0) this->core.left_out.add("RenderToImage is left out");
     if (auto* const several = vtkMultiVolume::SafeDownCast(volume)) {
       std::vector<std::pair<vtkDataSet*, vtkVolume*>> parts;
-      for (int port = 0; port < this->GetInputCount(); ++port) {
+      // Ports need not follow one another.
+      for (int port = 0; port < this->GetNumberOfInputPorts(); ++port) {
+        if (this->GetNumberOfInputConnections(port) == 0) continue;
         if (vtkVolume* const part = several->GetVolume(port)) {
           parts.emplace_back(this->GetInput(port), part);
         }

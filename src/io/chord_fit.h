@@ -37,9 +37,18 @@ template <class Curves>
 class ChordFit {
  public:
   /// Of each channel of color(), and of |ln| of the ratio of the depths. `format` opens the message
-  /// where that takes too many points.
-  ChordFit(const Curves& curves, double color, double depth, std::string format)
-      : curves_(curves), color_limit_(color), depth_limit_(depth), format_(std::move(format)) {}
+  /// where that takes too many points. Numbers above the largest are cut. Where the largest opacity
+  /// is above 1, opacities are extinctions, and the ratio is theirs.
+  ChordFit(const Curves& curves, double color, double depth, std::string format,
+           double largest_color = 1, double largest_opacity = 1,
+           std::size_t most_points = 1'000'000)
+      : curves_(curves),
+        color_limit_(color),
+        depth_limit_(depth),
+        format_(std::move(format)),
+        largest_color_(largest_color),
+        largest_opacity_(largest_opacity),
+        most_points_(most_points) {}
 
   std::vector<OpacityPoint> points() {
     // Beyond the ends the function is constant, and may begin or end with a jump.
@@ -63,12 +72,13 @@ class ChordFit {
   using Place = decltype(std::declval<const Curves&>().place(0.0));
   /// Of values: beside these differences are those of rounding.
   static constexpr double rounding = 1e-16;
-  static constexpr std::size_t most_points = 1'000'000;
 
   OpacityPoint point(double value, const Place& place) const {
     const std::array<double, 3> c = curves_.color(value, place);
-    const auto share = [](double x) { return std::clamp(x, 0.0, 1.0); };
-    return {value, share(curves_.opacity(value, place)), {share(c[0]), share(c[1]), share(c[2])}};
+    const auto part = [&](double x) { return std::clamp(x, 0.0, largest_color_); };
+    return {value,
+            std::clamp(curves_.opacity(value, place), 0.0, largest_opacity_),
+            {part(c[0]), part(c[1]), part(c[2])}};
   }
 
   void add_piece(double first, double last, const Place& place) {
@@ -101,7 +111,11 @@ class ChordFit {
     if (!(opacity <= rounding)) {
       const double a = curves_.opacity(begin, place), b = curves_.opacity(end, place);
       const double lower = std::min(a, b) - opacity, upper = std::max(a, b) + opacity;
-      if (upper > thin_opacity && lower < 1 - dense_opacity) {
+      if (largest_opacity_ > 1) {
+        if (upper > thin_opacity) {
+          depth = lower > 0 ? opacity / lower : std::numeric_limits<double>::infinity();
+        }
+      } else if (upper > thin_opacity && lower < 1 - dense_opacity) {
         depth = foreign::depth_deviation(lower, upper, opacity);
       }
       if (!(depth <= depth_limit_)) return false;
@@ -127,15 +141,17 @@ class ChordFit {
   }
 
   void check_size(std::size_t size) const {
-    if (size <= most_points) return;
+    if (size <= most_points_) return;
     throw Error(format_ + ": to stay within a deviation of " +
                 text_of(std::min(color_limit_, depth_limit_)) + " it takes more than " +
-                std::to_string(most_points) + " points; allow a larger deviation");
+                std::to_string(most_points_) + " points; allow a larger deviation");
   }
 
   const Curves& curves_;
   double color_limit_, depth_limit_;
   std::string format_;
+  double largest_color_, largest_opacity_;
+  std::size_t most_points_;
   double color_deviation_ = 0, depth_deviation_ = 0;
   std::vector<OpacityPoint> points_;
 };

@@ -20,6 +20,8 @@ Triple<double> hsv_of(const Triple<double>& rgb) {
   return {hue, saturation, largest};
 }
 
+}  // namespace
+
 // vtkMath::RGBToXYZ and XYZToLab.
 Triple<double> lab_of(const Triple<double>& rgb) {
   const auto [r, g, b] = color_of_signals<double>(rgb, ColorEncoding::srgb);
@@ -31,6 +33,8 @@ Triple<double> lab_of(const Triple<double>& rgb) {
   const double z = compress((r * 0.0193 + g * 0.1192 + b * 0.9505) / 1.089);
   return {116 * y - 16, 500 * (x - y), 200 * (y - z)};
 }
+
+namespace {
 
 // Moreland's Msh: the length of (L, a, b), its angle to the L axis, and the hue.
 Triple<double> msh_of(const Triple<double>& rgb) {
@@ -72,9 +76,13 @@ ColorPath::ColorPath(const ColorNode& from, const ColorNode& to, ColorSpace spac
       to_(to),
       space_(space),
       numbers_(numbers),
-      middle_(from.x + (to.x - from.x) * std::clamp(from.midpoint, 0.00001, 0.99999)),
+      middle_(place_at(std::clamp(from.midpoint, 0.00001, 0.99999), from.x, to.x,
+                       from.logarithmic && from.x < to.x)),
       begin_(triple(from.color)),
       end_(triple(to.color)) {
+  for (const Triple<double>& color : {begin_, end_}) {
+    for (const double x : color) is_outside_ = is_outside_ || x < 0 || x > 1;
+  }
   // Ends alike stay what they are: a way through another space would only round them.
   if (begin_ == end_ && space_ != ColorSpace::step) space_ = ColorSpace::rgb;
   if (space_ == ColorSpace::hsv || space_ == ColorSpace::hsv_without_wrap) {
@@ -112,7 +120,7 @@ void ColorPath::set_diverging() {
 
 template <class T>
 T ColorPath::share(const T& value, bool second_half) const {
-  const T s = ratio(value - T(from_.x), to_.x - from_.x);
+  const T s = way_share(value, from_.x, to_.x, from_.logarithmic);
   return node_shape(s, from_.midpoint, from_.sharpness, second_half,
                     space_ != ColorSpace::diverging);
 }
@@ -123,9 +131,23 @@ Triple<T> ColorPath::color(const T& value, const Place& place) const {
   if (space_ == ColorSpace::step && from_.sharpness <= 0.99) {
     return color_of_signals<T>({T(end_[0]), T(end_[1]), T(end_[2])}, numbers_);
   }
+  Triple<T> color = uncut_color(value, place);
+  // VTK cuts what is sharp, and nothing else.
+  for (T& x : color) x = is_outside_ && is_sharp() ? limited(x, 1) : x;
+  return color;
+}
+
+template <class T>
+Triple<T> ColorPath::uncut_color(const T& value, const Place& place) const {
   const T s = share(value, place.color_second_half);
   if (space_ == ColorSpace::rgb || space_ == ColorSpace::step) {
     return color_of_signals(mixed(begin_, end_, s), numbers_);
+  }
+  if (space_ == ColorSpace::way) {
+    const WayPoint &a = from_.way[place.way], &b = from_.way[place.way + 1];
+    return color_of_signals(
+        mixed(triple(a.color), triple(b.color), ratio(s - T(a.share), b.share - a.share)),
+        numbers_);
   }
   if (space_ == ColorSpace::lab) {
     const auto [l, a, b] = mixed(begin_, end_, s);
@@ -168,11 +190,31 @@ void ColorPath::add_hue_breaks(std::vector<double>& breaks) const {
   }
 }
 
+std::size_t ColorPath::corner(double value) const {
+  if (space_ != ColorSpace::way) return 0;
+  const double s = share(value, second_half(value));
+  const auto after = std::upper_bound(from_.way.begin() + 1, from_.way.end() - 1, s,
+                                      [](double x, const WayPoint& p) { return x < p.share; });
+  return static_cast<std::size_t>(after - from_.way.begin()) - 1;
+}
+
+void ColorPath::add_way_breaks(std::vector<double>& breaks) const {
+  for (std::size_t i = 1; i + 1 < from_.way.size(); ++i) {
+    double before = from_.x, after = to_.x;
+    for (int k = 0; k < 100; ++k) {
+      const double value = before + (after - before) / 2;
+      (share(value, second_half(value)) < from_.way[i].share ? before : after) = value;
+    }
+    breaks.push_back(after);
+  }
+}
+
 std::vector<double> ColorPath::breaks() const {
   std::vector<double> breaks{from_.x, to_.x};
   const bool plain = from_.midpoint == 0.5 && from_.sharpness < 0.01;
   if (!plain || through_white_) breaks.push_back(middle_);
   if (space_ == ColorSpace::hsv || space_ == ColorSpace::hsv_without_wrap) add_hue_breaks(breaks);
+  if (space_ == ColorSpace::way) add_way_breaks(breaks);
   return breaks;
 }
 

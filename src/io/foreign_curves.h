@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 #include "foreign_function.h"
@@ -53,6 +54,26 @@ T signal_of(const T& light) {
   return branch(
       light, 0.0031308, [](const T& x) { return x * T(12.92); },
       [](const T& x) { return T(1.055) * power(x, 1 / 2.4) - T(0.055); });
+}
+
+/// The share of the way from one place to another.
+template <class T>
+T way_share(const T& value, double from, double to, bool logarithmic) {
+  if (!logarithmic) return ratio(value - T(from), to - from);
+  return ratio(logarithm(value) - T(std::log(from)), std::log(to) - std::log(from));
+}
+/// The place at a share of the way.
+inline double place_at(double share, double from, double to, bool logarithmic) {
+  if (!logarithmic) return from + (to - from) * share;
+  return std::exp(std::log(from) + (std::log(to) - std::log(from)) * share);
+}
+
+/// What is below 0 or above the largest is cut.
+template <class T>
+T limited(const T& value, double largest) {
+  const T positive = larger(value, T(0));
+  return largest < std::numeric_limits<double>::infinity() ? smaller(positive, T(largest))
+                                                           : positive;
 }
 
 /// The shape of the way from one node to the next, at the share s in [0,1] of it: 0 at the first
@@ -130,7 +151,10 @@ Triple<T> signals_of_hsv(const T& hue, const T& saturation, const T& value, doub
   return signals;
 }
 
-// vtkMath::LabToXYZ and XYZToRGB, up to linear light. The branches leave a step of 2e-7.
+/// The largest step of a color where vtkMath's branches of Lab do not meet: 12.92 · 3.08 · 2.9e-8.
+inline constexpr double lab_step = 1.2e-6;
+
+// vtkMath::LabToXYZ and XYZToRGB, up to linear light. The branches leave a step of 2.9e-8 in XYZ.
 template <class T>
 Triple<T> light_of_lab(const T& l, const T& a, const T& b) {
   const T y = (l + T(16)) * T(1.0 / 116), x = a * T(1.0 / 500) + y, z = y - b * T(1.0 / 200);

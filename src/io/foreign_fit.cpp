@@ -13,8 +13,6 @@ namespace {
 
 /// Of the intervals' ends.
 constexpr double rounding = 1e-14;
-/// vtkMath's branches of Lab leave steps of 4e-7 in linear light.
-constexpr double lab_steps = 1e-6;
 /// Moves all nodes such that they span the range.
 void move_to(Function& function, const std::array<double, 2>& range) {
   double first = std::numeric_limits<double>::infinity(), last = -first;
@@ -81,7 +79,7 @@ ImportedTransferFunction fit(const Function& given, const ImportOptions& options
   table.unit_distance = function.unit_distance;
   if (chords.color_deviation() > 0) {
     const bool lab = function.space == ColorSpace::lab || function.space == ColorSpace::diverging;
-    table.color_deviation = chords.color_deviation() + rounding + (lab ? lab_steps : 0);
+    table.color_deviation = chords.color_deviation() + rounding + (lab ? lab_step : 0);
   }
   if (chords.depth_deviation() > 0) {
     table.extinction_deviation = chords.depth_deviation() + rounding;

@@ -12,17 +12,26 @@
 /// files give, and what fit() turns into an opacity table.
 namespace pellucid::foreign {
 
+/// A corner of a way of straight lines from one color to the next.
+struct WayPoint {
+  double share = 0;  ///< of the way, ascending
+  Rgb<double> color{};
+};
+
 /// A node of vtkColorTransferFunction; midpoint and sharpness shape the way to the next one.
 struct ColorNode {
   double x = 0;
   Rgb<double> color{};  ///< numbers as in the file, 0 to 1
   double midpoint = 0.5, sharpness = 0;
+  bool logarithmic = false;     ///< the way to the next one goes by ln x
+  std::vector<WayPoint> way{};  ///< of ColorSpace::way: to the next one, of shares 0 to 1
 };
 
 /// A node of vtkPiecewiseFunction.
 struct OpacityNode {
   double x = 0, opacity = 0;
   double midpoint = 0.5, sharpness = 0;
+  bool logarithmic = false;  ///< the way to the next one goes by ln x
 };
 
 /// A control point of VisIt's and vtk.js's Gaussians, which reaches from x - width to x + width.
@@ -32,8 +41,8 @@ struct GaussianNode {
   double y_bias = 0;  ///< 0 Gaussian, 1 parabola, 2 box
 };
 
-/// In what the way from one color to the next is straight.
-enum class ColorSpace { rgb, hsv, hsv_without_wrap, lab, diverging, step };
+/// In what the way from one color to the next is straight; `way`: along ColorNode::way.
+enum class ColorSpace { rgb, hsv, hsv_without_wrap, lab, diverging, step, way };
 
 /// The largest number of nodes of a file.
 inline constexpr std::size_t most_nodes = 100'000;
@@ -51,6 +60,8 @@ struct Function {
   /// beyond them.
   std::vector<GaussianNode> gaussians;
   double lower = 0, upper = 1;
+  /// What is above these is cut, if numbers of nodes are not from 0 to 1.
+  double largest_color = 1, largest_opacity = 1;
   double unit_distance = 1;
   std::optional<ShadingDescription> shading;
   std::vector<OpacityNode> gradient_opacity;  ///< by the gradient per mean spacing; empty: 1

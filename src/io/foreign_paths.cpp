@@ -8,7 +8,7 @@ namespace {
 
 /// Where the shape from a node to the next changes from its first half to its second.
 double middle(const OpacityNode& from, const OpacityNode& to) {
-  return from.x + (to.x - from.x) * std::clamp(from.midpoint, 0.00001, 0.99999);
+  return place_at(std::clamp(from.midpoint, 0.00001, 0.99999), from.x, to.x, from.logarithmic);
 }
 
 /// The last node at or before the value, of nodes in ascending order; `size` where there is none.
@@ -23,6 +23,14 @@ std::size_t node_before(const std::vector<Node>& nodes, double value) {
 }  // namespace
 
 Curves::Curves(const Function& function) : function_(function) {
+  for (const ColorNode& node : function.colors) {
+    for (const double x : triple(node.color)) {
+      is_outside_ = is_outside_ || x < 0 || x > function.largest_color;
+    }
+  }
+  for (const OpacityNode& node : function.opacities) {
+    is_outside_ = is_outside_ || node.opacity < 0 || node.opacity > function.largest_opacity;
+  }
   for (const ColorNode& node : function.colors) breaks_.push_back(node.x);
   for (std::size_t i = 1; i < function.colors.size(); ++i) {
     colors_.emplace_back(function.colors[i - 1], function.colors[i], function.space,
@@ -35,7 +43,8 @@ Curves::Curves(const Function& function) : function_(function) {
   for (std::size_t i = 0; i < nodes.size(); ++i) {
     breaks_.push_back(nodes[i].x);
     const bool plain = nodes[i].midpoint == 0.5 && nodes[i].sharpness < 0.01;
-    if (!plain && i + 1 < nodes.size()) breaks_.push_back(middle(nodes[i], nodes[i + 1]));
+    if (!plain && i + 1 < nodes.size() && nodes[i].x < nodes[i + 1].x)
+      breaks_.push_back(middle(nodes[i], nodes[i + 1]));
   }
   if (!function.gaussians.empty()) {
     breaks_.insert(breaks_.end(), {function.lower, function.upper});
@@ -58,6 +67,7 @@ Place Curves::place(double inside) const {
   if (place.color < colors_.size()) {
     const ColorPath& path = colors_[place.color];
     place.color_second_half = path.second_half(inside);
+    place.way = path.corner(inside);
     place.sextant = std::floor(path.hue(inside, place) * 6);
   }
   if (place.opacity + 1 < function_.opacities.size()) {
@@ -69,7 +79,11 @@ Place Curves::place(double inside) const {
 
 template <class T>
 Triple<T> Curves::color(const T& value, const Place& place) const {
-  if (place.color < colors_.size()) return colors_[place.color].color(value, place);
+  if (place.color < colors_.size()) {
+    Triple<T> color = colors_[place.color].color(value, place);
+    for (T& x : color) x = is_outside_ ? limited(x, function_.largest_color) : x;
+    return color;
+  }
   const auto [r, g, b] =
       triple(place.color == function_.colors.size() ? function_.colors.front().color
                                                     : function_.colors.back().color);
@@ -93,9 +107,11 @@ T Curves::opacity(const T& value, const Place& place) const {
   if (place.opacity >= nodes.size()) return T(nodes.front().opacity);
   if (place.opacity + 1 == nodes.size()) return T(nodes.back().opacity);
   const OpacityNode &from = nodes[place.opacity], &to = nodes[place.opacity + 1];
-  const T s = ratio(value - T(from.x), to.x - from.x);
-  return mix(from.opacity, to.opacity,
-             node_shape(s, from.midpoint, from.sharpness, place.opacity_second_half, true));
+  const T s = way_share(value, from.x, to.x, from.logarithmic);
+  const T opacity =
+      mix(from.opacity, to.opacity,
+          node_shape(s, from.midpoint, from.sharpness, place.opacity_second_half, true));
+  return is_outside_ ? limited(opacity, function_.largest_opacity) : opacity;
 }
 
 template Triple<double> Curves::color(const double&, const Place&) const;

@@ -8,12 +8,16 @@
 
 namespace pellucid::foreign {
 
+/// Returns a color of signals as VTK's (L, a, b).
+Triple<double> lab_of(const Triple<double>& rgb);
+
 /// Between which nodes a stretch of values lies, and where there.
 struct Place {
   double inside = 0;                   ///< a value of the stretch that is no break
   std::size_t color = 0, opacity = 0;  ///< the node before it; at or beyond an end: constant
   bool color_second_half = false, opacity_second_half = false;
-  double sextant = 0;  ///< of the hue
+  double sextant = 0;   ///< of the hue
+  std::size_t way = 0;  ///< the corner before it, of a way
 };
 
 /// The way from one color to the next, its ends in the space in which it is straight.
@@ -25,6 +29,8 @@ class ColorPath {
   template <class T>
   Triple<T> color(const T& value, const Place& place) const;
   double hue(double value, const Place& place) const;
+  /// The last corner of a way before a value, which is no corner.
+  std::size_t corner(double value) const;
   /// The values, from one end to the other, between which color() is smooth.
   std::vector<double> breaks() const;
   bool second_half(double value) const { return value > middle_; }
@@ -33,12 +39,17 @@ class ColorPath {
   template <class T>
   T share(const T& value, bool second_half) const;
   template <class T>
+  Triple<T> uncut_color(const T& value, const Place& place) const;
+  template <class T>
   Triple<T> mixed(const Triple<double>& a, const Triple<double>& b, const T& share) const {
     return {mix(a[0], b[0], share), mix(a[1], b[1], share), mix(a[2], b[2], share)};
   }
   void set_hsv(bool wrap);
   void set_diverging();
   void add_hue_breaks(std::vector<double>& breaks) const;
+  void add_way_breaks(std::vector<double>& breaks) const;
+  /// Whether the way is bent by a sharpness.
+  bool is_sharp() const { return from_.sharpness >= 0.01 && from_.sharpness <= 0.99; }
 
   ColorNode from_, to_;
   ColorSpace space_;
@@ -46,7 +57,7 @@ class ColorPath {
   double middle_;
   /// In the space of the way; for ColorSpace::diverging those of the second half behind them.
   Triple<double> begin_{}, end_{}, second_begin_{}, second_end_{};
-  bool through_white_ = false;
+  bool through_white_ = false, is_outside_ = false;
 };
 
 /// A foreign function in its smooth pieces.
@@ -70,6 +81,7 @@ class Curves {
   const Function& function_;
   std::vector<ColorPath> colors_;
   std::vector<double> breaks_;
+  bool is_outside_ = false;  ///< numbers of nodes are beyond the function's limits
 };
 
 }  // namespace pellucid::foreign

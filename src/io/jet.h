@@ -84,6 +84,16 @@ inline double power(double x, double p) {
   return std::pow(std::max(x, 0.0), p);
 }
 
+/// ln x of x > 0.
+inline Jet logarithm(const Jet& x) {
+  const Range v = x.value, inverse{1 / v.upper, 1 / v.lower};
+  return compose(x, {std::log(v.lower), std::log(v.upper)}, inverse,
+                 Range(-1) * (inverse * inverse));
+}
+inline double logarithm(double x) {
+  return std::log(x);
+}
+
 /// Of the angle's interval.
 inline Range cosine(Range x) {
   constexpr double pi = std::numbers::pi;

@@ -53,6 +53,7 @@ TEST(Jet, BoundsChordsOfItsFunctions) {
   check("cosine", -7, 9, [](const auto& x) { return cosine(x); });
   check("sine", -7, 9, [](const auto& x) { return sine(x); });
   check("exponential", -4, 2, [](const auto& x) { return exponential(x); });
+  check("logarithm", 0.01, 40, [](const auto& x) { return logarithm(x); });
   check("reciprocal", 1, 5, [](const auto& x) { return reciprocal(x); });
   check("product", -2, 2, [](const auto& x) { return x * x * x - x; });
 }

@@ -276,6 +276,7 @@ def clipped_scene(data, along_x, cells):
         stage.mapper.AddClippingPlane(plane)
     stage.camera.SetPosition(60, 40, 50)
     stage.camera.SetFocalPoint(10, 20, 20)
+    stage.renderer.ResetCameraClippingRange()
     return pellucid.vtk.scene_of(stage.renderer)
 
 

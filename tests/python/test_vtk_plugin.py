@@ -83,7 +83,7 @@ class Stage:
     def off(self):
         """How far the window is from our picture of scene_of(), and what that may be."""
         shown = self.picture()
-        scene = pellucid.vtk.scene_of(self.renderer, [])
+        scene = pellucid.vtk.scene_of(self.renderer, [], 1e-5)
         scene.integration.tolerance = 1e-5
         truth = numpy.clip(pellucid.render(scene).rgba[..., :3], 0, 1)
         assert truth.max() > 0.2 and numpy.ptp(truth) > 0.2
