@@ -207,7 +207,8 @@ VolumeFile open_file(const std::filesystem::path& path, const ReadOptions& optio
   if (options.level && open != open_zarr) {
     throw Error(path.string() + ": has no levels of resolution; leave the level out");
   }
-  if (options.time && open != open_net_cdf && open != open_zarr) {
+  constexpr std::array with_times{Opener{open_hdf5}, Opener{open_net_cdf}, Opener{open_zarr}};
+  if (options.time && std::ranges::find(with_times, open) == with_times.end()) {
     throw Error(path.string() + ": the file has no steps in time; leave the time out");
   }
   return open(path, options);
