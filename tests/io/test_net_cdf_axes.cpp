@@ -282,6 +282,24 @@ TEST_F(NetCdfAxes, UnitsOfTheAxes) {
   EXPECT_TRUE(contains(notes_, "its units (degrees_east, degrees_north, hPa) differ")) << notes_;
 }
 
+TEST_F(NetCdfAxes, LongitudesThatJump) {
+  const Axis z{"z", 3}, y{"lat", 4};
+  const auto first_and_last = [&](const std::vector<double>& longitudes) {
+    write_file({z, y, Axis{"lon", 5, {{"units", "degrees_east"}}, longitudes}});
+    const Volume volume = read_file();
+    return std::vector<double>{world_of(volume, 0, 0, 0).x, world_of(volume, 4, 0, 0).x};
+  };
+  EXPECT_EQ(first_and_last({356, 358, 0, 2, 4}), (std::vector<double>{356, 364}));
+  EXPECT_TRUE(contains(notes_, "longitudes go on")) << notes_;
+  EXPECT_EQ(first_and_last({178, -180, -178, -176, -174}), (std::vector<double>{178, 186}));
+  EXPECT_EQ(first_and_last({4, 2, 0, 358, 356}), (std::vector<double>{4, -4}));
+  // Of other units a jump is none, and twice is too much.
+  write_file({z, y, Axis{"x", 5, {{"units", "km"}}, {356, 358, 0, 2, 4}}});
+  EXPECT_TRUE(contains(error_of_file(), "do not go on in one direction"));
+  write_file({z, y, Axis{"lon", 5, {{"units", "degrees_east"}}, {356, 0, 356, 0, 4}}});
+  EXPECT_TRUE(contains(error_of_file(), "do not go on in one direction"));
+}
+
 TEST_F(NetCdfAxes, CoordinatesThatAreNoPositions) {
   const Axis x{"x", 5}, y{"y", 4};
   const auto error = [&](const std::vector<double>& positions) {
