@@ -36,7 +36,7 @@ AxisRole by_letter(std::string_view letter) {
   return letter == "e" ? AxisRole::member : AxisRole::unknown;
 }
 
-/// By the names that Unidata's libraries write (_CoordinateAxisType).
+/// Returns the meaning by the names that Unidata's libraries write (_CoordinateAxisType).
 AxisRole by_coordinate_type(const std::string& type) {
   constexpr std::array<std::string_view, 2> x{"lon", "geox"}, y{"lat", "geoy"};
   constexpr std::array<std::string_view, 3> z{"height", "pressure", "geoz"};

@@ -7,7 +7,7 @@
 
 namespace pellucid {
 
-/// What a file says of one axis of an array; empty where it says nothing.
+/// The words that a file has for one axis of an array; empty where it has none.
 struct AxisText {
   std::string name;
   std::string type;               ///< as OME-Zarr has it: "space", "time", "channel"

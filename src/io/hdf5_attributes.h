@@ -22,7 +22,7 @@ VariableAttributes hdf5_attributes(hid_t dataset);
 /// NetCDF have them with a sign alone, and `_Unsigned` says so.
 std::string hdf5_meant_type(std::string type, const VariableAttributes& attributes);
 
-/// What a dataset says of its axes: ilastik's axis tags, labels, dimension scales.
+/// The words that a dataset has for its axes: ilastik's axis tags, labels, dimension scales.
 struct Hdf5Axes {
   std::vector<AxisText> texts;
   std::vector<AxisPositions> positions;  ///< along each axis; without numbers where none are known

@@ -70,7 +70,7 @@ struct Dataset {
   std::optional<double> fill;  ///< value that the file states for what was never written
 };
 
-/// Whether whole numbers of 64 bits are of the smallest type that holds them, or double.
+/// Returns whether whole numbers of 64 bits get the smallest type that holds them, or double.
 bool may_be_whole(const Dataset& dataset) {
   return is_stored_only(dataset.type) && !dataset.meaning.is_scaled() &&
          !dataset.meaning.may_miss();

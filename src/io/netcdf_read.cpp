@@ -79,7 +79,7 @@ bool is_wide(const NetCdfVariable& variable) {
   return variable.type == NC_INT64 || variable.type == NC_UINT64;
 }
 
-/// Whether whole numbers of 64 bits are of the smallest type that holds them, or double.
+/// Returns whether whole numbers of 64 bits get the smallest type that holds them, or double.
 bool may_be_whole(const NetCdfVolume& volume) {
   return is_wide(volume.variable) && !volume.meaning.is_scaled() &&
          volume.meaning.missing.empty() && !volume.meaning.has_range();

@@ -92,12 +92,12 @@ void find_variables(int group, const std::string& folder, std::vector<NetCdfVari
   }
 }
 
-/// Whether whole numbers, which the classic formats have with a sign alone, are meant otherwise.
+/// Returns whether whole numbers, which the classic formats have with a sign alone, have none.
 bool has_unsigned(const NetCdfVariable& variable, const char* text) {
   return in_small_letters(text_of(variable.attributes, "_Unsigned")).starts_with(text);
 }
 
-/// What the library writes where nothing is written; bytes have none.
+/// Returns the number that the library writes where nothing is written; bytes have none.
 std::optional<double> default_fill(const NetCdfVariable& variable) {
   int has_none = 0;
   if (variable.attributes.contains("_FillValue")) return std::nullopt;

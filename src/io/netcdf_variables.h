@@ -41,7 +41,7 @@ struct NetCdfVariable {
   VariableAttributes attributes;
 };
 
-/// Those of the group and of the groups in it, whose names stand in front.
+/// Returns the variables of the group and of the groups in it, whose names stand in front.
 std::vector<NetCdfVariable> net_cdf_variables(int group);
 
 /// Returns the variable of this name, here or in a group around.
@@ -53,8 +53,8 @@ std::string net_cdf_axis(const NetCdfVariable& variable, std::size_t axis);
 /// no numbers.
 std::optional<std::string> stored_type(const NetCdfVariable& variable);
 
-/// What the attributes say of the values, and the library's default fill. `notes` is told what is
-/// not applied. Throws Error where a scale or an offset stands there and is no finite number.
+/// Returns the attributes' meaning of values, and the library's default fill. `notes` is told what
+/// is not applied. Throws Error where a scale or an offset stands there and is no finite number.
 ValueMeaning meaning_of(const NetCdfVariable& variable, std::vector<std::string>& notes);
 
 /// An axis of a variable with its coordinate: the variable that is named like the axis, or else one

@@ -14,7 +14,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// Whether a folder is a store of N5, or an array in one: "attributes.json" says so.
+/// Returns whether a folder is a store of N5, or an array in one: "attributes.json" says so.
 bool is_n5(const fs::path& path) {
   std::error_code error;
   const fs::path file = path.filename() == "attributes.json" ? path : path / "attributes.json";

@@ -20,7 +20,7 @@ namespace pellucid {
 struct ValueMeaning {
   double scale = 1, offset = 0;
   std::vector<double> missing;  ///< stored numbers
-  /// What the library writes where nothing is written; missing, too.
+  /// The number that the library writes where nothing is written; missing, too.
   std::optional<double> default_fill;
   double least = -std::numeric_limits<double>::infinity();  ///< smaller ones are missing
   double most = std::numeric_limits<double>::infinity();    ///< larger ones are missing
@@ -28,7 +28,7 @@ struct ValueMeaning {
 
   bool is_scaled() const { return scale != 1 || offset != 0; }
   bool has_range() const;
-  /// Whether any value may be missing.
+  /// Returns whether any value may be missing.
   bool may_miss() const { return !missing.empty() || default_fill || has_range(); }
 };
 

@@ -43,9 +43,10 @@ void note_zeros(const std::vector<VolumeData>& components, const std::string& na
         data);
   }
   if (zeros == 0 || !options.note) return;
-  options.note(name + ": " + std::to_string(zeros) +
-               " of its values are 0, the fill value, which xarray takes for missing (fill_value of "
-               "version 2); they are shown as 0");
+  options.note(
+      name + ": " + std::to_string(zeros) +
+      " of its values are 0, the fill value, which xarray takes for missing (fill_value of "
+      "version 2); they are shown as 0");
 }
 
 [[noreturn]] void fail_with_hint(const Error& error, const ZarrChoice& choice) {

@@ -19,8 +19,8 @@ using scene_json::printable;
 
 namespace {
 
-/// Of an image of OME-Zarr, by the names and kinds of all axes. Nothing where they do not say which
-/// are those of space.
+/// Returns the axes of an image of OME-Zarr, by the names and kinds of all axes. Nothing where they
+/// do not say which are those of space.
 std::optional<ZarrAxes> image_axes(const OmeImage& image, const ZarrArray& array) {
   std::vector<AxisText> texts;
   for (const OmeAxis& axis : image.axes) texts.push_back({axis.name, axis.type, {}, {}});
@@ -37,7 +37,7 @@ std::optional<ZarrAxes> image_axes(const OmeImage& image, const ZarrArray& array
   return axes;
 }
 
-/// Of an array whose axes have no names that say it: as the options do, or guessed.
+/// Returns axes that have no names that say it: as the options do, or guessed.
 ZarrAxes plain_axes(const ZarrArray& array, const std::string& name, const ReadOptions& options) {
   const ArrayAxes found = array_axes(
       array.shape, options.axes, name + ": an array of shape (" + shape_text(array.shape) + ")");
@@ -51,8 +51,8 @@ ZarrAxes plain_axes(const ZarrArray& array, const std::string& name, const ReadO
   return axes;
 }
 
-/// By the names of axes, and by what their coordinates say. Nothing where none has a meaning, or
-/// there are fewer than three.
+/// Returns the axes by their names, and by what their coordinates say. Nothing where none has a
+/// meaning, or there are fewer than three.
 std::optional<VolumeAxes> axes_by_meaning(const fs::path& folder, const ZarrArray& array) {
   if (array.dimension_names.empty() || array.shape.size() < 3) return std::nullopt;
   ZarrVariable variable;

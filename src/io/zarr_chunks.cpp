@@ -85,8 +85,8 @@ class ChunkReader {
     return folder_ / (key.empty() ? "0" : key);
   }
 
-  /// What a chain made of a part of the array that begins at `first`. `axes` says which axis of the
-  /// array each axis of the chunk is.
+  /// Reads what a chain made of a part of the array that begins at `first`. `axes` says which axis
+  /// of the array each axis of the chunk is.
   void read_chain(const ZarrChain& chain, const ByteSource& source,
                   const std::vector<std::size_t>& axes, const std::vector<std::int64_t>& first,
                   const std::vector<std::int64_t>& chunk) {
@@ -139,7 +139,7 @@ class ChunkReader {
     std::uint64_t offset = 0, bytes = 0;
   };
 
-  /// Where each of `count` chunks lies in a shard.
+  /// Returns the place of each of `count` chunks in a shard.
   std::vector<Entry> read_index(const ZarrShards& shards, const ByteSource& source,
                                 std::size_t count) const {
     constexpr std::size_t checksum = 4;

@@ -46,7 +46,7 @@ class ZarrSelection {
   ZarrSelection(const ZarrArray& array, const ZarrView& view, ComponentRange range)
       : array_(array), view_(view), range_(range), sides_(view.sides(array)) {}
 
-  /// Whether a box of the array holds anything that is asked for.
+  /// Returns whether a box of the array holds anything that is asked for.
   bool touches(std::span<const std::int64_t> first, std::span<const std::int64_t> end) const {
     if (!holds_fixed(first, end)) return false;
     bool any = false;

@@ -15,7 +15,7 @@ CommonUnit image_unit(const OmeImage& image, const ZarrView& view);
 /// Returns spacing, origin and direction of a level. Throws Error that begins with `name`.
 GridPlacement image_placement(const OmeImage& image, std::size_t level, const ZarrView& view,
                               const CommonUnit& unit, const std::string& name);
-/// Where a level has no scale (before NGFF 0.4), makes its spacing the share of the finest one's
+/// Makes the spacing of a level without a scale (before NGFF 0.4) the share of the finest one's
 /// side.
 void scale_by_sides(OmeImage& image, std::size_t level, const ZarrArray& array,
                     const std::filesystem::path& group);

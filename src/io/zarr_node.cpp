@@ -29,7 +29,7 @@ JsonFile attributes_of(const fs::path& file) {
   return attributes;
 }
 
-/// A node of version 3 by its metadata.
+/// Returns a node of version 3 by its metadata.
 ZarrNode node_of_version_3(const fs::path& folder, JsonFile metadata) {
   ZarrNode node;
   node.folder = folder;
@@ -46,7 +46,7 @@ ZarrNode node_of_version_3(const fs::path& folder, JsonFile metadata) {
   return node;
 }
 
-/// A node of version 2 of which the root's .zmetadata speak.
+/// Returns a node of version 2 of which the root's .zmetadata speak.
 std::optional<ZarrNode> node_in_version_2(const fs::path& folder, const fs::path& root,
                                           const std::string& inner) {
   const JsonFile all = read_data_json(root / ".zmetadata");
@@ -66,7 +66,7 @@ std::optional<ZarrNode> node_in_version_2(const fs::path& folder, const fs::path
   return node;
 }
 
-/// The same of version 3, whose root keeps them in zarr.json.
+/// Returns the same of version 3, whose root keeps them in zarr.json.
 std::optional<ZarrNode> node_in_version_3(const fs::path& folder, const fs::path& root,
                                           const std::string& inner) {
   const JsonFile all = read_data_json(root / "zarr.json");
@@ -79,7 +79,7 @@ std::optional<ZarrNode> node_in_version_3(const fs::path& folder, const fs::path
   return node_of_version_3(folder, {found->value(), all.name + ": " + inner});
 }
 
-/// A node without metadata of its own, of which those of a folder around speak.
+/// Returns a node without metadata of its own, of which those of a folder around speak.
 std::optional<ZarrNode> consolidated_node(const fs::path& folder) {
   constexpr int deepest = 8;
   fs::path root = fs::absolute(folder).lexically_normal();
@@ -103,8 +103,8 @@ bool is_number(const std::string& text) {
   return !text.empty() && text.find_first_not_of("0123456789") == std::string::npos;
 }
 
-/// The separator that a file or a folder beside an array's metadata has in its name, if it is one
-/// of chunks.
+/// Returns the separator in the name of a file or a folder beside an array's metadata, if it is
+/// one of chunks.
 std::optional<char> separator_of(const fs::directory_entry& entry, const ZarrArray& array) {
   std::string name = entry.path().filename().string();
   std::error_code error;

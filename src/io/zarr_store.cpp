@@ -96,7 +96,7 @@ ZarrChoice choose_level(const fs::path& group, OmeImage image, const ReadOptions
   return choice;
 }
 
-/// Whether the array in this folder is a level of the image that its group is.
+/// Returns the level of the image that the array in this folder is, if its group is one.
 std::optional<ZarrChoice> level_of_parent(const fs::path& folder, const ReadOptions& options) {
   if (options.level) {
     throw Error(folder.string() +

@@ -24,7 +24,7 @@ struct ZarrVariable {
   VariableAttributes attributes;
   ValueMeaning meaning;
   std::vector<std::string> notes;
-  /// Whether xarray takes the fill value, which is 0, for missing, and nothing else does.
+  /// True if xarray alone takes the fill value, which is 0, for missing.
   bool may_hide_zeros = false;
 };
 /// Reads what the metadata of a folder say. Throws Error.

@@ -21,7 +21,7 @@ class Hdf5Writer {
   Hdf5Writer(const Hdf5Writer&) = delete;
   Hdf5Writer& operator=(const Hdf5Writer&) = delete;
 
-  /// How a dataset is stored.
+  /// The storage of a dataset.
   struct Storage {
     std::vector<hsize_t> chunk = {};
     std::optional<double> fill = {};
