@@ -156,7 +156,11 @@ ZarrVariable zarr_variable(const fs::path& folder, const std::string& name) {
   apply_unsigned(variable.attributes, variable.array);
   ZarrArray& array = variable.array;
   const std::string type = array.type.name == "f16" ? "f32" : array.type.name;
-  variable.meaning = value_meaning(variable.attributes, type, name, variable.notes);
+  try {
+    variable.meaning = value_meaning(variable.attributes, type, name, variable.notes);
+  } catch (const Error& error) {
+    throw Error(folder.string() + ": " + error.what());
+  }
   // xarray keeps _FillValue as the fill value of version 2. Where that is 0, most other programs
   // mean zeros.
   const bool is_mask = node->version == 2 && !array.dimension_names.empty() && array.has_fill &&

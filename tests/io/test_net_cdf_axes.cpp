@@ -326,7 +326,7 @@ TEST_F(NetCdfAxes, ACoordinateOfAnotherName) {
 }
 
 TEST_F(NetCdfAxes, VariablesThatBelongToOthers) {
-  const std::vector<double> sixty(60, 1), forty(24, 1);
+  const std::vector<double> sixty(60, 1);
   write_file(
       {
           Axis{"z", 3, {{"bounds", "z_bnds"}}},
