@@ -153,4 +153,23 @@ void copy_permuted(const std::byte* from, std::byte* to, std::size_t size,
   if (size == 8) copy_tiles<8>(from, to, n, strides);
 }
 
+void read_permuted(std::span<std::byte> to, std::size_t size, const std::array<int, 3>& count,
+                   const std::array<std::size_t, 3>& space,
+                   const std::function<void(std::byte*)>& read) {
+  if (space[0] > space[1] && space[1] > space[2]) {
+    read(to.data());
+    return;
+  }
+  std::vector<std::byte> stored(to.size());
+  read(stored.data());
+  std::array<std::size_t, 3> strides{};
+  for (std::size_t a = 0; a < 3; ++a) {
+    strides[a] = 1;
+    for (std::size_t b = 0; b < 3; ++b) {
+      if (space[b] > space[a]) strides[a] *= static_cast<std::size_t>(count[b]);
+    }
+  }
+  copy_permuted(stored.data(), to.data(), size, {count[0], count[1], count[2]}, strides);
+}
+
 }  // namespace pellucid

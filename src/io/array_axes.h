@@ -4,6 +4,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <span>
 #include <string>
@@ -42,5 +43,11 @@ std::string axes_note(std::span<const std::int64_t> shape, const ArrayAxes& axes
 void copy_permuted(const std::byte* from, std::byte* to, std::size_t size,
                    const std::array<std::int64_t, 3>& sides,
                    const std::array<std::size_t, 3>& strides);
+
+/// Reads values of `size` bytes of a box so that x is the fastest axis: `read` fills memory in the
+/// order of the file, in which `space` are the places of x, y and z. `count` are the box's sides.
+void read_permuted(std::span<std::byte> to, std::size_t size, const std::array<int, 3>& count,
+                   const std::array<std::size_t, 3>& space,
+                   const std::function<void(std::byte*)>& read);
 
 }  // namespace pellucid

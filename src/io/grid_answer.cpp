@@ -14,6 +14,23 @@ namespace {
 
 using namespace answer_json;
 
+json of_positions(const AxisPositions& along) {
+  return {{"numbers", along.numbers},    {"rounding", along.rounding},
+          {"name", of_text(along.name)}, {"units", of_text(along.units)},
+          {"down", along.down},          {"may_be_down", along.may_be_down}};
+}
+
+AxisPositions positions_of(const json& j) {
+  AxisPositions along;
+  j.at("numbers").get_to(along.numbers);
+  j.at("rounding").get_to(along.rounding);
+  along.name = text_of(j.at("name"));
+  along.units = text_of(j.at("units"));
+  j.at("down").get_to(along.down);
+  j.at("may_be_down").get_to(along.may_be_down);
+  return along;
+}
+
 json of_array(const GridArray& array) {
   json j{{"name", of_text(array.name)},
          {"type", array.type},
@@ -22,10 +39,12 @@ json of_array(const GridArray& array) {
          {"components", array.components},
          {"holds", of_text(array.holds)},
          {"times", array.times},
-         {"positions", array.positions},
-         {"rounding", array.rounding},
-         {"note", of_text(array.note)},
+         {"components_of_a_step", array.components_of_a_step},
+         {"positions", json::array()},
+         {"notes", json::array()},
          {"reads_parts", array.reads_parts}};
+  for (const AxisPositions& along : array.positions) j["positions"].push_back(of_positions(along));
+  for (const std::string& note : array.notes) j["notes"].push_back(of_text(note));
   if (array.placement) j["placement"] = of_placement(*array.placement);
   return j;
 }
@@ -39,9 +58,9 @@ GridArray array_of(const json& j) {
   j.at("components").get_to(array.components);
   array.holds = text_of(j.at("holds"));
   j.at("times").get_to(array.times);
-  j.at("positions").get_to(array.positions);
-  j.at("rounding").get_to(array.rounding);
-  array.note = text_of(j.at("note"));
+  j.at("components_of_a_step").get_to(array.components_of_a_step);
+  for (std::size_t a = 0; a < 3; ++a) array.positions[a] = positions_of(j.at("positions").at(a));
+  for (const json& note : j.at("notes")) array.notes.push_back(text_of(note));
   j.at("reads_parts").get_to(array.reads_parts);
   if (j.contains("placement")) array.placement = placement_of(j.at("placement"));
   return array;

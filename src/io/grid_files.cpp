@@ -16,6 +16,7 @@
 #include "contained.h"
 #include "contained_values.h"
 #include "grid_answer.h"
+#include "grid_axes.h"
 #include "input_file.h"
 #include "memory_limit.h"
 #include "mesh_blocks.h"
@@ -24,7 +25,6 @@
 #include "pellucid/scene/error.h"
 #include "text.h"
 #include "vdb_size.h"
-#include "volume_axes.h"
 
 namespace pellucid {
 
@@ -123,16 +123,12 @@ Volume::Description describe(const GridArray& array, const ReadOptions& options,
   Volume::Description description;
   description.name = name;
   if (array.placement) description.placement = *array.placement;
-  for (std::size_t a = 0; a < 3; ++a) {
-    description.dimensions[a] = static_cast<int>(array.sides[a]);
-    // A spacing that is given is that of the values, wherever the file has them.
-    if (options.spacing || array.positions[a].empty()) continue;
-    try {
-      place_axis(description, static_cast<int>(a), array.positions[a], array.rounding[a]);
-    } catch (const Error& error) {
-      throw Error(std::string(error.what()) + ", or give a spacing");
-    }
+  for (std::size_t a = 0; a < 3; ++a) description.dimensions[a] = static_cast<int>(array.sides[a]);
+  ReadOptions telling = options;
+  if (options.note) {
+    telling.note = [&](const std::string& note) { options.note(one_line(note)); };
   }
+  place_axes(description, array.positions, telling);
   return description;
 }
 
@@ -229,6 +225,34 @@ std::vector<VolumeData> read_values(const std::filesystem::path& path, const For
   return components;
 }
 
+/// Chooses the step of the nearest time. Where it has several components, they are what is left.
+void choose_time(const GridArray& array, const ReadOptions& options, const std::string& name,
+                 VolumeFile& file) {
+  const auto steps = static_cast<int>(array.times.size());
+  if (steps == 0) {
+    throw Error(name + ": \"" + one_line(array.name) +
+                "\" has no steps in time; leave the time out");
+  }
+  const auto step = static_cast<int>(nearest_step(array.times, options.time));
+  const int others = array.components / steps;
+  if (others == 1) {
+    if (options.component) throw Error(name + ": give a time or a component, not both");
+    file.step = step;
+    return;
+  }
+  file.components = others;
+  file.holds = "one step of " + file.holds;
+  file.read = [read = file.read, step, steps,
+               inside = array.components_of_a_step](ComponentRange range) {
+    std::vector<VolumeData> values;
+    for (int c = range.first; c < range.first + range.number; ++c) {
+      const int component = (c / inside * steps + step) * inside + c % inside;
+      values.push_back(std::move(read({component, 1, range.part}).front()));
+    }
+    return values;
+  };
+}
+
 VolumeFile open_grid(const std::filesystem::path& path, const ReadOptions& options,
                      const Format& format) {
   const std::string name = path.string();
@@ -243,18 +267,13 @@ VolumeFile open_grid(const std::filesystem::path& path, const ReadOptions& optio
   file.holds = one_line(array.holds + " in \"" + array.name + "\"");
   file.array = array.name;
   file.reads_parts = array.reads_parts;
-  if (options.time) {
-    if (array.times.empty()) {
-      throw Error(name + ": \"" + one_line(array.name) +
-                  "\" has no steps in time; leave the time out");
-    }
-    if (options.component) throw Error(name + ": give a time or a component, not both");
-    file.step = static_cast<int>(nearest_step(array.times, options.time));
+  for (const std::string& note : array.notes) {
+    if (options.note) options.note(name + ": " + one_line(note));
   }
-  if (options.note && !array.note.empty()) options.note(name + ": " + one_line(array.note));
   file.read = [path, &format, array, options](ComponentRange range) {
     return read_values(path, format, array, options, range);
   };
+  if (options.time) choose_time(array, options, name, file);
   return file;
 }
 

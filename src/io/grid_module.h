@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "axis_meaning.h"
 #include "components.h"
 #include "pellucid/scene/error.h"
 
@@ -23,14 +24,12 @@ struct GridArray {
   std::string type_with_missing;        ///< else; empty: none can be
   std::array<std::int64_t, 3> sides{};  ///< x, y, z: the last axis of the file is x
   int components = 1;
-  std::string holds;          ///< what several are: "12 steps (axis time)"
-  std::vector<double> times;  ///< of these steps, where the file says them
-  /// Where the values stand along x, y, z; empty: the file does not say. Each has the largest
-  /// relative error that its type leaves it.
-  std::array<std::vector<double>, 3> positions;
-  std::array<double, 3> rounding{};
+  std::string holds;             ///< what several are: "12 steps (axis time)"
+  std::vector<double> times;     ///< of these steps, where the file says them
+  int components_of_a_step = 1;  ///< components that lie inside one step, the fastest ones
+  std::array<AxisPositions, 3> positions;  ///< along x, y, z
   std::optional<GridPlacement> placement;  ///< in place of positions
-  std::string note;  ///< what is assumed where the file does not say it; may be empty
+  std::vector<std::string> notes;          ///< what is assumed, and what is not read
   /// Whether a part is read without the rest (ComponentRange::part), in the type of the whole.
   bool reads_parts = false;
 };
@@ -62,8 +61,8 @@ using ListGrids = void(const std::filesystem::path& path, const AxisLetters& axe
                        GridContents& answer);
 using ReadGrid = void(const std::filesystem::path& path, const std::string& array,
                       const AxisLetters& axes, ComponentRange range, GridValues& answer);
-inline constexpr const char* list_grids_name = "pellucid_list_grids_3";
-inline constexpr const char* read_grid_name = "pellucid_read_grid_3";
+inline constexpr const char* list_grids_name = "pellucid_list_grids_4";
+inline constexpr const char* read_grid_name = "pellucid_read_grid_4";
 
 /// The part of a grid with these sides that is wanted; all of it where none is. Throws Error where
 /// the part is one of another grid.

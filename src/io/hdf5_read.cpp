@@ -5,7 +5,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <functional>
+#include <iterator>
 #include <limits>
 #include <optional>
 #include <span>
@@ -15,9 +15,12 @@
 
 #include "array_axes.h"
 #include "grid_module.h"
+#include "hdf5_attributes.h"
 #include "hdf5_parts.h"
 #include "pellucid/scene/error.h"
 #include "stored_numbers.h"
+#include "value_meaning.h"
+#include "variable_notes.h"
 
 namespace pellucid {
 
@@ -36,54 +39,100 @@ std::optional<std::vector<std::int64_t>> shape_of(hid_t space) {
   return std::vector<std::int64_t>(sides.begin(), sides.end());
 }
 
-/// Nothing where there are not three axes, or four. Throws Error for letters that do not fit.
-std::optional<ArrayAxes> axes_of(const std::vector<std::int64_t>& shape,
-                                 const AxisLetters& letters) {
-  if (letters)
-    return array_axes(shape, letters, "an array of shape (" + shape_text(shape) + "), which");
-  try {
-    return array_axes(shape, letters, {});
-  } catch (const Error&) {
-    return std::nullopt;
+/// The axes by the letters given, by their meaning, or by their places. Nothing where they are
+/// those of no volume. Throws Error for letters that do not fit, and for axes that are others.
+std::optional<VolumeAxes> axes_of(const std::vector<std::int64_t>& shape, const Hdf5Axes& named,
+                                  const AxisLetters& letters, GridArray& array) {
+  std::optional<ArrayAxes> placed;
+  if (letters) {
+    placed = array_axes(shape, letters, "an array of shape (" + shape_text(shape) + "), which");
+  } else {
+    if (auto axes = volume_axes(named.texts, shape)) return axes;
+    try {
+      placed = array_axes(shape, letters, {});
+    } catch (const Error&) {
+      return std::nullopt;
+    }
   }
+  if (!placed->guess.empty()) {
+    array.notes.push_back("\"" + array.name + "\": " + axes_note(shape, *placed));
+  }
+  return volume_axes(*placed, shape);
 }
 
 struct Dataset {
   GridArray about;
-  std::string type;  ///< of its values in memory
+  std::string type;   ///< of its values in memory
+  std::string meant;  ///< the same, or that with the other sign (_Unsigned)
   std::vector<std::int64_t> shape;
-  ArrayAxes axes;
+  VolumeAxes axes;
+  ValueMeaning meaning;
+  std::optional<double> fill;  ///< value that the file states for what was never written
 };
+
+/// Returns whether whole numbers of 64 bits get the smallest type that holds them, or double.
+bool may_be_whole(const Dataset& dataset) {
+  return is_stored_only(dataset.type) && !dataset.meaning.is_scaled() &&
+         !dataset.meaning.may_miss();
+}
+
+/// Adds positions and steps in time.
+void place(const Hdf5Axes& named, Dataset& dataset) {
+  GridArray& array = dataset.about;
+  for (std::size_t a = 0; a < 3; ++a) array.positions[a] = named.positions[dataset.axes.space[a]];
+  if (!dataset.axes.time) return;
+  array.times = named.positions[*dataset.axes.time].numbers;
+  for (std::int64_t t = 0; array.times.empty() && t < dataset.shape[*dataset.axes.time]; ++t) {
+    array.times.push_back(static_cast<double>(t));
+  }
+  array.components_of_a_step = dataset.axes.components_of_a_step(dataset.shape);
+}
 
 std::optional<Dataset> describe(hid_t id, const std::string& name, const AxisLetters& letters) {
   const Id space(H5Dget_space(id), H5Sclose, "the axes of a dataset");
   const Id type(H5Dget_type(id), H5Tclose, "the type of a dataset");
   const auto shape = shape_of(space.get());
-  const auto axes = shape ? axes_of(*shape, letters) : std::nullopt;
   const auto number = type_of(type.get());
+  if (!shape) return std::nullopt;
+  Dataset dataset;
+  dataset.about.name = name;
+  const VariableAttributes attributes = hdf5_attributes(id);
+  const Hdf5Axes named = hdf5_axes(id, *shape, attributes, name);
+  auto axes = axes_of(*shape, named, letters, dataset.about);
   if (!axes) return std::nullopt;
   check_kind(id, type.get());
   if (!number) return std::nullopt;
-  Dataset dataset{{}, *number, *shape, *axes};
+  dataset.type = *number;
+  dataset.meant = hdf5_meant_type(*number, attributes);
+  dataset.shape = *shape;
+  dataset.axes = *std::move(axes);
   GridArray& array = dataset.about;
-  array.name = name;
-  array.type = is_stored_only(*number) ? "f64" : *number;
-  // The type of whole numbers of 64 bits is that of the largest.
-  array.reads_parts = !is_stored_only(*number);
-  for (std::size_t a = 0; a < 3; ++a) array.sides[a] = (*shape)[axes->space[a]];
-  if (axes->components) {
-    const auto count = static_cast<int>((*shape)[*axes->components]);
-    array.components = count;
-    array.holds =
-        std::to_string(count) + " components (axis " + std::to_string(*axes->components) + ")";
-    if (!axes->guess.empty()) array.note = "\"" + name + "\": " + axes_note(*shape, *axes);
-  }
+  dataset.meaning = value_meaning(attributes, dataset.meant, name, array.notes);
+  const std::string stored = is_stored_only(*number) ? "f64" : dataset.meant;
+  array.type = dataset.meaning.is_scaled() ? type_with_meaning(stored) : stored;
+  if (dataset.meaning.may_miss()) array.type_with_missing = type_with_meaning(array.type);
+  // The type of values must not depend on which of them are read.
+  array.reads_parts = !may_be_whole(dataset) &&
+                      (array.type_with_missing.empty() || array.type_with_missing == array.type);
+  for (std::size_t a = 0; a < 3; ++a) array.sides[a] = (*shape)[dataset.axes.space[a]];
+  array.components = dataset.axes.component_count(*shape);
+  array.holds = dataset.axes.holds;
+  place(named, dataset);
+  const auto tell = [&](const std::vector<std::string>& notes, const std::string& before) {
+    for (const std::string& note : notes) array.notes.push_back(before + note);
+  };
+  tell(named.notes, {});
+  tell(dataset.axes.notes, "\"" + name + "\": ");
+  tell(notes_on_unread(attributes, name), {});
+  const Hdf5Fill fill = hdf5_fill(id, *shape, name);
+  dataset.fill = fill.value;
+  if (!fill.note.empty()) array.notes.push_back(fill.note);
   return dataset;
 }
 
 /// Reads values of a part of one component in the order of the file.
 void read_component(hid_t id, const Dataset& dataset, int component, const IndexBox& part,
-                    void* to) {
+                    const std::string& type, void* to) {
   const Id space(H5Dget_space(id), H5Sclose, "the axes of a dataset");
   std::vector<hsize_t> start(dataset.shape.size(), 0), count(dataset.shape.size(), 1);
   hsize_t points = 1;
@@ -93,40 +142,20 @@ void read_component(hid_t id, const Dataset& dataset, int component, const Index
     count[axis] = static_cast<hsize_t>(part.count[a]);
     points *= count[axis];
   }
-  if (dataset.axes.components) start[*dataset.axes.components] = static_cast<hsize_t>(component);
+  dataset.axes.set_component(std::span(start), dataset.shape, component);
   const Id memory(H5Screate_simple(1, &points, nullptr), H5Sclose, "the axes of a dataset");
-  const bool done =
-      H5Sselect_hyperslab(space.get(), H5S_SELECT_SET, start.data(), nullptr, count.data(),
-                          nullptr) >= 0 &&
-      H5Dread(id, memory_type(dataset.type), memory.get(), space.get(), H5P_DEFAULT, to) >= 0;
+  const bool done = H5Sselect_hyperslab(space.get(), H5S_SELECT_SET, start.data(), nullptr,
+                                        count.data(), nullptr) >= 0 &&
+                    H5Dread(id, memory_type(type), memory.get(), space.get(), H5P_DEFAULT, to) >= 0;
   if (!done) throw unreadable_values(id, dataset.about.name);
 }
 
-/// In values, of x, y and z of a part in the order of the file, without the axis of components.
-std::array<std::size_t, 3> strides_of(const Dataset& dataset, const IndexBox& part) {
-  std::array<std::size_t, 3> strides{};
-  for (std::size_t a = 0; a < 3; ++a) {
-    strides[a] = 1;
-    for (std::size_t b = 0; b < 3; ++b) {
-      if (dataset.axes.space[b] > dataset.axes.space[a]) {
-        strides[a] *= static_cast<std::size_t>(part.count[b]);
-      }
-    }
-  }
-  return strides;
-}
-
-/// Reads values of a part of one component, x fastest.
+/// Reads values of a part of one component in this type, x fastest.
 void read_ordered(hid_t id, const Dataset& dataset, int component, const IndexBox& part,
-                  std::span<std::byte> to, std::size_t size) {
-  if (std::ranges::is_sorted(dataset.axes.space, std::greater<>())) {
-    read_component(id, dataset, component, part, to.data());
-    return;
-  }
-  std::vector<std::byte> stored(to.size());
-  read_component(id, dataset, component, part, stored.data());
-  copy_permuted(stored.data(), to.data(), size, {part.count[0], part.count[1], part.count[2]},
-                strides_of(dataset, part));
+                  const std::string& type, std::span<std::byte> to) {
+  read_permuted(
+      to, H5Tget_size(memory_type(type)), part.count, dataset.axes.space,
+      [&](std::byte* stored) { read_component(id, dataset, component, part, type, stored); });
 }
 
 template <class Number>
@@ -137,8 +166,8 @@ void read_whole_numbers(hid_t id, const Dataset& dataset, const GridPart& part,
   std::vector<Number> numbers(points);
   Rounding rounding;
   for (int c = range.first; c < range.first + range.number; ++c) {
-    read_ordered(id, dataset, c, part.box, std::as_writable_bytes(std::span(numbers)),
-                 sizeof(Number));
+    read_ordered(id, dataset, c, part.box, dataset.type,
+                 std::as_writable_bytes(std::span(numbers)));
     components.emplace_back(
         [&](const std::string& type) { return make_volume_data(type, points); });
     components.back().add(std::span<const Number>(numbers));
@@ -157,6 +186,52 @@ void read_whole_numbers(hid_t id, const Dataset& dataset, const GridPart& part,
   if (rounding.count > 0) values.note = rounding.text(points * components.size());
 }
 
+/// Counts values that are the fill value and no missing ones.
+std::size_t count_fills(const VolumeData& data, const Dataset& dataset) {
+  if (!dataset.fill ||
+      std::ranges::find(dataset.meaning.missing, *dataset.fill) != dataset.meaning.missing.end()) {
+    return 0;
+  }
+  return std::visit(
+      [&](const auto& values) {
+        return static_cast<std::size_t>(std::count_if(values.begin(), values.end(), [&](auto v) {
+          return static_cast<double>(v) == *dataset.fill;
+        }));
+      },
+      data);
+}
+
+void read_values(hid_t id, const Dataset& dataset, const GridPart& part, ComponentRange range,
+                 GridValues& values) {
+  const bool is_wide = is_stored_only(dataset.type);
+  const std::string memory = is_wide ? "f64" : dataset.type;
+  const std::size_t points = value_count(part.box);
+  std::size_t fills = 0;
+  for (int c = range.first; c < range.first + range.number; ++c) {
+    VolumeData data = make_volume_data(is_wide ? "f64" : dataset.meant, points);
+    std::visit(
+        [&](auto& numbers) {
+          read_ordered(id, dataset, c, part.box, memory,
+                       std::as_writable_bytes(numbers.writable()));
+        },
+        data);
+    fills += count_fills(data, dataset);
+    apply_meaning(std::span(&data, 1), dataset.meaning);
+    std::visit(
+        [&](const auto& of_type) {
+          const auto all = std::as_bytes(std::span(of_type.data(), of_type.size()));
+          const std::span<std::byte> to = values.next(std::string(type_name(data)));
+          if (to.size() != all.size()) throw Error("the file was changed while it was read");
+          std::ranges::copy(all, to.begin());
+        },
+        data);
+  }
+  if (fills > 0) {
+    values.note = std::to_string(fills) + " values of \"" + dataset.about.name +
+                  "\" are the fill value of the dataset; they are shown as any other";
+  }
+}
+
 herr_t take_name(hid_t, const char* name, const H5O_info_t* about, void* names) {
   if (about->type == H5O_TYPE_DATASET) {
     static_cast<std::vector<std::string>*>(names)->push_back("/" + std::string(name));
@@ -173,11 +248,24 @@ void list_grids(const std::filesystem::path& path, const AxisLetters& axes,
   if (H5Ovisit(file.get(), H5_INDEX_NAME, H5_ITER_INC, take_name, &names) < 0) {
     throw Error("HDF5 cannot read its list of datasets; the file is damaged");
   }
+  VariableHelpers helpers;
+  for (const std::string& name : names) {
+    const Id dataset(H5Dopen2(file.get(), name.c_str(), H5P_DEFAULT), H5Dclose, name.c_str());
+    try {
+      helpers.add(name.substr(1), hdf5_attributes(dataset.get()));
+    } catch (const Error&) {
+      continue;  // is told below
+    }
+  }
+  std::vector<GridArray> auxiliary;
   for (const std::string& name : names) {
     const Id dataset(H5Dopen2(file.get(), name.c_str(), H5P_DEFAULT), H5Dclose, name.c_str());
     try {
       if (auto found = describe(dataset.get(), name, axes)) {
-        contents.arrays.push_back(std::move(found->about));
+        if (helpers.is_bounds(name.substr(1))) throw Error("bounds of cells, no array of values");
+        // Arrays of data come first: the first one is shown where none is chosen.
+        const bool is_other = helpers.is_auxiliary(name.substr(1));
+        (is_other ? auxiliary : contents.arrays).push_back(std::move(found->about));
       } else {
         contents.others.push_back({name, {}});
       }
@@ -185,6 +273,7 @@ void list_grids(const std::filesystem::path& path, const AxisLetters& axes,
       contents.others.push_back({name, error.what()});
     }
   }
+  std::ranges::move(auxiliary, std::back_inserter(contents.arrays));
 }
 
 void read_grid(const std::filesystem::path& path, const std::string& name, const AxisLetters& axes,
@@ -194,19 +283,11 @@ void read_grid(const std::filesystem::path& path, const std::string& name, const
   const auto dataset = describe(id.get(), name, axes);
   if (!dataset) throw Error("the file was changed while it was read");
   const GridPart part = wanted_part(dataset->about.sides, range);
+  if (!may_be_whole(*dataset)) return read_values(id.get(), *dataset, part, range, values);
   if (dataset->type == "i64") {
     return read_whole_numbers<std::int64_t>(id.get(), *dataset, part, range, values);
   }
-  if (dataset->type == "u64") {
-    return read_whole_numbers<std::uint64_t>(id.get(), *dataset, part, range, values);
-  }
-  const std::size_t size = H5Tget_size(memory_type(dataset->type));
-  for (int c = range.first; c < range.first + range.number; ++c) {
-    const std::span<std::byte> to = values.next(dataset->about.type);
-    if (to.size() != value_count(part.box) * size)
-      throw Error("the file was changed while it was read");
-    read_ordered(id.get(), *dataset, c, part.box, to, size);
-  }
+  read_whole_numbers<std::uint64_t>(id.get(), *dataset, part, range, values);
 }
 
 }  // namespace pellucid

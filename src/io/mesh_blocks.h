@@ -40,6 +40,8 @@ inline std::size_t nearest_step(const std::vector<double>& times,
                                 std::optional<double> wanted) noexcept {
   if (!wanted) return 0;
   const auto nearest = std::min_element(times.begin(), times.end(), [&](double a, double b) {
+    // A time that is missing is none.
+    if (std::isnan(a) || std::isnan(b)) return std::isnan(b) && !std::isnan(a);
     return std::abs(a - *wanted) < std::abs(b - *wanted);
   });
   return static_cast<std::size_t>(nearest - times.begin());

@@ -3,8 +3,8 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <cstdint>
+#include <iterator>
 #include <limits>
 #include <optional>
 #include <span>
@@ -16,160 +16,178 @@
 #include "netcdf_variables.h"
 #include "pellucid/scene/error.h"
 #include "stored_numbers.h"
+#include "variable_notes.h"
 
 namespace pellucid {
 
 namespace {
 
-/// Stored numbers of up to 16 bits fit float after scaling to its own rounding.
-bool fits_float(const std::string& type) {
-  return type == "f32" || type.ends_with("8") || type.ends_with("16");
-}
-
-std::string kept_type(const NetCdfVariable& variable) {
-  const std::string type = *stored_type(variable);
-  if (meaning_of(variable).is_plain()) return type;
-  return fits_float(type) ? "f32" : "f64";
-}
-
-/// Where z, y, x stand, which follow each other, and the axis in front of them.
-struct Axes {
-  std::size_t first = 0;
-  std::optional<std::size_t> components;
+/// A variable that is a volume, and how it is read.
+struct NetCdfVolume {
+  NetCdfVariable variable;
+  std::vector<NetCdfAxis> axes;
+  VolumeAxes volume;
+  ValueMeaning meaning;
+  std::vector<std::string> notes;
 };
 
-std::optional<Axes> axes_of(const NetCdfVariable& variable) {
-  std::size_t begin = 0, end = variable.sides.size();
-  constexpr std::size_t most = std::numeric_limits<int>::max();
-  for (const std::size_t side : variable.sides) {
-    if (side < 1 || side > most) return std::nullopt;
-  }
+/// Takes the axes by their places: the last three are z, y, x.
+std::optional<VolumeAxes> axes_by_place(const NetCdfVariable& variable,
+                                        std::vector<std::string>& notes) {
+  std::size_t begin = 0;
+  const std::size_t end = variable.sides.size();
   while (end - begin > 3 && variable.sides[begin] == 1) ++begin;
   if (end - begin < 3 || end - begin > 4) return std::nullopt;
-  if (end - begin == 3 && is_time_axis(variable, begin)) {
-    throw Error("an array whose axis " + net_cdf_axis(variable, begin) +
-                " is time and not z: images, no volume; save it with an axis of depth");
-  }
-  return end - begin == 3 ? Axes{begin, std::nullopt} : Axes{begin + 1, begin};
+  ArrayAxes axes;
+  axes.space = {end - 1, end - 2, end - 3};
+  if (end - begin == 3) return volume_axes(axes, variable.sides);
+  axes.components = begin;
+  VolumeAxes volume = volume_axes(axes, variable.sides);
+  const std::string name = net_cdf_axis(variable, begin);
+  volume.holds = std::to_string(variable.sides[begin]) + " components (axis " + name + ")";
+  notes.push_back("nothing says what the axes of \"" + variable.name + "\" are; the first (" +
+                  name + ") is taken for components, the last for x");
+  return volume;
 }
 
-/// Whether the type of the values does not depend on which of them are read.
-bool has_one_type(const NetCdfVariable& variable, const GridArray& array) {
-  if (variable.type == NC_INT64 || variable.type == NC_UINT64) {
-    const NetCdfMeaning meaning = meaning_of(variable);
-    return !meaning.is_plain() || !meaning.missing.empty();
+/// Returns nothing where the variable is no volume. Throws Error that says why, where that is of
+/// interest.
+std::optional<NetCdfVolume> volume_of(const NetCdfVariable& variable) {
+  const auto type = stored_type(variable);
+  if (variable.sides.size() < 3 || !type) return std::nullopt;
+  for (std::size_t a = 0; a < variable.sides.size(); ++a) {
+    if (variable.sides[a] > std::numeric_limits<int>::max()) return std::nullopt;
+    if (variable.sides[a] == 0) {
+      throw Error("an array whose axis " + net_cdf_axis(variable, a) + " has no entries");
+    }
   }
-  return array.type_with_missing.empty() || array.type_with_missing == array.type;
+  NetCdfVolume found{variable, net_cdf_axes(variable), {}, {}, {}};
+  std::vector<AxisText> texts;
+  for (const NetCdfAxis& axis : found.axes) texts.push_back(axis.text);
+  std::optional<VolumeAxes> volume = volume_axes(texts, variable.sides);
+  if (!volume) volume = axes_by_place(variable, found.notes);
+  if (!volume) return std::nullopt;
+  found.volume = *std::move(volume);
+  for (const std::string& note : found.volume.notes) {
+    found.notes.push_back("\"" + variable.name + "\": " + note);
+  }
+  found.meaning = meaning_of(variable, found.notes);
+  return found;
 }
 
-std::optional<GridArray> describe(const NetCdfVariable& variable) {
-  const std::optional<Axes> axes = axes_of(variable);
-  if (!axes || !stored_type(variable)) return std::nullopt;
+bool is_wide(const NetCdfVariable& variable) {
+  return variable.type == NC_INT64 || variable.type == NC_UINT64;
+}
+
+/// Returns whether whole numbers of 64 bits get the smallest type that holds them, or double.
+bool may_be_whole(const NetCdfVolume& volume) {
+  return is_wide(volume.variable) && !volume.meaning.is_scaled() &&
+         volume.meaning.missing.empty() && !volume.meaning.has_range();
+}
+
+GridArray describe(const NetCdfVolume& of) {
+  const NetCdfVariable& variable = of.variable;
+  const std::string stored = *stored_type(variable);
   GridArray array;
   array.name = variable.name;
-  array.type = kept_type(variable);
-  if (!meaning_of(variable).missing.empty())
-    array.type_with_missing = fits_float(array.type) ? "f32" : "f64";
-  array.reads_parts = has_one_type(variable, array);
+  array.type = of.meaning.is_scaled() ? type_with_meaning(stored) : stored;
+  if (of.meaning.may_miss()) array.type_with_missing = type_with_meaning(array.type);
+  // The type of values must not depend on which of them are read.
+  array.reads_parts = !may_be_whole(of) &&
+                      (array.type_with_missing.empty() || array.type_with_missing == array.type);
   for (std::size_t a = 0; a < 3; ++a) {
-    const std::size_t axis = axes->first + 2 - a;
-    array.sides[a] = static_cast<std::int64_t>(variable.sides[axis]);
-    NetCdfPositions positions = positions_of(variable, axis);
-    array.positions[a] = std::move(positions.numbers);
-    array.rounding[a] = positions.rounding;
+    const std::size_t axis = of.volume.space[a];
+    array.sides[a] = variable.sides[axis];
+    array.positions[a] = positions_of(of.axes[axis], variable.sides[axis]);
   }
-  if (axes->components) {
-    array.components = static_cast<int>(variable.sides[*axes->components]);
-    array.times = positions_of(variable, *axes->components).numbers;
-    array.holds = std::to_string(array.components) + " steps (axis " +
-                  net_cdf_axis(variable, *axes->components) + ")";
+  array.components = of.volume.component_count(variable.sides);
+  array.holds = of.volume.holds;
+  if (of.volume.time) {
+    const std::int64_t steps = variable.sides[*of.volume.time];
+    array.times = positions_of(of.axes[*of.volume.time], steps).numbers;
+    // Steps without times are counted.
+    if (array.times.empty()) {
+      for (std::int64_t t = 0; t < steps; ++t) array.times.push_back(static_cast<double>(t));
+    }
+    array.components_of_a_step = of.volume.components_of_a_step(variable.sides);
+  }
+  array.notes = of.notes;
+  std::array<std::string, 3> space;
+  for (std::size_t a = 0; a < 3; ++a) space[a] = of.axes[of.volume.space[a]].text.name;
+  const FindVariable find = [&](const std::string& name) -> std::optional<NamedVariable> {
+    const auto found = net_cdf_variable(variable.group, name);
+    if (!found) return std::nullopt;
+    NamedVariable named{found->attributes, {}};
+    for (std::size_t a = 0; a < found->axes.size(); ++a) {
+      named.axes.push_back(net_cdf_axis(*found, a));
+    }
+    return named;
+  };
+  for (std::string& note : variable_notes(variable.name, variable.attributes, space, find)) {
+    array.notes.push_back(std::move(note));
   }
   return array;
 }
 
-/// Whole numbers of 64 bits in the smallest type that holds all of them.
+/// The part of a variable that is read.
+struct Box {
+  std::vector<std::size_t> start, count;
+  std::array<int, 3> sides{};
+  std::size_t points = 0;
+};
+
+/// Reads values in the order of the file, as they are stored.
+void read_box(const NetCdfVariable& variable, const Box& box, std::byte* to) {
+  const bool as_double = is_wide(variable) || variable.type == NC_DOUBLE;
+  const int status =
+      as_double ? nc_get_vara_double(variable.group, variable.id, box.start.data(),
+                                     box.count.data(), reinterpret_cast<double*>(to))
+                : nc_get_vara(variable.group, variable.id, box.start.data(), box.count.data(), to);
+  check_net_cdf(status, "the values of \"" + variable.name + "\"");
+}
+
+/// Whole numbers of 64 bits in the smallest type that holds all of them. Nothing where one of them
+/// is the default fill.
 template <class Number>
-VolumeData read_whole_numbers(const NetCdfVariable& variable, const std::vector<std::size_t>& start,
-                              const std::vector<std::size_t>& count, std::size_t points,
-                              std::string& note) {
-  std::vector<Number> numbers(points);
-  check_net_cdf(
-      nc_get_vara(variable.group, variable.id, start.data(), count.data(), numbers.data()),
-      "the values of \"" + variable.name + "\"");
-  WholeNumbers kept([&](const std::string& type) { return make_volume_data(type, points); });
+std::optional<VolumeData> read_whole_numbers(const NetCdfVolume& of, const Box& box,
+                                             std::string& note) {
+  const NetCdfVariable& variable = of.variable;
+  std::vector<Number> numbers(box.points);
+  read_permuted(std::as_writable_bytes(std::span(numbers)), sizeof(Number), box.sides,
+                of.volume.space, [&](std::byte* to) {
+                  check_net_cdf(nc_get_vara(variable.group, variable.id, box.start.data(),
+                                            box.count.data(), to),
+                                "the values of \"" + variable.name + "\"");
+                });
+  const auto is_fill = [&](Number number) {
+    return of.meaning.default_fill && static_cast<double>(number) == *of.meaning.default_fill;
+  };
+  if (std::ranges::any_of(numbers, is_fill)) return std::nullopt;
+  WholeNumbers kept([&](const std::string& type) { return make_volume_data(type, box.points); });
   kept.add(std::span<const Number>(numbers));
-  if (kept.rounding().count > 0) note = kept.rounding().text(points);
+  if (kept.rounding().count > 0) note = kept.rounding().text(box.points);
   return kept.take();
 }
 
-/// The numbers as they are stored. Those of 64 bits that are scaled or may be missing are double.
-VolumeData read_stored(const NetCdfVariable& variable, const std::vector<std::size_t>& start,
-                       const std::vector<std::size_t>& count, std::size_t points,
-                       const NetCdfMeaning& meaning, std::string& note) {
-  if (meaning.is_plain() && meaning.missing.empty()) {
-    if (variable.type == NC_INT64) {
-      return read_whole_numbers<std::int64_t>(variable, start, count, points, note);
-    }
-    if (variable.type == NC_UINT64) {
-      return read_whole_numbers<std::uint64_t>(variable, start, count, points, note);
-    }
+VolumeData read_component(const NetCdfVolume& of, const Box& box, DefaultFills& fills,
+                          std::string& note) {
+  if (may_be_whole(of)) {
+    auto whole = of.variable.type == NC_INT64 ? read_whole_numbers<std::int64_t>(of, box, note)
+                                              : read_whole_numbers<std::uint64_t>(of, box, note);
+    if (whole) return *std::move(whole);
   }
-  VolumeData data = make_volume_data(*stored_type(variable), points);
-  const int status = std::visit(
+  VolumeData data = make_volume_data(*stored_type(of.variable), box.points);
+  std::visit(
       [&](auto& values) {
-        void* const to = values.writable().data();
-        if (variable.type == NC_INT64 || variable.type == NC_UINT64) {
-          return nc_get_vara_double(variable.group, variable.id, start.data(), count.data(),
-                                    static_cast<double*>(to));
-        }
-        return nc_get_vara(variable.group, variable.id, start.data(), count.data(), to);
+        const std::span<std::byte> to = std::as_writable_bytes(values.writable());
+        read_permuted(to, to.size() / box.points, box.sides, of.volume.space,
+                      [&](std::byte* stored) { read_box(of.variable, box, stored); });
       },
       data);
-  check_net_cdf(status, "the values of \"" + variable.name + "\"");
+  const DefaultFills found = apply_meaning(std::span(&data, 1), of.meaning);
+  fills.number = found.number;
+  fills.count += found.count;
   return data;
-}
-
-VolumeData with_meaning(VolumeData stored, const NetCdfMeaning& meaning) {
-  return std::visit(
-      [&](auto& values) -> VolumeData {
-        using Value = typename std::decay_t<decltype(values)>::value_type;
-        using Kept =
-            std::conditional_t<sizeof(Value) <= 2 || std::is_same_v<Value, float>, float, double>;
-        // Compared as they are stored: 1e20 as an attribute of double is another number in float.
-        std::vector<Value> missing;
-        for (const double number : meaning.missing) {
-          const bool fits = std::is_floating_point_v<Value> ||
-                            (number >= static_cast<double>(std::numeric_limits<Value>::lowest()) &&
-                             number <= static_cast<double>(std::numeric_limits<Value>::max()));
-          if (fits) missing.push_back(static_cast<Value>(number));
-        }
-        const auto is_missing = [&](Value value) {
-          return std::find(missing.begin(), missing.end(), value) != missing.end();
-        };
-        if (meaning.is_plain() && std::none_of(values.begin(), values.end(), is_missing)) {
-          return std::move(values);
-        }
-        if constexpr (std::is_same_v<Value, Kept>) {
-          for (Value& value : values.writable()) {
-            value = is_missing(value)
-                        ? std::numeric_limits<Value>::quiet_NaN()
-                        : static_cast<Value>(meaning.scale * static_cast<double>(value) +
-                                             meaning.offset);
-          }
-          return std::move(values);
-        } else {
-          DataArray<Kept> kept(values.size());
-          const std::span<Kept> to = kept.writable();
-          for (std::size_t i = 0; i < values.size(); ++i) {
-            to[i] = is_missing(values[i])
-                        ? std::numeric_limits<Kept>::quiet_NaN()
-                        : static_cast<Kept>(meaning.scale * static_cast<double>(values[i]) +
-                                            meaning.offset);
-          }
-          return kept;
-        }
-      },
-      stored);
 }
 
 }  // namespace
@@ -177,10 +195,18 @@ VolumeData with_meaning(VolumeData stored, const NetCdfMeaning& meaning) {
 void list_grids(const std::filesystem::path& path, const AxisLetters&, GridContents& contents) {
   const NetCdfFile file(path);
   const std::vector<NetCdfVariable> variables = net_cdf_variables(file.id());
+  VariableHelpers helpers;
+  for (const NetCdfVariable& variable : variables) helpers.add(variable.name, variable.attributes);
+  std::vector<GridArray> auxiliary;
   for (const NetCdfVariable& variable : variables) {
     try {
-      if (auto array = describe(variable)) {
-        contents.arrays.push_back(*std::move(array));
+      if (helpers.is_bounds(variable.name) && variable.sides.size() > 2) {
+        throw Error("bounds of cells, no array of values");
+      }
+      if (const auto volume = volume_of(variable)) {
+        // Arrays of data come first: the first one is shown where none is chosen.
+        (helpers.is_auxiliary(variable.name) ? auxiliary : contents.arrays)
+            .push_back(describe(*volume));
       } else {
         contents.others.push_back({variable.name, {}});
       }
@@ -188,6 +214,7 @@ void list_grids(const std::filesystem::path& path, const AxisLetters&, GridConte
       contents.others.push_back({variable.name, error.what()});
     }
   }
+  std::ranges::move(auxiliary, std::back_inserter(contents.arrays));
 }
 
 void read_grid(const std::filesystem::path& path, const std::string& name, const AxisLetters&,
@@ -196,24 +223,24 @@ void read_grid(const std::filesystem::path& path, const std::string& name, const
   const std::vector<NetCdfVariable> variables = net_cdf_variables(file.id());
   const auto variable =
       std::ranges::find_if(variables, [&](const NetCdfVariable& v) { return v.name == name; });
-  const std::optional<Axes> axes = variable == variables.end() ? std::nullopt : axes_of(*variable);
-  if (!axes) throw Error("the file was changed while it was read");
-  std::vector<std::size_t> start(variable->sides.size(), 0), count(variable->sides.size(), 1);
+  const auto of = variable == variables.end() ? std::nullopt : volume_of(*variable);
+  if (!of) throw Error("the file was changed while it was read");
+  Box box;
+  box.start.assign(variable->sides.size(), 0);
+  box.count.assign(variable->sides.size(), 1);
   std::array<std::int64_t, 3> sides{};
-  for (std::size_t a = 0; a < 3; ++a) {
-    sides[a] = static_cast<std::int64_t>(variable->sides[axes->first + 2 - a]);
-  }
+  for (std::size_t a = 0; a < 3; ++a) sides[a] = variable->sides[of->volume.space[a]];
   const GridPart part = wanted_part(sides, range);
-  const std::size_t points = value_count(part.box);
+  box.sides = part.box.count;
+  box.points = value_count(part.box);
   for (std::size_t a = 0; a < 3; ++a) {
-    start[axes->first + 2 - a] = static_cast<std::size_t>(part.box.first[a]);
-    count[axes->first + 2 - a] = static_cast<std::size_t>(part.box.count[a]);
+    box.start[of->volume.space[a]] = static_cast<std::size_t>(part.box.first[a]);
+    box.count[of->volume.space[a]] = static_cast<std::size_t>(part.box.count[a]);
   }
-  const NetCdfMeaning meaning = meaning_of(*variable);
+  DefaultFills fills;
   for (int c = range.first; c < range.first + range.number; ++c) {
-    if (axes->components) start[*axes->components] = static_cast<std::size_t>(c);
-    const VolumeData data =
-        with_meaning(read_stored(*variable, start, count, points, meaning, values.note), meaning);
+    of->volume.set_component(std::span(box.start), variable->sides, c);
+    const VolumeData data = read_component(*of, box, fills, values.note);
     std::visit(
         [&](const auto& of_type) {
           const auto all = std::as_bytes(std::span(of_type.data(), of_type.size()));
@@ -223,6 +250,7 @@ void read_grid(const std::filesystem::path& path, const std::string& name, const
         },
         data);
   }
+  if (const std::string note = note_of(fills, name); !note.empty()) values.note = note;
 }
 
 }  // namespace pellucid

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "pellucid/scene/error.h"
+#include "text.h"
 
 namespace pellucid {
 
@@ -26,18 +27,53 @@ NetCdfFile::NetCdfFile(const std::filesystem::path& path) {
 
 namespace {
 
+void read_attribute(int group, int id, const char* name, VariableAttributes& attributes) {
+  nc_type type = NC_NAT;
+  std::size_t count = 0;
+  if (nc_inq_att(group, id, name, &type, &count) != NC_NOERR) return;
+  VariableAttribute attribute;
+  attribute.is_real = type == NC_FLOAT || type == NC_DOUBLE;
+  attribute.is_text = type == NC_CHAR || type == NC_STRING;
+  if (type == NC_CHAR) {
+    if (count > longest_attribute_text) return;
+    attribute.text.resize(count);
+    if (nc_get_att_text(group, id, name, attribute.text.data()) != NC_NOERR) return;
+  } else if (type == NC_STRING) {
+    if (count == 0 || count > most_attribute_numbers) return;
+    std::vector<char*> texts(count, nullptr);
+    if (nc_get_att_string(group, id, name, texts.data()) != NC_NOERR) return;
+    if (texts[0] != nullptr) attribute.text = texts[0];
+    nc_free_string(count, texts.data());
+  } else if (type < NC_STRING) {
+    if (count > most_attribute_numbers) return;
+    attribute.numbers.resize(count);
+    if (count > 0 && nc_get_att_double(group, id, name, attribute.numbers.data()) != NC_NOERR) {
+      return;
+    }
+  } else {
+    return;
+  }
+  attributes[name] = std::move(attribute);
+}
+
 NetCdfVariable variable_of(int group, int id, const std::string& folder) {
-  NetCdfVariable variable{group, id, "", NC_NAT, {}, {}};
+  NetCdfVariable variable{group, id, "", NC_NAT, {}, {}, {}};
   std::array<char, NC_MAX_NAME + 1> name{};
   std::array<int, NC_MAX_VAR_DIMS> axes{};
-  int count = 0;
-  check_net_cdf(nc_inq_var(group, id, name.data(), &variable.type, &count, axes.data(), nullptr),
-                "a variable");
+  int count = 0, attributes = 0;
+  check_net_cdf(
+      nc_inq_var(group, id, name.data(), &variable.type, &count, axes.data(), &attributes),
+      "a variable");
   variable.name = folder + name.data();
   for (int a = 0; a < count; ++a) {
     variable.axes.push_back(axes[static_cast<std::size_t>(a)]);
-    variable.sides.push_back(0);
-    check_net_cdf(nc_inq_dimlen(group, variable.axes.back(), &variable.sides.back()), "an axis");
+    std::size_t side = 0;
+    check_net_cdf(nc_inq_dimlen(group, variable.axes.back(), &side), "an axis");
+    variable.sides.push_back(static_cast<std::int64_t>(side));
+  }
+  for (int a = 0; a < attributes; ++a) {
+    if (nc_inq_attname(group, id, a, name.data()) != NC_NOERR) continue;
+    read_attribute(group, id, name.data(), variable.attributes);
   }
   return variable;
 }
@@ -56,42 +92,39 @@ void find_variables(int group, const std::string& folder, std::vector<NetCdfVari
   }
 }
 
-/// The attribute's numbers; none where it is missing, or text.
-std::vector<double> numbers_of(const NetCdfVariable& variable, const char* attribute) {
-  nc_type type = NC_NAT;
-  std::size_t count = 0;
-  constexpr std::size_t most = 1024;
-  if (nc_inq_att(variable.group, variable.id, attribute, &type, &count) != NC_NOERR ||
-      type == NC_CHAR || type >= NC_STRING || count > most) {
-    return {};
-  }
-  std::vector<double> numbers(count);
-  if (count > 0 &&
-      nc_get_att_double(variable.group, variable.id, attribute, numbers.data()) != NC_NOERR) {
-    return {};
-  }
-  return numbers;
+/// Returns whether whole numbers, which the classic formats have with a sign alone, have none.
+bool has_unsigned(const NetCdfVariable& variable, const char* text) {
+  return in_small_letters(text_of(variable.attributes, "_Unsigned")).starts_with(text);
 }
 
-/// Whether its whole numbers, which the classic formats have with a sign alone, are meant without.
-bool is_unsigned(const NetCdfVariable& variable) {
-  std::size_t length = 0;
-  if (nc_inq_attlen(variable.group, variable.id, "_Unsigned", &length) != NC_NOERR || length > 8) {
-    return false;
+/// Returns the number that the library writes where nothing is written; bytes have none.
+std::optional<double> default_fill(const NetCdfVariable& variable) {
+  int has_none = 0;
+  if (variable.attributes.contains("_FillValue")) return std::nullopt;
+  if (nc_inq_var_fill(variable.group, variable.id, &has_none, nullptr) == NC_NOERR &&
+      has_none != 0) {
+    return std::nullopt;
   }
-  std::string text(length, '\0');
-  return nc_get_att_text(variable.group, variable.id, "_Unsigned", text.data()) == NC_NOERR &&
-         text.starts_with("true");
-}
-
-/// As they are meant: an unsigned one of a byte may be written as -1, and is 255.
-std::vector<double> missing_of(const NetCdfVariable& variable, const char* attribute) {
-  std::vector<double> numbers = numbers_of(variable, attribute);
-  const double bits = variable.type == NC_BYTE ? 8 : variable.type == NC_SHORT ? 16 : 32;
-  for (double& number : numbers) {
-    if (number < 0 && is_unsigned(variable)) number += std::exp2(bits);
+  const bool is_unsigned = has_unsigned(variable, "true");
+  switch (variable.type) {
+    case NC_SHORT:
+      return NC_FILL_SHORT + (is_unsigned ? 0x1p16 : 0);
+    case NC_USHORT:
+      return NC_FILL_USHORT;
+    case NC_INT:
+      return NC_FILL_INT + (is_unsigned ? 0x1p32 : 0);
+    case NC_UINT:
+      return NC_FILL_UINT;
+    case NC_INT64:
+      return static_cast<double>(NC_FILL_INT64);
+    case NC_UINT64:
+      return static_cast<double>(NC_FILL_UINT64);
+    case NC_FLOAT:
+    case NC_DOUBLE:
+      return static_cast<double>(NC_FILL_FLOAT);
+    default:
+      return std::nullopt;
   }
-  return numbers;
 }
 
 }  // namespace
@@ -102,21 +135,30 @@ std::vector<NetCdfVariable> net_cdf_variables(int group) {
   return list;
 }
 
+std::optional<NetCdfVariable> net_cdf_variable(int group, const std::string& name) {
+  int id = 0;
+  while (nc_inq_varid(group, name.c_str(), &id) != NC_NOERR) {
+    if (nc_inq_grp_parent(group, &group) != NC_NOERR) return std::nullopt;
+  }
+  return variable_of(group, id, "");
+}
+
 std::optional<std::string> stored_type(const NetCdfVariable& variable) {
-  const std::string sign = is_unsigned(variable) ? "u" : "i";
+  const std::string sign = has_unsigned(variable, "true") ? "u" : "i";
+  const std::string no_sign = has_unsigned(variable, "false") ? "i" : "u";
   switch (variable.type) {
     case NC_BYTE:
       return sign + "8";
     case NC_UBYTE:
-      return "u8";
+      return no_sign + "8";
     case NC_SHORT:
       return sign + "16";
     case NC_USHORT:
-      return "u16";
+      return no_sign + "16";
     case NC_INT:
       return sign + "32";
     case NC_UINT:
-      return "u32";
+      return no_sign + "32";
     case NC_FLOAT:
       return "f32";
     case NC_INT64:
@@ -128,28 +170,10 @@ std::optional<std::string> stored_type(const NetCdfVariable& variable) {
   }
 }
 
-NetCdfMeaning meaning_of(const NetCdfVariable& variable) {
-  NetCdfMeaning meaning;
-  const auto first = [&](const char* attribute, double& number) {
-    int id = 0;
-    if (nc_inq_attid(variable.group, variable.id, attribute, &id) != NC_NOERR) return;
-    const std::vector<double> numbers = numbers_of(variable, attribute);
-    if (numbers.empty() || !std::isfinite(numbers[0])) {
-      throw Error("the " + std::string(attribute) + " of \"" + variable.name +
-                  "\" is no finite number; mend the attribute");
-    }
-    number = numbers[0];
-  };
-  first("scale_factor", meaning.scale);
-  first("add_offset", meaning.offset);
-  meaning.missing = missing_of(variable, "_FillValue");
-  // What is never written has this value in files that name no other.
-  if (meaning.missing.empty() && (variable.type == NC_FLOAT || variable.type == NC_DOUBLE)) {
-    meaning.missing.push_back(static_cast<double>(NC_FILL_FLOAT));
-  }
-  for (const double number : missing_of(variable, "missing_value")) {
-    meaning.missing.push_back(number);
-  }
+ValueMeaning meaning_of(const NetCdfVariable& variable, std::vector<std::string>& notes) {
+  ValueMeaning meaning =
+      value_meaning(variable.attributes, *stored_type(variable), variable.name, notes);
+  meaning.default_fill = default_fill(variable);
   return meaning;
 }
 
@@ -161,49 +185,59 @@ std::string net_cdf_axis(const NetCdfVariable& variable, std::size_t axis) {
 
 namespace {
 
-/// The variable that is named like the axis, here or in a group around.
-std::optional<NetCdfVariable> coordinate_of(const NetCdfVariable& variable, std::size_t axis) {
-  const std::string name = net_cdf_axis(variable, axis);
-  int group = variable.group, id = 0;
-  while (nc_inq_varid(group, name.c_str(), &id) != NC_NOERR) {
-    if (nc_inq_grp_parent(group, &group) != NC_NOERR) return std::nullopt;
+/// Reads numbers as doubles, unsigned ones as they are meant.
+std::vector<double> read_line(const NetCdfVariable& line) {
+  std::vector<double> numbers(static_cast<std::size_t>(line.sides[0]));
+  check_net_cdf(nc_get_var_double(line.group, line.id, numbers.data()),
+                "the positions along " + line.name);
+  const std::string type = *stored_type(line);
+  const double span = std::exp2(type.ends_with("8") ? 8 : type.ends_with("16") ? 16 : 32);
+  for (double& number : numbers) {
+    if (type[0] == 'u' && number < 0) number += span;
+    if (type[0] == 'i' && number >= span / 2) number -= span;
   }
-  return variable_of(group, id, "");
+  return numbers;
 }
 
-/// An attribute of text; empty where there is none.
-std::string text_of(const NetCdfVariable& variable, const char* attribute) {
-  nc_type type = NC_NAT;
-  std::size_t length = 0;
-  constexpr std::size_t most = 1024;
-  if (nc_inq_att(variable.group, variable.id, attribute, &type, &length) != NC_NOERR ||
-      type != NC_CHAR || length > most) {
-    return {};
+/// A variable that the attribute `coordinates` names and that has this axis alone.
+std::optional<NetCdfVariable> auxiliary_coordinate(const NetCdfVariable& variable,
+                                                   std::size_t axis) {
+  for (const std::string& name : words_of(variable.attributes, "coordinates")) {
+    auto found = net_cdf_variable(variable.group, name);
+    if (found && found->axes == std::vector{variable.axes[axis]} && stored_type(*found)) {
+      return found;
+    }
   }
-  std::string text(length, '\0');
-  const int status = nc_get_att_text(variable.group, variable.id, attribute, text.data());
-  return status == NC_NOERR ? text : std::string();
+  return std::nullopt;
 }
 
 }  // namespace
 
-bool is_time_axis(const NetCdfVariable& variable, std::size_t axis) {
-  const auto coordinate = coordinate_of(variable, axis);
-  return coordinate && (text_of(*coordinate, "units").find(" since ") != std::string::npos ||
-                        text_of(*coordinate, "axis").starts_with('T'));
+std::vector<NetCdfAxis> net_cdf_axes(const NetCdfVariable& variable) {
+  std::vector<NetCdfAxis> axes(variable.axes.size());
+  for (std::size_t a = 0; a < axes.size(); ++a) {
+    axes[a].text.name = net_cdf_axis(variable, a);
+    axes[a].coordinate = net_cdf_variable(variable.group, axes[a].text.name);
+    const auto& found = axes[a].coordinate;
+    if (found && found->sides.size() == 1) axes[a].text.coordinate = found->attributes;
+    // One of several axes gives no positions, and a text no numbers.
+    if (found && found->sides.size() == 1 && stored_type(*found)) continue;
+    axes[a].coordinate = auxiliary_coordinate(variable, a);
+    if (!axes[a].coordinate) continue;
+    axes[a].text.coordinate = axes[a].coordinate->attributes;
+    axes[a].text.coordinate_name = axes[a].coordinate->name;
+  }
+  return axes;
 }
 
-NetCdfPositions positions_of(const NetCdfVariable& variable, std::size_t axis) {
-  const auto coordinate = coordinate_of(variable, axis);
-  if (!coordinate) return {};
-  const NetCdfVariable& found = *coordinate;
-  if (found.sides != std::vector{variable.sides[axis]} || !stored_type(found)) return {};
-  NetCdfPositions positions{std::vector<double>(variable.sides[axis]), 0x1p-53};
-  check_net_cdf(nc_get_var_double(found.group, found.id, positions.numbers.data()),
-                "the positions along " + found.name);
-  if (found.type == NC_FLOAT) positions.rounding = 0x1p-24;
-  const NetCdfMeaning meaning = meaning_of(found);
-  for (double& number : positions.numbers) number = meaning.scale * number + meaning.offset;
+AxisPositions positions_of(const NetCdfAxis& axis, std::int64_t side) {
+  AxisPositions positions = positions_along(axis.text);
+  if (!axis.coordinate || axis.coordinate->sides != std::vector{side}) return positions;
+  const NetCdfVariable& found = *axis.coordinate;
+  positions.numbers = read_line(found);
+  positions.rounding = found.type == NC_FLOAT ? 0x1p-24 : 0x1p-53;
+  std::vector<std::string> notes;
+  apply_meaning(positions.numbers, *stored_type(found), meaning_of(found, notes));
   return positions;
 }
 

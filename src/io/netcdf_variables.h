@@ -4,10 +4,15 @@
 #include <netcdf.h>
 
 #include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <string>
 #include <vector>
+
+#include "axis_meaning.h"
+#include "value_meaning.h"
+#include "variable_attributes.h"
 
 namespace pellucid {
 
@@ -32,37 +37,35 @@ struct NetCdfVariable {
   std::string name;  ///< with its groups in front
   nc_type type = NC_NAT;
   std::vector<int> axes;
-  std::vector<std::size_t> sides;
+  std::vector<std::int64_t> sides;
+  VariableAttributes attributes;
 };
 
-/// Those of the group and of the groups in it, whose names stand in front.
+/// Returns the variables of the group and of the groups in it, whose names stand in front.
 std::vector<NetCdfVariable> net_cdf_variables(int group);
 
-std::string net_cdf_axis(const NetCdfVariable& variable, std::size_t axis);
+/// Returns the variable of this name, here or in a group around.
+std::optional<NetCdfVariable> net_cdf_variable(int group, const std::string& name);
 
-/// Whether it counts time, as the CF conventions mark it: units "days since 1990-1-1", axis "T".
-bool is_time_axis(const NetCdfVariable& variable, std::size_t axis);
+std::string net_cdf_axis(const NetCdfVariable& variable, std::size_t axis);
 
 /// The type that the values have in memory, whole numbers of 64 bits double; nothing where they are
 /// no numbers.
 std::optional<std::string> stored_type(const NetCdfVariable& variable);
 
-/// value = scale · stored + offset; what is missing is NaN.
-struct NetCdfMeaning {
-  double scale = 1, offset = 0;
-  std::vector<double> missing;
+/// Returns the attributes' meaning of values, and the library's default fill. `notes` is told what
+/// is not applied. Throws Error where a scale or an offset stands there and is no finite number.
+ValueMeaning meaning_of(const NetCdfVariable& variable, std::vector<std::string>& notes);
 
-  bool is_plain() const { return scale == 1 && offset == 0; }
+/// An axis of a variable with its coordinate: the variable that is named like the axis, or else one
+/// that the attribute `coordinates` names and that has this axis alone.
+struct NetCdfAxis {
+  AxisText text;
+  std::optional<NetCdfVariable> coordinate;
 };
-/// Throws Error where a scale or an offset stands there and is no finite number.
-NetCdfMeaning meaning_of(const NetCdfVariable& variable);
+std::vector<NetCdfAxis> net_cdf_axes(const NetCdfVariable& variable);
 
-/// The numbers of the variable that is named like the axis, here or in a group around; none where
-/// there is no such one.
-struct NetCdfPositions {
-  std::vector<double> numbers;
-  double rounding = 0;  ///< the largest relative error that their type leaves them
-};
-NetCdfPositions positions_of(const NetCdfVariable& variable, std::size_t axis);
+/// The positions along an axis of so many values; missing ones are NaN.
+AxisPositions positions_of(const NetCdfAxis& axis, std::int64_t side);
 
 }  // namespace pellucid

@@ -25,7 +25,7 @@
 #include "pellucid/io/dicom_series.h"
 #include "pellucid/io/read_mesh.h"
 #include "pellucid/scene/error.h"
-#include "text.h"
+#include "unread_formats.h"
 #include "vtk_collection.h"
 #include "vtk_file_kind.h"
 #include "vtk_hdf.h"
@@ -134,18 +134,11 @@ Opener opener_of(const std::filesystem::path& path) {
   return format->open == open_vtk_volume && is_mesh_file(path) ? nullptr : format->open;
 }
 
-/// Stores of Zarr in one file are folders to be.
-void refuse_zipped_zarr(const std::filesystem::path& path) {
-  const std::string name = in_small_letters(path.filename().string());
-  if (!name.ends_with(".zarr.zip") && !name.ends_with(".ozx")) return;
-  throw Error(path.string() +
-              ": is a store of Zarr in a zip archive; unpack it, and give the folder");
-}
-
 Opener find_opener(const std::filesystem::path& path, const ReadOptions& options) {
   std::error_code error;
   if (is_zarr(path)) return open_zarr;
   if (is_vtk_js(path)) return open_vtk_js;
+  refuse_unread_format(path);
   if (std::filesystem::is_directory(path, error)) return is_dicom(path) ? open_dicom : open_stack;
   if (is_stack_pattern(path)) return open_stack;
   check_input_file(path);
@@ -154,7 +147,6 @@ Opener find_opener(const std::filesystem::path& path, const ReadOptions& options
   if (open == nullptr && options.dimensions && options.type) open = open_raw_file;
   if (open == nullptr && is_dat_header(path)) open = open_dat;
   if (open == nullptr && is_dicom(path)) open = open_dicom;
-  refuse_zipped_zarr(path);
   if (open == nullptr && is_mesh_file(path)) {
     throw Error(path.string() +
                 ": is a mesh, and here a volume is needed; 'render' and 'info' take meshes");
@@ -185,7 +177,8 @@ VolumeFile open_file(const std::filesystem::path& path, const ReadOptions& optio
   if (options.level && open != open_zarr) {
     throw Error(path.string() + ": has no levels of resolution; leave the level out");
   }
-  if (options.time && open != open_net_cdf && open != open_zarr) {
+  constexpr std::array with_times{Opener{open_hdf5}, Opener{open_net_cdf}, Opener{open_zarr}};
+  if (options.time && std::ranges::find(with_times, open) == with_times.end()) {
     throw Error(path.string() + ": the file has no steps in time; leave the time out");
   }
   return open(path, options);

@@ -19,7 +19,6 @@
 
 namespace pellucid {
 
-namespace fs = std::filesystem;
 using scene_json::Node;
 using scene_json::printable;
 
@@ -141,6 +140,7 @@ void read_fill(const Node& node, ZarrArray& array) {
     array.fill_text = "0";
     return;
   }
+  array.has_fill = true;
   if (const auto bits = bits_of(node); bits && type[0] == 'f') {
     if (type == "f16") put(half_to_float(static_cast<std::uint16_t>(*bits)), array.fill);
     if (type == "f32") put(static_cast<std::uint32_t>(*bits), array.fill);
@@ -337,46 +337,7 @@ const Node& object(const Node& node) {
   return node;
 }
 
-JsonFile attributes_of(const fs::path& file) {
-  std::error_code error;
-  if (!fs::exists(file, error)) return {nlohmann::json::object(), file.string()};
-  JsonFile attributes = read_data_json(file);
-  object(attributes.root());
-  return attributes;
-}
-
-std::optional<ZarrNode> read_version_3(const fs::path& folder) {
-  std::error_code error;
-  if (!fs::is_regular_file(folder / "zarr.json", error)) return std::nullopt;
-  ZarrNode node;
-  node.folder = folder;
-  node.version = 3;
-  node.metadata = read_data_json(folder / "zarr.json");
-  const Node root = node.metadata.root();
-  object(root).at("zarr_format", "it must be 3").integer(3, 3);
-  node.is_array =
-      root.at("node_type", "it must be \"array\" or \"group\"").one_of({"array", "group"}) == 0;
-  node.attributes = {nlohmann::json::object(), node.metadata.name};
-  if (const auto attributes = root.find("attributes"); attributes && !attributes->is_null()) {
-    node.attributes.value = object(*attributes).value();
-  }
-  return node;
-}
-
 }  // namespace
-
-std::optional<ZarrNode> read_zarr_node(const fs::path& folder) {
-  if (auto node = read_version_3(folder)) return node;
-  std::error_code error;
-  ZarrNode node;
-  node.folder = folder;
-  node.is_array = fs::is_regular_file(folder / ".zarray", error);
-  if (!node.is_array && !fs::is_regular_file(folder / ".zgroup", error)) return std::nullopt;
-  node.metadata = read_data_json(folder / (node.is_array ? ".zarray" : ".zgroup"));
-  object(node.metadata.root());
-  node.attributes = attributes_of(folder / ".zattrs");
-  return node;
-}
 
 ZarrArray parse_zarr_2(const Node& metadata) {
   ZarrArray array;
@@ -441,21 +402,6 @@ ZarrArray parse_zarr_3(const Node& metadata) {
     }
   }
   return checked(std::move(array), metadata);
-}
-
-ZarrArray zarr_array(const ZarrNode& node) {
-  ZarrArray array =
-      node.version == 3 ? parse_zarr_3(node.metadata.root()) : parse_zarr_2(node.metadata.root());
-  // As xarray names them in version 2.
-  const auto names = node.attributes.root().find("_ARRAY_DIMENSIONS");
-  if (array.dimension_names.empty() && names && names->is_array()) {
-    for (std::size_t i = 0; i < names->array_size(); ++i) {
-      const Node name = names->element(i);
-      array.dimension_names.push_back(name.is_string() ? name.string() : std::string());
-    }
-  }
-  if (array.dimension_names.size() != array.shape.size()) array.dimension_names.clear();
-  return array;
 }
 
 std::size_t zarr_chunk_values(const std::vector<std::int64_t>& chunk, const std::string& name) {

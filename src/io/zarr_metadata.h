@@ -71,8 +71,10 @@ struct ZarrArray {
   ZarrChain chain;
   std::array<std::byte, 8> fill{};  ///< value of missing chunks: in memory, f16 as f32
   std::string fill_text;            ///< for notes
+  bool has_fill = false;            ///< whether the metadata state one
   std::string key_prefix;           ///< of files of chunks: "" or "c"
   char separator = '.';
+  std::string note;  ///< on files that are not as the metadata say; begins with "its"
   std::vector<std::string> dimension_names;  ///< "" where one has no name; empty: none has
 };
 

@@ -25,7 +25,7 @@ struct ReadOptions {
   std::optional<Centering> centering;   ///< replaces the file's
   std::optional<int> components;        ///< raw: numbers at each point, side by side
   std::optional<int> component;         ///< component to read, from 0
-  std::optional<double> time;  ///< NetCDF, OME-Zarr: reads the nearest time step, not a component
+  std::optional<double> time;  ///< NetCDF, HDF5, Zarr: reads the nearest step in time
   std::optional<std::string> array;  ///< name of the array to read; none: see VolumeArray
   /// .npy, .npz, HDF5 and Zarr that does not name its axes: a letter for each axis of the array, in
   /// the order of its indices: x, y and z, and c for components ("xyz", "czyx"). None: "zyx"; of

@@ -1,0 +1,315 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// Keys of NetCDF, HDF5 and Zarr: each with a small file that has it.
+#include <cmath>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "described_keys.h"
+#ifdef PELLUCID_HAVE_HDF5
+#include "hdf5_files.h"
+#endif
+#include "net_cdf_files.h"
+#include "pellucid/io/read_volume.h"
+#include "zarr_files.h"
+
+namespace pellucid {
+namespace {
+
+namespace fs = std::filesystem;
+
+using test::bytes_of;
+using test::counting;
+using test::error_of;
+using test::expect_counting;
+using test::value_at;
+using test::world_of;
+using test::ZarrStore;
+
+/// A volume and the notes of its reading.
+struct Told {
+  Volume volume;
+  std::vector<std::string> notes;
+};
+Told read_telling(const fs::path& file, const std::string& array = "v") {
+  std::vector<std::string> notes;
+  ReadOptions options;
+  if (!array.empty()) options.array = array;
+  options.note = [&](const std::string& note) { notes.push_back(note); };
+  Volume volume = read_volume(file, options);
+  return {std::move(volume), notes};
+}
+
+// -------------------------------------------------------------------------------------- NetCDF
+
+using Attributes = std::vector<test::ClassicAttribute>;
+
+/// A file of v on a, b, c of 3, 4, 5, with attributes of v and of the coordinate a.
+std::string net_cdf(const Attributes& of_v, const Attributes& of_a = {}, char type = 'h',
+                    const std::vector<std::string>& axes = {"a", "b", "c"}) {
+  test::ClassicFile file;
+  file.axes = {{axes[0], 3}, {axes[1], 4}, {axes[2], 5}};
+  if (!of_a.empty()) file.variables.push_back({axes[0], 'd', {axes[0]}, {0, 1, 2}, of_a});
+  file.variables.push_back({"crs", 'i', {}, {1}, {{"grid_mapping_name", "mercator"}}});
+  file.variables.push_back({"lat", 'd', {axes[1], axes[2]}, std::vector<double>(20, 1)});
+  file.variables.push_back({"v", type, axes, counting<double>(), of_v});
+  return file.bytes();
+}
+
+#ifdef PELLUCID_HAVE_NETCDF
+#define NETCDF_KEY(name, key, treatment) \
+  PELLUCID_DESCRIBED_KEY(netcdf_##name, "NetCDF", key, treatment)
+#define NETCDF_AXIS(name, key, value)                                    \
+  NETCDF_KEY(name, key, honored) {                                       \
+    const auto file = write("a.nc", net_cdf({}, {{key, value}}));        \
+    EXPECT_EQ(read_telling(file).volume.description().dimensions[0], 3); \
+  }
+NETCDF_AXIS(axis, "axis", "X")
+NETCDF_AXIS(cartesian_axis, "cartesian_axis", "X")
+NETCDF_AXIS(coordinate_type, "_CoordinateAxisType", "Lon")
+NETCDF_AXIS(standard_name, "standard_name", "longitude")
+NETCDF_AXIS(units, "units", "degrees_east")
+
+NETCDF_KEY(positive, "positive", honored) {
+  const auto file = write("a.nc", net_cdf({}, {{"positive", "down"}}));
+  EXPECT_EQ(world_of(read_telling(file).volume, 0, 0, 2).z, -2);
+}
+NETCDF_KEY(scale_factor, "scale_factor", honored) {
+  const auto file = write("a.nc", net_cdf({{"scale_factor", 'd', {0.5}}}));
+  EXPECT_EQ(value_at(read_telling(file).volume, 1, 0, 0), 0.5);
+}
+NETCDF_KEY(add_offset, "add_offset", honored) {
+  const auto file = write("a.nc", net_cdf({{"add_offset", 'd', {100}}}));
+  EXPECT_EQ(value_at(read_telling(file).volume, 1, 0, 0), 101);
+}
+#define NETCDF_MISSING(name, key, count, ...)                                  \
+  NETCDF_KEY(name, key, honored) {                                             \
+    const auto file = write("a.nc", net_cdf({{key, 'h', __VA_ARGS__}}));       \
+    EXPECT_EQ(read_telling(file).volume.statistics().nan, std::size_t{count}); \
+  }
+NETCDF_MISSING(fill_value, "_FillValue", 1, {7})
+NETCDF_MISSING(missing_value, "missing_value", 2, {7, 8})
+NETCDF_MISSING(valid_range, "valid_range", 58, {7, 8})
+NETCDF_MISSING(valid_min, "valid_min", 7, {7})
+NETCDF_MISSING(valid_max, "valid_max", 52, {7})
+
+NETCDF_KEY(unsigned, "_Unsigned", honored) {
+  test::ClassicFile file;
+  file.axes = {{"z", 3}, {"y", 4}, {"x", 5}};
+  file.variables = {
+      {"v", 'b', {"z", "y", "x"}, std::vector<double>(60, -56), {{"_Unsigned", "true"}}}};
+  EXPECT_EQ(value_at(read_telling(write("a.nc", file.bytes())).volume, 0, 0, 0), 200);
+}
+#define NETCDF_BOUNDS(name, key)                                   \
+  NETCDF_KEY(name, key, honored) {                                 \
+    const auto file = write("a.nc", net_cdf({}, {{key, "v"}}));    \
+    expect_refused([&] { read_volume(file); }, "bounds of cells"); \
+  }
+NETCDF_BOUNDS(bounds, "bounds")
+NETCDF_BOUNDS(climatology, "climatology")
+
+NETCDF_KEY(coordinates, "coordinates", told) {
+  expect_told(read_telling(write("a.nc", net_cdf({{"coordinates", "lat"}}))).notes,
+              "coordinates lat");
+}
+NETCDF_KEY(grid_mapping, "grid_mapping", told) {
+  expect_told(read_telling(write("a.nc", net_cdf({{"grid_mapping", "crs"}}))).notes,
+              "grid_mapping: mercator");
+}
+NETCDF_KEY(flag_values, "flag_values", told) {
+  expect_told(read_telling(write("a.nc", net_cdf({{"flag_values", 'h', {1, 2}}}))).notes,
+              "flag_values");
+}
+NETCDF_KEY(flag_meanings, "flag_meanings", told) {
+  expect_told(read_telling(write("a.nc", net_cdf({{"flag_meanings", "land sea"}}))).notes,
+              "land sea");
+}
+NETCDF_KEY(flag_masks, "flag_masks", told) {
+  expect_told(read_telling(write("a.nc", net_cdf({{"flag_masks", 'h', {1, 2}}}))).notes, "labels");
+}
+#endif
+
+// -------------------------------------------------------------------------------- HDF5 arrays
+
+#ifdef PELLUCID_HAVE_HDF5
+using test::Hdf5Writer;
+
+/// Writes v with more.
+template <class More>
+fs::path hdf5(const fs::path& path, const More& more) {
+  const Hdf5Writer file(path);
+  file.add("v", H5T_STD_I16LE, {3, 4, 5}, counting<double>());
+  more(file);
+  return path;
+}
+fs::path hdf5_with(const fs::path& path, const std::string& key,
+                   const std::vector<double>& numbers) {
+  return hdf5(path, [&](const Hdf5Writer& file) { file.attach("v", key, numbers); });
+}
+
+#define HDF5_KEY(name, key, treatment) \
+  PELLUCID_DESCRIBED_KEY(hdf5_##name, "HDF5 arrays", key, treatment)
+HDF5_KEY(scale_factor, "scale_factor", honored) {
+  const auto file = hdf5_with(path("a.h5"), "scale_factor", {0.5});
+  EXPECT_EQ(value_at(read_telling(file).volume, 1, 0, 0), 0.5);
+}
+HDF5_KEY(add_offset, "add_offset", honored) {
+  const auto file = hdf5_with(path("a.h5"), "add_offset", {100});
+  EXPECT_EQ(value_at(read_telling(file).volume, 1, 0, 0), 101);
+}
+#define HDF5_MISSING(name, key, count, ...)                                    \
+  HDF5_KEY(name, key, honored) {                                               \
+    const auto file = hdf5_with(path("a.h5"), key, __VA_ARGS__);               \
+    EXPECT_EQ(read_telling(file).volume.statistics().nan, std::size_t{count}); \
+  }
+HDF5_MISSING(fill_value, "_FillValue", 1, {7})
+HDF5_MISSING(missing_value, "missing_value", 2, {7, 8})
+HDF5_MISSING(valid_range, "valid_range", 58, {7, 8})
+HDF5_MISSING(valid_min, "valid_min", 7, {7})
+HDF5_MISSING(valid_max, "valid_max", 52, {7})
+
+HDF5_KEY(axistags, "axistags", honored) {
+  const auto file = hdf5(path("a.h5"), [](const Hdf5Writer& to) {
+    to.attach_text("v", "axistags",
+                   "{\"axes\": [{\"key\": \"x\"}, {\"key\": \"y\"}, {\"key\": \"z\"}]}");
+  });
+  EXPECT_EQ(read_telling(file).volume.description().dimensions[0], 3);
+}
+HDF5_KEY(labels, "DIMENSION_LABELS", honored) {
+  const auto file = hdf5(path("a.h5"), [](const Hdf5Writer& to) {
+    to.attach_labels("v", {"x", "y", "z"});
+  });
+  EXPECT_EQ(read_telling(file).volume.description().dimensions[0], 3);
+}
+HDF5_KEY(scales, "DIMENSION_LIST", honored) {
+  const auto file = hdf5(path("a.h5"), [](const Hdf5Writer& to) {
+    to.add("z", H5T_IEEE_F64LE, {3}, {0, 2, 4});
+    to.attach_scales("v", {"z", "", ""});
+  });
+  EXPECT_EQ(world_of(read_telling(file).volume, 0, 0, 2).z, 4);
+}
+HDF5_KEY(element_size, "element_size_um", honored) {
+  const auto file = hdf5_with(path("a.h5"), "element_size_um", {3, 2, 1});
+  EXPECT_EQ(world_of(read_telling(file).volume, 0, 0, 2).z, 6);
+}
+#define HDF5_TOLD(name, key)                                   \
+  HDF5_KEY(name, key, told) {                                  \
+    const auto file = hdf5_with(path("a.h5"), key, {3, 2, 1}); \
+    expect_told(read_telling(file).notes, key);                \
+  }
+HDF5_TOLD(flag_values, "flag_values")
+HDF5_TOLD(scale, "ScaleFactor")
+HDF5_TOLD(slope, "slope")
+HDF5_TOLD(intercept, "intercept")
+HDF5_TOLD(other_missing, "MissingValue")
+HDF5_TOLD(nodata, "nodata")
+HDF5_TOLD(spacing, "spacing")
+HDF5_TOLD(origin, "origin")
+HDF5_TOLD(voxel_size, "voxel_size")
+HDF5_TOLD(resolution, "resolution")
+HDF5_TOLD(affine, "affine")
+#endif
+
+// -------------------------------------------------------------------------------- Zarr stores
+
+/// A store of v, whose attributes are those of xarray and more.
+fs::path zarr(const fs::path& folder, const std::string& more,
+              const std::function<void(ZarrStore&)>& change = {}) {
+  ZarrStore store;
+  store.type = "<i2";
+  store.fill = "null";
+  if (change) change(store);
+  store.write_2(folder / "v", bytes_of(counting<std::int16_t>()), 2);
+  std::ofstream(folder / ".zgroup") << "{\"zarr_format\": 2}";
+  std::ofstream(folder / "v/.zattrs") << "{\"_ARRAY_DIMENSIONS\": [\"z\", \"y\", \"x\"]"
+                                      << (more.empty() ? "" : ", ") << more << "}";
+  return folder;
+}
+Told read_zarr(const fs::path& folder) {
+  return read_telling(folder);
+}
+
+#define ZARR_KEY(name, key, treatment) \
+  PELLUCID_DESCRIBED_KEY(zarr_##name, "Zarr stores", key, treatment)
+ZARR_KEY(dimensions, "_ARRAY_DIMENSIONS", honored) {
+  zarr(path("a.zarr"), {});
+  write("a.zarr/v/.zattrs", "{\"_ARRAY_DIMENSIONS\": [\"x\", \"y\", \"z\"]}");
+  EXPECT_EQ(read_zarr(path("a.zarr")).volume.description().dimensions[0], 3);
+}
+ZARR_KEY(scale_factor, "scale_factor", honored) {
+  const Told told = read_zarr(zarr(path("a.zarr"), "\"scale_factor\": 0.5"));
+  EXPECT_EQ(value_at(told.volume, 1, 0, 0), 0.5);
+}
+ZARR_KEY(add_offset, "add_offset", honored) {
+  const Told told = read_zarr(zarr(path("a.zarr"), "\"add_offset\": 100"));
+  EXPECT_EQ(value_at(told.volume, 1, 0, 0), 101);
+}
+#define ZARR_MISSING(name, key, count, value)                                 \
+  ZARR_KEY(name, key, honored) {                                              \
+    const Told told = read_zarr(zarr(path("a.zarr"), "\"" key "\": " value)); \
+    EXPECT_EQ(told.volume.statistics().nan, std::size_t{count});              \
+  }
+ZARR_MISSING(fill_value, "_FillValue", 1, "7")
+ZARR_MISSING(missing_value, "missing_value", 2, "[7, 8]")
+ZARR_MISSING(valid_range, "valid_range", 58, "[7, 8]")
+ZARR_MISSING(valid_min, "valid_min", 7, "7")
+ZARR_MISSING(valid_max, "valid_max", 52, "7")
+
+ZARR_KEY(fill, "fill_value", honored) {
+  const Told told = read_zarr(zarr(path("a.zarr"), {}, [](ZarrStore& s) { s.fill = "7"; }));
+  EXPECT_EQ(told.volume.statistics().nan, 1u);
+}
+ZARR_KEY(unsigned, "_Unsigned", honored) {
+  ZarrStore store;
+  zarr(path("a.zarr"), "\"_Unsigned\": \"true\"");
+  store.type = "<i2";
+  store.fill = "null";
+  store.write_2(path("a.zarr/v"), bytes_of(std::vector<std::int16_t>(60, -1)), 2);
+  EXPECT_EQ(value_at(read_zarr(path("a.zarr")).volume, 0, 0, 0), 65535);
+}
+ZARR_KEY(separator, "dimension_separator", honored) {
+  const Told told = read_zarr(zarr(path("a.zarr"), {}, [](ZarrStore& s) { s.separator = "/"; }));
+  expect_counting(told.volume, "i16");
+}
+ZARR_KEY(positive, "positive", honored) {
+  zarr(path("a.zarr"), {});
+  ZarrStore line;
+  line.type = "<f8";
+  line.shape = line.chunk = {3};
+  line.fill = "null";
+  line.write_2(path("a.zarr/z"), bytes_of(std::vector<double>{0, 1, 2}), 8);
+  write("a.zarr/z/.zattrs", "{\"_ARRAY_DIMENSIONS\": [\"z\"], \"positive\": \"down\"}");
+  EXPECT_EQ(world_of(read_zarr(path("a.zarr")).volume, 0, 0, 2).z, -2);
+}
+ZARR_KEY(consolidated, "metadata", honored) {
+  zarr(path("a.zarr"), {});
+  const std::string array = read(path("a.zarr/v/.zarray"));
+  fs::remove(path("a.zarr/v/.zarray"));
+  write("a.zarr/.zmetadata",
+        "{\"metadata\": {\".zgroup\": {\"zarr_format\": 2}, \"v/.zarray\": " + array + "}}");
+  expect_counting(read_zarr(path("a.zarr")).volume, "i16");
+}
+ZARR_KEY(flags, "flag_values", told) {
+  expect_told(read_zarr(zarr(path("a.zarr"), "\"flag_values\": [1, 2]")).notes, "flag_values");
+}
+ZARR_KEY(grid_mapping, "grid_mapping", told) {
+  expect_told(read_zarr(zarr(path("a.zarr"), "\"grid_mapping\": \"crs\"")).notes, "grid_mapping");
+}
+ZARR_KEY(transformers, "storage_transformers", refused) {
+  ZarrStore store;
+  store.more = ", \"storage_transformers\": [{\"name\": \"other\"}]";
+  fs::create_directories(path("a.zarr"));
+  write("a.zarr/zarr.json", store.array_3("float32", "[\"bytes\"]", "{\"name\": \"default\"}"));
+  expect_refused([&] { read_volume(path("a.zarr")); }, "storage_transformers");
+}
+ZARR_KEY(dimension_names, "dimension_names", honored) {
+  ZarrStore store;
+  store.more = ", \"dimension_names\": [\"x\", \"y\", \"z\"]";
+  fs::create_directories(path("a.zarr"));
+  write("a.zarr/zarr.json", store.array_3("float32", "[\"bytes\"]", "{\"name\": \"default\"}"));
+  EXPECT_EQ(outline_volume(path("a.zarr")).description.dimensions[0], 3);
+}
+
+}  // namespace
+}  // namespace pellucid
