@@ -150,7 +150,8 @@ def main():
     program, folder = pathlib.Path(sys.argv[1]).resolve(), pathlib.Path(sys.argv[2]).resolve()
     rows = expectations(folder)
     known = set()
-    paths = sorted(str(p.relative_to(folder)) for p in folder.rglob("*") if p.is_file())
+    paths = sorted(str(p.relative_to(folder)) for p in folder.rglob("*")
+                   if p.is_file() and not p.name.startswith("._"))
     for path in paths:
         row_of(rows, path, known)
         row_of(rows, str(pathlib.Path(path).parent), known)

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <charconv>
 #include <variant>
 
 #include "output.h"
@@ -42,8 +43,9 @@ void VolumeOptions::add_to(CommandLine& command, bool with_array, bool with_axes
           ->option_text("N"));
   add(command
           .add_option("--component", component,
-                      "Read this component, from 0, of a file with several")
-          ->option_text("C"));
+                      "Read this component of a file with several: its number, from 0, or the "
+                      "file's name of it, such as a channel's")
+          ->option_text("C|NAME"));
   if (with_array) {
     add(command
             .add_option("--array", array,
@@ -52,9 +54,11 @@ void VolumeOptions::add_to(CommandLine& command, bool with_array, bool with_axes
             ->option_text("ARRAY[:C]"));
   }
   add(command
-          .add_option(with_axes ? "--array-axes,--axes" : "--array-axes", axes,
-                      "NumPy, HDF5 and Zarr: axes of the array in the order of its indices, c for "
-                      "components. Default: zyx; of four zyxc or czyx, as a note says")
+          .add_option(
+              with_axes ? "--array-axes,--axes" : "--array-axes", axes,
+              "NumPy, HDF5, Zarr and tifffile's arrays: axes of the array in the order of "
+              "its indices, c for components. Default: zyx; of four zyxc or czyx, as a note "
+              "says")
           ->option_text("LETTERS"));
   add(command
           .add_option("--level", level,
@@ -64,7 +68,8 @@ void VolumeOptions::add_to(CommandLine& command, bool with_array, bool with_axes
   add(command
           .add_option("--series", series,
                       "Read this DICOM series of a folder: its number in the list of 'pellucid "
-                      "info', its UID, or a unique ending of it")
+                      "info', its UID, or a unique ending of it. Of OME-TIFF: the image's number, "
+                      "from 1, or name")
           ->option_text("N|UID"));
   add(command
           .add_option("--spacing", spacing,
@@ -97,7 +102,14 @@ ReadOptions VolumeOptions::read_options() const {
   if (big_endian) read.big_endian = true;
   read.skip_bytes = skip_bytes;
   read.components = components;
-  read.component = component;
+  int number = 0;
+  const char* const end = component.data() + component.size();
+  const auto [stop, error] = std::from_chars(component.data(), end, number);
+  if (!component.empty() && error == std::errc{} && stop == end) {
+    read.component = number;
+  } else if (!component.empty()) {
+    read.component_name = component;
+  }
   read.level = level;
   if (!series.empty()) read.series = series;
   if (!axes.empty()) {

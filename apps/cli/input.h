@@ -23,10 +23,10 @@ inline constexpr const char* input_help =
 
 /// The options that say, or replace, what a volume file says about itself.
 struct VolumeOptions {
-  std::string dimensions, type, axes, spacing, origin, centering, array, series;
+  std::string dimensions, type, axes, spacing, origin, centering, array, series, component;
   bool big_endian = false;
   std::size_t skip_bytes = 0;
-  std::optional<int> components, component, level;
+  std::optional<int> components, level;
   std::vector<Option*> given;  ///< all of them, to ask which were used
 
   /// `--array` and `--axes` where no other option of the command has this name.

@@ -81,6 +81,7 @@ int components_of(const LayerDescription& layer) {
   ReadOptions options = layer.field.options;
   options.note = {};
   options.component.reset();
+  options.component_name.reset();
   options.time.reset();
   try {
     return component_count(layer.field.file, options);

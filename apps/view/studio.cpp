@@ -172,6 +172,7 @@ struct Studio::Visitor {
           FieldSource& field = field_of(layer);
           field.options.array = c.array;
           field.options.component.reset();
+          field.options.component_name.reset();
         },
         false);
   }

@@ -226,9 +226,9 @@ def default_camera(scene: Scene) -> Camera: ...
 def view_camera(scene: Scene, view: str) -> Camera: ...
 def render_reference(scene: Scene, *, depth: bool = False, threads: int = 0,
                      progress: _Progress = None) -> Image: ...
-def read_volume(path: _Path, *, array: Optional[str] = None, component: Optional[int] = None,
-                time: Optional[float] = None, series: Optional[str] = None,
-                level: Optional[int] = None, axes: Optional[str] = None,
+def read_volume(path: _Path, *, array: Optional[str] = None,
+                component: Optional[Union[int, str]] = None, time: Optional[float] = None,
+                series: Optional[str] = None, level: Optional[int] = None, axes: Optional[str] = None,
                 shape: Optional[Tuple[int, int, int]] = None, type: Optional[str] = None,
                 big_endian: Optional[bool] = None, skip_bytes: int = 0,
                 spacing: Optional[_Three] = None, origin: Optional[_Three] = None,

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <string>
 #include <utility>
+#include <variant>
 
 #include "common.h"
 #include "handles.h"
@@ -41,17 +42,21 @@ std::optional<Vec3<double>> from_zyx(const py::object& object, const char* what)
 
 VolumeHandle read_volume_file(
     const std::filesystem::path& path, const std::optional<std::string>& array,
-    const std::optional<int>& component, const std::optional<double>& time,
-    const std::optional<std::string>& series, const std::optional<int>& level,
-    const std::optional<std::string>& axes, const std::optional<std::array<int, 3>>& shape,
-    const std::optional<std::string>& type, const std::optional<bool>& big_endian,
-    std::size_t skip_bytes, const py::object& spacing, const py::object& origin,
-    const std::optional<std::string>& centering) {
+    const std::optional<std::variant<int, std::string>>& component,
+    const std::optional<double>& time, const std::optional<std::string>& series,
+    const std::optional<int>& level, const std::optional<std::string>& axes,
+    const std::optional<std::array<int, 3>>& shape, const std::optional<std::string>& type,
+    const std::optional<bool>& big_endian, std::size_t skip_bytes, const py::object& spacing,
+    const py::object& origin, const std::optional<std::string>& centering) {
   FieldSource source;
   source.file = path;
   ReadOptions& options = source.options;
   options.array = array;
-  options.component = component;
+  if (component && std::holds_alternative<int>(*component)) {
+    options.component = std::get<int>(*component);
+  } else if (component) {
+    options.component_name = std::get<std::string>(*component);
+  }
   options.time = time;
   options.series = series;
   options.level = level;
@@ -164,9 +169,10 @@ void bind_files(py::module_& module) {
 Reads a volume file: NIfTI, NRRD, MetaImage, DICOM, NumPy, HDF5, NetCDF, OME-Zarr, MRC, OpenVDB,
 VTK images, stacks of TIFF, raw data, … (docs/reference/formats.md).
 
-array names an array of the file, component one of its components (from 0), time a time step;
-series is a DICOM series (number or UID), level a resolution of OME-Zarr, axes the letters of an
-array's axes ("zyx", "czyx"). shape (z, y, x), type ("u8" … "f64"), big_endian and skip_bytes are
+array names an array of the file, component one of its components (from 0, or by name), time a
+step in time; series is a DICOM series (number or UID) or an image of OME-TIFF (number or name),
+level a resolution of OME-Zarr, axes the letters of an array's axes ("zyx", "czyx"). shape
+(z, y, x), type ("u8" … "f64"), big_endian and skip_bytes are
 for raw data. spacing and origin (z, y, x) and centering replace the file's. Warns of what is
 assumed. Raises Error: what, where, what to do.)");
   module.def("read_mesh", &read_mesh_file, py::arg("path"), py::kw_only(),

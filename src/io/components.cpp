@@ -10,6 +10,7 @@
 
 #include "memory_limit.h"
 #include "pellucid/scene/error.h"
+#include "scene_json_document.h"
 
 namespace pellucid {
 
@@ -44,8 +45,27 @@ std::string choices(const VolumeFile& file) {
   return "0 to " + std::to_string(file.components - 1);
 }
 
+/// The component that the options call by its name. Throws Error where there is not one.
+int named_component(const VolumeFile& file, const std::string& wanted) {
+  const std::vector<std::string>& names = file.component_names;
+  if (std::ranges::count(names, wanted) == 1) {
+    return static_cast<int>(std::ranges::find(names, wanted) - names.begin());
+  }
+  std::string list;
+  for (const std::string& name : names) list += (list.empty() ? "" : ", ") + name;
+  throw Error(file.description.name + ": " +
+              (std::ranges::count(names, wanted) > 1 ? "more than one" : "no") +
+              " component is called \"" + scene_json::printable(wanted) + "\"" +
+              (names.empty() ? "; its components have no names, give a number, " + choices(file)
+                             : "; their names are " + scene_json::printable(list) +
+                                   ", their numbers " + choices(file)));
+}
+
 /// The component that the options name, or their time; nothing where they name none. Throws Error.
 std::optional<int> chosen_component(const VolumeFile& file, const ReadOptions& options) {
+  if (!options.component && options.component_name) {
+    return named_component(file, *options.component_name);
+  }
   if (!options.component) return file.step;
   const int component = *options.component;
   if (component >= 0 && component < file.components) return component;

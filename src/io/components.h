@@ -43,7 +43,9 @@ inline constexpr const char* patient_space = "LPS";
 struct VolumeFile {
   Volume::Description description;
   int components = 1;
-  std::string holds;         ///< what several components are: "3 time steps (axis 4)"
+  std::string holds;  ///< what several components are: "3 time steps (axis 4)"
+  /// The file's names of the components, which need not differ; empty: it has none.
+  std::vector<std::string> component_names;
   std::optional<int> step;   ///< the component that a time chose
   bool reads_parts = false;  ///< whether `read` reads a part of the grid without the rest
   std::string array;  ///< the one of the file's arrays that this is; empty: they have no names

@@ -14,19 +14,11 @@
 
 #include "memory_limit.h"
 #include "pellucid/scene/error.h"
+#include "stored_numbers.h"
 
 namespace pellucid {
 
 namespace {
-
-struct WholeType {
-  const char* name;
-  double lowest, highest;
-};
-constexpr std::array whole_types{
-    WholeType{"u8", 0, 255},          WholeType{"i8", -128, 127},
-    WholeType{"u16", 0, 65535},       WholeType{"i16", -32768, 32767},
-    WholeType{"u32", 0, 4294967295.}, WholeType{"i32", -2147483648., 2147483647.}};
 
 /// A stored number: the bits that hold it, without what else stands in its bytes.
 class StoredValue {
@@ -166,11 +158,8 @@ std::string dicom_value_type(const std::vector<DicomSlice>& slices, const std::s
     const double values = std::exp2(format.bits_stored);
     const double lowest = (format.is_signed ? -values / 2 : 0) + any.intercept;
     const double highest = lowest + values - 1;
-    for (const WholeType& type : whole_types) {
-      const bool is_smaller =
-          value_size(type.name, name) < static_cast<std::size_t>(format.bits_allocated / 8);
-      if (!is_smaller && type.lowest <= lowest && highest <= type.highest) return type.name;
-    }
+    const auto bytes = static_cast<std::size_t>(format.bits_allocated / 8);
+    if (const auto type = whole_type_for(lowest, highest, bytes)) return *type;
   }
   return format.bits_allocated <= 16 ? "f32" : "f64";
 }

@@ -1,13 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <array>
 #include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <memory>
-#include <optional>
 #include <span>
 #include <string>
+
+#include "page_description.h"
+#include "pellucid/io/read_volume.h"
 
 namespace pellucid {
 
@@ -17,13 +19,6 @@ struct PageFormat {
   int samples = 1;   ///< at each pixel, side by side
   std::string type;  ///< "u8" … "f64"
   bool operator==(const PageFormat&) const = default;
-};
-
-/// What a file says of distances.
-struct PageSpacing {
-  std::optional<std::array<double, 2>> pixels;  ///< from column to column, from row to row
-  std::optional<double> slices;
-  std::string unit;
 };
 
 /// The pages of an image file one after the other.
@@ -36,7 +31,15 @@ class PageReader {
 
   /// Of the page that it stands at, first the first. Throws Error for pages that are not read.
   virtual PageFormat format() const = 0;
-  virtual PageSpacing spacing() const { return {}; }
+  /// What the file says of its pages. It stands at the first. Throws Error.
+  virtual PageDescription describe(const ReadOptions& options) const;
+  /// The number of the page among the file's directories, which may have others between.
+  virtual std::int64_t directory() const { return 0; }
+  /// What the page says of its own place (Micro-Manager); empty: nothing.
+  virtual std::string metadata() const { return {}; }
+  /// Takes so many planes to lie one behind the other from the values of the first page on, in
+  /// place of pages. Throws Error where they cannot.
+  virtual void share_first_page(std::int64_t planes);
   /// Whether small values are meant to be bright.
   virtual bool is_inverted() const { return false; }
   /// All values of the page, in this machine's byte order, row by row. Throws Error.

@@ -2,22 +2,30 @@
 #include "image_stack.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
-#include <cstring>
 #include <limits>
+#include <map>
+#include <optional>
+#include <set>
 #include <utility>
 #include <vector>
 
+#include "acquisition_text.h"
 #include "image_pages.h"
 #include "input_file.h"
-#include "memory_limit.h"
+#include "json_file.h"
+#include "name_series.h"
 #include "numbered_files.h"
+#include "page_placement.h"
+#include "page_values.h"
 #include "pellucid/scene/error.h"
 #include "text.h"
 
 namespace pellucid {
 
 namespace fs = std::filesystem;
+using scene_json::printable;
 
 namespace {
 
@@ -28,59 +36,10 @@ bool is_tiff(const std::string& name) {
 bool is_image(const std::string& name) {
   return is_tiff(name) || in_small_letters(name).ends_with(".png");
 }
-
-// Those whose names differ from that of the first by a number alone, and the first.
-std::vector<fs::path> same_around_the_number(const std::vector<fs::path>& files,
-                                             const fs::path& first) {
-  const std::optional<NumberedName> name = numbered_name(first.filename().string());
-  std::vector<fs::path> same;
-  for (const fs::path& file : files) {
-    const std::optional<NumberedName> other = numbered_name(file.filename().string());
-    if (file.filename() == first.filename() ||
-        (name && other && other->before == name->before && other->behind == name->behind)) {
-      same.push_back(file);
-    }
-  }
-  return same;
+/// Hidden files of a folder are of no stack.
+bool is_shown_image(const std::string& name) {
+  return is_image(name) && !name.starts_with('.');
 }
-
-std::vector<fs::path> files_of_folder(const fs::path& folder, const ReadOptions& options) {
-  const std::string name = folder.string();
-  std::size_t others = 0;
-  const std::vector<fs::path> files = files_in(folder, is_image, &others);
-  if (files.empty()) {
-    throw Error(name +
-                ": is a folder with no DICOM file and no .tif, .tiff or .png in it; folders "
-                "within are not looked into");
-  }
-  const std::vector<fs::path> same = same_around_the_number(files, files.front());
-  for (const fs::path& file : files) {
-    if (std::ranges::find(same, file) != same.end()) continue;
-    throw Error(name + ": the names of " + files.front().filename().string() + " and " +
-                file.filename().string() +
-                " differ by more than a number; give one file of the stack that is meant");
-  }
-  if (others > 0 && options.note) {
-    options.note(name + ": " + std::to_string(others) + (others == 1 ? " file is" : " files are") +
-                 " no image and left out");
-  }
-  return same;
-}
-
-std::vector<fs::path> files_of_pattern(const fs::path& path) {
-  const NamePattern pattern = *name_pattern(path.filename().string());
-  std::vector<fs::path> files =
-      files_in(path.parent_path(), [&](const std::string& name) { return pattern.matches(name); });
-  if (files.empty()) throw Error(path.string() + ": no file has a name of this pattern");
-  return files;
-}
-
-struct Stack {
-  std::vector<fs::path> files;
-  int pages = 0;  // of the one file; of several, how many they are
-  PageFormat format;
-  PageSpacing spacing;
-};
 
 [[noreturn]] void refuse_odd(const std::string& name, const std::string& which,
                              const PageFormat& odd, const PageFormat& first) {
@@ -88,124 +47,324 @@ struct Stack {
               page_text(first) + "; all must be alike");
 }
 
-int count_pages(PageReader& reader, const PageFormat& first, const std::string& name) {
-  int pages = 1;
-  while (reader.next()) {
-    if (pages == std::numeric_limits<int>::max()) throw Error(name + ": has too many pages");
-    ++pages;
-    const PageFormat format = reader.format();
-    if (format != first) refuse_odd(name, "page " + std::to_string(pages), format, first);
-  }
-  return pages;
-}
+/// What is found of a stack before its values are read.
+struct Stack {
+  PageVolume volume;
+  PageDescription said;
+};
 
-std::vector<fs::path> files_of(const fs::path& path, const ReadOptions& options) {
-  if (fs::is_directory(path)) return files_of_folder(path, options);
-  if (is_stack_pattern(path)) return files_of_pattern(path);
-  return {path};
-}
+/// Opens the files of a stack one after the other.
+class Finder {
+ public:
+  Finder(const fs::path& path, const ReadOptions& options)
+      : path_(path), name_(path.string()), options_(options) {}
 
-Stack find_stack(const fs::path& path, const ReadOptions& options) {
-  const std::string name = path.string();
-  Stack stack;
-  stack.files = files_of(path, options);
-  std::unique_ptr<PageReader> first = open_pages(stack.files.front());
-  stack.format = first->format();
-  stack.spacing = first->spacing();
-  if (first->is_inverted() && options.note) {
-    options.note(name + ": small values are meant to be bright; they are read as they are");
+  Stack find() {
+    if (fs::is_directory(path_)) {
+      of_folder();
+    } else if (is_stack_pattern(path_)) {
+      of_pattern();
+    } else {
+      of_file(path_);
+    }
+    return std::move(stack_);
   }
-  if (stack.files.size() == 1) {
-    stack.pages = count_pages(*first, stack.format, stack.files.front().string());
-    if (stack.pages > 1) return stack;
+
+ private:
+  void note(const std::string& text) const {
+    if (options_.note) options_.note(name_ + ": " + text);
+  }
+
+  static std::string longest_of(const std::vector<NameSeries>& series) {
+    return std::ranges::max_element(series, {},
+                                    [](const NameSeries& one) { return one.files.size(); })
+        ->pattern;
+  }
+
+  void of_pattern() {
+    std::size_t conversions = 0;
+    const auto pattern = name_pattern(path_.filename().string(), &conversions);
+    if (!pattern) {
+      throw Error(name_ + ": has " + std::to_string(conversions) +
+                  " numbers that vary; write digits in the place of all but that of the slices");
+    }
+    std::vector<NumberedFile> numbered;
+    for (const fs::path& file : files_in(path_.parent_path(), is_image)) {
+      if (const auto number = pattern->number(file.filename().string())) {
+        numbered.push_back({*number, file});
+      }
+    }
+    if (numbered.empty()) throw Error(name_ + ": no file has a name of this pattern");
+    if (numbered.size() == 1) return of_alone(numbered.front().file);
+    of_numbered(numbered);
+  }
+
+  void of_folder() {
+    std::size_t others = 0;
+    const std::vector<fs::path> files = files_in(path_, is_shown_image, &others);
+    if (files.empty()) {
+      throw Error(name_ +
+                  ": is a folder with no DICOM file and no .tif, .tiff or .png in it; folders "
+                  "within are not looked into");
+    }
+    if (files.size() == 1) {
+      of_alone(files.front());
+    } else if (!is_set_of_files(files)) {
+      const std::vector<NameSeries> series = name_series(files);
+      if (series.size() > 1) {
+        throw Error(name_ + ": holds " + std::to_string(series.size()) +
+                    " series of images, whose names differ by more than a number: " +
+                    printable(series_text(series)) + "; give the pattern of one, as in " +
+                    (path_ / longest_of(series)).string());
+      }
+      of_numbered(series.front().files);
+    }
+    const std::size_t hidden =
+        files_in(path_, [](const std::string& name) { return name.starts_with('.'); }).size();
+    if (others > hidden) {
+      others -= hidden;
+      note(std::to_string(others) + (others == 1 ? " file is" : " files are") +
+           " no image and left out");
+    }
+  }
+
+  void of_file(const fs::path& file) {
+    open_first(file);
+    if (stack_.volume.files.front().directories.size() > 1 || names_other_files()) {
+      return describe();
+    }
+    if (share_first_page()) return describe();
     // A single image is one of those that are numbered like it.
-    const fs::path& file = stack.files.front();
-    stack.files = same_around_the_number(files_in(file.parent_path(), is_image), file);
-  }
-  stack.files = in_order(stack.files, name);
-  for (const fs::path& file : stack.files) {
-    const std::unique_ptr<PageReader> pages = open_pages(file);
-    const PageFormat format = pages->format();
-    const std::string which = file.filename().string();
-    if (format != stack.format) refuse_odd(name, which, format, stack.format);
-    if (pages->next()) {
-      throw Error(name + ": " + which +
-                  " has several pages, and there are several files; give one of them alone");
+    std::vector<fs::path> files = files_in(file.parent_path(), is_shown_image);
+    const auto same_name = [&](const fs::path& f) { return f.filename() == file.filename(); };
+    if (std::ranges::none_of(files, same_name)) files.push_back(file);
+    const std::vector<NameSeries> series = name_series_of(file, files);
+    if (series.size() > 1) {
+      throw Error(name_ + ": may be of " + std::to_string(series.size()) +
+                  " series of images, for more than one number of its name varies: " +
+                  printable(series_text(series)) + "; give the pattern of one, as in " +
+                  (file.parent_path() / longest_of(series)).string());
     }
+    if (series.front().files.size() > 1) return of_numbered(series.front().files);
+    describe();
   }
-  stack.pages = static_cast<int>(stack.files.size());
-  return stack;
+
+  /// A file that has no others beside it.
+  void of_alone(const fs::path& file) {
+    open_first(file);
+    if (stack_.volume.files.front().directories.size() == 1 && !names_other_files()) {
+      share_first_page();
+    }
+    describe();
+  }
+
+  /// Opens the file that describes the stack, and counts its pages.
+  void open_first(const fs::path& file) {
+    stack_ = {};
+    const std::unique_ptr<PageReader> reader = open_pages(file);
+    stack_.volume.format = reader->format();
+    stack_.said = reader->describe(options_);
+    stack_.volume.calibration = stack_.said.calibration;
+    if (reader->is_inverted()) {
+      note("small values are meant to be bright; they are read as they are");
+    }
+    stack_.volume.files = {count_pages(file, *reader)};
+  }
+
+  FilePages count_pages(const fs::path& file, PageReader& reader) {
+    FilePages pages{file, {reader.directory()}};
+    std::vector<std::string> metadata{reader.metadata()};
+    while (reader.next()) {
+      if (pages.directories.size() == std::numeric_limits<int>::max()) {
+        throw Error(file.string() + ": has too many pages");
+      }
+      pages.directories.push_back(reader.directory());
+      if (!metadata.front().empty()) metadata.push_back(reader.metadata());
+      const PageFormat format = reader.format();
+      if (format != stack_.volume.format) {
+        refuse_odd(file.string(), "page " + std::to_string(pages.directories.size()), format,
+                   stack_.volume.format);
+      }
+    }
+    if (!metadata.front().empty() && stack_.said.writer.empty()) {
+      if (auto said = read_page_metadata(metadata, file.string())) {
+        for (PageRun& run : said->runs) {
+          run.directory = pages.directories[static_cast<std::size_t>(run.directory)];
+        }
+        said->notes = std::move(stack_.said.notes);
+        if (!said->spacing[0]) {
+          said->spacing[0] = stack_.said.spacing[0];
+          said->spacing[1] = stack_.said.spacing[1];
+        }
+        stack_.said = *std::move(said);
+      }
+    }
+    return pages;
+  }
+
+  /// The names of files that a description has beside that of the file itself.
+  std::set<std::string> named_files() const {
+    std::set<std::string> names;
+    const fs::path& own = stack_.volume.files.front().file;
+    bool is_each_named = true;
+    for (const PageRun& run : stack_.said.runs) {
+      if (!run.file.empty()) names.insert(run.file);
+      is_each_named = is_each_named && !run.file.empty();
+    }
+    // A file that alone is named is this one, whatever its name is now.
+    std::error_code error;
+    if (names.size() == 1 && is_each_named &&
+        !fs::exists(own.parent_path() / *names.begin(), error)) {
+      return {};
+    }
+    names.erase(own.filename().string());
+    return names;
+  }
+  bool names_other_files() const { return !named_files().empty(); }
+
+  /// Whether the first of the files describes all of them as its own.
+  bool is_set_of_files(const std::vector<fs::path>& files) {
+    if (!is_tiff(files.front().filename().string())) return false;
+    const std::unique_ptr<PageReader> reader = open_pages(files.front());
+    stack_.said = reader->describe(ReadOptions{});
+    stack_.volume.files = {{files.front(), {0}}};
+    std::set<std::string> names = named_files();
+    if (names.empty()) return false;
+    names.insert(files.front().filename().string());
+    for (const fs::path& file : files) {
+      if (!names.contains(file.filename().string())) return false;
+    }
+    open_first(files.front());
+    describe();
+    return true;
+  }
+
+  /// Takes the planes of a description to lie behind the first page where they may; whether so.
+  bool share_first_page() {
+    const std::int64_t planes = plane_count(stack_.said.axes);
+    if (!stack_.said.may_share_one_page || planes < 2) return false;
+    if (planes > std::numeric_limits<int>::max()) {
+      throw Error(name_ + ": its description says too many planes; mend it");
+    }
+    const FilePages& only = stack_.volume.files.front();
+    const std::unique_ptr<PageReader> reader = open_pages(only.file);
+    try {
+      reader->share_first_page(planes);
+    } catch (const Error&) {
+      return false;  // what is missing is told where the pages are laid out
+    }
+    stack_.volume.shared_planes = planes;
+    std::vector<std::int64_t>& directories = stack_.volume.files.front().directories;
+    directories.clear();
+    for (std::int64_t plane = 0; plane < planes; ++plane) directories.push_back(plane);
+    return true;
+  }
+
+  /// Lays out the pages of the first file, and of those that it names, as it says.
+  void describe() {
+    PageVolume& volume = stack_.volume;
+    if (stack_.said.axes.empty()) {
+      volume.layout = layout_of_slices(volume.files);
+      return;
+    }
+    const fs::path folder = volume.files.front().file.parent_path();
+    std::map<std::string, std::size_t> places;
+    for (const std::string& other : named_files()) {
+      places[other] = volume.files.size();
+      const fs::path file = path_inside(folder, other, name_);
+      std::error_code error;
+      if (!fs::exists(file, error)) {
+        throw Error(name_ + ": its description (" + stack_.said.writer +
+                    ") says that some of its planes are in " + printable(other) +
+                    ", which is not beside it; put it there");
+      }
+      const std::unique_ptr<PageReader> reader = open_pages(file);
+      if (reader->format() != volume.format) {
+        refuse_odd(name_, file.filename().string(), reader->format(), volume.format);
+      }
+      volume.files.push_back(count_pages(file, *reader));
+    }
+    volume.layout = layout_of_pages(
+        stack_.said, volume.files,
+        [&](const PageRun& run) {
+          const auto place = places.find(run.file);
+          return place == places.end() ? std::size_t{0} : place->second;
+        },
+        options_.note, name_);
+  }
+
+  /// Files of one page each.
+  void of_numbered(const std::vector<NumberedFile>& numbered) {
+    const std::vector<fs::path> files = in_order(numbered, name_);
+    open_first(files.front());
+    PageVolume& volume = stack_.volume;
+    PageDescription& said = stack_.said;
+    if (plane_count(said.axes) > 1 || names_other_files()) {
+      said.notes.push_back("its files describe several pages each (" + said.writer +
+                           "), but have one; they are slices in the order of their numbers");
+    }
+    said.axes.clear();
+    said.runs.clear();
+    for (const fs::path& file : files) {
+      const std::string which = file.filename().string();
+      const std::unique_ptr<PageReader> reader = open_pages(file);
+      const PageFormat format = reader->format();
+      if (format != volume.format) refuse_odd(name_, which, format, volume.format);
+      if (reader->describe(options_).calibration != said.calibration) {
+        throw Error(name_ + ": the values of " + which +
+                    " have another calibration (ImageJ: c0, c1) than those of the first; give "
+                    "all the same");
+      }
+      if (reader->next()) {
+        throw Error(name_ + ": " + which +
+                    " has several pages, and there are several files; give one of them alone");
+      }
+      if (file != files.front()) volume.files.push_back({file, {0}});
+    }
+    volume.files.front().directories.resize(1);
+    volume.layout = layout_of_slices(volume.files);
+  }
+
+  const fs::path& path_;
+  const std::string name_;
+  const ReadOptions& options_;
+  Stack stack_;
+};
+
+/// Keeps the step in time that is nearest to what the options say.
+void choose_time(Stack& stack, double time, const std::string& name) {
+  PageLayout& layout = stack.volume.layout;
+  if (layout.times < 2) throw Error(name + ": has no steps in time; leave the time out");
+  const double step = stack.said.time_step.value_or(1);
+  const double nearest = std::round(time / (step > 0 ? step : 1));
+  const auto last = static_cast<double>(layout.times - 1);
+  const auto chosen = static_cast<std::ptrdiff_t>(nearest > 0 ? std::min(nearest, last) : 0);
+  const auto planes = std::ssize(layout.planes) / layout.times;
+  const auto begin = layout.planes.begin() + chosen * planes;
+  layout.planes = std::vector<PlanePage>(begin, begin + planes);
+  layout.times = 1;
 }
 
-void place(const Stack& stack, const ReadOptions& options, Volume::Description& description) {
-  const auto usable = [](double x) { return x > 0 && x < 1e30; };
-  const PageSpacing& said = stack.spacing;
-  Vec3<double>& spacing = description.placement.spacing;
-  std::string told;
-  if (said.pixels && usable((*said.pixels)[0]) && usable((*said.pixels)[1])) {
-    spacing.x = (*said.pixels)[0];
-    spacing.y = (*said.pixels)[1];
-    told = "pixels";
-  }
-  if (said.slices && usable(*said.slices)) {
-    spacing.z = *said.slices;
-    told += told.empty() ? "slices" : " and slices";
-  }
-  if (options.spacing || !options.note) return;
-  if (told.empty()) {
-    options.note(description.name + ": images say nothing of distances; the spacing is 1");
-  } else {
-    options.note(description.name + ": the spacing of " + told + " is the file's, in " + said.unit +
-                 (told == "pixels and slices" ? "" : "; the other is 1"));
-  }
-}
-
-/// One component of a page of several.
-void take_component(std::span<const std::byte> page, std::size_t samples, std::size_t component,
-                    std::size_t value_bytes, std::span<std::byte> to) {
-  const std::size_t count = to.size() / value_bytes;
-  for (std::size_t i = 0; i < count; ++i) {
-    std::memcpy(&to[i * value_bytes], &page[(i * samples + component) * value_bytes], value_bytes);
-  }
-}
-
-std::vector<VolumeData> read_stack(const Stack& stack, ComponentRange range,
-                                   const std::string& name) {
-  const PageFormat& format = stack.format;
-  const std::size_t per_page =
-      static_cast<std::size_t>(format.columns) * static_cast<std::size_t>(format.rows);
-  const std::size_t points = per_page * static_cast<std::size_t>(stack.pages);
-  const std::size_t size = value_size(format.type, name);
-  const auto samples = static_cast<std::size_t>(format.samples);
-  const auto number = static_cast<std::size_t>(range.number);
-  check_memory(std::uintmax_t{points} * number * size + per_page * samples * size,
-               name + ": its values");
-  std::vector<VolumeData> list;
-  list.reserve(number);
-  for (std::size_t c = 0; c < number; ++c) list.push_back(make_values(format.type, points, name));
-  std::vector<std::byte> page(samples > 1 ? per_page * samples * size : 0);
-  std::unique_ptr<PageReader> reader;
-  for (std::size_t k = 0; k < static_cast<std::size_t>(stack.pages); ++k) {
-    const fs::path& file = stack.files[stack.files.size() == 1 ? 0 : k];
-    const bool goes_on = reader && stack.files.size() == 1 && reader->next();
-    if (!goes_on) reader = open_pages(file);
-    if (reader->format() != format || (k > 0 && stack.files.size() == 1 && !goes_on)) {
-      throw Error(file.string() + ": has changed while it was read; is it being written?");
+/// "2 times of 3 channels (DAPI, GFP, RFP)"
+std::string holds_of(const PageLayout& layout, const PageDescription& said, int samples) {
+  std::string text;
+  const auto add = [&](const std::string& what) { text += (text.empty() ? "" : " of ") + what; };
+  if (layout.times > 1) add(std::to_string(layout.times) + " times");
+  if (layout.others > 1) add(std::to_string(layout.others) + " steps of another axis");
+  if (layout.channels > 1) {
+    std::string names;
+    for (const std::string& channel : said.channels) {
+      names += (names.empty() ? "" : ", ") + (channel.empty() ? std::string("-") : channel);
     }
-    const auto part = [&](std::size_t c) {
-      return std::visit(
-          [&](auto& values) {
-            return std::as_writable_bytes(values.writable())
-                .subspan(k * per_page * size, per_page * size);
-          },
-          list[c]);
-    };
-    reader->read(samples > 1 ? std::span(page) : part(0));
-    for (std::size_t c = 0; samples > 1 && c < number; ++c) {
-      take_component(page, samples, static_cast<std::size_t>(range.first) + c, size, part(c));
-    }
+    add(std::to_string(layout.channels) + " channels" +
+        (names.empty() ? "" : " (" + printable(names) + ")"));
   }
-  return list;
+  if (samples > 1 || text.empty()) {
+    add(samples == 3   ? "colors (RGB)"
+        : samples == 4 ? "colors (RGBA)"
+                       : std::to_string(samples) + " samples");
+  }
+  return text;
 }
 
 }  // namespace
@@ -220,29 +379,60 @@ std::unique_ptr<PageReader> open_pages(const fs::path& file) {
   return is_tiff(file.filename().string()) ? open_tiff(file) : open_png(file);
 }
 
+PageDescription PageReader::describe(const ReadOptions&) const {
+  return {};
+}
+
+void PageReader::share_first_page(std::int64_t) {
+  throw Error("the format has one page for each plane");
+}
+
 bool is_stack_pattern(const fs::path& path) {
   std::error_code error;
   const std::string name = path.filename().string();
-  return is_image(name) && name_pattern(name).has_value() && !fs::exists(path, error);
+  std::size_t conversions = 0;
+  name_pattern(name, &conversions);
+  return is_image(name) && conversions > 0 && !fs::exists(path, error);
 }
 
 VolumeFile open_stack(const fs::path& path, const ReadOptions& options) {
   const std::string name = path.string();
   refuse_raw_options(options, name);
-  const Stack stack = find_stack(path, options);
-  const PageFormat& format = stack.format;
-  const std::size_t points = value_count({format.columns, format.rows, stack.pages}, name);
-  value_count(points, format.samples, name);
+  Stack stack = Finder(path, options).find();
+  const PageDescription& said = stack.said;
+  if (options.axes && !said.obeys_axes) {
+    throw Error(name +
+                ": its description says which axes its pages have, or has none; leave the "
+                "axes out");
+  }
+  if (options.series && !said.obeys_series) {
+    throw Error(name +
+                ": is no DICOM and has no OME-XML, and only of those a series may be chosen");
+  }
+  if (options.time) choose_time(stack, *options.time, name);
+  const PageFormat& format = stack.volume.format;
+  const PageLayout& layout = stack.volume.layout;
+  const std::size_t points = value_count({format.columns, format.rows, layout.slices}, name);
   VolumeFile file;
   file.description.name = name;
-  file.description.dimensions = {format.columns, format.rows, stack.pages};
-  place(stack, options, file.description);
-  apply_overrides(options, file.description);
-  file.components = format.samples;
-  file.holds = format.samples == 3   ? "colors (RGB)"
-               : format.samples == 4 ? "colors (RGBA)"
-                                     : std::to_string(format.samples) + " samples";
-  file.read = [stack, name](ComponentRange range) { return read_stack(stack, range, name); };
+  file.description.dimensions = {format.columns, format.rows, static_cast<int>(layout.slices)};
+  place_pages(said, options, file.description);
+  if (layout.components() > std::numeric_limits<int>::max() / format.samples) {
+    throw Error(name + ": has too many components");
+  }
+  file.components = static_cast<int>(layout.components()) * format.samples;
+  value_count(points, file.components, name);
+  file.holds = holds_of(layout, said, format.samples);
+  if (layout.components() > 1 && options.note) {
+    options.note(name + ": holds " + file.holds + ", which are its components" +
+                 (layout.times > 1 && !said.time_step ? "; times are counted from 0" : ""));
+  }
+  if (layout.components() == layout.channels && format.samples == 1) {
+    file.component_names = said.channels;
+  }
+  file.read = [volume = std::move(stack.volume), name](ComponentRange range) {
+    return read_page_values(volume, range, name);
+  };
   return file;
 }
 

@@ -1,88 +1,257 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// OME-XML 2016-06: <OME><Image><Pixels SizeX= … SizeC= SizeT= PhysicalSizeX= PhysicalSizeXUnit= …>.
-// Only the attributes of Pixels are looked for: the rest says nothing of where values stand.
+// OME-XML 2016-06 and the OME-TIFF specification:
+// https://docs.openmicroscopy.org/ome-model/6.3.1/ome-tiff/specification.html
+// <OME><Image><Pixels DimensionOrder= SizeX= … PhysicalSizeX= PhysicalSizeXUnit= …>
+// <Channel Name=/> <TiffData IFD= FirstZ= FirstC= FirstT= PlaneCount=><UUID FileName=/></TiffData>
+// <Plane TheZ= TheC= TheT= PositionZ=/>.
 
 #include "ome_xml.h"
 
+#include <algorithm>
+#include <array>
 #include <charconv>
 #include <cmath>
-#include <optional>
+#include <limits>
+#include <map>
+#include <utility>
 
 #include "pellucid/scene/error.h"
+#include "scene_json_document.h"
+#include "text.h"
+#include "xml_scanner.h"
 
 namespace pellucid {
 
+using scene_json::printable;
+
 namespace {
 
-/// What stands between < and >, of the first element of this name, with a prefix or without.
-std::string_view element(std::string_view text, std::string_view name) {
-  for (std::size_t at = text.find(name); at != std::string_view::npos;
-       at = text.find(name, at + 1)) {
-    if (at == 0 || (text[at - 1] != '<' && text[at - 1] != ':')) continue;
-    const std::string_view rest = text.substr(at + name.size());
-    if (!rest.empty() && std::string_view(" \t\r\n").find(rest.front()) != std::string_view::npos) {
-      return rest.substr(0, rest.find('>'));
-    }
-  }
-  return {};
+std::string_view without_prefix(std::string_view name) {
+  return name.substr(name.find(':') + 1);  // npos + 1 is 0
 }
 
-std::string_view attribute(std::string_view element, std::string_view key) {
-  for (const char quote : {'"', '\''}) {
-    const std::size_t at = element.find(std::string(key) + "=" + quote);
-    if (at == std::string_view::npos || at == 0 || element[at - 1] > ' ') continue;
-    const std::string_view rest = element.substr(at + key.size() + 2);
-    return rest.substr(0, rest.find(quote));
-  }
-  return {};
+std::string attribute(const XmlTag& tag, std::string_view key) {
+  const auto found = tag.attributes.find(key);
+  return found == tag.attributes.end() ? std::string() : xml_text(trimmed(found->second));
 }
 
-std::optional<double> number(std::string_view word) {
+std::optional<double> number(const XmlTag& tag, std::string_view key) {
+  const std::string word = attribute(tag, key);
   double value = 0;
   const auto result = std::from_chars(word.data(), word.data() + word.size(), value);
   if (word.empty() || result.ec != std::errc{} || !std::isfinite(value)) return std::nullopt;
   return value;
 }
 
-std::size_t count_of(std::string_view text, std::string_view what) {
-  std::size_t count = 0;
-  for (std::size_t at = text.find(what); at != std::string_view::npos;
-       at = text.find(what, at + 1)) {
-    ++count;
+/// Reads one document, tag after tag.
+class Reader {
+ public:
+  Reader(std::string_view text, int samples, const std::string& name)
+      : scanner_(text, name), samples_(samples), name_(name) {}
+
+  OmeDocument read() {
+    while (const std::optional<XmlTag> tag = scanner_.next()) {
+      const std::string_view element = without_prefix(tag->name);
+      if (tag->closes) {
+        if (element == "Pixels") finish_pixels();
+        if (element == "TiffData") run_ = nullptr;
+        continue;
+      }
+      if (element == "OME") document_.uuid = attribute(*tag, "UUID");
+      if (element == "BinaryOnly") document_.metadata_file = attribute(*tag, "MetadataFile");
+      if (element == "Image") image_name_ = attribute(*tag, "Name");
+      if (element == "Pixels") start_pixels(*tag);
+      if (image_ == nullptr) continue;
+      if (element == "Channel") channels_.push_back(attribute(*tag, "Name"));
+      if (element == "TiffData") start_run(*tag);
+      if (element == "UUID" && run_ != nullptr) name_run(*tag);
+      if (element == "Plane") add_position(*tag);
+    }
+    return std::move(document_);
   }
-  return count;
-}
+
+ private:
+  [[noreturn]] void fail(const std::string& what) const {
+    throw Error(name_ + ": its OME-XML " + what);
+  }
+
+  /// A whole number of at least `least`, or the default where there is none.
+  std::int64_t count(const XmlTag& tag, const char* key, std::int64_t least,
+                     std::int64_t otherwise) const {
+    const std::string word = attribute(tag, key);
+    if (word.empty()) return otherwise;
+    std::int64_t value = 0;
+    const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
+    if (error != std::errc{} || end != word.data() + word.size() || value < least ||
+        value > std::numeric_limits<int>::max()) {
+      fail("says " + std::string(key) + "=\"" + printable(word) + "\" in line " +
+           std::to_string(tag.line) + ", which cannot be; mend the description");
+    }
+    return value;
+  }
+
+  void start_pixels(const XmlTag& tag) {
+    OmeTiffImage image;
+    image.name = image_name_;
+    image.columns = count(tag, "SizeX", 1, 0);
+    image.rows = count(tag, "SizeY", 1, 0);
+    PageDescription& pages = image.pages;
+    pages.writer = "OME-XML";
+    std::string order = attribute(tag, "DimensionOrder");
+    if (order.empty()) order = "XYZCT";
+    std::string sorted = order;
+    std::ranges::sort(sorted);
+    if (sorted != "CTXYZ" || !order.starts_with("XY")) {
+      fail("says DimensionOrder=\"" + printable(order) + "\", which is no order of axes");
+    }
+    for (const char letter : order.substr(2)) {
+      const std::string key = std::string("Size") + letter;
+      std::int64_t size = count(tag, key.c_str(), 1, 1);
+      if (letter == 'C' && size > 1) {
+        if (size % samples_ != 0) {
+          fail("says " + std::to_string(size) + " channels (SizeC), but each pixel has " +
+               std::to_string(samples_) + " values");
+        }
+        size /= samples_;
+      }
+      pages.axes.push_back({letter == 'Z' ? 'z' : letter == 'C' ? 'c' : 't', size});
+    }
+    read_sizes(tag, pages);
+    document_.images.push_back(std::move(image));
+    image_ = tag.closed ? nullptr : &document_.images.back();
+    channels_.clear();
+    positions_.clear();
+  }
+
+  void read_sizes(const XmlTag& tag, PageDescription& pages) const {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const std::string key = std::string("PhysicalSize") + "XYZ"[axis];
+      const auto value = number(tag, key);
+      if (!value) continue;
+      if (*value <= 0) {
+        pages.notes.push_back("its OME-XML says " + key + "=\"" + printable(attribute(tag, key)) +
+                              "\", which is no distance");
+        continue;
+      }
+      const std::string unit = attribute(tag, key + "Unit");
+      pages.spacing[axis] = {*value, unit.empty() ? "\u00b5m" : unit};
+    }
+    for (const auto& [from, to] : {std::pair<std::size_t, std::size_t>{0, 1}, {1, 0}}) {
+      if (!pages.spacing[from] || pages.spacing[to]) continue;
+      pages.spacing[to] = pages.spacing[from];
+      pages.notes.push_back(std::string("its OME-XML has no PhysicalSize") + "XY"[to] +
+                            "; it is taken to be PhysicalSize" + "XY"[from]);
+    }
+    pages.time_step = number(tag, "TimeIncrement");
+  }
+
+  void start_run(const XmlTag& tag) {
+    PageRun run;
+    const bool has_page = tag.attributes.contains("IFD");
+    run.directory = count(tag, "IFD", 0, 0);
+    run.z = count(tag, "FirstZ", 0, 0);
+    run.c = count(tag, "FirstC", 0, 0);
+    run.t = count(tag, "FirstT", 0, 0);
+    if (tag.attributes.contains("PlaneCount")) {
+      run.count = count(tag, "PlaneCount", 0, 0);
+    } else if (has_page) {
+      run.count = 1;
+    }
+    // Channels of several values each are counted by their values in some files.
+    const std::int64_t channels = size_of(image_->pages, 'c');
+    if (run.c >= channels && run.c % samples_ == 0) run.c /= samples_;
+    image_->pages.runs.push_back(run);
+    run_ = tag.closed ? nullptr : &image_->pages.runs.back();
+  }
+
+  void name_run(const XmlTag& tag) {
+    const std::string uuid = xml_text(trimmed(tag.text, " \t\r\n"));
+    const bool is_own = !uuid.empty() && uuid == document_.uuid;
+    run_->file = is_own ? std::string() : attribute(tag, "FileName");
+  }
+
+  void add_position(const XmlTag& tag) {
+    const auto z = number(tag, "TheZ");
+    const auto position = number(tag, "PositionZ");
+    if (!z || !position || attribute(tag, "TheC") > "0" || attribute(tag, "TheT") > "0") return;
+    positions_[*z] = *position;
+    position_unit_ = attribute(tag, "PositionZUnit");
+  }
+
+  static std::int64_t size_of(const PageDescription& pages, char letter) {
+    return std::ranges::find(pages.axes, letter, &PageAxis::letter)->count;
+  }
+
+  void finish_pixels() {
+    run_ = nullptr;
+    if (image_ == nullptr) return;
+    PageDescription& pages = image_->pages;
+    const bool has_names = std::ranges::any_of(channels_, [](const auto& n) { return !n.empty(); });
+    if (has_names && std::ssize(channels_) == size_of(pages, 'c')) pages.channels = channels_;
+    compare_positions(pages);
+    image_ = nullptr;
+  }
+
+  /// Compares the distance of slices with the stage's positions, where they are even.
+  void compare_positions(PageDescription& pages) const {
+    if (positions_.size() < 2) return;
+    const auto [first_z, first] = *positions_.begin();
+    const auto [last_z, last] = *positions_.rbegin();
+    const double step = (last - first) / (last_z - first_z);
+    if (step == 0) return;
+    for (const auto& [z, position] : positions_) {
+      if (std::abs(first + step * (z - first_z) - position) > 0.01 * std::abs(step)) {
+        pages.notes.emplace_back(
+            "its planes' PositionZ are not even; the slices are taken to be even");
+        return;
+      }
+    }
+    if (step < 0) {
+      pages.notes.emplace_back("its planes' PositionZ go down with z; z goes up with the planes");
+    }
+    const std::optional<double> metres = metres_of(position_unit_);
+    auto& said = pages.spacing[2];
+    if (!said && metres) {
+      said = {std::abs(step), position_unit_};
+      pages.notes.emplace_back("its OME-XML has no PhysicalSizeZ; the planes' PositionZ say it");
+    } else if (said && metres && metres_of(said->unit)) {
+      const double ratio = std::abs(step) * *metres / (said->value * *metres_of(said->unit));
+      if (std::abs(ratio - 1) > 0.01) {
+        pages.notes.emplace_back(
+            "its planes' PositionZ have another distance than PhysicalSizeZ, which is taken");
+      }
+    }
+  }
+
+  XmlScanner scanner_;
+  int samples_;
+  const std::string& name_;
+  OmeDocument document_;
+  std::string image_name_, position_unit_;
+  OmeTiffImage* image_ = nullptr;  ///< whose Pixels are being read
+  PageRun* run_ = nullptr;         ///< whose TiffData is being read
+  std::vector<std::string> channels_;
+  std::map<double, double> positions_;
+};
 
 }  // namespace
 
 bool is_ome_xml(std::string_view description) {
-  return description.find("<OME") != std::string_view::npos;
+  for (const std::string_view start : {"<OME", ":OME"}) {
+    const std::size_t at = description.find(start);
+    if (at == std::string_view::npos) continue;
+    const std::string_view rest = description.substr(at + start.size());
+    if (!rest.empty() &&
+        std::string_view(" \t\r\n>").find(rest.front()) != std::string_view::npos) {
+      return true;
+    }
+  }
+  return false;
 }
 
-PageSpacing read_ome_xml(std::string_view description, int samples, const std::string& name) {
-  const std::string_view pixels = element(description, "Pixels");
-  const auto refuse = [&](const std::string& what) {
-    throw Error(name + ": an OME-TIFF of several " + what +
-                " is not read; save one of them as a stack");
-  };
-  if (number(attribute(pixels, "SizeC")).value_or(1) > samples) refuse("channels");
-  if (number(attribute(pixels, "SizeT")).value_or(1) > 1) refuse("times");
-  if (count_of(description, "<Pixels") + count_of(description, ":Pixels ") > 1) refuse("images");
-
-  PageSpacing spacing;
-  const auto unit = [&](const char* key) {
-    const std::string_view said = attribute(pixels, key);
-    return said.empty() ? std::string("µm") : std::string(said);
-  };
-  const auto x = number(attribute(pixels, "PhysicalSizeX"));
-  const auto y = number(attribute(pixels, "PhysicalSizeY"));
-  const auto z = number(attribute(pixels, "PhysicalSizeZ"));
-  if (!x || !y || unit("PhysicalSizeXUnit") != unit("PhysicalSizeYUnit")) return spacing;
-  spacing.unit = unit("PhysicalSizeXUnit");
-  spacing.pixels = {*x, *y};
-  if (z && unit("PhysicalSizeZUnit") == spacing.unit) spacing.slices = z;
-  return spacing;
+OmeDocument read_ome_xml(std::string_view text, int samples, const std::string& name) {
+  return Reader(text, samples, name).read();
 }
 
 }  // namespace pellucid

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "json_file.h"
+#include "length_units.h"
 
 namespace pellucid {
 
@@ -33,8 +34,5 @@ std::optional<OmeImage> parse_ome_image(const scene_json::Node& attributes);
 
 /// The attributes of NGFF, which 0.5 keeps in an object "ome".
 scene_json::Node ome_attributes(const scene_json::Node& attributes);
-
-/// The metres that a unit of length is; nothing for an unknown one.
-std::optional<double> metres_of(const std::string& unit);
 
 }  // namespace pellucid

@@ -94,9 +94,12 @@ class PngReader : public PageReader {
     value_count({word(16), word(20), format_.samples}, name_);
     format_.columns = static_cast<int>(word(16));
     format_.rows = static_cast<int>(word(20));
+    read_pixel_sizes(source);
   }
 
   PageFormat format() const override { return format_; }
+
+  PageDescription describe(const ReadOptions&) const override { return said_; }
 
   void read(std::span<std::byte> to) override {
     const auto height = static_cast<std::size_t>(format_.rows);
@@ -117,9 +120,41 @@ class PngReader : public PageReader {
   bool next() override { return false; }
 
  private:
+  /// The chunk pHYs (11.3.5.3), which stands before the pixels: pixels per metre. Programs that
+  /// know no distance write those of screens, 72 and 96 per inch.
+  void read_pixel_sizes(const ByteSource& source) {
+    constexpr std::uint32_t physical = 0x70485973, pixels = 0x49444154;
+    const auto word = [&](std::uintmax_t at) {
+      std::array<std::byte, 4> bytes;
+      source.read(at, bytes);
+      std::uint32_t value = 0;
+      for (const std::byte byte : bytes) value = value << 8 | std::to_integer<std::uint32_t>(byte);
+      return value;
+    };
+    constexpr std::uintmax_t around = 12;  // length, name and check sum
+    std::uintmax_t at = 8;
+    for (int chunk = 0; chunk < 1000 && at + around + 9 <= source.size; ++chunk) {
+      const std::uint32_t length = word(at), name = word(at + 4);
+      if (name == pixels) return;
+      if (name == physical && length == 9) {
+        const std::uint32_t x = word(at + 8), y = word(at + 12);
+        std::array<std::byte, 1> unit;
+        source.read(at + 16, unit);
+        const bool is_screen = x == y && (x == 2834 || x == 2835 || x == 3779 || x == 3780);
+        if (unit[0] == std::byte{1} && x > 0 && y > 0 && !is_screen) {
+          said_.spacing[0] = {1000. / x, "mm"};
+          said_.spacing[1] = {1000. / y, "mm"};
+        }
+        return;
+      }
+      at += around + length;
+    }
+  }
+
   std::filesystem::path file_;
   std::string name_;
   PageFormat format_;
+  PageDescription said_;
 };
 
 }  // namespace

@@ -162,22 +162,23 @@ Opener find_opener(const std::filesystem::path& path, const ReadOptions& options
 
 VolumeFile open_file(const std::filesystem::path& path, const ReadOptions& options) {
   const Opener open = find_opener(path, options);
-  if (options.series && !is_dicom(path)) {
+  if (options.series && open != open_stack && !is_dicom(path)) {
     throw Error(path.string() + ": is no DICOM, and only of DICOM a series may be chosen");
   }
   if (options.array && lister_of(open) == nullptr) {
     throw Error(path.string() + ": has no arrays with names; leave the array out");
   }
   constexpr std::array of_plain_arrays{open_npy_file, open_npz_file, Opener{open_hdf5},
-                                       Opener{open_zarr}};
+                                       Opener{open_zarr}, Opener{open_stack}};
   if (options.axes && std::ranges::find(of_plain_arrays, open) == of_plain_arrays.end()) {
     throw Error(path.string() + ": the file's format says which axes are x, y and z; leave the " +
-                "axes out (they are for .npy, .npz, HDF5 and Zarr)");
+                "axes out (they are for .npy, .npz, HDF5, Zarr and tifffile's arrays)");
   }
   if (options.level && open != open_zarr) {
     throw Error(path.string() + ": has no levels of resolution; leave the level out");
   }
-  constexpr std::array with_times{Opener{open_hdf5}, Opener{open_net_cdf}, Opener{open_zarr}};
+  constexpr std::array with_times{Opener{open_hdf5}, Opener{open_net_cdf}, Opener{open_zarr},
+                                  Opener{open_stack}};
   if (options.time && std::ranges::find(with_times, open) == with_times.end()) {
     throw Error(path.string() + ": the file has no steps in time; leave the time out");
   }

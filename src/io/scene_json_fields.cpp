@@ -89,7 +89,10 @@ FieldSource file_source(const Node& field, const std::filesystem::path& folder) 
     }
   }
   if (const auto time = field.find("time")) source.options.time = time->number();
-  if (const auto component = field.find("component")) {
+  if (const auto component = field.find("component"); component && component->is_string()) {
+    if (component->string().empty()) component->fail("is empty; give its number or its name");
+    source.options.component_name = component->string();
+  } else if (component) {
     source.options.component = static_cast<int>(component->integer(0, largest_grid));
   }
   if (const auto level = field.find("level")) {

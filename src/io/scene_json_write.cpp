@@ -250,7 +250,11 @@ void add_field(const FieldSource& field, Members& members) {
   if (options.array) members.add("array", quoted(*options.array, "the name of an array"));
   if (options.axes) members.add("axes", quoted(*options.axes, "the axes"));
   if (options.time) members.add("time", number(*options.time, "the time"));
-  if (options.component) members.add("component", std::to_string(*options.component));
+  if (options.component) {
+    members.add("component", std::to_string(*options.component));
+  } else if (options.component_name) {
+    members.add("component", quoted(*options.component_name, "the name of a component"));
+  }
   if (options.level) members.add("level", std::to_string(*options.level));
   if (options.series) members.add("series", quoted(*options.series, "a series"));
   if (options.big_endian) members.add("byte_order", *options.big_endian ? "\"big\"" : "\"little\"");

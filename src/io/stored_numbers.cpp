@@ -16,13 +16,14 @@ namespace {
 
 struct WholeType {
   const char* name;
+  std::size_t bytes;
   std::int64_t least;
   std::uint64_t largest;
 };
 
 template <class Value>
 constexpr WholeType whole_type(const char* name) {
-  return {name, std::numeric_limits<Value>::lowest(),
+  return {name, sizeof(Value), std::numeric_limits<Value>::lowest(),
           static_cast<std::uint64_t>(std::numeric_limits<Value>::max())};
 }
 
@@ -60,6 +61,16 @@ std::uint64_t size_of(std::uint64_t number) {
 
 bool is_stored_only(std::string_view type) noexcept {
   return type == "f16" || type == "i64" || type == "u64";
+}
+
+std::optional<std::string> whole_type_for(double lowest, double highest, std::size_t least_bytes) {
+  for (const WholeType& type : whole_types) {
+    if (type.bytes >= least_bytes && lowest >= static_cast<double>(type.least) &&
+        highest <= static_cast<double>(type.largest)) {
+      return type.name;
+    }
+  }
+  return std::nullopt;
 }
 
 void Rounding::merge(const Rounding& other) noexcept {

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -21,6 +22,10 @@ namespace pellucid {
 
 /// Whether the name is one of these: "f16", "i64", "u64".
 bool is_stored_only(std::string_view type) noexcept;
+
+/// Returns the first of u8, i8, u16, i16, u32 and i32 that has so many bytes at least and holds the
+/// whole numbers from `lowest` to `highest`; nothing where none does.
+std::optional<std::string> whole_type_for(double lowest, double highest, std::size_t least_bytes);
 
 /// Makes values of a type of volumes. Throws Error or std::bad_alloc.
 using MakeValues = std::function<VolumeData(const std::string& type)>;

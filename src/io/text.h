@@ -30,4 +30,19 @@ inline std::string one_line(std::string text) {
   return text;
 }
 
+/// Appends a character of the basic plane as UTF-8, and nothing for what is no character.
+inline void append_utf8(std::string& text, unsigned code) {
+  if (code > 0xffff || (code >= 0xd800 && code <= 0xdfff)) return;
+  if (code < 0x80) {
+    text += static_cast<char>(code);
+  } else if (code < 0x800) {
+    text += static_cast<char>(0xc0 | code >> 6);
+    text += static_cast<char>(0x80 | (code & 0x3f));
+  } else {
+    text += static_cast<char>(0xe0 | code >> 12);
+    text += static_cast<char>(0x80 | (code >> 6 & 0x3f));
+    text += static_cast<char>(0x80 | (code & 0x3f));
+  }
+}
+
 }  // namespace pellucid

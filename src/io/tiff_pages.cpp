@@ -1,12 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// TIFF 6.0, and what ImageJ writes into its descriptions.
+// TIFF 6.0.
 
 #include <tiffio.h>
 
 #include <algorithm>
-#include <charconv>
-#include <cmath>
 #include <cstdarg>
 #include <cstdio>
 #include <cstring>
@@ -16,9 +14,9 @@
 
 #include "image_pages.h"
 #include "memory_limit.h"
-#include "ome_xml.h"
 #include "pellucid/scene/error.h"
 #include "tiff_chain.h"
+#include "tiff_tags.h"
 #include "volume_source.h"
 
 namespace pellucid {
@@ -48,6 +46,12 @@ struct Close {
   void operator()(TIFFOpenOptions* options) const { TIFFOpenOptionsFree(options); }
 };
 
+void swap_values(std::span<std::byte> bytes, std::size_t size) {
+  for (std::size_t i = 0; i + size <= bytes.size(); i += size) {
+    std::ranges::reverse(bytes.subspan(i, size));
+  }
+}
+
 std::string type_of(int bits, int format, const std::string& name) {
   if (format == SAMPLEFORMAT_IEEEFP) {
     if (bits == 32) return "f32";
@@ -63,25 +67,6 @@ std::string type_of(int bits, int format, const std::string& name) {
               " are not read; convert the image to 8, 16 or 32 bits");
 }
 
-/// The number behind "key=" in a line of ImageJ's description.
-std::optional<double> number_of(std::string_view description, std::string_view key) {
-  std::size_t at = description.find("\n" + std::string(key) + "=");
-  if (at == std::string_view::npos) return std::nullopt;
-  at += key.size() + 2;
-  double value = 0;
-  const auto result =
-      std::from_chars(description.data() + at, description.data() + description.size(), value);
-  if (result.ec != std::errc{} || !std::isfinite(value)) return std::nullopt;
-  return value;
-}
-
-std::string word_of(std::string_view description, std::string_view key) {
-  const std::size_t at = description.find("\n" + std::string(key) + "=");
-  if (at == std::string_view::npos) return {};
-  const std::size_t begin = at + key.size() + 2;
-  return std::string(description.substr(begin, description.find('\n', begin) - begin));
-}
-
 class TiffReader : public PageReader {
  public:
   explicit TiffReader(const std::filesystem::path& file) : name_(file.string()) {
@@ -93,7 +78,7 @@ class TiffReader : public PageReader {
     // "m": not mapped, so that a file that is cut short meanwhile is an error and no signal.
     tiff_.reset(TIFFOpenExt(file.c_str(), "rm", options.get()));
     if (!tiff_) fail("cannot read the TIFF file");
-    skip_thumbnails();
+    skip_other_images();
     choose_colors();
   }
 
@@ -119,32 +104,43 @@ class TiffReader : public PageReader {
     return page;
   }
 
-  PageSpacing spacing() const override {
-    const std::string description = "\n" + text(TIFFTAG_IMAGEDESCRIPTION);
-    const double x = resolution(TIFFTAG_XRESOLUTION), y = resolution(TIFFTAG_YRESOLUTION);
-    const bool has_both = x > 0 && y > 0 && std::isfinite(1 / x) && std::isfinite(1 / y);
-    if (is_ome_xml(description)) {
-      const int samples = field<std::uint16_t>(TIFFTAG_SAMPLESPERPIXEL);
-      const PageSpacing said = read_ome_xml(description, samples, name_);
-      if (said.pixels) return said;
+  PageDescription describe(const ReadOptions& options) const override {
+    DescribedPage page;
+    const PageFormat of_page = format();
+    page.columns = of_page.columns;
+    page.rows = of_page.rows;
+    page.samples = of_page.samples;
+    page.is_signed_16 = of_page.type == "i16";
+    page.resolution = {resolution(TIFFTAG_XRESOLUTION), resolution(TIFFTAG_YRESOLUTION)};
+    return describe_tiff(tiff_.get(), name_, page, options);
+  }
+  std::int64_t directory() const override {
+    return planes_ > 0 ? plane_ : std::int64_t{TIFFCurrentDirectory(tiff_.get())};
+  }
+  std::string metadata() const override {
+    constexpr std::uint32_t micro_manager_tag = 51123;
+    return private_tiff_bytes(tiff_.get(), micro_manager_tag);
+  }
+
+  void share_first_page(std::int64_t planes) override {
+    const PageFormat page = format();
+    const std::uintmax_t size =
+        value_count({page.columns, page.rows, page.samples}, name_) * value_size(page.type, name_);
+    source_ = file_source(name_);
+    first_byte_ = TIFFGetStrileOffset(tiff_.get(), 0);
+    const bool lies_together =
+        field<std::uint16_t>(TIFFTAG_COMPRESSION) == COMPRESSION_NONE &&
+        TIFFIsTiled(tiff_.get()) == 0 && strips_follow() &&
+        (page.samples == 1 || field<std::uint16_t>(TIFFTAG_PLANARCONFIG) == PLANARCONFIG_CONTIG);
+    const std::uintmax_t directory = TIFFCurrentDirOffset(tiff_.get());
+    const std::uintmax_t end = directory < first_byte_ ? source_.size : directory;
+    if (!lies_together || first_byte_ > end ||
+        (end - first_byte_) / size < static_cast<std::uintmax_t>(planes)) {
+      throw Error(name_ + ": its description says " + std::to_string(planes) +
+                  " planes, but the file has one page, and not so many bytes behind it; it is cut "
+                  "off, or the description that of another file");
     }
-    PageSpacing spacing;
-    if (description.starts_with("\nImageJ=")) {
-      check_imagej(description);
-      spacing.unit = word_of(description, "unit");
-      if (spacing.unit.empty()) return spacing;
-      spacing.slices = number_of(description, "spacing");
-      if (has_both) spacing.pixels = {1 / x, 1 / y};
-      return spacing;
-    }
-    const int unit = field<std::uint16_t>(TIFFTAG_RESOLUTIONUNIT);
-    // Programs that know no distance write those of screens.
-    const bool is_screen = unit == RESUNIT_INCH && (x == 72 || x == 96) && y == x;
-    const double millimetres = unit == RESUNIT_CENTIMETER ? 10 : unit == RESUNIT_INCH ? 25.4 : 0;
-    if (millimetres == 0 || !has_both || is_screen) return spacing;
-    spacing.unit = "mm";
-    spacing.pixels = {millimetres / x, millimetres / y};
-    return spacing;
+    planes_ = planes;
   }
 
   bool is_inverted() const override {
@@ -153,6 +149,11 @@ class TiffReader : public PageReader {
 
   void read(std::span<std::byte> to) override {
     const PageFormat page = format();
+    if (planes_ > 0) {
+      source_.read(first_byte_ + static_cast<std::uintmax_t>(plane_) * to.size(), to);
+      if (TIFFIsByteSwapped(tiff_.get()) != 0) swap_values(to, value_size(page.type, name_));
+      return;
+    }
     const bool tiled = TIFFIsTiled(tiff_.get()) != 0;
     const bool side_by_side = field<std::uint16_t>(TIFFTAG_PLANARCONFIG) == PLANARCONFIG_CONTIG;
     const auto rows = static_cast<std::size_t>(page.rows);
@@ -188,9 +189,10 @@ class TiffReader : public PageReader {
 
   bool next() override {
     message_.clear();
+    if (planes_ > 0) return ++plane_ < planes_;
     if (TIFFLastDirectory(tiff_.get()) != 0) return false;
     go_on();
-    if (is_thumbnail()) return next();
+    if (is_other_image()) return next();
     choose_colors();
     return true;
   }
@@ -208,23 +210,28 @@ class TiffReader : public PageReader {
 
   template <class T>
   T field(std::uint32_t tag) const {
-    T value{};
-    TIFFGetFieldDefaulted(tiff_.get(), tag, &value);
-    return value;
+    return tiff_field<T>(tiff_.get(), tag);
   }
   double resolution(std::uint32_t tag) const { return static_cast<double>(field<float>(tag)); }
-  std::string text(std::uint32_t tag) const {
-    const char* value = nullptr;
-    return TIFFGetField(tiff_.get(), tag, &value) != 0 && value != nullptr ? value : "";
-  }
 
-  bool is_thumbnail() const {
-    return (field<std::uint32_t>(TIFFTAG_SUBFILETYPE) & FILETYPE_REDUCEDIMAGE) != 0;
+  /// Whether the page is a thumbnail or a mask of another.
+  bool is_other_image() const {
+    const auto kind = field<std::uint32_t>(TIFFTAG_SUBFILETYPE);
+    return (kind & (FILETYPE_REDUCEDIMAGE | FILETYPE_MASK)) != 0;
   }
-  void skip_thumbnails() {
-    while (is_thumbnail() && TIFFLastDirectory(tiff_.get()) == 0) {
+  void skip_other_images() {
+    while (is_other_image() && TIFFLastDirectory(tiff_.get()) == 0) {
       go_on();
     }
+  }
+  /// Whether each strip begins where the one before it ends.
+  bool strips_follow() const {
+    std::uint64_t at = first_byte_;
+    for (std::uint32_t i = 0; i < TIFFNumberOfStrips(tiff_.get()); ++i) {
+      if (TIFFGetStrileOffset(tiff_.get(), i) != at) return false;
+      at += TIFFGetStrileByteCount(tiff_.get(), i);
+    }
+    return true;
   }
   void go_on() {
     has_bogus_bytes_ = false;
@@ -237,23 +244,6 @@ class TiffReader : public PageReader {
   }
   void choose_colors() {
     if (is_jpeg_color()) TIFFSetField(tiff_.get(), TIFFTAG_JPEGCOLORMODE, JPEGCOLORMODE_RGB);
-  }
-
-  // ImageJ writes channels and times as pages too, and beyond 4 GB one page for all of them.
-  void check_imagej(const std::string& description) const {
-    for (const char* key : {"channels", "frames"}) {
-      const double n = number_of(description, key).value_or(1);
-      if (n > 1) {
-        throw Error(name_ + ": a hyperstack of ImageJ with several " + key +
-                    " is not read; save one of them as a stack");
-      }
-    }
-    if (number_of(description, "images").value_or(1) > 1 &&
-        TIFFNumberOfDirectories(tiff_.get()) == 1) {
-      throw Error(name_ +
-                  ": a stack of ImageJ whose images share one page (above 4 GB) is not "
-                  "read; save it as numbered images");
-    }
   }
 
   void read_block(Block& block, bool tiled, std::uint32_t number, std::size_t rows) {
@@ -287,6 +277,9 @@ class TiffReader : public PageReader {
   std::string name_, message_;
   bool has_bogus_bytes_ = false;  ///< of the page that it stands at
   std::unique_ptr<TIFF, Close> tiff_;
+  std::int64_t planes_ = 0, plane_ = 0;  ///< that share the first page; 0: pages have their own
+  std::uintmax_t first_byte_ = 0;
+  ByteSource source_;
 };
 
 }  // namespace

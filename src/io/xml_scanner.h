@@ -30,6 +30,7 @@ class XmlScanner {
 
  private:
   std::size_t find(std::string_view what) const;
+  std::size_t tag_end() const;
   void advance(std::size_t count);
   void skip_to(char c);
   void read_attributes(std::string_view inside, XmlTag& tag) const;
@@ -38,5 +39,8 @@ class XmlScanner {
   const std::string& name_;
   std::size_t line_ = 1;
 };
+
+/// Returns a value or text of XML with its entities (&amp;, &#181;) replaced.
+std::string xml_text(std::string_view raw);
 
 }  // namespace pellucid

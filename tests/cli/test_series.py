@@ -161,6 +161,33 @@ class Stacks(ProgramTest):
         os.remove(self.path("slice5.tif"))
         self.fail_with("by 2 from slice4.tif to slice6.tif", "info", "slice%d.tif")
 
+    def test_components_by_name(self):
+        xml = (b'<OME><Image Name="a"><Pixels DimensionOrder="XYZCT" SizeX="3" SizeY="2" SizeZ="2" '
+               b'SizeC="2" SizeT="1"><Channel Name="DAPI"/><Channel Name="1"/></Pixels></Image>'
+               b'</OME>\0')
+        data = b"II*\0" + bytes(4) + xml + bytes(range(24))
+        link = 4
+        for page in range(4):
+            fields = [(256, 4, 1, 3), (257, 4, 1, 2), (258, 4, 1, 8), (259, 4, 1, 1),
+                      (262, 4, 1, 1), (273, 4, 1, 8 + len(xml) + 6 * page), (277, 4, 1, 1),
+                      (278, 4, 1, 2), (279, 4, 1, 6)]
+            if page == 0:
+                fields.insert(5, (270, 2, len(xml), 8))
+            data = data[:link] + struct.pack("<I", len(data)) + data[link + 4:]
+            data += struct.pack("<H", len(fields)) + b"".join(
+                struct.pack("<HHII", *field) for field in fields)
+            link = len(data)
+            data += bytes(4)
+        self.write("a.ome.tif", data)
+        self.assertEqual(len(self.report("info", "a.ome.tif")["components"]), 2)
+        report = self.report("info", "a.ome.tif", "--component", "DAPI")
+        self.assertEqual(report["range"], [0, 11])
+        # A number is a number, whatever names there are.
+        self.assertEqual(self.report("info", "a.ome.tif", "--component", "1")["range"], [12, 23])
+        self.fail_with("no component is called \"GFP\"; their names are DAPI, 1", "render",
+                       "a.ome.tif", "-q", "--component", "GFP", "-o", "o.png")
+        self.succeed("render", "a.ome.tif", "--component", "DAPI", "-o", "o.png", "--size", "8")
+
 
 if __name__ == "__main__":
     unittest.main()

@@ -3,6 +3,7 @@
 
 #include <zlib.h>
 
+#include <array>
 #include <cstdint>
 #include <map>
 #include <string>
@@ -20,7 +21,9 @@ struct TiffPage {
       {256, {5}}, {257, {4}}, {258, {16}}, {259, {1}}, {262, {1}}, {277, {1}}, {278, {4}}};
   std::map<std::uint16_t, double> rationals;
   std::string description;
-  std::vector<std::string> strips;  // as they are to stand in the file
+  std::map<std::uint16_t, std::string> texts;    // ASCII
+  std::map<std::uint16_t, std::string> records;  // bytes without a meaning
+  std::vector<std::string> strips;               // as they are to stand in the file
   bool tiled = false;
 };
 
@@ -45,6 +48,12 @@ class TiffFile {
     if (!page.description.empty()) {
       const auto size = static_cast<std::uint32_t>(page.description.size() + 1);
       entries[270] = {2, size, page.description + '\0'};
+    }
+    for (const auto& [tag, text] : page.texts) {
+      entries[tag] = {2, static_cast<std::uint32_t>(text.size() + 1), text + '\0'};
+    }
+    for (const auto& [tag, bytes] : page.records) {
+      entries[tag] = {7, static_cast<std::uint32_t>(bytes.size()), bytes};
     }
     Entry offsets{4, 0, ""}, sizes{4, 0, ""};
     for (const std::string& strip : page.strips) {
@@ -121,7 +130,8 @@ TiffPage counting_page(int k, std::uint32_t sample_format, bool big_endian = fal
 
 /// A PNG of rows without a filter, `values` as they are to stand in the file.
 inline std::string png(std::uint32_t columns, std::uint32_t rows, int bits, int color,
-                       const std::string& values, int interlaced = 0) {
+                       const std::string& values, int interlaced = 0,
+                       const std::string& physical = "") {
   const auto word = [](std::uint64_t value) {
     std::string bytes;
     for (int shift = 24; shift >= 0; shift -= 8) bytes += static_cast<char>(value >> shift);
@@ -138,8 +148,50 @@ inline std::string png(std::uint32_t columns, std::uint32_t rows, int bits, int 
   for (std::size_t y = 0; y < rows && row > 0; ++y) filtered += '\0' + values.substr(y * row, row);
   const std::string header = word(columns) + word(rows) + static_cast<char>(bits) +
                              static_cast<char>(color) + '\0' + '\0' + static_cast<char>(interlaced);
-  return "\x89PNG\r\n\x1a\n" + chunk("IHDR", header) + chunk("IDAT", deflated(filtered, 15)) +
+  return "\x89PNG\r\n\x1a\n" + chunk("IHDR", header) +
+         (physical.empty() ? "" : chunk("pHYs", physical)) + chunk("IDAT", deflated(filtered, 15)) +
          chunk("IEND", "");
+}
+
+/// A file of so many pages of `counting`, page k from 20 k on, whose first is described so.
+inline std::string described_tiff(int pages, const std::string& description,
+                                  const std::vector<int>& order = {}) {
+  TiffFile file(false);
+  for (int k = 0; k < pages; ++k) {
+    TiffPage page =
+        counting_page<std::uint16_t>(order.empty() ? k : order[static_cast<std::size_t>(k)], 1);
+    if (k == 0) page.description = description;
+    file.add(page);
+  }
+  return file.bytes();
+}
+
+/// OME-XML of one image of 5 × 4 pixels. `sizes` are SizeZ, SizeC and SizeT.
+inline std::string ome_xml(const std::array<int, 3>& sizes, const std::string& inside,
+                           const std::string& attributes = "", const std::string& order = "XYZCT") {
+  const auto size = [&](char letter, std::size_t i) {
+    return std::string(" Size") + letter + "=\"" + std::to_string(sizes[i]) + "\"";
+  };
+  return "<?xml version=\"1.0\" encoding=\"UTF-8\"?><OME xmlns=\"http://www.openmicroscopy.org/"
+         "Schemas/OME/2016-06\" UUID=\"urn:uuid:own\"><Image ID=\"Image:0\" Name=\"first\"><Pixels "
+         "ID=\"Pixels:0\" Type=\"uint16\" DimensionOrder=\"" +
+         order + "\" SizeX=\"5\" SizeY=\"4\"" + size('Z', 0) + size('C', 1) + size('T', 2) + " " +
+         attributes + ">" + inside + "</Pixels></Image></OME>";
+}
+
+/// Which page of `described_tiff` stands at each slice, component by component: "0 1 2, 3 4 5".
+inline std::string page_order(const std::vector<Volume>& components) {
+  std::string text;
+  for (const Volume& volume : components) {
+    text += text.empty() ? "" : ", ";
+    for (int z = 0; z < volume.description().dimensions[2]; ++z) {
+      // The last value tells whether the page is whole.
+      const double first = value_at(volume, 0, 0, z), last = value_at(volume, 4, 3, z);
+      EXPECT_EQ(first + 19, last);
+      text += (z == 0 ? "" : " ") + std::to_string(static_cast<int>(first) / 20);
+    }
+  }
+  return text;
 }
 
 }  // namespace pellucid::test

@@ -240,41 +240,6 @@ TEST_F(StackTest, SpacingIsTheFilesWhereItStatesAUnit) {
   test::expect_near(spacing(1, 4, 2, "ImageJ=1.53\nimages=3\nslices=3\n"), {1, 1, 1});
 }
 
-TEST_F(StackTest, ImageJsOtherStacksAreRefused) {
-  const auto refuse = [&](const std::string& text, int pages) {
-    TiffFile file(false);
-    for (int k = 0; k < pages; ++k) {
-      TiffPage one = page(k);
-      one.description = "ImageJ=1.53\n" + text;
-      file.add(one);
-    }
-    return refused(write("j.tif", file.bytes()));
-  };
-  EXPECT_TRUE(contains(refuse("images=4\nchannels=2\nslices=2\n", 4), "several channels"));
-  EXPECT_TRUE(contains(refuse("images=4\nslices=2\nframes=2\n", 4), "several frames"));
-  EXPECT_TRUE(contains(refuse("images=4\nslices=4\n", 1), "above 4 GB"));
-}
-
-TEST_F(StackTest, OmesSizesAndOtherStacks) {
-  const auto parse = [&](const std::string& attributes) {
-    const fs::path file = write_pages(
-        [&](TiffPage& one, int k) {
-          if (k > 0) return;
-          one.description =
-              "<?xml version=\"1.0\"?><OME xmlns=\"x\"><Image ID=\"Image:0\"><Pixels " +
-              attributes + "><TiffData/></Pixels></Image></OME>";
-        },
-        "o.tif");
-    return read_noting(file).description().placement.spacing;
-  };
-  test::expect_near(parse("ID=\"p\" SizeC=\"1\" SizeT=\"1\" SizeZ=\"3\" PhysicalSizeX=\"0.25\" "
-                          "PhysicalSizeY=\"0.5\" PhysicalSizeZ=\"2\""),
-                    {0.25, 0.5, 2});
-  EXPECT_TRUE(contains(notes_, "in µm")) << notes_;
-  EXPECT_TRUE(contains(error_of([&] { parse("SizeC=\"3\" SizeT=\"1\""); }), "several channels"));
-  EXPECT_TRUE(contains(error_of([&] { parse("SizeC=\"1\" SizeT=\"3\""); }), "several times"));
-}
-
 // What is behind a strip belongs to another.
 TEST_F(StackTest, StripsShorterThanTheirPixels) {
   for (const bool several : {false, true}) {

@@ -83,6 +83,14 @@ TEST_F(MutantsTest, Tiff) {
     }
   }
   survive(seeds, "a.tif", path("a.tif"));
+  survive(
+      {test::described_tiff(4,
+                            test::ome_xml({2, 2, 1},
+                                          "<TiffData IFD=\"3\"/><TiffData FirstZ=\"1\" IFD=\"0\" "
+                                          "PlaneCount=\"3\"/>")),
+       test::described_tiff(4, "ImageJ=1.53t\nimages=4\nchannels=2\nslices=2\ncf=0\nc0=1\nc1=2\n"),
+       test::described_tiff(4, R"({"shape": [2, 2, 4, 5], "axes": "ZCYX"})")},
+      "a.tif", path("a.tif"));
 }
 
 TEST_F(MutantsTest, Png) {

@@ -143,9 +143,9 @@ bool same(const FieldSource& a, const FieldSource& b) {
          p.dimensions == q.dimensions && p.type == q.type &&
          p.big_endian.value_or(false) == q.big_endian.value_or(false) &&
          p.skip_bytes == q.skip_bytes && p.components == q.components &&
-         p.component == q.component && p.array == q.array && p.series == q.series &&
-         p.level == q.level && p.time == q.time && same(p.spacing, q.spacing) &&
-         same(p.origin, q.origin) && p.centering == q.centering;
+         p.component == q.component && p.component_name == q.component_name && p.array == q.array &&
+         p.series == q.series && p.level == q.level && p.time == q.time &&
+         same(p.spacing, q.spacing) && same(p.origin, q.origin) && p.centering == q.centering;
 }
 bool same(const ChannelSource& a, const ChannelSource& b) {
   if (a.name != b.name || a.unit != b.unit || a.source.index() != b.source.index()) return false;

@@ -25,15 +25,19 @@ struct ReadOptions {
   std::optional<Centering> centering;   ///< replaces the file's
   std::optional<int> components;        ///< raw: numbers at each point, side by side
   std::optional<int> component;         ///< component to read, from 0
-  std::optional<double> time;  ///< NetCDF, HDF5, Zarr: reads the nearest step in time
+  /// Component to read by the file's name of it, such as that of a channel; `component` goes first.
+  std::optional<std::string> component_name;
+  /// NetCDF, HDF5, Zarr, TIFF: reads the nearest step in time, not a component.
+  std::optional<double> time;
   std::optional<std::string> array;  ///< name of the array to read; none: see VolumeArray
-  /// .npy, .npz, HDF5 and Zarr that does not name its axes: a letter for each axis of the array, in
-  /// the order of its indices: x, y and z, and c for components ("xyz", "czyx"). None: "zyx"; of
-  /// four axes c is the first or the last, whichever is short, and `note` is told which was taken.
+  /// .npy, .npz, HDF5, and Zarr and tifffile's arrays that do not name their axes: a letter for
+  /// each axis of the array, in the order of its indices: x, y and z, and c for components ("xyz",
+  /// "czyx"). None: "zyx"; of four axes c is the first or the last, whichever is short, and `note`
+  /// is told which was taken.
   std::optional<std::string> axes;
   std::optional<int> level;  ///< OME-Zarr: level of resolution, 0 is the finest; none: 0
   /// DICOM: series to read from a folder: its number as in list_dicom_series(), from 1, its UID, or
-  /// a unique end of the UID.
+  /// a unique end of the UID. OME-TIFF: the image to read, by its number from 1 or its name.
   std::optional<std::string> series;
   /// Called with the description of the whole; returns the part that is wanted, which is read in
   /// its place. Uncompressed files are read there alone (VolumeOutline::reads_parts); of others the
