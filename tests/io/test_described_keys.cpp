@@ -52,6 +52,10 @@ std::vector<std::string> rows_of_the_document() {
 }
 
 TEST(DescribedKeysTable, IsTheOneThatTheTestsRead) {
+#if !(defined(PELLUCID_HAVE_ITK) && defined(PELLUCID_HAVE_VTK) && defined(PELLUCID_HAVE_HDF5) && \
+      defined(PELLUCID_HAVE_NETCDF))
+  GTEST_SKIP() << "this build reads fewer formats than the table has";
+#endif
   std::vector<std::string> rows;
   for (const test::DescribedKey& row : test::described_keys()) {
     const char* treatments[] = {"honored", "told", "refused"};
