@@ -120,7 +120,14 @@ NamedAxes named_axes(std::span<const AxisText> axes, std::span<const std::int64_
     if (has_width && evidence.back().role == AxisRole::z && is_image_height(axis.name)) {
       evidence.back().role = AxisRole::y;
     }
-    named.roles.push_back(evidence.back().role);
+  }
+  const bool has_space = std::ranges::any_of(evidence, [](const AxisEvidence& of) {
+    return of.role == AxisRole::x || of.role == AxisRole::y || of.role == AxisRole::z;
+  });
+  for (std::size_t a = 0; a < axes.size(); ++a) {
+    // Of axes a, b, c or r, s, t a letter says nothing.
+    if (!has_space && is_bare_letter(axes[a].name) && evidence[a].is_by_name()) evidence[a] = {};
+    named.roles.push_back(evidence[a].role);
   }
   named.is_known =
       std::ranges::any_of(named.roles, [](AxisRole role) { return role != AxisRole::unknown; });

@@ -235,6 +235,11 @@ bool is_image_height(const std::string& name) {
   return small == "height" || small == "row" || small == "rows";
 }
 
+bool is_bare_letter(const std::string& name) {
+  const std::string small = in_small_letters(name);
+  return small == "c" || small == "t";
+}
+
 bool grows_down(const AxisText& axis) {
   return small_text(axis, "positive") == "down";
 }

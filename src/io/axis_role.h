@@ -23,6 +23,9 @@ enum class AxisRole { unknown, x, y, z, time, member, channel, corner };
 struct AxisEvidence {
   AxisRole role = AxisRole::unknown;
   int strength = 0;
+
+  /// Returns whether the axis' name is all that there is.
+  bool is_by_name() const noexcept { return strength <= 2; }
 };
 
 /// Returns the meaning of an axis, without regard to the others: by the attributes of the CF
@@ -32,6 +35,8 @@ AxisEvidence axis_evidence(const AxisText& axis);
 /// Returns whether the name is that of an image's columns, or of its rows.
 bool is_image_width(const std::string& name);
 bool is_image_height(const std::string& name);
+/// Returns whether the name is a single letter that means something beside x, y and z alone.
+bool is_bare_letter(const std::string& name);
 
 /// Returns whether the axis is said to grow downwards, and whether its meaning lets expect it.
 bool grows_down(const AxisText& axis);

@@ -45,9 +45,9 @@ Told read_telling(const fs::path& file, const std::string& array = "v") {
 
 using Attributes = std::vector<test::ClassicAttribute>;
 
-/// A file of v on a, b, c of 3, 4, 5, with attributes of v and of the coordinate a.
+/// A file of v on p, q, r of 3, 4, 5, with attributes of v and of the coordinate p.
 std::string net_cdf(const Attributes& of_v, const Attributes& of_a = {}, char type = 'h',
-                    const std::vector<std::string>& axes = {"a", "b", "c"}) {
+                    const std::vector<std::string>& axes = {"p", "q", "r"}) {
   test::ClassicFile file;
   file.axes = {{axes[0], 3}, {axes[1], 4}, {axes[2], 5}};
   if (!of_a.empty()) file.variables.push_back({axes[0], 'd', {axes[0]}, {0, 1, 2}, of_a});
