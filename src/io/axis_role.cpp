@@ -199,13 +199,25 @@ AxisRole by_name(const std::string& given) {
   return is_name_of(names_of_z, name, words) ? AxisRole::z : AxisRole::unknown;
 }
 
+/// Returns the direction that an attribute states, of CF or of Unidata's libraries.
+std::string direction(const AxisText& axis) {
+  const std::string positive = small_text(axis, "positive");
+  return positive.empty() ? small_text(axis, "_CoordinateZisPositive") : positive;
+}
+
+bool is_name_of_depth(const std::string& name) {
+  const std::vector<std::string> words = words_of_name(in_small_letters(name));
+  return std::ranges::any_of(words,
+                             [](const std::string& word) { return word.starts_with("depth"); });
+}
+
 }  // namespace
 
 AxisEvidence axis_evidence(const AxisText& axis) {
   if (axis.type == "channel") return {AxisRole::channel, 9};
   if (axis.type == "time") return {AxisRole::time, 9};
   const std::string said = small_text(axis, "axis"), model = small_text(axis, "cartesian_axis");
-  const std::string positive = small_text(axis, "positive");
+  const std::string positive = direction(axis);
   const std::string type = small_text(axis, "_CoordinateAxisType");
   const std::array<AxisEvidence, 9> all{
       // "hours since" is no place, whatever an attribute that was copied says.
@@ -241,14 +253,16 @@ bool is_bare_letter(const std::string& name) {
 }
 
 bool grows_down(const AxisText& axis) {
-  return small_text(axis, "positive") == "down";
+  return direction(axis) == "down";
 }
 
 bool may_grow_down(const AxisText& axis) {
-  if (!small_text(axis, "positive").empty()) return false;
+  if (!direction(axis).empty()) return false;
   const std::string name = small_text(axis, "standard_name");
-  return name == "depth" || name.ends_with("_pressure") ||
-         is_among(pressures, small_text(axis, "units"));
+  const bool is_sigma = name.starts_with("atmosphere_") && name.find("sigma") != std::string::npos;
+  return name == "depth" || name.ends_with("_pressure") || is_sigma ||
+         is_among(pressures, small_text(axis, "units")) || is_name_of_depth(axis.name) ||
+         is_name_of_depth(axis.coordinate_name);
 }
 
 }  // namespace pellucid

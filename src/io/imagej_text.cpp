@@ -201,7 +201,7 @@ void read_calibration(const Lines& lines, const DescribedPage& page, PageDescrip
       return;
     }
     // ImageJ adds 32768 to signed values, and calibrates what it then has.
-    const double shift = page.is_signed_16 ? 32768 : 0;
+    const double shift = page.type == "i16" ? 32768 : 0;
     said.calibration = {*c0 + *c1 * shift, *c1};
     if (said.calibration->offset == 0 && *c1 == 1) {
       said.calibration.reset();

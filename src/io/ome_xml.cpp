@@ -96,6 +96,7 @@ class Reader {
     image.name = image_name_;
     image.columns = count(tag, "SizeX", 1, 0);
     image.rows = count(tag, "SizeY", 1, 0);
+    image.type = attribute(tag, "Type");
     PageDescription& pages = image.pages;
     pages.writer = "OME-XML";
     std::string order = attribute(tag, "DimensionOrder");

@@ -17,6 +17,7 @@ bool is_ome_xml(std::string_view description);
 struct OmeTiffImage {
   std::string name;
   std::int64_t columns = 0, rows = 0;  ///< of a plane; 0: not stated
+  std::string type;                    ///< of its values, as OME names it; empty: not stated
   PageDescription pages;
 };
 

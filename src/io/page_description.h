@@ -58,11 +58,14 @@ struct PageDescription {
 struct DescribedPage {
   std::int64_t columns = 0, rows = 0;
   int samples = 1;
-  bool is_signed_16 = false;
+  std::string type;  ///< of the values: "u8" … "f64"
   /// Pixels per unit along x and y (XResolution, YResolution); 0: not stated.
   std::array<double, 2> resolution{};
 };
 
+/// Returns a note of pixels that are not square, by numbers without a unit that `source` has:
+/// pixels per unit along x and y.
+std::string aspect_note(const std::string& source, double x, double y);
 /// Returns the product of the counts; the largest number where it is beyond that.
 std::int64_t plane_count(const std::vector<PageAxis>& axes);
 

@@ -2,6 +2,8 @@
 #include "page_layout.h"
 
 #include <algorithm>
+#include <array>
+#include <cstdio>
 #include <limits>
 #include <unordered_map>
 #include <unordered_set>
@@ -211,6 +213,13 @@ class Layout {
 };
 
 }  // namespace
+
+std::string aspect_note(const std::string& source, double x, double y) {
+  std::array<char, 32> ratio{};
+  std::snprintf(ratio.data(), ratio.size(), "%.4g", x / y);
+  return source + " makes pixels " + ratio.data() +
+         " times as high as wide, which is not taken into account; give the spacing";
+}
 
 std::int64_t plane_count(const std::vector<PageAxis>& axes) {
   std::int64_t count = 1;

@@ -141,6 +141,9 @@ class PngReader : public PageReader {
         std::array<std::byte, 1> unit;
         source.read(at + 16, unit);
         const bool is_screen = x == y && (x == 2834 || x == 2835 || x == 3779 || x == 3780);
+        if (unit[0] == std::byte{0} && x > 0 && y > 0 && x != y) {
+          said_.notes.push_back(aspect_note("its chunk pHYs without a unit", x, y));
+        }
         if (unit[0] == std::byte{1} && x > 0 && y > 0 && !is_screen) {
           said_.spacing[0] = {1000. / x, "mm"};
           said_.spacing[1] = {1000. / y, "mm"};

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <new>
 #include <optional>
 #include <set>
@@ -161,6 +162,9 @@ Opener find_opener(const std::filesystem::path& path, const ReadOptions& options
 }
 
 VolumeFile open_file(const std::filesystem::path& path, const ReadOptions& options) {
+  if (options.time && !std::isfinite(*options.time)) {
+    throw Error(path.string() + ": the time is no finite number; give that of a step");
+  }
   const Opener open = find_opener(path, options);
   if (options.series && open != open_stack && !is_dicom(path)) {
     throw Error(path.string() + ": is no DICOM, and only of DICOM a series may be chosen");

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <cmath>
 #include <span>
+#include <string_view>
 #include <utility>
 
 #include "acquisition_text.h"
@@ -77,6 +79,21 @@ OmeTiffImage chosen_image(OmeDocument& document, const ReadOptions& options,
   return image;
 }
 
+/// Returns our name of a type of OME-XML; empty for others.
+std::string type_of_ome(const std::string& type) {
+  constexpr std::array<std::pair<std::string_view, const char*>, 8> names{{{"int8", "i8"},
+                                                                           {"uint8", "u8"},
+                                                                           {"int16", "i16"},
+                                                                           {"uint16", "u16"},
+                                                                           {"int32", "i32"},
+                                                                           {"uint32", "u32"},
+                                                                           {"float", "f32"},
+                                                                           {"double", "f64"}}};
+  const auto found =
+      std::ranges::find(names, type, &std::pair<std::string_view, const char*>::first);
+  return found == names.end() ? "" : found->second;
+}
+
 PageDescription read_ome(const std::string& text, const std::filesystem::path& file,
                          const DescribedPage& page, const ReadOptions& options) {
   const std::string name = file.string();
@@ -104,6 +121,15 @@ PageDescription read_ome(const std::string& text, const std::filesystem::path& f
                                 " x " + std::to_string(image.rows) + ", but its pages are " +
                                 std::to_string(page.columns) + " x " + std::to_string(page.rows) +
                                 "; it may be that of another file");
+  }
+  if (text.find("ModuloAlong") != std::string::npos) {
+    image.pages.notes.push_back(
+        "its OME-XML divides an axis further (ModuloAlongZ, T or C), which is not taken into "
+        "account");
+  }
+  if (const std::string said = type_of_ome(image.type); !said.empty() && said != page.type) {
+    image.pages.notes.push_back("its OME-XML says values of " + image.type +
+                                ", but its pages have " + page.type + ", which are read");
   }
   return std::move(image.pages);
 }
@@ -144,6 +170,9 @@ void read_resolution(TIFF* tiff, const DescribedPage& page, PageDescription& sai
   const bool has_both = x > 0 && y > 0 && std::isfinite(1 / x) && std::isfinite(1 / y);
   const bool is_screen = unit == RESUNIT_INCH && (x == 72 || x == 96) && y == x;
   const double millimetres = unit == RESUNIT_CENTIMETER ? 10 : unit == RESUNIT_INCH ? 25.4 : 0;
+  if (has_both && unit == RESUNIT_NONE && std::abs(x / y - 1) > 1e-3) {
+    said.notes.push_back(aspect_note("its resolution without a unit", x, y));
+  }
   if (millimetres == 0 || !has_both || is_screen) return;
   said.spacing[0] = {millimetres / x, "mm"};
   said.spacing[1] = {millimetres / y, "mm"};

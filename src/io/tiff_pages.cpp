@@ -110,7 +110,7 @@ class TiffReader : public PageReader {
     page.columns = of_page.columns;
     page.rows = of_page.rows;
     page.samples = of_page.samples;
-    page.is_signed_16 = of_page.type == "i16";
+    page.type = of_page.type;
     page.resolution = {resolution(TIFFTAG_XRESOLUTION), resolution(TIFFTAG_YRESOLUTION)};
     return describe_tiff(tiff_.get(), name_, page, options);
   }

@@ -46,6 +46,11 @@ void read_scale(const VariableAttributes& attributes, const char* attribute,
     throw Error("the " + std::string(attribute) + " of \"" + name +
                 "\" is no finite number; mend the attribute");
   }
+  if (numbers->size() > 1) {
+    throw Error("the " + std::string(attribute) + " of \"" + name + "\" has " +
+                std::to_string(numbers->size()) +
+                " numbers, but one is needed; mend the attribute");
+  }
   number = numbers->front();
 }
 

@@ -8,11 +8,13 @@
 #include <cstddef>
 #include <limits>
 #include <string>
+#include <string_view>
 #include <type_traits>
 #include <utility>
 #include <vector>
 
 #include "pellucid/scene/error.h"
+#include "text.h"
 #include "vtk_gather.h"
 #include "vtk_readers.h"
 
@@ -52,6 +54,40 @@ class ExodusFile {
     }
     throw Error(std::string("Exodus does not find the places of its nodes; the file is damaged, ") +
                 "or lacks an attribute: " + file_size_remedy);
+  }
+
+  /// Throws Error where an element has a node that is not there: VTK does not look.
+  void check_corners() const {
+    const auto nodes = static_cast<std::int64_t>(count(EX_INQ_NODES));
+    for (const int id : block_ids()) {
+      ex_block block{};
+      block.id = id;
+      block.type = EX_ELEM_BLOCK;
+      if (ex_get_block_param(file_, &block) < 0 || block.num_entry <= 0) continue;
+      const std::string kind = in_small_letters(std::string_view(block.topology).substr(0, 6));
+      constexpr std::int64_t most_corners = 1000;  // as of no element; polyhedra have lists
+      if (kind == "nsided" || kind == "nfaced" || block.num_nodes_per_entry <= 0 ||
+          block.num_nodes_per_entry > most_corners) {
+        continue;
+      }
+      constexpr std::int64_t at_once = 1 << 16;
+      std::vector<int> corners;
+      for (std::int64_t first = 0; first < block.num_entry; first += at_once) {
+        const std::int64_t here = std::min(at_once, block.num_entry - first);
+        corners.assign(static_cast<std::size_t>(here * block.num_nodes_per_entry), 1);
+        if (ex_get_partial_conn(file_, EX_ELEM_BLOCK, id, first + 1, here, corners.data(), nullptr,
+                                nullptr) < 0) {
+          break;
+        }
+        const auto wrong =
+            std::ranges::find_if(corners, [&](int node) { return node < 1 || node > nodes; });
+        if (wrong == corners.end()) continue;
+        const std::int64_t element = first + (wrong - corners.begin()) / block.num_nodes_per_entry;
+        throw Error("element " + std::to_string(element + 1) + " of block " + std::to_string(id) +
+                    " has the node " + std::to_string(*wrong) + ", but there are " +
+                    std::to_string(nodes) + "; the file is damaged");
+      }
+    }
   }
 
   /// Returns the variables whose first value of a step, from 1, the library does not find.
@@ -226,6 +262,7 @@ void read_exodus(const std::filesystem::path& path, const MeshReadOptions& optio
   }
   const ExodusFile file(path);
   file.check_places();
+  file.check_corners();
   if (!times.empty()) {
     const double wanted = known[nearest_step(known, options.time)];
     const auto step = std::ranges::find(times, wanted) - times.begin();

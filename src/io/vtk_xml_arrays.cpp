@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cmath>
 #include <cstddef>
 #include <map>
 #include <memory>
@@ -72,6 +73,31 @@ std::optional<VtkExtent> extent_in(std::string_view text) {
     text.remove_prefix(static_cast<std::size_t>(end - text.data()));
   }
   return extent;
+}
+
+/// Throws Error unless an attribute, where it is there, has that many finite numbers: VTK takes its
+/// default for others.
+void check_numbers(const XmlTag& tag, const char* name, int count) {
+  const std::string_view given = attribute(tag, name);
+  if (given.empty()) return;
+  std::string_view text = given;
+  int found = 0;
+  for (text = without_spaces_in_front(text); !text.empty(); text = without_spaces_in_front(text)) {
+    if (text.front() == '+') text.remove_prefix(1);
+    double number = 0;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+    const auto taken = static_cast<std::size_t>(end - text.data());
+    const bool ends = taken == text.size() ||
+                      without_spaces_in_front(text.substr(taken)).data() != text.data() + taken;
+    if (error != std::errc() || !std::isfinite(number) || !ends) break;
+    text.remove_prefix(taken);
+    ++found;
+  }
+  if (found == count && text.empty()) return;
+  constexpr std::size_t longest = 100;
+  throw Error(std::string("its ") + name + " is \"" +
+              one_line(std::string(given.substr(0, longest))) + "\", but must be " +
+              std::to_string(count) + " finite numbers; mend the file");
 }
 
 /// Returns the bytes of a type's number; 0 where the type is not known.
@@ -241,6 +267,9 @@ class FileReader {
       header_size_ = attribute(tag, "header_type") == "UInt64" ? 8 : 4;
       compressed_ = !attribute(tag, "compressor").empty();
     } else if (tag.name == file_.kind) {
+      check_numbers(tag, "Origin", 3);
+      check_numbers(tag, "Spacing", 3);
+      check_numbers(tag, "Direction", 9);
       file_.whole = extent_in(attribute(tag, "WholeExtent"));
     } else if (tag.name == "Piece") {
       enter_piece(tag);

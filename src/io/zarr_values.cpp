@@ -109,8 +109,7 @@ void read_into(const fs::path& folder, const ZarrArray& array, const ZarrSelecti
   TypedTarget<Kind> target(selection, std::move(to), array.fill);
   const ZarrChunkCounts counts = read_zarr_chunks(folder, array, selection, target);
   if (!note) return;
-  const std::string end =
-      " are not there; their values are " + array.fill_text + ", the fill value";
+  const std::string end = " are not there; they have the fill value, " + array.fill_text;
   const auto of = [](std::size_t missing, std::size_t all) {
     return std::to_string(missing) + " of " + std::to_string(all);
   };

@@ -58,7 +58,7 @@ void sort_names(std::string_view text) {
 }
 
 void read(std::uint8_t kind, std::string_view text, const std::string& whole) {
-  const DescribedPage page{5, 4, kind % 3 == 0 ? 3 : 1, false, {2, 2}};
+  const DescribedPage page{5, 4, kind % 3 == 0 ? 3 : 1, "u16", {2, 2}};
   const std::int64_t pages = kind / 16 + 1;
   switch (kind % 8) {
     case 0:

@@ -15,6 +15,7 @@ namespace pellucid {
 namespace {
 
 using test::contains;
+using test::error_of;
 using test::SmallExodus;
 
 class Exodus : public test::ScratchFolder {
@@ -52,6 +53,17 @@ TEST_F(Exodus, ReadsValuesOfNodesAndElements) {
   EXPECT_EQ(values(file, "p")[7], 117);
   EXPECT_EQ(values(file, "e"), std::vector<double>{1000});
   EXPECT_EQ(notes(file), "");
+}
+
+// VTK takes what lies in memory behind the last node.
+TEST_F(Exodus, NodesThatAreNotThereAreRefused) {
+  for (const int corner : {9, 1000000, 2147483647}) {
+    SmallExodus of;
+    of.last_corner = corner;
+    const std::string error = error_of([&] { read_mesh_of(of); });
+    EXPECT_TRUE(contains(error, "has the node " + std::to_string(corner) + ", but there are 8"))
+        << error;
+  }
 }
 
 // meshio writes such files: their values are in arrays that the library does not look for.

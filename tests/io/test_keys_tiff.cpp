@@ -14,6 +14,7 @@
 namespace pellucid {
 namespace {
 
+using test::contains;
 using test::described_tiff;
 using test::page_order;
 using test::TiffPage;
@@ -50,6 +51,43 @@ PELLUCID_DESCRIBED_KEY(tiff_resolution, tiff_rows, "XResolution", honored) {
   });
   const Volume volume = read_volume(write("a.tif", bytes));
   test::expect_near(volume.description().placement.spacing, {0.5, 0.25, 1});
+}
+PELLUCID_DESCRIBED_KEY(tiff_aspect, tiff_rows, "ResolutionUnit 1", told) {
+  const auto with = [&](double x, double y) {
+    std::vector<std::string> notes;
+    noting(write("a.tif", changed([&](TiffPage& page) {
+                   page.rationals = {{282, x}, {283, y}};
+                   page.fields[296] = {1};
+                 })),
+           notes);
+    return notes;
+  };
+  expect_told(with(100, 50), "pixels 2 times as high as wide");
+  expect_told(with(1, 3), "pixels 0.3333 times as high as wide");
+  for (const std::string& note : with(72, 72)) EXPECT_FALSE(contains(note, "as high as")) << note;
+}
+PELLUCID_DESCRIBED_KEY(ome_type, tiff_rows, "Type", told) {
+  const auto with = [&](const std::string& type) {
+    std::string xml = test::ome_xml({2, 1, 1}, "<TiffData/>");
+    const std::string was = "Type=\"uint16\"";
+    EXPECT_TRUE(contains(xml, was)) << xml;
+    xml.replace(xml.find(was), was.size(), "Type=\"" + type + "\"");
+    std::vector<std::string> notes;
+    noting(write("a.ome.tif", described_tiff(2, xml)), notes);
+    return notes;
+  };
+  expect_told(with("int16"), "says values of int16, but its pages have u16");
+  expect_told(with("float"), "says values of float");
+  for (const std::string& note : with("uint16")) EXPECT_FALSE(contains(note, "values of")) << note;
+}
+PELLUCID_DESCRIBED_KEY(ome_modulo, tiff_rows, "ModuloAlongZ", told) {
+  std::string xml = test::ome_xml({2, 1, 1}, "<TiffData/>");
+  xml.insert(xml.rfind("</OME>"),
+             "<StructuredAnnotations><XMLAnnotation><Value><Modulo><ModuloAlongZ Type=\"angle\"/>"
+             "</Modulo></Value></XMLAnnotation></StructuredAnnotations>");
+  std::vector<std::string> notes;
+  noting(write("a.ome.tif", described_tiff(2, xml)), notes);
+  expect_told(notes, "ModuloAlongZ");
 }
 PELLUCID_DESCRIBED_KEY(tiff_orientation, tiff_rows, "Orientation", told) {
   for (const std::uint32_t orientation : {2U, 4U, 8U}) {
@@ -317,6 +355,11 @@ PELLUCID_DESCRIBED_KEY(png_physical, stack_rows, "pHYs", honored) {
   const std::string sizes("\0\0\x07\xd0\0\0\x0f\xa0", 8);
   test::expect_near(spacing_by(sizes + '\1'), {0.5, 0.25, 1});
   test::expect_near(spacing_by(sizes + '\0'), {1, 1, 1});
+  std::vector<std::string> notes;
+  ReadOptions options;
+  options.note = [&](const std::string& note) { notes.push_back(note); };
+  read_volume(folder_, options);
+  expect_told(notes, "pHYs without a unit makes pixels 0.5 times as high as wide");
   test::expect_near(spacing_by(std::string("\0\0\x0b\x13\0\0\x0b\x13\1", 9)), {1, 1, 1});
 }
 PELLUCID_DESCRIBED_KEY(names_pattern, stack_rows, "%d, %03d, %.2f, %g", honored) {

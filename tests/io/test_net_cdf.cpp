@@ -305,6 +305,10 @@ TEST_F(NetCdf, StepsInTime) {
   options.time = 5;
   EXPECT_EQ(test::value_at(read_volume(path("a.nc"), options), 0, 0, 0), 60);
   EXPECT_EQ(read_components(path("a.nc"), options).size(), 1u);
+  for (const double time : {std::nan(""), HUGE_VAL, -HUGE_VAL}) {
+    options.time = time;
+    EXPECT_TRUE(contains(error_of([&] { read_volume(path("a.nc"), options); }), "finite number"));
+  }
   options.time = -1e9;
   EXPECT_EQ(test::value_at(read_volume(path("a.nc"), options), 0, 0, 0), 0);
   options.component = 1;

@@ -265,6 +265,21 @@ TEST_F(NetCdfAxes, PositiveDown) {
   write_file({Axis{"plev", 3, {{"units", "Pa"}}, {1, 2, 3}}, y, x});
   expect_near(world_of(read_file(), 0, 0, 2), {0, 0, 3}, 0);
   EXPECT_TRUE(contains(notes_, "z is plev, which grows downwards")) << notes_;
+  for (const char* name : {"depth", "deptht", "ocean_depth_2"}) {
+    write_file({Axis{name, 3, {{"units", "m"}}, {0, 10, 20}}, y, x});
+    expect_near(world_of(read_file(), 0, 0, 2), {0, 0, 20}, 0);
+    EXPECT_TRUE(contains(notes_, std::string("z is ") + name + ", which grows downwards"))
+        << notes_;
+  }
+  write_file({Axis{"depth", 3, {{"positive", "up"}}, {0, 10, 20}}, y, x});
+  read_file();
+  EXPECT_FALSE(contains(notes_, "downwards")) << notes_;
+  write_file({Axis{"p", 3, {{"_CoordinateZisPositive", "down"}}, {0, 10, 20}}, y, x});
+  expect_near(world_of(read_file(), 0, 0, 2), {0, 0, -20}, 0);
+  const std::string sigma = "atmosphere_hybrid_sigma_pressure_coordinate";
+  write_file({Axis{"lev", 3, {{"standard_name", sigma}}, {1, 2, 3}}, y, x});
+  read_file();
+  EXPECT_TRUE(contains(notes_, "z is lev, which grows downwards")) << notes_;
 }
 
 TEST_F(NetCdfAxes, UnitsOfTheAxes) {

@@ -143,6 +143,8 @@ TEST_F(NetCdfValues, ValidRanges) {
   EXPECT_EQ(valid('d', {{"valid_max", 'd', {8.5}}}), 9u);
   EXPECT_EQ(valid('b', {{"valid_min", 'b', {5}}, {"valid_max", 'b', {8}}}), 4u);
   // Of packed numbers in their own type, of values in another.
+  write_file('h', counting<double>(), {{"scale_factor", 'd', {0.5, 2}}});
+  EXPECT_TRUE(contains(error_of([&] { read_volume(path("a.nc")); }), "has 2 numbers"));
   const ClassicAttribute scale{"scale_factor", 'd', {0.5}}, offset{"add_offset", 'd', {100}};
   EXPECT_EQ(valid('h', {scale, offset, {"valid_range", 'h', {10, 19}}}), 10u);
   EXPECT_EQ(valid('h', {scale, offset, {"valid_range", 'd', {105, 110}}}), 11u);

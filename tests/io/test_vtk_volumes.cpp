@@ -71,6 +71,26 @@ class VtkVolumes : public test::ScratchFolder {
   }
 };
 
+// VTK takes its defaults for places that it cannot read.
+TEST_F(VtkVolumes, PlacesOfXmlImagesMustBeNumbers) {
+  const auto refusal = [&](const std::string& origin, const std::string& spacing,
+                           const std::string& more = "") {
+    XmlImage image;
+    image.origin = origin;
+    image.spacing = spacing;
+    image.more = more;
+    image.points = test::xml_array("Float64", "p", numbers(60));
+    return error_of([&] { parse(image.text(), "", "a.vti"); });
+  };
+  for (const char* spacing : {"2,3,4", "0,5 1 1", "2 3", "nan 1 1", "2mm 3mm 4mm", "1 2 3 4"}) {
+    const std::string error = refusal("0 0 0", spacing);
+    EXPECT_TRUE(contains(error, "its Spacing is \"" + std::string(spacing) + "\"")) << error;
+  }
+  EXPECT_TRUE(contains(refusal("inf 0 0", "1 1 1"), "its Origin is"));
+  EXPECT_TRUE(contains(refusal("5 6", "1 1 1"), "its Origin is"));
+  EXPECT_TRUE(contains(refusal("0 0 0", "1 1 1", " Direction=\"1 0 0 0 1 0\""), "Direction"));
+}
+
 TEST_F(VtkVolumes, AreToldFromMeshesByTheirFirstBytes) {
   EXPECT_FALSE(is_mesh_file(write("image.vtk", legacy(""))));
   EXPECT_FALSE(is_mesh_file(write("nameless", legacy(""))));

@@ -295,7 +295,8 @@ TEST_F(ZarrTest, MissingChunksHaveTheFillValue) {
   const auto last = [&] { return value_at(read_2(store, bytes_of(counting()), 4), 4, 3, 2); };
   store.fill = "7.5";
   EXPECT_EQ(last(), 7.5);
-  EXPECT_TRUE(contains(notes_, "1 of 12 chunks are not there; their values are 7.5")) << notes_;
+  EXPECT_TRUE(contains(notes_, "1 of 12 chunks are not there; they have the fill value, 7.5"))
+      << notes_;
   store.fill = "\"NaN\"";
   EXPECT_TRUE(std::isnan(last()));
   store.fill = "NaN";  // as Python's json writes it
