@@ -127,7 +127,7 @@ struct Component {
   }
 };
 
-/// Which axes of a rectilinear grid have coordinates that descend.
+/// Returns which axes of a rectilinear grid have coordinates that descend.
 std::array<bool, 3> descending_axes(const Volume::Description& grid) {
   std::array<bool, 3> descends{};
   for (std::size_t axis = 0; axis < 3; ++axis) {

@@ -46,7 +46,7 @@ std::int64_t count_in(std::string_view word) {
   return value >= 1 && value <= 1e9 ? static_cast<std::int64_t>(value) : 1;
 }
 
-/// How many numbers stand in "[1;2]" or "1".
+/// Returns how many numbers stand in "[1;2]" or "1".
 std::int64_t numbers_in(std::string_view list) {
   std::int64_t count = 0;
   bool inside = false;
@@ -62,7 +62,7 @@ bool is_true(std::string_view word) {
   return word.starts_with("true") || word.starts_with('1');
 }
 
-/// Where a page stands, in the words of its writer.
+/// Place of a page, in the words of its writer.
 struct PagePlace {
   std::int64_t z = 0, t = 0;
   std::string channel;  ///< name or number

@@ -40,14 +40,14 @@ std::string legacy(const std::string& head) {
 }
 
 PELLUCID_DESCRIBED_KEY(vtk_whole_extent, "VTK files", "WholeExtent", refused) {
-  if (!has_vtk) GTEST_SKIP();
+  if (!has_vtk) GTEST_SKIP() << "this build does not read VTK files";
   expect_refused(
       [&] { read_volume(write("a.vti", image("Origin=\"0 0 0\"", "", "", "0 1 0 1 0 2"))); },
       "extent 0 1 0 1 0 2");
 }
 
 PELLUCID_DESCRIBED_KEY(vtk_extent, "VTK files", "Extent", honored) {
-  if (!has_vtk) GTEST_SKIP();
+  if (!has_vtk) GTEST_SKIP() << "this build does not read VTK files";
   std::string text = image("Origin=\"0 0 0\" Spacing=\"1 1 1\"");
   for (std::size_t at = 0; (at = text.find("0 1 0 1 0 1", at)) != text.npos;) {
     text.replace(at, 11, "5 6 0 1 0 1");
@@ -56,26 +56,26 @@ PELLUCID_DESCRIBED_KEY(vtk_extent, "VTK files", "Extent", honored) {
 }
 
 PELLUCID_DESCRIBED_KEY(vtk_origin, "VTK files", "Origin", honored) {
-  if (!has_vtk) GTEST_SKIP();
+  if (!has_vtk) GTEST_SKIP() << "this build does not read VTK files";
   const Volume volume = read_volume(write("a.vti", image("Origin=\"4 5 6\" Spacing=\"1 1 1\"")));
   EXPECT_EQ(world_of(volume, 0, 0, 0).z, 6);
 }
 
 PELLUCID_DESCRIBED_KEY(vtk_spacing, "VTK files", "Spacing", honored) {
-  if (!has_vtk) GTEST_SKIP();
+  if (!has_vtk) GTEST_SKIP() << "this build does not read VTK files";
   const Volume volume = read_volume(write("a.vti", image("Origin=\"0 0 0\" Spacing=\"1 2 3\"")));
   EXPECT_EQ(world_of(volume, 1, 1, 1).y, 2);
 }
 
 PELLUCID_DESCRIBED_KEY(vtk_direction, "VTK files", "Direction", honored) {
-  if (!has_vtk) GTEST_SKIP();
+  if (!has_vtk) GTEST_SKIP() << "this build does not read VTK files";
   const Volume volume = read_volume(
       write("a.vti", image("Origin=\"0 0 0\" Spacing=\"1 1 1\" Direction=\"0 -1 0 1 0 0 0 0 1\"")));
   EXPECT_EQ(world_of(volume, 1, 0, 0).y, 1);
 }
 
 PELLUCID_DESCRIBED_KEY(vtk_scalars, "VTK files", "Scalars", honored) {
-  if (!has_vtk) GTEST_SKIP();
+  if (!has_vtk) GTEST_SKIP() << "this build does not read VTK files";
   const std::string second = xml_array("Float32", "w", "9 9 9 9 9 9 9 9");
   const Volume volume =
       read_volume(write("a.vti", image("Origin=\"0 0 0\"", second, " Scalars=\"w\"")));
@@ -83,21 +83,21 @@ PELLUCID_DESCRIBED_KEY(vtk_scalars, "VTK files", "Scalars", honored) {
 }
 
 PELLUCID_DESCRIBED_KEY(vtk_ghost_type, "VTK files", "vtkGhostType", honored) {
-  if (!has_vtk) GTEST_SKIP();
+  if (!has_vtk) GTEST_SKIP() << "this build does not read VTK files";
   const Volume volume = read_volume(write(
       "a.vti", image("Origin=\"0 0 0\"", xml_array("UInt8", "vtkGhostType", "0 2 0 0 0 0 0 0"))));
   EXPECT_TRUE(std::isnan(value_at(volume, 1, 0, 0)));
 }
 
 PELLUCID_DESCRIBED_KEY(vtk_ghost_levels, "VTK files", "vtkGhostLevels", honored) {
-  if (!has_vtk) GTEST_SKIP();
+  if (!has_vtk) GTEST_SKIP() << "this build does not read VTK files";
   test::SmallVtu of;
   of.more = xml_array("UInt8", "vtkGhostLevels", "1 0 0");
   EXPECT_EQ(read_mesh(write("a.vtu", test::small_vtu(of))).grid.shapes.size(), 1U);
 }
 
 PELLUCID_DESCRIBED_KEY(vtk_degrees, "VTK files", "HIGHER_ORDER_DEGREES", honored) {
-  if (!has_vtk) GTEST_SKIP();
+  if (!has_vtk) GTEST_SKIP() << "this build does not read VTK files";
   // A hexahedron of the orders 2, 1 and 1, whose 12 points no other orders have.
   test::AnyVtu of;
   of.points = "0 0 0 2 0 0 2 1 0 0 1 0 0 0 1 2 0 1 2 1 1 0 1 1 1 0 0 1 1 0 1 0 1 1 1 1";
@@ -113,35 +113,35 @@ PELLUCID_DESCRIBED_KEY(vtk_degrees, "VTK files", "HIGHER_ORDER_DEGREES", honored
 }
 
 PELLUCID_DESCRIBED_KEY(vtk_legacy_dimensions, "VTK files", "DIMENSIONS", honored) {
-  if (!has_vtk) GTEST_SKIP();
+  if (!has_vtk) GTEST_SKIP() << "this build does not read VTK files";
   const Volume volume =
       read_volume(write("a.vtk", legacy("DIMENSIONS 2 2 2\nORIGIN 0 0 0\nSPACING 1 1 1\n")));
   EXPECT_EQ(value_at(volume, 1, 1, 1), 7);
 }
 
 PELLUCID_DESCRIBED_KEY(vtk_legacy_spacing, "VTK files", "SPACING", honored) {
-  if (!has_vtk) GTEST_SKIP();
+  if (!has_vtk) GTEST_SKIP() << "this build does not read VTK files";
   const Volume volume =
       read_volume(write("a.vtk", legacy("DIMENSIONS 2 2 2\nORIGIN 0 0 0\nSPACING 1 2 3\n")));
   EXPECT_EQ(world_of(volume, 1, 1, 1).z, 3);
 }
 
 PELLUCID_DESCRIBED_KEY(vtk_legacy_aspect, "VTK files", "ASPECT_RATIO", honored) {
-  if (!has_vtk) GTEST_SKIP();
+  if (!has_vtk) GTEST_SKIP() << "this build does not read VTK files";
   const Volume volume =
       read_volume(write("a.vtk", legacy("DIMENSIONS 2 2 2\nORIGIN 0 0 0\nASPECT_RATIO 1 2 3\n")));
   EXPECT_EQ(world_of(volume, 1, 1, 1).z, 3);
 }
 
 PELLUCID_DESCRIBED_KEY(vtk_legacy_origin, "VTK files", "ORIGIN", honored) {
-  if (!has_vtk) GTEST_SKIP();
+  if (!has_vtk) GTEST_SKIP() << "this build does not read VTK files";
   const Volume volume =
       read_volume(write("a.vtk", legacy("DIMENSIONS 2 2 2\nORIGIN 4 5 6\nSPACING 1 1 1\n")));
   EXPECT_EQ(world_of(volume, 0, 0, 0).x, 4);
 }
 
 PELLUCID_DESCRIBED_KEY(vtk_time_step, "VTK files", "timestep", honored) {
-  if (!has_vtk) GTEST_SKIP();
+  if (!has_vtk) GTEST_SKIP() << "this build does not read VTK files";
   write("a.vtu", test::small_vtu());
   test::SmallVtu later;
   later.values = "5 6 7 8 9";
@@ -160,14 +160,14 @@ std::vector<std::string> notes_of(const test::SmallExodus& of, const std::filesy
 }
 
 PELLUCID_DESCRIBED_KEY(exodus_file_size, "Exodus II", "file_size", told) {
-  if (!test::has_exodus) GTEST_SKIP();
+  if (!test::has_exodus) GTEST_SKIP() << "this build does not read Exodus files";
   test::SmallExodus of;
   of.has_file_size = of.has_axes = false;
   expect_told(notes_of(of, path("a.e")), "file_size");
 }
 
 PELLUCID_DESCRIBED_KEY(exodus_names, "Exodus II", "name_nod_var", honored) {
-  if (!test::has_exodus) GTEST_SKIP();
+  if (!test::has_exodus) GTEST_SKIP() << "this build does not read Exodus files";
   test::SmallExodus of;
   of.nodal = {"pressure"};
   of.write(path("a.e"));
@@ -175,7 +175,7 @@ PELLUCID_DESCRIBED_KEY(exodus_names, "Exodus II", "name_nod_var", honored) {
 }
 
 PELLUCID_DESCRIBED_KEY(exodus_displacement, "Exodus II", "DISPL", honored) {
-  if (!test::has_exodus) GTEST_SKIP();
+  if (!test::has_exodus) GTEST_SKIP() << "this build does not read Exodus files";
   test::SmallExodus of;
   of.nodal = {"DISPLX", "DISPLY", "DISPLZ"};
   of.write(path("a.e"));
@@ -183,7 +183,7 @@ PELLUCID_DESCRIBED_KEY(exodus_displacement, "Exodus II", "DISPL", honored) {
 }
 
 PELLUCID_DESCRIBED_KEY(exodus_time, "Exodus II", "time_whole", honored) {
-  if (!test::has_exodus) GTEST_SKIP();
+  if (!test::has_exodus) GTEST_SKIP() << "this build does not read Exodus files";
   test::SmallExodus of;
   of.steps = of.written_steps = 3;
   of.write(path("a.e"));
@@ -191,7 +191,7 @@ PELLUCID_DESCRIBED_KEY(exodus_time, "Exodus II", "time_whole", honored) {
 }
 
 PELLUCID_DESCRIBED_KEY(exodus_fill, "Exodus II", "vals_nod_var1", told) {
-  if (!test::has_exodus) GTEST_SKIP();
+  if (!test::has_exodus) GTEST_SKIP() << "this build does not read Exodus files";
   test::SmallExodus of;
   of.steps = 2;
   of.written_steps = 1;
