@@ -14,6 +14,7 @@
 #include "error_map.h"
 #include "labels.h"
 #include "parse.h"
+#include "pellucid/cpu/framed_camera.h"
 #include "pellucid/io/atomic_file.h"
 #include "pellucid/io/image_files.h"
 #include "pellucid/reference/render.h"
@@ -135,6 +136,20 @@ int run_render(const RenderArguments& arguments) {
   if (arguments.ranks) return run_on_ranks(arguments);
   check_arguments(arguments);
   PreparedScene prepared = prepare(arguments);
+  const InterruptGuard guard;
+  if (arguments.renders() || !arguments.save_scene.empty()) {
+    place_camera(arguments, prepared, [&](const Scene& scene) {
+      RenderOptions options;
+      options.threads = arguments.threads;
+      options.progress = [](double) { return !InterruptGuard::interrupted(); };
+      try {
+        return framed_camera(scene, scene.camera, options);
+      } catch (const Cancelled&) {
+        InterruptGuard::check();
+        throw;
+      }
+    });
+  }
   const auto& function = prepared.description.layers.front().transfer_function;
   const bool wants_function = arguments.print_tf || !arguments.save_tf.empty();
   if (!function && wants_function) {
@@ -146,7 +161,6 @@ int run_render(const RenderArguments& arguments) {
   const std::string transfer_function =
       wants_function ? look_to_json({*function, first.shading, first.gradient_opacity}) : "";
 
-  const InterruptGuard guard;
   RenderedPicture picture;
   if (arguments.renders()) {
     picture.image = prepared.relative_tolerance
@@ -197,7 +211,7 @@ void write_picture(const RenderArguments& arguments, const PreparedScene& prepar
       if (extension_of(path) == ".exr") {
         write_exr(image, path);
       } else {
-        write_png(image, path, prepared.scene.background);
+        write_png(image, path, shown_background(prepared.description));
       }
     });
   }

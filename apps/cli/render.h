@@ -30,6 +30,7 @@ struct RenderArguments {
   std::string method, precision, grade, device;
   std::optional<std::string> tolerance;
   std::optional<double> step;
+  std::optional<double> azimuth, elevation, zoom;
   std::optional<int> samples;
   int threads = 0;
   std::string balance;  ///< of the bricks of ranks
@@ -105,6 +106,12 @@ using VisibleCorners = std::function<std::array<Vec3<double>, 8>(const Scene&)>;
 /// Completes the request with the scene that was read. Throws Error.
 PreparedScene complete_scene(const RenderArguments& arguments, SceneRequest request, Scene loaded,
                              const std::vector<MeshSource>& meshes, const VisibleCorners& visible);
+/// Moves the camera of a scene until what is seen fills the picture (framed_camera()).
+using CameraFraming = std::function<Camera(const Scene&)>;
+/// Turns the camera as the arguments say, moves it by `frame` unless it is the input's own, and
+/// enlarges the picture. Throws Error.
+void place_camera(const RenderArguments& arguments, PreparedScene& prepared,
+                  const CameraFraming& frame);
 /// Reads the input and puts the arguments over what it says. Throws Error.
 PreparedScene prepare(const RenderArguments& arguments);
 

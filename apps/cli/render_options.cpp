@@ -55,8 +55,9 @@ void add_picture_options(CommandLine& command, RenderArguments& arguments) {
   command
       .add_option(
           "--background", arguments.background,
-          "Color behind a .png: white, black, #RRGGBB or linear R,G,B. Default: the scene's, "
-          "else transparent. An .exr always stays transparent")
+          "Behind a .png: white, black, #RRGGBB, linear R,G,B, two of them as in "
+          "'#334:black' for a gradient from above, or transparent. Default: the scene's, else a "
+          "dark gradient. An .exr always stays transparent")
       ->option_text("COLOR");
   command
       .add_option("--backdrop", arguments.backdrop,
@@ -218,6 +219,16 @@ void add_scene_options(CommandLine& command, RenderArguments& arguments) {
       ->option_text("NAME")
       ->one_of(view_names())
       ->excludes(camera);
+  command
+      .add_option("--azimuth", arguments.azimuth,
+                  "Move the camera to the right around what it looks at")
+      ->option_text("DEGREES");
+  command.add_option("--elevation", arguments.elevation, "Move it up")->option_text("DEGREES");
+  command
+      .add_option("--zoom", arguments.zoom,
+                  "Enlarge the picture by this factor; 1 fills it to 88 % unless the scene or "
+                  "--camera has the camera")
+      ->option_text("FACTOR");
 }
 
 void add_render_options(CommandLine& command, RenderArguments& arguments) {

@@ -15,6 +15,7 @@
 #include "pellucid/cluster/communicator.h"
 #include "pellucid/cluster/load.h"
 #include "pellucid/cluster/render.h"
+#include "pellucid/cpu/framed_camera.h"
 #include "pellucid/cpu/threads.h"
 #include "pellucid/scene/label_values.h"
 #include "progress.h"
@@ -105,6 +106,7 @@ class RankRun {
       prepared.whole_layers.push_back({bricks.dimensions[i], bricks.nan[i]});
     }
     find_labels(prepared);
+    place_camera(bricks.tree, prepared);
     RenderedPicture picture;
     RankReport report;
     picture.image = render_frame(bricks.tree, prepared, report);
@@ -172,6 +174,27 @@ class RankRun {
       if (values[n].size() < 2 || values[n].contains("no")) continue;
       prepared.labels.emplace_back(names[n], values[n].size());
     }
+  }
+
+  /// Rank 0 frames what is seen; all ranks render its drafts, and take its camera.
+  void place_camera(const BrickTree& tree, PreparedScene& prepared) {
+    Scene draft = draft_scene(prepared.scene);
+    cli::place_camera(arguments_, prepared, [&](const Scene& scene) {
+      RenderOptions options;
+      options.threads = arguments_.threads;
+      options.progress = [](double) { return !InterruptGuard::interrupted(); };
+      return framed_camera(scene.camera, scene.size, [&](const Camera& camera, ImageSize size) {
+        draft.camera = camera;
+        draft.size = size;
+        Image image = render(ranks_, tree, draft, options);
+        image.width = size.width;
+        image.height = size.height;
+        image.pixels.resize(static_cast<std::size_t>(size.width) *
+                            static_cast<std::size_t>(size.height));
+        ranks_.broadcast({image.pixels.front().data(), image.pixels.size() * 4});
+        return image;
+      });
+    });
   }
 
   Image render_frame(const BrickTree& tree, const PreparedScene& prepared, RankReport& report) {

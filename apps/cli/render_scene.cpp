@@ -23,6 +23,20 @@ namespace pellucid::cli {
 
 namespace {
 
+/// Reads --background into the description.
+void set_background(const std::string& text, SceneDescription& description) {
+  description.is_transparent = text == "transparent";
+  description.background.reset();
+  if (description.is_transparent) return;
+  const std::size_t colon = text.find(':');
+  if (colon == std::string::npos) {
+    description.background = parse_color("--background", text);
+  } else {
+    description.background = Background{parse_color("--background", text.substr(0, colon)),
+                                        parse_color("--background", text.substr(colon + 1))};
+  }
+}
+
 /// Throws UsageError where an argument is given that speaks of an error, as no error is known.
 void refuse_error_arguments(const RenderArguments& arguments, const std::string& why) {
   const std::pair<const char*, bool> given[] = {{"--tolerance", arguments.tolerance.has_value()},
@@ -75,6 +89,16 @@ void check_arguments(const RenderArguments& arguments) {
   }
   if (!arguments.balance.empty() && !arguments.ranks) {
     throw UsageError("--balance: is of the parts of --ranks; give that too, or drop it");
+  }
+  for (const auto& [name, given] :
+       {std::pair{"--azimuth", arguments.azimuth}, std::pair{"--elevation", arguments.elevation}}) {
+    if (given && !(std::abs(*given) <= 360)) {
+      throw UsageError(fmt::format("{} {}: expected degrees from -360 to 360", name, *given));
+    }
+  }
+  if (arguments.zoom && !(*arguments.zoom >= 1e-3 && *arguments.zoom <= 1e3)) {
+    throw UsageError(
+        fmt::format("--zoom {}: expected a factor from 0.001 to 1000", *arguments.zoom));
   }
   if (arguments.json && !arguments.renders()) {
     throw UsageError("--json reports on a rendering; give -o FILE.png or FILE.exr");
@@ -321,7 +345,7 @@ SceneDescription describe(const RenderArguments& arguments,
   }
   if (!arguments.size.empty()) description.size = parse_size("--size", arguments.size);
   if (!arguments.background.empty()) {
-    description.background = parse_color("--background", arguments.background);
+    set_background(arguments.background, description);
   }
   if (!arguments.backdrop.empty()) {
     description.backdrop = arguments.backdrop;
@@ -491,6 +515,18 @@ PreparedScene complete_scene(const RenderArguments& arguments, SceneRequest requ
   description.camera = scene.camera;
   make_camera_frame(scene.camera, scene.size);  // throws before anything is written
   return prepared;
+}
+
+void place_camera(const RenderArguments& arguments, PreparedScene& prepared,
+                  const CameraFraming& frame) {
+  Scene& scene = prepared.scene;
+  if (arguments.azimuth || arguments.elevation) {
+    turn_camera(scene.camera, arguments.azimuth.value_or(0), arguments.elevation.value_or(0));
+  }
+  if (!prepared.has_own_camera || !arguments.view.empty()) scene.camera = frame(scene);
+  if (arguments.zoom) zoom_camera(scene.camera, *arguments.zoom);
+  make_camera_frame(scene.camera, scene.size);
+  prepared.description.camera = scene.camera;
 }
 
 PreparedScene prepare(const RenderArguments& arguments) {

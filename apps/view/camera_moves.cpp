@@ -5,6 +5,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "pellucid/scene/view_camera.h"
+
 namespace pellucid::view {
 
 namespace {
@@ -17,12 +19,6 @@ Axes axes_of(const Camera& camera) {
   const Vec3<double> forward = normalized(camera.focal_point - camera.position);
   const Vec3<double> right = normalized(cross(forward, camera.up));
   return {right, cross(right, forward), forward};
-}
-
-/// Rodrigues' formula; `axis` has length 1.
-Vec3<double> rotated(const Vec3<double>& v, const Vec3<double>& axis, double radians) {
-  const double cosine = std::cos(radians), sine = std::sin(radians);
-  return v * cosine + cross(axis, v) * sine + axis * (dot(axis, v) * (1 - cosine));
 }
 
 }  // namespace
@@ -48,12 +44,7 @@ void pan(Camera& camera, double x, double y) {
 }
 
 void zoom(Camera& camera, double factor) {
-  if (camera.projection == Projection::orthographic) {
-    camera.parallel_scale /= factor;
-  } else {
-    const Vec3<double> offset = camera.position - camera.focal_point;
-    camera.position = camera.focal_point + offset * (1 / factor);
-  }
+  zoom_camera(camera, factor);
 }
 
 void roll(Camera& camera, double degrees) {

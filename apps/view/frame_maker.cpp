@@ -111,8 +111,8 @@ bool FrameMaker::show(int level, const Image& image) {
 
 void FrameMaker::publish_coarse(int level, const Image& image) {
   const int stride = 1 << level;
-  const std::vector<std::uint8_t> bytes =
-      display_bytes(image, scene_->background.value_or(Rgb<double>{}), DisplayLayout::rgba, stride);
+  const std::vector<std::uint8_t> bytes = display_bytes(
+      image, scene_->background.value_or(calm_background()), DisplayLayout::rgba, stride);
   publish_(as_frame(binary_message(header("coarse", stride), {as_text(bytes)})));
 }
 
@@ -128,7 +128,7 @@ void FrameMaker::publish_exact(const Image& image, const RenderReport& report) {
   }
   json["error_map"] = !image.error.empty();
   const std::vector<std::uint8_t> bytes =
-      display_bytes(image, scene_->background.value_or(Rgb<double>{}), DisplayLayout::rgba);
+      display_bytes(image, scene_->background.value_or(calm_background()), DisplayLayout::rgba);
   std::vector<std::uint8_t> errors;
   if (!image.error.empty()) {
     errors = display_bytes(cli::error_picture(image, scene_->integration.tolerance), {},

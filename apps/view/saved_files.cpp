@@ -55,7 +55,7 @@ std::string bytes_of(const std::string& name, const Write& write) {
 
 }  // namespace
 
-SavedFile png_file(const Image& image, const std::optional<Rgb<double>>& background) {
+SavedFile png_file(const Image& image, const std::optional<Background>& background) {
   return {"picture.png", "image/png", encode_png(image, background)};
 }
 

@@ -15,7 +15,7 @@ struct SavedFile {
 };
 
 /// Returns a picture as the program writes it.
-SavedFile png_file(const Image& image, const std::optional<Rgb<double>>& background);
+SavedFile png_file(const Image& image, const std::optional<Background>& background);
 SavedFile exr_file(const Image& image);
 /// Returns a layer's function and look in a format (ExportFunction); `notes` receives what the
 /// format cannot hold. Throws Error.

@@ -61,6 +61,10 @@ void apply(const Edit& edit, Json& document) {
   convert_colors(value);
   if (!edit.layer) {
     if (edit.key == "background") {
+      if (value == "transparent") {
+        document["image"]["background"] = nullptr;
+        return;
+      }
       convert_color(value);
       return put(document["image"], "background", std::move(value));
     }

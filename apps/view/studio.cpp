@@ -12,6 +12,7 @@
 #include "camera_moves.h"
 #include "histograms.h"
 #include "page_messages.h"
+#include "pellucid/cpu/framed_camera.h"
 #include "pellucid/cpu/threads.h"
 #include "pellucid/scene/error.h"
 #include "pellucid/scene/view_camera.h"
@@ -368,6 +369,9 @@ void Studio::move_camera(const std::function<void(Camera&)>& move) {
 void Studio::fit_camera(const std::string& side) {
   const Scene& scene = state_.scene();
   Camera camera = view_camera(visible_corners(scene, parallel_), side, scene.size);
+  RenderOptions options;
+  options.progress = [this](double) { return !has_ended(); };
+  camera = framed_camera(scene, camera, options);
   if (scene.camera.projection == Projection::orthographic) {
     set_projection(camera, Projection::orthographic, reach_of(scene));
   }
@@ -383,7 +387,7 @@ void Studio::save(PageId page, Save::Kind kind) {
   if (kind == Save::Kind::png) {
     const std::optional<Image>& shown = frames_.exact_image();
     const Image image = shown ? *shown : frames_.renderer().render(state_.scene(), options);
-    return send_file(page, png_file(image, state_.scene().background));
+    return send_file(page, png_file(image, shown_background(state_.description())));
   }
   options.depth = true;
   options.error = state_.scene().integration.method == Method::exact;

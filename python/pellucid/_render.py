@@ -41,7 +41,7 @@ def _share_of(tolerance: Any) -> Optional[float]:
 
 def scene_of(data: Any, transfer_function: Any = None, *, preset: Optional[str] = None,
              tolerance: Optional[float] = None, size: Any = None, camera: Optional[Camera] = None,
-             view: Optional[str] = None, background: Optional[Color] = None,
+             view: Optional[str] = None, background: Any = None,
              **layer: Any) -> Scene:
     """Returns the scene that render() renders; it takes the same arguments."""
     if isinstance(data, (str, os.PathLike)):
@@ -89,7 +89,7 @@ def scene_of(data: Any, transfer_function: Any = None, *, preset: Optional[str] 
 def render(data: Any, transfer_function: Any = None, *, preset: Optional[str] = None,
            tolerance: Union[float, str, None] = None, size: Any = None,
            camera: Optional[Camera] = None, view: Optional[str] = None,
-           background: Optional[Color] = None, depth: bool = False,
+           background: Any = None, depth: bool = False,
            error: bool = True, values: bool = False, threads: int = 0,
            progress: Optional[Callable[[float], Any]] = None,
            renderer: Optional[Renderer] = None, **layer: Any) -> Image:
@@ -107,7 +107,8 @@ def render(data: Any, transfer_function: Any = None, *, preset: Optional[str] = 
     size               (width, height) or one number, in pixels; default 512
     camera, view       a Camera; or "front", "back", "left", "right", "top", "bottom", "oblique".
                        Default: one that shows all that is visible
-    background         a color; default: the picture stays transparent
+    background         behind a .png: a color, "white", "black", two colors from above downwards,
+                       or "transparent"; default: a dark gradient. Pixels stay transparent
     depth, values      also fill Image.depth, Image.values (of a projection)
     threads            0: one per core
     progress           called with the finished fraction every 20 ms; what it raises cancels the

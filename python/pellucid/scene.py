@@ -284,8 +284,9 @@ class Scene:
     """Width and height in pixels."""
     lights: list[Light] = field(default_factory=lambda: [HeadLight()])
     clips: list[Clip] = field(default_factory=list)
-    background: Optional[Color] = None
-    """None: the picture stays transparent."""
+    background: Any = None
+    """Behind a .png: a color, two from above downwards, or "transparent". None: a dark gradient.
+    The pixels and an .exr stay transparent."""
     samples: int = 1
     """A pixel is the mean of samples * samples rays."""
     integration: Integration = field(default_factory=Integration)

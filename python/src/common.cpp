@@ -49,13 +49,31 @@ Vec3<double> vector_of(const py::handle& object, const std::string& what) {
   return {v[0], v[1], v[2]};
 }
 
+std::optional<Background> background_from(const py::handle& object) {
+  if (py::isinstance<py::str>(object)) {
+    if (py::cast<std::string>(object) == "transparent") return std::nullopt;
+  } else if (py::isinstance<py::sequence>(object) && py::len(object) == 2) {
+    const auto pair = py::reinterpret_borrow<py::sequence>(object);
+    return Background{color_of(pair[0], "background: above"),
+                      color_of(pair[1], "background: below")};
+  }
+  return color_of(object, "background");
+}
+
+std::optional<Background> shown_background(const py::handle& scene) {
+  const py::object background = scene.attr("background");
+  return background.is_none() ? calm_background() : background_from(background);
+}
+
 Rgb<double> color_of(const py::handle& object, const std::string& what) {
   const auto refuse = [&] {
-    return Error(what + ": expected three linear numbers (red, green, blue) or \"#rrggbb\", got " +
-                 short_repr(object));
+    return Error(what + ": expected three linear numbers (red, green, blue), \"#rrggbb\", " +
+                 "\"white\" or \"black\", got " + short_repr(object));
   };
   if (py::isinstance<py::str>(object)) {
     const auto text = py::cast<std::string>(object);
+    if (text == "white") return {1, 1, 1};
+    if (text == "black") return {0, 0, 0};
     char* end = nullptr;
     if (text.size() != 7 || text[0] != '#' || text[1] == '-' || text[1] == '+') throw refuse();
     const long bytes = std::strtol(text.c_str() + 1, &end, 16);

@@ -7,11 +7,13 @@
 #include <pybind11/stl/filesystem.h>
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "pellucid/geometry/vec3.h"
 #include "pellucid/math/rgb.h"
+#include "pellucid/scene/background.h"
 #include "pellucid/scene/error.h"
 #include "pellucid/scene/volume.h"
 
@@ -58,6 +60,12 @@ Vec3<double> vector_of(const py::handle& object, const std::string& what);
 /// Returns a linear color: three linear numbers, or "#rrggbb" in sRGB. Throws Error that begins
 /// with `what`.
 Rgb<double> color_of(const py::handle& object, const std::string& what);
+/// Reads a scene's background: a color, a pair of colors of its upper and lower edge, or
+/// "transparent" (none). Throws Error.
+std::optional<Background> background_from(const py::handle& object);
+/// Returns what a .png of a Python scene has behind its data: `background`, calm_background() if it
+/// is None, or none if it is "transparent". Throws Error.
+std::optional<Background> shown_background(const py::handle& scene);
 py::tuple to_tuple(const Vec3<double>& v);
 py::tuple to_tuple(const Rgb<double>& color);
 

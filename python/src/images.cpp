@@ -33,10 +33,10 @@ ImageHandle image_of(const py::object& object) {
 }
 
 /// Returns the scene's background for Python's `...`, none for None, else a color.
-std::optional<Rgb<double>> background_of(const ImageHandle& handle, const py::object& background) {
+std::optional<Background> background_of(const ImageHandle& handle, const py::object& background) {
   if (background.is(py::ellipsis())) return handle.background;
   if (background.is_none()) return std::nullopt;
-  return color_of(background, "background");
+  return background_from(background);
 }
 
 /// Returns an array (height, width) of one of the image's lists; None if it is empty.
@@ -183,7 +183,8 @@ cannot be written to. A notebook shows it.
       .def_property_readonly("report", &report_of, "Times and counts of the frame.")
       .def("to_srgb8", &srgb8, py::arg("background") = py::ellipsis(), R"(
 Returns uint8 (height, width, 3), sRGB over the background, or without one (height, width, 4) with
-straight alpha: the bytes of a PNG. Default: the scene's background; None: none; or a color.)")
+straight alpha: the bytes of a PNG. `background`: the scene's by default, which is a dark gradient
+unless it has one; None or "transparent": none; or a color, or two from above downwards.)")
       .def("save", &save, py::arg("path"), py::arg("background") = py::ellipsis(), R"(
 Writes .png (8 bits sRGB) or .exr (float, with depth, error and values if there are). Raises Error
 if the file cannot be written or a pixel is not finite.)")

@@ -13,8 +13,8 @@ namespace pellucid::python {
 /// Python's Image.
 struct ImageHandle {
   std::shared_ptr<const Image> image;
-  std::optional<Rgb<double>> background{};  ///< of the scene
-  double tolerance = 0;                     ///< 0: no error is known
+  std::optional<Background> background{};  ///< of its .png; none: transparent
+  double tolerance = 0;                    ///< 0: no error is known
   RenderReport report{};
 };
 

@@ -66,7 +66,7 @@ py::object render_on_ranks(const py::object& object, std::optional<int> handle,
       }
     };
   }
-  ImageHandle image{nullptr, scene.background, scene.integration.tolerance, {}};
+  ImageHandle image{nullptr, shown_background(object), scene.integration.tolerance, {}};
   bool is_first = true;
   try {
     const ReleasedLock released;

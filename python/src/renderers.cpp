@@ -30,9 +30,9 @@ namespace {
 /// Python's Frame: a frame that is being rendered.
 class FrameHandle {
  public:
-  FrameHandle(RunningFrame frame, const Scene& scene)
+  FrameHandle(RunningFrame frame, const Scene& scene, std::optional<Background> background)
       : frame_(std::make_unique<RunningFrame>(std::move(frame))),
-        background_(scene.background),
+        background_(std::move(background)),
         tolerance_(scene.integration.method == Method::exact ? scene.integration.tolerance : 0) {}
   FrameHandle(FrameHandle&&) = default;
   FrameHandle& operator=(FrameHandle&&) = default;
@@ -81,7 +81,7 @@ class FrameHandle {
 
  private:
   std::unique_ptr<RunningFrame> frame_;
-  std::optional<Rgb<double>> background_;
+  std::optional<Background> background_;
   double tolerance_;
   std::optional<ImageHandle> image_{};
   bool waited_for_ = false;
@@ -117,8 +117,9 @@ FrameHandle start(RendererHandle& handle, const py::object& object, bool depth, 
   }
   Scene scene = complete_scene(object);
   RenderOptions options = options_of(scene, depth, error, values, threads, preview);
+  const std::optional<Background> background = shown_background(object);
   const ReleasedLock released;
-  return {handle.renderer->start(scene, std::move(options)), scene};
+  return {handle.renderer->start(scene, std::move(options)), scene, background};
 }
 
 ImageHandle render(RendererHandle& handle, const py::object& scene, bool depth, bool error,
@@ -177,7 +178,7 @@ ImageHandle render_share(RendererHandle& handle, const py::object& object, doubl
     if (!estimates) fraction = std::max(fraction.load(), 0.9 * done);
     return !stop.stop_requested();
   };
-  ImageHandle result{nullptr, made.scene.background};
+  ImageHandle result{nullptr, shown_background(object)};
   std::optional<std::string> over;
   in_a_thread(
       [&] {
@@ -218,7 +219,7 @@ ImageHandle reference_image(const py::object& object, bool depth, int threads,
     fraction = done;
     return !stop.stop_requested();
   };
-  ImageHandle handle{nullptr, scene.background};
+  ImageHandle handle{nullptr, shown_background(object)};
   in_a_thread(
       [&] {
         handle.image =

@@ -7,6 +7,7 @@
 
 #include "handles.h"
 #include "images.h"
+#include "pellucid/cpu/framed_camera.h"
 #include "pellucid/scene/defaults.h"
 #include "pellucid/scene/view_camera.h"
 
@@ -453,6 +454,7 @@ SceneDescription described(const PythonScene& made) {
   description.samples = scene.samples;
   description.integration = scene.integration;
   description.background = scene.background;
+  description.is_transparent = made.is_transparent;
   return description;
 }
 
@@ -481,8 +483,9 @@ PythonScene read_scene(const py::object& object) {
   scene.lights = list_of(object.attr("lights"), "light", light_of);
   scene.clips = list_of(object.attr("clips"), "clip", clip_of);
   if (const py::object background = object.attr("background"); !background.is_none()) {
-    scene.background = color_of(background, "background");
+    scene.background = background_from(background);
   }
+  made.is_transparent = !shown_background(object);
   scene.samples = integer_of(object.attr("samples"), "samples");
   scene.integration = integration_of(object.attr("integration"));
   if (const py::object backdrop = object.attr("backdrop"); !backdrop.is_none()) {
@@ -505,7 +508,8 @@ PythonScene complete_python_scene(const py::object& object) {
   fit_tables(made, object.attr("layers"));
   if (!made.has_camera) {
     const ReleasedLock released;
-    made.scene.camera = default_camera(visible_corners(made.scene, all_cores()), made.scene.size);
+    made.scene.camera = framed_camera(
+        made.scene, default_camera(visible_corners(made.scene, all_cores()), made.scene.size));
   }
   return made;
 }
@@ -540,7 +544,8 @@ Returns the scene's camera; if it has none, the one that shows all that is visib
         }
         const Scene scene = complete_scene(object);
         const ReleasedLock released;
-        const Camera camera = view_camera(visible_corners(scene, all_cores()), view, scene.size);
+        const Camera camera = framed_camera(
+            scene, view_camera(visible_corners(scene, all_cores()), view, scene.size));
         const py::gil_scoped_acquire acquired;
         return to_python(camera);
       },

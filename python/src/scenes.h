@@ -12,7 +12,7 @@ namespace pellucid::python {
 struct PythonScene {
   Scene scene;
   SceneDescription description;
-  bool has_camera = false;
+  bool has_camera = false, is_transparent = false;
 };
 
 /// Reads pellucid.Scene. Throws Error that names the attribute.

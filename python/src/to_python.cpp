@@ -173,7 +173,14 @@ py::object to_python(const Scene& scene, const SceneDescription& description) {
   parts["size"] = py::make_tuple(scene.size.width, scene.size.height);
   parts["samples"] = scene.samples;
   parts["integration"] = make.integration(scene.integration);
-  if (scene.background) parts["background"] = to_tuple(*scene.background);
+  if (description.is_transparent) parts["background"] = "transparent";
+  if (const auto& background = scene.background) {
+    if (background->is_even()) {
+      parts["background"] = to_tuple(background->top);
+    } else {
+      parts["background"] = py::make_tuple(to_tuple(background->top), to_tuple(background->bottom));
+    }
+  }
   if (scene.backdrop) parts["backdrop"] = ImageHandle{scene.backdrop};
   return make.of("Scene")(**parts);
 }

@@ -60,12 +60,12 @@ const SignalTable& signal_table() {
 
 }  // namespace
 
-std::vector<std::uint8_t> display_bytes(const Image& image, const Rgb<double>& background,
+std::vector<std::uint8_t> display_bytes(const Image& image, const Background& background,
                                         DisplayLayout layout) {
   return display_bytes(image, background, layout, 1);
 }
 
-std::vector<std::uint8_t> display_bytes(const Image& image, const Rgb<double>& background,
+std::vector<std::uint8_t> display_bytes(const Image& image, const Background& background,
                                         DisplayLayout layout, int stride) {
   const SignalTable& signal = signal_table();
   const std::size_t channels = layout == DisplayLayout::rgba ? 4 : 3;
@@ -75,12 +75,13 @@ std::vector<std::uint8_t> display_bytes(const Image& image, const Rgb<double>& b
   std::vector<std::uint8_t> bytes(count(image.width) * count(image.height) * channels, 255);
   std::uint8_t* out = bytes.data();
   for (int row = 0; row < image.height; row += stride) {
+    const Rgb<double> behind = background.at_row(row, image.height);
     for (int column = 0; column < image.width; column += stride, out += channels) {
       const std::array<float, 4>& pixel = image.at(column, row);
       const double transparency = 1 - in_unit_range(static_cast<double>(pixel[3]));
-      out[0] = signal(static_cast<double>(pixel[0]) + transparency * background.r);
-      out[1] = signal(static_cast<double>(pixel[1]) + transparency * background.g);
-      out[2] = signal(static_cast<double>(pixel[2]) + transparency * background.b);
+      out[0] = signal(static_cast<double>(pixel[0]) + transparency * behind.r);
+      out[1] = signal(static_cast<double>(pixel[1]) + transparency * behind.g);
+      out[2] = signal(static_cast<double>(pixel[2]) + transparency * behind.b);
     }
   }
   return bytes;

@@ -69,18 +69,20 @@ bool write_with_libpng(std::FILE* file, const PngContent& content, Failure& fail
 
 /// Throws Error where the image or the background cannot be written.
 void check_picture(const Image& image, const std::filesystem::path& path,
-                   const std::optional<Rgb<double>>& background) {
+                   const std::optional<Background>& background) {
   check_image(image, path);
   check_finite(image, path);
-  if (background && !(std::isfinite(background->r) && std::isfinite(background->g) &&
-                      std::isfinite(background->b))) {
+  const auto is_finite = [](const Rgb<double>& color) {
+    return std::isfinite(color.r) && std::isfinite(color.g) && std::isfinite(color.b);
+  };
+  if (background && !(is_finite(background->top) && is_finite(background->bottom))) {
     throw Error(path.string() + ": cannot write: the background is not a finite color");
   }
 }
 
 /// Writes a checked picture. Returns false where libpng fails.
 bool write_stream(std::FILE* stream, const Image& image,
-                  const std::optional<Rgb<double>>& background, Failure& failure) {
+                  const std::optional<Background>& background, Failure& failure) {
   std::vector<std::uint8_t> bytes = to_srgb8(image, background);
   const std::size_t width = static_cast<std::size_t>(image.width);
   const std::size_t height = static_cast<std::size_t>(image.height);
@@ -109,12 +111,12 @@ bool write_stream(std::FILE* stream, const Image& image,
 }  // namespace
 
 std::vector<std::uint8_t> to_srgb8(const Image& image,
-                                   const std::optional<Rgb<double>>& background) {
+                                   const std::optional<Background>& background) {
   return background ? display_bytes(image, *background) : transparent_display_bytes(image);
 }
 
 void write_png(const Image& image, const std::filesystem::path& path,
-               const std::optional<Rgb<double>>& background) {
+               const std::optional<Background>& background) {
   check_picture(image, path, background);
   AtomicFile file(path);
   std::FILE* stream = std::fopen(file.temporary_path().c_str(), "wb");
@@ -127,7 +129,7 @@ void write_png(const Image& image, const std::filesystem::path& path,
   file.commit();
 }
 
-std::string encode_png(const Image& image, const std::optional<Rgb<double>>& background) {
+std::string encode_png(const Image& image, const std::optional<Background>& background) {
   const char* const name = "PNG";
   check_picture(image, name, background);
   char* bytes = nullptr;

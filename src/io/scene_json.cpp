@@ -9,7 +9,6 @@
 namespace pellucid {
 namespace {
 
-using scene_json::linear_rgb;
 using scene_json::Node;
 using scene_json::vector;
 
@@ -217,6 +216,11 @@ Node unwrap(const Node& document, std::string_view key,
 
 }  // namespace
 
+std::optional<Background> shown_background(const SceneDescription& scene) {
+  if (scene.is_transparent) return std::nullopt;
+  return scene.background.value_or(calm_background());
+}
+
 SceneDescription parse_scene(std::string_view json, const std::string& name,
                              const std::filesystem::path& folder) {
   const nlohmann::json parsed = scene_json::parse_document(json, name);
@@ -238,7 +242,8 @@ SceneDescription parse_scene(std::string_view json, const std::string& name,
       scene.samples = static_cast<int>(samples->integer(1, largest_samples));
     }
     if (const auto background = image->find("background")) {
-      scene.background = linear_rgb(*background);
+      scene.is_transparent = background->is_null();
+      if (!background->is_null()) scene.background = scene_json::background(*background);
     }
     if (const auto backdrop = image->find("backdrop")) {
       scene.backdrop = scene_json::file_path(*backdrop, folder);

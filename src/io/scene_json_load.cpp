@@ -34,7 +34,7 @@ bool names(const MultivariateDescription& function, std::string_view channel) {
 /// What the functions of all layers have in common.
 struct Wanted {
   double tolerance;
-  std::optional<Rgb<double>> background;
+  std::optional<Background> background;
 };
 
 /// Of a volume or a mesh.

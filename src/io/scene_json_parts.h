@@ -17,6 +17,7 @@ std::array<Node, 3> three(const Node& node);
 Vec3<double> vector(const Node& node);
 /// [r, g, b], each 0 or more.
 Rgb<double> linear_rgb(const Node& node);
+Background background(const Node& node);
 /// From 1 to 8 numbers.
 std::vector<double> numbers(const Node& list, double lower = -largest_value);
 /// From 1 to 8 rows of `columns` numbers.

@@ -25,6 +25,13 @@ Rgb<double> linear_rgb(const Node& node) {
   return {r.number(0, largest), g.number(0, largest), b.number(0, largest)};
 }
 
+Background background(const Node& node) {
+  if (!node.is_object()) return linear_rgb(node);
+  node.expect_object({"top", "bottom"});
+  constexpr const char* hint = "give the colors at both edges, {\"top\": …, \"bottom\": …}";
+  return {linear_rgb(node.at("top", hint)), linear_rgb(node.at("bottom", hint))};
+}
+
 namespace {
 
 void expect_size(const Node& list, std::size_t least, std::size_t most, const std::string& what) {

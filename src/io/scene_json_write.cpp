@@ -52,6 +52,13 @@ std::string array(const Rgb<double>& c, std::string_view what) {
   return array(Vec3<double>{c.r, c.g, c.b}, what);
 }
 
+std::string background_text(const Background& background) {
+  const std::string_view what = "the background";
+  if (background.is_even()) return array(background.top, what);
+  return joined({"{\"top\": ", array(background.top, what),
+                 ", \"bottom\": ", array(background.bottom, what), "}"});
+}
+
 /// The members of an object, one per line.
 class Members {
  public:
@@ -559,7 +566,11 @@ std::string scene_to_json(const SceneDescription& scene) {
   image.add("width", std::to_string(scene.size.width));
   image.add("height", std::to_string(scene.size.height));
   image.add("samples", std::to_string(scene.samples));
-  if (scene.background) image.add("background", array(*scene.background, "the background"));
+  if (scene.is_transparent) {
+    image.add("background", "null");
+  } else if (scene.background) {
+    image.add("background", background_text(*scene.background));
+  }
   if (!scene.backdrop.empty()) {
     image.add("backdrop", path_text(scene.backdrop, "the path of the backdrop"));
   }

@@ -55,7 +55,7 @@ std::vector<std::vector<double>> gaussian_matrix(const GaussianShape& shape) {
 
 TransferFunction make_transfer_function(const TransferFunctionDescription& description,
                                         double tolerance,
-                                        const std::optional<Rgb<double>>& background) {
+                                        const std::optional<Background>& background) {
   if (const auto* points = std::get_if<std::vector<TransferFunction::Point>>(&description)) {
     return TransferFunction(*points);
   }
@@ -74,7 +74,7 @@ TransferFunction make_transfer_function(const TransferFunctionDescription& descr
     largest_color = std::max({largest_color, c.r, c.g, c.b});
   };
   for (const OpacityPoint& p : table.points) count(p.color);
-  if (background) count(*background);
+  if (background) largest_color = std::max(largest_color, background->largest());
   TransferFunction function = transfer_function_from_opacity_table(
       table.points, table.unit_distance,
       required_relative_error(opacity_table_tolerance(tolerance), largest_color));

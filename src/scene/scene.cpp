@@ -198,9 +198,7 @@ double largest_color(const Scene& scene) noexcept {
 
 double brightest_behind(const Scene& scene) noexcept {
   double most = 0;
-  if (scene.background) {
-    most = std::max({scene.background->r, scene.background->g, scene.background->b});
-  }
+  if (scene.background) most = scene.background->largest();
   if (scene.backdrop) {
     for (const std::array<float, 4>& pixel : scene.backdrop->pixels) {
       most = std::max(most, double{std::max({pixel[0], pixel[1], pixel[2]})});
@@ -271,7 +269,8 @@ void check_integration(const Scene& scene) {
                 std::to_string(largest_samples) + "; a pixel takes samples x samples rays");
   }
   if (const auto& background = scene.background) {
-    for (const double channel : {background->r, background->g, background->b}) {
+    const auto& [top, bottom] = *background;
+    for (const double channel : {top.r, top.g, top.b, bottom.r, bottom.g, bottom.b}) {
       if (channel >= 0 && channel <= largest_light) continue;
       throw Error("background: a color is " + number(channel) +
                   ", but must be linear light from 0 to " + number(largest_light));

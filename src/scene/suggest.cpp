@@ -138,7 +138,7 @@ GaussianPrimitive primitive_of(const NormalComponent& component, const std::vect
 
 /// Of data without anything but background: seen through and through.
 std::vector<GaussianPrimitive> haze(const Channels& channels, const std::vector<int>& which,
-                                    const JointHistogram& h, const Background& background) {
+                                    const JointHistogram& h, const BackgroundBin& background) {
   NormalComponent all{1, background.mean(), {}};
   for (const HistogramAxis& axis : h.axes) {
     all.covariance.emplace_back(h.axes.size(), 0.0);
@@ -157,7 +157,7 @@ std::vector<GaussianPrimitive> suggest_boundaries(const Channels& channels, int 
   const std::vector<int> which{value, gradient_magnitude};
   constexpr int bins = 256;
   const JointHistogram h = core_histogram(channels, which, bins, parallel);
-  const Background background(h);
+  const BackgroundBin background(h);
   const Boundaries boundaries(h);
   const std::vector<ValuePeak> materials = boundaries.materials();
   if (materials.size() < 2) return suggest_mixture(channels, which, 0, parallel);
@@ -211,7 +211,7 @@ std::vector<GaussianPrimitive> suggest_mixture(const Channels& channels,
   }
   constexpr std::array<int, max_suggested_channels> bins{256, 96, 40};
   const JointHistogram h = core_histogram(channels, which, bins[n - 1], parallel);
-  const Background background(h);
+  const BackgroundBin background(h);
 
   WeightedPoints points;
   points.dimensions = static_cast<int>(n);

@@ -41,7 +41,7 @@ double least_variance(const HistogramAxis& axis) {
   return std::min(0.5, 0.0025 * axis.bins * axis.bins);
 }
 
-Background::Background(const JointHistogram& histogram) {
+BackgroundBin::BackgroundBin(const JointHistogram& histogram) {
   const auto mode = std::max_element(histogram.count.begin(), histogram.count.end());
   mean_ = bin_coordinates(histogram, static_cast<std::size_t>(mode - histogram.count.begin()));
   const std::size_t n = mean_.size();
@@ -72,7 +72,7 @@ Background::Background(const JointHistogram& histogram) {
   }
 }
 
-bool Background::holds(const std::vector<double>& coordinates, double deviations) const {
+bool BackgroundBin::holds(const std::vector<double>& coordinates, double deviations) const {
   double square = 0;
   for (std::size_t k = 0; k < mean_.size(); ++k) {
     square += (coordinates[k] - mean_[k]) * (coordinates[k] - mean_[k]) / variance_[k];

@@ -26,9 +26,9 @@ double least_variance(const HistogramAxis& axis);
 /// What fills the most of the volume: what stands about the bin of the largest count, grown from
 /// that bin until it holds what is within three standard deviations, but no further than a
 /// twentieth of an axis to a standard deviation.
-class Background {
+class BackgroundBin {
  public:
-  explicit Background(const JointHistogram& histogram);
+  explicit BackgroundBin(const JointHistogram& histogram);
 
   /// Whether coordinates in bins are within so many standard deviations.
   bool holds(const std::vector<double>& coordinates, double deviations = 3) const;

@@ -20,7 +20,7 @@ constexpr double deepest = 5, faintest = 0.002;
 class Stage {
  public:
   Stage(std::vector<Shape> shapes, const Channels& channels, const std::vector<int>& which,
-        const JointHistogram& histogram, const Background* background)
+        const JointHistogram& histogram, const BackgroundBin* background)
       : shapes_(std::move(shapes)),
         channels_(channels),
         which_(which),
@@ -162,7 +162,7 @@ class Stage {
   const Channels& channels_;
   const std::vector<int>& which_;
   const JointHistogram& histogram_;
-  const Background* background_;
+  const BackgroundBin* background_;
   std::vector<float> density_;
   std::vector<ColumnDepth> depth_;
   std::vector<double> in_background_;
@@ -174,7 +174,7 @@ class Stage {
 std::vector<GaussianPrimitive> with_look(std::vector<Shape> shapes, const Channels& channels,
                                          const std::vector<int>& which,
                                          const JointHistogram& histogram,
-                                         const Background* background) {
+                                         const BackgroundBin* background) {
   return Stage(std::move(shapes), channels, which, histogram, background).look();
 }
 

@@ -22,6 +22,6 @@ struct Shape {
 std::vector<GaussianPrimitive> with_look(std::vector<Shape> shapes, const Channels& channels,
                                          const std::vector<int>& which,
                                          const JointHistogram& histogram,
-                                         const Background* background);
+                                         const BackgroundBin* background);
 
 }  // namespace pellucid

@@ -59,4 +59,30 @@ Camera view_camera(const std::array<Vec3<double>, 8>& corners, std::string_view 
   return camera;
 }
 
+Vec3<double> rotated(const Vec3<double>& v, const Vec3<double>& axis, double radians) noexcept {
+  const double cosine = std::cos(radians), sine = std::sin(radians);
+  return v * cosine + cross(axis, v) * sine + axis * (dot(axis, v) * (1 - cosine));
+}
+
+void turn_camera(Camera& camera, double azimuth, double elevation) {
+  constexpr double degree = std::numbers::pi / 180;
+  make_camera_frame(camera, {1, 1});
+  const Vec3<double> up = normalized(camera.up);
+  Vec3<double> offset = rotated(camera.position - camera.focal_point, up, azimuth * degree);
+  if (elevation != 0) {
+    const Vec3<double> right = normalized(cross(up, offset));
+    offset = rotated(offset, right, -elevation * degree);
+    camera.up = normalized(cross(offset, right));
+  }
+  camera.position = camera.focal_point + offset;
+}
+
+void zoom_camera(Camera& camera, double factor) noexcept {
+  if (camera.projection == Projection::orthographic) {
+    camera.parallel_scale /= factor;
+  } else {
+    camera.position = camera.focal_point + (camera.position - camera.focal_point) * (1 / factor);
+  }
+}
+
 }  // namespace pellucid

@@ -64,4 +64,43 @@ TEST(View, StandsOnTheSideNamed) {
   EXPECT_GT(front.up.z, 0);
 }
 
+Camera camera_at(Vec3<double> position) {
+  Camera camera;
+  camera.focal_point = {1, 2, 3};
+  camera.position = camera.focal_point + position;
+  camera.up = {0, 0, 2};
+  return camera;
+}
+
+void expect_near(const Vec3<double>& v, const Vec3<double>& expected) {
+  for (int a = 0; a < 3; ++a) EXPECT_NEAR(v[a], expected[a], 1e-12);
+}
+
+// As vtkCamera::Azimuth() and Elevation() do, of a camera that looks along +y.
+TEST(View, TurnsAroundTheFocalPoint) {
+  Camera camera = camera_at({0, -4, 0});
+  turn_camera(camera, 90, 0);
+  expect_near(camera.position - camera.focal_point, {4, 0, 0});
+  expect_near(camera.up, {0, 0, 2});
+  camera = camera_at({0, -4, 0});
+  turn_camera(camera, 0, 30);
+  expect_near(camera.position - camera.focal_point, {0, -2 * std::sqrt(3.0), 2});
+  expect_near(camera.up, {0, 0.5, std::sqrt(3.0) / 2});
+  camera = camera_at({0, -4, 0});
+  turn_camera(camera, 90, 90);
+  expect_near(camera.position - camera.focal_point, {0, 0, 4});
+  expect_near(camera.up, {-1, 0, 0});
+  expect_near(camera.focal_point, {1, 2, 3});
+}
+
+TEST(View, EnlargesThePicture) {
+  Camera camera = camera_at({0, -4, 0});
+  zoom_camera(camera, 2);
+  expect_near(camera.position - camera.focal_point, {0, -2, 0});
+  camera.projection = Projection::orthographic;
+  camera.parallel_scale = 6;
+  zoom_camera(camera, 4);
+  EXPECT_EQ(camera.parallel_scale, 1.5);
+}
+
 }  // namespace

@@ -241,10 +241,12 @@ export class LightPanel extends Panel {
       make('div', {class: 'row'}, button('Add a light', () => viewer.editScene('lights',
         [...lights, {type: 'directional', direction: [0, 1, -1], color: white}], newGesture()))),
       make('div', {class: 'row'}, labelled('Background',
-        colorInput(background ?? [0, 0, 0], 'Background', (color, gesture) =>
-          viewer.editScene('background', color, gesture))),
-      background ? button('Transparent', () => viewer.editScene('background', null, newGesture()))
-        : make('span', {class: 'hint'}, 'transparent, shown over black')));
+        colorInput(background?.top ?? background ?? [0.01, 0.01, 0.02], 'Background',
+          (color, gesture) => viewer.editScene('background', color, gesture))),
+      button('Default', () => viewer.editScene('background', null, newGesture())),
+      button('Transparent', () => viewer.editScene('background', 'transparent', newGesture()))),
+    make('span', {class: 'hint'}, background === undefined ? 'a dark gradient'
+      : background === null ? 'a saved picture is transparent' : ''));
     return parts;
   }
 

@@ -15,17 +15,17 @@ namespace pellucid {
 /// All writers write to a temporary file beside the target and rename it, so that a failure leaves
 /// no partial file. They throw Error.
 
-/// Writes 8-bit sRGB with alpha that is not premultiplied. If `background` (linear RGB) is given,
+/// Writes 8-bit sRGB with alpha that is not premultiplied. If `background` is given,
 /// composites over it and writes no alpha.
 void write_png(const Image& image, const std::filesystem::path& path,
-               const std::optional<Rgb<double>>& background = std::nullopt);
+               const std::optional<Background>& background = std::nullopt);
 /// Returns the file that write_png() writes.
 std::string encode_png(const Image& image,
-                       const std::optional<Rgb<double>>& background = std::nullopt);
+                       const std::optional<Background>& background = std::nullopt);
 /// Returns its bytes before compression, row by row from the top: four per pixel, or with a
 /// background three. Numbers beyond [0, 1] are clamped; NaN counts as 0.
 std::vector<std::uint8_t> to_srgb8(const Image& image,
-                                   const std::optional<Rgb<double>>& background = std::nullopt);
+                                   const std::optional<Background>& background = std::nullopt);
 /// Writes linear premultiplied float R, G, B, A. Adds Z if the image has depth, `error` (float) and
 /// `error.proved` (half, 0 or 1) if it has an error, `value` if it has values, and the metadata as
 /// string attributes.

@@ -78,9 +78,15 @@ struct SceneDescription {
   /// integration.tolerance. The program `pellucid` renders to find it. make_scene() ignores it,
   /// because the tolerance depends on the picture.
   std::optional<double> relative_tolerance;
-  std::optional<Rgb<double>> background;
+  std::optional<Background> background;
+  /// Whether a .png keeps its transparency; if not, one without a background gets
+  /// calm_background().
+  bool is_transparent = false;
   std::filesystem::path backdrop;  ///< an .exr with depth (Scene::backdrop); may be empty
 };
+
+/// Returns what a .png of the scene has behind its data; none: it keeps its transparency.
+std::optional<Background> shown_background(const SceneDescription& scene);
 
 /// Parses and validates a scene; reads no other file. Relative paths are resolved against `folder`.
 /// `name` (the file's) opens every message. Throws Error: one line with line and column if the text

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "pellucid/scene/multivariate_transfer_function.h"
+#include "pellucid/scene/background.h"
 #include "pellucid/scene/opacity_table.h"
 
 namespace pellucid {
@@ -109,7 +110,7 @@ constexpr double opacity_table_tolerance(double tolerance) noexcept {
 /// top. Throws Error, also for a function of several channels and for a preset.
 TransferFunction make_transfer_function(const TransferFunctionDescription& description,
                                         double tolerance,
-                                        const std::optional<Rgb<double>>& background = {});
+                                        const std::optional<Background>& background = {});
 /// Returns the function of the channels with these names. Throws Error; if a term names another
 /// channel, the message lists the names in `known`, or if that is empty the channels.
 std::shared_ptr<const MultivariateTransferFunction> make_multivariate(

@@ -11,6 +11,7 @@
 #include "pellucid/error/grade.h"
 #include "pellucid/error/precision.h"
 #include "pellucid/render/camera.h"
+#include "pellucid/scene/background.h"
 #include "pellucid/scene/clip.h"
 #include "pellucid/scene/image.h"
 #include "pellucid/scene/layer.h"
@@ -106,7 +107,7 @@ struct Scene {
   /// A pixel is the mean of samples × samples rays through the centres of its equal parts.
   int samples = 1;
   Integration integration;
-  std::optional<Rgb<double>> background;  ///< linear; none: the image stays transparent
+  std::optional<Background> background;  ///< none: the image stays transparent
   /// A picture of geometry among the data, for example of a host program: as large as `size`, with
   /// a depth per pixel (Image::depth, a distance from the ray's origin; infinite where there is
   /// nothing). Rays end there, and its pixels are behind what they gather. May be null.

@@ -19,4 +19,14 @@ const std::vector<std::string>& view_names();
 Camera view_camera(const std::array<Vec3<double>, 8>& corners, std::string_view name,
                    ImageSize size);
 
+/// Turns a camera around its focal point, by degrees: `azimuth` moves it to the right around its
+/// upward direction, `elevation` moves it up and takes that direction along, as VTK's cameras do.
+/// Throws Error if the camera has no view direction, or looks along its `up`.
+void turn_camera(Camera& camera, double azimuth, double elevation);
+/// Enlarges the picture by a factor above 0: the camera comes closer to its focal point, or its
+/// parallel scale shrinks.
+void zoom_camera(Camera& camera, double factor) noexcept;
+/// Returns `v` turned by an angle around an axis of length 1, by Rodrigues' formula.
+Vec3<double> rotated(const Vec3<double>& v, const Vec3<double>& axis, double radians) noexcept;
+
 }  // namespace pellucid
