@@ -77,10 +77,14 @@ class Shading:
     """From 1 to 1000."""
     gradient: str = "smooth"
     """"smooth" (central differences at the values) or "field" (of the reconstruction)."""
-    flatness: float = 0.02
-    """Light fades where the gradient is below this share of the data's range per voxel."""
+    flatness: Optional[float] = None
+    """Light fades where the gradient is below this share of the data's range per voxel, on surfaces
+    too. None: on surfaces it does not, in the medium as `flat_gradient` says."""
     channel: int = 0
     """Of several variables, the index of the one whose gradient it is."""
+    flat_gradient: Optional[float] = None
+    """In the medium light fades where the gradient is below this, in data units per world length.
+    None: below what noise makes, found in the data (docs/reference/scene.md)."""
 
 
 @dataclass

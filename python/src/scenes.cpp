@@ -145,8 +145,13 @@ Shading shading_of(const py::object& object, const std::string& what) {
   shading.gradient = choice(object.attr("gradient"), what + ".gradient", gradients) == 0
                          ? GradientKind::smooth
                          : GradientKind::field;
-  shading.flatness = number("flatness");
+  const auto optional_number = [&](const char* name) -> std::optional<double> {
+    if (object.attr(name).is_none()) return std::nullopt;
+    return number(name);
+  };
+  shading.flatness = optional_number("flatness");
   shading.channel = integer_of(object.attr("channel"), what + ".channel");
+  shading.flat_gradient = optional_number("flat_gradient");
   return shading;
 }
 

@@ -149,7 +149,8 @@ class Maker {
 
   py::object shading(const Shading& s) const {
     return of("Shading")(s.ambient, s.diffuse, s.specular, s.power,
-                         std::string(gradient_kind_name(s.gradient)), s.flatness, s.channel);
+                         std::string(gradient_kind_name(s.gradient)), s.flatness, s.channel,
+                         s.flat_gradient);
   }
 
   py::module_ scene_ = py::module_::import("pellucid.scene");

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "pellucid/scene/error.h"
+#include "pellucid/scene/value_noise.h"
 
 namespace pellucid {
 namespace {
@@ -65,13 +66,19 @@ double placed_voxel(const Layer& layer) {
 void keep_voxel(double whole, Layer& layer) {
   const double own = placed_voxel(layer);
   if (!(whole > 0) || whole == own) return;
-  if (layer.shading) layer.shading->flatness *= own / whole;
+  if (layer.shading && layer.shading->flatness) *layer.shading->flatness *= own / whole;
   const auto& opacity = layer.gradient_opacity;
   if (!opacity || opacity->unit() != GradientOpacity::Unit::voxel) return;
   std::vector<GradientOpacity::Point> points = opacity->points();
   for (GradientOpacity::Point& point : points) point.gradient /= whole;
   layer.gradient_opacity = std::make_shared<const GradientOpacity>(
       std::move(points), GradientOpacity::Unit::world, opacity->channel());
+}
+
+/// Whether light fades as the data say, which a part of them does not.
+bool asks_data(const Layer& layer) {
+  return layer.shading && !layer.shading->flatness && !layer.shading->flat_gradient &&
+         grid_of(layer) != nullptr && !std::holds_alternative<LabelContent>(layer.content);
 }
 
 /// Calls visit(volume) for every volume of the layer whose range matters.
@@ -164,6 +171,7 @@ Layer sub_layer(const Layer& whole, const BrickTree& tree, int brick) {
         sub_volume(volume, indices_of_brick(volume.description(), whole.transform, tree, brick)));
   });
   if (grid_of(whole) != nullptr) keep_voxel(placed_voxel(whole), part);
+  if (asks_data(whole)) part.shading->flat_gradient = flat_gradient(moved_into_place(whole));
   return part;
 }
 
@@ -172,6 +180,34 @@ Scene sub_scene(const Scene& whole, const BrickTree& tree, int brick) {
   for (Layer& layer : part.layers) layer = sub_layer(layer, tree, brick);
   return part;
 }
+
+namespace {
+
+/// The mean side of a box along the world's axes around the layers of all ranks.
+double whole_side(Communicator& ranks, const Layer& own) {
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  std::vector<double> lower(3, infinity), upper(3, -infinity);
+  for (const Vec3<double>& corner : world_corners(own)) {
+    for (int a = 0; a < 3; ++a) {
+      const auto axis = static_cast<std::size_t>(a);
+      lower[axis] = std::min(lower[axis], corner[a]);
+      upper[axis] = std::max(upper[axis], corner[a]);
+    }
+  }
+  ranks.reduce_all(lower, Communicator::Reduction::minimum);
+  ranks.reduce_all(upper, Communicator::Reduction::maximum);
+  return (upper[0] - lower[0] + upper[1] - lower[1] + upper[2] - lower[2]) / 3;
+}
+
+/// Gives the layer the gradient below which light fades in the data of all ranks.
+void agree_on_flat_gradient(Communicator& ranks, Layer& own) {
+  const Layer placed = moved_into_place(own);
+  ValueNoise noise = lit_volume(placed)->noise();
+  ranks.reduce_all(noise.counts(), Communicator::Reduction::sum);
+  own.shading->flat_gradient = flat_gradient(placed, noise, whole_side(ranks, placed));
+}
+
+}  // namespace
 
 void agree_on_ranges(Communicator& ranks, const std::vector<double>& whole_voxels, Scene& own) {
   std::vector<double> least, most;
@@ -195,6 +231,7 @@ void agree_on_ranges(Communicator& ranks, const std::vector<double>& whole_voxel
       return std::make_shared<const Volume>(volume.as_part_of(minimum, maximum));
     });
     if (i < whole_voxels.size() && grid_of(layer) != nullptr) keep_voxel(whole_voxels[i], layer);
+    if (asks_data(layer)) agree_on_flat_gradient(ranks, layer);
   }
 }
 

@@ -135,8 +135,8 @@ std::vector<Light> lights(const Node& list) {
 }
 
 ShadingDescription shading(const Node& node) {
-  node.expect_object(
-      {"ambient", "diffuse", "specular", "power", "gradient", "flatness", "channel"});
+  node.expect_object({"ambient", "diffuse", "specular", "power", "gradient", "flatness",
+                      "flat_gradient", "channel"});
   ShadingDescription shading;
   const auto read = [&](const char* key, double least, double& value) {
     if (const auto number = node.find(key)) value = number->number(least, largest_strength);
@@ -145,7 +145,15 @@ ShadingDescription shading(const Node& node) {
   read("diffuse", 0, shading.values.diffuse);
   read("specular", 0, shading.values.specular);
   read("power", 1, shading.values.power);
-  read("flatness", 0, shading.values.flatness);
+  if (const auto flatness = node.find("flatness")) {
+    shading.values.flatness = flatness->number(0, largest_strength);
+  }
+  if (const auto gradient = node.find("flat_gradient")) {
+    if (shading.values.flatness) {
+      gradient->fail("stands beside a \"flatness\"; leave one of the two out");
+    }
+    shading.values.flat_gradient = gradient->number(0, 1e38);
+  }
   if (const auto gradient = node.find("gradient")) {
     shading.values.gradient = std::array{
         GradientKind::smooth, GradientKind::field}[gradient->one_of({"smooth", "field"})];

@@ -434,7 +434,12 @@ std::string shading_text(const ShadingDescription& shading, const std::string& i
   members.add("specular", number(values.specular, "a part of the shading"));
   members.add("power", number(values.power, "the power of the shading"));
   members.add("gradient", joined({"\"", gradient_kind_name(values.gradient), "\""}));
-  members.add("flatness", number(values.flatness, "the flatness of the shading"));
+  if (values.flatness) {
+    members.add("flatness", number(*values.flatness, "the flatness of the shading"));
+  }
+  if (values.flat_gradient) {
+    members.add("flat_gradient", number(*values.flat_gradient, "the flat gradient of the shading"));
+  }
   add_channel("channel", shading.channel, members);
   return members.object();
 }

@@ -31,7 +31,10 @@ LitLayer::LitLayer(const Layer& layer, const std::vector<Clip>& of_scene)
   const DerivedChannels derived(layer);
   gradient_ = derived.gradient(channels);
   argument_ = derived.magnitude(channels);
-  if (layer.shading) flat_ = flat_gradient(layer);
+  if (layer.shading) {
+    flat_ = largest_extinction(layer) > 0 ? flat_gradient(layer) : 0;
+    flat_of_surfaces_ = flat_gradient_of_surfaces(layer);
+  }
   if (layer.gradient_opacity) {
     factor_ = layer.gradient_opacity->per_world(voxel_of(layer));
     factor_table_.emplace(factor_->points());
@@ -120,13 +123,14 @@ LitPart LitLayer::part(const LitStretch& stretch, Real begin, Real end,
           std::make_shared<const PieceLight>(std::move(light))};
 }
 
-Rgb<double> LitLayer::shaded(const Rgb<double>& color, const LayerStretch& stretch, Real u,
-                             const RayLights& lights) const {
+Rgb<double> LitLayer::shaded_surface(const Rgb<double>& color, const LayerStretch& stretch, Real u,
+                                     const RayLights& lights) const {
   if (!layer_.shading) return color;
   Real3 gradient;
   for (std::size_t a = 0; a < 3; ++a) gradient[a] = stretch.chords[gradient_ + a](u);
   const Real t = stretch.t_begin + u * (stretch.t_end - stretch.t_begin);
-  const Reflection reflection = lights.reflection(*layer_.shading, normal_of(gradient, flat_), t);
+  const Reflection reflection =
+      lights.reflection(*layer_.shading, normal_of(gradient, flat_of_surfaces_), t);
   return {color.r * reflection.factor.r + reflection.added.r,
           color.g * reflection.factor.g + reflection.added.g,
           color.b * reflection.factor.b + reflection.added.b};

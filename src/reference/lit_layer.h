@@ -36,8 +36,8 @@ class LitLayer {
   /// The part [begin, end] of a stretch, world arc length, between neighbouring cuts.
   LitPart part(const LitStretch& stretch, Real begin, Real end, const RayLights& lights) const;
   /// A color of the layer's as the lights show it at u of a stretch.
-  Rgb<double> shaded(const Rgb<double>& color, const LayerStretch& stretch, Real u,
-                     const RayLights& lights) const;
+  Rgb<double> shaded_surface(const Rgb<double>& color, const LayerStretch& stretch, Real u,
+                             const RayLights& lights) const;
 
  private:
   /// Whether the medium absorbs nowhere.
@@ -48,8 +48,8 @@ class LitLayer {
 
   const Layer& layer_;
   LayerData data_;
-  std::size_t gradient_, argument_;  ///< indices of chords
-  Real flat_ = 0;                    ///< g0
+  std::size_t gradient_, argument_;       ///< indices of chords
+  Real flat_ = 0, flat_of_surfaces_ = 0;  ///< g0
   std::optional<TransferFunction> factor_;
   std::optional<Table> factor_table_;
 };

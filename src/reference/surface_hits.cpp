@@ -101,7 +101,7 @@ void add_isosurface(const LitLayer& layer, const Isosurface& surface,
       const Chord& chord = stretch.chords[static_cast<std::size_t>(surface.color_channel)];
       const Rgb<double> color = colors ? color_at(*colors, chord(u)) : surface.color;
       hits.push_back({stretch.t_begin + u * (stretch.t_end - stretch.t_begin), surface.opacity,
-                      layer.shaded(color, stretch, u, lights)});
+                      layer.shaded_surface(color, stretch, u, lights)});
     });
   }
 }

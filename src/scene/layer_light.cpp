@@ -57,7 +57,13 @@ class LightCheck {
     require("shading: diffuse", shading.diffuse, 0, 1e3);
     require("shading: specular", shading.specular, 0, 1e3);
     require("shading: power", shading.power, 1, 1e3);
-    require("shading: flatness", shading.flatness, 0, 1e3);
+    if (shading.flatness) require("shading: flatness", *shading.flatness, 0, 1e3);
+    if (shading.flat_gradient) {
+      if (shading.flatness) {
+        fail("shading has a flatness and a flat_gradient; leave one of the two out");
+      }
+      require("shading: flat_gradient", *shading.flat_gradient, 0, 1e38);
+    }
     check_channel(shading.channel, "shading");
   }
 
@@ -182,25 +188,6 @@ double voxel_of(const Layer& layer) noexcept {
     sum += length(corners[std::size_t{1} << a] - corners[0]) / std::max(cells, 1);
   }
   return sum / 3;
-}
-
-double flat_gradient(const Layer& layer) noexcept {
-  const Shading& shading = layer.shading.value();
-  const VolumeStatistics& data = std::visit(
-      [&](const auto& content) -> const VolumeStatistics& {
-        using Content = std::decay_t<decltype(content)>;
-        if constexpr (std::is_same_v<Content, VolumeContent>) {
-          return content.volume->statistics();
-        } else if constexpr (std::is_same_v<Content, ChannelsContent>) {
-          return (*content.channels)[shading.channel].volume->statistics();
-        } else if constexpr (std::is_same_v<Content, MeshContent>) {
-          return content.mesh->statistics(shading.channel);
-        } else {
-          return content.labels->volume().statistics();
-        }
-      },
-      layer.content);
-  return shading.flatness * (data.maximum - data.minimum) / voxel_of(layer);
 }
 
 double largest_color(const Layer& layer, const std::vector<Light>& lights) noexcept {

@@ -14,6 +14,7 @@
 #include "pellucid/scene/error.h"
 #include "volume_blocks.h"
 #include "volume_check.h"
+#include "volume_noise.h"
 #include "volume_scan.h"
 
 namespace pellucid {
@@ -86,7 +87,8 @@ VolumeData make_volume_data(std::string_view type_name, std::size_t count) {
 Volume::Volume(Description description, VolumeData data)
     : description_(std::move(description)),
       data_(std::move(data)),
-      blocks_(std::make_shared<VolumeBlocks>()) {
+      blocks_(std::make_shared<VolumeBlocks>()),
+      noise_(std::make_shared<VolumeNoise>()) {
   const VolumeCheck check(description_);
   check.dimensions(data_size(data_));
   place(check);
@@ -171,7 +173,14 @@ Volume Volume::as_part_of(double minimum, double maximum) const {
   Volume result = *this;
   result.statistics_.minimum = minimum;
   result.statistics_.maximum = maximum;
+  result.noise_ = std::make_shared<VolumeNoise>();
   return result;
+}
+
+const ValueNoise& Volume::noise() const {
+  const std::scoped_lock lock(noise_->building);
+  if (!noise_->found) noise_->found.emplace(*this);
+  return *noise_->found;
 }
 
 Histogram Volume::histogram(int bins) const {

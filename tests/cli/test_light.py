@@ -73,7 +73,7 @@ class Light(ProgramTest):
         self.assertNotIn("shading", self.scene("a.npy", "--shading", "off")[1])
         self.assertEqual(self.scene("a.npy", "--shading", "on")[1]["shading"],
                          {"ambient": 0.2, "diffuse": 0.7, "specular": 0.2, "power": 20,
-                          "gradient": "smooth", "flatness": 0.02})
+                          "gradient": "smooth"})
         self.assertNotIn("shading", self.scene("a.npy", "--iso", "1", "--shading", "off")[1])
         self.write("lit.json", json.dumps({"layers": [
             {"field": {"file": "a.npy"}, "shading": {"power": 5, "gradient": "field"}}]}))

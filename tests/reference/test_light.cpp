@@ -355,7 +355,7 @@ TEST(ReferenceLight, NormalsTurnAroundACentre) {
     layer.clips = {{ClipPlane{centre - v * 3, v}}, {ClipPlane{centre + v * 3, v * -1}}};
     const Place aside = unit(cross(v, {0.3, 0.5, 0.7}));
     const ReferencePixel pixel = reference_ray(of({layer}), centre + aside * r - v * 20, v);
-    const double flat = shading.flatness * range;
+    const double flat = *shading.flatness * range;
     const double width = std::sqrt(r * r + flat * flat / 4);
     // The integral over s = width · sinh y, or s itself where the cosine is 1.
     const double far = width > 0 ? std::asinh(3 / width) : 3;

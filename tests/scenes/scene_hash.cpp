@@ -99,7 +99,7 @@ void add_light(Hash& hash, const Layer& layer) {
   if (layer.shading) {
     const Shading& s = *layer.shading;
     hash.add_numbers(3, s.ambient, s.diffuse, s.specular, s.power, static_cast<int>(s.gradient),
-                     s.flatness, s.channel);
+                     s.flatness.value_or(-1), s.channel, s.flat_gradient.value_or(-1));
   }
   if (layer.gradient_opacity) {
     const GradientOpacity& factors = *layer.gradient_opacity;

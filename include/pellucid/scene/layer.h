@@ -120,9 +120,22 @@ int channels_of(const Layer& layer) noexcept;
 /// Returns the size of a voxel of a layer in its place, in world units: the mean of the three edges
 /// of a mean cell of the grid; of a mesh the edge of a cube of six mean tetrahedra.
 double voxel_of(const Layer& layer) noexcept;
-/// Returns the gradient at which the squared normal of the layer's light is a half: g0 of Shading,
-/// in data units per world length. The layer is in its place and has a shading.
-double flat_gradient(const Layer& layer) noexcept;
+/// Returns the gradient at which the squared normal in the layer's medium is a half: g0 of Shading,
+/// in data units per world length. The layer is in its place and has a shading. What the shading
+/// gives counts; else, of the data of the shading's channel,
+///
+///   g0 = max(min(3/2 · d / voxel, g / 4), 1/50 · range / side)
+///
+/// with voxel_of(), the mean `side` of the data's box, and where the layer's function absorbs, by
+/// its extinction (value_noise.h): the median second difference `d` between neighboring values, at
+/// least half of the smallest difference there is; and the gradient `g` that a fiftieth exceeds. In
+/// data that are smooth, `d` falls with the square of the voxel, in noise it is 1.65 times its
+/// standard deviation. Meshes have the last term alone.
+double flat_gradient(const Layer& layer);
+/// Returns the same for surfaces: 0, unless the shading gives a flatness.
+double flat_gradient_of_surfaces(const Layer& layer) noexcept;
+/// Returns the volume whose gradient lights the layer, which has a shading; null for a mesh.
+const Volume* lit_volume(const Layer& layer) noexcept;
 
 /// Returns the volume whose grid the rays cross; null for a mesh.
 const Volume* grid_of(const Layer& layer) noexcept;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <optional>
 #include <string>
 #include <string_view>
 #include <variant>
@@ -59,15 +60,21 @@ std::string_view gradient_kind_name(GradientKind kind) noexcept;
 /// direction v to the eye. A light has no specular part
 /// where |l + v| <= 1e-6. The normal is
 ///
-///   n = g / √(|g|² + g0²),   g0 = flatness · (range of the data) / (size of a voxel),
+///   n = g / √(|g|² + g0²)
 ///
-/// so that light fades where the data are flat, and noise of the last bit makes no highlights.
+/// so that light fades where the data are flat, and noise makes no highlights. For surfaces g0 is
+/// 0: they have a normal wherever the gradient is not 0. For the medium g0 is of the data, the same
+/// however finely they are stored: flat_gradient() (scene/layer.h) defines it. One of `flatness`
+/// and `flat_gradient` may be given in its place.
 struct Shading {
   double ambient = 0.2, diffuse = 0.7, specular = 0.2;  ///< >= 0
   double power = 20;                                    ///< from 1 to 1000
   GradientKind gradient = GradientKind::smooth;
-  double flatness = 0.02;  ///< >= 0; see flat_gradient() (scene/layer.h)
-  int channel = 0;         ///< of several variables, the one whose gradient it is
+  /// g0 as a share of the range of the data per voxel, of the medium and of surfaces; >= 0.
+  std::optional<double> flatness{};
+  int channel = 0;  ///< of several variables, the one whose gradient it is
+  /// g0 of the medium, in data units per world length; >= 0.
+  std::optional<double> flat_gradient{};
 
   bool operator==(const Shading&) const = default;
 };

@@ -29,8 +29,10 @@ inline ParallelFor parallel_or_serial(const ParallelFor& parallel) {
   return [](int count, const std::function<void(int, int)>& body) { body(0, count); };
 }
 
+class ValueNoise;
 class VolumeBlocks;
 class VolumeCheck;
+class VolumeNoise;
 
 /// The data in their own type. A std::vector of such a type converts without a copy.
 using VolumeData =
@@ -117,6 +119,10 @@ class Volume {
   /// again. Throws Error if an int cannot count the blocks.
   const BlockRecords& block_records(const ParallelFor& parallel = {}) const;
 
+  /// Returns how much neighboring values differ. The first call looks, at most at 2^18 places;
+  /// copies of the volume share the answer. Safe to call from any thread.
+  const ValueNoise& noise() const;
+
   /// Calls visitor(StructuredGrid<Value, double>) with the data's own type and returns its result.
   template <class Visitor>
   decltype(auto) visit(Visitor&& visitor) const {
@@ -141,6 +147,7 @@ class Volume {
   Affine<double> grid_from_world_, world_from_grid_;
   double voxel_size_ = 1;
   std::shared_ptr<VolumeBlocks> blocks_;
+  std::shared_ptr<VolumeNoise> noise_;
 };
 
 }  // namespace pellucid

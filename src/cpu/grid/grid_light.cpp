@@ -26,14 +26,14 @@ bool is_moderate_gradient(double x) {
 
 }  // namespace
 
-std::optional<PacketLight> packet_light(const LayerLook& look, const Volume& volume,
+std::optional<PacketLight> packet_light(const LayerLook& look, const Reflection<double>* r,
+                                        const Volume& volume,
                                         const std::vector<LightSource<double>>& lights) {
   PacketLight result;
-  const Reflection<double>* const r = look.reflection();
   if (r != nullptr) {
     const VolumeStatistics& data = volume.statistics();
     const double steepest = (data.maximum - data.minimum) / voxel_of(look.layer());
-    if (!is_moderate_gradient(steepest) || !is_moderate_gradient(flat_gradient(look.layer())) ||
+    if (!is_moderate_gradient(steepest) || !is_moderate_gradient(std::sqrt(r->flat_square)) ||
         lights.size() > std::size_t{PacketLight::most_lights} ||
         std::ranges::any_of(lights, [](const LightSource<double>& light) {
           return light.kind == LightSource<double>::Kind::point;
@@ -73,7 +73,8 @@ std::unique_ptr<const GridLight> GridLight::make(const Layer& layer,
     return nullptr;
   }
   auto result = std::unique_ptr<GridLight>(new GridLight(layer, lights, wanted));
-  const auto light = packet_light(result->look_, result->volume_, result->lights_);
+  const auto light =
+      packet_light(result->look_, result->look_.reflection(), result->volume_, result->lights_);
   if (!light) return nullptr;
   result->light_ = *light;
   return result;

@@ -17,7 +17,8 @@ namespace pellucid {
 
 /// Returns a layer's light as packets see it; of an unlit layer, the world alone. None: packets
 /// have no such light: point lights, more than they hold, numbers whose squares binary32 has not.
-std::optional<PacketLight> packet_light(const LayerLook& look, const Volume& volume,
+std::optional<PacketLight> packet_light(const LayerLook& look, const Reflection<double>* reflection,
+                                        const Volume& volume,
                                         const std::vector<LightSource<double>>& lights);
 /// Returns whether binary32 holds all values of the data's type.
 bool fits_single(const Volume& volume);

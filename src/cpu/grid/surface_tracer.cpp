@@ -66,7 +66,7 @@ PacketSurfaces packet_surfaces(const LayerLook& look,
     result.color[2][i] = static_cast<float>(surface.color.b);
   }
   result.bound[result.count + 1] = BinnedTransfer::far;
-  if (const Reflection<double>* const r = look.reflection()) {
+  if (const Reflection<double>* const r = look.surface_reflection()) {
     result.is_lit = 1;
     // As light_up() says of its errors.
     double brightest = 0;
@@ -158,7 +158,7 @@ std::unique_ptr<const RayTracer> make_surface_tracer(const TracerTask& task) {
   if (kernel == nullptr || !suits_packets(volume, 1)) return nullptr;
   const LayerLook look(task.layer);
   const std::vector<LightSource<double>> lights = light_sources(task.lights);
-  const auto light = packet_light(look, volume, lights);
+  const auto light = packet_light(look, look.surface_reflection(), volume, lights);
   if (!light) return nullptr;
   return std::make_unique<SurfaceTracer>(task, kernel, *light, look, lights);
 }

@@ -42,8 +42,12 @@ LayerLook::LayerLook(const Layer& layer)
     : layer_(layer), has_medium_(largest_extinction(layer) > 0) {
   if (layer.shading) {
     const Shading& shading = *layer.shading;
-    const double flat = flat_gradient(layer);
-    reflection_ = {shading.ambient, shading.diffuse, shading.specular, shading.power, flat * flat};
+    const auto reflection = [&](double flat) {
+      return Reflection<double>{shading.ambient, shading.diffuse, shading.specular, shading.power,
+                                flat * flat};
+    };
+    surface_reflection_ = reflection(flat_gradient_of_surfaces(layer));
+    reflection_ = has_medium_ ? reflection(flat_gradient(layer)) : surface_reflection_;
   }
   if (layer.gradient_opacity) {
     factors_ = layer.gradient_opacity->per_world(voxel_of(layer));

@@ -20,9 +20,12 @@ class LayerLook {
   LayerLook& operator=(const LayerLook&) = delete;
 
   const Layer& layer() const noexcept { return layer_; }
-  /// Return null where the layer has none.
+  /// Return how the medium and how surfaces reflect light; null where the layer has no light.
   const Reflection<double>* reflection() const noexcept {
     return reflection_ ? &*reflection_ : nullptr;
+  }
+  const Reflection<double>* surface_reflection() const noexcept {
+    return surface_reflection_ ? &*surface_reflection_ : nullptr;
   }
   /// Returns the factor of the extinction: of the magnitude of a gradient, or of a channel of
   /// several (value_factor()), which factor_argument() makes a number from 0 on.
@@ -47,7 +50,7 @@ class LayerLook {
 
  private:
   const Layer& layer_;
-  std::optional<Reflection<double>> reflection_;
+  std::optional<Reflection<double>> reflection_, surface_reflection_;
   std::optional<TransferFunction> factors_;
   PiecewiseLinear<double> factor_view_{};
   const ChannelTransferFunction* value_factor_ = nullptr;

@@ -169,7 +169,7 @@ void SurfaceEvents::add_crossing(const Isosurface& surface, const LayerStretch& 
 
 Rgb<double> SurfaceEvents::lit(const Rgb<double>& color, const LayerStretch& stretch, double u,
                                double u_error, double& error) const {
-  const Reflection<double>* const reflection = source_.look().reflection();
+  const Reflection<double>* const reflection = source_.look().surface_reflection();
   if (reflection == nullptr) return color;
   GradientStretch<double> along{
       {stretch.gradient[0], stretch.gradient[1], stretch.gradient[2]}, {}, 0, -ray_.direction};
