@@ -28,6 +28,17 @@ namespace pellucid::cli {
 
 namespace {
 
+/// The names of the looks that the data could have instead.
+std::string other_looks(const Look& chosen) {
+  std::string names;
+  for (const LookName& look : looks()) {
+    if (look.name != chosen.name) {
+      names += (names.empty() ? "" : ", ") + std::string(look.name);
+    }
+  }
+  return chosen.name == "body" ? "haze, x-ray" : names;
+}
+
 void print_notes(const RenderArguments& arguments, const PreparedScene& prepared) {
   if (arguments.quiet) return;
   for (const std::string& note : prepared.import_notes) print_note(note);
@@ -51,16 +62,17 @@ void print_notes(const RenderArguments& arguments, const PreparedScene& prepared
         "no transfer function given: only isosurfaces and slices are shown (--tf FILE.json "
         "adds the volume)");
   }
-  if (prepared.transfer_function_from == "default" && !arguments.print_tf &&
-      arguments.save_tf.empty()) {
+  if (prepared.look && !prepared.look->name.empty()) {
+    const Look& look = *prepared.look;
+    print_note(fmt::format("look {}{} (--look NAME takes another: {})", look.name,
+                           look.reason.empty() ? "" : ", for " + look.reason, other_looks(look)));
+  } else if (prepared.transfer_function_from == "default" && !arguments.print_tf &&
+             arguments.save_tf.empty()) {
     print_note(fmt::format(
         "no transfer function given: using {} (--save-tf FILE.json writes it for editing, --tf "
         "FILE.json reads it)",
         prepared.scene.layers.front().projection ? "greys over the range of the values"
                                                  : "one made from the histogram"));
-    if (prepared.scene.layers.front().shading && arguments.light.shading.empty()) {
-      print_note("the data have surfaces: shown in light (--shading off leaves it out)");
-    }
   }
 }
 

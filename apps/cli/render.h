@@ -24,7 +24,7 @@ struct RenderArguments {
   std::vector<std::string> outputs;
   std::string depth_picture, error_map, values, save_tf, save_scene;
   std::vector<std::string> channels, gaussians, layers, labels, clips;
-  std::string transfer_function, preset, projection, camera, view, size, background, backdrop;
+  std::string transfer_function, preset, look, projection, camera, view, size, background, backdrop;
   ImportArguments import;
   LightArguments light;
   std::string method, precision, grade, device;
@@ -57,6 +57,7 @@ struct PreparedScene {
   SceneDescription description;  ///< complete: with nothing left to defaults
   std::string transfer_function_from;
   std::vector<std::string> import_notes;  ///< of a transfer function of another program
+  std::shared_ptr<Look> look;             ///< of a file alone, once it is loaded; null: none
   bool array_chosen = false;              ///< of a mesh, for want of a name
   bool has_own_camera = false;            ///< the input has a camera
   double tolerance_asked = 0;             ///< Integration::tolerance is the one used

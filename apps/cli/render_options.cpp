@@ -200,6 +200,15 @@ void add_scene_options(CommandLine& command, RenderArguments& arguments) {
       ->option_text("NAME")
       ->excludes(transfer_function)
       ->excludes("--gaussian");
+  command
+      .add_option("--look", arguments.look,
+                  "Show the data as this kind: ct, ct-skin, mr, scan, microscopy, labels, mask, "
+                  "simulation, fog, haze or x-ray; of a mesh body, haze or x-ray. Default: as the "
+                  "kind that they seem to be, which is told")
+      ->option_text("NAME")
+      ->excludes(transfer_function)
+      ->excludes("--gaussian")
+      ->excludes("--preset");
   arguments.import.add_to(command);
   command
       .add_option("--projection", arguments.projection,

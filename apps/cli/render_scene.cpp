@@ -425,6 +425,45 @@ void set_scene_tolerance(PreparedScene& prepared, double tolerance) {
   fit_opacity_tables(description, scene);
 }
 
+namespace {
+
+/// Throws UsageError where something else says what is shown.
+void refuse_beside_look(const RenderArguments& arguments) {
+  const std::pair<const char*, bool> given[] = {{"--tf", !arguments.transfer_function.empty()},
+                                                {"--preset", !arguments.preset.empty()},
+                                                {"--gaussian", !arguments.gaussians.empty()},
+                                                {"--channel", !arguments.channels.empty()},
+                                                {"--projection", !arguments.projection.empty()},
+                                                {"--iso", !arguments.light.isosurfaces.empty()},
+                                                {"--slice", !arguments.light.slices.empty()},
+                                                {"a scene", arguments.is_scene()}};
+  for (const auto& [what, is_given] : given) {
+    if (is_given) {
+      throw UsageError(
+          fmt::format("--look: {} says what is shown; leave one of the two out", what));
+    }
+  }
+}
+
+/// A file alone, of which nothing says how it is shown, takes a look. To print or save a function,
+/// one that has a function.
+void want_look(const RenderArguments& arguments, PreparedScene& prepared) {
+  if (!arguments.look.empty()) refuse_beside_look(arguments);
+  const bool is_default = prepared.transfer_function_from == "default" && !arguments.is_scene() &&
+                          prepared.description.layers.size() == 1 &&
+                          prepared.description.integration.method == Method::exact;
+  if (arguments.look.empty() && !is_default) return;
+  WantedLook look;
+  look.name = arguments.look;
+  if (look.name.empty() && (arguments.print_tf || !arguments.save_tf.empty())) look.name = "haze";
+  look.keeps_shading = !arguments.light.shading.empty();
+  prepared.look = std::make_shared<Look>();
+  look.chosen = [told = prepared.look](const Look& chosen) { *told = chosen; };
+  prepared.description.layers.front().look = std::move(look);
+}
+
+}  // namespace
+
 SceneRequest request_scene(const RenderArguments& arguments) {
   SceneRequest request;
   PreparedScene& prepared = request.prepared;
@@ -458,10 +497,7 @@ SceneRequest request_scene(const RenderArguments& arguments) {
                                     : description.layers.front().transfer_function ? arguments.input
                                     : description.layers.front().shows_surfaces()  ? "none"
                                                                                    : "default";
-  // A file alone.
-  description.layers.front().takes_default_look =
-      prepared.transfer_function_from == "default" && arguments.light.shading.empty() &&
-      !arguments.is_scene() && integration.method == Method::exact;
+  want_look(arguments, prepared);
   SceneDescription& rendered = request.description;
   rendered = description;
   if (arguments.reference && integration.tolerance > reference_tolerance) {
@@ -514,6 +550,12 @@ PreparedScene complete_scene(const RenderArguments& arguments, SceneRequest requ
   }
   description.camera = scene.camera;
   make_camera_frame(scene.camera, scene.size);  // throws before anything is written
+  if (prepared.look && !prepared.look->isosurfaces.empty() &&
+      (arguments.print_tf || !arguments.save_tf.empty())) {
+    throw UsageError(
+        fmt::format("{}: the look {} has surfaces and no function; --look haze has one",
+                    arguments.print_tf ? "--print-tf" : "--save-tf", prepared.look->name));
+  }
   return prepared;
 }
 
@@ -527,6 +569,10 @@ void place_camera(const RenderArguments& arguments, PreparedScene& prepared,
   if (arguments.zoom) zoom_camera(scene.camera, *arguments.zoom);
   make_camera_frame(scene.camera, scene.size);
   prepared.description.camera = scene.camera;
+  if (prepared.look && prepared.look->shading && arguments.light.lights.empty()) {
+    scene.lights = look_lights(scene.camera);
+    prepared.description.lights = scene.lights;
+  }
 }
 
 PreparedScene prepare(const RenderArguments& arguments) {

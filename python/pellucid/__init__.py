@@ -19,17 +19,17 @@ from ._notes import ImportedTransferFunction, Note, Preset
 from ._pellucid import (Cancelled, Channels, Error, Frame, Gaussians, GradientOpacity, Image,
                         LabelMask, LabelTable, LabelVolume, Mesh, OpacityTable, Renderer,
                         TransferFunction, Volume, __version__, builtin_field, default_camera,
-                        default_look, default_transfer_function, dicom_series,
+                        default_transfer_function, dicom_series,
                         export_transfer_function, histogram, import_transfer_function,
-                        label_count, linear_to_srgb,
-                        load_scene, make_preset, presets, projection_transfer_function, read,
+                        label_count, linear_to_srgb, load_scene, looks,
+                        make_preset, presets, projection_transfer_function, read,
                         read_image, read_mesh, read_volume, render_reference, srgb_to_linear,
                         suggest, suggest_boundaries, view_camera)
 from ._colormaps import from_colormap
 from ._image import Comparison
 from ._meshes import mesh_of
 from ._ranks import render_on_ranks
-from ._render import render, scene_of
+from ._render import look, render, scene_of
 from .scene import (Camera, Clip, ClipBox, ClipCylinder, ClipPlane, ClipSphere, DirectionalLight,
                     Gaussian, HeadLight, Integration, Isosurface, Layer, Light, PointLight, Scene,
                     Shading, Slice)
@@ -43,9 +43,9 @@ __all__ = [
     "LabelTable", "LabelVolume", "Layer", "Light", "Mesh", "Note", "OpacityTable", "PointLight",
     "Preset", "Renderer", "Scene", "Shading", "Slice", "TransferFunction", "Viewer", "Volume",
     "__version__",
-    "builtin_field", "default_camera", "default_look", "default_transfer_function", "dicom_series",
+    "builtin_field", "default_camera", "default_transfer_function", "dicom_series",
     "export_transfer_function", "from_colormap", "histogram", "import_transfer_function",
-    "integrate", "label_count", "linear_to_srgb", "load_scene", "make_preset", "mesh_of", "presets",
+    "integrate", "label_count", "linear_to_srgb", "load_scene", "look", "looks", "make_preset", "mesh_of", "presets",
     "projection_transfer_function", "read", "read_image", "read_mesh", "read_volume", "render",
     "render_on_ranks", "render_reference", "scene_of", "srgb_to_linear", "suggest",
     "suggest_boundaries", "view", "view_camera",

@@ -14,15 +14,50 @@ _PLACE_NAMES = ("spacing", "origin", "direction", "coordinates", "centering")
 _LAYER_NAMES = {f.name for f in dataclasses.fields(Layer)} - {"data", "transfer_function"}
 
 
-def _layer_of(data: Any, transfer_function: Any, attributes: dict[str, Any]) -> Layer:
-    """Returns the layer of data alone: in light where they have surfaces, if nobody says how."""
-    shown = {"shading", "projection", "isosurfaces", "slices", "mask", "gradient_opacity"}
-    if transfer_function is None and not shown & set(attributes):
+def look(data: Any, name: Optional[str] = None) -> Layer:
+    """Returns a Layer of a volume or a mesh with the look of its kind of data, to show or to edit.
+
+    data   what Volume() takes, a Volume or a Mesh of one variable, or a path
+    name   one of looks(), or None: the look of what the data seem to be, as render() shows data
+           alone: "ct", "mr", "scan", "microscopy", "labels", "mask", "simulation", "fog", "haze" or,
+           of a mesh, "body"
+
+    Raises Error if there is no such look of such data.
+    """
+    if isinstance(data, (str, os.PathLike)):
+        data = _pellucid.read(data)
+    data = _data_of(data)
+    if not isinstance(data, (Volume, Mesh)):
+        raise Error(f"look: expected a volume or a mesh of one variable, got {type(data).__name__}")
+    return _look_of(data, name or "")[0]
+
+
+def _look_of(data: Union[Volume, Mesh], name: str) -> tuple[Layer, bool]:
+    """The layer, and whether it is in light."""
+    found = _pellucid.choose_look(data, name)
+    if found["as_labels"]:
+        return Layer(LabelVolume(data)), False
+    return Layer(data, found["transfer_function"], shading=found["shading"],
+                 isosurfaces=found["isosurfaces"]), found["shading"] is not None
+
+
+def _layer_of(data: Any, transfer_function: Any, name: Optional[str],
+              attributes: dict[str, Any]) -> tuple[Layer, bool]:
+    """The layer of data alone, which has a look if nothing says how it is shown; whether so in
+    light."""
+    shown = {"projection", "isosurfaces", "slices", "mask", "gradient_opacity"} & set(attributes)
+    if name is not None and (shown or transfer_function is not None):
+        raise Error(f"look {name}: {', '.join(sorted(shown)) or 'a transfer function'} says what is "
+                    "shown; leave one of the two out")
+    if transfer_function is None and not shown:
         data = _data_of(data)
-        if isinstance(data, Volume):
-            transfer_function, shading = _pellucid.default_look(data)
-            return Layer(data, transfer_function, shading=shading, **attributes)
-    return Layer(data, transfer_function, **attributes)
+        if isinstance(data, Volume) or (isinstance(data, Mesh) and len(data.channels) == 1):
+            layer, lit = _look_of(data, name or "")
+            return dataclasses.replace(layer, **attributes), lit
+        if name is not None:
+            raise Error(f"look {name}: looks are of a volume or a mesh of one variable, not of "
+                        f"{type(data).__name__}")
+    return Layer(data, transfer_function, **attributes), False
 
 
 def _share_of(tolerance: Any) -> Optional[float]:
@@ -42,7 +77,7 @@ def _share_of(tolerance: Any) -> Optional[float]:
 def scene_of(data: Any, transfer_function: Any = None, *, preset: Optional[str] = None,
              tolerance: Optional[float] = None, size: Any = None, camera: Optional[Camera] = None,
              view: Optional[str] = None, background: Any = None,
-             **layer: Any) -> Scene:
+             look: Optional[str] = None, **layer: Any) -> Scene:
     """Returns the scene that render() renders; it takes the same arguments."""
     if isinstance(data, (str, os.PathLike)):
         data = _pellucid.read(data)
@@ -59,14 +94,15 @@ def scene_of(data: Any, transfer_function: Any = None, *, preset: Optional[str] 
     for name in layer:
         if name not in _LAYER_NAMES:
             raise TypeError(f"render() got an unexpected keyword argument '{name}'")
-    if isinstance(data, (Scene, Layer)) and (layer or transfer_function is not None):
-        raise Error("render: the scene has its layers; set transfer functions, presets and "
+    if isinstance(data, (Scene, Layer)) and (layer or look or transfer_function is not None):
+        raise Error("render: the scene has its layers; set looks, transfer functions, presets and "
                     f"{', '.join(layer) or 'looks'} there")
+    in_look_light = False
     if isinstance(data, Scene):
         scene = dataclasses.replace(data)
     else:
         if not isinstance(data, Layer):
-            data = _layer_of(data, transfer_function, layer)
+            data, in_look_light = _layer_of(data, transfer_function, look, layer)
             lit = {each.name for each in _pellucid.presets() if each.lit}
             if preset in lit and data.projection is None and data.shading is None:
                 data.shading = Shading()
@@ -83,13 +119,15 @@ def scene_of(data: Any, transfer_function: Any = None, *, preset: Optional[str] 
         if camera is not None:
             raise Error(f"view {view}: a camera is given too; drop one of the two")
         scene.camera = _pellucid.view_camera(scene, view)
+    if in_look_light:
+        scene.lights = _pellucid.look_lights(scene.camera)
     return scene
 
 
 def render(data: Any, transfer_function: Any = None, *, preset: Optional[str] = None,
            tolerance: Union[float, str, None] = None, size: Any = None,
            camera: Optional[Camera] = None, view: Optional[str] = None,
-           background: Any = None, depth: bool = False,
+           background: Any = None, look: Optional[str] = None, depth: bool = False,
            error: bool = True, values: bool = False, threads: int = 0,
            progress: Optional[Callable[[float], Any]] = None,
            renderer: Optional[Renderer] = None, **layer: Any) -> Image:
@@ -99,9 +137,9 @@ def render(data: Any, transfer_function: Any = None, *, preset: Optional[str] = 
                        takes (an array, an image of nibabel, ITK, xarray, VTK); a VTK or meshio
                        mesh; or the path of a file that read() reads
     transfer_function  a TransferFunction, an OpacityTable, Gaussians or a list of points; without
-                       one it is made from the data, and a volume with surfaces is put in light;
-                       shading=None leaves that out
+                       one the data have the look of their kind; shading=None leaves light out
     preset             the name of one of presets(), in its place
+    look               the name of one of looks(), in its place: the kind of data to show
     tolerance          largest error of any channel of a pixel, in premultiplied linear light; from
                        1e-7 to 1, default 1/512. A text "1%": that share of the largest channel
     size               (width, height) or one number, in pixels; default 512
@@ -123,7 +161,7 @@ def render(data: Any, transfer_function: Any = None, *, preset: Optional[str] = 
     share = _share_of(tolerance)
     scene = scene_of(data, transfer_function, preset=preset,
                      tolerance=None if share is not None else tolerance, size=size, camera=camera,
-                     view=view, background=background, **layer)
+                     view=view, background=background, look=look, **layer)
     renderer = renderer or Renderer()
     if share is not None:
         return renderer.render_to_share(scene, share, depth=depth, error=error, values=values,

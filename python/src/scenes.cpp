@@ -9,6 +9,7 @@
 #include "images.h"
 #include "pellucid/cpu/framed_camera.h"
 #include "pellucid/scene/defaults.h"
+#include "pellucid/scene/look.h"
 #include "pellucid/scene/view_camera.h"
 
 namespace pellucid::python {
@@ -531,7 +532,32 @@ py::object to_python(const Camera& camera) {
           camera.projection == Projection::perspective ? "perspective" : "orthographic");
 }
 
+namespace {
+
+py::list look_lights_of(const py::object& camera) {
+  // The default camera looks from one side, whatever the data.
+  std::array<Vec3<double>, 8> cube;
+  for (unsigned n = 0; n < 8; ++n) cube[n] = {1.0 * (n & 1), 0.5 * (n & 2), 0.25 * (n & 4)};
+  const Camera seen = camera.is_none() ? default_camera(cube, {1, 1}) : camera_of(camera);
+  make_camera_frame(seen, {1, 1});
+  const py::module_ scene = py::module_::import("pellucid.scene");
+  py::list lights;
+  for (const Light& light : look_lights(seen)) {
+    const auto* const directional = std::get_if<DirectionalLight>(&light.kind);
+    lights.append(directional != nullptr
+                      ? scene.attr("DirectionalLight")(to_tuple(directional->direction),
+                                                       to_tuple(light.color))
+                      : scene.attr("HeadLight")(to_tuple(light.color)));
+  }
+  return lights;
+}
+
+}  // namespace
+
 void bind_scenes(py::module_& module) {
+  module.def("look_lights", &look_lights_of, py::arg("camera") = py::none(), R"(
+Returns the lights of a look in light, for a Camera or the default one: one at the eye and one from
+the upper left, fixed in the world.)");
   module.def(
       "default_camera",
       [](const py::object& object) { return to_python(complete_scene(object).camera); },

@@ -7,6 +7,7 @@
 #include "pellucid/io/scene_json.h"
 #include "pellucid/scene/defaults.h"
 #include "pellucid/scene/light.h"
+#include "pellucid/scene/look.h"
 #include "pellucid/scene/presets.h"
 #include "pellucid/scene/srgb.h"
 
@@ -82,20 +83,29 @@ Function default_function(const py::object& data) {
   });
 }
 
-py::tuple look_of(const VolumeHandle& volume) {
-  std::optional<DefaultLook> look;
-  {
+py::dict look_of(const py::object& data, const std::string& name) {
+  Look look = with_data(data, [&](const auto& of) {
     const ReleasedLock released;
-    look = default_look(*volume.volume);
+    return choose_look(of, name);
+  });
+  py::dict result;
+  const py::module_ scene = py::module_::import("pellucid.scene");
+  result["name"] = look.name;
+  result["reason"] = look.reason;
+  result["as_labels"] = look.as_labels;
+  result["transfer_function"] =
+      std::make_shared<TransferFunction>(std::move(look.transfer_function));
+  result["shading"] = py::none();
+  if (look.shading) {
+    const Shading& s = *look.shading;
+    result["shading"] = scene.attr("Shading")(s.ambient, s.diffuse, s.specular, s.power);
   }
-  py::object shading = py::none();
-  if (look->shading) {
-    const Shading& s = *look->shading;
-    shading = py::module_::import("pellucid.scene")
-                  .attr("Shading")(s.ambient, s.diffuse, s.specular, s.power);
+  py::list isosurfaces;
+  for (const Isosurface& s : look.isosurfaces) {
+    isosurfaces.append(scene.attr("Isosurface")(s.value, to_tuple(s.color), s.opacity));
   }
-  return py::make_tuple(std::make_shared<TransferFunction>(std::move(look->transfer_function)),
-                        shading);
+  result["isosurfaces"] = isosurfaces;
+  return result;
 }
 
 Function projection_function(const py::object& data, const std::string& projection) {
@@ -230,9 +240,19 @@ void bind_transfer_functions(py::module_& module) {
   bind_functions(module);
   module.def("default_transfer_function", &default_function, py::arg("data"), R"(
 Returns a transfer function for a good first picture of a Volume or a Mesh.)");
-  module.def("default_look", &look_of, py::arg("volume"), R"(
-Returns (TransferFunction, Shading or None) for a good first picture of a Volume: in light and dense
-where the data have surfaces, as render() shows data alone.)");
+  module.def("choose_look", &look_of, py::arg("data"), py::arg("name"), R"(
+Returns what pellucid.look() makes a Layer of.)");
+  module.def(
+      "looks",
+      [] {
+        py::dict list;
+        for (const LookName& look : looks()) {
+          list[py::str(std::string(look.name))] = std::string(look.description);
+        }
+        return list;
+      },
+      R"(
+Returns the looks by name, each with its description.)");
   module.def("projection_transfer_function", &projection_function, py::arg("data"),
              py::arg("projection"), R"(
 Returns an opaque ramp from black to white over the range of a projection: "maximum", "minimum",

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <optional>
+#include <utility>
 #include <variant>
 
 #include "pellucid/io/scene_json.h"
@@ -11,6 +12,10 @@ void complete_description(const Layer& layer, LayerDescription& description) {
     return !function || std::holds_alternative<PresetDescription>(*function);
   };
   if (auto* labels = std::get_if<LabelContent>(&layer.content)) {
+    if (!description.labels) {  // a look that shows labels
+      description.labels = LabelSource{std::exchange(description.field, {}), {}, {}, {}};
+      description.shading.reset();
+    }
     description.labels->styles = labels->table->styles();
     description.labels->table.clear();
     description.labels->extinction.reset();
@@ -20,13 +25,20 @@ void complete_description(const Layer& layer, LayerDescription& description) {
       description.transfer_function = mesh->univariate()->points();
     }
   }
-  if (description.takes_default_look) {
-    description.takes_default_look = false;
+  if (description.look) {
+    description.look.reset();
     if (!layer.shading) {
       description.shading.reset();
     } else {
       if (!description.shading) description.shading.emplace();
       description.shading->values = *layer.shading;
+    }
+    description.isosurfaces.resize(layer.isosurfaces.size());
+    for (std::size_t i = 0; i < layer.isosurfaces.size(); ++i) {
+      const Isosurface& made = layer.isosurfaces[i];
+      description.isosurfaces[i].value = made.value;
+      description.isosurfaces[i].opacity = made.opacity;
+      description.isosurfaces[i].color = made.color;
     }
   }
   for (std::size_t i = 0; i < layer.isosurfaces.size(); ++i) {

@@ -126,10 +126,16 @@ ChannelsContent load_channels_content(const LayerDescription& description,
   return content;
 }
 
-/// Whose function is of one variable or of several.
+bool takes_look(const LayerDescription& description) {
+  return description.look && !description.transfer_function && !description.projection &&
+         !description.mask && !description.shows_surfaces();
+}
+
+/// Whose function is of one variable or of several. `look` becomes the layer's look, if it takes
+/// one.
 MeshContent load_mesh_content(const LayerDescription& description, const Wanted& wanted,
                               const Layer* loaded, const ParallelFor& parallel,
-                              MeshSource& mesh_used) {
+                              MeshSource& mesh_used, std::optional<Look>& look) {
   MeshContent content;
   const std::vector<std::string> names = function_channels(description);
   if (const MultivariateDescription* const function = multivariate(description)) {
@@ -149,25 +155,27 @@ MeshContent load_mesh_content(const LayerDescription& description, const Wanted&
     content.mesh = std::move(mesh.mesh);
     mesh_used.channels = std::move(mesh.channels);
   }
-  if (content.multivariate() == nullptr) {
+  if (takes_look(description)) {
+    look = choose_look(*content.mesh, description.look->name);
+    content.transfer_function = std::make_shared<const TransferFunction>(look->transfer_function);
+  } else if (content.multivariate() == nullptr) {
     content.transfer_function = std::make_shared<const TransferFunction>(
         medium_function(description, wanted, *content.mesh));
   }
   return content;
 }
 
-/// `look` becomes the default look, if the layer takes it.
+/// `look` becomes the layer's look, if it takes one.
 VolumeContent load_volume_content(const LayerDescription& description, const Wanted& wanted,
-                                  const Layer* loaded, std::optional<DefaultLook>& look) {
+                                  const Layer* loaded, std::optional<Look>& look) {
   VolumeContent content;
   const auto* const kept = content_of<VolumeContent>(loaded);
   content.volume = kept_field(loaded);
   if (!content.volume) {
     content.volume = std::make_shared<const Volume>(load_field(description.field));
   }
-  if (description.takes_default_look && !description.transfer_function && !description.projection &&
-      !description.mask && !description.shows_surfaces()) {
-    look = default_look(*content.volume);
+  if (takes_look(description)) {
+    look = choose_look(*content.volume, description.look->name);
     content.transfer_function = std::make_shared<const TransferFunction>(look->transfer_function);
     return content;
   }
@@ -288,6 +296,22 @@ class LookLoader {
   std::vector<std::string> names_;
 };
 
+/// Puts a look into a layer that has its data and its function.
+void put(Look look, const WantedLook& wanted, Layer& layer) {
+  if (wanted.chosen) wanted.chosen(look);
+  if (look.as_labels) {
+    LabelContent content;
+    content.labels =
+        std::make_shared<const LabelVolume>(std::get<VolumeContent>(layer.content).volume);
+    content.table = std::make_shared<const LabelTable>(default_label_table(*content.labels));
+    layer.content = std::move(content);
+    layer.shading.reset();
+    return;
+  }
+  layer.isosurfaces = std::move(look.isosurfaces);
+  if (!wanted.keeps_shading) layer.shading = look.shading;
+}
+
 /// Takes the data of `loaded` unless it is null.
 Layer load_layer(const LayerDescription& description, const Wanted& wanted, const Layer* loaded,
                  const ParallelFor& parallel, MeshSource& mesh_used) {
@@ -297,18 +321,18 @@ Layer load_layer(const LayerDescription& description, const Wanted& wanted, cons
   layer.transform = description.transform;
   layer.clips = description.clips;
   layer.projection = description.projection;
-  std::optional<DefaultLook> look;
+  std::optional<Look> look;
   if (description.labels) {
     layer.content = load_label_content(*description.labels, loaded);
   } else if (description.mesh) {
-    layer.content = load_mesh_content(description, wanted, loaded, parallel, mesh_used);
+    layer.content = load_mesh_content(description, wanted, loaded, parallel, mesh_used, look);
   } else if (const auto sources = layer_channels(description); !sources.empty()) {
     layer.content = load_channels_content(description, sources, loaded, parallel);
   } else {
     layer.content = load_volume_content(description, wanted, loaded, look);
   }
   LookLoader(description, layer)();
-  if (look) layer.shading = look->shading;
+  if (look) put(*std::move(look), *description.look, layer);
   return layer;
 }
 

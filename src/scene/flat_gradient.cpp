@@ -58,7 +58,7 @@ double flat_gradient(const Layer& layer, const ValueNoise& noise, double side) {
   const double least = least_flat_gradient(noise.upper() - noise.lower(), side);
   if (!(voxel > 0)) return least;
   const TypicalNoise found = noise.where_absorbs(table_of(layer));
-  return std::max(std::min(1.5 * found.second_difference, found.gradient / 4) / voxel, least);
+  return std::max(std::min(2.5 * found.deviation, found.gradient / 4) / voxel, least);
 }
 
 }  // namespace pellucid

@@ -20,7 +20,7 @@ constexpr std::size_t value_bins = 256;
 /// Bins of differences: none, then steps of a quarter of a factor of 2 below twice the range.
 constexpr int per_octave = 4, octaves = 42;
 constexpr std::size_t difference_bins = 1 + per_octave * octaves;
-/// Counts are those of second differences, then of gradients, then the sums of the values.
+/// Counts are those of mixed differences, then of gradients, then the sums of the values.
 constexpr std::size_t gradients = value_bins * difference_bins, sums = 2 * gradients;
 
 std::size_t difference_bin(double share) {
@@ -30,43 +30,53 @@ std::size_t difference_bin(double share) {
          static_cast<std::size_t>(std::clamp(above, 0.0, static_cast<double>(difference_bins - 2)));
 }
 
-/// The differences at one place.
+/// The differences at one place; none where a neighbor is missing.
 class Place {
  public:
   template <class Value>
   Place(std::span<const Value> data, std::size_t index, const std::array<int, 3>& dimensions)
       : value_(static_cast<double>(data[index])) {
-    std::size_t step = 1;
+    std::array<std::size_t, 3> step{};  // 0: a single value
+    std::size_t next = 1;
     for (std::size_t a = 0; a < 3; ++a) {
       const auto n = static_cast<std::size_t>(dimensions[a]);
-      const std::size_t at = index / step % n;
-      if (at > 0 && at + 1 < n) {
-        const auto before = static_cast<double>(data[index - step]);
-        const auto after = static_cast<double>(data[index + step]);
-        second_[a] = std::abs(before - 2 * value_ + after);
-        slope_[a] = (after - before) / 2;
-      } else if (n > 1) {
-        second_[a] = std::nan("");
+      const std::size_t at = index / next % n;
+      if (n > 1) {
+        if (at == 0 || at + 1 == n) return;
+        step[a] = next;
       }
-      step *= n;
+      next *= n;
     }
+    const auto at = [&](std::size_t i) { return static_cast<double>(data[i]); };
+    const auto second = [&](std::size_t i, std::size_t s) {
+      return at(i - s) - 2 * at(i) + at(i + s);
+    };
+    for (std::size_t a = 0; a < 3; ++a) {
+      if (step[a] == 0) continue;
+      slope_[a] = (at(index + step[a]) - at(index - step[a])) / 2;
+      const std::size_t b = (a + 1) % 3;
+      if (step[b] == 0) continue;
+      mixed_[a] = std::abs(second(index - step[b], step[a]) - 2 * second(index, step[a]) +
+                           second(index + step[b], step[a]));
+    }
+    is_whole_ = !std::isnan(value_ + slope_[0] + slope_[1] + slope_[2]) &&
+                std::ranges::none_of(mixed_, [](const auto& m) { return m && std::isnan(*m); });
   }
 
-  /// NaN where a neighbor is missing; none along an axis of one value.
-  const std::array<std::optional<double>, 3>& second() const { return second_; }
+  bool is_whole() const { return is_whole_; }
   double value() const { return value_; }
+  /// Magnitudes of the second differences along one axis of those along another.
+  const std::array<std::optional<double>, 3>& mixed() const { return mixed_; }
   double gradient(const std::array<double, 3>& scale) const {
     double square = 0;
     for (std::size_t a = 0; a < 3; ++a) square += std::pow(scale[a] * slope_[a], 2);
     return std::sqrt(square);
   }
-  bool is_whole() const {
-    return std::ranges::none_of(second_, [](const auto& s) { return s && std::isnan(*s); });
-  }
 
  private:
   double value_;
-  std::array<std::optional<double>, 3> second_{};
+  bool is_whole_ = false;
+  std::array<std::optional<double>, 3> mixed_{};
   std::array<double, 3> slope_{};
 };
 
@@ -118,14 +128,14 @@ ValueNoise::ValueNoise(const Volume& volume)
   if (!(range > 0)) return;
   const std::array<double, 3> scale = scales(volume);
   const auto add = [&](const Place& place) {
-    if (std::isnan(place.value()) || !place.is_whole()) return;
+    if (!place.is_whole()) return;
     const auto bin = static_cast<std::size_t>(std::clamp(
         (place.value() - lower_) / range * value_bins, 0.0, static_cast<double>(value_bins - 1)));
-    double* const second = counts_.data() + bin * difference_bins;
-    for (const auto& difference : place.second()) {
-      if (difference) second[difference_bin(*difference / range)] += 1;
+    double* const mixed = counts_.data() + bin * difference_bins;
+    for (const auto& difference : place.mixed()) {
+      if (difference) mixed[difference_bin(*difference / range)] += 1;
     }
-    second[gradients + difference_bin(place.gradient(scale) / range)] += 1;
+    mixed[gradients + difference_bin(place.gradient(scale) / range)] += 1;
     counts_[sums + bin] += (place.value() - lower_) / range;
   };
   std::visit(
@@ -141,11 +151,11 @@ ValueNoise::ValueNoise(const Volume& volume)
 TypicalNoise ValueNoise::where_absorbs(const TransferFunction* function) const {
   const double range = upper_ - lower_;
   if (!(range > 0)) return {};
-  Differences second{}, gradient{};
+  Differences mixed{}, gradient{};
   const auto add = [&](std::size_t bin, double weight) {
     const double* const from = counts_.data() + bin * difference_bins;
     for (std::size_t d = 0; d < difference_bins && weight > 0; ++d) {
-      second[d] += weight * from[d];
+      mixed[d] += weight * from[d];
       gradient[d] += weight * from[gradients + d];
     }
   };
@@ -159,11 +169,14 @@ TypicalNoise ValueNoise::where_absorbs(const TransferFunction* function) const {
   if (function != nullptr) {
     add_all([&](double mean) { return function->view<double>().evaluate(mean).extinction; });
   }
-  if (!(sum_of(second) > 0)) add_all([](double) { return 1.0; });
-  const auto least = std::find_if(second.begin() + 1, second.end(), [](double w) { return w > 0; });
+  if (!(sum_of(mixed) > 0)) add_all([](double) { return 1.0; });
+  const auto least = std::find_if(mixed.begin() + 1, mixed.end(), [](double w) { return w > 0; });
   const double step =
-      least == second.end() ? 0 : share_at(static_cast<double>(least - second.begin() - 1));
-  return {range * std::max(quantile(second, 0.5), step / 2), range * quantile(gradient, 0.98)};
+      least == mixed.end() ? 0 : share_at(static_cast<double>(least - mixed.begin() - 1));
+  // Of rounding to multiples of one step: 1/√12.
+  constexpr double of_rounding = 0.29;
+  return {range * std::max(quantile(mixed, 0.5) / 4, of_rounding * step),
+          range * quantile(gradient, 0.98), range * quantile(gradient, 0.5)};
 }
 
 }  // namespace pellucid

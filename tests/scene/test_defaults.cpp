@@ -5,7 +5,6 @@
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
-#include <functional>
 #include <limits>
 #include <numbers>
 #include <string>
@@ -213,64 +212,6 @@ TEST(DefaultTransferFunction, IsUsableForEveryBuiltinField) {
     SCOPED_TRACE(name);
     const TransferFunction f = default_transfer_function(make_builtin_field(name, 33));
     if (name != "constant") expect_usable(f);
-  }
-}
-
-/// Values by the distance from the middle, in half sides.
-std::vector<float> ball(const std::function<double(double)>& value) {
-  std::vector<float> values;
-  for (int k = 0; k < side; ++k) {
-    for (int j = 0; j < side; ++j) {
-      for (int i = 0; i < side; ++i) {
-        const double x = 2.0 * i / side - 1, y = 2.0 * j / side - 1, z = 2.0 * k / side - 1;
-        values.push_back(static_cast<float>(value(std::sqrt(x * x + y * y + z * z))));
-      }
-    }
-  }
-  return values;
-}
-
-TEST(DefaultLook, ShowsSurfacesInLightAndDense) {
-  const Volume volume = make_volume(head());
-  const DefaultLook look = default_look(volume);
-  ASSERT_TRUE(look.shading);
-  const TransferFunction hazy = default_transfer_function(volume);
-  ASSERT_EQ(look.transfer_function.points().size(), hazy.points().size());
-  for (std::size_t i = 0; i < hazy.points().size(); ++i) {
-    const auto &dense = look.transfer_function.points()[i], &thin = hazy.points()[i];
-    EXPECT_EQ(dense.value, thin.value);
-    EXPECT_EQ(dense.color, thin.color);
-    // Two digits of each.
-    EXPECT_NEAR(dense.extinction, 8 * thin.extinction, 0.1 * dense.extinction);
-  }
-  // A border of two voxels is one, too.
-  EXPECT_TRUE(default_look(make_volume(ball([](double r) {
-                return 100 * std::clamp((0.7 - r) * side / 4 + 0.5, 0.0, 1.0);
-              }))).shading);
-}
-
-TEST(DefaultLook, LeavesSmoothDataAndNoiseUnlit) {
-  const std::vector<std::vector<float>> without_surfaces{
-      ball([](double r) { return std::exp(-2 * r * r); }), ball([](double r) { return r; }),
-      head(0, 0, 0, 5), std::vector<float>(std::size_t{side} * side * side, 3),
-      std::vector<float>(std::size_t{side} * side * side, std::numeric_limits<float>::quiet_NaN())};
-  for (const std::vector<float>& values : without_surfaces) {
-    const Volume volume = make_volume(values);
-    const DefaultLook look = default_look(volume);
-    EXPECT_FALSE(look.shading);
-    const TransferFunction unlit = default_transfer_function(volume);
-    const auto &made = look.transfer_function.points(), &usual = unlit.points();
-    ASSERT_EQ(made.size(), usual.size());
-    for (std::size_t i = 0; i < made.size(); ++i) {
-      EXPECT_EQ(made[i].value, usual[i].value);
-      EXPECT_EQ(made[i].extinction, usual[i].extinction);
-    }
-  }
-}
-
-TEST(DefaultLook, DoesNotDependOnTheUnitOfTheData) {
-  for (const float unit : {1e-30F, 1e30F}) {
-    EXPECT_TRUE(default_look(make_volume(head(0, 100 * unit, 1000 * unit, 5 * unit))).shading);
   }
 }
 

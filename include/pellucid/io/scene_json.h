@@ -15,6 +15,7 @@
 #include "pellucid/io/look_description.h"
 #include "pellucid/io/mesh_source.h"
 #include "pellucid/io/transfer_function_description.h"
+#include "pellucid/scene/look.h"
 #include "pellucid/scene/scene.h"
 
 namespace pellucid {
@@ -39,6 +40,14 @@ struct MaskSource {
   std::vector<Choice> choices;
 };
 
+/// That a volume or a mesh without function, projection, mask and surfaces is shown by
+/// choose_look().
+struct WantedLook {
+  std::string name{};          ///< of looks(); empty: the one for the data
+  bool keeps_shading = false;  ///< whether the layer's own shading counts, also if it has none
+  std::function<void(const Look&)> chosen{};  ///< is told the look; may be empty
+};
+
 /// A layer as written in a file. Absent keys have their defaults.
 struct LayerDescription {
   std::string name;
@@ -57,9 +66,8 @@ struct LayerDescription {
   std::optional<GradientOpacityDescription> gradient_opacity;
   std::vector<IsosurfaceDescription> isosurfaces;
   std::vector<SliceDescription> slices;
-  /// Whether a volume without function, projection, mask and surfaces is shown by default_look(),
-  /// which decides on its shading too. Not for other data. Scene files do not have it.
-  bool takes_default_look = false;
+  /// Scene files do not have it: complete_description() writes down what it came to.
+  std::optional<WantedLook> look;
 
   bool shows_surfaces() const noexcept { return !isosurfaces.empty() || !slices.empty(); }
 };

@@ -28,21 +28,6 @@ TransferFunction default_transfer_function(const Volume& volume);
 /// box around the mesh, scaled to the fraction of the box that the class fills.
 TransferFunction default_transfer_function(const MeshChannels& mesh);
 
-/// How a volume is shown at first.
-struct DefaultLook {
-  TransferFunction transfer_function;
-  std::optional<Shading> shading;  ///< none: unlit
-};
-/// Returns the look of a first picture: default_transfer_function(), unlit; where the data have
-/// surfaces, in light and with eight times its extinctions, so that they are seen.
-///
-/// The background of Otsu's method ends at a surface if half of the neighboring values on either
-/// side of its threshold differ by a sixth of the distance between the means of background and
-/// rest, or more: a step of a few voxels. If more than one pair of neighbors in eight is on either
-/// side, that is noise, whose gradients mean nothing. Up to 2^18 places are looked at. Never throws
-/// for a valid volume.
-DefaultLook default_look(const Volume& volume);
-
 /// Returns a transfer function for a projection of the data: a ramp of grey from black to white in
 /// linear light, opaque everywhere. It spans the range of the data; for a sum the range of sums
 /// along a ray as long as the longest edge of the box around the data, with 0.

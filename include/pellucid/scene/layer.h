@@ -124,13 +124,11 @@ double voxel_of(const Layer& layer) noexcept;
 /// in data units per world length. The layer is in its place and has a shading. What the shading
 /// gives counts; else, of the data of the shading's channel,
 ///
-///   g0 = max(min(3/2 · d / voxel, g / 4), 1/50 · range / side)
+///   g0 = max(min(5/2 · σ / voxel, g / 4), 1/50 · range / side)
 ///
 /// with voxel_of(), the mean `side` of the data's box, and where the layer's function absorbs, by
-/// its extinction (value_noise.h): the median second difference `d` between neighboring values, at
-/// least half of the smallest difference there is; and the gradient `g` that a fiftieth exceeds. In
-/// data that are smooth, `d` falls with the square of the voxel, in noise it is 1.65 times its
-/// standard deviation. Meshes have the last term alone.
+/// its extinction (value_noise.h): the standard deviation σ of the noise between neighboring
+/// values, and the gradient g that a fiftieth exceeds. Meshes have the last term alone.
 double flat_gradient(const Layer& layer);
 /// Returns the same for surfaces: 0, unless the shading gives a flatness.
 double flat_gradient_of_surfaces(const Layer& layer) noexcept;

@@ -10,15 +10,23 @@ namespace pellucid {
 class Volume;
 struct Layer;
 
-/// What differs between neighboring data values, in data units per voxel.
+/// What differs between neighboring data values, in data units; gradients per voxel.
 struct TypicalNoise {
-  double second_difference = 0;  ///< median; at least half of the smallest difference there is
-  double gradient = 0;           ///< magnitude that 2 % exceed
+  double deviation = 0;        ///< standard deviation of the noise, rounding included
+  double gradient = 0;         ///< magnitude that 2 % exceed
+  double median_gradient = 0;  ///< magnitude that half exceed
 };
 
-/// Counts of differences between neighboring values by the value itself: at up to 2^18 places that
-/// are even in the data, of |v(i-1) - 2 v(i) + v(i+1)| along each axis, and of the magnitude of the
-/// central differences, in which the steps of the axes count by their length (voxel_of()).
+/// Counts of differences between neighboring values by the value itself, at up to 2^18 places that
+/// are even in the data, but for borders and vacuum:
+///
+/// - of the magnitude of N, the second difference (1, -2, 1) along one axis of that along another,
+///   for each of the three pairs of axes (Immerkær 1996). Smooth data have an N that falls with the
+///   fourth power of the voxel; white noise of standard deviation σ one of 6 σ, whose median
+///   magnitude is 4 σ. Of data that are multiples of a step, the least |N| but 0 is that step.
+/// - of the magnitude of the central differences, in which the steps of the axes count by their
+///   length (voxel_of()).
+///
 /// Quantiles are interpolated between a quarter of a factor of 2.
 class ValueNoise {
  public:

@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "pellucid/scene/layer.h"
+#include "pellucid/scene/scene.h"
+
+namespace pellucid {
+
+/// A way to show data of one kind at first.
+struct LookName {
+  std::string_view name;         ///< such as "ct"
+  std::string_view description;  ///< one line, shown to the user
+};
+
+/// How a volume or a mesh is shown if nobody says how.
+struct Look {
+  std::string name;    ///< of looks()
+  std::string reason;  ///< what it was chosen for, of the data; empty where it was asked for
+  /// Whether the values are labels: of them default_label_table() makes colors, and nothing else
+  /// here counts.
+  bool as_labels = false;
+  TransferFunction transfer_function{{{0, 0, {}}}};
+  std::optional<Shading> shading{};
+  std::vector<Isosurface> isosurfaces{};
+};
+
+/// Returns all looks in the order in which they are listed. Meshes have "body", "haze" and "x-ray".
+std::span<const LookName> looks() noexcept;
+
+/// Returns the look of a volume by its name; without one that of the kind that the data seem to be:
+///
+/// - `labels`: whole numbers that look like a segmentation (label_count()) of several labels.
+/// - `mask`: two values, with the surface half-way between them.
+/// - `ct`: Hounsfield units, from air on (below -500 to above 300, with air in a twentieth of the
+///   values or more), or those plus 1000 or 1024; bone in light. `ct-skin` if there is no bone.
+/// - `mr`, `scan`: the background ends at surfaces, a step of a few voxels; tissue or material in
+///   light, `mr` where the volume's name is that of a medical image (.nii, .mgz, .dcm, …).
+/// - `fog`: an .vdb file.
+/// - `microscopy`: images (.tif, .lsm, .png, OME-Zarr) without such surfaces; what is bright glows.
+/// - `simulation`: smooth data, whose noise is a quarter of half of their gradients or less;
+///   surfaces of equal value in light, of viridis' colors. Data around 0, whose smaller extreme is
+///   a fifth of the larger one or more and half of whose values are within 0.3 of it, have surfaces
+///   of both signs, blue and red.
+/// - `haze`: all else, by default_transfer_function().
+///
+/// `x-ray` is never chosen. Up to 2^18 values are looked at. Throws Error if there is no look of
+/// that name; else never for a valid volume.
+Look choose_look(const Volume& volume, std::string_view name = {});
+/// Returns the look of a mesh: `body`, which shows the values on and below its surface.
+Look choose_look(const MeshChannels& mesh, std::string_view name = {});
+
+/// Returns the lights of a look in light: one at the eye and one from the upper left, fixed in the
+/// world, which together are as bright as one. The camera must be valid.
+std::vector<Light> look_lights(const Camera& camera);
+
+}  // namespace pellucid

@@ -1,0 +1,205 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pellucid/scene/look.h"
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <cmath>
+#include <variant>
+
+#include "look_functions.h"
+#include "mean_chord.h"
+#include "pellucid/scene/defaults.h"
+#include "pellucid/scene/error.h"
+#include "pellucid/scene/labels.h"
+#include "pellucid/scene/presets.h"
+#include "pellucid/scene/value_noise.h"
+#include "value_sample.h"
+
+namespace pellucid {
+namespace {
+
+constexpr std::array<LookName, 11> all_looks{
+    {{"ct", "CT in Hounsfield units: bone in light"},
+     {"ct-skin", "CT in Hounsfield units: skin in light"},
+     {"mr", "medical images in other units: tissue in light"},
+     {"scan", "data with surfaces: material in light"},
+     {"microscopy", "images: what is bright glows"},
+     {"labels", "segmentations: a color for each label"},
+     {"mask", "data of two values: the surface between them"},
+     {"simulation", "smooth data: surfaces of equal value"},
+     {"fog", "densities: white in light"},
+     {"haze", "any data: the background clear, the rest transparent"},
+     {"x-ray", "any data: density along the ray, as on a film"}}};
+constexpr std::array<std::string_view, 3> looks_of_meshes{"body", "haze", "x-ray"};
+
+/// Whether a name ends in one of these, whatever its case.
+bool ends_in(const std::string& name, std::initializer_list<std::string_view> endings) {
+  std::string lower = name;
+  std::ranges::transform(lower, lower.begin(),
+                         [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return std::ranges::any_of(endings, [&](std::string_view e) { return lower.ends_with(e); });
+}
+
+bool is_medical(const std::string& name) {
+  return ends_in(name, {".nii", ".nii.gz", ".hdr", ".hdr.gz", ".img", ".img.gz", ".mgh", ".mgz",
+                        ".mnc", ".dcm", ".ima"});
+}
+
+bool is_image(const std::string& name) {
+  return ends_in(name,
+                 {".tif", ".tiff", ".lsm", ".stk", ".png", ".ome.zarr", ".zarr", ".companion.ome"});
+}
+
+bool has_whole_numbers(const Volume& volume) {
+  return std::visit(
+      [](const auto& data) {
+        return std::is_integral_v<typename std::decay_t<decltype(data)>::value_type>;
+      },
+      volume.data());
+}
+
+/// Sorted values between two.
+double share_between(const std::vector<double>& v, double lower, double upper) {
+  const auto begin = std::ranges::lower_bound(v, lower), end = std::ranges::upper_bound(v, upper);
+  return static_cast<double>(end - begin) / static_cast<double>(v.size());
+}
+
+/// The value of air, if these are Hounsfield units, or those plus 1000 or 1024.
+std::optional<double> air_of(const std::vector<double>& v, const VolumeStatistics& range) {
+  if (v.empty()) return std::nullopt;
+  constexpr double least_air = 0.05, most = 32767;
+  if (range.minimum <= -500 && range.minimum >= -32768 && range.maximum >= 300 &&
+      range.maximum <= most && share_between(v, -1100, -900) >= least_air) {
+    return -1000;
+  }
+  // Twelve bits that begin at air, with soft tissue at about 1000 and hardly anything between the
+  // two.
+  if (range.minimum < 0 || range.minimum > 100 || range.maximum < 2000 || range.maximum > 8191 ||
+      v.back() < 1300) {
+    return std::nullopt;
+  }
+  const double air = share_between(v, 0, 150), tissue = share_between(v, 900, 1200);
+  const double between = share_between(v, 300, 800);
+  return air >= least_air && tissue >= 0.1 && 3 * between < tissue ? std::optional(24.0)
+                                                                   : std::nullopt;
+}
+
+/// Whether neighbors differ less by noise than by what the data are.
+bool is_smooth(const Volume& volume, const ClassedValues& of) {
+  if (!of.differ) return true;
+  const double threshold = of.threshold();
+  const TransferFunction foreground({{threshold, 0, {}}, {threshold, 1, {}}});
+  const TypicalNoise noise = volume.noise().where_absorbs(&foreground);
+  return 4 * noise.deviation < noise.median_gradient;
+}
+
+std::string chosen(const Volume& volume, const LookedAt& data, std::string& reason) {
+  const auto because = [&](std::string_view name, std::string_view why) {
+    reason = why;
+    return std::string(name);
+  };
+  const std::string& name = volume.description().name;
+  const std::vector<double>& v = data.values.values;
+  if (const auto labels = label_count(volume)) {
+    return *labels > 2 ? because("labels", "whole numbers that look like labels")
+                       : because("mask", "two values");
+  }
+  if (const auto air = air_of(v, volume.statistics())) {
+    reason = *air == -1000 ? "values in Hounsfield units"
+                           : "values that look like Hounsfield units plus 1024";
+    return share_between(v, *air + 1250, v.back()) > 5e-4 ? "ct" : "ct-skin";
+  }
+  if (ends_in(name, {".vdb"})) return because("fog", "a density of OpenVDB");
+  if (has_surfaces(volume, data.values)) {
+    return is_medical(name) ? because("mr", "a medical image with surfaces")
+                            : because("scan", "data with surfaces");
+  }
+  if (is_image(name)) return because("microscopy", "images without sharp surfaces");
+  if (is_smooth(volume, data.values)) return because("simulation", "smooth data");
+  return because("haze", "noisy data without surfaces");
+}
+
+/// Adds the look's name to what it is.
+Look named(Look look, std::string name, std::string reason) {
+  look.name = std::move(name);
+  look.reason = std::move(reason);
+  return look;
+}
+
+Look function_alone(TransferFunction function) {
+  Look look;
+  look.transfer_function = std::move(function);
+  return look;
+}
+
+template <class Names>
+[[noreturn]] void refuse(std::string_view name, const Names& names, std::string_view data) {
+  std::string known;
+  for (const auto& each : names) known += (known.empty() ? "" : ", ") + std::string(each);
+  throw Error("look: \"" + std::string(name.substr(0, 64)) + "\" is none of " + std::string(data) +
+              "; there are " + known);
+}
+
+}  // namespace
+
+std::span<const LookName> looks() noexcept {
+  return all_looks;
+}
+
+Look choose_look(const Volume& volume, std::string_view name) {
+  const LookedAt data{ClassedValues(value_sample(volume)), mean_chord(volume), 1,
+                      has_whole_numbers(volume)};
+  std::string reason;
+  std::string kind = name.empty() ? chosen(volume, data, reason) : std::string(name);
+  const auto made = [&](Look look) { return named(std::move(look), kind, reason); };
+  if (kind == "labels") {
+    Look look;
+    look.as_labels = true;
+    return made(std::move(look));
+  }
+  if (kind == "ct" || kind == "ct-skin") {
+    const double air = air_of(data.values.values, volume.statistics()).value_or(-1000);
+    return made(ct_look(air, kind == "ct-skin", data.chord));
+  }
+  if (kind == "mr" || kind == "scan") return made(scan_look(data, kind == "mr"));
+  if (kind == "microscopy") return made(microscopy_look(data));
+  if (kind == "mask") {
+    return made(mask_look(volume.statistics().minimum, volume.statistics().maximum));
+  }
+  if (kind == "simulation") return made(simulation_look(data));
+  if (kind == "fog") return made(fog_look(data));
+  if (kind == "haze") return made(function_alone(default_transfer_function(volume)));
+  if (kind == "x-ray") return made(function_alone(make_preset("x-ray", volume)));
+  std::vector<std::string_view> names;
+  for (const LookName& each : all_looks) names.push_back(each.name);
+  refuse(name, names, "a volume's");
+}
+
+Look choose_look(const MeshChannels& mesh, std::string_view name) {
+  if (name.empty() || name == "body") {
+    const Box<double>& box = mesh.mesh().bounds();
+    const Vec3<double> size = box.upper - box.lower;
+    const double filled = mesh.mesh().statistics().volume / (size.x * size.y * size.z);
+    const LookedAt data{ClassedValues(value_sample(mesh)), mean_chord(box), std::min(filled, 1.0),
+                        false};
+    return named(body_look(data), "body", name.empty() ? "a mesh" : "");
+  }
+  if (name == "haze") return named(function_alone(default_transfer_function(mesh)), "haze", "");
+  if (name == "x-ray") return named(function_alone(make_preset("x-ray", mesh)), "x-ray", "");
+  refuse(name, looks_of_meshes, "a mesh's");
+}
+
+std::vector<Light> look_lights(const Camera& camera) {
+  const Vec3<double> forward = normalized(camera.focal_point - camera.position);
+  const Vec3<double> right = normalized(cross(forward, camera.up));
+  const Vec3<double> up = cross(right, forward);
+  constexpr Rgb<double> half{0.6, 0.6, 0.6};
+  Light head, key;
+  head.color = half;
+  key.color = half;
+  key.kind = DirectionalLight{forward * 0.6 + right * 0.55 - up * 0.6};
+  return {head, key};
+}
+
+}  // namespace pellucid

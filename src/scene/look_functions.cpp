@@ -1,0 +1,331 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "look_functions.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <span>
+
+#include "pellucid/scene/srgb.h"
+
+namespace pellucid {
+namespace {
+
+/// 8-bit sRGB.
+using Bytes = std::array<double, 3>;
+
+Rgb<double> linear(const Bytes& bytes) {
+  const Rgb<double> color = srgb_to_linear({bytes[0] / 255, bytes[1] / 255, bytes[2] / 255});
+  return {rounded(color.r, 3), rounded(color.g, 3), rounded(color.b, 3)};
+}
+
+/// The color at a place from 0 to 1 of evenly spaced ones.
+Rgb<double> color_at(std::span<const Bytes> map, double place) {
+  const double at = std::clamp(place, 0.0, 1.0) * static_cast<double>(map.size() - 1);
+  const auto i = std::min(static_cast<std::size_t>(at), map.size() - 2);
+  const double f = at - static_cast<double>(i);
+  Bytes mixed{};
+  for (std::size_t c = 0; c < 3; ++c) mixed[c] = (1 - f) * map[i][c] + f * map[i + 1][c];
+  return linear(mixed);
+}
+
+/// matplotlib's viridis and inferno, and Moreland's cool to warm (2009).
+constexpr std::array<Bytes, 11> viridis{{{68, 1, 84},
+                                         {72, 36, 117},
+                                         {65, 68, 135},
+                                         {53, 95, 141},
+                                         {42, 120, 142},
+                                         {33, 145, 140},
+                                         {34, 168, 132},
+                                         {68, 191, 112},
+                                         {122, 209, 81},
+                                         {189, 223, 38},
+                                         {253, 231, 37}}};
+constexpr std::array<Bytes, 9> inferno{{{0, 0, 4},
+                                        {31, 12, 72},
+                                        {85, 15, 109},
+                                        {136, 34, 106},
+                                        {186, 54, 85},
+                                        {227, 89, 51},
+                                        {249, 140, 10},
+                                        {249, 201, 50},
+                                        {252, 255, 164}}};
+constexpr std::array<Bytes, 9> cool_to_warm{{{59, 76, 192},
+                                             {98, 130, 234},
+                                             {141, 176, 254},
+                                             {184, 208, 249},
+                                             {221, 221, 221},
+                                             {245, 196, 173},
+                                             {244, 154, 123},
+                                             {222, 96, 77},
+                                             {180, 4, 38}}};
+
+Shading soft_light() {
+  Shading shading;
+  shading.ambient = 0.25;
+  shading.diffuse = 0.8;
+  shading.specular = 0.2;
+  shading.power = 25;
+  return shading;
+}
+
+Shading surface_light() {
+  Shading shading;
+  shading.ambient = 0.3;
+  shading.diffuse = 0.8;
+  shading.specular = 0.3;
+  shading.power = 30;
+  return shading;
+}
+
+/// Extinctions that give a typical path through all values from one on an optical depth: what fills
+/// a share s of the box is taken for a body of the box's shape, ∛s times as wide.
+class Depths {
+ public:
+  explicit Depths(const LookedAt& data) : data_(data) {}
+  double operator()(double depth, std::size_t first) const {
+    const auto n = static_cast<double>(data_.values.values.size());
+    const double share = data_.filled * (n - static_cast<double>(first)) / n;
+    const double e = depth / (std::cbrt(share) * data_.chord);
+    return std::isfinite(e) ? two_digits(std::clamp(e, 1 / largest_number, largest_number)) : 1;
+  }
+
+ private:
+  const LookedAt& data_;
+};
+
+/// A haze of one value.
+Look even_look(const LookedAt& data, const Rgb<double>& color) {
+  Look look;
+  const std::vector<double>& v = data.values.values;
+  if (!v.empty())
+    look.transfer_function = TransferFunction({{v.front(), Depths(data)(1, 0), color}});
+  return look;
+}
+
+/// Values that surfaces are laid through, ascending and apart from those that the data have:
+/// half-way between whole numbers, or between neighbors among the values looked at.
+class Levels {
+ public:
+  explicit Levels(const LookedAt& data) : data_(data) {}
+
+  /// The least value that at most this share of all values exceeds.
+  void add_exceeded_by(double share) {
+    const std::vector<double>& v = data_.values.values;
+    const auto n = static_cast<double>(v.size());
+    const auto i = static_cast<std::size_t>(std::clamp(n * (1 - share), 1.0, n - 1));
+    add(v[i]);
+  }
+  void add(double value) {
+    const std::vector<double>& v = data_.values.values;
+    if (data_.whole_numbers) {
+      value = std::floor(value) + 0.5;
+    } else {
+      const auto above = std::lower_bound(v.begin(), v.end(), value);
+      const double below = above == v.begin() ? v.front() : *(above - 1);
+      value = readable(below / 2 + (above == v.end() ? v.back() : *above) / 2,
+                       (v.back() - v.front()) / 100);
+    }
+    if (value > v.front() && value < v.back()) levels_.push_back(value);
+  }
+  std::vector<double> take() {
+    std::ranges::sort(levels_);
+    const auto same = std::ranges::unique(levels_);
+    levels_.erase(same.begin(), same.end());
+    return std::move(levels_);
+  }
+
+ private:
+  const LookedAt& data_;
+  std::vector<double> levels_;
+};
+
+/// The opacity of the i-th of surfaces from the outermost in.
+double opacity_of(std::size_t i, std::size_t count) {
+  const double in = count > 1 ? static_cast<double>(i) / static_cast<double>(count - 1) : 1;
+  return std::round(100 * (0.22 + 0.7 * std::pow(in, 1.3))) / 100;
+}
+
+/// Blue below 0, red above, fainter toward 0.
+std::vector<Isosurface> surfaces_of_both_signs(const LookedAt& data) {
+  const std::vector<double>& v = data.values.values;
+  const double largest = std::max(-v.front(), v.back());
+  Levels levels(data);
+  constexpr std::array<double, 3> shares{0.12, 0.35, 0.7};
+  for (const double share : shares) {
+    levels.add(share * largest);
+    levels.add(-share * largest);
+  }
+  std::vector<Isosurface> surfaces;
+  for (const double value : levels.take()) {
+    const double place = std::abs(value) / largest;
+    Isosurface surface;
+    surface.value = value;
+    surface.color = color_at(cool_to_warm, 0.5 + std::copysign(0.2 + 0.3 * place, value));
+    surface.opacity = std::round(100 * (0.2 + 0.75 * place)) / 100;
+    surfaces.push_back(std::move(surface));
+  }
+  return surfaces;
+}
+
+/// Whether the values are around 0.
+bool has_both_signs(const std::vector<double>& v) {
+  const double low = -v.front(), high = v.back(), largest = std::max(low, high);
+  const double quarter = v[v.size() / 4], three_quarters = v[v.size() - 1 - v.size() / 4];
+  return std::min(low, high) >= 0.2 * largest && quarter >= -0.3 * largest &&
+         three_quarters <= 0.3 * largest;
+}
+
+}  // namespace
+
+Look ct_look(double air, bool skin, double chord) {
+  struct Tissue {
+    double hounsfield, depth;
+    Bytes color;
+  };
+  // Depths of a centimetre of tissue. A head has chords of 15 cm.
+  constexpr std::array<Tissue, 4> bone{{{150, 0, {204, 153, 115}},
+                                        {250, 1, {235, 209, 168}},
+                                        {450, 5, {247, 235, 209}},
+                                        {1200, 10, {255, 252, 245}}}};
+  constexpr std::array<Tissue, 5> body{{{-600, 0, {153, 107, 92}},
+                                        {-300, 3, {217, 168, 143}},
+                                        {-100, 5, {222, 173, 148}},
+                                        {150, 5, {217, 153, 128}},
+                                        {300, 8, {247, 235, 209}}}};
+  Look look;
+  std::vector<TransferFunction::Point> points;
+  const auto tissues = skin ? std::span<const Tissue>(body) : std::span<const Tissue>(bone);
+  for (const Tissue& tissue : tissues) {
+    points.push_back({air + 1000 + tissue.hounsfield, two_digits(15 * tissue.depth / chord),
+                      linear(tissue.color)});
+  }
+  look.transfer_function = TransferFunction(std::move(points));
+  look.shading = soft_light();
+  return look;
+}
+
+Look scan_look(const LookedAt& data, bool medical) {
+  constexpr std::array<Bytes, 4> tissue{
+      {{158, 138, 126}, {208, 188, 172}, {240, 225, 208}, {255, 249, 238}}};
+  constexpr std::array<Bytes, 4> material{
+      {{118, 126, 136}, {168, 173, 178}, {228, 214, 184}, {255, 247, 226}}};
+  const auto& palette = medical ? tissue : material;
+  const ClassedValues& of = data.values;
+  if (!of.differ) return even_look(data, linear(palette[2]));
+  const std::vector<double>& v = of.values;
+  const std::size_t foreground = of.classes.foreground, bright = of.classes.bright;
+  const Depths extinction(data);
+  const double threshold = of.threshold();
+  PointList points(v.back() - v.front());
+  points.add(0.35 * of.mean(0, foreground) + 0.65 * threshold, 0, linear(palette[0]));
+  points.add(threshold, extinction(24, foreground), linear(palette[0]));
+  if (bright < v.size()) {
+    points.add(of.mean(foreground, bright), extinction(40, foreground), linear(palette[1]));
+    points.add(v[bright], extinction(60, bright), linear(palette[2]));
+    points.add(v.back(), extinction(120, bright), linear(palette[3]));
+  } else {
+    points.add(v[foreground], extinction(60, foreground), linear(palette[2]));
+  }
+  Look look;
+  look.transfer_function = TransferFunction(points.take());
+  look.shading = soft_light();
+  return look;
+}
+
+Look microscopy_look(const LookedAt& data) {
+  const ClassedValues& of = data.values;
+  if (!of.differ) return even_look(data, color_at(inferno, 0.8));
+  const std::vector<double>& v = of.values;
+  const std::size_t foreground = of.classes.foreground;
+  const double lower = of.threshold(), upper = v.back();
+  const Depths extinction(data);
+  PointList points(v.back() - v.front());
+  points.add(0.5 * of.mean(0, foreground) + 0.5 * lower, 0, color_at(inferno, 0.25));
+  constexpr int steps = 8;
+  for (int i = 0; i <= steps; ++i) {
+    const double share = static_cast<double>(i) / steps;
+    points.add(lower + share * (upper - lower),
+               extinction(0.3 + 8 * std::pow(share, 1.5), foreground),
+               color_at(inferno, 0.35 + 0.6 * share));
+  }
+  Look look;
+  look.transfer_function = TransferFunction(points.take());
+  return look;
+}
+
+Look fog_look(const LookedAt& data) {
+  const Rgb<double> white = linear({236, 240, 246});
+  if (!data.values.differ) return even_look(data, white);
+  const std::vector<double>& v = data.values.values;
+  PointList points(v.back() - v.front());
+  points.add(std::max(v.front(), 0.0), 0, linear({170, 178, 190}));
+  points.add(v.back(), Depths(data)(14, data.values.classes.foreground), white);
+  Look look;
+  look.transfer_function = TransferFunction(points.take());
+  look.shading = soft_light();
+  look.shading->ambient = 0.45;
+  look.shading->diffuse = 0.6;
+  look.shading->specular = 0;
+  return look;
+}
+
+Look simulation_look(const LookedAt& data) {
+  const ClassedValues& of = data.values;
+  if (!of.differ) return even_look(data, color_at(viridis, 0.6));
+  Look look;
+  look.shading = surface_light();
+  if (has_both_signs(of.values)) {
+    look.isosurfaces = surfaces_of_both_signs(data);
+    if (!look.isosurfaces.empty()) return look;
+  }
+  const std::vector<double>& v = of.values;
+  const double above =
+      static_cast<double>(v.size() - of.classes.foreground) / static_cast<double>(v.size());
+  Levels levels(data);
+  constexpr std::array<double, 4> shares{1, 0.4, 0.15, 0.04};
+  for (const double share : shares) levels.add_exceeded_by(share * above);
+  const std::vector<double> values = levels.take();
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    const double place =
+        values.size() > 1 ? static_cast<double>(i) / static_cast<double>(values.size() - 1) : 0.5;
+    Isosurface surface;
+    surface.value = values[i];
+    surface.color = color_at(viridis, 0.3 + 0.67 * place);
+    surface.opacity = opacity_of(i, values.size());
+    look.isosurfaces.push_back(std::move(surface));
+  }
+  return look.isosurfaces.empty() ? even_look(data, color_at(viridis, 0.6)) : look;
+}
+
+Look mask_look(double lower, double upper) {
+  Look look;
+  look.shading = surface_light();
+  Isosurface surface;
+  surface.value = lower / 2 + upper / 2;
+  surface.color = linear({214, 122, 98});
+  look.isosurfaces.push_back(std::move(surface));
+  return look;
+}
+
+Look body_look(const LookedAt& data) {
+  const ClassedValues& of = data.values;
+  if (!of.differ) return even_look(data, color_at(viridis, 0.6));
+  const std::vector<double>& v = of.values;
+  const bool signs = has_both_signs(v);
+  const std::span<const Bytes> map =
+      signs ? std::span<const Bytes>(cool_to_warm) : std::span<const Bytes>(viridis);
+  const double largest = std::max(std::abs(v.front()), std::abs(v.back()));
+  const double lower = signs ? -largest : v.front(), upper = signs ? largest : v.back();
+  const double extinction = Depths(data)(9, 0);
+  PointList points(upper - lower);
+  for (std::size_t i = 0; i < map.size(); ++i) {
+    const double share = static_cast<double>(i) / static_cast<double>(map.size() - 1);
+    points.add(lower + share * (upper - lower), extinction, color_at(map, share));
+  }
+  Look look;
+  look.transfer_function = TransferFunction(points.take());
+  return look;
+}
+
+}  // namespace pellucid

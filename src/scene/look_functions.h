@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "pellucid/scene/look.h"
+#include "value_classes.h"
+
+namespace pellucid {
+
+/// What looks are made of.
+struct LookedAt {
+  ClassedValues values;
+  double chord;        ///< mean, of the data's box
+  double filled;       ///< share of the box that has data
+  bool whole_numbers;  ///< of the values' type
+};
+
+/// Bone in Hounsfield units, or skin, in light. `air`: the value of air, -1000 in those units.
+Look ct_look(double air, bool skin, double chord);
+/// The background clear, the rest dense and in light: tissue warm, or material.
+Look scan_look(const LookedAt& data, bool medical);
+/// Glows with its value, without light.
+Look microscopy_look(const LookedAt& data);
+/// Scatters white light.
+Look fog_look(const LookedAt& data);
+/// Surfaces of equal value.
+Look simulation_look(const LookedAt& data);
+/// The surface between two values.
+Look mask_look(double lower, double upper);
+/// Values on and below the surface.
+Look body_look(const LookedAt& data);
+
+}  // namespace pellucid
