@@ -19,6 +19,7 @@
 #include "pellucid/io/image_files.h"
 #include "pellucid/reference/render.h"
 #include "pellucid/scene/builtin_fields.h"
+#include "pellucid/scene/picture_advice.h"
 #include "progress.h"
 #include "relative_tolerance.h"
 #include "scene_text.h"
@@ -253,6 +254,8 @@ void write_picture(const RenderArguments& arguments, const PreparedScene& prepar
     const auto text = black_picture_text(largest, prepared.scene.integration.tolerance,
                                          report.largest_error, png);
     if (text) print_note(*text);
+    const auto advice = picture_advice(prepared.scene, image);
+    if (advice && !text && !prepared.relative_tolerance) print_note(*advice);
   }
   if (arguments.renders() && !arguments.json && !arguments.quiet) {
     for (const std::string& line : report_lines(arguments, prepared, report)) print_note(line);

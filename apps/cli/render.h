@@ -35,7 +35,8 @@ struct RenderArguments {
   int threads = 0;
   std::string balance;  ///< of the bricks of ranks
   bool ranks = false;
-  bool print_tf = false, reference = false, strict = false, json = false, quiet = false;
+  bool print_tf = false, reference = false, strict = false, json = false, quiet = false,
+       verbose = false;
   /// Several channels without a function get suggested Gaussians, in place of an error.
   bool suggests_functions = false;
   VolumeOptions volume;

@@ -42,6 +42,8 @@ void add_output_options(CommandLine& command, RenderArguments& arguments) {
                   "Write the complete scene. It renders to the same picture")
       ->option_text("FILE.json");
   command.add_flag("--json", arguments.json, "Print a report as JSON")->excludes(print_tf);
+  command.add_flag("--verbose", arguments.verbose,
+                   "Also tell how much was evaluated, and by which rules");
   command.add_flag("-q,--quiet", arguments.quiet,
                    "Print no progress, report or notes, only errors");
 }

@@ -256,6 +256,11 @@ std::vector<std::string> report_lines(const RenderArguments& arguments,
     lines.back() += fmt::format(", {} interpolated between rays",
                                 share_text(report.pixels_interpolated, report.pixels));
   }
+  if (!arguments.verbose) {
+    lines.back() += ", " + time;
+    if (!report.device.empty()) lines.push_back(report.device);
+    return lines;
+  }
   std::uint64_t spans = 0;
   for (const NamedCount& rule : by_rule(report.spans)) spans += rule.count;
   std::string line = fmt::format("{:.1f} field evaluations per ray, {}",

@@ -445,8 +445,8 @@ void refuse_beside_look(const RenderArguments& arguments) {
   }
 }
 
-/// A file alone, of which nothing says how it is shown, takes a look. To print or save a function,
-/// one that has a function.
+/// A file alone, of which nothing says how it is shown, takes a look; one that has a function, to
+/// print or save it.
 void want_look(const RenderArguments& arguments, PreparedScene& prepared) {
   if (!arguments.look.empty()) refuse_beside_look(arguments);
   const bool is_default = prepared.transfer_function_from == "default" && !arguments.is_scene() &&
@@ -455,7 +455,7 @@ void want_look(const RenderArguments& arguments, PreparedScene& prepared) {
   if (arguments.look.empty() && !is_default) return;
   WantedLook look;
   look.name = arguments.look;
-  if (look.name.empty() && (arguments.print_tf || !arguments.save_tf.empty())) look.name = "haze";
+  look.has_function = arguments.print_tf || !arguments.save_tf.empty();
   look.keeps_shading = !arguments.light.shading.empty();
   prepared.look = std::make_shared<Look>();
   look.chosen = [told = prepared.look](const Look& chosen) { *told = chosen; };

@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import dataclasses
 import os
+import warnings
 from typing import Any, Callable, Optional, Union
 
 from . import _pellucid
+from ._notes import Note
 from ._pellucid import Channels, Error, Image, LabelVolume, Mesh, Renderer, Volume
 from .scene import Camera, Color, Layer, Scene, Shading, _data_of
 
@@ -163,8 +165,12 @@ def render(data: Any, transfer_function: Any = None, *, preset: Optional[str] = 
                      tolerance=None if share is not None else tolerance, size=size, camera=camera,
                      view=view, background=background, look=look, **layer)
     renderer = renderer or Renderer()
-    if share is not None:
+    if share is not None:  # of a picture that may be faint
         return renderer.render_to_share(scene, share, depth=depth, error=error, values=values,
                                         threads=threads, progress=progress)
-    return renderer.render(scene, depth=depth, error=error, values=values, threads=threads,
-                           progress=progress)
+    image = renderer.render(scene, depth=depth, error=error, values=values, threads=threads,
+                            progress=progress)
+    advice = _pellucid.picture_advice(scene, image)
+    if advice is not None:
+        warnings.warn(advice, Note, stacklevel=2)
+    return image

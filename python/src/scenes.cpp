@@ -10,6 +10,7 @@
 #include "pellucid/cpu/framed_camera.h"
 #include "pellucid/scene/defaults.h"
 #include "pellucid/scene/look.h"
+#include "pellucid/scene/picture_advice.h"
 #include "pellucid/scene/view_camera.h"
 
 namespace pellucid::python {
@@ -513,6 +514,7 @@ PythonScene complete_python_scene(const py::object& object) {
   check_integration(made.scene);
   fit_tables(made, object.attr("layers"));
   if (!made.has_camera) {
+    make_camera_frame({}, made.scene.size);  // throws where the size is out of range
     const ReleasedLock released;
     made.scene.camera = framed_camera(
         made.scene, default_camera(visible_corners(made.scene, all_cores()), made.scene.size));
@@ -555,6 +557,15 @@ py::list look_lights_of(const py::object& camera) {
 }  // namespace
 
 void bind_scenes(py::module_& module) {
+  module.def(
+      "picture_advice",
+      [](const py::object& scene, const ImageHandle& image) {
+        const PythonScene read = read_scene(scene);
+        const ReleasedLock released;
+        return picture_advice(read.scene, *image.image);
+      },
+      py::arg("scene"), py::arg("image"), R"(
+Returns why a picture shows next to nothing, or is burnt, and what to do; None: it is neither.)");
   module.def("look_lights", &look_lights_of, py::arg("camera") = py::none(), R"(
 Returns the lights of a look in light, for a Camera or the default one: one at the eye and one from
 the upper left, fixed in the world.)");

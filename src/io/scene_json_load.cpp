@@ -126,6 +126,17 @@ ChannelsContent load_channels_content(const LayerDescription& description,
   return content;
 }
 
+/// Of a volume or a mesh.
+template <class Data>
+Look look_of(const Data& data, const WantedLook& wanted) {
+  Look look = choose_look(data, wanted.name);
+  if (!wanted.has_function || !wanted.name.empty()) return look;
+  if (!look.as_labels && look.isosurfaces.empty()) return look;
+  look = choose_look(data, "haze");
+  look.reason = "a function to save";
+  return look;
+}
+
 bool takes_look(const LayerDescription& description) {
   return description.look && !description.transfer_function && !description.projection &&
          !description.mask && !description.shows_surfaces();
@@ -156,7 +167,7 @@ MeshContent load_mesh_content(const LayerDescription& description, const Wanted&
     mesh_used.channels = std::move(mesh.channels);
   }
   if (takes_look(description)) {
-    look = choose_look(*content.mesh, description.look->name);
+    look = look_of(*content.mesh, *description.look);
     content.transfer_function = std::make_shared<const TransferFunction>(look->transfer_function);
   } else if (content.multivariate() == nullptr) {
     content.transfer_function = std::make_shared<const TransferFunction>(
@@ -175,7 +186,7 @@ VolumeContent load_volume_content(const LayerDescription& description, const Wan
     content.volume = std::make_shared<const Volume>(load_field(description.field));
   }
   if (takes_look(description)) {
-    look = choose_look(*content.volume, description.look->name);
+    look = look_of(*content.volume, *description.look);
     content.transfer_function = std::make_shared<const TransferFunction>(look->transfer_function);
     return content;
   }

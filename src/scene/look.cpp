@@ -190,6 +190,10 @@ Look choose_look(const MeshChannels& mesh, std::string_view name) {
   refuse(name, looks_of_meshes, "a mesh's");
 }
 
+std::optional<double> hounsfield_air(const Volume& volume) {
+  return air_of(value_sample(volume), volume.statistics());
+}
+
 std::vector<Light> look_lights(const Camera& camera) {
   const Vec3<double> forward = normalized(camera.focal_point - camera.position);
   const Vec3<double> right = normalized(cross(forward, camera.up));
@@ -198,7 +202,11 @@ std::vector<Light> look_lights(const Camera& camera) {
   Light head, key;
   head.color = half;
   key.color = half;
-  key.kind = DirectionalLight{forward * 0.6 + right * 0.55 - up * 0.6};
+  // Three decimals, so that cameras that differ by rounding have one light.
+  const auto short_number = [](double x) { return std::round(1000 * x) / 1000; };
+  const Vec3<double> direction = forward * 0.6 + right * 0.55 - up * 0.6;
+  key.kind = DirectionalLight{
+      {short_number(direction.x), short_number(direction.y), short_number(direction.z)}};
   return {head, key};
 }
 

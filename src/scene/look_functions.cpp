@@ -172,8 +172,8 @@ std::vector<Isosurface> surfaces_of_both_signs(const LookedAt& data) {
 bool has_both_signs(const std::vector<double>& v) {
   const double low = -v.front(), high = v.back(), largest = std::max(low, high);
   const double quarter = v[v.size() / 4], three_quarters = v[v.size() - 1 - v.size() / 4];
-  return std::min(low, high) >= 0.2 * largest && quarter >= -0.3 * largest &&
-         three_quarters <= 0.3 * largest;
+  return std::min(low, high) >= 0.2 * largest && quarter >= -0.2 * largest &&
+         three_quarters <= 0.2 * largest;
 }
 
 }  // namespace

@@ -9,6 +9,7 @@
 #include "mean_chord.h"
 #include "message.h"
 #include "pellucid/scene/error.h"
+#include "pellucid/scene/look.h"
 #include "pellucid/scene/srgb.h"
 #include "preset_points.h"
 #include "readable_numbers.h"
@@ -93,6 +94,26 @@ void check(const std::optional<std::array<double, 2>>& range) {
               ", but must be two ascending numbers up to 2.1e37");
 }
 
+/// The range that a preset in Hounsfield units has for these data; none: its own. `air_value`:
+/// that of air, if they seem to be in those units or a multiple of them.
+std::optional<std::array<double, 2>> hounsfield_range(const NamedPreset& preset,
+                                                      const VolumeStatistics& data,
+                                                      const std::optional<double>& air_value) {
+  const std::vector<PresetPoint> points = preset.points();
+  const std::array<double, 2> own{points.front().at, points.back().at};
+  if (air_value) {
+    if (*air_value == -1000) return std::nullopt;
+    return std::array{own[0] + *air_value + 1000, own[1] + *air_value + 1000};
+  }
+  constexpr double least = -200, most = 200;
+  if (data.finite == 0 || (data.minimum < least && data.maximum > most)) return std::nullopt;
+  throw Error("preset " + std::string(preset.name) + ": the data are " + number(data.minimum) +
+              " to " + number(data.maximum) +
+              ", but the preset is in Hounsfield units, with air at -1000; give the range where "
+              "it is to begin and end (" +
+              number(own[0]) + "," + number(own[1]) + " is its own), or take another");
+}
+
 }  // namespace
 
 std::span<const Preset> presets() noexcept {
@@ -118,6 +139,10 @@ TransferFunction make_preset(std::string_view name, const Volume& volume,
                              const std::optional<std::array<double, 2>>& range) {
   const NamedPreset& preset = named(name);
   check(range);
+  if (preset.scale == PresetScale::hounsfield && !range) {
+    const auto moved = hounsfield_range(preset, volume.statistics(), hounsfield_air(volume));
+    return make(preset, {}, moved);
+  }
   return make(preset, scale_of(preset.scale, volume, mean_chord(volume)), range);
 }
 
@@ -125,6 +150,9 @@ TransferFunction make_preset(std::string_view name, const MeshChannels& mesh,
                              const std::optional<std::array<double, 2>>& range) {
   const NamedPreset& preset = named(name);
   check(range);
+  if (preset.scale == PresetScale::hounsfield && !range) {
+    return make(preset, {}, hounsfield_range(preset, mesh.statistics(0), std::nullopt));
+  }
   return make(preset, scale_of(preset.scale, mesh, mean_chord(mesh.mesh().bounds())), range);
 }
 

@@ -124,9 +124,13 @@ class Info(ProgramTest):
             self.assertRegex(self.succeed("info", "labels.npy"),
                              r"(?m)^labels +looks like labels: 27 whole numbers[^\n]*interpolating")
             result = self.run_program("render", "labels.npy", "-o", "a.exr", "--size", "4")
+            self.assertRegex(result.stderr.decode(), r"(?m)^pellucid: look labels, for whole")
+            result = self.run_program("render", "labels.npy", "-o", "a.exr", "--size", "4",
+                                      "--look", "haze")
             self.assertRegex(result.stderr.decode(),
                              r"(?m)^pellucid: looks like labels: 27 whole numbers")
-            report = self.report("render", "labels.npy", "-o", "a.exr", "--size", "4")
+            report = self.report("render", "labels.npy", "-o", "a.exr", "--size", "4", "--look",
+                                 "haze")
             self.assertEqual(report["labels"], {"value": 27})
         self.write("ramp.npy", npy([round(255 * x) for x in ramp(n)], (n, n, n), "|u1"))
         self.assertIsNone(self.report("info", "ramp.npy")["labels"])

@@ -34,11 +34,11 @@ class Render(ProgramTest):
         self.assertEqual(result.returncode, 0, result.stderr)
         self.assertEqual(result.stdout, b"")
         self.assertRegex(result.stderr.decode(),
-                         r"\Apellucid: no transfer function given: using one made from the "
-                         r"histogram [^\n]*--save-tf[^\n]*\n(pellucid: [^\n]+\n){3}\Z")
+                         r"\Apellucid: look scan, for data with surfaces \(--look NAME takes "
+                         r"another: ct, [^\n]*\)\npellucid: largest error [^\n]+ s\n\Z")
         width, height, channels, rows = png(self.read("a.png"))
-        self.assertEqual((width, height, channels), (512, 512, 4))
-        self.assertGreater(max(max(row[3::4]) for row in rows), 10)
+        self.assertEqual((width, height, channels), (512, 512, 3))
+        self.assertGreater(max(max(row) for row in rows), 60)
         self.assertEqual(self.files(), ["a.png", "camera.json", "ramp.npy", "tf.json"])
 
     def test_quiet(self):
@@ -50,7 +50,8 @@ class Render(ProgramTest):
         self.write("one.npy", npy([1.0] * 64, (4, 4, 4)))
         self.write("tf.json", json.dumps({"points": [
             {"value": 1, "extinction": 0.5, "color": [0.5, 0.25, 1]}]}))
-        self.succeed("render", "one.npy", "-o", "a.exr", "-o", "a.png", *self.small)
+        self.succeed("render", "one.npy", "-o", "a.exr", "-o", "a.png", *self.small,
+                     "--background", "transparent")
         alpha = 1 - math.exp(-1.5)
         picture = png(self.read("a.png"))
         self.assertEqual(picture[:3], (4, 4, 4))
@@ -167,6 +168,104 @@ class Render(ProgramTest):
             # Extinctions are rounded to two digits.
             self.report("compare", "plain.exr", "scaled.exr", "--tolerance", "0.03")
 
+    def test_backgrounds(self):
+        # Nothing but the background: dark and brighter above, unless another is given.
+        self.write("empty.json", json.dumps({"points": [
+            {"value": 0, "extinction": 0, "color": [0, 0, 0]}]}))
+        def column(*arguments):
+            self.succeed("render", "ramp.npy", "-o", "a.png", "--tf", "empty.json", "--size", "9",
+                         "--quiet", *arguments)
+            picture = png(self.read("a.png"))
+            return [pixel(picture, 4, row) for row in range(9)]
+        calm = column()
+        self.assertEqual(len(calm[0]), 3)
+        self.assertEqual(calm, sorted(calm, reverse=True))
+        self.assertLess(max(calm[0]), 80)
+        self.assertNotEqual(calm[0], calm[8])
+        self.assertEqual(set(column("--background", "transparent")), {(0, 0, 0, 0)})
+        self.assertEqual(set(column("--background", "white")), {(255, 255, 255)})
+        two = column("--background", "white:black")
+        self.assertEqual(two, sorted(two, reverse=True))
+        self.assertGreater(two[0][0], 230)
+        self.assertLess(two[8][0], 25)
+        self.fail_with("--background", "render", "ramp.npy", "-o", "a.png", "--background",
+                       "white:", code=2)
+
+    def frame(self, name):
+        """The share of the picture's larger side that is seen, and its mean brightness."""
+        _, _, _, rows = png(self.read(name))
+        seen = [[max(row[3 * x:3 * x + 3]) > 8 for x in range(len(row) // 3)] for row in rows]
+        width, height = len(seen[0]), len(seen)
+        columns = [x for x in range(width) if any(row[x] for row in seen)]
+        lines = [y for y in range(height) if any(seen[y])]
+        bright = [sum(rows[y][3 * x:3 * x + 3]) / 3 for y in lines for x in columns if seen[y][x]]
+        return (max((columns[-1] - columns[0] + 1) / width, (lines[-1] - lines[0] + 1) / height),
+                sum(bright) / len(bright))
+
+    def test_brightness_and_size_do_not_depend_on_resolution(self):
+        self.write("soft.json", json.dumps({"points": [
+            {"value": 0.3, "extinction": 0, "color": [1, 1, 1]},
+            {"value": 0.6, "extinction": 20, "color": [1, 1, 1]}]}))
+        for look in (("--iso", "0.5"), ("--tf", "soft.json", "--shading", "on")):
+            brightness = []
+            for points in (32, 64, 128, 256):
+                self.succeed("render", f"builtin:sphere:{points}", *look, "-o", "s.png", "--size",
+                             "200", "--background", "black", "--quiet")
+                share, mean = self.frame("s.png")
+                self.assertAlmostEqual(share, 0.88, delta=0.02, msg=f"{look} {points}")
+                brightness.append(mean)
+            self.assertLess(max(brightness) - min(brightness), 2, f"{look} {brightness}")
+
+    def test_looks(self):
+        def scene(*arguments):
+            self.succeed("render", *arguments, "--save-scene", "s.json", "--quiet")
+            return json.loads(self.read("s.json"))
+        layer = scene("ramp.npy", "--look", "scan")["layers"][0]
+        self.assertIn("shading", layer)
+        self.assertNotIn("isosurfaces", layer)
+        ball = "builtin:sphere:24"
+        saved = scene(ball)
+        self.assertGreaterEqual(len(saved["layers"][0]["isosurfaces"]), 2)
+        self.assertEqual([light["type"] for light in saved["lights"]], ["head", "directional"])
+        self.assertNotIn("lights", scene(ball, "--look", "haze"))
+        # What was saved gives the same picture.
+        saved = scene(ball, "--camera", "camera.json")
+        self.succeed("render", ball, "-o", "a.exr", "--size", "32", "--camera", "camera.json")
+                self.write("s.json", json.dumps(saved))
+        self.succeed("render", "s.json", "-o", "b.exr", "--size", "32")
+        self.assertTrue(self.report("compare", "a.exr", "b.exr")["identical"])
+        # Light that is given is taken.
+        self.assertNotIn("shading", scene(ball, "--shading", "off")["layers"][0])
+        lights = scene(ball, "--light", "head:white")["lights"]
+        self.assertEqual([light["type"] for light in lights], ["head"])
+        # Labels become labels.
+        self.write("labels.npy", npy([i % 7 if i > 20 else 0 for i in range(512)], (8, 8, 8),
+                                     "<i2"))
+        layer = scene("labels.npy")["layers"][0]
+        self.assertIn("labels", layer)
+        # A look with a function is saved; one without gives way to one that has it.
+        self.succeed("render", ball, "--save-tf", "f.json", "-o", "a.png", "--size", "9")
+        self.assertGreater(len(json.loads(self.read("f.json"))["transfer_function"]["points"]), 2)
+        self.fail_with("has surfaces and no function", "render", ball, "--look", "simulation",
+                       "--save-tf", "f.json", code=2)
+        self.fail_with('"bones" is none of', "render", "ramp.npy", "--look", "bones", "-o", "a.png")
+        for arguments in (("--tf", "tf.json"), ("--preset", "x-ray"), ("--iso", "0.5")):
+            self.fail_with("--look", "render", "ramp.npy", "--look", "scan", "-o", "a.png",
+                           *arguments, code=2)
+
+    def test_advice(self):
+        self.write("far.json", json.dumps({"points": [
+            {"value": 5, "extinction": 0, "color": [1, 1, 1]},
+            {"value": 6, "extinction": 1, "color": [1, 1, 1]}]}))
+        self.write("bright.json", json.dumps({"points": [
+            {"value": 0, "extinction": 50, "color": [1, 1, 1]}]}))
+        run = ("render", "ramp.npy", "-o", "a.png", "--size", "16")
+        text = self.run_program(*run, "--preset", "ct-bone").stderr.decode()
+        self.assertRegex(text, r"\Apellucid: error: [^\n]*the data are 0 to 1, but the preset is in "
+                               r"Hounsfield units[^\n]*range[^\n]*\n\Z")
+        text = self.run_program(*run, "--tf", "bright.json", "--shading", "1,1,1").stderr.decode()
+        self.assertIn("brighter than white", text)
+
     def test_step_needs_a_sampling_method(self):
         run = ("render", "ramp.npy", "-o", "a.png")
         self.fail_with("exact method has no step", *run, "--step", "1", code=2)
@@ -206,8 +305,10 @@ class Render(ProgramTest):
         self.assertGreater(len(printed["transfer_function"]["points"]), 1)
         self.succeed("render", "ramp.npy", "--save-tf", "saved.json")
         self.assertEqual(json.loads(self.read("saved.json")), printed)
-        self.succeed("render", "ramp.npy", "-o", "a.exr", "--size", "16", "--quiet")
-        self.succeed("render", "ramp.npy", "-o", "b.exr", "--size", "16", "--tf", "saved.json")
+        self.succeed("render", "ramp.npy", "-o", "a.exr", "--size", "16", "--quiet", "--light",
+                     "head")
+        self.succeed("render", "ramp.npy", "-o", "b.exr", "--size", "16", "--tf", "saved.json",
+                     "--light", "head")
         self.assertEqual(self.read("a.exr"), self.read("b.exr"))
         both = self.run_program("render", "ramp.npy", "--print-tf", "-o", "c.png", "--size", "4",
                                 "--quiet")
@@ -278,7 +379,8 @@ class Render(ProgramTest):
         self.write("zero.exr", self.read("a.exr"))
         self.assertEqual(self.report("compare", "a.exr", "zero.exr")["not_finite"], 0)
         self.write("all.npy", npy([float("nan")] * 64, (4, 4, 4)))
-        self.succeed("render", "all.npy", "-o", "b.png", "--size", "4", "--quiet")
+        self.succeed("render", "all.npy", "-o", "b.png", "--size", "4", "--quiet",
+                     "--background", "transparent")
         self.assertEqual(pixel(png(self.read("b.png")), 2, 2), (0, 0, 0, 0))
 
     def test_depth_picture(self):

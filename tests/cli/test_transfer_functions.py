@@ -28,7 +28,8 @@ class TransferFunctions(ProgramTest):
         # 0.5).
         result = self.run_program("render", "half.npy", "--tf", "maps.json", "--map", "plain",
                                   "--colors", "linear", "-o", "a.exr", "-o", "a.png", "--view",
-                                  "front", "--size", "33", "--save-tf", "tf.json")
+                                  "front", "--size", "33", "--save-tf", "tf.json",
+                                  "--background", "transparent")
         self.assertEqual(result.returncode, 0, result.stderr)
         self.assertIn(b'maps.json: ParaView color map "plain"', result.stderr)
         self.assertIn(b"colors: exact", result.stderr)
@@ -101,8 +102,10 @@ class TransferFunctions(ProgramTest):
         self.assertEqual(names, ["ct-bone", "ct-soft-tissue", "ct-angiography", "mr-t1-brain",
                                  "simulation-diverging", "simulation-isosurfaces", "x-ray"])
         listed = self.succeed("presets")
-        self.write("ramp.npy", npy([x for _ in range(64) for x in range(8)], (8, 8, 8)))
         for name in names:
+            scale = (lambda x: 500 * x - 1000) if name.startswith("ct-") else float
+            self.write("ramp.npy", npy([scale(x) for _ in range(64) for x in range(8)],
+                                       (8, 8, 8)))
             self.assertIn(name, listed)
             report = self.report("render", "ramp.npy", "--preset", name, "-o", "a.png",
                                  "--size", "16", "--save-scene", "scene.json")

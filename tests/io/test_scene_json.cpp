@@ -92,6 +92,7 @@ bool same(const GradientOpacityDescription& a, const GradientOpacityDescription&
 bool same(const IsosurfaceDescription& a, const IsosurfaceDescription& b);
 bool same(const SliceDescription& a, const SliceDescription& b);
 bool same(const Light& a, const Light& b);
+bool same(const Background& a, const Background& b);
 template <class T>
 bool same_lists(const std::vector<T>& a, const std::vector<T>& b) {
   return std::equal(a.begin(), a.end(), b.begin(), b.end(),
@@ -178,6 +179,9 @@ bool same(const SliceDescription& a, const SliceDescription& b) {
 bool same(const Light& a, const Light& b) {
   return a.kind == b.kind && same(a.color, b.color);
 }
+bool same(const Background& a, const Background& b) {
+  return same(a.top, b.top) && same(a.bottom, b.bottom);
+}
 bool same(const LayerDescription& a, const LayerDescription& b) {
   return a.name == b.name && a.visible == b.visible && same(a.field, b.field) &&
          same_lists(a.channels, b.channels) && same(a.transfer_function, b.transfer_function) &&
@@ -195,7 +199,7 @@ bool same(const SceneDescription& a, const SceneDescription& b) {
          a.integration.grade == b.integration.grade &&
          a.integration.precision == b.integration.precision &&
          same(a.integration.step, b.integration.step) && same(a.background, b.background) &&
-         a.backdrop == b.backdrop;
+         a.is_transparent == b.is_transparent && a.backdrop == b.backdrop;
 }
 
 TEST(SceneJson, EveryValidFileIsReadAndRoundTripsBitForBit) {

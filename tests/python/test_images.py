@@ -50,7 +50,7 @@ def decode(png):
 
 def test_notebooks_get_a_picture(image, tmp_path):
     png = image._repr_png_()
-    assert decode(png)[:3] == (48, 32, 4)
+    assert decode(png)[:3] == (48, 32, 3)
     image.save(tmp_path / "a.png")
     assert (tmp_path / "a.png").read_bytes() == png
     black = pellucid.render(smooth(), size=8, background="#000000")
@@ -58,7 +58,9 @@ def test_notebooks_get_a_picture(image, tmp_path):
 
 
 def test_srgb(image):
-    straight = image.to_srgb8()
+    calm = image.to_srgb8()
+    assert calm.shape == (32, 48, 3)
+    straight = image.to_srgb8("transparent")
     assert straight.shape == (32, 48, 4) and straight.dtype == numpy.uint8
     over = image.to_srgb8("#ffffff")
     assert over.shape == (32, 48, 3)

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -38,6 +39,12 @@ TEST(Presets, AreFunctionsOfAnyData) {
     EXPECT_GT(preset.description.size(), 20u);
     for (const Volume& volume :
          {ramp(-1000, 3000), ramp(0, 1e-20F), ramp(1e30F, 2e30F), ramp(7, 7), ramp(-1e-3F, 0)}) {
+      const bool fits = !preset.hounsfield || volume.statistics().minimum == -1000;
+      if (!fits) {
+        expect_error([&] { make_preset(name, volume); },
+                     {name.c_str(), "is in Hounsfield units", "give the range"});
+        continue;
+      }
       const TransferFunction function = make_preset(name, volume);
       double largest = 0;
       for (const auto& p : function.points()) {
@@ -67,9 +74,22 @@ TEST(Presets, RelativeOnesScaleWithTheData) {
   EXPECT_NO_THROW(make_preset("x-ray", ramp(0, 1), std::array{-2e37, 2e37}));
 }
 
-TEST(Presets, InHounsfieldUnitsDoNotLookAtTheData) {
-  const TransferFunction bone = make_preset("ct-bone", ramp(0, 1));
+TEST(Presets, InHounsfieldUnitsAreMovedOrRefused) {
+  const TransferFunction bone = make_preset("ct-bone", ramp(-1000, 1500));
   EXPECT_EQ(values_of(bone), values_of(make_preset("ct-bone", ramp(-1000, 3000, 0.5))));
+  // An MR image.
+  expect_error([] { make_preset("ct-bone", ramp(0, 1337)); }, {"the data are 0 to 1337"});
+  // Twelve bits: a third air, the rest water, and some bone.
+  Volume::Description description;
+  description.dimensions = {30, 30, 30};
+  std::vector<std::int16_t> values(27000, 1024);
+  std::fill(values.begin(), values.begin() + 9000, 24);
+  std::fill(values.end() - 500, values.end(), 2500);
+  const TransferFunction moved = make_preset("ct-bone", Volume(description, VolumeData(values)));
+  for (std::size_t i = 0; i < moved.points().size(); ++i) {
+    EXPECT_NEAR(moved.points()[i].value, bone.points()[i].value + 1024, 1e-9);
+    EXPECT_EQ(moved.points()[i].extinction, bone.points()[i].extinction);
+  }
   // Nothing of water and soft tissue, and compact bone is dense: half of the light within a few mm.
   EXPECT_EQ(bone.points().front().extinction, 0);
   EXPECT_GE(bone.points().front().value, 100);

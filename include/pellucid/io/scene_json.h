@@ -44,6 +44,7 @@ struct MaskSource {
 /// choose_look().
 struct WantedLook {
   std::string name{};          ///< of looks(); empty: the one for the data
+  bool has_function = false;   ///< whether one without a function gives way to "haze"
   bool keeps_shading = false;  ///< whether the layer's own shading counts, also if it has none
   std::function<void(const Look&)> chosen{};  ///< is told the look; may be empty
 };

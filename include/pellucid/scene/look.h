@@ -46,8 +46,8 @@ std::span<const LookName> looks() noexcept;
 /// - `microscopy`: images (.tif, .lsm, .png, OME-Zarr) without such surfaces; what is bright glows.
 /// - `simulation`: smooth data, whose noise is a quarter of half of their gradients or less;
 ///   surfaces of equal value in light, of viridis' colors. Data around 0, whose smaller extreme is
-///   a fifth of the larger one or more and half of whose values are within 0.3 of it, have surfaces
-///   of both signs, blue and red.
+///   a fifth of the larger one or more and half of whose values are within a fifth of that, have
+///   surfaces of both signs, blue and red.
 /// - `haze`: all else, by default_transfer_function().
 ///
 /// `x-ray` is never chosen. Up to 2^18 values are looked at. Throws Error if there is no look of
@@ -55,6 +55,10 @@ std::span<const LookName> looks() noexcept;
 Look choose_look(const Volume& volume, std::string_view name = {});
 /// Returns the look of a mesh: `body`, which shows the values on and below its surface.
 Look choose_look(const MeshChannels& mesh, std::string_view name = {});
+
+/// Returns the value of air if the data seem to be in Hounsfield units (-1000), or in those plus
+/// about 1024 (24); none: they do not.
+std::optional<double> hounsfield_air(const Volume& volume);
 
 /// Returns the lights of a look in light: one at the eye and one from the upper left, fixed in the
 /// world, which together are as bright as one. The camera must be valid.

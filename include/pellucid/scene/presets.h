@@ -29,13 +29,16 @@ const Preset* find_preset(std::string_view name) noexcept;
 
 /// Returns the transfer function of a preset for these data.
 ///
-/// Presets in Hounsfield units do not depend on the data. For the others the first value has 0.1 %
+/// Presets in Hounsfield units do not depend on the data, but for data that are those units plus
+/// about 1024 (hounsfield_air()) they are moved; data from -200 on that are not, or that end below
+/// 200, are refused. For the others the first value has 0.1 %
 /// of the data below it, the last value has 0.1 % above it, and the extinctions give a fixed
 /// optical depth over the mean chord (4 · volume / surface) of the data's box; their numbers are
 /// rounded to readable ones. `range` moves the first and the last point of any preset to these
 /// values. Colors are made from sRGB.
 ///
-/// Throws Error if there is no such preset, or the range is not two ascending numbers up to 2.1e37.
+/// Throws Error if there is no such preset, the range is not two ascending numbers up to 2.1e37, or
+/// the preset is in Hounsfield units, the data are not, and no range is given.
 TransferFunction make_preset(std::string_view name, const Volume& volume,
                              const std::optional<std::array<double, 2>>& range = {});
 /// Returns the same for a mesh.

@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pellucid/scene/picture_advice.h"
+
+#include <algorithm>
+#include <cstddef>
+#include <limits>
+#include <variant>
+#include <vector>
+
+#include "layer_light.h"
+#include "message.h"
+#include "value_sample.h"
+
+namespace pellucid {
+namespace {
+
+/// The values between which a function absorbs; nothing if nowhere.
+struct Support {
+  double lower = std::numeric_limits<double>::infinity(), upper = -lower;
+};
+Support support_of(const TransferFunction& function) {
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  Support support;
+  const auto& points = function.points();
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    if (!(points[i].extinction > 0)) continue;
+    support.lower = std::min(support.lower, i > 0 ? points[i - 1].value : -infinity);
+    support.upper = std::max(support.upper, i + 1 < points.size() ? points[i + 1].value : infinity);
+  }
+  return support;
+}
+
+std::string interval_text(const Support& support) {
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  if (support.upper == infinity) return "above " + number(support.lower);
+  if (support.lower == -infinity) return "below " + number(support.upper);
+  return "from " + number(support.lower) + " to " + number(support.upper);
+}
+
+/// Why a layer's function shows none of its values; empty: it shows some.
+std::string why_clear(const Layer& layer) {
+  const TransferFunction* const function = table_of(layer);
+  if (function == nullptr || has_surfaces(layer) || layer.projection) return {};
+  std::vector<double> values;
+  if (const auto* const volume = std::get_if<VolumeContent>(&layer.content)) {
+    values = value_sample(*volume->volume);
+  } else if (const auto* const mesh = std::get_if<MeshContent>(&layer.content)) {
+    values = value_sample(*mesh->mesh);
+  }
+  if (values.empty()) return "the data have no number that is finite";
+  const Support support = support_of(*function);
+  if (!(support.lower < support.upper)) return "the transfer function absorbs nowhere";
+  if (values.back() <= support.lower || values.front() >= support.upper) {
+    return "the transfer function absorbs " + interval_text(support) +
+           ", where none of the data are, which lie from " + number(values.front()) + " to " +
+           number(values.back());
+  }
+  return {};
+}
+
+std::string why_empty(const Scene& scene, bool any) {
+  const Layer* const layer = only_layer(scene);
+  if (layer != nullptr) {
+    const std::string why = why_clear(*layer);
+    if (!why.empty()) return why + "; take another function, range or look";
+  }
+  return any ? "what is there is faint or small; raise the extinction, or move the camera"
+             : "no ray meets anything that absorbs; look at the camera, the clips and the function";
+}
+
+}  // namespace
+
+std::optional<std::string> picture_advice(const Scene& scene, const Image& image) {
+  std::size_t seen = 0, burnt = 0;
+  bool any = false;
+  for (const auto& pixel : image.pixels) {
+    any = any || pixel[3] > 0;
+    if (!(pixel[3] >= 0.02F)) continue;
+    ++seen;
+    if (std::max({pixel[0], pixel[1], pixel[2]}) > 1.05F * pixel[3]) ++burnt;
+  }
+  if (200 * seen < image.pixels.size()) {
+    return "the picture is nearly empty: " + why_empty(scene, any);
+  }
+  if (10 * burnt > seen) {
+    return "a tenth or more of what is seen is brighter than white, and cut off: lower the lights' "
+           "colors, or the diffuse and specular parts of the shading";
+  }
+  return std::nullopt;
+}
+
+}  // namespace pellucid
