@@ -122,11 +122,11 @@ HEADER = '''// SPDX-License-Identifier: Apache-2.0
 //
 // Sources and licences. matplotlib 3.6 (PSF-based): viridis, plasma, inferno, magma (N. J. Smith,
 // S. van der Walt, E. Firing), cividis (J. R. Nunez, C. R. Anderton, R. S. Renslow) and twilight
-// (B. Bechtold) are CC0; turbo is Apache-2.0 (A. Mikhailov, Google); RdBu to YlOrRd are by C. Brewer,
-// Apache-2.0: "This product includes color specifications and designs developed by Cynthia Brewer
-// (http://colorbrewer.org/)". ParaView 5.11 (BSD-3-Clause): cool to warm (K. Moreland 2009) to blue
-// to red rainbow; cool to warm (extended) and blue orange are by F. Samsel. batlow: Scientific
-// colour maps 7.0.1, MIT, F. Crameri.
+// (B. Bechtold) are CC0; turbo is Apache-2.0 (A. Mikhailov, Google); RdBu to YlOrRd are by C.
+// Brewer, Apache-2.0: "This product includes color specifications and designs developed by Cynthia
+// Brewer (http://colorbrewer.org/)". ParaView 5.11 (BSD-3-Clause): cool to warm (K. Moreland 2009)
+// to blue to red rainbow; cool to warm (extended) and blue orange are by F. Samsel. batlow:
+// Scientific colour maps 7.0.1, MIT, F. Crameri.
 #include "color_map_table.h"
 
 #include <array>

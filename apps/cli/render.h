@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "color_arguments.h"
 #include "import_arguments.h"
 #include "input.h"
 #include "light_arguments.h"
@@ -26,6 +27,7 @@ struct RenderArguments {
   std::vector<std::string> channels, gaussians, layers, labels, clips;
   std::string transfer_function, preset, projection, camera, view, size, background, backdrop;
   ImportArguments import;
+  ColorArguments colors;
   LightArguments light;
   std::string method, precision, grade, device;
   std::optional<std::string> tolerance;

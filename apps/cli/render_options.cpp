@@ -200,6 +200,7 @@ void add_scene_options(CommandLine& command, RenderArguments& arguments) {
       ->option_text("NAME")
       ->excludes(transfer_function)
       ->excludes("--gaussian");
+  arguments.colors.add_to(command);
   arguments.import.add_to(command);
   command
       .add_option("--projection", arguments.projection,

@@ -135,6 +135,10 @@ void check_arguments(const RenderArguments& arguments) {
   if (!arguments.projection.empty() && arguments.has_only_added_layers()) {
     throw UsageError("--projection: is for INPUT; give one, or write it into a layer of a scene");
   }
+  if (const std::string option = arguments.colors.option_of_a_layer();
+      !option.empty() && arguments.has_only_added_layers()) {
+    throw UsageError(option + ": is for INPUT; give one, or edit the layer in a scene");
+  }
   if (const std::string option = arguments.light.option_of_a_layer();
       !option.empty() && arguments.has_only_added_layers()) {
     throw UsageError(option + ": is for INPUT; give one, or write it into a layer of a scene");
@@ -261,6 +265,9 @@ void refuse_options_of_one_layer(const RenderArguments& arguments,
   const std::pair<const char*, bool> given[] = {{"--tf", !arguments.transfer_function.empty()},
                                                 {"--preset", !arguments.preset.empty()},
                                                 {"--gaussian", !arguments.gaussians.empty()},
+                                                {"--colormap", !arguments.colors.colormap.empty()},
+                                                {"--range", !arguments.colors.range.empty()},
+                                                {"--opacity", arguments.colors.opacity.has_value()},
                                                 {"--channel", !arguments.channels.empty()},
                                                 {"--projection", !arguments.projection.empty()},
                                                 {"--iso", !arguments.light.isosurfaces.empty()},
@@ -336,6 +343,7 @@ SceneDescription describe(const RenderArguments& arguments,
   if (!description.layers.empty()) {
     description.layers.front() = layer;
     set_transfer_function(arguments, description, import_notes);
+    arguments.colors.apply(description.layers.front());
     arguments.light.apply(description.layers.front());
   }
   arguments.light.apply(description);

@@ -11,6 +11,7 @@
 #include "pellucid/scene/defaults.h"
 #include "pellucid/scene/error.h"
 #include "pellucid/scene/presets.h"
+#include "scene_json_change.h"
 
 namespace pellucid {
 namespace {
@@ -307,6 +308,7 @@ Layer load_layer(const LayerDescription& description, const Wanted& wanted, cons
   } else {
     layer.content = load_volume_content(description, wanted, loaded, look);
   }
+  change_function(description, layer);
   LookLoader(description, layer)();
   if (look) layer.shading = look->shading;
   return layer;
