@@ -11,7 +11,9 @@ from ._pellucid import Channels, Error, Image, LabelVolume, Mesh, Renderer, Volu
 from .scene import Camera, Color, Layer, Scene, Shading, _data_of
 
 _PLACE_NAMES = ("spacing", "origin", "direction", "coordinates", "centering")
-_LAYER_NAMES = {f.name for f in dataclasses.fields(Layer)} - {"data", "transfer_function"}
+_CHANGES = {"cmap", "clim", "opacity"}
+_LAYER_NAMES = (({f.name for f in dataclasses.fields(Layer)} | _CHANGES)
+                - {"data", "transfer_function"})
 
 
 def _layer_of(data: Any, transfer_function: Any, attributes: dict[str, Any]) -> Layer:
@@ -114,9 +116,11 @@ def render(data: Any, transfer_function: Any = None, *, preset: Optional[str] = 
     progress           called with the finished fraction every 20 ms; what it raises cancels the
                        picture and is raised here, and so is Ctrl-C
     renderer           a Renderer, which keeps what frames share
-    **layer            further attributes of the Layer: shading, isosurfaces, slices, clips,
-                       projection, gradient_opacity, transform, mask, labels, name; and of an
-                       array spacing, origin, direction, coordinates and centering, as Volume()
+    **layer            further attributes of the Layer: cmap="viridis" (colors), clim=(low, high)
+                       (range of colors and opacity), opacity=2.0 (a factor), shading=True,
+                       isosurfaces=[60], slices, clips, projection, gradient_opacity, transform,
+                       mask, labels, name; and of an array spacing, origin, direction, coordinates
+                       and centering, as Volume()
 
     Raises Error: one line that says what is wrong, where, and what to do.
     """

@@ -40,6 +40,7 @@ void bind_volumes(py::module_& module);
 void bind_labels(py::module_& module);
 void bind_meshes(py::module_& module);
 void bind_transfer_functions(py::module_& module);
+void bind_color_maps(py::module_& module);
 void bind_gaussians(py::module_& module);
 void bind_foreign_functions(py::module_& module);
 void bind_histograms(py::module_& module);
