@@ -37,6 +37,8 @@ struct RenderArguments {
   int threads = 0;
   std::string balance;  ///< of the bricks of ranks
   bool ranks = false;
+  std::string color_bar_title;
+  bool color_bar = false;
   bool print_tf = false, reference = false, strict = false, json = false, quiet = false;
   /// Several channels without a function get suggested Gaussians, in place of an error.
   bool suggests_functions = false;
@@ -48,6 +50,7 @@ struct RenderArguments {
   bool has_only_added_layers() const {
     return input.empty() && channels.empty() && !(layers.empty() && labels.empty());
   }
+  bool wants_color_bar() const { return color_bar || !color_bar_title.empty(); }
   bool renders() const {
     return !outputs.empty() || !depth_picture.empty() || !error_map.empty() || !values.empty();
   }
@@ -127,6 +130,12 @@ struct RenderedPicture {
 };
 /// The options of a frame.
 RenderOptions options_of(const RenderArguments& arguments, const PreparedScene& prepared);
+/// Throws UsageError if --color-bar has no .png to be drawn in, and Error if it cannot be drawn.
+void check_color_bar(const RenderArguments& arguments);
+/// Returns the picture with the color bars that are asked for. `notes` get a line if there is
+/// nothing to draw. Throws Error.
+Image with_wanted_color_bars(const RenderArguments& arguments, const PreparedScene& prepared,
+                             const Image& image, std::vector<std::string>& notes);
 /// Writes the pictures and other files, the report and the notes. Throws Error, and OverTolerance
 /// if the picture is over the tolerance.
 void write_picture(const RenderArguments& arguments, const PreparedScene& prepared,

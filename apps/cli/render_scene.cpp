@@ -108,6 +108,7 @@ void check_arguments(const RenderArguments& arguments) {
                            "--reference always integrates to 1e-12 and reports no error; drop one "
                            "of the two ('pellucid compare' measures how much pictures differ)");
   }
+  check_color_bar(arguments);
   if (arguments.strict && !arguments.renders()) {
     throw UsageError("--strict judges a rendering; give -o FILE.png or FILE.exr");
   }
