@@ -50,6 +50,11 @@ struct RenderArguments {
   bool has_only_added_layers() const {
     return input.empty() && channels.empty() && !(layers.empty() && labels.empty());
   }
+  /// Whether colors at the points of INPUT are shown as they are.
+  bool takes_own_colors() const {
+    return transfer_function.empty() && preset.empty() && gaussians.empty() && channels.empty() &&
+           projection.empty() && colors.colormap.empty() && colors.range.empty();
+  }
   bool wants_color_bar() const { return color_bar || !color_bar_title.empty(); }
   bool renders() const {
     return !outputs.empty() || !depth_picture.empty() || !error_map.empty() || !values.empty();
@@ -130,6 +135,10 @@ struct RenderedPicture {
 };
 /// The options of a frame.
 RenderOptions options_of(const RenderArguments& arguments, const PreparedScene& prepared);
+/// Shows colors at the points of INPUT as they are if nothing else is asked for; `notes` get a
+/// line. Throws Error.
+void set_own_colors(const RenderArguments& arguments, LayerDescription& layer,
+                    std::vector<std::string>& notes);
 /// Throws UsageError if --color-bar has no .png to be drawn in, and Error if it cannot be drawn.
 void check_color_bar(const RenderArguments& arguments);
 /// Returns the picture with the color bars that are asked for. `notes` get a line if there is

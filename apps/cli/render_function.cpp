@@ -8,6 +8,7 @@
 
 #include "parse.h"
 #include "pellucid/io/atomic_file.h"
+#include "pellucid/io/color_data.h"
 #include "pellucid/io/import_transfer_function.h"
 #include "pellucid/scene/presets.h"
 #include "render.h"
@@ -41,6 +42,15 @@ ImportOptions import_options(const RenderArguments& arguments,
 }
 
 }  // namespace
+
+void set_own_colors(const RenderArguments& arguments, LayerDescription& layer,
+                    std::vector<std::string>& notes) {
+  // Functions that are given see one variable, or name channels of their own.
+  if (!arguments.takes_own_colors() || !layer.channels.empty() || !show_own_colors(layer)) return;
+  notes.push_back(
+      "the data are colors: each point has its own, and the opacity of its alpha or luminance "
+      "(--component N shows one component, --save-scene FILE.json writes the function)");
+}
 
 void set_transfer_function(const RenderArguments& arguments, SceneDescription& description,
                            std::vector<std::string>& import_notes) {

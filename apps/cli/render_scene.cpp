@@ -13,6 +13,7 @@
 #include "parse.h"
 #include "pellucid/cpu/threads.h"
 #include "pellucid/io/atomic_file.h"
+#include "pellucid/io/color_data.h"
 #include "pellucid/io/image_files.h"
 #include "pellucid/scene/labels.h"
 #include "pellucid/scene/view_camera.h"
@@ -328,6 +329,7 @@ SceneDescription describe(const RenderArguments& arguments,
     layer.mesh = mesh_source(arguments.input, arguments.mesh);
   } else if (!arguments.input.empty()) {
     set_volume(arguments, layer);
+    set_own_colors(arguments, layer, import_notes);
   } else {
     arguments.mesh.refuse("channels of volumes");
   }
@@ -508,7 +510,8 @@ PreparedScene complete_scene(const RenderArguments& arguments, SceneRequest requ
       layer.mesh->options.note = {};
     }
     complete_description(scene.layers[i], layer);
-    if (arguments.ranks) continue;  // no rank has all labels
+    // No rank has all labels, and parts of colors are none.
+    if (arguments.ranks || shows_own_colors(layer)) continue;
     visit_fields_of_files(scene.layers[i], layer, i, scene.layers.size(),
                           [&](const std::string& name, const Volume& volume) {
                             if (const auto count = label_count(volume)) {
