@@ -1,20 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <string>
 #include <vector>
+
+#include "pellucid/scene/axis_ticks.h"
 
 namespace pellucid::cli {
 
-/// Where an axis has a number.
-struct Tick {
-  double share = 0;  ///< of the way along the axis
-  std::string label;
-};
-
-/// Multiples of 1, 2 or 5 times a power of ten between two values, at most `most` (>= 2) of them,
-/// with the digits that tell them apart; the two ends where no such multiples lie between.
-std::vector<Tick> axis_ticks(double lower, double upper, int most);
+using pellucid::axis_ticks;
+using pellucid::Tick;
 
 /// Where a count stands on an axis from 0 to `largest` (>= 1): log(1 + count), so that one shows
 /// beside a million, and none is at 0.

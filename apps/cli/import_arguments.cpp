@@ -7,12 +7,12 @@
 
 namespace pellucid::cli {
 
-void ImportArguments::add_to(CommandLine& command) {
-  command
-      .add_option("--range", range,
-                  "Move the first and last point of a preset, or of another program's transfer "
-                  "function, to these data values")
+void ImportArguments::add_range_to(CommandLine& command) {
+  command.add_option("--range", range, "Move the first and the last point to these data values")
       ->option_text("A,B");
+}
+
+void ImportArguments::add_to(CommandLine& command) {
   given = {command
                .add_option("--map", map,
                            "Use this color map of another program's file. Default: the first")

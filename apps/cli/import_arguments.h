@@ -16,6 +16,9 @@ struct ImportArguments {
   std::optional<double> unit_distance;
   std::vector<Option*> given;  ///< all but --range, to ask which were used
 
+  /// Adds --range alone.
+  void add_range_to(CommandLine& command);
+  /// Adds all but --range.
   void add_to(CommandLine& command);
   /// Throws UsageError.
   ImportOptions options(double deviation) const;

@@ -113,6 +113,31 @@ std::array<double, 2> parse_range(const std::string& option, const std::string& 
   return {ends[0], ends[1]};
 }
 
+ValueRange parse_value_range(const std::string& option, const std::string& text) {
+  constexpr std::string_view expected =
+      "two ascending values LOW:HIGH, or percentages from 0% to 100%, as in 10:90 or 2%:98%";
+  const auto fail = [&] {
+    throw UsageError(fmt::format("{} '{}': expected {}", option, text, expected));
+  };
+  const std::size_t middle = text.find_first_of(":,");
+  if (middle == std::string::npos) fail();
+  const auto parse_end = [&](std::string end) {
+    RangeEnd made;
+    made.is_percent = end.ends_with('%');
+    if (made.is_percent) end.pop_back();
+    const std::vector<double> number = parse_list<double>(option, end, ',', expected);
+    made.number = number[0];
+    const bool good =
+        made.is_percent ? made.number >= 0 && made.number <= 100 : std::isfinite(made.number);
+    if (number.size() != 1 || !good) fail();
+    return made;
+  };
+  const ValueRange range{parse_end(text.substr(0, middle)), parse_end(text.substr(middle + 1))};
+  const bool comparable = range[0].is_percent == range[1].is_percent;
+  if (comparable && !(range[0].number < range[1].number)) fail();
+  return range;
+}
+
 double parse_tolerance(const std::string& option, const std::string& text) {
   constexpr std::string_view expected = "a positive number or fraction, as in 0.001, 1e-4 or 1/512";
   const std::vector<double> n = parse_list<double>(option, text, '/', expected);

@@ -224,7 +224,8 @@ void write_picture(const RenderArguments& arguments, const PreparedScene& prepar
       if (extension_of(path) == ".exr") {
         write_exr(image, path);
       } else {
-        write_png(image, path, shown_background(prepared.description));
+        const Image shown = with_wanted_color_bars(arguments, prepared, image, picture.notes);
+        write_png(shown, path, shown_background(prepared.description));
       }
     });
   }

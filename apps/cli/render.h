@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "color_arguments.h"
 #include "import_arguments.h"
 #include "input.h"
 #include "light_arguments.h"
@@ -26,6 +27,7 @@ struct RenderArguments {
   std::vector<std::string> channels, gaussians, layers, labels, clips;
   std::string transfer_function, preset, look, projection, camera, view, size, background, backdrop;
   ImportArguments import;
+  ColorArguments colors;
   LightArguments light;
   std::string method, precision, grade, device;
   std::optional<std::string> tolerance;
@@ -35,6 +37,8 @@ struct RenderArguments {
   int threads = 0;
   std::string balance;  ///< of the bricks of ranks
   bool ranks = false;
+  std::string color_bar_title;
+  bool color_bar = false;
   bool print_tf = false, reference = false, strict = false, json = false, quiet = false,
        verbose = false;
   /// Several channels without a function get suggested Gaussians, in place of an error.
@@ -47,6 +51,12 @@ struct RenderArguments {
   bool has_only_added_layers() const {
     return input.empty() && channels.empty() && !(layers.empty() && labels.empty());
   }
+  /// Whether colors at the points of INPUT are shown as they are.
+  bool takes_own_colors() const {
+    return transfer_function.empty() && preset.empty() && gaussians.empty() && channels.empty() &&
+           projection.empty() && colors.colormap.empty() && colors.range.empty();
+  }
+  bool wants_color_bar() const { return color_bar || !color_bar_title.empty(); }
   bool renders() const {
     return !outputs.empty() || !depth_picture.empty() || !error_map.empty() || !values.empty();
   }
@@ -127,6 +137,16 @@ struct RenderedPicture {
 };
 /// The options of a frame.
 RenderOptions options_of(const RenderArguments& arguments, const PreparedScene& prepared);
+/// Shows colors at the points of INPUT as they are if nothing else is asked for; `notes` get a
+/// line. Throws Error.
+void set_own_colors(const RenderArguments& arguments, LayerDescription& layer,
+                    std::vector<std::string>& notes);
+/// Throws UsageError if --color-bar has no .png to be drawn in, and Error if it cannot be drawn.
+void check_color_bar(const RenderArguments& arguments);
+/// Returns the picture with the color bars that are asked for. `notes` get a line if there is
+/// nothing to draw. Throws Error.
+Image with_wanted_color_bars(const RenderArguments& arguments, const PreparedScene& prepared,
+                             const Image& image, std::vector<std::string>& notes);
 /// Writes the pictures and other files, the report and the notes. Throws Error, and OverTolerance
 /// if the picture is over the tolerance.
 void write_picture(const RenderArguments& arguments, const PreparedScene& prepared,

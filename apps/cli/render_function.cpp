@@ -8,6 +8,7 @@
 
 #include "parse.h"
 #include "pellucid/io/atomic_file.h"
+#include "pellucid/io/color_data.h"
 #include "pellucid/io/import_transfer_function.h"
 #include "pellucid/scene/presets.h"
 #include "render.h"
@@ -26,7 +27,30 @@ double import_share(const RenderArguments& arguments, const SceneDescription& de
   return std::clamp(smaller / 16, smallest_deviation, largest_deviation);
 }
 
+/// Returns the values of --range; none: it is not given, or depends on the data.
+std::optional<std::array<double, 2>> plain_range(const RenderArguments& arguments) {
+  if (arguments.colors.range.empty() || arguments.colors.asks_data()) return std::nullopt;
+  const ValueRange range = parse_value_range("--range", arguments.colors.range);
+  return std::array<double, 2>{range[0].number, range[1].number};
+}
+
+ImportOptions import_options(const RenderArguments& arguments,
+                             const SceneDescription& description) {
+  ImportOptions options = arguments.import.options(import_share(arguments, description));
+  options.range = plain_range(arguments);
+  return options;
+}
+
 }  // namespace
+
+void set_own_colors(const RenderArguments& arguments, LayerDescription& layer,
+                    std::vector<std::string>& notes) {
+  // Functions that are given see one variable, or name channels of their own.
+  if (!arguments.takes_own_colors() || !layer.channels.empty() || !show_own_colors(layer)) return;
+  notes.push_back(
+      "the data are colors: each point has its own, and the opacity of its alpha or luminance "
+      "(--component N shows one component, --save-scene FILE.json writes the function)");
+}
 
 void set_transfer_function(const RenderArguments& arguments, SceneDescription& description,
                            std::vector<std::string>& import_notes) {
@@ -38,9 +62,7 @@ void set_transfer_function(const RenderArguments& arguments, SceneDescription& d
                                    arguments.preset));
     }
     PresetDescription preset{arguments.preset, {}};
-    if (!arguments.import.range.empty()) {
-      preset.range = parse_range("--range", arguments.import.range);
-    }
+    preset.range = plain_range(arguments);
     if (!description.layers.front().channels.empty()) {
       throw UsageError(
           "--preset: presets are for one variable, but there are channels; drop one of the two");
@@ -55,8 +77,8 @@ void set_transfer_function(const RenderArguments& arguments, SceneDescription& d
   }
   const std::string text = file.empty() ? "" : read_text_file(file);
   if (!file.empty() && is_foreign_transfer_function(text)) {
-    const ImportedTransferFunction imported = import_transfer_function(
-        text, file, arguments.import.options(import_share(arguments, description)));
+    const ImportedTransferFunction imported =
+        import_transfer_function(text, file, import_options(arguments, description));
     LayerDescription& layer = description.layers.front();
     layer.transfer_function = imported.table;
     import_notes = import_lines(imported, file);
@@ -66,9 +88,6 @@ void set_transfer_function(const RenderArguments& arguments, SceneDescription& d
   const char* const what =
       file.empty() ? "a scene's own transfer function" : "a transfer function of our own";
   arguments.import.refuse(what);
-  if (!arguments.import.range.empty()) {
-    throw UsageError(fmt::format("--range does not apply to {}; drop it", what));
-  }
   if (!file.empty()) {
     LookDescription look = parse_look(text, file);
     LayerDescription& layer = description.layers.front();

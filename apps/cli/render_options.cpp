@@ -61,6 +61,16 @@ void add_picture_options(CommandLine& command, RenderArguments& arguments) {
           "'#334:black' for a gradient from above, or transparent. Default: the scene's, else a "
           "dark gradient. An .exr always stays transparent")
       ->option_text("COLOR");
+  command.add_flag(
+      "--color-bar", arguments.color_bar,
+      "Draw the colors of the values, or of the labels, over the right edge of a .png. An .exr and "
+      "other numbers stay without");
+  command
+      .add_option("--color-bar-title", arguments.color_bar_title,
+                  "Draw them, the first with this title, as in 'temperature (K)'. Default: the "
+                  "layer's name, "
+                  "the array's or the file's")
+      ->option_text("TEXT");
   command
       .add_option("--backdrop", arguments.backdrop,
                   "Put this picture of geometry among the data: rays end at its depth (channel Z), "
@@ -211,6 +221,7 @@ void add_scene_options(CommandLine& command, RenderArguments& arguments) {
       ->excludes(transfer_function)
       ->excludes("--gaussian")
       ->excludes("--preset");
+  arguments.colors.add_to(command);
   arguments.import.add_to(command);
   command
       .add_option("--projection", arguments.projection,

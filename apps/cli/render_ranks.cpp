@@ -36,6 +36,7 @@ void refuse_arguments(const RenderArguments& arguments) {
   const std::pair<const char*, bool> given[] = {
       {"--reference", arguments.reference},
       {"--print-tf", arguments.print_tf},
+      {"--range in percent", arguments.colors.asks_data()},
       {"--save-tf", !arguments.save_tf.empty()},
       {"--device", !arguments.device.empty() && arguments.device != "cpu"},
       {"--method", !arguments.method.empty() && arguments.method != "exact"}};

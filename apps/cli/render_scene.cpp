@@ -108,6 +108,7 @@ void check_arguments(const RenderArguments& arguments) {
                            "--reference always integrates to 1e-12 and reports no error; drop one "
                            "of the two ('pellucid compare' measures how much pictures differ)");
   }
+  check_color_bar(arguments);
   if (arguments.strict && !arguments.renders()) {
     throw UsageError("--strict judges a rendering; give -o FILE.png or FILE.exr");
   }
@@ -134,6 +135,10 @@ void check_arguments(const RenderArguments& arguments) {
   }
   if (!arguments.projection.empty() && arguments.has_only_added_layers()) {
     throw UsageError("--projection: is for INPUT; give one, or write it into a layer of a scene");
+  }
+  if (const std::string option = arguments.colors.option_of_a_layer();
+      !option.empty() && arguments.has_only_added_layers()) {
+    throw UsageError(option + ": is for INPUT; give one, or edit the layer in a scene");
   }
   if (const std::string option = arguments.light.option_of_a_layer();
       !option.empty() && arguments.has_only_added_layers()) {
@@ -261,6 +266,9 @@ void refuse_options_of_one_layer(const RenderArguments& arguments,
   const std::pair<const char*, bool> given[] = {{"--tf", !arguments.transfer_function.empty()},
                                                 {"--preset", !arguments.preset.empty()},
                                                 {"--gaussian", !arguments.gaussians.empty()},
+                                                {"--colormap", !arguments.colors.colormap.empty()},
+                                                {"--range", !arguments.colors.range.empty()},
+                                                {"--opacity", arguments.colors.opacity.has_value()},
                                                 {"--channel", !arguments.channels.empty()},
                                                 {"--projection", !arguments.projection.empty()},
                                                 {"--iso", !arguments.light.isosurfaces.empty()},
@@ -320,6 +328,7 @@ SceneDescription describe(const RenderArguments& arguments,
     layer.mesh = mesh_source(arguments.input, arguments.mesh);
   } else if (!arguments.input.empty()) {
     set_volume(arguments, layer);
+    set_own_colors(arguments, layer, import_notes);
   } else {
     arguments.mesh.refuse("channels of volumes");
   }
@@ -336,6 +345,7 @@ SceneDescription describe(const RenderArguments& arguments,
   if (!description.layers.empty()) {
     description.layers.front() = layer;
     set_transfer_function(arguments, description, import_notes);
+    arguments.colors.apply(description.layers.front());
     arguments.light.apply(description.layers.front());
   }
   arguments.light.apply(description);

@@ -120,6 +120,7 @@ Command add_transfer_function(CommandLine& app) {
                   "Largest error of a fit, in each linear color channel and in the logarithm of "
                   "the extinction, 1e-7 to 0.1. Default: 1e-4")
       ->option_text("E");
+  arguments->import.add_range_to(command);
   arguments->import.add_to(command);
   command.add_flag("-q,--quiet", arguments->quiet, "Print no notes, only errors");
   command.footer(

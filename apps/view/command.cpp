@@ -219,8 +219,9 @@ constexpr Kind kinds[] = {
     {"list_file", [](Members& m) -> Command { return ListFile{m.layer()}; }},
     {"save",
      [](Members& m) -> Command {
-       constexpr std::array kinds_of_files{Save::Kind::png, Save::Kind::exr, Save::Kind::scene};
-       return Save{kinds_of_files[m.choice("what", {"png", "exr", "scene"})]};
+       constexpr std::array kinds_of_files{Save::Kind::png, Save::Kind::png_with_color_bar,
+                                           Save::Kind::exr, Save::Kind::scene};
+       return Save{kinds_of_files[m.choice("what", {"png", "png_with_color_bar", "exr", "scene"})]};
      }},
 };
 

@@ -120,7 +120,7 @@ struct ListFile {
 };
 /// Asks for a file.
 struct Save {
-  enum class Kind { png, exr, scene };
+  enum class Kind { png, png_with_color_bar, exr, scene };
   Kind kind;
 };
 

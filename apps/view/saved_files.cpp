@@ -55,6 +55,13 @@ std::string bytes_of(const std::string& name, const Write& write) {
 
 }  // namespace
 
+std::vector<ColorBar> wanted_color_bars(const SceneDescription& description, const Scene& scene) {
+  check_draws_color_bars();
+  std::vector<ColorBar> bars = color_bars(description, scene);
+  if (!bars.empty()) return bars;
+  throw Error("no color bar: it shows labels, and functions of one variable, but there are none");
+}
+
 SavedFile png_file(const Image& image, const std::optional<Background>& background) {
   return {"picture.png", "image/png", encode_png(image, background)};
 }

@@ -2,8 +2,10 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "command.h"
+#include "pellucid/io/color_bar.h"
 #include "pellucid/io/scene_json.h"
 #include "pellucid/scene/image.h"
 
@@ -14,6 +16,8 @@ struct SavedFile {
   std::string name, content_type, bytes;
 };
 
+/// Returns the color bars of a scene. Throws Error if there are none, or they cannot be drawn.
+std::vector<ColorBar> wanted_color_bars(const SceneDescription& description, const Scene& scene);
 /// Returns a picture as the program writes it.
 SavedFile png_file(const Image& image, const std::optional<Background>& background);
 SavedFile exr_file(const Image& image);

@@ -384,9 +384,14 @@ void Studio::save(PageId page, Save::Kind kind) {
   }
   RenderOptions options;
   options.progress = [this](double) { return !has_ended(); };
-  if (kind == Save::Kind::png) {
+  if (kind == Save::Kind::png || kind == Save::Kind::png_with_color_bar) {
+    std::vector<ColorBar> bars;
+    if (kind == Save::Kind::png_with_color_bar) {
+      bars = wanted_color_bars(state_.description(), state_.scene());
+    }
     const std::optional<Image>& shown = frames_.exact_image();
-    const Image image = shown ? *shown : frames_.renderer().render(state_.scene(), options);
+    Image image = shown ? *shown : frames_.renderer().render(state_.scene(), options);
+    if (!bars.empty()) image = with_color_bars(image, bars);
     return send_file(page, png_file(image, shown_background(state_.description())));
   }
   options.depth = true;

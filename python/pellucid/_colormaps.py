@@ -6,7 +6,8 @@ from typing import Any, Sequence, Tuple, Union
 
 import numpy
 
-from ._pellucid import Error, TransferFunction, linear_color, srgb_to_linear
+from ._pellucid import (Error, TransferFunction, color_map, is_color_map, linear_color,
+                        srgb_to_linear)
 
 Extinction = Union[float, Sequence[Tuple[float, float]]]
 
@@ -14,20 +15,17 @@ Extinction = Union[float, Sequence[Tuple[float, float]]]
 def colormap_colors(colormap: Any, count: int = 256) -> numpy.ndarray:
     """Returns `count` linear colors (count, 3) of a color map.
 
-    colormap is the name of one of matplotlib, a colormap object (a callable from [0, 1] to sRGB),
-    a list of colors ("#rrggbb" or linear), or an array (n, 3) or (n, 4) of sRGB signals in [0, 1].
+    colormap is the name of one of color_map_names() or of matplotlib, a colormap object (a
+    callable from [0, 1] to sRGB), a list of colors ("#rrggbb" or linear), or an array (n, 3) or
+    (n, 4) of sRGB signals in [0, 1].
     """
     positions = numpy.linspace(0, 1, count)
     if isinstance(colormap, str):
-        try:
-            import matplotlib
-        except ImportError:
-            raise Error(f"color map \"{colormap}\": names are those of matplotlib, which is not "
-                        "installed; give a list of colors") from None
-        try:
-            colormap = matplotlib.colormaps[colormap]
-        except KeyError:
-            raise Error(f"color map \"{colormap}\": matplotlib has none of this name") from None
+        named = _of_matplotlib(colormap)
+        if named is None:
+            at, colors = zip(*color_map(colormap))
+            return numpy.stack([numpy.interp(positions, at, c) for c in zip(*colors)], axis=1)
+        colormap = named
     if callable(colormap):
         signals = numpy.asarray(colormap(positions), dtype=float)
     elif isinstance(colormap, numpy.ndarray):
@@ -38,6 +36,23 @@ def colormap_colors(colormap: Any, count: int = 256) -> numpy.ndarray:
     if signals.ndim != 2 or signals.shape[1] not in (3, 4):
         raise Error(f"color map: expected colors (n, 3) or (n, 4), got {signals.shape}")
     return srgb_to_linear(signals[:, :3])
+
+
+def _of_matplotlib(name: str) -> Any:
+    """Returns the map of this name; None if matplotlib is not there or has none."""
+    try:
+        import matplotlib
+    except ImportError:
+        return None
+    return matplotlib.colormaps[name] if name in matplotlib.colormaps else None
+
+
+def color_points(colormap: Any) -> list:
+    """Returns [(position, linear color), ...] of what colormap_colors() takes."""
+    if isinstance(colormap, str) and (is_color_map(colormap) or _of_matplotlib(colormap) is None):
+        return color_map(colormap)
+    colors = colormap_colors(colormap)
+    return list(zip(numpy.linspace(0, 1, len(colors)).tolist(), colors.tolist()))
 
 
 def _resampled(colors: numpy.ndarray, positions: numpy.ndarray) -> numpy.ndarray:
@@ -51,8 +66,8 @@ def from_colormap(colormap: Any, range: Tuple[float, float], extinction: Extinct
                   count: int = 256) -> TransferFunction:
     """Returns a TransferFunction with the colors of a color map.
 
-    colormap    the name of one of matplotlib ("viridis"), a colormap object, a list of colors, or
-                an array (n, 3) of sRGB signals
+    colormap    the name of one of color_map_names() or of matplotlib ("viridis"), a colormap
+                object, a list of colors, or an array (n, 3) of sRGB signals
     range       (first, last): the values of its ends
     extinction  per world length: one number, or points (value, extinction) in
                 ascending order, linear between

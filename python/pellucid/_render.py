@@ -8,12 +8,15 @@ import warnings
 from typing import Any, Callable, Optional, Union
 
 from . import _pellucid
+from ._colormaps import color_points
 from ._notes import Note
 from ._pellucid import Channels, Error, Image, LabelVolume, Mesh, Renderer, Volume
 from .scene import Camera, Color, Layer, Scene, Shading, _data_of
 
 _PLACE_NAMES = ("spacing", "origin", "direction", "coordinates", "centering")
-_LAYER_NAMES = {f.name for f in dataclasses.fields(Layer)} - {"data", "transfer_function"}
+_CHANGES = {"cmap", "clim", "opacity"}
+_LAYER_NAMES = (({f.name for f in dataclasses.fields(Layer)} | _CHANGES)
+                - {"data", "transfer_function"})
 
 
 def look(data: Any, name: Optional[str] = None) -> Layer:
@@ -34,9 +37,11 @@ def look(data: Any, name: Optional[str] = None) -> Layer:
     return _look_of(data, name or "")[0]
 
 
-def _look_of(data: Union[Volume, Mesh], name: str) -> tuple[Layer, bool]:
+def _look_of(data: Union[Volume, Mesh], name: str, cmap: Any = None, clim: Any = None,
+             opacity: float = 1.0) -> tuple[Layer, bool]:
     """The layer, and whether it is in light."""
-    found = _pellucid.choose_look(data, name)
+    colors = None if cmap is None else color_points(cmap)
+    found = _pellucid.choose_look(data, name, colors, clim, opacity)
     if found["as_labels"]:
         return Layer(LabelVolume(data)), False
     return Layer(data, found["transfer_function"], shading=found["shading"],
@@ -54,7 +59,8 @@ def _layer_of(data: Any, transfer_function: Any, name: Optional[str],
     if transfer_function is None and not shown:
         data = _data_of(data)
         if isinstance(data, Volume) or (isinstance(data, Mesh) and len(data.channels) == 1):
-            layer, lit = _look_of(data, name or "")
+            changes = {key: attributes.pop(key) for key in _CHANGES & set(attributes)}
+            layer, lit = _look_of(data, name or "", **changes)
             return dataclasses.replace(layer, **attributes), lit
         if name is not None:
             raise Error(f"look {name}: looks are of a volume or a mesh of one variable, not of "
@@ -154,9 +160,11 @@ def render(data: Any, transfer_function: Any = None, *, preset: Optional[str] = 
     progress           called with the finished fraction every 20 ms; what it raises cancels the
                        picture and is raised here, and so is Ctrl-C
     renderer           a Renderer, which keeps what frames share
-    **layer            further attributes of the Layer: shading, isosurfaces, slices, clips,
-                       projection, gradient_opacity, transform, mask, labels, name; and of an
-                       array spacing, origin, direction, coordinates and centering, as Volume()
+    **layer            further attributes of the Layer: cmap="viridis" (colors), clim=(low, high)
+                       (range of colors and opacity), opacity=2.0 (a factor), shading=True,
+                       isosurfaces=[60], slices, clips, projection, gradient_opacity, transform,
+                       mask, labels, name; and of an array spacing, origin, direction, coordinates
+                       and centering, as Volume()
 
     Raises Error: one line that says what is wrong, where, and what to do.
     """

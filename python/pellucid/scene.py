@@ -6,10 +6,14 @@ sRGB. Numbers are checked when the scene is rendered: what is wrong raises pellu
 """
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+import numbers
+from dataclasses import InitVar, dataclass, field
 from typing import Any, ClassVar, Optional, Sequence, Union
 
+import numpy
+
 from . import _pellucid
+from ._colormaps import color_points
 from ._pellucid import (Channels, Error, Gaussians, GradientOpacity, LabelMask, LabelTable,
                         LabelVolume, Mesh, OpacityTable, TransferFunction, Volume)
 
@@ -204,6 +208,11 @@ class Layer:
 
     `data` may be anything that Volume() takes. Without a transfer function one is made from the
     data; a name is that of a preset; a list for several variables holds Gaussians.
+
+    Three arguments change the function of one variable when the layer is made: cmap, its colors
+    (what from_colormap() takes); clim, (low, high), to where its first and last points move, and
+    the ends of the color map, in the data's unit or in percent of the values, ("2%", "98%"); and
+    opacity, a factor of its extinctions.
     """
 
     data: Any
@@ -215,22 +224,42 @@ class Layer:
     clips: list[Clip] = field(default_factory=list)
     projection: Optional[str] = None
     """"maximum", "minimum", "mean" or "sum" along each ray in place of the integral."""
-    shading: Optional[Shading] = None
+    shading: Union[Shading, bool, None] = None
+    """True: the default Shading(); False, or None without isosurfaces given as numbers: none."""
     gradient_opacity: Optional[GradientOpacity] = None
-    isosurfaces: list[Isosurface] = field(default_factory=list)
+    isosurfaces: list[Union[Isosurface, float]] = field(default_factory=list)
+    """A number is an Isosurface of this value."""
     slices: list[Slice] = field(default_factory=list)
     labels: Optional[LabelTable] = None
     """The look of a LabelVolume; None: made from the labels."""
     mask: Optional[LabelMask] = None
     """Labels that choose another function for a Volume."""
+    cmap: InitVar[Any] = None
+    clim: InitVar[Optional[Sequence[Union[float, str]]]] = None
+    opacity: InitVar[float] = 1.0
 
-    def __post_init__(self) -> None:
+    def __post_init__(self, cmap: Any, clim: Any, opacity: float) -> None:
         self.data = _data_of(self.data)
+        surfaces = _list_of(self.isosurfaces)
+        if self.shading is None and any(isinstance(each, numbers.Real) for each in surfaces):
+            self.shading = Shading()
+        self.isosurfaces = [Isosurface(float(each)) if isinstance(each, numbers.Real) else each
+                            for each in surfaces]
+        if isinstance(self.shading, (bool, numpy.bool_)):
+            self.shading = Shading() if self.shading else None
+        changes = cmap is not None or clim is not None or opacity != 1
         if isinstance(self.data, LabelVolume):
+            if changes:
+                raise Error("layer: cmap, clim and opacity are for a function; labels have colors "
+                            "of their own (LabelTable)")
             if self.labels is None:
                 self.labels = LabelTable.default(self.data)
             return
         self.transfer_function = self._function()
+        if changes:
+            colors = None if cmap is None else color_points(cmap)
+            self.transfer_function = _pellucid.changed_function(
+                self.transfer_function, self.data, colors, clim, opacity)
 
     def _function(self) -> Function:
         given, data = self.transfer_function, self.data
@@ -260,6 +289,11 @@ class Layer:
         if self.projection is not None:
             return _pellucid.projection_transfer_function(data, self.projection)
         return _pellucid.default_transfer_function(data)
+
+
+def _list_of(given: Any) -> list:
+    """Returns a list of isosurfaces, of which one may be given alone."""
+    return [given] if isinstance(given, (Isosurface, numbers.Real)) else list(given)
 
 
 def _data_of(data: Any) -> Data:

@@ -15,6 +15,7 @@
 #include "pellucid/math/rgb.h"
 #include "pellucid/scene/background.h"
 #include "pellucid/scene/error.h"
+#include "pellucid/scene/function_change.h"
 #include "pellucid/scene/volume.h"
 
 namespace py = pybind11;
@@ -40,6 +41,7 @@ void bind_volumes(py::module_& module);
 void bind_labels(py::module_& module);
 void bind_meshes(py::module_& module);
 void bind_transfer_functions(py::module_& module);
+void bind_color_maps(py::module_& module);
 void bind_gaussians(py::module_& module);
 void bind_foreign_functions(py::module_& module);
 void bind_histograms(py::module_& module);
@@ -96,5 +98,9 @@ std::shared_ptr<T> held(std::shared_ptr<const T> object) {
 
 /// Returns a function that splits work among all cores.
 ParallelFor all_cores();
+
+/// Returns the change that cmap (a list of (position, color), or None), clim and opacity make.
+/// Throws Error.
+FunctionChange change_of(const py::object& colors, const py::object& range, double opacity);
 
 }  // namespace pellucid::python

@@ -59,18 +59,41 @@ py::array srgb8(const ImageHandle& handle, const py::object& background) {
       bytes.data());
 }
 
+/// Returns the color bars that `wanted` asks for: True, or the title of the first one.
+std::vector<ColorBar> wanted_bars(const ImageHandle& handle, const py::object& wanted) {
+  const bool has_title = py::isinstance<py::str>(wanted);
+  if (!has_title && !py::isinstance<py::bool_>(wanted)) {
+    throw Error("color_bar: expected True, False or a title, got " + short_repr(wanted));
+  }
+  if (!has_title && !py::cast<bool>(wanted)) return {};
+  if (handle.bars.empty()) {
+    throw Error(
+        "color_bar: the image knows none: it shows labels, and functions of one variable, of a "
+        "scene that was rendered");
+  }
+  std::vector<ColorBar> bars = handle.bars;
+  if (has_title) bars.front().title = py::cast<std::string>(wanted);
+  return bars;
+}
+
 void save(const ImageHandle& handle, const std::filesystem::path& path,
-          const py::object& background) {
+          const py::object& background, const py::object& color_bar) {
+  const std::vector<ColorBar> bars = wanted_bars(handle, color_bar);
   const auto color = background_of(handle, background);
   const std::string extension = path.extension().string();
   if (extension != ".png" && extension != ".exr") {
     throw Error(path.string() + ": expected a name that ends in .png or .exr");
   }
+  if (extension == ".exr" && !bars.empty()) {
+    throw Error(path.string() + ": a color bar is drawn in a .png, never among numbers");
+  }
   const ReleasedLock released;
   if (extension == ".exr") {
     write_exr(*handle.image, path);
-  } else {
+  } else if (bars.empty()) {
     write_png(*handle.image, path, color);
+  } else {
+    write_png(with_color_bars(*handle.image, bars), path, color);
   }
 }
 
@@ -185,9 +208,12 @@ cannot be written to. A notebook shows it.
 Returns uint8 (height, width, 3), sRGB over the background, or without one (height, width, 4) with
 straight alpha: the bytes of a PNG. `background`: the scene's by default, which is a dark gradient
 unless it has one; None or "transparent": none; or a color, or two from above downwards.)")
-      .def("save", &save, py::arg("path"), py::arg("background") = py::ellipsis(), R"(
-Writes .png (8 bits sRGB) or .exr (float, with depth, error and values if there are). Raises Error
-if the file cannot be written or a pixel is not finite.)")
+      .def("save", &save, py::arg("path"), py::arg("background") = py::ellipsis(), py::kw_only(),
+           py::arg("color_bar") = false, R"(
+Writes .png (8 bits sRGB) or .exr (float, with depth, error and values if there are). color_bar=True
+draws the colors of the values, or of the labels, over the right edge of a .png; a text is the title
+of the first bar, for example "temperature in K". Raises Error if the file cannot be written, a
+pixel is not finite, or there is no color bar.)")
       .def("compare", &compare, py::arg("other"), R"(
 Returns how far another image of the same size (or an array) is off: largest, rms, psnr,
 share_over_255, at (row, column), not_finite, over_errors and difference (height, width, 4).)")

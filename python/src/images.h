@@ -3,9 +3,11 @@
 
 #include <memory>
 #include <optional>
+#include <vector>
 
 #include "common.h"
 #include "pellucid/cpu/render.h"
+#include "pellucid/io/color_bar.h"
 #include "pellucid/scene/image.h"
 
 namespace pellucid::python {
@@ -16,6 +18,7 @@ struct ImageHandle {
   std::optional<Background> background{};  ///< of its .png; none: transparent
   double tolerance = 0;                    ///< 0: no error is known
   RenderReport report{};
+  std::vector<ColorBar> bars{};  ///< of the scene that it shows
 };
 
 }  // namespace pellucid::python

@@ -16,6 +16,7 @@ PYBIND11_MODULE(_pellucid, module) {
   bind_transfer_functions(module);
   bind_labels(module);
   bind_meshes(module);
+  bind_color_maps(module);
   bind_gaussians(module);
   bind_foreign_functions(module);
   bind_histograms(module);

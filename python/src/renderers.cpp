@@ -30,9 +30,11 @@ namespace {
 /// Python's Frame: a frame that is being rendered.
 class FrameHandle {
  public:
-  FrameHandle(RunningFrame frame, const Scene& scene, std::optional<Background> background)
+  FrameHandle(RunningFrame frame, const Scene& scene, std::optional<Background> background,
+              std::vector<ColorBar> bars)
       : frame_(std::make_unique<RunningFrame>(std::move(frame))),
         background_(std::move(background)),
+        bars_(std::move(bars)),
         tolerance_(scene.integration.method == Method::exact ? scene.integration.tolerance : 0) {}
   FrameHandle(FrameHandle&&) = default;
   FrameHandle& operator=(FrameHandle&&) = default;
@@ -63,7 +65,7 @@ class FrameHandle {
       while (!frame_->finished()) std::this_thread::sleep_for(std::chrono::milliseconds(1));
       throw;
     }
-    ImageHandle handle{nullptr, background_, tolerance_, {}};
+    ImageHandle handle{nullptr, background_, tolerance_, {}, bars_};
     {
       const ReleasedLock released;
       handle.image = std::make_shared<const Image>(frame_->wait(&handle.report));
@@ -82,6 +84,7 @@ class FrameHandle {
  private:
   std::unique_ptr<RunningFrame> frame_;
   std::optional<Background> background_;
+  std::vector<ColorBar> bars_;
   double tolerance_;
   std::optional<ImageHandle> image_{};
   bool waited_for_ = false;
@@ -115,11 +118,13 @@ FrameHandle start(RendererHandle& handle, const py::object& object, bool depth, 
     throw Error("preview: expected a number of levels from 0 to " +
                 std::to_string(largest_preview) + ", got " + std::to_string(preview));
   }
-  Scene scene = complete_scene(object);
+  const PythonScene made = complete_python_scene(object);
+  const Scene& scene = made.scene;
   RenderOptions options = options_of(scene, depth, error, values, threads, preview);
   const std::optional<Background> background = shown_background(object);
+  std::vector<ColorBar> bars = color_bars(made.description, scene);
   const ReleasedLock released;
-  return {handle.renderer->start(scene, std::move(options)), scene, background};
+  return {handle.renderer->start(scene, std::move(options)), scene, background, std::move(bars)};
 }
 
 ImageHandle render(RendererHandle& handle, const py::object& scene, bool depth, bool error,
@@ -179,6 +184,7 @@ ImageHandle render_share(RendererHandle& handle, const py::object& object, doubl
     return !stop.stop_requested();
   };
   ImageHandle result{nullptr, shown_background(object)};
+  result.bars = color_bars(made.description, made.scene);
   std::optional<std::string> over;
   in_a_thread(
       [&] {
@@ -208,7 +214,8 @@ ImageHandle render_share(RendererHandle& handle, const py::object& object, doubl
 /// The reference has no frame to watch: it asks Python itself, from one of its threads.
 ImageHandle reference_image(const py::object& object, bool depth, int threads,
                             const py::object& progress) {
-  const Scene scene = complete_scene(object);
+  const PythonScene made = complete_python_scene(object);
+  const Scene& scene = made.scene;
   RenderOptions options;
   options.depth = depth;
   options.threads = checked_threads(threads);
@@ -220,6 +227,7 @@ ImageHandle reference_image(const py::object& object, bool depth, int threads,
     return !stop.stop_requested();
   };
   ImageHandle handle{nullptr, shown_background(object)};
+  handle.bars = color_bars(made.description, scene);
   in_a_thread(
       [&] {
         handle.image =

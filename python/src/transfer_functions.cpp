@@ -6,6 +6,7 @@
 #include "handles.h"
 #include "pellucid/io/scene_json.h"
 #include "pellucid/scene/defaults.h"
+#include "pellucid/scene/function_change.h"
 #include "pellucid/scene/light.h"
 #include "pellucid/scene/look.h"
 #include "pellucid/scene/presets.h"
@@ -83,10 +84,22 @@ Function default_function(const py::object& data) {
   });
 }
 
-py::dict look_of(const py::object& data, const std::string& name) {
+py::dict look_of(const py::object& data, const std::string& name, const py::object& colors,
+                 const py::object& range, double opacity) {
+  const FunctionChange change = change_of(colors, range, opacity);
   Look look = with_data(data, [&](const auto& of) {
     const ReleasedLock released;
-    return choose_look(of, name);
+    Look made = choose_look(of, name);
+    if (change.is_none()) return made;
+    if (made.as_labels && name.empty()) made = choose_look(of, "haze");
+    std::optional<std::array<double, 2>> ends;
+    if (change.range) ends = value_range(*change.range, of);
+    if (made.isosurfaces.empty()) {
+      made.transfer_function = changed(made.transfer_function, change, ends);
+    } else {
+      made.isosurfaces = changed(std::move(made.isosurfaces), change, ends);
+    }
+    return made;
   });
   py::dict result;
   const py::module_ scene = py::module_::import("pellucid.scene");
@@ -240,7 +253,9 @@ void bind_transfer_functions(py::module_& module) {
   bind_functions(module);
   module.def("default_transfer_function", &default_function, py::arg("data"), R"(
 Returns a transfer function for a good first picture of a Volume or a Mesh.)");
-  module.def("choose_look", &look_of, py::arg("data"), py::arg("name"), R"(
+  module.def("choose_look", &look_of, py::arg("data"), py::arg("name") = "",
+             py::arg("colors") = py::none(), py::arg("range") = py::none(),
+             py::arg("opacity") = 1.0, R"(
 Returns what pellucid.look() makes a Layer of.)");
   module.def(
       "looks",

@@ -8,6 +8,7 @@
 #include <optional>
 #include <utility>
 
+#include "color_volume.h"
 #include "memory_limit.h"
 #include "pellucid/scene/error.h"
 #include "scene_json_document.h"
@@ -222,6 +223,10 @@ std::vector<VolumeData> read_stored_only(const ReadOn& read, const ValueLayout& 
 }  // namespace
 
 Volume read_chosen(const VolumeFile& file, const ReadOptions& options) {
+  if (asks_for_color_opacity(file, options)) {
+    const std::optional<GridPart> part = wanted_part(file, options);
+    return make_volume(file, 0, color_opacity_of(file, part ? &*part : nullptr), part);
+  }
   const std::optional<int> chosen = chosen_component(file, options);
   if (!chosen && file.components > 1) {
     throw Error(file.description.name + ": holds " + file.holds +

@@ -46,6 +46,8 @@ struct VolumeFile {
   std::string holds;  ///< what several components are: "3 time steps (axis 4)"
   /// The file's names of the components, which need not differ; empty: it has none.
   std::vector<std::string> component_names;
+  /// Of colors, RGB or RGBA in sRGB: the number of full light; 0: the components are no colors.
+  double largest_color = 0;
   std::optional<int> step;   ///< the component that a time chose
   bool reads_parts = false;  ///< whether `read` reads a part of the grid without the rest
   std::string array;  ///< the one of the file's arrays that this is; empty: they have no names

@@ -87,6 +87,7 @@ VolumeFile open_dicom_without(const std::vector<DamagedDicomFile>& damaged,
   file.components = image.format.samples;
   file.holds = image.format.samples == 3 ? "colors (RGB)"
                                          : std::to_string(image.format.samples) + " samples";
+  if (image.format.samples == 3 && image.format.bits_allocated == 8) file.largest_color = 255;
   const auto slices = std::make_shared<const std::vector<DicomSlice>>(std::move(group.slices));
   file.read = [slices, name](ComponentRange range) {
     return read_dicom_values(*slices, range, name);

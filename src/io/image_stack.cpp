@@ -423,6 +423,9 @@ VolumeFile open_stack(const fs::path& path, const ReadOptions& options) {
   file.components = static_cast<int>(layout.components()) * format.samples;
   value_count(points, file.components, name);
   file.holds = holds_of(layout, said, format.samples);
+  if (layout.components() == 1 && (format.samples == 3 || format.samples == 4)) {
+    file.largest_color = format.type == "u8" ? 255 : format.type == "u16" ? 65535 : 0;
+  }
   if (layout.components() > 1 && options.note) {
     options.note(name + ": holds " + file.holds + ", which are its components" +
                  (layout.times > 1 && !said.time_step ? "; times are counted from 0" : ""));

@@ -283,6 +283,7 @@ VolumeFile open_nifti(const std::filesystem::path& path, const ReadOptions& opti
   apply_overrides(options, file.description);
   file.components = header.layout.components;
   file.holds = header.holds;
+  if (header.holds.starts_with("colors")) file.largest_color = 255;
   file.reads_parts = header.slope == 1 && header.intercept == 0 && reads_parts(header.layout) &&
                      !is_gzip(header.single_file ? files.header : files.values);
   file.read = [header, count, name,

@@ -23,6 +23,7 @@
 #include "medical_volumes.h"
 #include "mrc.h"
 #include "npy.h"
+#include "pellucid/io/color_data.h"
 #include "pellucid/io/dicom_series.h"
 #include "pellucid/io/read_mesh.h"
 #include "pellucid/scene/error.h"
@@ -231,6 +232,22 @@ VolumeOutline outline_volume(const std::filesystem::path& path, const ReadOption
 Volume read_volume(const std::filesystem::path& path, const ReadOptions& options) {
   return open_and(path, options,
                   [&](const VolumeFile& file) { return read_chosen(file, options); });
+}
+
+ColorOutline outline_colors(const std::filesystem::path& path, const ReadOptions& options) {
+  return open_and(path, options, [](const VolumeFile& file) {
+    if (!(file.largest_color > 0)) return ColorOutline{};
+    const Volume::Description& grid = file.description;
+    const auto side = [&](int a) {
+      const auto axis = static_cast<std::size_t>(a);
+      const std::vector<double>& places = grid.coordinates[axis];
+      return places.empty() ? grid.dimensions[axis] * grid.placement.spacing[a]
+                            : places.back() - places.front();
+    };
+    const double x = side(0), y = side(1), z = side(2);
+    return ColorOutline{file.components, file.largest_color,
+                        2 * x * y * z / (x * y + y * z + z * x)};
+  });
 }
 
 int component_count(const std::filesystem::path& path, const ReadOptions& options) {

@@ -4,10 +4,12 @@
 #include <variant>
 
 #include "pellucid/io/scene_json.h"
+#include "scene_json_change.h"
 
 namespace pellucid {
 
 void complete_description(const Layer& layer, LayerDescription& description) {
+  write_changed_function(layer, description);
   const auto is_open = [](const std::optional<TransferFunctionDescription>& function) {
     return !function || std::holds_alternative<PresetDescription>(*function);
   };

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "pellucid/io/scene_json.h"
+#include "scene_json_change.h"
 
 namespace pellucid {
 
@@ -43,7 +44,8 @@ void fit_opacity_tables(const SceneDescription& description, Scene& scene) {
       return std::make_shared<const TransferFunction>(make_transfer_function(
           function, layer.projection ? budget / 8 : budget, Rgb<double>{behind, behind, behind}));
     };
-    const auto& function = description.layers[i].transfer_function;
+    const std::optional<TransferFunctionDescription> function =
+        changed_table(description.layers[i], layer);
     if (function && is_table(*function)) {
       if (volume != nullptr) volume->transfer_function = made(*function);
       if (auto* mesh = std::get_if<MeshContent>(&layer.content)) {

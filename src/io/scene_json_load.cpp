@@ -11,6 +11,7 @@
 #include "pellucid/scene/defaults.h"
 #include "pellucid/scene/error.h"
 #include "pellucid/scene/presets.h"
+#include "scene_json_change.h"
 
 namespace pellucid {
 namespace {
@@ -128,12 +129,15 @@ ChannelsContent load_channels_content(const LayerDescription& description,
 
 /// Of a volume or a mesh.
 template <class Data>
-Look look_of(const Data& data, const WantedLook& wanted) {
+Look look_of(const Data& data, const LayerDescription& description) {
+  const WantedLook& wanted = *description.look;
   Look look = choose_look(data, wanted.name);
-  if (!wanted.has_function || !wanted.name.empty()) return look;
-  if (!look.as_labels && look.isosurfaces.empty()) return look;
+  if (!wanted.name.empty()) return look;
+  const bool lacks_function = look.as_labels || !look.isosurfaces.empty();
+  const bool cannot_change = look.as_labels && !description.function_change.is_none();
+  if (!(wanted.has_function && lacks_function) && !cannot_change) return look;
   look = choose_look(data, "haze");
-  look.reason = "a function to save";
+  look.reason = cannot_change ? "a function to change" : "a function to save";
   return look;
 }
 
@@ -167,7 +171,7 @@ MeshContent load_mesh_content(const LayerDescription& description, const Wanted&
     mesh_used.channels = std::move(mesh.channels);
   }
   if (takes_look(description)) {
-    look = look_of(*content.mesh, *description.look);
+    look = look_of(*content.mesh, description);
     content.transfer_function = std::make_shared<const TransferFunction>(look->transfer_function);
   } else if (content.multivariate() == nullptr) {
     content.transfer_function = std::make_shared<const TransferFunction>(
@@ -186,7 +190,7 @@ VolumeContent load_volume_content(const LayerDescription& description, const Wan
     content.volume = std::make_shared<const Volume>(load_field(description.field));
   }
   if (takes_look(description)) {
-    look = look_of(*content.volume, *description.look);
+    look = look_of(*content.volume, description);
     content.transfer_function = std::make_shared<const TransferFunction>(look->transfer_function);
     return content;
   }
@@ -308,7 +312,8 @@ class LookLoader {
 };
 
 /// Puts a look into a layer that has its data and its function.
-void put(Look look, const WantedLook& wanted, Layer& layer) {
+void put(Look look, const LayerDescription& description, Layer& layer) {
+  const WantedLook& wanted = *description.look;
   if (wanted.chosen) wanted.chosen(look);
   if (look.as_labels) {
     LabelContent content;
@@ -319,7 +324,7 @@ void put(Look look, const WantedLook& wanted, Layer& layer) {
     layer.shading.reset();
     return;
   }
-  layer.isosurfaces = std::move(look.isosurfaces);
+  layer.isosurfaces = changed_surfaces(description, layer, std::move(look.isosurfaces));
   if (!wanted.keeps_shading) layer.shading = look.shading;
 }
 
@@ -342,8 +347,9 @@ Layer load_layer(const LayerDescription& description, const Wanted& wanted, cons
   } else {
     layer.content = load_volume_content(description, wanted, loaded, look);
   }
+  if (!look || look->isosurfaces.empty()) change_function(description, layer);
   LookLoader(description, layer)();
-  if (look) put(*std::move(look), *description.look, layer);
+  if (look) put(*std::move(look), description, layer);
   return layer;
 }
 

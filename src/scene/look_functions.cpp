@@ -118,6 +118,7 @@ class Levels {
   }
   void add(double value) {
     const std::vector<double>& v = data_.values.values;
+    if (!(value > v.front() && value < v.back())) return;
     if (data_.whole_numbers) {
       value = std::floor(value) + 0.5;
     } else {

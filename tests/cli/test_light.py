@@ -125,7 +125,7 @@ class Light(ProgramTest):
         self.succeed("render", "a.npy", "--size", "4", "-o", "1.exr")
         self.succeed("render", "saved.json", "--size", "4", "-o", "2.exr")
         self.succeed("compare", "1.exr", "2.exr", "--largest", "0")
-        for other in (["builtin:ramp:16"], ["a.npy", "--projection", "maximum"],
+        for other in (["builtin:ramp:16", "--look", "haze"], ["a.npy", "--projection", "maximum"],
                       ["a.npy", "--method", "midpoint"], ["a.npy", "--preset", "x-ray"]):
             self.assertNotIn("shading", self.scene(*other)[1], other)
 

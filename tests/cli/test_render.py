@@ -231,13 +231,19 @@ class Render(ProgramTest):
         # What was saved gives the same picture.
         saved = scene(ball, "--camera", "camera.json")
         self.succeed("render", ball, "-o", "a.exr", "--size", "32", "--camera", "camera.json")
-                self.write("s.json", json.dumps(saved))
+        self.write("s.json", json.dumps(saved))
         self.succeed("render", "s.json", "-o", "b.exr", "--size", "32")
         self.assertTrue(self.report("compare", "a.exr", "b.exr")["identical"])
         # Light that is given is taken.
         self.assertNotIn("shading", scene(ball, "--shading", "off")["layers"][0])
         lights = scene(ball, "--light", "head:white")["lights"]
         self.assertEqual([light["type"] for light in lights], ["head"])
+        # Colors, range and opacity change surfaces and functions alike.
+        plain = scene(ball)["layers"][0]["isosurfaces"]
+        changed = scene(ball, "--colormap", "grey", "--opacity", "2")["layers"][0]["isosurfaces"]
+        self.assertEqual([s["value"] for s in plain], [s["value"] for s in changed])
+        self.assertEqual([changed[0]["color"], changed[-1]["color"]], [[0, 0, 0], [1, 1, 1]])
+        self.assertGreater(changed[0]["opacity"], plain[0]["opacity"])
         # Labels become labels.
         self.write("labels.npy", npy([i % 7 if i > 20 else 0 for i in range(512)], (8, 8, 8),
                                      "<i2"))

@@ -146,7 +146,7 @@ class Contents(unittest.TestCase):
     def test_only_modules_need_their_libraries(self):
         depends, recommends = self.packages("Depends"), self.packages("Recommends")
         self.assertIn("libc6", depends)
-        heavy = re.compile("lib(vtk|insighttoolkit|hdf5|netcdf|openvdb)")
+        heavy = re.compile("lib(vtk|insighttoolkit|hdf5|netcdf|openvdb|cairo)")
         self.assertEqual([name for name in depends if heavy.match(name)], [])
         self.assertEqual(depends & recommends, set())
         if os.environ["PELLUCID_HAS_VTK"] == "1":

@@ -279,7 +279,7 @@ def test_matplotlib_colormaps():
     assert (value, extinction) == (0, 0.3)
     expected = pellucid.srgb_to_linear(numpy.array(matplotlib.colormaps["viridis"](0.0)[:3]))
     assert numpy.allclose(color, expected, atol=0)
-    with pytest.raises(pellucid.Error, match="matplotlib has none"):
+    with pytest.raises(pellucid.Error, match="did you mean viridis"):
         pellucid.from_colormap("veridis", (0, 1), 1)
 
 

@@ -53,8 +53,8 @@ def test_arguments_are_the_modules():
 
 
 def test_everything_public_is_in_the_package():
-    hidden = {"ViewerServer", "choose_look", "grey_colors", "linear_color", "look_lights",
-              "picture_advice", "save_scene"} | KERNELS
+    hidden = {"ViewerServer", "changed_function", "choose_look", "grey_colors", "is_color_map",
+              "linear_color", "look_lights", "picture_advice", "save_scene"} | KERNELS
     has = {name for name in vars(_pellucid) if not name.startswith("_")} - hidden
     assert has <= set(pellucid.__all__)
     assert all(hasattr(pellucid, name) for name in pellucid.__all__)

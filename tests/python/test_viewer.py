@@ -197,7 +197,7 @@ def test_bad_arguments(ball):
     with pytest.raises(pellucid.Error, match="height: "):
         pellucid.view(ball, open=False, height=-5)
     with pytest.raises(pellucid.Error, match="layer 1"):
-        pellucid.view(pellucid.Layer(ball, [(0, 1, (0, 0, 0))], isosurfaces=[3]), open=False)
+        pellucid.view(pellucid.Layer(ball, [(0, 1, (0, 0, 0))], isosurfaces=["3"]), open=False)
 
 
 def test_a_program_that_ends_with_one_ends_quietly():

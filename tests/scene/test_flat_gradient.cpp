@@ -115,15 +115,16 @@ TEST(FlatGradient, IsAsDocumented) {
       const auto all = [](double) { return 1.0; };
       const auto inner = [](double v) { return v > 120 ? 2.0 : 0.0; };
       const Points of_inner{{120, 0, {1, 1, 1}}, {120, 2, {1, 1, 1}}};
-      const auto near = [&](double found, double truth) {
-        EXPECT_NEAR(found, truth, 0.06 * truth);
+      // Quantiles of whole numbers are known to a quarter of a factor of 2.
+      const auto near = [&](double found, double truth, double share = 0.06) {
+        EXPECT_NEAR(found, truth, share * truth);
       };
       near(flat_gradient(layer_of(values, side, everything, spacing)),
            expected(values, side, spacing, all));
       near(flat_gradient(layer_of(values, side, of_inner, spacing)),
            expected(values, side, spacing, inner));
       near(flat_gradient(layer_of(bytes, side, of_inner, spacing)),
-           expected(bytes, side, spacing, inner));
+           expected(bytes, side, spacing, inner), 0.19);
     }
   }
 }
@@ -141,7 +142,7 @@ TEST(FlatGradient, OfSmoothDataDoesNotDependOnTheVoxel) {
     }
     EXPECT_NEAR(found[2], found[3], 0.05 * found[3]) << name;
     // What it takes from light is less where the data are coarse, too.
-    EXPECT_LT(found[0], 3 * found[3]) << name;
+    EXPECT_LT(found[0], 4 * found[3]) << name;
   }
 }
 

@@ -111,7 +111,9 @@ TEST(Look, OfHounsfieldUnitsShowsBoneOrSkin) {
   EXPECT_EQ(extinction_at(bone, 40), 0);
   EXPECT_GT(extinction_at(bone, 1000), 0);
   EXPECT_TRUE(bone.shading);
-  const Look skin = choose_look(make_volume(head(-1000, 40, 60, 300)));
+  std::vector<float> soft = head(-1000, 40, 60, 20);
+  soft[5000] = 400;  // a single tooth
+  const Look skin = choose_look(make_volume(soft));
   EXPECT_EQ(skin.name, "ct-skin");
   EXPECT_GT(extinction_at(skin, 40), 0);
   EXPECT_EQ(extinction_at(skin, -900), 0);
@@ -167,7 +169,7 @@ TEST(Look, OfDataAroundZeroHasSurfacesOfBothSigns) {
       for (int i = 0; i < side; ++i) {
         const auto bump = [&](double x) {
           const double dx = i - x, dy = j - 12.0, dz = k - 12.0;
-          return std::exp(-(dx * dx + dy * dy + dz * dz) / 20);
+          return std::exp(-(dx * dx + dy * dy + dz * dz) / 60);
         };
         waves.push_back(static_cast<float>(3 * bump(7) - 2 * bump(17)));
       }

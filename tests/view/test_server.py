@@ -302,6 +302,21 @@ class Pictures(unittest.TestCase):
         page.receive_until(lambda m: m["type"] == "frame" and m["state"] == "exact" and
                            (m["width"], m["height"]) == (width, height))
 
+    def test_a_color_bar_is_drawn_over_a_saved_picture(self):
+        if os.environ.get("PELLUCID_HAS_CAIRO") != "1":
+            self.skipTest("built without Cairo")
+        with Viewer(FIELD) as viewer, viewer.open_socket() as page:
+            self.settled(page, 240, 160)
+            pictures = []
+            for what in ("png", "png_with_color_bar"):
+                page.send(type="save", what=what)
+                pictures.append(png(page.receive_type("file")["bytes"]))
+            (width, _, channels, plain), (_, _, _, drawn) = pictures
+            pixels = [slice(channels * x, channels * (x + 1)) for x in range(width)]
+            different = {x for a, b in zip(plain, drawn) for x, at in enumerate(pixels)
+                         if a[at] != b[at]}
+            self.assertGreater(min(different), width // 2)
+
     def test_the_last_frame_is_that_of_the_last_command(self):
         with Viewer(FIELD) as viewer, viewer.open_socket() as page:
             self.settled(page, 96, 64)

@@ -15,6 +15,7 @@
 #include "pellucid/io/look_description.h"
 #include "pellucid/io/mesh_source.h"
 #include "pellucid/io/transfer_function_description.h"
+#include "pellucid/scene/function_change.h"
 #include "pellucid/scene/look.h"
 #include "pellucid/scene/scene.h"
 
@@ -59,6 +60,9 @@ struct LayerDescription {
   std::optional<LabelSource> labels;    ///< replaces all of these
   /// None: nothing but the surfaces is visible if there are any, else made from the data.
   std::optional<TransferFunctionDescription> transfer_function;
+  /// Of a function of one variable, the default included. complete_description() writes the points
+  /// that it gives; scene files have those.
+  FunctionChange function_change;
   std::optional<MaskSource> mask;
   Affine<double> transform;
   std::vector<Clip> clips;

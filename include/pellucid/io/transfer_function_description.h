@@ -11,6 +11,7 @@
 
 #include "pellucid/scene/multivariate_transfer_function.h"
 #include "pellucid/scene/background.h"
+#include "pellucid/scene/function_change.h"
 #include "pellucid/scene/opacity_table.h"
 
 namespace pellucid {
@@ -111,6 +112,10 @@ constexpr double opacity_table_tolerance(double tolerance) noexcept {
 TransferFunction make_transfer_function(const TransferFunctionDescription& description,
                                         double tolerance,
                                         const std::optional<Background>& background = {});
+/// Returns an opacity table with a change (changed() of scene/function_change.h). `range`: the
+/// values of the change's range. Throws Error.
+OpacityTable changed(const OpacityTable& table, const FunctionChange& change,
+                     const std::optional<std::array<double, 2>>& range);
 /// Returns the function of the channels with these names. Throws Error; if a term names another
 /// channel, the message lists the names in `known`, or if that is empty the channels.
 std::shared_ptr<const MultivariateTransferFunction> make_multivariate(

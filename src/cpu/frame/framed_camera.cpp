@@ -40,6 +40,7 @@ PixelRange without_outliers(const std::vector<std::int64_t>& counts, double outl
 
 struct SeenPart {
   PixelRange columns, rows;
+  std::optional<double> depth;  ///< median distance from the eye; none: the image has no depths
 };
 
 /// Returns the part of the picture in which something is seen; none: nothing is.
@@ -51,16 +52,28 @@ std::optional<SeenPart> seen_part(const Image& image) {
   std::vector<std::int64_t> columns(static_cast<std::size_t>(image.width));
   std::vector<std::int64_t> rows(static_cast<std::size_t>(image.height));
   std::int64_t all = 0;
+  std::vector<float> depths;
   for (int row = 0; row < image.height; ++row) {
     for (int column = 0; column < image.width; ++column) {
       if (static_cast<double>(image.at(column, row)[3]) < least) continue;
       ++columns[static_cast<std::size_t>(column)];
       ++rows[static_cast<std::size_t>(row)];
       ++all;
+      if (image.depth.empty()) continue;
+      const float depth =
+          image.depth[static_cast<std::size_t>(row) * static_cast<std::size_t>(image.width) +
+                      static_cast<std::size_t>(column)];
+      if (std::isfinite(depth)) depths.push_back(depth);
     }
   }
+  std::optional<double> median;
+  if (!depths.empty()) {
+    const auto middle = depths.begin() + static_cast<std::ptrdiff_t>(depths.size() / 2);
+    std::nth_element(depths.begin(), middle, depths.end());
+    median = *middle;
+  }
   const double outlying = outlying_share * static_cast<double>(all);
-  return SeenPart{without_outliers(columns, outlying), without_outliers(rows, outlying)};
+  return SeenPart{without_outliers(columns, outlying), without_outliers(rows, outlying), median};
 }
 
 ImageSize draft_size(ImageSize size, int smaller_side) {
@@ -84,7 +97,17 @@ Camera framed_camera(const Camera& start, ImageSize size, const DraftRenderer& d
     const Image image = draft(camera, small);
     const std::optional<SeenPart> seen = seen_part(image);
     if (!seen) return i == 0 ? start : camera;
-    const auto& [columns, rows] = *seen;
+    const auto& [columns, rows, depth] = *seen;
+    if (frame.perspective && depth) {
+      // The middle of a thing as thick as it is wide. Where it is far from what the camera turns
+      // around, that moves there.
+      const double wide = columns.size() * length(frame.right) / image.width,
+                   high = rows.size() * length(frame.up) / image.height;
+      const double middle = *depth * (1 + std::min(wide, high));
+      const Vec3<double> toward = camera.focal_point - camera.position;
+      const double ratio = middle / length(toward);
+      if (ratio < 0.75 || ratio > 1.33) camera.focal_point = camera.position + toward * ratio;
+    }
     // What reaches a border may go on outside.
     const int borders = (columns.first == 0 ? 1 : 0) + (columns.end == image.width ? 1 : 0) +
                         (rows.first == 0 ? 1 : 0) + (rows.end == image.height ? 1 : 0);
@@ -129,6 +152,7 @@ Camera framed_camera(const Scene& scene, const Camera& start, const RenderOption
   plain.threads = options.threads;
   plain.progress = options.progress;
   plain.stop = options.stop;
+  plain.depth = true;
   Renderer renderer(options.threads);
   return framed_camera(start, scene.size, [&](const Camera& camera, ImageSize size) {
     draft.camera = camera;

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "pellucid/io/scene_json.h"
+#include "pellucid/scene/image.h"
+
+namespace pellucid {
+
+/// What a legend says of a layer: the colors of its values, of its surfaces or of its labels.
+struct ColorBar {
+  struct Entry {
+    std::string name;
+    Rgb<double> color{};  ///< linear RGB
+  };
+
+  std::string title;  ///< the variable's name, and its unit in brackets; may be empty
+  std::shared_ptr<const TransferFunction> function;  ///< null: no bar, entries alone
+  std::array<double, 2> range{};                     ///< of the values of the bar
+  bool shows_opacity = true;                         ///< whether extinctions mean something
+  std::vector<Entry> entries;
+};
+
+/// Returns the name of a layer's variable, and behind it its unit in brackets: of a layer with a
+/// name that, else the name of the array, or of the file. `channel`: of several variables.
+std::string variable_title(const LayerDescription& description, const Layer& layer,
+                           int channel = 0);
+/// Returns the legends of the visible layers, in their order: one of the function of one variable
+/// if it absorbs or colors slices, with isosurfaces as entries; the colors of slices of several
+/// variables; and of labels an entry each. Empty if there is nothing to say: as of Gaussians.
+std::vector<ColorBar> color_bars(const SceneDescription& description, const Scene& scene);
+
+/// Returns the picture with legends over its right edge, composited over its pixels; depth, error
+/// and values are left out. Text is drawn by Cairo in a module (pellucid/io/module.h). Throws Error
+/// if that is not there or cannot draw.
+Image with_color_bars(const Image& image, const std::vector<ColorBar>& bars);
+/// Throws Error if with_color_bars() cannot draw: to be called before a long computation.
+void check_draws_color_bars();
+
+}  // namespace pellucid

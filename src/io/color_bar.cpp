@@ -1,0 +1,195 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pellucid/io/color_bar.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <set>
+#include <utility>
+#include <variant>
+
+#include "cairo_module.h"
+#include "pellucid/io/module.h"
+#include "pellucid/scene/axis_ticks.h"
+#include "pellucid/scene/color_map.h"
+#include "pellucid/scene/error.h"
+#include "pellucid/scene/srgb.h"
+
+namespace pellucid {
+namespace {
+
+constexpr Module cairo{"pellucid_cairo.so", "draws color bars", "Cairo (Debian: libcairo2-dev)"};
+/// Labels that a legend names; of more it says how many.
+constexpr std::size_t most_entries = 12;
+/// Colors of a bar, and the optical depth that its strip of opacity shows the densest value with.
+constexpr int samples = 1024;
+constexpr double depth_shown = 3;
+
+std::string with_unit(const std::string& name, const std::string& unit) {
+  return unit.empty() ? name : name + " (" + unit + ")";
+}
+
+/// Returns the name of a field: its array, or its file without folder and extensions.
+std::string field_name(const FieldSource& field) {
+  if (!field.builtin.empty()) return field.builtin;
+  if (field.file == array_in_memory) return {};
+  if (field.options.array) return *field.options.array;
+  std::string name = field.file.filename().string();
+  for (const char* const end : {".gz", ".bz2", ".zst"}) {
+    if (name.ends_with(end)) name.resize(name.size() - std::string(end).size());
+  }
+  const std::size_t dot = name.rfind('.');
+  return dot == std::string::npos || dot == 0 ? name : name.substr(0, dot);
+}
+
+bool absorbs(const TransferFunction& function) {
+  return std::ranges::any_of(function.points(),
+                             [](const auto& point) { return point.extinction > 0; });
+}
+
+void add_labels(const LabelTable& table, const LabelVolume& labels, ColorBar& bar) {
+  const std::set<std::int32_t> there(labels.labels().begin(), labels.labels().end());
+  std::size_t left_out = 0;
+  for (const LabelStyle& style : table.styles()) {
+    if (!(style.extinction > 0) || there.count(style.label) == 0) continue;
+    if (bar.entries.size() == most_entries) {
+      ++left_out;
+      continue;
+    }
+    bar.entries.push_back(
+        {style.name.empty() ? std::to_string(style.label) : style.name, style.color});
+  }
+  if (left_out > 0) bar.title += " (and " + std::to_string(left_out) + " more)";
+}
+
+/// Returns the function that a layer's legend shows; null: none.
+std::shared_ptr<const TransferFunction> shown_function(const Layer& layer, bool& shows_opacity) {
+  std::shared_ptr<const TransferFunction> function;
+  if (const auto* const volume = std::get_if<VolumeContent>(&layer.content)) {
+    function = volume->transfer_function;
+  } else if (const auto* const mesh = std::get_if<MeshContent>(&layer.content);
+             mesh != nullptr && mesh->univariate() != nullptr) {
+    function = std::get<std::shared_ptr<const TransferFunction>>(mesh->transfer_function);
+  }
+  if (function && absorbs(*function)) return function;
+  shows_opacity = false;
+  for (const Slice& slice : layer.slices) {
+    if (slice.colors || function) return slice.colors ? slice.colors : function;
+  }
+  for (const Isosurface& surface : layer.isosurfaces) {
+    if (surface.colors) return surface.colors;
+  }
+  return nullptr;
+}
+
+int shown_channel(const Layer& layer) {
+  if (!layer.slices.empty()) return layer.slices.front().channel;
+  for (const Isosurface& surface : layer.isosurfaces) {
+    if (surface.colors) return surface.color_channel;
+  }
+  return 0;
+}
+
+Signal signal_of(const Rgb<double>& light) {
+  const auto channel = [](double x) { return linear_to_srgb(std::clamp(x, 0.0, 1.0)); };
+  return {channel(light.r), channel(light.g), channel(light.b), 1};
+}
+
+LegendPanel panel_of(const ColorBar& bar) {
+  LegendPanel panel;
+  panel.title = bar.title;
+  panel.range = bar.range;
+  for (const ColorBar::Entry& entry : bar.entries) {
+    panel.entries.push_back({entry.name, signal_of(entry.color)});
+  }
+  if (!bar.function) return panel;
+  double densest = 0;
+  for (const auto& point : bar.function->points()) densest = std::max(densest, point.extinction);
+  const auto view = bar.function->view<double>();
+  for (int i = 0; i < samples; ++i) {
+    const double share = (i + 0.5) / samples;
+    const auto at = view.evaluate((1 - share) * bar.range[0] + share * bar.range[1]);
+    panel.colors.push_back(signal_of(at.color));
+    if (!bar.shows_opacity || !(densest > 0)) continue;
+    panel.opacity.push_back(1 - std::exp(-depth_shown * at.extinction / densest));
+  }
+  return panel;
+}
+
+DrawLegends* draw_legends() {
+  return reinterpret_cast<DrawLegends*>(module_function(cairo, draw_legends_name));
+}
+
+/// Puts a pixel of Cairo over one of linear light.
+void put_over(std::uint32_t argb, std::array<float, 4>& pixel) {
+  const double alpha = (argb >> 24U) / 255.0;
+  if (alpha == 0) return;
+  for (std::size_t c = 0; c < 3; ++c) {
+    const double signal = ((argb >> (16U - 8U * c)) & 0xFFU) / 255.0 / alpha;
+    const double light = alpha * srgb_to_linear(std::min(signal, 1.0));
+    pixel[c] = static_cast<float>(light + (1 - alpha) * static_cast<double>(pixel[c]));
+  }
+  pixel[3] = static_cast<float>(alpha + (1 - alpha) * static_cast<double>(pixel[3]));
+}
+
+}  // namespace
+
+std::string variable_title(const LayerDescription& description, const Layer& layer, int channel) {
+  if (const auto* const mesh = std::get_if<MeshContent>(&layer.content)) {
+    const MeshChannel& shown = (*mesh->mesh)[channel];
+    const auto index = static_cast<std::size_t>(channel);
+    const bool known = description.mesh && index < description.mesh->channels.size();
+    const std::string name = known ? description.mesh->channels[index].array : shown.name;
+    return with_unit(layer.name.empty() ? name : layer.name, shown.unit);
+  }
+  if (const auto* const channels = std::get_if<ChannelsContent>(&layer.content)) {
+    const Channel& shown = (*channels->channels)[channel];
+    return with_unit(shown.name, shown.unit);
+  }
+  if (!layer.name.empty()) return layer.name;
+  return field_name(description.labels ? description.labels->field : description.field);
+}
+
+std::vector<ColorBar> color_bars(const SceneDescription& description, const Scene& scene) {
+  std::vector<ColorBar> bars;
+  for (std::size_t i = 0; i < scene.layers.size(); ++i) {
+    const Layer& layer = scene.layers[i];
+    if (!layer.visible) continue;
+    ColorBar bar;
+    bar.function = shown_function(layer, bar.shows_opacity);
+    const int channel = bar.shows_opacity ? 0 : shown_channel(layer);
+    bar.title = variable_title(description.layers[i], layer, channel);
+    if (bar.function) bar.range = absorbing_range(*bar.function);
+    for (const Isosurface& surface : layer.isosurfaces) {
+      if (surface.colors) continue;
+      bar.entries.push_back({short_number(surface.value), surface.color});
+    }
+    if (const auto* const labels = std::get_if<LabelContent>(&layer.content)) {
+      add_labels(*labels->table, *labels->labels, bar);
+    }
+    if (bar.function || !bar.entries.empty()) bars.push_back(std::move(bar));
+  }
+  return bars;
+}
+
+void check_draws_color_bars() {
+  draw_legends();
+}
+
+Image with_color_bars(const Image& image, const std::vector<ColorBar>& bars) {
+  std::vector<LegendPanel> panels;
+  for (const ColorBar& bar : bars) panels.push_back(panel_of(bar));
+  std::vector<std::uint32_t> argb;
+  std::string error;
+  (*draw_legends())(image.width, image.height, panels, argb, error);
+  if (!error.empty()) throw Error("color bar: " + error);
+  Image drawn;
+  drawn.width = image.width;
+  drawn.height = image.height;
+  drawn.pixels = image.pixels;
+  drawn.metadata = image.metadata;
+  for (std::size_t i = 0; i < drawn.pixels.size(); ++i) put_over(argb[i], drawn.pixels[i]);
+  return drawn;
+}
+
+}  // namespace pellucid

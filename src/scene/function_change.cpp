@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pellucid/scene/function_change.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "message.h"
+#include "pellucid/scene/error.h"
+#include "value_sample.h"
+
+namespace pellucid {
+namespace {
+
+std::string text_of(const RangeEnd& end) {
+  return number(end.number) + (end.is_percent ? "%" : "");
+}
+
+double value_of(const RangeEnd& end, const std::vector<double>& sample) {
+  if (!end.is_percent) return end.number;
+  if (!(end.number >= 0 && end.number <= 100)) {
+    throw Error("range: got " + text_of(end) + ", but expected a percentage from 0% to 100%");
+  }
+  if (sample.empty()) throw Error("range: the data have no finite value for " + text_of(end));
+  const double at = end.number / 100 * static_cast<double>(sample.size() - 1);
+  return sample[std::min(static_cast<std::size_t>(at + 0.5), sample.size() - 1)];
+}
+
+template <class Data>
+std::array<double, 2> range_of(const ValueRange& range, const Data& data) {
+  const bool asks_data = range[0].is_percent || range[1].is_percent;
+  const std::vector<double> sample = asks_data ? value_sample(data) : std::vector<double>();
+  const std::array<double, 2> values{value_of(range[0], sample), value_of(range[1], sample)};
+  if (values[0] < values[1]) return values;
+  std::string text = text_of(range[0]) + " to " + text_of(range[1]);
+  if (asks_data) text += ", which is " + number(values[0]) + " to " + number(values[1]);
+  throw Error("range: got " + text + ", but expected two ascending values");
+}
+
+template <class Data>
+TransferFunction changed_for(const TransferFunction& function, const FunctionChange& change,
+                             const Data& data) {
+  std::optional<std::array<double, 2>> range;
+  if (change.range) range = value_range(*change.range, data);
+  return changed(function, change, range);
+}
+
+}  // namespace
+
+std::array<double, 2> value_range(const ValueRange& range, const Volume& volume) {
+  return range_of(range, volume);
+}
+
+std::array<double, 2> value_range(const ValueRange& range, const MeshChannels& mesh) {
+  return range_of(range, mesh);
+}
+
+TransferFunction changed(const TransferFunction& function, const FunctionChange& change,
+                         const std::optional<std::array<double, 2>>& range) {
+  TransferFunction made = range ? moved_to_range(function, *range) : function;
+  if (!change.colors.empty()) {
+    made = with_colors(made, change.colors, range ? *range : absorbing_range(made));
+  }
+  return change.opacity == 1 ? made : with_opacity(made, change.opacity);
+}
+
+TransferFunction changed(const TransferFunction& function, const FunctionChange& change,
+                         const Volume& volume) {
+  return changed_for(function, change, volume);
+}
+
+TransferFunction changed(const TransferFunction& function, const FunctionChange& change,
+                         const MeshChannels& mesh) {
+  return changed_for(function, change, mesh);
+}
+
+std::vector<OpacityPoint> changed(const std::vector<OpacityPoint>& points,
+                                  const FunctionChange& change,
+                                  const std::optional<std::array<double, 2>>& range) {
+  // An opacity is linear between the points as an extinction is.
+  std::vector<TransferFunction::Point> as_points;
+  for (const OpacityPoint& p : points) as_points.push_back({p.value, p.opacity, p.color});
+  const FunctionChange colors{change.colors, change.range, 1};
+  const TransferFunction function = changed(TransferFunction(std::move(as_points)), colors, range);
+  std::vector<OpacityPoint> made;
+  for (const TransferFunction::Point& p : function.points()) {
+    made.push_back({p.value, std::min(p.extinction, 1.0), p.color});
+  }
+  return made;
+}
+
+std::vector<Isosurface> changed(std::vector<Isosurface> surfaces, const FunctionChange& change,
+                                const std::optional<std::array<double, 2>>& range) {
+  if (surfaces.empty()) return surfaces;
+  const auto [least, most] = std::ranges::minmax_element(surfaces, {}, &Isosurface::value);
+  const double first = least->value, last = most->value;
+  const std::array<double, 2> ends = range.value_or(std::array{first, last});
+  for (Isosurface& surface : surfaces) {
+    const double place = first < last ? (surface.value - first) / (last - first) : 0.5;
+    if (range) surface.value = ends[0] + place * (ends[1] - ends[0]);
+    if (!change.colors.empty()) surface.color = color_at(change.colors, place);
+    surface.opacity = 1 - std::pow(1 - surface.opacity, change.opacity);
+  }
+  return surfaces;
+}
+
+}  // namespace pellucid
