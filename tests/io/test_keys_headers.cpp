@@ -324,21 +324,51 @@ NRRD_ROW(centerings, "centerings", honored) {
 NRRD_ROW(kinds, "kinds", honored) {
   std::string two = nrrd("kinds: vector domain domain domain\n");
   two.replace(two.find("dimension: 3"), 12, "dimension: 4");
+  expect_told(notes_of(write("a.nrrd", nrrd("axis mins: 10 20 30\n"))), "axis mins say where");
   two.replace(two.find("5 4 3"), 5, "2 5 2 3");
   EXPECT_EQ(read_components(write("a.nrrd", two)).size(), 2u);
 }
 NRRD_ROW(frame, "measurement frame", told) {
+  const auto both = [&](const std::string& more) {
+    return notes_of(write("a.nrrd", nrrd("spacings: 1 2 3\naxis mins: 10 20 30\n" + more)));
+  };
+  EXPECT_TRUE(both("axis maxs: 14 26 36\n").empty());
+  expect_told(both("axis maxs: 14 26 40\n"), "distances of 5 along axis 3");
+  expect_told(both("axis maxs: 14 26 36\ncenterings: cell cell cell\n"),
+              "distances of 0.8 along axis 1, but its spacings say 1");
   expect_told(notes_of(write("a.nrrd", nrrd("space: LPS\n" + std::string(place) +
                                             "measurement frame: (1,0,0) (0,0,1) (0,1,0)\n"))),
               "measurement frame");
 }
 NRRD_ROW(old_min, "old min", told) {
+  expect_told(notes_of(path("a.nrrd")), "values are those of cells");
+  EXPECT_TRUE(notes_of(write("a.nrrd", nrrd("centerings: node node node\n"))).empty());
+  write("a.nrrd", nrrd("centerings: cell node node\n"));
+  expect_refused([&] { read_volume(path("a.nrrd")); }, "give the centering");
+  // An axis of components has none.
+  std::string two = nrrd("kinds: vector domain domain domain\ncenterings: none cell cell cell\n");
+  two.replace(two.find("dimension: 3"), 12, "dimension: 4");
+  two.replace(two.find("5 4 3"), 5, "2 5 2 3");
+  EXPECT_EQ(read_components(write("a.nrrd", two)).front().description().centering, Centering::cell);
   const std::vector<std::string> notes =
       notes_of(write("a.nrrd", nrrd("old min: -1000\nold max: 3000\nsample units: \"HU\"\n")));
   ASSERT_EQ(notes.size(), 1u);
   for (const char* key : {"old min", "old max", "sample units"}) expect_told(notes, key);
 }
 NRRD_ROW(sample_units, "sample units", told) {
+  expect_told(notes_of(write("a.nrrd", nrrd("kinds: domain domain time\n"))),
+              "axis 3 is time, no axis of space; it is read as z");
+  write("a.nrrd", nrrd("kinds: vector domain domain\n"));
+  expect_refused([&] { read_volume(path("a.nrrd")); }, "an image of 2 axes");
+  EXPECT_TRUE(notes_of(write("a.nrrd", nrrd("kinds: space domain ???\n"))).empty());
+  std::string four = nrrd("");
+  four.replace(four.find("dimension: 3"), 12, "dimension: 4");
+  four.replace(four.find("5 4 3"), 5, "5 2 3 2");
+  std::vector<std::string> notes;
+  ReadOptions options;
+  options.note = [&](const std::string& text) { notes.push_back(text); };
+  EXPECT_EQ(read_components(write("a.nrrd", four), options).size(), 2u);
+  expect_told(notes, "do not say what axis 4 is");
   expect_told(notes_of(write("a.nrrd", nrrd("sample units: \"HU\"\n"))), "sample units");
 }
 NRRD_ROW(units, "units", told) {
