@@ -269,8 +269,16 @@ void note_fields(const std::vector<Field>& fields, const MetaImageHeader& header
     note(name + ": says \"AnatomicalOrientation = " + said +
          "\", but its TransformMatrix is that of " + lies + "; the matrix is used");
   }
+  const bool is_local = in_small_letters(std::string(trimmed(header.data_file))) == "local";
+  if (is_local && header.header_size != 0) {
+    note(name + ": says \"HeaderSize = " + std::to_string(header.header_size) +
+         "\", which is not taken into account beside \"ElementDataFile = LOCAL\"; the values "
+         "begin behind the header");
+  }
   std::vector<std::string> ignored;
   for (const Field& field : fields) {
+    if (value_of(fields, field.key) != field.value)
+      ignored.push_back(field.key + " (a second time)");
     if (!is_taken_into_account(field, fields)) ignored.push_back(field.key);
   }
   note_ignored_keys(note, name, ignored);

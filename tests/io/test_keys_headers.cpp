@@ -146,6 +146,15 @@ DAT_ROW(grid_type, "GridType", told) {
   ASSERT_EQ(notes.size(), 1u);
   for (const char* key : {"GridType", "FlipYZ", "Elevation"}) expect_told(notes, key);
 }
+DAT_ROW(repeated, "a key twice", told) {
+  write("v.raw", bytes_of(counting()));
+  const auto file = write("a.dat", dat("Spacing: 1 2 3\nspacing: 2 2 2\nUnit: K\nUnit: K\n"));
+  expect_told(notes_of(file), "Spacing (a second time)");
+  expect_near(read_volume(file).description().placement.spacing, {1, 2, 3});
+  for (const std::string& note : notes_of(file)) {
+    EXPECT_FALSE(test::contains(note, "Unit (a second")) << note;
+  }
+}
 DAT_ROW(ivf_basis, "BasisAndOffset", honored) {
   write("v.raw", bytes_of(counting()));
   const std::string basis =
@@ -220,6 +229,10 @@ NIFTI_ROW(units, "xyzt_units", honored) {
               {-0.004, 0, 0});
   file.units = 6;
   expect_told(notes_of(write("a.nii", file.with(bytes_of(counting())))), "xyzt_units 6");
+  file.units = 0;
+  expect_told(notes_of(write("a.nii", file.with(bytes_of(counting())))), "xyzt_units 0");
+  file.units = 2;
+  EXPECT_TRUE(notes_of(write("a.nii", file.with(bytes_of(counting())))).empty());
 }
 NIFTI_ROW(intent, "intent_code", told) {
   test::NiftiTwoFile file;
@@ -311,24 +324,11 @@ NRRD_ROW(mins, "axis mins", honored) {
                                                         "3\naxis mins: 10 20 30\n"))),
                        0, 0, 0),
               {10, 20, 30});
+  expect_told(notes_of(write("a.nrrd", nrrd("axis mins: 10 20 30\n"))), "axis mins say where");
 }
 NRRD_ROW(maxs, "axis maxs", refused) {
   write("a.nrrd", nrrd("axis mins: 10 20 30\naxis maxs: 14 26 36\n"));
   expect_refused([&] { read_volume(path("a.nrrd")); }, "range of the axes");
-}
-NRRD_ROW(centerings, "centerings", honored) {
-  EXPECT_EQ(
-      read_volume(write("a.nrrd", nrrd("centerings: cell cell cell\n"))).description().centering,
-      Centering::cell);
-}
-NRRD_ROW(kinds, "kinds", honored) {
-  std::string two = nrrd("kinds: vector domain domain domain\n");
-  two.replace(two.find("dimension: 3"), 12, "dimension: 4");
-  expect_told(notes_of(write("a.nrrd", nrrd("axis mins: 10 20 30\n"))), "axis mins say where");
-  two.replace(two.find("5 4 3"), 5, "2 5 2 3");
-  EXPECT_EQ(read_components(write("a.nrrd", two)).size(), 2u);
-}
-NRRD_ROW(frame, "measurement frame", told) {
   const auto both = [&](const std::string& more) {
     return notes_of(write("a.nrrd", nrrd("spacings: 1 2 3\naxis mins: 10 20 30\n" + more)));
   };
@@ -336,11 +336,11 @@ NRRD_ROW(frame, "measurement frame", told) {
   expect_told(both("axis maxs: 14 26 40\n"), "distances of 5 along axis 3");
   expect_told(both("axis maxs: 14 26 36\ncenterings: cell cell cell\n"),
               "distances of 0.8 along axis 1, but its spacings say 1");
-  expect_told(notes_of(write("a.nrrd", nrrd("space: LPS\n" + std::string(place) +
-                                            "measurement frame: (1,0,0) (0,0,1) (0,1,0)\n"))),
-              "measurement frame");
 }
-NRRD_ROW(old_min, "old min", told) {
+NRRD_ROW(centerings, "centerings", honored) {
+  EXPECT_EQ(
+      read_volume(write("a.nrrd", nrrd("centerings: cell cell cell\n"))).description().centering,
+      Centering::cell);
   expect_told(notes_of(path("a.nrrd")), "values are those of cells");
   EXPECT_TRUE(notes_of(write("a.nrrd", nrrd("centerings: node node node\n"))).empty());
   write("a.nrrd", nrrd("centerings: cell node node\n"));
@@ -350,12 +350,12 @@ NRRD_ROW(old_min, "old min", told) {
   two.replace(two.find("dimension: 3"), 12, "dimension: 4");
   two.replace(two.find("5 4 3"), 5, "2 5 2 3");
   EXPECT_EQ(read_components(write("a.nrrd", two)).front().description().centering, Centering::cell);
-  const std::vector<std::string> notes =
-      notes_of(write("a.nrrd", nrrd("old min: -1000\nold max: 3000\nsample units: \"HU\"\n")));
-  ASSERT_EQ(notes.size(), 1u);
-  for (const char* key : {"old min", "old max", "sample units"}) expect_told(notes, key);
 }
-NRRD_ROW(sample_units, "sample units", told) {
+NRRD_ROW(kinds, "kinds", honored) {
+  std::string two = nrrd("kinds: vector domain domain domain\n");
+  two.replace(two.find("dimension: 3"), 12, "dimension: 4");
+  two.replace(two.find("5 4 3"), 5, "2 5 2 3");
+  EXPECT_EQ(read_components(write("a.nrrd", two)).size(), 2u);
   expect_told(notes_of(write("a.nrrd", nrrd("kinds: domain domain time\n"))),
               "axis 3 is time, no axis of space; it is read as z");
   write("a.nrrd", nrrd("kinds: vector domain domain\n"));
@@ -369,6 +369,19 @@ NRRD_ROW(sample_units, "sample units", told) {
   options.note = [&](const std::string& text) { notes.push_back(text); };
   EXPECT_EQ(read_components(write("a.nrrd", four), options).size(), 2u);
   expect_told(notes, "do not say what axis 4 is");
+}
+NRRD_ROW(frame, "measurement frame", told) {
+  expect_told(notes_of(write("a.nrrd", nrrd("space: LPS\n" + std::string(place) +
+                                            "measurement frame: (1,0,0) (0,0,1) (0,1,0)\n"))),
+              "measurement frame");
+}
+NRRD_ROW(old_min, "old min", told) {
+  const std::vector<std::string> notes =
+      notes_of(write("a.nrrd", nrrd("old min: -1000\nold max: 3000\nsample units: \"HU\"\n")));
+  ASSERT_EQ(notes.size(), 1u);
+  for (const char* key : {"old min", "old max", "sample units"}) expect_told(notes, key);
+}
+NRRD_ROW(sample_units, "sample units", told) {
   expect_told(notes_of(write("a.nrrd", nrrd("sample units: \"HU\"\n"))), "sample units");
 }
 NRRD_ROW(units, "units", told) {
@@ -440,6 +453,19 @@ MHA_ROW(shift, "ElementToIntensityFunctionOffset", told) {
 MHA_ROW(units, "DistanceUnits", told) {
   expect_told(notes_of(write("a.mha", mha("DistanceUnits = um\n"))), "DistanceUnits");
   EXPECT_TRUE(notes_of(write("a.mha", mha("DistanceUnits = mm\nModality = MET_MOD_CT\n"))).empty());
+}
+MHA_ROW(repeated, "a key twice", told) {
+  expect_told(notes_of(write("a.mha", mha("Offset = 1 2 3\nOffset = 7 8 9\n"))),
+              "Offset (a second time)");
+  EXPECT_TRUE(notes_of(write("a.mha", mha("Offset = 1 2 3\nOffset = 1 2 3\n"))).empty());
+}
+MHA_ROW(header_size, "HeaderSize", honored) {
+  write("v.raw", std::string(7, 'x') + bytes_of(counting()));
+  std::string text = mha("HeaderSize = 7\n");
+  text = text.substr(0, text.find("LOCAL")) + "v.raw\n";
+  EXPECT_EQ(test::value_at(read_volume(write("a.mhd", text)), 4, 3, 2), 59);
+  // The values of the header's own file begin behind it.
+  expect_told(notes_of(write("a.mha", mha("HeaderSize = 7\n"))), "HeaderSize = 7");
 }
 MHA_ROW(per_slice, "HeaderSizePerSlice", refused) {
   write("a.mha", mha("HeaderSizePerSlice = 12\n"));
