@@ -86,6 +86,15 @@ std::string Option::get_name() const {
   return option_->get_name();
 }
 
+namespace {
+
+/// Refuses an empty text, which CLI11 takes for no number, or for 0.
+std::string no_empty_number(const std::string& text) {
+  return text.empty() ? "needs a number, and was given an empty text" : std::string();
+}
+
+}  // namespace
+
 CommandLine::CommandLine(const std::string& description, const std::string& name)
     : program_(std::make_unique<CLI::App>(description, name)), app_(program_.get()) {
   app_->set_help_flag("-h,--help", "Print this help and exit");
@@ -118,22 +127,22 @@ Option* CommandLine::add_option(const std::string& names, std::optional<std::str
   return keep(app_->add_option(names, value, help));
 }
 Option* CommandLine::add_option(const std::string& names, int& value, const std::string& help) {
-  return keep(app_->add_option(names, value, help));
+  return keep(app_->add_option(names, value, help)->check(no_empty_number));
 }
 Option* CommandLine::add_option(const std::string& names, std::optional<int>& value,
                                 const std::string& help) {
-  return keep(app_->add_option(names, value, help));
+  return keep(app_->add_option(names, value, help)->check(no_empty_number));
 }
 Option* CommandLine::add_option(const std::string& names, double& value, const std::string& help) {
-  return keep(app_->add_option(names, value, help));
+  return keep(app_->add_option(names, value, help)->check(no_empty_number));
 }
 Option* CommandLine::add_option(const std::string& names, std::optional<double>& value,
                                 const std::string& help) {
-  return keep(app_->add_option(names, value, help));
+  return keep(app_->add_option(names, value, help)->check(no_empty_number));
 }
 Option* CommandLine::add_option(const std::string& names, std::size_t& value,
                                 const std::string& help) {
-  return keep(app_->add_option(names, value, help));
+  return keep(app_->add_option(names, value, help)->check(no_empty_number));
 }
 Option* CommandLine::add_flag(const std::string& names, bool& value, const std::string& help) {
   return keep(app_->add_flag(names, value, help));
