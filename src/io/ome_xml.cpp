@@ -60,6 +60,7 @@ class Reader {
       }
       if (element == "OME") document_.uuid = attribute(*tag, "UUID");
       if (element == "BinaryOnly") document_.metadata_file = attribute(*tag, "MetadataFile");
+      if (element.starts_with("ModuloAlong")) document_.divided_axis = element;
       if (element == "Image") image_name_ = attribute(*tag, "Name");
       if (element == "Pixels") start_pixels(*tag);
       if (image_ == nullptr) continue;

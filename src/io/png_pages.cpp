@@ -8,7 +8,9 @@
 #include <cstdint>
 #include <cstdio>
 #include <string>
+#include <vector>
 
+#include "dicom_text.h"
 #include "image_pages.h"
 #include "pellucid/scene/error.h"
 #include "volume_source.h"
@@ -101,6 +103,8 @@ class PngReader : public PageReader {
 
   PageDescription describe(const ReadOptions&) const override { return said_; }
 
+  std::vector<PageMark> marks() const override { return {physical_}; }
+
   void read(std::span<std::byte> to) override {
     const auto height = static_cast<std::size_t>(format_.rows);
     const std::size_t bytes = to.size() / height;
@@ -147,6 +151,7 @@ class PngReader : public PageReader {
         if (unit[0] == std::byte{1} && x > 0 && y > 0 && !is_screen) {
           said_.spacing[0] = {1000. / x, "mm"};
           said_.spacing[1] = {1000. / y, "mm"};
+          physical_.value = readable_number(1000. / x) + " x " + readable_number(1000. / y) + " mm";
         }
         return;
       }
@@ -158,6 +163,7 @@ class PngReader : public PageReader {
   std::string name_;
   PageFormat format_;
   PageDescription said_;
+  PageMark physical_{"pHYs", "", true};
 };
 
 }  // namespace
