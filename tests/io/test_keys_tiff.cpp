@@ -193,6 +193,13 @@ PELLUCID_DESCRIBED_KEY(ome_physical, tiff_rows, "PhysicalSizeX", honored) {
                     "PhysicalSizeZUnit=\"mm\"");
   const Volume volume = read_volume(write("a.ome.tif", described_tiff(2, xml)));
   test::expect_near(volume.description().placement.spacing, {1, 2, 3000});
+  for (const char* said : {"PhysicalSizeZ=\"0,5\"", "PhysicalSizeX=\"1 um\"",
+                           "PhysicalSizeY=\"-1\"", "TimeIncrement=\"2s\""}) {
+    std::vector<std::string> notes;
+    noting(write("a.ome.tif", described_tiff(2, test::ome_xml({2, 1, 1}, "<TiffData/>", said))),
+           notes);
+    expect_told(notes, std::string(said) + ", which is no");
+  }
 }
 PELLUCID_DESCRIBED_KEY(ome_time, tiff_rows, "TimeIncrement", honored) {
   const std::string xml = test::ome_xml({2, 1, 2}, "<TiffData/>", "TimeIncrement=\"10\"");
@@ -383,6 +390,17 @@ PELLUCID_DESCRIBED_KEY(png_physical, stack_rows, "pHYs", honored) {
   read_volume(folder_, options);
   expect_told(notes, "pHYs without a unit makes pixels 0.5 times as high as wide");
   test::expect_near(spacing_by(std::string("\0\0\x0b\x13\0\0\x0b\x13\1", 9)), {1, 1, 1});
+}
+PELLUCID_DESCRIBED_KEY(png_transparent, stack_rows, "tRNS", told) {
+  for (int k = 0; k < 2; ++k) {
+    write("p" + std::to_string(k) + ".png",
+          test::png(5, 4, 8, 0, test::page_values<std::uint8_t>(k), 0, "",
+                    k == 0 ? std::string("\0\7", 2) : ""));
+  }
+  std::vector<std::string> notes;
+  EXPECT_EQ(test::value_at(noting(folder_, notes).front(), 2, 1, 0), 7);
+  expect_told(notes, "tRNS says that a value is transparent");
+  expect_told(notes, "differ in tRNS");
 }
 PELLUCID_DESCRIBED_KEY(names_pattern, stack_rows, "%d, %03d, %+d, %.2f, %g", honored) {
   for (int z = 0; z < 2; ++z) {
