@@ -278,6 +278,7 @@ VolumeFile open_grid(const std::filesystem::path& path, const ReadOptions& optio
   file.read = [path, &format, array, options](ComponentRange range) {
     return read_values(path, format, array, options, range);
   };
+  refuse_movie(array.times.size(), array.sides[2], options, name);
   if (options.time) {
     choose_time(array, options, name, file);
   } else if (array.times.size() > 1 && options.note) {

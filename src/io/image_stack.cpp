@@ -386,11 +386,7 @@ void choose_time(Stack& stack, const ReadOptions& options, const std::string& na
   const double step = stack.said.time_step.value_or(1);
   const std::vector<double> times =
       even_times(static_cast<std::size_t>(layout.times), 0, step > 0 ? step : 1);
-  if (layout.slices == 1 && options.centering != Centering::cell) {
-    throw Error(name + ": is a movie, " + std::to_string(times.size()) +
-                " times of a single plane, and a volume needs two planes; read one time with cell "
-                "centering, or save the times as slices if they are some");
-  }
+  refuse_movie(times.size(), layout.slices, options, name);
   if (!options.time) {
     if (options.note) options.note(name + ": holds " + times_note(times));
     return;

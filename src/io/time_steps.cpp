@@ -4,6 +4,8 @@
 #include <array>
 #include <charconv>
 
+#include "pellucid/scene/error.h"
+
 namespace pellucid {
 
 namespace {
@@ -33,6 +35,14 @@ std::string step_note(const std::vector<double>& times, std::size_t step, double
   return "step " + std::to_string(step + 1) + " of " + std::to_string(times.size()) +
          " is read, time " + written(times[step]) +
          (times[step] == wanted ? "" : " (nearest to " + written(wanted) + ")");
+}
+
+void refuse_movie(std::size_t times, std::int64_t planes, const ReadOptions& options,
+                  const std::string& name) {
+  if (times < 2 || planes > 1 || options.centering == Centering::cell) return;
+  throw Error(name + ": is a movie, " + std::to_string(times) +
+              " times of a single plane, and a volume needs two planes; read one time with cell "
+              "centering, or save the times as slices if they are some");
 }
 
 std::vector<double> even_times(std::size_t count, double first, double step) {

@@ -2,8 +2,11 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <string>
 #include <vector>
+
+#include "pellucid/io/read_volume.h"
 
 namespace pellucid {
 
@@ -15,5 +18,10 @@ std::string step_note(const std::vector<double>& times, std::size_t step, double
 
 /// Returns the times of steps that follow each other at one distance.
 std::vector<double> even_times(std::size_t count, double first, double step);
+
+/// Throws Error that begins with `name` where several times have one plane each, which make no
+/// volume of points.
+void refuse_movie(std::size_t times, std::int64_t planes, const ReadOptions& options,
+                  const std::string& name);
 
 }  // namespace pellucid

@@ -91,6 +91,10 @@ void choose_time(const ZarrChoice& choice, const ReadOptions& options, const std
   if (options.time && !axes.time) {
     throw Error(name + ": has no steps in time; leave the time out");
   }
+  if (axes.time) {
+    const auto z = axes.view.sides(choice.array)[2];
+    refuse_movie(static_cast<std::size_t>(choice.array.shape[*axes.time]), z, options, name);
+  }
   const bool is_told = options.note && axes.time && choice.array.shape[*axes.time] > 1;
   if (!options.time && !is_told) return;
   const std::vector<double> times = zarr_times(choice, *axes.time, name);
@@ -190,6 +194,7 @@ std::vector<VolumeArray> list_zarr_arrays(const fs::path& path, const ReadOption
       ReadOptions options;
       options.array = entry.path;
       options.axes = given.axes;
+      options.centering = Centering::cell;  // of a single plane, too
       const VolumeFile file = open_zarr(folder, options);
       const auto& sides = file.description.dimensions;
       about.dimensions.assign(sides.begin(), sides.end());

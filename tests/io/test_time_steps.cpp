@@ -61,6 +61,29 @@ TEST_F(TimeSteps, Tiff) {
   EXPECT_TRUE(contains(notes_of(movie, options), "step 2 of 3 is read, time 1"));
 }
 
+TEST_F(TimeSteps, MoviesOfSinglePlanes) {
+  const auto expect_movie = [&](const fs::path& file) {
+    EXPECT_TRUE(contains(error_of([&] { read_volume(file); }), "is a movie, 3 times of a single"));
+    ReadOptions options;
+    options.time = 1;
+    EXPECT_TRUE(contains(error_of([&] { read_volume(file, options); }), "is a movie"));
+    options.centering = Centering::cell;
+    EXPECT_EQ(read_volume(file, options).description().dimensions[2], 1);
+  };
+  test::ZarrStore store;
+  store.shape = store.chunk = {3, 1, 2, 2};
+  store.write_2(path("a.zarr/v"), bytes_of(std::vector<float>(12, 1)), 4);
+  std::ofstream(path("a.zarr/.zgroup")) << "{\"zarr_format\": 2}";
+  std::ofstream(path("a.zarr/v/.zattrs")) << R"({"_ARRAY_DIMENSIONS": ["time", "z", "y", "x"]})";
+  expect_movie(path("a.zarr"));
+#ifdef PELLUCID_HAVE_NETCDF
+  test::ClassicFile classic;
+  classic.axes = {{"time", 3}, {"z", 1}, {"y", 2}, {"x", 2}};
+  classic.variables = {{"v", 'f', {"time", "z", "y", "x"}, std::vector<double>(12, 1)}};
+  expect_movie(write("a.nc", classic.bytes()));
+#endif
+}
+
 #ifdef PELLUCID_HAVE_NETCDF
 TEST_F(TimeSteps, NetCdf) {
   test::ClassicFile classic;
