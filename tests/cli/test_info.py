@@ -308,6 +308,8 @@ class NetCdf(ProgramTest):
         self.assertIn("step 2 of 2 is read, time 4 (nearest to 3)", notes)
         for option in ("--time", "--skip-bytes", "--level"):
             self.fail_with(f"{option}: needs a number", "info", "a.nc", option, "", code=2)
+        for option in ("--component", "--array", "--series", "--spacing", "--type", "--array-axes"):
+            self.fail_with(f"{option}: needs a value", "info", "a.nc", option, "", code=2)
 
     def test_a_time_is_kept_in_the_scene(self):
         self.succeed("render", "a.nc", "--time", "5", "-o", "a.exr", "--size", "16",
