@@ -171,7 +171,7 @@ std::vector<std::string> ignored_keys(const Fields& fields) {
        "axis1name", "axis2name", "axis3name", "axis1unit", "axis2unit", "axis3unit", "wrapping"});
   std::vector<std::string> keys;
   for (const auto& [key, field] : fields) {
-    if (field.is_repeated) keys.push_back(field.key + " (a second time)");
+    if (field.is_repeated) keys.push_back(field.key + " (more than once)");
     if (std::ranges::find(known, key) != known.end() || field.value.empty()) continue;
     const std::string value = in_small_letters(field.value);
     // What is so without the key.

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "dicom_text.h"
+#include "pellucid/scene/error.h"
 #include "scene_json_document.h"
 
 namespace pellucid::nrrd {
@@ -96,6 +97,15 @@ void note_centerings(const Header& header, std::size_t components_axis, const No
         "its centerings say that values are those of cells (--centering point reads them as "
         "points)");
   }
+  const std::vector<std::string> mins = words_of(header, "axismins");
+  const bool says_none = std::ranges::none_of(centerings_of(header), [](const std::string& word) {
+    return word == "cell" || word == "node";
+  });
+  if (says_none && !mins.empty() && find_field(header, "spacings") != nullptr) {
+    note(
+        "its centerings are not said, and so its axis mins are taken for borders of cells: the "
+        "first value is half a step behind them");
+  }
   for (const std::string& word : centerings_of(header)) {
     if (word == "cell" || word == "node" || word == "none" || word == "???") continue;
     note("its centerings say \"" + printable(word) + "\", which is neither cell nor node");
@@ -114,6 +124,20 @@ int cell_centred_axes(const Header& header, std::size_t components_axis) {
     cells += centerings[axis - 1] == "cell" ? 1 : 0;
   }
   return cells;
+}
+
+void check_numbers(const Header& header, const std::string& name) {
+  for (const char* field : {"spacings", "axismins", "axismaxs", "thicknesses"}) {
+    for (std::string word : words_of(header, field)) {
+      if (word.starts_with('+')) word.erase(0, 1);
+      double value = 0;
+      const char* const end = word.data() + word.size();
+      const auto [stop, error] = std::from_chars(word.data(), end, value);
+      if (error == std::errc{} && stop == end) continue;
+      throw Error(name + ": the NRRD header says \"" + printable(find_field(header, field)->text) +
+                  "\", where numbers are meant, with a point before decimals; mend the header");
+    }
+  }
 }
 
 void note_axes(const Header& header, std::size_t components_axis, const std::string& name,

@@ -149,10 +149,15 @@ DAT_ROW(grid_type, "GridType", told) {
 DAT_ROW(repeated, "a key twice", told) {
   write("v.raw", bytes_of(counting()));
   const auto file = write("a.dat", dat("Spacing: 1 2 3\nspacing: 2 2 2\nUnit: K\nUnit: K\n"));
-  expect_told(notes_of(file), "Spacing (a second time)");
+  expect_told(notes_of(file), "Spacing (more than once)");
   expect_near(read_volume(file).description().placement.spacing, {1, 2, 3});
+  const std::string twice = "<Dimension x=\"5\" y=\"4\" z=\"3\"/>";
+  expect_told(notes_of(write("a.ivf", ivf(twice))), "Dimension (more than once)");
+  const std::string spacing = item("Spacing", "x=\"1\" y=\"2\" z=\"3\"");
+  expect_told(notes_of(write("a.vvd", vvd(spacing + spacing))), "Spacing (more than once)");
+  EXPECT_TRUE(notes_of(write("a.vvd", vvd(spacing))).empty());
   for (const std::string& note : notes_of(file)) {
-    EXPECT_FALSE(test::contains(note, "Unit (a second")) << note;
+    EXPECT_FALSE(test::contains(note, "Unit (more than")) << note;
   }
 }
 DAT_ROW(ivf_basis, "BasisAndOffset", honored) {
@@ -319,12 +324,24 @@ NRRD_ROW(spacings, "spacings", honored) {
   expect_near(world_of(read_volume(write("a.nrrd", nrrd("spacings: 1 2 3\n"))), 4, 3, 2),
               {4, 6, 6});
 }
+NRRD_ROW(words, "words in the place of numbers", refused) {
+  for (const char* line : {"spacings: 1,5 2 3", "spacings: 1mm 2 3", "axis mins: 1 2,5 3"}) {
+    write("a.nrrd", nrrd(std::string(line) + "\n"));
+    expect_refused([&] { read_volume(path("a.nrrd")); }, line);
+  }
+  expect_near(
+      read_volume(write("a.nrrd", nrrd("spacings: +1 2e0 3.\n"))).description().placement.spacing,
+      {1, 2, 3});
+}
 NRRD_ROW(mins, "axis mins", honored) {
   expect_near(world_of(read_volume(write("a.nrrd", nrrd("centerings: node node node\nspacings: 1 2 "
                                                         "3\naxis mins: 10 20 30\n"))),
                        0, 0, 0),
               {10, 20, 30});
   expect_told(notes_of(write("a.nrrd", nrrd("axis mins: 10 20 30\n"))), "axis mins say where");
+  const auto unsaid = write("a.nrrd", nrrd("spacings: 1 2 3\naxis mins: 10 20 30\n"));
+  expect_told(notes_of(unsaid), "its centerings are not said");
+  expect_near(world_of(read_volume(unsaid), 0, 0, 0), {10.5, 21, 31.5});
 }
 NRRD_ROW(maxs, "axis maxs", refused) {
   write("a.nrrd", nrrd("axis mins: 10 20 30\naxis maxs: 14 26 36\n"));
@@ -332,7 +349,7 @@ NRRD_ROW(maxs, "axis maxs", refused) {
   const auto both = [&](const std::string& more) {
     return notes_of(write("a.nrrd", nrrd("spacings: 1 2 3\naxis mins: 10 20 30\n" + more)));
   };
-  EXPECT_TRUE(both("axis maxs: 14 26 36\n").empty());
+  EXPECT_TRUE(both("axis maxs: 14 26 36\ncenterings: node node node\n").empty());
   expect_told(both("axis maxs: 14 26 40\n"), "distances of 5 along axis 3");
   expect_told(both("axis maxs: 14 26 36\ncenterings: cell cell cell\n"),
               "distances of 0.8 along axis 1, but its spacings say 1");
@@ -454,9 +471,20 @@ MHA_ROW(units, "DistanceUnits", told) {
   expect_told(notes_of(write("a.mha", mha("DistanceUnits = um\n"))), "DistanceUnits");
   EXPECT_TRUE(notes_of(write("a.mha", mha("DistanceUnits = mm\nModality = MET_MOD_CT\n"))).empty());
 }
+MHA_ROW(words, "words in the place of numbers", refused) {
+  const char* const lines[] = {"HeaderSize = 12,5", "HeaderSize = 7.5",
+                               "TransformMatrix = 1 0 0 0 1 0 0 0 1,0", "Offset = 1 2 3 4",
+                               "ElementNumberOfChannels = 1,2"};
+  for (const char* line : lines) {
+    write("a.mha", mha(std::string(line) + "\n"));
+    expect_refused([&] { read_volume(path("a.mha")); }, line);
+  }
+  write("a.mha", mha("", "ElementSpacing = 1,5 2 3\n"));
+  expect_refused([&] { read_volume(path("a.mha")); }, "with a point before decimals");
+}
 MHA_ROW(repeated, "a key twice", told) {
   expect_told(notes_of(write("a.mha", mha("Offset = 1 2 3\nOffset = 7 8 9\n"))),
-              "Offset (a second time)");
+              "Offset (more than once)");
   EXPECT_TRUE(notes_of(write("a.mha", mha("Offset = 1 2 3\nOffset = 1 2 3\n"))).empty());
 }
 MHA_ROW(header_size, "HeaderSize", honored) {
@@ -464,6 +492,8 @@ MHA_ROW(header_size, "HeaderSize", honored) {
   std::string text = mha("HeaderSize = 7\n");
   text = text.substr(0, text.find("LOCAL")) + "v.raw\n";
   EXPECT_EQ(test::value_at(read_volume(write("a.mhd", text)), 4, 3, 2), 59);
+  write("v.raw", bytes_of(counting()));
+  expect_refused([&] { read_volume(path("a.mhd")); }, "a.mhd: the header says \"HeaderSize = 7\"");
   // The values of the header's own file begin behind it.
   expect_told(notes_of(write("a.mha", mha("HeaderSize = 7\n"))), "HeaderSize = 7");
 }
