@@ -362,7 +362,10 @@ class Finder {
         throw Error(name_ + ": " + which +
                     " has several pages, and there are several files; give one of them alone");
       }
-      marks_.compare(marks_of(*reader, own), which);
+      std::vector<PageMark> marks = marks_of(*reader, own);
+      // Descriptions of files differ in much; their distances are a mark.
+      std::erase_if(marks, [](const PageMark& mark) { return mark.key == "ImageDescription"; });
+      marks_.compare(marks, which);
       if (file != files.front()) volume.files.push_back({file, {0}});
     }
     volume.files.front().directories.resize(1);

@@ -17,6 +17,7 @@ void PageMarks::compare(const std::vector<PageMark>& marks, const std::string& w
   for (Difference& difference : differences_) {
     const auto other = std::ranges::find(marks, difference.first.key, &PageMark::key);
     if (other == marks.end() || other->value == difference.first.value) continue;
+    if (other->may_lack && other->value.empty()) continue;
     if (difference.pages++ > 0) continue;
     difference.value = other->value;
     difference.which = which;

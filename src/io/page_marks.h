@@ -14,6 +14,7 @@ struct PageMark {
   std::string key;           ///< as the file calls it: "Orientation"
   std::string value;         ///< in words; empty: not said
   bool is_of_first = false;  ///< whether the first page's holds for all; else values stay as stored
+  bool may_lack = false;     ///< whether pages that do not say it agree with the first
 };
 
 /// Compares the marks of a stack's pages with those of its first.

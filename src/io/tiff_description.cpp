@@ -259,6 +259,21 @@ void tell_tags(TIFF* tiff, PageDescription& said) {
   }
 }
 
+/// Returns who describes a page, with ImageJ's distances; empty: nobody does.
+std::string description_mark(TIFF* tiff) {
+  const std::string text = tiff_text(tiff, TIFFTAG_IMAGEDESCRIPTION);
+  if (is_ome_xml(text)) return "OME-XML";
+  if (is_shaped_text(text)) return "tifffile";
+  if (!is_imagej_text(text)) return {};
+  std::string said = "ImageJ";
+  for (const std::string_view key : {"\nspacing=", "\nunit=", "\nzunit="}) {
+    const std::size_t at = text.find(key);
+    if (at == std::string::npos) continue;
+    said += ", " + text.substr(at + 1, std::min(text.find('\n', at + 1), text.size()) - at - 1);
+  }
+  return said;
+}
+
 }  // namespace
 
 std::string tiff_text(TIFF* tiff, std::uint32_t tag) {
@@ -302,7 +317,8 @@ std::vector<PageMark> tiff_marks(TIFF* tiff, double x_resolution, double y_resol
            distances
                ? readable_number((*distances)[0]) + " x " + readable_number((*distances)[1]) + " mm"
                : "",
-           true}};
+           true},
+          {"ImageDescription", description_mark(tiff), true, true}};
 }
 
 PageDescription describe_tiff(TIFF* tiff, const std::filesystem::path& file,

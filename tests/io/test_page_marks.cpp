@@ -119,6 +119,27 @@ TEST_F(DifferingPages, ImageJSpacing) {
   expect_nothing_differs(stack("spacing=2.5\n"));
 }
 
+TEST_F(DifferingPages, DescriptionsOfLaterPages) {
+  const auto with = [&](const std::string& first, const std::string& last) {
+    test::TiffFile file(false);
+    for (int k = 0; k < 3; ++k) {
+      TiffPage page = test::counting_page<std::uint16_t>(k, 1);
+      page.description = k == 0 ? first : k == 2 ? last : "";
+      file.add(page);
+    }
+    return write("d.tif", file.bytes());
+  };
+  const std::string one = "ImageJ=1.53t\nimages=3\nspacing=1\n";
+  const std::string two = "ImageJ=1.53t\nimages=3\nspacing=2\n";
+  expect_told(notes_of(with("", two)),
+              "ImageDescription: not said at the first, ImageJ, spacing=2 at page 3; the first's");
+  expect_told(notes_of(with(one, two)), "ImageJ, spacing=1 at the first, ImageJ, spacing=2");
+  expect_told(notes_of(with(one, "{\"shape\": [4, 5]}")), "tifffile at page 3");
+  expect_nothing_differs(with(one, one));
+  expect_nothing_differs(with(one, "a word"));
+  expect_nothing_differs(with("", "a word"));
+}
+
 PELLUCID_DESCRIBED_KEY(pages_differ, "Stacks of files", "a key that differs from page to page",
                        told) {
   write("a0.tif", test::tiff(test::counting_page<std::uint16_t>(0, 1)));
