@@ -86,6 +86,27 @@ std::string Option::get_name() const {
   return option_->get_name();
 }
 
+namespace {
+
+/// Refuses an empty text, which CLI11 takes for no number, or for 0.
+std::string no_empty_number(const std::string& text) {
+  return text.empty() ? "needs a number, and was given an empty text" : std::string();
+}
+
+/// Adds an option of texts, which may not be empty: that would mean as much as no option. What
+/// stands without a name is checked by the command.
+template <class Value>
+CLI::Option* add_text(CLI::App& app, const std::string& names, Value& value,
+                      const std::string& help) {
+  CLI::Option* const option = app.add_option(names, value, help);
+  if (!names.starts_with('-')) return option;
+  return option->check([](const std::string& text) {
+    return text.empty() ? "needs a value, and was given an empty text" : std::string();
+  });
+}
+
+}  // namespace
+
 CommandLine::CommandLine(const std::string& description, const std::string& name)
     : program_(std::make_unique<CLI::App>(description, name)), app_(program_.get()) {
   app_->set_help_flag("-h,--help", "Print this help and exit");
@@ -107,33 +128,33 @@ Option* CommandLine::keep(CLI::Option* option) {
 }
 Option* CommandLine::add_option(const std::string& names, std::string& value,
                                 const std::string& help) {
-  return keep(app_->add_option(names, value, help));
+  return keep(add_text(*app_, names, value, help));
 }
 Option* CommandLine::add_option(const std::string& names, std::vector<std::string>& value,
                                 const std::string& help) {
-  return keep(app_->add_option(names, value, help));
+  return keep(add_text(*app_, names, value, help));
 }
 Option* CommandLine::add_option(const std::string& names, std::optional<std::string>& value,
                                 const std::string& help) {
-  return keep(app_->add_option(names, value, help));
+  return keep(add_text(*app_, names, value, help));
 }
 Option* CommandLine::add_option(const std::string& names, int& value, const std::string& help) {
-  return keep(app_->add_option(names, value, help));
+  return keep(app_->add_option(names, value, help)->check(no_empty_number));
 }
 Option* CommandLine::add_option(const std::string& names, std::optional<int>& value,
                                 const std::string& help) {
-  return keep(app_->add_option(names, value, help));
+  return keep(app_->add_option(names, value, help)->check(no_empty_number));
 }
 Option* CommandLine::add_option(const std::string& names, double& value, const std::string& help) {
-  return keep(app_->add_option(names, value, help));
+  return keep(app_->add_option(names, value, help)->check(no_empty_number));
 }
 Option* CommandLine::add_option(const std::string& names, std::optional<double>& value,
                                 const std::string& help) {
-  return keep(app_->add_option(names, value, help));
+  return keep(app_->add_option(names, value, help)->check(no_empty_number));
 }
 Option* CommandLine::add_option(const std::string& names, std::size_t& value,
                                 const std::string& help) {
-  return keep(app_->add_option(names, value, help));
+  return keep(app_->add_option(names, value, help)->check(no_empty_number));
 }
 Option* CommandLine::add_flag(const std::string& names, bool& value, const std::string& help) {
   return keep(app_->add_flag(names, value, help));

@@ -35,6 +35,7 @@ namespace {
 
 struct Field {
   std::string key, value;  // as written
+  bool is_repeated = false;
 };
 using Fields = std::map<std::string, Field>;
 
@@ -55,11 +56,11 @@ Fields read_fields(const fs::path& path, const std::string& name) {
     if (colon == std::string::npos || text.starts_with('/')) continue;
     const std::string_view word = trimmed(text.substr(0, colon));
     const std::string key = in_small_letters(word);
-    const bool is_first = fields
-                              .try_emplace(key, Field{std::string(word),
-                                                      std::string(trimmed(text.substr(colon + 1)))})
-                              .second;
-    if (!is_first && key == "rawfile") {
+    Field field{std::string(word), std::string(trimmed(text.substr(colon + 1)))};
+    const auto [place, is_first] = fields.try_emplace(key, field);
+    if (is_first) continue;
+    place->second.is_repeated = place->second.is_repeated || place->second.value != field.value;
+    if (key == "rawfile") {
       throw Error(name + ": names several files of values; save one of them as a volume");
     }
   }
@@ -170,6 +171,7 @@ std::vector<std::string> ignored_keys(const Fields& fields) {
        "axis1name", "axis2name", "axis3name", "axis1unit", "axis2unit", "axis3unit", "wrapping"});
   std::vector<std::string> keys;
   for (const auto& [key, field] : fields) {
+    if (field.is_repeated) keys.push_back(field.key + " (more than once)");
     if (std::ranges::find(known, key) != known.end() || field.value.empty()) continue;
     const std::string value = in_small_letters(field.value);
     // What is so without the key.

@@ -38,8 +38,15 @@ void tell(const DicomFolder& folder, const DicomGroup& group, const std::filesys
     }
   }
   for (const std::string& text : group.notes) note(text);
-  if (group.slices.front().image->photometric == "MONOCHROME1") {
+  const auto inverted = std::ranges::count_if(group.slices, [](const DicomSlice& slice) {
+    return slice.image->photometric == "MONOCHROME1";
+  });
+  if (inverted == std::ssize(group.slices)) {
     note("large values are meant to be dark (MONOCHROME1); they are read as they are");
+  } else if (inverted > 0) {
+    note("large values are meant to be dark in " + std::to_string(inverted) + " of " +
+         std::to_string(group.slices.size()) +
+         " slices (MONOCHROME1), and bright in the others; all are read as they are");
   }
 }
 

@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <numbers>
 
 #include "dicom_text.h"
 #include "pellucid/scene/error.h"
@@ -80,12 +79,14 @@ class SlicePlacement {
   // Positions of one or some digits behind the point are rounded by up to half of the last one.
   // Whole numbers may as well be exact.
   void find_rounding() {
-    int decimals = 0;
-    for (const DicomSlice& slice : slices_) decimals = std::max(decimals, slice.decimals);
-    if (decimals > 0) rounding_ = 0.5 * std::pow(10, -decimals);
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      int decimals = 0;
+      for (const DicomSlice& slice : slices_) decimals = std::max(decimals, slice.decimals[axis]);
+      if (decimals > 0) rounding_[static_cast<int>(axis)] = 0.5 * std::pow(10, -decimals);
+    }
   }
   // How far rounding may move a slice off the line through the first and the last, each rounded.
-  double rounded_aside() const { return 2 * rounding_ * std::numbers::sqrt3; }
+  double rounded_aside() const { return 2 * length(rounding_); }
 
   double along(const DicomSlice& slice) const { return dot(*slice.position, normal_); }
 
@@ -186,16 +187,24 @@ class SlicePlacement {
     std::vector<double> heights;
     heights.reserve(slices_.size());
     for (const DicomSlice& slice : slices_) heights.push_back(along(slice) - along(slices_[0]));
-    bool even = true;
+    double largest = 0;  // distance of a slice from its place among even ones
     // More than some of a step is a slice that is missing, however coarse the positions are.
     constexpr double most = 0.4;
     const double rounded =
-        2 * rounding_ * (std::abs(normal_.x) + std::abs(normal_.y) + std::abs(normal_.z));
+        2 * (rounding_.x * std::abs(normal_.x) + rounding_.y * std::abs(normal_.y) +
+             rounding_.z * std::abs(normal_.z));
     const double allowed = std::max(tolerance * step, std::min(rounded, most * step));
     for (std::size_t i = 0; i < heights.size(); ++i) {
-      even = even && std::abs(heights[i] - static_cast<double>(i) * step) <= allowed;
+      largest = std::max(largest, std::abs(heights[i] - static_cast<double>(i) * step));
     }
-    if (even) return;
+    if (largest <= allowed) {
+      if (largest > tolerance * step) {
+        note("slices are up to " + in_millimetres(largest) +
+             " off even distances, which the rounding of their positions explains; they are taken "
+             "as even");
+      }
+      return;
+    }
     std::vector<double> gaps;
     gaps.reserve(heights.size() - 1);
     for (std::size_t i = 1; i < heights.size(); ++i) gaps.push_back(heights[i] - heights[i - 1]);
@@ -223,7 +232,7 @@ class SlicePlacement {
   const std::string& name_;
   bool some_left_out_;
   Vec3<double> normal_{0, 0, 1};
-  double rounding_ = 0;  ///< largest, of a coordinate of a position, in mm
+  Vec3<double> rounding_{0, 0, 0};  ///< largest, of each coordinate of a position, in mm
 };
 
 }  // namespace

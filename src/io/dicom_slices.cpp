@@ -167,25 +167,26 @@ std::string refusal(const FrameFacts& facts) {
   return {};
 }
 
-/// The most digits behind the point of numbers written as text, without zeros at their end.
-int dicom_decimals(const std::string& numbers) {
-  int most = 0, digits = 0, zeros = 0;
-  bool behind_point = false;
-  for (const char c : numbers + "\\") {
-    if (c == '\\') {
-      most = std::max(most, digits - zeros);
-      behind_point = false;
-      digits = zeros = 0;
-    } else if (c == '.') {
-      behind_point = true;
-    } else if (c == 'e' || c == 'E') {
-      return std::numeric_limits<double>::digits10;
-    } else if (behind_point && c >= '0' && c <= '9') {
-      ++digits;
-      zeros = c == '0' ? zeros + 1 : 0;
-    }
+/// Returns the digits behind the point of a number written as text, without zeros at their end.
+int dicom_decimals(std::string_view number) {
+  if (number.find_first_of("eE") != std::string_view::npos) {
+    return std::numeric_limits<double>::digits10;
   }
-  return most;
+  const std::size_t point = number.find('.');
+  if (point == std::string_view::npos) return 0;
+  const std::size_t last = number.find_last_of("123456789");
+  return last == std::string_view::npos || last < point ? 0 : static_cast<int>(last - point);
+}
+
+/// Returns the decimals of three coordinates.
+std::array<int, 3> decimals_of_each(std::string_view numbers) {
+  std::array<int, 3> decimals{};
+  for (int& digits : decimals) {
+    const std::size_t end = std::min(numbers.find('\\'), numbers.size());
+    digits = dicom_decimals(numbers.substr(0, end));
+    numbers.remove_prefix(std::min(end + 1, numbers.size()));
+  }
+  return decimals;
 }
 
 DicomSlice slice_of(const FrameFacts& facts) {
@@ -193,11 +194,11 @@ DicomSlice slice_of(const FrameFacts& facts) {
   const std::vector<double> position = facts.decimals(tag::plane_position, tag::position);
   if (position.size() == 3) {
     slice.position = {position[0], position[1], position[2]};
-    slice.decimals = dicom_decimals(facts.text(tag::plane_position, tag::position));
+    slice.decimals = decimals_of_each(facts.text(tag::plane_position, tag::position));
   }
   slice.location = first_of(facts.decimals(tag::plane_position, tag::location));
   if (!slice.position) {
-    slice.decimals = dicom_decimals(facts.text(tag::plane_position, tag::location));
+    slice.decimals.fill(dicom_decimals(facts.text(tag::plane_position, tag::location)));
   }
   slice.marks = facts.marks();
   slice.orientation = directions(facts.decimals(tag::plane_orientation, tag::orientation));

@@ -46,8 +46,8 @@ struct DicomSlice {
   int frame = 0;                         ///< from 0
   std::optional<double> number;          ///< InstanceNumber
   std::optional<Vec3<double>> position;  ///< of the centre of the first pixel, mm, LPS
-  int decimals = 0;                ///< most behind the point of the position, or of the location
-  std::optional<double> location;  ///< SliceLocation
+  std::array<int, 3> decimals{};         ///< behind the points of the position, or of the location
+  std::optional<double> location;        ///< SliceLocation
   /// Unit vectors in which columns and rows are counted.
   std::optional<std::array<Vec3<double>, 2>> orientation;
   std::optional<std::array<double, 2>> spacing;  ///< from column to column, from row to row; mm

@@ -24,6 +24,7 @@
 #include "pellucid/io/module.h"
 #include "pellucid/scene/error.h"
 #include "text.h"
+#include "time_steps.h"
 #include "vdb_size.h"
 
 namespace pellucid {
@@ -233,10 +234,14 @@ void choose_time(const GridArray& array, const ReadOptions& options, const std::
     throw Error(name + ": \"" + one_line(array.name) +
                 "\" has no steps in time; leave the time out");
   }
-  const auto step = static_cast<int>(nearest_step(array.times, options.time));
+  const std::size_t nearest = nearest_step(array.times, options.time);
+  const auto step = static_cast<int>(nearest);
   const int others = array.components / steps;
+  if (others == 1 && options.component) {
+    throw Error(name + ": give a time or a component, not both");
+  }
+  if (options.note) options.note(name + ": " + step_note(array.times, nearest, *options.time));
   if (others == 1) {
-    if (options.component) throw Error(name + ": give a time or a component, not both");
     file.step = step;
     return;
   }
@@ -273,7 +278,12 @@ VolumeFile open_grid(const std::filesystem::path& path, const ReadOptions& optio
   file.read = [path, &format, array, options](ComponentRange range) {
     return read_values(path, format, array, options, range);
   };
-  if (options.time) choose_time(array, options, name, file);
+  refuse_movie(array.times.size(), array.sides[2], options, name);
+  if (options.time) {
+    choose_time(array, options, name, file);
+  } else if (array.times.size() > 1 && options.note) {
+    options.note(name + ": \"" + one_line(array.name) + "\" holds " + times_note(array.times));
+  }
   return file;
 }
 

@@ -265,7 +265,9 @@ VariableAttributes hdf5_attributes(hid_t dataset) {
 std::string hdf5_meant_type(std::string type, const VariableAttributes& attributes) {
   const std::string text = in_small_letters(text_of(attributes, "_Unsigned"));
   const bool is_wide = type.ends_with("64");
-  if (text == "true" && type[0] == 'i' && !is_wide) type[0] = 'u';
+  // xarray writes truth values as bytes that say so.
+  const bool is_truth = type == "i8" && text_of(attributes, "dtype") == "bool";
+  if ((text == "true" || is_truth) && type[0] == 'i' && !is_wide) type[0] = 'u';
   if (text == "false" && type[0] == 'u' && !is_wide) type[0] = 'i';
   return type;
 }

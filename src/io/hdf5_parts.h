@@ -38,15 +38,26 @@ inline hid_t open_file(const std::filesystem::path& path) {
   return H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT);
 }
 
+/// Returns whether a type is what h5py writes for truth values: FALSE and TRUE in a byte.
+inline bool is_truth(hid_t type) {
+  constexpr std::array names{"FALSE", "TRUE"};
+  if (H5Tget_size(type) != 1 || H5Tget_nmembers(type) != 2) return false;
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    signed char value = 0;
+    if (H5Tenum_valueof(type, names[i], &value) < 0 || value != static_cast<int>(i)) return false;
+  }
+  return true;
+}
+
 /// The type of the values, "i64" and "u64" among them; nothing where they are no plain numbers.
 inline std::optional<std::string> type_of(hid_t type) {
   const std::size_t bytes = H5Tget_size(type);
   switch (H5Tget_class(type)) {
     case H5T_FLOAT:
       return bytes <= 4 ? "f32" : "f64";
-    case H5T_ENUM: {  // as h5py writes what is true or false
+    case H5T_ENUM: {
       const Id base(H5Tget_super(type), H5Tclose, "a type");
-      return type_of(base.get());
+      return is_truth(type) ? "u8" : type_of(base.get());
     }
     case H5T_INTEGER: {
       if (bytes > 8) return "f64";

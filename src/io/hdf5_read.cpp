@@ -88,6 +88,21 @@ void place(const Hdf5Axes& named, Dataset& dataset) {
   array.components_of_a_step = dataset.axes.components_of_a_step(dataset.shape);
 }
 
+/// Returns notes on what the groups say that a dataset is in, from the root on.
+std::vector<std::string> notes_on_groups(hid_t dataset, const std::string& name) {
+  std::vector<std::string> notes;
+  const Id file(H5Iget_file_id(dataset), H5Fclose, "the file");
+  for (std::size_t end = 0; end != std::string::npos; end = name.find('/', end + 1)) {
+    const std::string group = end == 0 ? "/" : name.substr(0, end);
+    const hid_t opened = H5Gopen2(file.get(), group.c_str(), H5P_DEFAULT);
+    if (opened < 0) break;
+    const Id id(opened, H5Gclose, "a group");
+    std::string note = note_on_group(hdf5_attributes(id.get()), group, name);
+    if (!note.empty()) notes.push_back(std::move(note));
+  }
+  return notes;
+}
+
 std::optional<Dataset> describe(hid_t id, const std::string& name, const AxisLetters& letters) {
   const Id space(H5Dget_space(id), H5Sclose, "the axes of a dataset");
   const Id type(H5Dget_type(id), H5Tclose, "the type of a dataset");
@@ -124,6 +139,7 @@ std::optional<Dataset> describe(hid_t id, const std::string& name, const AxisLet
   tell(named.notes, {});
   tell(dataset.axes.notes, "\"" + name + "\": ");
   tell(notes_on_unread(attributes, name), {});
+  tell(notes_on_groups(id, name), {});
   const Hdf5Fill fill = hdf5_fill(id, *shape, name);
   dataset.fill = fill.value;
   if (!fill.note.empty()) array.notes.push_back(fill.note);
@@ -239,6 +255,22 @@ herr_t take_name(hid_t, const char* name, const H5O_info_t* about, void* names) 
   return 0;
 }
 
+/// Called by HDF5, through which no exception may pass.
+herr_t take_link(hid_t group, const char* name, const H5L_info_t* about, void* to) noexcept {
+  if (about->type != H5L_TYPE_EXTERNAL) return 0;
+  std::vector<char> value(about->u.val_size);
+  const char *file = nullptr, *object = nullptr;
+  if (H5Lget_val(group, name, value.data(), value.size(), H5P_DEFAULT) < 0 ||
+      H5Lunpack_elink_val(value.data(), value.size(), nullptr, &file, &object) < 0) {
+    return 0;
+  }
+  static_cast<GridContents*>(to)->others.push_back(
+      {"/" + std::string(name), "a link to \"" + std::string(object).substr(0, 200) + "\" of \"" +
+                                    std::string(file).substr(0, 200) +
+                                    "\", which is not followed; give that file"});
+  return 0;
+}
+
 }  // namespace
 
 void list_grids(const std::filesystem::path& path, const AxisLetters& axes,
@@ -248,6 +280,7 @@ void list_grids(const std::filesystem::path& path, const AxisLetters& axes,
   if (H5Ovisit(file.get(), H5_INDEX_NAME, H5_ITER_INC, take_name, &names) < 0) {
     throw Error("HDF5 cannot read its list of datasets; the file is damaged");
   }
+  H5Lvisit(file.get(), H5_INDEX_NAME, H5_ITER_INC, take_link, &contents);
   VariableHelpers helpers;
   for (const std::string& name : names) {
     const Id dataset(H5Dopen2(file.get(), name.c_str(), H5P_DEFAULT), H5Dclose, name.c_str());

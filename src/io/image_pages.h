@@ -7,8 +7,10 @@
 #include <memory>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "page_description.h"
+#include "page_marks.h"
 #include "pellucid/io/read_volume.h"
 
 namespace pellucid {
@@ -40,8 +42,8 @@ class PageReader {
   /// Takes so many planes to lie one behind the other from the values of the first page on, in
   /// place of pages. Throws Error where they cannot.
   virtual void share_first_page(std::int64_t planes);
-  /// Whether small values are meant to be bright.
-  virtual bool is_inverted() const { return false; }
+  /// What the page says beside its values, in an order that is the same for all pages.
+  virtual std::vector<PageMark> marks() const { return {}; }
   /// All values of the page, in this machine's byte order, row by row. Throws Error.
   virtual void read(std::span<std::byte> to) = 0;
   /// Goes on; false where there is no further page. Throws Error.

@@ -2,7 +2,6 @@
 #include "image_stack.h"
 
 #include <algorithm>
-#include <cmath>
 #include <cstddef>
 #include <limits>
 #include <map>
@@ -15,12 +14,17 @@
 #include "image_pages.h"
 #include "input_file.h"
 #include "json_file.h"
+#include "mesh_blocks.h"
 #include "name_series.h"
 #include "numbered_files.h"
+#include "ome_xml.h"
+#include "page_marks.h"
 #include "page_placement.h"
 #include "page_values.h"
+#include "pellucid/io/atomic_file.h"
 #include "pellucid/scene/error.h"
 #include "text.h"
+#include "time_steps.h"
 
 namespace pellucid {
 
@@ -64,9 +68,12 @@ class Finder {
       of_folder();
     } else if (is_stack_pattern(path_)) {
       of_pattern();
+    } else if (is_companion(path_)) {
+      of_companion();
     } else {
       of_file(path_);
     }
+    for (std::string& text : marks_.notes()) stack_.said.notes.push_back(std::move(text));
     return std::move(stack_);
   }
 
@@ -119,12 +126,40 @@ class Finder {
       }
       of_numbered(series.front().files);
     }
-    const std::size_t hidden =
-        files_in(path_, [](const std::string& name) { return name.starts_with('.'); }).size();
-    if (others > hidden) {
-      others -= hidden;
+    const auto is_no_slice = [](const std::string& name) {
+      return name.starts_with('.') || is_companion(name);
+    };
+    const std::size_t expected = files_in(path_, is_no_slice).size();
+    if (others > expected) {
+      others -= expected;
       note(std::to_string(others) + (others == 1 ? " file is" : " files are") +
            " no image and left out");
+    }
+  }
+
+  /// OME-XML in a file of its own: opens the first file that it names, which must name it.
+  void of_companion() {
+    constexpr std::size_t largest = std::size_t{1} << 28;
+    const OmeDocument document = read_ome_xml(read_text_file(path_, largest), 1, name_);
+    std::string first;
+    for (const OmeTiffImage& image : document.images) {
+      for (const PageRun& run : image.pages.runs) {
+        if (first.empty()) first = run.file;
+      }
+    }
+    if (first.empty()) {
+      throw Error(name_ + ": its OME-XML names no file of pages (TiffData, UUID FileName)");
+    }
+    const fs::path file = path_inside(path_.parent_path(), first, name_);
+    std::error_code error;
+    if (!fs::exists(file, error)) {
+      throw Error(name_ + ": its OME-XML says that pages are in " + printable(first) +
+                  ", which is not beside it; put it there");
+    }
+    of_file(file);
+    if (stack_.said.writer != "OME-XML") {
+      throw Error(name_ + ": its OME-XML names " + printable(first) +
+                  ", which has no OME-XML that says whose its pages are; give the images instead");
     }
   }
 
@@ -165,10 +200,15 @@ class Finder {
     stack_.volume.format = reader->format();
     stack_.said = reader->describe(options_);
     stack_.volume.calibration = stack_.said.calibration;
-    if (reader->is_inverted()) {
-      note("small values are meant to be bright; they are read as they are");
-    }
+    marks_ = PageMarks(marks_of(*reader, stack_.said));
     stack_.volume.files = {count_pages(file, *reader)};
+  }
+
+  /// What a page says beside its values, and the distances of its description.
+  static std::vector<PageMark> marks_of(const PageReader& reader, const PageDescription& said) {
+    std::vector<PageMark> marks = reader.marks();
+    if (!said.writer.empty()) marks.push_back(distances_mark(said));
+    return marks;
   }
 
   FilePages count_pages(const fs::path& file, PageReader& reader) {
@@ -185,6 +225,7 @@ class Finder {
         refuse_odd(file.string(), "page " + std::to_string(pages.directories.size()), format,
                    stack_.volume.format);
       }
+      marks_.compare(reader.marks(), "page " + std::to_string(pages.directories.size()));
     }
     if (!metadata.front().empty() && stack_.said.writer.empty()) {
       if (auto said = read_page_metadata(metadata, file.string())) {
@@ -282,6 +323,7 @@ class Finder {
       if (reader->format() != volume.format) {
         refuse_odd(name_, file.filename().string(), reader->format(), volume.format);
       }
+      marks_.compare(reader->marks(), file.filename().string());
       volume.files.push_back(count_pages(file, *reader));
     }
     volume.layout = layout_of_pages(
@@ -310,7 +352,8 @@ class Finder {
       const std::unique_ptr<PageReader> reader = open_pages(file);
       const PageFormat format = reader->format();
       if (format != volume.format) refuse_odd(name_, which, format, volume.format);
-      if (reader->describe(options_).calibration != said.calibration) {
+      const PageDescription own = reader->describe(options_);
+      if (own.calibration != said.calibration) {
         throw Error(name_ + ": the values of " + which +
                     " have another calibration (ImageJ: c0, c1) than those of the first; give "
                     "all the same");
@@ -319,6 +362,10 @@ class Finder {
         throw Error(name_ + ": " + which +
                     " has several pages, and there are several files; give one of them alone");
       }
+      std::vector<PageMark> marks = marks_of(*reader, own);
+      // Descriptions of files differ in much; their distances are a mark.
+      std::erase_if(marks, [](const PageMark& mark) { return mark.key == "ImageDescription"; });
+      marks_.compare(marks, which);
       if (file != files.front()) volume.files.push_back({file, {0}});
     }
     volume.files.front().directories.resize(1);
@@ -329,42 +376,31 @@ class Finder {
   const std::string name_;
   const ReadOptions& options_;
   Stack stack_;
+  PageMarks marks_;
 };
 
-/// Keeps the step in time that is nearest to what the options say.
-void choose_time(Stack& stack, double time, const std::string& name) {
+/// Keeps the step in time that is nearest to what the options say, or tells which there are.
+void choose_time(Stack& stack, const ReadOptions& options, const std::string& name) {
   PageLayout& layout = stack.volume.layout;
-  if (layout.times < 2) throw Error(name + ": has no steps in time; leave the time out");
+  if (options.time && layout.times < 2) {
+    throw Error(name + ": has no steps in time; leave the time out");
+  }
+  if (layout.times < 2) return;
   const double step = stack.said.time_step.value_or(1);
-  const double nearest = std::round(time / (step > 0 ? step : 1));
-  const auto last = static_cast<double>(layout.times - 1);
-  const auto chosen = static_cast<std::ptrdiff_t>(nearest > 0 ? std::min(nearest, last) : 0);
+  const std::vector<double> times =
+      even_times(static_cast<std::size_t>(layout.times), 0, step > 0 ? step : 1);
+  refuse_movie(times.size(), layout.slices, options, name);
+  if (!options.time) {
+    if (options.note) options.note(name + ": holds " + times_note(times));
+    return;
+  }
+  const std::size_t nearest = nearest_step(times, options.time);
+  if (options.note) options.note(name + ": " + step_note(times, nearest, *options.time));
+  const auto chosen = static_cast<std::ptrdiff_t>(nearest);
   const auto planes = std::ssize(layout.planes) / layout.times;
   const auto begin = layout.planes.begin() + chosen * planes;
   layout.planes = std::vector<PlanePage>(begin, begin + planes);
   layout.times = 1;
-}
-
-/// "2 times of 3 channels (DAPI, GFP, RFP)"
-std::string holds_of(const PageLayout& layout, const PageDescription& said, int samples) {
-  std::string text;
-  const auto add = [&](const std::string& what) { text += (text.empty() ? "" : " of ") + what; };
-  if (layout.times > 1) add(std::to_string(layout.times) + " times");
-  if (layout.others > 1) add(std::to_string(layout.others) + " steps of another axis");
-  if (layout.channels > 1) {
-    std::string names;
-    for (const std::string& channel : said.channels) {
-      names += (names.empty() ? "" : ", ") + (channel.empty() ? std::string("-") : channel);
-    }
-    add(std::to_string(layout.channels) + " channels" +
-        (names.empty() ? "" : " (" + printable(names) + ")"));
-  }
-  if (samples > 1 || text.empty()) {
-    add(samples == 3   ? "colors (RGB)"
-        : samples == 4 ? "colors (RGBA)"
-                       : std::to_string(samples) + " samples");
-  }
-  return text;
 }
 
 }  // namespace
@@ -377,6 +413,10 @@ std::string page_text(const PageFormat& format) {
 std::unique_ptr<PageReader> open_pages(const fs::path& file) {
   check_input_file(file);
   return is_tiff(file.filename().string()) ? open_tiff(file) : open_png(file);
+}
+
+bool is_companion(const fs::path& path) {
+  return in_small_letters(path.filename().string()).ends_with(".companion.ome");
 }
 
 PageDescription PageReader::describe(const ReadOptions&) const {
@@ -409,7 +449,7 @@ VolumeFile open_stack(const fs::path& path, const ReadOptions& options) {
     throw Error(name +
                 ": is no DICOM and has no OME-XML, and only of those a series may be chosen");
   }
-  if (options.time) choose_time(stack, *options.time, name);
+  choose_time(stack, options, name);
   const PageFormat& format = stack.volume.format;
   const PageLayout& layout = stack.volume.layout;
   const std::size_t points = value_count({format.columns, format.rows, layout.slices}, name);

@@ -49,7 +49,10 @@ std::optional<double> number_in(std::string_view word) {
   double value = 0;
   if (word.starts_with('+')) word.remove_prefix(1);
   const auto result = std::from_chars(word.data(), word.data() + word.size(), value);
-  if (word.empty() || result.ec != std::errc{} || !std::isfinite(value)) return std::nullopt;
+  if (word.empty() || result.ec != std::errc{} || !std::isfinite(value) ||
+      result.ptr != word.data() + word.size()) {
+    return std::nullopt;
+  }
   return value;
 }
 
@@ -105,6 +108,11 @@ bool read_axes(const Lines& lines, const DescribedPage& page, PageDescription& s
                                  lengths = list_of(word_of(lines, "lengths")),
                                  scales = list_of(word_of(lines, "scales")),
                                  units = list_of(word_of(lines, "units"));
+  if (axes.size() != lengths.size()) {
+    said.notes.push_back("its description names " + std::to_string(axes.size()) + " axes and " +
+                         std::to_string(lengths.size()) +
+                         " lengths (SCIFIO), which are not taken into account");
+  }
   if (axes.empty() || axes.size() != lengths.size()) return false;
   said.writer = "SCIFIO";
   bool is_along_samples = page.samples > 1;
@@ -119,6 +127,12 @@ bool read_axes(const Lines& lines, const DescribedPage& page, PageDescription& s
       }
     }
     if (small == "time" && i < scales.size()) said.time_step = number_in(scales[i]);
+    if (const std::int64_t side = place == 0 ? page.columns : page.rows;
+        place < 2 && count != side) {
+      said.notes.push_back("its description says " + std::to_string(count) + " pixels along " +
+                           axes[i] + " (SCIFIO lengths), but its pages have " +
+                           std::to_string(side) + "; it may be that of another file");
+    }
     if (place < 2) continue;
     if (letter_of(axes[i]) == 'c' && is_along_samples && count == page.samples) {
       is_along_samples = false;
@@ -218,6 +232,21 @@ void read_calibration(const Lines& lines, const DescribedPage& page, PageDescrip
   }
 }
 
+/// Tells of words in the place of numbers, which are left out.
+void tell_no_numbers(const Lines& lines, PageDescription& said) {
+  for (const char* key : {"spacing", "xorigin", "yorigin", "zorigin", "finterval", "fps"}) {
+    const std::string word = word_of(lines, key);
+    if (word.empty() || number_in(word)) continue;
+    said.notes.push_back("its description says " + std::string(key) + "=" + printable(word) +
+                         ", which is no number; it is left out");
+  }
+  for (const std::string& scale : list_of(word_of(lines, "scales"))) {
+    if (scale == "null" || number_in(scale)) continue;
+    said.notes.push_back("its description has a scale " + printable(scale) +
+                         " (SCIFIO scales), which is no number; it is left out");
+  }
+}
+
 void tell_unknown(const Lines& lines, PageDescription& said) {
   static constexpr std::string_view known[] = {
       "ImageJ",       "SCIFIO",   "images",   "channels",  "slices",  "frames", "hyperstack",
@@ -287,6 +316,7 @@ PageDescription read_imagej_text(std::string_view text, const DescribedPage& pag
   read_distances(lines, page, said);
   if (!read_axes(lines, page, said, name)) read_counts(lines, page, said, name);
   read_calibration(lines, page, said);
+  tell_no_numbers(lines, said);
   tell_unknown(lines, said);
   return said;
 }

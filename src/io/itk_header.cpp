@@ -129,7 +129,7 @@ VolumeFile open_nrrd_file(const std::filesystem::path& path, const std::string& 
                 " values, but ITK finds " + std::to_string(count) + " in " +
                 std::to_string(header.bytes) + " bytes; mend the header");
   }
-  const int cell_centred = header.cell_centred_axes;
+  const int cell_centred = text.cell_centred_axes;
   if (cell_centred != 0 && cell_centred != 3 && !options.centering) {
     throw Error(name + ": some axes are cell-centred and some are not; give the centering");
   }

@@ -34,8 +34,7 @@ struct MetaImageHeader : ItkHeader {
 };
 
 struct NrrdHeader : ItkHeader {
-  std::uintmax_t bytes = 0;   ///< of all values, as ITK counts them
-  int cell_centred_axes = 0;  ///< of the three
+  std::uintmax_t bytes = 0;  ///< of all values, as ITK counts them
 };
 
 /// The functions of the module, by these names. Each puts an error in one line into `error`, empty

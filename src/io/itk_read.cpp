@@ -3,7 +3,6 @@
 // The module that reads the headers of MetaImage and NRRD, and NRRD's values, through ITK.
 #include "itk_module.h"
 
-#include <itkMetaDataObject.h>
 #include <itkMetaImageIO.h>
 #include <itkNiftiImageIO.h>
 #include <itkNrrdImageIO.h>
@@ -220,12 +219,6 @@ PELLUCID_MODULE_FUNCTION void pellucid_read_nrrd_header_1(const std::filesystem:
       find_components(*io, name, header);
       header.type = type_of(*io, name);
       header.bytes = static_cast<std::uintmax_t>(io->GetImageSizeInBytes());
-      for (int a = 0; a < 3; ++a) {
-        std::string centering;
-        itk::ExposeMetaData<std::string>(io->GetMetaDataDictionary(),
-                                         "NRRD_centerings[" + std::to_string(a) + "]", centering);
-        header.cell_centred_axes += centering == "cell" ? 1 : 0;
-      }
     });
   });
 }

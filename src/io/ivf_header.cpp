@@ -12,6 +12,7 @@
 #include <cmath>
 #include <cstddef>
 #include <optional>
+#include <set>
 #include <string>
 #include <string_view>
 
@@ -96,6 +97,13 @@ class Reader {
 
   void take(const XmlTag& tag) {
     InviwoHeader& header = document_.header;
+    constexpr std::array once =
+        std::to_array<std::string_view>({"Format", "Dimension", "ByteOffset", "ByteOrder",
+                                         "Compression", "DataRange", "ValueRange"});
+    if (std::ranges::find(once, tag.name) != once.end() &&
+        !seen_.insert(std::string(tag.name)).second) {
+      header.ignored_keys.push_back(std::string(tag.name) + " (more than once)");
+    }
     if (tag.name == "RawFile") {
       header.values = std::string(attribute(tag, "content"));
       ++document_.files;
@@ -151,6 +159,7 @@ class Reader {
   const std::string& name_;
   Document document_;
   bool has_sides_ = false;
+  std::set<std::string> seen_;
 };
 
 }  // namespace

@@ -5,8 +5,11 @@
 
 #include <algorithm>
 #include <array>
+#include <charconv>
 #include <cmath>
+#include <cstdint>
 #include <fstream>
+#include <limits>
 #include <span>
 #include <sstream>
 #include <string>
@@ -20,6 +23,7 @@
 #include "itk_header.h"
 #include "medical_volumes.h"
 #include "pellucid/scene/error.h"
+#include "scene_json_document.h"
 #include "text.h"
 
 namespace pellucid {
@@ -158,6 +162,14 @@ std::vector<VolumeData> read_files(const std::vector<DataFile>& files,
   const std::size_t share = value_count(points, layout.components, name) / files.size();
   for (const DataFile& file : files) {
     const ByteSource source = file_source(file.path);
+    const std::uintmax_t needed = std::uintmax_t{share} * value_size(layout.type, name);
+    if (header.header_size > 0 && source.size < file.offset + needed) {
+      throw Error(name + ": the header says \"HeaderSize = " + std::to_string(header.header_size) +
+                  "\", but " + file.path.filename().string() + " has " +
+                  std::to_string(source.size) + " bytes, and its values need " +
+                  std::to_string(needed) +
+                  " behind those; mend the header, or the file is cut off");
+    }
     check_size(source, {layout.type, layout.big_endian, file.offset}, share);
     const bool own_file = file.path.string() != name;
     note_bytes_left_over(
@@ -202,6 +214,52 @@ std::vector<double> numbers_of(const std::string& text) {
   std::vector<double> numbers;
   for (double number = 0; words >> number;) numbers.push_back(number);
   return numbers;
+}
+
+/// Whether a text is numbers alone, whole ones if wanted.
+bool are_numbers(const std::string& text, bool are_whole) {
+  std::istringstream words(text);
+  for (std::string word; words >> word;) {
+    if (word.starts_with('+')) word.erase(0, 1);
+    double number = 0;
+    const char* const end = word.data() + word.size();
+    const auto [stop, error] = std::from_chars(word.data(), end, number);
+    if (error != std::errc{} || stop != end) return false;
+    if (are_whole && number != std::floor(number)) return false;
+  }
+  return true;
+}
+
+/// Checks the numbers that MetaIO reads as far as they are some: "12,5" as 12, the first of too
+/// many.
+void check_numbers(const std::vector<Field>& fields, const std::string& name) {
+  const std::vector<double> axes = numbers_of(value_of(fields, "NDims"));
+  const std::size_t n = axes.size() == 1 && axes[0] >= 1 && axes[0] < 10
+                            ? static_cast<std::size_t>(axes[0])
+                            : std::numeric_limits<std::uint16_t>::max();
+  const struct {
+    std::string_view key;
+    std::size_t most;
+    bool are_whole;
+  } keys[] = {{"NDims", 1, true},           {"DimSize", n, true},
+              {"HeaderSize", 1, true},      {"ElementNumberOfChannels", 1, true},
+              {"ElementSpacing", n, false}, {"ElementSize", n, false},
+              {"Offset", n, false},         {"Position", n, false},
+              {"Origin", n, false},         {"TransformMatrix", n * n, false},
+              {"Rotation", n * n, false},   {"Orientation", n * n, false}};
+  for (const Field& field : fields) {
+    const auto key = std::ranges::find(keys, std::string_view(field.key),
+                                       [](const auto& known) { return known.key; });
+    if (key == std::end(keys)) continue;
+    const bool are_good = are_numbers(field.value, key->are_whole);
+    if (are_good && numbers_of(field.value).size() <= key->most) continue;
+    throw Error(name + ": the header says \"" + field.key + " = " +
+                scene_json::printable(field.value) + "\", where " +
+                (are_good ? std::to_string(key->most) + " numbers are meant"
+                          : std::string(key->are_whole ? "whole " : "") +
+                                "numbers are meant, with a point before decimals") +
+                "; mend the header");
+  }
 }
 
 /// MetaIO reads as many numbers as the header says that there are axes, 2^32 - 3 for -3.
@@ -269,8 +327,16 @@ void note_fields(const std::vector<Field>& fields, const MetaImageHeader& header
     note(name + ": says \"AnatomicalOrientation = " + said +
          "\", but its TransformMatrix is that of " + lies + "; the matrix is used");
   }
+  const bool is_local = in_small_letters(std::string(trimmed(header.data_file))) == "local";
+  if (is_local && header.header_size != 0) {
+    note(name + ": says \"HeaderSize = " + std::to_string(header.header_size) +
+         "\", which is not taken into account beside \"ElementDataFile = LOCAL\"; the values "
+         "begin behind the header");
+  }
   std::vector<std::string> ignored;
   for (const Field& field : fields) {
+    if (value_of(fields, field.key) != field.value)
+      ignored.push_back(field.key + " (more than once)");
     if (!is_taken_into_account(field, fields)) ignored.push_back(field.key);
   }
   note_ignored_keys(note, name, ignored);
@@ -283,6 +349,7 @@ VolumeFile open_meta_image(const fs::path& path, const ReadOptions& options) {
   refuse_raw_options(options, name);
   const std::vector<Field> fields = read_fields(path);
   check_fields(fields, name);
+  check_numbers(fields, name);
   const MetaImageHeader header = read_meta_image_header(path);
   if (header.text) {
     throw Error(name + ": values written as text are not read; save the MetaImage as binary");

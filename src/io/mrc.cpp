@@ -130,9 +130,17 @@ Mat3<double> cell_axes(const MrcHeader& header, const std::string& name) {
 }
 
 /// Which of the cell's edges columns, rows and sections are counted along, from 0.
-std::array<int, 3> axis_order(const MrcHeader& header, const std::string& name) {
+std::array<int, 3> axis_order(const MrcHeader& header, const ReadOptions& options,
+                              const std::string& name) {
   const std::array<int, 3> counted{header.whole(17), header.whole(18), header.whole(19)};
-  if (counted == std::array{0, 0, 0}) return {0, 1, 2};
+  if (counted == std::array{0, 0, 0}) {
+    if (options.note) {
+      options.note(name +
+                   ": the MRC header does not say which axes its columns, rows and sections are "
+                   "(MAPC, MAPR, MAPS are 0); taken to be x, y and z");
+    }
+    return {0, 1, 2};
+  }
   std::array<int, 3> sorted = counted;
   std::ranges::sort(sorted);
   if (sorted != std::array{1, 2, 3}) {
@@ -147,7 +155,7 @@ std::array<int, 3> axis_order(const MrcHeader& header, const std::string& name) 
 GridPlacement placement_of(const MrcHeader& header, const ReadOptions& options,
                            const std::string& name) {
   const Mat3<double> cell = cell_axes(header, name);
-  const std::array<int, 3> order = axis_order(header, name);
+  const std::array<int, 3> order = axis_order(header, options, name);
   GridPlacement placement;
   Vec3<double> first{0, 0, 0};
   for (std::size_t a = 0; a < 3; ++a) {

@@ -26,20 +26,33 @@ struct CutName {
   std::vector<std::string> texts, numbers;
 };
 
-/// Cuts at each number, with the hyphen before it and the decimals behind. The extension is text,
-/// in small letters.
+/// Returns how many digits of a whole number are text in front of it: those beyond what a number
+/// has. Dates and identifiers are as long.
+std::size_t digits_of_text(const std::string& digits_alone) {
+  constexpr std::size_t most = 15;
+  return digits_alone.size() > most ? digits_alone.size() - most : 0;
+}
+
+/// Cuts at each number, with the sign before it and the decimals behind. The extension is text, in
+/// small letters.
 CutName cut(const std::string& name) {
   const std::size_t stem = std::min(name.rfind('.'), name.size());
   CutName parts;
   std::string text;
   for (std::size_t at = 0; at < stem;) {
-    const bool has_sign = name[at] == '-' && at + 1 < stem && is_digit(name[at + 1]);
+    const bool has_sign =
+        (name[at] == '-' || name[at] == '+') && at + 1 < stem && is_digit(name[at + 1]);
     if (!has_sign && !is_digit(name[at])) {
       text += name[at++];
       continue;
     }
     std::size_t end = at + 1;
     while (end < stem && is_digit(name[end])) ++end;
+    const std::size_t first = at + (has_sign ? 1 : 0);
+    if (const std::size_t more = digits_of_text(name.substr(first, end - first)); more > 0) {
+      text += name.substr(at, first + more - at);
+      at = first + more;
+    }
     if (end + 1 < stem && name[end] == '.' && is_digit(name[end + 1])) {
       ++end;
       while (end < stem && is_digit(name[end])) ++end;
@@ -73,16 +86,18 @@ bool all_of(const std::vector<std::string>& column, const Test& test) {
   return std::ranges::all_of(column, test);
 }
 
-/// Takes a hyphen that all numbers of a column have for text.
+/// Takes a sign that all numbers of a column have for text.
 void settle_sign(Group& group, std::size_t c) {
   std::vector<std::string>& column = group.columns[c];
-  if (!all_of(column, [](const std::string& text) { return text.starts_with('-'); })) return;
-  for (std::string& text : column) text.erase(0, 1);
-  group.texts[c] += '-';
+  for (const char sign : {'-', '+'}) {
+    if (!all_of(column, [&](const std::string& text) { return text.starts_with(sign); })) continue;
+    for (std::string& text : column) text.erase(0, 1);
+    group.texts[c] += sign;
+  }
 }
 
 /// Cuts a column at the points of its numbers where they are no decimals: where the whole parts are
-/// one, or where some have more digits behind the point than others and end with a 0.
+/// one, or where some have more digits behind the point than others and these end with a 0.
 void settle_point(Group& group, std::size_t c) {
   std::vector<std::string>& column = group.columns[c];
   const auto point_of = [](const std::string& text) { return text.find('.'); };
@@ -91,13 +106,14 @@ void settle_point(Group& group, std::size_t c) {
   }
   std::set<std::string> whole;
   std::set<std::size_t> lengths;
-  bool ends_with_zero = false;
   for (const std::string& text : column) {
     whole.insert(text.substr(0, point_of(text)));
     lengths.insert(text.size() - point_of(text));
-    ends_with_zero = ends_with_zero || text.ends_with('0');
   }
-  if (whole.size() > 1 && !(lengths.size() > 1 && ends_with_zero)) return;
+  const bool ends_with_zero = std::ranges::any_of(column, [&](const std::string& text) {
+    return text.size() - point_of(text) > *lengths.begin() && text.ends_with('0');
+  });
+  if (whole.size() > 1 && !ends_with_zero) return;
   std::vector<std::string> behind;
   for (std::string& text : column) {
     behind.push_back(text.substr(point_of(text) + 1));
@@ -139,16 +155,19 @@ std::string escaped(const std::string& text) {
 std::string conversion_of(const std::vector<std::string>& numbers) {
   std::set<std::size_t> decimals;
   std::size_t width = std::string::npos;
-  bool has_zeros = false;
+  bool has_zeros = false, has_plus = false;
   for (const std::string& text : numbers) {
     const std::size_t point = std::min(text.find('.'), text.size());
     decimals.insert(text.size() - point);
     width = std::min(width, text.size());
-    const std::size_t first = text.starts_with('-') ? 1 : 0;
+    const std::size_t first = text.starts_with('-') || text.starts_with('+') ? 1 : 0;
+    has_plus = has_plus || text.starts_with('+');
     has_zeros = has_zeros || (text[first] == '0' && point > first + 1);
   }
-  const std::string filled = has_zeros && width < 100 ? "0" + std::to_string(width) : std::string();
-  if (decimals.size() > 1) return "%g";
+  const std::string filled =
+      (has_plus ? "+" : "") +
+      (has_zeros && width < 100 ? "0" + std::to_string(width) : std::string());
+  if (decimals.size() > 1) return has_plus ? "%+g" : "%g";
   if (*decimals.begin() == 0) return "%" + filled + "d";
   return "%" + filled + "." + std::to_string(*decimals.begin() - 1) + "f";
 }

@@ -190,6 +190,58 @@ VolumeData read_component(const NetCdfVolume& of, const Box& box, DefaultFills& 
   return data;
 }
 
+/// Chunks of bytes, and how many of them hold the fill byte alone: those that were never written.
+struct FilledChunks {
+  std::size_t filled = 0, all = 0;
+
+  /// Counts the chunks of a part, x fastest. A variable that is not stored in chunks is one.
+  void count(const NetCdfVolume& of, const Box& box, std::span<const std::uint8_t> values,
+             std::uint8_t fill) {
+    const NetCdfVariable& variable = of.variable;
+    int storage = NC_CONTIGUOUS;
+    std::vector<std::size_t> sides(variable.sides.size(), 0);
+    const int status = nc_inq_var_chunking(variable.group, variable.id, &storage, sides.data());
+    std::array<std::vector<std::size_t>, 3> cuts;  // where chunks begin, and the end
+    for (std::size_t a = 0; a < 3; ++a) {
+      const std::size_t axis = of.volume.space[a], begin = box.start[axis];
+      const std::size_t end = begin + box.count[axis];
+      const bool is_cut = status == NC_NOERR && storage == NC_CHUNKED && sides[axis] > 0;
+      for (std::size_t at = begin; at < end;) {
+        cuts[a].push_back(at - begin);
+        at = is_cut ? std::min(end, (at / sides[axis] + 1) * sides[axis]) : end;
+      }
+      cuts[a].push_back(end - begin);
+    }
+    const auto width = static_cast<std::size_t>(box.sides[0]);
+    const auto height = static_cast<std::size_t>(box.sides[1]);
+    for (std::size_t k = 0; k + 1 < cuts[2].size(); ++k) {
+      for (std::size_t j = 0; j + 1 < cuts[1].size(); ++j) {
+        for (std::size_t i = 0; i + 1 < cuts[0].size(); ++i) {
+          bool is_filled = true;
+          for (std::size_t z = cuts[2][k]; z < cuts[2][k + 1] && is_filled; ++z) {
+            for (std::size_t y = cuts[1][j]; y < cuts[1][j + 1] && is_filled; ++y) {
+              const auto row = values.subspan((z * height + y) * width + cuts[0][i],
+                                              cuts[0][i + 1] - cuts[0][i]);
+              is_filled = std::ranges::all_of(row, [&](std::uint8_t v) { return v == fill; });
+            }
+          }
+          ++all;
+          filled += is_filled ? 1 : 0;
+        }
+      }
+    }
+  }
+
+  std::string note(const NetCdfVariable& variable, std::uint8_t fill) const {
+    if (filled == 0) return {};
+    const int shown = variable.type == NC_BYTE ? static_cast<std::int8_t>(fill) : fill;
+    return std::to_string(filled) + " of " + std::to_string(all) +
+           (all == 1 ? " chunk of \"" : " chunks of \"") + variable.name + "\" hold nothing but " +
+           std::to_string(shown) +
+           ", which NetCDF writes where nothing was written; it is shown as a value";
+  }
+};
+
 }  // namespace
 
 void list_grids(const std::filesystem::path& path, const AxisLetters&, GridContents& contents) {
@@ -238,6 +290,8 @@ void read_grid(const std::filesystem::path& path, const std::string& name, const
     box.count[of->volume.space[a]] = static_cast<std::size_t>(part.box.count[a]);
   }
   DefaultFills fills;
+  FilledChunks chunks;
+  const std::optional<std::uint8_t> byte = unmarked_fill(*variable);
   for (int c = range.first; c < range.first + range.number; ++c) {
     of->volume.set_component(std::span(box.start), variable->sides, c);
     const VolumeData data = read_component(*of, box, fills, values.note);
@@ -247,10 +301,14 @@ void read_grid(const std::filesystem::path& path, const std::string& name, const
           const std::span<std::byte> to = values.next(std::string(type_name(data)));
           if (to.size() != all.size()) throw Error("the file was changed while it was read");
           std::ranges::copy(all, to.begin());
+          if (!byte || all.size() != box.points) return;
+          chunks.count(*of, box, {reinterpret_cast<const std::uint8_t*>(all.data()), all.size()},
+                       *byte);
         },
         data);
   }
   if (const std::string note = note_of(fills, name); !note.empty()) values.note = note;
+  if (byte && chunks.filled > 0) values.note = chunks.note(*variable, *byte);
 }
 
 }  // namespace pellucid

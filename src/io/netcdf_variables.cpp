@@ -97,14 +97,8 @@ bool has_unsigned(const NetCdfVariable& variable, const char* text) {
   return in_small_letters(text_of(variable.attributes, "_Unsigned")).starts_with(text);
 }
 
-/// Returns the number that the library writes where nothing is written; bytes have none.
-std::optional<double> default_fill(const NetCdfVariable& variable) {
-  int has_none = 0;
-  if (variable.attributes.contains("_FillValue")) return std::nullopt;
-  if (nc_inq_var_fill(variable.group, variable.id, &has_none, nullptr) == NC_NOERR &&
-      has_none != 0) {
-    return std::nullopt;
-  }
+/// Returns the number that the library writes into unwritten values of a type; bytes have none.
+std::optional<double> fill_of_type(const NetCdfVariable& variable) {
   const bool is_unsigned = has_unsigned(variable, "true");
   switch (variable.type) {
     case NC_SHORT:
@@ -127,7 +121,20 @@ std::optional<double> default_fill(const NetCdfVariable& variable) {
   }
 }
 
+/// Returns whether the library fills unwritten values with a number that the file does not state.
+bool has_default_fill(const NetCdfVariable& variable) {
+  int has_none = 0;
+  const int status = nc_inq_var_fill(variable.group, variable.id, &has_none, nullptr);
+  return !variable.attributes.contains("_FillValue") && !(status == NC_NOERR && has_none != 0);
+}
+
 }  // namespace
+
+std::optional<std::uint8_t> unmarked_fill(const NetCdfVariable& variable) {
+  const bool is_byte = variable.type == NC_BYTE || variable.type == NC_UBYTE;
+  if (!is_byte || !has_default_fill(variable)) return std::nullopt;
+  return static_cast<std::uint8_t>(variable.type == NC_BYTE ? NC_FILL_BYTE : NC_FILL_UBYTE);
+}
 
 std::vector<NetCdfVariable> net_cdf_variables(int group) {
   std::vector<NetCdfVariable> list;
@@ -148,7 +155,8 @@ std::optional<std::string> stored_type(const NetCdfVariable& variable) {
   const std::string no_sign = has_unsigned(variable, "false") ? "i" : "u";
   switch (variable.type) {
     case NC_BYTE:
-      return sign + "8";
+      // xarray writes truth values as bytes that say so.
+      return text_of(variable.attributes, "dtype") == "bool" ? "u8" : sign + "8";
     case NC_UBYTE:
       return no_sign + "8";
     case NC_SHORT:
@@ -173,7 +181,7 @@ std::optional<std::string> stored_type(const NetCdfVariable& variable) {
 ValueMeaning meaning_of(const NetCdfVariable& variable, std::vector<std::string>& notes) {
   ValueMeaning meaning =
       value_meaning(variable.attributes, *stored_type(variable), variable.name, notes);
-  meaning.default_fill = default_fill(variable);
+  if (has_default_fill(variable)) meaning.default_fill = fill_of_type(variable);
   return meaning;
 }
 

@@ -53,6 +53,10 @@ std::string net_cdf_axis(const NetCdfVariable& variable, std::size_t axis);
 /// no numbers.
 std::optional<std::string> stored_type(const NetCdfVariable& variable);
 
+/// Returns the byte that the library writes where nothing is written, which may as well be a value;
+/// nothing for other types, or where the variable states a fill or has none.
+std::optional<std::uint8_t> unmarked_fill(const NetCdfVariable& variable);
+
 /// Returns the attributes' meaning of values, and the library's default fill. `notes` is told what
 /// is not applied. Throws Error where a scale or an offset stands there and is no finite number.
 ValueMeaning meaning_of(const NetCdfVariable& variable, std::vector<std::string>& notes);

@@ -164,7 +164,9 @@ void note_header(const NiftiFields& fields, const std::string& name, NiftiHeader
   if (fields.intent == labels) {
     note("its values are labels (intent_code 1002); between them nothing is meant, see --labels");
   }
-  if (const int unit = fields.units & 7; unit > 3) {
+  if (const int unit = fields.units & 7; unit == 0 && fields.version != NiftiVersion::analyze) {
+    note("does not say the unit of lengths (xyzt_units 0); taken to be millimetres");
+  } else if (unit > 3) {
     note("the unit of lengths (xyzt_units " + std::to_string(unit) +
          ") is not known; taken to be millimetres");
   }

@@ -17,6 +17,7 @@
 #include "input_file.h"
 #include "itk_header.h"
 #include "medical_volumes.h"
+#include "nrrd_axes.h"
 #include "nrrd_fields.h"
 #include "nrrd_space.h"
 #include "pellucid/scene/error.h"
@@ -340,6 +341,9 @@ VolumeFile open_nrrd(const fs::path& path, const ReadOptions& options) {
   text.count = header_count(header, name);
   text.components_axis = find_components_axis(header, name);
   check_spacing(header, text.components_axis, options, name);
+  nrrd::check_numbers(header, name);
+  nrrd::note_axes(header, text.components_axis, name, options.note);
+  text.cell_centred_axes = nrrd::cell_centred_axes(header, text.components_axis);
   text.left_anterior_superior = space.is_left_anterior_superior;
   check_skips(header, name);
   check_data_files(header, path);

@@ -43,9 +43,11 @@ std::string written(const NamePattern& pattern, const NameNumber& number) {
                             static_cast<int>(pattern.precision));
     text.assign(buffer.begin(), end.ptr);
   }
+  if (pattern.plus && !text.starts_with('-')) text.insert(0, 1, '+');
   if (text.size() >= pattern.width) return text;
   const std::size_t missing = pattern.width - text.size();
-  const std::size_t at = pattern.zeros && text.starts_with('-') ? 1 : 0;
+  const bool has_sign = text.starts_with('-') || text.starts_with('+');
+  const std::size_t at = pattern.zeros && has_sign ? 1 : 0;
   return text.insert(at, missing, pattern.zeros ? '0' : ' ');
 }
 
@@ -66,7 +68,9 @@ std::optional<Conversion> conversion_at(const std::string& text, std::size_t per
     if (at > begin) value = std::stoul(text.substr(begin, at - begin));
     return true;
   };
-  found.pattern.zeros = at < text.size() && text[at] == '0';
+  for (; at < text.size() && (text[at] == '+' || text[at] == '0'); ++at) {
+    (text[at] == '+' ? found.pattern.plus : found.pattern.zeros) = true;
+  }
   if (!number(found.pattern.width)) return std::nullopt;
   const bool has_precision = at < text.size() && text[at] == '.';
   if (has_precision) {
@@ -86,7 +90,7 @@ std::optional<Conversion> conversion_at(const std::string& text, std::size_t per
 
 std::optional<NameNumber> name_number(std::string_view text) {
   const bool is_negative = text.starts_with('-');
-  if (is_negative) text.remove_prefix(1);
+  if (is_negative || text.starts_with('+')) text.remove_prefix(1);
   NameNumber number;
   const std::size_t dot = text.find('.');
   std::string all(text.substr(0, dot));
@@ -138,11 +142,14 @@ std::vector<fs::path> in_order(const std::vector<NumberedFile>& files, const std
   for (std::size_t i = 1; i < numbered.size(); ++i) {
     const std::int64_t gap = numbered[i].first - numbered[i - 1].first;
     if (gap <= step + rounding && gap > 0) continue;
+    if (gap == 0) {
+      throw Error(name + ": " + ordered[i - 1].filename().string() + " and " +
+                  ordered[i].filename().string() + " have the same number; take one of them out");
+    }
     throw Error(name + ": the numbers of its images go up by " + scaled_text(gap, fraction_digits) +
                 " from " + ordered[i - 1].filename().string() + " to " +
-                ordered[i].filename().string() +
-                (gap == 0 ? "" : ", but elsewhere by " + scaled_text(step, fraction_digits)) +
-                "; one is missing or too many");
+                ordered[i].filename().string() + ", but elsewhere by " +
+                scaled_text(step, fraction_digits) + "; one is missing or too many");
   }
   return ordered;
 }

@@ -17,7 +17,7 @@ struct NameNumber {
   std::int64_t mantissa = 0;
   int fraction_digits = 0;
 };
-/// Reads "007", "-3", "0.25"; nothing for other text and more than 15 digits.
+/// Reads "007", "-3", "+3", "0.25"; nothing for other text and more than 15 digits.
 std::optional<NameNumber> name_number(std::string_view text);
 
 struct NumberedFile {
@@ -37,11 +37,12 @@ struct NamePattern {
   std::size_t width = 0;
   std::size_t precision = 6;
   bool zeros = false;
+  bool plus = false;  ///< before numbers from 0
   /// The number of a name that printf writes with this pattern; nothing for other names.
   std::optional<NameNumber> number(const std::string& name) const;
 };
-/// Reads a pattern with one of %d, %3d, %03d, %f, %.2f, %g; %% stands for %. `conversions` is how
-/// many there are. Returns nothing unless there is one.
+/// Reads a pattern with one of %d, %3d, %03d, %+d, %f, %.2f, %g; %% stands for %. `conversions` is
+/// how many there are. Returns nothing unless there is one.
 std::optional<NamePattern> name_pattern(const std::string& text,
                                         std::size_t* conversions = nullptr);
 

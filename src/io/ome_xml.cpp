@@ -40,7 +40,10 @@ std::optional<double> number(const XmlTag& tag, std::string_view key) {
   const std::string word = attribute(tag, key);
   double value = 0;
   const auto result = std::from_chars(word.data(), word.data() + word.size(), value);
-  if (word.empty() || result.ec != std::errc{} || !std::isfinite(value)) return std::nullopt;
+  const bool is_whole_word = result.ptr == word.data() + word.size();
+  if (word.empty() || result.ec != std::errc{} || !is_whole_word || !std::isfinite(value)) {
+    return std::nullopt;
+  }
   return value;
 }
 
@@ -60,6 +63,7 @@ class Reader {
       }
       if (element == "OME") document_.uuid = attribute(*tag, "UUID");
       if (element == "BinaryOnly") document_.metadata_file = attribute(*tag, "MetadataFile");
+      if (element.starts_with("ModuloAlong")) document_.divided_axis = element;
       if (element == "Image") image_name_ = attribute(*tag, "Name");
       if (element == "Pixels") start_pixels(*tag);
       if (image_ == nullptr) continue;
@@ -129,8 +133,8 @@ class Reader {
     for (std::size_t axis = 0; axis < 3; ++axis) {
       const std::string key = std::string("PhysicalSize") + "XYZ"[axis];
       const auto value = number(tag, key);
-      if (!value) continue;
-      if (*value <= 0) {
+      if (!value && attribute(tag, key).empty()) continue;
+      if (!value || *value <= 0) {
         pages.notes.push_back("its OME-XML says " + key + "=\"" + printable(attribute(tag, key)) +
                               "\", which is no distance");
         continue;
@@ -145,6 +149,11 @@ class Reader {
                             "; it is taken to be PhysicalSize" + "XY"[from]);
     }
     pages.time_step = number(tag, "TimeIncrement");
+    const std::string step = attribute(tag, "TimeIncrement");
+    if (!pages.time_step && !step.empty()) {
+      pages.notes.push_back("its OME-XML says TimeIncrement=\"" + printable(step) +
+                            "\", which is no number; times are counted");
+    }
   }
 
   void start_run(const XmlTag& tag) {

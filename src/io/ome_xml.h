@@ -24,6 +24,7 @@ struct OmeTiffImage {
 struct OmeDocument {
   std::string uuid;           ///< of the file that the document stands in
   std::string metadata_file;  ///< that has the description in this one's place; empty: none
+  std::string divided_axis;   ///< element that divides an axis further, "ModuloAlongZ"; empty: none
   std::vector<OmeTiffImage> images;
 };
 

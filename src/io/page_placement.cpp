@@ -8,6 +8,8 @@
 
 namespace pellucid {
 
+using scene_json::printable;
+
 namespace {
 
 /// The lengths of a description that can be distances.
@@ -46,12 +48,32 @@ void place_pages(const PageDescription& said, const ReadOptions& options,
           : has_pixels             ? "pixels"
                                    : "slices") +
          " is the file's, " +
-         (lengths.unit.empty() ? "whose unit is not stated"
-                               : "in " + scene_json::printable(lengths.unit)) +
+         (lengths.unit.empty() ? "whose unit is not stated" : "in " + printable(lengths.unit)) +
          (has_pixels && has_slices ? "" : "; the other is 1"));
-    if (!lengths.note.empty()) tell(scene_json::printable(lengths.note));
+    if (!lengths.note.empty()) tell(printable(lengths.note));
   }
   for (const std::string& text : said.notes) tell(text);
+}
+
+std::string holds_of(const PageLayout& layout, const PageDescription& said, int samples) {
+  std::string text;
+  const auto add = [&](const std::string& what) { text += (text.empty() ? "" : " of ") + what; };
+  if (layout.times > 1) add(std::to_string(layout.times) + " times");
+  if (layout.others > 1) add(std::to_string(layout.others) + " steps of another axis");
+  if (layout.channels > 1) {
+    std::string names;
+    for (const std::string& channel : said.channels) {
+      names += (names.empty() ? "" : ", ") + (channel.empty() ? std::string("-") : channel);
+    }
+    add(std::to_string(layout.channels) + " channels" +
+        (names.empty() ? "" : " (" + printable(names) + ")"));
+  }
+  if (samples > 1 || text.empty()) {
+    add(samples == 3   ? "colors (RGB)"
+        : samples == 4 ? "colors (RGBA)"
+                       : std::to_string(samples) + " samples");
+  }
+  return text;
 }
 
 }  // namespace pellucid

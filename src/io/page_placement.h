@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <string>
+
 #include "page_description.h"
+#include "page_layout.h"
 #include "pellucid/io/read_volume.h"
 
 namespace pellucid {
@@ -11,5 +14,8 @@ namespace pellucid {
 /// the file's, and all that the description could not be taken at its word for.
 void place_pages(const PageDescription& said, const ReadOptions& options,
                  Volume::Description& description);
+
+/// Returns "2 times of 3 channels (DAPI, GFP, RFP)".
+std::string holds_of(const PageLayout& layout, const PageDescription& said, int samples);
 
 }  // namespace pellucid

@@ -8,7 +8,9 @@
 #include <cstdint>
 #include <cstdio>
 #include <string>
+#include <vector>
 
+#include "dicom_text.h"
 #include "image_pages.h"
 #include "pellucid/scene/error.h"
 #include "volume_source.h"
@@ -94,12 +96,14 @@ class PngReader : public PageReader {
     value_count({word(16), word(20), format_.samples}, name_);
     format_.columns = static_cast<int>(word(16));
     format_.rows = static_cast<int>(word(20));
-    read_pixel_sizes(source);
+    read_chunks(source);
   }
 
   PageFormat format() const override { return format_; }
 
   PageDescription describe(const ReadOptions&) const override { return said_; }
+
+  std::vector<PageMark> marks() const override { return {physical_, transparent_}; }
 
   void read(std::span<std::byte> to) override {
     const auto height = static_cast<std::size_t>(format_.rows);
@@ -120,10 +124,9 @@ class PngReader : public PageReader {
   bool next() override { return false; }
 
  private:
-  /// The chunk pHYs (11.3.5.3), which stands before the pixels: pixels per metre. Programs that
-  /// know no distance write those of screens, 72 and 96 per inch.
-  void read_pixel_sizes(const ByteSource& source) {
-    constexpr std::uint32_t physical = 0x70485973, pixels = 0x49444154;
+  /// Reads the chunks that stand before the pixels: pHYs (11.3.5.3) and tRNS (11.3.2.1).
+  void read_chunks(const ByteSource& source) {
+    constexpr std::uint32_t physical = 0x70485973, transparent = 0x74524e53, pixels = 0x49444154;
     const auto word = [&](std::uintmax_t at) {
       std::array<std::byte, 4> bytes;
       source.read(at, bytes);
@@ -137,27 +140,38 @@ class PngReader : public PageReader {
       const std::uint32_t length = word(at), name = word(at + 4);
       if (name == pixels) return;
       if (name == physical && length == 9) {
-        const std::uint32_t x = word(at + 8), y = word(at + 12);
         std::array<std::byte, 1> unit;
         source.read(at + 16, unit);
-        const bool is_screen = x == y && (x == 2834 || x == 2835 || x == 3779 || x == 3780);
-        if (unit[0] == std::byte{0} && x > 0 && y > 0 && x != y) {
-          said_.notes.push_back(aspect_note("its chunk pHYs without a unit", x, y));
-        }
-        if (unit[0] == std::byte{1} && x > 0 && y > 0 && !is_screen) {
-          said_.spacing[0] = {1000. / x, "mm"};
-          said_.spacing[1] = {1000. / y, "mm"};
-        }
-        return;
+        take_sizes(word(at + 8), word(at + 12), unit[0]);
+      }
+      if (name == transparent) {
+        transparent_.value = "some are transparent";
+        said_.notes.emplace_back(
+            "its chunk tRNS says that a value is transparent; it is read as any other");
       }
       at += around + length;
     }
+  }
+
+  /// Takes pixels per metre. Programs that know no distance write those of screens, 72 and 96 per
+  /// inch.
+  void take_sizes(std::uint32_t x, std::uint32_t y, std::byte unit) {
+    const bool is_screen = x == y && (x == 2834 || x == 2835 || x == 3779 || x == 3780);
+    if (unit == std::byte{0} && x > 0 && y > 0 && x != y) {
+      said_.notes.push_back(aspect_note("its chunk pHYs without a unit", x, y));
+      physical_.value = std::to_string(x) + " : " + std::to_string(y);
+    }
+    if (unit != std::byte{1} || x == 0 || y == 0 || is_screen) return;
+    said_.spacing[0] = {1000. / x, "mm"};
+    said_.spacing[1] = {1000. / y, "mm"};
+    physical_.value = readable_number(1000. / x) + " x " + readable_number(1000. / y) + " mm";
   }
 
   std::filesystem::path file_;
   std::string name_;
   PageFormat format_;
   PageDescription said_;
+  PageMark physical_{"pHYs", "", true}, transparent_{"tRNS", "", false};
 };
 
 }  // namespace

@@ -6,7 +6,6 @@
 #include <cmath>
 #include <new>
 #include <optional>
-#include <set>
 #include <stdexcept>
 #include <string>
 #include <string_view>
@@ -60,31 +59,57 @@ VolumeFile open_mrc_file(const std::filesystem::path& path, const ReadOptions& o
   return open_mrc(plain_or_gzip_source(path), options);
 }
 
-constexpr std::array formats{Format{".nii", open_nifti},       Format{".nii.gz", open_nifti},
-                             Format{".hdr", open_nifti},       Format{".hdr.gz", open_nifti},
-                             Format{".img", open_nifti},       Format{".img.gz", open_nifti},
-                             Format{".mgz", open_mgh},         Format{".mgh", open_mgh},
-                             Format{".mgh.gz", open_mgh},      Format{".nrrd", open_nrrd},
-                             Format{".nhdr", open_nrrd},       Format{".mha", open_meta_image},
-                             Format{".mhd", open_meta_image},  Format{".npy", open_npy_file},
-                             Format{".npz", open_npz_file},    Format{".slc", open_bytes<open_slc>},
-                             Format{".vti", open_vtk_volume},  Format{".pvti", open_vtk_volume},
-                             Format{".vtr", open_vtk_volume},  Format{".pvtr", open_vtk_volume},
-                             Format{".vtk", open_vtk_volume},  Format{".raw", open_raw_file},
-                             Format{".dcm", open_dicom},       Format{".ima", open_dicom},
-                             Format{".tif", open_stack},       Format{".tiff", open_stack},
-                             Format{".png", open_stack},       Format{".mrc", open_mrc_file},
-                             Format{".map", open_mrc_file},    Format{".rec", open_mrc_file},
-                             Format{".st", open_mrc_file},     Format{".ccp4", open_mrc_file},
-                             Format{".raw.gz", open_raw_gzip}, Format{".h5", open_hdf5},
-                             Format{".hdf5", open_hdf5},       Format{".he5", open_hdf5},
-                             Format{".vtkhdf", open_vtk_hdf},  Format{".hdf", open_vtk_hdf},
-                             Format{".nc", open_net_cdf},      Format{".nc4", open_net_cdf},
-                             Format{".cdf", open_net_cdf},     Format{".vdb", open_vdb},
-                             Format{".ivf", open_ivf},         Format{".vvd", open_vvd},
-                             Format{".zarr", open_zarr},       Format{".mrc.gz", open_mrc_file},
-                             Format{".map.gz", open_mrc_file}, Format{".rec.gz", open_mrc_file},
-                             Format{".st.gz", open_mrc_file},  Format{".ccp4.gz", open_mrc_file}};
+constexpr std::array formats{Format{".nii", open_nifti},
+                             Format{".nii.gz", open_nifti},
+                             Format{".hdr", open_nifti},
+                             Format{".hdr.gz", open_nifti},
+                             Format{".img", open_nifti},
+                             Format{".img.gz", open_nifti},
+                             Format{".mgz", open_mgh},
+                             Format{".mgh", open_mgh},
+                             Format{".mgh.gz", open_mgh},
+                             Format{".nrrd", open_nrrd},
+                             Format{".nhdr", open_nrrd},
+                             Format{".mha", open_meta_image},
+                             Format{".mhd", open_meta_image},
+                             Format{".npy", open_npy_file},
+                             Format{".npz", open_npz_file},
+                             Format{".slc", open_bytes<open_slc>},
+                             Format{".vti", open_vtk_volume},
+                             Format{".pvti", open_vtk_volume},
+                             Format{".vtr", open_vtk_volume},
+                             Format{".pvtr", open_vtk_volume},
+                             Format{".vtk", open_vtk_volume},
+                             Format{".raw", open_raw_file},
+                             Format{".dcm", open_dicom},
+                             Format{".ima", open_dicom},
+                             Format{".tif", open_stack},
+                             Format{".tiff", open_stack},
+                             Format{".png", open_stack},
+                             Format{".mrc", open_mrc_file},
+                             Format{".map", open_mrc_file},
+                             Format{".rec", open_mrc_file},
+                             Format{".st", open_mrc_file},
+                             Format{".ccp4", open_mrc_file},
+                             Format{".raw.gz", open_raw_gzip},
+                             Format{".h5", open_hdf5},
+                             Format{".hdf5", open_hdf5},
+                             Format{".he5", open_hdf5},
+                             Format{".vtkhdf", open_vtk_hdf},
+                             Format{".hdf", open_vtk_hdf},
+                             Format{".nc", open_net_cdf},
+                             Format{".nc4", open_net_cdf},
+                             Format{".cdf", open_net_cdf},
+                             Format{".vdb", open_vdb},
+                             Format{".ivf", open_ivf},
+                             Format{".vvd", open_vvd},
+                             Format{".zarr", open_zarr},
+                             Format{".mrc.gz", open_mrc_file},
+                             Format{".map.gz", open_mrc_file},
+                             Format{".rec.gz", open_mrc_file},
+                             Format{".st.gz", open_mrc_file},
+                             Format{".ccp4.gz", open_mrc_file},
+                             Format{".companion.ome", open_stack}};
 
 using Lister = std::vector<VolumeArray> (*)(const std::filesystem::path&, const ReadOptions&);
 
@@ -202,23 +227,26 @@ auto with_memory(const std::filesystem::path& path, const Read& read) {
   }
 }
 
-/// The same, opened again without the files of a DICOM series that turn out to be damaged.
+/// The same, opened again without the files of a DICOM series that turn out to be damaged. Notes
+/// are told once, and only if there is no error, which is then the one line.
 template <class Read>
 auto open_and(const std::filesystem::path& path, const ReadOptions& options, const Read& read) {
-  std::set<std::string> told;
+  std::vector<std::string> notes;
   ReadOptions once = options;
   if (options.note) {
     once.note = [&](const std::string& text) {
-      if (told.insert(text).second) options.note(text);
+      if (std::ranges::find(notes, text) == notes.end()) notes.push_back(text);
     };
   }
-  return with_memory(path, [&] {
+  auto made = with_memory(path, [&] {
     try {
       return read(open_file(path, once));
     } catch (const DamagedDicom& damaged) {
       return read(open_dicom_without(damaged.files(), path, once));
     }
   });
+  for (const std::string& text : notes) options.note(text);
+  return made;
 }
 
 }  // namespace

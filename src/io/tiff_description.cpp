@@ -4,11 +4,13 @@
 #include <array>
 #include <charconv>
 #include <cmath>
+#include <optional>
 #include <span>
 #include <string_view>
 #include <utility>
 
 #include "acquisition_text.h"
+#include "dicom_text.h"
 #include "imagej_text.h"
 #include "json_file.h"
 #include "ome_xml.h"
@@ -94,6 +96,27 @@ std::string type_of_ome(const std::string& type) {
   return found == names.end() ? "" : found->second;
 }
 
+/// Reads the document of another file: XML, or a TIFF whose own planes it then names.
+OmeDocument read_companion(const std::filesystem::path& file, const std::string& written_name,
+                           int samples) {
+  const std::string small = in_small_letters(written_name);
+  if (!small.ends_with(".tif") && !small.ends_with(".tiff")) {
+    constexpr std::size_t largest = std::size_t{1} << 28;
+    return read_ome_xml(read_text_file(file, largest), samples, file.string());
+  }
+  const std::string text = tiff_description(file);
+  if (!is_ome_xml(text)) {
+    throw Error(file.string() + ": has no OME-XML, which another file says that it has");
+  }
+  OmeDocument document = read_ome_xml(text, samples, file.string());
+  for (OmeTiffImage& image : document.images) {
+    for (PageRun& run : image.pages.runs) {
+      if (run.file.empty()) run.file = written_name;
+    }
+  }
+  return document;
+}
+
 PageDescription read_ome(const std::string& text, const std::filesystem::path& file,
                          const DescribedPage& page, const ReadOptions& options) {
   const std::string name = file.string();
@@ -105,14 +128,7 @@ PageDescription read_ome(const std::string& text, const std::filesystem::path& f
       throw Error(name + ": its pages are described in " + printable(document.metadata_file) +
                   ", which is not beside it; put it there");
     }
-    constexpr std::size_t largest = std::size_t{1} << 28;
-    if (in_small_letters(document.metadata_file).ends_with("ome") ||
-        in_small_letters(document.metadata_file).ends_with(".xml")) {
-      document = read_ome_xml(read_text_file(other, largest), page.samples, other.string());
-    } else {
-      throw Error(name + ": its pages are described in " + printable(document.metadata_file) +
-                  "; give that file");
-    }
+    document = read_companion(other, document.metadata_file, page.samples);
   }
   OmeTiffImage image = chosen_image(document, options, name);
   if ((image.columns != 0 && image.columns != page.columns) ||
@@ -122,10 +138,10 @@ PageDescription read_ome(const std::string& text, const std::filesystem::path& f
                                 std::to_string(page.columns) + " x " + std::to_string(page.rows) +
                                 "; it may be that of another file");
   }
-  if (text.find("ModuloAlong") != std::string::npos) {
-    image.pages.notes.push_back(
-        "its OME-XML divides an axis further (ModuloAlongZ, T or C), which is not taken into "
-        "account");
+  if (!document.divided_axis.empty()) {
+    image.pages.notes.push_back("its OME-XML divides an axis further (" +
+                                printable(document.divided_axis) +
+                                "), which is not taken into account");
   }
   if (const std::string said = type_of_ome(image.type); !said.empty() && said != page.type) {
     image.pages.notes.push_back("its OME-XML says values of " + image.type +
@@ -137,6 +153,7 @@ PageDescription read_ome(const std::string& text, const std::filesystem::path& f
 PageDescription read_text(TIFF* tiff, const std::filesystem::path& file, const DescribedPage& page,
                           const ReadOptions& options) {
   const std::string name = file.string();
+  PageDescription nothing;
   const std::string text = tiff_text(tiff, TIFFTAG_IMAGEDESCRIPTION);
   if (is_ome_xml(text)) return read_ome(text, file, page, options);
   if (is_imagej_text(text)) return read_imagej_text(text, page, name);
@@ -144,8 +161,11 @@ PageDescription read_text(TIFF* tiff, const std::filesystem::path& file, const D
     try {
       if (auto said = read_shaped_text(text, page, options.axes, name)) return *std::move(said);
     } catch (const Error& error) {
-      // A text of braces that is no JSON is somebody's words.
+      // A text of braces that is no JSON is somebody's words, or cut off.
       if (!std::string_view(error.what()).starts_with(name + ": description: line ")) throw;
+      nothing.notes.emplace_back(
+          "its description begins like that of tifffile, but is no JSON (cut off?); it is not "
+          "read");
     }
   }
   if (private_tiff_count(tiff, lsm_tag) > 0) {
@@ -158,24 +178,46 @@ PageDescription read_text(TIFF* tiff, const std::filesystem::path& file, const D
     const std::string settings = tiff_text(tiff, static_cast<std::uint32_t>(tag));
     if (is_scanimage_text(settings)) return read_scanimage_text(settings, name);
   }
-  return {};
+  return nothing;
 }
 
-/// Pixels per unit that the file states without words, in millimetres. Programs that know no
-/// distance write those of screens.
+/// Returns the distances of pixels in millimetres, by pixels per unit; nothing where they are not
+/// known. Programs that know no distance write those of screens.
+std::optional<std::array<double, 2>> pixel_distances(std::uint16_t unit, double x, double y) {
+  const bool has_both = x > 0 && y > 0 && std::isfinite(1 / x) && std::isfinite(1 / y);
+  const bool is_screen = unit == RESUNIT_INCH && (x == 72 || x == 96) && y == x;
+  const double millimetres = unit == RESUNIT_CENTIMETER ? 10 : unit == RESUNIT_INCH ? 25.4 : 0;
+  if (millimetres == 0 || !has_both || is_screen) return std::nullopt;
+  return std::array{millimetres / x, millimetres / y};
+}
+
+/// Takes the distances of pixels that the file states without words.
 void read_resolution(TIFF* tiff, const DescribedPage& page, PageDescription& said) {
   if (said.spacing[0] || said.spacing[1] || said.writer == "ImageJ") return;
   const auto unit = tiff_field<std::uint16_t>(tiff, TIFFTAG_RESOLUTIONUNIT);
   const auto [x, y] = page.resolution;
   const bool has_both = x > 0 && y > 0 && std::isfinite(1 / x) && std::isfinite(1 / y);
-  const bool is_screen = unit == RESUNIT_INCH && (x == 72 || x == 96) && y == x;
-  const double millimetres = unit == RESUNIT_CENTIMETER ? 10 : unit == RESUNIT_INCH ? 25.4 : 0;
   if (has_both && unit == RESUNIT_NONE && std::abs(x / y - 1) > 1e-3) {
     said.notes.push_back(aspect_note("its resolution without a unit", x, y));
   }
-  if (millimetres == 0 || !has_both || is_screen) return;
-  said.spacing[0] = {millimetres / x, "mm"};
-  said.spacing[1] = {millimetres / y, "mm"};
+  if (const auto distances = pixel_distances(unit, x, y)) {
+    said.spacing[0] = {(*distances)[0], "mm"};
+    said.spacing[1] = {(*distances)[1], "mm"};
+  }
+}
+
+/// Whether GDAL's metadata have a scale or an offset of the values.
+bool has_gdal_scale(TIFF* tiff) {
+  if (private_tiff_count(tiff, gdal_tag) == 0) return false;
+  const std::string text = private_tiff_bytes(tiff, gdal_tag);
+  return text.find("role=\"scale\"") != std::string::npos ||
+         text.find("role=\"offset\"") != std::string::npos;
+}
+bool has_place_on_earth(TIFF* tiff) {
+  return private_tiff_count(tiff, scale_tag) + private_tiff_count(tiff, transform_tag) > 0;
+}
+bool is_inverted(TIFF* tiff) {
+  return tiff_field<std::uint16_t>(tiff, TIFFTAG_PHOTOMETRIC) == PHOTOMETRIC_MINISWHITE;
 }
 
 /// Tells of tags that could change the picture and are not taken into account.
@@ -191,16 +233,17 @@ void tell_tags(TIFF* tiff, PageDescription& said) {
     tell("its tag GDAL_NODATA says that " + printable(private_tiff_bytes(tiff, no_data_tag)) +
          " is no value; it is read as one");
   }
-  if (private_tiff_count(tiff, gdal_tag) > 0) {
-    const std::string text = private_tiff_bytes(tiff, gdal_tag);
-    if (text.find("role=\"scale\"") != std::string::npos ||
-        text.find("role=\"offset\"") != std::string::npos) {
-      tell(
-          "its tag GDAL_METADATA has a scale or an offset of the values; they are read as they "
-          "are stored");
-    }
+  if (is_inverted(tiff)) {
+    tell(
+        "small values are meant to be bright (PhotometricInterpretation); they are read as they "
+        "are");
   }
-  if (private_tiff_count(tiff, scale_tag) + private_tiff_count(tiff, transform_tag) > 0) {
+  if (has_gdal_scale(tiff)) {
+    tell(
+        "its tag GDAL_METADATA has a scale or an offset of the values; they are read as they "
+        "are stored");
+  }
+  if (has_place_on_earth(tiff)) {
     tell(
         "its place on earth (GeoTIFF: ModelPixelScale, ModelTransformation) is not read; give "
         "--spacing and --origin");
@@ -214,6 +257,21 @@ void tell_tags(TIFF* tiff, PageDescription& said) {
          ") is not read; its pages are taken as slices");
     break;
   }
+}
+
+/// Returns who describes a page, with ImageJ's distances; empty: nobody does.
+std::string description_mark(TIFF* tiff) {
+  const std::string text = tiff_text(tiff, TIFFTAG_IMAGEDESCRIPTION);
+  if (is_ome_xml(text)) return "OME-XML";
+  if (is_shaped_text(text)) return "tifffile";
+  if (!is_imagej_text(text)) return {};
+  std::string said = "ImageJ";
+  for (const std::string_view key : {"\nspacing=", "\nunit=", "\nzunit="}) {
+    const std::size_t at = text.find(key);
+    if (at == std::string::npos) continue;
+    said += ", " + text.substr(at + 1, std::min(text.find('\n', at + 1), text.size()) - at - 1);
+  }
+  return said;
 }
 
 }  // namespace
@@ -244,6 +302,23 @@ std::string private_tiff_bytes(TIFF* tiff, std::uint32_t tag) {
   std::string bytes(static_cast<const char*>(values), size);
   if (type == TIFF_ASCII) bytes.resize(std::min(bytes.find('\0'), bytes.size()));
   return bytes;
+}
+
+std::vector<PageMark> tiff_marks(TIFF* tiff, double x_resolution, double y_resolution) {
+  const auto unit = tiff_field<std::uint16_t>(tiff, TIFFTAG_RESOLUTIONUNIT);
+  const auto distances = pixel_distances(unit, x_resolution, y_resolution);
+  return {{"Orientation", std::to_string(tiff_field<std::uint16_t>(tiff, TIFFTAG_ORIENTATION))},
+          {"PhotometricInterpretation",
+           is_inverted(tiff) ? "small values bright" : "large values bright"},
+          {"GDAL_NODATA", private_tiff_bytes(tiff, no_data_tag)},
+          {"GDAL_METADATA", has_gdal_scale(tiff) ? "a scale or an offset" : ""},
+          {"ModelPixelScale", has_place_on_earth(tiff) ? "a place on earth" : "", true},
+          {"XResolution and YResolution",
+           distances
+               ? readable_number((*distances)[0]) + " x " + readable_number((*distances)[1]) + " mm"
+               : "",
+           true},
+          {"ImageDescription", description_mark(tiff), true, true}};
 }
 
 PageDescription describe_tiff(TIFF* tiff, const std::filesystem::path& file,

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "image_pages.h"
+#include "input_file.h"
 #include "memory_limit.h"
 #include "pellucid/scene/error.h"
 #include "tiff_chain.h"
@@ -114,6 +115,7 @@ class TiffReader : public PageReader {
     page.resolution = {resolution(TIFFTAG_XRESOLUTION), resolution(TIFFTAG_YRESOLUTION)};
     return describe_tiff(tiff_.get(), name_, page, options);
   }
+  std::string description() const { return tiff_text(tiff_.get(), TIFFTAG_IMAGEDESCRIPTION); }
   std::int64_t directory() const override {
     return planes_ > 0 ? plane_ : std::int64_t{TIFFCurrentDirectory(tiff_.get())};
   }
@@ -143,8 +145,9 @@ class TiffReader : public PageReader {
     planes_ = planes;
   }
 
-  bool is_inverted() const override {
-    return field<std::uint16_t>(TIFFTAG_PHOTOMETRIC) == PHOTOMETRIC_MINISWHITE;
+  std::vector<PageMark> marks() const override {
+    return tiff_marks(tiff_.get(), resolution(TIFFTAG_XRESOLUTION),
+                      resolution(TIFFTAG_YRESOLUTION));
   }
 
   void read(std::span<std::byte> to) override {
@@ -283,6 +286,11 @@ class TiffReader : public PageReader {
 };
 
 }  // namespace
+
+std::string tiff_description(const std::filesystem::path& file) {
+  check_input_file(file);
+  return TiffReader(file).description();
+}
 
 std::unique_ptr<PageReader> open_tiff(const std::filesystem::path& file) {
   return std::make_unique<TiffReader>(file);

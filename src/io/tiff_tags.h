@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "page_description.h"
+#include "page_marks.h"
 #include "pellucid/io/read_volume.h"
 
 namespace pellucid {
@@ -33,5 +34,12 @@ std::string private_tiff_bytes(TIFF* tiff, std::uint32_t tag);
 /// name where a description contradicts itself.
 PageDescription describe_tiff(TIFF* tiff, const std::filesystem::path& file,
                               const DescribedPage& page, const ReadOptions& options);
+
+/// Returns the description of a file's first page. Throws Error where it is no TIFF.
+std::string tiff_description(const std::filesystem::path& file);
+
+/// Returns what the page says that libtiff stands at, beside its values. Resolutions are in pixels
+/// per unit.
+std::vector<PageMark> tiff_marks(TIFF* tiff, double x_resolution, double y_resolution);
 
 }  // namespace pellucid

@@ -183,6 +183,26 @@ VolumeData with_meaning(DataArray<Value> values, const ValueMeaning& meaning, De
   }
 }
 
+/// Lists the attributes by which other programs name scales, missing values and placements.
+std::string unread_of(const VariableAttributes& attributes) {
+  constexpr auto unread = std::to_array<std::string_view>(
+      {"ScaleFactor", "Scale_Factor", "scale",        "Scale",         "scales",    "slope",
+       "Slope",       "gain",         "Gain",         "Offset",        "offset",    "AddOffset",
+       "intercept",   "Intercept",    "MissingValue", "Missing_Value", "FillValue", "fill_value",
+       "fillvalue",   "nodata",       "no_data",      "NODATA",        "NoData",    "nodata_value",
+       "ValidRange",  "spacing",      "Spacing",      "origin",        "Origin",    "voxel_size",
+       "voxelsize",   "voxelSize",    "VoxelSize",    "pixel_size",    "pixelsize", "pixelSize",
+       "PixelSize",   "resolution",   "Resolution",   "affine",        "Affine",    "transform",
+       "direction",   "Direction",    "axes",         "axis_order",    "axisOrder", "dims",
+       "dimensions"});
+  std::string list;
+  for (const std::string_view attribute : unread) {
+    if (!attributes.contains(attribute)) continue;
+    list += (list.empty() ? "" : ", ") + std::string(attribute);
+  }
+  return list;
+}
+
 }  // namespace
 
 bool ValueMeaning::has_range() const {
@@ -257,23 +277,22 @@ std::vector<std::string> notes_on_unread(const VariableAttributes& attributes,
     notes.push_back("the values of \"" + name + "\" are labels (flag_values" +
                     (text.empty() ? "" : ": " + text) + ") and no amounts");
   }
-  // Names that other programs give to scales, missing values and placements.
-  constexpr std::array<std::string_view, 34> unread{
-      "ScaleFactor",   "Scale_Factor", "scale",        "Scale",      "slope",     "Slope",
-      "Offset",        "offset",       "AddOffset",    "intercept",  "Intercept", "MissingValue",
-      "Missing_Value", "FillValue",    "fill_value",   "fillvalue",  "nodata",    "no_data",
-      "NODATA",        "NoData",       "nodata_value", "ValidRange", "spacing",   "Spacing",
-      "origin",        "Origin",       "voxel_size",   "voxelsize",  "VoxelSize", "pixel_size",
-      "resolution",    "affine",       "transform",    "direction"};
-  std::string list;
-  for (const std::string_view attribute : unread) {
-    if (!attributes.contains(attribute)) continue;
-    list += (list.empty() ? "" : ", ") + std::string(attribute);
-  }
-  if (!list.empty()) {
+  if (const std::string list = unread_of(attributes); !list.empty()) {
     notes.push_back("\"" + name + "\" has attributes that are not applied (" + list + ")");
   }
   return notes;
+}
+
+std::string note_on_group(const VariableAttributes& attributes, const std::string& group,
+                          const std::string& name) {
+  std::string list = unread_of(attributes);
+  // A variable's own are applied.
+  for (const char* attribute : {"scale_factor", "add_offset", "element_size_um", "axistags"}) {
+    if (attributes.contains(attribute)) list += (list.empty() ? "" : ", ") + std::string(attribute);
+  }
+  if (list.empty()) return {};
+  return "\"" + name + "\" is in the group \"" + group +
+         "\", which has attributes that are not applied (" + list + ")";
 }
 
 }  // namespace pellucid

@@ -58,5 +58,8 @@ std::string note_of(const DefaultFills& fills, const std::string& name);
 /// Returns one note on each attribute that could change the picture and is not read.
 std::vector<std::string> notes_on_unread(const VariableAttributes& attributes,
                                          const std::string& name);
+/// Returns a note on such attributes of a group that the variable is in; empty: it has none.
+std::string note_on_group(const VariableAttributes& attributes, const std::string& group,
+                          const std::string& name);
 
 }  // namespace pellucid

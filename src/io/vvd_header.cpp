@@ -12,6 +12,7 @@
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <set>
 #include <string>
 #include <string_view>
 #include <system_error>
@@ -119,6 +120,9 @@ class Reader {
                             return small.starts_with(word);
                           });
     if (!is_known) document_.header.ignored_keys.emplace_back(item);
+    if (std::ranges::find(known, small) != known.end() && !seen_.insert(small).second) {
+      document_.header.ignored_keys.push_back(std::string(item) + " (more than once)");
+    }
   }
 
   void take_value(const XmlTag& tag) {
@@ -141,6 +145,7 @@ class Reader {
   Document document_;
   std::string item_;  ///< name of the MetaItem around, in small letters
   bool in_raw_ = false;
+  std::set<std::string> seen_;
 };
 
 fs::path file_of(const Document& document, const fs::path& folder) {

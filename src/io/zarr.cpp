@@ -13,9 +13,11 @@
 #include <vector>
 
 #include "array_statistics.h"
+#include "mesh_blocks.h"
 #include "pellucid/io/pyramid.h"
 #include "pellucid/scene/error.h"
 #include "text.h"
+#include "time_steps.h"
 #include "zarr_axes.h"
 #include "zarr_image.h"
 #include "zarr_store.h"
@@ -83,6 +85,35 @@ ReadValues variable_reader(const ZarrVariable& variable, const ZarrView& view,
   };
 }
 
+/// Takes the step of the nearest time, or tells which times there are.
+void choose_time(const ZarrChoice& choice, const ReadOptions& options, const std::string& name,
+                 ZarrAxes& axes) {
+  if (options.time && !axes.time) {
+    throw Error(name + ": has no steps in time; leave the time out");
+  }
+  if (axes.time) {
+    const auto z = axes.view.sides(choice.array)[2];
+    refuse_movie(static_cast<std::size_t>(choice.array.shape[*axes.time]), z, options, name);
+  }
+  const bool is_told = options.note && axes.time && choice.array.shape[*axes.time] > 1;
+  if (!options.time && !is_told) return;
+  const std::vector<double> times = zarr_times(choice, *axes.time, name);
+  if (!options.time) return options.note(name + ": holds " + times_note(times));
+  const std::size_t step = nearest_step(times, options.time);
+  if (options.note) options.note(name + ": " + step_note(times, step, *options.time));
+  axes.view.at[*axes.time] = static_cast<std::int64_t>(step);
+  std::erase(axes.view.components, *axes.time);
+}
+
+/// Returns the names of an image's channels where they are its components; else none.
+std::vector<std::string> channel_names(const ZarrChoice& choice, const ZarrAxes& axes) {
+  if (!choice.image || axes.view.components.size() != 1) return {};
+  const std::size_t axis = axes.view.components.front();
+  const std::vector<std::string>& names = choice.image->channels;
+  const bool are_of_axis = axes.time != axis && std::ssize(names) == choice.array.shape[axis];
+  return are_of_axis ? names : std::vector<std::string>();
+}
+
 /// Places a variable by its coordinates, and tells what is not read.
 void place_variable(const ZarrVariable& variable, const ZarrAxes& axes, const std::string& shown,
                     const ReadOptions& options, Volume::Description& description) {
@@ -122,11 +153,7 @@ VolumeFile open_zarr(const fs::path& path, const ReadOptions& options) {
   refuse_raw_options(options, name);
   ZarrChoice choice = choose_zarr(path, options);
   ZarrAxes axes = zarr_axes(choice, name, options);
-  if (options.time) {
-    if (!axes.time) throw Error(name + ": has no steps in time; leave the time out");
-    axes.view.at[*axes.time] = zarr_step(choice, *axes.time, *options.time);
-    std::erase(axes.view.components, *axes.time);
-  }
+  choose_time(choice, options, name, axes);
   if (options.note && !choice.array.note.empty()) options.note(name + ": " + choice.array.note);
   VolumeFile file;
   file.description.name = name;
@@ -135,6 +162,7 @@ VolumeFile open_zarr(const fs::path& path, const ReadOptions& options) {
   for (std::size_t a = 0; a < 3; ++a) file.description.dimensions[a] = static_cast<int>(sides[a]);
   file.components = axes.view.component_count(choice.array, name);
   file.holds = zarr_holds(choice, axes);
+  file.component_names = channel_names(choice, axes);
   file.array = choice.named;
   if (choice.image) {
     place_image(choice, axes.view, options, file.description);
@@ -166,6 +194,7 @@ std::vector<VolumeArray> list_zarr_arrays(const fs::path& path, const ReadOption
       ReadOptions options;
       options.array = entry.path;
       options.axes = given.axes;
+      options.centering = Centering::cell;  // of a single plane, too
       const VolumeFile file = open_zarr(folder, options);
       const auto& sides = file.description.dimensions;
       about.dimensions.assign(sides.begin(), sides.end());

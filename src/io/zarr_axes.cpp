@@ -3,13 +3,12 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <utility>
 #include <vector>
 
 #include "array_axes.h"
-#include "mesh_blocks.h"
 #include "pellucid/scene/error.h"
+#include "time_steps.h"
 #include "zarr_variable.h"
 
 namespace pellucid {
@@ -102,21 +101,22 @@ ZarrAxes zarr_axes(const ZarrChoice& choice, const std::string& name, const Read
   return plain_axes(array, name, options);
 }
 
-std::int64_t zarr_step(const ZarrChoice& choice, std::size_t axis, double time) {
-  const std::int64_t last = choice.array.shape[axis] - 1;
+std::vector<double> zarr_times(const ZarrChoice& choice, std::size_t axis,
+                               const std::string& name) {
   if (!choice.image && !choice.array.dimension_names.empty()) {
     const ZarrVariable variable = zarr_variable(choice.folder, choice.named);
-    const AxisPositions times = zarr_positions(variable, axis);
-    if (!times.numbers.empty()) {
-      return static_cast<std::int64_t>(nearest_step(times.numbers, time));
-    }
+    AxisPositions times = zarr_positions(variable, axis);
+    if (!times.numbers.empty()) return std::move(times.numbers);
+  }
+  const std::int64_t count = choice.array.shape[axis];
+  constexpr std::int64_t most = std::int64_t{1} << 24;
+  if (count > most) {
+    throw Error(name + ": has " + std::to_string(count) + " steps in time, too many to be read");
   }
   const OmeLevel* const level = choice.image ? &choice.image->levels[choice.level] : nullptr;
-  const double scale = level == nullptr ? 1 : level->scale[axis];
-  const double begin = level == nullptr ? 0 : level->translation[axis];
-  const double step = scale == 0 ? 0 : std::round((time - begin) / scale);
-  if (!(step > 0)) return 0;
-  return step > static_cast<double>(last) ? last : static_cast<std::int64_t>(step);
+  return even_times(static_cast<std::size_t>(count),
+                    level == nullptr ? 0 : level->translation[axis],
+                    level == nullptr ? 1 : level->scale[axis]);
 }
 
 std::string zarr_holds(const ZarrChoice& choice, const ZarrAxes& axes) {

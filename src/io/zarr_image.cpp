@@ -3,12 +3,36 @@
 
 #include <array>
 #include <cmath>
+#include <string>
+#include <vector>
 
 #include "pellucid/scene/error.h"
+#include "text.h"
 
 namespace pellucid {
 
 namespace fs = std::filesystem;
+
+namespace {
+
+/// Returns a note of names that the array gives to its axes and the image does not; empty: none.
+std::string other_names(const OmeImage& image, const ZarrArray& array) {
+  const std::vector<std::string>& own = array.dimension_names;
+  if (own.size() != image.axes.size()) return {};
+  std::string said, names;
+  bool are_alike = true;
+  for (std::size_t a = 0; a < own.size(); ++a) {
+    are_alike = are_alike && (own[a].empty() ||
+                              in_small_letters(own[a]) == in_small_letters(image.axes[a].name));
+    said += (a == 0 ? "" : ", ") + image.axes[a].name;
+    names += (a == 0 ? "" : ", ") + scene_json::printable(own[a]);
+  }
+  if (are_alike) return {};
+  return "its image names the axes " + said + ", but its array " + names +
+         " (dimension_names); the image's are taken";
+}
+
+}  // namespace
 
 CommonUnit image_unit(const OmeImage& image, const ZarrView& view) {
   std::array<std::string, 3> units;
@@ -72,6 +96,9 @@ void place_image(ZarrChoice& choice, const ZarrView& view, const ReadOptions& op
   }
   options.note(name + ": " + text);
   if (!unit.note.empty()) options.note(name + ": " + unit.note);
+  if (const std::string other = other_names(image, choice.array); !other.empty()) {
+    options.note(name + ": " + other);
+  }
   if (image.images > 1) {
     options.note(name + ": describes " + std::to_string(image.images) +
                  " images; the first is read");

@@ -11,6 +11,7 @@
 #include <cmath>
 #include <cstring>
 #include <limits>
+#include <string_view>
 #include <system_error>
 #include <utility>
 
@@ -332,6 +333,23 @@ ZarrArray checked(ZarrArray array, const Node& where) {
   return array;
 }
 
+/// Throws Error for members of an array that its reader must understand and that are not known.
+void check_extensions(const Node& metadata) {
+  constexpr std::array known = std::to_array<std::string_view>(
+      {"zarr_format", "node_type", "shape", "data_type", "chunk_grid", "chunk_key_encoding",
+       "fill_value", "codecs", "attributes", "storage_transformers", "dimension_names",
+       "consolidated_metadata", "must_understand"});
+  for (const auto& [key, value] : metadata.value().items()) {
+    if (std::ranges::find(known, key) != known.end()) continue;
+    const bool may_be_left_out =
+        value.is_object() && value.contains("must_understand") && value["must_understand"] == false;
+    if (may_be_left_out) continue;
+    metadata.fail("has an extension \"" + printable(key) +
+                  "\" that a reader must understand (no must_understand: false), and this one "
+                  "does not; save the array without it");
+  }
+}
+
 const Node& object(const Node& node) {
   if (!node.is_object()) node.fail("must be an object");
   return node;
@@ -371,6 +389,7 @@ ZarrArray parse_zarr_2(const Node& metadata) {
 ZarrArray parse_zarr_3(const Node& metadata) {
   ZarrArray array;
   object(metadata).at("zarr_format", "it must be 3").integer(3, 3);
+  check_extensions(metadata);
   array.shape = sides_of(metadata.at("shape", "list the array's sides"), 0);
   const Node grid = metadata.at("chunk_grid", "give the grid of chunks");
   grid.at("name", "it must be \"regular\"").one_of({"regular"});

@@ -173,8 +173,16 @@ ZarrArray zarr_array(const ZarrNode& node) {
       array.dimension_names.push_back(name.is_string() ? name.string() : std::string());
     }
   }
-  if (array.dimension_names.size() != array.shape.size()) array.dimension_names.clear();
+  const std::size_t named = array.dimension_names.size();
+  if (named != array.shape.size()) array.dimension_names.clear();
   find_separator(node.folder, array);
+  if (named > 0 && array.dimension_names.empty()) {
+    array.note += (array.note.empty() ? "" : "; ") +
+                  ("its names of axes (" +
+                   std::string(node.version == 3 ? "dimension_names" : "_ARRAY_DIMENSIONS") +
+                   ") are of " + std::to_string(named) + " axes, but it has " +
+                   std::to_string(array.shape.size()) + "; they are left out");
+  }
   return array;
 }
 

@@ -105,7 +105,9 @@ double fill_number(const ZarrArray& array) {
 /// Whole numbers without a sign that a store has with one (_Unsigned), and the other way round.
 void apply_unsigned(const VariableAttributes& attributes, ZarrArray& array) {
   const std::string text = in_small_letters(text_of(attributes, "_Unsigned"));
-  if (text == "true" && array.type.name[0] == 'i') array.type.name[0] = 'u';
+  // xarray writes truth values as bytes that say so.
+  const bool is_truth = array.type.name == "i8" && text_of(attributes, "dtype") == "bool";
+  if ((text == "true" || is_truth) && array.type.name[0] == 'i') array.type.name[0] = 'u';
   if (text == "false" && array.type.name[0] == 'u') array.type.name[0] = 'i';
 }
 

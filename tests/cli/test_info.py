@@ -305,6 +305,16 @@ class NetCdf(ProgramTest):
         self.assertEqual(self.report("info", "a.nc", "--component", "0")["range"], [0, 23])
         self.fail_with("2 steps", "render", "a.nc", "-o", "a.exr")
 
+    def test_times_are_told(self):
+        notes = self.run_program("info", "a.nc").stderr.decode()
+        self.assertIn('"v" holds 2 times (1, 4); --time chooses one', notes)
+        notes = self.run_program("info", "a.nc", "--time", "3").stderr.decode()
+        self.assertIn("step 2 of 2 is read, time 4 (nearest to 3)", notes)
+        for option in ("--time", "--skip-bytes", "--level"):
+            self.fail_with(f"{option}: needs a number", "info", "a.nc", option, "", code=2)
+        for option in ("--component", "--array", "--series", "--spacing", "--type", "--array-axes"):
+            self.fail_with(f"{option}: needs a value", "info", "a.nc", option, "", code=2)
+
     def test_a_time_is_kept_in_the_scene(self):
         self.succeed("render", "a.nc", "--time", "5", "-o", "a.exr", "--size", "16",
                      "--save-scene", "scene.json")

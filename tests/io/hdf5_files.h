@@ -56,6 +56,15 @@ class Hdf5Writer {
     add(name, type, sides, values, Storage{});
   }
 
+  void add_group(const std::string& name) const {
+    H5Gclose(H5Gcreate2(file_, name.c_str(), H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT));
+  }
+  /// Links to a dataset of another file.
+  void link(const std::string& name, const std::string& file, const std::string& object) const {
+    H5Lcreate_external(file.c_str(), object.c_str(), file_, name.c_str(), H5P_DEFAULT, H5P_DEFAULT);
+  }
+
+  /// Writes an attribute of a dataset or a group.
   void attach(const std::string& set, const std::string& name,
               const std::vector<double>& numbers) const {
     const hsize_t count = numbers.size();
@@ -101,12 +110,12 @@ class Hdf5Writer {
   /// Closes the space.
   void attach(const std::string& set, const std::string& name, hid_t type, hid_t space,
               const void* values) const {
-    const hid_t id = H5Dopen2(file_, set.c_str(), H5P_DEFAULT);
+    const hid_t id = H5Oopen(file_, set.c_str(), H5P_DEFAULT);
     const hid_t attribute = H5Acreate2(id, name.c_str(), type, space, H5P_DEFAULT, H5P_DEFAULT);
     EXPECT_GE(H5Awrite(attribute, type, values), 0) << name;
     H5Aclose(attribute);
     H5Sclose(space);
-    H5Dclose(id);
+    H5Oclose(id);
   }
 
   hid_t file_;

@@ -57,7 +57,7 @@ TEST_F(DescribedTiffTest, HyperstacksOfImageJ) {
   // A movie has no slices.
   options = {};
   options.component = 2;
-  EXPECT_TRUE(contains(refused(with(3, "images=3\nframes=3\n"), options), "5 x 4 x 1"));
+  EXPECT_TRUE(contains(refused(with(3, "images=3\nframes=3\n"), options), "is a movie, 3 times"));
 
   EXPECT_TRUE(contains(refused(with(4, "images=6\nslices=6\n")), "says 6 slices"));
   EXPECT_TRUE(contains(refused(with(8, "images=6\nslices=6\n")), "the file has 8 pages"));

@@ -360,6 +360,19 @@ TEST_F(DicomTest, UnevenSlicesMakeARectilinearGrid) {
   });
   EXPECT_TRUE(read_noting().description().coordinates[2].empty());
   EXPECT_NEAR(volume.description().placement.spacing.x, 1, 1e-12);
+  // Decimals are those of z, whatever x has.
+  write_series([](DicomSliceFile& file, int k) {
+    const char* const heights[] = {"0.0", "0.6", "1.3"};
+    file.at(std::string("10.123456\\20\\") + heights[k]);
+  });
+  notes_.clear();
+  EXPECT_TRUE(read_noting().description().coordinates[2].empty());
+  EXPECT_TRUE(contains(notes_, "up to 0.05 mm off even distances")) << notes_;
+  write_series([](DicomSliceFile& file, int k) {
+    const char* const heights[] = {"0.0", "0.6", "1.3001"};
+    file.at(std::string("10.1\\20\\") + heights[k]);
+  });
+  EXPECT_EQ(read_noting().description().coordinates[2].size(), 3u);
 }
 
 TEST_F(DicomTest, PlacesThatContradictAreRefused) {

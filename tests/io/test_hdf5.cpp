@@ -130,6 +130,7 @@ TEST_F(Hdf5, HalfFloatsAndTruthValues) {
   H5Tclose(truth);
   expect_counting(read("half"), "f32");
   const Volume volume = read("truth");
+  EXPECT_EQ(type_name(volume.data()), "u8");
   EXPECT_EQ(test::value_at(volume, 2, 1, 0), 1);
   EXPECT_EQ(volume.statistics().maximum, 1);
   EXPECT_EQ(volume.statistics().minimum, 0);

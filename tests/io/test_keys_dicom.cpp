@@ -110,6 +110,12 @@ DICOM_ROW(lookup, "ModalityLUTSequence", refused) {
 }
 DICOM_ROW(monochrome, "PhotometricInterpretation", told) {
   expect_told(notes_of([](auto& f, int) { f.set(0x00280004, "MONOCHROME1"); }), "MONOCHROME1");
+  for (const int odd : {0, 1, 2}) {
+    const auto one = notes_of([&](auto& f, int i) {
+      if (i == odd) f.set(0x00280004, "MONOCHROME1");
+    });
+    expect_told(one, "in 1 of 3 slices (MONOCHROME1)");
+  }
   expect_refusal([](auto& f, int) { f.set(0x00280004, "PALETTE COLOR"); }, "palette");
 }
 DICOM_ROW(shape, "PresentationLUTShape", told) {

@@ -146,6 +146,20 @@ DAT_ROW(grid_type, "GridType", told) {
   ASSERT_EQ(notes.size(), 1u);
   for (const char* key : {"GridType", "FlipYZ", "Elevation"}) expect_told(notes, key);
 }
+DAT_ROW(repeated, "a key twice", told) {
+  write("v.raw", bytes_of(counting()));
+  const auto file = write("a.dat", dat("Spacing: 1 2 3\nspacing: 2 2 2\nUnit: K\nUnit: K\n"));
+  expect_told(notes_of(file), "Spacing (more than once)");
+  expect_near(read_volume(file).description().placement.spacing, {1, 2, 3});
+  const std::string twice = "<Dimension x=\"5\" y=\"4\" z=\"3\"/>";
+  expect_told(notes_of(write("a.ivf", ivf(twice))), "Dimension (more than once)");
+  const std::string spacing = item("Spacing", "x=\"1\" y=\"2\" z=\"3\"");
+  expect_told(notes_of(write("a.vvd", vvd(spacing + spacing))), "Spacing (more than once)");
+  EXPECT_TRUE(notes_of(write("a.vvd", vvd(spacing))).empty());
+  for (const std::string& note : notes_of(file)) {
+    EXPECT_FALSE(test::contains(note, "Unit (more than")) << note;
+  }
+}
 DAT_ROW(ivf_basis, "BasisAndOffset", honored) {
   write("v.raw", bytes_of(counting()));
   const std::string basis =
@@ -220,6 +234,10 @@ NIFTI_ROW(units, "xyzt_units", honored) {
               {-0.004, 0, 0});
   file.units = 6;
   expect_told(notes_of(write("a.nii", file.with(bytes_of(counting())))), "xyzt_units 6");
+  file.units = 0;
+  expect_told(notes_of(write("a.nii", file.with(bytes_of(counting())))), "xyzt_units 0");
+  file.units = 2;
+  EXPECT_TRUE(notes_of(write("a.nii", file.with(bytes_of(counting())))).empty());
 }
 NIFTI_ROW(intent, "intent_code", told) {
   test::NiftiTwoFile file;
@@ -306,26 +324,68 @@ NRRD_ROW(spacings, "spacings", honored) {
   expect_near(world_of(read_volume(write("a.nrrd", nrrd("spacings: 1 2 3\n"))), 4, 3, 2),
               {4, 6, 6});
 }
+NRRD_ROW(words, "words in the place of numbers", refused) {
+  for (const char* line : {"spacings: 1,5 2 3", "spacings: 1mm 2 3", "axis mins: 1 2,5 3"}) {
+    write("a.nrrd", nrrd(std::string(line) + "\n"));
+    expect_refused([&] { read_volume(path("a.nrrd")); }, line);
+  }
+  expect_near(
+      read_volume(write("a.nrrd", nrrd("spacings: +1 2e0 3.\n"))).description().placement.spacing,
+      {1, 2, 3});
+}
 NRRD_ROW(mins, "axis mins", honored) {
   expect_near(world_of(read_volume(write("a.nrrd", nrrd("centerings: node node node\nspacings: 1 2 "
                                                         "3\naxis mins: 10 20 30\n"))),
                        0, 0, 0),
               {10, 20, 30});
+  expect_told(notes_of(write("a.nrrd", nrrd("axis mins: 10 20 30\n"))), "axis mins say where");
+  const auto unsaid = write("a.nrrd", nrrd("spacings: 1 2 3\naxis mins: 10 20 30\n"));
+  expect_told(notes_of(unsaid), "its centerings are not said");
+  expect_near(world_of(read_volume(unsaid), 0, 0, 0), {10.5, 21, 31.5});
 }
 NRRD_ROW(maxs, "axis maxs", refused) {
   write("a.nrrd", nrrd("axis mins: 10 20 30\naxis maxs: 14 26 36\n"));
   expect_refused([&] { read_volume(path("a.nrrd")); }, "range of the axes");
+  const auto both = [&](const std::string& more) {
+    return notes_of(write("a.nrrd", nrrd("spacings: 1 2 3\naxis mins: 10 20 30\n" + more)));
+  };
+  EXPECT_TRUE(both("axis maxs: 14 26 36\ncenterings: node node node\n").empty());
+  expect_told(both("axis maxs: 14 26 40\n"), "distances of 5 along axis 3");
+  expect_told(both("axis maxs: 14 26 36\ncenterings: cell cell cell\n"),
+              "distances of 0.8 along axis 1, but its spacings say 1");
 }
 NRRD_ROW(centerings, "centerings", honored) {
   EXPECT_EQ(
       read_volume(write("a.nrrd", nrrd("centerings: cell cell cell\n"))).description().centering,
       Centering::cell);
+  expect_told(notes_of(path("a.nrrd")), "values are those of cells");
+  EXPECT_TRUE(notes_of(write("a.nrrd", nrrd("centerings: node node node\n"))).empty());
+  write("a.nrrd", nrrd("centerings: cell node node\n"));
+  expect_refused([&] { read_volume(path("a.nrrd")); }, "give the centering");
+  // An axis of components has none.
+  std::string two = nrrd("kinds: vector domain domain domain\ncenterings: none cell cell cell\n");
+  two.replace(two.find("dimension: 3"), 12, "dimension: 4");
+  two.replace(two.find("5 4 3"), 5, "2 5 2 3");
+  EXPECT_EQ(read_components(write("a.nrrd", two)).front().description().centering, Centering::cell);
 }
 NRRD_ROW(kinds, "kinds", honored) {
   std::string two = nrrd("kinds: vector domain domain domain\n");
   two.replace(two.find("dimension: 3"), 12, "dimension: 4");
   two.replace(two.find("5 4 3"), 5, "2 5 2 3");
   EXPECT_EQ(read_components(write("a.nrrd", two)).size(), 2u);
+  expect_told(notes_of(write("a.nrrd", nrrd("kinds: domain domain time\n"))),
+              "axis 3 is time, no axis of space; it is read as z");
+  write("a.nrrd", nrrd("kinds: vector domain domain\n"));
+  expect_refused([&] { read_volume(path("a.nrrd")); }, "an image of 2 axes");
+  EXPECT_TRUE(notes_of(write("a.nrrd", nrrd("kinds: space domain ???\n"))).empty());
+  std::string four = nrrd("");
+  four.replace(four.find("dimension: 3"), 12, "dimension: 4");
+  four.replace(four.find("5 4 3"), 5, "5 2 3 2");
+  std::vector<std::string> notes;
+  ReadOptions options;
+  options.note = [&](const std::string& text) { notes.push_back(text); };
+  EXPECT_EQ(read_components(write("a.nrrd", four), options).size(), 2u);
+  expect_told(notes, "do not say what axis 4 is");
 }
 NRRD_ROW(frame, "measurement frame", told) {
   expect_told(notes_of(write("a.nrrd", nrrd("space: LPS\n" + std::string(place) +
@@ -410,6 +470,32 @@ MHA_ROW(shift, "ElementToIntensityFunctionOffset", told) {
 MHA_ROW(units, "DistanceUnits", told) {
   expect_told(notes_of(write("a.mha", mha("DistanceUnits = um\n"))), "DistanceUnits");
   EXPECT_TRUE(notes_of(write("a.mha", mha("DistanceUnits = mm\nModality = MET_MOD_CT\n"))).empty());
+}
+MHA_ROW(words, "words in the place of numbers", refused) {
+  const char* const lines[] = {"HeaderSize = 12,5", "HeaderSize = 7.5",
+                               "TransformMatrix = 1 0 0 0 1 0 0 0 1,0", "Offset = 1 2 3 4",
+                               "ElementNumberOfChannels = 1,2"};
+  for (const char* line : lines) {
+    write("a.mha", mha(std::string(line) + "\n"));
+    expect_refused([&] { read_volume(path("a.mha")); }, line);
+  }
+  write("a.mha", mha("", "ElementSpacing = 1,5 2 3\n"));
+  expect_refused([&] { read_volume(path("a.mha")); }, "with a point before decimals");
+}
+MHA_ROW(repeated, "a key twice", told) {
+  expect_told(notes_of(write("a.mha", mha("Offset = 1 2 3\nOffset = 7 8 9\n"))),
+              "Offset (more than once)");
+  EXPECT_TRUE(notes_of(write("a.mha", mha("Offset = 1 2 3\nOffset = 1 2 3\n"))).empty());
+}
+MHA_ROW(header_size, "HeaderSize", honored) {
+  write("v.raw", std::string(7, 'x') + bytes_of(counting()));
+  std::string text = mha("HeaderSize = 7\n");
+  text = text.substr(0, text.find("LOCAL")) + "v.raw\n";
+  EXPECT_EQ(test::value_at(read_volume(write("a.mhd", text)), 4, 3, 2), 59);
+  write("v.raw", bytes_of(counting()));
+  expect_refused([&] { read_volume(path("a.mhd")); }, "a.mhd: the header says \"HeaderSize = 7\"");
+  // The values of the header's own file begin behind it.
+  expect_told(notes_of(write("a.mha", mha("HeaderSize = 7\n"))), "HeaderSize = 7");
 }
 MHA_ROW(per_slice, "HeaderSizePerSlice", refused) {
   write("a.mha", mha("HeaderSizePerSlice = 12\n"));

@@ -1,9 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // Keys of NetCDF, HDF5 and Zarr: each with a small file that has it.
+#ifdef PELLUCID_HAVE_NETCDF
+#include <netcdf.h>
+#endif
+
 #include <cmath>
+#include <cstdint>
+#include <fstream>
 #include <functional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "described_keys.h"
@@ -70,6 +77,40 @@ NETCDF_AXIS(cartesian_axis, "cartesian_axis", "X")
 NETCDF_AXIS(coordinate_type, "_CoordinateAxisType", "Lon")
 NETCDF_AXIS(standard_name, "standard_name", "longitude")
 NETCDF_AXIS(units, "units", "degrees_east")
+
+NETCDF_KEY(truth, "dtype bool", honored) {
+  const auto file = write("a.nc", net_cdf({{"dtype", "bool"}}, {}, 'b'));
+  EXPECT_EQ(type_name(read_telling(file).volume.data()), "u8");
+}
+NETCDF_KEY(unwritten, "unwritten bytes", told) {
+  test::ClassicFile classic;
+  classic.axes = {{"z", 3}, {"y", 4}, {"x", 5}};
+  classic.variables = {{"v", 'b', {"z", "y", "x"}, std::vector<double>(60, -127)}};
+  expect_told(read_telling(write("a.nc", classic.bytes())).notes,
+              "1 of 1 chunk of \"v\" hold nothing but -127");
+  classic.variables[0].values[59] = 1;
+  EXPECT_TRUE(read_telling(write("a.nc", classic.bytes())).notes.empty());
+  // Two chunks of four are written.
+  const auto write_chunks = [&](bool has_fill) {
+    int file = 0, axes[3] = {}, v = 0;
+    const std::size_t chunk[] = {1, 4, 3}, begin[] = {0, 0, 0}, count[] = {1, 4, 5};
+    ASSERT_EQ(nc_create(path("b.nc").c_str(), NC_CLOBBER | NC_NETCDF4, &file), NC_NOERR);
+    nc_def_dim(file, "z", 2, &axes[0]);
+    nc_def_dim(file, "y", 4, &axes[1]);
+    nc_def_dim(file, "x", 5, &axes[2]);
+    nc_def_var(file, "v", NC_UBYTE, 3, axes, &v);
+    nc_def_var_chunking(file, v, NC_CHUNKED, chunk);
+    const std::uint8_t fill = 255;
+    if (has_fill) nc_def_var_fill(file, v, NC_FILL, &fill);
+    const std::vector<std::uint8_t> values(20, 9);
+    EXPECT_EQ(nc_put_vara_uchar(file, v, begin, count, values.data()), NC_NOERR);
+    EXPECT_EQ(nc_close(file), NC_NOERR);
+  };
+  write_chunks(false);
+  expect_told(read_telling(path("b.nc")).notes, "2 of 4 chunks of \"v\" hold nothing but 255");
+  write_chunks(true);
+  EXPECT_EQ(read_telling(path("b.nc")).volume.statistics().nan, 20u);
+}
 
 NETCDF_KEY(positive, "positive", honored) {
   const auto file = write("a.nc", net_cdf({}, {{"positive", "down"}}));
@@ -209,6 +250,41 @@ HDF5_TOLD(origin, "origin")
 HDF5_TOLD(voxel_size, "voxel_size")
 HDF5_TOLD(resolution, "resolution")
 HDF5_TOLD(affine, "affine")
+HDF5_KEY(of_groups, "attributes of groups", told) {
+  const std::pair<const char*, const char*> keys[] = {
+      {"/", "voxel_size"},  {"/", "spacing"}, {"/g", "affine"}, {"/", "scale_factor"},
+      {"/g", "Resolution"}, {"/g", "gain"},   {"/", "dims"},    {"/g", "element_size_um"}};
+  for (const auto& [group, key] : keys) {
+    {
+      const Hdf5Writer file(path("a.h5"));
+      file.add_group("/g");
+      file.add("/g/v", H5T_STD_I16LE, {3, 4, 5}, counting<double>());
+      file.attach(group, key, {1, 2, 3});
+    }
+    expect_told(read_telling(path("a.h5"), "/g/v").notes, std::string("(") + key + ")");
+  }
+  const auto plain = hdf5(
+      path("a.h5"), [](const Hdf5Writer& file) { file.attach_text("/", "Conventions", "CF-1.8"); });
+  EXPECT_TRUE(read_telling(plain).notes.empty());
+}
+HDF5_KEY(external_links, "external links", told) {
+  const auto file =
+      hdf5(path("a.h5"), [](const Hdf5Writer& writer) { writer.link("w", "b.h5", "/x"); });
+  const std::vector<VolumeArray> arrays = list_arrays(file);
+  ASSERT_EQ(arrays.size(), 2u);
+  EXPECT_TRUE(test::contains(arrays[1].unreadable_reason, "a link to \"/x\" of \"b.h5\""))
+      << arrays[1].unreadable_reason;
+  expect_refused([&] { read_telling(file, "w"); }, "give that file");
+  { Hdf5Writer(path("c.h5")).link("w", "b.h5", "/x"); }
+  expect_refused([&] { read_volume(path("c.h5")); }, "which is not followed");
+}
+HDF5_KEY(truth, "dtype bool", honored) {
+  const auto file = hdf5(path("a.h5"), [](const Hdf5Writer& writer) {
+    writer.add("w", H5T_STD_I8LE, {3, 4, 5}, std::vector<double>(60, 1));
+    writer.attach_text("w", "dtype", "bool");
+  });
+  EXPECT_EQ(type_name(read_telling(file, "w").volume.data()), "u8");
+}
 #endif
 
 // -------------------------------------------------------------------------------- Zarr stores
@@ -302,6 +378,35 @@ ZARR_KEY(transformers, "storage_transformers", refused) {
   fs::create_directories(path("a.zarr"));
   write("a.zarr/zarr.json", store.array_3("float32", "[\"bytes\"]", "{\"name\": \"default\"}"));
   expect_refused([&] { read_volume(path("a.zarr")); }, "storage_transformers");
+}
+ZARR_KEY(extensions, "must_understand", refused) {
+  const auto with = [&](const std::string& more) {
+    ZarrStore store;
+    store.more = more;
+    fs::create_directories(path("a.zarr"));
+    write("a.zarr/zarr.json", store.array_3("float32", "[\"bytes\"]", "{\"name\": \"default\"}"));
+  };
+  for (const char* more : {", \"turned\": {\"by\": 90}", ", \"turned\": 90",
+                           ", \"turned\": {\"must_understand\": true}"}) {
+    with(more);
+    expect_refused([&] { read_volume(path("a.zarr")); }, "extension \"turned\"");
+  }
+  with(", \"turned\": {\"must_understand\": false}, \"consolidated_metadata\": null");
+  EXPECT_EQ(outline_volume(path("a.zarr")).description.dimensions[0], 5);
+}
+ZARR_KEY(other_length, "_ARRAY_DIMENSIONS of another length", told) {
+  zarr(path("a.zarr"), {});
+  write("a.zarr/v/.zattrs", "{\"_ARRAY_DIMENSIONS\": [\"y\", \"x\"]}");
+  expect_told(read_zarr(path("a.zarr")).notes, "(_ARRAY_DIMENSIONS) are of 2 axes, but it has 3");
+}
+ZARR_KEY(truth, "dtype bool", honored) {
+  ZarrStore store;
+  store.type = "|i1";
+  store.write_2(path("a.zarr/v"), bytes_of(std::vector<std::int8_t>(60, 1)), 1);
+  std::ofstream(path("a.zarr/.zgroup")) << "{\"zarr_format\": 2}";
+  std::ofstream(path("a.zarr/v/.zattrs"))
+      << R"({"_ARRAY_DIMENSIONS": ["z", "y", "x"], "dtype": "bool"})";
+  EXPECT_EQ(type_name(read_zarr(path("a.zarr")).volume.data()), "u8");
 }
 ZARR_KEY(dimension_names, "dimension_names", honored) {
   ZarrStore store;

@@ -193,6 +193,13 @@ PELLUCID_DESCRIBED_KEY(ome_physical, tiff_rows, "PhysicalSizeX", honored) {
                     "PhysicalSizeZUnit=\"mm\"");
   const Volume volume = read_volume(write("a.ome.tif", described_tiff(2, xml)));
   test::expect_near(volume.description().placement.spacing, {1, 2, 3000});
+  for (const char* said : {"PhysicalSizeZ=\"0,5\"", "PhysicalSizeX=\"1 um\"",
+                           "PhysicalSizeY=\"-1\"", "TimeIncrement=\"2s\""}) {
+    std::vector<std::string> notes;
+    noting(write("a.ome.tif", described_tiff(2, test::ome_xml({2, 1, 1}, "<TiffData/>", said))),
+           notes);
+    expect_told(notes, std::string(said) + ", which is no");
+  }
 }
 PELLUCID_DESCRIBED_KEY(ome_time, tiff_rows, "TimeIncrement", honored) {
   const std::string xml = test::ome_xml({2, 1, 2}, "<TiffData/>", "TimeIncrement=\"10\"");
@@ -233,6 +240,8 @@ PELLUCID_DESCRIBED_KEY(ij_images, tiff_rows, "images", honored) {
   EXPECT_EQ(page_order(read_components(write("a.tif", imagej(3, "images=3\n")))), "0 1 2");
   expect_refused([&] { read_components(write("a.tif", imagej(3, "images=5\n"))); },
                  "the file has 3 pages");
+  expect_refused([&] { read_components(write("a.tif", imagej(6, "images=6abc\n"))); },
+                 "images=6abc");
 }
 PELLUCID_DESCRIBED_KEY(ij_units, tiff_rows, "unit, yunit, zunit", honored) {
   const auto bytes = changed([](TiffPage& page) {
@@ -245,6 +254,11 @@ PELLUCID_DESCRIBED_KEY(ij_units, tiff_rows, "unit, yunit, zunit", honored) {
 PELLUCID_DESCRIBED_KEY(ij_spacing, tiff_rows, "spacing", honored) {
   const Volume volume = read_volume(write("a.tif", imagej(2, "images=2\nspacing=2.5\n")));
   EXPECT_EQ(volume.description().placement.spacing.z, 2.5);
+  for (const char* word : {"spacing=2,5", "spacing=2.5um", "xorigin=a", "finterval=1s"}) {
+    std::vector<std::string> notes;
+    noting(write("a.tif", imagej(2, "images=2\n" + std::string(word) + "\n")), notes);
+    expect_told(notes, std::string(word) + ", which is no number");
+  }
 }
 PELLUCID_DESCRIBED_KEY(ij_interval, tiff_rows, "finterval, fps", honored) {
   ReadOptions options;
@@ -288,6 +302,15 @@ PELLUCID_DESCRIBED_KEY(scifio_axes, tiff_rows, "axes, lengths", honored) {
   const auto file =
       write("a.tif", described_tiff(4, "SCIFIO=1\naxes=X,Y,Channel,Z\nlengths=5,4,2,2\n"));
   EXPECT_EQ(page_order(read_components(file)), "0 2, 1 3");
+  const auto notes_of = [&](const std::string& lines) {
+    std::vector<std::string> notes;
+    noting(write("a.tif", described_tiff(2, "SCIFIO=1\n" + lines)), notes);
+    return notes;
+  };
+  expect_told(notes_of("axes=X,Y,Z\nlengths=6,4,2\n"), "6 pixels along X (SCIFIO lengths)");
+  expect_told(notes_of("axes=X,Y,Z\nlengths=5,7,2\n"), "but its pages have 4");
+  expect_told(notes_of("axes=X,Y,Z\nlengths=5,4\n"), "3 axes and 2 lengths");
+  expect_told(notes_of("axes=X,Y,Z\nlengths=5,4,2\nscales=1,2,3;5\n"), "scale 3;5");
 }
 PELLUCID_DESCRIBED_KEY(scifio_scales, tiff_rows, "scales, units", honored) {
   const auto file = write("a.tif", described_tiff(2,
@@ -302,6 +325,12 @@ PELLUCID_DESCRIBED_KEY(shape, tiff_rows, "shape", honored) {
   expect_refused(
       [&] { read_components(write("a.tif", described_tiff(2, R"({"shape": [3, 4, 5]})"))); },
       "the file has 2 pages");
+}
+PELLUCID_DESCRIBED_KEY(shape_cut, tiff_rows, "a description that is cut off", told) {
+  std::vector<std::string> notes;
+  const auto file = write("a.tif", described_tiff(2, R"({"shape": [2, 4, 5], "ax)"));
+  noting(file, notes);
+  expect_told(notes, "is no JSON (cut off?)");
 }
 PELLUCID_DESCRIBED_KEY(shape_axes, tiff_rows, "\"axes\"", honored) {
   const auto file = write("a.tif", described_tiff(4, R"({"shape": [2, 2, 4, 5], "axes": "ZCYX"})"));
@@ -362,7 +391,18 @@ PELLUCID_DESCRIBED_KEY(png_physical, stack_rows, "pHYs", honored) {
   expect_told(notes, "pHYs without a unit makes pixels 0.5 times as high as wide");
   test::expect_near(spacing_by(std::string("\0\0\x0b\x13\0\0\x0b\x13\1", 9)), {1, 1, 1});
 }
-PELLUCID_DESCRIBED_KEY(names_pattern, stack_rows, "%d, %03d, %.2f, %g", honored) {
+PELLUCID_DESCRIBED_KEY(png_transparent, stack_rows, "tRNS", told) {
+  for (int k = 0; k < 2; ++k) {
+    write("p" + std::to_string(k) + ".png",
+          test::png(5, 4, 8, 0, test::page_values<std::uint8_t>(k), 0, "",
+                    k == 0 ? std::string("\0\7", 2) : ""));
+  }
+  std::vector<std::string> notes;
+  EXPECT_EQ(test::value_at(noting(folder_, notes).front(), 2, 1, 0), 7);
+  expect_told(notes, "tRNS says that a value is transparent");
+  expect_told(notes, "differ in tRNS");
+}
+PELLUCID_DESCRIBED_KEY(names_pattern, stack_rows, "%d, %03d, %+d, %.2f, %g", honored) {
   for (int z = 0; z < 2; ++z) {
     for (int c = 0; c < 2; ++c) {
       write("z" + std::to_string(z) + "_c" + std::to_string(c) + ".tif",

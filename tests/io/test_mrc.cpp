@@ -189,6 +189,11 @@ TEST_F(MrcTest, PermutedAxesStandInTheWorld) {
   EXPECT_TRUE(contains(error(file.set(17, {1, 1, 3})), "1, 1 and 3"));
   EXPECT_TRUE(contains(error(file.set(17, {0, 1, 2})), "0, 1 and 2"));
   file.set(17, {0, 0, 0}).set(8, {5, 4, 3}).set(5, {0, 0, 0});
+  std::string notes;
+  ReadOptions options;
+  options.note = [&](const std::string& text) { notes += text + "\n"; };
+  parse(file, bytes_of(counting()), options);
+  EXPECT_TRUE(contains(notes, "MAPC, MAPR, MAPS are 0")) << notes;
   expect_near(world_of(parse(file), 1, 0, 0), {8. / 5, 0, 0});
 }
 

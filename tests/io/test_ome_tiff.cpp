@@ -209,9 +209,59 @@ TEST_F(OmeTiffTest, DescriptionInACompanion) {
                 "PhysicalSizeX=\"2\" PhysicalSizeY=\"3\" PhysicalSizeZ=\"4\""));
   EXPECT_EQ(order(file), "1 0");
   test::expect_near(spacing(file), {2, 3, 4});
-  const std::string other = "<OME><BinaryOnly MetadataFile=\"b.ome.tif\" UUID=\"m\"/></OME>";
-  write("b.ome.tif", "");
-  EXPECT_TRUE(contains(refused(ome(2, other, "c.ome.tif")), "give that file"));
+  // By its own name, and in a folder of no other files.
+  EXPECT_EQ(order(path("set.companion.ome")), "1 0");
+  EXPECT_EQ(order(folder_), "1 0");
+  EXPECT_FALSE(is_noted("no image")) << notes();
+  fs::rename(file, path("b.ome.tif"));
+  EXPECT_TRUE(contains(refused(path("set.companion.ome")), "a.ome.tif, which is not beside it"));
+  write("a.ome.tif", test::described_tiff(2, ""));
+  EXPECT_TRUE(contains(refused(path("set.companion.ome")), "which has no OME-XML"));
+  write("set.companion.ome", ome_xml({2, 1, 1}, "<TiffData IFD=\"0\"/>"));
+  EXPECT_TRUE(contains(refused(path("set.companion.ome")), "names no file of pages"));
+}
+
+TEST_F(OmeTiffTest, DescriptionInAnotherTiff) {
+  const std::string only = "<OME><BinaryOnly MetadataFile=\"m.ome.tif\" UUID=\"urn:b\"/></OME>";
+  const fs::path file = ome(1, only, "b.ome.tif");
+  EXPECT_TRUE(contains(refused(file), "described in m.ome.tif, which is not beside it"));
+  const std::string xml =
+      ome_xml({2, 1, 1},
+              "<TiffData IFD=\"0\"><UUID FileName=\"b.ome.tif\">urn:b</UUID></TiffData>"
+              "<TiffData IFD=\"0\" FirstZ=\"1\"><UUID FileName=\"m.ome.tif\">urn:uuid:own</UUID>"
+              "</TiffData>",
+              "PhysicalSizeX=\"2\" PhysicalSizeY=\"3\" PhysicalSizeZ=\"4\"");
+  write("m.ome.tif", test::described_tiff(1, xml, {7}));
+  for (const char* name : {"b.ome.tif", "m.ome.tif"}) {
+    EXPECT_EQ(order(path(name)), "0 7") << name;
+    test::expect_near(spacing(path(name)), {2, 3, 4});
+  }
+  write("m.ome.tif", test::described_tiff(1, ""));
+  EXPECT_TRUE(contains(refused(file), "m.ome.tif: has no OME-XML"));
+  write("m.ome.tif", test::described_tiff(1, only));
+  EXPECT_TRUE(contains(refused(file), "describes no image"));
+}
+
+TEST_F(OmeTiffTest, AxesThatAreDividedFurther) {
+  const std::string divided =
+      "<StructuredAnnotations><XMLAnnotation><Value><m:Modulo><m:ModuloAlongT Type=\"lifetime\"/>"
+      "</m:Modulo></Value></XMLAnnotation></StructuredAnnotations>";
+  const auto with = [&](const std::string& more) {
+    std::string xml = ome_xml({2, 1, 1}, "<TiffData/>");
+    xml.insert(xml.rfind("</OME>"), more);
+    return xml;
+  };
+  order(ome(2, with(divided)));
+  EXPECT_TRUE(is_noted("divides an axis further (ModuloAlongT)")) << notes();
+  // Words are no element.
+  for (const char* words : {"<!-- ModuloAlongT -->", "<Notes>no ModuloAlongZ</Notes>"}) {
+    order(ome(2, with(words)));
+    EXPECT_FALSE(is_noted("divides")) << notes();
+  }
+  // The document may be another file.
+  write("set.companion.ome", with(divided));
+  order(ome(2, "<OME><BinaryOnly MetadataFile=\"set.companion.ome\" UUID=\"m\"/></OME>"));
+  EXPECT_TRUE(is_noted("ModuloAlongT")) << notes();
 }
 
 TEST_F(OmeTiffTest, SeveralImages) {

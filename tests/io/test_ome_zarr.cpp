@@ -73,6 +73,23 @@ class OmeZarrTest : public test::ScratchFolder {
   std::string notes_;
 };
 
+TEST_F(OmeZarrTest, AxesThatTheArrayNamesOtherwise) {
+  image("a.zarr", micrometer_axes, dataset("0", "[3, 2, 1]"));
+  array("a.zarr/0");
+  const auto named = [&](const std::string& names) {
+    notes_.clear();
+    write_text("a.zarr/0/.zattrs", "{\"_ARRAY_DIMENSIONS\": " + names + "}");
+    read_volume(path("a.zarr"), noting());
+    return notes_;
+  };
+  EXPECT_FALSE(contains(named(R"(["z", "y", "x"])"), "names the axes"));
+  EXPECT_FALSE(contains(named(R"(["Z", null, "X"])"), "names the axes"));
+  EXPECT_TRUE(contains(named(R"(["x", "y", "z"])"),
+                       "its image names the axes z, y, x, but its array x, y, z"));
+  EXPECT_TRUE(contains(named(R"(["t", "y", "x"])"), "the image's are taken"));
+  EXPECT_TRUE(contains(named(R"(["y", "x"])"), "of 2 axes, but it has 3"));
+}
+
 TEST_F(OmeZarrTest, LevelsScalesAndTranslations) {
   image("a.zarr", micrometer_axes,
         dataset("0", "[3, 2, 0.5]", "[30, 20, 10]") + ", " + dataset("1", "[6, 4, 1]"),
@@ -160,6 +177,9 @@ TEST_F(OmeZarrTest, ChannelsAndTimesAreComponents) {
   const std::vector<Volume> both = read_components(path("a.zarr"), options);
   EXPECT_EQ(value_at(both[0], 0, 0, 0), 200);
   EXPECT_EQ(value_at(both[1], 4, 3, 2), 359);
+  options.component_name = "GFP";
+  EXPECT_EQ(value_at(read_volume(path("a.zarr"), options), 0, 0, 0), 300);
+  options.component_name.reset();
   options.time = -1e30;
   EXPECT_EQ(value_at(read_components(path("a.zarr"), options)[0], 0, 0, 0), 0);
   expect_near(both[0].description().placement.spacing, {1, 2, 3});

@@ -123,6 +123,45 @@ TEST_F(StackNamesTest, Decimals) {
   EXPECT_EQ(order(folder_), "0 1");
 }
 
+TEST_F(StackNamesTest, DecimalsOfSeveralLengths) {
+  slices({"s9.5.tif", "s9.75.tif", "s10.0.tif", "s10.25.tif"});
+  EXPECT_EQ(order(folder_), "0 1 2 3");
+  EXPECT_EQ(order(path("s10.0.tif")), "0 1 2 3");
+  clear();
+  // These count from 8 to 11 behind a point.
+  slices({"v1.8.tif", "v1.9.tif", "v1.10.tif", "v1.11.tif", "v2.8.tif", "v2.9.tif"});
+  EXPECT_TRUE(contains(refused(folder_), "holds 2 series")) << refused(folder_);
+}
+
+TEST_F(StackNamesTest, LongNumbers) {
+  slices({"t20261128063012345678.tif", "t20261128063012345679.tif", "t20261128063012345680.tif"});
+  EXPECT_EQ(order(folder_), "0 1 2");
+  EXPECT_EQ(order(path("t20261128063012345679.tif")), "0 1 2");
+  clear();
+  slices({"99999999999999999998_1.tif", "99999999999999999998_2.tif"});
+  EXPECT_EQ(order(folder_), "0 1");
+}
+
+TEST_F(StackNamesTest, PlusSigns) {
+  slices({"z-1.tif", "z+0.tif", "z+1.tif", "z+2.tif"});
+  EXPECT_EQ(order(folder_), "0 1 2 3");
+  EXPECT_EQ(order(path("z%+d.tif")), "0 1 2 3");
+  EXPECT_EQ(order(path("z+1.tif")), "0 1 2 3");
+  clear();
+  slices({"z-05.tif", "z+00.tif", "z+05.tif"});
+  EXPECT_EQ(order(path("z%+03d.tif")), "0 1 2");
+  clear();
+  slices({"a+1.tif", "a+2.tif"});
+  EXPECT_EQ(order(path("a+%d.tif")), "0 1");
+  EXPECT_EQ(order(folder_), "0 1");
+}
+
+TEST_F(StackNamesTest, OneNumberTwice) {
+  slices({"s03.tif", "s3.tif", "s4.tif"});
+  EXPECT_TRUE(contains(refused(folder_), "s03.tif and s3.tif have the same number"))
+      << refused(folder_);
+}
+
 TEST_F(StackNamesTest, NumbersThatGoUpTogetherAreOne) {
   slices({"s001_0.0mm.tif", "s002_1.5mm.tif", "s003_3.2mm.tif"});
   EXPECT_EQ(order(folder_), "0 1 2");
@@ -143,7 +182,7 @@ TEST_F(StackNamesTest, ExtensionsInAnyCase) {
   EXPECT_EQ(order(folder_), "0 1 2");
   EXPECT_EQ(order(path("a2.TIF")), "0 1 2");
   slice("a3.tif", 7);
-  EXPECT_TRUE(contains(refused(folder_), "by 0 from a3.Tif to a3.tif"));
+  EXPECT_TRUE(contains(refused(folder_), "a3.Tif and a3.tif have the same number"));
   clear();
   slices({"a1.tif", "a1.TIF"});
   EXPECT_TRUE(contains(refused(folder_), "2 series of images"));
