@@ -162,13 +162,15 @@ GaussianPrimitive primitive_of(const NormalComponent& component, const std::vect
   return primitive;
 }
 
+/// How many deviations from the background its last values are. A few further out than three would
+/// make a component of their own.
+constexpr double far_out = 4.5;
+
 /// Returns the bins that are not background, by the square roots of their counts.
 WeightedPoints points_besides(const Background& background, const OccupiedBins& bins) {
   WeightedPoints points;
   points.dimensions = static_cast<int>(bins.axes);
   for (std::size_t b = 0; b < bins.size(); ++b) {
-    // A few values further out than three deviations would make a component of their own.
-    constexpr double far_out = 4.5;
     if (background.holds(bins[b], far_out)) continue;
     points.coordinates.insert(points.coordinates.end(), bins[b], bins[b] + bins.axes);
     points.weights.push_back(std::sqrt(bins.counts[b]));
@@ -280,8 +282,9 @@ std::vector<GaussianPrimitive> suggest_mixture(const Channels& channels,
                                         : fit_mixture(points, 1, most_found, floor, parallel);
   std::vector<Shape> shapes;
   for (const NormalComponent& component : fit.components) {
-    // Of background that is not normally distributed a rim is left.
-    if (primitives == 0 && background.holds(component.mean.data())) continue;
+    // A background that is wide, or not normally distributed, leaves a rim.
+    constexpr double rim = far_out + 1;
+    if (primitives == 0 && background.holds(component.mean.data(), rim)) continue;
     shapes.push_back({primitive_of(component, which, axes), 0.7});
   }
   if (shapes.empty()) shapes.push_back({primitive_of(fit.components.front(), which, axes), 0.7});

@@ -9,11 +9,14 @@
 #include <functional>
 #include <limits>
 #include <numbers>
+#include <numeric>
 #include <string>
 #include <thread>
 #include <vector>
 
 #include "expect_error.h"
+#include "src/scene/mixture_cells.h"
+#include "src/scene/mixture_step.h"
 
 namespace pellucid {
 namespace {
@@ -106,6 +109,33 @@ TEST(MixtureFit, OfManyPointsIsThatOfAll) {
   }
   EXPECT_EQ(fit_mixture(points, 1, 4, {0.01, 0.01}).bic,
             fit_mixture(points, 1, 4, {0.01, 0.01}, in_two).bic);
+}
+
+TEST(MixtureFit, StepsOfMergedCellsAreThoseOfTheirPoints) {
+  const std::vector<Truth> one{{1, {20, 30, 0}, {5, 8, 1}}};
+  const MixtureCells points = cells_of(sampled(one, 2, 64)), cells = merged_cells(points, 64);
+  ASSERT_EQ(points.count(), 64U * 64U);
+  ASSERT_LE(cells.count(), 64U);
+  EXPECT_EQ(merged_cells(points, 64 * 64).count(), points.count());
+  MixtureFit of_points{{{1, {25, 25}, {{40, 0}, {0, 40}}}}, 0, 0}, of_cells = of_points;
+  take_mixture_step(points, {0.1, 0.1}, of_points);
+  take_mixture_step(cells, {0.1, 0.1}, of_cells);
+  const double total = std::accumulate(points.weight.begin(), points.weight.end(), 0.0);
+  EXPECT_NEAR(of_points.log_likelihood, of_cells.log_likelihood, 1e-9 * total);
+  for (std::size_t k = 0; k < 2; ++k) {
+    EXPECT_NEAR(of_points.components[0].mean[k], of_cells.components[0].mean[k], 1e-9);
+    for (std::size_t j = 0; j < 2; ++j) {
+      EXPECT_NEAR(of_points.components[0].covariance[j][k], of_cells.components[0].covariance[j][k],
+                  1e-9);
+    }
+  }
+  // With several components a cell shares its memberships: the likelihood is a lower bound.
+  MixtureFit two{{{0.5, {15, 25}, {{20, 0}, {0, 20}}}, {0.5, {25, 35}, {{20, 0}, {0, 20}}}}, 0, 0};
+  MixtureFit bound = two;
+  take_mixture_step(points, {0.1, 0.1}, two);
+  take_mixture_step(cells, {0.1, 0.1}, bound);
+  EXPECT_LT(bound.log_likelihood, two.log_likelihood);
+  EXPECT_NEAR(bound.log_likelihood, two.log_likelihood, 0.3 * total);
 }
 
 TEST(MixtureFit, TakesFourDimensions) {

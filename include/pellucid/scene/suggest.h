@@ -58,9 +58,9 @@ inline constexpr int max_suggested_primitives = 8;
 /// primitive with half of its covariance.
 ///
 /// If `primitives` is 0, the number with the smallest information criterion up to 5 is taken, and
-/// components whose mean is in the background are left out. If there is only background, returns a
-/// single haze. Also throws Error if there are not one to three channels, one is a duplicate, or
-/// `primitives` is not in [0, max_suggested_primitives].
+/// components whose mean is within 5.5 standard deviations of the background are left out. If there
+/// is only background, returns a single haze. Also throws Error if there are not one to three
+/// channels, one is a duplicate, or `primitives` is not in [0, max_suggested_primitives].
 std::vector<GaussianPrimitive> suggest_mixture(const Channels& channels,
                                                const std::vector<int>& which, int primitives = 0,
                                                const ParallelFor& parallel = {},
