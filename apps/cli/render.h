@@ -69,6 +69,7 @@ struct PreparedScene {
   std::string transfer_function_from;
   std::vector<std::string> import_notes;  ///< of a transfer function of another program
   std::shared_ptr<Look> look;             ///< of a file alone, once it is loaded; null: none
+  std::vector<std::size_t> quick_layers;  ///< whose Gaussians were suggested quickly
   bool array_chosen = false;              ///< of a mesh, for want of a name
   bool has_own_camera = false;            ///< the input has a camera
   double tolerance_asked = 0;             ///< Integration::tolerance is the one used
@@ -110,6 +111,8 @@ struct SceneRequest {
   PreparedScene prepared;        ///< without the scene
   SceneDescription description;  ///< what is to be read
   std::shared_ptr<std::vector<std::string>> mesh_notes;
+  /// Layers whose data were read for a suggested function, with these; none of the others.
+  std::vector<std::optional<Layer>> loaded;
 };
 /// Puts the arguments over what the input says. Throws Error.
 SceneRequest request_scene(const RenderArguments& arguments);

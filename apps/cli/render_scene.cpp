@@ -14,6 +14,7 @@
 #include "pellucid/cpu/threads.h"
 #include "pellucid/io/atomic_file.h"
 #include "pellucid/io/image_files.h"
+#include "pellucid/io/remake_scene.h"
 #include "pellucid/scene/labels.h"
 #include "pellucid/scene/view_camera.h"
 #include "render.h"
@@ -481,7 +482,9 @@ SceneRequest request_scene(const RenderArguments& arguments) {
   SceneDescription& description = prepared.description;
   const int threads = arguments.threads > 0 ? arguments.threads : default_thread_count();
   if (arguments.suggests_functions) {
-    view::suggest_missing_functions(description, parallel_for(threads));
+    request.loaded = view::suggest_missing_functions(
+        description, parallel_for(threads),
+        [&](std::vector<ChannelSource>& channels) { set_notes(channels, arguments.quiet); });
   }
   Integration& integration = description.integration;
   prepared.tolerance_asked = integration.tolerance;
@@ -508,6 +511,7 @@ SceneRequest request_scene(const RenderArguments& arguments) {
                                     : description.layers.front().shows_surfaces()  ? "none"
                                                                                    : "default";
   want_look(arguments, prepared);
+  request.loaded.resize(description.layers.size());
   SceneDescription& rendered = request.description;
   rendered = description;
   if (arguments.reference && integration.tolerance > reference_tolerance) {
@@ -590,7 +594,11 @@ PreparedScene prepare(const RenderArguments& arguments) {
   const ParallelFor parallel =
       parallel_for(arguments.threads > 0 ? arguments.threads : default_thread_count());
   std::vector<MeshSource> meshes;
-  Scene scene = make_scene(request.description, parallel, &meshes);
+  const std::vector<std::optional<Layer>> loaded = std::move(request.loaded);
+  Scene scene = remake_scene(request.description, loaded, parallel, &meshes);
+  for (std::size_t i = 0; i < loaded.size(); ++i) {
+    if (loaded[i]) request.prepared.quick_layers.push_back(i);
+  }
   return complete_scene(arguments, std::move(request), std::move(scene), meshes,
                         [&](const Scene& whole) { return visible_corners(whole, parallel); });
 }

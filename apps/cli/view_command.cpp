@@ -90,6 +90,7 @@ int run_view(const ViewArguments& arguments) {
   options.port = static_cast<std::uint16_t>(arguments.port);
   options.ends_with_page = arguments.end_with_page;
   options.threads = input.threads;
+  options.quick_layers = prepared.quick_layers;
   options.keeps_camera = prepared.has_own_camera || !input.camera.empty() || !input.view.empty();
   const InterruptGuard guard;
   BrowserOpener browser;

@@ -179,6 +179,7 @@ constexpr Kind kinds[] = {
                                      ? Suggest::Kind::curve
                                      : Suggest::Kind::gaussians};
      }},
+    {"cancel", [](Members&) -> Command { return CancelFit{}; }},
     {"import",
      [](Members& m) -> Command {
        return ImportFunction{m.layer(), m.text("name", {1, 255}),

@@ -70,6 +70,8 @@ struct Suggest {
   std::size_t layer;
   Kind kind;
 };
+/// Ends the fit of Gaussians that goes on, if there is one.
+struct CancelFit {};
 /// Replaces the transfer function of a layer by that of a file.
 struct ImportFunction {
   std::size_t layer;
@@ -124,10 +126,11 @@ struct Save {
   Kind kind;
 };
 
-using Command = std::variant<Resize, Turn, Pan, Zoom, Roll, Center, ResetCamera, LookFrom,
-                             SetProjection, SetTolerance, Edit, Undo, Redo, Suggest, ImportFunction,
-                             ExportFunction, AskHistogram, Probe, DragHandle, ShowErrorMap,
-                             ChooseComponent, ChooseArray, ChooseTime, ListFile, Save>;
+using Command =
+    std::variant<Resize, Turn, Pan, Zoom, Roll, Center, ResetCamera, LookFrom, SetProjection,
+                 SetTolerance, Edit, Undo, Redo, Suggest, CancelFit, ImportFunction, ExportFunction,
+                 AskHistogram, Probe, DragHandle, ShowErrorMap, ChooseComponent, ChooseArray,
+                 ChooseTime, ListFile, Save>;
 
 /// Largest message of a page, in bytes: an imported color map with some ten thousand nodes.
 inline constexpr std::size_t largest_message = std::size_t(2) << 20;

@@ -16,6 +16,10 @@ PageMessage error_message(std::string_view what) {
   return text_message({{"type", "error"}, {"message", what}});
 }
 
+PageMessage progress_message(std::size_t layer, double fraction) {
+  return text_message({{"type", "progress"}, {"layer", layer}, {"fraction", fraction}});
+}
+
 PageMessage binary_message(const Json& header, const std::vector<std::string_view>& parts) {
   std::string text = header.dump(-1, ' ', false, Json::error_handler_t::replace);
   text.resize((text.size() + 3) / 4 * 4, ' ');

@@ -91,6 +91,10 @@ void use_matrices(LayerDescription& layer) {
   }
 }
 
+std::string text_of(const LayerDescription& layer) {
+  return layer.transfer_function ? transfer_function_to_json(*layer.transfer_function) : "";
+}
+
 }  // namespace
 
 SceneState::SceneState(SceneDescription description, Scene scene, ParallelFor parallel)
@@ -154,6 +158,25 @@ void SceneState::set_gaussians(std::size_t layer, MultivariateDescription gaussi
   target.shading.reset();
   use_matrices(target);
   take_step(std::move(next), layer, 1, no_gesture);
+}
+
+void SceneState::refine_gaussians(std::size_t layer, MultivariateDescription gaussians) {
+  SceneDescription next = description_;
+  LayerDescription& target = next.layers[checked_layer(layer)];
+  const std::string before = function_text(layer);
+  target.transfer_function = std::move(gaussians);
+  use_matrices(target);
+  const auto refined = target.transfer_function;
+  become(std::move(next), layer, 1);
+  for (auto* const history : {&undone_by_, &redone_by_}) {
+    for (SceneDescription& step : *history) {
+      if (text_of(step.layers[layer]) == before) step.layers[layer].transfer_function = refined;
+    }
+  }
+}
+
+std::string SceneState::function_text(std::size_t layer) const {
+  return text_of(description_.layers[checked_layer(layer)]);
 }
 
 void SceneState::set_default_function(std::size_t layer) {

@@ -40,6 +40,9 @@ class SceneState {
   /// Replaces a layer's function by Gaussians, unlit: of several variables light takes many times
   /// as long.
   void set_gaussians(std::size_t layer, MultivariateDescription gaussians);
+  /// Replaces a layer's Gaussians, that were there first, by better ones: no step of the history,
+  /// in which the better ones take their place too.
+  void refine_gaussians(std::size_t layer, MultivariateDescription gaussians);
   /// Replaces a layer's function by the one that is made from its data, as a step of the history.
   void set_default_function(std::size_t layer);
   /// Replaces the scene's clips. Drags of one gesture are undone together.
@@ -57,6 +60,8 @@ class SceneState {
 
   /// Returns the description as a scene file, with absolute paths. Throws Error if data are arrays.
   std::string saved() const;
+  /// Returns the layer's function in JSON, by which it is known again; empty if there is none.
+  std::string function_text(std::size_t layer) const;
   /// Returns the number of the layer, or throws Error if there is none.
   std::size_t checked_layer(std::size_t layer) const;
 

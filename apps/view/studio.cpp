@@ -17,7 +17,6 @@
 #include "pellucid/scene/error.h"
 #include "pellucid/scene/view_camera.h"
 #include "probe.h"
-#include "suggestions.h"
 
 namespace pellucid::view {
 
@@ -30,16 +29,29 @@ constexpr std::size_t most_waiting_bytes = std::size_t{16} << 20;
 
 constexpr const char* defect = "; this is a defect of pellucid, please report it";
 
+/// Whether a command begins a fit, whose outcome comes later.
+bool starts_fit(const Command& command) {
+  const auto* const suggest = std::get_if<Suggest>(&command);
+  return suggest != nullptr && suggest->kind == Suggest::Kind::gaussians;
+}
+
 /// Whether a command only asks, so that the frame that is being rendered stays right.
 bool only_asks(const Command& command) {
   return std::holds_alternative<Probe>(command) || std::holds_alternative<Save>(command) ||
          std::holds_alternative<AskHistogram>(command) ||
          std::holds_alternative<ExportFunction>(command) ||
-         std::holds_alternative<ListFile>(command);
+         std::holds_alternative<ListFile>(command) || std::holds_alternative<CancelFit>(command) ||
+         starts_fit(command);
+}
+
+/// Whether a command ends the frame that is being rendered: one that changes it, or begins a fit.
+bool ends_frame(const Command& command) {
+  return !only_asks(command) || starts_fit(command);
 }
 
 /// Whether a command changes what pages are told of the scene besides the camera.
 bool is_edit(const Command& command) {
+  if (starts_fit(command)) return false;
   return std::visit(
       []<class Kind>(const Kind&) {
         return std::is_same_v<Kind, Edit> || std::is_same_v<Kind, Undo> ||
@@ -118,13 +130,12 @@ struct Studio::Visitor {
   void operator()(const Suggest& c) const {
     const std::size_t layer = studio.state_.checked_layer(c.layer);
     if (c.kind == Suggest::Kind::gaussians) {
-      const LayerDescription& description = studio.state_.description().layers[layer];
-      studio.state_.set_gaussians(layer, suggest_gaussians(description, studio.parallel_,
-                                                           &studio.state_.scene().layers[layer]));
+      studio.start_fit(layer, page);
     } else {
       studio.state_.set_default_function(layer);
     }
   }
+  void operator()(const CancelFit&) const { studio.cancel_fit(); }
   void operator()(const ImportFunction& c) const {
     std::vector<std::string> notes;
     const LookDescription look = read_function(c, notes);
@@ -206,14 +217,16 @@ struct Studio::Visitor {
   }
 };
 
-Studio::Studio(SceneState state, bool keeps_camera, int threads, SceneChanged changed, Send send)
+Studio::Studio(SceneState state, bool keeps_camera, int threads, SceneChanged changed, Send send,
+               std::vector<std::size_t> quick_layers)
     : state_(std::move(state)),
       parallel_(parallel_for(threads)),
       changed_(std::move(changed)),
       send_(std::move(send)),
       lettering_(lettering_of(state_.description())),
       choices_(file_choices(state_.description())),
-      frames_(threads, [this](PageMessage message) { send_({}, std::move(message)); }) {
+      frames_(threads, [this](PageMessage message) { send_({}, std::move(message)); }),
+      quick_layers_(std::move(quick_layers)) {
   if (keeps_camera) first_camera_ = state_.scene().camera;
   thread_ = std::thread([this] { run(); });
 }
@@ -226,6 +239,8 @@ Studio::~Studio() {
   wakes_.notify_one();
   frames_.interrupt();
   thread_.join();
+  cancel_fit();
+  fitting_.reset();
 }
 
 void Studio::page_opened(PageId page) {
@@ -243,7 +258,9 @@ void Studio::pages_left(std::size_t count) {
 }
 
 void Studio::receive(PageId page, Command command, std::size_t bytes) {
-  const bool changes = !only_asks(command);
+  // A fit waits for no frame.
+  if (std::holds_alternative<CancelFit>(command)) return cancel_fit();
+  const bool ends = ends_frame(command);
   {
     const std::lock_guard lock(mutex_);
     if (!asked_.empty() && asked_.back().page == page && replaces(command, asked_.back().command)) {
@@ -257,15 +274,17 @@ void Studio::receive(PageId page, Command command, std::size_t bytes) {
     asked_.push_back({page, std::move(command), bytes});
   }
   wakes_.notify_one();
-  if (changes) frames_.interrupt();
+  if (ends) frames_.interrupt();
 }
 
 void Studio::run() {
   std::deque<Asked> asked;
   std::vector<PageId> opened;
+  refine_next();
   while (take_asked(asked, opened)) {
     try {
       carry_out(std::exchange(asked, {}));
+      finish_fit();
       if (!std::exchange(opened, {}).empty()) {
         stale_ = true;  // a new page has no picture yet
         send_scene();
@@ -287,7 +306,7 @@ bool Studio::has_ended() {
 bool Studio::take_asked(std::deque<Asked>& asked, std::vector<PageId>& opened) {
   std::unique_lock lock(mutex_);
   wakes_.wait(lock, [&] {
-    return ended_ || !asked_.empty() || !opened_.empty() || (stale_ && pages_ > 0);
+    return ended_ || !asked_.empty() || !opened_.empty() || fitted_ || (stale_ && pages_ > 0);
   });
   asked = std::exchange(asked_, {});
   asked_bytes_ = 0;
@@ -330,8 +349,9 @@ void Studio::render() {
   try {
     const auto is_overtaken = [this] {
       const std::lock_guard lock(mutex_);
-      return ended_ || std::ranges::any_of(
-                           asked_, [](const Asked& asked) { return !only_asks(asked.command); });
+      return ended_ || fitted_ || std::ranges::any_of(asked_, [](const Asked& asked) {
+               return ends_frame(asked.command);
+             });
     };
     stale_ = !frames_.render(state_.scene(), lettering_, with_error_map_, is_overtaken);
   } catch (const Error& error) {

@@ -4,6 +4,7 @@
 #include <condition_variable>
 #include <deque>
 #include <functional>
+#include <memory>
 #include <mutex>
 #include <optional>
 #include <string>
@@ -12,6 +13,7 @@
 
 #include "command.h"
 #include "frame_maker.h"
+#include "gaussian_fit.h"
 #include "page_server.h"
 #include "saved_files.h"
 #include "scene_facts.h"
@@ -31,7 +33,8 @@ class Studio {
  public:
   /// `keeps_camera`: whether the camera was chosen by the user, and not fitted to the data.
   /// `changed` may be empty.
-  Studio(SceneState state, bool keeps_camera, int threads, SceneChanged changed, Send send);
+  Studio(SceneState state, bool keeps_camera, int threads, SceneChanged changed, Send send,
+         std::vector<std::size_t> quick_layers = {});
   ~Studio();
   Studio(const Studio&) = delete;
   Studio& operator=(const Studio&) = delete;
@@ -50,6 +53,14 @@ class Studio {
     std::size_t bytes;
   };
   struct Visitor;
+  /// A fit that goes on.
+  struct Fitting {
+    std::size_t layer;
+    std::optional<PageId> page;  ///< that asked for it; none: it refines the first function
+    std::string function;        ///< of the layer when the fit began
+    std::shared_ptr<const Volume> data;
+    std::unique_ptr<GaussianFit> fit;
+  };
 
   void run();
   /// Returns false when the studio is to end.
@@ -65,6 +76,16 @@ class Studio {
   void fit_camera(const std::string& side);
   void save(PageId page, Save::Kind kind);
 
+  // studio_fit.cpp:
+  /// Begins a fit of Gaussians; one that goes on is given up.
+  void start_fit(std::size_t layer, std::optional<PageId> page);
+  /// Begins the fit of a layer that was suggested quickly, if there is one left.
+  void refine_next();
+  /// Takes the outcome of a fit that is done, if there is one, into the scene.
+  void finish_fit();
+  void take_gaussians(const Fitting& fitting, GaussianFit::Outcome outcome);
+  void cancel_fit();
+
   SceneState state_;
   ParallelFor parallel_;
   SceneChanged changed_;
@@ -74,6 +95,7 @@ class Studio {
   std::optional<Camera> first_camera_;  ///< none: fitted to the data
   FrameMaker frames_;
   bool with_error_map_ = false, is_fitted_ = false;
+  std::vector<std::size_t> quick_layers_;
   bool stale_ = true;  ///< whether the picture is not that of the scene
 
   std::mutex mutex_;  ///< of the following
@@ -83,6 +105,9 @@ class Studio {
   std::vector<PageId> opened_;
   std::size_t pages_ = 0;
   bool ended_ = false;
+  std::unique_ptr<Fitting> fitting_;
+  std::optional<GaussianFit::Outcome> fitted_;
+  std::size_t fit_number_ = 0;
   std::thread thread_;
 };
 

@@ -2,17 +2,18 @@
 #include "suggestions.h"
 
 #include <algorithm>
+#include <memory>
 #include <numeric>
 #include <string>
-#include <vector>
+#include <utility>
 
 #include "pellucid/scene/error.h"
-#include "pellucid/scene/suggest.h"
 
 namespace pellucid::view {
 
 MultivariateDescription suggest_gaussians(const LayerDescription& layer,
-                                          const ParallelFor& parallel, const Layer* loaded) {
+                                          const ParallelFor& parallel, const Layer* loaded,
+                                          const SuggestControl& control) {
   if (layer.mesh || layer.labels) {
     throw Error(
         "Gaussians are suggested for volumes; give a mesh a function of its arrays by --tf");
@@ -31,8 +32,8 @@ MultivariateDescription suggest_gaussians(const LayerDescription& layer,
       static_cast<std::size_t>(std::min(channels.count(), max_suggested_channels)));
   std::iota(which.begin(), which.end(), 0);
   const std::vector<GaussianPrimitive> primitives =
-      is_field ? suggest_boundaries(channels, 0, 1, parallel)
-               : suggest_mixture(channels, which, 0, parallel);
+      is_field ? suggest_boundaries(channels, 0, 1, parallel, control)
+               : suggest_mixture(channels, which, 0, parallel, control);
   MultivariateDescription function;
   for (const int channel : which) function.channels.push_back(channels[channel].name);
   for (const GaussianPrimitive& primitive : primitives) {
@@ -43,13 +44,24 @@ MultivariateDescription suggest_gaussians(const LayerDescription& layer,
   return function;
 }
 
-void suggest_missing_functions(SceneDescription& description, const ParallelFor& parallel) {
-  for (LayerDescription& layer : description.layers) {
+std::vector<std::optional<Layer>> suggest_missing_functions(
+    SceneDescription& description, const ParallelFor& parallel,
+    const std::function<void(std::vector<ChannelSource>&)>& before_reading) {
+  std::vector<std::optional<Layer>> loaded(description.layers.size());
+  for (std::size_t i = 0; i < description.layers.size(); ++i) {
+    LayerDescription& layer = description.layers[i];
     const bool is_open = !layer.channels.empty() && !layer.mesh && !layer.labels &&
                          !layer.transfer_function && layer.isosurfaces.empty() &&
                          layer.slices.empty();
-    if (is_open) layer.transfer_function = suggest_gaussians(layer, parallel);
+    if (!is_open) continue;
+    std::vector<ChannelSource> sources = layer.channels;
+    before_reading(sources);
+    ChannelsContent content;
+    content.channels = std::make_shared<const Channels>(load_channels(sources, parallel));
+    loaded[i].emplace().content = std::move(content);
+    layer.transfer_function = suggest_gaussians(layer, parallel, &*loaded[i], {true, {}});
   }
+  return loaded;
 }
 
 }  // namespace pellucid::view

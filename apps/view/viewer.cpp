@@ -51,15 +51,17 @@ void run_viewer(SceneDescription description, Scene scene, const ViewerOptions& 
   };
   PageServer server(options.port, std::move(events), {}, options.frame_ancestors);
   server_of_pages = &server;
-  Studio studio(SceneState(std::move(description), std::move(scene), parallel_for(threads)),
-                options.keeps_camera, threads, options.changed,
-                [&server](std::optional<PageId> page, PageMessage message) {
-                  if (page) {
-                    server.send(*page, std::move(message));
-                  } else {
-                    server.send_to_all(std::move(message));
-                  }
-                });
+  Studio studio(
+      SceneState(std::move(description), std::move(scene), parallel_for(threads)),
+      options.keeps_camera, threads, options.changed,
+      [&server](std::optional<PageId> page, PageMessage message) {
+        if (page) {
+          server.send(*page, std::move(message));
+        } else {
+          server.send_to_all(std::move(message));
+        }
+      },
+      options.quick_layers);
   receiver = &studio;
   started(server.address());
   server.run([&] {

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <string>
+#include <vector>
 
 #include "pellucid/io/scene_json.h"
 
@@ -15,6 +17,9 @@ struct ViewerOptions {
   int threads = 0;              ///< 0: one per core
   bool keeps_camera =
       false;  ///< whether the user chose the camera; else it is fitted to the window
+  /// Layers whose Gaussians were suggested quickly. Better ones are fitted while the first picture
+  /// is looked at.
+  std::vector<std::size_t> quick_layers{};
   /// Pages of others that may show this one in a frame: sources of a Content Security Policy, such
   /// as "http://localhost:*". Empty: none may.
   std::string frame_ancestors{};

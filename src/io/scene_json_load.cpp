@@ -7,6 +7,7 @@
 
 #include "pellucid/io/image_files.h"
 #include "pellucid/io/label_table.h"
+#include "pellucid/io/remake_scene.h"
 #include "pellucid/io/scene_json.h"
 #include "pellucid/scene/defaults.h"
 #include "pellucid/scene/error.h"
@@ -384,11 +385,19 @@ std::vector<std::string> known_channels(const LayerDescription& description) {
 
 Scene make_scene(const SceneDescription& description, const ParallelFor& parallel,
                  std::vector<MeshSource>* meshes_used) {
+  return remake_scene(description, std::vector<std::optional<Layer>>(description.layers.size()),
+                      parallel, meshes_used);
+}
+
+Scene remake_scene(const SceneDescription& description,
+                   const std::vector<std::optional<Layer>>& loaded, const ParallelFor& parallel,
+                   std::vector<MeshSource>* meshes_used) {
   Scene scene;
   const Wanted wanted{description.integration.tolerance, description.background};
   std::vector<MeshSource> meshes(description.layers.size());
   for (std::size_t i = 0; i < description.layers.size(); ++i) {
-    scene.layers.push_back(load_layer(description.layers[i], wanted, nullptr, parallel, meshes[i]));
+    const Layer* const kept = loaded[i] ? &*loaded[i] : nullptr;
+    scene.layers.push_back(load_layer(description.layers[i], wanted, kept, parallel, meshes[i]));
   }
   if (meshes_used != nullptr) *meshes_used = std::move(meshes);
   scene.clips = description.clips;

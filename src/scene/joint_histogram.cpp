@@ -113,12 +113,6 @@ double HistogramAxis::center(int i) const noexcept {
   return lower + (i + 0.5) / bins * (upper - lower);
 }
 
-int HistogramAxis::bin(double value) const noexcept {
-  if (!(value >= lower && value <= upper)) return outside;
-  const double place = (value - lower) / (upper - lower) * bins;
-  return std::min(static_cast<int>(place), bins - 1);
-}
-
 HistogramAxis histogram_axis(const Volume& volume, int bins) {
   check_bins(bins);
   const VolumeStatistics& s = volume.statistics();

@@ -2,13 +2,16 @@
 #include "pellucid/scene/mixture_fit.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <numbers>
-#include <optional>
 #include <string>
 #include <utility>
 
+#include "mixture_cells.h"
+#include "mixture_step.h"
 #include "pellucid/scene/error.h"
 
 namespace pellucid {
@@ -44,77 +47,57 @@ void check(const WeightedPoints& points, int components, const std::vector<doubl
   }
 }
 
-/// The log of a normal density times its weight, ready to be evaluated at many points.
-class LogDensity {
- public:
-  explicit LogDensity(const NormalComponent& c) : mean_(c.mean), inverse_(c.mean.size()) {
-    const std::size_t n = mean_.size();
-    // Σ = L L^T; row i of `inverse_` is that of L^-1, up to its diagonal.
-    Matrix l(n, std::vector<double>(n, 0.0));
-    double log_determinant = 0;
-    for (std::size_t j = 0; j < n; ++j) {
-      for (std::size_t i = j; i < n; ++i) {
-        double s = c.covariance[i][j];
-        for (std::size_t k = 0; k < j; ++k) s -= l[i][k] * l[j][k];
-        l[i][j] = i == j ? std::sqrt(s) : s / l[j][j];
-      }
-      log_determinant += 2 * std::log(l[j][j]);
-    }
-    for (std::size_t i = 0; i < n; ++i) {
-      inverse_[i].assign(i + 1, 0.0);
-      for (std::size_t j = 0; j <= i; ++j) {
-        double s = i == j ? 1.0 : 0.0;
-        for (std::size_t k = j; k < i; ++k) s -= l[i][k] * inverse_[k][j];
-        inverse_[i][j] = s / l[i][i];
-      }
-    }
-    constant_ = std::log(c.weight) -
-                0.5 * (log_determinant + static_cast<double>(n) * std::log(2 * std::numbers::pi));
-  }
+/// Runs body(i) for 0 <= i < count, each at most once at a time on a thread.
+void for_each_task(const ParallelFor& parallel, int count, const std::function<void(int)>& body) {
+  // Less work than this is not split.
+  constexpr int grain = 64;
+  parallel_or_serial(parallel)(count * grain, [&](int first, int last) {
+    for (int i = (first + grain - 1) / grain; i * grain < last; ++i) body(i);
+  });
+}
 
-  double at(const double* x) const {
-    double square = 0;
-    for (std::size_t i = 0; i < inverse_.size(); ++i) {
-      double p = 0;
-      for (std::size_t j = 0; j <= i; ++j) p += inverse_[i][j] * (x[j] - mean_[j]);
-      square += p * p;
-    }
-    return constant_ - 0.5 * square;
-  }
-
- private:
-  const std::vector<double>& mean_;
-  Matrix inverse_;
-  double constant_ = 0;
-};
-
+/// Fits mixtures of several numbers of components to the same points.
 class Fitter {
  public:
   Fitter(const WeightedPoints& points, const std::vector<double>& floor)
-      : points_(points), floor_(floor), n_(floor.size()) {
-    for (const double w : points.weights) total_ += w;
+      : points_(cells_of(points)),
+        cells_(merged_cells(points_, most_cells)),
+        floor_(floor),
+        n_(floor.size()),
+        variance_(variance_of_all()) {
+    for (const double w : points_.weight) total_ += w;
   }
 
-  MixtureFit best(int components) const {
-    std::optional<MixtureFit> likeliest;
-    for (int way = 0; way < ways; ++way) {
-      MixtureFit fit = start(components, way);
-      for (int i = 0; i < first_steps; ++i) step(fit);
-      if (!likeliest || fit.log_likelihood > likeliest->log_likelihood) likeliest = std::move(fit);
-    }
-    for (int i = 0; i < most_steps; ++i) {
-      const double before = likeliest->log_likelihood;
-      step(*likeliest);
-      if (std::abs(likeliest->log_likelihood - before) <= 1e-7 * total_) break;
-    }
-    finish(*likeliest);
-    return *likeliest;
+  /// Returns the best fit of least, least + 1, …, most components each.
+  std::vector<MixtureFit> fits(int least, int most, const ParallelFor& parallel) const {
+    const int numbers = most - least + 1;
+    // The largest first, as it takes longest.
+    const auto components = [&](int i) { return most - i; };
+    std::vector<std::array<MixtureFit, ways>> started(static_cast<std::size_t>(numbers));
+    for_each_task(parallel, numbers * ways, [&](int task) {
+      const int number = task / ways, way = task % ways;
+      MixtureFit& fit = started[static_cast<std::size_t>(number)][static_cast<std::size_t>(way)];
+      fit = start(components(number), way);
+      for (int i = 0; i < first_steps; ++i) take_mixture_step(cells_, floor_, fit);
+    });
+    std::vector<MixtureFit> fits(static_cast<std::size_t>(numbers));
+    for_each_task(parallel, numbers, [&](int number) {
+      const auto& candidates = started[static_cast<std::size_t>(number)];
+      MixtureFit fit = *std::ranges::max_element(candidates, {}, &MixtureFit::log_likelihood);
+      converge(cells_, most_steps, fit);
+      // From cells to points there is not far to go.
+      if (!cells_.covariance.empty()) converge(points_, most_last_steps, fit);
+      finish(fit);
+      fits[static_cast<std::size_t>(components(number) - least)] = std::move(fit);
+    });
+    return fits;
   }
 
  private:
-  static constexpr int ways = 8, first_steps = 12, most_steps = 400;
+  static constexpr std::size_t most_cells = 4096;
+  static constexpr int ways = 8, first_steps = 12, most_steps = 400, most_last_steps = 20;
 
-  const double* point(std::size_t i) const { return &points_.coordinates[i * n_]; }
+  const double* cell(std::size_t i) const { return &cells_.mean[i * n_]; }
 
   /// In units of the floors, so that no dimension counts more by its unit alone.
   double square_distance(const double* x, const double* y) const {
@@ -126,14 +109,13 @@ class Fitter {
   /// Centers as k-means++ draws them (Arthur and Vassilvitskii 2007), by a sequence that is even
   /// instead of random; covariances of a share of all points.
   MixtureFit start(int components, int way) const {
-    std::vector<double> share = points_.weights;
+    std::vector<double> share = cells_.weight;
     double even = way * 0.7548776662466927;  // of the plastic number: apart from the golden one
     MixtureFit fit;
-    Matrix spread = spread_of_all();
+    Matrix spread(n_, std::vector<double>(n_, 0.0));
     const double shrink = std::pow(static_cast<double>(components), -2.0 / static_cast<double>(n_));
     for (std::size_t i = 0; i < n_; ++i) {
-      for (std::size_t j = 0; j < n_; ++j) spread[i][j] *= i == j ? shrink : 0;
-      spread[i][i] = std::max(spread[i][i], floor_[i]);
+      spread[i][i] = std::max(shrink * variance_[i], floor_[i]);
     }
     for (int c = 0; c < components; ++c) {
       double sum = 0;
@@ -148,81 +130,41 @@ class Fitter {
         left -= share[i];
         if (left < 0) break;
       }
-      fit.components.push_back({1.0 / components, {point(chosen), point(chosen) + n_}, spread});
+      fit.components.push_back({1.0 / components, {cell(chosen), cell(chosen) + n_}, spread});
       for (std::size_t i = 0; i < share.size(); ++i) {
-        const double apart = points_.weights[i] * square_distance(point(i), point(chosen));
+        const double apart = cells_.weight[i] * square_distance(cell(i), cell(chosen));
         share[i] = c == 0 ? apart : std::min(share[i], apart);
       }
     }
     return fit;
   }
 
-  Matrix spread_of_all() const {
-    std::vector<double> mean(n_, 0.0);
+  /// Returns the variance of all points along each axis.
+  std::vector<double> variance_of_all() const {
+    double total = 0;
+    for (const double w : points_.weight) total += w;
+    std::vector<double> mean(n_, 0.0), variance(n_, 0.0);
     for (std::size_t i = 0; i < points_.count(); ++i) {
-      for (std::size_t k = 0; k < n_; ++k) mean[k] += points_.weights[i] / total_ * point(i)[k];
+      for (std::size_t k = 0; k < n_; ++k) {
+        mean[k] += points_.weight[i] / total * points_.mean[i * n_ + k];
+      }
     }
-    Matrix spread(n_, std::vector<double>(n_, 0.0));
     for (std::size_t i = 0; i < points_.count(); ++i) {
-      add_square(point(i), mean, points_.weights[i] / total_, spread);
+      for (std::size_t k = 0; k < n_; ++k) {
+        const double apart = points_.mean[i * n_ + k] - mean[k];
+        variance[k] += points_.weight[i] / total * apart * apart;
+      }
     }
-    return spread;
+    return variance;
   }
 
-  void add_square(const double* x, const std::vector<double>& mean, double weight,
-                  Matrix& covariance) const {
-    for (std::size_t j = 0; j < n_; ++j) {
-      for (std::size_t k = 0; k <= j; ++k) {
-        const double product = weight * (x[j] - mean[j]) * (x[k] - mean[k]);
-        covariance[j][k] += product;
-        if (k < j) covariance[k][j] += product;
-      }
+  void converge(const MixtureCells& cells, int most, MixtureFit& fit) const {
+    fit.log_likelihood = -std::numeric_limits<double>::infinity();
+    for (int i = 0; i < most; ++i) {
+      const double before = fit.log_likelihood;
+      take_mixture_step(cells, floor_, fit);
+      if (std::abs(fit.log_likelihood - before) <= 1e-7 * total_) break;
     }
-  }
-
-  /// One step of expectation and maximisation; the likelihood is that of the mixture before it.
-  void step(MixtureFit& fit) const {
-    const std::size_t m = fit.components.size();
-    std::vector<LogDensity> density;
-    density.reserve(m);
-    for (const NormalComponent& c : fit.components) density.emplace_back(c);
-    std::vector<double> part(points_.count() * m);
-    fit.log_likelihood = 0;
-    for (std::size_t i = 0; i < points_.count(); ++i) {
-      double* p = &part[i * m];
-      double largest = -std::numeric_limits<double>::infinity();
-      for (std::size_t c = 0; c < m; ++c) {
-        p[c] = density[c].at(point(i));
-        largest = std::max(largest, p[c]);
-      }
-      double sum = 0;
-      for (std::size_t c = 0; c < m; ++c) sum += p[c] = std::exp(p[c] - largest);
-      for (std::size_t c = 0; c < m; ++c) p[c] *= points_.weights[i] / sum;
-      fit.log_likelihood += points_.weights[i] * (largest + std::log(sum));
-    }
-    maximise(part, fit.components);
-  }
-
-  void maximise(const std::vector<double>& part, std::vector<NormalComponent>& components) const {
-    const std::size_t m = components.size();
-    std::vector<NormalComponent> next;
-    for (std::size_t c = 0; c < m; ++c) {
-      double sum = 0;
-      for (std::size_t i = 0; i < points_.count(); ++i) sum += part[i * m + c];
-      if (!(sum > 1e-9 * total_)) continue;  // no point is left to it
-      NormalComponent fresh{sum / total_, std::vector<double>(n_, 0.0),
-                            Matrix(n_, std::vector<double>(n_, 0.0))};
-      for (std::size_t i = 0; i < points_.count(); ++i) {
-        for (std::size_t k = 0; k < n_; ++k) fresh.mean[k] += part[i * m + c] / sum * point(i)[k];
-      }
-      for (std::size_t i = 0; i < points_.count(); ++i) {
-        add_square(point(i), fresh.mean, part[i * m + c] / sum, fresh.covariance);
-      }
-      // The spread inside a bin; it also keeps the matrix positive definite.
-      for (std::size_t k = 0; k < n_; ++k) fresh.covariance[k][k] += floor_[k];
-      next.push_back(std::move(fresh));
-    }
-    components = std::move(next);
   }
 
   void finish(MixtureFit& fit) const {
@@ -233,31 +175,29 @@ class Fitter {
     fit.bic = parameters * std::log(total_) - 2 * fit.log_likelihood;
   }
 
-  const WeightedPoints& points_;
+  MixtureCells points_;
+  MixtureCells cells_;  ///< few enough to try many beginnings
   const std::vector<double>& floor_;
   std::size_t n_;
+  std::vector<double> variance_;
   double total_ = 0;
 };
 
 }  // namespace
 
 MixtureFit fit_mixture(const WeightedPoints& points, int components,
-                       const std::vector<double>& floor) {
+                       const std::vector<double>& floor, const ParallelFor& parallel) {
   check(points, components, floor);
-  return Fitter(points, floor).best(components);
+  return Fitter(points, floor).fits(components, components, parallel).front();
 }
 
 MixtureFit fit_mixture(const WeightedPoints& points, int least, int most,
-                       const std::vector<double>& floor) {
+                       const std::vector<double>& floor, const ParallelFor& parallel) {
   check(points, least, floor);
   check(points, most, floor);
-  std::optional<MixtureFit> best;
-  for (int components = least; components <= most; ++components) {
-    MixtureFit fit = Fitter(points, floor).best(components);
-    if (!best || fit.bic < best->bic) best = std::move(fit);
-  }
-  if (!best) fail("there is no number from least to most; give least <= most");
-  return *best;
+  if (least > most) fail("there is no number from least to most; give least <= most");
+  const std::vector<MixtureFit> fits = Fitter(points, floor).fits(least, most, parallel);
+  return *std::ranges::min_element(fits, {}, &MixtureFit::bic);
 }
 
 }  // namespace pellucid

@@ -4,18 +4,32 @@
 #include <cstddef>
 #include <vector>
 
+#include "channel_sample.h"
 #include "pellucid/scene/joint_histogram.h"
 
 namespace pellucid {
 
-/// An axis over the values of a channel without the outermost 0.05 % at either end, which would
-/// take the range for themselves.
-HistogramAxis core_axis(const Channels& channels, int channel, int bins,
+/// Returns an axis over the values of a channel of a sample without the outermost 0.05 % at either
+/// end, which would take the range for themselves. `whole`: the data of that channel.
+HistogramAxis core_axis(const Volume& whole, const ChannelSample& sample, int channel, int bins,
                         const ParallelFor& parallel);
 
-/// The coordinates, one per axis, of the bin at this place of a histogram's counts, in bins: its
-/// middle is at a half.
-std::vector<double> bin_coordinates(const JointHistogram& histogram, std::size_t place);
+/// Bins of a histogram that hold something, in the order of their places.
+struct OccupiedBins {
+  std::size_t axes = 1;
+  /// `axes` numbers per bin, in bins: the middle of a bin is at a half.
+  std::vector<double> coordinates;
+  std::vector<double> counts;
+
+  std::size_t size() const noexcept { return counts.size(); }
+  const double* operator[](std::size_t i) const noexcept { return &coordinates[i * axes]; }
+};
+
+OccupiedBins occupied_bins(const JointHistogram& histogram);
+
+/// Writes the coordinates, one per axis, of the bin at this place of a histogram's counts, in bins.
+void bin_coordinates(const std::vector<HistogramAxis>& axes, std::size_t place,
+                     double* coordinates);
 /// Coordinates in bins as values.
 double value_at(const HistogramAxis& axis, double coordinate);
 
@@ -28,10 +42,10 @@ double least_variance(const HistogramAxis& axis);
 /// twentieth of an axis to a standard deviation.
 class BackgroundBin {
  public:
-  explicit BackgroundBin(const JointHistogram& histogram);
+  BackgroundBin(const OccupiedBins& bins, const std::vector<HistogramAxis>& axes);
 
-  /// Whether coordinates in bins are within so many standard deviations.
-  bool holds(const std::vector<double>& coordinates, double deviations = 3) const;
+  /// Whether coordinates in bins, one per axis, are within so many standard deviations.
+  bool holds(const double* coordinates, double deviations = 3) const;
   /// In bins.
   const std::vector<double>& mean() const noexcept { return mean_; }
 

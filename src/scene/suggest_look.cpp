@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <numeric>
 #include <utility>
 
 #include "column_depths.h"
@@ -17,25 +18,30 @@ namespace {
 /// Optical depths of what few lines meet, and of the background through the whole box.
 constexpr double deepest = 5, faintest = 0.002;
 
-class Stage {
+class Look {
  public:
-  Stage(std::vector<Shape> shapes, const Channels& channels, const std::vector<int>& which,
-        const JointHistogram& histogram, const BackgroundBin* background)
+  Look(std::vector<Shape> shapes, const Stage& stage, const ParallelFor& parallel)
       : shapes_(std::move(shapes)),
-        channels_(channels),
-        which_(which),
-        histogram_(histogram),
-        background_(background) {
+        stage_(stage),
+        parallel_(parallel),
+        columns_(stage.channels, stage.which, stage.axes, stage.most_lines, parallel),
+        depth_(shapes_.size()),
+        in_background_(shapes_.size(), 0.0) {
     std::stable_sort(shapes_.begin(), shapes_.end(), [](const Shape& a, const Shape& b) {
       return a.primitive.center < b.primitive.center;
     });
   }
 
   std::vector<GaussianPrimitive> look() {
-    measure();
+    std::vector<std::size_t> changed(shapes_.size());
+    std::iota(changed.begin(), changed.end(), std::size_t{0});
+    measure(changed);
     // Narrower ones are met less and grow denser, which may want another round.
     constexpr int rounds = 4;
-    for (int round = 0; round < rounds && narrow(); ++round) measure();
+    for (int round = 0; round < rounds && !changed.empty(); ++round) {
+      changed = narrow();
+      measure(changed);
+    }
     drop_unmet();
     set_colors();
     std::vector<GaussianPrimitive> primitives;
@@ -48,47 +54,50 @@ class Stage {
   }
 
  private:
-  /// e^(-|K (v - c)|²) at the middle of every bin that holds something.
-  void fill_densities() {
-    const std::size_t m = shapes_.size(), n = which_.size();
-    density_.assign(histogram_.count.size() * m, 0);
-    for (std::size_t b = 0; b < histogram_.count.size(); ++b) {
-      if (histogram_.count[b] == 0) continue;
-      std::vector<double> v = bin_coordinates(histogram_, b);
-      for (std::size_t i = 0; i < n; ++i) v[i] = value_at(histogram_.axes[i], v[i]);
-      for (std::size_t p = 0; p < m; ++p) {
-        double square = 0;
-        for (const auto& row : shapes_[p].primitive.matrix) {
-          double x = 0;
-          for (std::size_t i = 0; i < n; ++i) {
-            x += row[i] * (v[i] - shapes_[p].primitive.center[i]);
-          }
-          square += x * x;
-        }
-        density_[b * m + p] = static_cast<float>(std::exp(-square));
+  /// Returns e^(-|K (v - c)|²) of a shape at coordinates in bins.
+  double density(const GaussianPrimitive& p, const double* coordinates) const {
+    double square = 0;
+    for (const auto& row : p.matrix) {
+      double x = 0;
+      for (std::size_t i = 0; i < row.size(); ++i) {
+        x += row[i] * (value_at(stage_.axes[i], coordinates[i]) - p.center[i]);
       }
+      square += x * x;
     }
+    return std::exp(-square);
   }
 
-  /// What lines meet of each, and how much of each the background has.
-  void measure() {
-    fill_densities();
-    const std::size_t m = shapes_.size();
-    depth_ = column_depths(channels_, which_, histogram_.axes, density_, static_cast<int>(m));
-    largest_share_ = 0;
-    for (const ColumnDepth& d : depth_) largest_share_ = std::max(largest_share_, d.share);
-    in_background_.assign(m, 0);
-    if (background_ == nullptr) return;
-    double all = 0;
-    for (std::size_t b = 0; b < histogram_.count.size(); ++b) {
-      if (histogram_.count[b] == 0 || !background_->holds(bin_coordinates(histogram_, b))) continue;
-      const auto count = static_cast<double>(histogram_.count[b]);
-      all += count;
-      for (std::size_t p = 0; p < m; ++p) {
-        in_background_[p] += count * static_cast<double>(density_[b * m + p]);
+  /// Measures what lines meet of some shapes, and how much of each the background has.
+  void measure(const std::vector<std::size_t>& which) {
+    if (which.empty()) return;
+    std::vector<float> densities;
+    std::vector<double> x(stage_.axes.size());
+    for (const std::size_t bin : columns_.bins()) {
+      bin_coordinates(stage_.axes, bin, x.data());
+      for (const std::size_t i : which) {
+        densities.push_back(static_cast<float>(density(shapes_[i].primitive, x.data())));
       }
     }
-    for (double& density : in_background_) density /= all;
+    const std::vector<ColumnDepth> depths =
+        columns_.depths(densities, static_cast<int>(which.size()), parallel_);
+    for (std::size_t k = 0; k < which.size(); ++k) {
+      depth_[which[k]] = depths[k];
+      in_background_[which[k]] = in_background(shapes_[which[k]].primitive);
+    }
+    largest_share_ = 0;
+    for (const ColumnDepth& d : depth_) largest_share_ = std::max(largest_share_, d.share);
+  }
+
+  /// Returns the mean density of a shape in the background; 0 without one.
+  double in_background(const GaussianPrimitive& shape) const {
+    if (stage_.background == nullptr) return 0;
+    double all = 0, sum = 0;
+    for (std::size_t b = 0; b < stage_.bins.size(); ++b) {
+      if (!stage_.background->holds(stage_.bins[b])) continue;
+      all += stage_.bins.counts[b];
+      sum += stage_.bins.counts[b] * density(shape, stage_.bins[b]);
+    }
+    return sum / all;
   }
 
   bool is_met(std::size_t i) const { return depth_[i].share > 0 && depth_[i].length > 0; }
@@ -98,21 +107,21 @@ class Stage {
     return std::clamp(wanted / depth_[i].length, 1 / largest_number, largest_number);
   }
 
-  /// Scales the shapes that dim the background; whether there are any.
-  bool narrow() {
-    bool any = false;
+  /// Narrows the shapes that dim the background, and returns them.
+  std::vector<std::size_t> narrow() {
+    std::vector<std::size_t> narrowed;
     for (std::size_t i = 0; i < shapes_.size(); ++i) {
       if (!is_met(i)) continue;
-      const double allowed = faintest / (extinction(i) * mean_chord(channels_.grid()));
+      const double allowed = faintest / (extinction(i) * mean_chord(stage_.channels.grid()));
       if (in_background_[i] <= allowed || in_background_[i] >= 1 || allowed >= 1) continue;
       const double scale =
           std::clamp(std::sqrt(std::log(allowed) / std::log(in_background_[i])), 1.05, 3.0);
       for (auto& row : shapes_[i].primitive.matrix) {
         for (double& x : row) x *= scale;
       }
-      any = true;
+      narrowed.push_back(i);
     }
-    return any;
+    return narrowed;
   }
 
   void drop_unmet() {
@@ -141,7 +150,7 @@ class Stage {
 
   GaussianPrimitive readable_primitive(GaussianPrimitive p) const {
     for (std::size_t i = 0; i < p.center.size(); ++i) {
-      const HistogramAxis& axis = histogram_.axes[i];
+      const HistogramAxis& axis = stage_.axes[i];
       p.center[i] = readable(p.center[i], axis.upper - axis.lower);
     }
     // Widths are what people write where the axes are those of the channels.
@@ -159,11 +168,9 @@ class Stage {
   }
 
   std::vector<Shape> shapes_;
-  const Channels& channels_;
-  const std::vector<int>& which_;
-  const JointHistogram& histogram_;
-  const BackgroundBin* background_;
-  std::vector<float> density_;
+  const Stage& stage_;
+  const ParallelFor& parallel_;
+  Columns columns_;
   std::vector<ColumnDepth> depth_;
   std::vector<double> in_background_;
   double largest_share_ = 0;
@@ -171,11 +178,9 @@ class Stage {
 
 }  // namespace
 
-std::vector<GaussianPrimitive> with_look(std::vector<Shape> shapes, const Channels& channels,
-                                         const std::vector<int>& which,
-                                         const JointHistogram& histogram,
-                                         const BackgroundBin* background) {
-  return Stage(std::move(shapes), channels, which, histogram, background).look();
+std::vector<GaussianPrimitive> with_look(std::vector<Shape> shapes, const Stage& stage,
+                                         const ParallelFor& parallel) {
+  return Look(std::move(shapes), stage, parallel).look();
 }
 
 }  // namespace pellucid

@@ -15,13 +15,20 @@ struct Shape {
   double depth = 0.7;
 };
 
-/// Gives them extinctions and colors, as suggest.h tells, and puts them in the order of their
+/// The data that shapes are to be seen in.
+struct Stage {
+  const Channels& channels;
+  const std::vector<int>& which;  ///< channels of the shapes
+  const std::vector<HistogramAxis>& axes;
+  const OccupiedBins& bins;  ///< of a histogram with these axes
+  /// null where the background is to be seen too
+  const BackgroundBin* background = nullptr;
+  int most_lines = 96;  ///< that are looked along: see Columns
+};
+
+/// Gives shapes extinctions and colors, as suggest.h tells, and puts them in the order of their
 /// centers. One that would dim the background is made narrower; what no line meets is left out.
-/// `background` is null where it is to be seen too. All look at the channels `which`, whose
-/// histogram this is.
-std::vector<GaussianPrimitive> with_look(std::vector<Shape> shapes, const Channels& channels,
-                                         const std::vector<int>& which,
-                                         const JointHistogram& histogram,
-                                         const BackgroundBin* background);
+std::vector<GaussianPrimitive> with_look(std::vector<Shape> shapes, const Stage& stage,
+                                         const ParallelFor& parallel);
 
 }  // namespace pellucid

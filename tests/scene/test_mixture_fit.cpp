@@ -6,12 +6,17 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <numbers>
+#include <numeric>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include "expect_error.h"
+#include "src/scene/mixture_cells.h"
+#include "src/scene/mixture_step.h"
 
 namespace pellucid {
 namespace {
@@ -80,6 +85,76 @@ TEST(MixtureFit, RecoversMixturesThatOverlap) {
   // 2.5 standard deviations apart.
   const std::vector<Truth> mixture{{0.5, {40, 0, 0}, {8, 1, 1}}, {0.5, {60, 0, 0}, {8, 1, 1}}};
   expect_recovered(fit_mixture(sampled(mixture, 1, 100), 2, {0.01}), mixture, 1, 2);
+}
+
+TEST(MixtureFit, OfManyPointsIsThatOfAll) {
+  // 96 x 96 points are merged into cells of 1.5 by 1.5. The narrow component is inside few of them.
+  const std::vector<Truth> mixture{{0.55, {30, 40, 0}, {8, 11, 1}},
+                                   {0.35, {62, 30, 0}, {9, 6, 1}},
+                                   {0.1, {70.3, 70.6, 0}, {1.2, 1.1, 1}}};
+  const WeightedPoints points = sampled(mixture, 2, 96);
+  const MixtureFit fit = fit_mixture(points, 3, {0.01, 0.01});
+  expect_recovered(fit, mixture, 2, 1);
+  // Bits, with any split of the work.
+  const auto in_two = [](int count, const std::function<void(int, int)>& body) {
+    std::thread first([&] { body(0, count / 2); });
+    body(count / 2, count);
+    first.join();
+  };
+  const MixtureFit same = fit_mixture(points, 3, {0.01, 0.01}, in_two);
+  EXPECT_EQ(fit.log_likelihood, same.log_likelihood);
+  for (std::size_t c = 0; c < 3; ++c) {
+    EXPECT_EQ(fit.components[c].mean, same.components[c].mean);
+    EXPECT_EQ(fit.components[c].covariance, same.components[c].covariance);
+  }
+  EXPECT_EQ(fit_mixture(points, 1, 4, {0.01, 0.01}).bic,
+            fit_mixture(points, 1, 4, {0.01, 0.01}, in_two).bic);
+}
+
+TEST(MixtureFit, StepsOfMergedCellsAreThoseOfTheirPoints) {
+  const std::vector<Truth> one{{1, {20, 30, 0}, {5, 8, 1}}};
+  const MixtureCells points = cells_of(sampled(one, 2, 64)), cells = merged_cells(points, 64);
+  ASSERT_EQ(points.count(), 64U * 64U);
+  ASSERT_LE(cells.count(), 64U);
+  EXPECT_EQ(merged_cells(points, 64 * 64).count(), points.count());
+  MixtureFit of_points{{{1, {25, 25}, {{40, 0}, {0, 40}}}}, 0, 0}, of_cells = of_points;
+  take_mixture_step(points, {0.1, 0.1}, of_points);
+  take_mixture_step(cells, {0.1, 0.1}, of_cells);
+  const double total = std::accumulate(points.weight.begin(), points.weight.end(), 0.0);
+  EXPECT_NEAR(of_points.log_likelihood, of_cells.log_likelihood, 1e-9 * total);
+  for (std::size_t k = 0; k < 2; ++k) {
+    EXPECT_NEAR(of_points.components[0].mean[k], of_cells.components[0].mean[k], 1e-9);
+    for (std::size_t j = 0; j < 2; ++j) {
+      EXPECT_NEAR(of_points.components[0].covariance[j][k], of_cells.components[0].covariance[j][k],
+                  1e-9);
+    }
+  }
+  // With several components a cell shares its memberships: the likelihood is a lower bound.
+  MixtureFit two{{{0.5, {15, 25}, {{20, 0}, {0, 20}}}, {0.5, {25, 35}, {{20, 0}, {0, 20}}}}, 0, 0};
+  MixtureFit bound = two;
+  take_mixture_step(points, {0.1, 0.1}, two);
+  take_mixture_step(cells, {0.1, 0.1}, bound);
+  EXPECT_LT(bound.log_likelihood, two.log_likelihood);
+  EXPECT_NEAR(bound.log_likelihood, two.log_likelihood, 0.3 * total);
+}
+
+TEST(MixtureFit, TakesFourDimensions) {
+  WeightedPoints points;
+  points.dimensions = 4;
+  for (int i = 0; i < 7 * 7 * 7 * 7; ++i) {
+    double square = 0;
+    for (int k = 0, rest = i; k < 4; ++k, rest /= 7) {
+      const double x = rest % 7 - 3;
+      points.coordinates.push_back(x);
+      square += x * x;
+    }
+    points.weights.push_back(std::exp(-square / 2));
+  }
+  const MixtureFit fit = fit_mixture(points, 1, {1e-6, 1e-6, 1e-6, 1e-6});
+  for (std::size_t k = 0; k < 4; ++k) {
+    EXPECT_NEAR(fit.components[0].mean[k], 0, 1e-9);
+    EXPECT_NEAR(fit.components[0].covariance[k][k], 1, 0.02);
+  }
 }
 
 TEST(MixtureFit, FindsTheNumber) {

@@ -287,6 +287,75 @@ TEST(SuggestMixture, IsTheSameEachTimeAndForAnyNumberOfThreads) {
   expect_equal(suggest_mixture(channels, {0, 1}), suggest_mixture(channels, {0, 1}, 0, in_threads));
 }
 
+/// A channel of more points than are looked at: tissues in nested boxes, with noise.
+Channels many_points(double deviation) {
+  constexpr int wide = 144, points = wide * wide * wide;
+  Noise random;
+  std::vector<Channel> list;
+  const double means[2][3] = {{0, 100, 60}, {0, 40, 110}};
+  for (int c = 0; c < 2; ++c) {
+    std::vector<float> values;
+    for (int i = 0; i < points; ++i) {
+      const int x = i % wide, y = i / wide % wide, z = i / wide / wide;
+      const int edge = std::min({x, y, z, wide - 1 - x, wide - 1 - y, wide - 1 - z});
+      const int tissue = edge < wide / 6 ? 0 : edge < wide / 3 ? 1 : 2;
+      values.push_back(static_cast<float>(means[c][tissue] + deviation * random.next()));
+    }
+    Volume::Description description;
+    description.dimensions = {wide, wide, wide};
+    list.push_back({std::string(1, static_cast<char>('a' + c)), "",
+                    std::make_shared<const Volume>(description, VolumeData(std::move(values)))});
+  }
+  return Channels(std::move(list));
+}
+
+TEST(SuggestMixture, LooksAtASampleOfManyPoints) {
+  const Channels channels = many_points(4);
+  const auto primitives = suggest_mixture(channels, {0, 1}, 2);
+  expect_equal(primitives, suggest_mixture(channels, {0, 1}, 2, in_threads));
+  const auto quick = suggest_mixture(channels, {0, 1}, 2, {}, {true, {}});
+  expect_equal(quick, suggest_mixture(channels, {0, 1}, 2, in_threads, {true, {}}));
+  for (const auto& found : {primitives, quick}) {
+    ASSERT_EQ(found.size(), 2U);
+    for (const auto& center : {std::vector<double>{100, 40}, std::vector<double>{60, 110}}) {
+      const GaussianPrimitive& p = nearest(found, center);
+      for (std::size_t c = 0; c < 2; ++c) EXPECT_NEAR(p.center[c], center[c], 2);
+    }
+    // Lines along an axis meet 96 points of the outer tissue or, in the middle, 48 of each.
+    const double outer_depth = nearest(found, {100, 40}).extinction * 96;
+    EXPECT_GT(outer_depth, 0.5);
+    EXPECT_LT(outer_depth, 2);
+  }
+}
+
+TEST(SuggestMixture, LeavesOutTheRimOfTheBackground) {
+  // Wider than a background may be: points remain on all sides of it.
+  const auto primitives = suggest_mixture(many_points(16), {0, 1});
+  EXPECT_EQ(suggest_mixture(many_points(16), {0, 1}, 5).size(), 5U);
+  ASSERT_GE(primitives.size(), 2U);
+  for (const GaussianPrimitive& p : primitives) {
+    EXPECT_GT(std::hypot(p.center[0], p.center[1]), 80) << p.center[0] << " " << p.center[1];
+  }
+}
+
+TEST(Suggest, TellsItsProgressAndEndsWhenItIsToldTo) {
+  const Channels channels = with_gradient(volume(balls(4)));
+  std::vector<double> told;
+  const SuggestControl tells{false, [&](double fraction) { told.push_back(fraction); }};
+  suggest_mixture(channels, {0, 1}, 0, in_threads, tells);
+  suggest_boundaries(channels, 0, 1, in_threads, tells);
+  ASSERT_GE(told.size(), 6U);
+  EXPECT_EQ(std::count(told.begin(), told.end(), 0.0), 2);
+  EXPECT_EQ(std::count(told.begin(), told.end(), 1.0), 2);
+  EXPECT_TRUE(std::is_sorted(told.begin(), std::find(told.begin(), told.end(), 1.0)));
+  struct Enough {};
+  const SuggestControl ends{false, [](double fraction) {
+                              if (fraction > 0) throw Enough{};
+                            }};
+  EXPECT_THROW(suggest_mixture(channels, {0, 1}, 0, {}, ends), Enough);
+  EXPECT_THROW(suggest_boundaries(channels, 0, 1, {}, ends), Enough);
+}
+
 TEST(Suggest, RefusesWhatIsNotThere) {
   const Channels empty = one(std::vector<double>(places, nan));
   expect_error([&] { suggest_mixture(empty, {0}); }, {"no data point", "every channel"});

@@ -37,6 +37,7 @@ TEST(ParseCommand, ReadsMoves) {
   EXPECT_EQ(parsed<SetProjection>(R"({"type": "projection", "name": "orthographic"})").projection,
             Projection::orthographic);
   parsed<Undo>(R"({"type": "undo"})");
+  parsed<CancelFit>(R"({"type": "cancel"})");
 }
 
 TEST(ParseCommand, ReadsEdits) {

@@ -71,6 +71,40 @@ TEST(SceneState, SuggestionsSayWhetherThereIsLight) {
   EXPECT_FALSE(is_lit());
 }
 
+MultivariateDescription gaussian_at(double center) {
+  MultivariateDescription function;
+  function.channels = {"value"};
+  function.gaussians.push_back(
+      {function.channels, {center}, GaussianWidths{{0.1}, {}}, 1, {1, 1, 1}});
+  return function;
+}
+
+TEST(SceneState, RefinesGaussiansInTheHistoryToo) {
+  SceneState state = sphere();
+  state.set_gaussians(0, gaussian_at(0.5));
+  const std::string quick = state.function_text(0);
+  state.edit(edit_of({}, "clip", R"([{"sphere": {"center": [0, 0, 0], "radius": 0.5}}])", 1));
+  state.edit(edit_of(0, "shading", "{}", 2));
+  state.undo();
+  state.refine_gaussians(0, gaussian_at(0.7));
+  const std::string refined = state.function_text(0);
+  EXPECT_NE(refined, quick);
+  EXPECT_EQ(state.scene().clips.size(), 1U);
+  const auto& content = std::get<ChannelsContent>(state.scene().layers[0].content);
+  EXPECT_EQ(content.transfer_function->primitives().front().center, (std::vector<double>{0.7}));
+  // No step of its own: the last one is that of the clip.
+  state.undo();
+  EXPECT_EQ(state.scene().clips.size(), 0U);
+  EXPECT_EQ(state.function_text(0), refined);
+  state.redo();
+  state.redo();
+  EXPECT_TRUE(state.description().layers[0].shading);
+  EXPECT_EQ(state.function_text(0), refined);
+  // The function before the first one is another.
+  for (int i = 0; i < 3; ++i) state.undo();
+  EXPECT_NE(state.function_text(0), refined);
+}
+
 TEST(SceneState, UndoesGesturesAsAWhole) {
   SceneState state = sphere();
   const std::string first = state.saved();

@@ -2,8 +2,9 @@
 
 /**
  * The WebSocket to the program that serves this page. Messages that come are events whose names are
- * their types: "scene", "frame", "histogram", "probe", "file", "notes", "error"; and "lost" when the
- * program has ended. `detail` is the message; of a binary one `detail.parts` has its bytes.
+ * their types: "scene", "frame", "histogram", "probe", "file", "notes", "progress", "error"; and
+ * "lost" when the program has ended. `detail` is the message; of a binary one `detail.parts` has
+ * its bytes.
  */
 export class Connection extends EventTarget {
   constructor() {

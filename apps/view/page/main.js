@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 import {Connection} from './connection.js';
+import {FitProgress} from './fit_progress.js';
 import {FunctionPanel} from './function_panel.js';
 import {Picture} from './picture.js';
 import {SavePanel} from './save_panel.js';
@@ -21,6 +22,7 @@ export class Viewer {
     this.panels = [this.functionPanel, new LayersPanel(this), new SurfacesPanel(this),
       new ClipPanel(this), new LightPanel(this)];
     new SavePanel(this);
+    new FitProgress(this.connection, document.getElementById('stage'));
     this.addMessages();
     this.addControls();
   }

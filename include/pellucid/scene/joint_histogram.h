@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <vector>
 
@@ -23,7 +24,11 @@ struct HistogramAxis {
   double center(int i) const noexcept;
   double bin_width() const noexcept { return (upper - lower) / bins; }
   /// Returns the bin of a value; -1 outside of the axis and for NaN.
-  int bin(double value) const noexcept;
+  int bin(double value) const noexcept {
+    if (!(value >= lower && value <= upper)) return -1;
+    const double place = (value - lower) / (upper - lower) * bins;
+    return std::min(static_cast<int>(place), bins - 1);
+  }
 };
 
 /// Returns an axis over all finite values of the volume.

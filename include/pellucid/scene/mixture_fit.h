@@ -4,6 +4,8 @@
 #include <cstddef>
 #include <vector>
 
+#include "pellucid/scene/volume.h"
+
 namespace pellucid {
 
 /// Points with weights >= 0, such as the bins of a histogram.
@@ -39,17 +41,19 @@ inline constexpr int max_components = 16;
 ///
 /// No axis of a covariance has a variance below `floor` (one number > 0 per dimension, for example
 /// the square of a bin's width). The fit starts from eight fixed initialisations and continues with
-/// the likeliest after a few steps, so that equal points give an equal fit. Components that lose
-/// all points are dropped.
+/// the likeliest after a few steps, so that equal points give an equal fit, on any number of
+/// threads. More than 4096 points are first merged into as many cells at most, to whose means and
+/// covariances the mixture is fitted (Verbeek, Nunnink and Vlassis 2006); up to 20 steps with all
+/// points follow. Components that lose all points are dropped.
 ///
 /// Throws Error if no point has a positive weight, sizes do not agree, a number is not finite, or
 /// `components` is not in [1, max_components].
 MixtureFit fit_mixture(const WeightedPoints& points, int components,
-                       const std::vector<double>& floor);
+                       const std::vector<double>& floor, const ParallelFor& parallel = {});
 
 /// Returns the fit with the smallest information criterion among those with `least` … `most`
 /// components. Throws Error as above.
 MixtureFit fit_mixture(const WeightedPoints& points, int least, int most,
-                       const std::vector<double>& floor);
+                       const std::vector<double>& floor, const ParallelFor& parallel = {});
 
 }  // namespace pellucid
