@@ -283,6 +283,7 @@ Command add_render(CommandLine& app) {
       "  pellucid render brain.nii.gz --print-tf > tf.json\n"
       "  pellucid render brain.nii.gz --tf tf.json --view left -o brain.exr -o brain.png\n"
       "  pellucid render head.nrrd --preset ct-bone -o bone.png\n"
+      "  pellucid render flow.vti --colormap coolwarm --range 2%:98% --color-bar -o flow.png\n"
       "  pellucid render head.nrrd --tf CT-AAA.vp.json -o slicer.png\n"
       "  pellucid render scene.json -o scene.exr --size 1920x1080 --samples 2 --json\n"
       "  pellucid render cta.nrrd --projection maximum -o mip.png --values mip.npy\n"
