@@ -53,7 +53,8 @@ def test_arguments_are_the_modules():
 
 
 def test_everything_public_is_in_the_package():
-    hidden = {"ViewerServer", "grey_colors", "linear_color", "save_scene"} | KERNELS
+    hidden = {"ViewerServer", "axis_roles", "grey_colors", "grows_downwards", "linear_color",
+              "save_scene", "space_axes", "unit_factors"} | KERNELS
     has = {name for name in vars(_pellucid) if not name.startswith("_")} - hidden
     assert has <= set(pellucid.__all__)
     assert all(hasattr(pellucid, name) for name in pellucid.__all__)
