@@ -95,7 +95,8 @@ MeshBlocks read_by_vtk(const std::filesystem::path& path, Format format,
               format == Format::xml      ? VtkFormat::xml
               : format == Format::legacy ? VtkFormat::legacy
                                          : VtkFormat::exodus,
-              options, [](const std::filesystem::path& file) { check_vtk_xml(file); }, answer);
+              options, [](const std::filesystem::path& file) { return check_vtk_xml(file); },
+              answer);
           if (!answer.error.empty()) throw Error(answer.error);
           write_mesh_blocks(answer.mesh, make);
           return true;

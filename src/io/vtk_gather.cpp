@@ -352,11 +352,12 @@ void gather_grid(Grid& grid, MeshBlocks& mesh) {
   for (std::size_t i = 0; i < points.size(); ++i) points[i] = static_cast<vtkIdType>(i);
   gather_arrays(*grid.GetPointData(), Centering::point, grid.GetNumberOfPoints(), points, block);
   gather_arrays(*grid.GetCellData(), Centering::cell, grid.GetNumberOfCells(), cells, block);
-  for (vtkDataSetAttributes* data :
-       std::initializer_list<vtkDataSetAttributes*>{grid.GetPointData(), grid.GetCellData()}) {
-    vtkDataArray* const scalars = data->GetScalars();
+  for (const bool of_cells : {false, true}) {
+    vtkDataArray* const scalars =
+        of_cells ? grid.GetCellData()->GetScalars() : grid.GetPointData()->GetScalars();
     if (mesh.file.active.empty() && scalars != nullptr && scalars->GetName() != nullptr) {
       mesh.file.active = scalars->GetName();
+      mesh.is_active_of_cells = of_cells;
     }
   }
   mesh.blocks.push_back(std::move(block));

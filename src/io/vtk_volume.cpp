@@ -74,6 +74,10 @@ VolumeFile open_vtk_volume(const std::filesystem::path& path, const ReadOptions&
   const ContainedBytes answer =
       run_vtk(path, [&](const MakeAnswer& make) { write_opened(open_here(path, options), make); });
   OpenedVtkVolume opened = checked(read_opened(answer, name), path);
+  opened.time = options.time;
+  for (const std::string& note : opened.notes) {
+    if (options.note) options.note(name + ": " + note);
+  }
   VolumeFile file;
   file.description = opened.description;
   file.components = opened.components;

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <optional>
+#include <sstream>
 #include <string>
 #include <utility>
 
@@ -39,14 +40,16 @@ void check_points(const VtkFileKind& kind, std::uintmax_t bytes, const std::stri
 
 /// Throws Error with what the module says went wrong.
 void check_answer(const VtkVolume& volume, const std::string& name) {
+  if (volume.error.empty()) return;
   // Of memory it speaks with the file's name.
   if (volume.error.starts_with(name)) throw Error(volume.error);
-  if (!volume.error.empty()) throw Error(name + ": " + volume.error);
+  throw Error(name + ": " + volume.error);
 }
 
 /// Throws Error where a file of XML, or a file that it lists, lacks values of these arrays.
-void check_xml(const std::filesystem::path& path, const std::vector<VtkArrayName>& arrays) {
-  check_vtk_xml(path, [&](VtkSection section, const std::string& name) {
+CheckedVtkXml check_xml(const std::filesystem::path& path,
+                        const std::vector<VtkArrayName>& arrays) {
+  return check_vtk_xml(path, [&](VtkSection section, const std::string& name) {
     const Centering centering =
         section == VtkSection::point_data ? Centering::point : Centering::cell;
     return std::ranges::any_of(arrays, [&](const VtkArrayName& array) {
@@ -55,9 +58,19 @@ void check_xml(const std::filesystem::path& path, const std::vector<VtkArrayName
   });
 }
 
+/// Throws Error where the elements of a file of XML have a fault: VTK has failed, and says less.
+void say_fault(const std::filesystem::path& path) {
+  try {
+    read_vtk_xml(path);
+  } catch (const Error& error) {
+    throw Error(path.string() + ": " + error.what());
+  }
+}
+
 /// Which part of a file is asked for.
 struct Wanted {
   std::optional<std::string> array = std::nullopt;  ///< none: the one to show
+  std::optional<double> time = std::nullopt;        ///< none: the first step
   bool all = false;                                 ///< every array
   bool is_piece = false;  ///< of a list that has been checked, and that hides nothing
 };
@@ -78,7 +91,7 @@ VtkVolume read_grid(const std::filesystem::path& path, const Wanted& wanted) {
     check_memory(2 * needed, name + ": its values");
   };
   const auto check_arrays = [&](const std::vector<VtkArrayName>& arrays) {
-    if (!wanted.is_piece) check_xml(path, arrays);
+    return wanted.is_piece ? CheckedVtkXml{} : check_xml(path, arrays);
   };
   if (kind->xml) {
     check_vtk_xml_end(path);
@@ -87,13 +100,15 @@ VtkVolume read_grid(const std::filesystem::path& path, const Wanted& wanted) {
   }
   VtkVolume volume;
   try {
-    vtk_volume_module()(path,
-                        {kind->xml ? VtkFormat::xml : VtkFormat::legacy, kind->data, wanted.array,
-                         wanted.all, !wanted.all, wanted.is_piece, check, check_arrays},
-                        volume);
+    vtk_volume_module()(
+        path,
+        {kind->xml ? VtkFormat::xml : VtkFormat::legacy, kind->data, wanted.array, wanted.all,
+         !wanted.all, wanted.is_piece, check, check_arrays, wanted.time},
+        volume);
   } catch (const Error& error) {
     throw Error(name + ": " + error.what());
   }
+  if (!volume.error.empty() && kind->xml) say_fault(path);
   check_answer(volume, name);
   return volume;
 }
@@ -259,12 +274,22 @@ void copy_values(const VolumeData& values, std::span<std::byte> to) {
       values);
 }
 
+/// Returns a note on steps in time of which the first is read.
+std::string note_of_steps(const std::vector<double>& times) {
+  std::ostringstream note;
+  note << "has " << times.size() << " steps in time, from " << times.front() << " to "
+       << times.back() << "; the first is read, choose another by its time";
+  return note.str();
+}
+
 }  // namespace
 
 OpenedVtkVolume open_here(const std::filesystem::path& path, const ReadOptions& options) {
   const std::string name = path.string();
-  VtkVolume grid = read_grid(path, {.array = options.array});
+  VtkVolume grid = read_grid(path, {.array = options.array, .time = options.time});
   OpenedVtkVolume opened;
+  opened.time = options.time;
+  if (grid.times.size() > 1 && !options.time) opened.notes.push_back(note_of_steps(grid.times));
   opened.description = describe(grid, grid.arrays.front().centering, name);
   override_placement(options, opened.description);
   MeshArray array = std::move(grid.arrays.front());
@@ -289,7 +314,7 @@ OpenedVtkVolume open_here(const std::filesystem::path& path, const ReadOptions& 
 void read_part_here(const std::filesystem::path& path, const OpenedVtkVolume& opened,
                     ComponentRange range, std::span<std::byte> to) {
   const std::string& name = opened.description.name;
-  const VtkVolume grid = read_grid(path, {.array = opened.array});
+  const VtkVolume grid = read_grid(path, {.array = opened.array, .time = opened.time});
   const MeshArray& array = grid.arrays.front();
   const IndexBox whole{{0, 0, 0}, opened.description.dimensions};
   const IndexBox box = range.part != nullptr ? range.part->box : whole;

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -16,9 +17,11 @@ struct OpenedVtkVolume {
   Volume::Description description;
   int components = 1;
   std::string array;
-  std::string type;          ///< of its values
-  bool reads_parts = false;  ///< whether its values are still to be read, by read_part_here()
-  VolumeData values;         ///< else all of them, the components of a point side by side
+  std::optional<double> time;      ///< that a step in time was asked for; none: the first is read
+  std::vector<std::string> notes;  ///< one line each
+  std::string type;                ///< of its values
+  bool reads_parts = false;        ///< whether its values are still to be read, by read_part_here()
+  VolumeData values;               ///< else all of them, the components of a point side by side
 };
 
 /// These call VTK, which may crash. Throw Error.

@@ -18,6 +18,7 @@
 #include <vtkXMLImageDataReader.h>
 #include <vtkXMLPImageDataReader.h>
 #include <vtkXMLPRectilinearGridReader.h>
+#include <vtkXMLReader.h>
 #include <vtkXMLRectilinearGridReader.h>
 
 #include <algorithm>
@@ -39,6 +40,7 @@ namespace {
 
 constexpr const char* damaged = "; the file is cut off or damaged";
 constexpr const char* remedy = "crop or reduce the volume";
+constexpr const char* no_times = "the file has no steps in time; leave the time out";
 
 /// An array of the file, by the name that it is called by here.
 struct Entry {
@@ -61,6 +63,10 @@ bool is_of_ghosts(const std::string& name) {
 void add_entry(Entry entry, std::vector<Entry>& entries) {
   if (entry.in_file.empty() || is_of_ghosts(entry.in_file) || entry.components < 1) return;
   entry.name = entry.in_file;
+  const bool is_step = std::ranges::any_of(entries, [&](const Entry& other) {
+    return other.in_file == entry.in_file && other.centering == entry.centering;
+  });
+  if (is_step) return;  // another step in time of an array that is known
   const bool is_taken =
       std::ranges::any_of(entries, [&](const Entry& other) { return other.name == entry.name; });
   if (is_taken) entry.name += "_cell";
@@ -326,6 +332,17 @@ std::vector<VtkArrayName> names_of(const std::vector<Entry>& entries, bool with_
   return names;
 }
 
+/// Has the reader read the step nearest to the wanted time, the first if none is wanted.
+void choose_step(vtkXMLReader& reader, const std::vector<double>& times,
+                 const VtkVolumeRequest& request, VtkVolume& volume) {
+  volume.times = times;
+  if (!times.empty()) {
+    reader.SetTimeStep(static_cast<int>(nearest_step(times, request.time)));
+  } else if (request.time) {
+    throw Error(no_times);
+  }
+}
+
 template <class Reader, class Grid>
 void read_xml_grid(const std::filesystem::path& path, const VtkVolumeRequest& request,
                    const VtkMessages& messages, VtkVolume& volume) {
@@ -348,10 +365,13 @@ void read_xml_grid(const std::filesystem::path& path, const VtkVolumeRequest& re
   for (const Entry& entry : entries) {
     (entry.centering == Centering::point ? points : cells)->EnableArray(entry.in_file.c_str());
   }
-  request.check_arrays(names_of(entries, !request.hides_nothing));
+  const CheckedVtkXml checked = request.check_arrays(names_of(entries, !request.hides_nothing));
+  choose_step(*reader, checked.times, request, volume);
   const std::uintmax_t bytes = bytes_of(entries, whole);
   if constexpr (std::is_same_v<Grid, vtkImageData>) {
-    if (request.outline && reads_parts(entries, *points, *cells, request.hides_nothing)) {
+    // Readers read an array of several steps once.
+    if (request.outline && checked.times.size() < 2 &&
+        reads_parts(entries, *points, *cells, request.hides_nothing)) {
       volume.type = entries.front().type;
       volume.value_type = value_type(entries.front());
       take_outline(*about, entries, volume);
@@ -377,6 +397,7 @@ void read_xml_grid(const std::filesystem::path& path, const VtkVolumeRequest& re
 template <class Reader, class Grid>
 void read_legacy_grid(const std::filesystem::path& path, const VtkVolumeRequest& request,
                       const VtkMessages& messages, VtkVolume& volume) {
+  if (request.time) throw Error(no_times);
   const auto reader = vtkSmartPointer<Reader>::New();
   reader->SetFileName(path.c_str());
   read_all_arrays(*reader);
@@ -407,7 +428,7 @@ void read_volume(const std::filesystem::path& path, const VtkVolumeRequest& requ
 
 }  // namespace pellucid
 
-extern "C" __attribute__((visibility("default"))) void pellucid_read_volume_with_vtk_3(
+extern "C" __attribute__((visibility("default"))) void pellucid_read_volume_with_vtk_4(
     const std::filesystem::path& path, const pellucid::VtkVolumeRequest& request,
     pellucid::VtkVolume& answer) {
   pellucid::answer(answer.error, pellucid::remedy,
