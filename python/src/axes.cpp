@@ -91,7 +91,7 @@ Returns what each axis of an array of this shape is: "x", "y", "z", "time", "mem
 Returns which axes are z, y and x, and notes; None if nothing says what any axis is. Raises Error if
 they are those of no volume.)");
   module.def("unit_factors", &unit_factors, py::arg("units"), R"(
-Returns what lengths along z, y and x are multiplied by for one unit, and a note, which may be empty.
+Returns what lengths along z, y and x are multiplied by for one unit, and a note, perhaps empty.
 Units are names or symbols of lengths; "" if there is none.)");
   module.def("grows_downwards", &grows_downwards, py::arg("axis"), R"(
 Returns "down" for an axis that is said to grow downwards, "perhaps" for one that may, else "".)");
