@@ -13,6 +13,7 @@
 #include "contained.h"
 #include "input_file.h"
 #include "legacy_vtk_cells.h"
+#include "legacy_vtk_numbers.h"
 #include "memory_limit.h"
 #include "mesh_archive.h"
 #include "mesh_blocks.h"
@@ -116,7 +117,10 @@ MeshBlocks read_blocks(const std::filesystem::path& path, const MeshReadOptions&
   check_memory(2 * bytes, path.string() + ": its mesh");
   const Format format = format_of(path, options);
   if (format == Format::exodus) check_net_cdf_size(path);
-  if (format == Format::legacy) check_legacy_vtk_cells(path);
+  if (format == Format::legacy) {
+    check_legacy_vtk_cells(path);
+    check_legacy_vtk_numbers(path);
+  }
   if (format == Format::vtk_hdf) return read_vtk_hdf(path, options);
   if (format != Format::plot3d) {
     return read_by_vtk(path, format, options);

@@ -9,6 +9,7 @@
 
 #include "array_statistics.h"
 #include "input_file.h"
+#include "legacy_vtk_numbers.h"
 #include "memory_limit.h"
 #include "pellucid/scene/error.h"
 #include "pellucid/scene/hidden_values.h"
@@ -97,6 +98,7 @@ VtkVolume read_grid(const std::filesystem::path& path, const Wanted& wanted) {
     check_vtk_xml_end(path);
   } else {
     check(bytes);
+    check_legacy_vtk_numbers(path);
   }
   VtkVolume volume;
   try {
