@@ -7,13 +7,11 @@
 #include "vtk_xml_arrays.h"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <cstddef>
 #include <map>
 #include <memory>
 #include <set>
-#include <system_error>
 #include <type_traits>
 #include <utility>
 
@@ -32,16 +30,6 @@ namespace {
 std::string_view attribute(const XmlTag& tag, const char* name) {
   const auto found = tag.attributes.find(name);
   return found == tag.attributes.end() ? std::string_view{} : found->second;
-}
-
-/// Returns the number that an attribute begins with, as VTK does.
-template <class Number>
-std::optional<Number> number_in(std::string_view text) {
-  text = without_blanks(text);
-  Number number{};
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
-  if (error != std::errc()) return std::nullopt;
-  return number;
 }
 
 std::string in_quotes(std::string_view text) {
@@ -76,6 +64,15 @@ std::optional<std::array<Number, count>> numbers_of(const XmlTag& tag, const cha
   std::array<Number, count> numbers{};
   std::ranges::copy(*found, numbers.begin());
   return numbers;
+}
+
+/// Returns a piece's number of points or cells; 0: it is not there. Throws Error where it is none.
+std::uint64_t count_of(const XmlTag& tag, const char* name) {
+  const std::string_view given = without_blanks(attribute(tag, name));
+  if (given.empty()) return 0;
+  if (const auto number = number_of_word<std::uint64_t>(given)) return *number;
+  throw Error(std::string("a piece has the ") + name + " " + in_quotes(given) +
+              ", which is no whole number from 0 on; mend the file");
 }
 
 /// Walks through the tags of a file.
@@ -184,8 +181,8 @@ class FileReader {
   void enter_piece(const XmlTag& tag) {
     VtkXmlPiece piece;
     piece.source = xml_text(attribute(tag, "Source"));
-    piece.points = number_in<std::uint64_t>(attribute(tag, "NumberOfPoints")).value_or(0);
-    piece.cells = number_in<std::uint64_t>(attribute(tag, "NumberOfCells")).value_or(0);
+    piece.points = count_of(tag, "NumberOfPoints");
+    piece.cells = count_of(tag, "NumberOfCells");
     if (const auto extent = numbers_of<std::int64_t, 6>(tag, "Extent")) {
       piece.extent = *extent;
       piece.points = piece.cells = 1;
@@ -212,7 +209,9 @@ class FileReader {
     // VTK goes by the offset, and takes each format that it does not know for text.
     if (!offset.empty()) {
       binary.offset = number_of_word<std::uint64_t>(without_blanks(offset));
-      if (!appended_) {
+      if (!without_blanks(tag.text).empty()) {
+        array.fault = "has an offset, and values of its own";
+      } else if (!appended_) {
         array.fault = "is appended, but the file has no AppendedData";
       } else if (!binary.offset || *binary.offset >= appended_->bytes.size()) {
         array.fault = "has the offset " + in_quotes(offset) +
@@ -284,9 +283,13 @@ class FileReader {
       const VtkXmlBytes bytes = bytes_of(binary);
       is_right = is_right || bytes.is_filled(coding_);
       is_other = is_other || bytes.is_filled(other);
-      if (const auto count = bytes.count(coding_)) {
-        array.values = *count / size_of_vtk_type(array.type) * (array.is_bits ? 8 : 1);
+      std::uint64_t count = bytes.said(coding_).value_or(0);
+      if (const std::uint64_t most = bytes.available(coding_);
+          !coding_.compressed && count > most) {
+        array.is_cut = true;
+        count = most;
       }
+      array.values = count / size_of_vtk_type(array.type) * (array.is_bits ? 8 : 1);
     }
     if (is_right || !is_other) return;
     throw Error("the headers of its binary arrays have " + std::to_string(8 * other.header_size) +

@@ -25,6 +25,7 @@ struct VtkXmlArray {
   std::vector<int> steps;  ///< the time steps that it is of; empty: all
   bool is_bits = false;    ///< eight values in a byte, so `values` are up to seven too many
   std::optional<std::uint64_t> values;  ///< numbers in the file; none: it does not say
+  bool is_cut = false;                  ///< its header says more bytes than there are
   std::string stop;   ///< text: the first word that is no number of the type; empty: none
   std::string fault;  ///< what is wrong with its attributes; empty: nothing
 };

@@ -38,12 +38,12 @@ VtkXmlBytes::VtkXmlBytes(std::string_view text, bool base64)
       base64_(base64),
       size_(base64 ? decoded_size(text_) : text_.size()) {}
 
-std::optional<std::uint64_t> VtkXmlBytes::count(const VtkXmlCoding& coding) const {
-  if (!coding.compressed) {
-    const auto said = number(0, coding);
-    if (!said || size_ < coding.header_size) return std::nullopt;
-    return std::min(*said, size_ - coding.header_size);
-  }
+std::uint64_t VtkXmlBytes::available(const VtkXmlCoding& coding) const {
+  return size_ - std::min(size_, coding.header_size);
+}
+
+std::optional<std::uint64_t> VtkXmlBytes::said(const VtkXmlCoding& coding) const {
+  if (!coding.compressed) return number(0, coding);
   const auto blocks = number(0, coding), block = number(1, coding), last = number(2, coding);
   if (blocks == 0) return 0;
   if (!blocks || !block || !last || *block > most || *last > most) return std::nullopt;

@@ -21,9 +21,11 @@ class VtkXmlBytes {
   /// `text` lasts up to where something else begins; there may be blanks in front of that.
   VtkXmlBytes(std::string_view text, bool base64);
 
-  /// Returns how many bytes of values there are, as the header says, but not more than can be
-  /// there; nothing where it says no number that can be.
-  std::optional<std::uint64_t> count(const VtkXmlCoding& coding) const;
+  /// Returns how many bytes of values the header says; nothing where it says no number that can be.
+  std::optional<std::uint64_t> said(const VtkXmlCoding& coding) const;
+
+  /// Returns how many bytes of values there can be at most, where they are not compressed.
+  std::uint64_t available(const VtkXmlCoding& coding) const;
 
   /// Returns whether the header and the values that it tells of take all of the text but blanks.
   bool is_filled(const VtkXmlCoding& coding) const;

@@ -94,7 +94,13 @@ void check_sizes(const VtkXmlPiece& piece, const IsVtkArrayWanted& is_wanted) {
     if (!array.values) continue;
     const auto needed = needed_values(array, piece, at);
     const std::uint64_t has = *array.values;
-    if (!needed || has == *needed) continue;
+    if (!needed) continue;
+    if (array.is_cut && has >= *needed) {
+      throw Error(name_of(array) +
+                  " has a header that says more bytes than are there; the file is "
+                  "cut off or damaged, or its byte_order is wrong");
+    }
+    if (has == *needed) continue;
     constexpr std::uint64_t bits = 8;
     if (array.is_bits && has > *needed && has - *needed < bits) continue;
     const bool short_of = has < *needed;
