@@ -69,6 +69,7 @@ struct VtkVolume {
   std::vector<std::string> names;  ///< of all arrays of the file
   std::string shown;               ///< the array that is shown where none is named
   std::vector<double> times;       ///< of the file's steps in time; empty: it has none
+  std::vector<std::string> notes;  ///< one line each
   /// Flags of vtkGhostType, one for each point or cell; empty: there are none.
   std::vector<std::uint8_t> point_ghosts, cell_ghosts;
   /// Reads the values of a part of the points, or of the cells between them: `arrays` has none. Of
@@ -81,7 +82,7 @@ struct VtkVolume {
 
 using ReadVolumeWithVtk = void(const std::filesystem::path& path, const VtkVolumeRequest& request,
                                VtkVolume& answer);
-inline constexpr const char* read_volume_with_vtk_name = "pellucid_read_volume_with_vtk_4";
+inline constexpr const char* read_volume_with_vtk_name = "pellucid_read_volume_with_vtk_5";
 
 /// Loaded by the first call. Throw Error where the build has no such module or it does not load.
 ReadWithVtk& vtk_module();

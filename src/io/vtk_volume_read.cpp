@@ -164,8 +164,10 @@ void take_values(vtkDataSet& set, const std::vector<Entry>& entries, VtkVolume& 
                   " values, but there are " + std::to_string(count) +
                   (point ? " points" : " cells") + damaged);
     }
-    volume.arrays.push_back(
-        {entry.name, entry.centering, array->GetNumberOfComponents(), values_in_place(*array)});
+    std::string rounded;
+    volume.arrays.push_back({entry.name, entry.centering, array->GetNumberOfComponents(),
+                             values_in_place(*array, rounded)});
+    if (!rounded.empty()) volume.notes.push_back("of \"" + entry.name + "\" " + rounded);
   }
   volume.point_ghosts = ghosts_of(*set.GetPointData(), set.GetNumberOfPoints());
   volume.cell_ghosts = ghosts_of(*set.GetCellData(), set.GetNumberOfCells());
@@ -319,7 +321,8 @@ void take_outline(vtkInformation& about, const std::vector<Entry>& entries, VtkV
 /// Returns the type of values whose type does not depend on them: "f32".
 std::string value_type(const Entry& entry) {
   const auto array = vtkSmartPointer<vtkDataArray>::Take(vtkDataArray::CreateDataArray(entry.type));
-  return std::string(type_name(values_in_place(*array)));
+  std::string rounded;
+  return std::string(type_name(values_in_place(*array, rounded)));
 }
 
 std::vector<VtkArrayName> names_of(const std::vector<Entry>& entries, bool with_ghosts) {
@@ -428,7 +431,7 @@ void read_volume(const std::filesystem::path& path, const VtkVolumeRequest& requ
 
 }  // namespace pellucid
 
-extern "C" __attribute__((visibility("default"))) void pellucid_read_volume_with_vtk_4(
+extern "C" __attribute__((visibility("default"))) void pellucid_read_volume_with_vtk_5(
     const std::filesystem::path& path, const pellucid::VtkVolumeRequest& request,
     pellucid::VtkVolume& answer) {
   pellucid::answer(answer.error, pellucid::remedy,
