@@ -251,10 +251,11 @@ VolumeData read_piece(const VtkVolume& grid, const ImagePiece& piece, IndexBox b
 
 /// Reads a box of values, with their components side by side.
 VolumeData read_values(const VtkVolume& grid, const std::vector<ImagePiece>& pieces,
-                       const IndexBox& box, const std::string& name) {
+                       const IndexBox& box, const std::string& name, bool is_whole,
+                       PieceDifferences& differences) {
   if (pieces.empty()) return read_box(grid, box, name);
   return join_pieces(
-      pieces, box, grid.arrays.front().components,
+      pieces, box, grid.arrays.front().components, differences,
       [&](const ImagePiece& piece, const IndexBox& some) {
         try {
           return read_piece(grid, piece, some);
@@ -262,7 +263,7 @@ VolumeData read_values(const VtkVolume& grid, const std::vector<ImagePiece>& pie
           throw Error(name + ": a piece cannot be read: " + error.what());
         }
       },
-      name);
+      name, is_whole);
 }
 
 /// Copies values of one number at each point to their place among the bytes.
@@ -314,8 +315,9 @@ OpenedVtkVolume open_here(const std::filesystem::path& path, const ReadOptions& 
   return opened;
 }
 
-void read_part_here(const std::filesystem::path& path, const OpenedVtkVolume& opened,
-                    ComponentRange range, std::span<std::byte> to) {
+PieceDifferences read_part_here(const std::filesystem::path& path, const OpenedVtkVolume& opened,
+                                ComponentRange range, std::span<std::byte> to) {
+  PieceDifferences differences;
   const std::string& name = opened.description.name;
   const VtkVolume grid = read_grid(path, {.array = opened.array, .time = opened.time});
   const MeshArray& array = grid.arrays.front();
@@ -339,13 +341,15 @@ void read_part_here(const std::filesystem::path& path, const OpenedVtkVolume& op
   for (int k = 0; k < box.count[2]; k += layers) {
     now.first[2] = box.first[2] + k;
     now.count[2] = std::min(layers, box.count[2] - k);
-    const VolumeData values = read_values(grid, pieces, now, name);
+    const VolumeData values =
+        read_values(grid, pieces, now, name, range.part == nullptr, differences);
     const auto components = split_components(values, array.components, range, name);
     for (std::size_t c = 0; c < components.size(); ++c) {
       const std::size_t from = (c * count + static_cast<std::size_t>(k) * layer) * size;
       copy_values(components[c], to.subspan(from, value_count(now) * size));
     }
   }
+  return differences;
 }
 
 std::vector<VolumeArray> list_here(const std::filesystem::path& path) {

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "components.h"
+#include "vtk_piece_differences.h"
 
 namespace pellucid {
 
@@ -26,9 +27,9 @@ struct OpenedVtkVolume {
 
 /// These call VTK, which may crash. Throw Error.
 OpenedVtkVolume open_here(const std::filesystem::path& path, const ReadOptions& options);
-/// Reads the components of the range, one after the other.
-void read_part_here(const std::filesystem::path& path, const OpenedVtkVolume& opened,
-                    ComponentRange range, std::span<std::byte> to);
+/// Reads the components of the range, one after the other. Returns how far pieces disagree.
+PieceDifferences read_part_here(const std::filesystem::path& path, const OpenedVtkVolume& opened,
+                                ComponentRange range, std::span<std::byte> to);
 std::vector<VolumeArray> list_here(const std::filesystem::path& path);
 
 }  // namespace pellucid

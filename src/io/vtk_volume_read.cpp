@@ -29,6 +29,7 @@
 
 #include "module_answer.h"
 #include "pellucid/scene/error.h"
+#include "vtk_compare_pieces.h"
 #include "vtk_messages.h"
 #include "vtk_module.h"
 #include "vtk_readers.h"
@@ -394,6 +395,9 @@ void read_xml_grid(const std::filesystem::path& path, const VtkVolumeRequest& re
   reader->Update();
   check(*reader, messages);
   take_all<Grid>(reader->GetOutput(), volume);
+  if constexpr (std::is_same_v<Grid, vtkRectilinearGrid>) {
+    compare_pieces(*reader->GetOutput(), checked.pieces, messages, volume.notes);
+  }
   take_values(*reader->GetOutput(), entries, volume);
 }
 

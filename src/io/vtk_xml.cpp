@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <vtkDataObject.h>
+#include <vtkStructuredGrid.h>
 #include <vtkXMLDataElement.h>
 #include <vtkXMLFileReadTester.h>
 #include <vtkXMLGenericDataObjectReader.h>
@@ -11,6 +12,7 @@
 #include <vector>
 
 #include "pellucid/scene/error.h"
+#include "vtk_compare_pieces.h"
 #include "vtk_gather.h"
 #include "vtk_readers.h"
 
@@ -104,6 +106,9 @@ void read_data(const std::filesystem::path& path, const std::string& kind,
   vtkDataObject* const data = reader->GetOutput();
   if (data == nullptr) throw Error("the file is cut off or damaged");
   gather(*data, mesh);
+  if (auto* const grid = vtkStructuredGrid::SafeDownCast(data); grid != nullptr) {
+    compare_pieces(*grid, checked.pieces, messages, mesh.file.notes);
+  }
 }
 
 struct Step {

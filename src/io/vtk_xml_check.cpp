@@ -385,6 +385,11 @@ void check_list(const fs::path& path, const VtkXmlFile& list, const IsVtkArrayWa
   for (const VtkXmlPiece& piece : list.pieces) {
     const fs::path file = beside(path, piece.source);
     if (!is_vtk_xml(file)) continue;
+    if (structured && !is_empty(piece.extent)) {
+      ListedPiece& listed = checked.pieces.emplace_back(ListedPiece{file, {}});
+      std::ranges::transform(piece.extent, listed.extent.begin(),
+                             [](std::int64_t n) { return static_cast<int>(n); });
+    }
     try {
       check_listed_file(read_vtk_xml(file), piece, list, is_wanted, checked);
     } catch (const Error& error) {
@@ -395,7 +400,7 @@ void check_list(const fs::path& path, const VtkXmlFile& list, const IsVtkArrayWa
 
 CheckedVtkXml check_file(const fs::path& path, const IsVtkArrayWanted& is_wanted, int depth) {
   const VtkXmlFile file = read_vtk_xml(path);
-  CheckedVtkXml checked{file.times, false};
+  CheckedVtkXml checked{file.times, false, {}};
   if (depth > 0 && file.times.size() > 1) {
     throw Error("it has steps in time, of which a file that names it chooses none; give it alone");
   }

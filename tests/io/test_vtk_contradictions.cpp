@@ -148,6 +148,19 @@ TEST_F(VtkContradictions, HeadersHaveTheBitsThatHeaderTypeSays) {
   EXPECT_TRUE(contains(refused_text("a.vtu", mesh), "have 64 bits"));
 }
 
+// The number of bytes is a large one in the other order, and there are as many as needed.
+TEST_F(VtkContradictions, BytesHaveTheOrderThatByteOrderSays) {
+  const std::string bytes = block<std::uint32_t>(floats());
+  for (const std::string& file :
+       {image(at("0"), "", appended(bytes)), image(inlined(base64(bytes))),
+        image(at("0"), "", appended(base64(bytes), "base64"))}) {
+    expect_counting(file);
+    std::string other = file;
+    other.replace(other.find("LittleEndian"), 12, "BigEndian");
+    EXPECT_TRUE(contains(refused_text("a.vti", other), "its byte_order is wrong"));
+  }
+}
+
 TEST_F(VtkContradictions, CompressedHeadersToo) {
   const std::string packed = test::deflated(floats(), 15);
   const auto file = [&](const std::string& header, const std::string& type) {
@@ -177,8 +190,10 @@ TEST_F(VtkContradictions, OffsetsLieWithinWhatIsAppended) {
   EXPECT_TRUE(contains(refused_text("a.vti", image(format)), "has the format \"Binary\""));
   expect_counting(image(at(" 0 "), "", bytes));
   // VTK goes by the offset, whatever the format.
-  expect_counting(
-      image("<DataArray type=\"Float32\" Name=\"v\" offset=\"0\">9 9</DataArray>", "", bytes));
+  const std::string bare = "<DataArray type=\"Float32\" Name=\"v\" format=\"ascii\" offset=\"0\">";
+  expect_counting(image(bare + "\n</DataArray>", "", bytes));
+  EXPECT_TRUE(contains(refused_text("a.vti", image(bare + "9 9</DataArray>", "", bytes)),
+                       "has an offset, and values of its own"));
   // Into another array, and behind the last.
   const std::string two = block<std::uint32_t>(floats()) + block<std::uint32_t>(floats());
   EXPECT_TRUE(contains(refused_text("b.vti", image(at("0") + at("20", "w"), "", appended(two))),
@@ -217,6 +232,13 @@ TEST_F(VtkContradictions, AttributesAreNumbers) {
         refused_text("a.vti", image("<DataArray type=\"Float32\" Name=\"v\" NumberOfComponents=\"" +
                                     components + "\" format=\"ascii\">" + values + "</DataArray>"));
     EXPECT_TRUE(contains(error, "has the NumberOfComponents \"" + components)) << error;
+  }
+  for (const std::string count : {"-1", "5x", "1e1", "abc"}) {
+    for (const std::string name : {"NumberOfPoints", "NumberOfCells"}) {
+      std::string mesh = test::small_vtu();
+      mesh.replace(mesh.find(name), name.size() + 4, name + "=\"" + count + "\"");
+      EXPECT_TRUE(contains(refused_text("a.vtu", mesh), "a piece has the " + name + " \"" + count));
+    }
   }
   for (const std::string name : {"", "Name=\"\""}) {
     const std::string error =
@@ -366,6 +388,126 @@ TEST_F(VtkContradictions, TheActiveArrayOfCellsIsNotThatOfPoints) {
   const MeshFile file = read_mesh(write("a.vtu", mesh));
   EXPECT_EQ(file.active, "p_cell");
   EXPECT_EQ(default_array(file).centering, Centering::cell);
+}
+
+/// A copy of a piece with other values, "7", at some of its points.
+VtkPiece with_values(VtkPiece piece, const std::string& from, const std::string& to) {
+  std::string values = test::vtk_values(piece.extent);
+  values.replace(values.find(from), from.size(), to);
+  piece.points = xml_array("Int16", "v", values);
+  return piece;
+}
+
+TEST_F(VtkContradictions, PiecesThatDisagreeAreTold) {
+  // The point (1, 2, 3) is in both.
+  const VtkPiece other = with_values(upper, " 321 ", " 300 ");
+  for (const std::string kind : {"ImageData", "RectilinearGrid"}) {
+    SCOPED_TRACE(kind);
+    const std::string list =
+        vtk_list("P" + kind, {{"0 3 0 4 0 3", "l.xml"}, {"0 3 0 4 3 5", "u.xml"}});
+    write("l.xml", vtk_grid(kind, {lower}));
+    write("u.xml", vtk_grid(kind, {upper}));
+    EXPECT_EQ(value_at(components(write("a.pvti", list)).front(), 1, 2, 3), 321);
+    EXPECT_EQ(notes(), "");
+    write("u.xml", vtk_grid(kind, {other}));
+    const bool is_image = kind == "ImageData";
+    EXPECT_EQ(value_at(components(path("a.pvti")).front(), 1, 2, 3), is_image ? 321 : 300);
+    EXPECT_TRUE(is_noted("disagree about 1 value there, by up to 21")) << notes();
+    EXPECT_TRUE(is_noted(is_image ? "the first piece are shown" : "the last piece are shown"));
+  }
+  write("l.vts", vtk_grid("StructuredGrid", {lower}));
+  write("u.vts", vtk_grid("StructuredGrid", {other}));
+  const std::string list =
+      vtk_list("PStructuredGrid", {{"0 3 0 4 0 3", "l.vts"}, {"0 3 0 4 3 5", "u.vts"}});
+  const MeshFile mesh = read_mesh(write("a.pvts", list));
+  ASSERT_EQ(mesh.notes.size(), 1U);
+  EXPECT_TRUE(contains(mesh.notes[0], "disagree about 1 value there")) << mesh.notes[0];
+  write("u.vts", vtk_grid("StructuredGrid", {upper}));
+  EXPECT_EQ(read_mesh(path("a.pvts")).notes.size(), 0U);
+  // Cells of both.
+  VtkPiece cells = lower, more = upper;
+  cells.has_points = more.has_points = false;
+  cells.has_cells = more.has_cells = true;
+  more.extent[4] = 2;
+  std::string values = test::vtk_values({0, 2, 0, 3, 2, 4});
+  more.cells = xml_array("Int16", "c", "9" + values.substr(values.find(' ')));
+  for (const std::string kind : {"ImageData", "RectilinearGrid"}) {
+    write("l.xml", vtk_grid(kind, {cells}));
+    write("u.xml", vtk_grid(kind, {more}));
+    components(write(
+        "a.pvti",
+        vtk_list("P" + kind, {{"0 3 0 4 0 3", "l.xml"}, {"0 3 0 4 2 5", "u.xml"}}, "Int16", true)));
+    EXPECT_TRUE(is_noted("disagree about 1 value there, by up to 191")) << notes();
+  }
+}
+
+TEST_F(VtkContradictions, PiecesAgreeAboutPositions) {
+  for (const std::string kind : {"RectilinearGrid", "StructuredGrid"}) {
+    const bool is_mesh = kind == "StructuredGrid";
+    const std::string name = is_mesh ? "a.pvts" : "a.pvtr", right = vtk_grid(kind, {upper});
+    const std::string list =
+        vtk_list("P" + kind, {{"0 3 0 4 0 3", "l.xml"}, {"0 3 0 4 3 5", "u.xml"}});
+    write("l.xml", vtk_grid(kind, {lower}));
+    // A position along x that both have, and along z on the face between.
+    for (const auto& [from, to] : is_mesh ? std::vector{std::pair{"2 0 3 ", "2 1 3 "}}
+                                          : std::vector{std::pair{"0 1 4 9 <", "0 2 4 9 <"},
+                                                        std::pair{"9 16 25", "8 16 25"}}) {
+      std::string other = right;
+      other.replace(other.find(from), std::string(from).size(), to);
+      write("u.xml", other);
+      EXPECT_TRUE(contains(refused_text(name, list), "disagrees with another about positions"));
+    }
+  }
+}
+
+TEST_F(VtkContradictions, LegacyNumbersAreOfTheirTypes) {
+  const auto image_of = [](const std::string& arrays) {
+    return "# vtk DataFile Version 3.0\nby hand\nASCII\nDATASET STRUCTURED_POINTS\n"
+           "DIMENSIONS 2 2 2\nORIGIN 0 0 0\nSPACING 1 1 1\nPOINT_DATA 8\n" +
+           arrays;
+  };
+  const std::string numbers = "1 2 3 4\n5 6 7 ";
+  for (const auto& [type, number] :
+       {std::pair{"unsigned_char", "300"}, std::pair{"unsigned_char", "-1"},
+        std::pair{"char", "128"}, std::pair{"short", "40000"}, std::pair{"unsigned_short", "65536"},
+        std::pair{"int", "2147483648"}, std::pair{"unsigned_int", "4294967296"},
+        std::pair{"int", "2.5"}, std::pair{"long", "9223372036854775808"}}) {
+    for (const std::string& array :
+         {"SCALARS v " + std::string(type) + " 1\nLOOKUP_TABLE default\n",
+          "SCALARS v " + std::string(type) + "\nLOOKUP_TABLE default\n",
+          "FIELD FieldData 1\nv 1 8 " + std::string(type) + "\n",
+          "FIELD FieldData 1\n2v 1 8 " + std::string(type) + "\n"}) {
+      const std::string error = refused_text("a.vtk", image_of(array + numbers + number + "\n"));
+      EXPECT_TRUE(
+          contains(error, "has the number " + std::string(number) + ", which is no " + type))
+          << error;
+      EXPECT_EQ(value_at(read_volume(write("b.vtk", image_of(array + numbers + "8\n"))), 1, 1, 1),
+                8);
+    }
+  }
+  // Reals behind whole numbers, and colors of a table.
+  const std::string more = "SCALARS v short 1\nLOOKUP_TABLE t\n" + numbers +
+                           "8\nLOOKUP_TABLE t 2\n0 0.5 0 1\n1 1 1 1\n"
+                           "FIELD FieldData 1\n3d 1 8 float\n" +
+                           numbers + "8.5\n";
+  EXPECT_EQ(value_at(read_volume(write("c.vtk", image_of(more))), 1, 1, 1), 8);
+  std::string mesh = test::small_structured_vtk();
+  mesh.replace(mesh.find("5 6\n"), 4, "5 6000000000\n");
+  EXPECT_TRUE(contains(refused_text("m.vtk", mesh), "\"c\" has the number 6000000000"));
+}
+
+TEST_F(VtkContradictions, RoundedNumbersAreTold) {
+  const std::string values = xml_array("Int64", "v", "9007199254740993 2 3 4 5 6 7 8");
+  components(write("a.vti", image(values)));
+  EXPECT_TRUE(is_noted("of \"v\" 1 of 8 whole numbers of 64 bits")) << notes();
+  std::string mesh = test::small_vtu();
+  mesh.replace(mesh.find("\"Int32\" Name=\"id\""), 17, "\"Int64\" Name=\"id\"");
+  mesh.replace(mesh.find("7 8 9<"), 5, "7 -9007199254740993 9007199254740994");
+  const std::vector<std::string> told = read_mesh(write("a.vtu", mesh)).notes;
+  ASSERT_EQ(told.size(), 1U);
+  EXPECT_TRUE(contains(told[0], "1 of the whole numbers of \"id\" do not fit")) << told[0];
+  components(write("b.vti", image(xml_array("Int64", "v", "9007199254740992 2 3 4 5 6 7 8"))));
+  EXPECT_EQ(notes(), "");
 }
 
 }  // namespace
