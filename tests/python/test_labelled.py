@@ -97,6 +97,20 @@ def test_lengths_of_several_units_become_one(xarray, units, factor):
     assert volume.spacing[1:] == (2, 0.5)
 
 
+@pytest.mark.parametrize("longitudes, origin", [((320.0, 340, 0, 20, 40), 320),
+                                                ((140, 160, 180, -160, -140), 140),
+                                                ((-160, -180, 160, 140, 120), -160)])
+def test_longitudes_go_on_where_they_jump(xarray, longitudes, origin):
+    lon = ("lon", numpy.array(longitudes), {"units": "degrees_east"})
+    data = xarray.DataArray(VALUES, dims=("level", "lat", "lon"), coords={"lon": lon})
+    with pytest.warns(pellucid.Note, match="longitudes go on where they jump by 360"):
+        volume = pellucid.Volume(data)
+    assert volume.spacing[2] == 20 and volume.origin[2] == origin
+    twice = data.assign_coords(lon=("lon", [300.0, 0, 300, 0, 60], {"units": "degrees_east"}))
+    with pytest.raises(pellucid.Error):
+        pellucid.Volume(twice)
+
+
 def test_units_that_are_no_lengths_are_told(xarray):
     assert numpy.array_equal(silent(with_units(xarray, "mm", "mm", "mm")).coordinates[0], Z)
     silent(with_units(xarray, None, "degrees_north", "degrees_east"))
