@@ -84,6 +84,8 @@ def _are_dates(positions: numpy.ndarray) -> bool:
 
 def _placed(array: numpy.ndarray, axes: List[_Axis], name: str) -> Placed:
     """Turns the axes to z, y, x by their meaning, by the rules of files, and places them."""
+    if array.ndim < 3:
+        three_axes(array, name)  # throws
     order = _order(array.shape, axes, name)
     if order is not None:
         rest = [a for a in range(array.ndim) if a not in order]
@@ -114,13 +116,16 @@ def _order(shape: Tuple[int, ...], axes: List[_Axis], name: str) -> Optional[Tup
         is_slice = role == "channel" and "z" not in roles
         if role in _NO_PLACES and side > 1 and not is_slice:
             refuse(axis, _NO_PLACES[role])
+    # One time or member of several axes is no choice.
+    kept = [a for a, role in enumerate(roles)
+            if len(axes) <= 3 or shape[a] > 1 or role not in _NO_PLACES]
     try:
-        found = space_axes(given, shape)
+        found = space_axes([given[a] for a in kept], [shape[a] for a in kept])
     except Error as error:
         raise Error(f"{name}: is {error}") from None
     if found is None:
         return None
-    order, notes = found
+    order, notes = tuple(kept[a] for a in found[0]), found[1]
     for a, (axis, side) in enumerate(zip(axes, shape)):
         if side > 1 and a not in order:
             refuse(axis, _NO_PLACES.get(roles[a], "none of x, y and z"))

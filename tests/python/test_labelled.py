@@ -77,6 +77,8 @@ def test_channels_and_others_beside_places_are_refused(xarray):
         data = xarray.DataArray(numpy.stack([VALUES] * 2), dims=(name, "z", "y", "x"))
         with pytest.raises(pellucid.Error, match=meaning):
             pellucid.Volume(data)
+    with pytest.raises(pellucid.Error, match="has 2 axes; give three"):
+        pellucid.Volume(xarray.DataArray(VALUES[0], dims=("y", "x")))
     with pytest.raises(pellucid.Error, match="time and not z: images, no volume"):
         pellucid.Volume(xarray.DataArray(VALUES[:1], dims=("time", "y", "x")))
 
@@ -141,6 +143,12 @@ def test_time_is_no_axis_of_space(xarray, name, coordinates, attributes, place):
     with pytest.raises(pellucid.Error, match=f"\"{name}\" is time; choose one, as in data.isel"):
         pellucid.Volume(data)
     assert pellucid.Volume(data.values).shape == SHAPE
+
+
+def test_one_time_beside_bands_is_left_out(xarray):
+    data = xarray.DataArray(VALUES[:, numpy.newaxis], dims=("band", "time", "y", "x"))
+    with pytest.warns(pellucid.Note, match="its axis band is taken for z"):
+        assert numpy.array_equal(pellucid.Volume(data).array, VALUES)
 
 
 def test_one_time_of_several_axes_is_left_out(xarray):
