@@ -209,7 +209,8 @@ Volume::Description grid_of(vtkDataSet& data, bool of_cells, const std::string& 
 
 VolumeData component_of(vtkDataArray& array, int component) {
   if (array.GetNumberOfComponents() == 1 && array.HasStandardMemoryLayout()) {
-    return values_in_place(array);
+    std::string rounded;
+    return values_in_place(array, rounded);
   }
   Component chosen{component};
   using Layouts = vtkArrayDispatch::DispatchByArray<vtkTypeList::Create<

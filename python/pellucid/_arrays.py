@@ -106,6 +106,12 @@ def vtk_array(attributes: Any, wanted: Optional[str], name: str) -> Any:
     return (single or arrays or [None])[0]
 
 
+def _numbers_of(array: Any) -> numpy.ndarray:
+    """The memory of a vtkDataArray as numbers: VTK calls that of a vtkCharArray text."""
+    values = numpy.asarray(memoryview(array))
+    return values.view(numpy.int8) if values.dtype.kind == "S" else values
+
+
 def vtk_values(array: Any, name: str) -> numpy.ndarray:
     """The memory of a vtkDataArray, or a copy: (n,), or (n, components)."""
     if array.GetClassName() == "vtkBitArray":
@@ -114,13 +120,13 @@ def vtk_values(array: Any, name: str) -> numpy.ndarray:
         components = array.GetNumberOfComponents()
         return bits if components == 1 else bits.reshape(-1, components)
     try:
-        return numpy.asarray(memoryview(array))
+        return _numbers_of(array)
     except TypeError:
         pass  # its memory is in another order
     try:
         copy = array.CreateDataArray(array.GetDataType())
         copy.DeepCopy(array)
-        return numpy.asarray(memoryview(copy))
+        return _numbers_of(copy)
     except (AttributeError, TypeError):
         raise Error(f"{name}: its array is a {array.GetClassName()}, whose memory is not an "
                     "array; convert it (vtkImageCast)") from None

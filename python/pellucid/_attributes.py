@@ -69,6 +69,53 @@ def applied(stored: numpy.ndarray, data: Any, name: str) -> numpy.ndarray:
     return numpy.ma.MaskedArray(values, missing)
 
 
+# Names that other programs give to scales, missing values and places, as the readers of files know
+# them.
+_UNREAD = ("ScaleFactor", "Scale_Factor", "scale", "Scale", "slope", "Slope", "Offset", "offset",
+           "AddOffset", "intercept", "Intercept", "MissingValue", "Missing_Value", "FillValue",
+           "fill_value", "fillvalue", "nodata", "no_data", "NODATA", "NoData", "nodata_value",
+           "ValidRange", "spacing", "Spacing", "origin", "Origin", "voxel_size", "voxelsize",
+           "VoxelSize", "pixel_size", "resolution", "affine", "transform", "direction",
+           "element_size_um")
+
+# What each attribute must be to be applied.
+_KINDS = {"scale_factor": (1, "number"), "add_offset": (1, "number"),
+          "_FillValue": (0, "number"), "missing_value": (0, "number"),
+          "valid_range": (2, "pair of numbers"), "valid_min": (1, "number"),
+          "valid_max": (1, "number")}
+
+
+def tell_unapplied(data: Any, name: str) -> None:
+    """Tells which attributes of `data` could change its values or its place, and do not."""
+    attributes = getattr(data, "attrs", None)
+    if callable(getattr(data, "ncattrs", None)):
+        attributes = {key: data.getncattr(key) for key in data.ncattrs()}
+    if attributes is None or not hasattr(attributes, "keys"):
+        return
+    for key, (count, what) in _KINDS.items():
+        if key in attributes and not _is_usable(attributes, key, count):
+            tell(f"{name}: its {key} is no {what} and is not applied")
+    if any(key in attributes for key in ("flag_values", "flag_meanings", "flag_masks")):
+        tell(f"{name}: its values are labels (flag_values) and no amounts")
+    unread = [key for key in _UNREAD if key in attributes]
+    if unread:
+        tell(f"{name}: has attributes that are not applied ({', '.join(unread)})")
+
+
+def _is_usable(attributes: Mapping[str, Any], key: str, count: int) -> bool:
+    numbers = _numbers(attributes, key)
+    if key in ("_FillValue", "missing_value"):
+        return bool(numbers)
+    if key in ("scale_factor", "add_offset"):
+        return len(numbers) == count and bool(numpy.isfinite(numbers[0]))
+    return len(numbers) == count and not any(numpy.isnan(number) for number in numbers)
+
+
+def _usable(attributes: Mapping[str, Any], key: str) -> List[Any]:
+    """The numbers of an attribute that can be applied; else none."""
+    return _numbers(attributes, key) if _is_usable(attributes, key, _KINDS[key][0]) else []
+
+
 def _attributes_of(data: Any) -> Tuple[Mapping[str, Any], Optional[Any]]:
     """The attributes of data, and a fill value that need not mean missing values."""
     attributes = getattr(data, "attrs", None)
@@ -96,8 +143,8 @@ def _numbers(attributes: Mapping[str, Any], key: str) -> List[Any]:
 
 def _scale_of(attributes: Mapping[str, Any], encoding: Mapping[str, Any]) -> _Scale:
     keys = ("scale_factor", "add_offset")
-    is_applied = not any(_numbers(attributes, key) for key in keys)
-    slope, intercept = (_numbers(encoding if is_applied else attributes, key) for key in keys)
+    is_applied = not any(_usable(attributes, key) for key in keys)
+    slope, intercept = (_usable(encoding if is_applied else attributes, key) for key in keys)
     return _Scale(float((slope or [1])[0]), float((intercept or [0])[0]), is_applied)
 
 
@@ -121,9 +168,9 @@ def _equal(values: numpy.ndarray, number: Any, wrap: int) -> numpy.ndarray:
 def _outside(values: numpy.ndarray, attributes: Mapping[str, Any], scale: _Scale,
              wrap: int) -> List[numpy.ndarray]:
     """Which values are below the least valid one, and which above the largest."""
-    both = _numbers(attributes, "valid_range")
-    lower: Optional[Any] = (both or _numbers(attributes, "valid_min") or [None])[0]
-    upper: Optional[Any] = (both[1:] or _numbers(attributes, "valid_max") or [None])[0]
+    both = _usable(attributes, "valid_range")
+    lower: Optional[Any] = (both or _usable(attributes, "valid_min") or [None])[0]
+    upper: Optional[Any] = (both[1:] or _usable(attributes, "valid_max") or [None])[0]
     found = []
     for bound, sign in ((lower, 1), (upper, -1)):
         if bound is None or scale.slope == 0:

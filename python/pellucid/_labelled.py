@@ -2,13 +2,13 @@
 """Arrays whose axes have names and coordinates: xarray's, and variables of netCDF4."""
 from __future__ import annotations
 
-from typing import Any, List, Mapping, NamedTuple, Optional, Tuple
+from typing import Any, Dict, List, Mapping, NamedTuple, Optional, Tuple
 
 import numpy
 
 from . import _masks
 from ._notes import tell
-from ._pellucid import Error
+from ._pellucid import Error, axis_roles, grows_downwards, space_axes, unit_factors
 from ._places import Placed, three_axes
 
 
@@ -25,9 +25,6 @@ def of_xarray(data: Any) -> Placed:
     if hasattr(data, "data_vars"):
         raise Error(f"{name}: is a Dataset; choose one variable, as in data[\"density\"], or give "
                     "several as Channels")
-    if len(data.dims) > 3:
-        data = data.squeeze()
-
     def axis(dimension: Any) -> _Axis:
         if dimension not in data.coords:
             return _Axis(str(dimension), None, {})
@@ -61,54 +58,100 @@ def of_netcdf4(variable: Any) -> Placed:
             return _Axis(dimension, None, {})
         return _Axis(dimension, found[...], {key: found.getncattr(key) for key in found.ncattrs()})
 
-    axes, array = [axis(each) for each in variable.dimensions], _masks.as_array(variable, name)
-    if array.ndim > 3:
-        kept = [a for a, side in enumerate(array.shape) if side != 1]
-        axes, array = [axes[a] for a in kept], array.squeeze()
-    return _placed(array, axes, name)
+    axes = [axis(each) for each in variable.dimensions]
+    return _placed(_masks.as_array(variable, name), axes, name)
 
 
-def _is_time(axis: _Axis) -> bool:
-    kind = "" if axis.positions is None else axis.positions.dtype.kind
-    units = str(axis.attributes.get("units", ""))
-    return (kind in ("m", "M") or " since " in units
-            or axis.attributes.get("axis") == "T"
-            or axis.attributes.get("standard_name") == "time"
-            or axis.name.lower() in ("time", "t"))
+_Given = Tuple[str, Dict[str, str]]
+"""An axis as the compiled part takes it: its name, and the attributes of its coordinate."""
+
+_NO_PLACES = {"time": "time", "member": "members of an ensemble", "channel": "channels"}
+
+
+def _given(axis: _Axis) -> _Given:
+    texts = {str(key): value for key, value in axis.attributes.items() if isinstance(value, str)}
+    if axis.positions is not None and _are_dates(axis.positions):
+        texts["units"] = "days since 1970-01-01"
+    return axis.name, texts
+
+
+def _are_dates(positions: numpy.ndarray) -> bool:
+    """Whether coordinates are dates or times, of numpy or of cftime."""
+    if positions.dtype.kind == "O":
+        return positions.size > 0 and hasattr(positions.flat[0], "timetuple")
+    return positions.dtype.kind in "mM"
 
 
 def _placed(array: numpy.ndarray, axes: List[_Axis], name: str) -> Placed:
-    for axis in axes:
-        if _is_time(axis):
-            raise Error(f"{name}: its axis \"{axis.name}\" is time; choose one, as in "
-                        f"data.isel({axis.name}=0) or data[0], or give an array of numpy to take "
-                        "it as a place")
-    array = three_axes(array, name)
-    names = [axis.name for axis in axes]
-    if set(names) == {"x", "y", "z"}:
-        order = [names.index(letter) for letter in "zyx"]
-        array, axes = array.transpose(order), [axes[a] for a in order]
-    elif not _is_known_order(names):
-        tell(f"{name}: its axes {', '.join(names)} are taken as z, y and x; transpose it if they "
-             "are others")
-    for axis in axes:
-        if str(axis.attributes.get("positive", "")).lower() == "down":
-            tell(f"{name}: its axis \"{axis.name}\" is positive down, and is taken as one that "
-                 "goes up; negate its coordinates to turn it")
+    """Turns the axes to z, y, x by their meaning, by the rules of files, and places them."""
+    if array.ndim < 3:
+        three_axes(array, name)  # throws
+    order = _order(array.shape, axes, name)
+    if order is not None:
+        rest = [a for a in range(array.ndim) if a not in order]
+        array = array.transpose([*rest, *order])[(0,) * len(rest)]
+        axes = [axes[a] for a in order]
+    else:
+        if array.ndim > 3:
+            axes = [axis for axis, side in zip(axes, array.shape) if side != 1]
+            array = array.squeeze()
+        array = three_axes(array, name)
+        tell(f"{name}: its axes {', '.join(axis.name for axis in axes)} are taken as z, y and x; "
+             "transpose it if they are others")
     return Placed(array, coordinates=_positions(axes, name), name=name)
 
 
-def _is_known_order(names: List[str]) -> bool:
-    """Whether the last two axes are named as y and x are in maps, and the first is neither."""
-    maps = (("y", "x"), ("lat", "lon"), ("latitude", "longitude"))
-    first, *last = (each.lower() for each in names)
-    return tuple(last) in maps and not any(first in each for each in maps)
+def _order(shape: Tuple[int, ...], axes: List[_Axis], name: str) -> Optional[Tuple[int, ...]]:
+    """Which axes are z, y and x; None where nothing says what they are."""
+    given = [_given(axis) for axis in axes]
+    roles = axis_roles(given, shape)
+
+    def refuse(axis: _Axis, what: str) -> None:
+        raise Error(f"{name}: its axis \"{axis.name}\" is {what}; choose one, as in "
+                    f"data.isel({axis.name}=0) or data[0], or give an array of numpy to take it "
+                    "as a place")
+
+    for axis, role, side in zip(axes, roles, shape):
+        # Bands of an image are its slices.
+        is_slice = role == "channel" and "z" not in roles
+        if role in _NO_PLACES and side > 1 and not is_slice:
+            refuse(axis, _NO_PLACES[role])
+    # One time or member of several axes is no choice.
+    kept = [a for a, role in enumerate(roles)
+            if len(axes) <= 3 or shape[a] > 1 or role not in _NO_PLACES]
+    try:
+        found = space_axes([given[a] for a in kept], [shape[a] for a in kept])
+    except Error as error:
+        raise Error(f"{name}: is {error}") from None
+    if found is None:
+        return None
+    order, notes = tuple(kept[a] for a in found[0]), found[1]
+    for a, (axis, side) in enumerate(zip(axes, shape)):
+        if side > 1 and a not in order:
+            refuse(axis, _NO_PLACES.get(roles[a], "none of x, y and z"))
+    for note in notes:
+        tell(f"{name}: {note}")
+    return order
+
+
+def _unwrapped(longitudes: numpy.ndarray) -> Optional[numpy.ndarray]:
+    """Longitudes that jump once, from 360 to 0 or from 180 to -180, going on; None for others."""
+    steps = numpy.diff(longitudes.astype(numpy.float64))
+    jumps = numpy.flatnonzero(numpy.abs(steps) > 180)
+    if jumps.size != 1:
+        return None
+    behind = numpy.arange(longitudes.size) > jumps[0]
+    kind = longitudes.dtype if longitudes.dtype.kind == "f" else numpy.dtype("f8")
+    return (longitudes - 360.0 * numpy.sign(steps[jumps[0]]) * behind).astype(kind)
 
 
 def _positions(axes: List[_Axis], name: str) -> Tuple[Optional[numpy.ndarray], ...]:
-    """The coordinates along each axis; None where there are none."""
-    positions = []
-    for axis in axes:
+    """The coordinates along z, y and x, in one unit and upwards; None where there are none."""
+    given = [_given(axis) for axis in axes]
+    factors, note = unit_factors(["" if axis.positions is None else texts.get("units", "")
+                                   for axis, (_, texts) in zip(axes, given)])
+    positions: List[Optional[numpy.ndarray]] = []
+    for letter, axis, text, factor in zip("zyx", axes, given, factors):
         found = axis.positions
         if found is not None and found.dtype.kind not in "iuf":
             raise Error(f"{name}: the coordinates of its axis \"{axis.name}\" are no numbers; "
@@ -116,5 +159,25 @@ def _positions(axes: List[_Axis], name: str) -> Tuple[Optional[numpy.ndarray], .
         if found is not None and numpy.ma.getmaskarray(found).any():
             raise Error(f"{name}: coordinates of its axis \"{axis.name}\" are missing; leave "
                         "those places out")
-        positions.append(None if found is None else numpy.ma.getdata(found))
+        if found is None:
+            positions.append(None)
+            continue
+        found, down = numpy.ma.getdata(found), grows_downwards(text)
+        if down == "down":
+            found = -found if found.dtype.kind == "f" else -found.astype(numpy.float64)
+            tell(f"{name}: {letter} is minus {axis.name} (positive: down)")
+        elif down:
+            tell(f"{name}: {letter} is {axis.name}, which grows downwards; the picture shows it "
+                 "upwards")
+        if letter == "x" and text[1].get("units", "").lower().startswith("degree"):
+            going_on = _unwrapped(found)
+            if going_on is not None:
+                found = going_on
+                tell(f"{name}: longitudes go on where they jump by 360 degrees")
+        if factor != 1:
+            kind = found.dtype if found.dtype.kind == "f" else numpy.dtype("f8")
+            found = (found.astype(numpy.float64) * factor).astype(kind)
+        positions.append(found)
+    if note:
+        tell(f"{name}: {note}")
     return tuple(positions)

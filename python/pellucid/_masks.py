@@ -24,6 +24,7 @@ def as_array(data: Any, name: str) -> numpy.ndarray:
     if data is None or isinstance(data, (str, bytes, dict, set)):
         raise Error(f"{name}: expected an array, got {data!r:.60}")
     try:
+        _attributes.tell_unapplied(data, name)
         array = with_mask(data, name)
     except (Error, MemoryError):
         raise

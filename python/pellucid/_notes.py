@@ -18,9 +18,13 @@ class Note(UserWarning):
 def tell(text: str) -> None:
     """Warns of `text`, as of the line that called the package."""
     level, frame = 1, sys._getframe()
-    while frame is not None and frame.f_globals.get("__name__", "").startswith("pellucid."):
+    while frame is not None and _is_of_package(frame.f_globals.get("__name__", "")):
         level, frame = level + 1, frame.f_back
     warnings.warn(text, Note, stacklevel=level)
+
+
+def _is_of_package(module: str) -> bool:
+    return module == "pellucid" or module.startswith("pellucid.")
 
 
 class Preset(NamedTuple):

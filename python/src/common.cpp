@@ -99,11 +99,10 @@ py::tuple to_tuple(const Rgb<double>& color) {
 
 void Notes::warn() {
   if (texts_.empty()) return;
-  const py::object category = py::module_::import("pellucid._notes").attr("Note");
+  // It blames the line that called the package, which may have more frames on the stack.
+  const py::object tell = py::module_::import("pellucid._notes").attr("tell");
   const std::vector<std::string> texts = std::move(texts_);
-  for (const std::string& text : texts) {
-    if (PyErr_WarnEx(category.ptr(), text.c_str(), 1) != 0) throw py::error_already_set();
-  }
+  for (const std::string& text : texts) tell(text);
 }
 
 ParallelFor all_cores() {

@@ -37,6 +37,7 @@ class ReleasedLock {
 };
 
 /// Each adds its classes and functions to the compiled part of the package, `pellucid._pellucid`.
+void bind_axes(py::module_& module);
 void bind_volumes(py::module_& module);
 void bind_labels(py::module_& module);
 void bind_meshes(py::module_& module);

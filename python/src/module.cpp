@@ -12,6 +12,7 @@ PYBIND11_MODULE(_pellucid, module) {
   py::register_exception<pellucid::Cancelled>(module, "Cancelled", PyExc_RuntimeError)
       .attr("__doc__") = "A frame was cancelled.";
   // In the order in which signatures name each other.
+  bind_axes(module);
   bind_volumes(module);
   bind_transfer_functions(module);
   bind_labels(module);

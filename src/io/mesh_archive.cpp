@@ -122,6 +122,7 @@ void exchange(Archive& archive, Mesh& mesh) {
   sized(archive, file.notes);
   for (auto& note : file.notes) archive.list(note);
   plain(archive, mesh.cells);
+  plain(archive, mesh.is_active_of_cells);
   sized(archive, mesh.blocks);
   for (auto& block : mesh.blocks) {
     archive.list(block.points);

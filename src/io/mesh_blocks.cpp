@@ -16,6 +16,9 @@ namespace pellucid {
 
 namespace {
 
+/// Stands behind the name of an array of cells that is named like one of points.
+constexpr const char* cell_suffix = "_cell";
+
 /// How many values of a centring a block has.
 std::size_t places(const UnstructuredGrid& block, Centering centering) {
   return centering == Centering::point ? block.points.size() : block.shapes.size();
@@ -249,7 +252,7 @@ void name_cells_apart(std::vector<MeshArray>& arrays) {
     const bool twice = std::ranges::any_of(arrays, [&](const MeshArray& other) {
       return other.centering == Centering::point && other.name == array.name;
     });
-    if (array.centering == Centering::cell && twice) array.name += "_cell";
+    if (array.centering == Centering::cell && twice) array.name += cell_suffix;
   }
 }
 
@@ -278,7 +281,12 @@ MeshFile join_blocks(MeshBlocks&& mesh, const std::string& name) {
   for (const UnstructuredGrid& block : mesh.blocks) {
     first.push_back(first.back() + block.points.size());
   }
+  const bool is_active_of_cells = mesh.is_active_of_cells;
   file.grid = concatenate(std::move(mesh.blocks), name);
+  const bool is_taken = std::ranges::any_of(file.grid.arrays, [&](const MeshArray& array) {
+    return array.centering == Centering::point && array.name == file.active;
+  });
+  if (is_active_of_cells && is_taken) file.active += cell_suffix;
   if (file.blocks > 1) merge_points(first, file);
   if (const std::string note = trimmed_note(file, file.grid.shapes.size()); !note.empty()) {
     file.notes.push_back(note);

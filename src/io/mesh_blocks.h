@@ -17,14 +17,15 @@ namespace pellucid {
 struct MeshBlocks {
   MeshFile file;
   std::vector<UnstructuredGrid> blocks;
-  std::size_t cells = 0;  ///< of all blocks so far, those that are left out too
+  std::size_t cells = 0;            ///< of all blocks so far, those that are left out too
+  bool is_active_of_cells = false;  ///< whether MeshFile::active is the name of an array of cells
 };
 
 /// Joins the blocks to the file's one grid, and makes points of different blocks one where they
 /// stand at the same place with the same values. Arrays of the same name are one: of the blocks'
 /// type where they agree, else double; NaN where a block lacks it. One of cells that is named like
-/// one of points gets "_cell" behind its name. Throws Error where the numbers of components differ,
-/// or there is no cell.
+/// one of points gets "_cell" behind its name, and the active one is known by that. Throws Error
+/// where the numbers of components differ, or there is no cell.
 MeshFile join_blocks(MeshBlocks&& mesh, const std::string& name);
 
 /// Puts "_cell" behind the name of each array of cells that is named like one of points.

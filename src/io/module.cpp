@@ -3,6 +3,7 @@
 
 #include <dlfcn.h>
 
+#include <algorithm>
 #include <array>
 #include <cstdlib>
 #include <filesystem>
@@ -48,6 +49,13 @@ std::array<fs::path, 6> folders() {
           PELLUCID_MODULES_PACKAGED};
 }
 
+/// Returns whether the loader says that there is no memory for a library.
+bool is_of_memory(const std::string& why) {
+  constexpr std::array said{"failed to map segment", "annot allocate memory",
+                            "annot map zero-fill"};
+  return std::ranges::any_of(said, [&](const char* part) { return why.find(part) != why.npos; });
+}
+
 }  // namespace
 
 std::mutex& loading_modules() {
@@ -71,8 +79,12 @@ void* module_function(const Module& module, const char* name) {
   const std::lock_guard lock(loading_modules());
   void* const library = dlopen(file.c_str(), RTLD_NOW | RTLD_LOCAL);
   if (library == nullptr) {
+    const std::string why = dlerror();
     throw Error(std::string("the module ") + module.file + ", which " + module.does +
-                ", does not load: " + dlerror() + "; install " + module.needs);
+                ", does not load: " + why +
+                (is_of_memory(why) ? "; there is too little memory for it: make room, or raise the "
+                                     "limit of address space (ulimit -v)"
+                                   : std::string("; install ") + module.needs));
   }
   void* const function = dlsym(library, name);
   if (function == nullptr) {

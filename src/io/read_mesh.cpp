@@ -13,6 +13,7 @@
 #include "contained.h"
 #include "input_file.h"
 #include "legacy_vtk_cells.h"
+#include "legacy_vtk_numbers.h"
 #include "memory_limit.h"
 #include "mesh_archive.h"
 #include "mesh_blocks.h"
@@ -95,7 +96,8 @@ MeshBlocks read_by_vtk(const std::filesystem::path& path, Format format,
               format == Format::xml      ? VtkFormat::xml
               : format == Format::legacy ? VtkFormat::legacy
                                          : VtkFormat::exodus,
-              options, [](const std::filesystem::path& file) { check_vtk_xml(file); }, answer);
+              options, [](const std::filesystem::path& file) { return check_vtk_xml(file); },
+              answer);
           if (!answer.error.empty()) throw Error(answer.error);
           write_mesh_blocks(answer.mesh, make);
           return true;
@@ -115,7 +117,10 @@ MeshBlocks read_blocks(const std::filesystem::path& path, const MeshReadOptions&
   check_memory(2 * bytes, path.string() + ": its mesh");
   const Format format = format_of(path, options);
   if (format == Format::exodus) check_net_cdf_size(path);
-  if (format == Format::legacy) check_legacy_vtk_cells(path);
+  if (format == Format::legacy) {
+    check_legacy_vtk_cells(path);
+    check_legacy_vtk_numbers(path);
+  }
   if (format == Format::vtk_hdf) return read_vtk_hdf(path, options);
   if (format != Format::plot3d) {
     return read_by_vtk(path, format, options);

@@ -208,7 +208,7 @@ VolumeFile open_file(const std::filesystem::path& path, const ReadOptions& optio
     throw Error(path.string() + ": has no levels of resolution; leave the level out");
   }
   constexpr std::array with_times{Opener{open_hdf5}, Opener{open_net_cdf}, Opener{open_zarr},
-                                  Opener{open_stack}};
+                                  Opener{open_stack}, open_vtk_volume};
   if (options.time && std::ranges::find(with_times, open) == with_times.end()) {
     throw Error(path.string() + ": the file has no steps in time; leave the time out");
   }

@@ -19,6 +19,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cstdint>
 #include <limits>
 #include <optional>
@@ -85,9 +86,38 @@ VolumeData values_of(vtkDataArray& array, std::span<const vtkIdType> tuples) {
   return copied<double>(array, tuples);
 }
 
+/// Counts the whole numbers that double does not hold.
+template <class Number>
+std::size_t count_rounded(vtkDataArray& array) {
+  const auto* const numbers = static_cast<const Number*>(array.GetVoidPointer(0));
+  const std::span all(numbers, static_cast<std::size_t>(array.GetNumberOfValues()));
+  return static_cast<std::size_t>(std::ranges::count_if(all, [](Number number) {
+    const auto bits = static_cast<std::uint64_t>(number);
+    const std::uint64_t size = number < 0 ? 0 - bits : bits;
+    constexpr int digits = std::numeric_limits<double>::digits;
+    return size != 0 && static_cast<int>(std::bit_width(size)) - std::countr_zero(size) > digits;
+  }));
+}
+
+std::size_t count_rounded(vtkDataArray& array) {
+  if (array.GetDataTypeSize() != 8) return 0;
+  switch (array.GetDataType()) {
+    case VTK_LONG:
+    case VTK_LONG_LONG:
+    case VTK_ID_TYPE:
+      return count_rounded<std::int64_t>(array);
+    case VTK_UNSIGNED_LONG:
+    case VTK_UNSIGNED_LONG_LONG:
+      return count_rounded<std::uint64_t>(array);
+    default:
+      return 0;
+  }
+}
+
 /// The values at these points or cells, of which the data set has `count`.
 void gather_arrays(vtkDataSetAttributes& data, Centering centering, vtkIdType count,
-                   std::span<const vtkIdType> chosen, UnstructuredGrid& block) {
+                   std::span<const vtkIdType> chosen, UnstructuredGrid& block,
+                   std::vector<std::string>& notes) {
   for (int a = 0; a < data.GetNumberOfArrays(); ++a) {
     vtkDataArray* const array = data.GetArray(a);  // null for text
     if (array == nullptr || array->GetNumberOfComponents() < 1) continue;
@@ -100,6 +130,10 @@ void gather_arrays(vtkDataSetAttributes& data, Centering centering, vtkIdType co
       throw Error("the array \"" + name + "\" has " + std::to_string(array->GetNumberOfTuples()) +
                   " values, but there are " + std::to_string(count) +
                   (centering == Centering::point ? " points" : " cells") + damaged);
+    }
+    if (const std::size_t rounded = count_rounded(*array); rounded > 0) {
+      notes.push_back(std::to_string(rounded) + " of the whole numbers of \"" + name +
+                      "\" do not fit double and are rounded");
     }
     block.arrays.push_back(
         {name, centering, array->GetNumberOfComponents(), values_of(*array, chosen)});
@@ -350,13 +384,16 @@ void gather_grid(Grid& grid, MeshBlocks& mesh) {
   mesh.cells += static_cast<std::size_t>(grid.GetNumberOfCells());
   std::vector<vtkIdType> points(block.points.size());
   for (std::size_t i = 0; i < points.size(); ++i) points[i] = static_cast<vtkIdType>(i);
-  gather_arrays(*grid.GetPointData(), Centering::point, grid.GetNumberOfPoints(), points, block);
-  gather_arrays(*grid.GetCellData(), Centering::cell, grid.GetNumberOfCells(), cells, block);
-  for (vtkDataSetAttributes* data :
-       std::initializer_list<vtkDataSetAttributes*>{grid.GetPointData(), grid.GetCellData()}) {
-    vtkDataArray* const scalars = data->GetScalars();
+  gather_arrays(*grid.GetPointData(), Centering::point, grid.GetNumberOfPoints(), points, block,
+                mesh.file.notes);
+  gather_arrays(*grid.GetCellData(), Centering::cell, grid.GetNumberOfCells(), cells, block,
+                mesh.file.notes);
+  for (const bool of_cells : {false, true}) {
+    vtkDataArray* const scalars =
+        of_cells ? grid.GetCellData()->GetScalars() : grid.GetPointData()->GetScalars();
     if (mesh.file.active.empty() && scalars != nullptr && scalars->GetName() != nullptr) {
       mesh.file.active = scalars->GetName();
+      mesh.is_active_of_cells = of_cells;
     }
   }
   mesh.blocks.push_back(std::move(block));

@@ -52,6 +52,7 @@ class Reader {
   void read(MeshBlocks& mesh) {
     for (std::size_t piece = 0; piece < points_per_piece_.size(); ++piece) read_piece(piece, mesh);
     const std::string& at_points = contents_.point_scalars;
+    mesh.is_active_of_cells = at_points.empty();
     mesh.file.active = at_points.empty() ? contents_.cell_scalars : at_points;
   }
 

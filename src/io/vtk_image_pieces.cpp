@@ -97,17 +97,18 @@ std::vector<ImagePiece> image_pieces(const std::filesystem::path& path) {
 }
 
 VolumeData join_pieces(const std::vector<ImagePiece>& pieces, const IndexBox& box, int components,
-                       const ReadPiece& read, const std::string& name) {
+                       PieceDifferences& differences, const ReadPiece& read,
+                       const std::string& name, bool compares_all) {
   std::vector<std::pair<const ImagePiece*, IndexBox>> parts;
   for (const ImagePiece& piece : pieces) {
     const auto part = common(piece.box, box);
-    // What an earlier piece has as a whole, as faces between pieces, is not read again.
-    const bool is_new = part && std::ranges::none_of(parts, [&](const auto& earlier) {
-                          return common(earlier.second, *part) == part;
-                        });
-    if (is_new) parts.emplace_back(&piece, *part);
+    const bool is_needed =
+        part && (compares_all || std::ranges::none_of(parts, [&](const auto& earlier) {
+                   return common(earlier.second, *part) == part;
+                 }));
+    if (is_needed) parts.emplace_back(&piece, *part);
   }
-  if (!parts.empty() && parts.front().second == box) return read(*parts.front().first, box);
+  if (parts.size() == 1 && parts.front().second == box) return read(*parts.front().first, box);
   const std::size_t count = value_count(box);
   std::vector<bool> known(count);
   std::optional<VolumeData> joined;
@@ -127,6 +128,13 @@ VolumeData join_pieces(const std::vector<ImagePiece>& pieces, const IndexBox& bo
           auto& all = std::get<std::decay_t<decltype(of_part)>>(*joined);
           auto* const to = all.writable().data();
           visit_rows(its, box, [&](std::size_t at, std::size_t from, std::size_t row) {
+            for (std::size_t i = 0; i < row; ++i) {
+              if (!known[at + i]) continue;
+              for (std::size_t c = 0; c < size(components); ++c) {
+                differences.add(static_cast<double>(to[(at + i) * size(components) + c]),
+                                static_cast<double>(of_part[(from + i) * size(components) + c]));
+              }
+            }
             std::copy_n(of_part.data() + from * size(components), row * size(components),
                         to + at * size(components));
             std::fill_n(known.begin() + static_cast<std::ptrdiff_t>(at), row, true);

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "components.h"
+#include "vtk_piece_differences.h"
 
 namespace pellucid {
 
@@ -19,9 +20,12 @@ std::vector<ImagePiece> image_pieces(const std::filesystem::path& path);
 
 /// Reads a box of values out of pieces, which may overlap: a value is that of the first piece that
 /// has it, whichever box is asked for. `read` gives the values of a box that lies in a piece, with
-/// `components` side by side. Throws Error where no piece has a value.
+/// `components` side by side. A piece of whose values earlier ones have all, as of faces between
+/// pieces, is read only to be compared, if `compares_all`. Adds what pieces disagree about to
+/// `differences`. Throws Error where no piece has a value.
 using ReadPiece = std::function<VolumeData(const ImagePiece&, const IndexBox& box)>;
 VolumeData join_pieces(const std::vector<ImagePiece>& pieces, const IndexBox& box, int components,
-                       const ReadPiece& read, const std::string& name);
+                       PieceDifferences& differences, const ReadPiece& read,
+                       const std::string& name, bool compares_all);
 
 }  // namespace pellucid

@@ -11,6 +11,7 @@
 
 #include "mesh_blocks.h"
 #include "pellucid/scene/sub_volume.h"
+#include "vtk_xml_check.h"
 
 namespace pellucid {
 
@@ -26,11 +27,11 @@ struct VtkAnswer {
 
 /// The module's functions, by these names.
 /// `check` is called with each file of XML before it is read, and throws Error.
-using CheckVtkXml = std::function<void(const std::filesystem::path& path)>;
+using CheckVtkXml = std::function<CheckedVtkXml(const std::filesystem::path& path)>;
 using ReadWithVtk = void(const std::filesystem::path& path, VtkFormat format,
                          const MeshReadOptions& options, const CheckVtkXml& check,
                          VtkAnswer& answer);
-inline constexpr const char* read_with_vtk_name = "pellucid_read_with_vtk_2";
+inline constexpr const char* read_with_vtk_name = "pellucid_read_with_vtk_3";
 
 /// An array by its name in the file.
 struct VtkArrayName {
@@ -50,7 +51,8 @@ struct VtkVolumeRequest {
   std::function<void(std::uintmax_t bytes)> check_memory;
   /// Throws Error where the file of XML has not what it says of these arrays; asked before they are
   /// read.
-  std::function<void(const std::vector<VtkArrayName>& arrays)> check_arrays;
+  std::function<CheckedVtkXml(const std::vector<VtkArrayName>& arrays)> check_arrays;
+  std::optional<double> time;  ///< the nearest step is read; none: the first
 };
 
 /// A grid as VTK has it, with the arrays that were wanted, or what went wrong.
@@ -66,6 +68,8 @@ struct VtkVolume {
   std::vector<MeshArray> arrays;
   std::vector<std::string> names;  ///< of all arrays of the file
   std::string shown;               ///< the array that is shown where none is named
+  std::vector<double> times;       ///< of the file's steps in time; empty: it has none
+  std::vector<std::string> notes;  ///< one line each
   /// Flags of vtkGhostType, one for each point or cell; empty: there are none.
   std::vector<std::uint8_t> point_ghosts, cell_ghosts;
   /// Reads the values of a part of the points, or of the cells between them: `arrays` has none. Of
@@ -78,7 +82,7 @@ struct VtkVolume {
 
 using ReadVolumeWithVtk = void(const std::filesystem::path& path, const VtkVolumeRequest& request,
                                VtkVolume& answer);
-inline constexpr const char* read_volume_with_vtk_name = "pellucid_read_volume_with_vtk_3";
+inline constexpr const char* read_volume_with_vtk_name = "pellucid_read_volume_with_vtk_5";
 
 /// Loaded by the first call. Throw Error where the build has no such module or it does not load.
 ReadWithVtk& vtk_module();

@@ -43,16 +43,17 @@ VolumeData copied(vtkDataArray& array) {
 
 /// Whole numbers of 64 bits.
 template <class Number>
-VolumeData whole_numbers(vtkDataArray& array) {
+VolumeData whole_numbers(vtkDataArray& array, std::string& rounded) {
   const std::size_t count = count_of(array);
   WholeNumbers kept([&](const std::string& type) { return make_volume_data(type, count); });
   kept.add(std::span(static_cast<const Number*>(array.GetVoidPointer(0)), count));
+  if (kept.rounding().count > 0 && kept.type() == "f64") rounded = kept.rounding().text(count);
   return kept.take();
 }
 
 }  // namespace
 
-VolumeData values_in_place(vtkDataArray& array) {
+VolumeData values_in_place(vtkDataArray& array, std::string& rounded) {
   const int bytes = array.GetDataTypeSize();
   switch (array.GetDataType()) {
     case VTK_BIT:
@@ -75,10 +76,12 @@ VolumeData values_in_place(vtkDataArray& array) {
     case VTK_LONG:
     case VTK_LONG_LONG:
     case VTK_ID_TYPE:
-      return bytes == 4 ? in_place<std::int32_t>(array) : whole_numbers<std::int64_t>(array);
+      return bytes == 4 ? in_place<std::int32_t>(array)
+                        : whole_numbers<std::int64_t>(array, rounded);
     case VTK_UNSIGNED_LONG:
     case VTK_UNSIGNED_LONG_LONG:
-      return bytes == 4 ? in_place<std::uint32_t>(array) : whole_numbers<std::uint64_t>(array);
+      return bytes == 4 ? in_place<std::uint32_t>(array)
+                        : whole_numbers<std::uint64_t>(array, rounded);
     case VTK_FLOAT:
       return in_place<float>(array);
     case VTK_DOUBLE:

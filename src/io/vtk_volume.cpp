@@ -2,6 +2,7 @@
 #include "vtk_volume.h"
 
 #include <cstddef>
+#include <cstring>
 #include <optional>
 #include <set>
 #include <span>
@@ -13,6 +14,7 @@
 #include "input_file.h"
 #include "memory_limit.h"
 #include "pellucid/scene/error.h"
+#include "volume_source.h"
 #include "vtk_files.h"
 #include "vtk_module.h"
 #include "vtk_volume_answer.h"
@@ -49,16 +51,23 @@ Answer checked(std::optional<Answer>&& answer, const std::filesystem::path& path
 
 /// Reads the components of the wanted part of a volume whose head has been read.
 std::vector<VolumeData> read_part(const std::filesystem::path& path, const OpenedVtkVolume& opened,
-                                  ComponentRange range) {
+                                  ComponentRange range, const Note& note) {
   const std::string& name = opened.description.name;
   const std::size_t points = value_count(
       range.part != nullptr ? range.part->box : IndexBox{{0, 0, 0}, opened.description.dimensions});
   const std::size_t size = value_size(opened.type, name);
   const std::size_t bytes = value_count(points, range.number, name) * size;
   check_memory(bytes, name + ": its values");
-  const ContainedBytes answer = run_vtk(
-      path, [&](const MakeAnswer& make) { read_part_here(path, opened, range, make(bytes)); });
-  if (answer.size != bytes) throw Error(name + ": " + vtk_fails);
+  // Behind the values stands how far pieces disagree.
+  PieceDifferences differences;
+  const ContainedBytes answer = run_vtk(path, [&](const MakeAnswer& make) {
+    const std::span<std::byte> to = make(bytes + sizeof(differences));
+    differences = read_part_here(path, opened, range, to.first(bytes));
+    std::memcpy(to.data() + bytes, &differences, sizeof(differences));
+  });
+  if (answer.size != bytes + sizeof(differences)) throw Error(name + ": " + vtk_fails);
+  std::memcpy(&differences, answer.data.get() + bytes, sizeof(differences));
+  if (note && differences.count > 0) note(name + ": " + differences.note("first"));
   std::vector<VolumeData> components;
   for (std::size_t c = 0; c < static_cast<std::size_t>(range.number); ++c) {
     components.push_back(contained_values(answer.data, c * points * size, points, opened.type));
@@ -74,6 +83,10 @@ VolumeFile open_vtk_volume(const std::filesystem::path& path, const ReadOptions&
   const ContainedBytes answer =
       run_vtk(path, [&](const MakeAnswer& make) { write_opened(open_here(path, options), make); });
   OpenedVtkVolume opened = checked(read_opened(answer, name), path);
+  opened.time = options.time;
+  for (const std::string& note : opened.notes) {
+    if (options.note) options.note(name + ": " + note);
+  }
   VolumeFile file;
   file.description = opened.description;
   file.components = opened.components;
@@ -81,8 +94,8 @@ VolumeFile open_vtk_volume(const std::filesystem::path& path, const ReadOptions&
   file.holds = std::to_string(file.components) + " components (array \"" + file.array + "\")";
   file.reads_parts = opened.reads_parts;
   if (file.reads_parts) {
-    file.read = [path, opened = std::move(opened)](ComponentRange range) {
-      return read_part(path, opened, range);
+    file.read = [path, opened = std::move(opened), note = options.note](ComponentRange range) {
+      return read_part(path, opened, range, note);
     };
   } else {
     file.read = [values = std::move(opened.values), components = opened.components,

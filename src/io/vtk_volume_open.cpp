@@ -3,11 +3,13 @@
 
 #include <algorithm>
 #include <optional>
+#include <sstream>
 #include <string>
 #include <utility>
 
 #include "array_statistics.h"
 #include "input_file.h"
+#include "legacy_vtk_numbers.h"
 #include "memory_limit.h"
 #include "pellucid/scene/error.h"
 #include "pellucid/scene/hidden_values.h"
@@ -39,14 +41,16 @@ void check_points(const VtkFileKind& kind, std::uintmax_t bytes, const std::stri
 
 /// Throws Error with what the module says went wrong.
 void check_answer(const VtkVolume& volume, const std::string& name) {
+  if (volume.error.empty()) return;
   // Of memory it speaks with the file's name.
   if (volume.error.starts_with(name)) throw Error(volume.error);
-  if (!volume.error.empty()) throw Error(name + ": " + volume.error);
+  throw Error(name + ": " + volume.error);
 }
 
 /// Throws Error where a file of XML, or a file that it lists, lacks values of these arrays.
-void check_xml(const std::filesystem::path& path, const std::vector<VtkArrayName>& arrays) {
-  check_vtk_xml(path, [&](VtkSection section, const std::string& name) {
+CheckedVtkXml check_xml(const std::filesystem::path& path,
+                        const std::vector<VtkArrayName>& arrays) {
+  return check_vtk_xml(path, [&](VtkSection section, const std::string& name) {
     const Centering centering =
         section == VtkSection::point_data ? Centering::point : Centering::cell;
     return std::ranges::any_of(arrays, [&](const VtkArrayName& array) {
@@ -55,9 +59,19 @@ void check_xml(const std::filesystem::path& path, const std::vector<VtkArrayName
   });
 }
 
+/// Throws Error where the elements of a file of XML have a fault: VTK has failed, and says less.
+void say_fault(const std::filesystem::path& path) {
+  try {
+    read_vtk_xml(path);
+  } catch (const Error& error) {
+    throw Error(path.string() + ": " + error.what());
+  }
+}
+
 /// Which part of a file is asked for.
 struct Wanted {
   std::optional<std::string> array = std::nullopt;  ///< none: the one to show
+  std::optional<double> time = std::nullopt;        ///< none: the first step
   bool all = false;                                 ///< every array
   bool is_piece = false;  ///< of a list that has been checked, and that hides nothing
 };
@@ -78,22 +92,25 @@ VtkVolume read_grid(const std::filesystem::path& path, const Wanted& wanted) {
     check_memory(2 * needed, name + ": its values");
   };
   const auto check_arrays = [&](const std::vector<VtkArrayName>& arrays) {
-    if (!wanted.is_piece) check_xml(path, arrays);
+    return wanted.is_piece ? CheckedVtkXml{} : check_xml(path, arrays);
   };
   if (kind->xml) {
     check_vtk_xml_end(path);
   } else {
     check(bytes);
+    check_legacy_vtk_numbers(path);
   }
   VtkVolume volume;
   try {
-    vtk_volume_module()(path,
-                        {kind->xml ? VtkFormat::xml : VtkFormat::legacy, kind->data, wanted.array,
-                         wanted.all, !wanted.all, wanted.is_piece, check, check_arrays},
-                        volume);
+    vtk_volume_module()(
+        path,
+        {kind->xml ? VtkFormat::xml : VtkFormat::legacy, kind->data, wanted.array, wanted.all,
+         !wanted.all, wanted.is_piece, check, check_arrays, wanted.time},
+        volume);
   } catch (const Error& error) {
     throw Error(name + ": " + error.what());
   }
+  if (!volume.error.empty() && kind->xml) say_fault(path);
   check_answer(volume, name);
   return volume;
 }
@@ -234,10 +251,11 @@ VolumeData read_piece(const VtkVolume& grid, const ImagePiece& piece, IndexBox b
 
 /// Reads a box of values, with their components side by side.
 VolumeData read_values(const VtkVolume& grid, const std::vector<ImagePiece>& pieces,
-                       const IndexBox& box, const std::string& name) {
+                       const IndexBox& box, const std::string& name, bool is_whole,
+                       PieceDifferences& differences) {
   if (pieces.empty()) return read_box(grid, box, name);
   return join_pieces(
-      pieces, box, grid.arrays.front().components,
+      pieces, box, grid.arrays.front().components, differences,
       [&](const ImagePiece& piece, const IndexBox& some) {
         try {
           return read_piece(grid, piece, some);
@@ -245,7 +263,7 @@ VolumeData read_values(const VtkVolume& grid, const std::vector<ImagePiece>& pie
           throw Error(name + ": a piece cannot be read: " + error.what());
         }
       },
-      name);
+      name, is_whole);
 }
 
 /// Copies values of one number at each point to their place among the bytes.
@@ -259,12 +277,23 @@ void copy_values(const VolumeData& values, std::span<std::byte> to) {
       values);
 }
 
+/// Returns a note on steps in time of which the first is read.
+std::string note_of_steps(const std::vector<double>& times) {
+  std::ostringstream note;
+  note << "has " << times.size() << " steps in time, from " << times.front() << " to "
+       << times.back() << "; the first is read, choose another by its time";
+  return note.str();
+}
+
 }  // namespace
 
 OpenedVtkVolume open_here(const std::filesystem::path& path, const ReadOptions& options) {
   const std::string name = path.string();
-  VtkVolume grid = read_grid(path, {.array = options.array});
+  VtkVolume grid = read_grid(path, {.array = options.array, .time = options.time});
   OpenedVtkVolume opened;
+  opened.time = options.time;
+  opened.notes = std::move(grid.notes);
+  if (grid.times.size() > 1 && !options.time) opened.notes.push_back(note_of_steps(grid.times));
   opened.description = describe(grid, grid.arrays.front().centering, name);
   override_placement(options, opened.description);
   MeshArray array = std::move(grid.arrays.front());
@@ -286,10 +315,11 @@ OpenedVtkVolume open_here(const std::filesystem::path& path, const ReadOptions& 
   return opened;
 }
 
-void read_part_here(const std::filesystem::path& path, const OpenedVtkVolume& opened,
-                    ComponentRange range, std::span<std::byte> to) {
+PieceDifferences read_part_here(const std::filesystem::path& path, const OpenedVtkVolume& opened,
+                                ComponentRange range, std::span<std::byte> to) {
+  PieceDifferences differences;
   const std::string& name = opened.description.name;
-  const VtkVolume grid = read_grid(path, {.array = opened.array});
+  const VtkVolume grid = read_grid(path, {.array = opened.array, .time = opened.time});
   const MeshArray& array = grid.arrays.front();
   const IndexBox whole{{0, 0, 0}, opened.description.dimensions};
   const IndexBox box = range.part != nullptr ? range.part->box : whole;
@@ -311,13 +341,15 @@ void read_part_here(const std::filesystem::path& path, const OpenedVtkVolume& op
   for (int k = 0; k < box.count[2]; k += layers) {
     now.first[2] = box.first[2] + k;
     now.count[2] = std::min(layers, box.count[2] - k);
-    const VolumeData values = read_values(grid, pieces, now, name);
+    const VolumeData values =
+        read_values(grid, pieces, now, name, range.part == nullptr, differences);
     const auto components = split_components(values, array.components, range, name);
     for (std::size_t c = 0; c < components.size(); ++c) {
       const std::size_t from = (c * count + static_cast<std::size_t>(k) * layer) * size;
       copy_values(components[c], to.subspan(from, value_count(now) * size));
     }
   }
+  return differences;
 }
 
 std::vector<VolumeArray> list_here(const std::filesystem::path& path) {

@@ -3,11 +3,13 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "components.h"
+#include "vtk_piece_differences.h"
 
 namespace pellucid {
 
@@ -16,16 +18,18 @@ struct OpenedVtkVolume {
   Volume::Description description;
   int components = 1;
   std::string array;
-  std::string type;          ///< of its values
-  bool reads_parts = false;  ///< whether its values are still to be read, by read_part_here()
-  VolumeData values;         ///< else all of them, the components of a point side by side
+  std::optional<double> time;      ///< that a step in time was asked for; none: the first is read
+  std::vector<std::string> notes;  ///< one line each
+  std::string type;                ///< of its values
+  bool reads_parts = false;        ///< whether its values are still to be read, by read_part_here()
+  VolumeData values;               ///< else all of them, the components of a point side by side
 };
 
 /// These call VTK, which may crash. Throw Error.
 OpenedVtkVolume open_here(const std::filesystem::path& path, const ReadOptions& options);
-/// Reads the components of the range, one after the other.
-void read_part_here(const std::filesystem::path& path, const OpenedVtkVolume& opened,
-                    ComponentRange range, std::span<std::byte> to);
+/// Reads the components of the range, one after the other. Returns how far pieces disagree.
+PieceDifferences read_part_here(const std::filesystem::path& path, const OpenedVtkVolume& opened,
+                                ComponentRange range, std::span<std::byte> to);
 std::vector<VolumeArray> list_here(const std::filesystem::path& path);
 
 }  // namespace pellucid

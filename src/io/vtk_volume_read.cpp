@@ -18,6 +18,7 @@
 #include <vtkXMLImageDataReader.h>
 #include <vtkXMLPImageDataReader.h>
 #include <vtkXMLPRectilinearGridReader.h>
+#include <vtkXMLReader.h>
 #include <vtkXMLRectilinearGridReader.h>
 
 #include <algorithm>
@@ -28,6 +29,7 @@
 
 #include "module_answer.h"
 #include "pellucid/scene/error.h"
+#include "vtk_compare_pieces.h"
 #include "vtk_messages.h"
 #include "vtk_module.h"
 #include "vtk_readers.h"
@@ -39,6 +41,7 @@ namespace {
 
 constexpr const char* damaged = "; the file is cut off or damaged";
 constexpr const char* remedy = "crop or reduce the volume";
+constexpr const char* no_times = "the file has no steps in time; leave the time out";
 
 /// An array of the file, by the name that it is called by here.
 struct Entry {
@@ -61,6 +64,10 @@ bool is_of_ghosts(const std::string& name) {
 void add_entry(Entry entry, std::vector<Entry>& entries) {
   if (entry.in_file.empty() || is_of_ghosts(entry.in_file) || entry.components < 1) return;
   entry.name = entry.in_file;
+  const bool is_step = std::ranges::any_of(entries, [&](const Entry& other) {
+    return other.in_file == entry.in_file && other.centering == entry.centering;
+  });
+  if (is_step) return;  // another step in time of an array that is known
   const bool is_taken =
       std::ranges::any_of(entries, [&](const Entry& other) { return other.name == entry.name; });
   if (is_taken) entry.name += "_cell";
@@ -158,8 +165,10 @@ void take_values(vtkDataSet& set, const std::vector<Entry>& entries, VtkVolume& 
                   " values, but there are " + std::to_string(count) +
                   (point ? " points" : " cells") + damaged);
     }
-    volume.arrays.push_back(
-        {entry.name, entry.centering, array->GetNumberOfComponents(), values_in_place(*array)});
+    std::string rounded;
+    volume.arrays.push_back({entry.name, entry.centering, array->GetNumberOfComponents(),
+                             values_in_place(*array, rounded)});
+    if (!rounded.empty()) volume.notes.push_back("of \"" + entry.name + "\" " + rounded);
   }
   volume.point_ghosts = ghosts_of(*set.GetPointData(), set.GetNumberOfPoints());
   volume.cell_ghosts = ghosts_of(*set.GetCellData(), set.GetNumberOfCells());
@@ -313,7 +322,8 @@ void take_outline(vtkInformation& about, const std::vector<Entry>& entries, VtkV
 /// Returns the type of values whose type does not depend on them: "f32".
 std::string value_type(const Entry& entry) {
   const auto array = vtkSmartPointer<vtkDataArray>::Take(vtkDataArray::CreateDataArray(entry.type));
-  return std::string(type_name(values_in_place(*array)));
+  std::string rounded;
+  return std::string(type_name(values_in_place(*array, rounded)));
 }
 
 std::vector<VtkArrayName> names_of(const std::vector<Entry>& entries, bool with_ghosts) {
@@ -324,6 +334,17 @@ std::vector<VtkArrayName> names_of(const std::vector<Entry>& entries, bool with_
     names.push_back({Centering::cell, ghost_name()});
   }
   return names;
+}
+
+/// Has the reader read the step nearest to the wanted time, the first if none is wanted.
+void choose_step(vtkXMLReader& reader, const std::vector<double>& times,
+                 const VtkVolumeRequest& request, VtkVolume& volume) {
+  volume.times = times;
+  if (!times.empty()) {
+    reader.SetTimeStep(static_cast<int>(nearest_step(times, request.time)));
+  } else if (request.time) {
+    throw Error(no_times);
+  }
 }
 
 template <class Reader, class Grid>
@@ -348,10 +369,13 @@ void read_xml_grid(const std::filesystem::path& path, const VtkVolumeRequest& re
   for (const Entry& entry : entries) {
     (entry.centering == Centering::point ? points : cells)->EnableArray(entry.in_file.c_str());
   }
-  request.check_arrays(names_of(entries, !request.hides_nothing));
+  const CheckedVtkXml checked = request.check_arrays(names_of(entries, !request.hides_nothing));
+  choose_step(*reader, checked.times, request, volume);
   const std::uintmax_t bytes = bytes_of(entries, whole);
   if constexpr (std::is_same_v<Grid, vtkImageData>) {
-    if (request.outline && reads_parts(entries, *points, *cells, request.hides_nothing)) {
+    // Readers read an array of several steps once.
+    if (request.outline && checked.times.size() < 2 &&
+        reads_parts(entries, *points, *cells, request.hides_nothing)) {
       volume.type = entries.front().type;
       volume.value_type = value_type(entries.front());
       take_outline(*about, entries, volume);
@@ -371,12 +395,16 @@ void read_xml_grid(const std::filesystem::path& path, const VtkVolumeRequest& re
   reader->Update();
   check(*reader, messages);
   take_all<Grid>(reader->GetOutput(), volume);
+  if constexpr (std::is_same_v<Grid, vtkRectilinearGrid>) {
+    compare_pieces(*reader->GetOutput(), checked.pieces, messages, volume.notes);
+  }
   take_values(*reader->GetOutput(), entries, volume);
 }
 
 template <class Reader, class Grid>
 void read_legacy_grid(const std::filesystem::path& path, const VtkVolumeRequest& request,
                       const VtkMessages& messages, VtkVolume& volume) {
+  if (request.time) throw Error(no_times);
   const auto reader = vtkSmartPointer<Reader>::New();
   reader->SetFileName(path.c_str());
   read_all_arrays(*reader);
@@ -407,7 +435,7 @@ void read_volume(const std::filesystem::path& path, const VtkVolumeRequest& requ
 
 }  // namespace pellucid
 
-extern "C" __attribute__((visibility("default"))) void pellucid_read_volume_with_vtk_3(
+extern "C" __attribute__((visibility("default"))) void pellucid_read_volume_with_vtk_5(
     const std::filesystem::path& path, const pellucid::VtkVolumeRequest& request,
     pellucid::VtkVolume& answer) {
   pellucid::answer(answer.error, pellucid::remedy,

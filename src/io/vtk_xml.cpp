@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <vtkDataObject.h>
+#include <vtkStructuredGrid.h>
 #include <vtkXMLDataElement.h>
 #include <vtkXMLFileReadTester.h>
 #include <vtkXMLGenericDataObjectReader.h>
@@ -11,6 +12,7 @@
 #include <vector>
 
 #include "pellucid/scene/error.h"
+#include "vtk_compare_pieces.h"
 #include "vtk_gather.h"
 #include "vtk_readers.h"
 
@@ -29,17 +31,18 @@ std::string kind_of(const std::filesystem::path& path, const VtkMessages& messag
   return kind;
 }
 
-/// Returns the files of the pieces of a list that names levels of ghosts; none where it does not.
-/// VTK converts them in each piece, and then does not find them.
-std::vector<std::filesystem::path> pieces_with_ghost_levels(const std::filesystem::path& path,
-                                                            const std::string& kind) {
+/// Returns the files of the pieces of a list if it names levels of ghosts, which VTK converts in
+/// each piece, and then does not find, or if it does not name the flags of ghosts that they have.
+/// Else returns none.
+std::vector<std::filesystem::path> pieces_with_ghosts(const std::filesystem::path& path,
+                                                      const std::string& kind, bool is_unlisted) {
   if (kind != "PUnstructuredGrid") return {};
   const auto root =
       vtkSmartPointer<vtkXMLDataElement>::Take(vtkXMLUtilities::ReadElementFromFile(path.c_str()));
   vtkXMLDataElement* const list =
       root == nullptr ? nullptr : root->FindNestedElementWithName(kind.c_str());
   if (list == nullptr) return {};
-  bool has_levels = false;
+  bool has_levels = is_unlisted;
   std::vector<std::filesystem::path> files;
   for (int i = 0; i < list->GetNumberOfNestedElements(); ++i) {
     vtkXMLDataElement* const element = list->GetNestedElement(i);
@@ -52,6 +55,24 @@ std::vector<std::filesystem::path> pieces_with_ghost_levels(const std::filesyste
   }
   if (!has_levels) files.clear();
   return files;
+}
+
+/// Runs the reader at a step in time. The readers count steps, and do not know the times.
+void update_step(vtkXMLGenericDataObjectReader& reader, const MeshReadOptions& options,
+                 const std::vector<double>& times, const VtkMessages& messages, MeshFile& file) {
+  if (times.size() < 2) {
+    update(reader, options, messages, file);
+    return;
+  }
+  reader.UpdateInformation();
+  messages.check();
+  const std::size_t step = nearest_step(times, options.time);
+  MeshFile counted;
+  std::vector<double> numbers;
+  for (std::size_t i = 0; i < times.size(); ++i) numbers.push_back(static_cast<double>(i));
+  update(reader, {numbers[step], {}, {}}, numbers, messages, counted);
+  file.times = times;
+  file.time = times[step];
 }
 
 void read_data(const std::filesystem::path& path, const std::string& kind,
@@ -68,8 +89,9 @@ void read_data(const std::filesystem::path& path, const std::string& kind,
     throw Error("holds " + kind.substr(0, 40) +
                 "; read are unstructured and structured grids and multiblock files of them");
   }
-  check(path);
-  if (const auto pieces = pieces_with_ghost_levels(path, kind); !pieces.empty()) {
+  const CheckedVtkXml checked = check(path);
+  if (const auto pieces = pieces_with_ghosts(path, kind, checked.has_unlisted_ghosts);
+      !pieces.empty()) {
     refuse_time(options);
     for (const std::filesystem::path& piece : pieces) {
       const std::string own = kind_of(piece, messages);
@@ -80,10 +102,13 @@ void read_data(const std::filesystem::path& path, const std::string& kind,
   }
   const auto reader = vtkSmartPointer<vtkXMLGenericDataObjectReader>::New();
   reader->SetFileName(path.c_str());
-  update(*reader, options, messages, mesh.file);
+  update_step(*reader, options, checked.times, messages, mesh.file);
   vtkDataObject* const data = reader->GetOutput();
   if (data == nullptr) throw Error("the file is cut off or damaged");
   gather(*data, mesh);
+  if (auto* const grid = vtkStructuredGrid::SafeDownCast(data); grid != nullptr) {
+    compare_pieces(*grid, checked.pieces, messages, mesh.file.notes);
+  }
 }
 
 struct Step {
@@ -137,6 +162,9 @@ void read_collection(const std::filesystem::path& path, const MeshReadOptions& o
     }
     try {
       read_data(step.file, kind_of(step.file, messages), {}, check, messages, mesh);
+      if (mesh.file.times.size() > 1) {
+        throw Error("has steps in time of its own, of which a list chooses none; give it alone");
+      }
     } catch (const Error& part) {
       throw Error(name + " " + part.what());
     }

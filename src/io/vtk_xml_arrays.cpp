@@ -7,214 +7,73 @@
 #include "vtk_xml_arrays.h"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <cstddef>
 #include <map>
 #include <memory>
-#include <system_error>
+#include <set>
+#include <type_traits>
+#include <utility>
 
 #include "input_file.h"
 #include "mapped_file.h"
 #include "pellucid/scene/error.h"
 #include "text.h"
+#include "vtk_xml_bytes.h"
+#include "vtk_xml_numbers.h"
 #include "xml_scanner.h"
 
 namespace pellucid {
 
 namespace {
 
-bool is_space(char c) {
-  return c == ' ' || (c >= '\t' && c <= '\r');
-}
-
-std::string_view without_spaces_in_front(std::string_view text) {
-  while (!text.empty() && is_space(text.front())) text.remove_prefix(1);
-  return text;
-}
-
 std::string_view attribute(const XmlTag& tag, const char* name) {
   const auto found = tag.attributes.find(name);
   return found == tag.attributes.end() ? std::string_view{} : found->second;
 }
 
-/// Returns a name without XML's entities.
-std::string plain_text(std::string_view text) {
-  static const std::map<std::string_view, char> entities{
-      {"amp", '&'}, {"lt", '<'}, {"gt", '>'}, {"quot", '"'}, {"apos", '\''}};
-  std::string plain;
-  while (!text.empty()) {
-    const std::size_t end = text.front() == '&' ? text.find(';') : std::string_view::npos;
-    const auto entity =
-        end == std::string_view::npos ? entities.end() : entities.find(text.substr(1, end - 1));
-    plain += entity == entities.end() ? text.front() : entity->second;
-    text.remove_prefix(entity == entities.end() ? 1 : end + 1);
-  }
-  return plain;
-}
-
-template <class Number>
-std::optional<Number> number_in(std::string_view text) {
-  text = without_spaces_in_front(text);
-  Number number{};
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
-  if (error != std::errc()) return std::nullopt;
-  return number;
-}
-
-std::optional<VtkExtent> extent_in(std::string_view text) {
-  VtkExtent extent{};
-  for (std::int64_t& n : extent) {
-    text = without_spaces_in_front(text);
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), n);
-    // Far from what differences and products hold.
-    constexpr std::int64_t most = std::int64_t{1} << 30;
-    if (error != std::errc() || n <= -most || n >= most) return std::nullopt;
-    text.remove_prefix(static_cast<std::size_t>(end - text.data()));
-  }
-  return extent;
-}
-
-/// Throws Error unless an attribute, where it is there, has that many finite numbers: VTK takes its
-/// default for others.
-void check_numbers(const XmlTag& tag, const char* name, int count) {
-  const std::string_view given = attribute(tag, name);
-  if (given.empty()) return;
-  std::string_view text = given;
-  int found = 0;
-  for (text = without_spaces_in_front(text); !text.empty(); text = without_spaces_in_front(text)) {
-    if (text.front() == '+') text.remove_prefix(1);
-    double number = 0;
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
-    const auto taken = static_cast<std::size_t>(end - text.data());
-    const bool ends = taken == text.size() ||
-                      without_spaces_in_front(text.substr(taken)).data() != text.data() + taken;
-    if (error != std::errc() || !std::isfinite(number) || !ends) break;
-    text.remove_prefix(taken);
-    ++found;
-  }
-  if (found == count && text.empty()) return;
+std::string in_quotes(std::string_view text) {
   constexpr std::size_t longest = 100;
-  throw Error(std::string("its ") + name + " is \"" +
-              one_line(std::string(given.substr(0, longest))) + "\", but must be " +
-              std::to_string(count) + " finite numbers; mend the file");
+  return "\"" + one_line(std::string(text.substr(0, longest))) + "\"";
 }
 
-/// Returns the bytes of a type's number; 0 where the type is not known.
-std::uint64_t size_of(std::string_view type) {
-  static const std::map<std::string_view, std::uint64_t> sizes{
-      {"Int8", 1},  {"UInt8", 1},  {"Int16", 2}, {"UInt16", 2},  {"Int32", 4},   {"UInt32", 4},
-      {"Int64", 8}, {"UInt64", 8}, {"Bit", 1},   {"Float32", 4}, {"Float64", 8}, {"vtkIdType", 8}};
-  const auto found = sizes.find(type);
-  return found == sizes.end() ? 0 : found->second;
+bool is_sound(double number) {
+  return std::isfinite(number);
 }
 
-/// Returns whether a whole number is one of its type's; VTK cuts others to its bits.
-template <class Integer>
-bool is_integer(std::string_view word) {
-  Integer number{};
-  const char* const end = word.data() + word.size();
-  const auto [stop, error] = std::from_chars(word.data(), end, number);
-  return error == std::errc() && stop == end;
+/// Returns whether a number of points is far from what differences and products hold.
+bool is_sound(std::int64_t number) {
+  constexpr std::int64_t most = std::int64_t{1} << 30;
+  return number > -most && number < most;
 }
 
-/// Returns whether a word begins like a number of reals: with a digit, a point, "nan" or "inf".
-bool is_real(std::string_view word) {
-  if (word.starts_with('-')) word.remove_prefix(1);
-  const auto letter = [&](std::size_t i) {
-    const char c = i < word.size() ? word[i] : ' ';
-    return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
-  };
-  const bool is_name = (letter(0) == 'n' && letter(1) == 'a' && letter(2) == 'n') ||
-                       (letter(0) == 'i' && letter(1) == 'n' && letter(2) == 'f');
-  return is_name || letter(0) == '.' || (letter(0) >= '0' && letter(0) <= '9');
-}
-
-/// Returns what says whether a word is a number of the type.
-bool (*number_test(std::string_view type))(std::string_view word) {
-  static const std::map<std::string_view, bool (*)(std::string_view)> tests{
-      {"Int8", is_integer<std::int8_t>},   {"UInt8", is_integer<std::uint8_t>},
-      {"Int16", is_integer<std::int16_t>}, {"UInt16", is_integer<std::uint16_t>},
-      {"Int32", is_integer<std::int32_t>}, {"UInt32", is_integer<std::uint32_t>},
-      {"Int64", is_integer<std::int64_t>}, {"UInt64", is_integer<std::uint64_t>},
-      {"Bit", is_integer<std::uint8_t>},   {"vtkIdType", is_integer<std::int64_t>}};
-  const auto found = tests.find(type);
-  return found == tests.end() ? is_real : found->second;
-}
-
-/// Counts the words of a text that are numbers of the type; sets `stop` to the first other one.
-std::uint64_t count_numbers(std::string_view text, std::string_view type, std::string& stop) {
-  const auto is_number = number_test(type);
-  std::uint64_t count = 0;
-  for (;;) {
-    text = without_spaces_in_front(text);
-    if (text.empty()) return count;
-    const auto end = static_cast<std::size_t>(std::ranges::find_if(text, is_space) - text.begin());
-    std::string_view word = text.substr(0, end);
-    if (word.starts_with('+')) word.remove_prefix(1);
-    if (!is_number(word)) {
-      constexpr std::size_t longest = 20;
-      stop = text.substr(0, std::min(end, longest));
-      return count;
-    }
-    ++count;
-    text.remove_prefix(end);
+/// Returns the numbers of an attribute; nothing where it is not there. Throws Error unless they are
+/// `count` sound ones: VTK takes its default for others.
+template <class Number, std::size_t count>
+std::optional<std::array<Number, count>> numbers_of(const XmlTag& tag, const char* name) {
+  const std::string_view given = attribute(tag, name);
+  if (given.empty()) return std::nullopt;
+  const std::optional<std::vector<Number>> found = numbers_in<Number>(given);
+  const auto are_sound = [](Number number) { return is_sound(number); };
+  if (!found || found->size() != count || !std::ranges::all_of(*found, are_sound)) {
+    throw Error(std::string("its ") + name + " is " + in_quotes(given) + ", but must be " +
+                std::to_string(count) +
+                (std::is_integral_v<Number> ? " whole numbers" : " finite numbers") +
+                "; mend the file");
   }
+  std::array<Number, count> numbers{};
+  std::ranges::copy(*found, numbers.begin());
+  return numbers;
 }
 
-int sextet(char c) {
-  if (c >= 'A' && c <= 'Z') return c - 'A';
-  if (c >= 'a' && c <= 'z') return c - 'a' + 26;
-  if (c >= '0' && c <= '9') return c - '0' + 52;
-  return c == '+' ? 62 : c == '/' ? 63 : -1;
+/// Returns a piece's number of points or cells; 0: it is not there. Throws Error where it is none.
+std::uint64_t count_of(const XmlTag& tag, const char* name) {
+  const std::string_view given = without_blanks(attribute(tag, name));
+  if (given.empty()) return 0;
+  if (const auto number = number_of_word<std::uint64_t>(given)) return *number;
+  throw Error(std::string("a piece has the ") + name + " " + in_quotes(given) +
+              ", which is no whole number from 0 on; mend the file");
 }
-
-/// The bytes behind some place of the file, as they lie or in base64.
-class Bytes {
- public:
-  Bytes(std::string_view text, bool base64) : text_(text), base64_(base64) {}
-
-  /// Returns how many there can be.
-  std::uint64_t size() const {
-    if (!base64_) return text_.size();
-    std::uint64_t characters = 0;
-    for (const char c : text_) {
-      if (sextet(c) < 0 && c != '=') break;
-      ++characters;
-    }
-    return characters / 4 * 3;
-  }
-
-  std::optional<std::uint64_t> number(std::uint64_t at, std::uint64_t bytes, bool big) const {
-    std::uint64_t value = 0;
-    for (std::uint64_t i = 0; i < bytes; ++i) {
-      const auto byte = this->byte(at + (big ? i : bytes - 1 - i));
-      if (!byte) return std::nullopt;
-      value = value << 8 | *byte;
-    }
-    return value;
-  }
-
- private:
-  std::optional<std::uint64_t> byte(std::uint64_t at) const {
-    if (!base64_) {
-      if (at >= text_.size()) return std::nullopt;
-      return static_cast<unsigned char>(text_[at]);
-    }
-    const std::uint64_t first = at / 3 * 4;
-    if (first + 4 > text_.size()) return std::nullopt;
-    std::uint64_t bits = 0;
-    for (std::uint64_t i = 0; i < 4; ++i) {
-      const int six = text_[first + i] == '=' && i > at % 3 + 1 ? 0 : sextet(text_[first + i]);
-      if (six < 0) return std::nullopt;
-      bits = bits << 6 | static_cast<std::uint64_t>(six);
-    }
-    return bits >> 8 * (2 - at % 3) & 0xff;
-  }
-
-  std::string_view text_;
-  bool base64_;
-};
 
 /// Walks through the tags of a file.
 class FileReader {
@@ -231,6 +90,7 @@ class FileReader {
         enter(*tag);
       }
     }
+    measure();
     return std::move(file_);
   }
 
@@ -240,13 +100,22 @@ class FileReader {
     bool base64 = false;
   };
 
+  /// An array in binary, by its index among those of a piece.
+  struct InBinary {
+    std::size_t piece, array;
+    std::string_view text;                ///< between the tags, in base64
+    std::optional<std::uint64_t> offset;  ///< else from there in what is appended
+  };
+
   std::optional<Appended> find_appended() const {
     const std::size_t at = text_.find("<AppendedData");
     if (at == std::string_view::npos) return std::nullopt;
     const std::size_t end = text_.find('>', at), begin = text_.find('_', end);
     if (begin == std::string_view::npos) return std::nullopt;
     const std::string_view tag = text_.substr(at, end - at);
-    return Appended{text_.substr(begin + 1), tag.find("base64") != std::string_view::npos};
+    const std::size_t close = text_.rfind("</AppendedData");
+    const std::size_t size = close == text_.npos || close <= begin ? text_.npos : close - begin - 1;
+    return Appended{text_.substr(begin + 1, size), tag.find("\"raw\"") == text_.npos};
   }
 
   void enter(const XmlTag& tag) {
@@ -261,27 +130,27 @@ class FileReader {
         {"PPoints", VtkSection::points},
         {"PCells", VtkSection::cells},
         {"PCoordinates", VtkSection::coordinates}};
+    if (const auto offset =
+            number_of_word<std::uint64_t>(without_blanks(attribute(tag, "offset")))) {
+      begins_.insert(*offset);
+    }
     if (tag.name == "VTKFile") {
       file_.kind = attribute(tag, "type");
-      big_ = attribute(tag, "byte_order") == "BigEndian";
-      header_size_ = attribute(tag, "header_type") == "UInt64" ? 8 : 4;
-      compressed_ = !attribute(tag, "compressor").empty();
+      coding_.big_endian = attribute(tag, "byte_order") == "BigEndian";
+      coding_.header_size = attribute(tag, "header_type") == "UInt64" ? 8 : 4;
+      coding_.compressed = !attribute(tag, "compressor").empty();
     } else if (tag.name == file_.kind) {
-      check_numbers(tag, "Origin", 3);
-      check_numbers(tag, "Spacing", 3);
-      check_numbers(tag, "Direction", 9);
-      file_.whole = extent_in(attribute(tag, "WholeExtent"));
+      enter_grid(tag);
     } else if (tag.name == "Piece") {
       enter_piece(tag);
     } else if (tag.name == "DataSet") {
       if (const std::string_view name = attribute(tag, "file"); !name.empty()) {
-        file_.files.push_back(plain_text(name));
+        file_.files.push_back(xml_text(name));
       }
     } else if (const auto section = sections.find(tag.name); section != sections.end()) {
       if (!tag.closed) section_ = section->second;
     } else if ((tag.name == "DataArray" || tag.name == "PDataArray") && section_) {
-      const bool is_listed = tag.name == "PDataArray" || file_.pieces.empty();
-      (is_listed ? file_.listed : file_.pieces.back().arrays).push_back(array(tag));
+      enter_array(tag);
     }
   }
 
@@ -294,12 +163,27 @@ class FileReader {
     }
   }
 
+  void enter_grid(const XmlTag& tag) {
+    file_.place.origin = numbers_of<double, 3>(tag, "Origin");
+    file_.place.spacing = numbers_of<double, 3>(tag, "Spacing");
+    file_.place.direction = numbers_of<double, 9>(tag, "Direction");
+    file_.whole = numbers_of<std::int64_t, 6>(tag, "WholeExtent");
+    const std::string times = xml_text(attribute(tag, "TimeValues"));
+    const auto found = numbers_in<double>(times);
+    if (!found || !std::ranges::all_of(*found, [](double time) { return std::isfinite(time); })) {
+      throw Error("its TimeValues are " + in_quotes(times) +
+                  ", which are no finite numbers; mend the "
+                  "file");
+    }
+    file_.times = *found;
+  }
+
   void enter_piece(const XmlTag& tag) {
     VtkXmlPiece piece;
-    piece.source = plain_text(attribute(tag, "Source"));
-    piece.points = number_in<std::uint64_t>(attribute(tag, "NumberOfPoints")).value_or(0);
-    piece.cells = number_in<std::uint64_t>(attribute(tag, "NumberOfCells")).value_or(0);
-    if (const auto extent = extent_in(attribute(tag, "Extent"))) {
+    piece.source = xml_text(attribute(tag, "Source"));
+    piece.points = count_of(tag, "NumberOfPoints");
+    piece.cells = count_of(tag, "NumberOfCells");
+    if (const auto extent = numbers_of<std::int64_t, 6>(tag, "Extent")) {
       piece.extent = *extent;
       piece.points = piece.cells = 1;
       for (std::size_t a = 0; a < 6; a += 2) {
@@ -314,58 +198,104 @@ class FileReader {
     file_.pieces.push_back(std::move(piece));
   }
 
-  VtkXmlArray array(const XmlTag& tag) const {
+  void enter_array(const XmlTag& tag) {
+    const bool is_listed = tag.name == "PDataArray" || file_.pieces.empty();
+    std::vector<VtkXmlArray>& arrays = is_listed ? file_.listed : file_.pieces.back().arrays;
+    arrays.push_back(head_of(tag));
+    VtkXmlArray& array = arrays.back();
+    if (tag.name == "PDataArray" || size_of_vtk_type(array.type) == 0) return;
+    const std::string_view format = attribute(tag, "format"), offset = attribute(tag, "offset");
+    InBinary binary{file_.pieces.size() - 1, arrays.size() - 1, tag.text, std::nullopt};
+    // VTK goes by the offset, and takes each format that it does not know for text.
+    if (!offset.empty()) {
+      binary.offset = number_of_word<std::uint64_t>(without_blanks(offset));
+      if (!without_blanks(tag.text).empty()) {
+        array.fault = "has an offset, and values of its own";
+      } else if (!appended_) {
+        array.fault = "is appended, but the file has no AppendedData";
+      } else if (!binary.offset || *binary.offset >= appended_->bytes.size()) {
+        array.fault = "has the offset " + in_quotes(offset) +
+                      ", but AppendedData has the bytes 0 to " +
+                      std::to_string(appended_->bytes.size());
+      }
+    } else if (format == "ascii" || format.empty()) {
+      CountedNumbers counted = count_numbers(tag.text, array.type);
+      array.values = counted.count;
+      array.stop = std::move(counted.stop);
+      return;
+    } else if (format != "binary") {
+      array.fault = format == "appended" ? "is appended, but has no offset"
+                                         : "has the format " + in_quotes(format) +
+                                               ", which is not ascii, binary or appended";
+    }
+    if (array.fault.empty() && !is_listed) in_binary_.push_back(binary);
+  }
+
+  /// Returns what an array is, without its values.
+  VtkXmlArray head_of(const XmlTag& tag) const {
     VtkXmlArray array;
     array.section = *section_;
-    array.name = plain_text(attribute(tag, "Name"));
+    array.name = xml_text(attribute(tag, "Name"));
     array.type = attribute(tag, "type");
-    array.is_step = !attribute(tag, "TimeStep").empty();
-    const std::string_view components = attribute(tag, "NumberOfComponents");
-    array.components = number_in<std::int64_t>(components).value_or(1);
+    array.is_bits = array.type == "Bit";
+    const bool is_of_points = array.section == VtkSection::point_data;
+    if (array.name.empty() && (is_of_points || array.section == VtkSection::cell_data)) {
+      throw Error(std::string("an array of ") + (is_of_points ? "points" : "cells") +
+                  " has no name; write it into the element as Name");
+    }
+    const auto refuse = [&](const char* name, const std::string& must_be) {
+      throw Error("the array " + in_quotes(array.name) + " has the " + name + " " +
+                  in_quotes(attribute(tag, name)) + ", but must have " + must_be +
+                  "; mend the file");
+    };
+    if (const auto steps = numbers_in<int>(attribute(tag, "TimeStep"))) {
+      array.steps = *steps;
+    } else {
+      refuse("TimeStep", "numbers of steps");
+    }
+    const std::string_view components = without_blanks(attribute(tag, "NumberOfComponents"));
     constexpr std::int64_t most = std::int64_t{1} << 20;
-    if (array.components > most) {
-      throw Error("the array \"" + one_line(array.name.substr(0, 100)) + "\" has " +
-                  std::to_string(array.components) + " components; the file is damaged");
+    array.components =
+        components.empty() ? 1 : number_of_word<std::int64_t>(components).value_or(-1);
+    if (array.components < 0 || array.components > most) {
+      refuse("NumberOfComponents", "a whole number from 1 to " + std::to_string(most));
     }
     array.components = std::max(array.components, std::int64_t{1});
-    const std::uint64_t size = size_of(array.type);
-    if (tag.name == "PDataArray" || size == 0) return array;
-    const std::string_view format = attribute(tag, "format");
-    if (format == "ascii" || format.empty()) {
-      array.values = count_numbers(tag.text, array.type, array.stop);
-      return array;
-    }
-    std::optional<std::uint64_t> bytes;
-    if (format == "binary") {
-      bytes = byte_count({without_spaces_in_front(tag.text), true});
-    } else if (format == "appended" && appended_) {
-      const auto offset = number_in<std::uint64_t>(attribute(tag, "offset"));
-      if (offset && *offset < appended_->bytes.size()) {
-        bytes = byte_count({appended_->bytes.substr(*offset), appended_->base64});
-      }
-    }
-    array.is_bits = array.type == "Bit";
-    if (bytes) array.values = *bytes / size * (array.is_bits ? 8 : 1);
     return array;
   }
 
-  /// Returns how many bytes an array has, as its header says.
-  std::optional<std::uint64_t> byte_count(const Bytes& bytes) const {
-    const auto number = [&](std::uint64_t i) {
-      return bytes.number(i * header_size_, header_size_, big_);
-    };
-    if (!compressed_) {
-      const auto said = number(0);
-      const std::uint64_t there = bytes.size();
-      if (!said || there < header_size_) return std::nullopt;
-      return std::min(*said, there - header_size_);
+  /// Returns the bytes of an array, up to the next one that is appended.
+  VtkXmlBytes bytes_of(const InBinary& binary) const {
+    if (!binary.offset) return {binary.text, true};
+    const auto next = begins_.upper_bound(*binary.offset);
+    const std::uint64_t size = next == begins_.end() ? text_.npos : *next - *binary.offset;
+    return {appended_->bytes.substr(*binary.offset, size), appended_->base64};
+  }
+
+  /// Counts the values of arrays in binary. Throws Error where all that can be told of their
+  /// headers says that header_type is wrong: VTK would show values shifted by one.
+  void measure() {
+    VtkXmlCoding other = coding_;
+    other.header_size = 4 + 8 - coding_.header_size;
+    bool is_right = false, is_other = false;
+    for (const InBinary& binary : in_binary_) {
+      VtkXmlArray& array = file_.pieces[binary.piece].arrays[binary.array];
+      const VtkXmlBytes bytes = bytes_of(binary);
+      is_right = is_right || bytes.is_filled(coding_);
+      is_other = is_other || bytes.is_filled(other);
+      std::uint64_t count = bytes.said(coding_).value_or(0);
+      if (const std::uint64_t most = bytes.available(coding_);
+          !coding_.compressed && count > most) {
+        array.is_cut = true;
+        count = most;
+      }
+      array.values = count / size_of_vtk_type(array.type) * (array.is_bits ? 8 : 1);
     }
-    const auto blocks = number(0), block = number(1), last = number(2);
-    if (blocks == 0) return 0;
-    constexpr std::uint64_t most = std::uint64_t{1} << 40;
-    if (!blocks || !block || !last || *block > most || *last > most) return std::nullopt;
-    if (*blocks > most / std::max(*block, std::uint64_t{1})) return std::nullopt;
-    return *last == 0 ? *blocks * *block : (*blocks - 1) * *block + *last;
+    if (is_right || !is_other) return;
+    throw Error("the headers of its binary arrays have " + std::to_string(8 * other.header_size) +
+                " bits, but its header_type, UInt32 where none is given, says " +
+                std::to_string(8 * coding_.header_size) + "; write header_type=\"UInt" +
+                std::to_string(8 * other.header_size) + "\" into its element VTKFile");
   }
 
   const std::string name_ = "its XML";
@@ -374,8 +304,9 @@ class FileReader {
   std::optional<Appended> appended_;
   VtkXmlFile file_;
   std::optional<VtkSection> section_;
-  bool big_ = false, compressed_ = false;
-  std::uint64_t header_size_ = 4;
+  VtkXmlCoding coding_;
+  std::vector<InBinary> in_binary_;
+  std::set<std::uint64_t> begins_;  ///< where arrays begin in what is appended
 };
 
 }  // namespace

@@ -22,10 +22,18 @@ struct VtkXmlArray {
   VtkSection section = VtkSection::point_data;
   std::string name, type;
   std::int64_t components = 1;
-  bool is_step = false;  ///< one of several of its name, each of a time step
-  bool is_bits = false;  ///< eight values in a byte, so `values` are up to seven too many
+  std::vector<int> steps;  ///< the time steps that it is of; empty: all
+  bool is_bits = false;    ///< eight values in a byte, so `values` are up to seven too many
   std::optional<std::uint64_t> values;  ///< numbers in the file; none: it does not say
-  std::string stop;                     ///< text: the first word that is no number; empty: none
+  bool is_cut = false;                  ///< its header says more bytes than there are
+  std::string stop;   ///< text: the first word that is no number of the type; empty: none
+  std::string fault;  ///< what is wrong with its attributes; empty: nothing
+};
+
+/// Place of an image; nothing: the file does not say it.
+struct VtkXmlPlace {
+  std::optional<std::array<double, 3>> origin, spacing;
+  std::optional<std::array<double, 9>> direction;
 };
 
 /// A piece of a file or, in a list of pieces, of another file.
@@ -40,6 +48,8 @@ struct VtkXmlPiece {
 struct VtkXmlFile {
   std::string kind;  ///< "ImageData", "PUnstructuredGrid" …
   std::optional<VtkExtent> whole;
+  VtkXmlPlace place;
+  std::vector<double> times;  ///< of the steps in time; empty: there are none
   std::vector<VtkXmlPiece> pieces;
   std::vector<VtkXmlArray> listed;  ///< of a list of pieces: the arrays that each piece has
   std::vector<std::string> files;   ///< of a collection: its files

@@ -2,10 +2,15 @@
 #include "vtk_xml_check.h"
 
 #include <algorithm>
+#include <array>
+#include <cstddef>
+#include <map>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "input_file.h"
+#include "pellucid/geometry/vec3.h"
 #include "pellucid/scene/error.h"
 #include "text.h"
 
@@ -68,6 +73,12 @@ std::optional<std::uint64_t> needed_values(const VtkXmlArray& array, const VtkXm
   return static_cast<std::uint64_t>(piece.extent[2 * axis + 1] - piece.extent[2 * axis] + 1);
 }
 
+/// Returns what is known of the first word that is no number: " before \"x\", which is no Int8".
+std::string stop_of(const VtkXmlArray& array) {
+  if (array.stop.empty()) return "";
+  return " before \"" + one_line(array.stop) + "\", which is no " + one_line(array.type);
+}
+
 void check_sizes(const VtkXmlPiece& piece, const IsVtkArrayWanted& is_wanted) {
   // Nothing is made of so many, and products of them hold.
   constexpr std::uint64_t most = std::uint64_t{1} << 40;
@@ -78,21 +89,74 @@ void check_sizes(const VtkXmlPiece& piece, const IsVtkArrayWanted& is_wanted) {
   std::size_t axis = 0;
   for (const VtkXmlArray& array : piece.arrays) {
     const std::size_t at = array.section == VtkSection::coordinates ? axis++ : axis;
-    if (!array.values || !is_wanted_here(array, is_wanted)) continue;
-    if (!has_places(piece, array.section)) continue;
+    if (!is_wanted_here(array, is_wanted) || !has_places(piece, array.section)) continue;
+    if (!array.fault.empty()) throw Error(name_of(array) + " " + array.fault + "; mend the file");
+    if (!array.values) continue;
     const auto needed = needed_values(array, piece, at);
     const std::uint64_t has = *array.values;
-    if (!needed || has == *needed) continue;
+    if (!needed) continue;
+    if (array.is_cut && has >= *needed) {
+      throw Error(name_of(array) +
+                  " has a header that says more bytes than are there; the file is "
+                  "cut off or damaged, or its byte_order is wrong");
+    }
+    if (has == *needed) continue;
     constexpr std::uint64_t bits = 8;
     if (array.is_bits && has > *needed && has - *needed < bits) continue;
     const bool short_of = has < *needed;
-    throw Error(
-        name_of(array) + " has " + std::to_string(has) + " numbers" +
-        (array.stop.empty() || !short_of ? "" : " before \"" + one_line(array.stop) + "\"") +
-        ", but needs " + std::to_string(*needed) +
-        (short_of ? "; the file is cut off or damaged"
-                  : "; the file is damaged, or its number of points or cells is wrong"));
+    throw Error(name_of(array) + " has " + std::to_string(has) + " numbers" +
+                (short_of ? stop_of(array) : "") + ", but needs " + std::to_string(*needed) +
+                (!short_of            ? "; the file is damaged, or its number of points or cells "
+                                        "is wrong"
+                 : array.stop.empty() ? "; the file is cut off or damaged"
+                                      : "; mend that word, or the type"));
   }
+}
+
+/// Arrays of a piece that are one to VTK, which reads the first of them, or one for each step.
+using SameArrays = std::vector<const VtkXmlArray*>;
+
+std::vector<SameArrays> same_arrays(const VtkXmlPiece& piece, const IsVtkArrayWanted& is_wanted) {
+  std::map<std::pair<VtkSection, std::string>, SameArrays> groups;
+  for (const VtkXmlArray& array : piece.arrays) {
+    if (array.section == VtkSection::coordinates || !is_wanted_here(array, is_wanted)) continue;
+    const bool has_name = array.section != VtkSection::points;
+    groups[{array.section, has_name ? array.name : ""}].push_back(&array);
+  }
+  std::vector<SameArrays> list;
+  for (auto& [name, group] : groups) list.push_back(std::move(group));
+  return list;
+}
+
+/// Throws Error where two arrays of a piece are one to VTK, and where steps in time lack one.
+void check_names(const VtkXmlPiece& piece, std::size_t steps, const IsVtkArrayWanted& is_wanted) {
+  for (const SameArrays& arrays : same_arrays(piece, is_wanted)) {
+    if (arrays.size() == 1 && (steps == 0 || arrays.front()->steps.empty())) continue;
+    const auto always = std::ranges::count_if(
+        arrays, [&](const VtkXmlArray* array) { return steps == 0 || array->steps.empty(); });
+    std::vector<std::ptrdiff_t> found(std::max(steps, std::size_t{1}), always);
+    for (const VtkXmlArray* const array : arrays) {
+      for (const int step : array->steps) {
+        const auto index = static_cast<std::size_t>(step);
+        if (step >= 0 && index < steps) ++found[index];
+      }
+    }
+    const auto wrong = std::ranges::find_if(found, [](auto count) { return count != 1; });
+    if (wrong == found.end()) continue;
+    const std::string in_step =
+        steps == 0 ? "" : " for the step " + std::to_string(wrong - found.begin()) + " in time";
+    throw Error(name_of(*arrays.front()) +
+                (*wrong == 0 ? " is not there" + in_step + "; write it for each step"
+                             : " is there " + std::to_string(*wrong) + " times" + in_step +
+                                   "; leave one, or rename the others"));
+  }
+}
+
+/// Throws Error where a piece of a file does not have what it says.
+void check_piece(const VtkXmlFile& file, const VtkXmlPiece& piece,
+                 const IsVtkArrayWanted& is_wanted) {
+  check_sizes(piece, is_wanted);
+  check_names(piece, file.times.size(), is_wanted);
 }
 
 const VtkXmlArray* find(const VtkXmlPiece& piece, const VtkXmlArray& like) {
@@ -134,7 +198,7 @@ void check_alike(const std::vector<VtkXmlPiece>& pieces, const IsVtkArrayWanted&
     };
     const auto check = [&](const VtkXmlPiece* of, const VtkXmlPiece* in) {
       for (const VtkXmlArray& array : of->arrays) {
-        if (array.section != section || array.is_step || array.type == "String") continue;
+        if (array.section != section || !array.steps.empty() || array.type == "String") continue;
         if (!is_wanted_here(array, is_wanted)) continue;
         check_has(*in, array, number(in), "write the pieces alike");
       }
@@ -222,7 +286,97 @@ bool is_structured(std::string_view kind) {
   return kind == "ImageData" || kind == "RectilinearGrid" || kind == "StructuredGrid";
 }
 
-void check_list(const fs::path& path, const VtkXmlFile& list, const IsVtkArrayWanted& is_wanted) {
+using Place = Vec3<double>;
+
+/// Returns where a point of an image stands, from its place or, where it says none, another's.
+Place position(const VtkXmlPlace& place, const VtkXmlPlace& otherwise, const Place& index) {
+  const std::array<double, 3> no_origin{0, 0, 0}, unit{1, 1, 1};
+  const auto origin = place.origin.value_or(otherwise.origin.value_or(no_origin));
+  const auto spacing = place.spacing.value_or(otherwise.spacing.value_or(unit));
+  const auto direction = place.direction.value_or(
+      otherwise.direction.value_or(std::array<double, 9>{1, 0, 0, 0, 1, 0, 0, 0, 1}));
+  Place position;
+  for (std::size_t row = 0; row < 3; ++row) {
+    double& sum = position[static_cast<int>(row)];
+    sum = origin[row];
+    for (std::size_t a = 0; a < 3; ++a) {
+      sum += direction[3 * row + a] * spacing[a] * index[static_cast<int>(a)];
+    }
+  }
+  return position;
+}
+
+/// Throws Error where a piece's file places the points of its extent elsewhere than the list.
+void check_place(const VtkXmlPlace& own, const VtkXmlPlace& list, const VtkExtent& extent) {
+  const auto at = [&](std::size_t axis) { return static_cast<double>(extent[axis]); };
+  const Place first{at(0), at(2), at(4)};
+  for (int a = -1; a < 3; ++a) {
+    Place index = first;
+    if (a >= 0) index[a] = at(2 * static_cast<std::size_t>(a) + 1);
+    const Place its = position(own, list, index), right = position(list, {}, index);
+    for (int axis = 0; axis < 3; ++axis) {
+      Place next = index;
+      next[axis] += 1;
+      // Written numbers are rounded.
+      constexpr double share = 0.01;
+      const double spacing = length(position(list, {}, next) - right);
+      if (!(length(its - right) > share * spacing)) continue;
+      throw Error(
+          "its Origin, Spacing or Direction is not that of the list of pieces, which would "
+          "place its points elsewhere; correct the one that is wrong");
+    }
+  }
+}
+
+bool is_ghost_type(const VtkXmlArray& array) {
+  return is_data(array.section) && array.name == "vtkGhostType";
+}
+
+/// Returns whether a file has flags of ghosts that its list does not name, which VTK leaves out.
+bool has_unlisted_ghosts(const VtkXmlFile& file, const VtkXmlFile& list) {
+  return std::ranges::any_of(file.pieces, [&](const VtkXmlPiece& piece) {
+    return std::ranges::any_of(piece.arrays, [&](const VtkXmlArray& array) {
+      const auto is_it = [&](const VtkXmlArray& listed) {
+        return is_ghost_type(listed) && listed.section == array.section;
+      };
+      return is_ghost_type(array) && std::ranges::none_of(list.listed, is_it);
+    });
+  });
+}
+
+/// Throws Error where the file of a piece contradicts its list.
+void check_listed_file(const VtkXmlFile& own, const VtkXmlPiece& piece, const VtkXmlFile& list,
+                       const IsVtkArrayWanted& is_wanted, CheckedVtkXml& checked) {
+  if (own.times.size() > 1) {
+    throw Error(
+        "it has steps in time, of which a list of pieces chooses none; write the steps to "
+        "files of their own");
+  }
+  const bool has_ghosts = has_unlisted_ghosts(own, list);
+  if (is_structured(own.kind)) {
+    check_vtk_pieces(own, piece.extent, is_wanted);
+    if (own.kind == "ImageData") check_place(own.place, list.place, piece.extent);
+    if (has_ghosts) {
+      throw Error(
+          "it has the array \"vtkGhostType\", which the list of pieces does not name; add it "
+          "to the list");
+    }
+  } else {
+    for (const VtkXmlPiece& part : own.pieces) check_piece(own, part, is_wanted);
+    check_alike(own.pieces, is_wanted);
+    checked.has_unlisted_ghosts = checked.has_unlisted_ghosts || has_ghosts;
+  }
+  for (const VtkXmlArray& array : list.listed) {
+    if (array.type == "String" || !is_wanted_here(array, is_wanted)) continue;
+    if (array.section == VtkSection::cells) continue;
+    for (const VtkXmlPiece& part : own.pieces) {
+      check_has(part, array, "it", "write it as the list of pieces says");
+    }
+  }
+}
+
+void check_list(const fs::path& path, const VtkXmlFile& list, const IsVtkArrayWanted& is_wanted,
+                CheckedVtkXml& checked) {
   const bool structured = is_structured(std::string_view(list.kind).substr(1));
   if (structured && list.whole) {
     check_cover(list.pieces, *list.whole, false);
@@ -231,37 +385,33 @@ void check_list(const fs::path& path, const VtkXmlFile& list, const IsVtkArrayWa
   for (const VtkXmlPiece& piece : list.pieces) {
     const fs::path file = beside(path, piece.source);
     if (!is_vtk_xml(file)) continue;
+    if (structured && !is_empty(piece.extent)) {
+      ListedPiece& listed = checked.pieces.emplace_back(ListedPiece{file, {}});
+      std::ranges::transform(piece.extent, listed.extent.begin(),
+                             [](std::int64_t n) { return static_cast<int>(n); });
+    }
     try {
-      const VtkXmlFile own = read_vtk_xml(file);
-      if (structured) {
-        check_vtk_pieces(own, piece.extent, is_wanted);
-      } else {
-        for (const VtkXmlPiece& part : own.pieces) check_sizes(part, is_wanted);
-        check_alike(own.pieces, is_wanted);
-      }
-      for (const VtkXmlArray& array : list.listed) {
-        if (array.type == "String" || !is_wanted_here(array, is_wanted)) continue;
-        if (array.section == VtkSection::cells) continue;
-        for (const VtkXmlPiece& part : own.pieces) {
-          check_has(part, array, "it", "write it as the list of pieces says");
-        }
-      }
+      check_listed_file(read_vtk_xml(file), piece, list, is_wanted, checked);
     } catch (const Error& error) {
       throw Error("its piece " + one_line(piece.source.substr(0, 200)) + ": " + error.what());
     }
   }
 }
 
-void check_file(const fs::path& path, const IsVtkArrayWanted& is_wanted, int depth) {
+CheckedVtkXml check_file(const fs::path& path, const IsVtkArrayWanted& is_wanted, int depth) {
   const VtkXmlFile file = read_vtk_xml(path);
+  CheckedVtkXml checked{file.times, false, {}};
+  if (depth > 0 && file.times.size() > 1) {
+    throw Error("it has steps in time, of which a file that names it chooses none; give it alone");
+  }
   if (is_structured(file.kind)) {
     if (file.whole) check_vtk_pieces(file, *file.whole, is_wanted);
   } else if (file.kind == "UnstructuredGrid") {
-    for (const VtkXmlPiece& piece : file.pieces) check_sizes(piece, is_wanted);
+    for (const VtkXmlPiece& piece : file.pieces) check_piece(file, piece, is_wanted);
     check_alike(file.pieces, is_wanted);
   } else if (file.kind == "PUnstructuredGrid" ||
              (file.kind.starts_with('P') && is_structured(file.kind.substr(1)))) {
-    check_list(path, file, is_wanted);
+    check_list(path, file, is_wanted, checked);
   }
   constexpr int deepest = 4;
   for (const std::string& name : file.files) {
@@ -273,13 +423,14 @@ void check_file(const fs::path& path, const IsVtkArrayWanted& is_wanted, int dep
       throw Error("its part " + one_line(name.substr(0, 200)) + ": " + error.what());
     }
   }
+  return checked;
 }
 
 }  // namespace
 
 void check_vtk_pieces(const VtkXmlFile& file, const VtkExtent& needed,
                       const IsVtkArrayWanted& is_wanted) {
-  for (const VtkXmlPiece& piece : file.pieces) check_sizes(piece, is_wanted);
+  for (const VtkXmlPiece& piece : file.pieces) check_piece(file, piece, is_wanted);
   check_alike(file.pieces, is_wanted);
   const auto has = [&](VtkSection section) {
     return std::ranges::any_of(file.pieces, [&](const VtkXmlPiece& piece) {
@@ -294,8 +445,8 @@ void check_vtk_pieces(const VtkXmlFile& file, const VtkExtent& needed,
   if (has(VtkSection::cell_data)) check_cover(file.pieces, needed, true);
 }
 
-void check_vtk_xml(const fs::path& path, const IsVtkArrayWanted& is_wanted) {
-  check_file(path, is_wanted, 0);
+CheckedVtkXml check_vtk_xml(const fs::path& path, const IsVtkArrayWanted& is_wanted) {
+  return check_file(path, is_wanted, 0);
 }
 
 }  // namespace pellucid

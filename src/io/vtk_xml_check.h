@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <filesystem>
 #include <functional>
+#include <vector>
 
 #include "vtk_xml_arrays.h"
 
@@ -11,11 +13,26 @@ namespace pellucid {
 /// Says whether an array of points or cells is going to be read; empty: each is.
 using IsVtkArrayWanted = std::function<bool(VtkSection section, const std::string& name)>;
 
+/// A piece of a list: its file, and the points that are taken from it.
+struct ListedPiece {
+  std::filesystem::path file;
+  std::array<int, 6> extent{};
+};
+
+/// What a file was found to have.
+struct CheckedVtkXml {
+  std::vector<double> times;  ///< of its steps in time; empty: there are none
+  /// Pieces of unstructured grids flag ghosts, of which their list does not speak: VTK shows them.
+  bool has_unlisted_ghosts = false;
+  std::vector<ListedPiece> pieces;  ///< of a list of structured grids
+};
+
 /// VTK leaves memory as it is where a piece lacks an array, where pieces do not cover the extent,
 /// and where types differ between a list and its pieces; an array that is too short may crash it,
 /// and the rest of one that is too long is cut. Throws Error, without the file's name, where one of
-/// VTK's XML files has such a fault, or a file that it names has it.
-void check_vtk_xml(const std::filesystem::path& path, const IsVtkArrayWanted& is_wanted = {});
+/// VTK's XML files has such a fault, or a file that it names has it, or contradicts it.
+CheckedVtkXml check_vtk_xml(const std::filesystem::path& path,
+                            const IsVtkArrayWanted& is_wanted = {});
 
 /// Throws Error where the pieces of a file do not cover these points, or the cells between them,
 /// with the wanted arrays.

@@ -153,6 +153,68 @@ PELLUCID_DESCRIBED_KEY(vtk_time_step, "VTK files", "timestep", honored) {
   EXPECT_EQ(read_mesh(list, {2.0, {}, {}}).time, 2);
 }
 
+PELLUCID_DESCRIBED_KEY(vtk_header_type, "VTK files", "header_type", refused) {
+  if (!has_vtk) GTEST_SKIP() << "this build does not read VTK files";
+  // A header of 64 bits, where none is said, and which means 32.
+  std::string text = image("Origin=\"0 0 0\"");
+  const std::string values = xml_array("Float32", "v", "0 1 2 3 4 5 6 7");
+  text.replace(text.find(values), values.size(),
+               "<DataArray type=\"UInt8\" Name=\"v\" "
+               "format=\"binary\">CAAAAAAAAAAAAQIDBAUGBw==</DataArray>");
+  expect_refused([&] { read_volume(write("a.vti", text)); }, "header_type=\"UInt64\"");
+}
+
+PELLUCID_DESCRIBED_KEY(vtk_offset, "VTK files", "offset", refused) {
+  if (!has_vtk) GTEST_SKIP() << "this build does not read VTK files";
+  std::string text = image("Origin=\"0 0 0\"");
+  const std::string values = xml_array("Float32", "v", "0 1 2 3 4 5 6 7");
+  text.replace(text.find(values), values.size(),
+               "<DataArray type=\"Float32\" Name=\"v\" format=\"appended\" offset=\"-4\"/>");
+  text.insert(text.find("</VTKFile>"), "<AppendedData encoding=\"raw\">_12345678</AppendedData>");
+  expect_refused([&] { read_volume(write("a.vti", text)); }, "the offset \"-4\"");
+}
+
+/// An image of two steps in time: 0 to 7 at the time 1, and 9 at the time 4.
+std::string image_of_steps() {
+  std::string text = image("TimeValues=\"1 4\"", xml_array("Float32", "v", "9 9 9 9 9 9 9 9"));
+  const std::size_t first = text.find("Name=\"v\"");
+  text.insert(text.find("Name=\"v\"", first + 1), "TimeStep=\"1\" ");
+  text.insert(first, "TimeStep=\"0\" ");
+  return text;
+}
+
+PELLUCID_DESCRIBED_KEY(vtk_time_values, "VTK files", "TimeValues", honored) {
+  if (!has_vtk) GTEST_SKIP() << "this build does not read VTK files";
+  ReadOptions options;
+  options.time = 3.9;
+  EXPECT_EQ(value_at(read_volume(write("a.vti", image_of_steps()), options), 0, 0, 0), 9);
+}
+
+PELLUCID_DESCRIBED_KEY(vtk_time_steps, "VTK files", "TimeStep", honored) {
+  if (!has_vtk) GTEST_SKIP() << "this build does not read VTK files";
+  EXPECT_EQ(value_at(read_volume(write("a.vti", image_of_steps())), 1, 1, 1), 7);
+}
+
+PELLUCID_DESCRIBED_KEY(vtk_pieces, "VTK files", "Piece", told) {
+  if (!has_vtk) GTEST_SKIP() << "this build does not read VTK files";
+  write("a.vti", image("Origin=\"0 0 0\""));
+  std::string other = image("Origin=\"0 0 0\"");
+  other.replace(other.find("6 7"), 3, "6 5");
+  write("b.vti", other);
+  const auto list = write(
+      "a.pvti",
+      test::xml_file("PImageData",
+                     "<PImageData WholeExtent=\"0 1 0 1 0 1\"><PPointData><PDataArray "
+                     "type=\"Float32\" Name=\"v\"/></PPointData><Piece Extent=\"0 1 0 1 0 1\" "
+                     "Source=\"a.vti\"/><Piece Extent=\"0 1 0 1 0 1\" Source=\"b.vti\"/>"
+                     "</PImageData>\n"));
+  std::vector<std::string> notes;
+  ReadOptions options;
+  options.note = [&](const std::string& note) { notes.push_back(note); };
+  read_volume(list, options);
+  expect_told(notes, "disagree about 1 value");
+}
+
 std::vector<std::string> notes_of(const test::SmallExodus& of, const std::filesystem::path& path,
                                   double time = 0) {
   of.write(path);

@@ -278,6 +278,18 @@ def test_channels_and_labels_keep_the_order_of_an_array():
     assert numpy.array_equal(pellucid.LabelVolume(labels).volume.array, labels)
 
 
+def test_notes_blame_the_line_that_calls():
+    """Of the package in Python, of its compiled part, and of the one called by the other."""
+    values = numpy.full((3, 3, 3), 2 ** 60 + 1, dtype=numpy.int64)
+    masked = numpy.ma.masked_equal(values, 5)
+    masked[0, 0, 0] = 5
+    for call in (lambda: pellucid.Volume(masked), lambda: pellucid.Volume(values),
+                 lambda: pellucid.Channels(a=values), lambda: pellucid.render(values, size=4)):
+        with pytest.warns(pellucid.Note) as told:
+            call()
+        assert told and {each.filename for each in told} == {__file__}
+
+
 def test_masked_integers_that_are_rounded_are_told():
     values = numpy.arange(27, dtype=numpy.int64).reshape(3, 3, 3)
     values[0, 0, 0] = 2 ** 60 + 1

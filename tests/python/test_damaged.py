@@ -135,3 +135,22 @@ def test_children_that_nobody_waits_for(tmp_path):
     if "was built without" in first:
         pytest.skip(first)
     assert first == "read" and second.startswith("refused")
+
+
+@pytest.mark.skipif("PELLUCID_SANITIZED" in os.environ, reason="sanitizers reserve address space")
+def test_too_little_memory_for_a_library_is_told(tmp_path):
+    """That a library is not there is another thing, and has another remedy."""
+    path = tmp_path / "a.vtk"
+    path.write_text("# vtk DataFile Version 3.0\nby hand\nASCII\nDATASET STRUCTURED_POINTS\n"
+                    "DIMENSIONS 2 2 2\nORIGIN 0 0 0\nSPACING 1 1 1\nPOINT_DATA 8\n"
+                    "SCALARS v float 1\nLOOKUP_TABLE default\n0 1 2 3 4 5 6 7\n")
+    command = [os.environ["PELLUCID_PROGRAM"], "info", str(path)]
+    run = subprocess.run(command, capture_output=True, text=True, check=False)
+    if run.returncode != 0:
+        pytest.skip("this build reads none of VTK's files")
+    for limit in (60000, 100000):
+        limited = f"ulimit -v {limit}; exec \"$@\""
+        run = subprocess.run(["bash", "-c", limited, "bash", *command],
+                             capture_output=True, text=True, check=False)
+        assert run.returncode != 0 and run.stderr.count("\n") == 1, run.stderr
+        assert "ulimit -v" in run.stderr and "install" not in run.stderr, run.stderr

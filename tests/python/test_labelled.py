@@ -23,8 +23,8 @@ def silent(data):
         return pellucid.Volume(data)
 
 
-@pytest.mark.parametrize("names", [("level", "y", "x"), ("depth", "lat", "lon"),
-                                   ("plev", "latitude", "longitude"), ("band", "LAT", "LON")])
+@pytest.mark.parametrize("names", [("level", "y", "x"), ("height", "lat", "lon"),
+                                   ("plev", "latitude", "longitude"), ("bottom_top", "LAT", "LON")])
 def test_maps_one_upon_the_other_need_no_note(xarray, names):
     data = xarray.DataArray(VALUES, dims=names, coords=dict(zip(names, (Z, Y, X))))
     volume = silent(data)
@@ -33,12 +33,92 @@ def test_maps_one_upon_the_other_need_no_note(xarray, names):
     assert volume.direction[1, 1] == -1 and volume.origin[1] == 10
 
 
-@pytest.mark.parametrize("names", [("lon", "lat", "lev"), ("dim_0", "dim_1", "dim_2"),
-                                   ("x", "lat", "lon"), ("z", "x", "lat")])
-def test_axes_that_are_taken_by_place_are_told(xarray, names):
-    data = xarray.DataArray(VALUES, dims=names)
-    with pytest.warns(pellucid.Note, match=f"{', '.join(names)} are taken as z, y and x"):
+def test_axes_that_are_taken_by_place_are_told(xarray):
+    data = xarray.DataArray(VALUES, dims=("dim_0", "dim_1", "dim_2"))
+    with pytest.warns(pellucid.Note, match="dim_0, dim_1, dim_2 are taken as z, y and x"):
         assert numpy.array_equal(pellucid.Volume(data).array, VALUES)
+    data = xarray.DataArray(VALUES, dims=("p", "lat", "lon"))
+    with pytest.warns(pellucid.Note, match="its axis p is taken for z; nothing says"):
+        assert numpy.array_equal(pellucid.Volume(data).array, VALUES)
+    data = xarray.DataArray(VALUES, dims=("band", "y", "x"))
+    with pytest.warns(pellucid.Note, match="its axis band is taken for z"):
+        assert numpy.array_equal(pellucid.Volume(data).array, VALUES)
+
+
+@pytest.mark.parametrize("names, order", [(("lon", "lat", "lev"), (2, 1, 0)),
+                                          (("z", "x", "lat"), (0, 2, 1)),
+                                          (("rlat", "rlon", "height"), (2, 0, 1))])
+def test_axes_are_turned_by_their_names(xarray, names, order):
+    data = xarray.DataArray(VALUES, dims=names)
+    assert numpy.array_equal(silent(data).array, VALUES.transpose(order))
+
+
+@pytest.mark.parametrize("name, attributes, meaning", [
+    ("number", {}, "members of an ensemble"), ("realization", {}, "members of an ensemble"),
+    ("n", {"standard_name": "realization"}, "members of an ensemble"),
+    ("n", {"axis": "E"}, "members of an ensemble"),
+    ("step", {"units": "hours since 2000-01-01"}, "time"),
+])
+def test_members_are_no_axis_of_space(xarray, name, attributes, meaning):
+    coords = {name: (name, [1.0, 2, 3], attributes)} if attributes else {}
+    data = xarray.DataArray(VALUES, dims=(name, "lat", "lon"), coords=coords)
+    with pytest.raises(pellucid.Error, match=f"\"{name}\" is {meaning}.*; choose one, as"):
+        pellucid.Volume(data)
+    several = xarray.DataArray(numpy.stack([VALUES] * 2, 1), dims=("z", name, "y", "x"))
+    if not attributes:
+        with pytest.raises(pellucid.Error, match=f"\"{name}\" is {meaning}"):
+            pellucid.Volume(several)
+    assert numpy.array_equal(silent(several.isel({name: 1})).array, VALUES)
+    assert numpy.array_equal(silent(several.isel({name: [1]})).array, VALUES)
+
+
+def test_channels_and_others_beside_places_are_refused(xarray):
+    for name, meaning in (("band", "channels"), ("w", "none of x, y and z"), ("nv", "bounds")):
+        data = xarray.DataArray(numpy.stack([VALUES] * 2), dims=(name, "z", "y", "x"))
+        with pytest.raises(pellucid.Error, match=meaning):
+            pellucid.Volume(data)
+    with pytest.raises(pellucid.Error, match="has 2 axes; give three"):
+        pellucid.Volume(xarray.DataArray(VALUES[0], dims=("y", "x")))
+    with pytest.raises(pellucid.Error, match="time and not z: images, no volume"):
+        pellucid.Volume(xarray.DataArray(VALUES[:1], dims=("time", "y", "x")))
+
+
+def with_units(xarray, *units):
+    coords = {axis: (axis, positions, {} if unit is None else {"units": unit})
+              for axis, positions, unit in zip("zyx", (Z, Y, X), units)}
+    return xarray.DataArray(VALUES, dims=("z", "y", "x"), coords=coords)
+
+
+@pytest.mark.parametrize("units, factor", [
+    (("mm", "um", "um"), 1e3), (("nm", "micrometer", "µm"), 1e-3), (("km", "m", "metres"), 1e3),
+    (("mm", "um", None), 1e3)])
+def test_lengths_of_several_units_become_one(xarray, units, factor):
+    with pytest.warns(pellucid.Note, match="several units; lengths are turned into"):
+        volume = pellucid.Volume(with_units(xarray, *units))
+    assert numpy.allclose(volume.coordinates[0], Z * factor)
+    assert volume.spacing[1:] == (2, 0.5)
+
+
+@pytest.mark.parametrize("longitudes, origin", [((320.0, 340, 0, 20, 40), 320),
+                                                ((140, 160, 180, -160, -140), 140),
+                                                ((-160, -180, 160, 140, 120), -160)])
+def test_longitudes_go_on_where_they_jump(xarray, longitudes, origin):
+    lon = ("lon", numpy.array(longitudes), {"units": "degrees_east"})
+    data = xarray.DataArray(VALUES, dims=("level", "lat", "lon"), coords={"lon": lon})
+    with pytest.warns(pellucid.Note, match="longitudes go on where they jump by 360"):
+        volume = pellucid.Volume(data)
+    assert volume.spacing[2] == 20 and volume.origin[2] == origin
+    twice = data.assign_coords(lon=("lon", [300.0, 0, 300, 0, 60], {"units": "degrees_east"}))
+    with pytest.raises(pellucid.Error):
+        pellucid.Volume(twice)
+
+
+def test_units_that_are_no_lengths_are_told(xarray):
+    assert numpy.array_equal(silent(with_units(xarray, "mm", "mm", "mm")).coordinates[0], Z)
+    silent(with_units(xarray, None, "degrees_north", "degrees_east"))
+    with pytest.warns(pellucid.Note, match="differ and are not all known lengths"):
+        volume = pellucid.Volume(with_units(xarray, "hPa", "m", "m"))
+    assert numpy.array_equal(volume.coordinates[0], Z)
 
 
 @pytest.mark.parametrize("name, coordinates, attributes", [
@@ -65,6 +145,12 @@ def test_time_is_no_axis_of_space(xarray, name, coordinates, attributes, place):
     assert pellucid.Volume(data.values).shape == SHAPE
 
 
+def test_one_time_beside_bands_is_left_out(xarray):
+    data = xarray.DataArray(VALUES[:, numpy.newaxis], dims=("band", "time", "y", "x"))
+    with pytest.warns(pellucid.Note, match="its axis band is taken for z"):
+        assert numpy.array_equal(pellucid.Volume(data).array, VALUES)
+
+
 def test_one_time_of_several_axes_is_left_out(xarray):
     data = xarray.DataArray(VALUES[numpy.newaxis], dims=("time", "z", "y", "x"))
     assert silent(data).shape == SHAPE
@@ -73,9 +159,10 @@ def test_one_time_of_several_axes_is_left_out(xarray):
 def test_coordinates_that_are_no_numbers_are_refused(xarray):
     data = xarray.DataArray(VALUES, dims=("band", "y", "x"),
                             coords={"band": ["red", "green", "blue"]})
-    with pytest.raises(pellucid.Error, match="no numbers; .*drop_vars"):
+    with pytest.warns(pellucid.Note), pytest.raises(pellucid.Error, match="no numbers; .*drop_v"):
         pellucid.Volume(data)
-    assert silent(data.drop_vars("band")).shape == SHAPE
+    with pytest.warns(pellucid.Note, match="its axis band is taken for z"):
+        assert pellucid.Volume(data.drop_vars("band")).shape == SHAPE
     with pytest.raises(pellucid.Error, match="finite"):
         pellucid.Volume(xarray.DataArray(VALUES, dims=("z", "y", "x"),
                                          coords={"z": [0, numpy.nan, 2]}))
@@ -88,12 +175,15 @@ def test_coordinates_of_several_axes_are_told(xarray):
         pellucid.Volume(data)
 
 
-def test_depths_that_go_down_are_told(xarray):
-    depth = ("depth", Z, {"positive": "down"})
-    data = xarray.DataArray(VALUES, dims=("depth", "lat", "lon"), coords={"depth": depth})
-    with pytest.warns(pellucid.Note, match="\"depth\" is positive down"):
-        assert pellucid.Volume(data).coordinates[0][2] == 7
-    assert silent(data.assign_coords(depth=-Z)).direction[0, 0] == -1
+def test_depths_go_down(xarray):
+    for kind in ("f8", "f4", "i4", "u2"):
+        depth = ("depth", Z.astype(kind), {"positive": "down"})
+        data = xarray.DataArray(VALUES, dims=("depth", "lat", "lon"), coords={"depth": depth})
+        with pytest.warns(pellucid.Note, match=r"z is minus depth \(positive: down\)"):
+            volume = pellucid.Volume(data)
+        assert volume.direction[0, 0] == -1 and volume.coordinates[0][2] == 7
+    with pytest.warns(pellucid.Note, match="z is depth, which grows downwards"):
+        assert pellucid.Volume(data.assign_coords(depth=Z)).direction[0, 0] == 1
 
 
 def test_xarray_decodes_or_we_do(xarray):
@@ -159,8 +249,19 @@ def test_netcdf4_of_times_and_places(tmp_path):
     several = {"t0": ("f8", Z, {"units": "hours since 2000-01-01"})}
     with pytest.raises(pellucid.Error, match="\"t0\" is time"):
         pellucid.Volume(net_cdf(tmp_path / "b.nc", ("t0", "lat", "lon"), several))
-    with pytest.warns(pellucid.Note, match="x, y, lev are taken as z, y and x"):
-        pellucid.Volume(net_cdf(tmp_path / "c.nc", ("x", "y", "lev"), {}))
+    assert numpy.array_equal(
+        silent(net_cdf(tmp_path / "c.nc", ("x", "y", "lev"), {})).array, VALUES.T)
+    members = {"e": ("f8", Z, {"standard_name": "realization"})}
+    with pytest.raises(pellucid.Error, match="\"e\" is members of an ensemble"):
+        pellucid.Volume(net_cdf(tmp_path / "d.nc", ("e", "lat", "lon"), members))
+
+
+def test_netcdf4_has_units(tmp_path):
+    variable = net_cdf(tmp_path / "a.nc", ("z", "y", "x"),
+                       {"z": ("f4", Z, {"units": "mm"}), "y": ("f8", Y, {"units": "um"}),
+                        "x": ("f8", X, {"units": "µm"})})
+    with pytest.warns(pellucid.Note, match="lengths are turned into µm"):
+        assert numpy.allclose(pellucid.Volume(variable).coordinates[0], Z * 1000)
 
 
 def test_missing_coordinates_are_refused(tmp_path):

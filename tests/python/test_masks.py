@@ -170,13 +170,38 @@ def test_attributes_are_applied_and_told(kind, attributes, hidden, values):
 
 @pytest.mark.parametrize("attributes", [
     {}, {"units": "K", "long_name": "temperature"}, {"_FillValue": numpy.nan},
-    {"_FillValue": 99}, {"_FillValue": 1e36}, {"valid_range": [0, 59]}, {"valid_range": "0 to 5"},
-    {"scale_factor": 1.0, "add_offset": 0.0}, {"missing_value": "none"},
+    {"_FillValue": 99}, {"_FillValue": 1e36}, {"valid_range": [0, 59]},
+    {"scale_factor": 1.0, "add_offset": 0.0},
 ])
 def test_attributes_that_change_nothing_are_not_told(attributes):
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         assert_hides(WithAttributes(VALUES.astype("i2"), **attributes), VALUES < 0)
+
+
+@pytest.mark.parametrize("attributes, told", [
+    ({"scale_factor": "0.5"}, "its scale_factor is no number and is not applied"),
+    ({"scale_factor": numpy.array([2.0, 3.0])}, "its scale_factor is no number"),
+    ({"add_offset": numpy.nan}, "its add_offset is no number"),
+    ({"_FillValue": "x"}, "its _FillValue is no number"),
+    ({"missing_value": "none"}, "its missing_value is no number"),
+    ({"valid_range": "0 to 5"}, "its valid_range is no pair of numbers"),
+    ({"valid_range": numpy.array([5])}, "its valid_range is no pair of numbers"),
+    ({"valid_min": [1, 2]}, "its valid_min is no number"),
+    ({"slope": 2.0, "intercept": 1.0}, r"that are not applied \(slope, intercept\)"),
+    ({"element_size_um": [2.0, 1, 1]}, r"not applied \(element_size_um\)"),
+    ({"nodata": 7}, r"not applied \(nodata\)"),
+    ({"flag_values": [1, 2]}, "its values are labels"),
+])
+def test_attributes_that_are_not_applied_are_told(tmp_path, attributes, told):
+    with pytest.warns(pellucid.Note, match=told):
+        assert_hides(WithAttributes(VALUES.astype("i2"), **attributes), VALUES < 0)
+    h5py = pytest.importorskip("h5py")
+    with h5py.File(tmp_path / "a.h5", "w") as file:
+        data = file.create_dataset("v", data=VALUES.astype("i2"))
+        data.attrs.update(attributes)
+        with pytest.warns(pellucid.Note, match=told):
+            assert_hides(data, VALUES < 0)
 
 
 def test_zarr_as_xarray_writes_it():

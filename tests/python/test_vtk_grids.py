@@ -49,6 +49,22 @@ def volume_of(grid, **options):
     return pellucid.mesh_of(grid, **options).statistics["volume"]
 
 
+@pytest.mark.parametrize("kind", ["vtkCharArray", "vtkSignedCharArray"])
+def test_bytes_are_numbers(kind):
+    """VTK says that the memory of the first is text."""
+    array = getattr(vtk, kind)()
+    array.SetNumberOfTuples(27)
+    for i in range(27):
+        array.SetValue(i, chr(i + 60) if kind == "vtkCharArray" else i - 9)
+    image = vtk.vtkImageData()
+    image.SetDimensions(3, 3, 3)
+    image.GetPointData().SetScalars(array)
+    volume = pellucid.Volume(image)
+    first = 60 if kind == "vtkCharArray" else -9
+    assert volume.type == "i8" and numpy.array_equal(volume.array.ravel(),
+                                                     numpy.arange(first, first + 27))
+
+
 def test_hidden_points_hide_their_cells():
     grid = structured()
     assert volume_of(grid) == pytest.approx(24)

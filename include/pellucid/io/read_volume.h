@@ -27,7 +27,7 @@ struct ReadOptions {
   std::optional<int> component;         ///< component to read, from 0
   /// Component to read by the file's name of it, such as that of a channel; `component` goes first.
   std::optional<std::string> component_name;
-  /// NetCDF, HDF5, Zarr, TIFF: reads the nearest step in time, not a component.
+  /// NetCDF, HDF5, Zarr, TIFF, VTK XML: reads the nearest step in time, not a component.
   std::optional<double> time;
   std::optional<std::string> array;  ///< name of the array to read; none: see VolumeArray
   /// .npy, .npz, HDF5, and Zarr and tifffile's arrays that do not name their axes: a letter for
