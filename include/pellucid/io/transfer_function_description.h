@@ -9,9 +9,9 @@
 #include <variant>
 #include <vector>
 
-#include "pellucid/scene/multivariate_transfer_function.h"
 #include "pellucid/scene/background.h"
 #include "pellucid/scene/function_change.h"
+#include "pellucid/scene/multivariate_transfer_function.h"
 #include "pellucid/scene/opacity_table.h"
 
 namespace pellucid {

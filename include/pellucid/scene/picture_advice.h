@@ -14,7 +14,8 @@ namespace pellucid {
 ///
 /// - Less than one pixel in 200 has an opacity of 2 % or more: the functions absorb nowhere where
 ///   the data are, or too little, or the camera looks elsewhere.
-/// - A tenth of those that have one have a channel above 1.05 of it: lights or colors are too bright.
+/// - A tenth of those that have one have a channel above 1.05 of it: lights or colors are too
+/// bright.
 ///
 /// The scene must have passed check_data(); the image is its picture.
 std::optional<std::string> picture_advice(const Scene& scene, const Image& image);
