@@ -309,20 +309,36 @@ Look mask_look(double lower, double upper) {
   return look;
 }
 
+namespace {
+
+/// Whether a mesh is a box of little but background, as a domain of simulation is.
+bool is_mostly_background(const LookedAt& data) {
+  const auto all = static_cast<double>(data.values.values.size());
+  return data.filled > 0.9 && static_cast<double>(data.values.classes.foreground) > 0.8 * all;
+}
+
+}  // namespace
+
 Look body_look(const LookedAt& data) {
   const ClassedValues& of = data.values;
   if (!of.differ) return even_look(data, color_at(viridis, 0.6));
   const std::vector<double>& v = of.values;
-  const bool signs = has_both_signs(v);
+  const bool signs = has_both_signs(v), clear = !signs && is_mostly_background(data);
   const std::span<const Bytes> map =
       signs ? std::span<const Bytes>(cool_to_warm) : std::span<const Bytes>(viridis);
   const double largest = std::max(std::abs(v.front()), std::abs(v.back()));
-  const double lower = signs ? -largest : v.front(), upper = signs ? largest : v.back();
-  const double extinction = Depths(data)(9, 0);
-  PointList points(upper - lower);
+  const double lower = signs ? -largest : clear ? of.threshold() : v.front();
+  const double upper = signs ? largest : v.back();
+  const std::size_t foreground = clear ? of.classes.foreground : 0;
+  const double extinction = Depths(data)(9, foreground);
+  PointList points(v.back() - v.front());
+  if (clear) points.add(of.mean(0, foreground) / 2 + lower / 2, 0, color_at(viridis, 0.2));
   for (std::size_t i = 0; i < map.size(); ++i) {
     const double share = static_cast<double>(i) / static_cast<double>(map.size() - 1);
-    points.add(lower + share * (upper - lower), extinction, color_at(map, share));
+    // What is within is seen through what is around it.
+    const double density = clear ? 0.1 + 0.9 * share * share : 1;
+    points.add(lower + share * (upper - lower), two_digits(density * extinction),
+               color_at(map, clear ? 0.2 + 0.8 * share : share));
   }
   Look look;
   look.transfer_function = TransferFunction(points.take());

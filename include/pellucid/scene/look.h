@@ -53,7 +53,8 @@ std::span<const LookName> looks() noexcept;
 /// `x-ray` is never chosen. Up to 2^18 values are looked at. Throws Error if there is no look of
 /// that name; else never for a valid volume.
 Look choose_look(const Volume& volume, std::string_view name = {});
-/// Returns the look of a mesh: `body`, which shows the values on and below its surface.
+/// Returns the look of a mesh: `body`, which shows the values on and below its surface. Of a box of
+/// which four fifths are background, that is clear.
 Look choose_look(const MeshChannels& mesh, std::string_view name = {});
 
 /// Returns the value of air if the data seem to be in Hounsfield units (-1000), or in those plus
