@@ -7,10 +7,12 @@
 FOLDER holds the public data sets (default ../shared/data); those of Debian's mricron-data and the
 built-in fields are taken too. COLOR is behind the pictures, which fill their tiles unless an OPTION
 of the program, as --background transparent, leaves them open. What is not there is left out, and
-said. Under each picture stands its name; the looks that the program took are printed.
+said. Under each picture stands its name; the looks that the program took are printed, and of open
+pictures which share of the larger side is seen.
 """
 import argparse
 import pathlib
+import statistics
 import subprocess
 import sys
 import tarfile
@@ -81,6 +83,12 @@ def data_sets(folder, scratch):
         yield f"builtin:{name}", [f"builtin:{name}"]
 
 
+def share_seen(picture):
+    """The share of the larger side over which a picture has an opacity of 5 % or more."""
+    box = picture.getchannel("A").point(lambda alpha: 255 if alpha >= 13 else 0).getbbox()
+    return max(box[2] - box[0], box[3] - box[1]) / TILE if box else 0
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__,
                                      formatter_class=argparse.RawDescriptionHelpFormatter)
@@ -90,7 +98,7 @@ def main():
     parser.add_argument("--page", default="black")
     parser.add_argument("--only", default="")
     arguments, options = parser.parse_known_args()
-    tiles = []
+    tiles, shares = [], []
     with tempfile.TemporaryDirectory() as scratch:
         for name, source in data_sets(arguments.data, pathlib.Path(scratch)):
             if arguments.only and name not in arguments.only.split(","):
@@ -102,10 +110,14 @@ def main():
                                   check=False)
             lines = done.stderr.strip().splitlines()
             look = [line for line in lines if line.startswith("pellucid: look ")]
-            print(f"{name}: {(look or lines or [''])[0].removeprefix('pellucid: ').split(' (')[0]}")
+            text = (look or lines or [""])[0].removeprefix("pellucid: ").split(" (")[0]
             if picture.exists():
                 with Image.open(picture) as image:
                     tiles.append((name, image.convert("RGBA")))
+                    if image.mode == "RGBA":
+                        shares.append(share_seen(image))
+                        text += f", {shares[-1]:.0%} seen"
+            print(f"{name}: {text}", flush=True)
     rows = (len(tiles) + COLUMNS - 1) // COLUMNS
     sheet = Image.new("RGB", (COLUMNS * TILE, rows * (TILE + LINE)), arguments.page)
     draw = ImageDraw.Draw(sheet)
@@ -114,7 +126,8 @@ def main():
         sheet.paste(tile, (x, y), tile)
         draw.text((x + 4, y + TILE + 1), name, fill="grey")
     sheet.save(arguments.sheet)
-    print(f"{len(tiles)} pictures")
+    print(f"{len(tiles)} pictures" +
+          (f", median {statistics.median(shares):.0%} seen" if shares else ""))
 
 
 if __name__ == "__main__":
