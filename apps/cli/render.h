@@ -97,6 +97,9 @@ void add_render_options(CommandLine& command, RenderArguments& arguments);
 /// The part of them that says what is seen, and from where.
 void add_scene_options(CommandLine& command, RenderArguments& arguments);
 
+/// Gives a look in light its lights, unless the arguments have some.
+void light_look(const RenderArguments& arguments, PreparedScene& prepared);
+
 /// Throws UsageError for what cannot be done, and Error where a file could not be written later.
 void check_arguments(const RenderArguments& arguments);
 /// The points that stand for an opacity table have an error; the reference should have none worth

@@ -573,6 +573,12 @@ PreparedScene complete_scene(const RenderArguments& arguments, SceneRequest requ
   return prepared;
 }
 
+void light_look(const RenderArguments& arguments, PreparedScene& prepared) {
+  if (!prepared.look || !prepared.look->shading || !arguments.light.lights.empty()) return;
+  prepared.scene.lights = look_lights(prepared.scene.camera);
+  prepared.description.lights = prepared.scene.lights;
+}
+
 void place_camera(const RenderArguments& arguments, PreparedScene& prepared,
                   const CameraFraming& frame) {
   Scene& scene = prepared.scene;
@@ -583,10 +589,7 @@ void place_camera(const RenderArguments& arguments, PreparedScene& prepared,
   if (arguments.zoom) zoom_camera(scene.camera, *arguments.zoom);
   make_camera_frame(scene.camera, scene.size);
   prepared.description.camera = scene.camera;
-  if (prepared.look && prepared.look->shading && arguments.light.lights.empty()) {
-    scene.lights = look_lights(scene.camera);
-    prepared.description.lights = scene.lights;
-  }
+  light_look(arguments, prepared);
 }
 
 PreparedScene prepare(const RenderArguments& arguments) {

@@ -8,8 +8,10 @@
 #include <cstdlib>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 #include <system_error>
+#include <utility>
 
 #include "commands.h"
 #include "mesh_input.h"
@@ -76,26 +78,40 @@ class BrowserOpener {
   std::string file_;
 };
 
-int run_view(const ViewArguments& arguments) {
-  const RenderArguments& input = arguments.scene;
-  if (input.input.empty() && input.channels.empty() && input.layers.empty() &&
-      input.labels.empty()) {
-    throw UsageError("no input; give INPUT, --channel or --labels (see 'pellucid view --help')");
-  }
+/// Reads the input of the arguments for the page. Throws Error.
+view::ViewedScene viewed_scene(const RenderArguments& input) {
   PreparedScene prepared = prepare(input);
   for (const std::string& note : prepared.import_notes) print_note(note);
+  light_look(input, prepared);
   scene_to_json(prepared.description);  // throws what cannot be told to a page, as a name's bytes
   prepared.description.relative_tolerance.reset();  // the page has a tolerance of its own
+  const bool keeps_camera = prepared.has_own_camera || !input.camera.empty() || !input.view.empty();
+  return {std::move(prepared.description), std::move(prepared.scene), keeps_camera,
+          std::move(prepared.quick_layers)};
+}
+
+int run_view(const ViewArguments& arguments) {
+  const RenderArguments& input = arguments.scene;
+  const bool has_input = !input.input.empty() || !input.channels.empty() || !input.layers.empty() ||
+                         !input.labels.empty();
+  std::optional<view::ViewedScene> scene;
+  if (has_input) scene = viewed_scene(input);
   view::ViewerOptions options;
   options.port = static_cast<std::uint16_t>(arguments.port);
   options.ends_with_page = arguments.end_with_page;
   options.threads = input.threads;
-  options.quick_layers = prepared.quick_layers;
-  options.keeps_camera = prepared.has_own_camera || !input.camera.empty() || !input.view.empty();
+  options.open = [&](const std::string& name) {
+    RenderArguments opened = input;
+    opened.input = name;
+    opened.channels.clear();
+    opened.layers.clear();
+    opened.labels.clear();
+    return viewed_scene(opened);
+  };
   const InterruptGuard guard;
   BrowserOpener browser;
   view::run_viewer(
-      std::move(prepared.description), std::move(prepared.scene), options,
+      std::move(scene), options,
       [&](const std::string& address) {
         print_text(address + "\n");
         const bool opened = !arguments.no_open && browser.open(address);
@@ -113,9 +129,10 @@ Command add_view(CommandLine& app) {
       "view", "Turn and edit a volume, a mesh or a scene in the browser of this machine");
   const auto arguments = std::make_shared<ViewArguments>();
   arguments->scene.suggests_functions = true;
-  command.add_option("INPUT", arguments->scene.input,
-                     std::string(input_help) + ", " + mesh_input_help() +
-                         ", SCENE.json or builtin:NAME[:POINTS]; optional with --channel");
+  command.add_option(
+      "INPUT", arguments->scene.input,
+      std::string(input_help) + ", " + mesh_input_help() +
+          ", SCENE.json or builtin:NAME[:POINTS]. Without it the page asks for a file");
   command
       .add_option("--port", arguments->port,
                   "Serve the page at this port of the loopback interface. Default: any free one")
@@ -137,6 +154,7 @@ Command add_view(CommandLine& app) {
       "The address holds a random token. Whoever has it can see the data; keep it to yourself.\n"
       "\n"
       "Examples:\n"
+      "  pellucid view\n"
       "  pellucid view brain.nii.gz\n"
       "  pellucid view scene.json --port 8080 --no-open\n"
       "  pellucid view head.nrrd --preset ct-bone --end-with-page\n"

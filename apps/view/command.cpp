@@ -81,6 +81,11 @@ class Members {
     }
     return text;
   }
+  std::string path(const char* key, std::size_t least) {
+    std::string path = text(key, {least, 4096});
+    if (path.find('\0') != path.npos) fail(key, "has a byte 0");
+    return path;
+  }
   /// Returns the number of the text among the choices.
   std::size_t choice(const char* key, const std::vector<std::string>& choices) {
     const std::string value = text(key, {0, 64});
@@ -127,6 +132,32 @@ Edit read_edit(Members& members) {
   edit.value = members.take("value");
   edit.gesture = members.integer("gesture", 0, 1 << 30);
   return edit;
+}
+
+double finite_number(Members& members, const Json& value) {
+  if (!value.is_number() || !std::isfinite(value.get<double>())) {
+    members.fail("ranges", "has something else than finite numbers");
+  }
+  return value.get<double>();
+}
+
+AskHistogram read_histogram(Members& members) {
+  AskHistogram ask{members.layer(), texts(members, "channels", 2)};
+  if (members.has("all")) ask.all = members.flag("all");
+  if (!members.has("ranges")) return ask;
+  const Json ranges = members.take("ranges");
+  if (!ranges.is_array() || ranges.size() != ask.channels.size()) {
+    members.fail("ranges", "is not a list with one range for each channel");
+  }
+  for (const Json& range : ranges) {
+    if (!range.is_array() || range.size() != 2)
+      members.fail("ranges", "has a range of no two ends");
+    ask.ranges.push_back({finite_number(members, range[0]), finite_number(members, range[1])});
+    if (!(ask.ranges.back().lower < ask.ranges.back().upper)) {
+      members.fail("ranges", "has a range that is empty");
+    }
+  }
+  return ask;
 }
 
 struct Kind {
@@ -190,9 +221,10 @@ constexpr Kind kinds[] = {
        const std::vector<std::string> formats{"pellucid", "slicer", "paraview", "table"};
        return ExportFunction{m.layer(), formats[m.choice("format", formats)]};
      }},
-    {"histogram",
+    {"histogram", [](Members& m) -> Command { return read_histogram(m); }},
+    {"thumbnail",
      [](Members& m) -> Command {
-       return AskHistogram{m.layer(), texts(m, "channels", 2)};
+       return AskThumbnail{m.layer(), m.take("function")};
      }},
     {"probe",
      [](Members& m) -> Command {
@@ -218,6 +250,12 @@ constexpr Kind kinds[] = {
        return ChooseTime{m.layer(), m.number("time", -1e30, 1e30)};
      }},
     {"list_file", [](Members& m) -> Command { return ListFile{m.layer()}; }},
+    {"list_folder", [](Members& m) -> Command { return ListFolder{m.path("folder", 0)}; }},
+    {"open", [](Members& m) -> Command { return OpenFile{m.path("input", 1)}; }},
+    {"open_upload",
+     [](Members& m) -> Command {
+       return OpenUpload{m.integer("set", 0, 1 << 30), m.path("name", 0)};
+     }},
     {"save",
      [](Members& m) -> Command {
        constexpr std::array kinds_of_files{Save::Kind::png, Save::Kind::png_with_color_bar,

@@ -82,10 +82,22 @@ struct ExportFunction {
   std::size_t layer;
   std::string format;
 };
-/// Asks for counts of the values of one or two channels.
+/// Asks for counts of the values of one or two channels, from 0.1 to 99.9 % of the values or over
+/// ranges.
 struct AskHistogram {
+  /// Lower and upper end; none: by the values. `all`: from the least to the largest value.
+  struct Range {
+    double lower, upper;
+  };
   std::size_t layer;
   std::vector<std::string> channels;
+  bool all = false;
+  std::vector<Range> ranges{};  ///< one for each channel, or none
+};
+/// Asks for a small picture of a layer with a preset's function.
+struct AskThumbnail {
+  std::size_t layer;
+  Json function;  ///< as the value of an edit
 };
 /// Asks what is seen at a position.
 struct Probe {
@@ -120,6 +132,19 @@ struct ChooseTime {
 struct ListFile {
   std::size_t layer;
 };
+/// Asks for the names in a folder of this machine; empty: the program's working directory.
+struct ListFolder {
+  std::string folder;
+};
+/// Shows a file of this machine, or "builtin:NAME", in place of the scene.
+struct OpenFile {
+  std::string input;
+};
+/// Shows a file that was uploaded, or all files of its set if there is no name.
+struct OpenUpload {
+  int set;
+  std::string name;
+};
 /// Asks for a file.
 struct Save {
   enum class Kind { png, png_with_color_bar, exr, scene };
@@ -129,8 +154,8 @@ struct Save {
 using Command =
     std::variant<Resize, Turn, Pan, Zoom, Roll, Center, ResetCamera, LookFrom, SetProjection,
                  SetTolerance, Edit, Undo, Redo, Suggest, CancelFit, ImportFunction, ExportFunction,
-                 AskHistogram, Probe, DragHandle, ShowErrorMap, ChooseComponent, ChooseArray,
-                 ChooseTime, ListFile, Save>;
+                 AskHistogram, AskThumbnail, Probe, DragHandle, ShowErrorMap, ChooseComponent,
+                 ChooseArray, ChooseTime, ListFile, ListFolder, OpenFile, OpenUpload, Save>;
 
 /// Largest message of a page, in bytes: an imported color map with some ten thousand nodes.
 inline constexpr std::size_t largest_message = std::size_t(2) << 20;

@@ -9,6 +9,7 @@
 #include "cli/error_map.h"
 #include "page_messages.h"
 #include "pellucid/io/display_bytes.h"
+#include "pellucid/io/scene_json.h"
 
 namespace pellucid::view {
 
@@ -141,6 +142,7 @@ Json FrameMaker::header(const char* state, int stride) const {
   const ImageSize size = scene_->size;
   return {{"type", "frame"},
           {"number", number_},
+          {"answered", answered_},
           {"state", state},
           {"stride", stride},
           {"width", size.width},
@@ -151,6 +153,7 @@ Json FrameMaker::header(const char* state, int stride) const {
           {"seconds", seconds()},
           {"projection",
            scene_->camera.projection == Projection::perspective ? "perspective" : "orthographic"},
+          {"camera", Json::parse(camera_to_json(scene_->camera))},
           {"overlay", overlay_json(*scene_, *lettering_)}};
 }
 

@@ -8,6 +8,7 @@
 #include <mutex>
 #include <optional>
 #include <stop_token>
+#include <utility>
 
 #include "overlay.h"
 #include "page_server.h"
@@ -32,6 +33,8 @@ class FrameMaker {
   /// from any thread.
   void interrupt();
 
+  /// Has the next frames tell which messages of each page they follow.
+  void set_answered(Json answered) { answered_ = std::move(answered); }
   /// Returns the image of the last frame if it became exact.
   const std::optional<Image>& exact_image() const noexcept { return exact_; }
   void forget_image() { exact_.reset(); }
@@ -55,6 +58,7 @@ class FrameMaker {
   Renderer renderer_;
   std::optional<Image> exact_;
   std::uint64_t number_ = 0;
+  Json answered_ = Json::object();
 
   // Of the frame that is being rendered:
   const Scene* scene_ = nullptr;

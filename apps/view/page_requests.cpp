@@ -17,7 +17,7 @@ namespace pellucid::view {
 
 namespace {
 
-using Response = http::response<http::string_body>;
+constexpr std::string_view upload_path = "/upload/";
 
 std::optional<std::string_view> header_of(const Request& request, http::field field) {
   const auto [first, last] = request.equal_range(field);
@@ -54,37 +54,50 @@ class RequestReader : public std::enable_shared_from_this<RequestReader> {
   void read() {
     parser_.emplace();
     parser_->header_limit(static_cast<std::uint32_t>(limits().header_bytes));
-    parser_->body_limit(0);
+    parser_->body_limit(any_length);  // answer() looks at it
     stream_.expires_after(std::chrono::seconds(limits().request_seconds));
-    http::async_read(stream_, buffer_, *parser_,
-                     [self = shared_from_this()](beast::error_code error, std::size_t) {
-                       // A request that is wrong or too long is not worth an answer.
-                       if (!error) self->answer();
-                     });
+    http::async_read_header(stream_, buffer_, *parser_,
+                            [self = shared_from_this()](beast::error_code error, std::size_t) {
+                              // A request that is wrong or too long is not worth an answer.
+                              if (!error) self->answer();
+                            });
   }
 
  private:
   const ServerLimits& limits() const { return count_->state().limits; }
 
   void answer() {
-    Request request = parser_->release();
+    const Request& request = parser_->get();
     const bool upgrades = beast::websocket::is_upgrade(request);
+    const bool has_body = parser_->chunked() || parser_->content_length().value_or(0) > 0;
     const std::optional<std::string_view> host = header_of(request, http::field::host);
-    const auto path = count_->state().gate->admit(
-        {target_of(request), host, header_of(request, http::field::origin), upgrades});
+    const auto origin = header_of(request, http::field::origin);
+    const auto path = count_->state().gate->admit({target_of(request), host, origin, upgrades});
+    if (path && request.method() == http::verb::put && path->starts_with(upload_path)) {
+      // Browsers tell the origin of whatever changes something.
+      if (!origin) return respond({http::status::forbidden, request.version()}, false);
+      const std::string name(path->substr(upload_path.size()));
+      return receive_upload(std::move(stream_), std::move(buffer_), std::move(*parser_), name,
+                            std::move(count_));
+    }
+    if (has_body) return;  // which nothing else takes
     if (!path) return respond({http::status::forbidden, request.version()}, false);
     if (upgrades) {
       if (*path != "/socket") return respond({http::status::not_found, request.version()}, false);
       stream_.expires_never();
-      return serve_socket(std::move(stream_), std::move(request), std::move(count_));
+      return serve_socket(std::move(stream_), parser_->release(), std::move(count_));
     }
-    const PageFile* const file = find_page_file(*path);
+    send_file(request, *path, *host);
+  }
+
+  void send_file(const Request& request, std::string_view path, std::string_view host) {
+    const PageFile* const file = find_page_file(path);
     if (request.method() != http::verb::get) {
       return respond({http::status::method_not_allowed, request.version()}, false);
     }
     if (file == nullptr) return respond({http::status::not_found, request.version()}, false);
     Response response{http::status::ok, request.version()};
-    add_policies(response, *host, count_->state().frame_ancestors);
+    add_policies(response, host, count_->state().frame_ancestors);
     response.set(http::field::content_type,
                  boost::string_view(file->content_type.data(), file->content_type.size()));
     response.body() = file->content;
@@ -108,7 +121,7 @@ class RequestReader : public std::enable_shared_from_this<RequestReader> {
   beast::tcp_stream stream_;
   std::shared_ptr<ConnectionCount> count_;
   beast::flat_buffer buffer_;
-  std::optional<http::request_parser<http::empty_body>> parser_;
+  std::optional<HeaderParser> parser_;
 };
 
 }  // namespace

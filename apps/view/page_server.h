@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <filesystem>
 #include <functional>
 #include <memory>
 #include <string>
@@ -28,6 +29,9 @@ struct PageEvents {
   std::function<void(PageId, std::string_view)> received;
   /// The second argument is the number of pages that are left.
   std::function<void(PageId, std::size_t)> closed;
+  /// Returns where a file of so many bytes is to be written, given the path behind "/upload/".
+  /// Throws Error, whose text the page is told. Empty: nothing is uploaded.
+  std::function<std::filesystem::path(std::string_view path, std::uint64_t bytes)> uploaded{};
 };
 
 /// Limits on what clients may ask of the server.

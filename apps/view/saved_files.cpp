@@ -1,48 +1,21 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "saved_files.h"
 
-#include <unistd.h>
-
 #include <filesystem>
 #include <fstream>
 #include <iterator>
-#include <system_error>
 
 #include "pellucid/io/export_transfer_function.h"
 #include "pellucid/io/image_files.h"
 #include "pellucid/io/import_transfer_function.h"
 #include "pellucid/scene/error.h"
+#include "private_folder.h"
 
 namespace pellucid::view {
 
 namespace {
 
 namespace fs = std::filesystem;
-
-/// A folder that nobody else can read, and that goes with this object.
-class PrivateFolder {
- public:
-  PrivateFolder() {
-    std::string name = (fs::temp_directory_path() / "pellucid-XXXXXX").string();
-    if (mkdtemp(name.data()) == nullptr) {
-      throw Error(name +
-                  ": cannot make a folder for temporary files; set TMPDIR to one that is "
-                  "writable");
-    }
-    path_ = name;
-  }
-  ~PrivateFolder() {
-    std::error_code ignored;
-    fs::remove_all(path_, ignored);
-  }
-  PrivateFolder(const PrivateFolder&) = delete;
-  PrivateFolder& operator=(const PrivateFolder&) = delete;
-
-  const fs::path& path() const { return path_; }
-
- private:
-  fs::path path_;
-};
 
 template <class Write>
 std::string bytes_of(const std::string& name, const Write& write) {

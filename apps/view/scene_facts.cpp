@@ -126,6 +126,19 @@ Lettering lettering_of(const SceneDescription& description) {
   return {anatomical, anatomical ? "mm" : ""};
 }
 
+namespace {
+
+bool is_savable(const SceneDescription& description) {
+  try {
+    check_has_sources(description);
+    return true;
+  } catch (const Error&) {
+    return false;
+  }
+}
+
+}  // namespace
+
 Json scene_json(const SceneState& state, const std::vector<FileChoices>& choices) {
   Json layers = Json::array();
   for (std::size_t i = 0; i < choices.size(); ++i) {
@@ -146,7 +159,9 @@ Json scene_json(const SceneState& state, const std::vector<FileChoices>& choices
                      {"lit", preset.lit}});
   }
   return {{"type", "scene"},
-          {"scene", Json::parse(scene_to_json(state.description()))},
+          {"scene", Json::parse(scene_to_json(state.portable_description()))},
+          {"savable", is_savable(state.description())},
+          {"temporary", state.has_temporary_folder()},
           {"layers", std::move(layers)},
           {"box", box_of(state.scene())},
           {"presets", std::move(names)},

@@ -283,13 +283,20 @@ void SceneState::redo() {
   step(redone_by_, undone_by_);
 }
 
+SceneDescription SceneState::portable_description() const {
+  SceneDescription description = description_;
+  visit_paths(description, [&](std::filesystem::path& path) {
+    if (path.empty() || path == array_in_memory) return;
+    path = std::filesystem::absolute(path).lexically_normal();
+    const std::filesystem::path within = path.lexically_relative(temporary_);
+    if (!temporary_.empty() && !within.empty() && *within.begin() != "..") path = within;
+  });
+  return description;
+}
+
 std::string SceneState::saved() const {
   check_has_sources(description_);
-  SceneDescription description = description_;
-  visit_paths(description, [](std::filesystem::path& path) {
-    if (!path.empty()) path = std::filesystem::absolute(path).lexically_normal();
-  });
-  return scene_to_json(description);
+  return scene_to_json(portable_description());
 }
 
 }  // namespace pellucid::view

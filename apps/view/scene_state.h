@@ -2,9 +2,11 @@
 #pragma once
 
 #include <cstddef>
+#include <filesystem>
 #include <functional>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "command.h"
@@ -58,7 +60,12 @@ class SceneState {
   void undo();
   void redo();
 
-  /// Returns the description as a scene file, with absolute paths. Throws Error if data are arrays.
+  /// Names a folder of data that is gone when they are not shown any more.
+  void set_temporary_folder(std::filesystem::path folder) { temporary_ = std::move(folder); }
+  bool has_temporary_folder() const noexcept { return !temporary_.empty(); }
+  /// Returns the description with absolute paths; those in the temporary folder are relative to it.
+  SceneDescription portable_description() const;
+  /// Returns that as a scene file. Throws Error if data are arrays.
   std::string saved() const;
   /// Returns the layer's function in JSON, by which it is known again; empty if there is none.
   std::string function_text(std::size_t layer) const;
@@ -78,6 +85,7 @@ class SceneState {
   ParallelFor parallel_;
   std::vector<SceneDescription> undone_by_, redone_by_;
   int last_gesture_ = -1;
+  std::filesystem::path temporary_;  ///< empty: there is none
 };
 
 }  // namespace pellucid::view

@@ -4,9 +4,14 @@
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/ip/tcp.hpp>
 #include <boost/asio/steady_timer.hpp>
+#include <boost/beast/core/flat_buffer.hpp>
 #include <boost/beast/core/tcp_stream.hpp>
 #include <boost/beast/http/empty_body.hpp>
 #include <boost/beast/http/message.hpp>
+#include <boost/beast/http/parser.hpp>
+#include <boost/beast/http/string_body.hpp>
+#include <cstdint>
+#include <limits>
 #include <map>
 #include <memory>
 
@@ -20,6 +25,10 @@ namespace beast = boost::beast;
 namespace http = beast::http;
 
 using Request = http::request<http::empty_body>;
+using Response = http::response<http::string_body>;
+using HeaderParser = http::request_parser<http::empty_body>;
+/// Limit of a body that is none. Boost 1.74 takes a missing limit for 0.
+inline constexpr std::uint64_t any_length = std::numeric_limits<std::uint64_t>::max();
 
 /// A WebSocket of a page (page_socket.cpp).
 class PageSocket {
@@ -71,6 +80,10 @@ class ConnectionCount {
 
 /// Reads requests, answers them with files of the page, and turns into a WebSocket if asked to.
 void serve_requests(net::ip::tcp::socket socket, std::shared_ptr<ConnectionCount> count);
+/// Writes the body of a request to a file, answers, and closes the connection. `path`: behind
+/// "/upload/". `buffer` has what was read behind the header.
+void receive_upload(beast::tcp_stream stream, beast::flat_buffer buffer, HeaderParser&& header,
+                    std::string_view path, std::shared_ptr<ConnectionCount> count);
 /// Completes the handshake of a WebSocket, and serves it until it is closed.
 void serve_socket(beast::tcp_stream stream, Request request,
                   std::shared_ptr<ConnectionCount> count);

@@ -17,6 +17,7 @@
 #include "pellucid/scene/error.h"
 #include "pellucid/scene/view_camera.h"
 #include "probe.h"
+#include "thumbnail.h"
 
 namespace pellucid::view {
 
@@ -39,6 +40,7 @@ bool starts_fit(const Command& command) {
 bool only_asks(const Command& command) {
   return std::holds_alternative<Probe>(command) || std::holds_alternative<Save>(command) ||
          std::holds_alternative<AskHistogram>(command) ||
+         std::holds_alternative<AskThumbnail>(command) ||
          std::holds_alternative<ExportFunction>(command) ||
          std::holds_alternative<ListFile>(command) || std::holds_alternative<CancelFit>(command) ||
          starts_fit(command);
@@ -69,6 +71,13 @@ bool replaces(const Command& later, const Command& earlier) {
   const Edit *const newer = std::get_if<Edit>(&later), *const older = std::get_if<Edit>(&earlier);
   return newer != nullptr && older != nullptr && newer->gesture == older->gesture &&
          newer->layer == older->layer && newer->key == older->key;
+}
+
+/// Number of the last message of each page, by the number of the page.
+Json answered_json(const std::map<PageId, std::uint64_t>& answered) {
+  Json json = Json::object();
+  for (const auto& [page, number] : answered) json[std::to_string(page)] = number;
+  return json;
 }
 
 /// Half of the diagonal of a box around the data, and how far away its far side may be.
@@ -152,8 +161,11 @@ struct Studio::Visitor {
   void operator()(const AskHistogram& c) const {
     const std::size_t layer = studio.state_.checked_layer(c.layer);
     const JointHistogram histogram =
-        count_values(studio.state_.scene().layers[layer], c.channels, studio.parallel_);
+        count_values(studio.state_.scene().layers[layer], c, studio.parallel_);
     studio.send_(page, text_message(histogram_json(histogram, c)));
+  }
+  void operator()(const AskThumbnail& c) const {
+    studio.send_(page, thumbnail_message(studio.state_, c, studio.thumbnails_));
   }
   void operator()(const Probe& c) const {
     const ProbeResult result = probe(studio.frames_.renderer(), studio.state_.scene(), c);
@@ -203,6 +215,10 @@ struct Studio::Visitor {
     studio.send_scene();
   }
   void operator()(const Save& c) const { studio.save(page, c.kind); }
+  // The viewer carries these out.
+  void operator()(const ListFolder&) const {}
+  void operator()(const OpenFile&) const {}
+  void operator()(const OpenUpload&) const {}
 
  private:
   template <class Move>
@@ -226,6 +242,7 @@ Studio::Studio(SceneState state, bool keeps_camera, int threads, SceneChanged ch
       lettering_(lettering_of(state_.description())),
       choices_(file_choices(state_.description())),
       frames_(threads, [this](PageMessage message) { send_({}, std::move(message)); }),
+      thumbnails_(threads),
       quick_layers_(std::move(quick_layers)) {
   if (keeps_camera) first_camera_ = state_.scene().camera;
   thread_ = std::thread([this] { run(); });
@@ -243,26 +260,32 @@ Studio::~Studio() {
   fitting_.reset();
 }
 
-void Studio::page_opened(PageId page) {
+void Studio::page_opened(PageId page, std::uint64_t number) {
   {
     const std::lock_guard lock(mutex_);
     opened_.push_back(page);
+    received_[page] = number;
     ++pages_;
   }
   wakes_.notify_one();
 }
 
-void Studio::pages_left(std::size_t count) {
+void Studio::page_closed(PageId page, std::size_t left) {
   const std::lock_guard lock(mutex_);
-  pages_ = count;
+  received_.erase(page);
+  pages_ = left;
 }
 
-void Studio::receive(PageId page, Command command, std::size_t bytes) {
+void Studio::receive(PageId page, Command command, std::size_t bytes, std::uint64_t number) {
   // A fit waits for no frame.
-  if (std::holds_alternative<CancelFit>(command)) return cancel_fit();
+  if (std::holds_alternative<CancelFit>(command)) {
+    cancel_fit();
+    return skip(page, number);
+  }
   const bool ends = ends_frame(command);
   {
     const std::lock_guard lock(mutex_);
+    received_[page] = number;
     if (!asked_.empty() && asked_.back().page == page && replaces(command, asked_.back().command)) {
       asked_bytes_ -= asked_.back().bytes;
       asked_.pop_back();
@@ -277,6 +300,15 @@ void Studio::receive(PageId page, Command command, std::size_t bytes) {
   if (ends) frames_.interrupt();
 }
 
+void Studio::skip(PageId page, std::uint64_t number) {
+  {
+    const std::lock_guard lock(mutex_);
+    received_[page] = number;
+    skipped_ = true;
+  }
+  wakes_.notify_one();
+}
+
 void Studio::run() {
   std::deque<Asked> asked;
   std::vector<PageId> opened;
@@ -289,7 +321,11 @@ void Studio::run() {
         stale_ = true;  // a new page has no picture yet
         send_scene();
       }
-      if (stale_) render();
+      if (stale_) {
+        render();
+      } else if (!failed_) {
+        show_current();
+      }
     } catch (const std::exception& error) {
       // What telling the scene throws ends neither the program nor the page.
       stale_ = false;
@@ -306,8 +342,11 @@ bool Studio::has_ended() {
 bool Studio::take_asked(std::deque<Asked>& asked, std::vector<PageId>& opened) {
   std::unique_lock lock(mutex_);
   wakes_.wait(lock, [&] {
-    return ended_ || !asked_.empty() || !opened_.empty() || fitted_ || (stale_ && pages_ > 0);
+    return ended_ || !asked_.empty() || skipped_ || !opened_.empty() || fitted_ ||
+           (stale_ && pages_ > 0);
   });
+  skipped_ = false;
+  answered_ = received_;
   asked = std::exchange(asked_, {});
   asked_bytes_ = 0;
   opened = std::exchange(opened_, {});
@@ -323,6 +362,7 @@ void Studio::carry_out(std::deque<Asked> asked) {
     edited = edited || is_edit(one.command);
     changed = changed || !only_asks(one.command);
   }
+  if (changed) send_({}, text_message({{"type", "changing"}}));
   if (changed && changed_) changed_(state_.description(), state_.scene());
   if (edited) send_scene();
 }
@@ -345,7 +385,13 @@ void Studio::carry_out(const Asked& asked) {
   }
 }
 
+/// Tells pages that nothing that they sent makes another picture.
+void Studio::show_current() {
+  send_({}, text_message({{"type", "current"}, {"answered", answered_json(answered_)}}));
+}
+
 void Studio::render() {
+  failed_ = true;
   try {
     const auto is_overtaken = [this] {
       const std::lock_guard lock(mutex_);
@@ -353,17 +399,22 @@ void Studio::render() {
                return ends_frame(asked.command);
              });
     };
+    frames_.set_answered(answered_json(answered_));
     stale_ = !frames_.render(state_.scene(), lettering_, with_error_map_, is_overtaken);
+    failed_ = false;
   } catch (const Error& error) {
-    stale_ = false;
-    send_({}, error_message(error.what()));
+    send_failure(error.what());
   } catch (const std::bad_alloc&) {
-    stale_ = false;
-    send_({}, error_message("there is not enough memory for a picture of this size"));
+    send_failure("there is not enough memory for a picture of this size");
   } catch (const std::exception& error) {
-    stale_ = false;
-    send_({}, error_message(std::string(error.what()) + defect));
+    send_failure(std::string(error.what()) + defect);
   }
+}
+
+/// There is no picture of the scene; pages still show an older one.
+void Studio::send_failure(const std::string& why) {
+  stale_ = false;
+  send_({}, text_message({{"type", "error"}, {"message", why}, {"no_picture", true}}));
 }
 
 void Studio::send_scene() {

@@ -2,8 +2,10 @@
 #pragma once
 
 #include <condition_variable>
+#include <cstdint>
 #include <deque>
 #include <functional>
+#include <map>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -41,10 +43,15 @@ class Studio {
 
   // Safe to call from any thread:
 
-  void page_opened(PageId page);
-  void pages_left(std::size_t count);
-  /// `bytes`: of the message that holds it.
-  void receive(PageId page, Command command, std::size_t bytes);
+  /// `number`: of the messages that the page has sent so far.
+  void page_opened(PageId page, std::uint64_t number);
+  /// `left`: the number of pages that are left.
+  void page_closed(PageId page, std::size_t left);
+  /// `bytes` and `number`: of the message that holds it. Frames tell each page the number of its
+  /// last message that they follow.
+  void receive(PageId page, Command command, std::size_t bytes, std::uint64_t number);
+  /// Counts a message that holds no command for the studio.
+  void skip(PageId page, std::uint64_t number);
 
  private:
   struct Asked {
@@ -67,8 +74,10 @@ class Studio {
   bool has_ended();
   bool take_asked(std::deque<Asked>& asked, std::vector<PageId>& opened);
   void carry_out(std::deque<Asked> asked);
+  void show_current();
   void carry_out(const Asked& asked);
   void render();
+  void send_failure(const std::string& why);
   void send_scene();
   void send_file(PageId page, SavedFile file);
   void send_notes(PageId page, const std::vector<std::string>& notes);
@@ -94,16 +103,21 @@ class Studio {
   std::vector<FileChoices> choices_;
   std::optional<Camera> first_camera_;  ///< none: fitted to the data
   FrameMaker frames_;
+  Renderer thumbnails_;
   bool with_error_map_ = false, is_fitted_ = false;
   std::vector<std::size_t> quick_layers_;
-  bool stale_ = true;  ///< whether the picture is not that of the scene
+  bool stale_ = true;                         ///< whether the picture is not that of the scene
+  bool failed_ = false;                       ///< whether there is no picture of the scene
+  std::map<PageId, std::uint64_t> answered_;  ///< last message of each page that was carried out
 
   std::mutex mutex_;  ///< of the following
   std::condition_variable wakes_;
   std::deque<Asked> asked_;
   std::size_t asked_bytes_ = 0;  ///< of their messages
   std::vector<PageId> opened_;
+  std::map<PageId, std::uint64_t> received_;  ///< last message of each page
   std::size_t pages_ = 0;
+  bool skipped_ = false;  ///< whether messages came that are no commands
   bool ended_ = false;
   std::unique_ptr<Fitting> fitting_;
   std::optional<GaussianFit::Outcome> fitted_;

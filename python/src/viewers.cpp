@@ -51,7 +51,6 @@ class ViewerHandle {
     view::ViewerOptions options;
     options.port = static_cast<std::uint16_t>(port);
     options.threads = checked_threads(threads);
-    options.keeps_camera = made.has_camera;
     options.frame_ancestors = frame_ancestors;
     options.changed = [shared = shared_](const SceneDescription& changed, const Scene& scene) {
       SceneDescription new_description = changed;
@@ -62,8 +61,9 @@ class ViewerHandle {
     };
     const ReleasedLock released;
     server_.thread = std::thread(
-        [shared = shared_, description = std::move(description), scene = std::move(made.scene),
-         options]() mutable { serve(*shared, std::move(description), std::move(scene), options); });
+        [shared = shared_,
+         scene = view::ViewedScene{std::move(description), std::move(made.scene), made.has_camera},
+         options]() mutable { serve(*shared, std::move(scene), options); });
     std::unique_lock lock(shared_->mutex);
     shared_->wakes.wait(lock, [&] { return shared_->ended || !shared_->address.empty(); });
     if (!shared_->failure) return;
@@ -157,12 +157,11 @@ class ViewerHandle {
         layer.content);
   }
 
-  static void serve(Shared& shared, SceneDescription description, Scene scene,
-                    const view::ViewerOptions& options) {
+  static void serve(Shared& shared, view::ViewedScene scene, const view::ViewerOptions& options) {
     std::exception_ptr failure;
     try {
       view::run_viewer(
-          std::move(description), std::move(scene), options,
+          std::move(scene), options,
           [&](const std::string& address) {
             const std::lock_guard lock(shared.mutex);
             shared.address = address;

@@ -51,6 +51,27 @@ TEST(ParseCommand, ReadsEdits) {
       parsed<Edit>(R"({"type": "edit", "key": "clip", "value": null, "gesture": 7})").layer);
 }
 
+TEST(ParseCommand, ReadsWhatIsOpened) {
+  EXPECT_EQ(parsed<ListFolder>(R"({"type": "list_folder", "folder": ""})").folder, "");
+  EXPECT_EQ(parsed<OpenFile>(R"({"type": "open", "input": "a.nrrd"})").input, "a.nrrd");
+  EXPECT_EQ(parsed<OpenUpload>(R"({"type": "open_upload", "set": 7, "name": "a"})").set, 7);
+  expect_refused(R"({"type": "open", "input": ""})", "input has 0 bytes");
+  expect_refused(R"({"type": "open", "input": "a\u0000b"})", "input has a byte 0");
+}
+
+TEST(ParseCommand, ReadsRangesOfHistograms) {
+  const auto ask = parsed<AskHistogram>(
+      R"({"type": "histogram", "layer": 0, "channels": ["a", "b"], "ranges": [[0, 1], [2, 3]]})");
+  ASSERT_EQ(ask.ranges.size(), 2U);
+  EXPECT_EQ(ask.ranges[1].upper, 3);
+  EXPECT_FALSE(ask.all);
+  for (const char* ranges : {"[]", "[[0, 1], [2, 3]]", "[[1, 1]]", "[[0]]", "[[0, \"1\"]]", "7"}) {
+    expect_refused(std::string(R"({"type": "histogram", "layer": 0, "channels": ["a"], )") +
+                       "\"ranges\": " + ranges + "}",
+                   "ranges");
+  }
+}
+
 TEST(ParseCommand, RefusesWhatIsNotAMessage) {
   expect_refused("", "not JSON");
   expect_refused("{", "not JSON");

@@ -43,7 +43,8 @@ def make_browser(folder):
 class Page:
     """A browser with the page of a viewer, until the end of a with statement."""
 
-    def __init__(self, viewer: Viewer, folder, window=(1280, 800), dark=False, scale=1):
+    def __init__(self, viewer: Viewer, folder, window=(1280, 800), dark=False, scale=1,
+                 waits=True):
         self.browser = make_browser(folder)
         self.browser.set_script_timeout(SECONDS)
         self.folder = folder
@@ -54,7 +55,8 @@ class Page:
         self.scale = scale
         self.resize(*window)
         self.browser.get(viewer.address)
-        self.wait_exact(-1)
+        if waits:
+            self.wait_exact(-1)
 
     def __enter__(self):
         return self

@@ -60,11 +60,40 @@ TEST(Probe, NamesTheLayerThatAbsorbs) {
 
 TEST(Histogram, CountsEveryValue) {
   const Scene scene = scene_of(R"({"field": {"builtin": "sphere", "points": 12}})");
-  const JointHistogram counted = count_values(scene.layers[0], {"value"}, {});
+  const JointHistogram counted = count_values(scene.layers[0], {0, {"value"}, true}, {});
   std::uint64_t sum = 0;
   for (const std::uint64_t count : counted.count) sum += count;
   EXPECT_EQ(sum, 12U * 12 * 12);
-  EXPECT_THROW(count_values(scene.layers[0], {"t1"}, {}), std::exception);
+  EXPECT_THROW(count_values(scene.layers[0], {0, {"t1"}}, {}), std::exception);
+}
+
+/// Four lines of the same values.
+Layer layer_of(const std::vector<float>& values) {
+  std::vector<float> data;
+  for (int i = 0; i < 4; ++i) data.insert(data.end(), values.begin(), values.end());
+  Volume::Description description;
+  description.dimensions = {static_cast<int>(values.size()), 2, 2};
+  Layer layer;
+  layer.content = VolumeContent{std::make_shared<Volume>(description, VolumeData(data)), {}};
+  return layer;
+}
+
+TEST(Histogram, LeavesFarValuesOut) {
+  std::vector<float> values;
+  for (int i = 0; i < 10000; ++i) values.push_back(static_cast<float>(i) / 10000);
+  values.push_back(1e30F);
+  const Layer layer = layer_of(values);
+  const HistogramAxis axis = count_values(layer, {0, {"value"}}, {}).axes[0];
+  EXPECT_NEAR(axis.lower, 0.001, 0.0005);
+  EXPECT_NEAR(axis.upper, 0.999, 0.0005);
+  EXPECT_EQ(axis.bins, 256);
+  EXPECT_GE(count_values(layer, {0, {"value"}, true}, {}).axes[0].upper, 1e30);
+  const JointHistogram part = count_values(layer, {0, {"value"}, false, {{0.25, 0.5}}}, {});
+  EXPECT_EQ(part.axes[0].lower, 0.25);
+  EXPECT_EQ(part.axes[0].upper, 0.5);
+  std::uint64_t sum = 0;
+  for (const std::uint64_t count : part.count) sum += count;
+  EXPECT_EQ(sum, 4 * 2501U);
 }
 
 }  // namespace

@@ -29,9 +29,9 @@ class BrowserTest(unittest.TestCase):
         self.folder = folder.name
 
     def open(self, *arguments, **options):
-        viewer = Viewer(*arguments, folder=self.folder)
-        self.addCleanup(viewer.stop)
-        page = Page(viewer, self.folder, **options)
+        self.viewer = Viewer(*arguments, folder=self.folder)
+        self.addCleanup(self.viewer.stop)
+        page = Page(self.viewer, self.folder, **options)
         self.addCleanup(page.browser.quit)
         return page
 
@@ -41,8 +41,7 @@ class BrowserTest(unittest.TestCase):
     def check_saved_scene_is_the_frame(self, page):
         """The command line makes the frame of the saved scene, bit by bit."""
         scene = self.scene(page)
-        subprocess.run([PROGRAM, "render", "scene.json", "-o", "again.png", "-q",
-                        *([] if "background" in scene["image"] else ["--background", "black"])],
+        subprocess.run([PROGRAM, "render", "scene.json", "-o", "again.png", "-q"],
                        cwd=self.folder, check=True, timeout=900)
         with open(os.path.join(self.folder, "again.png"), "rb") as file:
             self.assertEqual(png(file.read()), page.picture())
@@ -166,7 +165,86 @@ class Curves(BrowserTest):
             self.assertEqual(page.run(ACCESS), [], dark)
 
 
-# What of the page lacks a name, is smaller than 12 px, or has less contrast than 4.5.
+    def test_a_phone(self):
+        page = self.open("builtin:sphere:16", window=(390, 844))
+        for panel in ("surfaces-panel", "clip-panel", "light-panel", "save-panel"):
+            page.open_panel(panel)
+        page.wait_exact(page.press_button("Add a slice across y"))
+        page.wait_exact(page.press_button("Gaussians of value and gradient"))
+        # Nothing sticks out at the side, and the picture has a third of the window at least.
+        self.assertLessEqual(page.run("return document.documentElement.scrollWidth"), 390)
+        self.assertEqual(page.run("""
+            return [...document.querySelectorAll('button, input, select')].filter((one) =>
+              one.checkVisibility() && one.getBoundingClientRect().right > 390)
+              .map((one) => one.outerHTML.slice(0, 80));"""), [])
+        self.assertGreater(page.box("#picture")[3], 280)
+
+    def test_panels(self):
+        page = self.open("builtin:hydrogen:24", window=(1000, 800))
+        # Lights share the brightness of those that were there.
+        page.open_panel("light-panel")
+        for count in (2, 3):
+            page.wait_exact(page.press_button("Add a light"))
+            lights = self.scene(page)["lights"]
+            self.assertEqual(len(lights), count)
+            self.assertAlmostEqual(sum(max(light["color"]) for light in lights), 1)
+        page.wait_exact(page.press("[aria-label='Remove light 1']"))
+        lights = self.scene(page)["lights"]
+        self.assertAlmostEqual(sum(max(light["color"]) for light in lights), 1)
+        # A slice is grey in a window of its values; all of them have one window.
+        page.open_panel("surfaces-panel")
+        page.wait_exact(page.press_button("Add a slice across y"))
+        page.wait_exact(page.press_button("Add a slice across x"))
+        before = page.frame()
+        page.run("const input = "
+                 "document.querySelector('[aria-label=\"Window of Slice across x\"]');"
+                 "input.value = 0.1; input.dispatchEvent(new Event('change'))")
+        page.wait_exact(before)
+        for one in self.scene(page)["layers"][0]["slices"]:
+            points = one["colors"]["points"]
+            self.assertAlmostEqual(points[-1]["value"] - points[0]["value"], 0.1)
+            self.assertEqual((points[0]["color"], points[-1]["color"]), ([0, 0, 0], [1, 1, 1]))
+        # Presets are shown as pictures, and used by a click.
+        page.run("document.querySelector('details.inner').open = true")
+        page.show("details.inner")  # pictures are made when they are seen
+        page.wait_for(lambda: page.run("return document.querySelectorAll('.presets .made').length")
+                      >= 3, "pictures of presets")
+        before = self.scene(page)["layers"][0]["transfer_function"]
+        page.wait_exact(page.press("[data-preset=mr-t1-brain]"))
+        self.assertNotEqual(self.scene(page)["layers"][0]["transfer_function"], before)
+        # Axes and scale bar in a picture, if asked for.
+        plain = png(page.saved("Picture, PNG", "picture.png"))
+        page.run("document.querySelector('#save-panel input[type=checkbox]').click()")
+        marked = png(page.saved("Picture, PNG", "picture.png"))
+        self.assertEqual(marked[:2], plain[:2])
+        height, width = plain[1], plain[0]
+        half = width // 2 * marked[2]
+        self.assertNotEqual(marked[3][height - 60][:half // 2], plain[3][height - 60][:half // 2])
+        self.assertEqual(page.complaints(), [])
+
+    def test_the_span_of_a_histogram(self):
+        page = self.open("builtin:hydrogen:24", window=(1000, 800))
+
+        def span():
+            return [float(page.run("return document.querySelector(arguments[0]).value",
+                                   f"[aria-label='{end} value of value in the plot']"))
+                    for end in ("Least", "Largest")]
+        page.wait_for(lambda: page.text(".plot text"), "the middle of the values")
+        middle = span()
+        page.press_button("All")
+        page.wait_for(lambda: span()[1] > 1.1 * middle[1], "all values")
+        page.press_button("Middle")
+        page.wait_for(lambda: span() == middle, "the middle of the values")
+        page.press("[aria-label='Zoom into the plot']")
+        page.wait_for(lambda: span()[1] < middle[1], "the zoom")
+        for name in ("log counts", "log values"):
+            page.run("[...document.querySelectorAll('#function-panel label')].find((one) => "
+                     "one.textContent === arguments[0]).click()", name)
+        self.assertEqual(page.complaints(), [])
+
+
+# What of the page lacks a name, is smaller than 12 px, or has less contrast than 4.5; or a control
+# whose border has less contrast than 3.
 ACCESS = """
 const problems = [];
 const luminance = (text) => {
@@ -193,6 +271,13 @@ for (const element of document.querySelectorAll('body *')) {
     const contrast = (a + 0.05) / (b + 0.05);
     if (contrast < 4.5) problems.push(`contrast ${contrast.toFixed(2)}: ${element.textContent}`);
   }
+  if (element.matches('button, select, input[type="number"], input[type="text"]') &&
+      !element.disabled && !element.closest('.files')) {
+    const [a, b] = [luminance(style.borderTopColor), luminance(behind(element.parentElement))]
+      .sort((x, y) => y - x);
+    const contrast = (a + 0.05) / (b + 0.05);
+    if (contrast < 3) problems.push(`border ${contrast.toFixed(2)}: ${element.outerHTML}`);
+  }
   if (element.matches('button, input, select, [tabindex], [role="button"]')) {
     const name = element.getAttribute('aria-label') || element.textContent.trim() ||
       [...(element.labels ?? [])].map((label) => label.textContent.trim()).join('');
@@ -201,6 +286,120 @@ for (const element of document.querySelectorAll('body *')) {
 }
 return problems;
 """
+
+
+class Opening(BrowserTest):
+    def start(self):
+        self.viewer = Viewer(folder=self.folder)
+        self.addCleanup(self.viewer.stop)
+        page = Page(self.viewer, self.folder, waits=False, window=(1000, 700))
+        self.addCleanup(page.browser.quit)
+        page.wait_for(lambda: "Drop a file" in page.text("#open-panel"), "the page that asks")
+        return page
+
+    def test_a_file_of_this_machine(self):
+        os.mkdir(os.path.join(self.folder, "data"))
+        subprocess.run([PROGRAM, "convert", "builtin:shells:24", "-o", "data/shells.vti"],
+                       cwd=self.folder, check=True, timeout=60)
+        page = self.start()
+        self.assertEqual(page.state(), "waiting")
+        page.wait_for(lambda: "data/" in page.text(".files"), "the folder")
+        page.press_button("data/")
+        page.wait_for(lambda: "shells.vti" in page.text(".files"), "the folder")
+        page.press_button("shells.vti")
+        page.wait_exact(-1)
+        self.assertEqual(page.text("#subject"), "shells.vti")
+        self.assertTrue(page.run("return document.getElementById('open-panel').hidden"))
+        self.assertEqual(self.scene(page)["layers"][0]["field"]["file"],
+                         os.path.join(os.path.realpath(self.folder), "data/shells.vti"))
+        # Another one takes its place.
+        page.press("#open")
+        page.press_button("sphere")
+        page.wait_for(lambda: page.text("#subject") == "sphere", "the sphere")
+        page.wait_exact(-1)
+        self.assertEqual(self.scene(page)["layers"][0]["field"]["builtin"], "sphere")
+        page.press("#open")
+        page.run("const input = document.querySelector('#open-panel input[type=text]');"
+                 "input.value = 'none.npy'; input.nextSibling.click()")
+        page.wait_for(lambda: "none.npy" in page.text("#message"), "the message")
+        self.assertEqual(page.complaints(), [])
+
+    def test_a_file_that_is_dropped(self):
+        page = self.start()
+        page.run("""
+            const header = "{'descr': '|u1', 'fortran_order': False, 'shape': (4, 4, 4), }";
+            const start = '\\x93NUMPY\\x01\\x00v\\x00' + header.padEnd(117) + '\\n';
+            const bytes = Uint8Array.from([...start].map((c) => c.charCodeAt(0)));
+            const data = new Uint8Array(64).map((_, i) => 4 * i);
+            const transfer = new DataTransfer();
+            transfer.items.add(new File([bytes, data], 'a b.npy'));
+            document.getElementById('stage').dispatchEvent(
+              new DragEvent('drop', {bubbles: true, cancelable: true, dataTransfer: transfer}));
+        """)
+        page.wait_exact(-1)
+        self.assertEqual(page.text("#subject"), "a b.npy")
+        self.assertEqual(self.scene(page)["layers"][0]["field"]["file"], "a b.npy")
+        self.assertEqual(page.complaints(), [])
+
+
+class State(BrowserTest):
+    def test_exact_is_said_of_the_scene_as_it_is_alone(self):
+        page = self.open("builtin:sphere:24", window=(700, 500))
+        # Within the very call that changes something, before anything was sent.
+        states = page.run("""
+            const states = [document.body.dataset.state];
+            const slider = document.getElementById('tolerance');
+            slider.value = 25;
+            slider.dispatchEvent(new Event('input'));
+            states.push(document.body.dataset.state);
+            document.getElementById('error-map').click();
+            states.push(document.body.dataset.state);
+            return states;""")
+        self.assertEqual(states, ["exact", "waiting", "waiting"])
+        page.wait_exact(page.frame() - 1)
+        # What another page changes counts too: the picture is old from the moment that it is told.
+        before = page.frame()
+        with self.viewer.open_socket() as other:
+            page.wait_exact(before)  # for the other page a picture is made
+            before = page.frame()
+            page.run("window.states = []; new MutationObserver(() => states.push("
+                     "[document.body.dataset.state, document.body.dataset.frame])).observe("
+                     "document.body, {attributes: true})")
+            other.send(type="zoom", factor=1.5)
+            page.wait_exact(before)
+        states = page.run("return window.states")
+        self.assertIn(["waiting", str(before)], states)
+
+    def test_a_program_that_ends(self):
+        page = self.open("builtin:sphere:24", window=(900, 600))
+        page.open_panel("light-panel")
+        first = self.scene(page)
+        x, y = page.center("#picture")
+        page.wait_exact(page.drag((x, y), (x + 80, y)))
+        port = self.viewer.port
+        self.viewer.stop()
+        page.wait_for(lambda: page.state() == "lost", "the end")
+        self.assertIn(f"pellucid view scene.json --port {port}", page.text("#lost"))
+        # Edits go on, and are in the scene that is saved.
+        page.press_button("Add a light")
+        kept = json.loads(page.saved("Save scene.json", "scene.json"))
+        self.assertNotEqual(kept["camera"]["position"], first["camera"]["position"])
+        self.assertEqual(len(kept["lights"]), 2)
+        again = subprocess.run([PROGRAM, "render", "scene.json", "-o", "again.png"],
+                               cwd=self.folder, capture_output=True, timeout=300)
+        self.assertEqual(again.returncode, 0, again.stderr)
+
+    def test_edits_are_sent_when_the_program_answers_again(self):
+        page = self.open("builtin:sphere:24", window=(900, 600))
+        # As a line that breaks: the program goes on.
+        page.run("window.viewer.connection.socket.close()")
+        page.wait_for(lambda: page.state() == "lost", "the end")
+        page.open_panel("light-panel")
+        page.press_button("Add a light")
+        page.wait_for(lambda: page.state() == "exact", "the program")
+        self.assertTrue(page.run("return document.getElementById('lost').hidden"))
+        page.wait_exact(-1)
+        self.assertEqual(len(self.scene(page)["lights"]), 2)
 
 
 class Gaussians(BrowserTest):

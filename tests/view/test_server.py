@@ -220,6 +220,135 @@ class Messages(unittest.TestCase):
             self.assertRegex(page.receive_type("error")["message"], "^a.json")
 
 
+# As numpy writes a volume of 4 x 4 x 4 bytes.
+NPY_HEADER = b"{'descr': '|u1', 'fortran_order': False, 'shape': (4, 4, 4), }"
+NPY = (b"\x93NUMPY\x01\x00" + bytes([118, 0]) + NPY_HEADER.ljust(117) + b"\n" +
+       bytes(range(0, 256, 4)))
+
+
+class Opening(unittest.TestCase):
+    """`pellucid view` alone: the page chooses the file."""
+
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = folder.name
+        self.temporary = os.path.join(self.folder, "temporary")
+        os.mkdir(self.temporary)
+        os.environ["TMPDIR"] = self.temporary
+        self.addCleanup(os.environ.pop, "TMPDIR")
+        self.viewer = Viewer(folder=self.folder)
+        self.addCleanup(self.viewer.stop)
+
+    def write(self, name, data):
+        with open(os.path.join(self.folder, name), "wb") as file:
+            file.write(data)
+
+    def saved_field(self, page):
+        page.receive_type("opened")
+        scene = page.receive_type("scene")
+        page.exact_frame()
+        page.send(type="save", what="scene")
+        return scene, json.loads(page.receive_type("file")["bytes"])["layers"][0]["field"]
+
+    def test_from_a_folder(self):
+        self.write("a.npy", NPY)
+        self.write("b.txt", b"?")
+        with self.viewer.open_socket() as page:
+            start = page.receive_type("start")
+            self.assertEqual((start["has_scene"], start["can_open"]), (False, True))
+            self.assertGreater(start["upload_bytes"], 1 << 30)
+            page.send(type="size", width=64, height=48)  # nothing is shown yet
+            page.send(type="list_folder", folder="")
+            folder = page.receive_type("folder")
+            self.assertEqual(folder["path"], os.path.realpath(self.folder))
+            self.assertEqual([(e["name"], e["known"]) for e in folder["entries"]],
+                             [("temporary", False), ("a.npy", True), ("b.txt", False)])
+            page.send(type="open", input=os.path.join(folder["path"], "a.npy"))
+            self.assertIn("a.npy", page.receive_type("opening")["name"])
+            scene, field = self.saved_field(page)
+            self.assertFalse(scene["temporary"])
+            self.assertEqual(field["file"], os.path.join(folder["path"], "a.npy"))
+            with self.viewer.open_socket() as other:
+                self.assertTrue(other.receive_type("start")["has_scene"])
+                other.receive_type("scene")
+
+    def test_another_one_and_one_that_fails(self):
+        with self.viewer.open_socket() as page:
+            page.send(type="open", input="builtin:ramp:8")
+            _, field = self.saved_field(page)
+            self.assertEqual(field["builtin"], "ramp")
+            page.send(type="open", input="none.npy")
+            self.assertRegex(page.receive_type("error")["message"], r"^none\.npy: [^\n]*$")
+            page.send(type="open", input="builtin:sphere:8")
+            _, field = self.saved_field(page)
+            self.assertEqual(field["builtin"], "sphere")
+            page.send(type="list_folder", folder="/none/such")
+            self.assertRegex(page.receive_type("error")["message"], "^/none/such: ")
+
+    def test_files_that_are_dropped(self):
+        for name, data in (("a%20b.npy", NPY), ("more/c.raw", bytes(64))):
+            self.assertEqual(self.viewer.upload(f"5/{name}", data), (200, ""))
+        with self.viewer.open_socket() as page:
+            page.send(type="open_upload", set=5, name="a b.npy")
+            scene, field = self.saved_field(page)
+            # What is saved beside the data finds them.
+            self.assertTrue(scene["temporary"])
+            self.assertEqual(field["file"], "a b.npy")
+            folders = os.listdir(self.temporary)
+            self.assertEqual(len(folders), 1)
+            self.assertEqual(os.stat(os.path.join(self.temporary, folders[0])).st_mode & 0o77, 0)
+            page.send(type="open_upload", set=6, name="a")
+            self.assertRegex(page.receive_type("error")["message"], "drop them again")
+        self.assertEqual(self.viewer.stop()[0], 0)
+        self.assertEqual(os.listdir(self.temporary), [])
+
+    def test_what_is_not_taken(self):
+        upload = self.viewer.upload
+        for name in ("..%2fa", "a/../../b", "%00", "", "a//b", "%2fetc%2fpasswd", "%2"):
+            status, text = upload(f"1/{name}", b"x")
+            self.assertEqual(status, 400, name)
+            self.assertRegex(text, r"\Aupload: [^\n]+\Z")
+        for path in ("x/a", "-1/a", "a", "99999999999999/a"):
+            self.assertEqual(upload(path, b"x")[0], 400, path)
+        self.assertEqual(upload("1/a", b"x", length=1 << 40)[0], 400)
+        self.assertEqual(upload("1/a", b"", {"Content-Length": None})[0], 411)
+        for origin in (None, "http://evil.example", "null"):
+            self.assertIn(upload("1/a", b"x", {"Origin": origin})[0], (0, 403))
+        self.assertIn(upload("1/a", b"x", {"Host": "evil.example"})[0], (0, 403))
+        self.assertEqual(upload("1/a", b"x"), (200, ""))
+        self.assertEqual(upload("1/a", b"y")[0], 400)
+        self.assertEqual(self.viewer.request(self.viewer.path)[0], 200)
+
+
+class Freshness(unittest.TestCase):
+    """Frames tell each page which of its messages they follow."""
+
+    def test_frames_follow_messages(self):
+        with Viewer(FIELD) as viewer, viewer.open_socket() as page:
+            name = str(page.receive_type("start")["page"])
+
+            def answered(count):
+                return lambda m: m.get("answered", {}).get(name, 0) >= count
+            page.send(type="size", width=96, height=64)
+            page.send(type="turn", x=0.1, y=0)
+            page.receive_type("changing")
+            frame = page.receive_until(lambda m: m["type"] == "frame" and answered(2)(m) and
+                                       m["state"] == "exact")
+            self.assertEqual(frame["width"], 96)
+            # A message that is refused makes no frame, and is answered too.
+            page.send(type="turn", x=1e9, y=0)
+            self.assertEqual({page.receive()["type"], page.receive()["type"]},
+                             {"current", "error"})
+            page.send(type="turn", x=1e9, y=0)
+            self.assertEqual(page.receive_until(answered(4))["type"], "current")
+            with viewer.open_socket() as other:
+                second = str(other.receive_type("start")["page"])
+                other.send(type="zoom", factor=1.5)
+                frame = page.receive_until(lambda m: m.get("answered", {}).get(second, 0) >= 1)
+                self.assertEqual(frame["type"], "frame")
+
+
 class Crowds(unittest.TestCase):
     def test_fifty_connections_at_once(self):
         with Viewer(FIELD) as viewer:
@@ -333,10 +462,9 @@ class Pictures(unittest.TestCase):
             page.send(type="error_map", shown=True)
             frame = page.receive_until(lambda m: m["type"] == "frame" and m.get("error_map"))
             with tempfile.TemporaryDirectory() as folder:
-                over_black = rendered(folder, saved["bytes"], "--background", "black")
-                transparent = rendered(folder, saved["bytes"])
-            self.assertEqual(transparent, png(picture["bytes"]))
-            self.assertEqual(over_black, picture_of_frame(frame))
+                again = rendered(folder, saved["bytes"])
+            self.assertEqual(again, png(picture["bytes"]))
+            self.assertEqual(again, picture_of_frame(frame))
             self.assertEqual(json.loads(saved["bytes"])["layers"][0]["transfer_function"]["points"][
                 0]["extinction"], 0.2 + 39 / 10)
 

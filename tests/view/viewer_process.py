@@ -65,6 +65,18 @@ class Viewer:
             connection.sendall((text + "\r\n").encode("latin-1"))
             return read_answer(connection)
 
+    def upload(self, path, body, headers=None, length=None):
+        """The status and text of the answer to a file that is put at upload/PATH."""
+        lines = {"Host": self.host, "Origin": "http://" + self.host,
+                 "Content-Length": str(len(body) if length is None else length),
+                 **(headers or {})}
+        text = f"PUT {self.path}upload/{path} HTTP/1.1\r\n"
+        text += "".join(f"{key}: {value}\r\n" for key, value in lines.items() if value is not None)
+        with self.connect() as connection:
+            connection.sendall((text + "\r\n").encode("latin-1") + body)
+            status, _, answer = read_answer(connection)
+            return status, answer.decode()
+
     def open_socket(self, path=None, **headers):
         return WebSocket(self, self.path + "socket" if path is None else path, headers)
 

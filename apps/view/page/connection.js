@@ -1,29 +1,82 @@
 // SPDX-License-Identifier: Apache-2.0
 
+/** Messages after which the picture stays as it is. */
+const asks = new Set(['probe', 'save', 'histogram', 'thumbnail', 'export', 'list_file',
+  'list_folder', 'open', 'open_upload', 'suggest', 'cancel']);
+/** Seconds until the next try to reach a program that was lost. */
+const longestPause = 15;
+
 /**
  * The WebSocket to the program that serves this page. Messages that come are events whose names are
- * their types: "scene", "frame", "histogram", "probe", "file", "notes", "progress", "error"; and
- * "lost" when the program has ended. `detail` is the message; of a binary one `detail.parts` has
- * its bytes.
+ * their types: "scene", "frame", "histogram", "probe", "file", "notes", "progress", "error" and
+ * others; and "lost" when the connection ends, "change" when something is sent that changes the
+ * picture. `detail` is the message; of a binary one `detail.parts` has its bytes. A lost connection
+ * is made again as soon as the program answers; edits are kept until then.
  */
 export class Connection extends EventTarget {
   constructor() {
     super();
+    /** @type {Map<string, Object>} what is sent before the next picture of the screen */
+    this.waiting = new Map();
+    /** @type {Map<string, Object>} edits that could not be sent */
+    this.kept = new Map();
+    this.pause = 1;
+    this.connect();
+  }
+
+  connect() {
     const address = new URL('socket', location.href);
     address.protocol = 'ws:';
     this.socket = new WebSocket(address);
     this.socket.binaryType = 'arraybuffer';
-    this.socket.addEventListener('open', () => this.tell('open', {}));
-    this.socket.addEventListener('close', () => this.tell('lost', {}));
+    /** Numbers of messages: sent, the last that changes the picture, the last that is in it. */
+    this.sent = this.changed = this.answered = 0;
+    this.page = null;
+    this.socket.addEventListener('open', () => {
+      this.pause = 1;
+      this.tell('open', {});
+    });
+    this.socket.addEventListener('close', () => {
+      this.tell('lost', {});
+      setTimeout(() => this.connect(), this.pause * 1000);
+      this.pause = Math.min(2 * this.pause, longestPause);
+    });
     this.socket.addEventListener('message', (event) => this.receive(event.data));
-    /** @type {Map<string, Object>} what is sent before the next picture of the screen */
-    this.waiting = new Map();
+  }
+
+  isOpen() { return this.socket.readyState === WebSocket.OPEN; }
+
+  /** Whether the picture lacks something that was sent, or is about to be. */
+  isAhead() {
+    return this.changed > this.answered ||
+      [...this.waiting.values()].some(({type}) => !asks.has(type));
   }
 
   /** Sends a message at once, behind those that wait. @param {Object} message */
   send(message) {
     this.flush();
-    if (this.socket.readyState === WebSocket.OPEN) this.socket.send(JSON.stringify(message));
+    this.sendNow(message);
+    if (!asks.has(message.type)) this.tell('change', {});
+  }
+
+  sendNow(message) {
+    if (this.isOpen()) {
+      this.socket.send(JSON.stringify(message));
+      ++this.sent;
+      if (!asks.has(message.type)) this.changed = this.sent;
+    } else if (message.type === 'edit') {
+      const key = `${message.layer} ${message.key}`;
+      this.kept.delete(key);
+      this.kept.set(key, message);
+    }
+  }
+
+  /** Sends the edits that were made while the program was away. @returns {number} of them */
+  sendKept() {
+    const messages = [...this.kept.values()];
+    this.kept.clear();
+    for (const message of messages) this.send(message);
+    return messages.length;
   }
 
   /**
@@ -34,24 +87,26 @@ export class Connection extends EventTarget {
     if (this.waiting.size === 0) requestAnimationFrame(() => this.flush());
     const older = this.waiting.get(key);
     this.waiting.set(key, older ? merge(older, message) : message);
+    if (!asks.has(message.type)) this.tell('change', {});
   }
 
   flush() {
     const messages = [...this.waiting.values()];
     this.waiting.clear();
-    if (this.socket.readyState !== WebSocket.OPEN) return;
-    for (const message of messages) this.socket.send(JSON.stringify(message));
+    for (const message of messages) this.sendNow(message);
   }
 
   receive(data) {
+    let message = null;
     if (typeof data === 'string') {
-      const message = JSON.parse(data);
-      this.tell(message.type, message);
-      return;
+      message = JSON.parse(data);
+    } else {
+      const length = new DataView(data).getUint32(0, true);
+      message = JSON.parse(new TextDecoder().decode(new Uint8Array(data, 4, length)));
+      message.bytes = new Uint8ClampedArray(data, 4 + length);
     }
-    const length = new DataView(data).getUint32(0, true);
-    const message = JSON.parse(new TextDecoder().decode(new Uint8Array(data, 4, length)));
-    message.bytes = new Uint8ClampedArray(data, 4 + length);
+    if (message.type === 'start') this.page = message.page;
+    this.answered = Math.max(this.answered, message.answered?.[this.page] ?? 0);
     this.tell(message.type, message);
   }
 

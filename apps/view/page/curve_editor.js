@@ -2,6 +2,7 @@
 import {button, colorInput, cssColor, followDrag, gestureIsActive, labelled, make, makeSvg,
   newGesture, numberInput, replaceKeepingFocus, shortNumber} from './elements.js';
 import {Plot} from './plot.js';
+import {SpanControls} from './span_controls.js';
 
 /**
  * Edits a function of one variable: its points over the histogram of the values. A click adds a
@@ -11,13 +12,21 @@ export class CurveEditor {
   /**
    * @param {function(Object, number): void} edit called with the new function and a gesture
    * @param {function(number, number, number): void} moveSurface with index, value and gesture
+   * @param {function(Object): void} askSpan asks for the histogram of a span of values
    */
-  constructor(edit, moveSurface) {
+  constructor(edit, moveSurface, askSpan) {
     this.edit = edit;
     this.moveSurface = moveSurface;
     this.plot = new Plot(190, 'Transfer function');
     this.details = make('div', {class: 'row'});
-    this.element = make('div', {class: 'list'}, this.plot.element, this.details);
+    this.span = new SpanControls(this.plot, {canLogValues: true, draw: () => this.draw(),
+      ask: (span) => {
+        // With all values all points are shown, too.
+        this.showsAll = Boolean(span.all);
+        askSpan(span);
+      }});
+    this.element = make('div', {class: 'list'}, this.plot.element, this.details,
+      this.span.element);
     this.selected = 0;
     this.plot.svg.addEventListener('pointerdown', (event) => this.pressBackground(event));
     this.plot.svg.addEventListener('contextmenu', (event) => event.preventDefault());
@@ -41,16 +50,18 @@ export class CurveEditor {
     this.draw();
   }
 
+  /** Shows the values that are counted; without counts those of the points. */
   fitAxes() {
-    const values = this.points.map((point) => point.value);
     const axis = this.histogram?.axes[0];
+    const values = axis && !this.showsAll ? [] : this.points.map((point) => point.value);
     if (axis) values.push(axis.lower, axis.upper);
     let lower = Math.min(...values), upper = Math.max(...values);
     if (!(lower < upper)) [lower, upper] = [lower - 1, upper + 1];
-    const space = (upper - lower) * 0.02;
+    const space = this.histogram?.chosen && !this.showsAll ? 0 : (upper - lower) * 0.02;
     this.plot.axes[0] = {lower: lower - space, upper: upper + space};
     const largest = Math.max(...this.points.map((point) => point[this.key]));
     this.top = this.key === 'opacity' ? 1 : largest > 0 ? largest * 1.2 : 1;
+    this.span.show([axis && !this.showsAll ? axis : {lower, upper}], ['value']);
   }
 
   // The axis of the extinction is that of its square root, so that thin haze can be edited too.
@@ -233,7 +244,8 @@ export class CurveEditor {
     // The points are drawn anew while they move, so that the plot follows the drag.
     followDrag({currentTarget: this.plot.svg, pointerId: event.pointerId}, (next) => {
       const {x, y} = this.plot.positionOf(next);
-      this.move(i, this.plot.valueAt(x), this.heightAt(y), gesture);
+      const inside = Math.min(Math.max(x, 0), this.plot.width);
+      this.move(i, this.plot.valueAt(inside), this.heightAt(y), gesture);
     }, () => {
       this.dragging = false;
       this.fitAxes();

@@ -38,6 +38,11 @@ export function labelled(text, input, className = 'inline') {
   return make('label', {class: className}, text, input);
 }
 
+/** A check box with its label behind it. */
+export function labelledAfter(input, text) {
+  return make('label', {class: 'inline'}, input, text);
+}
+
 /** A number to edit; `change` is called when it is complete. */
 export function numberInput(value, name, change, properties = {}) {
   return make('input', {type: 'number', step: 'any', value: shortNumber(value), 'aria-label': name,

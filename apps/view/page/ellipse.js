@@ -64,3 +64,38 @@ export function stretching(angle, factor) {
   const c = Math.cos(angle), s = Math.sin(angle), more = factor - 1;
   return [[1 + more * c * c, more * c * s], [more * c * s, 1 + more * s * s]];
 }
+
+/**
+ * How far the contour |K (v - c)| = 1 reaches along a channel.
+ * @param {number[][]} matrix K by rows
+ * @param {number} column of the channel
+ * @returns {?number} null: without end
+ */
+export function reachOf(matrix, column) {
+  const size = matrix[0].length;
+  // Solves KᵀK x = e; x at the column is the square of the reach.
+  const rows = Array.from({length: size}, (_, i) => [
+    ...Array.from({length: size}, (__, j) =>
+      matrix.reduce((sum, row) => sum + row[i] * row[j], 0)), i === column ? 1 : 0]);
+  for (let i = 0; i < size; ++i) {
+    let pivot = i;
+    for (let k = i + 1; k < size; ++k) {
+      if (Math.abs(rows[k][i]) > Math.abs(rows[pivot][i])) pivot = k;
+    }
+    [rows[i], rows[pivot]] = [rows[pivot], rows[i]];
+    if (rows[i][i] === 0) return null;
+    for (let k = 0; k < size; ++k) {
+      if (k === i) continue;
+      const factor = rows[k][i] / rows[i][i];
+      rows[k] = rows[k].map((value, j) => value - factor * rows[i][j]);
+    }
+  }
+  const square = rows[column][size] / rows[column][column];
+  return square > 0 && Number.isFinite(square) ? Math.sqrt(square) : null;
+}
+
+/** K with another reach along a channel; along the others it stays. */
+export function withReach(matrix, column, reach) {
+  const factor = reachOf(matrix, column) / reach;
+  return matrix.map((row) => row.map((value, k) => (k === column ? value * factor : value)));
+}

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 import {CurveEditor} from './curve_editor.js';
 import {GaussianEditor} from './gaussian_editor.js';
+import {PresetGallery} from './presets.js';
 import {button, choice, colorInput, gestureIsActive, labelled, make, newGesture, numberInput,
   replaceKeepingFocus, shortNumber} from './elements.js';
 
@@ -11,13 +12,16 @@ export class FunctionPanel {
     this.viewer = viewer;
     this.content = document.querySelector('#function-panel .content');
     this.histograms = new Map();
+    this.presets = new PresetGallery(viewer, (name) => this.presetFunction(name),
+      (name) => this.usePreset(name));
     const edit = (value, gesture) => viewer.editLayer('transfer_function', value, gesture);
     this.curve = new CurveEditor(edit, (i, value, gesture) => {
       const surfaces = structuredClone(viewer.layer().isosurfaces);
       surfaces[i].value = value;
       viewer.editLayer('isosurfaces', surfaces, gesture);
-    });
-    this.gaussians = new GaussianEditor(edit, (channels) => this.ask(channels));
+    }, (span) => this.askAnew([viewer.facts().channels[0]], span));
+    this.gaussians = new GaussianEditor(edit, (channels) => this.ask(channels),
+      (channels, span) => this.askAnew(channels, span));
     viewer.connection.on('histogram', (histogram) => {
       this.histograms.set(this.keyOf(histogram.layer, histogram.channels), histogram);
       this.update();
@@ -35,6 +39,20 @@ export class FunctionPanel {
     if (this.asked.has(key)) return;
     this.asked.add(key);
     this.viewer.connection.send({type: 'histogram', layer: this.viewer.selected, channels});
+  }
+  /** Asks for counts over another span: {} is the middle of the values, {all}, {ranges}. */
+  askAnew(channels, span) {
+    this.asked.add(this.keyOf(this.viewer.selected, channels));
+    this.viewer.connection.sendSoon('histogram',
+      {type: 'histogram', layer: this.viewer.selected, channels, ...span});
+  }
+  /** The span that holds all but 0.1 % of the values at each end, or all of them. */
+  middleRange() {
+    const facts = this.viewer.facts();
+    const histogram = this.histogram([facts.channels[0]]);
+    const [lower, upper] = histogram
+      ? [histogram.axes[0].lower, histogram.axes[0].upper] : facts.range;
+    return lower < upper ? [lower, upper] : [lower, lower + 1];
   }
   histogram(channels) {
     return this.histograms.get(this.keyOf(this.viewer.selected, channels)) ?? null;
@@ -84,32 +102,37 @@ export class FunctionPanel {
       {type: 'suggest', layer: viewer.selected, kind});
     const isField = Boolean(layer.field), isMesh = Boolean(layer.mesh);
     if (isField || (isMesh && facts.channels.length === 1)) {
-      const presets = viewer.presets.map(({name, description}) => [name, `${name}: ${description}`]);
-      const select = choice('', [['', 'Preset…'], ...presets], 'Use a preset',
-        (name) => { if (name) this.usePreset(name); });
-      select.style.maxWidth = '15ch';
-      row.append(select, button('Curve from the data', suggest('curve')));
+      row.append(button('Curve from the data', suggest('curve')));
     }
     if (!isMesh) {
       row.append(button(isField ? 'Gaussians of value and gradient' : 'Gaussians from the data',
         suggest('gaussians')));
     }
-    return row;
+    return isField || (isMesh && facts.channels.length === 1)
+      ? make('div', {class: 'list'}, this.presets.element, row) : row;
+  }
+
+  preset(name) {
+    return this.viewer.presets.find((preset) => preset.name === name);
+  }
+
+  /** Scans are also kept as numbers from 0 to 1, in which a preset of CT shows nothing. */
+  presetFunction(name) {
+    const [lower, upper] = this.viewer.facts().range;
+    const isStretched = this.preset(name).hounsfield && upper > lower && upper - lower < 100;
+    return isStretched ? {preset: name, range: [lower, upper]} : {preset: name};
   }
 
   usePreset(name) {
     const {viewer} = this;
-    const {hounsfield, lit} = viewer.presets.find((preset) => preset.name === name);
+    const {lit} = this.preset(name);
     const [lower, upper] = viewer.facts().range;
     const gesture = newGesture();
-    const value = {preset: name};
-    // Scans are also kept as numbers from 0 to 1, in which such a preset shows nothing.
-    const stretched = hounsfield && upper > lower && upper - lower < 100;
-    if (stretched) value.range = [lower, upper];
+    const value = this.presetFunction(name);
     viewer.editLayer('transfer_function', value, gesture);
     // As on the command line, what is made for light gets some.
     if (lit && !viewer.layer().shading) viewer.editLayer('shading', {}, gesture);
-    if (stretched) {
+    if (value.range) {
       viewer.showMessage(`${name} is in Hounsfield units, and the data go from ` +
         `${shortNumber(lower)} to ${shortNumber(upper)}: its points were moved to that range.`);
     }

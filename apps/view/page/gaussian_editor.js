@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 import {button, choice, colorInput, cssColor, followDrag, gestureIsActive, labelled, make, makeSvg,
   newGesture, numberInput, replaceKeepingFocus, shortNumber} from './elements.js';
-import {ellipseOf, mappedMatrix, planeMatrix, stretching, turning} from './ellipse.js';
+import {ellipseOf, mappedMatrix, planeMatrix, reachOf, stretching, turning, withReach}
+  from './ellipse.js';
 import {Plot} from './plot.js';
+import {SpanControls} from './span_controls.js';
 
 /**
  * Edits a function of several variables: its Gaussians as ellipses over the joint histogram of two
@@ -13,14 +15,19 @@ export class GaussianEditor {
   /**
    * @param {function(Object, number): void} edit called with the new function and a gesture
    * @param {function(string[]): void} askHistogram called with the two channels that are shown
+   * @param {function(string[], Object): void} askSpan the same, of a span of their values
    */
-  constructor(edit, askHistogram) {
+  constructor(edit, askHistogram, askSpan) {
     this.edit = edit;
     this.askHistogram = askHistogram;
+    this.askSpan = askSpan;
     this.plot = new Plot(300, 'Gaussians over the joint histogram');
     this.pair = make('div', {class: 'row'});
     this.details = make('div', {class: 'list'});
-    this.element = make('div', {class: 'list'}, this.pair, this.plot.element, this.details);
+    this.span = new SpanControls(this.plot, {canLogValues: false, draw: () => this.draw(),
+      ask: (span) => askSpan(this.shown, span)});
+    this.element = make('div', {class: 'list'}, this.pair, this.plot.element, this.details,
+      this.span.element);
     this.selected = 0;
     this.plot.svg.addEventListener('dblclick', (event) => this.add(event));
     this.plot.svg.addEventListener('contextmenu', (event) => event.preventDefault());
@@ -81,6 +88,10 @@ export class GaussianEditor {
     if (histogram) {
       plot.axes = histogram.axes.map(({lower, upper}) => ({lower, upper}));
       plot.drawShades(context, histogram);
+      if (!this.dragging) {
+        this.span.show(plot.axes, this.shown);
+        this.showAll(histogram);
+      }
     } else {
       this.askHistogram(this.shown);
     }
@@ -88,6 +99,24 @@ export class GaussianEditor {
       ...this.function.gaussians.flatMap((gaussian, i) => this.shapes(gaussian, i)),
       ...this.seenMarks());
     this.drawDetails();
+  }
+
+  /** Asks for a larger span where Gaussians reach out of the middle of the values. */
+  showAll(histogram) {
+    if (histogram.chosen || histogram === this.extended) return;
+    this.extended = histogram;
+    const ranges = histogram.axes.map(({lower, upper}) => [lower, upper]);
+    let isLarger = false;
+    for (const gaussian of this.function.gaussians) {
+      const columns = this.columnsOf(gaussian) ?? [];
+      columns.forEach((column, k) => {
+        const center = gaussian.center[column], reach = reachOf(gaussian.matrix, column) ?? 0;
+        isLarger ||= center - reach < ranges[k][0] || center + reach > ranges[k][1];
+        ranges[k] = [Math.min(ranges[k][0], center - reach),
+          Math.max(ranges[k][1], center + reach)];
+      });
+    }
+    if (isLarger) this.askSpan(this.shown, {ranges});
   }
 
   shapes(gaussian, i) {
@@ -168,12 +197,7 @@ export class GaussianEditor {
         colorInput(gaussian.color, 'Color of the Gaussian', set('color')),
         button('Remove', () => this.remove(i),
           {disabled: this.function.gaussians.length < 2 && !this.function.tables})));
-      rows.push(make('div', {class: 'row'}, ...gaussian.channels.map((name, k) =>
-        labelled(name, numberInput(gaussian.center[k], `Center in ${name}`, (value) => {
-          const center = [...gaussian.center];
-          center[k] = value;
-          this.change(i, {center}, newGesture());
-        })))));
+      gaussian.channels.forEach((name, k) => rows.push(this.numbersOf(gaussian, i, name, k)));
     }
     const list = make('div', {class: 'row'}, ...this.function.gaussians.map((one, k) => {
       const chip = button(String(k + 1), () => this.select(k), {
@@ -183,6 +207,20 @@ export class GaussianEditor {
     }));
     replaceKeepingFocus(this.details, list, ...rows, make('p', {class: 'hint'},
       'Double-click where the data are to add a Gaussian.'));
+  }
+
+  /** Center and half width along one channel. */
+  numbersOf(gaussian, i, name, k) {
+    const reach = reachOf(gaussian.matrix, k);
+    return make('div', {class: 'row'}, make('span', {class: 'key'}, name),
+      labelled('at', numberInput(gaussian.center[k], `Center in ${name}`, (value) => {
+        const center = [...gaussian.center];
+        center[k] = value;
+        this.change(i, {center}, newGesture());
+      })),
+      labelled('±', numberInput(reach ?? 0, `Width in ${name}`, (value) => {
+        if (value > 0) this.change(i, {matrix: withReach(gaussian.matrix, k, value)}, newGesture());
+      }, {min: 0, disabled: reach === null})));
   }
 
   send(gesture) {

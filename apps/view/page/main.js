@@ -2,6 +2,8 @@
 import {Connection} from './connection.js';
 import {FitProgress} from './fit_progress.js';
 import {FunctionPanel} from './function_panel.js';
+import {LostPanel} from './lost_panel.js';
+import {OpenPanel} from './open_panel.js';
 import {Picture} from './picture.js';
 import {SavePanel} from './save_panel.js';
 import {ClipPanel, LayersPanel, LightPanel, SurfacesPanel, probeText} from './scene_panels.js';
@@ -23,6 +25,8 @@ export class Viewer {
       new ClipPanel(this), new LightPanel(this)];
     new SavePanel(this);
     new FitProgress(this.connection, document.getElementById('stage'));
+    new OpenPanel(this);
+    new LostPanel(this);
     this.addMessages();
     this.addControls();
   }
@@ -44,6 +48,12 @@ export class Viewer {
   /** Sends an edit; only the last one of those that wait for the same part is sent. */
   edit({layer, key, value, gesture}) {
     this.clearMessage();
+    // Nobody tells the page of it before the program answers again.
+    if (!this.connection.isOpen() && this.scene) {
+      const target = layer === undefined ? this.scene : this.scene.layers[layer];
+      if (value === null) delete target[key];
+      else if (key !== 'background') target[key] = value;
+    }
     this.connection.sendSoon(`edit ${layer} ${key} ${gesture}`,
       {type: 'edit', ...(layer === undefined ? {} : {layer}), key, value, gesture});
   }
@@ -61,34 +71,62 @@ export class Viewer {
     connection.on('frame', (frame) => this.showFrame(frame));
     connection.on('probe', (probe) => this.showProbe(probe));
     connection.on('notes', ({notes}) => this.showMessage(notes.join('\n')));
-    connection.on('error', ({message}) => {
+    connection.on('error', ({message, no_picture: noPicture}) => {
       this.showMessage(message);
+      if (noPicture) this.failed = true;
+      this.tellState();
       if (this.scene) this.update();
     });
-    connection.on('open', () => this.picture.resize());
+    connection.on('open', () => {
+      this.lost = false;
+      this.picture.resize();
+    });
+    connection.on('opened', () => this.forgetScene());
     connection.on('lost', () => {
-      this.showState('lost', 'Disconnected. The program has ended; start it again and open its page.');
+      this.lost = true;
+      this.tellState();
+    });
+    connection.on('change', () => this.tellState());
+    connection.on('current', () => this.tellState());
+    connection.on('changing', () => {
+      this.stale = true;
+      this.tellState();
     });
     addEventListener('gestureend', () => { if (this.scene) this.update(); });
   }
 
-  setScene({scene, layers, box, presets, sides, can_undo: canUndo, can_redo: canRedo}) {
+  /** Another file is shown: all that was told of the one before it is of no use. */
+  forgetScene() {
+    this.scene = null;
+    this.selected = 0;
+    this.layerFacts = undefined;
+    this.clearProbe();
+    this.functionPanel.forget();
+    this.stale = true;
+    this.picture.resize();
+  }
+
+  setScene(message) {
+    const {scene, layers, box, presets, sides} = message;
     const first = this.scene === null;
     const channels = JSON.stringify(this.layerFacts?.map((facts) => facts.channels));
-    Object.assign(this, {scene, layerFacts: layers, box, presets});
+    Object.assign(this, {scene, layerFacts: layers, box, presets, savable: message.savable,
+      temporary: message.temporary});
+    document.body.dataset.scene = 'shown';
     if (channels !== JSON.stringify(layers.map((facts) => facts.channels))) {
       this.functionPanel.forget();
     }
-    document.getElementById('undo').disabled = !canUndo;
-    document.getElementById('redo').disabled = !canRedo;
+    document.getElementById('undo').disabled = !message.can_undo;
+    document.getElementById('redo').disabled = !message.can_redo;
     if (first) {
-      document.getElementById('side').append(
+      document.getElementById('side').replaceChildren(make('option', {value: ''}, '…'),
         ...sides.map((side) => make('option', {value: side}, side)));
       const names = scene.layers.map((_, i) => this.nameOf(i)).join(', ');
       document.getElementById('subject').textContent = names;
       document.title = `${names} – Pellucid`;
     }
     if (!gestureIsActive()) this.update();
+    this.connection.sendKept();
   }
 
   update() {
@@ -97,25 +135,48 @@ export class Viewer {
 
   showFrame(frame) {
     this.picture.show(frame);
+    this.stale = this.failed = false;
     document.body.dataset.frame = frame.number;
     this.unit = frame.overlay.unit;
-    const tolerance = shortNumber(frame.tolerance);
     if (document.activeElement !== this.tolerance) this.tolerance.value = stepAt(frame.tolerance);
-    document.getElementById('tolerance-text').textContent = tolerance;
+    document.getElementById('tolerance-text').textContent = shortNumber(frame.tolerance);
     document.getElementById('projection')
       .setAttribute('aria-pressed', String(frame.projection === 'orthographic'));
-    if (frame.state === 'coarse') {
-      this.clearProbe();
-      this.showState('coarse', `Coarse: every ${frame.stride}th pixel, refining…`
-        .replace('2th', '2nd'));
-    } else if (frame.state === 'sampled') {
-      this.showState('coarse', 'Sampled: the error is not known');
-    } else if (frame.over > 0) {
-      const share = `${frame.over} of ${frame.pixels} pixels`;
-      this.showState('over', `Exact, but ${share} may be over ${tolerance}`);
-    } else {
-      this.showState('exact', `Exact: every pixel within ${tolerance}`);
+    if (frame.state === 'coarse') this.clearProbe();
+    this.tellState();
+  }
+
+  /** @param {string} text of what takes long; empty: nothing does */
+  setBusy(text) {
+    this.busy = text;
+    this.tellState();
+  }
+
+  /** Says how good the picture is. Only a picture of the scene as it is now is called exact. */
+  tellState() {
+    const {frame} = this.picture;
+    if (this.lost) return this.showState('lost', 'Disconnected: the program does not answer');
+    if (this.busy) return this.showState('waiting', this.busy);
+    if (!frame || document.body.dataset.scene === 'none') {
+      return this.showState('waiting', this.scene ? 'Loading…' : 'No file is open');
     }
+    const tolerance = shortNumber(frame.tolerance);
+    if (this.failed) return this.showState('over', 'Not up to date: there is no newer picture');
+    if (frame.state === 'coarse') {
+      return this.showState('coarse', `Coarse: every ${frame.stride}th pixel, refining…`
+        .replace('2th', '2nd'));
+    }
+    if (this.stale || this.connection.isAhead()) {
+      return this.showState('waiting', 'Not up to date: the next picture is being made…');
+    }
+    if (frame.state === 'sampled') {
+      return this.showState('coarse', 'Sampled: the error is not known');
+    }
+    if (frame.over > 0) {
+      const share = `${frame.over} of ${frame.pixels} pixels`;
+      return this.showState('over', `Exact, but ${share} may be over ${tolerance}`);
+    }
+    return this.showState('exact', `Exact: every pixel within ${tolerance}`);
   }
 
   showState(mark, text) {
@@ -189,4 +250,5 @@ export class Viewer {
   }
 }
 
-new Viewer();
+// For the console, and for tests.
+window.viewer = new Viewer();

@@ -19,15 +19,20 @@ export function drawOverlay(svg, frame, scale, probed, dragHandle) {
   const {axes, clips} = frame.overlay;
   svg.replaceChildren(
     ...clips.flatMap((clip, i) => clipShapes(clip, i, width, height, dragHandle)),
-    ...axisShapes(axes, margin, height - margin),
-    ...scaleBar(frame.overlay, width, height));
+    ...shapesOf(axisMarks(axes, height)), ...shapesOf(scaleMark(frame.overlay, width, height)));
   if (probed) {
     svg.append(makeSvg('circle', {class: 'probe', r: 5, cx: probed.x * width,
       cy: probed.y * height}));
   }
 }
 
-function axisShapes(axes, x, y) {
+/**
+ * Lines and texts of the axes, the farther ones first. Letters are those of a patient where the
+ * data have a patient's axes.
+ * @returns {{lines: Object[], texts: Object[]}}
+ */
+export function axisMarks(axes, height) {
+  const x = margin, y = height - margin;
   const ends = [];
   axes.forEach((axis, i) => {
     for (const [sign, text] of [[1, axis.plus], [-1, axis.minus]]) {
@@ -38,30 +43,45 @@ function axisShapes(axes, x, y) {
   });
   // What is near lies over what is far.
   ends.sort((a, b) => b.z - a.z);
-  return ends.flatMap((end) => {
-    const reach = axisLength * end.length;
-    const line = makeSvg('line', {x1: x, y1: y, x2: x + reach * end.x, y2: y + reach * end.y});
-    line.style.stroke = end.color;
-    const text = makeSvg('text', {x: x + (reach + 9) * end.x, y: y + (reach + 9) * end.y + 4.5,
-      'text-anchor': 'middle'}, end.text);
-    text.style.fill = end.color;
-    return [line, text];
-  });
+  return {
+    lines: ends.map((end) => ({x1: x, y1: y, x2: x + axisLength * end.length * end.x,
+      y2: y + axisLength * end.length * end.y, color: end.color})),
+    texts: ends.map((end) => ({x: x + (axisLength * end.length + 9) * end.x,
+      y: y + (axisLength * end.length + 9) * end.y + 4.5, text: end.text, color: end.color})),
+  };
 }
 
-/** As long as 1, 2 or 5 times a power of ten of the file's unit. */
-function scaleBar(overlay, width, height) {
+/** Lines and text of a bar as long as 1, 2 or 5 times a power of ten of the file's unit. */
+export function scaleMark(overlay, width, height) {
   const unitPixels = height / overlay.height;
   const longest = Math.min(160, width / 3) / unitPixels;
   const power = 10 ** Math.floor(Math.log10(longest));
   const length = [5, 2, 1].find((digit) => digit * power <= longest) * power;
   const right = width - 20, left = right - length * unitPixels, y = height - 24;
-  const text = `${shortNumber(length)}${overlay.unit ? ' ' + overlay.unit : ''}`;
+  const color = '#ffffff';
+  return {
+    lines: [
+      {x1: left, x2: right, y1: y, y2: y, color},
+      {x1: left, x2: left, y1: y - 5, y2: y + 5, color},
+      {x1: right, x2: right, y1: y - 5, y2: y + 5, color},
+    ],
+    texts: [{x: (left + right) / 2, y: y - 8, color,
+      text: `${shortNumber(length)}${overlay.unit ? ' ' + overlay.unit : ''}`}],
+  };
+}
+
+function shapesOf({lines, texts}) {
   return [
-    makeSvg('line', {x1: left, x2: right, y1: y, y2: y}),
-    makeSvg('line', {x1: left, x2: left, y1: y - 5, y2: y + 5}),
-    makeSvg('line', {x1: right, x2: right, y1: y - 5, y2: y + 5}),
-    makeSvg('text', {x: (left + right) / 2, y: y - 8, 'text-anchor': 'middle'}, text),
+    ...lines.map(({x1, y1, x2, y2, color}) => {
+      const line = makeSvg('line', {x1, y1, x2, y2});
+      line.style.stroke = color;
+      return line;
+    }),
+    ...texts.map(({x, y, text, color}) => {
+      const shape = makeSvg('text', {x, y, 'text-anchor': 'middle'}, text);
+      shape.style.fill = color;
+      return shape;
+    }),
   ];
 }
 

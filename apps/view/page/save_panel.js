@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-import {button, make} from './elements.js';
+import {button, labelledAfter, make} from './elements.js';
+import {labelledPicture} from './labelled_picture.js';
 
 const commandLine = 'pellucid render scene.json -o picture.png';
 const pythonLines = `import pellucid
@@ -14,17 +15,23 @@ export class SavePanel {
     const save = (what) => () => connection.send({type: 'save', what});
     const copy = (text, name) => button('Copy', () => navigator.clipboard.writeText(text),
       {'aria-label': `Copy ${name}`});
+    const withMarks = make('input', {type: 'checkbox'});
     document.querySelector('#save-panel .content').append(
       make('div', {class: 'row'}, button('Picture, PNG', save('png')),
         button('Numbers, EXR', save('exr')), button('Scene, JSON', save('scene'))),
+      make('div', {class: 'row'}, labelledAfter(withMarks, 'Axes and scale bar in the PNG')),
       make('p', {class: 'hint'},
         'The picture is saved exact, at the size of the window. The EXR has depth and error too.'),
       make('p', {class: 'hint'}, 'With scene.json, the same picture to the bit from a terminal:'),
       make('pre', {}, commandLine), copy(commandLine, 'the command'),
       make('p', {class: 'hint'}, 'and from Python:'),
       make('pre', {}, pythonLines), copy(pythonLines, 'the lines of Python'));
-    connection.on('file', ({name, content_type: type, bytes}) => {
-      const address = URL.createObjectURL(new Blob([bytes], {type}));
+    connection.on('file', async ({name, content_type: type, bytes}) => {
+      const {frame, scale} = viewer.picture;
+      const isMarked = type === 'image/png' && withMarks.checked && frame;
+      const blob = isMarked
+        ? await labelledPicture(bytes, frame, scale) : new Blob([bytes], {type});
+      const address = URL.createObjectURL(blob);
       make('a', {href: address, download: name}).click();
       setTimeout(() => URL.revokeObjectURL(address), 10000);
     });

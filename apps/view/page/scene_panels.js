@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+import {nextDirection, withLight, withoutLight} from './lights.js';
+import {greyColors, windowOf} from './windows.js';
 import {button, choice, colorInput, gestureIsActive, labelled, make, newGesture, numberInput,
   replaceKeepingFocus, shortNumber, slider} from './elements.js';
 
@@ -150,7 +152,43 @@ export class SurfacesPanel extends Panel {
     const {lower, upper} = this.viewer.box;
     const point = lower.map((low, a) => (low + upper[a]) / 2);
     const normal = [0, 1, 2].map((a) => (a === axis ? 1 : 0));
-    this.viewer.editLayer('slices', [...slices, {point, normal, opacity: 1}], newGesture());
+    const grey = slices.map(windowOf).find(Boolean) ?? this.viewer.functionPanel.middleRange();
+    this.viewer.editLayer('slices', [...slices, {point, normal, opacity: 1,
+      colors: greyColors(...grey)}], newGesture());
+  }
+
+  /** Colors of a slice. All grey slices of a layer have one window. */
+  sliceColors(slices, slice, i, name) {
+    const {viewer} = this;
+    const shown = windowOf(slice);
+    const kind = shown ? 'grey' : 'function';
+    const send = (next, gesture) => viewer.editLayer('slices', next, gesture);
+    const set = (k, colors) => slices.map((old, j) => {
+      if (!k(old, j)) return old;
+      const {colors: unused, ...rest} = old;
+      return colors ? {...rest, colors} : rest;
+    });
+    const rows = [labelled('Colors', choice(kind, [['grey', 'grey, by a window'],
+      ['function', 'of the function']], `Colors of ${name}`, (next) => send(set((_, j) => j === i,
+      next === 'grey' ? greyColors(...viewer.functionPanel.middleRange()) : null), newGesture())))];
+    if (!shown) return rows;
+    const [lower, upper] = shown;
+    const level = (lower + upper) / 2, width = upper - lower;
+    const setWindow = (nextLevel, nextWidth, gesture) => send(set(windowOf,
+      greyColors(nextLevel - nextWidth / 2, nextLevel + nextWidth / 2)), gesture);
+    const [least, most] = viewer.facts().range;
+    const least0 = Math.min(least, lower), most0 = Math.max(most, upper);
+    const thinnest = (most0 - least0) / 1000 || 1e-6;
+    rows.push(make('div', {class: 'row'},
+      labelled('Level', numberInput(level, `Level of ${name}`,
+        (next) => setWindow(next, width, newGesture()))),
+      labelled('Window', numberInput(width, `Window of ${name}`,
+        (next) => setWindow(level, Math.max(next, thinnest), newGesture()), {min: 0}))),
+    labelled('Level', slider(level, least0, most0, `Slide the level of ${name}`,
+      (next, gesture) => setWindow(next, width, gesture)), 'inline grow'),
+    labelled('Window', slider(width, thinnest, most0 - least0, `Slide the window of ${name}`,
+      (next, gesture) => setWindow(level, next, gesture)), 'inline grow'));
+    return rows;
   }
 
   slice(slices, slice, i) {
@@ -171,6 +209,7 @@ export class SurfacesPanel extends Panel {
           change({point}, gesture);
         }), 'inline grow'));
     }
+    rows.push(...this.sliceColors(slices, slice, i, name));
     rows.push(labelled('Opacity', slider(slice.opacity ?? 1, 0, 1, `Opacity of ${name}`,
       (opacity, gesture) => change({opacity}, gesture)), 'inline grow'));
     return make('div', {class: 'item'}, ...rows);
@@ -239,7 +278,9 @@ export class LightPanel extends Panel {
     const parts = layer.labels || layer.projection ? [] : this.shading(layer);
     parts.push(...lights.map((light, i) => this.light(lights, light, i)),
       make('div', {class: 'row'}, button('Add a light', () => viewer.editScene('lights',
-        [...lights, {type: 'directional', direction: [0, 1, -1], color: white}], newGesture()))),
+        withLight(lights, {type: 'directional',
+          direction: nextDirection(viewer.picture.frame?.camera, lights.length)}),
+        newGesture())), make('span', {class: 'hint'}, 'Lights share their brightness.')),
       make('div', {class: 'row'}, labelled('Background',
         colorInput(background?.top ?? background ?? [0.01, 0.01, 0.02], 'Background',
           (color, gesture) => viewer.editScene('background', color, gesture))),
@@ -286,7 +327,7 @@ export class LightPanel extends Panel {
       }),
       colorInput(light.color ?? white, `Color of ${name}`,
         (color, gesture) => change({color}, gesture)),
-      button('Remove', () => send(lights.filter((_, k) => k !== i), newGesture()),
+      button('Remove', () => send(withoutLight(lights, i), newGesture()),
         {'aria-label': `Remove ${name}`}))];
     if (place[light.type]) {
       const [key] = place[light.type];
