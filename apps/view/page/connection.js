@@ -10,7 +10,7 @@ const longestPause = 15;
  * The WebSocket to the program that serves this page. Messages that come are events whose names are
  * their types: "scene", "frame", "histogram", "probe", "file", "notes", "progress", "error" and
  * others; and "lost" when the connection ends, "change" when something is sent that changes the
- * picture. `detail` is the message; of a binary one `detail.parts` has its bytes. A lost connection
+ * picture. `detail` is the message; of a binary one `detail.bytes` has its bytes. A lost connection
  * is made again as soon as the program answers; edits are kept until then.
  */
 export class Connection extends EventTarget {
