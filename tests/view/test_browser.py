@@ -216,6 +216,12 @@ class Curves(BrowserTest):
         plain = png(page.saved("Picture, PNG", "picture.png"))
         page.run("document.querySelector('#save-panel input[type=checkbox]').click()")
         marked = png(page.saved("Picture, PNG", "picture.png"))
+        page.run("document.querySelectorAll('#save-panel input[type=checkbox]').forEach("
+                 "(box) => box.click())")
+        with_bar = png(page.saved("Picture, PNG", "picture.png"))
+        self.assertEqual(with_bar[:2], plain[:2])
+        self.assertNotEqual(with_bar, plain)
+        self.assertNotEqual(with_bar, marked)
         self.assertEqual(marked[:2], plain[:2])
         height, width = plain[1], plain[0]
         half = width // 2 * marked[2]

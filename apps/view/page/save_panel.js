@@ -16,10 +16,13 @@ export class SavePanel {
     const copy = (text, name) => button('Copy', () => navigator.clipboard.writeText(text),
       {'aria-label': `Copy ${name}`});
     const withMarks = make('input', {type: 'checkbox'});
+    const withBar = make('input', {type: 'checkbox'});
+    const savePicture = () => save(withBar.checked ? 'png_with_color_bar' : 'png')();
     document.querySelector('#save-panel .content').append(
-      make('div', {class: 'row'}, button('Picture, PNG', save('png')),
+      make('div', {class: 'row'}, button('Picture, PNG', savePicture),
         button('Numbers, EXR', save('exr')), button('Scene, JSON', save('scene'))),
-      make('div', {class: 'row'}, labelledAfter(withMarks, 'Axes and scale bar in the PNG')),
+      make('div', {class: 'row'}, labelledAfter(withMarks, 'Axes and scale bar in the PNG'),
+        labelledAfter(withBar, 'Color bar in the PNG')),
       make('p', {class: 'hint'},
         'The picture is saved exact, at the size of the window. The EXR has depth and error too.'),
       make('p', {class: 'hint'}, 'With scene.json, the same picture to the bit from a terminal:'),
