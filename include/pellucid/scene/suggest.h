@@ -12,7 +12,7 @@ namespace pellucid {
 /// Suggests first transfer functions for unknown data, to be saved and edited. Both functions work
 /// alike:
 ///
-/// - Of more than two million data points a fixed sample is looked at: one of each few consecutive
+/// - Of more than 2^24 data points a fixed sample is looked at: one of each few consecutive
 ///   ones.
 /// - The background is the bin of the joint histogram with the largest count, and everything within
 ///   three standard deviations around it. It is transparent.
