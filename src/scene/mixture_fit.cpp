@@ -95,7 +95,7 @@ class Fitter {
 
  private:
   static constexpr std::size_t most_cells = 4096;
-  static constexpr int ways = 8, first_steps = 12, most_steps = 400, most_last_steps = 20;
+  static constexpr int ways = 8, first_steps = 24, most_steps = 400, most_last_steps = 20;
 
   const double* cell(std::size_t i) const { return &cells_.mean[i * n_]; }
 

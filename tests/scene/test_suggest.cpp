@@ -287,7 +287,7 @@ TEST(SuggestMixture, IsTheSameEachTimeAndForAnyNumberOfThreads) {
   expect_equal(suggest_mixture(channels, {0, 1}), suggest_mixture(channels, {0, 1}, 0, in_threads));
 }
 
-/// A channel of more points than are looked at: tissues in nested boxes, with noise.
+/// Channels of more points than a quick suggestion looks at: tissues in nested boxes, with noise.
 Channels many_points(double deviation) {
   constexpr int wide = 144, points = wide * wide * wide;
   Noise random;
@@ -309,7 +309,7 @@ Channels many_points(double deviation) {
   return Channels(std::move(list));
 }
 
-TEST(SuggestMixture, LooksAtASampleOfManyPoints) {
+TEST(SuggestMixture, LooksAtASampleIfItIsToBeQuick) {
   const Channels channels = many_points(4);
   const auto primitives = suggest_mixture(channels, {0, 1}, 2);
   expect_equal(primitives, suggest_mixture(channels, {0, 1}, 2, in_threads));

@@ -12,7 +12,7 @@ namespace pellucid {
 /// Suggests first transfer functions for unknown data, to be saved and edited. Both functions work
 /// alike:
 ///
-/// - Of more than two million data points a fixed sample is looked at: one of each few consecutive
+/// - Of more than 2^24 data points a fixed sample is looked at: one of each few consecutive
 ///   ones.
 /// - The background is the bin of the joint histogram with the largest count, and everything within
 ///   three standard deviations around it. It is transparent.
@@ -27,8 +27,8 @@ namespace pellucid {
 
 /// How much work a suggestion may be, and who is told of it.
 struct SuggestControl {
-  /// Looks at 65 536 data points and some hundred lines, and fits three components at most where
-  /// their number is open: some ten times as fast, for a picture that is replaced soon.
+  /// Looks at 65 536 data points and a sixteenth of the lines, and fits three components at most
+  /// where their number is open: five to ten times as fast, for a picture that is replaced soon.
   bool quick = false;
   /// Called by the calling thread with the fraction of the work that is done, from 0 to 1, a few
   /// times; may be empty. What it throws ends the suggestion.
