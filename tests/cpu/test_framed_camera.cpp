@@ -104,6 +104,29 @@ TEST(FramedCamera, FramesOrthographicViews) {
   expect_framed(scene);
 }
 
+// In perspective the near end grows faster than the far one, and leaves the middle.
+TEST(FramedCamera, FramesLongThingsThatPointAtTheEye) {
+  Volume::Description description;
+  description.dimensions = {40, 40, 40};
+  description.name = "rod";
+  std::vector<float> values(64000, 0);
+  const auto bend = [](int along) { return static_cast<std::size_t>(6 + along * along / 80); };
+  for (int along = 2; along < 38; ++along) {
+    for (std::size_t k = bend(along); k < bend(along) + 8; ++k) {
+      for (std::size_t i = 4 + bend(along) / 2; i < 12 + bend(along) / 2; ++i) {
+        values[(k * 40 + static_cast<std::size_t>(along)) * 40 + i] = 1;
+      }
+    }
+  }
+  const Layer layer{
+      VolumeContent{std::make_shared<const Volume>(description, values), step(0.5, 1e2), nullptr}};
+  for (const ImageSize size : {ImageSize{120, 100}, ImageSize{96, 120}, ImageSize{180, 150},
+                               ImageSize{110, 100}, ImageSize{128, 128}}) {
+    SCOPED_TRACE(testing::Message() << size.width << " x " << size.height);
+    expect_framed(scene_of(layer, size));
+  }
+}
+
 // A ball of radius 0.2 among single voxels that are seen far out.
 TEST(FramedCamera, LeavesOutliersOutside) {
   constexpr std::size_t n = 65;
