@@ -236,7 +236,7 @@ class Render(ProgramTest):
         self.assertTrue(self.report("compare", "a.exr", "b.exr")["identical"])
         # Light that is given is taken.
         self.assertNotIn("shading", scene(ball, "--shading", "off")["layers"][0])
-        lights = scene(ball, "--light", "head:white")["lights"]
+        lights = scene(ball, "--light", "head:0,0.5,1")["lights"]
         self.assertEqual([light["type"] for light in lights], ["head"])
         # Colors, range and opacity change surfaces and functions alike.
         plain = scene(ball)["layers"][0]["isosurfaces"]
