@@ -46,7 +46,8 @@ PUBLIC = [
     ("GOLD", "multivariate/ms_patient07/GOLD.nii.gz"),
     ("mni_t1", "multivariate/mni_icbm152/mni_icbm152_t1_tal_nlin_sym_09a_converted.nii.gz"),
     ("mni_gm", "multivariate/mni_icbm152/mni_icbm152_gm_tal_nlin_sym_09a_converted.nii.gz"),
-    ("Bi2O3", "multivariate/Bi2O3/Bi2O3.dat --component 0"), ("carotid", "multivariate/carotid.vtk"),
+    ("Bi2O3", "multivariate/Bi2O3/Bi2O3.dat --component 0"),
+    ("carotid", "multivariate/carotid.vtk"),
     ("FA", "multivariate/dti/FA.nii.gz"), ("vase", "multivariate/vase_4comp.vti --component 3"),
     ("ct_perfusion", "multivariate/ct_perfusion_rgb24.nii.gz --component 0"),
     ("kitchen", "multivariate/kitchen.vtk"), ("post", "unstructured/post.vtk"),
@@ -105,9 +106,8 @@ def main():
                 continue
             picture = pathlib.Path(scratch) / "picture.png"
             picture.unlink(missing_ok=True)
-            done = subprocess.run([arguments.program, "render", *source, "-o", str(picture), "--size",
-                                   f"{TILE}x{TILE}", *options], capture_output=True, text=True,
-                                  check=False)
+            command = [arguments.program, "render", *source, "-o", str(picture)]
+            done = subprocess.run([*command, "--size", str(TILE), *options], capture_output=True, text=True, check=False)
             lines = done.stderr.strip().splitlines()
             look = [line for line in lines if line.startswith("pellucid: look ")]
             text = (look or lines or [""])[0].removeprefix("pellucid: ").split(" (")[0]

@@ -460,12 +460,27 @@ void refuse_beside_look(const RenderArguments& arguments) {
 /// print or save it.
 void want_look(const RenderArguments& arguments, PreparedScene& prepared) {
   if (!arguments.look.empty()) refuse_beside_look(arguments);
+  const bool surfaces_alone = arguments.transfer_function.empty() && arguments.preset.empty() &&
+                              !arguments.is_scene() && !arguments.light.isosurfaces.empty();
+  if (const std::string option = arguments.colors.option_of_a_layer();
+      !option.empty() && surfaces_alone) {
+    throw UsageError(option +
+                     ": changes a function, but --iso shows surfaces alone; give --iso "
+                     "its colors and opacities, or add --tf or --preset");
+  }
   const bool is_default = prepared.transfer_function_from == "default" && !arguments.is_scene() &&
                           prepared.description.layers.size() == 1 &&
                           prepared.description.integration.method == Method::exact;
   if (arguments.look.empty() && !is_default) return;
   WantedLook look;
-  look.name = arguments.look;
+  look.name = lower_case(arguments.look);
+  const auto is_it = [&](const LookName& known) { return known.name == look.name; };
+  if (!look.name.empty() && look.name != "body" && std::ranges::none_of(looks(), is_it)) {
+    std::string names;
+    for (const LookName& known : looks()) names += std::string(known.name) + ", ";
+    throw UsageError(
+        fmt::format("--look {}: unknown; there are {}and body of meshes", arguments.look, names));
+  }
   look.has_function = arguments.print_tf || !arguments.save_tf.empty();
   look.keeps_shading = !arguments.light.shading.empty();
   prepared.look = std::make_shared<Look>();

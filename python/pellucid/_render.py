@@ -24,8 +24,11 @@ def look(data: Any, name: Optional[str] = None) -> Layer:
 
     data   what Volume() takes, a Volume or a Mesh of one variable, or a path
     name   one of looks(), or None: the look of what the data seem to be, as render() shows data
-           alone: "ct", "mr", "scan", "microscopy", "labels", "mask", "simulation", "fog", "haze" or,
-           of a mesh, "body"
+           alone: "ct", "mr", "scan", "microscopy", "labels", "mask", "simulation", "fog", "haze"
+           or, of a mesh, "body"
+
+    A Scene has one light at the eye unless it is given others; render(data) of data alone adds one
+    from the upper left.
 
     Raises Error if there is no such look of such data.
     """
@@ -54,8 +57,8 @@ def _layer_of(data: Any, transfer_function: Any, name: Optional[str],
     light."""
     shown = {"projection", "isosurfaces", "slices", "mask", "gradient_opacity"} & set(attributes)
     if name is not None and (shown or transfer_function is not None):
-        raise Error(f"look {name}: {', '.join(sorted(shown)) or 'a transfer function'} says what is "
-                    "shown; leave one of the two out")
+        other = ", ".join(sorted(shown)) or "a transfer function or a preset"
+        raise Error(f"look {name}: {other} says what is shown; leave one of the two out")
     if transfer_function is None and not shown:
         data = _data_of(data)
         if isinstance(data, Volume) or (isinstance(data, Mesh) and len(data.channels) == 1):
@@ -103,7 +106,7 @@ def scene_of(data: Any, transfer_function: Any = None, *, preset: Optional[str] 
         if name not in _LAYER_NAMES:
             raise TypeError(f"render() got an unexpected keyword argument '{name}'")
     if isinstance(data, (Scene, Layer)) and (layer or look or transfer_function is not None):
-        raise Error("render: the scene has its layers; set looks, transfer functions, presets and "
+        raise Error("render: the scene has its layers; set transfer functions, presets and "
                     f"{', '.join(layer) or 'looks'} there")
     in_look_light = False
     if isinstance(data, Scene):

@@ -255,17 +255,20 @@ class Layer:
             if self.labels is None:
                 self.labels = LabelTable.default(self.data)
             return
-        self.transfer_function = self._function()
+        self.transfer_function = self._function(clim)
         if changes:
             colors = None if cmap is None else color_points(cmap)
             self.transfer_function = _pellucid.changed_function(
                 self.transfer_function, self.data, colors, clim, opacity)
 
-    def _function(self) -> Function:
+    def _function(self, clim: Any) -> Function:
         given, data = self.transfer_function, self.data
         if isinstance(given, str):
             if isinstance(data, Channels):
                 raise Error(f"preset {given}: presets are for one variable, but there are channels")
+            # Numbers say where a preset lies, whatever the units of the data.
+            if clim is not None and not any(isinstance(each, str) for each in clim):
+                return _pellucid.make_preset(given, data, tuple(clim))
             return _pellucid.make_preset(given, data)
         if isinstance(given, (list, tuple)):
             names = data.names if isinstance(data, Channels) else getattr(data, "channels", None)

@@ -59,6 +59,13 @@ TransferFunction function_of(const std::optional<TransferFunctionDescription>& d
 template <class Data>
 TransferFunction medium_function(const LayerDescription& description, const Wanted& wanted,
                                  const Data& data) {
+  if (const auto& range = description.function_change.range;
+      range && description.transfer_function) {
+    // A range says where a preset lies, whatever the units of the data.
+    if (const auto* preset = std::get_if<PresetDescription>(&*description.transfer_function)) {
+      return make_preset(preset->name, data, value_range(*range, data));
+    }
+  }
   if (description.transfer_function || !description.shows_surfaces()) {
     return function_of(description.transfer_function, wanted, data, description.projection);
   }

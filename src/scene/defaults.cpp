@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstddef>
 #include <numbers>
+#include <numeric>
 #include <utility>
 #include <vector>
 
@@ -124,7 +125,12 @@ LabelTable default_label_table(const LabelVolume& labels, std::optional<double> 
   }
   if (styles.empty()) styles.push_back({0, "", {}, each});
   const std::vector<Rgb<double>> colors = distinct_colors(std::vector<double>(styles.size(), 0.75));
-  for (std::size_t i = 0; i < styles.size(); ++i) styles[i].color = colors[i];
+  // Neighbors in the list, which mostly are neighbors in the data, get hues that are far apart.
+  std::size_t step = std::max<std::size_t>(1, colors.size() * 382 / 1000);
+  while (std::gcd(step, colors.size()) != 1) ++step;
+  for (std::size_t i = 0; i < styles.size(); ++i) {
+    styles[i].color = colors[i * step % colors.size()];
+  }
   return LabelTable(std::move(styles));
 }
 
@@ -134,7 +140,7 @@ double default_label_extinction(const Volume& volume) {
   for (std::size_t i = 0; i < 4; ++i) {
     longest = std::max(longest, length(corners[7 - i] - corners[i]));
   }
-  return two_digits(40 * std::numbers::ln2 / longest);
+  return two_digits(200 * std::numbers::ln2 / longest);
 }
 
 Camera default_camera(const Volume& volume, ImageSize size) {

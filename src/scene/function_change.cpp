@@ -94,12 +94,16 @@ std::vector<Isosurface> changed(std::vector<Isosurface> surfaces, const Function
   if (surfaces.empty()) return surfaces;
   const auto [least, most] = std::ranges::minmax_element(surfaces, {}, &Isosurface::value);
   const double first = least->value, last = most->value;
-  const std::array<double, 2> ends = range.value_or(std::array{first, last});
   for (Isosurface& surface : surfaces) {
-    const double place = first < last ? (surface.value - first) / (last - first) : 0.5;
-    if (range) surface.value = ends[0] + place * (ends[1] - ends[0]);
+    double place = first < last ? (surface.value - first) / (last - first) : 0.5;
+    if (range) {
+      // At its ends a surface would be a border of the data.
+      place = 0.1 + 0.8 * place;
+      surface.value = (*range)[0] + place * ((*range)[1] - (*range)[0]);
+    }
     if (!change.colors.empty()) surface.color = color_at(change.colors, place);
-    surface.opacity = 1 - std::pow(1 - surface.opacity, change.opacity);
+    surface.opacity = change.opacity < 1 ? change.opacity * surface.opacity
+                                         : 1 - std::pow(1 - surface.opacity, change.opacity);
   }
   return surfaces;
 }

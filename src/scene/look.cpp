@@ -5,10 +5,13 @@
 #include <array>
 #include <cctype>
 #include <cmath>
+#include <filesystem>
+#include <system_error>
 #include <variant>
 
 #include "look_functions.h"
 #include "mean_chord.h"
+#include "message.h"
 #include "pellucid/scene/defaults.h"
 #include "pellucid/scene/error.h"
 #include "pellucid/scene/labels.h"
@@ -41,13 +44,26 @@ bool ends_in(const std::string& name, std::initializer_list<std::string_view> en
   return std::ranges::any_of(endings, [&](std::string_view e) { return lower.ends_with(e); });
 }
 
+/// What a folder holds by the names in it: images, or else a DICOM series. Of a file: nothing.
+enum class FolderKind { none, images, series };
+FolderKind folder_kind(const std::string& name) {
+  std::error_code error;
+  if (name.empty() || !std::filesystem::is_directory(name, error)) return FolderKind::none;
+  for (const auto& entry : std::filesystem::directory_iterator(name, error)) {
+    if (ends_in(entry.path().string(), {".tif", ".tiff", ".png"})) return FolderKind::images;
+  }
+  return FolderKind::series;
+}
+
 bool is_medical(const std::string& name) {
-  return ends_in(name, {".nii", ".nii.gz", ".hdr", ".hdr.gz", ".img", ".img.gz", ".mgh", ".mgz",
+  return folder_kind(name) == FolderKind::series ||
+         ends_in(name, {".nii", ".nii.gz", ".hdr", ".hdr.gz", ".img", ".img.gz", ".mgh", ".mgz",
                         ".mnc", ".dcm", ".ima"});
 }
 
 bool is_image(const std::string& name) {
-  return ends_in(name,
+  return folder_kind(name) == FolderKind::images ||
+         ends_in(name,
                  {".tif", ".tiff", ".lsm", ".stk", ".png", ".ome.zarr", ".zarr", ".companion.ome"});
 }
 
@@ -91,7 +107,7 @@ bool is_smooth(const Volume& volume, const ClassedValues& of) {
   const double threshold = of.threshold();
   const TransferFunction foreground({{threshold, 0, {}}, {threshold, 1, {}}});
   const TypicalNoise noise = volume.noise().where_absorbs(&foreground);
-  return 4 * noise.deviation < noise.median_gradient;
+  return 4 * noise.deviation <= noise.median_gradient;
 }
 
 std::string chosen(const Volume& volume, const LookedAt& data, std::string& reason) {
@@ -101,7 +117,11 @@ std::string chosen(const Volume& volume, const LookedAt& data, std::string& reas
   };
   const std::string& name = volume.description().name;
   const std::vector<double>& v = data.values.values;
-  if (const auto labels = label_count(volume)) {
+  // More than that are whole numbers that LabelVolume does not hold.
+  constexpr double largest_label = 16777216;
+  const VolumeStatistics& range = volume.statistics();
+  const bool may_be_labels = std::max(-range.minimum, range.maximum) <= largest_label;
+  if (const auto labels = may_be_labels ? label_count(volume) : std::nullopt) {
     return *labels > 2 ? because("labels", "whole numbers that look like labels")
                        : because("mask", "two values");
   }
@@ -111,6 +131,16 @@ std::string chosen(const Volume& volume, const LookedAt& data, std::string& reas
     return share_between(v, *air + 1250, v.back()) > 5e-4 ? "ct" : "ct-skin";
   }
   if (ends_in(name, {".vdb"})) return because("fog", "a density of OpenVDB");
+  if (is_around_zero(data.values) &&
+      (is_smooth(volume, data.values) || is_mostly_near_zero(data.values))) {
+    return because("simulation", "values of both signs around 0");
+  }
+  const double share = 1 - static_cast<double>(data.values.classes.foreground) /
+                               static_cast<double>(std::max(v.size(), std::size_t{1}));
+  constexpr double most_glowing = 0.2;
+  if (is_image(name) && data.values.differ && share < most_glowing) {
+    return because("microscopy", "images of little on a dark ground");
+  }
   if (has_surfaces(volume, data.values)) {
     return is_medical(name) ? because("mr", "a medical image with surfaces")
                             : because("scan", "data with surfaces");
@@ -159,8 +189,9 @@ Look choose_look(const Volume& volume, std::string_view name) {
     return made(std::move(look));
   }
   if (kind == "ct" || kind == "ct-skin") {
-    const double air = air_of(data.values.values, volume.statistics()).value_or(-1000);
-    return made(ct_look(air, kind == "ct-skin", data.chord));
+    const auto air = air_of(data.values.values, volume.statistics());
+    if (!air) check_hounsfield("look " + kind, volume.statistics());
+    return made(ct_look(air.value_or(-1000), kind == "ct-skin", data.chord));
   }
   if (kind == "mr" || kind == "scan") return made(scan_look(data, kind == "mr"));
   if (kind == "microscopy") return made(microscopy_look(data));
@@ -188,6 +219,13 @@ Look choose_look(const MeshChannels& mesh, std::string_view name) {
   if (name == "haze") return named(function_alone(default_transfer_function(mesh)), "haze", "");
   if (name == "x-ray") return named(function_alone(make_preset("x-ray", mesh)), "x-ray", "");
   refuse(name, looks_of_meshes, "a mesh's");
+}
+
+void check_hounsfield(const std::string& what, const VolumeStatistics& data) {
+  constexpr double least = -150, most = 200;
+  if (data.finite == 0 || (data.minimum < least && data.maximum > most)) return;
+  throw Error(what + ": the data are " + number(data.minimum) + " to " + number(data.maximum) +
+              ", but it is for Hounsfield units, with air at -1000; take another");
 }
 
 std::optional<double> hounsfield_air(const Volume& volume) {

@@ -169,15 +169,23 @@ std::vector<Isosurface> surfaces_of_both_signs(const LookedAt& data) {
   return surfaces;
 }
 
-/// Whether the values are around 0.
-bool has_both_signs(const std::vector<double>& v) {
+}  // namespace
+
+bool is_around_zero(const ClassedValues& of) {
+  const std::vector<double>& v = of.values;
+  if (!of.differ) return false;
   const double low = -v.front(), high = v.back(), largest = std::max(low, high);
   const double quarter = v[v.size() / 4], three_quarters = v[v.size() - 1 - v.size() / 4];
   return std::min(low, high) >= 0.2 * largest && quarter >= -0.2 * largest &&
          three_quarters <= 0.2 * largest;
 }
 
-}  // namespace
+bool is_mostly_near_zero(const ClassedValues& of) {
+  const std::vector<double>& v = of.values;
+  const double near = 0.12 * std::max(-v.front(), v.back());
+  const auto within = std::ranges::upper_bound(v, near) - std::ranges::lower_bound(v, -near);
+  return static_cast<double>(within) > 0.7 * static_cast<double>(v.size());
+}
 
 Look ct_look(double air, bool skin, double chord) {
   struct Tissue {
@@ -276,7 +284,7 @@ Look simulation_look(const LookedAt& data) {
   if (!of.differ) return even_look(data, color_at(viridis, 0.6));
   Look look;
   look.shading = surface_light();
-  if (has_both_signs(of.values)) {
+  if (is_around_zero(of)) {
     look.isosurfaces = surfaces_of_both_signs(data);
     if (!look.isosurfaces.empty()) return look;
   }
@@ -286,7 +294,13 @@ Look simulation_look(const LookedAt& data) {
   Levels levels(data);
   constexpr std::array<double, 4> shares{1, 0.4, 0.15, 0.04};
   for (const double share : shares) levels.add_exceeded_by(share * above);
-  const std::vector<double> values = levels.take();
+  std::vector<double> values = levels.take();
+  const double lower = v.front(), range = v.back() - v.front();
+  if (values.empty() || values.back() < lower + 0.4 * range) {  // something rare is far above
+    for (const double value : values) levels.add(value);
+    levels.add(lower + 0.7 * range);
+    values = levels.take();
+  }
   for (std::size_t i = 0; i < values.size(); ++i) {
     const double place =
         values.size() > 1 ? static_cast<double>(i) / static_cast<double>(values.size() - 1) : 0.5;
@@ -323,7 +337,7 @@ Look body_look(const LookedAt& data) {
   const ClassedValues& of = data.values;
   if (!of.differ) return even_look(data, color_at(viridis, 0.6));
   const std::vector<double>& v = of.values;
-  const bool signs = has_both_signs(v), clear = !signs && is_mostly_background(data);
+  const bool signs = is_around_zero(of), clear = !signs && is_mostly_background(data);
   const std::span<const Bytes> map =
       signs ? std::span<const Bytes>(cool_to_warm) : std::span<const Bytes>(viridis);
   const double largest = std::max(std::abs(v.front()), std::abs(v.back()));

@@ -14,6 +14,10 @@ struct LookedAt {
   bool whole_numbers;  ///< of the values' type
 };
 
+/// Whether the values are around 0, and whether most are near it: most of the data are background.
+bool is_around_zero(const ClassedValues& of);
+bool is_mostly_near_zero(const ClassedValues& of);
+
 /// Bone in Hounsfield units, or skin, in light. `air`: the value of air, -1000 in those units.
 Look ct_look(double air, bool skin, double chord);
 /// The background clear, the rest dense and in light: tissue warm, or material.

@@ -105,13 +105,10 @@ std::optional<std::array<double, 2>> hounsfield_range(const NamedPreset& preset,
     if (*air_value == -1000) return std::nullopt;
     return std::array{own[0] + *air_value + 1000, own[1] + *air_value + 1000};
   }
-  constexpr double least = -200, most = 200;
-  if (data.finite == 0 || (data.minimum < least && data.maximum > most)) return std::nullopt;
-  throw Error("preset " + std::string(preset.name) + ": the data are " + number(data.minimum) +
-              " to " + number(data.maximum) +
-              ", but the preset is in Hounsfield units, with air at -1000; give the range where "
-              "it is to begin and end (" +
-              number(own[0]) + "," + number(own[1]) + " is its own), or take another");
+  check_hounsfield("preset " + std::string(preset.name) + " (" + number(own[0]) + " to " +
+                       number(own[1]) + " unless a range moves it)",
+                   data);
+  return std::nullopt;
 }
 
 }  // namespace

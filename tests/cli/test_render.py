@@ -254,7 +254,11 @@ class Render(ProgramTest):
         self.assertGreater(len(json.loads(self.read("f.json"))["transfer_function"]["points"]), 2)
         self.fail_with("has surfaces and no function", "render", ball, "--look", "simulation",
                        "--save-tf", "f.json", code=2)
-        self.fail_with('"bones" is none of', "render", "ramp.npy", "--look", "bones", "-o", "a.png")
+        self.fail_with("--look bones: unknown; there are ct,", "render", "ramp.npy", "--look",
+                       "bones", "-o", "a.png", code=2)
+        self.assertIn("shading", scene("ramp.npy", "--look", "SCAN")["layers"][0])
+        self.fail_with("--iso shows surfaces alone", "render", "ramp.npy", "--iso", "0.5",
+                       "--opacity", "0.5", "-o", "a.png", code=2)
         for arguments in (("--tf", "tf.json"), ("--preset", "x-ray"), ("--iso", "0.5")):
             self.fail_with("--look", "render", "ramp.npy", "--look", "scan", "-o", "a.png",
                            *arguments, code=2)
@@ -267,8 +271,8 @@ class Render(ProgramTest):
             {"value": 0, "extinction": 50, "color": [1, 1, 1]}]}))
         run = ("render", "ramp.npy", "-o", "a.png", "--size", "16")
         text = self.run_program(*run, "--preset", "ct-bone").stderr.decode()
-        self.assertRegex(text, r"\Apellucid: error: [^\n]*the data are 0 to 1, but the preset is in "
-                               r"Hounsfield units[^\n]*range[^\n]*\n\Z")
+        self.assertRegex(text, r"\Apellucid: error: preset ct-bone [^\n]*range[^\n]*: the data are "
+                               r"0 to 1, but it is for Hounsfield units[^\n]*\n\Z")
         text = self.run_program(*run, "--tf", "bright.json", "--shading", "1,1,1").stderr.decode()
         self.assertIn("brighter than white", text)
 

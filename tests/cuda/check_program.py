@@ -65,11 +65,11 @@ class Program(unittest.TestCase):
         self.assertTrue(self.image.exists())
 
     def test_emulates_a_card_and_says_so(self):
-        done = self.render("--device", "emulated", "--json")
+        done = self.render("--device", "emulated", "--look", "haze", "--json")
         self.assertEqual(done.returncode, 0, done.stderr)
         self.assertEqual(json.loads(done.stdout)["device"],
                          "rendered by the functions of a card, on the CPU")
-        self.assertIn("functions of a card", self.render("--device", "emulated").stderr)
+        self.assertIn("functions of a card", self.render("--device", "emulated", "--look", "haze").stderr)
 
     def test_leaves_to_the_cpu_what_devices_cannot_do(self):
         done = self.render("--device", "emulated", "--projection", "maximum")

@@ -171,7 +171,7 @@ TEST_F(LightSceneOfAMesh, OfSeveralVariables) {
 
 TEST(LightScene, ColorsMayBeAPreset) {
   const Scene scene = make_scene(
-      layer(ramp + R"(, "isosurfaces": [{"value": 0.5, "colors": {"preset": "ct-bone"}}])"));
+      layer(ramp + R"(, "isosurfaces": [{"value": 0.5, "colors": {"preset": "x-ray"}}])"));
   ASSERT_TRUE(scene.layers[0].isosurfaces[0].colors);
   EXPECT_GT(scene.layers[0].isosurfaces[0].colors->points().size(), 1U);
 }

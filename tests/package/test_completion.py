@@ -86,7 +86,7 @@ class Completion(unittest.TestCase):
             self.assertEqual(self.complete(*words), [], words)
 
     def test_an_option_without_value_is_followed_by_anything(self):
-        self.assertEqual(self.complete("render", "--strict", "--verb"), [])
+        self.assertEqual(self.complete("render", "--strict", "--strictl"), [])
         self.assertEqual(self.complete("render", "--strict", "--sampl"), ["--samples"])
 
     def test_built_in_fields(self):

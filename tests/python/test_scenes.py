@@ -46,7 +46,7 @@ def test_a_file_alone(program, ball):
 @pytest.mark.parametrize("preset", [each.name for each in pellucid.presets()])
 def test_presets(program, ball, preset):
     if next(each for each in pellucid.presets() if each.name == preset).hounsfield:
-        with pytest.raises(pellucid.Error, match="is in Hounsfield units"):
+        with pytest.raises(pellucid.Error, match="is for Hounsfield units"):
             render(ball, preset=preset)
         return
     assert_same_bits(render(ball, preset=preset), program.render(ball, "--preset", preset))

@@ -94,12 +94,16 @@ TEST(FunctionChange, ChangesSurfacesAsPoints) {
   change.colors = color_map("grey");
   change.opacity = 1;
   made = changed(surfaces, change, std::array{10.0, 50.0});
-  EXPECT_EQ(made[0].value, 10);
-  EXPECT_EQ(made[1].value, 20);
-  EXPECT_EQ(made[2].value, 50);
+  EXPECT_NEAR(made[0].value, 14, 1e-12);
+  EXPECT_NEAR(made[1].value, 22, 1e-12);
+  EXPECT_NEAR(made[2].value, 46, 1e-12);
+  EXPECT_EQ(made[0].color, color_at(change.colors, 0.1));
+  EXPECT_EQ(made[1].opacity, 0.5);
+  change.opacity = 0.5;
+  made = changed(surfaces, change, std::nullopt);
   EXPECT_EQ(made[0].color, (Rgb<double>{0, 0, 0}));
   EXPECT_EQ(made[2].color, (Rgb<double>{1, 1, 1}));
-  EXPECT_EQ(made[1].opacity, 0.5);
+  EXPECT_EQ(made[1].opacity, 0.25);
   EXPECT_TRUE(changed(std::vector<Isosurface>(), change, std::nullopt).empty());
 }
 

@@ -223,6 +223,22 @@ TEST(Labels, HaveDefaultLooks) {
   EXPECT_EQ(default_label_table(empty).styles().front().label, 0);
 }
 
+TEST(Labels, ThatFollowEachOtherAreToldApart) {
+  std::vector<int> values;
+  for (int i = 0; i < 125; ++i) values.push_back(std::min(i, 116));
+  for (const int labels : {3, 7, 12, 116}) {
+    std::vector<float> few;
+    for (const int v : values) few.push_back(static_cast<float>(std::min(v, labels)));
+    const LabelTable table = default_label_table(LabelVolume(volume_of(few, {5, 5, 5})));
+    ASSERT_EQ(table.styles().size(), static_cast<std::size_t>(labels));
+    for (std::size_t i = 1; i < table.styles().size(); ++i) {
+      const Rgb<double> apart = table.styles()[i].color + table.styles()[i - 1].color * -1;
+      EXPECT_GT(std::max({std::abs(apart.r), std::abs(apart.g), std::abs(apart.b)}), 0.25)
+          << labels << ", " << i;
+    }
+  }
+}
+
 TEST(Labels, MasksAreOnTheGridOfTheData) {
   const auto labels = std::make_shared<const LabelVolume>(ramp());
   const auto mask =

@@ -205,6 +205,51 @@ TEST(Look, OfNoiseIsHazeAndOfImagesGlows) {
   EXPECT_LT(extinction_at(glow, 300), 0.3 * extinction_at(glow, 2500));
 }
 
+TEST(Look, OfAStatisticOfBothSignsIsItsSurfaces) {
+  // Noise of deviation 1, and two spots at ±9: a map of a statistic.
+  std::mt19937 random(5);
+  std::normal_distribution<float> noise(0, 1);
+  std::vector<float> values(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    const auto at = [&](double x) {
+      const double dx = static_cast<double>(i % side) - x,
+                   dy = static_cast<double>(i / side % side) - 12.0,
+                   dz = static_cast<double>(i / side / side) - 12.0;
+      return 9 * std::exp(-(dx * dx + dy * dy + dz * dz) / 8);
+    };
+    values[i] = 0.5F * noise(random) + static_cast<float>(at(6) - at(18));
+  }
+  const Look look = choose_look(make_volume(values, "zmap.nii.gz"));
+  EXPECT_EQ(look.name, "simulation");
+  EXPECT_GE(look.isosurfaces.size(), 4U);
+}
+
+TEST(Look, OfBrightSpotsOnDarkGroundInImagesGlows) {
+  std::vector<std::uint16_t> values(count, 100);
+  for (std::size_t i = 0; i < count; ++i) {
+    if (i % 97 < 4 && i / side % 5 == 0) values[i] = static_cast<std::uint16_t>(900 + i % 300);
+  }
+  EXPECT_EQ(choose_look(make_volume(values, "spots.tif")).name, "microscopy");
+}
+
+TEST(Look, IsNoLabelsWhereTheyAreLargerThanLabelsMayBe) {
+  std::vector<std::int32_t> values(count, 0);
+  for (std::size_t i = 0; i < count; ++i) values[i] = i / 576 % 3 == 0 ? 0 : 312782628;
+  EXPECT_FALSE(choose_look(make_volume(values)).as_labels);
+}
+
+TEST(Look, ForHounsfieldUnitsIsRefusedForOtherData) {
+  const Volume volume = make_volume(head());
+  for (const char* const name : {"ct", "ct-skin"}) {
+    try {
+      static_cast<void>(choose_look(volume, name));
+      ADD_FAILURE() << name;
+    } catch (const Error& error) {
+      EXPECT_NE(std::string(error.what()).find("Hounsfield"), std::string::npos) << error.what();
+    }
+  }
+}
+
 TEST(Look, IsMadeForAllDataThatThereAre) {
   const std::vector<std::vector<float>> values{
       std::vector<float>(count, 3), std::vector<float>(count, 0),
@@ -215,6 +260,7 @@ TEST(Look, IsMadeForAllDataThatThereAre) {
     static_cast<void>(choose_look(volume));
     for (const LookName& look : looks()) {
       SCOPED_TRACE(look.name);
+      if (look.name.starts_with("ct")) continue;  // of Hounsfield units alone
       EXPECT_EQ(choose_look(volume, look.name).name, look.name);
     }
   }
@@ -223,6 +269,7 @@ TEST(Look, IsMadeForAllDataThatThereAre) {
     for (const LookName& look : looks()) {
       SCOPED_TRACE(std::string(name) + " " + std::string(look.name));
       Layer layer;
+      if (look.name.starts_with("ct")) continue;
       Look made = choose_look(volume, look.name);
       if (made.as_labels) continue;
       layer.content =

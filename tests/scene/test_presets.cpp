@@ -42,7 +42,7 @@ TEST(Presets, AreFunctionsOfAnyData) {
       const bool fits = !preset.hounsfield || volume.statistics().minimum == -1000;
       if (!fits) {
         expect_error([&] { make_preset(name, volume); },
-                     {name.c_str(), "is in Hounsfield units", "give the range"});
+                     {name.c_str(), "is for Hounsfield units", "unless a range moves it"});
         continue;
       }
       const TransferFunction function = make_preset(name, volume);

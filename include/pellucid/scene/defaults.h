@@ -41,12 +41,12 @@ TransferFunction grey_colors(const Volume& volume);
 /// Returns the same for a mesh's first channel.
 TransferFunction grey_colors(const MeshChannels& mesh);
 
-/// Returns a look for every label of a segmentation but 0: distinct colors, in the order of the
-/// labels, and one extinction; default_label_extinction() if none is given. A segmentation without
-/// other labels shows 0.
+/// Returns a look for every label of a segmentation but 0: distinct colors, far apart for
+/// labels that follow each other, and one extinction; default_label_extinction() if none is given.
+/// A segmentation without other labels shows 0.
 LabelTable default_label_table(const LabelVolume& labels, std::optional<double> extinction = {});
-/// Returns the extinction that makes a label opaque to one half on a fortieth of the longest way
-/// through the volume.
+/// Returns the extinction that makes a label opaque to one half on a two-hundredth of the longest
+/// way through the volume.
 double default_label_extinction(const Volume& volume);
 
 /// Returns a perspective camera of 30° that shows the whole box of the volume with a margin of 5 %,

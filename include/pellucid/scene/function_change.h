@@ -53,9 +53,9 @@ std::vector<OpacityPoint> changed(const std::vector<OpacityPoint>& points,
                                   const FunctionChange& change,
                                   const std::optional<std::array<double, 2>>& range);
 
-/// Changes surfaces likewise: their values move as points do, their colors are those of the map
-/// between the range, or the first and last of them, and their transparencies are raised to the
-/// power of the factor.
+/// Changes surfaces likewise: a range has them lie within it, the outermost at a tenth of it from
+/// its ends; their colors are those of the map at these places, or between the first and the last
+/// of them; and opacities are times the factor, or if it is above 1 transparencies to its power.
 std::vector<Isosurface> changed(std::vector<Isosurface> surfaces, const FunctionChange& change,
                                 const std::optional<std::array<double, 2>>& range);
 

@@ -40,14 +40,19 @@ std::span<const LookName> looks() noexcept;
 /// - `mask`: two values, with the surface half-way between them.
 /// - `ct`: Hounsfield units, from air on (below -500 to above 300, with air in a twentieth of the
 ///   values or more), or those plus 1000 or 1024; bone in light. `ct-skin` if there is no bone.
-/// - `mr`, `scan`: the background ends at surfaces, a step of a few voxels; tissue or material in
-///   light, `mr` where the volume's name is that of a medical image (.nii, .mgz, .dcm, …).
 /// - `fog`: an .vdb file.
-/// - `microscopy`: images (.tif, .lsm, .png, OME-Zarr) without such surfaces; what is bright glows.
+/// - `simulation`: data around 0, whose smaller extreme is a fifth of the larger one or more and
+/// half
+///   of whose values are within a fifth of that, if they are smooth or most are near 0; surfaces of
+///   equal value of both signs, blue and red, in light.
+/// - `microscopy`: images (.tif, .lsm, .png, OME-Zarr) in which a fifth or less stands out, or
+///   without surfaces; what is bright glows.
+/// - `mr`, `scan`: the background ends at surfaces, a step of a few voxels; tissue or material in
+///   light, `mr` where the volume's name is that of a medical image (.nii, .mgz, .dcm, …, a folder
+///   of no images).
 /// - `simulation`: smooth data, whose noise is a quarter of half of their gradients or less;
-///   surfaces of equal value in light, of viridis' colors. Data around 0, whose smaller extreme is
-///   a fifth of the larger one or more and half of whose values are within a fifth of that, have
-///   surfaces of both signs, blue and red.
+/// surfaces
+///   of equal value in light, of viridis' colors.
 /// - `haze`: all else, by default_transfer_function().
 ///
 /// `x-ray` is never chosen. Up to 2^18 values are looked at. Throws Error if there is no look of
@@ -60,6 +65,10 @@ Look choose_look(const MeshChannels& mesh, std::string_view name = {});
 /// Returns the value of air if the data seem to be in Hounsfield units (-1000), or in those plus
 /// about 1024 (24); none: they do not.
 std::optional<double> hounsfield_air(const Volume& volume);
+
+/// Throws Error, which begins with `what`, if these can hardly be Hounsfield units: nothing is
+/// below -150, or nothing above 200.
+void check_hounsfield(const std::string& what, const VolumeStatistics& data);
 
 /// Returns the lights of a look in light: one at the eye and one from the upper left, fixed in the
 /// world, which together are as bright as one. The camera must be valid.
