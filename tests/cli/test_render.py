@@ -245,13 +245,14 @@ class Render(ProgramTest):
         self.assertEqual([changed[0]["color"], changed[-1]["color"]], [[0, 0, 0], [1, 1, 1]])
         self.assertGreater(changed[0]["opacity"], plain[0]["opacity"])
         # Labels become labels.
-        self.write("labels.npy", npy([i % 7 if i > 20 else 0 for i in range(512)], (8, 8, 8),
-                                     "<i2"))
+        blocks = [7 * (i // 4) + 20 * (j // 4) + 60 * (k // 4)
+                  for k in range(12) for j in range(12) for i in range(12)]
+        self.write("labels.npy", npy(blocks, (12, 12, 12), "<i2"))
         layer = scene("labels.npy")["layers"][0]
         self.assertIn("labels", layer)
         # A look with a function is saved; one without gives way to one that has it.
         self.succeed("render", ball, "--save-tf", "f.json", "-o", "a.png", "--size", "9")
-        self.assertGreater(len(json.loads(self.read("f.json"))["transfer_function"]["points"]), 2)
+        self.assertGreater(len(json.loads(self.read("f.json"))["points"]), 2)
         self.fail_with("has surfaces and no function", "render", ball, "--look", "simulation",
                        "--save-tf", "f.json", code=2)
         self.fail_with("--look bones: unknown; there are ct,", "render", "ramp.npy", "--look",
