@@ -56,6 +56,7 @@ def placed(data: Any, spacing: Any, origin: Any, direction: Any, coordinates: An
 
 
 def _found(data: Any, name: str) -> Placed:
+    _nibabel.refuse_proxy(data)
     if _nibabel.is_image(data):
         return _nibabel.placed(data)
     if callable(getattr(data, "IsA", None)) and hasattr(data, "GetClassName"):

@@ -70,13 +70,15 @@ def applied(stored: numpy.ndarray, data: Any, name: str) -> numpy.ndarray:
 
 
 # Names that other programs give to scales, missing values and places, as the readers of files know
-# them.
-_UNREAD = ("ScaleFactor", "Scale_Factor", "scale", "Scale", "slope", "Slope", "Offset", "offset",
-           "AddOffset", "intercept", "Intercept", "MissingValue", "Missing_Value", "FillValue",
-           "fill_value", "fillvalue", "nodata", "no_data", "NODATA", "NoData", "nodata_value",
-           "ValidRange", "spacing", "Spacing", "origin", "Origin", "voxel_size", "voxelsize",
-           "VoxelSize", "pixel_size", "resolution", "affine", "transform", "direction",
-           "element_size_um")
+# them: in small letters, without what stands between words.
+_UNREAD = ("scalefactor", "scale", "scales", "slope", "gain", "multiplier", "offset", "addoffset",
+           "intercept", "bias", "calibration", "missingvalue", "missing", "fillvalue", "fill",
+           "nodata", "nodatavalue", "validrange", "validmin", "validmax", "spacing", "origin",
+           "translation", "translate", "voxelsize", "pixelsize", "resolution", "pixelresolution",
+           "resolutionunit", "affine", "transform", "direction", "orientation", "dx", "dy", "dz",
+           "axes", "axisorder", "axisnames", "dims", "dimensions", "elementsizeum")
+
+_BETWEEN_WORDS = str.maketrans("", "", "_- ")
 
 # What each attribute must be to be applied.
 _KINDS = {"scale_factor": (1, "number"), "add_offset": (1, "number"),
@@ -97,7 +99,8 @@ def tell_unapplied(data: Any, name: str) -> None:
             tell(f"{name}: its {key} is no {what} and is not applied")
     if any(key in attributes for key in ("flag_values", "flag_meanings", "flag_masks")):
         tell(f"{name}: its values are labels (flag_values) and no amounts")
-    unread = [key for key in _UNREAD if key in attributes]
+    unread = [str(key) for bare in _UNREAD for key in attributes.keys()
+              if key not in _KINDS and str(key).lower().translate(_BETWEEN_WORDS) == bare]
     if unread:
         tell(f"{name}: has attributes that are not applied ({', '.join(unread)})")
 

@@ -20,6 +20,14 @@ def is_image(data: Any) -> bool:
     return hasattr(data, "dataobj") and hasattr(data, "header")
 
 
+def refuse_proxy(data: Any) -> None:
+    """Raises Error for the values of an image without the image, whose axes are x, y and z."""
+    proxies = sys.modules.get("nibabel.arrayproxy")
+    if proxies is not None and proxies.is_proxy(data):
+        raise Error(f"{type(data).__name__}: is the dataobj of an image of nibabel, whose axes are "
+                    "x, y and z and which has no place; give the image")
+
+
 def placed(image: Any) -> Placed:
     """Returns its array and place: RAS becomes LPS, and its axes (i, j, k) are x, y, z."""
     file = image.get_filename() if hasattr(image, "get_filename") else None

@@ -86,10 +86,10 @@ def _flags(attributes: Any, count: int, flags: int, name: str) -> numpy.ndarray:
 
 
 def _hidden(grid: Any, cells: _meshes.Cells) -> numpy.ndarray:
-    """bool (cells,): which are duplicates, or hidden, or have a hidden point (BlankPoint())."""
+    """bool (cells,): which are duplicates, refined or hidden, or have a hidden point (BlankPoint())."""
     name = grid.GetClassName()
     hidden = _flags(grid.GetCellData(), len(cells.types),
-                    _ghosts.DUPLICATE_CELL | _ghosts.HIDDEN_CELL, name)
+                    _ghosts.DUPLICATE_CELL | _ghosts.REFINED_CELL | _ghosts.HIDDEN_CELL, name)
     points = _flags(grid.GetPointData(), grid.GetNumberOfPoints(), _ghosts.HIDDEN_POINT, name)
     if not points.any():
         return hidden

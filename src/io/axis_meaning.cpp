@@ -106,6 +106,20 @@ void note_places(std::span<const AxisText> axes, const NamedAxes& named, VolumeA
   }
 }
 
+/// Tells which of several axes of time is the one of --time.
+void note_times(std::span<const AxisText> axes, std::span<const std::int64_t> shape,
+                const NamedAxes& named, VolumeAxes& volume) {
+  std::string others;
+  for (const std::size_t axis : named.components) {
+    if (axis == named.time || named.roles[axis] != AxisRole::time || shape[axis] == 1) continue;
+    others += (others.empty() ? "" : ", ") + axes[axis].name;
+  }
+  if (others.empty()) return;
+  volume.notes.push_back("its axis " + axes[*named.time].name +
+                         " is the time (--time); its other axes of time (" + others +
+                         ") are taken for components");
+}
+
 }  // namespace
 
 NamedAxes named_axes(std::span<const AxisText> axes, std::span<const std::int64_t> shape) {
@@ -132,10 +146,14 @@ NamedAxes named_axes(std::span<const AxisText> axes, std::span<const std::int64_
   named.is_known =
       std::ranges::any_of(named.roles, [](AxisRole role) { return role != AxisRole::unknown; });
   take_space(evidence, named);
-  int strongest = -1;
+  std::pair strongest{-1, -1};
   for (std::size_t a = 0; a < axes.size(); ++a) {
-    if (evidence[a].role != AxisRole::time || evidence[a].strength <= strongest) continue;
-    strongest = evidence[a].strength;
+    if (evidence[a].role != AxisRole::time) continue;
+    // A standard name says more than any other evidence, a name less.
+    const int rank = time_rank(axes[a]);
+    const int strength = rank == 3 ? 10 : rank == 0 ? 0 : evidence[a].strength;
+    if (std::pair{strength, rank} <= strongest) continue;
+    strongest = {strength, rank};
     named.time = a;
   }
   fill_space(shape, named);
@@ -173,6 +191,7 @@ std::optional<VolumeAxes> volume_axes(std::span<const AxisText> axes,
     volume.space[place] = *named.space[place];
   }
   note_places(axes, named, volume);
+  note_times(axes, shape, named, volume);
   volume.time = named.time;
   for (const std::size_t axis : named.components) {
     if (shape[axis] == 1) continue;

@@ -237,6 +237,13 @@ AxisEvidence axis_evidence(const AxisText& axis) {
   return known == all.end() ? AxisEvidence{} : *known;
 }
 
+int time_rank(const AxisText& axis) {
+  const std::string name = small_text(axis, "standard_name");
+  if (name == "time") return 3;
+  if (name == "forecast_reference_time" || name == "forecast_period") return 0;
+  return in_small_letters(axis.name) == "time" ? 2 : 1;
+}
+
 bool is_image_width(const std::string& name) {
   const std::string small = in_small_letters(name);
   return small == "width" || small == "column" || small == "columns" || small == "cols";

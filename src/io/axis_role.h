@@ -32,6 +32,10 @@ struct AxisEvidence {
 /// conventions, else by the names that models and programs give their axes.
 AxisEvidence axis_evidence(const AxisText& axis);
 
+/// Returns how surely an axis of time has the time of its values: least for the time of a
+/// forecast's start, or since then.
+int time_rank(const AxisText& axis);
+
 /// Returns whether the name is that of an image's columns, or of its rows.
 bool is_image_width(const std::string& name);
 bool is_image_height(const std::string& name);

@@ -213,10 +213,16 @@ void read_tags(const VariableAttributes& attributes, const std::vector<std::int6
 /// Takes sizes of voxels in micrometers, as ilastik, PlantSeg and ImageJ write them, in the order
 /// of the dataset's last three axes.
 void read_element_size(const VariableAttributes& attributes, const std::vector<std::int64_t>& shape,
-                       Hdf5Axes& axes) {
+                       const std::string& name, Hdf5Axes& axes) {
   const auto found = attributes.find("element_size_um");
-  if (found == attributes.end() || found->second.numbers.size() != 3 || shape.size() < 3) return;
-  if (!std::ranges::all_of(found->second.numbers, is_distance)) return;
+  if (found == attributes.end() || shape.size() < 3) return;
+  if (found->second.numbers.size() != 3 ||
+      !std::ranges::all_of(found->second.numbers, is_distance)) {
+    axes.notes.push_back("the element_size_um of \"" + name +
+                         "\" is not three distances above 0, those of z, y and x, and is not "
+                         "applied");
+    return;
+  }
   std::vector<std::size_t> space;
   for (std::size_t a = 0; a < shape.size(); ++a) {
     const AxisRole role = axis_evidence(axes.texts[a]).role;
@@ -283,7 +289,7 @@ Hdf5Axes hdf5_axes(hid_t dataset, const std::vector<std::int64_t>& shape,
   }
   read_scales(dataset, shape, axes);
   read_tags(attributes, shape, name, axes);
-  read_element_size(attributes, shape, axes);
+  read_element_size(attributes, shape, name, axes);
   return axes;
 }
 

@@ -197,6 +197,12 @@ VolumeFile open_mrc(const ByteSource& source, const ReadOptions& options) {
     layout.components = static_cast<int>(sides[2] / sections);
     sides[2] = sections;
   }
+  // Volumes of old programs have space group 0, too, but MZ sections.
+  if (header.whole(23) == 0 && sections == 1 && sides[2] > 1 && options.note) {
+    options.note(name +
+                 ": the MRC header says that its sections are a stack of images (ISPG 0, MZ 1), no "
+                 "volume; they are shown as slices along z");
+  }
   const std::size_t points = value_count(sides, name);
   const std::int32_t extended = header.whole(24);
   if (extended < 0) {

@@ -123,6 +123,9 @@ GridArray describe(const NetCdfVolume& of) {
     }
     return named;
   };
+  for (std::string& note : notes_on_unread(variable.attributes, variable.name)) {
+    array.notes.push_back(std::move(note));
+  }
   for (std::string& note : variable_notes(variable.name, variable.attributes, space, find)) {
     array.notes.push_back(std::move(note));
   }

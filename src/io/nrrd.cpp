@@ -160,17 +160,49 @@ bool needs_spacing(const Header& header, std::size_t axis) {
   return axis > sides.size() || number_in(sides[axis - 1]) != 1u;
 }
 
-// The axis whose values are components, from 1; 0 where all are of space or time. The kind says it,
-// or that the axis has no direction in space.
+bool is_kind_of_space(const std::string& kind) {
+  return kind == "domain" || kind == "space";
+}
+
+// The one of four axes that is time or of an unknown kind, where the others are of space; else 0.
+// The last one is 0, too: it is taken for components without that.
+std::size_t axis_beside_space(const Header& header) {
+  if (axis_count(header) != 4) return 0;
+  std::size_t found = 0;
+  for (std::size_t axis = 1; axis <= 4; ++axis) {
+    if (is_kind_of_space(kind_of(header, axis))) continue;
+    if (found != 0) return 0;
+    found = axis;
+  }
+  return found == 4 ? 0 : found;
+}
+
+// Refuses a time beside components, unless it can be shown as z.
+void refuse_second_axis(const Header& header, std::size_t components_axis,
+                        const std::string& name) {
+  const std::size_t last = components_axis == 4 ? 3 : 4;
+  for (std::size_t axis = 1; axis < last && components_axis != 0; ++axis) {
+    if (axis == components_axis || kind_of(header, axis) != "time") continue;
+    throw Error(name + ": its kinds say that axis " + std::to_string(axis) + " is time and axis " +
+                std::to_string(components_axis) +
+                " holds components, so that two axes of space are left; save a volume of three "
+                "axes of space as a file of its own");
+  }
+}
+
+// The axis whose values are components, from 1; 0 where all are of space, or the last is time. The
+// kind says it, or that the axis has no direction in space.
 std::size_t find_components_axis(const Header& header, const std::string& name) {
   const std::size_t axes = axis_count(header);
   if (axes < 4) return 0;
   std::size_t found = 0;
   for (std::size_t axis = 1; axis <= axes && found == 0; ++axis) {
     const std::string kind = kind_of(header, axis);
-    if (!kind.empty() && kind != "domain" && kind != "space" && kind != "time") found = axis;
+    if (!kind.empty() && !is_kind_of_space(kind) && kind != "time") found = axis;
   }
   if (found == 0) found = axis_that_says(header, "spacedirections", {"none", "nan"});
+  if (found == 0) found = axis_beside_space(header);
+  refuse_second_axis(header, found, name);
   if (found > 1 && found < axes) {
     throw Error(name + ": axis " + std::to_string(found) + " of " + std::to_string(axes) +
                 " holds components, which are read of the first and of the last axis only; "

@@ -44,12 +44,15 @@ double number_at(const std::vector<std::string>& words, std::size_t axis) {
 
 void note_kinds(const Header& header, std::size_t components_axis, const Note& note) {
   const std::size_t axes = axis_count(header);
-  if (axes == 3) {
+  if (axes == 3 || (axes == 4 && components_axis != 0)) {
+    std::size_t place = 0;
     for (std::size_t axis = 1; axis <= axes; ++axis) {
+      if (axis == components_axis) continue;
+      const char letter = "xyz"[place++];
       const std::string kind = kind_of(header, axis);
       if (kind.empty() || kind == "domain" || kind == "space") continue;
       note("its kinds say that axis " + std::to_string(axis) + " is " + printable(kind) +
-           ", no axis of space; it is read as " + std::string(1, "xyz"[axis - 1]));
+           ", no axis of space; it is read as " + std::string(1, letter));
     }
     return;
   }

@@ -15,6 +15,7 @@
 #include <variant>
 
 #include "pellucid/scene/error.h"
+#include "text.h"
 
 namespace pellucid {
 
@@ -183,22 +184,37 @@ VolumeData with_meaning(DataArray<Value> values, const ValueMeaning& meaning, De
   }
 }
 
-/// Lists the attributes by which other programs name scales, missing values and placements.
+/// Returns a name in small letters and without what stands between its words.
+std::string bare_name(const std::string& name) {
+  std::string bare = in_small_letters(name);
+  std::erase_if(bare, [](char letter) { return letter == '_' || letter == '-' || letter == ' '; });
+  return bare;
+}
+
+/// Lists the attributes by which other programs name scales, missing values and placements,
+/// whatever the case of their letters. Those that are applied are not among them.
 std::string unread_of(const VariableAttributes& attributes) {
   constexpr auto unread = std::to_array<std::string_view>(
-      {"ScaleFactor", "Scale_Factor", "scale",        "Scale",         "scales",    "slope",
-       "Slope",       "gain",         "Gain",         "Offset",        "offset",    "AddOffset",
-       "intercept",   "Intercept",    "MissingValue", "Missing_Value", "FillValue", "fill_value",
-       "fillvalue",   "nodata",       "no_data",      "NODATA",        "NoData",    "nodata_value",
-       "ValidRange",  "spacing",      "Spacing",      "origin",        "Origin",    "voxel_size",
-       "voxelsize",   "voxelSize",    "VoxelSize",    "pixel_size",    "pixelsize", "pixelSize",
-       "PixelSize",   "resolution",   "Resolution",   "affine",        "Affine",    "transform",
-       "direction",   "Direction",    "axes",         "axis_order",    "axisOrder", "dims",
-       "dimensions"});
+      {"scalefactor",    "scale",        "scales",      "slope",
+       "gain",           "multiplier",   "offset",      "addoffset",
+       "intercept",      "bias",         "calibration", "missingvalue",
+       "missing",        "fillvalue",    "fill",        "nodata",
+       "nodatavalue",    "validrange",   "validmin",    "validmax",
+       "spacing",        "origin",       "translation", "translate",
+       "voxelsize",      "pixelsize",    "resolution",  "pixelresolution",
+       "resolutionunit", "affine",       "transform",   "direction",
+       "orientation",    "dx",           "dy",          "dz",
+       "axes",           "axisorder",    "axisnames",   "dims",
+       "dimensions",     "elementsizeum"});
+  constexpr auto applied =
+      std::to_array<std::string_view>({"scale_factor", "add_offset", "_FillValue", "missing_value",
+                                       "valid_range", "valid_min", "valid_max", "element_size_um"});
   std::string list;
-  for (const std::string_view attribute : unread) {
-    if (!attributes.contains(attribute)) continue;
-    list += (list.empty() ? "" : ", ") + std::string(attribute);
+  for (const std::string_view bare : unread) {
+    for (const auto& [name, value] : attributes) {
+      const bool is_other = std::ranges::find(applied, name) == applied.end();
+      if (is_other && bare_name(name) == bare) list += (list.empty() ? "" : ", ") + name;
+    }
   }
   return list;
 }

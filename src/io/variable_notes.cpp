@@ -3,8 +3,6 @@
 
 #include <algorithm>
 
-#include "value_meaning.h"
-
 namespace pellucid {
 
 namespace {
@@ -51,7 +49,7 @@ std::vector<std::string> variable_notes(const std::string& name,
                                         const VariableAttributes& attributes,
                                         const std::array<std::string, 3>& space,
                                         const FindVariable& find) {
-  std::vector<std::string> notes = notes_on_unread(attributes, name);
+  std::vector<std::string> notes;
   std::string list;
   for (const std::string& coordinate : curvilinear(attributes, space, find)) {
     list += (list.empty() ? "" : ", ") + coordinate;

@@ -34,8 +34,8 @@ struct NamedVariable {
 };
 using FindVariable = std::function<std::optional<NamedVariable>(const std::string& name)>;
 
-/// Returns notes on what a variable says of its grid and its values, and what is not read. `space`
-/// are the names of its axes x, y and z.
+/// Returns notes on what a variable says of its grid and is not read. `space` are the names of its
+/// axes x, y and z.
 std::vector<std::string> variable_notes(const std::string& name,
                                         const VariableAttributes& attributes,
                                         const std::array<std::string, 3>& space,

@@ -176,7 +176,8 @@ class Ghosts {
   }
 
   bool has(vtkIdType cell) const {
-    constexpr int ghost = vtkDataSetAttributes::DUPLICATECELL | vtkDataSetAttributes::HIDDENCELL;
+    constexpr int ghost = vtkDataSetAttributes::DUPLICATECELL | vtkDataSetAttributes::HIDDENCELL |
+                          vtkDataSetAttributes::REFINEDCELL;
     return (flags_ != nullptr && (flags_->GetValue(cell) & ghost) != 0) ||
            (levels_ != nullptr && levels_->GetComponent(cell, 0) > 0);
   }
@@ -288,18 +289,35 @@ std::optional<std::array<int, 3>> orders_of(vtkDataArray* orders, vtkIdType cell
   return of;
 }
 
+/// Returns the flags of points, null if there are none.
+vtkUnsignedCharArray* point_flags(vtkDataSet& set) {
+  vtkUnsignedCharArray* const flags = flags_of(*set.GetPointData());
+  check_count(flags, set.GetNumberOfPoints(), "points");
+  return flags;
+}
+
+/// Whether one of a cell's corners is hidden, which hides the cell.
+bool has_hidden_corner(vtkUnsignedCharArray& flags, std::span<const std::int64_t> corners) {
+  return std::ranges::any_of(corners, [&](std::int64_t point) {
+    return point >= 0 && point < flags.GetNumberOfValues() &&
+           (flags.GetValue(point) & vtkDataSetAttributes::HIDDENPOINT) != 0;
+  });
+}
+
 /// The cells that are kept, by their numbers in VTK.
 std::vector<vtkIdType> gather_cells(vtkUnstructuredGrid& grid, std::size_t first_number,
                                     MeshFile& file, UnstructuredGrid& block) {
   CellLists lists(grid);
   const Ghosts ghosts(grid);
+  vtkUnsignedCharArray* const hidden = point_flags(grid);
   vtkDataArray* const orders = orders_of_cells(grid);
   std::vector<vtkIdType> kept;
   kept.reserve(static_cast<std::size_t>(lists.count()));
   block.shapes.reserve(static_cast<std::size_t>(lists.count()));
   VtkCells cells(first_number, file, block);
   for (vtkIdType cell = 0; cell < lists.count(); ++cell) {
-    if (ghosts.has(cell)) {
+    if (ghosts.has(cell) ||
+        (hidden != nullptr && has_hidden_corner(*hidden, lists.corners(cell)))) {
       cells.add_ghost();
       continue;
     }
@@ -341,8 +359,7 @@ std::vector<vtkIdType> gather_cells(vtkStructuredGrid& grid, std::size_t first_n
   block.shapes.reserve(static_cast<std::size_t>(cells));
   block.corners.reserve(static_cast<std::size_t>(cells) * 8);
   const Ghosts ghosts(grid);
-  vtkUnsignedCharArray* const hidden = flags_of(*grid.GetPointData());
-  check_count(hidden, grid.GetNumberOfPoints(), "points");
+  vtkUnsignedCharArray* const hidden = point_flags(grid);
   const std::int32_t row = dimensions[0], layer = row * dimensions[1];
   vtkIdType cell = 0;
   for (int z = 0; z + 1 < dimensions[2]; ++z) {

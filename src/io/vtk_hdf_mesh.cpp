@@ -16,7 +16,7 @@ namespace {
 constexpr const char* damaged = "; the file is cut off or damaged";
 constexpr const char* ghosts = "vtkGhostType";
 // vtkDataSetAttributes.h, of VTK 9.
-constexpr unsigned duplicate_cell = 1, hidden_cell = 32;
+constexpr unsigned duplicate_cell = 1, refined_cell = 8, hidden_cell = 32, hidden_point = 2;
 
 /// The arrays of the cells, and those of values, by their numbers in VtkHdfValues.
 class Reader {
@@ -132,7 +132,10 @@ class Reader {
     const auto offsets =
         take(offsets_, offset_at_, cells == 0 ? std::min<std::int64_t>(1, left) : cells + 1, 1,
              "Offsets");
-    const std::vector<bool> is_ghost = ghosts_of(first_cell, static_cast<std::size_t>(cells));
+    const std::vector<bool> is_ghost =
+        flagged(VtkHdfArray::Place::cell, first_cell, static_cast<std::size_t>(cells));
+    const std::vector<bool> is_hidden =
+        flagged(VtkHdfArray::Place::point, first_point, static_cast<std::size_t>(points));
     const std::vector<double> orders = orders_of(first_cell, static_cast<std::size_t>(cells));
     VtkCells target(mesh.cells, mesh.file, block);
     std::vector<std::size_t> kept;
@@ -154,6 +157,15 @@ class Reader {
           (*given.orders)[a] = static_cast<int>(std::clamp(orders[3 * cell + a], 0.0, 1e6));
         }
       }
+      const auto is_gone = [&](std::int64_t point) {
+        return point >= 0 && point < std::ssize(is_hidden) &&
+               is_hidden[static_cast<std::size_t>(point)];
+      };
+      // A hidden point hides the cells around it.
+      if (std::ranges::any_of(given.points, is_gone)) {
+        target.add_ghost();
+        continue;
+      }
       if (target.add(static_cast<std::int64_t>(cell), given)) kept.push_back(first_cell + cell);
     }
     add_arrays(first_point, static_cast<std::size_t>(points), kept, block);
@@ -161,18 +173,20 @@ class Reader {
     mesh.blocks.push_back(std::move(block));
   }
 
-  /// Of the cells of a piece; empty: there are none.
-  std::vector<bool> ghosts_of(std::size_t first, std::size_t count) const {
-    const Values* const found = find(ghosts, VtkHdfArray::Place::cell);
+  /// Which cells of a piece are ghosts, or which points are hidden; empty: there are no flags.
+  std::vector<bool> flagged(VtkHdfArray::Place place, std::size_t first, std::size_t count) const {
+    const bool of_cells = place == VtkHdfArray::Place::cell;
+    const unsigned any = of_cells ? duplicate_cell | refined_cell | hidden_cell : hidden_point;
+    const Values* const found = find(ghosts, place);
     if (found == nullptr) return {};
     const std::vector<std::int64_t> flags = whole_numbers(found->number, ghosts);
     if (flags.size() < first + count) {
-      throw Error(std::string("the number of ghost flags is not that of the cells") + damaged);
+      throw Error(std::string("the number of ghost flags is not that of the ") +
+                  (of_cells ? "cells" : "points") + damaged);
     }
     std::vector<bool> ghost(count);
     for (std::size_t i = 0; i < count; ++i) {
-      ghost[i] =
-          (static_cast<std::uint64_t>(flags[first + i]) & (duplicate_cell | hidden_cell)) != 0;
+      ghost[i] = (static_cast<std::uint64_t>(flags[first + i]) & any) != 0;
     }
     return ghost;
   }

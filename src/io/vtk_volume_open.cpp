@@ -25,7 +25,9 @@ namespace pellucid {
 namespace {
 
 // vtkDataSetAttributes.h, of VTK 9.
-constexpr unsigned hidden_point = 2, hidden_cell = 32;
+constexpr unsigned hidden_point = 2;
+/// Of a cell that is hidden, or that another level refines.
+constexpr unsigned hidden_cell = 32 | 8;
 
 /// A legacy file's values are not compressed: one of bits has eight in a byte, and those of its
 /// cells can be an eighth of its points.

@@ -128,6 +128,9 @@ void place_variable(const ZarrVariable& variable, const ZarrAxes& axes, const st
   if (!options.note) return;
   const std::string& name = description.name;
   for (const std::string& note : variable.notes) options.note(name + ": " + printable(note));
+  for (const std::string& note : zarr_notes(variable, shown)) {
+    options.note(name + ": " + printable(note));
+  }
   if (!axes.named) return;
   for (const std::string& note : axes.named->notes) {
     options.note(name + ": " + printable("\"" + shown + "\": " + note));

@@ -65,15 +65,17 @@ void add_number(const nlohmann::json& value, VariableAttribute& attribute) {
   attribute.is_real = attribute.is_real || value.is_number_float() || value.is_string();
 }
 
+/// Returns an attribute; without numbers and text where it is neither, and nothing for null.
 std::optional<VariableAttribute> attribute_of(const nlohmann::json& value) {
   VariableAttribute attribute;
   if (value.is_array()) {
-    if (value.size() > most_attribute_numbers) return std::nullopt;
+    if (value.size() > most_attribute_numbers) return VariableAttribute{};
     for (const nlohmann::json& element : value) add_number(element, attribute);
-    if (attribute.numbers.size() != value.size()) return std::nullopt;
+    if (attribute.numbers.size() != value.size()) return VariableAttribute{};
     return attribute;
   }
-  if (value.is_object() || value.is_null()) return std::nullopt;
+  if (value.is_null()) return std::nullopt;
+  if (value.is_object()) return attribute;
   add_number(value, attribute);
   if (!attribute.numbers.empty()) return attribute;
   attribute.is_real = false;
@@ -199,6 +201,29 @@ AxisPositions zarr_positions(const ZarrVariable& variable, std::size_t axis) {
       read_zarr_line(*folder, line.array, static_cast<std::size_t>(line.array.shape[0]));
   apply_meaning(positions.numbers, line.array.type.name, line.meaning);
   return positions;
+}
+
+std::vector<std::string> zarr_notes(const ZarrVariable& variable, const std::string& name) {
+  std::vector<std::string> notes = notes_on_unread(variable.attributes, name);
+  std::string list;
+  for (const char* attribute : {"element_size_um", "axistags", "DIMENSION_LABELS"}) {
+    if (!variable.attributes.contains(attribute)) continue;
+    list += (list.empty() ? "" : ", ") + std::string(attribute);
+  }
+  if (!list.empty()) {
+    notes.push_back("\"" + name + "\" has attributes of HDF5 that are not applied (" + list + ")");
+  }
+  fs::path group = variable.folder.lexically_normal();
+  if (!group.has_filename()) group = group.parent_path();
+  constexpr int deepest = 8;
+  for (int depth = 0; depth < deepest && group.has_parent_path(); ++depth) {
+    group = group.parent_path();
+    const auto node = read_zarr_node(group);
+    if (!node || node->is_array) break;
+    std::string note = note_on_group(zarr_attributes(*node), group.filename().string(), name);
+    if (!note.empty()) notes.push_back(std::move(note));
+  }
+  return notes;
 }
 
 std::vector<std::string> zarr_notes(const ZarrVariable& variable, const std::string& name,

@@ -35,7 +35,9 @@ std::vector<AxisText> zarr_axis_texts(const ZarrVariable& variable);
 /// Returns the positions along an axis, from the variable of its name or one that the attribute
 /// `coordinates` names. Throws Error.
 AxisPositions zarr_positions(const ZarrVariable& variable, std::size_t axis);
-/// Returns notes on what the variable says of its grid and is not read.
+/// Returns notes on attributes of the variable, and of the groups that it is in, that are not read.
+std::vector<std::string> zarr_notes(const ZarrVariable& variable, const std::string& name);
+/// Returns notes on what a variable of named axes says of its grid and is not read.
 std::vector<std::string> zarr_notes(const ZarrVariable& variable, const std::string& name,
                                     const VolumeAxes& axes);
 

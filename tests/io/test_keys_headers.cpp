@@ -17,6 +17,7 @@ using test::counting;
 using test::DescribedKeys;
 using test::expect_counting;
 using test::expect_near;
+using test::value_at;
 using test::world_of;
 
 /// What reading a file tells.
@@ -386,6 +387,39 @@ NRRD_ROW(kinds, "kinds", honored) {
   options.note = [&](const std::string& text) { notes.push_back(text); };
   EXPECT_EQ(read_components(write("a.nrrd", four), options).size(), 2u);
   expect_told(notes, "do not say what axis 4 is");
+}
+/// Values of two volumes, those of a point beside each other, of which the first one counts.
+std::string beside_each_other(const std::string& kinds, const std::string& more) {
+  std::string header = nrrd("kinds: " + kinds + "\n" + more);
+  header.erase(header.size() - bytes_of(counting()).size());
+  header.replace(header.find("dimension: 3"), 12, "dimension: 4");
+  header.replace(header.find("5 4 3"), 5, "2 5 4 3");
+  std::vector<float> values;
+  for (const float value : counting()) values.insert(values.end(), {value, value + 100});
+  return header + bytes_of(values);
+}
+NRRD_ROW(first_axis, "kinds: time in front", honored) {
+  for (const char* kinds : {"time space space space", "??? domain domain domain"}) {
+    for (const char* more : {"", "spacings: 1 1 2 3\n", "spacings: nan 1 2 3\n"}) {
+      SCOPED_TRACE(std::string(kinds) + more);
+      const std::vector<Volume> both =
+          read_components(write("a.nrrd", beside_each_other(kinds, more)));
+      ASSERT_EQ(both.size(), 2u);
+      expect_counting(both[0], "f32");
+      EXPECT_EQ(value_at(both[1], 4, 3, 2), 159);
+      EXPECT_EQ(world_of(both[0], 0, 0, 1).z, *more == '\0' ? 1 : 3);
+    }
+  }
+  write("a.nrrd", beside_each_other("space time space space", ""));
+  expect_refused([&] { read_components(path("a.nrrd")); }, "axis 2 of 4");
+  write("a.nrrd", beside_each_other("time domain domain list", ""));
+  expect_refused([&] { read_components(path("a.nrrd")); },
+                 "axis 1 is time and axis 4 holds components");
+  std::vector<std::string> notes;
+  ReadOptions options;
+  options.note = [&](const std::string& text) { notes.push_back(text); };
+  read_components(write("a.nrrd", beside_each_other("list domain domain time", "")), options);
+  expect_told(notes, "axis 4 is time, no axis of space; it is read as z");
 }
 NRRD_ROW(frame, "measurement frame", told) {
   expect_told(notes_of(write("a.nrrd", nrrd("space: LPS\n" + std::string(place) +

@@ -250,6 +250,36 @@ HDF5_TOLD(origin, "origin")
 HDF5_TOLD(voxel_size, "voxel_size")
 HDF5_TOLD(resolution, "resolution")
 HDF5_TOLD(affine, "affine")
+HDF5_TOLD(translation, "translation")
+HDF5_TOLD(missing, "missing")
+HDF5_TOLD(fill, "fill")
+HDF5_TOLD(bias, "bias")
+HDF5_TOLD(calibration, "calibration")
+HDF5_TOLD(multiplier, "multiplier")
+HDF5_TOLD(orientation, "orientation")
+HDF5_TOLD(dx, "dx")
+HDF5_TOLD(dy, "dy")
+HDF5_TOLD(dz, "dz")
+HDF5_TOLD(resolution_unit, "resolution_unit")
+HDF5_KEY(other_letters, "names in other letters", told) {
+  for (const char* key : {"SCALE_FACTOR", "SPACING", "MISSING_VALUE", "Add_Offset", "VoxelSize",
+                          "voxel-size", "Valid_Range", "FILLVALUE", "Element_Size_UM"}) {
+    const auto file = hdf5_with(path("a.h5"), key, {3, 2, 1});
+    expect_told(read_telling(file).notes, std::string("(") + key + ")");
+  }
+}
+HDF5_KEY(unusable_size, "element_size_um of other than three distances", told) {
+  for (const std::vector<double>& size :
+       {std::vector<double>{3, 2}, {3, 2, 0}, {3, -2, 1}, {NAN, 2, 1}, {1, 3, 2, 1}}) {
+    const auto file = hdf5_with(path("a.h5"), "element_size_um", size);
+    const Told told = read_telling(file);
+    expect_told(told.notes, "the element_size_um of \"/v\" is not three distances above 0");
+    EXPECT_EQ(world_of(told.volume, 0, 0, 2).z, 2);
+  }
+  const auto file = hdf5(
+      path("a.h5"), [](const Hdf5Writer& to) { to.attach_text("v", "element_size_um", "3 2 1"); });
+  expect_told(read_telling(file).notes, "is not three distances above 0");
+}
 HDF5_KEY(of_groups, "attributes of groups", told) {
   const std::pair<const char*, const char*> keys[] = {
       {"/", "voxel_size"},  {"/", "spacing"}, {"/g", "affine"}, {"/", "scale_factor"},
@@ -372,6 +402,56 @@ ZARR_KEY(flags, "flag_values", told) {
 ZARR_KEY(grid_mapping, "grid_mapping", told) {
   expect_told(read_zarr(zarr(path("a.zarr"), "\"grid_mapping\": \"crs\"")).notes, "grid_mapping");
 }
+/// Without names of axes, too, and in version 3.
+void write_plain(const fs::path& folder, const std::string& of_array, const std::string& of_group,
+                 int version) {
+  ZarrStore store;
+  store.type = "<i2";
+  store.fill = version == 2 ? "null" : "0";
+  if (version == 2) {
+    store.write_2(folder / "v", bytes_of(counting<std::int16_t>()), 2);
+    std::ofstream(folder / ".zgroup") << "{\"zarr_format\": 2}";
+    std::ofstream(folder / ".zattrs") << "{" << of_group << "}";
+    std::ofstream(folder / "v/.zattrs") << "{" << of_array << "}";
+    return;
+  }
+  fs::create_directories(folder / "v");
+  store.more = ", \"attributes\": {" + of_array + "}";
+  std::ofstream(folder / "v/zarr.json")
+      << store.array_3("int16",
+                       "[{\"name\": \"bytes\", \"configuration\": {\"endian\": "
+                       "\"little\"}}]",
+                       "{\"name\": \"default\"}");
+  std::ofstream(folder / "zarr.json")
+      << "{\"zarr_format\": 3, \"node_type\": \"group\", \"attributes\": {" << of_group << "}}";
+}
+#define ZARR_TOLD(name, key, value)                                                          \
+  ZARR_KEY(name, key, told) {                                                                \
+    const std::string said = "\"" key "\": " value;                                          \
+    const std::string list = std::string("not applied (") + key + ")";                       \
+    expect_told(read_zarr(zarr(path("named.zarr"), said)).notes, list);                      \
+    for (const int version : {2, 3}) {                                                       \
+      const auto array = path("a" + std::to_string(version) + ".zarr");                      \
+      write_plain(array, said, {}, version);                                                 \
+      expect_told(read_zarr(array).notes, list);                                             \
+      const auto group = path("g" + std::to_string(version) + ".zarr");                      \
+      write_plain(group, {}, said, version);                                                 \
+      expect_told(read_zarr(group).notes, "is in the group \"" + group.filename().string()); \
+      expect_told(read_zarr(group).notes, list);                                             \
+    }                                                                                        \
+  }
+ZARR_TOLD(spacing, "spacing", "[3, 2, 1]")
+ZARR_TOLD(offset, "offset", "[1, 2, 3]")
+ZARR_TOLD(resolution, "resolution", "[4, 4, 40]")
+ZARR_TOLD(voxel_size, "voxel_size", "[4, 4, 40]")
+ZARR_TOLD(scale, "scale", "2")
+ZARR_TOLD(slope, "slope", "2")
+ZARR_TOLD(intercept, "intercept", "1")
+ZARR_TOLD(nodata, "nodata", "0")
+ZARR_TOLD(transform, "transform", "{\"scale\": [3, 2, 1]}")
+ZARR_TOLD(pixel_resolution, "pixelResolution", "{\"dimensions\": [4, 4, 40]}")
+ZARR_TOLD(axis_names, "axis_names", "[\"x\", \"y\", \"z\"]")
+ZARR_TOLD(element_size, "element_size_um", "[3, 2, 1]")
 ZARR_KEY(transformers, "storage_transformers", refused) {
   ZarrStore store;
   store.more = ", \"storage_transformers\": [{\"name\": \"other\"}]";

@@ -242,6 +242,21 @@ TEST_F(MrcTest, SeveralVolumesAreComponents) {
   EXPECT_TRUE(contains(error(file.set(3, {7}), bytes_of(values)), "volumes of 3"));
 }
 
+TEST_F(MrcTest, AStackOfImagesIsTold) {
+  const auto notes = [&](const MrcFile& file) {
+    std::string all;
+    ReadOptions options;
+    options.note = [&](const std::string& note) { all += note + "\n"; };
+    parse(file, bytes_of(counting()), options);
+    return all;
+  };
+  MrcFile file;
+  file.real(13, {3});
+  EXPECT_TRUE(contains(notes(file.set(10, {1}).set(23, {0})), "stack of images (ISPG 0, MZ 1)"));
+  EXPECT_EQ(notes(file.set(23, {1})), "");
+  EXPECT_EQ(notes(file.set(10, {3}).set(23, {0})), "");
+}
+
 TEST_F(MrcTest, EveryTruncationIsAnError) {
   const std::string whole = MrcFile{}.header() + bytes_of(counting());
   for (std::size_t length = 0; length < whole.size(); length += length < 1000 ? 97 : 1) {

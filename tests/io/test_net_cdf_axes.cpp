@@ -197,6 +197,38 @@ TEST_F(NetCdfAxes, TimesThatAreMissingAreNotChosen) {
   EXPECT_EQ(value_at(read_file(options), 0, 0, 0), 60);
 }
 
+TEST_F(NetCdfAxes, OfTwoTimesTheValuesOwnIsTheTime) {
+  const std::string since = "hours since 2000-01-01";
+  const Axis x{"x", 5}, y{"y", 4}, z{"z", 3};
+  const std::vector<std::array<std::string, 4>> cases{
+      // Names and standard names: of the other time, of the time.
+      {"reftime", "forecast_reference_time", "time", "time"},
+      {"time", "forecast_reference_time", "valid", "time"},
+      {"reftime", "", "valid", "time"},
+      {"time", "forecast_reference_time", "valid_time", ""},
+      {"analysis_time", "", "time", ""}};
+  for (const auto& [other, of_other, time, of_time] : cases) {
+    for (const bool time_is_first : {false, true}) {
+      SCOPED_TRACE(other + " " + time + (time_is_first ? " first" : ""));
+      Axis other_axis{other, 2, {{"units", since}}, {100, 200}};
+      Axis time_axis{time, 2, {{"units", since}}, {0, 6}};
+      if (!of_other.empty()) other_axis.attributes.emplace_back("standard_name", of_other);
+      if (!of_time.empty()) time_axis.attributes.emplace_back("standard_name", of_time);
+      write_file(time_is_first ? std::vector<Axis>{time_axis, other_axis, z, y, x}
+                               : std::vector<Axis>{other_axis, time_axis, z, y, x});
+      ReadOptions options;
+      options.time = 6;
+      options.component = 0;
+      EXPECT_EQ(value_at(read_file(options), 0, 0, 0), 60 * (time_is_first ? 2 : 1));
+      EXPECT_TRUE(contains(notes_, "its axis " + time +
+                                       " is the time (--time); its other axes of "
+                                       "time (" +
+                                       other + ") are taken for components"))
+          << notes_;
+    }
+  }
+}
+
 TEST_F(NetCdfAxes, MembersAndSteps) {
   const Axis x{"lon", 5}, y{"lat", 4}, z{"lev", 3};
   const Axis time{"time", 6, {{"units", "hours since 1900-01-01"}}, {0, 6, 12, 18, 24, 30}};

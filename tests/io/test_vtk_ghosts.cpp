@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <cmath>
 #include <string>
 
 #include "mesh_files.h"
@@ -78,6 +79,39 @@ TEST_F(VtkGhosts, HiddenPointsHideTheCellsAround) {
   // One in the middle hides both.
   write("a.vtk", with("0 2 0 0 0 0 0 0 0 0 0 0"));
   EXPECT_TRUE(contains(error_of([&] { read_mesh(path("a.vtk")); }), "no cell"));
+}
+
+// 8 is REFINEDCELL, of a cell that a finer level shows.
+TEST_F(VtkGhosts, RefinedCellsAreHidden) {
+  test::SmallVtu of;
+  of.more = xml_array("UInt8", "vtkGhostType", "0 8 0");
+  EXPECT_EQ(read_mesh(write("a.vtu", test::small_vtu(of))).ghost_cells, 1U);
+  EXPECT_EQ(
+      read_mesh(write("a.vtk", test::small_structured_vtk() + "FIELD FieldData 1\nvtkGhostType 1 2 "
+                                                              "unsigned_char\n8 0\n"))
+          .ghost_cells,
+      1U);
+  VtkPiece piece;
+  piece.extent = {0, 2, 0, 1, 0, 1};
+  piece.has_points = false;
+  piece.has_cells = true;
+  piece.cells = xml_array("UInt8", "vtkGhostType", "0 8") + xml_array("Int16", "v", "1 2");
+  const Volume volume = read_volume(write("a.vti", vtk_grid("ImageData", {piece}, "0 2 0 1 0 1")));
+  EXPECT_EQ(test::value_at(volume, 0, 0, 0), 1);
+  EXPECT_TRUE(std::isnan(test::value_at(volume, 1, 0, 0)));
+}
+
+TEST_F(VtkGhosts, HiddenPointsHideCellsOfUnstructuredGrids) {
+  const auto with = [&](const std::string& flags) {
+    std::string text = test::small_vtu();
+    const std::string end = "</PointData>";
+    return text.insert(text.find(end), xml_array("UInt8", "vtkGhostType", flags));
+  };
+  EXPECT_EQ(read_mesh(write("a.vtu", with("0 0 0 0 2"))).ghost_cells, 1U);
+  EXPECT_EQ(read_mesh(write("a.vtu", with("0 0 0 0 2"))).grid.cell_numbers.front(), 0);
+  EXPECT_EQ(read_mesh(write("a.vtu", with("0 0 0 0 1"))).ghost_cells, 0U);
+  // The triangle has this corner, too.
+  EXPECT_EQ(read_mesh(write("a.vtu", with("2 0 0 0 0"))).ghost_cells, 2U);
 }
 
 }  // namespace

@@ -169,6 +169,7 @@ struct MeshFileOf {
   std::vector<double> points{0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0, 0, 0, 1, 1, 0, 1,
                              1, 1, 1, 0, 1, 1, 1, 0, 0, 1, 1, 0, 1, 1, 1, 2, 0, 0};
   std::vector<std::int64_t> points_per_piece{8, 4};
+  std::vector<std::uint8_t> cell_flags{0, 0, 0, 1}, point_flags;
   bool without_types = false, steps = false;
 
   void write(const fs::path& path) const {
@@ -185,11 +186,25 @@ struct MeshFileOf {
                true);
     file.array("PointData", "v", {12, 3}, counting(36));
     file.array<std::int32_t>("CellData", "id", {4}, {7, 8, 9, 10});
-    file.array<std::uint8_t>("CellData", "vtkGhostType", {4}, {0, 0, 0, 1});
+    file.array("CellData", "vtkGhostType", {4}, cell_flags);
+    if (!point_flags.empty()) file.array("PointData", "vtkGhostType", {12}, point_flags);
     file.array("FieldData", "time", {1}, std::vector<double>{3});
     if (steps) file.group("Steps");
   }
 };
+
+TEST_F(VtkHdf, RefinedCellsAndHiddenPointsHideCells) {
+  MeshFileOf of;
+  of.cell_flags = {8, 0, 0, 1};
+  of.write(path("a.vtkhdf"));
+  EXPECT_EQ(read_mesh(path("a.vtkhdf")).grid.shapes, std::vector{CellShape::tetrahedron});
+  of.cell_flags = {0, 0, 0, 1};
+  of.point_flags = std::vector<std::uint8_t>(12);
+  of.point_flags[11] = 2;  // of the second piece, whose points count from 0 again
+  of.write(path("a.vtkhdf"));
+  EXPECT_EQ(read_mesh(path("a.vtkhdf")).grid.shapes, std::vector{CellShape::hexahedron});
+  EXPECT_EQ(read_mesh(path("a.vtkhdf")).ghost_cells, 2U);
+}
 
 TEST_F(VtkHdf, ReadsMeshes) {
   for (const char* const name : {"a.vtkhdf", "a.hdf", "a.h5", "a"}) {

@@ -191,6 +191,8 @@ def test_attributes_that_change_nothing_are_not_told(attributes):
     ({"slope": 2.0, "intercept": 1.0}, r"that are not applied \(slope, intercept\)"),
     ({"element_size_um": [2.0, 1, 1]}, r"not applied \(element_size_um\)"),
     ({"nodata": 7}, r"not applied \(nodata\)"),
+    ({"SPACING": [3.0, 2, 1], "dz": 3.0}, r"not applied \(SPACING, dz\)"),
+    ({"SCALE_FACTOR": 2.0}, r"not applied \(SCALE_FACTOR\)"),
     ({"flag_values": [1, 2]}, "its values are labels"),
 ])
 def test_attributes_that_are_not_applied_are_told(tmp_path, attributes, told):

@@ -183,6 +183,17 @@ def test_axes_of_one_entry_in_front_are_of_space():
         pellucid.Volume(vectors)
 
 
+def test_values_without_their_image_are_refused(tmp_path):
+    """Their axes are x, y and z, and they have no place."""
+    nibabel.save(nibabel.Nifti1Image(voxels(), AFFINE), tmp_path / "a.nii")
+    image = nibabel.load(tmp_path / "a.nii")
+    for show in (pellucid.Volume, pellucid.LabelVolume):
+        with pytest.raises(pellucid.Error, match="give the image"):
+            show(image.dataobj)
+    assert_shows(image, voxels(), AFFINE)
+    assert pellucid.Volume(numpy.asarray(image.dataobj)).shape == SHAPE
+
+
 def test_what_is_no_image_of_voxels_is_refused():
     axes = (nibabel.cifti2.ScalarAxis(["a", "b"]), nibabel.cifti2.SeriesAxis(0, 1, 5))
     with pytest.raises(pellucid.Error, match="Cifti2Image, whose axes"):
