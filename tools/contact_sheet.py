@@ -107,7 +107,8 @@ def main():
             picture = pathlib.Path(scratch) / "picture.png"
             picture.unlink(missing_ok=True)
             command = [arguments.program, "render", *source, "-o", str(picture)]
-            done = subprocess.run([*command, "--size", str(TILE), *options], capture_output=True, text=True, check=False)
+            done = subprocess.run([*command, "--size", str(TILE), *options], capture_output=True,
+                                  text=True, check=False)
             lines = done.stderr.strip().splitlines()
             look = [line for line in lines if line.startswith("pellucid: look ")]
             text = (look or lines or [""])[0].removeprefix("pellucid: ").split(" (")[0]

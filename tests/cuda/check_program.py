@@ -69,7 +69,8 @@ class Program(unittest.TestCase):
         self.assertEqual(done.returncode, 0, done.stderr)
         self.assertEqual(json.loads(done.stdout)["device"],
                          "rendered by the functions of a card, on the CPU")
-        self.assertIn("functions of a card", self.render("--device", "emulated", "--look", "haze").stderr)
+        told = self.render("--device", "emulated", "--look", "haze").stderr
+        self.assertIn("functions of a card", told)
 
     def test_leaves_to_the_cpu_what_devices_cannot_do(self):
         done = self.render("--device", "emulated", "--projection", "maximum")
