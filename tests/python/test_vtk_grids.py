@@ -92,8 +92,9 @@ def test_hidden_cells():
 
 
 @pytest.mark.parametrize("name, flag, left", [
-    ("vtkGhostType", 1, 23), ("vtkGhostType", 32, 23), ("vtkGhostType", 8, 23), ("vtkGhostType", 4, 24),
-    ("vtkGhostLevels", 1, 23), ("vtkGhostLevels", 2, 23), ("vtkGhostLevels", 0, 24)])
+    ("vtkGhostType", 1, 23), ("vtkGhostType", 32, 23), ("vtkGhostType", 8, 23),
+    ("vtkGhostType", 4, 24), ("vtkGhostLevels", 1, 23), ("vtkGhostLevels", 2, 23),
+    ("vtkGhostLevels", 0, 24)])
 @pytest.mark.parametrize("make", [structured, unstructured])
 def test_ghosts_of_cells(make, name, flag, left):
     grid = make()
