@@ -86,7 +86,7 @@ def _flags(attributes: Any, count: int, flags: int, name: str) -> numpy.ndarray:
 
 
 def _hidden(grid: Any, cells: _meshes.Cells) -> numpy.ndarray:
-    """bool (cells,): which are duplicates, refined, hidden, or have a hidden point (BlankPoint())."""
+    """bool (cells,): which are duplicates, refined, hidden or have a hidden point (BlankPoint)."""
     name = grid.GetClassName()
     hidden = _flags(grid.GetCellData(), len(cells.types),
                     _ghosts.DUPLICATE_CELL | _ghosts.REFINED_CELL | _ghosts.HIDDEN_CELL, name)
