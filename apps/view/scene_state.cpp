@@ -187,18 +187,17 @@ void SceneState::set_default_function(std::size_t layer) {
   bare.transfer_function.reset();
   // A volume as the program shows a file alone. Beside surfaces the light is theirs, too, and a
   // layer without a function would be transparent.
-  const auto* const content = std::get_if<VolumeContent>(&scene_.layers[layer].content);
-  const bool takes_look = !bare.shows_surfaces() && content != nullptr;
+  const bool takes_look =
+      !bare.shows_surfaces() && std::holds_alternative<VolumeContent>(scene_.layers[layer].content);
   if (takes_look) {
     bare.look.emplace();
-    if (choose_look(*content->volume).as_labels) bare.look->name = "haze";
+    bare.look->has_function = true;
   }
   bare.isosurfaces.clear();
   bare.slices.clear();
   complete_description(remake_layer(without, layer, scene_.layers[layer], parallel_), bare);
   target.transfer_function = bare.transfer_function;
   target.shading = bare.shading;
-  if (takes_look) target.isosurfaces = bare.isosurfaces;
   take_step(std::move(next), layer, 1, no_gesture);
 }
 
