@@ -2,12 +2,14 @@
 #include "layer_light.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <variant>
 
 #include "message.h"
 #include "pellucid/scene/error.h"
+#include "voxel_edges.h"
 
 namespace pellucid {
 namespace {
@@ -180,14 +182,8 @@ double voxel_of(const Layer& layer) noexcept {
     const TetrahedralMesh& mesh = std::get<MeshContent>(layer.content).mesh->mesh();
     return std::cbrt(6 * volume_of(mesh) / static_cast<double>(mesh.tetrahedra().size()));
   }
-  const std::array<Vec3<double>, 8> corners = grid->world_corners();
-  double sum = 0;
-  for (std::size_t a = 0; a < 3; ++a) {
-    const int values = grid->description().dimensions[a];
-    const int cells = grid->description().centering == Centering::cell ? values : values - 1;
-    sum += length(corners[std::size_t{1} << a] - corners[0]) / std::max(cells, 1);
-  }
-  return sum / 3;
+  const std::array<double, 3> edges = voxel_edges(*grid);
+  return (edges[0] + edges[1] + edges[2]) / 3;
 }
 
 double largest_color(const Layer& layer, const std::vector<Light>& lights) noexcept {

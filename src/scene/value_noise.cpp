@@ -12,6 +12,7 @@
 
 #include "pellucid/scene/volume.h"
 #include "value_sample.h"
+#include "voxel_edges.h"
 
 namespace pellucid {
 namespace {
@@ -82,13 +83,7 @@ class Place {
 
 /// The mean voxel over the mean step of each axis.
 std::array<double, 3> scales(const Volume& volume) {
-  const std::array<Vec3<double>, 8> corners = volume.world_corners();
-  std::array<double, 3> step{};
-  for (std::size_t a = 0; a < 3; ++a) {
-    const int values = volume.description().dimensions[a];
-    const int cells = volume.description().centering == Centering::cell ? values : values - 1;
-    step[a] = length(corners[std::size_t{1} << a] - corners[0]) / std::max(cells, 1);
-  }
+  std::array<double, 3> step = voxel_edges(volume);
   const double mean = (step[0] + step[1] + step[2]) / 3;
   for (double& s : step) s = s > 0 ? mean / s : 0;
   return step;
