@@ -30,7 +30,7 @@ constexpr std::size_t most_waiting_bytes = std::size_t{16} << 20;
 
 constexpr const char* defect = "; this is a defect of pellucid, please report it";
 
-/// Whether a command begins a fit, whose outcome comes later.
+/// Tells whether a command begins a fit, whose outcome comes later.
 bool starts_fit(const Command& command) {
   const auto* const suggest = std::get_if<Suggest>(&command);
   return suggest != nullptr && suggest->kind == Suggest::Kind::gaussians;
@@ -46,7 +46,7 @@ bool only_asks(const Command& command) {
          starts_fit(command);
 }
 
-/// Whether a command ends the frame that is being rendered: one that changes it, or begins a fit.
+/// Tells whether a command ends the frame that is being rendered: it changes it, or begins a fit.
 bool ends_frame(const Command& command) {
   return !only_asks(command) || starts_fit(command);
 }

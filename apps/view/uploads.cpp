@@ -60,7 +60,7 @@ fs::path Uploads::place(int set, std::string_view name, std::uint64_t bytes) {
   const fs::path relative = checked_upload_name(name);
   if (!sets_.contains(set)) {
     std::erase_if(sets_, [&](const auto& other) { return other.first != kept_; });
-    sets_[set].folder = std::make_shared<const PrivateFolder>();
+    sets_[set].folder = std::make_shared<const TemporaryFolder>("dropped files");
   }
   Set& to = sets_[set];
   if (bytes > most_bytes_ - std::min(this->bytes(), most_bytes_)) {
@@ -92,7 +92,7 @@ fs::path Uploads::find(int set, std::string_view name) const {
   return name.empty() ? folder : folder / checked_upload_name(name);
 }
 
-std::shared_ptr<const PrivateFolder> Uploads::folder(int set) const {
+std::shared_ptr<const TemporaryFolder> Uploads::folder(int set) const {
   return checked(set).folder;
 }
 

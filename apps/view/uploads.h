@@ -8,7 +8,7 @@
 #include <string>
 #include <string_view>
 
-#include "private_folder.h"
+#include "pellucid/io/temporary_folder.h"
 
 namespace pellucid::view {
 
@@ -29,13 +29,13 @@ class Uploads {
   std::filesystem::path find(int set, std::string_view name) const;
 
   /// Returns the folder of a set, which lives as long as somebody has it. Throws Error.
-  std::shared_ptr<const PrivateFolder> folder(int set) const;
+  std::shared_ptr<const TemporaryFolder> folder(int set) const;
   /// Keeps this set, which is shown now, until another one is.
   void keep(int set) noexcept { kept_ = set; }
 
  private:
   struct Set {
-    std::shared_ptr<const PrivateFolder> folder;
+    std::shared_ptr<const TemporaryFolder> folder;
     std::uint64_t bytes = 0;
     int files = 0;
   };

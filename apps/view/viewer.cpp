@@ -149,7 +149,7 @@ class Viewer {
   }
 
   /// `folder`: where the data are, for as long as they are shown; null: where they stay.
-  void show(ViewedScene scene, const PrivateFolder* folder) {
+  void show(ViewedScene scene, const TemporaryFolder* folder) {
     SceneState state(std::move(scene.description), std::move(scene.scene), parallel_for(threads_));
     if (folder != nullptr) state.set_temporary_folder(folder->path());
     studio_ = std::make_unique<Studio>(std::move(state), scene.keeps_camera, threads_,
@@ -159,7 +159,7 @@ class Viewer {
   ViewerOptions options_;
   int threads_;
   Uploads uploads_;
-  std::shared_ptr<const PrivateFolder> folder_;
+  std::shared_ptr<const TemporaryFolder> folder_;
   std::optional<Clock::time_point> left_;
   std::map<PageId, std::uint64_t> received_;  ///< number of messages of each page
   PageServer server_;

@@ -16,7 +16,7 @@ namespace pellucid::view {
 struct ViewedScene {
   SceneDescription description;  ///< complete
   Scene scene;
-  /// Whether the user chose the camera; else it is fitted to the window.
+  /// Tells whether the user chose the camera; else it is fitted to the window.
   bool keeps_camera = false;
   /// Layers whose Gaussians were suggested quickly. Better ones are fitted while the first picture
   /// is looked at.

@@ -5,11 +5,13 @@
 #include <cmath>
 #include <memory>
 #include <numbers>
+#include <string_view>
 
 #include "cairo_module.h"
 #include "module_answer.h"
 #include "pellucid/scene/axis_ticks.h"
 #include "pellucid/scene/error.h"
+#include "text.h"
 
 namespace pellucid {
 namespace {
@@ -30,19 +32,11 @@ struct Box {
 /// Returns the text as UTF-8 that Cairo takes: other bytes become '?'.
 std::string utf8(const std::string& text) {
   std::string made;
-  for (std::size_t i = 0; i < text.size();) {
-    const auto first = static_cast<unsigned char>(text[i]);
-    const std::size_t length = first < 0x80                    ? 1
-                               : first >= 0xC2 && first < 0xE0 ? 2
-                               : first >= 0xE0 && first < 0xF0 ? 3
-                               : first >= 0xF0 && first < 0xF5 ? 4
-                                                               : 0;
-    bool good = length > 0 && i + length <= text.size() && first >= 0x20 && first != 0x7F;
-    for (std::size_t k = 1; good && k < length; ++k) {
-      good = (static_cast<unsigned char>(text[i + k]) & 0xC0) == 0x80;
-    }
-    made += good ? text.substr(i, length) : "?";
-    i += good ? length : 1;
+  for (std::string_view rest = text; !rest.empty();) {
+    const auto first = static_cast<unsigned char>(rest.front());
+    const std::size_t length = first < 0x20 || first == 0x7f ? 0 : utf8_length(rest);
+    made += length > 0 ? rest.substr(0, length) : "?";
+    rest.remove_prefix(std::max<std::size_t>(length, 1));
   }
   return made;
 }

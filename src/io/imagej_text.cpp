@@ -46,14 +46,8 @@ std::string word_of(const Lines& lines, std::string_view key) {
 }
 
 std::optional<double> number_in(std::string_view word) {
-  double value = 0;
-  if (word.starts_with('+')) word.remove_prefix(1);
-  const auto result = std::from_chars(word.data(), word.data() + word.size(), value);
-  if (word.empty() || result.ec != std::errc{} || !std::isfinite(value) ||
-      result.ptr != word.data() + word.size()) {
-    return std::nullopt;
-  }
-  return value;
+  const std::optional<double> number = number_of_word<double>(word);
+  return number && std::isfinite(*number) ? number : std::nullopt;
 }
 
 std::optional<double> number_of(const Lines& lines, std::string_view key) {
@@ -266,18 +260,10 @@ void tell_unknown(const Lines& lines, PageDescription& said) {
 }
 
 bool is_utf8(std::string_view text) {
-  for (std::size_t i = 0; i < text.size();) {
-    const auto byte = static_cast<unsigned char>(text[i]);
-    const std::size_t more = byte < 0x80                   ? 0
-                             : byte >= 0xc2 && byte < 0xe0 ? 1
-                             : byte >= 0xe0 && byte < 0xf0 ? 2
-                             : byte >= 0xf0 && byte < 0xf5 ? 3
-                                                           : 4;
-    if (more == 4 || i + more >= text.size()) return false;
-    for (std::size_t k = 1; k <= more; ++k) {
-      if ((static_cast<unsigned char>(text[i + k]) & 0xc0) != 0x80) return false;
-    }
-    i += more + 1;
+  while (!text.empty()) {
+    const std::size_t length = utf8_length(text);
+    if (length == 0) return false;
+    text.remove_prefix(length);
   }
   return true;
 }

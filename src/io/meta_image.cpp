@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <cstdint>
 #include <fstream>
@@ -220,12 +219,8 @@ std::vector<double> numbers_of(const std::string& text) {
 bool are_numbers(const std::string& text, bool are_whole) {
   std::istringstream words(text);
   for (std::string word; words >> word;) {
-    if (word.starts_with('+')) word.erase(0, 1);
-    double number = 0;
-    const char* const end = word.data() + word.size();
-    const auto [stop, error] = std::from_chars(word.data(), end, number);
-    if (error != std::errc{} || stop != end) return false;
-    if (are_whole && number != std::floor(number)) return false;
+    const auto number = number_of_word<double>(word);
+    if (!number || (are_whole && *number != std::floor(*number))) return false;
   }
   return true;
 }

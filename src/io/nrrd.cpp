@@ -20,6 +20,7 @@
 #include "nrrd_axes.h"
 #include "nrrd_fields.h"
 #include "nrrd_space.h"
+#include "pellucid/io/temporary_folder.h"
 #include "pellucid/scene/error.h"
 #include "text.h"
 
@@ -94,29 +95,6 @@ std::vector<std::string> mended_header(const Header& header, std::size_t compone
                    (file == nullptr ? whole : whole.parent_path() / file->value).string());
   return mended;
 }
-
-/// A folder that goes with all that is in it.
-class TemporaryFolder {
- public:
-  explicit TemporaryFolder(const std::string& name) {
-    std::string pattern = (fs::temp_directory_path() / "pellucid-XXXXXX").string();
-    if (mkdtemp(pattern.data()) == nullptr) {
-      throw Error(name + ": cannot make a temporary folder " + pattern + " for a mended header");
-    }
-    path_ = pattern;
-  }
-  ~TemporaryFolder() {
-    std::error_code ignored;
-    fs::remove_all(path_, ignored);
-  }
-  TemporaryFolder(const TemporaryFolder&) = delete;
-  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
-
-  const fs::path& path() const noexcept { return path_; }
-
- private:
-  fs::path path_;
-};
 
 // How many values the header says there are; 0 where it does not say.
 std::uint64_t header_count(const Header& header, const std::string& name) {
@@ -395,7 +373,7 @@ VolumeFile open_nrrd(const fs::path& path, const ReadOptions& options) {
   // A space is kept beside directions alone.
   if (find_field(header, "spacedirections") == nullptr) text.left_anterior_superior = false;
 
-  const auto folder = std::make_shared<const TemporaryFolder>(name);
+  const auto folder = std::make_shared<const TemporaryFolder>("a mended header of " + name);
   const fs::path mended_path = folder->path() / "mended.nhdr";
   std::ofstream stream(mended_path, std::ios::binary);
   for (const std::string& line : mended) stream << line << '\n';

@@ -2,7 +2,6 @@
 #include "nrrd_axes.h"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <cstdint>
 #include <limits>
@@ -12,6 +11,7 @@
 #include "dicom_text.h"
 #include "pellucid/scene/error.h"
 #include "scene_json_document.h"
+#include "text.h"
 
 namespace pellucid::nrrd {
 
@@ -34,12 +34,8 @@ std::vector<std::string> centerings_of(const Header& header) {
 
 /// Returns the number of an axis, from 0; NaN where it has none.
 double number_at(const std::vector<std::string>& words, std::size_t axis) {
-  double value = std::numeric_limits<double>::quiet_NaN();
-  if (axis >= words.size()) return value;
-  const char* const end = words[axis].data() + words[axis].size();
-  double found = 0;
-  const auto [stop, error] = std::from_chars(words[axis].data(), end, found);
-  return error == std::errc{} && stop == end ? found : value;
+  const auto number = axis < words.size() ? number_of_word<double>(words[axis]) : std::nullopt;
+  return number.value_or(std::numeric_limits<double>::quiet_NaN());
 }
 
 void note_kinds(const Header& header, std::size_t components_axis, const Note& note) {
@@ -131,12 +127,8 @@ int cell_centred_axes(const Header& header, std::size_t components_axis) {
 
 void check_numbers(const Header& header, const std::string& name) {
   for (const char* field : {"spacings", "axismins", "axismaxs", "thicknesses"}) {
-    for (std::string word : words_of(header, field)) {
-      if (word.starts_with('+')) word.erase(0, 1);
-      double value = 0;
-      const char* const end = word.data() + word.size();
-      const auto [stop, error] = std::from_chars(word.data(), end, value);
-      if (error == std::errc{} && stop == end) continue;
+    for (const std::string& word : words_of(header, field)) {
+      if (number_of_word<double>(word)) continue;
       throw Error(name + ": the NRRD header says \"" + printable(find_field(header, field)->text) +
                   "\", where numbers are meant, with a point before decimals; mend the header");
     }

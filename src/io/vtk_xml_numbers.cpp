@@ -2,10 +2,9 @@
 #include "vtk_xml_numbers.h"
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <map>
-
-#include "text.h"
 
 namespace pellucid {
 

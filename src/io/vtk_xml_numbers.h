@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <charconv>
 #include <cstdint>
 #include <optional>
 #include <string>
 #include <string_view>
-#include <system_error>
 #include <vector>
+
+#include "text.h"
 
 // Numbers in words, as VTK's files of XML have them.
 namespace pellucid {
@@ -17,17 +17,6 @@ std::string_view without_blanks(std::string_view text);
 
 /// Takes the first word, up to white space, off a text; empty: there is none.
 std::string_view take_word(std::string_view& text);
-
-/// Returns the number that a whole word is, "+" allowed; nothing where it is none.
-template <class Number>
-std::optional<Number> number_of_word(std::string_view word) {
-  if (word.starts_with('+')) word.remove_prefix(1);
-  Number number{};
-  const char* const end = word.data() + word.size();
-  const auto [stop, error] = std::from_chars(word.data(), end, number);
-  if (error != std::errc() || stop != end) return std::nullopt;
-  return number;
-}
 
 /// Returns all words of a text as numbers; nothing where one is none.
 template <class Number>

@@ -6,6 +6,7 @@
 #include <fstream>
 #include <string>
 
+#include "pellucid/io/temporary_folder.h"
 #include "pellucid/scene/error.h"
 #include "view/folders.h"
 
@@ -73,7 +74,7 @@ TEST(Uploads, ANewSetReplacesThoseThatAreNotShown) {
 }
 
 TEST(Folders, ListFoldersThenFiles) {
-  const PrivateFolder folder;
+  const TemporaryFolder folder("a test");
   for (const char* name : {"b.nrrd", "A.txt", ".hidden", "caf\xe9.nrrd"}) {
     write(folder.path() / name);
   }
