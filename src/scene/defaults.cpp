@@ -23,15 +23,7 @@ namespace {
 TransferFunction make_default(const ClassedValues& of, double chord, double filled) {
   const std::vector<double>& v = of.values;
   const std::size_t n = v.size();
-
-  // The extinction that gives a typical path through all values from index `first` on the optical
-  // depth: what fills a share s of the box is taken for a body of the box's shape, ∛s times as
-  // wide.
-  const auto extinction = [&](double depth, std::size_t first) {
-    const double share = filled * static_cast<double>(n - first) / static_cast<double>(n);
-    const double e = depth / (std::cbrt(share) * chord);
-    return std::isfinite(e) ? two_digits(std::clamp(e, 1 / largest_number, largest_number)) : 1;
-  };
+  const Depths extinction(n, chord, filled);
   // Dark low values draw an outline where a ray grazes a surface; bright high values shine through.
   constexpr Rgb<double> faint{0.1, 0.012, 0.008}, dark{0.16, 0.02, 0.012}, red{0.45, 0.1, 0.04},
       orange{0.95, 0.5, 0.2}, white{1, 0.95, 0.82};

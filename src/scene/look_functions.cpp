@@ -5,7 +5,9 @@
 #include <array>
 #include <cmath>
 #include <span>
+#include <string_view>
 
+#include "pellucid/scene/color_map.h"
 #include "pellucid/scene/srgb.h"
 
 namespace pellucid {
@@ -14,92 +16,37 @@ namespace {
 /// 8-bit sRGB.
 using Bytes = std::array<double, 3>;
 
-Rgb<double> linear(const Bytes& bytes) {
-  const Rgb<double> color = srgb_to_linear({bytes[0] / 255, bytes[1] / 255, bytes[2] / 255});
+Rgb<double> short_color(const Rgb<double>& color) {
   return {rounded(color.r, 3), rounded(color.g, 3), rounded(color.b, 3)};
 }
-
-/// The color at a place from 0 to 1 of evenly spaced ones.
-Rgb<double> color_at(std::span<const Bytes> map, double place) {
-  const double at = std::clamp(place, 0.0, 1.0) * static_cast<double>(map.size() - 1);
-  const auto i = std::min(static_cast<std::size_t>(at), map.size() - 2);
-  const double f = at - static_cast<double>(i);
-  Bytes mixed{};
-  for (std::size_t c = 0; c < 3; ++c) mixed[c] = (1 - f) * map[i][c] + f * map[i + 1][c];
-  return linear(mixed);
+Rgb<double> linear(const Bytes& bytes) {
+  return short_color(srgb_to_linear({bytes[0] / 255, bytes[1] / 255, bytes[2] / 255}));
 }
 
-/// matplotlib's viridis and inferno, and Moreland's cool to warm (2009).
-constexpr std::array<Bytes, 11> viridis{{{68, 1, 84},
-                                         {72, 36, 117},
-                                         {65, 68, 135},
-                                         {53, 95, 141},
-                                         {42, 120, 142},
-                                         {33, 145, 140},
-                                         {34, 168, 132},
-                                         {68, 191, 112},
-                                         {122, 209, 81},
-                                         {189, 223, 38},
-                                         {253, 231, 37}}};
-constexpr std::array<Bytes, 9> inferno{{{0, 0, 4},
-                                        {31, 12, 72},
-                                        {85, 15, 109},
-                                        {136, 34, 106},
-                                        {186, 54, 85},
-                                        {227, 89, 51},
-                                        {249, 140, 10},
-                                        {249, 201, 50},
-                                        {252, 255, 164}}};
-constexpr std::array<Bytes, 9> cool_to_warm{{{59, 76, 192},
-                                             {98, 130, 234},
-                                             {141, 176, 254},
-                                             {184, 208, 249},
-                                             {221, 221, 221},
-                                             {245, 196, 173},
-                                             {244, 154, 123},
-                                             {222, 96, 77},
-                                             {180, 4, 38}}};
-
-Shading soft_light() {
-  Shading shading;
-  shading.ambient = 0.25;
-  shading.diffuse = 0.8;
-  shading.specular = 0.2;
-  shading.power = 25;
-  return shading;
-}
-
-Shading surface_light() {
-  Shading shading;
-  shading.ambient = 0.3;
-  shading.diffuse = 0.8;
-  shading.specular = 0.3;
-  shading.power = 30;
-  return shading;
-}
-
-/// Extinctions that give a typical path through all values from one on an optical depth: what fills
-/// a share s of the box is taken for a body of the box's shape, ∛s times as wide.
-class Depths {
+/// A color map whose colors have four digits.
+class Palette {
  public:
-  explicit Depths(const LookedAt& data) : data_(data) {}
-  double operator()(double depth, std::size_t first) const {
-    const auto n = static_cast<double>(data_.values.values.size());
-    const double share = data_.filled * (n - static_cast<double>(first)) / n;
-    const double e = depth / (std::cbrt(share) * data_.chord);
-    return std::isfinite(e) ? two_digits(std::clamp(e, 1 / largest_number, largest_number)) : 1;
-  }
+  explicit Palette(std::string_view name) : map_(color_map(name)) {}
+  Rgb<double> operator()(double place) const { return short_color(color_at(map_, place)); }
 
  private:
-  const LookedAt& data_;
+  ColorMap map_;
 };
+
+constexpr std::string_view viridis = "viridis", inferno = "inferno", cool_to_warm = "cool to warm";
+
+constexpr Shading soft_light{0.25, 0.8, 0.2, 25}, surface_light{0.3, 0.8, 0.3, 30};
+
+Depths depths(const LookedAt& data) {
+  return {data.values.values.size(), data.chord, data.filled};
+}
 
 /// A haze of one value.
 Look even_look(const LookedAt& data, const Rgb<double>& color) {
   Look look;
   const std::vector<double>& v = data.values.values;
   if (!v.empty())
-    look.transfer_function = TransferFunction({{v.front(), Depths(data)(1, 0), color}});
+    look.transfer_function = TransferFunction({{v.front(), depths(data)(1, 0), color}});
   return look;
 }
 
@@ -157,12 +104,13 @@ std::vector<Isosurface> surfaces_of_both_signs(const LookedAt& data) {
     levels.add(share * largest);
     levels.add(-share * largest);
   }
+  const Palette colors(cool_to_warm);
   std::vector<Isosurface> surfaces;
   for (const double value : levels.take()) {
     const double place = std::abs(value) / largest;
     Isosurface surface;
     surface.value = value;
-    surface.color = color_at(cool_to_warm, 0.5 + std::copysign(0.2 + 0.3 * place, value));
+    surface.color = colors(0.5 + std::copysign(0.2 + 0.3 * place, value));
     surface.opacity = std::round(100 * (0.2 + 0.75 * place)) / 100;
     surfaces.push_back(std::move(surface));
   }
@@ -210,7 +158,7 @@ Look ct_look(double air, bool skin, double chord) {
                       linear(tissue.color)});
   }
   look.transfer_function = TransferFunction(std::move(points));
-  look.shading = soft_light();
+  look.shading = soft_light;
   return look;
 }
 
@@ -224,7 +172,7 @@ Look scan_look(const LookedAt& data, bool medical) {
   if (!of.differ) return even_look(data, linear(palette[2]));
   const std::vector<double>& v = of.values;
   const std::size_t foreground = of.classes.foreground, bright = of.classes.bright;
-  const Depths extinction(data);
+  const Depths extinction = depths(data);
   const double threshold = of.threshold();
   PointList points(v.back() - v.front());
   points.add(0.35 * of.mean(0, foreground) + 0.65 * threshold, 0, linear(palette[0]));
@@ -238,25 +186,25 @@ Look scan_look(const LookedAt& data, bool medical) {
   }
   Look look;
   look.transfer_function = TransferFunction(points.take());
-  look.shading = soft_light();
+  look.shading = soft_light;
   return look;
 }
 
 Look microscopy_look(const LookedAt& data) {
   const ClassedValues& of = data.values;
-  if (!of.differ) return even_look(data, color_at(inferno, 0.8));
+  const Palette colors(inferno);
+  if (!of.differ) return even_look(data, colors(0.8));
   const std::vector<double>& v = of.values;
   const std::size_t foreground = of.classes.foreground;
   const double lower = of.threshold(), upper = v.back();
-  const Depths extinction(data);
+  const Depths extinction = depths(data);
   PointList points(v.back() - v.front());
-  points.add(0.5 * of.mean(0, foreground) + 0.5 * lower, 0, color_at(inferno, 0.25));
+  points.add(0.5 * of.mean(0, foreground) + 0.5 * lower, 0, colors(0.25));
   constexpr int steps = 8;
   for (int i = 0; i <= steps; ++i) {
     const double share = static_cast<double>(i) / steps;
     points.add(lower + share * (upper - lower),
-               extinction(0.3 + 8 * std::pow(share, 1.5), foreground),
-               color_at(inferno, 0.35 + 0.6 * share));
+               extinction(0.3 + 8 * std::pow(share, 1.5), foreground), colors(0.35 + 0.6 * share));
   }
   Look look;
   look.transfer_function = TransferFunction(points.take());
@@ -269,10 +217,10 @@ Look fog_look(const LookedAt& data) {
   const std::vector<double>& v = data.values.values;
   PointList points(v.back() - v.front());
   points.add(std::max(v.front(), 0.0), 0, linear({170, 178, 190}));
-  points.add(v.back(), Depths(data)(14, data.values.classes.foreground), white);
+  points.add(v.back(), depths(data)(14, data.values.classes.foreground), white);
   Look look;
   look.transfer_function = TransferFunction(points.take());
-  look.shading = soft_light();
+  look.shading = soft_light;
   look.shading->ambient = 0.45;
   look.shading->diffuse = 0.6;
   look.shading->specular = 0;
@@ -281,9 +229,10 @@ Look fog_look(const LookedAt& data) {
 
 Look simulation_look(const LookedAt& data) {
   const ClassedValues& of = data.values;
-  if (!of.differ) return even_look(data, color_at(viridis, 0.6));
+  const Palette colors(viridis);
+  if (!of.differ) return even_look(data, colors(0.6));
   Look look;
-  look.shading = surface_light();
+  look.shading = surface_light;
   if (is_around_zero(of)) {
     look.isosurfaces = surfaces_of_both_signs(data);
     if (!look.isosurfaces.empty()) return look;
@@ -306,16 +255,16 @@ Look simulation_look(const LookedAt& data) {
         values.size() > 1 ? static_cast<double>(i) / static_cast<double>(values.size() - 1) : 0.5;
     Isosurface surface;
     surface.value = values[i];
-    surface.color = color_at(viridis, 0.3 + 0.67 * place);
+    surface.color = colors(0.3 + 0.67 * place);
     surface.opacity = opacity_of(i, values.size());
     look.isosurfaces.push_back(std::move(surface));
   }
-  return look.isosurfaces.empty() ? even_look(data, color_at(viridis, 0.6)) : look;
+  return look.isosurfaces.empty() ? even_look(data, colors(0.6)) : look;
 }
 
 Look mask_look(double lower, double upper) {
   Look look;
-  look.shading = surface_light();
+  look.shading = surface_light;
   Isosurface surface;
   surface.value = lower / 2 + upper / 2;
   surface.color = linear({214, 122, 98});
@@ -335,24 +284,24 @@ bool is_mostly_background(const LookedAt& data) {
 
 Look body_look(const LookedAt& data) {
   const ClassedValues& of = data.values;
-  if (!of.differ) return even_look(data, color_at(viridis, 0.6));
+  if (!of.differ) return even_look(data, Palette(viridis)(0.6));
   const std::vector<double>& v = of.values;
   const bool signs = is_around_zero(of), clear = !signs && is_mostly_background(data);
-  const std::span<const Bytes> map =
-      signs ? std::span<const Bytes>(cool_to_warm) : std::span<const Bytes>(viridis);
+  const Palette colors(signs ? cool_to_warm : viridis);
   const double largest = std::max(std::abs(v.front()), std::abs(v.back()));
   const double lower = signs ? -largest : clear ? of.threshold() : v.front();
   const double upper = signs ? largest : v.back();
   const std::size_t foreground = clear ? of.classes.foreground : 0;
-  const double extinction = Depths(data)(9, foreground);
+  const double extinction = depths(data)(9, foreground);
   PointList points(v.back() - v.front());
-  if (clear) points.add(of.mean(0, foreground) / 2 + lower / 2, 0, color_at(viridis, 0.2));
-  for (std::size_t i = 0; i < map.size(); ++i) {
-    const double share = static_cast<double>(i) / static_cast<double>(map.size() - 1);
+  if (clear) points.add(of.mean(0, foreground) / 2 + lower / 2, 0, colors(0.2));
+  const int steps = signs ? 8 : 10;
+  for (int i = 0; i <= steps; ++i) {
+    const double share = static_cast<double>(i) / steps;
     // What is within is seen through what is around it.
     const double density = clear ? 0.1 + 0.9 * share * share : 1;
     points.add(lower + share * (upper - lower), two_digits(density * extinction),
-               color_at(map, clear ? 0.2 + 0.8 * share : share));
+               colors(clear ? 0.2 + 0.8 * share : share));
   }
   Look look;
   look.transfer_function = TransferFunction(points.take());

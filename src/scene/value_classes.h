@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <utility>
 #include <vector>
@@ -38,6 +39,23 @@ struct ClassedValues {
 /// side, that is noise, whose gradients mean nothing. Up to 2^18 places are looked at. `of`: its
 /// values.
 bool has_surfaces(const Volume& volume, const ClassedValues& of);
+
+/// Extinctions that give a typical path through all values from one on an optical depth. The values
+/// are even in a body that fills a share of a box whose chords have this mean; what fills a share s
+/// is taken for a body of the box's shape, ∛s times as wide.
+class Depths {
+ public:
+  Depths(std::size_t values, double chord, double filled)
+      : values_(static_cast<double>(values)), chord_(chord), filled_(filled) {}
+  double operator()(double depth, std::size_t first) const {
+    const double share = filled_ * (values_ - static_cast<double>(first)) / values_;
+    const double e = depth / (std::cbrt(share) * chord_);
+    return std::isfinite(e) ? two_digits(std::clamp(e, 1 / largest_number, largest_number)) : 1;
+  }
+
+ private:
+  double values_, chord_, filled_;
+};
 
 /// Points in ascending order at readable values, which may not fall together.
 class PointList {
