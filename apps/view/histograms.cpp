@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <type_traits>
 #include <utility>
 #include <variant>
 
@@ -40,12 +39,6 @@ HistogramAxis whole_number_axis(const HistogramAxis& axis) {
   const double width = std::fmax(1, std::ceil((upper - lower) / axis.bins));
   const double bins = std::fmax(1, std::ceil((upper - lower) / width));
   return {lower, lower + bins * width, static_cast<int>(bins)};
-}
-
-bool has_whole_numbers(const Volume& volume) {
-  return std::visit(
-      [](const auto& data) { return std::is_integral_v<std::decay_t<decltype(data.data()[0])>>; },
-      volume.data());
 }
 
 /// Returns the axis without the bins at its ends that hold the shares to be left out, of `total`

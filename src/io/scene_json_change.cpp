@@ -12,8 +12,8 @@ namespace {
 
 /// Calls visit(data, function) with the data and the function of one variable of a layer. Returns
 /// whether it has one.
-template <class Visit>
-bool visit_function(Layer& layer, const Visit& visit) {
+template <class AnyLayer, class Visit>
+bool visit_function(AnyLayer& layer, const Visit& visit) {
   if (auto* const volume = std::get_if<VolumeContent>(&layer.content)) {
     visit(*volume->volume, volume->transfer_function);
     return true;
@@ -51,19 +51,6 @@ void change_function(const LayerDescription& description, Layer& layer) {
       "edit the terms of the function, or the looks of the labels");
 }
 
-std::vector<Isosurface> changed_surfaces(const LayerDescription& description, const Layer& layer,
-                                         std::vector<Isosurface> surfaces) {
-  const FunctionChange& change = description.function_change;
-  if (change.is_none() || surfaces.empty()) return surfaces;
-  Layer copy = layer;
-  visit_function(copy, [&](const auto& data, const auto&) {
-    std::optional<std::array<double, 2>> range;
-    if (change.range) range = value_range(*change.range, data);
-    surfaces = changed(std::move(surfaces), change, range);
-  });
-  return surfaces;
-}
-
 std::optional<TransferFunctionDescription> changed_table(const LayerDescription& description,
                                                          const Layer& layer) {
   const FunctionChange& change = description.function_change;
@@ -71,11 +58,8 @@ std::optional<TransferFunctionDescription> changed_table(const LayerDescription&
   const auto* const table = function ? std::get_if<OpacityTable>(&*function) : nullptr;
   if (table == nullptr || change.is_none()) return function;
   std::optional<OpacityTable> made;
-  Layer copy = layer;
-  visit_function(copy, [&](const auto& data, const auto&) {
-    std::optional<std::array<double, 2>> range;
-    if (change.range) range = value_range(*change.range, data);
-    made = changed(*table, change, range);
+  visit_function(layer, [&](const auto& data, const auto&) {
+    made = changed(*table, change, range_of(change, data));
   });
   return made;
 }
@@ -86,8 +70,7 @@ void write_changed_function(const Layer& layer, LayerDescription& description) {
       function && std::holds_alternative<OpacityTable>(*function)) {
     description.transfer_function = changed_table(description, layer);
   } else {
-    Layer copy = layer;
-    visit_function(copy, [&](const auto&, const auto& made) {
+    visit_function(layer, [&](const auto&, const auto& made) {
       description.transfer_function = made->points();
     });
   }

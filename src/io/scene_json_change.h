@@ -2,7 +2,6 @@
 #pragma once
 
 #include <optional>
-#include <vector>
 
 #include "pellucid/io/scene_json.h"
 
@@ -11,10 +10,6 @@ namespace pellucid {
 /// Changes the function of a layer that has its data by description.function_change. Throws Error,
 /// also if there is a change and the layer has no function of one variable.
 void change_function(const LayerDescription& description, Layer& layer);
-
-/// Returns surfaces of a layer that has its data, changed likewise.
-std::vector<Isosurface> changed_surfaces(const LayerDescription& description, const Layer& layer,
-                                         std::vector<Isosurface> surfaces);
 
 /// Returns the description's function; an opacity table is changed for the layer's data. Throws
 /// Error.

@@ -139,13 +139,11 @@ ChannelsContent load_channels_content(const LayerDescription& description,
 template <class Data>
 Look look_of(const Data& data, const LayerDescription& description) {
   const WantedLook& wanted = *description.look;
-  Look look = choose_look(data, wanted.name);
-  if (!wanted.name.empty()) return look;
+  Look look = choose_look(data, wanted.name, description.function_change);
   const bool lacks_function = look.as_labels || !look.isosurfaces.empty();
-  const bool cannot_change = look.as_labels && !description.function_change.is_none();
-  if (!(wanted.has_function && lacks_function) && !cannot_change) return look;
-  look = choose_look(data, "haze");
-  look.reason = cannot_change ? "a function to change" : "a function to save";
+  if (!wanted.name.empty() || !wanted.has_function || !lacks_function) return look;
+  look = choose_look(data, "haze", description.function_change);
+  look.reason = "a function to save";
   return look;
 }
 
@@ -320,8 +318,7 @@ class LookLoader {
 };
 
 /// Puts a look into a layer that has its data and its function.
-void put(Look look, const LayerDescription& description, Layer& layer) {
-  const WantedLook& wanted = *description.look;
+void put(Look look, const WantedLook& wanted, Layer& layer) {
   if (wanted.chosen) wanted.chosen(look);
   if (look.as_labels) {
     LabelContent content;
@@ -332,7 +329,7 @@ void put(Look look, const LayerDescription& description, Layer& layer) {
     layer.shading.reset();
     return;
   }
-  layer.isosurfaces = changed_surfaces(description, layer, std::move(look.isosurfaces));
+  layer.isosurfaces = std::move(look.isosurfaces);
   if (!wanted.keeps_shading) layer.shading = look.shading;
 }
 
@@ -355,9 +352,9 @@ Layer load_layer(const LayerDescription& description, const Wanted& wanted, cons
   } else {
     layer.content = load_volume_content(description, wanted, loaded, look);
   }
-  if (!look || look->isosurfaces.empty()) change_function(description, layer);
+  if (!look) change_function(description, layer);
   LookLoader(description, layer)();
-  if (look) put(*std::move(look), description, layer);
+  if (look) put(*std::move(look), *description.look, layer);
   return layer;
 }
 

@@ -27,7 +27,7 @@ double value_of(const RangeEnd& end, const std::vector<double>& sample) {
 }
 
 template <class Data>
-std::array<double, 2> range_of(const ValueRange& range, const Data& data) {
+std::array<double, 2> values_of(const ValueRange& range, const Data& data) {
   const bool asks_data = range[0].is_percent || range[1].is_percent;
   const std::vector<double> sample = asks_data ? value_sample(data) : std::vector<double>();
   const std::array<double, 2> values{value_of(range[0], sample), value_of(range[1], sample)};
@@ -38,21 +38,27 @@ std::array<double, 2> range_of(const ValueRange& range, const Data& data) {
 }
 
 template <class Data>
-TransferFunction changed_for(const TransferFunction& function, const FunctionChange& change,
-                             const Data& data) {
-  std::optional<std::array<double, 2>> range;
-  if (change.range) range = value_range(*change.range, data);
-  return changed(function, change, range);
+std::optional<std::array<double, 2>> own_range(const FunctionChange& change, const Data& data) {
+  return change.range ? std::optional(value_range(*change.range, data)) : std::nullopt;
 }
 
 }  // namespace
 
 std::array<double, 2> value_range(const ValueRange& range, const Volume& volume) {
-  return range_of(range, volume);
+  return values_of(range, volume);
 }
 
 std::array<double, 2> value_range(const ValueRange& range, const MeshChannels& mesh) {
-  return range_of(range, mesh);
+  return values_of(range, mesh);
+}
+
+std::optional<std::array<double, 2>> range_of(const FunctionChange& change, const Volume& volume) {
+  return own_range(change, volume);
+}
+
+std::optional<std::array<double, 2>> range_of(const FunctionChange& change,
+                                              const MeshChannels& mesh) {
+  return own_range(change, mesh);
 }
 
 TransferFunction changed(const TransferFunction& function, const FunctionChange& change,
@@ -66,12 +72,12 @@ TransferFunction changed(const TransferFunction& function, const FunctionChange&
 
 TransferFunction changed(const TransferFunction& function, const FunctionChange& change,
                          const Volume& volume) {
-  return changed_for(function, change, volume);
+  return changed(function, change, range_of(change, volume));
 }
 
 TransferFunction changed(const TransferFunction& function, const FunctionChange& change,
                          const MeshChannels& mesh) {
-  return changed_for(function, change, mesh);
+  return changed(function, change, range_of(change, mesh));
 }
 
 std::vector<OpacityPoint> changed(const std::vector<OpacityPoint>& points,

@@ -113,16 +113,19 @@ double HistogramAxis::center(int i) const noexcept {
   return lower + (i + 0.5) / bins * (upper - lower);
 }
 
-HistogramAxis histogram_axis(const Volume& volume, int bins) {
-  check_bins(bins);
-  const VolumeStatistics& s = volume.statistics();
-  if (s.finite == 0) return {0, 1, bins};
-  const bool integers = std::visit(
+bool has_whole_numbers(const Volume& volume) noexcept {
+  return std::visit(
       [](const auto& values) {
         return std::is_integral_v<typename std::decay_t<decltype(values)>::value_type>;
       },
       volume.data());
-  if (integers) {
+}
+
+HistogramAxis histogram_axis(const Volume& volume, int bins) {
+  check_bins(bins);
+  const VolumeStatistics& s = volume.statistics();
+  if (s.finite == 0) return {0, 1, bins};
+  if (has_whole_numbers(volume)) {
     const double numbers = s.maximum - s.minimum + 1;
     const double width = std::ceil(numbers / bins), needed = std::ceil(numbers / width);
     return {s.minimum - 0.5, s.minimum - 0.5 + width * needed, static_cast<int>(needed)};

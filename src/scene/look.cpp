@@ -7,13 +7,13 @@
 #include <cmath>
 #include <filesystem>
 #include <system_error>
-#include <variant>
 
 #include "look_functions.h"
 #include "mean_chord.h"
 #include "message.h"
 #include "pellucid/scene/defaults.h"
 #include "pellucid/scene/error.h"
+#include "pellucid/scene/joint_histogram.h"
 #include "pellucid/scene/labels.h"
 #include "pellucid/scene/presets.h"
 #include "pellucid/scene/value_noise.h"
@@ -34,7 +34,10 @@ constexpr std::array<LookName, 11> all_looks{
      {"fog", "densities: white in light"},
      {"haze", "any data: the background clear, the rest transparent"},
      {"x-ray", "any data: density along the ray, as on a film"}}};
-constexpr std::array<std::string_view, 3> looks_of_meshes{"body", "haze", "x-ray"};
+constexpr std::array<LookName, 3> mesh_looks{
+    {{"body", "meshes: the values on and below the surface"},
+     {"haze", "any data: the background clear, the rest transparent"},
+     {"x-ray", "any data: density along the ray, as on a film"}}};
 
 /// Whether a name ends in one of these, whatever its case.
 bool ends_in(const std::string& name, std::initializer_list<std::string_view> endings) {
@@ -55,24 +58,15 @@ FolderKind folder_kind(const std::string& name) {
   return FolderKind::series;
 }
 
-bool is_medical(const std::string& name) {
-  return folder_kind(name) == FolderKind::series ||
+bool is_medical(const std::string& name, FolderKind folder) {
+  return folder == FolderKind::series ||
          ends_in(name, {".nii", ".nii.gz", ".hdr", ".hdr.gz", ".img", ".img.gz", ".mgh", ".mgz",
                         ".mnc", ".dcm", ".ima"});
 }
 
-bool is_image(const std::string& name) {
-  return folder_kind(name) == FolderKind::images ||
-         ends_in(name,
-                 {".tif", ".tiff", ".lsm", ".stk", ".png", ".ome.zarr", ".zarr", ".companion.ome"});
-}
-
-bool has_whole_numbers(const Volume& volume) {
-  return std::visit(
-      [](const auto& data) {
-        return std::is_integral_v<typename std::decay_t<decltype(data)>::value_type>;
-      },
-      volume.data());
+bool is_image(const std::string& name, FolderKind folder) {
+  return folder == FolderKind::images || ends_in(name, {".tif", ".tiff", ".lsm", ".stk", ".png",
+                                                        ".ome.zarr", ".zarr", ".companion.ome"});
 }
 
 /// Sorted values between two.
@@ -137,15 +131,17 @@ std::string chosen(const Volume& volume, const LookedAt& data, std::string& reas
   }
   const double share = 1 - static_cast<double>(data.values.classes.foreground) /
                                static_cast<double>(std::max(v.size(), std::size_t{1}));
+  const FolderKind folder = folder_kind(name);
+  const bool is_of_images = is_image(name, folder);
   constexpr double most_glowing = 0.2;
-  if (is_image(name) && data.values.differ && share < most_glowing) {
+  if (is_of_images && data.values.differ && share < most_glowing) {
     return because("microscopy", "images of little on a dark ground");
   }
   if (has_surfaces(volume, data.values)) {
-    return is_medical(name) ? because("mr", "a medical image with surfaces")
-                            : because("scan", "data with surfaces");
+    return is_medical(name, folder) ? because("mr", "a medical image with surfaces")
+                                    : because("scan", "data with surfaces");
   }
-  if (is_image(name)) return because("microscopy", "images without sharp surfaces");
+  if (is_of_images) return because("microscopy", "images without sharp surfaces");
   if (is_smooth(volume, data.values)) return because("simulation", "smooth data");
   return because("haze", "noisy data without surfaces");
 }
@@ -163,21 +159,15 @@ Look function_alone(TransferFunction function) {
   return look;
 }
 
-template <class Names>
-[[noreturn]] void refuse(std::string_view name, const Names& names, std::string_view data) {
+[[noreturn]] void refuse(std::string_view name, std::span<const LookName> looks,
+                         std::string_view data) {
   std::string known;
-  for (const auto& each : names) known += (known.empty() ? "" : ", ") + std::string(each);
+  for (const LookName& each : looks) known += (known.empty() ? "" : ", ") + std::string(each.name);
   throw Error("look: \"" + std::string(name.substr(0, 64)) + "\" is none of " + std::string(data) +
               "; there are " + known);
 }
 
-}  // namespace
-
-std::span<const LookName> looks() noexcept {
-  return all_looks;
-}
-
-Look choose_look(const Volume& volume, std::string_view name) {
+Look made_look(const Volume& volume, std::string_view name) {
   const LookedAt data{ClassedValues(value_sample(volume)), mean_chord(volume), 1,
                       has_whole_numbers(volume)};
   std::string reason;
@@ -202,12 +192,10 @@ Look choose_look(const Volume& volume, std::string_view name) {
   if (kind == "fog") return made(fog_look(data));
   if (kind == "haze") return made(function_alone(default_transfer_function(volume)));
   if (kind == "x-ray") return made(function_alone(make_preset("x-ray", volume)));
-  std::vector<std::string_view> names;
-  for (const LookName& each : all_looks) names.push_back(each.name);
-  refuse(name, names, "a volume's");
+  refuse(name, all_looks, "a volume's");
 }
 
-Look choose_look(const MeshChannels& mesh, std::string_view name) {
+Look made_look(const MeshChannels& mesh, std::string_view name) {
   if (name.empty() || name == "body") {
     const Box<double>& box = mesh.mesh().bounds();
     const Vec3<double> size = box.upper - box.lower;
@@ -218,7 +206,42 @@ Look choose_look(const MeshChannels& mesh, std::string_view name) {
   }
   if (name == "haze") return named(function_alone(default_transfer_function(mesh)), "haze", "");
   if (name == "x-ray") return named(function_alone(make_preset("x-ray", mesh)), "x-ray", "");
-  refuse(name, looks_of_meshes, "a mesh's");
+  refuse(name, mesh_looks, "a mesh's");
+}
+
+template <class Data>
+Look changed_look(const Data& data, std::string_view name, const FunctionChange& change) {
+  Look look = made_look(data, name);
+  if (change.is_none()) return look;
+  if (look.as_labels && name.empty()) {
+    look = made_look(data, "haze");
+    look.reason = "a function to change";
+  }
+  const auto range = range_of(change, data);
+  if (look.isosurfaces.empty()) {
+    look.transfer_function = changed(look.transfer_function, change, range);
+  } else {
+    look.isosurfaces = changed(std::move(look.isosurfaces), change, range);
+  }
+  return look;
+}
+
+}  // namespace
+
+std::span<const LookName> looks() noexcept {
+  return all_looks;
+}
+
+std::span<const LookName> looks_of_meshes() noexcept {
+  return mesh_looks;
+}
+
+Look choose_look(const Volume& volume, std::string_view name, const FunctionChange& change) {
+  return changed_look(volume, name, change);
+}
+
+Look choose_look(const MeshChannels& mesh, std::string_view name, const FunctionChange& change) {
+  return changed_look(mesh, name, change);
 }
 
 void check_hounsfield(const std::string& what, const VolumeStatistics& data) {

@@ -38,9 +38,14 @@ struct FunctionChange {
   bool is_none() const noexcept { return colors.empty() && !range && opacity == 1; }
 };
 
+/// Returns the value_range() of a change's range; none: it has none. Throws Error as that does.
+std::optional<std::array<double, 2>> range_of(const FunctionChange& change, const Volume& volume);
+std::optional<std::array<double, 2>> range_of(const FunctionChange& change,
+                                              const MeshChannels& mesh);
+
 /// Returns the changed function: moved_to_range(), then with_colors() over the range, or without
-/// one over absorbing_range(), then with_opacity(). `range`: value_range() of change.range; the
-/// change's own is ignored. Throws Error as they do.
+/// one over absorbing_range(), then with_opacity(). `range`: range_of() the change, whose
+/// own is ignored. Throws Error as they do.
 TransferFunction changed(const TransferFunction& function, const FunctionChange& change,
                          const std::optional<std::array<double, 2>>& range);
 TransferFunction changed(const TransferFunction& function, const FunctionChange& change,

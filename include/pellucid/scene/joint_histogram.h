@@ -31,6 +31,9 @@ struct HistogramAxis {
   }
 };
 
+/// Tells whether the values are of an integer type.
+bool has_whole_numbers(const Volume& volume) noexcept;
+
 /// Returns an axis over all finite values of the volume.
 ///
 /// For integer types the edges lie half-way between integers and all bins are the same whole number

@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "pellucid/scene/function_change.h"
 #include "pellucid/scene/layer.h"
 #include "pellucid/scene/scene.h"
 
@@ -21,7 +22,7 @@ struct LookName {
 
 /// How a volume or a mesh is shown if nobody says how.
 struct Look {
-  std::string name;    ///< of looks()
+  std::string name;    ///< of looks() or looks_of_meshes()
   std::string reason;  ///< what it was chosen for, of the data; empty where it was asked for
   /// Whether the values are labels: of them default_label_table() makes colors, and nothing else
   /// here counts.
@@ -31,8 +32,10 @@ struct Look {
   std::vector<Isosurface> isosurfaces{};
 };
 
-/// Returns all looks in the order in which they are listed. Meshes have "body", "haze" and "x-ray".
+/// Returns all looks of volumes in the order in which they are listed.
 std::span<const LookName> looks() noexcept;
+/// Returns the looks of meshes likewise: "body", "haze" and "x-ray".
+std::span<const LookName> looks_of_meshes() noexcept;
 
 /// Returns the look of a volume by its name; without one that of the kind that the data seem to be:
 ///
@@ -42,25 +45,28 @@ std::span<const LookName> looks() noexcept;
 ///   values or more), or those plus 1000 or 1024; bone in light. `ct-skin` if there is no bone.
 /// - `fog`: an .vdb file.
 /// - `simulation`: data around 0, whose smaller extreme is a fifth of the larger one or more and
-/// half
-///   of whose values are within a fifth of that, if they are smooth or most are near 0; surfaces of
-///   equal value of both signs, blue and red, in light.
+///   half of whose values are within a fifth of that, if they are smooth or most are near 0;
+///   surfaces of equal value of both signs, blue and red, in light.
 /// - `microscopy`: images (.tif, .lsm, .png, OME-Zarr) in which a fifth or less stands out, or
 ///   without surfaces; what is bright glows.
 /// - `mr`, `scan`: the background ends at surfaces, a step of a few voxels; tissue or material in
 ///   light, `mr` where the volume's name is that of a medical image (.nii, .mgz, .dcm, …, a folder
 ///   of no images).
 /// - `simulation`: smooth data, whose noise is a quarter of half of their gradients or less;
-/// surfaces
-///   of equal value in light, of viridis' colors.
+///   surfaces of equal value in light, of viridis' colors.
 /// - `haze`: all else, by default_transfer_function().
 ///
-/// `x-ray` is never chosen. Up to 2^18 values are looked at. Throws Error if there is no look of
-/// that name; else never for a valid volume.
-Look choose_look(const Volume& volume, std::string_view name = {});
+/// `x-ray` is never chosen. Up to 2^18 values are looked at.
+///
+/// A change is made to the surfaces of the look, or if it has none to its function. Where the data
+/// seem to be labels, which have neither, and no look is named, they get `haze` then. Throws Error
+/// if there is no look of that name, and as changed(); else never for a valid volume.
+Look choose_look(const Volume& volume, std::string_view name = {},
+                 const FunctionChange& change = {});
 /// Returns the look of a mesh: `body`, which shows the values on and below its surface. Of a box of
 /// which four fifths are background, that is clear.
-Look choose_look(const MeshChannels& mesh, std::string_view name = {});
+Look choose_look(const MeshChannels& mesh, std::string_view name = {},
+                 const FunctionChange& change = {});
 
 /// Returns the value of air if the data seem to be in Hounsfield units (-1000), or in those plus
 /// about 1024 (24); none: they do not.
