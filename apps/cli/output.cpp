@@ -33,13 +33,6 @@ Json dimensions_json(const Volume& volume) {
   return Json::array({n[0], n[1], n[2]});
 }
 
-std::string lower_case(std::string text) {
-  for (char& c : text) {
-    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
-  }
-  return text;
-}
-
 std::string extension_of(const std::filesystem::path& path) {
   return lower_case(path.extension().string());
 }

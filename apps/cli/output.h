@@ -20,8 +20,6 @@ void print_note(const std::string& text);
 
 Json to_json(const Vec3<double>& v);
 Json dimensions_json(const Volume& volume);
-/// ASCII letters only.
-std::string lower_case(std::string text);
 /// Lower-case extension with its dot: ".png".
 std::string extension_of(const std::filesystem::path& path);
 

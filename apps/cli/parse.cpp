@@ -51,6 +51,13 @@ std::array<Number, 3> parse_three(const std::string& option, const std::string& 
 
 }  // namespace
 
+std::string lower_case(std::string text) {
+  for (char& c : text) {
+    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+  }
+  return text;
+}
+
 std::string one_line(std::string_view text) {
   std::string line;
   for (const char c : text) {

@@ -27,6 +27,8 @@ class OverTolerance : public Error {
 
 /// The text as one line that a terminal can show: line breaks and control characters become spaces.
 std::string one_line(std::string_view text);
+/// ASCII letters only.
+std::string lower_case(std::string text);
 
 /// Each throws UsageError that names the option and shows what it expects.
 std::array<double, 3> parse_triple(const std::string& option, const std::string& text);

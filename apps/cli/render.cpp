@@ -29,17 +29,6 @@ namespace pellucid::cli {
 
 namespace {
 
-/// The names of the looks that the data could have instead.
-std::string other_looks(const Look& chosen) {
-  std::string names;
-  for (const LookName& look : looks()) {
-    if (look.name != chosen.name) {
-      names += (names.empty() ? "" : ", ") + std::string(look.name);
-    }
-  }
-  return chosen.name == "body" ? "haze, x-ray" : names;
-}
-
 void print_notes(const RenderArguments& arguments, const PreparedScene& prepared) {
   if (arguments.quiet) return;
   for (const std::string& note : prepared.import_notes) print_note(note);
@@ -64,9 +53,7 @@ void print_notes(const RenderArguments& arguments, const PreparedScene& prepared
         "adds the volume)");
   }
   if (prepared.look && !prepared.look->name.empty()) {
-    const Look& look = *prepared.look;
-    print_note(fmt::format("look {}{} (--look NAME takes another: {})", look.name,
-                           look.reason.empty() ? "" : ", for " + look.reason, other_looks(look)));
+    print_note(look_line(prepared));
   } else if (prepared.transfer_function_from == "default" && !arguments.print_tf &&
              arguments.save_tf.empty()) {
     print_note(fmt::format(
@@ -82,6 +69,17 @@ Device device_of(const RenderArguments& arguments) {
   return arguments.device == "emulated" ? Device::emulated : Device::cpu;
 }
 
+/// Calls `work`; where a signal cancels it, throws Interrupted.
+template <class Work>
+auto unless_interrupted(Work&& work) {
+  try {
+    return work();
+  } catch (const Cancelled&) {
+    InterruptGuard::check();
+    throw;
+  }
+}
+
 Image render_image(const RenderArguments& arguments, const PreparedScene& prepared,
                    RenderReport& report) {
   const Scene& scene = prepared.scene;
@@ -92,14 +90,10 @@ Image render_image(const RenderArguments& arguments, const PreparedScene& prepar
     progress.show(share_done);
     return !InterruptGuard::interrupted();
   };
-  try {
+  return unless_interrupted([&] {
     return arguments.reference ? render_reference(scene, options, &report)
                                : render(scene, options, &report);
-  } catch (const Cancelled&) {
-    progress.clear();
-    InterruptGuard::check();
-    throw;
-  }
+  });
 }
 
 /// What the header says of the scale is in the image only while the map is written.
@@ -120,16 +114,8 @@ void write_error_map(Image& image, double tolerance, const std::string& path) {
 /// At the tolerance that is the wanted share of the picture's range.
 Image render_at_share(const RenderArguments& arguments, PreparedScene& prepared,
                       RenderReport& report, std::optional<std::string>& over) {
-  RenderOptions options;
-  options.threads = arguments.threads;
-  options.progress = [](double) { return !InterruptGuard::interrupted(); };
-  double range = 0;
-  try {
-    range = estimate_range(prepared.scene, options);
-  } catch (const Cancelled&) {
-    InterruptGuard::check();
-    throw;
-  }
+  const double range = unless_interrupted(
+      [&] { return estimate_range(prepared.scene, quiet_options_of(arguments)); });
   RelativePicture picture =
       render_relative(*prepared.relative_tolerance, range, [&](double tolerance, RenderReport& of) {
         set_scene_tolerance(prepared, tolerance);
@@ -152,15 +138,8 @@ int run_render(const RenderArguments& arguments) {
   const InterruptGuard guard;
   if (arguments.renders() || !arguments.save_scene.empty()) {
     place_camera(arguments, prepared, [&](const Scene& scene) {
-      RenderOptions options;
-      options.threads = arguments.threads;
-      options.progress = [](double) { return !InterruptGuard::interrupted(); };
-      try {
-        return framed_camera(scene, scene.camera, options);
-      } catch (const Cancelled&) {
-        InterruptGuard::check();
-        throw;
-      }
+      return unless_interrupted(
+          [&] { return framed_camera(scene, scene.camera, quiet_options_of(arguments)); });
     });
   }
   const auto& function = prepared.description.layers.front().transfer_function;
@@ -188,6 +167,13 @@ int run_render(const RenderArguments& arguments) {
 }
 
 }  // namespace
+
+RenderOptions quiet_options_of(const RenderArguments& arguments) {
+  RenderOptions options;
+  options.threads = arguments.threads;
+  options.progress = [](double) { return !InterruptGuard::interrupted(); };
+  return options;
+}
 
 RenderOptions options_of(const RenderArguments& arguments, const PreparedScene& prepared) {
   RenderOptions options;
@@ -219,13 +205,14 @@ void write_picture(const RenderArguments& arguments, const PreparedScene& prepar
     write_file();
     written.push_back(path);
   };
+  const std::optional<Image> with_bars =
+      with_wanted_color_bars(arguments, prepared, image, picture.notes);
   for (const std::string& path : arguments.outputs) {
     write(path, [&] {
       if (extension_of(path) == ".exr") {
         write_exr(image, path);
       } else {
-        const Image shown = with_wanted_color_bars(arguments, prepared, image, picture.notes);
-        write_png(shown, path, shown_background(prepared.description));
+        write_png(with_bars ? *with_bars : image, path, shown_background(prepared.description));
       }
     });
   }

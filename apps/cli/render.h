@@ -51,7 +51,7 @@ struct RenderArguments {
   bool has_only_added_layers() const {
     return input.empty() && channels.empty() && !(layers.empty() && labels.empty());
   }
-  /// Whether colors at the points of INPUT are shown as they are.
+  /// Tells whether colors at the points of INPUT are shown as they are.
   bool takes_own_colors() const {
     return transfer_function.empty() && preset.empty() && gaussians.empty() && channels.empty() &&
            projection.empty() && colors.colormap.empty() && colors.range.empty();
@@ -97,6 +97,13 @@ void add_render_options(CommandLine& command, RenderArguments& arguments);
 /// The part of them that says what is seen, and from where.
 void add_scene_options(CommandLine& command, RenderArguments& arguments);
 
+/// Gives a file alone a look where nothing says how it is shown, or that of --look; one that has a
+/// function, to print or save it. Throws UsageError.
+void want_look(const RenderArguments& arguments, PreparedScene& prepared);
+/// Throws UsageError if a function is to be printed or saved, but the look has none.
+void check_look(const RenderArguments& arguments, const PreparedScene& prepared);
+/// Returns the line that tells of prepared.look and names the others of the data.
+std::string look_line(const PreparedScene& prepared);
 /// Gives a look in light its lights, unless the arguments have some.
 void light_look(const RenderArguments& arguments, PreparedScene& prepared);
 
@@ -141,6 +148,8 @@ struct RenderedPicture {
   std::string ranks_json;           ///< an object of --json; empty: one process
   std::vector<std::string> notes{};
 };
+/// The options of drafts, which a signal ends.
+RenderOptions quiet_options_of(const RenderArguments& arguments);
 /// The options of a frame.
 RenderOptions options_of(const RenderArguments& arguments, const PreparedScene& prepared);
 /// Shows colors at the points of INPUT as they are if nothing else is asked for; `notes` get a
@@ -149,10 +158,11 @@ void set_own_colors(const RenderArguments& arguments, LayerDescription& layer,
                     std::vector<std::string>& notes);
 /// Throws UsageError if --color-bar has no .png to be drawn in, and Error if it cannot be drawn.
 void check_color_bar(const RenderArguments& arguments);
-/// Returns the picture with the color bars that are asked for. `notes` get a line if there is
-/// nothing to draw. Throws Error.
-Image with_wanted_color_bars(const RenderArguments& arguments, const PreparedScene& prepared,
-                             const Image& image, std::vector<std::string>& notes);
+/// Returns the picture with the color bars that are asked for; none: it has none. `notes` get a
+/// line if there is nothing to draw. Throws Error.
+std::optional<Image> with_wanted_color_bars(const RenderArguments& arguments,
+                                            const PreparedScene& prepared, const Image& image,
+                                            std::vector<std::string>& notes);
 /// Writes the pictures and other files, the report and the notes. Throws Error, and OverTolerance
 /// if the picture is over the tolerance.
 void write_picture(const RenderArguments& arguments, const PreparedScene& prepared,

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -18,15 +19,14 @@ void check_color_bar(const RenderArguments& arguments) {
   check_draws_color_bars();
 }
 
-Image with_wanted_color_bars(const RenderArguments& arguments, const PreparedScene& prepared,
-                             const Image& image, std::vector<std::string>& notes) {
-  if (!arguments.wants_color_bar()) return image;
+std::optional<Image> with_wanted_color_bars(const RenderArguments& arguments,
+                                            const PreparedScene& prepared, const Image& image,
+                                            std::vector<std::string>& notes) {
+  if (!arguments.wants_color_bar()) return std::nullopt;
   std::vector<ColorBar> bars = color_bars(prepared.description, prepared.scene);
   if (bars.empty()) {
-    const std::string note =
-        "no color bar: it shows labels, and functions of one variable, but there are none";
-    if (std::ranges::find(notes, note) == notes.end()) notes.push_back(note);
-    return image;
+    notes.emplace_back(no_color_bars);
+    return std::nullopt;
   }
   if (!arguments.color_bar_title.empty()) bars.front().title = arguments.color_bar_title;
   return with_color_bars(image, bars);

@@ -61,14 +61,12 @@ void set_transfer_function(const RenderArguments& arguments, SceneDescription& d
       throw UsageError(fmt::format("--preset {}: unknown preset; 'pellucid presets' lists them",
                                    arguments.preset));
     }
-    PresetDescription preset{arguments.preset, {}};
-    preset.range = plain_range(arguments);
     if (!description.layers.front().channels.empty()) {
       throw UsageError(
           "--preset: presets are for one variable, but there are channels; drop one of the two");
     }
     LayerDescription& layer = description.layers.front();
-    layer.transfer_function = preset;
+    layer.transfer_function = PresetDescription{arguments.preset, {}};
     const bool exact = description.integration.method == Method::exact &&
                        (arguments.method.empty() || arguments.method == "exact");
     const bool may_be_lit = exact && !layer.projection && arguments.projection.empty();

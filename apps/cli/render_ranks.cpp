@@ -181,9 +181,7 @@ class RankRun {
   void place_camera(const BrickTree& tree, PreparedScene& prepared) {
     Scene draft = draft_scene(prepared.scene);
     cli::place_camera(arguments_, prepared, [&](const Scene& scene) {
-      RenderOptions options;
-      options.threads = arguments_.threads;
-      options.progress = [](double) { return !InterruptGuard::interrupted(); };
+      const RenderOptions options = quiet_options_of(arguments_);
       return framed_camera(scene.camera, scene.size, [&](const Camera& camera, ImageSize size) {
         draft.camera = camera;
         draft.size = size;

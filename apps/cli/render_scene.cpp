@@ -436,60 +436,6 @@ void set_scene_tolerance(PreparedScene& prepared, double tolerance) {
   fit_opacity_tables(description, scene);
 }
 
-namespace {
-
-/// Throws UsageError where something else says what is shown.
-void refuse_beside_look(const RenderArguments& arguments) {
-  const std::pair<const char*, bool> given[] = {{"--tf", !arguments.transfer_function.empty()},
-                                                {"--preset", !arguments.preset.empty()},
-                                                {"--gaussian", !arguments.gaussians.empty()},
-                                                {"--channel", !arguments.channels.empty()},
-                                                {"--projection", !arguments.projection.empty()},
-                                                {"--iso", !arguments.light.isosurfaces.empty()},
-                                                {"--slice", !arguments.light.slices.empty()},
-                                                {"a scene", arguments.is_scene()}};
-  for (const auto& [what, is_given] : given) {
-    if (is_given) {
-      throw UsageError(
-          fmt::format("--look: {} says what is shown; leave one of the two out", what));
-    }
-  }
-}
-
-/// A file alone, of which nothing says how it is shown, takes a look; one that has a function, to
-/// print or save it.
-void want_look(const RenderArguments& arguments, PreparedScene& prepared) {
-  if (!arguments.look.empty()) refuse_beside_look(arguments);
-  const bool surfaces_alone = arguments.transfer_function.empty() && arguments.preset.empty() &&
-                              !arguments.is_scene() && !arguments.light.isosurfaces.empty();
-  if (const std::string option = arguments.colors.option_of_a_layer();
-      !option.empty() && surfaces_alone) {
-    throw UsageError(option +
-                     ": changes a function, but --iso shows surfaces alone; give --iso "
-                     "its colors and opacities, or add --tf or --preset");
-  }
-  const bool is_default = prepared.transfer_function_from == "default" && !arguments.is_scene() &&
-                          prepared.description.layers.size() == 1 &&
-                          prepared.description.integration.method == Method::exact;
-  if (arguments.look.empty() && !is_default) return;
-  WantedLook look;
-  look.name = lower_case(arguments.look);
-  const auto is_it = [&](const LookName& known) { return known.name == look.name; };
-  if (!look.name.empty() && look.name != "body" && std::ranges::none_of(looks(), is_it)) {
-    std::string names;
-    for (const LookName& known : looks()) names += std::string(known.name) + ", ";
-    throw UsageError(
-        fmt::format("--look {}: unknown; there are {}and body of meshes", arguments.look, names));
-  }
-  look.has_function = arguments.print_tf || !arguments.save_tf.empty();
-  look.keeps_shading = !arguments.light.shading.empty();
-  prepared.look = std::make_shared<Look>();
-  look.chosen = [told = prepared.look](const Look& chosen) { *told = chosen; };
-  prepared.description.layers.front().look = std::move(look);
-}
-
-}  // namespace
-
 SceneRequest request_scene(const RenderArguments& arguments) {
   SceneRequest request;
   PreparedScene& prepared = request.prepared;
@@ -579,19 +525,8 @@ PreparedScene complete_scene(const RenderArguments& arguments, SceneRequest requ
   }
   description.camera = scene.camera;
   make_camera_frame(scene.camera, scene.size);  // throws before anything is written
-  if (prepared.look && !prepared.look->isosurfaces.empty() &&
-      (arguments.print_tf || !arguments.save_tf.empty())) {
-    throw UsageError(
-        fmt::format("{}: the look {} has surfaces and no function; --look haze has one",
-                    arguments.print_tf ? "--print-tf" : "--save-tf", prepared.look->name));
-  }
+  check_look(arguments, prepared);
   return prepared;
-}
-
-void light_look(const RenderArguments& arguments, PreparedScene& prepared) {
-  if (!prepared.look || !prepared.look->shading || !arguments.light.lights.empty()) return;
-  prepared.scene.lights = look_lights(prepared.scene.camera);
-  prepared.description.lights = prepared.scene.lights;
 }
 
 void place_camera(const RenderArguments& arguments, PreparedScene& prepared,

@@ -8,6 +8,7 @@
 #include <system_error>
 #include <vector>
 
+#include "cli/parse.h"
 #include "pellucid/io/read_mesh.h"
 #include "pellucid/io/read_volume.h"
 #include "pellucid/scene/error.h"
@@ -20,13 +21,6 @@ namespace fs = std::filesystem;
 
 constexpr std::size_t most_entries = 5000;
 
-std::string lower_case(std::string text) {
-  std::ranges::transform(text, text.begin(), [](char c) {
-    return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
-  });
-  return text;
-}
-
 std::vector<std::string> known_extensions() {
   std::istringstream words(volume_extensions() + " " + mesh_extensions() + " .json .dcm");
   std::vector<std::string> result;
@@ -36,12 +30,12 @@ std::vector<std::string> known_extensions() {
 
 bool is_known(const std::string& name) {
   static const std::vector<std::string> extensions = known_extensions();
-  const std::string lower = lower_case(name);
+  const std::string lower = cli::lower_case(name);
   return std::ranges::any_of(extensions,
                              [&](const std::string& end) { return lower.ends_with(end); });
 }
 
-/// Whether JSON can hold the text.
+/// Tells whether JSON can hold the text.
 bool is_utf8(const std::string& text) {
   try {
     return !Json(text).dump().empty();
@@ -60,7 +54,7 @@ struct Entry {
 bool read_entry(const fs::directory_entry& entry, Entry& result) {
   std::error_code failure;
   result.name = entry.path().filename().string();
-  result.key = lower_case(result.name);
+  result.key = cli::lower_case(result.name);
   if (result.name.starts_with('.') || !is_utf8(result.name)) return false;
   result.is_folder = entry.is_directory(failure);
   if (failure || (!result.is_folder && !entry.is_regular_file(failure))) return false;

@@ -8,8 +8,8 @@
 #include "pellucid/io/export_transfer_function.h"
 #include "pellucid/io/image_files.h"
 #include "pellucid/io/import_transfer_function.h"
+#include "pellucid/io/temporary_folder.h"
 #include "pellucid/scene/error.h"
-#include "private_folder.h"
 
 namespace pellucid::view {
 
@@ -19,7 +19,7 @@ namespace fs = std::filesystem;
 
 template <class Write>
 std::string bytes_of(const std::string& name, const Write& write) {
-  const PrivateFolder folder;
+  const TemporaryFolder folder("a file to save");
   const fs::path path = folder.path() / name;
   write(path);
   std::ifstream file(path, std::ios::binary);
@@ -32,7 +32,7 @@ std::vector<ColorBar> wanted_color_bars(const SceneDescription& description, con
   check_draws_color_bars();
   std::vector<ColorBar> bars = color_bars(description, scene);
   if (!bars.empty()) return bars;
-  throw Error("no color bar: it shows labels, and functions of one variable, but there are none");
+  throw Error(no_color_bars);
 }
 
 SavedFile png_file(const Image& image, const std::optional<Background>& background) {

@@ -10,8 +10,8 @@
 namespace pellucid {
 namespace {
 
-/// Signals at which a color's table has points: chords of the sRGB curve are off by less than 1 of
-/// 255 signals between them. Each point cuts spans, so there are few.
+/// Signals where the table of a color has its points. Between them, straight lines are off from the
+/// sRGB curve by less than 1 of 255. Each point cuts spans, so there are few.
 constexpr double signals[] = {0, 0.065, 0.12, 0.185, 0.26, 0.345, 0.44, 0.55, 0.67, 0.8, 0.94, 1};
 /// Optical depths along the mean chord of what is opaque, and the luminance that is still vacuum.
 constexpr double depth_of_luminance = 20, depth_of_alpha = 60, dark = 0.08;

@@ -34,6 +34,10 @@ std::string variable_title(const LayerDescription& description, const Layer& lay
 /// variables; and of labels an entry each. Empty if there is nothing to say: as of Gaussians.
 std::vector<ColorBar> color_bars(const SceneDescription& description, const Scene& scene);
 
+/// Message where there is none.
+inline constexpr const char* no_color_bars =
+    "no color bar: it shows labels, and functions of one variable, but there are none";
+
 /// Returns the picture with legends over its right edge, composited over its pixels; depth, error
 /// and values are left out. Text is drawn by Cairo in a module (pellucid/io/module.h). Throws Error
 /// if that is not there or cannot draw.
