@@ -11,6 +11,7 @@ from typing import Any, List, Mapping, NamedTuple, Optional, Tuple
 import numpy
 
 from ._notes import tell
+from ._pellucid import foreign_names
 
 
 def scaled(stored: numpy.ndarray, slope: float, intercept: float) -> numpy.ndarray:
@@ -69,17 +70,6 @@ def applied(stored: numpy.ndarray, data: Any, name: str) -> numpy.ndarray:
     return numpy.ma.MaskedArray(values, missing)
 
 
-# Names that other programs give to scales, missing values and places, as the readers of files know
-# them: in small letters, without what stands between words.
-_UNREAD = ("scalefactor", "scale", "scales", "slope", "gain", "multiplier", "offset", "addoffset",
-           "intercept", "bias", "calibration", "missingvalue", "missing", "fillvalue", "fill",
-           "nodata", "nodatavalue", "validrange", "validmin", "validmax", "spacing", "origin",
-           "translation", "translate", "voxelsize", "pixelsize", "resolution", "pixelresolution",
-           "resolutionunit", "affine", "transform", "direction", "orientation", "dx", "dy", "dz",
-           "axes", "axisorder", "axisnames", "dims", "dimensions", "elementsizeum")
-
-_BETWEEN_WORDS = str.maketrans("", "", "_- ")
-
 # What each attribute must be to be applied.
 _KINDS = {"scale_factor": (1, "number"), "add_offset": (1, "number"),
           "_FillValue": (0, "number"), "missing_value": (0, "number"),
@@ -99,8 +89,8 @@ def tell_unapplied(data: Any, name: str) -> None:
             tell(f"{name}: its {key} is no {what} and is not applied")
     if any(key in attributes for key in ("flag_values", "flag_meanings", "flag_masks")):
         tell(f"{name}: its values are labels (flag_values) and no amounts")
-    unread = [str(key) for bare in _UNREAD for key in attributes.keys()
-              if key not in _KINDS and str(key).lower().translate(_BETWEEN_WORDS) == bare]
+    unread = foreign_names([str(key).encode("utf-8", "replace").decode()
+                            for key in attributes.keys() if key not in _KINDS])
     if unread:
         tell(f"{name}: has attributes that are not applied ({', '.join(unread)})")
 

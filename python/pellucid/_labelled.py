@@ -8,7 +8,8 @@ import numpy
 
 from . import _masks
 from ._notes import tell
-from ._pellucid import Error, axis_roles, grows_downwards, space_axes, unit_factors
+from ._pellucid import (Error, axis_roles, grows_downwards, space_axes, unit_factors,
+                        unwrapped_longitudes)
 from ._places import Placed, three_axes
 
 
@@ -134,17 +135,6 @@ def _order(shape: Tuple[int, ...], axes: List[_Axis], name: str) -> Optional[Tup
     return order
 
 
-def _unwrapped(longitudes: numpy.ndarray) -> Optional[numpy.ndarray]:
-    """Longitudes that jump once, from 360 to 0 or from 180 to -180, going on; None for others."""
-    steps = numpy.diff(longitudes.astype(numpy.float64))
-    jumps = numpy.flatnonzero(numpy.abs(steps) > 180)
-    if jumps.size != 1:
-        return None
-    behind = numpy.arange(longitudes.size) > jumps[0]
-    kind = longitudes.dtype if longitudes.dtype.kind == "f" else numpy.dtype("f8")
-    return (longitudes - 360.0 * numpy.sign(steps[jumps[0]]) * behind).astype(kind)
-
-
 def _positions(axes: List[_Axis], name: str) -> Tuple[Optional[numpy.ndarray], ...]:
     """The coordinates along z, y and x, in one unit and upwards; None where there are none."""
     given = [_given(axis) for axis in axes]
@@ -169,10 +159,12 @@ def _positions(axes: List[_Axis], name: str) -> Tuple[Optional[numpy.ndarray], .
         elif down:
             tell(f"{name}: {letter} is {axis.name}, which grows downwards; the picture shows it "
                  "upwards")
-        if letter == "x" and text[1].get("units", "").lower().startswith("degree"):
-            going_on = _unwrapped(found)
+        if letter == "x":
+            going_on = unwrapped_longitudes(text[1].get("units", ""),
+                                            found.astype(numpy.float64))
             if going_on is not None:
-                found = going_on
+                kind = found.dtype if found.dtype.kind == "f" else numpy.dtype("f8")
+                found = numpy.array(going_on, kind)
                 tell(f"{name}: longitudes go on where they jump by 360 degrees")
         if factor != 1:
             kind = found.dtype if found.dtype.kind == "f" else numpy.dtype("f8")

@@ -8,6 +8,7 @@
 #include "axis_meaning.h"
 #include "common.h"
 #include "grid_axes.h"
+#include "value_meaning.h"
 
 namespace pellucid::python {
 
@@ -80,6 +81,11 @@ std::string grows_downwards(const GivenAxis& given) {
   return grows_down(axes[0]) ? "down" : may_grow_down(axes[0]) ? "perhaps" : "";
 }
 
+/// Returns longitudes that go on where they jump by 360 degrees; None where they do not.
+py::object unwrapped_longitudes(const std::string& unit, std::vector<double> positions) {
+  return unwrap_longitudes(unit, positions) ? py::cast(std::move(positions)) : py::none();
+}
+
 }  // namespace
 
 // What objects of other libraries say of axes means what files say of them.
@@ -93,6 +99,12 @@ they are those of no volume.)");
   module.def("unit_factors", &unit_factors, py::arg("units"), R"(
 Returns what lengths along z, y and x are multiplied by for one unit, and a note, perhaps empty.
 Units are names or symbols of lengths; "" if there is none.)");
+  module.def("unwrapped_longitudes", &unwrapped_longitudes, py::arg("unit"), py::arg("positions"),
+             R"(
+Returns positions in degrees that jump once by 360 going on; None for others.)");
+  module.def("foreign_names", &foreign_names, py::arg("names"), R"(
+Returns those of the names of attributes by which other programs call scales, missing values and
+placements.)");
   module.def("grows_downwards", &grows_downwards, py::arg("axis"), R"(
 Returns "down" for an axis that is said to grow downwards, "perhaps" for one that may, else "".)");
 }

@@ -61,8 +61,7 @@ namespace {
 /// Returns a function with the change, for a volume or a mesh.
 template <class Data>
 py::object changed_for(const py::object& function, const FunctionChange& change, const Data& data) {
-  std::optional<std::array<double, 2>> range;
-  if (change.range) range = value_range(*change.range, data);
+  const auto range = pellucid::range_of(change, data);
   if (py::isinstance<OpacityTableHandle>(function)) {
     OpacityTableHandle made;
     made.table = changed(py::cast<const OpacityTableHandle&>(function).table, change, range);
@@ -79,14 +78,9 @@ py::object changed_for(const py::object& function, const FunctionChange& change,
 py::object changed_function(const py::object& function, const py::object& data,
                             const py::object& colors, const py::object& range, double opacity) {
   const FunctionChange change = change_of(colors, range, opacity);
-  if (py::isinstance<MeshHandle>(data)) {
-    return changed_for(function, change, *py::cast<const MeshHandle&>(data).mesh);
-  }
-  if (py::isinstance<VolumeHandle>(data)) {
-    return changed_for(function, change, *py::cast<const VolumeHandle&>(data).volume);
-  }
-  throw Error("cmap, clim, opacity: are for one variable of a Volume or a Mesh, got " +
-              short_repr(data));
+  return with_data(
+      data, [&](const auto& of) { return changed_for(function, change, of); },
+      "cmap, clim, opacity: are for one variable of a Volume or a Mesh");
 }
 
 }  // namespace

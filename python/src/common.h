@@ -46,6 +46,7 @@ void bind_color_maps(py::module_& module);
 void bind_gaussians(py::module_& module);
 void bind_foreign_functions(py::module_& module);
 void bind_histograms(py::module_& module);
+void bind_looks(py::module_& module);
 void bind_scenes(py::module_& module);
 void bind_files(py::module_& module);
 void bind_images(py::module_& module);

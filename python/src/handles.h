@@ -4,8 +4,10 @@
 #include <array>
 #include <memory>
 #include <optional>
+#include <string>
 #include <vector>
 
+#include "common.h"
 #include "pellucid/io/channel_source.h"
 #include "pellucid/io/field_source.h"
 #include "pellucid/io/mesh_source.h"
@@ -73,5 +75,15 @@ struct OpacityTableHandle {
   OpacityTable table;
   mutable std::shared_ptr<const TransferFunction> fitted{};
 };
+
+/// Calls body(data) with the volume or the mesh of an object. Throws Error, which begins with
+/// `expected`, for others.
+template <class Body>
+auto with_data(const py::object& data, Body&& body,
+               const std::string& expected = "data: expected a Volume or a Mesh") {
+  if (py::isinstance<VolumeHandle>(data)) return body(*py::cast<const VolumeHandle&>(data).volume);
+  if (py::isinstance<MeshHandle>(data)) return body(*py::cast<const MeshHandle&>(data).mesh);
+  throw Error(expected + ", got " + short_repr(data));
+}
 
 }  // namespace pellucid::python

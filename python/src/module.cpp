@@ -23,6 +23,7 @@ PYBIND11_MODULE(_pellucid, module) {
   bind_histograms(module);
   bind_images(module);
   bind_scenes(module);
+  bind_looks(module);
   bind_renderers(module);
   bind_ranks(module);
   bind_files(module);

@@ -9,8 +9,6 @@
 #include "images.h"
 #include "pellucid/cpu/framed_camera.h"
 #include "pellucid/scene/defaults.h"
-#include "pellucid/scene/look.h"
-#include "pellucid/scene/picture_advice.h"
 #include "pellucid/scene/view_camera.h"
 
 namespace pellucid::python {
@@ -63,21 +61,6 @@ void check_kind(const py::handle& object, const char* attribute, const std::stri
                 const char* expected) {
   if (py::hasattr(object, attribute)) return;
   throw Error(what + ": expected a " + expected + ", got " + short_repr(object));
-}
-
-Camera camera_of(const py::object& object) {
-  check_kind(object, "focal_point", "camera", "pellucid.Camera");
-  static constexpr const char* const projections[] = {"perspective", "orthographic"};
-  Camera camera;
-  camera.projection = choice(object.attr("projection"), "camera.projection", projections) == 0
-                          ? Projection::perspective
-                          : Projection::orthographic;
-  camera.position = vector_of(object.attr("position"), "camera.position");
-  camera.focal_point = vector_of(object.attr("focal_point"), "camera.focal_point");
-  camera.up = vector_of(object.attr("up"), "camera.up");
-  camera.vertical_angle = number_of(object.attr("vertical_angle"), "camera.vertical_angle");
-  camera.parallel_scale = number_of(object.attr("parallel_scale"), "camera.parallel_scale");
-  return camera;
 }
 
 /// Returns the kind of a light or a clip. Throws Error for other objects.
@@ -448,6 +431,21 @@ void describe_look(const Layer& layer, LayerDescription& to) {
 
 }  // namespace
 
+Camera camera_of(const py::object& object) {
+  check_kind(object, "focal_point", "camera", "pellucid.Camera");
+  static constexpr const char* const projections[] = {"perspective", "orthographic"};
+  Camera camera;
+  camera.projection = choice(object.attr("projection"), "camera.projection", projections) == 0
+                          ? Projection::perspective
+                          : Projection::orthographic;
+  camera.position = vector_of(object.attr("position"), "camera.position");
+  camera.focal_point = vector_of(object.attr("focal_point"), "camera.focal_point");
+  camera.up = vector_of(object.attr("up"), "camera.up");
+  camera.vertical_angle = number_of(object.attr("vertical_angle"), "camera.vertical_angle");
+  camera.parallel_scale = number_of(object.attr("parallel_scale"), "camera.parallel_scale");
+  return camera;
+}
+
 SceneDescription described(const PythonScene& made) {
   const Scene& scene = made.scene;
   SceneDescription description = made.description;
@@ -534,41 +532,7 @@ py::object to_python(const Camera& camera) {
           camera.projection == Projection::perspective ? "perspective" : "orthographic");
 }
 
-namespace {
-
-py::list look_lights_of(const py::object& camera) {
-  // The default camera looks from one side, whatever the data.
-  std::array<Vec3<double>, 8> cube;
-  for (unsigned n = 0; n < 8; ++n) cube[n] = {1.0 * (n & 1), 0.5 * (n & 2), 0.25 * (n & 4)};
-  const Camera seen = camera.is_none() ? default_camera(cube, {1, 1}) : camera_of(camera);
-  make_camera_frame(seen, {1, 1});
-  const py::module_ scene = py::module_::import("pellucid.scene");
-  py::list lights;
-  for (const Light& light : look_lights(seen)) {
-    const auto* const directional = std::get_if<DirectionalLight>(&light.kind);
-    lights.append(directional != nullptr
-                      ? scene.attr("DirectionalLight")(to_tuple(directional->direction),
-                                                       to_tuple(light.color))
-                      : scene.attr("HeadLight")(to_tuple(light.color)));
-  }
-  return lights;
-}
-
-}  // namespace
-
 void bind_scenes(py::module_& module) {
-  module.def(
-      "picture_advice",
-      [](const py::object& scene, const ImageHandle& image) {
-        const PythonScene read = read_scene(scene);
-        const ReleasedLock released;
-        return picture_advice(read.scene, *image.image);
-      },
-      py::arg("scene"), py::arg("image"), R"(
-Returns why a picture shows next to nothing, or is burnt, and what to do; None: it is neither.)");
-  module.def("look_lights", &look_lights_of, py::arg("camera") = py::none(), R"(
-Returns the lights of a look in light, for a Camera or the default one: one at the eye and one from
-the upper left, fixed in the world.)");
   module.def(
       "default_camera",
       [](const py::object& object) { return to_python(complete_scene(object).camera); },

@@ -15,6 +15,8 @@ struct PythonScene {
   bool has_camera = false, is_transparent = false;
 };
 
+/// Reads pellucid.Camera. Throws Error that names the attribute.
+Camera camera_of(const py::object& camera);
 /// Reads pellucid.Scene. Throws Error that names the attribute.
 PythonScene read_scene(const py::object& scene);
 /// Reads pellucid.Scene, and completes it for rendering: the camera, if it has none, and opacity

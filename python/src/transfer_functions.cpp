@@ -6,9 +6,7 @@
 #include "handles.h"
 #include "pellucid/io/scene_json.h"
 #include "pellucid/scene/defaults.h"
-#include "pellucid/scene/function_change.h"
 #include "pellucid/scene/light.h"
-#include "pellucid/scene/look.h"
 #include "pellucid/scene/presets.h"
 #include "pellucid/scene/srgb.h"
 
@@ -67,14 +65,6 @@ OpacityTableHandle make_table(const py::object& points, double unit_distance,
   return handle;
 }
 
-/// Calls body(data) with a volume or a mesh.
-template <class Body>
-auto with_data(const py::object& data, Body&& body) {
-  if (py::isinstance<VolumeHandle>(data)) return body(*py::cast<const VolumeHandle&>(data).volume);
-  if (py::isinstance<MeshHandle>(data)) return body(*py::cast<const MeshHandle&>(data).mesh);
-  throw Error("data: expected a Volume or a Mesh, got " + short_repr(data));
-}
-
 using Function = std::shared_ptr<TransferFunction>;
 
 Function default_function(const py::object& data) {
@@ -82,43 +72,6 @@ Function default_function(const py::object& data) {
     const ReleasedLock released;
     return std::make_shared<TransferFunction>(default_transfer_function(of));
   });
-}
-
-py::dict look_of(const py::object& data, const std::string& name, const py::object& colors,
-                 const py::object& range, double opacity) {
-  const FunctionChange change = change_of(colors, range, opacity);
-  Look look = with_data(data, [&](const auto& of) {
-    const ReleasedLock released;
-    Look made = choose_look(of, name);
-    if (change.is_none()) return made;
-    if (made.as_labels && name.empty()) made = choose_look(of, "haze");
-    std::optional<std::array<double, 2>> ends;
-    if (change.range) ends = value_range(*change.range, of);
-    if (made.isosurfaces.empty()) {
-      made.transfer_function = changed(made.transfer_function, change, ends);
-    } else {
-      made.isosurfaces = changed(std::move(made.isosurfaces), change, ends);
-    }
-    return made;
-  });
-  py::dict result;
-  const py::module_ scene = py::module_::import("pellucid.scene");
-  result["name"] = look.name;
-  result["reason"] = look.reason;
-  result["as_labels"] = look.as_labels;
-  result["transfer_function"] =
-      std::make_shared<TransferFunction>(std::move(look.transfer_function));
-  result["shading"] = py::none();
-  if (look.shading) {
-    const Shading& s = *look.shading;
-    result["shading"] = scene.attr("Shading")(s.ambient, s.diffuse, s.specular, s.power);
-  }
-  py::list isosurfaces;
-  for (const Isosurface& s : look.isosurfaces) {
-    isosurfaces.append(scene.attr("Isosurface")(s.value, to_tuple(s.color), s.opacity));
-  }
-  result["isosurfaces"] = isosurfaces;
-  return result;
 }
 
 Function projection_function(const py::object& data, const std::string& projection) {
@@ -253,21 +206,6 @@ void bind_transfer_functions(py::module_& module) {
   bind_functions(module);
   module.def("default_transfer_function", &default_function, py::arg("data"), R"(
 Returns a transfer function for a good first picture of a Volume or a Mesh.)");
-  module.def("choose_look", &look_of, py::arg("data"), py::arg("name") = "",
-             py::arg("colors") = py::none(), py::arg("range") = py::none(),
-             py::arg("opacity") = 1.0, R"(
-Returns what pellucid.look() makes a Layer of.)");
-  module.def(
-      "looks",
-      [] {
-        py::dict list;
-        for (const LookName& look : looks()) {
-          list[py::str(std::string(look.name))] = std::string(look.description);
-        }
-        return list;
-      },
-      R"(
-Returns the looks by name, each with its description.)");
   module.def("projection_transfer_function", &projection_function, py::arg("data"),
              py::arg("projection"), R"(
 Returns an opaque ramp from black to white over the range of a projection: "maximum", "minimum",

@@ -44,19 +44,6 @@ std::size_t first_missing(const std::vector<double>& positions) {
   return missing == positions.end() ? 0 : static_cast<std::size_t>(missing - positions.begin()) + 1;
 }
 
-/// Lets longitudes that jump once, from 360 to 0 or from 180 to -180, go on. Returns whether they
-/// do.
-bool unwrap_longitudes(const std::string& unit, std::vector<double>& positions) {
-  if (bare_unit(unit) != "degree") return false;
-  const auto jumps = [](double before, double after) { return std::abs(after - before) > 180; };
-  const auto jump = std::ranges::adjacent_find(positions, jumps);
-  if (jump == positions.end()) return false;
-  if (std::adjacent_find(jump + 1, positions.end(), jumps) != positions.end()) return false;
-  const double turn = *(jump + 1) < *jump ? 360 : -360;
-  std::for_each(jump + 1, positions.end(), [&](double& position) { position += turn; });
-  return true;
-}
-
 void note_direction(const AxisPositions& positions, const std::string& letter,
                     const ReadOptions& options, const std::string& name) {
   if (!options.note) return;
@@ -69,6 +56,17 @@ void note_direction(const AxisPositions& positions, const std::string& letter,
 }
 
 }  // namespace
+
+bool unwrap_longitudes(const std::string& unit, std::vector<double>& positions) {
+  if (bare_unit(unit) != "degree") return false;
+  const auto jumps = [](double before, double after) { return std::abs(after - before) > 180; };
+  const auto jump = std::ranges::adjacent_find(positions, jumps);
+  if (jump == positions.end()) return false;
+  if (std::adjacent_find(jump + 1, positions.end(), jumps) != positions.end()) return false;
+  const double turn = *(jump + 1) < *jump ? 360 : -360;
+  std::for_each(jump + 1, positions.end(), [&](double& position) { position += turn; });
+  return true;
+}
 
 CommonUnit common_unit(const std::array<std::string, 3>& units) {
   CommonUnit common;

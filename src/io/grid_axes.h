@@ -3,6 +3,7 @@
 
 #include <array>
 #include <string>
+#include <vector>
 
 #include "axis_meaning.h"
 #include "volume_source.h"
@@ -18,6 +19,10 @@ struct CommonUnit {
 
 /// Returns the unit of x, y and z, that of the first one that says one; "" where none does.
 CommonUnit common_unit(const std::array<std::string, 3>& units);
+
+/// Has longitudes in this unit that jump once, from 360 to 0 or from 180 to -180, go on. Returns
+/// whether they did.
+bool unwrap_longitudes(const std::string& unit, std::vector<double>& positions);
 
 /// Places a grid by the positions along its axes, unless a spacing is given: turns lengths into one
 /// unit and axes that grow downwards. Tells `note` what is done and what is not. Throws Error for

@@ -191,31 +191,17 @@ std::string bare_name(const std::string& name) {
   return bare;
 }
 
-/// Lists the attributes by which other programs name scales, missing values and placements,
-/// whatever the case of their letters. Those that are applied are not among them.
+/// Lists foreign_names() of attributes. Those that are applied are not among them.
 std::string unread_of(const VariableAttributes& attributes) {
-  constexpr auto unread = std::to_array<std::string_view>(
-      {"scalefactor",    "scale",        "scales",      "slope",
-       "gain",           "multiplier",   "offset",      "addoffset",
-       "intercept",      "bias",         "calibration", "missingvalue",
-       "missing",        "fillvalue",    "fill",        "nodata",
-       "nodatavalue",    "validrange",   "validmin",    "validmax",
-       "spacing",        "origin",       "translation", "translate",
-       "voxelsize",      "pixelsize",    "resolution",  "pixelresolution",
-       "resolutionunit", "affine",       "transform",   "direction",
-       "orientation",    "dx",           "dy",          "dz",
-       "axes",           "axisorder",    "axisnames",   "dims",
-       "dimensions",     "elementsizeum"});
   constexpr auto applied =
       std::to_array<std::string_view>({"scale_factor", "add_offset", "_FillValue", "missing_value",
                                        "valid_range", "valid_min", "valid_max", "element_size_um"});
-  std::string list;
-  for (const std::string_view bare : unread) {
-    for (const auto& [name, value] : attributes) {
-      const bool is_other = std::ranges::find(applied, name) == applied.end();
-      if (is_other && bare_name(name) == bare) list += (list.empty() ? "" : ", ") + name;
-    }
+  std::vector<std::string> names;
+  for (const auto& [name, value] : attributes) {
+    if (std::ranges::find(applied, name) == applied.end()) names.push_back(name);
   }
+  std::string list;
+  for (const std::string& name : foreign_names(names)) list += (list.empty() ? "" : ", ") + name;
   return list;
 }
 
@@ -280,6 +266,28 @@ std::string note_of(const DefaultFills& fills, const std::string& name) {
          "\" " + (fills.count == 1 ? "is " : "are ") + number.data() +
          ", which stands where nothing was written, and " + (fills.count == 1 ? "is" : "are") +
          " missing";
+}
+
+std::vector<std::string> foreign_names(const std::vector<std::string>& names) {
+  constexpr auto foreign = std::to_array<std::string_view>(
+      {"scalefactor",    "scale",        "scales",      "slope",
+       "gain",           "multiplier",   "offset",      "addoffset",
+       "intercept",      "bias",         "calibration", "missingvalue",
+       "missing",        "fillvalue",    "fill",        "nodata",
+       "nodatavalue",    "validrange",   "validmin",    "validmax",
+       "spacing",        "origin",       "translation", "translate",
+       "voxelsize",      "pixelsize",    "resolution",  "pixelresolution",
+       "resolutionunit", "affine",       "transform",   "direction",
+       "orientation",    "dx",           "dy",          "dz",
+       "axes",           "axisorder",    "axisnames",   "dims",
+       "dimensions",     "elementsizeum"});
+  std::vector<std::string> found;
+  for (const std::string_view bare : foreign) {
+    for (const std::string& name : names) {
+      if (bare_name(name) == bare) found.push_back(name);
+    }
+  }
+  return found;
 }
 
 std::vector<std::string> notes_on_unread(const VariableAttributes& attributes,

@@ -55,6 +55,10 @@ void apply_meaning(std::span<double> positions, const std::string& type,
 /// Returns the note on them: "20 values are -32767, ..."; empty where there are none.
 std::string note_of(const DefaultFills& fills, const std::string& name);
 
+/// Returns the names by which other programs call scales, missing values and placements, whatever
+/// the case of their letters and what stands between their words.
+std::vector<std::string> foreign_names(const std::vector<std::string>& names);
+
 /// Returns one note on each attribute that could change the picture and is not read.
 std::vector<std::string> notes_on_unread(const VariableAttributes& attributes,
                                          const std::string& name);

@@ -53,6 +53,32 @@ def test_arguments_are_the_modules():
 
 
 def test_everything_public_is_in_the_package():
+    hidden = {"ViewerServer", "axis_roles", "changed_function", "choose_look", "foreign_names",
+              "grey_colors", "grows_downwards", "is_color_map", "linear_color", "look_lights",
+              "picture_advice", "save_scene", "space_axes", "unit_factors",
+              "unwrapped_longitudes"} | KERNELS
+    has = {name for name in vars(_pellucid) if not name.startswith("_")}
+    assert named == has
+
+
+def test_arguments_are_the_modules():
+    for node in stubs().body:
+        if isinstance(node, ast.FunctionDef) and node.name not in KERNELS:
+            assert arguments(node) == told(getattr(_pellucid, node.name).__doc__), node.name
+        if not isinstance(node, ast.ClassDef):
+            continue
+        made = getattr(_pellucid, node.name)
+        for method in node.body:
+            if not isinstance(method, ast.FunctionDef):
+                continue
+            assert hasattr(made, method.name), (node.name, method.name)
+            text = getattr(made, method.name).__doc__ or ""
+            named = text.startswith(method.name + "(") and "arg0" not in text
+            if named and method.args.kwarg is None:
+                assert arguments(method) == told(text), (node.name, method.name)
+
+
+def test_everything_public_is_in_the_package():
     hidden = {"ViewerServer", "axis_roles", "changed_function", "choose_look", "grey_colors",
               "grows_downwards", "is_color_map", "linear_color", "look_lights", "picture_advice",
               "save_scene", "space_axes", "unit_factors"} | KERNELS
