@@ -33,6 +33,13 @@ export function button(text, onclick, properties = {}) {
   return make('button', {type: 'button', onclick, ...properties}, text);
 }
 
+/** Has the browser save data as a file. */
+export function download(blob, name) {
+  const address = URL.createObjectURL(blob);
+  make('a', {href: address, download: name}).click();
+  setTimeout(() => URL.revokeObjectURL(address), 10000);
+}
+
 /** An input with its label before it. */
 export function labelled(text, input, className = 'inline') {
   return make('label', {class: className}, text, input);

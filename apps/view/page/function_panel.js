@@ -101,15 +101,13 @@ export class FunctionPanel {
     const suggest = (kind) => () => viewer.connection.send(
       {type: 'suggest', layer: viewer.selected, kind});
     const isField = Boolean(layer.field), isMesh = Boolean(layer.mesh);
-    if (isField || (isMesh && facts.channels.length === 1)) {
-      row.append(button('Curve from the data', suggest('curve')));
-    }
+    const isOfOneVariable = isField || (isMesh && facts.channels.length === 1);
+    if (isOfOneVariable) row.append(button('Curve from the data', suggest('curve')));
     if (!isMesh) {
       row.append(button(isField ? 'Gaussians of value and gradient' : 'Gaussians from the data',
         suggest('gaussians')));
     }
-    return isField || (isMesh && facts.channels.length === 1)
-      ? make('div', {class: 'list'}, this.presets.element, row) : row;
+    return isOfOneVariable ? make('div', {class: 'list'}, this.presets.element, row) : row;
   }
 
   preset(name) {

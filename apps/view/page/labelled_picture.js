@@ -16,13 +16,11 @@ export async function labelledPicture(bytes, frame, scale) {
   // As large as on the page, also where its pixels are smaller.
   context.scale(1 / scale, 1 / scale);
   const width = picture.width * scale, height = picture.height * scale;
-  const {lines, texts} = [axisMarks(frame.overlay.axes, height), scaleMark(frame.overlay, width,
-    height)].reduce((all, marks) => ({lines: [...all.lines, ...marks.lines],
-    texts: [...all.texts, ...marks.texts]}), {lines: [], texts: []});
+  const marks = [axisMarks(frame.overlay.axes, height), scaleMark(frame.overlay, width, height)];
   context.lineJoin = 'round';
   context.textAlign = 'center';
   context.font = '13px system-ui, "Inter", "Segoe UI", "DejaVu Sans", sans-serif';
-  for (const {x1, y1, x2, y2, color} of lines) {
+  for (const {x1, y1, x2, y2, color} of marks.flatMap(({lines}) => lines)) {
     for (const [stroke, thickness] of [['#000000', 4], [color, 1.5]]) {
       context.beginPath();
       context.moveTo(x1, y1);
@@ -32,7 +30,7 @@ export async function labelledPicture(bytes, frame, scale) {
       context.stroke();
     }
   }
-  for (const {x, y, text, color} of texts) {
+  for (const {x, y, text, color} of marks.flatMap(({texts}) => texts)) {
     context.lineWidth = 3;
     context.strokeStyle = '#000000';
     context.strokeText(text, x, y);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-import {button, make} from './elements.js';
+import {button, download, make} from './elements.js';
 
 /** Says how to go on when the program does not answer any more, and saves what was edited. */
 export class LostPanel {
@@ -48,8 +48,6 @@ export class LostPanel {
       if (scene.integration) scene.integration.tolerance = frame.tolerance;
     }
     const text = `${JSON.stringify(scene, null, 2)}\n`;
-    const address = URL.createObjectURL(new Blob([text], {type: 'application/json'}));
-    make('a', {href: address, download: 'scene.json'}).click();
-    setTimeout(() => URL.revokeObjectURL(address), 10000);
+    download(new Blob([text], {type: 'application/json'}), 'scene.json');
   }
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-import {button, labelledAfter, make} from './elements.js';
+import {button, download, labelledAfter, make} from './elements.js';
 import {labelledPicture} from './labelled_picture.js';
 
 const commandLine = 'pellucid render scene.json -o picture.png';
@@ -34,9 +34,7 @@ export class SavePanel {
       const isMarked = type === 'image/png' && withMarks.checked && frame;
       const blob = isMarked
         ? await labelledPicture(bytes, frame, scale) : new Blob([bytes], {type});
-      const address = URL.createObjectURL(blob);
-      make('a', {href: address, download: name}).click();
-      setTimeout(() => URL.revokeObjectURL(address), 10000);
+      download(blob, name);
     });
   }
 }
