@@ -15,7 +15,7 @@ namespace pellucid::view {
 /// this object.
 class GaussianFit {
  public:
-  /// What came of it; neither a function nor an error if it was cancelled.
+  /// The function, or why there is none; neither if it was cancelled.
   struct Outcome {
     std::optional<MultivariateDescription> function;
     std::string error;

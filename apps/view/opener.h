@@ -11,7 +11,7 @@
 #include <thread>
 
 #include "page_server.h"
-#include "private_folder.h"
+#include "pellucid/io/temporary_folder.h"
 #include "viewer.h"
 
 namespace pellucid::view {
@@ -19,11 +19,11 @@ namespace pellucid::view {
 /// A file to be read for the pages.
 struct OpenRequest {
   std::string input, name;  ///< name: how pages call it
-  /// Where the file was uploaded, and the number of its set; null: it was not.
-  std::shared_ptr<const PrivateFolder> folder{};
+  /// The folder of files that were uploaded, and the number of their set; null: they were not.
+  std::shared_ptr<const TemporaryFolder> folder{};
   int set = -1;
 };
-/// What was read.
+/// A file that was read.
 struct OpenedFile {
   OpenRequest request;
   ViewedScene scene;

@@ -279,7 +279,7 @@ void copy_values(const VolumeData& values, std::span<std::byte> to) {
       values);
 }
 
-/// Returns a note on steps in time of which the first is read.
+/// Returns a note that of several steps in time the first is read.
 std::string note_of_steps(const std::vector<double>& times) {
   std::ostringstream note;
   note << "has " << times.size() << " steps in time, from " << times.front() << " to "

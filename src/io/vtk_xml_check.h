@@ -22,7 +22,8 @@ struct ListedPiece {
 /// What a file was found to have.
 struct CheckedVtkXml {
   std::vector<double> times;  ///< of its steps in time; empty: there are none
-  /// Pieces of unstructured grids flag ghosts, of which their list does not speak: VTK shows them.
+  /// A piece of an unstructured grid flags ghosts, but the list of pieces does not name the array:
+  /// VTK shows them.
   bool has_unlisted_ghosts = false;
   std::vector<ListedPiece> pieces;  ///< of a list of structured grids
 };

@@ -388,7 +388,7 @@ NRRD_ROW(kinds, "kinds", honored) {
   EXPECT_EQ(read_components(write("a.nrrd", four), options).size(), 2u);
   expect_told(notes, "do not say what axis 4 is");
 }
-/// Values of two volumes, those of a point beside each other, of which the first one counts.
+/// Returns a file with two values at each point. The first ones are counting().
 std::string beside_each_other(const std::string& kinds, const std::string& more) {
   std::string header = nrrd("kinds: " + kinds + "\n" + more);
   header.erase(header.size() - bytes_of(counting()).size());

@@ -26,7 +26,7 @@ std::vector<std::string> notes_of(const std::filesystem::path& file) {
 
 class DifferingPages : public test::DescribedKeys {
  protected:
-  /// One file of four pages, of which the last two are changed.
+  /// Writes one file of four pages, and changes the last two of them.
   template <class Change>
   std::filesystem::path pages(const Change& change) {
     test::TiffFile file(false);
@@ -37,7 +37,7 @@ class DifferingPages : public test::DescribedKeys {
     }
     return write("pages.tif", file.bytes());
   }
-  /// Four files, of which the last two are changed.
+  /// Writes four files, and changes the last two of them.
   template <class Change>
   std::filesystem::path files(const Change& change) {
     for (int k = 0; k < 4; ++k) {
