@@ -79,9 +79,10 @@ def test_arguments_are_the_modules():
 
 
 def test_everything_public_is_in_the_package():
-    hidden = {"ViewerServer", "axis_roles", "changed_function", "choose_look", "grey_colors",
-              "grows_downwards", "is_color_map", "linear_color", "look_lights", "picture_advice",
-              "save_scene", "space_axes", "unit_factors"} | KERNELS
+    hidden = {"ViewerServer", "axis_roles", "changed_function", "choose_look", "foreign_names",
+              "grey_colors", "grows_downwards", "is_color_map", "linear_color", "look_lights",
+              "picture_advice", "save_scene", "space_axes", "unit_factors",
+              "unwrapped_longitudes"} | KERNELS
     has = {name for name in vars(_pellucid) if not name.startswith("_")} - hidden
     assert has <= set(pellucid.__all__)
     assert all(hasattr(pellucid, name) for name in pellucid.__all__)
