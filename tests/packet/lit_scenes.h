@@ -72,6 +72,14 @@ inline void look_at_data(Scene& scene, std::mt19937& random) {
         {HeadLight{}, random_color(random)},
         {DirectionalLight{{both(random), both(random), both(random)}}, random_color(random)}};
   }
+  if (unit(random) < 0.5) {
+    // Among the data, beside them or far away.
+    const double far = std::pow(10, -0.3 + 3 * unit(random));
+    if (unit(random) < 0.5) scene.lights.clear();
+    scene.lights.push_back(
+        {PointLight{{far * both(random), far * both(random), far * both(random)}},
+         random_color(random)});
+  }
   scene.camera.position = {3 * both(random), 3 * both(random), 4};
   scene.camera.focal_point = {0.3, 0.2, 0.1};
   scene.camera.vertical_angle = 35;

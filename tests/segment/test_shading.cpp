@@ -37,27 +37,46 @@ struct ShadedCell {
   std::vector<LightSource<double>> lights;
   double length, first, change;
   CubicBernstein<double> data;
+  double factor = 1, factor_change = 0;  ///< of the extinction, along `magnitude`
+  CubicBernstein<double> magnitude{};
 
   Material<double> at(double u) const {
     const Lit<double> lit = light_up(reflection, lights.data(), static_cast<int>(lights.size()),
-                                     along.at(u), Vec3<double>{}, along.to_eye);
-    return {first + change * evaluate(data, u), lit.apply({0.5, 1, 0})};
+                                     along.at(u), along.position(u), along.to_eye);
+    return {
+        (first + change * evaluate(data, u)) * (factor + factor_change * evaluate(magnitude, u)),
+        lit.apply({0.5, 1, 0})};
   }
   bool has_kink() const {
     for (const LightSource<double>& light : lights) {
-      const LightDirections<double> to = directions(light, Vec3<double>{}, along.to_eye);
-      if (turns_away_from(to.light)) return true;
-      if (has_kink_in_highlight(reflection) && turns_away_from(to.half)) return true;
+      const auto to = [&](double u) { return directions(light, along.position(u), along.to_eye); };
+      if (turns_away_from([&](double u) { return to(u).light; })) return true;
+      if (has_kink_in_highlight(reflection) &&
+          turns_away_from([&](double u) { return to(u).half; })) {
+        return true;
+      }
     }
     return false;
   }
-  bool turns_away_from(const Vec3<double>& direction) const {
-    const CubicBernstein<double> f = along.along(direction);
+  template <class DirectionAt>
+  bool turns_away_from(const DirectionAt& direction) const {
+    const auto facing = [&](double u) { return dot(along.at(u), direction(u)); };
     for (int i = 1; i <= 40; ++i) {
-      if (evaluate(f, i / 40.0) * f.b[0] < 0) return true;
+      if (facing(i / 40.0) * facing(0) < 0) return true;
     }
     return false;
   }
+  /// The factor by which the distance of point lights makes the color turn faster (LightLanes).
+  double turns_of_distance() const {
+    double most = 1;
+    for (const LightSource<double>& light : lights) {
+      if (light.kind != LightSource<double>::Kind::point) continue;
+      const double away = length_of(light.place - along.middle), half = along.half_length;
+      most = std::max(most, (away + half) / (away - half));
+    }
+    return most * most;
+  }
+  static double length_of(const Vec3<double>& v) { return pellucid::length(v); }
   template <int Nodes>
   Rgb<double> color() const {
     return detail::panel_color(
@@ -79,7 +98,10 @@ struct ShadedCell {
   }
 };
 
-ShadedCell random_cell(std::mt19937& random) {
+/// What cells may have: point lights, from eight cells on; a factor of the extinction.
+enum class With { distant_lights, points, factors };
+
+ShadedCell random_cell(std::mt19937& random, With with) {
   std::uniform_real_distribution<double> unit(0, 1), both(-1, 1);
   const auto direction = [&] {
     for (;;) {
@@ -110,12 +132,22 @@ ShadedCell random_cell(std::mt19937& random) {
       light.kind = LightSource<double>::Kind::directional;
       light.place = direction();
     }
+    if (with == With::points && unit(random) < 0.7) {
+      light.kind = LightSource<double>::Kind::point;
+      light.place = (std::pow(10, 2 * unit(random)) * 17) * direction();
+      cell.along.half_length = 1;
+    }
     cell.lights.push_back(light);
   }
   cell.length = std::pow(10, -1 + 1.7 * unit(random));
   cell.first = unit(random);
   cell.change = unit(random) - cell.first;
   for (double& b : cell.data.b) b = unit(random);
+  if (with == With::factors) {
+    cell.factor = unit(random) < 0.3 ? 0 : unit(random);
+    cell.factor_change = unit(random) - cell.factor;
+    for (double& b : cell.magnitude.b) b = unit(random);
+  }
   return cell;
 }
 
@@ -129,9 +161,11 @@ NodeErrors node_errors(const ShadedCell& cell) {
   NodeErrors result;
   const Bounds<double> squares = cell.along.square();
   const double flat = cell.reflection.flat_square;
-  const double depth = cell.length * (cell.first + cell.change * cell.data.mean());
+  const double depth =
+      detail::PanelNodes<4, double>(cell.length, [&](double u) { return cell.at(u); }).total;
   if (!(squares.upper + flat > 0) || depth > 8 || cell.has_kink()) return result;
-  const double turns = std::min((squares.upper + flat) / (squares.lower + flat), 1e30);
+  const double turns =
+      std::min((squares.upper + flat) / (squares.lower + flat) * cell.turns_of_distance(), 1e30);
   const LitBounds<double> bounds =
       light_bounds(cell.reflection, cell.lights.data(), static_cast<int>(cell.lights.size()),
                    cell.along, squares);
@@ -152,12 +186,21 @@ NodeErrors node_errors(const ShadedCell& cell) {
   return result;
 }
 
-TEST(Shading, ErrorsOfNodesAreThoseOfRandomCells) {
+class ShadingOfNodes : public testing::TestWithParam<With> {};
+INSTANTIATE_TEST_SUITE_P(Cells, ShadingOfNodes,
+                         testing::Values(With::distant_lights, With::points, With::factors),
+                         [](const auto& of) {
+                           return of.param == With::points    ? "WithPointLights"
+                                  : of.param == With::factors ? "WithFactors"
+                                                              : "WithDistantLights";
+                         });
+
+TEST_P(ShadingOfNodes, ErrorsAreThoseOfRandomCells) {
   std::mt19937 random(11);
   double of_three = 0, of_six = 0;
   int seen = 0, large = 0;
   for (int n = 0; n < 60000; ++n) {
-    const NodeErrors errors = node_errors(random_cell(random));
+    const NodeErrors errors = node_errors(random_cell(random, GetParam()));
     if (!errors.known) continue;
     ++seen;
     ASSERT_LE(errors.three, worst_of_nodes) << n;
@@ -173,7 +216,7 @@ TEST(Shading, ErrorsOfNodesAreThoseOfRandomCells) {
 }
 
 /// Climbs from random cells to the worst ones nearby.
-TEST(Shading, ErrorsOfNodesAreBelowTheWorstThatClimbingFinds) {
+TEST_P(ShadingOfNodes, ErrorsAreBelowTheWorstThatClimbingFinds) {
   std::mt19937 random(12);
   std::uniform_real_distribution<double> unit(0, 1), both(-1, 1);
   double worst = 0;
@@ -182,7 +225,7 @@ TEST(Shading, ErrorsOfNodesAreBelowTheWorstThatClimbingFinds) {
       const NodeErrors errors = node_errors(cell);
       return !errors.known ? 0.0 : start % 2 == 0 ? errors.three : errors.six;
     };
-    ShadedCell best = random_cell(random);
+    ShadedCell best = random_cell(random, GetParam());
     double highest = score(best), step = 0.3;
     for (int n = 0; n < 250; ++n) {
       ShadedCell other = best;

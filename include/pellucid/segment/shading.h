@@ -141,6 +141,10 @@ struct GradientStretch {
   PELLUCID_HD Vec3<T> at(T u) const noexcept {
     return {evaluate(component[0], u), evaluate(component[1], u), evaluate(component[2], u)};
   }
+  /// Returns the place of u in the world.
+  PELLUCID_HD Vec3<T> position(T u) const noexcept {
+    return middle - to_eye * ((T(2) * u - T(1)) * half_length);
+  }
   /// Returns its component along a direction.
   PELLUCID_HD CubicBernstein<T> along(const Vec3<T>& d) const noexcept {
     CubicBernstein<T> result;
@@ -279,6 +283,35 @@ PELLUCID_HD T color_doubt(const Reflection<T>& reflection, const LightSource<T>*
   const T least = squares.lower + reflection.flat_square;
   const T turn = least > T(0) ? min(T(2) * doubt / sqrt(least), T(1)) : T(1);
   return detail::color_change(reflection, lights, count, largest_color, turn);
+}
+
+/// Returns how far a color may be off because the places of a stretch are off, from point lights,
+/// by at most `off`: the direction to a light turns by off over its distance, and the one half-way
+/// to the eye by 2 / |l + v| times that. Infinite where a light may be on the stretch.
+template <class T>
+PELLUCID_HD T place_doubt(const Reflection<scalar_t<T>>& reflection,
+                          const LightSource<scalar_t<T>>* lights, int count,
+                          const GradientStretch<T>& stretch, T largest_color, T off) noexcept {
+  using S = scalar_t<T>;
+  T sum = T(0);
+  for (int i = 0; i < count; ++i) {
+    if (lights[i].kind != LightSource<S>::Kind::point) continue;
+    const LightDirections<T> to = directions(lights[i], stretch.middle, stretch.to_eye);
+    const Vec3<S>& p = lights[i].place;
+    const T away =
+        length(Vec3<T>{T(p.x), T(p.y), T(p.z)} - stretch.middle) - stretch.half_length - off;
+    const auto outside = away > T(0);
+    const T least = select(outside, away, T(1));
+    const T turn = min(off / least, T(1));
+    const T apart = length(to.light + stretch.to_eye) - T(2) * (stretch.half_length + off) / least;
+    const auto before = apart > T(1e-6);
+    const T half_turn = select(before, T(2) * turn / select(before, apart, T(1)), T(1));
+    const T one = T(reflection.diffuse) * largest_color * turn +
+                  T(reflection.specular) * min(T(reflection.power) * half_turn, T(1));
+    sum += select(outside, T(largest_component(lights[i].color)) * one,
+                  T(std::numeric_limits<S>::infinity()));
+  }
+  return sum;
 }
 
 /// What light makes of colors anywhere on a stretch.

@@ -11,17 +11,46 @@
 namespace pellucid {
 namespace {
 
-LightSource<float> in_float(const LightSource<double>& light) {
+/// `middle`: of the grid.
+LightSource<float> in_float(const LightSource<double>& light, const Vec3<double>& middle) {
   const auto single = [](double x) { return static_cast<float>(x); };
   LightSource<float> result;
   result.kind = static_cast<LightSource<float>::Kind>(light.kind);
-  result.place = {single(light.place.x), single(light.place.y), single(light.place.z)};
+  const bool is_point = light.kind == LightSource<double>::Kind::point;
+  const Vec3<double> place = is_point ? light.place - middle : light.place;
+  result.place = {single(place.x), single(place.y), single(place.z)};
   result.color = {single(light.color.r), single(light.color.g), single(light.color.b)};
   return result;
 }
 
-bool is_moderate_gradient(double x) {
+bool has_moderate_square(double x) {
   return x == 0 || (x > 1e-12 && x < 1e12);
+}
+
+/// Returns the middle of a grid in the world.
+Vec3<double> middle_of(const Volume& volume) {
+  Vec3<double> sum;
+  for (const Vec3<double>& corner : volume.world_corners()) sum = sum + corner;
+  return sum * 0.125;
+}
+
+/// Puts the lights into `result`, and where they and the grid are, seen from the grid's middle.
+void place_lights(const Volume& volume, const std::vector<LightSource<double>>& lights,
+                  PacketLight& result) {
+  const Vec3<double> middle = middle_of(volume);
+  double farthest = 0;
+  for (const Vec3<double>& corner : volume.world_corners()) {
+    farthest = std::max(farthest, length(corner - middle));
+  }
+  for (const LightSource<double>& light : lights) {
+    result.light[result.lights++] = in_float(light, middle);
+    if (light.kind != LightSource<double>::Kind::point) continue;
+    ++result.points;
+    farthest = std::max(farthest, length(light.place - middle));
+  }
+  result.farthest = static_cast<float>(farthest);
+  const Vec3<double> origin = volume.world_from_grid().point({0, 0, 0}) - middle;
+  for (int c = 0; c < 3; ++c) result.world_origin[c] = origin[c];
 }
 
 }  // namespace
@@ -33,19 +62,15 @@ std::optional<PacketLight> packet_light(const LayerLook& look, const Reflection<
   if (r != nullptr) {
     const VolumeStatistics& data = volume.statistics();
     const double steepest = (data.maximum - data.minimum) / voxel_of(look.layer());
-    if (!is_moderate_gradient(steepest) || !is_moderate_gradient(std::sqrt(r->flat_square)) ||
-        lights.size() > std::size_t{PacketLight::most_lights} ||
-        std::ranges::any_of(lights, [](const LightSource<double>& light) {
-          return light.kind == LightSource<double>::Kind::point;
-        })) {
+    if (!has_moderate_square(steepest) || !has_moderate_square(std::sqrt(r->flat_square)) ||
+        lights.size() > std::size_t{PacketLight::most_lights}) {
       return std::nullopt;
     }
     const auto single = [](double x) { return static_cast<float>(x); };
     result.reflection = {single(r->ambient), single(r->diffuse), single(r->specular),
                          single(r->power), single(r->flat_square)};
-    for (const LightSource<double>& light : lights) {
-      result.light[result.lights++] = in_float(light);
-    }
+    place_lights(volume, lights, result);
+    if (!has_moderate_square(static_cast<double>(result.farthest))) return std::nullopt;
     result.of_field = look.layer().shading->gradient == GradientKind::field ? 1 : 0;
   }
   for (int c = 0; c < 3; ++c) {
@@ -75,7 +100,8 @@ std::unique_ptr<const GridLight> GridLight::make(const Layer& layer,
   auto result = std::unique_ptr<GridLight>(new GridLight(layer, lights, wanted));
   const auto light =
       packet_light(result->look_, result->look_.reflection(), result->volume_, result->lights_);
-  if (!light) return nullptr;
+  // Where it turns its edge to the direction half-way to a point light is no place packets know.
+  if (!light || (light->points > 0 && has_kink_in_highlight(light->reflection))) return nullptr;
   result->light_ = *light;
   return result;
 }

@@ -16,7 +16,7 @@
 namespace pellucid {
 
 /// Returns a layer's light as packets see it; of an unlit layer, the world alone. None: packets
-/// have no such light: point lights, more than they hold, numbers whose squares binary32 has not.
+/// have no such light: more than they hold, numbers whose squares binary32 has not.
 std::optional<PacketLight> packet_light(const LayerLook& look, const Reflection<double>* reflection,
                                         const Volume& volume,
                                         const std::vector<LightSource<double>>& lights);
@@ -27,8 +27,8 @@ bool fits_single(const Volume& volume);
 class GridLight {
  public:
   /// Null where packets have no light for the layer: gradient opacity, surfaces, proofs, data that
-  /// binary32 does not hold, and what packet_light() has not. All that is given must outlive the
-  /// object.
+  /// binary32 does not hold, highlights of point lights with a kink, and what packet_light() has
+  /// not. All that is given must outlive the object.
   static std::unique_ptr<const GridLight> make(const Layer& layer, const std::vector<Light>& lights,
                                                const RayTolerance& wanted);
 

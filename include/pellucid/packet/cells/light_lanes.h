@@ -156,6 +156,29 @@ class GradientLoads {
   mutable float has_before_[3][N] = {}, has_behind_[3][N] = {}, flat_[3][N] = {};
 };
 
+/// Returns places in the world, from the middle of the grid, of plane coordinates.
+template <class Value, int N>
+Vec3<Batch<float, N>> place_in_world(const PacketGrid<Value>& grid, const PacketLight& light,
+                                     const Batch<std::int32_t, N> (&cell)[3],
+                                     const Vec3<Batch<double, N>>& in_cell) noexcept {
+  using D = Batch<double, N>;
+  Vec3<Batch<float, N>> result;
+  for (int c = 0; c < 3; ++c) {
+    D sum(light.world_origin[c]);
+    for (int a = 0; a < 3; ++a) {
+      const D at = convert<double>(cell[a]) + in_cell[a] - D(static_cast<double>(grid.padding[a]));
+      sum = multiply_add(D(light.world_direction[c][a]), at, sum);
+    }
+    result[c] = convert<float>(sum);
+  }
+  return result;
+}
+
+/// What places that place_in_world() returns, and others along a cell, may be off by.
+inline float place_rounding(const PacketLight& light) noexcept {
+  return 8 * rounding_unit<float> * light.farthest;
+}
+
 /// Returns the directions in the world from which the lanes' rays come, of length 1.
 template <class Value, int N>
 Vec3<Batch<float, N>> direction_to_eye(const PacketLight& light,
@@ -193,7 +216,7 @@ class LightLanes {
 
   LightLanes(const PacketGrid<Value>& grid, const PacketLight& light,
              const BlockMarch<Value, N>& rays) noexcept
-      : light_(light), loads_(grid, light), to_eye_(direction_to_eye(light, rays)) {
+      : grid_(grid), light_(light), loads_(grid, light), to_eye_(direction_to_eye(light, rays)) {
     const Reflection<float>& r = light.reflection;
     float brightest = r.ambient;
     for (int i = 0; i < light.lights; ++i) {
@@ -202,10 +225,18 @@ class LightLanes {
     inverse_light_ = brightest > 0 ? 1 / brightest : 0;
   }
 
-  /// Begins spans.
-  [[gnu::noinline]] void begin(M lanes, const CellPlaces<N>& places) noexcept {
+  /// Begins spans. Returns the lanes in which a point light is too near for nodes.
+  [[gnu::noinline]] M begin(M lanes, const CellPlaces<N>& places) noexcept {
     loads_(lanes, places, gradient_);
+    M near(false);
+    if (light_.points > 0) {
+      const Vec3<F> entry = place_in_world(grid_, light_, places.cell, places.entry);
+      for (int c = 0; c < 3; ++c) entry_[c] = select(lanes, entry[c], entry_[c]);
+      length_ = select(lanes, convert<float>(places.length), length_);
+      near = lanes & (distance_to_lights() < F(nearest_light) * length_);
+    }
     kink_ = select(lanes, next_kink(lanes, F(0)), kink_);
+    return near;
   }
 
   /// Where the next piece has to end, as a share of the cell: where g·l changes its sign, or g·h if
@@ -221,11 +252,7 @@ class LightLanes {
   [[gnu::noinline]] LightOfPiece<N> measure(const SpanPiece<float, N>& piece, F from, F to,
                                             const BinnedTransfer& transfer) const noexcept {
     LightOfPiece<N> result;
-    result.along = {{restrict_to(gradient_[0], from, to), restrict_to(gradient_[1], from, to),
-                     restrict_to(gradient_[2], from, to)},
-                    {},
-                    F(0),
-                    to_eye_};
+    result.along = along(from, to);
     const Bounds<F> squares = result.along.square();
     const LitBounds<F> bounds =
         light_bounds(light_.reflection, light_.light, light_.lights, result.along, squares);
@@ -237,7 +264,9 @@ class LightLanes {
                     largest * largest_component(bounds.upper.factor - bounds.lower.factor) +
                     largest_component(bounds.upper.added - bounds.lower.added);
     const F flat = F(light_.reflection.flat_square);
-    const F turns = (squares.upper + flat) / max(squares.lower + flat, F(smallest_normal<float>));
+    // The direction to a point light has its distance for a denominator, as the normal |g|.
+    const F turns = (squares.upper + flat) / max(squares.lower + flat, F(smallest_normal<float>)) *
+                    turns_of_distance(result.along);
     const F one_deviation = F(1.5f / RandomErrors<F>::deviations) * range;
     const auto deviation = [&](F of_nodes) noexcept {
       const F& depth = piece.seen.depth;
@@ -249,6 +278,10 @@ class LightLanes {
     result.color_error = brightest * piece.spread.kinks +
                          color_rounding(light_.reflection, light_.light, light_.lights, squares,
                                         largest, F(gradient_rounding<float>));
+    if (light_.points > 0) {
+      result.color_error += place_doubt(light_.reflection, light_.light, light_.lights,
+                                        result.along, largest, F(place_rounding(light_)));
+    }
     // The same for pieces that mirror each other.
     const F feature[LikeErrors<F>::features] = {
         F(1) / turns, F(inverse_light_) * (brightest + largest_component(bounds.upper.added)),
@@ -272,7 +305,7 @@ class LightLanes {
       const Rgb<F> unlit = color_at(
           transfer, clamp(value, piece.seen.color_lower, piece.seen.color_upper), lanes, known);
       const Lit<F> lit = light_up(light_.reflection, light_.light, light_.lights, of.along.at(u),
-                                  Vec3<F>{}, to_eye_);
+                                  of.along.position(u), to_eye_);
       const F extinction = max(interval.at_lower + interval.slope * (value - interval.lower), F(0));
       return Material<F>{extinction, lit.apply(unlit)};
     });
@@ -280,18 +313,59 @@ class LightLanes {
   }
 
  private:
+  using Kind = LightSource<float>::Kind;
+  /// How far away a point light has to be, in lengths of the way through the cell.
+  static constexpr float nearest_light = 8;
+
+  /// The gradients on the share [from, to] of the lanes' cells.
+  GradientStretch<F> along(F from, F to) const noexcept {
+    GradientStretch<F> result{
+        {restrict_to(gradient_[0], from, to), restrict_to(gradient_[1], from, to),
+         restrict_to(gradient_[2], from, to)},
+        {},
+        F(0),
+        to_eye_};
+    if (light_.points > 0) {
+      result.middle = entry_ - to_eye_ * (F(0.5f) * (from + to) * length_);
+      result.half_length = F(0.5f) * (to - from) * length_;
+    }
+    return result;
+  }
+
+  static Vec3<F> place_of(const LightSource<float>& light) noexcept {
+    return {F(light.place.x), F(light.place.y), F(light.place.z)};
+  }
+  /// From the lanes' cells to the nearest point light.
+  F distance_to_lights() const noexcept {
+    F nearest(std::numeric_limits<float>::infinity());
+    for (int i = 0; i < light_.lights; ++i) {
+      if (light_.light[i].kind != Kind::point) continue;
+      nearest = min(nearest, length(place_of(light_.light[i]) - entry_) - length_);
+    }
+    return nearest;
+  }
+  /// The largest square of the distance of a point light over the smallest one, on a stretch.
+  F turns_of_distance(const GradientStretch<F>& along) const noexcept {
+    F most(1);
+    for (int i = 0; i < light_.lights; ++i) {
+      if (light_.light[i].kind != Kind::point) continue;
+      const F away = length(place_of(light_.light[i]) - along.middle);
+      const F ratio =
+          (away + along.half_length) / max(away - along.half_length, F(smallest_normal<float>));
+      most = max(most, ratio * ratio);
+    }
+    return most;
+  }
+
   /// Where g·l of any light, or g·h, changes its sign first behind `from`; 2: nowhere.
   [[gnu::noinline]] F next_kink(M lanes, F from) const noexcept {
     F nearest(2);
     from = min(from, F(1));
-    const GradientStretch<F> along{
-        {restrict_to(gradient_[0], from, F(1)), restrict_to(gradient_[1], from, F(1)),
-         restrict_to(gradient_[2], from, F(1))},
-        {},
-        F(0),
-        to_eye_};
-    const auto look_at = [&](const Vec3<F>& direction) noexcept {
-      const CubicBernstein<F> f = along.along(direction);
+    const GradientStretch<F> along = this->along(from, F(1));
+    const auto put = [&](M ends, F place) noexcept {
+      nearest = select(ends, min(nearest, from + (F(1) - from) * place), nearest);
+    };
+    const auto look_at = [&](const CubicBernstein<F>& f, auto&& moved) noexcept {
       const F size = max(abs(f.hull_min()), abs(f.hull_max()));
       const M straddles = lanes & (f.hull_min() < F(0)) & (f.hull_max() > F(0));
       if (none(straddles)) return;
@@ -300,23 +374,63 @@ class LightLanes {
       const PieceEnd<F> end = piece_end(f, select(rises, -far, F(0)), select(rises, F(0), far),
                                         F(1e-6f) * size, straddles);
       // An extremum ends a piece too, and the next one begins there.
-      const M ends = straddles & (end.place < F(1));
-      nearest = select(ends, min(nearest, from + (F(1) - from) * end.place), nearest);
+      put(straddles & (end.place < F(1)), moved(end));
     };
+    const auto here = [](const PieceEnd<F>& end) noexcept { return end.place; };
     const bool highlights = has_kink_in_highlight(light_.reflection);
     for (int i = 0; i < light_.lights; ++i) {
+      if (light_.light[i].kind == Kind::point) {
+        look_at_point(along, light_.light[i], look_at);
+        continue;
+      }
       const LightDirections<F> to = directions(light_.light[i], Vec3<F>{}, to_eye_);
-      look_at(to.light);
-      if (highlights && light_.light[i].kind != LightSource<float>::Kind::head) look_at(to.half);
+      look_at(along.along(to.light), here);
+      if (highlights && light_.light[i].kind != Kind::head) look_at(along.along(to.half), here);
     }
     return nearest;
   }
 
+  /// Looks at g·p of a point light, p = P - x: a polynomial of degree 4. Of Bernstein coefficients
+  /// b, the cubic with b_0, (4 b_1 - b_0) / 3, (4 b_3 - b_4) / 3, b_4 differs from it by u² (1 -
+  /// u)² times the fourth difference of the b, which is small where the light is far away. Newton's
+  /// steps go from the cubic's zero to that of g·p.
+  template <class LookAt>
+  void look_at_point(const GradientStretch<F>& along, const LightSource<float>& light,
+                     const LookAt& look_at) const noexcept {
+    const Vec3<F> to_middle = place_of(light) - along.middle;
+    const Vec3<F> half = along.to_eye * along.half_length;
+    const CubicBernstein<F> first = along.along(to_middle - half);
+    const CubicBernstein<F> last = along.along(to_middle + half);
+    const F b[5] = {first.b[0], F(0.75f) * first.b[1] + F(0.25f) * last.b[0],
+                    F(0.5f) * (first.b[2] + last.b[1]),
+                    F(0.25f) * first.b[3] + F(0.75f) * last.b[2], last.b[3]};
+    constexpr float third = 1.0f / 3;
+    look_at(
+        CubicBernstein<F>{
+            {b[0], F(third) * (F(4) * b[1] - b[0]), F(third) * (F(4) * b[3] - b[4]), b[4]}},
+        [&](const PieceEnd<F>& end) noexcept {
+          F at = end.place;
+          for (int step = 0; step < 2; ++step) {
+            const CubicBernstein<F> low{{b[0], b[1], b[2], b[3]}}, high{{b[1], b[2], b[3], b[4]}};
+            const F lower = evaluate(low, at), upper = evaluate(high, at);
+            const F value = interpolate(lower, upper, at), slope = F(4) * (upper - lower);
+            const F move = value / select(slope == F(0), F(1), slope);
+            const M steps = end.crosses & (abs(move) <= F(0.125f));
+            at = select(steps, clamp(at - move, F(0), F(1)), at);
+          }
+          return at;
+        });
+  }
+
+  const PacketGrid<Value>& grid_;
   const PacketLight& light_;
   GradientLoads<Value, N> loads_;
   Vec3<F> to_eye_;
   float inverse_light_;  ///< 1 / the brightest factor of a color
   CubicBernstein<F> gradient_[3];
+  // Of the lanes' cells, if there are point lights:
+  Vec3<F> entry_{F(0), F(0), F(0)};  ///< in the world, from the middle of the grid
+  F length_{1};                      ///< of the way through them, world length
   F kink_{2};
 };
 

@@ -156,7 +156,9 @@ class PacketIntegrator {
     if (any(in_double)) wait_for_double(in_double);
     if constexpr (is_lit) {
       const M begun = lanes & !handed_back_;
-      if (any(begun)) light_.begin(begun, places_of(begun, code_));
+      if (any(begun)) {
+        handed_back_ = handed_back_ | light_.begin(begun, places_of(begun, code_));
+      }
     }
     constant_ += select(lanes & whole_block_, I(1), I(0));
   }

@@ -161,9 +161,17 @@ class SurfacePacket {
       GradientStretch<F> along;
       along.to_eye = to_eye_;
       gradients_(lanes, places, along.component);
+      if (light_.points > 0) {
+        const Vec3<D> in_cell = places.entry + (places.exit - places.entry) * convert<double>(u);
+        along.middle = place_in_world(grid_, light_, places.cell, in_cell);
+      }
       color = light_surface(light_.reflection, light_.light, light_.lights, along, u, u_error,
                             length_, color, F(static_cast<float>(job_.largest_color)), error);
       error += F(surfaces_.color_rounding);
+      if (light_.points > 0) {
+        error += place_doubt(light_.reflection, light_.light, light_.lights, along,
+                             F(static_cast<float>(job_.largest_color)), F(place_rounding(light_)));
+      }
     }
     if (job_.depth != 0) {
       note_depth(lanes & (opacity >= F(1)) & (u_error < F(1e-3f)),
