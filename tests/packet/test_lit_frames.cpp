@@ -4,14 +4,30 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <memory>
 #include <optional>
 #include <random>
+#include <vector>
 
 #include "tests/packet/instruction_sets.h"
 #include "tests/packet/lit_scenes.h"
 
 namespace pellucid {
 namespace {
+
+/// Of gradients of data up to 200: none, few or many of them show.
+std::shared_ptr<const GradientOpacity> random_factor(std::mt19937& random) {
+  std::uniform_real_distribution<double> unit(0, 1);
+  std::vector<GradientOpacity::Point> points;
+  double gradient = unit(random) < 0.5 ? 0 : 30 * unit(random);
+  for (int n = 0; n < 2 + static_cast<int>(4 * unit(random)); ++n) {
+    points.push_back({gradient, unit(random) < 0.3 ? 0 : 1.5 * unit(random)});
+    gradient += (unit(random) < 0.3 ? 3 : 60) * (0.01 + unit(random));
+  }
+  const auto unit_of_length =
+      unit(random) < 0.7 ? GradientOpacity::Unit::voxel : GradientOpacity::Unit::world;
+  return std::make_shared<const GradientOpacity>(points, unit_of_length);
+}
 
 Scene random_scene(std::mt19937& random, int kind) {
   std::uniform_real_distribution<double> unit(0, 1);
@@ -24,7 +40,9 @@ Scene random_scene(std::mt19937& random, int kind) {
   }
   points.push_back({200, 3 * unit(random), color()});
   Layer layer{VolumeContent{any_volume(random, kind, 0.01), scenes::transfer(points), nullptr}};
-  layer.shading = random_shading(random);
+  const double look = unit(random);
+  if (look < 0.8) layer.shading = random_shading(random);
+  if (look > 0.5) layer.gradient_opacity = random_factor(random);
   Scene scene;
   scene.layers = {layer};
   look_at_data(scene, random);

@@ -2,11 +2,12 @@
 #pragma once
 
 #include "pellucid/segment/shading.h"
+#include "pellucid/transfer/binned.h"
 
 namespace pellucid {
 
-/// The light of one variable on a grid as packets see it. Plain numbers, the same for every
-/// instruction set.
+/// The light of one variable on a grid, and its gradient opacity, as packets see them. Plain
+/// numbers, the same for every instruction set.
 struct PacketLight {
   static constexpr int most_lights = 8;
 
@@ -16,6 +17,8 @@ struct PacketLight {
   int points = 0;                  ///< of these, point lights
   float farthest = 0;              ///< of the grid or a light from that middle, world length
   int of_field = 0;                ///< 1: the gradient of the field itself, else `smooth`
+  /// Factors of the extinction by the magnitude of the `smooth` gradient, as extinctions; null: 1.
+  const BinnedTransfer* factor = nullptr;
   float world_gradient[3][3]{};    ///< [c][a]: world component c by grid component a
   double world_direction[3][3]{};  ///< the same for directions
   double world_origin[3]{};        ///< the grid's coordinates 0, from its middle in the world

@@ -27,6 +27,12 @@ bool has_moderate_square(double x) {
   return x == 0 || (x > 1e-12 && x < 1e12);
 }
 
+/// Returns the largest gradient that data of this range may have between two values.
+double steepest_gradient(const LayerLook& look, const Volume& volume) {
+  const VolumeStatistics& data = volume.statistics();
+  return (data.maximum - data.minimum) / voxel_of(look.layer());
+}
+
 /// Returns the middle of a grid in the world.
 Vec3<double> middle_of(const Volume& volume) {
   Vec3<double> sum;
@@ -59,9 +65,12 @@ std::optional<PacketLight> packet_light(const LayerLook& look, const Reflection<
                                         const Volume& volume,
                                         const std::vector<LightSource<double>>& lights) {
   PacketLight result;
-  if (r != nullptr) {
-    const VolumeStatistics& data = volume.statistics();
-    const double steepest = (data.maximum - data.minimum) / voxel_of(look.layer());
+  if (r == nullptr) {
+    // All colors as they are, and no normal that turns.
+    result.reflection.ambient = 1;
+    result.reflection.flat_square = 1e30f;
+  } else {
+    const double steepest = steepest_gradient(look, volume);
     if (!has_moderate_square(steepest) || !has_moderate_square(std::sqrt(r->flat_square)) ||
         lights.size() > std::size_t{PacketLight::most_lights}) {
       return std::nullopt;
@@ -92,9 +101,8 @@ std::unique_ptr<const GridLight> GridLight::make(const Layer& layer,
                                                  const std::vector<Light>& lights,
                                                  const RayTolerance& wanted) {
   const auto* const content = std::get_if<VolumeContent>(&layer.content);
-  if (content == nullptr || content->mask || !layer.shading || layer.gradient_opacity ||
-      has_surfaces(layer) || wanted.grade == Grade::proved || lights.empty() ||
-      !fits_single(*content->volume)) {
+  if (content == nullptr || content->mask || has_surfaces(layer) || wanted.grade == Grade::proved ||
+      (layer.shading && lights.empty()) || !fits_single(*content->volume)) {
     return nullptr;
   }
   auto result = std::unique_ptr<GridLight>(new GridLight(layer, lights, wanted));
@@ -103,6 +111,7 @@ std::unique_ptr<const GridLight> GridLight::make(const Layer& layer,
   // Where it turns its edge to the direction half-way to a point light is no place packets know.
   if (!light || (light->points > 0 && has_kink_in_highlight(light->reflection))) return nullptr;
   result->light_ = *light;
+  if (layer.gradient_opacity && !result->add_factor(*layer.gradient_opacity)) return nullptr;
   return result;
 }
 
@@ -111,8 +120,25 @@ GridLight::GridLight(const Layer& layer, const std::vector<Light>& lights,
     : volume_(*std::get<VolumeContent>(layer.content).volume),
       wanted_(wanted),
       look_(layer),
-      lights_(light_sources(lights)),
-      gradient_(volume_, layer.shading->gradient) {}
+      lights_(light_sources(lights)) {
+  if (layer.shading) gradient_.emplace(volume_, layer.shading->gradient);
+  if (layer.gradient_opacity) magnitude_.emplace(volume_, GradientKind::smooth);
+}
+
+/// Returns false where control points are so close that binary32 does not tell magnitudes apart
+/// there.
+bool GridLight::add_factor(const GradientOpacity& factor) {
+  const double steepest = steepest_gradient(look_, volume_);
+  const PiecewiseLinear<double>& table = *look_.extinction_factor();
+  for (int i = 0; i + 1 < table.count; ++i) {
+    if (!(table.value[i + 1] - table.value[i] > 1e-5 * steepest)) return false;
+  }
+  if (!has_moderate_square(steepest) || !(factor.largest_factor() < 1e6)) return false;
+  factor_.emplace(table, steepest);
+  light_.factor = &factor_->view();
+  largest_factor_ = std::max(factor.largest_factor(), 1.0);
+  return true;
+}
 
 void GridLight::integrate(const StructuredWalk<double>::Step& step, const Ray<double>& world,
                           const PellucidCell& cell, const TransferTables& transfer,
@@ -128,7 +154,8 @@ void GridLight::integrate(const StructuredWalk<double>::Step& step, const Ray<do
     return trilinear_cubic(grid.template corners<double>(step.cell[0], step.cell[1], step.cell[2]),
                            step.entry, step.exit);
   });
-  gradient_.along(step, stretch.gradient);
+  if (gradient_) gradient_->along(step, stretch.gradient);
+  if (magnitude_) stretch.magnitude = magnitude_->magnitude_along(step);
   const ChannelTable<double> table{0, transfer.wide};
   const MultivariateTransfer<double> function = transfer_of(table);
   LitParts parts(lights_);
@@ -140,7 +167,8 @@ void GridLight::integrate(const StructuredWalk<double>::Step& step, const Ray<do
   const double off = data_rounding(data);
   const int first = transfer.wide.interval(data.hull_min() - off);
   const int last = transfer.wide.interval(data.hull_max() + off);
-  const double most = sensitivity(transfer.wide, first, last, off).largest_extinction;
+  const double most =
+      largest_factor_ * sensitivity(transfer.wide, first, last, off).largest_extinction;
   const double opacity = std::min(most * (range.end - range.begin), 1.0);
   RayTolerance wanted = wanted_;
   wanted.tolerance = std::max(cell.allowance_per_opacity * opacity + cell.allowance_flat, 1e-12);

@@ -11,6 +11,7 @@
 #include "pellucid/packet/interface.h"
 #include "pellucid/packet/light.h"
 #include "pellucid/render/integrate_cell.h"
+#include "pellucid/scene/binned_transfer_storage.h"
 #include "pellucid/scene/scene.h"
 
 namespace pellucid {
@@ -23,16 +24,19 @@ std::optional<PacketLight> packet_light(const LayerLook& look, const Reflection<
 /// Returns whether binary32 holds all values of the data's type.
 bool fits_single(const Volume& volume);
 
-/// The light of a volume as packets see it, and cells that packets hand back.
+/// The light of a volume and its gradient opacity as packets see them, and cells that packets hand
+/// back.
 class GridLight {
  public:
-  /// Null where packets have no light for the layer: gradient opacity, surfaces, proofs, data that
-  /// binary32 does not hold, highlights of point lights with a kink, and what packet_light() has
+  /// Null where packets have no light for the layer: surfaces, proofs, data that binary32 does not
+  /// hold, highlights of point lights with a kink, factors with jumps, and what packet_light() has
   /// not. All that is given must outlive the object.
   static std::unique_ptr<const GridLight> make(const Layer& layer, const std::vector<Light>& lights,
                                                const RayTolerance& wanted);
 
   const PacketLight& view() const noexcept { return light_; }
+  /// Returns the largest factor of the extinction.
+  double largest_factor() const noexcept { return largest_factor_; }
   /// Integrates a part of a cell. `step`: the ray's way through it; `world`: the ray.
   void integrate(const StructuredWalk<double>::Step& step, const Ray<double>& world,
                  const PellucidCell& cell, const TransferTables& transfer,
@@ -40,12 +44,15 @@ class GridLight {
 
  private:
   GridLight(const Layer& layer, const std::vector<Light>& lights, const RayTolerance& wanted);
+  bool add_factor(const GradientOpacity& factor);
 
   const Volume& volume_;
   RayTolerance wanted_;
   LayerLook look_;
   std::vector<LightSource<double>> lights_;
-  GridGradient gradient_;
+  std::optional<GridGradient> gradient_, magnitude_;
+  std::optional<BinnedTransferStorage> factor_;
+  double largest_factor_ = 1;
   PacketLight light_;
 };
 

@@ -95,7 +95,8 @@ PacketTracer::PacketTracer(const Volume& volume, const ClassifiedBlocks& blocks,
   job_.tolerance = wanted.tolerance;
   job_.largest_color = max(wanted.largest_color, 1.0);
   job_.proved = wanted.grade == Grade::proved ? 1 : 0;
-  job_.largest_extinction = transfer.largest_extinction;
+  job_.largest_extinction =
+      transfer.largest_extinction * (light != nullptr ? light->largest_factor() : 1);
   // A sample is rounded, and its place, by 32 u of the largest value, all told; and where it is
   // looked up by 8 u of the control points' range.
   const PiecewiseLinear<double>& table = transfer.wide;
@@ -136,7 +137,8 @@ std::vector<RayResult> PacketTracer::trace(const std::vector<RayPart>& in_grid, 
     to.neighbor_deviation = found[i].neighbor_deviation;
     to.longest_step = found[i].longest_step * rays_apart_(inside.ray[i]);
   }
-  if (!depth) return results;
+  // With a factor of the extinction the general path looks for it.
+  if (!depth || (light_ != nullptr && light_->view().factor != nullptr)) return results;
   volume_.visit([&](const auto& grid) {
     for (const std::size_t n : inside.of) {
       results[n].half_opacity_depth = find_half_opacity(

@@ -75,7 +75,7 @@ UnivariateTracer::UnivariateTracer(const TracerTask& task)
       depth_(task.options.depth),
       step_(integration_.step * volume_.voxel_size()),
       transfer_(transfer_function_) {
-  if (task.layer.shading) {
+  if (task.layer.shading || task.layer.gradient_opacity) {
     light_ = GridLight::make(task.layer, task.lights, wanted_);
     if (!light_) return;
   }
@@ -156,7 +156,8 @@ RayResult UnivariateTracer::trace_one(const StructuredGrid<Value, double>& grid,
 
 std::unique_ptr<const RayTracer> make_univariate_tracer(const TracerTask& task) {
   auto tracer = std::make_unique<UnivariateTracer>(task);
-  if (task.layer.shading && !tracer->suits_light()) return nullptr;
+  const bool needs_light = task.layer.shading || task.layer.gradient_opacity;
+  if (needs_light && !tracer->suits_light()) return nullptr;
   return tracer;
 }
 

@@ -11,8 +11,9 @@ namespace {
 std::unique_ptr<const RayTracer> make_fast_tracer(const TracerTask& task) {
   const LayerContent& content = task.layer.content;
   if (has_surfaces(task.layer)) return make_surface_tracer(task);
-  if (task.layer.gradient_opacity || extinction_factor_of(task.layer) != nullptr) return nullptr;
-  if (task.layer.shading && !std::holds_alternative<VolumeContent>(content)) return nullptr;
+  const bool is_lit = task.layer.shading || task.layer.gradient_opacity;
+  if (is_lit && !std::holds_alternative<VolumeContent>(content)) return nullptr;
+  if (extinction_factor_of(task.layer) != nullptr) return nullptr;
   if (const auto* volume = std::get_if<VolumeContent>(&content)) {
     return volume->mask ? nullptr : make_univariate_tracer(task);
   }

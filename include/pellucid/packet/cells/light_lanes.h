@@ -20,27 +20,51 @@ class GradientLoads {
   GradientLoads(const PacketGrid<Value>& grid, const PacketLight& light) noexcept
       : grid_(grid), light_(light) {}
 
-  /// The gradient's components in the world, along the lanes' ways through their cells.
-  void operator()(M lanes, const CellPlaces<N>& places,
-                  CubicBernstein<F> (&gradient)[3]) const noexcept {
+  /// The gradient's components in the world, along the lanes' ways through their cells, and, if
+  /// there is a factor of it, the magnitude.
+  void operator()(M lanes, const CellPlaces<N>& places, CubicBernstein<F> (&gradient)[3],
+                  CubicBernstein<F>& magnitude) const noexcept {
     load(lanes, places);
     const Vec3<F> entry{convert<float>(places.entry.x), convert<float>(places.entry.y),
                         convert<float>(places.entry.z)};
     const Vec3<F> exit{convert<float>(places.exit.x), convert<float>(places.exit.y),
                        convert<float>(places.exit.z)};
+    CellCorners<F> corners[3];
+    for (int a = 0; a < 3; ++a) corners[a] = derivative(a, light_.of_field != 0);
     CubicBernstein<F> of_axis[3];
-    for (int a = 0; a < 3; ++a) of_axis[a] = trilinear_cubic(derivative(a), entry, exit);
+    for (int a = 0; a < 3; ++a) of_axis[a] = trilinear_cubic(corners[a], entry, exit);
     for (int c = 0; c < 3; ++c) {
-      const float* const w = light_.world_gradient[c];
       for (int k = 0; k < 4; ++k) {
-        const F component =
-            F(w[0]) * of_axis[0].b[k] + F(w[1]) * of_axis[1].b[k] + F(w[2]) * of_axis[2].b[k];
+        const F component = in_world(c, of_axis[0].b[k], of_axis[1].b[k], of_axis[2].b[k]);
         gradient[c].b[k] = select(lanes, component, gradient[c].b[k]);
       }
     }
+    if (light_.factor == nullptr) return;
+    if (light_.of_field != 0) {
+      for (int a = 0; a < 3; ++a) corners[a] = derivative(a, false);
+    }
+    CellCorners<F> size;
+    for (int n = 0; n < 8; ++n) {
+      F square(0);
+      for (int c = 0; c < 3; ++c) {
+        const F x = in_world(c, corners[0].value[n], corners[1].value[n], corners[2].value[n]);
+        square += x * x;
+      }
+      size.value[n] = sqrt(square);
+    }
+    const CubicBernstein<F> along = trilinear_cubic(size, entry, exit);
+    for (int k = 0; k < 4; ++k) magnitude.b[k] = select(lanes, along.b[k], magnitude.b[k]);
   }
 
  private:
+  /// Component c in the world of a gradient in the grid.
+  F in_world(int c, const F& x, const F& y, const F& z) const noexcept {
+    const float* const w = light_.world_gradient[c];
+    return F(w[0]) * x + F(w[1]) * y + F(w[2]) * z;
+  }
+  /// Whether only the corners are needed.
+  bool within_cells() const noexcept { return light_.of_field != 0 && light_.factor == nullptr; }
+
   /// Loads corners and what is beyond them along each axis.
   void load(M lanes, const CellPlaces<N>& places) const noexcept {
     std::int32_t cell[3][N];
@@ -83,7 +107,7 @@ class GradientLoads {
     };
     for (int row = 0; row < 4; ++row) {
       const int j = row & 1, k = row >> 1, n = 2 * row;
-      if (light_.of_field != 0) {
+      if (within_cells()) {
         pair(0, j, k, corner_[n], corner_[n + 1]);
         continue;
       }
@@ -114,7 +138,7 @@ class GradientLoads {
     for (int n = 0; n < 8; ++n) {
       const int i = 1 + (n & 1), j = 1 + (n >> 1 & 1), k = 1 + (n >> 2);
       corner_[n][l] = static_cast<float>(data[at[0][i] + at[1][j] + at[2][k]]);
-      if (light_.of_field != 0) continue;
+      if (within_cells()) continue;
       outside_[0][n][l] = static_cast<float>(data[at[0][i == 1 ? 0 : 3] + at[1][j] + at[2][k]]);
       outside_[1][n][l] = static_cast<float>(data[at[0][i] + at[1][j == 1 ? 0 : 3] + at[2][k]]);
       outside_[2][n][l] = static_cast<float>(data[at[0][i] + at[1][j] + at[2][k == 1 ? 0 : 3]]);
@@ -122,14 +146,14 @@ class GradientLoads {
   }
 
   /// The derivative along an axis at the corners, by the distance of two values (GradientKind).
-  CellCorners<F> derivative(int a) const noexcept {
+  CellCorners<F> derivative(int a, bool of_field) const noexcept {
     CellCorners<F> result;
     const M flat = F::load(flat_[a]) > F(0);
     for (int n = 0; n < 8; ++n) {
       const bool is_upper = (n >> a & 1) != 0;
       const F here = F::load(corner_[n]), other = F::load(corner_[n ^ 1 << a]);
       const F step = is_upper ? here - other : other - here;
-      if (light_.of_field != 0) {
+      if (of_field) {
         result.value[n] = step;
         continue;
       }
@@ -227,7 +251,7 @@ class LightLanes {
 
   /// Begins spans. Returns the lanes in which a point light is too near for nodes.
   [[gnu::noinline]] M begin(M lanes, const CellPlaces<N>& places) noexcept {
-    loads_(lanes, places, gradient_);
+    loads_(lanes, places, gradient_, magnitude_);
     M near(false);
     if (light_.points > 0) {
       const Vec3<F> entry = place_in_world(grid_, light_, places.cell, places.entry);
@@ -236,16 +260,52 @@ class LightLanes {
       near = lanes & (distance_to_lights() < F(nearest_light) * length_);
     }
     kink_ = select(lanes, next_kink(lanes, F(0)), kink_);
+    if (light_.factor != nullptr) {
+      const F largest = max(abs(magnitude_.hull_min()), abs(magnitude_.hull_max()));
+      const F error = F(32 * rounding_unit<float> + gradient_rounding<float>) * largest;
+      magnitude_error_ = select(lanes, error, magnitude_error_);
+      factor_ = find_extinction(*light_.factor, magnitude_.b[0], lanes, interval_);
+      find_factor_end(lanes, F(0));
+    }
     return near;
   }
 
+  bool has_factor() const noexcept { return light_.factor != nullptr; }
   /// Where the next piece has to end, as a share of the cell: where g·l changes its sign, or g·h if
-  /// highlights have a kink there.
-  F kink() const noexcept { return kink_; }
+  /// highlights have a kink there, or the magnitude comes to a control point of the factor.
+  F kink() const noexcept { return min(kink_, factor_end_); }
   /// The lanes have gone past this share of their cells.
   void go_past(M lanes, F to) noexcept {
     const M past = lanes & (to >= kink_ - F(1e-5f)) & (to < F(1));
     if (any(past)) kink_ = select(past, next_kink(past, to + F(2e-3f)), kink_);
+    const M ends = lanes & (to >= factor_end_ - F(1e-6f)) & (to < F(1));
+    if (any(ends)) {
+      interval_ += select(ends & factor_crosses_, select(factor_rises_, I(1), I(-1)), I(0));
+      factor_ = load_extinction<F>(*light_.factor, interval_);
+      find_factor_end(ends, to);
+    }
+  }
+
+  /// Makes the extinction of a piece, the share [from, to] of its cell, what the factor makes of
+  /// it: a polynomial of degree 6, whose depth four nodes have. Lanes in which the factor is not
+  /// known well enough have an infinite depth_error.
+  [[gnu::noinline]] void weaken(SpanPiece<float, N>& piece, F from, F to,
+                                const SpanLanes<float, N>& span, F largest_color) noexcept {
+    part_ = restrict_to(magnitude_, from, to);
+    const detail::PanelNodes<4, F> nodes(piece.length, [&](F u) noexcept {
+      return Material<F>{extinction(piece, span, u), {}};
+    });
+    const F largest = max(factor_at(part_.hull_min()), factor_at(part_.hull_max()));
+    // Where a piece ends beside a control point, as much of the next slope is in it.
+    const F off =
+        F(2) * magnitude_error_ * factor_.steepest + F(16 * rounding_unit<float>) * largest;
+    const F unweakened = span.extinction.largest * piece.length;
+    const M known = factor_known_ & (F(2) * magnitude_error_ < F(light_.factor->narrowest));
+    piece.depth_error = select(known, piece.depth_error * (largest + off) + unweakened * off,
+                               F(std::numeric_limits<float>::infinity()));
+    piece.seen.depth = nodes.total;
+    piece.found.segment = segment_of_depth(nodes.total, Rgb<F>{});
+    piece.add_up_rounding(largest_color);
   }
 
   /// Bounds the light on a piece, the share [from, to] of its cell.
@@ -298,7 +358,6 @@ class LightLanes {
                                  const SpanLanes<float, N>& span, M lanes,
                                  const BinnedTransfer& transfer,
                                  ColorInterval<F>& known) const noexcept {
-    const ExtinctionInterval<F>& interval = span.extinction;
     const CubicBernstein<F>& data = piece.parts.front;
     const detail::PanelNodes<Nodes, F> nodes(piece.length, [&](F u) noexcept {
       const F value = evaluate(data, u);
@@ -306,16 +365,40 @@ class LightLanes {
           transfer, clamp(value, piece.seen.color_lower, piece.seen.color_upper), lanes, known);
       const Lit<F> lit = light_up(light_.reflection, light_.light, light_.lights, of.along.at(u),
                                   of.along.position(u), to_eye_);
-      const F extinction = max(interval.at_lower + interval.slope * (value - interval.lower), F(0));
-      return Material<F>{extinction, lit.apply(unlit)};
+      return Material<F>{extinction(piece, span, u), lit.apply(unlit)};
     });
     return detail::panel_color(nodes);
   }
 
  private:
   using Kind = LightSource<float>::Kind;
+  using I = Batch<std::int32_t, N>;
   /// How far away a point light has to be, in lengths of the way through the cell.
   static constexpr float nearest_light = 8;
+
+  /// The extinction at u of a piece.
+  F extinction(const SpanPiece<float, N>& piece, const SpanLanes<float, N>& span,
+               F u) const noexcept {
+    const ExtinctionInterval<F>& interval = span.extinction;
+    const F value = evaluate(piece.parts.front, u);
+    const F result = max(interval.at_lower + interval.slope * (value - interval.lower), F(0));
+    return light_.factor == nullptr ? result : result * factor_at(evaluate(part_, u));
+  }
+  F factor_at(F magnitude) const noexcept {
+    const F inside = clamp(magnitude, factor_.lower, factor_.upper);
+    return max(factor_.at_lower + factor_.slope * (inside - factor_.lower), F(0));
+  }
+  /// Finds where the magnitude leaves its interval of the factor, or turns, behind `from`.
+  [[gnu::noinline]] void find_factor_end(M lanes, F from) noexcept {
+    const PieceEnd<F> end = piece_end(restrict_to(magnitude_, min(from, F(1)), F(1)), factor_.lower,
+                                      factor_.upper, magnitude_error_, lanes);
+    // No piece is empty: what is behind the end in it is too little to matter.
+    const F place = from + max((F(1) - from) * end.place, F(2e-6f));
+    factor_end_ = select(lanes, select(end.place < F(1), place, F(2)), factor_end_);
+    factor_crosses_ = (factor_crosses_ & !lanes) | (lanes & end.crosses);
+    factor_rises_ = (factor_rises_ & !lanes) | (lanes & end.rising);
+    factor_known_ = (factor_known_ & !lanes) | (lanes & end.found);
+  }
 
   /// The gradients on the share [from, to] of the lanes' cells.
   GradientStretch<F> along(F from, F to) const noexcept {
@@ -428,6 +511,14 @@ class LightLanes {
   Vec3<F> to_eye_;
   float inverse_light_;  ///< 1 / the brightest factor of a color
   CubicBernstein<F> gradient_[3];
+  // Of the lanes' cells, if there is a factor of the magnitude:
+  CubicBernstein<F> magnitude_;
+  F magnitude_error_{0};          ///< what it may be off by
+  I interval_{0};                 ///< of the factor, in which the next piece is
+  ExtinctionInterval<F> factor_;  ///< that interval
+  F factor_end_{2};               ///< where the next piece has to end for it; 2: nowhere
+  M factor_crosses_{false}, factor_rises_{false}, factor_known_{true};
+  CubicBernstein<F> part_;  ///< the magnitude on the piece that weaken() was given last
   // Of the lanes' cells, if there are point lights:
   Vec3<F> entry_{F(0), F(0), F(0)};  ///< in the world, from the middle of the grid
   F length_{1};                      ///< of the way through them, world length

@@ -56,8 +56,9 @@ class PacketIntegrator {
         light_(make_light(job, grid, blocks_)),
         smooth_(job, grid, blocks_.origin, blocks_.direction, room.step_lengths),
         place_error_(span_end_errors<N>(job, first, count)),
-        fold_(job.tolerance, transfer_.largest_extinction, job.largest_color,
-              convert<float>(D::load(blocks_.end))),
+        fold_(job.tolerance,
+              is_lit ? job.largest_extinction : static_cast<double>(transfer_.largest_extinction),
+              job.largest_color, convert<float>(D::load(blocks_.end))),
         trace_(job.depth != 0),
         largest_color_(static_cast<float>(job.largest_color)),
         double_will_do_(job.tolerance >
@@ -330,6 +331,7 @@ class PacketIntegrator {
     SpanPiece<float, N> piece = next_piece(single_, transfer_, on, place_error_, largest_color_);
     SegmentResult<F>& s = piece.found.segment;
     const F to = min(from + ahead * piece.place, F(1));
+    if (light_.has_factor()) light_.weaken(piece, from, to, single_, largest_color_);
     const LightOfPiece<N> lit = light_.measure(piece, from, to, transfer_);
     const F length = piece.length, left = left_behind(from);
     fold_.budget.set_remaining_length(select(on, left, fold_.budget.remaining_length()));

@@ -25,7 +25,25 @@ struct SpanPiece {
   PieceDepth<F> seen;
   ColorSpread<Single> spread;
   BoundedSegment<Single> found;
-  Single rounding;  ///< what rounding does to it, as of RayBudget::spend()
+  Single depth_error;     ///< what rounding moves its depth by, at most
+  Single color_rounding;  ///< and its color, if that is not elsewhere in the piece
+  Single rounding;        ///< what rounding does to it, as of RayBudget::spend()
+
+  /// Computes `rounding` from these errors.
+  void add_up_rounding(Single largest_color) noexcept {
+    constexpr float colored = (is_single<F> ? 32 : 12) * rounding_unit<float>;  // and positions
+    const SegmentResult<Single>& s = found.segment;
+    const Single opacity_rounding =
+        Single(colored) * s.opacity +
+        min(select(depth_error <= Single(1), Single(2) * depth_error * s.transparency, Single(1)),
+            Single(1));
+    // Extinction that is elsewhere in the piece shows another color of it.
+    const CubicBernstein<F>& f = parts.front;
+    const Single colors =
+        min(spread.slope * convert<float>(f.hull_max() - f.hull_min()), spread.range);
+    rounding = s.opacity * (Single(colored) * largest_color + color_rounding) +
+               largest_color * opacity_rounding + colors * min(depth_error, Single(1));
+  }
 };
 
 /// What is left of the spans that lanes work on: of a cell, the part [from, 1]. T: float or double.
@@ -171,7 +189,6 @@ SpanPiece<T, N> next_piece(SpanLanes<T, N>& span, const BinnedTransfer& transfer
 
   // What rounding can do, as in segment/rounding.h.
   constexpr float u = rounding_unit<float>;
-  constexpr float colored = is_single<F> ? 32 * u : 12 * u;  // color, segment; and positions
   // The slope of the next interval counts for as much of the piece as is near to it: where the
   // data rise throughout, no more than 2 value_error over their least slope.
   const M touches = (f.hull_min() - value_error < interval.lower) |
@@ -183,22 +200,11 @@ SpanPiece<T, N> next_piece(SpanLanes<T, N>& span, const BinnedTransfer& transfer
     steep = select(touches, slope + near * (interval.steepest - slope), slope);
   }
   const Single largest = convert<float>(interval.largest);
-  const Single depth_error =
+  piece.depth_error =
       convert<float>(piece.length * (value_error * steep + F(8 * u) * interval.largest)) +
       position_error * convert<float>((F(1) - span.from) * piece.place) * largest;
-  const SegmentResult<Single>& s = piece.found.segment;
-  const Single color_rounding =
-      Single(colored) * largest_color +
-      min(convert<float>(shown_error) * piece.spread.slope, largest_color);
-  const Single opacity_rounding =
-      Single(colored) * s.opacity +
-      min(select(depth_error <= Single(1), Single(2) * depth_error * s.transparency, Single(1)),
-          Single(1));
-  // Extinction that is elsewhere in the piece shows another color of it.
-  const Single colors =
-      min(piece.spread.slope * convert<float>(f.hull_max() - f.hull_min()), piece.spread.range);
-  piece.rounding = s.opacity * color_rounding + largest_color * opacity_rounding +
-                   colors * min(depth_error, Single(1));
+  piece.color_rounding = min(convert<float>(shown_error) * piece.spread.slope, largest_color);
+  piece.add_up_rounding(largest_color);
   if constexpr (!is_single<F>) {
     // What is on the other side of a jump may be in front of all of the piece, in other colors.
     const Single across = extinction_across_jumps(span, transfer, lanes, f, value_error);

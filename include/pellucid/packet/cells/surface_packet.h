@@ -160,7 +160,8 @@ class SurfacePacket {
     if (surfaces_.is_lit != 0) {
       GradientStretch<F> along;
       along.to_eye = to_eye_;
-      gradients_(lanes, places, along.component);
+      CubicBernstein<F> magnitude;
+      gradients_(lanes, places, along.component, magnitude);
       if (light_.points > 0) {
         const Vec3<D> in_cell = places.entry + (places.exit - places.entry) * convert<double>(u);
         along.middle = place_in_world(grid_, light_, places.cell, in_cell);
