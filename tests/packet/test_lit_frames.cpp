@@ -9,6 +9,7 @@
 #include <random>
 #include <vector>
 
+#include "ray_tracer.h"
 #include "tests/packet/instruction_sets.h"
 #include "tests/packet/lit_scenes.h"
 
@@ -29,6 +30,18 @@ std::shared_ptr<const GradientOpacity> random_factor(std::mt19937& random) {
   return std::make_shared<const GradientOpacity>(points, unit_of_length);
 }
 
+/// Up to four of data up to 200, some of them opaque.
+std::vector<Isosurface> random_surfaces(std::mt19937& random) {
+  std::uniform_real_distribution<double> unit(0, 1);
+  std::vector<Isosurface> surfaces;
+  for (int n = 0; n < 1 + static_cast<int>(4 * unit(random)); ++n) {
+    // Between the values of integers, at them, and at control points.
+    const double value = unit(random) < 0.2 ? 30 + 40 * n : 30 + 40 * (n + unit(random));
+    surfaces.push_back({value, unit(random) < 0.2 ? 1 : 0.7 * unit(random), random_color(random)});
+  }
+  return surfaces;
+}
+
 Scene random_scene(std::mt19937& random, int kind) {
   std::uniform_real_distribution<double> unit(0, 1);
   const auto color = [&] { return random_color(random); };
@@ -39,7 +52,10 @@ Scene random_scene(std::mt19937& random, int kind) {
     points.push_back({150, 2, color()});
   }
   points.push_back({200, 3 * unit(random), color()});
-  Layer layer{VolumeContent{any_volume(random, kind, 0.01), scenes::transfer(points), nullptr}};
+  const bool surfaces = unit(random) < 0.4;
+  Layer layer{VolumeContent{any_volume(random, kind, surfaces ? 0 : 0.01), scenes::transfer(points),
+                            nullptr}};
+  if (surfaces) layer.isosurfaces = random_surfaces(random);
   const double look = unit(random);
   if (look < 0.8) layer.shading = random_shading(random);
   if (look > 0.5) layer.gradient_opacity = random_factor(random);
@@ -79,6 +95,37 @@ TEST(LitFrames, AreWithinWhatTheySayOfTheGeneralPath) {
   }
   // They are what is tested: most pieces are not handed back.
   EXPECT_GT(panels, 10 * handed_back);
+}
+
+TEST(LitFrames, HardlyEverLeaveRaysToTheGeneralPath) {
+  if (no_packets()) GTEST_SKIP() << "this machine has none of the instruction sets of packets";
+  std::mt19937 random(6);
+  std::uniform_real_distribution<double> both(-1, 1);
+  int left = 0, all = 0;
+  for (int n = 0; n < 24; ++n) {
+    const Scene scene = random_scene(random, n % 4);
+    const Layer layer = moved_into_place(scene.layers[0]);
+    RayTolerance wanted;
+    wanted.tolerance = 1.0 / 512;
+    const RenderOptions options;
+    const Integration integration;
+    const auto tracer =
+        make_univariate_tracer({layer, integration, options, scene.lights, wanted, 1});
+    if (tracer == nullptr) continue;
+    std::vector<RayPart> parts;
+    for (int k = 0; k < 300; ++k) {
+      const Vec3<double> from{3 * both(random), 3 * both(random), 4};
+      const Vec3<double> to{0.5 * both(random), 0.5 * both(random), 0.5 * both(random)};
+      parts.push_back({{from, normalized(to - from)}});
+    }
+    for (const RayResult& found : tracer->trace(parts, {})) {
+      ++all;
+      if (std::isinf(found.error)) ++left;
+    }
+  }
+  EXPECT_GT(all, 15 * 300);
+  // Those that come to isosurfaces in cells with a jump of the function, above all.
+  EXPECT_LT(left, all / 50) << all;
 }
 
 TEST(LitFrames, DoNotDependOnThreadsAndNeighbors) {

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "pellucid/segment/shading.h"
+
 namespace pellucid {
 
 /// The isosurfaces of one variable as packets see them, in the order of their values. Plain
@@ -11,8 +13,10 @@ struct PacketSurfaces {
 
   int count = 0;
   int is_lit = 0;
+  Reflection<float> reflection;
   float bound[entries]{};    ///< below all data, the values in ascending order, above all data
   float opacity[entries]{};  ///< by the place of its value in `bound`
+  float depth[entries]{};    ///< -ln(1 - opacity)
   float color[3][entries]{};
   float value_error = 0;     ///< what the rounding of the values is at most
   float color_rounding = 0;  ///< what the rounding of light_up() makes of a color, at most

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "layers/lit_parts.h"
+#include "packet_surfaces.h"
 #include "pellucid/field/trilinear.h"
 #include "pellucid/render/multivariate_integrator.h"
 
@@ -61,6 +62,12 @@ void place_lights(const Volume& volume, const std::vector<LightSource<double>>& 
 
 }  // namespace
 
+Reflection<float> in_single(const Reflection<double>& r) {
+  const auto single = [](double x) { return static_cast<float>(x); };
+  return {single(r.ambient), single(r.diffuse), single(r.specular), single(r.power),
+          single(r.flat_square)};
+}
+
 std::optional<PacketLight> packet_light(const LayerLook& look, const Reflection<double>* r,
                                         const Volume& volume,
                                         const std::vector<LightSource<double>>& lights) {
@@ -75,9 +82,7 @@ std::optional<PacketLight> packet_light(const LayerLook& look, const Reflection<
         lights.size() > std::size_t{PacketLight::most_lights}) {
       return std::nullopt;
     }
-    const auto single = [](double x) { return static_cast<float>(x); };
-    result.reflection = {single(r->ambient), single(r->diffuse), single(r->specular),
-                         single(r->power), single(r->flat_square)};
+    result.reflection = in_single(*r);
     place_lights(volume, lights, result);
     if (!has_moderate_square(static_cast<double>(result.farthest))) return std::nullopt;
     result.of_field = look.layer().shading->gradient == GradientKind::field ? 1 : 0;
@@ -101,7 +106,8 @@ std::unique_ptr<const GridLight> GridLight::make(const Layer& layer,
                                                  const std::vector<Light>& lights,
                                                  const RayTolerance& wanted) {
   const auto* const content = std::get_if<VolumeContent>(&layer.content);
-  if (content == nullptr || content->mask || has_surfaces(layer) || wanted.grade == Grade::proved ||
+  if (content == nullptr || content->mask ||
+      (has_surfaces(layer) && !has_plain_isosurfaces(layer)) || wanted.grade == Grade::proved ||
       (layer.shading && lights.empty()) || !fits_single(*content->volume)) {
     return nullptr;
   }
@@ -112,6 +118,10 @@ std::unique_ptr<const GridLight> GridLight::make(const Layer& layer,
   if (!light || (light->points > 0 && has_kink_in_highlight(light->reflection))) return nullptr;
   result->light_ = *light;
   if (layer.gradient_opacity && !result->add_factor(*layer.gradient_opacity)) return nullptr;
+  if (has_surfaces(layer)) {
+    result->surfaces_ =
+        packet_surfaces(result->look_, result->lights_, std::max(wanted.largest_color, 1.0));
+  }
   return result;
 }
 
@@ -136,7 +146,7 @@ bool GridLight::add_factor(const GradientOpacity& factor) {
   if (!has_moderate_square(steepest) || !(factor.largest_factor() < 1e6)) return false;
   factor_.emplace(table, steepest);
   light_.factor = &factor_->view();
-  largest_factor_ = std::max(factor.largest_factor(), 1.0);
+  light_.largest_factor = std::max(static_cast<float>(factor.largest_factor()) * 1.0001f, 1.0f);
   return true;
 }
 
@@ -167,8 +177,8 @@ void GridLight::integrate(const StructuredWalk<double>::Step& step, const Ray<do
   const double off = data_rounding(data);
   const int first = transfer.wide.interval(data.hull_min() - off);
   const int last = transfer.wide.interval(data.hull_max() + off);
-  const double most =
-      largest_factor_ * sensitivity(transfer.wide, first, last, off).largest_extinction;
+  const double most = static_cast<double>(light_.largest_factor) *
+                      sensitivity(transfer.wide, first, last, off).largest_extinction;
   const double opacity = std::min(most * (range.end - range.begin), 1.0);
   RayTolerance wanted = wanted_;
   wanted.tolerance = std::max(cell.allowance_per_opacity * opacity + cell.allowance_flat, 1e-12);

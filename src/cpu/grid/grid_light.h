@@ -10,6 +10,7 @@
 #include "layers/layer_look.h"
 #include "pellucid/packet/interface.h"
 #include "pellucid/packet/light.h"
+#include "pellucid/packet/surfaces.h"
 #include "pellucid/render/integrate_cell.h"
 #include "pellucid/scene/binned_transfer_storage.h"
 #include "pellucid/scene/scene.h"
@@ -21,6 +22,8 @@ namespace pellucid {
 std::optional<PacketLight> packet_light(const LayerLook& look, const Reflection<double>* reflection,
                                         const Volume& volume,
                                         const std::vector<LightSource<double>>& lights);
+/// Returns how a layer reflects light, in binary32.
+Reflection<float> in_single(const Reflection<double>& reflection);
 /// Returns whether binary32 holds all values of the data's type.
 bool fits_single(const Volume& volume);
 
@@ -28,15 +31,15 @@ bool fits_single(const Volume& volume);
 /// back.
 class GridLight {
  public:
-  /// Null where packets have no light for the layer: surfaces, proofs, data that binary32 does not
-  /// hold, highlights of point lights with a kink, factors with jumps, and what packet_light() has
-  /// not. All that is given must outlive the object.
+  /// Null where packets have no light for the layer: surfaces that are not plain, proofs, data that
+  /// binary32 does not hold, highlights of point lights with a kink, factors with jumps, and what
+  /// packet_light() has not. All that is given must outlive the object.
   static std::unique_ptr<const GridLight> make(const Layer& layer, const std::vector<Light>& lights,
                                                const RayTolerance& wanted);
 
   const PacketLight& view() const noexcept { return light_; }
-  /// Returns the largest factor of the extinction.
-  double largest_factor() const noexcept { return largest_factor_; }
+  /// Returns the isosurfaces; null where there are none.
+  const PacketSurfaces* surfaces() const noexcept { return surfaces_ ? &*surfaces_ : nullptr; }
   /// Integrates a part of a cell. `step`: the ray's way through it; `world`: the ray.
   void integrate(const StructuredWalk<double>::Step& step, const Ray<double>& world,
                  const PellucidCell& cell, const TransferTables& transfer,
@@ -52,8 +55,8 @@ class GridLight {
   std::vector<LightSource<double>> lights_;
   std::optional<GridGradient> gradient_, magnitude_;
   std::optional<BinnedTransferStorage> factor_;
-  double largest_factor_ = 1;
   PacketLight light_;
+  std::optional<PacketSurfaces> surfaces_;
 };
 
 }  // namespace pellucid

@@ -89,6 +89,7 @@ PacketTracer::PacketTracer(const Volume& volume, const ClassifiedBlocks& blocks,
       light_(light) {
   set_grid(volume, job_);
   job_.light = light != nullptr ? &light->view() : nullptr;
+  job_.surfaces = light != nullptr ? light->surfaces() : nullptr;
   job_.classes = blocks.classes.block;
   job_.records = blocks.records.record;
   job_.transfer = &binned_.view();
@@ -96,7 +97,10 @@ PacketTracer::PacketTracer(const Volume& volume, const ClassifiedBlocks& blocks,
   job_.largest_color = max(wanted.largest_color, 1.0);
   job_.proved = wanted.grade == Grade::proved ? 1 : 0;
   job_.largest_extinction =
-      transfer.largest_extinction * (light != nullptr ? light->largest_factor() : 1);
+      light == nullptr ? transfer.largest_extinction
+      : light->surfaces() != nullptr
+          ? 1e30  // a surface is opaque whatever its length
+          : transfer.largest_extinction * static_cast<double>(light->view().largest_factor);
   // A sample is rounded, and its place, by 32 u of the largest value, all told; and where it is
   // looked up by 8 u of the control points' range.
   const PiecewiseLinear<double>& table = transfer.wide;
@@ -133,12 +137,19 @@ std::vector<RayResult> PacketTracer::trace(const std::vector<RayPart>& in_grid, 
   const std::vector<PellucidRayResult> found = integrate(inside.ray, share, depth);
   for (std::size_t i = 0; i < found.size(); ++i) {
     RayResult& to = results[inside.of[i]];
+    if (std::isinf(found[i].error)) {
+      to = left_to_general_path();
+      continue;
+    }
     read_result(found[i], to);
     to.neighbor_deviation = found[i].neighbor_deviation;
     to.longest_step = found[i].longest_step * rays_apart_(inside.ray[i]);
   }
-  // With a factor of the extinction the general path looks for it.
-  if (!depth || (light_ != nullptr && light_->view().factor != nullptr)) return results;
+  // With a factor of the extinction, or surfaces, the general path looks for it.
+  if (!depth ||
+      (light_ != nullptr && (light_->view().factor != nullptr || light_->surfaces() != nullptr))) {
+    return results;
+  }
   volume_.visit([&](const auto& grid) {
     for (const std::size_t n : inside.of) {
       results[n].half_opacity_depth = find_half_opacity(

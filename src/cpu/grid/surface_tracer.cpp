@@ -6,8 +6,8 @@
 
 #include "grid_light.h"
 #include "packet_setup.h"
+#include "packet_surfaces.h"
 #include "packet_tracer.h"
-#include "pellucid/packet/surfaces.h"
 #include "pellucid/scene/binned_transfer_storage.h"
 #include "pellucid/scene/block_classes_storage.h"
 #include "pellucid/scene/transfer_tables_storage.h"
@@ -30,53 +30,14 @@ Kernel kernel_for([[maybe_unused]] const TracerTask& task) {
 #endif
 }
 
-/// Whether a layer is isosurfaces in one color each, of data that are continuous.
+/// Whether a layer is isosurfaces and nothing else.
 bool shows_plain_isosurfaces(const Layer& layer) {
-  const auto* const content = std::get_if<VolumeContent>(&layer.content);
-  return content != nullptr && !content->mask && layer.slices.empty() &&
-         !(largest_extinction(layer) > 0) &&
-         layer.isosurfaces.size() <= std::size_t{PacketSurfaces::most} &&
-         std::ranges::none_of(
-             layer.isosurfaces,
-             [](const Isosurface& surface) { return surface.colors != nullptr; }) &&
-         fits_single(*content->volume) && content->volume->statistics().nan == 0;
+  return !(largest_extinction(layer) > 0) && has_plain_isosurfaces(layer);
 }
 
 /// How much wider than its value a surface's support is, in largest values of the data: what is
 /// narrower is a jump for BinnedTransfer.
 constexpr double support_width = 0x1p-14;
-
-constexpr double unit = static_cast<double>(rounding_unit<float>);
-
-PacketSurfaces packet_surfaces(const LayerLook& look,
-                               const std::vector<LightSource<double>>& lights,
-                               double largest_color) {
-  PacketSurfaces result;
-  std::vector<Isosurface> surfaces = look.isosurfaces();
-  std::ranges::sort(surfaces, {}, &Isosurface::value);
-  result.bound[0] = -BinnedTransfer::far;
-  for (const Isosurface& surface : surfaces) {
-    const int i = ++result.count;
-    result.bound[i] = static_cast<float>(surface.value);
-    result.value_error =
-        std::max(result.value_error, static_cast<float>(2 * unit * std::abs(surface.value)));
-    result.opacity[i] = static_cast<float>(surface.opacity);
-    result.color[0][i] = static_cast<float>(surface.color.r);
-    result.color[1][i] = static_cast<float>(surface.color.g);
-    result.color[2][i] = static_cast<float>(surface.color.b);
-  }
-  result.bound[result.count + 1] = BinnedTransfer::far;
-  if (const Reflection<double>* const r = look.surface_reflection()) {
-    result.is_lit = 1;
-    // As light_up() says of its errors.
-    double brightest = 0;
-    for (const LightSource<double>& light : lights) brightest += largest_component(light.color);
-    result.color_rounding =
-        static_cast<float>(unit * (8 * (r->ambient + r->diffuse * brightest) * largest_color +
-                                   16 * std::max(r->power, 1.0) * r->specular * brightest));
-  }
-  return result;
-}
 
 class SurfaceTracer : public RayTracer {
  public:

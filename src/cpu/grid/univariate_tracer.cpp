@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "packet_setup.h"
+#include "packet_surfaces.h"
 #include "packet_tracer.h"
 #include "pellucid/render/integrate_ray.h"
 #include "pellucid/render/sample_preintegrated.h"
@@ -24,6 +25,11 @@ namespace {
 bool goes_in_packets(const Integration& integration) {
   return (integration.method == Method::midpoint || integration.method == Method::preintegrated) &&
          integration.precision != Precision::float64;
+}
+
+/// Whether a layer is for the packets that have light, and no other.
+bool needs_light(const Layer& layer) {
+  return layer.shading || layer.gradient_opacity || has_surfaces(layer);
 }
 
 class UnivariateTracer : public RayTracer {
@@ -58,6 +64,7 @@ class UnivariateTracer : public RayTracer {
   RayTolerance wanted_;
   bool depth_;   ///< whether the depth of half opacity is asked for
   double step_;  ///< of the sampling methods, world length
+  std::optional<TransferFunction> with_surfaces_;  ///< the function, if there are isosurfaces
   TransferTablesStorage transfer_;
   BlockClassesStorage block_classes_;
   std::optional<ClassifiedBlocks> blocks_;       ///< none: the method has no use for them
@@ -74,8 +81,11 @@ UnivariateTracer::UnivariateTracer(const TracerTask& task)
       wanted_(task.wanted),
       depth_(task.options.depth),
       step_(integration_.step * volume_.voxel_size()),
-      transfer_(transfer_function_) {
-  if (task.layer.shading || task.layer.gradient_opacity) {
+      with_surfaces_(has_plain_isosurfaces(task.layer) ? with_points_at_isosurfaces(task.layer)
+                                                       : std::nullopt),
+      transfer_(with_surfaces_ ? *with_surfaces_ : transfer_function_) {
+  if (has_surfaces(task.layer) && !with_surfaces_) return;
+  if (needs_light(task.layer)) {
     light_ = GridLight::make(task.layer, task.lights, wanted_);
     if (!light_) return;
   }
@@ -156,8 +166,7 @@ RayResult UnivariateTracer::trace_one(const StructuredGrid<Value, double>& grid,
 
 std::unique_ptr<const RayTracer> make_univariate_tracer(const TracerTask& task) {
   auto tracer = std::make_unique<UnivariateTracer>(task);
-  const bool needs_light = task.layer.shading || task.layer.gradient_opacity;
-  if (needs_light && !tracer->suits_light()) return nullptr;
+  if (needs_light(task.layer) && !tracer->suits_light()) return nullptr;
   return tracer;
 }
 

@@ -10,8 +10,8 @@ namespace {
 /// Null where the layer takes the general path.
 std::unique_ptr<const RayTracer> make_fast_tracer(const TracerTask& task) {
   const LayerContent& content = task.layer.content;
-  if (has_surfaces(task.layer)) return make_surface_tracer(task);
-  const bool is_lit = task.layer.shading || task.layer.gradient_opacity;
+  if (auto surfaces = make_surface_tracer(task)) return surfaces;
+  const bool is_lit = task.layer.shading || task.layer.gradient_opacity || has_surfaces(task.layer);
   if (is_lit && !std::holds_alternative<VolumeContent>(content)) return nullptr;
   if (extinction_factor_of(task.layer) != nullptr) return nullptr;
   if (const auto* volume = std::get_if<VolumeContent>(&content)) {

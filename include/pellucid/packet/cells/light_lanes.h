@@ -271,6 +271,7 @@ class LightLanes {
   }
 
   bool has_factor() const noexcept { return light_.factor != nullptr; }
+  float largest_factor() const noexcept { return light_.largest_factor; }
   /// Where the next piece has to end, as a share of the cell: where g·l changes its sign, or g·h if
   /// highlights have a kink there, or the magnitude comes to a control point of the factor.
   F kink() const noexcept { return min(kink_, factor_end_); }
@@ -306,6 +307,13 @@ class LightLanes {
     piece.seen.depth = nodes.total;
     piece.found.segment = segment_of_depth(nodes.total, Rgb<F>{});
     piece.add_up_rounding(largest_color);
+  }
+
+  /// Returns the gradients on the lanes' cells, seen from their place at u.
+  GradientStretch<F> around(F u) const noexcept {
+    GradientStretch<F> result{{gradient_[0], gradient_[1], gradient_[2]}, {}, F(0), to_eye_};
+    if (light_.points > 0) result.middle = entry_ - to_eye_ * (u * length_);
+    return result;
   }
 
   /// Bounds the light on a piece, the share [from, to] of its cell.

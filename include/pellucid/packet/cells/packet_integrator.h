@@ -8,6 +8,7 @@
 #include "pellucid/packet/cells/span_finder.h"
 #include "pellucid/packet/cells/span_piece.h"
 #include "pellucid/packet/cells/span_queue.h"
+#include "pellucid/packet/cells/surface_lanes.h"
 #include "pellucid/packet/opacity_trace.h"
 #include "pellucid/packet/packet_fold.h"
 #include "pellucid/packet/steps/smooth_march.h"
@@ -26,7 +27,10 @@ namespace pellucid {
 /// what that is not good enough for is handed back, cell by cell.
 ///
 /// If `is_lit`, each piece is shaded in binary32 (light_lanes.h); there are no smooth steps, and
-/// what binary32 is not good enough for is handed back at once.
+/// what binary32 is not good enough for is handed back at once. Isosurfaces are met where pieces
+/// end at their values (surface_lanes.h), which are control points of the extinction. A ray of
+/// which binary32 cannot tell whether it meets one has an infinite error: it is for the general
+/// path.
 template <class Value, int N, bool is_lit = false>
 class PacketIntegrator {
  public:
@@ -54,6 +58,7 @@ class PacketIntegrator {
         blocks_(grid, job.rays + first, count),
         finder_(grid, blocks_, transfer_, is_lit),
         light_(make_light(job, grid, blocks_)),
+        surfaces_(make_surfaces(job)),
         smooth_(job, grid, blocks_.origin, blocks_.direction, room.step_lengths),
         place_error_(span_end_errors<N>(job, first, count)),
         fold_(job.tolerance,
@@ -79,7 +84,8 @@ class PacketIntegrator {
 
   void store(PellucidRayResult* results) const noexcept {
     const SegmentResult<D> all = fold_.result();
-    const D error = fold_.error(convert<double>(pieces_ + strides_));
+    const D unknown(std::numeric_limits<double>::infinity());
+    const D error = select(failed_, unknown, fold_.error(convert<double>(pieces_ + strides_)));
     const F neighbor_deviation = smooth_.neighbor_deviation();
     const F longest_step = smooth_.longest_step();
     for (int l = 0; l < count_; ++l) {
@@ -109,11 +115,21 @@ class PacketIntegrator {
   struct Unlit {};
   using Light = std::conditional_t<is_lit, LightLanes<Value, N>, Unlit>;
   using Like = std::conditional_t<is_lit, LikeErrors<F>, Unlit>;
+  using Surfaces = std::conditional_t<is_lit, SurfaceLanes<N>, Unlit>;
 
   static Light make_light(const PellucidPacketJob& job, const PacketGrid<Value>& grid,
                           const BlockMarch<Value, N>& rays) noexcept {
     if constexpr (is_lit) {
       return Light(grid, *static_cast<const PacketLight*>(job.light), rays);
+    } else {
+      return {};
+    }
+  }
+
+  static Surfaces make_surfaces(const PellucidPacketJob& job) noexcept {
+    if constexpr (is_lit) {
+      return Surfaces(static_cast<const PacketSurfaces*>(job.surfaces),
+                      *static_cast<const PacketLight*>(job.light), job.largest_color);
     } else {
       return {};
     }
@@ -156,6 +172,10 @@ class PacketIntegrator {
     const M in_double = lanes & has(SpanCode::in_double);
     if (any(in_double)) wait_for_double(in_double);
     if constexpr (is_lit) {
+      if (surfaces_.exist()) {
+        close_ = select(lanes, surfaces_.close(single_.data, row[4], place_error_, row[5]), close_);
+        fail(surfaces_.come_to(lanes, single_.data.b[0], close_));
+      }
       const M begun = lanes & !handed_back_;
       if (any(begun)) {
         handed_back_ = handed_back_ | light_.begin(begun, places_of(begun, code_));
@@ -377,6 +397,7 @@ class PacketIntegrator {
     pieces_ += select(take, I(1), I(0));
     panels_ += select(take, I(1), I(0));
     proved_ = proved_ & !take;
+    if (surfaces_.exist()) meet_surfaces(take, piece, to);
     single_.go_past(take, piece, transfer_);
     // Behind a kink there is no other half.
     single_.cap = select(take & to_kink, F(1), single_.cap);
@@ -386,6 +407,56 @@ class PacketIntegrator {
                     (back.hull_min() - single_.rounding > F(transfer_.support_max));
     pending_ = pending_ & !(take & ((piece.place >= F(1)) | clear));
     retire(take);
+  }
+
+  /// Meets the surfaces at the ends of pieces that were taken, at these shares of their cells.
+  [[gnu::noinline]] void meet_surfaces(M take, const SpanPiece<float, N>& piece, F to) noexcept {
+    const M rising = piece.end.rising;
+    const F end = piece.parts.front.b[3];
+    const M crosses =
+        take & piece.crosses & (end == select(rising, surfaces_.upper(), surfaces_.lower()));
+    // Where they turn, data may come so near to a value that nobody knows whether they reach it.
+    const CubicBernstein<F>& data = piece.parts.front;
+    const M stays = take & !crosses;
+    const M beside = stays & !surfaces_.is_inside(end, end, close_);
+    fail(beside & !piece.capped);
+    if (any(beside)) {
+      // The other half of what ended at a surface ends there, too.
+      const MonotonePiece<F> next = monotone_piece(piece.parts.back, F(0), beside);
+      fail(beside & piece.capped & surfaces_.is_beside(next.reach, close_));
+    }
+    const M near = stays & !surfaces_.is_inside(data.hull_min(), data.hull_max(), close_);
+    if (any(near)) {
+      const MonotonePiece<F> first = monotone_piece(data, close_, near);
+      fail(near & (first.place < F(1)) & !surfaces_.is_inside(first.reach, first.reach, close_));
+    }
+    fail(crosses & !surfaces_.is_wide(close_));
+    if (none(crosses)) return;
+    const F ahead = F(1) - single_.from;
+    const F u_error =
+        min(ahead * crossing_error(single_.data, piece.place, F(2) * close_) + F(1e-6f), F(1));
+    auto [opacity, depth, color, error] =
+        surfaces_.meet(rising, light_.around(to), to, u_error, span_length_);
+    // What is between its place and where it may be is in front of it, or behind.
+    const F largest = F(2) * single_.extinction.largest * F(light_.largest_factor());
+    error += largest_color_ * min(largest * u_error * span_length_, F(1));
+    const F transparency = fold_.transparency();
+    const F cost = transparency * opacity * error;
+    const M affordable = crosses & (cost <= fold_.budget.remaining());
+    fail(crosses & !affordable);
+    const typename RayBudget<F>::SpanShare shares = fold_.budget.span_share(F(0), opacity);
+    fold_.budget.spend(F(0), shares, select(affordable, cost, F(0)));
+    fold_.add(affordable, SegmentResult<F>{depth, opacity, F(1) - opacity, opacity * color});
+    surfaces_.cross(affordable, rising);
+  }
+
+  /// The lanes' rays are not for binary32.
+  void fail(M lanes) noexcept {
+    if (none(lanes)) return;
+    failed_ = failed_ | lanes;
+    blocks_.alive = blocks_.alive & !lanes;
+    drop_spans(lanes);
+    handed_back_ = handed_back_ & !lanes;
   }
 
   /// Of the rays, from this share of the lanes' cells on.
@@ -421,6 +492,12 @@ class PacketIntegrator {
 
   /// Has what is left of the lanes' spans integrated by other means.
   void hand_back(M lanes) noexcept {
+    if constexpr (is_lit) {
+      if (surfaces_.exist()) {
+        const CubicBernstein<F>& data = single_.data;
+        fail(lanes & !surfaces_.is_inside(data.hull_min(), data.hull_max(), close_));
+      }
+    }
     lanes = lanes & pending_;
     const F transparency = fold_.transparency();
     const M wide = in_double_now_ & !not_begun_;
@@ -468,6 +545,7 @@ class PacketIntegrator {
   BlockMarch<Value, N> blocks_;
   SpanFinder<Value, N> finder_;
   Light light_;
+  Surfaces surfaces_;
   SmoothMarch<Value, N> smooth_;
 
   SpanQueue<Value, N> queue_;
@@ -486,6 +564,8 @@ class PacketIntegrator {
   F place_error_;   ///< how far spans' ends may be from where they are thought to be,
                     ///< world length
   I code_;
+  F close_{0};       ///< what its data may be off by, beside isosurfaces
+  M failed_{false};  ///< whether a lane's ray is for the general path
 
   SampledErrors<F> sampled_;
   Like like_;

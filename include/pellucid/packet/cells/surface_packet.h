@@ -2,22 +2,19 @@
 #pragma once
 
 #include "pellucid/packet/cells/cell_places.h"
-#include "pellucid/packet/cells/light_lanes.h"
 #include "pellucid/packet/cells/span_queue.h"
+#include "pellucid/packet/cells/surface_lanes.h"
 #include "pellucid/packet/packet_fold.h"
-#include "pellucid/packet/surfaces.h"
 #include "pellucid/segment/extinction_piece.h"
-#include "pellucid/segment/surface.h"
 
 #if PELLUCID_HAS_BATCH_4  // in sources compiled per instruction set
 namespace pellucid {
 
 /// N rays at once, each in a lane of its own, from isosurface to isosurface of data without medium.
 ///
-/// A ray knows between which values its data are; where they leave that range is a surface. The
-/// data are continuous and vacuum nowhere, so that it knows that across what is skipped, too. Where
-/// binary32 cannot tell on which side of a value the data are, or what a surface costs is more than
-/// the tolerance, the ray's error is infinite: it is for the general path.
+/// A ray knows between which values its data are (SurfaceLanes); where they leave that range is a
+/// surface. Where binary32 cannot tell, or what a surface costs is more than the tolerance, the
+/// ray's error is infinite: it is for the general path.
 template <class Value, int N>
 class SurfacePacket {
  public:
@@ -35,7 +32,6 @@ class SurfacePacket {
                 int count) noexcept
       : job_(job),
         grid_(grid),
-        surfaces_(*static_cast<const PacketSurfaces*>(job.surfaces)),
         light_(*static_cast<const PacketLight*>(job.light)),
         room_(room),
         first_(first),
@@ -44,6 +40,7 @@ class SurfacePacket {
         finder_(grid, blocks_, *static_cast<const BinnedTransfer*>(job.transfer), true),
         gradients_(grid, light_),
         to_eye_(direction_to_eye(light_, blocks_)),
+        surfaces_(static_cast<const PacketSurfaces*>(job.surfaces), light_, job.largest_color),
         place_error_(span_end_errors<N>(job, first, count)) {
     for (PellucidHalfOpacity& half : half_) {
       half = {0, std::numeric_limits<double>::infinity(), 0};
@@ -79,8 +76,7 @@ class SurfacePacket {
   /// How many stretches of a ray are gone through at a time: behind an opaque surface all is
   /// wasted.
   static constexpr int stretches_ahead = 1;
-  /// How far from a value the data have to be, in what they may be off by, for their side to count.
-  static constexpr float margin = 3;
+  static constexpr float margin = SurfaceLanes<N>::margin;
 
   [[gnu::flatten]] void take_spans() noexcept {
     using Rows = SpanRows<Value, N>;
@@ -92,37 +88,20 @@ class SurfacePacket {
     length_ = select(lanes, row[5], length_);
     code_ = select(lanes, convert<std::int32_t>(row[7]), code_);
     from_ = select(lanes, F(0), from_);
-    const F rise = max(max(abs(data_.b[1] - data_.b[0]), abs(data_.b[2] - data_.b[1])),
-                       abs(data_.b[3] - data_.b[2]));
-    const F off = (row[4] + F(surfaces_.value_error)) +
-                  F(3) * rise * min(place_error_ / max(row[5], F(1e-30f)), F(1));
-    close_ = select(lanes, off, close_);
-    const M first = lanes & (range_ < I(0));
-    if (any(first)) {
-      I range(0);
-      for (int i = 1; i <= surfaces_.count; ++i) {
-        range += select(data_.b[0] > F(surfaces_.bound[i]), I(1), I(0));
-      }
-      range_ = select(first, range, range_);
-    }
-    fail(lanes & !is_inside(data_.b[0], data_.b[0]));
+    close_ = select(lanes, surfaces_.close(data_, row[4], place_error_, row[5]), close_);
+    fail(surfaces_.come_to(lanes, data_.b[0], close_));
   }
 
-  F lower() const noexcept { return lookup(surfaces_.bound, max(range_, I(0))); }
-  F upper() const noexcept { return lookup(surfaces_.bound, max(range_, I(0)) + I(1)); }
-  /// Whether these data are in the ray's range, and known to be.
-  M is_inside(F least, F most) const noexcept {
-    return (least > lower() + F(margin) * close_) & (most < upper() - F(margin) * close_);
-  }
+  M is_inside(F least, F most) const noexcept { return surfaces_.is_inside(least, most, close_); }
 
   /// Follows the data to where they leave their range, or turn, or the cell ends.
   [[gnu::flatten]] void follow(M on) noexcept {
-    const F lower = this->lower(), upper = this->upper();
+    const F lower = surfaces_.lower(), upper = surfaces_.upper();
     const MonotonePiece<F> piece = monotone_piece(data_, close_, on);
     const M rising = piece.reach > data_.b[0];
     const F beyond = select(rising, piece.reach - upper, lower - piece.reach);
     const M stays = on & is_inside(piece.reach, piece.reach);
-    M crosses = on & (beyond > F(margin) * close_) & (upper - lower > F(4 * margin) * close_);
+    M crosses = on & (beyond > F(margin) * close_) & surfaces_.is_wide(close_);
     F place = piece.place;
     if (any(crosses)) {
       M open;
@@ -134,7 +113,7 @@ class SurfacePacket {
     fail(on & !(crosses | stays));
     if (any(crosses)) {
       meet(crosses, rising, place);
-      range_ += select(crosses, select(rising, I(1), I(-1)), I(0));
+      surfaces_.cross(crosses, rising);
     }
     const CubicBernstein<F> rest = cut(data_, place).back;
     for (int k = 0; k < 4; ++k) data_.b[k] = select(on, rest.b[k], data_.b[k]);
@@ -145,35 +124,24 @@ class SurfacePacket {
 
   /// Puts the surfaces that the lanes have come to behind what is in front of them.
   [[gnu::noinline]] void meet(M lanes, M rising, F place) noexcept {
-    const I surface = max(range_, I(0)) + select(rising, I(1), I(0));
-    const F opacity = lookup(surfaces_.opacity, surface);
-    Rgb<F> color{lookup(surfaces_.color[0], surface), lookup(surfaces_.color[1], surface),
-                 lookup(surfaces_.color[2], surface)};
-    F error(4 * rounding_unit<float> * static_cast<float>(job_.largest_color));
     const F ahead = F(1) - from_;
     const F u = min(from_ + ahead * place, F(1));
     const F u_error = min(ahead * crossing_error(data_, place, F(2) * close_) + F(1e-6f), F(1));
     CellPlaces<N> places;
-    if (surfaces_.is_lit != 0 || job_.depth != 0) {
+    if (surfaces_.is_lit() || job_.depth != 0) {
       places = span_places(grid_, blocks_, room_.stretches, lanes, code_);
     }
-    if (surfaces_.is_lit != 0) {
-      GradientStretch<F> along;
-      along.to_eye = to_eye_;
+    GradientStretch<F> along;
+    along.to_eye = to_eye_;
+    if (surfaces_.is_lit()) {
       CubicBernstein<F> magnitude;
       gradients_(lanes, places, along.component, magnitude);
       if (light_.points > 0) {
         const Vec3<D> in_cell = places.entry + (places.exit - places.entry) * convert<double>(u);
         along.middle = place_in_world(grid_, light_, places.cell, in_cell);
       }
-      color = light_surface(light_.reflection, light_.light, light_.lights, along, u, u_error,
-                            length_, color, F(static_cast<float>(job_.largest_color)), error);
-      error += F(surfaces_.color_rounding);
-      if (light_.points > 0) {
-        error += place_doubt(light_.reflection, light_.light, light_.lights, along,
-                             F(static_cast<float>(job_.largest_color)), F(place_rounding(light_)));
-      }
     }
+    const auto [opacity, depth, color, error] = surfaces_.meet(rising, along, u, u_error, length_);
     if (job_.depth != 0) {
       note_depth(lanes & (opacity >= F(1)) & (u_error < F(1e-3f)),
                  places.begin + convert<double>(u) * places.length);
@@ -214,7 +182,6 @@ class SurfacePacket {
 
   const PellucidPacketJob& job_;
   const PacketGrid<Value>& grid_;
-  const PacketSurfaces& surfaces_;
   const PacketLight& light_;
   Room& room_;
   int first_, count_;
@@ -223,10 +190,10 @@ class SurfacePacket {
   GradientLoads<Value, N> gradients_;
   SpanQueue<Value, N> queue_;
   Vec3<F> to_eye_;
+  SurfaceLanes<N> surfaces_;
   F place_error_;  ///< how far spans' ends may be from where they are thought to be, world length
 
   M pending_{false};
-  I range_{-1};  ///< how many values are below the ray's data; -1: not known yet
 
   // The span that a lane works on.
   CubicBernstein<F> data_;  ///< of what is left of it
