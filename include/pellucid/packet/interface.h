@@ -88,14 +88,14 @@ struct PellucidPacketJob {
   const void* context;
   const void* records;   ///< BlockRecord per block, in the order of the classes
   const void* light;     ///< PacketLight; null: unlit
-  const void* surfaces;  ///< PacketSurfaces; only for those
+  const void* surfaces;  ///< PacketSurfaces; null: none
 };
 
 void pellucid_integrate_packets_sse4(const PellucidPacketJob* job);
 void pellucid_integrate_packets_avx2(const PellucidPacketJob* job);
 void pellucid_integrate_packets_avx512(const PellucidPacketJob* job);
 
-/// With light, data of types that binary32 holds, estimates.
+/// With light, gradient opacity or isosurfaces, data of types that binary32 holds, estimates.
 void pellucid_integrate_lit_packets_sse4(const PellucidPacketJob* job);
 void pellucid_integrate_lit_packets_avx2(const PellucidPacketJob* job);
 void pellucid_integrate_lit_packets_avx512(const PellucidPacketJob* job);
