@@ -22,6 +22,15 @@ namespace py = pybind11;
 
 namespace pellucid::python {
 
+/// Returns whether the interpreter ends: it gives its lock to no other thread then.
+inline bool is_interpreter_ending() {
+#if PY_VERSION_HEX >= 0x030d0000
+  return Py_IsFinalizing() != 0;
+#else
+  return _Py_IsFinalizing() != 0;
+#endif
+}
+
 /// Lets go of the interpreter's lock for as long as it lives. The interpreter ends threads that ask
 /// for the lock while it ends itself: it unwinds them, for which the destructor must be left by an
 /// exception. py::gil_scoped_release would end the program.
