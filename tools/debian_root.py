@@ -73,6 +73,9 @@ def check_mirror(mirror, suite):
     try:
         with urllib.request.urlopen(f"{mirror}/dists/{suite}/InRelease", timeout=60) as answer:
             answer.read(1)
+    except urllib.error.HTTPError as error:
+        expect(error.code != 404, f"{mirror} has no release {suite}")
+        raise Skip("the mirror of this machine does not answer") from None
     except (urllib.error.URLError, OSError, ValueError):
         raise Skip("the mirror of this machine does not answer") from None
 
