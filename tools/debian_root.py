@@ -144,7 +144,7 @@ class Root:
         return os.path.join(self.folder, name.lstrip("/"))
 
     def run(self, *command, status=0):
-        """Runs a command in the root, with /proc, and gives stdout and stderr."""
+        """Runs a command in the root, and gives stdout and stderr."""
         result = subprocess.run(
             self.command(*command), stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
             stderr=subprocess.STDOUT, text=True, check=False, env=self.environment())
@@ -154,8 +154,8 @@ class Root:
         return result.stdout
 
     def command(self, *command, binds=(), folder="/"):
-        """What runs a command in a folder of the root, with /proc and bound folders."""
-        script = ['mount -t proc proc "$0/proc"']
+        """What runs a command in a folder of the root, with /proc, /sys and bound folders."""
+        script = ['mount -t proc proc "$0/proc"', 'mount -t sysfs -o ro sysfs "$0/sys"']
         for path, place in binds:
             os.makedirs(self.path(place), exist_ok=True)
             script.append(f"mount --bind {shlex.quote(path)} \"$0\"{shlex.quote(place)}")
