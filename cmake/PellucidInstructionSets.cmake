@@ -17,8 +17,9 @@ set(_pellucid_flags_avx512 -mavx512f -mavx512cd -mavx512dq -mavx512bw -mavx512vl
 set(PELLUCID_SIMD_FOUND FALSE)
 if(PELLUCID_SIMD AND CMAKE_SYSTEM_PROCESSOR MATCHES "^(x86_64|AMD64|amd64)$"
    AND CMAKE_SIZEOF_VOID_P EQUAL 8 AND CMAKE_CXX_COMPILER_ID MATCHES "GNU|Clang")
-  find_package(xsimd 8.1 QUIET)
-  if(NOT xsimd_FOUND)
+  # Its package file takes the same major version alone.
+  find_package(xsimd QUIET)
+  if(NOT xsimd_FOUND OR xsimd_VERSION VERSION_LESS 8.1)
     message(FATAL_ERROR "xsimd 8.1 or later is not there: install it (Debian: libxsimd-dev), "
                         "or do without packets: -DPELLUCID_SIMD=OFF")
   endif()

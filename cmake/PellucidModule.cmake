@@ -20,23 +20,31 @@ target_compile_options(pellucid_build_flags INTERFACE
   $<$<AND:$<CXX_COMPILER_ID:GNU>,$<VERSION_LESS:$<CXX_COMPILER_VERSION>,13>>:-Wno-restrict>
   $<$<AND:$<CXX_COMPILER_ID:GNU>,$<VERSION_LESS:$<CXX_COMPILER_VERSION>,13>>:-Wno-array-bounds>
   $<$<AND:$<CXX_COMPILER_ID:GNU>,$<VERSION_LESS:$<CXX_COMPILER_VERSION>,13>>:-Wno-stringop-overflow>
+  # GCC 13 and later take what a view of a JSON document gives for a part of the view.
+  $<$<AND:$<CXX_COMPILER_ID:GNU>,$<VERSION_GREATER_EQUAL:$<CXX_COMPILER_VERSION>,13>>:-Wno-dangling-reference>
   $<$<BOOL:${PELLUCID_WERROR}>:-Werror>)
 
 option(PELLUCID_PRECOMPILE_HEADERS
        "Precompile what most sources of the libraries include" ${PROJECT_IS_TOP_LEVEL})
 
-# pellucid_precompiled_headers(TARGET [HEADERS header...] [OF target]): sources of TARGET have the
-# headers of `scene`, which owns one file of them for all libraries, or of the target OF, which is
-# compiled alike, or HEADERS as well, in a file of its own. They must still include what they use:
-# the presets of clang and the sanitizers compile without.
+# GCC 13 and later refuse headers that were precompiled at another level of optimisation.
+set(PELLUCID_HEADERS_PER_LEVEL FALSE)
+if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_CXX_COMPILER_VERSION VERSION_GREATER_EQUAL 13)
+  set(PELLUCID_HEADERS_PER_LEVEL TRUE)
+endif()
+
+# pellucid_precompiled_headers(TARGET [HEADERS header...] [OF target] [OWN]): sources of TARGET have
+# the headers of `scene`, which owns one file of them for all libraries, or of the target OF, which
+# is compiled alike, or HEADERS as well, in a file of its own, as with OWN. They must still include
+# what they use: the presets of clang and the sanitizers compile without.
 function(pellucid_precompiled_headers target)
-  cmake_parse_arguments(arg "" "OF" "HEADERS" ${ARGN})
+  cmake_parse_arguments(arg "OWN" "OF" "HEADERS" ${ARGN})
   if(NOT PELLUCID_PRECOMPILE_HEADERS)
     return()
   endif()
   if(arg_OF)
     target_precompile_headers(${target} REUSE_FROM ${arg_OF})
-  elseif(arg_HEADERS OR NOT TARGET pellucid_scene OR target STREQUAL "pellucid_scene")
+  elseif(arg_HEADERS OR arg_OWN OR NOT TARGET pellucid_scene OR target STREQUAL "pellucid_scene")
     target_precompile_headers(${target} PRIVATE
       <algorithm> <array> <cmath> <cstddef> <cstdint> <filesystem> <functional> <limits> <memory>
       <optional> <span> <string> <string_view> <utility> <variant> <vector>
@@ -61,18 +69,27 @@ function(pellucid_header_module name)
   _pellucid_declare(${name} INTERFACE "${arg_DEPENDS}")
 endfunction()
 
-# pellucid_library(NAME SOURCES file... [DEPENDS NAME...] [PRIVATE target...]): the folders src/NAME
-# and include/pellucid/NAME as the compiled library pellucid::NAME. It is static, so whoever links
-# it links its PRIVATE targets too (PellucidInstall); those that are headers alone stand in
-# $<BUILD_INTERFACE:...>.
+# pellucid_library(NAME SOURCES file... [DEPENDS NAME...] [PRIVATE target...] [LEVEL option]): the
+# folders src/NAME and include/pellucid/NAME as the compiled library pellucid::NAME. It is static, so
+# whoever links it links its PRIVATE targets too (PellucidInstall); those that are headers alone
+# stand in $<BUILD_INTERFACE:...>. LEVEL is what GCC optimises it by in a release, where that is not
+# what the others have.
 function(pellucid_library name)
-  cmake_parse_arguments(arg "" "" "SOURCES;DEPENDS;PRIVATE" ${ARGN})
+  cmake_parse_arguments(arg "" "LEVEL" "SOURCES;DEPENDS;PRIVATE" ${ARGN})
   add_library(pellucid_${name} STATIC ${arg_SOURCES})
   set_target_properties(pellucid_${name} PROPERTIES POSITION_INDEPENDENT_CODE ON CXX_EXTENSIONS OFF)
   _pellucid_declare(${name} PUBLIC "${arg_DEPENDS}")
   target_link_libraries(pellucid_${name}
     PRIVATE ${arg_PRIVATE} $<BUILD_INTERFACE:pellucid_build_flags>)
-  pellucid_precompiled_headers(pellucid_${name})
+  if(arg_LEVEL AND PELLUCID_HEADERS_PER_LEVEL)
+    pellucid_precompiled_headers(pellucid_${name} OWN)
+  else()
+    pellucid_precompiled_headers(pellucid_${name})
+  endif()
+  if(arg_LEVEL)
+    target_compile_options(pellucid_${name}
+      PRIVATE $<$<AND:$<CONFIG:Release>,$<CXX_COMPILER_ID:GNU>>:${arg_LEVEL}>)
+  endif()
 endfunction()
 
 function(_pellucid_declare name scope depends)

@@ -1,13 +1,14 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Runs a command in a Debian of its own: as this machine's release, from its mirror, as root.
+"""Runs a command in a Debian of its own, made from this machine's mirror, as root.
 
-  debian_root.py FOLDER [--bind PATH]... COMMAND [ARGUMENT...]
+  debian_root.py FOLDER [--suite NAME] [--bind PATH[:PLACE]]... COMMAND [ARGUMENT...]
 
-FOLDER is made by debootstrap unless it is there. The command runs in this folder's place, sees the
-bound folders under their own names, and has CCACHE_* and proxies of the environment. It runs in
-mount and process namespaces of its own, so that nothing stays mounted or runs on, whatever happens.
-The exit status is the command's, or 77 if a Debian cannot be made here.
+FOLDER is made by debootstrap unless it is there: of the named release, else of this machine's. The
+command runs in this folder's place, sees the bound folders under their own names, or at PLACE, and
+has CCACHE_* and proxies of the environment. It runs in mount and process namespaces of its own, so
+that nothing stays mounted or runs on, whatever happens. The exit status is the command's, or 77 if
+a Debian cannot be made here.
 """
 import os
 import re
@@ -72,6 +73,9 @@ def check_mirror(mirror, suite):
     try:
         with urllib.request.urlopen(f"{mirror}/dists/{suite}/InRelease", timeout=60) as answer:
             answer.read(1)
+    except urllib.error.HTTPError as error:
+        expect(error.code != 404, f"{mirror} has no release {suite}")
+        raise Skip("the mirror of this machine does not answer") from None
     except (urllib.error.URLError, OSError, ValueError):
         raise Skip("the mirror of this machine does not answer") from None
 
@@ -89,9 +93,13 @@ def remove(root):
     shutil.rmtree(root)
 
 
-def source_of_host():
-    """The host's release, the sources of its Debian, and a mirror that answers."""
+def source_of_host(wanted=None):
+    """A release (None: the host's), its sources at the host's mirrors, and one that answers."""
     suite, sources = suite_of_host(), sources_of_host()
+    if wanted:  # bookworm-security becomes trixie-security
+        sources = [(address, re.sub(rf"^{suite}\b", wanted, of_suite), component)
+                   for address, of_suite, component in sources]
+        suite = wanted
     mirrors = [address for address, of_suite, _ in sources if of_suite == suite]
     if not mirrors:
         raise Skip("apt has no sources of Debian, or no lists of them (apt-get update)")
@@ -136,7 +144,7 @@ class Root:
         return os.path.join(self.folder, name.lstrip("/"))
 
     def run(self, *command, status=0):
-        """Runs a command in the root, with /proc, and gives stdout and stderr."""
+        """Runs a command in the root, and gives stdout and stderr."""
         result = subprocess.run(
             self.command(*command), stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
             stderr=subprocess.STDOUT, text=True, check=False, env=self.environment())
@@ -146,11 +154,11 @@ class Root:
         return result.stdout
 
     def command(self, *command, binds=(), folder="/"):
-        """What runs a command in a folder of the root, with /proc and bound folders."""
-        script = ['mount -t proc proc "$0/proc"']
-        for path in binds:
-            os.makedirs(self.path(path), exist_ok=True)
-            script.append(f"mount --bind {shlex.quote(path)} \"$0\"{shlex.quote(path)}")
+        """What runs a command in a folder of the root, with /proc, /sys and bound folders."""
+        script = ['mount -t proc proc "$0/proc"', 'mount -t sysfs -o ro sysfs "$0/sys"']
+        for path, place in binds:
+            os.makedirs(self.path(place), exist_ok=True)
+            script.append(f"mount --bind {shlex.quote(path)} \"$0\"{shlex.quote(place)}")
         inside = f'cd {shlex.quote(folder)} && exec "$@"'
         script.append(f'exec chroot "$0" sh -c {shlex.quote(inside)} sh "$@"')
         return [*NAMESPACES, "sh", "-c", " && ".join(script), self.folder, *command]
@@ -182,20 +190,24 @@ class Root:
 def parse(arguments):
     if not arguments or arguments[0].startswith("-"):
         raise SystemExit(__doc__)
-    folder, binds, rest = os.path.realpath(arguments[0]), [], arguments[1:]
-    while rest[:1] == ["--bind"] and len(rest) > 1:
-        binds.append(os.path.realpath(rest[1]))
+    folder, suite, binds, rest = os.path.realpath(arguments[0]), None, [], arguments[1:]
+    while rest and rest[0] in ("--bind", "--suite") and len(rest) > 1:
+        if rest[0] == "--bind":
+            path, _, place = rest[1].partition(":")
+            binds.append((os.path.realpath(path), os.path.realpath(place or path)))
+        else:
+            suite = rest[1]
         rest = rest[2:]
     if not rest:
         raise SystemExit(__doc__)
-    return folder, binds, rest
+    return folder, suite, binds, rest
 
 
 def main():
-    folder, binds, command = parse(sys.argv[1:])
+    folder, wanted, binds, command = parse(sys.argv[1:])
     check_machine()
     if not os.path.exists(folder):
-        suite, sources, mirror = source_of_host()
+        suite, sources, mirror = source_of_host(wanted)
         begun = folder + ".begun"
         if os.path.exists(begun):  # by a run that was killed
             remove(begun)

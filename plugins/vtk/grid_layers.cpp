@@ -93,6 +93,17 @@ std::optional<LayerProjection> GridTranslator::projection() const {
   }
 }
 
+/// VTK before 9.2 has normals of the values alone.
+template <class Mapper>
+void say_normals_of_opacity_are_left_out(Mapper& mapper, vtkVolumeProperty& property,
+                                         Notes& notes) {
+  if constexpr (requires { mapper.GetComputeNormalFromOpacity(); }) {
+    if (mapper.GetComputeNormalFromOpacity() && property.GetShade() != 0) {
+      notes.add("light is by the gradient of the values: ComputeNormalFromOpacity is left out");
+    }
+  }
+}
+
 std::vector<Layer> GridTranslator::layers() {
   if (data_ == nullptr) return {};
   array_ =
@@ -116,6 +127,7 @@ std::vector<Layer> GridTranslator::layers() {
         "functions of two variables (SetTransferFunction2D) are not read; take "
         "SetTransferFunctionModeTo1D()");
   }
+  say_normals_of_opacity_are_left_out(mapper_, property_, notes_);
   std::vector<int> shown;
   for (int c = 0; c < components; ++c) {
     if (components == 1 || property_.GetComponentWeight(c) > 0) shown.push_back(c);

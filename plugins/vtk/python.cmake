@@ -22,7 +22,8 @@ else()
   get_target_property(location VTK::CommonCore LOCATION)
   cmake_path(GET location PARENT_PATH location)
   find_path(PELLUCID_VTK_HIERARCHY vtkCommonCore-hierarchy.txt
-    PATHS "${location}/vtk/hierarchy/VTK" NO_DEFAULT_PATH)
+    PATHS "${location}/vtk-${vtk_version}/hierarchy/VTK" "${location}/vtk/hierarchy/VTK"
+    NO_DEFAULT_PATH)
   mark_as_advanced(PELLUCID_VTK_PYTHON_CORE PELLUCID_VTK_HIERARCHY)
   if(NOT PELLUCID_VTK_PYTHON_CORE OR NOT PELLUCID_VTK_HIERARCHY)
     set(python_problem "VTK for Python ${Python_VERSION} was not found (Debian: python3-vtk9)")

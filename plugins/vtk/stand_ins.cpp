@@ -28,6 +28,16 @@ class HasCore {
   MapperCore core;
 };
 
+/// VTK before 9.2 has no such shadows.
+template <class Mapper>
+void say_shadows_are_left_out(Mapper& mapper, Notes& notes) {
+  if constexpr (requires { mapper.GetVolumetricScatteringBlending(); }) {
+    if (mapper.GetVolumetricScatteringBlending() > 0) {
+      notes.add("light is not scattered: VolumetricScatteringBlending is left out");
+    }
+  }
+}
+
 class GpuStandIn final : public vtkGPUVolumeRayCastMapper, public HasCore {
  public:
   static GpuStandIn* New();
@@ -42,6 +52,7 @@ class GpuStandIn final : public vtkGPUVolumeRayCastMapper, public HasCore {
                     double{this->GetMaskBlendFactor()}};
     set_final_colors(this->core.finish, double{this->GetFinalColorWindow()},
                      double{this->GetFinalColorLevel()}, this->core.left_out);
+    say_shadows_are_left_out(*this, this->core.left_out);
     if (this->GetRenderToImage() != 0) this->core.left_out.add("RenderToImage is left out");
     if (auto* const several = vtkMultiVolume::SafeDownCast(volume)) {
       std::vector<std::pair<vtkDataSet*, vtkVolume*>> parts;

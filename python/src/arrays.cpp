@@ -75,7 +75,7 @@ class Release {
  public:
   explicit Release(py::object object) : object_(object.release().ptr()) {}
   void operator()(const void*) const {
-    if (Py_IsInitialized() == 0 || _Py_IsFinalizing() != 0) return;
+    if (Py_IsInitialized() == 0 || is_interpreter_ending()) return;
     const PyGILState_STATE state = PyGILState_Ensure();
     Py_DECREF(object_);
     PyGILState_Release(state);

@@ -49,6 +49,16 @@ Vec3<double> vector_of(const py::handle& object, const std::string& what) {
   return {v[0], v[1], v[2]};
 }
 
+py::object array_as(const py::object& array, const py::object& dtype, const py::object& copy) {
+  const bool is_kept = dtype.is_none() || array.attr("dtype").equal(py::dtype::from_args(dtype));
+  if (!copy.is_none() && !py::cast<bool>(copy)) {
+    if (!is_kept) throw py::value_error("another dtype needs a copy");
+    return array;
+  }
+  if (!is_kept) return array.attr("astype")(dtype);
+  return copy.is_none() ? array : array.attr("copy")();
+}
+
 std::optional<Background> background_from(const py::handle& object) {
   if (py::isinstance<py::str>(object)) {
     if (py::cast<std::string>(object) == "transparent") return std::nullopt;

@@ -22,6 +22,15 @@ namespace py = pybind11;
 
 namespace pellucid::python {
 
+/// Returns whether the interpreter ends: it gives its lock to no other thread then.
+inline bool is_interpreter_ending() {
+#if PY_VERSION_HEX >= 0x030d0000
+  return Py_IsFinalizing() != 0;
+#else
+  return _Py_IsFinalizing() != 0;
+#endif
+}
+
 /// Lets go of the interpreter's lock for as long as it lives. The interpreter ends threads that ask
 /// for the lock while it ends itself: it unwinds them, for which the destructor must be left by an
 /// exception. py::gil_scoped_release would end the program.
@@ -80,6 +89,10 @@ py::array view_of(const T* values, std::vector<py::ssize_t> shape, const py::han
   py::detail::array_proxy(array.ptr())->flags &= ~py::detail::npy_api::NPY_ARRAY_WRITEABLE_;
   return array;
 }
+
+/// What `__array__(dtype, copy)` of an object returns that has `array`: dtype may be None, and copy
+/// is True, None (where one is needed) or False. Throws ValueError for False where one is needed.
+py::object array_as(const py::object& array, const py::object& dtype, const py::object& copy);
 
 /// Collects what readers and converters tell, and passes it to Python's warnings.
 class Notes {

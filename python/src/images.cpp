@@ -162,11 +162,10 @@ cannot be written to. A notebook shows it.
           "float32 (height, width, 4): premultiplied linear light, no copy.")
       .def(
           "__array__",
-          [](const py::object& self, const py::object& type) -> py::object {
-            const py::object rgba = self.attr("rgba");
-            return type.is_none() ? rgba : rgba.attr("astype")(type);
+          [](const py::object& self, const py::object& type, const py::object& copy) {
+            return array_as(self.attr("rgba"), type, copy);
           },
-          py::arg("dtype") = py::none())
+          py::arg("dtype") = py::none(), py::arg("copy") = py::none())
       .def_property_readonly(
           "error",
           [](const py::object& self) {

@@ -234,11 +234,10 @@ singular direction, infinite values and values beyond 2.1e37.)")
           "The values as a read-only array (z, y, x), without a copy.")
       .def(
           "__array__",
-          [](const py::object& self, const py::object& type) -> py::object {
-            const py::object array = array_of(py::cast<const VolumeHandle&>(self), self);
-            return type.is_none() ? array : array.attr("astype")(type);
+          [](const py::object& self, const py::object& type, const py::object& copy) {
+            return array_as(array_of(py::cast<const VolumeHandle&>(self), self), type, copy);
           },
-          py::arg("dtype") = py::none())
+          py::arg("dtype") = py::none(), py::arg("copy") = py::none())
       .def_property_readonly("spacing", &spacing_of, "Along (z, y, x), in world units.")
       .def_property_readonly(
           "origin",

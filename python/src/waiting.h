@@ -18,7 +18,7 @@ inline void attend(const py::object& progress, double fraction) {
 /// A thread that asks for the interpreter's lock while the interpreter ends would be ended by it,
 /// which C++ does not survive. It waits for the end of the process here instead.
 inline void wait_for_the_end_if_it_has_come() {
-  while (_Py_IsFinalizing() != 0) std::this_thread::sleep_for(std::chrono::seconds(1));
+  while (is_interpreter_ending()) std::this_thread::sleep_for(std::chrono::seconds(1));
 }
 
 /// Waits until `finished` returns true, without the interpreter's lock. Takes it every 20 ms for

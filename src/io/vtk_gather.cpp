@@ -95,7 +95,7 @@ std::size_t count_rounded(vtkDataArray& array) {
     const auto bits = static_cast<std::uint64_t>(number);
     const std::uint64_t size = number < 0 ? 0 - bits : bits;
     constexpr int digits = std::numeric_limits<double>::digits;
-    return size != 0 && static_cast<int>(std::bit_width(size)) - std::countr_zero(size) > digits;
+    return size != 0 && 64 - std::countl_zero(size) - std::countr_zero(size) > digits;
   }));
 }
 

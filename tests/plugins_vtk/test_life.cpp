@@ -463,6 +463,46 @@ INSTANTIATE_TEST_SUITE_P(
                 "nearest values are shown without light"}),
     [](const auto& made) { return std::string(made.param.name); });
 
+/// Return false where VTK is older than the setting.
+template <class Mapper>
+bool take_normals_of_opacity(Mapper& mapper) {
+  if constexpr (requires { mapper.SetComputeNormalFromOpacity(true); }) {
+    mapper.SetComputeNormalFromOpacity(true);
+    return true;
+  }
+  return false;
+}
+
+template <class Mapper>
+bool scatter(Mapper& mapper) {
+  if constexpr (requires { mapper.SetVolumetricScatteringBlending(1.0F); }) {
+    mapper.SetVolumetricScatteringBlending(1.0F);
+    return true;
+  }
+  return false;
+}
+
+TEST(VtkLife, LightThatNewerVersionsHaveIsSaidToBeLeftOut) {
+  vtkPellucidFactory::Use();
+  vtkNew<vtkGPUVolumeRayCastMapper> mapper;
+  vtkPellucidFactory::Use(false);
+  if (!take_normals_of_opacity(*mapper) || !scatter(*mapper)) {
+    GTEST_SKIP() << "this VTK has no such light";
+  }
+  mapper->SetInputData(ball_image());
+  const auto property = soft_property();
+  property->ShadeOn();
+  Stage stage;
+  stage.add(mapper, property);
+  stage.look();
+  const Messages messages;
+  stage.picture();
+  for (const char* const setting : {"ComputeNormalFromOpacity", "VolumetricScatteringBlending"}) {
+    EXPECT_NE(messages.text().find(std::string(setting) + " is left out"), std::string::npos)
+        << messages.text();
+  }
+}
+
 TEST(VtkLife, AUnitDistanceOf0IsOpaqueAndOneThatIsNoNumberIsOne) {
   const auto with_unit = [](double unit) {
     Stage stage;

@@ -129,7 +129,7 @@ class WithArray:
     def __init__(self, values):
         self.values = values
 
-    def __array__(self, dtype=None):
+    def __array__(self, dtype=None, copy=None):
         return self.values
 
 

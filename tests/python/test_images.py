@@ -33,6 +33,23 @@ def test_maps(image):
     assert pellucid.render(smooth(), size=8, error=False).error is None
 
 
+@pytest.mark.filterwarnings("error")
+def test_numpy_asks_for_an_array(image):
+    for each, held in ((image, image.rgba), (pellucid.Volume(smooth()), smooth())):
+        shared = numpy.asarray(each)
+        assert numpy.shares_memory(shared, numpy.asarray(each, dtype=numpy.float32))
+        copied = numpy.array(each)
+        assert copied.flags.writeable and numpy.array_equal(copied, held)
+        assert not numpy.shares_memory(copied, shared)
+        assert numpy.asarray(each, dtype=float).dtype == numpy.float64
+        # What numpy 2 passes; numpy 1 passes no copy.
+        assert numpy.shares_memory(each.__array__(copy=False), shared)
+        assert not numpy.shares_memory(each.__array__(copy=True), shared)
+        assert each.__array__(dtype=numpy.float64, copy=True).dtype == numpy.float64
+        with pytest.raises(ValueError, match="needs a copy"):
+            each.__array__(dtype=numpy.float64, copy=False)
+
+
 def decode(png):
     """Returns the bytes (height, width, channels) of an 8-bit PNG without filters of rows."""
     assert png[:8] == b"\x89PNG\r\n\x1a\n"

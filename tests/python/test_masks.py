@@ -30,7 +30,7 @@ class Asked:
     def __init__(self, array):
         self.array = array
 
-    def __array__(self, dtype=None):
+    def __array__(self, dtype=None, copy=None):
         return self.array
 
 
@@ -126,7 +126,7 @@ def test_masks_of_meshes():
 
 def test_what_a_library_raises_is_one_line():
     class Closed:
-        def __array__(self, dtype=None):
+        def __array__(self, dtype=None, copy=None):
             raise RuntimeError("NetCDF: Not a valid ID\nin line 3")
 
     with pytest.raises(pellucid.Error, match="Closed .NetCDF: Not a valid ID.") as error:
