@@ -67,6 +67,13 @@ def _found(data: Any, name: str) -> Placed:
         return _labelled.of_xarray(data)
     if _labelled.is_netcdf4(data):
         return _labelled.of_netcdf4(data)
+    labelled = None
+    if _labelled.is_hdf5(data):
+        labelled = _labelled.of_hdf5(data, name)
+    elif _labelled.is_zarr(data):
+        labelled = _labelled.of_zarr(data, name)
+    if labelled is not None:
+        return labelled
     places = [each for each in ("affine", "spacing", "origin", "direction") if hasattr(data, each)]
     if places:
         tell(f"{name}: the {places[0]} of a {type(data).__name__} is not read; give spacing, "

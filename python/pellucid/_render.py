@@ -91,7 +91,11 @@ def scene_of(data: Any, transfer_function: Any = None, *, preset: Optional[str] 
              look: Optional[str] = None, **layer: Any) -> Scene:
     """Returns the scene that render() renders; it takes the same arguments."""
     if isinstance(data, (str, os.PathLike)):
-        data = _pellucid.read(data)
+        path, data = os.fspath(data), _pellucid.read(data)
+        if isinstance(data, Layer) and (look or preset or transfer_function is not None):
+            raise Error(f"{path}: holds colors, which are shown as they are; read_volume(path, "
+                        "component=0) gives one component, to which looks, presets and transfer "
+                        "functions apply")
     place = {name: layer.pop(name) for name in _PLACE_NAMES if name in layer}
     if place:
         if isinstance(data, (Scene, Layer, Volume, Channels, Mesh, LabelVolume)):

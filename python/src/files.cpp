@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <optional>
 #include <string>
 #include <utility>
 #include <variant>
@@ -6,6 +7,7 @@
 #include "common.h"
 #include "handles.h"
 #include "pellucid/io/atomic_file.h"
+#include "pellucid/io/color_data.h"
 #include "pellucid/io/dicom_series.h"
 #include "scenes.h"
 
@@ -134,7 +136,24 @@ py::object load_scene_file(const std::filesystem::path& path) {
   return to_python(scene, complete);
 }
 
-/// Returns a Volume, a Mesh or a Scene, whichever the path leads to.
+/// Returns the Layer that shows each point of a file of colors in its own; nothing of other files.
+std::optional<py::object> read_colors(FieldSource source) {
+  SceneDescription description;
+  LayerDescription& layer = description.layers.front();
+  source.file = std::filesystem::absolute(source.file);
+  layer.field = source;
+  if (!show_own_colors(layer)) return std::nullopt;
+  const Scene scene = with_notes([&](const auto& sink) {
+    SceneDescription reading = description;
+    for (ChannelSource& channel : reading.layers.front().channels) {
+      if (auto* field = std::get_if<FieldSource>(&channel.source)) field->options.note = sink;
+    }
+    return make_scene(reading, all_cores());
+  });
+  return to_python(scene, description).attr("layers")[py::int_(0)];
+}
+
+/// Returns a Volume, a Mesh, a Layer of colors or a Scene, whichever the path leads to.
 py::object read_any(const std::string& text) {
   const std::filesystem::path path = text;
   if (path.extension() == ".json" && !is_volume_json(path)) return load_scene_file(path);
@@ -143,7 +162,21 @@ py::object read_any(const std::string& text) {
     source.file = path;
     return py::cast(read_mesh_source(std::move(source)));
   }
-  return py::cast(read_source(parse_field_source(text)));
+  const FieldSource source = parse_field_source(text);
+  try {
+    return py::cast(read_source(source));
+  } catch (const Error&) {
+    // Of several components one must be chosen, but colors are shown together.
+    if (source.file.empty()) throw;
+    std::optional<py::object> colors;
+    try {
+      colors = read_colors(source);
+    } catch (const Error&) {
+      // What is wrong with the file was said at first.
+    }
+    if (!colors) throw;
+    return *colors;
+  }
 }
 
 void save_scene_file(const py::object& object, const std::filesystem::path& path) {
@@ -188,7 +221,8 @@ time chooses the nearest time step; q is the solution file of a PLOT3D grid. Rai
         return read_any(py::cast<std::string>(py::module_::import("os").attr("fspath")(path)));
       },
       py::arg("path"), R"(
-Reads any file: returns a Volume, a Mesh, or of a scene file (.json) a Scene. Takes
+Reads any file: returns a Volume, a Mesh, of colors (RGB, RGBA) a Layer that shows them as they
+are, or of a scene file (.json) a Scene. read_volume() takes one component of colors. Takes
 "builtin:NAME[:POINTS]" too. Raises Error.)");
   module.def("load_scene", &load_scene_file, py::arg("path"),
              "Reads a scene file and its data. Raises Error with the place in the file.");

@@ -16,6 +16,8 @@
 
 namespace pellucid {
 
+struct ArrayBeside;
+
 /// A part of a grid with so many values along its axes.
 struct GridPart {
   std::array<int, 3> dimensions;
@@ -96,7 +98,9 @@ std::vector<VolumeData> take_components(std::vector<WholeNumbers>& components, s
 /// The first array of a .npy file, as numpy.load reads it; tells of bytes behind it.
 VolumeFile open_npy(const ByteSource& source, const ReadOptions& options);
 /// The same where nothing may be behind it, as in a .npz file, whose entries have one array each.
-VolumeFile open_npy_alone(const ByteSource& source, const ReadOptions& options);
+/// `beside` are the other arrays of the archive, which may say positions.
+VolumeFile open_npy_alone(const ByteSource& source, const ReadOptions& options,
+                          std::span<const ArrayBeside> beside = {});
 VolumeFile open_npz(const ByteSource& source, const ReadOptions& options);
 VolumeFile open_raw(const ByteSource& source, const ReadOptions& options);
 VolumeFile open_raw_gzip(const std::filesystem::path& path, const ReadOptions& options);

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
+#include <limits>
 #include <string_view>
 #include <utility>
 
@@ -114,12 +115,6 @@ std::vector<AxisTag> axis_tags(std::string_view json) {
     begin = end == std::string_view::npos ? end : json.find('{', end);
   }
   return tags;
-}
-
-std::vector<std::string> labels_of(hid_t dataset) {
-  if (H5Aexists(dataset, "DIMENSION_LABELS") <= 0) return {};
-  const Id attribute(H5Aopen(dataset, "DIMENSION_LABELS", H5P_DEFAULT), H5Aclose, "an attribute");
-  return texts_at(attribute.get());
 }
 
 std::string last_name_of(hid_t object) {
@@ -256,7 +251,105 @@ std::optional<std::pair<hsize_t, hsize_t>> written_chunks(hid_t dataset, hid_t h
   return std::pair{written, total};
 }
 
+/// Called by HDF5, through which no exception may pass. Links to elsewhere are not followed.
+herr_t take_link_name(hid_t, const char* name, const H5L_info_t* about, void* to) noexcept {
+  auto& names = *static_cast<std::vector<std::string>*>(to);
+  constexpr std::size_t most_names = 4096;
+  if (about->type == H5L_TYPE_HARD && names.size() < most_names) names.emplace_back(name);
+  return 0;
+}
+
+/// Returns the sides of a dataset; nothing where it has none, or more than eight.
+std::optional<std::vector<std::int64_t>> sides_of(hid_t dataset) {
+  const Id space(H5Dget_space(dataset), H5Sclose, "the axes of a dataset");
+  constexpr int most_axes = 8;
+  const int rank = H5Sget_simple_extent_ndims(space.get());
+  if (rank < 0 || rank > most_axes || H5Sget_simple_extent_type(space.get()) == H5S_NULL) {
+    return std::nullopt;
+  }
+  std::vector<hsize_t> sides(static_cast<std::size_t>(rank));
+  H5Sget_simple_extent_dims(space.get(), sides.data(), nullptr);
+  std::vector<std::int64_t> shape;
+  for (const hsize_t side : sides) {
+    if (side > static_cast<hsize_t>(std::numeric_limits<int>::max())) return std::nullopt;
+    shape.push_back(static_cast<std::int64_t>(side));
+  }
+  return shape;
+}
+
+/// Reads a small dataset of numbers; it stays without them where it has none.
+void read_numbers(hid_t dataset, ArrayBeside& array) {
+  const Id type(H5Dget_type(dataset), H5Tclose, "the type of a dataset");
+  if (!type_of(type.get())) return;
+  try {
+    check_kind(dataset, type.get());
+  } catch (const Error&) {
+    return;
+  }
+  std::size_t count = 1;
+  for (const std::int64_t side : array.shape) count *= static_cast<std::size_t>(side);
+  std::vector<double> numbers(count);
+  if (count == 0 ||
+      H5Dread(dataset, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, numbers.data()) < 0) {
+    return;
+  }
+  array.numbers = std::move(numbers);
+  const VariableAttributes attributes = hdf5_attributes(dataset);
+  for (const char* key : {"units", "unit"}) {
+    if (array.units.empty()) array.units = text_of(attributes, key).substr(0, 40);
+  }
+}
+
+/// Adds the datasets of one group. Those of arrays of several sides are of none of them alone.
+void add_arrays_of(hid_t group, const std::string& own_name, const std::vector<std::int64_t>& shape,
+                   const Hdf5Axes& axes, std::vector<ArrayBeside>& arrays) {
+  std::vector<std::string> names;
+  H5Literate(group, H5_INDEX_NAME, H5_ITER_INC, nullptr, take_link_name, &names);
+  const std::size_t first = arrays.size();
+  bool has_others = false;
+  for (const std::string& name : names) {
+    const bool is_scale =
+        std::ranges::any_of(axes.texts, [&](const AxisText& text) { return text.name == name; });
+    const bool is_known =
+        std::ranges::any_of(arrays, [&](const ArrayBeside& array) { return array.name == name; });
+    if (name == own_name || is_scale || is_known) continue;
+    const hid_t opened = H5Oopen(group, name.c_str(), H5P_DEFAULT);
+    if (opened < 0) continue;
+    const Id object(opened, H5Oclose, "an object");
+    if (H5Iget_type(opened) != H5I_DATASET) continue;
+    const auto sides = sides_of(opened);
+    if (!sides) continue;
+    has_others = has_others || (sides->size() > 2 && *sides != shape);
+    ArrayBeside array{name, *sides};
+    if (may_say_positions(array, shape)) {
+      read_numbers(opened, array);
+      arrays.push_back(std::move(array));
+    } else if (sides->size() > 1 && sides->size() <= shape.size()) {
+      arrays.push_back(std::move(array));
+    }
+  }
+  for (std::size_t i = first; i < arrays.size(); ++i) arrays[i].is_of_several = has_others;
+}
+
 }  // namespace
+
+std::vector<ArrayBeside> hdf5_arrays_beside(hid_t dataset, const std::string& name,
+                                            const std::vector<std::int64_t>& shape,
+                                            const Hdf5Axes& axes) {
+  std::vector<ArrayBeside> arrays;
+  const Id file(H5Iget_file_id(dataset), H5Fclose, "the file");
+  for (std::size_t end = name.rfind('/'); end != std::string::npos;
+       end = end == 0 ? std::string::npos : name.rfind('/', end - 1)) {
+    const std::string path = end == 0 ? "/" : name.substr(0, end);
+    const hid_t opened = H5Gopen2(file.get(), path.c_str(), H5P_DEFAULT);
+    if (opened < 0) continue;
+    const Id group(opened, H5Gclose, "a group");
+    const std::size_t begin = end + 1;
+    add_arrays_of(group.get(), name.substr(begin, name.find('/', begin) - begin), shape, axes,
+                  arrays);
+  }
+  return arrays;
+}
 
 VariableAttributes hdf5_attributes(hid_t dataset) {
   std::vector<std::string> names;
@@ -266,6 +359,18 @@ VariableAttributes hdf5_attributes(hid_t dataset) {
     if (auto read = read_attribute(dataset, name.c_str())) attributes[name] = *std::move(read);
   }
   return attributes;
+}
+
+std::vector<std::string> hdf5_texts(hid_t object, const std::string& name) {
+  if (H5Aexists(object, name.c_str()) <= 0) return {};
+  const Id attribute(H5Aopen(object, name.c_str(), H5P_DEFAULT), H5Aclose, "an attribute");
+  std::vector<std::string> texts = texts_at(attribute.get());
+  if (!texts.empty()) return texts;
+  const auto read = read_attribute(object, name.c_str());
+  if (!read || read->numbers.size() != 1) return {};
+  std::array<char, 32> number{};
+  std::snprintf(number.data(), number.size(), "%.17g", read->numbers.front());
+  return {number.data()};
 }
 
 std::string hdf5_meant_type(std::string type, const VariableAttributes& attributes) {
@@ -283,7 +388,7 @@ Hdf5Axes hdf5_axes(hid_t dataset, const std::vector<std::int64_t>& shape,
   Hdf5Axes axes;
   axes.texts.resize(shape.size());
   axes.positions.resize(shape.size());
-  const std::vector<std::string> labels = labels_of(dataset);
+  const std::vector<std::string> labels = hdf5_texts(dataset, "DIMENSION_LABELS");
   for (std::size_t a = 0; a < labels.size() && a < shape.size(); ++a) {
     axes.texts[a].name = labels[a].substr(0, 80);
   }

@@ -16,6 +16,7 @@
 #include "array_axes.h"
 #include "grid_module.h"
 #include "hdf5_attributes.h"
+#include "hdf5_imaris.h"
 #include "hdf5_parts.h"
 #include "pellucid/scene/error.h"
 #include "stored_numbers.h"
@@ -76,12 +77,42 @@ bool may_be_whole(const Dataset& dataset) {
          !dataset.meaning.may_miss();
 }
 
+/// Takes positions, and the meaning of axes that is a guess, from datasets beside this one. Returns
+/// notes that begin with "its".
+std::vector<std::string> place_by_arrays(hid_t id, const Hdf5Axes& named, bool is_said,
+                                         Dataset& dataset) {
+  const std::vector<ArrayBeside> arrays =
+      hdf5_arrays_beside(id, dataset.about.name, dataset.shape, named);
+  if (arrays.empty()) return {};
+  VolumeAxes& axes = dataset.axes;
+  KnownAxes known{axes.space, {}, is_said, false};
+  if (axes.components.size() == 1) known.components = axes.components.front();
+  for (std::size_t a = 0; a < dataset.shape.size(); ++a) {
+    known.is_said = known.is_said || !named.texts[a].name.empty();
+  }
+  for (const std::size_t axis : axes.space) {
+    known.is_placed = known.is_placed || !named.positions[axis].numbers.empty();
+  }
+  PositionsBeside found = positions_beside(arrays, dataset.shape, known);
+  axes.space = found.space;
+  dataset.about.positions = std::move(found.positions);
+  dataset.about.placement = found.placement;
+  if (!found.times.empty() && !axes.time) {
+    axes.time = axes.components.front();
+    dataset.about.times = std::move(found.times);
+  }
+  return std::move(found.notes);
+}
+
 /// Adds positions and steps in time.
 void place(const Hdf5Axes& named, Dataset& dataset) {
   GridArray& array = dataset.about;
-  for (std::size_t a = 0; a < 3; ++a) array.positions[a] = named.positions[dataset.axes.space[a]];
+  for (std::size_t a = 0; a < 3; ++a) {
+    const AxisPositions& own = named.positions[dataset.axes.space[a]];
+    if (!own.numbers.empty() || array.positions[a].numbers.empty()) array.positions[a] = own;
+  }
   if (!dataset.axes.time) return;
-  array.times = named.positions[*dataset.axes.time].numbers;
+  if (array.times.empty()) array.times = named.positions[*dataset.axes.time].numbers;
   for (std::int64_t t = 0; array.times.empty() && t < dataset.shape[*dataset.axes.time]; ++t) {
     array.times.push_back(static_cast<double>(t));
   }
@@ -129,6 +160,7 @@ std::optional<Dataset> describe(hid_t id, const std::string& name, const AxisLet
   // The type of values must not depend on which of them are read.
   array.reads_parts = !may_be_whole(dataset) &&
                       (array.type_with_missing.empty() || array.type_with_missing == array.type);
+  const std::vector<std::string> beside = place_by_arrays(id, named, letters.has_value(), dataset);
   for (std::size_t a = 0; a < 3; ++a) array.sides[a] = (*shape)[dataset.axes.space[a]];
   array.components = dataset.axes.component_count(*shape);
   array.holds = dataset.axes.holds;
@@ -137,6 +169,7 @@ std::optional<Dataset> describe(hid_t id, const std::string& name, const AxisLet
     for (const std::string& note : notes) array.notes.push_back(before + note);
   };
   tell(named.notes, {});
+  tell(beside, "\"" + name + "\": ");
   tell(dataset.axes.notes, "\"" + name + "\": ");
   tell(notes_on_unread(attributes, name), {});
   tell(notes_on_groups(id, name), {});
@@ -276,6 +309,10 @@ herr_t take_link(hid_t group, const char* name, const H5L_info_t* about, void* t
 void list_grids(const std::filesystem::path& path, const AxisLetters& axes,
                 GridContents& contents) {
   const Id file(open_file(path), H5Fclose, "the file");
+  if (is_imaris(file.get())) {
+    if (axes) throw Error("is of Imaris, which says what its axes are; leave the axes out");
+    return list_imaris(file.get(), contents);
+  }
   std::vector<std::string> names;
   if (H5Ovisit(file.get(), H5_INDEX_NAME, H5_ITER_INC, take_name, &names) < 0) {
     throw Error("HDF5 cannot read its list of datasets; the file is damaged");
@@ -312,6 +349,7 @@ void list_grids(const std::filesystem::path& path, const AxisLetters& axes,
 void read_grid(const std::filesystem::path& path, const std::string& name, const AxisLetters& axes,
                ComponentRange range, GridValues& values) {
   const Id file(open_file(path), H5Fclose, "the file");
+  if (is_imaris(file.get())) return read_imaris(file.get(), name, range, values);
   const Id id(H5Dopen2(file.get(), name.c_str(), H5P_DEFAULT), H5Dclose, name.c_str());
   const auto dataset = describe(id.get(), name, axes);
   if (!dataset) throw Error("the file was changed while it was read");

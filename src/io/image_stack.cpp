@@ -354,9 +354,10 @@ class Finder {
       if (format != volume.format) refuse_odd(name_, which, format, volume.format);
       const PageDescription own = reader->describe(options_);
       if (own.calibration != said.calibration) {
-        throw Error(name_ + ": the values of " + which +
-                    " have another calibration (ImageJ: c0, c1) than those of the first; give "
-                    "all the same");
+        throw Error(
+            name_ + ": the values of " + which +
+            " have another calibration (ImageJ: c0, c1; PNG: pCAL) than those of the first; give "
+            "all the same");
       }
       if (reader->next()) {
         throw Error(name_ + ": " + which +

@@ -15,6 +15,7 @@
 #include "grid_module.h"
 #include "netcdf_variables.h"
 #include "pellucid/scene/error.h"
+#include "positions_beside.h"
 #include "stored_numbers.h"
 #include "variable_notes.h"
 
@@ -245,6 +246,23 @@ struct FilledChunks {
   }
 };
 
+/// Returns notes on variables beside one that may say its positions. Coordinates are others, which
+/// the conventions name.
+std::vector<std::string> notes_on_others(const NetCdfVariable& of,
+                                         const std::vector<NetCdfVariable>& variables) {
+  std::vector<ArrayBeside> arrays;
+  for (const NetCdfVariable& variable : variables) {
+    const bool has_own_axes = std::ranges::none_of(
+        variable.axes, [&](int axis) { return std::ranges::find(of.axes, axis) != of.axes.end(); });
+    if (variable.group != of.group || !has_own_axes) continue;
+    arrays.push_back({variable.name.substr(variable.name.rfind('/') + 1), variable.sides});
+  }
+  std::vector<std::string> notes;
+  const PositionsBeside beside = positions_beside(arrays, of.sides, {{}, {}, true, true});
+  for (const std::string& note : beside.notes) notes.push_back("\"" + of.name + "\": " + note);
+  return notes;
+}
+
 }  // namespace
 
 void list_grids(const std::filesystem::path& path, const AxisLetters&, GridContents& contents) {
@@ -260,8 +278,10 @@ void list_grids(const std::filesystem::path& path, const AxisLetters&, GridConte
       }
       if (const auto volume = volume_of(variable)) {
         // Arrays of data come first: the first one is shown where none is chosen.
+        GridArray array = describe(*volume);
+        std::ranges::move(notes_on_others(variable, variables), std::back_inserter(array.notes));
         (helpers.is_auxiliary(variable.name) ? auxiliary : contents.arrays)
-            .push_back(describe(*volume));
+            .push_back(std::move(array));
       } else {
         contents.others.push_back({variable.name, {}});
       }

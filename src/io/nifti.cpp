@@ -128,16 +128,6 @@ std::vector<VolumeData> read_file_values(const std::filesystem::path& file,
   return read_scaled(read_on(source, layout.offset + before), header, count, range, name);
 }
 
-/// Whether the columns are at right angles, to within what a header's floats leave.
-bool is_orthogonal(const Mat3<double>& direction) {
-  constexpr double largest_cosine = 1e-3;
-  for (int a = 0; a < 3; ++a) {
-    const double cosine = dot(direction.column[a], direction.column[(a + 1) % 3]);
-    if (!(std::abs(cosine) <= largest_cosine)) return false;
-  }
-  return true;
-}
-
 /// Returns where a header puts the grid that states no orientation, as nibabel and SPM do: x runs
 /// towards left, y towards anterior and z towards superior. The world's origin is the grid's
 /// middle, or the voxel that Analyze's header names, if it is near the grid. Lengths are in the
@@ -163,13 +153,17 @@ bool states_orientation(const NiftiHeader& header) {
   return header.sform || header.qform;
 }
 
-/// Chooses between the two maps as ITK 5.2 does: the sform where it is that of the scanner or
-/// stands alone, else the qform. A sheared sform yields to a qform. Lengths are in the file's unit.
+/// Whether each axis has a length.
+bool is_usable(const GridPlacement& placement) {
+  return std::ranges::all_of(std::array{0, 1, 2}, [&](int a) {
+    return length(placement.direction.column[a]) > 0;  // not where it is NaN
+  });
+}
+
+/// Chooses between the two maps as nibabel, FSL and SPM do: the sform where there is one, else the
+/// qform. Lengths are in the file's unit.
 GridPlacement placement_of(const NiftiHeader& header, const ReadOptions& options) {
-  const bool sform_first =
-      header.sform && (!header.qform || (header.sform_code == scanner_coordinates &&
-                                         is_orthogonal(header.sform->direction)));
-  if (sform_first) return *header.sform;
+  if (header.sform && (is_usable(*header.sform) || !header.qform)) return *header.sform;
   if (header.qform) return *header.qform;
   const Vec3<double> spacing{header.spacing[0], header.spacing[1], header.spacing[2]};
   return base_placement(header, options.spacing ? *options.spacing * (1 / header.unit) : spacing);

@@ -211,7 +211,6 @@ NiftiHeader read_nifti_header(const std::filesystem::path& path) {
   const int unit_code = fields.units & 7;
   header.unit = unit_code == 1 ? 1e3 : unit_code == 3 ? 1e-3 : 1;
   header.sform = sform_of(fields);
-  header.sform_code = fields.sform_code;
   header.qform = qform_of(fields);
   header.origin = fields.origin;
   note_header(fields, name, header);

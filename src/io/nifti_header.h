@@ -27,14 +27,10 @@ struct NiftiHeader {
   /// The affine map of the sform, where there is one, its world turned from RAS to LPS, in the
   /// file's unit.
   std::optional<GridPlacement> sform;
-  int sform_code = 0;                  ///< which coordinates the sform gives
   std::optional<GridPlacement> qform;  ///< as the sform
   std::array<int, 3> origin{};         ///< of Analyze: the voxel at the world's origin, from 1
   std::vector<std::string> notes;      ///< what a reader should know, a line each
 };
-
-/// The code of an sform whose coordinates are the scanner's (NIFTI_XFORM_SCANNER_ANAT).
-inline constexpr int scanner_coordinates = 1;
 
 /// Reads and checks the header of a .nii or .hdr file, compressed or not. Throws Error.
 NiftiHeader read_nifti_header(const std::filesystem::path& path);

@@ -17,8 +17,10 @@
 #include <vector>
 
 #include "array_axes.h"
+#include "grid_axes.h"
 #include "memory_limit.h"
 #include "pellucid/scene/error.h"
+#include "positions_beside.h"
 #include "stored_numbers.h"
 
 namespace pellucid {
@@ -364,17 +366,68 @@ NpyArray read_npy_header(const ByteSource& source) {
   return array;
 }
 
+std::vector<double> read_npy_numbers(const ByteSource& source) {
+  const NpyArray array = read_npy_header(source);
+  std::size_t count = 1;
+  for (const std::int64_t side : array.shape) {
+    constexpr std::size_t most = std::size_t{1} << 24;
+    if (side < 0 || static_cast<std::size_t>(side) > most / std::max(count, std::size_t{1})) {
+      throw Error(source.name + ": is no small array");
+    }
+    count *= static_cast<std::size_t>(side);
+  }
+  if (count == 0) return {};
+  const ValueLayout layout{array.type, array.big_endian, array.offset, 1, false, {}};
+  check_size(source, layout, count);
+  const VolumeData values = read_components(source, layout, count, {0, 1}).front();
+  std::vector<double> numbers;
+  std::visit([&](const auto& of_type) { numbers.assign(of_type.begin(), of_type.end()); }, values);
+  if (!array.fortran_order || array.shape.size() != 2) return numbers;
+  const auto rows = static_cast<std::size_t>(array.shape[0]);
+  const auto columns = static_cast<std::size_t>(array.shape[1]);
+  std::vector<double> turned(numbers.size());
+  for (std::size_t i = 0; i < numbers.size(); ++i)
+    turned[i % rows * columns + i / rows] = numbers[i];
+  return turned;
+}
+
 namespace {
 
 /// Whether bytes may lie behind the array.
 enum class Behind { noted, refused };
 
-VolumeFile open_array(const ByteSource& source, const ReadOptions& options, Behind behind) {
+/// Takes positions from arrays beside this one, and turns axes that are a guess.
+PositionsBeside place_by_arrays(std::span<const ArrayBeside> beside, const NpyArray& array,
+                                const ReadOptions& options, const std::string& name,
+                                ArrayAxes& axes) {
+  if (beside.empty()) return {};
+  PositionsBeside found = positions_beside(
+      beside, array.shape, {axes.space, axes.components, options.axes.has_value(), false});
+  if (!found.times.empty()) {
+    found.notes.emplace_back("its times, which stand beside it, are not read");
+  }
+  if (!axes.guess.empty()) {
+    for (std::size_t a = 0; a < 3; ++a) {
+      // Axes of one entry in front of the four do not count.
+      const std::size_t before = array.shape.size() - axes.guess.size();
+      if (found.space[a] >= before) axes.guess[found.space[a] - before] = "xyz"[a];
+    }
+  }
+  axes.space = found.space;
+  for (const std::string& note : found.notes) {
+    if (options.note) options.note(name + ": " + note);
+  }
+  return found;
+}
+
+VolumeFile open_array(const ByteSource& source, const ReadOptions& options, Behind behind,
+                      std::span<const ArrayBeside> beside = {}) {
   refuse_raw_options(options, source.name);
   const NpyArray array = read_npy_header(source);
-  const ArrayAxes axes =
+  ArrayAxes axes =
       array_axes(array.shape, options.axes,
                  source.name + ": an array of shape (" + shape_text(array.shape) + ")");
+  const PositionsBeside placed = place_by_arrays(beside, array, options, source.name, axes);
   const Lie lie = lie_of(array, axes, source.name);
   const auto& sides = lie.sides;
   const std::size_t points = value_count(sides, source.name);
@@ -395,6 +448,8 @@ VolumeFile open_array(const ByteSource& source, const ReadOptions& options, Behi
   VolumeFile file;
   for (std::size_t a = 0; a < 3; ++a) file.description.dimensions[a] = static_cast<int>(sides[a]);
   file.description.name = source.name;
+  if (placed.placement) file.description.placement = *placed.placement;
+  place_axes(file.description, placed.positions, options);
   apply_overrides(options, file.description);
   file.components = lie.components;
   if (axes.components) {
@@ -421,8 +476,9 @@ VolumeFile open_npy(const ByteSource& source, const ReadOptions& options) {
   return open_array(source, options, Behind::noted);
 }
 
-VolumeFile open_npy_alone(const ByteSource& source, const ReadOptions& options) {
-  return open_array(source, options, Behind::refused);
+VolumeFile open_npy_alone(const ByteSource& source, const ReadOptions& options,
+                          std::span<const ArrayBeside> beside) {
+  return open_array(source, options, Behind::refused, beside);
 }
 
 Volume parse_npy(const std::vector<std::byte>& bytes, const std::string& name,

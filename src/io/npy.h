@@ -22,6 +22,9 @@ struct NpyArray {
 /// Throws Error, also for types that are not read.
 NpyArray read_npy_header(const ByteSource& source);
 
+/// Returns the values of a small array, the last axis fastest. Throws Error.
+std::vector<double> read_npy_numbers(const ByteSource& source);
+
 /// The arrays of an archive of .npy files, as numpy.savez writes it.
 std::vector<VolumeArray> list_npz_arrays(const std::filesystem::path& path,
                                          const ReadOptions& options);

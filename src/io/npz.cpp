@@ -3,7 +3,9 @@
 // The format: numpy.savez and savez_compressed. A zip archive of files NAME.npy, one per array.
 
 #include <algorithm>
+#include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -13,6 +15,7 @@
 #include "array_statistics.h"
 #include "npy.h"
 #include "pellucid/scene/error.h"
+#include "positions_beside.h"
 #include "zip_archive.h"
 
 namespace pellucid {
@@ -24,6 +27,7 @@ constexpr std::string_view npy_extension = ".npy";
 struct NpzArray {
   std::string name;
   ZipEntry entry;
+  std::vector<std::int64_t> shape = {};  ///< by read_shapes(); empty: a single value, or no array
 };
 
 /// The name is a file's in an archive, which may hold anything.
@@ -38,7 +42,7 @@ std::vector<NpzArray> arrays_of(const ByteSource& archive) {
   for (ZipEntry& entry : read_zip_directory(archive)) {
     if (!entry.name.ends_with(npy_extension)) continue;
     std::string name = entry.name.substr(0, entry.name.size() - npy_extension.size());
-    arrays.push_back({std::move(name), std::move(entry)});
+    arrays.push_back({std::move(name), std::move(entry), {}});
   }
   if (arrays.empty()) {
     throw Error(archive.name +
@@ -65,9 +69,43 @@ std::string list_of(const ByteSource& archive, const std::vector<NpzArray>& arra
   return list;
 }
 
-VolumeFile open_array(const ByteSource& archive, const NpzArray& array,
-                      const ReadOptions& options) {
-  VolumeFile file = open_npy_alone(zip_entry_source(archive, array.entry), options);
+/// Reads the shapes of all arrays.
+void read_shapes(const ByteSource& archive, std::vector<NpzArray>& arrays) {
+  for (NpzArray& array : arrays) {
+    try {
+      array.shape = read_npy_header(zip_entry_source(archive, array.entry)).shape;
+    } catch (const Error&) {
+      continue;  // is told where the array is chosen or listed
+    }
+  }
+}
+
+/// Returns the other arrays of the archive, with the numbers of those that may say positions.
+std::vector<ArrayBeside> arrays_beside(const ByteSource& archive,
+                                       const std::vector<NpzArray>& arrays, const NpzArray& array) {
+  std::vector<ArrayBeside> beside;
+  const bool has_others = std::ranges::any_of(arrays, [&](const NpzArray& other) {
+    return other.shape.size() > 2 && other.shape != array.shape;
+  });
+  for (const NpzArray& other : arrays) {
+    if (other.name == array.name) continue;
+    ArrayBeside about{printable(other.name), other.shape};
+    about.is_of_several = has_others;
+    if (may_say_positions(about, array.shape)) {
+      try {
+        about.numbers = read_npy_numbers(zip_entry_source(archive, other.entry));
+      } catch (const Error&) {
+        about.numbers.clear();  // text and objects of Python, which are told of
+      }
+    }
+    beside.push_back(std::move(about));
+  }
+  return beside;
+}
+
+VolumeFile open_array(const ByteSource& archive, const NpzArray& array, const ReadOptions& options,
+                      std::span<const ArrayBeside> beside = {}) {
+  VolumeFile file = open_npy_alone(zip_entry_source(archive, array.entry), options, beside);
   file.description.name = archive.name;
   file.array = printable(array.name);
   return file;
@@ -122,7 +160,10 @@ const NpzArray& choose(const ByteSource& archive, const std::vector<NpzArray>& a
 
 VolumeFile open_npz(const ByteSource& source, const ReadOptions& options) {
   refuse_raw_options(options, source.name);
-  return open_array(source, choose(source, arrays_of(source), options), options);
+  std::vector<NpzArray> arrays = arrays_of(source);
+  read_shapes(source, arrays);
+  const NpzArray& chosen = choose(source, arrays, options);
+  return open_array(source, chosen, options, arrays_beside(source, arrays, chosen));
 }
 
 std::vector<VolumeArray> list_npz_arrays(const std::filesystem::path& path,
@@ -130,13 +171,16 @@ std::vector<VolumeArray> list_npz_arrays(const std::filesystem::path& path,
   const ByteSource archive = file_source(path);
   std::vector<VolumeArray> list;
   bool shown = false;
-  for (const NpzArray& array : arrays_of(archive)) {
+  std::vector<NpzArray> arrays = arrays_of(archive);
+  read_shapes(archive, arrays);
+  for (const NpzArray& array : arrays) {
     VolumeArray about;
     about.name = printable(array.name);
     try {
       ReadOptions quiet = options;
       quiet.note = {};
-      const VolumeFile file = open_array(archive, array, quiet);
+      const VolumeFile file =
+          open_array(archive, array, quiet, arrays_beside(archive, arrays, array));
       const auto& sides = file.description.dimensions;
       about.dimensions.assign(sides.begin(), sides.end());
       constexpr int most = 64;

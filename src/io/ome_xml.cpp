@@ -16,6 +16,7 @@
 #include <map>
 #include <utility>
 
+#include "dicom_text.h"
 #include "pellucid/scene/error.h"
 #include "scene_json_document.h"
 #include "text.h"
@@ -126,7 +127,8 @@ class Reader {
     document_.images.push_back(std::move(image));
     image_ = tag.closed ? nullptr : &document_.images.back();
     channels_.clear();
-    positions_.clear();
+    positions_ = {};
+    position_units_ = {};
   }
 
   void read_sizes(const XmlTag& tag, PageDescription& pages) const {
@@ -183,10 +185,14 @@ class Reader {
 
   void add_position(const XmlTag& tag) {
     const auto z = number(tag, "TheZ");
-    const auto position = number(tag, "PositionZ");
-    if (!z || !position || attribute(tag, "TheC") > "0" || attribute(tag, "TheT") > "0") return;
-    positions_[*z] = *position;
-    position_unit_ = attribute(tag, "PositionZUnit");
+    if (!z || attribute(tag, "TheC") > "0" || attribute(tag, "TheT") > "0") return;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const std::string key = std::string("Position") + "XYZ"[axis];
+      const auto position = number(tag, key);
+      if (!position) continue;
+      positions_[axis][*z] = *position;
+      position_units_[axis] = attribute(tag, key + "Unit");
+    }
   }
 
   static std::int64_t size_of(const PageDescription& pages, char letter) {
@@ -205,32 +211,60 @@ class Reader {
 
   /// Compares the distance of slices with the stage's positions, where they are even.
   void compare_positions(PageDescription& pages) const {
-    if (positions_.size() < 2) return;
-    const auto [first_z, first] = *positions_.begin();
-    const auto [last_z, last] = *positions_.rbegin();
+    compare_across(pages);
+    const std::map<double, double>& along = positions_[2];
+    if (along.size() < 2) return;
+    const auto [first_z, first] = *along.begin();
+    const auto [last_z, last] = *along.rbegin();
     const double step = (last - first) / (last_z - first_z);
-    if (step == 0) return;
-    for (const auto& [z, position] : positions_) {
-      if (std::abs(first + step * (z - first_z) - position) > 0.01 * std::abs(step)) {
-        pages.notes.emplace_back(
-            "its planes' PositionZ are not even; the slices are taken to be even");
-        return;
-      }
+    // A stage that stays where it is may have its lens moved.
+    if (std::ranges::all_of(along, [&](const auto& at) { return at.second == first; })) return;
+    for (const auto& [z, position] : along) {
+      if (std::abs(first + step * (z - first_z) - position) <= 0.01 * std::abs(step)) continue;
+      pages.notes.emplace_back(
+          "its planes' PositionZ are not even; the slices are taken to be even");
+      return;
     }
     if (step < 0) {
       pages.notes.emplace_back("its planes' PositionZ go down with z; z goes up with the planes");
     }
-    const std::optional<double> metres = metres_of(position_unit_);
+    const std::string& unit = position_units_[2];
+    const std::optional<double> metres = metres_of(unit);
     auto& said = pages.spacing[2];
     if (!said && metres) {
-      said = {std::abs(step), position_unit_};
+      said = {std::abs(step), unit};
       pages.notes.emplace_back("its OME-XML has no PhysicalSizeZ; the planes' PositionZ say it");
-    } else if (said && metres && metres_of(said->unit)) {
-      const double ratio = std::abs(step) * *metres / (said->value * *metres_of(said->unit));
-      if (std::abs(ratio - 1) > 0.01) {
-        pages.notes.emplace_back(
-            "its planes' PositionZ have another distance than PhysicalSizeZ, which is taken");
-      }
+    } else if (!said) {
+      pages.notes.push_back("its planes' PositionZ are " + readable_number(std::abs(step)) +
+                            " apart, in no unit of length; they are not applied");
+    } else if (const auto size = size_in_unit_of(said, metres);
+               size && std::abs(std::abs(step) / *size - 1) > 0.01) {
+      pages.notes.push_back("its planes' PositionZ are " + readable_number(std::abs(step)) +
+                            (metres ? " " + printable(unit) : std::string(" (without a unit)")) +
+                            " apart, another distance than PhysicalSizeZ, which is taken");
+    }
+  }
+
+  /// Returns a size in the unit of positions, or, where theirs is not known, as it is written.
+  static std::optional<double> size_in_unit_of(const std::optional<SaidLength>& size,
+                                               const std::optional<double>& metres) {
+    if (!metres) return size->value;
+    const auto own = metres_of(size->unit);
+    return own ? std::optional(size->value * *own / *metres) : std::nullopt;
+  }
+
+  /// Tells of slices that the stage moved aside by more than a pixel.
+  void compare_across(PageDescription& pages) const {
+    for (std::size_t axis = 0; axis < 2; ++axis) {
+      const auto& said = pages.spacing[axis];
+      if (!said || positions_[axis].size() < 2) continue;
+      const auto size = size_in_unit_of(said, metres_of(position_units_[axis]));
+      const auto by_position = [](const auto& a, const auto& b) { return a.second < b.second; };
+      const auto [least, most] = std::ranges::minmax_element(positions_[axis], by_position);
+      if (!size || most->second - least->second <= *size) continue;
+      pages.notes.push_back(std::string("its planes' Position") + "XY"[axis] + " differ by " +
+                            readable_number((most->second - least->second) / *size) +
+                            " pixels; the slices are taken to lie one behind the other");
     }
   }
 
@@ -238,11 +272,12 @@ class Reader {
   int samples_;
   const std::string& name_;
   OmeDocument document_;
-  std::string image_name_, position_unit_;
+  std::string image_name_;
   OmeTiffImage* image_ = nullptr;  ///< whose Pixels are being read
   PageRun* run_ = nullptr;         ///< whose TiffData is being read
   std::vector<std::string> channels_;
-  std::map<double, double> positions_;
+  std::array<std::map<double, double>, 3> positions_;  ///< along x, y, z, by the number of z
+  std::array<std::string, 3> position_units_;
 };
 
 }  // namespace

@@ -95,6 +95,7 @@ constexpr std::array formats{Format{".nii", open_nifti},
                              Format{".h5", open_hdf5},
                              Format{".hdf5", open_hdf5},
                              Format{".he5", open_hdf5},
+                             Format{".ims", open_hdf5},  // Imaris
                              Format{".vtkhdf", open_vtk_hdf},
                              Format{".hdf", open_vtk_hdf},
                              Format{".nc", open_net_cdf},

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
+#include <optional>
+#include <span>
 #include <string>
 #include <utility>
 
@@ -28,6 +31,7 @@ class Reader {
                       corners_per_piece = want("NumberOfConnectivityIds"), points = want("Points"),
                       corners = want("Connectivity"), offsets = want("Offsets"),
                       types = want("Types");
+    const std::vector<std::size_t> of_faces = want_faces();
     for (const VtkHdfArray& array : contents.arrays) {
       if (array.place == VtkHdfArray::Place::root || !array.fault.empty()) continue;
       if (array.sides.size() > 2) continue;
@@ -41,6 +45,7 @@ class Reader {
     offsets_ = whole_numbers(offsets, "Offsets");
     types_ = whole_numbers(types, "Types");
     points_ = numbers(points);
+    take_faces(of_faces);
     if (points_.size() % 3 != 0)
       throw Error(std::string("its points have no three numbers") + damaged);
     if (cells_per_piece_.size() != points_per_piece_.size() ||
@@ -70,6 +75,109 @@ class Reader {
       throw Error("has no array " + std::string(name) + " in its group VTKHDF; it is damaged");
     }
     return values_.want(*found);
+  }
+
+  /// The lists of the faces of polyhedra, of which a file has all or none.
+  static constexpr std::array face_lists{"NumberOfFaces",
+                                         "NumberOfFaceConnectivityIds",
+                                         "NumberOfPolyhedronToFaceIds",
+                                         "FaceConnectivity",
+                                         "FaceOffsets",
+                                         "PolyhedronToFaces",
+                                         "PolyhedronOffsets"};
+  /// What they hold, piece by piece.
+  struct Faces {
+    std::vector<std::int64_t> per_piece, points_per_piece, uses_per_piece;
+    std::vector<std::int64_t> points, offsets, uses, cell_offsets;
+    std::size_t point_at = 0, offset_at = 0, use_at = 0, cell_offset_at = 0;
+  };
+  /// Those of one piece; its points, faces and lists are counted from 0.
+  struct PieceFaces {
+    std::span<const std::int64_t> points, offsets, uses, cell_offsets;
+  };
+
+  std::vector<std::size_t> want_faces() {
+    const bool has_any = std::ranges::any_of(contents_.arrays, [](const VtkHdfArray& a) {
+      return a.place == VtkHdfArray::Place::root && a.name == "PolyhedronToFaces";
+    });
+    std::vector<std::size_t> wanted;
+    for (const char* name : face_lists) {
+      if (has_any) wanted.push_back(want(name));
+    }
+    return wanted;
+  }
+
+  void take_faces(const std::vector<std::size_t>& wanted) {
+    if (wanted.empty()) return;
+    Faces& faces = faces_.emplace();
+    const std::array lists{&faces.per_piece,   &faces.points_per_piece, &faces.uses_per_piece,
+                           &faces.points,      &faces.offsets,          &faces.uses,
+                           &faces.cell_offsets};
+    for (std::size_t i = 0; i < lists.size(); ++i) {
+      *lists[i] = whole_numbers(wanted[i], face_lists[i]);
+    }
+    for (std::size_t i = 0; i < 3; ++i) {
+      if (lists[i]->size() == points_per_piece_.size()) continue;
+      throw Error(std::string("its pieces are not as many in all lists") + damaged);
+    }
+  }
+
+  /// Throws Error where offsets do not go on from 0 to at most `end`.
+  static void check_offsets(std::span<const std::int64_t> offsets, std::size_t end,
+                            const char* name) {
+    const bool is_well =
+        offsets.empty() || (offsets.front() == 0 && std::ranges::is_sorted(offsets) &&
+                            offsets.back() <= static_cast<std::int64_t>(end));
+    if (is_well) return;
+    throw Error("its array " + std::string(name) + " does not go on from 0 to the end of its list" +
+                damaged);
+  }
+
+  PieceFaces take_faces_of(std::size_t piece, std::int64_t cells) {
+    if (!faces_) return {};
+    Faces& all = *faces_;
+    PieceFaces of;
+    // Even a piece without faces may have a first offset, or none.
+    const auto offsets_of = [](const std::vector<std::int64_t>& list, std::size_t& at,
+                               std::int64_t count, const char* name) {
+      const auto left = static_cast<std::int64_t>(list.size() - at);
+      return take(list, at, count == 0 ? std::min<std::int64_t>(1, left) : count + 1, 1, name);
+    };
+    of.points = take(all.points, all.point_at, all.points_per_piece[piece], 1, "FaceConnectivity");
+    of.uses = take(all.uses, all.use_at, all.uses_per_piece[piece], 1, "PolyhedronToFaces");
+    of.offsets = offsets_of(all.offsets, all.offset_at, all.per_piece[piece], "FaceOffsets");
+    of.cell_offsets = offsets_of(all.cell_offsets, all.cell_offset_at, cells, "PolyhedronOffsets");
+    check_offsets(of.offsets, of.points.size(), "FaceOffsets");
+    check_offsets(of.cell_offsets, of.uses.size(), "PolyhedronOffsets");
+    return of;
+  }
+
+  /// Writes the faces of a cell as VtkCell has them; nothing where it has none.
+  static void list_faces(const PieceFaces& faces, std::size_t cell,
+                         std::vector<std::int64_t>& list) {
+    list.clear();
+    if (cell + 1 >= faces.cell_offsets.size()) return;
+    const auto begin = static_cast<std::size_t>(faces.cell_offsets[cell]),
+               end = static_cast<std::size_t>(faces.cell_offsets[cell + 1]);
+    if (begin == end) return;
+    list.push_back(static_cast<std::int64_t>(end - begin));
+    for (std::size_t i = begin; i < end; ++i) {
+      const std::int64_t face = faces.uses[i];
+      if (face < 0 || face + 1 >= std::ssize(faces.offsets)) {
+        throw Error("its array PolyhedronToFaces names the face " + std::to_string(face) +
+                    ", which is not there" + damaged);
+      }
+      const auto first = static_cast<std::size_t>(faces.offsets[static_cast<std::size_t>(face)]);
+      const auto last = static_cast<std::size_t>(faces.offsets[static_cast<std::size_t>(face) + 1]);
+      list.push_back(static_cast<std::int64_t>(last - first));
+      const auto points = faces.points.subspan(first, last - first);
+      list.insert(list.end(), points.begin(), points.end());
+      // A face is of a cell once, and more would be larger than the file by far.
+      if (list.size() > 4 * (faces.points.size() + faces.uses.size()) + 64) {
+        throw Error("polyhedra have faces more often than two cells share them" +
+                    std::string(damaged));
+      }
+    }
   }
 
   std::vector<double> numbers(std::size_t number) const {
@@ -137,6 +245,8 @@ class Reader {
     const std::vector<bool> is_hidden =
         flagged(VtkHdfArray::Place::point, first_point, static_cast<std::size_t>(points));
     const std::vector<double> orders = orders_of(first_cell, static_cast<std::size_t>(cells));
+    const PieceFaces faces = take_faces_of(piece, cells);
+    std::vector<std::int64_t> faces_of_cell;
     VtkCells target(mesh.cells, mesh.file, block);
     std::vector<std::size_t> kept;
     for (std::size_t cell = 0; cell < types.size(); ++cell) {
@@ -151,6 +261,10 @@ class Reader {
       const auto type = static_cast<int>(std::clamp<std::int64_t>(types[cell], -1, 1 << 16));
       VtkCell given{type, corners.subspan(static_cast<std::size_t>(begin),
                                           static_cast<std::size_t>(end - begin))};
+      if (constexpr int polyhedron = 42; type == polyhedron) {
+        list_faces(faces, cell, faces_of_cell);
+        given.faces = faces_of_cell;
+      }
       if (!orders.empty()) {
         given.orders.emplace();
         for (std::size_t a = 0; a < 3; ++a) {
@@ -256,6 +370,7 @@ class Reader {
   std::vector<std::int64_t> points_per_piece_, cells_per_piece_, corners_per_piece_, corners_,
       offsets_, types_;
   std::vector<double> points_;
+  std::optional<Faces> faces_;  ///< none: the file has no polyhedra
   std::size_t point_at_ = 0, cell_at_ = 0, corner_at_ = 0, offset_at_ = 0;
 };
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <vtkDataObject.h>
 #include <vtkStructuredGrid.h>
+#include <vtkUnstructuredGrid.h>
 #include <vtkXMLDataElement.h>
 #include <vtkXMLFileReadTester.h>
 #include <vtkXMLGenericDataObjectReader.h>
@@ -14,6 +15,7 @@
 #include "pellucid/scene/error.h"
 #include "vtk_compare_pieces.h"
 #include "vtk_gather.h"
+#include "vtk_polyhedra.h"
 #include "vtk_readers.h"
 
 namespace pellucid {
@@ -32,17 +34,18 @@ std::string kind_of(const std::filesystem::path& path, const VtkMessages& messag
 }
 
 /// Returns the files of the pieces of a list if it names levels of ghosts, which VTK converts in
-/// each piece, and then does not find, or if it does not name the flags of ghosts that they have.
-/// Else returns none.
-std::vector<std::filesystem::path> pieces_with_ghosts(const std::filesystem::path& path,
-                                                      const std::string& kind, bool is_unlisted) {
+/// each piece, and then does not find, or if it does not name the flags of ghosts that they have,
+/// or if they have faces of polyhedra that VTK does not read in a list. Else returns none.
+std::vector<std::filesystem::path> pieces_alone(const std::filesystem::path& path,
+                                                const std::string& kind,
+                                                const CheckedVtkXml& checked) {
   if (kind != "PUnstructuredGrid") return {};
   const auto root =
       vtkSmartPointer<vtkXMLDataElement>::Take(vtkXMLUtilities::ReadElementFromFile(path.c_str()));
   vtkXMLDataElement* const list =
       root == nullptr ? nullptr : root->FindNestedElementWithName(kind.c_str());
   if (list == nullptr) return {};
-  bool has_levels = is_unlisted;
+  bool has_levels = checked.has_unlisted_ghosts || checked.has_face_lists;
   std::vector<std::filesystem::path> files;
   for (int i = 0; i < list->GetNumberOfNestedElements(); ++i) {
     vtkXMLDataElement* const element = list->GetNestedElement(i);
@@ -58,7 +61,7 @@ std::vector<std::filesystem::path> pieces_with_ghosts(const std::filesystem::pat
 }
 
 /// Runs the reader at a step in time. The readers count steps, and do not know the times.
-void update_step(vtkXMLGenericDataObjectReader& reader, const MeshReadOptions& options,
+void update_step(vtkXMLReader& reader, const MeshReadOptions& options,
                  const std::vector<double>& times, const VtkMessages& messages, MeshFile& file) {
   if (times.size() < 2) {
     update(reader, options, messages, file);
@@ -90,14 +93,23 @@ void read_data(const std::filesystem::path& path, const std::string& kind,
                 "; read are unstructured and structured grids and multiblock files of them");
   }
   const CheckedVtkXml checked = check(path);
-  if (const auto pieces = pieces_with_ghosts(path, kind, checked.has_unlisted_ghosts);
-      !pieces.empty()) {
+  if (const auto pieces = pieces_alone(path, kind, checked); !pieces.empty()) {
     refuse_time(options);
     for (const std::filesystem::path& piece : pieces) {
       const std::string own = kind_of(piece, messages);
       if (own != "UnstructuredGrid") throw Error("has a piece that holds " + own.substr(0, 40));
       read_data(piece, own, {}, check, messages, mesh);
     }
+    return;
+  }
+  if (kind == "UnstructuredGrid") {
+    const auto reader = vtkSmartPointer<PolyhedraReader>::New();
+    reader->SetFileName(path.c_str());
+    update_step(*reader, options, checked.times, messages, mesh.file);
+    vtkUnstructuredGrid* const grid = reader->GetOutput();
+    if (grid == nullptr) throw Error("the file is cut off or damaged");
+    reader->give_faces(*grid);
+    gather(*grid, mesh);
     return;
   }
   const auto reader = vtkSmartPointer<vtkXMLGenericDataObjectReader>::New();

@@ -65,6 +65,7 @@ std::optional<std::uint64_t> needed_values(const VtkXmlArray& array, const VtkXm
       return piece.points * 3;
     case VtkSection::cells:
       if (array.name == "types" || array.name == "offsets") return piece.cells;
+      if (array.name == "polyhedron_offsets") return piece.cells;
       return std::nullopt;
     case VtkSection::coordinates:
       break;
@@ -328,8 +329,18 @@ void check_place(const VtkXmlPlace& own, const VtkXmlPlace& list, const VtkExten
   }
 }
 
-bool is_ghost_type(const VtkXmlArray& array) {
-  return is_data(array.section) && array.name == "vtkGhostType";
+/// Of structured grids duplicates do no harm, and levels are of these alone.
+bool is_ghost_type(const VtkXmlArray& array, const VtkXmlFile& file) {
+  return is_data(array.section) && (array.name == "vtkGhostType" ||
+                                    (array.name == "vtkGhostLevels" && !is_structured(file.kind)));
+}
+
+bool has_face_lists(const VtkXmlFile& file) {
+  return std::ranges::any_of(file.pieces, [](const VtkXmlPiece& piece) {
+    return std::ranges::any_of(piece.arrays, [](const VtkXmlArray& array) {
+      return array.section == VtkSection::cells && array.name == "polyhedron_to_faces";
+    });
+  });
 }
 
 /// Returns whether a file has flags of ghosts that its list does not name, which VTK leaves out.
@@ -337,9 +348,9 @@ bool has_unlisted_ghosts(const VtkXmlFile& file, const VtkXmlFile& list) {
   return std::ranges::any_of(file.pieces, [&](const VtkXmlPiece& piece) {
     return std::ranges::any_of(piece.arrays, [&](const VtkXmlArray& array) {
       const auto is_it = [&](const VtkXmlArray& listed) {
-        return is_ghost_type(listed) && listed.section == array.section;
+        return listed.section == array.section && listed.name == array.name;
       };
-      return is_ghost_type(array) && std::ranges::none_of(list.listed, is_it);
+      return is_ghost_type(array, file) && std::ranges::none_of(list.listed, is_it);
     });
   });
 }
@@ -365,6 +376,7 @@ void check_listed_file(const VtkXmlFile& own, const VtkXmlPiece& piece, const Vt
     for (const VtkXmlPiece& part : own.pieces) check_piece(own, part, is_wanted);
     check_alike(own.pieces, is_wanted);
     checked.has_unlisted_ghosts = checked.has_unlisted_ghosts || has_ghosts;
+    checked.has_face_lists = checked.has_face_lists || has_face_lists(own);
   }
   for (const VtkXmlArray& array : list.listed) {
     if (array.type == "String" || !is_wanted_here(array, is_wanted)) continue;
@@ -400,7 +412,7 @@ void check_list(const fs::path& path, const VtkXmlFile& list, const IsVtkArrayWa
 
 CheckedVtkXml check_file(const fs::path& path, const IsVtkArrayWanted& is_wanted, int depth) {
   const VtkXmlFile file = read_vtk_xml(path);
-  CheckedVtkXml checked{file.times, false, {}};
+  CheckedVtkXml checked{file.times, false, has_face_lists(file), {}};
   if (depth > 0 && file.times.size() > 1) {
     throw Error("it has steps in time, of which a file that names it chooses none; give it alone");
   }
@@ -418,7 +430,11 @@ CheckedVtkXml check_file(const fs::path& path, const IsVtkArrayWanted& is_wanted
     const fs::path part = beside(path, name);
     if (depth >= deepest || !is_vtk_xml(part)) continue;
     try {
-      check_file(part, is_wanted, depth + 1);
+      if (check_file(part, is_wanted, depth + 1).has_unlisted_ghosts) {
+        throw Error(
+            "its pieces have the array \"vtkGhostType\" or \"vtkGhostLevels\", which it does not "
+            "name; add it to the part, or give the part alone");
+      }
     } catch (const Error& error) {
       throw Error("its part " + one_line(name.substr(0, 200)) + ": " + error.what());
     }

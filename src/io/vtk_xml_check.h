@@ -25,6 +25,8 @@ struct CheckedVtkXml {
   /// A piece of an unstructured grid flags ghosts, but the list of pieces does not name the array:
   /// VTK shows them.
   bool has_unlisted_ghosts = false;
+  /// Unstructured grids have faces of polyhedra in the form of VTK 9.4.
+  bool has_face_lists = false;
   std::vector<ListedPiece> pieces;  ///< of a list of structured grids
 };
 

@@ -14,6 +14,7 @@
 #include <utility>
 
 #include "pellucid/scene/error.h"
+#include "positions_beside.h"
 #include "text.h"
 #include "zarr_values.h"
 
@@ -132,6 +133,40 @@ std::optional<fs::path> coordinate_of(const ZarrVariable& variable, std::size_t 
   return std::nullopt;
 }
 
+/// Returns the arrays in a variable's group but the coordinates of its axes.
+std::vector<ArrayBeside> arrays_beside(const ZarrVariable& variable) {
+  std::vector<ArrayBeside> arrays;
+  fs::path own = variable.folder.lexically_normal();
+  if (!own.has_filename()) own = own.parent_path();
+  const auto group = read_zarr_node(own.parent_path());
+  if (!group || group->is_array) return arrays;
+  std::vector<fs::path> known{own};
+  for (std::size_t a = 0; a < variable.array.dimension_names.size(); ++a) {
+    if (const auto coordinate = coordinate_of(variable, a)) {
+      known.push_back(coordinate->lexically_normal());
+    }
+  }
+  std::error_code error;
+  int count = 0;
+  constexpr int most_arrays = 4096;
+  for (fs::directory_iterator entry(own.parent_path(), error), end; !error && entry != end;
+       entry.increment(error)) {
+    const fs::path folder = entry->path().lexically_normal();
+    if (++count > most_arrays) break;
+    if (!entry->is_directory(error) || std::ranges::find(known, folder) != known.end()) continue;
+    try {
+      const auto node = read_zarr_node(folder);
+      if (node && node->is_array) {
+        arrays.push_back({one_line(folder.filename().string()), zarr_array(*node).shape});
+      }
+    } catch (const Error&) {
+      continue;  // an array that is not read
+    }
+  }
+  std::ranges::sort(arrays, {}, &ArrayBeside::name);
+  return arrays;
+}
+
 }  // namespace
 
 VariableAttributes zarr_attributes(const ZarrNode& node) {
@@ -213,6 +248,9 @@ std::vector<std::string> zarr_notes(const ZarrVariable& variable, const std::str
   if (!list.empty()) {
     notes.push_back("\"" + name + "\" has attributes of HDF5 that are not applied (" + list + ")");
   }
+  const PositionsBeside beside =
+      positions_beside(arrays_beside(variable), variable.array.shape, {{}, {}, true, true});
+  for (const std::string& note : beside.notes) notes.push_back("\"" + name + "\": " + note);
   fs::path group = variable.folder.lexically_normal();
   if (!group.has_filename()) group = group.parent_path();
   constexpr int deepest = 8;

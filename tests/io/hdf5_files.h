@@ -42,7 +42,9 @@ class Hdf5Writer {
     if (!values.empty()) {
       const std::vector<hsize_t> count = storage.written.empty() ? sides : storage.written;
       const std::vector<hsize_t> start(sides.size(), 0);
-      H5Sselect_hyperslab(space, H5S_SELECT_SET, start.data(), nullptr, count.data(), nullptr);
+      if (!sides.empty()) {
+        H5Sselect_hyperslab(space, H5S_SELECT_SET, start.data(), nullptr, count.data(), nullptr);
+      }
       const hid_t memory = H5Screate_simple(static_cast<int>(count.size()), count.data(), nullptr);
       EXPECT_GE(H5Dwrite(set, H5T_NATIVE_DOUBLE, memory, space, H5P_DEFAULT, values.data()), 0);
       H5Sclose(memory);
@@ -79,6 +81,14 @@ class Hdf5Writer {
     const char* const pointer = text.c_str();
     attach(set, name, type, H5Screate(H5S_SCALAR),
            is_fixed ? static_cast<const void*>(pointer) : static_cast<const void*>(&pointer));
+    H5Tclose(type);
+  }
+  /// Writes a text letter by letter, as Imaris does.
+  void attach_letters(const std::string& set, const std::string& name,
+                      const std::string& text) const {
+    const hid_t type = H5Tcopy(H5T_C_S1);
+    const hsize_t count = text.size();
+    attach(set, name, type, H5Screate_simple(1, &count, nullptr), text.data());
     H5Tclose(type);
   }
   void attach_labels(const std::string& set, const std::vector<std::string>& labels) const {
@@ -121,4 +131,60 @@ class Hdf5Writer {
   hid_t file_;
 };
 
+/// A file as Imaris writes it: two channels at two times, of chunks that are larger than the image.
+struct ImarisFile {
+  std::string extent_max = "20.000";
+  std::string size_x = "5";
+  int times = 2;
+  bool lacks_channel = false, has_plain_texts = false;
+
+  void write(const std::filesystem::path& path) const {
+    const Hdf5Writer file(path);
+    const auto say = [&](const std::string& object, const std::string& key,
+                         const std::string& text) {
+      if (has_plain_texts) return file.attach_text(object, key, text);
+      file.attach_letters(object, key, text);
+    };
+    say("/", "ImarisVersion", "5.5.0");
+    say("/", "ImarisDataSet", "ImarisDataSet");
+    for (const char* group : {"/DataSet", "/DataSetInfo", "/DataSetInfo/Image",
+                              "/DataSetInfo/Channel 0", "/DataSetInfo/Channel 1", "/Thumbnail"}) {
+      file.add_group(group);
+    }
+    say("/DataSetInfo/Image", "Unit", "um");
+    for (int a = 0; a < 3; ++a) {
+      say("/DataSetInfo/Image", "ExtMin" + std::to_string(a), "10.000");
+      say("/DataSetInfo/Image", "ExtMax" + std::to_string(a), extent_max);
+    }
+    say("/DataSetInfo/Channel 0", "Name", "DAPI");
+    say("/DataSetInfo/Channel 1", "Name", "GFP");
+    file.add("/Thumbnail/Data", H5T_STD_U8LE, {4, 4, 4}, std::vector<double>(64, 9));
+    for (int level = 0; level < 2; ++level) {
+      const std::string resolution = "/DataSet/ResolutionLevel " + std::to_string(level);
+      file.add_group(resolution);
+      for (int t = 0; t < times; ++t) {
+        const std::string time = resolution + "/TimePoint " + std::to_string(t);
+        file.add_group(time);
+        for (int c = 0; c < 2; ++c) {
+          if (lacks_channel && t == 1 && c == 1) continue;
+          const std::string channel = time + "/Channel " + std::to_string(c);
+          file.add_group(channel);
+          say(channel, "ImageSizeX", level == 0 ? size_x : "2");
+          say(channel, "ImageSizeY", level == 0 ? "4" : "2");
+          say(channel, "ImageSizeZ", level == 0 ? "3" : "2");
+          std::vector<double> values;
+          for (int z = 0; z < 4; ++z) {
+            for (int y = 0; y < 8; ++y) {
+              for (int x = 0; x < 8; ++x) {
+                const bool is_inside = x < 5 && y < 4 && z < 3;
+                values.push_back(is_inside ? x + 5 * y + 20 * z + 100 * c + 50 * t : 0);
+              }
+            }
+          }
+          file.add(channel + "/Data", H5T_STD_U16LE, {4, 8, 8}, values, {{4, 8, 8}, {}, {}});
+        }
+      }
+    }
+  }
+};
 }  // namespace pellucid::test

@@ -131,7 +131,8 @@ TiffPage counting_page(int k, std::uint32_t sample_format, bool big_endian = fal
 /// A PNG of rows without a filter, `values` as they are to stand in the file.
 inline std::string png(std::uint32_t columns, std::uint32_t rows, int bits, int color,
                        const std::string& values, int interlaced = 0,
-                       const std::string& physical = "", const std::string& transparent = "") {
+                       const std::string& physical = "", const std::string& transparent = "",
+                       const std::vector<std::pair<std::string, std::string>>& chunks = {}) {
   const auto word = [](std::uint64_t value) {
     std::string bytes;
     for (int shift = 24; shift >= 0; shift -= 8) bytes += static_cast<char>(value >> shift);
@@ -148,9 +149,11 @@ inline std::string png(std::uint32_t columns, std::uint32_t rows, int bits, int 
   for (std::size_t y = 0; y < rows && row > 0; ++y) filtered += '\0' + values.substr(y * row, row);
   const std::string header = word(columns) + word(rows) + static_cast<char>(bits) +
                              static_cast<char>(color) + '\0' + '\0' + static_cast<char>(interlaced);
+  std::string more;
+  for (const auto& [type, content] : chunks) more += chunk(type, content);
   return "\x89PNG\r\n\x1a\n" + chunk("IHDR", header) +
          (physical.empty() ? "" : chunk("pHYs", physical)) +
-         (transparent.empty() ? "" : chunk("tRNS", transparent)) +
+         (transparent.empty() ? "" : chunk("tRNS", transparent)) + more +
          chunk("IDAT", deflated(filtered, 15)) + chunk("IEND", "");
 }
 

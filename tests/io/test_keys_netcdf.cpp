@@ -142,6 +142,16 @@ NETCDF_KEY(unsigned, "_Unsigned", honored) {
       {"v", 'b', {"z", "y", "x"}, std::vector<double>(60, -56), {{"_Unsigned", "true"}}}};
   EXPECT_EQ(value_at(read_telling(write("a.nc", file.bytes())).volume, 0, 0, 0), 200);
 }
+NETCDF_KEY(beside, "variables spacing, affine", told) {
+  for (const char* name : {"spacing", "affine", "voxel_size", "origin"}) {
+    test::ClassicFile file;
+    file.axes = {{"z", 3}, {"y", 4}, {"x", 5}, {"n", 3}};
+    file.variables = {{name, 'd', {"n"}, {1, 2, 3}},
+                      {"v", 'h', {"z", "y", "x"}, counting<double>()}};
+    expect_told(read_telling(write("a.nc", file.bytes())).notes,
+                std::string("its arrays ") + name + " may place or scale it");
+  }
+}
 #define NETCDF_BOUNDS(name, key)                                   \
   NETCDF_KEY(name, key, honored) {                                 \
     const auto file = write("a.nc", net_cdf({}, {{key, "v"}}));    \
@@ -296,6 +306,154 @@ HDF5_KEY(of_groups, "attributes of groups", told) {
   const auto plain = hdf5(
       path("a.h5"), [](const Hdf5Writer& file) { file.attach_text("/", "Conventions", "CF-1.8"); });
   EXPECT_TRUE(read_telling(plain).notes.empty());
+}
+/// A file of /g/v and of datasets by their names.
+fs::path hdf5_beside(const fs::path& path,
+                     const std::vector<std::pair<std::string, std::vector<double>>>& beside) {
+  const Hdf5Writer file(path);
+  file.add_group("/g");
+  file.add("/g/v", H5T_STD_I16LE, {3, 4, 5}, counting<double>());
+  for (const auto& [name, numbers] : beside) {
+    std::vector<hsize_t> sides{numbers.size()};
+    if (numbers.size() == 16) sides = {4, 4};
+    if (numbers.size() == 1) sides = {};
+    file.add(name, H5T_IEEE_F64LE, sides, numbers);
+  }
+  return path;
+}
+HDF5_KEY(spacing_beside, "dataset spacing", honored) {
+  const auto file = hdf5_beside(path("a.h5"), {{"/spacing", {2, 3, 2}}});
+  const Told told = read_telling(file, "/g/v");
+  test::expect_near(told.volume.description().placement.spacing, {2, 3, 2});
+  expect_told(told.notes, "\"/g/v\": its arrays spacing place it; its axes are z, y, x");
+  // That of the own group goes before that of the root, and a unit is that of the positions.
+  {
+    const Hdf5Writer writer(path("b.h5"));
+    writer.add_group("/g");
+    writer.add("/g/v", H5T_STD_I16LE, {3, 4, 5}, counting<double>());
+    writer.add("/g/voxel_size", H5T_IEEE_F32LE, {}, {0.5});
+    writer.add("/voxel_size", H5T_IEEE_F32LE, {}, {7});
+  }
+  test::expect_near(read_telling(path("b.h5"), "/g/v").volume.description().placement.spacing,
+                    {0.5, 0.5, 0.5});
+  expect_told(read_telling(hdf5_beside(path("a.h5"), {{"/spacing", {1, 2, 3}}}), "/g/v").notes,
+              "spacing (1, 2, 3) does not say whether it begins with x or with z");
+}
+HDF5_KEY(origin_beside, "dataset origin", honored) {
+  const auto file = hdf5_beside(path("a.h5"), {{"/g/origin", {5, 6, 5}}, {"/g/dz", {3}}});
+  test::expect_near(world_of(read_telling(file, "/g/v").volume, 0, 0, 1), {5, 6, 8});
+}
+HDF5_KEY(affine_beside, "dataset affine", honored) {
+  const auto file =
+      hdf5_beside(path("a.h5"), {{"/affine", {2, 0, 0, 10, 0, 3, 0, 20, 0, 0, 4, 30, 0, 0, 0, 1}}});
+  const Told told = read_telling(file, "/g/v");
+  EXPECT_EQ(told.volume.description().dimensions, (std::array<int, 3>{3, 4, 5}));
+  EXPECT_EQ(value_at(told.volume, 1, 2, 3), 20 * 1 + 5 * 2 + 3);
+  test::expect_near(world_of(told.volume, 1, 2, 3), {-12, -26, 42});
+  expect_told(told.notes, "affine places it, as nibabel does");
+}
+HDF5_KEY(coordinates_beside, "datasets x, y, z", honored) {
+  const auto file = hdf5_beside(
+      path("a.h5"), {{"/g/z", {0, 1, 2, 3, 9}}, {"/g/y", {0, 1, 2, 3}}, {"/g/x", {0, 5, 10}}});
+  const Told told = read_telling(file, "/g/v");
+  EXPECT_EQ(told.volume.description().dimensions, (std::array<int, 3>{3, 4, 5}));
+  EXPECT_EQ(told.volume.description().coordinates[2], (std::vector<double>{0, 1, 2, 3, 9}));
+  EXPECT_EQ(world_of(told.volume, 1, 0, 0).x, 5);
+  // Steps in time.
+  {
+    const Hdf5Writer writer(path("b.h5"));
+    writer.add("/v", H5T_STD_I16LE, {2, 3, 4, 5}, std::vector<double>(120, 1));
+    writer.add("/time", H5T_IEEE_F64LE, {2}, {0, 0.5});
+  }
+  ReadOptions options;
+  options.time = 0.4;
+  std::string notes;
+  options.note = [&](const std::string& note) { notes += note; };
+  read_volume(path("b.h5"), options);
+  EXPECT_TRUE(test::contains(notes, "0.5")) << notes;
+}
+HDF5_KEY(others_beside, "datasets direction, transform, x of several axes", told) {
+  for (const char* name : {"/direction", "/g/transform", "/g/pixel_offset"}) {
+    const auto file = hdf5_beside(path("a.h5"), {{name, {1, 2, 3}}});
+    expect_told(read_telling(file, "/g/v").notes, "may place or scale it and are not applied");
+  }
+  const auto file = hdf5(path("a.h5"), [](const Hdf5Writer& writer) {
+    writer.add("X", H5T_IEEE_F64LE, {3, 4, 5}, counting<double>());
+    writer.attach("v", "element_size_um", {3, 2, 1});
+    writer.add("spacing", H5T_IEEE_F64LE, {}, {7});
+  });
+  const Told told = read_telling(file, "v");
+  expect_told(told.notes, "coordinates X, which change along several axes");
+  // What the array says itself goes before.
+  expect_told(told.notes, "arrays spacing may place or scale it");
+  EXPECT_EQ(world_of(told.volume, 1, 0, 0).x, 1);
+  // Beside arrays of other sides it is of none alone.
+  const auto several = hdf5(path("b.h5"), [](const Hdf5Writer& writer) {
+    writer.add("w", H5T_IEEE_F64LE, {5, 4, 3}, counting<double>());
+    writer.add("spacing", H5T_IEEE_F64LE, {}, {7});
+  });
+  expect_told(read_telling(several, "v").notes, "arrays spacing may place or scale it");
+}
+
+HDF5_KEY(imaris, "ExtMin0, ExtMax0, ImageSizeX of Imaris", honored) {
+  for (const bool has_plain_texts : {false, true}) {
+    for (const char* name : {"a.h5", "a.ims", "a.hdf5"}) {
+      test::ImarisFile file;
+      file.has_plain_texts = has_plain_texts;
+      file.write(path(name));
+      std::vector<std::string> notes;
+      ReadOptions options;
+      options.note = [&](const std::string& note) { notes.push_back(note); };
+      const std::vector<Volume> components = read_components(path(name), options);
+      ASSERT_EQ(components.size(), 4u);
+      EXPECT_EQ(components[0].description().dimensions, (std::array<int, 3>{5, 4, 3}));
+      for (int i = 0; i < 60; ++i) {
+        for (int c = 0; c < 4; ++c) {
+          ASSERT_EQ(value_at(components[static_cast<std::size_t>(c)], i % 5, i / 5 % 4, i / 20),
+                    i + 100 * (c % 2) + 50 * (c / 2));
+        }
+      }
+      // The borders are those of the image, and the values are in the middle.
+      test::expect_near(world_of(components[0], 0, 0, 0), {11, 11.25, 10 + 10 / 6.});
+      test::expect_near(components[0].description().placement.spacing, {2, 2.5, 10 / 3.});
+      expect_told(notes, "2 levels of resolution; the finest is read");
+      expect_told(notes, "times");
+    }
+  }
+  ReadOptions options;
+  options.array = "/DataSet/ResolutionLevel 1";
+  options.component = 1;
+  options.time = 1;
+  const Volume coarse = read_volume(path("a.h5"), options);
+  test::expect_near(coarse.description().placement.spacing, {5, 5, 5});
+  EXPECT_EQ(value_at(coarse, 1, 1, 1), 1 + 5 + 20 + 100 + 50);
+  EXPECT_EQ(list_arrays(path("a.h5")).size(), 2u);
+  ReadOptions letters;
+  letters.axes = "xyz";
+  expect_refused([&] { read_components(path("a.h5"), letters); }, "leave the axes out");
+}
+HDF5_KEY(imaris_faults, "ImageSizeX of Imaris that cannot be", refused) {
+  test::ImarisFile file;
+  for (const char* size : {"9", "0", "2.5"}) {
+    file.size_x = size;
+    file.write(path("a.h5"));
+    expect_refused([&] { read_volume(path("a.h5")); }, "its ImageSizeX is not from 1 to the 8");
+  }
+  file = {};
+  file.lacks_channel = true;
+  file.write(path("a.h5"));
+  expect_refused([&] { read_volume(path("a.h5")); }, "TimePoint 1/Channel 1/Data\" is missing");
+}
+HDF5_KEY(imaris_extent, "ExtMax0 of Imaris below ExtMin0", told) {
+  test::ImarisFile file;
+  file.extent_max = "10.000";
+  file.write(path("a.h5"));
+  std::vector<std::string> notes;
+  ReadOptions options;
+  options.note = [&](const std::string& note) { notes.push_back(note); };
+  const Volume volume = read_components(path("a.h5"), options).front();
+  test::expect_near(volume.description().placement.spacing, {1, 1, 1});
+  expect_told(notes, "its ExtMin and ExtMax (DataSetInfo/Image) are no borders");
 }
 HDF5_KEY(external_links, "external links", told) {
   const auto file =
@@ -452,6 +610,26 @@ ZARR_TOLD(transform, "transform", "{\"scale\": [3, 2, 1]}")
 ZARR_TOLD(pixel_resolution, "pixelResolution", "{\"dimensions\": [4, 4, 40]}")
 ZARR_TOLD(axis_names, "axis_names", "[\"x\", \"y\", \"z\"]")
 ZARR_TOLD(element_size, "element_size_um", "[3, 2, 1]")
+ZARR_KEY(beside, "arrays spacing, affine, x", told) {
+  const std::pair<const char*, std::vector<int>> arrays[] = {
+      {"spacing", {3}}, {"affine", {4, 4}}, {"x", {5}}, {"voxel_size", {}}, {"z", {3, 4, 5}}};
+  for (const auto& [name, shape] : arrays) {
+    const auto folder = path(std::string(name) + ".zarr");
+    write_plain(folder, {}, {}, 2);
+    ZarrStore store;
+    store.shape = store.chunk = shape;
+    fs::create_directories(folder / name);
+    std::ofstream(folder / name / ".zarray") << store.array_2();
+    expect_told(read_telling(folder).notes,
+                std::string("its ") + (shape.size() == 3 ? "coordinates " : "arrays ") + name);
+  }
+  // Coordinates of axes with names are read.
+  zarr(path("named.zarr"), {});
+  ZarrStore store;
+  store.shape = store.chunk = {5};
+  store.write_2(path("named.zarr") / "x", bytes_of(std::vector<float>{0, 1, 2, 3, 4}), 4);
+  EXPECT_TRUE(read_zarr(path("named.zarr")).notes.empty());
+}
 ZARR_KEY(transformers, "storage_transformers", refused) {
   ZarrStore store;
   store.more = ", \"storage_transformers\": [{\"name\": \"other\"}]";

@@ -4,7 +4,9 @@
 // docs/reference/formats.md.
 
 #include <cstring>
+#include <fstream>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "described_keys.h"
@@ -216,6 +218,35 @@ PELLUCID_DESCRIBED_KEY(ome_position, tiff_rows, "PositionZ", told) {
   std::vector<std::string> notes;
   noting(write("a.ome.tif", described_tiff(2, xml)), notes);
   expect_told(notes, "PositionZ go down with z");
+  const auto with = [&](const std::string& pixels, const std::string& first,
+                        const std::string& second) {
+    const auto plane = [](int z, const std::string& more) {
+      return "<Plane TheZ=\"" + std::to_string(z) + "\" TheC=\"0\" TheT=\"0\" " + more + "/>";
+    };
+    const std::string inside = "<TiffData/>" + plane(0, first) + plane(1, second);
+    std::vector<std::string> told;
+    noting(write("a.ome.tif", described_tiff(2, test::ome_xml({2, 1, 1}, inside, pixels))), told);
+    return told;
+  };
+  const std::string sizes = "PhysicalSizeX=\"0.5\" PhysicalSizeY=\"0.5\" PhysicalSizeZ=\"2\"";
+  // Positions without a unit are of the frame of reference.
+  expect_told(with(sizes, "PositionZ=\"0\"", "PositionZ=\"5\""),
+              "PositionZ are 5 (without a unit) apart, another distance than PhysicalSizeZ");
+  expect_told(with(sizes, "PositionZ=\"0\" PositionZUnit=\"reference frame\"",
+                   "PositionZ=\"5\" PositionZUnit=\"reference frame\""),
+              "another distance than PhysicalSizeZ");
+  expect_told(
+      with(sizes, "PositionZ=\"0\" PositionZUnit=\"nm\"", "PositionZ=\"2\" PositionZUnit=\"nm\""),
+      "PositionZ are 2 nm apart, another distance");
+  for (const std::string unit : {"", " PositionZUnit=\"\u00b5m\""}) {
+    for (const auto& note : with(sizes, "PositionZ=\"3\"" + unit, "PositionZ=\"5\"" + unit)) {
+      EXPECT_FALSE(contains(note, "PositionZ")) << note;
+    }
+  }
+  expect_told(with("", "PositionZ=\"0\"", "PositionZ=\"5\""), "in no unit of length");
+  // The stage moved aside by four pixels.
+  expect_told(with(sizes, "PositionX=\"0\" PositionZ=\"0\"", "PositionX=\"2\" PositionZ=\"2\""),
+              "PositionX differ by 4 pixels");
 }
 PELLUCID_DESCRIBED_KEY(ome_images, tiff_rows, "Image Name", honored) {
   std::string xml = test::ome_xml({2, 1, 1}, "<TiffData IFD=\"0\" PlaneCount=\"2\"/>");
@@ -390,6 +421,81 @@ PELLUCID_DESCRIBED_KEY(png_physical, stack_rows, "pHYs", honored) {
   read_volume(folder_, options);
   expect_told(notes, "pHYs without a unit makes pixels 0.5 times as high as wide");
   test::expect_near(spacing_by(std::string("\0\0\x0b\x13\0\0\x0b\x13\1", 9)), {1, 1, 1});
+}
+using Chunks = std::vector<std::pair<std::string, std::string>>;
+
+/// Two slices with chunks, and what is told of them.
+std::vector<Volume> of_png(const std::filesystem::path& folder, const Chunks& chunks,
+                           std::vector<std::string>& notes, const std::string& physical = "",
+                           int samples = 1) {
+  for (int k = 0; k < 2; ++k) {
+    std::string values;
+    for (const char value : test::page_values<std::uint8_t>(k)) {
+      values += std::string(static_cast<std::size_t>(samples), value);
+    }
+    std::ofstream(folder / ("p" + std::to_string(k) + ".png"), std::ios::binary)
+        << test::png(5, 4, 8, samples == 1 ? 0 : 2, values, 0, physical, "", chunks);
+  }
+  notes.clear();
+  return noting(folder, notes);
+}
+
+PELLUCID_DESCRIBED_KEY(png_subject, stack_rows, "sCAL", honored) {
+  std::vector<std::string> notes;
+  const auto spacing_by = [&](const std::string& scale, const std::string& physical = "") {
+    return of_png(folder_, {{"sCAL", scale}}, notes, physical)
+        .front()
+        .description()
+        .placement.spacing;
+  };
+  const std::string metres("\0015e-4\0002.5E-4", 12);
+  test::expect_near(spacing_by(metres), {0.5, 0.25, 1});
+  expect_told(notes, "the spacing of pixels is the file's, in mm");
+  // The size of what is shown goes before that of the print.
+  const std::string print("\0\0\x07\xd0\0\0\x0f\xa0\1", 9);
+  test::expect_near(spacing_by(metres, print), {0.5, 0.25, 1});
+  for (const auto& note : notes) EXPECT_FALSE(contains(note, "pHYs says")) << note;
+  const std::string large("\0011\0002", 4);
+  test::expect_near(spacing_by(large, print), {1000, 2000, 1});
+  expect_told(notes, "pHYs says pixels of 0.5 x 0.25 mm, but sCAL, which is taken, of 1000 x 2000");
+  test::expect_near(spacing_by(std::string("\0021\0002", 4)), {1, 1, 1});
+  expect_told(notes, "1 x 2 radians");
+  for (const std::string& wrong : {std::string("\1"), std::string("\0011\0", 3),
+                                   std::string("\001a\0002", 4), std::string("\001-1\0002", 5),
+                                   std::string("\0031\0002", 4), std::string("\0010\0001", 4)}) {
+    test::expect_near(spacing_by(wrong), {1, 1, 1});
+    expect_told(notes, "sCAL is no size of a pixel");
+  }
+}
+PELLUCID_DESCRIBED_KEY(png_calibration, stack_rows, "pCAL", honored) {
+  std::vector<std::string> notes;
+  const std::string name("depth\0", 6), least(4, '\0'), most("\0\0\0\xff", 4), line("\0\2", 2);
+  const std::string of_line("m\000-10\00051", 8);
+  const auto value_by = [&](const std::string& calibration, int samples = 1) {
+    const auto read = of_png(folder_, {{"pCAL", calibration}}, notes, "", samples);
+    return test::value_at(read.front(), 2, 1, 0);
+  };
+  // -10 + 51 v / 255.
+  EXPECT_NEAR(value_by(name + least + most + line + of_line), -10 + 7 * 0.2, 1e-5);
+  // 255 stands for the least value, 0 for the largest: 255 - v.
+  EXPECT_NEAR(value_by(name + most + least + line + of_line), -10 - 51 * 248 / 255., 1e-5);
+  for (const auto& [wrong, why] : std::vector<std::pair<std::string, std::string>>{
+           {name + least + most + std::string("\1\3", 2) + "m\0001\0002\0003", "is no line"},
+           {name + least + std::string("\0\0\1\0", 4) + line + of_line, "other numbers"},
+           {name + least + most + line + std::string("m\0a\0002", 5), "are no numbers"},
+           {name + least + most + line, "are no numbers"},
+           {name + least, "is damaged"}}) {
+    EXPECT_EQ(value_by(wrong), 7);
+    expect_told(notes, "pCAL, a calibration of the values, ");
+    expect_told(notes, why);
+  }
+  EXPECT_EQ(value_by(name + least + most + line + of_line, 3), 7);
+  expect_told(notes, "is of colors");
+  // One file of a stack with it, and one without.
+  write("p1.png", test::png(5, 4, 8, 0, test::page_values<std::uint8_t>(1)));
+  write("p0.png", test::png(5, 4, 8, 0, test::page_values<std::uint8_t>(0), 0, "", "",
+                            {{"pCAL", name + least + most + line + of_line}}));
+  expect_refused([&] { read_volume(folder_); }, "another calibration (ImageJ: c0, c1; PNG: pCAL)");
 }
 PELLUCID_DESCRIBED_KEY(png_transparent, stack_rows, "tRNS", told) {
   for (int k = 0; k < 2; ++k) {

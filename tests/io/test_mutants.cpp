@@ -15,6 +15,9 @@
 #endif
 
 #include "dicom_files.h"
+#ifdef PELLUCID_HAVE_HDF5
+#include "hdf5_files.h"
+#endif
 #include "image_files.h"
 #include "mutants_test.h"
 #include "pellucid/io/write_volume.h"
@@ -97,7 +100,10 @@ TEST_F(MutantsTest, Png) {
   write("a1.png", test::png(5, 4, 8, 0, test::page_values<std::uint8_t>(1)));
   survive({test::png(5, 4, 8, 0, test::page_values<std::uint8_t>(0)),
            test::png(5, 4, 16, 0, test::page_values<std::uint16_t>(0, true)),
-           test::png(5, 4, 8, 2, std::string(60, '\7'))},
+           test::png(5, 4, 8, 2, std::string(60, '\7')),
+           test::png(5, 4, 8, 0, test::page_values<std::uint8_t>(0), 0, "", "",
+                     {{"sCAL", std::string("\0015e-4\0002.5E-4", 12)},
+                      {"pCAL", std::string("d\0\0\0\0\0\0\0\0\xff\0\2m\0-10\00051", 20)}})},
           "a0.png", path("a0.png"));
 }
 
@@ -179,6 +185,18 @@ TEST_F(MutantsTest, Hdf5) {
   H5Sclose(space);
   H5Fclose(file);
   survive({read(path("seed.h5"))}, "a.h5", path("a.h5"));
+}
+
+TEST_F(MutantsTest, Hdf5OfImarisAndWithPositionsBeside) {
+  test::ImarisFile{}.write(path("imaris"));
+  {
+    const test::Hdf5Writer file(path("beside"));
+    file.add("v", H5T_IEEE_F32LE, {3, 4, 5}, counting<double>());
+    file.add("affine", H5T_IEEE_F64LE, {4, 4}, {2, 0, 0, 1, 0, 3, 0, 2, 0, 0, 4, 3, 0, 0, 0, 1});
+    file.add("spacing", H5T_IEEE_F32LE, {3}, {1, 2, 1});
+    file.add("x", H5T_STD_I32LE, {3}, {0, 1, 2});
+  }
+  survive({read(path("imaris")), read(path("beside"))}, "a.h5", path("a.h5"));
 }
 #endif
 

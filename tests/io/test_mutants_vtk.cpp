@@ -13,6 +13,7 @@
 #include "pellucid/io/mesh_source.h"
 #include "pellucid/io/read_mesh.h"
 #include "pellucid/io/write_volume.h"
+#include "polyhedra_files.h"
 #include "volume_files.h"
 
 #ifdef PELLUCID_HAVE_VTK
@@ -157,7 +158,10 @@ TEST_F(MutantsOfVtk, Meshes) {
   survive({test::small_vtu(), test::small_vtu(ghosts), test::polyhedron_vtu().text(), cells.text(),
            image("StructuredGrid", "<CellData>" + xml_array("Float64", "c", numbers(24)) +
                                        "</CellData><Points>" +
-                                       xml_array("Float64", "Points", places, 3) + "</Points>")},
+                                       xml_array("Float64", "Points", places, 3) + "</Points>"),
+           test::PolyhedraVtu(test::Coding::ascii).text({}, 2),
+           test::PolyhedraVtu(test::Coding::raw).text({}),
+           test::PolyhedraVtu(test::Coding::packed_base64).text({})},
           "a.vtu", path("a.vtu"));
 }
 
@@ -206,6 +210,8 @@ TEST_F(MutantsOfMeshes, VtkHdf) {
     mesh.close();
     seeds.push_back(read(path("seed")));
   }
+  test::PolyhedraVtkHdf{}.write(path("seed"));
+  seeds.push_back(read(path("seed")));
   survive(seeds, "a.vtkhdf", path("a.vtkhdf"));
 }
 #endif

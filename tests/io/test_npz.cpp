@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <zlib.h>
 
+#include <array>
 #include <cstdint>
 #include <limits>
 #include <span>
@@ -8,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "described_keys.h"
 #include "pellucid/io/read_volume.h"
 #include "volume_files.h"
 
@@ -158,7 +160,7 @@ TEST(Npz, OfSeveralArraysOneIsChosen) {
   zip.entries.erase(zip.entries.begin());
   std::string note;
   ReadOptions options;
-  options.note = [&](const std::string& line) { note = line; };
+  options.note = [&](const std::string& line) { note += line + "\n"; };
   expect_counting(parse(zip.archive(), options), "f32");
   EXPECT_TRUE(contains(note, "second is taken")) << note;
   zip.entries.erase(zip.entries.begin());
@@ -231,6 +233,161 @@ TEST(Npz, DamagedArchivesAreReadOrRefused) {
 TEST(Npz, SizesThatAreClaimedAreNotReserved) {
   Zip zip{{{"v.npy", npy("<f4", "(100000, 100000, 100000)", "")}}};
   EXPECT_TRUE(contains(error(zip.archive()), "bytes of values"));
+}
+
+// ------------------------------------------------------------ positions that stand beside it
+
+using Beside = std::vector<std::pair<std::string, std::vector<double>>>;
+
+std::string shape_of(std::size_t count) {
+  return count == 1 ? "()" : count == 16 ? "(4, 4)" : "(" + std::to_string(count) + ",)";
+}
+
+/// An archive of v of 3 × 4 × 5 values and arrays of doubles beside it.
+std::string archive_with(const Beside& beside, const std::string& v = floats()) {
+  Zip zip{{{"v.npy", v}}};
+  for (const auto& [name, numbers] : beside) {
+    zip.entries.push_back(
+        {name + ".npy", npy("<f8", shape_of(numbers.size()), test::bytes_of(numbers))});
+  }
+  return zip.archive();
+}
+
+struct Told {
+  Volume volume;
+  std::vector<std::string> notes;
+};
+Told telling(const std::string& archive, ReadOptions options = {}) {
+  std::vector<std::string> notes;
+  options.note = [&](const std::string& note) { notes.push_back(note); };
+  if (!options.array) options.array = "v";
+  Volume volume = parse(archive, options);
+  return {std::move(volume), notes};
+}
+
+#define NPZ_KEY(name, key, treatment) \
+  PELLUCID_DESCRIBED_KEY(npz_##name, "Archives of NumPy", key, treatment)
+
+NPZ_KEY(affine, "affine", honored) {
+  const std::vector<double> affine{2, 0, 0, 10, 0, 3, 0, 20, 0, 0, 4, 30, 0, 0, 0, 1};
+  const Told told = telling(archive_with({{"affine", affine}}));
+  // v[x, y, z], as nibabel has it; the world of RAS is turned to LPS.
+  EXPECT_EQ(told.volume.description().dimensions, (std::array<int, 3>{3, 4, 5}));
+  EXPECT_EQ(test::value_at(told.volume, 1, 2, 3), 20 * 1 + 5 * 2 + 3);
+  test::expect_near(test::world_of(told.volume, 1, 2, 3), {-12, -26, 42});
+  expect_told(told.notes, "affine places it, as nibabel does");
+  ReadOptions options;
+  options.axes = "zyx";
+  const Told as_said = telling(archive_with({{"affine", affine}}), options);
+  expect_counting(as_said.volume, "f32");
+  test::expect_near(test::world_of(as_said.volume, 3, 2, 1), {-12, -26, 42});
+  // Turned axes, 3 x 4, and one that is no map.
+  std::vector<double> turned{0, 2, 0, 1, 0, 0, 3, 2, 4, 0, 0, 3, 0, 0, 0, 1};
+  const Told of_turned = telling(archive_with({{"affine_matrix", turned}}));
+  test::expect_near(test::world_of(of_turned.volume, 1, 1, 1), {-3, -5, 7});
+  turned[0] = turned[8] = 0;
+  const Told flat = telling(archive_with({{"affine", turned}}));
+  expect_counting(flat.volume, "f32");
+  expect_told(flat.notes, "arrays affine may place or scale it and are not applied");
+  // Of an array with a fourth axis, and of the type that numpy gives whole numbers.
+  const std::string four = npy("<f4", "(3, 4, 5, 2)", test::bytes_of(std::vector<float>(120, 1)));
+  const Told of_four = telling(archive_with({{"affine", affine}}, four), [] {
+    ReadOptions first;
+    first.component = 0;
+    return first;
+  }());
+  EXPECT_EQ(of_four.volume.description().dimensions, (std::array<int, 3>{3, 4, 5}));
+  test::expect_near(test::world_of(of_four.volume, 1, 2, 3), {-12, -26, 42});
+  expect_told(of_four.notes, "axes xyzc");
+}
+NPZ_KEY(spacing, "spacing", honored) {
+  for (const char* name : {"spacing", "voxel_size", "voxelSize", "Voxel-Size", "pixdim", "zooms"}) {
+    SCOPED_TRACE(name);
+    const Told told = telling(archive_with({{name, {2, 3, 2}}}));
+    test::expect_near(told.volume.description().placement.spacing, {2, 3, 2});
+    expect_told(told.notes, std::string("arrays ") + name + " place it");
+  }
+  const auto spacing_by = [](const Beside& beside) {
+    return telling(archive_with(beside)).volume.description().placement.spacing;
+  };
+  test::expect_near(spacing_by({{"spacing", {0.5}}}), {0.5, 0.5, 0.5});
+  test::expect_near(spacing_by({{"spacing_zyx", {3, 2, 1}}}), {1, 2, 3});
+  test::expect_near(spacing_by({{"voxel_size_xyz_um", {3, 2, 1}}}), {3, 2, 1});
+  test::expect_near(spacing_by({{"element_size_um", {3, 2, 1}}}), {1, 2, 3});
+  test::expect_near(spacing_by({{"dx", {3}}, {"dy", {2}}, {"dz", {4}}}), {3, 2, 4});
+  test::expect_near(spacing_by({{"spacing_x", {3}}, {"y_spacing", {2}}}), {3, 2, 1});
+}
+NPZ_KEY(spacing_of_any_order, "spacing of three that differ", told) {
+  const Told told = telling(archive_with({{"spacing", {1, 2, 3}}}));
+  test::expect_near(told.volume.description().placement.spacing, {1, 1, 1});
+  expect_told(told.notes,
+              "spacing (1, 2, 3) does not say whether it begins with x or with z, and is not "
+              "applied; give --spacing");
+  // Of no use, or of another array as well.
+  expect_told(telling(archive_with({{"spacing", {1, -2, 1}}})).notes, "arrays spacing may place");
+  expect_told(telling(archive_with({{"spacing", {2, 2}}})).notes, "arrays spacing may place");
+  Zip zip{{{"v.npy", floats()},
+           {"w.npy", npy("<f4", "(5, 4, 3)", test::bytes_of(counting()))},
+           {"spacing.npy", npy("<f8", "()", test::bytes_of(std::vector<double>{2}))},
+           {"voxel_size.npy", npy("<U3", "(2,)", std::string(24, '\0'))}}};
+  expect_told(telling(zip.archive()).notes, "arrays spacing, voxel_size may place or scale it");
+  EXPECT_TRUE(telling(archive_with({{"spacing", {1, 1, 1}}, {"origin", {0, 0, 0}}})).notes.empty());
+}
+NPZ_KEY(origin, "origin", honored) {
+  const Told told = telling(archive_with({{"origin", {5, 6, 5}}, {"spacing", {2}}}));
+  test::expect_near(test::world_of(told.volume, 1, 0, 0), {7, 6, 5});
+  expect_told(telling(archive_with({{"origin", {5, 6, 7}}})).notes,
+              "origin (5, 6, 7) does not say");
+  test::expect_near(
+      telling(archive_with({{"origin_zyx", {5, 6, 7}}})).volume.description().placement.origin,
+      {7, 6, 5});
+  test::expect_near(
+      telling(archive_with({{"x0", {5}}, {"z0", {7}}})).volume.description().placement.origin,
+      {5, 0, 7});
+}
+NPZ_KEY(coordinates, "x, y, z", honored) {
+  const Beside zyx{{"z", {0, 2, 4}}, {"y", {0, 1, 2, 3}}, {"x", {10, 13, 16, 19, 22}}};
+  const Told told = telling(archive_with(zyx));
+  expect_counting(told.volume, "f32");
+  test::expect_near(test::world_of(told.volume, 1, 2, 2), {13, 2, 4});
+  expect_told(told.notes, "arrays x, y, z place it; its axes are z, y, x");
+  // v[x, y, z], of which the lengths tell.
+  const Beside xyz{{"x", {0, 2, 4}}, {"y", {0, 1, 2, 3}}, {"z", {10, 13, 16, 19, 22}}};
+  const Told turned = telling(archive_with(xyz));
+  EXPECT_EQ(turned.volume.description().dimensions, (std::array<int, 3>{3, 4, 5}));
+  test::expect_near(test::world_of(turned.volume, 2, 2, 1), {4, 2, 13});
+  // Uneven ones, and those of sides that are alike.
+  const Beside uneven{{"depth", {0, 1, 5}}, {"lat", {0, 1, 2, 3}}};
+  EXPECT_EQ(telling(archive_with(uneven)).volume.description().coordinates[2],
+            (std::vector<double>{0, 1, 5}));
+  const std::string cube = npy("<f4", "(2, 2, 2)", test::bytes_of(std::vector<float>(8, 1)));
+  const Told open = telling(archive_with({{"x", {0, 2}}, {"z", {0, 3}}}, cube));
+  test::expect_near(test::world_of(open.volume, 1, 0, 1), {2, 0, 3});
+  expect_told(open.notes, "which the arrays' lengths do not tell");
+  // Not in order.
+  const Told no_order = telling(archive_with({{"x", {0, 1, 2, 2, 3}}}));
+  expect_counting(no_order.volume, "f32");
+  expect_told(no_order.notes, "arrays x may place or scale it");
+  // Of a length that fits no axis, and of several axes.
+  EXPECT_TRUE(telling(archive_with({{"x", {0, 1, 2, 3, 4, 5}}})).notes.empty());
+  expect_told(
+      telling(archive_with({{"x", {0, 1, 2}}, {"y", {0, 1, 2, 3, 4}}, {"z", {0, 1, 2}}})).notes,
+      "arrays x, y, z may place or scale it");
+}
+NPZ_KEY(wide_coordinates, "X of several axes", told) {
+  const Zip zip{{{"v.npy", floats()}, {"X.npy", floats()}}};
+  expect_told(telling(zip.archive()).notes, "coordinates X, which change along several axes");
+}
+NPZ_KEY(other_places, "direction, extent, scale, resolution", told) {
+  for (const char* name : {"direction", "extent", "slope", "resolution", "voxel_offset",
+                           "image_spacing", "world_transform", "domain_left_edge", "nodata"}) {
+    const Told told = telling(archive_with({{name, {1, 2, 3}}}));
+    expect_counting(told.volume, "f32");
+    expect_told(told.notes, std::string(name) + " may place or scale it and are not applied");
+  }
+  expect_told(telling(archive_with({{"coords", std::vector<double>(180, 1)}})).notes,
+              "arrays coords may place or scale it");
+  EXPECT_TRUE(telling(archive_with({{"weights", {1, 2, 3}}, {"seed", {1}}})).notes.empty());
 }
 
 }  // namespace

@@ -54,6 +54,17 @@ TEST_F(VtkGhosts, GhostLevelsAreGhosts) {
         "<PDataArray type=\"Float64\" NumberOfComponents=\"3\"/></PPoints><Piece "
         "Source=\"l.vtu\"/><Piece Source=\"r.vtu\"/></PUnstructuredGrid>\n"));
     EXPECT_EQ(read_mesh(write("a.pvtu", pieces)).grid.shapes.size(), 2U);
+    // A list that does not name them.
+    std::string unlisted = pieces;
+    const std::string named = "<PDataArray type=\"UInt8\" Name=\"vtkGhostLevels\"/>";
+    ASSERT_TRUE(contains(unlisted, named));
+    unlisted.erase(unlisted.find(named), named.size());
+    EXPECT_EQ(read_mesh(write("b.pvtu", unlisted)).grid.shapes.size(), 2U);
+    write("b.vtm", xml_file("vtkMultiBlockDataSet",
+                            "<vtkMultiBlockDataSet><DataSet index=\"0\" file=\"b.pvtu\"/>"
+                            "</vtkMultiBlockDataSet>\n"));
+    const std::string error = error_of([&] { read_mesh(path("b.vtm")); });
+    EXPECT_TRUE(contains(error, "its part b.pvtu: its pieces have the array")) << error;
     // Levels of points are no values to show, in images neither.
     VtkPiece piece;
     std::string levels;

@@ -2,6 +2,8 @@
 """Color maps, ranges and opacity of layers, color bars, and short words of looks."""
 import dataclasses
 import os
+import struct
+import zlib
 
 import numpy
 import pytest
@@ -104,3 +106,37 @@ def test_color_bar(tmp_path):
 def test_color_bar_of_no_scene(tmp_path):
     with pytest.raises(pellucid.Error, match="the image knows none"):
         pellucid.Image(numpy.zeros((SIZE, SIZE, 4))).save(tmp_path / "a.png", color_bar=True)
+
+
+def rgb_png(path, values):
+    """A PNG of bytes (rows, columns, channels), written here."""
+    rows, columns, channels = values.shape
+
+    def chunk(kind, content):
+        return (struct.pack(">I", len(content)) + kind + content
+                + struct.pack(">I", zlib.crc32(kind + content)))
+
+    lines = b"".join(b"\0" + row.tobytes() for row in values)
+    head = struct.pack(">IIBBBBB", columns, rows, 8, 2 if channels == 3 else 6, 0, 0, 0)
+    path.write_bytes(b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", head)
+                     + chunk(b"IDAT", zlib.compress(lines)) + chunk(b"IEND", b""))
+
+
+@pytest.mark.parametrize("channels", [3, 4])
+def test_files_of_colors_are_shown_as_they_are(program, tmp_path, channels):
+    folder = tmp_path / "stack"
+    folder.mkdir()
+    random = numpy.random.default_rng(5)
+    for z in range(3):
+        rgb_png(folder / f"p{z}.png", random.integers(0, 256, (4, 5, channels), dtype=numpy.uint8))
+    layer = pellucid.read(folder)
+    assert isinstance(layer, pellucid.Layer)
+    assert layer.data.names == ["red", "green", "blue", "opacity"]
+    expected = program.render(folder)
+    assert_same_bits(render(layer), expected)
+    assert_same_bits(render(folder), expected)
+    assert pellucid.read_volume(folder, component=1).shape == (3, 4, 5)
+    with pytest.raises(pellucid.Error, match=r"read_volume\(path, component=0\)"):
+        pellucid.render(folder, preset="xray")
+    with pytest.raises(pellucid.Error, match="holds 3 colors|colors|component"):
+        pellucid.read_volume(folder)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Arrays whose axes have names: xarray's, and variables of netCDF4."""
+"""Arrays whose axes have names: of xarray, netCDF4, h5py and zarr."""
 import warnings
 
 import numpy
@@ -268,3 +268,114 @@ def test_missing_coordinates_are_refused(tmp_path):
     levels = {"lev": ("f8", numpy.ma.masked_equal(Z, 3), {"_FillValue": -1.0})}
     with pytest.raises(pellucid.Error, match="coordinates of its axis \"lev\" are missing"):
         pellucid.Volume(net_cdf(tmp_path / "a.nc", ("lev", "lat", "lon"), levels))
+
+
+def notes_of(data):
+    with warnings.catch_warnings(record=True) as told:
+        warnings.simplefilter("always", pellucid.Note)
+        volume = pellucid.Volume(data)
+    return volume, "\n".join(str(each.message) for each in told)
+
+
+def test_coordinates_of_other_names(xarray):
+    # The one along an axis that has none of its own name, as in files.
+    data = xarray.DataArray(VALUES, dims=("z", "y", "x"),
+                            coords={"depth": ("z", Z), "lat": ("y", Y), "when": 3.0})
+    volume = silent(data)
+    assert numpy.array_equal(volume.coordinates[0], Z) and volume.spacing[1] == 2
+    # Beside one of its own name, several of them, and words.
+    both = xarray.DataArray(VALUES, dims=("z", "y", "x"), coords={"z": Z, "pressure": ("z", Z)})
+    volume, notes = notes_of(both)
+    assert numpy.array_equal(volume.coordinates[0], Z) and "pressure along z are left out" in notes
+    several = xarray.DataArray(VALUES, dims=("z", "y", "x"),
+                               coords={"p": ("z", Z), "q": ("z", Z), "s": ("y", list("abcd"))})
+    volume, notes = notes_of(several)
+    assert volume.coordinates[0] is None and "p, q are all along z" in notes
+    wide = xarray.DataArray(VALUES, dims=("z", "y", "x"),
+                            coords={"lat": (("y", "x"), VALUES[0]), "lon": (("y", "x"), VALUES[1])})
+    assert "lat, lon, which change along several axes, are left out" in notes_of(wide)[1]
+
+
+def test_netcdf4_coordinates_of_other_names(tmp_path):
+    library = pytest.importorskip("netCDF4")
+    with library.Dataset(tmp_path / "a.nc", "w") as file:
+        for name, side in zip("zyx", SHAPE):
+            file.createDimension(name, side)
+        file.createVariable("depth", "f8", ("z",))[:] = Z
+        file.createVariable("lat", "f8", ("y", "x"))[:] = VALUES[0]
+        variable = file.createVariable("v", "f4", ("z", "y", "x"))
+        variable[:] = VALUES
+        variable.coordinates = "depth lat missing"
+        volume, notes = notes_of(variable)
+        assert numpy.array_equal(volume.coordinates[0], Z)
+        assert "lat, which change along several axes" in notes
+
+
+@pytest.mark.parametrize("masks, scales", [(False, True), (True, False), (False, False)])
+def test_netcdf4_without_automatic_masks(tmp_path, masks, scales):
+    variable = net_cdf(tmp_path / "a.nc", ("lev", "lat", "lon"),
+                       {"lev": ("i2", [1, 3, 7], {"scale_factor": 0.5})}, _FillValue=7,
+                       scale_factor=0.5, valid_max=numpy.int16(50))
+    variable.set_auto_mask(masks)
+    variable.set_auto_scale(scales)
+    variable.group().parent["lev"].set_auto_maskandscale(False)
+    volume, notes = notes_of(variable)
+    hidden = (VALUES == 7) | (VALUES > 50)
+    assert numpy.array_equal(numpy.isnan(volume.array), hidden)
+    assert numpy.array_equal(volume.array[~hidden], 0.5 * VALUES[~hidden])
+    assert numpy.array_equal(volume.coordinates[0], Z)
+    assert "masked and scaled as its attributes say" in notes
+    assert (variable.mask, variable.scale) == (masks, scales)
+
+
+@pytest.fixture
+def hdf5(tmp_path):
+    with pytest.importorskip("h5py").File(tmp_path / "a.h5", "w") as file:
+        yield file
+
+
+def test_h5py_labels_and_scales(hdf5):
+    data = hdf5.create_dataset("g/v", data=VALUES.transpose(2, 0, 1))
+    data.dims[0].label, data.dims[1].label, data.dims[2].label = "x", "z", "y"
+    assert numpy.array_equal(silent(data).array, VALUES)
+    packed = hdf5.create_dataset("g/level", data=numpy.array([1, 3, 7], "i2"))
+    packed.attrs["scale_factor"] = 0.5
+    packed.attrs["positive"] = "down"
+    packed.make_scale("level")
+    scaled = hdf5.create_dataset("g/w", data=VALUES)
+    scaled.dims[0].attach_scale(packed)
+    volume, notes = notes_of(scaled)
+    assert numpy.array_equal(volume.coordinates[0], 0.5 * Z) and volume.direction[0, 0] == -1
+    assert "z is minus level" in notes
+    data.dims[1].label = "time"
+    with pytest.raises(pellucid.Error, match="\"time\" is time"):
+        pellucid.Volume(data)
+    data = hdf5.create_dataset("tagged", data=VALUES.T)
+    data.attrs["axistags"] = '{"axes": [{"key": "x"}, {"key": "y"}, {"key": "z"}]}'
+    assert numpy.array_equal(silent(data).array, VALUES)
+
+
+def test_h5py_tells_what_stands_beside(hdf5):
+    data = hdf5.create_dataset("g/v", data=VALUES)
+    assert silent(data).spacing == (1, 1, 1)
+    hdf5["spacing"], hdf5["g/x"], hdf5["g/affine"] = [1, 2, 3], numpy.arange(5), numpy.eye(4)
+    hdf5["g/seed"], hdf5["g/other"] = 5, VALUES
+    assert "beside it stand affine, x, spacing, which are not read" in notes_of(data)[1]
+    data.attrs["axes"] = "xyz"
+    assert "not applied (axes)" in notes_of(data)[1]
+
+
+def test_zarr_has_names_of_axes():
+    zarr = pytest.importorskip("zarr")
+    data = zarr.array(numpy.ascontiguousarray(VALUES.T))
+    data.attrs["_ARRAY_DIMENSIONS"] = ["lon", "lat", "lev"]
+    volume, notes = notes_of(data)
+    shown = numpy.where(VALUES == 0, numpy.nan, VALUES)  # 0 is the store's fill value
+    assert numpy.array_equal(volume.array, shown, equal_nan=True)
+    assert "which its store may have, are not read" in notes
+    data.attrs["_ARRAY_DIMENSIONS"] = ["time", "lat", "lev"]
+    with pytest.raises(pellucid.Error, match="\"time\" is time"):
+        pellucid.Volume(data)
+    data.attrs["_ARRAY_DIMENSIONS"] = ["lat", "lev"]
+    volume, notes = notes_of(data)
+    assert volume.array.shape == VALUES.T.shape and "2 names of axes" in notes
