@@ -11,7 +11,7 @@
 #include "pellucid/io/read_volume.h"
 #include "volume_files.h"
 
-namespace pellucid {
+namespace pellucid::test_npz {
 namespace {
 
 using test::contains;
@@ -234,4 +234,4 @@ TEST(Npz, SizesThatAreClaimedAreNotReserved) {
 }
 
 }  // namespace
-}  // namespace pellucid
+}  // namespace pellucid::test_npz
