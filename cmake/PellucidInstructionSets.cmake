@@ -5,7 +5,7 @@ option(PELLUCID_SIMD
 # The sets, best last, the lanes of a packet in each, and the options of the compiler.
 set(PELLUCID_INSTRUCTION_SETS sse4 avx2 avx512)
 set(PELLUCID_BUILD_SETS "sse4;avx2;avx512" CACHE STRING
-    "Instruction sets to build kernels for; native: the best one of this machine alone")
+    "Instruction sets to build kernels for; native: the best of this machine; native+1: and one")
 set(_pellucid_lanes_sse4 4)
 set(_pellucid_lanes_avx2 8)
 set(_pellucid_lanes_avx512 16)
@@ -27,11 +27,11 @@ if(PELLUCID_SIMD AND CMAKE_SYSTEM_PROCESSOR MATCHES "^(x86_64|AMD64|amd64)$"
 endif()
 
 set(_pellucid_built_sets ${PELLUCID_BUILD_SETS})
-if(_pellucid_built_sets STREQUAL "native" AND PELLUCID_SIMD_FOUND)
+if(_pellucid_built_sets MATCHES "^native(\\+1)?$" AND PELLUCID_SIMD_FOUND)
   file(STRINGS /proc/cpuinfo _pellucid_flags REGEX "^flags" LIMIT_COUNT 1)
-  set(_pellucid_built_sets sse4)
+  set(_pellucid_native sse4)
   if(_pellucid_flags MATCHES " avx2( |$)" AND _pellucid_flags MATCHES " fma( |$)")
-    set(_pellucid_built_sets avx2)
+    list(APPEND _pellucid_native avx2)
     set(_pellucid_best TRUE)
     foreach(_pellucid_flag IN ITEMS avx512f avx512cd avx512dq avx512bw avx512vl)
       if(NOT _pellucid_flags MATCHES " ${_pellucid_flag}( |$)")
@@ -39,22 +39,32 @@ if(_pellucid_built_sets STREQUAL "native" AND PELLUCID_SIMD_FOUND)
       endif()
     endforeach()
     if(_pellucid_best)
-      set(_pellucid_built_sets avx512)
+      list(APPEND _pellucid_native avx512)
     endif()
   endif()
-  message(STATUS "Kernels are built for ${_pellucid_built_sets} alone, the best of this machine")
+  # The best set of the machine; for the tests of every change the next one as well, so that kernels
+  # of two widths are held against each other.
+  set(_pellucid_count 1)
+  if(_pellucid_built_sets STREQUAL "native+1")
+    set(_pellucid_count 2)
+  endif()
+  list(REVERSE _pellucid_native)
+  list(SUBLIST _pellucid_native 0 ${_pellucid_count} _pellucid_built_sets)
+  message(STATUS "Kernels are built for ${_pellucid_built_sets}, the best of this machine")
 endif()
 foreach(_pellucid_set IN LISTS _pellucid_built_sets)
   if(PELLUCID_SIMD_FOUND AND NOT _pellucid_set IN_LIST PELLUCID_INSTRUCTION_SETS)
     message(FATAL_ERROR "PELLUCID_BUILD_SETS: \"${_pellucid_set}\" is no instruction set; "
-                        "name some of ${PELLUCID_INSTRUCTION_SETS}, or native")
+                        "name some of ${PELLUCID_INSTRUCTION_SETS}, or native, or native+1")
   endif()
 endforeach()
 
-# pellucid_instruction_sets(TARGET SOURCES file... [ABSENT file] [LIBRARIES target...])
+# pellucid_instruction_sets(TARGET SOURCES file... [ABSENT file] [ENTRIES name...]
+#                           [LIBRARIES target...])
 #
 # Compiles the sources once per instruction set and adds the objects to TARGET; LIBRARIES say what
-# they include. For a set that PELLUCID_BUILD_SETS leaves out, ABSENT is compiled in their place.
+# they include. For a set that PELLUCID_BUILD_SETS leaves out, ABSENT is compiled in their place, or
+# functions named by ENTRIES that return null.
 # In these sources
 #   PELLUCID_LANES             is 4, 8 or 16,
 #   PELLUCID_INSTRUCTION_SET   is sse4, avx2 or avx512,
@@ -66,7 +76,7 @@ endforeach()
 # symbols. TARGET's own sources see PELLUCID_HAS_PACKETS, 1 or 0: off x86-64, or without
 # PELLUCID_SIMD, nothing is compiled.
 function(pellucid_instruction_sets target)
-  cmake_parse_arguments(arg "" "ABSENT" "SOURCES;LIBRARIES" ${ARGN})
+  cmake_parse_arguments(arg "" "ABSENT" "SOURCES;ENTRIES;LIBRARIES" ${ARGN})
   if(NOT PELLUCID_SIMD_FOUND)
     target_compile_definitions(${target} PRIVATE PELLUCID_HAS_PACKETS=0)
     return()
@@ -76,6 +86,14 @@ function(pellucid_instruction_sets target)
     set(objects ${target}_${set})
     if(arg_ABSENT AND NOT set IN_LIST _pellucid_built_sets)
       add_library(${objects} OBJECT ${arg_ABSENT})
+    elseif(arg_ENTRIES AND NOT set IN_LIST _pellucid_built_sets)
+      set(absent "${CMAKE_CURRENT_BINARY_DIR}/absent_${objects}.cpp")
+      set(functions "")
+      foreach(entry IN LISTS arg_ENTRIES)
+        string(APPEND functions "extern \"C\" const void* ${entry}_${set}() { return nullptr; }\n")
+      endforeach()
+      file(CONFIGURE OUTPUT "${absent}" @ONLY CONTENT "${functions}")
+      add_library(${objects} OBJECT "${absent}")
     else()
       add_library(${objects} OBJECT ${arg_SOURCES})
     endif()

@@ -5,7 +5,7 @@
 
 #include "benchmarks/frames/curve.h"
 
-namespace pellucid::bench {
+namespace pellucid::bench::test_curve {
 namespace {
 
 CurvePoint point(double setting, double seconds, double largest, double rms = 0) {
@@ -71,4 +71,4 @@ TEST(Reach, AnErrorOfZeroSuffices) {
 }
 
 }  // namespace
-}  // namespace pellucid::bench
+}  // namespace pellucid::bench::test_curve

@@ -4,7 +4,7 @@
 #include "benchmarks/frames/pellucid_contenders.h"
 #include "benchmarks/gaussians/gaussian_report.h"
 
-namespace pellucid::bench {
+namespace pellucid::bench::test_gaussian_report {
 namespace {
 
 /// Exact takes a second to every error; midpoint `seconds` to an error of `reached`.
@@ -50,4 +50,4 @@ TEST(GaussianReport, PutsSeriesSideBySide) {
 }
 
 }  // namespace
-}  // namespace pellucid::bench
+}  // namespace pellucid::bench::test_gaussian_report

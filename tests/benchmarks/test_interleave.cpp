@@ -3,7 +3,7 @@
 
 #include "benchmarks/support/interleave.h"
 
-namespace pellucid::bench {
+namespace pellucid::bench::test_interleave {
 namespace {
 
 TEST(Interleave, EachRoundRunsEveryWayOnceAndBeginsAtAnother) {
@@ -27,4 +27,4 @@ TEST(Interleave, MedianOfEvenAndOdd) {
 }
 
 }  // namespace
-}  // namespace pellucid::bench
+}  // namespace pellucid::bench::test_interleave

@@ -6,7 +6,7 @@
 
 #include "benchmarks/support/plot.h"
 
-namespace pellucid::bench {
+namespace pellucid::bench::test_plot {
 namespace {
 
 struct Place {
@@ -82,4 +82,4 @@ TEST(Plot, MarksAreDrawnOnlyInside) {
 }
 
 }  // namespace
-}  // namespace pellucid::bench
+}  // namespace pellucid::bench::test_plot

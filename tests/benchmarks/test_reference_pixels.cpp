@@ -8,7 +8,7 @@
 #include "pellucid/reference/render.h"
 #include "tests/scenes/peers.h"
 
-namespace pellucid::bench {
+namespace pellucid::bench::test_reference_pixels {
 namespace {
 
 TEST(ChosenPixels, AreAllOfASmallImage) {
@@ -52,4 +52,4 @@ TEST(ReferencePixels, ErrorsAreOfTheChosenPixelsAndAllChannels) {
 }
 
 }  // namespace
-}  // namespace pellucid::bench
+}  // namespace pellucid::bench::test_reference_pixels

@@ -4,7 +4,7 @@
 #include "benchmarks/frames/pellucid_contenders.h"
 #include "benchmarks/frames/report.h"
 
-namespace pellucid::bench {
+namespace pellucid::bench::test_report {
 namespace {
 
 SceneResult scene() {
@@ -80,4 +80,4 @@ TEST(Report, ErrorsAreWrittenShort) {
 }
 
 }  // namespace
-}  // namespace pellucid::bench
+}  // namespace pellucid::bench::test_report

@@ -13,7 +13,7 @@
 #include "segment_quadrature.h"
 #include "src/cpu/sample/psi_table_storage.h"
 
-namespace pellucid {
+namespace pellucid::test_cell_models {
 namespace {
 
 /// Extinction and red as a model has them at both ends of the segment.
@@ -89,4 +89,4 @@ TEST(CellModel, IntegratesWhatItMakesOfGaussians) {
 }
 
 }  // namespace
-}  // namespace pellucid
+}  // namespace pellucid::test_cell_models

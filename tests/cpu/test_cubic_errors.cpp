@@ -11,7 +11,7 @@
 #include <random>
 #include <string>
 
-namespace pellucid {
+namespace pellucid::test_cubic_errors {
 namespace {
 
 constexpr int stride = 4;
@@ -150,4 +150,4 @@ TEST(CubicErrors, OfALatticeTooSmallAreInfinite) {
 }
 
 }  // namespace
-}  // namespace pellucid
+}  // namespace pellucid::test_cubic_errors

@@ -13,7 +13,7 @@
 #include "pellucid/scene/builtin_fields.h"
 #include "pellucid/scene/defaults.h"
 
-namespace pellucid {
+namespace pellucid::test_framed_camera {
 namespace {
 
 using Points = std::vector<TransferFunction::Point>;
@@ -167,4 +167,4 @@ TEST(FramedCamera, CanBeCancelled) {
 }
 
 }  // namespace
-}  // namespace pellucid
+}  // namespace pellucid::test_framed_camera

@@ -14,7 +14,7 @@
 #include "src/cpu/layers/layer_look.h"
 #include "tests/scenes/makers.h"
 
-namespace pellucid {
+namespace pellucid::test_light {
 namespace {
 
 /// v = a x + b y + c z on [-1, 1]³, of constant extinction and color, seen along -z.
@@ -279,4 +279,4 @@ TEST(Light, AFactorIsRefusedWhereItHasNoMeaning) {
 }
 
 }  // namespace
-}  // namespace pellucid
+}  // namespace pellucid::test_light

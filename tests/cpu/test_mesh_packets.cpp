@@ -15,9 +15,10 @@
 #include "pellucid/cpu/render.h"
 #include "pellucid/scene/defaults.h"
 #include "tests/scene/lattice_mesh.h"
+#include "tests/support/instruction_sets.h"
 #include "tests/support/one_layer.h"
 
-namespace pellucid {
+namespace pellucid::test_mesh_packets {
 namespace {
 
 using Place = Vec3<double>;
@@ -123,7 +124,7 @@ void expect_same(Scene scene, const std::string& what) {
     for (const auto& pixel : scalar.pixels) most = std::max(most, pixel[3]);
     EXPECT_GT(most, 0.2f) << what << " shows nothing";
     for (const InstructionSet set : sets) {
-      if (!PELLUCID_HAS_PACKETS || !is_supported(set)) continue;
+      if (!PELLUCID_HAS_PACKETS || !test::runs_here(set)) continue;
       const Image image = rendered(scene, set, packets);
       const std::string where = what + ", " + name_of(set) + ", " + std::to_string(tolerance);
       EXPECT_EQ(packets.pixels_over_tolerance, 0u) << where;
@@ -196,7 +197,7 @@ TEST(MeshPackets, AreTheSameToTheBitForAnyNumberOfThreads) {
   const Scene scene = scene_of(at_points(bent(6)), true);
   for (const InstructionSet set : {InstructionSet::scalar, InstructionSet::sse4,
                                    InstructionSet::avx2, InstructionSet::avx512}) {
-    if (!is_supported(set)) continue;
+    if (!test::runs_here(set)) continue;
     RenderReport report;
     const Image one = rendered(scene, set, report, 1);
     for (const int threads : {2, 3, 7}) {
@@ -225,7 +226,7 @@ TEST(MeshPackets, SayWhereComponentsAreInsideOfOthers) {
   scene.camera.up = {0, 1, 0};
   for (const InstructionSet set : {InstructionSet::scalar, InstructionSet::sse4,
                                    InstructionSet::avx2, InstructionSet::avx512}) {
-    if (!is_supported(set)) continue;
+    if (!test::runs_here(set)) continue;
     RenderReport report;
     const Image image = rendered(scene, set, report);
     const std::size_t middle = static_cast<std::size_t>(11 * scene.size.width + 14);
@@ -256,15 +257,16 @@ TEST(MeshPackets, TakeTinyMeshes) {
 
 /// What is compared above is not the same code twice.
 TEST(MeshPackets, DoMostOfTheWorkInBinary32) {
-  if (!PELLUCID_HAS_PACKETS || !is_supported(InstructionSet::sse4)) GTEST_SKIP() << "no packets";
+  const InstructionSet set = test::narrowest_set();
+  if (!PELLUCID_HAS_PACKETS || set == InstructionSet::scalar) GTEST_SKIP() << "no packets";
   const Scene scene = scene_of(at_points(bent(6)));
   RenderReport scalar, packets;
   rendered(scene, InstructionSet::scalar, scalar);
-  rendered(scene, InstructionSet::sse4, packets);
+  rendered(scene, set, packets);
   EXPECT_EQ(scalar.spans.in_double, scalar.spans.closed);
   EXPECT_GT(packets.spans.closed, 1000u);
   EXPECT_LT(packets.spans.in_double, packets.spans.closed / 10);
 }
 
 }  // namespace
-}  // namespace pellucid
+}  // namespace pellucid::test_mesh_packets

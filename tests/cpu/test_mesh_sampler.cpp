@@ -15,7 +15,7 @@
 #include "tests/scenes/meshes.h"
 #include "tests/support/one_layer.h"
 
-namespace pellucid {
+namespace pellucid::test_mesh_sampler {
 namespace {
 
 using scenes::MeshChannelsPointer;
@@ -243,4 +243,4 @@ TEST(MeshSampler, NothingIsSaidOfTheError) {
 }
 
 }  // namespace
-}  // namespace pellucid
+}  // namespace pellucid::test_mesh_sampler

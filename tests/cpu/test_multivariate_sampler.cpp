@@ -10,9 +10,10 @@
 
 #include "pellucid/cpu/render.h"
 #include "pellucid/scene/defaults.h"
+#include "tests/support/instruction_sets.h"
 #include "tests/support/one_layer.h"
 
-namespace pellucid {
+namespace pellucid::test_multivariate_sampler {
 namespace {
 
 constexpr InstructionSet packet_sets[] = {InstructionSet::sse4, InstructionSet::avx2,
@@ -95,7 +96,7 @@ void expect_same_in_packets(Scene scene, bool skips, const std::string& what) {
         0.05f)
         << what << ": shows something";
     for (const InstructionSet set : packet_sets) {
-      if (!is_supported(set)) continue;
+      if (!test::runs_here(set)) continue;
       options.instruction_set = set;
       const Image image = render(scene, options, &packets);
       const std::string where = what + ", step " + std::to_string(step) + ", " + name_of(set);
@@ -194,4 +195,4 @@ TEST(MultivariateSampler, LeavesWhatItCannotDoToTheScalarSampler) {
 }
 
 }  // namespace
-}  // namespace pellucid
+}  // namespace pellucid::test_multivariate_sampler

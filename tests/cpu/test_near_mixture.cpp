@@ -14,7 +14,7 @@
 #include "src/cpu/gaussians/near_mixture_storage.h"
 #include "tests/segment/line_exponent.h"
 
-namespace pellucid {
+namespace pellucid::test_near_mixture {
 namespace {
 
 /// What binary32 takes for far has no more extinction than it may, of data in double, also far from
@@ -298,4 +298,4 @@ TEST(NearMixture, WhatBinary32HasNotIsNotForPackets) {
 }
 
 }  // namespace
-}  // namespace pellucid
+}  // namespace pellucid::test_near_mixture

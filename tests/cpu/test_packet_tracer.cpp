@@ -9,7 +9,7 @@
 #include "pellucid/scene/transfer_tables_storage.h"
 #include "pellucid/traverse/block_classes.h"
 
-namespace pellucid {
+namespace pellucid::test_packet_tracer {
 namespace {
 
 StepLimits limits_of(int points, double share_throughout, double tolerance) {
@@ -51,4 +51,4 @@ TEST(PacketTracerSteps, ThatAreShorterBearMoreBending) {
 }
 
 }  // namespace
-}  // namespace pellucid
+}  // namespace pellucid::test_packet_tracer

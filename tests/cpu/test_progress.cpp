@@ -14,7 +14,7 @@
 #include "pellucid/scene/error.h"
 #include "tests/support/one_layer.h"
 
-namespace pellucid {
+namespace pellucid::test_progress {
 namespace {
 
 /// Of several tiles, with edges that no tile fits.
@@ -151,4 +151,4 @@ TEST(Preview, LevelsOutOfRangeAreRefused) {
 }
 
 }  // namespace
-}  // namespace pellucid
+}  // namespace pellucid::test_progress

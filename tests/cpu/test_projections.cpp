@@ -12,7 +12,7 @@
 #include "tests/scenes/makers.h"
 #include "tests/scenes/meshes.h"
 
-namespace pellucid {
+namespace pellucid::test_projections {
 namespace {
 
 using scenes::grid_description;
@@ -313,4 +313,4 @@ TEST(Projections, DefaultFunctionsAreGreysOverTheRange) {
 }
 
 }  // namespace
-}  // namespace pellucid
+}  // namespace pellucid::test_projections

@@ -8,7 +8,7 @@
 #include "segment_quadrature.h"
 #include "src/cpu/sample/psi_table_storage.h"
 
-namespace pellucid {
+namespace pellucid::test_psi_table {
 namespace {
 
 using test::attenuated_integral;
@@ -72,4 +72,4 @@ TEST(PsiTable, TheWeightsAreWhatIsSaidOfThem) {
 }
 
 }  // namespace
-}  // namespace pellucid
+}  // namespace pellucid::test_psi_table

@@ -11,7 +11,7 @@
 #include "pellucid/scene/error.h"
 #include "tests/support/one_layer.h"
 
-namespace pellucid {
+namespace pellucid::test_render {
 namespace {
 
 Scene small_scene() {
@@ -169,4 +169,4 @@ TEST(Render, DepthIsInfiniteWhereNothingIsSeen) {
 }
 
 }  // namespace
-}  // namespace pellucid
+}  // namespace pellucid::test_render

@@ -16,7 +16,7 @@
 #include "src/cpu/layers/layer_setups.h"
 #include "tests/support/one_layer.h"
 
-namespace pellucid {
+namespace pellucid::test_renderer {
 namespace {
 
 using Points = std::vector<TransferFunction::Point>;
@@ -319,4 +319,4 @@ TEST(Backdrop, ThatDoesNotFitIsRefused) {
 }
 
 }  // namespace
-}  // namespace pellucid
+}  // namespace pellucid::test_renderer

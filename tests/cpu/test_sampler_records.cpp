@@ -8,7 +8,7 @@
 
 #include "pellucid/scene/transfer_function.h"
 
-namespace pellucid {
+namespace pellucid::test_sampler_records {
 namespace {
 
 using Points = std::vector<TransferFunction::Point>;
@@ -44,4 +44,4 @@ TEST(SamplerRecords, ManyCornersAreNotFew) {
 }
 
 }  // namespace
-}  // namespace pellucid
+}  // namespace pellucid::test_sampler_records

@@ -15,7 +15,7 @@
 #include "pellucid/scene/defaults.h"
 #include "pellucid/scene/scene.h"
 
-namespace pellucid {
+namespace pellucid::test_screen_mask {
 namespace {
 
 /// Through which faces a ray enters a box and leaves it: twice the axis, and 1 for the upper one;
@@ -175,4 +175,4 @@ TEST_F(ScreenMasks, MarkAllWhereTheEyeIsInside) {
 }
 
 }  // namespace
-}  // namespace pellucid
+}  // namespace pellucid::test_screen_mask

@@ -17,7 +17,7 @@
 #include "src/cpu/frame/progress.h"
 #include "src/cpu/threads.h"
 
-namespace pellucid {
+namespace pellucid::test_tiles {
 namespace {
 
 TEST(Tiles, HoldEachPixelOnceFromCoarseToFine) {
@@ -143,4 +143,4 @@ TEST(Progress, TellsOfACoarseLevelFirst) {
 }
 
 }  // namespace
-}  // namespace pellucid
+}  // namespace pellucid::test_tiles

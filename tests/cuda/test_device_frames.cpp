@@ -19,7 +19,7 @@
 #include "tests/scenes/verdict.h"
 
 /// Frames of a device, beside what the matrix asks of all scenes.
-namespace pellucid::scenes {
+namespace pellucid::scenes::test_device_frames {
 namespace {
 
 RenderOptions on(Device device) {
@@ -290,4 +290,4 @@ TEST(DeviceFrames, SayThatThereIsNoCard) {
 }
 
 }  // namespace
-}  // namespace pellucid::scenes
+}  // namespace pellucid::scenes::test_device_frames

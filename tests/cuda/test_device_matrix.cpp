@@ -10,7 +10,7 @@
 #include "tests/scenes/tolerance_matrix.h"
 
 /// The scenes of the tolerance matrix by the functions of a card: no pixel is over what it says.
-namespace pellucid::scenes {
+namespace pellucid::scenes::test_device_matrix {
 
 namespace {
 
@@ -102,4 +102,4 @@ TEST(DeviceMatrixOnACard, NoPixelIsOver) {
 }
 
 }  // namespace
-}  // namespace pellucid::scenes
+}  // namespace pellucid::scenes::test_device_matrix

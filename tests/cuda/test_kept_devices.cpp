@@ -11,7 +11,7 @@
 #include "tests/scenes/layer_makers.h"
 
 /// What frames of a renderer leave in a device's memory.
-namespace pellucid::scenes {
+namespace pellucid::scenes::test_kept_devices {
 namespace {
 
 class KeptFrames {
@@ -73,4 +73,4 @@ TEST(KeptDevices, LetGoOfDataThatAreNotShown) {
 }
 
 }  // namespace
-}  // namespace pellucid::scenes
+}  // namespace pellucid::scenes::test_kept_devices

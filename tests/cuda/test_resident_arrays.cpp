@@ -12,7 +12,7 @@
 #include "pellucid/scene/error.h"
 #include "tests/cuda/grid_scene.h"
 
-namespace pellucid::scenes {
+namespace pellucid::scenes::test_resident_arrays {
 namespace {
 
 /// A device that counts what it is asked for, and has little memory.
@@ -170,4 +170,4 @@ TEST(ResidentArrays, AreAllThatRaysLookAt) {
 }
 
 }  // namespace
-}  // namespace pellucid::scenes
+}  // namespace pellucid::scenes::test_resident_arrays

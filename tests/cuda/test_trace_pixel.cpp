@@ -12,7 +12,7 @@
 #include "tests/cuda/grid_scene.h"
 
 /// The functions of a card, one pixel after the other.
-namespace pellucid::scenes {
+namespace pellucid::scenes::test_trace_pixel {
 namespace {
 
 constexpr int size = 21;
@@ -145,4 +145,4 @@ TEST(SampleBlocks, GivesTheSamplesOfTheWholeRay) {
 }
 
 }  // namespace
-}  // namespace pellucid::scenes
+}  // namespace pellucid::scenes::test_trace_pixel

@@ -9,7 +9,7 @@
 
 #include "tests/support/accuracy.h"
 
-namespace pellucid {
+namespace pellucid::test_bounds {
 namespace {
 
 /// κ(m) by its definition in the specification, (5), where long double holds it.
@@ -80,4 +80,4 @@ TEST(PanelErrorBound, IsAboveTheSeriesItStandsFor) {
 }
 
 }  // namespace
-}  // namespace pellucid
+}  // namespace pellucid::test_bounds

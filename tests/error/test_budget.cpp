@@ -8,7 +8,7 @@
 #include <random>
 #include <vector>
 
-namespace pellucid {
+namespace pellucid::test_budget {
 namespace {
 
 struct Span {
@@ -191,4 +191,4 @@ TEST(RayBudget, EdgesAreFinite) {
 }
 
 }  // namespace
-}  // namespace pellucid
+}  // namespace pellucid::test_budget

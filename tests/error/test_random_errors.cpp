@@ -8,7 +8,7 @@
 #include <limits>
 #include <random>
 
-namespace pellucid {
+namespace pellucid::test_random_errors {
 namespace {
 
 template <class T>
@@ -177,4 +177,4 @@ TEST(LikeErrors, AreRandomWhereSpansDiffer) {
 }
 
 }  // namespace
-}  // namespace pellucid
+}  // namespace pellucid::test_random_errors

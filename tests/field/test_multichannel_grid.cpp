@@ -10,7 +10,7 @@
 #include <type_traits>
 #include <vector>
 
-namespace pellucid {
+namespace pellucid::test_multichannel_grid {
 namespace {
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
@@ -152,4 +152,4 @@ TEST(MultichannelGrid, LargeNumbersAreNoVacuum) {
 }
 
 }  // namespace
-}  // namespace pellucid
+}  // namespace pellucid::test_multichannel_grid

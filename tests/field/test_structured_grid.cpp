@@ -8,7 +8,7 @@
 #include <limits>
 #include <vector>
 
-namespace pellucid {
+namespace pellucid::test_structured_grid {
 namespace {
 
 TEST(GridAxis, PointCentred) {
@@ -101,4 +101,4 @@ TEST(StructuredGrid, OffsetsBeyond32Bits) {
 }
 
 }  // namespace
-}  // namespace pellucid
+}  // namespace pellucid::test_structured_grid

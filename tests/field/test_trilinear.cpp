@@ -10,7 +10,7 @@
 #include <random>
 #include <string>
 
-namespace pellucid {
+namespace pellucid::test_trilinear {
 namespace {
 
 // Truth: the weighted sum of the eight corners in a wider type (53 bits for float, 64 for double).
@@ -254,4 +254,4 @@ TYPED_TEST(Trilinear, GradientIsTheDerivative) {
 }
 
 }  // namespace
-}  // namespace pellucid
+}  // namespace pellucid::test_trilinear

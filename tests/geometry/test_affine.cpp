@@ -5,7 +5,7 @@
 
 #include <random>
 
-namespace pellucid {
+namespace pellucid::test_affine {
 namespace {
 
 void expect_near(const Vec3<double>& p, const Vec3<double>& q, double tolerance) {
@@ -59,4 +59,4 @@ TEST(Affine, RayKeepsItsParameter) {
 }
 
 }  // namespace
-}  // namespace pellucid
+}  // namespace pellucid::test_affine

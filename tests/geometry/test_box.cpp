@@ -8,7 +8,7 @@
 #include <limits>
 #include <random>
 
-namespace pellucid {
+namespace pellucid::test_box {
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
@@ -129,4 +129,4 @@ TEST(Box, RandomRaysAgreeWithPointsOnThem) {
 }
 
 }  // namespace
-}  // namespace pellucid
+}  // namespace pellucid::test_box

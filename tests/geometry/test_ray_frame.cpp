@@ -7,7 +7,7 @@
 #include <random>
 #include <vector>
 
-namespace pellucid {
+namespace pellucid::test_ray_frame {
 namespace {
 
 using Place = Vec3<double>;
@@ -129,4 +129,4 @@ TEST(RayFrame, SeesPointsWithinTheBlurThatItStates) {
 }
 
 }  // namespace
-}  // namespace pellucid
+}  // namespace pellucid::test_ray_frame

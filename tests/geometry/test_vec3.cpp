@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-namespace pellucid {
+namespace pellucid::test_vec3 {
 namespace {
 
 TEST(Vec3, Algebra) {
@@ -32,4 +32,4 @@ TEST(Vec3, Indexing) {
 }
 
 }  // namespace
-}  // namespace pellucid
+}  // namespace pellucid::test_vec3

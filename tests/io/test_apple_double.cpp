@@ -11,7 +11,7 @@
 #include "noting_folder.h"
 #include "zarr_files.h"
 
-namespace pellucid {
+namespace pellucid::test_apple_double {
 namespace {
 
 namespace fs = std::filesystem;
@@ -78,4 +78,4 @@ TEST_F(AppleDoubleTest, Stacks) {
 }
 
 }  // namespace
-}  // namespace pellucid
+}  // namespace pellucid::test_apple_double

@@ -11,7 +11,7 @@
 #include "pellucid/io/image_files.h"
 #include "scratch_folder.h"
 
-namespace pellucid {
+namespace pellucid::test_atomic_file {
 namespace {
 
 namespace fs = std::filesystem;
@@ -173,4 +173,4 @@ TEST_F(AtomicFileTest, TextThatCannotBeReadIsAnError) {
 }
 
 }  // namespace
-}  // namespace pellucid
+}  // namespace pellucid::test_atomic_file

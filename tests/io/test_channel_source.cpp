@@ -10,7 +10,7 @@
 #include "pellucid/scene/derived_channels.h"
 #include "tests/scene/expect_error.h"
 
-namespace pellucid {
+namespace pellucid::test_channel_source {
 namespace {
 
 using Kind = DerivedSource::Kind;
@@ -141,4 +141,4 @@ TEST(ChannelSource, GridsThatDifferAreRefused) {
 }
 
 }  // namespace
-}  // namespace pellucid
+}  // namespace pellucid::test_channel_source

@@ -8,7 +8,7 @@
 #include "pellucid/io/color_bar.h"
 #include "pellucid/scene/builtin_fields.h"
 
-namespace pellucid {
+namespace pellucid::test_color_bar {
 namespace {
 
 std::shared_ptr<const Volume> sphere() {
@@ -121,4 +121,4 @@ TEST(ColorBar, IsDrawnOverTheRightEdge) {
 }
 
 }  // namespace
-}  // namespace pellucid
+}  // namespace pellucid::test_color_bar

@@ -9,7 +9,7 @@
 #include "pellucid/io/read_volume.h"
 #include "volume_files.h"
 
-namespace pellucid {
+namespace pellucid::test_components {
 namespace {
 
 using test::bytes_of;
@@ -399,4 +399,4 @@ TEST_F(ComponentsTest, OfMetaImageAreAFourthAxis) {
 #endif
 
 }  // namespace
-}  // namespace pellucid
+}  // namespace pellucid::test_components

@@ -17,7 +17,7 @@
 #include "sanitized.h"
 #include "src/io/contained.h"
 
-namespace pellucid {
+namespace pellucid::test_contained {
 namespace {
 
 TEST(Contained, GivesWhatWasWritten) {
@@ -181,4 +181,4 @@ TEST(Contained, MemoryIsLimited) {
 #endif
 
 }  // namespace
-}  // namespace pellucid
+}  // namespace pellucid::test_contained

@@ -6,7 +6,7 @@
 #include "pellucid/io/read_volume.h"
 #include "volume_files.h"
 
-namespace pellucid {
+namespace pellucid::test_dat_header {
 namespace {
 
 using test::bytes_of;
@@ -201,4 +201,4 @@ TEST_F(DatTest, HeaderlessDataStaysHeaderless) {
 }
 
 }  // namespace
-}  // namespace pellucid
+}  // namespace pellucid::test_dat_header

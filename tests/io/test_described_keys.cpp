@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-namespace pellucid {
+namespace pellucid::test_described_keys {
 namespace {
 
 std::string line_of(const std::string& format, const std::string& key, const std::string& what) {
@@ -73,4 +73,4 @@ TEST(DescribedKeysTable, IsTheOneThatTheTestsRead) {
 }
 
 }  // namespace
-}  // namespace pellucid
+}  // namespace pellucid::test_described_keys

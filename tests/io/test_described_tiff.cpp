@@ -11,7 +11,7 @@
 
 #include "noting_folder.h"
 
-namespace pellucid {
+namespace pellucid::test_described_tiff {
 namespace {
 
 namespace fs = std::filesystem;
@@ -449,4 +449,4 @@ TEST_F(DescribedTiffTest, NamesOfUnits) {
 }
 
 }  // namespace
-}  // namespace pellucid
+}  // namespace pellucid::test_described_tiff

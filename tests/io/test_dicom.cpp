@@ -20,7 +20,7 @@
 #include "pellucid/io/read_volume.h"
 #include "volume_files.h"
 
-namespace pellucid {
+namespace pellucid::test_dicom {
 namespace {
 
 using test::bytes_of;
@@ -898,4 +898,4 @@ TEST_F(DicomTest, JpegIsDecodedByGdcm) {
 #endif
 
 }  // namespace
-}  // namespace pellucid
+}  // namespace pellucid::test_dicom

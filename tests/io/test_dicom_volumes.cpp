@@ -16,7 +16,7 @@
 #include "pellucid/io/read_volume.h"
 #include "volume_files.h"
 
-namespace pellucid {
+namespace pellucid::test_dicom_volumes {
 namespace {
 
 using test::bytes_of;
@@ -285,4 +285,4 @@ TEST_F(DicomVolumesTest, WithoutAnOrientationNothingIsCalledLps) {
 }
 
 }  // namespace
-}  // namespace pellucid
+}  // namespace pellucid::test_dicom_volumes

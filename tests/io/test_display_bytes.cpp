@@ -9,7 +9,7 @@
 #include "pellucid/io/display_bytes.h"
 #include "pellucid/scene/srgb.h"
 
-namespace pellucid {
+namespace pellucid::test_display_bytes {
 namespace {
 
 int rounded(double linear) {
@@ -70,4 +70,4 @@ TEST(DisplayBytes, TakeEveryNthPixel) {
 }
 
 }  // namespace
-}  // namespace pellucid
+}  // namespace pellucid::test_display_bytes

@@ -11,7 +11,7 @@
 
 #if defined(PELLUCID_HAVE_VTK) && defined(PELLUCID_HAVE_NETCDF)
 
-namespace pellucid {
+namespace pellucid::test_exodus {
 namespace {
 
 using test::contains;
@@ -139,6 +139,6 @@ TEST_F(Exodus, StepsWithoutATimeAreNotRead) {
 }
 
 }  // namespace
-}  // namespace pellucid
+}  // namespace pellucid::test_exodus
 
 #endif

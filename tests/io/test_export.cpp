@@ -10,7 +10,7 @@
 #include "pellucid/io/import_transfer_function.h"
 #include "scratch_folder.h"
 
-namespace pellucid {
+namespace pellucid::test_export {
 namespace {
 
 struct Look {
@@ -142,4 +142,4 @@ TEST(Export, RefusesWhatHasNoCounterpart) {
 }
 
 }  // namespace
-}  // namespace pellucid
+}  // namespace pellucid::test_export

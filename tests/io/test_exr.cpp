@@ -18,7 +18,7 @@
 #include "pellucid/io/image_files.h"
 #include "scratch_folder.h"
 
-namespace pellucid {
+namespace pellucid::test_exr {
 namespace {
 
 using test::contains;
@@ -321,4 +321,4 @@ TEST_F(ExrTest, NoFileWhereItCannotBeWritten) {
 }
 
 }  // namespace
-}  // namespace pellucid
+}  // namespace pellucid::test_exr

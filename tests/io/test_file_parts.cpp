@@ -18,7 +18,7 @@
 #include <netcdf.h>
 #endif
 
-namespace pellucid {
+namespace pellucid::test_file_parts {
 namespace {
 
 namespace fs = std::filesystem;
@@ -381,4 +381,4 @@ TEST_F(VtkParts, PiecesThatLieAreRefused) {
 #endif
 
 }  // namespace
-}  // namespace pellucid
+}  // namespace pellucid::test_file_parts

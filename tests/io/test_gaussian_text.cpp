@@ -7,7 +7,7 @@
 #include "pellucid/io/transfer_function_description.h"
 #include "tests/scene/expect_error.h"
 
-namespace pellucid {
+namespace pellucid::test_gaussian_text {
 namespace {
 
 using Names = std::vector<std::string>;
@@ -103,4 +103,4 @@ TEST(GaussianText, SaysWhatIsWrong) {
 }
 
 }  // namespace
-}  // namespace pellucid
+}  // namespace pellucid::test_gaussian_text

@@ -6,7 +6,7 @@
 #include "src/io/gzip_source.h"
 #include "volume_files.h"
 
-namespace pellucid {
+namespace pellucid::test_gzip_source {
 namespace {
 
 using test::error_of;
@@ -44,4 +44,4 @@ TEST_F(GzipSource, WhatIsNotGzippedIsTakenAsItIs) {
 }
 
 }  // namespace
-}  // namespace pellucid
+}  // namespace pellucid::test_gzip_source

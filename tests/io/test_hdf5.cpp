@@ -10,7 +10,7 @@
 #include "pellucid/io/read_volume.h"
 #include "volume_files.h"
 
-namespace pellucid {
+namespace pellucid::test_hdf5 {
 namespace {
 
 namespace fs = std::filesystem;
@@ -301,6 +301,6 @@ TEST_F(Hdf5, CutOffIsAnError) {
 }
 
 }  // namespace
-}  // namespace pellucid
+}  // namespace pellucid::test_hdf5
 
 #endif

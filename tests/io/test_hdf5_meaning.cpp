@@ -9,7 +9,7 @@
 #include "hdf5_files.h"
 #include "pellucid/io/read_volume.h"
 
-namespace pellucid {
+namespace pellucid::test_hdf5_meaning {
 namespace {
 
 using test::contains;
@@ -241,6 +241,6 @@ TEST_F(Hdf5Meaning, SizesOfElements) {
 }
 
 }  // namespace
-}  // namespace pellucid
+}  // namespace pellucid::test_hdf5_meaning
 
 #endif

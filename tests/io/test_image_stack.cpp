@@ -9,7 +9,7 @@
 #include "image_files.h"
 #include "pellucid/io/read_volume.h"
 
-namespace pellucid {
+namespace pellucid::test_image_stack {
 namespace {
 
 namespace fs = std::filesystem;
@@ -342,4 +342,4 @@ TEST_F(StackTest, HugeSizesAreRefused) {
 }
 
 }  // namespace
-}  // namespace pellucid
+}  // namespace pellucid::test_image_stack

@@ -14,7 +14,7 @@
 #include "pellucid/io/scene_json.h"
 #include "scratch_folder.h"
 
-namespace pellucid {
+namespace pellucid::test_import_formats {
 namespace {
 
 using test::contains;
@@ -482,4 +482,4 @@ TEST(Import, RefusesOptionsOutOfRange) {
 }
 
 }  // namespace
-}  // namespace pellucid
+}  // namespace pellucid::test_import_formats

@@ -19,7 +19,7 @@
 #include "pellucid/scene/srgb.h"
 #include "scratch_folder.h"
 
-namespace pellucid {
+namespace pellucid::test_import_vtk {
 namespace {
 
 const std::filesystem::path folder =
@@ -107,4 +107,4 @@ TEST(ImportOfVtkNotes, SayWhatIsExact) {
 }
 
 }  // namespace
-}  // namespace pellucid
+}  // namespace pellucid::test_import_vtk

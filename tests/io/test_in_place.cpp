@@ -9,7 +9,7 @@
 #include "volume_files.h"
 
 // Whether the values of a file are mapped or read, as the system sees it.
-namespace pellucid {
+namespace pellucid::test_in_place {
 namespace {
 
 using test::bytes_of;
@@ -183,4 +183,4 @@ TEST_F(InPlace, Nrrd) {
 #endif
 
 }  // namespace
-}  // namespace pellucid
+}  // namespace pellucid::test_in_place

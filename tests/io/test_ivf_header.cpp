@@ -6,7 +6,7 @@
 #include "pellucid/io/read_volume.h"
 #include "volume_files.h"
 
-namespace pellucid {
+namespace pellucid::test_ivf_header {
 namespace {
 
 using test::bytes_of;
@@ -104,4 +104,4 @@ TEST_F(IvfTest, BadHeadersAreRefused) {
 }
 
 }  // namespace
-}  // namespace pellucid
+}  // namespace pellucid::test_ivf_header

@@ -13,7 +13,7 @@
 #include "src/io/foreign_curves.h"
 #include "src/io/jet.h"
 
-namespace pellucid::foreign {
+namespace pellucid::foreign::test_jet {
 namespace {
 
 /// Holds value, chord and the bound together for a formula f of one variable between a and b.
@@ -80,4 +80,4 @@ TEST(Jet, OfWhatIsUnknownIsNotSmall) {
 }
 
 }  // namespace
-}  // namespace pellucid::foreign
+}  // namespace pellucid::foreign::test_jet

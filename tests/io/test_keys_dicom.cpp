@@ -11,7 +11,7 @@
 #include "pellucid/io/dicom_series.h"
 #include "pellucid/io/read_volume.h"
 
-namespace pellucid {
+namespace pellucid::test_keys_dicom {
 namespace {
 
 using test::bytes_of;
@@ -224,4 +224,4 @@ DICOM_ROW(instance, "InstanceNumber", honored) {
 }
 
 }  // namespace
-}  // namespace pellucid
+}  // namespace pellucid::test_keys_dicom

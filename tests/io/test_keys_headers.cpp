@@ -9,7 +9,7 @@
 #include "described_keys.h"
 #include "pellucid/io/read_volume.h"
 
-namespace pellucid {
+namespace pellucid::test_keys_headers {
 namespace {
 
 using test::bytes_of;
@@ -539,4 +539,4 @@ MHA_ROW(per_slice, "HeaderSizePerSlice", refused) {
 #endif
 
 }  // namespace
-}  // namespace pellucid
+}  // namespace pellucid::test_keys_headers

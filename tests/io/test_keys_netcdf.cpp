@@ -21,7 +21,7 @@
 #include "pellucid/io/read_volume.h"
 #include "zarr_files.h"
 
-namespace pellucid {
+namespace pellucid::test_keys_netcdf {
 namespace {
 
 namespace fs = std::filesystem;
@@ -675,4 +675,4 @@ ZARR_KEY(dimension_names, "dimension_names", honored) {
 }
 
 }  // namespace
-}  // namespace pellucid
+}  // namespace pellucid::test_keys_netcdf

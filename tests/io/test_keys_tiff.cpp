@@ -13,7 +13,7 @@
 #include "image_files.h"
 #include "pellucid/io/read_volume.h"
 
-namespace pellucid {
+namespace pellucid::test_keys_tiff {
 namespace {
 
 using test::contains;
@@ -542,4 +542,4 @@ PELLUCID_DESCRIBED_KEY(names_gap, stack_rows, "a missing number", refused) {
 }
 
 }  // namespace
-}  // namespace pellucid
+}  // namespace pellucid::test_keys_tiff

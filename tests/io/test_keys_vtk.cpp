@@ -11,7 +11,7 @@
 #include "pellucid/io/read_mesh.h"
 #include "pellucid/io/read_volume.h"
 
-namespace pellucid {
+namespace pellucid::test_keys_vtk {
 namespace {
 
 #ifdef PELLUCID_HAVE_VTK
@@ -261,4 +261,4 @@ PELLUCID_DESCRIBED_KEY(exodus_fill, "Exodus II", "vals_nod_var1", told) {
 }
 
 }  // namespace
-}  // namespace pellucid
+}  // namespace pellucid::test_keys_vtk

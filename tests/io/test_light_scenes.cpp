@@ -14,7 +14,7 @@
 #include "scratch_folder.h"
 #include "tests/support/one_layer.h"
 
-namespace pellucid {
+namespace pellucid::test_light_scenes {
 namespace {
 
 using Points = std::vector<TransferFunction::Point>;
@@ -244,4 +244,4 @@ TEST(LookJson, TellsOfALayer) {
 }
 
 }  // namespace
-}  // namespace pellucid
+}  // namespace pellucid::test_light_scenes

@@ -13,7 +13,7 @@
 #include "scratch_folder.h"
 #include "src/io/components.h"
 
-namespace pellucid {
+namespace pellucid::test_memory_limit {
 namespace {
 
 constexpr std::uintmax_t mebi = std::uintmax_t{1} << 20;
@@ -145,4 +145,4 @@ TEST_F(MemoryLimitTest, CountsComponentsThatAreReadOnlyToBePassedOver) {
 #endif
 
 }  // namespace
-}  // namespace pellucid
+}  // namespace pellucid::test_memory_limit

@@ -9,7 +9,7 @@
 
 #ifdef PELLUCID_HAVE_ITK
 
-namespace pellucid {
+namespace pellucid::test_meta_image {
 namespace {
 
 using test::bytes_of;
@@ -251,6 +251,6 @@ TEST_F(MetaImageTest, BytesThatAreLeftOverAreTold) {
 }
 
 }  // namespace
-}  // namespace pellucid
+}  // namespace pellucid::test_meta_image
 
 #endif

@@ -7,7 +7,7 @@
 #include "pellucid/io/read_volume.h"
 #include "volume_files.h"
 
-namespace pellucid {
+namespace pellucid::test_mgh {
 namespace {
 
 using test::contains;
@@ -135,4 +135,4 @@ TEST_F(MghTest, BadFilesAreRefused) {
 }
 
 }  // namespace
-}  // namespace pellucid
+}  // namespace pellucid::test_mgh

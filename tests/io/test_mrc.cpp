@@ -12,7 +12,7 @@
 #include "pellucid/io/read_volume.h"
 #include "volume_files.h"
 
-namespace pellucid {
+namespace pellucid::test_mrc {
 namespace {
 
 using test::bytes_of;
@@ -286,4 +286,4 @@ TEST_F(MrcTest, BadHeadersAreRefused) {
 }
 
 }  // namespace
-}  // namespace pellucid
+}  // namespace pellucid::test_mrc

@@ -12,7 +12,7 @@
 #include "tests/scene/expect_error.h"
 #include "tests/support/one_layer.h"
 
-namespace pellucid {
+namespace pellucid::test_multivariate_scenes {
 namespace {
 
 using Names = std::vector<std::string>;
@@ -187,4 +187,4 @@ TEST(MultivariateScene, UnknownChannelsAreFoundBeforeAnythingIsRead) {
 }
 
 }  // namespace
-}  // namespace pellucid
+}  // namespace pellucid::test_multivariate_scenes

@@ -22,7 +22,7 @@
 #include "mutants_test.h"
 #include "pellucid/io/write_volume.h"
 
-namespace pellucid {
+namespace pellucid::test_mutants {
 namespace {
 
 using test::bytes_of;
@@ -311,4 +311,4 @@ TEST_F(MutantsTest, MetaImage) {
 #endif
 
 }  // namespace
-}  // namespace pellucid
+}  // namespace pellucid::test_mutants

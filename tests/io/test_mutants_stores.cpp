@@ -8,7 +8,7 @@
 #include "zarr_files.h"
 
 // Damaged headers of volumes whose values are in other files.
-namespace pellucid {
+namespace pellucid::test_mutants_stores {
 namespace {
 
 using test::bytes_of;
@@ -49,4 +49,4 @@ TEST_F(MutantsTest, Vvd) {
 }
 
 }  // namespace
-}  // namespace pellucid
+}  // namespace pellucid::test_mutants_stores

@@ -21,7 +21,7 @@
 #endif
 
 // Damaged files of VTK's formats and of meshes, as `info` reads them.
-namespace pellucid {
+namespace pellucid::test_mutants_vtk {
 namespace {
 
 using test::bytes_of;
@@ -217,4 +217,4 @@ TEST_F(MutantsOfMeshes, VtkHdf) {
 #endif
 
 }  // namespace
-}  // namespace pellucid
+}  // namespace pellucid::test_mutants_vtk

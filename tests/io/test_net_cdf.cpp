@@ -13,7 +13,7 @@
 #include "pellucid/io/read_volume.h"
 #include "volume_files.h"
 
-namespace pellucid {
+namespace pellucid::test_net_cdf {
 namespace {
 
 using test::contains;
@@ -354,6 +354,6 @@ TEST_F(NetCdf, GroupsAndWhatIsNoVolume) {
 }
 
 }  // namespace
-}  // namespace pellucid
+}  // namespace pellucid::test_net_cdf
 
 #endif

@@ -14,7 +14,7 @@
 #include "pellucid/io/read_volume.h"
 #include "volume_files.h"
 
-namespace pellucid {
+namespace pellucid::test_net_cdf_axes {
 namespace {
 
 using test::ClassicAttribute;
@@ -400,6 +400,6 @@ TEST_F(NetCdfAxes, VariablesThatBelongToOthers) {
 }
 
 }  // namespace
-}  // namespace pellucid
+}  // namespace pellucid::test_net_cdf_axes
 
 #endif

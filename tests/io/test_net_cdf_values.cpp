@@ -14,7 +14,7 @@
 #include "pellucid/io/read_volume.h"
 #include "volume_files.h"
 
-namespace pellucid {
+namespace pellucid::test_net_cdf_values {
 namespace {
 
 using test::ClassicAttribute;
@@ -209,6 +209,6 @@ TEST_F(NetCdfValues, AttributesOfTheNewerText) {
 }
 
 }  // namespace
-}  // namespace pellucid
+}  // namespace pellucid::test_net_cdf_values
 
 #endif

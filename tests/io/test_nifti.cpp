@@ -10,7 +10,7 @@
 #include "pellucid/io/read_volume.h"
 #include "volume_files.h"
 
-namespace pellucid {
+namespace pellucid::test_nifti {
 namespace {
 
 using test::bytes_of;
@@ -479,4 +479,4 @@ TEST_F(NiftiTest, NothingIsPrinted) {
 }
 
 }  // namespace
-}  // namespace pellucid
+}  // namespace pellucid::test_nifti

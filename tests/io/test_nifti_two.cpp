@@ -10,7 +10,7 @@
 #include "pellucid/io/read_volume.h"
 #include "volume_files.h"
 
-namespace pellucid {
+namespace pellucid::test_nifti_two {
 namespace {
 
 using test::bytes_of;
@@ -214,4 +214,4 @@ TEST_F(NiftiTwoTest, IntentsAndUnitsAreTold) {
 }
 
 }  // namespace
-}  // namespace pellucid
+}  // namespace pellucid::test_nifti_two

@@ -13,7 +13,7 @@
 #include "pellucid/io/read_volume.h"
 #include "volume_files.h"
 
-namespace pellucid {
+namespace pellucid::test_npy {
 namespace {
 
 using test::contains;
@@ -477,4 +477,4 @@ TEST(Npy, OptionsOfHeaderlessDataAreRefused) {
 }
 
 }  // namespace
-}  // namespace pellucid
+}  // namespace pellucid::test_npy

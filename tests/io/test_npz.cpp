@@ -13,7 +13,7 @@
 #include "pellucid/io/read_volume.h"
 #include "volume_files.h"
 
-namespace pellucid {
+namespace pellucid::test_npz {
 namespace {
 
 using test::contains;
@@ -391,4 +391,4 @@ NPZ_KEY(other_places, "direction, extent, scale, resolution", told) {
 }
 
 }  // namespace
-}  // namespace pellucid
+}  // namespace pellucid::test_npz

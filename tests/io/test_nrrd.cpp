@@ -14,7 +14,7 @@
 
 #ifdef PELLUCID_HAVE_ITK
 
-namespace pellucid {
+namespace pellucid::test_nrrd {
 namespace {
 
 using test::bytes_of;
@@ -423,6 +423,6 @@ TEST_F(NrrdTest, NothingIsPrinted) {
 }
 
 }  // namespace
-}  // namespace pellucid
+}  // namespace pellucid::test_nrrd
 
 #endif

@@ -9,7 +9,7 @@
 
 #ifdef PELLUCID_HAVE_ITK
 
-namespace pellucid {
+namespace pellucid::test_nrrd_space {
 namespace {
 
 using test::bytes_of;
@@ -128,6 +128,6 @@ TEST_F(NrrdSpaceTest, SpacesThatAreNoPatientsAreNamed) {
 }
 
 }  // namespace
-}  // namespace pellucid
+}  // namespace pellucid::test_nrrd_space
 
 #endif

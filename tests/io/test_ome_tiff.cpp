@@ -8,7 +8,7 @@
 
 #include "noting_folder.h"
 
-namespace pellucid {
+namespace pellucid::test_ome_tiff {
 namespace {
 
 namespace fs = std::filesystem;
@@ -361,4 +361,4 @@ TEST_F(OmeTiffTest, DistancesHaveTheirOwnUnits) {
 }
 
 }  // namespace
-}  // namespace pellucid
+}  // namespace pellucid::test_ome_tiff

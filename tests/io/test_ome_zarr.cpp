@@ -7,7 +7,7 @@
 #include "pellucid/io/read_volume.h"
 #include "zarr_files.h"
 
-namespace pellucid {
+namespace pellucid::test_ome_zarr {
 namespace {
 
 namespace fs = std::filesystem;
@@ -324,4 +324,4 @@ TEST_F(OmeZarrTest, TooLargeForTheMachine) {
 }
 
 }  // namespace
-}  // namespace pellucid
+}  // namespace pellucid::test_ome_zarr

@@ -12,7 +12,7 @@
 #include "pellucid/io/read_volume.h"
 #include "volume_files.h"
 
-namespace pellucid {
+namespace pellucid::test_openvdb {
 namespace {
 
 namespace fs = std::filesystem;
@@ -297,6 +297,6 @@ TEST_F(OpenVdb, DamagedIsAnErrorThatSaysSo) {
 }
 
 }  // namespace
-}  // namespace pellucid
+}  // namespace pellucid::test_openvdb
 
 #endif

@@ -10,7 +10,7 @@
 #include "image_files.h"
 #include "pellucid/io/read_volume.h"
 
-namespace pellucid {
+namespace pellucid::test_page_marks {
 namespace {
 
 using test::contains;
@@ -150,4 +150,4 @@ PELLUCID_DESCRIBED_KEY(pages_differ, "Stacks of files", "a key that differs from
 }
 
 }  // namespace
-}  // namespace pellucid
+}  // namespace pellucid::test_page_marks

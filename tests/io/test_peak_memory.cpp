@@ -16,7 +16,7 @@
 // How much memory reading a volume takes at most: the data once, in its own type.
 #ifndef PELLUCID_SANITIZED
 
-namespace pellucid {
+namespace pellucid::test_peak_memory {
 namespace {
 
 constexpr std::size_t kibi = 1024;
@@ -165,6 +165,6 @@ TEST_F(PeakMemory, Nrrd) {
 #endif
 
 }  // namespace
-}  // namespace pellucid
+}  // namespace pellucid::test_peak_memory
 
 #endif

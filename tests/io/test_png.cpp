@@ -16,7 +16,7 @@
 #include "pellucid/scene/error.h"
 #include "scratch_folder.h"
 
-namespace pellucid {
+namespace pellucid::test_png {
 namespace {
 
 using test::contains;
@@ -193,4 +193,4 @@ TEST_F(PngTest, NoFileWhereItCannotBeWritten) {
 }
 
 }  // namespace
-}  // namespace pellucid
+}  // namespace pellucid::test_png

@@ -8,7 +8,7 @@
 #include "pellucid/io/read_volume.h"
 #include "volume_files.h"
 
-namespace pellucid {
+namespace pellucid::test_raw {
 namespace {
 
 using test::contains;
@@ -179,4 +179,4 @@ TEST_F(GzippedRaw, SaysWhatIsWrong) {
 }
 
 }  // namespace
-}  // namespace pellucid
+}  // namespace pellucid::test_raw

@@ -15,7 +15,7 @@
 #include "scratch_folder.h"
 #include "tests/support/test_data.h"
 
-namespace pellucid {
+namespace pellucid::test_read_mesh {
 namespace {
 
 namespace fs = std::filesystem;
@@ -802,4 +802,4 @@ TEST_F(CutExodus, IsRefused) {
 #endif
 
 }  // namespace
-}  // namespace pellucid
+}  // namespace pellucid::test_read_mesh

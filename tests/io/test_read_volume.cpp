@@ -11,7 +11,7 @@
 #include "pellucid/io/read_mesh.h"
 #include "volume_files.h"
 
-namespace pellucid {
+namespace pellucid::test_read_volume {
 namespace {
 
 using test::contains;
@@ -149,4 +149,4 @@ TEST_F(ReadVolumeTest, WithoutItkTheReasonIsSaid) {
 #endif
 
 }  // namespace
-}  // namespace pellucid
+}  // namespace pellucid::test_read_volume

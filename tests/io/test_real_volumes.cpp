@@ -13,7 +13,7 @@
 #include "volume_files.h"
 
 // Files of other programs, against the facts that stand in their manifest.
-namespace pellucid {
+namespace pellucid::test_real_volumes {
 namespace {
 
 namespace fs = std::filesystem;
@@ -347,4 +347,4 @@ TEST(RealVolumes, TheBrainOfTheDemo) {
 #endif
 
 }  // namespace
-}  // namespace pellucid
+}  // namespace pellucid::test_real_volumes

@@ -6,7 +6,7 @@
 #include "pellucid/io/scene_json.h"
 #include "pellucid/scene/error.h"
 
-namespace pellucid {
+namespace pellucid::test_remake_layer {
 namespace {
 
 SceneDescription described(const char* look) {
@@ -64,4 +64,4 @@ TEST(CompleteDescription, WritesWhatAPresetMade) {
 }
 
 }  // namespace
-}  // namespace pellucid
+}  // namespace pellucid::test_remake_layer

@@ -19,7 +19,7 @@
 #include "pellucid/scene/error.h"
 #include "tests/support/one_layer.h"
 
-namespace pellucid {
+namespace pellucid::test_scene_json {
 namespace {
 
 const std::filesystem::path scenes =
@@ -551,4 +551,4 @@ TEST(MakeScene, TakesTheToleranceForOpacityTables) {
 }
 
 }  // namespace
-}  // namespace pellucid
+}  // namespace pellucid::test_scene_json

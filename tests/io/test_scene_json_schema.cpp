@@ -20,7 +20,7 @@
 #include "pellucid/scene/builtin_fields.h"
 #include "pellucid/scene/error.h"
 
-namespace pellucid {
+namespace pellucid::test_scene_json_schema {
 namespace {
 
 using nlohmann::json;
@@ -238,4 +238,4 @@ TEST(SceneJsonSchema, ListsTheBuiltinFields) {
 }
 
 }  // namespace
-}  // namespace pellucid
+}  // namespace pellucid::test_scene_json_schema

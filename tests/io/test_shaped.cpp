@@ -9,7 +9,7 @@
 #include "pellucid/scene/error.h"
 #include "src/io/foreign_shaped.h"
 
-namespace pellucid::foreign {
+namespace pellucid::foreign::test_shaped {
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
@@ -137,4 +137,4 @@ TEST(ShapedFunction, WithoutNodesIsZeroAndARampOfDataIsVtks) {
 }
 
 }  // namespace
-}  // namespace pellucid::foreign
+}  // namespace pellucid::foreign::test_shaped

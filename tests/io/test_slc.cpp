@@ -8,7 +8,7 @@
 #include "tests/support/test_data.h"
 #include "volume_files.h"
 
-namespace pellucid {
+namespace pellucid::test_slc {
 namespace {
 
 namespace fs = std::filesystem;
@@ -112,4 +112,4 @@ TEST(Slc, RealFile) {
 }
 
 }  // namespace
-}  // namespace pellucid
+}  // namespace pellucid::test_slc

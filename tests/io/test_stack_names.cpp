@@ -9,7 +9,7 @@
 
 #include "noting_folder.h"
 
-namespace pellucid {
+namespace pellucid::test_stack_names {
 namespace {
 
 namespace fs = std::filesystem;
@@ -265,4 +265,4 @@ TEST_F(StackNamesTest, NumberedFilesGoBeforeTheirDescriptions) {
 }
 
 }  // namespace
-}  // namespace pellucid
+}  // namespace pellucid::test_stack_names

@@ -12,7 +12,7 @@
 #include "pellucid/io/read_volume.h"
 #include "zarr_files.h"
 
-namespace pellucid {
+namespace pellucid::test_time_steps {
 namespace {
 
 namespace fs = std::filesystem;
@@ -127,4 +127,4 @@ TEST_F(TimeSteps, AnErrorIsTheOneLine) {
 }
 
 }  // namespace
-}  // namespace pellucid
+}  // namespace pellucid::test_time_steps

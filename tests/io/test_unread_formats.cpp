@@ -4,7 +4,7 @@
 #include "pellucid/io/read_volume.h"
 #include "volume_files.h"
 
-namespace pellucid {
+namespace pellucid::test_unread_formats {
 namespace {
 
 namespace fs = std::filesystem;
@@ -37,4 +37,4 @@ TEST_F(UnreadFormats, AreNamed) {
 }
 
 }  // namespace
-}  // namespace pellucid
+}  // namespace pellucid::test_unread_formats

@@ -9,7 +9,7 @@
 #include "pellucid/io/write_volume.h"
 #include "volume_files.h"
 
-namespace pellucid {
+namespace pellucid::test_vtk_collection {
 namespace {
 
 namespace fs = std::filesystem;
@@ -86,6 +86,6 @@ TEST_F(VtkCollection, MeshesStayMeshes) {
 }
 
 }  // namespace
-}  // namespace pellucid
+}  // namespace pellucid::test_vtk_collection
 
 #endif

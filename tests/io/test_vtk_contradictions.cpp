@@ -16,7 +16,7 @@
 
 #ifdef PELLUCID_HAVE_VTK
 
-namespace pellucid {
+namespace pellucid::test_vtk_contradictions {
 namespace {
 
 namespace fs = std::filesystem;
@@ -511,6 +511,6 @@ TEST_F(VtkContradictions, RoundedNumbersAreTold) {
 }
 
 }  // namespace
-}  // namespace pellucid
+}  // namespace pellucid::test_vtk_contradictions
 
 #endif

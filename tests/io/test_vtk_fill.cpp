@@ -14,7 +14,7 @@
 
 #ifdef PELLUCID_HAVE_VTK
 
-namespace pellucid {
+namespace pellucid::test_vtk_fill {
 namespace {
 
 namespace fs = std::filesystem;
@@ -298,6 +298,6 @@ TEST_F(VtkFill, AbsurdNumbersEndAtOnce) {
 }
 
 }  // namespace
-}  // namespace pellucid
+}  // namespace pellucid::test_vtk_fill
 
 #endif

@@ -10,7 +10,7 @@
 
 #ifdef PELLUCID_HAVE_VTK
 
-namespace pellucid {
+namespace pellucid::test_vtk_ghosts {
 namespace {
 
 using test::contains;
@@ -126,6 +126,6 @@ TEST_F(VtkGhosts, HiddenPointsHideCellsOfUnstructuredGrids) {
 }
 
 }  // namespace
-}  // namespace pellucid
+}  // namespace pellucid::test_vtk_ghosts
 
 #endif

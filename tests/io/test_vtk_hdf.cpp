@@ -14,7 +14,7 @@
 #include "scratch_folder.h"
 #include "vtk_hdf_files.h"
 
-namespace pellucid {
+namespace pellucid::test_vtk_hdf {
 namespace {
 
 namespace fs = std::filesystem;
@@ -290,6 +290,6 @@ TEST_F(VtkHdf, SurvivesFilesThatAreCutOffOrSpoiled) {
 }
 
 }  // namespace
-}  // namespace pellucid
+}  // namespace pellucid::test_vtk_hdf
 
 #endif

@@ -12,7 +12,7 @@
 #include "tests/support/test_data.h"
 #include "volume_files.h"
 
-namespace pellucid {
+namespace pellucid::test_vtk_volumes {
 namespace {
 
 namespace fs = std::filesystem;
@@ -512,4 +512,4 @@ TEST_F(VtkVolumes, RealFiles) {
 #endif
 
 }  // namespace
-}  // namespace pellucid
+}  // namespace pellucid::test_vtk_volumes

@@ -10,7 +10,7 @@
 #include "pellucid/scene/error.h"
 #include "scratch_folder.h"
 
-namespace pellucid {
+namespace pellucid::test_vtu_file {
 namespace {
 
 /// One cell of every shape that VTK and we know, each at points of its own, with arrays of all
@@ -100,4 +100,4 @@ TEST_F(VtuFile, RefusesWhatDoesNotAgreeAndLeavesNothing) {
 }
 
 }  // namespace
-}  // namespace pellucid
+}  // namespace pellucid::test_vtu_file

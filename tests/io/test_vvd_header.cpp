@@ -6,7 +6,7 @@
 #include "pellucid/io/read_volume.h"
 #include "volume_files.h"
 
-namespace pellucid {
+namespace pellucid::test_vvd_header {
 namespace {
 
 using test::bytes_of;
@@ -133,4 +133,4 @@ TEST_F(VvdTest, RefusesWhatItCannotRead) {
 }
 
 }  // namespace
-}  // namespace pellucid
+}  // namespace pellucid::test_vvd_header

@@ -10,7 +10,7 @@
 #include "volume_files.h"
 #include "written_volumes.h"
 
-namespace pellucid {
+namespace pellucid::test_write_volume {
 namespace {
 
 using test::awkward_description;
@@ -210,4 +210,4 @@ TEST_F(WriteVolume, NamesOfArraysAreMadeXml) {
 #endif
 
 }  // namespace
-}  // namespace pellucid
+}  // namespace pellucid::test_write_volume

@@ -21,7 +21,7 @@
 #include "pellucid/io/read_volume.h"
 #include "zarr_files.h"
 
-namespace pellucid {
+namespace pellucid::test_zarr {
 namespace {
 
 namespace fs = std::filesystem;
@@ -716,4 +716,4 @@ TEST_F(ZarrTest, ChunksThatAreCutOff) {
 }
 
 }  // namespace
-}  // namespace pellucid
+}  // namespace pellucid::test_zarr

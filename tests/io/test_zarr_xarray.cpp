@@ -10,7 +10,7 @@
 #include "pellucid/io/read_volume.h"
 #include "zarr_files.h"
 
-namespace pellucid {
+namespace pellucid::test_zarr_xarray {
 namespace {
 
 namespace fs = std::filesystem;
@@ -323,4 +323,4 @@ TEST_F(ZarrXarray3, MetadataOfTheRootAlone) {
 }
 
 }  // namespace
-}  // namespace pellucid
+}  // namespace pellucid::test_zarr_xarray

@@ -12,6 +12,7 @@
 
 #include "pellucid/cpu/render.h"
 #include "tests/packet/instruction_sets.h"
+#include "tests/support/instruction_sets.h"
 
 namespace pellucid {
 
@@ -42,7 +43,7 @@ inline void compare(Scene scene, const std::vector<double>& tolerances, Seen& se
   const Image truth = render(scene, options);
   scene.integration.precision = Precision::automatic;
   for (const InstructionSet set : sets) {
-    if (!is_supported(set)) continue;
+    if (!test::runs_here(set)) continue;
     options.instruction_set = set;
     for (const double tolerance : tolerances) {
       SCOPED_TRACE(testing::Message() << name_of(set) << " at " << tolerance);

@@ -5,6 +5,7 @@
 #include <iterator>
 
 #include "pellucid/cpu/render.h"
+#include "tests/support/instruction_sets.h"
 
 namespace pellucid {
 
@@ -14,7 +15,7 @@ inline constexpr InstructionSet sets[] = {InstructionSet::sse4, InstructionSet::
 
 /// How many of them the machine has. Counts of what tests have seen grow with it.
 inline int set_count() {
-  return static_cast<int>(std::count_if(std::begin(sets), std::end(sets), is_supported));
+  return static_cast<int>(std::count_if(std::begin(sets), std::end(sets), test::runs_here));
 }
 
 inline bool no_packets() {

@@ -20,6 +20,7 @@
 #include "pellucid/scene/defaults.h"
 #include "tests/packet/random_frames.h"
 #include "tests/scene/lattice_mesh.h"
+#include "tests/support/instruction_sets.h"
 #include "tests/support/one_layer.h"
 
 namespace pellucid {
@@ -141,7 +142,7 @@ class Depths : public RandomFrames {
     const ReferenceRays reference(scene);
     const CameraFrame<double> camera = make_camera_frame(scene.camera, scene.size);
     for (const InstructionSet set : sets) {
-      if (!is_supported(set)) continue;
+      if (!test::runs_here(set)) continue;
       SCOPED_TRACE(testing::Message() << name_of(set) << " at " << tolerance);
       options.instruction_set = set;
       options.preview = 0;

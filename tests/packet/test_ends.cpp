@@ -12,6 +12,7 @@
 
 #include "pellucid/cpu/render.h"
 #include "pellucid/scene/defaults.h"
+#include "tests/support/instruction_sets.h"
 #include "tests/support/one_layer.h"
 
 namespace pellucid {
@@ -67,7 +68,7 @@ void renders(std::shared_ptr<Volume> volume, Points points, int* handed_back = n
   along.projection = Projection::orthographic;
   along.parallel_scale = test::volume_of(scene).volume->voxel_size() * width / 2;
   for (const InstructionSet set : sets) {
-    if (!is_supported(set)) continue;
+    if (!test::runs_here(set)) continue;
     options.instruction_set = set;
     for (const double tolerance : {1.0, default_tolerance, 2e-5}) {
       scene.integration.tolerance = tolerance;
@@ -88,7 +89,7 @@ void renders(std::shared_ptr<Volume> volume, Points points, int* handed_back = n
 class PacketEnds : public testing::Test {
  protected:
   void SetUp() override {
-    if (std::none_of(std::begin(sets), std::end(sets), is_supported)) {
+    if (std::none_of(std::begin(sets), std::end(sets), test::runs_here)) {
       GTEST_SKIP() << "this machine has no instruction set for packets";
     }
   }

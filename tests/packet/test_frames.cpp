@@ -13,6 +13,7 @@
 #include "pellucid/cpu/render.h"
 #include "pellucid/scene/defaults.h"
 #include "tests/packet/instruction_sets.h"
+#include "tests/support/instruction_sets.h"
 #include "tests/support/one_layer.h"
 
 namespace pellucid {
@@ -108,7 +109,7 @@ void compare(Scene scene, Seen& seen) {
   const Image truth = render(scene, options);
   scene.integration.precision = Precision::automatic;
   for (const InstructionSet set : sets) {
-    if (!is_supported(set)) continue;
+    if (!test::runs_here(set)) continue;
     options.instruction_set = set;
     for (const double tolerance : {1e-2, default_tolerance, 1e-4}) {
       SCOPED_TRACE(testing::Message() << name_of(set) << " at " << tolerance);

@@ -19,6 +19,7 @@
 #include "pellucid/scene/defaults.h"
 #include "tests/packet/against_one_by_one.h"
 #include "tests/packet/random_frames.h"
+#include "tests/support/instruction_sets.h"
 #include "tests/support/one_layer.h"
 
 namespace pellucid {
@@ -215,7 +216,7 @@ TEST_P(GaussianFrames, DoNotPassANarrowOneUnseen) {
   int places = 0;
   double worst = 0;
   for (const InstructionSet set : sets) {
-    if (!is_supported(set)) continue;
+    if (!test::runs_here(set)) continue;
     options.instruction_set = set;
     for (double center = 0.1; center < 0.9; center += 0.0137) {
       for (const double width : {0.03, 0.004, 0.0006}) {

@@ -12,6 +12,7 @@
 #include "ray_tracer.h"
 #include "tests/packet/instruction_sets.h"
 #include "tests/packet/lit_scenes.h"
+#include "tests/support/instruction_sets.h"
 
 namespace pellucid {
 namespace {
@@ -74,7 +75,7 @@ TEST(LitFrames, AreWithinWhatTheySayOfTheGeneralPath) {
     scene.integration.tolerance = 1e-6;
     const Image truth = frame(scene, InstructionSet::scalar);
     for (const InstructionSet set : sets) {
-      if (!is_supported(set)) continue;
+      if (!test::runs_here(set)) continue;
       for (const double tolerance : {2e-2, 2e-3, 1e-4}) {
         scene.integration.tolerance = tolerance;
         RenderReport report;

@@ -14,6 +14,7 @@
 #include "pellucid/cpu/render.h"
 #include "pellucid/reference/render.h"
 #include "pellucid/scene/defaults.h"
+#include "tests/support/instruction_sets.h"
 #include "tests/support/one_layer.h"
 
 namespace pellucid {
@@ -105,7 +106,7 @@ TEST_P(MultivariateFrames, AreTheSameInEveryInstructionSet) {
       const Image alone = render(scene, options);
       for (const InstructionSet set :
            {InstructionSet::sse4, InstructionSet::avx2, InstructionSet::avx512}) {
-        if (!is_supported(set)) continue;
+        if (!test::runs_here(set)) continue;
         options.instruction_set = set;
         RenderReport report;
         const Image lanes = render(scene, options, &report);
@@ -152,7 +153,7 @@ TEST(MultivariateFrame, ColorOfATableIsChargedWithTheRoundingOfTheData) {
   const Image reference = render_reference(scene);
   for (const InstructionSet set : {InstructionSet::scalar, InstructionSet::sse4,
                                    InstructionSet::avx2, InstructionSet::avx512}) {
-    if (!is_supported(set)) continue;
+    if (!test::runs_here(set)) continue;
     options.instruction_set = set;
     const Image image = render(scene, options);
     for (std::size_t i = 0; i < image.pixels.size(); ++i) {

@@ -14,6 +14,7 @@
 #include "tests/packet/instruction_sets.h"
 #include "tests/packet/repeating_scenes.h"
 #include "tests/scenes/reference_frame.h"
+#include "tests/support/instruction_sets.h"
 
 namespace pellucid {
 namespace {
@@ -30,7 +31,7 @@ void compare(Scene scene, std::initializer_list<double> tolerances, Compared& co
   options.error = true;
   options.threads = 1;
   for (const InstructionSet set : sets) {
-    if (!is_supported(set)) continue;
+    if (!test::runs_here(set)) continue;
     options.instruction_set = set;
     for (const double tolerance : tolerances) {
       scene.integration.tolerance = tolerance;
@@ -130,7 +131,7 @@ TEST(FieldGradients, AlongFacesAreWithinWhatTheySay) {
         options.error = true;
         options.threads = 1;
         for (const InstructionSet set : {InstructionSet::scalar, sets[0], sets[1], sets[2]}) {
-          if (!is_supported(set)) continue;
+          if (!test::runs_here(set)) continue;
           options.instruction_set = set;
           const Image image = render(scene, options);
           for (std::size_t i = 0; i < image.pixels.size(); ++i) {

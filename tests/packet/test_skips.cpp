@@ -12,6 +12,7 @@
 #include "pellucid/cpu/render.h"
 #include "pellucid/scene/defaults.h"
 #include "tests/packet/random_frames.h"
+#include "tests/support/instruction_sets.h"
 #include "tests/support/one_layer.h"
 
 namespace pellucid {
@@ -105,7 +106,7 @@ TEST_P(PacketSkips, LoseNothing) {
     precise.integration.precision = Precision::float64;
     const Image expected = render(precise, options);
     for (const InstructionSet set : sets) {
-      if (!is_supported(set)) continue;
+      if (!test::runs_here(set)) continue;
       options.instruction_set = set;
       const Image found = render(scene, options);
       for (std::size_t i = 0; i < found.pixels.size(); ++i) {
@@ -134,7 +135,7 @@ TEST(PacketSkip, KeepsRaysInTheFaces) {
     const double opacity = 1 - std::exp(-30 * 0.5 * 0.1);
     RenderOptions options;
     for (const InstructionSet set : sets) {
-      if (!is_supported(set)) continue;
+      if (!test::runs_here(set)) continue;
       options.instruction_set = set;
       for (const auto& pixel : render(scene, options).pixels) {
         EXPECT_NEAR(pixel[3], opacity, 3e-3) << name_of(set) << ", " << points;
@@ -183,7 +184,7 @@ TEST(PacketSkipsCost, SmoothDataAreCrossedInFewSteps) {
     options.instruction_set = InstructionSet::scalar;
     render(scene, options, &one_by_one);
     for (const InstructionSet set : sets) {
-      if (!is_supported(set)) continue;
+      if (!test::runs_here(set)) continue;
       options.instruction_set = set;
       render(scene, options, &packets);
       EXPECT_GT(packets.cells, 0u);

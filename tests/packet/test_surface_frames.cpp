@@ -13,6 +13,7 @@
 #include "ray_tracer.h"
 #include "tests/packet/instruction_sets.h"
 #include "tests/packet/lit_scenes.h"
+#include "tests/support/instruction_sets.h"
 
 namespace pellucid {
 namespace {
@@ -47,7 +48,7 @@ TEST(SurfaceFrames, AreWithinWhatTheySayOfTheReference) {
     with_depth.depth = true;
     const Image truth = render_reference(scene, with_depth);
     for (const InstructionSet set : sets) {
-      if (!is_supported(set)) continue;
+      if (!test::runs_here(set)) continue;
       for (const double tolerance : {2e-2, 2e-3, 1e-4}) {
         scene.integration.tolerance = tolerance;
         RenderOptions options;

@@ -9,7 +9,7 @@
 #include "tests/support/accuracy.h"
 #include "tests/support/table.h"
 
-namespace pellucid::reference {
+namespace pellucid::reference::test_cells {
 namespace {
 
 using Points = std::vector<TransferFunction::Point>;
@@ -249,4 +249,4 @@ TEST(ReferenceCell, QuadratureAgreesWithTanhSinh) {
 }
 
 }  // namespace
-}  // namespace pellucid::reference
+}  // namespace pellucid::reference::test_cells

@@ -9,7 +9,7 @@
 #include "tests/scenes/makers.h"
 #include "tests/scenes/meshes.h"
 
-namespace pellucid {
+namespace pellucid::test_layers {
 namespace {
 
 using scenes::transfer;
@@ -187,4 +187,4 @@ TEST(ReferenceLayers, AMeshInAGridIsASumToo) {
 }
 
 }  // namespace
-}  // namespace pellucid
+}  // namespace pellucid::test_layers

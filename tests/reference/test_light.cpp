@@ -18,7 +18,7 @@
 #include "tests/scenes/makers.h"
 #include "tests/scenes/meshes.h"
 
-namespace pellucid {
+namespace pellucid::test_light {
 namespace {
 
 using scenes::grid_description;
@@ -882,4 +882,4 @@ TEST(ReferenceLight, LabelsAreNotLit) {
 }
 
 }  // namespace
-}  // namespace pellucid
+}  // namespace pellucid::test_light

@@ -12,7 +12,7 @@
 
 /// The walk through a mesh against the reference, which meets each tetrahedron by itself: every one
 /// once, none left out, wherever the ray goes.
-namespace pellucid {
+namespace pellucid::test_mesh_walk {
 namespace {
 
 using Place = Vec3<double>;
@@ -162,4 +162,4 @@ TEST(MeshWalkIsWatertight, ThroughHoles) {
 }
 
 }  // namespace
-}  // namespace pellucid
+}  // namespace pellucid::test_mesh_walk

@@ -13,7 +13,7 @@
 #include "tests/scenes/meshes.h"
 #include "tests/support/one_layer.h"
 
-namespace pellucid {
+namespace pellucid::test_meshes {
 namespace {
 
 using scenes::at_cells;
@@ -315,4 +315,4 @@ TEST(ReferenceMesh, ImagesAreTheirRays) {
 }
 
 }  // namespace
-}  // namespace pellucid
+}  // namespace pellucid::test_meshes

@@ -10,7 +10,7 @@
 #include "tests/support/accuracy.h"
 #include "tests/support/wide_functions.h"
 
-namespace pellucid {
+namespace pellucid::test_multivariate_cells {
 namespace {
 
 // Those of the library's own headers take no long double.
@@ -307,4 +307,4 @@ TEST(ReferenceMultivariateCell, NarrowGaussiansAreNotSteppedOver) {
 }
 
 }  // namespace
-}  // namespace pellucid
+}  // namespace pellucid::test_multivariate_cells

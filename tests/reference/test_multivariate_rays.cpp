@@ -11,7 +11,7 @@
 #include "tests/support/one_layer.h"
 #include "tests/support/wide_functions.h"
 
-namespace pellucid {
+namespace pellucid::test_multivariate_rays {
 namespace {
 
 using test::make_channels;
@@ -279,4 +279,4 @@ TEST(ReferenceMultivariateRay, RefusesWhatDoesNotFit) {
 }
 
 }  // namespace
-}  // namespace pellucid
+}  // namespace pellucid::test_multivariate_rays

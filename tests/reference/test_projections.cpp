@@ -13,7 +13,7 @@
 #include "tests/scenes/cameras.h"
 #include "tests/scenes/makers.h"
 
-namespace pellucid {
+namespace pellucid::test_projections {
 namespace {
 
 using scenes::grid_description;
@@ -110,4 +110,4 @@ TEST(ReferenceProjections, AgreeWithTheRendererInVacuumAndRectilinearGrids) {
 }
 
 }  // namespace
-}  // namespace pellucid
+}  // namespace pellucid::test_projections

@@ -8,7 +8,7 @@
 #include "tests/scenes/analytic.h"
 #include "tests/support/accuracy.h"
 
-namespace pellucid {
+namespace pellucid::test_rays {
 namespace {
 
 /// The difference of two doubles without a rounding of its own.
@@ -42,4 +42,4 @@ TEST(ReferenceRay, RefusesADirectionOfLengthZero) {
 }
 
 }  // namespace
-}  // namespace pellucid
+}  // namespace pellucid::test_rays

@@ -11,7 +11,7 @@
 #include "tests/scenes/peers.h"
 #include "tests/support/one_layer.h"
 
-namespace pellucid {
+namespace pellucid::test_render {
 namespace {
 
 Scene small_scene() {
@@ -226,4 +226,4 @@ TEST(ReferenceRender, DepthOfSamplesIsThatOfTheNearest) {
 }
 
 }  // namespace
-}  // namespace pellucid
+}  // namespace pellucid::test_render

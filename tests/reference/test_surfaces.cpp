@@ -13,7 +13,7 @@
 #include "tests/scenes/makers.h"
 #include "tests/scenes/meshes.h"
 
-namespace pellucid {
+namespace pellucid::test_surfaces {
 namespace {
 
 using scenes::grid_description;
@@ -375,4 +375,4 @@ TEST(ReferenceSurfaces, CutTetrahedra) {
 }
 
 }  // namespace
-}  // namespace pellucid
+}  // namespace pellucid::test_surfaces

@@ -15,7 +15,7 @@
 /// Stretches of linear data against quadrature at 50 digits between control points: what is found
 /// is as near to it as is reported, in float and in double, also where ends are not where they are
 /// thought to be.
-namespace pellucid::test {
+namespace pellucid::test::test_integrate_linear_span {
 namespace {
 
 template <class T>
@@ -276,4 +276,4 @@ TEST(IntegrateLinearSpan, SaysWhereFloatIsNotEnough) {
 }
 
 }  // namespace
-}  // namespace pellucid::test
+}  // namespace pellucid::test::test_integrate_linear_span

@@ -17,7 +17,7 @@
 #include "tests/support/wide_functions.h"
 #include "tests/traverse/block_field.h"
 
-namespace pellucid {
+namespace pellucid::test_integrate_multivariate_ray {
 namespace {
 
 using test::ErrorRecord;
@@ -428,4 +428,4 @@ TEST(IntegrateMultivariateRay, WhatBlocksLeaveOutIsWithinTheTolerance) {
 }
 
 }  // namespace
-}  // namespace pellucid
+}  // namespace pellucid::test_integrate_multivariate_ray

@@ -9,7 +9,7 @@
 
 #include "tests/render/test_grid.h"
 
-namespace pellucid {
+namespace pellucid::test_integrate_ray {
 namespace {
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
@@ -176,4 +176,4 @@ TEST(IntegrateRay, WorldLengthIsTheParameterNotTheGridLength) {
 }
 
 }  // namespace
-}  // namespace pellucid
+}  // namespace pellucid::test_integrate_ray

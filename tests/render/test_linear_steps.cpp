@@ -8,7 +8,7 @@
 #include "pellucid/render/sample_ray.h"
 #include "tests/segment/wide_multivariate.h"
 
-namespace pellucid {
+namespace pellucid::test_linear_steps {
 namespace {
 
 constexpr GaussianRule rules[] = {GaussianRule::kniss, GaussianRule::closed_form};
@@ -173,4 +173,4 @@ TEST(LinearSteps, HalfOpacityDepthAndRaysThatMiss) {
 }
 
 }  // namespace
-}  // namespace pellucid
+}  // namespace pellucid::test_linear_steps

@@ -12,7 +12,7 @@
 #include "tests/support/accuracy.h"
 #include "tests/support/table.h"
 
-namespace pellucid {
+namespace pellucid::test_multivariate_cells {
 namespace {
 
 using test::ErrorRecord;
@@ -103,4 +103,4 @@ TEST(MultivariateCells, TruthTable) {
 }
 
 }  // namespace
-}  // namespace pellucid
+}  // namespace pellucid::test_multivariate_cells

@@ -9,7 +9,7 @@
 #include "pellucid/render/integrate_ray.h"
 #include "tests/render/test_grid.h"
 
-namespace pellucid {
+namespace pellucid::test_sample_ray {
 namespace {
 
 constexpr SamplingRule rules[] = {SamplingRule::rectangle, SamplingRule::taylor,
@@ -69,4 +69,4 @@ TEST(SampleRay, NanIsVacuum) {
 }
 
 }  // namespace
-}  // namespace pellucid
+}  // namespace pellucid::test_sample_ray

@@ -10,7 +10,7 @@
 #include "pellucid/scene/transfer_function.h"
 #include "tests/support/accuracy.h"
 
-namespace pellucid {
+namespace pellucid::test_approximation_error {
 namespace {
 
 /// A layer of a ray: its optical depth, by what factor e^θ another is off, and its color.
@@ -153,4 +153,4 @@ TEST(MergedInFloat, ListsTheFloatsAtWhichValuesFellTogether) {
 }
 
 }  // namespace
-}  // namespace pellucid
+}  // namespace pellucid::test_approximation_error

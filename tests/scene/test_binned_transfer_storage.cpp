@@ -12,7 +12,7 @@
 
 #include "pellucid/scene/transfer_function.h"
 
-namespace pellucid {
+namespace pellucid::test_binned_transfer_storage {
 namespace {
 
 using Point = TransferFunction::Point;
@@ -518,4 +518,4 @@ TEST(BinnedTransfer, ColorsOfAnIntervalStayInItsRange) {
 }
 
 }  // namespace
-}  // namespace pellucid
+}  // namespace pellucid::test_binned_transfer_storage

@@ -17,7 +17,7 @@
 #include "pellucid/scene/transfer_tables_storage.h"
 #include "pellucid/traverse/block_code.h"
 
-namespace pellucid {
+namespace pellucid::test_block_classes {
 namespace {
 
 /// Blocks of any ranges: what their classes are does not depend on data.
@@ -342,4 +342,4 @@ TEST(BlockClasses, LevelsAreTheLargestCubesToSkip) {
 }
 
 }  // namespace
-}  // namespace pellucid
+}  // namespace pellucid::test_block_classes

@@ -14,7 +14,7 @@
 #include "pellucid/scene/volume.h"
 #include "pellucid/traverse/build_block_records.h"
 
-namespace pellucid {
+namespace pellucid::test_block_ranges {
 namespace {
 
 template <class Value>
@@ -158,4 +158,4 @@ TEST(VolumeBlockRanges, AFailureLeavesNothingHalfDone) {
 }
 
 }  // namespace
-}  // namespace pellucid
+}  // namespace pellucid::test_block_ranges

@@ -17,7 +17,7 @@
 #include "pellucid/scene/volume.h"
 #include "tests/scenes/makers.h"
 
-namespace pellucid {
+namespace pellucid::test_block_smoothness {
 namespace {
 
 using Field = std::function<double(int, int, int)>;
@@ -219,4 +219,4 @@ TEST(SmoothBlocksTest, AreTheSameInParallel) {
 }
 
 }  // namespace
-}  // namespace pellucid
+}  // namespace pellucid::test_block_smoothness

@@ -14,7 +14,7 @@
 
 #include "pellucid/scene/block_variation_storage.h"
 
-namespace pellucid {
+namespace pellucid::test_block_variation {
 namespace {
 
 /// The upper half of infinity.
@@ -86,4 +86,4 @@ TEST(BlockVariation, IsTheLargestAround) {
 }
 
 }  // namespace
-}  // namespace pellucid
+}  // namespace pellucid::test_block_variation

@@ -9,7 +9,7 @@
 #include "expect_error.h"
 #include "pellucid/scene/builtin_fields.h"
 
-namespace pellucid {
+namespace pellucid::test_builtin_fields {
 namespace {
 
 /// The value at index (i, j, k) of a built-in field.
@@ -128,4 +128,4 @@ TEST(BuiltinField, RefusesUnknownNamesAndSizes) {
 }
 
 }  // namespace
-}  // namespace pellucid
+}  // namespace pellucid::test_builtin_fields

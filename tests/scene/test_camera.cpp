@@ -8,7 +8,7 @@
 #include "expect_error.h"
 #include "pellucid/scene/scene.h"
 
-namespace pellucid {
+namespace pellucid::test_camera {
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
@@ -168,4 +168,4 @@ TEST(Method, NamesGoBothWays) {
 }
 
 }  // namespace
-}  // namespace pellucid
+}  // namespace pellucid::test_camera

@@ -9,7 +9,7 @@
 
 #include "expect_error.h"
 
-namespace pellucid {
+namespace pellucid::test_channels {
 namespace {
 
 Volume::Description description() {
@@ -120,4 +120,4 @@ TEST(Channels, AgreeToAThousandthOfACell) {
 }
 
 }  // namespace
-}  // namespace pellucid
+}  // namespace pellucid::test_channels

@@ -8,7 +8,7 @@
 
 #include "expect_error.h"
 
-namespace pellucid {
+namespace pellucid::test_clip {
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
@@ -91,4 +91,4 @@ TEST(Clip, CylindersHaveARadiusAndALength) {
 }
 
 }  // namespace
-}  // namespace pellucid
+}  // namespace pellucid::test_clip

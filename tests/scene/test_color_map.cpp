@@ -12,7 +12,7 @@
 #include "pellucid/scene/color_map.h"
 #include "pellucid/scene/srgb.h"
 
-namespace pellucid {
+namespace pellucid::test_color_map {
 namespace {
 
 double difference(const Rgb<double>& a, const Rgb<double>& b) {
@@ -144,4 +144,4 @@ TEST(Recolored, HasExtinctionsTimesAFactor) {
 }
 
 }  // namespace
-}  // namespace pellucid
+}  // namespace pellucid::test_color_map

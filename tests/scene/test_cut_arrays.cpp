@@ -9,7 +9,7 @@
 #include "expect_error.h"
 #include "pellucid/scene/cut_cells.h"
 
-namespace pellucid {
+namespace pellucid::test_cut_arrays {
 namespace {
 
 /// A unit cube beside a pyramid: 10 points, 2 cells, with a few arrays.
@@ -147,4 +147,4 @@ TEST(CutArrays, RefusesWhatIsNotThere) {
 }
 
 }  // namespace
-}  // namespace pellucid
+}  // namespace pellucid::test_cut_arrays

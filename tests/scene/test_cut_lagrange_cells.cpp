@@ -14,7 +14,7 @@
 #include "pellucid/scene/error.h"
 #include "tetrahedra_check.h"
 
-namespace pellucid {
+namespace pellucid::test_cut_lagrange_cells {
 namespace {
 
 template <class Call>
@@ -330,4 +330,4 @@ TEST(CutLagrangeCells, RefusesLayoutsThatDoNotFit) {
 }
 
 }  // namespace
-}  // namespace pellucid
+}  // namespace pellucid::test_cut_lagrange_cells

@@ -11,7 +11,7 @@
 #include "pellucid/scene/cut_cells.h"
 #include "tetrahedra_check.h"
 
-namespace pellucid {
+namespace pellucid::test_cut_linear_cells {
 namespace {
 
 /// A cell of one shape: its points in VTK's order, and its faces, outwards.
@@ -172,4 +172,4 @@ TEST(CutLinearCells, RefusesWhatDoesNotFit) {
 }
 
 }  // namespace
-}  // namespace pellucid
+}  // namespace pellucid::test_cut_linear_cells

@@ -12,7 +12,7 @@
 #include "quadratic_mesh.h"
 #include "tetrahedra_check.h"
 
-namespace pellucid {
+namespace pellucid::test_cut_meshes {
 namespace {
 
 /// The tetrahedra fill the box from 0 to `size`, without a gap or an overlap, and have no face in
@@ -99,4 +99,4 @@ TEST(CutMeshes, AreTheSameInParallel) {
 }
 
 }  // namespace
-}  // namespace pellucid
+}  // namespace pellucid::test_cut_meshes

@@ -14,7 +14,7 @@
 #include "pellucid/scene/error.h"
 #include "tetrahedra_check.h"
 
-namespace pellucid {
+namespace pellucid::test_cut_polyhedra {
 namespace {
 
 using Face = std::vector<std::int32_t>;
@@ -313,4 +313,4 @@ TEST(CutPolyhedra, RefusesWhatIsNoBody) {
 }
 
 }  // namespace
-}  // namespace pellucid
+}  // namespace pellucid::test_cut_polyhedra

@@ -11,7 +11,7 @@
 #include "quadratic_mesh.h"
 #include "tetrahedra_check.h"
 
-namespace pellucid {
+namespace pellucid::test_cut_quadratic_cells {
 namespace {
 
 struct Linear {
@@ -168,4 +168,4 @@ TEST(CutQuadraticCells, MiddlesAreThoseOfTheShapeFunctions) {
 }
 
 }  // namespace
-}  // namespace pellucid
+}  // namespace pellucid::test_cut_quadratic_cells

@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-namespace pellucid {
+namespace pellucid::test_data_array {
 namespace {
 
 TEST(DataArray, TakesTheBufferOfAVector) {
@@ -82,4 +82,4 @@ TEST(DataArray, AMovedOneIsEmpty) {
 }
 
 }  // namespace
-}  // namespace pellucid
+}  // namespace pellucid::test_data_array

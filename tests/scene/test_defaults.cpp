@@ -14,7 +14,7 @@
 #include "pellucid/scene/builtin_fields.h"
 #include "pellucid/scene/defaults.h"
 
-namespace pellucid {
+namespace pellucid::test_defaults {
 namespace {
 
 constexpr int side = 24;
@@ -258,4 +258,4 @@ TEST(DefaultCamera, LooksFromTheFrontTheLeftAndAbove) {
 }
 
 }  // namespace
-}  // namespace pellucid
+}  // namespace pellucid::test_defaults

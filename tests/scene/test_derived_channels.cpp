@@ -12,7 +12,7 @@
 #include "derived_fields.h"
 #include "expect_error.h"
 
-namespace pellucid {
+namespace pellucid::test_derived_channels {
 namespace {
 
 using derived_fields::each;
@@ -260,4 +260,4 @@ TEST(DerivedChannels, TheSameWhateverTheThreads) {
 }
 
 }  // namespace
-}  // namespace pellucid
+}  // namespace pellucid::test_derived_channels

@@ -15,7 +15,7 @@
 #include "pellucid/scene/layer.h"
 #include "pellucid/scene/value_noise.h"
 
-namespace pellucid {
+namespace pellucid::test_flat_gradient {
 namespace {
 
 using Points = std::vector<TransferFunction::Point>;
@@ -192,4 +192,4 @@ TEST(FlatGradient, OfDataWithoutNeighborsIsNotNegativeNorNaN) {
 }
 
 }  // namespace
-}  // namespace pellucid
+}  // namespace pellucid::test_flat_gradient

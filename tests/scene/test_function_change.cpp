@@ -8,7 +8,7 @@
 #include "expect_error.h"
 #include "pellucid/scene/function_change.h"
 
-namespace pellucid {
+namespace pellucid::test_function_change {
 namespace {
 
 /// A cube of 10³ values 0 to 999.
@@ -108,4 +108,4 @@ TEST(FunctionChange, ChangesSurfacesAsPoints) {
 }
 
 }  // namespace
-}  // namespace pellucid
+}  // namespace pellucid::test_function_change

@@ -7,7 +7,7 @@
 #include "expect_error.h"
 #include "pellucid/scene/scene.h"
 
-namespace pellucid {
+namespace pellucid::test_integration {
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
@@ -96,4 +96,4 @@ TEST(CheckIntegration, LooksAtWhatTheMethodUsesOnly) {
 }
 
 }  // namespace
-}  // namespace pellucid
+}  // namespace pellucid::test_integration

@@ -11,7 +11,7 @@
 #include "expect_error.h"
 #include "in_threads.h"
 
-namespace pellucid {
+namespace pellucid::test_joint_histogram {
 namespace {
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
@@ -175,4 +175,4 @@ TEST(HistogramAxis, HoldsEveryVolume) {
 }
 
 }  // namespace
-}  // namespace pellucid
+}  // namespace pellucid::test_joint_histogram

@@ -11,7 +11,7 @@
 
 #include "expect_error.h"
 
-namespace pellucid {
+namespace pellucid::test_label_volume {
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
@@ -175,4 +175,4 @@ TEST(LabelMask, RefusesIncompleteChoices) {
 }
 
 }  // namespace
-}  // namespace pellucid
+}  // namespace pellucid::test_label_volume

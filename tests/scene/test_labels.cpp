@@ -15,7 +15,7 @@
 
 #include "pellucid/scene/label_values.h"
 
-namespace pellucid {
+namespace pellucid::test_labels {
 namespace {
 
 constexpr int side = 48;
@@ -173,4 +173,4 @@ TEST(Labels, RareOnesOfALargeVolumeAreCounted) {
 }
 
 }  // namespace
-}  // namespace pellucid
+}  // namespace pellucid::test_labels

@@ -11,7 +11,7 @@
 #include "layer_contents.h"
 #include "pellucid/scene/scene.h"
 
-namespace pellucid {
+namespace pellucid::test_layer_check {
 namespace {
 
 std::string refusal(const Layer& layer) {
@@ -234,4 +234,4 @@ TEST(Scene, TheLargestColorIsOfWhatIsVisible) {
 }
 
 }  // namespace
-}  // namespace pellucid
+}  // namespace pellucid::test_layer_check

@@ -10,7 +10,7 @@
 #include "expect_error.h"
 #include "layer_contents.h"
 
-namespace pellucid {
+namespace pellucid::test_layer_placement {
 namespace {
 
 /// A quarter turn, a shear and scales, all of them exact.
@@ -291,4 +291,4 @@ TEST(MovedIntoPlace, RefusesMeshesBeyondTheRangeOfNumbers) {
 }
 
 }  // namespace
-}  // namespace pellucid
+}  // namespace pellucid::test_layer_placement

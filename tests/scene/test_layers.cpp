@@ -12,7 +12,7 @@
 #include "pellucid/scene/error.h"
 #include "pellucid/scene/scene.h"
 
-namespace pellucid {
+namespace pellucid::test_layers {
 namespace {
 
 template <class Body>
@@ -255,4 +255,4 @@ TEST(Labels, MasksAreOnTheGridOfTheData) {
 }
 
 }  // namespace
-}  // namespace pellucid
+}  // namespace pellucid::test_layers

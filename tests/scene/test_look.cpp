@@ -20,7 +20,7 @@
 #include "pellucid/scene/defaults.h"
 #include "pellucid/scene/error.h"
 
-namespace pellucid {
+namespace pellucid::test_look {
 namespace {
 
 constexpr int side = 24;
@@ -306,4 +306,4 @@ TEST(Look, LightsAreAsBrightAsOneTogether) {
 }
 
 }  // namespace
-}  // namespace pellucid
+}  // namespace pellucid::test_look

@@ -11,7 +11,7 @@
 
 #include "expect_error.h"
 
-namespace pellucid {
+namespace pellucid::test_mesh_channels {
 namespace {
 
 constexpr float nan = std::numeric_limits<float>::quiet_NaN();
@@ -95,4 +95,4 @@ TEST(MeshChannels, RefusesWhatCannotBe) {
 }
 
 }  // namespace
-}  // namespace pellucid
+}  // namespace pellucid::test_mesh_channels

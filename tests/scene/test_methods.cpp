@@ -9,7 +9,7 @@
 #include "expect_error.h"
 #include "pellucid/scene/scene.h"
 
-namespace pellucid {
+namespace pellucid::test_methods {
 namespace {
 
 std::shared_ptr<const Volume> grid() {
@@ -95,4 +95,4 @@ TEST(CheckMethod, OfAMeshWithGaussians) {
 }
 
 }  // namespace
-}  // namespace pellucid
+}  // namespace pellucid::test_methods

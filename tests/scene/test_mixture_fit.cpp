@@ -18,7 +18,7 @@
 #include "src/scene/mixture_cells.h"
 #include "src/scene/mixture_step.h"
 
-namespace pellucid {
+namespace pellucid::test_mixture_fit {
 namespace {
 
 /// The density of a mixture of independent normal distributions at the points of a grid: what an
@@ -242,4 +242,4 @@ TEST(MixtureFit, RefusesWhatIsNoData) {
 }
 
 }  // namespace
-}  // namespace pellucid
+}  // namespace pellucid::test_mixture_fit

@@ -18,7 +18,7 @@
 #include "pellucid/render/integrate_multivariate_ray.h"
 #include "pellucid/scene/multivariate_blocks_storage.h"
 
-namespace pellucid {
+namespace pellucid::test_multivariate_blocks {
 namespace {
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
@@ -459,4 +459,4 @@ TEST(MultivariateBlocks, RaysThroughThemAreWithinTheTolerance) {
 }
 
 }  // namespace
-}  // namespace pellucid
+}  // namespace pellucid::test_multivariate_blocks

@@ -14,7 +14,7 @@
 #include "expect_error.h"
 #include "pellucid/scene/opacity_table.h"
 
-namespace pellucid {
+namespace pellucid::test_multivariate_transfer_function {
 namespace {
 
 using Wide = boost::multiprecision::number<boost::multiprecision::cpp_bin_float<60>,
@@ -286,4 +286,4 @@ TEST(MultivariateTransferFunction, RefusesTablesThatItCannotSum) {
 }
 
 }  // namespace
-}  // namespace pellucid
+}  // namespace pellucid::test_multivariate_transfer_function

@@ -20,7 +20,7 @@
 #include "pellucid/segment/piecewise_linear.h"
 #include "tests/support/accuracy.h"
 
-namespace pellucid {
+namespace pellucid::test_opacity_table {
 namespace {
 
 using Wide = boost::multiprecision::number<boost::multiprecision::cpp_bin_float<60>,
@@ -513,4 +513,4 @@ TEST(OpacityTableErrors, Limits) {
 }
 
 }  // namespace
-}  // namespace pellucid
+}  // namespace pellucid::test_opacity_table

@@ -6,7 +6,7 @@
 
 #include "pellucid/scene/cut_cells.h"
 
-namespace pellucid {
+namespace pellucid::test_overlapping_cells {
 namespace {
 
 // Hexahedra whose points 2 and 3 are exchanged, as in voxels: the cells are twisted.
@@ -42,4 +42,4 @@ TEST(OverlappingCells, AreCountedAndNamed) {
 }
 
 }  // namespace
-}  // namespace pellucid
+}  // namespace pellucid::test_overlapping_cells

@@ -12,7 +12,7 @@
 
 #include "pellucid/scene/builtin_fields.h"
 
-namespace pellucid {
+namespace pellucid::test_picture_advice {
 namespace {
 
 Scene scene_of(std::vector<TransferFunction::Point> points) {
@@ -63,4 +63,4 @@ TEST(PictureAdvice, SaysWhatBurnt) {
 }
 
 }  // namespace
-}  // namespace pellucid
+}  // namespace pellucid::test_picture_advice

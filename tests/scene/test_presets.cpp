@@ -10,7 +10,7 @@
 #include "expect_error.h"
 #include "pellucid/scene/presets.h"
 
-namespace pellucid {
+namespace pellucid::test_presets {
 namespace {
 
 /// A cube of 11³ values from `first` to `last`, evenly along x, of this spacing.
@@ -136,4 +136,4 @@ TEST(Presets, RefuseWhatIsNotThere) {
 }
 
 }  // namespace
-}  // namespace pellucid
+}  // namespace pellucid::test_presets

@@ -11,7 +11,7 @@
 #include "expect_error.h"
 #include "pellucid/scene/derived_channels.h"
 
-namespace pellucid {
+namespace pellucid::test_smoothed {
 namespace {
 
 using derived_fields::each;
@@ -175,4 +175,4 @@ TEST(Smoothed, WhatItCannotDo) {
 }
 
 }  // namespace
-}  // namespace pellucid
+}  // namespace pellucid::test_smoothed

@@ -12,7 +12,7 @@
 #include "in_threads.h"
 #include "src/scene/cut_order.h"
 
-namespace pellucid {
+namespace pellucid::test_spatial_order {
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
@@ -142,4 +142,4 @@ TEST(SpatialOrder, KeepsTetrahedraAndBringsThemTogether) {
 }
 
 }  // namespace
-}  // namespace pellucid
+}  // namespace pellucid::test_spatial_order

@@ -16,7 +16,7 @@
 #include "pellucid/scene/builtin_fields.h"
 #include "pellucid/scene/derived_channels.h"
 
-namespace pellucid {
+namespace pellucid::test_suggest {
 namespace {
 
 constexpr int side = 48;
@@ -372,4 +372,4 @@ TEST(Suggest, RefusesWhatIsNotThere) {
 }
 
 }  // namespace
-}  // namespace pellucid
+}  // namespace pellucid::test_suggest

@@ -16,7 +16,7 @@
 #include "in_threads.h"
 #include "lattice_mesh.h"
 
-namespace pellucid {
+namespace pellucid::test_tetrahedral_mesh {
 namespace {
 
 using Place = Vec3<double>;
@@ -293,4 +293,4 @@ TEST(TetrahedralMesh, RefusesATetrahedronThatStandsTwice) {
 }
 
 }  // namespace
-}  // namespace pellucid
+}  // namespace pellucid::test_tetrahedral_mesh

@@ -8,7 +8,7 @@
 #include "expect_error.h"
 #include "pellucid/scene/cut_cells.h"
 
-namespace pellucid {
+namespace pellucid::test_to_unstructured {
 namespace {
 
 Volume::Description description(Centering centering) {
@@ -88,4 +88,4 @@ TEST(HexahedraOfGrid, RefusesWhatSpansNoCellOrCannotBeCounted) {
 }
 
 }  // namespace
-}  // namespace pellucid
+}  // namespace pellucid::test_to_unstructured

@@ -10,7 +10,7 @@
 
 #include "expect_error.h"
 
-namespace pellucid {
+namespace pellucid::test_transfer_function {
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
@@ -137,4 +137,4 @@ TEST(TransferFunction, CopiesOwnTheirTables) {
 }
 
 }  // namespace
-}  // namespace pellucid
+}  // namespace pellucid::test_transfer_function

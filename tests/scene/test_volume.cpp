@@ -10,7 +10,7 @@
 
 #include "expect_error.h"
 
-namespace pellucid {
+namespace pellucid::test_volume {
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
@@ -339,4 +339,4 @@ TEST(Volume, CopiesOwnTheirPlanes) {
 }
 
 }  // namespace
-}  // namespace pellucid
+}  // namespace pellucid::test_volume

@@ -13,7 +13,7 @@
 #include <string>
 #include <vector>
 
-namespace pellucid {
+namespace pellucid::test_volume_scan {
 namespace {
 
 template <class Value>
@@ -132,4 +132,4 @@ TYPED_TEST(VolumeScanOfReal, OfZerosOfBothSignsTheExtremesAreZero) {
 }
 
 }  // namespace
-}  // namespace pellucid
+}  // namespace pellucid::test_volume_scan

@@ -9,7 +9,7 @@ set(scenes_sources
   gallery_grids.cpp gallery_layers.cpp gallery_light.cpp gallery_marschner_lobb.cpp
   gallery_meshes.cpp gallery_scans.cpp gallery_strides.cpp gallery_tables.cpp layer_makers.cpp
   makers.cpp meshes.cpp peers.cpp real.cpp scene_hash.cpp)
-set(matrix_sources reference_frame.cpp tolerance_matrix.cpp verdict.cpp)
+set(matrix_sources reference_frame.cpp reference_truth.cpp tolerance_matrix.cpp verdict.cpp)
 add_library(pellucid_test_scenes STATIC)
 list(TRANSFORM scenes_sources PREPEND "${scenes_folder}/")
 target_sources(pellucid_test_scenes PRIVATE ${scenes_sources})
@@ -23,6 +23,7 @@ target_link_libraries(pellucid_test_scenes
 add_library(pellucid_test_matrix STATIC)
 list(TRANSFORM matrix_sources PREPEND "${scenes_folder}/")
 target_sources(pellucid_test_matrix PRIVATE ${matrix_sources})
+target_compile_definitions(pellucid_test_matrix PRIVATE PELLUCID_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
 target_link_libraries(pellucid_test_matrix
   PUBLIC pellucid_test_scenes pellucid::cpu
   PRIVATE pellucid::reference Threads::Threads pellucid_build_flags)

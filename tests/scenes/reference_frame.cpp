@@ -13,9 +13,6 @@
 namespace pellucid::scenes {
 namespace {
 
-/// Counts up where the reference or the frame's format changes, so that older files are not used.
-constexpr unsigned version = 1;
-
 /// Of the size of a mesh: what overlaps by less does so by rounding.
 constexpr double least_overlap = 1e-12;
 
@@ -45,11 +42,8 @@ std::array<double, 4> reference_pixel(const ReferenceRays& rays, const Scene& sc
   return sum;
 }
 
-}  // namespace
-
-ReferenceFrame reference_frame(const Scene& scene, int threads) {
-  const CameraFrame<double> camera = make_camera_frame(scene.camera, scene.size);
-  const ReferenceRays rays(scene);
+/// Returns the diagonal of the largest mesh; 0 without one.
+double mesh_size(const Scene& scene) {
   double size = 0;
   for (const Layer& layer : scene.layers) {
     const auto* const content = std::get_if<MeshContent>(&layer.content);
@@ -57,6 +51,29 @@ ReferenceFrame reference_frame(const Scene& scene, int threads) {
     const Box<double>& box = content->mesh->mesh().bounds();
     size = std::max(size, length(box.upper - box.lower));
   }
+  return size;
+}
+
+}  // namespace
+
+std::vector<std::array<double, 4>> reference_pixels(const Scene& scene,
+                                                    const std::vector<std::size_t>& places) {
+  const CameraFrame<double> camera = make_camera_frame(scene.camera, scene.size);
+  const ReferenceRays rays(scene);
+  const double size = mesh_size(scene);
+  const auto width = static_cast<std::size_t>(scene.size.width);
+  std::vector<std::array<double, 4>> pixels;
+  for (const std::size_t place : places) {
+    pixels.push_back(reference_pixel(rays, scene, camera, static_cast<int>(place % width),
+                                     static_cast<int>(place / width), size));
+  }
+  return pixels;
+}
+
+ReferenceFrame reference_frame(const Scene& scene, int threads) {
+  const CameraFrame<double> camera = make_camera_frame(scene.camera, scene.size);
+  const ReferenceRays rays(scene);
+  const double size = mesh_size(scene);
   ReferenceFrame frame{scene.size.width, scene.size.height, {}};
   const auto width = static_cast<std::size_t>(frame.width);
   frame.pixels.resize(width * static_cast<std::size_t>(frame.height));
@@ -82,7 +99,7 @@ ReferenceFrame cached_reference_frame(const Scene& scene, int threads,
   std::filesystem::create_directories(folder);
   char name[64];
   std::snprintf(name, sizeof name, "%016llx-%u.rgba64f",
-                static_cast<unsigned long long>(scene_hash(scene)), version);
+                static_cast<unsigned long long>(scene_hash(scene)), reference_version);
   const std::filesystem::path file = folder / name;
   ReferenceFrame frame{scene.size.width, scene.size.height, {}};
   frame.pixels.resize(static_cast<std::size_t>(frame.width) *

@@ -2,10 +2,13 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <fstream>
+#include <iterator>
 #include <limits>
 
 #include "pellucid/reference/render.h"
 #include "tests/scenes/reference_frame.h"
+#include "tests/scenes/reference_truth.h"
 #include "tests/scenes/scene_hash.h"
 #include "tests/scenes/tolerance_matrix.h"
 #include "tests/support/one_layer.h"
@@ -150,6 +153,79 @@ TEST(ReferenceFrame, IsReadBackAsItWasMade) {
   EXPECT_NE(cached_reference_frame(scene, 1, folder).pixels, made.pixels);
   EXPECT_EQ(files(), 2);
   std::filesystem::remove_all(folder);
+}
+
+std::string contents_of(const std::filesystem::path& file) {
+  std::ifstream stream(file, std::ios::binary);
+  return {std::istreambuf_iterator<char>(stream), {}};
+}
+
+class TruthFile : public testing::Test {
+ protected:
+  TruthFile() {
+    truth_.add(scene_, reference_frame(scene_, 1));
+    Scene other = scene_;
+    other.camera.vertical_angle += 1;
+    truth_.add(other, reference_frame(other, 1));
+    truth_.write(file_);
+  }
+  ~TruthFile() override { std::filesystem::remove(file_); }
+
+  std::string error_of(const std::string& contents) const {
+    std::ofstream(file_, std::ios::binary) << contents;
+    try {
+      ReferenceTruth{file_};
+    } catch (const std::runtime_error& error) {
+      return error.what();
+    }
+    return "";
+  }
+
+  const Scene scene_ = small_scene(1);
+  const std::filesystem::path file_ =
+      std::filesystem::path(testing::TempDir()) /
+      (std::string("pellucid_truth_") +
+       testing::UnitTest::GetInstance()->current_test_info()->name());
+  ReferenceTruth truth_;
+};
+
+TEST_F(TruthFile, IsReadBackAsItWasWritten) {
+  const ReferenceTruth read(file_);
+  EXPECT_EQ(read.size(), 2u);
+  ASSERT_NE(read.find(scene_), nullptr);
+  EXPECT_EQ(read.find(scene_)->pixels, truth_.find(scene_)->pixels);
+  EXPECT_EQ(read.find(scene_)->width, 9);
+}
+
+TEST_F(TruthFile, HasNothingForAnotherScene) {
+  Scene other = scene_;
+  test::volume_of(other).transfer_function =
+      transfer({{0, 0.5, {0, 0, 1}}, {1, 2, {1, 0.5, 1e-3}}});
+  EXPECT_EQ(ReferenceTruth(file_).find(other), nullptr);
+  other = scene_;
+  other.size.width += 1;
+  EXPECT_EQ(ReferenceTruth(file_).find(other), nullptr);
+}
+
+TEST_F(TruthFile, IsRefusedWhenItIsDamaged) {
+  const std::string whole = contents_of(file_);
+  EXPECT_EQ(error_of(whole), "");
+  for (std::size_t place = 20; place < whole.size(); place += whole.size() / 50) {
+    std::string damaged = whole;
+    damaged[place] = static_cast<char>(damaged[place] ^ 1);
+    EXPECT_NE(error_of(damaged), "") << place;
+    EXPECT_NE(error_of(whole.substr(0, place)), "") << place;
+  }
+  EXPECT_NE(error_of(whole + std::string(8, '\0')), "");
+  EXPECT_NE(error_of(""), "");
+  std::filesystem::remove(file_);
+  EXPECT_THROW(ReferenceTruth{file_}, std::runtime_error);
+}
+
+TEST_F(TruthFile, IsRefusedWhenTheReferenceIsAnother) {
+  std::string other = contents_of(file_);
+  other[other.find('\n') - 1] = '0';
+  EXPECT_NE(error_of(other).find("another version"), std::string::npos);
 }
 
 TEST(SceneHash, SeesWhatThePictureDependsOnAndNothingElse) {

@@ -46,7 +46,9 @@ const char* grade_name(Grade grade) noexcept {
 MatrixRow measure_row(const std::string& name, const Exhibit& exhibit, std::size_t camera,
                       const MatrixOptions& options) {
   Scene scene = scene_of(exhibit, camera, options.size);
-  const ReferenceFrame reference = cached_reference_frame(scene, options.threads, options.cache);
+  const ReferenceFrame* const kept = options.truth ? options.truth->find(scene) : nullptr;
+  const ReferenceFrame reference =
+      kept ? *kept : cached_reference_frame(scene, options.threads, options.cache);
   MatrixRow row{name, exhibit.cameras[camera].name, reference.pixels.size(), 0, 0, 0, {}};
   if (options.sampling) measure_sampling(scene, reference, options, row);
   RenderOptions render_options;

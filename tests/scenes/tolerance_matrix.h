@@ -3,6 +3,7 @@
 
 #include "pellucid/cpu/render.h"
 #include "tests/scenes/gallery.h"
+#include "tests/scenes/reference_truth.h"
 #include "tests/scenes/verdict.h"
 
 namespace pellucid::scenes {
@@ -38,7 +39,9 @@ struct MatrixOptions {
   Device device = Device::cpu;
   bool sampling = true;         ///< fill MatrixRow::sampling_…
   std::filesystem::path cache;  ///< of reference frames; empty: none
-  double least_proved = 0;      ///< tolerance of the grade `proved`
+  /// Reference frames made before; those of other scenes are looked for in `cache`. Null: none.
+  const ReferenceTruth* truth = nullptr;
+  double least_proved = 0;  ///< tolerance of the grade `proved`
 };
 
 /// Renders an exhibit from one of its cameras to every tolerance in both grades, and judges.

@@ -10,7 +10,7 @@
 #include "tests/segment/wide_cubic_segment.h"
 #include "tests/support/accuracy.h"
 
-namespace pellucid {
+namespace pellucid::test_bounded_cubic {
 namespace {
 
 /// The two errors of a segment against the truth, in the manner of BoundedSegment.
@@ -103,4 +103,4 @@ TEST(BoundedCubic, EstimatesHoldInFloat) {
 }
 
 }  // namespace
-}  // namespace pellucid
+}  // namespace pellucid::test_bounded_cubic

@@ -12,7 +12,7 @@
 #include "pellucid/segment/gauss_panel.h"
 #include "pellucid/segment/linear.h"
 
-namespace pellucid {
+namespace pellucid::test_classical {
 namespace {
 
 /// The example of the specification, 3.1: extinction 3 + 40 exp(-64 (s - 0.4)²), color
@@ -220,4 +220,4 @@ TYPED_TEST(ClassicalRules, SimpsonWeightsColorByExtinction) {
 }
 
 }  // namespace
-}  // namespace pellucid
+}  // namespace pellucid::test_classical

@@ -8,7 +8,7 @@
 #include "tests/segment/table_rows.h"
 #include "tests/support/wide_functions.h"
 
-namespace pellucid {
+namespace pellucid::test_constant {
 namespace {
 
 template <class T>
@@ -71,4 +71,4 @@ TYPED_TEST(Constant, SegmentIsColorTimesOpacity) {
 }
 
 }  // namespace
-}  // namespace pellucid
+}  // namespace pellucid::test_constant

@@ -10,7 +10,7 @@
 #include "tests/segment/table_rows.h"
 #include "tests/segment/wide_cubic_segment.h"
 
-namespace pellucid {
+namespace pellucid::test_cubic {
 namespace {
 
 using test::ErrorRecord;
@@ -357,4 +357,4 @@ TYPED_TEST(Cubic, HardInputsStayFiniteAndInBounds) {
 }
 
 }  // namespace
-}  // namespace pellucid
+}  // namespace pellucid::test_cubic

@@ -10,7 +10,7 @@
 
 #include "pellucid/segment/cubic_emission.h"
 
-namespace pellucid {
+namespace pellucid::test_cubic_panel {
 namespace {
 
 /// A share that is a cubic with values in [0,1], both reached, and an extinction linear in it.
@@ -210,4 +210,4 @@ TEST(CubicPanel, DepthWeightedMeanObeysItsBound) {
 }
 
 }  // namespace
-}  // namespace pellucid
+}  // namespace pellucid::test_cubic_panel

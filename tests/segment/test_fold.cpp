@@ -9,7 +9,7 @@
 
 #include "pellucid/segment/constant.h"
 
-namespace pellucid {
+namespace pellucid::test_fold {
 namespace {
 
 std::vector<SegmentResult<double>> some_segments(std::mt19937_64& random, int count,
@@ -178,4 +178,4 @@ TEST(FrontToBackCompositor, StopAtZeroEndsOnlyBehindWhatNothingPasses) {
 }
 
 }  // namespace
-}  // namespace pellucid
+}  // namespace pellucid::test_fold

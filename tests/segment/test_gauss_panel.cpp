@@ -9,7 +9,7 @@
 #include "pellucid/segment/compositor.h"
 #include "tests/segment/wide_linear.h"
 
-namespace pellucid {
+namespace pellucid::test_gauss_panel {
 namespace {
 
 /// Smooth extinction and color (or emission) along [0,1], with known integrals below.
@@ -131,4 +131,4 @@ TYPED_TEST(GaussPanelTypes, VacuumShinesOnlyOnItsOwn) {
 }
 
 }  // namespace
-}  // namespace pellucid
+}  // namespace pellucid::test_gauss_panel

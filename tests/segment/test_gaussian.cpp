@@ -10,7 +10,7 @@
 #include "tests/segment/gaussian_rows.h"
 #include "tests/segment/wide_gaussian.h"
 
-namespace pellucid {
+namespace pellucid::test_gaussian {
 namespace {
 
 using test::DensityErrors;
@@ -227,4 +227,4 @@ TYPED_TEST(GaussianSegment, ErrorOfKniss) {
 }
 
 }  // namespace
-}  // namespace pellucid
+}  // namespace pellucid::test_gaussian

@@ -12,7 +12,7 @@
 #include "tests/segment/multivariate_case.h"
 #include "tests/support/accuracy.h"
 
-namespace pellucid {
+namespace pellucid::test_gaussian_cubic {
 namespace {
 
 using test::ErrorRecord;
@@ -489,4 +489,4 @@ TEST(GaussianCubic, DegenerateData) {
 }
 
 }  // namespace
-}  // namespace pellucid
+}  // namespace pellucid::test_gaussian_cubic

@@ -11,7 +11,7 @@
 #include "tests/segment/random_cells.h"
 #include "tests/support/accuracy.h"
 
-namespace pellucid {
+namespace pellucid::test_gaussian_linear {
 namespace {
 
 /// A primitive along linear data: near the center or far, some constant, some through it.
@@ -132,4 +132,4 @@ TEST(GaussianLinear, WhatIsNoNumberIsNotFar) {
 }
 
 }  // namespace
-}  // namespace pellucid
+}  // namespace pellucid::test_gaussian_linear

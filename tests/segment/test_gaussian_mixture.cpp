@@ -9,7 +9,7 @@
 #include "tests/segment/gaussian_rows.h"
 #include "tests/segment/wide_gaussian.h"
 
-namespace pellucid {
+namespace pellucid::test_gaussian_mixture {
 namespace {
 
 using test::ErrorRecord;
@@ -426,4 +426,4 @@ TEST(MixtureMany, TooManyGiveTheMeanColorAndItsBound) {
 }
 
 }  // namespace
-}  // namespace pellucid
+}  // namespace pellucid::test_gaussian_mixture

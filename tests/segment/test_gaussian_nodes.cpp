@@ -12,7 +12,7 @@
 #include "pellucid/segment/gauss_panel.h"
 #include "tests/segment/multivariate_case.h"
 
-namespace pellucid {
+namespace pellucid::test_gaussian_nodes {
 namespace {
 
 using test::Maker;
@@ -455,4 +455,4 @@ TEST(GaussianNodes, RoundingIsWithinItsBound) {
 }
 
 }  // namespace
-}  // namespace pellucid
+}  // namespace pellucid::test_gaussian_nodes

@@ -8,7 +8,7 @@
 
 #include "tests/segment/wide_gaussian.h"
 
-namespace pellucid {
+namespace pellucid::test_gaussian_step {
 namespace {
 
 constexpr GaussianRule rules[] = {GaussianRule::kniss, GaussianRule::closed_form};
@@ -171,4 +171,4 @@ TEST(GaussianStep, NothingSeenIsClear) {
 }
 
 }  // namespace
-}  // namespace pellucid
+}  // namespace pellucid::test_gaussian_step

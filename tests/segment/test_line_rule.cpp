@@ -15,7 +15,7 @@
 #include "tests/segment/table_rows.h"
 #include "tests/segment/wide_cubic_segment.h"
 
-namespace pellucid {
+namespace pellucid::test_line_rule {
 namespace {
 
 using test::ErrorRecord;
@@ -627,4 +627,4 @@ TYPED_TEST(LineRule, WindowsLeaveNothingOut) {
 }
 
 }  // namespace
-}  // namespace pellucid
+}  // namespace pellucid::test_line_rule

@@ -9,7 +9,7 @@
 #include "tests/segment/linear_errors.h"
 #include "tests/segment/table_rows.h"
 
-namespace pellucid {
+namespace pellucid::test_linear {
 namespace {
 
 using test::ErrorRecord;
@@ -213,4 +213,4 @@ TYPED_TEST(Linear, StaysInGamut) {
 }
 
 }  // namespace
-}  // namespace pellucid
+}  // namespace pellucid::test_linear

@@ -11,7 +11,7 @@
 
 #include "pellucid/segment/lit_cuts.h"
 
-namespace pellucid {
+namespace pellucid::test_lit_panel {
 namespace {
 
 using Real = long double;
@@ -386,4 +386,4 @@ TEST(Shading, BoundsContainWhatIsAnywhereOnTheStretch) {
 }
 
 }  // namespace
-}  // namespace pellucid
+}  // namespace pellucid::test_lit_panel

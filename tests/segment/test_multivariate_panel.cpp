@@ -9,7 +9,7 @@
 #include "tests/segment/multivariate_case.h"
 #include "tests/support/accuracy.h"
 
-namespace pellucid {
+namespace pellucid::test_multivariate_panel {
 namespace {
 
 using test::ErrorRecord;
@@ -558,4 +558,4 @@ TEST(MultivariatePanel, EdgesAreFiniteAndInGamut) {
 }
 
 }  // namespace
-}  // namespace pellucid
+}  // namespace pellucid::test_multivariate_panel

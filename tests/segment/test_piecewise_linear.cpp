@@ -9,7 +9,7 @@
 #include "tests/segment/table_rows.h"
 #include "tests/segment/wide_linear.h"
 
-namespace pellucid {
+namespace pellucid::test_piecewise_linear {
 namespace {
 
 using test::ErrorRecord;
@@ -174,4 +174,4 @@ TYPED_TEST(PiecewiseLinearSegment, NeighbouringValuesAreOneSegment) {
 }
 
 }  // namespace
-}  // namespace pellucid
+}  // namespace pellucid::test_piecewise_linear

@@ -8,7 +8,7 @@
 #include <cmath>
 #include <random>
 
-namespace pellucid {
+namespace pellucid::test_sampled {
 namespace {
 
 using Wide = long double;
@@ -187,4 +187,4 @@ TEST_F(SampledSegments, AreNumbersWhateverTheMaterials) {
 }
 
 }  // namespace
-}  // namespace pellucid
+}  // namespace pellucid::test_sampled

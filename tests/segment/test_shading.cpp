@@ -10,7 +10,7 @@
 
 #include "pellucid/segment/gauss_panel.h"
 
-namespace pellucid {
+namespace pellucid::test_shading {
 namespace {
 
 TEST(Shading, ALightBehindHasNoSpecularPart) {
@@ -261,4 +261,4 @@ TEST(Shading, PowersAreThoseOfTheLibrary) {
 }
 
 }  // namespace
-}  // namespace pellucid
+}  // namespace pellucid::test_shading

@@ -10,7 +10,7 @@
 #include "tests/segment/wide_cubic_segment.h"
 #include "tests/support/accuracy.h"
 
-namespace pellucid {
+namespace pellucid::test_stride {
 namespace {
 
 /// Data that bend at places of their own: linear between knots at equal distances, the middle of
@@ -157,4 +157,4 @@ TEST(Stride, WhatCannotBeSeenIsNothing) {
 }
 
 }  // namespace
-}  // namespace pellucid
+}  // namespace pellucid::test_stride

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <random>
 
-namespace pellucid {
+namespace pellucid::test_surface {
 namespace {
 
 using Wide = long double;
@@ -110,4 +110,4 @@ TEST(Surface, ItsLightIsOffByNoMoreThanWhatThePlaceMayChange) {
 }
 
 }  // namespace
-}  // namespace pellucid
+}  // namespace pellucid::test_surface

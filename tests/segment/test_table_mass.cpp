@@ -10,7 +10,7 @@
 #include "tests/segment/multivariate_case.h"
 #include "tests/support/accuracy.h"
 
-namespace pellucid {
+namespace pellucid::test_table_mass {
 namespace {
 
 using test::ErrorRecord;
@@ -168,4 +168,4 @@ TEST(TableMass, WhereNothingAbsorbsThereIsNothing) {
 }
 
 }  // namespace
-}  // namespace pellucid
+}  // namespace pellucid::test_table_mass

@@ -6,7 +6,7 @@
 #include <ostream>
 #include <string>
 
-#include "pellucid/simd/instruction_set.h"
+#include "tests/support/instruction_sets.h"
 
 namespace pellucid {
 
@@ -18,12 +18,15 @@ inline void PrintTo(InstructionSet set, std::ostream* out) {
 
 namespace pellucid::test {
 
-/// A test that runs once per instruction set, skipped where the machine has it not.
+/// A test that runs once per instruction set, skipped where this build or this machine does without
+/// it.
 class EveryInstructionSet : public testing::TestWithParam<InstructionSet> {
  protected:
   void SetUp() override {
-    if (!is_supported(GetParam())) {
-      GTEST_SKIP() << "this processor has no " << name_of(GetParam()) << ": not tested here";
+    const InstructionSet set = GetParam();
+    if (!is_built(set)) GTEST_SKIP() << name_of(set) << " is not built: not tested here";
+    if (!is_supported(set)) {
+      GTEST_SKIP() << "this processor has no " << name_of(set) << ": not tested here";
     }
   }
   /// Of three entries, the one of this set.

@@ -11,7 +11,7 @@
 #include "pellucid/scene/antiderivative_storage.h"
 #include "tests/support/accuracy.h"
 
-namespace pellucid {
+namespace pellucid::test_antiderivative {
 namespace {
 
 using test::ErrorRecord;
@@ -308,4 +308,4 @@ TYPED_TEST(Antiderivative, ColorsOfWhatIsClearDoNotCount) {
 }
 
 }  // namespace
-}  // namespace pellucid
+}  // namespace pellucid::test_antiderivative

@@ -7,7 +7,7 @@
 #include <random>
 #include <vector>
 
-namespace pellucid {
+namespace pellucid::test_cubic_cuts {
 namespace {
 
 template <class T>
@@ -124,4 +124,4 @@ TYPED_TEST(CubicCuts, AJumpIsOneCrossing) {
 }
 
 }  // namespace
-}  // namespace pellucid
+}  // namespace pellucid::test_cubic_cuts

@@ -9,7 +9,7 @@
 #include <limits>
 #include <random>
 
-namespace pellucid {
+namespace pellucid::test_gaussian_bound {
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
@@ -287,4 +287,4 @@ TEST(LeastExponent, PlainNumbers) {
 }
 
 }  // namespace
-}  // namespace pellucid
+}  // namespace pellucid::test_gaussian_bound

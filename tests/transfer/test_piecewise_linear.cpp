@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-namespace pellucid {
+namespace pellucid::test_piecewise_linear {
 namespace {
 
 template <class T>
@@ -89,4 +89,4 @@ TYPED_TEST(PiecewiseLinearTable, ExtinctionInARangeOfIntervals) {
 }
 
 }  // namespace
-}  // namespace pellucid
+}  // namespace pellucid::test_piecewise_linear

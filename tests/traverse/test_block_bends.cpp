@@ -10,7 +10,7 @@
 #include "pellucid/traverse/block_walk.h"
 #include "tests/support/accuracy.h"
 
-namespace pellucid {
+namespace pellucid::test_block_bends {
 namespace {
 
 /// A grid of 19 x 12 x 26 values with its blocks, uniform, cell-centred or rectilinear.
@@ -118,4 +118,4 @@ TEST(BlockBends, VacuumIsUnboundedAndItsNeighbourKeepsItsBound) {
 }
 
 }  // namespace
-}  // namespace pellucid
+}  // namespace pellucid::test_block_bends

@@ -14,7 +14,7 @@
 #include "tests/support/wide_functions.h"
 
 // What follows for the data along a ray from the ranges of a block.
-namespace pellucid {
+namespace pellucid::test_block_bounds {
 namespace {
 
 using test::Wide;
@@ -165,4 +165,4 @@ TEST(BlockBounds, OscillationIsRoundedUpward) {
 }
 
 }  // namespace
-}  // namespace pellucid
+}  // namespace pellucid::test_block_bounds

@@ -17,7 +17,7 @@
 #include "block_field.h"
 #include "tests/support/wide_functions.h"
 
-namespace pellucid {
+namespace pellucid::test_block_records {
 namespace {
 
 using test::Wide;
@@ -459,4 +459,4 @@ TEST(BlockRecords, PartsInAnyOrderAreTheWhole) {
 }
 
 }  // namespace
-}  // namespace pellucid
+}  // namespace pellucid::test_block_records

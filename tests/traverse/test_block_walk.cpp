@@ -12,7 +12,7 @@
 #include "pellucid/traverse/build_block_records.h"
 #include "walk_generator.h"
 
-namespace pellucid {
+namespace pellucid::test_block_walk {
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
@@ -265,4 +265,4 @@ TEST(BlockWalk, NothingOnRaysThatMissOrAreNotNumbers) {
 }
 
 }  // namespace
-}  // namespace pellucid
+}  // namespace pellucid::test_block_walk

@@ -11,7 +11,7 @@
 #include <sstream>
 #include <string>
 
-namespace pellucid {
+namespace pellucid::test_mesh_face {
 namespace {
 
 template <class T>
@@ -124,4 +124,4 @@ TYPED_TEST(MeshFaceTest, OfNoAreaIsOffByAll) {
 }
 
 }  // namespace
-}  // namespace pellucid
+}  // namespace pellucid::test_mesh_face

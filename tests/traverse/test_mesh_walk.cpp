@@ -13,7 +13,7 @@
 
 /// What of the walk is topology: wherever rounding puts points, in float or in double, a ray that
 /// comes in by a face of the boundary goes out by another, through each tetrahedron once.
-namespace pellucid {
+namespace pellucid::test_mesh_walk {
 namespace {
 
 using Place = Vec3<double>;
@@ -174,4 +174,4 @@ TEST(MeshWalk, GoesThroughEachTetrahedronOnceInFloat) {
 }
 
 }  // namespace
-}  // namespace pellucid
+}  // namespace pellucid::test_mesh_walk

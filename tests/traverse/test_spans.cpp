@@ -9,7 +9,7 @@
 #include <random>
 #include <vector>
 
-namespace pellucid {
+namespace pellucid::test_spans {
 namespace {
 
 /// Data on planes 0 … n-1 along each axis.
@@ -152,4 +152,4 @@ TEST(Spans, ShortStretchFarFromTheEyeKeepsItsLength) {
 }
 
 }  // namespace
-}  // namespace pellucid
+}  // namespace pellucid::test_spans

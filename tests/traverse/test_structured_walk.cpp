@@ -7,7 +7,7 @@
 
 #include "walk_check.h"
 
-namespace pellucid {
+namespace pellucid::test_structured_walk {
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
@@ -244,4 +244,4 @@ TEST(StructuredWalk, RangeCutsTheRay) {
 }
 
 }  // namespace
-}  // namespace pellucid
+}  // namespace pellucid::test_structured_walk

@@ -8,7 +8,7 @@
 #include "walk_check.h"
 #include "walk_generator.h"
 
-namespace pellucid {
+namespace pellucid::test_structured_walk_random {
 namespace {
 
 template <class T>
@@ -182,4 +182,4 @@ TEST(RandomWalks, HugeOffsetsStayInTheGrid) {
 }
 
 }  // namespace
-}  // namespace pellucid
+}  // namespace pellucid::test_structured_walk_random

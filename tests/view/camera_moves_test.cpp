@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-namespace pellucid::view {
+namespace pellucid::view::camera_moves_test {
 namespace {
 
 void expect_near(const Vec3<double>& a, const Vec3<double>& b) {
@@ -76,4 +76,4 @@ TEST(CameraMoves, CenteringLooksFromTheSameSide) {
 }
 
 }  // namespace
-}  // namespace pellucid::view
+}  // namespace pellucid::view::camera_moves_test

@@ -7,7 +7,7 @@
 
 #include "pellucid/scene/error.h"
 
-namespace pellucid::view {
+namespace pellucid::view::command_test {
 namespace {
 
 template <class Kind>
@@ -124,4 +124,4 @@ TEST(ParseCommand, RefusesWhatIsTooDeepOrTooLong) {
 }
 
 }  // namespace
-}  // namespace pellucid::view
+}  // namespace pellucid::view::command_test

@@ -5,7 +5,7 @@
 
 #include <set>
 
-namespace pellucid::view {
+namespace pellucid::view::gate_test {
 namespace {
 
 constexpr const char* host = "127.0.0.1:8080";
@@ -79,4 +79,4 @@ TEST(EqualInConstantTime, ComparesTexts) {
 }
 
 }  // namespace
-}  // namespace pellucid::view
+}  // namespace pellucid::view::gate_test

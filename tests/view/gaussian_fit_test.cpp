@@ -12,7 +12,7 @@
 #include "pellucid/io/remake_scene.h"
 #include "view/suggestions.h"
 
-namespace pellucid::view {
+namespace pellucid::view::gaussian_fit_test {
 namespace {
 
 SceneDescription two_channels() {
@@ -111,4 +111,4 @@ TEST(SuggestMissingFunctions, ReadsDataOnce) {
 }
 
 }  // namespace
-}  // namespace pellucid::view
+}  // namespace pellucid::view::gaussian_fit_test

@@ -8,7 +8,7 @@
 #include "pellucid/io/scene_json.h"
 #include "view/histograms.h"
 
-namespace pellucid::view {
+namespace pellucid::view::probe_test {
 namespace {
 
 Scene scene_of(const std::string& layers) {
@@ -97,4 +97,4 @@ TEST(Histogram, LeavesFarValuesOut) {
 }
 
 }  // namespace
-}  // namespace pellucid::view
+}  // namespace pellucid::view::probe_test

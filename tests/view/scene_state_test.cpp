@@ -9,7 +9,7 @@
 #include "pellucid/scene/error.h"
 #include "view/overlay.h"
 
-namespace pellucid::view {
+namespace pellucid::view::scene_state_test {
 namespace {
 
 SceneState state_of(const std::string& layers) {
@@ -263,4 +263,4 @@ TEST(Handles, FollowTheMouse) {
 }
 
 }  // namespace
-}  // namespace pellucid::view
+}  // namespace pellucid::view::scene_state_test

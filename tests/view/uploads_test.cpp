@@ -10,7 +10,7 @@
 #include "pellucid/scene/error.h"
 #include "view/folders.h"
 
-namespace pellucid::view {
+namespace pellucid::view::uploads_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -95,4 +95,4 @@ TEST(Folders, ListFoldersThenFiles) {
 }
 
 }  // namespace
-}  // namespace pellucid::view
+}  // namespace pellucid::view::uploads_test
