@@ -120,7 +120,7 @@ std::array<double, 2> parse_range(const std::string& option, const std::string& 
   return {ends[0], ends[1]};
 }
 
-ValueRange parse_value_range(const std::string& option, const std::string& text) {
+RangeEnds parse_value_range(const std::string& option, const std::string& text) {
   constexpr std::string_view expected =
       "two ascending values LOW:HIGH, or percentages from 0% to 100%, as in 10:90 or 2%:98%";
   const auto fail = [&] {
@@ -139,7 +139,7 @@ ValueRange parse_value_range(const std::string& option, const std::string& text)
     if (number.size() != 1 || !good) fail();
     return made;
   };
-  const ValueRange range{parse_end(text.substr(0, middle)), parse_end(text.substr(middle + 1))};
+  const RangeEnds range{parse_end(text.substr(0, middle)), parse_end(text.substr(middle + 1))};
   const bool comparable = range[0].is_percent == range[1].is_percent;
   if (comparable && !(range[0].number < range[1].number)) fail();
   return range;

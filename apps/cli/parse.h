@@ -40,7 +40,7 @@ std::vector<int> parse_bins(const std::string& option, const std::string& text, 
 /// "LOWER,UPPER": two finite numbers of which the first is the smaller.
 std::array<double, 2> parse_range(const std::string& option, const std::string& text);
 /// LOW:HIGH or LOW,HIGH, values or percentages of the data's values, as in 2%:98%.
-ValueRange parse_value_range(const std::string& option, const std::string& text);
+RangeEnds parse_value_range(const std::string& option, const std::string& text);
 /// A finite positive number, or the quotient of two: "0.001", "1e-4", "1/512".
 double parse_tolerance(const std::string& option, const std::string& text);
 /// A tolerance of a picture, or the share of its largest channel that it is.

@@ -30,7 +30,7 @@ double import_share(const RenderArguments& arguments, const SceneDescription& de
 /// Returns the values of --range; none: it is not given, or depends on the data.
 std::optional<std::array<double, 2>> plain_range(const RenderArguments& arguments) {
   if (arguments.colors.range.empty() || arguments.colors.asks_data()) return std::nullopt;
-  const ValueRange range = parse_value_range("--range", arguments.colors.range);
+  const RangeEnds range = parse_value_range("--range", arguments.colors.range);
   return std::array<double, 2>{range[0].number, range[1].number};
 }
 

@@ -36,14 +36,14 @@ RangeEnd end_of(const py::handle& object) {
   }
 }
 
-std::optional<ValueRange> range_of(const py::object& object) {
+std::optional<RangeEnds> range_of(const py::object& object) {
   if (object.is_none()) return std::nullopt;
   if (py::isinstance<py::str>(object) || !py::isinstance<py::sequence>(object) ||
       py::len(object) != 2) {
     throw Error("clim: expected two values (low, high), or percentages (\"2%\", \"98%\"), got " +
                 short_repr(object));
   }
-  return ValueRange{end_of(object[py::int_(0)]), end_of(object[py::int_(1)])};
+  return RangeEnds{end_of(object[py::int_(0)]), end_of(object[py::int_(1)])};
 }
 
 }  // namespace

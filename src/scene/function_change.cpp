@@ -27,7 +27,7 @@ double value_of(const RangeEnd& end, const std::vector<double>& sample) {
 }
 
 template <class Data>
-std::array<double, 2> values_of(const ValueRange& range, const Data& data) {
+std::array<double, 2> values_of(const RangeEnds& range, const Data& data) {
   const bool asks_data = range[0].is_percent || range[1].is_percent;
   const std::vector<double> sample = asks_data ? value_sample(data) : std::vector<double>();
   const std::array<double, 2> values{value_of(range[0], sample), value_of(range[1], sample)};
@@ -44,11 +44,11 @@ std::optional<std::array<double, 2>> own_range(const FunctionChange& change, con
 
 }  // namespace
 
-std::array<double, 2> value_range(const ValueRange& range, const Volume& volume) {
+std::array<double, 2> value_range(const RangeEnds& range, const Volume& volume) {
   return values_of(range, volume);
 }
 
-std::array<double, 2> value_range(const ValueRange& range, const MeshChannels& mesh) {
+std::array<double, 2> value_range(const RangeEnds& range, const MeshChannels& mesh) {
   return values_of(range, mesh);
 }
 

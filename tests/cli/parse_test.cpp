@@ -164,13 +164,13 @@ TEST(Parse, MessagesAreOneLine) {
 
 TEST(Parse, RangesOfValuesAndPercentages) {
   using pellucid::RangeEnd;
-  using pellucid::ValueRange;
+  using pellucid::RangeEnds;
   const auto parse = [](const char* text) { return parse_value_range("--range", text); };
-  EXPECT_EQ(parse("-10:2.5"), (ValueRange{{{-10, false}, {2.5, false}}}));
-  EXPECT_EQ(parse("1e3,2e3"), (ValueRange{{{1000, false}, {2000, false}}}));
-  EXPECT_EQ(parse("2%:98.5%"), (ValueRange{{{2, true}, {98.5, true}}}));
+  EXPECT_EQ(parse("-10:2.5"), (RangeEnds{{{-10, false}, {2.5, false}}}));
+  EXPECT_EQ(parse("1e3,2e3"), (RangeEnds{{{1000, false}, {2000, false}}}));
+  EXPECT_EQ(parse("2%:98.5%"), (RangeEnds{{{2, true}, {98.5, true}}}));
   // Which of the two is the larger is known with the data.
-  EXPECT_EQ(parse("90%:3"), (ValueRange{{{90, true}, {3, false}}}));
+  EXPECT_EQ(parse("90%:3"), (RangeEnds{{{90, true}, {3, false}}}));
   for (const char* text : {"", "1", ":", "1:", ":1", "1:1", "2:1", "a:b", "1:2:3", "1,2,3",
                            "-1%:5%", "5%:101%", "%:1", "nan:1", "0:inf", "1 : 2x"}) {
     EXPECT_THROW(parse(text), UsageError) << text;

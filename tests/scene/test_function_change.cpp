@@ -44,7 +44,7 @@ TEST(FunctionChange, MovesColorsAndMultiplies) {
   FunctionChange change;
   EXPECT_TRUE(change.is_none());
   change.colors = color_map("viridis");
-  change.range = ValueRange{{{20, true}, {80, true}}};
+  change.range = RangeEnds{{{20, true}, {80, true}}};
   change.opacity = 3;
   const TransferFunction made = changed(ramp(), change, counted());
   const auto& points = made.points();

@@ -20,20 +20,20 @@ struct RangeEnd {
 
   bool operator==(const RangeEnd&) const = default;
 };
-using ValueRange = std::array<RangeEnd, 2>;
+using RangeEnds = std::array<RangeEnd, 2>;
 
 /// Returns the values of a range, of up to 2^18 of the data's finite values. 0 % is the least of
 /// them but for the outermost 0.1 %, and so is 100 % at the other end. Throws Error if the ends do
 /// not ascend, if percentages are not from 0 to 100, or data of one value have none.
-std::array<double, 2> value_range(const ValueRange& range, const Volume& volume);
+std::array<double, 2> value_range(const RangeEnds& range, const Volume& volume);
 /// Returns the same for a mesh's first channel, with values weighted by the volume that they fill.
-std::array<double, 2> value_range(const ValueRange& range, const MeshChannels& mesh);
+std::array<double, 2> value_range(const RangeEnds& range, const MeshChannels& mesh);
 
 /// How a function is changed once its data are known.
 struct FunctionChange {
-  ColorMap colors;                  ///< in place of the function's; empty: they stay
-  std::optional<ValueRange> range;  ///< to where its first and last points move
-  double opacity = 1;               ///< a factor of the extinctions, >= 0
+  ColorMap colors;                 ///< in place of the function's; empty: they stay
+  std::optional<RangeEnds> range;  ///< to where its first and last points move
+  double opacity = 1;              ///< a factor of the extinctions, >= 0
 
   bool is_none() const noexcept { return colors.empty() && !range && opacity == 1; }
 };
