@@ -168,7 +168,8 @@ def run(arguments):
         return 0
     late, rest = due(root)
     if arguments.command == "left-out":
-        print("|".join(f"({check.tests})" for check in rest if check.tests))
+        # Without parentheses: CMake takes nine of them.
+        print("|".join(check.tests for check in rest if check.tests))
     elif name:
         return 0 if name in {check.name for check in late} else 1
     else:
