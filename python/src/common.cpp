@@ -50,8 +50,8 @@ Vec3<double> vector_of(const py::handle& object, const std::string& what) {
 }
 
 py::object array_as(const py::object& array, const py::object& dtype, const py::object& copy) {
-  const py::object has = array.attr("dtype");
-  const bool is_kept = dtype.is_none() || has.equal(py::dtype::from_args(dtype));
+  const py::object held = array.attr("dtype");
+  const bool is_kept = dtype.is_none() || held.equal(py::dtype::from_args(dtype));
   if (!copy.is_none() && !py::cast<bool>(copy)) {
     if (!is_kept) throw py::value_error("another dtype needs a copy");
     return array;
