@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 
 # Compiler settings of our own code. Not exported: consumers keep theirs.
+set(_pellucid_gcc $<CXX_COMPILER_ID:GNU>)
+set(_pellucid_version $<CXX_COMPILER_VERSION>)
 add_library(pellucid_build_flags INTERFACE)
 target_compile_options(pellucid_build_flags INTERFACE
   # Contraction would make a picture depend on the machine's instruction set and break the exactness
@@ -21,7 +23,7 @@ target_compile_options(pellucid_build_flags INTERFACE
   $<$<AND:$<CXX_COMPILER_ID:GNU>,$<VERSION_LESS:$<CXX_COMPILER_VERSION>,13>>:-Wno-array-bounds>
   $<$<AND:$<CXX_COMPILER_ID:GNU>,$<VERSION_LESS:$<CXX_COMPILER_VERSION>,13>>:-Wno-stringop-overflow>
   # GCC 13 and later take what a view of a JSON document gives for a part of the view.
-  $<$<AND:$<CXX_COMPILER_ID:GNU>,$<VERSION_GREATER_EQUAL:$<CXX_COMPILER_VERSION>,13>>:-Wno-dangling-reference>
+  $<$<AND:${_pellucid_gcc},$<VERSION_GREATER_EQUAL:${_pellucid_version},13>>:-Wno-dangling-reference>
   $<$<BOOL:${PELLUCID_WERROR}>:-Werror>)
 
 option(PELLUCID_PRECOMPILE_HEADERS
@@ -70,8 +72,8 @@ function(pellucid_header_module name)
 endfunction()
 
 # pellucid_library(NAME SOURCES file... [DEPENDS NAME...] [PRIVATE target...] [LEVEL option]): the
-# folders src/NAME and include/pellucid/NAME as the compiled library pellucid::NAME. It is static, so
-# whoever links it links its PRIVATE targets too (PellucidInstall); those that are headers alone
+# folders src/NAME and include/pellucid/NAME as the compiled library pellucid::NAME. It is static,
+# so whoever links it links its PRIVATE targets too (PellucidInstall); those that are headers alone
 # stand in $<BUILD_INTERFACE:...>. LEVEL is what GCC optimises it by in a release, where that is not
 # what the others have.
 function(pellucid_library name)
