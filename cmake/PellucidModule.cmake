@@ -2,7 +2,7 @@
 
 # Compiler settings of our own code. Not exported: consumers keep theirs.
 set(_pellucid_gcc $<CXX_COMPILER_ID:GNU>)
-set(_pellucid_version $<CXX_COMPILER_VERSION>)
+set(_pellucid_gxx $<CXX_COMPILER_VERSION>)
 add_library(pellucid_build_flags INTERFACE)
 target_compile_options(pellucid_build_flags INTERFACE
   # Contraction would make a picture depend on the machine's instruction set and break the exactness
@@ -23,7 +23,7 @@ target_compile_options(pellucid_build_flags INTERFACE
   $<$<AND:$<CXX_COMPILER_ID:GNU>,$<VERSION_LESS:$<CXX_COMPILER_VERSION>,13>>:-Wno-array-bounds>
   $<$<AND:$<CXX_COMPILER_ID:GNU>,$<VERSION_LESS:$<CXX_COMPILER_VERSION>,13>>:-Wno-stringop-overflow>
   # GCC 13 and later take what a view of a JSON document gives for a part of the view.
-  $<$<AND:${_pellucid_gcc},$<VERSION_GREATER_EQUAL:${_pellucid_version},13>>:-Wno-dangling-reference>
+  $<$<AND:${_pellucid_gcc},$<VERSION_GREATER_EQUAL:${_pellucid_gxx},13>>:-Wno-dangling-reference>
   $<$<BOOL:${PELLUCID_WERROR}>:-Werror>)
 
 option(PELLUCID_PRECOMPILE_HEADERS
