@@ -218,12 +218,17 @@ def test_frames_do_not_grow_memory():
         with open("/proc/self/statm", encoding="ascii") as file:
             return int(file.read().split()[1]) * resource.getpagesize()
 
-    frames(100)
-    before = frames(100)
-    after = frames(1000)
-    # oneTBB keeps arenas that busy cores have not left: 12 MB under a load of 14. A volume that is
-    # kept for each frame takes 32 MB.
-    assert after - before < 20 << 20, f"{(after - before) / 1e6} MB"
+    before = frames(200)
+    grown = []
+    # oneTBB keeps arenas that busy cores have not left: up to 50 MB in all under a load of 16, and
+    # no more. A volume that is kept for each frame takes 10 MB every time.
+    for _ in range(8):
+        after = frames(300)
+        grown.append(after - before)
+        if grown[-1] < 4 << 20:
+            return
+        before = after
+    pytest.fail(f"each time {[size / 1e6 for size in grown]} MB")
 
 
 def test_signals_are_handled_while_waiting():
