@@ -133,17 +133,22 @@ std::optional<fs::path> coordinate_of(const ZarrVariable& variable, std::size_t 
   return std::nullopt;
 }
 
+/// Returns where a variable is, with all of the folders that it is in.
+fs::path place_of(const fs::path& folder) {
+  const fs::path place = fs::absolute(folder).lexically_normal();
+  return place.has_filename() ? place : place.parent_path();
+}
+
 /// Returns the arrays in a variable's group but the coordinates of its axes.
 std::vector<ArrayBeside> arrays_beside(const ZarrVariable& variable) {
   std::vector<ArrayBeside> arrays;
-  fs::path own = variable.folder.lexically_normal();
-  if (!own.has_filename()) own = own.parent_path();
+  const fs::path own = place_of(variable.folder);
   const auto group = read_zarr_node(own.parent_path());
   if (!group || group->is_array) return arrays;
   std::vector<fs::path> known{own};
   for (std::size_t a = 0; a < variable.array.dimension_names.size(); ++a) {
     if (const auto coordinate = coordinate_of(variable, a)) {
-      known.push_back(coordinate->lexically_normal());
+      known.push_back(place_of(*coordinate));
     }
   }
   std::error_code error;
@@ -251,8 +256,7 @@ std::vector<std::string> zarr_notes(const ZarrVariable& variable, const std::str
   const PositionsBeside beside =
       positions_beside(arrays_beside(variable), variable.array.shape, {{}, {}, true, true});
   for (const std::string& note : beside.notes) notes.push_back("\"" + name + "\": " + note);
-  fs::path group = variable.folder.lexically_normal();
-  if (!group.has_filename()) group = group.parent_path();
+  fs::path group = place_of(variable.folder);
   constexpr int deepest = 8;
   for (int depth = 0; depth < deepest && group.has_parent_path(); ++depth) {
     group = group.parent_path();
