@@ -42,6 +42,9 @@ PELLUCID_HD void light(const T* in, T* out) noexcept {
   T position[3];
   out[1] = T(sign_change_positions(f, position)) + position[0];
   out[2] = error_of_three_nodes(in[0], in[1]) + error_of_six_nodes(in[0], in[1]);
+  const GradientStretch<T> along{
+      {layer.gradient[0], layer.gradient[0], layer.gradient[0]}, stretch.begin, in[19], {}};
+  out[3] = place_doubt(reflection, lights, 2, along, in[23], in[24]);
 }
 PELLUCID_DEVICE_KERNEL(light)
 
