@@ -117,7 +117,6 @@ TEST(LitFrames, KnowWhetherDataReachAnIsosurface) {
     Layer layer{VolumeContent{volume, scenes::transfer({{80, 1, {1, 0, 0}}, {170, 1, {1, 1, 0}}}),
                               nullptr}};
     layer.isosurfaces = {{turn + off, 0.5, {0, 0, 1}}};
-    layer.shading = Shading{};
     Scene scene;
     scene.layers = {layer};
     scene.camera.position = {10, 10, 10};
