@@ -117,6 +117,8 @@ TEST(LitFrames, KnowWhetherDataReachAnIsosurface) {
     Layer layer{VolumeContent{volume, scenes::transfer({{80, 1, {1, 0, 0}}, {170, 1, {1, 1, 0}}}),
                               nullptr}};
     layer.isosurfaces = {{turn + off, 0.5, {0, 0, 1}}};
+    // Where the data turn a head light has a kink.
+    if (n % 4 >= 2) layer.shading = Shading{0.3, 0.7, 0, 1, GradientKind::field, 0.5};
     Scene scene;
     scene.layers = {layer};
     scene.camera.position = {10, 10, 10};

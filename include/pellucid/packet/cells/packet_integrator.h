@@ -27,10 +27,9 @@ namespace pellucid {
 /// what that is not good enough for is handed back, cell by cell.
 ///
 /// If `is_lit`, each piece is shaded in binary32 (light_lanes.h); there are no smooth steps, and
-/// what binary32 is not good enough for is handed back at once. Isosurfaces are met where pieces
-/// end at their values (surface_lanes.h), which are control points of the extinction. A ray of
-/// which binary32 cannot tell whether it meets one has an infinite error: it is for the general
-/// path.
+/// what binary32 is not good enough for is handed back at once. The values of isosurfaces are
+/// control points of the extinction, so that pieces end where a ray meets one (surface_lanes.h). If
+/// binary32 cannot tell whether it does, the ray's error is infinite: it is for the general path.
 template <class Value, int N, bool is_lit = false>
 class PacketIntegrator {
  public:
@@ -421,9 +420,10 @@ class PacketIntegrator {
     const M beside = stays & !surfaces_.is_inside(end, end, close_);
     fail(beside & !piece.capped);
     if (any(beside)) {
-      // The other half of what ended at a surface ends there, too.
+      // The other half of what ended at a surface ends there, too. Where light has a kink data may
+      // turn: with gradients `field` and a head light they always do.
       const MonotonePiece<F> next = monotone_piece(piece.parts.back, F(0), beside);
-      fail(beside & piece.capped & surfaces_.is_beside(next.reach, close_));
+      fail(beside & piece.capped & !surfaces_.is_beyond(next.reach, close_));
     }
     const M near = stays & !surfaces_.is_inside(data.hull_min(), data.hull_max(), close_);
     if (any(near)) {

@@ -17,7 +17,7 @@ class SurfaceLanes {
   using F = Batch<float, N>;
   using I = Batch<std::int32_t, N>;
   using M = BatchMask<N>;
-  /// How far from a value the data have to be, in what they may be off by, for their side to count.
+  /// Least distance of data from a value for their side to count, in what they may be off by.
   static constexpr float margin = 3;
 
   /// `surfaces`: null where there are none.
@@ -27,7 +27,7 @@ class SurfaceLanes {
 
   bool exist() const noexcept { return surfaces_ != nullptr; }
 
-  /// What the data of cells may be off by, with this rounding, for ends that may be elsewhere.
+  /// Returns what the data of cells may be off by, with this rounding and such ends.
   F close(const CubicBernstein<F>& data, F rounding, F place_error, F length) const noexcept {
     const F rise = max(max(abs(data.b[1] - data.b[0]), abs(data.b[2] - data.b[1])),
                        abs(data.b[3] - data.b[2]));
@@ -55,10 +55,9 @@ class SurfaceLanes {
   M is_inside(F least, F most, F close) const noexcept {
     return (least > lower() + F(margin) * close) & (most < upper() - F(margin) * close);
   }
-  /// Returns whether nobody knows on which side of an end of the range these data are.
-  M is_beside(F value, F close) const noexcept {
-    const F reach = F(margin) * close;
-    return (abs(value - lower()) <= reach) | (abs(value - upper()) <= reach);
+  /// Returns whether these data are outside of the ray's range, and known to be.
+  M is_beyond(F value, F close) const noexcept {
+    return (value > upper() + F(margin) * close) | (value < lower() - F(margin) * close);
   }
   /// Returns whether the range is so wide that data which leave it are known to have been in it.
   M is_wide(F close) const noexcept { return upper() - lower() > F(4 * margin) * close; }
