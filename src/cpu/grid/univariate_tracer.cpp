@@ -27,11 +27,6 @@ bool goes_in_packets(const Integration& integration) {
          integration.precision != Precision::float64;
 }
 
-/// Whether a layer is for the packets that have light, and no other.
-bool needs_light(const Layer& layer) {
-  return layer.shading || layer.gradient_opacity || has_surfaces(layer);
-}
-
 class UnivariateTracer : public RayTracer {
  public:
   explicit UnivariateTracer(const TracerTask& task);
@@ -85,7 +80,7 @@ UnivariateTracer::UnivariateTracer(const TracerTask& task)
                                                        : std::nullopt),
       transfer_(with_surfaces_ ? *with_surfaces_ : transfer_function_) {
   if (has_surfaces(task.layer) && !with_surfaces_) return;
-  if (needs_light(task.layer)) {
+  if (is_lit(task.layer)) {
     light_ = GridLight::make(task.layer, task.lights, wanted_);
     if (!light_) return;
   }
@@ -166,7 +161,7 @@ RayResult UnivariateTracer::trace_one(const StructuredGrid<Value, double>& grid,
 
 std::unique_ptr<const RayTracer> make_univariate_tracer(const TracerTask& task) {
   auto tracer = std::make_unique<UnivariateTracer>(task);
-  if (needs_light(task.layer) && !tracer->suits_light()) return nullptr;
+  if (is_lit(task.layer) && !tracer->suits_light()) return nullptr;
   return tracer;
 }
 

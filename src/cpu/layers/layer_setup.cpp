@@ -11,8 +11,7 @@ namespace {
 std::unique_ptr<const RayTracer> make_fast_tracer(const TracerTask& task) {
   const LayerContent& content = task.layer.content;
   if (auto surfaces = make_surface_tracer(task)) return surfaces;
-  const bool is_lit = task.layer.shading || task.layer.gradient_opacity || has_surfaces(task.layer);
-  if (is_lit && !std::holds_alternative<VolumeContent>(content)) return nullptr;
+  if (is_lit(task.layer) && !std::holds_alternative<VolumeContent>(content)) return nullptr;
   if (extinction_factor_of(task.layer) != nullptr) return nullptr;
   if (const auto* volume = std::get_if<VolumeContent>(&content)) {
     return volume->mask ? nullptr : make_univariate_tracer(task);
