@@ -2,183 +2,12 @@
 #pragma once
 
 #include "pellucid/error/random_errors.h"
-#include "pellucid/packet/cells/cell_places.h"
+#include "pellucid/packet/cells/gradient_loads.h"
 #include "pellucid/packet/cells/span_piece.h"
-#include "pellucid/packet/light.h"
 #include "pellucid/segment/gauss_panel.h"
 
 #if PELLUCID_HAS_BATCH_4  // in sources compiled per instruction set
 namespace pellucid {
-
-/// Loads the gradients of cells, one in each lane, from the data in their own type.
-template <class Value, int N>
-class GradientLoads {
- public:
-  using F = Batch<float, N>;
-  using M = BatchMask<N>;
-
-  GradientLoads(const PacketGrid<Value>& grid, const PacketLight& light) noexcept
-      : grid_(grid), light_(light) {}
-
-  /// The gradient's components in the world, along the lanes' ways through their cells, and, if
-  /// there is a factor of it, the magnitude.
-  void operator()(M lanes, const CellPlaces<N>& places, CubicBernstein<F> (&gradient)[3],
-                  CubicBernstein<F>& magnitude) const noexcept {
-    load(lanes, places);
-    const Vec3<F> entry{convert<float>(places.entry.x), convert<float>(places.entry.y),
-                        convert<float>(places.entry.z)};
-    const Vec3<F> exit{convert<float>(places.exit.x), convert<float>(places.exit.y),
-                       convert<float>(places.exit.z)};
-    CellCorners<F> corners[3];
-    for (int a = 0; a < 3; ++a) corners[a] = derivative(a, light_.of_field != 0);
-    CubicBernstein<F> of_axis[3];
-    for (int a = 0; a < 3; ++a) of_axis[a] = trilinear_cubic(corners[a], entry, exit);
-    for (int c = 0; c < 3; ++c) {
-      for (int k = 0; k < 4; ++k) {
-        const F component = in_world(c, of_axis[0].b[k], of_axis[1].b[k], of_axis[2].b[k]);
-        gradient[c].b[k] = select(lanes, component, gradient[c].b[k]);
-      }
-    }
-    if (light_.factor == nullptr) return;
-    if (light_.of_field != 0) {
-      for (int a = 0; a < 3; ++a) corners[a] = derivative(a, false);
-    }
-    CellCorners<F> size;
-    for (int n = 0; n < 8; ++n) {
-      F square(0);
-      for (int c = 0; c < 3; ++c) {
-        const F x = in_world(c, corners[0].value[n], corners[1].value[n], corners[2].value[n]);
-        square += x * x;
-      }
-      size.value[n] = sqrt(square);
-    }
-    const CubicBernstein<F> along = trilinear_cubic(size, entry, exit);
-    for (int k = 0; k < 4; ++k) magnitude.b[k] = select(lanes, along.b[k], magnitude.b[k]);
-  }
-
- private:
-  /// Component c in the world of a gradient in the grid.
-  F in_world(int c, const F& x, const F& y, const F& z) const noexcept {
-    const float* const w = light_.world_gradient[c];
-    return F(w[0]) * x + F(w[1]) * y + F(w[2]) * z;
-  }
-  /// Whether only the corners are needed.
-  bool within_cells() const noexcept { return light_.of_field != 0 && light_.factor == nullptr; }
-
-  /// Loads corners and what is beyond them along each axis.
-  void load(M lanes, const CellPlaces<N>& places) const noexcept {
-    std::int32_t cell[3][N];
-    for (int a = 0; a < 3; ++a) places.cell[a].store(cell[a]);
-    const Value* lowest[N];
-    unsigned at_border = 0;
-    for (int l = 0; l < N; ++l) {
-      int place[3];
-      bool inner = true;
-      for (int a = 0; a < 3; ++a) {
-        place[a] = cell[a][l] - grid_.padding[a];
-        inner = inner & (place[a] >= 1) & (place[a] + 2 < grid_.values[a]);
-        has_before_[a][l] = has_behind_[a][l] = 1;
-        flat_[a][l] = 0;
-      }
-      at_border |= inner ? 0u : 1u << l;
-      lowest[l] =
-          inner ? grid_.data + place[0] + place[1] * grid_.row + place[2] * grid_.slice : nullptr;
-    }
-    at_border &= bits(lanes);
-    if (const unsigned inner = bits(lanes) & ~at_border; inner != 0) {
-      const Value* const any_inner = lowest[__builtin_ctz(inner)];
-      for (const Value*& place : lowest) place = place != nullptr ? place : any_inner;
-      load_inner(lowest);
-    }
-    for (unsigned left = at_border; left != 0; left &= left - 1) {
-      const int l = __builtin_ctz(left);
-      const std::int32_t of_lane[3] = {cell[0][l], cell[1][l], cell[2][l]};
-      load_at_border(l, of_lane);
-    }
-  }
-
-  /// Loads a cell in each lane that has values on all sides, from the place of its lowest corner.
-  void load_inner(const Value* const (&lowest)[N]) const noexcept {
-    const auto pair = [&](int i, int j, int k, float* first, float* second) noexcept {
-      F a, b;
-      gather_pairs(lowest, SameOffset{i + j * grid_.row + k * grid_.slice}, a, b);
-      a.store(first);
-      b.store(second);
-    };
-    for (int row = 0; row < 4; ++row) {
-      const int j = row & 1, k = row >> 1, n = 2 * row;
-      if (within_cells()) {
-        pair(0, j, k, corner_[n], corner_[n + 1]);
-        continue;
-      }
-      pair(-1, j, k, outside_[0][n], corner_[n]);
-      pair(1, j, k, corner_[n + 1], outside_[0][n + 1]);
-      pair(0, j == 0 ? -1 : 2, k, outside_[1][n], outside_[1][n + 1]);
-      pair(0, j, k == 0 ? -1 : 2, outside_[2][n], outside_[2][n + 1]);
-    }
-  }
-
-  void load_at_border(int l, const std::int32_t (&cell)[3]) const noexcept {
-    const std::ptrdiff_t stride[3] = {1, grid_.row, grid_.slice};
-    std::ptrdiff_t at[3][4];  // before, lower, upper, behind
-    for (int a = 0; a < 3; ++a) {
-      const int last = grid_.values[a] - 1, place = cell[a] - grid_.padding[a];
-      const int lower = clamp(place, 0, last), upper = clamp(place + 1, 0, last);
-      const int before = max(lower - 1, 0), behind = min(upper + 1, last);
-      at[a][0] = before * stride[a];
-      at[a][1] = lower * stride[a];
-      at[a][2] = upper * stride[a];
-      at[a][3] = behind * stride[a];
-      // Of border cells both values are the same.
-      has_before_[a][l] = lower > 0 ? 1.0f : 0.0f;
-      has_behind_[a][l] = upper < last ? 1.0f : 0.0f;
-      flat_[a][l] = lower == upper ? 1.0f : 0.0f;
-    }
-    const Value* const data = grid_.data;
-    for (int n = 0; n < 8; ++n) {
-      const int i = 1 + (n & 1), j = 1 + (n >> 1 & 1), k = 1 + (n >> 2);
-      corner_[n][l] = static_cast<float>(data[at[0][i] + at[1][j] + at[2][k]]);
-      if (within_cells()) continue;
-      outside_[0][n][l] = static_cast<float>(data[at[0][i == 1 ? 0 : 3] + at[1][j] + at[2][k]]);
-      outside_[1][n][l] = static_cast<float>(data[at[0][i] + at[1][j == 1 ? 0 : 3] + at[2][k]]);
-      outside_[2][n][l] = static_cast<float>(data[at[0][i] + at[1][j] + at[2][k == 1 ? 0 : 3]]);
-    }
-  }
-
-  /// The derivative along an axis at the corners, by the distance of two values (GradientKind).
-  CellCorners<F> derivative(int a, bool of_field) const noexcept {
-    CellCorners<F> result;
-    const M flat = F::load(flat_[a]) > F(0);
-    for (int n = 0; n < 8; ++n) {
-      const bool is_upper = (n >> a & 1) != 0;
-      const F here = F::load(corner_[n]), other = F::load(corner_[n ^ 1 << a]);
-      const F step = is_upper ? here - other : other - here;
-      if (of_field) {
-        result.value[n] = step;
-        continue;
-      }
-      // What is beyond, on the side of this corner; where the cell is flat, on both sides.
-      const F own = F::load(outside_[a][n]), across = F::load(outside_[a][n ^ 1 << a]);
-      const F own_step = is_upper ? own - here : here - own;
-      const F across_step = is_upper ? here - across : across - here;
-      const F in_cell = select(flat, across_step, step);
-      M has_own = F::load(is_upper ? has_behind_[a] : has_before_[a]) > F(0);
-      M has_cell = (!flat) | (F::load(is_upper ? has_before_[a] : has_behind_[a]) > F(0));
-      if constexpr (!std::is_integral_v<Value>) {
-        has_own = has_own & !is_nan(own);
-        has_cell = has_cell & !is_nan(in_cell);
-      }
-      const F sum = select(has_own, own_step, F(0)) + select(has_cell, in_cell, F(0));
-      result.value[n] = select(has_own & has_cell, F(0.5f) * sum, sum);
-    }
-    return result;
-  }
-
-  const PacketGrid<Value>& grid_;
-  const PacketLight& light_;
-  mutable float corner_[8][N] = {}, outside_[3][8][N] = {};
-  mutable float has_before_[3][N] = {}, has_behind_[3][N] = {}, flat_[3][N] = {};
-};
 
 /// Returns places in the world, from the middle of the grid, of plane coordinates.
 template <class Value, int N>
@@ -198,7 +27,7 @@ Vec3<Batch<float, N>> place_in_world(const PacketGrid<Value>& grid, const Packet
   return result;
 }
 
-/// What places that place_in_world() returns, and others along a cell, may be off by.
+/// Returns what the places of place_in_world(), and others along a cell, may be off by.
 inline float place_rounding(const PacketLight& light) noexcept {
   return 8 * rounding_unit<float> * light.farthest;
 }
@@ -294,7 +123,7 @@ class LightLanes {
                                 const SpanLanes<float, N>& span, F largest_color) noexcept {
     part_ = restrict_to(magnitude_, from, to);
     const detail::PanelNodes<4, F> nodes(piece.length, [&](F u) noexcept {
-      return Material<F>{extinction(piece, span, u), {}};
+      return Material<F>{extinction(span, evaluate(piece.parts.front, u), u), {}};
     });
     const F largest = max(factor_at(part_.hull_min()), factor_at(part_.hull_max()));
     // Where a piece ends beside a control point, as much of the next slope is in it.
@@ -373,7 +202,7 @@ class LightLanes {
           transfer, clamp(value, piece.seen.color_lower, piece.seen.color_upper), lanes, known);
       const Lit<F> lit = light_up(light_.reflection, light_.light, light_.lights, of.along.at(u),
                                   of.along.position(u), to_eye_);
-      return Material<F>{extinction(piece, span, u), lit.apply(unlit)};
+      return Material<F>{extinction(span, value, u), lit.apply(unlit)};
     });
     return detail::panel_color(nodes);
   }
@@ -381,14 +210,12 @@ class LightLanes {
  private:
   using Kind = LightSource<float>::Kind;
   using I = Batch<std::int32_t, N>;
-  /// How far away a point light has to be, in lengths of the way through the cell.
+  /// Least distance of a point light, in lengths of the way through the cell.
   static constexpr float nearest_light = 8;
 
-  /// The extinction at u of a piece.
-  F extinction(const SpanPiece<float, N>& piece, const SpanLanes<float, N>& span,
-               F u) const noexcept {
+  /// Returns the extinction at u of a piece, where the data have this value.
+  F extinction(const SpanLanes<float, N>& span, F value, F u) const noexcept {
     const ExtinctionInterval<F>& interval = span.extinction;
-    const F value = evaluate(piece.parts.front, u);
     const F result = max(interval.at_lower + interval.slope * (value - interval.lower), F(0));
     return light_.factor == nullptr ? result : result * factor_at(evaluate(part_, u));
   }
@@ -400,7 +227,7 @@ class LightLanes {
   [[gnu::noinline]] void find_factor_end(M lanes, F from) noexcept {
     const PieceEnd<F> end = piece_end(restrict_to(magnitude_, min(from, F(1)), F(1)), factor_.lower,
                                       factor_.upper, magnitude_error_, lanes);
-    // No piece is empty: what is behind the end in it is too little to matter.
+    // Every piece goes on for a little, so that none is empty.
     const F place = from + max((F(1) - from) * end.place, F(2e-6f));
     factor_end_ = select(lanes, select(end.place < F(1), place, F(2)), factor_end_);
     factor_crosses_ = (factor_crosses_ & !lanes) | (lanes & end.crosses);
@@ -481,9 +308,9 @@ class LightLanes {
     return nearest;
   }
 
-  /// Looks at g·p of a point light, p = P - x: a polynomial of degree 4. Of Bernstein coefficients
-  /// b, the cubic with b_0, (4 b_1 - b_0) / 3, (4 b_3 - b_4) / 3, b_4 differs from it by u² (1 -
-  /// u)² times the fourth difference of the b, which is small where the light is far away. Newton's
+  /// Looks at g·p of a point light, p = P - x: a polynomial of degree 4. The cubic that has, of its
+  /// Bernstein coefficients b, b_0, (4 b_1 - b_0) / 3, (4 b_3 - b_4) / 3 and b_4 differs from it by
+  /// u² (1 - u)² times their fourth difference. That is small where the light is far away. Newton's
   /// steps go from the cubic's zero to that of g·p.
   template <class LookAt>
   void look_at_point(const GradientStretch<F>& along, const LightSource<float>& light,
