@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "axis_role.h"
+#include "position_names.h"
 #include "ras_affine.h"
 #include "text.h"
 
@@ -19,103 +20,6 @@ namespace pellucid {
 namespace {
 
 constexpr std::string_view letters = "xyz";
-
-template <std::size_t count>
-bool is_among(const std::array<std::string_view, count>& list, std::string_view text) {
-  return std::ranges::find(list, text) != list.end();
-}
-
-constexpr auto spacings = std::to_array<std::string_view>(
-    {"spacing", "spacings", "voxelsize", "voxelsizes", "voxelspacing", "pixelsize", "pixelspacing",
-     "pixdim", "zooms", "elementsize", "elementspacing", "gridspacing", "voxeldims",
-     "voxeldimensions", "sampling"});
-constexpr auto origins = std::to_array<std::string_view>(
-    {"origin", "gridorigin", "imageorigin", "volumeorigin", "translation"});
-constexpr auto matrices = std::to_array<std::string_view>(
-    {"affine", "affinematrix", "vox2ras", "ijktoras", "voxeltoras", "ijktolps"});
-/// Words of names that speak of a place or of the values' scale.
-constexpr auto words_of_places = std::to_array<std::string_view>(
-    {"spacing",     "spacings",  "origin",     "affine",         "voxel",      "pixel",
-     "voxelsize",   "pixelsize", "resolution", "direction",      "directions", "orientation",
-     "translation", "translate", "transform",  "transformation", "pixdim",     "zooms",
-     "offset",      "scale",     "scales",     "slope",          "intercept",  "rotation",
-     "calibration", "extent",    "extents",    "bbox",           "edge",       "elementsize",
-     "scalefactor", "nodata",    "fillvalue",  "sampling",       "vox2ras",    "delta"});
-
-/// A name in small letters, taken apart: "voxel_size_zyx_um" is "voxelsize", zyx and um.
-struct NameParts {
-  std::vector<std::string> words;
-  std::string bare;   ///< the words without what follows
-  std::string order;  ///< "xyz" or "zyx"; empty: not said
-  std::optional<std::size_t> axis;
-  std::string units;
-};
-
-NameParts parts_of(const std::string& name) {
-  NameParts parts;
-  std::string word;
-  const auto end_word = [&] {
-    if (!word.empty()) parts.words.push_back(in_small_letters(word));
-    word.clear();
-  };
-  char before = '\0';
-  for (const char c : name) {
-    const bool is_upper = c >= 'A' && c <= 'Z';
-    // "voxelSize" is two words, "RAS" is one.
-    if (is_upper && before >= 'a' && before <= 'z') end_word();
-    if (c == '_' || c == '-' || c == ' ' || c == '.' || c == '/') {
-      end_word();
-    } else {
-      word += c;
-    }
-    before = c;
-  }
-  end_word();
-  constexpr auto units =
-      std::to_array<std::string_view>({"m", "cm", "mm", "um", "nm", "micron", "microns"});
-  for (const std::string& each : parts.words) {
-    if (each == "xyz" || each == "zyx") {
-      parts.order = each;
-    } else if (parts.words.size() > 1 && is_among(units, each)) {
-      parts.units = each;
-    } else if (parts.words.size() > 1 && each.size() == 1 &&
-               letters.find(each) != std::string_view::npos) {
-      parts.axis = letters.find(each);
-    } else {
-      parts.bare += each;
-    }
-  }
-  return parts;
-}
-
-/// "dx", "spacing_x", "y_step": a distance along one axis; "x0", "origin_z": its beginning.
-enum class AlongOne { none, spacing, origin };
-
-AlongOne along_one(const NameParts& parts, std::size_t& axis) {
-  if (parts.axis) {
-    axis = *parts.axis;
-    if (is_among(spacings, parts.bare) || parts.bare == "step") return AlongOne::spacing;
-    return is_among(origins, parts.bare) ? AlongOne::origin : AlongOne::none;
-  }
-  const std::string& bare = parts.bare;
-  const auto letter_at = [&](std::size_t place) {
-    axis = letters.find(bare[place]);
-    return axis != std::string_view::npos;
-  };
-  if (bare.size() == 2 && bare[0] == 'd' && letter_at(1)) return AlongOne::spacing;
-  if (bare.size() == 6 && bare.starts_with("delta") && letter_at(5)) return AlongOne::spacing;
-  if (bare.size() == 2 && bare[1] == '0' && letter_at(0)) return AlongOne::origin;
-  return AlongOne::none;
-}
-
-/// Returns which of x, y and z the name of coordinates is; that of time is "t" or "time".
-AxisRole coordinate_role(const std::string& name) {
-  AxisText text;
-  text.name = name;
-  const AxisRole role = axis_evidence(text).role;
-  const bool is_place = role == AxisRole::x || role == AxisRole::y || role == AxisRole::z;
-  return is_place || role == AxisRole::time ? role : AxisRole::unknown;
-}
 
 bool is_matrix(const ArrayBeside& array) {
   return array.shape.size() == 2 && (array.shape[0] == 4 || array.shape[0] == 3) &&
@@ -153,16 +57,6 @@ bool is_list_of_coordinates(const ArrayBeside& array) {
   constexpr auto names = std::to_array<std::string_view>(
       {"coords", "coordinates", "gridcoords", "gridcoordinates", "positions"});
   return is_among(names, parts_of(array.name).bare);
-}
-
-bool speaks_of_places(const NameParts& parts) {
-  std::size_t axis = 0;
-  if (along_one(parts, axis) != AlongOne::none || is_among(spacings, parts.bare) ||
-      is_among(origins, parts.bare) || is_among(matrices, parts.bare)) {
-    return true;
-  }
-  return std::ranges::any_of(
-      parts.words, [](const std::string& word) { return is_among(words_of_places, word); });
 }
 
 bool is_finite(std::span<const double> numbers) {
@@ -221,7 +115,7 @@ class Reader {
   bool read_matrix() {
     for (const ArrayBeside& array : arrays_) {
       const NameParts parts = parts_of(array.name);
-      if (!is_among(matrices, parts.bare) || !is_matrix(array) || array.is_of_several) continue;
+      if (!says_matrix(parts) || !is_matrix(array) || array.is_of_several) continue;
       const std::vector<double>& m = array.numbers;
       const bool is_whole = m.size() == static_cast<std::size_t>(4 * array.shape[0]);
       const bool ends_well =
@@ -381,7 +275,7 @@ class Reader {
     bool is_refused = false;
     for (const ArrayBeside& array : arrays_) {
       const NameParts parts = parts_of(array.name);
-      if (!is_usable(array) || parts.axis || !is_among(spacings, parts.bare)) continue;
+      if (!is_usable(array) || parts.axis || !says_spacing(parts)) continue;
       if (!std::ranges::all_of(array.numbers, [](double n) { return n > 0; })) continue;
       const auto along = along_axes(array, parts);
       if (!along && array.numbers.size() == 3) {
@@ -411,7 +305,7 @@ class Reader {
     }
     for (const ArrayBeside& array : arrays_) {
       const NameParts parts = parts_of(array.name);
-      if (!is_usable(array) || parts.axis || !is_among(origins, parts.bare)) continue;
+      if (!is_usable(array) || parts.axis || !says_origin(parts)) continue;
       if (array.numbers.size() != 3) continue;
       if (is_evenly(array.numbers, 0)) {
         taken_.push_back(&array);
