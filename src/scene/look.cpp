@@ -22,6 +22,8 @@
 namespace pellucid {
 namespace {
 
+constexpr LookName haze{"haze", "any data: the background clear, the rest transparent"};
+constexpr LookName x_ray{"x-ray", "any data: density along the ray, as on a film"};
 constexpr std::array<LookName, 11> all_looks{
     {{"ct", "CT in Hounsfield units: bone in light"},
      {"ct-skin", "CT in Hounsfield units: skin in light"},
@@ -32,12 +34,10 @@ constexpr std::array<LookName, 11> all_looks{
      {"mask", "data of two values: the surface between them"},
      {"simulation", "smooth data: surfaces of equal value"},
      {"fog", "densities: white in light"},
-     {"haze", "any data: the background clear, the rest transparent"},
-     {"x-ray", "any data: density along the ray, as on a film"}}};
+     haze,
+     x_ray}};
 constexpr std::array<LookName, 3> mesh_looks{
-    {{"body", "meshes: the values on and below the surface"},
-     {"haze", "any data: the background clear, the rest transparent"},
-     {"x-ray", "any data: density along the ray, as on a film"}}};
+    {{"body", "meshes: the values on and below the surface"}, haze, x_ray}};
 
 /// Whether a name ends in one of these, whatever its case.
 bool ends_in(const std::string& name, std::initializer_list<std::string_view> endings) {
