@@ -90,7 +90,7 @@ py::array view_of(const T* values, std::vector<py::ssize_t> shape, const py::han
   return array;
 }
 
-/// What `__array__(dtype, copy)` of an object returns that has `array`: dtype may be None, and copy
+/// Returns `array` as `__array__(dtype, copy)` of its object has to: dtype may be None, and copy
 /// is True, None (where one is needed) or False. Throws ValueError for False where one is needed.
 py::object array_as(const py::object& array, const py::object& dtype, const py::object& copy);
 

@@ -351,7 +351,7 @@ NPZ_KEY(coordinates, "x, y, z", honored) {
   expect_counting(told.volume, "f32");
   test::expect_near(test::world_of(told.volume, 1, 2, 2), {13, 2, 4});
   expect_told(told.notes, "arrays x, y, z place it; its axes are z, y, x");
-  // v[x, y, z], of which the lengths tell.
+  // The lengths tell that it is v[x, y, z].
   const Beside xyz{{"x", {0, 2, 4}}, {"y", {0, 1, 2, 3}}, {"z", {10, 13, 16, 19, 22}}};
   const Told turned = telling(archive_with(xyz));
   EXPECT_EQ(turned.volume.description().dimensions, (std::array<int, 3>{3, 4, 5}));

@@ -28,7 +28,7 @@ RUNTIMES = {28: 24, 31: 28, 34: 29, 35: 30, 39: 33}
 # What only the kernels of one set have, as objdump writes it.
 KERNELS = {"sse4": r"\t(p?blendv(b|p[sd])|round[ps][sd]) ", "avx2": r"\tvblendvp[sd] .*ymm",
            "avx512": r"zmm"}
-# Packages of which the library has another licence than the rest, by its file.
+# Packages whose library has another licence than the rest of them, by its file.
 OF_LIBRARY = {"libuuid1": "libuuid/*", "liblz4-1": "lib/*"}
 
 

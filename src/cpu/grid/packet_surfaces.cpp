@@ -15,9 +15,9 @@ namespace {
 
 constexpr double unit = static_cast<double>(rounding_unit<float>);
 
-/// How far a value has to be from other control points, in largest values of the data.
+/// Least distance of a value from other control points, in largest values of the data.
 constexpr double least_distance = 1e-4;
-/// How far from it the extinction reaches that makes packets visit it, at most.
+/// Largest distance from it that has an extinction for packets to visit it.
 constexpr double reach = 0x1p-14;
 /// By what share of it the extinction is raised at a value, at the second by twice that, and so on:
 /// control points on a line between others are none for BinnedTransfer.
