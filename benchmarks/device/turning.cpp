@@ -24,16 +24,18 @@ Turning::Turning(const Scene& scene, Device device, int threads) : scene_(scene)
   first_.image = renderer_.render(scene_, options_, &first_.report);
 }
 
-double Turning::frames_per_second(int frames) {
+double Turning::frames_per_second(int frames, double longest) {
   using Clock = std::chrono::steady_clock;
   const Vec3<double> up = normalized(scene_.camera.up);
   std::vector<double> seconds;
-  for (int i = 0; i < frames; ++i) {
+  double spent = 0;
+  for (int i = 0; i < frames && (i < 2 || spent < longest); ++i) {
     Camera& camera = scene_.camera;
     camera.position = camera.focal_point + turned(camera.position - camera.focal_point, up, 0.05);
     const auto start = Clock::now();
     renderer_.render(scene_, options_);
     seconds.push_back(std::chrono::duration<double>(Clock::now() - start).count());
+    spent += seconds.back();
   }
   std::ranges::sort(seconds);
   return 1 / seconds[seconds.size() / 2];

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <limits>
+
 #include "pellucid/cpu/renderer.h"
 
 namespace pellucid::bench {
@@ -18,8 +20,9 @@ class Turning {
 
   const FirstFrame& first() const { return first_; }
   /// Renders so many frames, each from another place, and returns how many there are in a second:
-  /// by the median of their times, from the call to the image in the host's memory.
-  double frames_per_second(int frames);
+  /// by the median of their times, from the call to the image in the host's memory. After so many
+  /// seconds it begins no new frame, if there are two.
+  double frames_per_second(int frames, double longest = std::numeric_limits<double>::infinity());
 
  private:
   Scene scene_;
