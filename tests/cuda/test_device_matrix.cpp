@@ -4,83 +4,29 @@
 #include <cstdio>
 #include <string>
 
-#include "pellucid/scene/error.h"
 #include "tests/cuda/card.h"
+#include "tests/cuda/device_matrix.h"
 #include "tests/scenes/test_names.h"
-#include "tests/scenes/tolerance_matrix.h"
 
 /// The scenes of the tolerance matrix by the functions of a card: no pixel is over what it says.
 namespace pellucid::scenes::test_device_matrix {
 
 namespace {
 
-/// Returns whether the rays of a scene are left to the CPU, which says so.
-bool goes_to_cpu(const RenderReport& report) {
-  return report.device.starts_with("rendered by the CPU: ");
-}
-
-/// Whether a device is to follow the rays of a scene: as the documents say.
-bool is_for_devices(const Scene& scene) {
-  if (scene.layers.size() != 1 || !scene.clips.empty()) return false;
-  const Layer& layer = scene.layers[0];
-  const auto* const volume = std::get_if<VolumeContent>(&layer.content);
-  if (!layer.visible || !layer.clips.empty() || layer.projection || has_surfaces(layer)) {
-    return false;
-  }
-  if (volume != nullptr) return volume->mask == nullptr;
-  return !std::holds_alternative<LabelContent>(layer.content) && !is_lit(layer) && !scene.backdrop;
-}
-
-bool is_missing(const GalleryEntry& entry) {
-  return !entry.file.empty() && !std::filesystem::exists(entry.file);
-}
-
 void expect_kept(const GalleryEntry& entry, Device device, int size) {
-  MatrixOptions options;
-  options.tolerances.assign(std::begin(quick_tolerances), std::end(quick_tolerances));
-  options.size = size;
-  options.sampling = false;
-  options.least_proved = entry.least_proved;
-  options.device = device;
-  const Exhibit exhibit = entry.make(options.size);
-  std::uint64_t pixels = 0, in_double = 0, left = 0;
+  const Exhibit exhibit = entry.make(size);
+  DeviceRow all;
   for (std::size_t camera = 0; camera < exhibit.cameras.size(); ++camera) {
-    const Scene scene = scene_of(exhibit, camera, options.size);
-    if (!is_for_devices(scene)) {
-      // The CPU's own matrix has these.
-      RenderOptions one;
-      one.device = device;
-      RenderReport report;
-      render(scene, one, &report);
-      EXPECT_TRUE(goes_to_cpu(report)) << report.device;
-      return;
-    }
-    const MatrixRow row = measure_row(entry.name, exhibit, camera, options);
-    EXPECT_GT(row.brightest, 0) << row.camera << ": there is nothing to see";
-    for (const MatrixCell& cell : row.cells) {
-      const Verdict& verdict = cell.verdict;
-      const std::string where = row.camera + ", " + grade_name(cell.grade) + ", tolerance " +
-                                std::to_string(cell.tolerance) + ": " + verdict.text();
-      EXPECT_FALSE(goes_to_cpu(cell.report)) << where << cell.report.device;
-      EXPECT_TRUE(verdict.kept()) << where;
-      const bool may_give_up = cell.grade == Grade::proved && entry.least_proved > 0;
-      if (cell.tolerance >= entry.least_tolerance && !may_give_up) {
-        EXPECT_EQ(verdict.said_over, 0) << where;
-      }
-      EXPECT_EQ(cell.report.pixels_over_tolerance, static_cast<std::uint64_t>(verdict.said_over))
-          << where;
-      EXPECT_EQ(cell.report.pixels_proved, static_cast<std::uint64_t>(verdict.proved)) << where;
-      EXPECT_FLOAT_EQ(static_cast<float>(cell.report.largest_error),
-                      static_cast<float>(verdict.reported))
-          << where;
-      pixels += row.pixels;
-      in_double += cell.report.pixels_in_double;
-      left += cell.report.pixels_left;
-    }
+    const DeviceRow row = check_on_device(entry, exhibit, camera, device, size);
+    for (const std::string& fault : row.faults) ADD_FAILURE() << fault;
+    if (!row.on_device) return;
+    all.pixels += row.pixels;
+    all.in_double += row.in_double;
+    all.left += row.left;
   }
-  std::printf("[ device   ] %-50s %llu pixels: %llu again in double, %llu left to the CPU\n",
-              entry.name.c_str(), static_cast<unsigned long long>(pixels),
-              static_cast<unsigned long long>(in_double), static_cast<unsigned long long>(left));
+  std::printf("[ device   ] %-50s %zu pixels: %llu again in double, %llu left to the CPU\n",
+              entry.name.c_str(), all.pixels, static_cast<unsigned long long>(all.in_double),
+              static_cast<unsigned long long>(all.left));
 }
 
 class DeviceMatrix : public testing::TestWithParam<GalleryEntry> {};
