@@ -2,6 +2,7 @@
 #pragma once
 
 #include <functional>
+#include <span>
 
 #include "command_line.h"
 
@@ -23,5 +24,11 @@ Command add_suggest(CommandLine& app);
 Command add_convert(CommandLine& app);
 Command add_presets(CommandLine& app);
 Command add_transfer_function(CommandLine& app);
+
+/// Adds a command to the program.
+using AddCommand = Command (*)(CommandLine& app);
+
+/// Returns what adds the program's commands, in the order of --help.
+std::span<const AddCommand> command_table();
 
 }  // namespace pellucid::cli

@@ -1,18 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cstdio>
 #include <exception>
 #include <new>
 #include <string>
-#include <string_view>
+#include <vector>
 
 #include "commands.h"
 #include "output.h"
 #include "parse.h"
 #include "pellucid/base/version.h"
-#include "pellucid/cluster/communicator.h"
 #include "progress.h"
 #include "render.h"
 
@@ -26,11 +24,9 @@ int fail(int exit_code, const std::string& message) {
   return exit_code;
 }
 
-/// Wrong arguments of ranks are told once.
+/// Reports wrong arguments: of ranks by one of them.
 int wrong_use(int argc, char** argv, const std::string& message) {
-  const bool of_ranks =
-      is_under_mpi() && std::find(argv, argv + argc, std::string_view("--ranks")) != argv + argc;
-  if (!of_ranks) return fail(2, message);
+  if (!is_rank(argc, argv)) return fail(2, message);
   try {
     return fail_on_ranks(message);
   } catch (const Error&) {
@@ -54,10 +50,8 @@ int run(int argc, char** argv) {
       "Exit status: 0 success, 1 failure, 2 wrong arguments, 3 over the tolerance, 130 "
       "interrupted.\n"
       "A failure prints one line on stderr and leaves no partial file.");
-  const Command commands[] = {add_render(app),           add_view(app),    add_info(app),
-                              add_histogram(app),        add_suggest(app), add_convert(app),
-                              add_evaluate(app),         add_compare(app), add_presets(app),
-                              add_transfer_function(app)};
+  std::vector<Command> commands;
+  for (const AddCommand add : command_table()) commands.push_back(add(app));
 
   if (!app.parse(argc, argv, "pellucid " PELLUCID_VERSION_STRING)) return 0;
   for (const Command& command : commands) {

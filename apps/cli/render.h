@@ -170,6 +170,8 @@ void write_picture(const RenderArguments& arguments, const PreparedScene& prepar
 /// Renders on the ranks that this process is one of, and writes on the first. Returns the exit
 /// status.
 int run_on_ranks(const RenderArguments& arguments);
+/// Returns whether this process is one of several ranks, by its arguments and its environment.
+bool is_rank(int argc, char** argv);
 /// Ends the program on all of its ranks, of which this one has wrong arguments, with one line in
 /// all. Returns the exit status. Throws Error if messages cannot be passed.
 int fail_on_ranks(const std::string& wrong_use);

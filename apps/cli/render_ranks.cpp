@@ -2,12 +2,14 @@
 #include <fmt/format.h>
 #include <sys/resource.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <exception>
 #include <memory>
 #include <set>
 #include <sstream>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -212,6 +214,11 @@ class RankRun {
 };
 
 }  // namespace
+
+bool is_rank(int argc, char** argv) {
+  return is_under_mpi() &&
+         std::find(argv, argv + argc, std::string_view("--ranks")) != argv + argc;
+}
 
 int fail_on_ranks(const std::string& wrong_use) {
   const std::unique_ptr<Communicator> ranks = mpi_communicator();
